@@ -1,0 +1,94 @@
+"""Every message type of the system, under one name to import from."""
+
+from foxglove_schemas_protobuf.CameraCalibration_pb2 import CameraCalibration
+from foxglove_schemas_protobuf.CompressedImage_pb2 import CompressedImage
+from foxglove_schemas_protobuf.FrameTransform_pb2 import FrameTransform
+from foxglove_schemas_protobuf.FrameTransforms_pb2 import FrameTransforms
+from foxglove_schemas_protobuf.Grid_pb2 import Grid
+from foxglove_schemas_protobuf.JointState_pb2 import JointState
+from foxglove_schemas_protobuf.JointStates_pb2 import JointStates
+from foxglove_schemas_protobuf.LaserScan_pb2 import LaserScan
+from foxglove_schemas_protobuf.Odometry_pb2 import Odometry
+from foxglove_schemas_protobuf.PackedElementField_pb2 import PackedElementField
+from foxglove_schemas_protobuf.Pose_pb2 import Pose
+from foxglove_schemas_protobuf.PoseInFrame_pb2 import PoseInFrame
+from foxglove_schemas_protobuf.PosesInFrame_pb2 import PosesInFrame
+from foxglove_schemas_protobuf.Quaternion_pb2 import Quaternion
+from foxglove_schemas_protobuf.Vector3_pb2 import Vector3
+from google.protobuf.timestamp_pb2 import Timestamp
+
+from schemas.v1.command_pb2 import DriveCommand, StopCommand, SurfaceCommand, WheelCommand
+from schemas.v1.mission_pb2 import (
+    GoalRequest,
+    Mission,
+    MissionItem,
+    MissionProgress,
+    MissionRequest,
+    NavStatus,
+    SetCurrentRequest,
+)
+from schemas.v1.sensor_pb2 import AirData, Battery, Contact, Gnss, Imu, WheelTicks
+from schemas.v1.system_pb2 import Event, Health, Param, ParamReply, ParamRequest, Process, Processes
+from schemas.v1.time_pb2 import Clock, ClockRequest, Done
+from schemas.v1.vehicle_pb2 import (
+    ArmRequest,
+    Kind,
+    Mode,
+    ModeRequest,
+    NavState,
+    Reply,
+    VehicleStatus,
+)
+
+__all__ = [
+    "AirData",
+    "ArmRequest",
+    "Battery",
+    "CameraCalibration",
+    "Clock",
+    "ClockRequest",
+    "CompressedImage",
+    "Contact",
+    "Done",
+    "DriveCommand",
+    "Event",
+    "FrameTransform",
+    "FrameTransforms",
+    "Gnss",
+    "GoalRequest",
+    "Grid",
+    "Health",
+    "Imu",
+    "JointState",
+    "JointStates",
+    "Kind",
+    "LaserScan",
+    "Mission",
+    "MissionItem",
+    "MissionProgress",
+    "MissionRequest",
+    "Mode",
+    "ModeRequest",
+    "NavState",
+    "NavStatus",
+    "Odometry",
+    "PackedElementField",
+    "Param",
+    "ParamReply",
+    "ParamRequest",
+    "Pose",
+    "PoseInFrame",
+    "PosesInFrame",
+    "Process",
+    "Processes",
+    "Quaternion",
+    "Reply",
+    "SetCurrentRequest",
+    "StopCommand",
+    "SurfaceCommand",
+    "Timestamp",
+    "Vector3",
+    "VehicleStatus",
+    "WheelCommand",
+    "WheelTicks",
+]

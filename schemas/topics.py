@@ -1,0 +1,148 @@
+"""THE TABLE: every topic and request of the system, one line each.
+
+A key is ``uvf/<owner>/<group>/<name>``; the owner is a vehicle or ``sys``. ``<source>`` in a key is filled by
+``topic.by(source)``: the one place where a key has several writers, each with a key of its own.
+"""
+
+from dataclasses import dataclass, replace
+from enum import Enum
+from typing import Any, Generic, TypeVar
+
+from google.protobuf.message import Message as ProtobufMessage
+
+from schemas import messages as m
+
+M = TypeVar("M", bound=ProtobufMessage)
+Q = TypeVar("Q", bound=ProtobufMessage)
+R = TypeVar("R", bound=ProtobufMessage)
+
+PREFIX = "uvf"
+SYSTEM = "sys"
+STALE_PERIODS = 10
+ACTUATOR_MAX_AGE = 0.5  # s
+
+
+class Qos(Enum):
+    """How a topic travels; ``runtime.zenoh_bus`` turns each class into Zenoh's settings."""
+
+    CONTROL = "control"
+    STATE = "state"
+    SENSOR = "sensor"
+    BULK = "bulk"
+    LATCHED = "latched"
+    EVENT = "event"
+    LOCKSTEP = "lockstep"
+
+
+@dataclass(frozen=True)
+class Topic(Generic[M]):
+    """One line of the table.
+
+    key: template with ``<owner>`` (a vehicle) or ``sys``, perhaps ``<source>``; hz: nominal rate, 0 = on change.
+    """
+
+    key: str
+    message: type[M]
+    hz: float
+    qos: Qos
+    about: str
+    logged: bool = True
+
+    @property
+    def per_vehicle(self) -> bool:
+        return "<owner>" in self.key
+
+    @property
+    def max_age(self) -> float:
+        """Age [s, message time] from which a message no longer counts; latched and event topics never age."""
+        if self.hz == 0 or self.qos in (Qos.LATCHED, Qos.EVENT):
+            return float("inf")
+        return ACTUATOR_MAX_AGE if "/actuator/" in self.key else STALE_PERIODS / self.hz
+
+    def by(self, source: str) -> "Topic[M]":
+        """The same topic as written by one source; ``*`` reads all of them."""
+        return replace(self, key=self.key.replace("<source>", source))
+
+    def at(self, owner: str) -> str:
+        """Full key for one owner: ``uvf/burger/nav/pose``."""
+        return f"{PREFIX}/{self.key.replace('<owner>', owner)}"
+
+
+@dataclass(frozen=True)
+class Request(Generic[Q, R]):
+    """A question with an answer: asked by a service's ``calls``, served by another's ``requests``."""
+
+    key: str
+    message: type[Q]
+    reply: type[R]
+    about: str
+
+    @property
+    def per_vehicle(self) -> bool:
+        return "<owner>" in self.key
+
+    def by(self, source: str) -> "Request[Q, R]":
+        return replace(self, key=self.key.replace("<source>", source))
+
+    def at(self, owner: str) -> str:
+        return f"{PREFIX}/{self.key.replace('<owner>', owner)}"
+
+
+_V, _S = "<owner>", SYSTEM
+_Q = Qos
+
+# time and supervision
+CLOCK = Topic(f"{_S}/time/clock", m.Clock, 100, _Q.LOCKSTEP, "simulation time, from the conductor")
+DONE = Topic(f"{_S}/time/done/<source>", m.Done, 100, _Q.LOCKSTEP, "a participant has reached this time", logged=False)
+STOP = Topic(f"{_S}/cmd/<source>", m.StopCommand, 0, _Q.LATCHED, "STOP ALL and its release")
+PROCESSES = Topic(f"{_S}/state/processes", m.Processes, 0, _Q.LATCHED, "what runs, from the launcher", logged=False)
+HEALTH = Topic(f"{_S}/state/health/<source>", m.Health, 2, _Q.STATE, "sign of life and counters of a process", logged=False)
+SYSTEM_EVENTS = Topic(f"{_S}/state/events/<source>", m.Event, 0, _Q.EVENT, "what happened to the system")
+
+# sensors
+IMU = Topic(f"{_V}/sensor/imu", m.Imu, 100, _Q.STATE, "gyroscope, accelerometer, magnetometer")
+SCAN = Topic(f"{_V}/sensor/scan", m.LaserScan, 5, _Q.SENSOR, "2-D lidar; range 0 = no return")
+WHEELS = Topic(f"{_V}/sensor/wheels", m.WheelTicks, 50, _Q.STATE, "wheel encoders")
+GNSS = Topic(f"{_V}/sensor/gnss", m.Gnss, 5, _Q.STATE, "satellite position and velocity")
+AIR_DATA = Topic(f"{_V}/sensor/air_data", m.AirData, 50, _Q.STATE, "static and differential pressure")
+BATTERY = Topic(f"{_V}/sensor/battery", m.Battery, 1, _Q.STATE, "voltage, current, charge")
+CONTACT = Topic(f"{_V}/sensor/contact", m.Contact, 20, _Q.STATE, "bumper")
+JOINTS = Topic(f"{_V}/sensor/joints", m.JointStates, 20, _Q.STATE, "wheels, surfaces, propeller")
+IMAGE = Topic(f"{_V}/sensor/camera/image", m.CompressedImage, 5, _Q.BULK, "camera picture, JPEG")
+CAMERA_INFO = Topic(f"{_V}/sensor/camera/info", m.CameraCalibration, 0, _Q.LATCHED, "camera intrinsics")
+
+# truth: for simulators among themselves, tests, displays and scores; never for an algorithm
+TRUTH = Topic(f"{_V}/truth/state", m.NavState, 50, _Q.STATE, "true motion, world frame")
+
+# navigation
+TF_STATIC = Topic(f"{_V}/tf/static", m.FrameTransforms, 0, _Q.LATCHED, "mounting of sensors and wheels")
+TF_MAP = Topic(f"{_V}/tf/map", m.FrameTransform, 10, _Q.STATE, "map from odom")
+ODOMETRY = Topic(f"{_V}/nav/odometry", m.Odometry, 50, _Q.STATE, "wheels and IMU, odom frame: smooth, drifts")
+POSE = Topic(f"{_V}/nav/pose", m.PoseInFrame, 50, _Q.STATE, "best estimate of the pose, world frame")
+NAV_STATE = Topic(f"{_V}/nav/state", m.NavState, 50, _Q.STATE, "best estimate of the whole motion, world frame")
+PATH = Topic(f"{_V}/nav/path", m.PosesInFrame, 2, _Q.STATE, "path being followed, world frame")
+NAV_STATUS = Topic(f"{_V}/nav/status", m.NavStatus, 2, _Q.STATE, "what the planner is doing")
+MAP = Topic(f"{_V}/map/grid", m.Grid, 0, _Q.LATCHED, "occupancy, int8: -1 unknown, 0..100")
+
+# commands and actuators
+DRIVE = Topic(f"{_V}/cmd/<source>", m.DriveCommand, 10, _Q.CONTROL, "velocity asked of a ground vehicle")
+WHEEL_COMMAND = Topic(f"{_V}/actuator/wheels", m.WheelCommand, 50, _Q.CONTROL, "wheel speeds")
+SURFACE_COMMAND = Topic(f"{_V}/actuator/surfaces", m.SurfaceCommand, 50, _Q.CONTROL, "control surfaces and throttle")
+
+# state and mission
+STATUS = Topic(f"{_V}/state/vehicle", m.VehicleStatus, 10, _Q.STATE, "mode, arming, who commands and why")
+EVENTS = Topic(f"{_V}/state/events/<source>", m.Event, 0, _Q.EVENT, "what happened to the vehicle")
+MISSION = Topic(f"{_V}/mission/plan", m.Mission, 0, _Q.LATCHED, "mission in force")
+PROGRESS = Topic(f"{_V}/mission/progress", m.MissionProgress, 2, _Q.STATE, "where in the mission")
+
+# requests
+CLOCK_REQUEST = Request(f"{_S}/srv/clock", m.ClockRequest, m.Reply, "rate, pause, resume, single step")
+ARM = Request(f"{_V}/srv/arm", m.ArmRequest, m.Reply, "arm or disarm")
+SET_MODE = Request(f"{_V}/srv/mode", m.ModeRequest, m.Reply, "change the flight or drive mode")
+GOAL = Request(f"{_V}/srv/goal", m.GoalRequest, m.Reply, "go to a point")
+SET_MISSION = Request(f"{_V}/srv/mission", m.MissionRequest, m.Reply, "replace the mission")
+SET_CURRENT = Request(f"{_V}/srv/current", m.SetCurrentRequest, m.Reply, "jump to a mission item")
+PARAM = Request(f"{_V}/srv/param/<source>", m.ParamRequest, m.ParamReply, "read or set a service's parameters")
+
+TOPICS: dict[str, Topic[Any]] = {k: v for k, v in globals().items() if isinstance(v, Topic)}
+REQUESTS: dict[str, Request[Any, Any]] = {k: v for k, v in globals().items() if isinstance(v, Request)}

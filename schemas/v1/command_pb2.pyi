@@ -1,0 +1,54 @@
+from google.protobuf import timestamp_pb2 as _timestamp_pb2
+from google.protobuf import descriptor as _descriptor
+from google.protobuf import message as _message
+from typing import ClassVar as _ClassVar, Mapping as _Mapping, Optional as _Optional, Union as _Union
+
+DESCRIPTOR: _descriptor.FileDescriptor
+
+class DriveCommand(_message.Message):
+    __slots__ = ("timestamp", "linear", "angular")
+    TIMESTAMP_FIELD_NUMBER: _ClassVar[int]
+    LINEAR_FIELD_NUMBER: _ClassVar[int]
+    ANGULAR_FIELD_NUMBER: _ClassVar[int]
+    timestamp: _timestamp_pb2.Timestamp
+    linear: float
+    angular: float
+    def __init__(self, timestamp: _Optional[_Union[_timestamp_pb2.Timestamp, _Mapping]] = ..., linear: _Optional[float] = ..., angular: _Optional[float] = ...) -> None: ...
+
+class WheelCommand(_message.Message):
+    __slots__ = ("timestamp", "left", "right")
+    TIMESTAMP_FIELD_NUMBER: _ClassVar[int]
+    LEFT_FIELD_NUMBER: _ClassVar[int]
+    RIGHT_FIELD_NUMBER: _ClassVar[int]
+    timestamp: _timestamp_pb2.Timestamp
+    left: float
+    right: float
+    def __init__(self, timestamp: _Optional[_Union[_timestamp_pb2.Timestamp, _Mapping]] = ..., left: _Optional[float] = ..., right: _Optional[float] = ...) -> None: ...
+
+class SurfaceCommand(_message.Message):
+    __slots__ = ("timestamp", "aileron", "elevator", "rudder", "throttle", "flap", "brake")
+    TIMESTAMP_FIELD_NUMBER: _ClassVar[int]
+    AILERON_FIELD_NUMBER: _ClassVar[int]
+    ELEVATOR_FIELD_NUMBER: _ClassVar[int]
+    RUDDER_FIELD_NUMBER: _ClassVar[int]
+    THROTTLE_FIELD_NUMBER: _ClassVar[int]
+    FLAP_FIELD_NUMBER: _ClassVar[int]
+    BRAKE_FIELD_NUMBER: _ClassVar[int]
+    timestamp: _timestamp_pb2.Timestamp
+    aileron: float
+    elevator: float
+    rudder: float
+    throttle: float
+    flap: float
+    brake: float
+    def __init__(self, timestamp: _Optional[_Union[_timestamp_pb2.Timestamp, _Mapping]] = ..., aileron: _Optional[float] = ..., elevator: _Optional[float] = ..., rudder: _Optional[float] = ..., throttle: _Optional[float] = ..., flap: _Optional[float] = ..., brake: _Optional[float] = ...) -> None: ...
+
+class StopCommand(_message.Message):
+    __slots__ = ("timestamp", "engaged", "source")
+    TIMESTAMP_FIELD_NUMBER: _ClassVar[int]
+    ENGAGED_FIELD_NUMBER: _ClassVar[int]
+    SOURCE_FIELD_NUMBER: _ClassVar[int]
+    timestamp: _timestamp_pb2.Timestamp
+    engaged: bool
+    source: str
+    def __init__(self, timestamp: _Optional[_Union[_timestamp_pb2.Timestamp, _Mapping]] = ..., engaged: bool = ..., source: _Optional[str] = ...) -> None: ...

@@ -1,0 +1,103 @@
+"""Rotations: quaternions wxyz (Hamilton, unit), matrices, Euler angles Z-Y-X, and the two body conventions.
+
+Names cancel: ``v_world = rotate(world_from_body, v_body)``.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+IDENTITY: Floats = np.array((1.0, 0.0, 0.0, 0.0))
+ENU_FROM_NED: Floats = np.array(((0.0, 1.0, 0.0), (1.0, 0.0, 0.0), (0.0, 0.0, -1.0)))
+"""Swaps north and east and turns down into up; its own inverse."""
+FLU_FROM_FRD: Floats = np.diag((1.0, -1.0, -1.0))
+"""Turns right into left and down into up; its own inverse."""
+
+
+def wrap(angle: float) -> float:
+    """The same angle in (-pi, pi]."""
+    return float(-((np.pi - angle) % (2 * np.pi) - np.pi))
+
+
+def multiply(p: Floats, q: Floats) -> Floats:
+    """Hamilton product: ``a_from_c = multiply(a_from_b, b_from_c)``."""
+    pw, px, py, pz = p
+    qw, qx, qy, qz = q
+    return np.array(
+        (
+            pw * qw - px * qx - py * qy - pz * qz,
+            pw * qx + px * qw + py * qz - pz * qy,
+            pw * qy - px * qz + py * qw + pz * qx,
+            pw * qz + px * qy - py * qx + pz * qw,
+        )
+    )
+
+
+def inverse(q: Floats) -> Floats:
+    """``b_from_a`` of a unit ``a_from_b``."""
+    return q * np.array((1.0, -1.0, -1.0, -1.0))
+
+
+def rotate(a_from_b: Floats, v_b: Floats) -> Floats:
+    """(3,) vector in frame a."""
+    return matrix(a_from_b) @ v_b
+
+
+def matrix(q: Floats) -> Floats:
+    """(3, 3) rotation matrix of a unit quaternion."""
+    w, x, y, z = q
+    return np.array(
+        (
+            (1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
+            (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),
+            (2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)),
+        )
+    )
+
+
+def from_matrix(r: Floats) -> Floats:
+    """Unit quaternion of a (3, 3) rotation matrix, w >= 0 (Shepperd 1978: divide by the largest component)."""
+    trace = float(np.trace(r))
+    squares = np.array((trace, r[0, 0], r[1, 1], r[2, 2]))
+    i = int(np.argmax(squares))
+    if i == 0:
+        q = np.array((1 + trace, r[2, 1] - r[1, 2], r[0, 2] - r[2, 0], r[1, 0] - r[0, 1]))
+    else:
+        a, b, c = i - 1, i % 3, (i + 1) % 3
+        q = np.zeros(4)
+        q[0] = r[c, b] - r[b, c]
+        q[1 + a] = 1 + r[a, a] - r[b, b] - r[c, c]
+        q[1 + b] = r[b, a] + r[a, b]
+        q[1 + c] = r[c, a] + r[a, c]
+    q /= np.linalg.norm(q)
+    return q if q[0] >= 0 else -q
+
+
+def from_euler(roll: float, pitch: float, yaw: float) -> Floats:
+    """Quaternion of yaw about z, then pitch about y, then roll about x [rad]."""
+    cr, sr = np.cos(roll / 2), np.sin(roll / 2)
+    cp, sp = np.cos(pitch / 2), np.sin(pitch / 2)
+    cy, sy = np.cos(yaw / 2), np.sin(yaw / 2)
+    return np.array(
+        (
+            cr * cp * cy + sr * sp * sy,
+            sr * cp * cy - cr * sp * sy,
+            cr * sp * cy + sr * cp * sy,
+            cr * cp * sy - sr * sp * cy,
+        )
+    )
+
+
+def to_euler(q: Floats) -> tuple[float, float, float]:
+    """(roll, pitch, yaw) [rad]; pitch in [-pi/2, pi/2]."""
+    w, x, y, z = q
+    roll = np.arctan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y))
+    pitch = np.arcsin(np.clip(2 * (w * y - z * x), -1.0, 1.0))
+    yaw = np.arctan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
+    return float(roll), float(pitch), float(yaw)
+
+
+def enu_flu_from_ned_frd(ned_from_frd: Floats) -> Floats:
+    """The same attitude as ENU-from-FLU; also the other way round, for both changes are their own inverse."""
+    return from_matrix(ENU_FROM_NED @ matrix(ned_from_frd) @ FLU_FROM_FRD)

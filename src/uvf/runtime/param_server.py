@@ -1,0 +1,74 @@
+"""Answers requests to read or set a service's parameters while it runs."""
+
+from collections import deque
+from typing import Any, get_args, get_type_hints
+
+import msgspec
+from google.protobuf.message import DecodeError
+
+from schemas import topics
+from schemas.messages import Param, ParamReply, ParamRequest
+from uvf.runtime.bus import Query
+from uvf.runtime.params import nearest
+from uvf.runtime.service import Service
+
+
+class ParamServer:
+    """Holds the queue of requests of one service instance; answered at the start of its next step."""
+
+    def __init__(self, service: Service) -> None:
+        self._service = service
+        self._queue: deque[Query] = deque()
+
+    def key(self, owner: str) -> str:
+        return topics.PARAM.by(self._service.name).at(owner)
+
+    def queue(self, query: Query) -> None:
+        self._queue.append(query)
+
+    def answer(self, t_ns: int) -> None:
+        while self._queue:
+            query = self._queue.popleft()
+            try:
+                reply = self.reply(ParamRequest.FromString(query.payload))
+            except DecodeError as error:
+                reply = ParamReply(accepted=False, reason=f"broken request: {error}")
+            query.answer(reply.SerializeToString(deterministic=True), t_ns)
+
+    def reply(self, request: ParamRequest) -> ParamReply:
+        """Lists, reads or sets; a refused value leaves everything as it was."""
+        fields = self._service.params.__struct_fields__
+        if request.name and request.name not in fields:
+            return ParamReply(
+                accepted=False, reason=f"{self._service.name} has no parameter '{request.name}'; {nearest(request.name, fields)}"
+            )
+        if request.value:
+            try:
+                self._set(request.name, request.value)
+            except (msgspec.ValidationError, msgspec.DecodeError) as error:
+                return ParamReply(accepted=False, reason=f"{request.name}: {error}")
+        wanted = [request.name] if request.name else fields
+        return ParamReply(accepted=True, params=[self._describe(name) for name in wanted])
+
+    def _set(self, name: str, value: str) -> None:
+        data = msgspec.to_builtins(self._service.params)
+        data[name] = msgspec.json.decode(value)
+        self._service.params = msgspec.convert(data, type(self._service.params))
+
+    def _describe(self, name: str) -> Param:
+        hints = get_type_hints(type(self._service.params), include_extras=True)
+        param = Param(name=name, value=msgspec.json.encode(getattr(self._service.params, name)).decode())
+        param.min, param.max = float("-inf"), float("inf")
+        for meta in get_args(hints[name])[1:]:
+            if isinstance(meta, msgspec.Meta):
+                _describe_limits(param, meta)
+        return param
+
+
+def _describe_limits(param: Param, meta: Any) -> None:
+    lowest = meta.ge if meta.ge is not None else meta.gt
+    highest = meta.le if meta.le is not None else meta.lt
+    param.min = float("-inf") if lowest is None else lowest
+    param.max = float("inf") if highest is None else highest
+    param.description = meta.description or ""
+    param.unit = (meta.extra_json_schema or {}).get("unit", "")

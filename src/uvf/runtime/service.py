@@ -1,0 +1,105 @@
+"""The contract of a service: what it reads and writes as data, and one pure function of time."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar, Generic, Literal, TypeVar
+
+import msgspec
+from google.protobuf.message import Message
+
+from schemas.topics import Request, Topic
+
+Q = TypeVar("Q", bound=Message)
+R = TypeVar("R", bound=Message)
+
+Value = Message | Sequence[Message]
+Outputs = Mapping[str, Value | Mapping[str, Value]]
+"""Declared name -> a message, a list of them, or a dict of either by vehicle (services of the whole world)."""
+
+
+@dataclass(frozen=True)
+class Input:
+    """How a service reads a topic: the newest message, or every one since the last step."""
+
+    topic: Topic[Any]
+    every: bool = False
+    required: bool = True
+    each_vehicle: bool = False
+    role: str | None = None
+
+
+def _as_input(topic: "Topic[Any] | Input") -> Input:
+    return topic if isinstance(topic, Input) else Input(topic)
+
+
+def every(topic: Topic[Any]) -> Input:
+    """All messages since the last step, oldest first (maybe none), while the topic is fresh."""
+    return Input(topic, every=True)
+
+
+def optional(topic: "Topic[Any] | Input") -> Input:
+    """None (or an empty list) while absent or stale, instead of holding the step back."""
+    return replace(_as_input(topic), required=False)
+
+
+def each_vehicle(topic: "Topic[Any] | Input") -> Input:
+    """A dict by vehicle, holding those whose message is fresh; never holds the step back."""
+    return replace(_as_input(topic), each_vehicle=True, required=False)
+
+
+def of_role(role: str, topic: "Topic[Any] | Input") -> Input:
+    """The topic of the vehicle that the mission binds to ``role`` (``leader: milvus1``)."""
+    return replace(_as_input(topic), role=role)
+
+
+class Params(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Base of parameter sets; limits and units by ``Annotated[float, msgspec.Meta(ge=..., le=..., ...)]``."""
+
+
+@dataclass(frozen=True)
+class Answer(Generic[Q, R]):
+    """What became of a request that this service sent: the reply, or None and why."""
+
+    vehicle: str
+    request: Q
+    reply: R | None
+    reason: str = ""
+
+
+class Service:
+    """One instance per vehicle (``scope = "vehicle"``) or one for the whole world (``scope = "world"``).
+
+    ``step`` takes ``t`` [s] and one keyword argument per declared input, request and call, and returns messages by
+    the declared names of outputs, requests (replies, in the order asked) and calls (requests to send). Its result
+    depends only on the constructor's arguments, the parameters and the history of its inputs.
+    """
+
+    name: ClassVar[str]
+    hz: ClassVar[float]
+    scope: ClassVar[Literal["vehicle", "world"]] = "vehicle"
+    clock: ClassVar[Literal["sim", "wall"]] = "sim"
+    latency: ClassVar[float] = 0.0
+    """Outputs are released this long [s] after the step; lockstep keeps to it, so slow work is slow there too."""
+    simulator: ClassVar[bool] = False
+    """Simulators report the time they have reached; the clock never runs ahead of them."""
+
+    inputs: ClassVar[Mapping[str, Topic[Any] | Input]] = {}
+    outputs: ClassVar[Mapping[str, Topic[Any]]] = {}
+    requests: ClassVar[Mapping[str, Request[Any, Any]]] = {}
+    calls: ClassVar[Mapping[str, Request[Any, Any]]] = {}
+
+    params: Params = Params()
+
+    step: Any
+    """``def step(self, t: float, **inputs) -> Outputs``: each service has its own signature, checked by a test."""
+
+    def stale(self, t: float, missing: tuple[str, ...]) -> Outputs:
+        """Called instead of ``step`` while required inputs are absent or old: the place of failsafes."""
+        return {}
+
+    def close(self) -> None:
+        """Gives back engines and sockets; called once, when the process or the run ends."""
+
+    @classmethod
+    def declared_inputs(cls) -> dict[str, Input]:
+        return {name: _as_input(topic) for name, topic in cls.inputs.items()}

@@ -1,0 +1,201 @@
+"""The shell of one service instance: its inputs, its due times and ``advance``, the one way any step is called."""
+
+from collections import deque
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from google.protobuf.message import DecodeError, Message
+
+from schemas.topics import SYSTEM, Request, Topic
+from uvf.runtime.bus import Bus, Publisher, Query
+from uvf.runtime.clock import NS, first_step_after, step_time
+from uvf.runtime.inbox import EVERY_DEPTH, InputBox
+from uvf.runtime.param_server import ParamServer
+from uvf.runtime.service import Answer, Outputs, Service
+from uvf.runtime.site import Host
+
+Warn = Callable[[str], None]
+
+
+class ContractError(Exception):
+    """A service returned something that it did not declare."""
+
+
+@dataclass
+class Counters:
+    steps: int = 0
+    stale: int = 0
+    skipped: int = 0
+    malformed: int = 0
+    missing: tuple[str, ...] = ()
+    published: dict[str, int] = field(default_factory=dict)
+
+
+class Shell:
+    """Runs one instance on a bus: live, in lockstep and in tests alike."""
+
+    def __init__(self, host: Host, bus: Bus, warn: Warn = lambda line: None) -> None:
+        self.host = host
+        self.type = host.service
+        self.owner = host.vehicle or SYSTEM
+        self.counters = Counters()
+        self.sim_ns = 0
+        """Simulation time now, kept by the loop: the stamp of what wall-clock services send."""
+        self._bus = bus
+        self._warn = warn
+        self._publishers: dict[str, Publisher] = {}
+        self._queries: dict[str, deque[Query]] = {name: deque() for name in self.type.requests}
+        self._answers: dict[str, deque[tuple[int, Answer[Any, Any]]]] = {name: deque() for name in self.type.calls}
+        self.service: Service
+        self.restart(0)
+        self._subscribe()
+
+    def restart(self, epoch: int) -> None:
+        """Makes the service afresh: at the start, and when the clock's epoch rises."""
+        if epoch:
+            self.service.close()
+        self.service = self.host.make()
+        ageless = self.type.clock == "wall"
+        self._boxes = {name: InputBox(declared, ageless) for name, declared in self.type.declared_inputs().items()}
+        self._param_server = ParamServer(self.service)
+        self.n = 1
+
+    def _subscribe(self) -> None:
+        for name, declared in self.type.declared_inputs().items():
+            owner = "*" if declared.each_vehicle else (self.host.roles or {}).get(declared.role or "", self.owner)
+            depth = EVERY_DEPTH if declared.every else 8
+            self._bus.subscribe(declared.topic.at(owner), declared.topic.qos, lambda s, n=name: self._boxes[n].push(s), depth)  # type: ignore[misc]
+        everyone = "*" if self.type.scope == "world" else self.owner
+        for name, request in self.type.requests.items():
+            self._bus.serve(request.at(everyone), lambda query, n=name: self._queries[n].append(query))  # type: ignore[misc]
+        self._bus.serve(self._param_server.key(self.owner), self._queue_param)
+
+    def _queue_param(self, query: Query) -> None:
+        self._param_server.queue(query)
+
+    @property
+    def due_ns(self) -> int:
+        """When the next step is due [ns]."""
+        return step_time(self.n, self.type.hz)
+
+    def skip_to(self, t_ns: int) -> None:
+        """Leaves out, and counts, the steps due before the newest one that is due at ``t_ns``."""
+        newest = first_step_after(t_ns, self.type.hz) - 1
+        if newest > self.n:
+            self.counters.skipped += newest - self.n
+            self.n = newest
+
+    def advance(self) -> None:
+        """One step at the due time: fresh inputs in, outputs published, requests answered."""
+        t_ns = self.due_ns
+        self.n += 1
+        self._param_server.answer(t_ns)
+        for box in self._boxes.values():
+            box.take(t_ns)
+            for line in box.malformed():
+                self.counters.malformed += 1
+                self._warn(f"{self.type.name}: {line}")
+        missing = tuple(name for name, box in self._boxes.items() if box.is_missing(t_ns))
+        self.counters.missing = missing
+        if missing:
+            self.counters.stale += 1
+            self._publish(self.service.stale(t_ns / NS, missing), t_ns)
+            self._refuse_requests(missing, t_ns)
+            return
+        self.counters.steps += 1
+        queries, requests = self._take_requests(t_ns)
+        values = {name: box.value(t_ns) for name, box in self._boxes.items()}
+        outputs = self.service.step(t_ns / NS, **values, **requests, **self._take_answers(t_ns))
+        self._publish(outputs, t_ns)
+        for name, asked in queries.items():
+            self._reply(name, asked, outputs.get(name, ()), t_ns)
+
+    def _is_readable(self, stamp_ns: int, t_ns: int) -> bool:
+        return stamp_ns < t_ns or self.type.clock == "wall"
+
+    def _take_answers(self, t_ns: int) -> dict[str, list[Answer[Any, Any]]]:
+        taken: dict[str, list[Answer[Any, Any]]] = {}
+        for name, waiting in self._answers.items():
+            taken[name] = [answer for stamp, answer in waiting if self._is_readable(stamp, t_ns)]
+            self._answers[name] = deque(x for x in waiting if not self._is_readable(x[0], t_ns))
+        return taken
+
+    def _take_requests(self, t_ns: int) -> tuple[dict[str, list[Query]], dict[str, Any]]:
+        """The queries that may be read at ``t_ns`` and, decoded, what ``step`` sees of them."""
+        queries: dict[str, list[Query]] = {}
+        requests: dict[str, Any] = {}
+        for name, request in self.type.requests.items():
+            queries[name] = self._decodable(name, request, t_ns)
+            decoded = [(q.key.split("/")[1], request.message.FromString(q.payload)) for q in queries[name]]
+            if self.type.scope == "world" and request.per_vehicle:
+                by_vehicle: dict[str, list[Message]] = {}
+                for owner, message in decoded:
+                    by_vehicle.setdefault(owner, []).append(message)
+                queries[name].sort(key=lambda q: q.key.split("/")[1])
+                requests[name] = dict(sorted(by_vehicle.items()))
+            else:
+                requests[name] = [message for _, message in decoded]
+        return queries, requests
+
+    def _decodable(self, name: str, request: Request[Any, Any], t_ns: int) -> list[Query]:
+        waiting, good = list(self._queries[name]), []
+        self._queries[name] = deque(q for q in waiting if not self._is_readable(q.stamp_ns, t_ns))
+        for query in waiting:
+            if not self._is_readable(query.stamp_ns, t_ns):
+                continue
+            try:
+                request.message.FromString(query.payload)
+                good.append(query)
+            except DecodeError as error:
+                self.counters.malformed += 1
+                self._warn(f"{self.type.name}: {query.key}: broken {request.message.DESCRIPTOR.full_name}: {error}")
+                reply = request.reply(accepted=False, reason=f"broken {request.message.DESCRIPTOR.full_name}")
+                query.answer(reply.SerializeToString(deterministic=True), query.stamp_ns)
+        return good
+
+    def _reply(self, name: str, queries: list[Query], replies: Any, t_ns: int) -> None:
+        flat = [r for owner in sorted(replies) for r in replies[owner]] if isinstance(replies, Mapping) else list(replies)
+        if len(flat) != len(queries):
+            raise ContractError(f"{self.type.name}: {len(queries)} requests '{name}' but {len(flat)} replies")
+        for query, reply in zip(queries, flat, strict=True):
+            query.answer(reply.SerializeToString(deterministic=True), t_ns)
+
+    def _refuse_requests(self, missing: tuple[str, ...], t_ns: int) -> None:
+        for name, request in self.type.requests.items():
+            for query in self._decodable(name, request, t_ns):
+                reply = request.reply(accepted=False, reason=f"{self.type.name} waits for {', '.join(missing)}")
+                query.answer(reply.SerializeToString(deterministic=True), t_ns)
+
+    def _publish(self, outputs: Outputs, t_ns: int) -> None:
+        now = t_ns if self.type.clock == "sim" else self.sim_ns
+        stamp = now + round(self.type.latency * NS)
+        for name, value in outputs.items():
+            if name in self.type.requests:
+                continue
+            topic = self.type.outputs.get(name) or self.type.calls.get(name)
+            if topic is None:
+                raise ContractError(f"{self.type.name}: step returned '{name}', which is not declared")
+            by_owner = value if isinstance(value, Mapping) else {self.owner: value}
+            for owner, messages in by_owner.items():
+                for message in messages if isinstance(messages, Sequence) else (messages,):
+                    self._send(name, topic, owner, message, stamp)
+
+    def _send(self, name: str, topic: Topic[Any] | Request[Any, Any], owner: str, message: Message, stamp: int) -> None:
+        if not isinstance(message, topic.message):
+            raise ContractError(f"{self.type.name}: '{name}' is {type(message).__name__}, declared {topic.message.__name__}")
+        key = topic.at(owner)
+        payload = message.SerializeToString(deterministic=True)
+        if isinstance(topic, Request):
+            self._call(name, topic, owner, message, payload, stamp)
+            return
+        if key not in self._publishers:
+            self._publishers[key] = self._bus.publisher(key, topic.message.DESCRIPTOR.full_name, topic.qos)
+        self.counters.published[key] = self._publishers[key].put(payload, stamp)
+
+    def _call(self, name: str, request: Request[Any, Any], owner: str, message: Message, payload: bytes, stamp: int) -> None:
+        def on_reply(reply: bytes | None, reason: str, at_ns: int) -> None:
+            decoded = request.reply.FromString(reply) if reply is not None else None
+            self._answers[name].append((at_ns, Answer(owner, message, decoded, reason)))
+
+        self._bus.call(request.at(owner), payload, stamp, on_reply)
