@@ -41,7 +41,8 @@ def inverse(q: Floats) -> Floats:
 
 def rotate(a_from_b: Floats, v_b: Floats) -> Floats:
     """(3,) vector in frame a."""
-    return matrix(a_from_b) @ v_b
+    v_a: Floats = matrix(a_from_b) @ v_b
+    return v_a
 
 
 def matrix(q: Floats) -> Floats:
