@@ -36,7 +36,8 @@ def multiply(p: Floats, q: Floats) -> Floats:
 
 def inverse(q: Floats) -> Floats:
     """``b_from_a`` of a unit ``a_from_b``."""
-    return q * np.array((1.0, -1.0, -1.0, -1.0))
+    b_from_a: Floats = q * np.array((1.0, -1.0, -1.0, -1.0))
+    return b_from_a
 
 
 def rotate(a_from_b: Floats, v_b: Floats) -> Floats:
