@@ -101,7 +101,7 @@ class GroundBody(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     max_linear_acceleration: Positive  # m/s^2
     max_angular_acceleration: Positive  # rad/s^2
     motor_torque: Positive  # N m, at the wheel
-    physics_hz: Positive = 240.0
+    physics_hz: Positive = 200.0
     lateral_friction: Positive = 1.0
 
 
