@@ -79,11 +79,11 @@ class Shell:
         """When the next step is due [ns]."""
         return step_time(self.n, self.type.hz)
 
-    def skip_to(self, t_ns: int) -> None:
-        """Leaves out, and counts, the steps due before the newest one that is due at ``t_ns``."""
+    def skip_to(self, t_ns: int, count: bool = True) -> None:
+        """Leaves out the steps due before the newest one that is due at ``t_ns``, and counts them as skipped."""
         newest = first_step_after(t_ns, self.type.hz) - 1
         if newest > self.n:
-            self.counters.skipped += newest - self.n
+            self.counters.skipped += (newest - self.n) * count
             self.n = newest
 
     def advance(self) -> None:

@@ -1,0 +1,54 @@
+"""A process's sign of life: counters of its steps, twice a second of wall time."""
+
+import os
+import platform
+import time
+from collections.abc import Sequence
+
+from schemas import topics
+from schemas.convert import stamp_ns
+from schemas.messages import Health
+from uvf.runtime.clock import NS
+from uvf.runtime.shell import Shell
+from uvf.runtime.zenoh_bus import ZenohBus
+
+
+class HealthReport:
+    """Counts how late steps begin and publishes the sums."""
+
+    def __init__(self, name: str, shells: Sequence[Shell], bus: ZenohBus) -> None:
+        self._name = name
+        self._shells = shells
+        self._bus = bus
+        self._late = 0
+        self._worst = 0.0
+        self._next = 0.0
+        self._publisher = bus.publisher(topics.HEALTH.by(name).at("sys"), Health.DESCRIPTOR.full_name, topics.HEALTH.qos)
+
+    def begun(self, shell: Shell, now_ns: int) -> None:
+        """A step begins while the clock shows ``now_ns``: more than one period after it was due counts as late."""
+        behind = (now_ns - shell.due_ns) / NS
+        self._worst = max(self._worst, behind)
+        self._late += behind > 1 / shell.type.hz
+
+    def publish_when_due(self, wall: float) -> None:
+        if wall < self._next:
+            return
+        self._next = wall + 1 / topics.HEALTH.hz
+        now = max((shell.sim_ns for shell in self._shells), default=0)
+        message = Health(
+            timestamp=stamp_ns(now),
+            service=self._name,
+            host=platform.node(),
+            pid=os.getpid(),
+            steps=sum(s.counters.steps for s in self._shells),
+            skipped=sum(s.counters.skipped for s in self._shells),
+            stale=sum(s.counters.stale for s in self._shells),
+            malformed=sum(s.counters.malformed for s in self._shells),
+            late=self._late,
+            worst_lateness=self._worst,
+            cpu_time=time.process_time(),
+            gaps=dict(self._bus.gaps),
+            missing=sorted({f"{s.type.name}:{m}" for s in self._shells for m in s.counters.missing}),
+        )
+        self._publisher.put(message.SerializeToString(deterministic=True), now)

@@ -1,0 +1,124 @@
+"""Runs the services of one process on the clock of the bus: in real time, scaled, paused or in lockstep."""
+
+import time
+from collections.abc import Callable, Sequence
+from threading import Event
+
+from schemas import topics
+from schemas.messages import Clock, Done
+from uvf.runtime.bus import Sample
+from uvf.runtime.clock import NS
+from uvf.runtime.health import HealthReport
+from uvf.runtime.shell import Shell, Warn
+from uvf.runtime.site import Host
+from uvf.runtime.zenoh_bus import ZenohBus
+
+IDLE = 0.05  # s, the longest wait: how fast a process sees that it shall stop
+READY_PERIOD = 0.2  # s, how often a process says where it stands while no clock is heard
+LOCKSTEP_PATIENCE = 0.0002  # s, between two looks for messages that are announced but not here yet
+
+
+class Live:
+    """One process: its shells, its place in the clock's barrier, its sign of life."""
+
+    def __init__(self, name: str, hosts: Sequence[Host], bus: ZenohBus, warn: Warn) -> None:
+        self._name = name
+        self._bus = bus
+        self._warn = warn
+        shells = [Shell(host, bus, warn) for host in hosts]
+        self._sim = [s for s in shells if s.type.clock == "sim"]
+        self._wall = [s for s in shells if s.type.clock == "wall"]
+        self._simulator = any(s.type.simulator for s in self._sim)
+        self._ticks: list[Clock] = []
+        self._epoch = 0
+        self._tick = 0
+        self._done = bus.publisher(topics.DONE.by(name).at("sys"), Done.DESCRIPTOR.full_name, topics.DONE.qos)
+        self._health = HealthReport(name, shells, bus)
+        self._last_heard = 0.0
+        self._t_ns = 0
+        bus.subscribe(topics.CLOCK.at("sys"), topics.CLOCK.qos, self._on_clock, depth=64)
+        bus.wake_on(topics.CLOCK.at("sys"))
+        for shell in shells:
+            bus.token(f"@node/{shell.owner}/{shell.type.name}/{bus.boot:x}")
+
+    def _on_clock(self, sample: Sample) -> None:
+        self._ticks.append(Clock.FromString(sample.payload))
+
+    def run(self, stop: Event, until: Callable[[], bool] = lambda: False) -> None:
+        """Until ``stop`` is set (or ``until()``); closes the services in every case."""
+        start = time.monotonic()
+        try:
+            while not stop.is_set() and not until():
+                self._bus.wait(self._patience(time.monotonic() - start))
+                self._bus.poll()
+                wall = time.monotonic() - start
+                self._follow_clock(wall)
+                self._run_wall(wall)
+                self._health.publish_when_due(wall)
+        finally:
+            for shell in (*self._sim, *self._wall):
+                shell.service.close()
+
+    def _patience(self, wall: float) -> float:
+        due = min((s.due_ns / NS - wall for s in self._wall), default=IDLE)
+        return min(max(due, 0.0), IDLE)
+
+    def _follow_clock(self, wall: float) -> None:
+        ticks, self._ticks = self._ticks, []
+        if ticks:
+            self._last_heard = wall
+        elif self._sim and wall - self._last_heard > READY_PERIOD:
+            self._last_heard = wall
+            self._report({})
+        for clock in ticks:
+            if clock.epoch != self._epoch:
+                self._begin_epoch(clock)
+            if clock.lockstep:
+                self._await_announced(clock)
+        if ticks:
+            self._advance_to(ticks[-1])
+
+    def _begin_epoch(self, clock: Clock) -> None:
+        """The first clock seen places the steps; a later change of epoch starts every service afresh."""
+        first = self._epoch == 0
+        self._epoch = clock.epoch
+        for shell in self._sim:
+            if not first:
+                shell.restart(clock.epoch)
+            shell.skip_to(clock.t_ns, count=False)
+
+    def _await_announced(self, clock: Clock) -> None:
+        """Lockstep: everything published in the ticks before has arrived before anybody steps on."""
+        keys = self._bus.subscribed(clock.published)
+        while any(self._bus.last_seq.get(key, 0) < clock.published[key] for key in keys):
+            time.sleep(LOCKSTEP_PATIENCE)
+            self._bus.poll()
+
+    def _advance_to(self, clock: Clock) -> None:
+        published: dict[str, int] = {}
+        while True:
+            shell = min(self._sim, key=lambda s: s.due_ns, default=None)
+            if shell is None or shell.due_ns > clock.t_ns:
+                break
+            self._health.begun(shell, clock.t_ns)
+            if not (clock.lockstep or shell.type.simulator):
+                shell.skip_to(clock.t_ns)
+            shell.advance()
+            published.update(shell.counters.published)
+            self._bus.poll()
+        for shell in self._wall:
+            shell.sim_ns = clock.t_ns
+        self._tick, self._t_ns = clock.tick, clock.t_ns
+        if self._sim and (self._simulator or clock.lockstep):
+            self._report(published)
+
+    def _report(self, published: dict[str, int]) -> None:
+        done = Done(participant=self._name, tick=self._tick, t_ns=self._t_ns, epoch=self._epoch, published=published)
+        self._done.put(done.SerializeToString(deterministic=True), self._t_ns)
+
+    def _run_wall(self, wall: float) -> None:
+        for shell in self._wall:
+            if shell.due_ns <= wall * NS:
+                self._health.begun(shell, round(wall * NS))
+                shell.skip_to(round(wall * NS))
+                shell.advance()

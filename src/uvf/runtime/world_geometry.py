@@ -1,0 +1,128 @@
+"""The plain geometry of a world: its solids, what a level lidar meets of them, the floor plan and what can be reached."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+
+from uvf.maths.raycast import rectangles
+from uvf.runtime.world_file import Box, Cylinder, Wall, WorldFile
+
+Floats = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Slice:
+    """The world cut at one height. boxes: (n, 6) as in ``raycast.cast``; circles: (m, 3) x, y, radius [m]."""
+
+    boxes: Floats
+    circles: Floats
+
+
+@dataclass(frozen=True)
+class FloorPlan:
+    """True occupancy. cells: (rows, columns), row 0 at the lowest y; cell [0, 0] has its lower left corner at (x, y) [m]."""
+
+    cells: Mask
+    resolution: float
+    x: float
+    y: float
+
+    def cell(self, x: float, y: float) -> tuple[int, int]:
+        """(row, column) of a point [m, world]."""
+        return int(np.floor((y - self.y) / self.resolution)), int(np.floor((x - self.x) / self.resolution))
+
+    def centres(self) -> tuple[Floats, Floats]:
+        """x and y [m, world] of the cells' centres, each (rows, columns)."""
+        rows, columns = self.cells.shape
+        xs = self.x + (np.arange(columns) + 0.5) * self.resolution
+        ys = self.y + (np.arange(rows) + 0.5) * self.resolution
+        grid_x, grid_y = np.meshgrid(xs, ys)
+        return grid_x, grid_y
+
+
+def wall_boxes(wall: Wall) -> Iterator[Box]:
+    """One box a stretch; stretches that meet at a corner overlap there, free ends (door frames) keep their length."""
+    closed = wall.points[0] == wall.points[-1]
+    last = len(wall.points) - 2
+    for i, (a, b) in enumerate(zip(wall.points, wall.points[1:], strict=False)):
+        start, end = np.array(a), np.array(b)
+        along = (end - start) / np.linalg.norm(end - start)
+        overlap = along * wall.thickness / 2
+        start = start - overlap if i > 0 or closed else start
+        end = end + overlap if i < last or closed else end
+        x, y = (start + end) / 2
+        size = (float(np.linalg.norm(end - start)), wall.thickness, wall.height)
+        yaw = float(np.arctan2(along[1], along[0]))
+        yield Box(name="wall", centre=(float(x), float(y), wall.height / 2), size=size, yaw=yaw, colour=wall.colour)
+
+
+def all_boxes(world: WorldFile) -> list[Box]:
+    """The walls' boxes, then the furniture."""
+    return [box for wall in world.walls for box in wall_boxes(wall)] + world.boxes
+
+
+def _cuts_box(box: Box, low: float, high: float) -> bool:
+    return box.centre[2] - box.size[2] / 2 <= high and box.centre[2] + box.size[2] / 2 >= low
+
+
+def _cuts_cylinder(cylinder: Cylinder, low: float, high: float) -> bool:
+    return cylinder.base[2] <= high and cylinder.base[2] + cylinder.height >= low
+
+
+def slice_between(world: WorldFile, low: float, high: float) -> Slice:
+    """All solids that reach into the heights from ``low`` to ``high`` [m, world], as outlines."""
+    boxes = [(b.centre[0], b.centre[1], b.size[0] / 2, b.size[1] / 2, b.yaw) for b in all_boxes(world) if _cuts_box(b, low, high)]
+    circles = [(c.base[0], c.base[1], c.radius) for c in world.cylinders if _cuts_cylinder(c, low, high)]
+    return Slice(rectangles(np.array(boxes)), np.array(circles, dtype=np.float64).reshape(-1, 3))
+
+
+def slice_at(world: WorldFile, z: float) -> Slice:
+    """What a level 2-D lidar at height ``z`` [m, world] can meet."""
+    return slice_between(world, z, z)
+
+
+def floor_plan(world: WorldFile, resolution: float, height: float = 0.2) -> FloorPlan:
+    """Which cells of the floor hold anything between the floor and ``height`` [m]: what a robot that tall bumps into."""
+    x_min, y_min, x_max, y_max = world.floor
+    rows, columns = (int(np.ceil((high - low) / resolution - 1e-9)) for low, high in ((y_min, y_max), (x_min, x_max)))
+    empty = FloorPlan(np.zeros((rows, columns), dtype=np.bool_), resolution, x_min, y_min)
+    solids = slice_between(world, 0.001, height)
+    cells = _distance(solids, *empty.centres()) <= resolution / 2
+    return FloorPlan(cells, resolution, x_min, y_min)
+
+
+def _distance(solids: Slice, x: Floats, y: Floats) -> Floats:
+    """Distance [m] from each point to the nearest solid, 0 inside."""
+    nearest = np.full(x.shape, np.inf)
+    for cx, cy, half_x, half_y, c, s in solids.boxes:
+        along = np.abs(c * (x - cx) + s * (y - cy)) - half_x
+        across = np.abs(c * (y - cy) - s * (x - cx)) - half_y
+        nearest = np.minimum(nearest, np.hypot(np.maximum(along, 0.0), np.maximum(across, 0.0)))
+    for cx, cy, radius in solids.circles:
+        nearest = np.minimum(nearest, np.maximum(np.hypot(x - cx, y - cy) - radius, 0.0))
+    return nearest
+
+
+def clearance(world: WorldFile, x: float, y: float, height: float = 0.2) -> float:
+    """Distance [m] from a point to the nearest solid that reaches below ``height``; 0 inside one."""
+    return float(_distance(slice_between(world, 0.001, height), np.array([x]), np.array([y]))[0])
+
+
+def reachable_floor(plan: FloorPlan, x: float, y: float, radius: float) -> Mask:
+    """(rows, columns): the floor that a round robot of ``radius`` [m] starting at (x, y) can cover with its body.
+
+    Its centre may be where the nearest solid is no closer than the radius; the floor is what its disc sweeps.
+    Empty when the start is not free.
+    """
+    room = ndimage.distance_transform_edt(np.pad(~plan.cells, 1))[1:-1, 1:-1] * plan.resolution
+    labels, _ = ndimage.label(room > radius)
+    row, column = plan.cell(x, y)
+    if not (0 <= row < plan.cells.shape[0] and 0 <= column < plan.cells.shape[1]) or labels[row, column] == 0:
+        return np.zeros_like(plan.cells)
+    centres = labels == labels[row, column]
+    swept: Mask = ndimage.distance_transform_edt(~centres) * plan.resolution <= radius
+    return swept & ~plan.cells

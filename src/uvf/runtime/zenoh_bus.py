@@ -1,0 +1,227 @@
+"""The bus between processes: Zenoh sessions, publishers and ring channels. The only file that imports zenoh.
+
+Subscribers are ring channels emptied by ``poll``: a slow service loses its own oldest messages and delays nobody.
+"""
+
+import json
+import secrets
+import struct
+import threading
+from collections import defaultdict
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from types import TracebackType
+from typing import Any
+
+import zenoh
+from zenoh import ext
+
+from schemas.topics import PREFIX, Qos
+from uvf.runtime.bus import OnReply, Query, Sample, Sink, matches
+from uvf.runtime.params import BadInput
+
+ATTACHMENT = struct.Struct("<QqQ")  # sequence number, simulation stamp [ns], boot id
+DEFAULT_ENDPOINT = "tcp/127.0.0.1:7447"
+CALL_TIMEOUT = 5.0  # s, wall
+LEASE_MS = 2000
+WAIT_BEFORE_DROP_US = 50_000
+EVENT_HISTORY = 100
+
+_P, _C = zenoh.Priority, zenoh.CongestionControl
+_PRIORITY = {
+    Qos.CONTROL: (_P.REAL_TIME, True),
+    Qos.LOCKSTEP: (_P.REAL_TIME, True),
+    Qos.STATE: (_P.INTERACTIVE_HIGH, True),
+    Qos.SENSOR: (_P.DATA_HIGH, False),
+    Qos.BULK: (_P.DATA_LOW, False),
+    Qos.LATCHED: (_P.DATA, False),
+    Qos.EVENT: (_P.DATA, False),
+}
+_KEPT = {Qos.LATCHED: 1, Qos.EVENT: EVENT_HISTORY}
+
+
+def _config(mode: str, **settings: Any) -> zenoh.Config:
+    config = zenoh.Config()
+    config.insert_json5("mode", json.dumps(mode))
+    config.insert_json5("scouting/multicast/enabled", "false")
+    config.insert_json5("transport/link/tx/lease", str(LEASE_MS))
+    config.insert_json5("transport/link/tx/queue/congestion_control/drop/wait_before_drop", str(WAIT_BEFORE_DROP_US))
+    for key, value in settings.items():
+        config.insert_json5(key.replace("__", "/"), json.dumps(value))
+    return config
+
+
+def open_router(listen: str) -> zenoh.Session:
+    """A router session on an endpoint such as ``tcp/127.0.0.1:7447``. Raises BadInput when the port is taken."""
+    adminspace = {"enabled": True, "permissions": {"read": True, "write": False}}
+    try:
+        return zenoh.open(_config("router", listen__endpoints=[listen], adminspace=adminspace))
+    except zenoh.ZError as error:
+        raise BadInput(
+            f"router: cannot listen on {listen}: {_first_line(error)}; another 'uvf up' may be running, or choose UVF_ROUTER"
+        ) from error
+
+
+def _first_line(error: Exception) -> str:
+    return str(error).splitlines()[0].partition(" at /")[0]
+
+
+class ZenohBus:
+    """One client session; use it as a context manager, for a session left open hangs the interpreter at exit."""
+
+    def __init__(self, endpoint: str = DEFAULT_ENDPOINT, blocking: bool = False, timeout: float = -1) -> None:
+        """blocking: lockstep and replay, where nothing may be dropped. timeout [s]: -1 waits for the router for ever."""
+        retry = {"period_init_ms": 100, "period_max_ms": 1000}
+        timeout_ms = -1 if timeout < 0 else round(timeout * 1000)
+        try:
+            config = _config("client", connect__endpoints=[endpoint], connect__timeout_ms=timeout_ms, connect__retry=retry)
+            self._session = zenoh.open(config)
+        except zenoh.ZError as error:
+            raise BadInput(f"no router at {endpoint}: {_first_line(error)}; start one with 'uvf up' or 'uvf router'") from error
+        self.boot = secrets.randbits(63)
+        self.gaps: defaultdict[str, int] = defaultdict(int)
+        self.last_seq: dict[str, int] = {}
+        self._blocking = blocking
+        self._woken = threading.Event()
+        self._inbound: list[tuple[Any, Sink]] = []
+        self._wanted: list[str] = []
+        self._servers: list[tuple[Any, Callable[[Query], None]]] = []
+        self._calls: list[tuple[Any, OnReply, int, str]] = []
+        self._declared: list[Any] = []
+        self._boots: dict[str, int] = {}
+
+    def __enter__(self) -> "ZenohBus":
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+        self.close()
+
+    def close(self) -> None:
+        self._session.close()  # type: ignore[no-untyped-call]
+
+    def publisher(self, key: str, type_name: str, qos: Qos) -> "ZenohPublisher":
+        priority, express = _PRIORITY[qos]
+        how: dict[str, Any] = {
+            "encoding": f"application/protobuf;{type_name}",
+            "congestion_control": _C.BLOCK if self._blocking else _C.DROP,
+            "priority": priority,
+            "express": express,
+        }
+        if qos in _KEPT:
+            # Without sample-miss detection a wildcard subscriber loses part of the history.
+            detection = ext.MissDetectionConfig(heartbeat=1.0)  # type: ignore[call-arg]
+            cache = ext.CacheConfig(max_samples=_KEPT[qos])
+            publisher: Any = ext.declare_advanced_publisher(
+                self._session, key, cache=cache, sample_miss_detection=detection, publisher_detection=True, **how
+            )
+        else:
+            publisher = self._session.declare_publisher(key, **how)
+        self._declared.append(publisher)
+        return ZenohPublisher(publisher, self.boot)
+
+    def subscribe(self, key: str, qos: Qos, sink: Sink, depth: int = 1) -> None:
+        handler: Any = zenoh.handlers.RingChannel(depth)
+        if qos in _KEPT:
+            history = ext.HistoryConfig(max_samples=_KEPT[qos], detect_late_publishers=True)
+            recovery = ext.RecoveryConfig(heartbeat=True)  # type: ignore[call-arg]
+            made: Any = ext.declare_advanced_subscriber(self._session, key, handler, history=history, recovery=recovery)
+        else:
+            made = self._session.declare_subscriber(key, handler)
+        self._inbound.append((made, sink))
+        self._wanted.append(key)
+
+    def subscribed(self, keys: Iterable[str]) -> list[str]:
+        """Those of the keys that some subscription of this session receives."""
+        return [key for key in keys if any(matches(wanted, key) for wanted in self._wanted)]
+
+    def wake_on(self, key: str) -> None:
+        """Makes ``wait`` return when something arrives on ``key``."""
+        callback: Any = zenoh.handlers.Callback(lambda _: self._woken.set(), indirect=False)
+        self._declared.append(self._session.declare_subscriber(key, callback))
+
+    def wait(self, timeout: float) -> None:
+        """Waits for a key of ``wake_on``, or ``timeout`` [s]."""
+        self._woken.wait(timeout)
+        self._woken.clear()
+
+    def serve(self, key: str, sink: Callable[[Query], None]) -> None:
+        self._servers.append((self._session.declare_queryable(key, zenoh.handlers.FifoChannel(256), complete=True), sink))
+
+    def call(self, key: str, payload: bytes, stamp_ns: int, on_reply: OnReply) -> None:
+        attachment = ATTACHMENT.pack(0, stamp_ns, self.boot)
+        replies = self._session.get(key, payload=payload, attachment=attachment, timeout=CALL_TIMEOUT)
+        self._calls.append((replies, on_reply, stamp_ns, key))
+
+    def token(self, key: str) -> None:
+        """Declares a liveliness token below ``uvf/@...`` that ends with this session."""
+        self._declared.append(self._session.liveliness().declare_token(f"{PREFIX}/{key}"))
+
+    def tokens(self, key: str) -> list[str]:
+        """The liveliness tokens that match now, without ``uvf/``."""
+        replies = self._session.liveliness().get(f"{PREFIX}/{key}", timeout=2.0)
+        return sorted(str(r.ok.key_expr).removeprefix(f"{PREFIX}/") for r in replies if r.ok)
+
+    def poll(self) -> None:
+        for channel, sink in self._inbound:
+            while (sample := channel.try_recv()) is not None:
+                if sample.kind == zenoh.SampleKind.PUT:
+                    sink(self._sample(sample))
+        for channel, serve in self._servers:
+            while (query := channel.try_recv()) is not None:
+                serve(_query(query))
+        self._poll_calls()
+
+    def _sample(self, sample: zenoh.Sample) -> Sample:
+        key = str(sample.key_expr)
+        attachment = sample.attachment.to_bytes() if sample.attachment is not None else b""
+        seq, stamp, boot = ATTACHMENT.unpack(attachment) if len(attachment) == ATTACHMENT.size else (0, 0, 0)
+        last = self.last_seq.get(key, 0) if self._boots.get(key) == boot else None
+        if last is not None and seq > last + 1:
+            self.gaps[key] += seq - last - 1
+        self._boots[key] = boot
+        self.last_seq[key] = seq
+        type_name = str(sample.encoding).rpartition(";")[2]
+        return Sample(key, type_name, sample.payload.to_bytes(), stamp, seq, boot)
+
+    def _poll_calls(self) -> None:
+        waiting = []
+        for replies, on_reply, stamp, key in self._calls:
+            try:
+                reply = replies.try_recv()
+            except zenoh.ZError:
+                # The channel closes without a reply when no queryable is there.
+                on_reply(None, f"nobody answers {key}", stamp)
+                continue
+            if reply is None:
+                waiting.append((replies, on_reply, stamp, key))
+            elif reply.ok is not None:
+                attachment = reply.ok.attachment
+                at = ATTACHMENT.unpack(attachment.to_bytes())[1] if attachment is not None else stamp
+                on_reply(reply.ok.payload.to_bytes(), "", at)
+            else:
+                on_reply(None, reply.err.payload.to_string() or f"{key}: no answer", stamp)
+        self._calls = waiting
+
+
+def _query(query: zenoh.Query) -> Query:
+    key = str(query.key_expr)
+    attachment = query.attachment.to_bytes() if query.attachment is not None else b""
+    stamp = ATTACHMENT.unpack(attachment)[1] if len(attachment) == ATTACHMENT.size else 0
+
+    def answer(reply: bytes, stamp_ns: int) -> None:
+        with query:
+            query.reply(key, reply, attachment=ATTACHMENT.pack(0, stamp_ns, 0))
+
+    return Query(key, query.payload.to_bytes() if query.payload is not None else b"", stamp, answer)
+
+
+@dataclass
+class ZenohPublisher:
+    publisher: Any
+    boot: int
+    seq: int = 0
+
+    def put(self, payload: bytes, stamp_ns: int) -> int:
+        self.seq += 1
+        self.publisher.put(payload, attachment=ATTACHMENT.pack(self.seq, stamp_ns, self.boot))
+        return self.seq
