@@ -1,0 +1,63 @@
+"""Kinematics of the differential drive: wheel speeds, body velocity, motion along an arc.
+
+Siegwart & Nourbakhsh, Introduction to Autonomous Mobile Robots, 3.2; the pose is that of the middle of the axle.
+"""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from uvf.maths.rotations import wrap
+
+
+class PlanarPose(NamedTuple):
+    """m, m, rad."""
+
+    x: float
+    y: float
+    yaw: float
+
+
+class Twist(NamedTuple):
+    """Velocity in the body frame: m/s forward, rad/s to the left."""
+
+    linear: float
+    angular: float
+
+
+class WheelSpeeds(NamedTuple):
+    """rad/s; positive drives forward."""
+
+    left: float
+    right: float
+
+
+@dataclass(frozen=True)
+class DifferentialDrive:
+    """wheel_radius: r [m]; track: l [m], between the wheels' contact points."""
+
+    wheel_radius: float
+    track: float
+
+    def twist(self, wheels: WheelSpeeds) -> Twist:
+        """Forward kinematics: v = r (w_r + w_l) / 2, omega = r (w_r - w_l) / l."""
+        r, left, right = self.wheel_radius, wheels.left, wheels.right
+        return Twist(r * (right + left) / 2, r * (right - left) / self.track)
+
+    def wheels(self, twist: Twist) -> WheelSpeeds:
+        """Inverse kinematics: the wheel speeds of a wanted body velocity."""
+        half_difference = twist.angular * self.track / 2
+        return WheelSpeeds((twist.linear - half_difference) / self.wheel_radius, (twist.linear + half_difference) / self.wheel_radius)
+
+
+def move(pose: PlanarPose, twist: Twist, dt: float) -> PlanarPose:
+    """The pose after ``dt`` [s] at constant velocity: the exact arc about the instantaneous centre of curvature.
+
+    Written by the arc's chord, v dt sinc(omega dt / 2) along the mean heading, which equals the rotation about
+    ICC = (x - R sin yaw, y + R cos yaw), R = v / omega, and has no special case for straight lines.
+    """
+    turn = twist.angular * dt
+    chord = twist.linear * dt * float(np.sinc(turn / (2 * np.pi)))
+    heading = pose.yaw + turn / 2
+    return PlanarPose(pose.x + chord * float(np.cos(heading)), pose.y + chord * float(np.sin(heading)), wrap(pose.yaw + turn))
