@@ -1,0 +1,122 @@
+"""A log put to use again: onto the bus at its own pace, or into one service whose outputs are compared."""
+
+import time
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from google.protobuf.message import Message
+
+from schemas.topics import SYSTEM, TOPICS, Qos, Topic
+from uvf.runtime.bus import Bus, LocalBus, Publisher, Sample, matches
+from uvf.runtime.clock import NS
+from uvf.runtime.recording import read_log
+from uvf.runtime.shell import Shell
+from uvf.runtime.site import Host
+
+TOLERANCE = 1e-9
+
+
+def topic_of(key: str) -> Topic[Message] | None:
+    """The line of the table that a key belongs to."""
+    return next((topic for topic in TOPICS.values() if matches(topic.by("*").at("*"), key)), None)
+
+
+def onto_bus(log: Path, bus: Bus, rate: float = 1.0, go_on: Callable[[], bool] = lambda: True) -> int:
+    """Publishes a log's messages at ``rate`` times real time; returns how many. Raises BadInput."""
+    publishers: dict[str, Publisher] = {}
+    begun: float | None = None
+    count = 0
+    for sample in read_log(log):
+        begun = begun if begun is not None else time.monotonic() - sample.stamp_ns / NS / rate
+        while go_on() and (wait := begun + sample.stamp_ns / NS / rate - time.monotonic()) > 0:
+            time.sleep(min(wait, 0.1))
+        if not go_on():
+            break
+        if sample.key not in publishers:
+            topic = topic_of(sample.key)
+            publishers[sample.key] = bus.publisher(sample.key, sample.type_name, topic.qos if topic else Qos.SENSOR)
+        publishers[sample.key].put(sample.payload, sample.stamp_ns)
+        count += 1
+    return count
+
+
+@dataclass(frozen=True)
+class Difference:
+    """One field that came out otherwise than in the log."""
+
+    key: str
+    stamp_ns: int
+    field: str
+    logged: str
+    now: str
+
+    def __str__(self) -> str:
+        return f"{self.stamp_ns / NS:.3f} s {self.key}: {self.field}: was {self.logged}, is {self.now}"
+
+
+def into_service(log: Path, host: Host, tolerance: float = TOLERANCE) -> Iterator[Difference]:
+    """Feeds the inputs of a log to one service and yields each field of its outputs that differs. Raises BadInput."""
+    owner = host.vehicle or SYSTEM
+    writes = [topic.at(owner) for topic in host.service.outputs.values()]
+    samples = list(read_log(log))
+    logged = [s for s in samples if any(matches(key, s.key) for key in writes)]
+    bus = LocalBus()
+    made: list[Sample] = []
+    for key in writes:
+        bus.subscribe(key, Qos.STATE, made.append)
+    shell = Shell(host, bus)
+    end = max((s.stamp_ns for s in samples), default=0)
+    feed = iter(sorted((s for s in samples if not any(matches(k, s.key) for k in writes)), key=lambda s: s.stamp_ns))
+    _run(shell, bus, feed, end)
+    shell.service.close()
+    yield from _compare(logged, made, tolerance)
+
+
+def _run(shell: Shell, bus: LocalBus, feed: Iterator[Sample], end_ns: int) -> None:
+    waiting = next(feed, None)
+    while shell.due_ns <= end_ns:
+        while waiting is not None and waiting.stamp_ns < shell.due_ns:
+            topic = topic_of(waiting.key)
+            bus.deliver(waiting.key, waiting.type_name, topic.qos if topic else Qos.STATE, waiting.payload, waiting.stamp_ns)
+            waiting = next(feed, None)
+        shell.advance()
+
+
+def _compare(logged: Iterable[Sample], made: Iterable[Sample], tolerance: float) -> Iterator[Difference]:
+    now = {(s.key, s.seq): s for s in made}
+    for old in logged:
+        new = now.pop((old.key, old.seq), None)
+        if new is None:
+            yield Difference(old.key, old.stamp_ns, "message", f"number {old.seq}", "missing")
+        elif new.payload != old.payload or new.stamp_ns != old.stamp_ns:
+            yield from _fields(old, new, tolerance)
+    for new in now.values():
+        yield Difference(new.key, new.stamp_ns, "message", "missing", f"number {new.seq}")
+
+
+def _fields(old: Sample, new: Sample, tolerance: float) -> Iterator[Difference]:
+    if old.stamp_ns != new.stamp_ns:
+        yield Difference(old.key, old.stamp_ns, "stamp", str(old.stamp_ns), str(new.stamp_ns))
+    topic = topic_of(old.key)
+    if topic is None:
+        return
+    for name, a, b in differing(topic.message.FromString(old.payload), topic.message.FromString(new.payload), tolerance):
+        yield Difference(old.key, old.stamp_ns, name, a, b)
+
+
+def differing(a: Message, b: Message, tolerance: float, prefix: str = "") -> Iterator[tuple[str, str, str]]:
+    """(field, value in a, value in b) of every leaf that differs by more than ``tolerance`` (floats: absolute)."""
+    for field in a.DESCRIPTOR.fields:
+        x, y, name = getattr(a, field.name), getattr(b, field.name), f"{prefix}{field.name}"
+        if isinstance(x, Message):
+            yield from differing(x, y, tolerance, f"{name}.")
+        elif _is_list(x) and len(x) == len(y) and field.message_type is not None:
+            for i, (p, q) in enumerate(zip(x, y, strict=True)):
+                yield from differing(p, q, tolerance, f"{name}[{i}].")
+        elif x != y and not (isinstance(x, float) and abs(x - y) <= tolerance):
+            yield name, str(x)[:60], str(y)[:60]
+
+
+def _is_list(value: object) -> bool:
+    return isinstance(value, Sequence) and not isinstance(value, str | bytes)
