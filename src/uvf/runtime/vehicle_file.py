@@ -105,6 +105,15 @@ class GroundBody(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     lateral_friction: Positive = 1.0
 
 
+class BatteryPack(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """An ideal pack whose voltage falls in a straight line with its charge."""
+
+    energy: Positive  # J
+    full: Positive  # V
+    empty: Positive  # V
+    avionics: NotNegative = 0.0  # W, drawn at all times
+
+
 class AirBody(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """A JSBSim aircraft: the model's name in the vehicle's folder and how to command it."""
 
@@ -117,6 +126,7 @@ class AirBody(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     servo_rate: Positive  # rad/s
     servo_lag: NotNegative  # s
     mesh: str | None = None
+    battery: BatteryPack | None = None
 
 
 class VehicleFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
