@@ -116,6 +116,7 @@ TRUTH = Topic(f"{_V}/truth/state", m.NavState, 50, _Q.STATE, "true motion, world
 
 # navigation
 TF_STATIC = Topic(f"{_V}/tf/static", m.FrameTransforms, 0, _Q.LATCHED, "mounting of sensors and wheels")
+TF_WORLD = Topic(f"{_V}/tf/world", m.FrameTransform, 0, _Q.LATCHED, "world from map, placed at the mission's start pose")
 TF_MAP = Topic(f"{_V}/tf/map", m.FrameTransform, 10, _Q.STATE, "map from odom")
 ODOMETRY = Topic(f"{_V}/nav/odometry", m.Odometry, 50, _Q.STATE, "wheels and IMU, odom frame: smooth, drifts")
 POSE = Topic(f"{_V}/nav/pose", m.PoseInFrame, 50, _Q.STATE, "best estimate of the pose, world frame")
