@@ -47,6 +47,13 @@ class Cylinder(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     colour: Colour = (0.5, 0.5, 0.55)
 
 
+class Field(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A level coloured patch on the ground, for eyes and cameras only: a meadow, a road, a floor."""
+
+    area: tuple[float, float, float, float]  # m: x_min, y_min, x_max, y_max
+    colour: Colour
+
+
 class Wind(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Steady wind: velocity of the air, the way it blows to, ENU [m/s]."""
 
@@ -63,6 +70,9 @@ class WorldFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     boxes: list[Box] = []
     cylinders: list[Cylinder] = []
     wind: Wind = Wind()
+    magnetic_field: tuple[float, float, float] = (0.0, 22.0e-6, -42.0e-6)  # T, ENU
+    ground_colour: Colour = (0.36, 0.5, 0.24)
+    fields: list[Field] = []
 
 
 def load_world(worlds: Path, name: str) -> WorldFile:

@@ -1,0 +1,54 @@
+"""The ground simulator of a mission: one instance for all its ground vehicles."""
+
+import numpy as np
+
+from services.sim_ground.rig import STEP_HZ, Rig
+from services.sim_ground.service import SimGround
+from services.sim_ground.world import BulletWorld, Placed
+from uvf.maths.raycast import cast
+from uvf.runtime.params import BadInput
+from uvf.runtime.site import Host, Member, Site
+from uvf.runtime.urdf_file import check_urdf
+from uvf.runtime.vehicle_file import GroundBody
+from uvf.runtime.world_geometry import clearance
+
+
+def build(site: Site) -> list[Host]:
+    """Nothing when the mission has no ground vehicle. Raises BadInput."""
+    bodies = {m.name: m.file.ground for m in site.of_kind("ground") if m.file.ground is not None}
+    if not bodies:
+        return []
+    for name, body in bodies.items():
+        _check(site, site.members[name], body)
+    cast(np.zeros(2), np.zeros(1), np.zeros((1, 6)), np.zeros((1, 3)))  # compiles the kernel before the clock runs
+    return [Host(SimGround, lambda: _make(site, bodies))]
+
+
+def _make(site: Site, bodies: dict[str, GroundBody]) -> SimGround:
+    members = {name: site.members[name] for name in bodies}
+    placed = {name: Placed(bodies[name], m.folder / bodies[name].urdf, _start(m)) for name, m in members.items()}
+    rigs = {name: Rig(site, m, bodies[name]) for name, m in members.items()}
+    return SimGround(BulletWorld(site.world, placed), rigs, {name: m.file.sensors for name, m in members.items()})
+
+
+def _start(member: Member) -> tuple[float, float, float]:
+    return member.entry.start.x, member.entry.start.y, member.entry.start.yaw
+
+
+def _check(site: Site, member: Member, body: GroundBody) -> None:
+    """What would otherwise fail deep in the engine."""
+    check_urdf(member.folder / body.urdf, (body.left_joint, body.right_joint))
+    place = member.folder / "vehicle.yaml"
+    if body.physics_hz % STEP_HZ:
+        raise BadInput(f"{place}: ground: physics_hz is {body.physics_hz:g}; make it a multiple of {STEP_HZ:g}")
+    sensors = member.file.sensors
+    for kind, sensor in {"lidar": sensors.lidar, "imu": sensors.imu, "encoders": sensors.encoders}.items():
+        if sensor is not None and STEP_HZ % sensor.hz:
+            raise BadInput(f"{place}: sensors: {kind}: hz is {sensor.hz:g}; make it a divisor of {STEP_HZ:g}")
+    start = member.entry.start
+    room = clearance(site.world, start.x, start.y)
+    if room < body.radius:
+        raise BadInput(
+            f"{site.mission_path}: {member.name}: start ({start.x:g}, {start.y:g}) is {room:.2f} m from a wall or furniture, "
+            f"but the vehicle has a radius of {body.radius:g} m; move it"
+        )

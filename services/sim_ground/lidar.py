@@ -1,0 +1,32 @@
+"""The 2-D lidar: level rays at the scanner's height against the world's outlines and the other vehicles."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uvf.maths.kinematics import PlanarPose
+from uvf.maths.raycast import cast
+from uvf.runtime.vehicle_file import Lidar
+from uvf.runtime.world_geometry import Slice
+
+Floats = NDArray[np.float64]
+
+
+class LidarModel:
+    """One scanner. ``scan`` gives (beams,) ranges [m], counter-clockwise from ``angle_min``, 0 = no return."""
+
+    def __init__(self, lidar: Lidar, world: Slice, rng: np.random.Generator) -> None:
+        self._lidar = lidar
+        self._world = world
+        self._rng = rng
+        self._angles = lidar.mount.rpy[2] + lidar.angle_min + lidar.angle_increment * np.arange(lidar.beams)
+
+    def scan(self, body: PlanarPose, others: Floats) -> Floats:
+        """body: pose of base_link, world; others: (n, 3) x, y, radius [m] of vehicles that stand in the way."""
+        x, y, _ = self._lidar.mount.xyz
+        c, s = np.cos(body.yaw), np.sin(body.yaw)
+        origin = np.array((body.x + c * x - s * y, body.y + s * x + c * y))
+        circles = np.vstack((self._world.circles, others))
+        true = cast(origin, body.yaw + self._angles, self._world.boxes, circles)
+        measured = true + self._rng.normal(0.0, self._lidar.noise, true.shape)
+        seen = (measured >= self._lidar.range_min) & (measured <= self._lidar.range_max)
+        return np.where(seen, measured, 0.0)

@@ -1,0 +1,72 @@
+"""The ground vehicles' simulator as a service: wheel commands in, what the sensors say out."""
+
+from collections.abc import Mapping
+from typing import Protocol
+
+import numpy as np
+from google.protobuf.message import Message
+
+from schemas import topics
+from schemas.messages import WheelCommand
+from services.sim_ground.body import BodyState
+from services.sim_ground.rig import STEP_HZ, Rig
+from uvf.maths.kinematics import WheelSpeeds
+from uvf.runtime.sensor_frames import sensor_frames
+from uvf.runtime.service import Outputs, Service, each_vehicle, optional
+from uvf.runtime.vehicle_file import Sensors
+
+
+class GroundWorld(Protocol):
+    """The physics behind the service."""
+
+    def advance(self, wheels: Mapping[str, WheelSpeeds], duration: float) -> None: ...
+
+    def state(self, vehicle: str) -> BodyState: ...
+
+    def touched(self, vehicle: str) -> str | None: ...
+
+    def close(self) -> None: ...
+
+
+class SimGround(Service):
+    """All ground vehicles in one world. A vehicle whose command is older than 0.5 s brakes its wheels to a stand.
+
+    Truth is the motion of base_link: the point on the floor under the axle's middle, in the world frame.
+    """
+
+    name = "sim_ground"
+    hz = STEP_HZ
+    scope = "world"
+    simulator = True
+    inputs = {"commands": each_vehicle(optional(topics.WHEEL_COMMAND))}
+    outputs = {
+        "imu": topics.IMU,
+        "scan": topics.SCAN,
+        "wheels": topics.WHEELS,
+        "contact": topics.CONTACT,
+        "joints": topics.JOINTS,
+        "frames": topics.TF_STATIC,
+        "truth": topics.TRUTH,
+    }
+
+    def __init__(self, world: GroundWorld, rigs: Mapping[str, Rig], sensors: Mapping[str, Sensors]) -> None:
+        self._world = world
+        self._rigs = rigs
+        self._sensors = sensors
+
+    def step(self, t: float, commands: dict[str, WheelCommand]) -> Outputs:
+        n = round(t * self.hz)
+        self._world.advance({name: WheelSpeeds(c.left, c.right) for name, c in commands.items()}, 1 / self.hz)
+        bodies = {name: self._world.state(name) for name in self._rigs}
+        outputs: dict[str, dict[str, Message]] = {}
+        for name, rig in self._rigs.items():
+            others = [(*bodies[o].position[:2], self._rigs[o].ground.radius) for o in self._rigs if o != name]
+            circles = np.array(others, dtype=np.float64).reshape(-1, 3)
+            for output, message in rig.read(n, bodies[name], circles, self._world.touched(name)).items():
+                outputs.setdefault(output, {})[name] = message
+        if n == 1:
+            outputs["frames"] = {name: sensor_frames(name, sensors, t) for name, sensors in self._sensors.items()}
+        return outputs
+
+    def close(self) -> None:
+        self._world.close()
