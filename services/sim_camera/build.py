@@ -1,0 +1,31 @@
+"""The cameras of a mission: one instance for all of them."""
+
+from services.sim_camera.renderer import BulletRenderer, Look
+from services.sim_camera.service import SimCamera
+from uvf.runtime.params import BadInput
+from uvf.runtime.site import Host, Member, Site
+from uvf.runtime.urdf_file import check_urdf
+from uvf.runtime.vehicle_file import Camera
+
+
+def build(site: Site) -> list[Host]:
+    """Nothing when no vehicle has a camera. Raises BadInput."""
+    cameras = {m.name: m.file.sensors.camera for m in site.members.values() if m.file.sensors.camera is not None}
+    for name, camera in cameras.items():
+        _check(site.members[name], camera)
+    looks = {name: _look(member) for name, member in site.members.items()}
+    return [Host(SimCamera, lambda: SimCamera(BulletRenderer(site.world, looks), cameras))] if cameras else []
+
+
+def _check(member: Member, camera: Camera) -> None:
+    if SimCamera.hz % camera.hz:
+        place = f"{member.folder / 'vehicle.yaml'}: sensors: camera"
+        raise BadInput(f"{place}: hz is {camera.hz:g}; make it a divisor of {SimCamera.hz:g}")
+
+
+def _look(member: Member) -> Look:
+    if member.file.ground is not None:
+        check_urdf(member.folder / member.file.ground.urdf, ())
+        return Look(urdf=member.folder / member.file.ground.urdf)
+    mesh = member.file.air.mesh if member.file.air is not None else None
+    return Look(mesh=member.folder / mesh if mesh is not None else None)

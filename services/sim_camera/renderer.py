@@ -1,0 +1,160 @@
+"""Pictures of the world and its vehicles by PyBullet's software renderer; the only file here that knows PyBullet."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import pybullet
+from numpy.typing import NDArray
+
+from services.sim_camera.aircraft_shape import PARTS
+from services.sim_camera.optics import vertical_fov
+from uvf.maths.rotations import from_euler, multiply, rotate
+from uvf.runtime.params import BadInput
+from uvf.runtime.vehicle_file import Camera
+from uvf.runtime.world_file import Colour, WorldFile
+from uvf.runtime.world_geometry import all_boxes
+
+Floats = NDArray[np.float64]
+Picture = NDArray[np.uint8]
+
+NEAR = 0.02  # m
+SKY = np.array((155, 190, 225), dtype=np.uint8)
+TO_LIGHT = (0.4, -0.6, 1.0)
+GROUND_HALF_SIZE = 3000.0  # m
+FIELD_DEPTH, GROUND_DEPTH = 0.01, 0.5  # m below z = 0: far enough apart for the depth buffer
+
+
+class Pose(NamedTuple):
+    """position: (3,) m, world; world_from_body: wxyz."""
+
+    position: Floats
+    world_from_body: Floats
+
+
+@dataclass(frozen=True)
+class Look:
+    """What a vehicle looks like: a URDF, a mesh file, or the plain aircraft when both are None."""
+
+    urdf: Path | None = None
+    mesh: Path | None = None
+
+
+@dataclass(frozen=True)
+class _Shown:
+    """A vehicle inside the renderer, whose own frame is the centre of mass: given in the body frame."""
+
+    index: int
+    com_in_body: Pose
+
+
+class BulletRenderer:
+    """A copy of the world without physics, on a client of its own."""
+
+    def __init__(self, world: WorldFile, vehicles: Mapping[str, Look]) -> None:
+        self._client: int = pybullet.connect(pybullet.DIRECT)
+        self._add_ground(world)
+        for box in all_boxes(world):
+            self._add_box(box.centre, box.size, box.yaw, box.colour)
+        for cylinder in world.cylinders:
+            shape = pybullet.createVisualShape(
+                pybullet.GEOM_CYLINDER,
+                radius=cylinder.radius,
+                length=cylinder.height,
+                rgbaColor=(*cylinder.colour, 1.0),
+                physicsClientId=self._client,
+            )
+            x, y, z = cylinder.base
+            self._add(shape, (x, y, z + cylinder.height / 2), 0.0)
+        self._vehicles = {name: self._load(look) for name, look in vehicles.items()}
+
+    def _add_ground(self, world: WorldFile) -> None:
+        size = 2 * GROUND_HALF_SIZE
+        self._add_box((0.0, 0.0, -GROUND_DEPTH - 0.05), (size, size, 0.1), 0.0, world.ground_colour)
+        for field in world.fields:
+            x_min, y_min, x_max, y_max = field.area
+            centre = ((x_min + x_max) / 2, (y_min + y_max) / 2, -FIELD_DEPTH - 0.05)
+            self._add_box(centre, (x_max - x_min, y_max - y_min, 0.1), 0.0, field.colour)
+
+    def _add_box(self, centre: tuple[float, float, float], size: tuple[float, float, float], yaw: float, colour: Colour) -> None:
+        half = [side / 2 for side in size]
+        shape = pybullet.createVisualShape(
+            pybullet.GEOM_BOX, halfExtents=half, rgbaColor=(*colour, 1.0), specularColor=(0, 0, 0), physicsClientId=self._client
+        )
+        self._add(shape, centre, yaw)
+
+    def _add(self, shape: int, position: tuple[float, float, float], yaw: float = 0.0) -> int:
+        orientation = _xyzw(from_euler(0.0, 0.0, yaw))
+        index: int = pybullet.createMultiBody(
+            0.0, -1, shape, basePosition=position, baseOrientation=orientation, physicsClientId=self._client
+        )
+        return index
+
+    def _load(self, look: Look) -> _Shown:
+        centred = Pose(np.zeros(3), np.array((1.0, 0.0, 0.0, 0.0)))
+        if look.urdf is None:
+            return _Shown(self._add(self._aircraft(look.mesh), (0.0, 0.0, -100.0)), centred)
+        try:
+            index = pybullet.loadURDF(str(look.urdf), useFixedBase=True, physicsClientId=self._client)
+        except pybullet.error as error:
+            raise BadInput(f"{look.urdf}: PyBullet cannot load it ({error}); check its geometry and joints") from error
+        local = pybullet.getDynamicsInfo(index, -1, physicsClientId=self._client)
+        x, y, z, w = local[4]
+        return _Shown(index, Pose(np.array(local[3]), np.array((w, x, y, z))))
+
+    def _aircraft(self, mesh: Path | None) -> int:
+        if mesh is not None and not mesh.is_file():
+            raise BadInput(f"{mesh}: no such mesh file; mend 'air: mesh:' in {mesh.parent / 'vehicle.yaml'}")
+        shape: int
+        if mesh is not None:
+            shape = pybullet.createVisualShape(
+                pybullet.GEOM_MESH, fileName=str(mesh), rgbaColor=(0.9, 0.9, 0.92, 1.0), physicsClientId=self._client
+            )
+        else:
+            shape = pybullet.createVisualShapeArray(
+                shapeTypes=[pybullet.GEOM_BOX] * len(PARTS),
+                halfExtents=[[side / 2 for side in part.size] for part in PARTS],
+                visualFramePositions=[part.centre for part in PARTS],
+                rgbaColors=[(*part.colour, 1.0) for part in PARTS],
+                physicsClientId=self._client,
+            )
+        return shape
+
+    def place(self, poses: Mapping[str, Pose]) -> None:
+        """Puts vehicles where they truly are."""
+        for name, (position, world_from_body) in poses.items():
+            shown = self._vehicles[name]
+            centre = position + rotate(world_from_body, shown.com_in_body.position)
+            turned = multiply(world_from_body, shown.com_in_body.world_from_body)
+            pybullet.resetBasePositionAndOrientation(shown.index, centre.tolist(), _xyzw(turned), physicsClientId=self._client)
+
+    def picture(self, camera: Camera, body: Pose) -> Picture:
+        """(height, width, 3) RGB of what a vehicle's camera sees when its body is there."""
+        eye = body.position + rotate(body.world_from_body, np.array(camera.mount.xyz))
+        world_from_camera = multiply(body.world_from_body, from_euler(*camera.mount.rpy))
+        forward, up = rotate(world_from_camera, np.array((1.0, 0.0, 0.0))), rotate(world_from_camera, np.array((0.0, 0.0, 1.0)))
+        view = pybullet.computeViewMatrix(eye.tolist(), (eye + forward).tolist(), up.tolist())
+        fov, aspect = float(np.degrees(vertical_fov(camera))), camera.width / camera.height
+        _, _, rgba, depth, _ = pybullet.getCameraImage(
+            camera.width,
+            camera.height,
+            viewMatrix=view,
+            projectionMatrix=pybullet.computeProjectionMatrixFOV(fov, aspect, NEAR, camera.far),
+            lightDirection=TO_LIGHT,
+            shadow=0,
+            renderer=pybullet.ER_TINY_RENDERER,
+            flags=pybullet.ER_NO_SEGMENTATION_MASK,
+            physicsClientId=self._client,
+        )
+        picture = np.array(rgba, dtype=np.uint8).reshape(camera.height, camera.width, 4)[:, :, :3]
+        picture[np.reshape(depth, picture.shape[:2]) >= 1.0] = SKY
+        return picture
+
+    def close(self) -> None:
+        pybullet.disconnect(physicsClientId=self._client)
+
+
+def _xyzw(wxyz: Floats) -> list[float]:
+    return [float(wxyz[1]), float(wxyz[2]), float(wxyz[3]), float(wxyz[0])]
