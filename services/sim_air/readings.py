@@ -1,0 +1,91 @@
+"""Sensor samples as messages."""
+
+from schemas.convert import quaternion, stamp, vector
+from schemas.messages import AirData, Battery, FrameTransform, FrameTransforms, Gnss, Imu, JointState, JointStates, NavState
+from services.sim_air import sensors
+from services.sim_air.airframe import Air, Controls, Motion
+from uvf.maths.rotations import Floats, from_euler
+from uvf.runtime.vehicle_file import GnssSensor, Mount, Sensors
+
+SATELLITES = 14  # seen under an open sky
+
+
+def imu(t: float, frame: str, sample: sensors.ImuSample) -> Imu:
+    return Imu(
+        timestamp=stamp(t),
+        frame_id=frame,
+        angular_velocity=vector(sample.angular_velocity),
+        specific_force=vector(sample.specific_force),
+        magnetic_field=vector(sample.magnetic_field),
+    )
+
+
+def gnss(fix: sensors.Fix, data: GnssSensor) -> Gnss:
+    """Its timestamp is the moment the fix is valid for."""
+    return Gnss(
+        timestamp=stamp(fix.t),
+        fix=Gnss.FIX_3D,
+        latitude=fix.latitude,
+        longitude=fix.longitude,
+        altitude=fix.altitude,
+        velocity_enu=vector(fix.velocity),
+        horizontal_accuracy=data.horizontal_noise,
+        vertical_accuracy=data.vertical_noise,
+        speed_accuracy=data.speed_noise,
+        satellites=SATELLITES,
+    )
+
+
+def air_data(t: float, air: Air) -> AirData:
+    return AirData(
+        timestamp=stamp(t),
+        static_pressure=air.static_pressure,
+        differential_pressure=air.differential_pressure,
+        temperature=air.temperature,
+    )
+
+
+def battery(t: float, charge: sensors.Charge) -> Battery:
+    return Battery(timestamp=stamp(t), voltage=charge.voltage, current=charge.current, remaining=charge.remaining)
+
+
+def joints(t: float, controls: Controls, propeller_speed: float) -> JointStates:
+    """Surfaces [rad] and the propeller [rad/s]."""
+    return JointStates(
+        timestamp=stamp(t),
+        joints=[
+            JointState(name="aileron", position=controls.aileron),
+            JointState(name="elevator", position=controls.elevator),
+            JointState(name="rudder", position=controls.rudder),
+            JointState(name="propeller", velocity=propeller_speed, effort=controls.throttle),
+        ],
+    )
+
+
+def nav_state(t: float, motion: Motion, wind: Floats) -> NavState:
+    return NavState(
+        timestamp=stamp(t),
+        position=vector(motion.position),
+        velocity=vector(motion.velocity),
+        orientation=quaternion(motion.world_from_body),
+        angular_velocity=vector(motion.angular_velocity),
+        airspeed=motion.airspeed,
+        wind=vector(wind),
+    )
+
+
+def mounts(t: float, vehicle: str, fitted: Sensors) -> FrameTransforms:
+    """base_link from each fitted sensor."""
+    named = [(s.frame, s.mount) for s in (fitted.imu, fitted.camera, fitted.lidar) if s is not None]
+    return FrameTransforms(transforms=[_mount(t, vehicle, frame, mount) for frame, mount in named])
+
+
+def _mount(t: float, vehicle: str, frame: str, mount: Mount) -> FrameTransform:
+    transform = FrameTransform(
+        timestamp=stamp(t),
+        parent_frame_id=f"{vehicle}/base_link",
+        child_frame_id=f"{vehicle}/{frame}",
+        rotation=quaternion(from_euler(*mount.rpy)),
+    )
+    transform.translation.x, transform.translation.y, transform.translation.z = mount.xyz
+    return transform
