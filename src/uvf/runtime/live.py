@@ -39,7 +39,7 @@ class Live:
         bus.subscribe(topics.CLOCK.at("sys"), topics.CLOCK.qos, self._on_clock, depth=64)
         bus.wake_on(topics.CLOCK.at("sys"))
         for shell in shells:
-            bus.token(f"@node/{shell.owner}/{shell.type.name}/{bus.boot:x}")
+            _declare_tokens(shell, bus)
 
     def _on_clock(self, sample: Sample) -> None:
         self._ticks.append(Clock.FromString(sample.payload))
@@ -122,3 +122,14 @@ class Live:
                 self._health.begun(shell, round(wall * NS))
                 shell.skip_to(round(wall * NS))
                 shell.advance()
+
+
+def _declare_tokens(shell: Shell, bus: ZenohBus) -> None:
+    """The instance and each of its endpoints, for the graph of the running system."""
+    bus.token(f"@node/{shell.owner}/{shell.type.name}/{bus.boot:x}")
+    everyone = "*" if shell.type.scope == "world" else shell.owner
+    ends = [("pub", topic, everyone) for topic in shell.type.outputs.values()]
+    ends += [("sub", i.topic, "*" if i.each_vehicle else shell.owner) for i in shell.type.declared_inputs().values()]
+    for way, topic, owner in ends:
+        key = topic.at(owner).replace("/", "%").replace("*", "+")
+        bus.token(f"@ep/{shell.owner}/{shell.type.name}/{way}/{key}/{topic.message.DESCRIPTOR.full_name}")

@@ -1,0 +1,97 @@
+"""Ten-line access for people's own programs: connect, read, command, ask, wait.
+
+import uvf
+from schemas import topics
+from schemas.messages import DriveCommand
+
+with uvf.connect() as run:
+    pose = run.read("burger", topics.POSE)
+    run.send("burger", topics.DRIVE.by("client"), DriveCommand(linear=0.2))
+"""
+
+import time
+from collections.abc import Callable
+from types import TracebackType
+from typing import Any, TypeVar
+
+from google.protobuf.message import Message
+
+from schemas import topics
+from schemas.messages import Clock
+from schemas.topics import Request, Topic
+from uvf.runtime.bus import Publisher, Sample
+from uvf.runtime.zenoh_bus import DEFAULT_ENDPOINT, ZenohBus
+
+M = TypeVar("M", bound=Message)
+Q = TypeVar("Q", bound=Message)
+R = TypeVar("R", bound=Message)
+LOOK = 0.005  # s
+
+
+def connect(endpoint: str = DEFAULT_ENDPOINT, timeout: float = 5.0) -> "Client":
+    """Joins a running system. Raises BadInput when there is no router within ``timeout`` [s]."""
+    return Client(ZenohBus(endpoint, timeout=timeout))
+
+
+class Client:
+    """A guest on the bus; a context manager."""
+
+    def __init__(self, bus: ZenohBus) -> None:
+        self._bus = bus
+        self._newest: dict[str, Sample] = {}
+        self._subscribed: set[str] = set()
+        self._publishers: dict[str, Publisher] = {}
+        self._watch(topics.CLOCK.at(topics.SYSTEM), topics.CLOCK)
+
+    def __enter__(self) -> "Client":
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+        self._bus.close()
+
+    def _watch(self, key: str, topic: Topic[Any]) -> None:
+        if key not in self._subscribed:
+            self._subscribed.add(key)
+            self._bus.subscribe(key, topic.qos, lambda s: self._newest.__setitem__(s.key, s))
+
+    @property
+    def time(self) -> float:
+        """Simulation time [s]; 0 before the first tick."""
+        self._bus.poll()
+        newest = self._newest.get(topics.CLOCK.at(topics.SYSTEM))
+        return Clock.FromString(newest.payload).t_ns / 1e9 if newest else 0.0
+
+    def read(self, owner: str, topic: Topic[M], timeout: float = 5.0) -> M:
+        """The newest message of a topic; waits for the first one. Raises TimeoutError."""
+        key = topic.at(owner)
+        self._watch(key, topic)
+        self.wait(lambda: key in self._newest, timeout, f"nothing on {key}")
+        return topic.message.FromString(self._newest[key].payload)
+
+    def wait(self, condition: Callable[[], bool], timeout: float, what: str = "condition not met") -> None:
+        """Until ``condition()`` holds. Raises TimeoutError with ``what``."""
+        end = time.monotonic() + timeout
+        self._bus.poll()
+        while not condition():
+            if time.monotonic() > end:
+                raise TimeoutError(f"{what} within {timeout:g} s")
+            time.sleep(LOOK)
+            self._bus.poll()
+
+    def send(self, owner: str, topic: Topic[M], message: M) -> None:
+        """Publishes, stamped with the simulation time now."""
+        key = topic.at(owner)
+        if key not in self._publishers:
+            self._publishers[key] = self._bus.publisher(key, topic.message.DESCRIPTOR.full_name, topic.qos)
+        self._publishers[key].put(message.SerializeToString(deterministic=True), round(self.time * 1e9))
+
+    def ask(self, owner: str, request: Request[Q, R], message: Q, timeout: float = 5.0) -> R:
+        """Sends a request and waits for its reply. Raises TimeoutError, also when nobody answers."""
+        got: list[tuple[bytes | None, str]] = []
+        payload = message.SerializeToString(deterministic=True)
+        self._bus.call(request.at(owner), payload, round(self.time * 1e9), lambda reply, reason, _: got.append((reply, reason)))
+        self.wait(lambda: bool(got), timeout, f"no answer from {request.at(owner)}")
+        reply, reason = got[0]
+        if reply is None:
+            raise TimeoutError(reason)
+        return request.reply.FromString(reply)

@@ -1,0 +1,59 @@
+"""What a run consists of: one line per kind of process. A service's folder, its tests and a line here make a service."""
+
+import importlib
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+from uvf.runtime.params import BadInput, nearest
+from uvf.runtime.site import Build, Host, Site
+
+
+@dataclass(frozen=True)
+class Kind:
+    """``build``: module with ``build(site)``; ``needs``: the vehicles without which it has no work."""
+
+    name: str
+    build: str
+    about: str
+    needs: Literal["ground", "fixed_wing", "any"] = "any"
+    clock: Literal["sim", "wall"] = "sim"
+    simulator: bool = False
+
+
+KINDS = (
+    Kind("sim_ground", "services.sim_ground.build", "PyBullet world of the ground vehicles, their sensors", "ground", simulator=True),
+    Kind("sim_air", "services.sim_air.build", "JSBSim aircraft, wind, their sensors", "fixed_wing", simulator=True),
+    Kind("sim_camera", "services.sim_camera.build", "every vehicle's camera"),
+    Kind("slam", "services.slam.build", "odometry, mapping, localization", "ground"),
+    Kind("planner", "services.planner.build", "exploration, paths, tracking", "ground"),
+    Kind("autopilot", "services.autopilot.build", "command multiplexer, estimator, guidance, control, modes"),
+    Kind("mavlink", "services.autopilot.mavlink.build", "MAVLink over UDP for ground stations", clock="wall"),
+    Kind("gcs", "services.gcs.build", "the page at http://127.0.0.1:8080", clock="wall"),
+)
+INFRASTRUCTURE = ("router", "conductor", "recorder")
+
+
+def kind(name: str) -> Kind:
+    """Raises BadInput for an unknown name."""
+    found = next((k for k in KINDS if k.name == name), None)
+    if found is None:
+        raise BadInput(f"no service '{name}'; {nearest(name, [k.name for k in KINDS])}")
+    return found
+
+
+def needed(site: Site) -> list[Kind]:
+    """The kinds that have work in a mission."""
+    kinds = {member.file.kind for member in site.members.values()}
+    return [k for k in KINDS if k.needs in ("any", *kinds)]
+
+
+def hosts(site: Site, kinds: Sequence[Kind], vehicle: str | None = None) -> list[Host]:
+    """The service instances of these kinds; ``vehicle`` keeps only those of one vehicle (and of the world)."""
+    if vehicle is not None and vehicle not in site.members:
+        raise BadInput(f"no vehicle '{vehicle}' in {site.mission_path}; {nearest(vehicle, site.members)}")
+    made: list[Host] = []
+    for each in kinds:
+        build: Build = importlib.import_module(each.build).build
+        made += [host for host in build(site) if vehicle is None or host.vehicle in (None, vehicle)]
+    return made

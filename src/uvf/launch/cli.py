@@ -1,0 +1,258 @@
+"""The Unmanned Vehicle Framework: simulate, fly and drive unmanned vehicles over Zenoh and MAVLink.
+
+Heavy imports happen inside the commands, so that ``uvf --help`` is quick.
+"""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from uvf.runtime.params import BadInput
+
+app = typer.Typer(no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False, help=(__doc__ or "").splitlines()[0])
+topic_app = typer.Typer(no_args_is_help=True, help="Look at messages.")
+node_app = typer.Typer(no_args_is_help=True, help="Look at running services.")
+log_app = typer.Typer(no_args_is_help=True, help="Look at recorded runs.")
+app.add_typer(topic_app, name="topic")
+app.add_typer(node_app, name="node")
+app.add_typer(log_app, name="log")
+
+DEMO = "demo"
+MissionArgument = Annotated[str, typer.Argument(help="Name in missions/ or path of a mission file.")]
+MissionOption = Annotated[str, typer.Option("--mission", "-m", help="Name in missions/ or path of a mission file.")]
+
+
+def say(line: str) -> None:
+    typer.echo(f"uvf: {line}")
+
+
+@contextmanager
+def bad_input_is_one_line() -> Iterator[None]:
+    """Exit code 2 and the line, instead of a traceback."""
+    try:
+        yield
+    except BadInput as error:
+        typer.echo(f"uvf: {error}", err=True)
+        raise typer.Exit(2) from error
+
+
+@app.command()
+def up(
+    mission: MissionArgument = DEMO,
+    rate: Annotated[float, typer.Option(min=0.0, max=1000.0, help="Simulation seconds per second; 0 = as fast as it goes.")] = 1.0,
+    gcs: Annotated[bool, typer.Option("--gcs/--no-gcs", help="The page at http://127.0.0.1:8080.")] = True,
+    seconds: Annotated[float | None, typer.Option("--for", help="Stop after so many seconds.")] = None,
+) -> None:
+    """Start a whole mission: every service in its own process, watched over, until Ctrl-C."""
+    from uvf.launch import settings
+    from uvf.launch.runs import new_run
+    from uvf.launch.up import Wanted
+    from uvf.launch.up import up as run_up
+
+    with bad_input_is_one_line():
+        path = settings.mission_path(mission)
+        folder = new_run()
+        say(f"mission {path.stem}; logs in {folder}")
+        if gcs:
+            host, port = settings.gcs_address()
+            say(f"page http://{host}:{port}   QGroundControl: just start it (MAVLink goes to UDP 14550)   Ctrl-C ends")
+        raise typer.Exit(run_up(Wanted(mission, rate, gcs, seconds), folder, say))
+
+
+@app.command()
+def run(
+    mission: MissionArgument = DEMO,
+    lockstep: Annotated[bool, typer.Option("--lockstep", help="In one process, as fast as it goes.")] = False,
+    until: Annotated[float | None, typer.Option(help="Simulation seconds; by default the mission's duration.")] = None,
+    log: Annotated[Path | None, typer.Option(help="Where to record; by default in runs/.")] = None,
+) -> None:
+    """Run a mission to its end and score it: exit code 0 when every criterion holds."""
+    from uvf.launch.report import run_and_report
+
+    if not lockstep:
+        typer.echo("uvf: 'uvf run' needs --lockstep; 'uvf up' runs a mission in real time", err=True)
+        raise typer.Exit(2)
+    with bad_input_is_one_line():
+        raise typer.Exit(run_and_report(mission, until, log))
+
+
+@app.command()
+def service(
+    name: Annotated[str, typer.Argument(help="Which service, or 'conductor'.")],
+    mission: MissionOption = DEMO,
+    vehicle: Annotated[str | None, typer.Option(help="Only for this vehicle.")] = None,
+    rate: Annotated[float, typer.Option(help="Of the conductor.")] = 1.0,
+    lockstep: Annotated[bool, typer.Option("--lockstep", help="The next tick waits for everybody.")] = False,
+) -> None:
+    """Run one service in this process."""
+    from uvf.launch.processes import run_conductor, run_service
+
+    if name == "conductor":
+        run_conductor(mission, rate, lockstep)
+    else:
+        run_service(name, mission, vehicle, lockstep)
+
+
+@app.command()
+def router(listen: Annotated[str | None, typer.Option(help="Endpoint; by default UVF_ROUTER or tcp/127.0.0.1:7447.")] = None) -> None:
+    """Run the Zenoh router."""
+    from uvf.launch import settings
+    from uvf.launch.processes import run_router
+
+    run_router(listen or settings.router_endpoint())
+
+
+@app.command()
+def record(folder: Annotated[Path, typer.Argument(help="Where the log goes.")], mission: MissionOption = DEMO) -> None:
+    """Record everything on the bus into MCAP files."""
+    from uvf.launch.processes import run_recorder
+
+    run_recorder(folder, mission)
+
+
+@app.command()
+def replay(
+    log: Annotated[Path, typer.Argument(help="An MCAP log.")],
+    rate: Annotated[float, typer.Option(min=0.01, help="Times real time.")] = 1.0,
+    service: Annotated[str | None, typer.Option(help="Into this service instead, comparing what comes out.")] = None,
+    vehicle: Annotated[str | None, typer.Option(help="Of this vehicle.")] = None,
+    mission: MissionOption = DEMO,
+) -> None:
+    """Put a log back onto the bus, or into one service to see what comes out otherwise."""
+    from uvf.launch.report import replay_into, replay_onto_bus
+
+    with bad_input_is_one_line():
+        raise typer.Exit(replay_into(log, service, vehicle, mission) if service else replay_onto_bus(log, rate))
+
+
+@app.command()
+def check(mission: MissionArgument = DEMO) -> None:
+    """Check the wiring of a mission: writers, readers, types, rates, compose file."""
+    from uvf.launch.checks import check_mission
+
+    with bad_input_is_one_line():
+        problems = check_mission(mission)
+        for line in problems:
+            typer.echo(line)
+        say(f"{len(problems)} problems" if problems else "wiring is right")
+        raise typer.Exit(1 if problems else 0)
+
+
+@app.command()
+def doctor() -> None:
+    """Look at this machine: Python, wheels, ports, Zenoh, browser, disk."""
+    from uvf.launch.doctor import examine
+
+    raise typer.Exit(examine(typer.echo))
+
+
+@app.command()
+def bench(
+    group: Annotated[str, typer.Argument(help="bus, sim, ...")],
+    case: Annotated[list[str] | None, typer.Argument(help="Only these cases.")] = None,
+    data: Annotated[Path | None, typer.Option(envvar="UVF_DATA", help="Folder with data sets.")] = None,
+    json: Annotated[Path | None, typer.Option(help="Write the figures there.")] = None,
+    write: Annotated[bool, typer.Option("--write", help="Renew benchmarks/results.md.")] = False,
+) -> None:
+    """Measure: one table, the same figures as JSON."""
+    from uvf.launch.bench import run_group
+
+    with bad_input_is_one_line():
+        run_group(group, case or [], data, json, write)
+
+
+@app.command(context_settings={"allow_extra_args": True, "ignore_unknown_options": True})
+def test(context: typer.Context) -> None:
+    """Run the tests; further arguments go to pytest."""
+    from uvf.launch.testing import run_tests
+
+    raise typer.Exit(run_tests(context.args))
+
+
+@topic_app.command("list")
+def topic_list(live: Annotated[bool, typer.Option(help="Only what is on the bus now.")] = False) -> None:
+    """The table of topics and requests."""
+    from uvf.launch.topic_tools import list_live, list_table
+
+    with bad_input_is_one_line():
+        if live:
+            list_live()
+        else:
+            list_table()
+
+
+@topic_app.command("echo")
+def topic_echo(
+    key: Annotated[str, typer.Argument(help="As burger/nav/pose; * stands for one part.")],
+    count: Annotated[int, typer.Option("-n", help="Stop after so many.")] = 0,
+) -> None:
+    """Print messages as they come."""
+    from uvf.launch.topic_tools import echo
+
+    with bad_input_is_one_line():
+        echo(key, count)
+
+
+@topic_app.command("hz")
+def topic_hz(key: str, seconds: Annotated[float, typer.Option("--for", help="How long to count.")] = 5.0) -> None:
+    """Measure rates, by wall and by simulation time."""
+    from uvf.launch.topic_tools import rates
+
+    with bad_input_is_one_line():
+        rates(key, seconds)
+
+
+@topic_app.command("info")
+def topic_info(key: str) -> None:
+    """Type, rate, QoS, writers and readers of a topic."""
+    from uvf.launch.topic_tools import info
+
+    with bad_input_is_one_line():
+        info(key)
+
+
+@node_app.command("list")
+def node_list() -> None:
+    """The services that are alive."""
+    from uvf.launch.node_tools import list_nodes
+
+    with bad_input_is_one_line():
+        list_nodes()
+
+
+@node_app.command("graph")
+def node_graph() -> None:
+    """Who writes what for whom."""
+    from uvf.launch.node_tools import graph
+
+    with bad_input_is_one_line():
+        graph()
+
+
+@log_app.command("info")
+def log_info(log: Path) -> None:
+    """Topics, counts, length, gaps and hash of a log."""
+    from uvf.launch.report import describe_log
+
+    with bad_input_is_one_line():
+        describe_log(log)
+
+
+@log_app.command("recover")
+def log_recover(log: Path, out: Annotated[Path | None, typer.Option(help="By default <log>-recovered.mcap.")] = None) -> None:
+    """Save what can be saved of a log that was cut off."""
+    from uvf.launch.report import recover_log
+
+    with bad_input_is_one_line():
+        recover_log(log, out)
+
+
+def main() -> None:
+    app()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,76 @@
+"""``uvf doctor``: what this machine has and lacks, a line each."""
+
+import importlib
+import importlib.metadata
+import shutil
+import socket
+import sys
+from collections.abc import Callable, Iterator
+
+from uvf.launch import settings
+from uvf.runtime.params import BadInput
+
+WHEELS = ("zenoh", "pybullet", "jsbsim", "pymavlink", "viser", "numba", "mcap", "filterpy")
+FREE_DISK = 2 * settings.GIGABYTE
+PROBE_ENDPOINT = "tcp/127.0.0.1:7499"
+
+
+def examine(say: Callable[[str], None]) -> int:
+    """Prints one line per finding; 1 when something that is needed is missing."""
+    findings = [*_python(), *_wheels(), *_ports(), *_zenoh(), *_browser(), *_disk()]
+    for good, line in findings:
+        say(f"{'ok  ' if good else 'BAD '} {line}")
+    return 0 if all(good for good, _ in findings) else 1
+
+
+Finding = tuple[bool, str]
+
+
+def _python() -> Iterator[Finding]:
+    version = ".".join(map(str, sys.version_info[:3]))
+    yield sys.version_info[:2] == (3, 11), f"Python {version} at {sys.executable} (3.11 is needed: pybullet has wheels for it)"
+
+
+def _wheels() -> Iterator[Finding]:
+    for name in WHEELS:
+        try:
+            importlib.import_module(name)
+        except ImportError as error:
+            yield False, f"package {name}: {error}; remove .venv and run ./uvf again"
+        else:
+            yield True, f"package {name}"
+
+
+def _ports() -> Iterator[Finding]:
+    router = settings.router_endpoint().rpartition("/")[2].rpartition(":")
+    for host, port, what in ((router[0], int(router[2]), "router"), (*settings.gcs_address(), "page")):
+        with socket.socket() as probe:
+            taken = probe.connect_ex((host, port)) == 0
+        # A taken port is what a running system looks like: worth a line, not a fault.
+        yield True, f"port {port} ({what}): {'in use, UVF may be running' if taken else 'free'}"
+
+
+def _zenoh() -> Iterator[Finding]:
+    from uvf.runtime.zenoh_bus import ZenohBus, open_router
+
+    try:
+        router = open_router(PROBE_ENDPOINT)
+        with ZenohBus(PROBE_ENDPOINT, timeout=2.0):
+            pass
+        router.close()  # type: ignore[no-untyped-call]
+    except BadInput as error:
+        yield False, f"zenoh: {error}"
+    else:
+        yield True, "zenoh: a router opens and a client connects"
+
+
+def _browser() -> Iterator[Finding]:
+    found = next((path for name in ("chromium", "google-chrome", "firefox") if (path := shutil.which(name))), None)
+    yield True, f"browser: {found or 'none found here; any browser on this machine will do for the page'}"
+
+
+def _disk() -> Iterator[Finding]:
+    folder = settings.runs_folder()
+    where = next(p for p in (folder, *folder.parents) if p.exists())
+    free = shutil.disk_usage(where).free
+    yield free > FREE_DISK, f"disk: {free / settings.GIGABYTE:.0f} GB free for logs in {folder}"

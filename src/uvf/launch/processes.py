@@ -1,0 +1,165 @@
+"""The bodies of the processes of a run: router, conductor, recorder, and one for any service."""
+
+import time
+from pathlib import Path
+
+from schemas import topics
+from schemas.convert import stamp_ns
+from schemas.messages import Clock, ClockRequest, Done, Event
+from uvf.launch import catalogue, settings
+from uvf.launch.worker import Worker, worker
+from uvf.runtime.bus import Query, Sample
+from uvf.runtime.conductor import Conductor
+from uvf.runtime.live import Live
+from uvf.runtime.recording import DEPTH, Recorder
+from uvf.runtime.site import Site, load_site
+from uvf.runtime.zenoh_bus import ZenohBus, open_router
+
+TICK_LOOK = 0.001  # s, how often the conductor looks whether the next tick is due
+HELD_PERIOD = 0.5  # s, how often the clock is told again while it is held back or paused
+FLUSH_PERIOD = 1.0  # s
+ROTATE_BYTES = 500_000_000
+LOOK = 0.05  # s
+PATIENCE = 3.0  # s, from which a process that waits says for what
+
+
+def run_router(listen: str) -> None:
+    """Until told to stop."""
+    with worker("router") as life:
+        session = open_router(listen)
+        try:
+            while not life.stop.wait(0.5) and not life.orphaned():
+                pass
+        finally:
+            session.close()  # type: ignore[no-untyped-call]
+
+
+def open_bus(life: Worker, blocking: bool = False) -> ZenohBus:
+    """Waits for the router for ever, and says so."""
+    endpoint = settings.router_endpoint()
+    life.warn(f"connecting to the router at {endpoint}")
+    bus = ZenohBus(endpoint, blocking)
+    life.warn("connected")
+    return bus
+
+
+def run_service(name: str, mission: str, vehicle: str | None, lockstep: bool = False) -> None:
+    """One kind of service for all its vehicles, or for one."""
+    with worker(name) as life:
+        site = load_site(settings.mission_path(mission))
+        hosts = catalogue.hosts(site, [catalogue.kind(name)], vehicle)
+        with open_bus(life, lockstep) as bus:
+            Live(name if vehicle is None else f"{name}.{vehicle}", hosts, bus, life.warn).run(life.stop, life.orphaned)
+
+
+def run_conductor(mission: str, rate: float, lockstep: bool = False, without: tuple[str, ...] = ()) -> None:
+    """Publishes the clock for a mission's participants."""
+    with worker("conductor") as life:
+        site = load_site(settings.mission_path(mission))
+        kinds = [k for k in catalogue.needed(site) if k.clock == "sim" and k.name not in without]
+        simulators = [k.name for k in kinds if k.simulator]
+        conductor = Conductor(simulators, [k.name for k in kinds if not k.simulator], rate, lockstep)
+        with open_bus(life, lockstep) as bus:
+            ConductorLoop(conductor, bus, life).run()
+
+
+class ConductorLoop:
+    """The conductor's state machine on the bus and on wall time."""
+
+    def __init__(self, conductor: Conductor, bus: ZenohBus, life: Worker) -> None:
+        self._conductor = conductor
+        self._bus = bus
+        self._life = life
+        self._clock = bus.publisher(topics.CLOCK.at("sys"), Clock.DESCRIPTOR.full_name, topics.CLOCK.qos)
+        events = topics.SYSTEM_EVENTS.by("conductor")
+        self._events = bus.publisher(events.at("sys"), Event.DESCRIPTOR.full_name, events.qos)
+        self._told = 0.0
+        self._held_since = time.monotonic()
+        self._complained = ""
+        bus.subscribe(topics.DONE.by("*").at("sys"), topics.DONE.qos, self._on_done, depth=256)
+        bus.wake_on(topics.DONE.by("*").at("sys"))
+        bus.serve(topics.CLOCK_REQUEST.at("sys"), self._on_request)
+        bus.token(f"@node/sys/conductor/{bus.boot:x}")
+
+    def _on_done(self, sample: Sample) -> None:
+        line = self._conductor.done(Done.FromString(sample.payload), sample.boot)
+        if line:
+            self._say(line, Event.WARNING)
+
+    def _on_request(self, query: Query) -> None:
+        reply = self._conductor.request(ClockRequest.FromString(query.payload))
+        query.answer(reply.SerializeToString(deterministic=True), self._conductor.t_ns)
+
+    def _say(self, line: str, severity: Event.Severity) -> None:
+        self._life.warn(line)
+        event = Event(timestamp=stamp_ns(self._conductor.t_ns), severity=severity, text=line, source="conductor")
+        self._events.put(event.SerializeToString(deterministic=True), self._conductor.t_ns)
+
+    def run(self) -> None:
+        while not self._life.stop.is_set() and not self._life.orphaned():
+            self._bus.wait(TICK_LOOK)
+            self._bus.poll()
+            wall = time.monotonic()
+            tick = self._conductor.advance(wall)
+            while tick is not None:
+                self._tell(tick, wall)
+                tick = self._conductor.advance(wall)
+            if wall - self._told > HELD_PERIOD:
+                self._tell_held(wall)
+
+    def _tell(self, clock: Clock, wall: float) -> None:
+        self._told = self._held_since = wall
+        self._complained = ""
+        self._clock.put(clock.SerializeToString(deterministic=True), clock.t_ns)
+
+    def _tell_held(self, wall: float) -> None:
+        """While nothing moves: the clock as it stands, and once a line about whom it waits for."""
+        self._told = wall
+        if self._conductor.started:
+            clock = self._conductor.clock(wall)
+            self._clock.put(clock.SerializeToString(deterministic=True), clock.t_ns)
+        waited = self._conductor.waiting_for()
+        if waited and waited != self._complained and wall - self._held_since > PATIENCE:
+            self._complained = waited
+            names = ", ".join(self._conductor.missing()) or waited
+            self._say(f"time stands at {self._conductor.t_ns / 1e9:.2f} s: waiting for {names}", Event.WARNING)
+
+
+def run_recorder(folder: Path, mission: str) -> None:
+    """Writes everything on the bus to ``folder``, a new file every half gigabyte."""
+    with worker("recorder") as life:
+        site = load_site(settings.mission_path(mission))
+        with open_bus(life) as bus:
+            arrived: list[Sample] = []
+            bus.subscribe(f"{topics.PREFIX}/**", topics.Qos.EVENT, arrived.append, DEPTH)
+            bus.token(f"@node/sys/recorder/{bus.boot:x}")
+            number = 0
+            while not life.stop.is_set() and not life.orphaned():
+                path = folder / f"log-{number:03}.mcap"
+                with Recorder(path, attachments(site)) as recorder:
+                    _record(life, bus, arrived, recorder, path)
+                number += 1
+
+
+def _record(life: Worker, bus: ZenohBus, arrived: list[Sample], recorder: Recorder, path: Path) -> None:
+    """Until told to stop or the file is full."""
+    flushed, complained = time.monotonic(), False
+    while not life.stop.wait(LOOK) and not life.orphaned() and path.stat().st_size < ROTATE_BYTES:
+        bus.poll()
+        for sample in arrived:
+            recorder.write(sample)
+        arrived.clear()
+        if time.monotonic() - flushed > FLUSH_PERIOD:
+            recorder.flush()
+            flushed = time.monotonic()
+        if recorder.error and not complained:
+            life.warn(recorder.error)
+            complained = True
+
+
+def attachments(site: Site) -> list[Path]:
+    """The files that say what was run: mission, world, vehicles."""
+    files = [site.mission_path, site.world_folder / "world.yaml"]
+    for folder in {member.folder for member in site.members.values()}:
+        files += [folder / "vehicle.yaml", *sorted(folder.glob("*.urdf")), *sorted(folder.rglob("*.xml"))]
+    return files

@@ -1,0 +1,107 @@
+"""What ``run``, ``replay`` and ``log`` print."""
+
+import signal
+from collections import Counter
+from pathlib import Path
+from threading import Event
+
+import typer
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+from rich.table import Table
+
+from uvf.launch import catalogue, settings
+from uvf.launch.run import Result, run_lockstep
+from uvf.launch.runs import new_run
+from uvf.runtime.params import BadInput, nearest
+from uvf.runtime.recording import log_metadata, read_log, recover
+from uvf.runtime.replay import into_service, onto_bus
+from uvf.runtime.site import load_site
+from uvf.runtime.zenoh_bus import ZenohBus
+
+SHOWN = 20
+console = Console()
+
+
+def run_and_report(mission: str, until: float | None, log: Path | None) -> int:
+    """Runs in lockstep with a progress bar and prints the score; 0 when every criterion holds."""
+    site = load_site(settings.mission_path(mission))
+    until = until if until is not None else site.mission.duration
+    log = log or new_run() / "log-000.mcap"
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TextColumn("{task.completed:.0f} of {task.total:.0f} s"),
+        TimeRemainingColumn(),
+    )
+    with Progress(*columns, console=console, transient=True) as bar:
+        task = bar.add_task(site.mission_path.stem, total=until)
+
+        def watch(t: float) -> bool:
+            if round(t * 100) % 50 == 0:
+                bar.update(task, completed=t)
+            return True
+
+        result = run_lockstep(site, until, log, watch, lambda line: bar.console.print(line, markup=False))
+    _print_result(result, log)
+    return 0 if result.passed else 1
+
+
+def _print_result(result: Result, log: Path) -> None:
+    table = Table("vehicle", "measure", "value", "limit", "")
+    for verdict in result.verdicts:
+        row = (verdict.criterion.vehicle, verdict.criterion.measure, f"{verdict.value:.3g}", verdict.limits)
+        table.add_row(*row, "passed" if verdict.passed else "FAILED")
+    if result.verdicts:
+        console.print(table)
+    typer.echo(f"simulated {result.simulated:g} s in {result.wall:.1f} s: {result.factor:.1f} x real time")
+    typer.echo(f"log {log}: {result.messages} messages, hash {result.log_hash}")
+    if result.recording_error:
+        typer.echo(result.recording_error, err=True)
+
+
+def replay_onto_bus(log: Path, rate: float) -> int:
+    """Until the end or Ctrl-C."""
+    stop = Event()
+    signal.signal(signal.SIGINT, lambda *_: stop.set())
+    with ZenohBus(settings.router_endpoint(), blocking=True, timeout=5.0) as bus:
+        count = onto_bus(log, bus, rate, lambda: not stop.is_set())
+    typer.echo(f"{count} messages replayed")
+    return 0
+
+
+def replay_into(log: Path, service: str, vehicle: str | None, mission: str) -> int:
+    """Prints the fields that came out otherwise; 0 when there are none."""
+    site = load_site(settings.mission_path(mission))
+    kinds = [k for k in catalogue.KINDS if k.clock == "sim"]
+    hosts = [h for h in catalogue.hosts(site, kinds, vehicle) if h.service.name == service]
+    if not hosts:
+        names = {h.service.name for h in catalogue.hosts(site, kinds, vehicle)}
+        raise BadInput(f"no service '{service}' in {site.mission_path}; {nearest(service, names)}")
+    differences = [line for host in hosts for line in into_service(log, host)]
+    for difference in differences[:SHOWN]:
+        typer.echo(str(difference))
+    typer.echo(f"{len(differences)} differences" if differences else "same")
+    return 1 if differences else 0
+
+
+def describe_log(log: Path) -> None:
+    """Topics with type, count and rate."""
+    samples = [(s.key, s.type_name, s.stamp_ns, len(s.payload)) for s in read_log(log)]
+    counts, types = Counter(key for key, *_ in samples), {key: name for key, name, *_ in samples}
+    sizes: Counter[str] = Counter()
+    for key, _, _, size in samples:
+        sizes[key] += size
+    end = max((stamp for _, _, stamp, _ in samples), default=0) / 1e9
+    table = Table("topic", "type", "messages", "Hz", "kB")
+    for key in sorted(counts):
+        table.add_row(key, types[key], str(counts[key]), f"{counts[key] / max(end, 1e-9):.1f}", f"{sizes[key] / 1000:.0f}")
+    console.print(table)
+    typer.echo(f"{len(samples)} messages, {end:.1f} s")
+    for name, value in log_metadata(log).items():
+        typer.echo(f"{name}: {value}")
+
+
+def recover_log(log: Path, out: Path | None) -> None:
+    target = out or log.with_name(f"{log.stem}-recovered.mcap")
+    typer.echo(f"{recover(log, target)} messages saved into {target}")

@@ -1,0 +1,55 @@
+"""``uvf run MISSION --lockstep``: the whole mission in one process, as fast as it goes, scored at the end."""
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from uvf.launch import catalogue
+from uvf.launch.processes import attachments
+from uvf.launch.scores import Scorer, Verdict
+from uvf.runtime.lockstep import Lockstep
+from uvf.runtime.recording import Recorder
+from uvf.runtime.site import Site
+
+
+@dataclass(frozen=True)
+class Result:
+    verdicts: list[Verdict]
+    log_hash: str
+    simulated: float  # s
+    wall: float  # s, without building the services
+    messages: int
+    recording_error: str
+
+    @property
+    def factor(self) -> float:
+        """Real-time factor."""
+        return self.simulated / self.wall
+
+    @property
+    def passed(self) -> bool:
+        return all(v.passed for v in self.verdicts)
+
+
+def run_lockstep(
+    site: Site,
+    until: float,
+    log: Path,
+    watch: Callable[[float], bool] = lambda t: True,
+    warn: Callable[[str], None] = lambda line: None,
+) -> Result:
+    """Runs every sim-clock service of the mission up to ``until`` [s] and records it. Raises BadInput."""
+    scorer = Scorer(site)
+    kinds = [k for k in catalogue.needed(site) if k.clock == "sim"]
+    with Recorder(log, attachments(site)) as recorder:
+        lockstep = Lockstep(catalogue.hosts(site, kinds), warn=warn)
+        try:
+            recorder.follow(lockstep.bus)
+            scorer.follow(lockstep.bus)
+            begun = time.perf_counter()
+            lockstep.run(until, watch)
+            wall = time.perf_counter() - begun
+        finally:
+            lockstep.close()
+    return Result(scorer.judge(), recorder.hash.hexdigest(), until, wall, recorder.written, recorder.error)

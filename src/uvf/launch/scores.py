@@ -1,0 +1,217 @@
+"""Whether a mission was done: figures measured on the messages of a run, against the mission's criteria.
+
+Scores may read ``truth/**``; nothing that drives or flies may.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from schemas import topics
+from schemas.convert import array, occupancy_cells
+from schemas.messages import Contact, Grid, Mission, MissionItem, MissionProgress, NavState, PoseInFrame
+from uvf.runtime.bus import Bus, Sample
+from uvf.runtime.mission_file import Criterion
+from uvf.runtime.params import BadInput, nearest
+from uvf.runtime.site import Site
+from uvf.runtime.world_geometry import floor_plan, reachable_floor
+
+Floats = NDArray[np.float64]
+PLAN_RESOLUTION = 0.05  # m
+
+
+@dataclass
+class Track:
+    """What was heard of one vehicle."""
+
+    name: str
+    site: Site
+    truth: list[tuple[float, float, float, float]] = field(default_factory=list)  # t, x, y, z
+    pose: list[tuple[float, float, float]] = field(default_factory=list)  # t, x, y
+    progress: list[tuple[float, int, int]] = field(default_factory=list)  # t, reached, laps
+    contacts: int = 0
+    touching: bool = False
+    grid: Grid | None = None
+    mission: Mission | None = None
+
+    def heard(self, sample: Sample) -> None:
+        t = sample.stamp_ns / 1e9
+        name = sample.key.split("/", 2)[2]
+        if name == "truth/state":
+            p = NavState.FromString(sample.payload).position
+            self.truth.append((t, p.x, p.y, p.z))
+        elif name == "nav/pose":
+            q = PoseInFrame.FromString(sample.payload).pose.position
+            self.pose.append((t, q.x, q.y))
+        elif name == "sensor/contact":
+            touching = Contact.FromString(sample.payload).touching
+            self.contacts += touching and not self.touching
+            self.touching = touching
+        elif name == "map/grid":
+            self.grid = Grid.FromString(sample.payload)
+        elif name == "mission/plan":
+            self.mission = Mission.FromString(sample.payload)
+        elif name == "mission/progress":
+            progress = MissionProgress.FromString(sample.payload)
+            self.progress.append((t, progress.reached, progress.laps))
+
+    def positions(self) -> Floats:
+        """(n, 4) true t, x, y, z."""
+        return np.array(self.truth).reshape(-1, 4)
+
+
+class Scorer:
+    """Listens to a run on any bus (or is fed from a log) and judges it at the end."""
+
+    def __init__(self, site: Site) -> None:
+        self._site = site
+        for criterion in site.mission.criteria:
+            if criterion.measure not in MEASURES:
+                raise BadInput(f"{site.mission_path}: criteria: no measure '{criterion.measure}'; {nearest(criterion.measure, MEASURES)}")
+        self._tracks = {name: Track(name, site) for name in site.members}
+
+    def follow(self, bus: Bus) -> None:
+        """Subscribes to what the measures need."""
+        wanted = (topics.TRUTH, topics.POSE, topics.CONTACT, topics.MAP, topics.MISSION, topics.PROGRESS)
+        for topic in wanted:
+            bus.subscribe(topic.at("*"), topic.qos, self.heard, depth=256)
+
+    def heard(self, sample: Sample) -> None:
+        track = self._tracks.get(sample.key.split("/")[1])
+        if track is not None:
+            track.heard(sample)
+
+    def judge(self) -> list["Verdict"]:
+        """One verdict for each criterion of the mission."""
+        return [Verdict(c, MEASURES[c.measure](self._tracks[c.vehicle])) for c in self._site.mission.criteria]
+
+
+@dataclass(frozen=True)
+class Verdict:
+    criterion: Criterion
+    value: float
+
+    @property
+    def passed(self) -> bool:
+        low, high = self.criterion.at_least, self.criterion.at_most
+        return (low is None or self.value >= low) and (high is None or self.value <= high)
+
+    @property
+    def limits(self) -> str:
+        low, high = self.criterion.at_least, self.criterion.at_most
+        return " and ".join(text for text in (f">= {low:g}" if low is not None else "", f"<= {high:g}" if high is not None else "") if text)
+
+
+def distance_driven(track: Track) -> float:
+    """True way over the ground [m]."""
+    p = track.positions()
+    return float(np.linalg.norm(np.diff(p[:, 1:3], axis=0), axis=1).sum()) if len(p) > 1 else 0.0
+
+
+def contacts(track: Track) -> float:
+    """How often it began to touch something."""
+    return float(track.contacts)
+
+
+def pose_error(track: Track) -> float:
+    """Distance [m] between the last estimated pose and the truth at that time; infinite without a pose."""
+    p = track.positions()
+    if not track.pose or not len(p):
+        return float("inf")
+    t, x, y = track.pose[-1]
+    return float(np.hypot(np.interp(t, p[:, 0], p[:, 1]) - x, np.interp(t, p[:, 0], p[:, 2]) - y))
+
+
+def mapped_floor(track: Track) -> float:
+    """Share of the floor reachable from the start that the vehicle's own map knows as free."""
+    if track.grid is None:
+        return 0.0
+    member = track.site.members[track.name]
+    start = member.entry.start
+    radius = member.file.ground.radius if member.file.ground else 0.0
+    plan = floor_plan(track.site.world, PLAN_RESOLUTION)
+    x, y = plan.centres()
+    inside = reachable_floor(plan, start.x, start.y, radius)
+    free = _map_is_free(track.grid, start.x, start.y, start.yaw, x[inside], y[inside])
+    return float(free.mean())
+
+
+def _map_is_free(grid: Grid, x0: float, y0: float, yaw: float, x: Floats, y: Floats) -> NDArray[np.bool_]:
+    """Whether the map (placed in the world at the vehicle's start) holds each point as free."""
+    cells = occupancy_cells(grid)
+    c, s = np.cos(yaw), np.sin(yaw)
+    map_x, map_y = c * (x - x0) + s * (y - y0), -s * (x - x0) + c * (y - y0)
+    column = np.floor((map_x - grid.pose.position.x) / grid.cell_size.x).astype(int)
+    row = np.floor((map_y - grid.pose.position.y) / grid.cell_size.y).astype(int)
+    within = (row >= 0) & (row < cells.shape[0]) & (column >= 0) & (column < cells.shape[1])
+    free = np.zeros(len(x), dtype=np.bool_)
+    free[within] = (cells[row[within], column[within]] >= 0) & (cells[row[within], column[within]] < 50)
+    return free
+
+
+def circuits(track: Track) -> float:
+    """Rounds of the mission completed."""
+    return float(max((laps for _, _, laps in track.progress), default=0))
+
+
+def legs(track: Track) -> float:
+    """Mission items reached, counted in every round."""
+    reached = [r for _, r, _ in track.progress]
+    return float(sum(1 for a, b in pairwise(reached) if b != a and b >= 0))
+
+
+def path_error(track: Track) -> float:
+    """Largest horizontal distance [m] from the nearest leg, from the first item reached on; infinite without one."""
+    p, corners = _scored(track), _corners(track)
+    if not len(p) or len(corners) < 2:
+        return float("inf")
+    closed = np.vstack((corners, corners[:1]))
+    return float(np.min([_distance(p[:, 1:3], a[:2], b[:2]) for a, b in pairwise(closed)], axis=0).max())
+
+
+def altitude_error(track: Track) -> float:
+    """Largest deviation [m] from the altitude of the nearest leg, from the first item reached on."""
+    p, corners = _scored(track), _corners(track)
+    if not len(p) or len(corners) < 2:
+        return float("inf")
+    closed = np.vstack((corners, corners[:1]))
+    distances = np.array([_distance(p[:, 1:3], a[:2], b[:2]) for a, b in pairwise(closed)])
+    altitudes = np.array([_altitude(p[:, 1:3], a, b) for a, b in pairwise(closed)])
+    nearest_leg = distances.argmin(axis=0)
+    return float(np.abs(p[:, 3] - altitudes[nearest_leg, np.arange(len(p))]).max())
+
+
+def _corners(track: Track) -> Floats:
+    items = track.mission.items if track.mission else ()
+    return np.array([array(i.position) for i in items if i.kind == MissionItem.WAYPOINT]).reshape(-1, 3)
+
+
+def _scored(track: Track) -> Floats:
+    begun = next((t for t, reached, _ in track.progress if reached >= 0), np.inf)
+    p = track.positions()
+    return p[p[:, 0] >= begun]
+
+
+def _along(p: Floats, a: Floats, b: Floats) -> Floats:
+    d = b - a
+    share: Floats = np.clip((p - a) @ d / max(float(d @ d), 1e-12), 0.0, 1.0)
+    return share
+
+
+def _distance(p: Floats, a: Floats, b: Floats) -> Floats:
+    nearest_point = a + _along(p, a, b)[:, None] * (b - a)
+    distance: Floats = np.linalg.norm(p - nearest_point, axis=1)
+    return distance
+
+
+def _altitude(p: Floats, a: Floats, b: Floats) -> Floats:
+    altitude: Floats = a[2] + _along(p, a[:2], b[:2]) * (b[2] - a[2])
+    return altitude
+
+
+MEASURES: dict[str, Callable[[Track], float]] = {
+    f.__name__: f for f in (distance_driven, contacts, pose_error, mapped_floor, circuits, legs, path_error, altitude_error)
+}

@@ -1,0 +1,35 @@
+"""``uvf test``: pytest over the whole tree, and one line for what this machine cannot run."""
+
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+import typer
+
+from uvf.runtime.site import ROOT
+
+
+def left_out() -> list[str]:
+    """What the tests will leave out here, and what would bring it in."""
+    lines = []
+    if not data_folder():
+        lines.append("no data folder: benchmark data tests left out (set UVF_DATA)")
+    if not shutil.which("chromium"):
+        lines.append("no chromium: browser tests left out (Debian: apt install chromium)")
+    return lines
+
+
+def data_folder() -> Path | None:
+    """The folder with benchmark data, when there is one."""
+    folder = Path(os.environ.get("UVF_DATA", ROOT.parent / "shared" / "data"))
+    return folder if folder.is_dir() else None
+
+
+def run_tests(arguments: Sequence[str]) -> int:
+    """Runs pytest in a process of its own; returns its exit code."""
+    for line in left_out():
+        typer.echo(f"uvf: {line}")
+    return subprocess.run([sys.executable, "-m", "pytest", *arguments], cwd=ROOT, check=False).returncode

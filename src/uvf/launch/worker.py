@@ -1,0 +1,52 @@
+"""What every process of a run does alike: signals, one line per warning, and an end when its launcher is gone."""
+
+import os
+import signal
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from threading import Event
+
+from uvf.runtime.params import BadInput
+
+PARENT = "UVF_PARENT"
+ALIVE_FILE = "UVF_ALIVE_FILE"
+
+
+class Worker:
+    """The life of one process: ``stop`` is set by SIGTERM, by Ctrl-C, and when the launcher has gone."""
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+        self.stop = Event()
+        self._parent = int(os.environ.get(PARENT, "0"))
+        self._alive = Path(os.environ[ALIVE_FILE]) if ALIVE_FILE in os.environ else None
+        self._touched = 0.0
+        for number in (signal.SIGTERM, signal.SIGINT):
+            signal.signal(number, lambda *_: self.stop.set())
+
+    def warn(self, line: str) -> None:
+        """One line to the process's log."""
+        sys.stderr.write(f"{time.strftime('%H:%M:%S')} {self.name}: {line}\n")
+        sys.stderr.flush()
+
+    def orphaned(self) -> bool:
+        """Whether the launcher is gone; also shows container health checks that the loop goes round."""
+        now = time.monotonic()
+        if self._alive is not None and now - self._touched > 1:
+            self._alive.touch()
+            self._touched = now
+        return self._parent != 0 and os.getppid() != self._parent
+
+
+@contextmanager
+def worker(name: str) -> Iterator[Worker]:
+    """Runs a process's body; bad input ends it with its line and exit code 2."""
+    life = Worker(name)
+    try:
+        yield life
+    except BadInput as error:
+        life.warn(str(error))
+        raise SystemExit(2) from error
