@@ -1,0 +1,44 @@
+"""Where the page is served: host and port from the environment, checked before viser starts."""
+
+import os
+import secrets
+import socket
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from services.gcs.guard import is_loopback
+from uvf.runtime.params import BadInput
+
+HOST, PORT = "UVF_GCS_HOST", "UVF_GCS_PORT"
+
+
+@dataclass(frozen=True)
+class Address:
+    host: str = "127.0.0.1"
+    port: int = 8080
+    token: str = ""
+
+    @property
+    def url(self) -> str:
+        host = socket.gethostname() if self.host == "0.0.0.0" else self.host
+        return f"http://{host}:{self.port}/" + (f"?token={self.token}" if self.token else "")
+
+
+def address_from(environment: Mapping[str, str] = os.environ) -> Address:
+    """Reads UVF_GCS_HOST and UVF_GCS_PORT. An address that others can reach gets a token. Raises BadInput."""
+    host, text = environment.get(HOST, "127.0.0.1"), environment.get(PORT, "8080")
+    if not text.isdecimal() or not 0 < int(text) < 65536:
+        raise BadInput(f"{PORT}={text}: not a port; choose one from 1 to 65535")
+    return Address(host, int(text), "" if is_loopback(host) else secrets.token_urlsafe(16))
+
+
+def claim(address: Address) -> None:
+    """Fails loudly when the port cannot be had; viser would take the next one without a word. Raises BadInput."""
+    with socket.socket(socket.AF_INET6 if ":" in address.host else socket.AF_INET) as probe:
+        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            probe.bind((address.host, address.port))
+        except OSError as error:
+            raise BadInput(
+                f"gcs: cannot serve the page on {address.host}:{address.port}: {error.strerror}; choose another port, for example {PORT}=8081"
+            ) from error

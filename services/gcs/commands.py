@@ -1,0 +1,219 @@
+"""What people ask for on the page, checked here before anything is sent: a page can ask for anything at any time."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from google.protobuf.message import Message
+from numpy.typing import NDArray
+
+from schemas.convert import stamp
+from schemas.messages import ArmRequest, Event, GoalRequest, Mode, ModeRequest, StopCommand, Vector3
+from services.gcs.state import LAYERS, LOST_AFTER, Model, Order, VehicleModel
+from uvf.runtime.service import Answer
+
+Floats = NDArray[np.float64]
+
+SOURCE = "gcs"
+CONFIRM_WITHIN = 5.0  # s
+ANSWER_WITHIN = 5.0  # s
+REACH = 50.0  # m, how far outside the floor a goal may still lie
+MODES: Mapping[str, Mapping[str, Any]] = {
+    "ground": {"Hold": Mode.MODE_HOLD, "Mission": Mode.MODE_MISSION, "Manual": Mode.MODE_MANUAL},
+    "fixed_wing": {"Hold": Mode.MODE_HOLD, "Mission": Mode.MODE_MISSION, "Return": Mode.MODE_RETURN},
+}
+
+
+@dataclass(frozen=True)
+class Select:
+    vehicle: str
+
+
+@dataclass(frozen=True)
+class ClickGround:
+    """A click that hit no vehicle: the ray of sight, world frame."""
+
+    origin: tuple[float, float, float]
+    direction: tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Arm:
+    arm: bool
+
+
+@dataclass(frozen=True)
+class SetMode:
+    mode: str
+
+
+@dataclass(frozen=True)
+class StopAll:
+    engaged: bool
+
+
+@dataclass(frozen=True)
+class Layer:
+    name: str
+    on: bool
+
+
+Action = Select | ClickGround | Arm | SetMode | StopAll | Layer
+
+
+@dataclass
+class Outbox:
+    """What a step sends, by the service's declared names."""
+
+    stop: list[StopCommand] = field(default_factory=list)
+    arm: dict[str, list[Message]] = field(default_factory=dict)
+    mode: dict[str, list[Message]] = field(default_factory=dict)
+    goal: dict[str, list[Message]] = field(default_factory=dict)
+
+
+def ground_point(origin: Sequence[float], direction: Sequence[float]) -> tuple[float, float] | None:
+    """Where a ray meets the ground z = 0 [m, world]; None if it never does."""
+    o, d = np.asarray(origin, dtype=float), np.asarray(direction, dtype=float)
+    if o.shape != (3,) or d.shape != (3,) or not (np.isfinite(o).all() and np.isfinite(d).all()):
+        return None
+    if abs(d[2]) < 1e-9 or -o[2] / d[2] <= 0:
+        return None
+    hit = o - d * o[2] / d[2]
+    return float(hit[0]), float(hit[1])
+
+
+def describe(request: Message) -> str:
+    """A request in the operator's words."""
+    match request:
+        case GoalRequest():
+            return f"go to ({request.position.x:.1f}, {request.position.y:.1f}) m"
+        case ModeRequest():
+            return f"mode {mode_name(request.mode)}"
+        case ArmRequest():
+            return "arm" if request.arm else "disarm"
+    return request.DESCRIPTOR.name
+
+
+def mode_name(mode: Any) -> str:
+    """``MODE_RETURN`` -> ``Return``."""
+    return str(Mode.Name(mode)).removeprefix("MODE_").capitalize()
+
+
+class Commander:
+    """Turns actions into requests, and follows each until it is answered."""
+
+    def __init__(self, model: Model) -> None:
+        self._model = model
+        self._to_confirm: tuple[str, bool, float] | None = None
+
+    def waits_for_confirmation(self, vehicle: str, arm: bool, t: float) -> bool:
+        asked = self._to_confirm
+        return asked is not None and asked[:2] == (vehicle, arm) and t - asked[2] <= CONFIRM_WITHIN
+
+    def act(self, t: float, actions: Sequence[Action]) -> Outbox:
+        """The messages to send for what people asked at ``t`` [s, wall]."""
+        out = Outbox()
+        for action in actions:
+            match action:
+                case Select(name):
+                    self._select(name)
+                case Layer(name, on):
+                    self._layer(name, on)
+                case StopAll(engaged):
+                    self._stop(engaged, out)
+                case ClickGround(origin, direction):
+                    self._go(t, ground_point(origin, direction), out)
+                case Arm(arm):
+                    self._arm(t, arm, out)
+                case SetMode(mode):
+                    self._set_mode(t, mode, out)
+        return out
+
+    def _select(self, name: str) -> None:
+        if name in self._model.vehicles:
+            self._model.selected = name
+            self._to_confirm = None
+
+    def _layer(self, name: str, on: bool) -> None:
+        if name in LAYERS:
+            (self._model.layers.add if on else self._model.layers.discard)(name)
+
+    def _stop(self, engaged: bool, out: Outbox) -> None:
+        command = StopCommand(timestamp=stamp(self._model.sim_time), engaged=engaged, source=SOURCE)
+        self._model.stop = command
+        out.stop.append(command)
+        self._model.note("", "STOP ALL engaged" if engaged else "STOP ALL released", Event.WARNING if engaged else Event.NOTICE)
+
+    def _go(self, t: float, point: tuple[float, float] | None, out: Outbox) -> None:
+        vehicle = self._model.chosen
+        if vehicle is None or point is None:
+            return
+        request = GoalRequest(position=Vector3(x=point[0], y=point[1]), yaw=float("nan"), source=SOURCE)
+        x_min, y_min, x_max, y_max = self._model.site.world.floor
+        inside = x_min - REACH <= point[0] <= x_max + REACH and y_min - REACH <= point[1] <= y_max + REACH
+        if vehicle.flies:
+            self._refuse(t, vehicle, describe(request), "a click sends ground vehicles; this one follows its mission")
+        elif not inside:
+            self._refuse(t, vehicle, describe(request), "too far from the floor")
+        elif self._is_reachable(t, vehicle, request):
+            vehicle.goal_asked = point
+            out.goal.setdefault(vehicle.name, []).append(request)
+
+    def _arm(self, t: float, arm: bool, out: Outbox) -> None:
+        vehicle = self._model.chosen
+        if vehicle is None:
+            return
+        if not self.waits_for_confirmation(vehicle.name, arm, t):
+            self._to_confirm = (vehicle.name, arm, t)
+            return
+        self._to_confirm = None
+        request = ArmRequest(arm=arm, source=SOURCE)
+        if self._is_reachable(t, vehicle, request):
+            out.arm.setdefault(vehicle.name, []).append(request)
+
+    def _set_mode(self, t: float, mode: str, out: Outbox) -> None:
+        vehicle = self._model.chosen
+        if vehicle is None:
+            return
+        value = MODES[vehicle.member.file.kind].get(mode)
+        request = ModeRequest(mode=value, source=SOURCE)
+        if value is not None and self._is_reachable(t, vehicle, request):
+            out.mode.setdefault(vehicle.name, []).append(request)
+
+    def _is_reachable(self, t: float, vehicle: VehicleModel, request: Message) -> bool:
+        """Notes the order, and refuses it at once when nothing has been heard of the vehicle for long."""
+        if vehicle.heard is None or t - vehicle.heard > LOST_AFTER:
+            self._refuse(t, vehicle, describe(request), "no link to the vehicle")
+            return False
+        vehicle.order = Order(describe(request), t)
+        return True
+
+    def _refuse(self, t: float, vehicle: VehicleModel, text: str, reason: str) -> None:
+        vehicle.order = Order(text, t, "refused", reason)
+        self._model.note(vehicle.name, f"{text}: refused: {reason}", Event.WARNING)
+
+    def hear(self, t: float, answers: Sequence[Answer[Any, Any]]) -> list[tuple[str, Order]]:
+        """Takes in what became of earlier requests; returns (vehicle, order) for each that is now settled."""
+        settled = []
+        for answer in answers:
+            vehicle = self._model.vehicles.get(answer.vehicle)
+            if vehicle is None:
+                continue
+            accepted = answer.reply is not None and answer.reply.accepted
+            reason = answer.reason if answer.reply is None else answer.reply.reason
+            order = Order(describe(answer.request), t, "accepted" if accepted else "refused", reason)
+            vehicle.order = order
+            if isinstance(answer.request, GoalRequest) and not accepted:
+                vehicle.goal_asked = None
+            outcome = "accepted" if accepted else f"refused: {reason or 'no reason given'}"
+            self._model.note(vehicle.name, f"{order.text}: {outcome}", Event.INFO if accepted else Event.WARNING)
+            settled.append((vehicle.name, order))
+        return settled
+
+    def expire(self, t: float) -> None:
+        """An order that nobody answers in time is shown as refused."""
+        for vehicle in self._model.vehicles.values():
+            order = vehicle.order
+            if order is not None and order.state == "sent" and t - order.at > ANSWER_WITHIN:
+                self._refuse(t, vehicle, order.text, "no answer")

@@ -1,0 +1,26 @@
+((bridge, css) => {
+  const LOST = '<b>■ LINK LOST: the ground station has fallen silent, this picture is old</b>';
+  let style = document.getElementById('gcs-style');
+  if (!style) { style = document.createElement('style'); style.id = 'gcs-style'; document.head.append(style); }
+  style.textContent = css;
+  document.title = 'UVF ground station';
+  document.hasFocus = () => true;
+  window.__gcsBridge = bridge;
+  if (window.__gcs) return;
+  window.__gcs = true;
+  const send = text => { const m = window.__viserMutable; if (m) m.sendMessage({type: 'GuiUpdateMessage', uuid: window.__gcsBridge, updates: {value: text}}); };
+  const press = e => { const card = e.target.closest && e.target.closest('[data-gcs]'); if (card) send(JSON.stringify([card.dataset.gcs, Date.now()])); };
+  document.addEventListener('pointerdown', press);
+  document.addEventListener('keydown', e => { if (e.key === 'Enter' || e.key === ' ') press(e); });
+  const bar = document.createElement('div');
+  bar.id = 'gcs-bar'; bar.setAttribute('role', 'status'); document.body.append(bar);
+  let beat = '', at = performance.now();
+  setInterval(() => {
+    const source = document.getElementById('gcs-bar-source');
+    const now = performance.now();
+    if (source && source.dataset.beat !== beat) { beat = source.dataset.beat; at = now; if (bar.innerHTML !== source.innerHTML) bar.innerHTML = source.innerHTML; }
+    const dead = now - at > 3000;
+    bar.classList.toggle('g-dead', dead);
+    if (dead) bar.innerHTML = LOST;
+  }, 200);
+})

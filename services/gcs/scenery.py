@@ -1,0 +1,110 @@
+"""The world that does not move: ground, floor, walls, furniture; drawn once."""
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from services.gcs.bodies import Part, box, lathe
+from services.gcs.drawing import Camera, Colour, Mesh, Node, Polyline
+from uvf.maths.rotations import from_euler, matrix
+from uvf.runtime.mission_file import Waypoint
+from uvf.runtime.site import Member, Site
+from uvf.runtime.world_file import Wall, WorldFile
+
+Floats = NDArray[np.float64]
+
+WALL_SHOWN = 0.9  # m: walls are cut at this height so that one looks into the rooms
+FLOOR: Colour = (52, 60, 74)
+
+
+def scenery(world: WorldFile) -> dict[str, Node]:
+    """Node name -> what stands there."""
+    x_min, y_min, x_max, y_max = world.floor
+    floor = box(((x_min + x_max) / 2, (y_min + y_max) / 2, -0.06), (x_max - x_min, y_max - y_min, 0.1))
+    nodes: dict[str, Node] = {"/world/floor": Mesh(floor.vertices, floor.faces, FLOOR)}
+    walls = [(wall.colour, part) for wall in world.walls for part in _segments(wall)]
+    nodes.update(_merged("/world/walls", walls))
+    things = [(b.colour, _turned(box((0, 0, 0), b.size), b.yaw, b.centre)) for b in world.boxes]
+    things += [(c.colour, lathe(2, [(0, c.radius), (c.height, c.radius)], c.base)) for c in world.cylinders]
+    nodes.update(_merged("/world/things", things))
+    return nodes
+
+
+def _segments(wall: Wall) -> Iterator[Part]:
+    """Each stretch of a wall as a box, lengthened by half its thickness at both ends so that corners close."""
+    height = min(wall.height, WALL_SHOWN)
+    for a, b in zip(np.array(wall.points[:-1]), np.array(wall.points[1:]), strict=True):
+        along = b - a
+        length = float(np.hypot(*along)) + wall.thickness
+        middle = (a + b) / 2
+        part = box((0, 0, 0), (length, wall.thickness, height))
+        yield _turned(part, float(np.arctan2(along[1], along[0])), (middle[0], middle[1], height / 2))
+
+
+def _turned(part: Part, yaw: float, centre: tuple[float, float, float]) -> Part:
+    rotation = matrix(from_euler(0, 0, yaw))
+    return Part(part.vertices @ rotation.T + np.array(centre), part.faces)
+
+
+def _merged(name: str, parts: list[tuple[tuple[float, float, float], Part]]) -> dict[str, Node]:
+    """One mesh for each colour: a browser draws ten big meshes faster than a hundred small ones."""
+    by_colour: dict[tuple[float, float, float], list[Part]] = {}
+    for colour, part in parts:
+        by_colour.setdefault(colour, []).append(part)
+    return {f"{name}/{i}": merge(group, _rgb(colour)) for i, (colour, group) in enumerate(sorted(by_colour.items()))}
+
+
+def merge(parts: list[Part], colour: Colour, selects: str = "") -> Mesh:
+    offsets = np.cumsum([0, *(len(p.vertices) for p in parts[:-1])])
+    faces = np.vstack([p.faces + o for p, o in zip(parts, offsets, strict=True)])
+    return Mesh(np.vstack([p.vertices for p in parts]), faces, colour, selects=selects)
+
+
+def _rgb(colour: tuple[float, float, float]) -> Colour:
+    r, g, b = (round(255 * c) for c in colour)
+    return r, g, b
+
+
+def rgb_of(colour: str) -> Colour:
+    """``#4ea1ff`` -> (78, 161, 255)."""
+    return int(colour[1:3], 16), int(colour[3:5], 16), int(colour[5:7], 16)
+
+
+def circuit(items: list[Waypoint]) -> Floats:
+    """(n, 3) m, world: the mission's legs as written, closed where a jump leads back."""
+    points = [(w.x, w.y, w.z) for w in items if w.kind in ("waypoint", "orbit")]
+    if points and any(w.kind == "jump" for w in items):
+        points.append(points[0])
+    return np.array(points).reshape(-1, 3)
+
+
+def circuit_line(points: Floats, colour: Colour) -> Polyline:
+    return Polyline(points, colour, 2.0)
+
+
+def extent(site: Site) -> Floats:
+    """(2, 3) m: lowest and highest corner of the floor, the starts and the circuits."""
+    x_min, y_min, x_max, y_max = site.world.floor
+    points = [np.array(((x_min, y_min, 0.0), (x_max, y_max, 0.0)))]
+    points += [_reach(member) for member in site.members.values()]
+    everything = np.vstack(points)
+    return np.array((everything.min(axis=0), everything.max(axis=0)))
+
+
+def _reach(member: Member) -> Floats:
+    start = member.entry.start
+    return np.vstack((np.array(((start.x, start.y, start.z),)), circuit(member.entry.job.mission)))
+
+
+def cameras(site: Site) -> dict[str, Camera]:
+    """Named views: the first is how the page opens."""
+    x_min, y_min, x_max, y_max = site.world.floor
+    x, y, size = (x_min + x_max) / 2, (y_min + y_max) / 2, max(x_max - x_min, y_max - y_min)
+    low, high = extent(site)
+    middle, span = (low + high) / 2, float(np.max(high - low))
+    return {
+        "Floor": Camera((x - 0.35 * size, y - 1.25 * size, 0.85 * size), (x, y, 0.12 * size)),
+        "Overview": Camera((middle[0] - 0.25 * span, middle[1] - 0.75 * span, high[2] + 0.4 * span), (middle[0], middle[1], high[2] / 2)),
+        "Top": Camera((x, y - 0.01, 1.15 * size), (x, y, 0.0)),
+    }

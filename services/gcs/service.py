@@ -1,0 +1,122 @@
+"""The ground station: what all vehicles say onto a page, what people ask on the page to the vehicles."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from google.protobuf.message import Message
+
+from schemas import topics
+from schemas.messages import (
+    Clock,
+    CompressedImage,
+    Event,
+    FrameTransform,
+    Grid,
+    LaserScan,
+    Mission,
+    MissionProgress,
+    NavState,
+    NavStatus,
+    Odometry,
+    PoseInFrame,
+    PosesInFrame,
+    Processes,
+    VehicleStatus,
+)
+from services.gcs.commands import SOURCE, Commander
+from services.gcs.drawing import Page, Toast
+from services.gcs.page_frame import Composer
+from services.gcs.state import Model
+from uvf.runtime.service import Answer, Outputs, Service, each_vehicle, every, optional
+from uvf.runtime.site import Site
+
+
+class GroundStation(Service):
+    """Shows the vehicles of one site on a page, and sends what is asked there."""
+
+    name = "gcs"
+    hz = 20.0
+    scope = "world"
+    clock = "wall"
+    inputs = {
+        "clock": optional(topics.CLOCK),
+        "processes": optional(topics.PROCESSES),
+        "nav": each_vehicle(topics.NAV_STATE),
+        "pose": each_vehicle(topics.POSE),
+        "odometry": each_vehicle(topics.ODOMETRY),
+        "truth": each_vehicle(topics.TRUTH),
+        "status": each_vehicle(topics.STATUS),
+        "nav_status": each_vehicle(topics.NAV_STATUS),
+        "path": each_vehicle(topics.PATH),
+        "mission": each_vehicle(topics.MISSION),
+        "progress": each_vehicle(topics.PROGRESS),
+        "scan": each_vehicle(topics.SCAN),
+        "image": each_vehicle(topics.IMAGE),
+        "grid": each_vehicle(topics.MAP),
+        "world_from_map": each_vehicle(topics.TF_WORLD),
+        "events": each_vehicle(every(topics.EVENTS.by("*"))),
+    }
+    outputs = {"stop": topics.STOP.by(SOURCE)}
+    calls = {"goal": topics.GOAL, "arm": topics.ARM, "mode": topics.SET_MODE}
+
+    def __init__(self, site: Site, page: Page) -> None:
+        self._page = page
+        self._model = Model(site)
+        self._commander = Commander(self._model)
+        self._composer = Composer(self._model, self._commander)
+
+    def step(
+        self,
+        t: float,
+        clock: Clock | None,
+        processes: Processes | None,
+        events: Mapping[str, Sequence[Event]],
+        goal: Sequence[Answer[Any, Any]],
+        arm: Sequence[Answer[Any, Any]],
+        mode: Sequence[Answer[Any, Any]],
+        nav: Mapping[str, NavState],
+        pose: Mapping[str, PoseInFrame],
+        odometry: Mapping[str, Odometry],
+        truth: Mapping[str, NavState],
+        status: Mapping[str, VehicleStatus],
+        nav_status: Mapping[str, NavStatus],
+        path: Mapping[str, PosesInFrame],
+        mission: Mapping[str, Mission],
+        progress: Mapping[str, MissionProgress],
+        scan: Mapping[str, LaserScan],
+        image: Mapping[str, CompressedImage],
+        grid: Mapping[str, Grid],
+        world_from_map: Mapping[str, FrameTransform],
+    ) -> Outputs:
+        """One refresh of the page at ``t`` [s, wall]."""
+        newest: Mapping[str, Mapping[str, Message]] = {
+            "nav": nav,
+            "pose": pose,
+            "odometry": odometry,
+            "truth": truth,
+            "status": status,
+            "nav_status": nav_status,
+            "path": path,
+            "mission": mission,
+            "progress": progress,
+            "scan": scan,
+            "image": image,
+            "grid": grid,
+            "world_from_map": world_from_map,
+        }
+        self._model.hear_clock(t, clock)
+        self._model.processes = processes
+        for what, messages in newest.items():
+            self._model.hear(t, what, messages)
+        self._model.hear_events(events)
+        settled = self._commander.hear(t, (*goal, *arm, *mode))
+        out = self._commander.act(t, self._page.actions())
+        self._commander.expire(t)
+        toasts = [
+            Toast(vehicle, f"{order.text}: {order.state} {order.reason}".strip(), order.state == "accepted") for vehicle, order in settled
+        ]
+        self._page.show(self._composer.picture(t, toasts))
+        return {"stop": out.stop, "goal": out.goal, "arm": out.arm, "mode": out.mode}
+
+    def close(self) -> None:
+        self._page.close()

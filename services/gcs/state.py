@@ -1,0 +1,235 @@
+"""What the ground station knows: the newest message of each kind, when it came, and what follows from them."""
+
+from collections import deque
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+from google.protobuf.message import Message
+from numpy.typing import NDArray
+
+from schemas.convert import array, wxyz
+from schemas.messages import (
+    Clock,
+    CompressedImage,
+    Event,
+    FrameTransform,
+    Grid,
+    LaserScan,
+    Mission,
+    MissionProgress,
+    NavState,
+    NavStatus,
+    Odometry,
+    PoseInFrame,
+    PosesInFrame,
+    Processes,
+    StopCommand,
+    VehicleStatus,
+)
+from services.gcs.tracks import Track
+from uvf.maths.rotations import matrix
+from uvf.runtime.site import Member, Site
+
+Floats = NDArray[np.float64]
+
+STALE_AFTER = 1.5  # s, wall clock
+LOST_AFTER = 5.0  # s
+LOG_LENGTH = 200
+LAYERS = ("Map", "Scan", "Paths", "Tracks", "Labels", "Walls", "True pose")
+COLOURS = ("#4ea1ff", "#f2913d", "#3fbf7f", "#b98cf5", "#e8c547", "#5fd4d6")
+"""Vehicles' own colours, told apart by colour-blind people too; red and magenta keep their meanings."""
+
+
+class Placed(NamedTuple):
+    """A pose in the world: m, and the quaternion wxyz."""
+
+    position: Floats
+    wxyz: Floats
+
+
+class Line(NamedTuple):
+    """One line of the event log."""
+
+    t: float  # s, simulation time
+    severity: int  # as in uvf.v1.Event
+    vehicle: str  # or "" for the system
+    text: str
+
+
+@dataclass
+class Order:
+    """The last thing asked of a vehicle, and what became of it."""
+
+    text: str
+    at: float  # s, wall
+    state: str = "sent"  # sent | accepted | refused
+    reason: str = ""
+
+
+@dataclass
+class VehicleModel:
+    """One vehicle as heard over the link."""
+
+    name: str
+    member: Member
+    colour: str
+    track: Track
+    nav: NavState | None = None
+    pose: PoseInFrame | None = None
+    odometry: Odometry | None = None
+    truth: NavState | None = None
+    status: VehicleStatus | None = None
+    nav_status: NavStatus | None = None
+    path: PosesInFrame | None = None
+    mission: Mission | None = None
+    progress: MissionProgress | None = None
+    scan: LaserScan | None = None
+    image: CompressedImage | None = None
+    grid: Grid | None = None
+    world_from_map: FrameTransform | None = None
+    heard_at: dict[str, float] = field(default_factory=dict)
+    """Field -> when its newest message came [s, wall]."""
+    scan_points: Floats | None = None
+    """(n, 3) m, world: the newest scan as seen from where the vehicle was when it came."""
+    order: Order | None = None
+    goal_asked: tuple[float, float] | None = None
+
+    @property
+    def flies(self) -> bool:
+        return self.member.file.kind == "fixed_wing"
+
+    @property
+    def heard(self) -> float | None:
+        """When anything of the vehicle itself was last heard [s, wall]; the simulator's truth is no sign of life."""
+        return max((at for name, at in self.heard_at.items() if name != "truth"), default=None)
+
+    @property
+    def place(self) -> Placed | None:
+        """Where the vehicle believes to be: the newer of its two estimates."""
+        nav_at, pose_at = self.heard_at.get("nav", -1.0), self.heard_at.get("pose", -1.0)
+        if self.nav is not None and nav_at >= pose_at - STALE_AFTER:
+            return Placed(array(self.nav.position), wxyz(self.nav.orientation))
+        if self.pose is not None:
+            return Placed(array(self.pose.pose.position), wxyz(self.pose.pose.orientation))
+        return None
+
+    @property
+    def true_place(self) -> Placed | None:
+        return None if self.truth is None else Placed(array(self.truth.position), wxyz(self.truth.orientation))
+
+    @property
+    def speed(self) -> float:
+        """m/s over the ground; forward speed of a ground vehicle, negative backwards."""
+        if self.odometry is not None and not self.flies:
+            return self.odometry.linear_velocity.x
+        return float(np.hypot(self.nav.velocity.x, self.nav.velocity.y)) if self.nav is not None else 0.0
+
+    @property
+    def turn_rate(self) -> float:
+        """rad/s, left positive."""
+        if self.odometry is not None and not self.flies:
+            return self.odometry.angular_velocity.z
+        return self.nav.angular_velocity.z if self.nav is not None else 0.0
+
+
+class Model:
+    """All vehicles of a mission, the clock, the log, and what the operator has chosen."""
+
+    def __init__(self, site: Site) -> None:
+        self.site = site
+        self.vehicles = {
+            name: VehicleModel(name, member, COLOURS[i % len(COLOURS)], _track(member))
+            for i, (name, member) in enumerate(sorted(site.members.items()))
+        }
+        grounded = [v.name for v in self.vehicles.values() if not v.flies]
+        self.selected = next(iter(grounded or self.vehicles), "")
+        self.layers = set(LAYERS) - {"True pose"}
+        self.clock: Clock | None = None
+        self.clock_at: float | None = None
+        self.processes: Processes | None = None
+        self.stop: StopCommand | None = None
+        self.log: deque[Line] = deque(maxlen=LOG_LENGTH)
+        self.log_count = 0
+
+    @property
+    def chosen(self) -> VehicleModel | None:
+        return self.vehicles.get(self.selected)
+
+    @property
+    def stopped(self) -> bool:
+        """STOP ALL is engaged: by our own last command, or as a vehicle reports it."""
+        return (self.stop is not None and self.stop.engaged) or any(
+            v.status is not None and v.status.stopped for v in self.vehicles.values()
+        )
+
+    @property
+    def sim_time(self) -> float:
+        return self.clock.t_ns * 1e-9 if self.clock is not None else 0.0
+
+    def hear(self, t: float, what: str, messages: Mapping[str, Message]) -> None:
+        """Takes in the newest message of one kind for each vehicle that has a new one."""
+        for name, message in messages.items():
+            vehicle = self.vehicles.get(name)
+            if vehicle is None or getattr(vehicle, what) is message:
+                continue
+            setattr(vehicle, what, message)
+            vehicle.heard_at[what] = t
+            if what in ("nav", "pose") and vehicle.place is not None:
+                vehicle.track.add(vehicle.place.position)
+            elif what == "scan":
+                vehicle.scan_points = scan_in_world(vehicle)
+
+    def hear_clock(self, t: float, clock: Clock | None) -> None:
+        if clock is None or clock is self.clock:
+            return
+        if self.clock is not None and clock.epoch != self.clock.epoch:
+            for vehicle in self.vehicles.values():
+                vehicle.track.clear()
+                vehicle.goal_asked = None
+            self.note("", "the simulation has started afresh")
+        self.clock, self.clock_at = clock, t
+
+    def hear_events(self, by_vehicle: Mapping[str, Sequence[Event]]) -> None:
+        for name, events in by_vehicle.items():
+            for event in events:
+                cause = f" ({event.cause})" if event.cause else ""
+                t = event.timestamp.seconds + event.timestamp.nanos * 1e-9
+                self._write(Line(t, event.severity, name, event.text + cause))
+
+    def note(self, vehicle: str, text: str, severity: int = Event.INFO) -> None:
+        """Writes the ground station's own line into the log."""
+        self._write(Line(self.sim_time, severity, vehicle, text))
+
+    def _write(self, line: Line) -> None:
+        self.log.append(line)
+        self.log_count += 1
+
+
+def _track(member: Member) -> Track:
+    return Track(spacing=2.0, jump=60.0) if member.file.kind == "fixed_wing" else Track(spacing=0.04, jump=0.6)
+
+
+def scan_in_world(vehicle: VehicleModel) -> Floats | None:
+    """(n, 3) m, world: the returns of the newest scan; None while the vehicle or its lidar has no place."""
+    scan, place, lidar = vehicle.scan, vehicle.place, vehicle.member.file.sensors.lidar
+    if scan is None or place is None or lidar is None or not scan.ranges:
+        return None
+    ranges = np.array(scan.ranges)
+    angles = np.linspace(scan.start_angle, scan.end_angle, len(ranges))
+    hit = np.isfinite(ranges) & (ranges > 0.0)
+    r, a = ranges[hit], angles[hit] + lidar.mount.rpy[2]
+    in_body = np.column_stack((r * np.cos(a), r * np.sin(a), np.zeros(len(r)))) + np.array(lidar.mount.xyz)
+    in_world: Floats = in_body @ matrix(place.wxyz).T + place.position
+    return in_world
+
+
+def link_of(heard: float | None, t: float) -> tuple[str, str]:
+    """(word, class) for the age of the last message: WAITING, LIVE, STALE 3 s, LINK LOST."""
+    if heard is None:
+        return "WAITING", "idle"
+    age = t - heard
+    if age < STALE_AFTER:
+        return "LIVE", "good"
+    return (f"STALE {age:.0f} s", "warn") if age < LOST_AFTER else (f"LINK LOST {age:.0f} s", "bad")

@@ -1,0 +1,198 @@
+"""From what is known to what is drawn. A node stays the same object until what it shows has changed."""
+
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from schemas.convert import array, occupancy_cells, wxyz
+from schemas.messages import FrameTransform, Grid, NavStatus
+from services.gcs import bodies
+from services.gcs.drawing import Colour, FloorPicture, Node, Points, Polyline, Text
+from services.gcs.map_image import occupancy_png
+from services.gcs.scenery import circuit_line, merge, rgb_of, scenery
+from services.gcs.state import Model, Placed, VehicleModel
+from uvf.maths.rotations import multiply, rotate, to_euler
+
+Floats = NDArray[np.float64]
+
+ROUTE: Colour = (232, 74, 214)
+SCAN: Colour = (255, 92, 92)
+ASKED: Colour = (250, 190, 60)
+GHOST: Colour = (190, 200, 215)
+MAP_PERIOD = 1.0  # s between two pictures of the map
+UP = 0.02  # m above the floor, so that what lies on it is seen
+LAYER_OF = {"map": "Map", "scan": "Scan", "path": "Paths", "goal": "Paths", "track": "Tracks", "label": "Labels", "mission": "Paths"}
+
+
+class View:
+    """Draws one model; remembers each node it has made, by what the node was made from."""
+
+    def __init__(self, model: Model) -> None:
+        self._model = model
+        self._made: dict[str, tuple[Any, Node]] = {}
+        self._still = scenery(model.site.world)
+        self._bodies = {v.name: _body(v, rgb_of(v.colour)) for v in model.vehicles.values()}
+        self._ghosts = {v.name: _body(v, GHOST) for v in model.vehicles.values()}
+        self._map_due: dict[str, float] = {}
+
+    def nodes(self, t: float) -> dict[str, Node]:
+        """Everything in the scene, by name; ``/vehicles/<v>/...`` is given in that vehicle's frame."""
+        shown = {k: n for k, n in self._still.items() if "Walls" in self._model.layers or not k.startswith("/world/walls")}
+        for vehicle in self._model.vehicles.values():
+            shown.update(self._of_vehicle(vehicle, t))
+        return shown
+
+    def places(self) -> dict[str, Placed]:
+        """Poses of the vehicles' frames."""
+        placed = {}
+        for v in self._model.vehicles.values():
+            if v.place is not None:
+                placed[f"/vehicles/{v.name}"] = v.place
+            if v.true_place is not None and "True pose" in self._model.layers:
+                placed[f"/true/{v.name}"] = v.true_place
+        return placed
+
+    def _of_vehicle(self, v: VehicleModel, t: float) -> Iterator[tuple[str, Node]]:
+        if v.place is not None:
+            yield from ((f"/vehicles/{v.name}/{part}", node) for part, node in self._bodies[v.name].items())
+        if v.true_place is not None and "True pose" in self._model.layers:
+            yield from ((f"/true/{v.name}/{part}", node) for part, node in self._ghosts[v.name].items())
+        for what, nodes in self._layers(v, t).items():
+            if LAYER_OF[what] in self._model.layers:
+                yield from ((f"/{what}/{v.name}{suffix}", node) for suffix, node in nodes.items())
+
+    def _layers(self, v: VehicleModel, t: float) -> Mapping[str, dict[str, Node]]:
+        return {
+            "map": self._map(v, t),
+            "scan": self._scan(v),
+            "path": self._path(v),
+            "goal": self._goal(v),
+            "mission": self._mission(v),
+            "track": self._track(v),
+            "label": self._label(v),
+        }
+
+    def _make(self, name: str, of: Any, make: Callable[[], Node]) -> dict[str, Node]:
+        """The node made from ``of`` before, if it is still that; else a new one."""
+        before = self._made.get(name)
+        if before is None or (before[0] is not of and before[0] != of):
+            self._made[name] = (of, make())
+        return {"": self._made[name][1]}
+
+    def _map(self, v: VehicleModel, t: float) -> dict[str, Node]:
+        name, grid = f"map {v.name}", v.grid
+        if grid is None or not grid.data or grid.column_count == 0:
+            return {}
+        if name in self._made and t < self._map_due.get(name, 0.0):
+            return {"": self._made[name][1]}
+        self._map_due[name] = t + MAP_PERIOD
+        return self._make(name, (id(grid), id(v.world_from_map)), lambda: floor_picture(grid, v.world_from_map))
+
+    def _scan(self, v: VehicleModel) -> dict[str, Node]:
+        points = v.scan_points
+        if points is None or len(points) == 0:
+            return {}
+        return self._make(f"scan {v.name}", id(v.scan), lambda: Points(points, SCAN, 0.035))
+
+    def _path(self, v: VehicleModel) -> dict[str, Node]:
+        path = v.path
+        if path is None or len(path.poses) < 2:
+            return {}
+        lift = 0.0 if v.flies else UP * 2
+        return self._make(f"path {v.name}", id(path), lambda: Polyline(_points(path.poses) + np.array((0, 0, lift)), ROUTE, 3.5))
+
+    def _goal(self, v: VehicleModel) -> dict[str, Node]:
+        """A ring where the vehicle is going: amber while only asked for, in the route's colour once it is its goal."""
+        going = v.nav_status is not None and v.nav_status.state in (NavStatus.PLANNING, NavStatus.DRIVING, NavStatus.RECOVERING)
+        asked = v.goal_asked if v.order is not None and v.order.state == "sent" else None
+        if asked is not None:
+            return self._make(f"goal {v.name}", asked, lambda: _ring(asked[0], asked[1], ASKED))
+        if v.flies or not going or v.nav_status is None:
+            return {}
+        at = (round(v.nav_status.goal.x, 2), round(v.nav_status.goal.y, 2))
+        return self._make(f"goal {v.name}", (*at, "going"), lambda: _ring(*at, ROUTE))
+
+    def _mission(self, v: VehicleModel) -> dict[str, Node]:
+        mission = v.mission
+        if mission is None or not mission.items:
+            return {}
+        points = mission_points(v)
+        if len(points) < 2:
+            return {}
+        line = self._make(f"mission {v.name}", id(mission), lambda: circuit_line(points, ROUTE))
+        for i, point in enumerate(_distinct(points)):
+            x, y, z = (float(c) for c in point)
+            number = self._make(f"mission {v.name} {i}", (x, y, z), lambda at=(x, y, z), n=i + 1: Text(f"{n}", at))  # type: ignore[misc]
+            line[f"/{i}"] = number[""]
+        return line
+
+    def _track(self, v: VehicleModel) -> dict[str, Node]:
+        colour, up = rgb_of(v.colour), np.array((0, 0, 0.0 if v.flies else UP))
+        nodes = {}
+        for number, points in v.track.closed:
+            drawn = self._make(f"track {v.name} {number}", id(points), lambda p=points: Polyline(p + up, colour, 2.5))  # type: ignore[misc]
+            nodes[f"/{number}"] = drawn[""]
+        if v.track.tail_length > 1:
+            key = (v.track.count, v.track.tail_length)
+            nodes["/tail"] = self._make(f"track {v.name}", key, lambda: Polyline(v.track.tail + up, colour, 2.5))[""]
+        return nodes
+
+    def _label(self, v: VehicleModel) -> dict[str, Node]:
+        if v.place is None:
+            return {}
+        x, y, z = (float(c) for c in v.place.position)
+        if not v.flies:
+            return {"": Text(v.name, (x, y, z + 0.3))}
+        foot = np.array(((x, y, 0.0), (x, y, z)))
+        return {"": Text(f"{v.name}  {z:.0f} m", (x, y, z + 2.5)), "/height": Polyline(foot, rgb_of(v.colour), 1.2)}
+
+
+def _body(v: VehicleModel, colour: Colour) -> dict[str, Node]:
+    """The parts of a body, those of one colour in one mesh."""
+    ground = v.member.file.ground
+    parts = bodies.aeroplane() if ground is None else bodies.rover(ground.radius, ground.wheel_radius, ground.track)
+    by_colour: dict[Colour, list[bodies.Part]] = {}
+    for part in parts:
+        by_colour.setdefault(part.colour or colour, []).append(part)
+    return {str(i): merge(group, c, v.name) for i, (c, group) in enumerate(by_colour.items())}
+
+
+def floor_picture(grid: Grid, world_from_map: FrameTransform | None) -> FloorPicture:
+    """The grid as a picture lying where its pose, which is that of its lower left corner, and its frame's say."""
+    cells = occupancy_cells(grid)
+    width, height = cells.shape[1] * grid.cell_size.x, cells.shape[0] * grid.cell_size.y
+    turn = wxyz(grid.pose.orientation)
+    centre = array(grid.pose.position) + rotate(turn, np.array((width / 2, height / 2, 0.0)))
+    if world_from_map is not None and grid.frame_id != "world":
+        map_turn = wxyz(world_from_map.rotation)
+        turn, centre = multiply(map_turn, turn), array(world_from_map.translation) + rotate(map_turn, centre)
+    x, y, z = (float(c) for c in centre)
+    return FloorPicture(occupancy_png(cells), width, height, (x, y, z + UP / 2), to_euler(turn)[2])
+
+
+def mission_points(v: VehicleModel) -> Floats:
+    """(n, 3) m, world: the places of the mission in force, closed where a jump leads back."""
+    items = v.mission.items if v.mission is not None else []
+    points = [array(i.position) for i in items if i.kind in (i.WAYPOINT, i.ORBIT)]
+    if len(points) > 1 and any(i.kind == i.JUMP for i in items):
+        points.append(points[0])
+    return np.array(points).reshape(-1, 3)
+
+
+def _distinct(points: Floats) -> Floats:
+    return points[:-1] if len(points) > 1 and np.array_equal(points[0], points[-1]) else points
+
+
+def _points(poses: Any) -> Floats:
+    return np.array([(p.position.x, p.position.y, p.position.z) for p in poses])
+
+
+def _ring(x: float, y: float, colour: Colour) -> Polyline:
+    """A ring with a cross in it, 0.5 m wide, drawn in one stroke."""
+    a = np.linspace(0, 2 * np.pi, 33)
+    ring = np.column_stack((x + 0.25 * np.cos(a), y + 0.25 * np.sin(a)))
+    cross = np.array(((x, y), (x, y + 0.35), (x, y - 0.35), (x, y), (x - 0.35, y), (x + 0.35, y)))
+    flat = np.vstack((ring, ring[:1], cross[3:], cross[:3]))
+    return Polyline(np.column_stack((flat, np.full(len(flat), 3 * UP))), colour, 3.0)

@@ -1,0 +1,234 @@
+"""The page on viser: panels, buttons, picture; clicks go into a queue that the service reads in its step."""
+
+import json
+import queue
+import time
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import viser
+import websockets.asyncio.server as websocket_server
+from viser import _messages
+
+from services.gcs import panels, viser_join
+from services.gcs.address import Address, claim
+from services.gcs.commands import Action, ClickGround, Layer, Select
+from services.gcs.drawing import Button, Camera, Picture, Toast
+from services.gcs.guard import Guard
+from services.gcs.state import LAYERS
+from services.gcs.viser_scene import ViserScene
+from services.gcs.viser_script import bar_source, script, selected_in
+from uvf.runtime.params import BadInput
+
+FLEET_WIDTH, VEHICLE_WIDTH = 270, 350
+BEAT = 1.0  # s between two signs of life to the page
+COMMANDS = ("mode", "arm")
+
+
+class ViserPage:
+    """One server; every browser sees the same picture. cameras: named views, the first is the opening one."""
+
+    def __init__(self, address: Address, cameras: Mapping[str, Camera], layers: set[str]) -> None:
+        claim(address)
+        self._actions: queue.SimpleQueue[Action] = queue.SimpleQueue()
+        self._server = _guarded_server(address)
+        self._html: dict[str, Any] = {}
+        self._sent: dict[str, str] = {}
+        self._buttons: dict[str, tuple[Any, Button]] = {}
+        self._image: tuple[Any, bytes] | None = None
+        self._picked: tuple[float, float] | None = None
+        self._beat = 0.0
+        self._scene = ViserScene(self._server, self._on_pick)
+        self._surroundings(next(iter(cameras.values())))
+        self._fleet_panel(cameras, layers)
+        self._vehicle_panel()
+        self._overview_panel()
+        self._listen()
+
+    def _surroundings(self, camera: Camera) -> None:
+        gui, scene = self._server.gui, self._server.scene
+        gui.configure_theme(dark_mode=True, show_logo=False, show_share_button=False, brand_color=(46, 120, 200))
+        gui.set_panel_label("Fleet")
+        start = self._server.initial_camera
+        start.position, start.look_at, start.fov, start.far = camera.position, camera.look_at, 0.9, 5000.0
+        scene.add_grid(
+            "/world/ground",
+            infinite_grid=True,
+            cell_size=10.0,
+            section_size=100.0,
+            cell_color=(66, 80, 100),
+            section_color=(96, 114, 140),
+            cell_thickness=0.8,
+            section_thickness=1.2,
+            fade_distance=900.0,
+            plane_color=(22, 30, 42),
+            plane_opacity=1.0,
+            position=(0, 0, -0.12),
+        )
+        scene.configure_environment_map(hdri=None)
+        scene.add_light_hemisphere("/world/sky", sky_color=(235, 242, 255), ground_color=(120, 110, 100), intensity=1.6)
+
+    def _fleet_panel(self, cameras: Mapping[str, Camera], layers: set[str]) -> None:
+        gui = self._server.gui
+        gui.main_panel.dock_left()
+        gui.main_panel.set_width(FLEET_WIDTH)
+        self._html["bar"] = gui.add_html(bar_source("", 0), order=0)
+        self._html["fleet"] = gui.add_html("", order=2)
+        for i, (name, camera) in enumerate(cameras.items()):
+            button = gui.add_button(f"View: {name}", order=100 + i, color="gray", icon=viser.Icon.CAMERA)
+            button.on_click(lambda event, c=camera: _look(event, c))  # type: ignore[misc]
+        with gui.add_folder("Layers", order=200, expand_by_default=False):
+            for name in LAYERS:
+                box = gui.add_checkbox(name, initial_value=name in layers)
+                box.on_update(lambda event, n=name: self._actions.put(Layer(n, bool(event.target.value))))  # type: ignore[misc]
+
+    def _vehicle_panel(self) -> None:
+        gui = self._server.gui
+        panel = gui.add_panel()
+        with panel.add_tab("Vehicle", viser.Icon.GAUGE):
+            self._html["instrument"] = gui.add_html("")
+            self._camera_order = 50.0
+            self._html["facts"] = gui.add_html("", order=100)
+            self._picture_slot = gui.add_folder("Camera", order=60, visible=False)
+        with panel.add_tab("Log", viser.Icon.LIST):
+            self._html["log"] = gui.add_html("")
+        with panel.add_tab("System", viser.Icon.CPU):
+            self._html["processes"] = gui.add_html("")
+        with panel.add_tab("Help", viser.Icon.HELP):
+            gui.add_html(panels.HELP)
+        panel.dock_right()
+        panel.set_width(VEHICLE_WIDTH)
+
+    def _overview_panel(self) -> None:
+        panel = self._server.gui.add_panel()
+        with panel.add_tab("Overview", viser.Icon.MAP):
+            self._html["overview"] = self._server.gui.add_html("")
+        panel.float(x=FLEET_WIDTH + 20, y=-20, width=300, height=290)
+
+    def _listen(self) -> None:
+        self._server.scene.on_click()(self._on_click)
+        bridge = self._server.gui.add_text("page", "", visible=False)
+        bridge.on_update(lambda event: self._actions.put(Select(selected_in(event.target.value))))
+        self._server._websock_server.queue_message(_messages.RunJavascriptMessage(source=script(bridge._impl.uuid)))
+
+    def _on_pick(self, vehicle: str, event: Any) -> None:
+        self._picked = event.screen_pos
+        self._actions.put(Select(vehicle))
+
+    def _on_click(self, event: Any) -> None:
+        """Any click; one on a vehicle has been taken already and sends nobody anywhere."""
+        if event.screen_pos != self._picked:
+            self._actions.put(ClickGround(event.ray_origin, event.ray_direction))
+        self._picked = None
+
+    def show(self, picture: Picture) -> None:
+        with self._server.atomic():
+            self._scene.show(picture.nodes, picture.places)
+            self._show_html(picture.html)
+            self._show_buttons(picture.buttons)
+            self._show_image(picture.image)
+        for toast in picture.toasts:
+            self._notify(toast)
+
+    def _show_html(self, html: Mapping[str, str]) -> None:
+        now = time.monotonic()
+        for name, content in html.items():
+            beats = name == "bar" and now - self._beat > BEAT
+            if content == self._sent.get(name) and not beats:
+                continue
+            self._sent[name] = content
+            if name == "bar":
+                self._beat = now
+                content = bar_source(content, int(now * 1000))
+            self._html[name].content = content
+
+    def _show_buttons(self, buttons: Sequence[Button]) -> None:
+        wanted = {b.key: b for b in buttons}
+        for key in [k for k in self._buttons if k not in wanted]:
+            self._buttons.pop(key)[0].remove()
+        for i, button in enumerate(buttons):
+            before = self._buttons.get(button.key)
+            if before is None:
+                order = 1.0 + i / 100 if button.key in ("stop", "release") else 10.0 + i
+                handle = self._server.gui.add_button(
+                    button.label, order=order, hint=button.hint, color=_colour(button), disabled=not button.enabled
+                )
+                handle.on_click(self._pressing(button.key))
+                self._buttons[button.key] = (handle, button)
+            elif before[1] != button:
+                self._buttons[button.key] = (before[0], button)
+                _change(before[0], before[1], button)
+
+    def _pressing(self, key: str) -> Callable[[Any], None]:
+        """The action is looked up when the button is pressed: it may have changed since."""
+        return lambda event: self._actions.put(self._buttons[key][1].action)
+
+    def _show_image(self, image: bytes | None) -> None:
+        if image is None or (self._image is not None and self._image[1] == image):
+            self._picture_slot.visible = image is not None
+            return
+        if self._image is None:
+            import numpy as np
+
+            with self._picture_slot:
+                handle = self._server.gui.add_image(np.zeros((2, 2, 3), dtype=np.uint8), format="jpeg")
+        else:
+            handle = self._image[0]
+        handle._data = image
+        self._image = (handle, image)
+        self._picture_slot.visible = True
+
+    def _notify(self, toast: Toast) -> None:
+        for client in self._server.get_clients().values():
+            client.add_notification(toast.title, toast.text, auto_close_seconds=5.0, color="green" if toast.good else "red")
+
+    def actions(self) -> list[Action]:
+        taken = []
+        while not self._actions.empty():
+            taken.append(self._actions.get())
+        return taken
+
+    def close(self) -> None:
+        self._server.stop()
+
+
+def _look(event: Any, camera: Camera) -> None:
+    with event.client.atomic():
+        event.client.camera.position = camera.position
+        event.client.camera.look_at = camera.look_at
+
+
+def _colour(button: Button) -> Any:
+    if button.colour:
+        return button.colour
+    return "green" if button.lit else "gray"
+
+
+def _change(handle: Any, old: Button, new: Button) -> None:
+    if old.label != new.label:
+        handle.label = new.label
+    if _colour(old) != _colour(new):
+        handle.color = _colour(new)
+    if old.enabled != new.enabled:
+        handle.disabled = not new.enabled
+
+
+def _guarded_server(address: Address) -> viser.ViserServer:
+    """viser's server behind the guard: websockets' ``serve``, which viser looks up when it starts, is wrapped meanwhile."""
+    viser_join.apply()
+    guard = Guard(address.port, address.token, lambda: json.dumps({"status": "ok"}).encode())
+    plain = websocket_server.serve
+
+    def serve(*args: Any, process_request: Any = None, **kwargs: Any) -> Any:
+        return plain(*args, process_request=guard.wrap(process_request), **kwargs)
+
+    websocket_server.serve = serve  # type: ignore[assignment, misc]
+    try:
+        server = viser.ViserServer(address.host, address.port, verbose=False)
+    finally:
+        websocket_server.serve = plain  # type: ignore[misc]
+    server._websock_server.unregister_handler(_messages.ShareUrlRequest)
+    if server.get_port() != address.port:
+        server.stop()
+        raise BadInput(f"gcs: port {address.port} is taken; choose another, for example UVF_GCS_PORT=8081")
+    return server
