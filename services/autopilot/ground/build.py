@@ -1,0 +1,44 @@
+"""The autopilot of every ground vehicle of the mission."""
+
+from schemas.messages import MissionItem, Vector3
+from services.autopilot.ground.mission import refusal
+from services.autopilot.ground.service import GroundAutopilot, GroundAutopilotParams
+from uvf.runtime.mission_file import Waypoint
+from uvf.runtime.params import BadInput
+from uvf.runtime.site import Host, Member, Site
+
+
+def hosts(site: Site) -> list[Host]:
+    """Raises BadInput when a job's mission is not one for a ground vehicle."""
+    return [_host(member, site) for member in site.of_kind("ground")]
+
+
+def _host(member: Member, site: Site) -> Host:
+    start, body, job = member.entry.start, member.file.ground, member.entry.job
+    if body is None:
+        raise BadInput(f"{member.folder / 'vehicle.yaml'}: there is no 'ground:' section")
+    items = [_item(w) for w in job.mission]
+    reason = refusal(items)
+    if reason:
+        raise BadInput(f"{site.mission_path}: {member.name}: job: mission: {reason}")
+    begins = job.explore or bool(items)
+    params = member.params("autopilot_ground", GroundAutopilotParams)
+
+    def make() -> GroundAutopilot:
+        return GroundAutopilot(body, (start.x, start.y), (begins, items), member.entry.system_id, params)
+
+    return Host(GroundAutopilot, make, member.name)
+
+
+def _item(w: Waypoint) -> MissionItem:
+    return MissionItem(
+        kind=MissionItem.Kind.Value(w.kind.upper()),
+        position=Vector3(x=w.x, y=w.y, z=w.z),
+        acceptance_radius=w.acceptance_radius,
+        hold=w.hold,
+        radius=w.radius,
+        turns=w.turns,
+        speed=w.speed,
+        jump_to=w.jump_to,
+        repeat=w.repeat,
+    )

@@ -1,0 +1,38 @@
+"""From the velocity asked for to the velocity given: limits of speed and acceleration."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Limits:
+    linear: float  # m/s
+    angular: float  # rad/s
+    linear_acceleration: float  # m/s^2
+    angular_acceleration: float  # rad/s^2
+
+
+def within_limits(linear: float, angular: float, limits: Limits, top_speed: float) -> tuple[float, float]:
+    """(m/s, rad/s) scaled together, so that the curvature that was asked for stays."""
+    fastest = min(limits.linear, top_speed)
+    excess = max(abs(linear) / fastest, abs(angular) / limits.angular, 1.0)
+    return linear / excess, angular / excess
+
+
+def approach(current: float, wanted: float, most: float) -> float:
+    """``current`` moved towards ``wanted`` by at most ``most``."""
+    return current + min(max(wanted - current, -most), most)
+
+
+class Ramp:
+    """The velocity given now, led towards the one asked for within the accelerations."""
+
+    def __init__(self, limits: Limits) -> None:
+        self.limits = limits
+        self.linear = 0.0  # m/s
+        self.angular = 0.0  # rad/s
+
+    def lead(self, linear: float, angular: float, dt: float) -> tuple[float, float]:
+        """The next velocity (m/s, rad/s), ``dt`` [s] later."""
+        self.linear = approach(self.linear, linear, self.limits.linear_acceleration * dt)
+        self.angular = approach(self.angular, angular, self.limits.angular_acceleration * dt)
+        return self.linear, self.angular

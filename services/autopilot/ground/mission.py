@@ -1,0 +1,140 @@
+"""The mission of a ground vehicle: which item is driven to, and when the next one's turn comes."""
+
+import zlib
+from collections.abc import Sequence
+from math import hypot
+
+from schemas.messages import Mission, MissionItem, MissionProgress, Timestamp, Vector3
+
+Point = tuple[float, float]
+
+DRIVABLE = (MissionItem.WAYPOINT, MissionItem.RETURN)
+SUPPORTED = (*DRIVABLE, MissionItem.JUMP, MissionItem.SPEED)
+
+
+def refusal(items: Sequence[MissionItem]) -> str:
+    """Why a ground vehicle cannot drive these items; "" if it can."""
+    for index, item in enumerate(items):
+        if item.kind not in SUPPORTED:
+            return f"item {index}: {MissionItem.Kind.Name(item.kind)} is not for a ground vehicle"
+        if item.kind == MissionItem.JUMP and item.jump_to >= len(items):
+            return f"item {index}: jump to {item.jump_to}, but the last item is {len(items) - 1}"
+    if items and not any(item.kind in DRIVABLE for item in items):
+        return "there is no waypoint in it"
+    return ""
+
+
+def mission_of(items: Sequence[MissionItem], timestamp: Timestamp) -> Mission:
+    """The items as a message, with the CRC-32 that tells one mission from another."""
+    crc = 0
+    for item in items:
+        crc = zlib.crc32(item.SerializeToString(deterministic=True), crc)
+    return Mission(timestamp=timestamp, items=items, id=crc)
+
+
+class MissionEngine:
+    """Steps through the items: waypoints by distance and holding time, jumps and speeds at once."""
+
+    def __init__(self, home: Point, acceptance_radius: float) -> None:
+        self.mission = Mission()
+        self.state: MissionProgress.State = MissionProgress.NO_MISSION
+        self.current = 0
+        self.reached = -1
+        self.laps = 0
+        self.speed = 0.0  # m/s, 0 = the vehicle's own
+        self._home = home
+        self._acceptance_radius = acceptance_radius
+        self._jumps: dict[int, int] = {}
+        self._arrived_at: float | None = None
+
+    def load(self, mission: Mission) -> None:
+        """Begins another mission at its first item; ``refusal`` has been asked before."""
+        self.mission = mission
+        self.reached, self.laps, self.speed = -1, 0, 0.0
+        self._jumps.clear()
+        self.state = MissionProgress.NOT_STARTED if mission.items else MissionProgress.NO_MISSION
+        self._go_to(0)
+
+    def jump_to(self, index: int) -> str:
+        """Makes an item the current one; why not, or ""."""
+        if index >= len(self.mission.items):
+            return f"there is no item {index}; the mission has {len(self.mission.items)}"
+        if self.state == MissionProgress.COMPLETE:
+            self.state = MissionProgress.NOT_STARTED
+        self._go_to(index)
+        return ""
+
+    @property
+    def target(self) -> Point | None:
+        """Where the current item is [m, world frame]; None when there is nothing to drive to."""
+        if self.state in (MissionProgress.NO_MISSION, MissionProgress.COMPLETE):
+            return None
+        item = self.mission.items[self.current]
+        return self._home if item.kind == MissionItem.RETURN else (item.position.x, item.position.y)
+
+    def advance(self, t: float, position: Point | None, active: bool) -> int | None:
+        """One cycle at ``t`` [s] and ``position`` [m, world]; the index of an item just completed, or None."""
+        target = self.target
+        if target is None:
+            return None
+        self.state = MissionProgress.ACTIVE if active else MissionProgress.PAUSED
+        if not active or position is None:
+            return None
+        item = self.mission.items[self.current]
+        if self._arrived_at is None:
+            radius = item.acceptance_radius or self._acceptance_radius
+            if hypot(position[0] - target[0], position[1] - target[1]) > radius:
+                return None
+            self._arrived_at = t
+        if t - self._arrived_at < item.hold:
+            return None
+        self.reached = self.current
+        self._go_to(self.current + 1)
+        return self.reached
+
+    def progress(self, timestamp: Timestamp) -> MissionProgress:
+        return MissionProgress(
+            timestamp=timestamp,
+            state=self.state,
+            current=self.current,
+            total=len(self.mission.items),
+            reached=self.reached,
+            laps=self.laps,
+            mission_id=self.mission.id,
+        )
+
+    def _go_to(self, index: int) -> None:
+        """The next item that is driven to, from ``index`` on; ends the mission when there is none.
+
+        Every jump is taken at most once here, so that a ring of jumps and speeds alone ends.
+        """
+        self._arrived_at = None
+        taken: set[int] = set()
+        items = self.mission.items
+        while index < len(items) and items[index].kind not in DRIVABLE:
+            if items[index].kind == MissionItem.SPEED:
+                self.speed = items[index].speed
+                index += 1
+            elif index not in taken and self._may_jump(index):
+                taken.add(index)
+                index = items[index].jump_to
+            else:
+                index += 1
+        if index < len(items):
+            self.current = index
+        elif items:
+            self.current = len(items) - 1
+            self.state = MissionProgress.COMPLETE
+
+    def _may_jump(self, index: int) -> bool:
+        item = self.mission.items[index]
+        done = self._jumps.get(index, 0)
+        if 0 <= item.repeat <= done:
+            return False
+        self._jumps[index] = done + 1
+        self.laps += 1
+        return True
+
+
+def vector(point: Point) -> Vector3:
+    return Vector3(x=point[0], y=point[1])

@@ -1,0 +1,209 @@
+"""The autopilot of a ground vehicle: modes, arming, STOP ALL, the command multiplexer, limits and missions."""
+
+from collections.abc import Mapping
+from math import hypot
+from typing import Annotated, Any
+
+from msgspec import Meta
+
+from schemas import topics
+from schemas.convert import seconds, stamp
+from schemas.messages import (
+    ArmRequest,
+    DriveCommand,
+    Event,
+    Kind,
+    MissionItem,
+    MissionRequest,
+    Mode,
+    ModeRequest,
+    PoseInFrame,
+    Reply,
+    SetCurrentRequest,
+    StopCommand,
+    VehicleStatus,
+    WheelCommand,
+)
+from services.autopilot.ground.drive import Limits, Ramp, within_limits
+from services.autopilot.ground.mission import MissionEngine, Point, mission_of, refusal, vector
+from services.autopilot.ground.multiplexer import SOURCES, Choice, Velocity, choose, mode_name
+from uvf.maths.kinematics import DifferentialDrive, Twist
+from uvf.runtime.service import Outputs, Params, Service, optional
+from uvf.runtime.vehicle_file import GroundBody
+
+STATUS_EVERY, PROGRESS_EVERY = 5, 25
+"""Steps between two messages: 10 Hz and 2 Hz."""
+UNKNOWN_BATTERY = -1.0
+
+
+class GroundAutopilotParams(Params, frozen=True):
+    acceptance_radius: Annotated[float, Meta(gt=0)] = 0.25  # m, of waypoints that name none
+
+
+class GroundAutopilot(Service):
+    """The only writer of a ground vehicle's ``actuator/wheels``. With a job it begins armed, in mode MISSION."""
+
+    name = "autopilot_ground"
+    hz = 50.0
+    inputs = {
+        "teleop": optional(topics.DRIVE.by("teleop")),
+        "mavlink": optional(topics.DRIVE.by("mavlink")),
+        "gcs": optional(topics.DRIVE.by("gcs")),
+        "client": optional(topics.DRIVE.by("client")),
+        "offboard": optional(topics.DRIVE.by("offboard")),
+        "planner": optional(topics.DRIVE.by("planner")),
+        "stop": optional(topics.STOP.by("*")),
+        "pose": optional(topics.POSE),
+    }
+    outputs = {
+        "wheels": topics.WHEEL_COMMAND,
+        "status": topics.STATUS,
+        "mission": topics.MISSION,
+        "progress": topics.PROGRESS,
+        "events": topics.EVENTS.by("autopilot"),
+    }
+    requests = {"arm": topics.ARM, "set_mode": topics.SET_MODE, "set_mission": topics.SET_MISSION, "set_current": topics.SET_CURRENT}
+    params: GroundAutopilotParams
+
+    def __init__(
+        self, body: GroundBody, home: Point, job: tuple[bool, list[MissionItem]], system_id: int, params: GroundAutopilotParams
+    ) -> None:
+        """home: start pose [m, world]; job: whether it begins at once, and the mission's items, perhaps none."""
+        self.params = params
+        self._body = body
+        self._home = home
+        self._system_id = system_id
+        self._drive = DifferentialDrive(body.wheel_radius, body.track)
+        self._ramp = Ramp(Limits(body.max_linear, body.max_angular, body.max_linear_acceleration, body.max_angular_acceleration))
+        begins, items = job
+        self._armed = begins
+        self._mode: int = Mode.MODE_MISSION if begins else Mode.MODE_HOLD
+        self._stopped = False
+        self._choice = Choice("", "starting")
+        self._engine = MissionEngine(home, params.acceptance_radius)
+        self._engine.load(mission_of(items, stamp(0.0)))
+        self._mission_is_new = True
+        self._steps = 0
+        self._events: list[Event] = []
+
+    def step(
+        self,
+        t: float,
+        teleop: DriveCommand | None,
+        mavlink: DriveCommand | None,
+        gcs: DriveCommand | None,
+        client: DriveCommand | None,
+        offboard: DriveCommand | None,
+        planner: DriveCommand | None,
+        stop: StopCommand | None,
+        pose: PoseInFrame | None,
+        arm: list[ArmRequest],
+        set_mode: list[ModeRequest],
+        set_mission: list[MissionRequest],
+        set_current: list[SetCurrentRequest],
+    ) -> Outputs:
+        self._heed_stop(t, stop)
+        replies = {
+            "arm": [self._arm(t, r) for r in arm],
+            "set_mode": [self._set_mode(t, r) for r in set_mode],
+            "set_mission": [self._set_mission(t, r) for r in set_mission],
+            "set_current": [self._set_current(t, r) for r in set_current],
+        }
+        commands = {"teleop": teleop, "mavlink": mavlink, "gcs": gcs, "client": client, "offboard": offboard, "planner": planner}
+        position = (pose.pose.position.x, pose.pose.position.y) if pose is not None else None
+        self._follow_mission(t, position)
+        self._choose(t, {k: Velocity(seconds(c.timestamp), c.linear, c.angular) for k, c in commands.items() if c is not None})
+        return {"wheels": self._wheels(t), **replies, **self._reports(t, position)}
+
+    def _heed_stop(self, t: float, stop: StopCommand | None) -> None:
+        engaged = stop is not None and stop.engaged
+        if engaged != self._stopped and stop is not None:
+            self._stopped = engaged
+            text = "STOP ALL: standing until it is released" if engaged else "STOP ALL is released"
+            self._tell(t, text, f"stop from {stop.source or 'unknown'}", Event.WARNING if engaged else Event.NOTICE)
+
+    def _arm(self, t: float, request: ArmRequest) -> Reply:
+        if request.arm and self._stopped:
+            return Reply(accepted=False, reason="STOP ALL is engaged: release it first")
+        if request.arm != self._armed:
+            self._armed = request.arm
+            self._tell(t, "armed" if request.arm else "disarmed", f"asked by {request.source or 'unknown'}")
+        return Reply(accepted=True)
+
+    def _set_mode(self, t: float, request: ModeRequest) -> Reply:
+        if request.mode not in SOURCES:
+            known = ", ".join(mode_name(mode) for mode in SOURCES)
+            return Reply(accepted=False, reason=f"a ground vehicle has no mode {request.mode}; there are: {known}")
+        if request.mode != self._mode:
+            self._mode = request.mode
+            self._tell(t, f"mode {mode_name(request.mode)}", f"asked by {request.source or 'unknown'}")
+        return Reply(accepted=True)
+
+    def _set_mission(self, t: float, request: MissionRequest) -> Reply:
+        reason = refusal(request.mission.items)
+        if reason:
+            return Reply(accepted=False, reason=reason)
+        self._engine.load(mission_of(request.mission.items, stamp(t)))
+        self._mission_is_new = True
+        self._tell(t, f"new mission of {len(request.mission.items)} items", f"asked by {request.source or 'unknown'}")
+        return Reply(accepted=True)
+
+    def _set_current(self, t: float, request: SetCurrentRequest) -> Reply:
+        reason = self._engine.jump_to(request.index)
+        if not reason:
+            self._tell(t, f"mission item {request.index} is next", f"asked by {request.source or 'unknown'}")
+        return Reply(accepted=not reason, reason=reason)
+
+    def _follow_mission(self, t: float, position: Point | None) -> None:
+        active = self._mode == Mode.MODE_MISSION and self._armed and not self._stopped
+        reached = self._engine.advance(t, position, active)
+        if reached is not None:
+            self._tell(t, f"mission item {reached} reached", "within its acceptance radius")
+
+    def _choose(self, t: float, commands: Mapping[str, Velocity]) -> None:
+        obstacle = "STOP ALL is engaged" if self._stopped else "" if self._armed else "disarmed"
+        before, self._choice = self._choice, choose(t, self._mode, commands, obstacle)
+        if before.source != self._choice.source:
+            self._tell(t, f"commands from {self._choice.source or 'nobody'}", self._choice.reason)
+
+    def _wheels(self, t: float) -> WheelCommand:
+        top_speed = self._engine.speed if self._mode == Mode.MODE_MISSION and self._engine.speed else self._body.max_linear
+        wanted = within_limits(self._choice.linear, self._choice.angular, self._ramp.limits, top_speed)
+        left, right = self._drive.wheels(Twist(*self._ramp.lead(*wanted, 1.0 / self.hz)))
+        return WheelCommand(timestamp=stamp(t), left=left, right=right)
+
+    def _reports(self, t: float, position: Point | None) -> dict[str, Any]:
+        self._steps += 1
+        reports: dict[str, Any] = {"events": self._events}
+        self._events = []
+        if self._steps % STATUS_EVERY == 1:
+            reports["status"] = self._status(t, position)
+        if self._steps % PROGRESS_EVERY == 1:
+            reports["progress"] = self._engine.progress(stamp(t))
+        if self._mission_is_new:
+            reports["mission"] = self._engine.mission
+            self._mission_is_new = False
+        return reports
+
+    def _status(self, t: float, position: Point | None) -> VehicleStatus:
+        target = self._engine.target
+        left = hypot(position[0] - target[0], position[1] - target[1]) if position and target else 0.0
+        return VehicleStatus(
+            timestamp=stamp(t),
+            kind=Kind.KIND_GROUND,
+            mode=Mode.ValueType(self._mode),
+            armed=self._armed,
+            landed=True,
+            stopped=self._stopped,
+            command_source=self._choice.source,
+            reason=self._choice.reason,
+            throttle=abs(self._ramp.linear) / self._body.max_linear,
+            battery_remaining=UNKNOWN_BATTERY,
+            waypoint=self._engine.current,
+            distance_to_waypoint=left,
+            home=vector(self._home),
+            system_id=self._system_id,
+        )
+
+    def _tell(self, t: float, text: str, cause: str, severity: Event.Severity = Event.NOTICE) -> None:
+        self._events.append(Event(timestamp=stamp(t), severity=severity, text=text, cause=cause, source="autopilot"))

@@ -1,0 +1,42 @@
+"""Planner and tracker for every ground vehicle of the mission."""
+
+import numpy as np
+
+from services.planner.costmap import Body
+from services.planner.navigator import Navigator
+from services.planner.planner_service import PlannerParams, PlannerService
+from services.planner.safety import safe_share
+from services.planner.tracker_service import TrackerParams, TrackerService
+from uvf.runtime.params import BadInput
+from uvf.runtime.site import Host, Member, Site
+
+
+def build(site: Site) -> list[Host]:
+    """Raises BadInput for a vehicle without lidar."""
+    members = list(site.of_kind("ground"))
+    if members:
+        _warm_up()
+    return [host for member in members for host in _hosts(member)]
+
+
+def _hosts(member: Member) -> list[Host]:
+    start, body, lidar = member.entry.start, member.file.ground, member.file.sensors.lidar
+    if body is None or lidar is None:
+        raise BadInput(f"{member.folder / 'vehicle.yaml'}: the planner needs 'ground:' and sensors: lidar")
+    world_from_map = (start.x, start.y, start.yaw)
+    base_from_lidar = (lidar.mount.xyz[0], lidar.mount.xyz[1], lidar.mount.rpy[2])
+    planner = member.params("planner", PlannerParams)
+    tracker = member.params("tracker", TrackerParams)
+    return [
+        Host(PlannerService, lambda: PlannerService(world_from_map, body.radius, member.entry.job.explore, planner), member.name),
+        Host(TrackerService, lambda: TrackerService(body, base_from_lidar, tracker), member.name),
+    ]
+
+
+def _warm_up() -> None:
+    """Compiles the kernels, or loads them from their cache, before the first step."""
+    navigator = Navigator(Body(0.1, 0.3, 2.0))
+    navigator.see(np.zeros((20, 20), dtype=np.int8), 0.05, (0.0, 0.0))
+    navigator.plan((0.2, 0.2), (0.8, 0.8))
+    navigator.refusal((0.2, 0.2), (0.8, 0.8))
+    safe_share(np.ones((1, 2)), (0.1, 0.1), 0.1, (0.1, 1.0))

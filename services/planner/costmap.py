@@ -1,0 +1,83 @@
+"""Costs of being at each cell of a map: how near the obstacles are, and where a vehicle's centre may not be."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uvf.maths.grids import distance_field
+
+Floats = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+Cell = tuple[int, int]
+
+OCCUPIED, FREE = 60, 40  # per cent: at least, at most
+IMPASSABLE = -1.0
+
+
+@dataclass(frozen=True)
+class Body:
+    """How much room a vehicle needs and likes."""
+
+    radius: float  # m, to the nearest obstacle: nearer is impassable
+    comfort: float  # m, nearer costs more
+    dislike: float  # factor on the cost of a way right at ``radius``, above 1
+
+
+@dataclass(frozen=True)
+class Costmap:
+    """One map made ready for planning; arrays are (rows, columns), points m in the map frame."""
+
+    resolution: float
+    origin: tuple[float, float]
+    free: Mask
+    unknown: Mask
+    clearance: Floats
+    """m to the nearest occupied cell's edge."""
+    cost: Floats
+    """Per cell driven through, 1 at ease and more near obstacles; ``IMPASSABLE`` where the centre may not be."""
+
+    def cell(self, x: float, y: float) -> Cell:
+        """(row, column) of a point; may lie outside."""
+        return (int(np.floor((y - self.origin[1]) / self.resolution)), int(np.floor((x - self.origin[0]) / self.resolution)))
+
+    def holds(self, cell: Cell) -> bool:
+        return 0 <= cell[0] < self.cost.shape[0] and 0 <= cell[1] < self.cost.shape[1]
+
+    def points(self, cells: NDArray[np.int64]) -> Floats:
+        """(n, 2) x, y of the centres of (n, 2) cells."""
+        out: Floats = (cells[:, ::-1] + 0.5) * self.resolution + np.array(self.origin)
+        return out
+
+
+def costmap(
+    cells: NDArray[np.int8], resolution: float, origin: tuple[float, float], body: Body, unknown_cost: float = IMPASSABLE
+) -> Costmap:
+    """cells: (rows, columns) -1 unknown, 0..100 per cent; unknown_cost: factor on the cost of unknown ground."""
+    occupied, unknown = cells >= OCCUPIED, cells < 0
+    free = ~unknown & (cells <= FREE)
+    clearance = (distance_field(occupied) - 0.5) * resolution
+    nearness = np.clip((body.comfort - clearance) / (body.comfort - body.radius), 0.0, 1.0)
+    cost = 1.0 + (body.dislike - 1.0) * nearness**2
+    cost[unknown] *= unknown_cost
+    cost[(clearance < body.radius) | ~(free | unknown)] = IMPASSABLE
+    cost[cost < 0.0] = IMPASSABLE
+    return Costmap(resolution, origin, free, unknown, clearance, cost)
+
+
+def with_way_out(costs: Costmap, start: Cell, reach: float) -> Costmap:
+    """The same, with dear but passable cells around a start that stands too near an obstacle: reach [m]."""
+    if not costs.holds(start) or costs.cost[start] >= 0.0:
+        return costs
+    n = int(np.ceil(reach / costs.resolution))
+    rows, columns = (slice(max(i - n, 0), i + n + 1) for i in start)
+    cost = costs.cost.copy()
+    window = cost[rows, columns]
+    escape = (window < 0.0) & (costs.clearance[rows, columns] > 0.0) & ~costs.unknown[rows, columns]
+    window[escape] = ESCAPE_COST
+    cost[start] = ESCAPE_COST
+    return Costmap(costs.resolution, costs.origin, costs.free, costs.unknown, costs.clearance, cost)
+
+
+ESCAPE_COST = 30.0
+"""Of a cell within the vehicle's radius of an obstacle, when it has to be left."""

@@ -1,0 +1,67 @@
+"""What a ground vehicle is to do now: return, a person's goal, the mission, exploring, in this order."""
+
+from dataclasses import dataclass
+
+from schemas.messages import Mission, MissionItem, MissionProgress, Mode, VehicleStatus
+
+Point = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Goal:
+    """A person's goal [m, world]; yaw [rad, world] or None = any."""
+
+    point: Point
+    yaw: float | None = None
+
+
+@dataclass(frozen=True)
+class Job:
+    """name as in ``NavStatus.job``; target: where to go [m, world], None: the job finds its own, or there is none."""
+
+    name: str
+    target: Point | None = None
+    yaw: float | None = None
+
+    @property
+    def bold(self) -> bool:
+        """Whether unknown ground may be crossed: the mission's author and the way home know more than the map."""
+        return self.name in ("mission", "return")
+
+
+IDLE = Job("idle")
+EXPLORE = Job("explore")
+
+
+def mission_target(mission: Mission | None, progress: MissionProgress | None, home: Point) -> Point | None:
+    """Where the current item of the mission in force is; None when there is nothing to drive to."""
+    if mission is None or progress is None or progress.mission_id != mission.id or progress.current >= len(mission.items):
+        return None
+    if progress.state != MissionProgress.ACTIVE:
+        return None
+    item = mission.items[progress.current]
+    return home if item.kind == MissionItem.RETURN else (item.position.x, item.position.y)
+
+
+def choose(status: VehicleStatus | None, goal: Goal | None, target: Point | None, explores: bool, home: Point) -> Job:
+    """target: of the mission's current item, if there is one."""
+    if status is not None and status.mode == Mode.MODE_RETURN:
+        return Job("return", home)
+    if goal is not None:
+        return Job("goal", goal.point, goal.yaw)
+    if target is not None:
+        return Job("mission", target)
+    return EXPLORE if explores else IDLE
+
+
+def not_now(status: VehicleStatus | None) -> str:
+    """Why a person's goal cannot be driven to in the vehicle's state; "" if it can."""
+    if status is None:
+        return "the autopilot is silent"
+    if status.stopped:
+        return "STOP ALL is engaged: release it first"
+    if not status.armed:
+        return "the vehicle is disarmed: arm it first"
+    if status.mode != Mode.MODE_MISSION:
+        return f"the mode is {Mode.Name(status.mode).removeprefix('MODE_')}: change it to MISSION first"
+    return ""

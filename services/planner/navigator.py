@@ -1,0 +1,96 @@
+"""From a place to go to, to a path that leads there; and why there is none."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from services.planner.costmap import Body, Costmap, costmap, with_way_out
+from services.planner.search import Ways, astar
+from services.planner.smoothing import smoothed
+
+Floats = NDArray[np.float64]
+Point = tuple[float, float]
+
+WAY_OUT = 0.3  # m about the vehicle within which it may leave the room it should keep from obstacles
+UNKNOWN_COST = 3.0
+"""Factor on the cost of unknown ground for goals that may lie behind it."""
+
+
+@dataclass(frozen=True)
+class Plan:
+    """A path (n, 2) [m, map], or none and why."""
+
+    path: Floats | None
+    reason: str = ""
+
+
+class Navigator:
+    """Plans on the newest map; all points in m, map frame."""
+
+    def __init__(self, body: Body) -> None:
+        self._body = body
+        self._cells: NDArray[np.int8] | None = None
+        self._bold: Costmap | None = None
+        self.costs: Costmap | None = None
+
+    def see(self, cells: NDArray[np.int8], resolution: float, origin: Point) -> None:
+        """Takes a new map; costs are worked out once for it."""
+        self._cells = cells
+        self._bold = None
+        self.costs = costmap(cells, resolution, origin, self._body)
+
+    def ways(self, start: Point) -> Ways | None:
+        """The cheapest ways from ``start`` to everywhere known; None without a map or outside it."""
+        if self.costs is None or not self.costs.holds(self.costs.cell(*start)):
+            return None
+        cell = self.costs.cell(*start)
+        return Ways(with_way_out(self.costs, cell, WAY_OUT).cost, cell)
+
+    def refusal(self, start: Point, goal: Point) -> str:
+        """Why nobody can drive from ``start`` to ``goal`` over known ground; "" if it can be done."""
+        costs = self.costs
+        if costs is None:
+            return "there is no map yet"
+        cell = costs.cell(*goal)
+        if not costs.holds(cell):
+            return "the goal lies outside the map"
+        if costs.unknown[cell]:
+            return "the goal lies on ground not seen yet"
+        if costs.clearance[cell] <= 0.0 or not costs.free[cell]:
+            return "the goal lies in an obstacle"
+        if costs.cost[cell] < 0.0:
+            return f"the goal is {costs.clearance[cell]:.2f} m from an obstacle, {self._body.radius:.2f} m are needed"
+        ways = self.ways(start)
+        if ways is None or not np.isfinite(ways.cost[cell]):
+            return "no way leads to the goal"
+        return ""
+
+    def plan(self, start: Point, goal: Point, bold: bool = False) -> Plan:
+        """bold: unknown ground may be crossed, and the goal may lie beyond the map: its nearest cell is taken."""
+        known = self._costs(bold)
+        if known is None:
+            return Plan(None, "there is no map yet")
+        here = known.cell(*start)
+        if not known.holds(here):
+            return Plan(None, "the vehicle is outside its map")
+        there = known.cell(*goal)
+        if not known.holds(there) and not bold:
+            return Plan(None, "the goal lies outside the map")
+        rows, columns = known.cost.shape
+        there = (min(max(there[0], 0), rows - 1), min(max(there[1], 0), columns - 1))
+        found = astar(with_way_out(known, here, WAY_OUT).cost, here, there)
+        if found is None:
+            return Plan(None, "no way leads to the goal")
+        points = known.points(found[0])
+        points[0] = start
+        if known.holds(known.cell(*goal)):
+            points = np.vstack((points[:-1], goal)) if len(points) > 1 else np.array((start, goal))
+        return Plan(smoothed(points, known.clearance, known.origin, known.resolution, self._body.radius))
+
+    def _costs(self, bold: bool) -> Costmap | None:
+        if not bold or self.costs is None or self._cells is None:
+            return self.costs
+        if self._bold is None:
+            self._bold = costmap(self._cells, self.costs.resolution, self.costs.origin, self._body, UNKNOWN_COST)
+        return self._bold

@@ -1,0 +1,245 @@
+"""Map, pose and job -> the path to drive, four times a second; plans anew only when the map or the job has changed."""
+
+from math import hypot, isnan
+from typing import Annotated
+
+import numpy as np
+from msgspec import Meta
+from numpy.typing import NDArray
+
+from schemas import topics
+from schemas.convert import occupancy_cells, planar_pose, seconds, stamp, yaw_of
+from schemas.messages import (
+    Event,
+    GoalRequest,
+    Grid,
+    Mission,
+    MissionProgress,
+    NavStatus,
+    Pose,
+    PoseInFrame,
+    PosesInFrame,
+    Reply,
+    Vector3,
+    VehicleStatus,
+)
+from services.planner.costmap import Body
+from services.planner.exploring import Explorer
+from services.planner.frontiers import Taste
+from services.planner.jobs import IDLE, Goal, Job, choose, mission_target, not_now
+from services.planner.navigator import Navigator, Plan
+from services.planner.smoothing import length
+from uvf.maths.planar import Pose2, compose, inverse, transform
+from uvf.runtime.service import Outputs, Params, Service, optional
+
+Floats = NDArray[np.float64]
+Point = tuple[float, float]
+Positive = Annotated[float, Meta(gt=0)]
+
+REPLAN_PERIOD = 2.0  # s, after which a path that failed is tried again
+
+
+class PlannerParams(Params, frozen=True):
+    margin: Positive = 0.03  # m kept from obstacles beyond the vehicle's radius
+    comfort: Positive = 0.35  # m from obstacles at which a way is no dearer
+    dislike: Annotated[float, Meta(ge=1)] = 6.0  # cost of a way right along an obstacle
+    goal_tolerance: Positive = 0.12  # m
+    look_tolerance: Positive = 0.3  # m, for frontiers, which only have to be seen
+    wait_at_goal: Annotated[float, Meta(ge=0)] = 5.0  # s after a person's goal, before the job goes on
+    patience: Positive = 8.0  # s without getting anywhere, before the goal is given up
+    least_frontier: Annotated[int, Meta(ge=1)] = 6  # cells
+    frontier_worth: Annotated[float, Meta(ge=0)] = 0.5  # cells of way
+
+
+class PlannerService(Service):
+    """One per vehicle. Plans in the map frame; all that it says is in the world frame."""
+
+    name = "planner"
+    hz = 4.0
+    inputs = {
+        "pose": topics.POSE,
+        "map": topics.MAP,
+        "status": optional(topics.STATUS),
+        "mission": optional(topics.MISSION),
+        "progress": optional(topics.PROGRESS),
+    }
+    outputs = {"path": topics.PATH, "nav_status": topics.NAV_STATUS, "events": topics.EVENTS.by("planner")}
+    requests = {"goal": topics.GOAL}
+    params: PlannerParams
+
+    def __init__(self, world_from_map: Pose2, radius: float, explores: bool, params: PlannerParams) -> None:
+        self.params = params
+        self._world_from_map = world_from_map
+        self._map_from_world = inverse(world_from_map)
+        self._home: Point = world_from_map[:2]
+        self._explores = explores
+        self._navigator = Navigator(Body(radius + params.margin, params.comfort, params.dislike))
+        self._explorer = Explorer(Taste(params.least_frontier, 0.4, params.frontier_worth))
+        self._map_stamp = -1.0
+        self._job: Job = IDLE
+        self._goal: Goal | None = None
+        self._target: Point | None = None
+        self._plan = Plan(None)
+        self._planned_at = -np.inf
+        self._reached_at: float | None = None
+        self._progress_at = 0.0
+        self._progress_pose: Pose2 = (0.0, 0.0, 0.0)
+        self._events: list[Event] = []
+
+    def step(
+        self,
+        t: float,
+        pose: PoseInFrame,
+        map: Grid,
+        status: VehicleStatus | None,
+        mission: Mission | None,
+        progress: MissionProgress | None,
+        goal: list[GoalRequest],
+    ) -> Outputs:
+        here = compose(self._map_from_world, (pose.pose.position.x, pose.pose.position.y, yaw_of(pose.pose.orientation)))
+        changed = self._take_map(map)
+        replies = [self._ask(t, here, request, status) for request in goal]
+        job = choose(status, self._goal, mission_target(mission, progress, self._home), self._explores, self._home)
+        if job != self._job:
+            self._begin(t, job)
+            changed = True
+        if changed or (self._plan.path is None and t - self._planned_at >= REPLAN_PERIOD):
+            self._replan(t, here)
+        self._watch(t, here, status)
+        events, self._events = self._events, []
+        return {"path": self._path(t), "nav_status": self._nav_status(t, here), "goal": replies, "events": events}
+
+    def stale(self, t: float, missing: tuple[str, ...]) -> Outputs:
+        """Without a fresh pose or a map there is no path: the tracker stands still."""
+        reason = f"waiting for {', '.join(missing)}"
+        return {
+            "path": PosesInFrame(timestamp=stamp(t), frame_id="world"),
+            "nav_status": NavStatus(timestamp=stamp(t), state=NavStatus.IDLE, job=self._job.name, reason=reason),
+        }
+
+    def _take_map(self, grid: Grid) -> bool:
+        taken_at = seconds(grid.timestamp)
+        if taken_at == self._map_stamp:
+            return False
+        self._map_stamp = taken_at
+        self._navigator.see(occupancy_cells(grid), grid.cell_size.x, (grid.pose.position.x, grid.pose.position.y))
+        return True
+
+    def _ask(self, t: float, here: Pose2, request: GoalRequest, status: VehicleStatus | None) -> Reply:
+        wanted = (request.position.x, request.position.y)
+        reason = not_now(status) or self._navigator.refusal(here[:2], self._in_map(wanted))
+        if reason:
+            return Reply(accepted=False, reason=reason)
+        self._goal = Goal(wanted, None if isnan(request.yaw) else request.yaw)
+        self._tell(t, f"goal ({wanted[0]:.1f}, {wanted[1]:.1f})", f"asked by {request.source or 'unknown'}")
+        return Reply(accepted=True)
+
+    def _begin(self, t: float, job: Job) -> None:
+        if job.name != self._job.name:
+            self._tell(t, f"job: {job.name}", "")
+        self._job = job
+        self._reached_at = None
+        self._progress_at = t
+        self._explorer.goal = None
+
+    def _replan(self, t: float, here: Pose2) -> None:
+        self._planned_at = t
+        if self._job == IDLE:
+            self._target, self._plan = None, Plan(None, "no job")
+        elif self._job.target is not None:
+            self._target = self._in_map(self._job.target)
+            self._plan = self._navigator.plan(here[:2], self._target, self._job.bold)
+        else:
+            self._replan_exploring(t, here)
+
+    def _replan_exploring(self, t: float, here: Pose2) -> None:
+        ways, costs = self._navigator.ways(here[:2]), self._navigator.costs
+        if ways is None or costs is None:
+            self._target, self._plan = None, Plan(None, "the vehicle is outside its map")
+            return
+        self._target = self._explorer.choose(t, costs, ways)
+        found = self._target is not None
+        self._plan = self._navigator.plan(here[:2], self._target) if self._target else Plan(None, "everything is explored")
+        if found and self._plan.path is None:
+            self._explorer.shun_goal(t)
+
+    def _watch(self, t: float, here: Pose2, status: VehicleStatus | None) -> None:
+        """Has the goal been reached, or does the vehicle get nowhere?"""
+        if self._reached_at is not None:
+            if t - self._reached_at >= self.params.wait_at_goal:
+                self._goal = None
+            return
+        if self._target is None:
+            return
+        if self._is_near(here):
+            self._arrive(t, here)
+            return
+        last = self._progress_pose
+        moved = hypot(here[0] - last[0], here[1] - last[1]) > 0.1 or abs(here[2] - last[2]) > 0.3
+        held = status is None or status.command_source != "planner"
+        if moved or held:
+            self._progress_at, self._progress_pose = t, here
+        elif t - self._progress_at > self.params.patience:
+            self._give_up(t, self._plan.reason or "no progress")
+
+    def _is_near(self, here: Pose2) -> bool:
+        """Reached, in the place and in the wanted heading."""
+        tolerance = self.params.look_tolerance if self._job.name == "explore" else self.params.goal_tolerance
+        if self._target is None or hypot(here[0] - self._target[0], here[1] - self._target[1]) > tolerance:
+            return False
+        wanted = self._job.yaw
+        return wanted is None or abs(np.sin((here[2] + self._world_from_map[2] - wanted) / 2)) < 0.05
+
+    def _arrive(self, t: float, here: Pose2) -> None:
+        if self._job.name == "goal":
+            self._reached_at = t
+            self._plan = Plan(None, "goal reached")
+            self._tell(t, "goal reached", "")
+        elif self._job.name == "explore":
+            self._explorer.shun_goal(t)
+            self._replan(t, here)
+
+    def _give_up(self, t: float, reason: str) -> None:
+        self._tell(t, f"{self._job.name}: goal given up", reason, Event.WARNING)
+        self._progress_at = t
+        if self._job.name == "goal":
+            self._goal = None
+        elif self._job.name == "explore":
+            self._explorer.shun_goal(t)
+            self._planned_at = -np.inf
+            self._plan = Plan(None, reason)
+
+    def _in_map(self, point: Point) -> Point:
+        x, y, _ = compose(self._map_from_world, (point[0], point[1], 0.0))
+        return (x, y)
+
+    def _path(self, t: float) -> PosesInFrame:
+        """The last pose has an orientation when a heading is wanted there; the others are the line's points."""
+        message = PosesInFrame(timestamp=stamp(t), frame_id="world")
+        if self._plan.path is not None:
+            points = transform(self._world_from_map, self._plan.path).tolist()
+            message.poses.extend(Pose(position=Vector3(x=x, y=y)) for x, y in points)
+            if self._job.yaw is not None:
+                message.poses[-1].CopyFrom(planar_pose(points[-1][0], points[-1][1], self._job.yaw))
+        return message
+
+    def _nav_status(self, t: float, here: Pose2) -> NavStatus:
+        status = NavStatus(timestamp=stamp(t), job=self._job.name, reason=self._plan.reason, explored=self._explorer.explored)
+        status.state = self._state()
+        if self._target is not None:
+            x, y, _ = compose(self._world_from_map, (self._target[0], self._target[1], 0.0))
+            status.goal.x, status.goal.y = x, y
+        if self._plan.path is not None:
+            nearest = int(np.argmin(np.hypot(*(self._plan.path - np.array(here[:2])).T)))
+            status.distance_left = length(self._plan.path[nearest:])
+        return status
+
+    def _state(self) -> NavStatus.State:
+        if self._reached_at is not None:
+            return NavStatus.REACHED
+        if self._target is None:
+            return NavStatus.IDLE
+        return NavStatus.DRIVING if self._plan.path is not None else NavStatus.BLOCKED
+
+    def _tell(self, t: float, text: str, cause: str, severity: Event.Severity = Event.NOTICE) -> None:
+        self._events.append(Event(timestamp=stamp(t), severity=severity, text=text, cause=cause, source="planner"))

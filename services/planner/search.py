@@ -1,0 +1,128 @@
+"""Cheapest ways over a cost grid: A* to one goal, Dijkstra's field to everywhere.
+
+Eight neighbours; a step costs its length times the mean cost of both cells; corners are not cut.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uvf.maths.compiled import compiled
+
+Floats = NDArray[np.float64]
+Cells = NDArray[np.int64]
+Cell = tuple[int, int]
+
+DIAGONAL = np.sqrt(2.0)
+
+
+@compiled
+def _push(keys: Floats, items: Cells, size: int, key: float, item: int) -> int:
+    """Puts an item into a binary heap of the smallest key; the new size."""
+    i = size
+    while i > 0 and keys[(i - 1) // 2] > key:
+        keys[i], items[i] = keys[(i - 1) // 2], items[(i - 1) // 2]
+        i = (i - 1) // 2
+    keys[i], items[i] = key, item
+    return size + 1
+
+
+@compiled
+def _pop(keys: Floats, items: Cells, size: int) -> int:
+    """Takes the top off; the new size. The caller has read the top before."""
+    size -= 1
+    key, item = keys[size], items[size]
+    i = 0
+    while 2 * i + 1 < size:
+        child = 2 * i + 1
+        if child + 1 < size and keys[child + 1] < keys[child]:
+            child += 1
+        if keys[child] >= key:
+            break
+        keys[i], items[i] = keys[child], items[child]
+        i = child
+    keys[i], items[i] = key, item
+    return size
+
+
+@compiled
+def _octile(r: int, c: int, goal_r: int, goal_c: int) -> float:
+    """Length [cells] of the shortest eight-neighbour way over free ground."""
+    dr, dc = abs(r - goal_r), abs(c - goal_c)
+    return max(dr, dc) + (DIAGONAL - 1.0) * min(dr, dc)
+
+
+@compiled
+def _expand(cost: Floats, start: tuple[int, int], goal: tuple[int, int]) -> tuple[Floats, Cells]:
+    """(way's cost from start, flat index of the cell before), both by cell; a goal of row -1 expands everything.
+
+    A* with f = g + octile distance (costs are >= 1, so it never overestimates; Hart, Nilsson, Raphael 1968).
+    """
+    rows, columns = cost.shape
+    g = np.full((rows, columns), np.inf)
+    before = np.full(rows * columns, -1, dtype=np.int64)
+    done = np.zeros((rows, columns), dtype=np.bool_)
+    capacity = 8 * rows * columns + 1
+    keys, items = np.empty(capacity), np.empty(capacity, dtype=np.int64)
+    size = _push(keys, items, 0, 0.0, start[0] * columns + start[1])
+    g[start] = 0.0
+    while size > 0:
+        top = items[0]
+        size = _pop(keys, items, size)
+        r, c = top // columns, top % columns
+        if done[r, c]:
+            continue
+        done[r, c] = True
+        if r == goal[0] and c == goal[1]:
+            break
+        for dr in range(-1, 2):
+            for dc in range(-1, 2):
+                nr, nc = r + dr, c + dc
+                if (dr == 0 and dc == 0) or nr < 0 or nc < 0 or nr >= rows or nc >= columns:
+                    continue
+                if cost[nr, nc] < 0.0 or done[nr, nc]:
+                    continue
+                if dr != 0 and dc != 0 and (cost[r, nc] < 0.0 or cost[nr, c] < 0.0):
+                    continue
+                length = DIAGONAL if dr != 0 and dc != 0 else 1.0
+                way = g[r, c] + length * 0.5 * (cost[r, c] + cost[nr, nc])
+                if way < g[nr, nc]:
+                    g[nr, nc] = way
+                    before[nr * columns + nc] = top
+                    estimate = _octile(nr, nc, goal[0], goal[1]) if goal[0] >= 0 else 0.0
+                    size = _push(keys, items, size, way + estimate, nr * columns + nc)
+    return g, before
+
+
+@compiled
+def _trace(before: Cells, columns: int, goal: tuple[int, int]) -> Cells:
+    """(n, 2) cells from the start to ``goal``."""
+    n, i = 1, goal[0] * columns + goal[1]
+    while before[i] >= 0:
+        i = before[i]
+        n += 1
+    path = np.empty((n, 2), dtype=np.int64)
+    i = goal[0] * columns + goal[1]
+    for k in range(n - 1, -1, -1):
+        path[k, 0], path[k, 1] = i // columns, i % columns
+        i = before[i]
+    return path
+
+
+class Ways:
+    """The cheapest ways from one cell to all others of a cost grid (negative = impassable)."""
+
+    def __init__(self, cost: Floats, start: Cell) -> None:
+        self.cost, self._before = _expand(cost, start, (-1, -1))
+        """(rows, columns) cost of the way there [cells], inf where none leads."""
+
+    def to(self, goal: Cell) -> Cells:
+        """(n, 2) cells; only for a goal that ``cost`` says can be reached."""
+        return _trace(self._before, self.cost.shape[1], goal)
+
+
+def astar(cost: Floats, start: Cell, goal: Cell) -> tuple[Cells, float] | None:
+    """((n, 2) cells from start to goal, cost of the way [cells]) over a grid of costs >= 1, or None: no way."""
+    if cost[goal] < 0.0:
+        return None
+    g, before = _expand(cost, start, goal)
+    return (_trace(before, cost.shape[1], goal), float(g[goal])) if np.isfinite(g[goal]) else None

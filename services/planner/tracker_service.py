@@ -1,0 +1,113 @@
+"""Path, pose and the live scan -> velocity on ``cmd/planner``, 20 times a second; never nearer to anything than allowed."""
+
+from typing import Annotated
+
+import numpy as np
+from msgspec import Meta
+from numpy.typing import NDArray
+
+from schemas import topics
+from schemas.convert import seconds, stamp, yaw_of
+from schemas.messages import DriveCommand, Event, LaserScan, PoseInFrame, PosesInFrame
+from services.planner.safety import safe_share
+from services.planner.tracking import Pace, Tracker
+from uvf.maths.planar import Pose2, PoseHistory, compose, inverse, transform
+from uvf.runtime.service import Outputs, Params, Service, every
+from uvf.runtime.vehicle_file import GroundBody
+
+Floats = NDArray[np.float64]
+Positive = Annotated[float, Meta(gt=0)]
+
+HISTORY = 50  # poses kept, 1 s
+SCAN_MAX_AGE = 0.6  # s; without sight nothing moves
+NEAR = 1.2  # m, points farther away cannot be reached before the next scan
+REACTION = 0.3  # s, from sight to the wheels
+
+
+class TrackerParams(Params, frozen=True):
+    speed: Positive = 0.45  # m/s on straight ways
+    turn_speed: Positive = 1.5  # rad/s
+    deceleration: Positive = 0.5  # m/s^2 that braking is planned with
+    goal_tolerance: Positive = 0.06  # m
+    margin: Positive = 0.02  # m kept beyond the vehicle's radius
+    patience: Positive = 1.5  # s blocked before backing off
+    back_off: Positive = 0.1  # m/s backwards, out of a place that is blocked
+
+
+class TrackerService(Service):
+    """One per vehicle."""
+
+    name = "tracker"
+    hz = 20.0
+    inputs = {"path": topics.PATH, "pose": every(topics.POSE), "scan": topics.SCAN}
+    outputs = {"drive": topics.DRIVE.by("planner"), "events": topics.EVENTS.by("tracker")}
+    params: TrackerParams
+
+    def __init__(self, body: GroundBody, base_from_lidar: Pose2, params: TrackerParams) -> None:
+        self.params = params
+        self._keep = body.radius + params.margin
+        self._base_from_lidar = base_from_lidar
+        speeds = min(params.speed, body.max_linear), min(params.turn_speed, body.max_angular)
+        self._tracker = Tracker(Pace(*speeds, params.deceleration, params.goal_tolerance))
+        self._history = PoseHistory(HISTORY)
+        self._pose: Pose2 = (0.0, 0.0, 0.0)
+        self._scan_time = -np.inf
+        self._seen: Floats = np.zeros((0, 2))
+        """(n, 2) m, world frame: the last scan's points near the vehicle."""
+        self._blocked_since: float | None = None
+
+    def step(self, t: float, path: PosesInFrame, pose: list[PoseInFrame], scan: LaserScan) -> Outputs:
+        for message in pose:
+            position = message.pose.position
+            self._pose = (position.x, position.y, yaw_of(message.pose.orientation))
+            self._history.add(seconds(message.timestamp), self._pose)
+        self._look(scan)
+        if t - self._scan_time > SCAN_MAX_AGE:
+            return self.stale(t, ("scan",))
+        wanted = self._tracker.follow(self._pose, _points(path), _final_heading(path))
+        velocity, events = self._made_safe(t, wanted)
+        return {"drive": DriveCommand(timestamp=stamp(t), linear=velocity[0], angular=velocity[1]), "events": events}
+
+    def stale(self, t: float, missing: tuple[str, ...]) -> Outputs:
+        """Without path, pose or sight the vehicle stands."""
+        return {"drive": DriveCommand(timestamp=stamp(t))}
+
+    def _look(self, scan: LaserScan) -> None:
+        """Keeps the points of a new scan where they were seen, so that they stay while the vehicle moves on."""
+        taken_at = seconds(scan.timestamp)
+        world_from_base = self._history.at(taken_at)
+        if taken_at <= self._scan_time or world_from_base is None:
+            return
+        self._scan_time = taken_at
+        ranges = np.asarray(scan.ranges)
+        angles = np.linspace(scan.start_angle, scan.end_angle, len(ranges))
+        near = (ranges > 0.0) & (ranges < NEAR)
+        points = np.column_stack((ranges[near] * np.cos(angles[near]), ranges[near] * np.sin(angles[near])))
+        self._seen = transform(compose(world_from_base, self._base_from_lidar), points)
+
+    def _made_safe(self, t: float, wanted: tuple[float, float]) -> tuple[tuple[float, float], list[Event]]:
+        """The wanted velocity, slowed so that it ends before anything; backwards a little when that stays zero."""
+        around = transform(inverse(self._pose), self._seen)
+        brake = (REACTION, self.params.deceleration)
+        share = safe_share(around, wanted, self._keep, brake)
+        if share > 0.0:
+            self._blocked_since = None
+            return (share * wanted[0], share * wanted[1]), []
+        if self._blocked_since is None:
+            self._blocked_since = t
+            return (0.0, 0.0), [Event(timestamp=stamp(t), severity=Event.NOTICE, text="obstacle ahead", cause="lidar", source="planner")]
+        back = (-self.params.back_off, 0.0)
+        if t - self._blocked_since > self.params.patience and safe_share(around, back, self._keep, brake) > 0.0:
+            return back, []
+        return (0.0, wanted[1]), []
+
+
+def _points(path: PosesInFrame) -> Floats:
+    return np.array([(p.position.x, p.position.y) for p in path.poses]).reshape(-1, 2)
+
+
+def _final_heading(path: PosesInFrame) -> float | None:
+    """rad, world; None when the last pose has no orientation."""
+    if not path.poses or not path.poses[-1].HasField("orientation"):
+        return None
+    return yaw_of(path.poses[-1].orientation)

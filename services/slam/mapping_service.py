@@ -1,0 +1,110 @@
+"""Lidar scans and odometry -> the map, and where the odometry frame lies in it."""
+
+from typing import Annotated
+
+import numpy as np
+from msgspec import Meta
+from numpy.typing import NDArray
+
+from schemas import topics
+from schemas.convert import occupancy_grid, quaternion, seconds, stamp, yaw_of
+from schemas.messages import FrameTransform, Grid, LaserScan, Odometry, Vector3
+from services.slam.mapper import Mapper, Scan, toward
+from uvf.maths.planar import Pose2, PoseHistory, compose, inverse, transform
+from uvf.maths.rotations import from_euler
+from uvf.runtime.service import Outputs, Params, Service, every
+from uvf.runtime.vehicle_file import Lidar
+
+Floats = NDArray[np.float64]
+Positive = Annotated[float, Meta(gt=0)]
+
+HISTORY = 100  # odometry poses kept, 2 s
+NO_RETURN_REACH = 0.9
+"""Part of the lidar's range that a beam without a return counts as free."""
+
+
+class MappingParams(Params, frozen=True):
+    resolution: Annotated[float, Meta(ge=0.02, le=0.2)] = 0.05  # m
+    insert_distance: Positive = 0.1  # m driven between scans that go into the map
+    insert_turn: Positive = 0.1  # rad turned, the same
+    map_period: Positive = 1.0  # s between publications of the map
+    correction_speed: Positive = 0.1  # m/s, how fast the published correction follows the matched one
+    correction_turn: Positive = 0.1  # rad/s
+
+
+class MappingService(Service):
+    """One map per vehicle, begun at the mission's start pose; ``correction`` is ``map_from_odom`` without jumps."""
+
+    name = "mapping"
+    hz = 10.0
+    inputs = {"scan": topics.SCAN, "odometry": every(topics.ODOMETRY)}
+    outputs = {"correction": topics.TF_MAP, "placing": topics.TF_WORLD, "map": topics.MAP}
+    params: MappingParams
+
+    def __init__(self, vehicle: str, lidar: Lidar, world_from_map: Pose2, params: MappingParams) -> None:
+        self.params = params
+        self._vehicle = vehicle
+        self._lidar = lidar
+        self._base_from_lidar: Pose2 = (lidar.mount.xyz[0], lidar.mount.xyz[1], lidar.mount.rpy[2])
+        self._world_from_map = world_from_map
+        self._mapper = Mapper(params.resolution, params.insert_distance, params.insert_turn)
+        self._history = PoseHistory(HISTORY)
+        self._odom_from_base: Pose2 = (0.0, 0.0, 0.0)
+        self._published: Pose2 = (0.0, 0.0, 0.0)
+        self._scan_time = -1.0
+        self._map_time = -np.inf
+        self._changed = False
+        self._placed = False
+
+    def step(self, t: float, scan: LaserScan, odometry: list[Odometry]) -> Outputs:
+        for message in odometry:
+            position = message.pose.position
+            self._odom_from_base = (position.x, position.y, yaw_of(message.pose.orientation))
+            self._history.add(seconds(message.timestamp), self._odom_from_base)
+        taken_at = seconds(scan.timestamp)
+        odom_from_base = self._history.at(taken_at)
+        if taken_at > self._scan_time and odom_from_base is not None:
+            self._scan_time = taken_at
+            self._changed |= self._mapper.add(odom_from_base, self._in_base(scan))
+        outputs: dict[str, FrameTransform | Grid] = {"correction": self._correction(t)}
+        if not self._placed:
+            outputs["placing"] = self._transform(t, "world", "map", self._world_from_map)
+            self._placed = True
+        if self._changed and t - self._map_time >= self.params.map_period - 1e-9:
+            outputs["map"] = self._map(t)
+            self._changed, self._map_time = False, t
+        return outputs
+
+    def _in_base(self, scan: LaserScan) -> Scan:
+        ranges = np.asarray(scan.ranges)
+        angles = np.linspace(scan.start_angle, scan.end_angle, len(ranges))
+        rays = np.column_stack((np.cos(angles), np.sin(angles)))
+        returned = ranges > 0.0
+        reach = NO_RETURN_REACH * self._lidar.range_max
+        hits = transform(self._base_from_lidar, rays[returned] * ranges[returned, None])
+        open_ends = transform(self._base_from_lidar, rays[~returned] * reach)
+        return Scan(hits, open_ends, self._base_from_lidar[:2])
+
+    def _correction(self, t: float) -> FrameTransform:
+        """Limited at the vehicle, not at the frames' origins, which may lie far away."""
+        period = 1.0 / self.hz
+        now = compose(self._published, self._odom_from_base)
+        wanted = compose(self._mapper.map_from_odom, self._odom_from_base)
+        limited = toward(now, wanted, self.params.correction_speed * period, self.params.correction_turn * period)
+        self._published = compose(limited, inverse(self._odom_from_base))
+        return self._transform(t, "map", "odom", self._published)
+
+    def _transform(self, t: float, parent: str, child: str, parent_from_child: Pose2) -> FrameTransform:
+        x, y, heading = parent_from_child
+        return FrameTransform(
+            timestamp=stamp(t),
+            parent_frame_id=parent if parent == "world" else f"{self._vehicle}/{parent}",
+            child_frame_id=f"{self._vehicle}/{child}",
+            translation=Vector3(x=x, y=y),
+            rotation=quaternion(from_euler(0.0, 0.0, heading)),
+        )
+
+    def _map(self, t: float) -> Grid:
+        occupancy = self._mapper.occupancy
+        x, y = occupancy.origin
+        return occupancy_grid(occupancy.cells(), occupancy.resolution, float(x), float(y), f"{self._vehicle}/map", t)

@@ -1,0 +1,129 @@
+"""Wheels, gyroscope and the map's correction -> odometry, pose and motion of a ground vehicle, 50 times a second."""
+
+from typing import Annotated
+
+import numpy as np
+from msgspec import Meta
+from numpy.typing import NDArray
+
+from schemas import topics
+from schemas.convert import planar_pose, quaternion, seconds, stamp, yaw_of
+from schemas.messages import FrameTransform, Imu, NavState, Odometry, PoseInFrame, Vector3, WheelTicks
+from services.slam.odometry_filter import Noise, OdometryFilter
+from uvf.maths.kinematics import PlanarPose, Twist, move
+from uvf.maths.planar import IDENTITY, Pose2, compose
+from uvf.maths.rotations import from_euler, matrix
+from uvf.runtime.service import Outputs, Params, Service, every, optional
+from uvf.runtime.vehicle_file import VehicleFile
+
+Floats = NDArray[np.float64]
+Positive = Annotated[float, Meta(gt=0)]
+
+MAX_PREDICTION = 0.1  # s, wheel data older than this is not extrapolated further
+
+
+class OdometryParams(Params, frozen=True):
+    distance_noise: Positive = 0.02  # m per square root of m driven
+    gyro_noise: Positive = 0.005  # rad/s
+    bias_walk: Positive = 1e-4  # rad/s per square root of s
+    bias_start: Positive = 0.05  # rad/s
+    slip_noise: Positive = 0.1  # rad/s, turn rate told by the wheels
+    rest_noise: Positive = 0.01  # rad/s, the same while they stand still
+    map_sigma: Positive = 0.02  # m, of a pose just corrected by the map
+
+
+class OdometryService(Service):
+    """One filter per vehicle. The pose is the odometry seen through the newest ``map_from_odom``."""
+
+    name = "odometry"
+    hz = 50.0
+    inputs = {"wheels": topics.WHEELS, "imu": optional(every(topics.IMU)), "correction": optional(topics.TF_MAP)}
+    outputs = {"odometry": topics.ODOMETRY, "pose": topics.POSE, "nav_state": topics.NAV_STATE}
+    params: OdometryParams
+
+    def __init__(self, vehicle: str, file: VehicleFile, world_from_map: Pose2, params: OdometryParams) -> None:
+        if file.ground is None:
+            raise ValueError(f"{vehicle} is not a ground vehicle")
+        self.params = params
+        self._vehicle = vehicle
+        self._radius, self._track = file.ground.wheel_radius, file.ground.track
+        mount = file.sensors.imu.mount.rpy if file.sensors.imu else (0.0, 0.0, 0.0)
+        self._up_from_imu: Floats = matrix(from_euler(*mount))[2]
+        self._world_from_map = world_from_map
+        self._map_from_odom: Pose2 = IDENTITY
+        self._filter = OdometryFilter(
+            Noise(params.distance_noise, params.gyro_noise, params.bias_walk, params.bias_start, params.slip_noise, params.rest_noise)
+        )
+        self._last: WheelTicks | None = None
+        self._variance_at_correction = 0.0
+
+    def step(self, t: float, wheels: WheelTicks, imu: list[Imu], correction: FrameTransform | None) -> Outputs:
+        self._move(wheels, imu)
+        if correction is not None:
+            self._correct(correction)
+        ahead = min(t - seconds(wheels.timestamp), MAX_PREDICTION)
+        odom_from_base = move(PlanarPose(*self._filter.pose), Twist(*self._filter.speeds), ahead)
+        world_from_base = compose(self._world_from_map, compose(self._map_from_odom, odom_from_base))
+        return {
+            "odometry": self._odometry(t, odom_from_base),
+            "pose": PoseInFrame(timestamp=stamp(t), frame_id="world", pose=planar_pose(*world_from_base)),
+            "nav_state": self._nav_state(t, world_from_base),
+        }
+
+    def _move(self, wheels: WheelTicks, imu: list[Imu]) -> None:
+        last, self._last = self._last, wheels
+        dt = seconds(wheels.timestamp) - seconds(last.timestamp) if last else 0.0
+        if last is None or dt <= 0.0:
+            return
+        left = (wheels.left - last.left) * wheels.radians_per_tick * self._radius
+        right = (wheels.right - last.right) * wheels.radians_per_tick * self._radius
+        self._filter.step((left + right) / 2, (right - left) / self._track, self._turn_rate(imu), dt)
+
+    def _turn_rate(self, imu: list[Imu]) -> float | None:
+        """Mean of the gyroscope about the vehicle's upward axis [rad/s]."""
+        if not imu:
+            return None
+        x, y, z = self._up_from_imu
+        rates = [x * m.angular_velocity.x + y * m.angular_velocity.y + z * m.angular_velocity.z for m in imu]
+        return float(sum(rates) / len(rates))
+
+    def _correct(self, correction: FrameTransform) -> None:
+        shift = correction.translation
+        newest = (shift.x, shift.y, yaw_of(correction.rotation))
+        if newest != self._map_from_odom:
+            self._variance_at_correction = self._variance
+            self._map_from_odom = newest
+
+    @property
+    def _variance(self) -> float:
+        """Of the odometry's position, the larger axis [m^2]."""
+        covariance = self._filter.covariance
+        return float(max(covariance[0, 0], covariance[1, 1]))
+
+    def _odometry(self, t: float, odom_from_base: Pose2) -> Odometry:
+        linear, angular = self._filter.speeds
+        covariance = np.zeros((6, 6))
+        planar = np.ix_((0, 1, 5), (0, 1, 5))
+        covariance[planar] = self._filter.covariance[:3, :3]
+        return Odometry(
+            timestamp=stamp(t),
+            frame_id=f"{self._vehicle}/odom",
+            body_frame_id=f"{self._vehicle}/base_footprint",
+            pose=planar_pose(*odom_from_base),
+            linear_velocity=Vector3(x=linear),
+            angular_velocity=Vector3(z=angular),
+            pose_covariance=covariance.ravel().tolist(),
+        )
+
+    def _nav_state(self, t: float, world_from_base: Pose2) -> NavState:
+        linear, angular = self._filter.speeds
+        x, y, heading = world_from_base
+        grown = max(self._variance - self._variance_at_correction, 0.0)
+        return NavState(
+            timestamp=stamp(t),
+            position=Vector3(x=x, y=y),
+            velocity=Vector3(x=linear * np.cos(heading), y=linear * np.sin(heading)),
+            orientation=quaternion(from_euler(0.0, 0.0, heading)),
+            angular_velocity=Vector3(z=angular),
+            position_sigma=float(np.sqrt(self.params.map_sigma**2 + grown)),
+        )
