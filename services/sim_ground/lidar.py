@@ -18,7 +18,8 @@ class LidarModel:
         self._lidar = lidar
         self._world = world
         self._rng = rng
-        self._angles = lidar.mount.rpy[2] + lidar.angle_min + lidar.angle_increment * np.arange(lidar.beams)
+        beams = np.arange(lidar.beams, dtype=np.float64)
+        self._angles: Floats = lidar.mount.rpy[2] + lidar.angle_min + lidar.angle_increment * beams
 
     def scan(self, body: PlanarPose, others: Floats) -> Floats:
         """body: pose of base_link, world; others: (n, 3) x, y, radius [m] of vehicles that stand in the way."""

@@ -1,8 +1,11 @@
 """Rays in the plane against rectangles and circles: what a 2-D lidar sees of a world cut at its height."""
 
+from math import sqrt
+
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from uvf.maths.compiled import compiled
 
 Floats = NDArray[np.float64]
 
@@ -13,7 +16,7 @@ def rectangles(rows: Floats) -> Floats:
     return np.column_stack((rows[:, :4], np.cos(rows[:, 4]), np.sin(rows[:, 4])))
 
 
-@njit(cache=True, nogil=True)  # type: ignore[untyped-decorator]
+@compiled
 def _rectangle_range(ox: float, oy: float, dx: float, dy: float, r: Floats) -> float:
     """Distance along the ray to the first crossing of the outline; slab method (Kay & Kajiya 1986)."""
     c, s = r[4], r[5]
@@ -32,21 +35,21 @@ def _rectangle_range(ox: float, oy: float, dx: float, dy: float, r: Floats) -> f
     return near if near >= 0.0 else far
 
 
-@njit(cache=True, nogil=True)  # type: ignore[untyped-decorator]
+@compiled
 def _circle_range(ox: float, oy: float, dx: float, dy: float, circle: Floats) -> float:
     """Smallest root >= 0 of |o + t d - c|^2 = r^2 for a unit direction."""
     px, py = ox - circle[0], oy - circle[1]
-    b = px * dx + py * dy
+    b: float = px * dx + py * dy
     discriminant = b * b - (px * px + py * py - circle[2] * circle[2])
     if discriminant < 0.0:
         return np.inf
-    root = np.sqrt(discriminant)
+    root = sqrt(discriminant)
     if -b - root >= 0.0:
         return -b - root
     return -b + root if -b + root >= 0.0 else np.inf
 
 
-@njit(cache=True, nogil=True)  # type: ignore[untyped-decorator]
+@compiled
 def _cast(origin: Floats, angles: Floats, boxes: Floats, circles: Floats) -> Floats:
     ranges = np.empty(angles.shape[0])
     for i in range(angles.shape[0]):
@@ -65,5 +68,4 @@ def cast(origin: Floats, angles: Floats, boxes: Floats, circles: Floats) -> Floa
 
     origin: (2,) m; angles: (n,) rad from the x axis; boxes: (k, 6) of ``rectangles``; circles: (m, 3) x, y, radius [m].
     """
-    ranges: Floats = _cast(origin, angles, boxes, circles)
-    return ranges
+    return _cast(origin, angles, boxes, circles)
