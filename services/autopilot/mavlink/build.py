@@ -1,0 +1,60 @@
+"""The MAVLink process: one instance for all vehicles of the mission, its addresses from the environment."""
+
+import logging
+import os
+import socket
+
+from services.autopilot.mavlink.endpoint import Peer, UdpLink
+from services.autopilot.mavlink.facts import Facts
+from services.autopilot.mavlink.service import MavlinkService
+from uvf.maths.geodesy import LocalTangent
+from uvf.runtime.params import BadInput
+from uvf.runtime.site import Host, Site
+
+TARGETS = "UVF_MAVLINK_TARGETS"
+LISTEN = "UVF_MAVLINK_LISTEN"
+DEFAULT_TARGETS = "127.0.0.1:14550,127.0.0.1:14540"
+DEFAULT_LISTEN = "127.0.0.1:14580"
+
+log = logging.getLogger(__name__)
+
+
+def build(site: Site) -> list[Host]:
+    """Raises BadInput when an address in the environment is not ``host:port``."""
+    targets = [address(text, TARGETS) for text in os.environ.get(TARGETS, DEFAULT_TARGETS).split(",") if text.strip()]
+    where = os.environ.get(LISTEN, DEFAULT_LISTEN)
+    listen = address(where, LISTEN) if where.strip() else None
+    facts = facts_of(site)
+    return [Host(MavlinkService, lambda: MavlinkService(facts, open_link(targets, listen)))]
+
+
+def facts_of(site: Site) -> list[Facts]:
+    origin = site.world.origin
+    tangent = LocalTangent.from_degrees(origin.latitude, origin.longitude, origin.altitude)
+    return [Facts(member.name, member.entry.system_id, member.file, tangent) for member in site.members.values()]
+
+
+def address(text: str, place: str) -> Peer:
+    """``host:port`` as a peer, the name not yet looked up. Raises BadInput."""
+    host, separator, port = text.strip().rpartition(":")
+    if not separator or not host or not port.isdigit() or not 0 < int(port) < 65536:
+        raise BadInput(f"{place}: '{text.strip()}' is not host:port, as in 127.0.0.1:14550")
+    return host, int(port)
+
+
+def open_link(targets: list[Peer], listen: Peer | None) -> UdpLink:
+    """Names looked up; without the listening port when it is taken, and without targets that nobody knows."""
+    numeric = [peer for peer in map(_looked_up, targets) if peer is not None]
+    try:
+        return UdpLink(numeric, listen)
+    except OSError as error:
+        log.warning("mavlink: cannot listen on %s (%s); going on without it, set %s to another port", listen, error, LISTEN)
+        return UdpLink(numeric)
+
+
+def _looked_up(peer: Peer) -> Peer | None:
+    try:
+        return socket.gethostbyname(peer[0]), peer[1]
+    except OSError as error:
+        log.warning("mavlink: no ground station at %s:%d: %s", *peer, error)
+        return None

@@ -1,0 +1,129 @@
+"""The command protocol: COMMAND_LONG and COMMAND_INT alike, each answered by exactly one final COMMAND_ACK."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from services.autopilot.mavlink import dialect as mav
+from services.autopilot.mavlink.line import Line, Sender
+
+LARGEST = 1e9  # no parameter of any command means anything beyond
+NOT_GIVEN = 2**31 - 1  # x or y of a COMMAND_INT without a place
+SCALE = 1e-7  # deg per unit of x and y
+
+
+@dataclass(frozen=True)
+class Command:
+    """p: seven parameters, NaN = not given; p[4] and p[5] in degrees; frame: None for a COMMAND_LONG."""
+
+    number: int
+    p: tuple[float, ...]
+    frame: int | None
+    sender: Sender
+    confirmation: int = 0
+
+    @classmethod
+    def from_long(cls, m: mav.MAVLink_command_long_message, sender: Sender) -> "Command":
+        p = (m.param1, m.param2, m.param3, m.param4, m.param5, m.param6, m.param7)
+        return cls(m.command, p, None, sender, m.confirmation)
+
+    @classmethod
+    def from_int(cls, m: mav.MAVLink_command_int_message, sender: Sender) -> "Command":
+        x, y = (math.nan if v == NOT_GIVEN else v * SCALE for v in (m.x, m.y))
+        return cls(m.command, (m.param1, m.param2, m.param3, m.param4, x, y, m.z), m.frame, sender)
+
+    @property
+    def is_sane(self) -> bool:
+        return all(math.isnan(v) or abs(v) <= LARGEST for v in self.p)
+
+    def same_as(self, other: "Command") -> bool:
+        return (self.number, self.sender, repr(self.p)) == (other.number, other.sender, repr(other.p))
+
+
+@dataclass
+class Pending:
+    """A command and its outcome, so that a repetition is answered and not executed again."""
+
+    command: Command
+    result: int | None = None
+
+
+class Acknowledger:
+    """Answers one command once."""
+
+    def __init__(self, line: Line, pending: Pending) -> None:
+        self._line = line
+        self._pending = pending
+
+    def __call__(self, result: int, why: str = "") -> None:
+        """The final answer; ``why`` is said aloud to everybody unless it was accepted."""
+        self._pending.result = result
+        acknowledge(self._line, self._pending.command, result)
+        if why and result != mav.MAV_RESULT_ACCEPTED:
+            self._line.text(mav.MAV_SEVERITY_WARNING, why)
+
+    def outcome(self, prefix: str) -> Callable[[bool, str], None]:
+        """For ``Line.ask``: accepted, or temporarily rejected with the autopilot's reason."""
+
+        def done(accepted: bool, reason: str) -> None:
+            if accepted:
+                self(mav.MAV_RESULT_ACCEPTED)
+            else:
+                self(mav.MAV_RESULT_TEMPORARILY_REJECTED, f"{prefix}: {reason or 'refused'}")
+
+        return done
+
+
+def acknowledge(line: Line, command: Command, result: int) -> None:
+    to = command.sender
+    line.send(mav.MAVLink_command_ack_message(command.number, result, 0, 0, to.system, to.component), to.peer)
+
+
+Handler = Callable[[Line, Command, Acknowledger], None]
+
+
+class Commands:
+    """handlers: by MAV_CMD; whatever is not in it is UNSUPPORTED."""
+
+    def __init__(self, line: Line, handlers: dict[int, Handler]) -> None:
+        self._line = line
+        self._handlers = handlers
+        self._last: dict[tuple[int, int], Pending] = {}
+        """The newest command of each sender (system, component)."""
+
+    def on_long(self, message: mav.MAVLink_command_long_message, sender: Sender) -> None:
+        self._execute(Command.from_long(message, sender))
+
+    def on_int(self, message: mav.MAVLink_command_int_message, sender: Sender) -> None:
+        self._execute(Command.from_int(message, sender))
+
+    def on_cancel(self, message: mav.MAVLink_command_cancel_message, sender: Sender) -> None:
+        """No command here runs long enough to be cancelled."""
+        ack = mav.MAVLink_command_ack_message(message.command, mav.MAV_RESULT_UNSUPPORTED, 0, 0, sender.system, sender.component)
+        self._line.send(ack, sender.peer)
+
+    def _execute(self, command: Command) -> None:
+        if self._is_repetition(command):
+            return
+        pending = Pending(command)
+        self._last[command.sender.system, command.sender.component] = pending
+        done = Acknowledger(self._line, pending)
+        handler = self._handlers.get(command.number)
+        if handler is None:
+            done(mav.MAV_RESULT_UNSUPPORTED)
+        elif not command.is_sane:
+            done(mav.MAV_RESULT_DENIED, f"Command {command.number}: a parameter is infinite or absurd")
+        else:
+            handler(self._line, command, done)
+
+    def _is_repetition(self, command: Command) -> bool:
+        """A sender repeats, counting ``confirmation`` up, when the answer was late or lost."""
+        last = self._last.get((command.sender.system, command.sender.component))
+        if last is None or not last.command.same_as(command):
+            return False
+        if last.result is None:
+            return True
+        if command.confirmation > 0:
+            acknowledge(self._line, command, last.result)
+            return True
+        return False

@@ -1,0 +1,86 @@
+"""What the link knows of one vehicle: what never changes, and the newest message of each kind."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from schemas.convert import array, seconds
+from schemas.messages import Battery, Clock, Gnss, Kind, Mission, MissionProgress, NavState, Vector3, VehicleStatus
+from uvf.maths.geodesy import Floats, LocalTangent
+from uvf.runtime.vehicle_file import Sensors, VehicleFile
+
+SILENT_AFTER = 2.0  # s of simulation time
+
+
+@dataclass(frozen=True)
+class Facts:
+    """origin: of the world frame; its altitude counts as above mean sea level."""
+
+    name: str
+    system_id: int
+    file: VehicleFile
+    origin: LocalTangent
+
+    @property
+    def kind(self) -> Kind:
+        return Kind.KIND_GROUND if self.file.kind == "ground" else Kind.KIND_FIXED_WING
+
+    @property
+    def is_ground(self) -> bool:
+        return self.file.kind == "ground"
+
+    @property
+    def sensors(self) -> Sensors:
+        return self.file.sensors
+
+    def geodetic(self, position: Floats) -> tuple[float, float, float]:
+        """(latitude, longitude [deg], altitude [m AMSL]) of a world position (3,) [m]."""
+        latitude, longitude, _ = self.origin.geodetic(np.array((position[0], position[1], 0.0)))
+        return float(np.degrees(latitude)), float(np.degrees(longitude)), float(position[2]) + self.origin.altitude
+
+    def world(self, latitude: float, longitude: float, altitude: float) -> Vector3:
+        """World position of a point given in deg, deg, m AMSL; inverse of ``geodetic``."""
+        x, y, _ = self.origin.enu(float(np.radians(latitude)), float(np.radians(longitude)), self.origin.altitude)
+        return Vector3(x=float(x), y=float(y), z=altitude - self.origin.altitude)
+
+
+@dataclass
+class Latest:
+    """None until the first one has arrived."""
+
+    nav: NavState | None = None
+    status: VehicleStatus | None = None
+    mission: Mission | None = None
+    progress: MissionProgress | None = None
+    gnss: Gnss | None = None
+    battery: Battery | None = None
+    clock: Clock | None = None
+    intended_custom_mode: int = field(default=0)
+    """The last mode that a ground station asked for, 0 = none yet."""
+
+    @property
+    def sim_time(self) -> float:
+        """Simulation time [s]: the clock's, or the newest stamp where nobody publishes a clock."""
+        if self.clock is not None:
+            return self.clock.t_ns * 1e-9
+        return max((seconds(m.timestamp) for m in (self.nav, self.status) if m is not None), default=0.0)
+
+    @property
+    def is_paused(self) -> bool:
+        return self.clock is not None and self.clock.state != Clock.RUNNING
+
+    @property
+    def is_silent(self) -> bool:
+        """Whether estimator or autopilot have not been heard for a while of simulation time, or never."""
+        oldest = min(seconds(m.timestamp) if m is not None else -np.inf for m in (self.nav, self.status))
+        return bool(self.sim_time - oldest > SILENT_AFTER)
+
+    @property
+    def home(self) -> Floats | None:
+        """(3,) m, world frame."""
+        return array(self.status.home) if self.status is not None and self.status.HasField("home") else None
+
+    @property
+    def position(self) -> Floats | None:
+        """(3,) m, world frame."""
+        return array(self.nav.position) if self.nav is not None else None

@@ -1,0 +1,58 @@
+"""Which sensors and controllers a vehicle has, whether they work, and why it should not arm."""
+
+from dataclasses import dataclass
+
+from schemas.messages import Gnss
+from services.autopilot.mavlink import dialect as mav
+from services.autopilot.mavlink.facts import Facts, Latest
+
+_IMU = mav.MAV_SYS_STATUS_SENSOR_3D_GYRO | mav.MAV_SYS_STATUS_SENSOR_3D_ACCEL | mav.MAV_SYS_STATUS_SENSOR_3D_MAG
+_AIR_DATA = mav.MAV_SYS_STATUS_SENSOR_ABSOLUTE_PRESSURE | mav.MAV_SYS_STATUS_SENSOR_DIFFERENTIAL_PRESSURE
+_CONTROL = (
+    mav.MAV_SYS_STATUS_SENSOR_ANGULAR_RATE_CONTROL
+    | mav.MAV_SYS_STATUS_SENSOR_YAW_POSITION
+    | mav.MAV_SYS_STATUS_SENSOR_XY_POSITION_CONTROL
+    | mav.MAV_SYS_STATUS_SENSOR_MOTOR_OUTPUTS
+    | mav.MAV_SYS_STATUS_AHRS
+)
+_FLIGHT_CONTROL = mav.MAV_SYS_STATUS_SENSOR_ATTITUDE_STABILIZATION | mav.MAV_SYS_STATUS_SENSOR_Z_ALTITUDE_CONTROL
+
+
+@dataclass(frozen=True)
+class Health:
+    """Bits of MAV_SYS_STATUS_SENSOR; all that is present is enabled."""
+
+    present: int
+    healthy: int
+    complaints: tuple[str, ...]
+
+
+def health(facts: Facts, latest: Latest) -> Health:
+    """Present: what the vehicle file fits. Healthy: what has shown itself in the newest messages."""
+    present = mav.MAV_SYS_STATUS_PREARM_CHECK | _CONTROL | (0 if facts.is_ground else _FLIGHT_CONTROL)
+    present |= _IMU if facts.sensors.imu else 0
+    present |= _AIR_DATA if facts.sensors.air_data else 0
+    present |= mav.MAV_SYS_STATUS_SENSOR_GPS if facts.sensors.gnss else 0
+    present |= mav.MAV_SYS_STATUS_SENSOR_BATTERY if latest.battery is not None else 0
+    complaints = _complaints(facts, latest)
+    healthy = 0 if latest.is_silent else present
+    if complaints:
+        healthy &= ~mav.MAV_SYS_STATUS_PREARM_CHECK
+    if latest.gnss is None or latest.gnss.fix < Gnss.FIX_3D:
+        healthy &= ~mav.MAV_SYS_STATUS_SENSOR_GPS
+    return Health(present, healthy, complaints)
+
+
+def _complaints(facts: Facts, latest: Latest) -> tuple[str, ...]:
+    said = []
+    if latest.nav is None:
+        said.append("no position estimate yet")
+    if latest.status is None:
+        said.append("the autopilot has not reported yet")
+    if not said and latest.is_silent:
+        said.append("estimator or autopilot has gone silent")
+    if latest.status is not None and latest.status.stopped:
+        said.append("STOP ALL is engaged")
+    if facts.sensors.gnss and (latest.gnss is None or latest.gnss.fix < Gnss.FIX_3D):
+        said.append("no satellite fix")
+    return tuple(said)

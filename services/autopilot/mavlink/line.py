@@ -1,0 +1,98 @@
+"""One vehicle's end of the link: what goes out, and what was asked of the services and is not answered yet."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+from google.protobuf.message import Message
+
+from services.autopilot.mavlink import dialect as mav
+from services.autopilot.mavlink.endpoint import Peer
+from services.autopilot.mavlink.facts import Facts, Latest
+from services.autopilot.mavlink.statustext import TextLimiter, chunks
+from uvf.runtime.service import Answer
+
+ANSWER_WITHIN = 2.5  # s: inside MAVSDK's three tries and QGroundControl's 3 s
+
+
+class Sender(NamedTuple):
+    """Who sent a message: where it came from, and the system and component that answers are addressed to."""
+
+    peer: Peer
+    system: int
+    component: int
+
+
+class Out(NamedTuple):
+    message: mav.MAVLink_message
+    to: Peer | None
+    """None = every peer."""
+
+
+Done = Callable[[bool, str], None]
+"""Called once with (accepted, reason)."""
+
+
+@dataclass
+class Asked:
+    request: Message
+    done: Done
+    until: float
+
+
+class Line:
+    """What the protocols of one vehicle share; ``t`` [s, wall] is set before each step's work."""
+
+    def __init__(self, facts: Facts) -> None:
+        self.facts = facts
+        self.latest = Latest()
+        self.t = 0.0
+        self.outbox: list[Out] = []
+        self.requests: list[tuple[str, Message]] = []
+        """(name of the call, request) to be sent with this step."""
+        self._asked: list[Asked] = []
+        self._limiter = TextLimiter()
+
+    def send(self, message: mav.MAVLink_message, to: Peer | None = None) -> None:
+        self.outbox.append(Out(message, to))
+
+    def text(self, severity: int, text: str, to: Peer | None = None) -> None:
+        """STATUSTEXT in chunks; the same text to the same peers at most every 10 s."""
+        if not self._limiter.admits(self.t, (text, to)):
+            return
+        for chunk in chunks(severity, text, self._limiter.next_id()):
+            self.send(chunk, to)
+
+    def ask(self, call: str, request: Message, done: Done) -> None:
+        """Sends a request to a service; ``done`` hears the answer, or why there is none. Never waits in a pause."""
+        if self.latest.is_paused:
+            done(False, "the simulation is paused")
+            return
+        self._asked.append(Asked(request, done, self.t + ANSWER_WITHIN))
+        self.requests.append((call, request))
+
+    def answered(self, answer: Answer[Any, Any]) -> None:
+        """Passes an answer to whoever asked."""
+        for asked in self._asked:
+            if asked.request is answer.request:
+                self._asked.remove(asked)
+                if answer.reply is None:
+                    asked.done(False, answer.reason or "no answer")
+                else:
+                    asked.done(answer.reply.accepted, answer.reply.reason)
+                return
+
+    def expire(self) -> None:
+        """Ends what nobody has answered in time."""
+        late = [asked for asked in self._asked if self.t >= asked.until]
+        self._asked = [asked for asked in self._asked if self.t < asked.until]
+        for asked in late:
+            asked.done(False, "the autopilot did not answer")
+
+    def take_out(self) -> list[Out]:
+        out, self.outbox = self.outbox, []
+        return out
+
+    def take_requests(self) -> list[tuple[str, Message]]:
+        requests, self.requests = self.requests, []
+        return requests

@@ -1,0 +1,153 @@
+"""Mission items on the wire and in the system, one for one, and what of them cannot be flown."""
+
+import math
+import struct
+import zlib
+from dataclasses import dataclass
+
+from schemas.convert import array
+from schemas.messages import Mission, MissionItem, Vector3
+from services.autopilot.mavlink import dialect as mav
+from services.autopilot.mavlink.facts import Facts
+
+ORIGIN = struct.Struct("<BHB4fiif")
+"""Frame, command, autocontinue, param1..4, x, y, z: kept with each item and given back unchanged."""
+
+RELATIVE = (mav.MAV_FRAME_GLOBAL_RELATIVE_ALT, mav.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT)
+ABSOLUTE = (mav.MAV_FRAME_GLOBAL, mav.MAV_FRAME_GLOBAL_INT)
+
+SKIPPED = frozenset(
+    {
+        mav.MAV_CMD_DO_SET_ROI_LOCATION,
+        mav.MAV_CMD_DO_SET_ROI_WPNEXT_OFFSET,
+        mav.MAV_CMD_DO_SET_ROI_NONE,
+        mav.MAV_CMD_DO_MOUNT_CONTROL,
+        mav.MAV_CMD_DO_SET_CAM_TRIGG_DIST,
+        mav.MAV_CMD_SET_CAMERA_MODE,
+        mav.MAV_CMD_IMAGE_START_CAPTURE,
+        mav.MAV_CMD_IMAGE_STOP_CAPTURE,
+        mav.MAV_CMD_VIDEO_START_CAPTURE,
+        mav.MAV_CMD_VIDEO_STOP_CAPTURE,
+        mav.MAV_CMD_DO_GIMBAL_MANAGER_PITCHYAW,
+    }
+)
+"""Camera and gimbal items that ground stations add by themselves: they fly as "no change of speed"."""
+
+KIND = {
+    mav.MAV_CMD_NAV_WAYPOINT: MissionItem.WAYPOINT,
+    mav.MAV_CMD_NAV_LOITER_UNLIM: MissionItem.ORBIT,
+    mav.MAV_CMD_NAV_LOITER_TURNS: MissionItem.ORBIT,
+    mav.MAV_CMD_NAV_LOITER_TIME: MissionItem.WAYPOINT,
+    mav.MAV_CMD_NAV_RETURN_TO_LAUNCH: MissionItem.RETURN,
+    mav.MAV_CMD_NAV_LAND: MissionItem.LAND,
+    mav.MAV_CMD_NAV_TAKEOFF: MissionItem.TAKEOFF,
+    mav.MAV_CMD_DO_JUMP: MissionItem.JUMP,
+    mav.MAV_CMD_DO_CHANGE_SPEED: MissionItem.SPEED,
+    **dict.fromkeys(SKIPPED, MissionItem.SPEED),
+}
+WITH_PLACE = frozenset({MissionItem.WAYPOINT, MissionItem.ORBIT, MissionItem.LAND, MissionItem.TAKEOFF})
+
+
+@dataclass
+class BadItem(Exception):
+    """An item that is refused: the MAV_MISSION_RESULT and the reason in words."""
+
+    result: int
+    reason: str
+
+
+def from_wire(item: mav.MAVLink_mission_item_int_message, facts: Facts, home_z: float) -> MissionItem:
+    """home_z: height of home [m, world]. Raises BadItem."""
+    kind = KIND.get(item.command)
+    if kind is None:
+        raise BadItem(mav.MAV_MISSION_UNSUPPORTED, f"command {item.command} is not supported")
+    params = (item.param1, item.param2, item.param3, item.param4)
+    if any(math.isinf(v) for v in (*params, item.z)):
+        raise BadItem(mav.MAV_MISSION_INVALID, "a parameter is infinite")
+    origin = ORIGIN.pack(item.frame, item.command, item.autocontinue, *params, item.x, item.y, item.z)
+    result = MissionItem(kind=kind, origin=origin)
+    if kind in WITH_PLACE:
+        result.position.CopyFrom(_place(item, facts, home_z))
+    _fill(result, item.command, *(0.0 if math.isnan(p) else p for p in params))
+    return result
+
+
+def _place(item: mav.MAVLink_mission_item_int_message, facts: Facts, home_z: float) -> Vector3:
+    if item.frame not in RELATIVE + ABSOLUTE:
+        raise BadItem(mav.MAV_MISSION_UNSUPPORTED_FRAME, f"frame {item.frame} is not supported")
+    if abs(item.x) > 900_000_000:
+        raise BadItem(mav.MAV_MISSION_INVALID_PARAM5_X, "latitude is out of range")
+    if abs(item.y) > 1_800_000_000:
+        raise BadItem(mav.MAV_MISSION_INVALID_PARAM6_Y, "longitude is out of range")
+    if not math.isfinite(item.z):
+        raise BadItem(mav.MAV_MISSION_INVALID_PARAM7, "altitude is missing")
+    base = home_z + facts.origin.altitude if item.frame in RELATIVE else 0.0
+    return facts.world(item.x * 1e-7, item.y * 1e-7, base + item.z)
+
+
+def _fill(item: MissionItem, command: int, p1: float, p2: float, p3: float, p4: float) -> None:
+    if command in (mav.MAV_CMD_NAV_WAYPOINT, mav.MAV_CMD_NAV_LOITER_TIME):
+        item.hold = _not_negative(p1, mav.MAV_MISSION_INVALID_PARAM1, "hold time")
+    if command == mav.MAV_CMD_NAV_WAYPOINT:
+        item.acceptance_radius = _not_negative(p2, mav.MAV_MISSION_INVALID_PARAM2, "acceptance radius")
+    if command in (mav.MAV_CMD_NAV_LOITER_UNLIM, mav.MAV_CMD_NAV_LOITER_TURNS, mav.MAV_CMD_NAV_LOITER_TIME):
+        item.radius = p3
+    if command == mav.MAV_CMD_NAV_LOITER_TURNS:
+        item.turns = _not_negative(p1, mav.MAV_MISSION_INVALID_PARAM1, "number of turns")
+    if command == mav.MAV_CMD_DO_JUMP:
+        item.jump_to = int(_not_negative(p1, mav.MAV_MISSION_INVALID_PARAM1, "item to jump to"))
+        item.repeat = _count(p2)
+    if command == mav.MAV_CMD_DO_CHANGE_SPEED and p2 > 0:
+        item.speed = p2
+
+
+def _not_negative(value: float, result: int, what: str) -> float:
+    if not 0 <= value <= 1e6:
+        raise BadItem(result, f"{what} {value:g} is out of range")
+    return value
+
+
+def _count(value: float) -> int:
+    if abs(value) > 1e6:
+        raise BadItem(mav.MAV_MISSION_INVALID_PARAM2, f"number of repetitions {value:g} is out of range")
+    return int(value)
+
+
+def check_whole(items: list[MissionItem]) -> None:
+    """What only the whole plan shows. Raises BadItem."""
+    for item in items:
+        if item.kind == MissionItem.JUMP and item.jump_to >= len(items):
+            raise BadItem(mav.MAV_MISSION_INVALID_PARAM1, f"jump to item {item.jump_to} of {len(items)}")
+
+
+def mission_of(items: list[MissionItem]) -> Mission:
+    """With the id of its content: CRC-32, not 0 unless empty."""
+    content = b"".join(item.SerializeToString(deterministic=True) for item in items)
+    return Mission(items=items, id=(zlib.crc32(content) or 1) if items else 0)
+
+
+Body = tuple[int, int, int, float, float, float, float, int, int, float]
+
+
+def to_wire(item: MissionItem, facts: Facts) -> Body:
+    """As in ``ORIGIN``: what came over the wire, or the nearest to an item of a mission file."""
+    if len(item.origin) == ORIGIN.size:
+        frame, command, autocontinue, p1, p2, p3, p4, x, y, z = ORIGIN.unpack(item.origin)
+        return frame, command, autocontinue, p1, p2, p3, p4, x, y, z
+    nan = math.nan
+    commands: dict[int, tuple[int, float, float, float, float]] = {
+        MissionItem.WAYPOINT: (mav.MAV_CMD_NAV_WAYPOINT, item.hold, item.acceptance_radius, 0.0, nan),
+        MissionItem.ORBIT: (mav.MAV_CMD_NAV_LOITER_UNLIM, 0.0, 0.0, item.radius, nan),
+        MissionItem.RETURN: (mav.MAV_CMD_NAV_RETURN_TO_LAUNCH, 0.0, 0.0, 0.0, 0.0),
+        MissionItem.JUMP: (mav.MAV_CMD_DO_JUMP, item.jump_to, item.repeat, 0.0, 0.0),
+        MissionItem.SPEED: (mav.MAV_CMD_DO_CHANGE_SPEED, 1.0 if facts.is_ground else 0.0, item.speed or -1.0, -1.0, 0.0),
+        MissionItem.TAKEOFF: (mav.MAV_CMD_NAV_TAKEOFF, 0.0, 0.0, 0.0, nan),
+        MissionItem.LAND: (mav.MAV_CMD_NAV_LAND, 0.0, 0.0, 0.0, nan),
+    }
+    command, p1, p2, p3, p4 = commands[item.kind]
+    if item.kind == MissionItem.ORBIT and item.turns > 0:
+        command, p1 = mav.MAV_CMD_NAV_LOITER_TURNS, item.turns
+    if item.kind not in WITH_PLACE:
+        return mav.MAV_FRAME_MISSION, command, 1, p1, p2, p3, p4, 0, 0, 0.0
+    latitude, longitude, z = facts.geodetic(array(item.position))
+    return mav.MAV_FRAME_GLOBAL_INT, command, 1, p1, p2, p3, p4, round(latitude * 1e7), round(longitude * 1e7), z

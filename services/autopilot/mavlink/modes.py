@@ -1,0 +1,76 @@
+"""Modes of the vehicles as PX4 ``custom_mode`` words: main mode << 16 | sub mode << 24 (px4_custom_mode.h)."""
+
+import math
+from dataclasses import dataclass
+
+from schemas.messages import Mode
+from services.autopilot.mavlink import dialect as mav
+
+_MANUAL = mav.MAV_MODE_FLAG_MANUAL_INPUT_ENABLED
+_STABLE = mav.MAV_MODE_FLAG_STABILIZE_ENABLED
+_AUTO = mav.MAV_MODE_FLAG_AUTO_ENABLED | mav.MAV_MODE_FLAG_GUIDED_ENABLED | _STABLE
+
+
+@dataclass(frozen=True)
+class Row:
+    """One mode on the wire; ``standard`` is filled only where a ground station's own name for it is right."""
+
+    mode: Mode
+    name: str
+    main: int
+    sub: int
+    flags: int
+    standard: int = mav.MAV_STANDARD_MODE_NON_STANDARD
+    properties: int = 0
+    listed: bool = True
+
+    @property
+    def custom(self) -> int:
+        return self.main << 16 | self.sub << 24
+
+
+TABLE = (
+    Row(Mode.MODE_MANUAL, "Manual", 1, 0, _MANUAL),
+    Row(Mode.MODE_STABILIZED, "Stabilized", 7, 0, _MANUAL | _STABLE),
+    Row(Mode.MODE_ALTITUDE, "Altitude", 2, 0, _MANUAL | _STABLE, mav.MAV_STANDARD_MODE_ALTITUDE_HOLD),
+    Row(Mode.MODE_POSITION, "Position", 3, 0, _MANUAL | _STABLE, listed=False),
+    Row(Mode.MODE_TAKEOFF, "Takeoff", 4, 2, _AUTO, mav.MAV_STANDARD_MODE_TAKEOFF),
+    Row(Mode.MODE_HOLD, "Hold", 4, 3, _AUTO),
+    Row(Mode.MODE_MISSION, "Mission", 4, 4, _AUTO, mav.MAV_STANDARD_MODE_MISSION),
+    Row(Mode.MODE_RETURN, "Return", 4, 5, _AUTO),
+    Row(Mode.MODE_LAND, "Land", 4, 6, _AUTO, mav.MAV_STANDARD_MODE_LAND),
+    Row(Mode.MODE_ORBIT, "Orbit", 3, 1, _AUTO, properties=mav.MAV_MODE_PROPERTY_NOT_USER_SELECTABLE),
+    Row(Mode.MODE_OFFBOARD, "Offboard", 6, 0, _AUTO, properties=mav.MAV_MODE_PROPERTY_ADVANCED, listed=False),
+)
+LISTED = tuple(row for row in TABLE if row.listed)
+"""The same for aircraft and rovers: QGroundControl keeps one list for all PX4-like vehicles. Each refuses what it cannot do."""
+
+_BY_MODE = {row.mode: row for row in TABLE}
+_BY_CUSTOM = {row.custom: row for row in TABLE}
+
+
+def row_of(mode: Mode) -> Row | None:
+    return _BY_MODE.get(mode)
+
+
+def from_custom(custom: int) -> Row | None:
+    """The mode of a custom_mode word, or None when there is no such mode."""
+    return _BY_CUSTOM.get(custom)
+
+
+def from_command(param2: float, param3: float) -> Row | None:
+    """DO_SET_MODE: main and sub mode (MAVSDK; sub may be NaN), or the whole word in param2 (Mission Planner)."""
+    if not math.isfinite(param2):
+        return None
+    if param2 > 255:
+        return from_custom(int(param2))
+    sub = int(param3) if math.isfinite(param3) else 0
+    return from_custom(int(param2) << 16 | sub << 24) if param2 >= 0 and 0 <= sub <= 255 else None
+
+
+def available(index: int) -> mav.MAVLink_available_modes_message | None:
+    """AVAILABLE_MODES number ``index`` (from 1), or None beyond the list."""
+    if not 1 <= index <= len(LISTED):
+        return None
+    row = LISTED[index - 1]
+    return mav.MAVLink_available_modes_message(len(LISTED), index, row.standard, row.custom, row.properties, row.name.encode())

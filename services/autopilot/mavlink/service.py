@@ -1,0 +1,128 @@
+"""MAVLink for every vehicle of the mission: the services' messages out to ground stations, their wishes in as requests."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from google.protobuf.message import Message
+
+from schemas import topics
+from schemas.messages import Battery, Clock, Event, Gnss, Mission, MissionProgress, NavState, VehicleStatus
+from services.autopilot.mavlink import dialect as mav
+from services.autopilot.mavlink.codec import AUTOPILOT, Codec
+from services.autopilot.mavlink.endpoint import Link
+from services.autopilot.mavlink.facts import Facts
+from services.autopilot.mavlink.line import Sender
+from services.autopilot.mavlink.vehicle_link import VehicleLink
+from uvf.runtime.service import Answer, Outputs, Service, each_vehicle, every, optional
+
+Answers = list[Answer[Any, Any]]
+
+
+class MavlinkService(Service):
+    """Runs on wall time: heartbeats, answers and timers go on while the simulation is slow or paused."""
+
+    name = "mavlink"
+    hz = 50.0
+    scope = "world"
+    clock = "wall"
+    inputs = {
+        "nav": each_vehicle(topics.NAV_STATE),
+        "status": each_vehicle(topics.STATUS),
+        "mission": each_vehicle(topics.MISSION),
+        "progress": each_vehicle(topics.PROGRESS),
+        "gnss": each_vehicle(topics.GNSS),
+        "battery": each_vehicle(topics.BATTERY),
+        "events": each_vehicle(every(topics.EVENTS.by("*"))),
+        "clock": optional(topics.CLOCK),
+    }
+    outputs = {"drive": topics.DRIVE.by("mavlink")}
+    calls = {
+        "arm": topics.ARM,
+        "set_mode": topics.SET_MODE,
+        "set_mission": topics.SET_MISSION,
+        "set_current": topics.SET_CURRENT,
+        "goal": topics.GOAL,
+    }
+
+    def __init__(self, facts: Sequence[Facts], link: Link) -> None:
+        self.codec = Codec()
+        self._link = link
+        self._vehicles = {one.name: VehicleLink(one) for one in facts}
+        self._own_ids = {one.system_id for one in facts}
+
+    def step(
+        self,
+        t: float,
+        nav: dict[str, NavState],
+        status: dict[str, VehicleStatus],
+        mission: dict[str, Mission],
+        progress: dict[str, MissionProgress],
+        gnss: dict[str, Gnss],
+        battery: dict[str, Battery],
+        events: dict[str, list[Event]],
+        clock: Clock | None,
+        arm: Answers,
+        set_mode: Answers,
+        set_mission: Answers,
+        set_current: Answers,
+        goal: Answers,
+    ) -> Outputs:
+        """``t`` [s]: wall time since the start; answers end the commands that wait for them."""
+        news: dict[str, Mapping[str, Message]] = {
+            "nav": nav,
+            "status": status,
+            "mission": mission,
+            "progress": progress,
+            "gnss": gnss,
+            "battery": battery,
+        }
+        self._update(t, news, clock)
+        for answer in (*arm, *set_mode, *set_mission, *set_current, *goal):
+            self._vehicles[answer.vehicle].line.answered(answer)
+        for datagram, peer in self._link.receive(t):
+            for message in self.codec.parse(datagram):
+                header = message.get_header()
+                self._route(message, Sender(peer, header.srcSystem, header.srcComponent))
+        self._speak(t, events)
+        return self._outputs()
+
+    def close(self) -> None:
+        self._link.close()
+
+    def _update(self, t: float, news: Mapping[str, Mapping[str, Message]], clock: Clock | None) -> None:
+        for name, vehicle in self._vehicles.items():
+            vehicle.line.t = t
+            vehicle.line.latest.clock = clock
+            for what, by_vehicle in news.items():
+                if name in by_vehicle:
+                    setattr(vehicle.line.latest, what, by_vehicle[name])
+
+    def _route(self, message: mav.MAVLink_message, sender: Sender) -> None:
+        """To the vehicle it is addressed to, or to all; own packets that come back are nobody's."""
+        if sender.system in self._own_ids:
+            return
+        target = getattr(message, "target_system", getattr(message, "target", 0))
+        if getattr(message, "target_component", 0) not in (0, AUTOPILOT):
+            return
+        for vehicle in self._vehicles.values():
+            if target in (0, vehicle.line.facts.system_id):
+                vehicle.hear(message, sender)
+
+    def _speak(self, t: float, events: Mapping[str, Sequence[Event]]) -> None:
+        peers = self._link.peers(t)
+        for name, vehicle in self._vehicles.items():
+            vehicle.forget(peers)
+            for message, to in vehicle.tick(peers, events.get(name, ())):
+                packet = self.codec.pack(vehicle.line.facts.system_id, message)
+                for peer in to if packet else ():
+                    self._link.send(packet, peer)
+
+    def _outputs(self) -> Outputs:
+        outputs: dict[str, dict[str, Any]] = {}
+        for name, vehicle in self._vehicles.items():
+            for call, request in vehicle.line.take_requests():
+                outputs.setdefault(call, {}).setdefault(name, []).append(request)
+            if vehicle.drive is not None:
+                outputs.setdefault("drive", {})[name] = vehicle.drive
+                vehicle.drive = None
+        return outputs

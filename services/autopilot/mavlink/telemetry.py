@@ -1,0 +1,193 @@
+"""What a vehicle tells unasked: estimated motion, status, battery, mission, as MAVLink messages.
+
+Every builder takes (facts, latest, t [s since the link came up]) and returns None while it knows nothing to say.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from schemas.convert import array, wxyz
+from schemas.messages import Gnss, Mode
+from services.autopilot.mavlink import dialect as mav
+from services.autopilot.mavlink import identity, navigation
+from services.autopilot.mavlink.facts import Facts, Latest
+from services.autopilot.mavlink.health import health
+from services.autopilot.mavlink.scaling import I32, U16, whole
+from services.autopilot.mavlink.scaling import compass as compass_of
+
+Message = mav.MAVLink_message | None
+Build = Callable[[Facts, Latest, float], Message]
+
+LOW, CRITICAL, EMERGENCY = 0.15, 0.07, 0.05  # of a full battery; as BAT_LOW_THR, BAT_CRIT_THR, BAT_EMERGEN_THR say
+
+
+@dataclass(frozen=True)
+class Stream:
+    """hz: default rate [1/s, wall]; 0 = only when asked for."""
+
+    build: Build
+    hz: float
+
+
+def _sys_status(facts: Facts, latest: Latest, t: float) -> Message:
+    bits = health(facts, latest)
+    battery = latest.battery
+    volts = whole(battery.voltage * 1e3, U16, 0xFFFF) if battery else 0xFFFF
+    amperes = whole(battery.current * 1e2, (-1, 2**15 - 1), -1) if battery else -1
+    left = whole(battery.remaining * 100, (-1, 100), -1) if battery else -1
+    return mav.MAVLink_sys_status_message(bits.present, bits.present, bits.healthy, 0, volts, amperes, left, 0, 0, 0, 0, 0, 0)
+
+
+def _battery_status(facts: Facts, latest: Latest, t: float) -> Message:
+    battery = latest.battery
+    if battery is None:
+        return None
+    cells = (whole(battery.voltage * 1e3, (0, 0xFFFE), 0xFFFF), *(0xFFFF,) * 9)
+    return mav.MAVLink_battery_status_message(
+        0,
+        mav.MAV_BATTERY_FUNCTION_ALL,
+        mav.MAV_BATTERY_TYPE_UNKNOWN,
+        2**15 - 1,
+        cells,
+        whole(battery.current * 1e2, (-1, 2**15 - 1), -1),
+        -1,
+        -1,
+        whole(battery.remaining * 100, (-1, 100), -1),
+        charge_state=charge_state(battery.remaining),
+    )
+
+
+def charge_state(remaining: float) -> int:
+    """MAV_BATTERY_CHARGE_STATE of a charge 0..1; negative or NaN = unknown."""
+    if not remaining >= 0:
+        return int(mav.MAV_BATTERY_CHARGE_STATE_UNDEFINED)
+    if remaining < EMERGENCY:
+        return int(mav.MAV_BATTERY_CHARGE_STATE_EMERGENCY)
+    if remaining < CRITICAL:
+        return int(mav.MAV_BATTERY_CHARGE_STATE_CRITICAL)
+    return int(mav.MAV_BATTERY_CHARGE_STATE_LOW if remaining < LOW else mav.MAV_BATTERY_CHARGE_STATE_OK)
+
+
+def _gps_raw(facts: Facts, latest: Latest, t: float) -> Message:
+    """Only vehicles with a receiver have one to report. Dilutions of precision are not modelled: unknown."""
+    gnss = latest.gnss
+    if gnss is None or facts.sensors.gnss is None:
+        return None
+    velocity = array(gnss.velocity_enu)
+    return mav.MAVLink_gps_raw_int_message(
+        whole(t * 1e6, (0, 2**63)),
+        mav.GPS_FIX_TYPE_3D_FIX if gnss.fix >= Gnss.FIX_3D else mav.GPS_FIX_TYPE_NO_FIX,
+        whole(math.degrees(gnss.latitude) * 1e7, I32),
+        whole(math.degrees(gnss.longitude) * 1e7, I32),
+        whole(gnss.altitude * 1e3, I32),
+        0xFFFF,
+        0xFFFF,
+        whole(float(np.hypot(velocity[0], velocity[1])) * 100, U16, 0xFFFF),
+        whole(compass_of(velocity) * 100, U16, 0xFFFF),
+        min(gnss.satellites, 255),
+        h_acc=whole(gnss.horizontal_accuracy * 1e3, (0, 2**32 - 1)),
+        v_acc=whole(gnss.vertical_accuracy * 1e3, (0, 2**32 - 1)),
+        vel_acc=whole(gnss.speed_accuracy * 1e3, (0, 2**32 - 1)),
+    )
+
+
+def _wind(facts: Facts, latest: Latest, t: float) -> Message:
+    """Velocity of the air in NED; aircraft only."""
+    if latest.nav is None or facts.is_ground:
+        return None
+    east, north, up = array(latest.nav.wind)
+    return mav.MAVLink_wind_cov_message(whole(t * 1e6, (0, 2**63)), north, east, -up, 0.0, 0.0, math.nan, 0.0, 0.0)
+
+
+def _estimator_status(facts: Facts, latest: Latest, t: float) -> Message:
+    if latest.nav is None:
+        return None
+    flags = mav.ESTIMATOR_ATTITUDE | mav.ESTIMATOR_VELOCITY_HORIZ | mav.ESTIMATOR_POS_HORIZ_REL
+    flags |= mav.ESTIMATOR_POS_HORIZ_ABS | mav.ESTIMATOR_PRED_POS_HORIZ_REL | mav.ESTIMATOR_PRED_POS_HORIZ_ABS
+    flags |= 0 if facts.is_ground else mav.ESTIMATOR_VELOCITY_VERT | mav.ESTIMATOR_POS_VERT_ABS
+    if latest.is_silent:
+        flags = mav.ESTIMATOR_CONST_POS_MODE
+    nan = math.nan
+    sigma = latest.nav.position_sigma
+    return mav.MAVLink_estimator_status_message(whole(t * 1e6, (0, 2**63)), flags, nan, nan, nan, nan, nan, nan, sigma, nan)
+
+
+def _home_position(facts: Facts, latest: Latest, t: float) -> Message:
+    home = latest.home
+    if home is None or not np.isfinite(home).all():
+        return None
+    latitude, longitude, altitude = facts.geodetic(home)
+    nan = math.nan
+    return mav.MAVLink_home_position_message(
+        whole(latitude * 1e7, I32),
+        whole(longitude * 1e7, I32),
+        whole(altitude * 1e3, I32),
+        *(home[1], home[0], -home[2]),
+        (nan,) * 4,
+        *(nan, nan, nan),
+        whole(t * 1e6, (0, 2**63)),
+    )
+
+
+def landed_state(facts: Facts, latest: Latest) -> int:
+    """MAV_LANDED_STATE. An armed rover counts as in the air, as PX4's does: else no ground station lets it be guided."""
+    status = latest.status
+    if status is None:
+        return int(mav.MAV_LANDED_STATE_UNDEFINED)
+    if facts.is_ground:
+        return int(mav.MAV_LANDED_STATE_IN_AIR if status.armed else mav.MAV_LANDED_STATE_ON_GROUND)
+    if status.landed:
+        return int(mav.MAV_LANDED_STATE_ON_GROUND)
+    special = {Mode.MODE_TAKEOFF: mav.MAV_LANDED_STATE_TAKEOFF, Mode.MODE_LAND: mav.MAV_LANDED_STATE_LANDING}
+    return int(special.get(status.mode, mav.MAV_LANDED_STATE_IN_AIR))
+
+
+def _extended_sys_state(facts: Facts, latest: Latest, t: float) -> Message:
+    return mav.MAVLink_extended_sys_state_message(mav.MAV_VTOL_STATE_UNDEFINED, landed_state(facts, latest))
+
+
+def mission_current(latest: Latest, seq: int | None = None) -> mav.MAVLink_mission_current_message:
+    """``seq``: an item just set, ahead of the autopilot's next report."""
+    progress = latest.progress
+    if progress is None or progress.state == progress.NO_MISSION:
+        return mav.MAVLink_mission_current_message(0, 0, mav.MISSION_STATE_NO_MISSION)
+    state = progress.state + 1  # MISSION_STATE counts from UNKNOWN
+    flying = latest.status is not None and latest.status.mode == Mode.MODE_MISSION
+    item = min(progress.current if seq is None else seq, 0xFFFF)
+    return mav.MAVLink_mission_current_message(item, min(progress.total, 0xFFFE), state, 1 if flying else 2, progress.mission_id)
+
+
+def _quaternion(facts: Facts, latest: Latest, t: float) -> Message:
+    if latest.nav is None:
+        return None
+    w, x, y, z = navigation.ned_from_frd(wxyz(latest.nav.orientation))
+    roll, pitch, yaw = navigation.frd_rates(latest.nav)
+    return mav.MAVLink_attitude_quaternion_message(navigation.boot_ms(t), w, x, y, z, roll, pitch, yaw)
+
+
+STREAMS: dict[int, Stream] = {
+    mav.MAVLINK_MSG_ID_HEARTBEAT: Stream(lambda f, n, t: identity.heartbeat(f, n), 1),
+    mav.MAVLINK_MSG_ID_SYS_STATUS: Stream(_sys_status, 1),
+    mav.MAVLINK_MSG_ID_SYSTEM_TIME: Stream(lambda f, n, t: mav.MAVLink_system_time_message(0, navigation.boot_ms(t)), 1),
+    mav.MAVLINK_MSG_ID_GPS_RAW_INT: Stream(_gps_raw, 5),
+    mav.MAVLINK_MSG_ID_ATTITUDE: Stream(navigation.attitude, 20),
+    mav.MAVLINK_MSG_ID_ATTITUDE_QUATERNION: Stream(_quaternion, 20),
+    mav.MAVLINK_MSG_ID_LOCAL_POSITION_NED: Stream(navigation.local_position, 5),
+    mav.MAVLINK_MSG_ID_GLOBAL_POSITION_INT: Stream(navigation.global_position, 10),
+    mav.MAVLINK_MSG_ID_MISSION_CURRENT: Stream(lambda f, n, t: mission_current(n), 1),
+    mav.MAVLINK_MSG_ID_NAV_CONTROLLER_OUTPUT: Stream(navigation.controller_output, 3),
+    mav.MAVLINK_MSG_ID_VFR_HUD: Stream(navigation.hud, 10),
+    mav.MAVLINK_MSG_ID_ALTITUDE: Stream(navigation.altitude, 5),
+    mav.MAVLINK_MSG_ID_BATTERY_STATUS: Stream(_battery_status, 1),
+    mav.MAVLINK_MSG_ID_ESTIMATOR_STATUS: Stream(_estimator_status, 1),
+    mav.MAVLINK_MSG_ID_WIND_COV: Stream(_wind, 1),
+    mav.MAVLINK_MSG_ID_HOME_POSITION: Stream(_home_position, 0.5),
+    mav.MAVLINK_MSG_ID_EXTENDED_SYS_STATE: Stream(_extended_sys_state, 1),
+    mav.MAVLINK_MSG_ID_CURRENT_MODE: Stream(lambda f, n, t: identity.current_mode(n), 0.5),
+    mav.MAVLINK_MSG_ID_GPS_GLOBAL_ORIGIN: Stream(navigation.global_origin, 0),
+    mav.MAVLINK_MSG_ID_AUTOPILOT_VERSION: Stream(lambda f, n, t: identity.autopilot_version(f), 0),
+    mav.MAVLINK_MSG_ID_PROTOCOL_VERSION: Stream(lambda f, n, t: identity.protocol_version(), 0),
+}

@@ -1,0 +1,159 @@
+"""Everything that one vehicle hears and says: messages to the protocols, telemetry by schedule, changes at once."""
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from schemas.messages import DriveCommand, Event
+from services.autopilot.mavlink import dialect as mav
+from services.autopilot.mavlink.actions import ACTIONS, on_set_mode
+from services.autopilot.mavlink.commands import Commands
+from services.autopilot.mavlink.endpoint import Peer
+from services.autopilot.mavlink.facts import Facts
+from services.autopilot.mavlink.ftp import on_ftp
+from services.autopilot.mavlink.health import health
+from services.autopilot.mavlink.identity import GREETING
+from services.autopilot.mavlink.line import Line, Sender
+from services.autopilot.mavlink.manual import drive_command
+from services.autopilot.mavlink.missions import Missions
+from services.autopilot.mavlink.parameters import Parameters
+from services.autopilot.mavlink.queries import Queries
+from services.autopilot.mavlink.statustext import SEVERITY, event_text
+from services.autopilot.mavlink.streams import Schedule
+from services.autopilot.mavlink.telemetry import STREAMS
+
+Handler = Callable[[Any, Sender], None]
+ON_CHANGE = (
+    mav.MAVLINK_MSG_ID_HEARTBEAT,
+    mav.MAVLINK_MSG_ID_EXTENDED_SYS_STATE,
+    mav.MAVLINK_MSG_ID_CURRENT_MODE,
+)
+
+
+class VehicleLink:
+    def __init__(self, facts: Facts) -> None:
+        self.line = Line(facts)
+        self.drive: DriveCommand | None = None
+        """Set by MANUAL_CONTROL, taken by the service."""
+        self.schedule = Schedule({number: stream.hz for number, stream in STREAMS.items()})
+        self._parameters = Parameters(self.line)
+        self._missions = Missions(self.line)
+        self._handlers = self._all_handlers()
+        self._greeted: set[Peer] = set()
+        self._state: tuple[object, ...] = ()
+        self._item: tuple[object, ...] = ()
+        self._reached: tuple[int, int] | None = None
+        self._complaints: tuple[str, ...] = ()
+
+    def _all_handlers(self) -> dict[int, Handler]:
+        line, commands = self.line, Commands(self.line, {**ACTIONS, **Queries(self.schedule).handlers()})
+        parameters, missions = self._parameters, self._missions
+        return {
+            mav.MAVLINK_MSG_ID_COMMAND_LONG: commands.on_long,
+            mav.MAVLINK_MSG_ID_COMMAND_INT: commands.on_int,
+            mav.MAVLINK_MSG_ID_COMMAND_CANCEL: commands.on_cancel,
+            mav.MAVLINK_MSG_ID_SET_MODE: lambda m, sender: on_set_mode(line, m),
+            mav.MAVLINK_MSG_ID_PARAM_REQUEST_LIST: parameters.on_request_list,
+            mav.MAVLINK_MSG_ID_PARAM_REQUEST_READ: parameters.on_request_read,
+            mav.MAVLINK_MSG_ID_PARAM_SET: parameters.on_set,
+            mav.MAVLINK_MSG_ID_MISSION_COUNT: missions.on_count,
+            mav.MAVLINK_MSG_ID_MISSION_ITEM_INT: missions.on_item,
+            mav.MAVLINK_MSG_ID_MISSION_REQUEST_LIST: missions.on_request_list,
+            mav.MAVLINK_MSG_ID_MISSION_REQUEST_INT: missions.on_request,
+            mav.MAVLINK_MSG_ID_MISSION_REQUEST: missions.on_request,
+            mav.MAVLINK_MSG_ID_MISSION_ACK: missions.on_ack,
+            mav.MAVLINK_MSG_ID_MISSION_CLEAR_ALL: missions.on_clear,
+            mav.MAVLINK_MSG_ID_MISSION_WRITE_PARTIAL_LIST: missions.on_write_partial,
+            mav.MAVLINK_MSG_ID_MISSION_SET_CURRENT: missions.on_set_current,
+            mav.MAVLINK_MSG_ID_FILE_TRANSFER_PROTOCOL: lambda m, sender: on_ftp(line, m, sender),
+            mav.MAVLINK_MSG_ID_MANUAL_CONTROL: self._on_manual,
+            mav.MAVLINK_MSG_ID_PING: self._on_ping,
+            mav.MAVLINK_MSG_ID_TIMESYNC: self._on_timesync,
+            mav.MAVLINK_MSG_ID_LOG_REQUEST_LIST: self._on_log_list,
+        }
+
+    def hear(self, message: mav.MAVLink_message, sender: Sender) -> None:
+        """One message for this vehicle. A peer's first one is greeted with what this vehicle is."""
+        if sender.peer not in self._greeted:
+            self._greeted.add(sender.peer)
+            self.line.text(mav.MAV_SEVERITY_INFO, GREETING, sender.peer)
+            for complaint in self._complaints:
+                self.line.text(mav.MAV_SEVERITY_WARNING, f"PreArm: {complaint}", sender.peer)
+        handler = self._handlers.get(message.get_msgId())
+        if handler is not None:
+            handler(message, sender)
+
+    def tick(self, peers: Sequence[Peer], events: Sequence[Event]) -> list[tuple[mav.MAVLink_message, list[Peer]]]:
+        """What goes out now, and to whom, after the messages of this step have been heard."""
+        line = self.line
+        line.expire()
+        self._parameters.tick()
+        self._missions.tick()
+        for event in events:
+            line.text(SEVERITY.get(event.severity, mav.MAV_SEVERITY_INFO), event_text(event))
+        self._note_changes()
+        out = [(message, [to] if to is not None else list(peers)) for message, to in line.take_out()]
+        for number, to in self.schedule.due(line.t, peers):
+            message = STREAMS[number].build(line.facts, line.latest, line.t)
+            if message is not None:
+                out.append((message, to))
+        return out
+
+    def forget(self, peers: Sequence[Peer]) -> None:
+        """Peers that are gone are greeted again, and get default rates, when they come back."""
+        self._greeted &= set(peers)
+        self.schedule.forget(peers)
+
+    def _note_changes(self) -> None:
+        """Mode, arming, mission item and reasons against arming are told at once, not at their next turn."""
+        status, progress = self.line.latest.status, self.line.latest.progress
+        state = (status.mode, status.armed, status.landed, status.stopped) if status is not None else ()
+        if state != self._state:
+            self._state = state
+            self._hurry(*ON_CHANGE)
+        item = (progress.current, progress.state, progress.mission_id) if progress is not None else ()
+        if item != self._item:
+            self._item = item
+            self._hurry(mav.MAVLINK_MSG_ID_MISSION_CURRENT)
+        self._note_reached()
+        self._note_complaints()
+
+    def _note_reached(self) -> None:
+        """Each item once for each lap; nothing for what was reached before the link came up."""
+        progress = self.line.latest.progress
+        if progress is None:
+            return
+        reached = (progress.laps, progress.reached)
+        if self._reached not in (None, reached) and progress.reached >= 0:
+            self.line.send(mav.MAVLink_mission_item_reached_message(min(progress.reached, 0xFFFF)))
+        self._reached = reached
+
+    def _note_complaints(self) -> None:
+        latest = self.line.latest
+        complaints = health(self.line.facts, latest).complaints if latest.status is not None else ()
+        if complaints == self._complaints:
+            return
+        for complaint in (c for c in complaints if c not in self._complaints):
+            self.line.text(mav.MAV_SEVERITY_WARNING, f"PreArm: {complaint}")
+        self._complaints = complaints
+        self._hurry(mav.MAVLINK_MSG_ID_SYS_STATUS)
+
+    def _hurry(self, *messages: int) -> None:
+        for message in messages:
+            self.schedule.hurry(message, self.line.t)
+
+    def _on_manual(self, message: mav.MAVLink_manual_control_message, sender: Sender) -> None:
+        self.drive = drive_command(message, self.line.facts, self.line.latest) or self.drive
+
+    def _on_ping(self, message: mav.MAVLink_ping_message, sender: Sender) -> None:
+        if message.target_system == 0:
+            reply = mav.MAVLink_ping_message(message.time_usec, message.seq, sender.system, sender.component)
+            self.line.send(reply, sender.peer)
+
+    def _on_timesync(self, message: mav.MAVLink_timesync_message, sender: Sender) -> None:
+        if message.tc1 == 0:
+            now = round(self.line.t * 1e9)
+            self.line.send(mav.MAVLink_timesync_message(now, message.ts1, sender.system, sender.component), sender.peer)
+
+    def _on_log_list(self, message: mav.MAVLink_log_request_list_message, sender: Sender) -> None:
+        """No logs are served over MAVLink."""
+        self.line.send(mav.MAVLink_log_entry_message(0, 0, 0, 0, 0), sender.peer)
