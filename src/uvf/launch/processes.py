@@ -131,7 +131,7 @@ def run_recorder(folder: Path, mission: str) -> None:
         site = load_site(settings.mission_path(mission))
         with open_bus(life) as bus:
             arrived: list[Sample] = []
-            bus.subscribe(f"{topics.PREFIX}/**", topics.Qos.EVENT, arrived.append, DEPTH)
+            bus.subscribe_all(arrived.append, DEPTH)
             bus.token(f"@node/sys/recorder/{bus.boot:x}")
             number = 0
             while not life.stop.is_set() and not life.orphaned():

@@ -10,15 +10,16 @@ from google.protobuf.text_format import MessageToString
 from rich.console import Console
 from rich.table import Table
 
-from schemas.topics import PREFIX, REQUESTS, TOPICS, Qos
+from schemas.topics import PREFIX, REQUESTS, TOPICS
 from uvf.launch import settings
-from uvf.runtime.bus import Sample
+from uvf.runtime.bus import Sample, matches
 from uvf.runtime.params import BadInput, nearest
 from uvf.runtime.replay import topic_of
 from uvf.runtime.zenoh_bus import ZenohBus
 
 LOOK = 0.02  # s
 LIVE_SECONDS = 2.0
+DEPTH = 16_384
 console = Console()
 
 
@@ -40,7 +41,7 @@ def _full(key: str) -> str:
 
 def _listen(key: str, heard: Callable[[Sample], None], go_on: Callable[[], bool]) -> None:
     with ZenohBus(settings.router_endpoint(), timeout=3.0) as bus:
-        bus.subscribe(_full(key), Qos.LATCHED, heard, depth=4096)
+        bus.subscribe_all(lambda sample: heard(sample) if matches(_full(key), sample.key) else None, depth=DEPTH)
         try:
             while go_on():
                 time.sleep(LOOK)

@@ -19,23 +19,23 @@ class Slot:
         self._input = declared
         self._max_age = float("inf") if ageless else declared.topic.max_age * NS
         self._ageless = ageless
-        self._arrived: deque[Sample] = deque(maxlen=EVERY_DEPTH)
+        self.arrived: deque[Sample] = deque(maxlen=EVERY_DEPTH)
         self._fresh: list[tuple[int, Message]] = []
         self._latest: tuple[int, Message] | None = None
         self.malformed: list[str] = []
 
     def push(self, sample: Sample) -> None:
-        self._arrived.append(sample)
+        self.arrived.append(sample)
 
     def take(self, t_ns: int) -> None:
         """Makes readable what is stamped before ``t_ns``, ordered by (stamp, key, seq)."""
-        if not self._arrived:
+        if not self.arrived:
             return
-        ready = [s for s in self._arrived if self._ageless or s.stamp_ns < t_ns]
+        ready = [s for s in self.arrived if self._ageless or s.stamp_ns < t_ns]
         if not ready:
             return
-        waiting = [s for s in self._arrived if not self._ageless and s.stamp_ns >= t_ns]
-        self._arrived = deque(waiting, maxlen=EVERY_DEPTH)
+        waiting = [s for s in self.arrived if not self._ageless and s.stamp_ns >= t_ns]
+        self.arrived = deque(waiting, maxlen=EVERY_DEPTH)
         ready.sort(key=lambda s: (s.stamp_ns, s.key, s.seq))
         for sample in ready if self._input.every else ready[-1:]:
             self._accept(sample)
@@ -79,6 +79,10 @@ class InputBox:
         if owner not in self._slots:
             self._slots[owner] = Slot(self.declared, self._ageless)
         self._slots[owner].push(sample)
+
+    def unread(self) -> list[Sample]:
+        """What has arrived but has not been taken yet."""
+        return [sample for slot in self._slots.values() for sample in slot.arrived]
 
     def take(self, t_ns: int) -> None:
         for slot in self._slots.values():

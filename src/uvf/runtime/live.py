@@ -84,7 +84,7 @@ class Live:
         self._epoch = clock.epoch
         for shell in self._sim:
             if not first:
-                shell.restart(clock.epoch)
+                shell.restart(clock.t_ns)
             shell.skip_to(clock.t_ns, count=False)
 
     def _await_announced(self, clock: Clock) -> None:

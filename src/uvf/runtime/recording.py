@@ -76,8 +76,8 @@ class Recorder:
         self.close()
 
     def follow(self, bus: Bus) -> None:
-        """Subscribes to everything that the table says is logged, and to all else below ``uvf/``."""
-        bus.subscribe(f"{PREFIX}/**", Qos.EVENT, self.write, DEPTH)
+        """Subscribes to everything below ``uvf/`` (on Zenoh, ``ZenohBus.subscribe_all`` brings the history too)."""
+        bus.subscribe(f"{PREFIX}/**", Qos.SENSOR, self.write, DEPTH)
 
     def write(self, sample: Sample) -> None:
         """One message; a full disk ends the recording with one line in ``error``, never the program."""

@@ -7,7 +7,7 @@ from typing import Any
 
 from google.protobuf.message import DecodeError, Message
 
-from schemas.topics import SYSTEM, Request, Topic
+from schemas.topics import SYSTEM, Qos, Request, Topic
 from uvf.runtime.bus import Bus, Publisher, Query
 from uvf.runtime.clock import NS, first_step_after, step_time
 from uvf.runtime.inbox import EVERY_DEPTH, InputBox
@@ -48,13 +48,22 @@ class Shell:
         self._queries: dict[str, deque[Query]] = {name: deque() for name in self.type.requests}
         self._answers: dict[str, deque[tuple[int, Answer[Any, Any]]]] = {name: deque() for name in self.type.calls}
         self.service: Service
-        self.restart(0)
+        self._boxes: dict[str, InputBox] = {}
+        self._make()
         self._subscribe()
 
-    def restart(self, epoch: int) -> None:
-        """Makes the service afresh: at the start, and when the clock's epoch rises."""
-        if epoch:
-            self.service.close()
+    def restart(self, t_ns: int) -> None:
+        """Makes the service afresh because the clock's epoch has risen and time stands at ``t_ns`` [ns] again.
+
+        Of what has arrived, only what the new epoch has already sent is kept: some may be faster than the clock.
+        """
+        self.service.close()
+        kept = [(name, sample) for name, box in self._boxes.items() for sample in box.unread() if sample.stamp_ns <= t_ns]
+        self._make()
+        for name, sample in kept:
+            self._boxes[name].push(sample)
+
+    def _make(self) -> None:
         self.service = self.host.make()
         ageless = self.type.clock == "wall"
         self._boxes = {name: InputBox(declared, ageless) for name, declared in self.type.declared_inputs().items()}
@@ -159,13 +168,21 @@ class Shell:
         if len(flat) != len(queries):
             raise ContractError(f"{self.type.name}: {len(queries)} requests '{name}' but {len(flat)} replies")
         for query, reply in zip(queries, flat, strict=True):
-            query.answer(reply.SerializeToString(deterministic=True), t_ns)
+            self._answer(name, query, reply, t_ns)
+
+    def _answer(self, name: str, query: Query, reply: Message, t_ns: int) -> None:
+        """Sends the reply, and both halves as messages of their own, so that logs hold them."""
+        payload = reply.SerializeToString(deterministic=True)
+        query.answer(payload, t_ns)
+        request = self.type.requests[name]
+        self._put(f"{query.key}/request", request.message, Qos.EVENT, query.payload, t_ns)
+        self._put(f"{query.key}/reply", request.reply, Qos.EVENT, payload, t_ns)
 
     def _refuse_requests(self, missing: tuple[str, ...], t_ns: int) -> None:
         for name, request in self.type.requests.items():
             for query in self._decodable(name, request, t_ns):
                 reply = request.reply(accepted=False, reason=f"{self.type.name} waits for {', '.join(missing)}")
-                query.answer(reply.SerializeToString(deterministic=True), t_ns)
+                self._answer(name, query, reply, t_ns)
 
     def _publish(self, outputs: Outputs, t_ns: int) -> None:
         now = t_ns if self.type.clock == "sim" else self.sim_ns
@@ -189,8 +206,11 @@ class Shell:
         if isinstance(topic, Request):
             self._call(name, topic, owner, message, payload, stamp)
             return
+        self._put(key, topic.message, topic.qos, payload, stamp)
+
+    def _put(self, key: str, message: type[Message], qos: Qos, payload: bytes, stamp: int) -> None:
         if key not in self._publishers:
-            self._publishers[key] = self._bus.publisher(key, topic.message.DESCRIPTOR.full_name, topic.qos)
+            self._publishers[key] = self._bus.publisher(key, message.DESCRIPTOR.full_name, qos)
         self.counters.published[key] = self._publishers[key].put(payload, stamp)
 
     def _call(self, name: str, request: Request[Any, Any], owner: str, message: Message, payload: bytes, stamp: int) -> None:

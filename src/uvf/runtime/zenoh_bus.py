@@ -16,7 +16,7 @@ from typing import Any
 import zenoh
 from zenoh import ext
 
-from schemas.topics import PREFIX, Qos
+from schemas.topics import PREFIX, TOPICS, Qos
 from uvf.runtime.bus import OnReply, Query, Sample, Sink, matches
 from uvf.runtime.params import BadInput
 
@@ -129,6 +129,25 @@ class ZenohBus:
             made = self._session.declare_subscriber(key, handler)
         self._inbound.append((made, sink))
         self._wanted.append(key)
+
+    def subscribe_all(self, sink: Sink, depth: int) -> None:
+        """Everything below ``uvf/``, each message once, with the history of latched and event topics.
+
+        An advanced subscriber on all keys would do, but it drops messages of plain publishers at random.
+        """
+        seen: set[tuple[str, int, int]] = set()
+
+        def once(sample: Sample) -> None:
+            identity = (sample.key, sample.boot, sample.seq)
+            if identity not in seen:
+                seen.add(identity)
+                sink(sample)
+
+        kept = [topic for topic in TOPICS.values() if topic.qos in _KEPT]
+        patterns = [topic.by("*").at("*") for topic in kept]
+        self.subscribe(f"{PREFIX}/**", Qos.SENSOR, lambda s: (once if any(matches(k, s.key) for k in patterns) else sink)(s), depth)
+        for topic, pattern in zip(kept, patterns, strict=True):
+            self.subscribe(pattern, topic.qos, once, EVENT_HISTORY)
 
     def subscribed(self, keys: Iterable[str]) -> list[str]:
         """Those of the keys that some subscription of this session receives."""

@@ -1,0 +1,176 @@
+"""Small services that stand for the real ones wherever the runtime itself is tested."""
+
+from typing import Annotated
+
+import msgspec
+
+from schemas import topics
+from schemas.convert import seconds, stamp
+from schemas.messages import (
+    ArmRequest,
+    Clock,
+    DriveCommand,
+    Event,
+    Imu,
+    NavStatus,
+    Reply,
+    StopCommand,
+    WheelCommand,
+)
+from uvf.runtime.service import Params, Service, each_vehicle, every, of_role, optional
+from uvf.runtime.site import Host
+
+VEHICLES = ("alpha", "beta")
+
+
+class Plant(Service):
+    """A simulator of all vehicles: a number each, pushed by the wheels, with noise from a seed."""
+
+    name = "plant"
+    hz = 100.0
+    scope = "world"
+    simulator = True
+    inputs = {"wheels": each_vehicle(topics.WHEEL_COMMAND)}
+    outputs = {"imu": topics.IMU}
+
+    def __init__(self, rng):
+        self._rng = rng
+        self.state = dict.fromkeys(VEHICLES, 0.0)
+        self.times = []
+
+    def step(self, t, wheels):
+        self.times.append(t)
+        for name, command in wheels.items():
+            self.state[name] += command.left * 0.01
+        out = {}
+        for name in VEHICLES:
+            imu = Imu(timestamp=stamp(t))
+            imu.specific_force.x = self.state[name] + self._rng.normal(0, 0.01)
+            imu.angular_velocity.x = t
+            out[name] = [imu]
+        return {"imu": out}
+
+
+class PilotParams(Params):
+    gain: Annotated[float, msgspec.Meta(ge=0, le=10, description="of the loop", extra_json_schema={"unit": "1/s"})] = 1.0
+
+
+class Pilot(Service):
+    """A controller that notes everything it is handed."""
+
+    name = "pilot"
+    hz = 50.0
+    inputs = {"imu": every(topics.IMU), "goal": optional(topics.NAV_STATUS), "stop": optional(topics.STOP.by("*"))}
+    outputs = {"wheels": topics.WHEEL_COMMAND, "events": topics.EVENTS.by("pilot")}
+    requests = {"arm": topics.ARM}
+
+    def __init__(self):
+        self.params = PilotParams()
+        self.times = []
+        self.imu_times = []
+        self.goal_stamps = []
+        self.missing = []
+        self.stops = 0
+
+    def step(self, t, imu, goal, stop, arm):
+        self.times.append(t)
+        self.imu_times += [(t, i.angular_velocity.x) for i in imu]
+        self.stops += stop is not None and stop.engaged
+        if goal is not None:
+            self.goal_stamps.append((t, seconds(goal.timestamp)))
+        force = imu[-1].specific_force.x if imu else 0.0
+        events = [Event(timestamp=stamp(t), text="armed", source="pilot") for _ in arm]
+        replies = [Reply(accepted=a.arm, reason="" if a.arm else "only arming") for a in arm]
+        return {"wheels": WheelCommand(timestamp=stamp(t), left=1 - self.params.gain * force), "events": events, "arm": replies}
+
+    def stale(self, t, missing):
+        self.missing.append((t, missing))
+        return {"wheels": WheelCommand(timestamp=stamp(t))}
+
+
+class Thinker(Service):
+    """Slow work: its results come out half a second after the step."""
+
+    name = "thinker"
+    hz = 1.0
+    latency = 0.5
+    outputs = {"goal": topics.NAV_STATUS}
+    calls = {"arm": topics.ARM}
+
+    def __init__(self):
+        self.answers = []
+
+    def step(self, t, arm):
+        self.answers += [(t, a.reply.accepted) for a in arm if a.reply]
+        return {"goal": NavStatus(timestamp=stamp(t)), "arm": [ArmRequest(arm=True)]}
+
+
+class Follower(Service):
+    """Reads another vehicle's wheels, whichever the mission names its leader."""
+
+    name = "follower"
+    hz = 10.0
+    inputs = {"leader": of_role("leader", topics.WHEEL_COMMAND)}
+    outputs = {"drive": topics.DRIVE.by("follower")}
+
+    def __init__(self):
+        self.seen = []
+
+    def step(self, t, leader):
+        self.seen.append((t, seconds(leader.timestamp)))
+        leader.left = 1e9  # a message of its own: nobody else may see this
+        return {"drive": DriveCommand(timestamp=stamp(t), linear=1.0)}
+
+
+class Watcher(Service):
+    """A wall-clock service, as a page is."""
+
+    name = "watcher"
+    hz = 50.0
+    scope = "world"
+    clock = "wall"
+    inputs = {"clock": optional(topics.CLOCK), "wheels": each_vehicle(topics.WHEEL_COMMAND)}
+    outputs = {"stop": topics.STOP.by("watcher")}
+
+    def __init__(self):
+        self.clocks: list[Clock] = []
+        self.steps = 0
+        self.vehicles = set()
+
+    def step(self, t, clock, wheels):
+        self.steps += 1
+        self.vehicles |= set(wheels)
+        if clock is not None:
+            self.clocks.append(clock)
+        return {"stop": StopCommand(engaged=False)} if self.steps == 1 else {}
+
+
+class Toys:
+    """A run's hosts, and every instance they have made, by name."""
+
+    def __init__(self, rng_of):
+        self.made: dict[str, list[Service]] = {}
+        self._rng_of = rng_of
+
+    def _host(self, service, vehicle=None, make=None, roles=None):
+        def build():
+            instance = (make or service)()
+            self.made.setdefault(f"{service.name}.{vehicle}" if vehicle else service.name, []).append(instance)
+            return instance
+
+        return Host(service, build, vehicle, roles)
+
+    def processes(self) -> dict[str, list[Host]]:
+        """Process name -> its hosts."""
+        return {
+            "plant": [self._host(Plant, make=lambda: Plant(self._rng_of()))],
+            "pilot": [self._host(Pilot, name) for name in VEHICLES],
+            "thinker": [self._host(Thinker, "alpha"), self._host(Follower, "beta", roles={"leader": "alpha"})],
+        }
+
+    def watcher(self) -> Host:
+        return self._host(Watcher)
+
+    def one(self, name):
+        """The newest instance."""
+        return self.made[name][-1]
