@@ -11,6 +11,7 @@ from uvf.launch.worker import Worker, worker
 from uvf.runtime.bus import Query, Sample
 from uvf.runtime.conductor import Conductor
 from uvf.runtime.live import Live
+from uvf.runtime.params import BadInput
 from uvf.runtime.recording import DEPTH, Recorder
 from uvf.runtime.site import Site, load_site
 from uvf.runtime.zenoh_bus import ZenohBus, open_router
@@ -20,7 +21,8 @@ HELD_PERIOD = 0.5  # s, how often the clock is told again while it is held back 
 FLUSH_PERIOD = 1.0  # s
 ROTATE_BYTES = 500_000_000
 LOOK = 0.05  # s
-PATIENCE = 3.0  # s, from which a process that waits says for what
+CONNECT_PATIENCE = 2.0  # s, one attempt
+PATIENCE = 3.0  # s, after which a clock that is held back says by whom
 
 
 def run_router(listen: str) -> None:
@@ -35,12 +37,16 @@ def run_router(listen: str) -> None:
 
 
 def open_bus(life: Worker, blocking: bool = False) -> ZenohBus:
-    """Waits for the router for ever, and says so."""
-    endpoint = settings.router_endpoint()
-    life.warn(f"connecting to the router at {endpoint}")
-    bus = ZenohBus(endpoint, blocking)
-    life.warn("connected")
-    return bus
+    """Waits for the router until told to stop, and says so once."""
+    endpoint, said = settings.router_endpoint(), False
+    while not life.stop.is_set() and not life.orphaned():
+        try:
+            return ZenohBus(endpoint, blocking, CONNECT_PATIENCE)
+        except BadInput as error:
+            if not said:
+                life.warn(f"waiting: {error}")
+            said = True
+    raise SystemExit(0)
 
 
 def run_service(name: str, mission: str, vehicle: str | None, lockstep: bool = False) -> None:
