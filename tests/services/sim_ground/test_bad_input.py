@@ -1,0 +1,89 @@
+"""Mistakes in a vehicle's files end in one line that names the file and the mend."""
+
+import shutil
+
+import pytest
+import yaml
+
+from services.sim_ground.build import build
+from tests.services.sim_ground.ride import site_with
+from uvf.runtime.params import BadInput
+from uvf.runtime.site import ROOT, load_site
+
+
+@pytest.fixture
+def root(tmp_path):
+    """A copy of the burger and the house that a test may spoil."""
+    for folder in ("vehicles/burger", "worlds/house"):
+        shutil.copytree(ROOT / folder, tmp_path / folder)
+    return tmp_path
+
+
+def refusal(root, start=(6.0, 4.4, 0.0)):
+    mission = site_with(root, {"burger": start}).mission_path
+    with pytest.raises(BadInput) as caught:
+        build(load_site(mission, root))
+    assert "\n" not in str(caught.value)
+    return str(caught.value)
+
+
+def edit_urdf(root, old, new):
+    path = root / "vehicles/burger/burger.urdf"
+    assert old in path.read_text()
+    path.write_text(path.read_text().replace(old, new))
+
+
+def edit_vehicle(root, change):
+    path = root / "vehicles/burger/vehicle.yaml"
+    data = yaml.safe_load(path.read_text())
+    change(data)
+    path.write_text(yaml.safe_dump(data))
+
+
+def test_a_broken_tag(root):
+    edit_urdf(root, "</robot>", "</robt>")
+    assert "burger.urdf: not valid XML: mismatched tag" in refusal(root)
+
+
+def test_a_missing_urdf(root):
+    edit_vehicle(root, lambda data: data["ground"].update(urdf="burgr.urdf"))
+    assert "burgr.urdf: no such file; did you mean 'burger.urdf'?" in refusal(root)
+
+
+def test_an_unknown_wheel_joint(root):
+    edit_vehicle(root, lambda data: data["ground"].update(left_joint="wheel_left"))
+    assert "no joint 'wheel_left' (named in vehicle.yaml); did you mean 'wheel_left_joint'?" in refusal(root)
+
+
+def test_a_wheel_that_cannot_turn(root):
+    edit_urdf(root, '"wheel_left_joint" type="continuous"', '"wheel_left_joint" type="fixed"')
+    assert "joint 'wheel_left_joint' is 'fixed', but a wheel needs type=\"continuous\"" in refusal(root)
+
+
+def test_a_link_without_mass(root):
+    edit_urdf(root, '<mass value="0.114"/>', '<mass value="0"/>')
+    assert "link 'lidar': mass, ixx, iyy and izz must be numbers above zero" in refusal(root)
+
+
+def test_a_missing_mesh(root):
+    edit_urdf(root, '<box size="0.10 0.08 0.036"/>', '<mesh filename="body.stl"/>')
+    assert "link 'base_link': no mesh file 'body.stl' beside the URDF" in refusal(root)
+
+
+def test_another_kind_of_xml(root):
+    (root / "vehicles/burger/burger.urdf").write_text("<sdf/>")
+    assert "the outermost tag is <sdf>; a URDF begins with <robot>" in refusal(root)
+
+
+def test_a_physics_rate_that_does_not_fit_the_step(root):
+    edit_vehicle(root, lambda data: data["ground"].update(physics_hz=240.0))
+    assert "physics_hz is 240; make it a multiple of 100" in refusal(root)
+
+
+def test_a_sensor_rate_that_does_not_fit_the_step(root):
+    edit_vehicle(root, lambda data: data["sensors"]["lidar"].update(hz=7.0))
+    assert "lidar: hz is 7; make it a divisor of 100" in refusal(root)
+
+
+def test_a_start_inside_the_furniture(root):
+    assert "burger: start (0.6, 2.2) is 0.00 m from a wall or furniture" in refusal(root, (0.6, 2.2, 0.0))

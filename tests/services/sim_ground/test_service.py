@@ -1,0 +1,75 @@
+"""The service with a world of twenty lines: which command goes where, and what is told once."""
+
+import numpy as np
+import pytest
+
+from schemas.messages import WheelCommand
+from services.sim_ground.body import BodyState
+from services.sim_ground.rig import Rig
+from services.sim_ground.service import SimGround
+from tests.services.sim_ground.ride import site_with
+from uvf.maths.kinematics import WheelSpeeds
+
+
+class StandingWorld:
+    """Nothing moves; keeps what it was told."""
+
+    def __init__(self, positions, touching=None):
+        self.positions = positions
+        self.touching = touching
+        self.told = []
+
+    def advance(self, wheels, duration):
+        self.told.append((dict(wheels), duration))
+
+    def state(self, vehicle):
+        x, y = self.positions[vehicle]
+        identity, still = np.array((1.0, 0, 0, 0)), np.zeros(3)
+        return BodyState(np.array((x, y, 0.0)), identity, still, still, (0.0, 0.0), WheelSpeeds(0.0, 0.0))
+
+    def touched(self, vehicle):
+        return self.touching
+
+    def close(self):
+        self.told.append("closed")
+
+
+@pytest.fixture
+def site(tmp_path):
+    return site_with(tmp_path, {"one": (6.0, 4.4, 0.0), "two": (7.0, 4.4, 0.0)})
+
+
+def service_in(site, world):
+    rigs = {name: Rig(site, member, member.file.ground) for name, member in site.members.items()}
+    return SimGround(world, rigs, {name: member.file.sensors for name, member in site.members.items()})
+
+
+def test_each_command_goes_to_its_vehicle_for_one_period(site):
+    world = StandingWorld({"one": (6.0, 4.4), "two": (7.0, 4.4)})
+    service_in(site, world).step(0.01, commands={"two": WheelCommand(left=1.0, right=2.0)})
+    assert world.told == [({"two": (1.0, 2.0)}, 0.01)]
+
+
+def test_frames_are_told_at_the_first_step_only(site):
+    service = service_in(site, StandingWorld({"one": (6.0, 4.4), "two": (7.0, 4.4)}))
+    assert set(service.step(0.01, commands={})["frames"]) == {"one", "two"}
+    assert "frames" not in service.step(0.02, commands={})
+
+
+def test_the_neighbour_is_in_the_scan(site):
+    service = service_in(site, StandingWorld({"one": (6.0, 4.4), "two": (7.0, 4.4)}))
+    scan = service.step(0.2, commands={})["scan"]["one"]
+    assert scan.ranges[0] == pytest.approx(1.0 + 0.032 - 0.115, abs=0.04)
+
+
+def test_what_is_touched_is_named(site):
+    service = service_in(site, StandingWorld({"one": (6.0, 4.4), "two": (7.0, 4.4)}, touching="sofa"))
+    contact = service.step(0.05, commands={})["contact"]["two"]
+    assert contact.touching
+    assert contact.other == "sofa"
+
+
+def test_closing_gives_the_engine_back(site):
+    world = StandingWorld({"one": (6.0, 4.4), "two": (7.0, 4.4)})
+    service_in(site, world).close()
+    assert world.told == ["closed"]
