@@ -16,6 +16,8 @@ POSITION = slice(0, 2)  # m, odom frame
 HEADING = 2  # rad
 BIAS = 3  # rad/s, of the gyroscope
 
+AT_REST = 0.2  # s without a tick after which the wheels count as standing: a change of direction is shorter
+
 BIAS_FROM_STATE = np.array(((0.0, 0.0, 0.0, 1.0),))
 
 
@@ -41,6 +43,7 @@ class OdometryFilter:
         self._kf = ExtendedKalmanFilter(dim_x=4, dim_z=1)
         self._kf.x = np.zeros(4)
         self._kf.P = np.diag((0.0, 0.0, 0.0, noise.bias_start**2))
+        self._still_for = 0.0
         self.speeds = (0.0, 0.0)
         """(m/s, rad/s) of the last step, bias taken off."""
 
@@ -64,9 +67,11 @@ class OdometryFilter:
     def step(self, distance: float, wheel_turn: float, gyro: float | None, dt: float) -> None:
         """Moves on by ``dt`` [s]: distance [m] and turn [rad] told by the wheels, gyro: mean rate [rad/s] or None."""
         wheel_rate = wheel_turn / dt
+        self._still_for = self._still_for + dt if distance == 0.0 and wheel_turn == 0.0 else 0.0
         if gyro is not None:
-            still = distance == 0.0 and wheel_turn == 0.0
-            sigma = self._noise.rest if still else self._noise.slip
+            sigma = self._noise.rest if self._still_for > AT_REST else self._noise.slip
+            # A better bias shall not move the poses of the past: odometry drifts, but it never jumps.
+            self._kf.P[:BIAS, BIAS] = self._kf.P[BIAS, :BIAS] = 0.0
             self._kf.update(np.array((gyro - wheel_rate,)), lambda x: BIAS_FROM_STATE, lambda x: x[BIAS:], R=sigma**2)
         rate = wheel_rate if gyro is None else gyro - self.bias
         self._predict(distance, rate, dt)

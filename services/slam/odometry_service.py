@@ -27,7 +27,7 @@ class OdometryParams(Params, frozen=True):
     gyro_noise: Positive = 0.005  # rad/s
     bias_walk: Positive = 1e-4  # rad/s per square root of s
     bias_start: Positive = 0.05  # rad/s
-    slip_noise: Positive = 0.1  # rad/s, turn rate told by the wheels
+    slip_noise: Positive = 1.0  # rad/s, turn rate told by the wheels
     rest_noise: Positive = 0.01  # rad/s, the same while they stand still
     map_sigma: Positive = 0.02  # m, of a pose just corrected by the map
 
@@ -55,6 +55,7 @@ class OdometryService(Service):
             Noise(params.distance_noise, params.gyro_noise, params.bias_walk, params.bias_start, params.slip_noise, params.rest_noise)
         )
         self._last: WheelTicks | None = None
+        self._waiting: list[Imu] = []
         self._variance_at_correction = 0.0
 
     def step(self, t: float, wheels: WheelTicks, imu: list[Imu], correction: FrameTransform | None) -> Outputs:
@@ -71,21 +72,24 @@ class OdometryService(Service):
         }
 
     def _move(self, wheels: WheelTicks, imu: list[Imu]) -> None:
+        self._waiting += imu
         last, self._last = self._last, wheels
-        dt = seconds(wheels.timestamp) - seconds(last.timestamp) if last else 0.0
+        now = seconds(wheels.timestamp)
+        dt = now - seconds(last.timestamp) if last else 0.0
         if last is None or dt <= 0.0:
             return
         left = (wheels.left - last.left) * wheels.radians_per_tick * self._radius
         right = (wheels.right - last.right) * wheels.radians_per_tick * self._radius
-        self._filter.step((left + right) / 2, (right - left) / self._track, self._turn_rate(imu), dt)
+        self._filter.step((left + right) / 2, (right - left) / self._track, self._turn_rate_until(now), dt)
 
-    def _turn_rate(self, imu: list[Imu]) -> float | None:
-        """Mean of the gyroscope about the vehicle's upward axis [rad/s]."""
-        if not imu:
+    def _turn_rate_until(self, now: float) -> float | None:
+        """Mean of the gyroscope about the vehicle's upward axis [rad/s] over the interval that the wheels tell of."""
+        due = [m.angular_velocity for m in self._waiting if seconds(m.timestamp) <= now]
+        self._waiting = self._waiting[len(due) :]
+        if not due:
             return None
         x, y, z = self._up_from_imu
-        rates = [x * m.angular_velocity.x + y * m.angular_velocity.y + z * m.angular_velocity.z for m in imu]
-        return float(sum(rates) / len(rates))
+        return float(sum(x * w.x + y * w.y + z * w.z for w in due) / len(due))
 
     def _correct(self, correction: FrameTransform) -> None:
         shift = correction.translation
