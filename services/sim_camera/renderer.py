@@ -137,7 +137,7 @@ class BulletRenderer:
         forward, up = rotate(world_from_camera, np.array((1.0, 0.0, 0.0))), rotate(world_from_camera, np.array((0.0, 0.0, 1.0)))
         view = pybullet.computeViewMatrix(eye.tolist(), (eye + forward).tolist(), up.tolist())
         fov, aspect = float(np.degrees(vertical_fov(camera))), camera.width / camera.height
-        _, _, rgba, depth, _ = pybullet.getCameraImage(
+        _, _, rgba, _, seen = pybullet.getCameraImage(
             camera.width,
             camera.height,
             viewMatrix=view,
@@ -145,11 +145,10 @@ class BulletRenderer:
             lightDirection=TO_LIGHT,
             shadow=0,
             renderer=pybullet.ER_TINY_RENDERER,
-            flags=pybullet.ER_NO_SEGMENTATION_MASK,
             physicsClientId=self._client,
         )
         picture = np.array(rgba, dtype=np.uint8).reshape(camera.height, camera.width, 4)[:, :, :3]
-        picture[np.reshape(depth, picture.shape[:2]) >= 1.0] = SKY
+        picture[np.reshape(seen, picture.shape[:2]) < 0] = SKY  # nothing there
         return picture
 
     def close(self) -> None:

@@ -18,6 +18,7 @@ def check_urdf(path: Path, wheel_joints: Iterable[str]) -> None:
             raise BadInput(f"{path}: joint '{name}' is '{turning[name]}', but a wheel needs type=\"continuous\"")
     for link in robot.findall("link"):
         _check_link(path, link)
+    _check_tree(path, robot)
 
 
 def _read(path: Path) -> ElementTree.Element:
@@ -44,6 +45,22 @@ def _check_link(path: Path, link: ElementTree.Element) -> None:
     for mesh in link.iter("mesh"):
         if not (path.parent / mesh.get("filename", "")).is_file():
             raise BadInput(f"{path}: link '{name}': no mesh file '{mesh.get('filename')}' beside the URDF")
+
+
+def _check_tree(path: Path, robot: ElementTree.Element) -> None:
+    """Every joint ties two known links, and one link alone hangs on no joint."""
+    roots = {link.get("name", "?") for link in robot.findall("link")}
+    links = frozenset(roots)
+    for joint in robot.findall("joint"):
+        for end in ("parent", "child"):
+            tag = joint.find(end)
+            name = tag.get("link", "") if tag is not None else ""
+            if name not in links:
+                raise BadInput(f"{path}: joint '{joint.get('name')}': no {end} link '{name}'; {nearest(name, links)}")
+            if end == "child":
+                roots.discard(name)
+    if len(roots) != 1:
+        raise BadInput(f"{path}: one link must be the root, but without a parent joint are: {', '.join(sorted(roots)) or 'none'}")
 
 
 def _is_positive(text: str | None) -> bool:

@@ -70,6 +70,16 @@ def test_a_missing_mesh(root):
     assert "link 'base_link': no mesh file 'body.stl' beside the URDF" in refusal(root)
 
 
+def test_a_joint_on_an_unknown_link(root):
+    edit_urdf(root, '<child link="castor_link"/>', '<child link="caster_link"/>')
+    assert "joint 'castor_joint': no child link 'caster_link'; did you mean 'castor_link'?" in refusal(root)
+
+
+def test_a_link_that_hangs_in_the_air(root):
+    edit_urdf(root, "</robot>", '<link name="hook"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial></link></robot>')
+    assert "one link must be the root, but without a parent joint are: base_link, hook" in refusal(root)
+
+
 def test_another_kind_of_xml(root):
     (root / "vehicles/burger/burger.urdf").write_text("<sdf/>")
     assert "the outermost tag is <sdf>; a URDF begins with <robot>" in refusal(root)

@@ -1,0 +1,101 @@
+"""Pictures by the real renderer: things appear where the intrinsics say, in their colours."""
+
+import msgspec
+import numpy as np
+import pytest
+
+from services.sim_camera.optics import intrinsics, project
+from services.sim_camera.renderer import SKY, BulletRenderer, Look, Pose
+from uvf.maths.rotations import from_euler, matrix
+from uvf.runtime.params import BadInput
+from uvf.runtime.site import ROOT
+from uvf.runtime.vehicle_file import Camera, Mount
+from uvf.runtime.world_file import Cylinder, Field, Origin, WorldFile
+
+RED, BLUE = (0.9, 0.05, 0.05), (0.05, 0.05, 0.9)
+CAMERA = Camera(mount=Mount((0.1, 0.0, 0.3)), hz=5.0, width=160, height=120, fov=1.2, far=300.0)
+ORIGIN = Pose(np.zeros(3), from_euler(0.0, 0.0, 0.0))
+BALL = Cylinder("post", (4.0, 1.0, 0.2), 0.1, 0.2, RED)
+EMPTY = WorldFile(about="test", origin=Origin(0.0, 0.0), floor=(0.0, 0.0, 1.0, 1.0))
+
+
+def world_with(**parts):
+    return msgspec.structs.replace(EMPTY, **parts)
+
+
+def picture(world, camera=CAMERA, body=ORIGIN, vehicles=None, poses=None):
+    renderer = BulletRenderer(world, vehicles or {})
+    renderer.place(poses or {})
+    taken = renderer.picture(camera, body)
+    renderer.close()
+    return taken.astype(int)
+
+
+def centre_of(mask):
+    rows, columns = np.nonzero(mask)
+    return columns.mean(), rows.mean()
+
+
+def is_red(taken):
+    return (taken[:, :, 0] > 60) & (taken[:, :, 0] > 3 * taken[:, :, 1])
+
+
+@pytest.mark.parametrize("yaw", [0.0, 0.3])
+@pytest.mark.parametrize("pitch", [0.0, -0.1])
+def test_a_post_appears_where_the_intrinsics_say(yaw, pitch):
+    attitude = from_euler(0.0, pitch, yaw)
+    taken = picture(world_with(cylinders=[BALL]), body=Pose(np.zeros(3), attitude))
+    in_body = matrix(attitude).T @ np.array((4.0, 1.0, 0.3)) - np.array(CAMERA.mount.xyz)
+    optical = np.array((-in_body[1], -in_body[2], in_body[0]))
+    assert centre_of(is_red(taken)) == pytest.approx(project(intrinsics(CAMERA), optical), abs=1.0)
+
+
+def test_the_sky_is_above_and_the_ground_below():
+    taken = picture(EMPTY, body=Pose(np.array((0.0, 0.0, 50.0)), from_euler(0.0, 0.0, 0.0)))
+    assert (taken[0] == SKY).all()
+    assert (taken[-1, :, 1] > taken[-1, :, 2]).all()
+
+
+def test_a_field_lies_on_the_ground():
+    down = msgspec.structs.replace(CAMERA, mount=Mount((0.0, 0.0, 0.0), (0.0, np.pi / 2, 0.0)))
+    world = world_with(fields=[Field((-5.0, -50.0, 5.0, 50.0), BLUE)])
+    taken = picture(world, down, Pose(np.array((0.0, 0.0, 60.0)), from_euler(0.0, 0.0, 0.0)))
+    blue = taken[:, :, 2] > 2 * taken[:, :, 1]
+    width = 10.0 / 60.0 * intrinsics(down)[0, 0]
+    assert blue[:, 80].sum() == pytest.approx(width, abs=2)
+    assert not blue[0].any()
+
+
+def test_rolling_to_the_right_lowers_the_horizon_on_the_left():
+    taken = picture(EMPTY, body=Pose(np.array((0.0, 0.0, 50.0)), from_euler(0.4, 0.0, 0.0)))
+    sky = (taken == SKY).all(axis=2).sum(axis=0)
+    assert sky[10] > sky[150] + 20
+
+
+@pytest.mark.parametrize("look", [Look(), Look(urdf=ROOT / "vehicles/burger/burger.urdf")])
+def test_a_vehicle_is_seen_where_it_is_placed(look):
+    ahead = Pose(np.array((1.5, 0.0, 0.2)), from_euler(0.0, 0.0, 0.0))
+    away = Pose(np.array((1.5, 50.0, 0.2)), from_euler(0.0, 0.0, 0.0))
+    without, seen = (picture(EMPTY, vehicles={"other": look}, poses={"other": pose}) for pose in (away, ahead))
+    changed = (without != seen).any(axis=2)
+    assert changed.sum() > 50
+    column, row = centre_of(changed)
+    assert column == pytest.approx(79.5, abs=2)
+    assert 35 < row < 85
+
+
+def test_a_mesh_is_drawn(tmp_path):
+    mesh = tmp_path / "wedge.obj"
+    mesh.write_text("v 0 -1 0\nv 0 1 0\nv 0 0 1\nv 0.1 0 0\nf 1 2 3\nf 1 3 2\nf 1 4 3\nf 2 3 4\nf 1 2 4\n")
+    pose = {"other": Pose(np.array((6.0, 0.0, 0.0)), from_euler(0.0, 0.0, 0.0))}
+    assert (picture(EMPTY, vehicles={"other": Look(mesh=mesh)}, poses=pose) != picture(EMPTY)).any()
+
+
+def test_a_missing_mesh_is_named(tmp_path):
+    with pytest.raises(BadInput, match=r"hull\.obj: no such mesh file; mend 'air: mesh:'"):
+        BulletRenderer(EMPTY, {"other": Look(mesh=tmp_path / "hull.obj")})
+
+
+def test_the_same_scene_gives_the_same_bytes():
+    world = world_with(cylinders=[BALL])
+    assert (picture(world) == picture(world)).all()

@@ -1,0 +1,119 @@
+"""The service: with a renderer of ten lines, and in lockstep with the real one in the demo's world."""
+
+import io
+
+import msgspec
+import numpy as np
+import pytest
+from PIL import Image
+
+from schemas import topics
+from schemas.convert import seconds, stamp, vector
+from schemas.messages import CameraCalibration, CompressedImage, NavState
+from services.sim_camera.build import build
+from services.sim_camera.service import SimCamera
+from uvf.runtime.lockstep import Lockstep
+from uvf.runtime.params import BadInput
+from uvf.runtime.service import Service
+from uvf.runtime.site import ROOT, Host, load_site
+from uvf.runtime.vehicle_file import Camera, Mount
+
+CAMERA = Camera(mount=Mount(), hz=5.0, width=32, height=24, fov=1.2)
+SLOW = msgspec.structs.replace(CAMERA, hz=2.5)
+
+
+class GreyRenderer:
+    """Everything is grey; keeps where the vehicles were put."""
+
+    def __init__(self):
+        self.placed = {}
+
+    def place(self, poses):
+        self.placed.update(poses)
+
+    def picture(self, camera, body):
+        return np.full((camera.height, camera.width, 3), 128, dtype=np.uint8)
+
+    def close(self):
+        self.placed.clear()
+
+
+def at(x, t=0.18):
+    return NavState(timestamp=stamp(t), position=vector(np.array((x, 0.0, 0.0))))
+
+
+def test_a_picture_is_a_jpeg_with_the_stamp_of_its_pose():
+    image = SimCamera(GreyRenderer(), {"v": CAMERA}).step(0.2, truth={"v": at(1.0)})["image"]["v"]
+    decoded = Image.open(io.BytesIO(image.data))
+    assert (decoded.format, decoded.size, image.format) == ("JPEG", (32, 24), "jpeg")
+    assert abs(np.asarray(decoded).astype(int) - 128).max() <= 2
+    assert seconds(image.timestamp) == pytest.approx(0.18)
+    assert image.frame_id == "v/camera_optical"
+
+
+def test_without_a_pose_there_is_no_picture_of_this_vehicle():
+    images = SimCamera(GreyRenderer(), {"seen": CAMERA, "lost": CAMERA}).step(0.2, truth={"seen": at(1.0)})["image"]
+    assert set(images) == {"seen"}
+
+
+def test_vehicles_without_a_camera_are_placed_too():
+    renderer = GreyRenderer()
+    SimCamera(renderer, {"v": CAMERA}).step(0.2, truth={"v": at(1.0), "blind": at(7.0)})
+    assert renderer.placed["blind"].position[0] == 7.0
+
+
+def test_a_slower_camera_takes_every_second_turn():
+    service = SimCamera(GreyRenderer(), {"v": SLOW})
+    taken = [len(service.step(n / 5, truth={"v": at(1.0)})["image"]) for n in range(1, 7)]
+    assert taken == [0, 1, 0, 1, 0, 1]
+
+
+def test_intrinsics_are_told_once():
+    service = SimCamera(GreyRenderer(), {"v": CAMERA})
+    first, second = (service.step(t, truth={})["info"] for t in (0.2, 0.4))
+    assert list(first["v"].K) == pytest.approx([16 / np.tan(0.6), 0, 15.5, 0, 16 / np.tan(0.6), 11.5, 0, 0, 1])
+    assert second == {}
+
+
+class Walker(Service):
+    """Truth of a vehicle that walks along the living room."""
+
+    name = "walker"
+    hz = 50.0
+    outputs = {"truth": topics.TRUTH}
+
+    def step(self, t):
+        state = NavState(timestamp=stamp(t), position=vector(np.array((2.2 + 0.2 * t, 1.3, 0.0))))
+        return {"truth": state}
+
+
+def film(until):
+    """(images, infos) of the burger's camera in the demo's world, drawn for real."""
+    lockstep = Lockstep([*build(load_site(ROOT / "missions/demo.yaml")), Host(Walker, Walker, "burger")])
+    images, infos = [], []
+    lockstep.bus.subscribe(topics.IMAGE.at("burger"), topics.IMAGE.qos, lambda s: images.append(CompressedImage.FromString(s.payload)))
+    lockstep.bus.subscribe(
+        topics.CAMERA_INFO.at("*"), topics.CAMERA_INFO.qos, lambda s: infos.append(CameraCalibration.FromString(s.payload))
+    )
+    lockstep.run(until)
+    lockstep.close()
+    return images, infos
+
+
+def test_a_walk_through_the_house_is_filmed_the_same_twice():
+    first, infos = film(1.0)
+    second, _ = film(1.0)
+    assert len(first) == 5
+    assert {info.frame_id for info in infos} == {"burger/camera_optical", "milvus/camera_optical"}
+    assert len({image.data for image in first}) == 5
+    assert [image.data for image in first] == [image.data for image in second]
+
+
+def test_a_camera_rate_that_does_not_fit_is_refused():
+    site = load_site(ROOT / "missions/demo.yaml")
+    burger = site.members["burger"]
+    sensors = msgspec.structs.replace(burger.file.sensors, camera=msgspec.structs.replace(CAMERA, hz=3.0))
+    odd = msgspec.structs.replace(burger.file, sensors=sensors)
+    site.members["burger"] = type(burger)(burger.name, burger.entry, odd, burger.folder)
+    with pytest.raises(BadInput, match="camera: hz is 3; make it a divisor of 5"):
+        build(site)
