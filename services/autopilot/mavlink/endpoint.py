@@ -8,6 +8,7 @@ Peer = tuple[str, int]
 """Address and port of a ground station."""
 
 FORGET_AFTER = 60.0  # s of silence, learned peers only
+MOST_LEARNED = 32
 DATAGRAM_BYTES = 65536
 DATAGRAMS_PER_CALL = 500
 
@@ -66,7 +67,7 @@ class UdpLink:
                 break
             except OSError:
                 continue  # "connection refused" of an earlier datagram: nobody listens there yet
-            if peer not in self._targets:
+            if peer not in self._targets and (peer in self._learned or len(self._learned) < MOST_LEARNED):
                 self._learned[peer] = (t, sock)
             arrived.append((data, peer))
         return arrived

@@ -1,0 +1,161 @@
+"""A plane and a rover that answer requests like the real autopilots, on a LocalBus with the real MAVLink service, live."""
+
+import threading
+import time
+
+import numpy as np
+
+from schemas import topics
+from schemas.convert import array, quaternion, stamp, vector
+from schemas.messages import Gnss, Kind, Mission, MissionItem, MissionProgress, Mode, NavState, Reply, VehicleStatus
+from services.autopilot.mavlink.endpoint import UdpLink
+from services.autopilot.mavlink.service import MavlinkService
+from tests.services.autopilot.mavlink.rig import ORIGIN, PLANE_FACTS, ROVER_FACTS
+from uvf.maths.rotations import from_euler
+from uvf.runtime.bus import LocalBus
+from uvf.runtime.clock import NS
+from uvf.runtime.service import Service
+from uvf.runtime.shell import Shell
+from uvf.runtime.site import Host
+
+SPEED = 60.0  # m/s
+
+
+class ScriptedVehicle(Service):
+    """Flies straight from item to item in mode Mission, stands still in every other."""
+
+    name = "scripted"
+    hz = 50.0
+    outputs = {
+        "nav": topics.NAV_STATE,
+        "status": topics.STATUS,
+        "mission": topics.MISSION,
+        "progress": topics.PROGRESS,
+        "gnss": topics.GNSS,
+    }
+    requests = {
+        "arm": topics.ARM,
+        "set_mode": topics.SET_MODE,
+        "set_mission": topics.SET_MISSION,
+        "set_current": topics.SET_CURRENT,
+        "goal": topics.GOAL,
+    }
+
+    def __init__(self, kind, start):
+        self.position = np.array(start, dtype=float)
+        self.home = self.position.copy()
+        self.goal = None
+        self.status = VehicleStatus(kind=kind, mode=Mode.MODE_HOLD, home=vector(self.home), landed=False)
+        self.plan = Mission()
+        self.progress = MissionProgress(reached=-1)
+
+    def step(self, t, arm, set_mode, set_mission, set_current, goal):
+        replies = {
+            "arm": [self._arm(r) for r in arm],
+            "set_mode": [self._set_mode(r) for r in set_mode],
+            "set_mission": [self._set_mission(r) for r in set_mission],
+            "set_current": [self._set_current(r) for r in set_current],
+            "goal": [self._goal(r) for r in goal],
+        }
+        velocity = self._move(1.0 / self.hz)
+        now = stamp(t)
+        nav = NavState(
+            timestamp=now, position=vector(self.position), velocity=vector(velocity), orientation=quaternion(from_euler(0, 0, 0))
+        )
+        latitude, longitude, altitude = ORIGIN.geodetic(self.position)
+        fix = Gnss(timestamp=now, fix=Gnss.FIX_3D, latitude=latitude, longitude=longitude, altitude=altitude, satellites=12)
+        self.status.timestamp.CopyFrom(now)
+        return {"nav": nav, "status": self.status, "mission": self.plan, "progress": self.progress, "gnss": fix, **replies}
+
+    def _move(self, dt):
+        target = self._target()
+        if target is None:
+            return np.zeros(3)
+        way = target - self.position
+        distance = float(np.linalg.norm(way))
+        if distance < SPEED * dt:
+            self.position = target
+            self._arrive()
+            return np.zeros(3)
+        self.position = self.position + way / distance * SPEED * dt
+        return way / distance * SPEED
+
+    def _target(self):
+        if self.status.mode == Mode.MODE_MISSION and self.progress.state == MissionProgress.ACTIVE:
+            return array(self.plan.items[self.progress.current].position)
+        return self.goal if self.status.mode == Mode.MODE_HOLD else None
+
+    def _arrive(self):
+        if self.status.mode != Mode.MODE_MISSION:
+            return
+        self.progress.reached = self.progress.current
+        if self.progress.current + 1 < self.progress.total:
+            self.progress.current += 1
+        else:
+            self.progress.state = MissionProgress.COMPLETE
+
+    def _arm(self, request):
+        self.status.armed = request.arm
+        return Reply(accepted=True)
+
+    def _set_mode(self, request):
+        if request.mode not in (Mode.MODE_HOLD, Mode.MODE_MISSION, Mode.MODE_RETURN):
+            return Reply(reason="this vehicle has no such mode")
+        self.status.mode = request.mode
+        if request.mode == Mode.MODE_MISSION and self.progress.total:
+            self.progress.state = MissionProgress.ACTIVE
+        return Reply(accepted=True)
+
+    def _set_mission(self, request):
+        if any(item.kind in (MissionItem.TAKEOFF, MissionItem.LAND) for item in request.mission.items):
+            return Reply(reason="no take-off and no landing")
+        self.plan = request.mission
+        self.progress = MissionProgress(state=MissionProgress.NOT_STARTED, total=len(self.plan.items), reached=-1, mission_id=self.plan.id)
+        return Reply(accepted=True)
+
+    def _set_current(self, request):
+        if request.index >= self.progress.total:
+            return Reply(reason="no such item")
+        self.progress.current = request.index
+        return Reply(accepted=True)
+
+    def _goal(self, request):
+        self.goal = array(request.position)
+        self.status.mode = Mode.MODE_HOLD
+        return Reply(accepted=True)
+
+
+class LiveVehicles:
+    """Runs plane and rover with the MAVLink service in a thread, in real time, speaking to ``targets``."""
+
+    def __init__(self, targets, listen=None):
+        self.link = UdpLink(targets, listen)
+        self.plane = ScriptedVehicle(Kind.KIND_FIXED_WING, (0.0, 0.0, 50.0))
+        self.rover = ScriptedVehicle(Kind.KIND_GROUND, (3.0, 4.0, 0.0))
+        bus = LocalBus()
+        service = MavlinkService([PLANE_FACTS, ROVER_FACTS], self.link)
+        self._shells = [
+            Shell(Host(ScriptedVehicle, lambda: self.plane, "plane"), bus),
+            Shell(Host(ScriptedVehicle, lambda: self.rover, "rover"), bus),
+            Shell(Host(MavlinkService, lambda: service), bus),
+        ]
+        self._stop = threading.Event()
+        self._thread = threading.Thread(target=self._run, name="vehicles")
+
+    def __enter__(self):
+        self._thread.start()
+        return self
+
+    def __exit__(self, *exc):
+        self._stop.set()
+        self._thread.join()
+        self.link.close()
+
+    def _run(self):
+        start = time.monotonic()
+        while not self._stop.wait(0.005):
+            now = round((time.monotonic() - start) * NS)
+            for shell in self._shells:
+                shell.sim_ns = now
+                while shell.due_ns <= now:
+                    shell.advance()

@@ -1,0 +1,213 @@
+"""The MAVLink service on a link in memory, with vehicles that answer its requests, and a ground station beside it."""
+
+import numpy as np
+
+from schemas.convert import quaternion, stamp
+from schemas.messages import Battery, Clock, Gnss, Kind, Mission, MissionProgress, Mode, NavState, Reply, Vector3, VehicleStatus
+from services.autopilot.mavlink import dialect as mav
+from services.autopilot.mavlink.facts import Facts
+from services.autopilot.mavlink.service import MavlinkService
+from uvf.maths.geodesy import LocalTangent
+from uvf.maths.rotations import from_euler
+from uvf.runtime.params import convert
+from uvf.runtime.service import Answer
+from uvf.runtime.vehicle_file import VehicleFile
+
+PLANE, ROVER = 1, 2
+GCS = ("127.0.0.1", 14550)
+OTHER = ("127.0.0.1", 14540)
+ORIGIN = LocalTangent.from_degrees(40.77, 14.79, 300.0)
+DT = 0.02
+
+_IMU = {"mount": {}, "hz": 100}
+_PLANE_FILE = {
+    "kind": "fixed_wing",
+    "about": "test",
+    "sensors": {"imu": _IMU, "gnss": {"hz": 5}, "air_data": {"hz": 50}},
+    "air": {
+        "model": "x",
+        "physics_hz": 100,
+        "trim_speed": 25.0,
+        "max_aileron": 0.4,
+        "max_elevator": 0.4,
+        "max_rudder": 0.4,
+        "servo_rate": 5,
+        "servo_lag": 0,
+    },
+}
+_ROVER_FILE = {
+    "kind": "ground",
+    "about": "test",
+    "sensors": {"imu": _IMU},
+    "ground": {
+        "urdf": "x",
+        "left_joint": "l",
+        "right_joint": "r",
+        "wheel_radius": 0.03,
+        "track": 0.16,
+        "radius": 0.15,
+        "max_linear": 0.5,
+        "max_angular": 2.0,
+        "max_linear_acceleration": 1,
+        "max_angular_acceleration": 1,
+        "motor_torque": 1,
+    },
+}
+PLANE_FACTS = Facts("plane", PLANE, convert(_PLANE_FILE, VehicleFile, "test"), ORIGIN)
+ROVER_FACTS = Facts("rover", ROVER, convert(_ROVER_FILE, VehicleFile, "test"), ORIGIN)
+
+
+class MemoryLink:
+    """Datagrams in lists; two peers always listen."""
+
+    def __init__(self):
+        self.incoming = []
+        self.outgoing = []
+        self.listening = [GCS, OTHER]
+
+    def receive(self, t):
+        taken, self.incoming = self.incoming, []
+        return taken
+
+    def peers(self, t):
+        return self.listening
+
+    def send(self, datagram, peer):
+        self.outgoing.append((datagram, peer))
+
+    def close(self):
+        self.incoming = None
+
+
+class Vehicle:
+    """Answers requests as an autopilot does, and reports what they changed; ``refuse`` names what it will not do."""
+
+    def __init__(self, kind, position):
+        self.refuse = {}
+        self.asked = []
+        self.battery = None
+        self.gnss = Gnss(fix=Gnss.FIX_3D, latitude=0.7, longitude=0.2, altitude=400, satellites=12)
+        self.nav = NavState(velocity=Vector3(x=3.0, y=4.0, z=1.0), airspeed=25.0)
+        self.nav.position.CopyFrom(Vector3(x=position[0], y=position[1], z=position[2]))
+        self.nav.orientation.CopyFrom(quaternion(from_euler(0.1, -0.2, 0.3)))
+        self.status = VehicleStatus(kind=kind, mode=Mode.MODE_HOLD, home=Vector3(x=0.0, y=0.0, z=20.0))
+        self.mission = Mission()
+        self.progress = MissionProgress(reached=-1)
+
+    def answer(self, name, request):
+        self.asked.append((name, request))
+        if name in self.refuse:
+            return Reply(accepted=False, reason=self.refuse[name])
+        if name == "arm":
+            self.status.armed = request.arm
+        elif name == "set_mode":
+            self.status.mode = request.mode
+        elif name == "set_mission":
+            self.mission = request.mission
+            state = MissionProgress.NOT_STARTED if request.mission.items else MissionProgress.NO_MISSION
+            self.progress = MissionProgress(state=state, total=len(request.mission.items), reached=-1, mission_id=request.mission.id)
+        elif name == "set_current":
+            self.progress.current = request.index
+        return Reply(accepted=True)
+
+
+class Rig:
+    """``say`` a message, ``run`` the service, look at what a ground station ``heard``."""
+
+    CALLS = ("arm", "set_mode", "set_mission", "set_current", "goal")
+
+    def __init__(self, answers=True):
+        self.link = MemoryLink()
+        self.service = MavlinkService([PLANE_FACTS, ROVER_FACTS], self.link)
+        self.plane = Vehicle(Kind.KIND_FIXED_WING, (100.0, 200.0, 80.0))
+        self.rover = Vehicle(Kind.KIND_GROUND, (1.0, 2.0, 0.0))
+        self.vehicles = {"plane": self.plane, "rover": self.rover}
+        self.reported = set(self.vehicles)
+        self.answers = answers
+        self.clock = Clock(state=Clock.RUNNING)
+        self.events = {}
+        self.outputs = {}
+        self.n = 0
+        self._waiting = {call: [] for call in self.CALLS}
+        self._mav = mav.MAVLink(None)
+
+    @property
+    def t(self):
+        return self.n * DT
+
+    def say(self, message, system=255, component=190, peer=GCS):
+        self._mav.srcSystem, self._mav.srcComponent = system, component
+        self.link.incoming.append((message.pack(self._mav), peer))
+
+    def run(self, seconds=0.1):
+        """Steps for a while (5 steps by default); returns what the ground station heard meanwhile."""
+        self.link.outgoing.clear()
+        for _ in range(round(seconds / DT)):
+            self._step()
+        return self.heard()
+
+    def _step(self):
+        self.n += 1
+        if self.clock.state == Clock.RUNNING:
+            self.clock.t_ns += round(DT * 1e9)
+        sim = stamp(self.clock.t_ns * 1e-9)
+        live = {name: v for name, v in self.vehicles.items() if name in self.reported}
+        for v in live.values():
+            v.nav.timestamp.CopyFrom(sim)
+            v.status.timestamp.CopyFrom(sim)
+        answers, self._waiting = self._waiting, {call: [] for call in self.CALLS}
+        events, self.events = self.events, {}
+        self.outputs = self.service.step(
+            self.t,
+            nav={n: v.nav for n, v in live.items()},
+            status={n: v.status for n, v in live.items()},
+            mission={n: v.mission for n, v in live.items()},
+            progress={n: v.progress for n, v in live.items()},
+            gnss={"plane": self.plane.gnss} if "plane" in live else {},
+            battery={n: v.battery for n, v in live.items() if v.battery is not None},
+            events=events,
+            clock=self.clock,
+            **answers,
+        )
+        if self.answers:
+            self._answer()
+
+    def _answer(self):
+        for call in self.CALLS:
+            for name, requests in self.outputs.get(call, {}).items():
+                for request in requests:
+                    self._waiting[call].append(Answer(name, request, self.vehicles[name].answer(call, request)))
+
+    def heard(self, peer=GCS):
+        """Messages to one peer, through the parser of a client of its own."""
+        client = mav.MAVLink(None)
+        return [m for data, to in self.link.outgoing if to == peer for m in client.parse_buffer(data)]
+
+
+def of(messages, name, system=None):
+    """Those of one type, perhaps from one system."""
+    return [m for m in messages if m.get_type() == name and system in (None, m.get_srcSystem())]
+
+
+def texts(messages):
+    """Whole texts, chunks put together the way QGroundControl does."""
+    whole, parts = [], {}
+    for m in of(messages, "STATUSTEXT"):
+        parts.setdefault(m.id, "")
+        parts[m.id] += m.text
+        if m.id == 0 or len(m.text) < 50:
+            whole.append(parts.pop(m.id))
+    return whole
+
+
+def long(number, *p, system=PLANE, confirmation=0, component=1):
+    """COMMAND_LONG; parameters left out are NaN."""
+    params = (*p, *[np.nan] * (7 - len(p)))
+    return mav.MAVLink_command_long_message(system, component, number, confirmation, *params)
+
+
+def acks(messages):
+    """(command, result) of each COMMAND_ACK, which must be addressed to the asker."""
+    found = of(messages, "COMMAND_ACK")
+    assert all((m.target_system, m.target_component) == (255, 190) for m in found)
+    return [(m.command, m.result) for m in found]
