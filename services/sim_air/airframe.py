@@ -13,7 +13,7 @@ from uvf.runtime.params import BadInput
 from uvf.runtime.vehicle_file import AirBody
 
 os.environ.setdefault("JSBSIM_DEBUG", "0")  # read when the engine is made: without it a banner goes to the output
-import jsbsim  # noqa: E402
+import jsbsim
 
 Floats = rotations.Floats
 

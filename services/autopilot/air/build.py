@@ -1,0 +1,20 @@
+"""Makes an autopilot for each fixed-wing vehicle of a mission."""
+
+from services.autopilot.air import intake
+from services.autopilot.air.params import AirParams
+from services.autopilot.air.service import AutopilotAir, Ship
+from uvf.maths.geodesy import LocalTangent
+from uvf.runtime.site import Host, Member, Site
+
+
+def hosts(site: Site) -> list[Host]:
+    return [_host(site, member) for member in site.of_kind("fixed_wing")]
+
+
+def _host(site: Site, member: Member) -> Host:
+    origin = site.world.origin
+    tangent = LocalTangent.from_degrees(origin.latitude, origin.longitude, origin.altitude)
+    items = [intake.from_file(w) for w in member.entry.job.mission]
+    ship = Ship(member.entry.system_id, tangent, items, starts_in_air=member.entry.start.z > 0)
+    params = member.params(AutopilotAir.name, AirParams)
+    return Host(AutopilotAir, lambda: AutopilotAir(ship, params), member.name)

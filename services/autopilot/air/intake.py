@@ -1,0 +1,94 @@
+"""From messages (ENU, FLU) to the autopilot's own values (NED, FRD)."""
+
+import zlib
+from collections.abc import Iterable, Sequence
+
+from schemas.convert import seconds
+from schemas.messages import AirData, Gnss, Imu, Mission, MissionItem, Mode, Vector3
+from services.autopilot.air.estimator import Fix, Inertial, Pressures
+from services.autopilot.air.pilot import FlightMode
+from services.autopilot.air.plan import Item, Kind
+from services.autopilot.air.route import Place
+from uvf.maths.geodesy import LocalTangent
+from uvf.runtime.mission_file import Waypoint
+
+KINDS = {
+    MissionItem.WAYPOINT: Kind.WAYPOINT,
+    MissionItem.ORBIT: Kind.ORBIT,
+    MissionItem.RETURN: Kind.RETURN,
+    MissionItem.JUMP: Kind.JUMP,
+    MissionItem.SPEED: Kind.SPEED,
+}
+MODES = {Mode.MODE_HOLD: FlightMode.HOLD, Mode.MODE_MISSION: FlightMode.MISSION, Mode.MODE_RETURN: FlightMode.RETURN}
+
+
+def frd(v: Vector3) -> tuple[float, float, float]:
+    """FLU into FRD."""
+    return v.x, -v.y, -v.z
+
+
+def inertial(message: Imu) -> Inertial:
+    return Inertial(frd(message.angular_velocity), frd(message.specific_force), frd(message.magnetic_field))
+
+
+def pressures(message: AirData) -> Pressures:
+    return Pressures(message.static_pressure, message.differential_pressure, message.temperature)
+
+
+def fix(message: Gnss, tangent: LocalTangent, t: float) -> Fix:
+    """A fix as seen at time ``t`` [s]; its stamp is the moment it is valid for."""
+    east, north, _ = tangent.enu(message.latitude, message.longitude, message.altitude).tolist()
+    v = message.velocity_enu
+    return Fix(
+        north=north,
+        east=east,
+        height=message.altitude - tangent.altitude,
+        v_north=v.y,
+        v_east=v.x,
+        v_up=v.z,
+        age=t - seconds(message.timestamp),
+        position_sigma=message.horizontal_accuracy,
+        speed_sigma=message.speed_accuracy,
+    )
+
+
+def place(v: Vector3) -> Place:
+    return Place(v.y, v.x, v.z)
+
+
+def items(messages: Iterable[MissionItem]) -> list[Item]:
+    """Raises ValueError for a kind that cannot be flown yet."""
+    return [_item(i, m) for i, m in enumerate(messages)]
+
+
+def _item(index: int, m: MissionItem) -> Item:
+    if m.kind not in KINDS:
+        raise ValueError(
+            f"item {index}: {MissionItem.Kind.Name(m.kind)} is not flown by this autopilot; {', '.join(k.value for k in Kind)} are"
+        )
+    return Item(KINDS[m.kind], place(m.position), m.hold, m.radius, m.turns, m.speed, m.jump_to, m.repeat)
+
+
+def mission_id(messages: Sequence[MissionItem]) -> int:
+    """CRC-32 of the items, 0 when empty."""
+    return zlib.crc32(b"".join(m.SerializeToString(deterministic=True) for m in messages))
+
+
+def with_id(messages: Sequence[MissionItem]) -> Mission:
+    """The items unchanged, ``origin`` included."""
+    return Mission(items=messages, id=mission_id(messages))
+
+
+def from_file(waypoint: Waypoint) -> MissionItem:
+    """A line of a mission file as a message."""
+    return MissionItem(
+        kind=MissionItem.Kind.Value(waypoint.kind.upper()),
+        position=Vector3(x=waypoint.x, y=waypoint.y, z=waypoint.z),
+        acceptance_radius=waypoint.acceptance_radius,
+        hold=waypoint.hold,
+        radius=waypoint.radius,
+        turns=waypoint.turns,
+        speed=waypoint.speed,
+        jump_to=waypoint.jump_to,
+        repeat=waypoint.repeat,
+    )

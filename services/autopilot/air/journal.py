@@ -1,0 +1,48 @@
+"""Events: what changed since the last cycle, in words."""
+
+from schemas.convert import stamp
+from schemas.messages import Event
+from services.autopilot.air.pilot import FlightMode, Pilot
+
+
+class Journal:
+    """Compares each cycle with the one before; the first cycle reports the mode it starts in."""
+
+    def __init__(self) -> None:
+        self._mode: FlightMode | None = None
+        self._reason = ""
+        self._armed: bool | None = None
+        self._reached = -1
+        self._laps = 0
+        self._finished = False
+        self._lost = False
+
+    def events(self, t: float, pilot: Pilot, armed: bool) -> list[Event]:
+        navigator = pilot.navigator
+        found: list[Event] = []
+        if self._lost:
+            found.append(_event(t, Event.NOTICE, "sensors are back"))
+        if (pilot.mode, pilot.reason) != (self._mode, self._reason):
+            found.append(_event(t, Event.NOTICE, f"mode {pilot.mode.value}", pilot.reason))
+        if self._armed is not None and armed != self._armed:
+            found.append(_event(t, Event.NOTICE, "armed" if armed else "disarmed"))
+        if navigator.reached != self._reached and navigator.reached >= 0:
+            found.append(_event(t, Event.INFO, f"mission item {navigator.reached} reached"))
+        if navigator.laps > self._laps:
+            found.append(_event(t, Event.INFO, f"lap {navigator.laps} closed"))
+        if navigator.finished and not self._finished:
+            found.append(_event(t, Event.NOTICE, "mission complete"))
+        self._mode, self._reason, self._armed, self._lost = pilot.mode, pilot.reason, armed, False
+        self._reached, self._laps, self._finished = navigator.reached, navigator.laps, navigator.finished
+        return found
+
+    def lost(self, t: float, missing: tuple[str, ...]) -> list[Event]:
+        """Once, until the sensors are back."""
+        if self._lost:
+            return []
+        self._lost = True
+        return [_event(t, Event.CRITICAL, "sensor lost: wings level", ", ".join(missing))]
+
+
+def _event(t: float, severity: Event.Severity, text: str, cause: str = "") -> Event:
+    return Event(timestamp=stamp(t), severity=severity, text=text, cause=cause, source="autopilot")

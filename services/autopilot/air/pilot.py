@@ -1,0 +1,135 @@
+"""Modes of flight: what is flown now, and which changes are allowed."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import Enum
+
+from services.autopilot.air.control import Control, Surfaces, Wanted
+from services.autopilot.air.guidance import Aim, Steering
+from services.autopilot.air.navigator import Navigator
+from services.autopilot.air.params import AirParams
+from services.autopilot.air.plan import Item, fault
+from services.autopilot.air.route import Circle, Level, Place
+from services.autopilot.air.state import Estimate
+
+
+class FlightMode(Enum):
+    HOLD = "Hold"
+    MISSION = "Mission"
+    RETURN = "Return"
+
+
+@dataclass(frozen=True, slots=True)
+class Flown:
+    """What a cycle came to."""
+
+    surfaces: Surfaces
+    aim: Aim
+    level: Level
+
+
+class Pilot:
+    """Holds, flies the mission or returns. Requests give the reason of a refusal, empty when accepted."""
+
+    def __init__(self, items: Sequence[Item]) -> None:
+        self.navigator = Navigator(items)
+        self.mode = FlightMode.MISSION if items else FlightMode.HOLD
+        self.reason = "start"
+        self.stopped = ""
+        self.home: Place | None = None
+        self.circle: Circle | None = None
+        self._control = Control()
+        self._steering = Steering()
+        self._level = Level(math.nan)
+        self._fresh = True
+
+    def step(self, now: Estimate, params: AirParams, dt: float) -> Flown:
+        if self._fresh:
+            self._begin(now)
+        if self.mode is FlightMode.MISSION and (self.navigator.returns_home or self.navigator.finished):
+            self._end_mission()
+        if self.mode is FlightMode.MISSION:
+            aim, self._level = self.navigator.step(now, params, dt)
+            speed = self.navigator.speed or params.trim_airspeed
+        else:
+            self.circle = self.circle or self._new_circle(now, params)
+            aim, self._level = self.circle.aim(now, params), Level(self.circle.centre.height)
+            speed = params.trim_airspeed
+        bank = self._steering.bank(aim, now, params, dt)
+        surfaces = self._control.step(now, Wanted(bank, self._level.height, self._level.climb, speed), params, dt)
+        return Flown(surfaces, aim, self._level)
+
+    def _begin(self, now: Estimate) -> None:
+        self._fresh = False
+        self.home = Place(now.north, now.east, now.height)
+        self._level = Level(now.height)
+        if self.mode is FlightMode.MISSION:
+            self.navigator.resume()
+
+    def _end_mission(self) -> None:
+        if self.navigator.returns_home:
+            self._change(FlightMode.RETURN, "mission: return")
+            return
+        self._change(FlightMode.HOLD, "mission complete")
+
+    def _new_circle(self, now: Estimate, params: AirParams) -> Circle:
+        if self.mode is FlightMode.RETURN and self.home is not None:
+            height = max(self._level.height, params.return_altitude)
+            return Circle(Place(self.home.north, self.home.east, height), params.hold_radius)
+        return Circle.ahead(now, self._level.height, params.hold_radius)
+
+    def _change(self, mode: FlightMode, reason: str) -> None:
+        self.mode, self.reason, self.circle = mode, reason, None
+
+    def change_mode(self, mode: FlightMode, source: str) -> str:
+        if self.stopped and mode is not FlightMode.HOLD:
+            return f"stopped by {self.stopped}: release the stop first"
+        if mode is FlightMode.MISSION:
+            if not self.navigator.items:
+                return "there is no mission: upload one first"
+            if not self._fresh:
+                self._restart()
+        self._change(mode, f"asked by {source}")
+        return ""
+
+    def _restart(self) -> None:
+        """Goes on where the mission was left; from its beginning when it was complete."""
+        if self.navigator.finished:
+            self.navigator = Navigator(self.navigator.items)
+        self.navigator.resume()
+
+    def go_to(self, place: Place, source: str, params: AirParams) -> str:
+        """Flies there and holds over it; too low a height means the present one."""
+        if self.stopped:
+            return f"stopped by {self.stopped}: release the stop first"
+        height = place.height if place.height >= params.min_altitude else self._level.height
+        self._change(FlightMode.HOLD, f"goal of {source}")
+        self.circle = Circle(Place(place.north, place.east, height), params.hold_radius)
+        return ""
+
+    def load(self, items: Sequence[Item]) -> str:
+        """Replaces the mission; while one is flown the new one is begun at once."""
+        if why := fault(items):
+            return why
+        self.navigator = Navigator(items)
+        if self.mode is FlightMode.MISSION:
+            if not items:
+                self._change(FlightMode.HOLD, "the mission was cleared")
+            elif not self._fresh:
+                self.navigator.resume()
+        return ""
+
+    def set_current(self, index: int) -> str:
+        if index >= len(self.navigator.items):
+            return f"there is no item {index}: the mission has {len(self.navigator.items)}"
+        self.navigator.jump_to(index)
+        return ""
+
+    def stop(self, source: str) -> None:
+        """STOP ALL: an airborne aircraft holds until it is released (an empty source)."""
+        if source and not self.stopped:
+            self._change(FlightMode.HOLD, f"stopped by {source}")
+        elif self.stopped and not source:
+            self.reason = "stop released"
+        self.stopped = source

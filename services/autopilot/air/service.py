@@ -1,0 +1,191 @@
+"""The autopilot of one fixed-wing aircraft: sensors and requests in, surfaces, estimates and reports out."""
+
+from dataclasses import dataclass
+
+from schemas import topics
+from schemas.convert import stamp
+from schemas.messages import (
+    AirData,
+    ArmRequest,
+    Battery,
+    Gnss,
+    GoalRequest,
+    Imu,
+    Mission,
+    MissionItem,
+    MissionRequest,
+    Mode,
+    ModeRequest,
+    Reply,
+    SetCurrentRequest,
+    StopCommand,
+    VehicleStatus,
+)
+from services.autopilot.air import intake, reports
+from services.autopilot.air.control import Surfaces
+from services.autopilot.air.estimator import Estimator
+from services.autopilot.air.journal import Journal
+from services.autopilot.air.params import AirParams
+from services.autopilot.air.pilot import Pilot
+from services.autopilot.air.state import Estimate
+from uvf.maths.geodesy import GRAVITY, LocalTangent
+from uvf.runtime.service import Outputs, Service, every, optional
+
+FLYING = 0.5  # of min_airspeed: faster than that is airborne
+
+
+@dataclass(frozen=True)
+class Ship:
+    """What the autopilot is told of its vehicle at the start."""
+
+    system_id: int
+    tangent: LocalTangent
+    items: list[MissionItem]
+    starts_in_air: bool
+
+
+class AutopilotAir(Service):
+    """Hold, Mission and Return from IMU, air data and GNSS; it never sees the truth."""
+
+    name = "autopilot_air"
+    hz = 50.0
+    inputs = {
+        "imu": every(topics.IMU),
+        "air_data": topics.AIR_DATA,
+        "gnss": topics.GNSS,
+        "battery": optional(topics.BATTERY),
+        "stop": optional(topics.STOP.by("*")),
+    }
+    outputs = {
+        "surfaces": topics.SURFACE_COMMAND,
+        "nav_state": topics.NAV_STATE,
+        "pose": topics.POSE,
+        "status": topics.STATUS,
+        "plan": topics.MISSION,
+        "progress": topics.PROGRESS,
+        "path": topics.PATH,
+        "events": topics.EVENTS.by("autopilot"),
+    }
+    requests = {
+        "arm": topics.ARM,
+        "mode": topics.SET_MODE,
+        "goal": topics.GOAL,
+        "mission": topics.SET_MISSION,
+        "current": topics.SET_CURRENT,
+    }
+    params: AirParams
+
+    def __init__(self, ship: Ship, params: AirParams) -> None:
+        self.params = params
+        self._ship = ship
+        self._mission = intake.with_id(ship.items)
+        self._announced = False
+        self._armed = ship.starts_in_air
+        self._estimator = Estimator(params.alpha_zero_lift, params.alpha_per_load)
+        self._pilot = Pilot(intake.items(ship.items))
+        self._journal = Journal()
+        self._fix_stamp = 0
+        self._cycles = 0
+        self._airborne = ship.starts_in_air
+        self._status = VehicleStatus()
+
+    def step(
+        self,
+        t: float,
+        imu: list[Imu],
+        air_data: AirData,
+        gnss: Gnss,
+        battery: Battery | None,
+        stop: StopCommand | None,
+        arm: list[ArmRequest],
+        mode: list[ModeRequest],
+        goal: list[GoalRequest],
+        mission: list[MissionRequest],
+        current: list[SetCurrentRequest],
+    ) -> Outputs:
+        now = self._estimate(t, imu, air_data, gnss)
+        self._airborne = now.airspeed > FLYING * self.params.min_airspeed
+        self._pilot.stop(stop.source or "unknown" if stop is not None and stop.engaged else "")
+        replies = {
+            "arm": [self._arm(r) for r in arm],
+            "mode": [self._set_mode(r) for r in mode],
+            "goal": [_reply(self._pilot.go_to(intake.place(r.position), r.source, self.params)) for r in goal],
+            "mission": [self._set_mission(r.mission) for r in mission],
+            "current": [_reply(self._pilot.set_current(r.index)) for r in current],
+        }
+        flown = self._pilot.step(now, self.params, 1 / self.hz)
+        state = reports.nav_state(t, now)
+        out: dict[str, object] = {
+            "surfaces": reports.surfaces(t, flown.surfaces, self._armed),
+            "nav_state": state,
+            "pose": reports.pose(state),
+            "events": self._journal.events(t, self._pilot, self._armed),
+        }
+        if self._cycles % 5 == 0:
+            self._status = reports.status(t, self._pilot, now, flown, battery)
+            out["status"] = self._stamped_status(t)
+        if self._cycles % 25 == 0:
+            out["progress"] = reports.progress(t, self._pilot, self._mission.id)
+            out["path"] = reports.path(t, self._pilot)
+        self._cycles += 1
+        return {**out, **self._announce(t), **replies}  # type: ignore[dict-item]
+
+    def stale(self, t: float, missing: tuple[str, ...]) -> Outputs:
+        """Wings level at cruise throttle until the sensors are back; before the first cycle the servos hold."""
+        if not self._cycles:
+            return self._announce(t)
+        p = self.params
+        alpha = p.alpha_zero_lift + p.alpha_per_load * GRAVITY / p.trim_airspeed**2
+        level = Surfaces(0.0, p.elev_zero_alpha + p.elev_per_alpha * alpha, 0.0, p.trim_throttle)
+        self._status.reason = f"sensor lost: {', '.join(missing)}"
+        return {
+            "surfaces": reports.surfaces(t, level, self._armed),
+            "status": self._stamped_status(t),
+            "events": self._journal.lost(t, missing),
+        }
+
+    def _estimate(self, t: float, imu: list[Imu], air_data: AirData, gnss: Gnss) -> Estimate:
+        stamp_ns = gnss.timestamp.ToNanoseconds()
+        fix = intake.fix(gnss, self._ship.tangent, t) if stamp_ns != self._fix_stamp and gnss.fix == Gnss.FIX_3D else None
+        self._fix_stamp = stamp_ns
+        samples = [intake.inertial(m) for m in imu]
+        return self._estimator.step(samples, intake.pressures(air_data), fix, 1 / self.hz)
+
+    def _arm(self, request: ArmRequest) -> Reply:
+        if not request.arm and self._airborne and not request.force:
+            return _reply("the aircraft is flying: land first, or force it")
+        self._armed = request.arm
+        return _reply("")
+
+    def _set_mode(self, request: ModeRequest) -> Reply:
+        if request.mode not in intake.MODES:
+            wanted = ", ".join(m.value for m in intake.MODES.values())
+            return _reply(f"{Mode.Name(request.mode)} is not flown by this autopilot; {wanted} are")
+        return _reply(self._pilot.change_mode(intake.MODES[request.mode], request.source))
+
+    def _set_mission(self, mission: Mission) -> Reply:
+        try:
+            refusal = self._pilot.load(intake.items(mission.items))
+        except ValueError as error:
+            refusal = str(error)
+        if not refusal:
+            self._mission = intake.with_id(mission.items)
+            self._announced = False
+        return _reply(refusal)
+
+    def _announce(self, t: float) -> Outputs:
+        if self._announced:
+            return {}
+        self._announced = True
+        self._mission.timestamp.CopyFrom(stamp(t))
+        return {"plan": self._mission}
+
+    def _stamped_status(self, t: float) -> VehicleStatus:
+        status = self._status
+        status.timestamp.CopyFrom(stamp(t))
+        status.armed, status.landed, status.system_id = self._armed, not self._airborne, self._ship.system_id
+        return status
+
+
+def _reply(refusal: str) -> Reply:
+    return Reply(accepted=not refusal, reason=refusal)
