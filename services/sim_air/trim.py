@@ -1,7 +1,7 @@
 """Trim: the attitude and controls for which level flight does not accelerate."""
 
 from collections.abc import Callable
-from dataclasses import astuple, dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,4 +33,4 @@ def solve(accelerations: Callable[[Trim], Floats]) -> Trim:
     """Finds the six unknowns for which the six body accelerations (3 m/s^2, 3 rad/s^2) vanish."""
     guess = np.array((0.05, 0.0, 0.0, -0.1, 0.0, 0.5))
     found = root(lambda x: accelerations(Trim(*x)), guess, method="hybr", options={"eps": 1e-6, "xtol": 1e-10})
-    return Trim(*astuple(Trim(*map(float, found.x)))[:6], residual=float(np.abs(found.fun).max()))
+    return replace(Trim(*found.x.tolist()), residual=float(np.abs(found.fun).max()))

@@ -82,7 +82,7 @@ def with_id(messages: Sequence[MissionItem]) -> Mission:
 def from_file(waypoint: Waypoint) -> MissionItem:
     """A line of a mission file as a message."""
     return MissionItem(
-        kind=MissionItem.Kind.Value(waypoint.kind.upper()),
+        kind=waypoint.kind.upper(),
         position=Vector3(x=waypoint.x, y=waypoint.y, z=waypoint.z),
         acceptance_radius=waypoint.acceptance_radius,
         hold=waypoint.hold,

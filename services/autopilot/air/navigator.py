@@ -66,9 +66,7 @@ class Navigator:
         piece, position = self._piece, (now.north, now.east)
         if isinstance(piece, Arc) and piece.is_flown(position):
             self._piece = piece.onto
-        elif isinstance(piece, Leg) and piece.is_flown(position):
-            self._leave(piece, now, params)
-        elif isinstance(piece, Circle) and self._circled(piece, now, dt):
+        elif (isinstance(piece, Leg) and piece.is_flown(position)) or (isinstance(piece, Circle) and self._circled(piece, now, dt)):
             self._leave(piece, now, params)
 
     def _leave(self, piece: Leg | Circle, now: Estimate, params: AirParams) -> None:
