@@ -1,0 +1,60 @@
+"""Looks at the composed system from the host: all healthy, the page there, both vehicles seen moving by MAVSDK."""
+
+import json
+import subprocess
+import time
+import urllib.request
+from collections.abc import Callable
+
+from mavsdk import ComponentType, Configuration, Mavsdk
+from mavsdk.plugins.telemetry import Telemetry
+
+PATIENCE = 120.0  # s
+MOVED = 1e-6  # deg, about 0.1 m
+
+
+def wait(condition: Callable[[], bool], what: str) -> None:
+    """Says how long it took, or ends with what did not come true."""
+    begun = time.monotonic()
+    while not condition():
+        if time.monotonic() - begun > PATIENCE:
+            raise SystemExit(f"compose: not within {PATIENCE:.0f} s: {what}")
+        time.sleep(0.5)
+    print(f"compose: {what} after {time.monotonic() - begun:.0f} s", flush=True)
+
+
+def output(*command: str) -> str:
+    return subprocess.run(command, check=True, capture_output=True, text=True).stdout
+
+
+def all_healthy() -> bool:
+    ids = output("docker", "ps", "-aq", "--filter", "label=com.docker.compose.project=uvf_ci").split()
+    states = [each["State"] for each in json.loads(output("docker", "inspect", *ids))]
+    return len(states) >= 11 and all(s.get("Health", {}).get("Status") == "healthy" for s in states)
+
+
+def page_answers() -> bool:
+    with urllib.request.urlopen("http://127.0.0.1:8080/", timeout=5) as page:
+        return page.status == 200
+
+
+def main() -> None:
+    wait(all_healthy, "all containers healthy")
+    wait(page_answers, "the page answers on the host")
+    bridge = json.loads(output("docker", "network", "inspect", "bridge"))[0]["IPAM"]["Config"][0]["Gateway"]
+    with Mavsdk(Configuration.create_with_component_type(ComponentType.GROUND_STATION)) as sdk:
+        sdk.add_any_connection(f"udpin://{bridge}:14540")
+        wait(lambda: len(sdk.get_systems()) == 2, "MAVSDK on the host sees two vehicles")
+        telemetry = [Telemetry(system) for system in sdk.get_systems()]
+        wait(lambda: all(t.position().latitude_deg for t in telemetry), "both have a position")
+        before = [(t.position().latitude_deg, t.position().longitude_deg) for t in telemetry]
+
+        def moved() -> bool:
+            now = [(t.position().latitude_deg, t.position().longitude_deg) for t in telemetry]
+            return all(max(abs(a - c), abs(b - d)) > MOVED for (a, b), (c, d) in zip(before, now, strict=True))
+
+        wait(moved, "both vehicles move")
+
+
+if __name__ == "__main__":
+    main()

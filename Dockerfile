@@ -1,0 +1,21 @@
+# One image for every service: docker-compose.yml says which command each container runs.
+FROM python:3.11-slim-bookworm
+
+WORKDIR /uvf
+COPY requirements.lock ./
+# Only pybullet has no wheel for ARM: there, and only there, it is compiled.
+RUN if [ "$(dpkg --print-architecture)" != amd64 ]; then \
+        apt-get update && apt-get install -y --no-install-recommends g++ && rm -rf /var/lib/apt/lists/*; \
+    fi \
+    && pip install --no-cache-dir --require-hashes -r requirements.lock
+
+COPY . .
+RUN pip install --no-cache-dir --no-deps --no-build-isolation -e .
+
+ENV PYTHONUNBUFFERED=1 UVF_RUNS=/runs UVF_ALIVE_FILE=/tmp/alive
+ENTRYPOINT ["python", "-m", "uvf.launch.cli"]
+CMD ["--help"]
+
+# Every process touches the file each second while its loop goes round.
+HEALTHCHECK --interval=5s --timeout=3s --start-period=60s --retries=3 \
+    CMD test $(( $(date +%s) - $(stat -c %Y /tmp/alive) )) -lt 5
