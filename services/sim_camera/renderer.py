@@ -10,8 +10,9 @@ import pybullet
 from numpy.typing import NDArray
 
 from services.sim_camera.aircraft_shape import PARTS
+from services.sim_camera.backdrop import Backdrop
 from services.sim_camera.optics import vertical_fov
-from uvf.maths.rotations import from_euler, multiply, rotate
+from uvf.maths.rotations import from_euler, matrix, multiply, rotate
 from uvf.runtime.params import BadInput
 from uvf.runtime.vehicle_file import Camera
 from uvf.runtime.world_file import Colour, WorldFile
@@ -21,10 +22,7 @@ Floats = NDArray[np.float64]
 Picture = NDArray[np.uint8]
 
 NEAR = 0.02  # m
-SKY = np.array((155, 190, 225), dtype=np.uint8)
 TO_LIGHT = (0.4, -0.6, 1.0)
-GROUND_HALF_SIZE = 3000.0  # m
-FIELD_DEPTH, GROUND_DEPTH = 0.01, 0.5  # m below z = 0: far enough apart for the depth buffer
 
 
 class Pose(NamedTuple):
@@ -55,7 +53,7 @@ class BulletRenderer:
 
     def __init__(self, world: WorldFile, vehicles: Mapping[str, Look]) -> None:
         self._client: int = pybullet.connect(pybullet.DIRECT)
-        self._add_ground(world)
+        self._backdrop = Backdrop(world)
         for box in all_boxes(world):
             self._add_box(box.centre, box.size, box.yaw, box.colour)
         for cylinder in world.cylinders:
@@ -69,14 +67,6 @@ class BulletRenderer:
             x, y, z = cylinder.base
             self._add(shape, (x, y, z + cylinder.height / 2), 0.0)
         self._vehicles = {name: self._load(look) for name, look in vehicles.items()}
-
-    def _add_ground(self, world: WorldFile) -> None:
-        size = 2 * GROUND_HALF_SIZE
-        self._add_box((0.0, 0.0, -GROUND_DEPTH - 0.05), (size, size, 0.1), 0.0, world.ground_colour)
-        for field in world.fields:
-            x_min, y_min, x_max, y_max = field.area
-            centre = ((x_min + x_max) / 2, (y_min + y_max) / 2, -FIELD_DEPTH - 0.05)
-            self._add_box(centre, (x_max - x_min, y_max - y_min, 0.1), 0.0, field.colour)
 
     def _add_box(self, centre: tuple[float, float, float], size: tuple[float, float, float], yaw: float, colour: Colour) -> None:
         half = [side / 2 for side in size]
@@ -134,7 +124,7 @@ class BulletRenderer:
         """(height, width, 3) RGB of what a vehicle's camera sees when its body is there."""
         eye = body.position + rotate(body.world_from_body, np.array(camera.mount.xyz))
         world_from_camera = multiply(body.world_from_body, from_euler(*camera.mount.rpy))
-        forward, up = rotate(world_from_camera, np.array((1.0, 0.0, 0.0))), rotate(world_from_camera, np.array((0.0, 0.0, 1.0)))
+        forward, left, up = matrix(world_from_camera).T
         view = pybullet.computeViewMatrix(eye.tolist(), (eye + forward).tolist(), up.tolist())
         fov, aspect = float(np.degrees(vertical_fov(camera))), camera.width / camera.height
         _, _, rgba, _, seen = pybullet.getCameraImage(
@@ -147,9 +137,10 @@ class BulletRenderer:
             renderer=pybullet.ER_TINY_RENDERER,
             physicsClientId=self._client,
         )
-        picture = np.array(rgba, dtype=np.uint8).reshape(camera.height, camera.width, 4)[:, :, :3]
-        picture[np.reshape(seen, picture.shape[:2]) < 0] = SKY  # nothing there
-        return picture
+        solids = np.reshape(np.asarray(rgba, dtype=np.uint8), (camera.height, camera.width, 4))[:, :, :3]
+        behind = self._backdrop.paint(camera, eye, np.column_stack((-left, -up, forward)))
+        nothing = np.reshape(seen, (camera.height, camera.width, 1)) < 0
+        return np.where(nothing, behind, solids)
 
     def close(self) -> None:
         pybullet.disconnect(physicsClientId=self._client)

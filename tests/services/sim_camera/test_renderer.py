@@ -4,8 +4,9 @@ import msgspec
 import numpy as np
 import pytest
 
+from services.sim_camera.backdrop import SKY
 from services.sim_camera.optics import intrinsics, project
-from services.sim_camera.renderer import SKY, BulletRenderer, Look, Pose
+from services.sim_camera.renderer import BulletRenderer, Look, Pose
 from uvf.maths.rotations import from_euler, matrix
 from uvf.runtime.params import BadInput
 from uvf.runtime.site import ROOT

@@ -1,0 +1,83 @@
+"""Ground, coloured fields and sky behind all solids: each pixel's ray meets the plane z = 0 or the sky.
+
+Drawn here because a plane that fills the picture is what the software renderer is slowest at.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from services.sim_camera.optics import intrinsics
+from uvf.maths.compiled import compiled
+from uvf.runtime.vehicle_file import Camera
+from uvf.runtime.world_file import WorldFile
+
+Floats = NDArray[np.float64]
+Picture = NDArray[np.uint8]
+
+SKY = (155.0, 190.0, 225.0)
+TILES = np.array(((0.5, 0.05), (20.0, 0.06)))
+"""Checker patterns that make motion visible: side [m] and contrast; each fades where a pixel covers half a tile."""
+HAZE = 2500.0  # m, distance at which the ground has lost 63 % of its colour
+
+
+class Backdrop:
+    """The outdoors of one world as seen from above z = 0."""
+
+    def __init__(self, world: WorldFile) -> None:
+        self._areas = np.array([field.area for field in world.fields], dtype=np.float64).reshape(-1, 4)
+        colours = [*(field.colour for field in world.fields), world.ground_colour]
+        self._colours = 255.0 * np.array(colours, dtype=np.float64)
+        _paint(np.zeros((1, 1, 3), dtype=np.uint8), np.zeros(3), np.eye(3), self._areas, self._colours)  # compiles it
+
+    def paint(self, camera: Camera, eye: Floats, world_from_optical: Floats) -> Picture:
+        """(height, width, 3) RGB. eye: (3,) m, world; world_from_optical: (3, 3), from x right, y down, z along the view."""
+        rays = world_from_optical @ np.linalg.inv(intrinsics(camera))
+        picture = np.empty((camera.height, camera.width, 3), dtype=np.uint8)
+        _paint(picture, eye, rays, self._areas, self._colours)
+        return picture
+
+
+@compiled
+def _field_at(x: float, y: float, areas: Floats, guess: int) -> int:
+    """Index of the field that holds a point, ``len(areas)`` for open ground; neighbours mostly share ``guess``."""
+    n: int = areas.shape[0]
+    if guess < n and areas[guess, 0] <= x < areas[guess, 2] and areas[guess, 1] <= y < areas[guess, 3]:
+        return guess
+    for i in range(n):
+        if areas[i, 0] <= x < areas[i, 2] and areas[i, 1] <= y < areas[i, 3]:
+            return i
+    return n
+
+
+@compiled
+def _shade(x: float, y: float, footprint: float) -> float:
+    """Brightness by the checkers at a point whose pixel covers ``footprint`` [m]."""
+    light = 1.0
+    for i in range(TILES.shape[0]):
+        side, contrast = TILES[i]
+        fade = max(0.0, 1.0 - 2.0 * footprint / side)
+        odd = (np.floor(x / side) + np.floor(y / side)) % 2.0
+        light += contrast * fade * (1.0 if odd == 1.0 else -1.0)
+    return light
+
+
+@compiled
+def _paint(picture: Picture, eye: Floats, rays: Floats, areas: Floats, colours: Floats) -> None:
+    """The ray of a pixel is ``rays @ (column, row, 1)``: (3, 3), world."""
+    guess = 0
+    pixel = np.sqrt(rays[0, 1] ** 2 + rays[1, 1] ** 2 + rays[2, 1] ** 2)
+    for row in range(picture.shape[0]):
+        for column in range(picture.shape[1]):
+            dx = rays[0, 0] * column + rays[0, 1] * row + rays[0, 2]
+            dy = rays[1, 0] * column + rays[1, 1] * row + rays[1, 2]
+            dz = rays[2, 0] * column + rays[2, 1] * row + rays[2, 2]
+            clear, light = 0.0, 0.0
+            if dz < 0.0 < eye[2]:
+                reach = -eye[2] / dz
+                square = dx * dx + dy * dy + dz * dz
+                x, y = eye[0] + reach * dx, eye[1] + reach * dy
+                guess = _field_at(x, y, areas, guess)
+                clear = np.exp(-reach * np.sqrt(square) / HAZE)
+                light = clear * _shade(x, y, reach * pixel * square / -dz)
+            for k in range(3):
+                picture[row, column, k] = light * colours[guess, k] + (1.0 - clear) * SKY[k]
