@@ -9,7 +9,7 @@ def build(site: Site) -> list[Host]:
     address = address_from()
 
     def make() -> GroundStation:
-        from services.gcs.scenery import cameras
+        from services.gcs.cameras import cameras
         from services.gcs.state import Model
         from services.gcs.viser_page import ViserPage
 

@@ -64,7 +64,7 @@ class Overview:
         heading = 90 - degrees(to_euler(v.place.wxyz)[2])
         size = 1.25 if v.name == self._model.selected else 1.0
         icon = f"<path transform='translate({x:.1f} {y:.1f}) rotate({heading:.0f}) scale({size})' d='M0 -8L6 7L0 4L-6 7Z' fill='{v.colour}' stroke='#fff' stroke-width='.8'/>"
-        return f"{route}{gone}{icon}<text x='{x + 10:.1f}' y='{y + 4:.1f}'>{v.name}</text>"
+        return f"{route}{gone}{icon}{_name(v.name, x, y)}"
 
 
 def _thinned(points: Floats) -> Floats:
@@ -76,3 +76,9 @@ def _path(points: Floats, colour: str, more: str) -> str:
         return ""
     text: Sequence[str] = [f"{x:.1f} {y:.1f}" for x, y in points]
     return f"<path d='M{'L'.join(text)}' fill='none' stroke='{colour}' stroke-width='1.5' {more}/>"
+
+
+def _name(name: str, x: float, y: float) -> str:
+    """Beside the vehicle, on the side where there is room."""
+    right = x < WIDTH * 0.7
+    return f"<text x='{x + (10 if right else -10):.1f}' y='{y + 4:.1f}' text-anchor='{'start' if right else 'end'}'>{name}</text>"

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from services.gcs.bodies import Part, box, lathe
-from services.gcs.drawing import Camera, Colour, Mesh, Node, Polyline
+from services.gcs.drawing import Colour, Mesh, Node, Polyline
 from uvf.maths.rotations import from_euler, matrix
 from uvf.runtime.mission_file import Waypoint
 from uvf.runtime.site import Member, Site
@@ -95,16 +95,3 @@ def extent(site: Site) -> Floats:
 def _reach(member: Member) -> Floats:
     start = member.entry.start
     return np.vstack((np.array(((start.x, start.y, start.z),)), circuit(member.entry.job.mission)))
-
-
-def cameras(site: Site) -> dict[str, Camera]:
-    """Named views: the first is how the page opens."""
-    x_min, y_min, x_max, y_max = site.world.floor
-    x, y, size = (x_min + x_max) / 2, (y_min + y_max) / 2, max(x_max - x_min, y_max - y_min)
-    low, high = extent(site)
-    middle, span = (low + high) / 2, float(np.max(high - low))
-    return {
-        "Floor": Camera((x - 0.35 * size, y - 1.25 * size, 0.85 * size), (x, y, 0.12 * size)),
-        "Overview": Camera((middle[0] - 0.25 * span, middle[1] - 0.75 * span, high[2] + 0.4 * span), (middle[0], middle[1], high[2] / 2)),
-        "Top": Camera((x, y - 0.01, 1.15 * size), (x, y, 0.0)),
-    }

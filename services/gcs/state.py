@@ -36,6 +36,7 @@ Floats = NDArray[np.float64]
 
 STALE_AFTER = 1.5  # s, wall clock
 LOST_AFTER = 5.0  # s
+SIGNS_OF_LIFE = ("nav", "pose", "odometry", "status", "nav_status", "progress")
 LOG_LENGTH = 200
 LAYERS = ("Map", "Scan", "Paths", "Tracks", "Labels", "Walls", "True pose")
 COLOURS = ("#4ea1ff", "#f2913d", "#3fbf7f", "#b98cf5", "#e8c547", "#5fd4d6")
@@ -102,8 +103,8 @@ class VehicleModel:
 
     @property
     def heard(self) -> float | None:
-        """When anything of the vehicle itself was last heard [s, wall]; the simulator's truth is no sign of life."""
-        return max((at for name, at in self.heard_at.items() if name != "truth"), default=None)
+        """When the vehicle's own running messages were last heard [s, wall]: neither latched ones nor the simulator's truth."""
+        return max((at for name, at in self.heard_at.items() if name in SIGNS_OF_LIFE), default=None)
 
     @property
     def place(self) -> Placed | None:

@@ -23,7 +23,6 @@ ASKED: Colour = (250, 190, 60)
 GHOST: Colour = (190, 200, 215)
 MAP_PERIOD = 1.0  # s between two pictures of the map
 UP = 0.02  # m above the floor, so that what lies on it is seen
-LAYER_OF = {"map": "Map", "scan": "Scan", "path": "Paths", "goal": "Paths", "track": "Tracks", "label": "Labels", "mission": "Paths"}
 
 
 class View:
@@ -32,6 +31,7 @@ class View:
     def __init__(self, model: Model) -> None:
         self._model = model
         self._made: dict[str, tuple[Any, Node]] = {}
+        self._used: set[str] = set()
         self._still = scenery(model.site.world)
         self._bodies = {v.name: _body(v, rgb_of(v.colour)) for v in model.vehicles.values()}
         self._ghosts = {v.name: _body(v, GHOST) for v in model.vehicles.values()}
@@ -40,8 +40,11 @@ class View:
     def nodes(self, t: float) -> dict[str, Node]:
         """Everything in the scene, by name; ``/vehicles/<v>/...`` is given in that vehicle's frame."""
         shown = {k: n for k, n in self._still.items() if "Walls" in self._model.layers or not k.startswith("/world/walls")}
+        self._used = set()
         for vehicle in self._model.vehicles.values():
             shown.update(self._of_vehicle(vehicle, t))
+        if len(self._made) > len(self._used):
+            self._made = {name: made for name, made in self._made.items() if name in self._used}
         return shown
 
     def places(self) -> dict[str, Placed]:
@@ -59,23 +62,24 @@ class View:
             yield from ((f"/vehicles/{v.name}/{part}", node) for part, node in self._bodies[v.name].items())
         if v.true_place is not None and "True pose" in self._model.layers:
             yield from ((f"/true/{v.name}/{part}", node) for part, node in self._ghosts[v.name].items())
-        for what, nodes in self._layers(v, t).items():
-            if LAYER_OF[what] in self._model.layers:
-                yield from ((f"/{what}/{v.name}{suffix}", node) for suffix, node in nodes.items())
+        for what, (layer, draw) in self._layers(v, t).items():
+            if layer in self._model.layers:
+                yield from ((f"/{what}/{v.name}{suffix}", node) for suffix, node in draw().items())
 
-    def _layers(self, v: VehicleModel, t: float) -> Mapping[str, dict[str, Node]]:
+    def _layers(self, v: VehicleModel, t: float) -> Mapping[str, tuple[str, Callable[[], dict[str, Node]]]]:
         return {
-            "map": self._map(v, t),
-            "scan": self._scan(v),
-            "path": self._path(v),
-            "goal": self._goal(v),
-            "mission": self._mission(v),
-            "track": self._track(v),
-            "label": self._label(v),
+            "map": ("Map", lambda: self._map(v, t)),
+            "scan": ("Scan", lambda: self._scan(v)),
+            "path": ("Paths", lambda: self._path(v)),
+            "goal": ("Paths", lambda: self._goal(v)),
+            "mission": ("Paths", lambda: self._mission(v)),
+            "track": ("Tracks", lambda: self._track(v)),
+            "label": ("Labels", lambda: self._label(v)),
         }
 
     def _make(self, name: str, of: Any, make: Callable[[], Node]) -> dict[str, Node]:
         """The node made from ``of`` before, if it is still that; else a new one."""
+        self._used.add(name)
         before = self._made.get(name)
         if before is None or (before[0] is not of and before[0] != of):
             self._made[name] = (of, make())
@@ -86,22 +90,23 @@ class View:
         if grid is None or not grid.data or grid.column_count == 0:
             return {}
         if name in self._made and t < self._map_due.get(name, 0.0):
+            self._used.add(name)
             return {"": self._made[name][1]}
         self._map_due[name] = t + MAP_PERIOD
-        return self._make(name, (id(grid), id(v.world_from_map)), lambda: floor_picture(grid, v.world_from_map))
+        return self._make(name, (grid, v.world_from_map), lambda: floor_picture(grid, v.world_from_map))
 
     def _scan(self, v: VehicleModel) -> dict[str, Node]:
         points = v.scan_points
         if points is None or len(points) == 0:
             return {}
-        return self._make(f"scan {v.name}", id(v.scan), lambda: Points(points, SCAN, 0.035))
+        return self._make(f"scan {v.name}", v.scan, lambda: Points(points, SCAN, 0.035))
 
     def _path(self, v: VehicleModel) -> dict[str, Node]:
         path = v.path
         if path is None or len(path.poses) < 2:
             return {}
         lift = 0.0 if v.flies else UP * 2
-        return self._make(f"path {v.name}", id(path), lambda: Polyline(_points(path.poses) + np.array((0, 0, lift)), ROUTE, 3.5))
+        return self._make(f"path {v.name}", path, lambda: Polyline(_points(path.poses) + np.array((0, 0, lift)), ROUTE, 3.5))
 
     def _goal(self, v: VehicleModel) -> dict[str, Node]:
         """A ring where the vehicle is going: amber while only asked for, in the route's colour once it is its goal."""
@@ -121,7 +126,7 @@ class View:
         points = mission_points(v)
         if len(points) < 2:
             return {}
-        line = self._make(f"mission {v.name}", id(mission), lambda: circuit_line(points, ROUTE))
+        line = self._make(f"mission {v.name}", mission, lambda: circuit_line(points, ROUTE))
         for i, point in enumerate(_distinct(points)):
             x, y, z = (float(c) for c in point)
             number = self._make(f"mission {v.name} {i}", (x, y, z), lambda at=(x, y, z), n=i + 1: Text(f"{n}", at))  # type: ignore[misc]
@@ -132,7 +137,7 @@ class View:
         colour, up = rgb_of(v.colour), np.array((0, 0, 0.0 if v.flies else UP))
         nodes = {}
         for number, points in v.track.closed:
-            drawn = self._make(f"track {v.name} {number}", id(points), lambda p=points: Polyline(p + up, colour, 2.5))  # type: ignore[misc]
+            drawn = self._make(f"track {v.name} {number}", number, lambda p=points: Polyline(p + up, colour, 2.5))  # type: ignore[misc]
             nodes[f"/{number}"] = drawn[""]
         if v.track.tail_length > 1:
             key = (v.track.count, v.track.tail_length)
@@ -142,11 +147,13 @@ class View:
     def _label(self, v: VehicleModel) -> dict[str, Node]:
         if v.place is None:
             return {}
-        x, y, z = (float(c) for c in v.place.position)
+        x, y, z = (round(float(c), 2) for c in v.place.position)
         if not v.flies:
-            return {"": Text(v.name, (x, y, z + 0.3))}
+            return self._make(f"label {v.name}", (x, y, z), lambda: Text(v.name, (x, y, z + 0.45)))
+        label = self._make(f"label {v.name}", (x, y, z), lambda: Text(f"{v.name}  {z:.0f} m", (x, y, z + 2.5)))
         foot = np.array(((x, y, 0.0), (x, y, z)))
-        return {"": Text(f"{v.name}  {z:.0f} m", (x, y, z + 2.5)), "/height": Polyline(foot, rgb_of(v.colour), 1.2)}
+        label["/height"] = self._make(f"height {v.name}", (x, y, z), lambda: Polyline(foot, rgb_of(v.colour), 1.2))[""]
+        return label
 
 
 def _body(v: VehicleModel, colour: Colour) -> dict[str, Node]:

@@ -6,18 +6,21 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
+import numpy as np
 import viser
 import websockets.asyncio.server as websocket_server
+from numpy.typing import NDArray
 from viser import _messages
 
 from services.gcs import panels, viser_join
 from services.gcs.address import Address, claim
+from services.gcs.cameras import FOV
 from services.gcs.commands import Action, ClickGround, Layer, Select
 from services.gcs.drawing import Button, Camera, Picture, Toast
 from services.gcs.guard import Guard
 from services.gcs.state import LAYERS
 from services.gcs.viser_scene import ViserScene
-from services.gcs.viser_script import bar_source, script, selected_in
+from services.gcs.viser_script import bar_source, padded, script, selected_in
 from uvf.runtime.params import BadInput
 
 FLEET_WIDTH, VEHICLE_WIDTH = 270, 350
@@ -42,7 +45,6 @@ class ViserPage:
         self._surroundings(next(iter(cameras.values())))
         self._fleet_panel(cameras, layers)
         self._vehicle_panel()
-        self._overview_panel()
         self._listen()
 
     def _surroundings(self, camera: Camera) -> None:
@@ -50,7 +52,7 @@ class ViserPage:
         gui.configure_theme(dark_mode=True, show_logo=False, show_share_button=False, brand_color=(46, 120, 200))
         gui.set_panel_label("Fleet")
         start = self._server.initial_camera
-        start.position, start.look_at, start.fov, start.far = camera.position, camera.look_at, 0.9, 5000.0
+        start.position, start.look_at, start.fov, start.far = camera.position, camera.look_at, FOV, 5000.0
         scene.add_grid(
             "/world/ground",
             infinite_grid=True,
@@ -66,6 +68,8 @@ class ViserPage:
             position=(0, 0, -0.12),
         )
         scene.configure_environment_map(hdri=None)
+        scene.set_background_image(sky(), format="png")
+        scene.add_light_ambient("/world/ambient", intensity=0.7)
         scene.add_light_hemisphere("/world/sky", sky_color=(235, 242, 255), ground_color=(120, 110, 100), intensity=1.6)
 
     def _fleet_panel(self, cameras: Mapping[str, Camera], layers: set[str]) -> None:
@@ -74,9 +78,9 @@ class ViserPage:
         gui.main_panel.set_width(FLEET_WIDTH)
         self._html["bar"] = gui.add_html(bar_source("", 0), order=0)
         self._html["fleet"] = gui.add_html("", order=2)
-        for i, (name, camera) in enumerate(cameras.items()):
-            button = gui.add_button(f"View: {name}", order=100 + i, color="gray", icon=viser.Icon.CAMERA)
-            button.on_click(lambda event, c=camera: _look(event, c))  # type: ignore[misc]
+        views = gui.add_button_group("", tuple(cameras), order=100)
+        views.on_click(lambda event: _look(event, cameras[event.target.value]))
+        self._html["overview"] = gui.add_html("", order=150)
         with gui.add_folder("Layers", order=200, expand_by_default=False):
             for name in LAYERS:
                 box = gui.add_checkbox(name, initial_value=name in layers)
@@ -86,8 +90,7 @@ class ViserPage:
         gui = self._server.gui
         panel = gui.add_panel()
         with panel.add_tab("Vehicle", viser.Icon.GAUGE):
-            self._html["instrument"] = gui.add_html("")
-            self._camera_order = 50.0
+            self._html["instrument"] = gui.add_html("", order=1)
             self._html["facts"] = gui.add_html("", order=100)
             self._picture_slot = gui.add_folder("Camera", order=60, visible=False)
         with panel.add_tab("Log", viser.Icon.LIST):
@@ -98,12 +101,6 @@ class ViserPage:
             gui.add_html(panels.HELP)
         panel.dock_right()
         panel.set_width(VEHICLE_WIDTH)
-
-    def _overview_panel(self) -> None:
-        panel = self._server.gui.add_panel()
-        with panel.add_tab("Overview", viser.Icon.MAP):
-            self._html["overview"] = self._server.gui.add_html("")
-        panel.float(x=FLEET_WIDTH + 20, y=-20, width=300, height=290)
 
     def _listen(self) -> None:
         self._server.scene.on_click()(self._on_click)
@@ -140,7 +137,7 @@ class ViserPage:
             if name == "bar":
                 self._beat = now
                 content = bar_source(content, int(now * 1000))
-            self._html[name].content = content
+            self._html[name].content = content if name == "bar" else padded(content)
 
     def _show_buttons(self, buttons: Sequence[Button]) -> None:
         wanted = {b.key: b for b in buttons}
@@ -168,8 +165,6 @@ class ViserPage:
             self._picture_slot.visible = image is not None
             return
         if self._image is None:
-            import numpy as np
-
             with self._picture_slot:
                 handle = self._server.gui.add_image(np.zeros((2, 2, 3), dtype=np.uint8), format="jpeg")
         else:
@@ -196,6 +191,12 @@ def _look(event: Any, camera: Camera) -> None:
     with event.client.atomic():
         event.client.camera.position = camera.position
         event.client.camera.look_at = camera.look_at
+
+
+def sky() -> NDArray[np.uint8]:
+    """A dusk that leaves the ground's haze at the horizon: (64, 4, 3)."""
+    share = np.linspace(0, 1, 64)[:, None, None] ** 1.5
+    return np.tile(np.array((10, 17, 32)) * (1 - share) + np.array((74, 98, 134)) * share, (1, 4, 1)).astype(np.uint8)
 
 
 def _colour(button: Button) -> Any:

@@ -18,6 +18,11 @@ def bar_source(content: str, beat: int) -> str:
     return f"<div id='gcs-bar-source' data-beat='{beat}' hidden>{content}</div>"
 
 
+def padded(content: str) -> str:
+    """viser lays HTML flush with the panel's edge; buttons and pictures stand a little off it."""
+    return f"<div class='g-pad'>{content}</div>"
+
+
 def selected_in(value: str) -> str:
     """The vehicle that a card's message names; empty when it is no such message."""
     try:

@@ -1,0 +1,55 @@
+"""A page that only remembers, and a ground station that runs on it."""
+
+from services.gcs.service import GroundStation
+from tests.services.gcs.scripted import Script, demo_site
+from uvf.runtime.shell import Shell
+from uvf.runtime.site import Host
+
+
+class FakePage:
+    def __init__(self):
+        self.pictures = []
+        self.clicks = []
+        self.closed = False
+
+    @property
+    def now(self):
+        return self.pictures[-1]
+
+    def show(self, picture):
+        self.pictures.append(picture)
+
+    def actions(self):
+        taken, self.clicks = self.clicks, []
+        return taken
+
+    def close(self):
+        self.closed = True
+
+
+class Station:
+    """The service on a fake page, with scripted vehicles; ``run`` lets simulation and wall time pass alike."""
+
+    def __init__(self, accept=True):
+        self.script = Script(accept=accept)
+        self.page = FakePage()
+        self.site = demo_site()
+        self.service = GroundStation(self.site, self.page)
+        self.shell = Shell(Host(GroundStation, lambda: self.service), self.script.bus)
+        self.t = 0.0
+
+    @property
+    def model(self):
+        return self.service._model
+
+    def run(self, seconds, silent=False):
+        for _ in range(round(seconds * GroundStation.hz)):
+            self.t += 1 / GroundStation.hz
+            if not silent:
+                self.script.publish(self.t)
+            self.shell.sim_ns = round(self.t * 1e9)
+            self.shell.advance()
+
+    def press(self, *actions, seconds=0.1):
+        self.page.clicks += actions
+        self.run(seconds)

@@ -1,0 +1,36 @@
+"""The page's address comes from the environment, and a wrong or taken one ends in one clear line."""
+
+import socket
+
+import pytest
+
+from services.gcs.address import Address, address_from, claim
+from uvf.runtime.params import BadInput
+
+
+def test_by_default_only_this_machine_is_served():
+    assert address_from({}) == Address("127.0.0.1", 8080, "")
+    assert address_from({}).url == "http://127.0.0.1:8080/"
+
+
+def test_an_address_that_others_reach_gets_a_token_in_its_url():
+    address = address_from({"UVF_GCS_HOST": "0.0.0.0", "UVF_GCS_PORT": "9000"})
+    assert len(address.token) >= 16
+    assert address.url.endswith(f":9000/?token={address.token}")
+    assert address.token != address_from({"UVF_GCS_HOST": "0.0.0.0"}).token
+
+
+@pytest.mark.parametrize("port", ["0", "65536", "-1", "http", ""])
+def test_a_wrong_port_is_refused(port):
+    with pytest.raises(BadInput, match="UVF_GCS_PORT"):
+        address_from({"UVF_GCS_PORT": port})
+
+
+def test_a_taken_port_is_named_with_a_way_out():
+    with socket.socket() as other:
+        other.bind(("127.0.0.1", 0))
+        other.listen()
+        port = other.getsockname()[1]
+        with pytest.raises(BadInput, match=rf"127\.0\.0\.1:{port}.*UVF_GCS_PORT=8081"):
+            claim(Address("127.0.0.1", port))
+    claim(Address("127.0.0.1", port))

@@ -1,0 +1,149 @@
+"""What is asked on the page is checked, sent once, and followed until it is answered."""
+
+import numpy as np
+import pytest
+
+from schemas.messages import ArmRequest, GoalRequest, Mode, ModeRequest
+from services.gcs.commands import ANSWER_WITHIN, CONFIRM_WITHIN, Arm, ClickGround, Layer, Select, SetMode, StopAll, describe, ground_point
+from tests.services.gcs.fakes import Station
+from tests.services.gcs.scripted import UAV, UGV
+
+
+def click(x, y):
+    """A click that looks at the point from the south-west, 10 m up."""
+    return ClickGround((x - 5.0, y - 7.0, 10.0), (5.0, 7.0, -10.0))
+
+
+@pytest.fixture
+def station():
+    station = Station()
+    station.run(0.5)
+    return station
+
+
+def test_a_ray_meets_the_ground():
+    assert ground_point((1, 2, 10), (0.5, 0, -1)) == pytest.approx((6, 2))
+
+
+@pytest.mark.parametrize(
+    "ray",
+    [((0, 0, 5), (1, 0, 0)), ((0, 0, 5), (0, 0, 1)), ((0, 0, 5), (0, 0, np.nan)), ((0, 0), (1, 1)), ((0, 0, np.inf), (0, 0, -1))],
+)
+def test_a_ray_into_the_sky_or_nowhere_meets_nothing(ray):
+    assert ground_point(*ray) is None
+
+
+def test_a_click_sends_the_chosen_ground_vehicle_there(station):
+    station.press(click(4.0, 3.0))
+    ((name, goal),) = station.script.asked
+    assert name == UGV
+    assert (goal.position.x, goal.position.y, goal.source) == (pytest.approx(4.0), pytest.approx(3.0), "gcs")
+    assert np.isnan(goal.yaw)
+    assert station.model.vehicles[UGV].order.state == "accepted"
+
+
+def test_a_refusal_is_shown_with_its_reason():
+    station = Station(accept=False)
+    station.run(0.5)
+    station.press(click(4.0, 3.0))
+    order = station.model.vehicles[UGV].order
+    assert (order.state, order.reason) == ("refused", "the <goal> lies inside a wall")
+    assert "inside a wall" in station.model.log[-1].text
+    assert station.model.vehicles[UGV].goal_asked is None
+
+
+def test_a_click_does_not_send_an_aircraft(station):
+    station.press(Select(UAV))
+    station.press(click(4.0, 3.0))
+    assert station.script.asked == []
+    assert station.model.vehicles[UAV].order.state == "refused"
+
+
+def test_a_click_far_outside_is_refused_here(station):
+    station.press(click(400.0, 3.0))
+    assert station.script.asked == []
+    assert "too far" in station.model.vehicles[UGV].order.reason
+
+
+def test_a_vehicle_that_fell_silent_gets_no_orders(station):
+    station.run(6.0, silent=True)
+    station.page.clicks.append(click(4.0, 3.0))
+    station.run(0.1, silent=True)
+    assert station.script.asked == []
+    assert "no link" in station.model.vehicles[UGV].order.reason
+
+
+def test_arming_wants_a_second_press(station):
+    station.press(Arm(False))
+    assert station.script.asked == []
+    station.press(Arm(False))
+    ((name, request),) = station.script.asked
+    assert (name, request.arm, request.force) == (UGV, False, False)
+
+
+@pytest.mark.parametrize("between", [[Select(UAV), Select(UGV)], [Arm(True)]])
+def test_a_second_press_counts_only_for_the_same_question(station, between):
+    station.press(Arm(False), *between, Arm(False))
+    assert station.script.asked == []
+
+
+def test_a_second_press_must_come_soon(station):
+    station.press(Arm(False))
+    station.run(CONFIRM_WITHIN)
+    station.press(Arm(False))
+    assert station.script.asked == []
+
+
+def test_modes_go_to_the_chosen_vehicle(station):
+    station.press(Select(UAV), SetMode("Return"))
+    ((name, request),) = station.script.asked
+    assert (name, request.mode) == (UAV, Mode.MODE_RETURN)
+
+
+@pytest.mark.parametrize("action", [SetMode("Return"), SetMode("nonsense"), Select("nobody"), Layer("nothing", True)])
+def test_what_a_page_cannot_ask_is_not_sent(station, action):
+    layers = set(station.model.layers)
+    station.press(action)
+    assert station.script.asked == []
+    assert station.model.selected == UGV
+    assert station.model.layers == layers
+
+
+def test_stop_all_goes_out_at_once_and_holds_until_released(station):
+    station.press(StopAll(True), seconds=0.05)
+    assert [(s.engaged, s.source) for s in station.script.stops] == [(True, "gcs")]
+    station.run(1.0)
+    assert station.model.stopped
+    station.press(StopAll(False), seconds=0.2)
+    assert [s.engaged for s in station.script.stops] == [True, False]
+    assert not station.model.stopped
+
+
+def test_stop_all_needs_no_link(station):
+    station.run(60.0, silent=True)
+    station.page.clicks.append(StopAll(True))
+    station.run(0.05, silent=True)
+    assert station.script.stops[-1].engaged
+
+
+def test_an_order_that_nobody_answers_ends_as_refused(station):
+    station.script.bus._servers.clear()
+    station.script.bus.serve("uvf/*/srv/goal", lambda query: None)
+    station.press(click(4.0, 3.0))
+    assert station.model.vehicles[UGV].order.state == "sent"
+    station.run(ANSWER_WITHIN + 0.1)
+    assert station.model.vehicles[UGV].order.reason == "no answer"
+
+
+def test_an_order_without_a_server_is_refused_with_the_reason(station):
+    station.script.bus._servers.clear()
+    station.press(SetMode("Hold"))
+    assert "nobody answers" in station.model.vehicles[UGV].order.reason
+
+
+def test_requests_are_described_in_words():
+    goal = GoalRequest()
+    goal.position.x, goal.position.y = 1.04, -2.0
+    assert describe(goal) == "go to (1.0, -2.0) m"
+    assert describe(ModeRequest(mode=Mode.MODE_RETURN)) == "mode Return"
+    assert [describe(ArmRequest(arm=a)) for a in (True, False)] == ["arm", "disarm"]

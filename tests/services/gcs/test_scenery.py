@@ -1,0 +1,117 @@
+"""The still world, bodies and views: geometry that can be computed a second way."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+import trimesh
+
+from services.gcs import bodies
+from services.gcs.cameras import ASPECT, FOV, cameras
+from services.gcs.scenery import WALL_SHOWN, extent, rgb_of, scenery
+from tests.services.gcs.scripted import LEGS, demo_site
+from uvf.runtime.world_file import Box, Origin, Wall, WorldFile
+
+WORLD = WorldFile(about="", origin=Origin(0.0, 0.0), floor=(0.0, 0.0, 4.0, 3.0))
+
+
+def solid(part):
+    return trimesh.Trimesh(part.vertices, part.faces, process=True)
+
+
+def corners(nodes, prefix):
+    return np.vstack([n.vertices for name, n in nodes.items() if name.startswith(prefix)])
+
+
+@pytest.mark.parametrize(
+    ("part", "volume"),
+    [
+        (bodies.box((1, 2, 3), (2, 3, 4)), 24.0),
+        (bodies.lathe(2, [(0, 1), (2, 1)], (5, 0, 0)), 2 * 12 * np.sin(np.pi / 12)),
+        (bodies.lathe(0, [(0, 1), (1, 1), (2, 0.5)], (0, 0, 0)), 12 * np.sin(np.pi / 12) * (1 + 7 / 12)),
+        (bodies.plate([(0, 0, 0), (2, 0, 0), (2, 1, 0), (0, 1, 0)], 0.5), 1.0),
+    ],
+)
+def test_solids_are_closed_and_have_the_volume_of_the_book(part, volume):
+    mesh = solid(part)
+    assert mesh.is_watertight
+    assert abs(mesh.volume) == pytest.approx(volume, rel=1e-6)
+
+
+def test_a_rover_stands_on_its_wheels_and_fits_its_circle():
+    points = np.vstack([p.vertices for p in bodies.rover(0.11, 0.033, 0.16)])
+    assert points[:, 2].min() == pytest.approx(0.0)
+    assert np.hypot(points[:, 0], points[:, 1]).max() < 0.14
+
+
+def test_an_aeroplane_is_as_wide_as_it_says_and_alike_on_both_sides():
+    points = np.vstack([p.vertices for p in bodies.aeroplane()])
+    assert np.ptp(points[:, 1]) == pytest.approx(2.9)
+    assert points[:, 1].max() == pytest.approx(-points[:, 1].min())
+
+
+def test_walls_close_their_corners_and_are_cut_low():
+    world = dataclasses_replace(WORLD, walls=[Wall(points=[(0, 0), (4, 0), (4, 3)], thickness=0.2)])
+    points = corners(scenery(world), "/world/walls")
+    assert points.min(axis=0) == pytest.approx((-0.1, -0.1, 0.0))
+    assert points.max(axis=0) == pytest.approx((4.1, 3.1, WALL_SHOWN))
+
+
+def test_boxes_are_turned_about_their_centre():
+    world = dataclasses_replace(WORLD, boxes=[Box("b", (2.0, 1.0, 0.5), (2.0, 0.5, 1.0), yaw=np.pi / 2)])
+    points = corners(scenery(world), "/world/things")
+    assert points.min(axis=0) == pytest.approx((1.75, 0.0, 0.0))
+    assert points.max(axis=0) == pytest.approx((2.25, 2.0, 1.0))
+
+
+def dataclasses_replace(world, **changes):
+    return WorldFile(**{f: getattr(world, f) for f in WorldFile.__struct_fields__} | changes)
+
+
+def test_the_extent_holds_the_floor_and_the_circuit():
+    low, high = extent(demo_site())
+    assert low == pytest.approx((*np.min(LEGS, axis=0), 0.0))
+    assert high == pytest.approx((*np.max(LEGS, axis=0), 60.0))
+
+
+def seen(camera, points):
+    """(n, 2) of points in a window that reaches from -1 to 1 both ways."""
+    position, look_at = np.array(camera.position), np.array(camera.look_at)
+    sight = (look_at - position) / np.linalg.norm(look_at - position)
+    right = np.cross(sight, (0, 0, 1))
+    right /= np.linalg.norm(right)
+    up = np.cross(right, sight)
+    depth = (points - position) @ sight
+    assert (depth > 0).all()
+    tall = np.tan(FOV / 2)
+    return np.column_stack(((points - position) @ right / depth / tall / ASPECT, (points - position) @ up / depth / tall))
+
+
+FLOOR = np.array([(x, y, 0.0) for x in (0, 12) for y in (0, 9)])
+CIRCUIT = np.array([(*leg, 60.0) for leg in LEGS])
+
+
+@pytest.mark.parametrize(("view", "points"), [("Scene", FLOOR), ("Floor", FLOOR), ("Top", FLOOR), ("All", CIRCUIT), ("All", FLOOR)])
+def test_views_hold_what_they_promise(view, points):
+    assert np.abs(seen(cameras(demo_site())[view], points)).max() < 1.0
+
+
+def test_views_are_filled():
+    assert np.abs(seen(cameras(demo_site())["Floor"], FLOOR)).max() > 0.8
+
+
+def test_the_opening_view_shows_the_far_leg_in_the_sky():
+    camera = cameras(demo_site())["Scene"]
+    far = np.array([(x, 150.0, 60.0) for x in (-40.0, 0.0, 40.0)])
+    assert (seen(camera, far)[:, 1] < 0.97).all()
+    assert seen(camera, far)[:, 1].min() > 0.3
+
+
+def test_with_nothing_in_the_air_the_opening_view_stays_on_the_floor():
+    site = demo_site()
+    ground = dataclasses.replace(site, members={n: m for n, m in site.members.items() if m.file.kind == "ground"})
+    assert np.abs(seen(cameras(ground)["Scene"], FLOOR).mean(axis=0)).max() < 0.3
+
+
+def test_colours_are_read():
+    assert rgb_of("#4ea1ff") == (78, 161, 255)

@@ -1,0 +1,81 @@
+"""The service: what it declares, its buttons, its manners."""
+
+import pytest
+
+from schemas import topics
+from services.gcs.commands import Arm, Select, SetMode, StopAll
+from services.gcs.service import GroundStation
+from tests.services.gcs.fakes import Station
+from tests.services.gcs.scripted import UAV, UGV
+
+
+@pytest.fixture
+def station():
+    station = Station()
+    station.run(0.5)
+    return station
+
+
+def buttons(station):
+    return {b.label: b for b in station.page.now.buttons}
+
+
+def test_it_runs_by_the_wall_clock_for_the_whole_world_and_writes_only_stop():
+    assert (GroundStation.scope, GroundStation.clock) == ("world", "wall")
+    assert GroundStation.outputs == {"stop": topics.STOP.by("gcs")}
+    assert all(not declared.required for declared in GroundStation.declared_inputs().values())
+
+
+def test_every_step_shows_a_picture(station):
+    assert len(station.page.pictures) == 10
+    assert all(p.html.keys() == station.page.now.html.keys() for p in station.page.pictures)
+
+
+def test_each_kind_has_its_own_buttons(station):
+    assert list(buttons(station)) == ["STOP ALL", "Release STOP", "Hold", "Mission", "Manual", "Disarm burger"]
+    station.press(Select(UAV))
+    assert list(buttons(station)) == ["STOP ALL", "Release STOP", "Hold", "Mission", "Return", "Disarm milvus"]
+
+
+def test_the_present_mode_is_lit(station):
+    assert [label for label, b in buttons(station).items() if b.lit] == ["Mission"]
+
+
+def test_buttons_ask_for_what_they_say(station):
+    asked = {label: b.action for label, b in buttons(station).items()}
+    assert asked["STOP ALL"] == StopAll(True)
+    assert asked["Hold"] == SetMode("Hold")
+    assert asked["Disarm burger"] == Arm(False)
+
+
+def test_the_arm_button_asks_to_be_confirmed(station):
+    station.press(Arm(False))
+    assert "Confirm: disarm burger" in buttons(station)
+
+
+def test_release_is_there_only_while_stopped(station):
+    assert not buttons(station)["Release STOP"].enabled
+    station.press(StopAll(True))
+    assert buttons(station)["Release STOP"].enabled
+
+
+def test_only_the_chosen_vehicles_picture_is_sent(station):
+    image = topics.IMAGE.message
+    station.script.put(UGV, topics.IMAGE, image(data=b"ground", format="jpeg"), 0.5)
+    station.script.put(UAV, topics.IMAGE, image(data=b"air", format="jpeg"), 0.5)
+    station.run(0.1)
+    assert station.page.now.image == b"ground"
+    station.press(Select(UAV))
+    assert station.page.now.image == b"air"
+
+
+def test_it_starts_with_nobody_there():
+    station = Station()
+    station.run(1.0, silent=True)
+    assert "WAITING" in station.page.now.html["bar"]
+    assert "No launcher" in station.page.now.html["processes"]
+
+
+def test_it_closes_its_page(station):
+    station.service.close()
+    assert station.page.closed
