@@ -1,4 +1,4 @@
-"""Exploration: the frontier that is driven to now, and those left alone for a while because nothing came of them."""
+"""Exploration: the frontier that is driven to now, those left alone for a while, and the patrol when all is known."""
 
 from dataclasses import dataclass, field
 
@@ -8,13 +8,15 @@ from numpy.typing import NDArray
 from services.planner.costmap import Costmap
 from services.planner.frontiers import Taste, frontier_mask, frontiers
 from services.planner.search import Ways
+from uvf.maths.grids import distance_field
 
 Mask = NDArray[np.bool_]
 Point = tuple[float, float]
 
 SHUN_RADIUS = 0.5  # m
-SHUN_TIME = 20.0  # s, doubled with each further time at the same place
+SHUN_TIME = 30.0  # s, tripled with each further time at the same place
 STILL_THERE = 0.7  # m from the goal within which the frontier must remain
+PATROL_REST = 1.5  # m, when no place is farther from those visited, the round begins again
 
 
 @dataclass
@@ -60,7 +62,7 @@ class Explorer:
         for old in self._shunned:
             if np.hypot(old.point[0] - self.goal[0], old.point[1] - self.goal[1]) < SHUN_RADIUS:
                 old.times += 1
-                old.until = t + SHUN_TIME * 2**old.times
+                old.until = t + SHUN_TIME * 3**old.times
                 break
         else:
             self._shunned.append(Shunned(self.goal, t + SHUN_TIME, 0))
@@ -77,6 +79,43 @@ class Explorer:
         """Behind each frontier cell about a metre of floor is taken to be hidden."""
         known = int(np.isfinite(ways.cost).sum())
         return known / max(known + frontier_cells / costs.resolution, 1)
+
+
+@dataclass
+class Patrol:
+    """Goals for when everything is explored: the place farthest from those visited, round after round."""
+
+    goal: Point | None = None
+    _visited: list[Point] = field(default_factory=list)
+
+    def choose(self, here: Point, costs: Costmap, ways: Ways) -> Point | None:
+        """Where to go [m, map]; keeps a goal until ``reached`` or until no way leads there."""
+        if self.goal is not None and np.isfinite(ways.cost[costs.cell(*self.goal)]):
+            return self.goal
+        easy = np.isfinite(ways.cost) & (costs.cost >= 0.0) & (costs.cost < 1.5)
+        if not easy.any():
+            return None
+        distance = np.where(easy, self._distance([*self._visited, here], costs), -1.0)
+        if distance.max() < PATROL_REST:
+            self._visited.clear()
+            distance = np.where(easy, self._distance([here], costs), -1.0)
+        cell = np.array(np.unravel_index(int(np.argmax(distance)), distance.shape))
+        x, y = costs.points(cell[None])[0]
+        self.goal = (float(x), float(y))
+        return self.goal
+
+    def reached(self) -> None:
+        """The goal has been visited, or was given up."""
+        if self.goal is not None:
+            self._visited.append(self.goal)
+        self.goal = None
+
+    def _distance(self, points: list[Point], costs: Costmap) -> NDArray[np.float64]:
+        marks = np.zeros(costs.cost.shape, dtype=np.bool_)
+        for point in points:
+            if costs.holds(costs.cell(*point)):
+                marks[costs.cell(*point)] = True
+        return distance_field(marks) * costs.resolution
 
 
 def disc(costs: Costmap, centre: Point, radius: float) -> Mask:

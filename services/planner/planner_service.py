@@ -24,7 +24,7 @@ from schemas.messages import (
     VehicleStatus,
 )
 from services.planner.costmap import Body
-from services.planner.exploring import Explorer
+from services.planner.exploring import Explorer, Patrol
 from services.planner.frontiers import Taste
 from services.planner.jobs import IDLE, Goal, Job, choose, mission_target, not_now
 from services.planner.navigator import Navigator, Plan
@@ -75,6 +75,7 @@ class PlannerService(Service):
         self._explores = explores
         self._navigator = Navigator(Body(radius + params.margin, params.comfort, params.dislike))
         self._explorer = Explorer(Taste(params.least_frontier, 0.4, params.frontier_worth))
+        self._patrol = Patrol()
         self._map_stamp = -1.0
         self._job: Job = IDLE
         self._goal: Goal | None = None
@@ -82,6 +83,7 @@ class PlannerService(Service):
         self._plan = Plan(None)
         self._planned_at = -np.inf
         self._reached_at: float | None = None
+        self._is_there = False
         self._progress_at = 0.0
         self._progress_pose: Pose2 = (0.0, 0.0, 0.0)
         self._events: list[Event] = []
@@ -157,11 +159,16 @@ class PlannerService(Service):
         if ways is None or costs is None:
             self._target, self._plan = None, Plan(None, "the vehicle is outside its map")
             return
-        self._target = self._explorer.choose(t, costs, ways)
-        found = self._target is not None
+        frontier = self._explorer.choose(t, costs, ways)
+        self._target = frontier or self._patrol.choose(here[:2], costs, ways)
         self._plan = self._navigator.plan(here[:2], self._target) if self._target else Plan(None, "everything is explored")
-        if found and self._plan.path is None:
-            self._explorer.shun_goal(t)
+        if self._target is not None and self._plan.path is None:
+            self._done_with_target(t)
+
+    def _done_with_target(self, t: float) -> None:
+        """Another frontier or place of the patrol is to be chosen."""
+        self._explorer.shun_goal(t)
+        self._patrol.reached()
 
     def _watch(self, t: float, here: Pose2, status: VehicleStatus | None) -> None:
         """Has the goal been reached, or does the vehicle get nowhere?"""
@@ -171,7 +178,8 @@ class PlannerService(Service):
             return
         if self._target is None:
             return
-        if self._is_near(here):
+        self._is_there = self._is_near(here)
+        if self._is_there:
             self._arrive(t, here)
             return
         last = self._progress_pose
@@ -196,16 +204,18 @@ class PlannerService(Service):
             self._plan = Plan(None, "goal reached")
             self._tell(t, "goal reached", "")
         elif self._job.name == "explore":
-            self._explorer.shun_goal(t)
+            self._is_there = False
+            self._done_with_target(t)
             self._replan(t, here)
 
     def _give_up(self, t: float, reason: str) -> None:
-        self._tell(t, f"{self._job.name}: goal given up", reason, Event.WARNING)
+        text = "trying again" if self._job.bold else "goal given up"
+        self._tell(t, f"{self._job.name}: {text}", reason, Event.WARNING)
         self._progress_at = t
         if self._job.name == "goal":
             self._goal = None
         elif self._job.name == "explore":
-            self._explorer.shun_goal(t)
+            self._done_with_target(t)
             self._planned_at = -np.inf
             self._plan = Plan(None, reason)
 
@@ -235,7 +245,7 @@ class PlannerService(Service):
         return status
 
     def _state(self) -> NavStatus.State:
-        if self._reached_at is not None:
+        if self._reached_at is not None or self._is_there:
             return NavStatus.REACHED
         if self._target is None:
             return NavStatus.IDLE
