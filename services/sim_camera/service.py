@@ -31,13 +31,13 @@ class SimCamera(Service):
     name = "sim_camera"
     hz = 5.0
     scope = "world"
-    simulator = True
     inputs = {"truth": each_vehicle(optional(topics.TRUTH))}
     outputs = {"image": topics.IMAGE, "info": topics.CAMERA_INFO}
 
     def __init__(self, renderer: Renderer, cameras: Mapping[str, Camera]) -> None:
         self._renderer = renderer
         self._cameras = cameras
+        self._told = False
 
     def step(self, t: float, truth: dict[str, NavState]) -> Outputs:
         n = round(t * self.hz)
@@ -48,9 +48,13 @@ class SimCamera(Service):
             if name in poses and n % round(self.hz / camera.hz) == 0:
                 picture = self._renderer.picture(camera, poses[name])
                 images[name] = image_message(truth[name].timestamp, optical_frame(name, camera), picture)
-        return {"image": images, "info": self._infos(t) if n == 1 else {}}
+        return {"image": images, "info": self._infos(t)}
 
     def _infos(self, t: float) -> dict[str, CameraCalibration]:
+        """Told once, at the first step; that is not always step 1, for a process may join a running clock."""
+        if self._told:
+            return {}
+        self._told = True
         return {name: info_message(t, optical_frame(name, camera), camera) for name, camera in self._cameras.items()}
 
     def close(self) -> None:

@@ -36,6 +36,7 @@ class Rig:
         self._sensors = sensors
         self._lidar: LidarModel | None = None
         self._imu: ImuModel | None = None
+        self._touched: str | None = None
         if sensors.lidar is not None:
             outlines = slice_at(site.world, sensors.lidar.mount.xyz[2])
             self._lidar = LidarModel(sensors.lidar, outlines, site.rng(member.name, "lidar"))
@@ -43,8 +44,12 @@ class Rig:
             self._imu = ImuModel(sensors.imu, np.array(site.world.magnetic_field), site.rng(member.name, "imu"))
 
     def read(self, n: int, body: BodyState, others: Floats, touched: str | None) -> Mapping[str, Message]:
-        """Messages by output name at step ``n``; others: (k, 3) x, y, radius [m] of the other vehicles."""
+        """Messages by output name at step ``n``; others: (k, 3) x, y, radius [m] of the other vehicles.
+
+        A touch counts until it has been told, so that a short one between two messages is not lost.
+        """
         t = n / STEP_HZ
+        self._touched = self._touched or touched
         found: dict[str, Message] = {}
         sensors = self._sensors
         if sensors.imu is not None and self._imu is not None and is_due(n, sensors.imu.hz):
@@ -58,7 +63,8 @@ class Rig:
         if is_due(n, TRUTH_HZ):
             found["truth"] = readings.truth_message(t, body)
         if is_due(n, STATE_HZ):
-            found["contact"] = readings.contact_message(t, touched)
+            found["contact"] = readings.contact_message(t, self._touched)
+            self._touched = None
             found["joints"] = readings.joints_message(t, self.ground, body)
         return found
 

@@ -53,6 +53,7 @@ class SimGround(Service):
         self._world = world
         self._rigs = rigs
         self._sensors = sensors
+        self._told = False
 
     def step(self, t: float, commands: dict[str, WheelCommand]) -> Outputs:
         n = round(t * self.hz)
@@ -64,8 +65,9 @@ class SimGround(Service):
             circles = np.array(others, dtype=np.float64).reshape(-1, 3)
             for output, message in rig.read(n, bodies[name], circles, self._world.touched(name)).items():
                 outputs.setdefault(output, {})[name] = message
-        if n == 1:
+        if not self._told:  # at the first step, which is not always step 1: a process may join a running clock
             outputs["frames"] = {name: sensor_frames(name, sensors, t) for name, sensors in self._sensors.items()}
+            self._told = True
         return outputs
 
     def close(self) -> None:

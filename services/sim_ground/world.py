@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from services.sim_ground.body import BodyState
 from uvf.maths.geodesy import GRAVITY
 from uvf.maths.kinematics import WheelSpeeds
-from uvf.maths.rotations import from_euler, inverse, multiply, rotate
+from uvf.maths.rotations import from_euler, inverse, matrix, multiply, rotate
 from uvf.runtime.params import BadInput
 from uvf.runtime.vehicle_file import GroundBody
 from uvf.runtime.world_file import WorldFile
@@ -20,6 +20,8 @@ from uvf.runtime.world_geometry import all_boxes
 
 Floats = NDArray[np.float64]
 STOPPED = WheelSpeeds(0.0, 0.0)
+TOUCH = 5e-4  # m, gap at which two bodies touch; the engine leaves a little air
+FALLEN = 0.5  # cosine of the tilt from which on a vehicle no longer stands on its wheels
 SETTLING = 0.3  # s of physics before the start: the wheels sink into their contacts
 
 
@@ -140,11 +142,12 @@ class BulletWorld:
         )
 
     def touched(self, vehicle: str) -> str | None:
-        """Name of the first thing touched other than the floor, None while free."""
+        """Name of what is touched, the floor only by a vehicle that has fallen over; None while free."""
         index = self._vehicles[vehicle].index
         contacts: list[Any] = list(pybullet.getContactPoints(bodyA=index, physicsClientId=self._client))
-        others = [self._names[c[2]] for c in contacts if self._names[c[2]] != "floor" and c[8] <= 0.0]
-        return others[0] if others else None
+        names = [self._names[contact[2]] for contact in contacts if contact[8] <= TOUCH]
+        fallen = matrix(self.state(vehicle).world_from_body)[2, 2] < FALLEN
+        return next((name for name in names if name != "floor" or fallen), None)
 
     def close(self) -> None:
         pybullet.disconnect(physicsClientId=self._client)

@@ -69,6 +69,21 @@ def test_what_is_touched_is_named(site):
     assert contact.other == "sofa"
 
 
+def test_a_short_touch_between_two_messages_is_told_once(site):
+    world = StandingWorld({"one": (6.0, 4.4), "two": (7.0, 4.4)})
+    service = service_in(site, world)
+    told = []
+    for n in range(1, 16):
+        world.touching = "sofa" if n == 7 else None
+        told += [outputs["one"].touching for outputs in [service.step(n / 100, commands={}).get("contact")] if outputs]
+    assert told == [False, True, False]
+
+
+def test_a_simulator_that_joins_late_still_tells_its_frames(site):
+    service = service_in(site, StandingWorld({"one": (6.0, 4.4), "two": (7.0, 4.4)}))
+    assert set(service.step(50.0, commands={})["frames"]) == {"one", "two"}
+
+
 def test_closing_gives_the_engine_back(site):
     world = StandingWorld({"one": (6.0, 4.4), "two": (7.0, 4.4)})
     service_in(site, world).close()

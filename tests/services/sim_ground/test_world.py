@@ -1,0 +1,81 @@
+"""The physics behind its Protocol: several worlds side by side, starts, falls, a long wild ride."""
+
+from dataclasses import replace
+
+import numpy as np
+import pybullet
+import pytest
+
+from services.sim_ground.world import BulletWorld, Placed
+from uvf.maths.kinematics import DifferentialDrive, Twist, WheelSpeeds
+from uvf.maths.rotations import matrix, to_euler
+from uvf.runtime.site import ROOT
+from uvf.runtime.vehicle_file import load_vehicle
+from uvf.runtime.world_file import load_world
+from uvf.runtime.world_geometry import clearance
+
+HOUSE = load_world(ROOT / "worlds", "house")
+BODY = load_vehicle(ROOT / "vehicles", "burger").ground
+BURGER = Placed(BODY, ROOT / "vehicles" / "burger" / BODY.urdf, (6.0, 4.4, 0.7))
+DRIVE = DifferentialDrive(BODY.wheel_radius, BODY.track)
+
+
+@pytest.fixture
+def world():
+    made = BulletWorld(HOUSE, {"burger": BURGER})
+    yield made
+    made.close()
+
+
+def test_it_starts_where_the_mission_says_and_at_rest(world):
+    state = world.state("burger")
+    assert state.position == pytest.approx((6.0, 4.4, 0.0), abs=1e-3)
+    assert to_euler(state.world_from_body) == pytest.approx((0.0, 0.0, 0.7), abs=1e-3)
+    assert np.linalg.norm(state.velocity) < 1e-3
+
+
+def test_velocity_is_the_change_of_position(world):
+    wheels = {"burger": DRIVE.wheels(Twist(0.2, 1.0))}
+    world.advance(wheels, 1.0)
+    before = world.state("burger")
+    world.advance(wheels, 0.01)
+    after = world.state("burger")
+    assert (after.position - before.position) / 0.01 == pytest.approx(after.velocity, abs=5e-3)
+    turned = to_euler(after.world_from_body)[2] - to_euler(before.world_from_body)[2]
+    assert turned / 0.01 == pytest.approx(after.angular_velocity[2], abs=0.01)
+
+
+def test_wheel_angles_go_on_over_many_turns(world):
+    world.advance({"burger": WheelSpeeds(-10.0, 10.0)}, 10.0)
+    left, right = world.state("burger").wheel_angles
+    assert (left, right) == pytest.approx((-100.0, 100.0), rel=0.03)
+
+
+def test_two_worlds_do_not_share_anything(world):
+    other = BulletWorld(HOUSE, {"burger": replace(BURGER, start=(2.2, 1.3, 0.0))})
+    other.advance({"burger": WheelSpeeds(5.0, 5.0)}, 1.0)
+    other.close()
+    assert world.state("burger").position == pytest.approx((6.0, 4.4, 0.0), abs=1e-3)
+
+
+def test_one_that_has_fallen_over_touches_the_floor(world):
+    loaded = world._vehicles["burger"]
+    pybullet.resetBasePositionAndOrientation(loaded.index, [6.0, 4.4, 0.12], [0.7071, 0.0, 0.0, 0.7071], physicsClientId=world._client)
+    world.advance({}, 1.0)
+    assert world.touched("burger") == "floor"
+
+
+def test_a_minute_of_wild_driving_neither_tips_it_nor_takes_it_through_a_wall(world):
+    rng = np.random.default_rng(11)
+    lowest_up, touches = 1.0, set()
+    for _ in range(60):
+        command = {"burger": DRIVE.wheels(Twist(rng.uniform(-0.5, 0.5), rng.uniform(-2.0, 2.0)))}
+        for _ in range(10):
+            world.advance(command, 0.1)
+            state = world.state("burger")
+            lowest_up = min(lowest_up, matrix(state.world_from_body)[2, 2])
+            touches.add(world.touched("burger"))
+            assert abs(state.position[2]) < 0.02
+            assert clearance(HOUSE, *state.position[:2]) > 0.03  # its nose is 0.038 m before the axle
+    assert lowest_up > np.cos(0.15)
+    assert len(touches - {None}) >= 2
