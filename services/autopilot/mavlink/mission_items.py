@@ -57,7 +57,14 @@ class BadItem(Exception):
 
 
 def from_wire(item: mav.MAVLink_mission_item_int_message, facts: Facts, home_z: float) -> MissionItem:
-    """home_z: height of home [m, world]. Raises BadItem."""
+    """home_z: height of home [m, world]. Raises BadItem, which names the item."""
+    try:
+        return _from_wire(item, facts, home_z)
+    except BadItem as bad:
+        raise BadItem(bad.result, f"item {item.seq}: {bad.reason}") from bad
+
+
+def _from_wire(item: mav.MAVLink_mission_item_int_message, facts: Facts, home_z: float) -> MissionItem:
     kind = KIND.get(item.command)
     if kind is None:
         raise BadItem(mav.MAV_MISSION_UNSUPPORTED, f"command {item.command} is not supported")
@@ -115,9 +122,9 @@ def _count(value: float) -> int:
 
 def check_whole(items: list[MissionItem]) -> None:
     """What only the whole plan shows. Raises BadItem."""
-    for item in items:
+    for index, item in enumerate(items):
         if item.kind == MissionItem.JUMP and item.jump_to >= len(items):
-            raise BadItem(mav.MAV_MISSION_INVALID_PARAM1, f"jump to item {item.jump_to} of {len(items)}")
+            raise BadItem(mav.MAV_MISSION_INVALID_PARAM1, f"item {index}: jump to item {item.jump_to} of {len(items)}")
 
 
 def mission_of(items: list[MissionItem]) -> Mission:

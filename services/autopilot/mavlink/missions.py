@@ -82,7 +82,7 @@ class Missions:
                 check_whole(upload.items)
         except BadItem as bad:
             self._upload = None
-            self._refuse(upload.sender, BadItem(bad.result, f"item {message.seq}: {bad.reason}"), MISSION)
+            self._refuse(upload.sender, bad, MISSION)
             return
         upload.skipped |= message.command in SKIPPED
         upload.tries = 0

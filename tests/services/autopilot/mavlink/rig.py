@@ -3,7 +3,7 @@
 import numpy as np
 
 from schemas.convert import quaternion, stamp
-from schemas.messages import Battery, Clock, Gnss, Kind, Mission, MissionProgress, Mode, NavState, Reply, Vector3, VehicleStatus
+from schemas.messages import Clock, Gnss, Kind, Mission, MissionProgress, Mode, NavState, Reply, Vector3, VehicleStatus
 from services.autopilot.mavlink import dialect as mav
 from services.autopilot.mavlink.facts import Facts
 from services.autopilot.mavlink.service import MavlinkService

@@ -1,0 +1,157 @@
+"""QGroundControl's first seconds with a vehicle, with its time limits and its strictness: what would the user be told?
+
+After ``Vehicle/InitialConnectStateMachine.cc``, ``FactSystem/ParameterManager.cc``, ``MissionManager/PlanManager.cc`` and the
+setup checks of ``AutoPilotPlugins/PX4`` in QGroundControl's master of May 2026.
+"""
+
+import struct
+
+from services.autopilot.mavlink import dialect as mav
+from tests.services.autopilot.mavlink.rig import GCS, long, of
+
+ACK_WAIT, MESSAGE_WAIT, PARAM_WAIT, PLAN_WAIT = 1.2, 1.0, 5.0, 1.5  # s
+TRIES = 3
+BUTTON_MODES = {50593792: "Hold", 67371008: "Mission", 84148224: "Return", 33816576: "Takeoff", 100925440: "Land"}
+NO_PARAMETERS = "Vehicle did not respond to request for parameters"
+SOME_PARAMETERS = "unable to retrieve the full set of parameters from vehicle"
+SETUP = "One or more vehicle components require setup prior to flight"
+MISSING = "Parameters are missing from firmware"
+PLAN = "Mission transfer failed"
+OLD_FIRMWARE = "supports PX4 Pro firmware Version 1.4.1 and above"
+NOT_STABLE = "Vehicle is not running latest stable firmware"
+NO_HOME = "Unable to change altitude, home position unknown"
+READ_AT_A_CLICK = ("RTL_RETURN_ALT", "COM_FLTMODE1", "GF_ACTION", "BAT_LOW_THR", "NAV_RCL_ACT", "MAV_SYS_ID", "COM_RC_LOSS_T")
+
+
+class QGroundControl:
+    """Connects to one vehicle of a rig; ``spoil`` may change or swallow what the vehicle says."""
+
+    def __init__(self, rig, system, spoil=lambda message: message):
+        self.rig = rig
+        self.system = system
+        self.complaints = []
+        self.modes = {}
+        self.parameters = {}
+        self.plan = []
+        self._spoil = spoil
+        self._heard = []
+        self._beat_at = -1.0
+
+    def connect(self):
+        """The whole sequence; returns the seconds it took."""
+        start = self.rig.t
+        beat = self._await("HEARTBEAT", 2.0)
+        if beat is None:
+            self.complaints.append("no vehicle")
+            return self.rig.t - start
+        self._version()
+        self._modes()
+        for optional in (397, 395):
+            self._request(optional, None)
+        self._parameters()
+        self._setup_check(beat)
+        self._download_plan()
+        self._await("HOME_POSITION", 2.1) or self.complaints.append(NO_HOME)
+        return self.rig.t - start
+
+    def _listen(self, seconds):
+        """Time passes; QGroundControl's own heartbeat goes out each second."""
+        if self.rig.t - self._beat_at >= 1.0:
+            self._beat_at = self.rig.t
+            self.rig.say(mav.MAVLink_heartbeat_message(mav.MAV_TYPE_GCS, mav.MAV_AUTOPILOT_INVALID, 0, 0, 0, 3))
+        heard = [self._spoil(m) for m in self.rig.run(seconds) if m.get_srcSystem() == self.system]
+        self._heard += [m for m in heard if m is not None]
+
+    def _await(self, kind, seconds, fits=lambda m: True):
+        end = self.rig.t + seconds
+        while True:
+            found = next((m for m in of(self._heard, kind) if fits(m)), None)
+            if found is not None:
+                self._heard.remove(found)
+                return found
+            if self.rig.t >= end:
+                return None
+            self._listen(0.02)
+
+    def _request(self, number, kind, p2=0.0):
+        """REQUEST_MESSAGE: three tries for the acknowledgement, then a second for the message. None = refused or silent."""
+        for _ in range(TRIES):
+            self.rig.say(long(512, float(number), p2, 0.0, 0.0, 0.0, 0.0, 0.0, system=self.system), peer=GCS)
+            ack = self._await("COMMAND_ACK", ACK_WAIT, lambda m: m.command == 512)
+            if ack is not None:
+                return self._await(kind, MESSAGE_WAIT) if ack.result == 0 and kind else None
+        return None
+
+    def _version(self):
+        version = self._request(148, "AUTOPILOT_VERSION")
+        if version is None:
+            return
+        major, minor, patch, kind = version.flight_sw_version.to_bytes(4, "big")
+        if (major, minor, patch) < (1, 4, 1):
+            self.complaints.append(OLD_FIRMWARE)
+        if kind == 255:
+            self.complaints.append(NOT_STABLE)
+
+    def _modes(self):
+        """One at a time, the next only after the one before."""
+        index, total = 1, 1
+        while index <= total:
+            mode = self._request(435, "AVAILABLE_MODES", float(index))
+            if mode is None:
+                self.modes = dict(BUTTON_MODES)  # its own list of PX4 modes
+                return
+            self.modes[mode.custom_mode] = mode.mode_name
+            total, index = mode.number_modes, mode.mode_index + 1
+        self.complaints += [f"button {name} sets an empty mode" for word, name in BUTTON_MODES.items() if word not in self.modes]
+
+    def _parameters(self):
+        self.rig.say(mav.MAVLink_param_request_read_message(self.system, 1, b"_HASH_CHECK", -1))
+        self._await("PARAM_VALUE", 1.0, lambda m: m.param_id == "_HASH_CHECK")
+        values, total = {}, None
+        for _ in range(5):
+            self.rig.say(mav.MAVLink_param_request_list_message(self.system, 0))
+            while m := self._await("PARAM_VALUE", PARAM_WAIT if total is None else 3.0):
+                if m.param_index != 0xFFFF:
+                    values[m.param_index], total = m, m.param_count
+                if total is not None and len(values) == total:
+                    break
+            if total is not None:
+                break
+        if total is None:
+            self.complaints.append(NO_PARAMETERS)
+            return
+        if len(values) < total:
+            self.complaints.append(SOME_PARAMETERS)
+        self.parameters = {m.param_id: _number(m) for m in values.values()}
+
+    def _setup_check(self, beat):
+        p = self.parameters
+        if not p:
+            return
+        incomplete = p.get("SYS_AUTOSTART", 0) == 0
+        incomplete |= p.get("COM_RC_IN_MODE") != 1 and not all(p.get(f"RC_MAP_{axis}") for axis in ("ROLL", "PITCH", "YAW", "THROTTLE"))
+        if not beat.base_mode & mav.MAV_MODE_FLAG_HIL_ENABLED:
+            incomplete |= not all(p.get(f"CAL_{sensor}0_ID") for sensor in ("GYRO", "ACC", "MAG"))
+        if incomplete:
+            self.complaints.append(SETUP)
+        if p.get("SYS_HITL"):
+            self.complaints.append("Warning: Hardware In The Loop (HITL) simulation is enabled")
+        if missing := [name for name in READ_AT_A_CLICK if name not in p]:
+            self.complaints.append(f"{MISSING}: {missing}")
+
+    def _download_plan(self):
+        self.rig.say(mav.MAVLink_mission_request_list_message(self.system, 1, 0))
+        count = self._await("MISSION_COUNT", PLAN_WAIT, lambda m: m.mission_type == 0)
+        for seq in range(count.count if count is not None else 0):
+            self.rig.say(mav.MAVLink_mission_request_int_message(self.system, 1, seq, 0))
+            item = self._await("MISSION_ITEM_INT", PLAN_WAIT, lambda m, seq=seq: m.seq == seq)
+            if item is None:
+                break
+            self.plan.append(item)
+        if count is None or len(self.plan) < count.count:
+            self.complaints.append(PLAN)
+
+
+def _number(message):
+    raw = struct.pack("<f", message.param_value)
+    return struct.unpack("<i" if message.param_type == mav.MAV_PARAM_TYPE_INT32 else "<f", raw)[0]

@@ -1,0 +1,45 @@
+"""Addresses from the environment, and vehicles from the mission."""
+
+import pytest
+
+from services.autopilot.mavlink import build as build_module
+from services.autopilot.mavlink.build import address, build
+from uvf.runtime.params import BadInput
+from uvf.runtime.site import ROOT, load_site
+
+
+@pytest.mark.parametrize("text", ["", "14550", "host:", ":14550", "host:abc", "host:0", "host:70000"])
+def test_what_is_no_address_is_named_with_its_place(text):
+    with pytest.raises(BadInput, match=r"UVF_X: .* is not host:port"):
+        address(text, "UVF_X")
+
+
+def test_addresses():
+    assert address(" 10.0.0.2:14550 ", "X") == ("10.0.0.2", 14550)
+
+
+@pytest.fixture
+def opened(monkeypatch):
+    """What ``build`` would open, without opening it."""
+    seen = []
+    monkeypatch.setattr(build_module, "open_link", lambda targets, listen: seen.append((targets, listen)))
+    return seen
+
+
+def test_one_process_speaks_for_all_vehicles_of_the_mission(opened, monkeypatch):
+    monkeypatch.delenv("UVF_MAVLINK_TARGETS", raising=False)
+    monkeypatch.delenv("UVF_MAVLINK_LISTEN", raising=False)
+    site = load_site(ROOT / "missions" / "demo.yaml")
+    (host,) = build(site)
+    host.make()
+    assert opened == [([("127.0.0.1", 14550), ("127.0.0.1", 14540)], ("127.0.0.1", 14580))]
+    ids = {f.name: f.system_id for f in build_module.facts_of(site)}
+    assert ids == {name: vehicle.system_id for name, vehicle in site.mission.vehicles.items()}
+
+
+def test_the_environment_chooses_other_addresses(opened, monkeypatch):
+    monkeypatch.setenv("UVF_MAVLINK_TARGETS", "gcs.local:14550,10.0.0.2:9")
+    monkeypatch.setenv("UVF_MAVLINK_LISTEN", "")
+    (host,) = build(load_site(ROOT / "missions" / "demo.yaml"))
+    host.make()
+    assert opened == [([("gcs.local", 14550), ("10.0.0.2", 9)], None)]
