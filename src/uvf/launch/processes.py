@@ -121,10 +121,10 @@ class ConductorLoop:
     def _tell_held(self, wall: float) -> None:
         """While nothing moves: the clock as it stands, and once a line about whom it waits for."""
         self._told = wall
-        if self._conductor.started:
-            clock = self._conductor.clock(wall)
-            self._clock.put(clock.SerializeToString(deterministic=True), clock.t_ns)
         waited = self._conductor.waiting_for()
+        if self._conductor.started:
+            clock = self._conductor.clock(wall, waited)
+            self._clock.put(clock.SerializeToString(deterministic=True), clock.t_ns)
         if waited and waited != self._complained and wall - self._held_since > PATIENCE:
             self._complained = waited
             names = ", ".join(self._conductor.missing()) or waited

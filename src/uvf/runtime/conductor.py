@@ -127,11 +127,11 @@ class Conductor:
             return
         self._allowed = min(self._allowed + elapsed * self._rate, self.t_ns / NS + MAX_BEHIND * max(self._rate, 1.0))
 
-    def clock(self, wall: float) -> Clock:
-        """The state of time as a message."""
+    def clock(self, wall: float, waiting_for: str = "") -> Clock:
+        """The state of time as a message; ``waiting_for`` names who has held it back for long."""
         message = Clock(tick=self.tick, t_ns=self.t_ns, epoch=self.epoch, rate_wanted=self._rate, lockstep=self._lockstep)
         message.state = Clock.PAUSED if self._paused else Clock.RUNNING
-        message.waiting_for = self.waiting_for()
+        message.waiting_for = waiting_for
         message.rate = self._achieved(wall)
         if self._lockstep:
             for participant in self._participants.values():

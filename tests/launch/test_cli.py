@@ -1,0 +1,90 @@
+"""The command line answers bad input with one clear line and a non-zero exit."""
+
+import socket
+import subprocess
+import sys
+
+import pytest
+import yaml
+
+from uvf.runtime.site import ROOT
+
+
+def uvf(*arguments, **environment):
+    import os
+
+    command = [sys.executable, "-m", "uvf.launch.cli", *arguments]
+    return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=60, env={**os.environ, **environment}, check=False)
+
+
+def mission(tmp_path, **changes):
+    data = yaml.safe_load((ROOT / "missions" / "demo.yaml").read_text()) | changes
+    path = tmp_path / "changed.yaml"
+    path.write_text(yaml.safe_dump(data))
+    return str(path)
+
+
+def vehicle(**changes):
+    return {"burger": {"model": "burger", "system_id": 2, "start": {"x": 2.0, "y": 1.0}} | changes}
+
+
+BAD = {
+    "unknown mission": ({}, "dmo", "no mission 'dmo'; did you mean 'demo'?"),
+    "unknown key": ({"vehicels": {}}, None, "unknown key 'vehicels'; did you mean 'vehicles'?"),
+    "unknown world": ({"world": "hose"}, None, "no world 'hose'"),
+    "unknown model": ({"vehicles": vehicle(model="burgr"), "criteria": []}, None, "no vehicle 'burgr'"),
+    "unknown vehicle of a criterion": ({"criteria": [{"vehicle": "burgr", "measure": "contacts"}]}, None, "did you mean 'burger'?"),
+    "wrong type": ({"seed": "x"}, None, "seed"),
+    "reserved name": ({"vehicles": {"sys": vehicle()["burger"]}, "criteria": []}, None, "vehicles"),
+    "two of one system id": ({"vehicles": vehicle() | {"other": vehicle()["burger"]}, "criteria": []}, None, "both have system_id 2"),
+}
+
+
+@pytest.mark.parametrize("case", BAD)
+def test_a_bad_mission_is_one_line_that_names_the_mend(tmp_path, case):
+    changes, name, expected = BAD[case]
+    done = uvf("check", name or mission(tmp_path, **changes))
+    assert done.returncode == 2
+    assert expected in done.stderr
+    assert len(done.stderr.strip().splitlines()) == 1
+
+
+def test_an_unknown_measure_is_named_before_the_run(tmp_path):
+    path = mission(tmp_path, criteria=[{"vehicle": "burger", "measure": "distance_drivn"}])
+    done = uvf("run", path, "--lockstep", "--until", "1", UVF_RUNS=str(tmp_path))
+    assert done.returncode == 2
+    assert "did you mean 'distance_driven'?" in done.stderr
+
+
+def test_broken_yaml_names_file_and_line(tmp_path):
+    path = tmp_path / "broken.yaml"
+    path.write_text("about: x\nworld: [house\nseed: 1\n")
+    done = uvf("check", str(path))
+    assert done.returncode == 2
+    assert f"{path}:3: not valid YAML" in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("variable", "value", "what"), [("UVF_ROUTER", "tcp/127.0.0.1:{}", "the router"), ("UVF_GCS_PORT", "{}", "the page")]
+)
+def test_up_says_which_port_is_taken_and_how_to_choose_another(tmp_path, variable, value, what):
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        port = taken.getsockname()[1]
+        done = uvf("up", "--for", "1", UVF_RUNS=str(tmp_path), **{variable: value.format(port)})
+    assert done.returncode == 2
+    assert f"port {port} for {what} is taken" in done.stderr and variable in done.stderr
+
+
+def test_without_a_router_the_tools_say_so():
+    done = uvf("node", "list", UVF_ROUTER="tcp/127.0.0.1:9")
+    assert done.returncode == 2
+    assert "no router at tcp/127.0.0.1:9" in done.stderr
+
+
+def test_help_imports_no_engine():
+    code = "import sys, uvf.launch.cli as c\ntry: c.app(['--help'])\nexcept SystemExit: pass\n"
+    code += "print([m for m in ('zenoh', 'numpy', 'numba', 'pybullet', 'jsbsim', 'viser') if m in sys.modules])"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip().endswith("[]")

@@ -1,0 +1,38 @@
+"""Every service keeps the contract, and the catalogue says what is so."""
+
+import inspect
+from pathlib import Path
+
+import pytest
+
+from uvf.launch import catalogue
+from uvf.launch.checks import check_mission
+from uvf.runtime.site import ROOT, load_site
+
+SITE = load_site(ROOT / "missions" / "demo.yaml")
+HOSTS = {kind.name: catalogue.hosts(SITE, [kind]) for kind in catalogue.KINDS}
+SERVICES = sorted({host.service for hosts in HOSTS.values() for host in hosts}, key=lambda s: s.name)
+
+
+@pytest.mark.parametrize("service", SERVICES, ids=lambda s: s.name)
+def test_step_takes_what_is_declared(service):
+    declared = {*service.inputs, *service.requests, *service.calls}
+    assert set(inspect.signature(service.step).parameters) == {"self", "t", *declared}
+
+
+@pytest.mark.parametrize("service", SERVICES, ids=lambda s: s.name)
+def test_names_mean_one_thing(service):
+    assert not set(service.requests) & (set(service.inputs) | set(service.calls))
+    assert not set(service.outputs) & (set(service.requests) | set(service.calls))
+    assert service.__doc__
+
+
+@pytest.mark.parametrize("kind", catalogue.KINDS, ids=lambda k: k.name)
+def test_the_catalogue_agrees_with_the_classes(kind):
+    assert {host.service.clock for host in HOSTS[kind.name]} == {kind.clock}
+    assert any(host.service.simulator for host in HOSTS[kind.name]) == kind.simulator
+
+
+def test_the_wiring_of_every_mission_is_right():
+    for mission in sorted(Path(ROOT, "missions").glob("*.yaml")):
+        assert check_mission(str(mission)) == []
