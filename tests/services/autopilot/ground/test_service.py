@@ -1,0 +1,186 @@
+"""The ground autopilot step by step: nothing moves that should not, and it says why."""
+
+import pytest
+
+from schemas.convert import planar_pose, stamp
+from schemas.messages import (
+    ArmRequest,
+    DriveCommand,
+    Mission,
+    MissionItem,
+    MissionProgress,
+    MissionRequest,
+    Mode,
+    ModeRequest,
+    PoseInFrame,
+    SetCurrentRequest,
+    StopCommand,
+    Vector3,
+)
+from services.autopilot.ground.multiplexer import SOURCES
+from services.autopilot.ground.service import GroundAutopilot, GroundAutopilotParams
+from uvf.runtime.vehicle_file import GroundBody
+
+BODY = GroundBody(
+    urdf="x.urdf",
+    left_joint="l",
+    right_joint="r",
+    wheel_radius=0.05,
+    track=0.2,
+    radius=0.15,
+    max_linear=0.5,
+    max_angular=2.0,
+    max_linear_acceleration=1.0,
+    max_angular_acceleration=4.0,
+    motor_torque=1.0,
+)
+WAYPOINTS = [MissionItem(position=Vector3(x=1.0)), MissionItem(position=Vector3(x=2.0))]
+NOBODY = dict.fromkeys(("teleop", "mavlink", "gcs", "client", "offboard", "planner", "stop", "pose"))
+NOTHING_ASKED = {"arm": [], "set_mode": [], "set_mission": [], "set_current": []}
+
+
+class Bench:
+    """Steps the service at 50 Hz, keeping commands fresh, and remembers what it last said."""
+
+    def __init__(self, begins=True, items=()):
+        self.service = GroundAutopilot(BODY, (3.0, 4.0), (begins, list(items)), 7, GroundAutopilotParams())
+        self.t = 0.0
+        self.said = {}
+        self.events = []
+
+    def step(self, n=1, linear=None, source="planner", pose=None, **inputs):
+        for _ in range(n):
+            self.t += 0.02
+            values = {**NOBODY, **NOTHING_ASKED, **inputs}
+            if linear is not None:
+                values[source] = DriveCommand(timestamp=stamp(self.t - 0.02), linear=linear)
+            if pose is not None:
+                values["pose"] = PoseInFrame(pose=planar_pose(*pose, 0.0))
+            out = self.service.step(self.t, **values)
+            self.said.update(out)
+            self.events += [e.text for e in out["events"]]
+        return self
+
+    @property
+    def speed(self):
+        wheels = self.said["wheels"]
+        return BODY.wheel_radius * (wheels.left + wheels.right) / 2
+
+
+def test_the_planner_drives_in_mode_mission():
+    bench = Bench().step(40, linear=0.4)
+    assert bench.speed == pytest.approx(0.4)
+    assert (bench.said["status"].command_source, bench.said["status"].system_id) == ("planner", 7)
+    assert "commands from planner" in bench.events
+
+
+def test_speed_rises_no_faster_than_the_body_allows():
+    assert Bench().step(1, linear=0.5).speed == pytest.approx(1.0 * 0.02)
+
+
+def test_turning_left_drives_the_right_wheel():
+    bench = Bench()
+    for i in range(60):
+        bench.step(planner=DriveCommand(timestamp=stamp(0.02 * i), angular=1.0))
+    assert bench.said["wheels"].right == pytest.approx(2.0)
+    assert bench.said["wheels"].left == pytest.approx(-2.0)
+
+
+def test_a_stale_command_stops_within_half_a_second_and_the_ramp():
+    bench = Bench().step(40, linear=0.4)
+    last = DriveCommand(timestamp=stamp(bench.t - 0.02), linear=0.4)
+    bench.step(23, planner=last)
+    assert bench.speed == pytest.approx(0.4)
+    bench.step(23, planner=last)
+    assert bench.speed == 0.0
+    bench.step(5, planner=last)
+    assert "no fresh command" in bench.said["status"].reason
+
+
+def test_stop_all_holds_until_it_is_released():
+    bench = Bench().step(40, linear=0.4)
+    engaged = StopCommand(engaged=True, source="gcs")
+    bench.step(25, linear=0.4, stop=engaged)
+    assert bench.speed == 0.0
+    bench.step(200, linear=0.4, stop=engaged)
+    assert bench.speed == 0.0
+    assert bench.said["status"].stopped
+    bench.step(40, linear=0.4, stop=StopCommand(engaged=False, source="gcs"))
+    assert bench.speed == pytest.approx(0.4)
+    assert [e for e in bench.events if "STOP" in e] == ["STOP ALL: standing until it is released", "STOP ALL is released"]
+
+
+def test_stop_all_stays_when_its_sender_falls_silent():
+    bench = Bench().step(1, stop=StopCommand(engaged=True)).step(40, linear=0.4)
+    assert bench.speed == 0.0
+
+
+def test_cannot_be_armed_under_stop_all():
+    bench = Bench(begins=False).step(stop=StopCommand(engaged=True), arm=[ArmRequest(arm=True)])
+    assert not bench.said["arm"][0].accepted
+
+
+def test_without_a_job_it_begins_disarmed_and_holding():
+    bench = Bench(begins=False).step(40, linear=0.4)
+    assert bench.speed == 0.0
+    assert (bench.said["status"].armed, bench.said["status"].mode) == (False, Mode.MODE_HOLD)
+
+
+def test_disarmed_means_no_motion_in_any_mode():
+    for mode in SOURCES:
+        bench = Bench(begins=False).step(set_mode=[ModeRequest(mode=mode)])
+        for source in ("teleop", "planner", "offboard"):
+            assert bench.step(10, linear=0.4, source=source).speed == 0.0
+
+
+def test_a_person_takes_over_by_mode_and_gives_back():
+    bench = Bench().step(40, linear=0.4).step(set_mode=[ModeRequest(mode=Mode.MODE_MANUAL, source="gcs")], linear=0.4)
+    assert bench.step(40, linear=0.4).speed == 0.0
+    assert bench.step(40, linear=-0.2, source="teleop").speed == pytest.approx(-0.2)
+    bench.step(set_mode=[ModeRequest(mode=Mode.MODE_MISSION, source="gcs")]).step(60, linear=0.4)
+    assert bench.speed == pytest.approx(0.4)
+    assert [e for e in bench.events if "mode" in e] == ["mode MANUAL", "mode MISSION"]
+
+
+def test_a_mode_that_a_ground_vehicle_lacks_is_refused():
+    reply = Bench().step(set_mode=[ModeRequest(mode=Mode.MODE_LAND)]).said["set_mode"][0]
+    assert not reply.accepted
+    assert "MANUAL" in reply.reason
+
+
+def test_the_mission_advances_with_the_pose():
+    bench = Bench(items=WAYPOINTS).step(1, pose=(0.0, 0.0))
+    assert bench.said["mission"].items[1].position.x == 2.0
+    bench.step(50, pose=(0.9, 0.0))
+    assert (bench.said["progress"].current, bench.said["progress"].reached) == (1, 0)
+    assert bench.said["status"].distance_to_waypoint == pytest.approx(1.1)
+    bench.step(50, pose=(2.1, 0.0))
+    assert bench.said["progress"].state == MissionProgress.COMPLETE
+    assert "mission item 1 reached" in bench.events
+
+
+def test_a_new_mission_is_published_once():
+    bench = Bench(items=WAYPOINTS).step(10)
+    bench.said.pop("mission")
+    bench.step(set_mission=[MissionRequest(mission=Mission(items=WAYPOINTS[:1]))])
+    assert len(bench.said.pop("mission").items) == 1
+    assert "mission" not in bench.step(10).said
+
+
+def test_a_mission_for_aircraft_is_refused_and_the_old_one_kept():
+    bench = Bench(items=WAYPOINTS).step(set_mission=[MissionRequest(mission=Mission(items=[MissionItem(kind=MissionItem.LAND)]))])
+    assert bench.said["set_mission"][0].reason == "item 0: LAND is not for a ground vehicle"
+    assert bench.step(30, pose=(0.0, 0.0)).said["progress"].total == 2
+
+
+def test_jumps_to_an_item_on_request():
+    bench = Bench(items=WAYPOINTS).step(set_current=[SetCurrentRequest(index=1), SetCurrentRequest(index=5)])
+    assert [r.accepted for r in bench.said["set_current"]] == [True, False]
+    assert bench.step(30, pose=(0.0, 0.0)).said["progress"].current == 1
+
+
+def test_a_speed_item_limits_the_mission_but_not_the_person():
+    bench = Bench(items=[MissionItem(kind=MissionItem.SPEED, speed=0.1), *WAYPOINTS]).step(60, linear=0.4, pose=(0.0, 0.0))
+    assert bench.speed == pytest.approx(0.1)
+    bench.step(set_mode=[ModeRequest(mode=Mode.MODE_MANUAL)]).step(60, linear=0.4, source="teleop")
+    assert bench.speed == pytest.approx(0.4)
