@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from services.sim_ground.body import BodyState
 from uvf.maths.geodesy import GRAVITY
+from uvf.maths.kinematics import spin_velocity
 from uvf.maths.rotations import from_euler, inverse, multiply, rotate
 from uvf.runtime.vehicle_file import ImuSensor
 
@@ -30,6 +31,7 @@ class ImuModel:
         self._field = magnetic_field
         self._rng = rng
         self._body_from_sensor = from_euler(*imu.mount.rpy)
+        self._arm = np.array(imu.mount.xyz)
         self._gyro_bias = rng.normal(0.0, imu.gyro_bias, 3)
         self._accel_bias = rng.normal(0.0, imu.accel_bias, 3)
         self._velocity = np.zeros(3)
@@ -37,7 +39,7 @@ class ImuModel:
     def read(self, body: BodyState, dt: float) -> ImuReading:
         """The reading at the end of ``dt`` [s]. Biases are constant; the vehicle starts at rest."""
         imu, rng = self._imu, self._rng
-        velocity = body.velocity + rotate(body.world_from_body, np.cross(body.angular_velocity, np.array(imu.mount.xyz)))
+        velocity = body.velocity + rotate(body.world_from_body, spin_velocity(body.angular_velocity, self._arm))
         acceleration, self._velocity = (velocity - self._velocity) / dt, velocity
         sensor_from_body = inverse(self._body_from_sensor)
         sensor_from_world = inverse(multiply(body.world_from_body, self._body_from_sensor))

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from services.sim_ground.body import BodyState
 from uvf.maths.geodesy import GRAVITY
-from uvf.maths.kinematics import WheelSpeeds
+from uvf.maths.kinematics import WheelSpeeds, spin_velocity
 from uvf.maths.rotations import from_euler, inverse, matrix, multiply, rotate
 from uvf.runtime.params import BadInput
 from uvf.runtime.vehicle_file import GroundBody
@@ -135,7 +135,7 @@ class BulletWorld:
         return BodyState(
             position=np.array(com) - arm,
             world_from_body=world_from_base,
-            velocity=velocity - np.cross(angular, arm),
+            velocity=velocity - spin_velocity(angular, arm),
             angular_velocity=rotate(inverse(world_from_base), angular),
             wheel_angles=(joints[0][0], joints[1][0]),
             wheel_speeds=WheelSpeeds(joints[0][1], joints[1][1]),

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from uvf.maths.kinematics import DifferentialDrive, PlanarPose, Twist, WheelSpeeds, move
+from uvf.maths.kinematics import DifferentialDrive, PlanarPose, Twist, WheelSpeeds, move, spin_velocity
 from uvf.maths.rotations import wrap
 
 BURGER = DifferentialDrive(wheel_radius=0.033, track=0.16)
@@ -65,3 +65,9 @@ def test_the_wheels_do_not_slip_sideways(pose, twist):
 
 def test_straight_ahead_needs_no_special_case():
     assert move(PlanarPose(1.0, 2.0, np.pi / 2), Twist(0.5, 0.0), 2.0) == pytest.approx((1.0, 3.0, np.pi / 2))
+
+
+@given(st.lists(st.floats(-10, 10), min_size=6, max_size=6))
+def test_a_point_of_a_spinning_body_moves_by_the_cross_product(values):
+    omega, arm = np.array(values[:3]), np.array(values[3:])
+    assert spin_velocity(omega, arm) == pytest.approx(np.cross(omega, arm), abs=1e-9)

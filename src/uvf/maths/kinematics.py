@@ -1,4 +1,4 @@
-"""Kinematics of the differential drive: wheel speeds, body velocity, motion along an arc.
+"""Kinematics of rigid bodies and of the differential drive: wheel speeds, body velocity, motion along an arc.
 
 Siegwart & Nourbakhsh, Introduction to Autonomous Mobile Robots, 3.2; the pose is that of the middle of the axle.
 """
@@ -7,8 +7,11 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from uvf.maths.rotations import wrap
+
+Floats = NDArray[np.float64]
 
 
 class PlanarPose(NamedTuple):
@@ -61,3 +64,12 @@ def move(pose: PlanarPose, twist: Twist, dt: float) -> PlanarPose:
     chord = twist.linear * dt * float(np.sinc(turn / (2 * np.pi)))
     heading = pose.yaw + turn / 2
     return PlanarPose(pose.x + chord * float(np.cos(heading)), pose.y + chord * float(np.sin(heading)), wrap(pose.yaw + turn))
+
+
+def spin_velocity(angular_velocity: Floats, arm: Floats) -> Floats:
+    """(3,) omega x r [m/s]: velocity of a body's point at ``arm`` [m] against its origin, both in one frame.
+
+    Written out: ``np.cross`` takes ten times as long on one pair.
+    """
+    (p, q, r), (x, y, z) = angular_velocity.tolist(), arm.tolist()
+    return np.array((q * z - r * y, r * x - p * z, p * y - q * x))
