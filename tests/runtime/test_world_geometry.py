@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from uvf.maths.raycast import cast
+from uvf.runtime.params import BadInput
 from uvf.runtime.site import ROOT
 from uvf.runtime.world_file import Box, Cylinder, Origin, Wall, WorldFile, load_world
 from uvf.runtime.world_geometry import all_boxes, clearance, floor_plan, reachable_floor, slice_at
@@ -95,3 +96,15 @@ def test_coloured_fields_of_the_house_do_not_overlap():
     areas = [f.area for f in HOUSE.fields]
     overlaps = [(a, b) for i, a in enumerate(areas) for b in areas[:i] if a[0] < b[2] and b[0] < a[2] and a[1] < b[3] and b[1] < a[3]]
     assert overlaps == []
+
+
+@pytest.mark.parametrize(
+    ("points", "complaint"),
+    [("[[0, 0]]", r"walls\[0\]"), ("[[0, 0], [1, 0], [1, 0]]", r"walls\[0\]: the same point twice in a row; take one away")],
+)
+def test_a_wall_without_length_is_refused(tmp_path, points, complaint):
+    (tmp_path / "flat").mkdir()
+    text = f"{{about: test, origin: {{latitude: 0, longitude: 0}}, floor: [0, 0, 1, 1], walls: [{{points: {points}}}]}}"
+    (tmp_path / "flat" / "world.yaml").write_text(text)
+    with pytest.raises(BadInput, match=complaint):
+        load_world(tmp_path, "flat")

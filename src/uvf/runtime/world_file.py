@@ -1,5 +1,6 @@
 """``worlds/<name>/world.yaml``: walls, obstacles, wind and where on Earth it is, as data."""
 
+from itertools import pairwise
 from pathlib import Path
 from typing import Annotated
 
@@ -23,7 +24,7 @@ class Origin(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 class Wall(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """An upright wall along a poly-line of corner points [m, world]."""
 
-    points: list[tuple[float, float]]
+    points: Annotated[list[tuple[float, float]], Meta(min_length=2)]
     height: Positive = 2.5  # m
     thickness: Positive = 0.1  # m
     colour: Colour = (0.85, 0.83, 0.78)
@@ -81,4 +82,8 @@ def load_world(worlds: Path, name: str) -> WorldFile:
     if not path.is_file():
         known = [p.parent.name for p in worlds.glob("*/world.yaml")]
         raise BadInput(f"no world '{name}' in {worlds}; {nearest(name, known)}")
-    return load_yaml(path, WorldFile)
+    world = load_yaml(path, WorldFile)
+    for i, wall in enumerate(world.walls):
+        if any(a == b for a, b in pairwise(wall.points)):
+            raise BadInput(f"{path}: walls[{i}]: the same point twice in a row; take one away")
+    return world
