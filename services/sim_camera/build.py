@@ -2,7 +2,7 @@
 
 from services.sim_camera.renderer import BulletRenderer, Look
 from services.sim_camera.service import SimCamera
-from uvf.runtime.params import BadInput
+from uvf.runtime.params import BadInput, nearest
 from uvf.runtime.site import Host, Member, Site
 from uvf.runtime.urdf_file import check_urdf
 from uvf.runtime.vehicle_file import Camera
@@ -28,4 +28,7 @@ def _look(member: Member) -> Look:
         check_urdf(member.folder / member.file.ground.urdf, ())
         return Look(urdf=member.folder / member.file.ground.urdf)
     mesh = member.file.air.mesh if member.file.air is not None else None
+    if mesh is not None and not (member.folder / mesh).is_file():
+        place = f"{member.folder / 'vehicle.yaml'}: air: mesh"
+        raise BadInput(f"{place}: no file '{mesh}' in that folder; {nearest(mesh, (p.name for p in member.folder.iterdir()))}")
     return Look(mesh=member.folder / mesh if mesh is not None else None)

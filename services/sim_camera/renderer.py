@@ -95,8 +95,6 @@ class BulletRenderer:
         return _Shown(index, Pose(np.array(local[3]), np.array((w, x, y, z))))
 
     def _aircraft(self, mesh: Path | None) -> int:
-        if mesh is not None and not mesh.is_file():
-            raise BadInput(f"{mesh}: no such mesh file; mend 'air: mesh:' in {mesh.parent / 'vehicle.yaml'}")
         shape: int
         if mesh is not None:
             shape = pybullet.createVisualShape(

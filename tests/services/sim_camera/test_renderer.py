@@ -8,7 +8,6 @@ from services.sim_camera.backdrop import SKY
 from services.sim_camera.optics import intrinsics, project
 from services.sim_camera.renderer import BulletRenderer, Look, Pose
 from uvf.maths.rotations import from_euler, matrix
-from uvf.runtime.params import BadInput
 from uvf.runtime.site import ROOT
 from uvf.runtime.vehicle_file import Camera, Mount
 from uvf.runtime.world_file import Cylinder, Field, Origin, WorldFile
@@ -90,11 +89,6 @@ def test_a_mesh_is_drawn(tmp_path):
     mesh.write_text("v 0 -1 0\nv 0 1 0\nv 0 0 1\nv 0.1 0 0\nf 1 2 3\nf 1 3 2\nf 1 4 3\nf 2 3 4\nf 1 2 4\n")
     pose = {"other": Pose(np.array((6.0, 0.0, 0.0)), from_euler(0.0, 0.0, 0.0))}
     assert (picture(EMPTY, vehicles={"other": Look(mesh=mesh)}, poses=pose) != picture(EMPTY)).any()
-
-
-def test_a_missing_mesh_is_named(tmp_path):
-    with pytest.raises(BadInput, match=r"hull\.obj: no such mesh file; mend 'air: mesh:'"):
-        BulletRenderer(EMPTY, {"other": Look(mesh=tmp_path / "hull.obj")})
 
 
 def test_the_same_scene_gives_the_same_bytes():

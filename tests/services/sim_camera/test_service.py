@@ -1,6 +1,7 @@
 """The service: with a renderer of ten lines, and in lockstep with the real one in the demo's world."""
 
 import io
+from dataclasses import replace
 
 import msgspec
 import numpy as np
@@ -16,7 +17,7 @@ from uvf.runtime.lockstep import Lockstep
 from uvf.runtime.params import BadInput
 from uvf.runtime.service import Service
 from uvf.runtime.site import ROOT, Host, load_site
-from uvf.runtime.vehicle_file import Camera, Mount
+from uvf.runtime.vehicle_file import Camera, Mount, load_vehicle
 
 CAMERA = Camera(mount=Mount(), hz=5.0, width=32, height=24, fov=1.2)
 SLOW = msgspec.structs.replace(CAMERA, hz=2.5)
@@ -109,11 +110,27 @@ def test_a_walk_through_the_house_is_filmed_the_same_twice():
     assert [image.data for image in first] == [image.data for image in second]
 
 
-def test_a_camera_rate_that_does_not_fit_is_refused():
+def spoilt(vehicle, **parts):
+    """The demo with other data in a vehicle's file."""
     site = load_site(ROOT / "missions/demo.yaml")
-    burger = site.members["burger"]
-    sensors = msgspec.structs.replace(burger.file.sensors, camera=msgspec.structs.replace(CAMERA, hz=3.0))
-    odd = msgspec.structs.replace(burger.file, sensors=sensors)
-    site.members["burger"] = type(burger)(burger.name, burger.entry, odd, burger.folder)
+    member = site.members[vehicle]
+    site.members[vehicle] = replace(member, file=msgspec.structs.replace(member.file, **parts))
+    return site
+
+
+def test_a_camera_rate_that_does_not_fit_is_refused():
+    sensors = load_vehicle(ROOT / "vehicles", "burger").sensors
+    odd = msgspec.structs.replace(sensors, camera=msgspec.structs.replace(CAMERA, hz=3.0))
     with pytest.raises(BadInput, match="camera: hz is 3; make it a divisor of 5"):
-        build(site)
+        build(spoilt("burger", sensors=odd))
+
+
+def test_a_missing_mesh_is_named():
+    air = load_vehicle(ROOT / "vehicles", "milvus").air
+    with pytest.raises(BadInput, match=r"air: mesh: no file 'milvs.obj' in that folder; did you mean):
+        build(spoilt("milvus", air=msgspec.structs.replace(air, mesh="milvs.obj")))
+
+
+def test_without_cameras_there_is_no_service():
+    site = load_site(ROOT / "missions/demo.yaml")
+    assert build(replace(site, members={})) == []

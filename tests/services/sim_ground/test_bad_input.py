@@ -1,6 +1,7 @@
 """Mistakes in a vehicle's files end in one line that names the file and the mend."""
 
 import shutil
+from dataclasses import replace
 
 import pytest
 import yaml
@@ -97,3 +98,8 @@ def test_a_sensor_rate_that_does_not_fit_the_step(root):
 
 def test_a_start_inside_the_furniture(root):
     assert "burger: start (0.6, 2.2) is 0.00 m from a wall or furniture" in refusal(root, (0.6, 2.2, 0.0))
+
+
+def test_without_ground_vehicles_there_is_no_service(root):
+    site = site_with(root, {"burger": (6.0, 4.4, 0.0)})
+    assert build(replace(site, members={})) == []
