@@ -80,21 +80,24 @@ class Airframe:
         self._enu_from_ecef = tangent.enu_from_ecef
         self._origin_ecef = ecef_from_geodetic(tangent.latitude, tangent.longitude, tangent.altitude)
         self._fdm = _load(folder, body)
+        self._integrators = {name: self._fdm[name] for name in INTEGRATORS}
 
     def start(self, start: Start) -> Trim:
         """Puts the aircraft into trimmed level flight. Raises BadInput when it cannot fly so."""
-        rates = [self._fdm[name] for name in INTEGRATORS]
-        for name in INTEGRATORS:
-            self._fdm[name] = 0
-        trim = solve(lambda guess: self._accelerations(start, guess))
-        self._accelerations(start, trim)
-        for name, rate in zip(INTEGRATORS, rates, strict=True):
-            self._fdm[name] = rate
+        self.hold_still(True)
+        trim = solve(lambda guess: self.accelerations(start, guess))
+        self.accelerations(start, trim)
+        self.hold_still(False)
         if not trim.converged:
             raise BadInput(f"{self._body.model}: no level flight at {start.airspeed} m/s: {trim.residual:.2g} m/s^2 or rad/s^2 are left")
         return trim
 
-    def _accelerations(self, start: Start, trim: Trim) -> Floats:
+    def hold_still(self, still: bool) -> None:
+        """Stops the motion of the body while the engine turns on, or lets it go."""
+        for name, method in self._integrators.items():
+            self._fdm[name] = 0 if still else method
+
+    def accelerations(self, start: Start, trim: Trim) -> Floats:
         """(6,) body accelerations [m/s^2, rad/s^2] once the propeller turns steadily, the body held in this state."""
         fdm = self._fdm
         self._place(start, trim)

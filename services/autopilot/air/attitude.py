@@ -18,9 +18,9 @@ class Attitude:
 
     roll: float = 0.0
     pitch: float = 0.0
-    p00: float = 0.01
+    p00: float = 0.001
     p01: float = 0.0
-    p11: float = 0.01
+    p11: float = 0.001
     bias_p: float = 0.0
     bias_q: float = 0.0
 
@@ -41,6 +41,12 @@ class Attitude:
         self.p00 += dt * (2 * (a00 * p00 + a01 * p01) + PROCESS)
         self.p01 += dt * (a00 * p01 + a01 * p11 + a10 * p00)
         self.p11 += dt * (2 * a10 * p01 + PROCESS)
+
+    def ahead(self, rates: tuple[float, float, float], age: float) -> tuple[float, float]:
+        """Roll and pitch [rad] now, ``age`` [s] after the last sample, turning on at ``rates``."""
+        p, q, r = rates[0] - self.bias_p, rates[1] - self.bias_q, rates[2]
+        s, c = math.sin(self.roll), math.cos(self.roll)
+        return self.roll + age * (p + (q * s + r * c) * math.tan(self.pitch)), self.pitch + age * (q * c - r * s)
 
     def correct(self, gravity: tuple[float, float, float], dt: float) -> None:
         """Gravity [m/s^2, FRD] as seen by the accelerometers; two scalar updates."""

@@ -24,6 +24,7 @@ class Inertial:
     rates: Triple
     force: Triple
     field: Triple
+    age: float = 0.0  # s, since it was taken
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,6 +64,7 @@ class Estimator:
         self._airspeed = 0.0
         self._baro = 0.0
         self._lift = G  # m/s^2
+        self._age = 0.0  # s, of the newest IMU sample
 
     def step(self, samples: list[Inertial], pressures: Pressures, fix: Fix | None, dt: float) -> Estimate:
         """One cycle of ``dt`` [s]: the IMU samples since the last, the newest pressures, a fix if one has come."""
@@ -74,6 +76,7 @@ class Estimator:
         up = [self._take_inertial(sample, dt / len(samples)) for sample in samples]
         self._step_track(track, samples, dt)
         if up:
+            self._age = samples[-1].age
             vertical.step(self._baro, sum(up) / len(up), dt)
         if fix is not None:
             ahead = (fix.north, fix.east, fix.v_north, fix.v_east)
@@ -132,6 +135,7 @@ class Estimator:
         x = track.x.tolist()
         p, q, r = (g.value or 0.0 for g in self._gyros)
         a = self._attitude
+        roll, pitch = a.ahead((p, q, r), self._age)
         return Estimate(
             north=x[N],
             east=x[E],
@@ -139,8 +143,8 @@ class Estimator:
             ground_speed=x[V],
             course=math.remainder(x[CHI], math.tau),
             climb=vertical.climb,
-            roll=a.roll,
-            pitch=a.pitch,
+            roll=roll,
+            pitch=pitch,
             yaw=math.remainder(x[PSI], math.tau),
             p=p - a.bias_p,
             q=q - a.bias_q,

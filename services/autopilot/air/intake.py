@@ -27,8 +27,10 @@ def frd(v: Vector3) -> tuple[float, float, float]:
     return v.x, -v.y, -v.z
 
 
-def inertial(message: Imu) -> Inertial:
-    return Inertial(frd(message.angular_velocity), frd(message.specific_force), frd(message.magnetic_field))
+def inertial(message: Imu, t: float) -> Inertial:
+    """A sample as seen at time ``t`` [s]."""
+    age = t - seconds(message.timestamp)
+    return Inertial(frd(message.angular_velocity), frd(message.specific_force), frd(message.magnetic_field), age)
 
 
 def pressures(message: AirData) -> Pressures:

@@ -148,7 +148,7 @@ class AutopilotAir(Service):
         stamp_ns = gnss.timestamp.ToNanoseconds()
         fix = intake.fix(gnss, self._ship.tangent, t) if stamp_ns != self._fix_stamp and gnss.fix == Gnss.FIX_3D else None
         self._fix_stamp = stamp_ns
-        samples = [intake.inertial(m) for m in imu]
+        samples = [intake.inertial(m, t) for m in imu]
         return self._estimator.step(samples, intake.pressures(air_data), fix, 1 / self.hz)
 
     def _arm(self, request: ArmRequest) -> Reply:

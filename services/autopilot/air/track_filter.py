@@ -14,7 +14,7 @@ Floats = NDArray[np.float64]
 
 G = 9.80665  # m/s^2
 N, E, V, CHI, WN, WE, PSI = range(7)
-PROCESS = np.diag((0.01, 0.01, 0.05, 0.003, 1e-4, 1e-4, 1e-4))  # units^2/s
+PROCESS = np.diag((0.01, 0.01, 0.005, 0.00003, 1e-4, 1e-4, 1e-4))  # units^2/s
 TRIANGLE_SIGMA = 0.5  # m/s
 HEADING_SIGMA = 0.05  # rad
 

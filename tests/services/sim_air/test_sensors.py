@@ -1,0 +1,97 @@
+"""Each sensor's errors are those of the vehicle file, in rate, size and delay."""
+
+import math
+
+import numpy as np
+import pytest
+
+from services.sim_air.airframe import Air, Motion
+from services.sim_air.sensors import Charge, Due, Gnss, Imu, Pressures, axial_dipole
+from uvf.maths import rotations
+from uvf.maths.geodesy import LocalTangent
+from uvf.runtime.vehicle_file import AirDataSensor, BatteryPack, GnssSensor, ImuSensor, Mount
+
+TANGENT = LocalTangent.from_degrees(40.77, 14.79, 300.0)
+
+
+def moving(x=0.0, attitude=rotations.IDENTITY):
+    return Motion(
+        np.array((x, 0.0, 50.0)), np.array((25.0, 0.0, 0.0)), attitude, np.array((0.1, 0.2, 0.3)), np.array((0.0, 0.0, 9.81)), 25.0
+    )
+
+
+def rng():
+    return np.random.default_rng(5)
+
+
+def test_a_sensor_without_errors_reads_the_truth_in_its_own_frame():
+    quarter_left = Mount(rpy=(0.0, 0.0, math.pi / 2))
+    sample = Imu(ImuSensor(quarter_left, 100.0), TANGENT.latitude, rng()).read(moving())
+    assert sample.angular_velocity == pytest.approx((0.2, -0.1, 0.3))
+    assert sample.specific_force == pytest.approx((0.0, 0.0, 9.81))
+
+
+def test_imu_errors_are_a_constant_bias_and_white_noise():
+    imu = Imu(ImuSensor(Mount(), 100.0, gyro_noise=0.01, gyro_bias=0.1), TANGENT.latitude, rng())
+    errors = np.array([imu.read(moving()).angular_velocity - (0.1, 0.2, 0.3) for _ in range(2000)])
+    assert errors.std(axis=0) == pytest.approx(0.01, rel=0.1)
+    assert np.abs(errors.mean(axis=0)).max() > 0.01
+    assert errors[:1000].mean(axis=0) == pytest.approx(errors[1000:].mean(axis=0), abs=0.002)
+
+
+def test_magnetic_north_is_seen_on_the_left_when_flying_east():
+    field = Imu(ImuSensor(Mount(), 100.0), TANGENT.latitude, rng()).read(moving()).magnetic_field
+    assert field[1] > 1e-5
+    assert field[2] < 0
+
+
+def test_the_dipole_dips_steeper_than_the_latitude():
+    field = axial_dipole(math.radians(45))
+    assert math.degrees(math.atan2(-field[2], field[1])) == pytest.approx(63.43, abs=0.01)
+
+
+def test_a_fix_arrives_late_and_is_stamped_with_the_moment_it_is_valid_for():
+    gnss = Gnss(GnssSensor(5.0, latency=0.1), TANGENT, rng())
+    fixes = [(k / 100, fix) for k in range(1, 101) if (fix := gnss.read(k / 100, moving(x=25 * k / 100)))]
+    assert [t for t, _ in fixes] == pytest.approx([0.3, 0.5, 0.7, 0.9])
+    t, first = fixes[0]
+    east = TANGENT.enu(first.latitude, first.longitude, first.altitude)[0]
+    assert first.t == pytest.approx(t - 0.1)
+    assert east == pytest.approx(25 * first.t, abs=1e-6)
+
+
+def test_fixes_scatter_as_told():
+    gnss = Gnss(GnssSensor(100.0, horizontal_noise=0.8, vertical_noise=1.5, speed_noise=0.1), TANGENT, rng())
+    fixes = [gnss.read(k / 100, moving()) for k in range(1, 2001)]
+    enu = np.array([TANGENT.enu(f.latitude, f.longitude, f.altitude) for f in fixes])
+    assert enu.std(axis=0) == pytest.approx((0.8, 0.8, 1.5), rel=0.1)
+    assert np.array([f.velocity for f in fixes]).std(axis=0) == pytest.approx(0.1, rel=0.1)
+
+
+def test_pressures_scatter_about_a_constant_bias():
+    pressures = Pressures(AirDataSensor(50.0, static_noise=3.0, differential_noise=4.0, static_bias=20.0), rng())
+    read = [pressures.read(Air(97_000.0, 370.0, 285.0)) for _ in range(2000)]
+    static = np.array([r.static_pressure for r in read])
+    assert static.std() == pytest.approx(3.0, rel=0.1)
+    assert abs(static.mean() - 97_000) > 1.0
+    assert np.mean([r.differential_pressure for r in read]) == pytest.approx(370.0, abs=0.5)
+
+
+def test_a_battery_gives_its_energy_and_sinks_in_voltage():
+    charge = Charge(BatteryPack(energy=1000.0, full=50.0, empty=40.0))
+    charge.draw(85.0, 5.0)
+    assert charge.remaining == pytest.approx(0.5)
+    assert charge.voltage == pytest.approx(45.0)
+    assert charge.current * charge.voltage == pytest.approx(85.0 / Charge.EFFICIENCY)
+
+
+def test_an_empty_battery_stays_empty():
+    charge = Charge(BatteryPack(energy=10.0, full=50.0, empty=40.0, avionics=5.0))
+    charge.draw(0.0, 100.0)
+    assert charge.remaining == 0.0
+
+
+@pytest.mark.parametrize(("hz", "seen"), [(100.0, 100), (50.0, 50), (5.0, 5), (30.0, 30)])
+def test_a_sensor_keeps_its_rate_on_a_faster_clock(hz, seen):
+    due = Due(hz)
+    assert sum(due.at(k / 100) for k in range(1, 101)) == seen

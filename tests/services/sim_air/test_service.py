@@ -1,0 +1,129 @@
+"""The service around the aircraft: what it sends, how often, and what it does without commands."""
+
+from collections import Counter
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from schemas import topics
+from schemas.messages import SurfaceCommand
+from services.sim_air.actuators import Actuators
+from services.sim_air.airframe import Air, Controls, Motion
+from services.sim_air.build import build
+from services.sim_air.service import Aircraft, SimAir
+from uvf.maths.rotations import IDENTITY
+from uvf.runtime.bus import LocalBus
+from uvf.runtime.lockstep import Lockstep
+from uvf.runtime.site import ROOT, load_site
+from uvf.runtime.vehicle_file import load_vehicle
+
+MILVUS = load_vehicle(Path(ROOT) / "vehicles", "milvus")
+MISSION = """
+about: Two aircraft.
+world: house
+seed: 3
+vehicles:
+  first: {model: milvus, system_id: 1, start: {x: 0.0, y: 0.0, z: 60.0, speed: 25.0}}
+  second: {model: milvus, system_id: 2, start: {x: 0.0, y: 90.0, z: 80.0, yaw: 1.0, speed: 22.0}}
+"""
+
+
+class Glider:
+    """A body that goes straight and remembers its commands."""
+
+    def __init__(self):
+        self.commands = []
+        self.steps = 0
+
+    def command(self, controls):
+        self.commands.append(controls)
+
+    def step(self):
+        self.steps += 1
+
+    def motion(self):
+        return Motion(np.zeros(3), np.zeros(3), IDENTITY, np.zeros(3), np.array((0.0, 0.0, 9.8)), 25.0)
+
+    def air(self):
+        return Air(97_000.0, 370.0, 285.0)
+
+    propeller_speed = 500.0
+    shaft_power = 300.0
+
+
+def glider():
+    body = Glider()
+    return body, SimAir([Aircraft("g", MILVUS, body, Actuators(Controls(elevator=-0.14, throttle=0.7), MILVUS.air))], np.zeros(3))
+
+
+def run_two(tmp_path, until=3.0):
+    path = tmp_path / "two.yaml"
+    path.write_text(MISSION)
+    seen = []
+    bus = LocalBus()
+    bus.subscribe("uvf/*/*/*", topics.IMU.qos, lambda s: seen.append((s.stamp_ns, s.key, s.payload)))
+    bus.subscribe("uvf/*/*/*/*", topics.IMU.qos, lambda s: seen.append((s.stamp_ns, s.key, s.payload)))
+    lockstep = Lockstep(build(load_site(path)), bus)
+    lockstep.run(until)
+    lockstep.close()
+    return [s for s in seen if "/sys/" not in s[1]]
+
+
+def test_physics_keeps_up_with_the_clock():
+    body, service = glider()
+    for k in range(1, 101):
+        service.step(k / 100, surfaces={})
+    assert body.steps == MILVUS.air.physics_hz
+
+
+def test_surfaces_hold_their_last_command_when_it_goes_stale():
+    body, service = glider()
+    service.step(0.01, surfaces={"g": SurfaceCommand(aileron=0.1, elevator=-0.2, throttle=0.9)})
+    for k in range(2, 101):
+        service.step(k / 100, surfaces={})
+    assert body.commands[-1].aileron == pytest.approx(0.1, abs=1e-6)
+    assert body.commands[-1].elevator == pytest.approx(-0.2, abs=1e-6)
+    assert body.commands[-1].throttle == pytest.approx(0.9)
+
+
+def test_before_the_first_command_the_surfaces_stay_trimmed():
+    body, service = glider()
+    service.step(0.01, surfaces={})
+    assert body.commands[-1].elevator == pytest.approx(-0.14)
+
+
+def test_joints_show_where_the_surfaces_are():
+    _, service = glider()
+    joints = [service.step(k / 100, surfaces={})["joints"].get("g") for k in range(1, 6)][-1]
+    named = {j.name: j for j in joints.joints}
+    assert named["elevator"].position == pytest.approx(-0.14)
+    assert named["propeller"].velocity == 500.0
+
+
+def test_a_sensor_that_is_not_fitted_sends_nothing():
+    _, service = glider()
+    out = service.step(0.01, surfaces={})
+    assert not out["imu"]
+    assert not out["gnss"]
+
+
+def test_each_sensor_sends_at_its_own_rate_for_every_aircraft(tmp_path):
+    seen = Counter(key for _, key, _ in run_two(tmp_path, until=3.0))
+    for vehicle in ("first", "second"):
+        assert seen[topics.IMU.at(vehicle)] == 300
+        assert seen[topics.AIR_DATA.at(vehicle)] == 150
+        assert seen[topics.GNSS.at(vehicle)] == pytest.approx(14, abs=1)
+        assert seen[topics.TRUTH.at(vehicle)] == 150
+        assert seen[topics.BATTERY.at(vehicle)] == 3
+        assert seen[topics.TF_STATIC.at(vehicle)] == 1
+
+
+def test_the_same_seed_gives_the_same_bytes(tmp_path):
+    assert run_two(tmp_path) == run_two(tmp_path)
+
+
+def test_two_aircraft_have_errors_of_their_own(tmp_path):
+    seen = run_two(tmp_path, until=0.05)
+    first, second = ([topics.IMU.message.FromString(p) for _, key, p in seen if key == topics.IMU.at(v)] for v in ("first", "second"))
+    assert first[0].angular_velocity.x != second[0].angular_velocity.x
