@@ -133,7 +133,32 @@ def _reposition(line: Line, command: Command, ack: Acknowledger) -> None:
         height += line.facts.geodetic(line.latest.home)[2]
     place = [now[i] if math.isnan(v) else v for i, v in enumerate((latitude, longitude, height))]
     goal = GoalRequest(position=line.facts.world(*place), yaw=math.nan, source=SOURCE)
-    line.ask("goal", goal, ack.outcome("Go to refused"))
+    may_change_mode = math.isfinite(command.p[1]) and int(command.p[1]) & mav.MAV_DO_REPOSITION_FLAGS_CHANGE_MODE
+    _go_to(line, goal, bool(may_change_mode), ack.outcome("Go to refused"))
+
+
+def _go_to(line: Line, goal: GoalRequest, may_change_mode: bool, done: Done) -> None:
+    """A rover's planner drives in mode Mission only: changed to first, if that may be."""
+
+    def in_mission() -> bool:
+        return line.latest.status is not None and line.latest.status.mode == Mode.MODE_MISSION
+
+    def drive(accepted: bool, reason: str) -> None:
+        if accepted:
+            line.ask("goal", goal, done)
+        else:
+            done(False, reason)
+
+    def changed(accepted: bool, reason: str) -> None:
+        if accepted:
+            line.when(in_mission, drive)
+        else:
+            done(False, reason)
+
+    if line.facts.is_ground and may_change_mode and not in_mission():
+        set_mode(line, Mode.MODE_MISSION, changed)
+    else:
+        drive(True, "")
 
 
 def goal_of_item(line: Line, item: mav.MAVLink_mission_item_int_message, done: Done) -> None:
@@ -148,7 +173,7 @@ def goal_of_item(line: Line, item: mav.MAVLink_mission_item_int_message, done: D
     if not line.facts.is_ground and math.isfinite(item.z) and line.latest.home is not None:
         base = float(line.latest.home[2]) if item.frame in HOME_FRAMES else -line.facts.origin.altitude
         target.z = item.z + base
-    line.ask("goal", GoalRequest(position=target, yaw=math.nan, source=SOURCE), done)
+    _go_to(line, GoalRequest(position=target, yaw=math.nan, source=SOURCE), True, done)
 
 
 ACTIONS: dict[int, Handler] = {

@@ -4,16 +4,18 @@ import logging
 import os
 import socket
 
+from services.autopilot.air.params import AirParams
 from services.autopilot.mavlink.endpoint import Peer, UdpLink
 from services.autopilot.mavlink.facts import Facts
 from services.autopilot.mavlink.service import MavlinkService
 from uvf.maths.geodesy import LocalTangent
 from uvf.runtime.params import BadInput
-from uvf.runtime.site import Host, Site
+from uvf.runtime.site import Host, Member, Site
 
 TARGETS = "UVF_MAVLINK_TARGETS"
 LISTEN = "UVF_MAVLINK_LISTEN"
 DEFAULT_TARGETS = "127.0.0.1:14550,127.0.0.1:14540"
+AIR = "autopilot_air"
 DEFAULT_LISTEN = "127.0.0.1:14580"
 
 log = logging.getLogger(__name__)
@@ -31,7 +33,18 @@ def build(site: Site) -> list[Host]:
 def facts_of(site: Site) -> list[Facts]:
     origin = site.world.origin
     tangent = LocalTangent.from_degrees(origin.latitude, origin.longitude, origin.altitude)
-    return [Facts(member.name, member.entry.system_id, member.file, tangent) for member in site.members.values()]
+    return [Facts(m.name, m.entry.system_id, m.file, tangent, numbers_of(m)) for m in site.members.values()]
+
+
+def numbers_of(member: Member) -> dict[str, float]:
+    """What the parameter table may name: m, m/s; return_height above home."""
+    numbers = {"system_id": float(member.entry.system_id)}
+    if member.file.kind == "fixed_wing":
+        air = member.params(AIR, AirParams)
+        numbers["trim_airspeed"] = air.trim_airspeed
+        numbers["hold_radius"] = air.hold_radius
+        numbers["return_height"] = max(air.return_altitude - member.entry.start.z, 0.0)
+    return numbers
 
 
 def address(text: str, place: str) -> Peer:

@@ -122,6 +122,7 @@ class Commands:
         if last is None or not last.command.same_as(command):
             return False
         if last.result is None:
+            acknowledge(self._line, command, mav.MAV_RESULT_IN_PROGRESS)
             return True
         if command.confirmation > 0:
             acknowledge(self._line, command, last.result)

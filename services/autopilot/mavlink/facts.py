@@ -1,5 +1,6 @@
 """What the link knows of one vehicle: what never changes, and the newest message of each kind."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -14,12 +15,16 @@ SILENT_AFTER = 2.0  # s of simulation time
 
 @dataclass(frozen=True)
 class Facts:
-    """origin: of the world frame; its altitude counts as above mean sea level."""
+    """origin: of the world frame; its altitude counts as above mean sea level.
+
+    numbers: what parameters of ``parameters.yaml`` name instead of a value.
+    """
 
     name: str
     system_id: int
     file: VehicleFile
     origin: LocalTangent
+    numbers: Mapping[str, float]
 
     @property
     def kind(self) -> Kind:

@@ -40,6 +40,13 @@ class Asked:
     until: float
 
 
+@dataclass
+class Awaited:
+    condition: Callable[[], bool]
+    done: Done
+    until: float
+
+
 class Line:
     """What the protocols of one vehicle share; ``t`` [s, wall] is set before each step's work."""
 
@@ -51,6 +58,7 @@ class Line:
         self.requests: list[tuple[str, Message]] = []
         """(name of the call, request) to be sent with this step."""
         self._asked: list[Asked] = []
+        self._awaited: list[Awaited] = []
         self._limiter = TextLimiter()
 
     def send(self, message: mav.MAVLink_message, to: Peer | None = None) -> None:
@@ -82,8 +90,20 @@ class Line:
                     asked.done(answer.reply.accepted, answer.reply.reason)
                 return
 
-    def expire(self) -> None:
-        """Ends what nobody has answered in time."""
+    def when(self, condition: Callable[[], bool], done: Done) -> None:
+        """Goes on once a condition has come true, or says that it did not in time."""
+        self._awaited.append(Awaited(condition, done, self.t + ANSWER_WITHIN))
+
+    def settle(self) -> None:
+        """Goes on with what has come true, and ends what nobody has answered in time."""
+        waiting, self._awaited = self._awaited, []
+        for awaited in waiting:
+            if awaited.condition():
+                awaited.done(True, "")
+            elif self.t >= awaited.until:
+                awaited.done(False, "the autopilot did not follow")
+            else:
+                self._awaited.append(awaited)
         late = [asked for asked in self._asked if self.t >= asked.until]
         self._asked = [asked for asked in self._asked if self.t < asked.until]
         for asked in late:

@@ -31,7 +31,7 @@ SKIPPED = frozenset(
         mav.MAV_CMD_DO_GIMBAL_MANAGER_PITCHYAW,
     }
 )
-"""Camera and gimbal items that ground stations add by themselves: they fly as "no change of speed"."""
+"""Camera and gimbal items that ground stations add by themselves: they fly as a jump that is never taken."""
 
 KIND = {
     mav.MAV_CMD_NAV_WAYPOINT: MissionItem.WAYPOINT,
@@ -43,7 +43,7 @@ KIND = {
     mav.MAV_CMD_NAV_TAKEOFF: MissionItem.TAKEOFF,
     mav.MAV_CMD_DO_JUMP: MissionItem.JUMP,
     mav.MAV_CMD_DO_CHANGE_SPEED: MissionItem.SPEED,
-    **dict.fromkeys(SKIPPED, MissionItem.SPEED),
+    **dict.fromkeys(SKIPPED, MissionItem.JUMP),
 }
 WITH_PLACE = frozenset({MissionItem.WAYPOINT, MissionItem.ORBIT, MissionItem.LAND, MissionItem.TAKEOFF})
 
@@ -75,6 +75,8 @@ def _from_wire(item: mav.MAVLink_mission_item_int_message, facts: Facts, home_z:
     result = MissionItem(kind=kind, origin=origin)
     if kind in WITH_PLACE:
         result.position.CopyFrom(_place(item, facts, home_z))
+    if item.command == mav.MAV_CMD_DO_CHANGE_SPEED and not item.param2 > 0:
+        result.kind = MissionItem.JUMP  # "no change": a jump that is never taken
     _fill(result, item.command, *(0.0 if math.isnan(p) else p for p in params))
     return result
 

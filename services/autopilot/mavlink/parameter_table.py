@@ -10,10 +10,10 @@ import msgspec
 
 from services.autopilot.mavlink import dialect as mav
 from services.autopilot.mavlink.facts import Facts
-from uvf.runtime.params import load_yaml
+from uvf.runtime.params import BadInput, load_yaml, nearest
 
 FILE = Path(__file__).with_name("parameters.yaml")
-Value = float | Literal["system_id", "trim_speed"]
+Value = float | str
 Kind = Literal["ground", "fixed_wing"]
 
 
@@ -49,8 +49,9 @@ def _parameter(name: str, index: int, row: Row, facts: Facts) -> Parameter:
     special = row.ground if facts.is_ground else row.fixed_wing
     value = row.value if special is None else special
     if isinstance(value, str):
-        trim = facts.file.air.trim_speed if facts.file.air is not None else 0.0
-        value = {"system_id": float(facts.system_id), "trim_speed": trim}[value]
+        if value not in facts.numbers:
+            raise BadInput(f"{FILE.name}: {name}: '{value}' is no number of a {facts.file.kind} vehicle; {nearest(value, facts.numbers)}")
+        value = facts.numbers[value]
     if row.type == "int":
         return Parameter(name, index, mav.MAV_PARAM_TYPE_INT32, struct.pack("<i", int(value)))
     return Parameter(name, index, mav.MAV_PARAM_TYPE_REAL32, struct.pack("<f", value))

@@ -10,7 +10,7 @@ REPEAT_AFTER = 10.0  # s
 
 SEVERITY = {
     Event.INFO: mav.MAV_SEVERITY_INFO,
-    Event.NOTICE: mav.MAV_SEVERITY_NOTICE,
+    Event.NOTICE: mav.MAV_SEVERITY_INFO,  # a ground station would speak a NOTICE aloud, and there are many
     Event.WARNING: mav.MAV_SEVERITY_WARNING,
     Event.ERROR: mav.MAV_SEVERITY_ERROR,
     Event.CRITICAL: mav.MAV_SEVERITY_CRITICAL,

@@ -85,7 +85,7 @@ class VehicleLink:
     def tick(self, peers: Sequence[Peer], events: Sequence[Event]) -> list[tuple[mav.MAVLink_message, list[Peer]]]:
         """What goes out now, and to whom, after the messages of this step have been heard."""
         line = self.line
-        line.expire()
+        line.settle()
         self._parameters.tick()
         self._missions.tick()
         for event in events:

@@ -53,8 +53,9 @@ _ROVER_FILE = {
         "motor_torque": 1,
     },
 }
-PLANE_FACTS = Facts("plane", PLANE, convert(_PLANE_FILE, VehicleFile, "test"), ORIGIN)
-ROVER_FACTS = Facts("rover", ROVER, convert(_ROVER_FILE, VehicleFile, "test"), ORIGIN)
+_PLANE_NUMBERS = {"system_id": 1.0, "trim_airspeed": 25.0, "hold_radius": 90.0, "return_height": 40.0}
+PLANE_FACTS = Facts("plane", PLANE, convert(_PLANE_FILE, VehicleFile, "test"), ORIGIN, _PLANE_NUMBERS)
+ROVER_FACTS = Facts("rover", ROVER, convert(_ROVER_FILE, VehicleFile, "test"), ORIGIN, {"system_id": 2.0})
 
 
 class MemoryLink:

@@ -4,6 +4,7 @@ import pytest
 
 from services.autopilot.mavlink import build as build_module
 from services.autopilot.mavlink.build import address, build
+from services.autopilot.mavlink.parameter_table import parameters_of
 from uvf.runtime.params import BadInput
 from uvf.runtime.site import ROOT, load_site
 
@@ -16,6 +17,14 @@ def test_what_is_no_address_is_named_with_its_place(text):
 
 def test_addresses():
     assert address(" 10.0.0.2:14550 ", "X") == ("10.0.0.2", 14550)
+
+
+def test_parameters_get_the_numbers_of_the_vehicles_own_files():
+    site = load_site(ROOT / "missions" / "demo.yaml")
+    for facts in build_module.facts_of(site):
+        values = {p.name for p in parameters_of(facts)}
+        assert ("NAV_LOITER_RAD" in values) == (facts.file.kind == "fixed_wing")
+        assert facts.numbers["system_id"] == facts.system_id
 
 
 @pytest.fixture

@@ -6,10 +6,10 @@ import pytest
 
 from schemas.messages import Clock, Mode
 from services.autopilot.mavlink import dialect as mav
-from tests.services.autopilot.mavlink.rig import GCS, OTHER, PLANE, Rig, acks, long, of, texts
+from tests.services.autopilot.mavlink.rig import GCS, OTHER, PLANE, ROVER, Rig, acks, long, of, texts
 
 NAN = math.nan
-ACCEPTED, REJECTED, DENIED, UNSUPPORTED = 0, 1, 2, 3
+ACCEPTED, REJECTED, DENIED, UNSUPPORTED, IN_PROGRESS = 0, 1, 2, 3, 5
 
 
 def test_arming_is_acknowledged_within_100_ms_and_shows_in_a_heartbeat_at_once():
@@ -104,6 +104,25 @@ def test_change_of_altitude_keeps_the_place():
     assert (goal.position.x, goal.position.y, goal.position.z) == pytest.approx((100.0, 200.0, 150.0), abs=1e-3)
 
 
+def test_a_rover_is_put_into_mission_mode_before_it_is_sent_somewhere():
+    rig = Rig()
+    rig.run()
+    rig.say(long(192, -1.0, 1.0, 0.0, NAN, 40.77, 14.79, NAN, system=ROVER))
+    assert acks(rig.run(0.2)) == [(192, ACCEPTED)]
+    assert [name for name, _ in rig.rover.asked] == ["set_mode", "goal"]
+    assert rig.rover.status.mode == Mode.MODE_MISSION
+
+
+def test_without_leave_to_change_the_mode_it_is_not_changed():
+    rig = Rig()
+    rig.run()
+    rig.rover.refuse["goal"] = "the mode is HOLD"
+    rig.say(long(192, -1.0, 0.0, 0.0, NAN, 40.77, 14.79, NAN, system=ROVER))
+    heard = rig.run(0.2)
+    assert acks(heard) == [(192, REJECTED)] and "Go to refused: the mode is HOLD" in texts(heard)
+    assert rig.rover.status.mode == Mode.MODE_HOLD
+
+
 @pytest.mark.parametrize(
     ("command", "result"),
     [
@@ -145,7 +164,7 @@ def test_a_repetition_is_executed_once():
     rig = Rig()
     rig.say(long(400, 1.0))
     rig.say(long(400, 1.0, confirmation=1))
-    rig.run()
+    assert acks(rig.run()) == [(400, IN_PROGRESS), (400, ACCEPTED)]
     rig.say(long(400, 1.0, confirmation=2))
     assert acks(rig.run()) == [(400, ACCEPTED)]
     assert len(rig.plane.asked) == 1

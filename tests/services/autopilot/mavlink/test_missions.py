@@ -229,7 +229,7 @@ def test_camera_items_are_carried_but_not_flown():
     assert ack.type == mav.MAV_MISSION_ACCEPTED
     assert "Mission: camera and gimbal items are skipped" in texts(heard)
     skipped = rig.plane.mission.items[1]
-    assert (skipped.kind, skipped.speed) == (MissionItem.SPEED, 0.0)
+    assert (skipped.kind, skipped.repeat) == (MissionItem.JUMP, 0)  # a jump that is never taken
 
 
 def test_progress_is_told_when_it_happens():

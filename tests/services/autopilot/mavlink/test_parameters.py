@@ -71,6 +71,7 @@ def test_what_qgroundcontrol_reads_without_complaint_is_there(system):
 def test_values_follow_the_vehicle():
     plane = {p.name: p.raw for p in parameters_of(PLANE_FACTS)}
     assert struct.unpack("<f", plane["FW_AIRSPD_TRIM"]) == (25.0,)
+    assert struct.unpack("<f", plane["RTL_RETURN_ALT"]) == (40.0,)
     assert "FW_AIRSPD_TRIM" not in {p.name for p in parameters_of(ROVER_FACTS)}
 
 
