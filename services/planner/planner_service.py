@@ -105,7 +105,8 @@ class PlannerService(Service):
         if job != self._job:
             self._begin(t, job)
             changed = True
-        if changed or (self._plan.path is None and t - self._planned_at >= REPLAN_PERIOD):
+        failed = self._plan.path is None and t - self._planned_at >= REPLAN_PERIOD
+        if self._reached_at is None and (changed or failed):
             self._replan(t, here)
         self._watch(t, here, status)
         events, self._events = self._events, []

@@ -1,0 +1,127 @@
+"""The burger explores the house: real physics, slam, planner and autopilot together in lockstep."""
+
+import numpy as np
+import pytest
+
+from schemas import topics
+from schemas.convert import occupancy_cells, yaw_of
+from schemas.messages import GoalRequest, StopCommand, Vector3
+from services.autopilot.ground.build import hosts
+from services.planner.build import build as build_planner
+from services.sim_ground.build import build as build_simulator
+from services.slam.build import build as build_slam
+from uvf.maths.planar import inverse, transform
+from uvf.runtime.lockstep import Lockstep
+from uvf.runtime.site import ROOT, load_site
+from uvf.runtime.world_geometry import floor_plan, reachable_floor
+
+VEHICLE = "burger"
+ROUND = 60.0  # s of exploring
+GOAL = (1.4, 0.9)  # m, world: in the living room, seen early
+
+
+class House:
+    """A run of the demo's ground part; every message of some topics is kept as (t, message)."""
+
+    def __init__(self):
+        self.site = load_site(ROOT / "missions" / "demo.yaml")
+        build = (build_simulator, build_slam, build_planner, hosts)
+        self.run = Lockstep([host for part in build for host in part(self.site)])
+        self.bus = self.run.bus
+        self.start = self.site.members[VEHICLE].entry.start
+        kept = {"truth": topics.TRUTH, "pose": topics.POSE, "contact": topics.CONTACT, "map": topics.MAP, "nav": topics.NAV_STATUS}
+        self.kept = {name: [] for name in kept}
+        for name, topic in kept.items():
+            self.bus.subscribe(topic.at(VEHICLE), topic.qos, self._keep(self.kept[name], topic.message))
+
+    @staticmethod
+    def _keep(into, message):
+        return lambda sample: into.append((sample.stamp_ns / 1e9, message.FromString(sample.payload)))
+
+    def places(self):
+        """(n, 3) t [s], x, y [m, world] of the truth."""
+        return np.array([(t, m.position.x, m.position.y) for t, m in self.kept["truth"]])
+
+    def put_stop(self, t, engaged):
+        message = StopCommand(engaged=engaged, source="test")
+        key = topics.STOP.by("test").at("sys")
+        self.bus.publisher(key, message.DESCRIPTOR.full_name, topics.STOP.qos).put(message.SerializeToString(), round(t * 1e9))
+
+    def ask_goal(self, t, x, y):
+        replies = []
+        request = GoalRequest(position=Vector3(x=x, y=y), yaw=float("nan"), source="test")
+        key = topics.GOAL.at(VEHICLE)
+        self.bus.call(
+            key, request.SerializeToString(), round(t * 1e9), lambda reply, why, at: replies.append(topics.GOAL.reply.FromString(reply))
+        )
+        self.run.run(t + 0.5)
+        return replies[0]
+
+
+@pytest.fixture(scope="module")
+def explored():
+    house = House()
+    house.run.run(ROUND)
+    yield house
+    house.run.close()
+
+
+def test_drives_far_without_touching_anything(explored):
+    places = explored.places()
+    assert np.hypot(*np.diff(places[:, 1:], axis=0).T).sum() >= 15.0
+    assert not any(m.touching for _, m in explored.kept["contact"])
+
+
+def test_knows_where_it_is_all_the_time(explored):
+    truth = {round(t, 2): m for t, m in explored.kept["truth"]}
+    errors = [
+        (np.hypot(m.pose.position.x - truth[round(t, 2)].position.x, m.pose.position.y - truth[round(t, 2)].position.y))
+        for t, m in explored.kept["pose"]
+        if round(t, 2) in truth
+    ]
+    assert len(errors) > 2000
+    assert max(errors) <= 0.05
+
+
+def test_the_pose_never_jumps(explored):
+    poses = np.array([(m.pose.position.x, m.pose.position.y) for _, m in explored.kept["pose"]])
+    headings = np.unwrap([yaw_of(m.pose.orientation) for _, m in explored.kept["pose"]])
+    assert np.hypot(*np.diff(poses, axis=0).T).max() < 0.025
+    assert np.abs(np.diff(headings)).max() < 0.06
+
+
+def test_maps_half_of_the_house_and_maps_it_right(explored):
+    site, start = explored.site, explored.start
+    plan = floor_plan(site.world, 0.05)
+    reachable = reachable_floor(plan, start.x, start.y, site.members[VEHICLE].file.ground.radius)
+    grid = explored.kept["map"][-1][1]
+    cells = occupancy_cells(grid)
+    world = np.column_stack([c[reachable] for c in plan.centres()])
+    in_map = transform(inverse((start.x, start.y, start.yaw)), world)
+    at = np.floor((in_map - (grid.pose.position.x, grid.pose.position.y)) / grid.cell_size.x).astype(int)
+    inside = ((at >= 0) & (at < cells.shape[::-1])).all(axis=1)
+    values = cells[at[inside, 1], at[inside, 0]]
+    free, occupied = (values >= 0) & (values < 50), values >= 60
+    assert free.sum() / len(world) >= 0.5
+    assert occupied.sum() / free.sum() < 0.05
+
+
+def test_stop_all_holds_until_it_is_released_and_a_goal_is_driven_to(explored):
+    t = ROUND + 1.0
+    explored.put_stop(t, engaged=True)
+    explored.run.run(t + 1.0)
+    stood_from = len(explored.kept["truth"])
+    explored.run.run(t + 5.0)
+    places = explored.places()[stood_from:]
+    assert np.ptp(places[:, 1]) + np.ptp(places[:, 2]) < 0.01
+    assert "STOP ALL" in explored.ask_goal(t + 5.0, *GOAL).reason
+
+    explored.put_stop(t + 6.0, engaged=False)
+    explored.run.run(t + 7.0)
+    assert not explored.ask_goal(t + 7.0, 1.7, 2.2).accepted  # in the sofa's table
+    assert explored.ask_goal(t + 8.0, *GOAL).accepted
+    near = []
+    explored.run.run(t + 60.0, lambda now: near.append(explored.kept["nav"][-1][1].state) or near[-1] != 3)
+    _, x, y = explored.places()[-1]
+    assert np.hypot(x - GOAL[0], y - GOAL[1]) < 0.2
+    assert not any(m.touching for _, m in explored.kept["contact"])

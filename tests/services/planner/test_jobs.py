@@ -1,0 +1,44 @@
+"""Which job comes first, and where the mission leads."""
+
+import pytest
+
+from schemas.messages import Mission, MissionItem, MissionProgress, Mode, Vector3, VehicleStatus
+from services.planner.jobs import EXPLORE, IDLE, Goal, choose, mission_target, not_now
+
+HOME = (1.0, 2.0)
+READY = VehicleStatus(mode=Mode.MODE_MISSION, armed=True)
+MISSION = Mission(id=5, items=[MissionItem(position=Vector3(x=7.0, y=8.0)), MissionItem(kind=MissionItem.RETURN)])
+
+
+def progress(**fields):
+    return MissionProgress(**{"state": MissionProgress.ACTIVE, "mission_id": 5, **fields})
+
+
+def test_the_order_is_return_goal_mission_explore_idle():
+    goal, target = Goal((3.0, 3.0), 0.5), (7.0, 8.0)
+    returning = VehicleStatus(mode=Mode.MODE_RETURN)
+    assert choose(returning, goal, target, True, HOME).target == HOME
+    assert choose(READY, goal, target, True, HOME).name == "goal"
+    assert choose(READY, None, target, True, HOME).name == "mission"
+    assert choose(READY, None, None, True, HOME) == EXPLORE
+    assert choose(READY, None, None, False, HOME) == IDLE
+
+
+def test_the_mission_leads_to_its_current_item():
+    assert mission_target(MISSION, progress(current=0), HOME) == (7.0, 8.0)
+    assert mission_target(MISSION, progress(current=1), HOME) == HOME
+
+
+@pytest.mark.parametrize(
+    "wrong", [{"mission_id": 4}, {"current": 2}, {"state": MissionProgress.COMPLETE}, {"state": MissionProgress.PAUSED}]
+)
+def test_without_an_active_item_of_this_mission_there_is_no_target(wrong):
+    assert mission_target(MISSION, progress(**wrong), HOME) is None
+
+
+def test_a_goal_waits_for_a_vehicle_that_may_drive():
+    assert not_now(READY) == ""
+    assert "silent" in not_now(None)
+    assert "STOP ALL" in not_now(VehicleStatus(mode=Mode.MODE_MISSION, armed=True, stopped=True))
+    assert "arm" in not_now(VehicleStatus(mode=Mode.MODE_MISSION))
+    assert "HOLD" in not_now(VehicleStatus(mode=Mode.MODE_HOLD, armed=True))

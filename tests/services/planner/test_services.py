@@ -1,0 +1,207 @@
+"""Planner and tracker step by step: goals, what they do without inputs, what they do when blocked."""
+
+import numpy as np
+import pytest
+
+from schemas.convert import occupancy_grid, planar_pose, stamp
+from schemas.messages import (
+    GoalRequest,
+    LaserScan,
+    Mission,
+    MissionItem,
+    MissionProgress,
+    Mode,
+    NavStatus,
+    PoseInFrame,
+    PosesInFrame,
+    Vector3,
+    VehicleStatus,
+)
+from services.planner.planner_service import PlannerParams, PlannerService
+from services.planner.tracker_service import TrackerParams, TrackerService
+from tests.services.autopilot.ground.test_service import BODY
+from tests.services.planner.plans import room
+
+READY = VehicleStatus(mode=Mode.MODE_MISSION, armed=True, command_source="planner")
+START = (10.0, 20.0, np.pi / 2)
+"""The map lies here in the world, turned: map x is world y."""
+
+
+class Bench:
+    """Steps a planner at 4 Hz in a room of 4 x 3 m; the vehicle stands at ``here`` [m, map] unless it is moved."""
+
+    def __init__(self, explores=False):
+        self.service = PlannerService(START, 0.1, explores, PlannerParams())
+        self.t = 0.0
+        self.here = (1.0, 1.0)
+        self.grid = occupancy_grid(room(4.0, 3.0), 0.05, 0.0, 0.0, "v/map", 0.0)
+        self.said = {}
+        self.events = []
+
+    def step(self, n=1, status=READY, mission=None, progress=None, goal=()):
+        for _ in range(n):
+            self.t += 0.25
+            pose = PoseInFrame(pose=planar_pose(*world(*self.here), START[2]))
+            self.said = self.service.step(self.t, pose, self.grid, status, mission, progress, list(goal))
+            self.events += [e.text for e in self.said["events"]]
+        return self
+
+    @property
+    def state(self):
+        return self.said["nav_status"].state
+
+
+def world(x, y):
+    return (START[0] - y, START[1] + x)
+
+
+def asked(x, y, yaw=float("nan")):
+    position = world(x, y)
+    return GoalRequest(position=Vector3(x=position[0], y=position[1]), yaw=yaw, source="test")
+
+
+def test_a_goal_gets_a_path_in_the_world_frame():
+    bench = Bench().step(goal=[asked(3.0, 2.0)]).step()
+    path = bench.said["path"]
+    assert path.frame_id == "world"
+    assert (path.poses[0].position.x, path.poses[0].position.y) == pytest.approx(world(1.0, 1.0))
+    assert (path.poses[-1].position.x, path.poses[-1].position.y) == pytest.approx(world(3.0, 2.0))
+    assert bench.state == NavStatus.DRIVING
+    assert bench.said["nav_status"].distance_left == pytest.approx(np.hypot(2.0, 1.0), rel=0.1)
+
+
+def test_a_goal_in_a_wall_is_refused():
+    reply = Bench().step(goal=[asked(0.07, 1.0)]).said["goal"][0]
+    assert (reply.accepted, reply.reason) == (False, "the goal lies in an obstacle")
+
+
+def test_a_goal_while_holding_is_refused_with_the_mend():
+    reply = Bench().step(goal=[asked(3.0, 2.0)], status=VehicleStatus(mode=Mode.MODE_HOLD, armed=True)).said["goal"][0]
+    assert reply.reason == "the mode is HOLD: change it to MISSION first"
+
+
+def test_a_goal_interrupts_exploring_and_exploring_goes_on_after_a_while():
+    bench = Bench(explores=True)
+    cells = room(4.0, 3.0)
+    cells[20:40, -2:] = 0
+    cells[20:40, -1] = -1
+    bench.grid = occupancy_grid(cells, 0.05, 0.0, 0.0, "v/map", 0.0)
+    assert bench.step(2).said["nav_status"].job == "explore"
+    bench.step(goal=[asked(2.0, 2.0)])
+    assert bench.step().said["nav_status"].job == "goal"
+    bench.here = (2.0, 2.0)
+    bench.step()
+    assert bench.state == NavStatus.REACHED
+    bench.step(int(4 * PlannerParams().wait_at_goal) - 2)
+    assert bench.said["nav_status"].job == "goal"
+    assert len(bench.said["path"].poses) == 0
+    bench.step(4)
+    assert (bench.said["nav_status"].job, bench.state) == ("explore", NavStatus.DRIVING)
+
+
+def test_a_wanted_heading_is_part_of_the_goal():
+    bench = Bench().step(goal=[asked(2.0, 2.0, yaw=0.0)]).step()
+    assert bench.said["path"].poses[-1].HasField("orientation")
+    bench.here = (2.0, 2.0)
+    assert bench.step().state == NavStatus.DRIVING
+
+
+def test_a_goal_is_given_up_when_the_vehicle_gets_nowhere():
+    bench = Bench().step(goal=[asked(3.0, 2.0)])
+    bench.step(int(4 * PlannerParams().patience) + 3)
+    assert "goal: goal given up" in bench.events
+    assert bench.said["nav_status"].job == "idle"
+
+
+def test_standing_while_a_person_drives_is_not_getting_nowhere():
+    bench = Bench().step(goal=[asked(3.0, 2.0)])
+    bench.step(100, status=VehicleStatus(mode=Mode.MODE_MANUAL, armed=True, command_source="gcs"))
+    assert "goal: goal given up" not in bench.events
+
+
+def test_the_mission_is_driven_to_its_current_item():
+    x, y = world(3.0, 2.0)
+    mission = Mission(id=9, items=[MissionItem(position=Vector3(x=x, y=y))])
+    progress = MissionProgress(state=MissionProgress.ACTIVE, mission_id=9)
+    bench = Bench().step(2, mission=mission, progress=progress)
+    assert bench.said["nav_status"].job == "mission"
+    assert bench.said["path"].poses[-1].position.x == pytest.approx(x)
+
+
+def test_return_leads_to_the_start():
+    bench = Bench()
+    bench.grid = occupancy_grid(room(4.0, 3.0), 0.05, -1.0, -1.0, "v/map", 0.0)
+    bench.step(status=VehicleStatus(mode=Mode.MODE_RETURN, armed=True)).step(status=VehicleStatus(mode=Mode.MODE_RETURN, armed=True))
+    end = bench.said["path"].poses[-1].position
+    assert (end.x, end.y) == pytest.approx(START[:2])
+
+
+def test_an_obstacle_that_appears_in_the_map_is_gone_round():
+    bench = Bench().step(goal=[asked(3.0, 1.0)]).step()
+    before = len(bench.said["path"].poses)
+    cells = room(4.0, 3.0)
+    cells[4:30, 38:42] = 100
+    bench.grid = occupancy_grid(cells, 0.05, 0.0, 0.0, "v/map", 1.0)
+    bench.step()
+    assert len(bench.said["path"].poses) > before + 5
+
+
+def test_without_pose_or_map_there_is_no_path():
+    outputs = Bench().service.stale(1.0, ("pose", "map"))
+    assert len(outputs["path"].poses) == 0
+    assert outputs["nav_status"].reason == "waiting for pose, map"
+
+
+def scan(t, ahead):
+    """A wall across the way, ``ahead`` [m] of the lidar; nothing elsewhere."""
+    angles = np.radians(np.arange(360.0))
+    ranges = np.where(np.cos(angles) > 0.5, ahead / np.maximum(np.cos(angles), 0.5), 0.0)
+    return LaserScan(timestamp=stamp(t), start_angle=0.0, end_angle=angles[-1], ranges=ranges.tolist())
+
+
+class TrackerBench:
+    """A vehicle at the world's origin that looks east; the wall stays ``ahead``, the path leads 3 m east."""
+
+    def __init__(self):
+        self.service = TrackerService(BODY, (0.0, 0.0, 0.0), TrackerParams())
+        self.t = 0.0
+        self.commands = []
+        self.events = []
+
+    def step(self, n, ahead, blind=False):
+        path = PosesInFrame(poses=[planar_pose(0.1 * i, 0.0, 0.0) for i in range(31)])
+        for _ in range(n):
+            self.t += 0.05
+            poses = [PoseInFrame(timestamp=stamp(self.t - s), pose=planar_pose(0.0, 0.0, 0.0)) for s in (0.04, 0.02)]
+            seen_at = 0.0 if blind else self.t - 0.03
+            out = self.service.step(self.t, path, poses, scan(seen_at, ahead))
+            self.commands.append((out["drive"].linear, out["drive"].angular))
+            self.events += [e.text for e in out.get("events", [])]
+        return self
+
+
+def test_drives_where_the_way_is_free():
+    assert TrackerBench().step(10, ahead=3.0).commands[-1][0] == pytest.approx(TrackerParams().speed)
+
+
+def test_slows_down_and_stops_before_what_it_sees():
+    free, near, close = (TrackerBench().step(3, ahead).commands[-1][0] for ahead in (3.0, 0.4, 0.18))
+    assert free > near > 0.0
+    assert close == 0.0
+
+
+def test_backs_off_when_it_stays_blocked():
+    bench = TrackerBench().step(70, ahead=0.18)
+    assert bench.commands[5][0] == 0.0
+    assert bench.commands[-1][0] == pytest.approx(-TrackerParams().back_off)
+    assert bench.events == ["obstacle ahead"]
+
+
+def test_blind_it_does_not_move():
+    bench = TrackerBench().step(10, ahead=3.0)
+    assert bench.step(20, ahead=3.0, blind=True).commands[-1] == (0.0, 0.0)
+
+
+def test_stale_inputs_mean_stop():
+    drive = TrackerBench().service.stale(3.0, ("pose",))["drive"]
+    assert (drive.linear, drive.angular) == (0.0, 0.0)

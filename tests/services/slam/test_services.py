@@ -1,0 +1,147 @@
+"""The odometry and mapping services step by step, on messages."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from schemas.convert import occupancy_cells, planar_pose, stamp, yaw_of
+from schemas.messages import FrameTransform, Imu, LaserScan, Odometry, Quaternion, Vector3, WheelTicks
+from services.slam.mapping_service import MappingParams, MappingService
+from services.slam.odometry_service import OdometryParams, OdometryService
+from tests.services.slam.room import ANGLES, measured
+from uvf.runtime.site import ROOT
+from uvf.runtime.vehicle_file import Lidar, Mount, load_vehicle
+
+BURGER = load_vehicle(Path(ROOT) / "vehicles", "burger")
+START = (2.0, 1.0, np.pi / 2)
+RADIANS_PER_TICK = 0.001
+LIDAR = Lidar(Mount((-0.03, 0.0, 0.2)), hz=5, beams=360, angle_min=0.0, angle_increment=0.01745, range_min=0.1, range_max=3.5)
+BASE_FROM_LIDAR = (-0.03, 0.0, 0.0)
+
+
+def drive(service, steps, turn_rate=0.0, ticks=4, correction=None):
+    """Straight on by ``ticks`` per wheel and step; the last outputs."""
+    for k in range(1, steps + 1):
+        t = 0.02 * k
+        wheels = WheelTicks(timestamp=stamp(t - 0.02), left=ticks * k, right=ticks * k, radians_per_tick=RADIANS_PER_TICK)
+        imu = [Imu(timestamp=stamp(t - 0.02 - s), angular_velocity=Vector3(z=turn_rate)) for s in (0.01, 0.0)]
+        outputs = service.step(t, wheels, imu, correction)
+    return outputs
+
+
+def odometry_service():
+    return OdometryService("v", BURGER, START, OdometryParams())
+
+
+def speed_of(ticks):
+    return ticks * RADIANS_PER_TICK * BURGER.ground.wheel_radius / 0.02
+
+
+def test_odometry_begins_at_zero_and_the_pose_at_the_start():
+    outputs = drive(odometry_service(), 100)
+    way = speed_of(4) * 2.0
+    assert outputs["odometry"].pose.position.x == pytest.approx(way - speed_of(4) * 0.02, abs=1e-3)
+    position = outputs["pose"].pose.position
+    assert (position.x, position.y) == pytest.approx((2.0, 1.0 + way), abs=2e-3)
+    assert yaw_of(outputs["pose"].pose.orientation) == pytest.approx(np.pi / 2)
+
+
+def test_the_frames_are_named_after_the_vehicle():
+    odometry = drive(odometry_service(), 2)["odometry"]
+    assert (odometry.frame_id, odometry.body_frame_id) == ("v/odom", "v/base_footprint")
+
+
+def test_the_map_corrects_the_pose_but_not_the_odometry():
+    correction = FrameTransform(translation=Vector3(x=0.5), rotation=Quaternion(w=1.0))
+    plain, corrected = drive(odometry_service(), 10), drive(odometry_service(), 10, correction=correction)
+    assert corrected["odometry"] == plain["odometry"]
+    assert corrected["pose"].pose.position.y - plain["pose"].pose.position.y == pytest.approx(0.5)
+
+
+def test_the_motion_is_told_in_the_world_frame():
+    state = drive(odometry_service(), 50)["nav_state"]
+    assert (state.velocity.x, state.velocity.y) == pytest.approx((0.0, speed_of(4)), abs=1e-6)
+    assert state.position_sigma >= OdometryParams().map_sigma
+
+
+def test_a_wheel_message_seen_twice_moves_nothing():
+    service = odometry_service()
+    drive(service, 50, turn_rate=0.3)
+    again = WheelTicks(timestamp=stamp(0.98), left=200, right=200, radians_per_tick=RADIANS_PER_TICK)
+    first = service.step(1.02, again, [], None)["odometry"].pose.position.x
+    later = service.step(3.0, again, [], None)["odometry"].pose.position.x
+    assert later - first < speed_of(4) * 0.1
+
+
+def scan_at(t, pose):
+    ranges = measured(pose, base_from_lidar=BASE_FROM_LIDAR)
+    return LaserScan(timestamp=stamp(t), start_angle=ANGLES[0], end_angle=ANGLES[-1], ranges=ranges.tolist())
+
+
+def odometry_at(t, pose):
+    return Odometry(timestamp=stamp(t), pose=planar_pose(*pose))
+
+
+def map_for(seconds, pose_at, odometry_of):
+    """Steps a mapping service through a drive; all that it published."""
+    service = MappingService("v", LIDAR, START, MappingParams())
+    said = []
+    for k in range(1, round(seconds * 10) + 1):
+        t = 0.1 * k
+        odometry = [odometry_at(t - s, odometry_of(pose_at(t - s))) for s in (0.08, 0.06, 0.04, 0.02, 0.0)]
+        taken_at = 0.2 * (k // 2)
+        said.append((t, service.step(t, scan_at(taken_at, pose_at(taken_at)), odometry)))
+    return said
+
+
+def straight(t):
+    return (-1.0 + 0.2 * t, 0.2, 0.0)
+
+
+@pytest.fixture(scope="module")
+def drifting_run():
+    """Odometry that begins at zero and reads 5 % too long."""
+    return map_for(8.0, straight, lambda p: (1.05 * (p[0] + 1.0), p[1] - 0.2, p[2]))
+
+
+def test_the_correction_takes_the_drift_away(drifting_run):
+    correction = drifting_run[-1][1]["correction"]
+    assert (correction.parent_frame_id, correction.child_frame_id) == ("v/map", "v/odom")
+    assert correction.translation.x == pytest.approx(-0.05 * 0.2 * 8.0, abs=0.02)
+
+
+def test_the_correction_never_jumps(drifting_run):
+    shifts = [out["correction"].translation.x for _, out in drifting_run]
+    assert np.abs(np.diff(shifts)).max() <= 0.01 + 1e-9
+
+
+def test_the_map_is_published_once_a_second_and_only_when_it_has_changed(drifting_run):
+    times = [t for t, out in drifting_run if "map" in out]
+    assert np.diff(times).min() >= 1.0 - 1e-9
+    assert len(times) >= 6
+    standing = map_for(5.0, lambda t: (0.0, 0.0, 0.0), lambda p: p)
+    assert sum("map" in out for _, out in standing) == 1
+
+
+def test_the_map_shows_the_room_where_it_is(drifting_run):
+    grid = [out["map"] for _, out in drifting_run if "map" in out][-1]
+    cells = occupancy_cells(grid)
+    assert grid.frame_id == "v/map"
+
+    def at(x, y):
+        """Of a point in the room: the map begins where the drive did."""
+        column = (x + 1.0 - grid.pose.position.x) / grid.cell_size.x
+        row = (y - 0.2 - grid.pose.position.y) / grid.cell_size.y
+        return cells[int(row), int(column)]
+
+    assert at(-0.5, 0.2) < 30
+    assert max(at(0.0, y) for y in (1.93, 1.97)) > 60
+    assert at(0.0, 2.3) == -1
+
+
+def test_the_map_is_placed_in_the_world_once(drifting_run):
+    placings = [out["placing"] for _, out in drifting_run if "placing" in out]
+    assert len(placings) == 1
+    assert (placings[0].parent_frame_id, placings[0].child_frame_id) == ("world", "v/map")
+    assert placings[0].translation.x == 2.0
