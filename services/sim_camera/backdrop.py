@@ -24,29 +24,30 @@ class Backdrop:
     """The outdoors of one world as seen from above z = 0."""
 
     def __init__(self, world: WorldFile) -> None:
-        self._areas = np.array([field.area for field in world.fields], dtype=np.float64).reshape(-1, 4)
-        colours = [*(field.colour for field in world.fields), world.ground_colour]
-        self._colours = 255.0 * np.array(colours, dtype=np.float64)
-        _paint(np.zeros((1, 1, 3), dtype=np.uint8), np.zeros(3), np.eye(3), self._areas, self._colours)  # compiles it
+        everywhere = (-np.inf, -np.inf, np.inf, np.inf)
+        rows = [*((*field.area, *field.colour) for field in world.fields), (*everywhere, *world.ground_colour)]
+        self._fields = np.array(rows, dtype=np.float64)
+        """(n, 7): x_min, y_min, x_max, y_max [m], red, green, blue [0..1]; the last one is the open ground."""
+        _paint(np.zeros((1, 1, 3), dtype=np.uint8), np.zeros(3), np.eye(3), self._fields)  # compiles it
 
     def paint(self, camera: Camera, eye: Floats, world_from_optical: Floats) -> Picture:
         """(height, width, 3) RGB. eye: (3,) m, world; world_from_optical: (3, 3), from x right, y down, z along the view."""
         rays = world_from_optical @ np.linalg.inv(intrinsics(camera))
         picture = np.empty((camera.height, camera.width, 3), dtype=np.uint8)
-        _paint(picture, eye, rays, self._areas, self._colours)
+        _paint(picture, eye, rays, self._fields)
         return picture
 
 
 @compiled
-def _field_at(x: float, y: float, areas: Floats, guess: int) -> int:
-    """Index of the field that holds a point, ``len(areas)`` for open ground; neighbours mostly share ``guess``."""
-    n: int = areas.shape[0]
-    if guess < n and areas[guess, 0] <= x < areas[guess, 2] and areas[guess, 1] <= y < areas[guess, 3]:
+def _field_at(x: float, y: float, fields: Floats, guess: int) -> int:
+    """Index of the first field that holds a point; neighbouring pixels mostly share ``guess``."""
+    last: int = fields.shape[0] - 1
+    if guess < last and fields[guess, 0] <= x < fields[guess, 2] and fields[guess, 1] <= y < fields[guess, 3]:
         return guess
-    for i in range(n):
-        if areas[i, 0] <= x < areas[i, 2] and areas[i, 1] <= y < areas[i, 3]:
+    for i in range(last):
+        if fields[i, 0] <= x < fields[i, 2] and fields[i, 1] <= y < fields[i, 3]:
             return i
-    return n
+    return last
 
 
 @compiled
@@ -62,7 +63,7 @@ def _shade(x: float, y: float, footprint: float) -> float:
 
 
 @compiled
-def _paint(picture: Picture, eye: Floats, rays: Floats, areas: Floats, colours: Floats) -> None:
+def _paint(picture: Picture, eye: Floats, rays: Floats, fields: Floats) -> None:
     """The ray of a pixel is ``rays @ (column, row, 1)``: (3, 3), world."""
     guess = 0
     pixel = np.sqrt(rays[0, 1] ** 2 + rays[1, 1] ** 2 + rays[2, 1] ** 2)
@@ -76,8 +77,8 @@ def _paint(picture: Picture, eye: Floats, rays: Floats, areas: Floats, colours: 
                 reach = -eye[2] / dz
                 square = dx * dx + dy * dy + dz * dz
                 x, y = eye[0] + reach * dx, eye[1] + reach * dy
-                guess = _field_at(x, y, areas, guess)
+                guess = _field_at(x, y, fields, guess)
                 clear = np.exp(-reach * np.sqrt(square) / HAZE)
                 light = clear * _shade(x, y, reach * pixel * square / -dz)
             for k in range(3):
-                picture[row, column, k] = light * colours[guess, k] + (1.0 - clear) * SKY[k]
+                picture[row, column, k] = 255.0 * light * fields[guess, 4 + k] + (1.0 - clear) * SKY[k]

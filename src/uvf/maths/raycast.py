@@ -17,10 +17,10 @@ def rectangles(rows: Floats) -> Floats:
 
 
 @compiled
-def _rectangle_range(ox: float, oy: float, dx: float, dy: float, r: Floats) -> float:
+def _rectangle_range(origin: Floats, dx: float, dy: float, r: Floats) -> float:
     """Distance along the ray to the first crossing of the outline; slab method (Kay & Kajiya 1986)."""
     c, s = r[4], r[5]
-    px, py = ox - r[0], oy - r[1]
+    px, py = origin[0] - r[0], origin[1] - r[1]
     near, far = -np.inf, np.inf
     for p, d, half in ((c * px + s * py, c * dx + s * dy, r[2]), (c * py - s * px, c * dy - s * dx, r[3])):
         if abs(d) < 1e-12:
@@ -36,9 +36,9 @@ def _rectangle_range(ox: float, oy: float, dx: float, dy: float, r: Floats) -> f
 
 
 @compiled
-def _circle_range(ox: float, oy: float, dx: float, dy: float, circle: Floats) -> float:
+def _circle_range(origin: Floats, dx: float, dy: float, circle: Floats) -> float:
     """Smallest root >= 0 of |o + t d - c|^2 = r^2 for a unit direction."""
-    px, py = ox - circle[0], oy - circle[1]
+    px, py = origin[0] - circle[0], origin[1] - circle[1]
     b: float = px * dx + py * dy
     discriminant = b * b - (px * px + py * py - circle[2] * circle[2])
     if discriminant < 0.0:
@@ -56,9 +56,9 @@ def _cast(origin: Floats, angles: Floats, boxes: Floats, circles: Floats) -> Flo
         dx, dy = np.cos(angles[i]), np.sin(angles[i])
         best = np.inf
         for j in range(boxes.shape[0]):
-            best = min(best, _rectangle_range(origin[0], origin[1], dx, dy, boxes[j]))
+            best = min(best, _rectangle_range(origin, dx, dy, boxes[j]))
         for j in range(circles.shape[0]):
-            best = min(best, _circle_range(origin[0], origin[1], dx, dy, circles[j]))
+            best = min(best, _circle_range(origin, dx, dy, circles[j]))
         ranges[i] = best
     return ranges
 

@@ -14,18 +14,18 @@ OPTICAL = Mount(rpy=(-np.pi / 2, 0.0, -np.pi / 2))
 def sensor_frames(vehicle: str, sensors: Sensors, t: float) -> FrameTransforms:
     """``base_link`` to each sensor, and for a camera on to ``<camera>_optical``, the frame of its pictures."""
     fitted = [s for s in (sensors.lidar, sensors.imu, sensors.camera) if s is not None]
-    transforms = [_transform(vehicle, "base_link", s.frame, s.mount, t) for s in fitted]
+    transforms = [_transform(f"{vehicle}/base_link", f"{vehicle}/{s.frame}", s.mount, t) for s in fitted]
     if sensors.camera is not None:
-        frame = sensors.camera.frame
-        transforms.append(_transform(vehicle, frame, f"{frame}_optical", OPTICAL, t))
+        frame = f"{vehicle}/{sensors.camera.frame}"
+        transforms.append(_transform(frame, f"{frame}_optical", OPTICAL, t))
     return FrameTransforms(transforms=transforms)
 
 
-def _transform(vehicle: str, parent: str, child: str, mount: Mount, t: float) -> FrameTransform:
+def _transform(parent: str, child: str, mount: Mount, t: float) -> FrameTransform:
     return FrameTransform(
         timestamp=stamp(t),
-        parent_frame_id=f"{vehicle}/{parent}",
-        child_frame_id=f"{vehicle}/{child}",
+        parent_frame_id=parent,
+        child_frame_id=child,
         translation=vector(np.array(mount.xyz)),
         rotation=quaternion(from_euler(*mount.rpy)),
     )

@@ -127,7 +127,7 @@ def test_a_camera_rate_that_does_not_fit_is_refused():
 
 def test_a_missing_mesh_is_named():
     air = load_vehicle(ROOT / "vehicles", "milvus").air
-    with pytest.raises(BadInput, match=r"air: mesh: no file 'milvs.obj' in that folder; did you mean):
+    with pytest.raises(BadInput, match=r"air: mesh: no file 'milvs\.obj' in that folder; did you mean"):
         build(spoilt("milvus", air=msgspec.structs.replace(air, mesh="milvs.obj")))
 
 
