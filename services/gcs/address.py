@@ -39,6 +39,5 @@ def claim(address: Address) -> None:
         try:
             probe.bind((address.host, address.port))
         except OSError as error:
-            raise BadInput(
-                f"gcs: cannot serve the page on {address.host}:{address.port}: {error.strerror}; choose another port, for example {PORT}=8081"
-            ) from error
+            place = f"{address.host}:{address.port}"
+            raise BadInput(f"gcs: cannot serve the page on {place}: {error.strerror}; choose another port: {PORT}=8081") from error

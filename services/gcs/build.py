@@ -1,11 +1,14 @@
 """The ground station of a mission: one page for all its vehicles."""
 
+import sys
+
 from services.gcs.address import address_from
 from services.gcs.service import GroundStation
 from uvf.runtime.site import Host, Site
 
 
 def build(site: Site) -> list[Host]:
+    """One service; its page's address is UVF_GCS_HOST:UVF_GCS_PORT. Raises BadInput."""
     address = address_from()
 
     def make() -> GroundStation:
@@ -13,6 +16,9 @@ def build(site: Site) -> list[Host]:
         from services.gcs.state import Model
         from services.gcs.viser_page import ViserPage
 
-        return GroundStation(site, ViserPage(address, cameras(site), Model(site).layers))
+        page = ViserPage(address, cameras(site), Model(site).layers)
+        if address.token:
+            sys.stderr.write(f"gcs: the page, for those who have its token: {address.url}\n")
+        return GroundStation(site, page)
 
     return [Host(GroundStation, make)]

@@ -23,9 +23,9 @@ def direction(azimuth: float, elevation: float) -> Floats:
 
 def _axes(sight: Floats) -> tuple[Floats, Floats]:
     """(right, up) of a camera that keeps its horizon level."""
-    right = np.cross(sight, (0.0, 0.0, 1.0))
-    right /= np.linalg.norm(right)
-    return right, np.cross(right, sight)
+    level = np.cross(sight, (0.0, 0.0, 1.0))
+    right = (level / np.linalg.norm(level)).astype(np.float64)
+    return right, np.cross(right, sight).astype(np.float64)
 
 
 def fit(points: Floats, sight: Floats) -> Camera:
@@ -62,10 +62,8 @@ def cameras(site: Site) -> dict[str, Camera]:
     low, high = extent(site)
     everything = np.array([(x, y, z) for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])])
     near = fit(floor, direction(-1.85, 0.47))
-    views = {
+    return {
         "Scene": tilted_up(near, floor) if any(site.of_kind("fixed_wing")) else near,
-        "Floor": fit(floor, direction(-1.75, 0.95)),
         "All": fit(everything, direction(-1.85, 0.5)),
         "Top": fit(floor, direction(-np.pi / 2, 1.56)),
     }
-    return views

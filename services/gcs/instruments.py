@@ -129,7 +129,8 @@ def _corners(f: Flight) -> str:
     armed = (GREEN, "ARMED") if f.armed else (AMBER, "DISARMED")
     small = "font-size='10' opacity='.95'"
     return (
-        f"<text x='34' y='18' text-anchor='middle' {small}>IAS m/s</text><text x='{WIDTH - 34}' y='18' text-anchor='middle' {small}>ALT m</text>"
+        f"<text x='34' y='18' text-anchor='middle' {small}>IAS m/s</text>"
+        f"<text x='{WIDTH - 34}' y='18' text-anchor='middle' {small}>ALT m</text>"
         f"<text x='{CX - 6}' y='17' text-anchor='end' fill='{GREEN}' font-size='13' font-weight='700'>{f.mode}</text>"
         f"<text x='{CX + 6}' y='17' fill='{armed[0]}' font-size='13' font-weight='700'>{armed[1]}</text>"
         f"<text x='34' y='236' text-anchor='middle' fill='{CYAN}'>GS {f.ground_speed:.1f}</text>"
@@ -180,7 +181,8 @@ def _bar(y: float, name: str, value: str, share: float) -> str:
     share = max(-1.0, min(1.0, share))
     x, width = (251 + min(share, 0) * 75), abs(share) * 75
     return (
-        f"<text x='176' y='{y}' opacity='.75'>{name}</text><text x='326' y='{y}' text-anchor='end' font-size='13' font-weight='600'>{value}</text>"
+        f"<text x='176' y='{y}' opacity='.75'>{name}</text>"
+        f"<text x='326' y='{y}' text-anchor='end' font-size='13' font-weight='600'>{value}</text>"
         f"<rect x='176' y='{y + 7}' width='150' height='9' rx='4.5' fill='#22304a'/>"
         f"<rect x='{x:.1f}' y='{y + 7}' width='{width:.1f}' height='9' rx='3' fill='{CYAN}'/><path d='M251 {y + 4}v15' stroke='{INK}'/>"
     )

@@ -30,8 +30,8 @@ class Overview:
     def svg(self) -> str:
         moving = "".join(self._vehicle(v) for v in self._model.vehicles.values())
         return (
-            f"<svg id='gcs-overview' role='img' aria-label='map of all vehicles, north up' viewBox='0 0 {WIDTH:.0f} {HEIGHT:.0f}' width='100%' "
-            f"font-family='ui-sans-serif,system-ui,sans-serif' font-size='11' fill='#cfd8e6'>{self._still}{moving}</svg>"
+            f"<svg id='gcs-overview' role='img' aria-label='map of all vehicles, north up' viewBox='0 0 {WIDTH:.0f} {HEIGHT:.0f}' "
+            f"width='100%' font-family='ui-sans-serif,system-ui,sans-serif' font-size='11' fill='#cfd8e6'>{self._still}{moving}</svg>"
         )
 
     def _at(self, points: Floats) -> Floats:
@@ -52,7 +52,8 @@ class Overview:
     def _scale_bar(self) -> str:
         length = max((s for s in STEPS if s * self._scale <= 80), default=STEPS[0])
         px = length * self._scale
-        return f"<path d='M12 {HEIGHT - 14}v4h{px:.1f}v-4' fill='none' stroke='#cfd8e6'/><text x='{18 + px:.1f}' y='{HEIGHT - 9}'>{length} m</text>"
+        bar = f"<path d='M12 {HEIGHT - 14}v4h{px:.1f}v-4' fill='none' stroke='#cfd8e6'/>"
+        return f"{bar}<text x='{18 + px:.1f}' y='{HEIGHT - 9}'>{length} m</text>"
 
     def _vehicle(self, v: VehicleModel) -> str:
         route = _path(self._at(mission_points(v)), "#e84ad6", "stroke-dasharray='4 3' opacity='.8'") if v.flies else ""
@@ -63,7 +64,8 @@ class Overview:
         x, y = self._at(v.place.position[None])[0]
         heading = 90 - degrees(to_euler(v.place.wxyz)[2])
         size = 1.25 if v.name == self._model.selected else 1.0
-        icon = f"<path transform='translate({x:.1f} {y:.1f}) rotate({heading:.0f}) scale({size})' d='M0 -8L6 7L0 4L-6 7Z' fill='{v.colour}' stroke='#fff' stroke-width='.8'/>"
+        where = f"translate({x:.1f} {y:.1f}) rotate({heading:.0f}) scale({size})"
+        icon = f"<path transform='{where}' d='M0 -8L6 7L0 4L-6 7Z' fill='{v.colour}' stroke='#fff' stroke-width='.8'/>"
         return f"{route}{gone}{icon}{_name(v.name, x, y)}"
 
 

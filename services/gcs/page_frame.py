@@ -3,7 +3,7 @@
 from collections.abc import Callable
 
 from services.gcs import panels
-from services.gcs.commands import MODES, Arm, Commander, SetMode, StopAll
+from services.gcs.commands import MODES, Arm, Commander, SetMode, StopAll, mode_name
 from services.gcs.drawing import Button, Picture, Toast
 from services.gcs.overview import Overview
 from services.gcs.state import Model
@@ -58,9 +58,10 @@ class Composer:
         ]
         if v is None:
             return shown
-        mode = panels.mode_name(v.status.mode) if v.status is not None else ""
-        for name in MODES[v.member.file.kind]:
-            shown.append(Button(f"mode {name}", name, SetMode(name), f"{v.name}: mode {name}", lit=name == mode))
+        mode = mode_name(v.status.mode) if v.status is not None else ""
+        shown += [
+            Button(f"mode {name}", name, SetMode(name), f"{v.name}: mode {name}", lit=name == mode) for name in MODES[v.member.file.kind]
+        ]
         armed = v.status is not None and v.status.armed
         word = "Disarm" if armed else "Arm"
         sure = self._commander.waits_for_confirmation(v.name, not armed, t)

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from html import escape
 from math import atan2, degrees, hypot, pi
+from pathlib import Path
 
 from schemas.convert import wxyz
 from schemas.messages import Clock, Event, MissionProgress, NavStatus, Process
@@ -11,7 +12,7 @@ from services.gcs.instruments import Drive, Flight, drive_panel, primary_flight_
 from services.gcs.state import Line, Model, VehicleModel, link_of
 from uvf.maths.rotations import to_euler
 
-SEVERITY = {
+SEVERITY: dict[int, tuple[str, str]] = {
     Event.INFO: ("·", "info"),
     Event.NOTICE: ("i", "notice"),
     Event.WARNING: ("⚠", "warn"),
@@ -19,19 +20,7 @@ SEVERITY = {
     Event.CRITICAL: ("✖", "bad"),
 }
 LOG_SHOWN = 60
-HELP = """
-<div class='g-help'><h4>What you see</h4>
-<p>The lit part of the floor is what the ground vehicle has mapped so far; red dots are its lidar; the magenta line is the way it means to go.
-Overhead the aircraft flies its mission: magenta legs, its own track behind it.</p>
-<h4>What you can do</h4>
-<ul><li><b>Click the floor</b>: the chosen ground vehicle goes there.</li>
-<li><b>Click a vehicle</b> or its card to choose it.</li>
-<li><b>Drag</b> turns the view, <b>right drag</b> shifts it, <b>wheel</b> zooms.</li>
-<li><b>STOP ALL</b> stops everything at once, and holds until released.</li>
-<li><b>Arm</b> wants a second click within five seconds.</li></ul>
-<h4>Colours</h4>
-<p>Green: normal. Amber: caution, or asked and not yet answered. Red: warning. Magenta: the route. Each vehicle has a colour of its own.</p></div>
-"""
+HELP = Path(__file__).with_name("help.html")
 
 
 def clock_text(seconds: float) -> str:
@@ -83,13 +72,11 @@ def _card(model: Model, v: VehicleModel, t: float) -> str:
     word, style = link_of(v.heard, t)
     badge, badge_style = badge_of(v)
     chosen = " g-chosen" if v.name == model.selected else ""
-    rows = "".join(
-        f"<tr><td>{name}</td><td>{value}</td></tr>" for name, value in (*_numbers(v), ("link", f"<span class='g-{style}'>{word}</span>"))
-    )
+    rows = "".join(f"<tr><td>{name}</td><td>{value}</td></tr>" for name, value in _numbers(v))
+    title = f"<b><i class='g-dot'></i>{'✈' if v.flies else '▣'} {v.name}</b><em class='g-badge g-b-{badge_style}'>{badge}</em>"
     return (
         f"<button type='button' class='g-card{chosen}' data-gcs='select:{v.name}' aria-label='Select {v.name}' style='--c:{v.colour}'>"
-        f"<span class='g-top'><b><i class='g-dot'></i>{'✈' if v.flies else '▣'} {v.name}</b><em class='g-badge g-b-{badge_style}'>{badge}</em></span>"
-        f"<table>{rows}</table></button>"
+        f"<span class='g-top'>{title}</span><table>{rows}<tr><td>link</td><td class='g-{style}'>{word}</td></tr></table></button>"
     )
 
 

@@ -21,6 +21,7 @@ from schemas.messages import (
     PoseInFrame,
     PosesInFrame,
     Processes,
+    StopCommand,
     VehicleStatus,
 )
 from services.gcs.commands import SOURCE, Commander
@@ -41,6 +42,7 @@ class GroundStation(Service):
     inputs = {
         "clock": optional(topics.CLOCK),
         "processes": optional(topics.PROCESSES),
+        "stops": optional(topics.STOP.by("*")),
         "nav": each_vehicle(topics.NAV_STATE),
         "pose": each_vehicle(topics.POSE),
         "odometry": each_vehicle(topics.ODOMETRY),
@@ -70,6 +72,7 @@ class GroundStation(Service):
         t: float,
         clock: Clock | None,
         processes: Processes | None,
+        stops: StopCommand | None,
         events: Mapping[str, Sequence[Event]],
         goal: Sequence[Answer[Any, Any]],
         arm: Sequence[Answer[Any, Any]],
@@ -106,6 +109,7 @@ class GroundStation(Service):
         }
         self._model.hear_clock(t, clock)
         self._model.processes = processes
+        self._model.hear_stop(stops)
         for what, messages in newest.items():
             self._model.hear(t, what, messages)
         self._model.hear_events(events)

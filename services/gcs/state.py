@@ -151,6 +151,7 @@ class Model:
         self.clock_at: float | None = None
         self.processes: Processes | None = None
         self.stop: StopCommand | None = None
+        self._stop_heard: StopCommand | None = None
         self.log: deque[Line] = deque(maxlen=LOG_LENGTH)
         self.log_count = 0
 
@@ -160,7 +161,7 @@ class Model:
 
     @property
     def stopped(self) -> bool:
-        """STOP ALL is engaged: by our own last command, or as a vehicle reports it."""
+        """STOP ALL is engaged: by the last command of anybody, or as a vehicle reports it."""
         return (self.stop is not None and self.stop.engaged) or any(
             v.status is not None and v.status.stopped for v in self.vehicles.values()
         )
@@ -191,6 +192,11 @@ class Model:
                 vehicle.goal_asked = None
             self.note("", "the simulation has started afresh")
         self.clock, self.clock_at = clock, t
+
+    def hear_stop(self, stop: StopCommand | None) -> None:
+        """The newest STOP ALL or release of all sources holds, also over our own."""
+        if stop is not None and stop is not self._stop_heard:
+            self._stop_heard = self.stop = stop
 
     def hear_events(self, by_vehicle: Mapping[str, Sequence[Event]]) -> None:
         for name, events in by_vehicle.items():

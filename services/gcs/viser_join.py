@@ -37,5 +37,5 @@ def apply() -> bool:
     exec(compile(source.replace(STEP, JUMP), module.__file__, "exec"), names)
     loop = names["_window_loop"]
     loop.jumps = True
-    AsyncMessageBuffer._window_loop = loop
+    AsyncMessageBuffer._window_loop = loop  # type: ignore[method-assign]
     return True

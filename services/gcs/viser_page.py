@@ -1,5 +1,7 @@
 """The page on viser: panels, buttons, picture; clicks go into a queue that the service reads in its step."""
 
+import contextlib
+import io
 import json
 import queue
 import time
@@ -25,7 +27,6 @@ from uvf.runtime.params import BadInput
 
 FLEET_WIDTH, VEHICLE_WIDTH = 270, 350
 BEAT = 1.0  # s between two signs of life to the page
-COMMANDS = ("mode", "arm")
 
 
 class ViserPage:
@@ -78,7 +79,7 @@ class ViserPage:
         gui.main_panel.set_width(FLEET_WIDTH)
         self._html["bar"] = gui.add_html(bar_source("", 0), order=0)
         self._html["fleet"] = gui.add_html("", order=2)
-        views = gui.add_button_group("", tuple(cameras), order=100)
+        views = gui.add_button_group("View", tuple(cameras), order=100)
         views.on_click(lambda event: _look(event, cameras[event.target.value]))
         self._html["overview"] = gui.add_html("", order=150)
         with gui.add_folder("Layers", order=200, expand_by_default=False):
@@ -98,7 +99,7 @@ class ViserPage:
         with panel.add_tab("System", viser.Icon.CPU):
             self._html["processes"] = gui.add_html("")
         with panel.add_tab("Help", viser.Icon.HELP):
-            gui.add_html(panels.HELP)
+            gui.add_html(padded(panels.HELP.read_text(encoding="utf-8")))
         panel.dock_right()
         panel.set_width(VEHICLE_WIDTH)
 
@@ -184,7 +185,8 @@ class ViserPage:
         return taken
 
     def close(self) -> None:
-        self._server.stop()
+        with contextlib.redirect_stdout(io.StringIO()):
+            self._server.stop()
 
 
 def _look(event: Any, camera: Camera) -> None:
@@ -225,7 +227,8 @@ def _guarded_server(address: Address) -> viser.ViserServer:
 
     websocket_server.serve = serve  # type: ignore[assignment, misc]
     try:
-        server = viser.ViserServer(address.host, address.port, verbose=False)
+        with contextlib.redirect_stdout(io.StringIO()):  # viser prints a box of its own even when told to be quiet
+            server = viser.ViserServer(address.host, address.port, verbose=False)
     finally:
         websocket_server.serve = plain  # type: ignore[misc]
     server._websock_server.unregister_handler(_messages.ShareUrlRequest)

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from schemas.messages import ArmRequest, GoalRequest, Mode, ModeRequest
+from schemas import topics
+from schemas.messages import ArmRequest, GoalRequest, Mode, ModeRequest, StopCommand
 from services.gcs.commands import ANSWER_WITHIN, CONFIRM_WITHIN, Arm, ClickGround, Layer, Select, SetMode, StopAll, describe, ground_point
 from tests.services.gcs.fakes import Station
 from tests.services.gcs.scripted import UAV, UGV
@@ -117,6 +118,15 @@ def test_stop_all_goes_out_at_once_and_holds_until_released(station):
     station.press(StopAll(False), seconds=0.2)
     assert [s.engaged for s in station.script.stops] == [True, False]
     assert not station.model.stopped
+
+
+def test_another_source_may_release_our_stop_and_engage_its_own(station):
+    station.press(StopAll(True), seconds=0.5)
+    for engaged in (False, True):
+        station.script.put("sys", topics.STOP.by("client"), StopCommand(engaged=engaged, source="client"), station.t)
+        station.script.stops.append(StopCommand(engaged=engaged))
+        station.run(0.3)
+        assert station.model.stopped is engaged
 
 
 def test_stop_all_needs_no_link(station):

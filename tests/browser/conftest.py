@@ -1,0 +1,90 @@
+"""Chromium, and a ground station in front of scripted vehicles that runs in a thread of its own."""
+
+import contextlib
+import threading
+from pathlib import Path
+
+import pytest
+
+from services.gcs.address import Address
+from services.gcs.cameras import cameras
+from services.gcs.service import GroundStation
+from services.gcs.state import Model
+from services.gcs.viser_page import ViserPage
+from tests.services.gcs.scripted import Script, demo_site
+from tests.services.gcs.wire import free_port
+from uvf.runtime.shell import Shell
+from uvf.runtime.site import Host
+
+CHROMIUM = Path("/usr/bin/chromium")
+FLAGS = [
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--no-first-run",
+    "--disable-extensions",
+]
+
+
+class LiveStation:
+    """The real service on the real page; ``moving`` off holds the vehicles still, ``living`` off the whole station."""
+
+    def __init__(self):
+        site, self.port = demo_site(), free_port()
+        self.script = Script()
+        self.page = ViserPage(Address(port=self.port), cameras(site), Model(site).layers)
+        self.service = GroundStation(site, self.page)
+        self.shell = Shell(Host(GroundStation, lambda: self.service), self.script.bus)
+        self.moving = self.living = True
+        self.t = 0.0
+        self._end = threading.Event()
+        self._thread = threading.Thread(target=self._run)
+        self._thread.start()
+
+    def _run(self):
+        while not self._end.wait(0.05):
+            if not self.living:
+                continue
+            self.t += 0.05 * self.moving
+            self.script.publish(self.t)
+            self.shell.advance()
+
+    def close(self):
+        self._end.set()
+        self._thread.join()
+        self.service.close()
+
+
+@pytest.fixture(scope="session")
+def browser():
+    if not CHROMIUM.exists():
+        pytest.skip(f"no browser: {CHROMIUM} is not there (apt-get install chromium)")
+    sync_api = pytest.importorskip("playwright.sync_api")
+    with sync_api.sync_playwright() as playwright:
+        chromium = playwright.chromium.launch(executable_path=str(CHROMIUM), headless=True, args=FLAGS)
+        yield chromium
+        chromium.close()
+
+
+@pytest.fixture(scope="module")
+def station(browser):
+    station = LiveStation()
+    yield station
+    station.close()
+
+
+@pytest.fixture(scope="module")
+def page(browser, station):
+    """One page for all tests of a module; an error in its script fails the module."""
+    page = browser.new_page(viewport={"width": 1200, "height": 700})
+    errors = []
+    page.on("pageerror", lambda error: errors.append(str(error)))
+    page.goto(f"http://127.0.0.1:{station.port}/")
+    page.wait_for_function("() => window.__viserSceneTree && '/vehicles/milvus/0' in window.__viserSceneTree.getState()", timeout=90_000)
+    with contextlib.suppress(Exception):
+        page.locator(".mantine-Notification-closeButton").click(timeout=5_000)
+    yield page
+    page.close()
+    assert errors == []

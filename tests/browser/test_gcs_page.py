@@ -1,0 +1,103 @@
+"""The ground station in a real browser: two vehicles move, a click is a goal, STOP is STOP."""
+
+import numpy as np
+import pytest
+
+from schemas.messages import ArmRequest, Event, GoalRequest
+from tests.browser.canvas import POINTS, POSITION, TRACK_BLUE, on_screen, pixels, until
+from tests.services.gcs.scripted import UAV, UGV
+
+pytestmark = pytest.mark.timeout(240)
+
+
+def position(page, vehicle):
+    return np.array(page.evaluate(POSITION, f"/vehicles/{vehicle}"))
+
+
+def goals(station):
+    return [m for _, m in station.script.asked if isinstance(m, GoalRequest)]
+
+
+def test_both_vehicles_move(page):
+    before = {name: position(page, name) for name in (UGV, UAV)}
+    for name in (UGV, UAV):
+        assert until(page, lambda name=name: np.linalg.norm(position(page, name) - before[name]) > 0.2), name
+    assert "LIVE" in page.locator("#gcs-bar").inner_text()
+
+
+def test_tracks_grow_in_the_scene_and_on_the_screen(page):
+    points = page.evaluate(POINTS, f"/track/{UGV}/tail")
+    assert until(page, lambda: page.evaluate(POINTS, f"/track/{UGV}/tail") > points)
+    seen = pixels(page, TRACK_BLUE)
+    assert until(page, lambda: pixels(page, TRACK_BLUE) > max(1.2 * seen, 30)), (seen, pixels(page, TRACK_BLUE))
+
+
+def test_a_hidden_track_leaves_the_screen(page, station):
+    seen = pixels(page, TRACK_BLUE)
+    page.get_by_text("Layers", exact=True).click()
+    page.get_by_label("Tracks").uncheck()
+    assert until(page, lambda: pixels(page, TRACK_BLUE) < 0.5 * seen)
+    page.get_by_label("Tracks").check()
+    assert until(page, lambda: pixels(page, TRACK_BLUE) > 0.8 * seen)
+    page.get_by_text("Layers", exact=True).click()
+
+
+def test_a_click_on_the_floor_is_a_goal_there(page, station):
+    wanted = (3.9, 4.55)
+    page.mouse.click(*on_screen(page, (*wanted, 0.0)))
+    assert until(page, lambda: goals(station))
+    goal = goals(station)[-1]
+    assert (goal.position.x, goal.position.y) == pytest.approx(wanted, abs=0.1)
+    page.get_by_text("– accepted").wait_for(timeout=20_000)
+
+
+def test_a_click_on_a_vehicle_chooses_it_and_sends_nobody(page, station):
+    page.get_by_role("button", name="Select milvus").dispatch_event("pointerdown")
+    page.locator("#gcs-pfd").wait_for(timeout=20_000)
+    station.moving = False
+    sent = len(goals(station))
+    page.wait_for_timeout(1500)
+    page.mouse.click(*on_screen(page, position(page, UGV) + np.array((0.0, 0.0, 0.1))))
+    page.locator("#gcs-drive").wait_for(timeout=20_000)
+    station.moving = True
+    assert len(goals(station)) == sent
+
+
+def test_arming_wants_a_second_click(page, station):
+    page.get_by_role("button", name="Disarm burger", exact=True).click()
+    assert not [m for _, m in station.script.asked if isinstance(m, ArmRequest)]
+    page.get_by_role("button", name="Confirm: disarm burger").click()
+    assert until(page, lambda: [m for n, m in station.script.asked if isinstance(m, ArmRequest) and n == UGV and not m.arm])
+
+
+def test_stop_all_stops_until_released(page, station):
+    page.get_by_role("button", name="STOP ALL", exact=True).click()
+    assert until(page, lambda: station.script.stops and station.script.stops[-1].engaged)
+    page.locator("#gcs-bar", has_text="STOP ALL ENGAGED").wait_for(timeout=20_000)
+    page.get_by_role("button", name="Release STOP").click()
+    assert until(page, lambda: not station.script.stops[-1].engaged)
+
+
+def test_text_from_the_bus_is_shown_not_run(page, station):
+    station.script.say(UGV, "<img src=x onerror='window.hacked=1'>", Event.WARNING, t=station.t)
+    page.get_by_role("tab", name="Log").click()
+    page.locator(".g-log", has_text="<img src=x").wait_for(timeout=20_000)
+    assert page.evaluate("() => window.hacked") is None
+    page.get_by_role("tab", name="Vehicle").click()
+
+
+def test_a_page_that_joins_late_sees_the_same(page, browser, station):
+    late = browser.new_page(viewport={"width": 700, "height": 400})
+    late.goto(f"http://127.0.0.1:{station.port}/")
+    late.wait_for_function(
+        "(name) => (window.__viserSceneTree || {getState: () => ({})}).getState()[name]", arg=f"/track/{UGV}/tail", timeout=60_000
+    )
+    assert late.evaluate(POINTS, f"/track/{UGV}/tail") > 30
+    late.close()
+
+
+def test_a_silent_station_is_told_by_the_page_itself(page, station):
+    station.living = False
+    page.locator("#gcs-bar", has_text="LINK LOST").wait_for(timeout=20_000)
+    station.living = True
+    page.locator("#gcs-bar", has_text="LIVE").wait_for(timeout=20_000)
