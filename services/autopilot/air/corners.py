@@ -75,12 +75,11 @@ class Offset:
 def offset(s: float, length: float, entry: Corner | None, exit_: Corner | None) -> Offset:
     """The swings of both ends at ``s`` [m] along a leg of ``length`` [m]."""
     value = slope = bend = 0.0
-    for corner, into in ((entry, s), (exit_, length - s)):
+    for corner, into, sign in ((entry, s, -1.0), (exit_, length - s, 1.0)):
         if corner is None:
             continue
         u = min(max((corner.before + corner.swing - into) / corner.swing, 0.0), 1.0)
         outside = -corner.turn * corner.shift
-        sign = -1.0 if corner is entry else 1.0
         value += outside * u**3 * (10 - 15 * u + 6 * u * u)
         slope += sign * outside * 30 * (u * (1 - u)) ** 2 / corner.swing
         bend += outside * 60 * u * (1 - u) * (1 - 2 * u) / corner.swing**2

@@ -14,7 +14,7 @@ from uvf.maths.filters import Integral
 
 G = 9.80665  # m/s^2
 Point = tuple[float, float]
-INTEGRATES_WITHIN = 20.0  # m
+INTEGRATES_WITHIN = 5.0  # m
 TURN_TRIM_LIMIT = 0.05  # rad/s
 
 
