@@ -138,16 +138,11 @@ def _reposition(line: Line, command: Command, ack: Acknowledger) -> None:
 
 
 def _go_to(line: Line, goal: GoalRequest, may_change_mode: bool, done: Done) -> None:
-    """A rover's planner drives in mode Mission only: changed to first, if that may be."""
+    """A rover's planner drives in mode Mission only: changed to first, if that may be, and back if there is no way."""
+    before = line.latest.status.mode if line.latest.status is not None else Mode.MODE_MISSION
 
     def in_mission() -> bool:
         return line.latest.status is not None and line.latest.status.mode == Mode.MODE_MISSION
-
-    def drive(accepted: bool, reason: str) -> None:
-        if accepted:
-            line.ask("goal", goal, done)
-        else:
-            done(False, reason)
 
     def changed(accepted: bool, reason: str) -> None:
         if accepted:
@@ -155,10 +150,21 @@ def _go_to(line: Line, goal: GoalRequest, may_change_mode: bool, done: Done) -> 
         else:
             done(False, reason)
 
+    def drive(accepted: bool, reason: str) -> None:
+        if accepted:
+            line.ask("goal", goal, driven)
+        else:
+            driven(False, reason)
+
+    def driven(accepted: bool, reason: str) -> None:
+        if not accepted:
+            set_mode(line, before, lambda back, why: None)
+        done(accepted, reason)
+
     if line.facts.is_ground and may_change_mode and not in_mission():
         set_mode(line, Mode.MODE_MISSION, changed)
     else:
-        drive(True, "")
+        line.ask("goal", goal, done)
 
 
 def goal_of_item(line: Line, item: mav.MAVLink_mission_item_int_message, done: Done) -> None:

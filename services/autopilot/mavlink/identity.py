@@ -1,12 +1,15 @@
 """Who a vehicle says it is: a PX4-compatible interface that says it is not PX4."""
 
 import hashlib
-from importlib.metadata import PackageNotFoundError, version
+import re
+import tomllib
+from importlib.metadata import version
 
 from schemas.messages import Kind
 from services.autopilot.mavlink import dialect as mav
 from services.autopilot.mavlink.facts import Facts, Latest
 from services.autopilot.mavlink.modes import row_of
+from uvf.runtime.site import ROOT
 
 EMULATED_PX4 = (1, 16, 0)
 """Interface level whose behaviour is emulated; ground stations decide by it what a PX4 vehicle can do."""
@@ -23,11 +26,10 @@ XML_COMMIT = bytes.fromhex("de1e078a3a7c53c9")
 
 
 def _own_version() -> tuple[int, int, int]:
-    try:
-        parts = version("uvf").split(".")
-    except PackageNotFoundError:
-        return 0, 0, 0
-    major, minor, patch = (int(part) for part in parts[:3])
+    """Of the checkout that runs, or of the installed package."""
+    project = ROOT / "pyproject.toml"
+    text = tomllib.loads(project.read_text())["project"]["version"] if project.is_file() else version("uvf")
+    major, minor, patch = (int(number) for number in re.findall(r"\d+", text)[:3])
     return major, minor, patch
 
 

@@ -77,7 +77,7 @@ def _from_wire(item: mav.MAVLink_mission_item_int_message, facts: Facts, home_z:
         result.position.CopyFrom(_place(item, facts, home_z))
     if item.command == mav.MAV_CMD_DO_CHANGE_SPEED and not item.param2 > 0:
         result.kind = MissionItem.JUMP  # "no change": a jump that is never taken
-    _fill(result, item.command, *(0.0 if math.isnan(p) else p for p in params))
+    _fill(result, item.command, tuple(0.0 if math.isnan(p) else p for p in params))
     return result
 
 
@@ -94,20 +94,21 @@ def _place(item: mav.MAVLink_mission_item_int_message, facts: Facts, home_z: flo
     return facts.world(item.x * 1e-7, item.y * 1e-7, base + item.z)
 
 
-def _fill(item: MissionItem, command: int, p1: float, p2: float, p3: float, p4: float) -> None:
+def _fill(item: MissionItem, command: int, p: tuple[float, ...]) -> None:
+    """What the parameters ``p`` (from param1 on) mean for the command. Raises BadItem."""
     if command in (mav.MAV_CMD_NAV_WAYPOINT, mav.MAV_CMD_NAV_LOITER_TIME):
-        item.hold = _not_negative(p1, mav.MAV_MISSION_INVALID_PARAM1, "hold time")
+        item.hold = _not_negative(p[0], mav.MAV_MISSION_INVALID_PARAM1, "hold time")
     if command == mav.MAV_CMD_NAV_WAYPOINT:
-        item.acceptance_radius = _not_negative(p2, mav.MAV_MISSION_INVALID_PARAM2, "acceptance radius")
+        item.acceptance_radius = _not_negative(p[1], mav.MAV_MISSION_INVALID_PARAM2, "acceptance radius")
     if command in (mav.MAV_CMD_NAV_LOITER_UNLIM, mav.MAV_CMD_NAV_LOITER_TURNS, mav.MAV_CMD_NAV_LOITER_TIME):
-        item.radius = p3
+        item.radius = p[2]
     if command == mav.MAV_CMD_NAV_LOITER_TURNS:
-        item.turns = _not_negative(p1, mav.MAV_MISSION_INVALID_PARAM1, "number of turns")
+        item.turns = _not_negative(p[0], mav.MAV_MISSION_INVALID_PARAM1, "number of turns")
     if command == mav.MAV_CMD_DO_JUMP:
-        item.jump_to = int(_not_negative(p1, mav.MAV_MISSION_INVALID_PARAM1, "item to jump to"))
-        item.repeat = _count(p2)
-    if command == mav.MAV_CMD_DO_CHANGE_SPEED and p2 > 0:
-        item.speed = p2
+        item.jump_to = int(_not_negative(p[0], mav.MAV_MISSION_INVALID_PARAM1, "item to jump to"))
+        item.repeat = _count(p[1])
+    if command == mav.MAV_CMD_DO_CHANGE_SPEED and p[1] > 0:
+        item.speed = p[1]
 
 
 def _not_negative(value: float, result: int, what: str) -> float:

@@ -113,6 +113,16 @@ def test_a_rover_is_put_into_mission_mode_before_it_is_sent_somewhere():
     assert rig.rover.status.mode == Mode.MODE_MISSION
 
 
+def test_where_a_rover_cannot_be_sent_it_goes_back_to_its_mode():
+    rig = Rig()
+    rig.run()
+    rig.rover.refuse["goal"] = "there is a wall"
+    rig.say(long(192, -1.0, 1.0, 0.0, NAN, 40.77, 14.79, NAN, system=ROVER))
+    assert acks(rig.run(0.2)) == [(192, REJECTED)]
+    assert [name for name, _ in rig.rover.asked] == ["set_mode", "goal", "set_mode"]
+    assert rig.rover.status.mode == Mode.MODE_HOLD
+
+
 def test_without_leave_to_change_the_mode_it_is_not_changed():
     rig = Rig()
     rig.run()

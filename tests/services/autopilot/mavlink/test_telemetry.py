@@ -200,6 +200,7 @@ def test_version_says_simulated_level_and_own_number():
     for system in (PLANE, ROVER):
         rig.say(long(512, 148.0, system=system))
     plane, rover = of(rig.run(), "AUTOPILOT_VERSION")
+    assert plane.middleware_sw_version > 0
     assert plane.flight_sw_version == 1 << 24 | 16 << 16
     assert plane.uid != rover.uid and bytes(plane.uid2) != bytes(rover.uid2)
     for capability in (mav.MAV_PROTOCOL_CAPABILITY_MISSION_FENCE, mav.MAV_PROTOCOL_CAPABILITY_FTP):
