@@ -36,7 +36,7 @@ def _hosts(member: Member) -> list[Host]:
 def _warm_up() -> None:
     """Compiles the kernels, or loads them from their cache, before the first step."""
     navigator = Navigator(Body(0.1, 0.3, 2.0))
-    navigator.see(np.zeros((20, 20), dtype=np.int8), 0.05, (0.0, 0.0))
+    navigator.see(np.zeros((20, 20), dtype=np.int8), (0.05, (0.0, 0.0)))
     navigator.plan((0.2, 0.2), (0.8, 0.8))
     navigator.refusal((0.2, 0.2), (0.8, 0.8))
     safe_share(np.ones((1, 2)), (0.1, 0.1), 0.1, (0.1, 1.0))

@@ -14,6 +14,9 @@ Cell = tuple[int, int]
 OCCUPIED, FREE = 60, 40  # per cent: at least, at most
 IMPASSABLE = -1.0
 
+Frame = tuple[float, tuple[float, float]]
+"""Resolution [m] and (x, y) [m, map frame] of the lower left corner of cell [0, 0]."""
+
 
 @dataclass(frozen=True)
 class Body:
@@ -42,7 +45,8 @@ class Costmap:
         return (int(np.floor((y - self.origin[1]) / self.resolution)), int(np.floor((x - self.origin[0]) / self.resolution)))
 
     def holds(self, cell: Cell) -> bool:
-        return 0 <= cell[0] < self.cost.shape[0] and 0 <= cell[1] < self.cost.shape[1]
+        rows, columns = self.cost.shape
+        return bool(0 <= cell[0] < rows and 0 <= cell[1] < columns)
 
     def points(self, cells: NDArray[np.int64]) -> Floats:
         """(n, 2) x, y of the centres of (n, 2) cells."""
@@ -50,10 +54,9 @@ class Costmap:
         return out
 
 
-def costmap(
-    cells: NDArray[np.int8], resolution: float, origin: tuple[float, float], body: Body, unknown_cost: float = IMPASSABLE
-) -> Costmap:
+def costmap(cells: NDArray[np.int8], frame: Frame, body: Body, unknown_cost: float = IMPASSABLE) -> Costmap:
     """cells: (rows, columns) -1 unknown, 0..100 per cent; unknown_cost: factor on the cost of unknown ground."""
+    resolution, origin = frame
     occupied, unknown = cells >= OCCUPIED, cells < 0
     free = ~unknown & (cells <= FREE)
     clearance = (distance_field(occupied) - 0.5) * resolution

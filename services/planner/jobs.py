@@ -29,6 +29,14 @@ class Job:
         return self.name in ("mission", "return")
 
 
+@dataclass(frozen=True)
+class Orders:
+    """What the mission file says. home: start [m, world]; explores: what it does when nothing else is to be done."""
+
+    home: Point
+    explores: bool
+
+
 IDLE = Job("idle")
 EXPLORE = Job("explore")
 
@@ -43,15 +51,15 @@ def mission_target(mission: Mission | None, progress: MissionProgress | None, ho
     return home if item.kind == MissionItem.RETURN else (item.position.x, item.position.y)
 
 
-def choose(status: VehicleStatus | None, goal: Goal | None, target: Point | None, explores: bool, home: Point) -> Job:
+def choose(status: VehicleStatus | None, goal: Goal | None, target: Point | None, orders: Orders) -> Job:
     """target: of the mission's current item, if there is one."""
     if status is not None and status.mode == Mode.MODE_RETURN:
-        return Job("return", home)
+        return Job("return", orders.home)
     if goal is not None:
         return Job("goal", goal.point, goal.yaw)
     if target is not None:
         return Job("mission", target)
-    return EXPLORE if explores else IDLE
+    return EXPLORE if orders.explores else IDLE
 
 
 def not_now(status: VehicleStatus | None) -> str:

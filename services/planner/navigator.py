@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from services.planner.costmap import Body, Costmap, costmap, with_way_out
+from services.planner.costmap import Body, Costmap, Frame, costmap, with_way_out
 from services.planner.search import Ways, astar
 from services.planner.smoothing import smoothed
 
@@ -34,11 +34,11 @@ class Navigator:
         self._bold: Costmap | None = None
         self.costs: Costmap | None = None
 
-    def see(self, cells: NDArray[np.int8], resolution: float, origin: Point) -> None:
+    def see(self, cells: NDArray[np.int8], frame: Frame) -> None:
         """Takes a new map; costs are worked out once for it."""
         self._cells = cells
         self._bold = None
-        self.costs = costmap(cells, resolution, origin, self._body)
+        self.costs = costmap(cells, frame, self._body)
 
     def ways(self, start: Point) -> Ways | None:
         """The cheapest ways from ``start`` to everywhere known; None without a map or outside it."""
@@ -86,11 +86,11 @@ class Navigator:
         points[0] = start
         if known.holds(known.cell(*goal)):
             points = np.vstack((points[:-1], goal)) if len(points) > 1 else np.array((start, goal))
-        return Plan(smoothed(points, known.clearance, known.origin, known.resolution, self._body.radius))
+        return Plan(smoothed(points, known, self._body.radius))
 
     def _costs(self, bold: bool) -> Costmap | None:
         if not bold or self.costs is None or self._cells is None:
             return self.costs
         if self._bold is None:
-            self._bold = costmap(self._cells, self.costs.resolution, self.costs.origin, self._body, UNKNOWN_COST)
+            self._bold = costmap(self._cells, (self.costs.resolution, self.costs.origin), self._body, UNKNOWN_COST)
         return self._bold

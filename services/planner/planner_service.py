@@ -26,7 +26,7 @@ from schemas.messages import (
 from services.planner.costmap import Body
 from services.planner.exploring import Explorer, Patrol
 from services.planner.frontiers import Taste
-from services.planner.jobs import IDLE, Goal, Job, choose, mission_target, not_now
+from services.planner.jobs import IDLE, Goal, Job, Orders, choose, mission_target, not_now
 from services.planner.navigator import Navigator, Plan
 from services.planner.smoothing import length
 from uvf.maths.planar import Pose2, compose, inverse, transform
@@ -71,8 +71,7 @@ class PlannerService(Service):
         self.params = params
         self._world_from_map = world_from_map
         self._map_from_world = inverse(world_from_map)
-        self._home: Point = world_from_map[:2]
-        self._explores = explores
+        self._orders = Orders(world_from_map[:2], explores)
         self._navigator = Navigator(Body(radius + params.margin, params.comfort, params.dislike))
         self._explorer = Explorer(Taste(params.least_frontier, 0.4, params.frontier_worth))
         self._patrol = Patrol()
@@ -101,7 +100,7 @@ class PlannerService(Service):
         here = compose(self._map_from_world, (pose.pose.position.x, pose.pose.position.y, yaw_of(pose.pose.orientation)))
         changed = self._take_map(map)
         replies = [self._ask(t, here, request, status) for request in goal]
-        job = choose(status, self._goal, mission_target(mission, progress, self._home), self._explores, self._home)
+        job = choose(status, self._goal, mission_target(mission, progress, self._orders.home), self._orders)
         if job != self._job:
             self._begin(t, job)
             changed = True
@@ -125,7 +124,7 @@ class PlannerService(Service):
         if taken_at == self._map_stamp:
             return False
         self._map_stamp = taken_at
-        self._navigator.see(occupancy_cells(grid), grid.cell_size.x, (grid.pose.position.x, grid.pose.position.y))
+        self._navigator.see(occupancy_cells(grid), (grid.cell_size.x, (grid.pose.position.x, grid.pose.position.y)))
         return True
 
     def _ask(self, t: float, here: Pose2, request: GoalRequest, status: VehicleStatus | None) -> Reply:

@@ -12,7 +12,7 @@ Floats = NDArray[np.float64]
 Cells = NDArray[np.int64]
 Cell = tuple[int, int]
 
-DIAGONAL = np.sqrt(2.0)
+DIAGONAL = float(np.sqrt(2.0))
 
 
 @compiled
@@ -48,7 +48,8 @@ def _pop(keys: Floats, items: Cells, size: int) -> int:
 def _octile(r: int, c: int, goal_r: int, goal_c: int) -> float:
     """Length [cells] of the shortest eight-neighbour way over free ground."""
     dr, dc = abs(r - goal_r), abs(c - goal_c)
-    return max(dr, dc) + (DIAGONAL - 1.0) * min(dr, dc)
+    way: float = max(dr, dc) + (DIAGONAL - 1.0) * min(dr, dc)
+    return way
 
 
 @compiled

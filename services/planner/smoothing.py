@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from services.planner.costmap import Costmap
 from uvf.maths.compiled import compiled
 
 Floats = NDArray[np.float64]
@@ -24,8 +25,9 @@ def resample(points: Floats, spacing: float = SPACING) -> Floats:
 
 
 @compiled
-def _relax(points: Floats, clearance: Floats, origin: tuple[float, float], resolution: float, least: float) -> Floats:
+def _relax(points: Floats, clearance: Floats, frame: tuple[float, float, float], least: float) -> Floats:
     """Gradient smoothing (Thrun 2012): each point towards its neighbours' middle, unless that comes too near."""
+    x0, y0, resolution = frame
     smooth = points.copy()
     rows, columns = clearance.shape
     for _ in range(ROUNDS):
@@ -34,15 +36,15 @@ def _relax(points: Floats, clearance: Floats, origin: tuple[float, float], resol
             y = smooth[i, 1] + FIDELITY * (points[i, 1] - smooth[i, 1])
             x += TENSION * (0.5 * (smooth[i - 1, 0] + smooth[i + 1, 0]) - x)
             y += TENSION * (0.5 * (smooth[i - 1, 1] + smooth[i + 1, 1]) - y)
-            r, c = int(np.floor((y - origin[1]) / resolution)), int(np.floor((x - origin[0]) / resolution))
+            r, c = int(np.floor((y - y0) / resolution)), int(np.floor((x - x0) / resolution))
             if 0 <= r < rows and 0 <= c < columns and clearance[r, c] >= least:
                 smooth[i, 0], smooth[i, 1] = x, y
     return smooth
 
 
-def smoothed(points: Floats, clearance: Floats, origin: tuple[float, float], resolution: float, least: float) -> Floats:
-    """(m, 2) m, map frame. clearance: (rows, columns) m; least: m that must stay free around each point."""
-    return _relax(resample(points), clearance, origin, resolution, least)
+def smoothed(points: Floats, costs: Costmap, least: float) -> Floats:
+    """(m, 2) m, map frame; least: m that must stay free around each point."""
+    return _relax(resample(points), costs.clearance, (*costs.origin, costs.resolution), least)
 
 
 def length(points: Floats) -> float:

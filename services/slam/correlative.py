@@ -4,8 +4,6 @@ Olson, "Real-Time Correlative Scan Matching" (2009), one level: the score of a p
 scan's points in the field of distances to what is occupied.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -18,14 +16,8 @@ from uvf.maths.rotations import wrap
 Floats = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
-class Window:
-    """Half sizes and steps of the search."""
-
-    position: float = 0.3  # m
-    heading: float = 0.3  # rad
-    step: float = 0.05  # m
-    turn: float = 0.03  # rad
+REACH, STEP = 0.3, 0.05  # m, half the window's side and its grid
+TURN_REACH, TURN_STEP = 0.3, 0.03  # rad
 
 
 @compiled
@@ -52,14 +44,19 @@ def _best(
     return bx, by, bt, best / max(n, 1)
 
 
-def search(occupancy: OccupancyMap, start: Pose2, points: Floats, window: Window = Window()) -> tuple[Pose2, float]:
+def search(occupancy: OccupancyMap, start: Pose2, points: Floats) -> tuple[Pose2, float]:
     """(map_from_base, score 0..1) of the best pose around ``start``. points: (n, 2) m, base frame."""
     cell = occupancy.resolution
     likelihood = np.exp(-0.5 * distance_field(occupancy.log_odds > 0.0) ** 2)
-    steps = round(window.position / window.step)
-    shifts = np.arange(-steps, steps + 1) * window.step / cell
-    turns = np.arange(-round(window.heading / window.turn), round(window.heading / window.turn) + 1) * window.turn
+    shifts: Floats = _offsets(REACH, STEP) / cell
+    turns = _offsets(TURN_REACH, TURN_STEP)
     origin = occupancy.origin
     start_cells = ((start[0] - origin[0]) / cell, (start[1] - origin[1]) / cell, start[2])
     i, j, k, score = _best(start_cells, points / cell, likelihood, (shifts, turns))
     return (start[0] + shifts[i] * cell, start[1] + shifts[j] * cell, wrap(start[2] + turns[k])), score
+
+
+def _offsets(reach: float, step: float) -> Floats:
+    """Evenly spaced, symmetric about zero."""
+    n = round(reach / step)
+    return np.linspace(-n * step, n * step, 2 * n + 1)

@@ -28,9 +28,10 @@ class OccupancyMap:
         self._grow_over(np.vstack((hits, open_ends, sensor[None])))
         self._scans += 1
         in_cells = [(p - self.origin) / self.resolution for p in (hits, open_ends, sensor)]
-        add_hits(in_cells[0], in_cells[2], self.log_odds, self.surface, self._seen, self._scans)
-        add_free(in_cells[0], in_cells[2], self.log_odds, self._seen, self._scans)
-        add_free(in_cells[1], in_cells[2], self.log_odds, self._seen, self._scans)
+        layers = (self.log_odds, self.surface, self._seen)
+        add_hits(in_cells[0], in_cells[2], layers, self._scans)
+        add_free(in_cells[0], in_cells[2], layers, self._scans)
+        add_free(in_cells[1], in_cells[2], layers, self._scans)
 
     def cells(self) -> NDArray[np.int8]:
         """(rows, columns): -1 unknown, else the probability of being occupied in per cent."""

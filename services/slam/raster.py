@@ -7,6 +7,8 @@ from uvf.maths.compiled import compiled
 
 Floats = NDArray[np.float64]
 Cells = NDArray[np.float32]
+Layers = tuple[Cells, Cells, NDArray[np.int32]]
+"""(r, c) log-odds, (r, c, 5) surface, (r, c) number of the last scan that changed the cell."""
 
 HIT, MISS = 0.85, -0.4
 """Change of a cell's log-odds by one end of a beam in it, and by one beam through it (Thrun et al. 2005, table 9.2)."""
@@ -16,12 +18,13 @@ FULL_WEIGHT = 50.0
 
 
 @compiled
-def add_hits(hits: Floats, sensor: Floats, grid: Cells, surface: Cells, seen: NDArray[np.int32], scan: int) -> None:
-    """Ends of beams. hits: (n, 2), sensor: (2,), both in cells; grid: (r, c) log-odds; surface: (r, c, 5), see below.
+def add_hits(hits: Floats, sensor: Floats, layers: Layers, scan: int) -> None:
+    """Ends of beams. hits: (n, 2), sensor: (2,), both in cells; layers: log-odds, surface (see below), last scan.
 
     surface holds per cell the number of hits, the sums of their x and y [cells, relative to the cell's corner] and
     of the unit vector towards the sensor: which face of a thin wall the cell belongs to.
     """
+    grid, surface, seen = layers
     for i in range(hits.shape[0]):
         c, r = int(np.floor(hits[i, 0])), int(np.floor(hits[i, 1]))
         if seen[r, c] != scan:
@@ -40,11 +43,12 @@ def add_hits(hits: Floats, sensor: Floats, grid: Cells, surface: Cells, seen: ND
 
 
 @compiled
-def add_free(ends: Floats, sensor: Floats, grid: Cells, seen: NDArray[np.int32], scan: int) -> None:
+def add_free(ends: Floats, sensor: Floats, layers: Layers, scan: int) -> None:
     """Clears the cells between the sensor and each end (not included), once per scan and never one that was hit.
 
     Cell by cell along the beam: Amanatides & Woo, "A Fast Voxel Traversal Algorithm" (1987).
     """
+    grid, _, seen = layers
     for i in range(ends.shape[0]):
         c, r = int(np.floor(sensor[0])), int(np.floor(sensor[1]))
         dx, dy = ends[i, 0] - sensor[0], ends[i, 1] - sensor[1]

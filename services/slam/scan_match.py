@@ -21,17 +21,25 @@ KERNEL = 1.2  # cells, 1 sigma of the weight of a surface point by distance
 SAME_SIDE = 0.2  # least cosine between the directions a surface was and is seen from
 FLAT = 0.15  # largest ratio of the two variances of a line
 ITERATIONS = 12
-WIDE = 0.15  # m, robust scale of the first iteration, halved with each
+SCALE = 0.03  # m, distance at which a point loses most of its weight (Geman-McClure)
+WIDE = 0.15  # m, the same in the first iteration, halved with each
 
+RESIDUAL_SIGMA = 0.01  # m, of a point's distance to its line
+POSITION_WEIGHT = (RESIDUAL_SIGMA / 0.02) ** 2
+HEADING_WEIGHT = (RESIDUAL_SIGMA / 0.02) ** 2
+"""Of the start, whose 1 sigma is 0.02 m and 0.02 rad: it decides where the scan tells nothing."""
+
+Scan = tuple[Floats, tuple[float, float]]
+"""points (n, 2) and the lidar's place (x, y) [m, base frame]."""
 Map = tuple[NDArray[np.float32], NDArray[np.float32], float, float, float]
 """log-odds (r, c), surface (r, c, 5), origin x and y [m], resolution [m]."""
 
 
 @compiled
-def _line_at(
-    x: float, y: float, view: tuple[float, float], surface: NDArray[np.float32], grid: NDArray[np.float32]
-) -> tuple[float, float, float, bool]:
-    """(normal x, normal y, distance along it [cells], found) of the surface near a point [cells]."""
+def _line_at(place: tuple[float, float], view: tuple[float, float], map_: Map) -> tuple[float, float, float, bool]:
+    """(normal x, normal y, distance along it [cells], found) of the surface near a place [cells] seen from ``view``."""
+    x, y = place
+    grid, surface, _, _, _ = map_
     column, row = int(np.floor(x)), int(np.floor(y))
     w = sx = sy = sxx = sxy = syy = 0.0
     used = 0
@@ -64,15 +72,10 @@ def _line_at(
 
 
 @compiled
-def _normal_equations(
-    pose: tuple[float, float, float],
-    points: Floats,
-    sensor: tuple[float, float],
-    map_: Map,
-    scale: float,
-) -> tuple[Floats, Floats, int, int, float]:
+def _normal_equations(pose: tuple[float, float, float], scan: Scan, map_: Map, scale: float) -> tuple[Floats, Floats, int, int, float]:
     """(H, g, matched, misplaced, sum of squares) of the weighted residuals at a pose; robust weight of Geman-McClure."""
-    grid, surface, ox, oy, resolution = map_
+    points, sensor = scan
+    grid, _, ox, oy, resolution = map_
     h, g = np.zeros((3, 3)), np.zeros(3)
     matched = misplaced = 0
     squares = 0.0
@@ -86,7 +89,7 @@ def _normal_equations(
         length = np.sqrt((sx - x) ** 2 + (sy - y) ** 2) + 1e-9
         view = ((sx - x) / length, (sy - y) / length)
         u, v = (x - ox) / resolution, (y - oy) / resolution
-        nx, ny, distance, found = _line_at(u, v, view, surface, grid)
+        nx, ny, distance, found = _line_at((u, v), view, map_)
         if not found:
             if 0 <= u < grid.shape[1] and 0 <= v < grid.shape[0] and grid[int(v), int(u)] < -0.5:
                 misplaced += 1
@@ -104,43 +107,27 @@ def _normal_equations(
 
 
 @compiled
-def _refine(
-    start: tuple[float, float, float],
-    points: Floats,
-    sensor: tuple[float, float],
-    map_: Map,
-    prior: tuple[float, float, float],
-) -> tuple[float, float, float, int, int, float]:
-    """Gauss-Newton from ``start``; prior: weight of the start's position and heading, and the robust scale [m]."""
+def _refine(start: tuple[float, float, float], scan: Scan, map_: Map) -> tuple[float, float, float, int, int, float]:
+    """(x, y, heading, matched, misplaced, sum of squares): Gauss-Newton from ``start``."""
     x, y, heading = start
     matched = misplaced = 0
     squares = 0.0
     for i in range(ITERATIONS):
-        scale = max(prior[2], WIDE * 0.5**i)
-        h, g, matched, misplaced, squares = _normal_equations((x, y, heading), points, sensor, map_, scale)
+        scale = max(SCALE, WIDE * 0.5**i)
+        h, g, matched, misplaced, squares = _normal_equations((x, y, heading), scan, map_, scale)
         if matched < 3:
             break
-        h[0, 0] += prior[0]
-        h[1, 1] += prior[0]
-        h[2, 2] += prior[1]
-        g[0] += prior[0] * (x - start[0])
-        g[1] += prior[0] * (y - start[1])
-        g[2] += prior[1] * (heading - start[2])
+        h[0, 0] += POSITION_WEIGHT
+        h[1, 1] += POSITION_WEIGHT
+        h[2, 2] += HEADING_WEIGHT
+        g[0] += POSITION_WEIGHT * (x - start[0])
+        g[1] += POSITION_WEIGHT * (y - start[1])
+        g[2] += HEADING_WEIGHT * (heading - start[2])
         step = np.linalg.solve(h, -g)
         x, y, heading = x + step[0], y + step[1], heading + step[2]
         if abs(step[0]) + abs(step[1]) < 1e-4 and abs(step[2]) < 1e-4:
             break
     return x, y, heading, matched, misplaced, squares
-
-
-@dataclass(frozen=True)
-class Prior:
-    """How far from the start the answer may drift where the scan does not tell."""
-
-    position: float = 0.02  # m, 1 sigma
-    heading: float = 0.02  # rad, 1 sigma
-    residual: float = 0.01  # m, 1 sigma of a point's distance to its line
-    scale: float = 0.03  # m, distance at which a point loses most of its weight
 
 
 @dataclass(frozen=True)
@@ -156,10 +143,9 @@ class Match:
     """m, of the distances of matched points to their lines."""
 
 
-def match(occupancy: OccupancyMap, start: Pose2, points: Floats, sensor: tuple[float, float], prior: Prior = Prior()) -> Match:
+def match(occupancy: OccupancyMap, start: Pose2, points: Floats, sensor: tuple[float, float]) -> Match:
     """Refines ``start`` (map_from_base). points: (n, 2) m, base frame; sensor: the lidar's place in it [m]."""
     map_ = (occupancy.log_odds, occupancy.surface, float(occupancy.origin[0]), float(occupancy.origin[1]), occupancy.resolution)
-    weights = ((prior.residual / prior.position) ** 2, (prior.residual / prior.heading) ** 2, prior.scale)
-    x, y, heading, matched, misplaced, squares = _refine(start, points, sensor, map_, weights)
+    x, y, heading, matched, misplaced, squares = _refine(start, (points, sensor), map_)
     rms = float(np.sqrt(squares / matched)) if matched else float("inf")
     return Match((x, y, wrap(heading)), matched, matched / max(matched + misplaced, 1), rms)

@@ -32,7 +32,7 @@ def _host(member: Member, site: Site) -> Host:
 
 def _item(w: Waypoint) -> MissionItem:
     return MissionItem(
-        kind=MissionItem.Kind.Value(w.kind.upper()),
+        kind=w.kind.upper(),
         position=Vector3(x=w.x, y=w.y, z=w.z),
         acceptance_radius=w.acceptance_radius,
         hold=w.hold,

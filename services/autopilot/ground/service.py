@@ -191,7 +191,7 @@ class GroundAutopilot(Service):
         return VehicleStatus(
             timestamp=stamp(t),
             kind=Kind.KIND_GROUND,
-            mode=Mode.ValueType(self._mode),
+            mode=Mode.Name(self._mode),
             armed=self._armed,
             landed=True,
             stopped=self._stopped,

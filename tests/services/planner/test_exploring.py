@@ -14,7 +14,7 @@ TASTE = Taste(least_size=4, view=0.3, worth=0.5)
 
 
 def costs_of(cells):
-    return costmap(cells, 0.05, (0.0, 0.0), BODY)
+    return costmap(cells, (0.05, (0.0, 0.0)), BODY)
 
 
 def two_doors():

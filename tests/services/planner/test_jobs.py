@@ -3,7 +3,7 @@
 import pytest
 
 from schemas.messages import Mission, MissionItem, MissionProgress, Mode, Vector3, VehicleStatus
-from services.planner.jobs import EXPLORE, IDLE, Goal, choose, mission_target, not_now
+from services.planner.jobs import EXPLORE, IDLE, Goal, Orders, choose, mission_target, not_now
 
 HOME = (1.0, 2.0)
 READY = VehicleStatus(mode=Mode.MODE_MISSION, armed=True)
@@ -17,11 +17,11 @@ def progress(**fields):
 def test_the_order_is_return_goal_mission_explore_idle():
     goal, target = Goal((3.0, 3.0), 0.5), (7.0, 8.0)
     returning = VehicleStatus(mode=Mode.MODE_RETURN)
-    assert choose(returning, goal, target, True, HOME).target == HOME
-    assert choose(READY, goal, target, True, HOME).name == "goal"
-    assert choose(READY, None, target, True, HOME).name == "mission"
-    assert choose(READY, None, None, True, HOME) == EXPLORE
-    assert choose(READY, None, None, False, HOME) == IDLE
+    assert choose(returning, goal, target, Orders(HOME, explores=True)).target == HOME
+    assert choose(READY, goal, target, Orders(HOME, explores=True)).name == "goal"
+    assert choose(READY, None, target, Orders(HOME, explores=True)).name == "mission"
+    assert choose(READY, None, None, Orders(HOME, explores=True)) == EXPLORE
+    assert choose(READY, None, None, Orders(HOME, explores=False)) == IDLE
 
 
 def test_the_mission_leads_to_its_current_item():

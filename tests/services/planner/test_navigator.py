@@ -22,7 +22,7 @@ def house(door=True):
 
 def navigator(cells):
     made = Navigator(BODY)
-    made.see(cells, 0.05, (0.0, 0.0))
+    made.see(cells, (0.05, (0.0, 0.0)))
     return made
 
 

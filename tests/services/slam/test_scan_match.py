@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from services.slam.correlative import Window, search
+from services.slam.correlative import search
 from services.slam.occupancy import OccupancyMap
 from services.slam.scan_match import match
 from tests.services.slam.room import measured, points
@@ -79,7 +79,7 @@ def test_the_two_faces_of_a_thin_wall_stay_apart():
 def test_the_search_finds_what_is_too_far_to_refine(occupancy):
     true = (0.25, 0.1, 0.4)
     scan = points(measured(true, np.random.default_rng(3)))
-    start, score = search(occupancy, compose(true, (0.25, -0.2, 0.25)), scan, Window())
+    start, score = search(occupancy, compose(true, (0.25, -0.2, 0.25)), scan)
     distance, turn = errors(start, true)
     assert distance < 0.08
     assert turn < 0.04
