@@ -27,6 +27,12 @@ def test_names_mean_one_thing(service):
     assert service.__doc__
 
 
+@pytest.mark.parametrize("service", SERVICES, ids=lambda s: s.name)
+def test_what_is_recalled_is_kept_and_wanted(service):
+    assert all(topic.kept for topic in service.recalls.values())
+    assert set(inspect.signature(service.recall).parameters) - {"self", "messages"} == set(service.recalls)
+
+
 @pytest.mark.parametrize("kind", catalogue.KINDS, ids=lambda k: k.name)
 def test_the_catalogue_agrees_with_the_classes(kind):
     assert {host.service.clock for host in HOSTS[kind.name]} == {kind.clock}

@@ -17,7 +17,7 @@ def busy(endpoint):
         bus.publisher(topic.at("v"), "t", topic.qos).put(b"x", 1)
     bus.serve("uvf/v/srv/x", lambda q: None)
     bus.call("uvf/v/srv/none", b"", 0, lambda *a: None)
-    bus.wake_on("uvf/sys/time/clock")
+    bus.subscribe("uvf/sys/time/clock", topics.CLOCK.qos, lambda s: None, depth=4, wake=True)
     bus.token("@node/v/x/1")
     return bus
 

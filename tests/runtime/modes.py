@@ -66,8 +66,7 @@ class Distributed:
         self._router = open_router(self.endpoint)
         self.bus = ZenohBus(self.endpoint, blocking=self.lockstep)
         self.bus.subscribe_all(self.samples.append, depth=100_000)
-        self.bus.subscribe(topics.DONE.by("*").at("sys"), topics.DONE.qos, self._on_done, depth=1000)
-        self.bus.wake_on(topics.DONE.by("*").at("sys"))
+        self.bus.subscribe(topics.DONE.by("*").at("sys"), topics.DONE.qos, self._on_done, depth=1000, wake=True)
         self._clock = self.bus.publisher(topics.CLOCK.at("sys"), Clock.DESCRIPTOR.full_name, topics.CLOCK.qos)
         for name in self._processes:
             self.start(name)

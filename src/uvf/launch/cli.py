@@ -44,7 +44,7 @@ def up(
     mission: MissionArgument = DEMO,
     rate: Annotated[float, typer.Option(min=0.0, max=1000.0, help="Simulation seconds per second; 0 = as fast as it goes.")] = 1.0,
     gcs: Annotated[bool, typer.Option("--gcs/--no-gcs", help="The page at http://127.0.0.1:8080.")] = True,
-    seconds: Annotated[float | None, typer.Option("--for", help="Stop after so many seconds.")] = None,
+    seconds: Annotated[float | None, typer.Option("--for", help="Stop so many seconds after time has begun to run.")] = None,
 ) -> None:
     """Start a whole mission: every service in its own process, watched over, until Ctrl-C."""
     from uvf.launch import settings

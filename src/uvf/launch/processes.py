@@ -10,6 +10,7 @@ from uvf.launch import catalogue, settings
 from uvf.launch.worker import Worker, worker
 from uvf.runtime.bus import Query, Sample
 from uvf.runtime.conductor import Conductor
+from uvf.runtime.keeper import Keeper
 from uvf.runtime.live import Live
 from uvf.runtime.params import BadInput
 from uvf.runtime.recording import DEPTH, Recorder
@@ -26,12 +27,14 @@ PATIENCE = 3.0  # s, after which a clock that is held back says by whom
 
 
 def run_router(listen: str) -> None:
-    """Until told to stop."""
+    """The router, and beside it the keeper, until told to stop."""
     with worker("router") as life:
         session = open_router(listen)
         try:
-            while not life.stop.wait(0.5) and not life.orphaned():
-                pass
+            with ZenohBus(listen.replace("0.0.0.0", "127.0.0.1"), timeout=CONNECT_PATIENCE) as bus:
+                keeper = Keeper(bus)
+                while not life.stop.wait(LOOK) and not life.orphaned():
+                    keeper.poll()
         finally:
             session.close()  # type: ignore[no-untyped-call]
 
@@ -82,8 +85,7 @@ class ConductorLoop:
         self._told = 0.0
         self._held_since = time.monotonic()
         self._complained = ""
-        bus.subscribe(topics.DONE.by("*").at("sys"), topics.DONE.qos, self._on_done, depth=256)
-        bus.wake_on(topics.DONE.by("*").at("sys"))
+        bus.subscribe(topics.DONE.by("*").at("sys"), topics.DONE.qos, self._on_done, depth=256, wake=True)
         bus.serve(topics.CLOCK_REQUEST.at("sys"), self._on_request)
         bus.token(f"@node/sys/conductor/{bus.boot:x}")
 

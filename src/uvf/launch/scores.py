@@ -34,6 +34,7 @@ class Track:
     progress: list[tuple[float, int, int]] = field(default_factory=list)  # t, reached, laps
     contacts: int = 0
     touching: bool = False
+    felt: bool = False
     grid: Grid | None = None
     mission: Mission | None = None
 
@@ -49,7 +50,7 @@ class Track:
         elif name == "sensor/contact":
             touching = Contact.FromString(sample.payload).touching
             self.contacts += touching and not self.touching
-            self.touching = touching
+            self.touching, self.felt = touching, True
         elif name == "map/grid":
             self.grid = Grid.FromString(sample.payload)
         elif name == "mission/plan":
@@ -112,8 +113,8 @@ def distance_driven(track: Track) -> float:
 
 
 def contacts(track: Track) -> float:
-    """How often it began to touch something."""
-    return float(track.contacts)
+    """How often it began to touch something; infinite when the bumper was never heard."""
+    return float(track.contacts) if track.felt else float("inf")
 
 
 def pose_error(track: Track) -> float:

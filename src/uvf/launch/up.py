@@ -78,7 +78,7 @@ class Run:
         self._supervisor = Supervisor(folder, self._on_death)
         self._bus: ZenohBus | None = None
         self._t_ns = 0
-        self._moving = False
+        self._moving_since: float | None = None
         self._begun = time.monotonic()
         self.failed = False
 
@@ -106,21 +106,25 @@ class Run:
     def _on_clock(self, sample: Sample) -> None:
         clock = Clock.FromString(sample.payload)
         self._t_ns = clock.t_ns
-        if clock.tick and not self._moving:
-            self._moving = True
-            self._say(f"time runs, {time.monotonic() - self._begun:.1f} s after the start")
+        if clock.tick and self._moving_since is None:
+            self._moving_since = time.monotonic()
+            self._say(f"time runs, {self._moving_since - self._begun:.1f} s after the start")
 
     def _on_event(self, sample: Sample) -> None:
         self._say(Event.FromString(sample.payload).text)
 
     def watch(self, stop: Flag) -> None:
         """Until ``stop``; starts again what dies."""
-        end = None if self._wanted.seconds is None else self._begun + self._wanted.seconds
-        while not stop.wait(LOOK) and (end is None or time.monotonic() < end):
+        while not stop.wait(LOOK) and not self._over():
             if self._bus is not None:
                 self._bus.poll()
             if self._supervisor.look():
                 self._tell_processes()
+
+    def _over(self) -> bool:
+        """Whether the seconds asked for have passed since time began to run."""
+        wanted, since = self._wanted.seconds, self._moving_since
+        return wanted is not None and since is not None and time.monotonic() - since > wanted
 
     def _on_death(self, line: str, given_up: bool) -> None:
         self._say(line)

@@ -21,12 +21,13 @@ class Sample(NamedTuple):
 
 @dataclass
 class Query:
-    """A request that waits for its answer; ``answer`` is called once."""
+    """A request that waits for its end: ``answer`` or ``refuse`` is called once."""
 
     key: str
     payload: bytes
     stamp_ns: int
     answer: Callable[[bytes, int], None]
+    refuse: Callable[[str], None]
 
 
 Sink = Callable[[Sample], None]
@@ -91,7 +92,7 @@ class LocalBus:
         if server is None:
             on_reply(None, f"nobody answers {key}", stamp_ns)
             return
-        server(Query(key, payload, stamp_ns, lambda reply, at: on_reply(reply, "", at)))
+        server(Query(key, payload, stamp_ns, lambda reply, at: on_reply(reply, "", at), lambda why: on_reply(None, why, stamp_ns)))
 
     def poll(self) -> None:
         """Everything is handed over at once when it is put."""

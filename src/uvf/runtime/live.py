@@ -15,6 +15,7 @@ from uvf.runtime.zenoh_bus import ZenohBus
 
 IDLE = 0.05  # s, the longest wait: how fast a process sees that it shall stop
 READY_PERIOD = 0.2  # s, how often a process says where it stands while no clock is heard
+LATE_START = 10  # ticks: who first sees a later one has been started again
 LOCKSTEP_PATIENCE = 0.0002  # s, between two looks for messages that are announced but not here yet
 
 
@@ -36,8 +37,7 @@ class Live:
         self._health = HealthReport(name, shells, bus)
         self._last_heard = 0.0
         self._t_ns = 0
-        bus.subscribe(topics.CLOCK.at("sys"), topics.CLOCK.qos, self._on_clock, depth=64)
-        bus.wake_on(topics.CLOCK.at("sys"))
+        bus.subscribe(topics.CLOCK.at("sys"), topics.CLOCK.qos, self._on_clock, depth=64, wake=True)
         for shell in shells:
             _declare_tokens(shell, bus)
 
@@ -85,6 +85,8 @@ class Live:
         for shell in self._sim:
             if not first:
                 shell.restart(clock.t_ns)
+            elif clock.tick > LATE_START:
+                shell.recall(self._bus.recall)
             shell.skip_to(clock.t_ns, count=False)
 
     def _await_announced(self, clock: Clock) -> None:

@@ -88,6 +88,9 @@ class Service:
     requests: ClassVar[Mapping[str, Request[Any, Any]]] = {}
     calls: ClassVar[Mapping[str, Request[Any, Any]]] = {}
 
+    recalls: ClassVar[Mapping[str, Topic[Any]]] = {}
+    """Kept topics whose newest message ``recall`` is handed when the service is started again in a run."""
+
     params: Params = Params()
 
     step: Any
@@ -96,6 +99,9 @@ class Service:
     def stale(self, t: float, missing: tuple[str, ...]) -> Outputs:
         """Called instead of ``step`` while required inputs are absent or old: the place of failsafes."""
         return {}
+
+    def recall(self, **messages: Message) -> None:
+        """Takes up the work of an instance that has died, from those of ``recalls`` that were found (maybe none)."""
 
     def close(self) -> None:
         """Gives back engines and sockets; called once, when the process or the run ends."""

@@ -63,6 +63,13 @@ class Shell:
         for name, sample in kept:
             self._boxes[name].push(sample)
 
+    def recall(self, find: Callable[[str], bytes | None]) -> None:
+        """Hands the service what an instance before it has left; ``find`` gives the newest bytes of a key."""
+        found = {name: (topic, find(topic.at(self.owner))) for name, topic in self.type.recalls.items()}
+        messages = {name: topic.message.FromString(payload) for name, (topic, payload) in found.items() if payload is not None}
+        if messages:
+            self.service.recall(**messages)
+
     def _make(self) -> None:
         self.service = self.host.make()
         ageless = self.type.clock == "wall"

@@ -3,11 +3,12 @@
 Subscribers are ring channels emptied by ``poll``: a slow service loses its own oldest messages and delays nobody.
 """
 
+import contextlib
 import json
+import queue
 import secrets
 import struct
-import threading
-from collections import defaultdict
+from collections import defaultdict, deque
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from types import TracebackType
@@ -25,6 +26,7 @@ DEFAULT_ENDPOINT = "tcp/127.0.0.1:7447"
 CALL_TIMEOUT = 5.0  # s, wall
 LEASE_MS = 2000
 WAIT_BEFORE_DROP_US = 50_000
+RECALL_TIMEOUT = 1.0  # s, wall
 EVENT_HISTORY = 100
 
 _P, _C = zenoh.Priority, zenoh.CongestionControl
@@ -66,6 +68,11 @@ def _first_line(error: Exception) -> str:
     return str(error).splitlines()[0].partition(" at /")[0]
 
 
+def kept_key(key: str) -> str:
+    """Where the keeper answers for a key; the ``@`` keeps it out of wildcards."""
+    return f"{PREFIX}/@kept/{key.removeprefix(f'{PREFIX}/')}"
+
+
 class ZenohBus:
     """One client session; use it as a context manager, for a session left open hangs the interpreter at exit."""
 
@@ -82,7 +89,8 @@ class ZenohBus:
         self.gaps: defaultdict[str, int] = defaultdict(int)
         self.last_seq: dict[str, int] = {}
         self._blocking = blocking
-        self._woken = threading.Event()
+        self._woken: queue.SimpleQueue[None] = queue.SimpleQueue()
+        self._waking: list[tuple[deque[zenoh.Sample], Sink]] = []
         self._inbound: list[tuple[Any, Sink]] = []
         self._wanted: list[str] = []
         self._servers: list[tuple[Any, Callable[[Query], None]]] = []
@@ -119,16 +127,31 @@ class ZenohBus:
         self._declared.append(publisher)
         return ZenohPublisher(publisher, self.boot)
 
-    def subscribe(self, key: str, qos: Qos, sink: Sink, depth: int = 1) -> None:
-        handler: Any = zenoh.handlers.RingChannel(depth)
+    def subscribe(self, key: str, qos: Qos, sink: Sink, depth: int = 1, wake: bool = False) -> None:
+        """wake: ``wait`` returns when something arrives here; costs the interpreter's lock for each message."""
+        handler: Any = self._waking_handler(sink, depth) if wake else zenoh.handlers.RingChannel(depth)
         if qos in _KEPT:
             history = ext.HistoryConfig(max_samples=_KEPT[qos], detect_late_publishers=True)
             recovery = ext.RecoveryConfig(heartbeat=True)  # type: ignore[call-arg]
             made: Any = ext.declare_advanced_subscriber(self._session, key, handler, history=history, recovery=recovery)
         else:
             made = self._session.declare_subscriber(key, handler)
-        self._inbound.append((made, sink))
+        if wake:
+            self._declared.append(made)
+        else:
+            self._inbound.append((made, sink))
         self._wanted.append(key)
+
+    def _waking_handler(self, sink: Sink, depth: int) -> Any:
+        """Hands a message over to ``poll`` from zenoh's own thread and wakes the loop; does nothing else there."""
+        arrived: deque[zenoh.Sample] = deque(maxlen=depth)
+        self._waking.append((arrived, sink))
+
+        def hand_over(sample: zenoh.Sample) -> None:
+            arrived.append(sample)
+            self._woken.put(None)
+
+        return zenoh.handlers.Callback(hand_over, indirect=False)
 
     def subscribe_all(self, sink: Sink, depth: int) -> None:
         """Everything below ``uvf/``, each message once, with the history of latched and event topics.
@@ -153,15 +176,12 @@ class ZenohBus:
         """Those of the keys that some subscription of this session receives."""
         return [key for key in keys if any(matches(wanted, key) for wanted in self._wanted)]
 
-    def wake_on(self, key: str) -> None:
-        """Makes ``wait`` return when something arrives on ``key``."""
-        callback: Any = zenoh.handlers.Callback(lambda _: self._woken.set(), indirect=False)
-        self._declared.append(self._session.declare_subscriber(key, callback))
-
     def wait(self, timeout: float) -> None:
-        """Waits for a key of ``wake_on``, or ``timeout`` [s]."""
-        self._woken.wait(timeout)
-        self._woken.clear()
+        """Waits for a message of a waking subscription, or ``timeout`` [s]."""
+        with contextlib.suppress(queue.Empty):
+            self._woken.get(timeout=timeout)
+            while True:
+                self._woken.get_nowait()
 
     def serve(self, key: str, sink: Callable[[Query], None]) -> None:
         self._servers.append((self._session.declare_queryable(key, zenoh.handlers.FifoChannel(256), complete=True), sink))
@@ -170,6 +190,11 @@ class ZenohBus:
         attachment = ATTACHMENT.pack(0, stamp_ns, self.boot)
         replies = self._session.get(key, payload=payload, attachment=attachment, timeout=CALL_TIMEOUT)
         self._calls.append((replies, on_reply, stamp_ns, key))
+
+    def recall(self, key: str) -> bytes | None:
+        """The newest message of a kept topic, also of a writer that has died; waits for the keeper's answer."""
+        replies = self._session.get(kept_key(key), timeout=RECALL_TIMEOUT)
+        return next((reply.ok.payload.to_bytes() for reply in replies if reply.ok is not None), None)
 
     def token(self, key: str) -> None:
         """Declares a liveliness token below ``uvf/@...`` that ends with this session."""
@@ -181,6 +206,9 @@ class ZenohBus:
         return sorted(str(r.ok.key_expr).removeprefix(f"{PREFIX}/") for r in replies if r.ok)
 
     def poll(self) -> None:
+        for arrived, sink in self._waking:
+            while arrived:
+                sink(self._sample(arrived.popleft()))
         for channel, sink in self._inbound:
             while (sample := channel.try_recv()) is not None:
                 if sample.kind == zenoh.SampleKind.PUT:
@@ -231,7 +259,11 @@ def _query(query: zenoh.Query) -> Query:
         with query:
             query.reply(key, reply, attachment=ATTACHMENT.pack(0, stamp_ns, 0))
 
-    return Query(key, query.payload.to_bytes() if query.payload is not None else b"", stamp, answer)
+    def refuse(reason: str) -> None:
+        with query:
+            query.reply_err(reason.encode())
+
+    return Query(key, query.payload.to_bytes() if query.payload is not None else b"", stamp, answer, refuse)
 
 
 @dataclass

@@ -1,0 +1,49 @@
+"""The far end of the round-trip benchmark: ``python -m benchmarks.bus_echo raw|uvf ENDPOINT``; ends with its parent."""
+
+import json
+import os
+import sys
+import time
+
+import zenoh
+
+from benchmarks.bus_messages import MESSAGES
+from schemas.topics import Qos
+from uvf.runtime.bus import Sample
+from uvf.runtime.zenoh_bus import ZenohBus
+
+PARENT = os.getppid()
+
+
+def raw(endpoint: str) -> None:
+    """Sends bytes back from the callback: as little as zenoh lets one do."""
+    config = zenoh.Config()
+    config.insert_json5("mode", '"client"')
+    config.insert_json5("connect/endpoints", json.dumps([endpoint]))
+    with zenoh.open(config) as session:
+        for name in MESSAGES:
+            back = session.declare_publisher(f"raw/back/{name}", express=True)
+            session.declare_subscriber(f"raw/there/{name}", lambda s, p=back: p.put(s.payload))
+        while os.getppid() == PARENT:
+            time.sleep(0.2)
+
+
+def uvf(endpoint: str) -> None:
+    """Decodes, encodes anew and sends back, as a service does."""
+    with ZenohBus(endpoint) as bus:
+        for name, (message, qos) in MESSAGES.items():
+            type_ = type(message)
+            publisher = bus.publisher(f"uvf/echo/back/{name}", type_.DESCRIPTOR.full_name, qos)
+
+            def echo(sample: Sample, type_: type = type_, publisher: object = publisher) -> None:
+                publisher.put(type_.FromString(sample.payload).SerializeToString(deterministic=True), sample.stamp_ns)  # type: ignore[attr-defined]
+
+            bus.subscribe(f"uvf/echo/there/{name}", qos, echo, depth=8, wake=True)
+        bus.publisher("uvf/echo/ready", "", Qos.STATE).put(b"", 0)
+        while os.getppid() == PARENT:
+            bus.wait(0.2)
+            bus.poll()
+
+
+if __name__ == "__main__":
+    {"raw": raw, "uvf": uvf}[sys.argv[1]](sys.argv[2])

@@ -1,0 +1,104 @@
+"""The demo with real processes: it moves, survives kill -9, speaks MAVLink, and ends without a trace."""
+
+import subprocess
+
+import numpy as np
+import pytest
+
+from schemas import topics
+from schemas.convert import array
+from schemas.messages import StopCommand
+from tests.distributed.system import System
+from uvf.runtime.recording import read_log
+
+
+@pytest.fixture(scope="module")
+def system(tmp_path_factory):
+    with System(tmp_path_factory.mktemp("runs")) as running:
+        yield running
+
+
+def position(system, owner):
+    return array(system.client.read(owner, topics.TRUTH).position)
+
+
+@pytest.mark.parametrize(("owner", "metres"), [("burger", 0.2), ("milvus", 20.0)])
+def test_both_vehicles_move(system, owner, metres):
+    before = position(system, owner)
+    system.client.wait(lambda: np.linalg.norm(position(system, owner) - before) > metres, 20.0, f"{owner} stands")
+
+
+def test_a_killed_slam_comes_back_knows_where_it_is_and_drives_on(system):
+    system.client.read("burger", topics.MAP, 20.0)
+    took = system.kill("slam")
+    assert took < 2.0
+
+    def knows():
+        estimate = system.client.read("burger", topics.POSE).pose.position
+        true = position(system, "burger")
+        return np.hypot(estimate.x - true[0], estimate.y - true[1]) < 0.3
+
+    killed_at = system.client.time
+    stamp = lambda: system.client.read("burger", topics.POSE).timestamp  # noqa: E731
+    system.client.wait(lambda: stamp().seconds + stamp().nanos / 1e9 > killed_at + 0.1, 10.0, "no new pose")
+    system.client.wait(knows, 5.0, "the pose is wrong")
+    before = position(system, "burger")
+    system.client.wait(lambda: np.linalg.norm(position(system, "burger") - before) > 0.2, 20.0, "does not drive on")
+
+
+def test_a_killed_autopilot_takes_the_flight_up_again(system):
+    laps = system.client.read("milvus", topics.PROGRESS)
+    assert system.kill("autopilot") < 2.0
+    time_then = system.client.time
+    system.client.wait(lambda: system.client.time > time_then + 5.0, 20.0)
+    status, progress = system.client.read("milvus", topics.STATUS), system.client.read("milvus", topics.PROGRESS)
+    assert status.armed and status.mode == 3
+    assert (progress.laps, progress.current) >= (laps.laps, laps.current)
+    assert position(system, "milvus")[2] > 40
+
+
+def test_stop_all_stops_the_rover_and_lets_the_aircraft_loiter_until_released(system):
+    stop = topics.STOP.by("client")
+    system.client.send("sys", stop, StopCommand(engaged=True, source="client"))
+    system.client.wait(lambda: system.client.read("burger", topics.STATUS).stopped, 5.0, "burger is not stopped")
+    system.client.wait(lambda: system.client.read("milvus", topics.STATUS).stopped, 5.0, "milvus is not stopped")
+    system.client.wait(lambda: np.linalg.norm(array(system.client.read("burger", topics.TRUTH).velocity)) < 0.02, 5.0, "still rolls")
+    assert position(system, "milvus")[2] > 40
+    system.client.send("sys", stop, StopCommand(engaged=False, source="client"))
+    system.client.wait(lambda: not system.client.read("burger", topics.STATUS).stopped, 5.0, "not released")
+
+
+def test_the_tools_see_the_system(system):
+    def tool(*arguments):
+        command = [system._command[0], "-m", "uvf.launch.cli", *arguments]
+        return subprocess.run(command, capture_output=True, text=True, env=system.environment, timeout=30, check=True).stdout
+
+    assert "mapping" in tool("node", "list")
+    assert "uvf/burger/nav/pose" in tool("node", "graph")
+    assert "frame_id" in tool("topic", "echo", "burger/nav/pose", "-n", "1")
+    assert "written by" in tool("topic", "info", "burger/nav/pose")
+    assert "uvf/milvus/sensor/imu" in tool("topic", "list", "--live")
+
+
+def test_a_second_up_on_the_same_ports_is_one_line(system):
+    done = subprocess.run(system._command, capture_output=True, text=True, env=system.environment, timeout=30, check=False)
+    assert done.returncode == 2
+    assert "is taken" in done.stderr and "UVF_ROUTER" in done.stderr
+
+
+def test_the_clock_never_runs_ahead_and_a_killed_simulator_starts_a_new_epoch(system):
+    epoch = system.client.read("sys", topics.CLOCK).epoch
+    assert system.kill("sim_ground") < 2.0
+    system.client.wait(lambda: system.client.read("sys", topics.CLOCK).epoch == epoch + 1, 20.0, "no new epoch")
+    before = position(system, "burger")
+    system.client.wait(lambda: np.linalg.norm(position(system, "burger") - before) > 0.1, 30.0, "burger stands")
+    before = position(system, "milvus")
+    system.client.wait(lambda: np.linalg.norm(position(system, "milvus") - before) > 20, 30.0, "milvus stands")
+
+
+def test_it_ends_by_itself_and_leaves_a_whole_log(tmp_path):
+    with System(tmp_path, "--for", "25") as running:
+        running.popen.wait(timeout=60)
+    assert running.popen.returncode == 0
+    keys = {s.key for s in read_log(next(tmp_path.glob("latest/log-*.mcap")))}
+    assert {"uvf/burger/sensor/scan", "uvf/milvus/sensor/imu", "uvf/burger/map/grid"} <= keys
