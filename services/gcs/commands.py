@@ -19,6 +19,7 @@ SOURCE = "gcs"
 CONFIRM_WITHIN = 5.0  # s
 ANSWER_WITHIN = 5.0  # s
 REACH = 50.0  # m, how far outside the floor a goal may still lie
+OBEYING_PLANNER = (Mode.MODE_MISSION, Mode.MODE_RETURN)
 MODES: Mapping[str, Mapping[str, Any]] = {
     "ground": {"Hold": Mode.MODE_HOLD, "Mission": Mode.MODE_MISSION, "Manual": Mode.MODE_MANUAL},
     "fixed_wing": {"Hold": Mode.MODE_HOLD, "Mission": Mode.MODE_MISSION, "Return": Mode.MODE_RETURN},
@@ -156,9 +157,21 @@ class Commander:
             self._refuse(t, vehicle, describe(request), "a click sends ground vehicles; this one follows its mission")
         elif not inside:
             self._refuse(t, vehicle, describe(request), "too far from the floor")
+        elif why := self._cannot_drive(vehicle):
+            self._refuse(t, vehicle, describe(request), why)
         elif self._is_reachable(t, vehicle, request):
             vehicle.goal_asked = point
+            if vehicle.status is not None and vehicle.status.mode not in OBEYING_PLANNER:
+                out.mode.setdefault(vehicle.name, []).append(ModeRequest(mode=Mode.MODE_MISSION, source=SOURCE))
             out.goal.setdefault(vehicle.name, []).append(request)
+
+    def _cannot_drive(self, vehicle: VehicleModel) -> str:
+        """Why a goal would be accepted and yet nothing would move, and the mend; empty when it would."""
+        if self._model.stopped:
+            return "STOP ALL is engaged: release it first"
+        if vehicle.status is not None and not vehicle.status.armed:
+            return f"{vehicle.name} is disarmed: arm it first"
+        return ""
 
     def _arm(self, t: float, arm: bool, out: Outbox) -> None:
         vehicle = self._model.chosen

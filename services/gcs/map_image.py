@@ -8,6 +8,7 @@ from PIL import Image
 
 FREE = np.array((226, 232, 240))
 OCCUPIED = np.array((17, 24, 39))
+BLOCK = 32  # cells
 UNKNOWN = 255  # palette index
 
 
@@ -21,6 +22,19 @@ def _palette() -> tuple[bytes, bytes]:
 
 
 RGB, ALPHA = _palette()
+
+
+def known_part(cells: NDArray[np.int8]) -> tuple[NDArray[np.int8], tuple[int, int]]:
+    """The cells without the unknown margins, cut at multiples of ``BLOCK``, and the (row, column) of the first.
+
+    A see-through picture still hides other see-through things that lie under it, as the ground does in a browser.
+    """
+    rows, columns = np.flatnonzero((cells >= 0).any(axis=1)), np.flatnonzero((cells >= 0).any(axis=0))
+    if len(rows) == 0:
+        return cells[:1, :1], (0, 0)
+    top, left = rows[0] // BLOCK * BLOCK, columns[0] // BLOCK * BLOCK
+    bottom, right = -(-(rows[-1] + 1) // BLOCK) * BLOCK, -(-(columns[-1] + 1) // BLOCK) * BLOCK
+    return cells[top:bottom, left:right], (int(top), int(left))
 
 
 def occupancy_png(cells: NDArray[np.int8]) -> bytes:

@@ -41,7 +41,7 @@ def system_link(model: Model, t: float) -> tuple[str, str]:
 
 def status_bar(model: Model, t: float) -> str:
     word, style = system_link(model, t)
-    rate = f"× {model.clock.rate:.2f}" if model.clock is not None else ""
+    rate = f"× {model.clock.rate:.2f}" if model.clock is not None and model.clock.rate > 0 else ""
     waiting = escape(model.clock.waiting_for) if model.clock is not None else ""
     live = sum(link_of(v.heard, t)[1] == "good" for v in model.vehicles.values())
     parts = [
@@ -107,7 +107,13 @@ def waypoint_text(v: VehicleModel) -> str:
     if v.progress is None or v.progress.total == 0:
         return "–"
     lap = f", lap {v.progress.laps + 1}" if v.progress.laps else ""
-    return f"{v.progress.current + 1} of {v.progress.total}{lap}"
+    places = sum(item.kind != item.JUMP for item in v.mission.items) if v.mission is not None else v.progress.total
+    return f"{v.progress.current + 1} of {places}{lap}"
+
+
+def signed(value: float) -> str:
+    """``+1.4``, ``-0.3``, and never ``-0.0``."""
+    return f"{round(value, 1) + 0.0:+.1f}"
 
 
 def instrument(v: VehicleModel) -> str:
@@ -140,7 +146,7 @@ def facts(v: VehicleModel, t: float) -> str:
         if s.reason:
             rows.append(("because", escape(s.reason)))
         if v.flies:
-            rows += [("off the leg", f"{s.cross_track:+.1f} m"), ("altitude error", f"{s.altitude_error:+.1f} m")]
+            rows += [("off the leg", f"{signed(s.cross_track)} m"), ("altitude error", f"{signed(s.altitude_error)} m")]
             rows += [("waypoint", f"{waypoint_text(v)}, {s.distance_to_waypoint:.0f} m"), ("throttle", f"{100 * s.throttle:.0f} %")]
         if s.battery_voltage > 0:
             rows.append(("battery", f"{100 * s.battery_remaining:.0f} %, {s.battery_voltage:.1f} V"))

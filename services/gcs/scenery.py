@@ -16,13 +16,19 @@ Floats = NDArray[np.float64]
 
 WALL_SHOWN = 0.9  # m: walls are cut at this height so that one looks into the rooms
 FLOOR: Colour = (52, 60, 74)
+YARD: Colour = (24, 32, 40)
+YARD_WIDTH = 6.0  # m about the floor
 
 
 def scenery(world: WorldFile) -> dict[str, Node]:
     """Node name -> what stands there."""
     x_min, y_min, x_max, y_max = world.floor
     floor = box(((x_min + x_max) / 2, (y_min + y_max) / 2, -0.06), (x_max - x_min, y_max - y_min, 0.1))
-    nodes: dict[str, Node] = {"/world/floor": Mesh(floor.vertices, floor.faces, FLOOR)}
+    yard = box(((x_min + x_max) / 2, (y_min + y_max) / 2, -0.09), (x_max - x_min + 2 * YARD_WIDTH, y_max - y_min + 2 * YARD_WIDTH, 0.1))
+    nodes: dict[str, Node] = {
+        "/world/floor": Mesh(floor.vertices, floor.faces, FLOOR),
+        "/world/yard": Mesh(yard.vertices, yard.faces, YARD),
+    }
     walls = [(wall.colour, part) for wall in world.walls for part in _segments(wall)]
     nodes.update(_merged("/world/walls", walls))
     things = [(b.colour, _turned(box((0, 0, 0), b.size), b.yaw, b.centre)) for b in world.boxes]

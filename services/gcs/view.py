@@ -10,7 +10,7 @@ from schemas.convert import array, occupancy_cells, wxyz
 from schemas.messages import FrameTransform, Grid, NavStatus
 from services.gcs import bodies
 from services.gcs.drawing import Colour, FloorPicture, Node, Points, Polyline, Text
-from services.gcs.map_image import occupancy_png
+from services.gcs.map_image import known_part, occupancy_png
 from services.gcs.scenery import circuit_line, merge, rgb_of, scenery
 from services.gcs.state import Model, Placed, VehicleModel
 from uvf.maths.rotations import multiply, rotate, to_euler
@@ -75,6 +75,7 @@ class View:
             "mission": ("Paths", lambda: self._mission(v)),
             "track": ("Tracks", lambda: self._track(v)),
             "label": ("Labels", lambda: self._label(v)),
+            "height": ("Labels", lambda: self._height(v)),
         }
 
     def _make(self, name: str, of: Any, make: Callable[[], Node]) -> dict[str, Node]:
@@ -150,10 +151,15 @@ class View:
         x, y, z = (round(float(c), 2) for c in v.place.position)
         if not v.flies:
             return self._make(f"label {v.name}", (x, y, z), lambda: Text(v.name, (x, y, z + 0.45)))
-        label = self._make(f"label {v.name}", (x, y, z), lambda: Text(f"{v.name}  {z:.0f} m", (x, y, z + 2.5)))
+        return self._make(f"label {v.name}", (x, y, z), lambda: Text(f"{v.name}  {z:.0f} m", (x, y, z + 2.5)))
+
+    def _height(self, v: VehicleModel) -> dict[str, Node]:
+        """A line from an aircraft down to the ground, so that its place can be read."""
+        if v.place is None or not v.flies:
+            return {}
+        x, y, z = (round(float(c), 2) for c in v.place.position)
         foot = np.array(((x, y, 0.0), (x, y, z)))
-        label["/height"] = self._make(f"height {v.name}", (x, y, z), lambda: Polyline(foot, rgb_of(v.colour), 1.2))[""]
-        return label
+        return self._make(f"height {v.name}", (x, y, z), lambda: Polyline(foot, rgb_of(v.colour), 1.5))
 
 
 def _body(v: VehicleModel, colour: Colour) -> dict[str, Node]:
@@ -168,10 +174,11 @@ def _body(v: VehicleModel, colour: Colour) -> dict[str, Node]:
 
 def floor_picture(grid: Grid, world_from_map: FrameTransform | None) -> FloorPicture:
     """The grid as a picture lying where its pose, which is that of its lower left corner, and its frame's say."""
-    cells = occupancy_cells(grid)
-    width, height = cells.shape[1] * grid.cell_size.x, cells.shape[0] * grid.cell_size.y
+    cells, (row, column) = known_part(occupancy_cells(grid))
+    dx, dy = grid.cell_size.x, grid.cell_size.y
+    width, height = cells.shape[1] * dx, cells.shape[0] * dy
     turn = wxyz(grid.pose.orientation)
-    centre = array(grid.pose.position) + rotate(turn, np.array((width / 2, height / 2, 0.0)))
+    centre = array(grid.pose.position) + rotate(turn, np.array((column * dx + width / 2, row * dy + height / 2, 0.0)))
     if world_from_map is not None and grid.frame_id != "world":
         map_turn = wxyz(world_from_map.rotation)
         turn, centre = multiply(map_turn, turn), array(world_from_map.translation) + rotate(map_turn, centre)

@@ -43,6 +43,24 @@ def test_a_click_sends_the_chosen_ground_vehicle_there(station):
     assert station.model.vehicles[UGV].order.state == "accepted"
 
 
+def test_a_vehicle_on_hold_is_put_into_mission_mode_to_go(station):
+    station.script.mode[UGV] = Mode.MODE_HOLD
+    station.run(0.2)
+    station.press(click(4.0, 3.0))
+    assert {type(m) for _, m in station.script.asked} == {GoalRequest, ModeRequest}
+    assert next(m for _, m in station.script.asked if isinstance(m, ModeRequest)).mode == Mode.MODE_MISSION
+
+
+def test_a_goal_that_would_move_nothing_is_refused_with_the_mend(station):
+    station.script.armed[UGV] = False
+    station.run(0.2)
+    station.press(click(4.0, 3.0))
+    assert "arm it first" in station.model.vehicles[UGV].order.reason
+    station.press(StopAll(True), click(4.0, 3.0))
+    assert "release it first" in station.model.vehicles[UGV].order.reason
+    assert station.script.asked == []
+
+
 def test_a_refusal_is_shown_with_its_reason():
     station = Station(accept=False)
     station.run(0.5)

@@ -86,6 +86,15 @@ def test_an_aircraft_is_labelled_with_its_height(station):
     label = station.page.now.nodes[f"/label/{UAV}"]
     assert isinstance(label, Text)
     assert label.text == f"{UAV}  {uav_at(2.0)[0][2]:.0f} m"
+    top, foot = station.page.now.nodes[f"/height/{UAV}"].points[::-1]
+    assert top == pytest.approx(uav_at(2.0)[0], abs=0.01)
+    assert foot == pytest.approx((*top[:2], 0.0))
+
+
+def test_no_node_that_has_a_place_of_its_own_is_the_parent_of_another(station):
+    nodes = station.page.now.nodes
+    placed = [name for name, node in nodes.items() if isinstance(node, Text | FloorPicture)]
+    assert [child for child in nodes for parent in placed if child.startswith(parent + "/")] == []
 
 
 @pytest.mark.parametrize(("layer", "prefix"), [("Walls", "/world/walls"), ("Scan", "/scan"), ("Map", "/map"), ("Tracks", "/track")])
@@ -114,6 +123,17 @@ def test_a_map_lies_on_the_cells_it_describes():
     picture = floor_picture(occupancy_grid(CELLS, 0.5, 2.0, -1.0, "world", 0.0), None)
     assert (picture.width, picture.height, picture.yaw) == (1.5, 1.0, 0.0)
     assert picture.centre[:2] == pytest.approx((2.75, -0.5))
+
+
+def test_unknown_margins_are_left_out_of_the_picture_and_nothing_moves():
+    cells = np.full((200, 300), -1, dtype=np.int8)
+    cells[70:75, 130:140] = 0
+    picture = floor_picture(occupancy_grid(cells, 0.5, -10.0, 20.0, "world", 0.0), None)
+    pixels = np.array(Image.open(io.BytesIO(picture.png)).convert("RGBA"))
+    rows, columns = np.nonzero(pixels[:, :, 3])
+    assert pixels.shape[0] < 100 and pixels.shape[1] < 100 and len(rows) == 50
+    corner = (picture.centre[0] - picture.width / 2 + columns.min() * 0.5, picture.centre[1] - picture.height / 2 + rows.min() * 0.5)
+    assert corner == pytest.approx((-10.0 + 130 * 0.5, 20.0 + 70 * 0.5))
 
 
 def test_a_map_in_a_frame_of_its_own_is_turned_into_the_world():
