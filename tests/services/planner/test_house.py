@@ -23,8 +23,8 @@ GOAL = (1.4, 0.9)  # m, world: in the living room, seen early
 class House:
     """A run of the demo's ground part; every message of some topics is kept as (t, message)."""
 
-    def __init__(self):
-        self.site = load_site(ROOT / "missions" / "demo.yaml")
+    def __init__(self, site):
+        self.site = site
         build = (build_simulator, build_slam, build_planner, hosts)
         self.run = Lockstep([host for part in build for host in part(self.site)])
         self.bus = self.run.bus
@@ -60,7 +60,7 @@ class House:
 
 @pytest.fixture(scope="module")
 def explored():
-    house = House()
+    house = House(load_site(ROOT / "missions" / "demo.yaml"))
     house.run.run(ROUND)
     yield house
     house.run.close()
@@ -125,3 +125,34 @@ def test_stop_all_holds_until_it_is_released_and_a_goal_is_driven_to(explored):
     _, x, y = explored.places()[-1]
     assert np.hypot(x - GOAL[0], y - GOAL[1]) < 0.2
     assert not any(m.touching for _, m in explored.kept["contact"])
+
+
+def mission_site(tmp_path):
+    """Two waypoints in rooms that cannot be seen from the start, then home."""
+    path = tmp_path / "rounds.yaml"
+    path.write_text(
+        "about: The burger drives to the kitchen, to the hall and home.\n"
+        "world: house\n"
+        "vehicles:\n"
+        "  burger:\n"
+        "    model: burger\n"
+        "    system_id: 2\n"
+        "    start: {x: 2.2, y: 1.3, yaw: 0.5}\n"
+        "    job: {mission: [{x: 6.2, y: 1.3}, {x: 5.6, y: 4.4, hold: 1.0}, {kind: return}]}\n"
+    )
+    return load_site(path)
+
+
+def test_a_mission_leads_through_rooms_not_seen_yet_and_home(tmp_path):
+    house = House(mission_site(tmp_path))
+    progress = []
+    house.bus.subscribe(topics.PROGRESS.at(VEHICLE), topics.PROGRESS.qos, House._keep(progress, topics.PROGRESS.message))
+    house.run.run(90.0, lambda t: not progress or progress[-1][1].state != progress[-1][1].COMPLETE)
+    house.run.close()
+    assert progress[-1][1].state == progress[-1][1].COMPLETE
+    reached = {m.reached: t for t, m in reversed(progress)}
+    places = house.places()
+    for item, (x, y) in enumerate(((6.2, 1.3), (5.6, 4.4), (2.2, 1.3))):
+        _, there_x, there_y = places[np.searchsorted(places[:, 0], reached[item]) - 1]
+        assert np.hypot(there_x - x, there_y - y) < 0.35
+    assert not any(m.touching for _, m in house.kept["contact"])
