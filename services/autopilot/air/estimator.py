@@ -66,6 +66,10 @@ class Estimator:
         self._lift = G  # m/s^2
         self._age = 0.0  # s, of the newest IMU sample
 
+    @property
+    def started(self) -> bool:
+        return self._track is not None
+
     def step(self, samples: list[Inertial], pressures: Pressures, fix: Fix | None, dt: float) -> Estimate:
         """One cycle of ``dt`` [s]: the IMU samples since the last, the newest pressures, a fix if one has come."""
         self._take_pressures(pressures, dt)

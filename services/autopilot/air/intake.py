@@ -65,9 +65,8 @@ def items(messages: Iterable[MissionItem]) -> list[Item]:
 
 def _item(index: int, m: MissionItem) -> Item:
     if m.kind not in KINDS:
-        raise ValueError(
-            f"item {index}: {MissionItem.Kind.Name(m.kind)} is not flown by this autopilot; {', '.join(k.value for k in Kind)} are"
-        )
+        name = MissionItem.Kind.Name(m.kind) if m.kind in MissionItem.Kind.values() else f"kind {m.kind}"
+        raise ValueError(f"item {index}: {name} is not flown by this autopilot; {', '.join(k.value for k in Kind)} are")
     return Item(KINDS[m.kind], place(m.position), m.hold, m.radius, m.turns, m.speed, m.jump_to, m.repeat)
 
 

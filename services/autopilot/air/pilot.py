@@ -103,6 +103,8 @@ class Pilot:
         """Flies there and holds over it; too low a height means the present one."""
         if self.stopped:
             return f"stopped by {self.stopped}: release the stop first"
+        if not (math.isfinite(place.north) and math.isfinite(place.east)):
+            return "the goal is no place: its coordinates are not finite"
         height = place.height if place.height >= params.min_altitude else self._level.height
         self._change(FlightMode.HOLD, f"goal of {source}")
         self.circle = Circle(Place(place.north, place.east, height), params.hold_radius)

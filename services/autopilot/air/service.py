@@ -104,6 +104,10 @@ class AutopilotAir(Service):
         current: list[SetCurrentRequest],
     ) -> Outputs:
         now = self._estimate(t, imu, air_data, gnss)
+        if now is None:
+            waiting = [_reply("there is no satellite fix yet")]
+            asked = {"arm": len(arm), "mode": len(mode), "goal": len(goal), "mission": len(mission), "current": len(current)}
+            return {**self._announce(t), **{name: waiting * count for name, count in asked.items()}}
         self._airborne = now.airspeed > FLYING * self.params.min_airspeed
         self._pilot.stop(stop.source or "unknown" if stop is not None and stop.engaged else "")
         replies = {
@@ -144,10 +148,13 @@ class AutopilotAir(Service):
             "events": self._journal.lost(t, missing),
         }
 
-    def _estimate(self, t: float, imu: list[Imu], air_data: AirData, gnss: Gnss) -> Estimate:
+    def _estimate(self, t: float, imu: list[Imu], air_data: AirData, gnss: Gnss) -> Estimate | None:
+        """None until the first fix."""
         stamp_ns = gnss.timestamp.ToNanoseconds()
         fix = intake.fix(gnss, self._ship.tangent, t) if stamp_ns != self._fix_stamp and gnss.fix == Gnss.FIX_3D else None
         self._fix_stamp = stamp_ns
+        if fix is None and not self._estimator.started:
+            return None
         samples = [intake.inertial(m, t) for m in imu]
         return self._estimator.step(samples, intake.pressures(air_data), fix, 1 / self.hz)
 
@@ -160,7 +167,8 @@ class AutopilotAir(Service):
     def _set_mode(self, request: ModeRequest) -> Reply:
         if request.mode not in intake.MODES:
             wanted = ", ".join(m.value for m in intake.MODES.values())
-            return _reply(f"{Mode.Name(request.mode)} is not flown by this autopilot; {wanted} are")
+            known = Mode.Name(request.mode) if request.mode in Mode.values() else f"mode {request.mode}"
+            return _reply(f"{known} is not flown by this autopilot; {wanted} are")
         return _reply(self._pilot.change_mode(intake.MODES[request.mode], request.source))
 
     def _set_mission(self, mission: Mission) -> Reply:

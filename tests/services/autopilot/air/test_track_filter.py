@@ -54,7 +54,8 @@ def test_its_jacobian_is_that_of_its_prediction():
     track = started(x)
     track._ekf.P = np.eye(7) * 1e6
     track.predict(25.0, 0.3, 0.5, DT)
-    assert track._ekf.P / 1e6 == pytest.approx(numeric @ numeric.T, abs=2e-2)
+    covariance = track._ekf.P / 1e6
+    assert covariance == pytest.approx(numeric @ numeric.T, abs=2e-2)
 
 
 @pytest.mark.parametrize("heading", [False, True])

@@ -1,0 +1,64 @@
+"""Sensor messages of steady level flight to the east, for the service without a simulator."""
+
+from schemas.convert import stamp
+from schemas.messages import AirData, Gnss, Imu, MissionItem, Vector3
+from services.autopilot.air.params import AirParams
+from services.autopilot.air.service import AutopilotAir, Ship
+from uvf.maths import atmosphere
+from uvf.maths.geodesy import LocalTangent
+
+TANGENT = LocalTangent.from_degrees(40.77, 14.79, 300.0)
+NOTHING_ASKED = {"arm": [], "mode": [], "goal": [], "mission": [], "current": []}
+WAYPOINTS = [MissionItem(position=Vector3(x=900.0, z=60.0)), MissionItem(position=Vector3(x=900.0, y=900.0, z=60.0))]
+
+
+def sensors(t, speed=25.0):
+    latitude, longitude, altitude = TANGENT.geodetic([speed * t, 0.0, 60.0])
+    static = atmosphere.pressure(360.0)
+    rho = atmosphere.density(static, 285.8)
+    gnss = Gnss(
+        timestamp=stamp(t),
+        fix=Gnss.FIX_3D,
+        latitude=latitude,
+        longitude=longitude,
+        altitude=altitude,
+        velocity_enu=Vector3(x=speed),
+        horizontal_accuracy=0.8,
+        speed_accuracy=0.1,
+    )
+    imu = [Imu(timestamp=stamp(t - d), specific_force=Vector3(x=0.5, z=9.79)) for d in (0.01, 0.0)]
+    return {
+        "imu": imu,
+        "air_data": AirData(timestamp=stamp(t), static_pressure=static, differential_pressure=0.5 * rho * speed**2, temperature=285.8),
+        "gnss": gnss,
+        "battery": None,
+        "stop": None,
+    }
+
+
+def autopilot(items=WAYPOINTS):
+    return AutopilotAir(Ship(7, TANGENT, list(items), starts_in_air=True), AirParams())
+
+
+class Bench:
+    """Steps the service on level flight, whatever it commands; ``run`` returns the outputs of the last cycle."""
+
+    def __init__(self, items=WAYPOINTS):
+        self.service = autopilot(items)
+        self.n = 0
+        self.outputs = []
+
+    def run(self, cycles=1, speed=25.0, **asked):
+        for _ in range(cycles):
+            self.n += 1
+            t = self.n / self.service.hz
+            self.outputs.append(self.service.step(t, **{**NOTHING_ASKED, **sensors(t - 0.01, speed), **asked}))
+        return self.outputs[-1]
+
+    @property
+    def status(self):
+        return next(out["status"] for out in reversed(self.outputs) if "status" in out)
+
+    @property
+    def texts(self):
+        return [event.text for out in self.outputs for event in out["events"]]

@@ -1,0 +1,61 @@
+"""Messages into the autopilot's frames, and mission items kept as they came."""
+
+import math
+
+import pytest
+
+from schemas.convert import stamp
+from schemas.messages import Gnss, Imu, MissionItem, Vector3
+from services.autopilot.air import intake
+from services.autopilot.air.plan import Kind
+from uvf.maths.geodesy import LocalTangent
+from uvf.runtime.mission_file import Waypoint
+
+TANGENT = LocalTangent.from_degrees(40.77, 14.79, 300.0)
+
+
+def test_body_vectors_turn_from_flu_into_frd():
+    imu = Imu(timestamp=stamp(1.0), angular_velocity=Vector3(x=1, y=2, z=3), specific_force=Vector3(z=9.8))
+    sample = intake.inertial(imu, 1.01)
+    assert sample.rates == (1, -2, -3)
+    assert sample.force == (0, 0, -9.8)
+    assert sample.age == pytest.approx(0.01)
+
+
+def test_a_fix_becomes_a_place_in_the_world():
+    latitude, longitude, altitude = TANGENT.geodetic([120.0, -40.0, 60.0])
+    message = Gnss(timestamp=stamp(2.0), latitude=latitude, longitude=longitude, altitude=altitude, velocity_enu=Vector3(x=3, y=4, z=1))
+    fix = intake.fix(message, TANGENT, 2.1)
+    assert (fix.north, fix.east, fix.height) == pytest.approx((-40.0, 120.0, 60.0), abs=1e-2)
+    assert (fix.v_north, fix.v_east, fix.v_up) == (4, 3, 1)
+    assert fix.age == pytest.approx(0.1)
+
+
+def test_items_keep_their_meaning():
+    orbit = MissionItem(kind=MissionItem.ORBIT, position=Vector3(x=1, y=2, z=3), radius=-80, turns=2)
+    (item,) = intake.items([orbit])
+    assert (item.kind, item.place.north, item.place.east, item.place.height) == (Kind.ORBIT, 2, 1, 3)
+    assert (item.radius, item.turns) == (-80, 2)
+
+
+@pytest.mark.parametrize("kind", [MissionItem.TAKEOFF, MissionItem.LAND, 99])
+def test_an_item_that_cannot_be_flown_yet_is_named(kind):
+    with pytest.raises(ValueError, match=r"item 0: .* is not flown"):
+        intake.items([MissionItem(kind=kind)])
+
+
+def test_the_wire_form_of_an_item_is_kept():
+    mission = intake.with_id([MissionItem(origin=b"\x01\x00\xff")])
+    assert mission.items[0].origin == b"\x01\x00\xff"
+
+
+def test_a_missions_id_tells_missions_apart():
+    one, other = MissionItem(repeat=1), MissionItem(repeat=2)
+    assert intake.mission_id([one]) == intake.mission_id([MissionItem(repeat=1)]) != intake.mission_id([other])
+    assert intake.mission_id([]) == 0
+
+
+def test_a_line_of_a_mission_file_becomes_an_item():
+    message = intake.from_file(Waypoint(x=1.0, y=2.0, z=math.pi, kind="jump", jump_to=3, repeat=-1))
+    assert (message.kind, message.jump_to, message.repeat) == (MissionItem.JUMP, 3, -1)
+    assert message.position.z == math.pi
