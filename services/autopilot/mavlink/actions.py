@@ -13,6 +13,7 @@ from services.autopilot.mavlink.telemetry import mission_current
 SOURCE = "mavlink"
 FORCE = (2989.0, 21196.0)  # magic numbers of param 2: force arm, force disarm
 LAST_ITEM = 0xFFFE
+HIGHEST = 1e5  # m
 AMSL_FRAMES = (mav.MAV_FRAME_GLOBAL, mav.MAV_FRAME_GLOBAL_INT)
 HOME_FRAMES = (mav.MAV_FRAME_GLOBAL_RELATIVE_ALT, mav.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT)
 
@@ -125,8 +126,8 @@ def _reposition(line: Line, command: Command, ack: Acknowledger) -> None:
     if here is None or line.latest.home is None:
         ack(mav.MAV_RESULT_TEMPORARILY_REJECTED, "Go to refused: own position or home is unknown")
         return
-    if abs(latitude) > 90 or abs(longitude) > 180:
-        ack(mav.MAV_RESULT_DENIED, "Go to: latitude or longitude is out of range")
+    if abs(latitude) > 90 or abs(longitude) > 180 or abs(height) > HIGHEST:
+        ack(mav.MAV_RESULT_DENIED, "Go to: latitude, longitude or altitude is out of range")
         return
     now = line.facts.geodetic(here)
     if frame in HOME_FRAMES:
@@ -170,7 +171,7 @@ def _go_to(line: Line, goal: GoalRequest, may_change_mode: bool, done: Done) -> 
 def goal_of_item(line: Line, item: mav.MAVLink_mission_item_int_message, done: Done) -> None:
     """A "guided" item (current = 2) of Mission Planner and MAVProxy: go there; horizontal place from the item."""
     here = line.latest.position
-    if here is None or abs(item.x) > 900_000_000 or abs(item.y) > 1_800_000_000:
+    if here is None or abs(item.x) > 900_000_000 or abs(item.y) > 1_800_000_000 or abs(item.z) > HIGHEST:
         done(False, "own position unknown, or the place is out of range")
         return
     place = line.facts.world(item.x * 1e-7, item.y * 1e-7, 0.0)

@@ -9,7 +9,8 @@ import struct
 from services.autopilot.mavlink import dialect as mav
 from tests.services.autopilot.mavlink.rig import GCS, long, of
 
-ACK_WAIT, MESSAGE_WAIT, PARAM_WAIT, PLAN_WAIT = 1.2, 1.0, 5.0, 1.5  # s
+ACK_WAIT, MESSAGE_WAIT, PARAM_WAIT, GAP_WAIT, PLAN_WAIT, ITEM_WAIT = 1.2, 1.0, 5.0, 3.0, 1.5, 0.25  # s
+BATCH = 10  # missing parameters asked for at once
 TRIES = 3
 BUTTON_MODES = {50593792: "Hold", 67371008: "Mission", 84148224: "Return", 33816576: "Takeoff", 100925440: "Land"}
 NO_PARAMETERS = "Vehicle did not respond to request for parameters"
@@ -107,22 +108,34 @@ class QGroundControl:
     def _parameters(self):
         self.rig.say(mav.MAVLink_param_request_read_message(self.system, 1, b"_HASH_CHECK", -1))
         self._await("PARAM_VALUE", 1.0, lambda m: m.param_id == "_HASH_CHECK")
-        values, total = {}, None
+        values = {}
         for _ in range(5):
             self.rig.say(mav.MAVLink_param_request_list_message(self.system, 0))
-            while m := self._await("PARAM_VALUE", PARAM_WAIT if total is None else 3.0):
-                if m.param_index != 0xFFFF:
-                    values[m.param_index], total = m, m.param_count
-                if total is not None and len(values) == total:
-                    break
-            if total is not None:
+            if self._collect(values, PARAM_WAIT):
                 break
+        total = next((m.param_count for m in values.values()), None)
+        for _ in range(5):
+            missing = [index for index in range(total or 0) if index not in values]
+            for index in missing[:BATCH]:
+                self.rig.say(mav.MAVLink_param_request_read_message(self.system, 1, b"", index))
+            if not missing:
+                break
+            self._collect(values, GAP_WAIT)
         if total is None:
             self.complaints.append(NO_PARAMETERS)
             return
         if len(values) < total:
             self.complaints.append(SOME_PARAMETERS)
         self.parameters = {m.param_id: _number(m) for m in values.values()}
+
+    def _collect(self, values, seconds):
+        """Takes in parameters until there are all or a while passes without one; whether any came."""
+        any_came = False
+        while m := self._await("PARAM_VALUE", seconds, lambda m: m.param_index != 0xFFFF):
+            values[m.param_index], any_came, seconds = m, True, GAP_WAIT
+            if len(values) == m.param_count:
+                break
+        return any_came
 
     def _setup_check(self, beat):
         p = self.parameters
@@ -140,16 +153,23 @@ class QGroundControl:
             self.complaints.append(f"{MISSING}: {missing}")
 
     def _download_plan(self):
-        self.rig.say(mav.MAVLink_mission_request_list_message(self.system, 1, 0))
-        count = self._await("MISSION_COUNT", PLAN_WAIT, lambda m: m.mission_type == 0)
+        count = self._ask(mav.MAVLink_mission_request_list_message(self.system, 1, 0), "MISSION_COUNT", PLAN_WAIT)
         for seq in range(count.count if count is not None else 0):
-            self.rig.say(mav.MAVLink_mission_request_int_message(self.system, 1, seq, 0))
-            item = self._await("MISSION_ITEM_INT", PLAN_WAIT, lambda m, seq=seq: m.seq == seq)
+            request = mav.MAVLink_mission_request_int_message(self.system, 1, seq, 0)
+            item = self._ask(request, "MISSION_ITEM_INT", ITEM_WAIT, lambda m, seq=seq: m.seq == seq)
             if item is None:
                 break
             self.plan.append(item)
         if count is None or len(self.plan) < count.count:
             self.complaints.append(PLAN)
+
+    def _ask(self, request, kind, seconds, fits=lambda m: True):
+        """With five repetitions, as the plan's managers do."""
+        for _ in range(6):
+            self.rig.say(request)
+            if (answer := self._await(kind, seconds, fits)) is not None:
+                return answer
+        return None
 
 
 def _number(message):

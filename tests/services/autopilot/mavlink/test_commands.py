@@ -137,6 +137,7 @@ def test_without_leave_to_change_the_mode_it_is_not_changed():
     ("command", "result"),
     [
         (long(192, -1.0, 1.0, 0.0, NAN, 95.0, 14.0, 400.0), DENIED),
+        (long(192, -1.0, 1.0, 0.0, NAN, 40.77, 14.79, 1e8), DENIED),
         (long(192, -1.0, 1.0, 0.0, NAN, math.inf, 14.0, 400.0), DENIED),
         (long(400, 1e30), DENIED),
         (long(400, 0.5), DENIED),

@@ -1,5 +1,7 @@
 """A ground station connects: QGroundControl shows its user no complaint, and would show one if an answer were wrong."""
 
+import random
+
 import pytest
 
 from schemas.messages import Mission, MissionItem, Vector3
@@ -85,6 +87,18 @@ def test_a_missing_parameter_would_be_noticed():
 def test_without_the_simulation_flag_the_calibration_still_counts_as_done():
     flagless = changed("HEARTBEAT", base_mode=mav.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED)
     assert connect(spoil=flagless)[0].complaints == []
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_a_fifth_of_all_packets_lost_either_way_costs_time_but_no_complaint(seed):
+    rng, rig = random.Random(seed), Rig()
+    say = rig.say
+    rig.say = lambda *message, **where: rng.random() < 0.2 or say(*message, **where)
+    rig.plane.mission = Mission(id=3, items=[MissionItem(position=Vector3(x=x, y=0.0, z=60.0)) for x in (0.0, 100.0, 200.0)])
+    station = QGroundControl(rig, PLANE, lambda message: None if rng.random() < 0.2 else message)
+    assert station.connect() < 30.0
+    assert station.complaints == []
+    assert len(station.plan) == 3
 
 
 def test_a_lost_packet_now_and_then_costs_time_but_no_complaint():
