@@ -7,6 +7,7 @@ from foxglove_schemas_protobuf.FrameTransforms_pb2 import FrameTransforms
 from foxglove_schemas_protobuf.Grid_pb2 import Grid
 from foxglove_schemas_protobuf.JointState_pb2 import JointState
 from foxglove_schemas_protobuf.JointStates_pb2 import JointStates
+from foxglove_schemas_protobuf.KeyValuePair_pb2 import KeyValuePair
 from foxglove_schemas_protobuf.LaserScan_pb2 import LaserScan
 from foxglove_schemas_protobuf.Odometry_pb2 import Odometry
 from foxglove_schemas_protobuf.PackedElementField_pb2 import PackedElementField
@@ -61,6 +62,7 @@ __all__ = [
     "Imu",
     "JointState",
     "JointStates",
+    "KeyValuePair",
     "Kind",
     "LaserScan",
     "Mission",
