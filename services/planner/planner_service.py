@@ -65,6 +65,7 @@ class PlannerService(Service):
     }
     outputs = {"path": topics.PATH, "nav_status": topics.NAV_STATUS, "events": topics.EVENTS.by("planner")}
     requests = {"goal": topics.GOAL}
+    recalls = {"nav_status": topics.NAV_STATUS}
     params: PlannerParams
 
     def __init__(self, world_from_map: Pose2, radius: float, explores: bool, params: PlannerParams) -> None:
@@ -110,6 +111,11 @@ class PlannerService(Service):
         self._watch(t, here, status)
         events, self._events = self._events, []
         return {"path": self._path(t), "nav_status": self._nav_status(t, here), "goal": replies, "events": events}
+
+    def recall(self, nav_status: NavStatus | None = None) -> None:  # type: ignore[override]
+        """A person's goal that was being driven to is still wanted; its heading is not told."""
+        if nav_status is not None and nav_status.job == "goal" and nav_status.state != NavStatus.REACHED:
+            self._goal = Goal((nav_status.goal.x, nav_status.goal.y))
 
     def stale(self, t: float, missing: tuple[str, ...]) -> Outputs:
         """Without a fresh pose or a map there is no path: the tracker stands still."""

@@ -43,7 +43,7 @@ class Mapper:
     def add(self, odom_from_base: Pose2, scan: Scan) -> bool:
         """Corrects ``map_from_odom`` by a scan taken at an odometry pose; True when the map has changed."""
         map_from_base = compose(self.map_from_odom, odom_from_base)
-        if self._inserted_at is not None and len(scan.hits) >= LEAST_MATCHED:
+        if not self.occupancy.is_empty and len(scan.hits) >= LEAST_MATCHED:
             map_from_base = self._corrected(map_from_base, scan)
             self.map_from_odom = compose(map_from_base, inverse(odom_from_base))
         if not self._has_moved(map_from_base):

@@ -7,7 +7,7 @@ from msgspec import Meta
 from numpy.typing import NDArray
 
 from schemas import topics
-from schemas.convert import occupancy_grid, quaternion, seconds, stamp, yaw_of
+from schemas.convert import occupancy_cells, occupancy_grid, quaternion, seconds, stamp, yaw_of
 from schemas.messages import FrameTransform, Grid, LaserScan, Odometry, Vector3
 from services.slam.mapper import Mapper, Scan, toward
 from uvf.maths.planar import Pose2, PoseHistory, compose, inverse, transform
@@ -39,6 +39,7 @@ class MappingService(Service):
     hz = 10.0
     inputs = {"scan": topics.SCAN, "odometry": every(topics.ODOMETRY)}
     outputs = {"correction": topics.TF_MAP, "placing": topics.TF_WORLD, "map": topics.MAP}
+    recalls = {"map": topics.MAP, "correction": topics.TF_MAP}
     params: MappingParams
 
     def __init__(self, vehicle: str, lidar: Lidar, world_from_map: Pose2, params: MappingParams) -> None:
@@ -74,6 +75,14 @@ class MappingService(Service):
             outputs["map"] = self._map(t)
             self._changed, self._map_time = False, t
         return outputs
+
+    def recall(self, map: Grid | None = None, correction: FrameTransform | None = None) -> None:  # type: ignore[override]
+        """Goes on with the last map published; the next scan finds its place in it."""
+        if map is None or correction is None or map.cell_size.x != self.params.resolution:
+            return
+        self._mapper.occupancy.restore(occupancy_cells(map), np.array((map.pose.position.x, map.pose.position.y)))
+        shift = correction.translation
+        self._published = self._mapper.map_from_odom = (shift.x, shift.y, yaw_of(correction.rotation))
 
     def _in_base(self, scan: LaserScan) -> Scan:
         ranges = np.asarray(scan.ranges)

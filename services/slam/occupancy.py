@@ -2,6 +2,7 @@
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy import ndimage
 
 from services.slam.raster import add_free, add_hits
 
@@ -32,6 +33,29 @@ class OccupancyMap:
         add_hits(in_cells[0], in_cells[2], layers, self._scans)
         add_free(in_cells[0], in_cells[2], layers, self._scans)
         add_free(in_cells[1], in_cells[2], layers, self._scans)
+
+    @property
+    def is_empty(self) -> bool:
+        return self._seen.size == 0
+
+    def restore(self, cells: NDArray[np.int8], origin: Floats) -> None:
+        """Takes up a map from its published form; surfaces are taken to lie in the middle of their cells.
+
+        cells: (rows, columns) as of ``cells()``; origin: (x, y) [m]. The side a surface was seen from is the free one.
+        """
+        free, occupied = (cells >= 0) & (cells < 50), cells > 50
+        probability = np.clip(cells / 100.0, 0.02, 0.98)
+        self.log_odds = np.where(cells < 0, 0.0, np.log(probability / (1.0 - probability))).astype(np.float32)
+        self._seen = np.where(cells < 0, 0, 1).astype(np.int32)
+        self._scans = 1
+        self.origin = np.asarray(origin, dtype=np.float64)
+        offsets = np.arange(-2.0, 3.0)
+        towards = [
+            ndimage.correlate(free.astype(float), o, mode="constant") for o in (np.tile(offsets, (5, 1)), np.tile(offsets[:, None], 5))
+        ]
+        length = np.hypot(*towards) + 1e-9
+        layers = (np.ones(cells.shape), np.full(cells.shape, 0.5), np.full(cells.shape, 0.5), towards[0] / length, towards[1] / length)
+        self.surface = (np.stack(layers, axis=-1) * occupied[..., None]).astype(np.float32)
 
     def cells(self) -> NDArray[np.int8]:
         """(rows, columns): -1 unknown, else the probability of being occupied in per cent."""

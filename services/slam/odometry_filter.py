@@ -47,6 +47,10 @@ class OdometryFilter:
         self.speeds = (0.0, 0.0)
         """(m/s, rad/s) of the last step, bias taken off."""
 
+    def resume(self, pose: Pose2, bias: float) -> None:
+        """Goes on from where a filter before this one has come to."""
+        self._kf.x = np.array((*pose, bias))
+
     @property
     def pose(self) -> Pose2:
         """odom_from_base."""

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from schemas import topics
 from schemas.convert import planar_pose, quaternion, seconds, stamp, yaw_of
-from schemas.messages import FrameTransform, Imu, NavState, Odometry, PoseInFrame, Vector3, WheelTicks
+from schemas.messages import FrameTransform, Imu, KeyValuePair, NavState, Odometry, PoseInFrame, Vector3, WheelTicks
 from services.slam.odometry_filter import Noise, OdometryFilter
 from uvf.maths.kinematics import PlanarPose, Twist, move
 from uvf.maths.planar import IDENTITY, Pose2, compose
@@ -20,6 +20,10 @@ Floats = NDArray[np.float64]
 Positive = Annotated[float, Meta(gt=0)]
 
 MAX_PREDICTION = 0.1  # s, wheel data older than this is not extrapolated further
+MAX_GAP = 0.1  # s between two wheel messages above which the gyroscope's samples do not cover the interval
+
+LEFT, RIGHT, BIAS = "left_ticks", "right_ticks", "gyro_bias"
+"""What the odometry carries beside the pose, for an instance that is to go on after it."""
 
 
 class OdometryParams(Params, frozen=True):
@@ -39,6 +43,7 @@ class OdometryService(Service):
     hz = 50.0
     inputs = {"wheels": topics.WHEELS, "imu": optional(every(topics.IMU)), "correction": optional(topics.TF_MAP)}
     outputs = {"odometry": topics.ODOMETRY, "pose": topics.POSE, "nav_state": topics.NAV_STATE}
+    recalls = {"odometry": topics.ODOMETRY, "correction": topics.TF_MAP}
     params: OdometryParams
 
     def __init__(self, vehicle: str, file: VehicleFile, world_from_map: Pose2, params: OdometryParams) -> None:
@@ -71,6 +76,16 @@ class OdometryService(Service):
             "nav_state": self._nav_state(t, world_from_base),
         }
 
+    def recall(self, odometry: Odometry | None = None, correction: FrameTransform | None = None) -> None:  # type: ignore[override]
+        """Goes on at the last pose told; what was driven since then is in the ticks counted since then."""
+        if odometry is not None:
+            position = odometry.pose.position
+            known = {pair.key: pair.value for pair in odometry.metadata}
+            self._filter.resume((position.x, position.y, yaw_of(odometry.pose.orientation)), float(known[BIAS]))
+            self._last = WheelTicks(timestamp=odometry.timestamp, left=int(known[LEFT]), right=int(known[RIGHT]))
+        if correction is not None:
+            self._correct(correction)
+
     def _move(self, wheels: WheelTicks, imu: list[Imu]) -> None:
         self._waiting += imu
         last, self._last = self._last, wheels
@@ -80,7 +95,8 @@ class OdometryService(Service):
             return
         left = (wheels.left - last.left) * wheels.radians_per_tick * self._radius
         right = (wheels.right - last.right) * wheels.radians_per_tick * self._radius
-        self._filter.step((left + right) / 2, (right - left) / self._track, self._turn_rate_until(now), dt)
+        gyro = self._turn_rate_until(now)
+        self._filter.step((left + right) / 2, (right - left) / self._track, gyro if dt <= MAX_GAP else None, dt)
 
     def _turn_rate_until(self, now: float) -> float | None:
         """Mean of the gyroscope about the vehicle's upward axis [rad/s] over the interval that the wheels tell of."""
@@ -109,6 +125,8 @@ class OdometryService(Service):
         covariance = np.zeros((6, 6))
         planar = np.ix_((0, 1, 5), (0, 1, 5))
         covariance[planar] = self._filter.covariance[:3, :3]
+        ticks = self._last or WheelTicks()
+        left_over = {LEFT: str(ticks.left), RIGHT: str(ticks.right), BIAS: repr(self._filter.bias)}
         return Odometry(
             timestamp=stamp(t),
             frame_id=f"{self._vehicle}/odom",
@@ -117,6 +135,7 @@ class OdometryService(Service):
             linear_velocity=Vector3(x=linear),
             angular_velocity=Vector3(z=angular),
             pose_covariance=covariance.ravel().tolist(),
+            metadata=[KeyValuePair(key=k, value=v) for k, v in left_over.items()],
         )
 
     def _nav_state(self, t: float, world_from_base: Pose2) -> NavState:

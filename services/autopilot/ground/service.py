@@ -13,7 +13,9 @@ from schemas.messages import (
     DriveCommand,
     Event,
     Kind,
+    Mission,
     MissionItem,
+    MissionProgress,
     MissionRequest,
     Mode,
     ModeRequest,
@@ -63,6 +65,7 @@ class GroundAutopilot(Service):
         "events": topics.EVENTS.by("autopilot"),
     }
     requests = {"arm": topics.ARM, "set_mode": topics.SET_MODE, "set_mission": topics.SET_MISSION, "set_current": topics.SET_CURRENT}
+    recalls = {"status": topics.STATUS, "mission": topics.MISSION, "progress": topics.PROGRESS}
     params: GroundAutopilotParams
 
     def __init__(
@@ -114,6 +117,15 @@ class GroundAutopilot(Service):
         self._follow_mission(t, position)
         self._choose(t, {k: Velocity(seconds(c.timestamp), c.linear, c.angular) for k, c in commands.items() if c is not None})
         return {"wheels": self._wheels(t), **replies, **self._reports(t, position)}
+
+    def recall(  # type: ignore[override]
+        self, status: VehicleStatus | None = None, mission: Mission | None = None, progress: MissionProgress | None = None
+    ) -> None:
+        """Goes on in the mode, armed or not, and at the mission's item where the instance before has been."""
+        if status is not None and status.mode in SOURCES:
+            self._mode, self._armed = status.mode, status.armed
+        if mission is not None and progress is not None:
+            self._engine.resume(mission, progress)
 
     def _heed_stop(self, t: float, stop: StopCommand | None) -> None:
         engaged = stop is not None and stop.engaged

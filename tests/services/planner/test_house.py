@@ -127,6 +127,35 @@ def test_stop_all_holds_until_it_is_released_and_a_goal_is_driven_to(explored):
     assert not any(m.touching for _, m in explored.kept["contact"])
 
 
+def test_slam_that_is_started_again_finds_the_vehicle_in_its_old_map():
+    """Both slam services die on the way and are back two seconds later; the vehicle stands meanwhile."""
+    house = House(load_site(ROOT / "missions" / "demo.yaml"))
+    newest = {}
+    for topic in (topics.ODOMETRY, topics.TF_MAP, topics.MAP):
+        house.bus.subscribe(topic.at(VEHICLE), topic.qos, lambda sample: newest.update({sample.key: sample.payload}))
+    house.run.run(12.0)
+    before = house.places()[-1]
+    for shell in house.run.shells:
+        if shell.type.name in ("odometry", "mapping"):
+            shell.restart(round(12.0e9))
+            shell.recall(newest.get)
+            shell.skip_to(round(14.0e9))
+    house.run.run(13.99)
+    stood = house.places()[-20:, 1:]
+    assert np.ptp(stood, axis=0).max() < 0.01
+    assert np.hypot(*(stood[-1] - before[1:])) > 0.05  # it did not stop at once
+    house.run.run(30.0)
+    house.run.close()
+    truth = {round(t, 2): m.position for t, m in house.kept["truth"]}
+    errors = [
+        np.hypot(m.pose.position.x - truth[round(t, 2)].x, m.pose.position.y - truth[round(t, 2)].y)
+        for t, m in house.kept["pose"]
+        if t > 15.0
+    ]
+    assert max(errors) < 0.05
+    assert np.hypot(*(house.places()[-1, 1:] - before[1:])) > 1.0
+
+
 def mission_site(tmp_path):
     """Two waypoints in rooms that cannot be seen from the start, then home."""
     path = tmp_path / "rounds.yaml"

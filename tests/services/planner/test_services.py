@@ -146,6 +146,14 @@ def test_an_obstacle_that_appears_in_the_map_is_gone_round():
     assert len(bench.said["path"].poses) > before + 5
 
 
+def test_started_again_it_still_drives_to_the_persons_goal():
+    old = Bench().step(goal=[asked(3.0, 2.0)]).step()
+    new = Bench()
+    new.service.recall(nav_status=old.said["nav_status"])
+    end = new.step().said["path"].poses[-1].position
+    assert (end.x, end.y) == pytest.approx(world(3.0, 2.0))
+
+
 def test_without_pose_or_map_there_is_no_path():
     outputs = Bench().service.stale(1.0, ("pose", "map"))
     assert len(outputs["path"].poses) == 0

@@ -56,6 +56,19 @@ def test_a_scan_does_not_clear_what_it_hits_itself():
     assert all(probability(occupancy, x, 0.32) > 60 for x in np.arange(0.55, 2.95, 0.05))
 
 
+def test_a_map_is_taken_up_again_from_its_published_form():
+    first = OccupancyMap(0.05)
+    wall = np.column_stack((np.linspace(-1.0, 1.0, 200), np.full(200, 0.62)))
+    first.insert(wall, NOWHERE, SENSOR)
+    second = OccupancyMap(0.05)
+    second.restore(first.cells(), first.origin)
+    np.testing.assert_allclose(second.cells(), first.cells(), atol=1)
+    np.testing.assert_allclose(second.log_odds, first.log_odds, atol=0.1)
+    column, row = np.floor((np.array((0.0, 0.62)) - second.origin) / 0.05).astype(int)
+    assert second.surface[row, column, 4] < -0.7  # seen from below
+    assert second.surface[row - 3, column, 0] == 0.0
+
+
 def test_the_surface_point_of_a_cell_is_the_mean_of_its_hits():
     occupancy = OccupancyMap(0.1)
     hits = np.array(((1.01, 0.02), (1.03, 0.04), (1.05, 0.06)))

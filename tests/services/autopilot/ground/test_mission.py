@@ -97,6 +97,20 @@ def test_jumping_to_an_item_restarts_a_finished_mission():
     assert made.jump_to(2) == "there is no item 2; the mission has 2"
 
 
+def test_another_engine_goes_on_where_the_first_one_was():
+    first = engine(waypoint(1.0), MissionItem(kind=MissionItem.SPEED, speed=0.2), waypoint(2.0), waypoint(3.0))
+    visit(first, 2)
+    second = engine()
+    second.resume(first.mission, first.progress(stamp(3.0)))
+    assert (second.target, second.reached, second.speed, second.state) == ((3.0, 0.0), 2, 0.2, MissionProgress.ACTIVE)
+
+
+def test_progress_in_another_mission_is_not_taken_over():
+    second = engine()
+    second.resume(mission_of([waypoint(5.0)], stamp(0.0)), MissionProgress(mission_id=1, current=0, state=MissionProgress.COMPLETE))
+    assert (second.target, second.state) == ((5.0, 0.0), MissionProgress.NOT_STARTED)
+
+
 def test_what_a_ground_vehicle_cannot_do_is_refused():
     assert refusal([waypoint(1.0), MissionItem(kind=MissionItem.ORBIT)]) == "item 1: ORBIT is not for a ground vehicle"
     assert refusal([waypoint(1.0), MissionItem(kind=MissionItem.JUMP, jump_to=7)]) == "item 1: jump to 7, but the last item is 1"

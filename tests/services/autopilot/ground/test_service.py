@@ -179,6 +179,15 @@ def test_jumps_to_an_item_on_request():
     assert bench.step(30, pose=(0.0, 0.0)).said["progress"].current == 1
 
 
+def test_started_again_it_goes_on_as_it_was():
+    old = Bench(items=WAYPOINTS).step(30, pose=(0.9, 0.0)).step(set_mode=[ModeRequest(mode=Mode.MODE_MANUAL)]).step(30)
+    new = Bench(begins=False)
+    new.service.recall(status=old.said["status"], mission=old.said["mission"], progress=old.said["progress"])
+    new.step(1)
+    assert (new.said["status"].mode, new.said["status"].armed) == (Mode.MODE_MANUAL, True)
+    assert (new.said["progress"].current, new.said["progress"].total) == (1, 2)
+
+
 def test_a_speed_item_limits_the_mission_but_not_the_person():
     bench = Bench(items=[MissionItem(kind=MissionItem.SPEED, speed=0.1), *WAYPOINTS]).step(60, linear=0.4, pose=(0.0, 0.0))
     assert bench.speed == pytest.approx(0.1)
