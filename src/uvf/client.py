@@ -2,6 +2,7 @@
 
 import uvf
 from schemas import topics
+from schemas.convert import stamp_ns
 from schemas.messages import DriveCommand
 
 with uvf.connect() as run:
@@ -17,6 +18,7 @@ from typing import Any, TypeVar
 from google.protobuf.message import Message
 
 from schemas import topics
+from schemas.convert import stamp_ns
 from schemas.messages import Clock
 from schemas.topics import Request, Topic
 from uvf.runtime.bus import Publisher, Sample
@@ -79,11 +81,13 @@ class Client:
             self._bus.poll()
 
     def send(self, owner: str, topic: Topic[M], message: M) -> None:
-        """Publishes, stamped with the simulation time now."""
-        key = topic.at(owner)
+        """Publishes, stamped with the simulation time now (in the message too, where it has no stamp of its own)."""
+        key, now_ns = topic.at(owner), round(self.time * 1e9)
+        if "timestamp" in message.DESCRIPTOR.fields_by_name and not message.HasField("timestamp"):
+            message.timestamp.CopyFrom(stamp_ns(now_ns))  # type: ignore[attr-defined]
         if key not in self._publishers:
             self._publishers[key] = self._bus.publisher(key, topic.message.DESCRIPTOR.full_name, topic.qos)
-        self._publishers[key].put(message.SerializeToString(deterministic=True), round(self.time * 1e9))
+        self._publishers[key].put(message.SerializeToString(deterministic=True), now_ns)
 
     def ask(self, owner: str, request: Request[Q, R], message: Q, timeout: float = 5.0) -> R:
         """Sends a request and waits for its reply. Raises TimeoutError, also when nobody answers."""

@@ -71,8 +71,9 @@ class System:
 
     def __exit__(self, *_):
         self.client._bus.close()
-        family = psutil.Process(self.popen.pid).children(recursive=True)
-        self.popen.send_signal(signal.SIGINT)
+        family = [] if self.popen.poll() is not None else psutil.Process(self.popen.pid).children(recursive=True)
+        if family:
+            self.popen.send_signal(signal.SIGINT)
         self.popen.wait(timeout=30)
         _, alive = psutil.wait_procs(family, timeout=1)
         assert not alive, f"left behind: {alive}"

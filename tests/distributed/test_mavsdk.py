@@ -47,13 +47,13 @@ def live():
 
 def test_both_vehicles_are_found_as_what_they_are(live):
     _, systems, _ = live
-    kinds = {number: (s.autopilot_type(), s.vehicle_type()) for number, s in systems.items()}
-    assert kinds == {PLANE: (Autopilot.PX4, Vehicle.FIXED_WING), ROVER: (Autopilot.PX4, Vehicle.ROVER)}
+    wanted = {PLANE: (Autopilot.PX4, Vehicle.FIXED_WING), ROVER: (Autopilot.PX4, Vehicle.ROVER)}
+    wait(lambda: {number: (s.autopilot_type(), s.vehicle_type()) for number, s in systems.items()} == wanted)
 
 
 def test_positions_are_read_in_degrees_and_metres_above_sea(live):
     _, _, telemetry = live
-    wait(lambda: telemetry[ROVER].position().absolute_altitude_m > 0)
+    wait(lambda: all(t.position().absolute_altitude_m > 0 for t in telemetry.values()))
     rover, plane = telemetry[ROVER].position(), telemetry[PLANE].position()
     assert (rover.latitude_deg, rover.longitude_deg) == pytest.approx((40.77, 14.79), abs=1e-4)
     assert rover.absolute_altitude_m == pytest.approx(300.0, abs=0.01)

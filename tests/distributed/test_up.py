@@ -1,6 +1,7 @@
 """The demo with real processes: it moves, survives kill -9, speaks MAVLink, and ends without a trace."""
 
 import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from schemas.convert import array
 from schemas.messages import StopCommand
 from tests.distributed.system import System
 from uvf.runtime.recording import read_log
+from uvf.runtime.site import ROOT
 
 
 @pytest.fixture(scope="module")
@@ -102,3 +104,25 @@ def test_it_ends_by_itself_and_leaves_a_whole_log(tmp_path):
     assert running.popen.returncode == 0
     keys = {s.key for s in read_log(next(tmp_path.glob("latest/log-*.mcap")))}
     assert {"uvf/burger/sensor/scan", "uvf/milvus/sensor/imu", "uvf/burger/map/grid"} <= keys
+
+
+def test_a_vehicle_that_cannot_be_built_ends_it_with_its_line(tmp_path):
+    running = System(tmp_path)
+    running.environment["UVF_GCS_PORT"] = "99999"
+    done = subprocess.run(
+        [a for a in running._command if a != "--no-gcs"], capture_output=True, text=True, env=running.environment, timeout=60, check=False
+    )
+    assert done.returncode != 0
+    assert "99999: not a port" in done.stdout + done.stderr
+
+
+def test_examples_run(system):
+    for number, expected in (
+        ("01_hello_service", "fast: 0.29 m/s"),
+        ("02_lockstep", "times real time"),
+        ("03_external_controller", "turned"),
+    ):
+        command = [sys.executable, f"examples/{number}.py"]
+        done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, env=system.environment, timeout=90, check=False)
+        assert done.returncode == 0, done.stderr
+        assert expected in done.stdout

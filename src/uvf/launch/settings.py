@@ -14,7 +14,11 @@ def router_endpoint() -> str:
 
 
 def gcs_address() -> tuple[str, int]:
-    return os.environ.get("UVF_GCS_HOST", "127.0.0.1"), int(os.environ.get("UVF_GCS_PORT", "8080"))
+    """Where the page will be. Raises BadInput."""
+    from services.gcs.address import address_from
+
+    address = address_from()
+    return address.host, address.port
 
 
 def runs_folder() -> Path:

@@ -115,7 +115,7 @@ class Run:
 
     def watch(self, stop: Flag) -> None:
         """Until ``stop``; starts again what dies."""
-        while not stop.wait(LOOK) and not self._over():
+        while not stop.wait(LOOK) and not self._over() and not self._cannot_begin():
             if self._bus is not None:
                 self._bus.poll()
             if self._supervisor.look():
@@ -125,6 +125,10 @@ class Run:
         """Whether the seconds asked for have passed since time began to run."""
         wanted, since = self._wanted.seconds, self._moving_since
         return wanted is not None and since is not None and time.monotonic() - since > wanted
+
+    def _cannot_begin(self) -> bool:
+        """Whether a service has been given up that time waits for."""
+        return self.failed and self._moving_since is None
 
     def _on_death(self, line: str, given_up: bool) -> None:
         self._say(line)

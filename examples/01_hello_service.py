@@ -1,0 +1,44 @@
+"""Hello service: what it reads and writes as data, and one pure function of time.
+
+    .venv/bin/python examples/01_hello_service.py
+
+The service below watches a vehicle's speed and says when it is fast. It runs here in lockstep on a bus inside this
+process; the very same class runs over Zenoh in a process of its own.
+"""
+
+from schemas import topics
+from schemas.convert import stamp
+from schemas.messages import DriveCommand, Event
+from uvf.runtime.lockstep import Lockstep
+from uvf.runtime.service import Outputs, Service
+from uvf.runtime.site import Host
+
+
+class Driver(Service):
+    """Asks for more and more speed."""
+
+    name = "driver"
+    hz = 10.0
+    outputs = {"drive": topics.DRIVE.by("client")}
+
+    def step(self, t: float) -> Outputs:
+        return {"drive": DriveCommand(timestamp=stamp(t), linear=0.1 * t)}
+
+
+class Watch(Service):
+    """Says when more than 0.2 m/s are asked for."""
+
+    name = "watch"
+    hz = 5.0
+    inputs = {"drive": topics.DRIVE.by("client")}
+    outputs = {"events": topics.EVENTS.by("watch")}
+
+    def step(self, t: float, drive: DriveCommand) -> Outputs:
+        if drive.linear <= 0.2:
+            return {}
+        return {"events": Event(timestamp=stamp(t), text=f"fast: {drive.linear:.2f} m/s", source="watch")}
+
+
+lockstep = Lockstep([Host(Driver, Driver, "rover"), Host(Watch, Watch, "rover")])
+lockstep.bus.subscribe("uvf/rover/state/**", topics.Qos.EVENT, lambda s: print(Event.FromString(s.payload).text))
+lockstep.run(until=3.0)
