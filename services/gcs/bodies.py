@@ -85,8 +85,8 @@ def rover(radius: float, wheel_radius: float, track: float) -> list[Part]:
     return parts
 
 
-def aeroplane() -> list[Part]:
-    """A high-wing pusher with twin booms and an inverted V tail, 2.9 m span."""
+def aeroplane(scale: float) -> list[Part]:
+    """A high-wing pusher with twin booms and an inverted V tail, 2.9 m span times ``scale``."""
     wing = [(0.12, 0.0, 0.12), (0.1, 1.45, 0.16), (-0.08, 1.45, 0.16), (-0.17, 0.0, 0.12), (-0.08, -1.45, 0.16), (0.1, -1.45, 0.16)]
     parts = [
         lathe(0, [(-0.45, 0.05), (-0.3, 0.11), (0.35, 0.11), (0.6, 0.085), (0.75, 0.03)], (0, 0, 0.02)),
@@ -99,4 +99,4 @@ def aeroplane() -> list[Part]:
         parts.append(lathe(0, [(-1.15, 0.018), (-0.05, 0.018)], (0, side * 0.4, 0.12), PLATE))
         tail = [(-0.92, side * 0.4, 0.12), (-0.98, 0.0, 0.45), (-1.16, 0.0, 0.45), (-1.17, side * 0.4, 0.12)]
         parts.append(plate(tail, 0.02))
-    return parts
+    return [Part(part.vertices * scale, part.faces, part.colour) for part in parts]

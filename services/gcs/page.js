@@ -23,4 +23,20 @@
     bar.classList.toggle('g-dead', dead);
     if (dead) bar.innerHTML = LOST;
   }, 200);
+  let last = null;
+  const follow = () => {
+    requestAnimationFrame(follow);
+    const page = window.__viserMutable, chosen = document.querySelector('#gcs-bar-source .g-follow');
+    const control = page && page.cameraControl, node = page && chosen && page.nodeRefFromName['/vehicles/' + chosen.dataset.name];
+    if (!window.__gcsFollow || !control || !node) { last = null; return; }
+    const at = node.getWorldPosition(node.position.clone());
+    const eye = control.getPosition(at.clone()), target = control.getTarget(at.clone());
+    const begins = !last || last.name !== chosen.dataset.name;
+    const move = begins ? at.clone().sub(target) : at.clone().sub(last.at);
+    if (begins) eye.sub(target).setLength(Number(chosen.dataset.distance)).add(target);
+    eye.add(move); target.add(move);
+    control.setLookAt(eye.x, eye.y, eye.z, target.x, target.y, target.z, false);
+    last = {name: chosen.dataset.name, at};
+  };
+  follow();
 })

@@ -44,6 +44,7 @@ def status_bar(model: Model, t: float) -> str:
     rate = f"× {model.clock.rate:.2f}" if model.clock is not None and model.clock.rate > 0 else ""
     waiting = escape(model.clock.waiting_for) if model.clock is not None else ""
     live = sum(link_of(v.heard, t)[1] == "good" for v in model.vehicles.values())
+    chosen = model.chosen
     parts = [
         f"<b class='g-{style}'>● {word}</b>",
         f"<span>sim <b>{clock_text(model.sim_time)}</b> <i>{rate}</i></span>",
@@ -55,6 +56,8 @@ def status_bar(model: Model, t: float) -> str:
         parts.append("<b class='g-stop'>■ STOP ALL ENGAGED</b>")
     elif alarm := _alarm(model):
         parts.append(f"<span class='g-{SEVERITY[alarm.severity][1]}'>⚠ {escape(alarm.vehicle)} {escape(alarm.text[:60])}</span>")
+    if chosen is not None:
+        parts.append(f"<span class='g-follow' hidden data-name='{chosen.name}' data-distance='{40 if chosen.flies else 3}'></span>")
     return "".join(parts)
 
 

@@ -16,7 +16,7 @@ Floats = NDArray[np.float64]
 
 WALL_SHOWN = 0.9  # m: walls are cut at this height so that one looks into the rooms
 FLOOR: Colour = (52, 60, 74)
-YARD: Colour = (24, 32, 40)
+YARD: Colour = (50, 62, 74)
 YARD_WIDTH = 6.0  # m about the floor
 
 

@@ -21,6 +21,8 @@ ROUTE: Colour = (232, 74, 214)
 SCAN: Colour = (255, 92, 92)
 ASKED: Colour = (250, 190, 60)
 GHOST: Colour = (190, 200, 215)
+AIRCRAFT_SCALE = 3.0
+"""Aircraft are drawn larger than they are, to be seen from where their whole circuit is."""
 MAP_PERIOD = 1.0  # s between two pictures of the map
 UP = 0.02  # m above the floor, so that what lies on it is seen
 
@@ -165,7 +167,7 @@ class View:
 def _body(v: VehicleModel, colour: Colour) -> dict[str, Node]:
     """The parts of a body, those of one colour in one mesh."""
     ground = v.member.file.ground
-    parts = bodies.aeroplane() if ground is None else bodies.rover(ground.radius, ground.wheel_radius, ground.track)
+    parts = bodies.aeroplane(AIRCRAFT_SCALE) if ground is None else bodies.rover(ground.radius, ground.wheel_radius, ground.track)
     by_colour: dict[Colour, list[bodies.Part]] = {}
     for part in parts:
         by_colour.setdefault(part.colour or colour, []).append(part)

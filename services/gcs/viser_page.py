@@ -22,10 +22,11 @@ from services.gcs.drawing import Button, Camera, Picture, Toast
 from services.gcs.guard import Guard
 from services.gcs.state import LAYERS
 from services.gcs.viser_scene import ViserScene
-from services.gcs.viser_script import bar_source, padded, script, selected_in
+from services.gcs.viser_script import bar_source, follow, padded, script, selected_in
 from uvf.runtime.params import BadInput
 
 FLEET_WIDTH, VEHICLE_WIDTH = 270, 350
+FOLLOW = "Follow"
 BEAT = 1.0  # s between two signs of life to the page
 
 
@@ -79,8 +80,8 @@ class ViserPage:
         gui.main_panel.set_width(FLEET_WIDTH)
         self._html["bar"] = gui.add_html(bar_source("", 0), order=0)
         self._html["fleet"] = gui.add_html("", order=2)
-        views = gui.add_button_group("View", tuple(cameras), order=100)
-        views.on_click(lambda event: _look(event, cameras[event.target.value]))
+        views = gui.add_button_group("View", (*cameras, FOLLOW), order=100)
+        views.on_click(lambda event: _look(event, cameras.get(event.target.value)))
         self._html["overview"] = gui.add_html("", order=150)
         with gui.add_folder("Layers", order=200, expand_by_default=False):
             for name in LAYERS:
@@ -189,7 +190,11 @@ class ViserPage:
             self._server.stop()
 
 
-def _look(event: Any, camera: Camera) -> None:
+def _look(event: Any, camera: Camera | None) -> None:
+    """The view of the one page that asked; without a camera it follows the chosen vehicle."""
+    event.client._websock_connection.queue_message(_messages.RunJavascriptMessage(source=follow(camera is None)))
+    if camera is None:
+        return
     with event.client.atomic():
         event.client.camera.position = camera.position
         event.client.camera.look_at = camera.look_at

@@ -13,6 +13,11 @@ def script(bridge: str) -> str:
     return f"{SCRIPT.read_text(encoding='utf-8').strip()}({arguments})"
 
 
+def follow(on: bool) -> str:
+    """Makes one page's view go along with the chosen vehicle, or stand still again."""
+    return f"window.__gcsFollow = {json.dumps(on)}"
+
+
 def bar_source(content: str, beat: int) -> str:
     """The hidden element that the bar is copied from; a new ``beat`` shows that the ground station lives."""
     return f"<div id='gcs-bar-source' data-beat='{beat}' hidden>{content}</div>"

@@ -24,6 +24,11 @@ PROJECT = """([a, b, c]) => {
 POINTS = "(name) => { const node = window.__viserSceneTree.getState()[name]; return node ? node.message.props.points.length : 0; }"
 POSITION = "(name) => { const pose = window.__viserMutable.nodePoseData[name]; return pose ? [...pose.position] : null; }"
 
+CAMERA_TO = """(name) => {
+  const page = window.__viserMutable, node = page.nodeRefFromName[name];
+  return page.camera.position.distanceTo(node.getWorldPosition(node.position.clone()));
+}"""
+
 TRACK_BLUE = "b > 190 && b - r > 60 && g > 100 && g < 220"
 
 

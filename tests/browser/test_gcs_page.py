@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from schemas.messages import ArmRequest, Event, GoalRequest
-from tests.browser.canvas import POINTS, POSITION, TRACK_BLUE, on_screen, pixels, until
+from tests.browser.canvas import CAMERA_TO, POINTS, POSITION, TRACK_BLUE, on_screen, pixels, until
 from tests.services.gcs.scripted import UAV, UGV
 
 pytestmark = pytest.mark.timeout(240)
@@ -63,6 +63,22 @@ def test_a_click_on_a_vehicle_chooses_it_and_sends_nobody(page, station):
     assert len(goals(station)) == sent
 
 
+def test_follow_takes_the_view_along(page, station):
+    def away():
+        return page.evaluate(CAMERA_TO, f"/vehicles/{UAV}")
+
+    page.get_by_role("button", name="Select milvus").dispatch_event("pointerdown")
+    page.get_by_role("button", name="Follow").click()
+    assert until(page, lambda: away() < 60)
+    before, held = position(page, UAV), away()
+    assert until(page, lambda: np.linalg.norm(position(page, UAV) - before) > 60)
+    assert until(page, lambda: away() == pytest.approx(held, abs=5.0))
+    page.get_by_role("button", name="Scene").click()
+    assert until(page, lambda: away() > 100)
+    page.get_by_role("button", name="Select burger").dispatch_event("pointerdown")
+    page.locator("#gcs-drive").wait_for(timeout=20_000)
+
+
 def test_arming_wants_a_second_click(page, station):
     page.get_by_role("button", name="Disarm burger", exact=True).click()
     assert not [m for _, m in station.script.asked if isinstance(m, ArmRequest)]
@@ -87,13 +103,14 @@ def test_text_from_the_bus_is_shown_not_run(page, station):
 
 
 def test_a_page_that_joins_late_sees_the_same(page, browser, station):
+    station.moving = False  # the first page need not draw meanwhile: software rendering is slow
     late = browser.new_page(viewport={"width": 700, "height": 400})
     late.goto(f"http://127.0.0.1:{station.port}/")
-    late.wait_for_function(
-        "(name) => (window.__viserSceneTree || {getState: () => ({})}).getState()[name]", arg=f"/track/{UGV}/tail", timeout=60_000
-    )
+    drawn = "(name) => window.__viserSceneTree && window.__viserSceneTree.getState()[name]"
+    late.wait_for_function(drawn, arg=f"/track/{UGV}/tail", timeout=120_000)
     assert late.evaluate(POINTS, f"/track/{UGV}/tail") > 30
     late.close()
+    station.moving = True
 
 
 def test_a_silent_station_is_told_by_the_page_itself(page, station):

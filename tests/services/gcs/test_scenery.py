@@ -45,8 +45,8 @@ def test_a_rover_stands_on_its_wheels_and_fits_its_circle():
 
 
 def test_an_aeroplane_is_as_wide_as_it_says_and_alike_on_both_sides():
-    points = np.vstack([p.vertices for p in bodies.aeroplane()])
-    assert np.ptp(points[:, 1]) == pytest.approx(2.9)
+    points = np.vstack([p.vertices for p in bodies.aeroplane(2.0)])
+    assert np.ptp(points[:, 1]) == pytest.approx(2 * 2.9)
     assert points[:, 1].max() == pytest.approx(-points[:, 1].min())
 
 
