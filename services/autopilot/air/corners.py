@@ -29,8 +29,9 @@ class Corner:
     course_out: float  # rad
 
 
-def plan(waypoint: Point, course_in: float, course_out: float, radius: float, room: float) -> Corner | None:
-    """The corner at ``waypoint``, with ``room`` [m] on each leg to use; None where there is nothing to round."""
+def plan(waypoint: Point, courses: tuple[float, float], radius: float, room: float) -> Corner | None:
+    """The corner at ``waypoint`` between two ``courses`` [rad], with ``room`` [m] on each leg to use; None if there is nothing to round."""
+    course_in, course_out = courses
     change = math.remainder(course_out - course_in, math.tau)
     if not STRAIGHT < abs(change) < SHARPEST:
         return None

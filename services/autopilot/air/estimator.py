@@ -65,6 +65,7 @@ class Estimator:
         self._baro = 0.0
         self._lift = G  # m/s^2
         self._age = 0.0  # s, of the newest IMU sample
+        self._aside = 0.0  # rad, of the flight through the air from the nose
 
     @property
     def started(self) -> bool:
@@ -126,10 +127,17 @@ class Estimator:
     def _step_track(self, track: TrackFilter, samples: list[Inertial], dt: float) -> None:
         attitude = self._attitude
         q, r = (self._gyros[i].value or 0.0 for i in (1, 2))
+        before, self._aside = self._aside, self._azimuth_of_alpha()
         yaw_rate = ((q - attitude.bias_q) * math.sin(attitude.roll) + r * math.cos(attitude.roll)) / math.cos(attitude.pitch)
-        track.predict(self._horizontal_airspeed(), yaw_rate, attitude.roll, dt)
+        track.predict(self._horizontal_airspeed(), yaw_rate + (self._aside - before) / dt, attitude.roll, dt)
         if samples and any(samples[-1].field):
-            track.correct_heading(_heading(samples[-1].field, attitude.roll, attitude.pitch))
+            track.correct_heading(_heading(samples[-1].field, attitude.roll, attitude.pitch) + self._aside)
+
+    def _azimuth_of_alpha(self) -> float:
+        """rad; in a bank the angle of attack carries the nose aside of the flight through the air."""
+        roll, pitch, alpha = self._attitude.roll, self._attitude.pitch, self._alpha
+        ahead = math.cos(alpha) * math.cos(pitch) + math.cos(roll) * math.sin(alpha) * math.sin(pitch)
+        return math.atan2(-math.sin(roll) * math.sin(alpha), ahead)
 
     def _horizontal_airspeed(self) -> float:
         climb = self._vertical.climb if self._vertical else 0.0
@@ -149,7 +157,7 @@ class Estimator:
             climb=vertical.climb,
             roll=roll,
             pitch=pitch,
-            yaw=math.remainder(x[PSI], math.tau),
+            yaw=math.remainder(x[PSI] - self._aside, math.tau),
             p=p - a.bias_p,
             q=q - a.bias_q,
             r=r,

@@ -103,7 +103,7 @@ class Navigator:
             return leg
         after = Leg(item.place, self.items[stop.index].place)
         room = 0.5 * min(leg.length, after.length)
-        corner = corners.plan(item.place.point, leg.course, after.course, self._turn_radius(now, params), room)
+        corner = corners.plan(item.place.point, (leg.course, after.course), self._turn_radius(now, params), room)
         return Leg(start, item.place, entry, corner)
 
     def _turn_radius(self, now: Estimate, params: AirParams) -> float:

@@ -19,7 +19,10 @@ class Kind(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Item:
-    """One line of a mission; which fields count depends on the kind (see mission.proto)."""
+    """One line of a mission; which fields count depends on the kind (see mission.proto).
+
+    An acceptance radius is not among them: a waypoint is passed when its half plane is, or where the arc round it begins.
+    """
 
     kind: Kind
     place: Place

@@ -6,7 +6,6 @@ import numpy as np
 
 from schemas.convert import quaternion, stamp
 from schemas.messages import (
-    Battery,
     Kind,
     MissionProgress,
     Mode,
@@ -56,8 +55,8 @@ def surfaces(t: float, s: Surfaces, armed: bool) -> SurfaceCommand:
     return SurfaceCommand(timestamp=stamp(t), aileron=s.aileron, elevator=s.elevator, rudder=s.rudder, throttle=throttle)
 
 
-def status(t: float, pilot: Pilot, now: Estimate, flown: Flown, battery: Battery | None) -> VehicleStatus:
-    """All but arming, landing and the system id."""
+def status(t: float, pilot: Pilot, now: Estimate, flown: Flown) -> VehicleStatus:
+    """All but arming, landing, battery and the system id."""
     message = VehicleStatus(
         timestamp=stamp(t),
         kind=Kind.KIND_FIXED_WING,
@@ -66,8 +65,6 @@ def status(t: float, pilot: Pilot, now: Estimate, flown: Flown, battery: Battery
         command_source="autopilot",
         reason=pilot.reason,
         throttle=flown.surfaces.throttle,
-        battery_remaining=battery.remaining if battery is not None else -1.0,
-        battery_voltage=battery.voltage if battery is not None else 0.0,
         cross_track=flown.aim.error,
         altitude_error=now.height - flown.level.height,
         distance_to_waypoint=_distance(pilot, now),

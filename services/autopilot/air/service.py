@@ -126,7 +126,9 @@ class AutopilotAir(Service):
             "events": self._journal.events(t, self._pilot, self._armed),
         }
         if self._cycles % 5 == 0:
-            self._status = reports.status(t, self._pilot, now, flown, battery)
+            self._status = reports.status(t, self._pilot, now, flown)
+            self._status.battery_remaining = battery.remaining if battery is not None else -1.0
+            self._status.battery_voltage = battery.voltage if battery is not None else 0.0
             out["status"] = self._stamped_status(t)
         if self._cycles % 25 == 0:
             out["progress"] = reports.progress(t, self._pilot, self._mission.id)

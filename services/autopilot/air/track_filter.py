@@ -1,7 +1,8 @@
 """Position, ground speed, course, wind and heading from satellite fixes, airspeed and turn rates.
 
 Extended Kalman filter of seven states after Beard & McLain 8.7: x = (p_n, p_e, V_g, chi, w_n, w_e, psi), corrected by
-fixes, by the wind triangle as a pseudo measurement and, where there is one, by a magnetic heading.
+fixes, by the wind triangle as a pseudo measurement and, where there is one, by a magnetic heading. Here psi is the azimuth of
+the flight through the air, which the triangle needs; in a bank the nose points aside of it.
 """
 
 import math

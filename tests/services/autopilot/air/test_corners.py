@@ -12,7 +12,7 @@ RADIUS = 70.0
 
 
 def corner(degrees, room=1000.0):
-    return plan((0.0, 0.0), 0.0, math.radians(degrees), RADIUS, room)
+    return plan((0.0, 0.0), (0.0, math.radians(degrees)), RADIUS, room)
 
 
 @given(st.floats(5.0, 140.0), st.sampled_from((-1.0, 1.0)))

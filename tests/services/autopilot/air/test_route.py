@@ -12,7 +12,7 @@ A, B, C = Place(0.0, 0.0, 60.0), Place(500.0, 0.0, 80.0), Place(500.0, 500.0, 80
 
 
 def cornered():
-    corner = plan(B.point, 0.0, math.pi / 2, 70.0, 250.0)
+    corner = plan(B.point, (0.0, math.pi / 2), 70.0, 250.0)
     return corner, Leg(A, B, None, corner), Leg(B, C, corner, None)
 
 
