@@ -3,9 +3,10 @@
 import contextlib
 import io
 import json
+import logging
 import queue
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Coroutine, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -40,6 +41,7 @@ class ViserPage:
         self._html: dict[str, Any] = {}
         self._sent: dict[str, str] = {}
         self._buttons: dict[str, tuple[Any, Button]] = {}
+        self._meaning: dict[str, Action] = {}
         self._image: tuple[Any, bytes] | None = None
         self._picked: tuple[float, float] | None = None
         self._beat = 0.0
@@ -86,7 +88,7 @@ class ViserPage:
         with gui.add_folder("Layers", order=200, expand_by_default=False):
             for name in LAYERS:
                 box = gui.add_checkbox(name, initial_value=name in layers)
-                box.on_update(lambda event, n=name: self._actions.put(Layer(n, bool(event.target.value))))  # type: ignore[misc]
+                box.on_update(self._asking(lambda event, n=name: Layer(n, bool(event.target.value))))  # type: ignore[misc]
 
     def _vehicle_panel(self) -> None:
         gui = self._server.gui
@@ -105,16 +107,27 @@ class ViserPage:
         panel.set_width(VEHICLE_WIDTH)
 
     def _listen(self) -> None:
-        self._server.scene.on_click()(self._on_click)
+        self._server.scene.on_click()(self._on_click)  # type: ignore[arg-type]
         bridge = self._server.gui.add_text("page", "", visible=False)
-        bridge.on_update(lambda event: self._actions.put(Select(selected_in(event.target.value))))
+        bridge.on_update(self._asking(lambda event: Select(selected_in(event.target.value))))
         self._server._websock_server.queue_message(_messages.RunJavascriptMessage(source=script(bridge._impl.uuid)))
+
+    def _asking(self, action: Callable[[Any], Action]) -> Callable[[Any], Coroutine[Any, Any, None]]:
+        """A callback that queues an action, found when it is called: the same button may by then mean another.
+
+        It is a coroutine because viser runs those in the order of the clicks, and plain functions in any order.
+        """
+
+        async def asked(event: Any) -> None:
+            self._actions.put(action(event))
+
+        return asked
 
     def _on_pick(self, vehicle: str, event: Any) -> None:
         self._picked = event.screen_pos
         self._actions.put(Select(vehicle))
 
-    def _on_click(self, event: Any) -> None:
+    async def _on_click(self, event: Any) -> None:
         """Any click; one on a vehicle has been taken already and sends nobody anywhere."""
         if event.screen_pos != self._picked:
             self._actions.put(ClickGround(event.ray_origin, event.ray_direction))
@@ -143,6 +156,7 @@ class ViserPage:
 
     def _show_buttons(self, buttons: Sequence[Button]) -> None:
         wanted = {b.key: b for b in buttons}
+        self._meaning.update((b.key, b.action) for b in buttons)
         for key in [k for k in self._buttons if k not in wanted]:
             self._buttons.pop(key)[0].remove()
         for i, button in enumerate(buttons):
@@ -152,15 +166,11 @@ class ViserPage:
                 handle = self._server.gui.add_button(
                     button.label, order=order, hint=button.hint, color=_colour(button), disabled=not button.enabled
                 )
-                handle.on_click(self._pressing(button.key))
+                handle.on_click(self._asking(lambda event, key=button.key: self._meaning[key]))  # type: ignore[misc]
                 self._buttons[button.key] = (handle, button)
             elif before[1] != button:
                 self._buttons[button.key] = (before[0], button)
                 _change(before[0], before[1], button)
-
-    def _pressing(self, key: str) -> Callable[[Any], None]:
-        """The action is looked up when the button is pressed: it may have changed since."""
-        return lambda event: self._actions.put(self._buttons[key][1].action)
 
     def _show_image(self, image: bytes | None) -> None:
         if image is None or (self._image is not None and self._image[1] == image):
@@ -224,6 +234,7 @@ def _change(handle: Any, old: Button, new: Button) -> None:
 def _guarded_server(address: Address) -> viser.ViserServer:
     """viser's server behind the guard: websockets' ``serve``, which viser looks up when it starts, is wrapped meanwhile."""
     viser_join.apply()
+    logging.getLogger("websockets.server").setLevel(logging.CRITICAL)  # a browser's idle connection is not worth a traceback
     guard = Guard(address.port, address.token, lambda: json.dumps({"status": "ok"}).encode())
     plain = websocket_server.serve
 

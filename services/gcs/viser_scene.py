@@ -1,6 +1,6 @@
 """Brings viser's scene to what a picture says, sending only what has changed."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Coroutine, Mapping
 from typing import Any
 
 import numpy as np
@@ -17,7 +17,7 @@ TURNED = 1e-3  # quaternion components
 
 
 class ViserScene:
-    """on_pick(vehicle): called from viser's thread when a vehicle's body is clicked."""
+    """on_pick(vehicle, event): called on viser's event loop when a vehicle's body is clicked."""
 
     def __init__(self, server: viser.ViserServer, on_pick: Callable[[str, Any], None]) -> None:
         self._server = server
@@ -75,8 +75,14 @@ class ViserScene:
             name, _f32(node.vertices), node.faces.astype(np.uint32), color=node.colour, opacity=opacity, flat_shading=True, side="double"
         )
         if node.selects:
-            handle.on_click(lambda event: self._on_pick(node.selects, event))
+            handle.on_click(self._picking(node.selects))
         return handle
+
+    def _picking(self, vehicle: str) -> Callable[[Any], Coroutine[Any, Any, None]]:
+        async def picked(event: Any) -> None:
+            self._on_pick(vehicle, event)
+
+        return picked
 
     def _add_picture(self, name: str, node: FloorPicture) -> Any:
         wxyz = (float(np.cos(node.yaw / 2)), 0.0, 0.0, float(np.sin(node.yaw / 2)))
