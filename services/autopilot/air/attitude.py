@@ -10,6 +10,7 @@ from dataclasses import dataclass
 PROCESS = 1.0e-6  # rad^2/s: gyroscope noise and scale
 TILT_SIGMA = 0.06  # rad: 0.6 m/s^2 of acceleration along the path, unknown in a single sample
 BIAS_RATE = 0.02  # 1/s: how much of a correction goes into the gyroscopes' bias
+BIAS_STEP = 2e-4  # rad: larger corrections come of a wrong start or an acceleration along the path, not of a bias
 
 
 @dataclass(slots=True)
@@ -68,5 +69,5 @@ class Attitude:
     def _add(self, roll: float, pitch: float, dt: float) -> None:
         self.roll += roll
         self.pitch += pitch
-        self.bias_p -= BIAS_RATE * roll
-        self.bias_q -= BIAS_RATE * pitch
+        self.bias_p -= BIAS_RATE * min(max(roll, -BIAS_STEP), BIAS_STEP)
+        self.bias_q -= BIAS_RATE * min(max(pitch, -BIAS_STEP), BIAS_STEP)

@@ -1,5 +1,6 @@
 """The whole estimator on exact sensors of a steady level turn through a wind."""
 
+import functools
 import math
 
 import numpy as np
@@ -47,18 +48,19 @@ class Turn:
         force = np.cross(turning, SPEED * np.array((math.cos(self.alpha), 0.0, math.sin(self.alpha)))) - body @ (0.0, 0.0, G)
         return Inertial(tuple(turning), tuple(force), tuple(body @ FIELD_NED))
 
+    def _on_circle(self, azimuth):
+        return SPEED / self.rate * math.sin(azimuth), SPEED / self.rate * (1 - math.cos(azimuth))
+
     def fix(self, t):
         azimuth = self.rate * t
-        if self.rate:
-            through = SPEED / self.rate * np.array((math.sin(azimuth), 1 - math.cos(azimuth)))
-        else:
-            through = np.array((SPEED * t, 0.0))
+        through = np.array(self._on_circle(azimuth) if self.rate else (SPEED * t, 0.0))
         north, east = through + np.array(WIND) * t
         return Fix(north, east, 60.0, SPEED * math.cos(azimuth) + WIND[0], SPEED * math.sin(azimuth) + WIND[1], 0.0, 0.0, 0.8, 0.1)
 
 
-def flown(roll, seconds=40.0):
-    """The last estimate, the turn and the time."""
+@functools.cache
+def flown(roll, seconds=200.0):
+    """The last estimate, the turn and the time; it begins in the turn, knowing nothing of it."""
     turn, estimator = Turn(roll), Estimator(ALPHA_ZERO, ALPHA_LOAD)
     for k in range(1, round(seconds / DT) + 1):
         t = k * DT
