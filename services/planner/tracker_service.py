@@ -64,8 +64,10 @@ class TrackerService(Service):
         self._look(scan)
         if t - self._scan_time > SCAN_MAX_AGE:
             return self.stale(t, ("scan",))
-        wanted = self._tracker.follow(self._pose, _points(path), _final_heading(path))
-        velocity, events = self._made_safe(t, wanted)
+        around = transform(inverse(self._pose), self._seen)
+        room = float(np.hypot(*around.T).min(initial=np.inf)) - self._keep
+        wanted = self._tracker.follow(self._pose, _points(path), _final_heading(path), room)
+        velocity, events = self._made_safe(t, wanted, around)
         return {"drive": DriveCommand(timestamp=stamp(t), linear=velocity[0], angular=velocity[1]), "events": events}
 
     def stale(self, t: float, missing: tuple[str, ...]) -> Outputs:
@@ -85,9 +87,8 @@ class TrackerService(Service):
         points = np.column_stack((ranges[near] * np.cos(angles[near]), ranges[near] * np.sin(angles[near])))
         self._seen = transform(compose(world_from_base, self._base_from_lidar), points)
 
-    def _made_safe(self, t: float, wanted: tuple[float, float]) -> tuple[tuple[float, float], list[Event]]:
+    def _made_safe(self, t: float, wanted: tuple[float, float], around: Floats) -> tuple[tuple[float, float], list[Event]]:
         """The wanted velocity, slowed so that it ends before anything; backwards a little when that stays zero."""
-        around = transform(inverse(self._pose), self._seen)
         brake = (REACTION, self.params.deceleration)
         share = safe_share(around, wanted, self._keep, brake)
         if share > 0.0:

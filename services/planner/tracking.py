@@ -14,6 +14,8 @@ Floats = NDArray[np.float64]
 TURN_FROM, TURN_TO = 0.9, 0.3
 """rad: turns on the spot from the larger bearing of the path until the smaller one."""
 HEADING_TOLERANCE = 0.05  # rad
+FAR_SIGHT, SIGHT_TIME = 0.25, 0.4  # m, s: how far ahead on the path it looks, and more with speed
+NEAR_SIGHT, SIGHT_BY_ROOM = 0.1, 2.0  # m, 1: the same beside obstacles, by the room that is left
 TURN_GAIN = 3.0  # 1/s
 
 
@@ -35,15 +37,19 @@ class Tracker:
         self._turning = False
         self._speed = 0.0
 
-    def follow(self, pose: Pose2, path: Floats, final_heading: float | None) -> tuple[float, float]:
-        """(m/s, rad/s) at ``pose`` along path (n, 2) m in the same frame; zero at its end."""
+    def follow(self, pose: Pose2, path: Floats, final_heading: float | None, room: float) -> tuple[float, float]:
+        """(m/s, rad/s) at ``pose`` along path (n, 2) m in the same frame; zero at its end.
+
+        room: m to spare beside the nearest obstacle; with little of it the path's corners are not cut.
+        """
         if len(path) == 0:
             return self._go(0.0, 0.0)
         left = hypot(path[-1, 0] - pose[0], path[-1, 1] - pose[1])
         if left <= self.pace.tolerance:
             error = 0.0 if final_heading is None else wrap(final_heading - pose[2])
             return self._go(0.0, self._turn(error) if abs(error) > HEADING_TOLERANCE else 0.0)
-        target = _ahead(pose, path, 0.25 + 0.4 * self._speed)
+        reach = min(FAR_SIGHT + SIGHT_TIME * self._speed, NEAR_SIGHT + SIGHT_BY_ROOM * max(room, 0.0))
+        target = _ahead(pose, path, reach)
         bearing = wrap(atan2(target[1] - pose[1], target[0] - pose[0]) - pose[2])
         if abs(bearing) > TURN_FROM or (self._turning and abs(bearing) > TURN_TO):
             self._turning = True

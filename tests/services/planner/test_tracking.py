@@ -13,12 +13,12 @@ BRAKE = (0.3, 0.5)
 KEEP = 0.15
 
 
-def follow(path, start, seconds, final_heading=None):
+def follow(path, start, seconds, final_heading=None, room=np.inf):
     """(n, 3) poses and (n, 2) commands at 20 Hz."""
     tracker, pose = Tracker(PACE), PlanarPose(*start)
     poses, commands = [pose], []
     for _ in range(round(seconds * 20)):
-        command = tracker.follow(pose, path, final_heading)
+        command = tracker.follow(pose, path, final_heading, room)
         pose = move(pose, Twist(*command), 0.05)
         poses.append(pose)
         commands.append(command)
@@ -41,6 +41,17 @@ def test_a_bend_is_followed_closely():
     off = np.abs(np.hypot(poses[:, 0], poses[:, 1] - 1.0) - 1.0)
     assert off.max() < 0.08
     assert np.hypot(*(poses[-1, :2] - path[-1])) <= PACE.tolerance
+
+
+def test_corners_are_cut_less_where_room_is_short():
+    corner = np.vstack((np.column_stack((np.linspace(0, 1, 11), np.zeros(11))), np.column_stack((np.ones(10), np.linspace(0.1, 1, 10)))))
+
+    def cut(room):
+        """m from the corner to the nearest pose."""
+        poses, _ = follow(corner, (0.0, 0.0, 0.0), 12.0, room=room)
+        return np.hypot(poses[:, 0] - 1.0, poses[:, 1]).min()
+
+    assert cut(0.0) < 0.5 * cut(np.inf)
 
 
 def test_turns_on_the_spot_when_the_path_lies_behind():
@@ -73,7 +84,7 @@ def test_never_faster_than_its_pace():
 
 
 def test_an_empty_path_means_stand():
-    assert Tracker(PACE).follow((1.0, 2.0, 3.0), np.zeros((0, 2)), None) == (0.0, 0.0)
+    assert Tracker(PACE).follow((1.0, 2.0, 3.0), np.zeros((0, 2)), None, np.inf) == (0.0, 0.0)
 
 
 def test_the_clearance_along_an_arc_equals_that_of_its_poses():
