@@ -187,3 +187,11 @@ def test_a_broken_model_is_named(tmp_path):
     (tmp_path / "milvus" / "milvus.xml").write_text("<fdm_config name='milvus'><metrics>")
     with pytest.raises(BadInput, match=r"milvus\.xml"):
         Airframe(tmp_path, BODY, TANGENT)
+
+
+def test_full_command_is_the_deflection_that_the_vehicle_file_says():
+    airframe, _ = airborne()
+    airframe.command(Controls(BODY.max_aileron, -BODY.max_elevator, BODY.max_rudder, 1.0))
+    airframe.step()
+    positions = [airframe._fdm[f"fcs/{name}-pos-rad"] for name in ("left-aileron", "elevator", "rudder")]
+    assert positions == pytest.approx((BODY.max_aileron, -BODY.max_elevator, BODY.max_rudder))
