@@ -10,9 +10,9 @@ RUN if [ "$(dpkg --print-architecture)" != amd64 ]; then \
     && pip install --no-cache-dir --require-hashes -r requirements.lock
 
 COPY . .
-RUN pip install --no-cache-dir --no-deps --no-build-isolation -e .
-
-ENV PYTHONUNBUFFERED=1 UVF_RUNS=/runs UVF_ALIVE_FILE=/tmp/alive
+ENV PYTHONPATH=/uvf:/uvf/src PYTHONUNBUFFERED=1 UVF_RUNS=/runs UVF_ALIVE_FILE=/tmp/alive
+# Compiles the numerical kernels into the image, so that containers start warm.
+RUN python -m uvf.launch.cli check
 ENTRYPOINT ["python", "-m", "uvf.launch.cli"]
 CMD ["--help"]
 

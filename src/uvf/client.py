@@ -2,7 +2,6 @@
 
 import uvf
 from schemas import topics
-from schemas.convert import stamp_ns
 from schemas.messages import DriveCommand
 
 with uvf.connect() as run:
