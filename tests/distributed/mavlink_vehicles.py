@@ -152,10 +152,10 @@ class LiveVehicles:
         self.link.close()
 
     def _run(self):
+        """Steps in the order of their time, also after the machine has been busy with something else."""
         start = time.monotonic()
         while not self._stop.wait(0.005):
             now = round((time.monotonic() - start) * NS)
-            for shell in self._shells:
-                shell.sim_ns = now
-                while shell.due_ns <= now:
-                    shell.advance()
+            while (shell := min(self._shells, key=lambda s: s.due_ns)).due_ns <= now:
+                shell.sim_ns = shell.due_ns
+                shell.advance()
