@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from services.gcs.guard import is_loopback
 from uvf.runtime.params import BadInput
 
-HOST, PORT = "UVF_GCS_HOST", "UVF_GCS_PORT"
+HOST, PORT, TOKEN = "UVF_GCS_HOST", "UVF_GCS_PORT", "UVF_GCS_TOKEN"
 
 
 @dataclass(frozen=True)
@@ -25,11 +25,16 @@ class Address:
 
 
 def address_from(environment: Mapping[str, str] = os.environ) -> Address:
-    """Reads UVF_GCS_HOST and UVF_GCS_PORT. An address that others can reach gets a token. Raises BadInput."""
+    """Reads UVF_GCS_HOST, UVF_GCS_PORT and UVF_GCS_TOKEN. Raises BadInput.
+
+    An address that others can reach gets a random token, unless one is given; an empty one is for containers whose
+    port is published on the host's loopback only.
+    """
     host, text = environment.get(HOST, "127.0.0.1"), environment.get(PORT, "8080")
     if not text.isdecimal() or not 0 < int(text) < 65536:
         raise BadInput(f"{PORT}={text}: not a port; choose one from 1 to 65535")
-    return Address(host, int(text), "" if is_loopback(host) else secrets.token_urlsafe(16))
+    token = environment.get(TOKEN, "" if is_loopback(host) else secrets.token_urlsafe(16))
+    return Address(host, int(text), token)
 
 
 def claim(address: Address) -> None:

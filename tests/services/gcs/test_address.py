@@ -34,3 +34,8 @@ def test_a_taken_port_is_named_with_a_way_out():
         with pytest.raises(BadInput, match=rf"127\.0\.0\.1:{port}.*UVF_GCS_PORT=8081"):
             claim(Address("127.0.0.1", port))
     claim(Address("127.0.0.1", port))
+
+
+def test_the_token_can_be_chosen_and_for_a_container_left_empty():
+    assert address_from({"UVF_GCS_HOST": "0.0.0.0", "UVF_GCS_TOKEN": "chosen"}).token == "chosen"
+    assert address_from({"UVF_GCS_HOST": "0.0.0.0", "UVF_GCS_TOKEN": ""}).token == ""
