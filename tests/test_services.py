@@ -30,7 +30,8 @@ def test_names_mean_one_thing(service):
 @pytest.mark.parametrize("service", SERVICES, ids=lambda s: s.name)
 def test_what_is_recalled_is_kept_and_wanted(service):
     assert all(topic.kept for topic in service.recalls.values())
-    assert set(inspect.signature(service.recall).parameters) - {"self", "messages"} == set(service.recalls)
+    parameters = inspect.signature(service.recall).parameters if hasattr(service, "recall") else ("self",)
+    assert set(parameters) == {"self", *service.recalls} if service.recalls else set(parameters) == {"self"}
 
 
 @pytest.mark.parametrize("kind", catalogue.KINDS, ids=lambda k: k.name)

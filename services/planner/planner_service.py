@@ -112,7 +112,7 @@ class PlannerService(Service):
         events, self._events = self._events, []
         return {"path": self._path(t), "nav_status": self._nav_status(t, here), "goal": replies, "events": events}
 
-    def recall(self, nav_status: NavStatus | None = None) -> None:  # type: ignore[override]
+    def recall(self, nav_status: NavStatus | None = None) -> None:
         """A person's goal that was being driven to is still wanted; its heading is not told."""
         if nav_status is not None and nav_status.job == "goal" and nav_status.state != NavStatus.REACHED:
             self._goal = Goal((nav_status.goal.x, nav_status.goal.y))

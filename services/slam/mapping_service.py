@@ -76,7 +76,7 @@ class MappingService(Service):
             self._changed, self._map_time = False, t
         return outputs
 
-    def recall(self, map: Grid | None = None, correction: FrameTransform | None = None) -> None:  # type: ignore[override]
+    def recall(self, map: Grid | None = None, correction: FrameTransform | None = None) -> None:
         """Goes on with the last map published; the next scan finds its place in it."""
         if map is None or correction is None or map.cell_size.x != self.params.resolution:
             return

@@ -76,7 +76,7 @@ class OdometryService(Service):
             "nav_state": self._nav_state(t, world_from_base),
         }
 
-    def recall(self, odometry: Odometry | None = None, correction: FrameTransform | None = None) -> None:  # type: ignore[override]
+    def recall(self, odometry: Odometry | None = None, correction: FrameTransform | None = None) -> None:
         """Goes on at the last pose told; what was driven since then is in the ticks counted since then."""
         if odometry is not None:
             position = odometry.pose.position

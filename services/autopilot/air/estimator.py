@@ -58,6 +58,7 @@ class Estimator:
         self._static, self._differential = LowPass(PRESSURE_TIME), LowPass(PRESSURE_TIME)
         self._side = LowPass(FORCE_TIME)
         self._attitude = Attitude()
+        self._attitude_known = False
         self._track: TrackFilter | None = None
         self._vertical: Vertical | None = None
         self.density = atmosphere.RHO0
@@ -66,6 +67,11 @@ class Estimator:
         self._lift = G  # m/s^2
         self._age = 0.0  # s, of the newest IMU sample
         self._aside = 0.0  # rad, of the flight through the air from the nose
+
+    def begin_at(self, roll: float, pitch: float) -> None:
+        """Attitude [rad] to begin with, where another estimator has left it; else level flight is supposed."""
+        self._attitude.roll, self._attitude.pitch = roll, pitch
+        self._attitude_known = True
 
     @property
     def started(self) -> bool:
@@ -93,7 +99,7 @@ class Estimator:
     def _start(self, samples: list[Inertial], fix: Fix) -> tuple[TrackFilter, Vertical]:
         self._track = TrackFilter(fix.north, fix.east, fix.v_north, fix.v_east)
         self._vertical = Vertical(fix.height, self._baro, fix.v_up)
-        if samples:
+        if samples and not self._attitude_known:
             self._attitude.start(samples[-1].force)
         return self._track, self._vertical
 

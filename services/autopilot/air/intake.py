@@ -3,13 +3,14 @@
 import zlib
 from collections.abc import Iterable, Sequence
 
-from schemas.convert import seconds
-from schemas.messages import AirData, Gnss, Imu, Mission, MissionItem, Mode, Vector3
+from schemas.convert import seconds, wxyz
+from schemas.messages import AirData, Gnss, Imu, Mission, MissionItem, MissionProgress, Mode, NavState, Vector3
 from services.autopilot.air.estimator import Fix, Inertial, Pressures
-from services.autopilot.air.pilot import FlightMode
+from services.autopilot.air.pilot import FlightMode, Stand
 from services.autopilot.air.plan import Item, Kind
 from services.autopilot.air.route import Place
 from uvf.maths.geodesy import LocalTangent
+from uvf.maths.rotations import enu_flu_from_ned_frd, to_euler
 from uvf.runtime.mission_file import Waypoint
 
 KINDS = {
@@ -56,6 +57,19 @@ def fix(message: Gnss, tangent: LocalTangent, t: float) -> Fix:
 
 def place(v: Vector3) -> Place:
     return Place(v.y, v.x, v.z)
+
+
+def roll_and_pitch(state: NavState) -> tuple[float, float]:
+    """rad, FRD against NED."""
+    roll, pitch, _ = to_euler(enu_flu_from_ned_frd(wxyz(state.orientation)))
+    return roll, pitch
+
+
+def stand(progress: MissionProgress | None) -> Stand:
+    """Where in the mission another instance has been."""
+    if progress is None or progress.state in (MissionProgress.NO_MISSION, MissionProgress.NOT_STARTED):
+        return Stand(None, -1, 0, False)
+    return Stand(progress.current, progress.reached, progress.laps, progress.state == MissionProgress.COMPLETE)
 
 
 def items(messages: Iterable[MissionItem]) -> list[Item]:

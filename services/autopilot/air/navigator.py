@@ -40,6 +40,10 @@ class Navigator:
         """Starts, or goes on with the item that was left, from wherever the aircraft is."""
         self.jump_to(0 if self.index is None else self.index)
 
+    def take_up(self, index: int | None, reached: int, laps: int, finished: bool) -> None:
+        """Stands where another navigator of the same items has stood; jumps are counted anew."""
+        self.index, self.reached, self.laps, self.finished = index, reached, laps, finished
+
     @property
     def returns_home(self) -> bool:
         return self.index is not None and self.items[self.index].kind is Kind.RETURN

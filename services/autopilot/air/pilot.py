@@ -29,6 +29,16 @@ class Flown:
     level: Level
 
 
+@dataclass(frozen=True, slots=True)
+class Stand:
+    """Where in a mission an aircraft is; index None: not begun."""
+
+    index: int | None
+    reached: int
+    laps: int
+    finished: bool
+
+
 class Pilot:
     """Holds, flies the mission or returns. Requests give the reason of a refusal, empty when accepted."""
 
@@ -62,10 +72,15 @@ class Pilot:
 
     def _begin(self, now: Estimate) -> None:
         self._fresh = False
-        self.home = Place(now.north, now.east, now.height)
+        self.home = self.home or Place(now.north, now.east, now.height)
         self._level = Level(now.height)
         if self.mode is FlightMode.MISSION:
             self.navigator.resume()
+
+    def take_up(self, mode: FlightMode, home: Place, stand: Stand) -> None:
+        """Before the first step: goes on for an instance that has died."""
+        self.mode, self.home, self.reason = mode, home, "started again"
+        self.navigator.take_up(stand.index, stand.reached, stand.laps, stand.finished)
 
     def _end_mission(self) -> None:
         if self.navigator.returns_home:

@@ -13,9 +13,11 @@ from schemas.messages import (
     Imu,
     Mission,
     MissionItem,
+    MissionProgress,
     MissionRequest,
     Mode,
     ModeRequest,
+    NavState,
     Reply,
     SetCurrentRequest,
     StopCommand,
@@ -73,6 +75,7 @@ class AutopilotAir(Service):
         "mission": topics.SET_MISSION,
         "current": topics.SET_CURRENT,
     }
+    recalls = {"status": topics.STATUS, "plan": topics.MISSION, "progress": topics.PROGRESS, "nav_state": topics.NAV_STATE}
     params: AirParams
 
     def __init__(self, ship: Ship, params: AirParams) -> None:
@@ -135,6 +138,22 @@ class AutopilotAir(Service):
             out["path"] = reports.path(t, self._pilot)
         self._cycles += 1
         return {**out, **self._announce(t), **replies}  # type: ignore[dict-item]
+
+    def recall(
+        self,
+        status: VehicleStatus | None = None,
+        plan: Mission | None = None,
+        progress: MissionProgress | None = None,
+        nav_state: NavState | None = None,
+    ) -> None:
+        """Goes on in the mode, at the item and from the attitude where the instance before has been."""
+        if plan is not None:
+            self._set_mission(plan)
+        if status is not None and status.mode in intake.MODES:
+            self._armed = status.armed
+            self._pilot.take_up(intake.MODES[status.mode], intake.place(status.home), intake.stand(progress))
+        if nav_state is not None:
+            self._estimator.begin_at(*intake.roll_and_pitch(nav_state))
 
     def stale(self, t: float, missing: tuple[str, ...]) -> Outputs:
         """Wings level at cruise throttle until the sensors are back; before the first cycle the servos hold."""

@@ -118,9 +118,7 @@ class GroundAutopilot(Service):
         self._choose(t, {k: Velocity(seconds(c.timestamp), c.linear, c.angular) for k, c in commands.items() if c is not None})
         return {"wheels": self._wheels(t), **replies, **self._reports(t, position)}
 
-    def recall(  # type: ignore[override]
-        self, status: VehicleStatus | None = None, mission: Mission | None = None, progress: MissionProgress | None = None
-    ) -> None:
+    def recall(self, status: VehicleStatus | None = None, mission: Mission | None = None, progress: MissionProgress | None = None) -> None:
         """Goes on in the mode, armed or not, and at the mission's item where the instance before has been."""
         if status is not None and status.mode in SOURCES:
             self._mode, self._armed = status.mode, status.armed

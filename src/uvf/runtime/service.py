@@ -89,19 +89,20 @@ class Service:
     calls: ClassVar[Mapping[str, Request[Any, Any]]] = {}
 
     recalls: ClassVar[Mapping[str, Topic[Any]]] = {}
-    """Kept topics whose newest message ``recall`` is handed when the service is started again in a run."""
+    """Kept topics whose newest messages ``recall`` is handed when the service is started again in a run."""
 
     params: Params = Params()
 
     step: Any
     """``def step(self, t: float, **inputs) -> Outputs``: each service has its own signature, checked by a test."""
 
+    recall: Any
+    """``def recall(self, **messages) -> None`` where there are ``recalls``: takes up the work of an instance that has
+    died, from those of its messages that were found (the others are None by default)."""
+
     def stale(self, t: float, missing: tuple[str, ...]) -> Outputs:
         """Called instead of ``step`` while required inputs are absent or old: the place of failsafes."""
         return {}
-
-    def recall(self, **messages: Message) -> None:
-        """Takes up the work of an instance that has died, from those of ``recalls`` that were found (maybe none)."""
 
     def close(self) -> None:
         """Gives back engines and sockets; called once, when the process or the run ends."""
