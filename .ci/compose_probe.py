@@ -1,6 +1,7 @@
 """Looks at the composed system from the host: all healthy, the page there, both vehicles seen moving by MAVSDK."""
 
 import json
+import math
 import subprocess
 import time
 import urllib.request
@@ -46,7 +47,7 @@ def main() -> None:
         sdk.add_any_connection(f"udpin://{bridge}:14540")
         wait(lambda: len(sdk.get_systems()) == 2, "MAVSDK on the host sees two vehicles")
         telemetry = [Telemetry(system) for system in sdk.get_systems()]
-        wait(lambda: all(t.position().latitude_deg for t in telemetry), "both have a position")
+        wait(lambda: all(math.isfinite(t.position().latitude_deg) for t in telemetry), "both have a position")
         before = [(t.position().latitude_deg, t.position().longitude_deg) for t in telemetry]
 
         def moved() -> bool:

@@ -1,0 +1,54 @@
+"""The whole system in a real browser: tracks move, and a click sends the rover where it points."""
+
+import contextlib
+
+import numpy as np
+import pytest
+
+from schemas import topics
+from schemas.convert import array
+from tests.browser.canvas import POINTS, TRACK_BLUE, on_screen, pixels, until
+from tests.distributed.system import System
+
+GOAL = (2.2, 2.6)  # m, world: free floor in the room where the rover starts
+
+
+@pytest.fixture(scope="module")
+def system(browser, tmp_path_factory):
+    with System(tmp_path_factory.mktemp("runs"), page=True) as running:
+        yield running
+
+
+@pytest.fixture(scope="module")
+def page(browser, system):
+    page = browser.new_page(viewport={"width": 1000, "height": 640})
+    errors = []
+    page.on("pageerror", lambda error: errors.append(str(error)))
+    page.goto(f"http://127.0.0.1:{system.page}/")
+    page.wait_for_function("() => window.__viserSceneTree && '/track/burger/tail' in window.__viserSceneTree.getState()", timeout=90_000)
+    with contextlib.suppress(Exception):
+        page.locator(".mantine-Notification-closeButton").click(timeout=5_000)
+    yield page
+    page.close()
+    assert errors == []
+
+
+def place(system):
+    return array(system.client.read("burger", topics.TRUTH).position)[:2]
+
+
+def test_the_tracks_of_both_vehicles_grow(page):
+    for vehicle in ("burger", "milvus"):
+        before = page.evaluate(POINTS, f"/track/{vehicle}/tail")
+        assert until(page, lambda n=before, v=vehicle: page.evaluate(POINTS, f"/track/{v}/tail") != n), vehicle
+    drawn = pixels(page, TRACK_BLUE)
+    assert until(page, lambda: pixels(page, TRACK_BLUE) > drawn + 20), "no more pixels of the track are drawn"
+
+
+def test_a_click_on_the_floor_sends_the_rover_there(page, system):
+    x, y = on_screen(page, (*GOAL, 0.0))
+    page.mouse.click(x, y)
+    assert until(page, lambda: system.client.read("burger", topics.NAV_STATUS).job == "goal", 10.0), "the click is no goal"
+    goal = array(system.client.read("burger", topics.NAV_STATUS).goal)[:2]
+    assert np.linalg.norm(goal - GOAL) < 0.15
+    assert until(page, lambda: np.linalg.norm(place(system) - goal) < 0.3, 60.0), f"it is at {place(system)}"

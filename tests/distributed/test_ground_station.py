@@ -1,0 +1,79 @@
+"""MAVSDK 4.1 against the whole system: both vehicles, positions, a mission flown by the real autopilot."""
+
+import math
+
+import pytest
+from mavsdk import ComponentType, Configuration, Mavsdk
+from mavsdk.plugins.action import Action, ActionError
+from mavsdk.plugins.mission import Mission, MissionItem, MissionPlan
+from mavsdk.plugins.telemetry import FlightMode, Telemetry
+
+from schemas import topics
+from schemas.convert import array
+from tests.distributed.system import System
+from tests.distributed.test_mavsdk import wait
+from uvf.maths.geodesy import LocalTangent
+from uvf.runtime.site import ROOT, load_site
+
+PLANE, ROVER = 1, 2
+DEGREE = math.radians(1.0)
+POINTS = [(150.0, -150.0, 70.0), (250.0, 0.0, 70.0), (100.0, 100.0, 80.0)]  # m: east, north, up
+
+
+@pytest.fixture(scope="module")
+def system(tmp_path_factory):
+    with System(tmp_path_factory.mktemp("runs")) as running:
+        yield running
+
+
+@pytest.fixture(scope="module")
+def vehicles(system):
+    with Mavsdk(Configuration.create_with_component_type(ComponentType.GROUND_STATION)) as sdk:
+        sdk.add_any_connection(f"udpin://127.0.0.1:{system.mavlink}")
+        wait(lambda: len(sdk.get_systems()) == 2, 20.0)
+        yield {each.get_system_id(): each for each in sdk.get_systems()}
+
+
+@pytest.fixture(scope="module")
+def tangent():
+    origin = load_site(ROOT / "missions" / "demo.yaml").world.origin
+    return LocalTangent.from_degrees(origin.latitude, origin.longitude, origin.altitude)
+
+
+def test_positions_are_those_of_the_simulators(system, vehicles, tangent):
+    for number, name in ((PLANE, "milvus"), (ROVER, "burger")):
+        telemetry = Telemetry(vehicles[number])
+        wait(lambda t=telemetry: math.isfinite(t.position().latitude_deg))
+        seen = telemetry.position()
+        reported = tangent.enu(seen.latitude_deg * DEGREE, seen.longitude_deg * DEGREE, seen.absolute_altitude_m)
+        true = array(system.client.read(name, topics.TRUTH).position)
+        assert abs(reported - true).max() < (30.0 if number == PLANE else 0.5)
+
+
+def test_a_mission_goes_up_and_is_flown(system, vehicles, tangent):
+    home = Telemetry(vehicles[PLANE])
+    wait(lambda: math.isfinite(home.home().latitude_deg))
+    items = []
+    for point in POINTS:
+        latitude, longitude, altitude = tangent.geodetic(point)
+        above = altitude - home.home().absolute_altitude_m
+        items.append(MissionItem(latitude / DEGREE, longitude / DEGREE, above, is_fly_through=True))
+    mission, seen = Mission(vehicles[PLANE]), []
+    mission.upload_mission(MissionPlan(items))
+    mission.subscribe_mission_progress(lambda progress, _: seen.append((progress.current, progress.total)))
+    mission.start_mission()
+    wait(lambda: (2, 3) in seen, 60.0)
+    assert system.client.read("milvus", topics.MISSION).items[0].position.x == pytest.approx(POINTS[0][0], abs=0.1)
+
+
+def test_modes_and_arming_reach_the_autopilots(system, vehicles):
+    action, telemetry = Action(vehicles[PLANE]), Telemetry(vehicles[PLANE])
+    action.hold()
+    wait(lambda: telemetry.flight_mode() == FlightMode.HOLD, 5.0)
+    with pytest.raises(ActionError):
+        action.disarm()
+    rover, rover_telemetry = Action(vehicles[ROVER]), Telemetry(vehicles[ROVER])
+    rover.disarm()
+    wait(lambda: not rover_telemetry.armed(), 5.0)
+    rover.arm()
+    wait(rover_telemetry.armed, 5.0)
