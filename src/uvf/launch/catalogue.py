@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from uvf.runtime.params import BadInput, nearest
-from uvf.runtime.quiet import c_output_discarded
+from uvf.runtime.quiet import c_errors_discarded
 from uvf.runtime.site import Build, Host, Site
 
 
@@ -55,7 +55,7 @@ def hosts(site: Site, kinds: Sequence[Kind], vehicle: str | None = None) -> list
         raise BadInput(f"no vehicle '{vehicle}' in {site.mission_path}; {nearest(vehicle, site.members)}")
     made: list[Host] = []
     for each in kinds:
-        with c_output_discarded():
+        with c_errors_discarded():
             build: Build = importlib.import_module(each.build).build
         made += [host for host in build(site) if vehicle is None or host.vehicle in (None, vehicle)]
     return made

@@ -1,6 +1,5 @@
-"""Keeps a library's own printing, from C, off the standard output."""
+"""Keeps what a library writes from C, when it is imported, off the standard error."""
 
-import ctypes
 import os
 import sys
 from collections.abc import Iterator
@@ -8,16 +7,15 @@ from contextlib import contextmanager
 
 
 @contextmanager
-def c_output_discarded() -> Iterator[None]:
-    """pybullet prints a line when it is imported and more when it connects; logs and pipes shall not hold it."""
-    sys.stdout.flush()
-    kept = os.dup(1)
+def c_errors_discarded() -> Iterator[None]:
+    """pybullet writes a line when it is imported; logs and terminals shall not hold it. Exceptions still come through."""
+    sys.stderr.flush()
+    kept = os.dup(2)
     nowhere = os.open(os.devnull, os.O_WRONLY)
-    os.dup2(nowhere, 1)
+    os.dup2(nowhere, 2)
     try:
         yield
-        ctypes.CDLL(None).fflush(None)
     finally:
-        os.dup2(kept, 1)
+        os.dup2(kept, 2)
         os.close(kept)
         os.close(nowhere)

@@ -1,0 +1,28 @@
+"""Records the golden log anew: ``python -m tests.golden.make``. Do it only when behaviour was meant to change, and say so."""
+
+import tempfile
+from pathlib import Path
+
+from schemas.topics import IMAGE
+from uvf.launch.run import run_lockstep
+from uvf.runtime.bus import matches
+from uvf.runtime.recording import Recorder, read_log
+from uvf.runtime.site import ROOT, load_site
+
+GOLDEN = Path(__file__).with_name("demo.mcap")
+SECONDS = 8.0
+
+
+def main() -> None:
+    """The first seconds of the demo, without pictures."""
+    with tempfile.TemporaryDirectory() as folder:
+        whole = Path(folder, "log.mcap")
+        run_lockstep(load_site(ROOT / "missions" / "demo.yaml"), SECONDS, whole)
+        with Recorder(GOLDEN) as recorder:
+            for sample in read_log(whole):
+                if not matches(IMAGE.at("*"), sample.key):
+                    recorder.write(sample)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,35 @@
+"""Each service, fed with the inputs of a log recorded before, still puts out what it put out then.
+
+A difference is either a fault or meant; when meant, ``python -m tests.golden.make`` records anew.
+"""
+
+import dataclasses
+
+import msgspec
+import pytest
+
+from tests.golden.make import GOLDEN
+from uvf.launch import catalogue
+from uvf.runtime.replay import into_service
+from uvf.runtime.site import ROOT, load_site
+
+TOLERANCE = 1e-6  # processors round the last digits differently
+KINDS = [catalogue.kind(name) for name in ("sim_ground", "sim_air", "slam", "planner", "autopilot")]
+HOSTS = {h.service.name: h for h in catalogue.hosts(load_site(ROOT / "missions" / "demo.yaml"), KINDS)}
+
+
+@pytest.mark.parametrize("name", HOSTS)
+def test_the_service_does_what_it_did(name):
+    assert [str(d) for d in into_service(GOLDEN, HOSTS[name], TOLERANCE)][:5] == []
+
+
+def test_a_change_of_behaviour_is_noticed():
+    host = HOSTS["autopilot_air"]
+
+    def otherwise():
+        service = host.make()
+        service.params = msgspec.structs.replace(service.params, trim_airspeed=26.0)
+        return service
+
+    changed = list(into_service(GOLDEN, dataclasses.replace(host, make=otherwise), TOLERANCE))
+    assert changed and "actuator/surfaces" in {d.key.split("/", 2)[2] for d in changed}
