@@ -2,8 +2,8 @@
 
 import sys
 
-from services.gcs.address import address_from
 from services.gcs.service import GroundStation
+from uvf.runtime.address import address_from
 from uvf.runtime.site import Host, Site
 
 

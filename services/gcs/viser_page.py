@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 from viser import _messages
 
 from services.gcs import panels, viser_join
-from services.gcs.address import Address, claim
 from services.gcs.cameras import FOV
 from services.gcs.commands import Action, ClickGround, Layer, Select
 from services.gcs.drawing import Button, Camera, Picture, Toast
@@ -24,6 +23,7 @@ from services.gcs.guard import Guard
 from services.gcs.state import LAYERS
 from services.gcs.viser_scene import ViserScene
 from services.gcs.viser_script import bar_source, follow, padded, script, selected_in
+from uvf.runtime.address import Address, claim
 from uvf.runtime.params import BadInput
 
 FLEET_WIDTH, VEHICLE_WIDTH = 270, 350

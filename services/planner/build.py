@@ -7,6 +7,7 @@ from services.planner.navigator import Navigator
 from services.planner.planner_service import PlannerParams, PlannerService
 from services.planner.safety import safe_share
 from services.planner.tracker_service import TrackerParams, TrackerService
+from uvf.maths.planar import Pose2
 from uvf.runtime.params import BadInput
 from uvf.runtime.site import Host, Member, Site
 
@@ -23,8 +24,8 @@ def _hosts(member: Member) -> list[Host]:
     start, body, lidar = member.entry.start, member.file.ground, member.file.sensors.lidar
     if body is None or lidar is None:
         raise BadInput(f"{member.folder / 'vehicle.yaml'}: the planner needs 'ground:' and sensors: lidar")
-    world_from_map = (start.x, start.y, start.yaw)
-    base_from_lidar = (lidar.mount.xyz[0], lidar.mount.xyz[1], lidar.mount.rpy[2])
+    world_from_map = Pose2(start.x, start.y, start.yaw)
+    base_from_lidar = Pose2(lidar.mount.xyz[0], lidar.mount.xyz[1], lidar.mount.rpy[2])
     planner = member.params("planner", PlannerParams)
     tracker = member.params("tracker", TrackerParams)
     return [

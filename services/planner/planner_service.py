@@ -29,7 +29,7 @@ from services.planner.frontiers import Taste
 from services.planner.jobs import IDLE, Goal, Job, Orders, choose, mission_target, not_now
 from services.planner.navigator import Navigator, Plan
 from services.planner.smoothing import length
-from uvf.maths.planar import Pose2, compose, inverse, transform
+from uvf.maths.planar import IDENTITY, Pose2, compose, inverse, transform
 from uvf.runtime.service import Outputs, Params, Service, optional
 
 Floats = NDArray[np.float64]
@@ -85,7 +85,7 @@ class PlannerService(Service):
         self._reached_at: float | None = None
         self._is_there = False
         self._progress_at = 0.0
-        self._progress_pose: Pose2 = (0.0, 0.0, 0.0)
+        self._progress_pose: Pose2 = IDENTITY
         self._events: list[Event] = []
 
     def step(
@@ -98,7 +98,7 @@ class PlannerService(Service):
         progress: MissionProgress | None,
         goal: list[GoalRequest],
     ) -> Outputs:
-        here = compose(self._map_from_world, (pose.pose.position.x, pose.pose.position.y, yaw_of(pose.pose.orientation)))
+        here = compose(self._map_from_world, Pose2(pose.pose.position.x, pose.pose.position.y, yaw_of(pose.pose.orientation)))
         changed = self._take_map(map)
         replies = [self._ask(t, here, request, status) for request in goal]
         job = choose(status, self._goal, mission_target(mission, progress, self._orders.home), self._orders)
@@ -226,7 +226,7 @@ class PlannerService(Service):
             self._plan = Plan(None, reason)
 
     def _in_map(self, point: Point) -> Point:
-        x, y, _ = compose(self._map_from_world, (point[0], point[1], 0.0))
+        x, y, _ = compose(self._map_from_world, Pose2(point[0], point[1], 0.0))
         return (x, y)
 
     def _path(self, t: float) -> PosesInFrame:
@@ -243,7 +243,7 @@ class PlannerService(Service):
         status = NavStatus(timestamp=stamp(t), job=self._job.name, reason=self._plan.reason, explored=self._explorer.explored)
         status.state = self._state()
         if self._target is not None:
-            x, y, _ = compose(self._world_from_map, (self._target[0], self._target[1], 0.0))
+            x, y, _ = compose(self._world_from_map, Pose2(self._target[0], self._target[1], 0.0))
             status.goal.x, status.goal.y = x, y
         if self._plan.path is not None:
             nearest = int(np.argmin(np.hypot(*(self._plan.path - np.array(here[:2])).T)))

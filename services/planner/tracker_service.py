@@ -11,7 +11,7 @@ from schemas.convert import seconds, stamp, yaw_of
 from schemas.messages import DriveCommand, Event, LaserScan, PoseInFrame, PosesInFrame
 from services.planner.safety import safe_share
 from services.planner.tracking import Pace, Tracker
-from uvf.maths.planar import Pose2, PoseHistory, compose, inverse, transform
+from uvf.maths.planar import IDENTITY, Pose2, PoseHistory, compose, inverse, transform
 from uvf.runtime.service import Outputs, Params, Service, every
 from uvf.runtime.vehicle_file import GroundBody
 
@@ -50,7 +50,7 @@ class TrackerService(Service):
         speeds = min(params.speed, body.max_linear), min(params.turn_speed, body.max_angular)
         self._tracker = Tracker(Pace(*speeds, params.deceleration, params.goal_tolerance))
         self._history = PoseHistory(HISTORY)
-        self._pose: Pose2 = (0.0, 0.0, 0.0)
+        self._pose: Pose2 = IDENTITY
         self._scan_time = -np.inf
         self._seen: Floats = np.zeros((0, 2))
         """(n, 2) m, world frame: the last scan's points near the vehicle."""
@@ -59,7 +59,7 @@ class TrackerService(Service):
     def step(self, t: float, path: PosesInFrame, pose: list[PoseInFrame], scan: LaserScan) -> Outputs:
         for message in pose:
             position = message.pose.position
-            self._pose = (position.x, position.y, yaw_of(message.pose.orientation))
+            self._pose = Pose2(position.x, position.y, yaw_of(message.pose.orientation))
             self._history.add(seconds(message.timestamp), self._pose)
         self._look(scan)
         if t - self._scan_time > SCAN_MAX_AGE:

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from uvf.maths.kinematics import PlanarPose
+from uvf.maths.planar import Pose2, compose
 from uvf.maths.raycast import cast
 from uvf.runtime.vehicle_file import Lidar
 from uvf.runtime.world_geometry import Slice
@@ -21,11 +21,10 @@ class LidarModel:
         beams = np.arange(lidar.beams, dtype=np.float64)
         self._angles: Floats = lidar.mount.rpy[2] + lidar.angle_min + lidar.angle_increment * beams
 
-    def scan(self, body: PlanarPose, others: Floats) -> Floats:
+    def scan(self, body: Pose2, others: Floats) -> Floats:
         """body: pose of base_link, world; others: (n, 3) x, y, radius [m] of vehicles that stand in the way."""
         x, y, _ = self._lidar.mount.xyz
-        c, s = np.cos(body.yaw), np.sin(body.yaw)
-        origin = np.array((body.x + c * x - s * y, body.y + s * x + c * y))
+        origin = np.array(compose(body, Pose2(x, y, 0.0))[:2])
         circles = np.vstack((self._world.circles, others))
         true = cast(origin, body.yaw + self._angles, self._world.boxes, circles)
         measured = true + self._rng.normal(0.0, self._lidar.noise, true.shape)

@@ -10,7 +10,7 @@ from services.sim_ground import readings
 from services.sim_ground.body import BodyState
 from services.sim_ground.imu import ImuModel
 from services.sim_ground.lidar import LidarModel
-from uvf.maths.kinematics import PlanarPose
+from uvf.maths.planar import Pose2
 from uvf.maths.rotations import to_euler
 from uvf.runtime.site import Member, Site
 from uvf.runtime.vehicle_file import GroundBody
@@ -22,8 +22,8 @@ STEP_HZ = 100.0
 TRUTH_HZ, STATE_HZ = 50.0, 20.0  # as in the table of topics
 
 
-def planar(body: BodyState) -> PlanarPose:
-    return PlanarPose(float(body.position[0]), float(body.position[1]), to_euler(body.world_from_body)[2])
+def planar(body: BodyState) -> Pose2:
+    return Pose2(float(body.position[0]), float(body.position[1]), to_euler(body.world_from_body)[2])
 
 
 class Rig:

@@ -6,7 +6,7 @@ from services.slam.correlative import search
 from services.slam.mapper import Mapper, Scan
 from services.slam.mapping_service import MappingParams, MappingService
 from services.slam.odometry_service import OdometryParams, OdometryService
-from uvf.maths.planar import IDENTITY
+from uvf.maths.planar import IDENTITY, Pose2
 from uvf.runtime.params import BadInput
 from uvf.runtime.site import Host, Member, Site
 
@@ -24,7 +24,7 @@ def _hosts(member: Member) -> list[Host]:
     lidar = sensors.lidar
     if lidar is None or sensors.encoders is None:
         raise BadInput(f"{member.folder / 'vehicle.yaml'}: slam needs sensors: lidar and encoders")
-    world_from_map = (start.x, start.y, start.yaw)
+    world_from_map = Pose2(start.x, start.y, start.yaw)
     odometry = member.params("odometry", OdometryParams)
     mapping = member.params("mapping", MappingParams)
     return [

@@ -53,7 +53,7 @@ def search(occupancy: OccupancyMap, start: Pose2, points: Floats) -> tuple[Pose2
     origin = occupancy.origin
     start_cells = ((start[0] - origin[0]) / cell, (start[1] - origin[1]) / cell, start[2])
     i, j, k, score = _best(start_cells, points / cell, likelihood, (shifts, turns))
-    return (start[0] + shifts[i] * cell, start[1] + shifts[j] * cell, wrap(start[2] + turns[k])), score
+    return Pose2(start[0] + shifts[i] * cell, start[1] + shifts[j] * cell, wrap(start[2] + turns[k])), score
 
 
 def _offsets(reach: float, step: float) -> Floats:

@@ -10,7 +10,7 @@ from schemas import topics
 from schemas.convert import occupancy_cells, occupancy_grid, quaternion, seconds, stamp, yaw_of
 from schemas.messages import FrameTransform, Grid, LaserScan, Odometry, Vector3
 from services.slam.mapper import Mapper, Scan, toward
-from uvf.maths.planar import Pose2, PoseHistory, compose, inverse, transform
+from uvf.maths.planar import IDENTITY, Pose2, PoseHistory, compose, inverse, transform
 from uvf.maths.rotations import from_euler
 from uvf.runtime.service import Outputs, Params, Service, every
 from uvf.runtime.vehicle_file import Lidar
@@ -46,12 +46,12 @@ class MappingService(Service):
         self.params = params
         self._vehicle = vehicle
         self._lidar = lidar
-        self._base_from_lidar: Pose2 = (lidar.mount.xyz[0], lidar.mount.xyz[1], lidar.mount.rpy[2])
+        self._base_from_lidar: Pose2 = Pose2(lidar.mount.xyz[0], lidar.mount.xyz[1], lidar.mount.rpy[2])
         self._world_from_map = world_from_map
         self._mapper = Mapper(params.resolution, params.insert_distance, params.insert_turn)
         self._history = PoseHistory(HISTORY)
-        self._odom_from_base: Pose2 = (0.0, 0.0, 0.0)
-        self._published: Pose2 = (0.0, 0.0, 0.0)
+        self._odom_from_base: Pose2 = IDENTITY
+        self._published: Pose2 = IDENTITY
         self._scan_time = -1.0
         self._map_time = -np.inf
         self._changed = False
@@ -60,7 +60,7 @@ class MappingService(Service):
     def step(self, t: float, scan: LaserScan, odometry: list[Odometry]) -> Outputs:
         for message in odometry:
             position = message.pose.position
-            self._odom_from_base = (position.x, position.y, yaw_of(message.pose.orientation))
+            self._odom_from_base = Pose2(position.x, position.y, yaw_of(message.pose.orientation))
             self._history.add(seconds(message.timestamp), self._odom_from_base)
         taken_at = seconds(scan.timestamp)
         odom_from_base = self._history.at(taken_at)
@@ -82,7 +82,7 @@ class MappingService(Service):
             return
         self._mapper.occupancy.restore(occupancy_cells(map), np.array((map.pose.position.x, map.pose.position.y)))
         shift = correction.translation
-        self._published = self._mapper.map_from_odom = (shift.x, shift.y, yaw_of(correction.rotation))
+        self._published = self._mapper.map_from_odom = Pose2(shift.x, shift.y, yaw_of(correction.rotation))
 
     def _in_base(self, scan: LaserScan) -> Scan:
         ranges = np.asarray(scan.ranges)

@@ -55,7 +55,7 @@ class OdometryFilter:
     def pose(self) -> Pose2:
         """odom_from_base."""
         x, y, heading, _ = self._kf.x
-        return (float(x), float(y), wrap(float(heading)))
+        return Pose2(float(x), float(y), wrap(float(heading)))
 
     @property
     def bias(self) -> float:

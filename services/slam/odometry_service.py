@@ -10,7 +10,7 @@ from schemas import topics
 from schemas.convert import planar_pose, quaternion, seconds, stamp, yaw_of
 from schemas.messages import FrameTransform, Imu, KeyValuePair, NavState, Odometry, PoseInFrame, Vector3, WheelTicks
 from services.slam.odometry_filter import Noise, OdometryFilter
-from uvf.maths.kinematics import PlanarPose, Twist, move
+from uvf.maths.kinematics import Twist, move
 from uvf.maths.planar import IDENTITY, Pose2, compose
 from uvf.maths.rotations import from_euler, matrix
 from uvf.runtime.service import Outputs, Params, Service, every, optional
@@ -68,7 +68,7 @@ class OdometryService(Service):
         if correction is not None:
             self._correct(correction)
         ahead = min(t - seconds(wheels.timestamp), MAX_PREDICTION)
-        odom_from_base = move(PlanarPose(*self._filter.pose), Twist(*self._filter.speeds), ahead)
+        odom_from_base = move(self._filter.pose, Twist(*self._filter.speeds), ahead)
         world_from_base = compose(self._world_from_map, compose(self._map_from_odom, odom_from_base))
         return {
             "odometry": self._odometry(t, odom_from_base),
@@ -81,7 +81,7 @@ class OdometryService(Service):
         if odometry is not None:
             position = odometry.pose.position
             known = {pair.key: pair.value for pair in odometry.metadata}
-            self._filter.resume((position.x, position.y, yaw_of(odometry.pose.orientation)), float(known[BIAS]))
+            self._filter.resume(Pose2(position.x, position.y, yaw_of(odometry.pose.orientation)), float(known[BIAS]))
             self._last = WheelTicks(timestamp=odometry.timestamp, left=int(known[LEFT]), right=int(known[RIGHT]))
         if correction is not None:
             self._correct(correction)
@@ -109,7 +109,7 @@ class OdometryService(Service):
 
     def _correct(self, correction: FrameTransform) -> None:
         shift = correction.translation
-        newest = (shift.x, shift.y, yaw_of(correction.rotation))
+        newest = Pose2(shift.x, shift.y, yaw_of(correction.rotation))
         if newest != self._map_from_odom:
             self._variance_at_correction = self._variance
             self._map_from_odom = newest

@@ -148,4 +148,4 @@ def match(occupancy: OccupancyMap, start: Pose2, points: Floats, sensor: tuple[f
     map_ = (occupancy.log_odds, occupancy.surface, float(occupancy.origin[0]), float(occupancy.origin[1]), occupancy.resolution)
     x, y, heading, matched, misplaced, squares = _refine(start, (points, sensor), map_)
     rms = float(np.sqrt(squares / matched)) if matched else float("inf")
-    return Match((x, y, wrap(heading)), matched, matched / max(matched + misplaced, 1), rms)
+    return Match(Pose2(x, y, wrap(heading)), matched, matched / max(matched + misplaced, 1), rms)

@@ -6,13 +6,13 @@ from pathlib import Path
 
 import pytest
 
-from services.gcs.address import Address
 from services.gcs.cameras import cameras
 from services.gcs.service import GroundStation
 from services.gcs.state import Model
 from services.gcs.viser_page import ViserPage
 from tests.services.gcs.scripted import Script, demo_site
 from tests.services.gcs.wire import free_port
+from uvf.runtime.address import Address
 from uvf.runtime.shell import Shell
 from uvf.runtime.site import Host
 

@@ -12,8 +12,8 @@ from services.autopilot.air.params import AirParams
 from services.autopilot.air.state import Estimate
 from uvf.maths.atmosphere import RHO0
 from uvf.maths.filters import Integral
+from uvf.maths.geodesy import GRAVITY
 
-G = 9.80665  # m/s^2
 ROLL_RATE_LIMIT = 1.6  # rad/s
 PITCH_RATE_LIMIT = 0.8  # rad/s
 SURFACE_LIMIT = 0.5  # rad
@@ -78,7 +78,7 @@ class Cycle:
     @cached_property
     def alpha(self) -> float:
         """rad, the angle of attack that carries this load."""
-        return self.params.alpha_zero_lift + self.params.alpha_per_load * self.load * G / self.eas**2
+        return self.params.alpha_zero_lift + self.params.alpha_per_load * self.load * GRAVITY / self.eas**2
 
 
 class Control:
@@ -120,7 +120,7 @@ class Control:
     def _elevator(self, cycle: Cycle, pitch: float) -> float:
         now, params = cycle.now, cycle.params
         bank = clip(now.roll, FULL_BANK)
-        turning = G / cycle.speed * math.sin(bank) * math.tan(bank)  # q of a level coordinated turn
+        turning = GRAVITY / cycle.speed * math.sin(bank) * math.tan(bank)  # q of a level coordinated turn
         rate = clip((pitch - now.pitch) / params.pitch_time * math.cos(bank), PITCH_RATE_LIMIT) + turning
         error = rate - now.q
         trim = self._pitch.step(params.pitch_i * error, cycle.dt)
@@ -131,7 +131,7 @@ class Control:
     def _rudder(self, cycle: Cycle) -> float:
         """Damps yaw against the rate of a coordinated turn; takes out the side force slowly."""
         now, params = cycle.now, cycle.params
-        turning = G / cycle.speed * math.sin(now.roll) * math.cos(now.pitch)
+        turning = GRAVITY / cycle.speed * math.sin(now.roll) * math.cos(now.pitch)
         trim = self._slip.step(params.slip_i * now.side_force, cycle.dt)
         return clip(cycle.scale * (params.yaw_damping * (now.r - turning) + trim), SURFACE_LIMIT)
 

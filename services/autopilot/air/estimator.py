@@ -9,8 +9,8 @@ from services.autopilot.air.track_filter import CHI, PSI, WE, WN, E, N, TrackFil
 from services.autopilot.air.vertical import Vertical
 from uvf.maths import atmosphere
 from uvf.maths.filters import LowPass
+from uvf.maths.geodesy import GRAVITY
 
-G = 9.80665  # m/s^2
 GYRO_TIME = 0.02  # s
 PRESSURE_TIME = 0.08  # s
 FORCE_TIME = 0.15  # s
@@ -64,7 +64,7 @@ class Estimator:
         self.density = atmosphere.RHO0
         self._airspeed = 0.0
         self._baro = 0.0
-        self._lift = G  # m/s^2
+        self._lift = GRAVITY  # m/s^2
         self._age = 0.0  # s, of the newest IMU sample
         self._aside = 0.0  # rad, of the flight through the air from the nose
 
@@ -128,7 +128,7 @@ class Estimator:
         u, w = self._airspeed * math.cos(self._alpha), self._airspeed * math.sin(self._alpha)
         attitude.correct((q * w - fx, r * u - p * w - fy, -q * u - fz), dt)
         sr, cr, sp, cp = math.sin(attitude.roll), math.cos(attitude.roll), math.sin(attitude.pitch), math.cos(attitude.pitch)
-        return fx * sp - (fy * sr + fz * cr) * cp - G
+        return fx * sp - (fy * sr + fz * cr) * cp - GRAVITY
 
     def _step_track(self, track: TrackFilter, samples: list[Inertial], dt: float) -> None:
         attitude = self._attitude

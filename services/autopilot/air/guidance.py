@@ -11,8 +11,8 @@ from services.autopilot.air.control import clip
 from services.autopilot.air.params import AirParams
 from services.autopilot.air.state import Estimate
 from uvf.maths.filters import Integral
+from uvf.maths.geodesy import GRAVITY
 
-G = 9.80665  # m/s^2
 Point = tuple[float, float]
 INTEGRATES_WITHIN = 5.0  # m
 TURN_TRIM_LIMIT = 0.05  # rad/s
@@ -67,4 +67,4 @@ class Steering:
             self._trim.step(-params.cross_track_i * aim.error, dt)
         rate += self._trim.value
         crab = math.cos(math.remainder(now.course - now.yaw, math.tau))
-        return clip(math.atan(rate * speed / (G * max(crab, 0.3))), params.bank_limit)
+        return clip(math.atan(rate * speed / (GRAVITY * max(crab, 0.3))), params.bank_limit)

@@ -9,8 +9,8 @@ from services.autopilot.air.params import AirParams
 from services.autopilot.air.plan import NO_JUMPS, Item, Kind, Stop, next_stop
 from services.autopilot.air.route import Arc, Circle, Leg, Level, Place
 from services.autopilot.air.state import Estimate
+from uvf.maths.geodesy import GRAVITY
 
-G = 9.80665  # m/s^2
 TIGHTEST_ORBIT = 0.6  # of the radius at turn_bank; smaller wishes are widened to that
 
 
@@ -113,11 +113,11 @@ class Navigator:
     def _turn_radius(self, now: Estimate, params: AirParams) -> float:
         """m, at turn_bank with the wind behind."""
         speed = (self.speed or params.trim_airspeed) + math.hypot(now.wind_north, now.wind_east)
-        return speed**2 / (G * math.tan(params.turn_bank))
+        return speed**2 / (GRAVITY * math.tan(params.turn_bank))
 
     def _orbit_radius(self, item: Item, params: AirParams) -> float:
         wanted = item.radius or params.hold_radius
-        tightest = TIGHTEST_ORBIT * params.trim_airspeed**2 / (G * math.tan(params.turn_bank))
+        tightest = TIGHTEST_ORBIT * params.trim_airspeed**2 / (GRAVITY * math.tan(params.turn_bank))
         return math.copysign(max(abs(wanted), tightest), wanted)
 
     def _circled(self, circle: Circle, now: Estimate, dt: float) -> bool:

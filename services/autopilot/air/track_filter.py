@@ -11,9 +11,10 @@ import numpy as np
 from filterpy.kalman import ExtendedKalmanFilter
 from numpy.typing import NDArray
 
+from uvf.maths.geodesy import GRAVITY
+
 Floats = NDArray[np.float64]
 
-G = 9.80665  # m/s^2
 N, E, V, CHI, WN, WE, PSI = range(7)
 PROCESS = np.diag((0.01, 0.01, 0.005, 0.00003, 1e-4, 1e-4, 1e-4))  # units^2/s
 TRIANGLE_SIGMA = 0.5  # m/s
@@ -46,7 +47,7 @@ class TrackFilter:
         v = max(v, 1.0)
         c, s, cp, sp = math.cos(chi), math.sin(chi), math.cos(psi), math.sin(psi)
         v_rate = airspeed * yaw_rate * (we * cp - wn * sp) / v
-        lift = G / v * math.tan(roll)
+        lift = GRAVITY / v * math.tan(roll)
         chi_rate = lift * math.cos(chi - psi)
         f = np.eye(7)
         f[N, V], f[N, CHI], f[E, V], f[E, CHI] = dt * c, -dt * v * s, dt * s, dt * v * c

@@ -15,7 +15,7 @@ def router_endpoint() -> str:
 
 def gcs_address() -> tuple[str, int]:
     """Where the page will be. Raises BadInput."""
-    from services.gcs.address import address_from
+    from uvf.runtime.address import address_from
 
     address = address_from()
     return address.host, address.port

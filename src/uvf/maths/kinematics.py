@@ -9,17 +9,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from uvf.maths.planar import Pose2
 from uvf.maths.rotations import wrap
 
 Floats = NDArray[np.float64]
-
-
-class PlanarPose(NamedTuple):
-    """m, m, rad."""
-
-    x: float
-    y: float
-    yaw: float
 
 
 class Twist(NamedTuple):
@@ -54,7 +47,7 @@ class DifferentialDrive:
         return WheelSpeeds((twist.linear - half_difference) / self.wheel_radius, (twist.linear + half_difference) / self.wheel_radius)
 
 
-def move(pose: PlanarPose, twist: Twist, dt: float) -> PlanarPose:
+def move(pose: Pose2, twist: Twist, dt: float) -> Pose2:
     """The pose after ``dt`` [s] at constant velocity: the exact arc about the instantaneous centre of curvature.
 
     Written by the arc's chord, v dt sinc(omega dt / 2) along the mean heading, which equals the rotation about
@@ -62,8 +55,9 @@ def move(pose: PlanarPose, twist: Twist, dt: float) -> PlanarPose:
     """
     turn = twist.angular * dt
     chord = twist.linear * dt * float(np.sinc(turn / (2 * np.pi)))
-    heading = pose.yaw + turn / 2
-    return PlanarPose(pose.x + chord * float(np.cos(heading)), pose.y + chord * float(np.sin(heading)), wrap(pose.yaw + turn))
+    x, y, yaw = pose
+    heading = yaw + turn / 2
+    return Pose2(x + chord * float(np.cos(heading)), y + chord * float(np.sin(heading)), wrap(yaw + turn))
 
 
 def spin_velocity(angular_velocity: Floats, arm: Floats) -> Floats:

@@ -1,9 +1,10 @@
-"""Rigid motion in the plane, SE(2): poses are (x [m], y [m], heading [rad]).
+"""Rigid motion in the plane, SE(2): a pose is x [m], y [m], yaw [rad].
 
 Names cancel: ``map_from_base = compose(map_from_odom, odom_from_base)``.
 """
 
 from math import cos, sin
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,23 +12,31 @@ from numpy.typing import NDArray
 from uvf.maths.rotations import wrap
 
 Floats = NDArray[np.float64]
-Pose2 = tuple[float, float, float]
 
-IDENTITY: Pose2 = (0.0, 0.0, 0.0)
+
+class Pose2(NamedTuple):
+    """m, m, rad."""
+
+    x: float
+    y: float
+    yaw: float
+
+
+IDENTITY = Pose2(0.0, 0.0, 0.0)
 
 
 def compose(a_from_b: Pose2, b_from_c: Pose2) -> Pose2:
     """``a_from_c``."""
     x, y, heading = a_from_b
     c, s = cos(heading), sin(heading)
-    return (x + c * b_from_c[0] - s * b_from_c[1], y + s * b_from_c[0] + c * b_from_c[1], wrap(heading + b_from_c[2]))
+    return Pose2(x + c * b_from_c[0] - s * b_from_c[1], y + s * b_from_c[0] + c * b_from_c[1], wrap(heading + b_from_c[2]))
 
 
 def inverse(a_from_b: Pose2) -> Pose2:
     """``b_from_a``."""
     x, y, heading = a_from_b
     c, s = cos(heading), sin(heading)
-    return (-c * x - s * y, s * x - c * y, wrap(-heading))
+    return Pose2(-c * x - s * y, s * x - c * y, wrap(-heading))
 
 
 def transform(a_from_b: Pose2, points_b: Floats) -> Floats:
@@ -40,7 +49,7 @@ def transform(a_from_b: Pose2, points_b: Floats) -> Floats:
 def interpolate(p: Pose2, q: Pose2, fraction: float) -> Pose2:
     """Between p (0) and q (1), the heading by the shorter way."""
     x, y = p[0] + fraction * (q[0] - p[0]), p[1] + fraction * (q[1] - p[1])
-    return (x, y, wrap(p[2] + fraction * wrap(q[2] - p[2])))
+    return Pose2(x, y, wrap(p[2] + fraction * wrap(q[2] - p[2])))
 
 
 class PoseHistory:

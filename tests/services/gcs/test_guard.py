@@ -7,7 +7,8 @@ import pytest
 import websockets
 from websockets.asyncio.server import serve
 
-from services.gcs.guard import Guard, is_loopback
+from services.gcs.guard import Guard
+from uvf.runtime.address import is_loopback
 
 HOST = {"Host": "127.0.0.1:8080"}
 

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 import websockets
 
-from services.gcs.address import Address
 from services.gcs.cameras import cameras
 from services.gcs.commands import SetMode, StopAll
 from services.gcs.drawing import Button, Picture, Points, Polyline
@@ -19,6 +18,7 @@ from services.gcs.viser_script import selected_in
 from tests.services.gcs.fakes import Station
 from tests.services.gcs.scripted import UAV, demo_site
 from tests.services.gcs.wire import connect, free_port, join
+from uvf.runtime.address import Address
 from uvf.runtime.params import BadInput
 
 

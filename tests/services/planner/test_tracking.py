@@ -5,7 +5,8 @@ import pytest
 
 from services.planner.safety import clearance_along, safe_share
 from services.planner.tracking import Pace, Tracker
-from uvf.maths.kinematics import PlanarPose, Twist, move
+from uvf.maths.kinematics import Twist, move
+from uvf.maths.planar import Pose2
 from uvf.maths.rotations import wrap
 
 PACE = Pace(linear=0.45, angular=1.5, deceleration=0.5, tolerance=0.06)
@@ -15,7 +16,7 @@ KEEP = 0.15
 
 def follow(path, start, seconds, final_heading=None, room=np.inf):
     """(n, 3) poses and (n, 2) commands at 20 Hz."""
-    tracker, pose = Tracker(PACE), PlanarPose(*start)
+    tracker, pose = Tracker(PACE)(*start)
     poses, commands = [pose], []
     for _ in range(round(seconds * 20)):
         command = tracker.follow(pose, path, final_heading, room)
@@ -90,7 +91,7 @@ def test_an_empty_path_means_stand():
 def test_the_clearance_along_an_arc_equals_that_of_its_poses():
     points = np.random.default_rng(2).uniform((0.5, -1.0), (2.5, 1.0), (40, 2))
     now, least = clearance_along(points, 0.4, 0.9, 1.0)
-    poses = [move(PlanarPose(0.0, 0.0, 0.0), Twist(0.4, 0.9), 0.04 * k) for k in range(26)]
+    poses = [move(Pose2(0.0, 0.0, 0.0), Twist(0.4, 0.9), 0.04 * k) for k in range(26)]
     distances = [np.hypot(*(points - (p.x, p.y)).T).min() for p in poses]
     assert now == pytest.approx(distances[0])
     assert least == pytest.approx(min(distances), abs=1e-6)

@@ -10,7 +10,8 @@ from schemas import topics
 from schemas.convert import stamp, yaw_of
 from schemas.messages import WheelCommand
 from services.sim_ground.build import build
-from uvf.maths.kinematics import DifferentialDrive, PlanarPose, Twist
+from uvf.maths.kinematics import DifferentialDrive, Twist
+from uvf.maths.planar import Pose2
 from uvf.runtime.lockstep import Lockstep
 from uvf.runtime.service import Service
 from uvf.runtime.site import Host, load_site
@@ -60,7 +61,7 @@ class Record:
 
     def pose(self, index, vehicle="burger"):
         truth = self.of(topics.TRUTH, vehicle)[index]
-        return PlanarPose(truth.position.x, truth.position.y, yaw_of(truth.orientation))
+        return Pose2(truth.position.x, truth.position.y, yaw_of(truth.orientation))
 
     def tilts(self):
         """Angle [rad] between the body's up axis and the vertical, at each truth."""

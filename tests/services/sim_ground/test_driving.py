@@ -8,7 +8,8 @@ import pytest
 from schemas import topics
 from schemas.convert import array
 from tests.services.sim_ground.ride import BURGER, STILL, ride, site_with
-from uvf.maths.kinematics import PlanarPose, Twist, WheelSpeeds, move
+from uvf.maths.kinematics import Twist, WheelSpeeds, move
+from uvf.maths.planar import Pose2
 from uvf.maths.rotations import wrap
 
 HALL = (6.0, 4.4, 0.0)
@@ -36,7 +37,7 @@ def test_turns_on_the_spot(tmp_path):
 def test_drives_an_arc_about_the_icc(tmp_path):
     twist = Twist(0.2, 0.5)
     record = drive(tmp_path, 6.0, lambda t: twist if t < 3.0 else STILL, start=(6.0, 4.2, -0.75))
-    wanted = move(PlanarPose(6.0, 4.2, -0.75), twist, 3.0)
+    wanted = move(Pose2(6.0, 4.2, -0.75), twist, 3.0)
     assert record.pose(-1)[:2] == pytest.approx(wanted[:2], abs=0.02)
     assert record.pose(-1).yaw == pytest.approx(wanted.yaw, abs=0.06)
 

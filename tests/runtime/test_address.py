@@ -4,7 +4,7 @@ import socket
 
 import pytest
 
-from services.gcs.address import Address, address_from, claim
+from uvf.runtime.address import Address, address_from, claim
 from uvf.runtime.params import BadInput
 
 

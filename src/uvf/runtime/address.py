@@ -1,15 +1,22 @@
 """Where the page is served: host and port from the environment, checked before viser starts."""
 
+import ipaddress
 import os
 import secrets
 import socket
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from services.gcs.guard import is_loopback
 from uvf.runtime.params import BadInput
 
 HOST, PORT, TOKEN = "UVF_GCS_HOST", "UVF_GCS_PORT", "UVF_GCS_TOKEN"
+
+
+def is_loopback(host: str) -> bool:
+    try:
+        return ipaddress.ip_address(host).is_loopback
+    except ValueError:
+        return host == "localhost"
 
 
 @dataclass(frozen=True)
