@@ -42,6 +42,9 @@ class ParamServer:
             return ParamReply(
                 accepted=False, reason=f"{self._service.name} has no parameter '{request.name}'; {nearest(request.name, fields)}"
             )
+        if request.value and request.name in self._service.fixed_params:
+            reason = f"{request.name} is fixed while running; set it in the vehicle's file and start again"
+            return ParamReply(accepted=False, reason=reason)
         if request.value:
             try:
                 self._set(request.name, request.value)
@@ -59,6 +62,7 @@ class ParamServer:
         hints = get_type_hints(type(self._service.params), include_extras=True)
         param = Param(name=name, value=msgspec.json.encode(getattr(self._service.params, name)).decode())
         param.min, param.max = float("-inf"), float("inf")
+        param.read_only = name in self._service.fixed_params
         for meta in get_args(hints[name])[1:]:
             if isinstance(meta, msgspec.Meta):
                 _describe_limits(param, meta)

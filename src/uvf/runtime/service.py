@@ -92,6 +92,8 @@ class Service:
     """Kept topics whose newest messages ``recall`` is handed when the service is started again in a run."""
 
     params: Params = Params()
+    fixed_params: ClassVar[frozenset[str]] = frozenset()
+    """Those that are read only when the service is made; setting them while running is refused."""
 
     step: Any
     """``def step(self, t: float, **inputs) -> Outputs``: each service has its own signature, checked by a test."""

@@ -16,7 +16,7 @@ KEEP = 0.15
 
 def follow(path, start, seconds, final_heading=None, room=np.inf):
     """(n, 3) poses and (n, 2) commands at 20 Hz."""
-    tracker, pose = Tracker(PACE)(*start)
+    tracker, pose = Tracker(PACE), Pose2(*start)
     poses, commands = [pose], []
     for _ in range(round(seconds * 20)):
         command = tracker.follow(pose, path, final_heading, room)

@@ -7,6 +7,7 @@ import pytest
 
 from services.sim_ground.lidar import LidarModel
 from services.sim_ground.world import BulletWorld
+from uvf.maths.planar import Pose2
 from uvf.maths.raycast import cast, rectangles
 from uvf.runtime.site import ROOT
 from uvf.runtime.vehicle_file import Mount, load_vehicle
@@ -17,7 +18,7 @@ LDS = load_vehicle(ROOT / "vehicles", "burger").sensors.lidar
 QUIET = msgspec.structs.replace(LDS, noise=0.0, mount=Mount((0.0, 0.0, 0.182)))
 WALL_AHEAD = Slice(rectangles(np.array([[2.5, 0.0, 0.5, 10.0, 0.0]])), np.zeros((0, 3)))
 NOBODY = np.zeros((0, 3))
-HERE = (0.0, 0.0, 0.0)
+HERE = Pose2(0.0, 0.0, 0.0)
 
 
 def scan(lidar=QUIET, pose=HERE, others=NOBODY, world=WALL_AHEAD):
@@ -50,7 +51,7 @@ def test_straight_ahead_is_the_first_beam_and_left_the_ninetieth():
 
 
 def test_turning_the_robot_turns_the_scan_the_other_way():
-    assert scan(pose=(0.0, 0.0, np.radians(30)))[330] == pytest.approx(scan()[0])
+    assert scan(pose=Pose2(0.0, 0.0, np.radians(30)))[330] == pytest.approx(scan()[0])
 
 
 def test_ranges_start_at_the_sensor_not_at_the_axle():
@@ -59,8 +60,8 @@ def test_ranges_start_at_the_sensor_not_at_the_axle():
 
 
 def test_too_near_and_too_far_are_no_return():
-    assert scan(pose=(1.9, 0.0, 0.0))[0] == 0.0
-    assert scan(pose=(-2.0, 0.0, 0.0))[0] == 0.0
+    assert scan(pose=Pose2(1.9, 0.0, 0.0))[0] == 0.0
+    assert scan(pose=Pose2(-2.0, 0.0, 0.0))[0] == 0.0
 
 
 def test_another_vehicle_hides_the_wall():
