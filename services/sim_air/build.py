@@ -32,7 +32,7 @@ def _aircraft(site: Site, member: Member) -> Aircraft:
     aircraft = Aircraft(member.name, member.file, airframe, Actuators(at_start, body))
     fitted = member.file.sensors
     if fitted.imu is not None:
-        aircraft.imu = Imu(fitted.imu, tangent.latitude, site.rng(member.name, "imu"))
+        aircraft.imu = Imu(fitted.imu, np.array(site.world.magnetic_field), site.rng(member.name, "imu"))
     if fitted.gnss is not None:
         aircraft.gnss = Gnss(fitted.gnss, tangent, site.rng(member.name, "gnss"))
     if fitted.air_data is not None:

@@ -1,11 +1,11 @@
 """Sensor samples as messages."""
 
 from schemas.convert import quaternion, stamp, vector
-from schemas.messages import AirData, Battery, FrameTransform, FrameTransforms, Gnss, Imu, JointState, JointStates, NavState
+from schemas.messages import AirData, Battery, Gnss, Imu, JointState, JointStates, NavState
 from services.sim_air import sensors
 from services.sim_air.airframe import Air, Controls, Motion
-from uvf.maths.rotations import Floats, from_euler
-from uvf.runtime.vehicle_file import GnssSensor, Mount, Sensors
+from uvf.maths.rotations import Floats
+from uvf.runtime.vehicle_file import GnssSensor
 
 SATELLITES = 14  # seen under an open sky
 
@@ -72,20 +72,3 @@ def nav_state(t: float, motion: Motion, wind: Floats) -> NavState:
         airspeed=motion.airspeed,
         wind=vector(wind),
     )
-
-
-def mounts(t: float, vehicle: str, fitted: Sensors) -> FrameTransforms:
-    """base_link from each fitted sensor."""
-    named = [(s.frame, s.mount) for s in (fitted.imu, fitted.camera, fitted.lidar) if s is not None]
-    return FrameTransforms(transforms=[_mount(t, vehicle, frame, mount) for frame, mount in named])
-
-
-def _mount(t: float, vehicle: str, frame: str, mount: Mount) -> FrameTransform:
-    transform = FrameTransform(
-        timestamp=stamp(t),
-        parent_frame_id=f"{vehicle}/base_link",
-        child_frame_id=f"{vehicle}/{frame}",
-        rotation=quaternion(from_euler(*mount.rpy)),
-    )
-    transform.translation.x, transform.translation.y, transform.translation.z = mount.xyz
-    return transform

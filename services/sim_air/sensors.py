@@ -14,13 +14,6 @@ from uvf.runtime.vehicle_file import AirDataSensor, BatteryPack, GnssSensor, Imu
 
 Floats = rotations.Floats
 
-DIPOLE = 3.12e-5  # T, the Earth's field on the equator
-
-
-def axial_dipole(latitude: float) -> Floats:
-    """(3,) T, ENU: the field of a dipole along the Earth's axis, without declination (Merrill et al. 1996, eq. 3.13)."""
-    return DIPOLE * np.array((0.0, math.cos(latitude), -2 * math.sin(latitude)))
-
 
 class Due:
     """Whether a sensor of ``hz`` gives a new sample at time t."""
@@ -47,11 +40,13 @@ class ImuSample(NamedTuple):
 class Imu:
     """Constant biases drawn once, white noise on each sample; at the centre of gravity."""
 
-    def __init__(self, data: ImuSensor, latitude: float, rng: np.random.Generator) -> None:
+    def __init__(self, data: ImuSensor, field: Floats, rng: np.random.Generator) -> None:
+        """``field`` is the magnetic field, (3,) T, ENU."""
+        self.frame = data.frame
         self.due = Due(data.hz)
         self._rng = rng
         self._sensor_from_body = rotations.matrix(rotations.from_euler(*data.mount.rpy)).T
-        self._field_enu = axial_dipole(latitude)
+        self._field_enu = field
         self._bias = np.concatenate((rng.normal(0.0, data.gyro_bias, 3), rng.normal(0.0, data.accel_bias, 3), np.zeros(3)))
         self._noise = np.repeat((data.gyro_noise, data.accel_noise, data.mag_noise), 3)
 

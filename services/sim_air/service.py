@@ -1,5 +1,6 @@
 """The aircraft of a mission, flown by JSBSim: surfaces in, sensors and truth out."""
 
+import math
 from collections.abc import Mapping
 from typing import Protocol
 
@@ -10,6 +11,7 @@ from services.sim_air.actuators import Actuators
 from services.sim_air.airframe import Air, Controls, Motion
 from services.sim_air.sensors import Charge, Due, Gnss, Imu, Pressures
 from uvf.maths.rotations import Floats
+from uvf.runtime.sensor_frames import sensor_frames
 from uvf.runtime.service import Outputs, Service, Value, each_vehicle, optional
 from uvf.runtime.vehicle_file import VehicleFile
 
@@ -48,6 +50,12 @@ class Aircraft:
         self.truth_due = Due(topics.TRUTH.hz)
         self.battery_due = Due(topics.BATTERY.hz)
 
+    def take(self, command: SurfaceCommand) -> None:
+        """A command with a number that is not finite is none: the engine would not recover from it."""
+        s = (command.aileron, command.elevator, command.rudder, command.throttle)
+        if all(map(math.isfinite, s)):
+            self.command = Controls(*s)
+
     def fly_to(self, t: float) -> None:
         """Physics steps up to ``t`` [s]."""
         due = round(t / self.dt)
@@ -60,7 +68,7 @@ class Aircraft:
 
 
 class SimAir(Service):
-    """All aircraft of the mission in one steady wind; a command that went stale leaves the surfaces where they are."""
+    """All aircraft of the mission in one steady wind; a command that went stale or is not finite leaves the surfaces where they are."""
 
     name = "sim_air"
     hz = 100.0
@@ -86,8 +94,7 @@ class SimAir(Service):
         out: dict[str, dict[str, Value]] = {name: {} for name in self.outputs}
         for craft in self._aircraft:
             if craft.name in surfaces:
-                s = surfaces[craft.name]
-                craft.command = Controls(s.aileron, s.elevator, s.rudder, s.throttle)
+                craft.take(surfaces[craft.name])
             craft.fly_to(t)
             for name, message in self._read(t, craft).items():
                 out[name][craft.name] = message
@@ -99,9 +106,9 @@ class SimAir(Service):
         motion = craft.body.motion()
         read: dict[str, Value] = {}
         if self._first:
-            read["tf_static"] = readings.mounts(t, craft.name, craft.file.sensors)
+            read["tf_static"] = sensor_frames(craft.name, craft.file.sensors, t)
         if craft.imu is not None and craft.imu.due.at(t):
-            read["imu"] = readings.imu(t, f"{craft.name}/imu", craft.imu.read(motion))
+            read["imu"] = readings.imu(t, f"{craft.name}/{craft.imu.frame}", craft.imu.read(motion))
         if craft.gnss is not None and (fix := craft.gnss.read(t, motion)) is not None:
             read["gnss"] = readings.gnss(fix, craft.gnss.data)
         if craft.pressures is not None and craft.pressures.due.at(t):

@@ -50,9 +50,12 @@ class Pressures:
 
 
 class Estimator:
-    """Started by the first fix; alpha is taken from the load on the wing (``alpha_zero_lift``, ``alpha_per_load``)."""
+    """Started by the first fix; alpha is taken from the load on the wing (``alpha_zero_lift``, ``alpha_per_load``),
+    ``declination`` [rad] is that of the magnetic field, east positive.
+    """
 
-    def __init__(self, alpha_zero_lift: float, alpha_per_load: float) -> None:
+    def __init__(self, alpha_zero_lift: float, alpha_per_load: float, declination: float = 0.0) -> None:
+        self._declination = declination
         self._alpha_zero, self._alpha_load = alpha_zero_lift, alpha_per_load
         self._gyros = [LowPass(GYRO_TIME) for _ in range(3)]
         self._static, self._differential = LowPass(PRESSURE_TIME), LowPass(PRESSURE_TIME)
@@ -137,7 +140,8 @@ class Estimator:
         yaw_rate = ((q - attitude.bias_q) * math.sin(attitude.roll) + r * math.cos(attitude.roll)) / math.cos(attitude.pitch)
         track.predict(self._horizontal_airspeed(), yaw_rate + (self._aside - before) / dt, attitude.roll, dt)
         if samples and any(samples[-1].field):
-            track.correct_heading(_heading(samples[-1].field, attitude.roll, attitude.pitch) + self._aside)
+            magnetic = _heading(samples[-1].field, attitude.roll, attitude.pitch)
+            track.correct_heading(magnetic + self._declination + self._aside)
 
     def _azimuth_of_alpha(self) -> float:
         """rad; in a bank the angle of attack carries the nose aside of the flight through the air."""
@@ -177,7 +181,7 @@ class Estimator:
 
 
 def _heading(field: Triple, roll: float, pitch: float) -> float:
-    """Tilt-compensated heading [rad] from the magnetic field [FRD], which points north without declination."""
+    """Tilt-compensated heading [rad] from the magnetic field [FRD], from magnetic north."""
     x, y, z = field
     sr, cr, sp, cp = math.sin(roll), math.cos(roll), math.sin(pitch), math.cos(pitch)
     return math.atan2(z * sr - y * cr, x * cp + (y * sr + z * cr) * sp)

@@ -42,6 +42,7 @@ class Ship:
 
     system_id: int
     tangent: LocalTangent
+    declination: float  # rad, magnetic north east of true north
     items: list[MissionItem]
     starts_in_air: bool
 
@@ -84,7 +85,7 @@ class AutopilotAir(Service):
         self._mission = intake.with_id(ship.items)
         self._announced = False
         self._armed = ship.starts_in_air
-        self._estimator = Estimator(params.alpha_zero_lift, params.alpha_per_load)
+        self._estimator = Estimator(params.alpha_zero_lift, params.alpha_per_load, ship.declination)
         self._pilot = Pilot(intake.items(ship.items))
         self._journal = Journal()
         self._fix_stamp = 0

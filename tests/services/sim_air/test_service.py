@@ -1,8 +1,10 @@
 """The service around the aircraft: what it sends, how often, and what it does without commands."""
 
+import math
 from collections import Counter
 from pathlib import Path
 
+import msgspec
 import numpy as np
 import pytest
 
@@ -11,6 +13,7 @@ from schemas.messages import SurfaceCommand
 from services.sim_air.actuators import Actuators
 from services.sim_air.airframe import Air, Controls, Motion
 from services.sim_air.build import build
+from services.sim_air.sensors import Imu
 from services.sim_air.service import Aircraft, SimAir
 from uvf.maths.rotations import IDENTITY
 from uvf.runtime.bus import LocalBus
@@ -87,6 +90,20 @@ def test_surfaces_hold_their_last_command_when_it_goes_stale():
     assert body.commands[-1].throttle == pytest.approx(0.9)
 
 
+@pytest.mark.parametrize("name", ["aileron", "elevator", "rudder", "throttle"])
+@pytest.mark.parametrize("value", [math.nan, math.inf])
+def test_a_command_that_is_not_finite_is_no_command(name, value):
+    body, service = glider()
+    service.step(0.01, surfaces={"g": SurfaceCommand(aileron=0.1, elevator=-0.2, throttle=0.9)})
+    for k in range(2, 101):
+        bad = SurfaceCommand(aileron=-0.3, elevator=0.3, throttle=0.1)
+        setattr(bad, name, value)
+        service.step(k / 100, surfaces={"g": bad})
+    assert body.commands[-1].aileron == pytest.approx(0.1, abs=1e-6)
+    assert body.commands[-1].elevator == pytest.approx(-0.2, abs=1e-6)
+    assert body.commands[-1].throttle == pytest.approx(0.9)
+
+
 def test_before_the_first_command_the_surfaces_stay_trimmed():
     body, service = glider()
     service.step(0.01, surfaces={})
@@ -106,6 +123,35 @@ def test_a_sensor_that_is_not_fitted_sends_nothing():
     out = service.step(0.01, surfaces={})
     assert not out["imu"]
     assert not out["gnss"]
+
+
+def house_readings(tmp_path, topic):
+    seen = run_two(tmp_path, until=0.05)
+    return [topic.message.FromString(payload) for _, key, payload in seen if key == topic.at("first")]
+
+
+def test_the_magnetic_field_is_that_of_the_world(tmp_path):
+    field = load_site(ROOT / "missions" / "demo.yaml").world.magnetic_field
+    read = house_readings(tmp_path, topics.IMU)[0].magnetic_field
+    assert math.hypot(read.x, read.y, read.z) == pytest.approx(np.linalg.norm(field), rel=0.05)
+    assert read.x == pytest.approx(field[0], abs=6e-6)  # it flies east, a little nose up
+    assert read.y == pytest.approx(field[1], abs=3e-6)
+
+
+def test_a_cameras_optical_frame_is_told_too(tmp_path):
+    (frames,) = house_readings(tmp_path, topics.TF_STATIC)
+    assert {f.child_frame_id: f.parent_frame_id for f in frames.transforms} == {
+        "first/imu": "first/base_link",
+        "first/camera": "first/base_link",
+        "first/camera_optical": "first/camera",
+    }
+
+
+def test_the_imus_frame_is_that_of_the_vehicle_file():
+    _, service = glider()
+    (craft,) = service._aircraft
+    craft.imu = Imu(msgspec.structs.replace(MILVUS.sensors.imu, frame="nose_imu"), np.zeros(3), np.random.default_rng(1))
+    assert service.step(0.01, surfaces={})["imu"]["g"].frame_id == "g/nose_imu"
 
 
 def test_each_sensor_sends_at_its_own_rate_for_every_aircraft(tmp_path):

@@ -29,6 +29,7 @@ class Turn:
         self.alpha = ALPHA_ZERO + ALPHA_LOAD * G / math.cos(roll) / eas2
         self.pitch = math.atan(math.cos(roll) * math.tan(self.alpha))
         self.rate = G * math.tan(roll) / SPEED
+        self.field = FIELD_NED
 
     def body_from_ned(self, yaw):
         sr, cr, sp, cp = math.sin(self.roll), math.cos(self.roll), math.sin(self.pitch), math.cos(self.pitch)
@@ -46,7 +47,7 @@ class Turn:
         body = self.body_from_ned(self.yaw(t))
         turning = body @ (0.0, 0.0, self.rate)
         force = np.cross(turning, SPEED * np.array((math.cos(self.alpha), 0.0, math.sin(self.alpha)))) - body @ (0.0, 0.0, G)
-        return Inertial(tuple(turning), tuple(force), tuple(body @ FIELD_NED))
+        return Inertial(tuple(turning), tuple(force), tuple(body @ self.field))
 
     def _on_circle(self, azimuth):
         return SPEED / self.rate * math.sin(azimuth), SPEED / self.rate * (1 - math.cos(azimuth))
@@ -87,6 +88,15 @@ def test_position_and_ground_velocity_are_those_of_the_fixes():
     assert (now.north, now.east, now.height) == pytest.approx((fix.north, fix.east, 60.0), abs=0.2)
     assert now.ground_speed == pytest.approx(math.hypot(fix.v_north, fix.v_east), abs=0.1)
     assert now.climb == pytest.approx(0.0, abs=0.05)
+
+
+def test_a_compass_is_read_with_its_declination():
+    east = 0.1
+    turn, estimator = Turn(0.0), Estimator(ALPHA_ZERO, ALPHA_LOAD, declination=east)
+    turn.field = np.array((24e-6 * math.cos(east), 24e-6 * math.sin(east), 40e-6))
+    for k in range(1, 1001):
+        now = estimator.step([turn.sample(k * DT)], PRESSURES, turn.fix(k * DT) if k % 10 == 1 else None, DT)
+    assert now.yaw == pytest.approx(0.0, abs=0.01)
 
 
 def test_airspeed_is_true_airspeed():
