@@ -2,9 +2,9 @@
 
 import math
 
-from services.autopilot.air import intake
 from services.autopilot.air.params import AirParams
 from services.autopilot.air.service import AutopilotAir, Ship
+from services.autopilot.plan import item_from_file
 from uvf.maths.geodesy import LocalTangent
 from uvf.runtime.site import Host, Member, Site
 
@@ -17,7 +17,7 @@ def _host(site: Site, member: Member) -> Host:
     origin = site.world.origin
     tangent = LocalTangent.from_degrees(origin.latitude, origin.longitude, origin.altitude)
     east, north, _ = site.world.magnetic_field
-    items = [intake.from_file(w) for w in member.entry.job.mission]
+    items = [item_from_file(w) for w in member.entry.job.mission]
     ship = Ship(member.entry.system_id, tangent, math.atan2(east, north), items, starts_in_air=member.entry.start.z > 0)
     params = member.params(AutopilotAir.name, AirParams)
     return Host(AutopilotAir, lambda: AutopilotAir(ship, params), member.name)

@@ -1,6 +1,5 @@
 """From messages (ENU, FLU) to the autopilot's own values (NED, FRD)."""
 
-import zlib
 from collections.abc import Iterable, Sequence
 
 from schemas.convert import seconds, wxyz
@@ -9,9 +8,9 @@ from services.autopilot.air.estimator import Fix, Inertial, Pressures
 from services.autopilot.air.pilot import FlightMode, Stand
 from services.autopilot.air.plan import Item, Kind
 from services.autopilot.air.route import Place
+from services.autopilot.plan import mission_id
 from uvf.maths.geodesy import LocalTangent
 from uvf.maths.rotations import enu_flu_from_ned_frd, to_euler
-from uvf.runtime.mission_file import Waypoint
 
 KINDS = {
     MissionItem.WAYPOINT: Kind.WAYPOINT,
@@ -84,26 +83,6 @@ def _item(index: int, m: MissionItem) -> Item:
     return Item(KINDS[m.kind], place(m.position), m.hold, m.radius, m.turns, m.speed, m.jump_to, m.repeat)
 
 
-def mission_id(messages: Sequence[MissionItem]) -> int:
-    """CRC-32 of the items, 0 when empty."""
-    return zlib.crc32(b"".join(m.SerializeToString(deterministic=True) for m in messages))
-
-
 def with_id(messages: Sequence[MissionItem]) -> Mission:
     """The items unchanged, ``origin`` included."""
     return Mission(items=messages, id=mission_id(messages))
-
-
-def from_file(waypoint: Waypoint) -> MissionItem:
-    """A line of a mission file as a message."""
-    return MissionItem(
-        kind=waypoint.kind.upper(),
-        position=Vector3(x=waypoint.x, y=waypoint.y, z=waypoint.z),
-        acceptance_radius=waypoint.acceptance_radius,
-        hold=waypoint.hold,
-        radius=waypoint.radius,
-        turns=waypoint.turns,
-        speed=waypoint.speed,
-        jump_to=waypoint.jump_to,
-        repeat=waypoint.repeat,
-    )

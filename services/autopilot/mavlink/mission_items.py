@@ -2,13 +2,13 @@
 
 import math
 import struct
-import zlib
 from dataclasses import dataclass
 
 from schemas.convert import array
 from schemas.messages import Mission, MissionItem, Vector3
 from services.autopilot.mavlink import dialect as mav
 from services.autopilot.mavlink.facts import Facts
+from services.autopilot.plan import mission_id
 
 ORIGIN = struct.Struct("<BHB4fiif")
 """Frame, command, autocontinue, param1..4, x, y, z: kept with each item and given back unchanged."""
@@ -132,8 +132,7 @@ def check_whole(items: list[MissionItem]) -> None:
 
 def mission_of(items: list[MissionItem]) -> Mission:
     """With the id of its content: CRC-32, not 0 unless empty."""
-    content = b"".join(item.SerializeToString(deterministic=True) for item in items)
-    return Mission(items=items, id=(zlib.crc32(content) or 1) if items else 0)
+    return Mission(items=items, id=mission_id(items))
 
 
 Body = tuple[int, int, int, float, float, float, float, int, int, float]

@@ -1,7 +1,5 @@
 """Messages into the autopilot's frames, and mission items kept as they came."""
 
-import math
-
 import pytest
 
 from schemas.convert import stamp
@@ -9,7 +7,6 @@ from schemas.messages import Gnss, Imu, MissionItem, Vector3
 from services.autopilot.air import intake
 from services.autopilot.air.plan import Kind
 from uvf.maths.geodesy import LocalTangent
-from uvf.runtime.mission_file import Waypoint
 
 TANGENT = LocalTangent.from_degrees(40.77, 14.79, 300.0)
 
@@ -47,15 +44,3 @@ def test_an_item_that_cannot_be_flown_yet_is_named(kind):
 def test_the_wire_form_of_an_item_is_kept():
     mission = intake.with_id([MissionItem(origin=b"\x01\x00\xff")])
     assert mission.items[0].origin == b"\x01\x00\xff"
-
-
-def test_a_missions_id_tells_missions_apart():
-    one, other = MissionItem(repeat=1), MissionItem(repeat=2)
-    assert intake.mission_id([one]) == intake.mission_id([MissionItem(repeat=1)]) != intake.mission_id([other])
-    assert intake.mission_id([]) == 0
-
-
-def test_a_line_of_a_mission_file_becomes_an_item():
-    message = intake.from_file(Waypoint(x=1.0, y=2.0, z=math.pi, kind="jump", jump_to=3, repeat=-1))
-    assert (message.kind, message.jump_to, message.repeat) == (MissionItem.JUMP, 3, -1)
-    assert message.position.z == math.pi

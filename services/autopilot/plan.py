@@ -1,0 +1,28 @@
+"""Missions as messages, the same for every kind of vehicle: from a mission file, and the id of their content."""
+
+import zlib
+from collections.abc import Sequence
+
+from schemas.messages import MissionItem, Vector3
+from uvf.runtime.mission_file import Waypoint
+
+
+def item_from_file(waypoint: Waypoint) -> MissionItem:
+    """A line of a mission file as a message."""
+    return MissionItem(
+        kind=waypoint.kind.upper(),
+        position=Vector3(x=waypoint.x, y=waypoint.y, z=waypoint.z),
+        acceptance_radius=waypoint.acceptance_radius,
+        hold=waypoint.hold,
+        radius=waypoint.radius,
+        turns=waypoint.turns,
+        speed=waypoint.speed,
+        jump_to=waypoint.jump_to,
+        repeat=waypoint.repeat,
+    )
+
+
+def mission_id(items: Sequence[MissionItem]) -> int:
+    """CRC-32 of the items; 0 means an empty mission and no other."""
+    crc = zlib.crc32(b"".join(item.SerializeToString(deterministic=True) for item in items))
+    return (crc or 1) if items else 0
