@@ -2,14 +2,18 @@
 
 import math
 
+from schemas.messages import MissionItem
+from services.autopilot.air import intake, plan
 from services.autopilot.air.params import AirParams
 from services.autopilot.air.service import AutopilotAir, Ship
 from services.autopilot.plan import item_from_file
 from uvf.maths.geodesy import LocalTangent
+from uvf.runtime.params import BadInput
 from uvf.runtime.site import Host, Member, Site
 
 
 def hosts(site: Site) -> list[Host]:
+    """Raises BadInput when a job's mission is not one for an aircraft."""
     return [_host(site, member) for member in site.of_kind("fixed_wing")]
 
 
@@ -18,6 +22,16 @@ def _host(site: Site, member: Member) -> Host:
     tangent = LocalTangent.from_degrees(origin.latitude, origin.longitude, origin.altitude)
     east, north, _ = site.world.magnetic_field
     items = [item_from_file(w) for w in member.entry.job.mission]
+    if why := _fault(items):
+        raise BadInput(f"{site.mission_path}: {member.name}: job: mission: {why}")
     ship = Ship(member.entry.system_id, tangent, math.atan2(east, north), items, starts_in_air=member.entry.start.z > 0)
     params = member.params(AutopilotAir.name, AirParams)
     return Host(AutopilotAir, lambda: AutopilotAir(ship, params), member.name)
+
+
+def _fault(items: list[MissionItem]) -> str:
+    """Why these items cannot be flown; empty if they can."""
+    try:
+        return plan.fault(intake.items(items))
+    except ValueError as error:
+        return str(error)

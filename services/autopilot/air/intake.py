@@ -1,5 +1,6 @@
 """From messages (ENU, FLU) to the autopilot's own values (NED, FRD)."""
 
+import math
 from collections.abc import Iterable, Sequence
 
 from schemas.convert import seconds, wxyz
@@ -72,7 +73,7 @@ def stand(progress: MissionProgress | None) -> Stand:
 
 
 def items(messages: Iterable[MissionItem]) -> list[Item]:
-    """Raises ValueError for a kind that cannot be flown yet."""
+    """Raises ValueError for a kind that cannot be flown yet and for a number that is none."""
     return [_item(i, m) for i, m in enumerate(messages)]
 
 
@@ -80,6 +81,9 @@ def _item(index: int, m: MissionItem) -> Item:
     if m.kind not in KINDS:
         name = MissionItem.Kind.Name(m.kind) if m.kind in MissionItem.Kind.values() else f"kind {m.kind}"
         raise ValueError(f"item {index}: {name} is not flown by this autopilot; {', '.join(k.value for k in Kind)} are")
+    p = m.position
+    if not all(map(math.isfinite, (p.x, p.y, p.z, m.acceptance_radius, m.hold, m.radius, m.turns, m.speed))):
+        raise ValueError(f"item {index} holds a number that is not finite")
     return Item(KINDS[m.kind], place(m.position), m.hold, m.radius, m.turns, m.speed, m.jump_to, m.repeat)
 
 

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 from enum import Enum
 
 from services.autopilot.air.control import Control, Surfaces, Wanted
@@ -118,7 +118,7 @@ class Pilot:
         """Flies there and holds over it; too low a height means the present one."""
         if self.stopped:
             return f"stopped by {self.stopped}: release the stop first"
-        if not (math.isfinite(place.north) and math.isfinite(place.east)):
+        if not all(map(math.isfinite, astuple(place))):
             return "the goal is no place: its coordinates are not finite"
         height = place.height if place.height >= params.min_altitude else self._level.height
         self._change(FlightMode.HOLD, f"goal of {source}")

@@ -179,11 +179,25 @@ def test_a_lost_fix_is_bridged():
     assert state.position.x == pytest.approx(25.0 * 1.5, abs=2.0)
 
 
-def test_a_goal_that_is_no_place_is_refused():
+@pytest.mark.parametrize("axis", ["x", "y", "z"])
+@pytest.mark.parametrize("value", [math.nan, math.inf])
+def test_a_goal_that_is_no_place_is_refused(axis, value):
     bench = Bench()
     bench.run()
-    (reply,) = bench.run(goal=[GoalRequest(position=Vector3(x=math.nan))])["goal"]
+    (reply,) = bench.run(goal=[GoalRequest(position=Vector3(**{"z": 60.0, axis: value}))])["goal"]
     assert not reply.accepted
+    assert "not finite" in reply.reason
+
+
+@pytest.mark.parametrize("field", ["acceptance_radius", "hold", "radius", "turns", "speed"])
+def test_an_item_with_a_number_that_is_not_finite_is_refused_and_nothing_changes(field):
+    bench = Bench()
+    bench.run()
+    mission = Mission(items=[MissionItem(), MissionItem(**{field: math.nan})])
+    out = bench.run(mission=[MissionRequest(mission=mission)])
+    assert not out["mission"][0].accepted
+    assert out["mission"][0].reason == "item 1 holds a number that is not finite"
+    assert "plan" not in out
 
 
 def test_the_return_of_the_sensors_is_an_event():
