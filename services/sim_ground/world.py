@@ -110,13 +110,14 @@ class BulletWorld:
         pybullet.resetBasePositionAndOrientation(index, position.tolist(), _xyzw(orientation), physicsClientId=self._client)
 
     def advance(self, wheels: Mapping[str, WheelSpeeds], duration: float) -> None:
-        """Moves the world by ``duration`` [s]; a vehicle without a command brakes its wheels to a stand."""
+        """Moves the world by ``duration`` [s]; a vehicle without a finite command brakes its wheels to a stand."""
         for name, vehicle in self._vehicles.items():
+            wanted = wheels.get(name, STOPPED)
             pybullet.setJointMotorControlArray(
                 vehicle.index,
                 vehicle.wheels,
                 pybullet.VELOCITY_CONTROL,
-                targetVelocities=wheels.get(name, STOPPED),
+                targetVelocities=wanted if np.isfinite(wanted).all() else STOPPED,
                 forces=[vehicle.torque, vehicle.torque],
                 physicsClientId=self._client,
             )

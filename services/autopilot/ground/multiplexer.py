@@ -2,10 +2,12 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from math import isfinite
 
 from schemas.messages import Mode
 
 COMMAND_MAX_AGE = 0.5  # s
+CLOCK_TOLERANCE = 0.02  # s, one tick: a sender's clock may be that much ahead
 
 SOURCES: Mapping[int, tuple[str, ...]] = {
     Mode.MODE_MANUAL: ("teleop", "mavlink", "gcs", "client"),
@@ -25,15 +27,27 @@ class Velocity:
     linear: float
     angular: float
 
+    def is_fresh(self, t: float) -> bool:
+        """Neither too old at ``t`` [s] nor from the future, where it would never grow old."""
+        return -CLOCK_TOLERANCE <= t - self.t <= COMMAND_MAX_AGE
+
+    @property
+    def is_finite(self) -> bool:
+        return isfinite(self.linear) and isfinite(self.angular)
+
 
 @dataclass(frozen=True)
 class Choice:
-    """What is let through: the source ("" = nobody, stand still), why, and the velocity."""
+    """What is let through: the source ("" = nobody, stand still), why, and the velocity.
+
+    refused: commands that were fresh and admitted but no numbers, "" if there are none.
+    """
 
     source: str
     reason: str
     linear: float = 0.0
     angular: float = 0.0
+    refused: str = ""
 
 
 def mode_name(mode: int) -> str:
@@ -48,8 +62,11 @@ def choose(t: float, mode: int, commands: Mapping[str, Velocity], obstacle: str)
     admitted = SOURCES[mode]
     if not admitted:
         return Choice("", f"mode {mode_name(mode)}")
-    for source in admitted:
-        command = commands.get(source)
-        if command is not None and t - command.t <= COMMAND_MAX_AGE:
-            return Choice(source, f"mode {mode_name(mode)}: {source}", command.linear, command.angular)
+    fresh = {source: commands[source] for source in admitted if source in commands and commands[source].is_fresh(t)}
+    refused = ", ".join(f"{source} ({c.linear:g} m/s, {c.angular:g} rad/s)" for source, c in fresh.items() if not c.is_finite)
+    for source, command in fresh.items():
+        if command.is_finite:
+            return Choice(source, f"mode {mode_name(mode)}: {source}", command.linear, command.angular, refused)
+    if refused:
+        return Choice("", f"mode {mode_name(mode)}: not a velocity: {refused}", refused=refused)
     return Choice("", f"mode {mode_name(mode)}: no fresh command from {', '.join(admitted)}")

@@ -1,7 +1,7 @@
 """The autopilot of a ground vehicle: modes, arming, STOP ALL, the command multiplexer, limits and missions."""
 
 from collections.abc import Mapping
-from math import hypot
+from math import hypot, inf
 from typing import Annotated, Any
 
 from msgspec import Meta
@@ -36,6 +36,7 @@ from uvf.runtime.vehicle_file import GroundBody
 STATUS_EVERY, PROGRESS_EVERY = 5, 25
 """Steps between two messages: 10 Hz and 2 Hz."""
 UNKNOWN_BATTERY = -1.0
+REFUSALS_EVERY = 10.0  # s between two events about commands that are no numbers
 
 
 class GroundAutopilotParams(Params, frozen=True):
@@ -83,6 +84,7 @@ class GroundAutopilot(Service):
         self._mode: int = Mode.MODE_MISSION if begins else Mode.MODE_HOLD
         self._stopped = False
         self._choice = Choice("", "starting")
+        self._refused_at = -inf
         self._engine = MissionEngine(home, params.acceptance_radius)
         self._engine.load(mission_of(items, stamp(0.0)))
         self._mission_is_new = True
@@ -175,6 +177,9 @@ class GroundAutopilot(Service):
         before, self._choice = self._choice, choose(t, self._mode, commands, obstacle)
         if before.source != self._choice.source:
             self._tell(t, f"commands from {self._choice.source or 'nobody'}", self._choice.reason)
+        if self._choice.refused and t - self._refused_at >= REFUSALS_EVERY:
+            self._refused_at = t
+            self._tell(t, f"command refused: {self._choice.refused}", "it is not a velocity", Event.WARNING)
 
     def _wheels(self, t: float) -> WheelCommand:
         top_speed = self._engine.speed if self._mode == Mode.MODE_MISSION and self._engine.speed else self._body.max_linear

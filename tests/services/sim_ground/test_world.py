@@ -79,3 +79,21 @@ def test_a_minute_of_wild_driving_neither_tips_it_nor_takes_it_through_a_wall(wo
             assert clearance(HOUSE, *state.position[:2]) > 0.03  # its nose is 0.038 m before the axle
     assert lowest_up > np.cos(0.15)
     assert len(touches - {None}) >= 2
+
+
+@pytest.mark.parametrize("speed", [np.nan, np.inf, -np.inf])
+def test_wheel_speeds_that_are_no_numbers_brake_it_and_do_not_stay(world, speed):
+    wheels = {"burger": DRIVE.wheels(Twist(0.2, 0.0))}
+    world.advance(wheels, 0.5)
+    world.advance({"burger": WheelSpeeds(speed, 1.0)}, 0.5)
+    assert np.linalg.norm(world.state("burger").velocity) < 0.01
+    world.advance(wheels, 0.5)
+    assert np.linalg.norm(world.state("burger").velocity) == pytest.approx(0.2, rel=0.05)
+
+
+def test_a_huge_speed_is_no_more_than_its_motors_can_do(world):
+    world.advance({"burger": WheelSpeeds(1e300, -1e300)}, 0.5)
+    world.advance({}, 2.0)
+    state = world.state("burger")
+    assert np.isfinite(state.position).all()
+    assert np.linalg.norm(state.velocity) < 0.01

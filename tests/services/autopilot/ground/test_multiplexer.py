@@ -1,9 +1,11 @@
 """Which command counts: mode, then priority, then age."""
 
+from math import inf, nan
+
 import pytest
 
 from schemas.messages import Mode
-from services.autopilot.ground.multiplexer import COMMAND_MAX_AGE, SOURCES, Velocity, choose
+from services.autopilot.ground.multiplexer import CLOCK_TOLERANCE, COMMAND_MAX_AGE, SOURCES, Velocity, choose
 
 ALL = {name: Velocity(10.0, 0.1 * (i + 1), 0.0) for i, name in enumerate(("planner", "offboard", "client", "gcs", "mavlink", "teleop"))}
 
@@ -42,3 +44,23 @@ def test_an_old_command_means_stop_and_says_so():
 def test_an_obstacle_beats_every_command():
     choice = choose(10.0, Mode.MODE_MANUAL, ALL, "disarmed")
     assert (choice.source, choice.linear, choice.reason) == ("", 0.0, "disarmed")
+
+
+def test_a_command_from_the_future_does_not_count():
+    ahead = {"planner": Velocity(1000.0, 0.3, 0.0)}
+    assert choose(10.0, Mode.MODE_MISSION, ahead, "").source == ""
+    a_tick_ahead = {"planner": Velocity(10.0 + CLOCK_TOLERANCE / 2, 0.3, 0.0)}
+    assert choose(10.0, Mode.MODE_MISSION, a_tick_ahead, "").source == "planner"
+
+
+@pytest.mark.parametrize("command", [(nan, 0.0), (0.0, nan), (inf, 0.0), (0.0, -inf)])
+def test_a_command_that_is_no_number_is_refused_with_the_reason(command):
+    choice = choose(10.0, Mode.MODE_MISSION, {"planner": Velocity(10.0, *command)}, "")
+    assert (choice.source, choice.linear, choice.angular) == ("", 0.0, 0.0)
+    assert "not a velocity: planner" in choice.reason
+
+
+def test_behind_a_refused_command_the_next_source_counts():
+    choice = choose(10.0, Mode.MODE_MANUAL, {"teleop": Velocity(10.0, nan, 0.0), "client": Velocity(10.0, 0.2, 0.1)}, "")
+    assert (choice.source, choice.linear, choice.angular) == ("client", 0.2, 0.1)
+    assert choice.refused == "teleop (nan m/s, 0 rad/s)"

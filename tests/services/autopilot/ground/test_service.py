@@ -97,6 +97,19 @@ def test_a_stale_command_stops_within_half_a_second_and_the_ramp():
     assert "no fresh command" in bench.said["status"].reason
 
 
+@pytest.mark.parametrize("wrong", [float("nan"), float("inf")])
+def test_a_command_that_is_no_number_stops_it_once_and_is_forgotten(wrong):
+    bench = Bench().step(40, linear=0.4).step(40, linear=wrong)
+    assert bench.speed == 0.0
+    assert "not a velocity: planner" in bench.said["status"].reason
+    assert bench.step(40, linear=0.4).speed == pytest.approx(0.4)
+
+
+def test_refusals_are_told_at_most_every_ten_seconds():
+    bench = Bench().step(49 * 10 + 40, linear=float("nan"))
+    assert len([e for e in bench.events if e.startswith("command refused: planner")]) == 2
+
+
 def test_stop_all_holds_until_it_is_released():
     bench = Bench().step(40, linear=0.4)
     engaged = StopCommand(engaged=True, source="gcs")
