@@ -1,6 +1,7 @@
 """Costs of being at each cell of a map: how near the obstacles are, and where a vehicle's centre may not be."""
 
 from dataclasses import dataclass
+from math import floor
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +14,8 @@ Cell = tuple[int, int]
 
 OCCUPIED, FREE = 60, 40  # per cent: at least, at most
 IMPASSABLE = -1.0
+FAR = 1e9
+"""Cells; no map reaches so far, and farther places are counted as lying there."""
 
 Frame = tuple[float, tuple[float, float]]
 """Resolution [m] and (x, y) [m, map frame] of the lower left corner of cell [0, 0]."""
@@ -41,8 +44,11 @@ class Costmap:
     """Per cell driven through, 1 at ease and more near obstacles; ``IMPASSABLE`` where the centre may not be."""
 
     def cell(self, x: float, y: float) -> Cell:
-        """(row, column) of a point; may lie outside."""
-        return (int(np.floor((y - self.origin[1]) / self.resolution)), int(np.floor((x - self.origin[0]) / self.resolution)))
+        """(row, column) of a point, which must be finite; may lie outside."""
+        return self._index(y - self.origin[1]), self._index(x - self.origin[0])
+
+    def _index(self, distance: float) -> int:
+        return floor(min(max(distance / self.resolution, -FAR), FAR))
 
     def holds(self, cell: Cell) -> bool:
         rows, columns = self.cost.shape

@@ -1,6 +1,7 @@
 """From a place to go to, to a path that leads there; and why there is none."""
 
 from dataclasses import dataclass
+from math import isfinite
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +16,8 @@ Point = tuple[float, float]
 WAY_OUT = 0.3  # m about the vehicle within which it may leave the room it should keep from obstacles
 UNKNOWN_COST = 3.0
 """Factor on the cost of unknown ground for goals that may lie behind it."""
+
+NO_PLACE = "the goal is not a place: its coordinates must be finite"
 
 
 @dataclass(frozen=True)
@@ -52,6 +55,8 @@ class Navigator:
         costs = self.costs
         if costs is None:
             return "there is no map yet"
+        if not _is_place(goal):
+            return NO_PLACE
         cell = costs.cell(*goal)
         if not costs.holds(cell):
             return "the goal lies outside the map"
@@ -71,6 +76,8 @@ class Navigator:
         known = self._costs(bold)
         if known is None:
             return Plan(None, "there is no map yet")
+        if not _is_place(goal):
+            return Plan(None, NO_PLACE)
         here = known.cell(*start)
         if not known.holds(here):
             return Plan(None, "the vehicle is outside its map")
@@ -94,3 +101,7 @@ class Navigator:
         if self._bold is None:
             self._bold = costmap(self._cells, (self.costs.resolution, self.costs.origin), self._body, UNKNOWN_COST)
         return self._bold
+
+
+def _is_place(point: Point) -> bool:
+    return isfinite(point[0]) and isfinite(point[1])

@@ -1,6 +1,6 @@
 """Map, pose and job -> the path to drive, four times a second; plans anew only when the map or the job has changed."""
 
-from math import hypot, isnan
+from math import hypot, isinf, isnan
 from typing import Annotated
 
 import numpy as np
@@ -136,6 +136,8 @@ class PlannerService(Service):
     def _ask(self, t: float, here: Pose2, request: GoalRequest, status: VehicleStatus | None) -> Reply:
         wanted = (request.position.x, request.position.y)
         reason = not_now(status) or self._navigator.refusal(here[:2], self._in_map(wanted))
+        if isinf(request.yaw):
+            reason = "the heading is infinite; give it in rad, or NaN for any"
         if reason:
             return Reply(accepted=False, reason=reason)
         self._goal = Goal(wanted, None if isnan(request.yaw) else request.yaw)
@@ -199,7 +201,7 @@ class PlannerService(Service):
     def _is_near(self, here: Pose2) -> bool:
         """Reached, in the place and in the wanted heading."""
         tolerance = self.params.look_tolerance if self._job.name == "explore" else self.params.goal_tolerance
-        if self._target is None or hypot(here[0] - self._target[0], here[1] - self._target[1]) > tolerance:
+        if self._target is None or not hypot(here[0] - self._target[0], here[1] - self._target[1]) <= tolerance:
             return False
         wanted = self._job.yaw
         return wanted is None or abs(np.sin((here[2] + self._world_from_map[2] - wanted) / 2)) < 0.05

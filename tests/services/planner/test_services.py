@@ -75,6 +75,32 @@ def test_a_goal_in_a_wall_is_refused():
     assert (reply.accepted, reply.reason) == (False, "the goal lies in an obstacle")
 
 
+@pytest.mark.parametrize("x", [np.nan, np.inf, -np.inf])
+@pytest.mark.parametrize("position", [lambda x: Vector3(x=x, y=21.0), lambda x: Vector3(x=8.0, y=x)])
+def test_a_goal_that_is_no_place_is_refused(x, position):
+    bench = Bench().step(goal=[GoalRequest(position=position(x), yaw=np.nan)])
+    assert (bench.said["goal"][0].accepted, "coordinates must be finite" in bench.said["goal"][0].reason) == (False, True)
+    assert bench.step().said["nav_status"].job == "idle"
+
+
+def test_a_goal_at_the_end_of_the_numbers_lies_outside_the_map():
+    reply = Bench().step(goal=[GoalRequest(position=Vector3(x=1e308, y=-1e308), yaw=np.nan)]).said["goal"][0]
+    assert (reply.accepted, reply.reason) == (False, "the goal lies outside the map")
+
+
+def test_an_infinite_heading_is_refused():
+    bench = Bench().step(goal=[asked(2.0, 2.0, yaw=np.inf)])
+    assert "the heading is infinite" in bench.said["goal"][0].reason
+    assert bench.step().said["nav_status"].job == "idle"
+
+
+def test_a_mission_item_that_is_no_place_is_never_reached():
+    mission = Mission(id=9, items=[MissionItem(position=Vector3(x=np.nan, y=1.0))])
+    bench = Bench().step(4, mission=mission, progress=MissionProgress(state=MissionProgress.ACTIVE, mission_id=9))
+    assert bench.state == NavStatus.BLOCKED
+    assert "not a place" in bench.said["nav_status"].reason
+
+
 def test_a_goal_while_holding_is_refused_with_the_mend():
     reply = Bench().step(goal=[asked(3.0, 2.0)], status=VehicleStatus(mode=Mode.MODE_HOLD, armed=True)).said["goal"][0]
     assert reply.reason == "the mode is HOLD: change it to MISSION first"
