@@ -2,7 +2,7 @@
 
 import zlib
 from collections.abc import Sequence
-from math import hypot
+from math import hypot, inf, isfinite
 
 from schemas.messages import Mission, MissionItem, MissionProgress, Timestamp, Vector3
 
@@ -15,12 +15,27 @@ SUPPORTED = (*DRIVABLE, MissionItem.JUMP, MissionItem.SPEED)
 def refusal(items: Sequence[MissionItem]) -> str:
     """Why a ground vehicle cannot drive these items; "" if it can."""
     for index, item in enumerate(items):
-        if item.kind not in SUPPORTED:
-            return f"item {index}: {MissionItem.Kind.Name(item.kind)} is not for a ground vehicle"
-        if item.kind == MissionItem.JUMP and item.jump_to >= len(items):
-            return f"item {index}: jump to {item.jump_to}, but the last item is {len(items) - 1}"
+        fault = _fault(item, len(items))
+        if fault:
+            return f"item {index}: {fault}"
     if items and not any(item.kind in DRIVABLE for item in items):
         return "there is no waypoint in it"
+    return ""
+
+
+def _fault(item: MissionItem, total: int) -> str:
+    if item.kind not in SUPPORTED:
+        known = item.kind in MissionItem.Kind.values()
+        return f"{MissionItem.Kind.Name(item.kind) if known else f'kind {item.kind}'} is not for a ground vehicle"
+    if item.kind == MissionItem.JUMP and item.jump_to >= total:
+        return f"jump to {item.jump_to}, but the last item is {total - 1}"
+    for name, value in (("x", item.position.x), ("y", item.position.y), ("z", item.position.z)):
+        if not isfinite(value):
+            return f"{name} is {value:g}; it must be finite"
+    for name in ("acceptance_radius", "hold", "speed"):
+        value = getattr(item, name)
+        if not 0.0 <= value < inf:
+            return f"{name} is {value:g}; it must be finite and not negative"
     return ""
 
 
@@ -93,7 +108,7 @@ class MissionEngine:
         item = self.mission.items[self.current]
         if self._arrived_at is None:
             radius = item.acceptance_radius or self._acceptance_radius
-            if hypot(position[0] - target[0], position[1] - target[1]) > radius:
+            if not hypot(position[0] - target[0], position[1] - target[1]) <= radius:
                 return None
             self._arrived_at = t
         if t - self._arrived_at < item.hold:

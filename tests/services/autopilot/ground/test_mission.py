@@ -1,5 +1,7 @@
 """The mission engine: order, holding, jumps, speeds, pauses, and what is refused."""
 
+import pytest
+
 from schemas.convert import stamp
 from schemas.messages import MissionItem, MissionProgress, Vector3
 from services.autopilot.ground.mission import MissionEngine, mission_of, refusal
@@ -116,6 +118,39 @@ def test_what_a_ground_vehicle_cannot_do_is_refused():
     assert refusal([waypoint(1.0), MissionItem(kind=MissionItem.JUMP, jump_to=7)]) == "item 1: jump to 7, but the last item is 1"
     assert refusal([MissionItem(kind=MissionItem.SPEED)]) == "there is no waypoint in it"
     assert refusal([]) == ""
+
+
+@pytest.mark.parametrize("wrong", [float("nan"), float("inf"), float("-inf")])
+def test_numbers_that_are_not_finite_are_refused_with_the_item(wrong):
+    items = [
+        waypoint(wrong),
+        waypoint(1.0, y=wrong),
+        MissionItem(position=Vector3(z=wrong)),
+        waypoint(1.0, acceptance_radius=wrong),
+        waypoint(1.0, hold=wrong),
+        MissionItem(kind=MissionItem.SPEED, speed=wrong),
+    ]
+    names = ("x", "y", "z", "acceptance_radius", "hold", "speed")
+    for name, item in zip(names, items, strict=True):
+        assert refusal([waypoint(0.0), item]).startswith(f"item 1: {name} is {wrong:g}; it must be finite")
+
+
+def test_negative_speeds_times_and_radii_are_refused():
+    slow = MissionItem(kind=MissionItem.SPEED, speed=-0.2)
+    assert refusal([waypoint(1.0), slow]) == "item 1: speed is -0.2; it must be finite and not negative"
+    assert refusal([waypoint(1.0, hold=-1.0)]) == "item 0: hold is -1; it must be finite and not negative"
+    assert refusal([waypoint(1.0, acceptance_radius=-1.0)]) == "item 0: acceptance_radius is -1; it must be finite and not negative"
+
+
+def test_an_item_of_a_kind_nobody_knows_is_refused():
+    strange = MissionItem.FromString(bytes((0x08, 99)))
+    assert refusal([waypoint(1.0), strange]) == "item 1: kind 99 is not for a ground vehicle"
+
+
+@pytest.mark.parametrize("wrong", [{"x": float("nan")}, {"x": 1.0, "acceptance_radius": float("nan")}])
+def test_a_waypoint_that_is_no_number_is_never_reached(wrong):
+    made = engine(waypoint(**wrong))
+    assert [made.advance(float(i), (1.0, 0.0), True) for i in range(5)] == [None] * 5
 
 
 def test_missions_differ_by_their_id():
