@@ -121,9 +121,11 @@ class GroundAutopilot(Service):
         return {"wheels": self._wheels(t), **replies, **self._reports(t, position)}
 
     def recall(self, status: VehicleStatus | None = None, mission: Mission | None = None, progress: MissionProgress | None = None) -> None:
-        """Goes on in the mode, armed or not, and at the mission's item where the instance before has been."""
+        """Goes on in the mode, armed or not, stopped or not, and at the mission's item where the instance before has been."""
         if status is not None and status.mode in SOURCES:
             self._mode, self._armed = status.mode, status.armed
+        if status is not None:
+            self._stopped = status.stopped  # until it is released, even by somebody who has not seen it engaged
         if mission is not None and progress is not None:
             self._engine.resume(mission, progress)
 

@@ -201,6 +201,22 @@ def test_started_again_it_goes_on_as_it_was():
     assert (new.said["progress"].current, new.said["progress"].total) == (1, 2)
 
 
+def test_stop_all_stays_through_a_restart_until_it_is_released():
+    old = Bench().step(30, linear=0.4, stop=StopCommand(engaged=True))
+    new = Bench()
+    new.service.recall(status=old.said["status"])
+    new.step(40, linear=0.4)
+    assert (new.speed, new.said["status"].stopped) == (0.0, True)
+    assert new.step(40, linear=0.4, stop=StopCommand(engaged=False)).speed == pytest.approx(0.4)
+
+
+def test_a_release_that_was_missed_during_a_restart_counts():
+    old = Bench().step(30, stop=StopCommand(engaged=True))
+    new = Bench()
+    new.service.recall(status=old.said["status"])
+    assert new.step(40, linear=0.4, stop=StopCommand(engaged=False)).speed == pytest.approx(0.4)
+
+
 def test_a_speed_item_limits_the_mission_but_not_the_person():
     bench = Bench(items=[MissionItem(kind=MissionItem.SPEED, speed=0.1), *WAYPOINTS]).step(60, linear=0.4, pose=(0.0, 0.0))
     assert bench.speed == pytest.approx(0.1)
