@@ -30,6 +30,7 @@ from services.planner.jobs import IDLE, Goal, Job, Orders, choose, mission_targe
 from services.planner.navigator import Navigator, Plan
 from services.planner.smoothing import length
 from uvf.maths.planar import IDENTITY, Pose2, compose, inverse, transform
+from uvf.maths.rotations import wrap
 from uvf.runtime.service import Outputs, Params, Service, optional
 
 Floats = NDArray[np.float64]
@@ -191,7 +192,7 @@ class PlannerService(Service):
             self._arrive(t, here)
             return
         last = self._progress_pose
-        moved = hypot(here[0] - last[0], here[1] - last[1]) > 0.1 or abs(here[2] - last[2]) > 0.3
+        moved = hypot(here[0] - last[0], here[1] - last[1]) > 0.1 or abs(wrap(here[2] - last[2])) > 0.3
         held = status is None or status.command_source != "planner"
         if moved or held:
             self._progress_at, self._progress_pose = t, here

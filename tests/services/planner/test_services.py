@@ -34,6 +34,7 @@ class Bench:
         self.service = PlannerService(START, 0.1, explores, PlannerParams())
         self.t = 0.0
         self.here = (1.0, 1.0)
+        self.yaw = START[2]  # rad, world
         self.grid = occupancy_grid(room(4.0, 3.0), 0.05, 0.0, 0.0, "v/map", 0.0)
         self.said = {}
         self.events = []
@@ -41,7 +42,7 @@ class Bench:
     def step(self, n=1, status=READY, mission=None, progress=None, goal=()):
         for _ in range(n):
             self.t += 0.25
-            pose = PoseInFrame(pose=planar_pose(*world(*self.here), START[2]))
+            pose = PoseInFrame(pose=planar_pose(*world(*self.here), self.yaw))
             self.said = self.service.step(self.t, pose, self.grid, status, mission, progress, list(goal))
             self.events += [e.text for e in self.said["events"]]
         return self
@@ -137,6 +138,14 @@ def test_a_goal_is_given_up_when_the_vehicle_gets_nowhere():
     bench.step(int(4 * PlannerParams().patience) + 3)
     assert "goal: goal given up" in bench.events
     assert bench.said["nav_status"].job == "idle"
+
+
+def test_trembling_about_the_heading_where_angles_wrap_is_not_getting_anywhere():
+    bench = Bench().step(goal=[asked(3.0, 2.0)])
+    for i in range(int(4 * PlannerParams().patience) + 3):
+        bench.yaw = START[2] + np.pi + (0.01 if i % 2 else -0.01)
+        bench.step()
+    assert "goal: goal given up" in bench.events
 
 
 def test_standing_while_a_person_drives_is_not_getting_nowhere():
