@@ -3,14 +3,12 @@
 .venv/bin/python examples/03_external_controller.py
 """
 
-import os
-
 import uvf
 from schemas import topics
 from schemas.convert import yaw_of
 from schemas.messages import DriveCommand, Mode, ModeRequest
 
-with uvf.connect(os.environ.get("UVF_ROUTER", "tcp/127.0.0.1:7447")) as run:
+with uvf.connect() as run:
     print(run.ask("burger", topics.SET_MODE, ModeRequest(mode=Mode.MODE_MANUAL, source="client")))
     goal = yaw_of(run.read("burger", topics.POSE).pose.orientation) + 1.0
 

@@ -49,6 +49,8 @@ class Topic(Generic[M]):
     logged: bool = True
     kept: bool = False
     """The newest one outlives its writer, so that a service that is started again can ``recall`` it."""
+    across_epochs: bool = False
+    """Holds on when time starts over: what an operator has said, not what was simulated."""
 
     @property
     def per_vehicle(self) -> bool:
@@ -94,9 +96,9 @@ _V, _S = "<owner>", SYSTEM
 _Q = Qos
 
 # time and supervision
-CLOCK = Topic(f"{_S}/time/clock", m.Clock, 100, _Q.LOCKSTEP, "simulation time, from the conductor")
+CLOCK = Topic(f"{_S}/time/clock", m.Clock, 100, _Q.LOCKSTEP, "simulation time, from the conductor", kept=True)
 DONE = Topic(f"{_S}/time/done/<source>", m.Done, 100, _Q.LOCKSTEP, "a participant has reached this time", logged=False)
-STOP = Topic(f"{_S}/cmd/<source>", m.StopCommand, 0, _Q.LATCHED, "STOP ALL and its release")
+STOP = Topic(f"{_S}/cmd/<source>", m.StopCommand, 0, _Q.LATCHED, "STOP ALL and its release", across_epochs=True)
 PROCESSES = Topic(f"{_S}/state/processes", m.Processes, 0, _Q.LATCHED, "what runs, from the launcher", logged=False)
 HEALTH = Topic(f"{_S}/state/health/<source>", m.Health, 2, _Q.STATE, "sign of life and counters of a process", logged=False)
 SYSTEM_EVENTS = Topic(f"{_S}/state/events/<source>", m.Event, 0, _Q.EVENT, "what happened to the system")

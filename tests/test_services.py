@@ -34,6 +34,13 @@ def test_what_is_recalled_is_kept_and_wanted(service):
     assert set(parameters) == {"self", *service.recalls} if service.recalls else set(parameters) == {"self"}
 
 
+@pytest.mark.parametrize("host", [h for hosts in HOSTS.values() for h in hosts], ids=lambda h: f"{h.service.name}-{h.vehicle}")
+def test_it_is_known_about_which_vehicles_a_service_writes(host):
+    per_vehicle = any(topic.per_vehicle for topic in host.service.outputs.values())
+    assert bool(host.vehicle or host.writes_for) or not per_vehicle
+    assert set(host.writes_for) <= set(SITE.members)
+
+
 @pytest.mark.parametrize("kind", catalogue.KINDS, ids=lambda k: k.name)
 def test_the_catalogue_agrees_with_the_classes(kind):
     assert {host.service.clock for host in HOSTS[kind.name]} == {kind.clock}

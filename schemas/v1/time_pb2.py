@@ -24,7 +24,7 @@ _sym_db = _symbol_database.Default()
 
 
 
-DESCRIPTOR = _descriptor_pool.Default().AddSerializedFile(b'\n\x11uvf/v1/time.proto\x12\x06uvf.v1\"\xb0\x02\n\x05\x43lock\x12\x0c\n\x04tick\x18\x01 \x01(\x04\x12\x0c\n\x04t_ns\x18\x02 \x01(\x03\x12\r\n\x05\x65poch\x18\x03 \x01(\r\x12\x0c\n\x04rate\x18\x04 \x01(\x01\x12\x13\n\x0brate_wanted\x18\x05 \x01(\x01\x12\"\n\x05state\x18\x06 \x01(\x0e\x32\x13.uvf.v1.Clock.State\x12\x10\n\x08lockstep\x18\x07 \x01(\x08\x12/\n\tpublished\x18\x08 \x03(\x0b\x32\x1c.uvf.v1.Clock.PublishedEntry\x12\x13\n\x0bwaiting_for\x18\t \x01(\t\x1a\x30\n\x0ePublishedEntry\x12\x0b\n\x03key\x18\x01 \x01(\t\x12\r\n\x05value\x18\x02 \x01(\x04:\x02\x38\x01\"+\n\x05State\x12\x0b\n\x07RUNNING\x10\x00\x12\n\n\x06PAUSED\x10\x01\x12\t\n\x05\x45NDED\x10\x02\"\xa8\x01\n\x04\x44one\x12\x13\n\x0bparticipant\x18\x01 \x01(\t\x12\x0c\n\x04tick\x18\x02 \x01(\x04\x12\x0c\n\x04t_ns\x18\x03 \x01(\x03\x12\r\n\x05\x65poch\x18\x04 \x01(\r\x12.\n\tpublished\x18\x05 \x03(\x0b\x32\x1b.uvf.v1.Done.PublishedEntry\x1a\x30\n\x0ePublishedEntry\x12\x0b\n\x03key\x18\x01 \x01(\t\x12\r\n\x05value\x18\x02 \x01(\x04:\x02\x38\x01\"\x82\x01\n\x0c\x43lockRequest\x12+\n\x06\x61\x63tion\x18\x01 \x01(\x0e\x32\x1b.uvf.v1.ClockRequest.Action\x12\x0c\n\x04rate\x18\x02 \x01(\x01\"7\n\x06\x41\x63tion\x12\x0c\n\x08SET_RATE\x10\x00\x12\t\n\x05PAUSE\x10\x01\x12\n\n\x06RESUME\x10\x02\x12\x08\n\x04STEP\x10\x03\x62\x06proto3')
+DESCRIPTOR = _descriptor_pool.Default().AddSerializedFile(b'\n\x11uvf/v1/time.proto\x12\x06uvf.v1\"\xb7\x02\n\x05\x43lock\x12\x0c\n\x04tick\x18\x01 \x01(\x04\x12\x0c\n\x04t_ns\x18\x02 \x01(\x03\x12\r\n\x05\x65poch\x18\x03 \x01(\r\x12\x0c\n\x04rate\x18\x04 \x01(\x01\x12\x13\n\x0brate_wanted\x18\x05 \x01(\x01\x12\"\n\x05state\x18\x06 \x01(\x0e\x32\x13.uvf.v1.Clock.State\x12\x10\n\x08lockstep\x18\x07 \x01(\x08\x12/\n\tpublished\x18\x08 \x03(\x0b\x32\x1c.uvf.v1.Clock.PublishedEntry\x12\x13\n\x0bwaiting_for\x18\t \x01(\t\x12\x10\n\x08\x64ue_wall\x18\n \x01(\x01\x1a\x30\n\x0ePublishedEntry\x12\x0b\n\x03key\x18\x01 \x01(\t\x12\r\n\x05value\x18\x02 \x01(\x04:\x02\x38\x01\" \n\x05State\x12\x0b\n\x07RUNNING\x10\x00\x12\n\n\x06PAUSED\x10\x01\"\xa8\x01\n\x04\x44one\x12\x13\n\x0bparticipant\x18\x01 \x01(\t\x12\x0c\n\x04tick\x18\x02 \x01(\x04\x12\x0c\n\x04t_ns\x18\x03 \x01(\x03\x12\r\n\x05\x65poch\x18\x04 \x01(\r\x12.\n\tpublished\x18\x05 \x03(\x0b\x32\x1b.uvf.v1.Done.PublishedEntry\x1a\x30\n\x0ePublishedEntry\x12\x0b\n\x03key\x18\x01 \x01(\t\x12\r\n\x05value\x18\x02 \x01(\x04:\x02\x38\x01\"\x82\x01\n\x0c\x43lockRequest\x12+\n\x06\x61\x63tion\x18\x01 \x01(\x0e\x32\x1b.uvf.v1.ClockRequest.Action\x12\x0c\n\x04rate\x18\x02 \x01(\x01\"7\n\x06\x41\x63tion\x12\x0c\n\x08SET_RATE\x10\x00\x12\t\n\x05PAUSE\x10\x01\x12\n\n\x06RESUME\x10\x02\x12\x08\n\x04STEP\x10\x03\x62\x06proto3')
 
 _globals = globals()
 _builder.BuildMessageAndEnumDescriptors(DESCRIPTOR, _globals)
@@ -36,17 +36,17 @@ if not _descriptor._USE_C_DESCRIPTORS:
   _globals['_DONE_PUBLISHEDENTRY']._loaded_options = None
   _globals['_DONE_PUBLISHEDENTRY']._serialized_options = b'8\001'
   _globals['_CLOCK']._serialized_start=30
-  _globals['_CLOCK']._serialized_end=334
-  _globals['_CLOCK_PUBLISHEDENTRY']._serialized_start=241
-  _globals['_CLOCK_PUBLISHEDENTRY']._serialized_end=289
-  _globals['_CLOCK_STATE']._serialized_start=291
-  _globals['_CLOCK_STATE']._serialized_end=334
-  _globals['_DONE']._serialized_start=337
-  _globals['_DONE']._serialized_end=505
-  _globals['_DONE_PUBLISHEDENTRY']._serialized_start=241
-  _globals['_DONE_PUBLISHEDENTRY']._serialized_end=289
-  _globals['_CLOCKREQUEST']._serialized_start=508
-  _globals['_CLOCKREQUEST']._serialized_end=638
-  _globals['_CLOCKREQUEST_ACTION']._serialized_start=583
-  _globals['_CLOCKREQUEST_ACTION']._serialized_end=638
+  _globals['_CLOCK']._serialized_end=341
+  _globals['_CLOCK_PUBLISHEDENTRY']._serialized_start=259
+  _globals['_CLOCK_PUBLISHEDENTRY']._serialized_end=307
+  _globals['_CLOCK_STATE']._serialized_start=309
+  _globals['_CLOCK_STATE']._serialized_end=341
+  _globals['_DONE']._serialized_start=344
+  _globals['_DONE']._serialized_end=512
+  _globals['_DONE_PUBLISHEDENTRY']._serialized_start=259
+  _globals['_DONE_PUBLISHEDENTRY']._serialized_end=307
+  _globals['_CLOCKREQUEST']._serialized_start=515
+  _globals['_CLOCKREQUEST']._serialized_end=645
+  _globals['_CLOCKREQUEST_ACTION']._serialized_start=590
+  _globals['_CLOCKREQUEST_ACTION']._serialized_end=645
 # @@protoc_insertion_point(module_scope)

@@ -7,15 +7,13 @@ from typing import ClassVar as _ClassVar, Mapping as _Mapping, Optional as _Opti
 DESCRIPTOR: _descriptor.FileDescriptor
 
 class Clock(_message.Message):
-    __slots__ = ("tick", "t_ns", "epoch", "rate", "rate_wanted", "state", "lockstep", "published", "waiting_for")
+    __slots__ = ("tick", "t_ns", "epoch", "rate", "rate_wanted", "state", "lockstep", "published", "waiting_for", "due_wall")
     class State(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
         __slots__ = ()
         RUNNING: _ClassVar[Clock.State]
         PAUSED: _ClassVar[Clock.State]
-        ENDED: _ClassVar[Clock.State]
     RUNNING: Clock.State
     PAUSED: Clock.State
-    ENDED: Clock.State
     class PublishedEntry(_message.Message):
         __slots__ = ("key", "value")
         KEY_FIELD_NUMBER: _ClassVar[int]
@@ -32,6 +30,7 @@ class Clock(_message.Message):
     LOCKSTEP_FIELD_NUMBER: _ClassVar[int]
     PUBLISHED_FIELD_NUMBER: _ClassVar[int]
     WAITING_FOR_FIELD_NUMBER: _ClassVar[int]
+    DUE_WALL_FIELD_NUMBER: _ClassVar[int]
     tick: int
     t_ns: int
     epoch: int
@@ -41,7 +40,8 @@ class Clock(_message.Message):
     lockstep: bool
     published: _containers.ScalarMap[str, int]
     waiting_for: str
-    def __init__(self, tick: _Optional[int] = ..., t_ns: _Optional[int] = ..., epoch: _Optional[int] = ..., rate: _Optional[float] = ..., rate_wanted: _Optional[float] = ..., state: _Optional[_Union[Clock.State, str]] = ..., lockstep: bool = ..., published: _Optional[_Mapping[str, int]] = ..., waiting_for: _Optional[str] = ...) -> None: ...
+    due_wall: float
+    def __init__(self, tick: _Optional[int] = ..., t_ns: _Optional[int] = ..., epoch: _Optional[int] = ..., rate: _Optional[float] = ..., rate_wanted: _Optional[float] = ..., state: _Optional[_Union[Clock.State, str]] = ..., lockstep: bool = ..., published: _Optional[_Mapping[str, int]] = ..., waiting_for: _Optional[str] = ..., due_wall: _Optional[float] = ...) -> None: ...
 
 class Done(_message.Message):
     __slots__ = ("participant", "tick", "t_ns", "epoch", "published")

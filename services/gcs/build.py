@@ -21,4 +21,4 @@ def build(site: Site) -> list[Host]:
             sys.stderr.write(f"gcs: the page, for those who have its token: {address.url}\n")
         return GroundStation(site, page)
 
-    return [Host(GroundStation, make)]
+    return [Host(GroundStation, make, writes_for=tuple(site.members))]

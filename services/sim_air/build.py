@@ -13,7 +13,7 @@ from uvf.runtime.site import Host, Member, Site
 def build(site: Site) -> list[Host]:
     if not any(site.of_kind("fixed_wing")):
         return []
-    return [Host(SimAir, lambda: _make(site))]
+    return [Host(SimAir, lambda: _make(site), writes_for=tuple(m.name for m in site.of_kind("fixed_wing")))]
 
 
 def _make(site: Site) -> SimAir:

@@ -14,7 +14,9 @@ def build(site: Site) -> list[Host]:
     for name, camera in cameras.items():
         _check(site.members[name], camera)
     looks = {name: _look(member) for name, member in site.members.items()}
-    return [Host(SimCamera, lambda: SimCamera(BulletRenderer(site.world, looks), cameras))] if cameras else []
+    if not cameras:
+        return []
+    return [Host(SimCamera, lambda: SimCamera(BulletRenderer(site.world, looks), cameras), writes_for=tuple(cameras))]
 
 
 def _check(member: Member, camera: Camera) -> None:

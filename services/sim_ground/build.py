@@ -21,7 +21,7 @@ def build(site: Site) -> list[Host]:
     for name, body in bodies.items():
         _check(site, site.members[name], body)
     cast(np.zeros(2), np.zeros(1), np.zeros((1, 6)), np.zeros((1, 3)))  # compiles the kernel before the clock runs
-    return [Host(SimGround, lambda: _make(site, bodies))]
+    return [Host(SimGround, lambda: _make(site, bodies), writes_for=tuple(bodies))]
 
 
 def _make(site: Site, bodies: dict[str, GroundBody]) -> SimGround:

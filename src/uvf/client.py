@@ -20,8 +20,9 @@ from schemas import topics
 from schemas.convert import stamp_ns
 from schemas.messages import Clock
 from schemas.topics import Request, Topic
+from uvf.runtime.address import router_from
 from uvf.runtime.bus import Publisher, Sample
-from uvf.runtime.zenoh_bus import DEFAULT_ENDPOINT, ZenohBus
+from uvf.runtime.zenoh_bus import ZenohBus
 
 M = TypeVar("M", bound=Message)
 Q = TypeVar("Q", bound=Message)
@@ -29,9 +30,9 @@ R = TypeVar("R", bound=Message)
 LOOK = 0.005  # s
 
 
-def connect(endpoint: str = DEFAULT_ENDPOINT, timeout: float = 5.0) -> "Client":
-    """Joins a running system. Raises BadInput when there is no router within ``timeout`` [s]."""
-    return Client(ZenohBus(endpoint, timeout=timeout))
+def connect(endpoint: str | None = None, timeout: float = 5.0) -> "Client":
+    """Joins a running system at ``endpoint``, or UVF_ROUTER. Raises BadInput without a router within ``timeout`` [s]."""
+    return Client(ZenohBus(endpoint or router_from(), timeout=timeout))
 
 
 class Client:

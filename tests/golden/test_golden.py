@@ -23,6 +23,18 @@ def test_the_service_does_what_it_did(name):
     assert [str(d) for d in into_service(GOLDEN, HOSTS[name], TOLERANCE)][:5] == []
 
 
+@pytest.mark.parametrize("name", HOSTS)
+def test_a_service_that_falls_silent_is_noticed(name):
+    host = HOSTS[name]
+
+    def mute():
+        service = host.make()
+        service.step = lambda t, **inputs: {name: [] for name in host.service.requests}
+        return service
+
+    assert any(d.now == "missing" for d in into_service(GOLDEN, dataclasses.replace(host, make=mute), TOLERANCE))
+
+
 def test_a_change_of_behaviour_is_noticed():
     host = HOSTS["autopilot_air"]
 

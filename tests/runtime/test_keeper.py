@@ -18,7 +18,7 @@ def buses():
     endpoint = f"tcp/127.0.0.1:{free_port()}"
     router = open_router(endpoint)
     with ZenohBus(endpoint) as kept, ZenohBus(endpoint) as other:
-        yield endpoint, Keeper(kept), other
+        yield endpoint, Keeper(kept, print), other
     router.close()
 
 
@@ -63,6 +63,7 @@ def test_a_new_epoch_forgets(buses):
     other.publisher(KEY, Grid.DESCRIPTOR.full_name, topics.MAP.qos).put(b"map", 5_000_000_000)
     clock = other.publisher(topics.CLOCK.at("sys"), Clock.DESCRIPTOR.full_name, topics.CLOCK.qos)
     settle(keeper)
+    other.epoch = 2
     clock.put(Clock(epoch=2, t_ns=10_000_000).SerializeToString(), 10_000_000)
     settle(keeper)
     assert recall(keeper, other) is None

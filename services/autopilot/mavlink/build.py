@@ -27,7 +27,7 @@ def build(site: Site) -> list[Host]:
     where = os.environ.get(LISTEN, DEFAULT_LISTEN)
     listen = address(where, LISTEN) if where.strip() else None
     facts = facts_of(site)
-    return [Host(MavlinkService, lambda: MavlinkService(facts, open_link(targets, listen)))]
+    return [Host(MavlinkService, lambda: MavlinkService(facts, open_link(targets, listen)), writes_for=tuple(site.members))]
 
 
 def facts_of(site: Site) -> list[Facts]:

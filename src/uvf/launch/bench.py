@@ -1,9 +1,10 @@
-"""``uvf bench``: runs the cases of ``benchmarks/<group>.py``, prints one table, keeps the figures."""
+"""``uvf bench``: runs the cases of ``benchmarks/<group>.py``, prints a table a group, keeps the figures."""
 
 import importlib
 import json
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import Any
 
 from rich.console import Console
 from rich.table import Table
@@ -16,23 +17,39 @@ Case = Callable[[Path | None], Figures]
 RESULTS = ROOT / "benchmarks" / "results.md"
 
 
-def run_group(group: str, wanted: Sequence[str], data: Path | None, json_file: Path | None, write: bool) -> None:
-    """Runs the cases of one group (all when none is named). Raises BadInput."""
-    groups = [p.stem for p in (ROOT / "benchmarks").glob("*.py") if p.stem != "__init__"]
-    if group not in groups:
-        raise BadInput(f"no benchmark group '{group}'; {nearest(group, groups)}")
-    cases: dict[str, Case] = importlib.import_module(f"benchmarks.{group}").CASES
+def run_groups(names: Sequence[str], data: Path | None, json_file: Path | None, write: bool) -> None:
+    """Groups, each followed by the cases wanted of it (none = all). Raises BadInput."""
+    groups = [p.stem for p in (ROOT / "benchmarks").glob("*.py") if "CASES = " in p.read_text()]
+    wanted: dict[str, list[str]] = {}
+    for name in names:
+        if name in groups:
+            wanted[name] = []
+        elif not wanted:
+            raise BadInput(f"no benchmark group '{name}'; {nearest(name, groups)}")
+        else:
+            wanted[next(reversed(wanted))].append(name)
+    figures: dict[str, Figures] = {group: _run(group, cases, data) for group, cases in wanted.items()}
+    for group, rows in figures.items():
+        Console().print(_table(group, rows))
+        if write:
+            RESULTS.write_text(replace_section(RESULTS.read_text() if RESULTS.exists() else "# Results\n", group, rows))
+    if json_file:
+        json_file.write_text(json.dumps({name: row for rows in figures.values() for name, row in rows.items()}, indent=1))
+
+
+def _module(group: str) -> Any:
+    return importlib.import_module(f"benchmarks.{group}")
+
+
+def _run(group: str, wanted: Sequence[str], data: Path | None) -> Figures:
+    cases: dict[str, Case] = _module(group).CASES
     for name in wanted:
         if name not in cases:
             raise BadInput(f"no case '{name}' in {group}; {nearest(name, cases)}")
-    figures: Figures = {}
+    rows: Figures = {}
     for name in wanted or cases:
-        figures |= cases[name](data)
-    Console().print(_table(group, figures))
-    if json_file:
-        json_file.write_text(json.dumps(figures, indent=1))
-    if write:
-        RESULTS.write_text(replace_section(RESULTS.read_text() if RESULTS.exists() else "# Results\n", group, figures))
+        rows |= cases[name](data)
+    return rows
 
 
 def _columns(figures: Figures) -> list[str]:

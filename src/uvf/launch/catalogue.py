@@ -2,7 +2,7 @@
 
 import importlib
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 from uvf.runtime.params import BadInput, nearest
@@ -50,12 +50,21 @@ def needed(site: Site) -> list[Kind]:
 
 
 def hosts(site: Site, kinds: Sequence[Kind], vehicle: str | None = None) -> list[Host]:
-    """The service instances of these kinds; ``vehicle`` keeps only those of one vehicle (and of the world)."""
+    """The service instances of these kinds; ``vehicle`` keeps only those of one vehicle."""
     if vehicle is not None and vehicle not in site.members:
         raise BadInput(f"no vehicle '{vehicle}' in {site.mission_path}; {nearest(vehicle, site.members)}")
     made: list[Host] = []
     for each in kinds:
         with c_errors_discarded():
             build: Build = importlib.import_module(each.build).build
-        made += [host for host in build(site) if vehicle is None or host.vehicle in (None, vehicle)]
+        built = [_with_roles(site, host) for host in build(site)]
+        wanted = [host for host in built if vehicle is None or host.vehicle == vehicle]
+        if built and not wanted:
+            raise BadInput(f"{each.name} has nothing of its own for '{vehicle}': it serves all vehicles together; leave --vehicle out")
+        made += wanted
     return made
+
+
+def _with_roles(site: Site, host: Host) -> Host:
+    """The mission says which vehicle is whose leader."""
+    return replace(host, roles=site.members[host.vehicle].entry.roles) if host.vehicle else host

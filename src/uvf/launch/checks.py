@@ -11,37 +11,37 @@ import yaml
 from schemas.topics import CLOCK, SYSTEM, Topic
 from uvf.launch import catalogue, settings
 from uvf.runtime.bus import matches
-from uvf.runtime.site import ROOT, Host, Site, load_site
+from uvf.runtime.site import ROOT, Host, load_site
 
 
 def check_mission(mission: str) -> list[str]:
     """The problems found, a line each. Raises BadInput for a file that cannot be read."""
     site = load_site(settings.mission_path(mission))
     hosts = catalogue.hosts(site, catalogue.needed(site))
-    return [*_writers(site, hosts), *_inputs(site, hosts), *_rates(hosts), *compose_problems(ROOT / "docker-compose.yml")]
+    return [*_writers(hosts), *_inputs(hosts), *_rates(hosts), *compose_problems(ROOT / "docker-compose.yml")]
 
 
-def _owners(host: Host, topic: Topic[Any], site: Site) -> Sequence[str]:
+def _owners(host: Host, topic: Topic[Any]) -> Sequence[str]:
     if not topic.per_vehicle:
         return (SYSTEM,)
-    return (host.vehicle,) if host.vehicle else tuple(site.members)
+    return (host.vehicle,) if host.vehicle else host.writes_for
 
 
-def _writers(site: Site, hosts: Sequence[Host]) -> Iterator[str]:
-    """One writer per key: two services of the world may write one topic, if for vehicles of different kinds."""
-    writers: defaultdict[str, set[str]] = defaultdict(set)
+def _writers(hosts: Sequence[Host]) -> Iterator[str]:
+    """One writer per key."""
+    writers: defaultdict[str, list[str]] = defaultdict(list)
     for host in hosts:
         for topic in host.service.outputs.values():
-            for owner in _owners(host, topic, site) if host.vehicle else ():
-                writers[topic.at(owner)].add(host.service.name)
+            for owner in _owners(host, topic):
+                writers[topic.at(owner)].append(host.service.name)
     for key, names in sorted(writers.items()):
         if len(names) > 1:
             yield f"{key}: written by {' and '.join(sorted(names))}; one topic has one writer"
 
 
-def _inputs(site: Site, hosts: Sequence[Host]) -> Iterator[str]:
+def _inputs(hosts: Sequence[Host]) -> Iterator[str]:
     """Every required input has a writer."""
-    written = {topic.at(o) for h in hosts for topic in h.service.outputs.values() for o in _owners(h, topic, site)}
+    written = {topic.at(o) for h in hosts for topic in h.service.outputs.values() for o in _owners(h, topic)}
     written.add(CLOCK.at(SYSTEM))
     for host in hosts:
         for name, declared in host.service.declared_inputs().items():

@@ -51,14 +51,14 @@ def up(
     from uvf.launch.runs import new_run
     from uvf.launch.up import Wanted
     from uvf.launch.up import up as run_up
+    from uvf.runtime.address import address_from
 
     with bad_input_is_one_line():
         path = settings.mission_path(mission)
         folder = new_run()
         say(f"mission {path.stem}; logs in {folder}")
         if gcs:
-            host, port = settings.gcs_address()
-            say(f"page http://{host}:{port}   QGroundControl: just start it (MAVLink goes to UDP 14550)   Ctrl-C ends")
+            say(f"page {address_from().url}   QGroundControl: just start it (MAVLink goes to UDP 14550)   Ctrl-C ends")
         raise typer.Exit(run_up(Wanted(mission, rate, gcs, seconds), folder, say))
 
 
@@ -99,10 +99,11 @@ def service(
 @app.command()
 def router(listen: Annotated[str | None, typer.Option(help="Endpoint; by default UVF_ROUTER or tcp/127.0.0.1:7447.")] = None) -> None:
     """Run the Zenoh router."""
-    from uvf.launch import settings
     from uvf.launch.processes import run_router
+    from uvf.runtime.address import router_from
 
-    run_router(listen or settings.router_endpoint())
+    with bad_input_is_one_line():
+        run_router(listen or router_from())
 
 
 @app.command()
@@ -151,17 +152,16 @@ def doctor() -> None:
 
 @app.command()
 def bench(
-    group: Annotated[str, typer.Argument(help="bus, sim, ...")],
-    case: Annotated[list[str] | None, typer.Argument(help="Only these cases.")] = None,
+    names: Annotated[list[str], typer.Argument(help="Groups (bus, sim, ...), each followed by the cases wanted of it.")],
     data: Annotated[Path | None, typer.Option(envvar="UVF_DATA", help="Folder with data sets.")] = None,
     json: Annotated[Path | None, typer.Option(help="Write the figures there.")] = None,
     write: Annotated[bool, typer.Option("--write", help="Renew benchmarks/results.md.")] = False,
 ) -> None:
     """Measure: one table, the same figures as JSON."""
-    from uvf.launch.bench import run_group
+    from uvf.launch.bench import run_groups
 
     with bad_input_is_one_line():
-        run_group(group, case or [], data, json, write)
+        run_groups(names, data, json, write)
 
 
 @app.command(context_settings={"allow_extra_args": True, "ignore_unknown_options": True})

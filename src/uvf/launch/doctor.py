@@ -8,6 +8,7 @@ import sys
 from collections.abc import Callable, Iterator
 
 from uvf.launch import settings
+from uvf.runtime.address import address_from, host_and_port, router_from
 from uvf.runtime.params import BadInput
 
 WHEELS = ("zenoh", "pybullet", "jsbsim", "pymavlink", "viser", "numba", "mcap", "filterpy")
@@ -42,8 +43,8 @@ def _wheels() -> Iterator[Finding]:
 
 
 def _ports() -> Iterator[Finding]:
-    router = settings.router_endpoint().rpartition("/")[2].rpartition(":")
-    for host, port, what in ((router[0], int(router[2]), "router"), (*settings.gcs_address(), "page")):
+    page = address_from()
+    for host, port, what in ((*host_and_port(router_from()), "router"), (page.host, page.port, "page")):
         with socket.socket() as probe:
             taken = probe.connect_ex((host, port)) == 0
         # A taken port is what a running system looks like: worth a line, not a fault.

@@ -4,14 +4,14 @@ from collections import defaultdict
 
 import typer
 
-from uvf.launch import settings
+from uvf.runtime.address import router_from
 from uvf.runtime.bus import matches
 from uvf.runtime.zenoh_bus import ZenohBus
 
 
 def list_nodes() -> None:
     """One line for each living service instance."""
-    with ZenohBus(settings.router_endpoint(), timeout=3.0) as bus:
+    with ZenohBus(router_from(), timeout=3.0) as bus:
         for token in bus.tokens("@node/**"):
             _, owner, service, boot = token.split("/")
             typer.echo(f"{owner:12} {service:18} boot {boot}")
@@ -19,7 +19,7 @@ def list_nodes() -> None:
 
 def graph() -> None:
     """For each key: writers -> readers."""
-    with ZenohBus(settings.router_endpoint(), timeout=3.0) as bus:
+    with ZenohBus(router_from(), timeout=3.0) as bus:
         tokens = [token.split("/") for token in bus.tokens("@ep/**")]
     writers: defaultdict[str, set[str]] = defaultdict(set)
     readers: defaultdict[str, set[str]] = defaultdict(set)

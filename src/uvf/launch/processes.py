@@ -1,20 +1,24 @@
 """The bodies of the processes of a run: router, conductor, recorder, and one for any service."""
 
 import time
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 from schemas import topics
 from schemas.convert import stamp_ns
-from schemas.messages import Clock, ClockRequest, Done, Event
+from schemas.messages import Clock, ClockRequest, Done, Event, Reply
 from uvf.launch import catalogue, settings
 from uvf.launch.worker import Worker, worker
-from uvf.runtime.bus import Query, Sample
+from uvf.runtime.address import router_from
+from uvf.runtime.bus import Query, Sample, Sink
 from uvf.runtime.conductor import Conductor
 from uvf.runtime.keeper import Keeper
 from uvf.runtime.live import Live
 from uvf.runtime.params import BadInput
 from uvf.runtime.recording import DEPTH, Recorder
 from uvf.runtime.site import Site, load_site
+from uvf.runtime.wire import Malformed, decode, guarded
 from uvf.runtime.zenoh_bus import ZenohBus, open_router
 
 TICK_LOOK = 0.001  # s, how often the conductor looks whether the next tick is due
@@ -32,8 +36,8 @@ def run_router(listen: str) -> None:
         session = open_router(listen)
         try:
             with ZenohBus(listen.replace("0.0.0.0", "127.0.0.1"), timeout=CONNECT_PATIENCE) as bus:
-                keeper = Keeper(bus)
-                while not life.stop.wait(LOOK) and not life.orphaned():
+                keeper = Keeper(bus, life.warn)
+                while not life.stop.wait(LOOK) and life.goes_on():
                     keeper.poll()
         finally:
             session.close()  # type: ignore[no-untyped-call]
@@ -41,7 +45,7 @@ def run_router(listen: str) -> None:
 
 def open_bus(life: Worker, blocking: bool = False) -> ZenohBus:
     """Waits for the router until told to stop, and says so once."""
-    endpoint, said = settings.router_endpoint(), False
+    endpoint, said = router_from(), False
     while not life.stop.is_set() and not life.orphaned():
         try:
             return ZenohBus(endpoint, blocking, CONNECT_PATIENCE)
@@ -58,7 +62,7 @@ def run_service(name: str, mission: str, vehicle: str | None, lockstep: bool = F
         site = load_site(settings.mission_path(mission))
         hosts = catalogue.hosts(site, [catalogue.kind(name)], vehicle)
         with open_bus(life, lockstep) as bus:
-            Live(name if vehicle is None else f"{name}.{vehicle}", hosts, bus, life.warn).run(life.stop, life.orphaned)
+            Live(name if vehicle is None else f"{name}.{vehicle}", hosts, bus, life.warn).run(life.stop, lambda: not life.goes_on())
 
 
 def run_conductor(mission: str, rate: float, lockstep: bool = False, without: tuple[str, ...] = ()) -> None:
@@ -85,17 +89,26 @@ class ConductorLoop:
         self._told = 0.0
         self._held_since = time.monotonic()
         self._complained = ""
-        bus.subscribe(topics.DONE.by("*").at("sys"), topics.DONE.qos, self._on_done, depth=256, wake=True)
+        bus.subscribe(topics.DONE.by("*").at("sys"), topics.DONE.qos, self._guard(topics.DONE, self._on_done), depth=256, wake=True)
         bus.serve(topics.CLOCK_REQUEST.at("sys"), self._on_request)
         bus.token(f"@node/sys/conductor/{bus.boot:x}")
+        left = bus.recall(topics.CLOCK.at("sys"))
+        if left is not None:
+            conductor.take_up(decode("clock", left, Clock))
 
-    def _on_done(self, sample: Sample) -> None:
-        line = self._conductor.done(Done.FromString(sample.payload), sample.boot)
+    def _guard(self, topic: topics.Topic[Any], heard: Callable[[Any, Sample], None]) -> Sink:
+        return guarded(topic, heard, self._life.warn)
+
+    def _on_done(self, message: Done, sample: Sample) -> None:
+        line = self._conductor.done(message, sample.boot)
         if line:
             self._say(line, Event.WARNING)
 
     def _on_request(self, query: Query) -> None:
-        reply = self._conductor.request(ClockRequest.FromString(query.payload))
+        try:
+            reply = self._conductor.request(decode(query.key, query.payload, ClockRequest))
+        except Malformed as error:
+            reply = Reply(accepted=False, reason=str(error))
         query.answer(reply.SerializeToString(deterministic=True), self._conductor.t_ns)
 
     def _say(self, line: str, severity: Event.Severity) -> None:
@@ -104,7 +117,7 @@ class ConductorLoop:
         self._events.put(event.SerializeToString(deterministic=True), self._conductor.t_ns)
 
     def run(self) -> None:
-        while not self._life.stop.is_set() and not self._life.orphaned():
+        while not self._life.stop.is_set() and self._life.goes_on():
             self._bus.wait(TICK_LOOK)
             self._bus.poll()
             wall = time.monotonic()
@@ -118,6 +131,7 @@ class ConductorLoop:
     def _tell(self, clock: Clock, wall: float) -> None:
         self._told = self._held_since = wall
         self._complained = ""
+        self._bus.epoch = clock.epoch
         self._clock.put(clock.SerializeToString(deterministic=True), clock.t_ns)
 
     def _tell_held(self, wall: float) -> None:
@@ -152,7 +166,7 @@ def run_recorder(folder: Path, mission: str) -> None:
 def _record(life: Worker, bus: ZenohBus, arrived: list[Sample], recorder: Recorder, path: Path) -> None:
     """Until told to stop or the file is full."""
     flushed, complained = time.monotonic(), False
-    while not life.stop.wait(LOOK) and not life.orphaned() and path.stat().st_size < ROTATE_BYTES:
+    while not life.stop.wait(LOOK) and life.goes_on() and path.stat().st_size < ROTATE_BYTES:
         bus.poll()
         for sample in arrived:
             recorder.write(sample)

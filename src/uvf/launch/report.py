@@ -13,6 +13,7 @@ from rich.table import Table
 from uvf.launch import catalogue, settings
 from uvf.launch.run import Result, run_lockstep
 from uvf.launch.runs import new_run
+from uvf.runtime.address import router_from
 from uvf.runtime.params import BadInput, nearest
 from uvf.runtime.recording import log_metadata, read_log, recover
 from uvf.runtime.replay import into_service, onto_bus
@@ -64,7 +65,7 @@ def replay_onto_bus(log: Path, rate: float) -> int:
     """Until the end or Ctrl-C."""
     stop = Event()
     signal.signal(signal.SIGINT, lambda *_: stop.set())
-    with ZenohBus(settings.router_endpoint(), blocking=True, timeout=5.0) as bus:
+    with ZenohBus(router_from(), blocking=True, timeout=5.0) as bus:
         count = onto_bus(log, bus, rate, lambda: not stop.is_set())
     typer.echo(f"{count} messages replayed")
     return 0

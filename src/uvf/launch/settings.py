@@ -9,25 +9,17 @@ from uvf.runtime.site import ROOT
 GIGABYTE = 1_000_000_000
 
 
-def router_endpoint() -> str:
-    return os.environ.get("UVF_ROUTER", "tcp/127.0.0.1:7447")
-
-
-def gcs_address() -> tuple[str, int]:
-    """Where the page will be. Raises BadInput."""
-    from uvf.runtime.address import address_from
-
-    address = address_from()
-    return address.host, address.port
-
-
 def runs_folder() -> Path:
     return Path(os.environ.get("UVF_RUNS", str(ROOT / "runs")))
 
 
 def runs_quota() -> float:
-    """Bytes that old runs may take together."""
-    return float(os.environ.get("UVF_RUNS_QUOTA_GB", "5")) * GIGABYTE
+    """Bytes that old runs may take together. Raises BadInput."""
+    text = os.environ.get("UVF_RUNS_QUOTA_GB", "5")
+    try:
+        return float(text) * GIGABYTE
+    except ValueError as error:
+        raise BadInput(f"UVF_RUNS_QUOTA_GB={text}: not a number of gigabytes") from error
 
 
 def mission_path(name: str) -> Path:

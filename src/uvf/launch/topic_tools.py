@@ -11,7 +11,7 @@ from rich.console import Console
 from rich.table import Table
 
 from schemas.topics import PREFIX, REQUESTS, TOPICS
-from uvf.launch import settings
+from uvf.runtime.address import router_from
 from uvf.runtime.bus import Sample, matches
 from uvf.runtime.params import BadInput, nearest
 from uvf.runtime.replay import topic_of
@@ -40,7 +40,7 @@ def _full(key: str) -> str:
 
 
 def _listen(key: str, heard: Callable[[Sample], None], go_on: Callable[[], bool]) -> None:
-    with ZenohBus(settings.router_endpoint(), timeout=3.0) as bus:
+    with ZenohBus(router_from(), timeout=3.0) as bus:
         bus.subscribe_all(lambda sample: heard(sample) if matches(_full(key), sample.key) else None, depth=DEPTH)
         try:
             while go_on():
@@ -103,7 +103,7 @@ def info(key: str) -> None:
         known = [t.key.replace("<owner>", "*") for t in TOPICS.values()]
         raise BadInput(f"no topic '{key}' in the table; {nearest(key, known)}")
     typer.echo(f"{topic.key}: {topic.about}\ntype {topic.message.DESCRIPTOR.full_name}, {topic.hz:g} Hz, QoS {topic.qos.value}")
-    with ZenohBus(settings.router_endpoint(), timeout=3.0) as bus:
+    with ZenohBus(router_from(), timeout=3.0) as bus:
         for token in bus.tokens("@ep/**"):
             _, owner, node, way, where, _ = token.split("/")
             if topic_of(where.replace("%", "/").replace("+", "*")) is topic:

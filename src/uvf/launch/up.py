@@ -13,9 +13,11 @@ from schemas.convert import stamp_ns
 from schemas.messages import Clock, Event, Processes, StopCommand
 from uvf.launch import catalogue, settings
 from uvf.launch.supervisor import Supervisor
+from uvf.runtime.address import address_from, host_and_port, router_from
 from uvf.runtime.bus import Sample
 from uvf.runtime.params import BadInput
 from uvf.runtime.site import load_site
+from uvf.runtime.wire import guarded
 from uvf.runtime.zenoh_bus import ZenohBus
 
 LOOK = 0.1  # s, how often the supervisor looks for the dead
@@ -54,17 +56,18 @@ def up(wanted: Wanted, folder: Path, say: Say) -> int:
 
 def check_ports(page: bool) -> None:
     """One clear line for a port that is taken, before anything is started. Raises BadInput."""
-    host, _, port = settings.router_endpoint().rpartition("/")[2].rpartition(":")
-    wanted = [(host, int(port), "the router", "UVF_ROUTER=tcp/127.0.0.1:7448")]
+    host, port = host_and_port(router_from())
+    wanted = [(host, port, "the router", "UVF_ROUTER=tcp/127.0.0.1:7448")]
     if page:
-        wanted.append((*settings.gcs_address(), "the page", "UVF_GCS_PORT=8081"))
-    for address, number, what, mend in wanted:
+        address = address_from()
+        wanted.append((address.host, address.port, "the page", "UVF_GCS_PORT=8081"))
+    for host, port, what, mend in wanted:
         with socket.socket() as probe:
             probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
             try:
-                probe.bind((address, number))
+                probe.bind((host, port))
             except OSError as error:
-                line = f"port {number} for {what} is taken ({error.strerror}): is another 'uvf up' running? Choose another with {mend}"
+                line = f"port {port} for {what} is taken ({error.strerror}): is another 'uvf up' running? Choose another with {mend}"
                 raise BadInput(line) from error
 
 
@@ -86,7 +89,7 @@ class Run:
         """The router first, then everybody; the conductor lets time begin when all are there."""
         mission = self._wanted.mission
         self._supervisor.start("router", ["router"])
-        self._bus = ZenohBus(settings.router_endpoint(), timeout=ROUTER_PATIENCE)
+        self._bus = ZenohBus(router_from(), timeout=ROUTER_PATIENCE)
         self._declare(self._bus)
         self._supervisor.start("conductor", ["service", "conductor", "--mission", mission, "--rate", str(self._wanted.rate)])
         for name in services:
@@ -99,19 +102,16 @@ class Run:
         self._events = bus.publisher(events.at("sys"), Event.DESCRIPTOR.full_name, events.qos)
         self._stop = bus.publisher(stop.at("sys"), StopCommand.DESCRIPTOR.full_name, stop.qos)
         self._processes = bus.publisher(topics.PROCESSES.at("sys"), Processes.DESCRIPTOR.full_name, topics.PROCESSES.qos)
-        bus.subscribe(topics.CLOCK.at("sys"), topics.CLOCK.qos, self._on_clock, depth=1)
-        bus.subscribe(topics.SYSTEM_EVENTS.by("conductor").at("sys"), topics.SYSTEM_EVENTS.qos, self._on_event, depth=16)
+        bus.subscribe(topics.CLOCK.at("sys"), topics.CLOCK.qos, guarded(topics.CLOCK, self._on_clock, self._say), depth=1)
+        told = topics.SYSTEM_EVENTS.by("conductor")
+        bus.subscribe(told.at("sys"), told.qos, guarded(told, lambda event, _: self._say(event.text), self._say), depth=16)
         bus.token(f"@node/sys/launcher/{bus.boot:x}")
 
-    def _on_clock(self, sample: Sample) -> None:
-        clock = Clock.FromString(sample.payload)
+    def _on_clock(self, clock: Clock, sample: Sample) -> None:
         self._t_ns = clock.t_ns
         if clock.tick and self._moving_since is None:
             self._moving_since = time.monotonic()
             self._say(f"time runs, {self._moving_since - self._begun:.1f} s after the start")
-
-    def _on_event(self, sample: Sample) -> None:
-        self._say(Event.FromString(sample.payload).text)
 
     def watch(self, stop: Flag) -> None:
         """Until ``stop``; starts again what dies."""

@@ -33,12 +33,16 @@ class Worker:
         sys.stderr.flush()
 
     def orphaned(self) -> bool:
-        """Whether the launcher is gone; also shows container health checks that the loop goes round."""
+        """Whether the launcher is gone."""
+        return self._parent != 0 and os.getppid() != self._parent
+
+    def goes_on(self) -> bool:
+        """Not orphaned; asked in the main loop, it also shows container health checks that the loop goes round."""
         now = time.monotonic()
         if self._alive is not None and now - self._touched > 1:
             self._alive.touch()
             self._touched = now
-        return self._parent != 0 and os.getppid() != self._parent
+        return not self.orphaned()
 
 
 @contextmanager

@@ -1,4 +1,4 @@
-"""Where the page is served: host and port from the environment, checked before viser starts."""
+"""Where the router listens and the page is served: from the environment, checked before anything is opened."""
 
 import ipaddress
 import os
@@ -9,7 +9,24 @@ from dataclasses import dataclass
 
 from uvf.runtime.params import BadInput
 
+ROUTER, DEFAULT_ROUTER = "UVF_ROUTER", "tcp/127.0.0.1:7447"
 HOST, PORT, TOKEN = "UVF_GCS_HOST", "UVF_GCS_PORT", "UVF_GCS_TOKEN"
+
+
+def router_from(environment: Mapping[str, str] = os.environ) -> str:
+    """Reads UVF_ROUTER. Raises BadInput."""
+    endpoint = environment.get(ROUTER, DEFAULT_ROUTER)
+    host_and_port(endpoint)
+    return endpoint
+
+
+def host_and_port(endpoint: str) -> tuple[str, int]:
+    """Of an endpoint such as ``tcp/127.0.0.1:7447``. Raises BadInput."""
+    link, _, place = endpoint.partition("/")
+    host, _, port = place.rpartition(":")
+    if not link or not host or not port.isdecimal() or not 0 < int(port) < 65536:
+        raise BadInput(f"{ROUTER}={endpoint}: not an endpoint; write it as {DEFAULT_ROUTER}")
+    return host, int(port)
 
 
 def is_loopback(host: str) -> bool:

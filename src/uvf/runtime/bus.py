@@ -9,7 +9,10 @@ from schemas.topics import Qos
 
 
 class Sample(NamedTuple):
-    """One message as it travels. stamp_ns: simulation time from which (exclusive) steps may read it."""
+    """One message as it travels. stamp_ns: simulation time from which (exclusive) steps may read it.
+
+    epoch: of the sender's clock; 0 where there is but one (a bus inside a process) or none.
+    """
 
     key: str
     type_name: str
@@ -17,6 +20,7 @@ class Sample(NamedTuple):
     stamp_ns: int
     seq: int
     boot: int
+    epoch: int = 0
 
 
 @dataclass

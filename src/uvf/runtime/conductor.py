@@ -12,6 +12,8 @@ MAX_BEHIND = 0.25  # s, wall: what a slow simulator costs beyond this is not cau
 
 @dataclass
 class Participant:
+    """A process that steps with the clock; ``autopilot.burger`` is one of those that share the work of ``autopilot``."""
+
     boot: int = 0
     t_ns: int = -1
     published: dict[str, int] = field(default_factory=dict)
@@ -26,7 +28,8 @@ class Conductor:
 
     def __init__(self, simulators: Iterable[str], others: Iterable[str], rate: float = 1.0, lockstep: bool = False) -> None:
         self._simulators = frozenset(simulators)
-        self._participants = {name: Participant() for name in (*self._simulators, *others)}
+        self._kinds = frozenset((*self._simulators, *others))
+        self._participants = {name: Participant() for name in self._kinds}
         self._rate = rate
         self._lockstep = lockstep
         self._paused = False
@@ -45,14 +48,16 @@ class Conductor:
 
     def done(self, message: Done, boot: int) -> str:
         """Takes a participant's report. Returns a line to tell when a simulator has come back and time starts over."""
-        participant = self._participants.get(message.participant)
-        if participant is None:
+        kind = message.participant.partition(".")[0]
+        if kind not in self._kinds:
             return ""
+        self._participants.pop(kind if message.participant != kind else "", None)
+        participant = self._participants.setdefault(message.participant, Participant())
         line = ""
         if not self._started and message.t_ns > 0:
             line = self._resume(message)
-        restarted = participant.boot not in (0, boot)
-        if restarted and message.participant in self._simulators and self._started:
+        restarted = participant.boot not in (0, boot) or (message.epoch == 0 and self.t_ns > 0)
+        if restarted and kind in self._simulators and self._started:
             line = f"{message.participant} started again: everything starts afresh"
             self.reset()
         if restarted or message.epoch in (0, self.epoch):
@@ -79,7 +84,7 @@ class Conductor:
     def waiting_for(self) -> str:
         """The participant that holds the next tick back; empty when nobody does."""
         everybody = not self._started or self._lockstep
-        names = sorted(self._participants) if everybody else sorted(self._simulators)
+        names = sorted(n for n in self._participants if everybody or n.partition(".")[0] in self._simulators)
         return next((n for n in names if self._participants[n].t_ns < (self.t_ns if self._started else 0)), "")
 
     def missing(self) -> list[str]:
@@ -95,9 +100,15 @@ class Conductor:
             if not self._paused:
                 return Reply(accepted=False, reason="not paused: pause first, then step")
             self._steps_left += 1
-        else:
+        elif request.action in (ClockRequest.PAUSE, ClockRequest.RESUME):
             self._paused = request.action == ClockRequest.PAUSE
+        else:
+            return Reply(accepted=False, reason=f"unknown action {request.action}")
         return Reply(accepted=True)
+
+    def take_up(self, clock: Clock) -> None:
+        """Rate and pause as a conductor before has left them."""
+        self._rate, self._paused = clock.rate_wanted, clock.state == Clock.PAUSED
 
     def advance(self, wall: float) -> Clock | None:
         """The next tick if it is due at ``wall`` [s] and nobody holds it back."""
@@ -132,6 +143,8 @@ class Conductor:
         message = Clock(tick=self.tick, t_ns=self.t_ns, epoch=self.epoch, rate_wanted=self._rate, lockstep=self._lockstep)
         message.state = Clock.PAUSED if self._paused else Clock.RUNNING
         message.waiting_for = waiting_for
+        if not self._lockstep and self._rate > 0:
+            message.due_wall = wall - max(self._allowed - self.t_ns / NS, 0.0) / self._rate
         message.rate = self._achieved(wall)
         if self._lockstep:
             for participant in self._participants.values():

@@ -8,7 +8,6 @@ from collections.abc import Sequence
 from schemas import topics
 from schemas.convert import stamp_ns
 from schemas.messages import Health
-from uvf.runtime.clock import NS
 from uvf.runtime.shell import Shell
 from uvf.runtime.zenoh_bus import ZenohBus
 
@@ -25,11 +24,10 @@ class HealthReport:
         self._next = 0.0
         self._publisher = bus.publisher(topics.HEALTH.by(name).at("sys"), Health.DESCRIPTOR.full_name, topics.HEALTH.qos)
 
-    def begun(self, shell: Shell, now_ns: int) -> None:
-        """A step begins while the clock shows ``now_ns``: more than one period after it was due counts as late."""
-        behind = (now_ns - shell.due_ns) / NS
-        self._worst = max(self._worst, behind)
-        self._late += behind > 1 / shell.type.hz
+    def begun(self, shell: Shell, lateness: float) -> None:
+        """A step begins ``lateness`` [s, wall] after it was due: by more than one period counts as late."""
+        self._worst = max(self._worst, lateness)
+        self._late += lateness > 1 / shell.type.hz
 
     def publish_when_due(self, wall: float) -> None:
         if wall < self._next:
@@ -48,7 +46,7 @@ class HealthReport:
             late=self._late,
             worst_lateness=self._worst,
             cpu_time=time.process_time(),
-            gaps=dict(self._bus.gaps),
+            gaps=dict(self._bus.counter.gaps),
             missing=sorted({f"{s.type.name}:{m}" for s in self._shells for m in s.counters.missing}),
         )
         self._publisher.put(message.SerializeToString(deterministic=True), now)

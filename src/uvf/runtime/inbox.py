@@ -3,11 +3,12 @@
 from collections import deque
 from typing import Any
 
-from google.protobuf.message import DecodeError, Message
+from google.protobuf.message import Message
 
 from uvf.runtime.bus import Sample
 from uvf.runtime.clock import NS
 from uvf.runtime.service import Input
+from uvf.runtime.wire import Malformed, decode_sample
 
 EVERY_DEPTH = 256
 
@@ -19,40 +20,41 @@ class Slot:
         self._input = declared
         self._max_age = float("inf") if ageless else declared.topic.max_age * NS
         self._ageless = ageless
-        self.arrived: deque[Sample] = deque(maxlen=EVERY_DEPTH)
-        self._fresh: list[tuple[int, Message]] = []
+        self._fresh: deque[tuple[int, Message]] = deque(maxlen=EVERY_DEPTH)
         self._latest: tuple[int, Message] | None = None
+        self.arrived: deque[Sample] = deque(maxlen=EVERY_DEPTH)
+        self.accepted: Sample | None = None
         self.malformed: list[str] = []
 
     def push(self, sample: Sample) -> None:
         self.arrived.append(sample)
 
     def take(self, t_ns: int) -> None:
-        """Makes readable what is stamped before ``t_ns``, ordered by (stamp, key, seq)."""
+        """Makes readable what is stamped before ``t_ns``, ordered by (epoch, stamp, key, seq)."""
         if not self.arrived:
             return
         ready = [s for s in self.arrived if self._ageless or s.stamp_ns < t_ns]
         if not ready:
             return
-        waiting = [s for s in self.arrived if not self._ageless and s.stamp_ns >= t_ns]
-        self.arrived = deque(waiting, maxlen=EVERY_DEPTH)
-        ready.sort(key=lambda s: (s.stamp_ns, s.key, s.seq))
-        for sample in ready if self._input.every else ready[-1:]:
-            self._accept(sample)
+        self.arrived = deque((s for s in self.arrived if not (self._ageless or s.stamp_ns < t_ns)), maxlen=EVERY_DEPTH)
+        ready.sort(key=lambda s: (s.epoch, s.stamp_ns, s.key, s.seq))
+        if self._input.every:
+            for sample in ready:
+                self._accept(sample)
+        else:
+            # A broken message hides none of the good ones before it.
+            any(self._accept(sample) for sample in reversed(ready))
 
-    def _accept(self, sample: Sample) -> None:
-        wanted = self._input.topic.message
-        if sample.type_name != wanted.DESCRIPTOR.full_name:
-            self.malformed.append(f"{sample.key}: {sample.type_name or 'untyped bytes'} where {wanted.DESCRIPTOR.full_name} is due")
-            return
+    def _accept(self, sample: Sample) -> bool:
         try:
-            message = wanted.FromString(sample.payload)
-        except DecodeError as error:
-            self.malformed.append(f"{sample.key}: broken {wanted.DESCRIPTOR.full_name}: {error}")
-            return
-        self._latest = (sample.stamp_ns, message)
+            message = decode_sample(sample, self._input.topic.message)
+        except Malformed as error:
+            self.malformed.append(str(error))
+            return False
+        self._latest, self.accepted = (sample.stamp_ns, message), sample
         if self._input.every:
             self._fresh.append(self._latest)
+        return True
 
     def is_fresh(self, t_ns: int) -> bool:
         return self._latest is not None and t_ns - self._latest[0] <= self._max_age
@@ -69,20 +71,34 @@ class Slot:
 class InputBox:
     """All owners of one declared input."""
 
-    def __init__(self, declared: Input, ageless: bool) -> None:
+    def __init__(self, declared: Input, ageless: bool, epoch: int) -> None:
         self.declared = declared
         self._ageless = ageless
+        self.epoch = epoch
         self._slots: dict[str, Slot] = {}
 
     def push(self, sample: Sample) -> None:
+        """Takes a message of this epoch (or of none); what an old one still sends is dropped, an operator's word is not."""
+        if 0 < sample.epoch < self.epoch:
+            if not self.declared.topic.across_epochs:
+                return
+            sample = sample._replace(stamp_ns=-1)
         owner = sample.key.split("/")[1] if self.declared.each_vehicle else ""
         if owner not in self._slots:
             self._slots[owner] = Slot(self.declared, self._ageless)
         self._slots[owner].push(sample)
 
-    def unread(self) -> list[Sample]:
-        """What has arrived but has not been taken yet."""
-        return [sample for slot in self._slots.values() for sample in slot.arrived]
+    def surviving(self, epoch: int) -> list[Sample]:
+        """What still counts when time starts over: the new epoch's own messages, and what holds across epochs.
+
+        The latter is stamped anew with the beginning of time, so that everything said later comes after it.
+        """
+        slots = self._slots.values()
+        new = [s for slot in slots for s in slot.arrived if s.epoch >= epoch]
+        if not self.declared.topic.across_epochs:
+            return new
+        old = [s for slot in slots for s in (slot.accepted, *slot.arrived) if s is not None and s.epoch < epoch]
+        return [s._replace(stamp_ns=-1) for s in sorted(old, key=lambda s: (s.epoch, s.stamp_ns))[-1:]] + new
 
     def take(self, t_ns: int) -> None:
         for slot in self._slots.values():

@@ -6,17 +6,18 @@ from threading import Event
 
 from schemas import topics
 from schemas.messages import Clock, Done
-from uvf.runtime.bus import Sample
 from uvf.runtime.clock import NS
 from uvf.runtime.health import HealthReport
 from uvf.runtime.shell import Shell, Warn
 from uvf.runtime.site import Host
+from uvf.runtime.wire import guarded
 from uvf.runtime.zenoh_bus import ZenohBus
 
 IDLE = 0.05  # s, the longest wait: how fast a process sees that it shall stop
 READY_PERIOD = 0.2  # s, how often a process says where it stands while no clock is heard
 LATE_START = 10  # ticks: who first sees a later one has been started again
-LOCKSTEP_PATIENCE = 0.0002  # s, between two looks for messages that are announced but not here yet
+LOCKSTEP_LOOK = 0.0002  # s, between two looks for messages that are announced but not here yet
+LOCKSTEP_PATIENCE = 5.0  # s, after which the message that is waited for is named
 
 
 class Live:
@@ -32,17 +33,17 @@ class Live:
         self._simulator = any(s.type.simulator for s in self._sim)
         self._ticks: list[Clock] = []
         self._epoch = 0
+        self._given_up = 0
+        """The epoch that another instance of this simulator has begun; 0 = none."""
         self._tick = 0
         self._done = bus.publisher(topics.DONE.by(name).at("sys"), Done.DESCRIPTOR.full_name, topics.DONE.qos)
         self._health = HealthReport(name, shells, bus)
         self._last_heard = 0.0
         self._t_ns = 0
-        bus.subscribe(topics.CLOCK.at("sys"), topics.CLOCK.qos, self._on_clock, depth=64, wake=True)
+        on_clock = guarded(topics.CLOCK, lambda clock, _: self._ticks.append(clock), warn)
+        bus.subscribe(topics.CLOCK.at("sys"), topics.CLOCK.qos, on_clock, depth=64, wake=True)
         for shell in shells:
             _declare_tokens(shell, bus)
-
-    def _on_clock(self, sample: Sample) -> None:
-        self._ticks.append(Clock.FromString(sample.payload))
 
     def run(self, stop: Event, until: Callable[[], bool] = lambda: False) -> None:
         """Until ``stop`` is set (or ``until()``); closes the services in every case."""
@@ -52,7 +53,7 @@ class Live:
                 self._bus.wait(self._patience(time.monotonic() - start))
                 self._bus.poll()
                 wall = time.monotonic() - start
-                self._follow_clock(wall)
+                self._follow_clock(wall, stop)
                 self._run_wall(wall)
                 self._health.publish_when_due(wall)
         finally:
@@ -63,8 +64,8 @@ class Live:
         due = min((s.due_ns / NS - wall for s in self._wall), default=IDLE)
         return min(max(due, 0.0), IDLE)
 
-    def _follow_clock(self, wall: float) -> None:
-        ticks, self._ticks = self._ticks, []
+    def _follow_clock(self, wall: float, stop: Event) -> None:
+        ticks, self._ticks = [clock for clock in self._ticks if not self._came_too_late(clock)], []
         if ticks:
             self._last_heard = wall
         elif self._sim and wall - self._last_heard > READY_PERIOD:
@@ -74,27 +75,40 @@ class Live:
             if clock.epoch != self._epoch:
                 self._begin_epoch(clock)
             if clock.lockstep:
-                self._await_announced(clock)
-        if ticks:
+                self._await_announced(clock, stop)
+        if ticks and not stop.is_set():
             self._advance_to(ticks[-1])
+
+    def _came_too_late(self, clock: Clock) -> bool:
+        """A simulator that is started again cannot go on where the one before has been: it waits for a new epoch."""
+        if self._simulator and self._epoch == 0 and clock.tick > LATE_START:
+            self._given_up = clock.epoch
+        return clock.epoch == self._given_up
 
     def _begin_epoch(self, clock: Clock) -> None:
         """The first clock seen places the steps; a later change of epoch starts every service afresh."""
         first = self._epoch == 0
-        self._epoch = clock.epoch
+        self._epoch = self._bus.epoch = clock.epoch
+        for shell in self._wall:
+            shell.join(clock.epoch)
         for shell in self._sim:
             if not first:
-                shell.restart(clock.t_ns)
-            elif clock.tick > LATE_START:
+                shell.restart(clock.epoch)
+            else:
+                shell.join(clock.epoch)
+            if first and clock.tick > LATE_START:
                 shell.recall(self._bus.recall)
             shell.skip_to(clock.t_ns, count=False)
 
-    def _await_announced(self, clock: Clock) -> None:
+    def _await_announced(self, clock: Clock, stop: Event) -> None:
         """Lockstep: everything published in the ticks before has arrived before anybody steps on."""
-        keys = self._bus.subscribed(clock.published)
-        while any(self._bus.last_seq.get(key, 0) < clock.published[key] for key in keys):
-            time.sleep(LOCKSTEP_PATIENCE)
+        begun = time.monotonic()
+        while (key := self._bus.behind(clock.published)) and not stop.is_set():
+            time.sleep(LOCKSTEP_LOOK)
             self._bus.poll()
+            if time.monotonic() - begun > LOCKSTEP_PATIENCE:
+                self._warn(f"{self._name}: still waits for message {clock.published[key]} on {key}")
+                begun = time.monotonic()
 
     def _advance_to(self, clock: Clock) -> None:
         published: dict[str, int] = {}
@@ -102,7 +116,7 @@ class Live:
             shell = min(self._sim, key=lambda s: s.due_ns, default=None)
             if shell is None or shell.due_ns > clock.t_ns:
                 break
-            self._health.begun(shell, clock.t_ns)
+            self._health.begun(shell, self._lateness(clock, shell))
             if not (clock.lockstep or shell.type.simulator):
                 shell.skip_to(clock.t_ns)
             shell.advance()
@@ -114,6 +128,12 @@ class Live:
         if self._sim and (self._simulator or clock.lockstep):
             self._report(published)
 
+    def _lateness(self, clock: Clock, shell: Shell) -> float:
+        """How long ago [s, wall] the step about to begin was due; the conductor's clock is this host's too."""
+        if clock.lockstep or clock.due_wall == 0 or clock.rate_wanted == 0:
+            return 0.0
+        return time.monotonic() - clock.due_wall + (clock.t_ns - shell.due_ns) / NS / clock.rate_wanted
+
     def _report(self, published: dict[str, int]) -> None:
         done = Done(participant=self._name, tick=self._tick, t_ns=self._t_ns, epoch=self._epoch, published=published)
         self._done.put(done.SerializeToString(deterministic=True), self._t_ns)
@@ -121,7 +141,7 @@ class Live:
     def _run_wall(self, wall: float) -> None:
         for shell in self._wall:
             if shell.due_ns <= wall * NS:
-                self._health.begun(shell, round(wall * NS))
+                self._health.begun(shell, wall - shell.due_ns / NS)
                 shell.skip_to(round(wall * NS))
                 shell.advance()
 

@@ -1,16 +1,17 @@
 """Answers requests to read or set a service's parameters while it runs."""
 
 from collections import deque
+from collections.abc import Callable, Iterator
 from typing import Any, get_args, get_type_hints
 
 import msgspec
-from google.protobuf.message import DecodeError
 
 from schemas import topics
 from schemas.messages import Param, ParamReply, ParamRequest
 from uvf.runtime.bus import Query
 from uvf.runtime.params import nearest
 from uvf.runtime.service import Service
+from uvf.runtime.wire import Malformed, decode
 
 
 class ParamServer:
@@ -26,14 +27,19 @@ class ParamServer:
     def queue(self, query: Query) -> None:
         self._queue.append(query)
 
-    def answer(self, t_ns: int) -> None:
-        while self._queue:
-            query = self._queue.popleft()
+    def answer(self, readable: Callable[[int], bool]) -> Iterator[tuple[Query, ParamReply]]:
+        """The requests whose stamp may be read now, each with its reply."""
+        due = [query for query in self._queue if readable(query.stamp_ns)]
+        self._queue = deque(query for query in self._queue if not readable(query.stamp_ns))
+        for query in due:
             try:
-                reply = self.reply(ParamRequest.FromString(query.payload))
-            except DecodeError as error:
-                reply = ParamReply(accepted=False, reason=f"broken request: {error}")
-            query.answer(reply.SerializeToString(deterministic=True), t_ns)
+                yield query, self.reply(decode(query.key, query.payload, ParamRequest))
+            except Malformed as error:
+                yield query, ParamReply(accepted=False, reason=str(error))
+
+    def refuse_all(self, reason: str) -> None:
+        while self._queue:
+            self._queue.popleft().refuse(reason)
 
     def reply(self, request: ParamRequest) -> ParamReply:
         """Lists, reads or sets; a refused value leaves everything as it was."""

@@ -8,7 +8,7 @@ from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from types import TracebackType
-from typing import Any
+from typing import IO, Any
 
 from google.protobuf.descriptor import FileDescriptor
 from google.protobuf.descriptor_pb2 import FileDescriptorSet
@@ -18,8 +18,9 @@ from mcap.records import Channel, Message, Schema
 from mcap.stream_reader import StreamReader
 from mcap.writer import CompressionType, Writer
 
-from schemas.topics import PREFIX, REQUESTS, TOPICS, Qos
+from schemas.topics import PREFIX, TOPICS, Qos
 from uvf.runtime.bus import Bus, Sample, matches
+from uvf.runtime.envelope import GapCounter
 from uvf.runtime.params import BadInput
 
 CHUNK = 1_000_000  # bytes
@@ -27,7 +28,6 @@ DEPTH = 65_536  # messages that may wait for the writer
 _TYPES: dict[str, Any] = {topic.message.DESCRIPTOR.full_name: topic.message for topic in TOPICS.values()}
 _SILENT = [topic.by("*").at("*") for topic in TOPICS.values() if not topic.logged]
 _WALL_SOURCES = {"gcs", "mavlink", "recorder", "launcher"}
-REQUEST_KEYS = [request.by("*").at("*") for request in REQUESTS.values()]
 
 
 class LogHash:
@@ -61,8 +61,7 @@ class Recorder:
         self._writer.start(profile="", library="uvf")
         self._channels: dict[str, int] = {}
         self._schemas: dict[str, int] = {}
-        self._seqs: dict[tuple[str, int], int] = {}
-        self.gaps: defaultdict[str, int] = defaultdict(int)
+        self._counter = GapCounter()
         self.written = 0
         self.error = ""
         self.hash = LogHash()
@@ -83,7 +82,7 @@ class Recorder:
         """One message; a full disk ends the recording with one line in ``error``, never the program."""
         if self.error or any(matches(key, sample.key) for key in _SILENT):
             return
-        self._count_gap(sample)
+        self._counter.count(sample.key, sample.boot, sample.seq)
         try:
             channel = self._channels.get(sample.key) or self._add_channel(sample)
             self._writer.add_message(channel, sample.stamp_ns, sample.payload, time.time_ns(), sample.seq)
@@ -93,11 +92,10 @@ class Recorder:
         self.hash.add(sample.key, sample.stamp_ns, sample.seq, sample.payload)
         self.written += 1
 
-    def _count_gap(self, sample: Sample) -> None:
-        last = self._seqs.get((sample.key, sample.boot))
-        if last is not None and sample.seq > last + 1:
-            self.gaps[sample.key] += sample.seq - last - 1
-        self._seqs[(sample.key, sample.boot)] = sample.seq
+    @property
+    def gaps(self) -> dict[str, int]:
+        """Messages missed, by key."""
+        return dict(self._counter.gaps)
 
     def _add_channel(self, sample: Sample) -> int:
         if sample.type_name not in self._schemas:
@@ -152,29 +150,43 @@ def descriptor_set(type_name: str) -> bytes:
     return out.SerializeToString(deterministic=True)
 
 
-def read_log(path: Path) -> Iterator[Sample]:
-    """The messages of a log in order of time. Raises BadInput for a file that is not a whole log."""
+@contextlib.contextmanager
+def _opened(path: Path) -> Iterator[IO[bytes]]:
+    """Raises BadInput for what cannot be read or is no whole log."""
     try:
         with path.open("rb") as file:
-            for schema, channel, message in make_reader(file).iter_messages():
-                name = schema.name if schema else ""
-                yield Sample(channel.topic[1:], name, message.data, message.log_time, message.sequence, 0)
+            yield file
     except OSError as error:
         raise BadInput(f"log {path}: {error.strerror}") from error
-    except McapError as error:
+    except (McapError, EOFError, ValueError) as error:
         raise BadInput(f"log {path}: broken or cut off ({type(error).__name__}); try 'uvf log recover {path}'") from error
 
 
+def read_log(path: Path) -> Iterator[Sample]:
+    """The messages of a log in order of time. Raises BadInput for a file that is not a whole log."""
+    with _opened(path) as file:
+        for schema, channel, message in make_reader(file).iter_messages():
+            name = schema.name if schema else ""
+            yield Sample(channel.topic[1:], name, message.data, message.log_time, message.sequence, 0)
+
+
 def log_metadata(path: Path) -> dict[str, str]:
-    """What the recorder noted at the end: message count, completeness, hash, gaps."""
-    with path.open("rb") as file:
+    """What the recorder noted at the end: message count, completeness, hash, gaps. Raises BadInput."""
+    with _opened(path) as file:
         return next((dict(m.metadata) for m in make_reader(file).iter_metadata() if m.name == "uvf"), {})
 
 
 def recover(source: Path, target: Path) -> int:
-    """Copies every message of the whole chunks of a cut-off log into a new, complete one; returns how many."""
+    """Copies every message of the whole chunks of a cut-off log into a new, complete one; returns how many.
+
+    Raises BadInput when there is nothing to save.
+    """
+    with _opened(source) as file:
+        saved = list(_salvage(file.read()))
+    if not saved:
+        raise BadInput(f"log {source}: holds no whole message that could be saved")
     with Recorder(target) as out:
-        for sample in _salvage(source.read_bytes()):
+        for sample in saved:
             out.write(sample)
     return out.written
 

@@ -1,6 +1,7 @@
 """A log put to use again: onto the bus at its own pace, or into one service whose outputs are compared."""
 
 import time
+from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -8,7 +9,7 @@ from pathlib import Path
 from google.protobuf.message import Message
 
 from schemas.topics import SYSTEM, TOPICS, Qos, Topic
-from uvf.runtime.bus import Bus, LocalBus, Publisher, Sample, matches
+from uvf.runtime.bus import Bus, LocalBus, Publisher, Query, Sample, matches
 from uvf.runtime.clock import NS
 from uvf.runtime.recording import read_log
 from uvf.runtime.shell import Shell
@@ -56,30 +57,58 @@ class Difference:
 
 
 def into_service(log: Path, host: Host, tolerance: float = TOLERANCE) -> Iterator[Difference]:
-    """Feeds the inputs of a log to one service and yields each field of its outputs that differs. Raises BadInput."""
-    owner = host.vehicle or SYSTEM
-    writes = [topic.at(owner) for topic in host.service.outputs.values()]
+    """Feeds inputs, requests and answers of a log to one service and yields each field that it puts out otherwise.
+
+    Raises BadInput.
+    """
+    owners = (host.vehicle,) if host.vehicle else host.writes_for or (SYSTEM,)
+    served = [request.at(owner) for request in host.service.requests.values() for owner in owners]
+    writes = [topic.at(owner) for topic in host.service.outputs.values() for owner in owners]
+    writes += [f"{key}/{half}" for key in served for half in ("request", "reply")]
     samples = list(read_log(log))
-    logged = [s for s in samples if any(matches(key, s.key) for key in writes)]
+    own = [s for s in samples if _any(writes, s.key)]
     bus = LocalBus()
     made: list[Sample] = []
     for key in writes:
         bus.subscribe(key, Qos.STATE, made.append)
+    _answer_from_log(bus, [request.at(owner) for request in host.service.calls.values() for owner in owners], samples)
     shell = Shell(host, bus)
-    end = max((s.stamp_ns for s in samples), default=0)
-    feed = iter(sorted((s for s in samples if not any(matches(k, s.key) for k in writes)), key=lambda s: s.stamp_ns))
-    _run(shell, bus, feed, end)
+    feed = [s for s in samples if not _any(writes, s.key)] + [s for s in own if s.key.endswith("/request")]
+    _run(shell, bus, sorted(feed, key=lambda s: s.stamp_ns), max((s.stamp_ns for s in samples), default=0))
     shell.service.close()
-    yield from _compare(logged, made, tolerance)
+    yield from _compare(own, made, tolerance)
 
 
-def _run(shell: Shell, bus: LocalBus, feed: Iterator[Sample], end_ns: int) -> None:
-    waiting = next(feed, None)
+def _any(keys: Iterable[str], key: str) -> bool:
+    return any(matches(wanted, key) for wanted in keys)
+
+
+def _answer_from_log(bus: LocalBus, asked: Iterable[str], samples: Sequence[Sample]) -> None:
+    """Whatever the service asks is answered as it was then."""
+    for key in asked:
+        replies = deque(s for s in samples if s.key == f"{key}/reply")
+
+        def answer(query: Query, replies: deque[Sample] = replies) -> None:
+            if replies:
+                reply = replies.popleft()
+                query.answer(reply.payload, reply.stamp_ns)
+            else:
+                query.refuse("the log holds no answer")
+
+        bus.serve(key, answer)
+
+
+def _run(shell: Shell, bus: LocalBus, feed: Sequence[Sample], end_ns: int) -> None:
+    """A recorded request carries the stamp of the step that answered it: it was there before that step."""
+    waiting = deque(feed)
     while shell.due_ns <= end_ns:
-        while waiting is not None and waiting.stamp_ns < shell.due_ns:
-            topic = topic_of(waiting.key)
-            bus.deliver(waiting.key, waiting.type_name, topic.qos if topic else Qos.STATE, waiting.payload, waiting.stamp_ns)
-            waiting = next(feed, None)
+        while waiting and waiting[0].stamp_ns < shell.due_ns + waiting[0].key.endswith("/request"):
+            sample = waiting.popleft()
+            if sample.key.endswith("/request"):
+                bus.call(sample.key.removesuffix("/request"), sample.payload, sample.stamp_ns - 1, lambda *reply: None)
+            elif not sample.key.endswith("/reply"):
+                topic = topic_of(sample.key)
+                bus.deliver(sample.key, sample.type_name, topic.qos if topic else Qos.STATE, sample.payload, sample.stamp_ns)
         shell.advance()
 
 

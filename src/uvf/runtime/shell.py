@@ -5,17 +5,20 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from google.protobuf.message import DecodeError, Message
+from google.protobuf.message import Message
 
-from schemas.topics import SYSTEM, Qos, Request, Topic
+from schemas.topics import PARAM, SYSTEM, Qos, Request, Topic
 from uvf.runtime.bus import Bus, Publisher, Query
 from uvf.runtime.clock import NS, first_step_after, step_time
 from uvf.runtime.inbox import EVERY_DEPTH, InputBox
 from uvf.runtime.param_server import ParamServer
 from uvf.runtime.service import Answer, Outputs, Service
 from uvf.runtime.site import Host
+from uvf.runtime.wire import Malformed, decode
 
 Warn = Callable[[str], None]
+LATEST_DEPTH = 8  # more than one, for the newest may be too new to be read yet
+QUERIES_MOST = 256
 
 
 class ContractError(Exception):
@@ -40,6 +43,7 @@ class Shell:
         self.type = host.service
         self.owner = host.vehicle or SYSTEM
         self.counters = Counters()
+        self.epoch = 0
         self.sim_ns = 0
         """Simulation time now, kept by the loop: the stamp of what wall-clock services send."""
         self._bus = bus
@@ -52,40 +56,65 @@ class Shell:
         self._make()
         self._subscribe()
 
-    def restart(self, t_ns: int) -> None:
-        """Makes the service afresh because the clock's epoch has risen and time stands at ``t_ns`` [ns] again.
+    def join(self, epoch: int) -> None:
+        """Goes on in an epoch, without being made afresh: at the first clock, and wall-clock services always."""
+        self.epoch = epoch
+        for box in self._boxes.values():
+            box.epoch = epoch
 
-        Of what has arrived, only what the new epoch has already sent is kept: some may be faster than the clock.
-        """
+    def restart(self, epoch: int) -> None:
+        """Makes the service afresh because time has started over; what was asked in the old epoch is refused."""
         self.service.close()
-        kept = [(name, sample) for name, box in self._boxes.items() for sample in box.unread() if sample.stamp_ns <= t_ns]
+        self.epoch = epoch
+        kept = [(name, sample) for name, box in self._boxes.items() for sample in box.surviving(epoch)]
+        self._refuse_all("time has started over: ask again")
         self._make()
         for name, sample in kept:
             self._boxes[name].push(sample)
 
+    def _refuse_all(self, reason: str) -> None:
+        for waiting in self._queries.values():
+            while waiting:
+                waiting.popleft().refuse(reason)
+        self._param_server.refuse_all(reason)
+        for answers in self._answers.values():
+            answers.clear()
+
     def recall(self, find: Callable[[str], bytes | None]) -> None:
         """Hands the service what an instance before it has left; ``find`` gives the newest bytes of a key."""
         found = {name: (topic, find(topic.at(self.owner))) for name, topic in self.type.recalls.items()}
-        messages = {name: topic.message.FromString(payload) for name, (topic, payload) in found.items() if payload is not None}
+        messages: dict[str, Message] = {}
+        for name, (topic, payload) in found.items():
+            try:
+                messages |= {name: decode(name, payload, topic.message)} if payload is not None else {}
+            except Malformed as error:
+                self._warn(f"{self.type.name}: {error}")
         if messages:
             self.service.recall(**messages)
 
     def _make(self) -> None:
         self.service = self.host.make()
         ageless = self.type.clock == "wall"
-        self._boxes = {name: InputBox(declared, ageless) for name, declared in self.type.declared_inputs().items()}
+        self._boxes = {name: InputBox(declared, ageless, self.epoch) for name, declared in self.type.declared_inputs().items()}
         self._param_server = ParamServer(self.service)
         self.n = 1
 
     def _subscribe(self) -> None:
         for name, declared in self.type.declared_inputs().items():
             owner = "*" if declared.each_vehicle else (self.host.roles or {}).get(declared.role or "", self.owner)
-            depth = EVERY_DEPTH if declared.every else 8
+            wide = declared.every or declared.each_vehicle or declared.topic.qos in (Qos.LATCHED, Qos.EVENT)
+            depth = EVERY_DEPTH if wide else LATEST_DEPTH
             self._bus.subscribe(declared.topic.at(owner), declared.topic.qos, lambda s, n=name: self._boxes[n].push(s), depth)  # type: ignore[misc]
         everyone = "*" if self.type.scope == "world" else self.owner
         for name, request in self.type.requests.items():
-            self._bus.serve(request.at(everyone), lambda query, n=name: self._queries[n].append(query))  # type: ignore[misc]
+            self._bus.serve(request.at(everyone), lambda query, n=name: self._queue(n, query))  # type: ignore[misc]
         self._bus.serve(self._param_server.key(self.owner), self._queue_param)
+
+    def _queue(self, name: str, query: Query) -> None:
+        if len(self._queries[name]) >= QUERIES_MOST:
+            query.refuse(f"{self.type.name}: {QUERIES_MOST} requests wait already")
+        else:
+            self._queries[name].append(query)
 
     def _queue_param(self, query: Query) -> None:
         self._param_server.queue(query)
@@ -106,7 +135,8 @@ class Shell:
         """One step at the due time: fresh inputs in, outputs published, requests answered."""
         t_ns = self.due_ns
         self.n += 1
-        self._param_server.answer(t_ns)
+        for query, reply in self._param_server.answer(lambda stamp: self._is_readable(stamp, t_ns)):
+            self._answer(query, PARAM, reply, t_ns)
         for box in self._boxes.values():
             box.take(t_ns)
             for line in box.malformed():
@@ -161,11 +191,11 @@ class Shell:
             if not self._is_readable(query.stamp_ns, t_ns):
                 continue
             try:
-                request.message.FromString(query.payload)
+                decode(query.key, query.payload, request.message)
                 good.append(query)
-            except DecodeError as error:
+            except Malformed as error:
                 self.counters.malformed += 1
-                self._warn(f"{self.type.name}: {query.key}: broken {request.message.DESCRIPTOR.full_name}: {error}")
+                self._warn(f"{self.type.name}: {error}")
                 reply = request.reply(accepted=False, reason=f"broken {request.message.DESCRIPTOR.full_name}")
                 query.answer(reply.SerializeToString(deterministic=True), query.stamp_ns)
         return good
@@ -175,13 +205,12 @@ class Shell:
         if len(flat) != len(queries):
             raise ContractError(f"{self.type.name}: {len(queries)} requests '{name}' but {len(flat)} replies")
         for query, reply in zip(queries, flat, strict=True):
-            self._answer(name, query, reply, t_ns)
+            self._answer(query, self.type.requests[name], reply, t_ns)
 
-    def _answer(self, name: str, query: Query, reply: Message, t_ns: int) -> None:
+    def _answer(self, query: Query, request: Request[Any, Any], reply: Message, t_ns: int) -> None:
         """Sends the reply, and both halves as messages of their own, so that logs hold them."""
         payload = reply.SerializeToString(deterministic=True)
         query.answer(payload, t_ns)
-        request = self.type.requests[name]
         self._put(f"{query.key}/request", request.message, Qos.EVENT, query.payload, t_ns)
         self._put(f"{query.key}/reply", request.reply, Qos.EVENT, payload, t_ns)
 
@@ -189,7 +218,7 @@ class Shell:
         for name, request in self.type.requests.items():
             for query in self._decodable(name, request, t_ns):
                 reply = request.reply(accepted=False, reason=f"{self.type.name} waits for {', '.join(missing)}")
-                self._answer(name, query, reply, t_ns)
+                self._answer(query, self.type.requests[name], reply, t_ns)
 
     def _publish(self, outputs: Outputs, t_ns: int) -> None:
         now = t_ns if self.type.clock == "sim" else self.sim_ns
@@ -221,8 +250,15 @@ class Shell:
         self.counters.published[key] = self._publishers[key].put(payload, stamp)
 
     def _call(self, name: str, request: Request[Any, Any], owner: str, message: Message, payload: bytes, stamp: int) -> None:
+        asked_in = self.epoch
+
         def on_reply(reply: bytes | None, reason: str, at_ns: int) -> None:
-            decoded = request.reply.FromString(reply) if reply is not None else None
+            if asked_in != self.epoch:
+                return
+            try:
+                decoded = decode(request.at(owner), reply, request.reply) if reply is not None else None
+            except Malformed as error:
+                decoded, reason = None, str(error)
             self._answers[name].append((at_ns, Answer(owner, message, decoded, reason)))
 
         self._bus.call(request.at(owner), payload, stamp, on_reply)

@@ -52,12 +52,16 @@ class Site:
 
 @dataclass(frozen=True)
 class Host:
-    """One service instance: how to make it afresh (at start and after each reset), and for which vehicle."""
+    """One service instance: how to make it afresh (at start and after each reset), and for which vehicle.
+
+    writes_for: the vehicles about which a service of the whole world writes.
+    """
 
     service: type[Service]
     make: Callable[[], Service]
     vehicle: str | None = None
     roles: dict[str, str] | None = None
+    writes_for: tuple[str, ...] = ()
 
 
 class Build(Protocol):

@@ -7,10 +7,9 @@ import contextlib
 import json
 import queue
 import secrets
-import struct
 from collections import defaultdict, deque
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from types import TracebackType
 from typing import Any
 
@@ -18,11 +17,11 @@ import zenoh
 from zenoh import ext
 
 from schemas.topics import PREFIX, TOPICS, Qos
+from uvf.runtime.address import DEFAULT_ROUTER
 from uvf.runtime.bus import OnReply, Query, Sample, Sink, matches
+from uvf.runtime.envelope import Envelope, GapCounter, unpack
 from uvf.runtime.params import BadInput
 
-ATTACHMENT = struct.Struct("<QqQ")  # sequence number, simulation stamp [ns], boot id
-DEFAULT_ENDPOINT = "tcp/127.0.0.1:7447"
 CALL_TIMEOUT = 5.0  # s, wall
 LEASE_MS = 2000
 WAIT_BEFORE_DROP_US = 50_000
@@ -76,7 +75,7 @@ def kept_key(key: str) -> str:
 class ZenohBus:
     """One client session; use it as a context manager, for a session left open hangs the interpreter at exit."""
 
-    def __init__(self, endpoint: str = DEFAULT_ENDPOINT, blocking: bool = False, timeout: float = -1) -> None:
+    def __init__(self, endpoint: str = DEFAULT_ROUTER, blocking: bool = False, timeout: float = -1) -> None:
         """blocking: lockstep and replay, where nothing may be dropped. timeout [s]: -1 waits for the router for ever."""
         retry = {"period_init_ms": 100, "period_max_ms": 1000}
         timeout_ms = -1 if timeout < 0 else round(timeout * 1000)
@@ -86,17 +85,16 @@ class ZenohBus:
         except zenoh.ZError as error:
             raise BadInput(f"no router at {endpoint}: {_first_line(error)}; start one with 'uvf up' or 'uvf router'") from error
         self.boot = secrets.randbits(63)
-        self.gaps: defaultdict[str, int] = defaultdict(int)
-        self.last_seq: dict[str, int] = {}
+        self.epoch = 0
+        """Of the clock that this process follows; marks what it sends."""
+        self.counter = GapCounter()
         self._blocking = blocking
         self._woken: queue.SimpleQueue[None] = queue.SimpleQueue()
         self._waking: list[tuple[deque[zenoh.Sample], Sink]] = []
-        self._inbound: list[tuple[Any, Sink]] = []
-        self._wanted: list[str] = []
+        self._inbound: list[_Inbound] = []
         self._servers: list[tuple[Any, Callable[[Query], None]]] = []
         self._calls: list[tuple[Any, OnReply, int, str]] = []
         self._declared: list[Any] = []
-        self._boots: dict[str, int] = {}
 
     def __enter__(self) -> "ZenohBus":
         return self
@@ -125,7 +123,7 @@ class ZenohBus:
         else:
             publisher = self._session.declare_publisher(key, **how)
         self._declared.append(publisher)
-        return ZenohPublisher(publisher, self.boot)
+        return ZenohPublisher(publisher, self)
 
     def subscribe(self, key: str, qos: Qos, sink: Sink, depth: int = 1, wake: bool = False) -> None:
         """wake: ``wait`` returns when something arrives here; costs the interpreter's lock for each message."""
@@ -139,8 +137,7 @@ class ZenohBus:
         if wake:
             self._declared.append(made)
         else:
-            self._inbound.append((made, sink))
-        self._wanted.append(key)
+            self._inbound.append(_Inbound(key, made, sink))
 
     def _waking_handler(self, sink: Sink, depth: int) -> Any:
         """Hands a message over to ``poll`` from zenoh's own thread and wakes the loop; does nothing else there.
@@ -161,13 +158,16 @@ class ZenohBus:
 
         An advanced subscriber on all keys would do, but it drops messages of plain publishers at random.
         """
-        seen: set[tuple[str, int, int]] = set()
+        seen: defaultdict[tuple[str, int], set[int]] = defaultdict(set)
 
         def once(sample: Sample) -> None:
-            identity = (sample.key, sample.boot, sample.seq)
-            if identity not in seen:
-                seen.add(identity)
-                sink(sample)
+            numbers = seen[(sample.key, sample.boot)]
+            if sample.seq in numbers or (numbers and sample.seq < max(numbers) - 2 * EVENT_HISTORY):
+                return
+            numbers.add(sample.seq)
+            if len(numbers) > 4 * EVENT_HISTORY:
+                seen[(sample.key, sample.boot)] = {n for n in numbers if n >= sample.seq - 2 * EVENT_HISTORY}
+            sink(sample)
 
         kept = [topic for topic in TOPICS.values() if topic.qos in _KEPT]
         patterns = [topic.by("*").at("*") for topic in kept]
@@ -175,9 +175,13 @@ class ZenohBus:
         for topic, pattern in zip(kept, patterns, strict=True):
             self.subscribe(pattern, topic.qos, once, EVENT_HISTORY)
 
-    def subscribed(self, keys: Iterable[str]) -> list[str]:
-        """Those of the keys that some subscription of this session receives."""
-        return [key for key in keys if any(matches(wanted, key) for wanted in self._wanted)]
+    def behind(self, published: Mapping[str, int]) -> str:
+        """A key of which some subscription has not received the number given yet; empty when all have."""
+        for inbound in self._inbound:
+            for key, seq in published.items():
+                if inbound.seen.get(key, 0) < seq and matches(inbound.key, key):
+                    return key
+        return ""
 
     def wait(self, timeout: float) -> None:
         """Waits for a message of a waking subscription, or ``timeout`` [s]."""
@@ -190,7 +194,7 @@ class ZenohBus:
         self._servers.append((self._session.declare_queryable(key, zenoh.handlers.FifoChannel(256), complete=True), sink))
 
     def call(self, key: str, payload: bytes, stamp_ns: int, on_reply: OnReply) -> None:
-        attachment = ATTACHMENT.pack(0, stamp_ns, self.boot)
+        attachment = Envelope(0, stamp_ns, self.boot, self.epoch).pack()
         replies = self._session.get(key, payload=payload, attachment=attachment, timeout=CALL_TIMEOUT)
         self._calls.append((replies, on_reply, stamp_ns, key))
 
@@ -212,26 +216,22 @@ class ZenohBus:
         for arrived, sink in self._waking:
             while arrived:
                 sink(self._sample(arrived.popleft()))
-        for channel, sink in self._inbound:
-            while (sample := channel.try_recv()) is not None:
+        for inbound in self._inbound:
+            while (sample := inbound.channel.try_recv()) is not None:
                 if sample.kind == zenoh.SampleKind.PUT:
-                    sink(self._sample(sample))
+                    taken = self._sample(sample)
+                    inbound.seen[taken.key] = max(inbound.seen.get(taken.key, 0), taken.seq)
+                    inbound.sink(taken)
         for channel, serve in self._servers:
             while (query := channel.try_recv()) is not None:
                 serve(_query(query))
         self._poll_calls()
 
     def _sample(self, sample: zenoh.Sample) -> Sample:
-        key = str(sample.key_expr)
-        attachment = sample.attachment.to_bytes() if sample.attachment is not None else b""
-        seq, stamp, boot = ATTACHMENT.unpack(attachment) if len(attachment) == ATTACHMENT.size else (0, 0, 0)
-        last = self.last_seq.get(key, 0) if self._boots.get(key) == boot else None
-        if last is not None and seq > last + 1:
-            self.gaps[key] += seq - last - 1
-        self._boots[key] = boot
-        self.last_seq[key] = seq
-        type_name = str(sample.encoding).rpartition(";")[2]
-        return Sample(key, type_name, sample.payload.to_bytes(), stamp, seq, boot)
+        key, type_name = str(sample.key_expr), str(sample.encoding).rpartition(";")[2]
+        seq, stamp_ns, boot, epoch = _envelope(sample)
+        self.counter.count(key, boot, seq)
+        return Sample(key, type_name, sample.payload.to_bytes(), stamp_ns, seq, boot, epoch)
 
     def _poll_calls(self) -> None:
         waiting = []
@@ -245,22 +245,32 @@ class ZenohBus:
             if reply is None:
                 waiting.append((replies, on_reply, stamp, key))
             elif reply.ok is not None:
-                attachment = reply.ok.attachment
-                at = ATTACHMENT.unpack(attachment.to_bytes())[1] if attachment is not None else stamp
-                on_reply(reply.ok.payload.to_bytes(), "", at)
+                on_reply(reply.ok.payload.to_bytes(), "", _envelope(reply.ok).stamp_ns)
             else:
                 on_reply(None, reply.err.payload.to_string() or f"{key}: no answer", stamp)
         self._calls = waiting
 
 
+@dataclass
+class _Inbound:
+    """A subscription; seen: the highest number received of each key."""
+
+    key: str
+    channel: Any
+    sink: Sink
+    seen: dict[str, int] = field(default_factory=dict)
+
+
+def _envelope(carrier: Any) -> Envelope:
+    return unpack(carrier.attachment.to_bytes()) if carrier.attachment is not None else Envelope()
+
+
 def _query(query: zenoh.Query) -> Query:
-    key = str(query.key_expr)
-    attachment = query.attachment.to_bytes() if query.attachment is not None else b""
-    stamp = ATTACHMENT.unpack(attachment)[1] if len(attachment) == ATTACHMENT.size else 0
+    key, stamp = str(query.key_expr), _envelope(query).stamp_ns
 
     def answer(reply: bytes, stamp_ns: int) -> None:
         with query:
-            query.reply(key, reply, attachment=ATTACHMENT.pack(0, stamp_ns, 0))
+            query.reply(key, reply, attachment=Envelope(stamp_ns=stamp_ns).pack())
 
     def refuse(reason: str) -> None:
         with query:
@@ -272,10 +282,10 @@ def _query(query: zenoh.Query) -> Query:
 @dataclass
 class ZenohPublisher:
     publisher: Any
-    boot: int
+    bus: ZenohBus
     seq: int = 0
 
     def put(self, payload: bytes, stamp_ns: int) -> int:
         self.seq += 1
-        self.publisher.put(payload, attachment=ATTACHMENT.pack(self.seq, stamp_ns, self.boot))
+        self.publisher.put(payload, attachment=Envelope(self.seq, stamp_ns, self.bus.boot, self.bus.epoch).pack())
         return self.seq
