@@ -94,12 +94,17 @@ class Pilot:
             return Circle(Place(self.home.north, self.home.east, height), params.hold_radius)
         return Circle.ahead(now, self._level.height, params.hold_radius)
 
+    @property
+    def blocked(self) -> str:
+        """Why nothing but Hold may be asked for; empty if everything may."""
+        return f"stopped by {self.stopped}: release the stop first" if self.stopped else ""
+
     def _change(self, mode: FlightMode, reason: str) -> None:
         self.mode, self.reason, self.circle = mode, reason, None
 
     def change_mode(self, mode: FlightMode, source: str) -> str:
-        if self.stopped and mode is not FlightMode.HOLD:
-            return f"stopped by {self.stopped}: release the stop first"
+        if self.blocked and mode is not FlightMode.HOLD:
+            return self.blocked
         if mode is FlightMode.MISSION:
             if not self.navigator.items:
                 return "there is no mission: upload one first"
@@ -116,8 +121,8 @@ class Pilot:
 
     def go_to(self, place: Place, source: str, params: AirParams) -> str:
         """Flies there and holds over it; too low a height means the present one."""
-        if self.stopped:
-            return f"stopped by {self.stopped}: release the stop first"
+        if self.blocked:
+            return self.blocked
         if not all(map(math.isfinite, astuple(place))):
             return "the goal is no place: its coordinates are not finite"
         height = place.height if place.height >= params.min_altitude else self._level.height

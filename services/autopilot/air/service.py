@@ -33,7 +33,8 @@ from services.autopilot.air.state import Estimate
 from uvf.maths.geodesy import GRAVITY, LocalTangent
 from uvf.runtime.service import Outputs, Service, every, optional
 
-FLYING = 0.5  # of min_airspeed: faster than that is airborne
+FLYING = 0.5  # of min_airspeed: faster than that, through the air or over ground, is airborne
+BEFORE = "an operator before the restart"
 
 
 @dataclass(frozen=True)
@@ -90,6 +91,7 @@ class AutopilotAir(Service):
         self._journal = Journal()
         self._fix_stamp = 0
         self._cycles = 0
+        self._told: tuple[object, ...] = ()
         self._airborne = ship.starts_in_air
         self._status = VehicleStatus()
 
@@ -112,8 +114,8 @@ class AutopilotAir(Service):
             waiting = [_reply("there is no satellite fix yet")]
             asked = {"arm": len(arm), "mode": len(mode), "goal": len(goal), "mission": len(mission), "current": len(current)}
             return {**self._announce(t), **{name: waiting * count for name, count in asked.items()}}
-        self._airborne = now.airspeed > FLYING * self.params.min_airspeed
-        self._pilot.stop(stop.source or "unknown" if stop is not None and stop.engaged else "")
+        self._airborne = max(now.airspeed, now.ground_speed) > FLYING * self.params.min_airspeed
+        self._heed(stop)
         replies = {
             "arm": [self._arm(r) for r in arm],
             "mode": [self._set_mode(r) for r in mode],
@@ -129,7 +131,9 @@ class AutopilotAir(Service):
             "pose": reports.pose(state),
             "events": self._journal.events(t, self._pilot, self._armed),
         }
-        if self._cycles % 5 == 0:
+        told = (self._pilot.mode, self._pilot.reason, self._pilot.stopped, self._armed)
+        if self._cycles % 5 == 0 or told != self._told:
+            self._told = told
             self._status = reports.status(t, self._pilot, now, flown)
             self._status.battery_remaining = battery.remaining if battery is not None else -1.0
             self._status.battery_voltage = battery.voltage if battery is not None else 0.0
@@ -152,6 +156,8 @@ class AutopilotAir(Service):
             self._set_mission(plan)
         if status is not None and status.mode in intake.MODES:
             self._armed = status.armed
+            self._airborne = not status.landed
+            self._pilot.stopped = BEFORE if status.stopped else ""
             self._pilot.take_up(intake.MODES[status.mode], intake.place(status.home), intake.stand(progress))
         if nav_state is not None:
             self._estimator.begin_at(*intake.roll_and_pitch(nav_state))
@@ -180,7 +186,16 @@ class AutopilotAir(Service):
         samples = [intake.inertial(m, t) for m in imu]
         return self._estimator.step(samples, intake.pressures(air_data), fix, 1 / self.hz)
 
+    def _heed(self, stop: StopCommand | None) -> None:
+        """STOP ALL: in the air it holds, at rest it is disarmed. Without a word of it, what was said before counts."""
+        if stop is not None:
+            self._pilot.stop(stop.source or "unknown" if stop.engaged else "")
+        if self._pilot.stopped and not self._airborne:
+            self._armed = False
+
     def _arm(self, request: ArmRequest) -> Reply:
+        if request.arm and self._pilot.stopped and not self._airborne:
+            return _reply(self._pilot.blocked)
         if not request.arm and self._airborne and not request.force:
             return _reply("the aircraft is flying: land first, or force it")
         self._armed = request.arm
