@@ -130,7 +130,7 @@ NAV_STATUS = Topic(f"{_V}/nav/status", m.NavStatus, 2, _Q.STATE, "what the plann
 MAP = Topic(f"{_V}/map/grid", m.Grid, 0, _Q.LATCHED, "occupancy, int8: -1 unknown, 0..100", kept=True)
 
 # commands and actuators
-DRIVE = Topic(f"{_V}/cmd/<source>", m.DriveCommand, 10, _Q.CONTROL, "velocity asked of a ground vehicle")
+DRIVE = Topic(f"{_V}/cmd/<source>", m.DriveCommand, 20, _Q.CONTROL, "velocity asked of a ground vehicle")
 WHEEL_COMMAND = Topic(f"{_V}/actuator/wheels", m.WheelCommand, 50, _Q.CONTROL, "wheel speeds")
 SURFACE_COMMAND = Topic(f"{_V}/actuator/surfaces", m.SurfaceCommand, 50, _Q.CONTROL, "control surfaces and throttle")
 

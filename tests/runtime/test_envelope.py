@@ -26,3 +26,12 @@ def test_history_that_comes_late_or_twice_is_none():
 
 def test_a_new_boot_begins_anew():
     assert gaps((1, 9), (2, 1), (2, 2)) == 0
+
+
+def test_two_writers_at_a_time_are_noticed_a_successor_is_not():
+    counter = GapCounter()
+    for boot, seq in ((1, 1), (1, 2), (2, 1), (2, 2)):
+        counter.count("k", boot, seq)
+    assert counter.rivals == set()
+    counter.count("k", 1, 3)
+    assert counter.rivals == {"k"}

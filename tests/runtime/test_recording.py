@@ -38,6 +38,15 @@ def test_anybody_can_decode_it_with_the_schemas_inside(tmp_path):
     assert [m.pose.position.x for m in decoded] == [1, 2, 3, 4]
 
 
+def test_requests_and_replies_carry_their_schemas_too(tmp_path):
+    with Recorder(tmp_path / "a.mcap") as recorder:
+        for half, type_ in (("request", topics.SET_MODE.message), ("reply", topics.SET_MODE.reply)):
+            recorder.write(Sample(f"{topics.SET_MODE.at('v')}/{half}", type_.DESCRIPTOR.full_name, type_().SerializeToString(), 1, 1, 5))
+    with (tmp_path / "a.mcap").open("rb") as file:
+        decoded = [m for *_, m in make_reader(file, decoder_factories=[DecoderFactory()]).iter_decoded_messages()]
+    assert {type(m).__name__ for m in decoded} == {"ModeRequest", "Reply"}
+
+
 def test_gaps_are_counted_and_make_the_log_incomplete(tmp_path):
     record(tmp_path / "a.mcap", [1, 2, 5, 6, 9])
     metadata = log_metadata(tmp_path / "a.mcap")

@@ -10,6 +10,7 @@ import yaml
 
 from schemas.topics import CLOCK, SYSTEM, Topic
 from uvf.launch import catalogue, settings
+from uvf.launch.scores import check_criteria
 from uvf.runtime.bus import matches
 from uvf.runtime.site import ROOT, Host, load_site
 
@@ -17,6 +18,7 @@ from uvf.runtime.site import ROOT, Host, load_site
 def check_mission(mission: str) -> list[str]:
     """The problems found, a line each. Raises BadInput for a file that cannot be read."""
     site = load_site(settings.mission_path(mission))
+    check_criteria(site)
     hosts = catalogue.hosts(site, catalogue.needed(site))
     return [*_writers(hosts), *_inputs(hosts), *_rates(hosts), *compose_problems(ROOT / "docker-compose.yml")]
 

@@ -49,12 +49,13 @@ def up(
     """Start a whole mission: every service in its own process, watched over, until Ctrl-C."""
     from uvf.launch import settings
     from uvf.launch.runs import new_run
-    from uvf.launch.up import Wanted
+    from uvf.launch.up import Wanted, check_ports
     from uvf.launch.up import up as run_up
     from uvf.runtime.address import address_from
 
     with bad_input_is_one_line():
         path = settings.mission_path(mission)
+        check_ports(gcs)
         folder = new_run()
         say(f"mission {path.stem}; logs in {folder}")
         if gcs:
@@ -251,7 +252,7 @@ def log_recover(log: Path, out: Annotated[Path | None, typer.Option(help="By def
 
 
 def main() -> None:
-    app()
+    app(prog_name="uvf")
 
 
 if __name__ == "__main__":

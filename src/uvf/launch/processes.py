@@ -151,6 +151,10 @@ def run_recorder(folder: Path, mission: str) -> None:
     """Writes everything on the bus to ``folder``, a new file every half gigabyte."""
     with worker("recorder") as life:
         site = load_site(settings.mission_path(mission))
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise BadInput(f"{folder}: {error.strerror}: choose another folder") from error
         with open_bus(life) as bus:
             arrived: list[Sample] = []
             bus.subscribe_all(arrived.append, DEPTH)

@@ -82,7 +82,8 @@ def replay_into(log: Path, service: str, vehicle: str | None, mission: str) -> i
     differences = [line for host in hosts for line in into_service(log, host)]
     for difference in differences[:SHOWN]:
         typer.echo(str(difference))
-    typer.echo(f"{len(differences)} differences" if differences else "same")
+    what = ", ".join(f"{h.service.name} of {h.vehicle or 'all vehicles'}" for h in hosts)
+    typer.echo(f"{what}: {len(differences)} differences" if differences else f"{what}: puts out the same")
     return 1 if differences else 0
 
 
@@ -94,10 +95,10 @@ def describe_log(log: Path) -> None:
     for key, _, _, size in samples:
         sizes[key] += size
     end = max((stamp for _, _, stamp, _ in samples), default=0) / 1e9
-    table = Table("topic", "type", "messages", "Hz", "kB")
+    width = max(map(len, counts), default=0)
     for key in sorted(counts):
-        table.add_row(key, types[key], str(counts[key]), f"{counts[key] / max(end, 1e-9):.1f}", f"{sizes[key] / 1000:.0f}")
-    console.print(table)
+        rate = counts[key] / max(end, 1e-9)
+        typer.echo(f"{key:{width}}  {types[key]:28}  {counts[key]:7} messages  {rate:6.1f} Hz  {sizes[key] / 1000:8.0f} kB")
     typer.echo(f"{len(samples)} messages, {end:.1f} s")
     for name, value in log_metadata(log).items():
         typer.echo(f"{name}: {value}")

@@ -64,14 +64,19 @@ class Track:
         return np.array(self.truth).reshape(-1, 4)
 
 
+def check_criteria(site: Site) -> None:
+    """Raises BadInput for a measure that there is not."""
+    for criterion in site.mission.criteria:
+        if criterion.measure not in MEASURES:
+            raise BadInput(f"{site.mission_path}: criteria: no measure '{criterion.measure}'; {nearest(criterion.measure, MEASURES)}")
+
+
 class Scorer:
     """Listens to a run on any bus (or is fed from a log) and judges it at the end."""
 
     def __init__(self, site: Site) -> None:
         self._site = site
-        for criterion in site.mission.criteria:
-            if criterion.measure not in MEASURES:
-                raise BadInput(f"{site.mission_path}: criteria: no measure '{criterion.measure}'; {nearest(criterion.measure, MEASURES)}")
+        check_criteria(site)
         self._tracks = {name: Track(name, site) for name in site.members}
 
     def follow(self, bus: Bus) -> None:

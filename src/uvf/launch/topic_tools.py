@@ -7,8 +7,6 @@ from collections.abc import Callable
 import typer
 from google.protobuf.message import DecodeError
 from google.protobuf.text_format import MessageToString
-from rich.console import Console
-from rich.table import Table
 
 from schemas.topics import PREFIX, REQUESTS, TOPICS
 from uvf.runtime.address import router_from
@@ -20,19 +18,17 @@ from uvf.runtime.zenoh_bus import ZenohBus
 LOOK = 0.02  # s
 LIVE_SECONDS = 2.0
 DEPTH = 16_384
-console = Console()
 
 
 def list_table() -> None:
-    """One line for each topic and request of the table."""
-    table = Table("key", "type", "Hz", "QoS", "logged", "about")
+    """One line for each topic and request of the table; keys are never cut."""
+    width = max(len(key) for key in (*(t.key for t in TOPICS.values()), *(r.key for r in REQUESTS.values())))
     for topic in TOPICS.values():
-        hz = f"{topic.hz:g}" if topic.hz else "on change"
-        table.add_row(topic.key, topic.message.DESCRIPTOR.full_name, hz, topic.qos.value, "yes" if topic.logged else "no", topic.about)
+        hz = f"{topic.hz:g} Hz" if topic.hz else "on change"
+        typer.echo(f"{topic.key:{width}}  {topic.message.DESCRIPTOR.full_name:26}  {hz:9}  {topic.qos.value:8}  {topic.about}")
     for request in REQUESTS.values():
         types = f"{request.message.DESCRIPTOR.name} -> {request.reply.DESCRIPTOR.name}"
-        table.add_row(request.key, types, "", "request", "", request.about)
-    console.print(table)
+        typer.echo(f"{request.key:{width}}  {types:26}  {'request':19}  {request.about}")
 
 
 def _full(key: str) -> str:
@@ -62,6 +58,9 @@ def list_live() -> None:
 def echo(key: str, count: int) -> None:
     """Prints messages; ``count`` 0 = until Ctrl-C."""
     left = [count or -1]
+    if topic_of(_full(key)) is None and "srv/" not in key and "**" not in key:
+        known = [t.key.replace("<owner>", key.partition("/")[0]) for t in TOPICS.values()]
+        raise BadInput(f"no topic '{key}' in the table; {nearest(key, known)}")
 
     def heard(sample: Sample) -> None:
         if left[0] == 0:

@@ -40,7 +40,6 @@ def up(wanted: Wanted, folder: Path, say: Say) -> int:
     """Runs until Ctrl-C, SIGTERM or the time is over; returns the exit code. Raises BadInput before anything starts."""
     site = load_site(settings.mission_path(wanted.mission))
     kinds = [k for k in catalogue.needed(site) if wanted.page or k.name != "gcs"]
-    check_ports(wanted.page)
     stop = Flag()
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: stop.set())
@@ -51,6 +50,7 @@ def up(wanted: Wanted, folder: Path, say: Say) -> int:
     finally:
         say("stopping")
         run.stop()
+        say(f"{run.simulated:.1f} s simulated; log and output in {folder}")
     return 1 if run.failed else 0
 
 
@@ -112,6 +112,11 @@ class Run:
         if clock.tick and self._moving_since is None:
             self._moving_since = time.monotonic()
             self._say(f"time runs, {self._moving_since - self._begun:.1f} s after the start")
+
+    @property
+    def simulated(self) -> float:
+        """s."""
+        return self._t_ns / 1e9
 
     def watch(self, stop: Flag) -> None:
         """Until ``stop``; starts again what dies."""

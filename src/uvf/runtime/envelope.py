@@ -29,11 +29,17 @@ class GapCounter:
 
     def __init__(self) -> None:
         self.gaps: defaultdict[str, int] = defaultdict(int)
+        self.rivals: set[str] = set()
+        """Keys on which a sender came back after another one: two write at a time."""
+        self._boots: defaultdict[str, set[int]] = defaultdict(set)
         self._last: dict[str, tuple[int, int]] = {}  # key -> boot, seq
 
     def count(self, key: str, boot: int, seq: int) -> None:
         last_boot, last = self._last.get(key, (boot, 0 if seq == 1 else seq - 1))
         if boot != last_boot:
+            if boot in self._boots[key]:
+                self.rivals.add(key)
+            self._boots[key] |= {last_boot, boot}
             self._last[key] = (boot, seq)
         elif seq > last:
             self.gaps[key] += seq - last - 1

@@ -29,11 +29,11 @@ class HealthReport:
         self._worst = max(self._worst, lateness)
         self._late += lateness > 1 / shell.type.hz
 
-    def publish_when_due(self, wall: float) -> None:
+    def publish_when_due(self, wall: float, now: int) -> None:
+        """now: simulation time [ns]."""
         if wall < self._next:
             return
         self._next = wall + 1 / topics.HEALTH.hz
-        now = max((shell.sim_ns for shell in self._shells), default=0)
         message = Health(
             timestamp=stamp_ns(now),
             service=self._name,

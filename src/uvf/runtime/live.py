@@ -36,6 +36,7 @@ class Live:
         self._given_up = 0
         """The epoch that another instance of this simulator has begun; 0 = none."""
         self._tick = 0
+        self._told_rivals: set[str] = set()
         self._done = bus.publisher(topics.DONE.by(name).at("sys"), Done.DESCRIPTOR.full_name, topics.DONE.qos)
         self._health = HealthReport(name, shells, bus)
         self._last_heard = 0.0
@@ -55,10 +56,16 @@ class Live:
                 wall = time.monotonic() - start
                 self._follow_clock(wall, stop)
                 self._run_wall(wall)
-                self._health.publish_when_due(wall)
+                self._health.publish_when_due(wall, self._t_ns)
+                self._tell_rivals()
         finally:
             for shell in (*self._sim, *self._wall):
                 shell.service.close()
+
+    def _tell_rivals(self) -> None:
+        for key in self._bus.counter.rivals - self._told_rivals:
+            self._told_rivals.add(key)
+            self._warn(f"{self._name}: two processes write {key}: end one of them")
 
     def _patience(self, wall: float) -> float:
         due = min((s.due_ns / NS - wall for s in self._wall), default=IDLE)

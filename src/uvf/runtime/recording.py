@@ -18,14 +18,15 @@ from mcap.records import Channel, Message, Schema
 from mcap.stream_reader import StreamReader
 from mcap.writer import CompressionType, Writer
 
-from schemas.topics import PREFIX, TOPICS, Qos
+from schemas.topics import PREFIX, REQUESTS, TOPICS, Qos
 from uvf.runtime.bus import Bus, Sample, matches
 from uvf.runtime.envelope import GapCounter
 from uvf.runtime.params import BadInput
 
 CHUNK = 1_000_000  # bytes
 DEPTH = 65_536  # messages that may wait for the writer
-_TYPES: dict[str, Any] = {topic.message.DESCRIPTOR.full_name: topic.message for topic in TOPICS.values()}
+_SAID = [t.message for t in TOPICS.values()] + [m for r in REQUESTS.values() for m in (r.message, r.reply)]
+_TYPES: dict[str, Any] = {message.DESCRIPTOR.full_name: message for message in _SAID}
 _SILENT = [topic.by("*").at("*") for topic in TOPICS.values() if not topic.logged]
 _WALL_SOURCES = {"gcs", "mavlink", "recorder", "launcher"}
 
@@ -159,7 +160,7 @@ def _opened(path: Path) -> Iterator[IO[bytes]]:
     except OSError as error:
         raise BadInput(f"log {path}: {error.strerror}") from error
     except (McapError, EOFError, ValueError) as error:
-        raise BadInput(f"log {path}: broken or cut off ({type(error).__name__}); try 'uvf log recover {path}'") from error
+        raise BadInput(f"log {path}: still being written, cut off or broken; 'uvf log recover {path}' copies what is whole") from error
 
 
 def read_log(path: Path) -> Iterator[Sample]:
