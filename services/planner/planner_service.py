@@ -15,6 +15,8 @@ from schemas.messages import (
     Grid,
     Mission,
     MissionProgress,
+    Mode,
+    ModeRequest,
     NavStatus,
     Pose,
     PoseInFrame,
@@ -31,13 +33,14 @@ from services.planner.navigator import Navigator, Plan
 from services.planner.smoothing import length
 from uvf.maths.planar import IDENTITY, Pose2, compose, inverse, transform
 from uvf.maths.rotations import wrap
-from uvf.runtime.service import Outputs, Params, Service, optional
+from uvf.runtime.service import Answer, Outputs, Params, Service, optional
 
 Floats = NDArray[np.float64]
 Point = tuple[float, float]
 Positive = Annotated[float, Meta(gt=0)]
 
 REPLAN_PERIOD = 2.0  # s, after which a path that failed is tried again
+TRIES = 3  # at a place of the mission or the way home, before the vehicle holds
 
 
 class PlannerParams(Params, frozen=True):
@@ -66,6 +69,7 @@ class PlannerService(Service):
     }
     outputs = {"path": topics.PATH, "nav_status": topics.NAV_STATUS, "events": topics.EVENTS.by("planner")}
     requests = {"goal": topics.GOAL}
+    calls = {"set_mode": topics.SET_MODE}
     recalls = {"nav_status": topics.NAV_STATUS}
     params: PlannerParams
 
@@ -87,6 +91,8 @@ class PlannerService(Service):
         self._is_there = False
         self._progress_at = 0.0
         self._progress_pose: Pose2 = IDENTITY
+        self._tries = 0
+        self._asks: list[ModeRequest] = []
         self._events: list[Event] = []
 
     def step(
@@ -98,6 +104,7 @@ class PlannerService(Service):
         mission: Mission | None,
         progress: MissionProgress | None,
         goal: list[GoalRequest],
+        set_mode: list[Answer[ModeRequest, Reply]],
     ) -> Outputs:
         here = compose(self._map_from_world, Pose2(pose.pose.position.x, pose.pose.position.y, yaw_of(pose.pose.orientation)))
         changed = self._take_map(map)
@@ -111,7 +118,8 @@ class PlannerService(Service):
             self._replan(t, here)
         self._watch(t, here, status)
         events, self._events = self._events, []
-        return {"path": self._path(t), "nav_status": self._nav_status(t, here), "goal": replies, "events": events}
+        asks, self._asks = self._asks, []
+        return {"path": self._path(t), "nav_status": self._nav_status(t, here), "goal": replies, "events": events, "set_mode": asks}
 
     def recall(self, nav_status: NavStatus | None = None) -> None:
         """A person's goal that was being driven to is still wanted; its heading is not told."""
@@ -151,6 +159,7 @@ class PlannerService(Service):
         self._job = job
         self._reached_at = None
         self._progress_at = t
+        self._tries = 0
         self._explorer.goal = None
 
     def _replan(self, t: float, here: Pose2) -> None:
@@ -218,15 +227,27 @@ class PlannerService(Service):
             self._replan(t, here)
 
     def _give_up(self, t: float, reason: str) -> None:
-        text = "trying again" if self._job.bold else "goal given up"
-        self._tell(t, f"{self._job.name}: {text}", reason, Event.WARNING)
         self._progress_at = t
+        if self._job.bold:
+            self._try_again(t, reason)
+            return
+        self._tell(t, f"{self._job.name}: goal given up", reason, Event.WARNING)
         if self._job.name == "goal":
             self._goal = None
-        elif self._job.name == "explore":
+        else:
             self._done_with_target(t)
             self._planned_at = -np.inf
             self._plan = Plan(None, reason)
+
+    def _try_again(self, t: float, reason: str) -> None:
+        """Neither a mission nor the way home may be left out; after some tries a person has to decide."""
+        self._tries += 1
+        if self._tries < TRIES:
+            self._tell(t, f"{self._job.name}: trying again", reason, Event.WARNING)
+            return
+        self._tell(t, f"{self._job.name}: holding after {self._tries} tries", reason, Event.WARNING)
+        self._tries = 0
+        self._asks.append(ModeRequest(mode=Mode.MODE_HOLD, source="planner"))
 
     def _in_map(self, point: Point) -> Point:
         x, y, _ = compose(self._map_from_world, Pose2(point[0], point[1], 0.0))

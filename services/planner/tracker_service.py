@@ -22,6 +22,7 @@ HISTORY = 50  # poses kept, 1 s
 SCAN_MAX_AGE = 0.6  # s; without sight nothing moves
 NEAR = 1.2  # m, points farther away cannot be reached before the next scan
 REACTION = 0.3  # s, from sight to the wheels
+EVENTS_EVERY = 10.0  # s between two events about what is ahead
 
 
 class TrackerParams(Params, frozen=True):
@@ -55,6 +56,7 @@ class TrackerService(Service):
         self._seen: Floats = np.zeros((0, 2))
         """(n, 2) m, world frame: the last scan's points near the vehicle."""
         self._blocked_since: float | None = None
+        self._told_at = -np.inf
 
     def step(self, t: float, path: PosesInFrame, pose: list[PoseInFrame], scan: LaserScan) -> Outputs:
         for message in pose:
@@ -96,11 +98,18 @@ class TrackerService(Service):
             return (share * wanted[0], share * wanted[1]), []
         if self._blocked_since is None:
             self._blocked_since = t
-            return (0.0, 0.0), [Event(timestamp=stamp(t), severity=Event.NOTICE, text="obstacle ahead", cause="lidar", source="planner")]
+            return (0.0, 0.0), self._obstacle(t)
         back = (-self.params.back_off, 0.0)
         if t - self._blocked_since > self.params.patience and safe_share(around, back, self._keep, brake) > 0.0:
             return back, []
         return (0.0, wanted[1]), []
+
+    def _obstacle(self, t: float) -> list[Event]:
+        """What to tell; nothing while the last time is not long ago, for one obstacle blocks and frees the way often."""
+        if t - self._told_at < EVENTS_EVERY:
+            return []
+        self._told_at = t
+        return [Event(timestamp=stamp(t), severity=Event.NOTICE, text="obstacle ahead", cause="lidar", source="planner")]
 
 
 def _points(path: PosesInFrame) -> Floats:

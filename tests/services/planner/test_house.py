@@ -5,7 +5,7 @@ import pytest
 
 from schemas import topics
 from schemas.convert import occupancy_cells, yaw_of
-from schemas.messages import GoalRequest, StopCommand, Vector3
+from schemas.messages import GoalRequest, Mode, StopCommand, Vector3
 from services.autopilot.ground.build import hosts
 from services.planner.build import build as build_planner
 from services.sim_ground.build import build as build_simulator
@@ -156,18 +156,21 @@ def test_slam_that_is_started_again_finds_the_vehicle_in_its_old_map():
     assert np.hypot(*(house.places()[-1, 1:] - before[1:])) > 1.0
 
 
-def mission_site(tmp_path):
-    """Two waypoints in rooms that cannot be seen from the start, then home."""
+ROUNDS = "[{x: 6.2, y: 1.3}, {x: 5.6, y: 4.4, hold: 1.0}, {kind: return}]"
+"""Two waypoints in rooms that cannot be seen from the start, then home."""
+
+
+def mission_site(tmp_path, items=ROUNDS):
     path = tmp_path / "rounds.yaml"
     path.write_text(
-        "about: The burger drives to the kitchen, to the hall and home.\n"
+        "about: The burger drives a mission.\n"
         "world: house\n"
         "vehicles:\n"
         "  burger:\n"
         "    model: burger\n"
         "    system_id: 2\n"
         "    start: {x: 2.2, y: 1.3, yaw: 0.5}\n"
-        "    job: {mission: [{x: 6.2, y: 1.3}, {x: 5.6, y: 4.4, hold: 1.0}, {kind: return}]}\n"
+        f"    job: {{mission: {items}}}\n"
     )
     return load_site(path)
 
@@ -185,3 +188,16 @@ def test_a_mission_leads_through_rooms_not_seen_yet_and_home(tmp_path):
         _, there_x, there_y = places[np.searchsorted(places[:, 0], reached[item]) - 1]
         assert np.hypot(there_x - x, there_y - y) < 0.35
     assert not any(m.touching for _, m in house.kept["contact"])
+
+
+def test_a_mission_item_in_a_table_ends_in_hold_with_the_reason(tmp_path):
+    house = House(mission_site(tmp_path, "[{x: 1.7, y: 2.2}]"))
+    status, events = [], []
+    house.bus.subscribe(topics.STATUS.at(VEHICLE), topics.STATUS.qos, House._keep(status, topics.STATUS.message))
+    house.bus.subscribe(topics.EVENTS.by("*").at(VEHICLE), topics.EVENTS.qos, House._keep(events, topics.EVENTS.message))
+    house.run.run(60.0, lambda t: not status or status[-1][1].mode != Mode.MODE_HOLD)
+    house.run.close()
+    assert status[-1][1].mode == Mode.MODE_HOLD
+    told = [(m.text, m.cause) for _, m in events]
+    assert ("mission: holding after 3 tries", "no way leads to the goal") in told
+    assert ("mode HOLD", "asked by planner") in told

@@ -38,13 +38,15 @@ class Bench:
         self.grid = occupancy_grid(room(4.0, 3.0), 0.05, 0.0, 0.0, "v/map", 0.0)
         self.said = {}
         self.events = []
+        self.asked = []
 
     def step(self, n=1, status=READY, mission=None, progress=None, goal=()):
         for _ in range(n):
             self.t += 0.25
             pose = PoseInFrame(pose=planar_pose(*world(*self.here), self.yaw))
-            self.said = self.service.step(self.t, pose, self.grid, status, mission, progress, list(goal))
+            self.said = self.service.step(self.t, pose, self.grid, status, mission, progress, list(goal), [])
             self.events += [e.text for e in self.said["events"]]
+            self.asked += self.said["set_mode"]
         return self
 
     @property
@@ -163,6 +165,28 @@ def test_the_mission_is_driven_to_its_current_item():
     assert bench.said["path"].poses[-1].position.x == pytest.approx(x)
 
 
+def test_a_mission_item_that_cannot_be_reached_ends_in_hold_after_three_tries():
+    x, y = world(0.0, 1.0)  # in the wall
+    mission = Mission(id=9, items=[MissionItem(position=Vector3(x=x, y=y))])
+    progress = MissionProgress(state=MissionProgress.ACTIVE, mission_id=9)
+    a_try = int(4 * PlannerParams().patience) + 2
+    bench = Bench().step(2 * a_try, mission=mission, progress=progress)
+    assert bench.asked == []
+    bench.step(a_try, mission=mission, progress=progress)
+    assert [(r.mode, r.source) for r in bench.asked] == [(Mode.MODE_HOLD, "planner")]
+    assert bench.events == ["job: mission", "mission: trying again", "mission: trying again", "mission: holding after 3 tries"]
+
+
+def test_after_hold_the_item_is_tried_three_times_again():
+    x, y = world(0.0, 1.0)
+    mission = Mission(id=9, items=[MissionItem(position=Vector3(x=x, y=y))])
+    active, paused = (MissionProgress(state=state, mission_id=9) for state in (MissionProgress.ACTIVE, MissionProgress.PAUSED))
+    a_try = int(4 * PlannerParams().patience) + 2
+    bench = Bench().step(2 * a_try, mission=mission, progress=active).step(2, mission=mission, progress=paused)
+    bench.step(2 * a_try, mission=mission, progress=active)
+    assert bench.asked == []
+
+
 def test_return_leads_to_the_start():
     bench = Bench()
     bench.grid = occupancy_grid(room(4.0, 3.0), 0.05, -1.0, -1.0, "v/map", 0.0)
@@ -238,6 +262,14 @@ def test_backs_off_when_it_stays_blocked():
     assert bench.commands[5][0] == 0.0
     assert bench.commands[-1][0] == pytest.approx(-TrackerParams().back_off)
     assert bench.events == ["obstacle ahead"]
+
+
+def test_an_obstacle_that_comes_and_goes_is_told_every_ten_seconds_at_most():
+    bench = TrackerBench()
+    for _ in range(50):
+        bench.step(6, ahead=0.18).step(4, ahead=3.0)
+    assert bench.t == pytest.approx(25.0)
+    assert bench.events == ["obstacle ahead"] * 3
 
 
 def test_blind_it_does_not_move():
