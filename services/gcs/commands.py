@@ -107,6 +107,8 @@ class Commander:
     def __init__(self, model: Model) -> None:
         self._model = model
         self._to_confirm: tuple[str, bool, float] | None = None
+        self._mode_before: dict[str, int] = {}
+        self._back: dict[str, int] = {}
 
     def waits_for_confirmation(self, vehicle: str, arm: bool, t: float) -> bool:
         asked = self._to_confirm
@@ -115,6 +117,9 @@ class Commander:
     def act(self, t: float, actions: Sequence[Action]) -> Outbox:
         """The messages to send for what people asked at ``t`` [s, wall]."""
         out = Outbox()
+        for name, before in self._back.items():
+            out.mode[name] = [ModeRequest(mode=before, source=SOURCE)]  # type: ignore[arg-type]
+        self._back.clear()
         for action in actions:
             match action:
                 case Select(name):
@@ -161,7 +166,9 @@ class Commander:
             self._refuse(t, vehicle, describe(request), why)
         elif self._is_reachable(t, vehicle, request):
             vehicle.goal_asked = point
+            self._mode_before.pop(vehicle.name, None)
             if vehicle.status is not None and vehicle.status.mode not in OBEYING_PLANNER:
+                self._mode_before[vehicle.name] = vehicle.status.mode
                 out.mode.setdefault(vehicle.name, []).append(ModeRequest(mode=Mode.MODE_MISSION, source=SOURCE))
             out.goal.setdefault(vehicle.name, []).append(request)
 
@@ -219,10 +226,16 @@ class Commander:
             vehicle.order = order
             if isinstance(answer.request, GoalRequest) and not accepted:
                 vehicle.goal_asked = None
+                self._undo_mode(vehicle.name)
             outcome = "accepted" if accepted else f"refused: {reason or 'no reason given'}"
             self._model.note(vehicle.name, f"{order.text}: {outcome}", Event.INFO if accepted else Event.WARNING)
             settled.append((vehicle.name, order))
         return settled
+
+    def _undo_mode(self, vehicle: str) -> None:
+        """A goal that is refused changes nothing: the mode that was set for it goes back with the next step."""
+        if vehicle in self._mode_before:
+            self._back[vehicle] = self._mode_before.pop(vehicle)
 
     def expire(self, t: float) -> None:
         """An order that nobody answers in time is shown as refused."""

@@ -35,7 +35,7 @@ def system_link(model: Model, t: float) -> tuple[str, str]:
     newest = model.clock_at if model.clock_at is not None else max(heard, default=None)
     word, style = link_of(newest, t)
     if style == "good" and model.clock is not None and model.clock.state != Clock.RUNNING:
-        return ("PAUSED", "warn") if model.clock.state == Clock.PAUSED else ("ENDED", "idle")
+        return "PAUSED", "warn"
     return word, style
 
 

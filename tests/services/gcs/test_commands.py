@@ -51,6 +51,16 @@ def test_a_vehicle_on_hold_is_put_into_mission_mode_to_go(station):
     assert next(m for _, m in station.script.asked if isinstance(m, ModeRequest)).mode == Mode.MODE_MISSION
 
 
+def test_a_refused_goal_leaves_the_mode_as_it_was(station):
+    station.script.mode[UGV] = Mode.MODE_HOLD
+    station.script.accept = False
+    station.run(0.2)
+    station.press(click(4.0, 3.0))
+    station.run(0.3)
+    modes = [m.mode for _, m in station.script.asked if isinstance(m, ModeRequest)]
+    assert modes == [Mode.MODE_MISSION, Mode.MODE_HOLD]
+
+
 def test_a_goal_that_would_move_nothing_is_refused_with_the_mend(station):
     station.script.armed[UGV] = False
     station.run(0.2)

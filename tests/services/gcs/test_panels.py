@@ -39,12 +39,11 @@ def test_silence_is_shown_as_stale_then_as_lost(station):
     assert "LINK LOST" in station.page.now.html["bar"] and "LINK LOST" in station.page.now.html["fleet"]
 
 
-@pytest.mark.parametrize(("state", "word"), [(Clock.PAUSED, "PAUSED"), (Clock.ENDED, "ENDED")])
-def test_a_stopped_clock_is_not_a_lost_link(station, state, word):
+def test_a_paused_clock_is_not_a_lost_link(station):
     for i in range(10):
-        station.script.put("sys", topics.CLOCK, Clock(t_ns=10**9, state=state, tick=i), 1.0)
+        station.script.put("sys", topics.CLOCK, Clock(t_ns=10**9, state=Clock.PAUSED, tick=i), 1.0)
         station.run(0.5, silent=True)
-    assert f"● {word}" in station.page.now.html["bar"]
+    assert "● PAUSED" in station.page.now.html["bar"]
 
 
 def test_the_one_who_is_waited_for_is_named(station):
