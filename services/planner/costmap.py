@@ -66,7 +66,7 @@ def costmap(cells: NDArray[np.int8], frame: Frame, body: Body, unknown_cost: flo
     occupied, unknown = cells >= OCCUPIED, cells < 0
     free = ~unknown & (cells <= FREE)
     clearance = (distance_field(occupied) - 0.5) * resolution
-    nearness = np.clip((body.comfort - clearance) / (body.comfort - body.radius), 0.0, 1.0)
+    nearness = np.clip((body.comfort - clearance) / max(body.comfort - body.radius, resolution), 0.0, 1.0)
     cost = 1.0 + (body.dislike - 1.0) * nearness**2
     cost[unknown] *= unknown_cost
     cost[(clearance < body.radius) | ~(free | unknown)] = IMPASSABLE

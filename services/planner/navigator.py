@@ -37,6 +37,15 @@ class Navigator:
         self._bold: Costmap | None = None
         self.costs: Costmap | None = None
 
+    def fit(self, body: Body) -> bool:
+        """Plans for another body from now on; whether that changes anything."""
+        if body == self._body:
+            return False
+        self._body = body
+        if self._cells is not None and self.costs is not None:
+            self.see(self._cells, (self.costs.resolution, self.costs.origin))
+        return True
+
     def see(self, cells: NDArray[np.int8], frame: Frame) -> None:
         """Takes a new map; costs are worked out once for it."""
         self._cells = cells

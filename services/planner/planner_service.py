@@ -40,6 +40,7 @@ Point = tuple[float, float]
 Positive = Annotated[float, Meta(gt=0)]
 
 REPLAN_PERIOD = 2.0  # s, after which a path that failed is tried again
+FRONTIER_VIEW = 0.4  # m from a frontier, from where it is seen well enough
 TRIES = 3  # at a place of the mission or the way home, before the vehicle holds
 
 
@@ -78,8 +79,9 @@ class PlannerService(Service):
         self._world_from_map = world_from_map
         self._map_from_world = inverse(world_from_map)
         self._orders = Orders(world_from_map[:2], explores)
-        self._navigator = Navigator(Body(radius + params.margin, params.comfort, params.dislike))
-        self._explorer = Explorer(Taste(params.least_frontier, 0.4, params.frontier_worth))
+        self._radius = radius
+        self._navigator = Navigator(self._body)
+        self._explorer = Explorer(self._taste)
         self._patrol = Patrol()
         self._map_stamp = -1.0
         self._job: Job = IDLE
@@ -107,7 +109,8 @@ class PlannerService(Service):
         set_mode: list[Answer[ModeRequest, Reply]],
     ) -> Outputs:
         here = compose(self._map_from_world, Pose2(pose.pose.position.x, pose.pose.position.y, yaw_of(pose.pose.orientation)))
-        changed = self._take_map(map)
+        self._explorer.taste = self._taste
+        changed = self._navigator.fit(self._body) | self._take_map(map)
         replies = [self._ask(t, here, request, status) for request in goal]
         job = choose(status, self._goal, mission_target(mission, progress, self._orders.home), self._orders)
         if job != self._job:
@@ -133,6 +136,14 @@ class PlannerService(Service):
             "path": PosesInFrame(timestamp=stamp(t), frame_id="world"),
             "nav_status": NavStatus(timestamp=stamp(t), state=NavStatus.IDLE, job=self._job.name, reason=reason),
         }
+
+    @property
+    def _body(self) -> Body:
+        return Body(self._radius + self.params.margin, self.params.comfort, self.params.dislike)
+
+    @property
+    def _taste(self) -> Taste:
+        return Taste(self.params.least_frontier, FRONTIER_VIEW, self.params.frontier_worth)
 
     def _take_map(self, grid: Grid) -> bool:
         taken_at = seconds(grid.timestamp)

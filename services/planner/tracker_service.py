@@ -46,10 +46,9 @@ class TrackerService(Service):
 
     def __init__(self, body: GroundBody, base_from_lidar: Pose2, params: TrackerParams) -> None:
         self.params = params
-        self._keep = body.radius + params.margin
+        self._body = body
         self._base_from_lidar = base_from_lidar
-        speeds = min(params.speed, body.max_linear), min(params.turn_speed, body.max_angular)
-        self._tracker = Tracker(Pace(*speeds, params.deceleration, params.goal_tolerance))
+        self._tracker = Tracker(self._pace)
         self._history = PoseHistory(HISTORY)
         self._pose: Pose2 = IDENTITY
         self._scan_time = -np.inf
@@ -64,6 +63,7 @@ class TrackerService(Service):
             self._pose = Pose2(position.x, position.y, yaw_of(message.pose.orientation))
             self._history.add(seconds(message.timestamp), self._pose)
         self._look(scan)
+        self._tracker.pace = self._pace
         if t - self._scan_time > SCAN_MAX_AGE:
             return self.stale(t, ("scan",))
         around = transform(inverse(self._pose), self._seen)
@@ -75,6 +75,16 @@ class TrackerService(Service):
     def stale(self, t: float, missing: tuple[str, ...]) -> Outputs:
         """Without path, pose or sight the vehicle stands."""
         return {"drive": DriveCommand(timestamp=stamp(t))}
+
+    @property
+    def _keep(self) -> float:
+        """m to keep from the vehicle's centre to everything."""
+        return self._body.radius + self.params.margin
+
+    @property
+    def _pace(self) -> Pace:
+        speeds = min(self.params.speed, self._body.max_linear), min(self.params.turn_speed, self._body.max_angular)
+        return Pace(*speeds, self.params.deceleration, self.params.goal_tolerance)
 
     def _look(self, scan: LaserScan) -> None:
         """Keeps the points of a new scan where they were seen, so that they stay while the vehicle moves on."""

@@ -36,8 +36,8 @@ class Mapper:
         self.occupancy = OccupancyMap(resolution)
         self.map_from_odom: Pose2 = IDENTITY
         self.last_match: Match | None = None
-        self._insert_distance = insert_distance
-        self._insert_turn = insert_turn
+        self.insert_distance = insert_distance
+        self.insert_turn = insert_turn
         self._inserted_at: Pose2 | None = None
 
     def add(self, odom_from_base: Pose2, scan: Scan) -> bool:
@@ -67,8 +67,8 @@ class Mapper:
         last = self._inserted_at
         if last is None:
             return True
-        moved = hypot(pose[0] - last[0], pose[1] - last[1]) >= self._insert_distance
-        return moved or abs(wrap(pose[2] - last[2])) >= self._insert_turn
+        moved = hypot(pose[0] - last[0], pose[1] - last[1]) >= self.insert_distance
+        return moved or abs(wrap(pose[2] - last[2])) >= self.insert_turn
 
 
 def toward(current: Pose2, target: Pose2, distance: float, turn: float) -> Pose2:

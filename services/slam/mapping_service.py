@@ -41,6 +41,7 @@ class MappingService(Service):
     outputs = {"correction": topics.TF_MAP, "placing": topics.TF_WORLD, "map": topics.MAP}
     recalls = {"map": topics.MAP, "correction": topics.TF_MAP}
     params: MappingParams
+    fixed_params = frozenset({"resolution"})
 
     def __init__(self, vehicle: str, lidar: Lidar, world_from_map: Pose2, params: MappingParams) -> None:
         self.params = params
@@ -62,6 +63,7 @@ class MappingService(Service):
             position = message.pose.position
             self._odom_from_base = Pose2(position.x, position.y, yaw_of(message.pose.orientation))
             self._history.add(seconds(message.timestamp), self._odom_from_base)
+        self._mapper.insert_distance, self._mapper.insert_turn = self.params.insert_distance, self.params.insert_turn
         taken_at = seconds(scan.timestamp)
         odom_from_base = self._history.at(taken_at)
         if taken_at > self._scan_time and odom_from_base is not None:

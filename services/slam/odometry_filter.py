@@ -39,7 +39,7 @@ class OdometryFilter:
     """
 
     def __init__(self, noise: Noise) -> None:
-        self._noise = noise
+        self.noise = noise
         self._kf = ExtendedKalmanFilter(dim_x=4, dim_z=1)
         self._kf.x = np.zeros(4)
         self._kf.P = np.diag((0.0, 0.0, 0.0, noise.bias_start**2))
@@ -73,7 +73,7 @@ class OdometryFilter:
         wheel_rate = wheel_turn / dt
         self._still_for = self._still_for + dt if distance == 0.0 and wheel_turn == 0.0 else 0.0
         if gyro is not None:
-            sigma = self._noise.rest if self._still_for > AT_REST else self._noise.slip
+            sigma = self.noise.rest if self._still_for > AT_REST else self.noise.slip
             # A better bias shall not move the poses of the past: odometry drifts, but it never jumps.
             self._kf.P[:BIAS, BIAS] = self._kf.P[BIAS, :BIAS] = 0.0
             self._kf.update(np.array((gyro - wheel_rate,)), lambda x: BIAS_FROM_STATE, lambda x: x[BIAS:], R=sigma**2)
@@ -83,7 +83,7 @@ class OdometryFilter:
 
     def _predict(self, distance: float, rate: float, dt: float) -> None:
         """Chord of the arc at the mean heading; F and Q are the derivatives of that motion."""
-        kf, noise = self._kf, self._noise
+        kf, noise = self._kf, self.noise
         heading = float(kf.x[HEADING]) + rate * dt / 2
         c, s = cos(heading), sin(heading)
         f = np.eye(4)

@@ -45,6 +45,7 @@ class OdometryService(Service):
     outputs = {"odometry": topics.ODOMETRY, "pose": topics.POSE, "nav_state": topics.NAV_STATE}
     recalls = {"odometry": topics.ODOMETRY, "correction": topics.TF_MAP}
     params: OdometryParams
+    fixed_params = frozenset({"bias_start"})
 
     def __init__(self, vehicle: str, file: VehicleFile, world_from_map: Pose2, params: OdometryParams) -> None:
         if file.ground is None:
@@ -56,14 +57,13 @@ class OdometryService(Service):
         self._up_from_imu: Floats = matrix(from_euler(*mount))[2]
         self._world_from_map = world_from_map
         self._map_from_odom: Pose2 = IDENTITY
-        self._filter = OdometryFilter(
-            Noise(params.distance_noise, params.gyro_noise, params.bias_walk, params.bias_start, params.slip_noise, params.rest_noise)
-        )
+        self._filter = OdometryFilter(_noise(params))
         self._last: WheelTicks | None = None
         self._waiting: list[Imu] = []
         self._variance_at_correction = 0.0
 
     def step(self, t: float, wheels: WheelTicks, imu: list[Imu], correction: FrameTransform | None) -> Outputs:
+        self._filter.noise = _noise(self.params)
         self._move(wheels, imu)
         if correction is not None:
             self._correct(correction)
@@ -150,3 +150,7 @@ class OdometryService(Service):
             angular_velocity=Vector3(z=angular),
             position_sigma=float(np.sqrt(self.params.map_sigma**2 + grown)),
         )
+
+
+def _noise(p: OdometryParams) -> Noise:
+    return Noise(p.distance_noise, p.gyro_noise, p.bias_walk, p.bias_start, p.slip_noise, p.rest_noise)

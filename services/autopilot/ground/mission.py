@@ -57,8 +57,9 @@ class MissionEngine:
         self.reached = -1
         self.laps = 0
         self.speed = 0.0  # m/s, 0 = the vehicle's own
+        self.acceptance_radius = acceptance_radius
+        """m, of items that name none."""
         self._home = home
-        self._acceptance_radius = acceptance_radius
         self._jumps: dict[int, int] = {}
         self._arrived_at: float | None = None
 
@@ -107,7 +108,7 @@ class MissionEngine:
             return None
         item = self.mission.items[self.current]
         if self._arrived_at is None:
-            radius = item.acceptance_radius or self._acceptance_radius
+            radius = item.acceptance_radius or self.acceptance_radius
             if not hypot(position[0] - target[0], position[1] - target[1]) <= radius:
                 return None
             self._arrived_at = t

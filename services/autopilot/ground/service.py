@@ -170,6 +170,7 @@ class GroundAutopilot(Service):
 
     def _follow_mission(self, t: float, position: Point | None) -> None:
         active = self._mode == Mode.MODE_MISSION and self._armed and not self._stopped
+        self._engine.acceptance_radius = self.params.acceptance_radius
         reached = self._engine.advance(t, position, active)
         if reached is not None:
             self._tell(t, f"mission item {reached} reached", "within its acceptance radius")

@@ -20,6 +20,7 @@ from schemas.messages import (
 from services.planner.planner_service import PlannerParams, PlannerService
 from services.planner.tracker_service import TrackerParams, TrackerService
 from tests.services.autopilot.ground.test_service import BODY
+from tests.services.live_params import all_settable_are_read
 from tests.services.planner.plans import room
 
 READY = VehicleStatus(mode=Mode.MODE_MISSION, armed=True, command_source="planner")
@@ -219,6 +220,33 @@ def test_without_pose_or_map_there_is_no_path():
     assert outputs["nav_status"].reason == "waiting for pose, map"
 
 
+def test_every_parameter_of_the_planner_is_read_while_running():
+    bench = Bench(explores=True)
+    with all_settable_are_read(bench.service):
+        bench.step(2).step(2, goal=[asked(3.0, 2.0)]).step(4)
+        bench.here = (3.0, 2.0)
+        bench.step(40)
+
+
+@pytest.mark.parametrize("change", [{"comfort": 0.9, "dislike": 50.0}, {"margin": 0.4}])
+def test_the_path_keeps_farther_from_walls_when_that_is_set_while_driving(change):
+    bench = Bench()
+    cells = room(4.0, 3.0)
+    cells[4:20, 38:42] = 100
+    bench.grid = occupancy_grid(cells, 0.05, 0.0, 0.0, "v/map", 0.0)
+    bench.step(goal=[asked(3.0, 1.0)]).step()
+    before = bench.said["nav_status"].distance_left
+    bench.service.params = PlannerParams(**change)
+    assert bench.step().said["nav_status"].distance_left > before + 0.1
+
+
+def test_a_comfort_below_the_radius_does_not_spoil_the_costs():
+    bench = Bench().step(goal=[asked(3.0, 2.0)]).step()
+    bench.service.params = PlannerParams(comfort=0.13)
+    assert bench.step(2).state == NavStatus.DRIVING
+    assert np.isfinite(bench.service._navigator.costs.cost).all()
+
+
 def scan(t, ahead):
     """A wall across the way, ``ahead`` [m] of the lidar; nothing elsewhere."""
     angles = np.radians(np.arange(360.0))
@@ -280,3 +308,14 @@ def test_blind_it_does_not_move():
 def test_stale_inputs_mean_stop():
     drive = TrackerBench().service.stale(3.0, ("pose",))["drive"]
     assert (drive.linear, drive.angular) == (0.0, 0.0)
+
+
+def test_parameters_of_the_tracker_count_while_running():
+    bench = TrackerBench()
+    with all_settable_are_read(bench.service):
+        bench.step(5, ahead=3.0).step(40, ahead=0.18)
+    bench = TrackerBench().step(5, ahead=3.0)
+    bench.service.params = TrackerParams(speed=0.1)
+    assert bench.step(5, ahead=3.0).commands[-1][0] == pytest.approx(0.1)
+    bench.service.params = TrackerParams(margin=1.0)
+    assert bench.step(3, ahead=1.0).commands[-1] == (0.0, 0.0)

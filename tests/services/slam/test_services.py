@@ -9,6 +9,7 @@ from schemas.convert import occupancy_cells, planar_pose, stamp, yaw_of
 from schemas.messages import FrameTransform, Imu, LaserScan, Odometry, Quaternion, Vector3, WheelTicks
 from services.slam.mapping_service import MappingParams, MappingService
 from services.slam.odometry_service import OdometryParams, OdometryService
+from tests.services.live_params import all_settable_are_read
 from tests.services.slam.room import ANGLES, measured
 from uvf.runtime.site import ROOT
 from uvf.runtime.vehicle_file import Lidar, Mount, load_vehicle
@@ -72,6 +73,16 @@ def test_a_wheel_message_seen_twice_moves_nothing():
     first = service.step(1.02, again, [], None)["odometry"].pose.position.x
     later = service.step(3.0, again, [], None)["odometry"].pose.position.x
     assert later - first < speed_of(4) * 0.1
+
+
+def test_parameters_of_the_odometry_count_while_running():
+    service = odometry_service()
+    with all_settable_are_read(service):
+        drive(service, 5)
+    trusting, doubting = odometry_service(), odometry_service()
+    doubting.params = OdometryParams(distance_noise=0.2)
+    covariances = [drive(s, 50)["odometry"].pose_covariance[0] for s in (trusting, doubting)]
+    assert covariances[1] == pytest.approx(100 * covariances[0], rel=0.1)
 
 
 def scan_at(t, pose):
@@ -145,3 +156,21 @@ def test_the_map_is_placed_in_the_world_once(drifting_run):
     assert len(placings) == 1
     assert (placings[0].parent_frame_id, placings[0].child_frame_id) == ("world", "v/map")
     assert placings[0].translation.x == 2.0
+
+
+def test_parameters_of_the_mapping_count_while_running():
+    service = MappingService("v", LIDAR, START, MappingParams())
+    changed = 0
+
+    def step(k):
+        t = 0.2 * k
+        pose = (0.05 * k - 1.0, 0.2, 0.0)
+        return service.step(t, scan_at(t, pose), [odometry_at(t, (0.05 * k, 0.0, 0.0))])
+
+    with all_settable_are_read(service):
+        for k in range(1, 11):
+            changed += "map" in step(k)
+    assert changed >= 2
+    service.params = MappingParams(insert_distance=50.0, insert_turn=3.0)
+    step(11)
+    assert not any("map" in step(k) for k in range(17, 30))

@@ -19,6 +19,7 @@ from schemas.messages import (
 )
 from services.autopilot.ground.multiplexer import SOURCES
 from services.autopilot.ground.service import GroundAutopilot, GroundAutopilotParams
+from tests.services.live_params import all_settable_are_read
 from uvf.runtime.vehicle_file import GroundBody
 
 BODY = GroundBody(
@@ -222,3 +223,13 @@ def test_a_speed_item_limits_the_mission_but_not_the_person():
     assert bench.speed == pytest.approx(0.1)
     bench.step(set_mode=[ModeRequest(mode=Mode.MODE_MANUAL)]).step(60, linear=0.4, source="teleop")
     assert bench.speed == pytest.approx(0.4)
+
+
+def test_parameters_set_while_running_count():
+    bench = Bench(items=WAYPOINTS)
+    with all_settable_are_read(bench.service):
+        bench.step(1, pose=(0.0, 0.0))
+    bench.step(30, pose=(0.5, 0.0))
+    assert bench.said["progress"].reached == -1
+    bench.service.params = GroundAutopilotParams(acceptance_radius=0.6)
+    assert bench.step(30, pose=(0.5, 0.0)).said["progress"].reached == 0
