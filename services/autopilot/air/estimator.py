@@ -4,6 +4,7 @@ import math
 from dataclasses import dataclass
 
 from services.autopilot.air.attitude import Attitude
+from services.autopilot.air.params import AirParams
 from services.autopilot.air.state import Estimate
 from services.autopilot.air.track_filter import CHI, PSI, WE, WN, E, N, TrackFilter, V
 from services.autopilot.air.vertical import Vertical
@@ -14,6 +15,7 @@ from uvf.maths.geodesy import GRAVITY
 GYRO_TIME = 0.02  # s
 PRESSURE_TIME = 0.08  # s
 FORCE_TIME = 0.15  # s
+RECKONING_AFTER = 1.0  # s without a fix
 Triple = tuple[float, float, float]
 
 
@@ -49,14 +51,25 @@ class Pressures:
     temperature: float  # K
 
 
+@dataclass(frozen=True, slots=True)
+class Sensed:
+    """What a cycle has: the IMU samples since the last, the newest pressures and a new fix, if any."""
+
+    samples: list[Inertial]
+    pressures: Pressures | None
+    fix: Fix | None
+
+
 class Estimator:
-    """Started by the first fix; alpha is taken from the load on the wing (``alpha_zero_lift``, ``alpha_per_load``),
-    ``declination`` [rad] is that of the magnetic field, east positive.
+    """Started by the first fix; alpha is taken from the load on the wing (``alpha_zero_lift``, ``alpha_per_load``).
+
+    Without fixes it reckons on with heading, airspeed and the wind of before. Without pressures the airspeed is the ground
+    velocity less the wind and the height that of the fixes; without both, the airspeed is taken to be that of trim.
     """
 
-    def __init__(self, alpha_zero_lift: float, alpha_per_load: float, declination: float = 0.0) -> None:
+    def __init__(self, declination: float) -> None:
+        """``declination`` [rad]: magnetic north east of true north."""
         self._declination = declination
-        self._alpha_zero, self._alpha_load = alpha_zero_lift, alpha_per_load
         self._gyros = [LowPass(GYRO_TIME) for _ in range(3)]
         self._static, self._differential = LowPass(PRESSURE_TIME), LowPass(PRESSURE_TIME)
         self._side = LowPass(FORCE_TIME)
@@ -66,7 +79,9 @@ class Estimator:
         self._vertical: Vertical | None = None
         self.density = atmosphere.RHO0
         self._airspeed = 0.0
-        self._baro = 0.0
+        self._baro: float | None = None
+        self.unfixed = 0.0
+        """s since the last fix."""
         self._lift = GRAVITY  # m/s^2
         self._age = 0.0  # s, of the newest IMU sample
         self._aside = 0.0  # rad, of the flight through the air from the nose
@@ -80,45 +95,73 @@ class Estimator:
     def started(self) -> bool:
         return self._track is not None
 
-    def step(self, samples: list[Inertial], pressures: Pressures, fix: Fix | None, dt: float) -> Estimate:
-        """One cycle of ``dt`` [s]: the IMU samples since the last, the newest pressures, a fix if one has come."""
-        self._take_pressures(pressures, dt)
+    def step(self, sensed: Sensed, params: AirParams, dt: float) -> Estimate:
+        """One cycle of ``dt`` [s]."""
+        samples, fix = sensed.samples, sensed.fix
+        self.unfixed = 0.0 if fix is not None else self.unfixed + dt
+        self._take_pressures(sensed.pressures, params, dt)
         track, vertical = self._track, self._vertical
         if track is None or vertical is None:
             assert fix is not None, "the first cycle needs a fix"
             track, vertical = self._start(samples, fix)
-        up = [self._take_inertial(sample, dt / len(samples)) for sample in samples]
-        self._step_track(track, samples, dt)
+        up = [self._take_inertial(sample, params, dt / len(samples)) for sample in samples]
+        self._step_track(track, samples, params, dt)
         if up:
             self._age = samples[-1].age
             vertical.step(self._baro, sum(up) / len(up), dt)
         if fix is not None:
-            ahead = (fix.north, fix.east, fix.v_north, fix.v_east)
-            track.correct_fix(ahead, fix.age, (fix.position_sigma, fix.speed_sigma))
-            vertical.correct_offset(fix.height + fix.v_up * fix.age, self._baro)
+            self._correct(track, vertical, fix)
+        if not self._height_known:
+            vertical.rest()
+        if self.unfixed > RECKONING_AFTER:
+            track.reckon(self.unfixed, dt)
+        if self.unfixed > RECKONING_AFTER or (fix is not None and self._baro is not None):
             track.correct_triangle(self._horizontal_airspeed())
         return self._estimate(track, vertical)
 
+    def _correct(self, track: TrackFilter, vertical: Vertical, fix: Fix) -> None:
+        here = (fix.north, fix.east, fix.v_north, fix.v_east)
+        track.correct_fix(here, fix.age, (fix.position_sigma, fix.speed_sigma))
+        height = fix.height + fix.v_up * fix.age
+        if self._baro is None:
+            vertical.correct(height, fix.v_up)
+        else:
+            vertical.correct_offset(height, self._baro)
+
+    @property
+    def _height_known(self) -> bool:
+        return self._baro is not None or self.unfixed < RECKONING_AFTER
+
     def _start(self, samples: list[Inertial], fix: Fix) -> tuple[TrackFilter, Vertical]:
         self._track = TrackFilter(fix.north, fix.east, fix.v_north, fix.v_east)
-        self._vertical = Vertical(fix.height, self._baro, fix.v_up)
+        self._vertical = Vertical(fix.height, fix.v_up)
         if samples and not self._attitude_known:
             self._attitude.start(samples[-1].force)
         return self._track, self._vertical
 
-    def _take_pressures(self, pressures: Pressures, dt: float) -> None:
+    def _take_pressures(self, pressures: Pressures | None, params: AirParams, dt: float) -> None:
+        if pressures is None:
+            self._baro = None
+            self._airspeed = self._airspeed_over_ground() if self._height_known else params.trim_airspeed
+            return
         static = self._static.step(pressures.static, dt)
         self.density = atmosphere.density(static, pressures.temperature)
         self._airspeed = atmosphere.airspeed(self._differential.step(pressures.differential, dt), self.density)
         self._baro = atmosphere.altitude(static)
 
-    @property
-    def _alpha(self) -> float:
+    def _airspeed_over_ground(self) -> float:
+        """m/s, from the ground velocity less the wind; the last one measured until there is a track."""
+        if self._track is None or self._vertical is None:
+            return self._airspeed
+        _, _, v, chi, wn, we, _ = self._track.x.tolist()
+        return math.hypot(v * math.cos(chi) - wn, v * math.sin(chi) - we, self._vertical.climb)
+
+    def _alpha(self, params: AirParams) -> float:
         """rad; at zero lift plus what the load asks for at this dynamic pressure."""
         eas2 = max(self._airspeed, 5.0) ** 2 * self.density / atmosphere.RHO0
-        return self._alpha_zero + self._alpha_load * self._lift / eas2
+        return params.alpha_zero_lift + params.alpha_per_load * self._lift / eas2
 
-    def _take_inertial(self, sample: Inertial, dt: float) -> float:
+    def _take_inertial(self, sample: Inertial, params: AirParams, dt: float) -> float:
         """Attitude over one sample; returns the upward acceleration [m/s^2]."""
         p, q, r = sample.rates
         fx, fy, fz = sample.force
@@ -128,24 +171,25 @@ class Estimator:
         self._lift += dt / FORCE_TIME * (-fz - self._lift)
         attitude = self._attitude
         attitude.predict(sample.rates, dt)
-        u, w = self._airspeed * math.cos(self._alpha), self._airspeed * math.sin(self._alpha)
+        alpha = self._alpha(params)
+        u, w = self._airspeed * math.cos(alpha), self._airspeed * math.sin(alpha)
         attitude.correct((q * w - fx, r * u - p * w - fy, -q * u - fz), dt)
         sr, cr, sp, cp = math.sin(attitude.roll), math.cos(attitude.roll), math.sin(attitude.pitch), math.cos(attitude.pitch)
         return fx * sp - (fy * sr + fz * cr) * cp - GRAVITY
 
-    def _step_track(self, track: TrackFilter, samples: list[Inertial], dt: float) -> None:
+    def _step_track(self, track: TrackFilter, samples: list[Inertial], params: AirParams, dt: float) -> None:
         attitude = self._attitude
         q, r = (self._gyros[i].value or 0.0 for i in (1, 2))
-        before, self._aside = self._aside, self._azimuth_of_alpha()
+        before, self._aside = self._aside, self._azimuth_of(self._alpha(params))
         yaw_rate = ((q - attitude.bias_q) * math.sin(attitude.roll) + r * math.cos(attitude.roll)) / math.cos(attitude.pitch)
         track.predict(self._horizontal_airspeed(), yaw_rate + (self._aside - before) / dt, attitude.roll, dt)
         if samples and any(samples[-1].field):
             magnetic = _heading(samples[-1].field, attitude.roll, attitude.pitch)
             track.correct_heading(magnetic + self._declination + self._aside)
 
-    def _azimuth_of_alpha(self) -> float:
+    def _azimuth_of(self, alpha: float) -> float:
         """rad; in a bank the angle of attack carries the nose aside of the flight through the air."""
-        roll, pitch, alpha = self._attitude.roll, self._attitude.pitch, self._alpha
+        roll, pitch = self._attitude.roll, self._attitude.pitch
         ahead = math.cos(alpha) * math.cos(pitch) + math.cos(roll) * math.sin(alpha) * math.sin(pitch)
         return math.atan2(-math.sin(roll) * math.sin(alpha), ahead)
 
@@ -177,6 +221,7 @@ class Estimator:
             wind_north=x[WN],
             wind_east=x[WE],
             position_sigma=track.position_sigma,
+            height_known=self._height_known,
         )
 
 

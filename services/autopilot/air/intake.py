@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterable, Sequence
+from dataclasses import astuple
 
 from schemas.convert import seconds, wxyz
 from schemas.messages import AirData, Gnss, Imu, Mission, MissionItem, MissionProgress, Mode, NavState, Vector3
@@ -13,6 +14,7 @@ from services.autopilot.plan import mission_id
 from uvf.maths.geodesy import LocalTangent
 from uvf.maths.rotations import enu_flu_from_ned_frd, to_euler
 
+OLDEST_FIX = 1.0  # s
 KINDS = {
     MissionItem.WAYPOINT: Kind.WAYPOINT,
     MissionItem.ORBIT: Kind.ORBIT,
@@ -34,25 +36,31 @@ def inertial(message: Imu, t: float) -> Inertial:
     return Inertial(frd(message.angular_velocity), frd(message.specific_force), frd(message.magnetic_field), age)
 
 
-def pressures(message: AirData) -> Pressures:
-    return Pressures(message.static_pressure, message.differential_pressure, message.temperature)
+def pressures(message: AirData) -> Pressures | None:
+    """None when a number is none."""
+    p = Pressures(message.static_pressure, message.differential_pressure, message.temperature)
+    return p if all(map(math.isfinite, astuple(p))) else None
 
 
-def fix(message: Gnss, tangent: LocalTangent, t: float) -> Fix:
-    """A fix as seen at time ``t`` [s]; its stamp is the moment it is valid for."""
+def fix(message: Gnss, tangent: LocalTangent, t: float) -> Fix | None:
+    """A fix as seen at time ``t`` [s]; its stamp is the moment it is valid for. None if there is none, it is old or a number is none."""
+    age = t - seconds(message.timestamp)
+    if message.fix != Gnss.FIX_3D or age > OLDEST_FIX:
+        return None
     east, north, _ = tangent.enu(message.latitude, message.longitude, message.altitude).tolist()
     v = message.velocity_enu
-    return Fix(
+    found = Fix(
         north=north,
         east=east,
         height=message.altitude - tangent.altitude,
         v_north=v.y,
         v_east=v.x,
         v_up=v.z,
-        age=t - seconds(message.timestamp),
+        age=age,
         position_sigma=message.horizontal_accuracy,
         speed_sigma=message.speed_accuracy,
     )
+    return found if all(map(math.isfinite, astuple(found))) else None
 
 
 def place(v: Vector3) -> Place:

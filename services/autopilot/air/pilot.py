@@ -47,6 +47,7 @@ class Pilot:
         self.mode = FlightMode.MISSION if items else FlightMode.HOLD
         self.reason = "start"
         self.stopped = ""
+        self._blind = False
         self.home: Place | None = None
         self.circle: Circle | None = None
         self._control = Control()
@@ -67,7 +68,8 @@ class Pilot:
             aim, self._level = self.circle.aim(now, params), Level(self.circle.centre.height)
             speed = params.trim_airspeed
         bank = self._steering.bank(aim, now, params, dt)
-        surfaces = self._control.step(now, Wanted(bank, self._level.height, self._level.climb, speed), params, dt)
+        level = self._level if now.height_known else Level(now.height)
+        surfaces = self._control.step(now, Wanted(bank, level.height, level.climb, speed), params, dt)
         return Flown(surfaces, aim, self._level)
 
     def _begin(self, now: Estimate) -> None:
@@ -97,7 +99,9 @@ class Pilot:
     @property
     def blocked(self) -> str:
         """Why nothing but Hold may be asked for; empty if everything may."""
-        return f"stopped by {self.stopped}: release the stop first" if self.stopped else ""
+        if self.stopped:
+            return f"stopped by {self.stopped}: release the stop first"
+        return "GNSS is lost: wait until it is back" if self._blind else ""
 
     def _change(self, mode: FlightMode, reason: str) -> None:
         self.mode, self.reason, self.circle = mode, reason, None
@@ -155,3 +159,11 @@ class Pilot:
         elif self.stopped and not source:
             self.reason = "stop released"
         self.stopped = source
+
+    def fly_blind(self, blind: bool) -> None:
+        """Without GNSS for long it holds where it reckons to be, and goes on holding when GNSS is back, until told."""
+        if blind and not self._blind and not self.stopped:
+            self._change(FlightMode.HOLD, "GNSS lost: holds by dead reckoning")
+        elif self._blind and not blind and not self.stopped:
+            self.reason = "GNSS back: holds until a mode is asked for"
+        self._blind = blind

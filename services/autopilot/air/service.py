@@ -25,8 +25,9 @@ from schemas.messages import (
 )
 from services.autopilot.air import intake, reports
 from services.autopilot.air.control import Surfaces
-from services.autopilot.air.estimator import Estimator
+from services.autopilot.air.estimator import Estimator, Fix, Sensed
 from services.autopilot.air.journal import Journal
+from services.autopilot.air.losses import GNSS_HOLD, Loss, losses
 from services.autopilot.air.params import AirParams
 from services.autopilot.air.pilot import Pilot
 from services.autopilot.air.state import Estimate
@@ -55,8 +56,8 @@ class AutopilotAir(Service):
     hz = 50.0
     inputs = {
         "imu": every(topics.IMU),
-        "air_data": topics.AIR_DATA,
-        "gnss": topics.GNSS,
+        "air_data": optional(topics.AIR_DATA),
+        "gnss": optional(topics.GNSS),
         "battery": optional(topics.BATTERY),
         "stop": optional(topics.STOP.by("*")),
     }
@@ -86,10 +87,11 @@ class AutopilotAir(Service):
         self._mission = intake.with_id(ship.items)
         self._announced = False
         self._armed = ship.starts_in_air
-        self._estimator = Estimator(params.alpha_zero_lift, params.alpha_per_load, ship.declination)
+        self._estimator = Estimator(ship.declination)
         self._pilot = Pilot(intake.items(ship.items))
         self._journal = Journal()
         self._fix_stamp = 0
+        self._lost: frozenset[Loss] = frozenset()
         self._cycles = 0
         self._told: tuple[object, ...] = ()
         self._airborne = ship.starts_in_air
@@ -99,8 +101,8 @@ class AutopilotAir(Service):
         self,
         t: float,
         imu: list[Imu],
-        air_data: AirData,
-        gnss: Gnss,
+        air_data: AirData | None,
+        gnss: Gnss | None,
         battery: Battery | None,
         stop: StopCommand | None,
         arm: list[ArmRequest],
@@ -114,7 +116,9 @@ class AutopilotAir(Service):
             waiting = [_reply("there is no satellite fix yet")]
             asked = {"arm": len(arm), "mode": len(mode), "goal": len(goal), "mission": len(mission), "current": len(current)}
             return {**self._announce(t), **{name: waiting * count for name, count in asked.items()}}
-        self._airborne = max(now.airspeed, now.ground_speed) > FLYING * self.params.min_airspeed
+        if len(self._lost) < len(Loss):
+            self._airborne = max(now.airspeed, now.ground_speed) > FLYING * self.params.min_airspeed
+        self._pilot.fly_blind(self._estimator.unfixed > GNSS_HOLD)
         self._heed(stop)
         replies = {
             "arm": [self._arm(r) for r in arm],
@@ -129,7 +133,7 @@ class AutopilotAir(Service):
             "surfaces": reports.surfaces(t, flown.surfaces, self._armed),
             "nav_state": state,
             "pose": reports.pose(state),
-            "events": self._journal.events(t, self._pilot, self._armed),
+            "events": self._journal.events(t, self._pilot, self._armed, self._lost),
         }
         told = (self._pilot.mode, self._pilot.reason, self._pilot.stopped, self._armed)
         if self._cycles % 5 == 0 or told != self._told:
@@ -163,7 +167,7 @@ class AutopilotAir(Service):
             self._estimator.begin_at(*intake.roll_and_pitch(nav_state))
 
     def stale(self, t: float, missing: tuple[str, ...]) -> Outputs:
-        """Wings level at cruise throttle until the sensors are back; before the first cycle the servos hold."""
+        """Without the IMU nothing can be steered: surfaces at trim until it is back; before the first cycle the servos hold."""
         if not self._cycles:
             return self._announce(t)
         p = self.params
@@ -171,20 +175,24 @@ class AutopilotAir(Service):
         level = Surfaces(0.0, p.elev_zero_alpha + p.elev_per_alpha * alpha, 0.0, p.trim_throttle)
         self._status.reason = f"sensor lost: {', '.join(missing)}"
         return {
-            "surfaces": reports.surfaces(t, level, self._armed),
+            "surfaces": reports.surfaces(t, level, self._armed and self._airborne),
             "status": self._stamped_status(t),
             "events": self._journal.lost(t, missing),
         }
 
-    def _estimate(self, t: float, imu: list[Imu], air_data: AirData, gnss: Gnss) -> Estimate | None:
+    def _estimate(self, t: float, imu: list[Imu], air_data: AirData | None, gnss: Gnss | None) -> Estimate | None:
         """None until the first fix."""
-        stamp_ns = gnss.timestamp.ToNanoseconds()
-        fix = intake.fix(gnss, self._ship.tangent, t) if stamp_ns != self._fix_stamp and gnss.fix == Gnss.FIX_3D else None
-        self._fix_stamp = stamp_ns
+        fix = self._new_fix(t, gnss) if gnss is not None else None
         if fix is None and not self._estimator.started:
             return None
-        samples = [intake.inertial(m, t) for m in imu]
-        return self._estimator.step(samples, intake.pressures(air_data), fix, 1 / self.hz)
+        pressures = intake.pressures(air_data) if air_data is not None else None
+        self._lost = losses(self._estimator.unfixed, pressures is not None)
+        return self._estimator.step(Sensed([intake.inertial(m, t) for m in imu], pressures, fix), self.params, 1 / self.hz)
+
+    def _new_fix(self, t: float, gnss: Gnss) -> Fix | None:
+        stamp_ns = gnss.timestamp.ToNanoseconds()
+        is_new, self._fix_stamp = stamp_ns != self._fix_stamp, stamp_ns
+        return intake.fix(gnss, self._ship.tangent, t) if is_new else None
 
     def _heed(self, stop: StopCommand | None) -> None:
         """STOP ALL: in the air it holds, at rest it is disarmed. Without a word of it, what was said before counts."""

@@ -23,3 +23,4 @@ class Estimate:
     wind_north: float  # m/s, the way it blows to
     wind_east: float  # m/s
     position_sigma: float  # m
+    height_known: bool  # False: neither barometer nor fixes, ``height`` is the last one known

@@ -19,6 +19,7 @@ N, E, V, CHI, WN, WE, PSI = range(7)
 PROCESS = np.diag((0.01, 0.01, 0.005, 0.00003, 1e-4, 1e-4, 1e-4))  # units^2/s
 TRIANGLE_SIGMA = 0.5  # m/s
 HEADING_SIGMA = 0.05  # rad
+RECKONING_SIGMA = 0.3  # m/s, of the ground velocity without fixes
 
 
 class TrackFilter:
@@ -62,6 +63,10 @@ class TrackFilter:
             (n + dt * v * math.cos(mid), e + dt * v * math.sin(mid), v + dt * v_rate, chi + dt * chi_rate, wn, we, psi + dt * yaw_rate)
         )
         self._ekf.P = f @ self._ekf.P @ f.T + PROCESS * dt
+
+    def reckon(self, unfixed: float, dt: float) -> None:
+        """Errors of wind and compass last: ``unfixed`` [s] after the last fix sigma grows with time, not with its root."""
+        self._ekf.P[:2, :2] += np.eye(2) * 2 * RECKONING_SIGMA**2 * unfixed * dt
 
     def correct_fix(self, fix: tuple[float, float, float, float], age: float, sigma: tuple[float, float]) -> None:
         """(north, east [m], v_north, v_east [m/s]) that was valid ``age`` [s] ago; 1 sigma of position and speed."""

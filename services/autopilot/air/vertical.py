@@ -1,32 +1,49 @@
 """Altitude and climb rate: barometer and vertical acceleration, the barometer's offset learnt from satellite fixes.
 
-Complementary filter of third order with a triple pole (height, climb, acceleration bias).
+Complementary filter of third order with a triple pole (height, climb, acceleration bias). Without a barometer the fixes alone
+hold height and climb.
 """
 
 POLE = 1.0  # rad/s
 FIXES_AVERAGED = 300
+FIX_WEIGHT = 0.3  # of a fix's height and climb, without a barometer
 
 
 class Vertical:
-    """Started at the height [m] of the first fix and the barometer's reading of then [m]."""
+    """Started at the height [m] and climb [m/s] of the first fix."""
 
-    def __init__(self, height: float, baro: float, climb: float) -> None:
+    def __init__(self, height: float, climb: float) -> None:
         self.height = height
         self.climb = climb
         self._bias = 0.0
-        self._offset = height - baro
+        self._offset: float | None = None
         self._fixes = 1
 
-    def step(self, baro: float, acceleration: float, dt: float) -> None:
-        """Barometric altitude [m] and upward acceleration without gravity [m/s^2]."""
-        error = baro + self._offset - self.height
+    def step(self, baro: float | None, acceleration: float, dt: float) -> None:
+        """Barometric altitude [m], if there is one, and upward acceleration without gravity [m/s^2]."""
+        error = 0.0 if baro is None else baro + self._known_offset(baro) - self.height
         self._bias += POLE**3 * error * dt
         self.height += (self.climb + 3 * POLE * error) * dt
         self.climb += (acceleration + self._bias + 3 * POLE**2 * error) * dt
 
+    def rest(self) -> None:
+        """Neither barometer nor fixes: the height is held, for an acceleration alone leads anywhere."""
+        self.climb = 0.0
+
+    def correct(self, height: float, climb: float) -> None:
+        """A fix while there is no barometer."""
+        self.height += FIX_WEIGHT * (height - self.height)
+        self.climb += FIX_WEIGHT * (climb - self.climb)
+
     def correct_offset(self, height: float, baro: float) -> None:
         """A running mean over the fixes, then a slow average."""
         self._fixes = min(self._fixes + 1, FIXES_AVERAGED)
-        change = (height - baro - self._offset) / self._fixes
-        self._offset += change
+        change = (height - baro - self._known_offset(baro)) / self._fixes
+        self._offset = self._known_offset(baro) + change
         self.height += change
+
+    def _known_offset(self, baro: float) -> float:
+        """m; the first barometric altitude is taken to be that of the height known then."""
+        if self._offset is None:
+            self._offset = self.height - baro
+        return self._offset

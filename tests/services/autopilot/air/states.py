@@ -30,6 +30,7 @@ CRUISE = Estimate(
     wind_north=0.0,
     wind_east=0.0,
     position_sigma=0.3,
+    height_known=True,
 )
 
 

@@ -6,7 +6,8 @@ import math
 import numpy as np
 import pytest
 
-from services.autopilot.air.estimator import Estimator, Fix, Inertial, Pressures
+from services.autopilot.air.estimator import Estimator, Fix, Inertial, Pressures, Sensed
+from services.autopilot.air.params import AirParams
 from uvf.maths import atmosphere
 
 G = 9.80665
@@ -16,6 +17,7 @@ STATIC = atmosphere.pressure(360.0)
 RHO = atmosphere.density(STATIC, 285.8)
 PRESSURES = Pressures(STATIC, 0.5 * RHO * SPEED**2, 285.8)
 ALPHA_ZERO, ALPHA_LOAD = -0.044, 6.2
+PARAMS = AirParams(alpha_zero_lift=ALPHA_ZERO, alpha_per_load=ALPHA_LOAD)
 FIELD_NED = np.array((24e-6, 0.0, 40e-6))
 DT = 0.02
 
@@ -62,10 +64,10 @@ class Turn:
 @functools.cache
 def flown(roll, seconds=200.0):
     """The last estimate, the turn and the time; it begins in the turn, knowing nothing of it."""
-    turn, estimator = Turn(roll), Estimator(ALPHA_ZERO, ALPHA_LOAD)
+    turn, estimator = Turn(roll), Estimator(declination=0.0)
     for k in range(1, round(seconds / DT) + 1):
         t = k * DT
-        now = estimator.step([turn.sample(t)], PRESSURES, turn.fix(t) if k % 10 == 1 else None, DT)
+        now = estimator.step(Sensed([turn.sample(t)], PRESSURES, turn.fix(t) if k % 10 == 1 else None), PARAMS, DT)
     return now, turn, t
 
 
@@ -92,10 +94,10 @@ def test_position_and_ground_velocity_are_those_of_the_fixes():
 
 def test_a_compass_is_read_with_its_declination():
     east = 0.1
-    turn, estimator = Turn(0.0), Estimator(ALPHA_ZERO, ALPHA_LOAD, declination=east)
+    turn, estimator = Turn(0.0), Estimator(east)
     turn.field = np.array((24e-6 * math.cos(east), 24e-6 * math.sin(east), 40e-6))
     for k in range(1, 1001):
-        now = estimator.step([turn.sample(k * DT)], PRESSURES, turn.fix(k * DT) if k % 10 == 1 else None, DT)
+        now = estimator.step(Sensed([turn.sample(k * DT)], PRESSURES, turn.fix(k * DT) if k % 10 == 1 else None), PARAMS, DT)
     assert now.yaw == pytest.approx(0.0, abs=0.01)
 
 
@@ -105,8 +107,8 @@ def test_airspeed_is_true_airspeed():
 
 
 def test_it_starts_with_the_first_fix():
-    estimator = Estimator(ALPHA_ZERO, ALPHA_LOAD)
+    estimator = Estimator(declination=0.0)
     assert not estimator.started
-    now = estimator.step([Turn(0.3).sample(0.0)], PRESSURES, Turn(0.3).fix(0.0), DT)
+    now = estimator.step(Sensed([Turn(0.3).sample(0.0)], PRESSURES, Turn(0.3).fix(0.0)), PARAMS, DT)
     assert estimator.started
     assert (now.north, now.east, now.height) == pytest.approx((0.0, 0.0, 60.0), abs=1.0)

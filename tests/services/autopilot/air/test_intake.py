@@ -21,7 +21,8 @@ def test_body_vectors_turn_from_flu_into_frd():
 
 def test_a_fix_becomes_a_place_in_the_world():
     latitude, longitude, altitude = TANGENT.geodetic([120.0, -40.0, 60.0])
-    message = Gnss(timestamp=stamp(2.0), latitude=latitude, longitude=longitude, altitude=altitude, velocity_enu=Vector3(x=3, y=4, z=1))
+    message = Gnss(timestamp=stamp(2.0), fix=Gnss.FIX_3D, latitude=latitude, longitude=longitude, altitude=altitude)
+    message.velocity_enu.CopyFrom(Vector3(x=3, y=4, z=1))
     fix = intake.fix(message, TANGENT, 2.1)
     assert (fix.north, fix.east, fix.height) == pytest.approx((-40.0, 120.0, 60.0), abs=1e-2)
     assert (fix.v_north, fix.v_east, fix.v_up) == (4, 3, 1)

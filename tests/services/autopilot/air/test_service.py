@@ -199,15 +199,15 @@ def test_the_path_shows_the_mission():
     assert [(p.position.x, p.position.y) for p in path.poses] == [(w.position.x, w.position.y) for w in WAYPOINTS]
 
 
-def test_without_sensors_it_levels_the_wings_and_says_so_once():
+def test_without_an_imu_it_puts_the_surfaces_to_trim_and_says_so_once():
     bench = Bench()
     bench.run(cycles=10)
-    first, second = (bench.service.stale(0.3 + k / 50, ("gnss",)) for k in range(2))
+    first, second = (bench.service.stale(0.3 + k / 50, ("imu",)) for k in range(2))
     assert first["surfaces"].aileron == 0.0
     assert first["surfaces"].throttle == pytest.approx(bench.service.params.trim_throttle)
-    assert [e.cause for e in first["events"]] == ["gnss"]
+    assert [e.cause for e in first["events"]] == ["imu"]
     assert second["events"] == []
-    assert "gnss" in first["status"].reason
+    assert "imu" in first["status"].reason
 
 
 def test_until_the_first_fix_requests_are_refused_and_nothing_is_commanded():
@@ -244,12 +244,12 @@ def test_an_item_with_a_number_that_is_not_finite_is_refused_and_nothing_changes
     assert "plan" not in out
 
 
-def test_the_return_of_the_sensors_is_an_event():
+def test_the_return_of_the_imu_is_an_event():
     bench = Bench()
     bench.run()
     bench.service.stale(0.05, ("imu",))
     bench.run()
-    assert "sensors are back" in bench.texts
+    assert "IMU back" in bench.texts
 
 
 def test_before_its_first_cycle_it_leaves_the_surfaces_alone():

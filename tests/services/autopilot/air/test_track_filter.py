@@ -87,3 +87,14 @@ def test_course_errors_take_the_short_way_round():
 
 def test_fixes_make_the_position_surer():
     assert flown(10.0).position_sigma < 0.8
+
+
+def test_without_fixes_the_position_grows_unsure_with_time():
+    track = flown(20.0, heading=True)
+    sigmas = []
+    for k in range(1, 3001):
+        track.predict(25.0, 0.2, math.atan(25 * 0.2 / 9.80665), DT)
+        track.reckon(k * DT, DT)
+        track.correct_triangle(25.0)
+        sigmas.append(track.position_sigma)
+    assert sigmas[2999] > 1.5 * sigmas[1499] > 6.0
