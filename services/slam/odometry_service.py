@@ -42,7 +42,7 @@ class OdometryService(Service):
     name = "odometry"
     hz = 50.0
     inputs = {"wheels": topics.WHEELS, "imu": optional(every(topics.IMU)), "correction": optional(topics.TF_MAP)}
-    outputs = {"odometry": topics.ODOMETRY, "pose": topics.POSE, "nav_state": topics.NAV_STATE}
+    outputs = {"odometry": topics.ODOMETRY, "moving": topics.TF_ODOM, "pose": topics.POSE, "nav_state": topics.NAV_STATE}
     recalls = {"odometry": topics.ODOMETRY, "correction": topics.TF_MAP}
     params: OdometryParams
     fixed_params = frozenset({"bias_start"})
@@ -72,6 +72,7 @@ class OdometryService(Service):
         world_from_base = compose(self._world_from_map, compose(self._map_from_odom, odom_from_base))
         return {
             "odometry": self._odometry(t, odom_from_base),
+            "moving": self._moving(t, odom_from_base),
             "pose": PoseInFrame(timestamp=stamp(t), frame_id="world", pose=planar_pose(*world_from_base)),
             "nav_state": self._nav_state(t, world_from_base),
         }
@@ -130,12 +131,22 @@ class OdometryService(Service):
         return Odometry(
             timestamp=stamp(t),
             frame_id=f"{self._vehicle}/odom",
-            body_frame_id=f"{self._vehicle}/base_footprint",
+            body_frame_id=f"{self._vehicle}/base_link",
             pose=planar_pose(*odom_from_base),
             linear_velocity=Vector3(x=linear),
             angular_velocity=Vector3(z=angular),
             pose_covariance=covariance.ravel().tolist(),
             metadata=[KeyValuePair(key=k, value=v) for k, v in left_over.items()],
+        )
+
+    def _moving(self, t: float, odom_from_base: Pose2) -> FrameTransform:
+        x, y, heading = odom_from_base
+        return FrameTransform(
+            timestamp=stamp(t),
+            parent_frame_id=f"{self._vehicle}/odom",
+            child_frame_id=f"{self._vehicle}/base_link",
+            translation=Vector3(x=x, y=y),
+            rotation=quaternion(from_euler(0.0, 0.0, heading)),
         )
 
     def _nav_state(self, t: float, world_from_base: Pose2) -> NavState:

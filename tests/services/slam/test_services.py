@@ -49,8 +49,17 @@ def test_odometry_begins_at_zero_and_the_pose_at_the_start():
 
 
 def test_the_frames_are_named_after_the_vehicle():
-    odometry = drive(odometry_service(), 2)["odometry"]
-    assert (odometry.frame_id, odometry.body_frame_id) == ("v/odom", "v/base_footprint")
+    outputs = drive(odometry_service(), 2)
+    odometry, moving = outputs["odometry"], outputs["moving"]
+    assert (odometry.frame_id, odometry.body_frame_id) == ("v/odom", "v/base_link")
+    assert (moving.parent_frame_id, moving.child_frame_id) == ("v/odom", "v/base_link")
+
+
+def test_the_transform_of_the_base_is_the_odometry():
+    outputs = drive(odometry_service(), 50, turn_rate=0.3)
+    pose, moving = outputs["odometry"].pose, outputs["moving"]
+    assert (moving.translation.x, moving.translation.y) == (pose.position.x, pose.position.y)
+    assert yaw_of(moving.rotation) == pytest.approx(yaw_of(pose.orientation))
 
 
 def test_the_map_corrects_the_pose_but_not_the_odometry():
