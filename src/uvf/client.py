@@ -10,6 +10,7 @@ with uvf.connect() as run:
 """
 
 import time
+from collections import Counter
 from collections.abc import Callable
 from types import TracebackType
 from typing import Any, TypeVar
@@ -41,6 +42,7 @@ class Client:
     def __init__(self, bus: ZenohBus) -> None:
         self._bus = bus
         self._newest: dict[str, Sample] = {}
+        self._count: Counter[str] = Counter()
         self._subscribed: set[str] = set()
         self._publishers: dict[str, Publisher] = {}
         self._watch(topics.CLOCK.at(topics.SYSTEM), topics.CLOCK)
@@ -54,7 +56,11 @@ class Client:
     def _watch(self, key: str, topic: Topic[Any]) -> None:
         if key not in self._subscribed:
             self._subscribed.add(key)
-            self._bus.subscribe(key, topic.qos, lambda s: self._newest.__setitem__(s.key, s))
+            self._bus.subscribe(key, topic.qos, self._on_sample)
+
+    def _on_sample(self, sample: Sample) -> None:
+        self._newest[sample.key] = sample
+        self._count[sample.key] += 1
 
     @property
     def time(self) -> float:
@@ -69,6 +75,13 @@ class Client:
         self._watch(key, topic)
         self.wait(lambda: key in self._newest, timeout, f"nothing on {key}")
         return topic.message.FromString(self._newest[key].payload)
+
+    def heard(self, owner: str, topic: Topic[Any]) -> int:
+        """How many messages of a topic have come so far."""
+        key = topic.at(owner)
+        self._watch(key, topic)
+        self._bus.poll()
+        return self._count[key]
 
     def wait(self, condition: Callable[[], bool], timeout: float, what: str = "condition not met") -> None:
         """Until ``condition()`` holds. Raises TimeoutError with ``what``."""

@@ -1,5 +1,7 @@
 """The demo with real processes: it moves, survives kill -9, speaks MAVLink, and ends without a trace."""
 
+import os
+import signal
 import subprocess
 import sys
 
@@ -22,6 +24,10 @@ def system(tmp_path_factory):
 
 def position(system, owner):
     return array(system.client.read(owner, topics.TRUTH).position)
+
+
+def moves(system):
+    return np.linalg.norm(array(system.client.read("burger", topics.TRUTH).velocity)) > 0.02
 
 
 @pytest.mark.parametrize(("owner", "metres"), [("burger", 0.2), ("milvus", 20.0)])
@@ -59,12 +65,41 @@ def test_a_killed_autopilot_takes_the_flight_up_again(system):
     assert position(system, "milvus")[2] > 40
 
 
+@pytest.mark.parametrize(
+    ("name", "owner", "topic"),
+    [
+        ("planner", "burger", topics.NAV_STATUS),
+        ("sim_camera", "milvus", topics.IMAGE),
+        ("mavlink", "sys", topics.HEALTH.by("mavlink")),
+        ("conductor", "sys", topics.CLOCK),
+        ("recorder", None, None),
+        ("router", "burger", topics.POSE),
+    ],
+)
+def test_whoever_else_is_killed_comes_back_and_time_goes_on(system, name, owner, topic):
+    epoch, before = system.client.read("sys", topics.CLOCK).epoch, system.client.time
+    assert system.kill(name) < 2.0
+    system.client.wait(lambda: system.client.time > before + 3.0, 20.0, "time stands")
+    assert system.client.read("sys", topics.CLOCK).epoch == epoch
+    if topic is not None:
+        killed = system.client.heard(owner, topic)
+        system.client.wait(lambda: system.client.heard(owner, topic) > killed, 10.0, f"nothing new of {name}")
+    assert position(system, "milvus")[2] > 40
+
+
+def test_a_process_that_hangs_is_ended_and_started_again(system):
+    hung = system.children()["planner"]
+    os.kill(hung.pid, signal.SIGSTOP)
+    system.client.wait(lambda: not moves(system), 10.0, "the rover goes on without a planner")
+    system.client.wait(lambda: system.children()["planner"].restarts > hung.restarts, 20.0, "the planner hangs")
+
+
 def test_stop_all_stops_the_rover_and_lets_the_aircraft_loiter_until_released(system):
     stop = topics.STOP.by("client")
     system.client.send("sys", stop, StopCommand(engaged=True, source="client"))
     system.client.wait(lambda: system.client.read("burger", topics.STATUS).stopped, 5.0, "burger is not stopped")
     system.client.wait(lambda: system.client.read("milvus", topics.STATUS).stopped, 5.0, "milvus is not stopped")
-    system.client.wait(lambda: np.linalg.norm(array(system.client.read("burger", topics.TRUTH).velocity)) < 0.02, 5.0, "still rolls")
+    system.client.wait(lambda: not moves(system), 5.0, "still rolls")
     assert position(system, "milvus")[2] > 40
     system.client.send("sys", stop, StopCommand(engaged=False, source="client"))
     system.client.wait(lambda: not system.client.read("burger", topics.STATUS).stopped, 5.0, "not released")

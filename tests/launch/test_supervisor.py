@@ -63,8 +63,9 @@ def test_bad_input_is_not_tried_again_and_its_line_is_told(supervised):
     assert "no service 'slm'; did you mean 'slam'?" in line
 
 
-def test_the_last_line_of_a_log_is_the_reason(tmp_path):
+def test_the_last_line_of_a_log_is_the_reason_unless_it_is_of_the_one_before(tmp_path):
     log = tmp_path / "x.log"
     log.write_text("one\nTraceback\nValueError: two\n\n")
     assert last_line(log) == "ValueError: two"
+    assert last_line(log, log.stat().st_size) == ""
     assert last_line(tmp_path / "missing") == ""

@@ -73,3 +73,10 @@ def test_what_was_asked_before_is_refused_and_never_done_later(shell):
     shell.restart(2)
     assert "time has started over" in refused[0]
     assert not shell._queries["arm"]
+
+
+def test_an_older_word_that_arrives_later_does_not_undo_a_newer_one(shell):
+    put(shell, topics.STOP.by("gcs"), StopCommand(engaged=True), 7.0, 1)
+    assert value(shell, "stop", 8.0).engaged
+    put(shell, topics.STOP.by("gcs"), StopCommand(engaged=False), 0.0, 1)
+    assert value(shell, "stop", 9.0).engaged

@@ -1,5 +1,6 @@
 """The bodies of the processes of a run: router, conductor, recorder, and one for any service."""
 
+import itertools
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -159,17 +160,17 @@ def run_recorder(folder: Path, mission: str) -> None:
             arrived: list[Sample] = []
             bus.subscribe_all(arrived.append, DEPTH)
             bus.token(f"@node/sys/recorder/{bus.boot:x}")
-            number = 0
             while not life.stop.is_set() and not life.orphaned():
-                path = folder / f"log-{number:03}.mcap"
+                path = next(free for n in itertools.count() if not (free := folder / f"log-{n:03}.mcap").exists())
                 with Recorder(path, attachments(site)) as recorder:
                     _record(life, bus, arrived, recorder, path)
-                number += 1
 
 
 def _record(life: Worker, bus: ZenohBus, arrived: list[Sample], recorder: Recorder, path: Path) -> None:
     """Until told to stop or the file is full."""
     flushed, complained = time.monotonic(), False
+    events = topics.SYSTEM_EVENTS.by("recorder")
+    voice = bus.publisher(events.at("sys"), Event.DESCRIPTOR.full_name, events.qos)
     while not life.stop.wait(LOOK) and life.goes_on() and path.stat().st_size < ROTATE_BYTES:
         bus.poll()
         for sample in arrived:
@@ -179,8 +180,9 @@ def _record(life: Worker, bus: ZenohBus, arrived: list[Sample], recorder: Record
             recorder.flush()
             flushed = time.monotonic()
         if recorder.error and not complained:
-            life.warn(recorder.error)
             complained = True
+            voice.put(Event(severity=Event.CRITICAL, text=recorder.error, source="recorder").SerializeToString(), 0)
+            life.warn(recorder.error)
 
 
 def attachments(site: Site) -> list[Path]:

@@ -1,5 +1,6 @@
 """What ``run``, ``replay`` and ``log`` print."""
 
+import math
 import signal
 from collections import Counter
 from pathlib import Path
@@ -28,6 +29,8 @@ def run_and_report(mission: str, until: float | None, log: Path | None) -> int:
     """Runs in lockstep with a progress bar and prints the score; 0 when every criterion holds."""
     site = load_site(settings.mission_path(mission))
     until = until if until is not None else site.mission.duration
+    if not 0 < until < math.inf:
+        raise BadInput(f"--until {until}: how long to simulate, more than 0 s")
     log = log or new_run() / "log-000.mcap"
     columns = (
         TextColumn("{task.description}"),

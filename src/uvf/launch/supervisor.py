@@ -28,6 +28,7 @@ class Child:
     popen: subprocess.Popen[bytes] | None = None
     state: Process.State = Process.STARTING
     restarts: int = 0
+    log_before: int = 0  # bytes in the log when it was started
     reason: str = ""
     deaths: deque[float] = field(default_factory=lambda: deque(maxlen=DEATHS))
 
@@ -53,6 +54,7 @@ class Supervisor:
 
     def _spawn(self, child: Child) -> None:
         with child.log.open("ab") as log:
+            child.log_before = log.tell()
             child.popen = subprocess.Popen(
                 [sys.executable, "-m", "uvf.launch.cli", *child.arguments],
                 stdin=subprocess.DEVNULL,
@@ -75,7 +77,7 @@ class Supervisor:
     def _died(self, child: Child, code: int) -> None:
         child.deaths.append(time.monotonic())
         child.reason = f"ended by signal {-code}" if code < 0 else f"ended with exit code {code}"
-        last = last_line(child.log)
+        last = last_line(child.log, child.log_before) if code >= 0 else ""
         if last:
             child.reason += f": {last}"
         often = len(child.deaths) == DEATHS and child.deaths[-1] - child.deaths[0] < DEATH_WINDOW
@@ -86,6 +88,12 @@ class Supervisor:
         child.restarts += 1
         self._spawn(child)
         self._tell(f"{child.name} {child.reason}; started again", False)
+
+    def kill(self, name: str) -> None:
+        """Ends a process that does not answer; ``look`` starts it again."""
+        child = self.children.get(name)
+        if child is not None and child.popen is not None and child.state == Process.RUNNING:
+            child.popen.kill()
 
     def stop(self) -> None:
         """Ends all, the infrastructure last; what does not end in time is killed."""
@@ -113,11 +121,11 @@ def _wait(popen: subprocess.Popen[bytes], deadline: float) -> None:
         popen.wait()
 
 
-def last_line(log: Path) -> str:
-    """The last non-empty line of a log file: mostly the reason of a death."""
+def last_line(log: Path, since: int = 0) -> str:
+    """The last non-empty line of a log file after ``since`` bytes: mostly the reason of a death."""
     try:
         with log.open("rb") as file:
-            file.seek(max(file.seek(0, os.SEEK_END) - 2000, 0))
+            file.seek(max(file.seek(0, os.SEEK_END) - 2000, since))
             lines = file.read().decode(errors="replace").splitlines()
     except OSError:
         return ""

@@ -10,7 +10,7 @@ from threading import Event as Flag
 
 from schemas import topics
 from schemas.convert import stamp_ns
-from schemas.messages import Clock, Event, Processes, StopCommand
+from schemas.messages import Clock, Event, Health, Processes, StopCommand
 from uvf.launch import catalogue, settings
 from uvf.launch.supervisor import Supervisor
 from uvf.runtime.address import address_from, host_and_port, router_from
@@ -22,6 +22,7 @@ from uvf.runtime.zenoh_bus import ZenohBus
 
 LOOK = 0.1  # s, how often the supervisor looks for the dead
 ROUTER_PATIENCE = 10.0  # s
+HANGS = 10.0  # s, of silence
 
 Say = Callable[[str], None]
 
@@ -80,6 +81,7 @@ class Run:
         self._folder = folder
         self._supervisor = Supervisor(folder, self._on_death)
         self._bus: ZenohBus | None = None
+        self._lives: dict[str, tuple[int, float]] = {}
         self._t_ns = 0
         self._moving_since: float | None = None
         self._begun = time.monotonic()
@@ -103,8 +105,11 @@ class Run:
         self._stop = bus.publisher(stop.at("sys"), StopCommand.DESCRIPTOR.full_name, stop.qos)
         self._processes = bus.publisher(topics.PROCESSES.at("sys"), Processes.DESCRIPTOR.full_name, topics.PROCESSES.qos)
         bus.subscribe(topics.CLOCK.at("sys"), topics.CLOCK.qos, guarded(topics.CLOCK, self._on_clock, self._say), depth=1)
-        told = topics.SYSTEM_EVENTS.by("conductor")
-        bus.subscribe(told.at("sys"), told.qos, guarded(told, lambda event, _: self._say(event.text), self._say), depth=16)
+        for name in ("conductor", "recorder"):
+            told = topics.SYSTEM_EVENTS.by(name)
+            bus.subscribe(told.at("sys"), told.qos, guarded(told, lambda event, _: self._say(event.text), self._say), depth=16)
+        health = topics.HEALTH.by("*")
+        bus.subscribe(health.at("sys"), health.qos, guarded(health, self._on_health, self._say), depth=64)
         bus.token(f"@node/sys/launcher/{bus.boot:x}")
 
     def _on_clock(self, clock: Clock, sample: Sample) -> None:
@@ -123,8 +128,23 @@ class Run:
         while not stop.wait(LOOK) and not self._over() and not self._cannot_begin():
             if self._bus is not None:
                 self._bus.poll()
+            self._end_silent()
             if self._supervisor.look():
                 self._tell_processes()
+
+    def _on_health(self, health: Health, sample: Sample) -> None:
+        self._lives[health.service] = (health.pid, time.monotonic())
+
+    def _end_silent(self) -> None:
+        """A process that hangs is ended, and started again like one that has died."""
+        for name, (pid, heard) in list(self._lives.items()):
+            child = self._supervisor.children.get(name)
+            if child is None or child.describe().pid != pid:
+                del self._lives[name]
+            elif time.monotonic() - heard > HANGS:
+                del self._lives[name]
+                self._say(f"{name} has been silent for {HANGS:g} s: it is ended")
+                self._supervisor.kill(name)
 
     def _over(self) -> bool:
         """Whether the seconds asked for have passed since time began to run."""

@@ -1,5 +1,6 @@
 """What every process of a run does alike: signals, one line per warning, and an end when its launcher is gone."""
 
+import contextlib
 import os
 import signal
 import sys
@@ -28,9 +29,10 @@ class Worker:
             signal.signal(number, lambda *_: self.stop.set())
 
     def warn(self, line: str) -> None:
-        """One line to the process's log."""
-        sys.stderr.write(f"{time.strftime('%H:%M:%S')} {self.name}: {line}\n")
-        sys.stderr.flush()
+        """One line to the process's log; lost where the disk is full."""
+        with contextlib.suppress(OSError):
+            sys.stderr.write(f"{time.strftime('%H:%M:%S')} {self.name}: {line}\n")
+            sys.stderr.flush()
 
     def orphaned(self) -> bool:
         """Whether the launcher is gone."""

@@ -51,6 +51,9 @@ class Slot:
         except Malformed as error:
             self.malformed.append(str(error))
             return False
+        before = self.accepted
+        if before is not None and not self._input.every and (sample.epoch, sample.stamp_ns) < (before.epoch, before.stamp_ns):
+            return True  # overtaken: what was said later has arrived before
         self._latest, self.accepted = (sample.stamp_ns, message), sample
         if self._input.every:
             self._fresh.append(self._latest)

@@ -3,6 +3,7 @@
 import contextlib
 import hashlib
 import io
+import struct
 import time
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
@@ -24,6 +25,8 @@ from uvf.runtime.envelope import GapCounter
 from uvf.runtime.params import BadInput
 
 CHUNK = 1_000_000  # bytes
+BROKEN = (McapError, EOFError, ValueError, KeyError, struct.error)
+"""What the readers raise for bytes that are no log."""
 DEPTH = 65_536  # messages that may wait for the writer
 _SAID = [t.message for t in TOPICS.values()] + [m for r in REQUESTS.values() for m in (r.message, r.reply)]
 _TYPES: dict[str, Any] = {message.DESCRIPTOR.full_name: message for message in _SAID}
@@ -159,7 +162,7 @@ def _opened(path: Path) -> Iterator[IO[bytes]]:
             yield file
     except OSError as error:
         raise BadInput(f"log {path}: {error.strerror}") from error
-    except (McapError, EOFError, ValueError) as error:
+    except BROKEN as error:
         raise BadInput(f"log {path}: still being written, cut off or broken; 'uvf log recover {path}' copies what is whole") from error
 
 
@@ -205,5 +208,5 @@ def _salvage(data: bytes) -> Iterator[Sample]:
                 channel = channels[record.channel_id]
                 name = schemas[channel.schema_id].name
                 yield Sample(channel.topic[1:], name, record.data, record.log_time, record.sequence, 0)
-    except (McapError, EOFError, ValueError):
+    except BROKEN:
         return

@@ -231,7 +231,7 @@ class ZenohBus:
         key, type_name = str(sample.key_expr), str(sample.encoding).rpartition(";")[2]
         seq, stamp_ns, boot, epoch = _envelope(sample)
         self.counter.count(key, boot, seq)
-        return Sample(key, type_name, sample.payload.to_bytes(), stamp_ns, seq, boot, epoch)
+        return Sample(key, type_name, sample.payload.to_bytes(), max(stamp_ns, 0), seq, boot, epoch)
 
     def _poll_calls(self) -> None:
         waiting = []
