@@ -123,6 +123,7 @@ TF_STATIC = Topic(f"{_V}/tf/static", m.FrameTransforms, 0, _Q.LATCHED, "mounting
 TF_WORLD = Topic(f"{_V}/tf/world", m.FrameTransform, 0, _Q.LATCHED, "world from map, placed at the mission's start pose")
 TF_MAP = Topic(f"{_V}/tf/map", m.FrameTransform, 10, _Q.STATE, "map from odom", kept=True)
 TF_ODOM = Topic(f"{_V}/tf/odom", m.FrameTransform, 50, _Q.STATE, "odom from base_link")
+TF_BODY = Topic(f"{_V}/tf/body", m.FrameTransform, 50, _Q.STATE, "world from base_link of an aircraft")
 ODOMETRY = Topic(f"{_V}/nav/odometry", m.Odometry, 50, _Q.STATE, "wheels and IMU, odom frame: smooth, drifts", kept=True)
 POSE = Topic(f"{_V}/nav/pose", m.PoseInFrame, 50, _Q.STATE, "best estimate of the pose, world frame")
 NAV_STATE = Topic(f"{_V}/nav/state", m.NavState, 50, _Q.STATE, "best estimate of the whole motion, world frame", kept=True)

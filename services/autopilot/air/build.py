@@ -24,7 +24,7 @@ def _host(site: Site, member: Member) -> Host:
     items = [item_from_file(w) for w in member.entry.job.mission]
     if why := _fault(items):
         raise BadInput(f"{site.mission_path}: {member.name}: job: mission: {why}")
-    ship = Ship(member.entry.system_id, tangent, math.atan2(east, north), items, starts_in_air=member.entry.start.z > 0)
+    ship = Ship(member.name, member.entry.system_id, tangent, math.atan2(east, north), items, starts_in_air=member.entry.start.z > 0)
     params = member.params(AutopilotAir.name, AirParams)
     return Host(AutopilotAir, lambda: AutopilotAir(ship, params), member.name)
 

@@ -6,6 +6,7 @@ import numpy as np
 
 from schemas.convert import quaternion, stamp
 from schemas.messages import (
+    FrameTransform,
     Kind,
     MissionProgress,
     Mode,
@@ -47,6 +48,17 @@ def nav_state(t: float, now: Estimate) -> NavState:
 
 def pose(state: NavState) -> PoseInFrame:
     return PoseInFrame(timestamp=state.timestamp, frame_id="world", pose=Pose(position=state.position, orientation=state.orientation))
+
+
+def body_frame(state: NavState, vehicle: str) -> FrameTransform:
+    """World from base_link."""
+    return FrameTransform(
+        timestamp=state.timestamp,
+        parent_frame_id="world",
+        child_frame_id=f"{vehicle}/base_link",
+        translation=state.position,
+        rotation=state.orientation,
+    )
 
 
 def surfaces(t: float, s: Surfaces, armed: bool) -> SurfaceCommand:

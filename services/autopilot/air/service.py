@@ -42,6 +42,7 @@ BEFORE = "an operator before the restart"
 class Ship:
     """What the autopilot is told of its vehicle at the start."""
 
+    name: str
     system_id: int
     tangent: LocalTangent
     declination: float  # rad, magnetic north east of true north
@@ -65,6 +66,7 @@ class AutopilotAir(Service):
         "surfaces": topics.SURFACE_COMMAND,
         "nav_state": topics.NAV_STATE,
         "pose": topics.POSE,
+        "body_frame": topics.TF_BODY,
         "status": topics.STATUS,
         "plan": topics.MISSION,
         "progress": topics.PROGRESS,
@@ -133,6 +135,7 @@ class AutopilotAir(Service):
             "surfaces": reports.surfaces(t, flown.surfaces, self._armed),
             "nav_state": state,
             "pose": reports.pose(state),
+            "body_frame": reports.body_frame(state, self._ship.name),
             "events": self._journal.events(t, self._pilot, self._armed, self._lost),
         }
         told = (self._pilot.mode, self._pilot.reason, self._pilot.stopped, self._armed)

@@ -37,7 +37,7 @@ def sensors(t, speed=25.0):
 
 
 def autopilot(items=WAYPOINTS):
-    return AutopilotAir(Ship(7, TANGENT, 0.0, list(items), starts_in_air=True), AirParams())
+    return AutopilotAir(Ship("milvus", 7, TANGENT, 0.0, list(items), starts_in_air=True), AirParams())
 
 
 class Bench:

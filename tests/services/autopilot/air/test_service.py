@@ -36,7 +36,17 @@ def test_each_report_has_its_own_rate():
     bench = Bench()
     bench.run(cycles=100)
     counts = {name: sum(name in out for out in bench.outputs) for name in AutopilotAir.outputs}
-    assert counts == {"surfaces": 100, "nav_state": 100, "pose": 100, "events": 100, "status": 20, "progress": 4, "path": 4, "plan": 1}
+    assert counts == {
+        "surfaces": 100,
+        "nav_state": 100,
+        "pose": 100,
+        "body_frame": 100,
+        "events": 100,
+        "status": 20,
+        "progress": 4,
+        "path": 4,
+        "plan": 1,
+    }
 
 
 def test_the_estimate_is_sent_in_world_axes():
