@@ -1,9 +1,9 @@
-"""Messages from and to numpy: vectors, quaternions (wxyz), poses, stamps, grids."""
+"""Messages from and to numpy: vectors, quaternions (wxyz), poses, stamps, scans, grids."""
 
 import numpy as np
 from numpy.typing import NDArray
 
-from schemas.messages import Grid, PackedElementField, Pose, Quaternion, Timestamp, Vector3
+from schemas.messages import Grid, LaserScan, Mode, PackedElementField, Pose, Quaternion, Timestamp, Vector3
 
 Floats = NDArray[np.float64]
 
@@ -56,6 +56,20 @@ def planar_pose(x: float, y: float, yaw: float, z: float = 0.0) -> Pose:
     )
 
 
+def scan_rays(scan: LaserScan) -> tuple[Floats, Floats]:
+    """(n,) ranges [m], 0 where nothing came back, and (n, 2) unit directions of the beams, lidar frame."""
+    ranges = np.nan_to_num(np.asarray(scan.ranges, dtype=np.float64), nan=0.0, posinf=0.0, neginf=0.0)
+    angles = np.linspace(scan.start_angle, scan.end_angle, len(ranges))
+    return ranges, np.column_stack((np.cos(angles), np.sin(angles)))
+
+
+def scan_points(scan: LaserScan) -> Floats:
+    """(n, 2) m, lidar frame: what the beams hit; those without a return are left out."""
+    ranges, rays = scan_rays(scan)
+    points: Floats = rays[ranges > 0.0] * ranges[ranges > 0.0, None]
+    return points
+
+
 def occupancy_grid(cells: NDArray[np.int8], resolution: float, x: float, y: float, frame: str, t: float) -> Grid:
     """(rows, columns) int8 as a message; cell [0, 0] has its lower left corner at (x, y) [m, frame]."""
     columns = cells.shape[1]
@@ -76,3 +90,8 @@ def occupancy_grid(cells: NDArray[np.int8], resolution: float, x: float, y: floa
 def occupancy_cells(grid: Grid) -> NDArray[np.int8]:
     """(rows, columns) int8, row 0 at the lowest y; -1 unknown, 0 free .. 100 occupied."""
     return np.frombuffer(grid.data, dtype=np.int8).reshape(-1, grid.column_count)
+
+
+def mode_name(mode: int) -> str:
+    """``MISSION`` for ``MODE_MISSION``; the number for one that nobody knows."""
+    return Mode.Name(Mode.ValueType(mode)).removeprefix("MODE_") if mode in Mode.values() else str(mode)

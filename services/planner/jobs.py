@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from schemas.convert import mode_name
 from schemas.messages import Mission, MissionItem, MissionProgress, Mode, VehicleStatus
 
 Point = tuple[float, float]
@@ -71,5 +72,5 @@ def not_now(status: VehicleStatus | None) -> str:
     if not status.armed:
         return "the vehicle is disarmed: arm it first"
     if status.mode != Mode.MODE_MISSION:
-        return f"the mode is {Mode.Name(status.mode).removeprefix('MODE_')}: change it to MISSION first"
+        return f"the mode is {mode_name(status.mode)}: change it to MISSION first"
     return ""

@@ -7,7 +7,7 @@ from msgspec import Meta
 from numpy.typing import NDArray
 
 from schemas import topics
-from schemas.convert import seconds, stamp, yaw_of
+from schemas.convert import scan_points, seconds, stamp, yaw_of
 from schemas.messages import DriveCommand, Event, LaserScan, PoseInFrame, PosesInFrame
 from services.planner.safety import safe_share
 from services.planner.tracking import Pace, Tracker
@@ -93,11 +93,9 @@ class TrackerService(Service):
         if taken_at <= self._scan_time or world_from_base is None:
             return
         self._scan_time = taken_at
-        ranges = np.asarray(scan.ranges)
-        angles = np.linspace(scan.start_angle, scan.end_angle, len(ranges))
-        near = (ranges > 0.0) & (ranges < NEAR)
-        points = np.column_stack((ranges[near] * np.cos(angles[near]), ranges[near] * np.sin(angles[near])))
-        self._seen = transform(compose(world_from_base, self._base_from_lidar), points)
+        points = scan_points(scan)
+        near = points[np.hypot(*points.T) < NEAR]
+        self._seen = transform(compose(world_from_base, self._base_from_lidar), near)
 
     def _made_safe(self, t: float, wanted: tuple[float, float], around: Floats) -> tuple[tuple[float, float], list[Event]]:
         """The wanted velocity, slowed so that it ends before anything; backwards a little when that stays zero."""

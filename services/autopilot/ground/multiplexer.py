@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from math import isfinite
 
+from schemas.convert import mode_name
 from schemas.messages import Mode
 
 COMMAND_MAX_AGE = 0.5  # s
@@ -48,11 +49,6 @@ class Choice:
     linear: float = 0.0
     angular: float = 0.0
     refused: str = ""
-
-
-def mode_name(mode: int) -> str:
-    """``MISSION`` for ``MODE_MISSION``."""
-    return Mode.Name(Mode.ValueType(mode)).removeprefix("MODE_")
 
 
 def choose(t: float, mode: int, commands: Mapping[str, Velocity], obstacle: str) -> Choice:

@@ -7,7 +7,7 @@ from typing import Annotated, Any
 from msgspec import Meta
 
 from schemas import topics
-from schemas.convert import seconds, stamp
+from schemas.convert import mode_name, seconds, stamp
 from schemas.messages import (
     ArmRequest,
     DriveCommand,
@@ -28,7 +28,7 @@ from schemas.messages import (
 )
 from services.autopilot.ground.drive import Limits, Ramp, within_limits
 from services.autopilot.ground.mission import MissionEngine, Point, mission_of, refusal, vector
-from services.autopilot.ground.multiplexer import SOURCES, Choice, Velocity, choose, mode_name
+from services.autopilot.ground.multiplexer import SOURCES, Choice, Velocity, choose
 from uvf.maths.kinematics import DifferentialDrive, Twist
 from uvf.runtime.service import Outputs, Params, Service, optional
 from uvf.runtime.vehicle_file import GroundBody
