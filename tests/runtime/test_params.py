@@ -10,7 +10,7 @@ from uvf.runtime.params import BadInput, load_yaml, nearest
 Positive = Annotated[float, msgspec.Meta(gt=0)]
 
 
-class Part(msgspec.Struct, forbid_unknown_fields=True):
+class Part(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     size: tuple[Positive, Positive] = (1.0, 1.0)
     weight: Positive | None = None
 
