@@ -15,6 +15,8 @@ from uvf.maths.geodesy import LocalTangent
 from uvf.maths.rotations import enu_flu_from_ned_frd, to_euler
 
 OLDEST_FIX = 1.0  # s
+OLDEST_STATE = 30.0  # s
+TURNED_OFF = 5.0  # m/s, of an aircraft that nobody has steered
 KINDS = {
     MissionItem.WAYPOINT: Kind.WAYPOINT,
     MissionItem.ORBIT: Kind.ORBIT,
@@ -61,6 +63,14 @@ def fix(message: Gnss, tangent: LocalTangent, t: float) -> Fix | None:
         speed_sigma=message.speed_accuracy,
     )
     return found if all(map(math.isfinite, astuple(found))) else None
+
+
+def left_fix(state: NavState, t: float) -> Fix | None:
+    """The state that another instance has left, flown straight on to ``t`` [s]; None if that is long ago."""
+    p, v, age = state.position, state.velocity, t - seconds(state.timestamp)
+    if age > OLDEST_STATE:
+        return None
+    return Fix(p.y + age * v.y, p.x + age * v.x, p.z, v.y, v.x, 0.0, 0.0, state.position_sigma + age * TURNED_OFF, TURNED_OFF)
 
 
 def place(v: Vector3) -> Place:

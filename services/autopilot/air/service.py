@@ -35,6 +35,7 @@ from uvf.maths.geodesy import GRAVITY, LocalTangent
 from uvf.runtime.service import Outputs, Service, every, optional
 
 FLYING = 0.5  # of min_airspeed: faster than that, through the air or over ground, is airborne
+FIRST_FIX = 1.0  # s, waited for after a restart
 BEFORE = "an operator before the restart"
 
 
@@ -93,6 +94,8 @@ class AutopilotAir(Service):
         self._pilot = Pilot(intake.items(ship.items))
         self._journal = Journal()
         self._fix_stamp = 0
+        self._left: NavState | None = None
+        self._waited = 0.0  # s, for the first fix
         self._lost: frozenset[Loss] = frozenset()
         self._cycles = 0
         self._told: tuple[object, ...] = ()
@@ -167,6 +170,7 @@ class AutopilotAir(Service):
             self._pilot.stopped = BEFORE if status.stopped else ""
             self._pilot.take_up(intake.MODES[status.mode], intake.place(status.home), intake.stand(progress))
         if nav_state is not None:
+            self._left = nav_state
             self._estimator.begin_at(*intake.roll_and_pitch(nav_state))
 
     def stale(self, t: float, missing: tuple[str, ...]) -> Outputs:
@@ -187,10 +191,17 @@ class AutopilotAir(Service):
         """None until the first fix."""
         fix = self._new_fix(t, gnss) if gnss is not None else None
         if fix is None and not self._estimator.started:
-            return None
+            fix = self._left_fix(t)
+            if fix is None:
+                return None
         pressures = intake.pressures(air_data) if air_data is not None else None
         self._lost = losses(self._estimator.unfixed, pressures is not None)
         return self._estimator.step(Sensed([intake.inertial(m, t) for m in imu], pressures, fix), self.params, 1 / self.hz)
+
+    def _left_fix(self, t: float) -> Fix | None:
+        """After a restart without GNSS: where the instance before has been, once a fix has been waited for."""
+        self._waited += 1 / self.hz
+        return intake.left_fix(self._left, t) if self._left is not None and self._waited > FIRST_FIX else None
 
     def _new_fix(self, t: float, gnss: Gnss) -> Fix | None:
         stamp_ns = gnss.timestamp.ToNanoseconds()

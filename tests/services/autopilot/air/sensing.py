@@ -61,4 +61,4 @@ class Bench:
 
     @property
     def texts(self):
-        return [event.text for out in self.outputs for event in out["events"]]
+        return [event.text for out in self.outputs for event in out.get("events", [])]

@@ -178,6 +178,25 @@ def test_pressures_that_are_not_finite_are_none(field):
     assert Loss.AIR_DATA.begins in bench.texts
 
 
+def test_an_autopilot_started_again_without_gnss_reckons_on_from_what_was_left():
+    bench, heir = Bench(), Bench()
+    left = bench.run(cycles=100)["nav_state"]
+    heir.service.recall(status=bench.status, nav_state=left)
+    heir.n = 150
+    states = [heir.run(gnss=None).get("nav_state") for _ in range(400)]
+    assert states[10] is None  # GNSS might be there in a moment
+    assert states[60].position.x == pytest.approx(25.0 * (3.0 + 60 / 50), abs=5.0)
+    assert heir.status.mode == Mode.MODE_HOLD
+
+
+def test_what_was_left_long_ago_is_not_reckoned_on_from():
+    bench, heir = Bench(), Bench()
+    left = bench.run(cycles=10)["nav_state"]
+    heir.service.recall(status=bench.status, nav_state=left)
+    heir.n = 3000
+    assert "surfaces" not in heir.run(cycles=100, gnss=None)
+
+
 def test_both_losses_are_told_apart():
     assert losses(0.2, True) == frozenset()
     assert losses(2.5, True) == {Loss.GNSS}
