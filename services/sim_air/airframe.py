@@ -111,6 +111,7 @@ class Airframe:
         fdm = self._fdm
         latitude, longitude, altitude = self._tangent.geodetic(start.position)
         fdm["ic/lat-geod-rad"], fdm["ic/h-sl-ft"] = latitude, altitude / FT
+        fdm["ic/terrain-elevation-ft"] = self._tangent.altitude / FT
         fdm["ic/long-gc-rad"] = longitude + EARTH_RATE * SPIN_UP  # the Earth turns under a body that is held still
         fdm["ic/phi-rad"], fdm["ic/theta-rad"], fdm["ic/psi-true-rad"] = trim.roll, trim.alpha, np.pi / 2 - start.yaw
         ground = start.airspeed * np.array((np.cos(start.yaw), np.sin(start.yaw), 0.0)) + start.wind

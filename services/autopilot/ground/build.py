@@ -1,9 +1,8 @@
 """The autopilot of every ground vehicle of the mission."""
 
-from schemas.messages import MissionItem, Vector3
 from services.autopilot.ground.mission import refusal
 from services.autopilot.ground.service import GroundAutopilot, GroundAutopilotParams
-from uvf.runtime.mission_file import Waypoint
+from services.autopilot.plan import item_from_file
 from uvf.runtime.params import BadInput
 from uvf.runtime.site import Host, Member, Site
 
@@ -17,7 +16,7 @@ def _host(member: Member, site: Site) -> Host:
     start, body, job = member.entry.start, member.file.ground, member.entry.job
     if body is None:
         raise BadInput(f"{member.folder / 'vehicle.yaml'}: there is no 'ground:' section")
-    items = [_item(w) for w in job.mission]
+    items = [item_from_file(w) for w in job.mission]
     reason = refusal(items)
     if reason:
         raise BadInput(f"{site.mission_path}: {member.name}: job: mission: {reason}")
@@ -28,17 +27,3 @@ def _host(member: Member, site: Site) -> Host:
         return GroundAutopilot(body, (start.x, start.y), (begins, items), member.entry.system_id, params)
 
     return Host(GroundAutopilot, make, member.name)
-
-
-def _item(w: Waypoint) -> MissionItem:
-    return MissionItem(
-        kind=w.kind.upper(),
-        position=Vector3(x=w.x, y=w.y, z=w.z),
-        acceptance_radius=w.acceptance_radius,
-        hold=w.hold,
-        radius=w.radius,
-        turns=w.turns,
-        speed=w.speed,
-        jump_to=w.jump_to,
-        repeat=w.repeat,
-    )

@@ -1,10 +1,10 @@
 """The mission of a ground vehicle: which item is driven to, and when the next one's turn comes."""
 
-import zlib
 from collections.abc import Sequence
 from math import hypot, inf, isfinite
 
 from schemas.messages import Mission, MissionItem, MissionProgress, Timestamp, Vector3
+from services.autopilot.plan import mission_id
 
 Point = tuple[float, float]
 
@@ -41,10 +41,7 @@ def _fault(item: MissionItem, total: int) -> str:
 
 def mission_of(items: Sequence[MissionItem], timestamp: Timestamp) -> Mission:
     """The items as a message, with the CRC-32 that tells one mission from another."""
-    crc = 0
-    for item in items:
-        crc = zlib.crc32(item.SerializeToString(deterministic=True), crc)
-    return Mission(timestamp=timestamp, items=items, id=crc)
+    return Mission(timestamp=timestamp, items=items, id=mission_id(items))
 
 
 class MissionEngine:

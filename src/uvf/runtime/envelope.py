@@ -42,5 +42,6 @@ class GapCounter:
             self._boots[key] |= {last_boot, boot}
             self._last[key] = (boot, seq)
         elif seq > last:
-            self.gaps[key] += seq - last - 1
+            if seq > last + 1:
+                self.gaps[key] += seq - last - 1
             self._last[key] = (boot, seq)
