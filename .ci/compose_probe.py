@@ -42,9 +42,10 @@ def page_answers() -> bool:
 def main() -> None:
     wait(all_healthy, "all containers healthy")
     wait(page_answers, "the page answers on the host")
-    bridge = json.loads(output("docker", "network", "inspect", "bridge"))[0]["IPAM"]["Config"][0]["Gateway"]
+    # Where the containers find the host; on Linux the address of the engine's bridge.
+    host = output("docker", "exec", "uvf_ci_mavlink_1", "getent", "hosts", "host.docker.internal").split()[0]
     with Mavsdk(Configuration.create_with_component_type(ComponentType.GROUND_STATION)) as sdk:
-        sdk.add_any_connection(f"udpin://{bridge}:14540")
+        sdk.add_any_connection(f"udpin://{host}:14540")
         wait(lambda: len(sdk.get_systems()) == 2, "MAVSDK on the host sees two vehicles")
         telemetry = [Telemetry(system) for system in sdk.get_systems()]
         wait(lambda: all(math.isfinite(t.position().latitude_deg) for t in telemetry), "both have a position")
