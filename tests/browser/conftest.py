@@ -57,8 +57,9 @@ class LiveStation:
         self.service.close()
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")
 def browser():
+    """Ends with this folder's tests: as long as playwright is open, no test in this thread can run a loop of its own."""
     if not CHROMIUM.exists():
         pytest.skip(f"no browser: {CHROMIUM} is not there (apt-get install chromium)")
     sync_api = pytest.importorskip("playwright.sync_api")

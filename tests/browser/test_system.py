@@ -10,7 +10,8 @@ from schemas.convert import array
 from tests.browser.canvas import POINTS, TRACK_BLUE, on_screen, pixels, until
 from tests.distributed.system import System
 
-GOAL = (2.2, 2.6)  # m, world: free floor in the room where the rover starts
+GOAL = (2.2, 2.6)  # m, world: free floor of the room where the rover starts, so that its map knows it soon
+NEAR = 1.2  # m: a click here would choose the rover itself
 
 
 @pytest.fixture(scope="module")
@@ -45,10 +46,15 @@ def test_the_tracks_of_both_vehicles_grow(page):
     assert until(page, lambda: pixels(page, TRACK_BLUE) > drawn + 20), "no more pixels of the track are drawn"
 
 
+def is_sent(page, system):
+    """Whether a click on the goal's place is heeded."""
+    page.mouse.click(*on_screen(page, (*GOAL, 0.0)))
+    return until(page, lambda: system.client.read("burger", topics.NAV_STATUS).job == "goal", 3.0)
+
+
 def test_a_click_on_the_floor_sends_the_rover_there(page, system):
-    x, y = on_screen(page, (*GOAL, 0.0))
-    page.mouse.click(x, y)
-    assert until(page, lambda: system.client.read("burger", topics.NAV_STATUS).job == "goal", 10.0), "the click is no goal"
+    assert until(page, lambda: np.linalg.norm(place(system) - GOAL) > NEAR, 60.0), "the rover stands where it shall go"
+    assert until(page, lambda: is_sent(page, system), 20.0), "no click is a goal"
     goal = array(system.client.read("burger", topics.NAV_STATUS).goal)[:2]
-    assert np.linalg.norm(goal - GOAL) < 0.15
-    assert until(page, lambda: np.linalg.norm(place(system) - goal) < 0.3, 60.0), f"it is at {place(system)}"
+    assert np.linalg.norm(goal - GOAL) < 0.2
+    assert until(page, lambda: np.linalg.norm(place(system) - goal) < 0.3, 90.0), f"it is at {place(system)}"
