@@ -92,6 +92,8 @@ class View:
         name, grid = f"map {v.name}", v.grid
         if grid is None or not grid.data or grid.column_count == 0:
             return {}
+        if v.world_from_map is None and grid.frame_id != "world":
+            return {}  # nobody has said yet where this map lies
         if name in self._made and t < self._map_due.get(name, 0.0):
             self._used.add(name)
             return {"": self._made[name][1]}

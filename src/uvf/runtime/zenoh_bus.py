@@ -7,6 +7,7 @@ import contextlib
 import json
 import queue
 import secrets
+import time
 from collections import defaultdict, deque
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
@@ -26,6 +27,7 @@ CALL_TIMEOUT = 5.0  # s, wall
 LEASE_MS = 2000
 WAIT_BEFORE_DROP_US = 50_000
 RECALL_TIMEOUT = 1.0  # s, wall
+SAY_AGAIN = 2.0  # s, wall
 EVENT_HISTORY = 100
 
 _P, _C = zenoh.Priority, zenoh.CongestionControl
@@ -95,6 +97,7 @@ class ZenohBus:
         self._servers: list[tuple[Any, Callable[[Query], None]]] = []
         self._calls: list[tuple[Any, OnReply, int, str]] = []
         self._declared: list[Any] = []
+        self._latched: list[ZenohPublisher] = []
 
     def __enter__(self) -> "ZenohBus":
         return self
@@ -123,7 +126,10 @@ class ZenohBus:
         else:
             publisher = self._session.declare_publisher(key, **how)
         self._declared.append(publisher)
-        return ZenohPublisher(publisher, self)
+        made = ZenohPublisher(publisher, self)
+        if qos is Qos.LATCHED:
+            self._latched.append(made)
+        return made
 
     def subscribe(self, key: str, qos: Qos, sink: Sink, depth: int = 1, wake: bool = False) -> None:
         """wake: ``wait`` returns when something arrives here; costs the interpreter's lock for each message."""
@@ -213,6 +219,8 @@ class ZenohBus:
         return sorted(str(r.ok.key_expr).removeprefix(f"{PREFIX}/") for r in replies if r.ok)
 
     def poll(self) -> None:
+        for publisher in self._latched:
+            publisher.say_again()
         for arrived, sink in self._waking:
             while arrived:
                 sink(self._sample(arrived.popleft()))
@@ -284,8 +292,22 @@ class ZenohPublisher:
     publisher: Any
     bus: ZenohBus
     seq: int = 0
+    last: tuple[float, bytes, bytes] | None = None
+    """When (s, wall), payload and envelope of what is to be said again."""
 
     def put(self, payload: bytes, stamp_ns: int) -> int:
         self.seq += 1
-        self.publisher.put(payload, attachment=Envelope(self.seq, stamp_ns, self.bus.boot, self.bus.epoch).pack())
+        envelope = Envelope(self.seq, stamp_ns, self.bus.boot, self.bus.epoch).pack()
+        self.publisher.put(payload, attachment=envelope)
+        self.last = (time.monotonic(), payload, envelope)
         return self.seq
+
+    def say_again(self) -> None:
+        """A latched message sent right after its publisher was declared was seen to miss a subscriber, history and all.
+
+        Once more, when nothing newer has come: with the same envelope, so that nobody takes it for another one.
+        """
+        if self.last is not None and time.monotonic() - self.last[0] > SAY_AGAIN:
+            _, payload, envelope = self.last
+            self.publisher.put(payload, attachment=envelope)
+            self.last = None
