@@ -8,6 +8,7 @@ import numpy as np
 from google.protobuf.message import Message
 from numpy.typing import NDArray
 
+from schemas import convert
 from schemas.convert import stamp
 from schemas.messages import ArmRequest, Event, GoalRequest, Mode, ModeRequest, StopCommand, Vector3
 from services.gcs.state import LAYERS, LOST_AFTER, Model, Order, VehicleModel
@@ -98,7 +99,7 @@ def describe(request: Message) -> str:
 
 def mode_name(mode: Any) -> str:
     """``MODE_RETURN`` -> ``Return``."""
-    return str(Mode.Name(mode)).removeprefix("MODE_").capitalize()
+    return convert.mode_name(mode).capitalize()
 
 
 class Commander:

@@ -9,7 +9,7 @@ import numpy as np
 from google.protobuf.message import Message
 from numpy.typing import NDArray
 
-from schemas.convert import array, wxyz
+from schemas.convert import array, scan_points, wxyz
 from schemas.messages import (
     Clock,
     CompressedImage,
@@ -29,6 +29,7 @@ from schemas.messages import (
     VehicleStatus,
 )
 from services.gcs.tracks import Track
+from uvf.maths.planar import Pose2, transform
 from uvf.maths.rotations import matrix
 from uvf.runtime.site import Member, Site
 
@@ -223,11 +224,9 @@ def scan_in_world(vehicle: VehicleModel) -> Floats | None:
     scan, place, lidar = vehicle.scan, vehicle.place, vehicle.member.file.sensors.lidar
     if scan is None or place is None or lidar is None or not scan.ranges:
         return None
-    ranges = np.array(scan.ranges)
-    angles = np.linspace(scan.start_angle, scan.end_angle, len(ranges))
-    hit = np.isfinite(ranges) & (ranges > 0.0)
-    r, a = ranges[hit], angles[hit] + lidar.mount.rpy[2]
-    in_body = np.column_stack((r * np.cos(a), r * np.sin(a), np.zeros(len(r)))) + np.array(lidar.mount.xyz)
+    x, y, z = lidar.mount.xyz
+    flat = transform(Pose2(x, y, lidar.mount.rpy[2]), scan_points(scan))
+    in_body = np.column_stack((flat, np.full(len(flat), z)))
     in_world: Floats = in_body @ matrix(place.wxyz).T + place.position
     return in_world
 

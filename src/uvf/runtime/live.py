@@ -158,7 +158,7 @@ def _declare_tokens(shell: Shell, bus: ZenohBus) -> None:
     bus.token(f"@node/{shell.owner}/{shell.type.name}/{bus.boot:x}")
     everyone = "*" if shell.type.scope == "world" else shell.owner
     ends = [("pub", topic, everyone) for topic in shell.type.outputs.values()]
-    ends += [("sub", i.topic, "*" if i.each_vehicle else shell.owner) for i in shell.type.declared_inputs().values()]
+    ends += [("sub", declared.topic, owner) for _, declared, owner in shell.reads()]
     for way, topic, owner in ends:
         key = topic.at(owner).replace("/", "%").replace("*", "+")
         bus.token(f"@ep/{shell.owner}/{shell.type.name}/{way}/{key}/{topic.message.DESCRIPTOR.full_name}")

@@ -1,7 +1,7 @@
 """The shell of one service instance: its inputs, its due times and ``advance``, the one way any step is called."""
 
 from collections import deque
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -12,7 +12,7 @@ from uvf.runtime.bus import Bus, Publisher, Query
 from uvf.runtime.clock import NS, first_step_after, step_time
 from uvf.runtime.inbox import EVERY_DEPTH, InputBox
 from uvf.runtime.param_server import ParamServer
-from uvf.runtime.service import Answer, Outputs, Service
+from uvf.runtime.service import Answer, Input, Outputs, Service
 from uvf.runtime.site import Host
 from uvf.runtime.wire import Malformed, decode
 
@@ -99,9 +99,13 @@ class Shell:
         self._param_server = ParamServer(self.service)
         self.n = 1
 
-    def _subscribe(self) -> None:
+    def reads(self) -> Iterator[tuple[str, Input, str]]:
+        """Each declared input with the owner whose messages it takes; ``*`` = of every vehicle."""
         for name, declared in self.type.declared_inputs().items():
-            owner = "*" if declared.each_vehicle else (self.host.roles or {}).get(declared.role or "", self.owner)
+            yield name, declared, "*" if declared.each_vehicle else (self.host.roles or {}).get(declared.role or "", self.owner)
+
+    def _subscribe(self) -> None:
+        for name, declared, owner in self.reads():
             wide = declared.every or declared.each_vehicle or declared.topic.qos in (Qos.LATCHED, Qos.EVENT)
             depth = EVERY_DEPTH if wide else LATEST_DEPTH
             self._bus.subscribe(declared.topic.at(owner), declared.topic.qos, lambda s, n=name: self._boxes[n].push(s), depth)  # type: ignore[misc]
