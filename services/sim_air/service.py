@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Protocol
 
 from schemas import topics
@@ -39,6 +40,7 @@ class Aircraft:
         self.file = file
         self.body = body
         self.actuators = actuators
+        self.trim = actuators.position
         self.command = actuators.position
         self.dt = 1 / file.air.physics_hz
         self.physics_steps = 0
@@ -56,6 +58,10 @@ class Aircraft:
         if all(map(math.isfinite, s)):
             self.command = Controls(*s)
 
+    def let_go(self) -> None:
+        """Nobody steers: what servos fall back to, the start's trim of level flight. A motor that was off stays off."""
+        self.command = self.trim if self.command.throttle > 0 else replace(self.trim, throttle=0.0)
+
     def fly_to(self, t: float) -> None:
         """Physics steps up to ``t`` [s]."""
         due = round(t / self.dt)
@@ -68,7 +74,7 @@ class Aircraft:
 
 
 class SimAir(Service):
-    """All aircraft of the mission in one steady wind; a command that went stale or is not finite leaves the surfaces where they are."""
+    """All aircraft of the mission in one steady wind; without a command for 0.5 s surfaces and throttle go to trim."""
 
     name = "sim_air"
     hz = 100.0
@@ -95,6 +101,8 @@ class SimAir(Service):
         for craft in self._aircraft:
             if craft.name in surfaces:
                 craft.take(surfaces[craft.name])
+            else:
+                craft.let_go()
             craft.fly_to(t)
             for name, message in self._read(t, craft).items():
                 out[name][craft.name] = message

@@ -9,16 +9,18 @@ import numpy as np
 import pytest
 
 from schemas import topics
-from schemas.messages import SurfaceCommand
+from schemas.convert import wxyz
+from schemas.messages import NavState, SurfaceCommand
 from services.sim_air.actuators import Actuators
 from services.sim_air.airframe import Air, Controls, Motion
 from services.sim_air.build import build
 from services.sim_air.sensors import Imu
 from services.sim_air.service import Aircraft, SimAir
+from uvf.maths import rotations
 from uvf.maths.rotations import IDENTITY
 from uvf.runtime.bus import LocalBus
 from uvf.runtime.lockstep import Lockstep
-from uvf.runtime.site import ROOT, load_site
+from uvf.runtime.site import ROOT, Host, load_site
 from uvf.runtime.vehicle_file import load_vehicle
 
 MILVUS = load_vehicle(Path(ROOT) / "vehicles", "milvus")
@@ -80,14 +82,47 @@ def test_physics_keeps_up_with_the_clock():
     assert body.steps == MILVUS.air.physics_hz
 
 
-def test_surfaces_hold_their_last_command_when_it_goes_stale():
-    body, service = glider()
-    service.step(0.01, surfaces={"g": SurfaceCommand(aileron=0.1, elevator=-0.2, throttle=0.9)})
-    for k in range(2, 101):
-        service.step(k / 100, surfaces={})
-    assert body.commands[-1].aileron == pytest.approx(0.1, abs=1e-6)
-    assert body.commands[-1].elevator == pytest.approx(-0.2, abs=1e-6)
-    assert body.commands[-1].throttle == pytest.approx(0.9)
+TRIMMED = Controls(aileron=0.01, elevator=-0.14, rudder=-0.002, throttle=0.7)
+
+
+def after_one_command(command, until):
+    """What the body is commanded at each physics step when ``command`` comes once, at the start, and then nothing."""
+    body = Glider()
+    service = SimAir([Aircraft("g", MILVUS, body, Actuators(TRIMMED, MILVUS.air))], np.zeros(3))
+    lockstep = Lockstep([Host(SimAir, lambda: service)])
+    commands = lockstep.bus.publisher(topics.SURFACE_COMMAND.at("g"), SurfaceCommand.DESCRIPTOR.full_name, topics.SURFACE_COMMAND.qos)
+    commands.put(command.SerializeToString(), 0)
+    lockstep.run(until)
+    return body.commands
+
+
+def test_surfaces_hold_half_a_second_without_commands_then_go_to_trim_at_the_servos_rate():
+    turning = SurfaceCommand(aileron=0.3, elevator=-0.3, rudder=0.1, throttle=0.9)
+    commands = after_one_command(turning, 1.5)
+    held, last = commands[round(0.5 * MILVUS.air.physics_hz) - 1], commands[-1]
+    assert (held.aileron, held.elevator, held.rudder, held.throttle) == pytest.approx((0.3, -0.3, 0.1, 0.9), abs=1e-3)
+    assert (last.aileron, last.elevator, last.rudder, last.throttle) == pytest.approx((0.01, -0.14, -0.002, 0.7), abs=1e-6)
+    moves = np.abs(np.diff([(c.aileron, c.elevator, c.rudder) for c in commands], axis=0))
+    assert moves.max() <= MILVUS.air.servo_rate / MILVUS.air.physics_hz + 1e-12
+
+
+def test_a_motor_that_was_off_does_not_start_when_commands_end():
+    assert after_one_command(SurfaceCommand(aileron=0.3, throttle=0.0), 1.5)[-1].throttle == 0.0
+
+
+def test_an_aircraft_whose_autopilot_dies_while_it_rolls_stops_rolling_and_flies_on(tmp_path):
+    path = tmp_path / "two.yaml"
+    path.write_text(MISSION)
+    lockstep, truth = Lockstep(build(load_site(path))), []
+    lockstep.bus.subscribe(topics.TRUTH.at("first"), topics.TRUTH.qos, lambda s: truth.append(NavState.FromString(s.payload)))
+    commands = lockstep.bus.publisher(topics.SURFACE_COMMAND.at("first"), SurfaceCommand.DESCRIPTOR.full_name, topics.SURFACE_COMMAND.qos)
+    commands.put(SurfaceCommand(aileron=0.1, elevator=-0.14, throttle=0.78).SerializeToString(), 0)
+    lockstep.run(6.5)
+    lockstep.close()
+    banks = np.array([rotations.to_euler(wxyz(state.orientation))[0] for state in truth])
+    assert np.radians(10.0) < banks.max() < np.radians(40.0)
+    assert np.abs(np.diff(banks[-150:]) * topics.TRUTH.hz).max() < np.radians(5.0)
+    assert truth[-1].position.z > 45.0
 
 
 @pytest.mark.parametrize("name", ["aileron", "elevator", "rudder", "throttle"])
