@@ -12,7 +12,10 @@ from uvf.runtime.site import Build, Host, Site
 
 @dataclass(frozen=True)
 class Kind:
-    """``build``: module with ``build(site)``; ``needs``: the vehicles without which it has no work."""
+    """``build``: module with ``build(site)``; ``needs``: the vehicles without which it has no work.
+
+    ``nice``: how far it gives way to those that keep time (router, conductor, simulators) when processors are few.
+    """
 
     name: str
     build: str
@@ -20,17 +23,18 @@ class Kind:
     needs: Literal["ground", "fixed_wing", "any"] = "any"
     clock: Literal["sim", "wall"] = "sim"
     simulator: bool = False
+    nice: int = 0
 
 
 KINDS = (
     Kind("sim_ground", "services.sim_ground.build", "PyBullet world of the ground vehicles, their sensors", "ground", simulator=True),
     Kind("sim_air", "services.sim_air.build", "JSBSim aircraft, wind, their sensors", "fixed_wing", simulator=True),
-    Kind("sim_camera", "services.sim_camera.build", "every vehicle's camera"),
-    Kind("slam", "services.slam.build", "odometry, mapping, localization", "ground"),
-    Kind("planner", "services.planner.build", "exploration, paths, tracking", "ground"),
-    Kind("autopilot", "services.autopilot.build", "command multiplexer, estimator, guidance, control, modes"),
-    Kind("mavlink", "services.autopilot.mavlink.build", "MAVLink over UDP for ground stations", clock="wall"),
-    Kind("gcs", "services.gcs.build", "the page at http://127.0.0.1:8080", clock="wall"),
+    Kind("sim_camera", "services.sim_camera.build", "every vehicle's camera", nice=10),
+    Kind("slam", "services.slam.build", "odometry, mapping, localization", "ground", nice=5),
+    Kind("planner", "services.planner.build", "exploration, paths, tracking", "ground", nice=5),
+    Kind("autopilot", "services.autopilot.build", "command multiplexer, estimator, guidance, control, modes", nice=2),
+    Kind("mavlink", "services.autopilot.mavlink.build", "MAVLink over UDP for ground stations", clock="wall", nice=5),
+    Kind("gcs", "services.gcs.build", "the page at http://127.0.0.1:8080", clock="wall", nice=10),
 )
 INFRASTRUCTURE = ("router", "conductor", "recorder")
 
