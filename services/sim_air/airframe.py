@@ -6,10 +6,12 @@ from pathlib import Path
 
 import numpy as np
 
+from services.sim_air.model_file import check_model, properties_read
 from services.sim_air.trim import Trim, solve
 from uvf.maths import rotations
 from uvf.maths.geodesy import LocalTangent, ecef_from_geodetic
 from uvf.runtime.params import BadInput
+from uvf.runtime.quiet import c_output_discarded
 from uvf.runtime.vehicle_file import AirBody
 
 os.environ.setdefault("JSBSIM_DEBUG", "0")  # read when the engine is made: without it a banner goes to the output
@@ -79,17 +81,26 @@ class Airframe:
         self._tangent = tangent
         self._enu_from_ecef = tangent.enu_from_ecef
         self._origin_ecef = ecef_from_geodetic(tangent.latitude, tangent.longitude, tangent.altitude)
-        self._fdm = _load(folder, body)
+        self._path = folder / body.model / f"{body.model}.xml"
+        self._fdm = _load(folder, self._path, body)
         self._integrators = {name: self._fdm[name] for name in INTEGRATORS}
 
     def start(self, start: Start) -> Trim:
         """Puts the aircraft into trimmed level flight. Raises BadInput when it cannot fly so."""
+        try:
+            with c_output_discarded():
+                trim = self._trim(start)
+        except jsbsim.BaseError as error:
+            raise _refusal(self._path, error) from error
+        if not trim.converged:
+            raise BadInput(f"{self._path}: no level flight at {start.airspeed} m/s: {trim.residual:.2g} m/s^2 or rad/s^2 are left")
+        return trim
+
+    def _trim(self, start: Start) -> Trim:
         self.hold_still(True)
         trim = solve(lambda guess: self.accelerations(start, guess))
         self.accelerations(start, trim)
         self.hold_still(False)
-        if not trim.converged:
-            raise BadInput(f"{self._body.model}: no level flight at {start.airspeed} m/s: {trim.residual:.2g} m/s^2 or rad/s^2 are left")
         return trim
 
     def hold_still(self, still: bool) -> None:
@@ -162,17 +173,35 @@ class Airframe:
         return float(max(self._fdm["propulsion/engine/power-hp"], 0.0) * HP)
 
 
-def _load(folder: Path, body: AirBody) -> jsbsim.FGFDMExec:
-    """The model in ``folder``/<model>/<model>.xml with engines in ``folder``/engine. Raises BadInput."""
-    if not (folder / body.model / f"{body.model}.xml").is_file():
+def _load(folder: Path, path: Path, body: AirBody) -> jsbsim.FGFDMExec:
+    """The model at ``path`` = ``folder``/<model>/<model>.xml, with engines in ``folder``/engine. Raises BadInput."""
+    if not path.is_file():
         raise BadInput(f"{folder / 'vehicle.yaml'}: air: model: there is no {body.model}/{body.model}.xml")
+    check_model(path)
     fdm = jsbsim.FGFDMExec(str(folder))
     fdm.set_debug_level(0)
     try:
-        loaded = fdm.load_model_with_paths(body.model, ".", "engine", "systems")
+        with c_output_discarded():
+            loaded = fdm.load_model_with_paths(body.model, ".", "engine", "systems")
     except jsbsim.BaseError as error:
-        raise BadInput(f"{folder / body.model / body.model}.xml: {error}") from error
+        raise _refusal(path, error) from error
     if not loaded:
-        raise BadInput(f"{folder / body.model / body.model}.xml: JSBSim refuses it")
+        raise BadInput(f"{path}: JSBSim refuses it; look at its <file=...> names, engine and sections")
+    _check_properties(path, fdm)
     fdm.set_dt(1 / body.physics_hz)
     return fdm
+
+
+def _check_properties(path: Path, fdm: jsbsim.FGFDMExec) -> None:
+    """Whatever the model reads is there. Raises BadInput."""
+    manager = fdm.get_property_manager()
+    missing = [name for name in properties_read(path) if not manager.hasNode(name)]
+    for name in missing:
+        fdm[name] = 0.0  # the engine aborts the process when it is taken down without it, not only when it flies
+    if missing:
+        raise BadInput(f"{path}: nothing makes the property '{missing[0]}'; mend its name")
+
+
+def _refusal(path: Path, error: Exception) -> BadInput:
+    """What the engine says in several lines, as one."""
+    return BadInput(f"{path}: JSBSim refuses it: {' '.join(str(error).split())}")

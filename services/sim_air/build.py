@@ -7,13 +7,45 @@ from services.sim_air.airframe import Airframe, Controls, Start
 from services.sim_air.sensors import Gnss, Imu, Pressures
 from services.sim_air.service import Aircraft, SimAir
 from uvf.maths.geodesy import LocalTangent
-from uvf.runtime.site import Host, Member, Site
+from uvf.runtime.params import BadInput, Place
+from uvf.runtime.site import AIRCRAFT_RADIUS, Host, Member, Site
+from uvf.runtime.vehicle_file import AirBody
+from uvf.runtime.world_geometry import clearance
 
 
 def build(site: Site) -> list[Host]:
+    """Nothing when the mission has no aircraft. Raises BadInput."""
     if not any(site.of_kind("fixed_wing")):
         return []
+    for member in site.of_kind("fixed_wing"):
+        _check(site, member)
     return [Host(SimAir, lambda: _make(site), writes_for=tuple(m.name for m in site.of_kind("fixed_wing")))]
+
+
+def _check(site: Site, member: Member) -> None:
+    """What would otherwise fail only when time runs, or not be noticed at all."""
+    place = Place(str(member.folder / "vehicle.yaml"))
+    sensors = member.file.sensors
+    for kind, sensor in {"imu": sensors.imu, "gnss": sensors.gnss, "air_data": sensors.air_data}.items():
+        if sensor is not None and sensor.hz > SimAir.hz:
+            raise BadInput(f"{place.at('sensors', kind, 'hz')}: {sensor.hz:g} Hz; the simulator gives {SimAir.hz:g} Hz at most")
+    start = member.entry.start
+    room = clearance(site.world, start.x, start.y, (start.z - AIRCRAFT_RADIUS, start.z + AIRCRAFT_RADIUS))
+    if room < AIRCRAFT_RADIUS:
+        where = Place(str(site.mission_path)).at("vehicles", member.name, "start")
+        raise BadInput(f"{where}: {room:.2f} m from a wall or another solid at {start.z:g} m; move it or begin higher")
+    Airframe(member.folder, _body(member), _tangent(site))
+
+
+def _body(member: Member) -> AirBody:
+    body = member.file.air
+    assert body is not None
+    return body
+
+
+def _tangent(site: Site) -> LocalTangent:
+    origin = site.world.origin
+    return LocalTangent.from_degrees(origin.latitude, origin.longitude, origin.altitude)
 
 
 def _make(site: Site) -> SimAir:
@@ -22,9 +54,7 @@ def _make(site: Site) -> SimAir:
 
 def _aircraft(site: Site, member: Member) -> Aircraft:
     """One aircraft in trimmed level flight at its start. Raises BadInput."""
-    body, origin, begin = member.file.air, site.world.origin, member.entry.start
-    assert body is not None
-    tangent = LocalTangent.from_degrees(origin.latitude, origin.longitude, origin.altitude)
+    body, tangent, begin = _body(member), _tangent(site), member.entry.start
     airframe = Airframe(member.folder, body, tangent)
     position = np.array((begin.x, begin.y, begin.z))
     trim = airframe.start(Start(position, begin.yaw, begin.speed or body.trim_speed, np.array(site.world.wind.steady)))

@@ -29,15 +29,26 @@ def load(tmp_path, text):
 
 
 BAD = {
-    "part: {wieght: 1}": "part: unknown key 'wieght'; did you mean 'weight'?",
-    "parts: [{}, {sise: 1}]": "parts[1]: unknown key 'sise'; did you mean 'size'?",
-    "named: {a: {x: 1}}": "named: a: unknown key 'x'; there are: size, weight",
-    "part: {weight: -1}": "Expected `float` > 0.0 - at `$.part.weight`",
+    "part:\n  wieght: 1": "f.yaml:2: part: wieght: unknown key 'wieght'; did you mean 'weight'?",
+    "parts: [{}, {sise: 1}]": "f.yaml:1: parts[1]: sise: unknown key 'sise'; did you mean 'size'?",
+    "named: {a: {x: 1}}": "named: a: x: unknown key 'x'; there are: size, weight",
+    "named:\n  a: {}\n  b:\n    weight: -1": "f.yaml:4: named: b: weight: Expected `float` > 0.0",
     "part: {weight: .nan}": "part: weight: nan is no number to work with",
-    "part: {size: [1, .inf]}": "inf is no number to work with",
-    "name: a\nname: b": "f.yaml:1: not valid YAML: key 'name' is given twice",
+    "part: {size: [1, .inf]}": "part: size[1]: inf is no number to work with",
+    "part: {size: [1]}": "part: size: Expected `array` of length 2, got 1",
+    "name: a\nname: b": "f.yaml:2: not valid YAML: key 'name' is given twice",
+    "parts: [{size: [1, 1],\n size: [1, 1]}]": "f.yaml:2: not valid YAML: key 'size' is given twice",
     "name: [": "f.yaml:1: not valid YAML",
     "[" * 3000: "nested too deeply",
+    "parts: &a [*a]": "parts[0]: Expected `object`, got `array`",
+    "": "f.yaml: the file is empty",
+    "- name": "f.yaml: Expected `object`, got `array`",
+    "name: 2020-13-45": "f.yaml: not valid YAML: month must be in 1..12",
+    "name: !!int x": "f.yaml: not valid YAML",
+    "name: !!python/name:os.system": "f.yaml:1: not valid YAML",
+    "!!map [name]": "f.yaml:1: not valid YAML",
+    "name: \x01": "f.yaml: not valid YAML",
+    "part: {weight: 1" + "0" * 400 + "}": "part: weight: Number out of range",
 }
 
 
@@ -48,6 +59,15 @@ def test_what_is_wrong_is_one_line_that_names_the_place(tmp_path, text):
     assert BAD[text] in str(caught.value)
     assert str(tmp_path) in str(caught.value)
     assert "\n" not in str(caught.value)
+
+
+def test_what_is_no_text_is_refused(tmp_path):
+    binary, folder = tmp_path / "binary.yaml", tmp_path / "folder.yaml"
+    binary.write_bytes(bytes(range(256)))
+    folder.mkdir()
+    for path, why in ((binary, "it is not text in UTF-8"), (folder, "Is a directory"), (tmp_path / "no.yaml", "No such file")):
+        with pytest.raises(BadInput, match=f"{path}: cannot be read: {why}"):
+            load_yaml(path, Whole)
 
 
 def test_numbers_with_exponents_are_numbers(tmp_path):

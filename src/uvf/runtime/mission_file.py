@@ -6,18 +6,21 @@ from typing import Annotated, Literal
 import msgspec
 from msgspec import Meta
 
-from uvf.runtime.params import BadInput, load_yaml, nearest
+from schemas.topics import SYSTEM
+from uvf.runtime.params import BadInput, Place, load_yaml, nearest
 
-NotNegative = Annotated[float, Meta(ge=0)]
-VehicleName = Annotated[str, Meta(pattern="^(?!sys$)[a-z][a-z0-9_]*$")]
+NotNegative = Annotated[float, Meta(ge=0, le=1e6)]
+Metres = Annotated[float, Meta(ge=-1e6, le=1e6)]  # local coordinates stay near the origin
+VehicleName = Annotated[str, Meta(pattern="^[a-z][a-z0-9_]*$", max_length=40)]
+FolderName = Annotated[str, Meta(pattern="^[A-Za-z0-9_][A-Za-z0-9_.-]*$", max_length=80)]
 
 
 class Start(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Where and how fast a vehicle begins, world frame (ENU)."""
 
-    x: float  # m
-    y: float  # m
-    z: float = 0.0  # m
+    x: Metres
+    y: Metres
+    z: Metres = 0.0
     yaw: float = 0.0  # rad, from east, left positive
     speed: NotNegative = 0.0  # m/s
 
@@ -25,17 +28,17 @@ class Start(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 class Waypoint(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """One mission item as people write it; field meanings as in ``uvf.v1.MissionItem``."""
 
-    x: float = 0.0
-    y: float = 0.0
-    z: float = 0.0
+    x: Metres = 0.0
+    y: Metres = 0.0
+    z: Metres = 0.0
     kind: Literal["waypoint", "orbit", "return", "jump", "speed"] = "waypoint"
     acceptance_radius: NotNegative = 0.0  # m
     hold: NotNegative = 0.0  # s
-    radius: float = 0.0  # m
+    radius: Metres = 0.0
     turns: NotNegative = 0.0
     speed: NotNegative = 0.0  # m/s
-    jump_to: Annotated[int, Meta(ge=0)] = 0
-    repeat: int = 0
+    jump_to: Annotated[int, Meta(ge=0, le=65535)] = 0
+    repeat: Annotated[int, Meta(ge=-1, le=65535)] = 0  # -1 = for ever
 
 
 class Job(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -46,7 +49,7 @@ class Job(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class Vehicle(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    model: str
+    model: FolderName
     start: Start
     system_id: Annotated[int, Meta(ge=1, le=244)]
     job: Job = Job()
@@ -66,10 +69,10 @@ class MissionFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """The whole of a mission file."""
 
     about: str
-    world: str
-    vehicles: dict[VehicleName, Vehicle]
+    world: FolderName
+    vehicles: Annotated[dict[VehicleName, Vehicle], Meta(min_length=1)]
     seed: int = 1
-    duration: Annotated[float, Meta(gt=0)] = 120.0  # s
+    duration: Annotated[float, Meta(gt=0, le=1e6)] = 120.0  # s
     criteria: list[Criterion] = []
 
 
@@ -79,15 +82,39 @@ def load_mission(path: Path) -> MissionFile:
         known = [p.stem for p in path.parent.glob("*.yaml")] if path.parent.is_dir() else []
         raise BadInput(f"no mission '{path}'; {nearest(path.stem, known)}")
     mission = load_yaml(path, MissionFile)
+    file = Place(str(path))
+    _check_vehicles(mission.vehicles, file.at("vehicles"))
+    for i, criterion in enumerate(mission.criteria):
+        _check_criterion(criterion, mission.vehicles, file.at("criteria", i))
+    return mission
+
+
+def _check_vehicles(vehicles: dict[str, Vehicle], place: Place) -> None:
     ids: dict[int, str] = {}
-    for name, vehicle in mission.vehicles.items():
+    for name, vehicle in vehicles.items():
+        if name == SYSTEM:
+            raise BadInput(f"{place.at(name)}: '{SYSTEM}' stands for the system itself; choose another name")
         if vehicle.system_id in ids:
-            raise BadInput(f"{path}: {name} and {ids[vehicle.system_id]} both have system_id {vehicle.system_id}")
+            other = ids[vehicle.system_id]
+            raise BadInput(f"{place.at(name, 'system_id')}: {name} and {other} both have system_id {vehicle.system_id}; change one")
         ids[vehicle.system_id] = name
         for role, other in vehicle.roles.items():
-            if other not in mission.vehicles:
-                raise BadInput(f"{path}: {name}: role {role}: no vehicle '{other}'; {nearest(other, mission.vehicles)}")
-    for criterion in mission.criteria:
-        if criterion.vehicle not in mission.vehicles:
-            raise BadInput(f"{path}: criteria: no vehicle '{criterion.vehicle}'; {nearest(criterion.vehicle, mission.vehicles)}")
-    return mission
+            if other not in vehicles:
+                raise BadInput(f"{place.at(name, 'roles', role)}: no vehicle '{other}'; {nearest(other, vehicles)}")
+        _check_jumps(vehicle.job.mission, place.at(name, "job", "mission"))
+
+
+def _check_jumps(items: list[Waypoint], place: Place) -> None:
+    for i, item in enumerate(items):
+        if item.kind == "jump" and item.jump_to >= len(items):
+            raise BadInput(f"{place.at(i)}: jumps to {item.jump_to}, but the last item is {len(items) - 1} (the first is 0)")
+
+
+def _check_criterion(criterion: Criterion, vehicles: dict[str, Vehicle], place: Place) -> None:
+    if criterion.vehicle not in vehicles:
+        raise BadInput(f"{place}: no vehicle '{criterion.vehicle}'; {nearest(criterion.vehicle, vehicles)}")
+    low, high = criterion.at_least, criterion.at_most
+    if low is None and high is None:
+        raise BadInput(f"{place}: no limit: give at_least, at_most or both")
+    if low is not None and high is not None and low > high:
+        raise BadInput(f"{place}: at_least {low:g} is above at_most {high:g}: nothing can pass")

@@ -3,28 +3,48 @@
 import difflib
 import math
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from pathlib import Path
-from typing import Any, TypeVar, get_args, get_origin, get_type_hints
+from types import UnionType
+from typing import Annotated, Any, NamedTuple, TypeVar, Union, get_args, get_origin, get_type_hints
 
 import msgspec
 import yaml
 
 T = TypeVar("T")
+Key = str | int
 
 
 class BadInput(Exception):
     """Something from outside (file, argument, message) is wrong; the text says what, where and how to mend it."""
 
 
+class Place(NamedTuple):
+    """A spot in a file of data. As text: ``file:line: vehicles: burger: job: mission[4]``."""
+
+    file: str
+    keys: tuple[Key, ...] = ()
+
+    def at(self, *keys: Key) -> "Place":
+        return Place(self.file, (*self.keys, *keys))
+
+    def __str__(self) -> str:
+        line = _line(self.file, self.keys)
+        text = f"{self.file}:{line}" if line else self.file
+        for i, key in enumerate(self.keys):
+            text += f"[{key}]" if isinstance(key, int) and i > 0 else f": {key}"
+        return text
+
+
 class _Loader(yaml.SafeLoader):
     """YAML 1.2 where 1.1 surprises: ``1e3`` is a number, and a key given twice is an error."""
 
     def construct_mapping(self, node: Any, deep: bool = False) -> dict[Any, Any]:
-        keys = [key.value for key, _ in node.value]
-        for key in keys:
-            if keys.count(key) > 1 and key != "<<":
-                raise yaml.constructor.ConstructorError(None, None, f"key '{key}' is given twice", node.start_mark)
+        seen = set()
+        for key, _ in node.value if isinstance(node, yaml.MappingNode) else ():
+            if isinstance(key, yaml.ScalarNode) and key.value in seen and key.value != "<<":
+                raise yaml.constructor.ConstructorError(None, None, f"key '{key.value}' is given twice", key.start_mark)
+            seen.add(str(key.value))
         return super().construct_mapping(node, deep)
 
 
@@ -34,27 +54,28 @@ _Loader.add_implicit_resolver("tag:yaml.org,2002:float", re.compile(r"[-+]?(\d+(
 def load_yaml(path: Path, type_: type[T]) -> T:
     """Reads a YAML file into a msgspec Struct. Raises BadInput."""
     try:
-        text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        raise BadInput(f"{path}: cannot be read: {error}") from error
-    try:
-        data = yaml.load(text, _Loader)
+        data = yaml.load(path.read_text(encoding="utf-8"), _Loader)
+        if data is None:
+            raise BadInput(f"{path}: the file is empty")
+        return convert(data, type_, str(path))
+    except OSError as error:
+        raise BadInput(f"{path}: cannot be read: {error.strerror}") from error
+    except UnicodeDecodeError as error:
+        raise BadInput(f"{path}: cannot be read: it is not text in UTF-8") from error
     except RecursionError as error:
         raise BadInput(f"{path}: nested too deeply") from error
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         place = f"{path}:{mark.line + 1}" if mark else str(path)
-        raise BadInput(f"{place}: not valid YAML: {getattr(error, 'problem', error)}") from error
-    return convert(data if data is not None else {}, type_, str(path))
+        raise BadInput(f"{place}: not valid YAML: {_one_line(getattr(error, 'problem', None) or error)}") from error
+    except (ValueError, TypeError, AttributeError) as error:  # what PyYAML lets through: 2020-13-45, !!int x, !!timestamp x
+        raise BadInput(f"{path}: not valid YAML: {_one_line(error)}") from error
 
 
-def convert(data: Any, type_: type[T], place: str) -> T:
-    """Plain data into ``type_``; ``place`` begins the error's line. Raises BadInput."""
-    _refuse_unknown(data, type_, place)
-    try:
-        return msgspec.convert(data, type_)
-    except msgspec.ValidationError as error:
-        raise BadInput(f"{place}: {error}") from error
+def convert(data: Any, type_: type[T], file: str, keys: tuple[Key, ...] = ()) -> T:
+    """Plain data, which came from ``keys`` of ``file``, into ``type_``. Raises BadInput."""
+    _check(data, type_, Place(file, keys))
+    return msgspec.convert(data, type_)
 
 
 def nearest(name: str, known: Iterable[str]) -> str:
@@ -64,24 +85,63 @@ def nearest(name: str, known: Iterable[str]) -> str:
     return f"did you mean '{close[0]}'?" if close else f"there are: {', '.join(choices) or 'none'}"
 
 
-def _refuse_unknown(data: Any, type_: Any, place: str) -> None:
-    """msgspec names an unknown key but not the right one: walk the data beside the types first. No number is not finite."""
+def _check(data: Any, hint: Any, place: Place) -> None:
+    """Inner parts first, so that what is refused is named where it stands; no number is not finite."""
+    for key, value, inner in _parts(data, hint, place):
+        _check(value, inner, place.at(key))
     if isinstance(data, float) and not math.isfinite(data):
         raise BadInput(f"{place}: {data} is no number to work with")
-    origin = get_origin(type_)
-    if isinstance(type_, type) and issubclass(type_, msgspec.Struct) and isinstance(data, dict):
-        hints = get_type_hints(type_)
+    try:
+        msgspec.convert(data, hint)
+    except msgspec.ValidationError as error:
+        raise BadInput(f"{place}: {str(error).partition(' - at `$')[0]}") from error
+
+
+def _parts(data: Any, hint: Any, place: Place) -> Iterator[tuple[Any, Any, Any]]:
+    """(key, value, type) of what ``data`` consists of, as far as it has the shape of its type."""
+    origin = get_origin(hint)
+    if origin is Annotated:
+        yield from _parts(data, get_args(hint)[0], place)
+    elif origin in (Union, UnionType):
+        if data is not None:
+            yield from _parts(data, next(a for a in get_args(hint) if a is not type(None)), place)
+    elif isinstance(data, dict) and isinstance(hint, type) and issubclass(hint, msgspec.Struct):
+        hints = get_type_hints(hint, include_extras=True)
         for key, value in data.items():
             if key not in hints:
-                raise BadInput(f"{place}: unknown key '{key}'; {nearest(str(key), hints)}")
-            _refuse_unknown(value, hints[key], f"{place}: {key}")
-    elif origin is dict and isinstance(data, dict):
-        for key, value in data.items():
-            _refuse_unknown(value, get_args(type_)[1], f"{place}: {key}")
-    elif origin in (list, tuple) and isinstance(data, list):
-        for index, value in enumerate(data):
-            _refuse_unknown(value, get_args(type_)[0], f"{place}[{index}]")
-    elif origin is not None:
-        for argument in get_args(type_):
-            if isinstance(argument, type) and (issubclass(argument, msgspec.Struct) or isinstance(data, float)):
-                _refuse_unknown(data, argument, place)
+                raise BadInput(f"{place.at(key)}: unknown key '{key}'; {nearest(str(key), hints)}")
+            yield key, value, hints[key]
+    elif isinstance(data, dict) and origin is dict:
+        yield from ((key, value, get_args(hint)[1]) for key, value in data.items())
+    elif isinstance(data, list) and origin in (list, tuple):
+        yield from ((i, value, get_args(hint)[0]) for i, value in enumerate(data))
+
+
+def _line(file: str, keys: tuple[Key, ...]) -> int:
+    """The line of a spot in a YAML file, or of the nearest part about it that is written there; 0 = unknown."""
+    try:
+        node = yaml.compose(Path(file).read_text(encoding="utf-8"), _Loader)
+    except (OSError, ValueError, yaml.YAMLError):
+        return 0
+    if node is None:
+        return 0
+    line: int = node.start_mark.line + 1 if keys else 0
+    for key in keys:
+        found = _inside(node, key)
+        if found is None:
+            break
+        line, node = found
+    return line
+
+
+def _inside(node: Any, key: Key) -> tuple[int, Any] | None:
+    """(line, node) of one entry of a mapping or a sequence."""
+    if isinstance(node, yaml.MappingNode):
+        return next(((k.start_mark.line + 1, v) for k, v in node.value if k.value == str(key)), None)
+    if isinstance(node, yaml.SequenceNode) and isinstance(key, int) and key < len(node.value):
+        return node.value[key].start_mark.line + 1, node.value[key]
+    return None
+
+
+def _one_line(text: object) -> str:
+    return " ".join(str(text).split())

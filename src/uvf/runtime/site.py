@@ -1,6 +1,8 @@
 """Everything a service is built from: the mission with its world and vehicles, loaded and checked once."""
 
 import hashlib
+import itertools
+import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -9,12 +11,13 @@ from typing import Protocol, TypeVar
 import numpy as np
 
 from uvf.runtime.mission_file import MissionFile, Vehicle, load_mission
-from uvf.runtime.params import convert
+from uvf.runtime.params import BadInput, Place, convert
 from uvf.runtime.service import Params, Service
 from uvf.runtime.vehicle_file import VehicleFile, load_vehicle
 from uvf.runtime.world_file import WorldFile, load_world
 
 ROOT = Path(__file__).resolve().parents[3]
+AIRCRAFT_RADIUS = 1.5  # m, about the half span of a small one
 P = TypeVar("P", bound=Params)
 
 
@@ -29,8 +32,7 @@ class Member:
 
     def params(self, service: str, type_: type[P]) -> P:
         """The parameters that this vehicle's file sets for a service, the rest by default. Raises BadInput."""
-        place = f"{self.folder / 'vehicle.yaml'}: params: {service}"
-        return convert(self.file.params.get(service, {}), type_, place)
+        return convert(self.file.params.get(service, {}), type_, str(self.folder / "vehicle.yaml"), ("params", service))
 
 
 @dataclass(frozen=True)
@@ -70,6 +72,32 @@ class Build(Protocol):
     def __call__(self, site: Site) -> list[Host]: ...
 
 
+def check_starts(site: Site) -> None:
+    """Every vehicle begins in its world and none inside another one. Raises BadInput."""
+    x_min, y_min, x_max, y_max = site.world.floor
+    place = Place(str(site.mission_path)).at("vehicles")
+    for name, member in site.members.items():
+        start, body = member.entry.start, member.file.ground
+        if body is not None and not (x_min <= start.x <= x_max and y_min <= start.y <= y_max):
+            floor = f"x {x_min:g}..{x_max:g}, y {y_min:g}..{y_max:g}"
+            raise BadInput(f"{place.at(name, 'start')}: ({start.x:g}, {start.y:g}) is not on the floor of {site.mission.world}: {floor}")
+        if start.z < 0:
+            raise BadInput(f"{place.at(name, 'start', 'z')}: {start.z:g} m is under the ground; the ground is 0")
+    for (one, a), (other, b) in itertools.combinations(site.members.items(), 2):
+        apart = math.dist(_position(a), _position(b))
+        if apart < _radius(a) + _radius(b):
+            raise BadInput(f"{place.at(other, 'start')}: {other} begins {apart:.2f} m from {one}, which is inside it; move one of them")
+
+
+def _position(member: Member) -> tuple[float, float, float]:
+    start = member.entry.start
+    return start.x, start.y, start.z if member.file.air is not None else 0.0
+
+
+def _radius(member: Member) -> float:
+    return member.file.ground.radius if member.file.ground is not None else AIRCRAFT_RADIUS
+
+
 def load_site(mission: Path, root: Path = ROOT) -> Site:
     """Loads a mission file and all that it names. Raises BadInput."""
     data = load_mission(mission)
@@ -77,4 +105,6 @@ def load_site(mission: Path, root: Path = ROOT) -> Site:
         name: Member(name, entry, load_vehicle(root / "vehicles", entry.model), root / "vehicles" / entry.model)
         for name, entry in data.vehicles.items()
     }
-    return Site(mission, data, load_world(root / "worlds", data.world), root / "worlds" / data.world, members)
+    site = Site(mission, data, load_world(root / "worlds", data.world), root / "worlds" / data.world, members)
+    check_starts(site)
+    return site

@@ -107,9 +107,9 @@ def _distance(solids: Slice, x: Floats, y: Floats) -> Floats:
     return nearest
 
 
-def clearance(world: WorldFile, x: float, y: float, height: float = 0.2) -> float:
-    """Distance [m] from a point to the nearest solid that reaches below ``height``; 0 inside one."""
-    return float(_distance(slice_between(world, 0.001, height), np.array([x]), np.array([y]))[0])
+def clearance(world: WorldFile, x: float, y: float, heights: tuple[float, float] = (0.001, 0.2)) -> float:
+    """Distance [m] from a point to the nearest solid between two ``heights`` [m, world]; 0 inside one."""
+    return float(_distance(slice_between(world, *heights), np.array([x]), np.array([y]))[0])
 
 
 def reachable_floor(plan: FloorPlan, x: float, y: float, radius: float) -> Mask:
