@@ -99,7 +99,7 @@ _Q = Qos
 CLOCK = Topic(f"{_S}/time/clock", m.Clock, 100, _Q.LOCKSTEP, "simulation time, from the conductor", kept=True)
 DONE = Topic(f"{_S}/time/done/<source>", m.Done, 100, _Q.LOCKSTEP, "a participant has reached this time", logged=False)
 STOP = Topic(f"{_S}/cmd/<source>", m.StopCommand, 0, _Q.LATCHED, "STOP ALL and its release", across_epochs=True)
-PROCESSES = Topic(f"{_S}/state/processes", m.Processes, 0, _Q.LATCHED, "what runs, from the launcher", logged=False)
+PROCESSES = Topic(f"{_S}/state/processes/<source>", m.Processes, 0, _Q.LATCHED, "what runs", logged=False, across_epochs=True)
 HEALTH = Topic(f"{_S}/state/health/<source>", m.Health, 2, _Q.STATE, "sign of life and counters of a process", logged=False)
 SYSTEM_EVENTS = Topic(f"{_S}/state/events/<source>", m.Event, 0, _Q.EVENT, "what happened to the system")
 

@@ -206,10 +206,10 @@ def event_log(lines: Sequence[Line]) -> str:
 
 
 def processes(model: Model) -> str:
-    if model.processes is None or not model.processes.processes:
+    if not model.processes:
         return "<div class='g-empty'>No launcher has spoken; services may have been started by hand</div>"
     rows = []
-    for p in model.processes.processes:
+    for _, p in sorted(model.processes.items()):
         state = Process.State.Name(p.state).lower()
         style = {"running": "good", "failed": "bad", "ended": "idle"}.get(state, "warn")
         more = f" · {p.restarts} restarts" if p.restarts else ""

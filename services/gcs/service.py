@@ -41,7 +41,7 @@ class GroundStation(Service):
     clock = "wall"
     inputs = {
         "clock": optional(topics.CLOCK),
-        "processes": optional(topics.PROCESSES),
+        "processes": optional(every(topics.PROCESSES.by("*"))),
         "stops": optional(topics.STOP.by("*")),
         "nav": each_vehicle(topics.NAV_STATE),
         "pose": each_vehicle(topics.POSE),
@@ -71,7 +71,7 @@ class GroundStation(Service):
         self,
         t: float,
         clock: Clock | None,
-        processes: Processes | None,
+        processes: Sequence[Processes],
         stops: StopCommand | None,
         events: Mapping[str, Sequence[Event]],
         goal: Sequence[Answer[Any, Any]],
@@ -108,7 +108,7 @@ class GroundStation(Service):
             "world_from_map": world_from_map,
         }
         self._model.hear_clock(t, clock)
-        self._model.processes = processes
+        self._model.hear_processes(processes)
         self._model.hear_stop(stops)
         for what, messages in newest.items():
             self._model.hear(t, what, messages)

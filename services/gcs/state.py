@@ -24,6 +24,7 @@ from schemas.messages import (
     Odometry,
     PoseInFrame,
     PosesInFrame,
+    Process,
     Processes,
     StopCommand,
     VehicleStatus,
@@ -150,7 +151,7 @@ class Model:
         self.layers = set(LAYERS) - {"True pose"}
         self.clock: Clock | None = None
         self.clock_at: float | None = None
-        self.processes: Processes | None = None
+        self.processes: dict[str, Process] = {}
         self.stop: StopCommand | None = None
         self._stop_heard: StopCommand | None = None
         self.log: deque[Line] = deque(maxlen=LOG_LENGTH)
@@ -193,6 +194,10 @@ class Model:
                 vehicle.goal_asked = None
             self.note("", "the simulation has started afresh")
         self.clock, self.clock_at = clock, t
+
+    def hear_processes(self, told: Sequence[Processes]) -> None:
+        """Each launcher tells of its own; together they are what runs."""
+        self.processes |= {process.name: process for message in told for process in message.processes}
 
     def hear_stop(self, stop: StopCommand | None) -> None:
         """The newest STOP ALL or release of all sources holds, also over our own."""

@@ -54,7 +54,7 @@ class System:
 
     def children(self):
         """The processes of the run by name, as the launcher tells them."""
-        return {p.name: p for p in self.client.read("sys", topics.PROCESSES).processes}
+        return {p.name: p for p in self.client.read("sys", topics.PROCESSES.by("launcher")).processes}
 
     def kill(self, name):
         """kill -9, and wait until the launcher has started it again; returns how long that took [s]."""

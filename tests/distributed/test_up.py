@@ -93,6 +93,16 @@ def test_a_process_that_hangs_is_ended_and_started_again(system):
     system.client.wait(lambda: system.children()["planner"].restarts > hung.restarts, 20.0, "the planner hangs")
 
 
+@pytest.mark.parametrize("name", ["conductor", "recorder", "router"])
+def test_whoever_hangs_is_ended_and_time_goes_on_without_a_new_epoch(system, name):
+    epoch, hung = system.client.read("sys", topics.CLOCK).epoch, system.children()[name]
+    os.kill(hung.pid, signal.SIGSTOP)
+    system.client.wait(lambda: system.children()[name].restarts > hung.restarts, 20.0, f"the {name} hangs")
+    then = system.client.time
+    system.client.wait(lambda: system.client.time > then + 3.0, 20.0, "time stands")
+    assert system.client.read("sys", topics.CLOCK).epoch == epoch
+
+
 def test_stop_all_stops_the_rover_and_lets_the_aircraft_loiter_until_released(system):
     stop = topics.STOP.by("client")
     system.client.send("sys", stop, StopCommand(engaged=True, source="client"))

@@ -4,7 +4,7 @@ import socket
 
 import pytest
 
-from uvf.runtime.address import Address, address_from, claim
+from uvf.runtime.address import Address, address_from, claim, claim_router, refusal
 from uvf.runtime.params import BadInput
 
 
@@ -33,7 +33,16 @@ def test_a_taken_port_is_named_with_a_way_out():
         port = other.getsockname()[1]
         with pytest.raises(BadInput, match=rf"127\.0\.0\.1:{port}.*UVF_GCS_PORT=8081"):
             claim(Address("127.0.0.1", port))
+        with pytest.raises(BadInput, match=f"port {port} for the router is taken.*UVF_ROUTER=tcp/"):
+            claim_router(f"tcp/127.0.0.1:{port}")
+        assert "in use" in refusal("127.0.0.1", port)
     claim(Address("127.0.0.1", port))
+    claim_router(f"tcp/127.0.0.1:{port}")
+
+
+def test_an_address_of_the_newer_kind_is_asked_for_too():
+    """Where this machine has none, the reason says so; it is not taken for a broken address."""
+    assert refusal("[::1]", 1) in ("", "Cannot assign requested address", "Address family not supported by protocol")
 
 
 def test_the_token_can_be_chosen_and_for_a_container_left_empty():

@@ -49,13 +49,15 @@ def up(
     """Start a whole mission: every service in its own process, watched over, until Ctrl-C."""
     from uvf.launch import settings
     from uvf.launch.runs import new_run
-    from uvf.launch.up import Wanted, check_ports
+    from uvf.launch.up import Wanted
     from uvf.launch.up import up as run_up
-    from uvf.runtime.address import address_from
+    from uvf.runtime.address import address_from, claim, claim_router, router_from
 
     with bad_input_is_one_line():
         path = settings.mission_path(mission)
-        check_ports(gcs)
+        claim_router(router_from())
+        if gcs:
+            claim(address_from())
         folder = new_run()
         say(f"mission {path.stem}; logs in {folder}")
         if gcs:
@@ -95,6 +97,15 @@ def service(
         run_conductor(mission, rate, lockstep)
     else:
         run_service(name, mission, vehicle, lockstep)
+
+
+@app.command(context_settings={"allow_extra_args": True, "ignore_unknown_options": True})
+def supervise(context: typer.Context) -> None:
+    """Run 'service NAME ...', 'router ...' or 'record ...', started again when it dies; for containers."""
+    from uvf.launch.supervise import supervise as run_supervised
+
+    with bad_input_is_one_line():
+        raise typer.Exit(run_supervised(context.args, say))
 
 
 @app.command()

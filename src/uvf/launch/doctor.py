@@ -3,12 +3,11 @@
 import importlib
 import importlib.metadata
 import shutil
-import socket
 import sys
 from collections.abc import Callable, Iterator
 
 from uvf.launch import settings
-from uvf.runtime.address import address_from, host_and_port, router_from
+from uvf.runtime.address import address_from, host_and_port, refusal, router_from
 from uvf.runtime.params import BadInput
 
 WHEELS = ("zenoh", "pybullet", "jsbsim", "pymavlink", "viser", "numba", "mcap", "filterpy")
@@ -45,10 +44,9 @@ def _wheels() -> Iterator[Finding]:
 def _ports() -> Iterator[Finding]:
     page = address_from()
     for host, port, what in ((*host_and_port(router_from()), "router"), (page.host, page.port, "page")):
-        with socket.socket() as probe:
-            taken = probe.connect_ex((host, port)) == 0
+        reason = refusal(host, port)
         # A taken port is what a running system looks like: worth a line, not a fault.
-        yield True, f"port {port} ({what}): {'in use, UVF may be running' if taken else 'free'}"
+        yield True, f"port {port} ({what}): {f'{reason}; UVF may be running' if reason else 'free'}"
 
 
 def _zenoh() -> Iterator[Finding]:

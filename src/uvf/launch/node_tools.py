@@ -4,17 +4,25 @@ from collections import defaultdict
 
 import typer
 
+from schemas import topics
+from schemas.messages import Process
+from uvf.client import Client
 from uvf.runtime.address import router_from
 from uvf.runtime.bus import matches
 from uvf.runtime.zenoh_bus import ZenohBus
 
 
 def list_nodes() -> None:
-    """One line for each living service instance."""
+    """One line for each living service instance, then one for each process that a launcher looks after."""
     with ZenohBus(router_from(), timeout=3.0) as bus:
-        for token in bus.tokens("@node/**"):
-            _, owner, service, boot = token.split("/")
+        nodes = [token.split("/")[1:] for token in bus.tokens("@node/**")]
+        for owner, service, boot in nodes:
             typer.echo(f"{owner:12} {service:18} boot {boot}")
+        client = Client(bus)
+        for launcher in (service for _, service, _ in nodes if service.startswith("launcher")):
+            for p in client.read("sys", topics.PROCESSES.by(launcher)).processes:
+                state = Process.State.Name(p.state).lower()
+                typer.echo(f"{'process':12} {p.name:18} {state}, pid {p.pid}, started again {p.restarts} times {p.reason}".rstrip())
 
 
 def graph() -> None:

@@ -1,5 +1,6 @@
-"""Keeps the processes of a run alive: starts them, starts them again when they die, ends them all."""
+"""Keeps processes alive: starts them, starts them again when they die or hang, ends them all."""
 
+import contextlib
 import os
 import subprocess
 import sys
@@ -8,27 +9,35 @@ from collections import deque
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from schemas.messages import Process
-from uvf.launch.worker import PARENT
+from uvf.launch.output import Output, Write
+from uvf.launch.worker import ALIVE_FILE, PARENT
 
 DEATHS = 3
 DEATH_WINDOW = 30.0  # s: this many deaths within it, and a process is given up
 BAD_INPUT = 2  # exit code: starting it again cannot help
 TERM_PATIENCE = 5.0  # s
+HANGS = 10.0  # s without a sign of life
 
 
 @dataclass
 class Child:
-    """One process: its command line, its log file and its history."""
+    """One process: its command line, where its output goes, its sign of life and its history."""
 
     name: str
     arguments: list[str]
-    log: Path
+    write: Write
+    alive: Path
+    """Touched each second by the process's main loop, once that has begun."""
     popen: subprocess.Popen[bytes] | None = None
+    output: Output | None = None
+    touched: int | None = None  # ns, of the file's own clock: only looked at for a change
+    heard: float = 0.0  # s, when that changed
+    hung: bool = False
     state: Process.State = Process.STARTING
     restarts: int = 0
-    log_before: int = 0  # bytes in the log when it was started
     reason: str = ""
     deaths: deque[float] = field(default_factory=lambda: deque(maxlen=DEATHS))
 
@@ -36,50 +45,64 @@ class Child:
         pid = self.popen.pid if self.popen else 0
         return Process(name=self.name, state=self.state, pid=pid, restarts=self.restarts, reason=self.reason)
 
+    def is_silent(self, now: float) -> bool:
+        """Whether its loop has begun and has not gone round for ``HANGS``; now [s, monotonic]."""
+        touched = None
+        with contextlib.suppress(FileNotFoundError):
+            touched = self.alive.stat().st_mtime_ns
+        if touched != self.touched:
+            self.touched, self.heard = touched, now
+        return touched is not None and now - self.heard > HANGS
+
 
 class Supervisor:
     """Processes by name. ``tell(line, given_up)`` hears of every death."""
 
-    def __init__(self, logs: Path, tell: Callable[[str, bool], None], environment: Mapping[str, str] | None = None) -> None:
+    def __init__(self, tell: Callable[[str, bool], None], environment: Mapping[str, str] | None = None) -> None:
         self.children: dict[str, Child] = {}
-        self._logs = logs
         self._tell = tell
+        self._alive = TemporaryDirectory(prefix="uvf-")
         self._environment = {**os.environ, **(environment or {}), PARENT: str(os.getpid()), "PYTHONUNBUFFERED": "1"}
 
-    def start(self, name: str, arguments: list[str]) -> None:
-        """Starts ``uvf <arguments>`` with its output in ``<name>.log``."""
-        child = Child(name, arguments, self._logs / f"{name}.log")
+    def start(self, name: str, arguments: list[str], write: Write) -> None:
+        """Starts ``uvf <arguments>`` and hands on what it prints, line by line."""
+        child = Child(name, arguments, write, Path(self._alive.name) / f"{name}.alive")
         self.children[name] = child
         self._spawn(child)
 
     def _spawn(self, child: Child) -> None:
-        with child.log.open("ab") as log:
-            child.log_before = log.tell()
-            child.popen = subprocess.Popen(
-                [sys.executable, "-m", "uvf.launch.cli", *child.arguments],
-                stdin=subprocess.DEVNULL,
-                stdout=log,
-                stderr=log,
-                env=self._environment,
-                start_new_session=True,  # Ctrl-C in the terminal reaches only the launcher, which ends all in order
-            )
+        child.alive.unlink(missing_ok=True)
+        child.touched, child.hung = None, False
+        child.popen = subprocess.Popen(
+            [sys.executable, "-m", "uvf.launch.cli", *child.arguments],
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            env={**self._environment, ALIVE_FILE: str(child.alive)},
+            process_group=0,  # Ctrl-C in the terminal reaches only the launcher; a session of its own would void its nice value
+        )
+        assert child.popen.stdout is not None
+        child.output = Output(child.popen.stdout, child.write)
         child.state = Process.RUNNING
 
     def look(self) -> bool:
-        """Starts again what has died; True when something has changed."""
+        """Starts again what has died and ends what hangs, to be started again; True when something has changed."""
         changed = False
         for child in self.children.values():
-            if child.state == Process.RUNNING and child.popen is not None and child.popen.poll() is not None:
-                self._died(child, child.popen.returncode)
+            if child.state != Process.RUNNING:
+                continue
+            popen = _popen(child)
+            if popen.poll() is not None:
+                self._died(child, popen.returncode)
                 changed = True
+            elif child.is_silent(time.monotonic()):
+                child.hung = True
+                popen.kill()
         return changed
 
     def _died(self, child: Child, code: int) -> None:
         child.deaths.append(time.monotonic())
-        child.reason = f"ended by signal {-code}" if code < 0 else f"ended with exit code {code}"
-        last = last_line(child.log, child.log_before) if code >= 0 else ""
-        if last:
-            child.reason += f": {last}"
+        child.reason = _reason(child, code)
         often = len(child.deaths) == DEATHS and child.deaths[-1] - child.deaths[0] < DEATH_WINDOW
         if code == BAD_INPUT or often:
             child.state = Process.FAILED
@@ -89,23 +112,36 @@ class Supervisor:
         self._spawn(child)
         self._tell(f"{child.name} {child.reason}; started again", False)
 
-    def kill(self, name: str) -> None:
-        """Ends a process that does not answer; ``look`` starts it again."""
-        child = self.children.get(name)
-        if child is not None and child.popen is not None and child.state == Process.RUNNING:
-            child.popen.kill()
+    def describe(self) -> list[Process]:
+        return [child.describe() for child in self.children.values()]
 
-    def stop(self) -> None:
-        """Ends all, the infrastructure last; what does not end in time is killed."""
-        running = [c for c in self.children.values() if c.popen is not None and c.popen.poll() is None]
-        last = [c for c in running if c.name == "router"]
-        for group in ([c for c in running if c not in last], last):
-            for child in group:
-                _popen(child).terminate()
-            deadline = time.monotonic() + TERM_PATIENCE
-            for child in group:
-                _wait(_popen(child), deadline)
-                child.state = Process.ENDED
+    def end(self, but: str = "") -> None:
+        """Ends all, or all but one; what does not end in time is killed."""
+        running = [c for c in self.children.values() if c.name != but and _popen(c).poll() is None]
+        for child in running:
+            _popen(child).terminate()
+        deadline = time.monotonic() + TERM_PATIENCE
+        for child in running:
+            _wait(_popen(child), deadline)
+            _output(child).finish()
+            child.state = Process.ENDED
+        if not but:
+            self._alive.cleanup()
+
+
+def _reason(child: Child, code: int) -> str:
+    if child.hung:
+        return f"was silent for {HANGS:g} s and has been ended"
+    if code < 0:
+        return f"ended by signal {-code}"
+    _output(child).finish()
+    last = _output(child).last
+    return f"ended with exit code {code}" + (f": {last}" if last else "")
+
+
+def _output(child: Child) -> Output:
+    assert child.output is not None
+    return child.output
 
 
 def _popen(child: Child) -> subprocess.Popen[bytes]:
@@ -119,14 +155,3 @@ def _wait(popen: subprocess.Popen[bytes], deadline: float) -> None:
     except subprocess.TimeoutExpired:
         popen.kill()
         popen.wait()
-
-
-def last_line(log: Path, since: int = 0) -> str:
-    """The last non-empty line of a log file after ``since`` bytes: mostly the reason of a death."""
-    try:
-        with log.open("rb") as file:
-            file.seek(max(file.seek(0, os.SEEK_END) - 2000, since))
-            lines = file.read().decode(errors="replace").splitlines()
-    except OSError:
-        return ""
-    return next((line.strip()[:200] for line in reversed(lines) if line.strip()), "")

@@ -39,10 +39,11 @@ class Worker:
         return self._parent != 0 and os.getppid() != self._parent
 
     def goes_on(self) -> bool:
-        """Not orphaned; asked in the main loop, it also shows container health checks that the loop goes round."""
+        """Not orphaned; asked in the main loop, it also shows the launcher that the loop goes round."""
         now = time.monotonic()
         if self._alive is not None and now - self._touched > 1:
-            self._alive.touch()
+            with contextlib.suppress(OSError):  # a full disk shall stop nobody
+                self._alive.touch()
             self._touched = now
         return not self.orphaned()
 

@@ -62,11 +62,28 @@ def address_from(environment: Mapping[str, str] = os.environ) -> Address:
 
 
 def claim(address: Address) -> None:
-    """Fails loudly when the port cannot be had; viser would take the next one without a word. Raises BadInput."""
-    with socket.socket(socket.AF_INET6 if ":" in address.host else socket.AF_INET) as probe:
+    """Fails loudly when the page's port cannot be had; viser would take the next one without a word. Raises BadInput."""
+    _claim(address.host, address.port, "the page", f"{PORT}=8081")
+
+
+def claim_router(endpoint: str) -> None:
+    """The same of the router's port. Raises BadInput."""
+    _claim(*host_and_port(endpoint), "the router", f"{ROUTER}=tcp/127.0.0.1:7448")
+
+
+def _claim(host: str, port: int, what: str, mend: str) -> None:
+    reason = refusal(host, port)
+    if reason:
+        line = f"port {port} for {what} is taken ({host}:{port}: {reason}): is another 'uvf up' running? Choose another with {mend}"
+        raise BadInput(line)
+
+
+def refusal(host: str, port: int) -> str:
+    """Why nobody can listen there now; empty when one can."""
+    with socket.socket(socket.AF_INET6 if ":" in host else socket.AF_INET) as probe:
         probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
-            probe.bind((address.host, address.port))
+            probe.bind((host.strip("[]"), port))
         except OSError as error:
-            place = f"{address.host}:{address.port}"
-            raise BadInput(f"gcs: cannot serve the page on {place}: {error.strerror}; choose another port: {PORT}=8081") from error
+            return error.strerror or str(error)
+    return ""

@@ -118,10 +118,24 @@ def test_a_refused_order_is_shown_escaped():
 
 def test_processes_are_listed_with_their_state(station):
     listed = [Process(name="slam", state=Process.RUNNING), Process(name="gcs", state=Process.FAILED, restarts=3, reason="port")]
-    station.script.put("sys", topics.PROCESSES, Processes(processes=listed), 1.0)
+    station.script.put("sys", topics.PROCESSES.by("launcher"), Processes(processes=listed), 1.0)
     station.run(0.5)
     html = station.page.now.html["processes"]
     assert "slam" in html and "running" in html and "failed" in html and "3 restarts" in html and "port" in html
+
+
+def test_what_several_launchers_tell_is_one_list_and_the_newest_word_counts(station):
+    def told(launcher, t, *processes):
+        station.script.put("sys", topics.PROCESSES.by(launcher), Processes(processes=processes), t)
+
+    told("launcher.slam", 1.0, Process(name="slam", state=Process.RUNNING))
+    told("launcher.planner", 1.0, Process(name="planner", state=Process.RUNNING))
+    station.run(0.5)
+    told("launcher.slam", 1.5, Process(name="slam", state=Process.FAILED, restarts=2))
+    station.run(0.5)
+    html = station.page.now.html["processes"]
+    assert html.index("planner") < html.index("running") < html.index("slam") < html.index("failed") < html.index("2 restarts")
+    assert html.count("running") == 1
 
 
 def test_the_newest_event_is_on_top(station):
@@ -135,7 +149,7 @@ def test_the_newest_event_is_on_top(station):
 def test_text_from_the_bus_is_never_markup(station):
     station.script.say(UGV, EVIL, Event.WARNING, t=1.0)
     station.script.put("sys", topics.CLOCK, Clock(t_ns=10**9, waiting_for=EVIL), 1.0)
-    station.script.put("sys", topics.PROCESSES, Processes(processes=[Process(name=EVIL, reason=EVIL)]), 1.0)
+    station.script.put("sys", topics.PROCESSES.by("launcher"), Processes(processes=[Process(name=EVIL, reason=EVIL)]), 1.0)
     for vehicle in station.model.vehicles.values():
         vehicle.status.command_source = vehicle.status.reason = EVIL
     station.model.vehicles[UGV].nav_status.job = station.model.vehicles[UGV].nav_status.reason = EVIL

@@ -1,0 +1,118 @@
+"""What a launcher says on the bus, as each container has one: deaths, STOP ALL, what runs."""
+
+import os
+import signal
+
+import pytest
+
+import uvf
+from schemas import topics
+from schemas.messages import Clock, Event, Process
+from tests.runtime.modes import free_port
+from uvf.launch.launcher import Launcher
+from uvf.launch.supervisor import DEATHS
+from uvf.runtime.zenoh_bus import ZenohBus, open_router
+
+NAME = "launcher.recorder"
+CLOCK = Clock(tick=500, t_ns=5_000_000_000, epoch=3)
+PATIENCE = 20.0
+
+
+class Scene:
+    """A router, a clock that stands in its third epoch, a launcher around a recorder, and who listens."""
+
+    def __init__(self, endpoint, folder):
+        self.said, self.heard = [], []
+        self.bus = ZenohBus(endpoint, timeout=5.0)
+        self.client = uvf.connect(endpoint)
+        for topic in (topics.STOP, topics.SYSTEM_EVENTS, topics.PROCESSES):
+            self.bus.subscribe(topic.by("*").at("sys"), topic.qos, self.heard.append, depth=100)
+        self.clock = self.bus.publisher(topics.CLOCK.at("sys"), "uvf.v1.Clock", topics.CLOCK.qos)
+        self.launcher = Launcher(NAME, self.said.append)
+        self.launcher.start("recorder", ["record", str(folder)], lambda line: None)
+
+    def connect(self):
+        self.launcher.connect(5.0)
+        self.until(lambda: self.launcher.clock.epoch == CLOCK.epoch)
+
+    def until(self, condition):
+        def look():
+            self.clock.put(CLOCK.SerializeToString(), CLOCK.t_ns)
+            self.launcher.look()
+            self.bus.poll()
+            return condition()
+
+        self.client.wait(look, PATIENCE)
+
+    def kill(self):
+        """kill -9, and wait until the launcher has seen it."""
+        deaths = len(self.said)
+        (child,) = self.launcher._supervisor.describe()
+        os.kill(child.pid, signal.SIGKILL)
+        self.until(lambda: len(self.said) > deaths)
+
+    def newest(self, topic):
+        samples = [s for s in self.heard if s.key == topic.by(NAME).at("sys")]
+        return (samples[-1], topic.message.FromString(samples[-1].payload)) if samples else (None, None)
+
+    def process(self):
+        message = self.newest(topics.PROCESSES)[1]
+        return message.processes[0] if message else Process()
+
+    def close(self):
+        self.launcher.stop()
+        self.client._bus.close()
+        self.bus.close()
+
+
+@pytest.fixture
+def scene(monkeypatch, tmp_path):
+    endpoint = f"tcp/127.0.0.1:{free_port()}"
+    monkeypatch.setenv("UVF_ROUTER", endpoint)
+    router = open_router(endpoint)
+    made = Scene(endpoint, tmp_path)
+    yield made
+    made.close()
+    router.close()
+
+
+def test_a_death_is_an_event_and_the_process_runs_again(scene):
+    scene.connect()
+    scene.kill()
+    scene.until(lambda: scene.process().restarts == 1)
+    assert scene.process().state == Process.RUNNING
+    sample, event = scene.newest(topics.SYSTEM_EVENTS)
+    assert (event.severity, event.text) == (Event.WARNING, "recorder ended by signal 9; started again")
+    assert sample.stamp_ns == CLOCK.t_ns
+    assert scene.newest(topics.STOP) == (None, None)
+    assert not scene.launcher.failed
+
+
+def test_the_third_death_stops_all_vehicles_says_so_and_stays_visible(scene):
+    scene.connect()
+    for _ in range(DEATHS):
+        scene.kill()
+    scene.until(lambda: scene.process().state == Process.FAILED)
+    _, event = scene.newest(topics.SYSTEM_EVENTS)
+    assert (event.severity, event.text) == (Event.CRITICAL, "recorder ended by signal 9; given up")
+    sample, stop = scene.newest(topics.STOP)
+    assert stop.engaged and stop.source == NAME
+    # Later than a release that somebody has said in this epoch.
+    assert (sample.epoch, sample.stamp_ns) == (CLOCK.epoch, CLOCK.t_ns)
+    assert scene.launcher.failed
+
+
+def test_what_has_died_before_there_was_a_router_is_told_when_there_is_one(scene):
+    for _ in range(DEATHS):
+        scene.kill()
+    assert scene.heard == []
+    scene.connect()
+    scene.until(lambda: scene.newest(topics.STOP)[1] is not None and scene.process().state == Process.FAILED)
+    assert [s for s in scene.heard if s.key == topics.SYSTEM_EVENTS.by(NAME).at("sys")][DEATHS - 1]
+
+
+def test_its_end_is_told_too(scene):
+    scene.connect()
+    scene.until(lambda: scene.process().state == Process.RUNNING)
+    scene.launcher.stop()
+    scene.client.wait(lambda: (scene.bus.poll(), scene.process().state == Process.ENDED)[1], PATIENCE)
