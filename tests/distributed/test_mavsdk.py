@@ -6,10 +6,14 @@ import time
 import pytest
 from mavsdk import Autopilot, ComponentType, Configuration, Mavsdk, Vehicle
 from mavsdk.plugins.action import Action, ActionError
-from mavsdk.plugins.mission import Mission, MissionItem, MissionPlan
+from mavsdk.plugins.mission import Mission, MissionError, MissionItem, MissionPlan
+from mavsdk.plugins.mission_raw import MissionRaw
 from mavsdk.plugins.param import Param
 from mavsdk.plugins.telemetry import FlightMode, Telemetry
 
+from schemas.messages import Mission as PlanMessage
+from schemas.messages import MissionItem as ItemMessage
+from schemas.messages import Vector3
 from tests.distributed.mavlink_vehicles import LiveVehicles
 from tests.services.autopilot.mavlink.rig import PLANE, PLANE_FACTS, ROVER
 
@@ -60,10 +64,30 @@ def test_positions_are_read_in_degrees_and_metres_above_sea(live):
     assert plane.absolute_altitude_m == pytest.approx(350.0, abs=0.01)
 
 
-def test_the_plane_is_healthy_enough_for_every_script(live):
+@pytest.mark.parametrize("number", [PLANE, ROVER])
+def test_each_vehicle_is_healthy_enough_for_every_script(live, number):
     _, _, telemetry = live
-    wait(telemetry[PLANE].health_all_ok)
-    assert telemetry[PLANE].health().is_armable
+    wait(telemetry[number].health_all_ok)
+    assert telemetry[number].health().is_armable
+
+
+def test_the_mission_of_the_file_comes_down_with_heights_above_home(live):
+    vehicles, systems, _ = live
+    for vehicle, number, z in ((vehicles.plane, PLANE, 70.0), (vehicles.rover, ROVER, 0.0)):
+        vehicle.plan = PlanMessage(id=number, items=[ItemMessage(position=Vector3(x=x, y=50.0, z=z)) for x in (0.0, 100.0)])
+        items = Mission(systems[number]).download_mission().mission_items
+        assert [i.relative_altitude_m for i in items] == pytest.approx([z - vehicle.home[2]] * 2)
+
+
+def test_a_mission_with_a_jump_comes_down_item_by_item(live):
+    """MAVSDK's plugin ``mission`` knows no jumps, whoever sends them; ``mission_raw`` does."""
+    vehicles, systems, _ = live
+    jump = ItemMessage(kind=ItemMessage.JUMP, jump_to=0, repeat=-1)
+    vehicles.plane.plan = PlanMessage(id=9, items=[ItemMessage(position=Vector3(x=1.0, y=2.0, z=70.0)), jump])
+    with pytest.raises(MissionError, match="UNSUPPORTED"):
+        Mission(systems[PLANE]).download_mission()
+    got = MissionRaw(systems[PLANE]).download_mission()
+    assert [(i.frame, i.command, i.param2) for i in got] == [(6, 16, 0.0), (2, 177, -1.0)]
 
 
 def test_it_arms_and_disarms(live):

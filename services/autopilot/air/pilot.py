@@ -42,7 +42,9 @@ class Stand:
 class Pilot:
     """Holds, flies the mission or returns. Requests give the reason of a refusal, empty when accepted."""
 
-    def __init__(self, items: Sequence[Item]) -> None:
+    def __init__(self, items: Sequence[Item], ground: float = 0.0) -> None:
+        """ground: height [m] of home, which lies on the ground below the start."""
+        self._ground = ground
         self.navigator = Navigator(items)
         self.mode = FlightMode.MISSION if items else FlightMode.HOLD
         self.reason = "start"
@@ -74,7 +76,7 @@ class Pilot:
 
     def _begin(self, now: Estimate) -> None:
         self._fresh = False
-        self.home = self.home or Place(now.north, now.east, now.height)
+        self.home = self.home or Place(now.north, now.east, self._ground)
         self._level = Level(now.height)
         if self.mode is FlightMode.MISSION:
             self.navigator.resume()

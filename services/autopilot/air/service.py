@@ -49,6 +49,7 @@ class Ship:
     declination: float  # rad, magnetic north east of true north
     items: list[MissionItem]
     starts_in_air: bool
+    ground: float = 0.0  # m, world: height of the ground below the start
 
 
 class AutopilotAir(Service):
@@ -91,7 +92,7 @@ class AutopilotAir(Service):
         self._announced = False
         self._armed = ship.starts_in_air
         self._estimator = Estimator(ship.declination)
-        self._pilot = Pilot(intake.items(ship.items))
+        self._pilot = Pilot(intake.items(ship.items), ship.ground)
         self._journal = Journal()
         self._fix_stamp = 0
         self._left: NavState | None = None

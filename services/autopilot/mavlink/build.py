@@ -43,7 +43,7 @@ def numbers_of(member: Member) -> dict[str, float]:
         air = member.params(AIR, AirParams)
         numbers["trim_airspeed"] = air.trim_airspeed
         numbers["hold_radius"] = air.hold_radius
-        numbers["return_height"] = max(air.return_altitude - member.entry.start.z, 0.0)
+        numbers["return_height"] = air.return_altitude
     return numbers
 
 

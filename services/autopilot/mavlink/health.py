@@ -32,15 +32,27 @@ def health(facts: Facts, latest: Latest) -> Health:
     present = mav.MAV_SYS_STATUS_PREARM_CHECK | _CONTROL | (0 if facts.is_ground else _FLIGHT_CONTROL)
     present |= _IMU if facts.sensors.imu else 0
     present |= _AIR_DATA if facts.sensors.air_data else 0
-    present |= mav.MAV_SYS_STATUS_SENSOR_GPS if facts.sensors.gnss else 0
+    present |= mav.MAV_SYS_STATUS_SENSOR_GPS
     present |= mav.MAV_SYS_STATUS_SENSOR_BATTERY if latest.battery is not None else 0
     complaints = _complaints(facts, latest)
     healthy = 0 if latest.is_silent else present
     if complaints:
         healthy &= ~mav.MAV_SYS_STATUS_PREARM_CHECK
-    if latest.gnss is None or latest.gnss.fix < Gnss.FIX_3D:
+    if not _knows_where_it_is(facts, latest):
         healthy &= ~mav.MAV_SYS_STATUS_SENSOR_GPS
     return Health(present, healthy, complaints)
+
+
+def _knows_where_it_is(facts: Facts, latest: Latest) -> bool:
+    """What ground stations take the GPS bit for. A vehicle without a receiver knows it from its map, which lies in the world.
+
+    Without the bit MAVSDK's ``health_all_ok``, for which every script waits, is never true; GPS_RAW_INT is not sent for it.
+    """
+    return facts.sensors.gnss is None or _has_fix(latest)
+
+
+def _has_fix(latest: Latest) -> bool:
+    return latest.gnss is not None and latest.gnss.fix >= Gnss.FIX_3D
 
 
 def _complaints(facts: Facts, latest: Latest) -> tuple[str, ...]:
@@ -53,6 +65,6 @@ def _complaints(facts: Facts, latest: Latest) -> tuple[str, ...]:
         said.append("estimator or autopilot has gone silent")
     if latest.status is not None and latest.status.stopped:
         said.append("STOP ALL is engaged")
-    if facts.sensors.gnss and (latest.gnss is None or latest.gnss.fix < Gnss.FIX_3D):
+    if facts.sensors.gnss and not _has_fix(latest):
         said.append("no satellite fix")
     return tuple(said)

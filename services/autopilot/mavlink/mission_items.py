@@ -138,8 +138,11 @@ def mission_of(items: list[MissionItem]) -> Mission:
 Body = tuple[int, int, int, float, float, float, float, int, int, float]
 
 
-def to_wire(item: MissionItem, facts: Facts) -> Body:
-    """As in ``ORIGIN``: what came over the wire, or the nearest to an item of a mission file."""
+def to_wire(item: MissionItem, facts: Facts, home_z: float) -> Body:
+    """As in ``ORIGIN``: what came over the wire, or the nearest to an item of a mission file.
+
+    The latter with altitudes above home (``home_z`` [m, world]): MAVSDK takes no others.
+    """
     if len(item.origin) == ORIGIN.size:
         frame, command, autocontinue, p1, p2, p3, p4, x, y, z = ORIGIN.unpack(item.origin)
         return frame, command, autocontinue, p1, p2, p3, p4, x, y, z
@@ -158,5 +161,6 @@ def to_wire(item: MissionItem, facts: Facts) -> Body:
         command, p1 = mav.MAV_CMD_NAV_LOITER_TURNS, item.turns
     if item.kind not in WITH_PLACE:
         return mav.MAV_FRAME_MISSION, command, 1, p1, p2, p3, p4, 0, 0, 0.0
-    latitude, longitude, z = facts.geodetic(array(item.position))
-    return mav.MAV_FRAME_GLOBAL_INT, command, 1, p1, p2, p3, p4, round(latitude * 1e7), round(longitude * 1e7), z
+    latitude, longitude, _ = facts.geodetic(array(item.position))
+    z = item.position.z - home_z
+    return mav.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT, command, 1, p1, p2, p3, p4, round(latitude * 1e7), round(longitude * 1e7), z

@@ -46,6 +46,12 @@ class Missions:
             self._accepted = None
         return self._accepted[1] if self._accepted is not None else published
 
+    @property
+    def _home_z(self) -> float:
+        """m, world; of the origin while home is unknown."""
+        home = self._line.latest.home
+        return float(home[2]) if home is not None else 0.0
+
     def on_count(self, message: mav.MAVLink_mission_count_message, sender: Sender) -> None:
         kind, line = message.mission_type, self._line
         busy = self._upload
@@ -75,9 +81,8 @@ class Missions:
             self._accept(upload, message)
 
     def _accept(self, upload: Upload, message: mav.MAVLink_mission_item_int_message) -> None:
-        home = self._line.latest.home
         try:
-            upload.items.append(from_wire(message, self._line.facts, float(home[2]) if home is not None else 0.0))
+            upload.items.append(from_wire(message, self._line.facts, self._home_z))
             if len(upload.items) == upload.count:
                 check_whole(upload.items)
         except BadItem as bad:
@@ -143,7 +148,7 @@ class Missions:
             return
         progress = self._line.latest.progress
         current = int(progress is not None and progress.current == message.seq)
-        frame, command, autocontinue, p1, p2, p3, p4, x, y, z = to_wire(items[message.seq], self._line.facts)
+        frame, command, autocontinue, p1, p2, p3, p4, x, y, z = to_wire(items[message.seq], self._line.facts, self._home_z)
         head = (sender.system, sender.component, message.seq, frame, command, current, autocontinue)
         self._line.send(mav.MAVLink_mission_item_int_message(*head, p1, p2, p3, p4, x, y, z, MISSION), sender.peer)
 

@@ -160,6 +160,7 @@ def test_return_flies_home_and_circles_there():
     flight.ask(topics.SET_MODE, ModeRequest(mode=4, source="test"), 15.0)
     flight.lockstep.run(75.0)
     home = flight.status[-1][1].home
+    assert home.z == 0.0  # the ground below the start, not the height of the start
     radii = np.linalg.norm(flight.positions(after=60.0)[:, :2] - (home.x, home.y), axis=1)
     assert np.abs(radii - 90.0).max() < 5.0
 

@@ -94,7 +94,7 @@ def test_a_plan_of_a_mission_file_can_be_downloaded():
     )
     rig.run()
     way, jump = download(rig)
-    assert (way.frame, way.command, way.param1, way.z) == (5, 16, 3.0, 360.0)
+    assert (way.frame, way.command, way.param1, way.z) == (6, 16, 3.0, 40.0)  # home lies at 20 m
     assert (jump.command, jump.param1, jump.param2) == (177, 0.0, -1.0)
     upload(rig, [way, jump])
     again = rig.plane.mission.items[0].position

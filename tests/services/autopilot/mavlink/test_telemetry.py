@@ -122,6 +122,15 @@ def test_a_rover_without_receiver_wind_or_wings_does_not_report_them():
     assert not {"GPS_RAW_INT", "WIND_COV", "BATTERY_STATUS"} & {m.get_type() for m in heard if m.get_srcSystem() == ROVER}
 
 
+def test_a_rover_without_receiver_knows_where_on_earth_it_is_once_it_has_an_estimate():
+    rig = Rig()
+    everybody, rig.reported = rig.reported, {"plane"}
+    bits = [newest(rig, "SYS_STATUS", ROVER)]
+    rig.reported = everybody
+    bits.append(newest(rig, "SYS_STATUS", ROVER))
+    assert [bool(m.onboard_control_sensors_health & mav.MAV_SYS_STATUS_SENSOR_GPS) for m in bits] == [False, True]
+
+
 def test_battery():
     rig = Rig()
     rig.plane.battery = Battery(voltage=11.1, current=5.25, remaining=0.06)
