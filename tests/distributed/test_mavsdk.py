@@ -44,7 +44,7 @@ def live():
         Mavsdk(Configuration.create_with_component_type(ComponentType.GROUND_STATION)) as sdk,
     ):
         sdk.add_any_connection(f"udpin://127.0.0.1:{port}")
-        wait(lambda: len(sdk.get_systems()) == 2)
+        wait(lambda: len(sdk.get_systems()) == 2, 30.0)
         systems = {system.get_system_id(): system for system in sdk.get_systems()}
         yield vehicles, systems, {number: Telemetry(system) for number, system in systems.items()}
 
