@@ -11,7 +11,7 @@ from schemas.convert import planar_pose, stamp
 from schemas.messages import DriveCommand, PoseInFrame
 from uvf.runtime.bus import Sample
 from uvf.runtime.params import BadInput
-from uvf.runtime.recording import Recorder, log_metadata, read_log, recover
+from uvf.runtime.recording import Recorder, log_attachments, log_begin, log_metadata, read_log, recover
 
 
 def sample(seq, key="uvf/v/nav/pose"):
@@ -81,10 +81,11 @@ def test_a_full_disk_ends_the_recording_with_one_line():
             recorder.write(sample(n))
         recorder.flush()
         assert "No space left" in recorder.error
+        assert recorder.gaps == {"uvf/v/nav/pose": 199}
 
 
 def test_a_log_that_cannot_be_written_says_where(tmp_path):
-    with pytest.raises(BadInput, match="choose another with --log"):
+    with pytest.raises(BadInput, match="choose another place"):
         Recorder(tmp_path / "missing" / "a.mcap")
 
 
@@ -96,3 +97,103 @@ def test_the_hash_depends_on_every_byte_but_not_on_the_boot(tmp_path):
             message = sample(n)
             other.write(message._replace(payload=DriveCommand(linear=1).SerializeToString()) if n == 4 else message)
     assert other.hash.hexdigest() != one
+
+
+def test_recovering_keeps_what_is_attached(tmp_path):
+    with Recorder(tmp_path / "a.mcap", {"missions/demo.yaml": b"about: x"}) as recorder:
+        recorder.write(sample(1))
+        recorder.flush()
+        (tmp_path / "cut.mcap").write_bytes((tmp_path / "a.mcap").read_bytes())
+    recover(tmp_path / "cut.mcap", tmp_path / "whole.mcap")
+    assert log_attachments(tmp_path / "whole.mcap") == {"missions/demo.yaml": b"about: x"}
+
+
+def latched(seq, text=b"", stamp_ns=0, epoch=0, key="uvf/v/map/grid"):
+    return Sample(key, "foxglove.Grid", text, stamp_ns, seq, 5, epoch)
+
+
+def test_the_next_file_begins_with_what_stands(tmp_path):
+    with Recorder(tmp_path / "a.mcap") as first:
+        for message in (latched(1, b"old"), latched(2, b"new"), latched(1, b"plan", key="uvf/v/mission/plan"), sample(1)):
+            first.write(message)
+    with Recorder(tmp_path / "b.mcap", before=first) as second:
+        second.write(sample(2))
+    assert sorted((s.key, s.payload) for s in read_log(tmp_path / "b.mcap") if s.key != "uvf/v/nav/pose") == [
+        ("uvf/v/map/grid", b"new"),
+        ("uvf/v/mission/plan", b"plan"),
+    ]
+    assert log_metadata(tmp_path / "b.mcap")["carried"] == "2"
+
+
+def test_late_history_does_not_take_the_place_of_what_is_newer(tmp_path):
+    with Recorder(tmp_path / "a.mcap") as first:
+        first.write(latched(2, b"new"))
+        first.write(latched(1, b"old"))
+    with Recorder(tmp_path / "b.mcap", before=first):
+        pass
+    assert [s.payload for s in read_log(tmp_path / "b.mcap")] == [b"new"]
+
+
+def test_what_an_epoch_has_left_does_not_stand_in_the_next_but_an_operators_word_does(tmp_path):
+    with Recorder(tmp_path / "a.mcap") as first:
+        first.write(latched(1, b"map", epoch=1))
+        first.write(latched(1, b"stop", epoch=1, key="uvf/sys/cmd/gcs"))
+        first.write(latched(1, b"plan", epoch=2, key="uvf/v/mission/plan"))
+    with Recorder(tmp_path / "b.mcap", before=first):
+        pass
+    assert {s.payload for s in read_log(tmp_path / "b.mcap")} == {b"stop", b"plan"}
+
+
+def test_a_change_of_file_is_no_gap_but_what_is_lost_meanwhile_is(tmp_path):
+    first = record(tmp_path / "a.mcap", [1, 2, 5])
+    with Recorder(tmp_path / "b.mcap", before=first) as second:
+        second.write(sample(6))
+    with Recorder(tmp_path / "c.mcap", before=second) as third:
+        third.write(sample(10))
+    gaps = [log_metadata(tmp_path / f"{name}.mcap")["gap uvf/v/nav/pose"] for name in "abc"]
+    assert gaps == ["2", "2", "5"]
+
+
+def test_a_log_knows_when_its_recording_began(tmp_path):
+    clock = Sample("uvf/sys/time/clock", "uvf.v1.Clock", b"", 30_000_000_000, 3000, 5)
+    with Recorder(tmp_path / "late.mcap") as recorder:
+        recorder.write(latched(1))
+        recorder.write(clock)
+    with Recorder(tmp_path / "whole.mcap") as recorder:
+        recorder.write(clock._replace(stamp_ns=10_000_000, seq=1))
+    assert log_begin(tmp_path / "late.mcap") == 30_000_000_000
+    assert log_begin(tmp_path / "whole.mcap") == 0
+
+
+ODD = {
+    "missing": (lambda path: None, "No such file"),
+    "folder": (lambda path: path.mkdir(), "is a folder; and there is no log in it"),
+    "folder of a run": (
+        lambda path: (path.mkdir(), (path / "log-000.mcap").touch()),
+        "is a folder; name the log in it, such as .*log-000.mcap",
+    ),
+    "empty": (lambda path: path.touch(), "is empty"),
+    "text": (lambda path: path.write_text("about: a mission"), "is no MCAP log"),
+    "short text": (lambda path: path.write_text("x"), "is no MCAP log"),
+    "only begun": (lambda path: path.write_bytes(b"\x89MCAP"), "uvf log recover"),
+    "pipe": (lambda path: path.symlink_to("/dev/null"), "is no file"),
+}
+
+
+@pytest.mark.parametrize("case", ODD)
+@pytest.mark.parametrize("read", [lambda path: list(read_log(path)), log_metadata, log_begin, log_attachments])
+def test_what_is_no_log_is_told_in_one_line(tmp_path, case, read):
+    make, expected = ODD[case]
+    make(tmp_path / "a.mcap")
+    with pytest.raises(BadInput, match=expected) as caught:
+        read(tmp_path / "a.mcap")
+    assert "\n" not in str(caught.value)
+
+
+def test_wherever_it_was_cut_off_it_is_told_in_one_line(tmp_path):
+    record(tmp_path / "a.mcap", range(1, 50))
+    whole = (tmp_path / "a.mcap").read_bytes()
+    for length in range(1, len(whole), 97):
+        (tmp_path / "cut.mcap").write_bytes(whole[:length])
+        with pytest.raises(BadInput, match="uvf log recover"):
+            list(read_log(tmp_path / "cut.mcap"))

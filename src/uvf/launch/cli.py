@@ -121,7 +121,7 @@ def router(listen: Annotated[str | None, typer.Option(help="Endpoint; by default
 @app.command()
 def record(folder: Annotated[Path, typer.Argument(help="Where the log goes.")], mission: MissionOption = DEMO) -> None:
     """Record everything on the bus into MCAP files."""
-    from uvf.launch.processes import run_recorder
+    from uvf.launch.recorder import run_recorder
 
     run_recorder(folder, mission)
 
@@ -132,7 +132,7 @@ def replay(
     rate: Annotated[float, typer.Option(min=0.01, help="Times real time.")] = 1.0,
     service: Annotated[str | None, typer.Option(help="Into this service instead, comparing what comes out.")] = None,
     vehicle: Annotated[str | None, typer.Option(help="Of this vehicle.")] = None,
-    mission: MissionOption = DEMO,
+    mission: Annotated[str | None, typer.Option("--mission", "-m", help="With these files instead of those attached to the log.")] = None,
 ) -> None:
     """Put a log back onto the bus, or into one service to see what comes out otherwise."""
     from uvf.launch.report import replay_into, replay_onto_bus

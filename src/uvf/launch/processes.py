@@ -1,9 +1,8 @@
-"""The bodies of the processes of a run: router, conductor, recorder, and one for any service."""
+"""The bodies of the processes of a run: router, conductor, and one for any service."""
 
-import itertools
+import os
 import time
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 from schemas import topics
@@ -17,15 +16,12 @@ from uvf.runtime.conductor import Conductor
 from uvf.runtime.keeper import Keeper
 from uvf.runtime.live import Live
 from uvf.runtime.params import BadInput
-from uvf.runtime.recording import DEPTH, Recorder
-from uvf.runtime.site import Site, load_site
+from uvf.runtime.site import load_site
 from uvf.runtime.wire import Malformed, decode, guarded
 from uvf.runtime.zenoh_bus import ZenohBus, open_router
 
 TICK_LOOK = 0.001  # s, how often the conductor looks whether the next tick is due
 HELD_PERIOD = 0.5  # s, how often the clock is told again while it is held back or paused
-FLUSH_PERIOD = 1.0  # s
-ROTATE_BYTES = 500_000_000
 LOOK = 0.05  # s
 CONNECT_PATIENCE = 2.0  # s, one attempt
 PATIENCE = 3.0  # s, after which a clock that is held back says by whom
@@ -60,8 +56,10 @@ def open_bus(life: Worker, blocking: bool = False) -> ZenohBus:
 def run_service(name: str, mission: str, vehicle: str | None, lockstep: bool = False) -> None:
     """One kind of service for all its vehicles, or for one."""
     with worker(name) as life:
+        kind = catalogue.kind(name)
+        os.nice(kind.nice)
         site = load_site(settings.mission_path(mission))
-        hosts = catalogue.hosts(site, [catalogue.kind(name)], vehicle)
+        hosts = catalogue.hosts(site, [kind], vehicle)
         with open_bus(life, lockstep) as bus:
             Live(name if vehicle is None else f"{name}.{vehicle}", hosts, bus, life.warn).run(life.stop, lambda: not life.goes_on())
 
@@ -146,48 +144,3 @@ class ConductorLoop:
             self._complained = waited
             names = ", ".join(self._conductor.missing()) or waited
             self._say(f"time stands at {self._conductor.t_ns / 1e9:.2f} s: waiting for {names}", Event.WARNING)
-
-
-def run_recorder(folder: Path, mission: str) -> None:
-    """Writes everything on the bus to ``folder``, a new file every half gigabyte."""
-    with worker("recorder") as life:
-        site = load_site(settings.mission_path(mission))
-        try:
-            folder.mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            raise BadInput(f"{folder}: {error.strerror}: choose another folder") from error
-        with open_bus(life) as bus:
-            arrived: list[Sample] = []
-            bus.subscribe_all(arrived.append, DEPTH)
-            bus.token(f"@node/sys/recorder/{bus.boot:x}")
-            while not life.stop.is_set() and not life.orphaned():
-                path = next(free for n in itertools.count() if not (free := folder / f"log-{n:03}.mcap").exists())
-                with Recorder(path, attachments(site)) as recorder:
-                    _record(life, bus, arrived, recorder, path)
-
-
-def _record(life: Worker, bus: ZenohBus, arrived: list[Sample], recorder: Recorder, path: Path) -> None:
-    """Until told to stop or the file is full."""
-    flushed, complained = time.monotonic(), False
-    events = topics.SYSTEM_EVENTS.by("recorder")
-    voice = bus.publisher(events.at("sys"), Event.DESCRIPTOR.full_name, events.qos)
-    while not life.stop.wait(LOOK) and life.goes_on() and path.stat().st_size < ROTATE_BYTES:
-        bus.poll()
-        for sample in arrived:
-            recorder.write(sample)
-        arrived.clear()
-        if time.monotonic() - flushed > FLUSH_PERIOD:
-            recorder.flush()
-            flushed = time.monotonic()
-        if recorder.error and not complained:
-            complained = True
-            voice.put(Event(severity=Event.CRITICAL, text=recorder.error, source="recorder").SerializeToString(), 0)
-            life.warn(recorder.error)
-
-
-def attachments(site: Site) -> list[Path]:
-    """The files that say what was run: mission, world, vehicles."""
-    files = [site.mission_path, site.world_folder / "world.yaml"]
-    for folder in {member.folder for member in site.members.values()}:
-        files += [folder / "vehicle.yaml", *sorted(folder.glob("*.urdf")), *sorted(folder.rglob("*.xml"))]
-    return files

@@ -3,6 +3,7 @@
 import math
 import signal
 from collections import Counter
+from contextlib import nullcontext
 from pathlib import Path
 from threading import Event
 
@@ -16,9 +17,9 @@ from uvf.launch.run import Result, run_lockstep
 from uvf.launch.runs import new_run
 from uvf.runtime.address import router_from
 from uvf.runtime.params import BadInput, nearest
-from uvf.runtime.recording import log_metadata, read_log, recover
-from uvf.runtime.replay import into_service, onto_bus
-from uvf.runtime.site import load_site
+from uvf.runtime.recording import log_begin, log_metadata, read_log, recover
+from uvf.runtime.replay import into_service, logged_site, onto_bus
+from uvf.runtime.site import Host, Site, load_site
 from uvf.runtime.zenoh_bus import ZenohBus
 
 SHOWN = 20
@@ -74,20 +75,30 @@ def replay_onto_bus(log: Path, rate: float) -> int:
     return 0
 
 
-def replay_into(log: Path, service: str, vehicle: str | None, mission: str) -> int:
+def replay_into(log: Path, service: str, vehicle: str | None, mission: str | None) -> int:
     """Prints the fields that came out otherwise; 0 when there are none."""
-    site = load_site(settings.mission_path(mission))
-    kinds = [k for k in catalogue.KINDS if k.clock == "sim"]
-    hosts = [h for h in catalogue.hosts(site, kinds, vehicle) if h.service.name == service]
-    if not hosts:
-        names = {h.service.name for h in catalogue.hosts(site, kinds, vehicle)}
-        raise BadInput(f"no service '{service}' in {site.mission_path}; {nearest(service, names)}")
-    differences = [line for host in hosts for line in into_service(log, host)]
+    with nullcontext(load_site(settings.mission_path(mission))) if mission else logged_site(log) as site:
+        hosts = _hosts_named(service, site, vehicle)
+        differences = [line for host in hosts for line in into_service(log, host)]
     for difference in differences[:SHOWN]:
         typer.echo(str(difference))
     what = ", ".join(f"{h.service.name} of {h.vehicle or 'all vehicles'}" for h in hosts)
     typer.echo(f"{what}: {len(differences)} differences" if differences else f"{what}: puts out the same")
     return 1 if differences else 0
+
+
+def _hosts_named(name: str, site: Site, vehicle: str | None) -> list[Host]:
+    """By the name that ``uvf service`` takes (all that it runs) or that ``uvf node list`` shows (that one). Raises BadInput."""
+    kinds = [k for k in catalogue.needed(site) if k.clock == "sim"]
+    if any(k.name == name for k in kinds):
+        return catalogue.hosts(site, [catalogue.kind(name)], vehicle)
+    every = catalogue.hosts(site, kinds)
+    hosts = [h for h in every if h.service.name == name and vehicle in (None, h.vehicle)]
+    if not hosts:
+        whose = f" of '{vehicle}'" if vehicle else ""
+        known = {k.name for k in kinds} | {h.service.name for h in every if vehicle in (None, h.vehicle)}
+        raise BadInput(f"no service '{name}'{whose} in {site.mission_path.name} to replay into; {nearest(name, known)}")
+    return hosts
 
 
 def describe_log(log: Path) -> None:
@@ -97,12 +108,13 @@ def describe_log(log: Path) -> None:
     sizes: Counter[str] = Counter()
     for key, _, _, size in samples:
         sizes[key] += size
+    begin = log_begin(log) / 1e9
     end = max((stamp for _, _, stamp, _ in samples), default=0) / 1e9
     width = max(map(len, counts), default=0)
     for key in sorted(counts):
-        rate = counts[key] / max(end, 1e-9)
+        rate = counts[key] / max(end - begin, 1e-9)
         typer.echo(f"{key:{width}}  {types[key]:28}  {counts[key]:7} messages  {rate:6.1f} Hz  {sizes[key] / 1000:8.0f} kB")
-    typer.echo(f"{len(samples)} messages, {end:.1f} s")
+    typer.echo(f"{len(samples)} messages, " + (f"from {begin:.1f} s to {end:.1f} s" if begin else f"{end:.1f} s"))
     for name, value in log_metadata(log).items():
         typer.echo(f"{name}: {value}")
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from uvf.launch import catalogue
-from uvf.launch.processes import attachments
+from uvf.launch.recorder import attachments
 from uvf.launch.scores import Scorer, Verdict
 from uvf.runtime.lockstep import Lockstep
 from uvf.runtime.recording import Recorder

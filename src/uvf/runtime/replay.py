@@ -1,36 +1,58 @@
 """A log put to use again: onto the bus at its own pace, or into one service whose outputs are compared."""
 
+import contextlib
+import tempfile
 import time
-from collections import deque
+from collections import defaultdict, deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from google.protobuf.message import Message
 
-from schemas.topics import SYSTEM, TOPICS, Qos, Topic
+from schemas.topics import SYSTEM, Qos
 from uvf.runtime.bus import Bus, LocalBus, Publisher, Query, Sample, matches
-from uvf.runtime.clock import NS
-from uvf.runtime.recording import read_log
+from uvf.runtime.clock import NS, first_step_after
+from uvf.runtime.params import BadInput
+from uvf.runtime.recording import log_attachments, log_begin, read_log, topic_of
 from uvf.runtime.shell import Shell
-from uvf.runtime.site import Host
+from uvf.runtime.site import Host, Site, load_site
 
 TOLERANCE = 1e-9
 
 
-def topic_of(key: str) -> Topic[Message] | None:
-    """The line of the table that a key belongs to."""
-    return next((topic for topic in TOPICS.values() if matches(topic.by("*").at("*"), key)), None)
+@contextlib.contextmanager
+def logged_site(log: Path) -> Iterator[Site]:
+    """The mission that a log was recorded of, with its world and vehicles as they were then. Raises BadInput."""
+    files = log_attachments(log)
+    mission = next((name for name in files if name.startswith("missions/")), None)
+    if mission is None:
+        raise BadInput(f"log {log}: no mission is attached to it; name the one that it was recorded of with --mission")
+    with tempfile.TemporaryDirectory() as folder:
+        root = Path(folder)
+        for name, data in files.items():
+            path = (root / name).resolve()
+            if path.is_relative_to(root.resolve()):
+                path.parent.mkdir(parents=True, exist_ok=True)
+                path.write_bytes(data)
+        try:
+            site = load_site(root / mission, root)
+        except BadInput as error:
+            why = str(error).replace(f"{folder}/", "")
+            raise BadInput(f"log {log}: the mission in it is of another version ({why}); name one with --mission") from error
+        yield site
 
 
 def onto_bus(log: Path, bus: Bus, rate: float = 1.0, go_on: Callable[[], bool] = lambda: True) -> int:
-    """Publishes a log's messages at ``rate`` times real time; returns how many. Raises BadInput."""
+    """Publishes a log's messages at ``rate`` times real time; returns how many. Raises BadInput.
+
+    What stands at the head of a log that did not begin with the run is said at once.
+    """
     publishers: dict[str, Publisher] = {}
-    begun: float | None = None
+    begin, begun = log_begin(log), time.monotonic()
     count = 0
     for sample in read_log(log):
-        begun = begun if begun is not None else time.monotonic() - sample.stamp_ns / NS / rate
-        while go_on() and (wait := begun + sample.stamp_ns / NS / rate - time.monotonic()) > 0:
+        while go_on() and (wait := begun + (sample.stamp_ns - begin) / NS / rate - time.monotonic()) > 0:
             time.sleep(min(wait, 0.1))
         if not go_on():
             break
@@ -73,10 +95,22 @@ def into_service(log: Path, host: Host, tolerance: float = TOLERANCE) -> Iterato
         bus.subscribe(key, Qos.STATE, made.append)
     _answer_from_log(bus, [request.at(owner) for request in host.service.calls.values() for owner in owners], samples)
     shell = Shell(host, bus)
+    begin = log_begin(log)
+    if begin:
+        _take_up(shell, samples, begin)
     feed = [s for s in samples if not _any(writes, s.key)] + [s for s in own if s.key.endswith("/request")]
     _run(shell, bus, sorted(feed, key=lambda s: s.stamp_ns), max((s.stamp_ns for s in samples), default=0))
     shell.service.close()
-    yield from _compare(own, made, tolerance)
+    # Of the steps before, whose outputs may come late, none has been run here.
+    since = begin + round(host.service.latency * NS) if begin else -1
+    yield from _compare((s for s in own if s.stamp_ns > since), (s for s in made if s.stamp_ns > since), tolerance)
+
+
+def _take_up(shell: Shell, samples: Iterable[Sample], begin: int) -> None:
+    """In a log that begins within a run, the service begins like one that is started again there."""
+    left = {s.key: s.payload for s in samples if s.stamp_ns <= begin}
+    shell.recall(left.get)
+    shell.n = first_step_after(begin, shell.type.hz)
 
 
 def _any(keys: Iterable[str], key: str) -> bool:
@@ -113,20 +147,29 @@ def _run(shell: Shell, bus: LocalBus, feed: Sequence[Sample], end_ns: int) -> No
 
 
 def _compare(logged: Iterable[Sample], made: Iterable[Sample], tolerance: float) -> Iterator[Difference]:
-    now = {(s.key, s.seq): s for s in made}
-    for old in logged:
-        new = now.pop((old.key, old.seq), None)
+    """Messages are paired by stamp, for numbers start over with each writer."""
+    now = _numbered(made)
+    for which, old in _numbered(logged).items():
+        new = now.pop(which, None)
         if new is None:
             yield Difference(old.key, old.stamp_ns, "message", f"number {old.seq}", "missing")
-        elif new.payload != old.payload or new.stamp_ns != old.stamp_ns:
+        elif new.payload != old.payload:
             yield from _fields(old, new, tolerance)
     for new in now.values():
         yield Difference(new.key, new.stamp_ns, "message", "missing", f"number {new.seq}")
 
 
+def _numbered(samples: Iterable[Sample]) -> dict[tuple[str, int, int], Sample]:
+    """By key, stamp [ns] and how many of that key and stamp came before."""
+    found: dict[tuple[str, int, int], Sample] = {}
+    count: defaultdict[tuple[str, int], int] = defaultdict(int)
+    for sample in samples:
+        found[(sample.key, sample.stamp_ns, count[sample.key, sample.stamp_ns])] = sample
+        count[sample.key, sample.stamp_ns] += 1
+    return found
+
+
 def _fields(old: Sample, new: Sample, tolerance: float) -> Iterator[Difference]:
-    if old.stamp_ns != new.stamp_ns:
-        yield Difference(old.key, old.stamp_ns, "stamp", str(old.stamp_ns), str(new.stamp_ns))
     topic = topic_of(old.key)
     if topic is None:
         return

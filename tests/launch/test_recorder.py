@@ -1,0 +1,226 @@
+"""A run's log is a series of files: each can be read alone, together they hold everything, and a full disk only interrupts them."""
+
+import random
+import resource
+import shutil
+from collections import Counter
+
+import pytest
+
+from schemas import topics
+from uvf.launch.recorder import ROOM, LogSeries, attachments
+from uvf.launch.runs import keep_quota
+from uvf.runtime.bus import LocalBus, Sample
+from uvf.runtime.params import BadInput
+from uvf.runtime.recording import log_attachments, log_metadata, read_log, recover
+from uvf.runtime.site import ROOT, load_site
+
+POSE, MAP, STATUS = (topic.at("v") for topic in (topics.POSE, topics.MAP, topics.STATUS))
+NOISE = random.Random(1).randbytes(200_000)  # does not compress
+
+
+def put(bus, key, payload, t):
+    topic = {POSE: topics.POSE, MAP: topics.MAP, STATUS: topics.STATUS}[key]
+    bus.deliver(key, topic.message.DESCRIPTOR.full_name, topic.qos, payload, round(t * 1e9))
+
+
+def noise(n):
+    return NOISE[n * 200 % 199_000 :][:200]
+
+
+def drive(bus, series, steps=range(300)):
+    """Ten times a second a pose, now and then a status, once a map; flushed each second."""
+    for n in steps:
+        put(bus, POSE, noise(n), n / 10)
+        if n == 5:
+            put(bus, MAP, b"the map", n / 10)
+        if n % 7 == 0:
+            put(bus, STATUS, b"status %d" % n, n / 10)
+        if n % 10 == 9:
+            series.flush()
+
+
+def follow(series):
+    bus = LocalBus()
+    bus.subscribe("uvf/**", topics.Qos.SENSOR, series.write)
+    return bus
+
+
+def logs(folder):
+    return sorted(folder.glob("log-*.mcap"))
+
+
+@pytest.fixture
+def told():
+    return []
+
+
+@pytest.fixture
+def tell(told):
+    return lambda line, severity: told.append(line)
+
+
+@pytest.fixture
+def rotated(tmp_path, tell):
+    series = LogSeries(tmp_path, {"missions/x.yaml": b"x"}, tell, rotate_bytes=10_000)
+    drive(follow(series), series)
+    series.close()
+    return tmp_path
+
+
+def test_a_full_file_is_followed_by_the_next(rotated, told):
+    sizes = [log.stat().st_size for log in logs(rotated)]
+    assert len(sizes) > 4
+    assert all(10_000 <= size < 20_000 for size in sizes[:-1])
+    assert told == []
+
+
+def test_each_file_alone_holds_what_stands_and_what_was_run(rotated):
+    for log in logs(rotated):
+        samples = list(read_log(log))
+        assert b"the map" in [s.payload for s in samples]
+        first_status = next(s for s in samples if s.key == STATUS)
+        first_pose = next(s for s in samples if s.key == POSE)
+        assert first_status.stamp_ns <= first_pose.stamp_ns <= first_status.stamp_ns + 800_000_000
+        assert log_attachments(log) == {"missions/x.yaml": b"x"}
+
+
+def test_all_files_together_hold_every_message_once_besides_the_heads(rotated):
+    counts = Counter((s.key, s.seq) for log in logs(rotated) for s in read_log(log))
+    assert [counts[POSE, n] for n in range(1, 301)] == [1] * 300
+    repeats = sum(counts.values()) - len(counts)
+    assert repeats == sum(int(log_metadata(log)["carried"]) for log in logs(rotated)) == 2 * (len(logs(rotated)) - 1)
+
+
+def test_a_rotation_is_no_gap(rotated):
+    assert {log_metadata(log)["complete"] for log in logs(rotated)} == {"true"}
+
+
+def test_gaps_are_those_of_the_whole_run(tmp_path, tell):
+    series = LogSeries(tmp_path, {}, tell, rotate_bytes=3000)
+    for n in (1, 2, 5, 6, 7, 9):
+        series.write(Sample(POSE, "foxglove.PoseInFrame", NOISE[: 2000 + n], n, n, 5))
+        series.flush()
+    series.close()
+    assert len(logs(tmp_path)) > 2
+    assert log_metadata(logs(tmp_path)[-1])[f"gap {POSE}"] == "3"
+
+
+def test_the_quota_is_kept_while_recording(tmp_path, tell):
+    most = 0
+    series = LogSeries(tmp_path, {}, tell, lambda: keep_quota(tmp_path, 30_000), rotate_bytes=10_000)
+    bus = follow(series)
+    for n in range(0, 600, 10):
+        drive(bus, series, range(n, n + 10))
+        most = max(most, sum(log.stat().st_size for log in logs(tmp_path)))
+    series.close()
+    assert most < 45_000
+    assert logs(tmp_path)[0].name != "log-000.mcap"
+    assert b"the map" in [s.payload for s in read_log(logs(tmp_path)[0])]
+
+
+class Disk:
+    """Refuses files beyond a size, as a full one does; ``space`` is what it says is free."""
+
+    def __init__(self):
+        self._limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+        self.space = 10 * ROOM
+
+    def free(self, folder):
+        return self.space
+
+    def fill(self, size):
+        self.space = 0
+        resource.setrlimit(resource.RLIMIT_FSIZE, (size, self._limits[1]))
+
+    def clear(self):
+        self.space = 10 * ROOM
+        resource.setrlimit(resource.RLIMIT_FSIZE, self._limits)
+
+
+@pytest.fixture
+def disk():
+    made = Disk()
+    yield made
+    made.clear()
+
+
+def test_a_full_disk_is_one_line_and_recording_goes_on_when_there_is_room(tmp_path, tell, told, disk):
+    series = LogSeries(tmp_path, {}, tell, free=disk.free)
+    bus = follow(series)
+    drive(bus, series, range(50))
+    disk.fill(logs(tmp_path)[0].stat().st_size + 1000)
+    drive(bus, series, range(50, 150))
+    assert len(told) == 1
+    assert "recording ends here" in told[0] and "it goes on when there is room" in told[0]
+    assert len(logs(tmp_path)) == 1
+    disk.clear()
+    drive(bus, series, range(150, 200))
+    series.close()
+    assert told[1:] == [f"recording goes on in {tmp_path / 'log-001.mcap'}"]
+    after = list(read_log(tmp_path / "log-001.mcap"))
+    assert b"the map" in [s.payload for s in after]
+    assert recover(tmp_path / "log-000.mcap", tmp_path / "saved.mcap") > 50
+    recorded = {s.seq for log in (tmp_path / "saved.mcap", tmp_path / "log-001.mcap") for s in read_log(log) if s.key == POSE}
+    missed = int(log_metadata(tmp_path / "log-001.mcap")[f"gap {POSE}"])
+    assert 200 - len(recorded) <= missed <= 200 - len(recorded) + 10
+
+
+def test_a_disk_that_refuses_though_it_says_it_has_room_leaves_no_litter(tmp_path, tell, told, disk):
+    series = LogSeries(tmp_path, {}, tell, free=disk.free)
+    bus = follow(series)
+    drive(bus, series, range(20))
+    disk.fill(100)
+    disk.space = 10 * ROOM
+    drive(bus, series, range(20, 100))
+    assert [log.name for log in logs(tmp_path)] == ["log-000.mcap"]
+    assert len(told) == 1
+    disk.clear()
+    drive(bus, series, range(100, 120))
+    series.close()
+    assert log_metadata(tmp_path / "log-001.mcap")["complete"] == "false"
+
+
+def test_a_disk_that_is_full_from_the_start_ends_nobody(tmp_path, tell, told, disk):
+    disk.fill(100)
+    series = LogSeries(tmp_path, {"missions/x.yaml": NOISE[:9000]}, tell, free=disk.free)
+    bus = follow(series)
+    drive(bus, series, range(30))
+    assert logs(tmp_path) == [] and len(told) == 1
+    disk.clear()
+    drive(bus, series, range(30, 60))
+    series.close()
+    assert b"the map" in [s.payload for s in read_log(tmp_path / "log-000.mcap")]
+
+
+def test_a_log_removed_while_it_is_written_is_said_and_begun_anew(tmp_path, tell, told):
+    folder = tmp_path / "run"
+    folder.mkdir()
+    series = LogSeries(folder, {}, tell)
+    bus = follow(series)
+    drive(bus, series, range(20))
+    shutil.rmtree(folder)
+    drive(bus, series, range(20, 60))
+    assert len(told) == 1 and "has been removed" in told[0]
+    folder.mkdir()
+    drive(bus, series, range(60, 80))
+    series.close()
+    assert [s.seq for s in read_log(folder / "log-001.mcap") if s.key == POSE][-1] == 80
+
+
+def test_a_recorder_that_is_started_again_begins_a_new_file(tmp_path, tell):
+    (tmp_path / "log-007.mcap").touch()
+    (tmp_path / "log-007-recovered.mcap").touch()
+    LogSeries(tmp_path, {}, tell).close()
+    assert (tmp_path / "log-008.mcap").stat().st_size > 0
+
+
+def test_a_folder_that_cannot_be_written_is_told_at_the_start(tmp_path, tell):
+    with pytest.raises(BadInput, match="cannot be written"):
+        LogSeries(tmp_path / "missing", {}, tell)
+
+
+def test_mission_world_and_vehicles_are_attached_by_their_places():
+    attached = attachments(load_site(ROOT / "missions" / "demo.yaml"))
+    for name in ("missions/demo.yaml", "worlds/house/world.yaml", "vehicles/burger/burger.urdf", "vehicles/milvus/engine/milvus_motor.xml"):
+        assert attached[name] == (ROOT / name).read_bytes()
