@@ -20,6 +20,7 @@ from google.protobuf.timestamp_pb2 import Timestamp
 
 from schemas.v1.command_pb2 import DriveCommand, StopCommand, SurfaceCommand, WheelCommand
 from schemas.v1.mission_pb2 import (
+    CancelRequest,
     GoalRequest,
     Mission,
     MissionItem,
@@ -46,6 +47,7 @@ __all__ = [
     "ArmRequest",
     "Battery",
     "CameraCalibration",
+    "CancelRequest",
     "Clock",
     "ClockRequest",
     "CompressedImage",

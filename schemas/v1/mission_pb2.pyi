@@ -114,6 +114,12 @@ class GoalRequest(_message.Message):
     source: str
     def __init__(self, position: _Optional[_Union[_Vector3_pb2.Vector3, _Mapping]] = ..., yaw: _Optional[float] = ..., source: _Optional[str] = ...) -> None: ...
 
+class CancelRequest(_message.Message):
+    __slots__ = ("source",)
+    SOURCE_FIELD_NUMBER: _ClassVar[int]
+    source: str
+    def __init__(self, source: _Optional[str] = ...) -> None: ...
+
 class NavStatus(_message.Message):
     __slots__ = ("timestamp", "state", "job", "goal", "distance_left", "reason", "explored")
     class State(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
@@ -124,12 +130,14 @@ class NavStatus(_message.Message):
         REACHED: _ClassVar[NavStatus.State]
         BLOCKED: _ClassVar[NavStatus.State]
         RECOVERING: _ClassVar[NavStatus.State]
+        CANCELLED: _ClassVar[NavStatus.State]
     IDLE: NavStatus.State
     PLANNING: NavStatus.State
     DRIVING: NavStatus.State
     REACHED: NavStatus.State
     BLOCKED: NavStatus.State
     RECOVERING: NavStatus.State
+    CANCELLED: NavStatus.State
     TIMESTAMP_FIELD_NUMBER: _ClassVar[int]
     STATE_FIELD_NUMBER: _ClassVar[int]
     JOB_FIELD_NUMBER: _ClassVar[int]

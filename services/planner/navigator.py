@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from services.planner.costmap import Body, Costmap, Frame, costmap, with_way_out
-from services.planner.search import Ways, astar
+from services.planner.search import Cell, Ways, astar
 from services.planner.smoothing import smoothed
 
 Floats = NDArray[np.float64]
@@ -35,6 +35,7 @@ class Navigator:
         self._body = body
         self._cells: NDArray[np.int8] | None = None
         self._bold: Costmap | None = None
+        self._ways: tuple[Cell, Ways] | None = None
         self.costs: Costmap | None = None
 
     def fit(self, body: Body) -> bool:
@@ -50,14 +51,17 @@ class Navigator:
         """Takes a new map; costs are worked out once for it."""
         self._cells = cells
         self._bold = None
+        self._ways = None
         self.costs = costmap(cells, frame, self._body)
 
     def ways(self, start: Point) -> Ways | None:
-        """The cheapest ways from ``start`` to everywhere known; None without a map or outside it."""
+        """The cheapest ways from ``start`` to everywhere known, worked out once for each place; None without a map or outside it."""
         if self.costs is None or not self.costs.holds(self.costs.cell(*start)):
             return None
         cell = self.costs.cell(*start)
-        return Ways(with_way_out(self.costs, cell, WAY_OUT).cost, cell)
+        if self._ways is None or self._ways[0] != cell:
+            self._ways = cell, Ways(with_way_out(self.costs, cell, WAY_OUT).cost, cell)
+        return self._ways[1]
 
     def refusal(self, start: Point, goal: Point) -> str:
         """Why nobody can drive from ``start`` to ``goal`` over known ground; "" if it can be done."""

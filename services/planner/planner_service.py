@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from schemas import topics
 from schemas.convert import occupancy_cells, planar_pose, seconds, stamp, yaw_of
 from schemas.messages import (
+    CancelRequest,
     Event,
     GoalRequest,
     Grid,
@@ -50,7 +51,7 @@ class PlannerParams(Params, frozen=True):
     dislike: Annotated[float, Meta(ge=1)] = 6.0  # cost of a way right along an obstacle
     goal_tolerance: Positive = 0.12  # m
     look_tolerance: Positive = 0.3  # m, for frontiers, which only have to be seen
-    wait_at_goal: Annotated[float, Meta(ge=0)] = 5.0  # s after a person's goal, before the job goes on
+    wait_at_goal: Annotated[float, Meta(ge=0)] = 5.0  # s after a person's goal is reached or cancelled, before the job goes on
     patience: Positive = 8.0  # s without getting anywhere, before the goal is given up
     least_frontier: Annotated[int, Meta(ge=1)] = 6  # cells
     frontier_worth: Annotated[float, Meta(ge=0)] = 0.5  # cells of way
@@ -69,7 +70,7 @@ class PlannerService(Service):
         "progress": optional(topics.PROGRESS),
     }
     outputs = {"path": topics.PATH, "nav_status": topics.NAV_STATUS, "events": topics.EVENTS.by("planner")}
-    requests = {"goal": topics.GOAL}
+    requests = {"goal": topics.GOAL, "cancel": topics.CANCEL}
     calls = {"set_mode": topics.SET_MODE}
     recalls = {"nav_status": topics.NAV_STATUS}
     params: PlannerParams
@@ -89,7 +90,9 @@ class PlannerService(Service):
         self._target: Point | None = None
         self._plan = Plan(None)
         self._planned_at = -np.inf
-        self._reached_at: float | None = None
+        self._ended_at: float | None = None
+        """When a person's goal was reached or cancelled, as ``_ending`` says."""
+        self._ending: NavStatus.State = NavStatus.REACHED
         self._is_there = False
         self._progress_at = 0.0
         self._progress_pose: Pose2 = IDENTITY
@@ -106,27 +109,29 @@ class PlannerService(Service):
         mission: Mission | None,
         progress: MissionProgress | None,
         goal: list[GoalRequest],
+        cancel: list[CancelRequest],
         set_mode: list[Answer[ModeRequest, Reply]],
     ) -> Outputs:
         here = compose(self._map_from_world, Pose2(pose.pose.position.x, pose.pose.position.y, yaw_of(pose.pose.orientation)))
         self._explorer.taste = self._taste
         changed = self._navigator.fit(self._body) | self._take_map(map)
-        replies = [self._ask(t, here, request, status) for request in goal]
+        replies: dict[str, list[Reply]] = {"goal": self._ask_all(t, here, goal, status)}
         job = choose(status, self._goal, mission_target(mission, progress, self._orders.home), self._orders)
         if job != self._job:
             self._begin(t, job)
             changed = True
+        replies["cancel"] = [self._cancel(t, request) for request in cancel]
         failed = self._plan.path is None and t - self._planned_at >= REPLAN_PERIOD
-        if self._reached_at is None and (changed or failed):
+        if self._ended_at is None and (changed or failed):
             self._replan(t, here)
         self._watch(t, here, status)
         events, self._events = self._events, []
         asks, self._asks = self._asks, []
-        return {"path": self._path(t), "nav_status": self._nav_status(t, here), "goal": replies, "events": events, "set_mode": asks}
+        return {"path": self._path(t), "nav_status": self._nav_status(t, here), "events": events, "set_mode": asks, **replies}
 
     def recall(self, nav_status: NavStatus | None = None) -> None:
         """A person's goal that was being driven to is still wanted; its heading is not told."""
-        if nav_status is not None and nav_status.job == "goal" and nav_status.state != NavStatus.REACHED:
+        if nav_status is not None and nav_status.job == "goal" and nav_status.state not in (NavStatus.REACHED, NavStatus.CANCELLED):
             self._goal = Goal((nav_status.goal.x, nav_status.goal.y))
 
     def stale(self, t: float, missing: tuple[str, ...]) -> Outputs:
@@ -153,22 +158,46 @@ class PlannerService(Service):
         self._navigator.see(occupancy_cells(grid), (grid.cell_size.x, (grid.pose.position.x, grid.pose.position.y)))
         return True
 
-    def _ask(self, t: float, here: Pose2, request: GoalRequest, status: VehicleStatus | None) -> Reply:
+    def _ask_all(self, t: float, here: Pose2, requests: list[GoalRequest], status: VehicleStatus | None) -> list[Reply]:
+        """Of several goals in one step the last that can be driven to counts; only that one is told of."""
+        replies = [self._ask(here, request, status) for request in requests]
+        taken = [request for request, reply in zip(requests, replies, strict=True) if reply.accepted]
+        if taken:
+            last = taken[-1]
+            self._goal = Goal((last.position.x, last.position.y), None if isnan(last.yaw) else last.yaw)
+            self._job = IDLE  # asked for anew, the same place is a goal anew
+            self._tell(t, f"goal ({last.position.x:.1f}, {last.position.y:.1f})", f"asked by {last.source or 'unknown'}")
+        return replies
+
+    def _ask(self, here: Pose2, request: GoalRequest, status: VehicleStatus | None) -> Reply:
         wanted = (request.position.x, request.position.y)
         reason = not_now(status) or self._navigator.refusal(here[:2], self._in_map(wanted))
         if isinf(request.yaw):
             reason = "the heading is infinite; give it in rad, or NaN for any"
-        if reason:
-            return Reply(accepted=False, reason=reason)
-        self._goal = Goal(wanted, None if isnan(request.yaw) else request.yaw)
-        self._tell(t, f"goal ({wanted[0]:.1f}, {wanted[1]:.1f})", f"asked by {request.source or 'unknown'}")
+        return Reply(accepted=not reason, reason=reason)
+
+    def _cancel(self, t: float, request: CancelRequest) -> Reply:
+        """The vehicle stops; it stays as long as at a goal that was reached before its job goes on."""
+        if self._goal is None or self._ended_at is not None:
+            return Reply(accepted=False, reason="there is no goal to cancel")
+        cause = f"asked by {request.source or 'unknown'}"
+        self._tell(t, "goal cancelled", cause)
+        if self._job.name == "goal":
+            self._end(t, NavStatus.CANCELLED, f"goal cancelled, {cause}")
+        else:
+            self._goal = None
         return Reply(accepted=True)
+
+    def _end(self, t: float, ending: NavStatus.State, reason: str) -> None:
+        """A person's goal has come to its end; without a path the vehicle stands."""
+        self._ended_at, self._ending = t, ending
+        self._plan = Plan(None, reason)
 
     def _begin(self, t: float, job: Job) -> None:
         if job.name != self._job.name:
             self._tell(t, f"job: {job.name}", "")
         self._job = job
-        self._reached_at = None
+        self._ended_at = None
         self._progress_at = t
         self._tries = 0
         self._explorer.goal = None
@@ -201,8 +230,8 @@ class PlannerService(Service):
 
     def _watch(self, t: float, here: Pose2, status: VehicleStatus | None) -> None:
         """Has the goal been reached, or does the vehicle get nowhere?"""
-        if self._reached_at is not None:
-            if t - self._reached_at >= self.params.wait_at_goal:
+        if self._ended_at is not None:
+            if t - self._ended_at >= self.params.wait_at_goal:
                 self._goal = None
             return
         if self._target is None:
@@ -229,8 +258,7 @@ class PlannerService(Service):
 
     def _arrive(self, t: float, here: Pose2) -> None:
         if self._job.name == "goal":
-            self._reached_at = t
-            self._plan = Plan(None, "goal reached")
+            self._end(t, NavStatus.REACHED, "goal reached")
             self._tell(t, "goal reached", "")
         elif self._job.name == "explore":
             self._is_there = False
@@ -286,7 +314,9 @@ class PlannerService(Service):
         return status
 
     def _state(self) -> NavStatus.State:
-        if self._reached_at is not None or self._is_there:
+        if self._ended_at is not None:
+            return self._ending
+        if self._is_there:
             return NavStatus.REACHED
         if self._target is None:
             return NavStatus.IDLE

@@ -24,14 +24,18 @@ class ParamServer:
     def key(self, owner: str) -> str:
         return topics.PARAM.by(self._service.name).at(owner)
 
+    @property
+    def waiting(self) -> int:
+        return len(self._queue)
+
     def queue(self, query: Query) -> None:
         self._queue.append(query)
 
-    def answer(self, readable: Callable[[int], bool]) -> Iterator[tuple[Query, ParamReply]]:
-        """The requests whose stamp may be read now, each with its reply."""
-        due = [query for query in self._queue if readable(query.stamp_ns)]
-        self._queue = deque(query for query in self._queue if not readable(query.stamp_ns))
-        for query in due:
+    def answer(self, due: Callable[[int], bool]) -> Iterator[tuple[Query, ParamReply]]:
+        """The requests whose stamp is due now, each with its reply."""
+        taken = [query for query in self._queue if due(query.stamp_ns)]
+        self._queue = deque(query for query in self._queue if not due(query.stamp_ns))
+        for query in taken:
             try:
                 yield query, self.reply(decode(query.key, query.payload, ParamRequest))
             except Malformed as error:

@@ -19,6 +19,7 @@ from uvf.runtime.wire import Malformed, decode
 Warn = Callable[[str], None]
 LATEST_DEPTH = 8  # more than one, for the newest may be too new to be read yet
 QUERIES_MOST = 256
+AHEAD_MOST = 2 * NS  # of latency; a request that is stamped farther ahead was stamped by another clock
 
 
 class ContractError(Exception):
@@ -121,7 +122,10 @@ class Shell:
             self._queries[name].append(query)
 
     def _queue_param(self, query: Query) -> None:
-        self._param_server.queue(query)
+        if self._param_server.waiting >= QUERIES_MOST:
+            query.refuse(f"{self.type.name}: {QUERIES_MOST} requests wait already")
+        else:
+            self._param_server.queue(query)
 
     @property
     def due_ns(self) -> int:
@@ -139,7 +143,7 @@ class Shell:
         """One step at the due time: fresh inputs in, outputs published, requests answered."""
         t_ns = self.due_ns
         self.n += 1
-        for query, reply in self._param_server.answer(lambda stamp: self._is_readable(stamp, t_ns)):
+        for query, reply in self._param_server.answer(lambda stamp: self._is_due(stamp, t_ns)):
             self._answer(query, PARAM, reply, t_ns)
         for box in self._boxes.values():
             box.take(t_ns)
@@ -160,6 +164,10 @@ class Shell:
         self._publish(outputs, t_ns)
         for name, asked in queries.items():
             self._reply(name, asked, outputs.get(name, ()), t_ns)
+
+    def _is_due(self, stamp_ns: int, t_ns: int) -> bool:
+        """Whether a request counts at ``t_ns``: one from a clock of its own would else wait for ever, it is taken as it comes."""
+        return self._is_readable(stamp_ns, t_ns) or stamp_ns > t_ns + AHEAD_MOST
 
     def _is_readable(self, stamp_ns: int, t_ns: int) -> bool:
         return stamp_ns < t_ns or self.type.clock == "wall"
@@ -190,9 +198,9 @@ class Shell:
 
     def _decodable(self, name: str, request: Request[Any, Any], t_ns: int) -> list[Query]:
         waiting, good = list(self._queries[name]), []
-        self._queries[name] = deque(q for q in waiting if not self._is_readable(q.stamp_ns, t_ns))
+        self._queries[name] = deque(q for q in waiting if not self._is_due(q.stamp_ns, t_ns))
         for query in waiting:
-            if not self._is_readable(query.stamp_ns, t_ns):
+            if not self._is_due(query.stamp_ns, t_ns):
                 continue
             try:
                 decode(query.key, query.payload, request.message)

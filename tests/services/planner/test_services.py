@@ -5,6 +5,7 @@ import pytest
 
 from schemas.convert import occupancy_grid, planar_pose, stamp
 from schemas.messages import (
+    CancelRequest,
     GoalRequest,
     LaserScan,
     Mission,
@@ -17,7 +18,9 @@ from schemas.messages import (
     Vector3,
     VehicleStatus,
 )
+from services.planner import navigator
 from services.planner.planner_service import PlannerParams, PlannerService
+from services.planner.search import Ways
 from services.planner.tracker_service import TrackerParams, TrackerService
 from tests.services.autopilot.ground.test_service import BODY
 from tests.services.live_params import all_settable_are_read
@@ -26,6 +29,9 @@ from tests.services.planner.plans import room
 READY = VehicleStatus(mode=Mode.MODE_MISSION, armed=True, command_source="planner")
 START = (10.0, 20.0, np.pi / 2)
 """The map lies here in the world, turned: map x is world y."""
+
+
+CANCEL = CancelRequest(source="test")
 
 
 class Bench:
@@ -41,11 +47,11 @@ class Bench:
         self.events = []
         self.asked = []
 
-    def step(self, n=1, status=READY, mission=None, progress=None, goal=()):
+    def step(self, n=1, status=READY, mission=None, progress=None, goal=(), cancel=()):
         for _ in range(n):
             self.t += 0.25
             pose = PoseInFrame(pose=planar_pose(*world(*self.here), self.yaw))
-            self.said = self.service.step(self.t, pose, self.grid, status, mission, progress, list(goal), [])
+            self.said = self.service.step(self.t, pose, self.grid, status, mission, progress, list(goal), list(cancel), [])
             self.events += [e.text for e in self.said["events"]]
             self.asked += self.said["set_mode"]
         return self
@@ -127,6 +133,62 @@ def test_a_goal_interrupts_exploring_and_exploring_goes_on_after_a_while():
     assert len(bench.said["path"].poses) == 0
     bench.step(4)
     assert (bench.said["nav_status"].job, bench.state) == ("explore", NavStatus.DRIVING)
+
+
+def test_a_cancelled_goal_leaves_no_path_and_says_so_until_the_job_goes_on():
+    bench = Bench().step(goal=[asked(3.0, 2.0)]).step(4)
+    bench.step(cancel=[CANCEL])
+    assert bench.said["cancel"][0].accepted
+    assert len(bench.said["path"].poses) == 0
+    assert (bench.state, bench.said["nav_status"].reason) == (NavStatus.CANCELLED, "goal cancelled, asked by test")
+    bench.step(int(4 * PlannerParams().wait_at_goal) - 1)
+    assert (bench.state, len(bench.said["path"].poses)) == (NavStatus.CANCELLED, 0)
+    assert bench.step(2).said["nav_status"].job == "idle"
+    assert bench.events.count("goal cancelled") == 1
+
+
+def test_a_goal_that_is_cancelled_in_the_step_it_is_asked_for_is_never_begun():
+    bench = Bench().step(goal=[asked(3.0, 2.0)], cancel=[CANCEL])
+    assert (bench.state, len(bench.said["path"].poses)) == (NavStatus.CANCELLED, 0)
+
+
+def test_the_same_place_can_be_asked_for_again_at_once():
+    bench = Bench().step(goal=[asked(3.0, 2.0)]).step(cancel=[CANCEL]).step(goal=[asked(3.0, 2.0)])
+    assert bench.state == NavStatus.DRIVING
+
+
+@pytest.mark.parametrize("before", ["nothing", "cancelled", "reached", "exploring"])
+def test_without_a_goal_there_is_nothing_to_cancel(before):
+    bench = Bench(explores=before == "exploring").step()
+    if before == "cancelled":
+        bench.step(goal=[asked(3.0, 2.0)]).step(cancel=[CANCEL])
+    elif before == "reached":
+        bench.step(goal=[asked(1.0, 1.0)]).step()
+    reply = bench.step(cancel=[CANCEL]).said["cancel"][0]
+    assert (reply.accepted, reply.reason) == (False, "there is no goal to cancel")
+
+
+def test_a_goal_that_waits_behind_the_way_home_can_be_cancelled_too():
+    home = VehicleStatus(mode=Mode.MODE_RETURN, armed=True)
+    bench = Bench()
+    bench.grid = occupancy_grid(room(4.0, 3.0), 0.05, -1.0, -1.0, "v/map", 0.0)
+    bench.step(goal=[asked(2.0, 1.0)]).step(status=home)
+    assert bench.step(status=home, cancel=[CANCEL]).said["nav_status"].job == "return"
+    assert bench.step(2).said["nav_status"].job == "idle"
+
+
+def test_a_flood_of_goals_costs_one_search_and_the_last_good_one_counts():
+    bench = Bench().step()
+    flood = [asked(0.5 + 0.01 * i, 1.5) for i in range(255)] + [asked(0.07, 1.0)]
+    searches = []
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(navigator, "Ways", lambda cost, cell: searches.append(cell) or Ways(cost, cell))
+        bench.step(goal=flood)
+    replies = bench.said["goal"]
+    assert [r.accepted for r in replies] == [True] * 255 + [False]
+    assert len(searches) <= 1
+    assert bench.events == ["goal (8.5, 23.0)", "job: goal"]
+    assert bench.said["path"].poses[-1].position.x == pytest.approx(world(3.04, 1.5)[0])
 
 
 def test_a_wanted_heading_is_part_of_the_goal():
@@ -212,6 +274,13 @@ def test_started_again_it_still_drives_to_the_persons_goal():
     new.service.recall(nav_status=old.said["nav_status"])
     end = new.step().said["path"].poses[-1].position
     assert (end.x, end.y) == pytest.approx(world(3.0, 2.0))
+
+
+def test_started_again_a_cancelled_goal_stays_cancelled():
+    old = Bench().step(goal=[asked(3.0, 2.0)]).step().step(cancel=[CANCEL])
+    new = Bench()
+    new.service.recall(nav_status=old.said["nav_status"])
+    assert new.step().said["nav_status"].job == "idle"
 
 
 def test_without_pose_or_map_there_is_no_path():
