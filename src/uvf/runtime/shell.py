@@ -208,7 +208,7 @@ class Shell:
             except Malformed as error:
                 self.counters.malformed += 1
                 self._warn(f"{self.type.name}: {error}")
-                reply = request.reply(accepted=False, reason=f"broken {request.message.DESCRIPTOR.full_name}")
+                reply = request.reply(accepted=False, reason=str(error))
                 query.answer(reply.SerializeToString(deterministic=True), query.stamp_ns)
         return good
 

@@ -7,6 +7,7 @@ from google.protobuf.message import DecodeError, Message
 
 from schemas.topics import Topic
 from uvf.runtime.bus import Sample, Sink
+from uvf.runtime.soundness import fault
 
 M = TypeVar("M", bound=Message)
 
@@ -16,11 +17,14 @@ class Malformed(Exception):
 
 
 def decode(key: str, payload: bytes, type_: type[M]) -> M:
-    """Raises Malformed."""
+    """Raises Malformed, also for numbers that no service can work with."""
     try:
-        return type_.FromString(payload)
+        message = type_.FromString(payload)
     except DecodeError as error:
         raise Malformed(f"{key}: broken {type_.DESCRIPTOR.full_name}: {error}") from error
+    if why := fault(message):
+        raise Malformed(f"{key}: broken {type_.DESCRIPTOR.full_name}: {why}")
+    return message
 
 
 def decode_sample(sample: Sample, type_: type[M]) -> M:
