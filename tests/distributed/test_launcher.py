@@ -2,6 +2,7 @@
 
 import os
 import signal
+import threading
 
 import pytest
 
@@ -11,6 +12,7 @@ from schemas.messages import Clock, Event, Process
 from tests.runtime.modes import free_port
 from uvf.launch.launcher import Launcher
 from uvf.launch.supervisor import DEATHS
+from uvf.runtime.keeper import Keeper
 from uvf.runtime.zenoh_bus import ZenohBus, open_router
 
 NAME = "launcher.recorder"
@@ -32,12 +34,15 @@ class Scene:
         self.launcher.start("recorder", ["record", str(folder)], lambda line: None)
 
     def connect(self):
+        def kept():
+            self.clock.put(CLOCK.SerializeToString(), CLOCK.t_ns)
+            return self.bus.recall(topics.CLOCK.at("sys")) is not None
+
+        self.client.wait(kept, PATIENCE)
         self.launcher.connect(5.0)
-        self.until(lambda: self.launcher.clock.epoch == CLOCK.epoch)
 
     def until(self, condition):
         def look():
-            self.clock.put(CLOCK.SerializeToString(), CLOCK.t_ns)
             self.launcher.look()
             self.bus.poll()
             return condition()
@@ -65,14 +70,26 @@ class Scene:
         self.bus.close()
 
 
+def keep(endpoint, stop):
+    with ZenohBus(endpoint, timeout=5.0) as bus:
+        keeper = Keeper(bus, print)
+        while not stop.wait(0.01):
+            keeper.poll()
+
+
 @pytest.fixture
 def scene(monkeypatch, tmp_path):
     endpoint = f"tcp/127.0.0.1:{free_port()}"
     monkeypatch.setenv("UVF_ROUTER", endpoint)
     router = open_router(endpoint)
+    stop = threading.Event()
+    keeper = threading.Thread(target=keep, args=(endpoint, stop))
+    keeper.start()
     made = Scene(endpoint, tmp_path)
     yield made
     made.close()
+    stop.set()
+    keeper.join()
     router.close()
 
 

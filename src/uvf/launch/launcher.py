@@ -11,7 +11,7 @@ from uvf.launch.output import Write
 from uvf.launch.supervisor import Supervisor
 from uvf.runtime.address import router_from
 from uvf.runtime.bus import Publisher
-from uvf.runtime.wire import decode, guarded
+from uvf.runtime.wire import Malformed, decode
 from uvf.runtime.zenoh_bus import ZenohBus
 
 LOOK = 0.1  # s, how often to look for the dead
@@ -25,13 +25,13 @@ class Launcher:
     def __init__(self, name: str, say: Say) -> None:
         """name: who speaks on the bus, on keys of its own."""
         self.name = name
-        self.clock = Clock()
         self.bus: ZenohBus | None = None
         self.failed = False
         """Something has been given up."""
         self._say = say
         self._supervisor = Supervisor(self._on_death)
         self._untold: list[tuple[str, bool]] = []
+        self._t_ns = 0
 
     def start(self, name: str, arguments: list[str], write: Write) -> None:
         """Starts ``uvf <arguments>`` with its output to ``write``; whoever has started the last one says ``tell``."""
@@ -43,11 +43,6 @@ class Launcher:
         self._events = self._publisher(bus, topics.SYSTEM_EVENTS)
         self._stop = self._publisher(bus, topics.STOP)
         self._processes = self._publisher(bus, topics.PROCESSES)
-        key = topics.CLOCK.at("sys")
-        left = bus.recall(key)
-        if left is not None:
-            self._follow(decode(key, left, Clock))
-        bus.subscribe(key, topics.CLOCK.qos, guarded(topics.CLOCK, lambda clock, _: self._follow(clock), self._say))
         bus.token(f"@node/sys/{self.name}/{bus.boot:x}")
         self.tell()
         return bus
@@ -55,11 +50,19 @@ class Launcher:
     def _publisher(self, bus: ZenohBus, topic: topics.Topic[topics.M]) -> Publisher:
         return bus.publisher(topic.by(self.name).at("sys"), topic.message.DESCRIPTOR.full_name, topic.qos)
 
-    def _follow(self, clock: Clock) -> None:
-        self.clock = clock
-        if self.bus is not None:
-            # Without its epoch a STOP ALL would count as older than any release said before it.
-            self.bus.epoch = clock.epoch
+    def _ask_time(self, bus: ZenohBus) -> None:
+        """From the keeper; following the clock would cost each container 1 % of a core."""
+        left = bus.recall(topics.CLOCK.at("sys"))
+        if left is None:
+            return
+        try:
+            clock = decode("clock", left, Clock)
+        except Malformed as error:
+            self._say(str(error))
+            return
+        self._t_ns = clock.t_ns
+        # Without its epoch a STOP ALL would count as older than any release said before it.
+        bus.epoch = clock.epoch
 
     def look(self) -> None:
         """Hears the bus, starts again what has died, tells what has changed."""
@@ -79,7 +82,8 @@ class Launcher:
         """The deaths not told yet and the processes as they are now; waits for the bus if there is none."""
         if self.bus is None:
             return
-        now, source = self.clock.t_ns, self.name
+        self._ask_time(self.bus)
+        now, source = self._t_ns, self.name
         for line, given_up in self._untold:
             severity = Event.CRITICAL if given_up else Event.WARNING
             event = Event(timestamp=stamp_ns(now), severity=severity, text=line, source=source)

@@ -6,9 +6,11 @@ from pathlib import Path
 from threading import Event as Flag
 
 from schemas import topics
+from schemas.messages import Clock
 from uvf.launch import catalogue, settings
 from uvf.launch.launcher import LOOK, Launcher, Say, stop_flag
 from uvf.launch.output import RotatingLog
+from uvf.runtime.bus import Sample
 from uvf.runtime.site import load_site
 from uvf.runtime.wire import guarded
 
@@ -51,12 +53,14 @@ class Run:
         self.launcher = Launcher("launcher", say)
         self._moving_since: float | None = None
         self._begun = time.monotonic()
+        self.simulated = 0.0  # s
 
     def start(self, services: list[str]) -> None:
         """The router first, then everybody; the conductor lets time begin when all are there."""
         mission = self._wanted.mission
         self._start("router", "router")
         bus = self.launcher.connect(ROUTER_PATIENCE)
+        bus.subscribe(topics.CLOCK.at("sys"), topics.CLOCK.qos, guarded(topics.CLOCK, self._on_clock, self._say))
         for name in ("conductor", "recorder"):
             told = topics.SYSTEM_EVENTS.by(name)
             bus.subscribe(told.at("sys"), told.qos, guarded(told, lambda event, _: self._say(event.text), self._say), depth=16)
@@ -69,18 +73,16 @@ class Run:
     def _start(self, name: str, *arguments: str) -> None:
         self.launcher.start(name, [*arguments], RotatingLog(self._folder / f"{name}.log").write)
 
-    @property
-    def simulated(self) -> float:
-        """s."""
-        return self.launcher.clock.t_ns / 1e9
+    def _on_clock(self, clock: Clock, sample: Sample) -> None:
+        self.simulated = clock.t_ns / 1e9
+        if clock.tick and self._moving_since is None:
+            self._moving_since = time.monotonic()
+            self._say(f"time runs, {self._moving_since - self._begun:.1f} s after the start")
 
     def watch(self, stop: Flag) -> None:
         """Until ``stop``; starts again what dies."""
         while not stop.wait(LOOK) and not self._over() and not self._cannot_begin():
             self.launcher.look()
-            if self._moving_since is None and self.launcher.clock.tick:
-                self._moving_since = time.monotonic()
-                self._say(f"time runs, {self._moving_since - self._begun:.1f} s after the start")
 
     def _over(self) -> bool:
         """Whether the seconds asked for have passed since time began to run."""
