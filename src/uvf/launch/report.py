@@ -79,6 +79,10 @@ def replay_into(log: Path, service: str, vehicle: str | None, mission: str | Non
     """Prints the fields that came out otherwise; 0 when there are none."""
     with nullcontext(load_site(settings.mission_path(mission))) if mission else logged_site(log) as site:
         hosts = _hosts_named(service, site, vehicle)
+        if begin := log_begin(log):
+            typer.echo(
+                f"the log begins at {begin / 1e9:.1f} s: {service} begins there like one that is started again, so some differ by that"
+            )
         differences = [line for host in hosts for line in into_service(log, host)]
     for difference in differences[:SHOWN]:
         typer.echo(str(difference))
@@ -89,6 +93,8 @@ def replay_into(log: Path, service: str, vehicle: str | None, mission: str | Non
 
 def _hosts_named(name: str, site: Site, vehicle: str | None) -> list[Host]:
     """By the name that ``uvf service`` takes (all that it runs) or that ``uvf node list`` shows (that one). Raises BadInput."""
+    if vehicle is not None and vehicle not in site.members:
+        raise BadInput(f"no vehicle '{vehicle}' in {site.mission_path.name}; {nearest(vehicle, site.members)}")
     kinds = [k for k in catalogue.needed(site) if k.clock == "sim"]
     if any(k.name == name for k in kinds):
         return catalogue.hosts(site, [catalogue.kind(name)], vehicle)
