@@ -1,8 +1,10 @@
 """The world that does not move: ground, floor, walls, furniture; drawn once."""
 
 from collections.abc import Iterator
+from pathlib import Path
 
 import numpy as np
+import trimesh
 from numpy.typing import NDArray
 
 from services.gcs.bodies import Part, box, lathe
@@ -10,7 +12,9 @@ from services.gcs.drawing import Colour, Mesh, Node, Polyline
 from uvf.maths.rotations import from_euler, matrix
 from uvf.runtime.mission_file import Waypoint
 from uvf.runtime.site import Member, Site
+from uvf.runtime.solid import Solid
 from uvf.runtime.world_file import Wall, WorldFile
+from uvf.runtime.world_geometry import WALL, solids
 
 Floats = NDArray[np.float64]
 
@@ -20,8 +24,8 @@ YARD: Colour = (50, 62, 74)
 YARD_WIDTH = 6.0  # m about the floor
 
 
-def scenery(world: WorldFile) -> dict[str, Node]:
-    """Node name -> what stands there."""
+def scenery(world: WorldFile, folder: Path) -> dict[str, Node]:
+    """Node name -> what stands there; ``folder`` holds the world's meshes."""
     x_min, y_min, x_max, y_max = world.floor
     floor = box(((x_min + x_max) / 2, (y_min + y_max) / 2, -0.06), (x_max - x_min, y_max - y_min, 0.1))
     yard = box(((x_min + x_max) / 2, (y_min + y_max) / 2, -0.09), (x_max - x_min + 2 * YARD_WIDTH, y_max - y_min + 2 * YARD_WIDTH, 0.1))
@@ -31,10 +35,28 @@ def scenery(world: WorldFile) -> dict[str, Node]:
     }
     walls = [(wall.colour, part) for wall in world.walls for part in _segments(wall)]
     nodes.update(_merged("/world/walls", walls))
-    things = [(b.colour, _turned(box((0, 0, 0), b.size), b.yaw, b.centre)) for b in world.boxes]
-    things += [(c.colour, lathe(2, [(0, c.radius), (c.height, c.radius)], c.base)) for c in world.cylinders]
+    things = [(s.colour, _placed(s)) for s in solids(world, folder) if s.name != WALL and s.path is None]
     nodes.update(_merged("/world/things", things))
     return nodes
+
+
+def _placed(solid: Solid) -> Part:
+    """A solid's triangles in the world."""
+    part = _shape(solid)
+    return Part(part.vertices @ matrix(solid.orientation).T + solid.position, part.faces)
+
+
+def _shape(solid: Solid) -> Part:
+    if solid.shape == "box":
+        return box((0, 0, 0), solid.size)
+    if solid.shape == "cylinder":
+        radius, height = solid.size
+        return lathe(2, [(-height / 2, radius), (height / 2, radius)], (0, 0, 0))
+    if solid.shape == "sphere":
+        angles = np.linspace(-np.pi / 2, np.pi / 2, 9)
+        return lathe(2, [(solid.size[0] * np.sin(a), solid.size[0] * np.cos(a)) for a in angles], (0, 0, 0))
+    mesh = trimesh.load_mesh(solid.mesh)
+    return Part(np.asarray(mesh.vertices) * np.array(solid.size), np.asarray(mesh.faces))
 
 
 def _segments(wall: Wall) -> Iterator[Part]:

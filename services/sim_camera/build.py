@@ -6,6 +6,7 @@ from uvf.runtime.params import BadInput, nearest
 from uvf.runtime.site import Host, Member, Site
 from uvf.runtime.urdf_file import check_urdf
 from uvf.runtime.vehicle_file import Camera
+from uvf.runtime.world_geometry import solids
 
 
 def build(site: Site) -> list[Host]:
@@ -16,7 +17,8 @@ def build(site: Site) -> list[Host]:
     looks = {name: _look(member) for name, member in site.members.items()}
     if not cameras:
         return []
-    return [Host(SimCamera, lambda: SimCamera(BulletRenderer(site.world, looks), cameras), writes_for=tuple(cameras))]
+    things = solids(site.world, site.world_folder)
+    return [Host(SimCamera, lambda: SimCamera(BulletRenderer(site.world, things, looks), cameras), writes_for=tuple(cameras))]
 
 
 def _check(member: Member, camera: Camera) -> None:

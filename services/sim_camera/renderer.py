@@ -1,6 +1,6 @@
 """Pictures of the world and its vehicles by PyBullet's software renderer; the only file here that knows PyBullet."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
@@ -14,9 +14,9 @@ from services.sim_camera.backdrop import Backdrop
 from services.sim_camera.optics import vertical_fov
 from uvf.maths.rotations import from_euler, matrix, multiply, rotate
 from uvf.runtime.params import BadInput
+from uvf.runtime.solid import UPRIGHT, Solid
 from uvf.runtime.vehicle_file import Camera
-from uvf.runtime.world_file import Colour, WorldFile
-from uvf.runtime.world_geometry import all_boxes
+from uvf.runtime.world_file import WorldFile
 
 Floats = NDArray[np.float64]
 Picture = NDArray[np.uint8]
@@ -51,41 +51,23 @@ class _Shown:
 class BulletRenderer:
     """A copy of the world without physics, on a client of its own."""
 
-    def __init__(self, world: WorldFile, vehicles: Mapping[str, Look]) -> None:
+    def __init__(self, world: WorldFile, solids: Sequence[Solid], vehicles: Mapping[str, Look]) -> None:
         self._client: int = pybullet.connect(pybullet.DIRECT)
         self._backdrop = Backdrop(world)
-        for box in all_boxes(world):
-            self._add_box(box.centre, box.size, box.yaw, box.colour)
-        for cylinder in world.cylinders:
-            shape = pybullet.createVisualShape(
-                pybullet.GEOM_CYLINDER,
-                radius=cylinder.radius,
-                length=cylinder.height,
-                rgbaColor=(*cylinder.colour, 1.0),
-                physicsClientId=self._client,
-            )
-            x, y, z = cylinder.base
-            self._add(shape, (x, y, z + cylinder.height / 2), 0.0)
+        for solid in solids:
+            self._add(_visual_shape(solid, self._client), solid.position, solid.orientation)
         self._vehicles = {name: self._load(look) for name, look in vehicles.items()}
 
-    def _add_box(self, centre: tuple[float, float, float], size: tuple[float, float, float], yaw: float, colour: Colour) -> None:
-        half = [side / 2 for side in size]
-        shape = pybullet.createVisualShape(
-            pybullet.GEOM_BOX, halfExtents=half, rgbaColor=(*colour, 1.0), specularColor=(0, 0, 0), physicsClientId=self._client
-        )
-        self._add(shape, centre, yaw)
-
-    def _add(self, shape: int, position: tuple[float, float, float], yaw: float = 0.0) -> int:
-        orientation = _xyzw(from_euler(0.0, 0.0, yaw))
+    def _add(self, shape: int, position: Floats, orientation: Floats = UPRIGHT) -> int:
         index: int = pybullet.createMultiBody(
-            0.0, -1, shape, basePosition=position, baseOrientation=orientation, physicsClientId=self._client
+            0.0, -1, shape, basePosition=position.tolist(), baseOrientation=_xyzw(orientation), physicsClientId=self._client
         )
         return index
 
     def _load(self, look: Look) -> _Shown:
         centred = Pose(np.zeros(3), np.array((1.0, 0.0, 0.0, 0.0)))
         if look.urdf is None:
-            return _Shown(self._add(self._aircraft(look.mesh), (0.0, 0.0, -100.0)), centred)
+            return _Shown(self._add(self._aircraft(look.mesh), np.array((0.0, 0.0, -100.0))), centred)
         try:
             index = pybullet.loadURDF(str(look.urdf), useFixedBase=True, physicsClientId=self._client)
         except pybullet.error as error:
@@ -142,6 +124,21 @@ class BulletRenderer:
 
     def close(self) -> None:
         pybullet.disconnect(physicsClientId=self._client)
+
+
+def _visual_shape(solid: Solid, client: int) -> int:
+    look = {"rgbaColor": (*solid.colour, 1.0), "specularColor": (0, 0, 0), "physicsClientId": client}
+    shape: int
+    if solid.shape == "box":
+        shape = pybullet.createVisualShape(pybullet.GEOM_BOX, halfExtents=[side / 2 for side in solid.size], **look)
+    elif solid.shape == "cylinder":
+        radius, height = solid.size
+        shape = pybullet.createVisualShape(pybullet.GEOM_CYLINDER, radius=radius, length=height, **look)
+    elif solid.shape == "sphere":
+        shape = pybullet.createVisualShape(pybullet.GEOM_SPHERE, radius=solid.size[0], **look)
+    else:
+        shape = pybullet.createVisualShape(pybullet.GEOM_MESH, fileName=str(solid.mesh), meshScale=solid.size, **look)
+    return shape
 
 
 def _xyzw(wxyz: Floats) -> list[float]:

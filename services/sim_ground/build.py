@@ -10,7 +10,7 @@ from uvf.runtime.params import BadInput
 from uvf.runtime.site import Host, Member, Site
 from uvf.runtime.urdf_file import check_urdf
 from uvf.runtime.vehicle_file import GroundBody
-from uvf.runtime.world_geometry import clearance
+from uvf.runtime.world_geometry import clearance, solids
 
 
 def build(site: Site) -> list[Host]:
@@ -28,7 +28,8 @@ def _make(site: Site, bodies: dict[str, GroundBody]) -> SimGround:
     members = {name: site.members[name] for name in bodies}
     placed = {name: Placed(bodies[name], m.folder / bodies[name].urdf, _start(m)) for name, m in members.items()}
     rigs = {name: Rig(site, m, bodies[name]) for name, m in members.items()}
-    return SimGround(BulletWorld(site.world, placed), rigs, {name: m.file.sensors for name, m in members.items()})
+    world = BulletWorld(solids(site.world, site.world_folder), placed)
+    return SimGround(world, rigs, {name: m.file.sensors for name, m in members.items()})
 
 
 def _start(member: Member) -> tuple[float, float, float]:

@@ -1,6 +1,6 @@
 """The ground vehicles' physics: a PyBullet world of solids and wheeled bodies; the only file here that knows PyBullet."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -14,9 +14,8 @@ from uvf.maths.geodesy import GRAVITY
 from uvf.maths.kinematics import WheelSpeeds, spin_velocity
 from uvf.maths.rotations import from_euler, inverse, matrix, multiply, rotate
 from uvf.runtime.params import BadInput
+from uvf.runtime.solid import UPRIGHT, Solid
 from uvf.runtime.vehicle_file import GroundBody
-from uvf.runtime.world_file import WorldFile
-from uvf.runtime.world_geometry import all_boxes
 
 Floats = NDArray[np.float64]
 STOPPED = WheelSpeeds(0.0, 0.0)
@@ -47,7 +46,7 @@ class _Loaded:
 class BulletWorld:
     """One physics client of its own. The floor is z = 0; base_link is the point on the floor under the axle's middle."""
 
-    def __init__(self, world: WorldFile, vehicles: Mapping[str, Placed]) -> None:
+    def __init__(self, solids: Sequence[Solid], vehicles: Mapping[str, Placed]) -> None:
         self._client: int = pybullet.connect(pybullet.DIRECT)
         self._rate = max((v.body.physics_hz for v in vehicles.values()), default=200.0)
         self._names: dict[int, str] = {}
@@ -55,27 +54,16 @@ class BulletWorld:
         pybullet.setPhysicsEngineParameter(
             fixedTimeStep=1 / self._rate, numSolverIterations=50, deterministicOverlappingPairs=1, physicsClientId=self._client
         )
-        self._add_solids(world)
+        floor = pybullet.createCollisionShape(pybullet.GEOM_PLANE, physicsClientId=self._client)
+        self._add("floor", floor, np.zeros(3), UPRIGHT)
+        for solid in solids:
+            self._add(solid.name, _collision_shape(solid, self._client), solid.position, solid.orientation)
         self._vehicles = {name: self._load(name, vehicle) for name, vehicle in vehicles.items()}
         self.advance({}, SETTLING)
 
-    def _add_solids(self, world: WorldFile) -> None:
-        floor = pybullet.createCollisionShape(pybullet.GEOM_PLANE, physicsClientId=self._client)
-        self._add("floor", floor, (0.0, 0.0, 0.0), 0.0)
-        for box in all_boxes(world):
-            half = [size / 2 for size in box.size]
-            shape = pybullet.createCollisionShape(pybullet.GEOM_BOX, halfExtents=half, physicsClientId=self._client)
-            self._add(box.name, shape, box.centre, box.yaw)
-        for cylinder in world.cylinders:
-            shape = pybullet.createCollisionShape(
-                pybullet.GEOM_CYLINDER, radius=cylinder.radius, height=cylinder.height, physicsClientId=self._client
-            )
-            x, y, z = cylinder.base
-            self._add(cylinder.name, shape, (x, y, z + cylinder.height / 2), 0.0)
-
-    def _add(self, name: str, shape: int, position: tuple[float, float, float], yaw: float) -> None:
-        index = pybullet.createMultiBody(
-            0.0, shape, basePosition=position, baseOrientation=_xyzw(from_euler(0.0, 0.0, yaw)), physicsClientId=self._client
+    def _add(self, name: str, shape: int, position: Floats, orientation: Floats) -> None:
+        index: int = pybullet.createMultiBody(
+            0.0, shape, basePosition=position.tolist(), baseOrientation=_xyzw(orientation), physicsClientId=self._client
         )
         pybullet.changeDynamics(index, -1, lateralFriction=1.0, physicsClientId=self._client)
         self._names[index] = name
@@ -152,6 +140,28 @@ class BulletWorld:
 
     def close(self) -> None:
         pybullet.disconnect(physicsClientId=self._client)
+
+
+def _collision_shape(solid: Solid, client: int) -> int:
+    """A mesh keeps its hollows, which the engine allows of bodies that are not pushed about."""
+    shape: int
+    if solid.shape == "box":
+        half = [side / 2 for side in solid.size]
+        shape = pybullet.createCollisionShape(pybullet.GEOM_BOX, halfExtents=half, physicsClientId=client)
+    elif solid.shape == "cylinder":
+        radius, height = solid.size
+        shape = pybullet.createCollisionShape(pybullet.GEOM_CYLINDER, radius=radius, height=height, physicsClientId=client)
+    elif solid.shape == "sphere":
+        shape = pybullet.createCollisionShape(pybullet.GEOM_SPHERE, radius=solid.size[0], physicsClientId=client)
+    else:
+        shape = pybullet.createCollisionShape(
+            pybullet.GEOM_MESH,
+            fileName=str(solid.mesh),
+            meshScale=solid.size,
+            flags=pybullet.GEOM_FORCE_CONCAVE_TRIMESH,
+            physicsClientId=client,
+        )
+    return shape
 
 
 def _xyzw(wxyz: Floats) -> list[float]:

@@ -1,5 +1,7 @@
 """``worlds/<name>/world.yaml``: walls, obstacles, wind and where on Earth it is, as data."""
 
+import math
+from collections.abc import Sequence
 from itertools import pairwise
 from pathlib import Path
 from typing import Annotated
@@ -14,6 +16,12 @@ Colour = tuple[Share, Share, Share]
 Metres = Annotated[float, Meta(ge=-1e5, le=1e5)]  # local coordinates stay near the origin
 Positive = Annotated[float, Meta(ge=1e-4, le=1e4)]
 Area = tuple[Metres, Metres, Metres, Metres]
+Angle = Annotated[float, Meta(ge=-7, le=7)]
+Angles = tuple[Angle, Angle, Angle]
+FileName = Annotated[str, Meta(pattern=r"^[A-Za-z0-9_][A-Za-z0-9_./-]*$", max_length=200)]
+Seconds = Annotated[float, Meta(ge=0, le=1e5)]
+Script = list[tuple[Seconds, Metres, Metres, float]]
+"""Keys of a motion: t [s], x, y [m], yaw [rad]; closed, for it begins anew at its end."""
 WindSpeed = Annotated[float, Meta(ge=-100, le=100)]
 Tesla = Annotated[float, Meta(ge=-1e-3, le=1e-3)]
 LARGEST_FLOOR = 1e6  # m^2; maps and scores cut it into cells
@@ -37,21 +45,44 @@ class Wall(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class Box(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """``rpy`` leans it, for ramps; with a ``path`` it moves by script: a door."""
+
     name: str
     centre: tuple[Metres, Metres, Metres]  # m, world
     size: tuple[Positive, Positive, Positive]  # m
-    yaw: float = 0.0  # rad
+    rpy: Angles = (0.0, 0.0, 0.0)  # rad
     colour: Colour = (0.55, 0.4, 0.25)
+    path: Script = []
 
 
 class Cylinder(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """Upright, standing on its lower face."""
+    """Stands on its lower face; ``rpy`` tilts it about that face's middle; with a ``path`` it moves by script: a person."""
 
     name: str
     base: tuple[Metres, Metres, Metres]  # m, world
     radius: Positive  # m
     height: Positive  # m
+    rpy: Angles = (0.0, 0.0, 0.0)  # rad
     colour: Colour = (0.5, 0.5, 0.55)
+    path: Script = []
+
+
+class Sphere(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    name: str
+    centre: tuple[Metres, Metres, Metres]  # m, world
+    radius: Positive  # m
+    colour: Colour = (0.5, 0.5, 0.55)
+
+
+class Mesh(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Triangles of an STL, OBJ or DAE file in the world's folder."""
+
+    name: str
+    file: FileName
+    position: tuple[Metres, Metres, Metres] = (0.0, 0.0, 0.0)  # m, world
+    rpy: Angles = (0.0, 0.0, 0.0)  # rad
+    scale: tuple[Positive, Positive, Positive] = (1.0, 1.0, 1.0)
+    colour: Colour = (0.6, 0.6, 0.6)
 
 
 class Field(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -76,6 +107,8 @@ class WorldFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     walls: list[Wall] = []
     boxes: list[Box] = []
     cylinders: list[Cylinder] = []
+    spheres: list[Sphere] = []
+    meshes: list[Mesh] = []
     wind: Wind = Wind()
     magnetic_field: tuple[Tesla, Tesla, Tesla] = (0.0, 22.0e-6, -42.0e-6)  # T, ENU
     ground_colour: Colour = (0.36, 0.5, 0.24)
@@ -99,7 +132,7 @@ def load_world(worlds: Path, name: str) -> WorldFile:
     for i, wall in enumerate(world.walls):
         if any(a == b for a, b in pairwise(wall.points)):
             raise BadInput(f"{place.at('walls', i)}: the same point twice in a row; take one away")
-    _check_names(world, place)
+    _check_things(world, path.parent, place)
     return world
 
 
@@ -109,11 +142,30 @@ def _check_area(area: tuple[float, float, float, float], place: Place) -> None:
         raise BadInput(f"{place}: nothing lies in it; give x_min, y_min, x_max, y_max with each minimum below its maximum")
 
 
-def _check_names(world: WorldFile, place: Place) -> None:
-    """What is touched is told by its name."""
+def _check_things(world: WorldFile, folder: Path, place: Place) -> None:
+    """What is touched is told by its name; scripts close; meshes are there."""
     seen: set[str] = set()
-    named = [("boxes", i, box.name) for i, box in enumerate(world.boxes)]
-    for group, i, name in [*named, *(("cylinders", i, cylinder.name) for i, cylinder in enumerate(world.cylinders))]:
-        if name in seen:
-            raise BadInput(f"{place.at(group, i, 'name')}: '{name}' is given twice; each thing has a name of its own")
-        seen.add(name)
+    groups: dict[str, Sequence[Box | Cylinder | Sphere | Mesh]] = {
+        "boxes": world.boxes,
+        "cylinders": world.cylinders,
+        "spheres": world.spheres,
+        "meshes": world.meshes,
+    }
+    for group, things in groups.items():
+        for i, thing in enumerate(things):
+            if thing.name in seen:
+                raise BadInput(f"{place.at(group, i, 'name')}: '{thing.name}' is given twice; each thing has a name of its own")
+            seen.add(thing.name)
+            if isinstance(thing, Box | Cylinder) and thing.path:
+                _check_script(thing.path, place.at(group, i, "path"))
+            if isinstance(thing, Mesh) and not (folder / thing.file).is_file():
+                near = nearest(thing.file, (p.relative_to(folder).as_posix() for p in folder.rglob("*") if p.is_file()))
+                raise BadInput(f"{place.at(group, i, 'file')}: no file '{thing.file}' in {folder}; {near}")
+
+
+def _check_script(keys: Script, place: Place) -> None:
+    times = [key[0] for key in keys]
+    if len(keys) < 2 or times[0] != 0.0 or any(a >= b for a, b in pairwise(times)):
+        raise BadInput(f"{place}: two or more keys [t, x, y, yaw] with t rising from 0 must stand there")
+    if math.dist(keys[0][1:3], keys[-1][1:3]) > 1e-6:
+        raise BadInput(f"{place}: it begins at {keys[0][1:3]} and ends at {keys[-1][1:3]}; come back to the beginning, for it goes round")

@@ -2,16 +2,20 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
 from uvf.maths.raycast import rectangles
-from uvf.runtime.world_file import Box, Cylinder, Wall, WorldFile
+from uvf.maths.rotations import from_euler, rotate
+from uvf.runtime.solid import Keyframes, Solid
+from uvf.runtime.world_file import Box, Cylinder, Script, Wall, WorldFile
 
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
+WALL = "wall"  # every stretch of wall is called so
 
 
 @dataclass(frozen=True)
@@ -57,12 +61,29 @@ def wall_boxes(wall: Wall) -> Iterator[Box]:
         x, y = (start + end) / 2
         size = (float(np.linalg.norm(end - start)), wall.thickness, wall.height)
         yaw = float(np.arctan2(along[1], along[0]))
-        yield Box(name="wall", centre=(float(x), float(y), wall.height / 2), size=size, yaw=yaw, colour=wall.colour)
+        yield Box(name=WALL, centre=(float(x), float(y), wall.height / 2), size=size, rpy=(0.0, 0.0, yaw), colour=wall.colour)
 
 
 def all_boxes(world: WorldFile) -> list[Box]:
     """The walls' boxes, then the furniture."""
     return [box for wall in world.walls for box in wall_boxes(wall)] + world.boxes
+
+
+def solids(world: WorldFile, folder: Path) -> list[Solid]:
+    """Every solid of a world, walls first; ``folder`` holds its meshes. The ground, z = 0, is none of them."""
+    made = [Solid(b.name, "box", b.size, np.array(b.centre), from_euler(*b.rpy), b.colour, path=_script(b.path)) for b in all_boxes(world)]
+    for c in world.cylinders:
+        tilt = from_euler(*c.rpy)
+        middle = np.array(c.base) + rotate(tilt, np.array((0.0, 0.0, c.height / 2)))
+        made.append(Solid(c.name, "cylinder", (c.radius, c.height), middle, tilt, c.colour, path=_script(c.path)))
+    made += [Solid(s.name, "sphere", (s.radius,), np.array(s.centre), colour=s.colour) for s in world.spheres]
+    for m in world.meshes:
+        made.append(Solid(m.name, "mesh", m.scale, np.array(m.position), from_euler(*m.rpy), m.colour, folder / m.file))
+    return made
+
+
+def _script(path: Script) -> Keyframes | None:
+    return Keyframes(np.array(path)) if path else None
 
 
 def _cuts_box(box: Box, low: float, high: float) -> bool:
@@ -75,7 +96,7 @@ def _cuts_cylinder(cylinder: Cylinder, low: float, high: float) -> bool:
 
 def slice_between(world: WorldFile, low: float, high: float) -> Slice:
     """All solids that reach into the heights from ``low`` to ``high`` [m, world], as outlines."""
-    boxes = [(b.centre[0], b.centre[1], b.size[0] / 2, b.size[1] / 2, b.yaw) for b in all_boxes(world) if _cuts_box(b, low, high)]
+    boxes = [(b.centre[0], b.centre[1], b.size[0] / 2, b.size[1] / 2, b.rpy[2]) for b in all_boxes(world) if _cuts_box(b, low, high)]
     circles = [(c.base[0], c.base[1], c.radius) for c in world.cylinders if _cuts_cylinder(c, low, high)]
     return Slice(rectangles(np.array(boxes)), np.array(circles, dtype=np.float64).reshape(-1, 3))
 

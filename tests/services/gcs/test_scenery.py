@@ -1,6 +1,7 @@
 """The still world, bodies and views: geometry that can be computed a second way."""
 
 import dataclasses
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -52,14 +53,14 @@ def test_an_aeroplane_is_as_wide_as_it_says_and_alike_on_both_sides():
 
 def test_walls_close_their_corners_and_are_cut_low():
     world = dataclasses_replace(WORLD, walls=[Wall(points=[(0, 0), (4, 0), (4, 3)], thickness=0.2)])
-    points = corners(scenery(world), "/world/walls")
+    points = corners(scenery(world, Path()), "/world/walls")
     assert points.min(axis=0) == pytest.approx((-0.1, -0.1, 0.0))
     assert points.max(axis=0) == pytest.approx((4.1, 3.1, WALL_SHOWN))
 
 
 def test_boxes_are_turned_about_their_centre():
-    world = dataclasses_replace(WORLD, boxes=[Box("b", (2.0, 1.0, 0.5), (2.0, 0.5, 1.0), yaw=np.pi / 2)])
-    points = corners(scenery(world), "/world/things")
+    world = dataclasses_replace(WORLD, boxes=[Box("b", (2.0, 1.0, 0.5), (2.0, 0.5, 1.0), rpy=(0.0, 0.0, np.pi / 2))])
+    points = corners(scenery(world, Path()), "/world/things")
     assert points.min(axis=0) == pytest.approx((1.75, 0.0, 0.0))
     assert points.max(axis=0) == pytest.approx((2.25, 2.0, 1.0))
 

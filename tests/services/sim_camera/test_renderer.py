@@ -1,5 +1,7 @@
 """Pictures by the real renderer: things appear where the intrinsics say, in their colours."""
 
+from pathlib import Path
+
 import msgspec
 import numpy as np
 import pytest
@@ -11,11 +13,12 @@ from uvf.maths.rotations import from_euler, matrix
 from uvf.runtime.site import ROOT
 from uvf.runtime.vehicle_file import Camera, Mount
 from uvf.runtime.world_file import Cylinder, Field, Origin, WorldFile
+from uvf.runtime.world_geometry import solids
 
 RED, BLUE = (0.9, 0.05, 0.05), (0.05, 0.05, 0.9)
 CAMERA = Camera(mount=Mount((0.1, 0.0, 0.3)), hz=5.0, width=160, height=120, fov=1.2, far=300.0)
 ORIGIN = Pose(np.zeros(3), from_euler(0.0, 0.0, 0.0))
-BALL = Cylinder("post", (4.0, 1.0, 0.2), 0.1, 0.2, RED)
+BALL = Cylinder("post", (4.0, 1.0, 0.2), 0.1, 0.2, colour=RED)
 EMPTY = WorldFile(about="test", origin=Origin(0.0, 0.0), floor=(0.0, 0.0, 1.0, 1.0))
 
 
@@ -24,7 +27,7 @@ def world_with(**parts):
 
 
 def picture(world, camera=CAMERA, body=ORIGIN, vehicles=None, poses=None):
-    renderer = BulletRenderer(world, vehicles or {})
+    renderer = BulletRenderer(world, solids(world, Path()), vehicles or {})
     renderer.place(poses or {})
     taken = renderer.picture(camera, body)
     renderer.close()

@@ -12,7 +12,7 @@ from uvf.maths.raycast import cast, rectangles
 from uvf.runtime.site import ROOT
 from uvf.runtime.vehicle_file import Mount, load_vehicle
 from uvf.runtime.world_file import load_world
-from uvf.runtime.world_geometry import Slice, clearance, slice_at
+from uvf.runtime.world_geometry import Slice, clearance, slice_at, solids
 
 LDS = load_vehicle(ROOT / "vehicles", "burger").sensors.lidar
 QUIET = msgspec.structs.replace(LDS, noise=0.0, mount=Mount((0.0, 0.0, 0.182)))
@@ -27,7 +27,7 @@ def scan(lidar=QUIET, pose=HERE, others=NOBODY, world=WALL_AHEAD):
 
 def test_agrees_with_the_engines_rays_in_the_house():
     house = load_world(ROOT / "worlds", "house")
-    engine, cut = BulletWorld(house, {}), slice_at(house, 0.182)
+    engine, cut = BulletWorld(solids(house, ROOT / "worlds" / "house"), {}), slice_at(house, 0.182)
     rng = np.random.default_rng(5)
     places = [p for p in rng.uniform((0.2, 0.2), (11.8, 8.8), (60, 2)) if clearance(house, *p) > 0.12][:40]
     angles = np.radians(np.arange(0, 360, 2))

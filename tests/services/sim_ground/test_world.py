@@ -12,9 +12,10 @@ from uvf.maths.rotations import matrix, to_euler
 from uvf.runtime.site import ROOT
 from uvf.runtime.vehicle_file import load_vehicle
 from uvf.runtime.world_file import load_world
-from uvf.runtime.world_geometry import clearance
+from uvf.runtime.world_geometry import clearance, solids
 
 HOUSE = load_world(ROOT / "worlds", "house")
+SOLIDS = solids(HOUSE, ROOT / "worlds" / "house")
 BODY = load_vehicle(ROOT / "vehicles", "burger").ground
 BURGER = Placed(BODY, ROOT / "vehicles" / "burger" / BODY.urdf, (6.0, 4.4, 0.7))
 DRIVE = DifferentialDrive(BODY.wheel_radius, BODY.track)
@@ -22,7 +23,7 @@ DRIVE = DifferentialDrive(BODY.wheel_radius, BODY.track)
 
 @pytest.fixture
 def world():
-    made = BulletWorld(HOUSE, {"burger": BURGER})
+    made = BulletWorld(SOLIDS, {"burger": BURGER})
     yield made
     made.close()
 
@@ -52,7 +53,7 @@ def test_wheel_angles_go_on_over_many_turns(world):
 
 
 def test_two_worlds_do_not_share_anything(world):
-    other = BulletWorld(HOUSE, {"burger": replace(BURGER, start=(2.2, 1.3, 0.0))})
+    other = BulletWorld(SOLIDS, {"burger": replace(BURGER, start=(2.2, 1.3, 0.0))})
     other.advance({"burger": WheelSpeeds(5.0, 5.0)}, 1.0)
     other.close()
     assert world.state("burger").position == pytest.approx((6.0, 4.4, 0.0), abs=1e-3)
