@@ -7,7 +7,7 @@ from msgspec import Meta
 from numpy.typing import NDArray
 
 from schemas import topics
-from schemas.convert import occupancy_cells, occupancy_grid, quaternion, scan_points, scan_rays, seconds, stamp, yaw_of
+from schemas.convert import occupancy_cells, occupancy_grid, quaternion, scan_rays, seconds, stamp, yaw_of
 from schemas.messages import FrameTransform, Grid, LaserScan, Odometry, Vector3
 from services.slam.mapper import Mapper, Scan, toward
 from uvf.maths.planar import IDENTITY, Pose2, PoseHistory, compose, inverse, transform
@@ -87,10 +87,11 @@ class MappingService(Service):
         self._published = self._mapper.map_from_odom = Pose2(shift.x, shift.y, yaw_of(correction.rotation))
 
     def _in_base(self, scan: LaserScan) -> Scan:
+        """A range beyond the lidar's own is no return (REP-117): the map shall not grow to where nobody can see."""
         ranges, rays = scan_rays(scan)
-        reach = NO_RETURN_REACH * self._lidar.range_max
-        hits = transform(self._base_from_lidar, scan_points(scan))
-        open_ends = transform(self._base_from_lidar, rays[ranges <= 0.0] * reach)
+        hit = (ranges > 0.0) & (ranges <= self._lidar.range_max)
+        hits = transform(self._base_from_lidar, rays[hit] * ranges[hit, None])
+        open_ends = transform(self._base_from_lidar, rays[~hit] * (NO_RETURN_REACH * self._lidar.range_max))
         return Scan(hits, open_ends, self._base_from_lidar[:2])
 
     def _correction(self, t: float) -> FrameTransform:

@@ -1,5 +1,6 @@
 """Wheels, gyroscope and the map's correction -> odometry, pose and motion of a ground vehicle, 50 times a second."""
 
+from math import isfinite
 from typing import Annotated
 
 import numpy as np
@@ -21,6 +22,7 @@ Positive = Annotated[float, Meta(gt=0)]
 
 MAX_PREDICTION = 0.1  # s, wheel data older than this is not extrapolated further
 MAX_GAP = 0.1  # s between two wheel messages above which the gyroscope's samples do not cover the interval
+JUMP = 10.0  # times the vehicle's greatest speed: what the wheels never turn
 
 LEFT, RIGHT, BIAS = "left_ticks", "right_ticks", "gyro_bias"
 """What the odometry carries beside the pose, for an instance that is to go on after it."""
@@ -52,7 +54,7 @@ class OdometryService(Service):
             raise ValueError(f"{vehicle} is not a ground vehicle")
         self.params = params
         self._vehicle = vehicle
-        self._radius, self._track = file.ground.wheel_radius, file.ground.track
+        self._radius, self._track, self._fastest = file.ground.wheel_radius, file.ground.track, file.ground.max_linear
         mount = file.sensors.imu.mount.rpy if file.sensors.imu else (0.0, 0.0, 0.0)
         self._up_from_imu: Floats = matrix(from_euler(*mount))[2]
         self._world_from_map = world_from_map
@@ -80,23 +82,34 @@ class OdometryService(Service):
     def recall(self, odometry: Odometry | None = None, correction: FrameTransform | None = None) -> None:
         """Goes on at the last pose told; what was driven since then is in the ticks counted since then."""
         if odometry is not None:
-            position = odometry.pose.position
-            known = {pair.key: pair.value for pair in odometry.metadata}
-            self._filter.resume(Pose2(position.x, position.y, yaw_of(odometry.pose.orientation)), float(known[BIAS]))
-            self._last = WheelTicks(timestamp=odometry.timestamp, left=int(known[LEFT]), right=int(known[RIGHT]))
+            self._resume(odometry)
         if correction is not None:
             self._correct(correction)
 
+    def _resume(self, odometry: Odometry) -> None:
+        """Nothing from a message that somebody else has left: it lacks the ticks."""
+        known = {pair.key: pair.value for pair in odometry.metadata}
+        try:
+            bias, left, right = float(known[BIAS]), int(known[LEFT]), int(known[RIGHT])
+        except (KeyError, ValueError):
+            return
+        position = odometry.pose.position
+        self._filter.resume(Pose2(position.x, position.y, yaw_of(odometry.pose.orientation)), bias if isfinite(bias) else 0.0)
+        self._last = WheelTicks(timestamp=odometry.timestamp, left=left, right=right)
+
     def _move(self, wheels: WheelTicks, imu: list[Imu]) -> None:
+        """Counters that jump, because they began anew or are broken, move nothing."""
         self._waiting += imu
         last, self._last = self._last, wheels
         now = seconds(wheels.timestamp)
         dt = now - seconds(last.timestamp) if last else 0.0
-        if last is None or dt <= 0.0:
+        if last is None or dt <= 0.0 or not 0.0 < wheels.radians_per_tick <= 2 * np.pi:
             return
         left = (wheels.left - last.left) * wheels.radians_per_tick * self._radius
         right = (wheels.right - last.right) * wheels.radians_per_tick * self._radius
         gyro = self._turn_rate_until(now)
+        if max(abs(left), abs(right)) > JUMP * self._fastest * dt + wheels.radians_per_tick * self._radius:
+            return
         self._filter.step((left + right) / 2, (right - left) / self._track, gyro if dt <= MAX_GAP else None, dt)
 
     def _turn_rate_until(self, now: float) -> float | None:

@@ -80,5 +80,5 @@ def test_a_map_that_is_no_rectangle_of_cells_is_refused(change, why):
 
 def test_the_line_names_key_and_type():
     broken = Imu(angular_velocity=Vector3(z=math.nan)).SerializeToString()
-    with pytest.raises(Malformed, match="^uvf/v/sensor/imu: broken uvf.v1.Imu: a number that is not finite or above 1e"):
+    with pytest.raises(Malformed, match=r"^uvf/v/sensor/imu: broken uvf\.v1\.Imu: a number that is not finite or above 1e"):
         decode("uvf/v/sensor/imu", broken, Imu)

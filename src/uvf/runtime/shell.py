@@ -10,15 +10,17 @@ from google.protobuf.message import Message
 from schemas.topics import PARAM, SYSTEM, Qos, Request, Topic
 from uvf.runtime.bus import Bus, Publisher, Query
 from uvf.runtime.clock import NS, first_step_after, step_time
+from uvf.runtime.frames import FrameBuffer
 from uvf.runtime.inbox import EVERY_DEPTH, InputBox
 from uvf.runtime.param_server import ParamServer
-from uvf.runtime.service import Answer, Input, Outputs, Service
+from uvf.runtime.service import Answer, Frames, Input, Outputs, Service
 from uvf.runtime.site import Host
 from uvf.runtime.wire import Malformed, decode
 
 Warn = Callable[[str], None]
 LATEST_DEPTH = 8  # more than one, for the newest may be too new to be read yet
 QUERIES_MOST = 256
+TOLD_MOST = 100  # different lines about broken messages
 AHEAD_MOST = 2 * NS  # of latency; a request that is stamped farther ahead was stamped by another clock
 
 
@@ -52,8 +54,10 @@ class Shell:
         self._publishers: dict[str, Publisher] = {}
         self._queries: dict[str, deque[Query]] = {name: deque() for name in self.type.requests}
         self._answers: dict[str, deque[tuple[int, Answer[Any, Any]]]] = {name: deque() for name in self.type.calls}
+        self._told: set[str] = set()
         self.service: Service
         self._boxes: dict[str, InputBox] = {}
+        self._frames: dict[str, FrameBuffer] = {}
         self._make()
         self._subscribe()
 
@@ -97,6 +101,7 @@ class Shell:
         self.service = self.host.make()
         ageless = self.type.clock == "wall"
         self._boxes = {name: InputBox(declared, ageless, self.epoch) for name, declared in self.type.declared_inputs().items()}
+        self._frames = {name: FrameBuffer() for name, declared in self.type.inputs.items() if isinstance(declared, Frames)}
         self._param_server = ParamServer(self.service)
         self.n = 1
 
@@ -149,7 +154,7 @@ class Shell:
             box.take(t_ns)
             for line in box.malformed():
                 self.counters.malformed += 1
-                self._warn(f"{self.type.name}: {line}")
+                self._tell_once(line)
         missing = tuple(name for name, box in self._boxes.items() if box.is_missing(t_ns))
         self.counters.missing = missing
         if missing:
@@ -159,8 +164,8 @@ class Shell:
             return
         self.counters.steps += 1
         queries, requests = self._take_requests(t_ns)
-        values = {name: box.value(t_ns) for name, box in self._boxes.items()}
-        outputs = self.service.step(t_ns / NS, **values, **requests, **self._take_answers(t_ns))
+        values = {name: box.value(t_ns) for name, box in self._boxes.items() if name in self.type.inputs}
+        outputs = self.service.step(t_ns / NS, **values, **self._frames, **requests, **self._take_answers(t_ns))
         self._publish(outputs, t_ns)
         for name, asked in queries.items():
             self._reply(name, asked, outputs.get(name, ()), t_ns)
@@ -168,6 +173,23 @@ class Shell:
     def _is_due(self, stamp_ns: int, t_ns: int) -> bool:
         """Whether a request counts at ``t_ns``: one from a clock of its own would else wait for ever, it is taken as it comes."""
         return self._is_readable(stamp_ns, t_ns) or stamp_ns > t_ns + AHEAD_MOST
+
+    def _tell_once(self, line: str) -> None:
+        """A broken sender is told of, but not at each of its messages: these are counted."""
+        if line not in self._told and len(self._told) < TOLD_MOST:
+            self._told.add(line)
+            self._warn(f"{self.type.name}: {line}")
+
+    def _feed_frames(self, t_ns: int) -> None:
+        """What is told while ``step`` is held back is taken in too."""
+        for name, box in self._boxes.items():
+            buffer = self._frames.get(name.partition("/")[0])
+            if buffer is None:
+                continue
+            taken = box.value(t_ns)
+            by_vehicle = taken if isinstance(taken, Mapping) else {self.owner: taken}
+            for message in (m for messages in by_vehicle.values() for m in messages):
+                buffer.add(message, is_static=box.declared.topic.qos is Qos.LATCHED)
 
     def _is_readable(self, stamp_ns: int, t_ns: int) -> bool:
         return stamp_ns < t_ns or self.type.clock == "wall"
@@ -207,7 +229,7 @@ class Shell:
                 good.append(query)
             except Malformed as error:
                 self.counters.malformed += 1
-                self._warn(f"{self.type.name}: {error}")
+                self._tell_once(str(error))
                 reply = request.reply(accepted=False, reason=str(error))
                 query.answer(reply.SerializeToString(deterministic=True), query.stamp_ns)
         return good

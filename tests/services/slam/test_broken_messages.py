@@ -1,0 +1,84 @@
+"""Readings that cannot be true move no odometry and spoil no map; the service goes on with the next good one."""
+
+import math
+
+import numpy as np
+import pytest
+
+from schemas.convert import occupancy_cells, planar_pose, stamp
+from schemas.messages import FrameTransform, Imu, KeyValuePair, LaserScan, Odometry, Vector3, WheelTicks
+from services.slam.mapping_service import MappingParams, MappingService
+from services.slam.odometry_service import OdometryParams, OdometryService
+from tests.services.slam.room import ANGLES
+from tests.services.slam.test_services import BURGER, LIDAR, START, drive
+
+
+def scan(t, ranges):
+    return LaserScan(timestamp=stamp(t), start_angle=ANGLES[0], end_angle=ANGLES[-1], ranges=ranges)
+
+
+def mapped(*scans):
+    """The last map of a mapper that stands still and is handed these scans, and the mapper."""
+    service = MappingService("v", LIDAR, START, MappingParams(insert_distance=1e-9, map_period=0.1))
+    grid = None
+    for k, ranges in enumerate(scans, 1):
+        t = 0.2 * k
+        odometry = [Odometry(timestamp=stamp(s), pose=planar_pose(0.01 * k, 0.0, 0.0)) for s in (t - 0.05, t)]
+        grid = service.step(t + 0.01, scan(t, ranges), odometry).get("map", grid)
+    return grid, service
+
+
+def good():
+    return np.full(len(ANGLES), 2.0).tolist()
+
+
+@pytest.mark.parametrize("broken", [[math.nan] * 360, [math.inf] * 360, [-1.0] * 360, [1e9] * 360, [1e300] * 360, [], [0.0], [2.0]])
+def test_no_scan_makes_the_map_grow_beyond_what_the_lidar_sees(broken):
+    grid, _ = mapped(good(), broken, good())
+    cells = occupancy_cells(grid)
+    assert cells.shape[0] * 0.05 < 3 * 2 * LIDAR.range_max and cells.shape[1] * 0.05 < 3 * 2 * LIDAR.range_max
+    assert (cells > 60).any()
+
+
+def test_a_beam_beyond_the_range_is_no_return():
+    far, none = mapped([9.0] * 360)[0], mapped([0.0] * 360)[0]
+    assert far.data == none.data
+
+
+@pytest.mark.parametrize("jump", [10**9, -(10**15), 2**62])
+def test_counters_that_jump_move_nothing(jump):
+    service = OdometryService("v", BURGER, START, OdometryParams())
+    before = drive(service, 20)["odometry"].pose.position.x
+    wheels = WheelTicks(timestamp=stamp(0.4), left=jump, right=jump, radians_per_tick=0.001)
+    service.step(0.42, wheels, [], None)
+    after = service.step(0.44, WheelTicks(timestamp=stamp(0.42), left=jump + 4, right=jump + 4, radians_per_tick=0.001), [], None)
+    assert after["odometry"].pose.position.x == pytest.approx(before, abs=0.02)
+
+
+@pytest.mark.parametrize("size", [0.0, -1.0, 1e11])
+def test_ticks_of_no_size_move_nothing(size):
+    service = OdometryService("v", BURGER, START, OdometryParams())
+    drive(service, 5)
+    out = service.step(0.12, WheelTicks(timestamp=stamp(0.1), left=24, right=24, radians_per_tick=size), [], None)
+    assert abs(out["odometry"].pose.position.x) < 0.05
+
+
+def test_a_gyroscope_gone_mad_leaves_finite_numbers():
+    service = OdometryService("v", BURGER, START, OdometryParams())
+    drive(service, 5)
+    mad = [Imu(timestamp=stamp(0.1), angular_velocity=Vector3(z=1e11))]
+    out = service.step(0.12, WheelTicks(timestamp=stamp(0.1), left=24, right=24, radians_per_tick=0.001), mad, None)
+    pose = out["odometry"].pose
+    assert all(map(math.isfinite, (pose.position.x, pose.position.y, pose.orientation.w, pose.orientation.z)))
+
+
+def test_a_correction_without_orientation_is_none_of_the_heading():
+    out = drive(OdometryService("v", BURGER, START, OdometryParams()), 5, correction=FrameTransform())
+    assert math.isfinite(out["pose"].pose.position.x)
+
+
+@pytest.mark.parametrize("left", [{}, {"left_ticks": "x"}, {"left_ticks": "1", "right_ticks": "2", "gyro_bias": "nan"}])
+def test_an_odometry_left_by_somebody_else_is_not_taken_up_blindly(left):
+    service = OdometryService("v", BURGER, START, OdometryParams())
+    service.recall(odometry=Odometry(pose=planar_pose(1.0, 2.0, 0.0), metadata=[KeyValuePair(key=k, value=v) for k, v in left.items()]))
+    assert math.isfinite(drive(service, 5)["odometry"].pose.position.x)
