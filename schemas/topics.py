@@ -119,10 +119,11 @@ CAMERA_INFO = Topic(f"{_V}/sensor/camera/info", m.CameraCalibration, 0, _Q.LATCH
 TRUTH = Topic(f"{_V}/truth/state", m.NavState, 50, _Q.STATE, "true motion, world frame")
 
 # navigation
-TF_STATIC = Topic(f"{_V}/tf/static", m.FrameTransforms, 0, _Q.LATCHED, "mounting of sensors and wheels")
+TF_STATIC = Topic(f"{_V}/tf/static", m.FrameTransforms, 0, _Q.LATCHED, "base_link, links that do not move, sensors")
 TF_WORLD = Topic(f"{_V}/tf/world", m.FrameTransform, 0, _Q.LATCHED, "world from map, placed at the mission's start pose")
 TF_MAP = Topic(f"{_V}/tf/map", m.FrameTransform, 10, _Q.STATE, "map from odom", kept=True)
-TF_ODOM = Topic(f"{_V}/tf/odom", m.FrameTransform, 50, _Q.STATE, "odom from base_link")
+TF_ODOM = Topic(f"{_V}/tf/odom", m.FrameTransform, 50, _Q.STATE, "odom from base_footprint")
+TF_JOINTS = Topic(f"{_V}/tf/joints", m.FrameTransforms, 20, _Q.STATE, "links that joints move: the wheels")
 TF_BODY = Topic(f"{_V}/tf/body", m.FrameTransform, 50, _Q.STATE, "world from base_link of an aircraft")
 ODOMETRY = Topic(f"{_V}/nav/odometry", m.Odometry, 50, _Q.STATE, "wheels and IMU, odom frame: smooth, drifts", kept=True)
 POSE = Topic(f"{_V}/nav/pose", m.PoseInFrame, 50, _Q.STATE, "best estimate of the pose, world frame")

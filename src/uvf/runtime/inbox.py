@@ -18,7 +18,7 @@ class Slot:
 
     def __init__(self, declared: Input, ageless: bool) -> None:
         self._input = declared
-        self._max_age = float("inf") if ageless else declared.topic.max_age * NS
+        self._max_age = declared.topic.max_age * NS if declared.ages and not ageless else float("inf")
         self._ageless = ageless
         self._fresh: deque[tuple[int, Message]] = deque(maxlen=EVERY_DEPTH)
         self._latest: tuple[int, Message] | None = None

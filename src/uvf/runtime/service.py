@@ -7,6 +7,7 @@ from typing import Any, ClassVar, Generic, Literal, TypeVar
 import msgspec
 from google.protobuf.message import Message
 
+from schemas import topics
 from schemas.topics import Request, Topic
 
 Q = TypeVar("Q", bound=Message)
@@ -26,6 +27,30 @@ class Input:
     required: bool = True
     each_vehicle: bool = False
     role: str | None = None
+    ages: bool = True
+    """False: it counts however old it is."""
+
+
+FRAME_TOPICS = (topics.TF_STATIC, topics.TF_WORLD, topics.TF_MAP, topics.TF_ODOM, topics.TF_JOINTS, topics.TF_BODY)
+"""What the tree of frames is told on; the latched ones are static."""
+
+
+@dataclass(frozen=True)
+class Frames:
+    """The tree of frames as one input: ``step`` is handed a ``FrameBuffer``."""
+
+    team: bool
+
+    def parts(self, name: str) -> dict[str, Input]:
+        """The inputs that it consists of."""
+        return {
+            f"{name}/{topic.key}": Input(topic, every=True, required=False, each_vehicle=self.team, ages=False) for topic in FRAME_TOPICS
+        }
+
+
+def frames(team: bool = False) -> Frames:
+    """The transforms told before the step, of this vehicle (or of every one), to be looked up; never holds the step back."""
+    return Frames(team)
 
 
 def _as_input(topic: "Topic[Any] | Input") -> Input:
@@ -83,7 +108,7 @@ class Service:
     simulator: ClassVar[bool] = False
     """Simulators report the time they have reached; the clock never runs ahead of them."""
 
-    inputs: ClassVar[Mapping[str, Topic[Any] | Input]] = {}
+    inputs: ClassVar[Mapping[str, Topic[Any] | Input | Frames]] = {}
     outputs: ClassVar[Mapping[str, Topic[Any]]] = {}
     requests: ClassVar[Mapping[str, Request[Any, Any]]] = {}
     calls: ClassVar[Mapping[str, Request[Any, Any]]] = {}
@@ -111,4 +136,8 @@ class Service:
 
     @classmethod
     def declared_inputs(cls) -> dict[str, Input]:
-        return {name: _as_input(topic) for name, topic in cls.inputs.items()}
+        """Every topic read, by the name of the input; ``frames()`` is one for each of its topics."""
+        declared: dict[str, Input] = {}
+        for name, asked in cls.inputs.items():
+            declared |= asked.parts(name) if isinstance(asked, Frames) else {name: _as_input(asked)}
+        return declared

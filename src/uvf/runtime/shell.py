@@ -155,6 +155,7 @@ class Shell:
             for line in box.malformed():
                 self.counters.malformed += 1
                 self._tell_once(line)
+        self._feed_frames(t_ns)
         missing = tuple(name for name, box in self._boxes.items() if box.is_missing(t_ns))
         self.counters.missing = missing
         if missing:
