@@ -1,4 +1,4 @@
-"""One set of services run three ways: in one process, over Zenoh in lockstep, over Zenoh in real time."""
+"""One set of services run four ways: in one process or over Zenoh, each in lockstep and live."""
 
 import socket
 import threading
@@ -8,13 +8,17 @@ import numpy as np
 
 from schemas import topics
 from schemas.messages import Clock, Done
+from tests.runtime.in_process import InProcess
+from tests.runtime.outcome import Outcome, ask
 from tests.runtime.toys import Toys
 from uvf.runtime.bus import LocalBus
 from uvf.runtime.conductor import Conductor
+from uvf.runtime.keeper import Keeper
 from uvf.runtime.live import Live
 from uvf.runtime.lockstep import Lockstep
-from uvf.runtime.recording import LogHash
 from uvf.runtime.zenoh_bus import ZenohBus, open_router
+
+SAY_AGAIN = 0.2  # s, wall: how often time that stands is told
 
 
 def free_port():
@@ -23,23 +27,12 @@ def free_port():
         return probe.getsockname()[1]
 
 
-class Outcome:
-    """What a run has left: its toys, its messages in order, its hash."""
-
-    def __init__(self, toys, samples):
-        self.toys = toys
-        self.samples = [s for s in samples if "/time/" not in s.key and "/health/" not in s.key]
-        log_hash = LogHash()
-        for s in sorted(self.samples, key=lambda s: (s.key, s.stamp_ns, s.seq)):
-            log_hash.add(s.key, s.stamp_ns, s.seq, s.payload)
-        self.hash = log_hash.hexdigest()
-
-    def of(self, key):
-        return [s for s in self.samples if s.key == key]
+def toys_of(seed):
+    return Toys(lambda: np.random.default_rng(seed))
 
 
 def run_local(until, seed=1):
-    toys, bus, samples = Toys(lambda: np.random.default_rng(seed)), LocalBus(), []
+    toys, bus, samples = toys_of(seed), LocalBus(), []
     lockstep = Lockstep([h for hosts in toys.processes().values() for h in hosts], bus)
     bus.subscribe("uvf/**", topics.Qos.SENSOR, samples.append)
     lockstep.run(until)
@@ -48,23 +41,26 @@ def run_local(until, seed=1):
 
 
 class Distributed:
-    """A router, a conductor and one Live per process, each with a session of its own, in threads."""
+    """A router, a keeper, a conductor and one Live per process, each with a session of its own, in threads."""
 
-    def __init__(self, lockstep, seed=1, rate=1.0, watcher=False):
+    def __init__(self, lockstep, cast=None, watcher=False):
         self.endpoint = f"tcp/127.0.0.1:{free_port()}"
         self.lockstep = lockstep
-        self.stop = threading.Event()
-        self.toys = Toys(lambda: np.random.default_rng(seed))
+        self.toys = cast or toys_of(1)
         self.samples = []
         self.warnings = []
-        self.conductor = Conductor(["plant"], ["pilot", "thinker"], rate, lockstep)
-        self._processes = self.toys.processes() | ({"watcher": [self.toys.watcher()]} if watcher else {})
+        processes = self.toys.processes()
+        others = [name for name in processes if name not in self.toys.simulators]
+        self.conductor = Conductor(self.toys.simulators, others, 1.0, lockstep)
+        self._processes = processes | ({"watcher": [self.toys.watcher()]} if watcher else {})
         self._threads = {}
         self._stops = {}
+        self._told = 0.0
 
     def __enter__(self):
         self._router = open_router(self.endpoint)
         self.bus = ZenohBus(self.endpoint, blocking=self.lockstep)
+        self._keeper = Keeper(ZenohBus(self.endpoint), self.warnings.append)
         self.bus.subscribe_all(self.samples.append, depth=100_000)
         self.bus.subscribe(topics.DONE.by("*").at("sys"), topics.DONE.qos, self._on_done, depth=1000, wake=True)
         self._clock = self.bus.publisher(topics.CLOCK.at("sys"), Clock.DESCRIPTOR.full_name, topics.CLOCK.qos)
@@ -84,21 +80,39 @@ class Distributed:
         """Ends one process as if it had died: its session goes, nothing else hears of it."""
         self._stops[name].set()
         self._threads[name].join()
+        self.turn()
 
     def _live(self, name, stop):
         with ZenohBus(self.endpoint, blocking=self.lockstep) as bus:
             Live(name, self._processes[name], bus, self.warnings.append).run(stop)
+
+    def turn(self):
+        """Hands over what has arrived, and waits a little for more."""
+        self.bus.wait(0.002)
+        self.bus.poll()
+        self._keeper.poll()
 
     def run(self, until, patience=60.0):
         """Lets time run to ``until`` [s, simulation], and everything arrive."""
         end = time.monotonic() + patience
         while self.conductor.t_ns < until * 1e9 or self.conductor.waiting_for():
             assert time.monotonic() < end, f"time stands at {self.conductor.t_ns / 1e9} s, waiting for {self.conductor.waiting_for()}"
-            self.bus.wait(0.002)
-            self.bus.poll()
-            tick = self.conductor.advance(time.monotonic()) if self.conductor.t_ns < until * 1e9 else None
+            self.turn()
+            wall = time.monotonic()
+            tick = self.conductor.advance(wall) if self.conductor.t_ns < until * 1e9 else None
+            if tick is None and self.conductor.started and wall - self._told > SAY_AGAIN:
+                tick = self.conductor.clock(wall)
             if tick is not None:
+                self._told, self.bus.epoch = wall, tick.epoch
                 self._clock.put(tick.SerializeToString(deterministic=True), tick.t_ns)
+
+    def run_on(self, seconds):
+        """So much further."""
+        self.run(self.conductor.t_ns / 1e9 + seconds)
+
+    def ask(self, request, owner, message, stamp):
+        """Asks as a client does; the list will hold (reply or None, reason, stamp [s] of the answer)."""
+        return ask(self.bus, request, owner, message, stamp)
 
     def outcome(self):
         return Outcome(self.toys, self.samples)
@@ -108,19 +122,26 @@ class Distributed:
             self._stops[name].set()
         for thread in self._threads.values():
             thread.join()
-        self.bus.poll()
+        self.turn()
         self.bus.close()
+        self._keeper._bus.close()
         self._router.close()
 
 
-def run_zenoh(until, lockstep, seed=1, rate=1.0):
-    with Distributed(lockstep, seed, rate) as run:
+def run_in(run, until):
+    with run:
         run.run(until)
     return run.outcome()
 
 
-MODES = {
-    "one process": run_local,
-    "zenoh lockstep": lambda until, seed=1: run_zenoh(until, True, seed),
-    "zenoh real time": lambda until, seed=1: run_zenoh(until, False, seed),
+RUNS = {
+    "one process, lockstep": lambda cast=None: InProcess(True, cast or toys_of(1)),
+    "one process, live": lambda cast=None: InProcess(False, cast or toys_of(1)),
+    "zenoh, lockstep": lambda cast=None: Distributed(True, cast),
+    "zenoh, live": lambda cast=None: Distributed(False, cast),
+}
+MODES = {"one process": run_local} | {
+    name: lambda until, seed=1, make=make: run_in(make(toys_of(seed)), until)
+    for name, make in RUNS.items()
+    if name != "one process, lockstep"
 }

@@ -1,4 +1,7 @@
-"""What every runtime keeps, claim by claim, in one process, over Zenoh in lockstep and in real time."""
+"""What every runtime keeps, claim by claim, in one process and over Zenoh, each in lockstep and live.
+
+Ages, requests and restarts have files of their own: ``test_ages``, ``test_requests``, ``test_restarts``.
+"""
 
 import json
 import time
@@ -7,7 +10,7 @@ import pytest
 
 from schemas import topics
 from schemas.messages import ClockRequest, ParamReply, ParamRequest, WheelCommand
-from tests.runtime.modes import MODES, Distributed
+from tests.runtime.modes import MODES, RUNS, Distributed, run_in
 from uvf.runtime.clock import step_time
 
 UNTIL = 2.3
@@ -30,7 +33,7 @@ def test_step_n_is_at_n_over_hz_and_none_runs_twice(outcome):
 
 def test_simulators_and_lockstep_leave_no_step_out(outcome):
     assert len(outcome.toys.one("plant").times) == round(UNTIL * 100)
-    if outcome.mode != "zenoh real time":
+    if "live" not in outcome.mode:
         pilot = outcome.toys.one("pilot.alpha")
         assert len(pilot.times) + len(pilot.missing) == round(UNTIL * 50)
 
@@ -79,10 +82,14 @@ def test_two_runs_are_equal_to_the_byte_and_another_seed_is_not():
 
 
 def test_lockstep_over_zenoh_gives_the_same_log_as_one_process():
-    local, distributed = MODES["one process"](UNTIL), MODES["zenoh lockstep"](UNTIL)
+    local, distributed = MODES["one process"](UNTIL), MODES["zenoh, lockstep"](UNTIL)
     for key in sorted({s.key for s in local.samples}):
         assert [s[2:5] for s in distributed.of(key)] == [s[2:5] for s in local.of(key)], key
     assert distributed.hash == local.hash
+
+
+def test_processes_turned_by_hand_in_lockstep_are_the_same_as_a_lockstep_run():
+    assert run_in(RUNS["one process, lockstep"](), UNTIL).hash == MODES["one process"](UNTIL).hash
 
 
 def test_wall_services_go_on_while_time_is_paused():
@@ -95,20 +102,6 @@ def test_wall_services_go_on_while_time_is_paused():
             run.bus.wait(0.01)
         assert len(pilot.times) <= steps + 2
         assert watcher.vehicles == {"alpha", "beta"}
-
-
-def test_a_simulator_that_comes_back_starts_everybody_afresh():
-    with Distributed(False) as run:
-        run.run(0.5)
-        run.end("plant")
-        run.start("plant")
-        while run.conductor.epoch == 1:
-            run.bus.wait(0.01)
-            run.bus.poll()
-        run.run(0.5)
-        assert run.conductor.epoch == 2
-    assert len(run.toys.made["pilot.alpha"]) == 2
-    assert run.toys.one("pilot.alpha").times[-1] <= 0.5
 
 
 def test_time_stands_while_a_simulator_is_gone():

@@ -145,14 +145,15 @@ class Watcher(Service):
         return {"stop": StopCommand(engaged=False)} if self.steps == 1 else {}
 
 
-class Toys:
-    """A run's hosts, and every instance they have made, by name."""
+class Cast:
+    """Services by process, and every instance that was made of them, oldest first."""
 
-    def __init__(self, rng_of):
+    simulators: tuple[str, ...] = ()
+
+    def __init__(self):
         self.made: dict[str, list[Service]] = {}
-        self._rng_of = rng_of
 
-    def _host(self, service, vehicle=None, make=None, roles=None):
+    def host(self, service, vehicle=None, make=None, roles=None):
         def build():
             instance = (make or service)()
             self.made.setdefault(f"{service.name}.{vehicle}" if vehicle else service.name, []).append(instance)
@@ -162,15 +163,28 @@ class Toys:
 
     def processes(self) -> dict[str, list[Host]]:
         """Process name -> its hosts."""
-        return {
-            "plant": [self._host(Plant, make=lambda: Plant(self._rng_of()))],
-            "pilot": [self._host(Pilot, name) for name in VEHICLES],
-            "thinker": [self._host(Thinker, "alpha"), self._host(Follower, "beta", roles={"leader": "alpha"})],
-        }
-
-    def watcher(self) -> Host:
-        return self._host(Watcher)
+        raise NotImplementedError
 
     def one(self, name):
         """The newest instance."""
         return self.made[name][-1]
+
+
+class Toys(Cast):
+    """A plant, two pilots, a thinker and a follower."""
+
+    simulators = ("plant",)
+
+    def __init__(self, rng_of):
+        super().__init__()
+        self._rng_of = rng_of
+
+    def processes(self):
+        return {
+            "plant": [self.host(Plant, make=lambda: Plant(self._rng_of()))],
+            "pilot": [self.host(Pilot, name) for name in VEHICLES],
+            "thinker": [self.host(Thinker, "alpha"), self.host(Follower, "beta", roles={"leader": "alpha"})],
+        }
+
+    def watcher(self) -> Host:
+        return self.host(Watcher)

@@ -1,0 +1,134 @@
+"""Point 5: age counts in the topic's own periods, ten make it stale; latched and event topics never; actuators after 0.5 s."""
+
+import pytest
+
+from schemas import topics
+from schemas.convert import stamp
+from schemas.messages import Event, FrameTransform, Imu, Mission, SurfaceCommand, WheelCommand
+from tests.runtime.modes import RUNS
+from tests.runtime.toys import Cast
+from uvf.runtime.service import Service, each_vehicle, every, optional
+
+SILENT = 0.30  # s, when the last message of each stream is sent
+ONCE = 0.10  # s, when the latched one and the event are sent
+UNTIL = 1.6  # s
+LATE = 0.25  # s, how late a live step may come on a busy machine
+MAX_AGE = {"imu": 0.1, "map_frame": 1.0, "wheels": 0.5, "surfaces": 0.5}  # s: 10 periods of 100 Hz and 10 Hz; actuators of 50 Hz
+
+
+class Beacon(Service):
+    """Sends everything at 100 Hz, then falls silent."""
+
+    name = "beacon"
+    hz = 100.0
+    simulator = True
+    outputs = {
+        "imu": topics.IMU,
+        "map_frame": topics.TF_MAP,
+        "wheels": topics.WHEEL_COMMAND,
+        "surfaces": topics.SURFACE_COMMAND,
+        "plan": topics.MISSION,
+        "event": topics.EVENTS.by("beacon"),
+    }
+
+    def step(self, t):
+        if t > SILENT:
+            return {}
+        now = stamp(t)
+        streams = {"imu": Imu(timestamp=now), "map_frame": FrameTransform(timestamp=now)}
+        actuators = {"wheels": WheelCommand(timestamp=now), "surfaces": SurfaceCommand(timestamp=now)}
+        once = {"plan": Mission(timestamp=now, id=7), "event": Event(timestamp=now, text="once")} if t == ONCE else {}
+        return {**streams, **actuators, **once}
+
+
+class Judge(Service):
+    """Notes when it is handed what."""
+
+    name = "judge"
+    hz = 100.0
+    inputs = {
+        "imu": optional(topics.IMU),
+        "map_frame": optional(topics.TF_MAP),
+        "wheels": each_vehicle(topics.WHEEL_COMMAND),
+        "surfaces": optional(topics.SURFACE_COMMAND),
+        "plan": optional(topics.MISSION),
+        "event": optional(topics.EVENTS.by("beacon")),
+        "heard": optional(every(topics.EVENTS.by("beacon"))),
+    }
+
+    def __init__(self):
+        self.times = []
+        self.seen = {name: [] for name in self.inputs}
+
+    def step(self, t, **inputs):
+        self.times.append(t)
+        for name, value in inputs.items():
+            if value:
+                self.seen[name].append(t)
+        return {}
+
+
+class Guarded(Service):
+    """Needs the 100 Hz stream, and says when it was held back."""
+
+    name = "guarded"
+    hz = 100.0
+    inputs = {"imu": topics.IMU, "plan": topics.MISSION}
+
+    def __init__(self):
+        self.times = []
+        self.held = []
+
+    def step(self, t, imu, plan):
+        self.times.append(t)
+        return {}
+
+    def stale(self, t, missing):
+        self.held.append((t, missing))
+        return {}
+
+
+class Ages(Cast):
+    simulators = ("beacon",)
+
+    def processes(self):
+        return {"beacon": [self.host(Beacon, "alpha")], "judge": [self.host(Judge, "alpha"), self.host(Guarded, "alpha")]}
+
+
+@pytest.fixture(scope="module", params=RUNS)
+def run(request):
+    with RUNS[request.param](Ages()) as made:
+        made.run(UNTIL)
+    return made
+
+
+def judge(run):
+    return run.toys.one("judge.alpha")
+
+
+@pytest.mark.parametrize("name", MAX_AGE)
+def test_a_stream_counts_for_ten_of_its_own_periods_and_an_actuator_for_half_a_second(run, name):
+    seen = judge(run).seen[name]
+    end = SILENT + MAX_AGE[name]
+    assert seen == [t for t in judge(run).times if seen[0] <= t <= end + 1e-9]
+    assert end - (0.0 if run.lockstep else LATE) - 1e-9 <= seen[-1] <= end + 1e-9
+
+
+@pytest.mark.parametrize("name", ["plan", "event"])
+def test_what_is_latched_and_what_has_happened_never_goes_stale(run, name):
+    times = judge(run).times
+    assert judge(run).seen[name] == times[times.index(judge(run).seen[name][0]) :]
+    assert ONCE < judge(run).seen[name][0] < ONCE + LATE
+    assert times[-1] == pytest.approx(UNTIL)
+
+
+def test_an_event_is_handed_over_once_to_those_who_take_every_one(run):
+    assert len(judge(run).seen["heard"]) == 1
+
+
+def test_a_required_stream_that_went_stale_holds_the_step_back_and_names_itself(run):
+    guarded = run.toys.one("guarded.alpha")
+    assert guarded.times
+    assert max(guarded.times) <= SILENT + MAX_AGE["imu"] + 1e-9
+    after = [missing for t, missing in guarded.held if t > SILENT + MAX_AGE["imu"] + 1e-9]
+    assert after and set(after) == {("imu",)}
