@@ -1,6 +1,7 @@
 """The ground station of a mission: one page for all its vehicles."""
 
 import sys
+from functools import partial
 
 from services.gcs.service import GroundStation
 from uvf.runtime.address import address_from
@@ -16,7 +17,7 @@ def build(site: Site) -> list[Host]:
         from services.gcs.state import Model
         from services.gcs.viser_page import ViserPage
 
-        page = ViserPage(address, cameras(site), Model(site).layers)
+        page = ViserPage(address, partial(cameras, site), Model(site).layers)
         if address.token:
             sys.stderr.write(f"gcs: the page, for those who have its token: {address.url}\n")
         return GroundStation(site, page)

@@ -10,8 +10,9 @@ from uvf.runtime.site import Site
 Floats = NDArray[np.float64]
 
 FOV = 1.2  # rad, vertical
-ASPECT = 0.95  # width by height of what the panels leave of a common window
+ASPECT = 0.95  # width by height, of a window that has not said its own
 MARGIN = 0.9  # share of the window that the fitted things may fill
+TILTED = 0.94  # of the width: a camera turned up sees what is near at its lower edge larger
 LOW = 0.04  # rad between the lower edge of the window and what is fitted
 
 
@@ -28,13 +29,13 @@ def _axes(sight: Floats) -> tuple[Floats, Floats]:
     return right, np.cross(right, sight).astype(np.float64)
 
 
-def fit(points: Floats, sight: Floats) -> Camera:
-    """The nearest camera along ``sight`` that sees all points. points: (n, 3) m, world."""
+def fit(points: Floats, sight: Floats, aspect: float) -> Camera:
+    """The nearest camera along ``sight`` that sees all points. points: (n, 3) m, world; aspect: width by height."""
     middle = (points.min(axis=0) + points.max(axis=0)) / 2
     right, up = _axes(sight)
     x, y, z = (points - middle) @ right, (points - middle) @ up, (points - middle) @ sight
     tall = MARGIN * np.tan(FOV / 2)
-    distance = float(np.max(np.maximum(np.abs(x) / (tall * ASPECT), np.abs(y) / tall) - z))
+    distance = float(np.max(np.maximum(np.abs(x) / (tall * aspect), np.abs(y) / tall) - z))
     return _camera(middle - distance * sight, sight, distance)
 
 
@@ -55,15 +56,18 @@ def _camera(position: Floats, sight: Floats, distance: float) -> Camera:
     return Camera((x, y, z), (u, v, w))
 
 
-def cameras(site: Site) -> dict[str, Camera]:
-    """Named views; the first is how the page opens: the floor before the sky, if something flies there."""
+def cameras(site: Site, aspect: float = ASPECT) -> dict[str, Camera]:
+    """Named views for a window of ``aspect`` (width by height).
+
+    The first is how the page opens: the floor before the sky, if something flies there.
+    """
     x_min, y_min, x_max, y_max = site.world.floor
     floor = np.array([(x, y, z) for x in (x_min, x_max) for y in (y_min, y_max) for z in (0.0, 0.5)])
     low, high = extent(site)
     everything = np.array([(x, y, z) for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])])
-    near = fit(floor, direction(-1.85, 0.47))
+    near = fit(floor, direction(-1.85, 0.47), TILTED * aspect)
     return {
         "Scene": tilted_up(near, floor) if any(site.of_kind("fixed_wing")) else near,
-        "All": fit(everything, direction(-1.85, 0.5)),
-        "Top": fit(floor, direction(-np.pi / 2, 1.56)),
+        "All": fit(everything, direction(-1.85, 0.5), aspect),
+        "Top": fit(floor, direction(-np.pi / 2, 1.56), aspect),
     }

@@ -150,7 +150,8 @@ class Commander:
         command = StopCommand(timestamp=stamp(self._model.sim_time), engaged=engaged, source=SOURCE)
         self._model.stop = command
         out.stop.append(command)
-        self._model.note("", "STOP ALL engaged" if engaged else "STOP ALL released", Event.WARNING if engaged else Event.NOTICE)
+        word = "engaged" if engaged else "released"
+        self._model.note("", f"STOP ALL {word} on this page", Event.WARNING if engaged else Event.NOTICE, of_operator=True)
 
     def _go(self, t: float, point: tuple[float, float] | None, out: Outbox) -> None:
         vehicle = self._model.chosen
@@ -211,27 +212,31 @@ class Commander:
         return True
 
     def _refuse(self, t: float, vehicle: VehicleModel, text: str, reason: str) -> None:
-        vehicle.order = Order(text, t, "refused", reason)
-        self._model.note(vehicle.name, f"{text}: refused: {reason}", Event.WARNING)
+        self._settle(t, vehicle, Order(text, t, "refused", reason or "no reason given"))
 
-    def hear(self, t: float, answers: Sequence[Answer[Any, Any]]) -> list[tuple[str, Order]]:
-        """Takes in what became of earlier requests; returns (vehicle, order) for each that is now settled."""
-        settled = []
+    def _settle(self, t: float, vehicle: VehicleModel, order: Order) -> None:
+        """What became of an order: beside the buttons, in the log, and over the scene for a while."""
+        vehicle.order = order
+        good = order.state == "accepted"
+        outcome = order.state if good else f"{order.state}: {order.reason}"
+        line = self._model.note(vehicle.name, f"{order.text}: {outcome}", Event.INFO if good else Event.WARNING, of_operator=True)
+        self._model.log.tell(t, line, good)
+
+    def hear(self, t: float, answers: Sequence[Answer[Any, Any]]) -> None:
+        """Takes in what became of earlier requests."""
         for answer in answers:
             vehicle = self._model.vehicles.get(answer.vehicle)
             if vehicle is None:
                 continue
             accepted = answer.reply is not None and answer.reply.accepted
             reason = answer.reason if answer.reply is None else answer.reply.reason
-            order = Order(describe(answer.request), t, "accepted" if accepted else "refused", reason)
-            vehicle.order = order
             if isinstance(answer.request, GoalRequest) and not accepted:
                 vehicle.goal_asked = None
                 self._undo_mode(vehicle.name)
-            outcome = "accepted" if accepted else f"refused: {reason or 'no reason given'}"
-            self._model.note(vehicle.name, f"{order.text}: {outcome}", Event.INFO if accepted else Event.WARNING)
-            settled.append((vehicle.name, order))
-        return settled
+            if accepted:
+                self._settle(t, vehicle, Order(describe(answer.request), t, "accepted"))
+            else:
+                self._refuse(t, vehicle, describe(answer.request), reason)
 
     def _undo_mode(self, vehicle: str) -> None:
         """A goal that is refused changes nothing: the mode that was set for it goes back with the next step."""

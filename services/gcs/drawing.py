@@ -78,13 +78,6 @@ class Button:
 
 
 @dataclass(frozen=True)
-class Toast:
-    title: str
-    text: str
-    good: bool
-
-
-@dataclass(frozen=True)
 class Camera:
     """From where to where the scene is looked at [m, world]."""
 
@@ -101,7 +94,6 @@ class Picture:
     html: Mapping[str, str] = field(default_factory=dict)
     buttons: Sequence[Button] = ()
     image: bytes | None = None
-    toasts: Sequence[Toast] = ()
 
 
 class Page(Protocol):

@@ -9,6 +9,8 @@
   if (window.__gcs) return;
   window.__gcs = true;
   const send = text => { const m = window.__viserMutable; if (m) m.sendMessage({type: 'GuiUpdateMessage', uuid: window.__gcsBridge, updates: {value: text}}); };
+  document.body.dataset.log = 'notice';
+  document.addEventListener('click', e => { const filter = e.target.closest && e.target.closest('[data-log]'); if (filter && filter !== document.body) document.body.dataset.log = filter.dataset.log; });
   const press = e => { const card = e.target.closest && e.target.closest('[data-gcs]'); if (card) send(JSON.stringify([card.dataset.gcs, Date.now()])); };
   document.addEventListener('pointerdown', press);
   document.addEventListener('keydown', e => { if (e.key === 'Enter' || e.key === ' ') press(e); });
@@ -16,6 +18,11 @@
   bar.id = 'gcs-bar'; bar.setAttribute('role', 'status'); document.body.append(bar);
   let beat = '', at = performance.now();
   setInterval(() => {
+    const canvas = window.__viserMutable && window.__viserMutable.canvas;
+    if (canvas) {
+      const box = canvas.getBoundingClientRect(), root = document.documentElement.style;
+      root.setProperty('--gcs-left', box.left + 'px'); root.setProperty('--gcs-width', box.width + 'px');
+    }
     const source = document.getElementById('gcs-bar-source');
     const now = performance.now();
     if (source && source.dataset.beat !== beat) { beat = source.dataset.beat; at = now; if (bar.innerHTML !== source.innerHTML) bar.innerHTML = source.innerHTML; }

@@ -2,15 +2,15 @@
 
 from collections.abc import Callable
 
-from services.gcs import panels
+from services.gcs import panels, records, status
 from services.gcs.commands import MODES, Arm, Commander, SetMode, StopAll, mode_name
-from services.gcs.drawing import Button, Picture, Toast
+from services.gcs.drawing import Button, Picture
 from services.gcs.overview import Overview
 from services.gcs.state import Model
 from services.gcs.view import View
 
-FAST, SLOW = 2, 4
-"""Steps between two drawings of the instruments, and of everything that is read slowly."""
+FAST = 2
+"""Steps between two drawings of what tells at once; of the rest one is drawn with each step."""
 
 
 class Composer:
@@ -22,25 +22,29 @@ class Composer:
         self._html: dict[str, str] = {}
         self._step = 0
 
-    def picture(self, t: float, toasts: list[Toast]) -> Picture:
+    def picture(self, t: float) -> Picture:
         """What to show at ``t`` [s, wall]."""
         chosen = self._model.chosen
+        fast: dict[str, Callable[[], str]] = {
+            "bar": lambda: status.status_bar(self._model, t),
+            "stop": lambda: status.stop_line(self._model),
+            "orders": lambda: panels.orders(chosen) if chosen is not None else "",
+            "instrument": lambda: panels.instrument(chosen) if chosen is not None else "",
+        }
         slow: dict[str, Callable[[], str]] = {
-            "bar": lambda: panels.status_bar(self._model, t),
             "fleet": lambda: panels.fleet(self._model, t),
             "facts": lambda: panels.facts(chosen, t) if chosen is not None else "",
             "overview": self._overview.svg,
-            "log": lambda: panels.event_log(self._model.log),
-            "processes": lambda: panels.processes(self._model),
+            "log": lambda: records.event_log(self._model.log),
+            "processes": lambda: records.processes(self._model, t),
         }
-        if self._step % FAST == 0 and chosen is not None:
-            self._html["instrument"] = panels.instrument(chosen)
-        name = list(slow)[self._step % len(slow)]
-        for each in slow if self._step == 0 else (name,):
-            self._html[each] = slow[each]()
+        due = fast if self._step % FAST == 0 else {}
+        turn = list(slow)[self._step % len(slow)]
+        due = {**due, **(slow if self._step == 0 else {turn: slow[turn]})}
+        self._html.update((name, draw()) for name, draw in due.items())
         self._step += 1
         image = chosen.image.data if chosen is not None and chosen.image is not None else None
-        return Picture(self._view.nodes(t), self._view.places(), dict(self._html), self.buttons(t), image, toasts)
+        return Picture(self._view.nodes(t), self._view.places(), dict(self._html), self.buttons(t), image)
 
     def buttons(self, t: float) -> list[Button]:
         """The commands that make sense for the chosen vehicle, and STOP ALL, which always does."""

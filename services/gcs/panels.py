@@ -1,70 +1,17 @@
-"""The page's words: status bar, fleet cards, facts of the chosen vehicle, log, processes, help. Text from the bus is escaped."""
+"""The page's words about vehicles: fleet cards, what was asked of one and how far it is, its facts. Text from the bus is escaped."""
 
-from collections.abc import Sequence
 from html import escape
 from math import atan2, degrees, hypot, pi
 from pathlib import Path
 
 from schemas.convert import wxyz
-from schemas.messages import Clock, Event, MissionProgress, NavStatus, Process
+from schemas.messages import MissionProgress, NavStatus
 from services.gcs.commands import mode_name
 from services.gcs.instruments import Drive, Flight, drive_panel, primary_flight_display
-from services.gcs.state import Line, Model, VehicleModel, link_of
+from services.gcs.state import Model, VehicleModel, link_of
 from uvf.maths.rotations import to_euler
 
-SEVERITY: dict[int, tuple[str, str]] = {
-    Event.INFO: ("·", "info"),
-    Event.NOTICE: ("i", "notice"),
-    Event.WARNING: ("⚠", "warn"),
-    Event.ERROR: ("✖", "bad"),
-    Event.CRITICAL: ("✖", "bad"),
-}
-LOG_SHOWN = 60
 HELP = Path(__file__).with_name("help.html")
-
-
-def clock_text(seconds: float) -> str:
-    """``00:01:23`` of simulation time [s]."""
-    whole = int(seconds)
-    return f"{whole // 3600:02d}:{whole // 60 % 60:02d}:{whole % 60:02d}"
-
-
-def system_link(model: Model, t: float) -> tuple[str, str]:
-    """(word, class) for the whole link: by the clock, or by the vehicles where there is no clock."""
-    heard = [v.heard for v in model.vehicles.values() if v.heard is not None]
-    newest = model.clock_at if model.clock_at is not None else max(heard, default=None)
-    word, style = link_of(newest, t)
-    if style == "good" and model.clock is not None and model.clock.state != Clock.RUNNING:
-        return "PAUSED", "warn"
-    return word, style
-
-
-def status_bar(model: Model, t: float) -> str:
-    word, style = system_link(model, t)
-    rate = f"× {model.clock.rate:.2f}" if model.clock is not None and model.clock.rate > 0 else ""
-    waiting = escape(model.clock.waiting_for) if model.clock is not None else ""
-    live = sum(link_of(v.heard, t)[1] == "good" for v in model.vehicles.values())
-    chosen = model.chosen
-    parts = [
-        f"<b class='g-{style}'>● {word}</b>",
-        f"<span>sim <b>{clock_text(model.sim_time)}</b> <i>{rate}</i></span>",
-        f"<span>{live} of {len(model.vehicles)} vehicles</span>",
-    ]
-    if waiting:
-        parts.append(f"<span class='g-warn'>waits for {waiting}</span>")
-    if model.stopped:
-        parts.append("<b class='g-stop'>■ STOP ALL ENGAGED</b>")
-    elif alarm := _alarm(model):
-        parts.append(f"<span class='g-{SEVERITY[alarm.severity][1]}'>⚠ {escape(alarm.vehicle)} {escape(alarm.text[:60])}</span>")
-    if chosen is not None:
-        parts.append(f"<span class='g-follow' hidden data-name='{chosen.name}' data-distance='{40 if chosen.flies else 3}'></span>")
-    return "".join(parts)
-
-
-def _alarm(model: Model) -> Line | None:
-    """The newest warning or worse of the last 15 s of simulation time."""
-    recent = (line for line in reversed(model.log) if line.severity >= Event.WARNING and model.sim_time - line.t < 15.0)
-    return next((line for line in recent if line.severity in SEVERITY), None)
 
 
 def fleet(model: Model, t: float) -> str:
@@ -101,9 +48,9 @@ def _numbers(v: VehicleModel) -> list[tuple[str, str]]:
         airspeed = f"{v.nav.airspeed:.1f} m/s" if v.nav is not None else "–"
         height = f"{v.nav.position.z:.0f} m" if v.nav is not None else "–"
         return [("airspeed", airspeed), ("altitude", height), ("waypoint", waypoint_text(v))]
-    explored = f"{100 * v.nav_status.explored:.0f} %" if v.nav_status is not None else "–"
+    mapped = f"{100 * v.mapped:.0f} %" if v.mapped is not None else "–"
     job = escape(v.nav_status.job) or "–" if v.nav_status is not None else "–"
-    return [("speed", f"{v.speed:.2f} m/s"), ("job", job), ("explored", explored)]
+    return [("speed", f"{v.speed:.2f} m/s"), ("job", job), ("mapped floor", mapped)]
 
 
 def waypoint_text(v: VehicleModel) -> str:
@@ -154,7 +101,7 @@ def facts(v: VehicleModel, t: float) -> str:
         if s.battery_voltage > 0:
             rows.append(("battery", f"{100 * s.battery_remaining:.0f} %, {s.battery_voltage:.1f} V"))
     rows += _wind(v) + _job(v)
-    return "<table class='g-facts'>" + "".join(f"<tr><td>{a}</td><td>{b}</td></tr>" for a, b in rows) + f"</table>{order_line(v)}"
+    return "<table class='g-facts'>" + "".join(f"<tr><td>{a}</td><td>{b}</td></tr>" for a, b in rows) + "</table>"
 
 
 def _wind(v: VehicleModel) -> list[tuple[str, str]]:
@@ -175,44 +122,45 @@ def _crab(v: VehicleModel, yaw: float) -> float:
 
 
 def _job(v: VehicleModel) -> list[tuple[str, str]]:
-    rows = []
-    if v.nav_status is not None:
-        state = NavStatus.State.Name(v.nav_status.state).lower()
-        why = f": {escape(v.nav_status.reason)}" if v.nav_status.reason else ""
-        rows.append(("planner", f"{state}{why}"))
-    if v.progress is not None and v.flies:
-        rows.append(("mission", MissionProgress.State.Name(v.progress.state).lower().replace("_", " ")))
-    return rows
+    if v.nav_status is None:
+        return []
+    state = NavStatus.State.Name(v.nav_status.state).lower()
+    why = f": {escape(v.nav_status.reason)}" if v.nav_status.reason else ""
+    return [("planner", f"{state}{why}"), ("explored, as it guesses", f"{100 * v.nav_status.explored:.0f} %")]
+
+
+def orders(v: VehicleModel) -> str:
+    """Under the buttons: what became of the last order, and how far the vehicle is with its job."""
+    return f"{order_line(v)}{progress_line(v)}"
+
+
+def progress_line(v: VehicleModel) -> str:
+    """The mission or the way to the goal: in words, and as a bar where there is an end to it."""
+    p = v.progress
+    if p is not None and p.state != MissionProgress.NO_MISSION:
+        state = MissionProgress.State.Name(p.state).lower().replace("_", " ")
+        done = 1.0 if p.state == MissionProgress.COMPLETE else p.current / max(p.total, 1)
+        left = f", {v.status.distance_to_waypoint:.0f} m to go" if v.status is not None and p.state == MissionProgress.ACTIVE else ""
+        return _progress(f"mission {state}: waypoint {waypoint_text(v)}{left}", done)
+    if v.flies or (p is not None and v.nav_status is None):
+        return _progress("no mission is loaded: upload one with a ground station", None)
+    if v.nav_status is None:
+        return ""
+    state = NavStatus.State.Name(v.nav_status.state).lower()
+    left = f", {v.nav_status.distance_left:.1f} m to go" if v.nav_status.state == NavStatus.DRIVING else ""
+    why = f": {escape(v.nav_status.reason)}" if v.nav_status.reason else ""
+    return _progress(f"{escape(v.nav_status.job) or 'no job'}: {state}{left}{why}", None)
+
+
+def _progress(text: str, share: float | None) -> str:
+    bar = "" if share is None else f"<span class='g-meter'><i style='width:{100 * share:.0f}%'></i></span>"
+    return f"<div class='g-progress'>{text}{bar}</div>"
 
 
 def order_line(v: VehicleModel) -> str:
     """The last order: sent, accepted or refused and why."""
     if v.order is None:
-        return ""
+        return "<div class='g-order g-idle'>Nothing asked yet</div>"
     sign, style = {"sent": ("…", "warn"), "accepted": ("✓", "good"), "refused": ("✖", "bad")}[v.order.state]
     reason = f": {escape(v.order.reason)}" if v.order.reason else ""
     return f"<div class='g-order g-{style}' role='status'>{sign} {escape(v.order.text)} – {v.order.state}{reason}</div>"
-
-
-def event_log(lines: Sequence[Line]) -> str:
-    if not lines:
-        return "<div class='g-empty'>Nothing has happened yet</div>"
-    rows = []
-    for line in list(lines)[: -LOG_SHOWN - 1 : -1]:
-        sign, style = SEVERITY.get(line.severity, SEVERITY[Event.INFO])
-        who = f"<b>{escape(line.vehicle)}</b> " if line.vehicle else ""
-        rows.append(f"<tr><td>{clock_text(line.t)}</td><td class='g-{style}'>{sign}</td><td>{who}{escape(line.text)}</td></tr>")
-    return f"<table class='g-log' aria-live='polite'>{''.join(rows)}</table>"
-
-
-def processes(model: Model) -> str:
-    if not model.processes:
-        return "<div class='g-empty'>No launcher has spoken; services may have been started by hand</div>"
-    rows = []
-    for _, p in sorted(model.processes.items()):
-        state = Process.State.Name(p.state).lower()
-        style = {"running": "good", "failed": "bad", "ended": "idle"}.get(state, "warn")
-        more = f" · {p.restarts} restarts" if p.restarts else ""
-        why = f"<br><small>{escape(p.reason)}</small>" if p.reason else ""
-        rows.append(f"<tr><td>{escape(p.name)}</td><td><span class='g-{style}'>{state}</span>{more}{why}</td></tr>")
-    return f"<table class='g-facts'>{''.join(rows)}</table>"

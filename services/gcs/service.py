@@ -12,6 +12,7 @@ from schemas.messages import (
     Event,
     FrameTransform,
     Grid,
+    Health,
     LaserScan,
     Mission,
     MissionProgress,
@@ -25,7 +26,7 @@ from schemas.messages import (
     VehicleStatus,
 )
 from services.gcs.commands import SOURCE, Commander
-from services.gcs.drawing import Page, Toast
+from services.gcs.drawing import Page
 from services.gcs.page_frame import Composer
 from services.gcs.state import Model
 from uvf.runtime.service import Answer, Outputs, Service, each_vehicle, every, optional
@@ -42,6 +43,7 @@ class GroundStation(Service):
     inputs = {
         "clock": optional(topics.CLOCK),
         "processes": optional(every(topics.PROCESSES.by("*"))),
+        "health": optional(every(topics.HEALTH.by("*"))),
         "stops": optional(topics.STOP.by("*")),
         "nav": each_vehicle(topics.NAV_STATE),
         "pose": each_vehicle(topics.POSE),
@@ -72,6 +74,7 @@ class GroundStation(Service):
         t: float,
         clock: Clock | None,
         processes: Sequence[Processes],
+        health: Sequence[Health],
         stops: StopCommand | None,
         events: Mapping[str, Sequence[Event]],
         goal: Sequence[Answer[Any, Any]],
@@ -109,17 +112,15 @@ class GroundStation(Service):
         }
         self._model.hear_clock(t, clock)
         self._model.hear_processes(processes)
+        self._model.hear_health(t, health)
         self._model.hear_stop(stops)
         for what, messages in newest.items():
             self._model.hear(t, what, messages)
-        self._model.hear_events(events)
-        settled = self._commander.hear(t, (*goal, *arm, *mode))
+        self._model.hear_events(t, events)
+        self._commander.hear(t, (*goal, *arm, *mode))
         out = self._commander.act(t, self._page.actions())
         self._commander.expire(t)
-        toasts = [
-            Toast(vehicle, f"{order.text}: {order.state} {order.reason}".strip(), order.state == "accepted") for vehicle, order in settled
-        ]
-        self._page.show(self._composer.picture(t, toasts))
+        self._page.show(self._composer.picture(t))
         return {"stop": out.stop, "goal": out.goal, "arm": out.arm, "mode": out.mode}
 
     def close(self) -> None:

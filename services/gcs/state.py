@@ -1,6 +1,5 @@
 """What the ground station knows: the newest message of each kind, when it came, and what follows from them."""
 
-from collections import deque
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
@@ -9,13 +8,14 @@ import numpy as np
 from google.protobuf.message import Message
 from numpy.typing import NDArray
 
-from schemas.convert import array, scan_points, wxyz
+from schemas.convert import array, scan_points, seconds, wxyz
 from schemas.messages import (
     Clock,
     CompressedImage,
     Event,
     FrameTransform,
     Grid,
+    Health,
     LaserScan,
     Mission,
     MissionProgress,
@@ -29,9 +29,13 @@ from schemas.messages import (
     StopCommand,
     VehicleStatus,
 )
+from schemas.topics import SYSTEM
+from services.gcs.journal import Journal, Line
 from services.gcs.tracks import Track
+from services.gcs.vitals import Vitals
 from uvf.maths.planar import Pose2, transform
 from uvf.maths.rotations import matrix
+from uvf.runtime.mapped_floor import MappedFloor
 from uvf.runtime.site import Member, Site
 
 Floats = NDArray[np.float64]
@@ -39,7 +43,8 @@ Floats = NDArray[np.float64]
 STALE_AFTER = 1.5  # s, wall clock
 LOST_AFTER = 5.0  # s
 SIGNS_OF_LIFE = ("nav", "pose", "odometry", "status", "nav_status", "progress")
-LOG_LENGTH = 200
+SHOWN_BY_THE_CLOCK = ("conductor",)
+"""Sources whose warnings tell of a state that the page reads from the clock: they stand in the log, not as notices."""
 LAYERS = ("Map", "Scan", "Paths", "Tracks", "Labels", "Walls", "True pose")
 COLOURS = ("#4ea1ff", "#f2913d", "#3fbf7f", "#b98cf5", "#e8c547", "#5fd4d6")
 """Vehicles' own colours, told apart by colour-blind people too; red and magenta keep their meanings."""
@@ -50,15 +55,6 @@ class Placed(NamedTuple):
 
     position: Floats
     wxyz: Floats
-
-
-class Line(NamedTuple):
-    """One line of the event log."""
-
-    t: float  # s, simulation time
-    severity: int  # as in uvf.v1.Event
-    vehicle: str  # or "" for the system
-    text: str
 
 
 @dataclass
@@ -96,12 +92,19 @@ class VehicleModel:
     """Field -> when its newest message came [s, wall]."""
     scan_points: Floats | None = None
     """(n, 3) m, world: the newest scan as seen from where the vehicle was when it came."""
+    mapped: float | None = None
+    """0..1, the report's ``mapped_floor`` of the newest map."""
     order: Order | None = None
     goal_asked: tuple[float, float] | None = None
 
     @property
     def flies(self) -> bool:
         return self.member.file.kind == "fixed_wing"
+
+    @property
+    def stopped(self) -> bool:
+        """It says itself that it heeds STOP ALL."""
+        return self.status is not None and self.status.stopped
 
     @property
     def heard(self) -> float | None:
@@ -154,8 +157,9 @@ class Model:
         self.processes: dict[str, Process] = {}
         self.stop: StopCommand | None = None
         self._stop_heard: StopCommand | None = None
-        self.log: deque[Line] = deque(maxlen=LOG_LENGTH)
-        self.log_count = 0
+        self.log = Journal()
+        self._floors: dict[str, MappedFloor] = {}
+        self.health: dict[str, Vitals] = {}
 
     @property
     def chosen(self) -> VehicleModel | None:
@@ -164,9 +168,7 @@ class Model:
     @property
     def stopped(self) -> bool:
         """STOP ALL is engaged: by the last command of anybody, or as a vehicle reports it."""
-        return (self.stop is not None and self.stop.engaged) or any(
-            v.status is not None and v.status.stopped for v in self.vehicles.values()
-        )
+        return (self.stop is not None and self.stop.engaged) or any(v.stopped for v in self.vehicles.values())
 
     @property
     def sim_time(self) -> float:
@@ -184,6 +186,15 @@ class Model:
                 vehicle.track.add(vehicle.place.position)
             elif what == "scan":
                 vehicle.scan_points = scan_in_world(vehicle)
+            elif what == "grid" and not vehicle.flies:
+                vehicle.mapped = self._mapped_floor(vehicle)
+
+    def _mapped_floor(self, vehicle: VehicleModel) -> float | None:
+        if vehicle.grid is None or vehicle.grid.column_count == 0:
+            return None
+        if vehicle.name not in self._floors:
+            self._floors[vehicle.name] = MappedFloor(self.site.world, vehicle.member)
+        return self._floors[vehicle.name].share(vehicle.grid)
 
     def hear_clock(self, t: float, clock: Clock | None) -> None:
         if clock is None or clock is self.clock:
@@ -202,22 +213,30 @@ class Model:
     def hear_stop(self, stop: StopCommand | None) -> None:
         """The newest STOP ALL or release of all sources holds, also over our own."""
         if stop is not None and stop is not self._stop_heard:
+            known = self.stop is not None and (self.stop.engaged, self.stop.source) == (stop.engaged, stop.source)
             self._stop_heard = self.stop = stop
+            if not known:
+                word = "engaged" if stop.engaged else "released"
+                self.note("", f"STOP ALL {word} by {stop.source or 'somebody unnamed'}", Event.WARNING if stop.engaged else Event.NOTICE)
 
-    def hear_events(self, by_vehicle: Mapping[str, Sequence[Event]]) -> None:
+    def hear_health(self, t: float, reports: Sequence[Health]) -> None:
+        for report in reports:
+            self.health.setdefault(report.service, Vitals()).hear(t, report)
+
+    def hear_events(self, t: float, by_vehicle: Mapping[str, Sequence[Event]]) -> None:
         for name, events in by_vehicle.items():
             for event in events:
                 cause = f" ({event.cause})" if event.cause else ""
-                t = event.timestamp.seconds + event.timestamp.nanos * 1e-9
-                self._write(Line(t, event.severity, name, event.text + cause))
+                line = Line(seconds(event.timestamp), event.severity, "" if name == SYSTEM else name, event.text + cause)
+                self.log.write(line)
+                if line.severity >= Event.WARNING and event.source not in SHOWN_BY_THE_CLOCK:
+                    self.log.tell(t, line)
 
-    def note(self, vehicle: str, text: str, severity: int = Event.INFO) -> None:
+    def note(self, vehicle: str, text: str, severity: int = Event.INFO, of_operator: bool = False) -> Line:
         """Writes the ground station's own line into the log."""
-        self._write(Line(self.sim_time, severity, vehicle, text))
-
-    def _write(self, line: Line) -> None:
-        self.log.append(line)
-        self.log_count += 1
+        line = Line(self.sim_time, severity, vehicle, text, of_operator)
+        self.log.write(line)
+        return line
 
 
 def _track(member: Member) -> Track:

@@ -18,23 +18,23 @@ from viser import _messages
 from services.gcs import panels, viser_join
 from services.gcs.cameras import FOV
 from services.gcs.commands import Action, ClickGround, Layer, Select
-from services.gcs.drawing import Button, Camera, Picture, Toast
+from services.gcs.drawing import Button, Camera, Picture
 from services.gcs.guard import Guard
 from services.gcs.state import LAYERS
 from services.gcs.viser_scene import ViserScene
-from services.gcs.viser_script import bar_source, follow, padded, script, selected_in
+from services.gcs.viser_script import bar_source, padded, script, selected_in
+from services.gcs.viser_views import Views, ViserViews
 from uvf.runtime.address import Address, claim
 from uvf.runtime.params import BadInput
 
 FLEET_WIDTH, VEHICLE_WIDTH = 270, 350
-FOLLOW = "Follow"
 BEAT = 1.0  # s between two signs of life to the page
 
 
 class ViserPage:
-    """One server; every browser sees the same picture. cameras: named views, the first is the opening one."""
+    """One server; every browser sees the same picture. views: see ``viser_views``."""
 
-    def __init__(self, address: Address, cameras: Mapping[str, Camera], layers: set[str]) -> None:
+    def __init__(self, address: Address, views: Views, layers: set[str]) -> None:
         claim(address)
         self._actions: queue.SimpleQueue[Action] = queue.SimpleQueue()
         self._server = _guarded_server(address)
@@ -46,8 +46,8 @@ class ViserPage:
         self._picked: tuple[float, float] | None = None
         self._beat = 0.0
         self._scene = ViserScene(self._server, self._on_pick)
-        self._surroundings(next(iter(cameras.values())))
-        self._fleet_panel(cameras, layers)
+        self._surroundings(next(iter(views(1.0).values())))
+        self._fleet_panel(ViserViews(self._server, views), layers)
         self._vehicle_panel()
         self._listen()
 
@@ -76,14 +76,15 @@ class ViserPage:
         scene.add_light_ambient("/world/ambient", intensity=0.7)
         scene.add_light_hemisphere("/world/sky", sky_color=(235, 242, 255), ground_color=(120, 110, 100), intensity=1.6)
 
-    def _fleet_panel(self, cameras: Mapping[str, Camera], layers: set[str]) -> None:
+    def _fleet_panel(self, views: ViserViews, layers: set[str]) -> None:
         gui = self._server.gui
         gui.main_panel.dock_left()
         gui.main_panel.set_width(FLEET_WIDTH)
         self._html["bar"] = gui.add_html(bar_source("", 0), order=0)
+        self._html["stop"] = gui.add_html("", order=1.5)
         self._html["fleet"] = gui.add_html("", order=2)
-        views = gui.add_button_group("View", (*cameras, FOLLOW), order=100)
-        views.on_click(lambda event: _look(event, cameras.get(event.target.value)))
+        self._html["orders"] = gui.add_html("", order=50)
+        gui.add_button_group("View", views.names, order=100).on_click(views.choose)
         self._html["overview"] = gui.add_html("", order=150)
         with gui.add_folder("Layers", order=200, expand_by_default=False):
             for name in LAYERS:
@@ -139,8 +140,6 @@ class ViserPage:
             self._show_html(picture.html)
             self._show_buttons(picture.buttons)
             self._show_image(picture.image)
-        for toast in picture.toasts:
-            self._notify(toast)
 
     def _show_html(self, html: Mapping[str, str]) -> None:
         now = time.monotonic()
@@ -185,10 +184,6 @@ class ViserPage:
         self._image = (handle, image)
         self._picture_slot.visible = True
 
-    def _notify(self, toast: Toast) -> None:
-        for client in self._server.get_clients().values():
-            client.add_notification(toast.title, toast.text, auto_close_seconds=5.0, color="green" if toast.good else "red")
-
     def actions(self) -> list[Action]:
         taken = []
         while not self._actions.empty():
@@ -198,16 +193,6 @@ class ViserPage:
     def close(self) -> None:
         with contextlib.redirect_stdout(io.StringIO()):
             self._server.stop()
-
-
-def _look(event: Any, camera: Camera | None) -> None:
-    """The view of the one page that asked; without a camera it follows the chosen vehicle."""
-    event.client._websock_connection.queue_message(_messages.RunJavascriptMessage(source=follow(camera is None)))
-    if camera is None:
-        return
-    with event.client.atomic():
-        event.client.camera.position = camera.position
-        event.client.camera.look_at = camera.look_at
 
 
 def sky() -> NDArray[np.uint8]:

@@ -2,6 +2,7 @@
 
 import contextlib
 import threading
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -34,7 +35,7 @@ class LiveStation:
     def __init__(self):
         site, self.port = demo_site(), free_port()
         self.script = Script()
-        self.page = ViserPage(Address(port=self.port), cameras(site), Model(site).layers)
+        self.page = ViserPage(Address(port=self.port), partial(cameras, site), Model(site).layers)
         self.service = GroundStation(site, self.page)
         self.shell = Shell(Host(GroundStation, lambda: self.service), self.script.bus)
         self.moving = self.living = True
@@ -76,16 +77,23 @@ def station(browser):
     station.close()
 
 
-@pytest.fixture(scope="module")
-def page(browser, station):
-    """One page for all tests of a module; an error in its script fails the module."""
-    page = browser.new_page(viewport={"width": 1200, "height": 700})
+@contextlib.contextmanager
+def opened(browser, port, node, size=(1200, 700)):
+    """The page once ``node`` stands in its scene; an error in its script fails the tests that use it."""
+    page = browser.new_page(viewport={"width": size[0], "height": size[1]})
     errors = []
     page.on("pageerror", lambda error: errors.append(str(error)))
-    page.goto(f"http://127.0.0.1:{station.port}/")
-    page.wait_for_function("() => window.__viserSceneTree && '/vehicles/milvus/0' in window.__viserSceneTree.getState()", timeout=90_000)
+    page.goto(f"http://127.0.0.1:{port}/")
+    page.wait_for_function("(name) => window.__viserSceneTree && name in window.__viserSceneTree.getState()", arg=node, timeout=90_000)
     with contextlib.suppress(Exception):
         page.locator(".mantine-Notification-closeButton").click(timeout=5_000)
     yield page
     page.close()
     assert errors == []
+
+
+@pytest.fixture(scope="module")
+def page(browser, station):
+    """One page for all tests of a module."""
+    with opened(browser, station.port, "/vehicles/milvus/0") as page:
+        yield page

@@ -1,13 +1,12 @@
 """The whole system in a real browser: tracks move, and a click sends the rover where it points."""
 
-import contextlib
-
 import numpy as np
 import pytest
 
 from schemas import topics
 from schemas.convert import array
 from tests.browser.canvas import POINTS, TRACK_BLUE, on_screen, pixels, until
+from tests.browser.conftest import opened
 from tests.distributed.system import System
 
 GOAL = (2.2, 2.6)  # m, world: free floor of the room where the rover starts, so that its map knows it soon
@@ -22,16 +21,8 @@ def system(browser, tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def page(browser, system):
-    page = browser.new_page(viewport={"width": 1000, "height": 640})
-    errors = []
-    page.on("pageerror", lambda error: errors.append(str(error)))
-    page.goto(f"http://127.0.0.1:{system.page}/")
-    page.wait_for_function("() => window.__viserSceneTree && '/track/burger/tail' in window.__viserSceneTree.getState()", timeout=90_000)
-    with contextlib.suppress(Exception):
-        page.locator(".mantine-Notification-closeButton").click(timeout=5_000)
-    yield page
-    page.close()
-    assert errors == []
+    with opened(browser, system.page, "/track/burger/tail", (1000, 640)) as page:
+        yield page
 
 
 def place(system):

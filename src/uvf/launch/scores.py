@@ -11,16 +11,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from schemas import topics
-from schemas.convert import array, occupancy_cells
+from schemas.convert import array
 from schemas.messages import Contact, Grid, Mission, MissionItem, MissionProgress, NavState, PoseInFrame
 from uvf.runtime.bus import Bus, Sample
+from uvf.runtime.mapped_floor import MappedFloor
 from uvf.runtime.mission_file import Criterion
 from uvf.runtime.params import BadInput, nearest
 from uvf.runtime.site import Site
-from uvf.runtime.world_geometry import floor_plan, reachable_floor
 
 Floats = NDArray[np.float64]
-PLAN_RESOLUTION = 0.05  # m
 
 
 @dataclass
@@ -135,27 +134,7 @@ def mapped_floor(track: Track) -> float:
     """Share of the floor reachable from the start that the vehicle's own map knows as free."""
     if track.grid is None:
         return 0.0
-    member = track.site.members[track.name]
-    start = member.entry.start
-    radius = member.file.ground.radius if member.file.ground else 0.0
-    plan = floor_plan(track.site.world, PLAN_RESOLUTION)
-    x, y = plan.centres()
-    inside = reachable_floor(plan, start.x, start.y, radius)
-    free = _map_is_free(track.grid, start.x, start.y, start.yaw, x[inside], y[inside])
-    return float(free.mean())
-
-
-def _map_is_free(grid: Grid, x0: float, y0: float, yaw: float, x: Floats, y: Floats) -> NDArray[np.bool_]:
-    """Whether the map (placed in the world at the vehicle's start) holds each point as free."""
-    cells = occupancy_cells(grid)
-    c, s = np.cos(yaw), np.sin(yaw)
-    map_x, map_y = c * (x - x0) + s * (y - y0), -s * (x - x0) + c * (y - y0)
-    column = np.floor((map_x - grid.pose.position.x) / grid.cell_size.x).astype(int)
-    row = np.floor((map_y - grid.pose.position.y) / grid.cell_size.y).astype(int)
-    within = (row >= 0) & (row < cells.shape[0]) & (column >= 0) & (column < cells.shape[1])
-    free = np.zeros(len(x), dtype=np.bool_)
-    free[within] = (cells[row[within], column[within]] >= 0) & (cells[row[within], column[within]] < 50)
-    return free
+    return MappedFloor(track.site.world, track.site.members[track.name]).share(track.grid)
 
 
 def circuits(track: Track) -> float:

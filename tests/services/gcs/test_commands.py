@@ -77,7 +77,7 @@ def test_a_refusal_is_shown_with_its_reason():
     station.press(click(4.0, 3.0))
     order = station.model.vehicles[UGV].order
     assert (order.state, order.reason) == ("refused", "the <goal> lies inside a wall")
-    assert "inside a wall" in station.model.log[-1].text
+    assert "inside a wall" in list(station.model.log)[-1].text
     assert station.model.vehicles[UGV].goal_asked is None
 
 

@@ -97,6 +97,13 @@ def test_views_hold_what_they_promise(view, points):
     assert np.abs(seen(cameras(demo_site())[view], points)).max() < 1.0
 
 
+@pytest.mark.parametrize("view", ["Scene", "Top", "All"])
+@pytest.mark.parametrize("aspect", [0.45, 0.9, 1.6])
+def test_a_window_of_any_shape_holds_the_whole_floor(view, aspect):
+    x, y = np.abs(seen(cameras(demo_site(), aspect)[view], FLOOR)).max(axis=0) * (ASPECT / aspect, 1.0)
+    assert max(x, y) < 1.0
+
+
 def test_views_are_filled():
     assert np.abs(seen(cameras(demo_site())["Top"], FLOOR)).max() > 0.8
 

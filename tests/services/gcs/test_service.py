@@ -73,7 +73,7 @@ def test_it_starts_with_nobody_there():
     station = Station()
     station.run(1.0, silent=True)
     assert "WAITING" in station.page.now.html["bar"]
-    assert "No launcher" in station.page.now.html["processes"]
+    assert "No process" in station.page.now.html["processes"]
 
 
 def test_it_closes_its_page(station):

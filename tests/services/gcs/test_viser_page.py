@@ -4,6 +4,7 @@ import asyncio
 import http.client
 import json
 import time
+from functools import partial
 
 import numpy as np
 import pytest
@@ -26,7 +27,7 @@ from uvf.runtime.params import BadInput
 def page():
     port = free_port()
     site = demo_site()
-    page = ViserPage(Address(port=port), cameras(site), Model(site).layers)
+    page = ViserPage(Address(port=port), partial(cameras, site), Model(site).layers)
     page.port = port
     yield page
     page.close()
@@ -141,13 +142,13 @@ def test_health_and_page_are_served(page):
 
 def test_a_second_page_on_the_same_port_says_so(page):
     with pytest.raises(BadInput, match=f"{page.port}.*UVF_GCS_PORT"):
-        ViserPage(Address(port=page.port), cameras(demo_site()), set())
+        ViserPage(Address(port=page.port), partial(cameras, demo_site()), set())
 
 
 def test_a_closed_page_frees_its_port_for_the_next():
     port, site = free_port(), demo_site()
     for _ in range(2):
-        page = ViserPage(Address(port=port), cameras(site), set())
+        page = ViserPage(Address(port=port), partial(cameras, site), set())
         assert names(join(port))
         page.close()
 
