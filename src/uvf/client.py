@@ -67,7 +67,10 @@ class Client:
         """Simulation time [s]; 0 before the first tick."""
         self._bus.poll()
         newest = self._newest.get(topics.CLOCK.at(topics.SYSTEM))
-        return Clock.FromString(newest.payload).t_ns / 1e9 if newest else 0.0
+        clock = Clock.FromString(newest.payload) if newest else Clock()
+        # What is sent bears the epoch, or a word of somebody else in this epoch would count as said later.
+        self._bus.epoch = clock.epoch
+        return clock.t_ns / 1e9
 
     def read(self, owner: str, topic: Topic[M], timeout: float = 5.0) -> M:
         """The newest message of a topic; waits for the first one. Raises TimeoutError."""

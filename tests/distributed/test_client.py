@@ -1,0 +1,27 @@
+"""What people's own programs say counts like what the page says."""
+
+import uvf
+from schemas import topics
+from schemas.messages import Clock, StopCommand
+from tests.runtime.modes import free_port
+from uvf.runtime.zenoh_bus import ZenohBus, open_router
+
+
+def test_what_a_client_sends_bears_time_and_epoch_of_the_clock():
+    """Otherwise a release that the page has said before would count as later than a client's STOP ALL."""
+    endpoint = f"tcp/127.0.0.1:{free_port()}"
+    router = open_router(endpoint)
+    stop, heard = topics.STOP.by("client"), []
+    with ZenohBus(endpoint, timeout=5.0) as bus, uvf.connect(endpoint) as client:
+        bus.subscribe(stop.at("sys"), stop.qos, heard.append)
+        clock = bus.publisher(topics.CLOCK.at("sys"), "uvf.v1.Clock", topics.CLOCK.qos)
+
+        def ticks():
+            clock.put(Clock(t_ns=5_000_000_000, epoch=3).SerializeToString(), 5_000_000_000)
+            return client.time == 5.0
+
+        client.wait(ticks, 10.0)
+        client.send("sys", stop, StopCommand(engaged=True))
+        client.wait(lambda: (bus.poll(), heard)[1], 10.0)
+    router.close()
+    assert (heard[-1].epoch, heard[-1].stamp_ns) == (3, 5_000_000_000)
