@@ -29,7 +29,7 @@ def _make(site: Site, bodies: dict[str, GroundBody]) -> SimGround:
     placed = {name: Placed(bodies[name], m.folder / bodies[name].urdf, _start(m)) for name, m in members.items()}
     rigs = {name: Rig(site, m, bodies[name]) for name, m in members.items()}
     world = BulletWorld(solids(site.world, site.world_folder), placed)
-    return SimGround(world, rigs, {name: m.file.sensors for name, m in members.items()})
+    return SimGround(world, rigs)
 
 
 def _start(member: Member) -> tuple[float, float, float]:

@@ -6,12 +6,14 @@ import numpy as np
 from google.protobuf.message import Message
 from numpy.typing import NDArray
 
+from schemas.messages import FrameTransforms
 from services.sim_ground import readings
 from services.sim_ground.body import BodyState
 from services.sim_ground.imu import ImuModel
 from services.sim_ground.lidar import LidarModel
 from uvf.maths.planar import Pose2
 from uvf.maths.rotations import to_euler
+from uvf.runtime.link_frames import Links
 from uvf.runtime.site import Member, Site
 from uvf.runtime.vehicle_file import GroundBody
 from uvf.runtime.world_geometry import slice_at
@@ -30,6 +32,7 @@ class Rig:
     """Built once a vehicle; each sensor draws from a generator of its own, so that none disturbs another."""
 
     def __init__(self, site: Site, member: Member, ground: GroundBody) -> None:
+        self._links = Links(member.folder / ground.urdf, (ground.left_joint, ground.right_joint))
         sensors = member.file.sensors
         self.ground = ground
         self._name = member.name
@@ -42,6 +45,10 @@ class Rig:
             self._lidar = LidarModel(sensors.lidar, outlines, site.rng(member.name, "lidar"))
         if sensors.imu is not None:
             self._imu = ImuModel(sensors.imu, np.array(site.world.magnetic_field), site.rng(member.name, "imu"))
+
+    def frames(self, t: float) -> FrameTransforms:
+        """What does not move on the vehicle, stamped ``t`` [s]."""
+        return self._links.resting(self._name, self._sensors, t)
 
     def read(self, n: int, body: BodyState, others: Floats, touched: str | None) -> Mapping[str, Message]:
         """Messages by output name at step ``n``; others: (k, 3) x, y, radius [m] of the other vehicles.
@@ -65,7 +72,8 @@ class Rig:
         if is_due(n, STATE_HZ):
             found["contact"] = readings.contact_message(t, self._touched)
             self._touched = None
-            found["joints"] = readings.joints_message(t, self.ground, body)
+            found["joints"] = joints = readings.joints_message(t, self.ground, body)
+            found["joint_frames"] = self._links.turned(self._name, joints)
         return found
 
 

@@ -11,9 +11,7 @@ from schemas.messages import WheelCommand
 from services.sim_ground.body import BodyState
 from services.sim_ground.rig import STEP_HZ, Rig
 from uvf.maths.kinematics import WheelSpeeds
-from uvf.runtime.sensor_frames import sensor_frames
 from uvf.runtime.service import Outputs, Service, each_vehicle, optional
-from uvf.runtime.vehicle_file import Sensors
 
 
 class GroundWorld(Protocol):
@@ -45,14 +43,14 @@ class SimGround(Service):
         "wheels": topics.WHEELS,
         "contact": topics.CONTACT,
         "joints": topics.JOINTS,
+        "joint_frames": topics.TF_JOINTS,
         "frames": topics.TF_STATIC,
         "truth": topics.TRUTH,
     }
 
-    def __init__(self, world: GroundWorld, rigs: Mapping[str, Rig], sensors: Mapping[str, Sensors]) -> None:
+    def __init__(self, world: GroundWorld, rigs: Mapping[str, Rig]) -> None:
         self._world = world
         self._rigs = rigs
-        self._sensors = sensors
         self._told = False
 
     def step(self, t: float, commands: dict[str, WheelCommand]) -> Outputs:
@@ -66,7 +64,7 @@ class SimGround(Service):
             for output, message in rig.read(n, bodies[name], circles, self._world.touched(name)).items():
                 outputs.setdefault(output, {})[name] = message
         if not self._told:  # at the first step, which is not always step 1: a process may join a running clock
-            outputs["frames"] = {name: sensor_frames(name, sensors, t) for name, sensors in self._sensors.items()}
+            outputs["frames"] = {name: rig.frames(t) for name, rig in self._rigs.items()}
             self._told = True
         return outputs
 

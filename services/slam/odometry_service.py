@@ -144,7 +144,7 @@ class OdometryService(Service):
         return Odometry(
             timestamp=stamp(t),
             frame_id=f"{self._vehicle}/odom",
-            body_frame_id=f"{self._vehicle}/base_link",
+            body_frame_id=f"{self._vehicle}/base_footprint",
             pose=planar_pose(*odom_from_base),
             linear_velocity=Vector3(x=linear),
             angular_velocity=Vector3(z=angular),
@@ -157,7 +157,7 @@ class OdometryService(Service):
         return FrameTransform(
             timestamp=stamp(t),
             parent_frame_id=f"{self._vehicle}/odom",
-            child_frame_id=f"{self._vehicle}/base_link",
+            child_frame_id=f"{self._vehicle}/base_footprint",
             translation=Vector3(x=x, y=y),
             rotation=quaternion(from_euler(0.0, 0.0, heading)),
         )

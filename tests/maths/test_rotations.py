@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy.linalg import expm
 
 from uvf.maths import rotations as r
 
@@ -28,6 +29,13 @@ def test_product_is_composition(a, b, c, d):
     p, q = r.from_euler(a, b / 3, c), r.from_euler(d, a / 3, b)
     np.testing.assert_allclose(r.matrix(r.multiply(p, q)), r.matrix(p) @ r.matrix(q), atol=1e-12)
     np.testing.assert_allclose(r.multiply(p, r.inverse(p)), r.IDENTITY, atol=1e-12)
+
+
+@given(ANGLE, ANGLE, PITCH, PITCH)
+def test_a_turn_about_an_axis_is_the_exponential_of_its_cross_product(angle, x, y, z):
+    axis = np.array((x, y, z + 4)) / np.linalg.norm((x, y, z + 4))
+    cross = np.array(((0, -axis[2], axis[1]), (axis[2], 0, -axis[0]), (-axis[1], axis[0], 0)))
+    np.testing.assert_allclose(r.matrix(r.from_axis(axis, angle)), expm(angle * cross), atol=1e-12)
 
 
 @given(st.floats(-100, 100))

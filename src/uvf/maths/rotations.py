@@ -91,6 +91,11 @@ def from_euler(roll: float, pitch: float, yaw: float) -> Floats:
     )
 
 
+def from_axis(axis: Floats, angle: float) -> Floats:
+    """Quaternion of a turn by ``angle`` [rad] about a unit axis (3,)."""
+    return np.concatenate(((np.cos(angle / 2),), np.sin(angle / 2) * axis))
+
+
 def to_euler(q: Floats) -> tuple[float, float, float]:
     """(roll, pitch, yaw) [rad]; pitch in [-pi/2, pi/2]."""
     w, x, y, z = q

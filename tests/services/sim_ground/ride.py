@@ -69,7 +69,7 @@ class Record:
         return np.arccos(np.clip(up, -1.0, 1.0))
 
 
-WRITTEN = (topics.IMU, topics.SCAN, topics.WHEELS, topics.CONTACT, topics.JOINTS, topics.TF_STATIC, topics.TRUTH)
+WRITTEN = (topics.IMU, topics.SCAN, topics.WHEELS, topics.CONTACT, topics.JOINTS, topics.TF_JOINTS, topics.TF_STATIC, topics.TRUTH)
 
 
 def ride(site, until, scripts):

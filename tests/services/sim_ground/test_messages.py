@@ -30,6 +30,7 @@ def resting(tmp_path_factory):
         (topics.CONTACT, 80),
         (topics.JOINTS, 80),
         (topics.TRUTH, 200),
+        (topics.TF_JOINTS, 80),
         (topics.TF_STATIC, 1),
     ],
 )
@@ -69,9 +70,11 @@ def test_the_scan_goes_counter_clockwise_from_straight_ahead(resting):
     assert (ranges[true > 3.6] == 0.0).all()
 
 
-def test_the_frames_of_all_sensors_are_told_once(resting):
+def test_the_frames_of_all_sensors_and_links_are_told_once(resting):
     frames = {f.child_frame_id: f.parent_frame_id for f in resting.of(topics.TF_STATIC)[0].transforms}
     assert frames == {
+        "burger/base_link": "burger/base_footprint",
+        "burger/castor_link": "burger/base_link",
         "burger/lidar": "burger/base_link",
         "burger/imu": "burger/base_link",
         "burger/camera": "burger/base_link",
@@ -90,7 +93,7 @@ def curve(t):
 
 def test_the_same_seed_gives_the_same_bytes(tmp_path):
     first, second = (ride(site_with(tmp_path, {"burger": START}), 2.0, {"burger": curve}) for _ in range(2))
-    assert len(first.data) == 491
+    assert len(first.data) == 531
     assert first.data == second.data
 
 

@@ -41,7 +41,7 @@ def site(tmp_path):
 
 def service_in(site, world):
     rigs = {name: Rig(site, member, member.file.ground) for name, member in site.members.items()}
-    return SimGround(world, rigs, {name: member.file.sensors for name, member in site.members.items()})
+    return SimGround(world, rigs)
 
 
 def test_each_command_goes_to_its_vehicle_for_one_period(site):

@@ -51,8 +51,8 @@ def test_odometry_begins_at_zero_and_the_pose_at_the_start():
 def test_the_frames_are_named_after_the_vehicle():
     outputs = drive(odometry_service(), 2)
     odometry, moving = outputs["odometry"], outputs["moving"]
-    assert (odometry.frame_id, odometry.body_frame_id) == ("v/odom", "v/base_link")
-    assert (moving.parent_frame_id, moving.child_frame_id) == ("v/odom", "v/base_link")
+    assert (odometry.frame_id, odometry.body_frame_id) == ("v/odom", "v/base_footprint")
+    assert (moving.parent_frame_id, moving.child_frame_id) == ("v/odom", "v/base_footprint")
 
 
 def test_the_transform_of_the_base_is_the_odometry():
