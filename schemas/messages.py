@@ -29,7 +29,7 @@ from schemas.v1.mission_pb2 import (
     NavStatus,
     SetCurrentRequest,
 )
-from schemas.v1.sensor_pb2 import AirData, Battery, Contact, Gnss, Imu, WheelTicks
+from schemas.v1.sensor_pb2 import AirData, Battery, Contact, Gnss, Imu, Range, WheelTicks
 from schemas.v1.system_pb2 import Event, Health, Param, ParamReply, ParamRequest, Process, Processes
 from schemas.v1.time_pb2 import Clock, ClockRequest, Done
 from schemas.v1.vehicle_pb2 import (
@@ -86,6 +86,7 @@ __all__ = [
     "Process",
     "Processes",
     "Quaternion",
+    "Range",
     "Reply",
     "SetCurrentRequest",
     "StopCommand",

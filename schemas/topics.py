@@ -111,8 +111,10 @@ GNSS = Topic(f"{_V}/sensor/gnss", m.Gnss, 5, _Q.STATE, "satellite position and v
 AIR_DATA = Topic(f"{_V}/sensor/air_data", m.AirData, 50, _Q.STATE, "static and differential pressure")
 BATTERY = Topic(f"{_V}/sensor/battery", m.Battery, 1, _Q.STATE, "voltage, current, charge")
 CONTACT = Topic(f"{_V}/sensor/contact", m.Contact, 20, _Q.STATE, "bumper")
+SONAR = Topic(f"{_V}/sensor/sonar", m.Range, 10, _Q.STATE, "sonars, told apart by frame; range 0 = no return")
 JOINTS = Topic(f"{_V}/sensor/joints", m.JointStates, 20, _Q.STATE, "wheels, surfaces, propeller")
 IMAGE = Topic(f"{_V}/sensor/camera/image", m.CompressedImage, 5, _Q.BULK, "camera picture, JPEG")
+DEPTH = Topic(f"{_V}/sensor/camera/depth", m.CompressedImage, 5, _Q.BULK, "depth picture, 16-bit PNG: mm along the view, 0 = none")
 CAMERA_INFO = Topic(f"{_V}/sensor/camera/info", m.CameraCalibration, 0, _Q.LATCHED, "camera intrinsics")
 
 # truth: for simulators among themselves, tests, displays and scores; never for an algorithm

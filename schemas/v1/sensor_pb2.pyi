@@ -1,9 +1,10 @@
 from foxglove_schemas_protobuf import Vector3_pb2 as _Vector3_pb2
 from google.protobuf import timestamp_pb2 as _timestamp_pb2
+from google.protobuf.internal import containers as _containers
 from google.protobuf.internal import enum_type_wrapper as _enum_type_wrapper
 from google.protobuf import descriptor as _descriptor
 from google.protobuf import message as _message
-from typing import ClassVar as _ClassVar, Mapping as _Mapping, Optional as _Optional, Union as _Union
+from typing import ClassVar as _ClassVar, Iterable as _Iterable, Mapping as _Mapping, Optional as _Optional, Union as _Union
 
 DESCRIPTOR: _descriptor.FileDescriptor
 
@@ -76,14 +77,32 @@ class AirData(_message.Message):
     def __init__(self, timestamp: _Optional[_Union[_timestamp_pb2.Timestamp, _Mapping]] = ..., static_pressure: _Optional[float] = ..., differential_pressure: _Optional[float] = ..., temperature: _Optional[float] = ...) -> None: ...
 
 class Contact(_message.Message):
-    __slots__ = ("timestamp", "touching", "other")
+    __slots__ = ("timestamp", "touching", "other", "sectors")
     TIMESTAMP_FIELD_NUMBER: _ClassVar[int]
     TOUCHING_FIELD_NUMBER: _ClassVar[int]
     OTHER_FIELD_NUMBER: _ClassVar[int]
+    SECTORS_FIELD_NUMBER: _ClassVar[int]
     timestamp: _timestamp_pb2.Timestamp
     touching: bool
     other: str
-    def __init__(self, timestamp: _Optional[_Union[_timestamp_pb2.Timestamp, _Mapping]] = ..., touching: bool = ..., other: _Optional[str] = ...) -> None: ...
+    sectors: _containers.RepeatedScalarFieldContainer[str]
+    def __init__(self, timestamp: _Optional[_Union[_timestamp_pb2.Timestamp, _Mapping]] = ..., touching: bool = ..., other: _Optional[str] = ..., sectors: _Optional[_Iterable[str]] = ...) -> None: ...
+
+class Range(_message.Message):
+    __slots__ = ("timestamp", "frame_id", "range", "field_of_view", "range_min", "range_max")
+    TIMESTAMP_FIELD_NUMBER: _ClassVar[int]
+    FRAME_ID_FIELD_NUMBER: _ClassVar[int]
+    RANGE_FIELD_NUMBER: _ClassVar[int]
+    FIELD_OF_VIEW_FIELD_NUMBER: _ClassVar[int]
+    RANGE_MIN_FIELD_NUMBER: _ClassVar[int]
+    RANGE_MAX_FIELD_NUMBER: _ClassVar[int]
+    timestamp: _timestamp_pb2.Timestamp
+    frame_id: str
+    range: float
+    field_of_view: float
+    range_min: float
+    range_max: float
+    def __init__(self, timestamp: _Optional[_Union[_timestamp_pb2.Timestamp, _Mapping]] = ..., frame_id: _Optional[str] = ..., range: _Optional[float] = ..., field_of_view: _Optional[float] = ..., range_min: _Optional[float] = ..., range_max: _Optional[float] = ...) -> None: ...
 
 class Battery(_message.Message):
     __slots__ = ("timestamp", "voltage", "current", "remaining")

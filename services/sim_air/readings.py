@@ -4,15 +4,16 @@ from schemas.convert import quaternion, stamp, vector
 from schemas.messages import AirData, Battery, Gnss, Imu, JointState, JointStates, NavState
 from services.sim_air import sensors
 from services.sim_air.airframe import Air, Controls, Motion
+from uvf.maths.instruments import Fix, ImuReading
 from uvf.maths.rotations import Floats
 from uvf.runtime.vehicle_file import GnssSensor
 
 SATELLITES = 14  # seen under an open sky
 
 
-def imu(t: float, frame: str, sample: sensors.ImuSample) -> Imu:
+def imu(frame: str, sample: ImuReading) -> Imu:
     return Imu(
-        timestamp=stamp(t),
+        timestamp=stamp(sample.t),
         frame_id=frame,
         angular_velocity=vector(sample.angular_velocity),
         specific_force=vector(sample.specific_force),
@@ -20,8 +21,9 @@ def imu(t: float, frame: str, sample: sensors.ImuSample) -> Imu:
     )
 
 
-def gnss(fix: sensors.Fix, data: GnssSensor) -> Gnss:
+def gnss(fix: Fix, data: GnssSensor) -> Gnss:
     """Its timestamp is the moment the fix is valid for."""
+    horizontal, vertical = data.accuracy
     return Gnss(
         timestamp=stamp(fix.t),
         fix=Gnss.FIX_3D,
@@ -29,8 +31,8 @@ def gnss(fix: sensors.Fix, data: GnssSensor) -> Gnss:
         longitude=fix.longitude,
         altitude=fix.altitude,
         velocity_enu=vector(fix.velocity),
-        horizontal_accuracy=data.horizontal_noise,
-        vertical_accuracy=data.vertical_noise,
+        horizontal_accuracy=horizontal,
+        vertical_accuracy=vertical,
         speed_accuracy=data.speed_noise,
         satellites=SATELLITES,
     )

@@ -1,8 +1,6 @@
-"""What an aircraft's sensors would read: truth, their own errors, rate and latency."""
+"""What an aircraft's sensors would read: truth, their own errors, rate, losses and latency."""
 
-import math
-from collections import deque
-from dataclasses import dataclass
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -10,98 +8,69 @@ import numpy as np
 from services.sim_air.airframe import Air, Motion
 from uvf.maths import rotations
 from uvf.maths.geodesy import LocalTangent
-from uvf.runtime.vehicle_file import AirDataSensor, BatteryPack, GnssSensor, ImuSensor
+from uvf.maths.instruments import Fix, ImuReading
+from uvf.maths.sampling import Line
+from uvf.maths.sensing import Channel, Errors
+from uvf.runtime.vehicle_file import AirDataSensor, BatteryPack, GnssSensor, ImuSensor, line_of
 
 Floats = rotations.Floats
 
 
-class Due:
-    """Whether a sensor of ``hz`` gives a new sample at time t."""
-
-    def __init__(self, hz: float) -> None:
-        self._hz = hz
-        self._n = 0
-
-    def at(self, t: float) -> bool:
-        if t * self._hz < self._n + 1 - 1e-6:
-            return False
-        self._n = math.floor(t * self._hz + 1e-6)
-        return True
-
-
-class ImuSample(NamedTuple):
-    """Sensor frame (FLU): rad/s, m/s^2, T."""
-
-    angular_velocity: Floats
-    specific_force: Floats
-    magnetic_field: Floats
-
-
 class Imu:
-    """Constant biases drawn once, white noise on each sample; at the centre of gravity."""
+    """At the centre of gravity."""
 
     def __init__(self, data: ImuSensor, field: Floats, rng: np.random.Generator) -> None:
         """``field`` is the magnetic field, (3,) T, ENU."""
         self.frame = data.frame
-        self.due = Due(data.hz)
-        self._rng = rng
+        self._line: Line[ImuReading] = line_of(data, rng.spawn(1)[0])
+        self._unit = data.unit(rng)
         self._sensor_from_body = rotations.matrix(rotations.from_euler(*data.mount.rpy)).T
         self._field_enu = field
-        self._bias = np.concatenate((rng.normal(0.0, data.gyro_bias, 3), rng.normal(0.0, data.accel_bias, 3), np.zeros(3)))
-        self._noise = np.repeat((data.gyro_noise, data.accel_noise, data.mag_noise), 3)
 
-    def read(self, motion: Motion) -> ImuSample:
+    def read(self, t: float, motion: Motion) -> ImuReading | None:
+        """The reading that arrives at ``t`` [s], if any."""
+        return self._line.step(t, lambda: self._take(t, motion))
+
+    def _take(self, t: float, motion: Motion) -> ImuReading:
         field_body = rotations.matrix(motion.world_from_body).T @ self._field_enu
-        true = self._sensor_from_body @ np.array((motion.angular_velocity, motion.specific_force, field_body)).T
-        read = true.T.ravel() + self._bias + self._noise * self._rng.standard_normal(9)
-        return ImuSample(read[:3], read[3:6], read[6:])
-
-
-@dataclass(frozen=True)
-class Fix:
-    """One satellite fix: rad, rad, m AMSL, m/s ENU, valid at ``t`` [s]."""
-
-    t: float
-    latitude: float
-    longitude: float
-    altitude: float
-    velocity: Floats
+        return self._unit.read(t, *(self._sensor_from_body @ v for v in (motion.angular_velocity, motion.specific_force, field_body)))
 
 
 class Gnss:
-    """White noise on position and velocity; a fix arrives ``latency`` after the moment it is valid for."""
+    """A fix arrives ``latency`` after the moment it is valid for."""
 
     def __init__(self, data: GnssSensor, tangent: LocalTangent, rng: np.random.Generator) -> None:
         self.data = data
-        self._due = Due(data.hz)
-        self._tangent = tangent
-        self._rng = rng
-        self._on_the_way: deque[Fix] = deque()
-        self._position_noise = np.array((data.horizontal_noise, data.horizontal_noise, data.vertical_noise))
+        self._line: Line[Fix] = line_of(data, rng.spawn(1)[0])
+        self._receiver = data.receiver(tangent, rng)
 
     def read(self, t: float, motion: Motion) -> Fix | None:
-        """The fix that arrives now, if any."""
-        if self._due.at(t):
-            position = motion.position + self._position_noise * self._rng.standard_normal(3)
-            velocity = motion.velocity + self.data.speed_noise * self._rng.standard_normal(3)
-            self._on_the_way.append(Fix(t, *self._tangent.geodetic(position), velocity))
-        if self._on_the_way and t >= self._on_the_way[0].t + self.data.latency - 1e-6:
-            return self._on_the_way.popleft()
-        return None
+        """The fix that arrives at ``t`` [s], if any."""
+        return self._line.step(t, lambda: self._receiver.read(t, motion.position, motion.velocity))
+
+
+class AirSample(NamedTuple):
+    """Valid for ``t`` [s]."""
+
+    t: float
+    air: Air
 
 
 class Pressures:
     """Static and pitot pressure with constant biases and white noise."""
 
     def __init__(self, data: AirDataSensor, rng: np.random.Generator) -> None:
-        self.due = Due(data.hz)
-        self._rng = rng
-        self._bias = rng.standard_normal(2) * (data.static_bias, data.differential_bias)
-        self._noise = np.array((data.static_noise, data.differential_noise))
+        self._line: Line[AirSample] = line_of(data, rng.spawn(1)[0])
+        bias = np.array((data.static_bias, data.differential_bias))
+        self._channel = Channel(Errors(noise=np.array((data.static_noise, data.differential_noise)), bias=bias), 2, rng)
 
-    def read(self, air: Air) -> Air:
-        static, differential = self._bias + self._noise * self._rng.standard_normal(2)
-        return Air(air.static_pressure + float(static), air.differential_pressure + float(differential), air.temperature)
+    def read(self, t: float, air: Callable[[], Air]) -> AirSample | None:
+        """The reading that arrives at ``t`` [s], if any; ``air`` is asked when one is due."""
+        return self._line.step(t, lambda: self._take(t, air()))
+
+    def _take(self, t: float, air: Air) -> AirSample:
+        static, differential = self._channel.read(np.array((air.static_pressure, air.differential_pressure)), 0.0)
+        return AirSample(t, Air(float(static), float(differential), air.temperature))
 
 
 class Charge:

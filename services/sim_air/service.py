@@ -10,8 +10,9 @@ from schemas.messages import NavState, SurfaceCommand
 from services.sim_air import readings
 from services.sim_air.actuators import Actuators
 from services.sim_air.airframe import Air, Controls, Motion
-from services.sim_air.sensors import Charge, Due, Gnss, Imu, Pressures
+from services.sim_air.sensors import Charge, Gnss, Imu, Pressures
 from uvf.maths.rotations import Floats
+from uvf.maths.sampling import Due
 from uvf.runtime.sensor_frames import sensor_frames
 from uvf.runtime.service import Outputs, Service, Value, each_vehicle, optional
 from uvf.runtime.vehicle_file import VehicleFile
@@ -115,12 +116,12 @@ class SimAir(Service):
         read: dict[str, Value] = {}
         if self._first:
             read["tf_static"] = sensor_frames(craft.name, craft.file.sensors, t)
-        if craft.imu is not None and craft.imu.due.at(t):
-            read["imu"] = readings.imu(t, f"{craft.name}/{craft.imu.frame}", craft.imu.read(motion))
+        if craft.imu is not None and (reading := craft.imu.read(t, motion)) is not None:
+            read["imu"] = readings.imu(f"{craft.name}/{craft.imu.frame}", reading)
         if craft.gnss is not None and (fix := craft.gnss.read(t, motion)) is not None:
             read["gnss"] = readings.gnss(fix, craft.gnss.data)
-        if craft.pressures is not None and craft.pressures.due.at(t):
-            read["air_data"] = readings.air_data(t, craft.pressures.read(craft.body.air()))
+        if craft.pressures is not None and (sample := craft.pressures.read(t, craft.body.air)) is not None:
+            read["air_data"] = readings.air_data(sample.t, sample.air)
         if craft.charge is not None and craft.battery_due.at(t):
             read["battery"] = readings.battery(t, craft.charge)
         if craft.joints_due.at(t):

@@ -10,6 +10,13 @@ from uvf.maths.kinematics import WheelSpeeds
 Floats = NDArray[np.float64]
 
 
+class Touch(NamedTuple):
+    """other: name of what is touched; bearing: where on the body, rad from its x axis, counter-clockwise."""
+
+    other: str
+    bearing: float
+
+
 class BodyState(NamedTuple):
     """Motion of base_link: the point on the floor under the axle's middle.
 

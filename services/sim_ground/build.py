@@ -43,9 +43,13 @@ def _check(site: Site, member: Member, body: GroundBody) -> None:
     if body.physics_hz % STEP_HZ:
         raise BadInput(f"{place}: ground: physics_hz is {body.physics_hz:g}; make it a multiple of {STEP_HZ:g}")
     sensors = member.file.sensors
-    for kind, sensor in {"lidar": sensors.lidar, "imu": sensors.imu, "encoders": sensors.encoders}.items():
-        if sensor is not None and STEP_HZ % sensor.hz:
-            raise BadInput(f"{place}: sensors: {kind}: hz is {sensor.hz:g}; make it a divisor of {STEP_HZ:g}")
+    for kind in ("lidar", "imu", "encoders", "gnss"):
+        sensor = getattr(sensors, kind)
+        if sensor is not None and sensor.hz > STEP_HZ:
+            raise BadInput(f"{place}: sensors: {kind}: hz is {sensor.hz:g}; the simulator gives {STEP_HZ:g} at most")
+    for i, sonar in enumerate(sensors.sonars):
+        if sonar.hz > STEP_HZ:
+            raise BadInput(f"{place}: sensors: sonars[{i}]: hz is {sonar.hz:g}; the simulator gives {STEP_HZ:g} at most")
     start = member.entry.start
     room = clearance(site.world, start.x, start.y)
     if room < body.radius:

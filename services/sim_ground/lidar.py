@@ -18,6 +18,7 @@ class LidarModel:
         self._lidar = lidar
         self._world = world
         self._rng = rng
+        self._bias = float(rng.spawn(1)[0].normal(0.0, lidar.bias))
         beams = np.arange(lidar.beams, dtype=np.float64)
         self._angles: Floats = lidar.mount.rpy[2] + lidar.angle_min + lidar.angle_increment * beams
 
@@ -27,6 +28,6 @@ class LidarModel:
         origin = np.array(compose(body, Pose2(x, y, 0.0))[:2])
         circles = np.vstack((self._world.circles, others))
         true = cast(origin, body.yaw + self._angles, self._world.boxes, circles)
-        measured = true + self._rng.normal(0.0, self._lidar.noise, true.shape)
+        measured = true + self._bias + self._rng.normal(0.0, self._lidar.noise, true.shape)
         seen = (measured >= self._lidar.range_min) & (measured <= self._lidar.range_max)
         return np.where(seen, measured, 0.0)

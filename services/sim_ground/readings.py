@@ -1,21 +1,24 @@
 """Readings as messages."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
 from schemas.convert import quaternion, stamp, vector
-from schemas.messages import Contact, Imu, JointState, JointStates, LaserScan, NavState, WheelTicks
-from services.sim_ground.body import BodyState
+from schemas.messages import Contact, Gnss, Imu, JointState, JointStates, LaserScan, NavState, Range, WheelTicks
+from services.sim_ground.body import BodyState, Touch
 from services.sim_ground.encoders import radians_per_tick, ticks
-from services.sim_ground.imu import ImuReading
-from uvf.runtime.vehicle_file import Encoders, GroundBody, Lidar
+from uvf.maths.instruments import Fix, ImuReading
+from uvf.runtime.vehicle_file import Bumper, Encoders, GnssSensor, GroundBody, Lidar, Sonar
 
 Floats = NDArray[np.float64]
+SATELLITES = 14  # seen under an open sky
 
 
-def imu_message(t: float, frame: str, reading: ImuReading) -> Imu:
+def imu_message(frame: str, reading: ImuReading) -> Imu:
     return Imu(
-        timestamp=stamp(t),
+        timestamp=stamp(reading.t),
         frame_id=frame,
         angular_velocity=vector(reading.angular_velocity),
         specific_force=vector(reading.specific_force),
@@ -36,8 +39,37 @@ def wheels_message(t: float, encoders: Encoders, body: BodyState) -> WheelTicks:
     return WheelTicks(timestamp=stamp(t), left=left, right=right, radians_per_tick=radians_per_tick(encoders))
 
 
-def contact_message(t: float, other: str | None) -> Contact:
-    return Contact(timestamp=stamp(t), touching=other is not None, other=other or "")
+def gnss_message(gnss: GnssSensor, fix: Fix) -> Gnss:
+    horizontal, vertical = gnss.accuracy
+    return Gnss(
+        timestamp=stamp(fix.t),
+        fix=Gnss.FIX_3D,
+        latitude=fix.latitude,
+        longitude=fix.longitude,
+        altitude=fix.altitude,
+        velocity_enu=vector(fix.velocity),
+        horizontal_accuracy=horizontal,
+        vertical_accuracy=vertical,
+        speed_accuracy=gnss.speed_noise,
+        satellites=SATELLITES,
+    )
+
+
+def range_message(t: float, frame: str, sonar: Sonar, distance: float) -> Range:
+    return Range(
+        timestamp=stamp(t),
+        frame_id=frame,
+        range=distance,
+        field_of_view=sonar.fov,
+        range_min=sonar.range_min,
+        range_max=sonar.range_max,
+    )
+
+
+def contact_message(t: float, bumpers: Sequence[Bumper], touches: Sequence[Touch]) -> Contact:
+    """All that was touched since the message before; the first one gives its name."""
+    sectors = [b.name for b in bumpers if any(b.feels(touch.bearing) for touch in touches)]
+    return Contact(timestamp=stamp(t), touching=bool(touches), other=touches[0].other if touches else "", sectors=sectors)
 
 
 def joints_message(t: float, ground: GroundBody, body: BodyState) -> JointStates:

@@ -1,27 +1,54 @@
 """One ground vehicle's sensors: which of them are due at a step, and what they say."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping
+from typing import NamedTuple
 
 import numpy as np
 from google.protobuf.message import Message
 from numpy.typing import NDArray
 
+from schemas import topics
 from schemas.messages import FrameTransforms
 from services.sim_ground import readings
-from services.sim_ground.body import BodyState
+from services.sim_ground.body import BodyState, Touch
 from services.sim_ground.imu import ImuModel
 from services.sim_ground.lidar import LidarModel
+from services.sim_ground.sonar import SonarModel
+from uvf.maths.geodesy import LocalTangent
 from uvf.maths.planar import Pose2
 from uvf.maths.rotations import to_euler
+from uvf.maths.sampling import Due, Line
 from uvf.runtime.link_frames import Links
+from uvf.runtime.service import Value
 from uvf.runtime.site import Member, Site
-from uvf.runtime.vehicle_file import GroundBody
+from uvf.runtime.vehicle_file import Encoders, GnssSensor, GroundBody, ImuSensor, Lidar, Sampled, Sonar, line_of
 from uvf.runtime.world_geometry import slice_at
 
 Floats = NDArray[np.float64]
 
 STEP_HZ = 100.0
-TRUTH_HZ, STATE_HZ = 50.0, 20.0  # as in the table of topics
+
+
+class Scene(NamedTuple):
+    """What there is to measure: the body, (k, 3) x, y, radius [m] of the other vehicles, and all that is touched."""
+
+    body: BodyState
+    others: Floats
+    touches: list[Touch]
+
+
+Read = Callable[[float, Scene], Message]
+
+
+class Fitted(NamedTuple):
+    """A sensor: how it reads the scene, and how its readings get out."""
+
+    read: Read
+    line: Line[Message]
+
+    def step(self, t: float, scene: Scene) -> Message | None:
+        """The reading that arrives at the step at ``t`` [s], if any."""
+        return self.line.step(t, lambda: self.read(t, scene))
 
 
 def planar(body: BodyState) -> Pose2:
@@ -29,54 +56,85 @@ def planar(body: BodyState) -> Pose2:
 
 
 class Rig:
-    """Built once a vehicle; each sensor draws from a generator of its own, so that none disturbs another."""
+    """Built once a vehicle; each sensor draws from generators of its own, so that none disturbs another."""
 
     def __init__(self, site: Site, member: Member, ground: GroundBody) -> None:
         self._links = Links(member.folder / ground.urdf, (ground.left_joint, ground.right_joint))
-        sensors = member.file.sensors
         self.ground = ground
-        self._name = member.name
-        self._sensors = sensors
-        self._lidar: LidarModel | None = None
-        self._imu: ImuModel | None = None
-        self._touched: str | None = None
-        if sensors.lidar is not None:
-            outlines = slice_at(site.world, sensors.lidar.mount.xyz[2])
-            self._lidar = LidarModel(sensors.lidar, outlines, site.rng(member.name, "lidar"))
+        self._site = site
+        self._member = member
+        self._bumpers = member.file.sensors.bumpers
+        self._touches: list[Touch] = []
+        self._truth_due = Due(topics.TRUTH.hz)
+        self._contact_due = Due(topics.CONTACT.hz)
+        self._joints_due = Due(topics.JOINTS.hz)
+        self._fitted = dict(self._fit())
+        self._sonars = [self._with_line(self._sonar(sonar), sonar, "sonar", sonar.frame) for sonar in member.file.sensors.sonars]
+
+    def _fit(self) -> Iterator[tuple[str, Fitted]]:
+        """What there is one of, by output name."""
+        sensors = self._member.file.sensors
         if sensors.imu is not None:
-            self._imu = ImuModel(sensors.imu, np.array(site.world.magnetic_field), site.rng(member.name, "imu"))
+            yield "imu", self._with_line(self._imu(sensors.imu), sensors.imu, "imu")
+        if sensors.lidar is not None:
+            yield "scan", self._with_line(self._lidar(sensors.lidar), sensors.lidar, "lidar")
+        if sensors.encoders is not None:
+            yield "wheels", self._with_line(self._encoders(sensors.encoders), sensors.encoders, "encoders")
+        if sensors.gnss is not None:
+            yield "gnss", self._with_line(self._gnss(sensors.gnss), sensors.gnss, "gnss")
 
     def frames(self, t: float) -> FrameTransforms:
         """What does not move on the vehicle, stamped ``t`` [s]."""
-        return self._links.resting(self._name, self._sensors, t)
+        return self._links.resting(self._member.name, self._member.file.sensors, t)
 
-    def read(self, n: int, body: BodyState, others: Floats, touched: str | None) -> Mapping[str, Message]:
-        """Messages by output name at step ``n``; others: (k, 3) x, y, radius [m] of the other vehicles.
+    def read(self, t: float, scene: Scene) -> Mapping[str, Value]:
+        """What arrives at the step at ``t`` [s], by output name.
 
         A touch counts until it has been told, so that a short one between two messages is not lost.
         """
-        t = n / STEP_HZ
-        self._touched = self._touched or touched
-        found: dict[str, Message] = {}
-        sensors = self._sensors
-        if sensors.imu is not None and self._imu is not None and is_due(n, sensors.imu.hz):
-            reading = self._imu.read(body, 1 / sensors.imu.hz)
-            found["imu"] = readings.imu_message(t, f"{self._name}/{sensors.imu.frame}", reading)
-        if sensors.lidar is not None and self._lidar is not None and is_due(n, sensors.lidar.hz):
-            ranges = self._lidar.scan(planar(body), others)
-            found["scan"] = readings.scan_message(t, f"{self._name}/{sensors.lidar.frame}", sensors.lidar, ranges)
-        if sensors.encoders is not None and is_due(n, sensors.encoders.hz):
-            found["wheels"] = readings.wheels_message(t, sensors.encoders, body)
-        if is_due(n, TRUTH_HZ):
-            found["truth"] = readings.truth_message(t, body)
-        if is_due(n, STATE_HZ):
-            found["contact"] = readings.contact_message(t, self._touched)
-            self._touched = None
-            found["joints"] = joints = readings.joints_message(t, self.ground, body)
-            found["joint_frames"] = self._links.turned(self._name, joints)
+        self._touches += scene.touches
+        found: dict[str, Value] = {}
+        for output, sensor in self._fitted.items():
+            if (message := sensor.step(t, scene)) is not None:
+                found[output] = message
+        if heard := [message for sonar in self._sonars if (message := sonar.step(t, scene)) is not None]:
+            found["sonar"] = heard
+        if self._truth_due.at(t):
+            found["truth"] = readings.truth_message(t, scene.body)
+        if self._contact_due.at(t):
+            found["contact"] = readings.contact_message(t, self._bumpers, self._touches)
+            self._touches = []
+        if self._joints_due.at(t):
+            found["joints"] = joints = readings.joints_message(t, self.ground, scene.body)
+            found["joint_frames"] = self._links.turned(self._member.name, joints)
         return found
 
+    def _rng(self, *names: str) -> np.random.Generator:
+        return self._site.rng(self._member.name, *names)
 
-def is_due(n: int, hz: float) -> bool:
-    """Whether step ``n`` of ``STEP_HZ`` is one of a sensor that runs at ``hz``, a divisor of it."""
-    return n % round(STEP_HZ / hz) == 0
+    def _with_line(self, read: Read, sensor: Sampled, *names: str) -> Fitted:
+        return Fitted(read, line_of(sensor, self._rng(*names, "dropout")))
+
+    def _frame(self, frame: str) -> str:
+        return f"{self._member.name}/{frame}"
+
+    def _imu(self, imu: ImuSensor) -> Read:
+        model = ImuModel(imu, np.array(self._site.world.magnetic_field), self._rng("imu"))
+        return lambda t, scene: readings.imu_message(self._frame(imu.frame), model.read(t, scene.body))
+
+    def _lidar(self, lidar: Lidar) -> Read:
+        model = LidarModel(lidar, slice_at(self._site.world, lidar.mount.xyz[2]), self._rng("lidar"))
+        return lambda t, scene: readings.scan_message(t, self._frame(lidar.frame), lidar, model.scan(planar(scene.body), scene.others))
+
+    def _encoders(self, encoders: Encoders) -> Read:
+        return lambda t, scene: readings.wheels_message(t, encoders, scene.body)
+
+    def _gnss(self, gnss: GnssSensor) -> Read:
+        origin = self._site.world.origin
+        tangent = LocalTangent.from_degrees(origin.latitude, origin.longitude, origin.altitude)
+        receiver = gnss.receiver(tangent, self._rng("gnss"))
+        return lambda t, scene: readings.gnss_message(gnss, receiver.read(t, scene.body.position, scene.body.velocity))
+
+    def _sonar(self, sonar: Sonar) -> Read:
+        model = SonarModel(sonar, slice_at(self._site.world, sonar.mount.xyz[2]), self._rng("sonar", sonar.frame))
+        return lambda t, scene: readings.range_message(t, self._frame(sonar.frame), sonar, model.range(planar(scene.body), scene.others))

@@ -4,14 +4,13 @@ from collections.abc import Mapping
 from typing import Protocol
 
 import numpy as np
-from google.protobuf.message import Message
 
 from schemas import topics
 from schemas.messages import WheelCommand
-from services.sim_ground.body import BodyState
-from services.sim_ground.rig import STEP_HZ, Rig
+from services.sim_ground.body import BodyState, Touch
+from services.sim_ground.rig import STEP_HZ, Rig, Scene
 from uvf.maths.kinematics import WheelSpeeds
-from uvf.runtime.service import Outputs, Service, each_vehicle, optional
+from uvf.runtime.service import Outputs, Service, Value, each_vehicle, optional
 
 
 class GroundWorld(Protocol):
@@ -21,7 +20,7 @@ class GroundWorld(Protocol):
 
     def state(self, vehicle: str) -> BodyState: ...
 
-    def touched(self, vehicle: str) -> str | None: ...
+    def touches(self, vehicle: str) -> list[Touch]: ...
 
     def close(self) -> None: ...
 
@@ -41,6 +40,8 @@ class SimGround(Service):
         "imu": topics.IMU,
         "scan": topics.SCAN,
         "wheels": topics.WHEELS,
+        "gnss": topics.GNSS,
+        "sonar": topics.SONAR,
         "contact": topics.CONTACT,
         "joints": topics.JOINTS,
         "joint_frames": topics.TF_JOINTS,
@@ -54,15 +55,15 @@ class SimGround(Service):
         self._told = False
 
     def step(self, t: float, commands: dict[str, WheelCommand]) -> Outputs:
-        n = round(t * self.hz)
         self._world.advance({name: WheelSpeeds(c.left, c.right) for name, c in commands.items()}, 1 / self.hz)
         bodies = {name: self._world.state(name) for name in self._rigs}
-        outputs: dict[str, dict[str, Message]] = {}
+        outputs: dict[str, dict[str, Value]] = {}
         for name, rig in self._rigs.items():
             others = [(*bodies[o].position[:2], self._rigs[o].ground.radius) for o in self._rigs if o != name]
             circles = np.array(others, dtype=np.float64).reshape(-1, 3)
-            for output, message in rig.read(n, bodies[name], circles, self._world.touched(name)).items():
-                outputs.setdefault(output, {})[name] = message
+            scene = Scene(bodies[name], circles, self._world.touches(name))
+            for output, read in rig.read(t, scene).items():
+                outputs.setdefault(output, {})[name] = read
         if not self._told:  # at the first step, which is not always step 1: a process may join a running clock
             outputs["frames"] = {name: rig.frames(t) for name, rig in self._rigs.items()}
             self._told = True

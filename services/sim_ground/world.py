@@ -9,7 +9,7 @@ import numpy as np
 import pybullet
 from numpy.typing import NDArray
 
-from services.sim_ground.body import BodyState
+from services.sim_ground.body import BodyState, Touch
 from uvf.maths.geodesy import GRAVITY
 from uvf.maths.kinematics import WheelSpeeds, spin_velocity
 from uvf.maths.rotations import from_euler, inverse, matrix, multiply, rotate
@@ -130,13 +130,14 @@ class BulletWorld:
             wheel_speeds=WheelSpeeds(joints[0][1], joints[1][1]),
         )
 
-    def touched(self, vehicle: str) -> str | None:
-        """Name of what is touched, the floor only by a vehicle that has fallen over; None while free."""
-        index = self._vehicles[vehicle].index
+    def touches(self, vehicle: str) -> list[Touch]:
+        """All that is touched now, the floor only by a vehicle that has fallen over."""
+        index, body = self._vehicles[vehicle].index, self.state(vehicle)
         contacts: list[Any] = list(pybullet.getContactPoints(bodyA=index, physicsClientId=self._client))
-        names = [self._names[contact[2]] for contact in contacts if contact[8] <= TOUCH]
-        fallen = matrix(self.state(vehicle).world_from_body)[2, 2] < FALLEN
-        return next((name for name in names if name != "floor" or fallen), None)
+        fallen = matrix(body.world_from_body)[2, 2] < FALLEN
+        felt = [c for c in contacts if c[8] <= TOUCH and (self._names[c[2]] != "floor" or fallen)]
+        places = [rotate(inverse(body.world_from_body), np.array(c[5]) - body.position) for c in felt]
+        return [Touch(self._names[c[2]], float(np.arctan2(p[1], p[0]))) for c, p in zip(felt, places, strict=True)]
 
     def close(self) -> None:
         pybullet.disconnect(physicsClientId=self._client)

@@ -21,6 +21,7 @@ SENSORS: dict[Topic[Any], str] = {
     topics.SCAN: "lidar",
     topics.WHEELS: "encoders",
     topics.GNSS: "gnss",
+    topics.SONAR: "sonars",
     topics.AIR_DATA: "air_data",
     topics.IMAGE: "camera",
     topics.CAMERA_INFO: "camera",
@@ -95,7 +96,7 @@ def _inputs(site: Site, hosts: Sequence[Host]) -> Iterator[str]:
 
 
 def _has(member: Member, topic: Topic[Any]) -> bool:
-    return topic not in SENSORS or getattr(member.file.sensors, SENSORS[topic]) is not None
+    return topic not in SENSORS or bool(getattr(member.file.sensors, SENSORS[topic]))
 
 
 def _mend(site: Site, topic: Topic[Any], vehicle: str) -> str:
@@ -109,7 +110,7 @@ def _unread_sensors(site: Site, hosts: Sequence[Host]) -> Iterator[str]:
     given = {(owner, topic) for host in hosts for topic in host.service.outputs.values() for owner in _owners(host, topic)}
     for member in site.members.values():
         for topic, sensor in SENSORS.items():
-            if getattr(member.file.sensors, sensor) is not None and (member.name, topic) not in given:
+            if getattr(member.file.sensors, sensor) and (member.name, topic) not in given:
                 place = Place(str(member.folder / "vehicle.yaml"), ("sensors", sensor))
                 yield f"{place}: no simulator gives {topic.at(member.name)} for a vehicle of kind {member.file.kind}; take it out"
 

@@ -3,7 +3,7 @@
 import difflib
 import math
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from types import UnionType
 from typing import Annotated, Any, NamedTuple, TypeVar, Union, get_args, get_origin, get_type_hints
@@ -51,13 +51,13 @@ class _Loader(yaml.SafeLoader):
 _Loader.add_implicit_resolver("tag:yaml.org,2002:float", re.compile(r"[-+]?(\d+(\.\d*)?|\.\d+)[eE][-+]?\d+$"), list("-+0123456789."))
 
 
-def load_yaml(path: Path, type_: type[T]) -> T:
-    """Reads a YAML file into a msgspec Struct. Raises BadInput."""
+def load_yaml(path: Path, type_: type[T], fill: Callable[[Any, Place], Any] | None = None) -> T:
+    """Reads a YAML file into a msgspec Struct; ``fill`` puts in beforehand what the file only refers to. Raises BadInput."""
     try:
         data = yaml.load(path.read_text(encoding="utf-8"), _Loader)
         if data is None:
             raise BadInput(f"{path}: the file is empty")
-        return convert(data, type_, str(path))
+        return convert(fill(data, Place(str(path))) if fill else data, type_, str(path))
     except OSError as error:
         raise BadInput(f"{path}: cannot be read: {error.strerror}") from error
     except UnicodeDecodeError as error:

@@ -13,7 +13,7 @@ OPTICAL = Mount(rpy=(-np.pi / 2, 0.0, -np.pi / 2))
 
 def sensor_frames(vehicle: str, sensors: Sensors, t: float) -> FrameTransforms:
     """``base_link`` to each sensor, and for a camera on to ``<camera>_optical``, the frame of its pictures."""
-    fitted = [s for s in (sensors.lidar, sensors.imu, sensors.camera) if s is not None]
+    fitted = [s for s in (sensors.lidar, sensors.imu, sensors.camera, *sensors.sonars) if s is not None]
     transforms = [_transform(f"{vehicle}/base_link", f"{vehicle}/{s.frame}", s.mount, t) for s in fitted]
     if sensors.camera is not None:
         frame = f"{vehicle}/{sensors.camera.frame}"

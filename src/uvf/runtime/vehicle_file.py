@@ -5,9 +5,15 @@ from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import msgspec
+import numpy as np
 from msgspec import Meta
 
+from uvf.maths.geodesy import LocalTangent
+from uvf.maths.instruments import InertialUnit, Receiver
+from uvf.maths.sampling import Dropout, Line
+from uvf.maths.sensing import Errors
 from uvf.runtime.params import BadInput, Place, load_yaml, nearest
+from uvf.runtime.sensor_presets import fill_presets
 
 Positive = Annotated[float, Meta(ge=1e-9, le=1e9)]
 NotNegative = Annotated[float, Meta(ge=0, le=1e9)]
@@ -16,6 +22,8 @@ Triple = tuple[Offset, Offset, Offset]
 SensorRate = Annotated[float, Meta(ge=0.01, le=1000)]
 Deflection = Annotated[float, Meta(ge=0.01, le=1.6)]
 PhysicsRate = Annotated[float, Meta(ge=20, le=5000)]
+Probability = Annotated[float, Meta(ge=0, le=1)]
+Bearing = Annotated[float, Meta(ge=-7, le=7)]
 Name = Annotated[str, Meta(pattern=r"^[A-Za-z0-9_][A-Za-z0-9_./-]*$", max_length=80)]  # of a file, frame or joint
 
 
@@ -26,8 +34,16 @@ class Mount(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     rpy: Triple = (0.0, 0.0, 0.0)  # rad
 
 
-class Lidar(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """A 2-D scanner; ``range`` outside the limits is sent as 0 = no return."""
+class Delivery(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """How a sensor's readings come to their readers: late, and some not at all. Their stamp is the moment they are valid for."""
+
+    latency: Annotated[float, Meta(ge=0, le=10)] = 0.0  # s
+    dropout: Probability = 0.0  # that a reading is lost and a burst of losses begins
+    burst: Annotated[int, Meta(ge=1, le=1_000_000)] = 1  # readings lost in a row
+
+
+class Lidar(Delivery, frozen=True, forbid_unknown_fields=True):
+    """A 2-D scanner; ``range`` outside the limits is sent as 0 = no return. ``preset``: lds01, utm30lx or ust10."""
 
     mount: Mount
     hz: SensorRate
@@ -36,11 +52,15 @@ class Lidar(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     angle_increment: Positive  # rad, counter-clockwise
     range_min: NotNegative  # m
     range_max: Positive  # m
-    noise: NotNegative = 0.0  # m, 1 sigma
+    noise: NotNegative = 0.0  # m, 1 sigma of each beam
     frame: Name = "lidar"
+    bias: NotNegative = 0.0  # m, 1 sigma of the constant of all beams
+    preset: str = ""
 
 
-class ImuSensor(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class ImuSensor(Delivery, frozen=True, forbid_unknown_fields=True):
+    """Six axes and a magnetometer. Noise is 1 sigma per sample: a data sheet's density times the root of ``hz``."""
+
     mount: Mount
     hz: SensorRate
     gyro_noise: NotNegative = 0.0  # rad/s, 1 sigma per sample
@@ -49,22 +69,114 @@ class ImuSensor(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     accel_bias: NotNegative = 0.0  # m/s^2
     mag_noise: NotNegative = 0.0  # T
     frame: Name = "imu"
+    gyro_scale: NotNegative = 0.0  # 1 sigma of the scale factor's error
+    gyro_instability: NotNegative = 0.0  # rad/s, 1 sigma of the bias that comes and goes within instability_time
+    gyro_random_walk: NotNegative = 0.0  # rad/s/sqrt(s), growth of the bias that walks
+    gyro_range: Positive = math.inf  # rad/s, saturation
+    gyro_resolution: NotNegative = 0.0  # rad/s, step of quantisation
+    accel_scale: NotNegative = 0.0
+    accel_instability: NotNegative = 0.0  # m/s^2
+    accel_random_walk: NotNegative = 0.0  # m/s^2/sqrt(s)
+    accel_range: Positive = math.inf  # m/s^2
+    accel_resolution: NotNegative = 0.0  # m/s^2
+    instability_time: Positive = 100.0  # s
+    mag_bias: NotNegative = 0.0  # T, 1 sigma
+    mag_hz: SensorRate | None = None  # None = hz; the last field is repeated in the readings between
+
+    @property
+    def gyro(self) -> Errors:
+        """rad/s."""
+        return Errors(
+            noise=self.gyro_noise,
+            bias=self.gyro_bias,
+            scale=self.gyro_scale,
+            drift=self.gyro_instability,
+            drift_time=self.instability_time,
+            random_walk=self.gyro_random_walk,
+            limit=self.gyro_range,
+            resolution=self.gyro_resolution,
+        )
+
+    @property
+    def accel(self) -> Errors:
+        """m/s^2."""
+        return Errors(
+            noise=self.accel_noise,
+            bias=self.accel_bias,
+            scale=self.accel_scale,
+            drift=self.accel_instability,
+            drift_time=self.instability_time,
+            random_walk=self.accel_random_walk,
+            limit=self.accel_range,
+            resolution=self.accel_resolution,
+        )
+
+    @property
+    def mag(self) -> Errors:
+        """T."""
+        return Errors(noise=self.mag_noise, bias=self.mag_bias)
+
+    def unit(self, rng: np.random.Generator) -> InertialUnit:
+        return InertialUnit(self.gyro, self.accel, self.mag, self.mag_hz or self.hz, rng)
 
 
-class Encoders(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class Encoders(Delivery, frozen=True, forbid_unknown_fields=True):
     hz: SensorRate
     ticks_per_turn: Annotated[int, Meta(ge=1, le=10_000_000)]
 
 
-class GnssSensor(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class GnssSensor(Delivery, frozen=True, forbid_unknown_fields=True):
+    """A satellite receiver at base_link. ``preset``: book (drifts as in Beard & McLain, chapter 7) or good (does not)."""
+
     hz: SensorRate
     horizontal_noise: NotNegative = 0.0  # m, 1 sigma per axis
     vertical_noise: NotNegative = 0.0  # m
     speed_noise: NotNegative = 0.0  # m/s
-    latency: NotNegative = 0.0  # s
+    horizontal_drift: NotNegative = 0.0  # m, 1 sigma per axis of the slow part
+    vertical_drift: NotNegative = 0.0  # m
+    drift_time: Positive = 1100.0  # s
+    preset: str = ""
+
+    @property
+    def position(self) -> Errors:
+        """m, ENU."""
+        noise = np.array((self.horizontal_noise, self.horizontal_noise, self.vertical_noise))
+        drift = np.array((self.horizontal_drift, self.horizontal_drift, self.vertical_drift))
+        return Errors(noise=noise, drift=drift, drift_time=self.drift_time)
+
+    @property
+    def accuracy(self) -> tuple[float, float]:
+        """m, 1 sigma of the whole error: horizontal per axis, vertical."""
+        return math.hypot(self.horizontal_noise, self.horizontal_drift), math.hypot(self.vertical_noise, self.vertical_drift)
+
+    def receiver(self, tangent: LocalTangent, rng: np.random.Generator) -> Receiver:
+        return Receiver(self.position, Errors(noise=self.speed_noise), tangent, rng)
 
 
-class AirDataSensor(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class Sonar(Delivery, frozen=True, forbid_unknown_fields=True):
+    """A cone of sound: the range of the nearest thing in it; outside the limits it is sent as 0 = no return."""
+
+    mount: Mount
+    hz: SensorRate
+    fov: Annotated[float, Meta(gt=0, lt=3.1)]  # rad
+    range_min: NotNegative  # m
+    range_max: Positive  # m
+    noise: NotNegative = 0.0  # m, 1 sigma
+    frame: Name = "sonar"
+
+
+class Bumper(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A sector of the body's outline that feels touches."""
+
+    name: Name
+    angle_min: Bearing  # rad from base_link's x axis, counter-clockwise
+    angle_max: Bearing  # rad
+
+    def feels(self, bearing: float) -> bool:
+        return (bearing - self.angle_min) % (2 * math.pi) <= self.angle_max - self.angle_min
+
+
+class AirDataSensor(Delivery, frozen=True, forbid_unknown_fields=True):
     hz: SensorRate
     static_noise: NotNegative = 0.0  # Pa
     differential_noise: NotNegative = 0.0  # Pa
@@ -80,6 +192,7 @@ class Camera(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     fov: Annotated[float, Meta(gt=0, lt=3.1)]  # rad, horizontal
     far: Positive = 100.0  # m
     frame: Name = "camera"
+    depth: bool = False  # depth pictures too, of the same size and rate
 
 
 class Sensors(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -91,6 +204,16 @@ class Sensors(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     gnss: GnssSensor | None = None
     air_data: AirDataSensor | None = None
     camera: Camera | None = None
+    sonars: list[Sonar] = []
+    bumpers: list[Bumper] = []
+
+
+Sampled = Lidar | ImuSensor | Encoders | GnssSensor | AirDataSensor | Sonar
+
+
+def line_of(sensor: Sampled, rng: np.random.Generator) -> Line[Any]:
+    """The way of a sensor's readings to their readers."""
+    return Line(sensor.hz, sensor.latency, Dropout(sensor.dropout, sensor.burst, rng) if sensor.dropout else None)
 
 
 class GroundBody(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -152,12 +275,14 @@ def load_vehicle(vehicles: Path, name: str) -> VehicleFile:
     if not (folder / "vehicle.yaml").is_file():
         known = [p.parent.name for p in vehicles.glob("*/vehicle.yaml")]
         raise BadInput(f"no vehicle '{name}' in {vehicles}; {nearest(name, known)}")
-    vehicle = load_yaml(folder / "vehicle.yaml", VehicleFile)
+    vehicle = load_yaml(folder / "vehicle.yaml", VehicleFile, fill_presets)
     place = Place(str(folder / "vehicle.yaml"))
     section = "ground" if vehicle.kind == "ground" else "air"
     if getattr(vehicle, section) is None:
         raise BadInput(f"{place.at('kind')}: kind is '{vehicle.kind}' but there is no '{section}:' section")
     _check_lidar(vehicle.sensors.lidar, place.at("sensors", "lidar"))
+    _check_sonars(vehicle.sensors.sonars, place.at("sensors", "sonars"))
+    _check_bumpers(vehicle.sensors.bumpers, place.at("sensors", "bumpers"))
     ground, air = vehicle.ground, vehicle.air
     if ground is not None and ground.left_joint == ground.right_joint:
         raise BadInput(f"{place.at('ground', 'right_joint')}: the left wheel's joint too; name the right one")
@@ -174,3 +299,17 @@ def _check_lidar(lidar: Lidar | None, place: Place) -> None:
     sweep = (lidar.beams - 1) * lidar.angle_increment
     if sweep > 2 * math.pi + 1e-6:
         raise BadInput(f"{place.at('angle_increment')}: {lidar.beams} beams make {sweep:.3g} rad, more than a full turn; lower it")
+
+
+def _check_sonars(sonars: list[Sonar], place: Place) -> None:
+    for i, sonar in enumerate(sonars):
+        if sonar.range_min >= sonar.range_max:
+            raise BadInput(f"{place.at(i, 'range_min')}: {sonar.range_min:g} m is not below range_max, {sonar.range_max:g} m")
+        if sonar.frame in (other.frame for other in sonars[:i]):
+            raise BadInput(f"{place.at(i)}: a second sonar with frame '{sonar.frame}'; give each a frame of its own")
+
+
+def _check_bumpers(bumpers: list[Bumper], place: Place) -> None:
+    for i, bumper in enumerate(bumpers):
+        if bumper.angle_min >= bumper.angle_max:
+            raise BadInput(f"{place.at(i, 'angle_min')}: {bumper.angle_min:g} rad is not below angle_max, {bumper.angle_max:g} rad")

@@ -92,8 +92,8 @@ def test_a_physics_rate_that_does_not_fit_the_step(root):
 
 
 def test_a_sensor_rate_that_does_not_fit_the_step(root):
-    edit_vehicle(root, lambda data: data["sensors"]["lidar"].update(hz=7.0))
-    assert "lidar: hz is 7; make it a divisor of 100" in refusal(root)
+    edit_vehicle(root, lambda data: data["sensors"]["lidar"].update(hz=200.0))
+    assert "lidar: hz is 200; the simulator gives 100 at most" in refusal(root)
 
 
 def test_a_start_inside_the_furniture(root):

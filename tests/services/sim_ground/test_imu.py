@@ -24,8 +24,8 @@ def unit(mount=None, **noise):
 
 
 def read_twice(imu, before, after):
-    imu.read(before, DT)
-    return imu.read(after, DT)
+    imu.read(DT, before)
+    return imu.read(2 * DT, after)
 
 
 def test_braking_is_felt_backwards():
@@ -34,12 +34,12 @@ def test_braking_is_felt_backwards():
 
 
 def test_facing_north_the_field_lies_ahead_and_down():
-    reading = unit().read(body(attitude=(0, 0, np.pi / 2)), DT)
+    reading = unit().read(DT, body(attitude=(0, 0, np.pi / 2)))
     assert reading.magnetic_field == pytest.approx((25e-6, 0.0, -39e-6))
 
 
 def test_on_a_slope_gravity_leans_the_other_way():
-    reading = unit().read(body(attitude=(0.0, -0.2, 0.0)), DT)  # nose up
+    reading = unit().read(DT, body(attitude=(0.0, -0.2, 0.0)))  # nose up
     assert reading.specific_force == pytest.approx((GRAVITY * np.sin(0.2), 0.0, GRAVITY * np.cos(0.2)))
 
 
@@ -61,7 +61,7 @@ def test_an_unit_mounted_sideways_measures_in_its_own_axes():
 
 def test_the_bias_stays_and_the_noise_averages_out():
     imu = unit(gyro_bias=0.01, gyro_noise=0.002)
-    rates = np.array([imu.read(body(), DT).angular_velocity for _ in range(2000)])
+    rates = np.array([imu.read(n * DT, body()).angular_velocity for n in range(1, 2001)])
     halves = rates[:1000].mean(axis=0), rates[1000:].mean(axis=0)
     assert halves[0] == pytest.approx(halves[1], abs=4e-4)
     assert np.abs(halves[0]).max() > 1e-3

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from schemas.messages import WheelCommand
-from services.sim_ground.body import BodyState
+from services.sim_ground.body import BodyState, Touch
 from services.sim_ground.rig import Rig
 from services.sim_ground.service import SimGround
 from tests.services.sim_ground.ride import site_with
@@ -14,9 +14,9 @@ from uvf.maths.kinematics import WheelSpeeds
 class StandingWorld:
     """Nothing moves; keeps what it was told."""
 
-    def __init__(self, positions, touching=None):
+    def __init__(self, positions, touches=()):
         self.positions = positions
-        self.touching = touching
+        self.seen = list(touches)
         self.told = []
 
     def advance(self, wheels, duration):
@@ -27,8 +27,8 @@ class StandingWorld:
         identity, still = np.array((1.0, 0, 0, 0)), np.zeros(3)
         return BodyState(np.array((x, y, 0.0)), identity, still, still, (0.0, 0.0), WheelSpeeds(0.0, 0.0))
 
-    def touched(self, vehicle):
-        return self.touching
+    def touches(self, vehicle):
+        return self.seen
 
     def close(self):
         self.told.append("closed")
@@ -63,7 +63,7 @@ def test_the_neighbour_is_in_the_scan(site):
 
 
 def test_what_is_touched_is_named(site):
-    service = service_in(site, StandingWorld({"one": (6.0, 4.4), "two": (7.0, 4.4)}, touching="sofa"))
+    service = service_in(site, StandingWorld({"one": (6.0, 4.4), "two": (7.0, 4.4)}, touches=[Touch("sofa", 0.1)]))
     contact = service.step(0.05, commands={})["contact"]["two"]
     assert contact.touching
     assert contact.other == "sofa"
@@ -74,7 +74,7 @@ def test_a_short_touch_between_two_messages_is_told_once(site):
     service = service_in(site, world)
     told = []
     for n in range(1, 16):
-        world.touching = "sofa" if n == 7 else None
+        world.seen = [Touch("sofa", 0.1)] if n == 7 else []
         told += [outputs["one"].touching for outputs in [service.step(n / 100, commands={}).get("contact")] if outputs]
     assert told == [False, True, False]
 

@@ -1,0 +1,82 @@
+"""Sensors by name in a vehicle's file: what they stand for, and what is said of a wrong one."""
+
+import math
+import shutil
+
+import pytest
+import yaml
+
+from uvf.runtime.params import BadInput
+from uvf.runtime.site import ROOT
+from uvf.runtime.vehicle_file import load_vehicle
+
+
+@pytest.fixture
+def sensors_of(tmp_path):
+    """Loads the burger with other sensors."""
+    shutil.copytree(ROOT / "vehicles/burger", tmp_path / "burger")
+    path = tmp_path / "burger/vehicle.yaml"
+
+    def load(**sensors):
+        path.write_text(yaml.safe_dump({**yaml.safe_load(path.read_text()), "sensors": sensors}))
+        return load_vehicle(tmp_path, "burger").sensors
+
+    return load
+
+
+@pytest.mark.parametrize(
+    ("preset", "beams", "field", "reach"), [("lds01", 360, 359, 3.5), ("utm30lx", 1081, 270, 30.0), ("ust10", 1081, 270, 10.0)]
+)
+def test_a_scanner_by_name(sensors_of, preset, beams, field, reach):
+    lidar = sensors_of(lidar={"preset": preset, "mount": {}}).lidar
+    assert (lidar.beams, lidar.range_max) == (beams, reach)
+    assert math.degrees((lidar.beams - 1) * lidar.angle_increment) == pytest.approx(field)
+
+
+def test_what_is_written_beside_a_preset_counts(sensors_of):
+    lidar = sensors_of(lidar={"preset": "utm30lx", "mount": {}, "hz": 10.0, "dropout": 0.1, "latency": 0.025}).lidar
+    assert (lidar.hz, lidar.dropout, lidar.latency, lidar.range_max) == (10.0, 0.1, 0.025, 30.0)
+
+
+def test_receivers_by_name(sensors_of):
+    good, book = (sensors_of(gnss={"preset": name}).gnss for name in ("good", "book"))
+    assert good.accuracy == (0.3, 0.5)
+    assert (good.horizontal_drift, good.vertical_drift) == (0.0, 0.0)
+    assert (book.horizontal_noise, book.drift_time) == (0.0, 1100.0)
+    eta = math.sqrt(1 - math.exp(-2 / 1100))  # the increment's share in a second, eq. 7.17
+    assert (book.horizontal_drift * eta, book.vertical_drift * eta) == pytest.approx((0.21, 0.40), rel=1e-3)
+
+
+def refusal(sensors_of, **sensors):
+    with pytest.raises(BadInput) as caught:
+        sensors_of(**sensors)
+    return str(caught.value)
+
+
+def test_an_unknown_preset_is_named_with_its_line(sensors_of):
+    text = refusal(sensors_of, lidar={"preset": "utm30", "mount": {}})
+    assert "vehicle.yaml:" in text
+    assert "sensors: lidar: preset: no preset 'utm30'; did you mean 'utm30lx'?" in text
+
+
+def test_a_preset_does_not_hide_an_unknown_key(sensors_of):
+    assert "unknown key 'beems'; did you mean 'beams'?" in refusal(sensors_of, lidar={"preset": "lds01", "mount": {}, "beems": 90})
+
+
+@pytest.mark.parametrize("data", [[], "lidar", None, 7])
+def test_a_section_that_is_none_is_refused_as_ever(sensors_of, data):
+    assert "sensors" in refusal(sensors_of, gnss=data if data is not None else [])
+
+
+SONAR = {"mount": {}, "hz": 10.0, "fov": 0.5, "range_min": 0.02, "range_max": 4.0}
+
+
+def test_two_sonars_need_two_frames(sensors_of):
+    assert "sonars[1]: a second sonar with frame 'sonar'" in refusal(sensors_of, sonars=[SONAR, SONAR])
+    assert len(sensors_of(sonars=[SONAR, {**SONAR, "frame": "rear_sonar"}]).sonars) == 2
+
+
+def test_limits_the_wrong_way_round_are_refused(sensors_of):
+    assert "range_min: 5 m is not below range_max, 4 m" in refusal(sensors_of, sonars=[{**SONAR, "range_min": 5.0}])
+    bumper = {"name": "front", "angle_min": 0.5, "angle_max": -0.5}
+    assert "bumpers[0]: angle_min: 0.5 rad is not below angle_max" in refusal(sensors_of, bumpers=[bumper])
