@@ -1,5 +1,6 @@
 """The body of the recorder's process: the log of a run as a series of files, within the disk's space and the quota."""
 
+import os
 import re
 import shutil
 import time
@@ -21,6 +22,7 @@ from uvf.runtime.zenoh_bus import ZenohBus
 FLUSH_PERIOD = 1.0  # s
 ROTATE_BYTES = 500_000_000
 ROOM = 100_000_000  # bytes free on the disk, from which recording is taken up again
+NICE = 10  # as in catalogue.Kind: writing can wait
 LOOK = 0.05  # s
 
 Tell = Callable[[str, Event.Severity], None]
@@ -120,6 +122,7 @@ class LogSeries:
 def run_recorder(folder: Path, mission: str) -> None:
     """Writes everything on the bus to ``folder`` until told to stop."""
     with worker("recorder") as life:
+        os.nice(NICE)
         site = load_site(settings.mission_path(mission))
         quota = settings.runs_quota()
         try:
