@@ -5,11 +5,12 @@ import pytest
 
 from schemas import topics
 from schemas.convert import occupancy_cells, yaw_of
-from schemas.messages import GoalRequest, Mode, StopCommand, Vector3
+from schemas.messages import CancelRequest, GoalRequest, Mode, NavStatus, StopCommand, Vector3
 from services.autopilot.ground.build import hosts
 from services.planner.build import build as build_planner
 from services.sim_ground.build import build as build_simulator
 from services.slam.build import build as build_slam
+from tests.runtime.outcome import ask
 from uvf.maths.planar import inverse, transform
 from uvf.runtime.lockstep import Lockstep
 from uvf.runtime.site import ROOT, load_site
@@ -48,14 +49,12 @@ class House:
         self.bus.publisher(key, message.DESCRIPTOR.full_name, topics.STOP.qos).put(message.SerializeToString(), round(t * 1e9))
 
     def ask_goal(self, t, x, y):
-        replies = []
-        request = GoalRequest(position=Vector3(x=x, y=y), yaw=float("nan"), source="test")
-        key = topics.GOAL.at(VEHICLE)
-        self.bus.call(
-            key, request.SerializeToString(), round(t * 1e9), lambda reply, why, at: replies.append(topics.GOAL.reply.FromString(reply))
-        )
+        return self.ask(t, topics.GOAL, GoalRequest(position=Vector3(x=x, y=y), yaw=float("nan"), source="test"))
+
+    def ask(self, t, request, message):
+        answer = ask(self.bus, request, VEHICLE, message, t)
         self.run.run(t + 0.5)
-        return replies[0]
+        return answer[0][0]
 
 
 @pytest.fixture(scope="module")
@@ -125,6 +124,23 @@ def test_stop_all_holds_until_it_is_released_and_a_goal_is_driven_to(explored):
     _, x, y = explored.places()[-1]
     assert np.hypot(x - GOAL[0], y - GOAL[1]) < 0.2
     assert not any(m.touching for _, m in explored.kept["contact"])
+
+
+def test_a_cancelled_goal_stops_the_vehicle_and_exploring_goes_on_later(explored):
+    t = explored.kept["truth"][-1][0] + 8.0
+    explored.run.run(t)
+    assert explored.ask_goal(t, 3.4, 1.3).accepted
+    explored.run.run(t + 3.0)
+    moved = np.ptp(explored.places()[-20:, 1:], axis=0).max()
+    reply = explored.ask(t + 3.0, topics.CANCEL, CancelRequest(source="test"))
+    assert reply.accepted and moved > 0.02
+    explored.run.run(t + 5.0)
+    stood_from = len(explored.kept["truth"])
+    explored.run.run(t + 7.5)
+    assert explored.kept["nav"][-1][1].state == NavStatus.CANCELLED
+    assert np.ptp(explored.places()[stood_from:, 1:], axis=0).max() < 0.005
+    explored.run.run(t + 15.0)
+    assert explored.kept["nav"][-1][1].job == "explore"
 
 
 def test_slam_that_is_started_again_finds_the_vehicle_in_its_old_map():
