@@ -1,4 +1,4 @@
-"""Lidar scans and odometry -> the map, and where the odometry frame lies in it."""
+"""Lidar scans and frames -> the map, and where the odometry frame lies in it."""
 
 from typing import Annotated
 
@@ -8,17 +8,19 @@ from numpy.typing import NDArray
 
 from schemas import topics
 from schemas.convert import occupancy_cells, occupancy_grid, quaternion, scan_rays, seconds, stamp, yaw_of
-from schemas.messages import FrameTransform, Grid, LaserScan, Odometry, Vector3
+from schemas.messages import Event, FrameTransform, Grid, LaserScan, Vector3
 from services.slam.mapper import Mapper, Scan, toward
-from uvf.maths.planar import IDENTITY, Pose2, PoseHistory, compose, inverse, transform
+from uvf.maths.planar import IDENTITY, Pose2, compose, inverse, transform
 from uvf.maths.rotations import from_euler
-from uvf.runtime.service import Outputs, Params, Service, every
+from uvf.maths.transforms import planar
+from uvf.runtime.frames import FrameBuffer, FrameError
+from uvf.runtime.service import Outputs, Params, Service, frames
 from uvf.runtime.vehicle_file import Lidar
 
 Floats = NDArray[np.float64]
 Positive = Annotated[float, Meta(gt=0)]
 
-HISTORY = 100  # odometry poses kept, 2 s
+PATIENCE = 2.0  # s without a scan that has a place, until this is told
 NO_RETURN_REACH = 0.9
 """Part of the lidar's range that a beam without a return counts as free."""
 
@@ -37,8 +39,8 @@ class MappingService(Service):
 
     name = "mapping"
     hz = 10.0
-    inputs = {"scan": topics.SCAN, "odometry": every(topics.ODOMETRY)}
-    outputs = {"correction": topics.TF_MAP, "placing": topics.TF_WORLD, "map": topics.MAP}
+    inputs = {"scan": topics.SCAN, "frames": frames()}
+    outputs = {"correction": topics.TF_MAP, "placing": topics.TF_WORLD, "map": topics.MAP, "events": topics.EVENTS.by("mapping")}
     recalls = {"map": topics.MAP, "correction": topics.TF_MAP}
     params: MappingParams
     fixed_params = frozenset({"resolution"})
@@ -47,28 +49,25 @@ class MappingService(Service):
         self.params = params
         self._vehicle = vehicle
         self._lidar = lidar
-        self._base_from_lidar: Pose2 = Pose2(lidar.mount.xyz[0], lidar.mount.xyz[1], lidar.mount.rpy[2])
         self._world_from_map = world_from_map
         self._mapper = Mapper(params.resolution, params.insert_distance, params.insert_turn)
-        self._history = PoseHistory(HISTORY)
         self._odom_from_base: Pose2 = IDENTITY
         self._published: Pose2 = IDENTITY
         self._scan_time = -1.0
+        self._placeless_since: float | None = None
+        self._told = False
         self._map_time = -np.inf
         self._changed = False
         self._placed = False
 
-    def step(self, t: float, scan: LaserScan, odometry: list[Odometry]) -> Outputs:
-        for message in odometry:
-            position = message.pose.position
-            self._odom_from_base = Pose2(position.x, position.y, yaw_of(message.pose.orientation))
-            self._history.add(seconds(message.timestamp), self._odom_from_base)
+    def step(self, t: float, scan: LaserScan, frames: FrameBuffer) -> Outputs:
         self._mapper.insert_distance, self._mapper.insert_turn = self.params.insert_distance, self.params.insert_turn
-        taken_at = seconds(scan.timestamp)
-        odom_from_base = self._history.at(taken_at)
-        if taken_at > self._scan_time and odom_from_base is not None:
-            self._scan_time = taken_at
-            self._changed |= self._mapper.add(odom_from_base, self._in_base(scan))
+        try:
+            self._odom_from_base = planar(frames.lookup(self._frame("odom"), self._frame("base_footprint")))
+            self._look(scan, frames)
+            self._placeless_since = None
+        except FrameError as error:
+            return {"events": self._wait(t, str(error))}
         outputs: dict[str, FrameTransform | Grid] = {"correction": self._correction(t)}
         if not self._placed:
             outputs["placing"] = self._transform(t, "world", "map", self._world_from_map)
@@ -78,6 +77,28 @@ class MappingService(Service):
             self._changed, self._map_time = False, t
         return outputs
 
+    def _look(self, scan: LaserScan, frames: FrameBuffer) -> None:
+        """Takes in a new scan from where the lidar has been when it was taken. Raises FrameError."""
+        taken_at = seconds(scan.timestamp)
+        if taken_at <= self._scan_time:
+            return
+        odom_from_base = planar(frames.lookup(self._frame("odom"), self._frame("base_footprint"), taken_at))
+        base_from_lidar = planar(frames.lookup(self._frame("base_footprint"), scan.frame_id))
+        self._scan_time = taken_at
+        self._changed |= self._mapper.add(odom_from_base, self._in_base(base_from_lidar, scan))
+
+    def _wait(self, t: float, reason: str) -> list[Event]:
+        """A scan may be ahead of the frames for a moment; when it lasts, a person has to know why there is no map."""
+        if self._placeless_since is None:
+            self._placeless_since = t
+        if self._told or t - self._placeless_since < PATIENCE:
+            return []
+        self._told = True
+        return [Event(timestamp=stamp(t), severity=Event.WARNING, text="scans cannot be mapped", cause=reason, source="mapping")]
+
+    def _frame(self, name: str) -> str:
+        return f"{self._vehicle}/{name}"
+
     def recall(self, map: Grid | None = None, correction: FrameTransform | None = None) -> None:
         """Goes on with the last map published; the next scan finds its place in it."""
         if map is None or correction is None or map.cell_size.x != self.params.resolution:
@@ -86,13 +107,13 @@ class MappingService(Service):
         shift = correction.translation
         self._published = self._mapper.map_from_odom = Pose2(shift.x, shift.y, yaw_of(correction.rotation))
 
-    def _in_base(self, scan: LaserScan) -> Scan:
+    def _in_base(self, base_from_lidar: Pose2, scan: LaserScan) -> Scan:
         """A range beyond the lidar's own is no return (REP-117): the map shall not grow to where nobody can see."""
         ranges, rays = scan_rays(scan)
         hit = (ranges > 0.0) & (ranges <= self._lidar.range_max)
-        hits = transform(self._base_from_lidar, rays[hit] * ranges[hit, None])
-        open_ends = transform(self._base_from_lidar, rays[~hit] * (NO_RETURN_REACH * self._lidar.range_max))
-        return Scan(hits, open_ends, self._base_from_lidar[:2])
+        hits = transform(base_from_lidar, rays[hit] * ranges[hit, None])
+        open_ends = transform(base_from_lidar, rays[~hit] * (NO_RETURN_REACH * self._lidar.range_max))
+        return Scan(hits, open_ends, base_from_lidar[:2])
 
     def _correction(self, t: float) -> FrameTransform:
         """Limited at the vehicle, not at the frames' origins, which may lie far away."""

@@ -6,8 +6,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation, Slerp
 
+from uvf.maths import planar as plane
 from uvf.maths.rotations import from_euler
-from uvf.maths.transforms import IDENTITY, Transform, apply, compose, homogeneous, interpolate, inverse, slerp
+from uvf.maths.transforms import IDENTITY, Transform, apply, compose, homogeneous, interpolate, inverse, planar, slerp
 
 metres = st.floats(-50, 50)
 angles = st.floats(-np.pi, np.pi)
@@ -55,6 +56,16 @@ def test_between_two_the_rotation_is_scipys_slerp_and_the_translation_a_straight
 def test_half_way_is_half_the_turn_however_small(turn):
     half = slerp(from_euler(0, 0, 0), -from_euler(0, 0, turn), 0.5)
     assert half == pytest.approx(from_euler(0, 0, turn / 2), abs=1e-12)
+
+
+@checked
+@given(metres, metres, angles, metres, metres, angles)
+def test_on_level_ground_it_is_the_motion_in_the_plane(x, y, yaw, u, v, turn):
+    a, b = (Transform(from_euler(0, 0, angle), np.array((p, q, 0.0))) for p, q, angle in ((x, y, yaw), (u, v, turn)))
+    expected = plane.compose(plane.Pose2(x, y, yaw), plane.Pose2(u, v, turn))
+    found = planar(compose(a, b))
+    assert found[:2] == pytest.approx(expected[:2], abs=1e-9)
+    assert np.exp(1j * found.yaw) == pytest.approx(np.exp(1j * expected.yaw))
 
 
 def test_the_identity_changes_nothing():

@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uvf.maths import rotations
-from uvf.maths.rotations import matrix, multiply, rotate
+from uvf.maths.planar import Pose2
+from uvf.maths.rotations import matrix, multiply, rotate, to_euler
 
 Floats = NDArray[np.float64]
 
@@ -45,6 +46,12 @@ def apply(a_from_b: Transform, points_b: Floats) -> Floats:
     """(n, 3) points of frame b in frame a."""
     points_a: Floats = points_b @ matrix(a_from_b.rotation).T + a_from_b.translation
     return points_a
+
+
+def planar(a_from_b: Transform) -> Pose2:
+    """Where it is seen from above."""
+    x, y, _ = a_from_b.translation
+    return Pose2(float(x), float(y), to_euler(a_from_b.rotation)[2])
 
 
 def homogeneous(a_from_b: Transform) -> Floats:

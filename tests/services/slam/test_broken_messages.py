@@ -10,11 +10,11 @@ from schemas.messages import FrameTransform, Imu, KeyValuePair, LaserScan, Odome
 from services.slam.mapping_service import MappingParams, MappingService
 from services.slam.odometry_service import OdometryParams, OdometryService
 from tests.services.slam.room import ANGLES
-from tests.services.slam.test_services import BURGER, LIDAR, START, drive
+from tests.services.slam.test_services import BURGER, LIDAR, START, drive, frames_with
 
 
 def scan(t, ranges):
-    return LaserScan(timestamp=stamp(t), start_angle=ANGLES[0], end_angle=ANGLES[-1], ranges=ranges)
+    return LaserScan(timestamp=stamp(t), frame_id="v/lidar", start_angle=ANGLES[0], end_angle=ANGLES[-1], ranges=ranges)
 
 
 def mapped(*scans):
@@ -23,8 +23,8 @@ def mapped(*scans):
     grid = None
     for k, ranges in enumerate(scans, 1):
         t = 0.2 * k
-        odometry = [Odometry(timestamp=stamp(s), pose=planar_pose(0.01 * k, 0.0, 0.0)) for s in (t - 0.05, t)]
-        grid = service.step(t + 0.01, scan(t, ranges), odometry).get("map", grid)
+        frames = frames_with(dict.fromkeys((t - 0.05, t), (0.01 * k, 0.0, 0.0)))
+        grid = service.step(t + 0.01, scan(t, ranges), frames).get("map", grid)
     return grid, service
 
 

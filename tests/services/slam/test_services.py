@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 
 from schemas.convert import occupancy_cells, planar_pose, stamp, yaw_of
-from schemas.messages import FrameTransform, Imu, LaserScan, Odometry, Quaternion, Vector3, WheelTicks
+from schemas.messages import FrameTransform, Imu, LaserScan, Quaternion, Vector3, WheelTicks
 from services.slam.mapping_service import MappingParams, MappingService
 from services.slam.odometry_service import OdometryParams, OdometryService
 from tests.services.live_params import all_settable_are_read
 from tests.services.slam.room import ANGLES, measured
+from uvf.runtime.frames import FrameBuffer
 from uvf.runtime.site import ROOT
 from uvf.runtime.vehicle_file import Lidar, Mount, load_vehicle
 
@@ -96,11 +97,24 @@ def test_parameters_of_the_odometry_count_while_running():
 
 def scan_at(t, pose):
     ranges = measured(pose, base_from_lidar=BASE_FROM_LIDAR)
-    return LaserScan(timestamp=stamp(t), start_angle=ANGLES[0], end_angle=ANGLES[-1], ranges=ranges.tolist())
+    return LaserScan(timestamp=stamp(t), frame_id="v/lidar", start_angle=ANGLES[0], end_angle=ANGLES[-1], ranges=ranges.tolist())
 
 
-def odometry_at(t, pose):
-    return Odometry(timestamp=stamp(t), pose=planar_pose(*pose))
+def frame_at(t, parent, child, pose):
+    flat = planar_pose(*pose)
+    shift = Vector3(x=pose[0], y=pose[1])
+    return FrameTransform(
+        timestamp=stamp(t), parent_frame_id=f"v/{parent}", child_frame_id=f"v/{child}", translation=shift, rotation=flat.orientation
+    )
+
+
+def frames_with(poses):
+    """The lidar's mount, and where the base was in the odometry's frame: poses by time."""
+    frames = FrameBuffer()
+    frames.add(frame_at(0.0, "base_footprint", "lidar", BASE_FROM_LIDAR), is_static=True)
+    for t, pose in poses.items():
+        frames.add(frame_at(t, "odom", "base_footprint", pose))
+    return frames
 
 
 def map_for(seconds, pose_at, odometry_of):
@@ -109,9 +123,9 @@ def map_for(seconds, pose_at, odometry_of):
     said = []
     for k in range(1, round(seconds * 10) + 1):
         t = 0.1 * k
-        odometry = [odometry_at(t - s, odometry_of(pose_at(t - s))) for s in (0.08, 0.06, 0.04, 0.02, 0.0)]
+        frames = frames_with({t - s: odometry_of(pose_at(t - s)) for s in (0.2, 0.1, 0.0) if t - s > -1e-9})
         taken_at = 0.2 * (k // 2)
-        said.append((t, service.step(t, scan_at(taken_at, pose_at(taken_at)), odometry)))
+        said.append((t, service.step(t, scan_at(taken_at, pose_at(taken_at)), frames)))
     return said
 
 
@@ -167,6 +181,21 @@ def test_the_map_is_placed_in_the_world_once(drifting_run):
     assert placings[0].translation.x == 2.0
 
 
+def test_a_scan_waits_until_it_is_known_where_the_vehicle_was():
+    service = MappingService("v", LIDAR, START, MappingParams())
+    scan = scan_at(0.2, (0.0, 0.2, 0.0))
+    assert service.step(0.2, scan, frames_with({0.18: (0.0, 0.0, 0.0)})) == {"events": []}
+    assert "map" in service.step(0.3, scan, frames_with({0.18: (0.0, 0.0, 0.0), 0.28: (0.0, 0.0, 0.0)}))
+
+
+def test_scans_without_a_place_are_told_of_once_with_the_reason():
+    service = MappingService("v", LIDAR, START, MappingParams())
+    frames = FrameBuffer()
+    frames.add(frame_at(0.1, "odom", "base_footprint", (0.0, 0.0, 0.0)))
+    events = [e for k in range(1, 80) for e in service.step(0.1 * k, scan_at(0.1, (0.0, 0.2, 0.0)), frames)["events"]]
+    assert [(e.text, e.cause) for e in events] == [("scans cannot be mapped", "no frame 'v/lidar'; there are: v/base_footprint, v/odom")]
+
+
 def test_parameters_of_the_mapping_count_while_running():
     service = MappingService("v", LIDAR, START, MappingParams())
     changed = 0
@@ -174,7 +203,7 @@ def test_parameters_of_the_mapping_count_while_running():
     def step(k):
         t = 0.2 * k
         pose = (0.05 * k - 1.0, 0.2, 0.0)
-        return service.step(t, scan_at(t, pose), [odometry_at(t, (0.05 * k, 0.0, 0.0))])
+        return service.step(t, scan_at(t, pose), frames_with({t: (0.05 * k, 0.0, 0.0)}))
 
     with all_settable_are_read(service):
         for k in range(1, 11):
