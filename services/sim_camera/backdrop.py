@@ -37,6 +37,13 @@ class Backdrop:
         _paint(picture, eye, rays, self._fields)
         return picture
 
+    def depth(self, camera: Camera, eye: Floats, world_from_optical: Floats) -> Floats:
+        """(height, width) m along the view to the ground; inf in the sky."""
+        down = -(world_from_optical @ np.linalg.inv(intrinsics(camera)))[2]
+        fall = down[0] * np.arange(camera.width) + down[1] * np.arange(camera.height)[:, None] + down[2]
+        with np.errstate(divide="ignore"):
+            return np.where((fall > 0) & (eye[2] > 0), eye[2] / fall, np.inf)
+
 
 @compiled
 def _field_at(x: float, y: float, fields: Floats, guess: int) -> int:

@@ -1,10 +1,11 @@
 """The cameras of a mission: one instance for all of them."""
 
+from services.sim_camera.fitted import Fitted
 from services.sim_camera.renderer import BulletRenderer, Look
 from services.sim_camera.service import SimCamera
 from uvf.runtime.params import BadInput, nearest
 from uvf.runtime.site import Host, Member, Site
-from uvf.runtime.urdf_file import check_urdf
+from uvf.runtime.urdf_model import engine_urdf
 from uvf.runtime.vehicle_file import Camera
 from uvf.runtime.world_geometry import solids
 
@@ -18,19 +19,23 @@ def build(site: Site) -> list[Host]:
     if not cameras:
         return []
     things = solids(site.world, site.world_folder)
-    return [Host(SimCamera, lambda: SimCamera(BulletRenderer(site.world, things, looks), cameras), writes_for=tuple(cameras))]
+
+    def make() -> SimCamera:
+        fitted = [Fitted(name, camera, site.rng(name, "camera")) for name, camera in cameras.items()]
+        return SimCamera(BulletRenderer(site.world, things, looks), fitted)
+
+    return [Host(SimCamera, make, writes_for=tuple(cameras))]
 
 
 def _check(member: Member, camera: Camera) -> None:
-    if SimCamera.hz % camera.hz:
+    if camera.hz > SimCamera.hz:
         place = f"{member.folder / 'vehicle.yaml'}: sensors: camera"
-        raise BadInput(f"{place}: hz is {camera.hz:g}; make it a divisor of {SimCamera.hz:g}")
+        raise BadInput(f"{place}: hz is {camera.hz:g}; the cameras' simulator gives {SimCamera.hz:g} at most")
 
 
 def _look(member: Member) -> Look:
     if member.file.ground is not None:
-        check_urdf(member.folder / member.file.ground.urdf, ())
-        return Look(urdf=member.folder / member.file.ground.urdf)
+        return Look(urdf=engine_urdf(member.folder / member.file.ground.urdf))
     mesh = member.file.air.mesh if member.file.air is not None else None
     if mesh is not None and not (member.folder / mesh).is_file():
         place = f"{member.folder / 'vehicle.yaml'}: air: mesh"

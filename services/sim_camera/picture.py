@@ -13,6 +13,8 @@ from services.sim_camera.optics import intrinsics
 from uvf.runtime.vehicle_file import Camera
 
 JPEG_QUALITY = 70
+MILLIMETRES = 1000.0
+DEEPEST = np.iinfo(np.uint16).max / MILLIMETRES  # m
 
 
 def image_message(taken: Timestamp, frame: str, picture: NDArray[np.uint8]) -> CompressedImage:
@@ -20,6 +22,14 @@ def image_message(taken: Timestamp, frame: str, picture: NDArray[np.uint8]) -> C
     stream = io.BytesIO()
     Image.fromarray(picture).save(stream, format="JPEG", quality=JPEG_QUALITY)
     return CompressedImage(timestamp=taken, frame_id=frame, data=stream.getvalue(), format="jpeg")
+
+
+def depth_message(taken: Timestamp, frame: str, depth: NDArray[np.float64]) -> CompressedImage:
+    """depth: (height, width) m along the view; sent as mm, 0 where there is nothing within 65.535 m (16UC1 of REP-118)."""
+    millimetres = np.where((depth > 0) & (depth <= DEEPEST), np.round(depth * MILLIMETRES), 0.0).astype(np.uint16)
+    stream = io.BytesIO()
+    Image.fromarray(millimetres).save(stream, format="PNG", compress_level=1)
+    return CompressedImage(timestamp=taken, frame_id=frame, data=stream.getvalue(), format="png")
 
 
 def info_message(t: float, frame: str, camera: Camera) -> CameraCalibration:

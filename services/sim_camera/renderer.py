@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from services.sim_camera.aircraft_shape import PARTS
 from services.sim_camera.backdrop import Backdrop
-from services.sim_camera.optics import vertical_fov
+from services.sim_camera.optics import frustum
 from uvf.maths.rotations import from_euler, matrix, multiply, rotate
 from uvf.runtime.params import BadInput
 from uvf.runtime.solid import UPRIGHT, Solid
@@ -30,6 +30,13 @@ class Pose(NamedTuple):
 
     position: Floats
     world_from_body: Floats
+
+
+class Shot(NamedTuple):
+    """picture: (height, width, 3) RGB; depth: (height, width) m along the view, inf where there is nothing; None if not asked for."""
+
+    picture: Picture
+    depth: Floats | None
 
 
 @dataclass(frozen=True)
@@ -100,30 +107,38 @@ class BulletRenderer:
             turned = multiply(world_from_body, shown.com_in_body.world_from_body)
             pybullet.resetBasePositionAndOrientation(shown.index, centre.tolist(), _xyzw(turned), physicsClientId=self._client)
 
-    def picture(self, camera: Camera, body: Pose) -> Picture:
-        """(height, width, 3) RGB of what a vehicle's camera sees when its body is there."""
+    def take(self, camera: Camera, body: Pose) -> Shot:
+        """What a vehicle's camera sees when its body is there."""
         eye = body.position + rotate(body.world_from_body, np.array(camera.mount.xyz))
         world_from_camera = multiply(body.world_from_body, from_euler(*camera.mount.rpy))
         forward, left, up = matrix(world_from_camera).T
         view = pybullet.computeViewMatrix(eye.tolist(), (eye + forward).tolist(), up.tolist())
-        fov, aspect = float(np.degrees(vertical_fov(camera))), camera.width / camera.height
-        _, _, rgba, _, seen = pybullet.getCameraImage(
+        _, _, rgba, buffer, seen = pybullet.getCameraImage(
             camera.width,
             camera.height,
             viewMatrix=view,
-            projectionMatrix=pybullet.computeProjectionMatrixFOV(fov, aspect, NEAR, camera.far),
+            projectionMatrix=pybullet.computeProjectionMatrix(*frustum(camera, NEAR), NEAR, camera.far),
             lightDirection=TO_LIGHT,
             shadow=0,
             renderer=pybullet.ER_TINY_RENDERER,
             physicsClientId=self._client,
         )
         solids = np.reshape(np.asarray(rgba, dtype=np.uint8), (camera.height, camera.width, 4))[:, :, :3]
-        behind = self._backdrop.paint(camera, eye, np.column_stack((-left, -up, forward)))
-        nothing = np.reshape(seen, (camera.height, camera.width, 1)) < 0
-        return np.where(nothing, behind, solids)
+        nothing = np.reshape(seen, (camera.height, camera.width)) < 0
+        world_from_optical = np.column_stack((-left, -up, forward))
+        picture = np.where(nothing[:, :, None], self._backdrop.paint(camera, eye, world_from_optical), solids)
+        if not camera.depth:
+            return Shot(picture, None)
+        depth = linear_depth(np.reshape(buffer, nothing.shape).astype(np.float64), camera.far)
+        return Shot(picture, np.where(nothing, self._backdrop.depth(camera, eye, world_from_optical), depth))
 
     def close(self) -> None:
         pybullet.disconnect(physicsClientId=self._client)
+
+
+def linear_depth(buffer: Floats, far: float) -> Floats:
+    """m along the view, from OpenGL's depth buffer, 0 at ``NEAR`` and 1 at ``far``: even steps of 1 / depth."""
+    return far * NEAR / (far - (far - NEAR) * buffer)
 
 
 def _visual_shape(solid: Solid, client: int) -> int:

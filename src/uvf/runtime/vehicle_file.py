@@ -184,7 +184,7 @@ class AirDataSensor(Delivery, frozen=True, forbid_unknown_fields=True):
     differential_bias: NotNegative = 0.0  # Pa, 1 sigma
 
 
-class Camera(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class Camera(Delivery, frozen=True, forbid_unknown_fields=True):
     mount: Mount
     hz: SensorRate
     width: Annotated[int, Meta(ge=16, le=1920)]
@@ -193,6 +193,7 @@ class Camera(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     far: Positive = 100.0  # m
     frame: Name = "camera"
     depth: bool = False  # depth pictures too, of the same size and rate
+    depth_noise: NotNegative = 0.0  # 1/m: 1 sigma is this times the square of the depth
 
 
 class Sensors(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -208,7 +209,7 @@ class Sensors(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     bumpers: list[Bumper] = []
 
 
-Sampled = Lidar | ImuSensor | Encoders | GnssSensor | AirDataSensor | Sonar
+Sampled = Lidar | ImuSensor | Encoders | GnssSensor | AirDataSensor | Sonar | Camera
 
 
 def line_of(sensor: Sampled, rng: np.random.Generator) -> Line[Any]:

@@ -12,7 +12,7 @@ from services.sim_camera.renderer import BulletRenderer, Look, Pose
 from uvf.maths.rotations import from_euler, matrix
 from uvf.runtime.site import ROOT
 from uvf.runtime.vehicle_file import Camera, Mount
-from uvf.runtime.world_file import Cylinder, Field, Origin, WorldFile
+from uvf.runtime.world_file import Box, Cylinder, Field, Origin, WorldFile
 from uvf.runtime.world_geometry import solids
 
 RED, BLUE = (0.9, 0.05, 0.05), (0.05, 0.05, 0.9)
@@ -27,11 +27,15 @@ def world_with(**parts):
 
 
 def picture(world, camera=CAMERA, body=ORIGIN, vehicles=None, poses=None):
+    return shot(world, camera, body, vehicles, poses).picture.astype(int)
+
+
+def shot(world, camera=CAMERA, body=ORIGIN, vehicles=None, poses=None):
     renderer = BulletRenderer(world, solids(world, Path()), vehicles or {})
     renderer.place(poses or {})
-    taken = renderer.picture(camera, body)
+    taken = renderer.take(camera, body)
     renderer.close()
-    return taken.astype(int)
+    return taken
 
 
 def centre_of(mask):
@@ -97,3 +101,47 @@ def test_a_mesh_is_drawn(tmp_path):
 def test_the_same_scene_gives_the_same_bytes():
     world = world_with(cylinders=[BALL])
     assert (picture(world) == picture(world)).all()
+
+
+DEEP = msgspec.structs.replace(CAMERA, depth=True, mount=Mount((0.1, 0.0, 0.3)), far=30.0)
+
+
+def optical_rays(camera):
+    """(height, width, 3) of each pixel's middle, camera frame (FLU), one metre along the view."""
+    k = intrinsics(camera)
+    columns, rows = np.meshgrid(np.arange(camera.width), np.arange(camera.height))
+    return np.stack((np.ones_like(columns, dtype=float), -(columns - k[0, 2]) / k[0, 0], -(rows - k[1, 2]) / k[1, 1]), axis=2)
+
+
+@pytest.mark.parametrize("attitude", [(0.0, 0.0, 0.0), (0.1, -0.2, 0.3), (0.0, 0.3, -0.2)])
+def test_depth_is_that_of_each_pixels_ray_on_wall_and_ground(attitude):
+    wall = Box(name="wall", centre=(5.0, 0.0, 5.0), size=(2.0, 100.0, 10.0), colour=BLUE)
+    body = Pose(np.array((0.0, 0.0, 0.5)), from_euler(*attitude))
+    seen = shot(world_with(boxes=[wall]), DEEP, body).depth
+    turn = matrix(body.world_from_body)
+    eye = body.position + turn @ np.array(DEEP.mount.xyz)
+    rays = optical_rays(DEEP) @ turn.T
+    with np.errstate(divide="ignore"):
+        to_wall, to_ground = (4.0 - eye[0]) / rays[:, :, 0], -eye[2] / np.minimum(rays[:, :, 2], -1e-12)
+    true = np.minimum(to_wall, to_ground)
+    inside = np.abs(to_wall - to_ground) > 0.1  # not where both meet: there a pixel shows either
+    height = eye[2] + true * rays[:, :, 2]
+    inside &= height < 9.9
+    assert inside.mean() > 0.7
+    assert np.abs(seen - true)[inside].max() < 5e-3
+
+
+def test_the_sky_has_no_depth():
+    level = Pose(np.array((0.0, 0.0, 50.0)), from_euler(0.0, 0.0, 0.0))
+    assert np.isinf(shot(EMPTY, DEEP, level).depth[:60]).all()
+
+
+def test_an_edge_lies_where_the_intrinsics_say_to_a_third_of_a_pixel():
+    """A slope of depth across a slanted wall would show half a pixel as millimetres."""
+    slanted = Box(name="wall", centre=(5.0, 0.0, 5.0), size=(2.0, 100.0, 10.0), rpy=(0.0, 0.0, 0.5), colour=BLUE)
+    seen = shot(world_with(boxes=[slanted]), DEEP, Pose(np.zeros(3), from_euler(0.0, 0.0, 0.0))).depth
+    normal = np.array((np.cos(0.5), np.sin(0.5), 0.0))
+    eye = np.array(DEEP.mount.xyz)
+    true = (normal @ np.array((5.0, 0.0, 5.0)) - 1.0 - normal @ eye) / (optical_rays(DEEP) @ normal)
+    slope = np.abs(np.diff(true[60])).max()
+    assert np.abs(seen - true)[20:60].max() < slope / 3

@@ -1,0 +1,41 @@
+"""One vehicle's camera: what its pictures are called, their noise, and how they get out."""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from google.protobuf.timestamp_pb2 import Timestamp
+
+from schemas.messages import CompressedImage
+from services.sim_camera.picture import depth_message, image_message
+from services.sim_camera.renderer import Shot
+from uvf.maths.sampling import Line
+from uvf.runtime.vehicle_file import Camera, line_of
+
+
+class Pictures(NamedTuple):
+    image: CompressedImage
+    depth: CompressedImage | None
+
+
+class Fitted:
+    def __init__(self, vehicle: str, camera: Camera, rng: np.random.Generator) -> None:
+        delivery, self._rng = rng.spawn(2)
+        self.vehicle = vehicle
+        self.camera = camera
+        self.frame = f"{vehicle}/{camera.frame}_optical"
+        """Of the pictures: x right, y down, z along the view."""
+        self._line: Line[Pictures] = line_of(camera, delivery)
+
+    def step(self, t: float, taken: Timestamp, shoot: Callable[[], Shot]) -> Pictures | None:
+        """The pictures that arrive at ``t`` [s], if any; ``taken`` is the stamp of the pose from which one would be shot now."""
+        return self._line.step(t, lambda: self._messages(taken, shoot()))
+
+    def _messages(self, taken: Timestamp, shot: Shot) -> Pictures:
+        image = image_message(taken, self.frame, shot.picture)
+        if shot.depth is None:
+            return Pictures(image, None)
+        depth = np.where(shot.depth <= self.camera.far, shot.depth, 0.0)
+        if self.camera.depth_noise:  # grows with the square of the depth, as disparity does (Khoshelham & Elberink 2012, eq. 9)
+            depth += self.camera.depth_noise * depth**2 * self._rng.standard_normal(depth.shape)
+        return Pictures(image, depth_message(taken, self.frame, depth))
