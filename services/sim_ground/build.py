@@ -8,7 +8,7 @@ from services.sim_ground.world import BulletWorld, Placed
 from uvf.maths.raycast import cast
 from uvf.runtime.params import BadInput
 from uvf.runtime.site import Host, Member, Site
-from uvf.runtime.urdf_file import check_urdf
+from uvf.runtime.urdf_model import check_urdf, engine_urdf
 from uvf.runtime.vehicle_file import GroundBody
 from uvf.runtime.world_geometry import clearance, solids
 
@@ -26,7 +26,7 @@ def build(site: Site) -> list[Host]:
 
 def _make(site: Site, bodies: dict[str, GroundBody]) -> SimGround:
     members = {name: site.members[name] for name in bodies}
-    placed = {name: Placed(bodies[name], m.folder / bodies[name].urdf, _start(m)) for name, m in members.items()}
+    placed = {name: Placed(bodies[name], engine_urdf(m.folder / bodies[name].urdf), _start(m)) for name, m in members.items()}
     rigs = {name: Rig(site, m, bodies[name]) for name, m in members.items()}
     world = BulletWorld(solids(site.world, site.world_folder), placed)
     return SimGround(world, rigs)

@@ -43,7 +43,7 @@ def edit_vehicle(root, change):
 
 def test_a_broken_tag(root):
     edit_urdf(root, "</robot>", "</robt>")
-    assert "burger.urdf: not valid XML: mismatched tag" in refusal(root)
+    assert "not valid XML: Opening and ending tag mismatch: robot" in refusal(root)
 
 
 def test_a_missing_urdf(root):

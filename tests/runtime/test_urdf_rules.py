@@ -4,7 +4,7 @@ import pytest
 
 from uvf.runtime.params import BadInput
 from uvf.runtime.site import ROOT
-from uvf.runtime.urdf_file import check_urdf
+from uvf.runtime.urdf_model import check_urdf
 
 WHOLE = (ROOT / "vehicles" / "burger" / "burger.urdf").read_text()
 LINK = '<link name="{}"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial></link>'
@@ -14,7 +14,7 @@ MISTAKES = {
     "an axis of two numbers": ('<axis xyz="0 1 0"/>', '<axis xyz="0 1"/>', "three numbers must stand there"),
     "an origin that is none": ('<origin xyz="-0.032 0 0.060"/>', '<origin xyz="nan 0 0"/>', "three numbers must stand there"),
     "an infinite origin": ('<origin xyz="-0.032 0 0.060"/>', '<origin xyz="inf 0 0"/>', "three numbers must stand there"),
-    "an infinite mass": ('<mass value="0.824"/>', '<mass value="inf"/>', "must be numbers above zero"),
+    "an infinite mass": ('<mass value="0.824"/>', '<mass value="inf"/>', 'burger.urdf:16: <mass value="inf">: a number must stand there'),
     "no inertia": ('ixx="0.002414"', 'ixx="0"', "must be numbers above zero"),
     "a box of no size": ('<box size="0.10 0.08 0.036"/>', '<box size="0.10 0 0.036"/>', "3 number(s) above zero"),
     "a cylinder of no length": ('length="0.143"', 'length="-1"', '<cylinder length="-1">'),
