@@ -50,7 +50,7 @@ def test_a_bad_mission_is_one_line_that_names_the_mend(tmp_path, case):
 
 
 def test_an_unknown_measure_is_named_before_the_run(tmp_path):
-    path = mission(tmp_path, criteria=[{"vehicle": "burger", "measure": "distance_drivn"}])
+    path = mission(tmp_path, criteria=[{"vehicle": "burger", "measure": "distance_drivn", "at_least": 1.0}])
     done = uvf("run", path, "--lockstep", "--until", "1", UVF_RUNS=str(tmp_path))
     assert done.returncode == 2
     assert "did you mean 'distance_driven'?" in done.stderr

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from uvf.launch import catalogue
+from uvf.launch.checks import refuse_problems
 from uvf.launch.recorder import attachments
 from uvf.launch.scores import Scorer, Verdict
 from uvf.runtime.lockstep import Lockstep
@@ -41,9 +42,10 @@ def run_lockstep(
 ) -> Result:
     """Runs every sim-clock service of the mission up to ``until`` [s] and records it. Raises BadInput."""
     scorer = Scorer(site)
-    kinds = [k for k in catalogue.needed(site) if k.clock == "sim"]
+    hosts = catalogue.hosts(site, [k for k in catalogue.needed(site) if k.clock == "sim"])
+    refuse_problems(site, hosts)
     with Recorder(log, attachments(site)) as recorder:
-        lockstep = Lockstep(catalogue.hosts(site, kinds), warn=warn)
+        lockstep = Lockstep(hosts, warn=warn)
         try:
             recorder.follow(lockstep.bus)
             scorer.follow(lockstep.bus)
