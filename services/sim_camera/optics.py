@@ -15,7 +15,7 @@ def intrinsics(camera: Camera) -> Floats:
 
 
 def frustum(camera: Camera, near: float) -> tuple[float, float, float, float]:
-    """left, right, bottom, top [m] of the picture on the plane at ``near`` for a renderer that samples the upper left corner
+    """left, right, bottom, top [m] of the picture on the plane at ``near`` for a renderer that samples the lower left corner
     of each pixel: moved by half a pixel, so that it samples where the intrinsics say that the pixel is."""
     pixel = near / intrinsics(camera)[0, 0]
     left, top = (0.5 - camera.width / 2) * pixel, (0.5 + camera.height / 2) * pixel

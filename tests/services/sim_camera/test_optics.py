@@ -20,8 +20,8 @@ def test_the_field_of_view_ends_at_the_outer_edge_of_the_last_pixel():
     assert (right, bottom) == pytest.approx((159.5, 119.5))
 
 
-def test_the_frustum_begins_half_a_pixel_inside_the_picture():
+def test_the_frustum_puts_the_lower_left_corner_of_a_pixel_into_its_middle():
     left, right, bottom, top = frustum(CAMERA, 0.02)
     k = intrinsics(CAMERA)
-    assert project(k, np.array((left, -top, 0.02))) == pytest.approx((0.0, 0.0), abs=1e-9)
-    assert project(k, np.array((right, -bottom, 0.02))) == pytest.approx((160.0, 120.0))
+    assert project(k, np.array((left, -top, 0.02))) == pytest.approx((0.0, -1.0), abs=1e-9)
+    assert project(k, np.array((right, -bottom, 0.02))) == pytest.approx((160.0, 119.0))
