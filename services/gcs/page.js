@@ -16,7 +16,7 @@
   document.addEventListener('keydown', e => { if (e.key === 'Enter' || e.key === ' ') press(e); });
   const bar = document.createElement('div');
   bar.id = 'gcs-bar'; bar.setAttribute('role', 'status'); document.body.append(bar);
-  let beat = '', at = performance.now();
+  let beat = '', at = performance.now(), ticked = at;
   setInterval(() => {
     const canvas = window.__viserMutable && window.__viserMutable.canvas;
     if (canvas) {
@@ -26,6 +26,8 @@
     const source = document.getElementById('gcs-bar-source');
     const now = performance.now();
     if (source && source.dataset.beat !== beat) { beat = source.dataset.beat; at = now; if (bar.innerHTML !== source.innerHTML) bar.innerHTML = source.innerHTML; }
+    if (now - ticked > 1500) at = now;  // it was this page that stood still: what has come meanwhile is yet to be read
+    ticked = now;
     const dead = now - at > 3000;
     bar.classList.toggle('g-dead', dead);
     if (dead) bar.innerHTML = LOST;

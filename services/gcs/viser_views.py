@@ -1,7 +1,7 @@
 """The named views, fitted to each browser's own window, which tells its shape late and may be resized."""
 
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import viser
@@ -13,7 +13,17 @@ from services.gcs.viser_script import follow
 Views = Callable[[float], Mapping[str, Camera]]
 """Width by height of a window -> its named views, the opening one first."""
 FOLLOW = "Follow"
-SAME = 0.02  # m, and share of the window's shape
+NEAR = 0.2  # m
+SAME_SHAPE = 0.02
+
+
+class Shown(NamedTuple):
+    """What one page was last told to show; reached: it has reported to be there."""
+
+    name: str
+    aspect: float
+    view: Camera
+    reached: bool = False
 
 
 class ViserViews:
@@ -21,7 +31,7 @@ class ViserViews:
 
     def __init__(self, server: viser.ViserServer, views: Views) -> None:
         self._views = views
-        self._chosen: dict[int, tuple[str, float, Camera]] = {}
+        self._chosen: dict[int, Shown] = {}
         self._first = next(iter(views(1.0)))
         self.names = (*views(1.0), FOLLOW)
         server.on_client_connect(self._begin)
@@ -44,18 +54,21 @@ class ViserViews:
             self._look(event.client, name)
 
     async def _moved(self, camera: Any) -> None:
-        client = camera.client
-        if client.client_id not in self._chosen:
+        """What a page reports before it has come to the view that was sent is not a person's doing."""
+        shown = self._chosen.get(camera.client.client_id)
+        if shown is None:
             return
-        name, aspect, view = self._chosen[client.client_id]
-        if not np.allclose(camera.position, view.position, rtol=0, atol=SAME * 10):
-            del self._chosen[client.client_id]
-        elif abs(camera.aspect / aspect - 1) > SAME:
-            self._look(client, name)
+        there = np.allclose(camera.position, shown.view.position, rtol=0, atol=NEAR)
+        if shown.reached and not there:
+            del self._chosen[camera.client.client_id]
+        elif abs(camera.aspect / shown.aspect - 1) > SAME_SHAPE:
+            self._look(camera.client, shown.name)
+        elif there and not shown.reached:
+            self._chosen[camera.client.client_id] = shown._replace(reached=True)
 
     def _look(self, client: Any, name: str) -> None:
         aspect = client.camera.aspect
         view = self._views(aspect)[name]
-        self._chosen[client.client_id] = (name, aspect, view)
+        self._chosen[client.client_id] = Shown(name, aspect, view)
         with client.atomic():
             client.camera.position, client.camera.look_at = view.position, view.look_at

@@ -94,10 +94,52 @@ def test_stop_all_stops_until_released(page, station):
     assert until(page, lambda: not station.script.stops[-1].engaged)
 
 
+BOXES = """() => {
+  const box = e => { const r = e.getBoundingClientRect(); return [r.left, r.top, r.right, r.bottom]; };
+  const over = [...document.querySelectorAll('.mantine-Notifications-root > *, #gcs-bar .g-notices, #gcs-bar .g-alert')].map(box);
+  return [box(document.querySelector('#gcs-bar .g-status')), over, box(window.__viserMutable.canvas)];
+}"""
+
+
+@pytest.mark.parametrize("width", [1024, 1440, 1920])
+def test_nothing_covers_the_status_at_any_common_width(page, station, width):
+    page.set_viewport_size({"width": width, "height": 700})
+    for i in range(5):
+        station.script.say(UGV, f"a warning of many words, and then some more of them {i}", Event.WARNING, t=station.t)
+    page.locator("#gcs-bar .g-note", has_text="more of them 4").wait_for(timeout=20_000)
+    (left, top, right, bottom), others, canvas = page.evaluate(BOXES)
+    assert canvas[0] <= left and right <= canvas[2] and top >= 0
+    assert others and all(o[0] >= right or o[2] <= left or o[1] >= bottom or o[3] <= top for o in others)
+    page.set_viewport_size({"width": 1200, "height": 700})
+
+
+def test_the_view_from_above_holds_the_whole_house(page, station):
+    page.get_by_role("button", name="Top", exact=True).click()
+
+    def inside():
+        left, top, right, bottom = page.evaluate(BOXES)[2]
+        corners = [on_screen(page, (x, y, 0.0)) for x in (0.0, 12.0) for y in (0.0, 9.0)]
+        return all(left < x < right and top < y < bottom for x, y in corners)
+
+    assert until(page, inside)
+    page.get_by_role("button", name="Scene", exact=True).click()
+
+
+def test_routine_events_are_shown_when_they_are_asked_for(page, station):
+    station.script.say(UAV, "mission item 3 reached", Event.INFO, t=station.t)
+    page.get_by_role("tab", name="Log").click()
+    event = page.locator(".g-events tr", has_text="mission item 3 reached")
+    event.wait_for(state="attached", timeout=20_000)
+    assert not event.is_visible()
+    page.get_by_role("button", name="All", exact=True).last.click()
+    assert event.is_visible()
+    page.get_by_role("tab", name="Vehicle").click()
+
+
 def test_text_from_the_bus_is_shown_not_run(page, station):
     station.script.say(UGV, "<img src=x onerror='window.hacked=1'>", Event.WARNING, t=station.t)
     page.get_by_role("tab", name="Log").click()
-    page.locator(".g-log", has_text="<img src=x").wait_for(timeout=20_000)
+    page.locator(".g-events", has_text="<img src=x").wait_for(timeout=20_000)
     assert page.evaluate("() => window.hacked") is None
     page.get_by_role("tab", name="Vehicle").click()
 
