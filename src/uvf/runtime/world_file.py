@@ -75,7 +75,7 @@ class Sphere(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class Mesh(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """Triangles of an STL, OBJ or DAE file in the world's folder."""
+    """Triangles of an STL or OBJ file in the world's folder; of a loaded world ``file`` is the whole path."""
 
     name: str
     file: FileName
@@ -133,7 +133,9 @@ def load_world(worlds: Path, name: str) -> WorldFile:
         if any(a == b for a, b in pairwise(wall.points)):
             raise BadInput(f"{place.at('walls', i)}: the same point twice in a row; take one away")
     _check_things(world, path.parent, place)
-    return world
+    return msgspec.structs.replace(
+        world, meshes=[msgspec.structs.replace(m, file=str((path.parent / m.file).resolve())) for m in world.meshes]
+    )
 
 
 def _check_area(area: tuple[float, float, float, float], place: Place) -> None:

@@ -1,21 +1,28 @@
 """The plain geometry of a world: its solids, what a level lidar meets of them, the floor plan and what can be reached."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
+from uvf.maths.footprint import Footprint, covered, footprint, segments
 from uvf.maths.raycast import rectangles
 from uvf.maths.rotations import from_euler, rotate
+from uvf.maths.solids import Solids, joined
+from uvf.runtime.drivable import drivable
+from uvf.runtime.scene import primitives, still
 from uvf.runtime.solid import Keyframes, Solid
 from uvf.runtime.world_file import Box, Cylinder, Script, Wall, WorldFile
 
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 WALL = "wall"  # every stretch of wall is called so
+GRAZE = 0.001  # m, lower than that nothing is bumped into
+BAND = 0.05  # m, steps of height in which obstacles on ramps are looked for
+COARSE = 0.1  # m, cells in which the ground under one point is looked for
 
 
 @dataclass(frozen=True)
@@ -39,12 +46,20 @@ class FloorPlan:
         """(row, column) of a point [m, world]."""
         return int(np.floor((y - self.y) / self.resolution)), int(np.floor((x - self.x) / self.resolution))
 
+    def axes(self) -> tuple[Floats, Floats]:
+        """x of the columns' and y of the rows' centres [m, world]."""
+        rows, columns = self.cells.shape
+        xs = self.x + (np.arange(columns, dtype=np.float64) + 0.5) * self.resolution
+        ys = self.y + (np.arange(rows, dtype=np.float64) + 0.5) * self.resolution
+        return xs, ys
+
+    def under(self, shadows: Footprint) -> Mask:
+        """(rows, columns): the cells that shadows cover in any part."""
+        return covered(shadows, (self.x, self.y), self.resolution, (self.cells.shape[0], self.cells.shape[1]))
+
     def centres(self) -> tuple[Floats, Floats]:
         """x and y [m, world] of the cells' centres, each (rows, columns)."""
-        rows, columns = self.cells.shape
-        xs = self.x + (np.arange(columns) + 0.5) * self.resolution
-        ys = self.y + (np.arange(rows) + 0.5) * self.resolution
-        grid_x, grid_y = np.meshgrid(xs, ys)
+        grid_x, grid_y = np.meshgrid(*self.axes())
         return grid_x, grid_y
 
 
@@ -69,8 +84,11 @@ def all_boxes(world: WorldFile) -> list[Box]:
     return [box for wall in world.walls for box in wall_boxes(wall)] + world.boxes
 
 
-def solids(world: WorldFile, folder: Path) -> list[Solid]:
-    """Every solid of a world, walls first; ``folder`` holds its meshes. The ground, z = 0, is none of them."""
+def solids(world: WorldFile, folder: Path = Path()) -> list[Solid]:
+    """Every solid of a world, walls first. The ground, z = 0, is none of them.
+
+    folder: holds the meshes of a world that was not loaded from a file; a loaded one knows where they are.
+    """
     made = [Solid(b.name, "box", b.size, np.array(b.centre), from_euler(*b.rpy), b.colour, path=_script(b.path)) for b in all_boxes(world)]
     for c in world.cylinders:
         tilt = from_euler(*c.rpy)
@@ -86,6 +104,13 @@ def _script(path: Script) -> Keyframes | None:
     return Keyframes(np.array(path)) if path else None
 
 
+def slice_between(world: WorldFile, low: float, high: float) -> Slice:
+    """All solids that reach into the heights from ``low`` to ``high`` [m, world], as outlines."""
+    boxes = [(b.centre[0], b.centre[1], b.size[0] / 2, b.size[1] / 2, b.rpy[2]) for b in all_boxes(world) if _cuts_box(b, low, high)]
+    circles = [(c.base[0], c.base[1], c.radius) for c in world.cylinders if _cuts_cylinder(c, low, high)]
+    return Slice(rectangles(np.array(boxes)), np.array(circles, dtype=np.float64).reshape(-1, 3))
+
+
 def _cuts_box(box: Box, low: float, high: float) -> bool:
     return box.centre[2] - box.size[2] / 2 <= high and box.centre[2] + box.size[2] / 2 >= low
 
@@ -94,43 +119,71 @@ def _cuts_cylinder(cylinder: Cylinder, low: float, high: float) -> bool:
     return cylinder.base[2] <= high and cylinder.base[2] + cylinder.height >= low
 
 
-def slice_between(world: WorldFile, low: float, high: float) -> Slice:
-    """All solids that reach into the heights from ``low`` to ``high`` [m, world], as outlines."""
-    boxes = [(b.centre[0], b.centre[1], b.size[0] / 2, b.size[1] / 2, b.rpy[2]) for b in all_boxes(world) if _cuts_box(b, low, high)]
-    circles = [(c.base[0], c.base[1], c.radius) for c in world.cylinders if _cuts_cylinder(c, low, high)]
-    return Slice(rectangles(np.array(boxes)), np.array(circles, dtype=np.float64).reshape(-1, 3))
-
-
 def slice_at(world: WorldFile, z: float) -> Slice:
     """What a level 2-D lidar at height ``z`` [m, world] can meet."""
     return slice_between(world, z, z)
 
 
 def floor_plan(world: WorldFile, resolution: float, height: float = 0.2) -> FloorPlan:
-    """Which cells of the floor hold anything between the floor and ``height`` [m]: what a robot that tall bumps into."""
+    """Which cells of the floor hold anything up to ``height`` [m] above what one drives on: what a robot that tall bumps into.
+
+    Ramps and platforms with a ramp are driven on (``drivable.py``), their steep edges are obstacles. What moves by script is left out.
+    Exact in the plane: a cell is occupied when any part of it is. Raises BadInput for a mesh that cannot be read.
+    """
+    plan = _empty_plan(world, resolution)
+    parts = still(solids(world))
+    ground = drivable(parts, *plan.axes())
+    bulk = _chosen(parts, ~ground.surface)
+    cells = ground.cliffs(resolution) | plan.under(footprint(bulk, GRAZE, height)) & (ground.height <= GRAZE)
+    for low in np.unique(np.floor(ground.height[ground.height > GRAZE] / BAND) * BAND):
+        here = (ground.height > max(low, GRAZE)) & (ground.height <= low + BAND)
+        cells |= here & plan.under(footprint(bulk, low + BAND + GRAZE, low + BAND + height))
+    return replace(plan, cells=cells)
+
+
+def floor_segments(world: WorldFile, height: float) -> Floats:
+    """(n, 2, 2) ends [m, world] of the outlines of all that stands still at ``height`` [m]; outlines may lie over each other."""
+    return segments(footprint(still(solids(world)), height - GRAZE, height + GRAZE))
+
+
+def clearance(world: WorldFile, x: float, y: float, heights: tuple[float, float] = (GRAZE, 0.2)) -> float:
+    """Distance [m] from a point to the nearest solid between two ``heights`` [m] above the ground there; 0 inside one.
+
+    What one drives on is no solid in this; what moves counts where it is at the beginning.
+    """
+    every = joined([primitives(solid) for solid in solids(world)])
+    plan = _empty_plan(world, COARSE)
+    ground = drivable(every, *plan.axes())
+    row, column = plan.cell(x, y)
+    inside = 0 <= row < plan.cells.shape[0] and 0 <= column < plan.cells.shape[1]
+    floor = float(ground.height[row, column]) if inside else 0.0
+    return distance(footprint(_chosen(every, ~ground.surface), floor + heights[0], floor + heights[1]), x, y)
+
+
+def distance(shadows: Footprint, x: float, y: float) -> float:
+    """[m] From a point to the nearest shadow, 0 inside one, inf when there is none."""
+    nearest = [max(float(np.hypot(x - cx, y - cy)) - radius, 0.0) for cx, cy, radius in shadows.discs]
+    return min([*nearest, *(_to_outline(outline, np.array((x, y))) for outline in shadows.outlines)], default=np.inf)
+
+
+def _to_outline(outline: Floats, point: Floats) -> float:
+    """[m] From a point to a convex outline (k, 2), anticlockwise."""
+    sides = np.roll(outline, -1, axis=0) - outline
+    away = point - outline
+    if len(outline) > 2 and (sides[:, 0] * away[:, 1] - sides[:, 1] * away[:, 0] >= 0).all():
+        return 0.0
+    share = np.clip((away * sides).sum(axis=1) / np.maximum((sides * sides).sum(axis=1), 1e-18), 0.0, 1.0)
+    return float(np.linalg.norm(away - share[:, np.newaxis] * sides, axis=1).min())
+
+
+def _empty_plan(world: WorldFile, resolution: float) -> FloorPlan:
     x_min, y_min, x_max, y_max = world.floor
     rows, columns = (int(np.ceil((high - low) / resolution - 1e-9)) for low, high in ((y_min, y_max), (x_min, x_max)))
-    empty = FloorPlan(np.zeros((rows, columns), dtype=np.bool_), resolution, x_min, y_min)
-    solids = slice_between(world, 0.001, height)
-    cells = _distance(solids, *empty.centres()) <= resolution / 2
-    return FloorPlan(cells, resolution, x_min, y_min)
+    return FloorPlan(np.zeros((rows, columns), dtype=np.bool_), resolution, x_min, y_min)
 
 
-def _distance(solids: Slice, x: Floats, y: Floats) -> Floats:
-    """Distance [m] from each point to the nearest solid, 0 inside."""
-    nearest = np.full(x.shape, np.inf)
-    for cx, cy, half_x, half_y, c, s in solids.boxes:
-        along = np.abs(c * (x - cx) + s * (y - cy)) - half_x
-        across = np.abs(c * (y - cy) - s * (x - cx)) - half_y
-        nearest = np.minimum(nearest, np.hypot(np.maximum(along, 0.0), np.maximum(across, 0.0)))
-    for cx, cy, radius in solids.circles:
-        nearest = np.minimum(nearest, np.maximum(np.hypot(x - cx, y - cy) - radius, 0.0))
-    return nearest
-
-
-def clearance(world: WorldFile, x: float, y: float, heights: tuple[float, float] = (0.001, 0.2)) -> float:
-    """Distance [m] from a point to the nearest solid between two ``heights`` [m, world]; 0 inside one."""
-    return float(_distance(slice_between(world, *heights), np.array([x]), np.array([y]))[0])
+def _chosen(parts: Solids, which: Mask) -> Solids:
+    return Solids(parts.kinds[which], parts.rows[which], parts.low[which], parts.high[which])
 
 
 def reachable_floor(plan: FloorPlan, x: float, y: float, radius: float) -> Mask:
