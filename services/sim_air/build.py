@@ -1,5 +1,7 @@
 """Makes the air simulator from a mission: all its fixed-wing vehicles in one service."""
 
+from pathlib import Path
+
 import numpy as np
 
 from services.sim_air.actuators import Actuators
@@ -10,6 +12,7 @@ from uvf.maths.geodesy import LocalTangent
 from uvf.runtime.params import BadInput, Place
 from uvf.runtime.site import AIRCRAFT_RADIUS, Host, Member, Site
 from uvf.runtime.vehicle_file import AirBody
+from uvf.runtime.vehicle_layers import folders_of, holding
 from uvf.runtime.world_geometry import clearance
 
 
@@ -34,13 +37,18 @@ def _check(site: Site, member: Member) -> None:
     if room < AIRCRAFT_RADIUS:
         where = Place(str(site.mission_path)).at("vehicles", member.name, "start")
         raise BadInput(f"{where}: {room:.2f} m from a wall or another solid at {start.z:g} m; move it or begin higher")
-    Airframe(member.folder, _body(member), _tangent(site))
+    Airframe(_model_folder(member), _body(member), _tangent(site))
 
 
 def _body(member: Member) -> AirBody:
     body = member.file.air
     assert body is not None
     return body
+
+
+def _model_folder(member: Member) -> Path:
+    """A variant flies the model of the vehicle it is made of unless it has one itself."""
+    return holding(folders_of(member.folder), _body(member).model)
 
 
 def _tangent(site: Site) -> LocalTangent:
@@ -55,7 +63,7 @@ def _make(site: Site) -> SimAir:
 def _aircraft(site: Site, member: Member) -> Aircraft:
     """One aircraft in trimmed level flight at its start. Raises BadInput."""
     body, tangent, begin = _body(member), _tangent(site), member.entry.start
-    airframe = Airframe(member.folder, body, tangent)
+    airframe = Airframe(_model_folder(member), body, tangent)
     position = np.array((begin.x, begin.y, begin.z))
     trim = airframe.start(Start(position, begin.yaw, begin.speed or body.trim_speed, np.array(site.world.wind.steady)))
     at_start = Controls(trim.aileron, trim.elevator, trim.rudder, trim.throttle)

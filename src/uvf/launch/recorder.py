@@ -17,10 +17,12 @@ from uvf.runtime.bus import Sample
 from uvf.runtime.params import BadInput
 from uvf.runtime.recording import DEPTH, Recorder
 from uvf.runtime.site import Site, load_site
+from uvf.runtime.vehicle_layers import folders_of
 from uvf.runtime.zenoh_bus import ZenohBus
 
 FLUSH_PERIOD = 1.0  # s
 ROTATE_BYTES = 500_000_000
+COMMON = "common"  # in vehicles/: parts that several vehicles include
 ROOM = 100_000_000  # bytes free on the disk, from which recording is taken up again
 NICE = 10  # as in catalogue.Kind: writing can wait
 LOOK = 0.05  # s
@@ -183,7 +185,8 @@ def attachments(site: Site) -> dict[str, bytes]:
     """The files that say what was run, mission, world and vehicles, by their places below the project's folder."""
     files = {f"missions/{site.mission_path.name}": site.mission_path}
     folders = {f"worlds/{site.mission.world}": site.world_folder}
-    folders |= {f"vehicles/{member.entry.model}": member.folder for member in site.members.values()}
+    vehicles = {folder for member in site.members.values() for folder in (*folders_of(member.folder), member.folder.parent / COMMON)}
+    folders |= {f"vehicles/{folder.name}": folder for folder in sorted(vehicles)}
     for name, folder in folders.items():
         files |= {f"{name}/{path.relative_to(folder)}": path for path in sorted(folder.rglob("*")) if path.is_file()}
     return {name: path.read_bytes() for name, path in files.items()}

@@ -53,11 +53,17 @@ _Loader.add_implicit_resolver("tag:yaml.org,2002:float", re.compile(r"[-+]?(\d+(
 
 def load_yaml(path: Path, type_: type[T], fill: Callable[[Any, Place], Any] | None = None) -> T:
     """Reads a YAML file into a msgspec Struct; ``fill`` puts in beforehand what the file only refers to. Raises BadInput."""
+    data = read_yaml(path)
+    try:
+        return convert(fill(data, Place(str(path))) if fill else data, type_, str(path))
+    except RecursionError as error:
+        raise BadInput(f"{path}: nested too deeply") from error
+
+
+def read_yaml(path: Path) -> Any:
+    """The plain data of a YAML file. Raises BadInput."""
     try:
         data = yaml.load(path.read_text(encoding="utf-8"), _Loader)
-        if data is None:
-            raise BadInput(f"{path}: the file is empty")
-        return convert(fill(data, Place(str(path))) if fill else data, type_, str(path))
     except OSError as error:
         raise BadInput(f"{path}: cannot be read: {error.strerror}") from error
     except UnicodeDecodeError as error:
@@ -70,6 +76,9 @@ def load_yaml(path: Path, type_: type[T], fill: Callable[[Any, Place], Any] | No
         raise BadInput(f"{place}: not valid YAML: {_one_line(getattr(error, 'problem', None) or error)}") from error
     except (ValueError, TypeError, AttributeError) as error:  # what PyYAML lets through: 2020-13-45, !!int x, !!timestamp x
         raise BadInput(f"{path}: not valid YAML: {_one_line(error)}") from error
+    if data is None:
+        raise BadInput(f"{path}: the file is empty")
+    return data
 
 
 def convert(data: Any, type_: type[T], file: str, keys: tuple[Key, ...] = ()) -> T:

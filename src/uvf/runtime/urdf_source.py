@@ -1,5 +1,6 @@
 """The XML of a URDF: xacro expanded, every link and joint knowing its line, files of packages found."""
 
+import contextlib
 import io
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager, redirect_stderr
@@ -26,7 +27,7 @@ def read_xml(path: Path, arguments: Mapping[str, str] | None = None, note: Note 
 
     note: is told of included files that are not there, which then are left out; without it they are an error. Raises BadInput.
     """
-    if not path.is_file():
+    if not _is_file(path):
         known = (p.name for pattern in ("*.urdf", "*.xacro") for p in path.parent.glob(pattern))
         raise BadInput(f"{path}: no such file; {nearest(path.name, known)}")
     root = _parsed(path)
@@ -112,8 +113,15 @@ def find_mesh(path: Path, name: str) -> Path | None:
         package, _, inside = rest.partition("/")
         folder = package_folder(path, package)
         tries = [*([folder / inside] if folder else []), *(parent / inside for parent in _near(path))]
-    found = next((p for p in tries if p.is_file()), None)
+    found = next((p for p in tries if _is_file(p)), None)
     return found or _beside(path, Path(rest).name)
+
+
+def _is_file(path: Path) -> bool:
+    """False also for a name that the system cannot take."""
+    with contextlib.suppress(OSError, ValueError):
+        return path.is_file()
+    return False
 
 
 def _near(path: Path) -> list[Path]:

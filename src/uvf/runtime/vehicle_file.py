@@ -13,7 +13,7 @@ from uvf.maths.instruments import InertialUnit, Receiver
 from uvf.maths.sampling import Dropout, Line
 from uvf.maths.sensing import Errors
 from uvf.runtime.params import BadInput, Place, load_yaml, nearest
-from uvf.runtime.sensor_presets import fill_presets
+from uvf.runtime.vehicle_layers import file_of, fill_vehicle, folders_of
 
 Positive = Annotated[float, Meta(ge=1e-9, le=1e9)]
 NotNegative = Annotated[float, Meta(ge=0, le=1e9)]
@@ -28,10 +28,11 @@ Name = Annotated[str, Meta(pattern=r"^[A-Za-z0-9_][A-Za-z0-9_./-]*$", max_length
 
 
 class Mount(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """Pose of a sensor in base_link (FLU)."""
+    """Pose of a sensor in base_link (FLU). Where a file names a URDF's ``link`` instead, it is that link's."""
 
     xyz: Triple = (0.0, 0.0, 0.0)  # m
     rpy: Triple = (0.0, 0.0, 0.0)  # rad
+    link: Name | None = None
 
 
 class Delivery(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -260,7 +261,10 @@ class AirBody(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class VehicleFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """The whole of vehicle.yaml. ``params``: service name -> that service's parameters."""
+    """The whole of vehicle.yaml. ``params``: service name -> that service's parameters.
+
+    variant_of: another vehicle, whose file holds what this one does not say.
+    """
 
     kind: Literal["ground", "fixed_wing"]
     about: str
@@ -268,6 +272,7 @@ class VehicleFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     ground: GroundBody | None = None
     air: AirBody | None = None
     params: dict[str, dict[str, Any]] = {}
+    variant_of: Name | None = None
 
 
 def load_vehicle(vehicles: Path, name: str) -> VehicleFile:
@@ -276,7 +281,7 @@ def load_vehicle(vehicles: Path, name: str) -> VehicleFile:
     if not (folder / "vehicle.yaml").is_file():
         known = [p.parent.name for p in vehicles.glob("*/vehicle.yaml")]
         raise BadInput(f"no vehicle '{name}' in {vehicles}; {nearest(name, known)}")
-    vehicle = load_yaml(folder / "vehicle.yaml", VehicleFile, fill_presets)
+    vehicle = load_yaml(folder / "vehicle.yaml", VehicleFile, fill_vehicle)
     place = Place(str(folder / "vehicle.yaml"))
     section = "ground" if vehicle.kind == "ground" else "air"
     if getattr(vehicle, section) is None:
@@ -289,7 +294,17 @@ def load_vehicle(vehicles: Path, name: str) -> VehicleFile:
         raise BadInput(f"{place.at('ground', 'right_joint')}: the left wheel's joint too; name the right one")
     if air is not None and air.battery is not None and air.battery.empty >= air.battery.full:
         raise BadInput(f"{place.at('air', 'battery')}: empty at {air.battery.empty:g} V, full at {air.battery.full:g} V; exchange them")
-    return vehicle
+    return vehicle if vehicle.variant_of is None else _with_files(vehicle, folders_of(folder))
+
+
+def _with_files(vehicle: VehicleFile, folders: list[Path]) -> VehicleFile:
+    """A variant's files where they are: beside it or in the folder of the vehicle it is a variant of."""
+    ground, air = vehicle.ground, vehicle.air
+    if ground is not None:
+        ground = msgspec.structs.replace(ground, urdf=file_of(folders, ground.urdf))
+    if air is not None and air.mesh is not None:
+        air = msgspec.structs.replace(air, mesh=file_of(folders, air.mesh))
+    return msgspec.structs.replace(vehicle, ground=ground, air=air)
 
 
 def _check_lidar(lidar: Lidar | None, place: Place) -> None:
