@@ -17,6 +17,7 @@ ENGINES = {
     "mcap": ["src/uvf/runtime/recording.py"],
     "pybullet": ["services/sim_camera/renderer.py", "services/sim_ground/world.py"],
     "jsbsim": ["services/sim_air/airframe.py"],
+    "sdl2": ["src/uvf/launch/teleop_gamepad.py"],
 }
 
 

@@ -142,6 +142,18 @@ def replay(
 
 
 @app.command()
+def teleop(
+    vehicles: Annotated[list[str] | None, typer.Argument(help="Ground vehicles to drive together; the only one by default.")] = None,
+    mission: MissionOption = DEMO,
+) -> None:
+    """Drive ground vehicles from this terminal's keyboard, or with a gamepad."""
+    from uvf.launch.teleop import teleop as run_teleop
+
+    with bad_input_is_one_line():
+        run_teleop(vehicles or [], mission, say)
+
+
+@app.command()
 def check(mission: MissionArgument = DEMO) -> None:
     """Check the wiring of a mission: writers, readers, types, rates, compose file."""
     from uvf.launch.checks import check_mission

@@ -1,0 +1,132 @@
+"""What an operator wants of the vehicles: directions from keys or a gamepad, scaled, for as long as a key or the dead-man is held."""
+
+from collections.abc import Sequence
+from math import inf
+from typing import NamedTuple
+
+FIRST_HOLD = 0.5  # s a key counts after it is pressed: keyboards wait about that long before they repeat it
+REPEAT_HOLD = 0.2  # s it counts once it repeats: its being let go is seen that fast
+ZEROS = 0.5  # s of standing still that are sent after the last motion, then silence
+START_LINEAR, START_ANGULAR = 0.5, 0.5  # m/s, rad/s
+STEP = 1.1  # of the scales
+LEAST = 0.02  # m/s and rad/s, the smallest scales
+DEAD_ZONE = 0.1  # of a stick's way: sticks seldom come to rest at zero
+
+DIRECTIONS = {
+    "w": (1.0, 0.0),
+    "up": (1.0, 0.0),
+    "s": (-1.0, 0.0),
+    "down": (-1.0, 0.0),
+    "a": (0.0, 1.0),
+    "left": (0.0, 1.0),
+    "d": (0.0, -1.0),
+    "right": (0.0, -1.0),
+    "q": (1.0, 1.0),
+    "e": (1.0, -1.0),
+    "z": (-1.0, -1.0),
+    "c": (-1.0, 1.0),
+}
+"""Key -> parts of the linear and the angular scale; the lower row drives the curves of the upper one backwards."""
+SCALINGS = {"r": (STEP, 1.0), "f": (1 / STEP, 1.0), "t": (1.0, STEP), "g": (1.0, 1 / STEP)}
+"""Key -> factors of the linear and the angular scale."""
+
+
+class Pad(NamedTuple):
+    """A gamepad's state. forward, left: -1..1 of the stick; steps: -1, 0 or 1, counted when they change."""
+
+    forward: float = 0.0
+    left: float = 0.0
+    dead_man: bool = False
+    stop: bool = False
+    linear_step: int = 0
+    angular_step: int = 0
+
+
+class Command(NamedTuple):
+    linear: float  # m/s
+    angular: float  # rad/s
+
+
+STILL = Command(0.0, 0.0)
+
+
+class Hand:
+    """One operator at several vehicles. Times [s] come from one clock that never goes back."""
+
+    def __init__(self, vehicles: Sequence[str], most: Command) -> None:
+        """most: what the slowest of the vehicles can do."""
+        self.vehicles = tuple(vehicles)
+        self.active = set(vehicles)
+        self.scale = Command(min(START_LINEAR, most.linear), min(START_ANGULAR, most.angular))
+        self._most = most
+        self._direction = (0.0, 0.0)
+        self._pressed_at = -inf
+        self._until = -inf
+        self._pad = Pad()
+        self._silent_from = dict.fromkeys(vehicles, -inf)
+
+    def key(self, t: float, name: str) -> None:
+        """One press, or one repetition, of a key; keys without a meaning change nothing."""
+        if name in DIRECTIONS:
+            self._press(t, DIRECTIONS[name])
+        elif name in SCALINGS:
+            self._rescale(*SCALINGS[name])
+        elif name == " ":
+            self.stop(t)
+        elif name.isdecimal() and 1 <= int(name) <= len(self.vehicles):
+            self.active ^= {self.vehicles[int(name) - 1]}
+
+    def pad(self, t: float, pad: Pad) -> None:
+        """The gamepad as it is now; it drives while its dead-man button is held, and stops when that is let go."""
+        before, self._pad = self._pad, pad
+        self._rescale(
+            STEP**pad.linear_step if pad.linear_step != before.linear_step else 1.0,
+            STEP**pad.angular_step if pad.angular_step != before.angular_step else 1.0,
+        )
+        if pad.stop or (before.dead_man and not pad.dead_man):
+            self.stop(t)
+        elif pad.dead_man:
+            self._direction = (_beyond_dead_zone(pad.forward), _beyond_dead_zone(pad.left))
+            self._until = t + REPEAT_HOLD
+            self._hold(t)
+
+    def stop(self, t: float) -> None:
+        """Stands still, and says so for a while to all that are active."""
+        self._until = -inf
+        self._hold(t)
+
+    def wanted(self, t: float) -> Command:
+        """What the active vehicles shall do."""
+        if t >= self._until:
+            return STILL
+        forward, left = self._direction
+        return Command(forward * self.scale.linear, left * self.scale.angular)
+
+    def commands(self, t: float) -> dict[str, Command]:
+        """What is to be sent now; nothing to a vehicle that has been told long enough to stand."""
+        wanted = self.wanted(t)
+        found = {name: wanted if name in self.active else STILL for name in self.vehicles}
+        self._silent_from |= {name: t + ZEROS for name, command in found.items() if command != STILL}
+        return {name: command for name, command in found.items() if t < self._silent_from[name]}
+
+    def _hold(self, t: float) -> None:
+        """Keeps the active vehicles for a while, though they stand."""
+        self._silent_from |= dict.fromkeys(self.active, t + ZEROS)
+
+    def _press(self, t: float, direction: tuple[float, float]) -> None:
+        repeats = direction == self._direction and t - self._pressed_at <= REPEAT_HOLD
+        self._direction, self._pressed_at = direction, t
+        self._until = t + (REPEAT_HOLD if repeats else FIRST_HOLD)
+
+    def _rescale(self, linear: float, angular: float) -> None:
+        scale, most = self.scale, self._most
+        self.scale = Command(_within(scale.linear * linear, most.linear), _within(scale.angular * angular, most.angular))
+
+
+def _within(scale: float, most: float) -> float:
+    return min(max(scale, LEAST), most)
+
+
+def _beyond_dead_zone(way: float) -> float:
+    """0 within the dead zone, from there on rising evenly to 1."""
+    return max(abs(way) - DEAD_ZONE, 0.0) / (1 - DEAD_ZONE) * (1.0 if way > 0 else -1.0)
