@@ -1,6 +1,5 @@
 """``uvf teleop`` in a terminal of its own, on a bus where the vehicle is only listened for."""
 
-import fcntl
 import os
 import pty
 import subprocess
@@ -34,14 +33,12 @@ class Session:
         self.ours, self.its = pty.openpty()
         self.settings = termios.tcgetattr(self.its)
         self.process = subprocess.Popen(
-            [sys.executable, "-m", "uvf.launch.cli", "teleop", "burger"],
+            ["setsid", "--ctty", sys.executable, "-m", "uvf.launch.cli", "teleop", "burger"],
             stdin=self.its,
             stdout=self.its,
             stderr=self.its,
             cwd=ROOT,
             env={**os.environ, "UVF_ROUTER": endpoint, "TERM": "xterm"},
-            start_new_session=True,
-            preexec_fn=lambda: fcntl.ioctl(0, termios.TIOCSCTTY, 0),
         )
 
     def _answer(self, request, query):

@@ -1,5 +1,7 @@
 """A drive from the first key to the last zero, with a keyboard, vehicles and a clock of a few lines each."""
 
+from contextlib import suppress
+
 import pytest
 
 from uvf.launch.teleop import drive, status_line, wanted_vehicles
@@ -66,10 +68,8 @@ def run(script, *names, pad=(), refused=""):
     clock = Clock()
     vehicles, console = Vehicles(clock, refused), Console(clock, script)
     hand = Hand(names or ("one",), Command(1.0, 1.0))
-    try:
+    with suppress(TerminalClosed):
         drive(hand, vehicles, console, Stick(clock, pad), clock)
-    except TerminalClosed:
-        pass
     return vehicles, console
 
 
