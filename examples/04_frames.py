@@ -1,0 +1,46 @@
+"""Frames: a service asks where its lidar was in the world when a scan was taken.
+
+    .venv/bin/python examples/04_frames.py
+
+Simulator, odometry and mapping of the demo's rover run in lockstep beside it; nobody hands transforms around by hand.
+"""
+
+import numpy as np
+
+from schemas import topics
+from schemas.convert import scan_points, seconds, stamp
+from schemas.messages import Event, LaserScan
+from uvf.launch import catalogue
+from uvf.maths.transforms import apply
+from uvf.runtime.frames import FrameBuffer, FrameError
+from uvf.runtime.lockstep import Lockstep
+from uvf.runtime.service import Outputs, Service, frames
+from uvf.runtime.site import ROOT, Host, load_site
+
+
+class Nearest(Service):
+    """Says where in the world the nearest thing stands, once a second."""
+
+    name = "nearest"
+    hz = 1.0
+    inputs = {"scan": topics.SCAN, "frames": frames()}
+    outputs = {"events": topics.EVENTS.by("nearest")}
+
+    def step(self, t: float, scan: LaserScan, frames: FrameBuffer) -> Outputs:
+        try:
+            world_from_lidar = frames.lookup("world", scan.frame_id, seconds(scan.timestamp))
+        except FrameError as error:  # a frame is not known yet, or not yet at that time
+            return {"events": Event(timestamp=stamp(t), text=str(error), source="nearest")}
+        flat = scan_points(scan)
+        nearest = flat[np.hypot(*flat.T).argmin()]
+        x, y, z = apply(world_from_lidar, np.array([(*nearest, 0.0)]))[0]
+        return {"events": Event(timestamp=stamp(t), text=f"nearest thing at ({x:.2f}, {y:.2f}, {z:.2f}) m", source="nearest")}
+
+
+site = load_site(ROOT / "missions" / "demo.yaml")
+hosts = catalogue.hosts(site, [catalogue.kind("sim_ground"), catalogue.kind("slam")])
+lockstep = Lockstep([*hosts, Host(Nearest, Nearest, "burger")])
+events = topics.EVENTS.by("nearest")
+lockstep.bus.subscribe(events.at("burger"), events.qos, lambda s: print(Event.FromString(s.payload).text))
+lockstep.run(until=4.0)
+lockstep.close()
