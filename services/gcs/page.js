@@ -16,12 +16,15 @@
   document.addEventListener('keydown', e => { if (e.key === 'Enter' || e.key === ' ') press(e); });
   const bar = document.createElement('div');
   bar.id = 'gcs-bar'; bar.setAttribute('role', 'status'); document.body.append(bar);
+  let shape = '', told = 0;
   let beat = '', at = performance.now(), ticked = at;
   setInterval(() => {
     const canvas = window.__viserMutable && window.__viserMutable.canvas;
     if (canvas) {
       const box = canvas.getBoundingClientRect(), root = document.documentElement.style;
       root.setProperty('--gcs-left', box.left + 'px'); root.setProperty('--gcs-width', box.width + 'px');
+      const seen = (box.width / Math.max(box.height, 1)).toFixed(3), time = performance.now();
+      if (seen !== shape || time - told > 2000) { shape = seen; told = time; send(JSON.stringify(['shape:' + shape, Date.now()])); }
     }
     const source = document.getElementById('gcs-bar-source');
     const now = performance.now();

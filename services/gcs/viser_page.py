@@ -22,7 +22,7 @@ from services.gcs.drawing import Button, Camera, Picture
 from services.gcs.guard import Guard
 from services.gcs.state import LAYERS
 from services.gcs.viser_scene import ViserScene
-from services.gcs.viser_script import bar_source, padded, script, selected_in
+from services.gcs.viser_script import bar_source, padded, script, selected_in, shape_in
 from services.gcs.viser_views import Views, ViserViews
 from uvf.runtime.address import Address, claim
 from uvf.runtime.params import BadInput
@@ -47,7 +47,8 @@ class ViserPage:
         self._beat = 0.0
         self._scene = ViserScene(self._server, self._on_pick)
         self._surroundings(next(iter(views(1.0).values())))
-        self._fleet_panel(ViserViews(self._server, views), layers)
+        self._views = ViserViews(self._server, views)
+        self._fleet_panel(layers)
         self._vehicle_panel()
         self._listen()
 
@@ -76,7 +77,7 @@ class ViserPage:
         scene.add_light_ambient("/world/ambient", intensity=0.7)
         scene.add_light_hemisphere("/world/sky", sky_color=(235, 242, 255), ground_color=(120, 110, 100), intensity=1.6)
 
-    def _fleet_panel(self, views: ViserViews, layers: set[str]) -> None:
+    def _fleet_panel(self, layers: set[str]) -> None:
         gui = self._server.gui
         gui.main_panel.dock_left()
         gui.main_panel.set_width(FLEET_WIDTH)
@@ -84,7 +85,7 @@ class ViserPage:
         self._html["stop"] = gui.add_html("", order=1.5)
         self._html["fleet"] = gui.add_html("", order=2)
         self._html["orders"] = gui.add_html("", order=50)
-        gui.add_button_group("View", views.names, order=100).on_click(views.choose)
+        gui.add_button_group("View", self._views.names, order=100).on_click(self._views.choose)
         self._html["overview"] = gui.add_html("", order=150)
         with gui.add_folder("Layers", order=200, expand_by_default=False):
             for name in LAYERS:
@@ -110,8 +111,16 @@ class ViserPage:
     def _listen(self) -> None:
         self._server.scene.on_click()(self._on_click)  # type: ignore[arg-type]
         bridge = self._server.gui.add_text("page", "", visible=False)
-        bridge.on_update(self._asking(lambda event: Select(selected_in(event.target.value))))
+        bridge.on_update(self._on_word)
         self._server._websock_server.queue_message(_messages.RunJavascriptMessage(source=script(bridge._impl.uuid)))
+
+    async def _on_word(self, event: Any) -> None:
+        """What the page's own script says."""
+        shape = shape_in(event.target.value)
+        if shape is None:
+            self._actions.put(Select(selected_in(event.target.value)))
+        elif event.client is not None:
+            self._views.reshape(event.client, shape)
 
     def _asking(self, action: Callable[[Any], Action]) -> Callable[[Any], Coroutine[Any, Any, None]]:
         """A callback that queues an action, found when it is called: the same button may by then mean another.

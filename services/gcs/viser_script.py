@@ -28,12 +28,28 @@ def padded(content: str) -> str:
     return f"<div class='g-pad'>{content}</div>"
 
 
-def selected_in(value: str) -> str:
-    """The vehicle that a card's message names; empty when it is no such message."""
+def said_in(value: str) -> tuple[str, str]:
+    """(what, about what) of a message of the page, as in ``select:burger`` or ``shape:1.25``; empty when it is none."""
     try:
         said = json.loads(value)
     except ValueError:
-        return ""
-    if not isinstance(said, list) or not said or not isinstance(said[0], str) or not said[0].startswith("select:"):
-        return ""
-    return said[0].removeprefix("select:")
+        return "", ""
+    if not isinstance(said, list) or not said or not isinstance(said[0], str):
+        return "", ""
+    what, _, about = said[0].partition(":")
+    return what, about
+
+
+def selected_in(value: str) -> str:
+    """The vehicle that a card's message names; empty when it is no such message."""
+    what, vehicle = said_in(value)
+    return vehicle if what == "select" else ""
+
+
+def shape_in(value: str) -> float | None:
+    """Width by height of the page's scene, where its message tells that."""
+    what, shape = said_in(value)
+    try:
+        return float(shape) if what == "shape" and 0.05 < float(shape) < 20.0 else None
+    except ValueError:
+        return None

@@ -21,7 +21,6 @@ class Shown(NamedTuple):
     """What one page was last told to show; reached: it has reported to be there."""
 
     name: str
-    aspect: float
     view: Camera
     reached: bool = False
 
@@ -32,6 +31,7 @@ class ViserViews:
     def __init__(self, server: viser.ViserServer, views: Views) -> None:
         self._views = views
         self._chosen: dict[int, Shown] = {}
+        self._shapes: dict[int, float] = {}
         self._first = next(iter(views(1.0)))
         self.names = (*views(1.0), FOLLOW)
         server.on_client_connect(self._begin)
@@ -43,6 +43,7 @@ class ViserViews:
 
     async def _end(self, client: viser.ClientHandle) -> None:
         self._chosen.pop(client.client_id, None)
+        self._shapes.pop(client.client_id, None)
 
     async def choose(self, event: Any) -> None:
         """A click on the row of views: it counts for the page that asked alone."""
@@ -59,16 +60,21 @@ class ViserViews:
         if shown is None:
             return
         there = np.allclose(camera.position, shown.view.position, rtol=0, atol=NEAR)
-        if shown.reached and not there:
-            del self._chosen[camera.client.client_id]
-        elif abs(camera.aspect / shown.aspect - 1) > SAME_SHAPE:
-            self._look(camera.client, shown.name)
-        elif there and not shown.reached:
+        if there:
             self._chosen[camera.client.client_id] = shown._replace(reached=True)
+        elif shown.reached:
+            del self._chosen[camera.client.client_id]
+
+    def reshape(self, client: Any, shape: float) -> None:
+        """A page's scene is now ``shape`` wide by high; viser itself does not always tell."""
+        before = self._shapes.get(client.client_id, client.camera.aspect)
+        shown = self._chosen.get(client.client_id)
+        self._shapes[client.client_id] = shape
+        if shown is not None and abs(shape / before - 1) > SAME_SHAPE:
+            self._look(client, shown.name)
 
     def _look(self, client: Any, name: str) -> None:
-        aspect = client.camera.aspect
-        view = self._views(aspect)[name]
-        self._chosen[client.client_id] = Shown(name, aspect, view)
+        view = self._views(self._shapes.get(client.client_id, client.camera.aspect))[name]
+        self._chosen[client.client_id] = Shown(name, view)
         with client.atomic():
             client.camera.position, client.camera.look_at = view.position, view.look_at

@@ -113,8 +113,10 @@ def test_nothing_covers_the_status_at_any_common_width(page, station, width):
     page.set_viewport_size({"width": 1200, "height": 700})
 
 
-def test_the_view_from_above_holds_the_whole_house(page, station):
-    page.get_by_role("button", name="Top", exact=True).click()
+@pytest.mark.parametrize(("view", "width"), [("Scene", 1440), ("Top", 1000), ("Top", 1440)])
+def test_a_view_holds_the_whole_house_in_a_window_that_changes_its_shape(page, station, view, width):
+    page.get_by_role("button", name=view, exact=True).click()
+    page.set_viewport_size({"width": width, "height": 700})
 
     def inside():
         left, top, right, bottom = page.evaluate(BOXES)[2]
@@ -122,6 +124,7 @@ def test_the_view_from_above_holds_the_whole_house(page, station):
         return all(left < x < right and top < y < bottom for x, y in corners)
 
     assert until(page, inside)
+    page.set_viewport_size({"width": 1200, "height": 700})
     page.get_by_role("button", name="Scene", exact=True).click()
 
 

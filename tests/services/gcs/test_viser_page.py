@@ -15,7 +15,7 @@ from services.gcs.commands import SetMode, StopAll
 from services.gcs.drawing import Button, Picture, Points, Polyline
 from services.gcs.state import Model, Placed
 from services.gcs.viser_page import ViserPage
-from services.gcs.viser_script import selected_in
+from services.gcs.viser_script import selected_in, shape_in
 from tests.services.gcs.fakes import Station
 from tests.services.gcs.scripted import UAV, demo_site
 from tests.services.gcs.wire import connect, free_port, join
@@ -159,3 +159,11 @@ def test_a_closed_page_frees_its_port_for_the_next():
 )
 def test_a_card_can_only_select(said, vehicle):
     assert selected_in(said) == vehicle
+
+
+@pytest.mark.parametrize(
+    ("said", "shape"),
+    [('["shape:0.87", 1]', 0.87), ('["shape:0", 1]', None), ('["shape:nan", 1]', None), ('["shape:x"]', None), ('["select:burger"]', None)],
+)
+def test_a_page_tells_the_shape_of_its_window(said, shape):
+    assert shape_in(said) == shape
