@@ -5,6 +5,8 @@ import pytest
 from schemas import topics
 from schemas.convert import seconds, stamp
 from schemas.messages import DriveCommand, FrameTransform, FrameTransforms, Imu, Vector3
+from tests.runtime.modes import RUNS, run_in
+from tests.runtime.toys import Cast
 from uvf.runtime.bus import LocalBus, Sample
 from uvf.runtime.frames import FrameError
 from uvf.runtime.lockstep import Lockstep
@@ -57,11 +59,21 @@ class Mover(Service):
 
     name = "mover"
     hz = 50.0
+    simulator = True
     outputs = {"moving": topics.TF_ODOM, "placed": topics.TF_STATIC}
 
     def step(self, t):
         lidar = FrameTransforms(transforms=[edge("alpha/base_footprint", "alpha/lidar", 0.5, t)])
         return {"moving": edge("alpha/odom", "alpha/base_footprint", t, t)} | ({"placed": lidar} if t < 0.03 else {})
+
+
+class Scene(Cast):
+    """One that moves and one that looks, each in a process."""
+
+    simulators = ("mover",)
+
+    def processes(self):
+        return {"mover": [self.host(Mover, "alpha")], "seeker": [self.host(Seeker, "alpha")]}
 
 
 def edge(parent, child, x, t=0.0):
@@ -116,6 +128,20 @@ def test_the_order_of_services_and_of_arrival_changes_nothing():
     for message in (said[3], said[1], said[2], said[0]):
         put(shells[1], topics.TF_ODOM, message, seconds(message.timestamp) + 1e-9)
     assert [step_at(shell, 1.0).newest for shell in shells] == [{1.0: 3.0}] * 2
+
+
+@pytest.fixture(scope="module")
+def in_one_process():
+    return run_in(RUNS["one process, lockstep"](Scene()), 2.0).toys.one("seeker.alpha")
+
+
+@pytest.mark.parametrize("mode", RUNS)
+def test_every_mode_hands_over_the_same_tree(mode, in_one_process):
+    seeker = run_in(RUNS[mode](Scene()), 2.0).toys.one("seeker.alpha")
+    assert "alpha/lidar" in seeker.known
+    if "lockstep" in mode:
+        assert (seeker.newest, seeker.refused) == (in_one_process.newest, in_one_process.refused)
+    assert len(seeker.newest) > 10 and all(newest < t for t, newest in seeker.newest.items())
 
 
 def test_frames_do_not_age():
