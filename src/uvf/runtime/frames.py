@@ -7,6 +7,7 @@ at which every edge on the way is known.
 
 from bisect import bisect_left
 from collections.abc import Iterator
+from functools import reduce
 
 import numpy as np
 from google.protobuf.message import Message
@@ -105,7 +106,8 @@ class FrameBuffer:
         t_ns = self._newest_common((*down, *up)) if t is None else round(t * NS)
         for child in (*down, *up):
             self._check_known(child, t_ns)
-        return compose(inverse(self._climb(down, t_ns)), self._climb(up, t_ns))
+        above_from_source = self._climb(up, t_ns)
+        return compose(inverse(self._climb(down, t_ns)), above_from_source) if down else above_from_source
 
     def _ways(self, target: str, source: str) -> tuple[list[str], list[str]]:
         """The frames from target and from source up to, but without, the nearest frame above both."""
@@ -152,7 +154,5 @@ class FrameBuffer:
 
     def _climb(self, way: list[str], t_ns: int) -> Transform:
         """From the first frame of a way to the parent of its last: ``above_from_first``."""
-        above_from_first = IDENTITY
-        for child in way:
-            above_from_first = compose(self._edges[child].at(t_ns), above_from_first)
-        return above_from_first
+        samples = [self._edges[child].at(t_ns) for child in way]
+        return reduce(lambda below, above: compose(above, below), samples) if samples else IDENTITY
