@@ -1,14 +1,13 @@
 """The ground simulator of a mission: one instance for all its ground vehicles."""
 
-import numpy as np
-
 from services.sim_ground.rig import STEP_HZ, Rig
 from services.sim_ground.service import SimGround
+from services.sim_ground.surroundings import Surroundings
 from services.sim_ground.world import BulletWorld, Placed
-from uvf.maths.raycast import cast
+from uvf.maths.raycast3 import warm_up
 from uvf.runtime.params import BadInput
 from uvf.runtime.site import Host, Member, Site
-from uvf.runtime.urdf_model import check_urdf, engine_urdf
+from uvf.runtime.urdf_model import check_urdf, engine_urdf, load_urdf
 from uvf.runtime.vehicle_file import GroundBody
 from uvf.runtime.world_geometry import clearance, solids
 
@@ -20,16 +19,17 @@ def build(site: Site) -> list[Host]:
         return []
     for name, body in bodies.items():
         _check(site, site.members[name], body)
-    cast(np.zeros(2), np.zeros(1), np.zeros((1, 6)), np.zeros((1, 3)))  # compiles the kernel before the clock runs
+    warm_up()
     return [Host(SimGround, lambda: _make(site, bodies), writes_for=tuple(bodies))]
 
 
 def _make(site: Site, bodies: dict[str, GroundBody]) -> SimGround:
     members = {name: site.members[name] for name in bodies}
     placed = {name: Placed(bodies[name], engine_urdf(m.folder / bodies[name].urdf), _start(m)) for name, m in members.items()}
-    rigs = {name: Rig(site, m, bodies[name]) for name, m in members.items()}
-    world = BulletWorld(solids(site.world, site.world_folder), placed)
-    return SimGround(world, rigs)
+    things = solids(site.world, site.world_folder)
+    surroundings = Surroundings(things, {name: load_urdf(m.folder / bodies[name].urdf) for name, m in members.items()})
+    rigs = {name: Rig(site, m, bodies[name], surroundings.still) for name, m in members.items()}
+    return SimGround(BulletWorld(things, placed), rigs, surroundings)
 
 
 def _start(member: Member) -> tuple[float, float, float]:

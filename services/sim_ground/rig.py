@@ -15,53 +15,49 @@ from services.sim_ground.imu import ImuModel
 from services.sim_ground.lidar import LidarModel
 from services.sim_ground.sonar import SonarModel
 from uvf.maths.geodesy import LocalTangent
-from uvf.maths.planar import Pose2
-from uvf.maths.rotations import to_euler
+from uvf.maths.raycast3 import Body, Scene
 from uvf.maths.sampling import Due, Line
 from uvf.runtime.link_frames import Links
 from uvf.runtime.service import Value
 from uvf.runtime.site import Member, Site
 from uvf.runtime.vehicle_file import Encoders, GnssSensor, GroundBody, ImuSensor, Lidar, Sampled, Sonar, line_of
-from uvf.runtime.world_geometry import slice_at
 
 Floats = NDArray[np.float64]
 
 STEP_HZ = 100.0
 
 
-class Scene(NamedTuple):
-    """What there is to measure: the body, (k, 3) x, y, radius [m] of the other vehicles, and all that is touched."""
+class Moment(NamedTuple):
+    """What there is to measure: the body, what moves about it, and all that it touches."""
 
     body: BodyState
-    others: Floats
+    others: list[Body]
     touches: list[Touch]
 
 
-Read = Callable[[float, Scene], Message]
+Read = Callable[[float, Moment], Message]
 
 
 class Fitted(NamedTuple):
-    """A sensor: how it reads the scene, and how its readings get out."""
+    """A sensor: how it reads the moment, and how its readings get out."""
 
     read: Read
     line: Line[Message]
 
-    def step(self, t: float, scene: Scene) -> Message | None:
+    def step(self, t: float, moment: Moment) -> Message | None:
         """The reading that arrives at the step at ``t`` [s], if any."""
-        return self.line.step(t, lambda: self.read(t, scene))
-
-
-def planar(body: BodyState) -> Pose2:
-    return Pose2(float(body.position[0]), float(body.position[1]), to_euler(body.world_from_body)[2])
+        return self.line.step(t, lambda: self.read(t, moment))
 
 
 class Rig:
     """Built once a vehicle; each sensor draws from generators of its own, so that none disturbs another."""
 
-    def __init__(self, site: Site, member: Member, ground: GroundBody) -> None:
+    def __init__(self, site: Site, member: Member, ground: GroundBody, scene: Scene) -> None:
+        """scene: what stands in the world."""
         self._links = Links(member.folder / ground.urdf, (ground.left_joint, ground.right_joint))
         self.ground = ground
         self._site = site
+        self._scene = scene
         self._member = member
         self._bumpers = member.file.sensors.bumpers
         self._touches: list[Touch] = []
@@ -87,25 +83,25 @@ class Rig:
         """What does not move on the vehicle, stamped ``t`` [s]."""
         return self._links.resting(self._member.name, self._member.file.sensors, t)
 
-    def read(self, t: float, scene: Scene) -> Mapping[str, Value]:
+    def read(self, t: float, moment: Moment) -> Mapping[str, Value]:
         """What arrives at the step at ``t`` [s], by output name.
 
         A touch counts until it has been told, so that a short one between two messages is not lost.
         """
-        self._touches += scene.touches
+        self._touches += moment.touches
         found: dict[str, Value] = {}
         for output, sensor in self._fitted.items():
-            if (message := sensor.step(t, scene)) is not None:
+            if (message := sensor.step(t, moment)) is not None:
                 found[output] = message
-        if heard := [message for sonar in self._sonars if (message := sonar.step(t, scene)) is not None]:
+        if heard := [message for sonar in self._sonars if (message := sonar.step(t, moment)) is not None]:
             found["sonar"] = heard
         if self._truth_due.at(t):
-            found["truth"] = readings.truth_message(t, scene.body)
+            found["truth"] = readings.truth_message(t, moment.body)
         if self._contact_due.at(t):
             found["contact"] = readings.contact_message(t, self._bumpers, self._touches)
             self._touches = []
         if self._joints_due.at(t):
-            found["joints"] = joints = readings.joints_message(t, self.ground, scene.body)
+            found["joints"] = joints = readings.joints_message(t, self.ground, moment.body)
             found["joint_frames"] = self._links.turned(self._member.name, joints)
         return found
 
@@ -120,21 +116,21 @@ class Rig:
 
     def _imu(self, imu: ImuSensor) -> Read:
         model = ImuModel(imu, np.array(self._site.world.magnetic_field), self._rng("imu"))
-        return lambda t, scene: readings.imu_message(self._frame(imu.frame), model.read(t, scene.body))
+        return lambda t, moment: readings.imu_message(self._frame(imu.frame), model.read(t, moment.body))
 
     def _lidar(self, lidar: Lidar) -> Read:
-        model = LidarModel(lidar, slice_at(self._site.world, lidar.mount.xyz[2]), self._rng("lidar"))
-        return lambda t, scene: readings.scan_message(t, self._frame(lidar.frame), lidar, model.scan(planar(scene.body), scene.others))
+        model = LidarModel(lidar, self._scene, self._rng("lidar"))
+        return lambda t, moment: readings.scan_message(t, self._frame(lidar.frame), lidar, model.scan(moment.body, moment.others))
 
     def _encoders(self, encoders: Encoders) -> Read:
-        return lambda t, scene: readings.wheels_message(t, encoders, scene.body)
+        return lambda t, moment: readings.wheels_message(t, encoders, moment.body)
 
     def _gnss(self, gnss: GnssSensor) -> Read:
         origin = self._site.world.origin
         tangent = LocalTangent.from_degrees(origin.latitude, origin.longitude, origin.altitude)
         receiver = gnss.receiver(tangent, self._rng("gnss"))
-        return lambda t, scene: readings.gnss_message(gnss, receiver.read(t, scene.body.position, scene.body.velocity))
+        return lambda t, moment: readings.gnss_message(gnss, receiver.read(t, moment.body.position, moment.body.velocity))
 
     def _sonar(self, sonar: Sonar) -> Read:
-        model = SonarModel(sonar, slice_at(self._site.world, sonar.mount.xyz[2]), self._rng("sonar", sonar.frame))
-        return lambda t, scene: readings.range_message(t, self._frame(sonar.frame), sonar, model.range(planar(scene.body), scene.others))
+        model = SonarModel(sonar, self._scene, self._rng("sonar", sonar.frame))
+        return lambda t, moment: readings.range_message(t, self._frame(sonar.frame), sonar, model.range(moment.body, moment.others))

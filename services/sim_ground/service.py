@@ -3,12 +3,11 @@
 from collections.abc import Mapping
 from typing import Protocol
 
-import numpy as np
-
 from schemas import topics
 from schemas.messages import WheelCommand
 from services.sim_ground.body import BodyState, Touch
-from services.sim_ground.rig import STEP_HZ, Rig, Scene
+from services.sim_ground.rig import STEP_HZ, Moment, Rig
+from services.sim_ground.surroundings import Surroundings
 from uvf.maths.kinematics import WheelSpeeds
 from uvf.runtime.service import Outputs, Service, Value, each_vehicle, optional
 
@@ -49,20 +48,20 @@ class SimGround(Service):
         "truth": topics.TRUTH,
     }
 
-    def __init__(self, world: GroundWorld, rigs: Mapping[str, Rig]) -> None:
+    def __init__(self, world: GroundWorld, rigs: Mapping[str, Rig], surroundings: Surroundings) -> None:
         self._world = world
+        self._surroundings = surroundings
         self._rigs = rigs
         self._told = False
 
     def step(self, t: float, commands: dict[str, WheelCommand]) -> Outputs:
         self._world.advance({name: WheelSpeeds(c.left, c.right) for name, c in commands.items()}, 1 / self.hz)
-        bodies = {name: self._world.state(name) for name in self._rigs}
+        states = {name: self._world.state(name) for name in self._rigs}
+        vehicles, moving = self._surroundings.bodies(states), self._surroundings.moving(t)
         outputs: dict[str, dict[str, Value]] = {}
         for name, rig in self._rigs.items():
-            others = [(*bodies[o].position[:2], self._rigs[o].ground.radius) for o in self._rigs if o != name]
-            circles = np.array(others, dtype=np.float64).reshape(-1, 3)
-            scene = Scene(bodies[name], circles, self._world.touches(name))
-            for output, read in rig.read(t, scene).items():
+            others = moving + [body for other, body in vehicles.items() if other != name]
+            for output, read in rig.read(t, Moment(states[name], others, self._world.touches(name))).items():
                 outputs.setdefault(output, {})[name] = read
         if not self._told:  # at the first step, which is not always step 1: a process may join a running clock
             outputs["frames"] = {name: rig.frames(t) for name, rig in self._rigs.items()}

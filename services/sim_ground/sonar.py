@@ -1,31 +1,30 @@
-"""A sonar: level rays in a fan at its height; the nearest thing that one of them meets answers for the whole cone."""
+"""A sonar: rays in a fan; the nearest thing that one of them meets answers for the whole cone."""
+
+from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
-from uvf.maths.planar import Pose2, compose
-from uvf.maths.raycast import cast
+from services.sim_ground.body import BodyState
+from services.sim_ground.lidar import Fan
+from uvf.maths.raycast3 import Body, Scene
 from uvf.maths.sensing import Channel, Errors
 from uvf.runtime.vehicle_file import Sonar
-from uvf.runtime.world_geometry import Slice
 
-Floats = NDArray[np.float64]
 SPACING = np.radians(1.5)  # at most, between rays: a leg of 3 cm is met within 1.1 m
 
 
 class SonarModel:
-    def __init__(self, sonar: Sonar, world: Slice, rng: np.random.Generator) -> None:
+    def __init__(self, sonar: Sonar, scene: Scene, rng: np.random.Generator) -> None:
         self._sonar = sonar
-        self._world = world
+        self._scene = scene
         self._errors = Channel(Errors(noise=sonar.noise), 1, rng)
         rays = int(np.ceil(sonar.fov / SPACING)) + 1
-        self._angles: Floats = sonar.mount.rpy[2] + np.linspace(-sonar.fov / 2, sonar.fov / 2, rays)
+        self._fan = Fan(sonar.mount, np.linspace(-sonar.fov / 2, sonar.fov / 2, rays))
+        self._reach = sonar.range_max + 10.0 * sonar.noise
 
-    def range(self, body: Pose2, others: Floats) -> float:
-        """m, 0 = no return. body: pose of base_link, world; others: (n, 3) x, y, radius [m] of vehicles that stand in the way."""
+    def range(self, body: BodyState, others: Sequence[Body]) -> float:
+        """m, 0 = no return. body: the vehicle's own; others: what moves about it."""
         sonar = self._sonar
-        origin = np.array(compose(body, Pose2(sonar.mount.xyz[0], sonar.mount.xyz[1], 0.0))[:2])
-        circles = np.vstack((self._world.circles, others))
-        true = cast(origin, body.yaw + self._angles, self._world.boxes, circles).min()
+        true = self._fan.cast(self._scene, others, body, self._reach).min()
         measured = float(self._errors.read(np.array((true,)), 0.0)[0])
         return measured if sonar.range_min <= measured <= sonar.range_max else 0.0

@@ -13,6 +13,7 @@ from uvf.maths.planar import Pose2
 from uvf.maths.rotations import wrap
 
 HALL = (6.0, 4.4, 0.0)
+LIDAR_RADIUS = 0.055  # m; both carry it at the same height
 
 
 def drive(tmp_path, until, script, start=HALL):
@@ -91,6 +92,6 @@ def test_it_bumps_into_the_wall_and_says_so(tmp_path):
 def test_two_robots_meet_and_see_each_other(tmp_path):
     starts = {"left": (6.0, 4.4, 0.0), "right": (7.2, 4.4, np.pi)}
     record = ride(site_with(tmp_path, starts), 4.0, dict.fromkeys(starts, lambda t: Twist(0.2, 0.0) if t > 0.5 else STILL))
-    assert record.of(topics.SCAN, "left")[0].ranges[0] == pytest.approx(1.2 + 0.032 - 0.115, abs=0.04)
+    assert record.of(topics.SCAN, "left")[0].ranges[0] == pytest.approx(1.2 + 2 * 0.032 - LIDAR_RADIUS, abs=0.04)
     assert record.of(topics.CONTACT, "left")[-1].other == "right"
     assert record.of(topics.CONTACT, "right")[-1].other == "left"

@@ -7,51 +7,49 @@ import pytest
 
 from services.sim_ground.lidar import LidarModel
 from services.sim_ground.world import BulletWorld
-from uvf.maths.planar import Pose2
-from uvf.maths.raycast import cast, rectangles
+from tests.services.sim_ground.ground_scene import WALL_AHEAD, body_at, post, scene_of
+from uvf.runtime.scene import scene
 from uvf.runtime.site import ROOT
 from uvf.runtime.vehicle_file import Mount, load_vehicle
 from uvf.runtime.world_file import load_world
-from uvf.runtime.world_geometry import Slice, clearance, slice_at, solids
+from uvf.runtime.world_geometry import clearance, solids
 
 LDS = load_vehicle(ROOT / "vehicles", "burger").sensors.lidar
 QUIET = msgspec.structs.replace(LDS, noise=0.0, mount=Mount((0.0, 0.0, 0.182)))
-WALL_AHEAD = Slice(rectangles(np.array([[2.5, 0.0, 0.5, 10.0, 0.0]])), np.zeros((0, 3)))
-NOBODY = np.zeros((0, 3))
-HERE = Pose2(0.0, 0.0, 0.0)
 
 
-def scan(lidar=QUIET, pose=HERE, others=NOBODY, world=WALL_AHEAD):
-    return LidarModel(lidar, world, np.random.default_rng(0)).scan(pose, others)
+def scan(lidar=QUIET, body=None, others=(), world=WALL_AHEAD):
+    return LidarModel(lidar, world, np.random.default_rng(0)).scan(body or body_at(), others)
 
 
 def test_agrees_with_the_engines_rays_in_the_house():
     house = load_world(ROOT / "worlds", "house")
-    engine, cut = BulletWorld(solids(house, ROOT / "worlds" / "house"), {}), slice_at(house, 0.182)
-    rng = np.random.default_rng(5)
+    things = solids(house, ROOT / "worlds" / "house")
+    engine, far = BulletWorld(things, {}), msgspec.structs.replace(QUIET, range_min=0.0, range_max=15.0)
+    model, rng = LidarModel(far, scene(things), np.random.default_rng(0)), np.random.default_rng(5)
     places = [p for p in rng.uniform((0.2, 0.2), (11.8, 8.8), (60, 2)) if clearance(house, *p) > 0.12][:40]
-    angles = np.radians(np.arange(0, 360, 2))
+    angles = np.radians(np.arange(360))
     errors = []
     for place in places:
         start = np.column_stack((np.tile(place, (len(angles), 1)), np.full(len(angles), 0.182)))
         end = start + 15.0 * np.column_stack((np.cos(angles), np.sin(angles), np.zeros(len(angles))))
         hits = pybullet.rayTestBatch(start.tolist(), end.tolist(), physicsClientId=engine._client)
         theirs = np.array([15.0 * hit[2] for hit in hits])
-        errors.extend(np.abs(cast(place, angles, cut.boxes, cut.circles) - theirs))
+        errors.extend(np.abs(model.scan(body_at(*place), []) - theirs))
     engine.close()
-    assert len(errors) > 5000
+    assert len(errors) > 10_000
     assert np.mean(np.array(errors) < 0.005) > 0.995
 
 
 def test_straight_ahead_is_the_first_beam_and_left_the_ninetieth():
-    box_on_the_left = Slice(rectangles(np.array([[0.0, 2.0, 0.5, 0.5, 0.0]])), np.zeros((0, 3)))
+    box_on_the_left = scene_of(((0.0, 2.0, 0.5), (1.0, 1.0, 1.0)))
     ranges = scan(world=box_on_the_left)
     assert ranges[90] == pytest.approx(1.5)
     assert ranges[0] == 0.0
 
 
 def test_turning_the_robot_turns_the_scan_the_other_way():
-    assert scan(pose=Pose2(0.0, 0.0, np.radians(30)))[330] == pytest.approx(scan()[0])
+    assert scan(body=body_at(yaw=np.radians(30)))[330] == pytest.approx(scan()[0])
 
 
 def test_ranges_start_at_the_sensor_not_at_the_axle():
@@ -60,16 +58,33 @@ def test_ranges_start_at_the_sensor_not_at_the_axle():
 
 
 def test_too_near_and_too_far_are_no_return():
-    assert scan(pose=Pose2(1.9, 0.0, 0.0))[0] == 0.0
-    assert scan(pose=Pose2(-2.0, 0.0, 0.0))[0] == 0.0
+    assert scan(body=body_at(1.9))[0] == 0.0
+    assert scan(body=body_at(-2.0))[0] == 0.0
 
 
 def test_another_vehicle_hides_the_wall():
-    assert scan(others=np.array([[1.0, 0.0, 0.1]]))[0] == pytest.approx(0.9)
+    assert scan(others=[post(1.0, 0.0, 0.1)])[0] == pytest.approx(0.9)
 
 
 def test_noise_has_the_sensors_sigma():
     noisy = LidarModel(msgspec.structs.replace(QUIET, noise=0.01), WALL_AHEAD, np.random.default_rng(1))
-    ahead = [noisy.scan(HERE, NOBODY)[0] for _ in range(400)]
+    ahead = [noisy.scan(body_at(), [])[0] for _ in range(400)]
     assert np.mean(ahead) == pytest.approx(2.0, abs=0.002)
     assert np.std(ahead) == pytest.approx(0.01, rel=0.15)
+
+
+def test_upside_down_the_scan_runs_the_other_way():
+    turned = msgspec.structs.replace(QUIET, mount=Mount((0.0, 0.0, 0.182), (np.pi, 0.0, 0.0)))
+    left = scene_of(((0.0, 2.0, 0.5), (1.0, 1.0, 1.0)))
+    assert scan(turned, world=left)[270] == pytest.approx(1.5)
+
+
+def test_nose_down_it_sees_the_floor_where_the_ray_meets_it():
+    pitch = np.radians(10.0)
+    ranges = scan(body=body_at(pitch=pitch), world=scene_of(((50.0, 0.0, 1.0), (1.0, 1.0, 1.0))))
+    assert ranges[0] == pytest.approx(0.182 * np.cos(pitch) / np.sin(pitch))
+    assert ranges[180] == 0.0
+
+
+def test_what_is_lower_than_the_scanner_is_not_seen():
+    assert scan(world=scene_of(((2.5, 0.0, 0.05), (1.0, 20.0, 0.1))))[0] == 0.0

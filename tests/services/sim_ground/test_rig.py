@@ -8,11 +8,13 @@ import pytest
 
 from schemas.convert import seconds
 from services.sim_ground.body import BodyState, Touch
-from services.sim_ground.rig import Rig, Scene
+from services.sim_ground.rig import Moment, Rig
 from tests.services.sim_ground.ride import site_with
 from uvf.maths.geodesy import LocalTangent
 from uvf.maths.kinematics import WheelSpeeds
+from uvf.runtime.scene import scene
 from uvf.runtime.vehicle_file import Bumper, GnssSensor, Mount, Sonar
+from uvf.runtime.world_geometry import solids
 
 PLACE = np.array((6.0, 4.4, 0.0))
 STILL = BodyState(PLACE, np.array((1.0, 0, 0, 0)), np.zeros(3), np.zeros(3), (0.0, 0.0), WheelSpeeds(0.0, 0.0))
@@ -28,9 +30,9 @@ def stand(tmp_path):
         member = site.members["burger"]
         fitted = msgspec.structs.replace(member.file.sensors, **(sensors(member.file.sensors) if sensors else {}))
         member = replace(member, file=msgspec.structs.replace(member.file, sensors=fitted))
-        rig, said = Rig(site, member, member.file.ground), {}
+        rig, said = Rig(site, member, member.file.ground, scene(solids(site.world, site.world_folder))), {}
         for t in (n / 100 for n in range(1, round(seconds_ * 100) + 1)):
-            for output, message in rig.read(t, Scene(STILL, np.zeros((0, 3)), list(touches(t)))).items():
+            for output, message in rig.read(t, Moment(STILL, [], list(touches(t)))).items():
                 said.setdefault(output, []).append((t, message))
         return said
 

@@ -7,8 +7,11 @@ from schemas.messages import WheelCommand
 from services.sim_ground.body import BodyState, Touch
 from services.sim_ground.rig import Rig
 from services.sim_ground.service import SimGround
+from services.sim_ground.surroundings import Surroundings
 from tests.services.sim_ground.ride import site_with
 from uvf.maths.kinematics import WheelSpeeds
+from uvf.runtime.urdf_model import load_urdf
+from uvf.runtime.world_geometry import solids
 
 
 class StandingWorld:
@@ -40,8 +43,10 @@ def site(tmp_path):
 
 
 def service_in(site, world):
-    rigs = {name: Rig(site, member, member.file.ground) for name, member in site.members.items()}
-    return SimGround(world, rigs)
+    models = {name: load_urdf(member.folder / member.file.ground.urdf) for name, member in site.members.items()}
+    surroundings = Surroundings(solids(site.world, site.world_folder), models)
+    rigs = {name: Rig(site, member, member.file.ground, surroundings.still) for name, member in site.members.items()}
+    return SimGround(world, rigs, surroundings)
 
 
 def test_each_command_goes_to_its_vehicle_for_one_period(site):
