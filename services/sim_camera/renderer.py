@@ -14,7 +14,7 @@ from services.sim_camera.backdrop import Backdrop
 from services.sim_camera.optics import frustum
 from uvf.maths.rotations import from_euler, matrix, multiply, rotate
 from uvf.runtime.params import BadInput
-from uvf.runtime.solid import UPRIGHT, Solid
+from uvf.runtime.solid import UPRIGHT, Solid, pose_at
 from uvf.runtime.vehicle_file import Camera
 from uvf.runtime.world_file import WorldFile
 
@@ -61,8 +61,11 @@ class BulletRenderer:
     def __init__(self, world: WorldFile, solids: Sequence[Solid], vehicles: Mapping[str, Look]) -> None:
         self._client: int = pybullet.connect(pybullet.DIRECT)
         self._backdrop = Backdrop(world)
+        self._scripted: list[tuple[int, Solid]] = []
         for solid in solids:
-            self._add(_visual_shape(solid, self._client), solid.position, solid.orientation)
+            index = self._add(_visual_shape(solid, self._client), solid.position, solid.orientation)
+            if solid.path is not None:
+                self._scripted.append((index, solid))
         self._vehicles = {name: self._load(look) for name, look in vehicles.items()}
 
     def _add(self, shape: int, position: Floats, orientation: Floats = UPRIGHT) -> int:
@@ -99,8 +102,11 @@ class BulletRenderer:
             )
         return shape
 
-    def place(self, poses: Mapping[str, Pose]) -> None:
-        """Puts vehicles where they truly are."""
+    def place(self, t: float, poses: Mapping[str, Pose]) -> None:
+        """Puts vehicles where they truly are, and what moves by script where it is at ``t`` [s]."""
+        for index, solid in self._scripted:
+            position, turned = pose_at(solid, t)
+            pybullet.resetBasePositionAndOrientation(index, position.tolist(), _xyzw(turned), physicsClientId=self._client)
         for name, (position, world_from_body) in poses.items():
             shown = self._vehicles[name]
             centre = position + rotate(world_from_body, shown.com_in_body.position)

@@ -16,7 +16,7 @@ from uvf.runtime.vehicle_file import Camera
 class Renderer(Protocol):
     """What draws."""
 
-    def place(self, poses: Mapping[str, Pose]) -> None: ...
+    def place(self, t: float, poses: Mapping[str, Pose]) -> None: ...
 
     def take(self, camera: Camera, body: Pose) -> Shot: ...
 
@@ -39,7 +39,7 @@ class SimCamera(Service):
 
     def step(self, t: float, truth: dict[str, NavState]) -> Outputs:
         poses = {name: Pose(array(state.position), wxyz(state.orientation)) for name, state in truth.items()}
-        self._renderer.place(poses)
+        self._renderer.place(t, poses)
         images: dict[str, CompressedImage] = {}
         depths: dict[str, CompressedImage] = {}
         for fitted in self._cameras:

@@ -26,13 +26,13 @@ def world_with(**parts):
     return msgspec.structs.replace(EMPTY, **parts)
 
 
-def picture(world, camera=CAMERA, body=ORIGIN, vehicles=None, poses=None):
-    return shot(world, camera, body, vehicles, poses).picture.astype(int)
+def picture(world, camera=CAMERA, body=ORIGIN, vehicles=None, poses=None, t=0.0):
+    return shot(world, camera, body, vehicles, poses, t).picture.astype(int)
 
 
-def shot(world, camera=CAMERA, body=ORIGIN, vehicles=None, poses=None):
+def shot(world, camera=CAMERA, body=ORIGIN, vehicles=None, poses=None, t=0.0):
     renderer = BulletRenderer(world, solids(world, Path()), vehicles or {})
-    renderer.place(poses or {})
+    renderer.place(t, poses or {})
     taken = renderer.take(camera, body)
     renderer.close()
     return taken
@@ -55,6 +55,14 @@ def test_a_post_appears_where_the_intrinsics_say(yaw, pitch):
     in_body = matrix(attitude).T @ np.array((4.0, 1.0, 0.3)) - np.array(CAMERA.mount.xyz)
     optical = np.array((-in_body[1], -in_body[2], in_body[0]))
     assert centre_of(is_red(taken)) == pytest.approx(project(intrinsics(CAMERA), optical), abs=1.0)
+
+
+def test_who_walks_by_script_is_seen_where_the_script_has_brought_him():
+    walk = [(0.0, 4.0, 2.0, 0.0), (2.0, 4.0, -2.0, 0.0), (4.0, 4.0, 2.0, 0.0)]
+    world = world_with(cylinders=[Cylinder("walker", (4.0, 2.0, 0.0), 0.2, 0.6, colour=RED, path=walk)])
+    columns = [centre_of(is_red(picture(world, t=t)))[0] for t in (0.5, 1.0, 1.5)]
+    assert columns[1] == pytest.approx(CAMERA.width / 2, abs=2.0)
+    assert columns[0] < columns[1] - 20 < columns[2] - 40
 
 
 def test_the_sky_is_above_and_the_ground_below():

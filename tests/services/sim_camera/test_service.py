@@ -31,7 +31,7 @@ class GreyRenderer:
     def __init__(self):
         self.placed = {}
 
-    def place(self, poses):
+    def place(self, t, poses):
         self.placed.update(poses)
 
     def take(self, camera, body):
