@@ -159,7 +159,7 @@ def _signals_end_it() -> Iterator[None]:
 def teleop(names: Sequence[str], mission: str, say: Callable[[str], None]) -> None:
     """Drives until the operator ends it. Raises BadInput."""
     chosen, most = wanted_vehicles(load_site(settings.mission_path(mission)), names)
-    with uvf.connect() as client, key_by_key() as terminal, closing(Gamepad()) as pad, _signals_end_it():
+    with uvf.connect() as client, _signals_end_it(), key_by_key() as terminal, closing(Gamepad()) as pad:
         say(GREETING)
         try:
             drive(Hand(chosen, most), Link(client), terminal, pad, time.monotonic)
