@@ -192,11 +192,27 @@ def reachable_floor(plan: FloorPlan, x: float, y: float, radius: float) -> Mask:
     Its centre may be where the nearest solid is no closer than the radius; the floor is what its disc sweeps.
     Empty when the start is not free.
     """
-    room = ndimage.distance_transform_edt(np.pad(~plan.cells, 1))[1:-1, 1:-1] * plan.resolution
-    labels, _ = ndimage.label(room > radius)
+    labels = _where_it_fits(plan, radius)
     row, column = plan.cell(x, y)
     if not (0 <= row < plan.cells.shape[0] and 0 <= column < plan.cells.shape[1]) or labels[row, column] == 0:
         return np.zeros_like(plan.cells)
-    centres = labels == labels[row, column]
+    return _swept(plan, labels == labels[row, column], radius)
+
+
+def free_regions(plan: FloorPlan, radius: float) -> list[Mask]:
+    """Every floor, (rows, columns), that such a robot can cover from one start, the largest first."""
+    labels = _where_it_fits(plan, radius)
+    regions = [_swept(plan, labels == label, radius) for label in range(1, int(labels.max()) + 1)]
+    return sorted(regions, key=lambda region: -int(region.sum()))
+
+
+def _where_it_fits(plan: FloorPlan, radius: float) -> NDArray[np.int32]:
+    """Connected places of a round robot's centre, numbered from 1; 0 where it does not fit."""
+    room = ndimage.distance_transform_edt(np.pad(~plan.cells, 1))[1:-1, 1:-1] * plan.resolution
+    labels: NDArray[np.int32] = ndimage.label(room > radius)[0]
+    return labels
+
+
+def _swept(plan: FloorPlan, centres: Mask, radius: float) -> Mask:
     swept: Mask = ndimage.distance_transform_edt(~centres) * plan.resolution <= radius
     return swept & ~plan.cells

@@ -1,0 +1,88 @@
+"""``uvf world ...``: look at worlds, check them, draw them, make new ones and take them over from others."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from uvf.runtime.params import BadInput
+
+world_app = typer.Typer(no_args_is_help=True, help="Worlds: list, show, check, picture, new, import.")
+
+NameArgument = Annotated[str, typer.Argument(help="A folder in worlds/.")]
+RadiusOption = Annotated[float, typer.Option(min=0.01, max=10.0, help="Of the vehicle that is to drive there [m].")]
+BURGER = 0.115  # m
+
+
+def _worlds() -> Path:
+    from uvf.runtime.site import ROOT
+
+    return ROOT / "worlds"
+
+
+def _refuse(error: BadInput) -> typer.Exit:
+    typer.echo(f"uvf: {error}", err=True)
+    return typer.Exit(2)
+
+
+@world_app.command("list")
+def world_list() -> None:
+    """The worlds there are."""
+    from uvf.launch.worlds.report import listed
+
+    for line in listed(_worlds()):
+        typer.echo(line)
+
+
+@world_app.command("show")
+def world_show(name: NameArgument) -> None:
+    """Size, place, air and things of a world."""
+    from uvf.launch.worlds.report import figures
+    from uvf.runtime.world_file import load_world
+
+    try:
+        for line in figures(load_world(_worlds(), name)):
+            typer.echo(line)
+    except BadInput as error:
+        raise _refuse(error) from error
+
+
+@world_app.command("picture")
+def world_picture(
+    name: NameArgument,
+    radius: RadiusOption = BURGER,
+    out: Annotated[Path | None, typer.Option(help="By default docs/worlds/NAME.png.")] = None,
+) -> None:
+    """Draw floor plan and view side by side."""
+    from uvf.launch.worlds.picture import save_picture
+    from uvf.launch.worlds.report import RESOLUTION, largest_reachable
+    from uvf.runtime.world_file import load_world
+    from uvf.runtime.world_geometry import floor_plan
+
+    path = out or _worlds().parent / "docs" / "worlds" / f"{name}.png"
+    try:
+        world = load_world(_worlds(), name)
+        plan = floor_plan(world, RESOLUTION)
+        save_picture(world, plan, largest_reachable(plan, radius), path)
+    except BadInput as error:
+        raise _refuse(error) from error
+    typer.echo(f"uvf: {path}")
+
+
+@world_app.command("import")
+def world_import(
+    file: Annotated[Path, typer.Argument(help="A Gazebo .world or .sdf.")],
+    name: Annotated[str, typer.Option(help="Of the new folder in worlds/.")],
+    models: Annotated[list[Path] | None, typer.Option(help="Folders with Gazebo models.")] = None,
+    replace: Annotated[bool, typer.Option("--replace", help="Overwrite a world of that name.")] = False,
+) -> None:
+    """Take over a world, telling what was left out."""
+    from uvf.launch.worlds.imports import import_world
+
+    try:
+        path, lines = import_world(file, _worlds() / name, models or [], replace)
+    except BadInput as error:
+        raise _refuse(error) from error
+    for line in lines:
+        typer.echo(line)
+    typer.echo(f"uvf: {path}; look at it with 'uvf world picture {name}' and 'uvf world check {name}'")

@@ -1,0 +1,49 @@
+"""Worlds of others taken over into a folder of ``worlds/``."""
+
+import re
+import shutil
+from collections.abc import Sequence
+from pathlib import Path
+
+from uvf.launch.worlds.sdf_world import SdfImport
+from uvf.launch.worlds.world_writer import write_world
+from uvf.runtime.params import BadInput
+from uvf.runtime.world_file import WorldFile, load_world
+
+SDF = (".world", ".sdf")
+
+
+def import_world(file: Path, folder: Path, models: Sequence[Path], replace: bool) -> tuple[Path, list[str]]:
+    """The new world.yaml, and lines about what there is in it and what was left out. Raises BadInput."""
+    make_room(folder, replace)
+    if not file.is_file():
+        raise BadInput(f"{file}: no such file")
+    try:
+        world, notes = _read(file, folder, models)
+        path = write_world(world, folder, [f"note: {note}" for note in notes])
+        load_world(folder.parent, folder.name)
+    except BadInput:
+        shutil.rmtree(folder, ignore_errors=True)
+        raise
+    return path, [*(f"note: {note}" for note in notes), _counts(world)]
+
+
+def make_room(folder: Path, replace: bool) -> None:
+    """Raises BadInput for a name that is no folder's, and for one that is taken unless it may be replaced."""
+    if not re.fullmatch(r"[A-Za-z0-9_][A-Za-z0-9_-]*", folder.name):
+        raise BadInput(f"a world cannot be called '{folder.name}'; use letters, digits, - and _")
+    if folder.exists() and not replace:
+        raise BadInput(f"{folder} is there already; give another --name, or --replace to overwrite it")
+    shutil.rmtree(folder, ignore_errors=True)
+
+
+def _read(file: Path, folder: Path, models: Sequence[Path]) -> tuple[WorldFile, list[str]]:
+    if file.suffix not in SDF:
+        raise BadInput(f"{file}: files of this kind are not taken over; give a .world or .sdf")
+    reading = SdfImport(file, folder, models)
+    return reading.world(), reading.notes.lines()
+
+
+def _counts(world: WorldFile) -> str:
+    groups = ("boxes", "cylinders", "spheres", "meshes")
+    return "taken over: " + ", ".join(f"{len(getattr(world, group))} {group}" for group in groups)
