@@ -46,6 +46,7 @@ SIGNS_OF_LIFE = ("nav", "pose", "odometry", "status", "nav_status", "progress")
 SHOWN_BY_THE_CLOCK = ("conductor",)
 """Sources whose warnings tell of a state that the page reads from the clock: they stand in the log, not as notices."""
 LAYERS = ("Map", "Scan", "Paths", "Tracks", "Labels", "Walls", "True pose")
+SHOWN_AT_FIRST = frozenset(LAYERS) - {"True pose"}
 COLOURS = ("#4ea1ff", "#f2913d", "#3fbf7f", "#b98cf5", "#e8c547", "#5fd4d6")
 """Vehicles' own colours, told apart by colour-blind people too; red and magenta keep their meanings."""
 
@@ -151,14 +152,14 @@ class Model:
         }
         grounded = [v.name for v in self.vehicles.values() if not v.flies]
         self.selected = next(iter(grounded or self.vehicles), "")
-        self.layers = set(LAYERS) - {"True pose"}
+        self.layers = set(SHOWN_AT_FIRST)
         self.clock: Clock | None = None
         self.clock_at: float | None = None
         self.processes: dict[str, Process] = {}
         self.stop: StopCommand | None = None
         self._stop_heard: StopCommand | None = None
         self.log = Journal()
-        self._floors: dict[str, MappedFloor] = {}
+        self._floors = {v.name: MappedFloor(site.world, v.member) for v in self.vehicles.values() if not v.flies}
         self.health: dict[str, Vitals] = {}
 
     @property
@@ -187,14 +188,7 @@ class Model:
             elif what == "scan":
                 vehicle.scan_points = scan_in_world(vehicle)
             elif what == "grid" and not vehicle.flies:
-                vehicle.mapped = self._mapped_floor(vehicle)
-
-    def _mapped_floor(self, vehicle: VehicleModel) -> float | None:
-        if vehicle.grid is None or vehicle.grid.column_count == 0:
-            return None
-        if vehicle.name not in self._floors:
-            self._floors[vehicle.name] = MappedFloor(self.site.world, vehicle.member)
-        return self._floors[vehicle.name].share(vehicle.grid)
+                vehicle.mapped = self._floors[name].share(vehicle.grid) if vehicle.grid and vehicle.grid.column_count else None
 
     def hear_clock(self, t: float, clock: Clock | None) -> None:
         if clock is None or clock is self.clock:

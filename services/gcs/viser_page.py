@@ -6,7 +6,7 @@ import json
 import logging
 import queue
 import time
-from collections.abc import Callable, Coroutine, Mapping, Sequence
+from collections.abc import Callable, Coroutine, Mapping, Sequence, Set
 from typing import Any
 
 import numpy as np
@@ -34,7 +34,7 @@ BEAT = 1.0  # s between two signs of life to the page
 class ViserPage:
     """One server; every browser sees the same picture. views: see ``viser_views``."""
 
-    def __init__(self, address: Address, views: Views, layers: set[str]) -> None:
+    def __init__(self, address: Address, views: Views, layers: Set[str]) -> None:
         claim(address)
         self._actions: queue.SimpleQueue[Action] = queue.SimpleQueue()
         self._server = _guarded_server(address)
@@ -77,7 +77,7 @@ class ViserPage:
         scene.add_light_ambient("/world/ambient", intensity=0.7)
         scene.add_light_hemisphere("/world/sky", sky_color=(235, 242, 255), ground_color=(120, 110, 100), intensity=1.6)
 
-    def _fleet_panel(self, layers: set[str]) -> None:
+    def _fleet_panel(self, layers: Set[str]) -> None:
         gui = self._server.gui
         gui.main_panel.dock_left()
         gui.main_panel.set_width(FLEET_WIDTH)
