@@ -1,0 +1,103 @@
+"""``uvf vehicle``: what vehicles there are, what is wrong with them, what they look like; new ones, and those of others."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from uvf.runtime.params import BadInput
+from uvf.runtime.site import ROOT
+
+vehicle_app = typer.Typer(no_args_is_help=True, help="Look at vehicles, check them, make new ones, take over those of others.")
+
+VEHICLES = ROOT / "vehicles"
+NameArgument = Annotated[str, typer.Argument(help="Name in vehicles/ or path of a vehicle's folder.")]
+NewName = Annotated[str, typer.Option("--name", help="Of the new folder in vehicles/.")]
+IntoOption = Annotated[Path, typer.Option("--into", help="Where the folder goes.")]
+Metres = Annotated[float, typer.Option(min=0.005, max=5.0, help="m")]
+
+
+def _refused(error: BadInput) -> typer.Exit:
+    typer.echo(f"uvf: {error}", err=True)
+    return typer.Exit(2)
+
+
+@vehicle_app.command("list")
+def list_vehicles() -> None:
+    """All vehicles."""
+    from rich.console import Console
+
+    from uvf.launch.vehicles.listing import vehicle_table
+
+    Console().print(vehicle_table(VEHICLES))
+
+
+@vehicle_app.command()
+def show(name: NameArgument) -> None:
+    """One vehicle: its figures, its sensors, its frames."""
+    from rich.console import Console
+
+    from uvf.launch.vehicles.inspection import folder_of, inspect
+    from uvf.launch.vehicles.listing import frame_tree, vehicle_figures
+
+    try:
+        found = inspect(folder_of(name, VEHICLES))
+    except BadInput as error:
+        raise _refused(error) from error
+    if found.file is None:
+        raise _refused(BadInput(found.faults[0]))
+    console = Console()
+    console.print(vehicle_figures(found.file, found.model))
+    if found.model is not None:
+        console.print(frame_tree(found.model, found.file))
+
+
+@vehicle_app.command()
+def check(
+    names: Annotated[list[str] | None, typer.Argument(help="Names in vehicles/ or folders; by default all in vehicles/.")] = None,
+    picture: Annotated[Path | None, typer.Option(help="Where to draw it; by default runs/vehicles/NAME.png.")] = None,
+) -> None:
+    """Every fault of a vehicle's files with file and line, the tree of its frames, a picture: exit code 1 when there are faults."""
+    from uvf.launch.vehicles.checking import check_all
+
+    try:
+        raise typer.Exit(1 if check_all(names or [], VEHICLES, picture) else 0)
+    except BadInput as error:
+        raise _refused(error) from error
+
+
+@vehicle_app.command()
+def picture(
+    names: Annotated[list[str] | None, typer.Argument(help="By default all vehicles.")] = None,
+    into: Annotated[Path, typer.Option(help="Folder of the pictures.")] = ROOT / "docs" / "vehicles",
+) -> None:
+    """Draw vehicles from the front, from above and from their side."""
+    from uvf.launch.vehicles.inspection import folder_of
+    from uvf.launch.vehicles.picture import write_picture
+    from uvf.runtime.vehicle_file import load_vehicle
+
+    try:
+        for name in names or sorted(p.parent.name for p in VEHICLES.glob("*/vehicle.yaml")):
+            folder = folder_of(name, VEHICLES)
+            write_picture(folder, load_vehicle(folder.parent, folder.name), into / f"{folder.name}.png")
+            typer.echo(f"uvf: {into / folder.name}.png")
+    except BadInput as error:
+        raise _refused(error) from error
+
+
+@vehicle_app.command()
+def new(
+    name: Annotated[str, typer.Argument(help="Of the new folder in vehicles/.")],
+    radius: Metres,
+    track: Metres,
+    wheel_radius: Metres,
+    height: Metres,
+) -> None:
+    """Make a round two-wheeled vehicle from four measures: a folder that drives, to go on from."""
+    from uvf.launch.vehicles.creation import Measures, create
+
+    try:
+        folder = create(VEHICLES / name, Measures(radius, track, wheel_radius, height))
+    except BadInput as error:
+        raise _refused(error) from error
+    typer.echo(f"uvf: {folder}; look at it with 'uvf vehicle check {name}'")

@@ -1,0 +1,105 @@
+"""What a vehicle looks like: from the front left, from above and from its side, by the renderer of the cameras."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from services.sim_camera.renderer import BulletRenderer, Look, Pose
+from uvf.maths.rotations import from_matrix
+from uvf.runtime.params import BadInput
+from uvf.runtime.urdf_model import engine_urdf
+from uvf.runtime.vehicle_file import Camera, Mount, VehicleFile
+from uvf.runtime.world_file import Origin, WorldFile
+
+Floats = NDArray[np.float64]
+
+PIXELS = 640
+FAR_OFF = 30.0  # of the vehicle's size, from which a picture has hardly any perspective
+GROUND = (0.93, 0.93, 0.94)
+AIRCRAFT_SIZE = 1.7  # m, about half the span of a small one
+UP = np.array((0.0, 0.0, 1.0))
+
+
+@dataclass(frozen=True)
+class View:
+    """title; to_eye: (3,) from the vehicle's middle; away: in sizes of the vehicle; axes: which of x, y go right and up."""
+
+    title: str
+    to_eye: tuple[float, float, float]
+    away: float
+    axes: tuple[str, str] | None = None
+
+
+VIEWS = (
+    View("from the front left", (1.0, 0.8, 0.7), 6.0),
+    View("from above", (0.0, 0.0, 1.0), FAR_OFF, ("x", "y")),
+    View("from the right", (0.0, -1.0, 0.0), FAR_OFF, ("x", "z")),
+)
+
+
+def write_picture(folder: Path, file: VehicleFile, target: Path) -> None:
+    """A PNG of three views with scales in metres. Raises BadInput where it cannot be written."""
+    size = _size(file)
+    look, middle = _look(folder, file), np.array((0.0, 0.0, _middle_height(file, size)))
+    renderer = BulletRenderer(WorldFile("", Origin(0.0, 0.0, 0.0), (-1.0, -1.0, 1.0, 1.0), ground_colour=GROUND), [], {"it": look})
+    figure = Figure(figsize=(12.0, 4.4), layout="constrained")
+    try:
+        renderer.place(0.0, {"it": Pose(np.array((0.0, 0.0, middle[2] if look.urdf is None else 0.0)), np.array((1.0, 0.0, 0.0, 0.0)))})
+        for view, axes in zip(VIEWS, figure.subplots(1, len(VIEWS)), strict=True):
+            _draw(axes, view, _seen(renderer, view, middle, size), (middle, size))
+    finally:
+        renderer.close()
+    figure.suptitle(f"{folder.name}: {file.about}", fontsize=10)
+    try:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        figure.savefig(target, dpi=90)
+    except (OSError, ValueError) as error:
+        raise BadInput(f"{target}: cannot be written: {error}") from error
+
+
+def _size(file: VehicleFile) -> float:
+    return file.ground.radius if file.ground is not None else AIRCRAFT_SIZE
+
+
+def _middle_height(file: VehicleFile, size: float) -> float:
+    """m, of what the views turn about: aircraft are shown in the air."""
+    return 0.45 * size if file.ground is not None else 3.0 * size
+
+
+def _look(folder: Path, file: VehicleFile) -> Look:
+    if file.ground is not None:
+        return Look(urdf=engine_urdf(folder / file.ground.urdf))
+    mesh = file.air.mesh if file.air is not None else None
+    return Look(mesh=folder / mesh if mesh is not None else None)
+
+
+def _seen(renderer: BulletRenderer, view: View, middle: Floats, size: float) -> Any:
+    """(PIXELS, PIXELS, 3) RGB; what lies in the plane of the middle spans 2.4 sizes."""
+    to_eye = np.array(view.to_eye) / np.linalg.norm(view.to_eye)
+    away = view.away * size
+    forward = -to_eye
+    left = np.cross(UP, forward) if abs(forward[2]) < 0.99 else np.array((-1.0, 0.0, 0.0))
+    left /= np.linalg.norm(left)
+    turned = from_matrix(np.column_stack((forward, left, np.cross(forward, left))))
+    fov = float(2 * np.arctan(1.2 * size / away))
+    camera = Camera(mount=Mount(), hz=1.0, width=PIXELS, height=PIXELS, fov=fov, far=away + 20 * size)
+    return renderer.take(camera, Pose(middle + away * to_eye, turned)).picture
+
+
+def _draw(axes: Any, view: View, picture: Any, shown: tuple[Floats, float]) -> None:
+    middle, size = shown
+    axes.set_title(view.title, fontsize=9)
+    if view.axes is None:
+        axes.imshow(picture)
+        axes.axis("off")
+        return
+    right, up = ("xyz".index(a) for a in view.axes)
+    half = 1.2 * size
+    axes.imshow(picture, extent=(middle[right] - half, middle[right] + half, middle[up] - half, middle[up] + half))
+    axes.set_xlabel(f"{view.axes[0]} [m]", fontsize=8)
+    axes.set_ylabel(f"{view.axes[1]} [m]", fontsize=8)
+    axes.tick_params(labelsize=7)
