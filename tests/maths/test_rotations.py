@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.linalg import expm
 
@@ -31,6 +31,7 @@ def test_product_is_composition(a, b, c, d):
     np.testing.assert_allclose(r.multiply(p, r.inverse(p)), r.IDENTITY, atol=1e-12)
 
 
+@settings(deadline=None)
 @given(ANGLE, ANGLE, PITCH, PITCH)
 def test_a_turn_about_an_axis_is_the_exponential_of_its_cross_product(angle, x, y, z):
     axis = np.array((x, y, z + 4)) / np.linalg.norm((x, y, z + 4))
