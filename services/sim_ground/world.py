@@ -1,4 +1,8 @@
-"""The ground vehicles' physics: a PyBullet world of solids and wheeled bodies; the only file here that knows PyBullet."""
+"""The ground vehicles' physics: a PyBullet world of solids and wheeled bodies; the only file here that knows PyBullet.
+
+Wheels are held at their motors' references by a velocity constraint whose torque is what the motor has; solids with a script
+are put where they are at each physics step, with the velocity they have, so that they push what stands in their way.
+"""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -9,13 +13,14 @@ import numpy as np
 import pybullet
 from numpy.typing import NDArray
 
-from services.sim_ground.body import BodyState, Touch
+from services.sim_ground.body import BodyState, Touch, base_motion
+from services.sim_ground.motor import WheelMotor
 from uvf.maths.geodesy import GRAVITY
-from uvf.maths.kinematics import WheelSpeeds, spin_velocity
+from uvf.maths.kinematics import WheelSpeeds
 from uvf.maths.rotations import from_euler, inverse, matrix, multiply, rotate
 from uvf.runtime.params import BadInput
-from uvf.runtime.solid import UPRIGHT, Solid
-from uvf.runtime.vehicle_file import GroundBody
+from uvf.runtime.solid import UPRIGHT, Keyframes, Solid, pose_at
+from uvf.runtime.vehicle_file import Friction, GroundBody
 
 Floats = NDArray[np.float64]
 STOPPED = WheelSpeeds(0.0, 0.0)
@@ -39,8 +44,9 @@ class _Loaded:
 
     index: int
     wheels: tuple[int, int]
-    torque: float
+    motors: tuple[WheelMotor, WheelMotor]
     com_in_base: tuple[Floats, Floats]
+    up_in_com: tuple[float, float, float]
 
 
 class BulletWorld:
@@ -50,6 +56,7 @@ class BulletWorld:
         self._client: int = pybullet.connect(pybullet.DIRECT)
         self._rate = max((v.body.physics_hz for v in vehicles.values()), default=200.0)
         self._names: dict[int, str] = {}
+        self._scripted: list[tuple[int, Solid, Keyframes]] = []
         pybullet.setGravity(0.0, 0.0, -GRAVITY, physicsClientId=self._client)
         pybullet.setPhysicsEngineParameter(
             fixedTimeStep=1 / self._rate, numSolverIterations=50, deterministicOverlappingPairs=1, physicsClientId=self._client
@@ -57,16 +64,19 @@ class BulletWorld:
         floor = pybullet.createCollisionShape(pybullet.GEOM_PLANE, physicsClientId=self._client)
         self._add("floor", floor, np.zeros(3), UPRIGHT)
         for solid in solids:
-            self._add(solid.name, _collision_shape(solid, self._client), solid.position, solid.orientation)
+            index = self._add(solid.name, _collision_shape(solid, self._client), solid.position, solid.orientation)
+            if solid.path is not None:
+                self._scripted.append((index, solid, solid.path))
         self._vehicles = {name: self._load(name, vehicle) for name, vehicle in vehicles.items()}
         self.advance({}, SETTLING)
 
-    def _add(self, name: str, shape: int, position: Floats, orientation: Floats) -> None:
+    def _add(self, name: str, shape: int, position: Floats, orientation: Floats) -> int:
         index: int = pybullet.createMultiBody(
             0.0, shape, basePosition=position.tolist(), baseOrientation=_xyzw(orientation), physicsClientId=self._client
         )
         pybullet.changeDynamics(index, -1, lateralFriction=1.0, physicsClientId=self._client)
         self._names[index] = name
+        return index
 
     def _load(self, name: str, vehicle: Placed) -> _Loaded:
         try:
@@ -76,14 +86,24 @@ class BulletWorld:
         self._names[index] = name
         joints = self._joints(index)
         wheels = (joints[vehicle.body.left_joint], joints[vehicle.body.right_joint])
-        for wheel in wheels:
-            pybullet.changeDynamics(index, wheel, lateralFriction=vehicle.body.lateral_friction, physicsClientId=self._client)
         for link in (-1, *joints.values()):
             pybullet.changeDynamics(index, link, linearDamping=0.0, angularDamping=0.0, physicsClientId=self._client)
+        self._set_friction(index, vehicle.body.friction, wheels, [j for j in joints.values() if j not in wheels])
         local = pybullet.getDynamicsInfo(index, -1, physicsClientId=self._client)
         com_in_base = (np.array(local[3]), _wxyz(local[4]))
         self._place(index, vehicle.start, com_in_base)
-        return _Loaded(index, wheels, vehicle.body.motor_torque, com_in_base)
+        left, right = (WheelMotor(vehicle.body.motor, 1 / self._rate) for _ in wheels)
+        x, y, z = matrix(com_in_base[1])[2]
+        return _Loaded(index, wheels, (left, right), com_in_base, (float(x), float(y), float(z)))
+
+    def _set_friction(self, index: int, friction: Friction, wheels: Sequence[int], sliding: Sequence[int]) -> None:
+        """The floor's coefficient is 1 and the engine multiplies both, so that the vehicle's alone count. A wheel's axle is its y axis."""
+        most = max(friction.mu, friction.mu2)
+        shares = [friction.mu / most, friction.mu2 / most, friction.mu / most]
+        for wheel in wheels:
+            pybullet.changeDynamics(index, wheel, lateralFriction=most, anisotropicFriction=shares, physicsClientId=self._client)
+        for link in sliding:
+            pybullet.changeDynamics(index, link, lateralFriction=friction.castor, physicsClientId=self._client)
 
     def _joints(self, index: int) -> dict[str, int]:
         count = pybullet.getNumJoints(index, physicsClientId=self._client)
@@ -97,47 +117,72 @@ class BulletWorld:
         orientation = multiply(world_from_base, com_in_base[1])
         pybullet.resetBasePositionAndOrientation(index, position.tolist(), _xyzw(orientation), physicsClientId=self._client)
 
-    def advance(self, wheels: Mapping[str, WheelSpeeds], duration: float) -> None:
-        """Moves the world by ``duration`` [s]; a vehicle without a finite command brakes its wheels to a stand."""
-        for name, vehicle in self._vehicles.items():
-            wanted = wheels.get(name, STOPPED)
-            pybullet.setJointMotorControlArray(
-                vehicle.index,
-                vehicle.wheels,
-                pybullet.VELOCITY_CONTROL,
-                targetVelocities=wanted if np.isfinite(wanted).all() else STOPPED,
-                forces=[vehicle.torque, vehicle.torque],
-                physicsClientId=self._client,
-            )
-        for _ in range(round(duration * self._rate)):
+    def advance(self, wheels: Mapping[str, WheelSpeeds], duration: float, since: float = 0.0) -> None:
+        """Moves the world by ``duration`` [s]; a vehicle without a finite command brakes its wheels to a stand.
+
+        since: s, simulation time at which it begins: where scripted solids are.
+        """
+        wanted = {name: wheels.get(name, STOPPED) for name in self._vehicles}
+        for name, speeds in wanted.items():
+            if not np.isfinite(speeds).all():
+                wanted[name] = STOPPED
+        for n in range(round(duration * self._rate)):
+            self._move_scripted(since + n / self._rate)
+            for name, vehicle in self._vehicles.items():
+                self._drive(vehicle, wanted[name])
             pybullet.stepSimulation(physicsClientId=self._client)
+
+    def _drive(self, vehicle: _Loaded, wanted: WheelSpeeds) -> None:
+        (left, right), (left_motor, right_motor) = self._joint_states(vehicle), vehicle.motors
+        forces = [left_motor.step(wanted[0], left[1]), right_motor.step(wanted[1], right[1])]
+        pybullet.setJointMotorControlArray(
+            vehicle.index,
+            vehicle.wheels,
+            pybullet.VELOCITY_CONTROL,
+            targetVelocities=[left_motor.reference, right_motor.reference],
+            forces=forces,
+            physicsClientId=self._client,
+        )
+
+    def _joint_states(self, vehicle: _Loaded) -> Any:
+        """Of the left and the right wheel: angle [rad], speed [rad/s], ..."""
+        return pybullet.getJointStates(vehicle.index, vehicle.wheels, physicsClientId=self._client)
+
+    def _move_scripted(self, t: float) -> None:
+        """The engine carries a body on by its velocity in the step."""
+        for index, solid, path in self._scripted:
+            position, orientation = pose_at(solid, t)
+            x, y, turning = path.velocity(t)
+            pybullet.resetBasePositionAndOrientation(index, position.tolist(), _xyzw(orientation), physicsClientId=self._client)
+            pybullet.resetBaseVelocity(index, [x, y, 0.0], [0.0, 0.0, turning], physicsClientId=self._client)
 
     def state(self, vehicle: str) -> BodyState:
         """Motion of base_link and the wheels now."""
         loaded = self._vehicles[vehicle]
         com, orientation = pybullet.getBasePositionAndOrientation(loaded.index, physicsClientId=self._client)
-        velocity, angular = (np.array(v) for v in pybullet.getBaseVelocity(loaded.index, physicsClientId=self._client))
-        com_in_base, turned = loaded.com_in_base
-        world_from_base = multiply(_wxyz(orientation), inverse(turned))
-        arm = rotate(world_from_base, com_in_base)
-        joints = pybullet.getJointStates(loaded.index, loaded.wheels, physicsClientId=self._client)
-        return BodyState(
-            position=np.array(com) - arm,
-            world_from_body=world_from_base,
-            velocity=velocity - spin_velocity(angular, arm),
-            angular_velocity=rotate(inverse(world_from_base), angular),
-            wheel_angles=(joints[0][0], joints[1][0]),
-            wheel_speeds=WheelSpeeds(joints[0][1], joints[1][1]),
-        )
+        velocity, angular = pybullet.getBaseVelocity(loaded.index, physicsClientId=self._client)
+        left, right = self._joint_states(loaded)
+        motion = base_motion(com, orientation, velocity, angular, *loaded.com_in_base)
+        return BodyState(*motion, wheel_angles=(left[0], right[0]), wheel_speeds=WheelSpeeds(left[1], right[1]))
 
     def touches(self, vehicle: str) -> list[Touch]:
         """All that is touched now, the floor only by a vehicle that has fallen over."""
-        index, body = self._vehicles[vehicle].index, self.state(vehicle)
-        contacts: list[Any] = list(pybullet.getContactPoints(bodyA=index, physicsClientId=self._client))
-        fallen = matrix(body.world_from_body)[2, 2] < FALLEN
-        felt = [c for c in contacts if c[8] <= TOUCH and (self._names[c[2]] != "floor" or fallen)]
+        loaded = self._vehicles[vehicle]
+        contacts: Any = pybullet.getContactPoints(bodyA=loaded.index, physicsClientId=self._client)
+        felt = [c for c in contacts if c[8] <= TOUCH and self._names[c[2]] != "floor"]
+        if self._has_fallen(loaded):
+            felt += [c for c in contacts if c[8] <= TOUCH and self._names[c[2]] == "floor"]
+        if not felt:
+            return []
+        body = self.state(vehicle)
         places = [rotate(inverse(body.world_from_body), np.array(c[5]) - body.position) for c in felt]
         return [Touch(self._names[c[2]], float(np.arctan2(p[1], p[0]))) for c, p in zip(felt, places, strict=True)]
+
+    def _has_fallen(self, loaded: _Loaded) -> bool:
+        _, (x, y, z, w) = pybullet.getBasePositionAndOrientation(loaded.index, physicsClientId=self._client)
+        a, b, c = loaded.up_in_com
+        up: float = 2 * ((x * z - w * y) * a + (y * z + w * x) * b) + (1 - 2 * (x * x + y * y)) * c
+        return up < FALLEN
 
     def close(self) -> None:
         pybullet.disconnect(physicsClientId=self._client)

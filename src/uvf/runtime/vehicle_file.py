@@ -218,6 +218,22 @@ def line_of(sensor: Sampled, rng: np.random.Generator) -> Line[Any]:
     return Line(sensor.hz, sensor.latency, Dropout(sensor.dropout, sensor.burst, rng) if sensor.dropout else None)
 
 
+class Motor(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A wheel's motor with its gear, at the wheel; a first-order lag lies between the command and what it holds."""
+
+    stall_torque: Positive  # N m
+    no_load_speed: Positive  # rad/s
+    lag: NotNegative = 0.0  # s
+
+
+class Friction(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Coulomb coefficients on the ground: of the wheels along their rolling and across it, and of the links that only slide."""
+
+    mu: Positive = 1.0
+    mu2: Positive = 1.0
+    castor: NotNegative = 0.02
+
+
 class GroundBody(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """A differential-drive vehicle: URDF joint names, kinematics and limits."""
 
@@ -231,9 +247,9 @@ class GroundBody(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     max_angular: Positive  # rad/s
     max_linear_acceleration: Positive  # m/s^2
     max_angular_acceleration: Positive  # rad/s^2
-    motor_torque: Positive  # N m, at the wheel
+    motor: Motor
+    friction: Friction = Friction()
     physics_hz: PhysicsRate = 200.0
-    lateral_friction: Positive = 1.0
 
 
 class BatteryPack(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

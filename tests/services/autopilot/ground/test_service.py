@@ -20,7 +20,7 @@ from schemas.messages import (
 from services.autopilot.ground.multiplexer import SOURCES
 from services.autopilot.ground.service import GroundAutopilot, GroundAutopilotParams
 from tests.services.live_params import all_settable_are_read
-from uvf.runtime.vehicle_file import GroundBody
+from uvf.runtime.vehicle_file import GroundBody, Motor
 
 BODY = GroundBody(
     urdf="x.urdf",
@@ -33,7 +33,7 @@ BODY = GroundBody(
     max_angular=2.0,
     max_linear_acceleration=1.0,
     max_angular_acceleration=4.0,
-    motor_torque=1.0,
+    motor=Motor(stall_torque=1.0, no_load_speed=100.0),
 )
 WAYPOINTS = [MissionItem(position=Vector3(x=1.0)), MissionItem(position=Vector3(x=2.0))]
 NOBODY = dict.fromkeys(("teleop", "mavlink", "gcs", "client", "offboard", "planner", "stop", "pose"))

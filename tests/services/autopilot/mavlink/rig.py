@@ -50,7 +50,7 @@ _ROVER_FILE = {
         "max_angular": 2.0,
         "max_linear_acceleration": 1,
         "max_angular_acceleration": 1,
-        "motor_torque": 1,
+        "motor": {"stall_torque": 1, "no_load_speed": 100},
     },
 }
 _PLANE_NUMBERS = {"system_id": 1.0, "trim_airspeed": 25.0, "hold_radius": 90.0, "return_height": 40.0}
