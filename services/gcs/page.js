@@ -14,6 +14,8 @@
   const press = e => { const card = e.target.closest && e.target.closest('[data-gcs]'); if (card) send(JSON.stringify([card.dataset.gcs, Date.now()])); };
   document.addEventListener('pointerdown', press);
   document.addEventListener('keydown', e => { if (e.key === 'Enter' || e.key === ' ') press(e); });
+  const hand = e => { const page = window.__viserMutable; if (page && e.target === page.canvas && (e.type === 'wheel' || e.buttons)) window.__gcsHand = true; };
+  for (const type of ['wheel', 'pointermove']) document.addEventListener(type, hand, {capture: true, passive: true});
   const bar = document.createElement('div');
   bar.id = 'gcs-bar'; bar.setAttribute('role', 'status'); document.body.append(bar);
   let shape = '', told = 0;
@@ -24,7 +26,7 @@
       const box = canvas.getBoundingClientRect(), root = document.documentElement.style;
       root.setProperty('--gcs-left', box.left + 'px'); root.setProperty('--gcs-width', box.width + 'px');
       const seen = (box.width / Math.max(box.height, 1)).toFixed(3), time = performance.now();
-      if (seen !== shape || time - told > 2000) { shape = seen; told = time; send(JSON.stringify(['shape:' + shape, Date.now()])); }
+      if (seen !== shape || time - told > 2000) { shape = seen; told = time; send(JSON.stringify([(window.__gcsHand ? 'hand:' : 'shape:') + shape, Date.now()])); }
     }
     const source = document.getElementById('gcs-bar-source');
     const now = performance.now();

@@ -120,7 +120,7 @@ class ViserPage:
         if shape is None:
             self._actions.put(Select(selected_in(event.target.value)))
         elif event.client is not None:
-            self._views.reshape(event.client, shape)
+            self._views.reshape(event.client, *shape)
 
     def _asking(self, action: Callable[[Any], Action]) -> Callable[[Any], Coroutine[Any, Any, None]]:
         """A callback that queues an action, found when it is called: the same button may by then mean another.

@@ -14,8 +14,8 @@ def script(bridge: str) -> str:
 
 
 def follow(on: bool) -> str:
-    """Makes one page's view go along with the chosen vehicle, or stand still again."""
-    return f"window.__gcsFollow = {json.dumps(on)}"
+    """Makes one page's view go along with the chosen vehicle, or stand still again; either way it is no longer turned by hand."""
+    return f"window.__gcsFollow = {json.dumps(on)}; window.__gcsHand = false"
 
 
 def bar_source(content: str, beat: int) -> str:
@@ -46,10 +46,10 @@ def selected_in(value: str) -> str:
     return vehicle if what == "select" else ""
 
 
-def shape_in(value: str) -> float | None:
-    """Width by height of the page's scene, where its message tells that."""
+def shape_in(value: str) -> tuple[float, bool] | None:
+    """(width by height of the page's scene, whether nobody has turned its view by hand), where its message tells that."""
     what, shape = said_in(value)
     try:
-        return float(shape) if what == "shape" and 0.05 < float(shape) < 20.0 else None
+        return (float(shape), what == "shape") if what in ("shape", "hand") and 0.05 < float(shape) < 20.0 else None
     except ValueError:
         return None

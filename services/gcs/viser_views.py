@@ -1,9 +1,8 @@
 """The named views, fitted to each browser's own window, which tells its shape late and may be resized."""
 
 from collections.abc import Callable, Mapping
-from typing import Any, NamedTuple
+from typing import Any
 
-import numpy as np
 import viser
 from viser import _messages
 
@@ -13,16 +12,7 @@ from services.gcs.viser_script import follow
 Views = Callable[[float], Mapping[str, Camera]]
 """Width by height of a window -> its named views, the opening one first."""
 FOLLOW = "Follow"
-NEAR = 0.2  # m
 SAME_SHAPE = 0.02
-
-
-class Shown(NamedTuple):
-    """What one page was last told to show; reached: it has reported to be there."""
-
-    name: str
-    view: Camera
-    reached: bool = False
 
 
 class ViserViews:
@@ -30,7 +20,7 @@ class ViserViews:
 
     def __init__(self, server: viser.ViserServer, views: Views) -> None:
         self._views = views
-        self._chosen: dict[int, Shown] = {}
+        self._chosen: dict[int, str] = {}
         self._shapes: dict[int, float] = {}
         self._first = next(iter(views(1.0)))
         self.names = (*views(1.0), FOLLOW)
@@ -39,7 +29,6 @@ class ViserViews:
 
     async def _begin(self, client: viser.ClientHandle) -> None:
         self._look(client, self._first)
-        client.camera.on_update(self._moved)
 
     async def _end(self, client: viser.ClientHandle) -> None:
         self._chosen.pop(client.client_id, None)
@@ -54,27 +43,16 @@ class ViserViews:
         else:
             self._look(event.client, name)
 
-    async def _moved(self, camera: Any) -> None:
-        """What a page reports before it has come to the view that was sent is not a person's doing."""
-        shown = self._chosen.get(camera.client.client_id)
-        if shown is None:
-            return
-        there = np.allclose(camera.position, shown.view.position, rtol=0, atol=NEAR)
-        if there:
-            self._chosen[camera.client.client_id] = shown._replace(reached=True)
-        elif shown.reached:
-            del self._chosen[camera.client.client_id]
-
-    def reshape(self, client: Any, shape: float) -> None:
-        """A page's scene is now ``shape`` wide by high; viser itself does not always tell."""
+    def reshape(self, client: Any, shape: float, untouched: bool) -> None:
+        """A page says how wide by high its scene is, and whether nobody has turned its view by hand."""
         before = self._shapes.get(client.client_id, client.camera.aspect)
-        shown = self._chosen.get(client.client_id)
         self._shapes[client.client_id] = shape
-        if shown is not None and abs(shape / before - 1) > SAME_SHAPE:
-            self._look(client, shown.name)
+        name = self._chosen.get(client.client_id)
+        if name is not None and untouched and abs(shape / before - 1) > SAME_SHAPE:
+            self._look(client, name)
 
     def _look(self, client: Any, name: str) -> None:
         view = self._views(self._shapes.get(client.client_id, client.camera.aspect))[name]
-        self._chosen[client.client_id] = Shown(name, view)
+        self._chosen[client.client_id] = name
         with client.atomic():
             client.camera.position, client.camera.look_at = view.position, view.look_at

@@ -5,6 +5,7 @@ import pytest
 
 from schemas.messages import ArmRequest, Event, GoalRequest
 from tests.browser.canvas import CAMERA_TO, POINTS, POSITION, TRACK_BLUE, on_screen, pixels, until
+from tests.browser.conftest import opened
 from tests.services.gcs.scripted import UAV, UGV
 
 pytestmark = pytest.mark.timeout(240)
@@ -113,17 +114,24 @@ def test_nothing_covers_the_status_at_any_common_width(page, station, width):
     page.set_viewport_size({"width": 1200, "height": 700})
 
 
+def holds_the_house(page):
+    left, top, right, bottom = page.evaluate(BOXES)[2]
+    corners = [on_screen(page, (x, y, 0.0)) for x in (0.0, 12.0) for y in (0.0, 9.0)]
+    return all(left < x < right and top < y < bottom for x, y in corners)
+
+
+def test_the_opening_view_holds_the_whole_house(page, browser, station):
+    station.moving = False
+    with opened(browser, station.port, "/vehicles/milvus/0", (1100, 700)) as other:
+        assert until(other, lambda: holds_the_house(other))
+    station.moving = True
+
+
 @pytest.mark.parametrize(("view", "width"), [("Scene", 1440), ("Top", 1000), ("Top", 1440)])
 def test_a_view_holds_the_whole_house_in_a_window_that_changes_its_shape(page, station, view, width):
     page.get_by_role("button", name=view, exact=True).click()
     page.set_viewport_size({"width": width, "height": 700})
-
-    def inside():
-        left, top, right, bottom = page.evaluate(BOXES)[2]
-        corners = [on_screen(page, (x, y, 0.0)) for x in (0.0, 12.0) for y in (0.0, 9.0)]
-        return all(left < x < right and top < y < bottom for x, y in corners)
-
-    assert until(page, inside)
+    assert until(page, lambda: holds_the_house(page))
     page.set_viewport_size({"width": 1200, "height": 700})
     page.get_by_role("button", name="Scene", exact=True).click()
 

@@ -163,7 +163,14 @@ def test_a_card_can_only_select(said, vehicle):
 
 @pytest.mark.parametrize(
     ("said", "shape"),
-    [('["shape:0.87", 1]', 0.87), ('["shape:0", 1]', None), ('["shape:nan", 1]', None), ('["shape:x"]', None), ('["select:burger"]', None)],
+    [
+        ('["shape:0.87", 1]', (0.87, True)),
+        ('["hand:1.5", 1]', (1.5, False)),
+        ('["shape:0", 1]', None),
+        ('["shape:nan", 1]', None),
+        ('["shape:x"]', None),
+        ('["select:burger"]', None),
+    ],
 )
 def test_a_page_tells_the_shape_of_its_window(said, shape):
     assert shape_in(said) == shape
