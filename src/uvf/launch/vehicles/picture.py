@@ -19,7 +19,7 @@ Floats = NDArray[np.float64]
 
 PIXELS = 640
 FAR_OFF = 30.0  # of the vehicle's size, from which a picture has hardly any perspective
-GROUND = (0.93, 0.93, 0.94)
+GROUND = (0.78, 0.78, 0.80)  # the pattern on it makes it lighter
 AIRCRAFT_SIZE = 1.7  # m, about half the span of a small one
 UP = np.array((0.0, 0.0, 1.0))
 
