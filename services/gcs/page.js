@@ -19,7 +19,7 @@
   const bar = document.createElement('div');
   bar.id = 'gcs-bar'; bar.setAttribute('role', 'status'); document.body.append(bar);
   let shape = '', told = 0;
-  let beat = '', at = performance.now(), ticked = at;
+  let beat = '', silent = 0, ticked = performance.now();
   setInterval(() => {
     const canvas = window.__viserMutable && window.__viserMutable.canvas;
     if (canvas) {
@@ -30,10 +30,10 @@
     }
     const source = document.getElementById('gcs-bar-source');
     const now = performance.now();
-    if (source && source.dataset.beat !== beat) { beat = source.dataset.beat; at = now; if (bar.innerHTML !== source.innerHTML) bar.innerHTML = source.innerHTML; }
-    if (now - ticked > 1500) at = now;  // it was this page that stood still: what has come meanwhile is yet to be read
+    silent += Math.min(now - ticked, 400);  // a page that stood still itself has yet to read what came meanwhile
     ticked = now;
-    const dead = now - at > 3000;
+    if (source && source.dataset.beat !== beat) { beat = source.dataset.beat; silent = 0; if (bar.innerHTML !== source.innerHTML) bar.innerHTML = source.innerHTML; }
+    const dead = silent > 3000;
     bar.classList.toggle('g-dead', dead);
     if (dead) bar.innerHTML = LOST;
   }, 200);
