@@ -101,7 +101,7 @@ def engine(site: Site) -> list[float]:
     for n in range(1, 51):
         service.step(n / 100, commands=commands)
     with stopwatch() as taken:
-        for _ in range(round(SECONDS * world._rate)):
+        for _ in range(round(SECONDS * world.rate)):
             pybullet.stepSimulation(physicsClientId=world._client)
     service.close()
     return taken

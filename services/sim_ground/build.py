@@ -44,9 +44,9 @@ def _check(site: Site, member: Member, body: GroundBody) -> None:
         raise BadInput(f"{place}: ground: physics_hz is {body.physics_hz:g}; make it a multiple of {STEP_HZ:g}")
     sensors = member.file.sensors
     for kind in ("lidar", "imu", "encoders", "gnss"):
-        sensor = getattr(sensors, kind)
-        if sensor is not None and sensor.hz > STEP_HZ:
-            raise BadInput(f"{place}: sensors: {kind}: hz is {sensor.hz:g}; the simulator gives {STEP_HZ:g} at most")
+        sensor, most = getattr(sensors, kind), body.physics_hz if kind == "imu" else STEP_HZ
+        if sensor is not None and sensor.hz > most:
+            raise BadInput(f"{place}: sensors: {kind}: hz is {sensor.hz:g}; the simulator gives {most:g} at most")
     for i, sonar in enumerate(sensors.sonars):
         if sonar.hz > STEP_HZ:
             raise BadInput(f"{place}: sensors: sonars[{i}]: hz is {sonar.hz:g}; the simulator gives {STEP_HZ:g} at most")

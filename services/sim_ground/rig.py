@@ -1,7 +1,9 @@
 """One ground vehicle's sensors: which of them are due at a step, and what they say."""
 
-from collections.abc import Callable, Iterator, Mapping
-from typing import NamedTuple
+import copy
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
+from typing import NamedTuple, Self
 
 import numpy as np
 from google.protobuf.message import Message
@@ -15,6 +17,7 @@ from services.sim_ground.imu import ImuModel
 from services.sim_ground.lidar import LidarModel
 from services.sim_ground.sonar import SonarModel
 from uvf.maths.geodesy import LocalTangent
+from uvf.maths.instruments import Receiver
 from uvf.maths.raycast3 import Body, Scene
 from uvf.maths.sampling import Due, Line
 from uvf.runtime.link_frames import Links
@@ -28,11 +31,11 @@ STEP_HZ = 100.0
 
 
 class Moment(NamedTuple):
-    """What there is to measure: the body, what moves about it, and all that it touches."""
+    """What there is to measure: the body, what moves about it (worked out when a ray is cast), and all that it touches."""
 
     body: BodyState
-    others: list[Body]
-    touches: list[Touch]
+    others: Callable[[], list[Body]] = list
+    touches: Sequence[Touch] = ()
 
 
 Read = Callable[[float, Moment], Message]
@@ -60,6 +63,9 @@ class Rig:
         self._scene = scene
         self._member = member
         self._bumpers = member.file.sensors.bumpers
+        imu = member.file.sensors.imu
+        self.is_quick = imu is not None and imu.hz > STEP_HZ
+        self._early: list[Message] = []
         self._touches: list[Touch] = []
         self._truth_due = Due(topics.TRUTH.hz)
         self._contact_due = Due(topics.CONTACT.hz)
@@ -83,6 +89,11 @@ class Rig:
         """What does not move on the vehicle, stamped ``t`` [s]."""
         return self._links.resting(self._member.name, self._member.file.sensors, t)
 
+    def glance(self, t: float, body: BodyState) -> None:
+        """Between two steps, for an IMU that is faster than these; what it says is told at the next one."""
+        if self.is_quick and (message := self._fitted["imu"].step(t, Moment(body))) is not None:
+            self._early.append(message)
+
     def read(self, t: float, moment: Moment) -> Mapping[str, Value]:
         """What arrives at the step at ``t`` [s], by output name.
 
@@ -92,7 +103,8 @@ class Rig:
         found: dict[str, Value] = {}
         for output, sensor in self._fitted.items():
             if (message := sensor.step(t, moment)) is not None:
-                found[output] = message
+                found[output] = [*self._early, message] if output == "imu" and self._early else message
+                self._early = [] if output == "imu" else self._early
         if heard := [message for sonar in self._sonars if (message := sonar.step(t, moment)) is not None]:
             found["sonar"] = heard
         if self._truth_due.at(t):
@@ -115,22 +127,45 @@ class Rig:
         return f"{self._member.name}/{frame}"
 
     def _imu(self, imu: ImuSensor) -> Read:
-        model = ImuModel(imu, np.array(self._site.world.magnetic_field), self._rng("imu"))
-        return lambda t, moment: readings.imu_message(self._frame(imu.frame), model.read(t, moment.body))
+        return partial(_read_imu, self._frame(imu.frame), ImuModel(imu, np.array(self._site.world.magnetic_field), self._rng("imu")))
 
     def _lidar(self, lidar: Lidar) -> Read:
-        model = LidarModel(lidar, self._scene, self._rng("lidar"))
-        return lambda t, moment: readings.scan_message(t, self._frame(lidar.frame), lidar, model.scan(moment.body, moment.others))
+        return partial(_read_lidar, self._frame(lidar.frame), lidar, LidarModel(lidar, self._scene, self._rng("lidar")))
 
     def _encoders(self, encoders: Encoders) -> Read:
-        return lambda t, moment: readings.wheels_message(t, encoders, moment.body)
+        return partial(_read_encoders, encoders)
 
     def _gnss(self, gnss: GnssSensor) -> Read:
         origin = self._site.world.origin
         tangent = LocalTangent.from_degrees(origin.latitude, origin.longitude, origin.altitude)
-        receiver = gnss.receiver(tangent, self._rng("gnss"))
-        return lambda t, moment: readings.gnss_message(gnss, receiver.read(t, moment.body.position, moment.body.velocity))
+        return partial(_read_gnss, gnss, gnss.receiver(tangent, self._rng("gnss")))
 
     def _sonar(self, sonar: Sonar) -> Read:
-        model = SonarModel(sonar, self._scene, self._rng("sonar", sonar.frame))
-        return lambda t, moment: readings.range_message(t, self._frame(sonar.frame), sonar, model.range(moment.body, moment.others))
+        return partial(_read_sonar, self._frame(sonar.frame), sonar, SonarModel(sonar, self._scene, self._rng("sonar", sonar.frame)))
+
+    def __deepcopy__(self, memo: dict[int, object]) -> Self:
+        """A rig that goes on from here by itself: generators and readings under way are its own, what does not change is shared."""
+        memo |= {id(part): part for part in (self._site, self._scene, self._member, self._links, self.ground)}
+        twin = object.__new__(type(self))
+        twin.__dict__ = copy.deepcopy(self.__dict__, memo)
+        return twin
+
+
+def _read_imu(frame: str, model: ImuModel, t: float, moment: Moment) -> Message:
+    return readings.imu_message(frame, model.read(t, moment.body))
+
+
+def _read_lidar(frame: str, lidar: Lidar, model: LidarModel, t: float, moment: Moment) -> Message:
+    return readings.scan_message(t, frame, lidar, model.scan(moment.body, moment.others()))
+
+
+def _read_encoders(encoders: Encoders, t: float, moment: Moment) -> Message:
+    return readings.wheels_message(t, encoders, moment.body)
+
+
+def _read_gnss(gnss: GnssSensor, receiver: Receiver, t: float, moment: Moment) -> Message:
+    return readings.gnss_message(gnss, receiver.read(t, moment.body.position, moment.body.velocity))
+
+
+def _read_sonar(frame: str, sonar: Sonar, model: SonarModel, t: float, moment: Moment) -> Message:
+    return readings.range_message(t, frame, sonar, model.range(moment.body, moment.others()))

@@ -1,6 +1,7 @@
 """The ground vehicles' simulator as a service: wheel commands in, what the sensors say out."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from functools import cache, partial
 from typing import Protocol
 
 from schemas import topics
@@ -9,13 +10,17 @@ from services.sim_ground.body import BodyState, Touch
 from services.sim_ground.rig import STEP_HZ, Moment, Rig
 from services.sim_ground.surroundings import Surroundings
 from uvf.maths.kinematics import WheelSpeeds
+from uvf.maths.raycast3 import Body
 from uvf.runtime.service import Outputs, Service, Value, each_vehicle, optional
 
 
 class GroundWorld(Protocol):
     """The physics behind the service."""
 
-    def advance(self, wheels: Mapping[str, WheelSpeeds], duration: float) -> None: ...
+    rate: float
+    """Physics steps a second."""
+
+    def advance(self, wheels: Mapping[str, WheelSpeeds], duration: float, since: float) -> None: ...
 
     def state(self, vehicle: str) -> BodyState: ...
 
@@ -55,18 +60,34 @@ class SimGround(Service):
         self._told = False
 
     def step(self, t: float, commands: dict[str, WheelCommand]) -> Outputs:
-        self._world.advance({name: WheelSpeeds(c.left, c.right) for name, c in commands.items()}, 1 / self.hz)
+        self._advance(t, {name: WheelSpeeds(c.left, c.right) for name, c in commands.items()})
         states = {name: self._world.state(name) for name in self._rigs}
-        vehicles, moving = self._surroundings.bodies(states), self._surroundings.moving(t)
+        bodies = cache(lambda: (self._surroundings.moving(t), self._surroundings.bodies(states)))
         outputs: dict[str, dict[str, Value]] = {}
         for name, rig in self._rigs.items():
-            others = moving + [body for other, body in vehicles.items() if other != name]
-            for output, read in rig.read(t, Moment(states[name], others, self._world.touches(name))).items():
+            moment = Moment(states[name], partial(_others, name, bodies), self._world.touches(name))
+            for output, read in rig.read(t, moment).items():
                 outputs.setdefault(output, {})[name] = read
         if not self._told:  # at the first step, which is not always step 1: a process may join a running clock
             outputs["frames"] = {name: rig.frames(t) for name, rig in self._rigs.items()}
             self._told = True
         return outputs
 
+    def _advance(self, t: float, wheels: Mapping[str, WheelSpeeds]) -> None:
+        """To ``t`` [s], looking at those who read faster than this service steps after each step of the physics."""
+        quick = [name for name, rig in self._rigs.items() if rig.is_quick]
+        parts = round(self._world.rate / self.hz) if quick else 1
+        duration = 1 / self.hz
+        for n in range(parts):
+            self._world.advance(wheels, duration / parts, t - duration + n * duration / parts)
+            for name in quick if n < parts - 1 else ():
+                self._rigs[name].glance(t - duration + (n + 1) * duration / parts, self._world.state(name))
+
     def close(self) -> None:
         self._world.close()
+
+
+def _others(name: str, bodies: Callable[[], tuple[list[Body], dict[str, Body]]]) -> list[Body]:
+    """What moves about a vehicle: solids by script and the other vehicles."""
+    moving, vehicles = bodies()
+    return moving + [body for other, body in vehicles.items() if other != name]

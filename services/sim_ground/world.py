@@ -54,12 +54,12 @@ class BulletWorld:
 
     def __init__(self, solids: Sequence[Solid], vehicles: Mapping[str, Placed]) -> None:
         self._client: int = pybullet.connect(pybullet.DIRECT)
-        self._rate = max((v.body.physics_hz for v in vehicles.values()), default=200.0)
+        self.rate = max((v.body.physics_hz for v in vehicles.values()), default=200.0)
         self._names: dict[int, str] = {}
         self._scripted: list[tuple[int, Solid, Keyframes]] = []
         pybullet.setGravity(0.0, 0.0, -GRAVITY, physicsClientId=self._client)
         pybullet.setPhysicsEngineParameter(
-            fixedTimeStep=1 / self._rate, numSolverIterations=50, deterministicOverlappingPairs=1, physicsClientId=self._client
+            fixedTimeStep=1 / self.rate, numSolverIterations=50, deterministicOverlappingPairs=1, physicsClientId=self._client
         )
         floor = pybullet.createCollisionShape(pybullet.GEOM_PLANE, physicsClientId=self._client)
         self._add("floor", floor, np.zeros(3), UPRIGHT)
@@ -92,7 +92,7 @@ class BulletWorld:
         local = pybullet.getDynamicsInfo(index, -1, physicsClientId=self._client)
         com_in_base = (np.array(local[3]), _wxyz(local[4]))
         self._place(index, vehicle.start, com_in_base)
-        left, right = (WheelMotor(vehicle.body.motor, 1 / self._rate) for _ in wheels)
+        left, right = (WheelMotor(vehicle.body.motor, 1 / self.rate) for _ in wheels)
         x, y, z = matrix(com_in_base[1])[2]
         return _Loaded(index, wheels, (left, right), com_in_base, (float(x), float(y), float(z)))
 
@@ -126,8 +126,8 @@ class BulletWorld:
         for name, speeds in wanted.items():
             if not np.isfinite(speeds).all():
                 wanted[name] = STOPPED
-        for n in range(round(duration * self._rate)):
-            self._move_scripted(since + n / self._rate)
+        for n in range(round(duration * self.rate)):
+            self._move_scripted(since + n / self.rate)
             for name, vehicle in self._vehicles.items():
                 self._drive(vehicle, wanted[name])
             pybullet.stepSimulation(physicsClientId=self._client)

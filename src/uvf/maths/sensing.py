@@ -5,6 +5,7 @@ child of the channel's, so that switching one on changes no other one's stream.
 """
 
 from dataclasses import dataclass
+from math import exp, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
@@ -53,9 +54,9 @@ class GaussMarkov:
 
     def step(self, dt: float) -> Floats:
         """(n,) the value ``dt`` [s] later."""
-        keep = np.exp(-dt / self._time_constant)
+        keep = exp(-dt / self._time_constant)
         new = self._rng.standard_normal(self._sigma.shape)
-        self.value = keep * self.value + self._sigma * np.sqrt(1 - keep * keep) * new
+        self.value = keep * self.value + self._sigma * sqrt(1 - keep * keep) * new
         return self.value
 
 
@@ -70,7 +71,7 @@ class RandomWalk:
 
     def step(self, dt: float) -> Floats:
         """(n,) the value ``dt`` [s] later."""
-        self.value = self.value + self._density * np.sqrt(dt) * self._rng.standard_normal(self._density.shape)
+        self.value = self.value + self._density * sqrt(dt) * self._rng.standard_normal(self._density.shape)
         return self.value
 
 
@@ -84,6 +85,7 @@ class Channel:
         self._noise = np.broadcast_to(np.asarray(errors.noise, dtype=np.float64), size)
         self._bias: Floats = errors.bias * bias.standard_normal(size)
         self._scale: Floats = 1.0 + errors.scale * scale.standard_normal(size)
+        self._limit = np.asarray(errors.limit, dtype=np.float64) if np.isfinite(errors.limit).any() else None
         self._slow: list[GaussMarkov | RandomWalk] = []  # those that there are: most channels have none
         if np.any(errors.drift):
             self._slow.append(GaussMarkov(np.ones(size) * errors.drift, errors.drift_time, drift))
@@ -96,6 +98,6 @@ class Channel:
         value: Floats = self._scale * true + self._bias + self._noise * self._rng.standard_normal(self._noise.shape)
         for process in self._slow:
             value += process.step(dt)
-        if np.isfinite(errors.limit).any():
-            value = np.clip(value, -np.asarray(errors.limit), errors.limit)
+        if self._limit is not None:
+            value = np.minimum(np.maximum(value, -self._limit), self._limit)
         return np.round(value / errors.resolution) * errors.resolution if errors.resolution else value

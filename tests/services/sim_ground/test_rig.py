@@ -32,7 +32,7 @@ def stand(tmp_path):
         member = replace(member, file=msgspec.structs.replace(member.file, sensors=fitted))
         rig, said = Rig(site, member, member.file.ground, scene(solids(site.world, site.world_folder))), {}
         for t in (n / 100 for n in range(1, round(seconds_ * 100) + 1)):
-            for output, message in rig.read(t, Moment(STILL, [], list(touches(t)))).items():
+            for output, message in rig.read(t, Moment(STILL, touches=list(touches(t)))).items():
                 said.setdefault(output, []).append((t, message))
         return said
 

@@ -1,8 +1,12 @@
 """The service with a world of twenty lines: which command goes where, and what is told once."""
 
+from dataclasses import replace
+
+import msgspec
 import numpy as np
 import pytest
 
+from schemas.convert import seconds
 from schemas.messages import WheelCommand
 from services.sim_ground.body import BodyState, Touch
 from services.sim_ground.rig import Rig
@@ -17,13 +21,15 @@ from uvf.runtime.world_geometry import solids
 class StandingWorld:
     """Nothing moves; keeps what it was told."""
 
+    rate = 200.0
+
     def __init__(self, positions, touches=()):
         self.positions = positions
         self.seen = list(touches)
         self.told = []
 
-    def advance(self, wheels, duration):
-        self.told.append((dict(wheels), duration))
+    def advance(self, wheels, duration, since):
+        self.told.append((dict(wheels), duration, since))
 
     def state(self, vehicle):
         x, y = self.positions[vehicle]
@@ -52,7 +58,7 @@ def service_in(site, world):
 def test_each_command_goes_to_its_vehicle_for_one_period(site):
     world = StandingWorld({"one": (6.0, 4.4), "two": (7.0, 4.4)})
     service_in(site, world).step(0.01, commands={"two": WheelCommand(left=1.0, right=2.0)})
-    assert world.told == [({"two": (1.0, 2.0)}, 0.01)]
+    assert world.told == [({"two": (1.0, 2.0)}, 0.01, 0.0)]
 
 
 def test_frames_are_told_at_the_first_step_only(site):
@@ -87,6 +93,20 @@ def test_a_short_touch_between_two_messages_is_told_once(site):
 def test_a_simulator_that_joins_late_still_tells_its_frames(site):
     service = service_in(site, StandingWorld({"one": (6.0, 4.4), "two": (7.0, 4.4)}))
     assert set(service.step(50.0, commands={})["frames"]) == {"one", "two"}
+
+
+def test_an_imu_at_200_hz_is_read_after_each_step_of_the_physics(site):
+    member = site.members["one"]
+    imu = msgspec.structs.replace(member.file.sensors.imu, hz=200.0)
+    file = msgspec.structs.replace(member.file, sensors=msgspec.structs.replace(member.file.sensors, imu=imu))
+    site.members["one"] = replace(member, file=file)
+    world = StandingWorld({"one": (6.0, 4.4), "two": (7.0, 4.4)})
+    service = service_in(site, world)
+    for n in range(1, 4):
+        said = service.step(n / 100, commands={})["imu"]
+        assert [round(seconds(m.timestamp), 6) for m in said["one"]] == [round(n / 100 - 0.005, 6), n / 100]
+        assert seconds(said["two"].timestamp) == n / 100
+    assert [(duration, round(since, 6)) for _, duration, since in world.told[-2:]] == [(0.005, 0.02), (0.005, 0.025)]
 
 
 def test_closing_gives_the_engine_back(site):
