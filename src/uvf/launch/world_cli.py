@@ -69,18 +69,42 @@ def world_picture(
     typer.echo(f"uvf: {path}")
 
 
+@world_app.command("check")
+def world_check(
+    name: NameArgument,
+    radius: RadiusOption = BURGER,
+    mission: Annotated[str | None, typer.Option("--mission", "-m", help="Also look whether its vehicles start freely.")] = None,
+) -> None:
+    """Look for things in the air or in the ground, floor out of reach, scripts through walls, blocked starts."""
+    from uvf.launch import settings
+    from uvf.launch.worlds.check import blocked_starts, problems
+    from uvf.runtime.site import load_site
+    from uvf.runtime.world_file import load_world
+
+    try:
+        found = list(problems(load_world(_worlds(), name), radius))
+        found += blocked_starts(load_site(settings.mission_path(mission))) if mission else []
+    except BadInput as error:
+        raise _refuse(error) from error
+    for line in found:
+        typer.echo(line)
+    typer.echo(f"uvf: {len(found)} problems" if found else "uvf: nothing wrong")
+    raise typer.Exit(1 if found else 0)
+
+
 @world_app.command("import")
 def world_import(
-    file: Annotated[Path, typer.Argument(help="A Gazebo .world or .sdf.")],
+    file: Annotated[Path, typer.Argument(help="A Gazebo .world or .sdf, or the yaml of a map.")],
     name: Annotated[str, typer.Option(help="Of the new folder in worlds/.")],
     models: Annotated[list[Path] | None, typer.Option(help="Folders with Gazebo models.")] = None,
+    height: Annotated[float, typer.Option(min=0.1, max=100.0, help="Of the walls of a map [m].")] = 2.0,
     replace: Annotated[bool, typer.Option("--replace", help="Overwrite a world of that name.")] = False,
 ) -> None:
     """Take over a world, telling what was left out."""
-    from uvf.launch.worlds.imports import import_world
+    from uvf.launch.worlds.imports import Options, import_world
 
     try:
-        path, lines = import_world(file, _worlds() / name, models or [], replace)
+        path, lines = import_world(file, _worlds() / name, Options(models or (), height, replace))
     except BadInput as error:
         raise _refuse(error) from error
     for line in lines:

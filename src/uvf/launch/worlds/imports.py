@@ -4,22 +4,34 @@ import re
 import shutil
 from collections.abc import Sequence
 from pathlib import Path
+from typing import NamedTuple
 
+from uvf.launch.worlds.map_image import map_world
+from uvf.launch.worlds.notes import Notes
 from uvf.launch.worlds.sdf_world import SdfImport
 from uvf.launch.worlds.world_writer import write_world
 from uvf.runtime.params import BadInput
 from uvf.runtime.world_file import WorldFile, load_world
 
 SDF = (".world", ".sdf")
+MAPS = (".yaml", ".yml", ".pgm", ".png")
 
 
-def import_world(file: Path, folder: Path, models: Sequence[Path], replace: bool) -> tuple[Path, list[str]]:
+class Options(NamedTuple):
+    """models: folders with Gazebo models; height [m] of a map's walls; replace: overwrite a world of that name."""
+
+    models: Sequence[Path] = ()
+    height: float = 2.0
+    replace: bool = False
+
+
+def import_world(file: Path, folder: Path, options: Options) -> tuple[Path, list[str]]:
     """The new world.yaml, and lines about what there is in it and what was left out. Raises BadInput."""
-    make_room(folder, replace)
+    make_room(folder, options.replace)
     if not file.is_file():
         raise BadInput(f"{file}: no such file")
     try:
-        world, notes = _read(file, folder, models)
+        world, notes = _read(file, folder, options)
         path = write_world(world, folder, [f"note: {note}" for note in notes])
         load_world(folder.parent, folder.name)
     except BadInput:
@@ -37,10 +49,13 @@ def make_room(folder: Path, replace: bool) -> None:
     shutil.rmtree(folder, ignore_errors=True)
 
 
-def _read(file: Path, folder: Path, models: Sequence[Path]) -> tuple[WorldFile, list[str]]:
+def _read(file: Path, folder: Path, options: Options) -> tuple[WorldFile, list[str]]:
+    if file.suffix in MAPS:
+        notes = Notes()
+        return map_world(file, options.height, notes), notes.lines()
     if file.suffix not in SDF:
-        raise BadInput(f"{file}: files of this kind are not taken over; give a .world or .sdf")
-    reading = SdfImport(file, folder, models)
+        raise BadInput(f"{file}: files of this kind are not taken over; give {', '.join((*SDF, *MAPS))}")
+    reading = SdfImport(file, folder, options.models)
     return reading.world(), reading.notes.lines()
 
 
