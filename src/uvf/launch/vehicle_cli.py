@@ -101,3 +101,31 @@ def new(
     except BadInput as error:
         raise _refused(error) from error
     typer.echo(f"uvf: {folder}; look at it with 'uvf vehicle check {name}'")
+
+
+@vehicle_app.command("import")
+def import_(
+    source: Annotated[Path, typer.Argument(help="A .urdf, .xacro or .sdf.")],
+    name: NewName,
+    into: IntoOption = VEHICLES,
+    arg: Annotated[list[str] | None, typer.Option(help="Of the xacro, as name:=value.")] = None,
+) -> None:
+    """Take over a robot of others: a folder in vehicles/, and a note of what was dropped or guessed. Checks it at once."""
+    from uvf.launch.vehicles.checking import check_all
+    from uvf.launch.vehicles.importing import import_vehicle
+
+    try:
+        arguments = dict(_pair(text) for text in arg or [])
+        for line in import_vehicle(source, into / name, arguments):
+            typer.echo(f"note: {line}")
+        raise typer.Exit(1 if check_all([str(into / name)], into, None) else 0)
+    except BadInput as error:
+        raise _refused(error) from error
+
+
+def _pair(text: str) -> tuple[str, str]:
+    """Raises BadInput."""
+    name, sign, value = text.partition(":=")
+    if not sign or not name:
+        raise BadInput(f"--arg {text}: write it as name:=value")
+    return name, value
