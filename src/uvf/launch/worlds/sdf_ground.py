@@ -18,7 +18,8 @@ Planes = Sequence[tuple[float, Colour | None]]
 LEVEL = 1e-3  # m
 MARGIN = 1.0  # m of floor about the outermost thing
 SLAB_SHARE = 0.5  # of the floor that a slab covers to count as the ground
-THICKEST_SLAB = 1.0  # m
+THICKEST_SLAB = 0.5  # m
+SHORTEST_SLAB = 3.0  # m
 FARTHEST = 1e4  # m
 ON_SLAB = 0.01  # m
 WIDEST = 1000.0  # m
@@ -53,7 +54,8 @@ class Ground:
 
     def _slab(self, things: Sequence[Thing]) -> Box | None:
         """A level box below the middles of all others that carries most of them."""
-        boxes = [t for t in things if isinstance(t, Box) and t.size[2] <= THICKEST_SLAB and abs(t.rpy[0]) + abs(t.rpy[1]) < 1e-6]
+        level = [t for t in things if isinstance(t, Box) and abs(t.rpy[0]) + abs(t.rpy[1]) < 1e-6]
+        boxes = [t for t in level if t.size[2] <= THICKEST_SLAB and min(t.size[:2]) >= SHORTEST_SLAB]
         if not boxes or len(things) < 2:
             return None
         widest = max(boxes, key=lambda b: b.size[0] * b.size[1])
