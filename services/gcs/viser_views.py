@@ -3,6 +3,7 @@
 from collections.abc import Callable, Mapping
 from typing import Any
 
+import numpy as np
 import viser
 from viser import _messages
 
@@ -12,7 +13,7 @@ from services.gcs.viser_script import follow
 Views = Callable[[float], Mapping[str, Camera]]
 """Width by height of a window -> its named views, the opening one first."""
 FOLLOW = "Follow"
-SAME_SHAPE = 0.02
+NEAR = 0.2  # m
 
 
 class ViserViews:
@@ -44,11 +45,12 @@ class ViserViews:
             self._look(event.client, name)
 
     def reshape(self, client: Any, shape: float, untouched: bool) -> None:
-        """A page says how wide by high its scene is, and whether nobody has turned its view by hand."""
-        before = self._shapes.get(client.client_id, client.camera.aspect)
+        """A page says, again and again, how wide by high its scene is, and whether nobody has turned its view by hand."""
         self._shapes[client.client_id] = shape
         name = self._chosen.get(client.client_id)
-        if name is not None and untouched and abs(shape / before - 1) > SAME_SHAPE:
+        if name is None or not untouched:
+            return
+        if not np.allclose(client.camera.position, self._views(shape)[name].position, rtol=0, atol=NEAR):
             self._look(client, name)
 
     def _look(self, client: Any, name: str) -> None:
