@@ -92,6 +92,26 @@ def world_check(
     raise typer.Exit(1 if found else 0)
 
 
+@world_app.command("new")
+def world_new(
+    name: Annotated[str, typer.Argument(help="Of the new folder in worlds/.")],
+    rooms: Annotated[int, typer.Option(min=1, max=40, help="How many.")] = 6,
+    seed: Annotated[int, typer.Option(min=0, help="The same seed makes the same house.")] = 1,
+    replace: Annotated[bool, typer.Option("--replace", help="Overwrite a world of that name.")] = False,
+) -> None:
+    """Make up a house with rooms, doors and furniture; every room can be reached."""
+    from uvf.launch.worlds.generator import generate
+    from uvf.launch.worlds.imports import make_room
+    from uvf.launch.worlds.world_writer import write_world
+
+    try:
+        make_room(_worlds() / name, replace)
+    except BadInput as error:
+        raise _refuse(error) from error
+    path = write_world(generate(rooms, seed), _worlds() / name)
+    typer.echo(f"uvf: {path}; look at it with 'uvf world picture {name}'")
+
+
 @world_app.command("import")
 def world_import(
     file: Annotated[Path, typer.Argument(help="A Gazebo .world or .sdf, or the yaml of a map.")],

@@ -17,6 +17,7 @@ Floats = NDArray[np.float64]
 
 GAP = 0.02  # m, that still counts as standing on something
 SMALLEST_ROOM = 0.5  # m^2
+LARGEST_HOLLOW = 3.0  # m, side of a mesh that is a thing and no building
 LONGEST = 120.0  # s of the scripts that are looked at
 STEP = 0.1  # s
 RIM = 16  # points on a round one's rim
@@ -72,7 +73,7 @@ def _level(thing: Solid) -> bool:
 
 def _out_of_reach(world: WorldFile, radius: float) -> Iterator[str]:
     """All floor but the largest connected one, and but the hollows of meshes."""
-    hollows = [_bounds(thing) for thing in solids(world) if thing.shape == "mesh"]
+    hollows = [b for t in solids(world) if t.shape == "mesh" and ((b := _bounds(t))[1] - b[0])[:2].max() <= LARGEST_HOLLOW]
     plan = floor_plan(world, RESOLUTION)
     x, y = plan.centres()
     for region in free_regions(plan, radius)[1:]:

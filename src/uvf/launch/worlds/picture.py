@@ -25,6 +25,7 @@ WIDTH, HEIGHT = 1440, 1040  # pixels of the view, drawn twice as large as shown
 LENS = 0.9  # rad
 LOOK_DOWN = np.radians(42.0)
 LOOK_FROM = np.radians(-62.0)  # from the south-east
+ON_THE_FLOOR = 0.02  # m, what lies lower is not drawn into the plan
 CUT = 1.4  # m, higher walls and things are shown cut there, so that one looks into the rooms
 
 
@@ -59,7 +60,7 @@ def _draw_plan(axes: Axes, world: WorldFile, plan: FloorPlan, reachable: Mask) -
 
 def _draw_solid(axes: Axes, solid: Solid) -> None:
     """Its shadow on the ground."""
-    shadow = footprint(primitives(solid), -1e3, 1e3)
+    shadow = footprint(primitives(solid), ON_THE_FLOOR, 1e3)
     look: dict[str, Any] = {"facecolor": (*solid.colour, 0.75), "edgecolor": (0, 0, 0, 0.35), "linewidth": 0.3}
     if solid.shape == "mesh":
         look["edgecolor"] = "none"
