@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from uvf.maths.kinematics import DifferentialDrive, Twist, WheelSpeeds, move, spin_velocity
+from uvf.maths.kinematics import DifferentialDrive, Twist, WheelSpeeds, move, spin_velocity, twist_between
 from uvf.maths.planar import Pose2
 from uvf.maths.rotations import wrap
 
@@ -72,3 +72,15 @@ def test_straight_ahead_needs_no_special_case():
 def test_a_point_of_a_spinning_body_moves_by_the_cross_product(values):
     omega, arm = np.array(values[:3]), np.array(values[3:])
     assert spin_velocity(omega, arm) == pytest.approx(np.cross(omega, arm), abs=1e-9)
+
+
+@given(poses, twists, st.floats(0.01, 1.0))
+def test_the_velocity_between_two_poses_is_the_one_that_led_there(start, twist, dt):
+    assert twist_between(start, move(start, twist, dt), dt) == pytest.approx(twist, abs=1e-6)
+
+
+@given(poses, twists, st.floats(0.01, 0.5), st.floats(0.05, 1.0), st.floats(0.01, 1.0))
+def test_the_wheels_that_lead_from_one_pose_to_another_are_found_and_lead_there(start, twist, radius, track, dt):
+    drive, end = DifferentialDrive(radius, track), move(start, twist, dt)
+    left, right = drive.wheels(twist_between(start, end, dt))
+    assert same(move(start, drive.twist(WheelSpeeds(left * dt, right * dt)), 1.0), end)

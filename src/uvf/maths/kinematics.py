@@ -60,6 +60,17 @@ def move(pose: Pose2, twist: Twist, dt: float) -> Pose2:
     return Pose2(x + chord * float(np.cos(heading)), y + chord * float(np.sin(heading)), wrap(yaw + turn))
 
 
+def twist_between(start: Pose2, end: Pose2, dt: float) -> Twist:
+    """The constant velocity whose arc leads from one pose to the other in ``dt`` [s]: the inverse of ``move`` for turns below pi.
+
+    Where no arc does, because of a step sideways, the one of the same turn whose chord reaches as far along its heading.
+    """
+    turn = wrap(end.yaw - start.yaw)
+    heading = start.yaw + turn / 2
+    chord = (end.x - start.x) * float(np.cos(heading)) + (end.y - start.y) * float(np.sin(heading))
+    return Twist(chord / (dt * float(np.sinc(turn / (2 * np.pi)))), turn / dt)
+
+
 def spin_velocity(angular_velocity: Floats, arm: Floats) -> Floats:
     """(3,) omega x r [m/s]: velocity of a body's point at ``arm`` [m] against its origin, both in one frame.
 
