@@ -106,7 +106,7 @@ class UrdfModel:
     def link_poses(self, joint_angles: Mapping[str, float] | None = None) -> dict[str, Transform]:
         """root_from_link of every link that hangs on the first root; joints not named stand at zero."""
         angles, poses = joint_angles or {}, dict.fromkeys(self.roots[:1], IDENTITY)
-        waiting = list(self.joints.values())
+        waiting = [j for j in self.joints.values() if j.child in self.links]
         while ready := [j for j in waiting if j.parent in poses and j.child not in poses]:
             for joint in ready:
                 poses[joint.child] = compose(poses[joint.parent], joint.at(angles.get(joint.name, 0.0)))

@@ -156,7 +156,8 @@ class _Reader:
             self._fault(tag, f"joint '{name}': type '{kind}'; {nearest(kind, JOINT_KINDS)}")
         axis = self._row(tag.find("axis"), "xyz", 3, (1.0, 0.0, 0.0))
         if not axis.any():
-            self._fault(tag, f"joint '{name}': an axis of no direction; a wheel's is mostly xyz=\"0 1 0\"")
+            if kind != "fixed":  # exporters write zeros there for joints that do not move
+                self._fault(tag, f"joint '{name}': an axis of no direction; a wheel's is mostly xyz=\"0 1 0\"")
             axis = np.array((0.0, 1.0, 0.0))
         parent, child = (tag.find(end).get("link", "") if tag.find(end) is not None else "" for end in ("parent", "child"))
         limit, mimic = tag.find("limit"), tag.find("mimic")

@@ -173,9 +173,9 @@ def _margin_notes(body: Body) -> Iterator[str]:
 
 
 def _supports(body: Body) -> list[Floats]:
-    """(2,) m: where the vehicle touches the floor; of a shape's underside its corners."""
-    points: list[Floats] = []
-    for solid in body.collisions([*body.rest, *body.turning]):
+    """(2,) m: the wheels, wherever they are, and what else touches the floor; of a shape's underside its corners."""
+    points: list[Floats] = [body.poses[joint.child].translation[:2] for joint in body.joints.values()]
+    for solid in body.collisions(body.rest):
         low = -float(reach(solid, DOWN)[0])
         if low <= TOUCH:
             corners = triangles(solid)[0]

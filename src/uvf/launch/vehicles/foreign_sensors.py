@@ -35,7 +35,8 @@ def sensors_section(foreign: Foreign, base_from_link: dict[str, Transform]) -> S
             foreign.notes.add(f"a vehicle has one {kind}; the others dropped", sensor.link)
         else:
             mount = _mount(compose(base_from_link[sensor.link], sensor.link_from_sensor))
-            section[kind] = {"mount": mount, **make(sensor, foreign), "frame": sensor.link}
+            frame = sensor.link if _is_link_itself(sensor) else f"{sensor.link}_{kind}"
+            section[kind] = {"mount": mount, **make(sensor, foreign), "frame": frame}
             if kind == "gnss":
                 section[kind] = {"preset": "good"}
     foreign.notes.add("guessed: wheel encoders of 4096 ticks a turn at 50 Hz")
@@ -65,6 +66,12 @@ def _kind(sensor: ForeignSensor) -> tuple[str, Callable[[ForeignSensor, Foreign]
     if kind in ("gps", "navsat"):
         return "gnss", lambda sensor, foreign: {}
     return kind, None
+
+
+def _is_link_itself(sensor: ForeignSensor) -> bool:
+    """Whether a link's frame is the sensor's: links that are called after a sensor."""
+    named = any(word in sensor.link.lower() for words in NAMES.values() for word in words)
+    return named and bool(np.linalg.norm(sensor.link_from_sensor.translation) < 1e-6)
 
 
 def _mount(base_from_sensor: Transform) -> Section:

@@ -133,7 +133,7 @@ def _castors(parts: _Parts, rest: list[str], foreign: Foreign) -> dict[str, Soli
     extra = [w.joint.name for w in parts.pair.others if w.joint.child in found]
     if len(extra) >= 2:
         foreign.notes.add(SKID, ", ".join(extra))
-    plain = [n for n in found if n not in others]
+    plain = [n for n in found if n not in others or len(extra) < 2]
     if plain:
         foreign.notes.add("castors became balls that slide and touch the floor", ", ".join(plain))
     return found

@@ -1,0 +1,51 @@
+"""A vehicle's folder on a flat floor in the ground simulator's physics."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from services.sim_ground.world import BulletWorld, Placed
+from uvf.maths.kinematics import DifferentialDrive, Twist
+from uvf.maths.rotations import to_euler
+from uvf.runtime.urdf_model import engine_urdf
+from uvf.runtime.vehicle_file import load_vehicle
+
+STEP = 0.02  # s
+
+
+class Driven(NamedTuple):
+    """x, y [m] and the angle turned [rad], simulated and by the wheels' closed-form kinematics; the largest tilt [rad]."""
+
+    pose: np.ndarray
+    expected: np.ndarray
+    tilt: float
+
+
+def drive(folder, twist, duration):
+    """From a stand, at the accelerations the file allows, and to a stand again."""
+    ground = load_vehicle(folder.parent, folder.name).ground
+    kinematics = DifferentialDrive(ground.wheel_radius, ground.track)
+    world = BulletWorld([], {"it": Placed(ground, engine_urdf(folder / ground.urdf), (0.0, 0.0, 0.0))})
+    most = np.array((ground.max_linear_acceleration, ground.max_angular_acceleration)) * STEP
+    command, expected, turned, last, tilt = np.zeros(2), np.zeros(3), 0.0, 0.0, 0.0
+    try:
+        for i in range(round((duration + 2.0) / STEP)):
+            wanted = np.array(twist) if i * STEP < duration else np.zeros(2)
+            command = command + np.clip(wanted - command, -most, most)
+            expected = rolled(expected, command)
+            world.advance({"it": kinematics.wheels(Twist(*command))}, STEP)
+            state = world.state("it")
+            roll, pitch, yaw = to_euler(state.world_from_body)
+            turned, last, tilt = turned + (yaw - last + np.pi) % (2 * np.pi) - np.pi, yaw, max(tilt, abs(roll), abs(pitch))
+        return Driven(np.array((*state.position[:2], turned)), expected, tilt)
+    finally:
+        world.close()
+
+
+def rolled(pose, command):
+    """x, y, yaw after a step along the arc about the ICC."""
+    (x, y, yaw), (v, w) = pose, command
+    if abs(w) < 1e-9:
+        return np.array((x + v * STEP * np.cos(yaw), y + v * STEP * np.sin(yaw), yaw))
+    radius, new = v / w, yaw + w * STEP
+    return np.array((x + radius * (np.sin(new) - np.sin(yaw)), y - radius * (np.cos(new) - np.cos(yaw)), new))
