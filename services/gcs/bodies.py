@@ -2,15 +2,20 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from uvf.runtime.solid import Solid
+from uvf.runtime.solid_mesh import placed, triangles
+from uvf.runtime.urdf_model import load_urdf
+
 Floats = NDArray[np.float64]
 Colour = tuple[int, int, int]
 
-TIRE, PLATE, LIDAR, GLASS = (32, 34, 40), (58, 64, 76), (24, 26, 30), (40, 60, 90)
+PLATE, GLASS = (58, 64, 76), (40, 60, 90)
 
 
 @dataclass(frozen=True)
@@ -73,16 +78,22 @@ def plate(outline: Sequence[tuple[float, float, float]], thickness: float, colou
     return Part(np.vstack((points + across, points - across)), np.array(sides + caps), colour)
 
 
-def rover(radius: float, wheel_radius: float, track: float) -> list[Part]:
-    """A round-decked differential robot: three decks, two wheels, a castor, a lidar on top. Lengths in m."""
-    deck = radius * 0.86
-    back = -0.03 * radius / 0.11
-    parts = [lathe(2, [(z, deck), (z + 0.012, deck)], (back, 0, 0), None if i == 1 else PLATE) for i, z in enumerate((0.03, 0.075, 0.12))]
-    parts += [lathe(2, [(0.042, 0.006), (0.12, 0.006)], (back + x, y, 0), PLATE) for x in (-0.05, 0.05) for y in (-0.05, 0.05)]
-    parts += [lathe(1, [(-0.009, wheel_radius), (0.009, wheel_radius)], (0, side * track / 2, wheel_radius), TIRE) for side in (-1, 1)]
-    parts.append(lathe(2, [(0.132, 0.037), (0.165, 0.037), (0.172, 0.034), (0.19, 0.034)], (back, 0, 0), LIDAR))
-    parts.append(plate([(deck + back + 0.004, -0.02, 0.134), (deck + back + 0.028, 0, 0.134), (deck + back + 0.004, 0.02, 0.134)], 0.004))
+def rover(urdf: Path) -> list[Part]:
+    """What the URDF shows, wheels at rest, and above it a small arrow forward in the vehicle's own colour. Raises BadInput."""
+    model = load_urdf(urdf)
+    poses = model.link_poses()
+    shown = [placed(solid, poses[link.name]) for link in model.links.values() for solid in link.visuals or link.collisions]
+    parts = [Part(*triangles(solid), _rgb(solid)) for solid in shown]
+    points = np.vstack([part.vertices for part in parts])
+    (x, y, _), top = (points.max(axis=0) + points.min(axis=0)) / 2, float(points[:, 2].max())
+    size = 0.25 * float(np.ptp(points[:, :2], axis=0).min())
+    parts.append(plate([(x + size, y, top + 0.02), (x - size, y + size / 2, top + 0.02), (x - size, y - size / 2, top + 0.02)], 0.006))
     return parts
+
+
+def _rgb(solid: Solid) -> Colour:
+    r, g, b = (round(255 * c) for c in solid.colour)
+    return r, g, b
 
 
 def aeroplane(scale: float) -> list[Part]:

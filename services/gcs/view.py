@@ -169,7 +169,7 @@ class View:
 def _body(v: VehicleModel, colour: Colour) -> dict[str, Node]:
     """The parts of a body, those of one colour in one mesh."""
     ground = v.member.file.ground
-    parts = bodies.aeroplane(AIRCRAFT_SCALE) if ground is None else bodies.rover(ground.radius, ground.wheel_radius, ground.track)
+    parts = bodies.aeroplane(AIRCRAFT_SCALE) if ground is None else bodies.rover(v.member.folder / ground.urdf)
     by_colour: dict[Colour, list[bodies.Part]] = {}
     for part in parts:
         by_colour.setdefault(part.colour or colour, []).append(part)

@@ -11,6 +11,8 @@ from services.gcs import bodies
 from services.gcs.cameras import ASPECT, FOV, cameras
 from services.gcs.scenery import WALL_SHOWN, extent, rgb_of, scenery
 from tests.services.gcs.scripted import LEGS, demo_site
+from uvf.runtime.site import ROOT
+from uvf.runtime.vehicle_file import load_vehicle
 from uvf.runtime.world_file import Box, Origin, Wall, WorldFile
 
 WORLD = WorldFile(about="", origin=Origin(0.0, 0.0), floor=(0.0, 0.0, 4.0, 3.0))
@@ -39,10 +41,20 @@ def test_solids_are_closed_and_have_the_volume_of_the_book(part, volume):
     assert abs(mesh.volume) == pytest.approx(volume, rel=1e-6)
 
 
-def test_a_rover_stands_on_its_wheels_and_fits_its_circle():
-    points = np.vstack([p.vertices for p in bodies.rover(0.11, 0.033, 0.16)])
-    assert points[:, 2].min() == pytest.approx(0.0)
-    assert np.hypot(points[:, 0], points[:, 1]).max() < 0.14
+@pytest.mark.parametrize(
+    "urdf", ["burger/burger.urdf", "my2bot/my2bot.urdf.xacro", "my3bot/my3bot.urdf.xacro", "mybot05/mybot05.urdf.xacro"]
+)
+def test_a_rover_stands_on_its_wheels_and_fits_its_circle(urdf):
+    path = ROOT / "vehicles" / urdf
+    points = np.vstack([p.vertices for p in bodies.rover(path)])
+    assert points[:, 2].min() == pytest.approx(0.0, abs=1e-9)
+    assert np.hypot(points[:, 0], points[:, 1]).max() < load_vehicle(ROOT / "vehicles", path.parent.name).ground.radius
+
+
+def test_each_rover_looks_like_itself():
+    looks = {urdf.parent.name: bodies.rover(urdf) for urdf in sorted((ROOT / "vehicles").glob("my*bot*/*.urdf.xacro"))}
+    sizes = {tuple(np.ptp(np.vstack([p.vertices for p in parts]), axis=0).round(2)) for parts in looks.values()}
+    assert len(looks) >= 3 and len(sizes) == len(looks)
 
 
 def test_an_aeroplane_is_as_wide_as_it_says_and_alike_on_both_sides():
