@@ -1,6 +1,7 @@
 """Every message type of the system, under one name to import from."""
 
 from foxglove_schemas_protobuf.CameraCalibration_pb2 import CameraCalibration
+from foxglove_schemas_protobuf.Color_pb2 import Color
 from foxglove_schemas_protobuf.CompressedImage_pb2 import CompressedImage
 from foxglove_schemas_protobuf.FrameTransform_pb2 import FrameTransform
 from foxglove_schemas_protobuf.FrameTransforms_pb2 import FrameTransforms
@@ -30,6 +31,7 @@ from schemas.v1.mission_pb2 import (
     SetCurrentRequest,
 )
 from schemas.v1.sensor_pb2 import AirData, Battery, Contact, Gnss, Imu, Range, WheelTicks
+from schemas.v1.simulator_pb2 import RemoveRequest, SetPoseRequest, SimObject, SimObjects, SpawnRequest, StateRequest
 from schemas.v1.system_pb2 import Event, Health, Param, ParamReply, ParamRequest, Process, Processes
 from schemas.v1.time_pb2 import Clock, ClockRequest, Done
 from schemas.v1.vehicle_pb2 import (
@@ -50,6 +52,7 @@ __all__ = [
     "CancelRequest",
     "Clock",
     "ClockRequest",
+    "Color",
     "CompressedImage",
     "Contact",
     "Done",
@@ -87,8 +90,14 @@ __all__ = [
     "Processes",
     "Quaternion",
     "Range",
+    "RemoveRequest",
     "Reply",
     "SetCurrentRequest",
+    "SetPoseRequest",
+    "SimObject",
+    "SimObjects",
+    "SpawnRequest",
+    "StateRequest",
     "StopCommand",
     "SurfaceCommand",
     "Timestamp",

@@ -119,6 +119,7 @@ CAMERA_INFO = Topic(f"{_V}/sensor/camera/info", m.CameraCalibration, 0, _Q.LATCH
 
 # truth: for simulators among themselves, tests, displays and scores; never for an algorithm
 TRUTH = Topic(f"{_V}/truth/state", m.NavState, 50, _Q.STATE, "true motion, world frame")
+OBJECTS = Topic(f"{_S}/truth/objects", m.SimObjects, 20, _Q.STATE, "what has been put into the running simulation")
 
 # navigation
 TF_STATIC = Topic(f"{_V}/tf/static", m.FrameTransforms, 0, _Q.LATCHED, "base_link, links that do not move, sensors")
@@ -146,7 +147,12 @@ MISSION = Topic(f"{_V}/mission/plan", m.Mission, 0, _Q.LATCHED, "mission in forc
 PROGRESS = Topic(f"{_V}/mission/progress", m.MissionProgress, 2, _Q.STATE, "where in the mission", kept=True)
 
 # requests
-CLOCK_REQUEST = Request(f"{_S}/srv/clock", m.ClockRequest, m.Reply, "rate, pause, resume, single step")
+CLOCK_REQUEST = Request(f"{_S}/srv/clock", m.ClockRequest, m.Reply, "rate, pause, resume, single step, reset")
+SPAWN = Request(f"{_S}/srv/sim/spawn", m.SpawnRequest, m.Reply, "put a shape or a vehicle into the ground simulation")
+REMOVE = Request(f"{_S}/srv/sim/remove", m.RemoveRequest, m.Reply, "take out what was put in")
+SET_POSE = Request(f"{_S}/srv/sim/pose", m.SetPoseRequest, m.Reply, "put a ground vehicle or an object elsewhere, at rest")
+SAVE = Request(f"{_S}/srv/sim/save", m.StateRequest, m.Reply, "keep the ground simulator's state under a name")
+RESTORE = Request(f"{_S}/srv/sim/restore", m.StateRequest, m.Reply, "go back to a state that was kept")
 ARM = Request(f"{_V}/srv/arm", m.ArmRequest, m.Reply, "arm or disarm")
 SET_MODE = Request(f"{_V}/srv/mode", m.ModeRequest, m.Reply, "change the flight or drive mode")
 GOAL = Request(f"{_V}/srv/goal", m.GoalRequest, m.Reply, "go to a point")

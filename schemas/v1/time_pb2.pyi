@@ -72,10 +72,12 @@ class ClockRequest(_message.Message):
         PAUSE: _ClassVar[ClockRequest.Action]
         RESUME: _ClassVar[ClockRequest.Action]
         STEP: _ClassVar[ClockRequest.Action]
+        RESET: _ClassVar[ClockRequest.Action]
     SET_RATE: ClockRequest.Action
     PAUSE: ClockRequest.Action
     RESUME: ClockRequest.Action
     STEP: ClockRequest.Action
+    RESET: ClockRequest.Action
     ACTION_FIELD_NUMBER: _ClassVar[int]
     RATE_FIELD_NUMBER: _ClassVar[int]
     action: ClockRequest.Action

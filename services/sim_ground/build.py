@@ -1,14 +1,18 @@
 """The ground simulator of a mission: one instance for all its ground vehicles."""
 
+from functools import partial
+
 from services.sim_ground.rig import STEP_HZ, Rig
 from services.sim_ground.service import SimGround
+from services.sim_ground.stage import Joining, Stage
 from services.sim_ground.surroundings import Surroundings
 from services.sim_ground.world import BulletWorld, Placed
 from uvf.maths.raycast3 import warm_up
+from uvf.runtime.mission_file import Start, Vehicle
 from uvf.runtime.params import BadInput
 from uvf.runtime.site import Host, Member, Site
 from uvf.runtime.urdf_model import check_urdf, engine_urdf, load_urdf
-from uvf.runtime.vehicle_file import GroundBody
+from uvf.runtime.vehicle_file import GroundBody, load_vehicle
 from uvf.runtime.world_geometry import clearance, solids
 
 
@@ -29,7 +33,22 @@ def _make(site: Site, bodies: dict[str, GroundBody]) -> SimGround:
     things = solids(site.world, site.world_folder)
     surroundings = Surroundings(things, {name: load_urdf(m.folder / bodies[name].urdf) for name, m in members.items()})
     rigs = {name: Rig(site, m, bodies[name], surroundings.still) for name, m in members.items()}
-    return SimGround(BulletWorld(things, placed), rigs, surroundings)
+    world = BulletWorld(things, placed)
+    taken = (*site.members, *(thing.name for thing in things), "floor")
+    return SimGround(world, surroundings, Stage(world, rigs, surroundings, taken, partial(_join, site, surroundings)))
+
+
+def _join(site: Site, surroundings: Surroundings, name: str, model: str, start: tuple[float, float, float]) -> Joining:
+    """A vehicle that nobody steers but by its actuator topic, made ready while the simulation runs. Raises BadInput."""
+    vehicles = next(iter(site.members.values())).folder.parent
+    file, (x, y, yaw) = load_vehicle(vehicles, model), start
+    if file.ground is None:
+        raise BadInput(f"'{model}' is no ground vehicle; this is the ground simulator")
+    member = Member(name, Vehicle(model=model, start=Start(x=x, y=y, yaw=yaw), system_id=1), file, vehicles / model)
+    urdf = member.folder / file.ground.urdf
+    check_urdf(urdf, (file.ground.left_joint, file.ground.right_joint))
+    _check_rates(member, file.ground)
+    return Joining(Placed(file.ground, engine_urdf(urdf), start), Rig(site, member, file.ground, surroundings.still), load_urdf(urdf))
 
 
 def _start(member: Member) -> tuple[float, float, float]:
@@ -39,6 +58,17 @@ def _start(member: Member) -> tuple[float, float, float]:
 def _check(site: Site, member: Member, body: GroundBody) -> None:
     """What would otherwise fail deep in the engine."""
     check_urdf(member.folder / body.urdf, (body.left_joint, body.right_joint))
+    _check_rates(member, body)
+    start = member.entry.start
+    room = clearance(site.world, start.x, start.y)
+    if room < body.radius:
+        raise BadInput(
+            f"{site.mission_path}: {member.name}: start ({start.x:g}, {start.y:g}) is {room:.2f} m from a wall or furniture, "
+            f"but the vehicle has a radius of {body.radius:g} m; move it"
+        )
+
+
+def _check_rates(member: Member, body: GroundBody) -> None:
     place = member.folder / "vehicle.yaml"
     if body.physics_hz % STEP_HZ:
         raise BadInput(f"{place}: ground: physics_hz is {body.physics_hz:g}; make it a multiple of {STEP_HZ:g}")
@@ -50,10 +80,3 @@ def _check(site: Site, member: Member, body: GroundBody) -> None:
     for i, sonar in enumerate(sensors.sonars):
         if sonar.hz > STEP_HZ:
             raise BadInput(f"{place}: sensors: sonars[{i}]: hz is {sonar.hz:g}; the simulator gives {STEP_HZ:g} at most")
-    start = member.entry.start
-    room = clearance(site.world, start.x, start.y)
-    if room < body.radius:
-        raise BadInput(
-            f"{site.mission_path}: {member.name}: start ({start.x:g}, {start.y:g}) is {room:.2f} m from a wall or furniture, "
-            f"but the vehicle has a radius of {body.radius:g} m; move it"
-        )

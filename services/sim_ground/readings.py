@@ -5,11 +5,12 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from schemas.convert import quaternion, stamp, vector
-from schemas.messages import Contact, Gnss, Imu, JointState, JointStates, LaserScan, NavState, Range, WheelTicks
+from schemas.convert import quaternion, seconds, stamp, vector
+from schemas.messages import Contact, FrameTransforms, Gnss, Imu, JointState, JointStates, LaserScan, NavState, Range, WheelTicks
 from services.sim_ground.body import BodyState, Touch
 from services.sim_ground.encoders import radians_per_tick, ticks
 from uvf.maths.instruments import Fix, ImuReading
+from uvf.runtime.service import Value
 from uvf.runtime.vehicle_file import Bumper, Encoders, GnssSensor, GroundBody, Lidar, Sonar
 
 Floats = NDArray[np.float64]
@@ -86,3 +87,11 @@ def truth_message(t: float, body: BodyState) -> NavState:
         orientation=quaternion(body.world_from_body),
         angular_velocity=vector(body.angular_velocity),
     )
+
+
+def later(read: Value, seconds_later: float) -> Value:
+    """The same readings with stamps ``seconds_later`` [s]."""
+    for message in read if isinstance(read, Sequence) else (read,):
+        for stamped in message.transforms if isinstance(message, FrameTransforms) else (message,):
+            stamped.timestamp.CopyFrom(stamp(seconds(stamped.timestamp) + seconds_later))  # type: ignore[attr-defined]
+    return read

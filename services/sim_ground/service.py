@@ -5,16 +5,19 @@ from functools import cache, partial
 from typing import Protocol
 
 from schemas import topics
-from schemas.messages import WheelCommand
+from schemas.messages import RemoveRequest, SetPoseRequest, SpawnRequest, StateRequest, WheelCommand
 from services.sim_ground.body import BodyState, Touch
-from services.sim_ground.rig import STEP_HZ, Moment, Rig
+from services.sim_ground.readings import later
+from services.sim_ground.rig import STEP_HZ, Moment
+from services.sim_ground.stage import Stage, Stageable
 from services.sim_ground.surroundings import Surroundings
 from uvf.maths.kinematics import WheelSpeeds
 from uvf.maths.raycast3 import Body
+from uvf.maths.sampling import Due
 from uvf.runtime.service import Outputs, Service, Value, each_vehicle, optional
 
 
-class GroundWorld(Protocol):
+class GroundWorld(Stageable, Protocol):
     """The physics behind the service."""
 
     rate: float
@@ -51,43 +54,91 @@ class SimGround(Service):
         "joint_frames": topics.TF_JOINTS,
         "frames": topics.TF_STATIC,
         "truth": topics.TRUTH,
+        "objects": topics.OBJECTS,
+    }
+    requests = {
+        "spawn": topics.SPAWN,
+        "remove": topics.REMOVE,
+        "set_pose": topics.SET_POSE,
+        "save": topics.SAVE,
+        "restore": topics.RESTORE,
     }
 
-    def __init__(self, world: GroundWorld, rigs: Mapping[str, Rig], surroundings: Surroundings) -> None:
+    def __init__(self, world: GroundWorld, surroundings: Surroundings, stage: Stage) -> None:
         self._world = world
         self._surroundings = surroundings
-        self._rigs = rigs
-        self._told = False
+        self._stage = stage
+        self._objects_due = Due(topics.OBJECTS.hz)
+        self._had_objects = False
 
-    def step(self, t: float, commands: dict[str, WheelCommand]) -> Outputs:
+    def step(
+        self,
+        t: float,
+        commands: dict[str, WheelCommand],
+        spawn: list[SpawnRequest],
+        remove: list[RemoveRequest],
+        set_pose: list[SetPoseRequest],
+        save: list[StateRequest],
+        restore: list[StateRequest],
+    ) -> Outputs:
+        """What is asked for holds from this step's end."""
         self._advance(t, {name: WheelSpeeds(c.left, c.right) for name, c in commands.items()})
-        states = {name: self._world.state(name) for name in self._rigs}
-        bodies = cache(lambda: (self._surroundings.moving(t), self._surroundings.bodies(states)))
+        read, n, stage = self._read(t), round(t * self.hz), self._stage
+        replies = {
+            "spawn": [stage.spawn(r) for r in spawn],
+            "remove": [stage.remove(r) for r in remove],
+            "set_pose": [stage.set_pose(r) for r in set_pose],
+            "save": [stage.save(n, r) for r in save],
+            "restore": [stage.restore(n, r) for r in restore],
+        }
+        return {**read, **self._objects(t), **replies}
+
+    def _read(self, t: float) -> dict[str, dict[str, Value]]:
+        """What the sensors say, and the frames of those that have not been told of: at the first step and later."""
+        rigs, late = self._stage.rigs, self._stage.late / self.hz
+        at = self._sensors_time(t)
+        states = {name: self._world.state(name) for name in rigs}
+        bodies = cache(lambda: (self._moving(t), self._surroundings.bodies(states)))
         outputs: dict[str, dict[str, Value]] = {}
-        for name, rig in self._rigs.items():
+        for name, rig in rigs.items():
             moment = Moment(states[name], partial(_others, name, bodies), self._world.touches(name))
-            for output, read in rig.read(t, moment).items():
-                outputs.setdefault(output, {})[name] = read
-        if not self._told:  # at the first step, which is not always step 1: a process may join a running clock
-            outputs["frames"] = {name: rig.frames(t) for name, rig in self._rigs.items()}
-            self._told = True
+            for output, said in rig.read(at, moment).items():
+                outputs.setdefault(output, {})[name] = later(said, late) if late else said
+        if new := [name for name in rigs if name not in self._stage.told]:
+            outputs["frames"] = {name: rigs[name].frames(t) for name in new}
+            self._stage.told.update(new)
         return outputs
+
+    def _moving(self, t: float) -> list[Body]:
+        return self._surroundings.moving(t) + self._surroundings.objects(self._world.poses())
+
+    def _sensors_time(self, t: float) -> float:
+        """s; the clock, unless a state was restored: then that of the state and what has passed since."""
+        return (round(t * self.hz) - self._stage.late) / self.hz if self._stage.late else t
 
     def _advance(self, t: float, wheels: Mapping[str, WheelSpeeds]) -> None:
         """To ``t`` [s], looking at those who read faster than this service steps after each step of the physics."""
-        quick = [name for name, rig in self._rigs.items() if rig.is_quick]
+        quick = [name for name, rig in self._stage.rigs.items() if rig.is_quick]
         parts = round(self._world.rate / self.hz) if quick else 1
-        duration = 1 / self.hz
-        for n in range(parts):
-            self._world.advance(wheels, duration / parts, t - duration + n * duration / parts)
-            for name in quick if n < parts - 1 else ():
-                self._rigs[name].glance(t - duration + (n + 1) * duration / parts, self._world.state(name))
+        part = 1 / self.hz / parts
+        for left in range(parts - 1, -1, -1):
+            self._world.advance(wheels, part, t - (left + 1) * part)
+            for name in quick if left else ():
+                self._stage.rigs[name].glance(self._sensors_time(t) - left * part, self._world.state(name))
+
+    def _objects(self, t: float) -> dict[str, Value]:
+        """Told while there are any, and once when the last one has gone."""
+        if not self._objects_due.at(t):
+            return {}
+        told = self._stage.objects(t)
+        had, self._had_objects = self._had_objects, bool(told.objects)
+        return {"objects": told} if told.objects or had else {}
 
     def close(self) -> None:
         self._world.close()
 
 
 def _others(name: str, bodies: Callable[[], tuple[list[Body], dict[str, Body]]]) -> list[Body]:
-    """What moves about a vehicle: solids by script and the other vehicles."""
+    """What moves about a vehicle: solids by script, what has been put in, and the other vehicles."""
     moving, vehicles = bodies()
     return moving + [body for other, body in vehicles.items() if other != name]

@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from services.sim_ground.body import BodyState
 from uvf.maths.bvh import Bvh, build
@@ -14,6 +15,8 @@ from uvf.runtime.robot_model import UrdfModel
 from uvf.runtime.scene import primitives, scene
 from uvf.runtime.solid import UPRIGHT, Solid, pose_at
 
+Floats = NDArray[np.float64]
+
 
 class Surroundings:
     """Trees of solids are built once; only poses change."""
@@ -21,11 +24,26 @@ class Surroundings:
     def __init__(self, things: Sequence[Solid], vehicles: Mapping[str, UrdfModel]) -> None:
         self.still = scene(things)
         self._scripted = [(solid, _own_tree(solid)) for solid in things if solid.path is not None]
+        self._objects: dict[str, Bvh] = {}
         self._vehicles = {name: vehicle_tree(model) for name, model in vehicles.items()}
 
     def moving(self, t: float) -> list[Body]:
         """What moves by script, as it stands at simulation time ``t`` [s]."""
         return [Body(tree, *pose_at(solid, t)) for solid, tree in self._scripted]
+
+    def add_vehicle(self, name: str, model: UrdfModel) -> None:
+        self._vehicles[name] = vehicle_tree(model)
+
+    def add_object(self, name: str, solid: Solid) -> None:
+        self._objects[name] = _own_tree(solid)
+
+    def remove(self, name: str) -> None:
+        self._vehicles.pop(name, None)
+        self._objects.pop(name, None)
+
+    def objects(self, poses: Mapping[str, tuple[Floats, Floats]]) -> list[Body]:
+        """What has been put in, at these poses."""
+        return [Body(self._objects[name], *pose) for name, pose in poses.items()]
 
     def bodies(self, states: Mapping[str, BodyState]) -> dict[str, Body]:
         """The vehicles, where they are."""

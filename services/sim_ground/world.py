@@ -25,7 +25,10 @@ from uvf.runtime.vehicle_file import Friction, GroundBody
 Floats = NDArray[np.float64]
 STOPPED = WheelSpeeds(0.0, 0.0)
 TOUCH = 5e-4  # m, gap at which two bodies touch; the engine leaves a little air
+DEEP = 2e-3  # m, from which on one body is inside another
 FALLEN = 0.5  # cosine of the tilt from which on a vehicle no longer stands on its wheels
+MOVING, STANDING = (1, -1), (2, -3)
+"""The engine's own filters (group, mask): what stands does not touch what stands."""
 SETTLING = 0.3  # s of physics before the start: the wheels sink into their contacts
 
 
@@ -49,6 +52,14 @@ class _Loaded:
     up_in_com: tuple[float, float, float]
 
 
+@dataclass(frozen=True)
+class Saved:
+    """A state of the engine by its number, and the motors' references [rad/s] by vehicle."""
+
+    state: int
+    references: dict[str, list[float]]
+
+
 class BulletWorld:
     """One physics client of its own. The floor is z = 0; base_link is the point on the floor under the axle's middle."""
 
@@ -56,6 +67,7 @@ class BulletWorld:
         self._client: int = pybullet.connect(pybullet.DIRECT)
         self.rate = max((v.body.physics_hz for v in vehicles.values()), default=200.0)
         self._names: dict[int, str] = {}
+        self._objects: dict[str, int] = {}
         self._scripted: list[tuple[int, Solid, Keyframes]] = []
         pybullet.setGravity(0.0, 0.0, -GRAVITY, physicsClientId=self._client)
         pybullet.setPhysicsEngineParameter(
@@ -70,9 +82,9 @@ class BulletWorld:
         self._vehicles = {name: self._load(name, vehicle) for name, vehicle in vehicles.items()}
         self.advance({}, SETTLING)
 
-    def _add(self, name: str, shape: int, position: Floats, orientation: Floats) -> int:
+    def _add(self, name: str, shape: int, position: Floats, orientation: Floats, mass: float = 0.0) -> int:
         index: int = pybullet.createMultiBody(
-            0.0, shape, basePosition=position.tolist(), baseOrientation=_xyzw(orientation), physicsClientId=self._client
+            mass, shape, basePosition=position.tolist(), baseOrientation=_xyzw(orientation), physicsClientId=self._client
         )
         pybullet.changeDynamics(index, -1, lateralFriction=1.0, physicsClientId=self._client)
         self._names[index] = name
@@ -183,6 +195,96 @@ class BulletWorld:
         a, b, c = loaded.up_in_com
         up: float = 2 * ((x * z - w * y) * a + (y * z + w * x) * b) + (1 - 2 * (x * x + y * y)) * c
         return up < FALLEN
+
+    def put(self, name: str, solid: Solid, mass: float) -> str:
+        """Puts a solid in; mass: kg, 0 = it stands fast. Returns what it would stand in, empty when it is in."""
+        self._objects[name] = self._add(name, _collision_shape(solid, self._client), solid.position, solid.orientation, mass)
+        return self._unless_free(name)
+
+    def put_vehicle(self, name: str, vehicle: Placed) -> str:
+        """As ``put``. Raises BadInput for a URDF that the engine cannot load."""
+        self._vehicles[name] = self._load(name, vehicle)
+        return self._unless_free(name)
+
+    def _unless_free(self, name: str) -> str:
+        if met := self._meets(self._index(name)):
+            self.remove(name)
+        return met
+
+    def remove(self, name: str) -> None:
+        index = self._index(name)
+        self._objects.pop(name, None)
+        self._vehicles.pop(name, None)
+        del self._names[index]
+        pybullet.removeBody(index, physicsClientId=self._client)
+
+    def place(self, name: str, position: Floats, orientation: Floats) -> str:
+        """Puts a vehicle's base_link or an object there, at rest. Returns what it would stand in; then it has not moved."""
+        index = self._index(name)
+        before = pybullet.getBasePositionAndOrientation(index, physicsClientId=self._client)
+        moving = pybullet.getBaseVelocity(index, physicsClientId=self._client)
+        com, turned = self._vehicles[name].com_in_base if name in self._vehicles else (np.zeros(3), UPRIGHT)
+        centre, attitude = position + rotate(orientation, com), multiply(orientation, turned)
+        pybullet.resetBasePositionAndOrientation(index, centre.tolist(), _xyzw(attitude), physicsClientId=self._client)
+        if met := self._meets(index):
+            pybullet.resetBasePositionAndOrientation(index, *before, physicsClientId=self._client)
+            pybullet.resetBaseVelocity(index, *moving, physicsClientId=self._client)
+            return met
+        pybullet.resetBaseVelocity(index, [0.0, 0.0, 0.0], [0.0, 0.0, 0.0], physicsClientId=self._client)
+        if name in self._vehicles:
+            self._stop_wheels(self._vehicles[name])
+        return ""
+
+    def _stop_wheels(self, vehicle: _Loaded) -> None:
+        angles = [joint[0] for joint in self._joint_states(vehicle)]
+        for wheel, motor, angle in zip(vehicle.wheels, vehicle.motors, angles, strict=True):
+            motor.reference = 0.0
+            pybullet.resetJointState(vehicle.index, wheel, angle, 0.0, physicsClientId=self._client)
+
+    def _index(self, name: str) -> int:
+        return self._vehicles[name].index if name in self._vehicles else self._objects[name]
+
+    def _meets(self, index: int) -> str:
+        """The name of a body that it is in by more than a contact's depth."""
+        for other, name in self._names.items():
+            if other != index:
+                near: Any = pybullet.getClosestPoints(index, other, 0.0, physicsClientId=self._client)
+                if any(point[8] < -DEEP for point in near):
+                    return name
+        return ""
+
+    def poses(self) -> dict[str, tuple[Floats, Floats]]:
+        """Position (3,) m and orientation wxyz of what has been put in, vehicles apart."""
+        found = {n: pybullet.getBasePositionAndOrientation(i, physicsClientId=self._client) for n, i in self._objects.items()}
+        return {name: (np.array(position), _wxyz(turned)) for name, (position, turned) in found.items()}
+
+    def save(self) -> Saved:
+        """All that the next steps depend on."""
+        self._find_contacts_anew()
+        references = {name: [m.reference for m in v.motors] for name, v in self._vehicles.items()}
+        return Saved(pybullet.saveState(physicsClientId=self._client), references)
+
+    def restore(self, saved: Saved) -> None:
+        """Goes back; the same bodies must be there as then."""
+        pybullet.restoreState(stateId=saved.state, physicsClientId=self._client)
+        self._find_contacts_anew()
+        for name, references in saved.references.items():
+            for motor, reference in zip(self._vehicles[name].motors, references, strict=True):
+                motor.reference = reference
+
+    def _find_contacts_anew(self) -> None:
+        """The engine does not keep in which order it came to know of pairs that are close, and solves contacts in that order.
+
+        To set a filter, even the one that holds, makes it forget and find them again: at a save and a restore alike.
+        """
+        for index in sorted(self._names):
+            moves = pybullet.getDynamicsInfo(index, -1, physicsClientId=self._client)[0] > 0.0
+            group, mask = MOVING if moves else STANDING
+            for link in range(-1, pybullet.getNumJoints(index, physicsClientId=self._client)):
+                pybullet.setCollisionFilterGroupMask(index, link, group, mask, physicsClientId=self._client)
+
+    def forget(self, saved: Saved) -> None:
+        pybullet.removeState(saved.state, physicsClientId=self._client)
 
     def close(self) -> None:
         pybullet.disconnect(physicsClientId=self._client)

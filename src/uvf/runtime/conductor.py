@@ -102,6 +102,8 @@ class Conductor:
             self._steps_left += 1
         elif request.action in (ClockRequest.PAUSE, ClockRequest.RESUME):
             self._paused = request.action == ClockRequest.PAUSE
+        elif request.action == ClockRequest.RESET:
+            self.reset()
         else:
             return Reply(accepted=False, reason=f"unknown action {request.action}")
         return Reply(accepted=True)

@@ -11,11 +11,14 @@ from schemas.messages import WheelCommand
 from services.sim_ground.body import BodyState, Touch
 from services.sim_ground.rig import Rig
 from services.sim_ground.service import SimGround
+from services.sim_ground.stage import Stage
 from services.sim_ground.surroundings import Surroundings
 from tests.services.sim_ground.ride import site_with
 from uvf.maths.kinematics import WheelSpeeds
 from uvf.runtime.urdf_model import load_urdf
 from uvf.runtime.world_geometry import solids
+
+IDLE = {"commands": {}, "spawn": [], "remove": [], "set_pose": [], "save": [], "restore": []}
 
 
 class StandingWorld:
@@ -39,6 +42,9 @@ class StandingWorld:
     def touches(self, vehicle):
         return self.seen
 
+    def poses(self):
+        return {}
+
     def close(self):
         self.told.append("closed")
 
@@ -52,30 +58,31 @@ def service_in(site, world):
     models = {name: load_urdf(member.folder / member.file.ground.urdf) for name, member in site.members.items()}
     surroundings = Surroundings(solids(site.world, site.world_folder), models)
     rigs = {name: Rig(site, member, member.file.ground, surroundings.still) for name, member in site.members.items()}
-    return SimGround(world, rigs, surroundings)
+    stage = Stage(world, rigs, surroundings, tuple(rigs), join=None)
+    return SimGround(world, surroundings, stage)
 
 
 def test_each_command_goes_to_its_vehicle_for_one_period(site):
     world = StandingWorld({"one": (6.0, 4.4), "two": (7.0, 4.4)})
-    service_in(site, world).step(0.01, commands={"two": WheelCommand(left=1.0, right=2.0)})
+    service_in(site, world).step(0.01, **{**IDLE, "commands": {"two": WheelCommand(left=1.0, right=2.0)}})
     assert world.told == [({"two": (1.0, 2.0)}, 0.01, 0.0)]
 
 
 def test_frames_are_told_at_the_first_step_only(site):
     service = service_in(site, StandingWorld({"one": (6.0, 4.4), "two": (7.0, 4.4)}))
-    assert set(service.step(0.01, commands={})["frames"]) == {"one", "two"}
-    assert "frames" not in service.step(0.02, commands={})
+    assert set(service.step(0.01, **IDLE)["frames"]) == {"one", "two"}
+    assert "frames" not in service.step(0.02, **IDLE)
 
 
 def test_the_neighbour_is_in_the_scan(site):
     service = service_in(site, StandingWorld({"one": (6.0, 4.4), "two": (7.0, 4.4)}))
-    scan = service.step(0.2, commands={})["scan"]["one"]
+    scan = service.step(0.2, **IDLE)["scan"]["one"]
     assert scan.ranges[0] == pytest.approx(1.0 + 0.032 - 0.115, abs=0.04)
 
 
 def test_what_is_touched_is_named(site):
     service = service_in(site, StandingWorld({"one": (6.0, 4.4), "two": (7.0, 4.4)}, touches=[Touch("sofa", 0.1)]))
-    contact = service.step(0.05, commands={})["contact"]["two"]
+    contact = service.step(0.05, **IDLE)["contact"]["two"]
     assert contact.touching
     assert contact.other == "sofa"
 
@@ -86,13 +93,13 @@ def test_a_short_touch_between_two_messages_is_told_once(site):
     told = []
     for n in range(1, 16):
         world.seen = [Touch("sofa", 0.1)] if n == 7 else []
-        told += [outputs["one"].touching for outputs in [service.step(n / 100, commands={}).get("contact")] if outputs]
+        told += [outputs["one"].touching for outputs in [service.step(n / 100, **IDLE).get("contact")] if outputs]
     assert told == [False, True, False]
 
 
 def test_a_simulator_that_joins_late_still_tells_its_frames(site):
     service = service_in(site, StandingWorld({"one": (6.0, 4.4), "two": (7.0, 4.4)}))
-    assert set(service.step(50.0, commands={})["frames"]) == {"one", "two"}
+    assert set(service.step(50.0, **IDLE)["frames"]) == {"one", "two"}
 
 
 def test_an_imu_at_200_hz_is_read_after_each_step_of_the_physics(site):
@@ -103,7 +110,7 @@ def test_an_imu_at_200_hz_is_read_after_each_step_of_the_physics(site):
     world = StandingWorld({"one": (6.0, 4.4), "two": (7.0, 4.4)})
     service = service_in(site, world)
     for n in range(1, 4):
-        said = service.step(n / 100, commands={})["imu"]
+        said = service.step(n / 100, **IDLE)["imu"]
         assert [round(seconds(m.timestamp), 6) for m in said["one"]] == [round(n / 100 - 0.005, 6), n / 100]
         assert round(seconds(said["two"].timestamp), 6) == n / 100
     assert [(duration, round(since, 6)) for _, duration, since in world.told[-2:]] == [(0.005, 0.02), (0.005, 0.025)]

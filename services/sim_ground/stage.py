@@ -1,0 +1,216 @@
+"""Who and what is in the ground simulation, and the requests that change it: spawn, remove, set pose, save, restore."""
+
+import copy
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from math import isfinite
+from typing import Any, NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from schemas.convert import array, quaternion, stamp, vector, wxyz, yaw_of
+from schemas.messages import Pose, RemoveRequest, Reply, SetPoseRequest, SimObject, SimObjects, SpawnRequest, StateRequest
+from services.sim_ground.rig import Rig
+from services.sim_ground.surroundings import Surroundings
+from services.sim_ground.world import Placed
+from uvf.runtime.params import BadInput, nearest
+from uvf.runtime.robot_model import UrdfModel
+from uvf.runtime.solid import Solid
+
+Floats = NDArray[np.float64]
+NAME = re.compile(r"[a-z][a-z0-9_]{0,39}")
+SIZES = {"box": 3, "cylinder": 2, "sphere": 1}
+GREY = (0.6, 0.6, 0.6)
+LARGEST, FARTHEST, HEAVIEST = 100.0, 1e5, 1e5  # m, m, kg
+SAVED_MOST = 16
+
+
+class Stageable(Protocol):
+    """What of the physics the requests need."""
+
+    def put(self, name: str, solid: Solid, mass: float) -> str: ...
+
+    def put_vehicle(self, name: str, vehicle: Placed) -> str: ...
+
+    def remove(self, name: str) -> None: ...
+
+    def place(self, name: str, position: Floats, orientation: Floats) -> str: ...
+
+    def poses(self) -> dict[str, tuple[Floats, Floats]]: ...
+
+    def save(self) -> Any: ...
+
+    def restore(self, saved: Any) -> None: ...
+
+    def forget(self, saved: Any) -> None: ...
+
+
+class Joining(NamedTuple):
+    """A vehicle that is made ready to be put in."""
+
+    placed: Placed
+    rig: Rig
+    model: UrdfModel
+
+
+Join = Callable[[str, str, tuple[float, float, float]], Joining]
+"""From a new name, a folder in vehicles/ and a start x, y [m], yaw [rad]. Raises BadInput."""
+
+
+@dataclass(frozen=True)
+class Kept:
+    """A state under a name: the engine's, the sensors', the step at which it was, and what had been put in, by name and number."""
+
+    world: Any
+    rigs: dict[str, Rig]
+    step: int
+    objects: dict[str, int]
+
+
+class Stage:
+    """Requests are answered in the order spawn, remove, set pose, save, restore, each in the order asked."""
+
+    def __init__(self, world: Stageable, rigs: Mapping[str, Rig], surroundings: Surroundings, taken: tuple[str, ...], join: Join) -> None:
+        """taken: names of what is there from the beginning, of vehicles that others simulate too."""
+        self.rigs = dict(rigs)
+        self.late = 0
+        """Steps by which the sensors' time is behind the clock, because of states that were restored."""
+        self.told: set[str] = set()
+        """Vehicles whose frames have been told."""
+        self._world = world
+        self._surroundings = surroundings
+        self._taken = taken
+        self._join = join
+        self._objects: dict[str, SimObject] = {}
+        self._numbers: dict[str, int] = {}
+        self._spawned = 0
+        self._kept: dict[str, Kept] = {}
+
+    def spawn(self, request: SpawnRequest) -> Reply:
+        wanted = request.object
+        reason = self._name_fault(wanted.name) or _pose_fault(wanted.pose) or (_shape_fault(wanted) if not wanted.model else "")
+        if not reason:
+            try:
+                reason = self._put_vehicle(wanted) if wanted.model else self._put(wanted)
+            except BadInput as error:
+                reason = str(error)
+        if not reason:
+            self._objects[wanted.name] = copy.deepcopy(wanted)
+            self._spawned += 1
+            self._numbers[wanted.name] = self._spawned
+        return _reply(reason)
+
+    def _name_fault(self, name: str) -> str:
+        if not NAME.fullmatch(name) or name == "sys":
+            return f"'{name}' is no name: small letters, digits and _, a letter first, 40 at most"
+        if name in self._objects or name in self._taken:
+            return f"there is a '{name}' already; take another name"
+        return ""
+
+    def _put(self, wanted: SimObject) -> str:
+        colour = (wanted.color.r, wanted.color.g, wanted.color.b) if wanted.HasField("color") else GREY
+        shape: Any = wanted.shape
+        solid = Solid(wanted.name, shape, tuple(wanted.size), array(wanted.pose.position), _attitude(wanted.pose), colour)
+        if met := self._world.put(wanted.name, solid, wanted.mass):
+            return _inside(wanted.name, met)
+        self._surroundings.add_object(wanted.name, solid)
+        return ""
+
+    def _put_vehicle(self, wanted: SimObject) -> str:
+        position = wanted.pose.position
+        placed, rig, model = self._join(wanted.name, wanted.model, (position.x, position.y, yaw_of(wanted.pose.orientation)))
+        if met := self._world.put_vehicle(wanted.name, placed):
+            return _inside(wanted.name, met)
+        self._surroundings.add_vehicle(wanted.name, model)
+        self.rigs[wanted.name] = rig
+        return ""
+
+    def remove(self, request: RemoveRequest) -> Reply:
+        name = request.name
+        if name not in self._objects:
+            if name in self._taken:
+                return _reply(f"'{name}' belongs to the mission; only what has been spawned can be removed")
+            return _reply(f"there is no '{name}'; {nearest(name, self._objects)}")
+        self._take_out(name)
+        return _reply("")
+
+    def _take_out(self, name: str) -> None:
+        self._world.remove(name)
+        self._surroundings.remove(name)
+        self.rigs.pop(name, None)
+        self.told.discard(name)
+        del self._objects[name], self._numbers[name]
+
+    def set_pose(self, request: SetPoseRequest) -> Reply:
+        known = {**self._objects, **self.rigs}
+        if request.name not in known:
+            return _reply(f"there is no '{request.name}' that can be put elsewhere; {nearest(request.name, known)}")
+        if fault := _pose_fault(request.pose):
+            return _reply(fault)
+        met = self._world.place(request.name, array(request.pose.position), _attitude(request.pose))
+        return _reply(_inside(request.name, met) if met else "")
+
+    def save(self, step: int, request: StateRequest) -> Reply:
+        """step: number of the service's step that has been made."""
+        if request.name not in self._kept and len(self._kept) >= SAVED_MOST:
+            return _reply(f"{SAVED_MOST} states are kept already: {', '.join(self._kept)}; use one of these names again")
+        if request.name in self._kept:
+            self._world.forget(self._kept[request.name].world)
+        self._kept[request.name] = Kept(self._world.save(), copy.deepcopy(self.rigs), step - self.late, dict(self._numbers))
+        return _reply("")
+
+    def restore(self, step: int, request: StateRequest) -> Reply:
+        """What has been put in since is taken out. What has been taken out since cannot come back: then it is refused."""
+        kept = self._kept.get(request.name)
+        if kept is None:
+            return _reply(f"no state '{request.name}' has been saved; {nearest(request.name, self._kept)}")
+        if gone := [name for name, number in kept.objects.items() if self._numbers.get(name) != number]:
+            return _reply(f"'{gone[0]}' has been removed since '{request.name}' was saved; a state needs all that was there")
+        for name in [name for name in self._objects if name not in kept.objects]:
+            self._take_out(name)
+        self._world.restore(kept.world)
+        self.rigs = copy.deepcopy(kept.rigs)
+        self.late = step - kept.step
+        return _reply("")
+
+    def objects(self, t: float) -> SimObjects:
+        """All that has been put in, as it stands at ``t`` [s]; vehicles where they were put, for their truth is told elsewhere."""
+        poses = self._world.poses()
+        for name, (position, orientation) in poses.items():
+            self._objects[name].pose.position.CopyFrom(vector(position))
+            self._objects[name].pose.orientation.CopyFrom(quaternion(orientation))
+        return SimObjects(timestamp=stamp(t), objects=self._objects.values())
+
+
+def _attitude(pose: Pose) -> Floats:
+    q = wxyz(pose.orientation)
+    return q / float(np.linalg.norm(q))
+
+
+def _pose_fault(pose: Pose) -> str:
+    numbers = (*array(pose.position), *wxyz(pose.orientation))
+    if not all(isfinite(x) and abs(x) <= FARTHEST for x in numbers):
+        return f"the pose must be of finite numbers, positions within {FARTHEST:g} m of the world's origin"
+    if np.linalg.norm(wxyz(pose.orientation)) < 0.1:
+        return "the pose's orientation must be a unit quaternion, or left out"
+    return ""
+
+
+def _shape_fault(wanted: SimObject) -> str:
+    if wanted.shape not in SIZES:
+        return f"there is no shape '{wanted.shape}'; {nearest(wanted.shape, SIZES)}"
+    if len(wanted.size) != SIZES[wanted.shape]:
+        return f"a {wanted.shape} has {SIZES[wanted.shape]} measures [m], not {len(wanted.size)}"
+    if not all(1e-3 <= side <= LARGEST for side in wanted.size):
+        return f"the measures of a {wanted.shape} must be 0.001 to {LARGEST:g} m"
+    return "" if 0.0 <= wanted.mass <= HEAVIEST else f"the mass must be 0 (it stands fast) to {HEAVIEST:g} kg"
+
+
+def _inside(name: str, met: str) -> str:
+    return f"'{name}' would stand in '{met}' there; choose another place"
+
+
+def _reply(reason: str) -> Reply:
+    return Reply(accepted=not reason, reason=reason)
