@@ -118,13 +118,14 @@ def world_import(
     name: Annotated[str, typer.Option(help="Of the new folder in worlds/.")],
     models: Annotated[list[Path] | None, typer.Option(help="Folders with Gazebo models.")] = None,
     height: Annotated[float, typer.Option(min=0.1, max=100.0, help="Of the walls of a map [m].")] = 2.0,
+    upright: Annotated[bool, typer.Option("--upright", help="Turn meshes that say that y is up, which Gazebo does not.")] = False,
     replace: Annotated[bool, typer.Option("--replace", help="Overwrite a world of that name.")] = False,
 ) -> None:
     """Take over a world, telling what was left out."""
     from uvf.launch.worlds.imports import Options, import_world
 
     try:
-        path, lines = import_world(file, _worlds() / name, Options(models or (), height, replace))
+        path, lines = import_world(file, _worlds() / name, Options(models or (), height, replace, upright))
     except BadInput as error:
         raise _refuse(error) from error
     for line in lines:

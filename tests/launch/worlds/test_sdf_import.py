@@ -21,12 +21,12 @@ def no_models_of_this_machine(monkeypatch, tmp_path):
     monkeypatch.setenv("HOME", str(tmp_path / "home"))
 
 
-def taken(tmp_path, world, version="1.7", models=()):
+def taken(tmp_path, world, version="1.7", models=(), upright=False):
     """The imported world, and all that was told."""
     folder = tmp_path / "gazebo"
     folder.mkdir(exist_ok=True)
     (folder / "test.world").write_text(f"<?xml version='1.0'?>\n<sdf version='{version}'><world name='w'>{world}</world></sdf>")
-    _, lines = import_world(folder / "test.world", tmp_path / "worlds" / "w", Options(models=models))
+    _, lines = import_world(folder / "test.world", tmp_path / "worlds" / "w", Options(models=models, upright=upright))
     return load_world(tmp_path / "worlds", "w"), "\n".join(lines)
 
 
@@ -146,12 +146,14 @@ def test_what_is_not_needed_and_what_is_missing_is_told(tmp_path):
         assert words in notes
 
 
-def test_a_mesh_is_written_in_metres_with_z_up_and_its_scale(tmp_path):
-    world, notes = taken(tmp_path, "<include><uri>model://rod</uri></include>", models=[library(tmp_path)])
-    assert "turned upright" in notes
+@pytest.mark.parametrize(("upright", "size"), [(False, (0.254, 1.016, 0.508)), (True, (0.254, 0.254, 2.032))])
+def test_a_mesh_is_written_in_metres_and_turned_only_when_asked(tmp_path, upright, size):
+    """As in Gazebo, whose turtlebot3_world has meshes that say y is up and stand right unturned."""
+    world, notes = taken(tmp_path, "<include><uri>model://rod</uri></include>", models=[library(tmp_path)], upright=upright)
+    assert ("not turned, as in Gazebo" in notes) != upright
     (mesh,) = world.meshes
     assert mesh.file.endswith(".stl")
-    assert trimesh.load_mesh(mesh.file).extents == pytest.approx(np.array((0.254, 0.254, 2 * 1.016)), rel=1e-5)
+    assert trimesh.load_mesh(mesh.file).extents == pytest.approx(np.array(size), rel=1e-5)
 
 
 def test_a_model_that_nothing_holds_and_a_robot_are_told(tmp_path):

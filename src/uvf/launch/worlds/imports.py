@@ -18,11 +18,15 @@ MAPS = (".yaml", ".yml", ".pgm", ".png")
 
 
 class Options(NamedTuple):
-    """models: folders with Gazebo models; height [m] of a map's walls; replace: overwrite a world of that name."""
+    """models: folders with Gazebo models; height [m] of a map's walls; replace: overwrite a world of that name.
+
+    upright: turn meshes that say that y is up.
+    """
 
     models: Sequence[Path] = ()
     height: float = 2.0
     replace: bool = False
+    upright: bool = False
 
 
 def import_world(file: Path, folder: Path, options: Options) -> tuple[Path, list[str]]:
@@ -55,7 +59,7 @@ def _read(file: Path, folder: Path, options: Options) -> tuple[WorldFile, list[s
         return map_world(file, options.height, notes), notes.lines()
     if file.suffix not in SDF:
         raise BadInput(f"{file}: files of this kind are not taken over; give {', '.join((*SDF, *MAPS))}")
-    reading = SdfImport(file, folder, options.models)
+    reading = SdfImport(file, folder, options.models, options.upright)
     return reading.world(), reading.notes.lines()
 
 

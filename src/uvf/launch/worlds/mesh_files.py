@@ -30,9 +30,13 @@ class Wanted(NamedTuple):
 
 
 class MeshStore:
-    """Writes meshes below ``folder``/meshes, each once."""
+    """Writes meshes below ``folder``/meshes, each once.
 
-    def __init__(self, folder: Path, notes: Notes) -> None:
+    upright: whether a DAE that says another axis than z is up gets turned. Gazebo never does, and worlds made with it rely on that.
+    """
+
+    def __init__(self, folder: Path, notes: Notes, upright: bool = False) -> None:
+        self._upright = upright
         self._folder = folder
         self._notes = notes
         self._written: dict[tuple[Path, Wanted], str] = {}
@@ -105,9 +109,9 @@ class MeshStore:
         if source.suffix.lower() == ".dae":
             asset = collada.Collada(str(source), ignore=[collada.common.DaeError]).assetInfo
             turn = {"Y_UP": Z_FROM_Y, "X_UP": Z_FROM_X}.get(asset.upaxis or "Z_UP", np.eye(3))
-            to[:3, :3] = turn * (asset.unitmeter or 1.0)
-            if asset.upaxis in ("Y_UP", "X_UP"):
-                self._notes.add("meshes that say another axis than z is up, turned upright (Gazebo classic does not)", source.name)
+            to[:3, :3] = (turn if self._upright else np.eye(3)) * (asset.unitmeter or 1.0)
+            if asset.upaxis in ("Y_UP", "X_UP") and not self._upright:
+                self._notes.add("meshes that say another axis than z is up, not turned, as in Gazebo (--upright turns them)", source.name)
         return to
 
 

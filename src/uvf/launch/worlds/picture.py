@@ -1,9 +1,11 @@
 """A picture of a world: on the left the floor plan from above, on the right how it looks."""
 
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
+import trimesh
 from matplotlib import patches
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -26,6 +28,7 @@ LENS = 0.9  # rad
 LOOK_DOWN = np.radians(42.0)
 LOOK_FROM = np.radians(-62.0)  # from the south-east
 ON_THE_FLOOR = 0.02  # m, what lies lower is not drawn into the plan
+WIDE = 3.0  # m, from which on a mesh is taken for a building
 CUT = 1.4  # m, higher walls and things are shown cut there, so that one looks into the rooms
 
 
@@ -74,25 +77,33 @@ def _draw_solid(axes: Axes, solid: Solid) -> None:
 def view(world: WorldFile) -> NDArray[np.uint8]:
     """(height, width, 3) RGB from the south-east and above, tall things cut, moving ones at the beginning of their scripts."""
     camera = Camera(Mount((0.0, 0.0, 0.0)), hz=1.0, width=WIDTH, height=HEIGHT, fov=LENS, far=2000.0)
-    shown = [_cut(solid) for solid in solids(world)] if world.walls else solids(world)
-    placed = [_at_start(solid) for solid in shown]
-    renderer = BulletRenderer(world, placed, {})
-    try:
-        picture = renderer.take(camera, _standpoint(world)).picture
-    finally:
-        renderer.close()
+    with TemporaryDirectory() as scratch:
+        placed = [_at_start(_cut(solid, Path(scratch))) for solid in solids(world)]
+        renderer = BulletRenderer(world, placed, {})
+        try:
+            picture = renderer.take(camera, _standpoint(world)).picture
+        finally:
+            renderer.close()
     halves: NDArray[np.uint8] = picture.reshape(HEIGHT // 2, 2, WIDTH // 2, 2, 3).mean(axis=(1, 3)).astype(np.uint8)
     return halves
 
 
-def _cut(solid: Solid) -> Solid:
-    """Upright boxes that reach above ``CUT`` end there."""
-    upright = abs(solid.orientation[1]) + abs(solid.orientation[2]) < 1e-6
-    low, high = (float(solid.position[2] + side * solid.size[2] / 2) for side in (-1, 1)) if solid.shape == "box" else (0.0, 0.0)
-    if not upright or high <= CUT or low >= CUT:
+def _cut(solid: Solid, scratch: Path) -> Solid:
+    """Upright boxes and wide meshes that reach above ``CUT`` end there: they may be walls."""
+    parts = primitives(solid)
+    low, high = parts.low.min(axis=0), parts.high.max(axis=0)
+    if high[2] <= CUT or low[2] >= CUT:
         return solid
-    position = np.array((*solid.position[:2], (low + CUT) / 2))
-    return Solid(solid.name, "box", (*solid.size[:2], CUT - low), position, solid.orientation, solid.colour, path=solid.path)
+    if solid.shape == "mesh" and (high - low)[:2].max() > WIDE:
+        below = parts.rows[parts.low[:, 2] < CUT, :9].reshape(-1, 3)
+        below[:, 2] = np.minimum(below[:, 2], CUT)
+        file = scratch / f"{len(list(scratch.iterdir()))}.stl"
+        trimesh.Trimesh(below, np.arange(len(below)).reshape(-1, 3)).export(file)
+        return Solid(solid.name, "mesh", (1.0, 1.0, 1.0), np.zeros(3), colour=solid.colour, mesh=file)
+    if solid.shape != "box" or abs(solid.orientation[1]) + abs(solid.orientation[2]) > 1e-6:
+        return solid
+    position = np.array((*solid.position[:2], (low[2] + CUT) / 2))
+    return Solid(solid.name, "box", (*solid.size[:2], float(CUT - low[2])), position, solid.orientation, solid.colour, path=solid.path)
 
 
 def _at_start(solid: Solid) -> Solid:

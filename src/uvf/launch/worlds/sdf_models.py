@@ -125,7 +125,14 @@ class Models:
             versions = (Path.home() / cache / host / owner.lower() / "models" / name.lower()).glob("*")
             yield from (folder / inside for folder in sorted(versions, reverse=True))
         for root in self._roots:
-            yield from (root / n / inside for n in (name, name.lower(), re.sub(r"[ -]", "_", name).lower()))
+            yield from (folder / inside for folder in _called(root, name))
+
+
+def _called(root: Path, name: str) -> Iterator[Path]:
+    """Folders of that name, however its case and blanks are written."""
+    plain = re.sub(r"[ _-]", "", name).lower()
+    if root.is_dir():
+        yield from sorted(p for p in root.iterdir() if p.is_dir() and re.sub(r"[ _-]", "", p.name).lower() == plain)
 
 
 def _number(element: Any) -> None:

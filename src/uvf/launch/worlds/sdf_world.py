@@ -50,12 +50,12 @@ class _Placed(NamedTuple):
 class SdfImport:
     """Reads one SDF file into a world of ``folder``."""
 
-    def __init__(self, path: Path, folder: Path, searched: Sequence[Path] = ()) -> None:
+    def __init__(self, path: Path, folder: Path, searched: Sequence[Path] = (), upright: bool = False) -> None:
         self.notes = Notes()
         self._path = path
         self._folder = folder
         self._models = Models(path, searched, self.notes)
-        self._shapes = Shapes(MeshStore(folder, self.notes), self._models.find, self.notes)
+        self._shapes = Shapes(MeshStore(folder, self.notes, upright), self._models.find, self.notes)
         self._planes: list[tuple[float, Colour | None]] = []
         self._names: set[str] = set()
         self._states: dict[str, ModelState] = {}
