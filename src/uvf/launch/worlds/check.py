@@ -52,7 +52,7 @@ def _heights(things: list[Solid]) -> Iterator[str]:
         low, high = bounds[i]
         if i not in standing:
             yield f"{thing.name} floats: nothing between it and the ground, {low[2]:.2f} m below"
-        elif high[2] <= 0.001:
+        elif high[2] < -GAP:
             yield f"{thing.name} is sunk: it ends {-high[2]:.2f} m below the ground"
         elif -low[2] > high[2] and thing.shape != "mesh" and _level(thing):
             yield f"{thing.name} is sunk: {-low[2]:.2f} m of it lie below the ground, {high[2]:.2f} m above"
