@@ -6,15 +6,23 @@ from typing import Annotated
 import typer
 
 from uvf.runtime.params import BadInput
-from uvf.runtime.site import ROOT
 
 vehicle_app = typer.Typer(no_args_is_help=True, help="Look at vehicles, check them, make new ones, take over those of others.")
 
-VEHICLES = ROOT / "vehicles"
 NameArgument = Annotated[str, typer.Argument(help="Name in vehicles/ or path of a vehicle's folder.")]
 NewName = Annotated[str, typer.Option("--name", help="Of the new folder in vehicles/.")]
-IntoOption = Annotated[Path, typer.Option("--into", help="Where the folder goes.")]
+IntoOption = Annotated[Path | None, typer.Option("--into", help="Where the folder goes; by default vehicles/.")]
 Metres = Annotated[float, typer.Option(min=0.005, max=5.0, help="m")]
+
+
+def _root() -> Path:
+    from uvf.runtime.site import ROOT
+
+    return ROOT
+
+
+def _vehicles() -> Path:
+    return _root() / "vehicles"
 
 
 def _refused(error: BadInput) -> typer.Exit:
@@ -29,7 +37,7 @@ def list_vehicles() -> None:
 
     from uvf.launch.vehicles.listing import vehicle_table
 
-    Console().print(vehicle_table(VEHICLES))
+    Console().print(vehicle_table(_vehicles()))
 
 
 @vehicle_app.command()
@@ -41,7 +49,7 @@ def show(name: NameArgument) -> None:
     from uvf.launch.vehicles.listing import frame_tree, vehicle_figures
 
     try:
-        found = inspect(folder_of(name, VEHICLES))
+        found = inspect(folder_of(name, _vehicles()))
     except BadInput as error:
         raise _refused(error) from error
     if found.file is None:
@@ -61,7 +69,7 @@ def check(
     from uvf.launch.vehicles.checking import check_all
 
     try:
-        raise typer.Exit(1 if check_all(names or [], VEHICLES, picture) else 0)
+        raise typer.Exit(1 if check_all(names or [], _vehicles(), picture) else 0)
     except BadInput as error:
         raise _refused(error) from error
 
@@ -69,7 +77,7 @@ def check(
 @vehicle_app.command()
 def picture(
     names: Annotated[list[str] | None, typer.Argument(help="By default all vehicles.")] = None,
-    into: Annotated[Path, typer.Option(help="Folder of the pictures.")] = ROOT / "docs" / "vehicles",
+    into: Annotated[Path | None, typer.Option(help="Folder of the pictures; by default docs/vehicles.")] = None,
 ) -> None:
     """Draw vehicles from the front, from above and from their side."""
     from uvf.launch.vehicles.inspection import folder_of
@@ -77,10 +85,11 @@ def picture(
     from uvf.runtime.vehicle_file import load_vehicle
 
     try:
-        for name in names or sorted(p.parent.name for p in VEHICLES.glob("*/vehicle.yaml")):
-            folder = folder_of(name, VEHICLES)
-            write_picture(folder, load_vehicle(folder.parent, folder.name), into / f"{folder.name}.png")
-            typer.echo(f"uvf: {into / folder.name}.png")
+        target = into or _root() / "docs" / "vehicles"
+        for name in names or sorted(p.parent.name for p in _vehicles().glob("*/vehicle.yaml")):
+            folder = folder_of(name, _vehicles())
+            write_picture(folder, load_vehicle(folder.parent, folder.name), target / f"{folder.name}.png")
+            typer.echo(f"uvf: {target / folder.name}.png")
     except BadInput as error:
         raise _refused(error) from error
 
@@ -97,7 +106,7 @@ def new(
     from uvf.launch.vehicles.creation import Measures, create
 
     try:
-        folder = create(VEHICLES / name, Measures(radius, track, wheel_radius, height))
+        folder = create(_vehicles() / name, Measures(radius, track, wheel_radius, height))
     except BadInput as error:
         raise _refused(error) from error
     typer.echo(f"uvf: {folder}; look at it with 'uvf vehicle check {name}'")
@@ -107,7 +116,7 @@ def new(
 def import_(
     source: Annotated[Path, typer.Argument(help="A .urdf, .xacro or .sdf.")],
     name: NewName,
-    into: IntoOption = VEHICLES,
+    into: IntoOption = None,
     arg: Annotated[list[str] | None, typer.Option(help="Of the xacro, as name:=value.")] = None,
 ) -> None:
     """Take over a robot of others: a folder in vehicles/, and a note of what was dropped or guessed. Checks it at once."""
@@ -116,9 +125,10 @@ def import_(
 
     try:
         arguments = dict(_pair(text) for text in arg or [])
-        for line in import_vehicle(source, into / name, arguments):
+        target = into or _vehicles()
+        for line in import_vehicle(source, target / name, arguments):
             typer.echo(f"note: {line}")
-        raise typer.Exit(1 if check_all([str(into / name)], into, None) else 0)
+        raise typer.Exit(1 if check_all([str(target / name)], target, None) else 0)
     except BadInput as error:
         raise _refused(error) from error
 
