@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from services.sim_camera.renderer import BulletRenderer, Look, Pose
 from uvf.maths.rotations import from_matrix
 from uvf.runtime.params import BadInput
-from uvf.runtime.urdf_model import engine_urdf
+from uvf.runtime.solid_mesh import placed, triangles
+from uvf.runtime.urdf_model import engine_urdf, load_urdf
 from uvf.runtime.vehicle_file import Camera, Mount, VehicleFile
 from uvf.runtime.world_file import Origin, WorldFile
 
@@ -43,8 +44,7 @@ VIEWS = (
 
 def write_picture(folder: Path, file: VehicleFile, target: Path) -> None:
     """A PNG of three views with scales in metres. Raises BadInput where it cannot be written."""
-    size = _size(file)
-    look, middle = _look(folder, file), np.array((0.0, 0.0, _middle_height(file, size)))
+    look, (middle, size) = _look(folder, file), _extent(folder, file)
     renderer = BulletRenderer(WorldFile("", Origin(0.0, 0.0, 0.0), (-1.0, -1.0, 1.0, 1.0), ground_colour=GROUND), [], {"it": look})
     figure = Figure(figsize=(12.0, 4.4), layout="constrained")
     try:
@@ -61,13 +61,15 @@ def write_picture(folder: Path, file: VehicleFile, target: Path) -> None:
         raise BadInput(f"{target}: cannot be written: {error}") from error
 
 
-def _size(file: VehicleFile) -> float:
-    return file.ground.radius if file.ground is not None else AIRCRAFT_SIZE
-
-
-def _middle_height(file: VehicleFile, size: float) -> float:
-    """m, of what the views turn about: aircraft are shown in the air."""
-    return 0.45 * size if file.ground is not None else 3.0 * size
+def _extent(folder: Path, file: VehicleFile) -> tuple[Floats, float]:
+    """What the views turn about (3,) m, and how far the vehicle goes from there [m]; aircraft are shown in the air."""
+    if file.ground is None:
+        return np.array((0.0, 0.0, 3.0 * AIRCRAFT_SIZE)), AIRCRAFT_SIZE
+    model = load_urdf(folder / file.ground.urdf)
+    poses = model.link_poses()
+    points = [triangles(placed(s, poses[n]))[0] for n, link in model.links.items() for s in link.visuals or link.collisions]
+    top = float(np.vstack(points)[:, 2].max())
+    return np.array((0.0, 0.0, top / 2)), max(file.ground.radius, 0.6 * top)
 
 
 def _look(folder: Path, file: VehicleFile) -> Look:
