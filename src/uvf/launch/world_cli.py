@@ -101,14 +101,15 @@ def world_new(
 ) -> None:
     """Make up a house with rooms, doors and furniture; every room can be reached."""
     from uvf.launch.worlds.generator import generate
-    from uvf.launch.worlds.imports import make_room
+    from uvf.launch.worlds.imports import make_room, new_folder
     from uvf.launch.worlds.world_writer import write_world
 
     try:
-        make_room(_worlds() / name, replace)
+        folder = new_folder(_worlds(), name)
+        make_room(folder, replace)
     except BadInput as error:
         raise _refuse(error) from error
-    path = write_world(generate(rooms, seed), _worlds() / name)
+    path = write_world(generate(rooms, seed), folder)
     typer.echo(f"uvf: {path}; look at it with 'uvf world picture {name}'")
 
 
@@ -122,10 +123,10 @@ def world_import(
     replace: Annotated[bool, typer.Option("--replace", help="Overwrite a world of that name.")] = False,
 ) -> None:
     """Take over a world, telling what was left out."""
-    from uvf.launch.worlds.imports import Options, import_world
+    from uvf.launch.worlds.imports import Options, import_world, new_folder
 
     try:
-        path, lines = import_world(file, _worlds() / name, Options(models or (), height, replace, upright))
+        path, lines = import_world(file, new_folder(_worlds(), name), Options(models or (), height, replace, upright))
     except BadInput as error:
         raise _refuse(error) from error
     for line in lines:

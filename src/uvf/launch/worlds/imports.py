@@ -44,10 +44,15 @@ def import_world(file: Path, folder: Path, options: Options) -> tuple[Path, list
     return path, [*(f"note: {note}" for note in notes), _counts(world)]
 
 
+def new_folder(worlds: Path, name: str) -> Path:
+    """Where a world of that name lies. Raises BadInput for a name that is no plain folder's."""
+    if not re.fullmatch(r"[A-Za-z0-9_][A-Za-z0-9_-]*", name):
+        raise BadInput(f"a world cannot be called '{name}'; use letters, digits, - and _")
+    return worlds / name
+
+
 def make_room(folder: Path, replace: bool) -> None:
-    """Raises BadInput for a name that is no folder's, and for one that is taken unless it may be replaced."""
-    if not re.fullmatch(r"[A-Za-z0-9_][A-Za-z0-9_-]*", folder.name):
-        raise BadInput(f"a world cannot be called '{folder.name}'; use letters, digits, - and _")
+    """Raises BadInput for a folder that is there, unless it may be replaced."""
     if folder.exists() and not replace:
         raise BadInput(f"{folder} is there already; give another --name, or --replace to overwrite it")
     shutil.rmtree(folder, ignore_errors=True)

@@ -47,7 +47,8 @@ def map_world(path: Path, height: float, notes: Notes) -> WorldFile:
     notes.add(f"{int(occupied.sum())} occupied cells of {file.resolution:g} m became {len(rectangles)} boxes")
     if len(rectangles) > MANY:
         notes.add(f"more than {MANY} boxes are slow; clean the picture of single cells first")
-    notes.add("cells that the map does not know are floor here", f"{int((~known).sum())}" if not known.all() else "none")
+    if not known.all():
+        notes.add("cells that the map does not know are floor here", f"{int((~known).sum())}")
     notes.add("a map does not say where on Earth it lies: set 'origin'")
     boxes = [_box(i, rectangle, file, height) for i, rectangle in enumerate(rectangles, 1)]
     return WorldFile(f"Walls of the map {path.name}.", HOME, _floor(known, file), boxes=boxes, ground_colour=(0.6, 0.6, 0.58))
