@@ -1,12 +1,14 @@
 """The cameras of a mission: one instance for all of them."""
 
+from functools import cache
+
 from services.sim_camera.fitted import Fitted
 from services.sim_camera.renderer import BulletRenderer, Look
 from services.sim_camera.service import SimCamera
 from uvf.runtime.params import BadInput, nearest
 from uvf.runtime.site import Host, Member, Site
 from uvf.runtime.urdf_model import engine_urdf
-from uvf.runtime.vehicle_file import Camera
+from uvf.runtime.vehicle_file import Camera, load_vehicle
 from uvf.runtime.world_geometry import solids
 
 
@@ -20,9 +22,16 @@ def build(site: Site) -> list[Host]:
         return []
     things = solids(site.world, site.world_folder)
 
+    vehicles = next(iter(site.members.values())).folder.parent
+
+    @cache
+    def look_of(model: str) -> Look:
+        ground = load_vehicle(vehicles, model).ground  # the ground simulation has taken it in
+        return Look(urdf=engine_urdf(vehicles / model / ground.urdf)) if ground is not None else Look()
+
     def make() -> SimCamera:
         fitted = [Fitted(name, camera, site.rng(name, "camera")) for name, camera in cameras.items()]
-        return SimCamera(BulletRenderer(site.world, things, looks), fitted)
+        return SimCamera(BulletRenderer(site.world, things, looks), fitted, look_of)
 
     return [Host(SimCamera, make, writes_for=tuple(cameras))]
 

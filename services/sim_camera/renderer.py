@@ -67,6 +67,7 @@ class BulletRenderer:
             if solid.path is not None:
                 self._scripted.append((index, solid))
         self._vehicles = {name: self._load(look) for name, look in vehicles.items()}
+        self._guests: dict[str, tuple[Look | tuple[str, tuple[float, ...]], int]] = {}
 
     def _add(self, shape: int, position: Floats, orientation: Floats = UPRIGHT) -> int:
         index: int = pybullet.createMultiBody(
@@ -108,10 +109,28 @@ class BulletRenderer:
             position, turned = pose_at(solid, t)
             pybullet.resetBasePositionAndOrientation(index, position.tolist(), _xyzw(turned), physicsClientId=self._client)
         for name, (position, world_from_body) in poses.items():
-            shown = self._vehicles[name]
+            if (shown := self._vehicles.get(name)) is None:  # one that was put in a moment ago
+                continue
             centre = position + rotate(world_from_body, shown.com_in_body.position)
             turned = multiply(world_from_body, shown.com_in_body.world_from_body)
             pybullet.resetBasePositionAndOrientation(shown.index, centre.tolist(), _xyzw(turned), physicsClientId=self._client)
+
+    def show(self, guests: Mapping[str, Solid | Look]) -> None:
+        """What has been put into the running simulation: solids where they are now; vehicles are placed as the others are."""
+        kinds = {name: guest if isinstance(guest, Look) else (guest.shape, guest.size) for name, guest in guests.items()}
+        for name in [name for name, (kind, _) in self._guests.items() if kinds.get(name) != kind]:
+            pybullet.removeBody(self._guests.pop(name)[1], physicsClientId=self._client)
+            self._vehicles.pop(name, None)
+        for name, guest in guests.items():
+            if isinstance(guest, Look):
+                if name not in self._guests:
+                    self._vehicles[name] = self._load(guest)
+                    self._guests[name] = guest, self._vehicles[name].index
+                continue
+            if name not in self._guests:
+                self._guests[name] = kinds[name], self._add(_visual_shape(guest, self._client), guest.position)
+            index, turned = self._guests[name][1], _xyzw(guest.orientation)
+            pybullet.resetBasePositionAndOrientation(index, guest.position.tolist(), turned, physicsClientId=self._client)
 
     def take(self, camera: Camera, body: Pose) -> Shot:
         """What a vehicle's camera sees when its body is there."""

@@ -97,3 +97,12 @@ def test_a_conductor_that_comes_back_takes_time_up_where_it_was():
     conductor.done(Done(participant="sim", tick=3700, t_ns=37 * NS, epoch=2), boot=1)
     tick = run(conductor, 0.0, 0.1)[0]
     assert (tick.tick, tick.epoch) == (3701, 2)
+
+
+def test_a_reset_asked_for_starts_time_over_in_a_new_epoch():
+    conductor = Conductor(["sim"], [])
+    ready(conductor, "sim")
+    run(conductor, 0.0, 0.5)
+    assert conductor.request(ClockRequest(action=ClockRequest.RESET)).accepted
+    tick = run(conductor, 0.5, 0.6)[0]
+    assert (tick.tick, tick.epoch) == (1, 2)

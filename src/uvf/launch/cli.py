@@ -10,6 +10,7 @@ from typing import Annotated
 
 import typer
 
+from uvf.launch.sim_cli import sim_app
 from uvf.launch.vehicle_cli import vehicle_app
 from uvf.launch.world_cli import world_app
 from uvf.runtime.params import BadInput
@@ -21,6 +22,7 @@ log_app = typer.Typer(no_args_is_help=True, help="Look at recorded runs.")
 app.add_typer(topic_app, name="topic")
 app.add_typer(node_app, name="node")
 app.add_typer(log_app, name="log")
+app.add_typer(sim_app, name="sim")
 app.add_typer(vehicle_app, name="vehicle")
 app.add_typer(world_app, name="world")
 

@@ -1,5 +1,6 @@
 """Pictures by the real renderer: things appear where the intrinsics say, in their colours."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import msgspec
@@ -11,6 +12,7 @@ from services.sim_camera.optics import intrinsics, project
 from services.sim_camera.renderer import BulletRenderer, Look, Pose
 from uvf.maths.rotations import from_euler, matrix
 from uvf.runtime.site import ROOT
+from uvf.runtime.solid import Solid
 from uvf.runtime.vehicle_file import Camera, Mount
 from uvf.runtime.world_file import Box, Cylinder, Field, Origin, WorldFile
 from uvf.runtime.world_geometry import solids
@@ -63,6 +65,27 @@ def test_who_walks_by_script_is_seen_where_the_script_has_brought_him():
     columns = [centre_of(is_red(picture(world, t=t)))[0] for t in (0.5, 1.0, 1.5)]
     assert columns[1] == pytest.approx(CAMERA.width / 2, abs=2.0)
     assert columns[0] < columns[1] - 20 < columns[2] - 40
+
+
+def test_what_is_put_in_is_seen_moves_and_is_gone_again():
+    renderer, crate = BulletRenderer(EMPTY, [], {}), Solid("crate", "box", (0.4, 0.4, 0.4), np.array((3.0, 0.5, 0.2)), colour=RED)
+    seen = []
+    for guests in ({"crate": crate}, {"crate": replace(crate, position=np.array((3.0, -0.5, 0.2)))}, {}):
+        renderer.show(guests)
+        renderer.place(0.0, {"not yet here": ORIGIN})
+        seen.append(is_red(renderer.take(CAMERA, ORIGIN).picture.astype(int)))
+    renderer.close()
+    assert centre_of(seen[0])[0] < CAMERA.width / 2 < centre_of(seen[1])[0]
+    assert not seen[2].any()
+
+
+def test_a_vehicle_that_is_put_in_is_placed_like_the_others():
+    renderer, far = BulletRenderer(EMPTY, [], {}), Pose(np.array((1.5, 0.0, 0.0)), ORIGIN.world_from_body)
+    empty = renderer.take(CAMERA, ORIGIN).picture
+    renderer.show({"guest": Look(urdf=ROOT / "vehicles" / "burger" / "burger.urdf")})
+    renderer.place(0.0, {"guest": far})
+    assert (renderer.take(CAMERA, ORIGIN).picture != empty).any()
+    renderer.close()
 
 
 def test_the_sky_is_above_and_the_ground_below():
