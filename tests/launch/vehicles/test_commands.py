@@ -19,7 +19,7 @@ def vehicles(tmp_path, monkeypatch):
     """A folder of vehicles to which a test may add, in place of the project's."""
     for name in ("burger", "common"):
         shutil.copytree(ROOT / "vehicles" / name, tmp_path / "vehicles" / name)
-    monkeypatch.setattr(vehicle_cli, "VEHICLES", tmp_path / "vehicles")
+    monkeypatch.setattr(vehicle_cli, "_vehicles", lambda: tmp_path / "vehicles")
     monkeypatch.setenv("UVF_RUNS", str(tmp_path / "runs"))
     return tmp_path / "vehicles"
 
