@@ -20,24 +20,23 @@ from services.sim_ground.imu import UP, ImuModel
 from services.sim_ground.lidar import LidarModel
 from services.sim_ground.sonar import SonarModel
 from uvf.maths.allan import expected, octaves, overlapping
+from uvf.maths.bvh import build
 from uvf.maths.geodesy import LocalTangent
 from uvf.maths.kinematics import WheelSpeeds
-from uvf.maths.planar import Pose2
-from uvf.maths.raycast import rectangles
+from uvf.maths.raycast3 import Scene
 from uvf.maths.rotations import IDENTITY
 from uvf.maths.sampling import Line
 from uvf.maths.sensing import Errors
+from uvf.maths.solids import box
 from uvf.runtime.sensor_presets import PRESETS
 from uvf.runtime.site import ROOT
 from uvf.runtime.vehicle_file import Camera, Encoders, GnssSensor, ImuSensor, Lidar, Mount, Sensors, Sonar, line_of, load_vehicle
 from uvf.runtime.world_file import Origin, WorldFile
-from uvf.runtime.world_geometry import Slice
 
 Floats = NDArray[np.float64]
 Figures = dict[str, dict[str, float]]
 STILL = BodyState(np.zeros(3), IDENTITY, np.zeros(3), np.zeros(3), (0.0, 0.0), WheelSpeeds(0.0, 0.0))
-HERE, NOBODY = Pose2(0.0, 0.0, 0.0), np.zeros((0, 3))
-ROOM = Slice(rectangles(np.array([[0.0, 0.0, 2.0, 2.0, 0.0]])), np.zeros((0, 3)))  # seen from its middle, 2 m away
+ROOM = Scene(build(box((4.0, 4.0, 4.0), np.zeros(3))))  # seen from its middle, 2 m away
 FIELD = np.array((2e-6, 25e-6, -39e-6))  # T, ENU
 TANGENT = LocalTangent.from_degrees(40.77, 14.79, 300.0)
 HOURS = 1.0
@@ -96,10 +95,10 @@ def _ranges() -> Figures:
     for name, preset in PRESETS["lidar"].items():
         lidar = msgspec.convert({"mount": {}, **preset}, Lidar)
         model, truth = LidarModel(lidar, ROOM, _rng()), LidarModel(msgspec.structs.replace(lidar, noise=0.0), ROOM, _rng())
-        figures[f"lidar {name}"] = _row([model.scan(HERE, NOBODY) - truth.scan(HERE, NOBODY) for _ in range(200)], lidar.noise)
+        figures[f"lidar {name}"] = _row([model.scan(STILL, []) - truth.scan(STILL, []) for _ in range(200)], lidar.noise)
     sonar = Sonar(mount=Mount(), hz=10.0, fov=0.5, range_min=0.02, range_max=4.0, noise=0.02)
     echo = SonarModel(sonar, ROOM, _rng())
-    figures["sonar"] = _row([[echo.range(HERE, NOBODY) - 2.0] for _ in range(5000)], sonar.noise)
+    figures["sonar"] = _row([[echo.range(STILL, []) - 2.0] for _ in range(5000)], sonar.noise)
     encoders = _sensors("burger").encoders
     assert encoders is not None
     return {**figures, "encoders, part of a tick": _quantisation(encoders)}

@@ -6,8 +6,8 @@ import trimesh
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests import planar_rays as raycast
 from tests.maths.scenes import random_directions, random_parts, torus, turn
-from uvf.maths import raycast
 from uvf.maths.bvh import build
 from uvf.maths.raycast3 import Body, Rays, Scene, cast, warm_up
 from uvf.maths.rotations import IDENTITY, from_euler, matrix

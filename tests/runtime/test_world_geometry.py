@@ -3,11 +3,12 @@
 import numpy as np
 import pytest
 
-from uvf.maths.raycast import cast
+from uvf.maths.raycast3 import Rays, cast
 from uvf.runtime.params import BadInput
+from uvf.runtime.scene import scene
 from uvf.runtime.site import ROOT
 from uvf.runtime.world_file import Box, Cylinder, Origin, Wall, WorldFile, load_world
-from uvf.runtime.world_geometry import all_boxes, clearance, floor_plan, reachable_floor, slice_at
+from uvf.runtime.world_geometry import all_boxes, clearance, floor_plan, reachable_floor, solids
 
 HOUSE = load_world(ROOT / "worlds", "house")
 START = (2.2, 1.3)
@@ -71,20 +72,25 @@ def test_stretches_overlap_at_corners_but_free_ends_keep_their_length():
     assert second.centre[:2] == pytest.approx((2.0, 0.45))
 
 
+def level_ranges(world, origin, angles):
+    """m from (x, y), 18 cm above the floor."""
+    level = np.column_stack((np.cos(angles), np.sin(angles), np.zeros(len(angles))))
+    return cast(scene(solids(world)), [], Rays(np.array((*origin, 0.18)), level), 100.0)
+
+
 def test_the_lidar_sees_a_table_by_its_legs_only():
     top = Box("top", (2.0, 1.0, 0.7), (1.0, 1.0, 0.05))
     leg = Cylinder("leg", (2.0, 1.0, 0.0), 0.05, 0.7)
     world = world_of(boxes=[top], cylinders=[leg])
-    cut = slice_at(world, 0.18)
-    assert cast(np.array((0.0, 1.0)), np.zeros(1), cut.boxes, cut.circles) == pytest.approx([1.95])
+    assert level_ranges(world, (0.0, 1.0), np.zeros(1)) == pytest.approx([1.95])
     assert not floor_plan(world, 0.05).cells[floor_plan(world, 0.05).cell(1.6, 1.0)]
 
 
 def test_the_plan_and_the_rays_agree_on_where_the_walls_are():
     """Each ray ends in or beside an occupied cell and crosses none before."""
-    plan, cut = floor_plan(HOUSE, 0.05), slice_at(HOUSE, 0.182)
+    plan = floor_plan(HOUSE, 0.05)
     angles = np.linspace(-np.pi, np.pi, 180, endpoint=False)
-    ranges = cast(np.array(START), angles, cut.boxes, cut.circles)
+    ranges = level_ranges(HOUSE, START, angles)
     for angle, distance in zip(angles, ranges, strict=True):
         beyond = (START[0] + (distance + 0.02) * np.cos(angle), START[1] + (distance + 0.02) * np.sin(angle))
         before = (START[0] + (distance - 0.08) * np.cos(angle), START[1] + (distance - 0.08) * np.sin(angle))

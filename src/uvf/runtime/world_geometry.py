@@ -9,13 +9,12 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from uvf.maths.footprint import Footprint, covered, footprint, segments
-from uvf.maths.raycast import rectangles
 from uvf.maths.rotations import from_euler, rotate
 from uvf.maths.solids import Solids, joined
 from uvf.runtime.drivable import drivable
 from uvf.runtime.scene import primitives, still
 from uvf.runtime.solid import Keyframes, Solid
-from uvf.runtime.world_file import Box, Cylinder, Script, Wall, WorldFile
+from uvf.runtime.world_file import Box, Script, Wall, WorldFile
 
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -23,14 +22,6 @@ WALL = "wall"  # every stretch of wall is called so
 GRAZE = 0.001  # m, lower than that nothing is bumped into
 BAND = 0.05  # m, steps of height in which obstacles on ramps are looked for
 COARSE = 0.1  # m, cells in which the ground under one point is looked for
-
-
-@dataclass(frozen=True)
-class Slice:
-    """The world cut at one height. boxes: (n, 6) as in ``raycast.cast``; circles: (m, 3) x, y, radius [m]."""
-
-    boxes: Floats
-    circles: Floats
 
 
 @dataclass(frozen=True)
@@ -102,26 +93,6 @@ def solids(world: WorldFile, folder: Path = Path()) -> list[Solid]:
 
 def _script(path: Script) -> Keyframes | None:
     return Keyframes(np.array(path)) if path else None
-
-
-def slice_between(world: WorldFile, low: float, high: float) -> Slice:
-    """All solids that reach into the heights from ``low`` to ``high`` [m, world], as outlines."""
-    boxes = [(b.centre[0], b.centre[1], b.size[0] / 2, b.size[1] / 2, b.rpy[2]) for b in all_boxes(world) if _cuts_box(b, low, high)]
-    circles = [(c.base[0], c.base[1], c.radius) for c in world.cylinders if _cuts_cylinder(c, low, high)]
-    return Slice(rectangles(np.array(boxes)), np.array(circles, dtype=np.float64).reshape(-1, 3))
-
-
-def _cuts_box(box: Box, low: float, high: float) -> bool:
-    return box.centre[2] - box.size[2] / 2 <= high and box.centre[2] + box.size[2] / 2 >= low
-
-
-def _cuts_cylinder(cylinder: Cylinder, low: float, high: float) -> bool:
-    return cylinder.base[2] <= high and cylinder.base[2] + cylinder.height >= low
-
-
-def slice_at(world: WorldFile, z: float) -> Slice:
-    """What a level 2-D lidar at height ``z`` [m, world] can meet."""
-    return slice_between(world, z, z)
 
 
 def floor_plan(world: WorldFile, resolution: float, height: float = 0.2) -> FloorPlan:

@@ -8,10 +8,11 @@ from schemas.convert import array, seconds
 from tests.services.sim_ground.ride import STILL, ride, site_with
 from uvf.maths.geodesy import GRAVITY
 from uvf.maths.kinematics import Twist
-from uvf.maths.raycast import cast
+from uvf.maths.raycast3 import Rays, cast
+from uvf.runtime.scene import scene
 from uvf.runtime.site import ROOT
 from uvf.runtime.world_file import load_world
-from uvf.runtime.world_geometry import slice_at
+from uvf.runtime.world_geometry import solids
 
 START = (6.0, 4.4, 0.3)
 
@@ -61,9 +62,10 @@ def test_the_scan_goes_counter_clockwise_from_straight_ahead(resting):
     assert scan.frame_id == "burger/lidar"
     assert (scan.start_angle, scan.end_angle) == pytest.approx((0.0, np.radians(359)))
     x, y, yaw = START
-    lidar = np.array((x - 0.032 * np.cos(yaw), y - 0.032 * np.sin(yaw)))
-    outlines = slice_at(load_world(ROOT / "worlds", "house"), 0.182)
-    true = cast(lidar, yaw + np.radians(np.arange(360)), outlines.boxes, outlines.circles)
+    lidar = np.array((x - 0.032 * np.cos(yaw), y - 0.032 * np.sin(yaw), 0.182))
+    angles = yaw + np.radians(np.arange(360))
+    level = np.column_stack((np.cos(angles), np.sin(angles), np.zeros(360)))
+    true = cast(scene(solids(load_world(ROOT / "worlds", "house"))), [], Rays(lidar, level), 100.0)
     ranges = np.array(scan.ranges)
     near = (true > 0.2) & (true < 3.4)
     assert np.abs(ranges - true)[near].std() == pytest.approx(0.01 * np.sqrt(1 - 2 / np.pi), rel=0.3)

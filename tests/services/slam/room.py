@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from tests.planar_rays import cast, rectangles
 from uvf.maths.planar import compose, transform
-from uvf.maths.raycast import cast, rectangles
 
 WALLS = ((0.0, -2.0, 3.0, 0.05, 0.0), (0.0, 2.0, 3.0, 0.05, 0.0), (-3.0, 0.0, 0.05, 2.0, 0.0), (3.0, 0.0, 0.05, 2.0, 0.0))
 FURNITURE = ((1.5, 1.2, 0.4, 0.3, 0.4), (-1.8, -1.0, 0.5, 0.25, 0.0))

@@ -6,9 +6,9 @@ import pytest
 from services.slam.correlative import search
 from services.slam.occupancy import OccupancyMap
 from services.slam.scan_match import match
+from tests.planar_rays import rectangles
 from tests.services.slam.room import measured, points
 from uvf.maths.planar import IDENTITY, compose, transform
-from uvf.maths.raycast import rectangles
 from uvf.maths.rotations import wrap
 
 NOWHERE = np.zeros((0, 2))

@@ -1,4 +1,4 @@
-"""Rays in the plane against rectangles and circles: what a 2-D lidar sees of a world cut at its height."""
+"""Rays in the plane against rectangles and circles, written apart from ``maths.raycast3``: its check, and a flat room for tests."""
 
 from math import sqrt
 
