@@ -2,20 +2,22 @@
 
 import time
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from benchmarks.raycast_worlds import Twin, fan, grazing, house, meshes, mixed, random_scans
+from benchmarks.raycast_worlds import Twin, built_worlds, fan, grazing, low_places, meshes, mixed, random_scans, world
 from uvf.maths.raycast3 import Rays, Scene, cast, warm_up
 
 Floats = NDArray[np.float64]
 
 MAX_RANGE = 12.0  # m
 PLACES, ROUNDS = 20, 10
+WORLDS = built_worlds()
 SCANS: dict[str, tuple[Callable[[], Twin], Floats, float]] = {
-    "house": (house, np.array(((0.2, 0.2, 0.1), (11.8, 8.8, 1.5))), 0.1),
+    **{name: (partial(world, name), low_places(name), 0.1) for name in WORLDS},
     "mixed": (mixed, np.array(((-3.0, -3.0, -3.0), (3.0, 3.0, 3.0))), np.pi),
     "meshes": (meshes, np.array(((-3.0, -3.0, -0.5), (3.0, 3.0, 1.0))), np.pi),
 }

@@ -18,6 +18,7 @@ from uvf.maths.bvh import build
 from uvf.maths.raycast3 import Rays, Scene, cast
 from uvf.maths.rotations import IDENTITY, from_euler, matrix
 from uvf.maths.solids import Solids
+from uvf.runtime.scene import triangles
 from uvf.runtime.site import ROOT
 from uvf.runtime.world_file import load_world
 from uvf.runtime.world_geometry import solids as world_solids
@@ -120,16 +121,33 @@ def grazing(scene: Scene, rays: Rays, ranges: Floats, max_range: float) -> NDArr
     return found
 
 
-def house() -> Twin:
-    """The world file: walls, furniture, the floor."""
-    twin, folder = Twin(ground=0.0), ROOT / "worlds"
-    for solid in world_solids(load_world(folder, "house"), folder / "house"):
+def built_worlds() -> list[str]:
+    """The worlds that have more than a floor."""
+    names = sorted(path.parent.name for path in (ROOT / "worlds").glob("*/world.yaml"))
+    return [name for name in names if world_solids(load_world(ROOT / "worlds", name))]
+
+
+def world(name: str) -> Twin:
+    """A world's solids at the beginning of their scripts, on its floor."""
+    twin = Twin(ground=0.0)
+    for solid in world_solids(load_world(ROOT / "worlds", name)):
         if solid.shape == "box":
             twin.box(np.array(solid.size), solid.position, solid.orientation)
-        else:
+        elif solid.shape == "cylinder":
             radius, height = solid.size
             twin.cylinder(radius, height, solid.position, solid.orientation)
+        elif solid.shape == "sphere":
+            twin.sphere(solid.size[0], solid.position)
+        else:
+            vertices, faces = triangles(solid)
+            twin.mesh(trimesh.Trimesh(vertices, faces, process=False), solid.position, solid.orientation)
     return twin
+
+
+def low_places(name: str) -> Floats:
+    """(2, 3) m: where scanners of ground vehicles may be in a world, lowest and highest corner."""
+    x_min, y_min, x_max, y_max = load_world(ROOT / "worlds", name).floor
+    return np.array(((x_min + 0.2, y_min + 0.2, 0.1), (x_max - 0.2, y_max - 0.2, 1.5)))
 
 
 def mixed() -> Twin:

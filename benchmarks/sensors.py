@@ -16,12 +16,12 @@ from services.sim_air.sensors import Pressures
 from services.sim_camera.renderer import BulletRenderer, Pose
 from services.sim_ground.body import BodyState
 from services.sim_ground.encoders import ticks
-from services.sim_ground.imu import UP, ImuModel
+from services.sim_ground.imu import ImuModel
 from services.sim_ground.lidar import LidarModel
 from services.sim_ground.sonar import SonarModel
 from uvf.maths.allan import expected, octaves, overlapping
 from uvf.maths.bvh import build
-from uvf.maths.geodesy import LocalTangent
+from uvf.maths.geodesy import GRAVITY, LocalTangent
 from uvf.maths.kinematics import WheelSpeeds
 from uvf.maths.raycast3 import Scene
 from uvf.maths.rotations import IDENTITY
@@ -37,6 +37,7 @@ Floats = NDArray[np.float64]
 Figures = dict[str, dict[str, float]]
 STILL = BodyState(np.zeros(3), IDENTITY, np.zeros(3), np.zeros(3), (0.0, 0.0), WheelSpeeds(0.0, 0.0))
 ROOM = Scene(build(box((4.0, 4.0, 4.0), np.zeros(3))))  # seen from its middle, 2 m away
+UP = np.array((0.0, 0.0, GRAVITY))  # m/s^2
 FIELD = np.array((2e-6, 25e-6, -39e-6))  # T, ENU
 TANGENT = LocalTangent.from_degrees(40.77, 14.79, 300.0)
 HOURS = 1.0

@@ -2,6 +2,7 @@
 
 import importlib
 import json
+import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
@@ -14,6 +15,7 @@ from uvf.runtime.site import ROOT
 
 Figures = dict[str, dict[str, float]]
 Case = Callable[[Path | None], Figures]
+WIDTH = 160  # columns, of a table that goes into a file
 RESULTS = ROOT / "benchmarks" / "results.md"
 
 
@@ -29,8 +31,9 @@ def run_groups(names: Sequence[str], data: Path | None, json_file: Path | None, 
         else:
             wanted[next(reversed(wanted))].append(name)
     figures: dict[str, Figures] = {group: _run(group, cases, data) for group, cases in wanted.items()}
+    console = Console(width=None if sys.stdout.isatty() else WIDTH)
     for group, rows in figures.items():
-        Console().print(_table(group, rows))
+        console.print(_table(group, rows))
         if write:
             RESULTS.write_text(replace_section(RESULTS.read_text() if RESULTS.exists() else "# Results\n", group, rows))
     if json_file:
