@@ -10,9 +10,11 @@ from numpy.typing import NDArray
 
 from schemas import convert
 from schemas.convert import stamp
-from schemas.messages import ArmRequest, Event, GoalRequest, Mode, ModeRequest, StopCommand, Vector3
+from schemas.messages import ArmRequest, CancelRequest, DriveCommand, Event, GoalRequest, Mode, ModeRequest, StopCommand, Vector3
+from services.gcs.by_hand import ByHand
 from services.gcs.state import LAYERS, LOST_AFTER, Model, Order, VehicleModel
 from uvf.runtime.service import Answer
+from uvf.runtime.teleop_hand import SCALINGS, Command
 
 Floats = NDArray[np.float64]
 
@@ -61,7 +63,34 @@ class Layer:
     on: bool
 
 
-Action = Select | ClickGround | Arm | SetMode | StopAll | Layer
+@dataclass(frozen=True)
+class Cancel:
+    """Of the goal that the chosen vehicle drives to."""
+
+
+@dataclass(frozen=True)
+class TakeWheel:
+    """page: its own word for itself; empty: nobody shall drive by hand."""
+
+    page: str
+
+
+@dataclass(frozen=True)
+class Steer:
+    """What a page holds: parts (-1..1) of the linear and the angular scale."""
+
+    page: str
+    forward: float
+    left: float
+
+
+@dataclass(frozen=True)
+class Rescale:
+    page: str
+    key: str
+
+
+Action = Select | ClickGround | Arm | SetMode | StopAll | Layer | Cancel | TakeWheel | Steer | Rescale
 
 
 @dataclass
@@ -72,6 +101,8 @@ class Outbox:
     arm: dict[str, list[Message]] = field(default_factory=dict)
     mode: dict[str, list[Message]] = field(default_factory=dict)
     goal: dict[str, list[Message]] = field(default_factory=dict)
+    cancel: dict[str, list[Message]] = field(default_factory=dict)
+    drive: dict[str, Message] = field(default_factory=dict)
 
 
 def ground_point(origin: Sequence[float], direction: Sequence[float]) -> tuple[float, float] | None:
@@ -94,6 +125,8 @@ def describe(request: Message) -> str:
             return f"mode {mode_name(request.mode)}"
         case ArmRequest():
             return "arm" if request.arm else "disarm"
+        case CancelRequest():
+            return "cancel the goal"
     return request.DESCRIPTOR.name
 
 
@@ -110,6 +143,8 @@ class Commander:
         self._to_confirm: tuple[str, bool, float] | None = None
         self._mode_before: dict[str, int] = {}
         self._back: dict[str, int] = {}
+        bodies = {v.name: v.member.file.ground for v in model.vehicles.values()}
+        self.by_hand = ByHand({n: Command(b.max_linear, b.max_angular) for n, b in bodies.items() if b is not None})
 
     def waits_for_confirmation(self, vehicle: str, arm: bool, t: float) -> bool:
         asked = self._to_confirm
@@ -124,21 +159,34 @@ class Commander:
         for action in actions:
             match action:
                 case Select(name):
-                    self._select(name)
+                    self._select(t, name)
                 case Layer(name, on):
                     self._layer(name, on)
                 case StopAll(engaged):
-                    self._stop(engaged, out)
+                    self._stop(t, engaged, out)
                 case ClickGround(origin, direction):
                     self._go(t, ground_point(origin, direction), out)
                 case Arm(arm):
                     self._arm(t, arm, out)
                 case SetMode(mode):
                     self._set_mode(t, mode, out)
+                case Cancel():
+                    self._cancel(t, out)
+                case TakeWheel(page):
+                    self._take_wheel(t, page, out)
+                case Steer(page, forward, left):
+                    self.by_hand.steer(t, page, (forward, left))
+                case Rescale(page, key) if key in SCALINGS:
+                    self.by_hand.rescale(t, page, key)
+        now = stamp(self._model.sim_time)
+        for name, (linear, angular) in self.by_hand.commands(t).items():
+            out.drive[name] = DriveCommand(timestamp=now, linear=linear, angular=angular)
         return out
 
-    def _select(self, name: str) -> None:
+    def _select(self, t: float, name: str) -> None:
         if name in self._model.vehicles:
+            if name != self.by_hand.vehicle:
+                self.by_hand.leave(t)
             self._model.selected = name
             self._to_confirm = None
 
@@ -146,7 +194,9 @@ class Commander:
         if name in LAYERS:
             (self._model.layers.add if on else self._model.layers.discard)(name)
 
-    def _stop(self, engaged: bool, out: Outbox) -> None:
+    def _stop(self, t: float, engaged: bool, out: Outbox) -> None:
+        if engaged:
+            self.by_hand.leave(t)
         command = StopCommand(timestamp=stamp(self._model.sim_time), engaged=engaged, source=SOURCE)
         self._model.stop = command
         out.stop.append(command)
@@ -168,11 +218,30 @@ class Commander:
             self._refuse(t, vehicle, describe(request), why)
         elif self._is_reachable(t, vehicle, request):
             vehicle.goal_asked = point
+            self.by_hand.leave(t)
             self._mode_before.pop(vehicle.name, None)
             if vehicle.status is not None and vehicle.status.mode not in OBEYING_PLANNER:
                 self._mode_before[vehicle.name] = vehicle.status.mode
                 out.mode.setdefault(vehicle.name, []).append(ModeRequest(mode=Mode.MODE_MISSION, source=SOURCE))
             out.goal.setdefault(vehicle.name, []).append(request)
+
+    def _cancel(self, t: float, out: Outbox) -> None:
+        vehicle, request = self._model.chosen, CancelRequest(source=SOURCE)
+        if vehicle is not None and not vehicle.flies and self._is_reachable(t, vehicle, request):
+            out.cancel.setdefault(vehicle.name, []).append(request)
+
+    def _take_wheel(self, t: float, page: str, out: Outbox) -> None:
+        """Like ``uvf teleop``, it asks for mode MANUAL; arming stays a matter of two clicks."""
+        vehicle, request = self._model.chosen, ModeRequest(mode=Mode.MODE_MANUAL, source=SOURCE)
+        self.by_hand.leave(t)
+        if not page or vehicle is None or not self.by_hand.can_drive(vehicle.name):
+            return
+        if why := self._cannot_drive(vehicle):
+            self._refuse(t, vehicle, "drive by hand", why)
+        elif self._is_reachable(t, vehicle, request):
+            out.mode.setdefault(vehicle.name, []).append(request)
+            self._mode_before.pop(vehicle.name, None)
+            self.by_hand.take(t, page, vehicle.name)
 
     def _cannot_drive(self, vehicle: VehicleModel) -> str:
         """Why a goal would be accepted and yet nothing would move, and the mend; empty when it would."""
@@ -201,6 +270,7 @@ class Commander:
         value = MODES[vehicle.member.file.kind].get(mode)
         request = ModeRequest(mode=value, source=SOURCE)
         if value is not None and self._is_reachable(t, vehicle, request):
+            self.by_hand.leave(t)
             out.mode.setdefault(vehicle.name, []).append(request)
 
     def _is_reachable(self, t: float, vehicle: VehicleModel, request: Message) -> bool:

@@ -8,10 +8,11 @@
   window.__gcsBridge = bridge;
   if (window.__gcs) return;
   window.__gcs = true;
+  const me = 'page' + Math.random().toString(36).slice(2, 10);
   const send = text => { const m = window.__viserMutable; if (m) m.sendMessage({type: 'GuiUpdateMessage', uuid: window.__gcsBridge, updates: {value: text}}); };
   document.body.dataset.log = 'notice';
   document.addEventListener('click', e => { const filter = e.target.closest && e.target.closest('[data-log]'); if (filter && filter !== document.body) document.body.dataset.log = filter.dataset.log; });
-  const press = e => { const card = e.target.closest && e.target.closest('[data-gcs]'); if (card) send(JSON.stringify([card.dataset.gcs, Date.now()])); };
+  const press = e => { const card = e.target.closest && e.target.closest('[data-gcs]'); if (card) send(JSON.stringify([card.dataset.gcs.replace('@me', me), Date.now()])); };
   document.addEventListener('pointerdown', press);
   document.addEventListener('keydown', e => { if (e.key === 'Enter' || e.key === ' ') press(e); });
   const hand = e => { const page = window.__viserMutable; if (page && e.target === page.canvas && (e.type === 'wheel' || e.buttons)) window.__gcsHand = true; };
@@ -37,6 +38,41 @@
     bar.classList.toggle('g-dead', dead);
     if (dead) bar.innerHTML = LOST;
   }, 200);
+  const own = document.createElement('style');
+  own.textContent = `#gcs-wheel[data-driver="${me}"] .g-theirs,#gcs-wheel:not([data-driver="${me}"]) .g-mine{display:none}`;
+  document.head.append(own);
+  const wheel = () => document.querySelector(`#gcs-wheel[data-driver="${me}"]`);
+  const held = new Map();  // the key or pointer that holds it -> [forward, left]
+  let drove = false;
+  const steer = () => {
+    if (!wheel()) held.clear();
+    if (!held.size && !drove) return;
+    const way = [0, 1].map(i => Math.max(-1, Math.min(1, [...held.values()].reduce((sum, one) => sum + Number(one[i]), 0))));
+    drove = held.size > 0;
+    send(JSON.stringify([`steer:${me}:${way.join(':')}`, Date.now()]));
+  };
+  setInterval(steer, 100);
+  const hold = (by, button) => { held.set(by, button.dataset.steer.split(' ')); steer(); };
+  const release = by => { const was = held.delete(by); if (was) steer(); return was; };
+  const releaseAll = () => { if (held.size) { held.clear(); steer(); } };
+  const typing = e => e.target.closest && e.target.closest('input,textarea,[contenteditable]');
+  window.addEventListener('keydown', e => {
+    const panel = wheel();
+    if (!panel || e.ctrlKey || e.altKey || e.metaKey || typing(e)) return;
+    const button = panel.querySelector(`[data-keys~="${CSS.escape(e.key.length === 1 ? e.key.toLowerCase() : e.key)}"]`);
+    if (!button) return;
+    e.preventDefault(); e.stopImmediatePropagation();
+    if (!button.dataset.steer) send(JSON.stringify([button.dataset.gcs.replace('@me', me), Date.now()]));
+    else if (!e.repeat) hold(e.code, button);
+  }, true);
+  window.addEventListener('keyup', e => { if (release(e.code)) e.stopImmediatePropagation(); }, true);
+  window.addEventListener('pointerdown', e => {
+    const button = wheel() && e.button === 0 && e.target.closest && e.target.closest('#gcs-wheel [data-steer]');
+    if (button) { e.preventDefault(); hold('pointer' + e.pointerId, button); }
+  }, true);
+  for (const type of ['pointerup', 'pointercancel']) window.addEventListener(type, e => release('pointer' + e.pointerId), true);
+  for (const type of ['blur', 'pagehide']) window.addEventListener(type, releaseAll);
+  document.addEventListener('visibilitychange', () => { if (document.hidden) releaseAll(); });
   let last = null;
   const follow = () => {
     requestAnimationFrame(follow);
@@ -45,9 +81,9 @@
     if (!window.__gcsFollow || !control || !node) { last = null; return; }
     const at = node.getWorldPosition(node.position.clone());
     const eye = control.getPosition(at.clone()), target = control.getTarget(at.clone());
-    const begins = !last || last.name !== chosen.dataset.name;
-    const move = begins ? at.clone().sub(target) : at.clone().sub(last.at);
-    if (begins) eye.sub(target).setLength(Number(chosen.dataset.distance)).add(target);
+    const turned = window.__gcsHand && last && last.name === chosen.dataset.name;  // else the distance holds, whatever moved the view
+    const move = at.clone().sub(turned ? last.at : target);
+    if (!turned) eye.sub(target).setLength(Number(chosen.dataset.distance)).add(target);
     eye.add(move); target.add(move);
     control.setLookAt(eye.x, eye.y, eye.z, target.x, target.y, target.z, false);
     last = {name: chosen.dataset.name, at};

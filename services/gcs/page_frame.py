@@ -2,8 +2,8 @@
 
 from collections.abc import Callable
 
-from services.gcs import panels, records, status
-from services.gcs.commands import MODES, Arm, Commander, SetMode, StopAll, mode_name
+from services.gcs import panels, records, status, wheel
+from services.gcs.commands import MODES, Arm, Cancel, Commander, SetMode, StopAll, mode_name
 from services.gcs.drawing import Button, Picture
 from services.gcs.overview import Overview
 from services.gcs.state import Model
@@ -29,6 +29,7 @@ class Composer:
             "bar": lambda: status.status_bar(self._model, t),
             "stop": lambda: status.stop_line(self._model),
             "orders": lambda: panels.orders(chosen) if chosen is not None else "",
+            "wheel": lambda: wheel.wheel(chosen, self._commander.by_hand) if chosen is not None else "",
             "instrument": lambda: panels.instrument(chosen) if chosen is not None else "",
         }
         slow: dict[str, Callable[[], str]] = {
@@ -71,4 +72,6 @@ class Composer:
         sure = self._commander.waits_for_confirmation(v.name, not armed, t)
         label, colour = (f"Confirm: {word.lower()} {v.name}", "orange") if sure else (f"{word} {v.name}", "")
         shown.append(Button("arm", label, Arm(not armed), "Asks for a second click", colour=colour))
+        if panels.drives_to_goal(v):
+            shown.append(Button("cancel", "Cancel goal", Cancel(), f"{v.name} stops and goes back to its job"))
         return shown

@@ -152,6 +152,12 @@ def progress_line(v: VehicleModel) -> str:
     return _progress(f"{escape(v.nav_status.job) or 'no job'}: {state}{left}{why}", None)
 
 
+def drives_to_goal(v: VehicleModel) -> bool:
+    """Whether there is a person's goal that can be cancelled."""
+    ended = (NavStatus.REACHED, NavStatus.CANCELLED)
+    return v.nav_status is not None and v.nav_status.job == "goal" and v.nav_status.state not in ended
+
+
 def _progress(text: str, share: float | None) -> str:
     bar = "" if share is None else f"<span class='g-meter'><i style='width:{100 * share:.0f}%'></i></span>"
     return f"<div class='g-progress'>{text}{bar}</div>"

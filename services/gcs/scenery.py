@@ -1,6 +1,6 @@
-"""The world that does not move: ground, floor, walls, furniture; drawn once."""
+"""The world about the vehicles: ground, floor, walls, furniture; each shape is made once, also of what moves by script."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -9,10 +9,11 @@ from numpy.typing import NDArray
 
 from services.gcs.bodies import Part, box, lathe
 from services.gcs.drawing import Colour, Mesh, Node, Polyline
+from services.gcs.state import Placed
 from uvf.maths.rotations import from_euler, matrix
 from uvf.runtime.mission_file import Waypoint
 from uvf.runtime.site import Member, Site
-from uvf.runtime.solid import Solid
+from uvf.runtime.solid import Solid, pose_at
 from uvf.runtime.world_file import Wall, WorldFile
 from uvf.runtime.world_geometry import WALL, solids
 
@@ -37,7 +38,22 @@ def scenery(world: WorldFile, folder: Path) -> dict[str, Node]:
     nodes.update(_merged("/world/walls", walls))
     things = [(s.colour, _placed(s)) for s in solids(world, folder) if s.name != WALL and s.path is None]
     nodes.update(_merged("/world/things", things))
+    nodes.update((f"{_frame(s)}/shape", merge([_shape(s)], _rgb(s.colour))) for s in moving(world, folder))
     return nodes
+
+
+def moving(world: WorldFile, folder: Path) -> list[Solid]:
+    """What goes its way by a script: people, doors."""
+    return [solid for solid in solids(world, folder) if solid.path is not None]
+
+
+def places_of(scripted: Sequence[Solid], t: float) -> dict[str, Placed]:
+    """Node name -> where it is at simulation time ``t`` [s]; its shape is drawn in that frame."""
+    return {_frame(solid): Placed(*pose_at(solid, t)) for solid in scripted}
+
+
+def _frame(solid: Solid) -> str:
+    return f"/world/moving/{solid.name}"
 
 
 def _placed(solid: Solid) -> Part:

@@ -60,8 +60,8 @@ class GroundStation(Service):
         "world_from_map": each_vehicle(topics.TF_WORLD),
         "events": each_vehicle(every(topics.EVENTS.by("*"))),
     }
-    outputs = {"stop": topics.STOP.by(SOURCE)}
-    calls = {"goal": topics.GOAL, "arm": topics.ARM, "mode": topics.SET_MODE}
+    outputs = {"stop": topics.STOP.by(SOURCE), "drive": topics.DRIVE.by(SOURCE)}
+    calls = {"goal": topics.GOAL, "cancel": topics.CANCEL, "arm": topics.ARM, "mode": topics.SET_MODE}
 
     def __init__(self, site: Site, page: Page) -> None:
         self._page = page
@@ -78,6 +78,7 @@ class GroundStation(Service):
         stops: StopCommand | None,
         events: Mapping[str, Sequence[Event]],
         goal: Sequence[Answer[Any, Any]],
+        cancel: Sequence[Answer[Any, Any]],
         arm: Sequence[Answer[Any, Any]],
         mode: Sequence[Answer[Any, Any]],
         nav: Mapping[str, NavState],
@@ -117,11 +118,11 @@ class GroundStation(Service):
         for what, messages in newest.items():
             self._model.hear(t, what, messages)
         self._model.hear_events(t, events)
-        self._commander.hear(t, (*goal, *arm, *mode))
+        self._commander.hear(t, (*goal, *cancel, *arm, *mode))
         out = self._commander.act(t, self._page.actions())
         self._commander.expire(t)
         self._page.show(self._composer.picture(t))
-        return {"stop": out.stop, "goal": out.goal, "arm": out.arm, "mode": out.mode}
+        return {"stop": out.stop, "drive": out.drive, "goal": out.goal, "cancel": out.cancel, "arm": out.arm, "mode": out.mode}
 
     def close(self) -> None:
         self._page.close()

@@ -11,7 +11,7 @@ from schemas.messages import FrameTransform, Grid, NavStatus
 from services.gcs import bodies
 from services.gcs.drawing import Colour, FloorPicture, Node, Points, Polyline, Text
 from services.gcs.map_image import known_part, occupancy_png
-from services.gcs.scenery import circuit_line, merge, rgb_of, scenery
+from services.gcs.scenery import circuit_line, merge, moving, places_of, rgb_of, scenery
 from services.gcs.state import Model, Placed, VehicleModel
 from uvf.maths.rotations import multiply, rotate, to_euler
 
@@ -34,14 +34,15 @@ class View:
         self._model = model
         self._made: dict[str, tuple[Any, Node]] = {}
         self._used: set[str] = set()
-        self._still = scenery(model.site.world, model.site.world_folder)
+        self._surroundings = scenery(model.site.world, model.site.world_folder)
+        self._scripted = moving(model.site.world, model.site.world_folder)
         self._bodies = {v.name: _body(v, rgb_of(v.colour)) for v in model.vehicles.values()}
         self._ghosts = {v.name: _body(v, GHOST) for v in model.vehicles.values()}
         self._map_due: dict[str, float] = {}
 
     def nodes(self, t: float) -> dict[str, Node]:
         """Everything in the scene, by name; ``/vehicles/<v>/...`` is given in that vehicle's frame."""
-        shown = {k: n for k, n in self._still.items() if "Walls" in self._model.layers or not k.startswith("/world/walls")}
+        shown = {k: n for k, n in self._surroundings.items() if "Walls" in self._model.layers or not k.startswith("/world/walls")}
         self._used = set()
         for vehicle in self._model.vehicles.values():
             shown.update(self._of_vehicle(vehicle, t))
@@ -50,8 +51,8 @@ class View:
         return shown
 
     def places(self) -> dict[str, Placed]:
-        """Poses of the vehicles' frames."""
-        placed = {}
+        """Poses of the frames of vehicles and of what moves by script."""
+        placed = places_of(self._scripted, self._model.sim_time)
         for v in self._model.vehicles.values():
             if v.place is not None:
                 placed[f"/vehicles/{v.name}"] = v.place

@@ -22,13 +22,15 @@ from services.gcs.drawing import Button, Camera, Picture
 from services.gcs.guard import Guard
 from services.gcs.state import LAYERS
 from services.gcs.viser_scene import ViserScene
-from services.gcs.viser_script import bar_source, padded, script, selected_in, shape_in
+from services.gcs.viser_script import action_in, bar_source, padded, script, shape_in
 from services.gcs.viser_views import Views, ViserViews
 from uvf.runtime.address import Address, claim
 from uvf.runtime.params import BadInput
 
 FLEET_WIDTH, VEHICLE_WIDTH = 270, 350
 BEAT = 1.0  # s between two signs of life to the page
+ORDERS = {"stop": 1.0, "release": 1.1, "cancel": 55.0}
+"""Places in the panel of buttons that do not stand in the row of commands: the cancelling one under the goal's progress."""
 
 
 class ViserPage:
@@ -85,6 +87,7 @@ class ViserPage:
         self._html["stop"] = gui.add_html("", order=1.5)
         self._html["fleet"] = gui.add_html("", order=2)
         self._html["orders"] = gui.add_html("", order=50)
+        self._html["wheel"] = gui.add_html("", order=60)
         gui.add_button_group("View", self._views.names, order=100).on_click(self._views.choose)
         self._html["overview"] = gui.add_html("", order=150)
         with gui.add_folder("Layers", order=200, expand_by_default=False):
@@ -116,10 +119,10 @@ class ViserPage:
 
     async def _on_word(self, event: Any) -> None:
         """What the page's own script says."""
-        shape = shape_in(event.target.value)
-        if shape is None:
-            self._actions.put(Select(selected_in(event.target.value)))
-        elif event.client is not None:
+        shape, action = shape_in(event.target.value), action_in(event.target.value)
+        if action is not None:
+            self._actions.put(action)
+        elif shape is not None and event.client is not None:
             self._views.reshape(event.client, *shape)
 
     def _asking(self, action: Callable[[Any], Action]) -> Callable[[Any], Coroutine[Any, Any, None]]:
@@ -170,7 +173,7 @@ class ViserPage:
         for i, button in enumerate(buttons):
             before = self._buttons.get(button.key)
             if before is None:
-                order = 1.0 + i / 100 if button.key in ("stop", "release") else 10.0 + i
+                order = ORDERS.get(button.key, 10.0 + i)
                 handle = self._server.gui.add_button(
                     button.label, order=order, hint=button.hint, color=_colour(button), disabled=not button.enabled
                 )

@@ -1,10 +1,15 @@
 """What runs in the browser besides viser (``page.js``, ``page.css``), and how it speaks with us."""
 
 import json
+import re
 from pathlib import Path
+
+from services.gcs.commands import Action, Rescale, Select, Steer, TakeWheel
 
 STYLE = Path(__file__).with_name("page.css")
 SCRIPT = Path(__file__).with_name("page.js")
+PAGE = re.compile("[a-z0-9]{4,16}")
+"""A page's own word for itself, drawn by its script."""
 
 
 def script(bridge: str) -> str:
@@ -40,10 +45,30 @@ def said_in(value: str) -> tuple[str, str]:
     return what, about
 
 
-def selected_in(value: str) -> str:
-    """The vehicle that a card's message names; empty when it is no such message."""
-    what, vehicle = said_in(value)
-    return vehicle if what == "select" else ""
+def action_in(value: str) -> Action | None:
+    """What a message of the page's own script asks for; None when it asks for nothing."""
+    what, about = said_in(value)
+    page, *rest = about.split(":")
+    if what == "select":
+        return Select(about)
+    if not PAGE.fullmatch(page):
+        return None
+    match what, rest:
+        case "wheel", ["on" | "off" as word]:
+            return TakeWheel(page if word == "on" else "")
+        case "scale", [key]:
+            return Rescale(page, key)
+        case "steer", [forward, left]:
+            return _steer(page, forward, left)
+    return None
+
+
+def _steer(page: str, *way: str) -> Steer | None:
+    try:
+        forward, left = (float(part) for part in way)
+    except ValueError:
+        return None
+    return Steer(page, forward, left) if abs(forward) <= 1 and abs(left) <= 1 else None
 
 
 def shape_in(value: str) -> tuple[float, bool] | None:

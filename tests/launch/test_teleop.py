@@ -5,10 +5,10 @@ from contextlib import suppress
 import pytest
 
 from uvf.launch.teleop import drive, status_line, wanted_vehicles
-from uvf.launch.teleop_hand import STILL, Command, Hand, Pad
 from uvf.launch.teleop_terminal import TerminalClosed
 from uvf.runtime.params import BadInput
 from uvf.runtime.site import ROOT, load_site
+from uvf.runtime.teleop_hand import STILL, Command, Hand, Pad
 
 
 class Clock:

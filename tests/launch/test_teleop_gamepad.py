@@ -5,7 +5,7 @@ import ctypes
 import pytest
 
 from uvf.launch.teleop_gamepad import Gamepad, _load
-from uvf.launch.teleop_hand import Pad
+from uvf.runtime.teleop_hand import Pad
 
 sdl2 = _load()
 

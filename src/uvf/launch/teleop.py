@@ -13,10 +13,10 @@ from schemas.messages import ArmRequest, DriveCommand, Mode, ModeRequest
 from uvf.client import Client
 from uvf.launch import settings
 from uvf.launch.teleop_gamepad import Gamepad
-from uvf.launch.teleop_hand import STILL, Command, Hand, Pad
 from uvf.launch.teleop_terminal import TerminalClosed, key_by_key
 from uvf.runtime.params import BadInput, nearest
 from uvf.runtime.site import Site, load_site
+from uvf.runtime.teleop_hand import STILL, Command, Hand, Pad
 
 SOURCE = "teleop"
 PERIOD = 1 / topics.DRIVE.hz  # s between commands

@@ -6,7 +6,7 @@ Its table of gamepads gives the same names to the sticks and buttons of all of t
 import os
 from typing import Any
 
-from uvf.launch.teleop_hand import Pad
+from uvf.runtime.teleop_hand import Pad
 
 STICK_FULL = 32767.0
 

@@ -16,6 +16,7 @@ from schemas.messages import (
     MissionItem,
     MissionProgress,
     Mode,
+    ModeRequest,
     NavState,
     NavStatus,
     Odometry,
@@ -66,11 +67,14 @@ class Script:
         self.accept = accept
         self.asked = []
         self.stops = []
+        self.drives = []
+        self.job = "explore"
         self._publishers = {}
         for name in (UGV, UAV):
-            for request in (topics.GOAL, topics.ARM, topics.SET_MODE):
+            for request in (topics.GOAL, topics.CANCEL, topics.ARM, topics.SET_MODE):
                 self.bus.serve(request.at(name), lambda query, n=name, r=request: self._answer(n, r, query))
         self.bus.subscribe(topics.STOP.by("gcs").at("sys"), topics.STOP.qos, self._hear_stop)
+        self.bus.subscribe(topics.DRIVE.by("gcs").at(UGV), topics.DRIVE.qos, self._hear_drive)
         self.mode = {UGV: Mode.MODE_MISSION, UAV: Mode.MODE_MISSION}
         self.armed = {UGV: True, UAV: True}
         self.goal = (4.5, 4.2)
@@ -79,11 +83,17 @@ class Script:
     def _hear_stop(self, sample):
         self.stops.append(topics.STOP.message.FromString(sample.payload))
 
+    def _hear_drive(self, sample):
+        message = topics.DRIVE.message.FromString(sample.payload)
+        self.drives.append((message.linear, message.angular))
+
     def _answer(self, name, request, query):
         message = request.message.FromString(query.payload)
         self.asked.append((name, message))
         if self.accept and isinstance(message, GoalRequest):
             self.goal = (message.position.x, message.position.y)
+        if self.accept and isinstance(message, ModeRequest):
+            self.mode[name] = message.mode
         reply = Reply(accepted=self.accept, reason="" if self.accept else "the <goal> lies inside a wall")
         query.answer(reply.SerializeToString(deterministic=True), query.stamp_ns)
 
@@ -107,7 +117,7 @@ class Script:
         ahead = [planar_pose(*ugv_at(t + dt)) for dt in np.arange(0, 3, 0.2)] + [planar_pose(*self.goal, 0.0)]
         self.put(UGV, topics.PATH, PosesInFrame(timestamp=stamp(t), frame_id="world", poses=ahead), t)
         goal = Vector3(x=self.goal[0], y=self.goal[1])
-        status = NavStatus(state=NavStatus.DRIVING, job="explore", goal=goal, distance_left=2.4, explored=min(0.9, 0.1 + t / 100))
+        status = NavStatus(state=NavStatus.DRIVING, job=self.job, goal=goal, distance_left=2.4, explored=min(0.9, 0.1 + t / 100))
         self.put(UGV, topics.NAV_STATUS, status, t)
         self.put(UGV, topics.STATUS, self._status(UGV, Kind.KIND_GROUND, "planner"), t)
         angles = np.radians(np.arange(360))

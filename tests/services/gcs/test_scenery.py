@@ -9,11 +9,11 @@ import trimesh
 
 from services.gcs import bodies
 from services.gcs.cameras import ASPECT, FOV, cameras
-from services.gcs.scenery import WALL_SHOWN, extent, rgb_of, scenery
+from services.gcs.scenery import WALL_SHOWN, extent, moving, places_of, rgb_of, scenery
 from tests.services.gcs.scripted import LEGS, demo_site
 from uvf.runtime.site import ROOT
 from uvf.runtime.vehicle_file import load_vehicle
-from uvf.runtime.world_file import Box, Origin, Wall, WorldFile
+from uvf.runtime.world_file import Box, Cylinder, Origin, Wall, WorldFile
 
 WORLD = WorldFile(about="", origin=Origin(0.0, 0.0), floor=(0.0, 0.0, 4.0, 3.0))
 
@@ -75,6 +75,18 @@ def test_boxes_are_turned_about_their_centre():
     points = corners(scenery(world, Path()), "/world/things")
     assert points.min(axis=0) == pytest.approx((1.75, 0.0, 0.0))
     assert points.max(axis=0) == pytest.approx((2.25, 2.0, 1.0))
+
+
+def test_a_person_is_drawn_upright_in_a_frame_that_goes_its_way_again_and_again():
+    way = [(0.0, 1.0, 1.0, 0.0), (2.0, 3.0, 1.0, np.pi / 2), (4.0, 1.0, 1.0, 0.0)]
+    person = Cylinder("person", base=(1.0, 1.0, 0.0), radius=0.25, height=1.8, path=way)
+    world = dataclasses_replace(WORLD, cylinders=[person])
+    points = scenery(world, Path())["/world/moving/person/shape"].vertices
+    assert points[:, 2] == pytest.approx(np.where(points[:, 2] > 0, 0.9, -0.9))
+    for t in (1.0, 5.0):
+        place = places_of(moving(world, Path()), t)["/world/moving/person"]
+        assert place.position == pytest.approx((2.0, 1.0, 0.9))
+        assert place.wxyz == pytest.approx((np.cos(np.pi / 8), 0.0, 0.0, np.sin(np.pi / 8)))
 
 
 def dataclasses_replace(world, **changes):

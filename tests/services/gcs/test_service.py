@@ -20,9 +20,9 @@ def buttons(station):
     return {b.label: b for b in station.page.now.buttons}
 
 
-def test_it_runs_by_the_wall_clock_for_the_whole_world_and_writes_only_stop():
+def test_it_runs_by_the_wall_clock_for_the_whole_world_and_writes_only_stop_and_drive():
     assert (GroundStation.scope, GroundStation.clock) == ("world", "wall")
-    assert GroundStation.outputs == {"stop": topics.STOP.by("gcs")}
+    assert GroundStation.outputs == {"stop": topics.STOP.by("gcs"), "drive": topics.DRIVE.by("gcs")}
     assert all(not declared.required for declared in GroundStation.declared_inputs().values())
 
 

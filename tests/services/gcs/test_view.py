@@ -1,18 +1,22 @@
 """What is drawn follows what is known, and stays the same object while nothing changes."""
 
+import dataclasses
 import io
 
+import msgspec
 import numpy as np
 import pytest
 from PIL import Image
 
 from schemas.convert import occupancy_grid, planar_pose
-from schemas.messages import FrameTransform, Quaternion, Vector3
+from schemas.messages import Clock, FrameTransform, Quaternion, Vector3
 from services.gcs.commands import ClickGround, Layer
 from services.gcs.drawing import FloorPicture, Mesh, Points, Polyline, Text
-from services.gcs.view import floor_picture
+from services.gcs.state import Model
+from services.gcs.view import View, floor_picture
 from tests.services.gcs.fakes import Station
-from tests.services.gcs.scripted import LEGS, UAV, UGV, uav_at, ugv_at
+from tests.services.gcs.scripted import LEGS, UAV, UGV, demo_site, uav_at, ugv_at
+from uvf.runtime.world_file import Box
 
 
 @pytest.fixture
@@ -35,6 +39,16 @@ def test_both_vehicles_stand_where_they_are(station):
     assert places[f"/vehicles/{UGV}"].position[:2] == pytest.approx(ugv_at(2.0)[:2])
     assert places[f"/vehicles/{UAV}"].position == pytest.approx(uav_at(2.0)[0])
     assert isinstance(station.page.now.nodes[f"/vehicles/{UGV}/0"], Mesh)
+
+
+def test_what_moves_by_script_stands_where_it_is_at_simulation_time():
+    site = demo_site()
+    door = Box("door", centre=(1.0, 2.0, 1.0), size=(0.9, 0.05, 2.0), path=[(0.0, 1.0, 2.0, 0.0), (10.0, 2.0, 2.0, 0.0)])
+    model = Model(dataclasses.replace(site, world=msgspec.structs.replace(site.world, boxes=[*site.world.boxes, door])))
+    view = View(model)
+    model.hear_clock(0.0, Clock(t_ns=2_500_000_000))
+    assert view.places()["/world/moving/door"].position == pytest.approx((1.25, 2.0, 1.0))
+    assert view.nodes(0.0)["/world/moving/door/shape"] is view.nodes(1.0)["/world/moving/door/shape"]
 
 
 def test_tracks_grow_along_the_way(station):

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from uvf.launch.teleop_hand import STILL, Command, Hand, Pad
+from uvf.runtime.teleop_hand import STILL, Command, Hand, Pad
 
 MOST = Command(0.8, 2.0)
 

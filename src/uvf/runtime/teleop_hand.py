@@ -1,4 +1,4 @@
-"""What an operator wants of the vehicles: directions from keys or a gamepad, scaled, for as long as a key or the dead-man is held."""
+"""What an operator wants of the vehicles: directions from keys, a gamepad or a page, scaled, as long as a key or the dead-man is held."""
 
 from collections.abc import Sequence
 from math import inf
@@ -86,14 +86,17 @@ class Hand:
         if pad.stop or (before.dead_man and not pad.dead_man):
             self.stop(t)
         elif pad.dead_man:
-            self._direction = (_beyond_dead_zone(pad.forward), _beyond_dead_zone(pad.left))
-            self._until = t + REPEAT_HOLD
-            self._hold(t)
+            self.hold(t, (_beyond_dead_zone(pad.forward), _beyond_dead_zone(pad.left)), REPEAT_HOLD)
+
+    def hold(self, t: float, direction: tuple[float, float], patience: float) -> None:
+        """Drives that way, parts of the linear and the angular scale, for ``patience`` [s] if it is not held anew."""
+        self._direction, self._until = direction, t + patience
+        self._keep(t)
 
     def stop(self, t: float) -> None:
         """Stands still, and says so for a while to all that are active."""
         self._until = -inf
-        self._hold(t)
+        self._keep(t)
 
     def wanted(self, t: float) -> Command:
         """What the active vehicles shall do."""
@@ -109,7 +112,7 @@ class Hand:
         self._silent_from |= {name: t + ZEROS for name, command in found.items() if command != STILL}
         return {name: command for name, command in found.items() if t < self._silent_from[name]}
 
-    def _hold(self, t: float) -> None:
+    def _keep(self, t: float) -> None:
         """Keeps the active vehicles for a while, though they stand."""
         self._silent_from |= dict.fromkeys(self.active, t + ZEROS)
 

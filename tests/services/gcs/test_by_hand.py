@@ -1,0 +1,136 @@
+"""Driving by hand from a page: one driver, a held direction counts half a second, everything else ends in standing and silence."""
+
+import pytest
+
+from schemas.messages import CancelRequest, Mode, ModeRequest, NavStatus
+from services.gcs.by_hand import PATIENCE, ByHand
+from services.gcs.commands import Cancel, ClickGround, Rescale, Select, SetMode, Steer, StopAll, TakeWheel
+from services.gcs.viser_script import action_in
+from tests.services.gcs.fakes import Station
+from tests.services.gcs.scripted import UAV, UGV
+from uvf.runtime.teleop_hand import START_ANGULAR, START_LINEAR, STILL, ZEROS, Command
+
+ME, OTHER = "page0me", "page0other"
+START = Command(START_LINEAR, START_ANGULAR)
+
+
+@pytest.fixture
+def station():
+    station = Station()
+    station.run(0.5)
+    return station
+
+
+@pytest.fixture
+def driven(station):
+    station.press(TakeWheel(ME))
+    return station
+
+
+def modes_asked(station):
+    return [m.mode for _, m in station.script.asked if isinstance(m, ModeRequest)]
+
+
+def test_taking_the_wheel_asks_for_mode_manual_and_sends_nothing_yet(driven):
+    assert modes_asked(driven) == [Mode.MODE_MANUAL]
+    assert driven.script.drives == []
+    assert f"data-driver='{ME}'" in driven.page.now.html["wheel"]
+
+
+def test_a_held_direction_drives_at_the_scales_of_teleop(driven):
+    driven.press(Steer(ME, 1.0, 0.0))
+    assert driven.script.drives[-1] == pytest.approx((START.linear, 0.0))
+    driven.press(Steer(ME, 0.0, -1.0))
+    assert driven.script.drives[-1] == pytest.approx((0.0, -START.angular))
+
+
+def test_without_a_word_it_is_told_to_stand_after_half_a_second_and_then_nothing_more(driven):
+    driven.press(Steer(ME, 1.0, 0.0), seconds=PATIENCE + ZEROS + 0.5)
+    ways = [linear > 0 for linear, _ in driven.script.drives]
+    assert ways == sorted(ways, reverse=True)
+    assert 0.4 <= ways.count(True) * 0.05 <= 0.55
+    assert 0.0 < ways.count(False) * 0.05 <= ZEROS
+
+
+@pytest.mark.parametrize(
+    "action",
+    [
+        Steer(ME, 0.0, 0.0),
+        TakeWheel(""),
+        Select(UAV),
+        SetMode("Hold"),
+        StopAll(True),
+        ClickGround((3.0, 2.0, 5.0), (0.0, 0.0, -1.0)),
+    ],
+)
+def test_it_is_told_to_stand_at_once_when(driven, action):
+    driven.press(Steer(ME, 1.0, 0.0))
+    driven.press(action, seconds=0.05)
+    assert driven.script.drives[-1] == (0.0, 0.0)
+
+
+def test_only_the_driver_is_heard_and_another_page_may_take_over(driven):
+    driven.press(Steer(OTHER, 1.0, 0.0), Rescale(OTHER, "f"))
+    assert driven.script.drives == []
+    driven.press(TakeWheel(OTHER), Steer(OTHER, 1.0, 0.0))
+    assert driven.script.drives[-1] == pytest.approx((START.linear, 0.0))
+
+
+def test_the_scales_change_by_a_tenth_within_what_the_vehicle_can(driven):
+    driven.press(Rescale(ME, "f"), Rescale(ME, "t"), Rescale(ME, "x"), Steer(ME, 1.0, 1.0))
+    assert driven.script.drives[-1] == pytest.approx((START.linear / 1.1, START.angular * 1.1))
+
+
+@pytest.mark.parametrize("hindered", ["disarmed", "stopped", "aircraft"])
+def test_nobody_takes_the_wheel_of_what_would_not_move(station, hindered):
+    if hindered == "disarmed":
+        station.script.armed[UGV] = False
+        station.run(0.2)
+    station.press({"stopped": StopAll(True), "aircraft": Select(UAV)}.get(hindered, Select(UGV)))
+    station.press(TakeWheel(ME))
+    station.press(Steer(ME, 1.0, 0.0))
+    assert station.script.drives == [] and modes_asked(station) == []
+
+
+def test_the_panel_says_when_the_vehicle_does_not_obey(driven):
+    driven.run(0.3)
+    assert "goes while a key" in driven.page.now.html["wheel"]
+    driven.script.mode[UGV] = Mode.MODE_HOLD
+    driven.run(0.3)
+    assert "its mode is Hold, not Manual" in driven.page.now.html["wheel"]
+
+
+def test_commands_of_nobody_are_none():
+    assert ByHand({"one": STILL}).commands(0.0) == {}
+
+
+@pytest.mark.parametrize(
+    ("said", "action"),
+    [
+        ('["wheel:page0me:on", 1]', TakeWheel(ME)),
+        ('["wheel:page0me:off", 1]', TakeWheel("")),
+        ('["steer:page0me:1:-0.5", 1]', Steer(ME, 1.0, -0.5)),
+        ('["scale:page0me:r", 1]', Rescale(ME, "r")),
+        ('["select:burger", 1]', Select("burger")),
+        ('["steer:page0me:2:0", 1]', None),
+        ('["steer:page0me:nan:0", 1]', None),
+        ('["steer:page0me:1", 1]', None),
+        ('["wheel:<i>\'x:on", 1]', None),
+        ('["shape:1.2", 1]', None),
+        ("{", None),
+    ],
+)
+def test_the_words_of_the_page_are_read(said, action):
+    assert action_in(said) == action
+
+
+def test_a_goal_can_be_cancelled_while_it_is_driven_to(station):
+    assert "cancel" not in {b.key for b in station.page.now.buttons}
+    station.script.job = "goal"
+    station.run(0.2)
+    assert station.model.vehicles[UGV].nav_status.state == NavStatus.DRIVING
+    (button,) = (b for b in station.page.now.buttons if b.key == "cancel")
+    station.press(button.action)
+    assert button.action == Cancel()
+    assert [(n, m.source) for n, m in station.script.asked if isinstance(m, CancelRequest)] == [(UGV, "gcs")]
+    assert station.model.vehicles[UGV].order.text == "cancel the goal"
