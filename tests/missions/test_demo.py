@@ -28,7 +28,7 @@ def test_every_criterion_holds(demo):
 
 def test_nothing_is_missing_in_its_log(demo):
     result, log = demo
-    assert log_metadata(log) == {"messages": str(result.messages), "complete": "true", "hash": result.log_hash}
+    assert log_metadata(log) == {"messages": str(result.messages), "carried": "0", "complete": "true", "hash": result.log_hash}
 
 
 def test_another_process_gives_the_same_bytes_and_exits_with_0(demo, tmp_path):
