@@ -64,6 +64,12 @@ def test_a_click_on_a_vehicle_chooses_it_and_sends_nobody(page, station):
     assert len(goals(station)) == sent
 
 
+LATE_FIT = """async () => {
+  window.__viserMutable.cameraControl.setLookAt(0, 300, 300, 0, 0, 0, false);
+  for (let i = 0; i < 3; i++) await new Promise(requestAnimationFrame);
+}"""
+
+
 def test_follow_takes_the_view_along(page, station):
     def away():
         return page.evaluate(CAMERA_TO, f"/vehicles/{UAV}")
@@ -74,10 +80,62 @@ def test_follow_takes_the_view_along(page, station):
     before, held = position(page, UAV), away()
     assert until(page, lambda: np.linalg.norm(position(page, UAV) - before) > 60)
     assert until(page, lambda: away() == pytest.approx(held, abs=5.0))
+    page.evaluate(LATE_FIT)
+    assert until(page, lambda: away() < 60), "a view fitted late takes the vehicle out of sight"
     page.get_by_role("button", name="Scene").click()
     assert until(page, lambda: away() > 100)
     page.get_by_role("button", name="Select burger").dispatch_event("pointerdown")
     page.locator("#gcs-drive").wait_for(timeout=20_000)
+
+
+CAMERA = "() => window.__viserMutable.camera.position.toArray()"
+
+
+def take_the_wheel(page):
+    page.locator("#gcs-wheel [data-gcs='wheel:@me:on']").dispatch_event("pointerdown")
+    page.locator("#gcs-wheel .g-keys").wait_for(state="visible", timeout=20_000)
+
+
+def test_keys_drive_only_while_they_are_held_and_leave_the_view_alone(page, station):
+    drives = station.script.drives
+    page.keyboard.press("w")
+    page.wait_for_timeout(500)
+    assert drives == []
+    take_the_wheel(page)
+    view = page.evaluate(CAMERA)
+    page.keyboard.down("w")
+    page.keyboard.down("ArrowLeft")
+    assert until(page, lambda: drives and drives[-1] == pytest.approx((0.5, 0.5)))
+    page.wait_for_timeout(1500)  # longer than a direction counts: the page repeats it
+    assert drives[-1] == pytest.approx((0.5, 0.5))
+    page.keyboard.up("w")
+    assert until(page, lambda: drives[-1] == pytest.approx((0.0, 0.5)))
+    page.keyboard.up("ArrowLeft")
+    assert until(page, lambda: drives[-1] == (0.0, 0.0))
+    assert page.evaluate(CAMERA) == pytest.approx(view)
+
+
+@pytest.mark.parametrize("event", ["window.dispatchEvent(new Event('blur'))", "window.dispatchEvent(new Event('pagehide'))"])
+def test_a_held_button_is_let_go_by_a_page_that_is_left(page, station, event):
+    drives = station.script.drives
+    page.get_by_role("button", name="backward", exact=True).hover()
+    page.mouse.down()
+    assert until(page, lambda: drives[-1] == pytest.approx((-0.5, 0.0)))
+    page.evaluate(f"() => {event}")
+    assert until(page, lambda: drives[-1] == (0.0, 0.0), 5.0)
+    page.mouse.up()
+
+
+def test_another_page_takes_the_wheel_and_its_end_is_the_end_of_driving(page, browser, station):
+    drives = station.script.drives
+    with opened(browser, station.port, "/vehicles/milvus/0", (700, 500)) as other:
+        take_the_wheel(other)
+        assert until(page, lambda: not page.locator("#gcs-wheel .g-keys").is_visible())
+        other.keyboard.down("s")
+        assert until(other, lambda: drives[-1] == pytest.approx((-0.5, 0.0)))
+    assert until(page, lambda: drives[-1] == (0.0, 0.0), 5.0)
+    sent = len(drives)
+    assert not until(page, lambda: len(drives) > sent + 15, 2.0), "it falls not silent"
 
 
 def test_arming_wants_a_second_click(page, station):

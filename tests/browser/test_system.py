@@ -5,6 +5,7 @@ import pytest
 
 from schemas import topics
 from schemas.convert import array
+from schemas.messages import Mode
 from tests.browser.canvas import POINTS, TRACK_BLUE, on_screen, pixels, until
 from tests.browser.conftest import opened
 from tests.distributed.system import System
@@ -49,3 +50,40 @@ def test_a_click_on_the_floor_sends_the_rover_there(page, system):
     goal = array(system.client.read("burger", topics.NAV_STATUS).goal)[:2]
     assert np.linalg.norm(goal - GOAL) < 0.2
     assert until(page, lambda: np.linalg.norm(place(system) - goal) < 0.3, 90.0), f"it is at {place(system)}"
+
+
+def speed(system):
+    velocity = array(system.client.read("burger", topics.TRUTH).velocity)
+    return float(np.hypot(*velocity[:2]))
+
+
+def drive_forward(page, system):
+    """Takes the wheel and holds the key until the rover is under way."""
+    page.locator("#gcs-wheel [data-gcs='wheel:@me:on']").dispatch_event("pointerdown")
+    page.locator("#gcs-wheel .g-keys").wait_for(state="visible", timeout=20_000)
+    assert until(page, lambda: system.client.read("burger", topics.STATUS).mode == Mode.MODE_MANUAL)
+    page.keyboard.down("w")
+    assert until(page, lambda: system.client.read("burger", topics.STATUS).command_source == "gcs" and speed(system) > 0.1)
+
+
+def stands_within(system, seconds):
+    """Whether the rover comes to a stand in that time of the simulation, and stays there."""
+    end = system.client.time + seconds
+    system.client.wait(lambda: system.client.time > end, 30.0, "time stands")
+    at = place(system)
+    system.client.wait(lambda: system.client.time > end + 1.0, 30.0, "time stands")
+    return np.linalg.norm(place(system) - at) < 0.01
+
+
+def test_it_goes_while_a_key_is_held_and_stands_within_a_second_of_its_release(page, system):
+    before = place(system)
+    drive_forward(page, system)
+    page.keyboard.up("w")
+    assert stands_within(system, 1.0)
+    assert np.linalg.norm(place(system) - before) > 0.05
+
+
+def test_it_stands_when_the_page_that_drives_is_closed(browser, system):
+    with opened(browser, system.page, "/track/burger/tail", (700, 500)) as other:
+        drive_forward(other, system)
+    assert stands_within(system, 1.5)
