@@ -86,6 +86,7 @@
     if (!turned) eye.sub(target).setLength(Number(chosen.dataset.distance)).add(target);
     eye.add(move); target.add(move);
     control.setLookAt(eye.x, eye.y, eye.z, target.x, target.y, target.z, false);
+    control.update(0.001);  // now, not with the next frame: where frames are slow the vehicle has gone on by then
     last = {name: chosen.dataset.name, at};
   };
   follow();
