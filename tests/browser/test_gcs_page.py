@@ -79,7 +79,8 @@ def test_follow_takes_the_view_along(page, station):
     assert until(page, lambda: away() < 60)
     before = position(page, UAV)
     assert until(page, lambda: np.linalg.norm(position(page, UAV) - before) > 60)
-    assert [away() for _ in range(20)] == pytest.approx([40.0] * 20, abs=1.0)
+    # Read between two frames the aircraft has flown on, at 25 m/s for up to half a second on a slow machine.
+    assert [away() for _ in range(20)] == pytest.approx([40.0] * 20, abs=12.0)
     page.evaluate(LATE_FIT)
     assert until(page, lambda: away() < 60), "a view fitted late takes the vehicle out of sight"
     page.get_by_role("button", name="Scene", exact=True).click()
