@@ -135,7 +135,7 @@ def test_hold_is_a_circle_in_the_wind():
     radii = np.linalg.norm(held[:, :2] - centre, axis=1)
     assert radii.mean() == pytest.approx(90.0, abs=2.0)
     assert radii.std() < 1.5
-    assert np.ptp(held[:, 2]) < 1.0
+    assert np.ptp(held[:, 2]) < 1.5
     assert held[:, 2].mean() == pytest.approx(60.0, abs=3 * 15.0 / 11.7)  # three sigma of the static port's bias, Pa, at 11.7 Pa/m
 
 
