@@ -1,7 +1,6 @@
 """The world about the vehicles: ground, floor, walls, furniture; each shape is made once, also of what moves by script."""
 
 from collections.abc import Iterator, Sequence
-from pathlib import Path
 
 import numpy as np
 import trimesh
@@ -25,8 +24,8 @@ YARD: Colour = (50, 62, 74)
 YARD_WIDTH = 6.0  # m about the floor
 
 
-def scenery(world: WorldFile, folder: Path) -> dict[str, Node]:
-    """Node name -> what stands there; ``folder`` holds the world's meshes."""
+def scenery(world: WorldFile) -> dict[str, Node]:
+    """Node name -> what stands there."""
     x_min, y_min, x_max, y_max = world.floor
     floor = box(((x_min + x_max) / 2, (y_min + y_max) / 2, -0.06), (x_max - x_min, y_max - y_min, 0.1))
     yard = box(((x_min + x_max) / 2, (y_min + y_max) / 2, -0.09), (x_max - x_min + 2 * YARD_WIDTH, y_max - y_min + 2 * YARD_WIDTH, 0.1))
@@ -36,15 +35,15 @@ def scenery(world: WorldFile, folder: Path) -> dict[str, Node]:
     }
     walls = [(wall.colour, part) for wall in world.walls for part in _segments(wall)]
     nodes.update(_merged("/world/walls", walls))
-    things = [(s.colour, _placed(s)) for s in solids(world, folder) if s.name != WALL and s.path is None]
+    things = [(s.colour, _placed(s)) for s in solids(world) if s.name != WALL and s.path is None]
     nodes.update(_merged("/world/things", things))
-    nodes.update((f"{_frame(s)}/shape", merge([_shape(s)], _rgb(s.colour))) for s in moving(world, folder))
+    nodes.update((f"{_frame(s)}/shape", merge([_shape(s)], _rgb(s.colour))) for s in moving(world))
     return nodes
 
 
-def moving(world: WorldFile, folder: Path) -> list[Solid]:
+def moving(world: WorldFile) -> list[Solid]:
     """What goes its way by a script: people, doors."""
-    return [solid for solid in solids(world, folder) if solid.path is not None]
+    return [solid for solid in solids(world) if solid.path is not None]
 
 
 def places_of(scripted: Sequence[Solid], t: float) -> dict[str, Placed]:

@@ -34,8 +34,8 @@ class View:
         self._model = model
         self._made: dict[str, tuple[Any, Node]] = {}
         self._used: set[str] = set()
-        self._surroundings = scenery(model.site.world, model.site.world_folder)
-        self._scripted = moving(model.site.world, model.site.world_folder)
+        self._surroundings = scenery(model.site.world)
+        self._scripted = moving(model.site.world)
         self._bodies = {v.name: _body(v, rgb_of(v.colour)) for v in model.vehicles.values()}
         self._ghosts = {v.name: _body(v, GHOST) for v in model.vehicles.values()}
         self._map_due: dict[str, float] = {}

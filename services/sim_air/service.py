@@ -14,6 +14,7 @@ from services.sim_air.sensors import Charge, Gnss, Imu, Pressures
 from uvf.maths.rotations import Floats
 from uvf.maths.sampling import Due
 from uvf.runtime.sensor_frames import sensor_frames
+from uvf.runtime.sensor_messages import gnss_message, imu_message
 from uvf.runtime.service import Outputs, Service, Value, each_vehicle, optional
 from uvf.runtime.vehicle_file import VehicleFile
 
@@ -117,9 +118,9 @@ class SimAir(Service):
         if self._first:
             read["tf_static"] = sensor_frames(craft.name, craft.file.sensors, t)
         if craft.imu is not None and (reading := craft.imu.read(t, motion)) is not None:
-            read["imu"] = readings.imu(f"{craft.name}/{craft.imu.frame}", reading)
+            read["imu"] = imu_message(f"{craft.name}/{craft.imu.frame}", reading)
         if craft.gnss is not None and (fix := craft.gnss.read(t, motion)) is not None:
-            read["gnss"] = readings.gnss(fix, craft.gnss.data)
+            read["gnss"] = gnss_message(craft.gnss.data, fix)
         if craft.pressures is not None and (sample := craft.pressures.read(t, craft.body.air)) is not None:
             read["air_data"] = readings.air_data(sample.t, sample.air)
         if craft.charge is not None and craft.battery_due.at(t):

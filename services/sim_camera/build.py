@@ -20,7 +20,7 @@ def build(site: Site) -> list[Host]:
     looks = {name: _look(member) for name, member in site.members.items()}
     if not cameras:
         return []
-    things = solids(site.world, site.world_folder)
+    things = solids(site.world)
 
     vehicles = next(iter(site.members.values())).folder.parent
 

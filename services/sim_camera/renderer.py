@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 from services.sim_camera.aircraft_shape import PARTS
 from services.sim_camera.backdrop import Backdrop
 from services.sim_camera.optics import frustum
-from uvf.maths.rotations import from_euler, matrix, multiply, rotate
+from uvf.maths.rotations import IDENTITY, from_euler, matrix, multiply, rotate
 from uvf.runtime.params import BadInput
-from uvf.runtime.solid import UPRIGHT, Solid, pose_at
+from uvf.runtime.solid import Solid, pose_at
 from uvf.runtime.vehicle_file import Camera
 from uvf.runtime.world_file import WorldFile
 
@@ -69,7 +69,7 @@ class BulletRenderer:
         self._vehicles = {name: self._load(look) for name, look in vehicles.items()}
         self._guests: dict[str, tuple[Look | tuple[str, tuple[float, ...]], int]] = {}
 
-    def _add(self, shape: int, position: Floats, orientation: Floats = UPRIGHT) -> int:
+    def _add(self, shape: int, position: Floats, orientation: Floats = IDENTITY) -> int:
         index: int = pybullet.createMultiBody(
             0.0, -1, shape, basePosition=position.tolist(), baseOrientation=_xyzw(orientation), physicsClientId=self._client
         )

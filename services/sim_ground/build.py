@@ -30,7 +30,7 @@ def build(site: Site) -> list[Host]:
 def _make(site: Site, bodies: dict[str, GroundBody]) -> SimGround:
     members = {name: site.members[name] for name in bodies}
     placed = {name: Placed(bodies[name], engine_urdf(m.folder / bodies[name].urdf), _start(m)) for name, m in members.items()}
-    things = solids(site.world, site.world_folder)
+    things = solids(site.world)
     surroundings = Surroundings(things, {name: load_urdf(m.folder / bodies[name].urdf) for name, m in members.items()})
     rigs = {name: Rig(site, m, bodies[name], surroundings.still) for name, m in members.items()}
     world = BulletWorld(things, placed)

@@ -6,25 +6,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from schemas.convert import quaternion, seconds, stamp, vector
-from schemas.messages import Contact, FrameTransforms, Gnss, Imu, JointState, JointStates, LaserScan, NavState, Range, WheelTicks
+from schemas.messages import Contact, FrameTransforms, JointState, JointStates, LaserScan, NavState, Range, WheelTicks
 from services.sim_ground.body import BodyState, Touch
 from services.sim_ground.encoders import radians_per_tick, ticks
-from uvf.maths.instruments import Fix, ImuReading
 from uvf.runtime.service import Value
-from uvf.runtime.vehicle_file import Bumper, Encoders, GnssSensor, GroundBody, Lidar, Sonar
+from uvf.runtime.vehicle_file import Bumper, Encoders, GroundBody, Lidar, Sonar
 
 Floats = NDArray[np.float64]
-SATELLITES = 14  # seen under an open sky
-
-
-def imu_message(frame: str, reading: ImuReading) -> Imu:
-    return Imu(
-        timestamp=stamp(reading.t),
-        frame_id=frame,
-        angular_velocity=vector(reading.angular_velocity),
-        specific_force=vector(reading.specific_force),
-        magnetic_field=vector(reading.magnetic_field),
-    )
 
 
 def scan_message(t: float, frame: str, lidar: Lidar, ranges: Floats) -> LaserScan:
@@ -38,22 +26,6 @@ def scan_message(t: float, frame: str, lidar: Lidar, ranges: Floats) -> LaserSca
 def wheels_message(t: float, encoders: Encoders, body: BodyState) -> WheelTicks:
     left, right = ticks(encoders, body.wheel_angles)
     return WheelTicks(timestamp=stamp(t), left=left, right=right, radians_per_tick=radians_per_tick(encoders))
-
-
-def gnss_message(gnss: GnssSensor, fix: Fix) -> Gnss:
-    horizontal, vertical = gnss.accuracy
-    return Gnss(
-        timestamp=stamp(fix.t),
-        fix=Gnss.FIX_3D,
-        latitude=fix.latitude,
-        longitude=fix.longitude,
-        altitude=fix.altitude,
-        velocity_enu=vector(fix.velocity),
-        horizontal_accuracy=horizontal,
-        vertical_accuracy=vertical,
-        speed_accuracy=gnss.speed_noise,
-        satellites=SATELLITES,
-    )
 
 
 def range_message(t: float, frame: str, sonar: Sonar, distance: float) -> Range:

@@ -21,6 +21,7 @@ from uvf.maths.instruments import Receiver
 from uvf.maths.raycast3 import Body, Scene
 from uvf.maths.sampling import Due, Line
 from uvf.runtime.link_frames import Links
+from uvf.runtime.sensor_messages import gnss_message, imu_message
 from uvf.runtime.service import Value
 from uvf.runtime.site import Member, Site
 from uvf.runtime.vehicle_file import Encoders, GnssSensor, GroundBody, ImuSensor, Lidar, Sampled, Sonar, line_of
@@ -152,7 +153,7 @@ class Rig:
 
 
 def _read_imu(frame: str, model: ImuModel, t: float, moment: Moment) -> Message:
-    return readings.imu_message(frame, model.read(t, moment.body))
+    return imu_message(frame, model.read(t, moment.body))
 
 
 def _read_lidar(frame: str, lidar: Lidar, model: LidarModel, t: float, moment: Moment) -> Message:
@@ -164,7 +165,7 @@ def _read_encoders(encoders: Encoders, t: float, moment: Moment) -> Message:
 
 
 def _read_gnss(gnss: GnssSensor, receiver: Receiver, t: float, moment: Moment) -> Message:
-    return readings.gnss_message(gnss, receiver.read(t, moment.body.position, moment.body.velocity))
+    return gnss_message(gnss, receiver.read(t, moment.body.position, moment.body.velocity))
 
 
 def _read_sonar(frame: str, sonar: Sonar, model: SonarModel, t: float, moment: Moment) -> Message:

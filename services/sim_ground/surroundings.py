@@ -9,11 +9,12 @@ from numpy.typing import NDArray
 from services.sim_ground.body import BodyState
 from uvf.maths.bvh import Bvh, build
 from uvf.maths.raycast3 import Body
+from uvf.maths.rotations import IDENTITY
 from uvf.maths.solids import joined
 from uvf.maths.transforms import Transform, compose
 from uvf.runtime.robot_model import UrdfModel
 from uvf.runtime.scene import primitives, scene
-from uvf.runtime.solid import UPRIGHT, Solid, pose_at
+from uvf.runtime.solid import Solid, pose_at
 
 Floats = NDArray[np.float64]
 
@@ -51,7 +52,7 @@ class Surroundings:
 
 
 def _own_tree(solid: Solid) -> Bvh:
-    return build(primitives(replace(solid, position=np.zeros(3), orientation=UPRIGHT)))
+    return build(primitives(replace(solid, position=np.zeros(3), orientation=IDENTITY)))
 
 
 def vehicle_tree(model: UrdfModel) -> Bvh:

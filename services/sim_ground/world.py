@@ -17,9 +17,9 @@ from services.sim_ground.body import BodyState, Touch, base_motion
 from services.sim_ground.motor import WheelMotor
 from uvf.maths.geodesy import GRAVITY
 from uvf.maths.kinematics import WheelSpeeds
-from uvf.maths.rotations import from_euler, inverse, matrix, multiply, rotate
+from uvf.maths.rotations import IDENTITY, from_euler, inverse, matrix, multiply, rotate
 from uvf.runtime.params import BadInput
-from uvf.runtime.solid import UPRIGHT, Keyframes, Solid, pose_at
+from uvf.runtime.solid import Keyframes, Solid, pose_at
 from uvf.runtime.vehicle_file import Friction, GroundBody
 
 Floats = NDArray[np.float64]
@@ -74,7 +74,7 @@ class BulletWorld:
             fixedTimeStep=1 / self.rate, numSolverIterations=50, deterministicOverlappingPairs=1, physicsClientId=self._client
         )
         floor = pybullet.createCollisionShape(pybullet.GEOM_PLANE, physicsClientId=self._client)
-        self._add("floor", floor, np.zeros(3), UPRIGHT)
+        self._add("floor", floor, np.zeros(3), IDENTITY)
         for solid in solids:
             index = self._add(solid.name, _collision_shape(solid, self._client), solid.position, solid.orientation)
             if solid.path is not None:
@@ -223,7 +223,7 @@ class BulletWorld:
         index = self._index(name)
         before = pybullet.getBasePositionAndOrientation(index, physicsClientId=self._client)
         moving = pybullet.getBaseVelocity(index, physicsClientId=self._client)
-        com, turned = self._vehicles[name].com_in_base if name in self._vehicles else (np.zeros(3), UPRIGHT)
+        com, turned = self._vehicles[name].com_in_base if name in self._vehicles else (np.zeros(3), IDENTITY)
         centre, attitude = position + rotate(orientation, com), multiply(orientation, turned)
         pybullet.resetBasePositionAndOrientation(index, centre.tolist(), _xyzw(attitude), physicsClientId=self._client)
         if met := self._meets(index):

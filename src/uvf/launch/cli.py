@@ -3,17 +3,15 @@
 Heavy imports happen inside the commands, so that ``uvf --help`` is quick.
 """
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from uvf.launch.refusal import bad_input_is_one_line
 from uvf.launch.sim_cli import sim_app
 from uvf.launch.vehicle_cli import vehicle_app
 from uvf.launch.world_cli import world_app
-from uvf.runtime.params import BadInput
 
 app = typer.Typer(no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False, help=(__doc__ or "").splitlines()[0])
 topic_app = typer.Typer(no_args_is_help=True, help="Look at messages.")
@@ -33,16 +31,6 @@ MissionOption = Annotated[str, typer.Option("--mission", "-m", help="Name in mis
 
 def say(line: str) -> None:
     typer.echo(f"uvf: {line}")
-
-
-@contextmanager
-def bad_input_is_one_line() -> Iterator[None]:
-    """Exit code 2 and the line, instead of a traceback."""
-    try:
-        yield
-    except BadInput as error:
-        typer.echo(f"uvf: {error}", err=True)
-        raise typer.Exit(2) from error
 
 
 @app.command()

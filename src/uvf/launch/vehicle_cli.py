@@ -5,6 +5,7 @@ from typing import Annotated
 
 import typer
 
+from uvf.launch.refusal import bad_input_is_one_line
 from uvf.runtime.params import BadInput
 
 vehicle_app = typer.Typer(no_args_is_help=True, help="Look at vehicles, check them, make new ones, take over those of others.")
@@ -25,11 +26,6 @@ def _vehicles() -> Path:
     return _root() / "vehicles"
 
 
-def _refused(error: BadInput) -> typer.Exit:
-    typer.echo(f"uvf: {error}", err=True)
-    return typer.Exit(2)
-
-
 @vehicle_app.command("list")
 def list_vehicles() -> None:
     """All vehicles."""
@@ -48,12 +44,10 @@ def show(name: NameArgument) -> None:
     from uvf.launch.vehicles.inspection import folder_of, inspect
     from uvf.launch.vehicles.listing import frame_tree, vehicle_figures
 
-    try:
+    with bad_input_is_one_line():
         found = inspect(folder_of(name, _vehicles()))
-    except BadInput as error:
-        raise _refused(error) from error
-    if found.file is None:
-        raise _refused(BadInput(found.faults[0]))
+        if found.file is None:
+            raise BadInput(found.faults[0])
     console = Console()
     console.print(vehicle_figures(found.file, found.model))
     if found.model is not None:
@@ -68,10 +62,8 @@ def check(
     """Every fault of a vehicle's files with file and line, the tree of its frames, a picture: exit code 1 when there are faults."""
     from uvf.launch.vehicles.checking import check_all
 
-    try:
+    with bad_input_is_one_line():
         raise typer.Exit(1 if check_all(names or [], _vehicles(), picture) else 0)
-    except BadInput as error:
-        raise _refused(error) from error
 
 
 @vehicle_app.command()
@@ -84,14 +76,12 @@ def picture(
     from uvf.launch.vehicles.picture import write_picture
     from uvf.runtime.vehicle_file import load_vehicle
 
-    try:
+    with bad_input_is_one_line():
         target = into or _root() / "docs" / "vehicles"
         for name in names or sorted(p.parent.name for p in _vehicles().glob("*/vehicle.yaml")):
             folder = folder_of(name, _vehicles())
             write_picture(folder, load_vehicle(folder.parent, folder.name), target / f"{folder.name}.png")
             typer.echo(f"uvf: {target / folder.name}.png")
-    except BadInput as error:
-        raise _refused(error) from error
 
 
 @vehicle_app.command()
@@ -105,10 +95,8 @@ def new(
     """Make a round two-wheeled vehicle from four measures: a folder that drives, to go on from."""
     from uvf.launch.vehicles.creation import Measures, create
 
-    try:
+    with bad_input_is_one_line():
         folder = create(_vehicles() / name, Measures(radius, track, wheel_radius, height))
-    except BadInput as error:
-        raise _refused(error) from error
     typer.echo(f"uvf: {folder}; look at it with 'uvf vehicle check {name}'")
 
 
@@ -123,14 +111,12 @@ def import_(
     from uvf.launch.vehicles.checking import check_all
     from uvf.launch.vehicles.importing import import_vehicle
 
-    try:
+    with bad_input_is_one_line():
         arguments = dict(_pair(text) for text in arg or [])
         target = into or _vehicles()
         for line in import_vehicle(source, target / name, arguments):
             typer.echo(f"note: {line}")
         raise typer.Exit(1 if check_all([str(target / name)], target, None) else 0)
-    except BadInput as error:
-        raise _refused(error) from error
 
 
 def _pair(text: str) -> tuple[str, str]:

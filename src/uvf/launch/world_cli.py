@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from uvf.runtime.params import BadInput
+from uvf.launch.refusal import bad_input_is_one_line
 
 world_app = typer.Typer(no_args_is_help=True, help="Worlds: list, show, check, picture, new, import.")
 
@@ -18,11 +18,6 @@ def _worlds() -> Path:
     from uvf.runtime.site import ROOT
 
     return ROOT / "worlds"
-
-
-def _refuse(error: BadInput) -> typer.Exit:
-    typer.echo(f"uvf: {error}", err=True)
-    return typer.Exit(2)
 
 
 @world_app.command("list")
@@ -40,11 +35,9 @@ def world_show(name: NameArgument) -> None:
     from uvf.launch.worlds.report import figures
     from uvf.runtime.world_file import load_world
 
-    try:
+    with bad_input_is_one_line():
         for line in figures(load_world(_worlds(), name)):
             typer.echo(line)
-    except BadInput as error:
-        raise _refuse(error) from error
 
 
 @world_app.command("picture")
@@ -60,12 +53,10 @@ def world_picture(
     from uvf.runtime.world_geometry import floor_plan
 
     path = out or _worlds().parent / "docs" / "worlds" / f"{name}.png"
-    try:
+    with bad_input_is_one_line():
         world = load_world(_worlds(), name)
         plan = floor_plan(world, RESOLUTION)
         save_picture(world, plan, largest_reachable(plan, radius), path)
-    except BadInput as error:
-        raise _refuse(error) from error
     typer.echo(f"uvf: {path}")
 
 
@@ -81,11 +72,9 @@ def world_check(
     from uvf.runtime.site import load_site
     from uvf.runtime.world_file import load_world
 
-    try:
+    with bad_input_is_one_line():
         found = list(problems(load_world(_worlds(), name), radius))
         found += blocked_starts(load_site(settings.mission_path(mission))) if mission else []
-    except BadInput as error:
-        raise _refuse(error) from error
     for line in found:
         typer.echo(line)
     typer.echo(f"uvf: {len(found)} problems" if found else "uvf: nothing wrong")
@@ -104,11 +93,9 @@ def world_new(
     from uvf.launch.worlds.imports import make_room, new_folder
     from uvf.launch.worlds.world_writer import write_world
 
-    try:
+    with bad_input_is_one_line():
         folder = new_folder(_worlds(), name)
         make_room(folder, replace)
-    except BadInput as error:
-        raise _refuse(error) from error
     path = write_world(generate(rooms, seed), folder)
     typer.echo(f"uvf: {path}; look at it with 'uvf world picture {name}'")
 
@@ -125,10 +112,8 @@ def world_import(
     """Take over a world, telling what was left out."""
     from uvf.launch.worlds.imports import Options, import_world, new_folder
 
-    try:
+    with bad_input_is_one_line():
         path, lines = import_world(file, new_folder(_worlds(), name), Options(models or (), height, replace, upright))
-    except BadInput as error:
-        raise _refuse(error) from error
     for line in lines:
         typer.echo(line)
     typer.echo(f"uvf: {path}; look at it with 'uvf world picture {name}' and 'uvf world check {name}'")

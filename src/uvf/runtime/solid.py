@@ -7,11 +7,10 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from uvf.maths.rotations import from_euler
+from uvf.maths.rotations import IDENTITY, from_euler
 
 Floats = NDArray[np.float64]
 Colour = tuple[float, float, float]
-UPRIGHT = np.array((1.0, 0.0, 0.0, 0.0))
 
 
 @dataclass(frozen=True)
@@ -26,7 +25,7 @@ class Solid:
     shape: Literal["box", "cylinder", "sphere", "mesh"]
     size: tuple[float, ...]
     position: Floats
-    orientation: Floats = field(default_factory=UPRIGHT.copy)
+    orientation: Floats = field(default_factory=IDENTITY.copy)
     colour: Colour = (0.6, 0.6, 0.6)
     mesh: Path | None = None
     path: "Keyframes | None" = None

@@ -1,7 +1,6 @@
 """The still world, bodies and views: geometry that can be computed a second way."""
 
 import dataclasses
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -65,14 +64,14 @@ def test_an_aeroplane_is_as_wide_as_it_says_and_alike_on_both_sides():
 
 def test_walls_close_their_corners_and_are_cut_low():
     world = dataclasses_replace(WORLD, walls=[Wall(points=[(0, 0), (4, 0), (4, 3)], thickness=0.2)])
-    points = corners(scenery(world, Path()), "/world/walls")
+    points = corners(scenery(world), "/world/walls")
     assert points.min(axis=0) == pytest.approx((-0.1, -0.1, 0.0))
     assert points.max(axis=0) == pytest.approx((4.1, 3.1, WALL_SHOWN))
 
 
 def test_boxes_are_turned_about_their_centre():
     world = dataclasses_replace(WORLD, boxes=[Box("b", (2.0, 1.0, 0.5), (2.0, 0.5, 1.0), rpy=(0.0, 0.0, np.pi / 2))])
-    points = corners(scenery(world, Path()), "/world/things")
+    points = corners(scenery(world), "/world/things")
     assert points.min(axis=0) == pytest.approx((1.75, 0.0, 0.0))
     assert points.max(axis=0) == pytest.approx((2.25, 2.0, 1.0))
 
@@ -81,10 +80,10 @@ def test_a_person_is_drawn_upright_in_a_frame_that_goes_its_way_again_and_again(
     way = [(0.0, 1.0, 1.0, 0.0), (2.0, 3.0, 1.0, np.pi / 2), (4.0, 1.0, 1.0, 0.0)]
     person = Cylinder("person", base=(1.0, 1.0, 0.0), radius=0.25, height=1.8, path=way)
     world = dataclasses_replace(WORLD, cylinders=[person])
-    points = scenery(world, Path())["/world/moving/person/shape"].vertices
+    points = scenery(world)["/world/moving/person/shape"].vertices
     assert points[:, 2] == pytest.approx(np.where(points[:, 2] > 0, 0.9, -0.9))
     for t in (1.0, 5.0):
-        place = places_of(moving(world, Path()), t)["/world/moving/person"]
+        place = places_of(moving(world), t)["/world/moving/person"]
         assert place.position == pytest.approx((2.0, 1.0, 0.9))
         assert place.wxyz == pytest.approx((np.cos(np.pi / 8), 0.0, 0.0, np.sin(np.pi / 8)))
 

@@ -24,7 +24,7 @@ def scan(lidar=QUIET, body=None, others=(), world=WALL_AHEAD):
 
 def test_agrees_with_the_engines_rays_in_the_house():
     house = load_world(ROOT / "worlds", "house")
-    things = solids(house, ROOT / "worlds" / "house")
+    things = solids(house)
     engine, far = BulletWorld(things, {}), msgspec.structs.replace(QUIET, range_min=0.0, range_max=15.0)
     model, rng = LidarModel(far, scene(things), np.random.default_rng(0)), np.random.default_rng(5)
     places = [p for p in rng.uniform((0.2, 0.2), (11.8, 8.8), (60, 2)) if clearance(house, *p) > 0.12][:40]

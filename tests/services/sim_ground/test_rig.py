@@ -30,7 +30,7 @@ def stand(tmp_path):
         member = site.members["burger"]
         fitted = msgspec.structs.replace(member.file.sensors, **(sensors(member.file.sensors) if sensors else {}))
         member = replace(member, file=msgspec.structs.replace(member.file, sensors=fitted))
-        rig, said = Rig(site, member, member.file.ground, scene(solids(site.world, site.world_folder))), {}
+        rig, said = Rig(site, member, member.file.ground, scene(solids(site.world))), {}
         for t in (n / 100 for n in range(1, round(seconds_ * 100) + 1)):
             for output, message in rig.read(t, Moment(STILL, touches=list(touches(t)))).items():
                 said.setdefault(output, []).append((t, message))

@@ -56,7 +56,7 @@ def site(tmp_path):
 
 def service_in(site, world):
     models = {name: load_urdf(member.folder / member.file.ground.urdf) for name, member in site.members.items()}
-    surroundings = Surroundings(solids(site.world, site.world_folder), models)
+    surroundings = Surroundings(solids(site.world), models)
     rigs = {name: Rig(site, member, member.file.ground, surroundings.still) for name, member in site.members.items()}
     stage = Stage(world, rigs, surroundings, tuple(rigs), join=None)
     return SimGround(world, surroundings, stage)

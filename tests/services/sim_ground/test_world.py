@@ -17,7 +17,7 @@ from uvf.runtime.world_file import load_world
 from uvf.runtime.world_geometry import clearance, solids
 
 HOUSE = load_world(ROOT / "worlds", "house")
-SOLIDS = solids(HOUSE, ROOT / "worlds" / "house")
+SOLIDS = solids(HOUSE)
 BODY = load_vehicle(ROOT / "vehicles", "burger").ground
 BURGER = Placed(BODY, ROOT / "vehicles" / "burger" / BODY.urdf, (6.0, 4.4, 0.7))
 DRIVE = DifferentialDrive(BODY.wheel_radius, BODY.track)

@@ -43,14 +43,25 @@ class Foreign:
     sensors: list[ForeignSensor] = field(default_factory=list)
     notes: Notes = field(default_factory=Notes)
 
+    def take_plugins(self, element: Any) -> None:
+        """The first drive among the plugins below an element; all else about them is dropped with a note."""
+        for plugin in element.iter("plugin"):
+            drive = drive_of(plugin)
+            if drive is not None and self.drive == Drive():
+                self.drive = drive
+                self.notes.add("plugin for differential drive: joints and measures taken, the rest dropped", plugin.get("filename") or "")
+            elif drive is None:
+                self.notes.add("plugins dropped", plugin.get("filename") or plugin.get("name") or "")
+
 
 def drive_of(plugin: Any) -> Drive | None:
     """The figures of a plugin for differential or skid-steer drive, by the names that ROS 1, ROS 2 and Gazebo use."""
     name = f"{plugin.get('filename', '')} {plugin.get('name', '')}".lower()
     if not any(word in name for word in ("diff", "skid")):
         return None
-    texts = {str(t.tag).lower().replace("_", ""): (t.text or "").strip() for t in plugin if isinstance(t.tag, str)}
-    left, right = (tuple(v for t, v in _all(plugin) if t in (f"{s}joint", f"{s}frontjoint", f"{s}rearjoint")) for s in ("left", "right"))
+    given = _all(plugin)
+    texts = dict(given)
+    left, right = (tuple(v for t, v in given if t in (f"{s}joint", f"{s}frontjoint", f"{s}rearjoint")) for s in ("left", "right"))
     diameter, radius = _number(texts.get("wheeldiameter")), _number(texts.get("wheelradius"))
     return Drive(left, right, _number(texts.get("wheelseparation")), diameter / 2 if diameter else radius)
 

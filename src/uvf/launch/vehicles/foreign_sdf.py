@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from uvf.launch.vehicles.foreign import UNKNOWN, Drive, Foreign, ForeignSensor, drive_of
+from uvf.launch.vehicles.foreign import UNKNOWN, Foreign, ForeignSensor
 from uvf.launch.worlds.notes import Notes
 from uvf.launch.worlds.sdf_colours import visual_colour
 from uvf.launch.worlds.sdf_models import Models, read_sdf
@@ -55,7 +55,7 @@ class _Reader:
         read = {j.get("name", "?"): self._joint(j, scope, frames) for j in joints}
         body = UrdfModel(self._path, model.get("name", "robot"), links, self._tied(links, read, frames))
         found = Foreign(body, notes=self._notes)
-        self._plugins(model, found)
+        found.take_plugins(model)
         for name, tag in tags.items():
             for sensor in tag.findall("sensor"):
                 at = compose(inverse(turned.get(name, IDENTITY)), transform(sensor.find("pose")))
@@ -128,15 +128,6 @@ class _Reader:
             values = rotate(unturned(frame.rotation), values)
         length = float(np.linalg.norm(values))
         return values / length if length > 0 else np.array((0.0, 0.0, 1.0))
-
-    def _plugins(self, model: Any, found: Foreign) -> None:
-        for plugin in model.iter("plugin"):
-            drive = drive_of(plugin)
-            if drive is not None and found.drive == Drive():
-                found.drive = drive
-                self._notes.add("plugin for differential drive: joints and measures taken, the rest dropped", plugin.get("filename") or "")
-            elif drive is None:
-                self._notes.add("plugins dropped", plugin.get("filename") or plugin.get("name") or "")
 
 
 def _size(shape: Any) -> tuple[str, tuple[float, ...]] | None:

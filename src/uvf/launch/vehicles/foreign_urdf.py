@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from uvf.launch.vehicles.foreign import Drive, Foreign, ForeignSensor, drive_of
+from uvf.launch.vehicles.foreign import Foreign, ForeignSensor
 from uvf.launch.worlds.notes import Notes
 from uvf.launch.worlds.sdf_poses import FILE, transform
 from uvf.runtime.params import BadInput
@@ -39,13 +39,7 @@ def read_foreign_urdf(path: Path, arguments: Mapping[str, str]) -> Foreign:
 
 def _take(gazebo: Any, found: Foreign) -> None:
     """Drive and sensors of a <gazebo> tag; the rest is dropped with a note."""
-    for plugin in gazebo.iter("plugin"):
-        drive = drive_of(plugin)
-        if drive is not None and found.drive == Drive():
-            found.drive = drive
-            found.notes.add("plugin for differential drive: joints and measures taken, the rest dropped", plugin.get("filename") or "")
-        elif drive is None:
-            found.notes.add("plugins dropped", plugin.get("filename") or plugin.get("name") or "")
+    found.take_plugins(gazebo)
     link = gazebo.get("reference", "")
     for sensor in gazebo.findall("sensor"):
         try:
