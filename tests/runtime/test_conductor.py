@@ -92,6 +92,17 @@ def test_a_simulator_that_comes_back_starts_a_new_epoch():
     assert (conductor.epoch, conductor.t_ns) == (2, 0)
 
 
+def test_a_simulator_that_is_slow_to_hear_the_first_clock_has_not_started_again():
+    conductor = Conductor(["sim"], [])
+    ready(conductor, "sim")
+    assert conductor.advance(0.0) is None
+    assert conductor.advance(0.02) is not None
+    assert conductor.done(Done(participant="sim"), boot=1) == ""
+    assert conductor.epoch == 1
+    assert conductor.waiting_for() == "sim"
+    assert run(conductor, 0.02, 0.1)
+
+
 def test_a_conductor_that_comes_back_takes_time_up_where_it_was():
     conductor = Conductor(["sim"], ["slam"])
     conductor.done(Done(participant="sim", tick=3700, t_ns=37 * NS, epoch=2), boot=1)

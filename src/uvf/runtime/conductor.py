@@ -56,7 +56,8 @@ class Conductor:
         line = ""
         if not self._started and message.t_ns > 0:
             line = self._resume(message)
-        restarted = participant.boot not in (0, boot) or (message.epoch == 0 and self.t_ns > 0)
+        # Who is known and has heard no clock yet has only been slow to hear the first one.
+        restarted = participant.boot != boot and (participant.boot != 0 or (message.epoch == 0 and self.t_ns > 0))
         if restarted and kind in self._simulators and self._started:
             line = f"{message.participant} started again: everything starts afresh"
             self.reset()
