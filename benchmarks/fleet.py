@@ -7,9 +7,6 @@ and commands, in the same run. Factors count this process's CPU time, ``wall x``
 
 import itertools
 import tempfile
-import time
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
@@ -18,16 +15,16 @@ import psutil
 import pybullet
 import yaml
 
+from benchmarks.timing import stopwatch, timed
 from schemas import topics
 from schemas.convert import stamp
 from schemas.messages import WheelCommand
 from services.sim_ground.build import build
+from uvf.runtime.footing import Footing
 from uvf.runtime.lockstep import Lockstep
-from uvf.runtime.recording import Recorder
 from uvf.runtime.service import Outputs, Service
 from uvf.runtime.site import ROOT, Host, Site, load_site
 from uvf.runtime.world_file import load_world
-from uvf.runtime.world_geometry import clearance
 
 SECONDS = 10.0
 FLEETS = (1, 5, 10, 20)
@@ -48,9 +45,9 @@ class Circling(Service):
 
 def fleet(count: int, folder: Path) -> Site:
     """So many burgers where there is room for them."""
-    world = load_world(ROOT / "worlds", "house")
+    footing = Footing(load_world(ROOT / "worlds", "house"))
     grid = itertools.product(range(1, 10), range(1, 14))
-    free = [(x * SPACING, y * SPACING) for y, x in grid if clearance(world, x * SPACING, y * SPACING) > ROOM]
+    free = [(x * SPACING, y * SPACING) for y, x in grid if footing.at(x * SPACING, y * SPACING).room > ROOM]
     starts = [{"x": x, "y": y, "yaw": 0.0} for x, y in free[:count]]
     vehicles = {f"rover{i:02}": {"model": "burger", "system_id": i, "start": start} for i, start in enumerate(starts, 1)}
     path = folder / "fleet.yaml"
@@ -64,30 +61,12 @@ def fleet(count: int, folder: Path) -> Site:
     return replace(site, members=members)
 
 
-@contextmanager
-def stopwatch() -> Iterator[list[float]]:
-    """CPU and wall seconds, when it is over."""
-    cpu, wall = time.process_time(), time.perf_counter()
-    taken: list[float] = []
-    yield taken
-    taken += [time.process_time() - cpu, time.perf_counter() - wall]
-
-
 def simulator(site: Site, log: Path | None = None) -> list[float]:
     """CPU and wall seconds of the run, without building."""
     drivers = [Host(Circling, Circling, name) for name in site.members]
     lockstep = Lockstep(build(site) + drivers)
-    lockstep.run(0.5)  # what is compiled is compiled
     try:
-        if log is None:
-            with stopwatch() as taken:
-                lockstep.run(0.5 + SECONDS)
-            return taken
-        with Recorder(log) as recorder:
-            recorder.follow(lockstep.bus)
-            with stopwatch() as taken:
-                lockstep.run(0.5 + SECONDS)
-        return taken
+        return timed(lockstep, SECONDS, log)
     finally:
         lockstep.close()
 

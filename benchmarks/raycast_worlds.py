@@ -18,8 +18,8 @@ from uvf.maths.bvh import build
 from uvf.maths.raycast3 import Rays, Scene, cast
 from uvf.maths.rotations import IDENTITY, from_euler, matrix
 from uvf.maths.solids import Solids
-from uvf.runtime.scene import triangles
 from uvf.runtime.site import ROOT
+from uvf.runtime.solid_mesh import load_mesh
 from uvf.runtime.world_file import load_world
 from uvf.runtime.world_geometry import solids as world_solids
 
@@ -139,7 +139,8 @@ def world(name: str) -> Twin:
         elif solid.shape == "sphere":
             twin.sphere(solid.size[0], solid.position)
         else:
-            vertices, faces = triangles(solid)
+            vertices, faces = load_mesh(solid.mesh)
+            vertices = vertices * np.array(solid.size)
             twin.mesh(trimesh.Trimesh(vertices, faces, process=False), solid.position, solid.orientation)
     return twin
 

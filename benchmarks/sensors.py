@@ -11,14 +11,12 @@ import msgspec
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from services.sim_air.airframe import Air
-from services.sim_air.sensors import Pressures
+from services.sim_air.sensors import Imu, Pressures
+from services.sim_air.states import Air, Motion
 from services.sim_camera.renderer import BulletRenderer, Pose
 from services.sim_ground.body import BodyState
 from services.sim_ground.encoders import ticks
 from services.sim_ground.imu import ImuModel
-from services.sim_ground.lidar import LidarModel
-from services.sim_ground.sonar import SonarModel
 from uvf.maths.allan import expected, octaves, overlapping
 from uvf.maths.bvh import build
 from uvf.maths.geodesy import GRAVITY, LocalTangent
@@ -28,9 +26,23 @@ from uvf.maths.rotations import IDENTITY
 from uvf.maths.sampling import Line
 from uvf.maths.sensing import Errors
 from uvf.maths.solids import box
+from uvf.runtime.range_sensors import LidarModel, RangeModel
 from uvf.runtime.sensor_presets import PRESETS
 from uvf.runtime.site import ROOT
-from uvf.runtime.vehicle_file import Camera, Encoders, GnssSensor, ImuSensor, Lidar, Mount, Sensors, Sonar, line_of, load_vehicle
+from uvf.runtime.vehicle_file import (
+    AirDataSensor,
+    Camera,
+    Encoders,
+    GnssSensor,
+    ImuSensor,
+    Lidar,
+    Mount,
+    RangeFinder,
+    Sensors,
+    Sonar,
+    line_of,
+    load_vehicle,
+)
 from uvf.runtime.world_file import Origin, WorldFile
 
 Floats = NDArray[np.float64]
@@ -65,7 +77,8 @@ def _spread(draw: Callable[[np.random.Generator], ArrayLike], stated: float, cou
 
 def noise(data: Path | None) -> Figures:
     """White noise and constant biases: rad/s, m/s^2, T, m, m/s, Pa."""
-    return {**_inertial(_sensors("burger").imu), **_ranges(), **_satellite(), **_pressures(), **_depth(), **_delivery()}
+    ground = {**_inertial(_sensors("burger").imu), **_ranges(), **_satellite()}
+    return {**ground, **_in_flight(), **_pressures(), **_range_finder(), **_depth(), **_delivery()}
 
 
 def _inertial(imu: ImuSensor | None) -> Figures:
@@ -98,7 +111,7 @@ def _ranges() -> Figures:
         model, truth = LidarModel(lidar, ROOM, _rng()), LidarModel(msgspec.structs.replace(lidar, noise=0.0), ROOM, _rng())
         figures[f"lidar {name}"] = _row([model.scan(STILL, []) - truth.scan(STILL, []) for _ in range(200)], lidar.noise)
     sonar = Sonar(mount=Mount(), hz=10.0, fov=0.5, range_min=0.02, range_max=4.0, noise=0.02)
-    echo = SonarModel(sonar, ROOM, _rng())
+    echo = RangeModel(sonar, ROOM, _rng())
     figures["sonar"] = _row([[echo.range(STILL, []) - 2.0] for _ in range(5000)], sonar.noise)
     encoders = _sensors("burger").encoders
     assert encoders is not None
@@ -138,18 +151,48 @@ def _east(gnss: GnssSensor, rng: np.random.Generator, t: float = 1.0) -> float:
     return float(TANGENT.enu(fix.latitude, fix.longitude, fix.altitude)[0])
 
 
+def _in_flight() -> Figures:
+    """An aircraft's IMU in a steady turn, as fitted and as in the book: the sensors' errors, their biases left out."""
+    fitted, book = _sensors("milvus").imu, msgspec.convert({"mount": {}, **PRESETS["imu"]["book"]}, ImuSensor)
+    assert fitted is not None
+    rates, force = np.array((0.1, -0.2, 0.3)), np.array((1.0, -2.0, 11.0))
+    turning = Motion(np.zeros(3), np.zeros(3), IDENTITY, rates, force, 25.0)
+    figures: Figures = {}
+    for name, imu in (("milvus", fitted), ("book", book)):
+        model = Imu(msgspec.structs.replace(imu, gyro_bias=0.0, accel_bias=0.0), FIELD, _rng())
+        read = [r for n in range(1, 20_001) if (r := model.read(n / imu.hz, turning)) is not None]
+        figures[f"{name} gyro"] = _row([r.angular_velocity - rates for r in read], imu.gyro_noise)
+        figures[f"{name} accel"] = _row([r.specific_force - force for r in read], imu.accel_noise)
+        figures[f"{name} mag"] = _row([r.magnetic_field - FIELD for r in read], imu.mag_noise)
+    return figures
+
+
 def _pressures() -> Figures:
-    sensor = _sensors("milvus").air_data
-    assert sensor is not None
+    fitted, book = _sensors("milvus").air_data, msgspec.convert(PRESETS["air_data"]["book"], AirDataSensor)
+    assert fitted is not None
     air = Air(97_000.0, 370.0, 285.0)
-    model = Pressures(msgspec.structs.replace(sensor, static_bias=0.0, differential_bias=0.0), _rng())
-    read = [s.air for n in range(1, 20_001) if (s := model.read(n / sensor.hz, lambda: air))]
-    return {
-        "milvus static pressure": _row([[a.static_pressure - air.static_pressure] for a in read], sensor.static_noise),
-        "milvus differential pressure": _row(
-            [[a.differential_pressure - air.differential_pressure] for a in read], sensor.differential_noise
-        ),
-    }
+    figures: Figures = {}
+    for name, sensor in (("milvus", fitted), ("book", book)):
+        model = Pressures(msgspec.structs.replace(sensor, static_bias=0.0, differential_bias=0.0), _rng())
+        read = [s.air for n in range(1, 20_001) if (s := model.read(n / sensor.hz, lambda: air))]
+        static, differential = np.array([(a.static_pressure, a.differential_pressure) for a in read]).T
+        figures[f"{name} static pressure"] = _row((static - air.static_pressure)[:, None], sensor.static_noise)
+        figures[f"{name} differential pressure"] = _row((differential - air.differential_pressure)[:, None], sensor.differential_noise)
+    static_bias = _spread(lambda rng: _first_pressure(book, rng) - air.static_pressure, book.static_bias)
+    return figures | {"book static pressure at turn-on": static_bias}
+
+
+def _first_pressure(sensor: AirDataSensor, rng: np.random.Generator) -> float:
+    model = Pressures(msgspec.structs.replace(sensor, static_noise=0.0), rng)
+    sample = model.read(1 / sensor.hz, lambda: Air(97_000.0, 370.0, 285.0))
+    assert sample is not None
+    return sample.air.static_pressure
+
+
+def _range_finder() -> Figures:
+    finder = RangeFinder(mount=Mount(), hz=20.0, range_min=0.1, range_max=50.0, noise=0.03)
+    model = RangeModel(finder, ROOM, _rng())
+    return {"range finder": _row([[model.range(STILL, []) - 2.0] for _ in range(5000)], finder.noise)}
 
 
 def _depth() -> Figures:

@@ -19,7 +19,7 @@ from foxglove_schemas_protobuf.Quaternion_pb2 import Quaternion
 from foxglove_schemas_protobuf.Vector3_pb2 import Vector3
 from google.protobuf.timestamp_pb2 import Timestamp
 
-from schemas.v1.command_pb2 import DriveCommand, StopCommand, SurfaceCommand, WheelCommand
+from schemas.v1.command_pb2 import DriveCommand, GimbalCommand, StopCommand, SurfaceCommand, WheelCommand
 from schemas.v1.mission_pb2 import (
     CancelRequest,
     GoalRequest,
@@ -60,6 +60,7 @@ __all__ = [
     "Event",
     "FrameTransform",
     "FrameTransforms",
+    "GimbalCommand",
     "Gnss",
     "GoalRequest",
     "Grid",

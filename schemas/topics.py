@@ -112,14 +112,21 @@ AIR_DATA = Topic(f"{_V}/sensor/air_data", m.AirData, 50, _Q.STATE, "static and d
 BATTERY = Topic(f"{_V}/sensor/battery", m.Battery, 1, _Q.STATE, "voltage, current, charge")
 CONTACT = Topic(f"{_V}/sensor/contact", m.Contact, 20, _Q.STATE, "bumper")
 SONAR = Topic(f"{_V}/sensor/sonar", m.Range, 10, _Q.STATE, "sonars, told apart by frame; range 0 = no return")
+RANGE = Topic(f"{_V}/sensor/range", m.Range, 20, _Q.STATE, "range finders, told apart by frame; range 0 = no return")
 JOINTS = Topic(f"{_V}/sensor/joints", m.JointStates, 20, _Q.STATE, "wheels, surfaces, propeller")
 IMAGE = Topic(f"{_V}/sensor/camera/image", m.CompressedImage, 5, _Q.BULK, "camera picture, JPEG")
 DEPTH = Topic(f"{_V}/sensor/camera/depth", m.CompressedImage, 5, _Q.BULK, "depth picture, 16-bit PNG: mm along the view, 0 = none")
 CAMERA_INFO = Topic(f"{_V}/sensor/camera/info", m.CameraCalibration, 0, _Q.LATCHED, "camera intrinsics")
+VIEW = Topic(f"{_V}/sensor/<source>/image", m.CompressedImage, 5, _Q.BULK, "picture of a further camera: chase, gimbal; JPEG")
+VIEW_INFO = Topic(f"{_V}/sensor/<source>/info", m.CameraCalibration, 0, _Q.LATCHED, "a further camera's intrinsics")
+GIMBAL_JOINTS = Topic(
+    f"{_V}/sensor/gimbal/joints", m.JointStates, 5, _Q.STATE, "the gimbal's joints: pan, roll, tilt, from its mount outwards"
+)
 
 # truth: for simulators among themselves, tests, displays and scores; never for an algorithm
 TRUTH = Topic(f"{_V}/truth/state", m.NavState, 50, _Q.STATE, "true motion, world frame")
-OBJECTS = Topic(f"{_S}/truth/objects", m.SimObjects, 20, _Q.STATE, "what has been put into the running simulation")
+OBJECTS = Topic(f"{_S}/truth/objects", m.SimObjects, 20, _Q.STATE, "what has been put into the ground simulation")
+AIR_OBJECTS = Topic(f"{_S}/truth/aircraft", m.SimObjects, 20, _Q.STATE, "aircraft that have been put into the air simulation")
 
 # navigation
 TF_STATIC = Topic(f"{_V}/tf/static", m.FrameTransforms, 0, _Q.LATCHED, "base_link, links that do not move, sensors")
@@ -127,6 +134,7 @@ TF_WORLD = Topic(f"{_V}/tf/world", m.FrameTransform, 0, _Q.LATCHED, "world from 
 TF_MAP = Topic(f"{_V}/tf/map", m.FrameTransform, 10, _Q.STATE, "map from odom", kept=True)
 TF_ODOM = Topic(f"{_V}/tf/odom", m.FrameTransform, 50, _Q.STATE, "odom from base_footprint")
 TF_JOINTS = Topic(f"{_V}/tf/joints", m.FrameTransforms, 20, _Q.STATE, "links that joints move: the wheels")
+TF_GIMBAL = Topic(f"{_V}/tf/gimbal", m.FrameTransform, 5, _Q.STATE, "base_link from the gimbal's camera, where it looks now")
 TF_BODY = Topic(f"{_V}/tf/body", m.FrameTransform, 50, _Q.STATE, "world from base_link of an aircraft")
 ODOMETRY = Topic(f"{_V}/nav/odometry", m.Odometry, 50, _Q.STATE, "wheels and IMU, odom frame: smooth, drifts", kept=True)
 POSE = Topic(f"{_V}/nav/pose", m.PoseInFrame, 50, _Q.STATE, "best estimate of the pose, world frame")
@@ -137,6 +145,8 @@ MAP = Topic(f"{_V}/map/grid", m.Grid, 0, _Q.LATCHED, "occupancy, int8: -1 unknow
 
 # commands and actuators
 DRIVE = Topic(f"{_V}/cmd/<source>", m.DriveCommand, 20, _Q.CONTROL, "velocity asked of a ground vehicle")
+SURFACES = Topic(f"{_V}/cmd/<source>/surfaces", m.SurfaceCommand, 20, _Q.CONTROL, "surfaces and throttle asked of an aircraft")
+GIMBAL = Topic(f"{_V}/cmd/<source>/gimbal", m.GimbalCommand, 0, _Q.LATCHED, "where the gimbal is to look, and relative to what")
 WHEEL_COMMAND = Topic(f"{_V}/actuator/wheels", m.WheelCommand, 50, _Q.CONTROL, "wheel speeds")
 SURFACE_COMMAND = Topic(f"{_V}/actuator/surfaces", m.SurfaceCommand, 50, _Q.CONTROL, "control surfaces and throttle")
 
@@ -153,6 +163,11 @@ REMOVE = Request(f"{_S}/srv/sim/remove", m.RemoveRequest, m.Reply, "take out wha
 SET_POSE = Request(f"{_S}/srv/sim/pose", m.SetPoseRequest, m.Reply, "put a ground vehicle or an object elsewhere, at rest")
 SAVE = Request(f"{_S}/srv/sim/save", m.StateRequest, m.Reply, "keep the ground simulator's state under a name")
 RESTORE = Request(f"{_S}/srv/sim/restore", m.StateRequest, m.Reply, "go back to a state that was kept")
+AIR_SPAWN = Request(f"{_S}/srv/air/spawn", m.SpawnRequest, m.Reply, "put an aircraft in: in level flight, at z = 0 on its wheels")
+AIR_REMOVE = Request(f"{_S}/srv/air/remove", m.RemoveRequest, m.Reply, "take out an aircraft that was put in")
+AIR_SAVE = Request(f"{_S}/srv/air/save", m.StateRequest, m.Reply, "keep the air simulator's state under a name")
+AIR_RESTORE = Request(f"{_S}/srv/air/restore", m.StateRequest, m.Reply, "go back to a state that was kept")
+AIR_POSE = Request(f"{_S}/srv/air/pose", m.SetPoseRequest, m.Reply, "put an aircraft elsewhere: in steady flight, at z = 0 on its wheels")
 ARM = Request(f"{_V}/srv/arm", m.ArmRequest, m.Reply, "arm or disarm")
 SET_MODE = Request(f"{_V}/srv/mode", m.ModeRequest, m.Reply, "change the flight or drive mode")
 GOAL = Request(f"{_V}/srv/goal", m.GoalRequest, m.Reply, "go to a point")

@@ -25,7 +25,7 @@ _sym_db = _symbol_database.Default()
 from google.protobuf import timestamp_pb2 as google_dot_protobuf_dot_timestamp__pb2
 
 
-DESCRIPTOR = _descriptor_pool.Default().AddSerializedFile(b'\n\x14uvf/v1/command.proto\x12\x06uvf.v1\x1a\x1fgoogle/protobuf/timestamp.proto\"^\n\x0c\x44riveCommand\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12\x0e\n\x06linear\x18\x02 \x01(\x01\x12\x0f\n\x07\x61ngular\x18\x03 \x01(\x01\"Z\n\x0cWheelCommand\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12\x0c\n\x04left\x18\x02 \x01(\x01\x12\r\n\x05right\x18\x03 \x01(\x01\"\xa1\x01\n\x0eSurfaceCommand\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12\x0f\n\x07\x61ileron\x18\x02 \x01(\x01\x12\x10\n\x08\x65levator\x18\x03 \x01(\x01\x12\x0e\n\x06rudder\x18\x04 \x01(\x01\x12\x10\n\x08throttle\x18\x05 \x01(\x01\x12\x0c\n\x04\x66lap\x18\x06 \x01(\x01\x12\r\n\x05\x62rake\x18\x07 \x01(\x01\"]\n\x0bStopCommand\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12\x0f\n\x07\x65ngaged\x18\x02 \x01(\x08\x12\x0e\n\x06source\x18\x03 \x01(\tb\x06proto3')
+DESCRIPTOR = _descriptor_pool.Default().AddSerializedFile(b'\n\x14uvf/v1/command.proto\x12\x06uvf.v1\x1a\x1fgoogle/protobuf/timestamp.proto\"^\n\x0c\x44riveCommand\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12\x0e\n\x06linear\x18\x02 \x01(\x01\x12\x0f\n\x07\x61ngular\x18\x03 \x01(\x01\"Z\n\x0cWheelCommand\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12\x0c\n\x04left\x18\x02 \x01(\x01\x12\r\n\x05right\x18\x03 \x01(\x01\"\xa1\x01\n\x0eSurfaceCommand\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12\x0f\n\x07\x61ileron\x18\x02 \x01(\x01\x12\x10\n\x08\x65levator\x18\x03 \x01(\x01\x12\x0e\n\x06rudder\x18\x04 \x01(\x01\x12\x10\n\x08throttle\x18\x05 \x01(\x01\x12\x0c\n\x04\x66lap\x18\x06 \x01(\x01\x12\r\n\x05\x62rake\x18\x07 \x01(\x01\"\xab\x01\n\rGimbalCommand\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12\x0b\n\x03pan\x18\x02 \x01(\x01\x12\x0c\n\x04tilt\x18\x03 \x01(\x01\x12(\n\x04mode\x18\x04 \x01(\x0e\x32\x1a.uvf.v1.GimbalCommand.Mode\"&\n\x04Mode\x12\n\n\x06\x46OLLOW\x10\x00\x12\x08\n\x04LOCK\x10\x01\x12\x08\n\x04\x42ODY\x10\x02\"]\n\x0bStopCommand\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12\x0f\n\x07\x65ngaged\x18\x02 \x01(\x08\x12\x0e\n\x06source\x18\x03 \x01(\tb\x06proto3')
 
 _globals = globals()
 _builder.BuildMessageAndEnumDescriptors(DESCRIPTOR, _globals)
@@ -38,6 +38,10 @@ if not _descriptor._USE_C_DESCRIPTORS:
   _globals['_WHEELCOMMAND']._serialized_end=251
   _globals['_SURFACECOMMAND']._serialized_start=254
   _globals['_SURFACECOMMAND']._serialized_end=415
-  _globals['_STOPCOMMAND']._serialized_start=417
-  _globals['_STOPCOMMAND']._serialized_end=510
+  _globals['_GIMBALCOMMAND']._serialized_start=418
+  _globals['_GIMBALCOMMAND']._serialized_end=589
+  _globals['_GIMBALCOMMAND_MODE']._serialized_start=551
+  _globals['_GIMBALCOMMAND_MODE']._serialized_end=589
+  _globals['_STOPCOMMAND']._serialized_start=591
+  _globals['_STOPCOMMAND']._serialized_end=684
 # @@protoc_insertion_point(module_scope)

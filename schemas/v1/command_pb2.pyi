@@ -1,4 +1,5 @@
 from google.protobuf import timestamp_pb2 as _timestamp_pb2
+from google.protobuf.internal import enum_type_wrapper as _enum_type_wrapper
 from google.protobuf import descriptor as _descriptor
 from google.protobuf import message as _message
 from typing import ClassVar as _ClassVar, Mapping as _Mapping, Optional as _Optional, Union as _Union
@@ -42,6 +43,26 @@ class SurfaceCommand(_message.Message):
     flap: float
     brake: float
     def __init__(self, timestamp: _Optional[_Union[_timestamp_pb2.Timestamp, _Mapping]] = ..., aileron: _Optional[float] = ..., elevator: _Optional[float] = ..., rudder: _Optional[float] = ..., throttle: _Optional[float] = ..., flap: _Optional[float] = ..., brake: _Optional[float] = ...) -> None: ...
+
+class GimbalCommand(_message.Message):
+    __slots__ = ("timestamp", "pan", "tilt", "mode")
+    class Mode(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
+        __slots__ = ()
+        FOLLOW: _ClassVar[GimbalCommand.Mode]
+        LOCK: _ClassVar[GimbalCommand.Mode]
+        BODY: _ClassVar[GimbalCommand.Mode]
+    FOLLOW: GimbalCommand.Mode
+    LOCK: GimbalCommand.Mode
+    BODY: GimbalCommand.Mode
+    TIMESTAMP_FIELD_NUMBER: _ClassVar[int]
+    PAN_FIELD_NUMBER: _ClassVar[int]
+    TILT_FIELD_NUMBER: _ClassVar[int]
+    MODE_FIELD_NUMBER: _ClassVar[int]
+    timestamp: _timestamp_pb2.Timestamp
+    pan: float
+    tilt: float
+    mode: GimbalCommand.Mode
+    def __init__(self, timestamp: _Optional[_Union[_timestamp_pb2.Timestamp, _Mapping]] = ..., pan: _Optional[float] = ..., tilt: _Optional[float] = ..., mode: _Optional[_Union[GimbalCommand.Mode, str]] = ...) -> None: ...
 
 class StopCommand(_message.Message):
     __slots__ = ("timestamp", "engaged", "source")

@@ -35,12 +35,14 @@ class SimObjects(_message.Message):
     def __init__(self, timestamp: _Optional[_Union[_timestamp_pb2.Timestamp, _Mapping]] = ..., objects: _Optional[_Iterable[_Union[SimObject, _Mapping]]] = ...) -> None: ...
 
 class SpawnRequest(_message.Message):
-    __slots__ = ("object", "source")
+    __slots__ = ("object", "source", "speed")
     OBJECT_FIELD_NUMBER: _ClassVar[int]
     SOURCE_FIELD_NUMBER: _ClassVar[int]
+    SPEED_FIELD_NUMBER: _ClassVar[int]
     object: SimObject
     source: str
-    def __init__(self, object: _Optional[_Union[SimObject, _Mapping]] = ..., source: _Optional[str] = ...) -> None: ...
+    speed: float
+    def __init__(self, object: _Optional[_Union[SimObject, _Mapping]] = ..., source: _Optional[str] = ..., speed: _Optional[float] = ...) -> None: ...
 
 class RemoveRequest(_message.Message):
     __slots__ = ("name", "source")
@@ -51,19 +53,27 @@ class RemoveRequest(_message.Message):
     def __init__(self, name: _Optional[str] = ..., source: _Optional[str] = ...) -> None: ...
 
 class SetPoseRequest(_message.Message):
-    __slots__ = ("name", "pose", "source")
+    __slots__ = ("name", "pose", "source", "speed", "climb", "turn_rate")
     NAME_FIELD_NUMBER: _ClassVar[int]
     POSE_FIELD_NUMBER: _ClassVar[int]
     SOURCE_FIELD_NUMBER: _ClassVar[int]
+    SPEED_FIELD_NUMBER: _ClassVar[int]
+    CLIMB_FIELD_NUMBER: _ClassVar[int]
+    TURN_RATE_FIELD_NUMBER: _ClassVar[int]
     name: str
     pose: _Pose_pb2.Pose
     source: str
-    def __init__(self, name: _Optional[str] = ..., pose: _Optional[_Union[_Pose_pb2.Pose, _Mapping]] = ..., source: _Optional[str] = ...) -> None: ...
+    speed: float
+    climb: float
+    turn_rate: float
+    def __init__(self, name: _Optional[str] = ..., pose: _Optional[_Union[_Pose_pb2.Pose, _Mapping]] = ..., source: _Optional[str] = ..., speed: _Optional[float] = ..., climb: _Optional[float] = ..., turn_rate: _Optional[float] = ...) -> None: ...
 
 class StateRequest(_message.Message):
-    __slots__ = ("name", "source")
+    __slots__ = ("name", "source", "only_ask")
     NAME_FIELD_NUMBER: _ClassVar[int]
     SOURCE_FIELD_NUMBER: _ClassVar[int]
+    ONLY_ASK_FIELD_NUMBER: _ClassVar[int]
     name: str
     source: str
-    def __init__(self, name: _Optional[str] = ..., source: _Optional[str] = ...) -> None: ...
+    only_ask: bool
+    def __init__(self, name: _Optional[str] = ..., source: _Optional[str] = ..., only_ask: bool = ...) -> None: ...

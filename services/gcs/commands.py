@@ -10,7 +10,18 @@ from numpy.typing import NDArray
 
 from schemas import convert
 from schemas.convert import stamp
-from schemas.messages import ArmRequest, CancelRequest, DriveCommand, Event, GoalRequest, Mode, ModeRequest, StopCommand, Vector3
+from schemas.messages import (
+    ArmRequest,
+    CancelRequest,
+    DriveCommand,
+    Event,
+    GimbalCommand,
+    GoalRequest,
+    Mode,
+    ModeRequest,
+    StopCommand,
+    Vector3,
+)
 from services.gcs.by_hand import ByHand
 from services.gcs.state import LAYERS, LOST_AFTER, Model, Order, VehicleModel
 from uvf.runtime.service import Answer
@@ -25,7 +36,7 @@ REACH = 50.0  # m, how far outside the floor a goal may still lie
 OBEYING_PLANNER = (Mode.MODE_MISSION, Mode.MODE_RETURN)
 MODES: Mapping[str, Mapping[str, Any]] = {
     "ground": {"Hold": Mode.MODE_HOLD, "Mission": Mode.MODE_MISSION, "Manual": Mode.MODE_MANUAL},
-    "fixed_wing": {"Hold": Mode.MODE_HOLD, "Mission": Mode.MODE_MISSION, "Return": Mode.MODE_RETURN},
+    "fixed_wing": {"Hold": Mode.MODE_HOLD, "Mission": Mode.MODE_MISSION, "Return": Mode.MODE_RETURN, "Manual": Mode.MODE_MANUAL},
 }
 
 
@@ -90,7 +101,31 @@ class Rescale:
     key: str
 
 
-Action = Select | ClickGround | Arm | SetMode | StopAll | Layer | Cancel | TakeWheel | Steer | Rescale
+@dataclass(frozen=True)
+class ShowCamera:
+    """Which of the chosen vehicle's cameras: image, chase or gimbal."""
+
+    name: str
+
+
+@dataclass(frozen=True)
+class Looking:
+    """A page says that the picture is before somebody's eyes."""
+
+    page: str
+
+
+@dataclass(frozen=True)
+class AimGimbal:
+    """vehicle: whose gimbal the page was showing; the rest as in GimbalCommand [rad]."""
+
+    vehicle: str
+    pan: float
+    tilt: float
+    mode: GimbalCommand.Mode
+
+
+Action = Select | ClickGround | Arm | SetMode | StopAll | Layer | Cancel | TakeWheel | Steer | Rescale | ShowCamera | Looking | AimGimbal
 
 
 @dataclass
@@ -103,6 +138,7 @@ class Outbox:
     goal: dict[str, list[Message]] = field(default_factory=dict)
     cancel: dict[str, list[Message]] = field(default_factory=dict)
     drive: dict[str, Message] = field(default_factory=dict)
+    gimbal: dict[str, Message] = field(default_factory=dict)
 
 
 def ground_point(origin: Sequence[float], direction: Sequence[float]) -> tuple[float, float] | None:
@@ -178,6 +214,12 @@ class Commander:
                     self.by_hand.steer(t, page, (forward, left))
                 case Rescale(page, key) if key in SCALINGS:
                     self.by_hand.rescale(t, page, key)
+                case ShowCamera(name):
+                    self._model.camera = name
+                case Looking(page):
+                    self._model.look(t, page)
+                case AimGimbal():
+                    self._aim(action, out)
         now = stamp(self._model.sim_time)
         for name, (linear, angular) in self.by_hand.commands(t).items():
             out.drive[name] = DriveCommand(timestamp=now, linear=linear, angular=angular)
@@ -189,6 +231,14 @@ class Commander:
                 self.by_hand.leave(t)
             self._model.selected = name
             self._to_confirm = None
+
+    def _aim(self, asked: AimGimbal, out: Outbox) -> None:
+        vehicle = self._model.vehicles.get(asked.vehicle)
+        if vehicle is None or vehicle.member.file.sensors.gimbal is None:
+            return
+        if np.isfinite((asked.pan, asked.tilt)).all():
+            vehicle.aim = GimbalCommand(timestamp=stamp(self._model.sim_time), pan=asked.pan, tilt=asked.tilt, mode=asked.mode)
+            out.gimbal[vehicle.name] = vehicle.aim
 
     def _layer(self, name: str, on: bool) -> None:
         if name in LAYERS:

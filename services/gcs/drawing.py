@@ -7,6 +7,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from services.gcs.camera_panel import GimbalPanel
 from services.gcs.commands import Action
 from services.gcs.state import Placed
 
@@ -94,6 +95,7 @@ class Picture:
     html: Mapping[str, str] = field(default_factory=dict)
     buttons: Sequence[Button] = ()
     image: bytes | None = None
+    gimbal: GimbalPanel | None = None
 
 
 class Page(Protocol):

@@ -19,7 +19,7 @@
   for (const type of ['wheel', 'pointermove']) document.addEventListener(type, hand, {capture: true, passive: true});
   const bar = document.createElement('div');
   bar.id = 'gcs-bar'; bar.setAttribute('role', 'status'); document.body.append(bar);
-  let shape = '', told = 0;
+  let shape = '', told = 0, looked = 0;
   let beat = '', silent = 0, ticked = performance.now();
   setInterval(() => {
     const canvas = window.__viserMutable && window.__viserMutable.canvas;
@@ -29,6 +29,8 @@
       const seen = (box.width / Math.max(box.height, 1)).toFixed(3), time = performance.now();
       if (seen !== shape || time - told > 2000) { shape = seen; told = time; send(JSON.stringify([(window.__gcsHand ? 'hand:' : 'shape:') + shape, Date.now()])); }
     }
+    const cameras = document.getElementById('gcs-cameras'), seen = cameras && !document.hidden && cameras.getClientRects().length > 0;
+    if (seen && performance.now() - looked > 1000) { looked = performance.now(); send(JSON.stringify([`looks:${me}`, Date.now()])); }
     const source = document.getElementById('gcs-bar-source');
     const now = performance.now();
     silent += Math.min(now - ticked, 400);  // a page that stood still itself has yet to read what came meanwhile

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from services.gcs import panels, records, status, wheel
+from services.gcs import camera_panel, panels, records, status, wheel
 from services.gcs.commands import MODES, Arm, Cancel, Commander, SetMode, StopAll, mode_name
 from services.gcs.drawing import Button, Picture
 from services.gcs.overview import Overview
@@ -34,6 +34,7 @@ class Composer:
         }
         slow: dict[str, Callable[[], str]] = {
             "fleet": lambda: panels.fleet(self._model, t),
+            "cameras": lambda: camera_panel.panel(self._model, t),
             "facts": lambda: panels.facts(chosen, t) if chosen is not None else "",
             "overview": self._overview.svg,
             "log": lambda: records.event_log(self._model.log),
@@ -44,8 +45,8 @@ class Composer:
         due = {**due, **(slow if self._step == 0 else {turn: slow[turn]})}
         self._html.update((name, draw()) for name, draw in due.items())
         self._step += 1
-        image = chosen.image.data if chosen is not None and chosen.image is not None else None
-        return Picture(self._view.nodes(t), self._view.places(), dict(self._html), self.buttons(t), image)
+        image, gimbal = camera_panel.picture(self._model, t), camera_panel.gimbal_panel(self._model)
+        return Picture(self._view.nodes(t), self._view.places(), dict(self._html), self.buttons(t), image, gimbal)
 
     def buttons(self, t: float) -> list[Button]:
         """The commands that make sense for the chosen vehicle, and STOP ALL, which always does."""

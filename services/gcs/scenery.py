@@ -1,18 +1,20 @@
 """The world about the vehicles: ground, floor, walls, furniture; each shape is made once, also of what moves by script."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
-import trimesh
 from numpy.typing import NDArray
 
-from services.gcs.bodies import Part, box, lathe
+from services.gcs.bodies import rgb
 from services.gcs.drawing import Colour, Mesh, Node, Polyline
 from services.gcs.state import Placed
-from uvf.maths.rotations import from_euler, matrix
+from uvf.maths.rotations import IDENTITY, from_euler, matrix
+from uvf.runtime.mesh_parts import Part, box, joined
 from uvf.runtime.mission_file import Waypoint
 from uvf.runtime.site import Member, Site
 from uvf.runtime.solid import Solid, pose_at
+from uvf.runtime.solid_mesh import triangles
 from uvf.runtime.world_file import Wall, WorldFile
 from uvf.runtime.world_geometry import WALL, solids
 
@@ -37,7 +39,7 @@ def scenery(world: WorldFile) -> dict[str, Node]:
     nodes.update(_merged("/world/walls", walls))
     things = [(s.colour, _placed(s)) for s in solids(world) if s.name != WALL and s.path is None]
     nodes.update(_merged("/world/things", things))
-    nodes.update((f"{_frame(s)}/shape", merge([_shape(s)], _rgb(s.colour))) for s in moving(world))
+    nodes.update((f"{_frame(s)}/shape", merge([at_rest(s)], rgb(s.colour))) for s in moving(world))
     return nodes
 
 
@@ -57,21 +59,12 @@ def _frame(solid: Solid) -> str:
 
 def _placed(solid: Solid) -> Part:
     """A solid's triangles in the world."""
-    part = _shape(solid)
-    return Part(part.vertices @ matrix(solid.orientation).T + solid.position, part.faces)
+    return Part(*triangles(solid))
 
 
-def _shape(solid: Solid) -> Part:
-    if solid.shape == "box":
-        return box((0, 0, 0), solid.size)
-    if solid.shape == "cylinder":
-        radius, height = solid.size
-        return lathe(2, [(-height / 2, radius), (height / 2, radius)], (0, 0, 0))
-    if solid.shape == "sphere":
-        angles = np.linspace(-np.pi / 2, np.pi / 2, 9)
-        return lathe(2, [(solid.size[0] * np.sin(a), solid.size[0] * np.cos(a)) for a in angles], (0, 0, 0))
-    mesh = trimesh.load_mesh(solid.mesh)
-    return Part(np.asarray(mesh.vertices) * np.array(solid.size), np.asarray(mesh.faces))
+def at_rest(solid: Solid) -> Part:
+    """A solid's triangles in its own frame."""
+    return Part(*triangles(replace(solid, position=np.zeros(3), orientation=IDENTITY)))
 
 
 def _segments(wall: Wall) -> Iterator[Part]:
@@ -95,18 +88,19 @@ def _merged(name: str, parts: list[tuple[tuple[float, float, float], Part]]) -> 
     by_colour: dict[tuple[float, float, float], list[Part]] = {}
     for colour, part in parts:
         by_colour.setdefault(colour, []).append(part)
-    return {f"{name}/{i}": merge(group, _rgb(colour)) for i, (colour, group) in enumerate(sorted(by_colour.items()))}
+    return {f"{name}/{i}": merge(group, rgb(colour)) for i, (colour, group) in enumerate(sorted(by_colour.items()))}
 
 
 def merge(parts: list[Part], colour: Colour, selects: str = "") -> Mesh:
-    offsets = np.cumsum([0, *(len(p.vertices) for p in parts[:-1])])
-    faces = np.vstack([p.faces + o for p, o in zip(parts, offsets, strict=True)])
-    return Mesh(np.vstack([p.vertices for p in parts]), faces, colour, selects=selects)
+    return Mesh(*joined(parts), colour, selects=selects)
 
 
-def _rgb(colour: tuple[float, float, float]) -> Colour:
-    r, g, b = (round(255 * c) for c in colour)
-    return r, g, b
+def coloured(parts: Sequence[Part], colour: Colour, selects: str = "") -> dict[str, Node]:
+    """The parts of a body, those of one colour in one mesh; ``colour`` for those that have none."""
+    groups: dict[Colour, list[Part]] = {}
+    for part in parts:
+        groups.setdefault(part.colour or colour, []).append(part)
+    return {str(i): merge(group, c, selects) for i, (c, group) in enumerate(groups.items())}
 
 
 def rgb_of(colour: str) -> Colour:

@@ -13,6 +13,7 @@ from schemas.messages import (
     FrameTransform,
     Grid,
     Health,
+    JointStates,
     LaserScan,
     Mission,
     MissionProgress,
@@ -22,6 +23,7 @@ from schemas.messages import (
     PoseInFrame,
     PosesInFrame,
     Processes,
+    SimObjects,
     StopCommand,
     VehicleStatus,
 )
@@ -43,6 +45,8 @@ class GroundStation(Service):
     inputs = {
         "clock": optional(topics.CLOCK),
         "processes": optional(every(topics.PROCESSES.by("*"))),
+        "objects": optional(topics.OBJECTS),
+        "aircraft": optional(topics.AIR_OBJECTS),
         "health": optional(every(topics.HEALTH.by("*"))),
         "stops": optional(topics.STOP.by("*")),
         "nav": each_vehicle(topics.NAV_STATE),
@@ -56,11 +60,15 @@ class GroundStation(Service):
         "progress": each_vehicle(topics.PROGRESS),
         "scan": each_vehicle(topics.SCAN),
         "image": each_vehicle(topics.IMAGE),
+        "chase": each_vehicle(topics.VIEW.by("chase")),
+        "gimbal_view": each_vehicle(topics.VIEW.by("gimbal")),
+        "gimbal_joints": each_vehicle(topics.GIMBAL_JOINTS),
+        "joints": each_vehicle(topics.JOINTS),
         "grid": each_vehicle(topics.MAP),
         "world_from_map": each_vehicle(topics.TF_WORLD),
         "events": each_vehicle(every(topics.EVENTS.by("*"))),
     }
-    outputs = {"stop": topics.STOP.by(SOURCE), "drive": topics.DRIVE.by(SOURCE)}
+    outputs = {"stop": topics.STOP.by(SOURCE), "drive": topics.DRIVE.by(SOURCE), "gimbal": topics.GIMBAL.by(SOURCE)}
     calls = {"goal": topics.GOAL, "cancel": topics.CANCEL, "arm": topics.ARM, "mode": topics.SET_MODE}
 
     def __init__(self, site: Site, page: Page) -> None:
@@ -74,6 +82,8 @@ class GroundStation(Service):
         t: float,
         clock: Clock | None,
         processes: Sequence[Processes],
+        objects: SimObjects | None,
+        aircraft: SimObjects | None,
         health: Sequence[Health],
         stops: StopCommand | None,
         events: Mapping[str, Sequence[Event]],
@@ -92,6 +102,10 @@ class GroundStation(Service):
         progress: Mapping[str, MissionProgress],
         scan: Mapping[str, LaserScan],
         image: Mapping[str, CompressedImage],
+        chase: Mapping[str, CompressedImage],
+        gimbal_view: Mapping[str, CompressedImage],
+        gimbal_joints: Mapping[str, JointStates],
+        joints: Mapping[str, JointStates],
         grid: Mapping[str, Grid],
         world_from_map: Mapping[str, FrameTransform],
     ) -> Outputs:
@@ -108,21 +122,33 @@ class GroundStation(Service):
             "progress": progress,
             "scan": scan,
             "image": image,
+            "chase": chase,
+            "gimbal": gimbal_view,
+            "gimbal_joints": gimbal_joints,
+            "joints": joints,
             "grid": grid,
             "world_from_map": world_from_map,
         }
-        self._model.hear_clock(t, clock)
-        self._model.hear_processes(processes)
-        self._model.hear_health(t, health)
+        self._hear_system(t, clock, processes, health)
+        self._model.hear_objects((objects, aircraft), truth)
         self._model.hear_stop(stops)
         for what, messages in newest.items():
             self._model.hear(t, what, messages)
         self._model.hear_events(t, events)
         self._commander.hear(t, (*goal, *cancel, *arm, *mode))
+        return self._act(t)
+
+    def _hear_system(self, t: float, clock: Clock | None, processes: Sequence[Processes], health: Sequence[Health]) -> None:
+        self._model.hear_clock(t, clock)
+        self._model.hear_processes(processes)
+        self._model.hear_health(t, health)
+
+    def _act(self, t: float) -> Outputs:
+        """Does what people have asked on the page, and shows how things stand."""
         out = self._commander.act(t, self._page.actions())
         self._commander.expire(t)
         self._page.show(self._composer.picture(t))
-        return {"stop": out.stop, "drive": out.drive, "goal": out.goal, "cancel": out.cancel, "arm": out.arm, "mode": out.mode}
+        return {name: getattr(out, name) for name in (*self.outputs, *self.calls)}
 
     def close(self) -> None:
         self._page.close()

@@ -14,8 +14,10 @@ from schemas.messages import (
     CompressedImage,
     Event,
     FrameTransform,
+    GimbalCommand,
     Grid,
     Health,
+    JointStates,
     LaserScan,
     Mission,
     MissionProgress,
@@ -26,6 +28,8 @@ from schemas.messages import (
     PosesInFrame,
     Process,
     Processes,
+    SimObject,
+    SimObjects,
     StopCommand,
     VehicleStatus,
 )
@@ -33,8 +37,7 @@ from schemas.topics import SYSTEM
 from services.gcs.journal import Journal, Line
 from services.gcs.tracks import Track
 from services.gcs.vitals import Vitals
-from uvf.maths.planar import Pose2, transform
-from uvf.maths.rotations import matrix
+from uvf.maths.rotations import from_euler, matrix
 from uvf.runtime.mapped_floor import MappedFloor
 from uvf.runtime.site import Member, Site
 
@@ -87,6 +90,10 @@ class VehicleModel:
     progress: MissionProgress | None = None
     scan: LaserScan | None = None
     image: CompressedImage | None = None
+    chase: CompressedImage | None = None
+    gimbal: CompressedImage | None = None
+    gimbal_joints: JointStates | None = None
+    joints: JointStates | None = None
     grid: Grid | None = None
     world_from_map: FrameTransform | None = None
     heard_at: dict[str, float] = field(default_factory=dict)
@@ -97,6 +104,8 @@ class VehicleModel:
     """0..1, the report's ``mapped_floor`` of the newest map."""
     order: Order | None = None
     goal_asked: tuple[float, float] | None = None
+    aim: GimbalCommand = field(default_factory=GimbalCommand)
+    """Where its gimbal was last told from here to look."""
 
     @property
     def flies(self) -> bool:
@@ -153,6 +162,10 @@ class Model:
         grounded = [v.name for v in self.vehicles.values() if not v.flies]
         self.selected = next(iter(grounded or self.vehicles), "")
         self.layers = set(SHOWN_AT_FIRST)
+        self.camera = ""
+        """The field of the vehicle whose picture is on show, where it has that camera."""
+        self.looking: dict[str, float] = {}
+        """Page -> when it last said that somebody has the picture before his eyes [s, wall]."""
         self.clock: Clock | None = None
         self.clock_at: float | None = None
         self.processes: dict[str, Process] = {}
@@ -161,6 +174,10 @@ class Model:
         self.log = Journal()
         self._floors = {v.name: MappedFloor(site.world, v.member) for v in self.vehicles.values() if not v.flies}
         self.health: dict[str, Vitals] = {}
+        self.spawned: Sequence[SimObject] = ()
+        """What has been put into the running simulation."""
+        self.strangers: Mapping[str, NavState] = {}
+        """True motion of the vehicles among it."""
 
     @property
     def chosen(self) -> VehicleModel | None:
@@ -174,6 +191,10 @@ class Model:
     @property
     def sim_time(self) -> float:
         return self.clock.t_ns * 1e-9 if self.clock is not None else 0.0
+
+    def look(self, t: float, page: str) -> None:
+        """A page has the picture before somebody's eyes; pages that are gone are forgotten."""
+        self.looking = {**{name: at for name, at in self.looking.items() if t - at < LOST_AFTER}, page: t}
 
     def hear(self, t: float, what: str, messages: Mapping[str, Message]) -> None:
         """Takes in the newest message of one kind for each vehicle that has a new one."""
@@ -213,6 +234,11 @@ class Model:
                 word = "engaged" if stop.engaged else "released"
                 self.note("", f"STOP ALL {word} by {stop.source or 'somebody unnamed'}", Event.WARNING if stop.engaged else Event.NOTICE)
 
+    def hear_objects(self, lists: Sequence[SimObjects | None], truth: Mapping[str, NavState]) -> None:
+        """lists: of each simulator, what has been put into it."""
+        self.spawned = [thing for told in lists if told is not None for thing in told.objects]
+        self.strangers = {name: state for name, state in truth.items() if name not in self.vehicles}
+
     def hear_health(self, t: float, reports: Sequence[Health]) -> None:
         for report in reports:
             self.health.setdefault(report.service, Vitals()).hear(t, report)
@@ -242,9 +268,9 @@ def scan_in_world(vehicle: VehicleModel) -> Floats | None:
     scan, place, lidar = vehicle.scan, vehicle.place, vehicle.member.file.sensors.lidar
     if scan is None or place is None or lidar is None or not scan.ranges:
         return None
-    x, y, z = lidar.mount.xyz
-    flat = transform(Pose2(x, y, lidar.mount.rpy[2]), scan_points(scan))
-    in_body = np.column_stack((flat, np.full(len(flat), z)))
+    flat = scan_points(scan)
+    in_lidar = np.column_stack((flat, np.zeros(len(flat))))
+    in_body = in_lidar @ matrix(from_euler(*lidar.mount.rpy)).T + np.array(lidar.mount.xyz)
     in_world: Floats = in_body @ matrix(place.wxyz).T + place.position
     return in_world
 

@@ -11,9 +11,13 @@ from schemas.messages import FrameTransform, Grid, NavStatus
 from services.gcs import bodies
 from services.gcs.drawing import Colour, FloorPicture, Node, Points, Polyline, Text
 from services.gcs.map_image import known_part, occupancy_png
-from services.gcs.scenery import circuit_line, merge, moving, places_of, rgb_of, scenery
+from services.gcs.moving_parts import MovingParts
+from services.gcs.scenery import circuit_line, coloured, moving, places_of, rgb_of, scenery
+from services.gcs.spawned import Spawned
 from services.gcs.state import Model, Placed, VehicleModel
 from uvf.maths.rotations import multiply, rotate, to_euler
+from uvf.runtime.aircraft_shape import AircraftShape, aircraft_shape
+from uvf.runtime.mesh_parts import Part
 
 Floats = NDArray[np.float64]
 
@@ -21,8 +25,8 @@ ROUTE: Colour = (232, 74, 214)
 SCAN: Colour = (255, 92, 92)
 ASKED: Colour = (250, 190, 60)
 GHOST: Colour = (190, 200, 215)
-AIRCRAFT_SCALE = 3.0
-"""Aircraft are drawn larger than they are, to be seen from where their whole circuit is."""
+SHOWN_SIZE, MOST_SCALE = 8.5, 4.0  # m
+"""Small aircraft are drawn larger than they are, to be seen from where their whole circuit is."""
 MAP_PERIOD = 1.0  # s between two pictures of the map
 UP = 0.02  # m above the floor, so that what lies on it is seen
 
@@ -36,13 +40,17 @@ class View:
         self._used: set[str] = set()
         self._surroundings = scenery(model.site.world)
         self._scripted = moving(model.site.world)
-        self._bodies = {v.name: _body(v, rgb_of(v.colour)) for v in model.vehicles.values()}
-        self._ghosts = {v.name: _body(v, GHOST) for v in model.vehicles.values()}
+        shapes = {v.name: _shape(v) for v in model.vehicles.values() if v.flies}
+        self._bodies = {v.name: _body(v, shapes.get(v.name)) for v in model.vehicles.values()}
+        self._ghosts = {v.name: coloured(_parts(v, shapes.get(v.name)), GHOST, v.name) for v in model.vehicles.values()}
+        self._moving = {name: MovingParts(shape.movables) for name, shape in shapes.items()}
+        self._spawned = Spawned(model)
         self._map_due: dict[str, float] = {}
 
     def nodes(self, t: float) -> dict[str, Node]:
         """Everything in the scene, by name; ``/vehicles/<v>/...`` is given in that vehicle's frame."""
         shown = {k: n for k, n in self._surroundings.items() if "Walls" in self._model.layers or not k.startswith("/world/walls")}
+        shown |= self._spawned.nodes()
         self._used = set()
         for vehicle in self._model.vehicles.values():
             shown.update(self._of_vehicle(vehicle, t))
@@ -52,10 +60,13 @@ class View:
 
     def places(self) -> dict[str, Placed]:
         """Poses of the frames of vehicles and of what moves by script."""
-        placed = places_of(self._scripted, self._model.sim_time)
+        placed = places_of(self._scripted, self._model.sim_time) | self._spawned.places()
         for v in self._model.vehicles.values():
             if v.place is not None:
                 placed[f"/vehicles/{v.name}"] = v.place
+                if v.flies:
+                    moving = self._moving[v.name].places(v.joints)
+                    placed |= {f"/vehicles/{v.name}/{part}": place for part, place in moving.items()}
             if v.true_place is not None and "True pose" in self._model.layers:
                 placed[f"/true/{v.name}"] = v.true_place
         return placed
@@ -167,14 +178,31 @@ class View:
         return self._make(f"height {v.name}", (x, y, z), lambda: Polyline(foot, rgb_of(v.colour), 1.5))
 
 
-def _body(v: VehicleModel, colour: Colour) -> dict[str, Node]:
-    """The parts of a body, those of one colour in one mesh."""
-    ground = v.member.file.ground
-    parts = bodies.aeroplane(AIRCRAFT_SCALE) if ground is None else bodies.rover(v.member.folder / ground.urdf)
-    by_colour: dict[Colour, list[bodies.Part]] = {}
-    for part in parts:
-        by_colour.setdefault(part.colour or colour, []).append(part)
-    return {str(i): merge(group, c, v.name) for i, (c, group) in enumerate(by_colour.items())}
+def _shape(v: VehicleModel) -> AircraftShape:
+    """As large as it is drawn."""
+    shape = aircraft_shape(v.member.folder, v.member.file)
+    size = float(np.ptp(shape.bounds, axis=0).max())
+    return shape.scaled(min(max(SHOWN_SIZE / size, 1.0), MOST_SCALE))
+
+
+def _body(v: VehicleModel, shape: AircraftShape | None) -> dict[str, Node]:
+    """An aircraft's movable parts are drawn in frames of their own, which turn."""
+    colour = rgb_of(v.colour)
+    if shape is None:
+        return coloured(_parts(v, None), colour, v.name)
+    found = coloured(shape.fixed + shape.undercarriage, colour, v.name)
+    for part in shape.movables:
+        drawn = coloured(part.parts, colour, v.name)
+        found |= {f"{part.name}/{i}": node for i, node in drawn.items()}
+    return found
+
+
+def _parts(v: VehicleModel, shape: AircraftShape | None) -> list[Part]:
+    """All of it, at rest."""
+    if shape is not None:
+        return shape.at_rest
+    assert v.member.file.ground is not None
+    return bodies.rover(v.member.folder / v.member.file.ground.urdf)
 
 
 def floor_picture(grid: Grid, world_from_map: FrameTransform | None) -> FloorPicture:

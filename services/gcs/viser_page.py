@@ -21,6 +21,7 @@ from services.gcs.commands import Action, ClickGround, Layer, Select
 from services.gcs.drawing import Button, Camera, Picture
 from services.gcs.guard import Guard
 from services.gcs.state import LAYERS
+from services.gcs.viser_cameras import ViserCameras
 from services.gcs.viser_scene import ViserScene
 from services.gcs.viser_script import action_in, bar_source, padded, script, shape_in
 from services.gcs.viser_views import Views, ViserViews
@@ -44,7 +45,6 @@ class ViserPage:
         self._sent: dict[str, str] = {}
         self._buttons: dict[str, tuple[Any, Button]] = {}
         self._meaning: dict[str, Action] = {}
-        self._image: tuple[Any, bytes] | None = None
         self._picked: tuple[float, float] | None = None
         self._beat = 0.0
         self._scene = ViserScene(self._server, self._on_pick)
@@ -101,7 +101,8 @@ class ViserPage:
         with panel.add_tab("Vehicle", viser.Icon.GAUGE):
             self._html["instrument"] = gui.add_html("", order=1)
             self._html["facts"] = gui.add_html("", order=100)
-            self._picture_slot = gui.add_folder("Camera", order=60, visible=False)
+            self._cameras = ViserCameras(self._server, self._actions.put)
+            self._html["cameras"] = self._cameras.words
         with panel.add_tab("Log", viser.Icon.LIST):
             self._html["log"] = gui.add_html("")
         with panel.add_tab("System", viser.Icon.CPU):
@@ -151,7 +152,7 @@ class ViserPage:
             self._scene.show(picture.nodes, picture.places)
             self._show_html(picture.html)
             self._show_buttons(picture.buttons)
-            self._show_image(picture.image)
+            self._cameras.show(picture)
 
     def _show_html(self, html: Mapping[str, str]) -> None:
         now = time.monotonic()
@@ -182,19 +183,6 @@ class ViserPage:
             elif before[1] != button:
                 self._buttons[button.key] = (before[0], button)
                 _change(before[0], before[1], button)
-
-    def _show_image(self, image: bytes | None) -> None:
-        if image is None or (self._image is not None and self._image[1] == image):
-            self._picture_slot.visible = image is not None
-            return
-        if self._image is None:
-            with self._picture_slot:
-                handle = self._server.gui.add_image(np.zeros((2, 2, 3), dtype=np.uint8), format="jpeg")
-        else:
-            handle = self._image[0]
-        handle._data = image
-        self._image = (handle, image)
-        self._picture_slot.visible = True
 
     def actions(self) -> list[Action]:
         taken = []

@@ -28,7 +28,7 @@ class ViserScene:
     def show(self, nodes: Mapping[str, Node], places: Mapping[str, Placed]) -> None:
         for name in [n for n in self._shown if n not in nodes]:
             self._shown.pop(name)[1].remove()
-        for name in [n for n in self._frames if n not in places]:
+        for name in [n for n in reversed(self._frames) if n not in places]:  # what hangs on a frame before the frame
             self._frames.pop(name)[0].remove()
             self._shown = {k: v for k, v in self._shown.items() if not k.startswith(name + "/")}
         for name, place in places.items():
@@ -47,6 +47,8 @@ class ViserScene:
             self._frames[name] = (handle, place)
             return
         handle, old = before
+        if place is old:
+            return
         moved = float(np.abs(place.position - old.position).max()) > MOVED
         turned = float(np.abs(place.wxyz - old.wxyz).max()) > TURNED
         if moved or turned:

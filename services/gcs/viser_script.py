@@ -4,7 +4,7 @@ import json
 import re
 from pathlib import Path
 
-from services.gcs.commands import Action, Rescale, Select, Steer, TakeWheel
+from services.gcs.commands import Action, Looking, Rescale, Select, ShowCamera, Steer, TakeWheel
 
 STYLE = Path(__file__).with_name("page.css")
 SCRIPT = Path(__file__).with_name("page.js")
@@ -51,9 +51,13 @@ def action_in(value: str) -> Action | None:
     page, *rest = about.split(":")
     if what == "select":
         return Select(about)
+    if what == "camera":
+        return ShowCamera(about)
     if not PAGE.fullmatch(page):
         return None
     match what, rest:
+        case "looks", []:
+            return Looking(page)
         case "wheel", ["on" | "off" as word]:
             return TakeWheel(page if word == "on" else "")
         case "scale", [key]:

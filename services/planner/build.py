@@ -8,6 +8,8 @@ from services.planner.planner_service import PlannerParams, PlannerService
 from services.planner.safety import safe_share
 from services.planner.tracker_service import TrackerParams, TrackerService
 from uvf.maths.planar import Pose2
+from uvf.maths.rotations import from_euler
+from uvf.maths.transforms import Transform
 from uvf.runtime.params import BadInput
 from uvf.runtime.site import Host, Member, Site
 
@@ -25,7 +27,7 @@ def _hosts(member: Member) -> list[Host]:
     if body is None or lidar is None:
         raise BadInput(f"{member.folder / 'vehicle.yaml'}: the planner needs 'ground:' and sensors: lidar")
     world_from_map = Pose2(start.x, start.y, start.yaw)
-    base_from_lidar = Pose2(lidar.mount.xyz[0], lidar.mount.xyz[1], lidar.mount.rpy[2])
+    base_from_lidar = Transform(from_euler(*lidar.mount.rpy), np.array(lidar.mount.xyz))
     planner = member.params("planner", PlannerParams)
     tracker = member.params("tracker", TrackerParams)
     return [

@@ -11,7 +11,8 @@ from schemas.convert import scan_points, seconds, stamp, yaw_of
 from schemas.messages import DriveCommand, Event, LaserScan, PoseInFrame, PosesInFrame
 from services.planner.safety import safe_share
 from services.planner.tracking import Pace, Tracker
-from uvf.maths.planar import IDENTITY, Pose2, PoseHistory, compose, inverse, transform
+from uvf.maths.planar import IDENTITY, Pose2, PoseHistory, inverse, transform
+from uvf.maths.transforms import Transform, from_above
 from uvf.runtime.service import Outputs, Params, Service, every
 from uvf.runtime.vehicle_file import GroundBody
 
@@ -44,7 +45,7 @@ class TrackerService(Service):
     outputs = {"drive": topics.DRIVE.by("planner"), "events": topics.EVENTS.by("tracker")}
     params: TrackerParams
 
-    def __init__(self, body: GroundBody, base_from_lidar: Pose2, params: TrackerParams) -> None:
+    def __init__(self, body: GroundBody, base_from_lidar: Transform, params: TrackerParams) -> None:
         self.params = params
         self._body = body
         self._base_from_lidar = base_from_lidar
@@ -95,7 +96,7 @@ class TrackerService(Service):
         self._scan_time = taken_at
         points = scan_points(scan)
         near = points[np.hypot(*points.T) < NEAR]
-        self._seen = transform(compose(world_from_base, self._base_from_lidar), near)
+        self._seen = transform(world_from_base, from_above(self._base_from_lidar, near))
 
     def _made_safe(self, t: float, wanted: tuple[float, float], around: Floats) -> tuple[tuple[float, float], list[Event]]:
         """The wanted velocity, slowed so that it ends before anything; backwards a little when that stays zero."""

@@ -1,43 +1,88 @@
 """Makes the air simulator from a mission: all its fixed-wing vehicles in one service."""
 
+from functools import partial
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
 from services.sim_air.actuators import Actuators
-from services.sim_air.airframe import Airframe, Controls, Start
+from services.sim_air.aircraft import Aircraft
+from services.sim_air.airframe import Airframe
+from services.sim_air.around import Around
+from services.sim_air.beginning import as_told, begun
+from services.sim_air.crash import Resting
+from services.sim_air.ground import Ground
+from services.sim_air.rangers import Rangers
 from services.sim_air.sensors import Gnss, Imu, Pressures
-from services.sim_air.service import Aircraft, SimAir
+from services.sim_air.service import SimAir
+from services.sim_air.stage import Joining, Stage
+from services.sim_air.wind import AirMass
+from services.sim_air.wiring import Controls
+from uvf.maths.bvh import Bvh
 from uvf.maths.geodesy import LocalTangent
+from uvf.maths.raycast3 import warm_up
+from uvf.runtime.air_file import AirBody
+from uvf.runtime.aircraft_shape import aircraft_shape
+from uvf.runtime.footing import Footing
+from uvf.runtime.guarded import Died, guarded
+from uvf.runtime.mission_file import Start, Vehicle
 from uvf.runtime.params import BadInput, Place
+from uvf.runtime.scene import scene
 from uvf.runtime.site import AIRCRAFT_RADIUS, Host, Member, Site
-from uvf.runtime.vehicle_file import AirBody
+from uvf.runtime.surroundings import aircraft_tree, vehicle_tree
+from uvf.runtime.urdf_model import load_urdf
+from uvf.runtime.vehicle_file import load_vehicle
 from uvf.runtime.vehicle_layers import folders_of, holding
-from uvf.runtime.world_geometry import clearance
+from uvf.runtime.world_geometry import GRAZE, solids
 
 
 def build(site: Site) -> list[Host]:
     """Nothing when the mission has no aircraft. Raises BadInput."""
     if not any(site.of_kind("fixed_wing")):
         return []
+    warm_up()
+    land = Land(Footing(site.world), Ground(scene(solids(site.world))))
     for member in site.of_kind("fixed_wing"):
-        _check(site, member)
-    return [Host(SimAir, lambda: _make(site), writes_for=tuple(m.name for m in site.of_kind("fixed_wing")))]
+        _check(site, member, land)
+    return [Host(SimAir, lambda: _make(site, land), writes_for=tuple(m.name for m in site.of_kind("fixed_wing")))]
 
 
-def _check(site: Site, member: Member) -> None:
+class Land(NamedTuple):
+    """What there is to begin on and to begin beside."""
+
+    footing: Footing
+    ground: Ground
+
+    def room(self, start: Start) -> float:
+        """m to the nearest thing beside an aircraft at its start, none of them what it stands on."""
+        height = self.ground.top(start.x, start.y)
+        low, high = max(start.z - AIRCRAFT_RADIUS, GRAZE), start.z + AIRCRAFT_RADIUS
+        return self.footing.room(start.x, start.y, (height + low, height + high))
+
+
+def _check(site: Site, member: Member, land: Land) -> None:
     """What would otherwise fail only when time runs, or not be noticed at all."""
-    place = Place(str(member.folder / "vehicle.yaml"))
-    sensors = member.file.sensors
-    for kind, sensor in {"imu": sensors.imu, "gnss": sensors.gnss, "air_data": sensors.air_data}.items():
-        if sensor is not None and sensor.hz > SimAir.hz:
-            raise BadInput(f"{place.at('sensors', kind, 'hz')}: {sensor.hz:g} Hz; the simulator gives {SimAir.hz:g} Hz at most")
+    _check_rates(member)
     start = member.entry.start
-    room = clearance(site.world, start.x, start.y, (start.z - AIRCRAFT_RADIUS, start.z + AIRCRAFT_RADIUS))
-    if room < AIRCRAFT_RADIUS:
+    if (room := land.room(start)) < AIRCRAFT_RADIUS:
         where = Place(str(site.mission_path)).at("vehicles", member.name, "start")
         raise BadInput(f"{where}: {room:.2f} m from a wall or another solid at {start.z:g} m; move it or begin higher")
-    Airframe(_model_folder(member), _body(member), _tangent(site))
+    try:
+        guarded(lambda: Airframe(_model_folder(member), _body(member), _tangent(site)).step())
+    except Died as error:
+        where = Place(str(member.folder / "vehicle.yaml"))
+        raise BadInput(f"{where.at('air', 'model')}: JSBSim ends the process with this model ({error}); 'uvf vehicle check' it") from error
+
+
+def _check_rates(member: Member) -> None:
+    place = Place(str(member.folder / "vehicle.yaml"))
+    sensors = member.file.sensors
+    single = {(kind,): getattr(sensors, kind) for kind in ("imu", "gnss", "air_data", "lidar")}
+    several = {(kind, i): sensor for kind in ("sonars", "rangefinders") for i, sensor in enumerate(getattr(sensors, kind))}
+    for keys, sensor in (single | several).items():
+        if sensor is not None and sensor.hz > SimAir.hz:
+            raise BadInput(f"{place.at('sensors', *keys, 'hz')}: {sensor.hz:g} Hz; the simulator gives {SimAir.hz:g} Hz at most")
 
 
 def _body(member: Member) -> AirBody:
@@ -56,18 +101,66 @@ def _tangent(site: Site) -> LocalTangent:
     return LocalTangent.from_degrees(origin.latitude, origin.longitude, origin.altitude)
 
 
-def _make(site: Site) -> SimAir:
-    return SimAir([_aircraft(site, member) for member in site.of_kind("fixed_wing")], np.array(site.world.wind.steady))
+def _make(site: Site, land: Land) -> SimAir:
+    things, members = solids(site.world), list(site.of_kind("fixed_wing"))
+    flying = [Airframe(_model_folder(m), _body(m), _tangent(site)) for m in members]
+    on_wheels = {m.name: vehicle_tree(load_urdf(m.folder / m.file.ground.urdf)) for m in site.of_kind("ground") if m.file.ground}
+    joining = {m.name: _joining(site, land, m, airframe) for m, airframe in zip(members, flying, strict=True)}
+    around = Around(things, on_wheels | {name: one.shape for name, one in joining.items()}, partial(_shape_of, site))
+    aircraft = {name: one.aircraft for name, one in joining.items()}
+    taken = (*site.members, *(thing.name for thing in things), "floor")
+    return SimAir(Stage(aircraft, around, taken, partial(_join, site, land)))
 
 
-def _aircraft(site: Site, member: Member) -> Aircraft:
-    """One aircraft in trimmed level flight at its start. Raises BadInput."""
+def _join(site: Site, land: Land, name: str, model: str, start: Start) -> Joining:
+    """An aircraft that nobody steers but by its actuator topic, made ready while the simulation runs. Raises BadInput."""
+    file, folder = load_vehicle(site.vehicles_folder, model), site.vehicles_folder / model
+    if file.air is None:
+        raise BadInput(f"'{model}' is no aircraft; this is the air simulator")
+    member = Member(name, Vehicle(model=model, start=start, system_id=1), file, folder)
+    _check_rates(member)
+    _check_room(land, name, start)
+    airframe = Airframe(_model_folder(member), file.air, _tangent(site))
+    return _joining(site, land, member, airframe)
+
+
+def _joining(site: Site, land: Land, member: Member, airframe: Airframe) -> Joining:
+    """An aircraft and its shape, which is also how it lies as a wreck. Raises BadInput."""
+    aircraft, shape = _aircraft(site, land, member, airframe), aircraft_tree(aircraft_shape(member.folder, member.file))
+    aircraft.rests = Resting(land.ground, shape)
+    return Joining(aircraft, shape)
+
+
+def _check_room(land: Land, name: str, start: Start) -> None:
+    if (room := land.room(start)) < AIRCRAFT_RADIUS:
+        raise BadInput(f"'{name}' would be {room:.2f} m from a wall or another solid there; choose another place")
+
+
+def _begin(site: Site, land: Land, member: Member, start: Start) -> tuple[Airframe, Controls, Controls]:
+    """An airframe of its own for a new beginning. Raises BadInput."""
+    _check_room(land, member.name, start)
+    airframe = Airframe(_model_folder(member), _body(member), _tangent(site))
+    airframe.over(land.ground)
+    air = AirMass(site.wind, airframe.span, site.rng(member.name, "turbulence"))
+    return airframe, *begun(airframe, as_told(start, _body(member), air, land.ground.top(start.x, start.y)))
+
+
+def _shape_of(site: Site, model: str) -> Bvh:
+    """Of a ground vehicle that has been put in: the ground simulator has taken it."""
+    ground = load_vehicle(site.vehicles_folder, model).ground
+    assert ground is not None
+    return vehicle_tree(load_urdf(site.vehicles_folder / model / ground.urdf))
+
+
+def _aircraft(site: Site, land: Land, member: Member, airframe: Airframe) -> Aircraft:
+    """One aircraft as it starts. Raises BadInput."""
     body, tangent, begin = _body(member), _tangent(site), member.entry.start
-    airframe = Airframe(_model_folder(member), body, tangent)
-    position = np.array((begin.x, begin.y, begin.z))
-    trim = airframe.start(Start(position, begin.yaw, begin.speed or body.trim_speed, np.array(site.world.wind.steady)))
-    at_start = Controls(trim.aileron, trim.elevator, trim.rudder, trim.throttle)
-    aircraft = Aircraft(member.name, member.file, airframe, Actuators(at_start, body))
+    air = AirMass(site.wind, airframe.span, site.rng(member.name, "turbulence"))
+    airframe.over(land.ground)
+    now, level = begun(airframe, as_told(begin, body, air, land.ground.top(begin.x, begin.y)))
+    aircraft = Aircraft(member.name, member.file, airframe, Actuators(now, body), level)
+    aircraft.begin = partial(_begin, site, land, member)
+    aircraft.wind, aircraft.air_mass = air.mean(begin.z), None if air.is_steady else air
     fitted = member.file.sensors
     if fitted.imu is not None:
         aircraft.imu = Imu(fitted.imu, np.array(site.world.magnetic_field), site.rng(member.name, "imu"))
@@ -75,4 +168,5 @@ def _aircraft(site: Site, member: Member) -> Aircraft:
         aircraft.gnss = Gnss(fitted.gnss, tangent, site.rng(member.name, "gnss"))
     if fitted.air_data is not None:
         aircraft.pressures = Pressures(fitted.air_data, site.rng(member.name, "air_data"))
+    aircraft.rangers = Rangers(member.name, fitted, land.ground.scene, partial(site.rng, member.name))
     return aircraft

@@ -1,9 +1,10 @@
 """Sensor samples as messages."""
 
 from schemas.convert import quaternion, stamp, vector
-from schemas.messages import AirData, Battery, JointState, JointStates, NavState
-from services.sim_air import sensors
-from services.sim_air.airframe import Air, Controls, Motion
+from schemas.messages import AirData, Battery, Event, JointState, JointStates, NavState
+from services.sim_air.battery import Charge
+from services.sim_air.states import Air, Motion
+from services.sim_air.wiring import JointAngle
 from uvf.maths.rotations import Floats
 
 
@@ -16,21 +17,18 @@ def air_data(t: float, air: Air) -> AirData:
     )
 
 
-def battery(t: float, charge: sensors.Charge) -> Battery:
+def battery(t: float, charge: Charge) -> Battery:
     return Battery(timestamp=stamp(t), voltage=charge.voltage, current=charge.current, remaining=charge.remaining)
 
 
-def joints(t: float, controls: Controls, propeller_speed: float) -> JointStates:
-    """Surfaces [rad] and the propeller [rad/s]."""
-    return JointStates(
-        timestamp=stamp(t),
-        joints=[
-            JointState(name="aileron", position=controls.aileron),
-            JointState(name="elevator", position=controls.elevator),
-            JointState(name="rudder", position=controls.rudder),
-            JointState(name="propeller", velocity=propeller_speed, effort=controls.throttle),
-        ],
-    )
+def joints(t: float, angles: list[JointAngle], throttle: float) -> JointStates:
+    """Surfaces [rad] and what turns [rad/s], with the throttle as its effort."""
+    states = [JointState(name=a.name, position=a.position, velocity=a.speed, effort=throttle if a.speed else 0.0) for a in angles]
+    return JointStates(timestamp=stamp(t), joints=states)
+
+
+def crashed(t: float, reason: str) -> Event:
+    return Event(timestamp=stamp(t), severity=Event.CRITICAL, text="crashed", cause=reason, source="sim_air")
 
 
 def nav_state(t: float, motion: Motion, wind: Floats) -> NavState:

@@ -5,25 +5,26 @@ from typing import NamedTuple
 
 import numpy as np
 
-from services.sim_air.airframe import Air, Motion
+from services.sim_air.states import Air, Motion
 from uvf.maths import rotations
 from uvf.maths.geodesy import LocalTangent
 from uvf.maths.instruments import Fix, ImuReading
 from uvf.maths.sampling import Line
 from uvf.maths.sensing import Channel, Errors
-from uvf.runtime.vehicle_file import AirDataSensor, BatteryPack, GnssSensor, ImuSensor, line_of
+from uvf.runtime.vehicle_file import AirDataSensor, GnssSensor, ImuSensor, line_of
 
 Floats = rotations.Floats
 
 
 class Imu:
-    """At the centre of gravity."""
+    """At its mount: away from the centre of gravity it feels the turning too."""
 
     def __init__(self, data: ImuSensor, field: Floats, rng: np.random.Generator) -> None:
         """``field`` is the magnetic field, (3,) T, ENU."""
         self.frame = data.frame
         self._line: Line[ImuReading] = line_of(data, rng.spawn(1)[0])
         self._unit = data.unit(rng)
+        self._arm = np.array(data.mount.xyz)
         self._sensor_from_body = rotations.matrix(rotations.from_euler(*data.mount.rpy)).T
         self._field_enu = field
 
@@ -33,7 +34,11 @@ class Imu:
 
     def _take(self, t: float, motion: Motion) -> ImuReading:
         field_body = rotations.matrix(motion.world_from_body).T @ self._field_enu
-        return self._unit.read(t, *(self._sensor_from_body @ v for v in (motion.angular_velocity, motion.specific_force, field_body)))
+        turning = motion.angular_velocity
+        force = motion.specific_force
+        if self._arm.any():
+            force = force + np.cross(motion.angular_acceleration, self._arm) + np.cross(turning, np.cross(turning, self._arm))
+        return self._unit.read(t, *(self._sensor_from_body @ v for v in (turning, force, field_body)))
 
 
 class Gnss:
@@ -71,31 +76,3 @@ class Pressures:
     def _take(self, t: float, air: Air) -> AirSample:
         static, differential = self._channel.read(np.array((air.static_pressure, air.differential_pressure)), 0.0)
         return AirSample(t, Air(float(static), float(differential), air.temperature))
-
-
-class Charge:
-    """Counts the energy drawn; the voltage falls in a straight line with the charge."""
-
-    EFFICIENCY = 0.85
-    """Of motor and speed controller together, shaft over electric power."""
-
-    def __init__(self, pack: BatteryPack) -> None:
-        self._pack = pack
-        self._left = pack.energy  # J
-        self.current = 0.0  # A
-
-    def draw(self, shaft_power: float, dt: float) -> None:
-        """``shaft_power`` [W] over ``dt`` [s]."""
-        power = shaft_power / self.EFFICIENCY + self._pack.avionics
-        self._left = max(self._left - power * dt, 0.0)
-        self.current = power / self.voltage
-
-    @property
-    def remaining(self) -> float:
-        """0..1."""
-        return self._left / self._pack.energy
-
-    @property
-    def voltage(self) -> float:
-        """V."""
-        return self._pack.empty + (self._pack.full - self._pack.empty) * self.remaining

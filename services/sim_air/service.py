@@ -1,135 +1,149 @@
 """The aircraft of a mission, flown by JSBSim: surfaces in, sensors and truth out."""
 
-import math
 from collections.abc import Mapping
-from dataclasses import replace
-from typing import Protocol
+from functools import partial
+
+import numpy as np
 
 from schemas import topics
-from schemas.messages import NavState, SurfaceCommand
+from schemas.messages import NavState, RemoveRequest, SetPoseRequest, SimObjects, SpawnRequest, StateRequest, SurfaceCommand
 from services.sim_air import readings
-from services.sim_air.actuators import Actuators
-from services.sim_air.airframe import Air, Controls, Motion
-from services.sim_air.sensors import Charge, Gnss, Imu, Pressures
-from uvf.maths.rotations import Floats
+from services.sim_air.aircraft import Aircraft
+from services.sim_air.stage import Stage
 from uvf.maths.sampling import Due
 from uvf.runtime.sensor_frames import sensor_frames
-from uvf.runtime.sensor_messages import gnss_message, imu_message
+from uvf.runtime.sensor_messages import gnss_message, imu_message, later
 from uvf.runtime.service import Outputs, Service, Value, each_vehicle, optional
-from uvf.runtime.vehicle_file import VehicleFile
-
-
-class Body(Protocol):
-    """What flies: ``airframe.Airframe`` or a test's own."""
-
-    def command(self, controls: Controls) -> None: ...
-    def step(self) -> None: ...
-    def motion(self) -> Motion: ...
-    def air(self) -> Air: ...
-
-    @property
-    def propeller_speed(self) -> float: ...
-    @property
-    def shaft_power(self) -> float: ...
-
-
-class Aircraft:
-    """One aircraft with its servos and sensors; absent sensors are not fitted."""
-
-    def __init__(self, name: str, file: VehicleFile, body: Body, actuators: Actuators) -> None:
-        assert file.air is not None
-        self.name = name
-        self.file = file
-        self.body = body
-        self.actuators = actuators
-        self.trim = actuators.position
-        self.command = actuators.position
-        self.dt = 1 / file.air.physics_hz
-        self.physics_steps = 0
-        self.imu: Imu | None = None
-        self.gnss: Gnss | None = None
-        self.pressures: Pressures | None = None
-        self.charge = Charge(file.air.battery) if file.air.battery else None
-        self.joints_due = Due(topics.JOINTS.hz)
-        self.truth_due = Due(topics.TRUTH.hz)
-        self.battery_due = Due(topics.BATTERY.hz)
-
-    def take(self, command: SurfaceCommand) -> None:
-        """A command with a number that is not finite is none: the engine would not recover from it."""
-        s = (command.aileron, command.elevator, command.rudder, command.throttle)
-        if all(map(math.isfinite, s)):
-            self.command = Controls(*s)
-
-    def let_go(self) -> None:
-        """Nobody steers: what servos fall back to, the start's trim of level flight. A motor that was off stays off."""
-        self.command = self.trim if self.command.throttle > 0 else replace(self.trim, throttle=0.0)
-
-    def fly_to(self, t: float) -> None:
-        """Physics steps up to ``t`` [s]."""
-        due = round(t / self.dt)
-        while self.physics_steps < due:
-            self.body.command(self.actuators.step(self.command, self.dt))
-            self.body.step()
-            self.physics_steps += 1
-            if self.charge is not None:
-                self.charge.draw(self.body.shaft_power, self.dt)
 
 
 class SimAir(Service):
-    """All aircraft of the mission in one steady wind; without a command for 0.5 s surfaces and throttle go to trim."""
+    """All aircraft of the mission, each in its own air; without a command for 0.5 s surfaces and throttle go to trim."""
 
     name = "sim_air"
     hz = 100.0
     scope = "world"
     simulator = True
-    inputs = {"surfaces": each_vehicle(optional(topics.SURFACE_COMMAND))}
+    inputs = {
+        "surfaces": each_vehicle(optional(topics.SURFACE_COMMAND)),
+        "truth": each_vehicle(optional(topics.TRUTH)),
+        "objects": optional(topics.OBJECTS),
+    }
     outputs = {
         "imu": topics.IMU,
         "gnss": topics.GNSS,
         "air_data": topics.AIR_DATA,
+        "scan": topics.SCAN,
+        "sonar": topics.SONAR,
+        "range": topics.RANGE,
         "battery": topics.BATTERY,
         "joints": topics.JOINTS,
         "truth": topics.TRUTH,
         "tf_static": topics.TF_STATIC,
+        "events": topics.EVENTS.by("sim_air"),
+        "spawned": topics.AIR_OBJECTS,
+    }
+    requests = {
+        "spawn": topics.AIR_SPAWN,
+        "remove": topics.AIR_REMOVE,
+        "set_pose": topics.AIR_POSE,
+        "save": topics.AIR_SAVE,
+        "restore": topics.AIR_RESTORE,
     }
 
-    def __init__(self, aircraft: list[Aircraft], wind: Floats) -> None:
-        self._aircraft = aircraft
-        self._wind = wind
-        self._first = True
+    def __init__(self, stage: Stage) -> None:
+        self._stage = stage
+        self._spawned_due = Due(topics.AIR_OBJECTS.hz)
+        self._had_spawned = False
 
-    def step(self, t: float, surfaces: Mapping[str, SurfaceCommand]) -> Outputs:
-        out: dict[str, dict[str, Value]] = {name: {} for name in self.outputs}
-        for craft in self._aircraft:
+    def step(
+        self,
+        t: float,
+        surfaces: Mapping[str, SurfaceCommand],
+        truth: Mapping[str, NavState],
+        objects: SimObjects | None,
+        spawn: list[SpawnRequest],
+        remove: list[RemoveRequest],
+        set_pose: list[SetPoseRequest],
+        save: list[StateRequest],
+        restore: list[StateRequest],
+    ) -> Outputs:
+        """What is asked for holds from this step's end. truth: of the ground vehicles; the aircraft's own is known better here."""
+        stage, n = self._stage, round(t * self.hz)
+        flown = self._flown(t)
+        for craft in stage.aircraft.values():
             if craft.name in surfaces:
                 craft.take(surfaces[craft.name])
             else:
                 craft.let_go()
-            craft.fly_to(t)
-            for name, message in self._read(t, craft).items():
-                out[name][craft.name] = message
-        self._first = False
-        return out
+            craft.fly_to(flown)
+        self._collide(t, truth, objects)
+        read, grounded = self._read_all(t), [o.name for o in objects.objects] if objects else []
+        replies = {
+            "spawn": [stage.spawn(flown, r, grounded) for r in spawn],
+            "remove": [stage.remove(r) for r in remove],
+            "set_pose": [stage.set_pose(r) for r in set_pose],
+            "save": [stage.save(n, r) for r in save],
+            "restore": [stage.restore(n, r) for r in restore],
+        }
+        return {**read, **self._spawned(t), **replies}
+
+    def _flown(self, t: float) -> float:
+        """s; the clock, unless a state was restored: then the aircraft's time, that of the state and what has passed since."""
+        return (round(t * self.hz) - self._stage.late) / self.hz if self._stage.late else t
+
+    def _spawned(self, t: float) -> dict[str, Value]:
+        """Told while there are any, and once when the last one has gone."""
+        if not self._spawned_due.at(t):
+            return {}
+        told = self._stage.objects(t)
+        had, self._had_spawned = self._had_spawned, bool(told.objects)
+        return {"spawned": told} if told.objects or had else {}
+
+    def _collide(self, t: float, truth: Mapping[str, NavState], objects: SimObjects | None) -> None:
+        """Whoever hits something falls from there; it is told once, of the first of a pair."""
+        aircraft = self._stage.aircraft
+        motions = {name: craft.motion for name, craft in aircraft.items()}
+        self._stage.around.look(t, truth, objects, motions)
+        for name, other in self._stage.collisions.step(motions):
+            pair = [one for one in (aircraft[name], aircraft.get(other)) if one is not None]
+            whole = [craft for craft in pair if craft.wreck is None]
+            velocity = sum((one.motion.velocity for one in pair), np.zeros(3)) / 2 if other in truth or len(pair) > 1 else np.zeros(3)
+            for i, craft in enumerate(whole):
+                met = other if craft.name == name else name
+                speed = np.linalg.norm(craft.motion.velocity)
+                craft.end("" if i else f"{craft.name} hit {met} at {speed:.1f} m/s", craft.motion, velocity)
+
+    def _read_all(self, t: float) -> dict[str, dict[str, Value]]:
+        """What the sensors give, by output and aircraft, stamped by the clock."""
+        stage, late = self._stage, self._stage.late / self.hz
+        read: dict[str, dict[str, Value]] = {name: {} for name in self.outputs if name != "spawned"}
+        for craft in stage.aircraft.values():
+            for name, said in self._read(self._flown(t), craft).items():
+                read[name][craft.name] = later(said, late) if late else said
+            if craft.name not in stage.told:
+                read["tf_static"][craft.name] = sensor_frames(craft.name, craft.file.sensors, t)
+                stage.told.add(craft.name)
+        return read
 
     def _read(self, t: float, craft: Aircraft) -> dict[str, Value]:
         """What this aircraft's sensors give at ``t``."""
-        motion = craft.body.motion()
+        motion = craft.motion
         read: dict[str, Value] = {}
-        if self._first:
-            read["tf_static"] = sensor_frames(craft.name, craft.file.sensors, t)
         if craft.imu is not None and (reading := craft.imu.read(t, motion)) is not None:
             read["imu"] = imu_message(f"{craft.name}/{craft.imu.frame}", reading)
         if craft.gnss is not None and (fix := craft.gnss.read(t, motion)) is not None:
             read["gnss"] = gnss_message(craft.gnss.data, fix)
-        if craft.pressures is not None and (sample := craft.pressures.read(t, craft.body.air)) is not None:
+        if craft.pressures is not None and (sample := craft.pressures.read(t, craft.air)) is not None:
             read["air_data"] = readings.air_data(sample.t, sample.air)
+        if craft.rangers is not None:
+            read |= craft.rangers.read(t, motion, partial(self._stage.around.others, craft.name))
         if craft.charge is not None and craft.battery_due.at(t):
             read["battery"] = readings.battery(t, craft.charge)
         if craft.joints_due.at(t):
-            read["joints"] = readings.joints(t, craft.actuators.position, craft.body.propeller_speed)
+            read["joints"] = readings.joints(t, craft.joints(), craft.throttle)
+        if craft.ended:
+            read["events"] = readings.crashed(t, craft.ended)
+            craft.ended = ""
         if craft.truth_due.at(t):
-            read["truth"] = self._truth(t, motion)
+            read["truth"] = readings.nav_state(t, motion, craft.wind)
         return read
-
-    def _truth(self, t: float, motion: Motion) -> NavState:
-        return readings.nav_state(t, motion, self._wind)

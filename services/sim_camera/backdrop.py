@@ -63,9 +63,10 @@ def _shade(x: float, y: float, footprint: float) -> float:
     light = 1.0
     for i in range(TILES.shape[0]):
         side, contrast = TILES[i]
-        fade = max(0.0, 1.0 - 2.0 * footprint / side)
-        odd = (np.floor(x / side) + np.floor(y / side)) % 2.0
-        light += contrast * fade * (1.0 if odd == 1.0 else -1.0)
+        fade = 1.0 - 2.0 * footprint / side
+        if fade > 0.0:
+            odd = (np.int64(np.floor(x / side)) + np.int64(np.floor(y / side))) & 1
+            light += contrast * fade * (1.0 if odd else -1.0)
     return light
 
 

@@ -1,52 +1,62 @@
 """The cameras of a mission: one instance for all of them."""
 
 from functools import cache
+from pathlib import Path
 
 from services.sim_camera.fitted import Fitted
 from services.sim_camera.renderer import BulletRenderer, Look
 from services.sim_camera.service import SimCamera
+from uvf.runtime.aircraft_shape import aircraft_shape
 from uvf.runtime.params import BadInput, nearest
 from uvf.runtime.site import Host, Member, Site
 from uvf.runtime.urdf_model import engine_urdf
-from uvf.runtime.vehicle_file import Camera, load_vehicle
+from uvf.runtime.vehicle_file import Camera, VehicleFile, load_vehicle
 from uvf.runtime.world_geometry import solids
+
+OUTPUTS = {"camera": "image", "chase": "chase", "gimbal": "gimbal"}
+"""The output that each camera's pictures go out by."""
 
 
 def build(site: Site) -> list[Host]:
     """Nothing when no vehicle has a camera. Raises BadInput."""
-    cameras = {m.name: m.file.sensors.camera for m in site.members.values() if m.file.sensors.camera is not None}
-    for name, camera in cameras.items():
-        _check(site.members[name], camera)
-    looks = {name: _look(member) for name, member in site.members.items()}
+    cameras = {(m.name, kind): camera for m in site.members.values() for kind, camera in _cameras(m).items()}
+    for (name, kind), camera in cameras.items():
+        _check(site.members[name], kind, camera)
     if not cameras:
         return []
+    looks = {name: look_at(member.folder, member.file) for name, member in site.members.items()}
     things = solids(site.world)
-
-    vehicles = next(iter(site.members.values())).folder.parent
 
     @cache
     def look_of(model: str) -> Look:
-        ground = load_vehicle(vehicles, model).ground  # the ground simulation has taken it in
-        return Look(urdf=engine_urdf(vehicles / model / ground.urdf)) if ground is not None else Look()
+        return look_at(site.vehicles_folder / model, load_vehicle(site.vehicles_folder, model))
 
     def make() -> SimCamera:
-        fitted = [Fitted(name, camera, site.rng(name, "camera")) for name, camera in cameras.items()]
+        fitted = [Fitted(name, camera, site.rng(name, kind), OUTPUTS[kind]) for (name, kind), camera in cameras.items()]
         return SimCamera(BulletRenderer(site.world, things, looks), fitted, look_of)
 
-    return [Host(SimCamera, make, writes_for=tuple(cameras))]
+    return [Host(SimCamera, make, writes_for=tuple(dict.fromkeys(name for name, _ in cameras)))]
 
 
-def _check(member: Member, camera: Camera) -> None:
+def _cameras(member: Member) -> dict[str, Camera]:
+    """By what they are called in the vehicle's file."""
+    return {kind: camera for kind in OUTPUTS if (camera := getattr(member.file.sensors, kind)) is not None}
+
+
+def _check(member: Member, kind: str, camera: Camera) -> None:
+    place = f"{member.folder / 'vehicle.yaml'}: sensors: {kind}"
+    if camera.depth and kind != "camera":
+        raise BadInput(f"{place}: depth: only 'camera' sends depth; take it out")
     if camera.hz > SimCamera.hz:
-        place = f"{member.folder / 'vehicle.yaml'}: sensors: camera"
         raise BadInput(f"{place}: hz is {camera.hz:g}; the cameras' simulator gives {SimCamera.hz:g} at most")
 
 
-def _look(member: Member) -> Look:
-    if member.file.ground is not None:
-        return Look(urdf=engine_urdf(member.folder / member.file.ground.urdf))
-    mesh = member.file.air.mesh if member.file.air is not None else None
-    if mesh is not None and not (member.folder / mesh).is_file():
-        place = f"{member.folder / 'vehicle.yaml'}: air: mesh"
-        raise BadInput(f"{place}: no file '{mesh}' in that folder; {nearest(mesh, (p.name for p in member.folder.iterdir()))}")
-    return Look(mesh=member.folder / mesh if mesh is not None else None)
+def look_at(folder: Path, file: VehicleFile) -> Look:
+    """What the vehicle in this folder looks like. Raises BadInput."""
+    if file.ground is not None:
+        return engine_urdf(folder / file.ground.urdf)
+    mesh = file.air.mesh if file.air is not None else None
+    if mesh is not None and not (folder / mesh).is_file():
+        place = f"{folder / 'vehicle.yaml'}: air: mesh"
+        raise BadInput(f"{place}: no file '{mesh}' in that folder; {nearest(mesh, (p.name for p in folder.iterdir()))}")
+    return aircraft_shape(folder, file)

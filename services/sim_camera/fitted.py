@@ -3,14 +3,17 @@
 from collections.abc import Callable
 from typing import NamedTuple
 
+import msgspec
 import numpy as np
 from google.protobuf.timestamp_pb2 import Timestamp
 
 from schemas.messages import CompressedImage
+from services.sim_camera.gimbal import Aim
 from services.sim_camera.picture import depth_message, image_message
-from services.sim_camera.renderer import Shot
+from services.sim_camera.renderer import Pose, Shot
+from uvf.maths.rotations import multiply, rotate
 from uvf.maths.sampling import Line
-from uvf.runtime.vehicle_file import Camera, line_of
+from uvf.runtime.vehicle_file import Camera, Gimbal, Mount, line_of
 
 
 class Pictures(NamedTuple):
@@ -19,13 +22,23 @@ class Pictures(NamedTuple):
 
 
 class Fitted:
-    def __init__(self, vehicle: str, camera: Camera, rng: np.random.Generator) -> None:
+    def __init__(self, vehicle: str, camera: Camera, rng: np.random.Generator, output: str = "image") -> None:
+        """output: the name under which its pictures go out."""
         delivery, self._rng = rng.spawn(2)
+        self.output = output
+        self.aim = Aim(camera) if isinstance(camera, Gimbal) else None
         self.vehicle = vehicle
         self.camera = camera
         self.frame = f"{vehicle}/{camera.frame}_optical"
         """Of the pictures: x right, y down, z along the view."""
         self._line: Line[Pictures] = line_of(camera, delivery)
+
+    def looking(self, body: Pose) -> tuple[Camera, Pose]:
+        """The camera as the renderer takes it, when its vehicle is there; of a gimbal its own pose, turned as it is now."""
+        if self.aim is None:
+            return self.camera, body
+        eye = body.position + rotate(body.world_from_body, np.array(self.camera.mount.xyz))
+        return msgspec.structs.replace(self.camera, mount=Mount()), Pose(eye, multiply(body.world_from_body, self.aim.body_from_camera))
 
     def step(self, t: float, taken: Timestamp, shoot: Callable[[], Shot]) -> Pictures | None:
         """The pictures that arrive at ``t`` [s], if any; ``taken`` is the stamp of the pose from which one would be shot now."""

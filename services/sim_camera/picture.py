@@ -8,7 +8,8 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from schemas.convert import stamp
-from schemas.messages import CameraCalibration, CompressedImage
+from schemas.messages import CameraCalibration, CompressedImage, JointState, JointStates
+from services.sim_camera.gimbal import Joints
 from services.sim_camera.optics import intrinsics
 from uvf.runtime.vehicle_file import Camera
 
@@ -45,3 +46,8 @@ def info_message(t: float, frame: str, camera: Camera) -> CameraCalibration:
         R=np.eye(3).ravel().tolist(),
         P=np.column_stack((k, np.zeros(3))).ravel().tolist(),
     )
+
+
+def joints_message(taken: Timestamp, joints: Joints) -> JointStates:
+    """The gimbal's angles [rad] at the moment of a pose."""
+    return JointStates(timestamp=taken, joints=[JointState(name=name, position=angle) for name, angle in joints._asdict().items()])

@@ -3,20 +3,24 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
-import pybullet
 from numpy.typing import NDArray
 
-from services.sim_camera.aircraft_shape import PARTS
 from services.sim_camera.backdrop import Backdrop
 from services.sim_camera.optics import frustum
 from uvf.maths.rotations import IDENTITY, from_euler, matrix, multiply, rotate
+from uvf.runtime.aircraft_shape import AircraftShape
+from uvf.runtime.mesh_parts import Part, joined
 from uvf.runtime.params import BadInput
+from uvf.runtime.quiet import c_errors_discarded
 from uvf.runtime.solid import Solid, pose_at
 from uvf.runtime.vehicle_file import Camera
 from uvf.runtime.world_file import WorldFile
+
+with c_errors_discarded():
+    import pybullet
 
 Floats = NDArray[np.float64]
 Picture = NDArray[np.uint8]
@@ -39,12 +43,8 @@ class Shot(NamedTuple):
     depth: Floats | None
 
 
-@dataclass(frozen=True)
-class Look:
-    """What a vehicle looks like: a URDF, a mesh file, or the plain aircraft when both are None."""
-
-    urdf: Path | None = None
-    mesh: Path | None = None
+Look = Path | AircraftShape
+"""What a vehicle looks like: a URDF, or the shape of an aircraft."""
 
 
 @dataclass(frozen=True)
@@ -77,31 +77,15 @@ class BulletRenderer:
 
     def _load(self, look: Look) -> _Shown:
         centred = Pose(np.zeros(3), np.array((1.0, 0.0, 0.0, 0.0)))
-        if look.urdf is None:
-            return _Shown(self._add(self._aircraft(look.mesh), np.array((0.0, 0.0, -100.0))), centred)
+        if isinstance(look, AircraftShape):
+            return _Shown(_aircraft(look, self._client), centred)
         try:
-            index = pybullet.loadURDF(str(look.urdf), useFixedBase=True, physicsClientId=self._client)
+            index = pybullet.loadURDF(str(look), useFixedBase=True, physicsClientId=self._client)
         except pybullet.error as error:
-            raise BadInput(f"{look.urdf}: PyBullet cannot load it ({error}); check its geometry and joints") from error
+            raise BadInput(f"{look}: PyBullet cannot load it ({error}); check its geometry and joints") from error
         local = pybullet.getDynamicsInfo(index, -1, physicsClientId=self._client)
         x, y, z, w = local[4]
         return _Shown(index, Pose(np.array(local[3]), np.array((w, x, y, z))))
-
-    def _aircraft(self, mesh: Path | None) -> int:
-        shape: int
-        if mesh is not None:
-            shape = pybullet.createVisualShape(
-                pybullet.GEOM_MESH, fileName=str(mesh), rgbaColor=(0.9, 0.9, 0.92, 1.0), physicsClientId=self._client
-            )
-        else:
-            shape = pybullet.createVisualShapeArray(
-                shapeTypes=[pybullet.GEOM_BOX] * len(PARTS),
-                halfExtents=[[side / 2 for side in part.size] for part in PARTS],
-                visualFramePositions=[part.centre for part in PARTS],
-                rgbaColors=[(*part.colour, 1.0) for part in PARTS],
-                physicsClientId=self._client,
-            )
-        return shape
 
     def place(self, t: float, poses: Mapping[str, Pose]) -> None:
         """Puts vehicles where they truly are, and what moves by script where it is at ``t`` [s]."""
@@ -117,12 +101,12 @@ class BulletRenderer:
 
     def show(self, guests: Mapping[str, Solid | Look]) -> None:
         """What has been put into the running simulation: solids where they are now; vehicles are placed as the others are."""
-        kinds = {name: guest if isinstance(guest, Look) else (guest.shape, guest.size) for name, guest in guests.items()}
+        kinds = {name: guest if isinstance(guest, Path | AircraftShape) else (guest.shape, guest.size) for name, guest in guests.items()}
         for name in [name for name, (kind, _) in self._guests.items() if kinds.get(name) != kind]:
             pybullet.removeBody(self._guests.pop(name)[1], physicsClientId=self._client)
             self._vehicles.pop(name, None)
         for name, guest in guests.items():
-            if isinstance(guest, Look):
+            if isinstance(guest, Path | AircraftShape):
                 if name not in self._guests:
                     self._vehicles[name] = self._load(guest)
                     self._guests[name] = guest, self._vehicles[name].index
@@ -164,6 +148,51 @@ class BulletRenderer:
 def linear_depth(buffer: Floats, far: float) -> Floats:
     """m along the view, from OpenGL's depth buffer, 0 at ``NEAR`` and 1 at ``far``: even steps of 1 / depth."""
     return far * NEAR / (far - (far - NEAR) * buffer)
+
+
+def _aircraft(shape: AircraftShape, client: int) -> int:
+    """All of it at rest, one body a colour, held together by joints that do not move; out of sight until it is placed."""
+    by_colour: dict[tuple[float, ...], list[Part]] = {}
+    for part in shape.at_rest:
+        colour = shape.colour if part.colour is None else tuple(c / 255 for c in part.colour)
+        by_colour.setdefault(colour, []).append(part)
+    first, *others = (_mesh_shape(*joined(parts), colour, client) for colour, parts in by_colour.items())
+    n, nowhere, unturned = len(others), [0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0]
+    index: int = pybullet.createMultiBody(
+        0.0,
+        -1,
+        first,
+        basePosition=[0.0, 0.0, -100.0],
+        linkMasses=[0.0] * n,
+        linkCollisionShapeIndices=[-1] * n,
+        linkVisualShapeIndices=others,
+        linkPositions=[nowhere] * n,
+        linkOrientations=[unturned] * n,
+        linkInertialFramePositions=[nowhere] * n,
+        linkInertialFrameOrientations=[unturned] * n,
+        linkParentIndices=[0] * n,
+        linkJointTypes=[pybullet.JOINT_FIXED] * n,
+        linkJointAxis=[[1.0, 0.0, 0.0]] * n,
+        physicsClientId=client,
+    )
+    return index
+
+
+def _mesh_shape(vertices: Floats, faces: NDArray[Any], colour: tuple[float, ...], client: int) -> int:
+    """Each triangle with its own normal, so that edges are seen."""
+    corners = vertices[faces]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals /= np.maximum(np.linalg.norm(normals, axis=1), 1e-12)[:, None]
+    shape: int = pybullet.createVisualShape(
+        pybullet.GEOM_MESH,
+        vertices=corners.reshape(-1, 3).tolist(),
+        indices=list(range(3 * len(faces))),
+        normals=np.repeat(normals, 3, axis=0).tolist(),
+        rgbaColor=(*colour, 1.0),
+        specularColor=(0, 0, 0),
+        physicsClientId=client,
+    )
+    return shape
 
 
 def _visual_shape(solid: Solid, client: int) -> int:

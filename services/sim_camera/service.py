@@ -1,19 +1,22 @@
 """All cameras of all vehicles as a service: true poses in, JPEG pictures and depth pictures out."""
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, Protocol
+from typing import Protocol
 
 from schemas import topics
-from schemas.convert import array, wxyz
-from schemas.messages import CameraCalibration, CompressedImage, NavState, SimObject, SimObjects
+from schemas.convert import array, seconds, wxyz
+from schemas.messages import GimbalCommand, NavState, SimObjects
 from services.sim_camera.fitted import Fitted, Pictures
-from services.sim_camera.picture import info_message
+from services.sim_camera.picture import info_message, joints_message
 from services.sim_camera.renderer import Look, Pose, Shot
-from uvf.runtime.service import Outputs, Service, each_vehicle, optional
+from uvf.runtime.sensor_frames import mounted
+from uvf.runtime.service import Outputs, Service, Value, each_vehicle, optional
 from uvf.runtime.solid import Solid
+from uvf.runtime.spawned import solid_of
 from uvf.runtime.vehicle_file import Camera
 
-GREY = (0.6, 0.6, 0.6)
+INFO = {"image": "info", "chase": "chase_info", "gimbal": "gimbal_info"}
+"""The output that tells of the camera whose pictures go out by this one."""
 
 
 class Renderer(Protocol):
@@ -29,13 +32,28 @@ class Renderer(Protocol):
 
 
 class SimCamera(Service):
-    """A picture carries the stamp of the pose it was taken from; a vehicle without a fresh pose gives none."""
+    """A picture carries the stamp of the pose it was taken from, as do a gimbal's joints and frame; without a fresh pose there is none."""
 
     name = "sim_camera"
     hz = 5.0
     scope = "world"
-    inputs = {"truth": each_vehicle(optional(topics.TRUTH)), "objects": optional(topics.OBJECTS)}
-    outputs = {"image": topics.IMAGE, "depth": topics.DEPTH, "info": topics.CAMERA_INFO}
+    inputs = {
+        "truth": each_vehicle(optional(topics.TRUTH)),
+        "objects": optional(topics.OBJECTS),
+        "aircraft": optional(topics.AIR_OBJECTS),
+        "gimbals": each_vehicle(optional(topics.GIMBAL.by("*"))),
+    }
+    outputs = {
+        "image": topics.IMAGE,
+        "depth": topics.DEPTH,
+        "info": topics.CAMERA_INFO,
+        "chase": topics.VIEW.by("chase"),
+        "chase_info": topics.VIEW_INFO.by("chase"),
+        "gimbal": topics.VIEW.by("gimbal"),
+        "gimbal_info": topics.VIEW_INFO.by("gimbal"),
+        "gimbal_frame": topics.TF_GIMBAL,
+        "gimbal_joints": topics.GIMBAL_JOINTS,
+    }
 
     def __init__(self, renderer: Renderer, cameras: Sequence[Fitted], look_of: Callable[[str], Look]) -> None:
         """look_of: what a vehicle model looks like that is put in while the simulation runs."""
@@ -44,37 +62,43 @@ class SimCamera(Service):
         self._cameras = cameras
         self._told = False
 
-    def step(self, t: float, truth: dict[str, NavState], objects: SimObjects | None) -> Outputs:
-        self._renderer.show({o.name: self._look_of(o.model) if o.model else _solid(o) for o in objects.objects} if objects else {})
+    def step(
+        self,
+        t: float,
+        truth: dict[str, NavState],
+        objects: SimObjects | None,
+        aircraft: SimObjects | None,
+        gimbals: Mapping[str, GimbalCommand],
+    ) -> Outputs:
+        """objects, aircraft: what has been put in while the simulation runs."""
+        put_in = [o for told in (objects, aircraft) if told is not None for o in told.objects]
+        self._renderer.show({o.name: self._look_of(o.model) if o.model else solid_of(o) for o in put_in})
         poses = {name: Pose(array(state.position), wxyz(state.orientation)) for name, state in truth.items()}
         self._renderer.place(t, poses)
-        images: dict[str, CompressedImage] = {}
-        depths: dict[str, CompressedImage] = {}
+        sent: dict[str, dict[str, Value]] = {name: {} for name in self.outputs}
         for fitted in self._cameras:
+            if fitted.aim is not None and (name := fitted.vehicle) in poses:
+                if name in gimbals:
+                    fitted.aim.tell(gimbals[name])
+                fitted.aim.turn(poses[name].world_from_body, 1 / self.hz)
+                taken = truth[name].timestamp
+                sent["gimbal_frame"][name] = mounted(name, fitted.camera, fitted.aim.body_from_camera, seconds(taken))
+                sent["gimbal_joints"][name] = joints_message(taken, fitted.aim.joints)
             if (arrived := self._take(t, fitted, truth, poses)) is not None:
-                images[fitted.vehicle] = arrived.image
+                sent[fitted.output][fitted.vehicle] = arrived.image
                 if arrived.depth is not None:
-                    depths[fitted.vehicle] = arrived.depth
-        return {"image": images, "depth": depths, "info": self._infos(t)}
+                    sent["depth"][fitted.vehicle] = arrived.depth
+        if not self._told:  # once, at the first step; that is not always step 1, for a process may join a running clock
+            self._told = True
+            for fitted in self._cameras:
+                sent[INFO[fitted.output]][fitted.vehicle] = info_message(t, fitted.frame, fitted.camera)
+        return sent
 
     def _take(self, t: float, fitted: Fitted, truth: Mapping[str, NavState], poses: Mapping[str, Pose]) -> Pictures | None:
         name = fitted.vehicle
         if name not in poses:
             return None
-        return fitted.step(t, truth[name].timestamp, lambda: self._renderer.take(fitted.camera, poses[name]))
-
-    def _infos(self, t: float) -> dict[str, CameraCalibration]:
-        """Told once, at the first step; that is not always step 1, for a process may join a running clock."""
-        if self._told:
-            return {}
-        self._told = True
-        return {fitted.vehicle: info_message(t, fitted.frame, fitted.camera) for fitted in self._cameras}
+        return fitted.step(t, truth[name].timestamp, lambda: self._renderer.take(*fitted.looking(poses[name])))
 
     def close(self) -> None:
         self._renderer.close()
-
-
-def _solid(object_: SimObject) -> Solid:
-    shape: Any = object_.shape
-    colour = (object_.color.r, object_.color.g, object_.color.b) if object_.HasField("color") else GREY
-    return Solid(object_.name, shape, tuple(object_.size), array(object_.pose.position), wxyz(object_.pose.orientation), colour)

@@ -5,15 +5,17 @@ from functools import partial
 from services.sim_ground.rig import STEP_HZ, Rig
 from services.sim_ground.service import SimGround
 from services.sim_ground.stage import Joining, Stage
-from services.sim_ground.surroundings import Surroundings
 from services.sim_ground.world import BulletWorld, Placed
 from uvf.maths.raycast3 import warm_up
+from uvf.runtime.aircraft_shape import aircraft_shape
+from uvf.runtime.footing import COARSE, Footing
 from uvf.runtime.mission_file import Start, Vehicle
 from uvf.runtime.params import BadInput
 from uvf.runtime.site import Host, Member, Site
+from uvf.runtime.surroundings import Surroundings, aircraft_solid, own_tree, vehicle_tree
 from uvf.runtime.urdf_model import check_urdf, engine_urdf, load_urdf
 from uvf.runtime.vehicle_file import GroundBody, load_vehicle
-from uvf.runtime.world_geometry import clearance, solids
+from uvf.runtime.world_geometry import solids
 
 
 def build(site: Site) -> list[Host]:
@@ -21,51 +23,58 @@ def build(site: Site) -> list[Host]:
     bodies = {m.name: m.file.ground for m in site.of_kind("ground") if m.file.ground is not None}
     if not bodies:
         return []
-    for name, body in bodies.items():
-        _check(site, site.members[name], body)
+    footing = Footing(site.world)
+    grounds = {name: _checked(site, site.members[name], footing) for name in bodies}
     warm_up()
-    return [Host(SimGround, lambda: _make(site, bodies), writes_for=tuple(bodies))]
+    return [Host(SimGround, lambda: _make(site, bodies, grounds), writes_for=tuple(bodies))]
 
 
-def _make(site: Site, bodies: dict[str, GroundBody]) -> SimGround:
+def _make(site: Site, bodies: dict[str, GroundBody], grounds: dict[str, float]) -> SimGround:
+    """grounds: z [m] of what each vehicle stands on at its start."""
     members = {name: site.members[name] for name in bodies}
-    placed = {name: Placed(bodies[name], engine_urdf(m.folder / bodies[name].urdf), _start(m)) for name, m in members.items()}
+    placed = {n: Placed(bodies[n], engine_urdf(m.folder / bodies[n].urdf), _start(m), grounds[n]) for n, m in members.items()}
     things = solids(site.world)
-    surroundings = Surroundings(things, {name: load_urdf(m.folder / bodies[name].urdf) for name, m in members.items()})
+    on_wheels = {name: vehicle_tree(load_urdf(m.folder / bodies[name].urdf)) for name, m in members.items()}
+    flying = {m.name: aircraft_solid(m.name, aircraft_shape(m.folder, m.file)) for m in site.of_kind("fixed_wing")}
+    surroundings = Surroundings(things, on_wheels | {name: own_tree(solid) for name, solid in flying.items()})
     rigs = {name: Rig(site, m, bodies[name], surroundings.still) for name, m in members.items()}
     world = BulletWorld(things, placed)
+    for name, solid in flying.items():
+        world.let_in(name, solid)
     taken = (*site.members, *(thing.name for thing in things), "floor")
-    return SimGround(world, surroundings, Stage(world, rigs, surroundings, taken, partial(_join, site, surroundings)))
+    return SimGround(world, surroundings, Stage(world, rigs, surroundings, taken, partial(_join, site, surroundings)), tuple(flying))
 
 
-def _join(site: Site, surroundings: Surroundings, name: str, model: str, start: tuple[float, float, float]) -> Joining:
+def _join(site: Site, surroundings: Surroundings, name: str, model: str, start: tuple[float, float, float], z: float) -> Joining:
     """A vehicle that nobody steers but by its actuator topic, made ready while the simulation runs. Raises BadInput."""
-    vehicles = next(iter(site.members.values())).folder.parent
-    file, (x, y, yaw) = load_vehicle(vehicles, model), start
+    file, (x, y, yaw) = load_vehicle(site.vehicles_folder, model), start
     if file.ground is None:
         raise BadInput(f"'{model}' is no ground vehicle; this is the ground simulator")
-    member = Member(name, Vehicle(model=model, start=Start(x=x, y=y, yaw=yaw), system_id=1), file, vehicles / model)
+    member = Member(name, Vehicle(model=model, start=Start(x=x, y=y, yaw=yaw), system_id=1), file, site.vehicles_folder / model)
     urdf = member.folder / file.ground.urdf
     check_urdf(urdf, (file.ground.left_joint, file.ground.right_joint))
     _check_rates(member, file.ground)
-    return Joining(Placed(file.ground, engine_urdf(urdf), start), Rig(site, member, file.ground, surroundings.still), load_urdf(urdf))
+    return Joining(Placed(file.ground, engine_urdf(urdf), start, z), Rig(site, member, file.ground, surroundings.still), load_urdf(urdf))
 
 
 def _start(member: Member) -> tuple[float, float, float]:
     return member.entry.start.x, member.entry.start.y, member.entry.start.yaw
 
 
-def _check(site: Site, member: Member, body: GroundBody) -> None:
-    """What would otherwise fail deep in the engine."""
+def _checked(site: Site, member: Member, footing: Footing) -> float:
+    """z [m] of the ground at the start; of a slope, so much above that no wheel begins in it. Raises for what would fail in the engine."""
+    body = member.file.ground
+    assert body is not None
     check_urdf(member.folder / body.urdf, (body.left_joint, body.right_joint))
     _check_rates(member, body)
     start = member.entry.start
-    room = clearance(site.world, start.x, start.y)
+    room, height, slope = footing.at(start.x, start.y)
     if room < body.radius:
         raise BadInput(
             f"{site.mission_path}: {member.name}: start ({start.x:g}, {start.y:g}) is {room:.2f} m from a wall or furniture, "
             f"but the vehicle has a radius of {body.radius:g} m; move it"
         )
+    return height + slope * (body.radius + COARSE)
 
 
 def _check_rates(member: Member, body: GroundBody) -> None:

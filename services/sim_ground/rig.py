@@ -14,17 +14,16 @@ from schemas.messages import FrameTransforms
 from services.sim_ground import readings
 from services.sim_ground.body import BodyState, Touch
 from services.sim_ground.imu import ImuModel
-from services.sim_ground.lidar import LidarModel
-from services.sim_ground.sonar import SonarModel
 from uvf.maths.geodesy import LocalTangent
 from uvf.maths.instruments import Receiver
 from uvf.maths.raycast3 import Body, Scene
 from uvf.maths.sampling import Due, Line
 from uvf.runtime.link_frames import Links
-from uvf.runtime.sensor_messages import gnss_message, imu_message
+from uvf.runtime.range_sensors import LidarModel, RangeModel
+from uvf.runtime.sensor_messages import gnss_message, imu_message, range_message, scan_message
 from uvf.runtime.service import Value
 from uvf.runtime.site import Member, Site
-from uvf.runtime.vehicle_file import Encoders, GnssSensor, GroundBody, ImuSensor, Lidar, Sampled, Sonar, line_of
+from uvf.runtime.vehicle_file import Encoders, GnssSensor, GroundBody, ImuSensor, Lidar, RangeFinder, Sampled, Sonar, line_of
 
 Floats = NDArray[np.float64]
 
@@ -72,7 +71,8 @@ class Rig:
         self._contact_due = Due(topics.CONTACT.hz)
         self._joints_due = Due(topics.JOINTS.hz)
         self._fitted = dict(self._fit())
-        self._sonars = [self._with_line(self._sonar(sonar), sonar, "sonar", sonar.frame) for sonar in member.file.sensors.sonars]
+        sonars, finders = member.file.sensors.sonars, member.file.sensors.rangefinders
+        self._rangers = {"sonar": [self._ranger("sonar", s) for s in sonars], "range": [self._ranger("range", f) for f in finders]}
 
     def _fit(self) -> Iterator[tuple[str, Fitted]]:
         """What there is one of, by output name."""
@@ -103,11 +103,16 @@ class Rig:
         self._touches += moment.touches
         found: dict[str, Value] = {}
         for output, sensor in self._fitted.items():
-            if (message := sensor.step(t, moment)) is not None:
-                found[output] = [*self._early, message] if output == "imu" and self._early else message
-                self._early = [] if output == "imu" else self._early
-        if heard := [message for sonar in self._sonars if (message := sonar.step(t, moment)) is not None]:
-            found["sonar"] = heard
+            message = sensor.step(t, moment)
+            early = self._early if output == "imu" else []
+            if early:
+                found[output] = [*early, message] if message is not None else early
+                self._early = []
+            elif message is not None:
+                found[output] = message
+        for output, rangers in self._rangers.items():
+            if heard := [message for ranger in rangers if (message := ranger.step(t, moment)) is not None]:
+                found[output] = heard
         if self._truth_due.at(t):
             found["truth"] = readings.truth_message(t, moment.body)
         if self._contact_due.at(t):
@@ -141,8 +146,9 @@ class Rig:
         tangent = LocalTangent.from_degrees(origin.latitude, origin.longitude, origin.altitude)
         return partial(_read_gnss, gnss, gnss.receiver(tangent, self._rng("gnss")))
 
-    def _sonar(self, sonar: Sonar) -> Read:
-        return partial(_read_sonar, self._frame(sonar.frame), sonar, SonarModel(sonar, self._scene, self._rng("sonar", sonar.frame)))
+    def _ranger(self, kind: str, sensor: Sonar | RangeFinder) -> Fitted:
+        model = RangeModel(sensor, self._scene, self._rng(kind, sensor.frame))
+        return self._with_line(partial(_read_range, self._frame(sensor.frame), sensor, model), sensor, kind, sensor.frame)
 
     def __deepcopy__(self, memo: dict[int, object]) -> Self:
         """A rig that goes on from here by itself: generators and readings under way are its own, what does not change is shared."""
@@ -157,7 +163,7 @@ def _read_imu(frame: str, model: ImuModel, t: float, moment: Moment) -> Message:
 
 
 def _read_lidar(frame: str, lidar: Lidar, model: LidarModel, t: float, moment: Moment) -> Message:
-    return readings.scan_message(t, frame, lidar, model.scan(moment.body, moment.others()))
+    return scan_message(t, frame, lidar, model.scan(moment.body, moment.others()))
 
 
 def _read_encoders(encoders: Encoders, t: float, moment: Moment) -> Message:
@@ -168,5 +174,5 @@ def _read_gnss(gnss: GnssSensor, receiver: Receiver, t: float, moment: Moment) -
     return gnss_message(gnss, receiver.read(t, moment.body.position, moment.body.velocity))
 
 
-def _read_sonar(frame: str, sonar: Sonar, model: SonarModel, t: float, moment: Moment) -> Message:
-    return readings.range_message(t, frame, sonar, model.range(moment.body, moment.others()))
+def _read_range(frame: str, sensor: Sonar | RangeFinder, model: RangeModel, t: float, moment: Moment) -> Message:
+    return range_message(t, frame, sensor, model.range(moment.body, moment.others()))

@@ -1,20 +1,21 @@
 """The ground vehicles' simulator as a service: wheel commands in, what the sensors say out."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from functools import cache, partial
 from typing import Protocol
 
 from schemas import topics
-from schemas.messages import RemoveRequest, SetPoseRequest, SpawnRequest, StateRequest, WheelCommand
+from schemas.messages import NavState, RemoveRequest, SetPoseRequest, SpawnRequest, StateRequest, WheelCommand
 from services.sim_ground.body import BodyState, Touch
-from services.sim_ground.readings import later
+from services.sim_ground.guest import Course, courses
 from services.sim_ground.rig import STEP_HZ, Moment
 from services.sim_ground.stage import Stage, Stageable
-from services.sim_ground.surroundings import Surroundings
 from uvf.maths.kinematics import WheelSpeeds
 from uvf.maths.raycast3 import Body
 from uvf.maths.sampling import Due
+from uvf.runtime.sensor_messages import later
 from uvf.runtime.service import Outputs, Service, Value, each_vehicle, optional
+from uvf.runtime.surroundings import Surroundings, Whereabouts
 
 
 class GroundWorld(Stageable, Protocol):
@@ -29,6 +30,8 @@ class GroundWorld(Stageable, Protocol):
 
     def touches(self, vehicle: str) -> list[Touch]: ...
 
+    def guide(self, guests: Mapping[str, Course]) -> None: ...
+
     def close(self) -> None: ...
 
 
@@ -42,13 +45,14 @@ class SimGround(Service):
     hz = STEP_HZ
     scope = "world"
     simulator = True
-    inputs = {"commands": each_vehicle(optional(topics.WHEEL_COMMAND))}
+    inputs = {"commands": each_vehicle(optional(topics.WHEEL_COMMAND)), "truth": each_vehicle(optional(topics.TRUTH))}
     outputs = {
         "imu": topics.IMU,
         "scan": topics.SCAN,
         "wheels": topics.WHEELS,
         "gnss": topics.GNSS,
         "sonar": topics.SONAR,
+        "range": topics.RANGE,
         "contact": topics.CONTACT,
         "joints": topics.JOINTS,
         "joint_frames": topics.TF_JOINTS,
@@ -64,10 +68,13 @@ class SimGround(Service):
         "restore": topics.RESTORE,
     }
 
-    def __init__(self, world: GroundWorld, surroundings: Surroundings, stage: Stage) -> None:
+    def __init__(self, world: GroundWorld, surroundings: Surroundings, stage: Stage, aircraft: Collection[str] = ()) -> None:
+        """aircraft: names of those that another simulator moves among these vehicles."""
         self._world = world
         self._surroundings = surroundings
         self._stage = stage
+        self._aircraft = aircraft
+        self._guests: dict[str, Course] = {}
         self._objects_due = Due(topics.OBJECTS.hz)
         self._had_objects = False
 
@@ -75,13 +82,16 @@ class SimGround(Service):
         self,
         t: float,
         commands: dict[str, WheelCommand],
+        truth: Mapping[str, NavState],
         spawn: list[SpawnRequest],
         remove: list[RemoveRequest],
         set_pose: list[SetPoseRequest],
         save: list[StateRequest],
         restore: list[StateRequest],
     ) -> Outputs:
-        """What is asked for holds from this step's end."""
+        """What is asked for holds from this step's end. truth: of the aircraft; that of these vehicles is known better here."""
+        self._guests = courses(truth, self._aircraft)
+        self._world.guide(self._guests)
         self._advance(t, {name: WheelSpeeds(c.left, c.right) for name, c in commands.items()})
         read, n, stage = self._read(t), round(t * self.hz), self._stage
         replies = {
@@ -98,7 +108,7 @@ class SimGround(Service):
         rigs, late = self._stage.rigs, self._stage.late / self.hz
         at = self._sensors_time(t)
         states = {name: self._world.state(name) for name in rigs}
-        bodies = cache(lambda: (self._moving(t), self._surroundings.bodies(states)))
+        bodies = cache(lambda: (self._moving(t), self._surroundings.bodies({**states, **self._flying(t)})))
         outputs: dict[str, dict[str, Value]] = {}
         for name, rig in rigs.items():
             moment = Moment(states[name], partial(_others, name, bodies), self._world.touches(name))
@@ -109,8 +119,11 @@ class SimGround(Service):
             self._stage.told.update(new)
         return outputs
 
+    def _flying(self, t: float) -> dict[str, Whereabouts]:
+        return {name: course.at(t) for name, course in self._guests.items()}
+
     def _moving(self, t: float) -> list[Body]:
-        return self._surroundings.moving(t) + self._surroundings.objects(self._world.poses())
+        return [*self._surroundings.moving(t).values(), *self._surroundings.objects(self._world.poses()).values()]
 
     def _sensors_time(self, t: float) -> float:
         """s; the clock, unless a state was restored: then that of the state and what has passed since."""

@@ -1,29 +1,26 @@
 """Who and what is in the ground simulation, and the requests that change it: spawn, remove, set pose, save, restore."""
 
 import copy
-import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from math import isfinite
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from schemas.convert import array, quaternion, stamp, vector, wxyz, yaw_of
-from schemas.messages import Pose, RemoveRequest, Reply, SetPoseRequest, SimObject, SimObjects, SpawnRequest, StateRequest
+from schemas.convert import array, quaternion, stamp, vector, yaw_of
+from schemas.messages import RemoveRequest, Reply, SetPoseRequest, SimObject, SimObjects, SpawnRequest, StateRequest
 from services.sim_ground.rig import Rig
-from services.sim_ground.surroundings import Surroundings
 from services.sim_ground.world import Placed
 from uvf.runtime.params import BadInput, nearest
 from uvf.runtime.robot_model import UrdfModel
 from uvf.runtime.solid import Solid
+from uvf.runtime.spawned import name_fault, pose_fault, solid_of, unit_wxyz
+from uvf.runtime.surroundings import Surroundings, vehicle_tree
 
 Floats = NDArray[np.float64]
-NAME = re.compile(r"[a-z][a-z0-9_]{0,39}")
 SIZES = {"box": 3, "cylinder": 2, "sphere": 1}
-GREY = (0.6, 0.6, 0.6)
-LARGEST, FARTHEST, HEAVIEST = 100.0, 1e5, 1e5  # m, m, kg
+LARGEST, HEAVIEST = 100.0, 1e5  # m, kg
 SAVED_MOST = 16
 
 
@@ -55,8 +52,8 @@ class Joining(NamedTuple):
     model: UrdfModel
 
 
-Join = Callable[[str, str, tuple[float, float, float]], Joining]
-"""From a new name, a folder in vehicles/ and a start x, y [m], yaw [rad]. Raises BadInput."""
+Join = Callable[[str, str, tuple[float, float, float], float], Joining]
+"""From a new name, a folder in vehicles/, a start x, y [m], yaw [rad], and z [m] of what it stands on. Raises BadInput."""
 
 
 @dataclass(frozen=True)
@@ -90,7 +87,7 @@ class Stage:
 
     def spawn(self, request: SpawnRequest) -> Reply:
         wanted = request.object
-        reason = self._name_fault(wanted.name) or _pose_fault(wanted.pose) or (_shape_fault(wanted) if not wanted.model else "")
+        reason = self._name_fault(wanted.name) or pose_fault(wanted.pose) or (_shape_fault(wanted) if not wanted.model else "")
         if not reason:
             try:
                 reason = self._put_vehicle(wanted) if wanted.model else self._put(wanted)
@@ -103,16 +100,14 @@ class Stage:
         return _reply(reason)
 
     def _name_fault(self, name: str) -> str:
-        if not NAME.fullmatch(name) or name == "sys":
-            return f"'{name}' is no name: small letters, digits and _, a letter first, 40 at most"
+        if fault := name_fault(name):
+            return fault
         if name in self._objects or name in self._taken:
             return f"there is a '{name}' already; take another name"
         return ""
 
     def _put(self, wanted: SimObject) -> str:
-        colour = (wanted.color.r, wanted.color.g, wanted.color.b) if wanted.HasField("color") else GREY
-        shape: Any = wanted.shape
-        solid = Solid(wanted.name, shape, tuple(wanted.size), array(wanted.pose.position), _attitude(wanted.pose), colour)
+        solid = solid_of(wanted)
         if met := self._world.put(wanted.name, solid, wanted.mass):
             return _inside(wanted.name, met)
         self._surroundings.add_object(wanted.name, solid)
@@ -120,10 +115,11 @@ class Stage:
 
     def _put_vehicle(self, wanted: SimObject) -> str:
         position = wanted.pose.position
-        placed, rig, model = self._join(wanted.name, wanted.model, (position.x, position.y, yaw_of(wanted.pose.orientation)))
+        start = (position.x, position.y, yaw_of(wanted.pose.orientation))
+        placed, rig, model = self._join(wanted.name, wanted.model, start, position.z)
         if met := self._world.put_vehicle(wanted.name, placed):
             return _inside(wanted.name, met)
-        self._surroundings.add_vehicle(wanted.name, model)
+        self._surroundings.add_vehicle(wanted.name, vehicle_tree(model))
         self.rigs[wanted.name] = rig
         return ""
 
@@ -147,15 +143,17 @@ class Stage:
         known = {**self._objects, **self.rigs}
         if request.name not in known:
             return _reply(f"there is no '{request.name}' that can be put elsewhere; {nearest(request.name, known)}")
-        if fault := _pose_fault(request.pose):
+        if fault := pose_fault(request.pose):
             return _reply(fault)
-        met = self._world.place(request.name, array(request.pose.position), _attitude(request.pose))
+        met = self._world.place(request.name, array(request.pose.position), unit_wxyz(request.pose))
         return _reply(_inside(request.name, met) if met else "")
 
     def save(self, step: int, request: StateRequest) -> Reply:
         """step: number of the service's step that has been made."""
         if request.name not in self._kept and len(self._kept) >= SAVED_MOST:
             return _reply(f"{SAVED_MOST} states are kept already: {', '.join(self._kept)}; use one of these names again")
+        if request.only_ask:
+            return _reply("")
         if request.name in self._kept:
             self._world.forget(self._kept[request.name].world)
         self._kept[request.name] = Kept(self._world.save(), copy.deepcopy(self.rigs), step - self.late, dict(self._numbers))
@@ -168,6 +166,8 @@ class Stage:
             return _reply(f"no state '{request.name}' has been saved; {nearest(request.name, self._kept)}")
         if gone := [name for name, number in kept.objects.items() if self._numbers.get(name) != number]:
             return _reply(f"'{gone[0]}' has been removed since '{request.name}' was saved; a state needs all that was there")
+        if request.only_ask:
+            return _reply("")
         for name in [name for name in self._objects if name not in kept.objects]:
             self._take_out(name)
         self._world.restore(kept.world)
@@ -182,20 +182,6 @@ class Stage:
             self._objects[name].pose.position.CopyFrom(vector(position))
             self._objects[name].pose.orientation.CopyFrom(quaternion(orientation))
         return SimObjects(timestamp=stamp(t), objects=self._objects.values())
-
-
-def _attitude(pose: Pose) -> Floats:
-    q = wxyz(pose.orientation)
-    return q / float(np.linalg.norm(q))
-
-
-def _pose_fault(pose: Pose) -> str:
-    numbers = (*array(pose.position), *wxyz(pose.orientation))
-    if not all(isfinite(x) and abs(x) <= FARTHEST for x in numbers):
-        return f"the pose must be of finite numbers, positions within {FARTHEST:g} m of the world's origin"
-    if np.linalg.norm(wxyz(pose.orientation)) < 0.1:
-        return "the pose's orientation must be a unit quaternion, or left out"
-    return ""
 
 
 def _shape_fault(wanted: SimObject) -> str:

@@ -10,20 +10,27 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pybullet
 from numpy.typing import NDArray
 
 from services.sim_ground.body import BodyState, Touch, base_motion
+from services.sim_ground.guest import Course
 from services.sim_ground.motor import WheelMotor
 from uvf.maths.geodesy import GRAVITY
 from uvf.maths.kinematics import WheelSpeeds
 from uvf.maths.rotations import IDENTITY, from_euler, inverse, matrix, multiply, rotate
 from uvf.runtime.params import BadInput
+from uvf.runtime.quiet import c_errors_discarded
 from uvf.runtime.solid import Keyframes, Solid, pose_at
 from uvf.runtime.vehicle_file import Friction, GroundBody
+from uvf.runtime.world_file import TERRAIN
+
+with c_errors_discarded():
+    import pybullet
 
 Floats = NDArray[np.float64]
 STOPPED = WheelSpeeds(0.0, 0.0)
+GROUND = ("floor", TERRAIN)  # names of what one drives on
+AWAY = np.array((0.0, 0.0, 1e4))  # m
 TOUCH = 5e-4  # m, gap at which two bodies touch; the engine leaves a little air
 DEEP = 2e-3  # m, from which on one body is inside another
 FALLEN = 0.5  # cosine of the tilt from which on a vehicle no longer stands on its wheels
@@ -34,11 +41,12 @@ SETTLING = 0.3  # s of physics before the start: the wheels sink into their cont
 
 @dataclass(frozen=True)
 class Placed:
-    """A vehicle to put into the world: its file's data, its URDF and its start (x, y [m], yaw [rad], world)."""
+    """A vehicle to put into the world: its file's data, its URDF, its start (x, y [m], yaw [rad], world) and z [m] of what it stands on."""
 
     body: GroundBody
     urdf: Path
     start: tuple[float, float, float]
+    z: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -69,6 +77,7 @@ class BulletWorld:
         self._names: dict[int, str] = {}
         self._objects: dict[str, int] = {}
         self._scripted: list[tuple[int, Solid, Keyframes]] = []
+        self._guests: dict[str, tuple[int, Course | None]] = {}
         pybullet.setGravity(0.0, 0.0, -GRAVITY, physicsClientId=self._client)
         pybullet.setPhysicsEngineParameter(
             fixedTimeStep=1 / self.rate, numSolverIterations=50, deterministicOverlappingPairs=1, physicsClientId=self._client
@@ -103,16 +112,17 @@ class BulletWorld:
         self._set_friction(index, vehicle.body.friction, wheels, [j for j in joints.values() if j not in wheels])
         local = pybullet.getDynamicsInfo(index, -1, physicsClientId=self._client)
         com_in_base = (np.array(local[3]), _wxyz(local[4]))
-        self._place(index, vehicle.start, com_in_base)
+        self._place(index, vehicle, com_in_base)
         left, right = (WheelMotor(vehicle.body.motor, 1 / self.rate) for _ in wheels)
         x, y, z = matrix(com_in_base[1])[2]
         return _Loaded(index, wheels, (left, right), com_in_base, (float(x), float(y), float(z)))
 
     def _set_friction(self, index: int, friction: Friction, wheels: Sequence[int], sliding: Sequence[int]) -> None:
-        """The floor's coefficient is 1 and the engine multiplies both, so that the vehicle's alone count. A wheel's axle is its y axis."""
+        """The floor's coefficient is 1 and the engine multiplies both, so that the vehicle's alone count."""
         most = max(friction.mu, friction.mu2)
-        shares = [friction.mu / most, friction.mu2 / most, friction.mu / most]
         for wheel in wheels:
+            axle = np.array(pybullet.getJointInfo(index, wheel, physicsClientId=self._client)[13])  # in the wheel's axes of inertia
+            shares = ((friction.mu + (friction.mu2 - friction.mu) * axle**2) / most).tolist()
             pybullet.changeDynamics(index, wheel, lateralFriction=most, anisotropicFriction=shares, physicsClientId=self._client)
         for link in sliding:
             pybullet.changeDynamics(index, link, lateralFriction=friction.castor, physicsClientId=self._client)
@@ -122,10 +132,10 @@ class BulletWorld:
         infos = [pybullet.getJointInfo(index, j, physicsClientId=self._client) for j in range(count)]
         return {info[1].decode(): j for j, info in enumerate(infos)}
 
-    def _place(self, index: int, start: tuple[float, float, float], com_in_base: tuple[Floats, Floats]) -> None:
-        x, y, yaw = start
+    def _place(self, index: int, vehicle: Placed, com_in_base: tuple[Floats, Floats]) -> None:
+        x, y, yaw = vehicle.start
         world_from_base = from_euler(0.0, 0.0, yaw)
-        position = np.array((x, y, 0.0)) + rotate(world_from_base, com_in_base[0])
+        position = np.array((x, y, vehicle.z)) + rotate(world_from_base, com_in_base[0])
         orientation = multiply(world_from_base, com_in_base[1])
         pybullet.resetBasePositionAndOrientation(index, position.tolist(), _xyzw(orientation), physicsClientId=self._client)
 
@@ -140,6 +150,7 @@ class BulletWorld:
                 wanted[name] = STOPPED
         for n in range(round(duration * self.rate)):
             self._move_scripted(since + n / self.rate)
+            self._move_guests(since + n / self.rate)
             for name, vehicle in self._vehicles.items():
                 self._drive(vehicle, wanted[name])
             pybullet.stepSimulation(physicsClientId=self._client)
@@ -168,6 +179,22 @@ class BulletWorld:
             pybullet.resetBasePositionAndOrientation(index, position.tolist(), _xyzw(orientation), physicsClientId=self._client)
             pybullet.resetBaseVelocity(index, [x, y, 0.0], [0.0, 0.0, turning], physicsClientId=self._client)
 
+    def let_in(self, name: str, solid: Solid) -> None:
+        """A body that others move, see ``guide``: it pushes what stands in its way and is not pushed. Until then it is out of reach."""
+        self._guests[name] = self._add(name, _collision_shape(solid, self._client), AWAY, IDENTITY), None
+
+    def guide(self, guests: Mapping[str, Course]) -> None:
+        """How they move until the next call; who is not named stays where it is."""
+        for name, (index, _) in self._guests.items():
+            self._guests[name] = index, guests.get(name)
+
+    def _move_guests(self, t: float) -> None:
+        for index, course in self._guests.values():
+            if course is not None:
+                position, turned = course.at(t)
+                pybullet.resetBasePositionAndOrientation(index, position.tolist(), _xyzw(turned), physicsClientId=self._client)
+                pybullet.resetBaseVelocity(index, course.velocity.tolist(), [0.0, 0.0, 0.0], physicsClientId=self._client)
+
     def state(self, vehicle: str) -> BodyState:
         """Motion of base_link and the wheels now."""
         loaded = self._vehicles[vehicle]
@@ -178,12 +205,12 @@ class BulletWorld:
         return BodyState(*motion, wheel_angles=(left[0], right[0]), wheel_speeds=WheelSpeeds(left[1], right[1]))
 
     def touches(self, vehicle: str) -> list[Touch]:
-        """All that is touched now, the floor only by a vehicle that has fallen over."""
+        """All that is touched now, floor and terrain only by a vehicle that has fallen over."""
         loaded = self._vehicles[vehicle]
         contacts: Any = pybullet.getContactPoints(bodyA=loaded.index, physicsClientId=self._client)
-        felt = [c for c in contacts if c[8] <= TOUCH and self._names[c[2]] != "floor"]
+        felt = [c for c in contacts if c[8] <= TOUCH and self._names[c[2]] not in GROUND]
         if self._has_fallen(loaded):
-            felt += [c for c in contacts if c[8] <= TOUCH and self._names[c[2]] == "floor"]
+            felt += [c for c in contacts if c[8] <= TOUCH and self._names[c[2]] in GROUND]
         if not felt:
             return []
         body = self.state(vehicle)

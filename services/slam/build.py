@@ -23,7 +23,8 @@ def _hosts(member: Member) -> list[Host]:
     start, sensors = member.entry.start, member.file.sensors
     lidar = sensors.lidar
     if lidar is None or sensors.encoders is None:
-        raise BadInput(f"{member.folder / 'vehicle.yaml'}: slam needs sensors: lidar and encoders")
+        path, missing = member.folder / "vehicle.yaml", "lidar" if lidar is None else "encoders"
+        raise BadInput(f"{path}: sensors: no {missing}: SLAM needs lidar and encoders; 'uvf vehicle check {member.entry.model}' shows how")
     world_from_map = Pose2(start.x, start.y, start.yaw)
     odometry = member.params("odometry", OdometryParams)
     mapping = member.params("mapping", MappingParams)

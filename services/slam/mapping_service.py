@@ -10,9 +10,9 @@ from schemas import topics
 from schemas.convert import occupancy_cells, occupancy_grid, quaternion, scan_rays, seconds, stamp, yaw_of
 from schemas.messages import Event, FrameTransform, Grid, LaserScan, Vector3
 from services.slam.mapper import Mapper, Scan, toward
-from uvf.maths.planar import IDENTITY, Pose2, compose, inverse, transform
+from uvf.maths.planar import IDENTITY, Pose2, compose, inverse
 from uvf.maths.rotations import from_euler
-from uvf.maths.transforms import planar
+from uvf.maths.transforms import Transform, from_above, planar
 from uvf.runtime.frames import FrameBuffer, FrameError
 from uvf.runtime.service import Outputs, Params, Service, frames
 from uvf.runtime.vehicle_file import Lidar
@@ -83,7 +83,7 @@ class MappingService(Service):
         if taken_at <= self._scan_time:
             return
         odom_from_base = planar(frames.lookup(self._frame("odom"), self._frame("base_footprint"), taken_at))
-        base_from_lidar = planar(frames.lookup(self._frame("base_footprint"), scan.frame_id))
+        base_from_lidar = frames.lookup(self._frame("base_footprint"), scan.frame_id)
         self._scan_time = taken_at
         self._changed |= self._mapper.add(odom_from_base, self._in_base(base_from_lidar, scan))
 
@@ -107,13 +107,14 @@ class MappingService(Service):
         shift = correction.translation
         self._published = self._mapper.map_from_odom = Pose2(shift.x, shift.y, yaw_of(correction.rotation))
 
-    def _in_base(self, base_from_lidar: Pose2, scan: LaserScan) -> Scan:
+    def _in_base(self, base_from_lidar: Transform, scan: LaserScan) -> Scan:
         """A range beyond the lidar's own is no return (REP-117): the map shall not grow to where nobody can see."""
         ranges, rays = scan_rays(scan)
         hit = (ranges > 0.0) & (ranges <= self._lidar.range_max)
-        hits = transform(base_from_lidar, rays[hit] * ranges[hit, None])
-        open_ends = transform(base_from_lidar, rays[~hit] * (NO_RETURN_REACH * self._lidar.range_max))
-        return Scan(hits, open_ends, base_from_lidar[:2])
+        hits = from_above(base_from_lidar, rays[hit] * ranges[hit, None])
+        open_ends = from_above(base_from_lidar, rays[~hit] * (NO_RETURN_REACH * self._lidar.range_max))
+        x, y, _ = base_from_lidar.translation
+        return Scan(hits, open_ends, (float(x), float(y)))
 
     def _correction(self, t: float) -> FrameTransform:
         """Limited at the vehicle, not at the frames' origins, which may lie far away."""

@@ -11,7 +11,7 @@ with uvf.connect() as run:
 
 import time
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from types import TracebackType
 from typing import Any, TypeVar
 
@@ -29,6 +29,7 @@ M = TypeVar("M", bound=Message)
 Q = TypeVar("Q", bound=Message)
 R = TypeVar("R", bound=Message)
 LOOK = 0.005  # s
+TOGETHER = 0.3  # s of simulation time, within which a request reaches all it is asked of
 
 
 def connect(endpoint: str | None = None, timeout: float = 5.0) -> "Client":
@@ -51,6 +52,8 @@ class Client:
         return self
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+        # Closing drops what still waits to be sent, as the last word to a vehicle to stand: a question to the router goes behind it.
+        self._bus.tokens("@node/nobody")
         self._bus.close()
 
     def _watch(self, key: str, topic: Topic[Any]) -> None:
@@ -65,12 +68,20 @@ class Client:
     @property
     def time(self) -> float:
         """Simulation time [s]; 0 before the first tick."""
+        return self._clock().t_ns / 1e9
+
+    @property
+    def is_paused(self) -> bool:
+        """Whether time stands."""
+        return self._clock().state == Clock.PAUSED
+
+    def _clock(self) -> Clock:
         self._bus.poll()
         newest = self._newest.get(topics.CLOCK.at(topics.SYSTEM))
         clock = Clock.FromString(newest.payload) if newest else Clock()
         # What is sent bears the epoch, or a word of somebody else in this epoch would count as said later.
         self._bus.epoch = clock.epoch
-        return clock.t_ns / 1e9
+        return clock
 
     def read(self, owner: str, topic: Topic[M], timeout: float = 5.0) -> M:
         """The newest message of a topic; waits for the first one. Raises TimeoutError."""
@@ -107,11 +118,23 @@ class Client:
 
     def ask(self, owner: str, request: Request[Q, R], message: Q, timeout: float = 5.0) -> R:
         """Sends a request and waits for its reply. Raises TimeoutError, also when nobody answers."""
-        got: list[tuple[bytes | None, str]] = []
-        payload = message.SerializeToString(deterministic=True)
-        self._bus.call(request.at(owner), payload, round(self.time * 1e9), lambda reply, reason, _: got.append((reply, reason)))
-        self.wait(lambda: bool(got), timeout, f"no answer from {request.at(owner)}")
-        reply, reason = got[0]
+        (reply,) = self.ask_together(owner, [request], message, timeout)
         if reply is None:
-            raise TimeoutError(reason)
-        return request.reply.FromString(reply)
+            raise TimeoutError(f"nobody answers {request.at(owner)}")
+        return reply
+
+    def ask_together(self, owner: str, requests: Sequence[Request[Q, R]], message: Q, timeout: float = 5.0) -> list[R | None]:
+        """The same of several services, who all take it at the same time; None where nobody answers. Raises TimeoutError."""
+        got: dict[str, tuple[bytes | None, str]] = {}
+        payload = message.SerializeToString(deterministic=True)
+        ahead = TOGETHER if len(requests) > 1 and not self.is_paused else 0.0
+        stamp = round((self.time + ahead) * 1e9)
+        for key in (request.at(owner) for request in requests):
+            self._bus.call(key, payload, stamp, lambda reply, reason, _, key=key: got.update({key: (reply, reason)}))  # type: ignore[misc]
+        for request in requests:
+            key = request.at(owner)
+            self.wait(lambda key=key: key in got, timeout, f"no answer from {key}")  # type: ignore[misc]
+            if got[key][0] is None and not got[key][1].startswith("nobody answers"):
+                raise TimeoutError(got[key][1])
+        replies = [(request, got[request.at(owner)][0]) for request in requests]
+        return [None if reply is None else request.reply.FromString(reply) for request, reply in replies]

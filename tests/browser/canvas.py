@@ -21,7 +21,9 @@ PROJECT = """([a, b, c]) => {
   return [box.left + (v.x + 1) / 2 * box.width, box.top + (1 - v.y) / 2 * box.height];
 }"""
 
-POINTS = "(name) => { const node = window.__viserSceneTree.getState()[name]; return node ? node.message.props.points.length : 0; }"
+TRACK = """(vehicle) => Object.entries(window.__viserSceneTree.getState())
+  .filter(([name, node]) => name.startsWith(`/track/${vehicle}/`) && node)
+  .reduce((n, [_, node]) => n + node.message.props.points.length, 0)"""
 POSITION = "(name) => { const pose = window.__viserMutable.nodePoseData[name]; return pose ? [...pose.position] : null; }"
 
 CAMERA_TO = """(name) => {

@@ -11,7 +11,7 @@ from services.gcs.cameras import cameras
 from services.gcs.service import GroundStation
 from services.gcs.state import Model
 from services.gcs.viser_page import ViserPage
-from tests.services.gcs.scripted import Script, demo_site
+from tests.services.gcs.scripted import Script, demo_site, with_eyes
 from tests.services.gcs.wire import free_port
 from uvf.runtime.address import Address
 from uvf.runtime.shell import Shell
@@ -33,7 +33,7 @@ class LiveStation:
     """The real service on the real page; ``moving`` off holds the vehicles still, ``living`` off the whole station."""
 
     def __init__(self):
-        site, self.port = demo_site(), free_port()
+        site, self.port = with_eyes(demo_site()), free_port()
         self.script = Script()
         self.page = ViserPage(Address(port=self.port), partial(cameras, site), Model(site).layers)
         self.service = GroundStation(site, self.page)

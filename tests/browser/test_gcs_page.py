@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from schemas.messages import ArmRequest, Event, GoalRequest
-from tests.browser.canvas import CAMERA_TO, POINTS, POSITION, TRACK_BLUE, on_screen, pixels, until
+from tests.browser.canvas import CAMERA_TO, POSITION, TRACK, TRACK_BLUE, on_screen, pixels, until
 from tests.browser.conftest import opened
 from tests.services.gcs.scripted import UAV, UGV
 
@@ -27,8 +27,8 @@ def test_both_vehicles_move(page):
 
 
 def test_tracks_grow_in_the_scene_and_on_the_screen(page):
-    points = page.evaluate(POINTS, f"/track/{UGV}/tail")
-    assert until(page, lambda: page.evaluate(POINTS, f"/track/{UGV}/tail") > points)
+    points = page.evaluate(TRACK, UGV)
+    assert until(page, lambda: page.evaluate(TRACK, UGV) > points)
     seen = pixels(page, TRACK_BLUE)
     assert until(page, lambda: pixels(page, TRACK_BLUE) > max(1.2 * seen, 30)), (seen, pixels(page, TRACK_BLUE))
 
@@ -216,12 +216,11 @@ def test_text_from_the_bus_is_shown_not_run(page, station):
 
 def test_a_page_that_joins_late_sees_the_same(page, browser, station):
     station.moving = False  # the first page need not draw meanwhile: software rendering is slow
-    late = browser.new_page(viewport={"width": 700, "height": 400})
-    late.goto(f"http://127.0.0.1:{station.port}/")
-    drawn = "(name) => window.__viserSceneTree && window.__viserSceneTree.getState()[name]"
-    late.wait_for_function(drawn, arg=f"/track/{UGV}/tail", timeout=120_000)
-    assert late.evaluate(POINTS, f"/track/{UGV}/tail") > 30
-    late.close()
+    page.wait_for_timeout(1000)  # what has moved is drawn
+    here = page.evaluate(TRACK, UGV)
+    assert here > 30
+    with opened(browser, station.port, f"/vehicles/{UGV}/0", (700, 400)) as late:
+        assert until(late, lambda: late.evaluate(TRACK, UGV) == here), (here, late.evaluate(TRACK, UGV))
     station.moving = True
 
 

@@ -72,7 +72,7 @@ class Scene:
 
 def keep(endpoint, stop):
     with ZenohBus(endpoint, timeout=5.0) as bus:
-        keeper = Keeper(bus, print)
+        keeper = Keeper(bus)
         while not stop.wait(0.01):
             keeper.poll()
 

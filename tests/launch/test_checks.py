@@ -40,7 +40,7 @@ def test_an_aircraft_without_the_sensor_that_its_autopilot_waits_for(root):
 
 def test_a_rover_without_lidar(root):
     edit(root, "burger", lambda data: data["sensors"].pop("lidar"))
-    with pytest.raises(BadInput, match="needs sensors: lidar"):
+    with pytest.raises(BadInput, match="no lidar: SLAM needs lidar"):
         problems(root)
 
 

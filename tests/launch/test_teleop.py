@@ -122,7 +122,7 @@ def test_it_takes_the_vehicles_over_at_the_start_and_on_request():
 
 def test_a_refusal_is_shown():
     _, console = run([(1.0, "x")], refused="one: STOP ALL is engaged: release it first")
-    assert console.lines[-1].endswith(" | one: STOP ALL is engaged: release it first")
+    assert console.lines[-1].startswith("one: STOP ALL is engaged: release it first | ")
 
 
 def test_the_line_tells_vehicles_links_scales_and_motion():

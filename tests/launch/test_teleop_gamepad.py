@@ -45,10 +45,11 @@ def test_one_that_is_plugged_in_later_is_found_and_one_that_is_pulled_out_lets_g
         (sdl2.SDL_CONTROLLER_AXIS_LEFTY, 32767, {"forward": -1.0}),
         (sdl2.SDL_CONTROLLER_AXIS_LEFTX, -32768, {"left": 1.0}),
         (sdl2.SDL_CONTROLLER_AXIS_LEFTX, 16384, {"left": -0.5}),
-        (sdl2.SDL_CONTROLLER_AXIS_RIGHTX, 32767, {}),
+        (sdl2.SDL_CONTROLLER_AXIS_RIGHTX, 32767, {"right_left": -1.0}),
+        (sdl2.SDL_CONTROLLER_AXIS_RIGHTY, -32768, {"right_forward": 1.0}),
     ],
 )
-def test_the_left_stick_drives(gamepad, plugged, axis, value, seen):
+def test_the_sticks(gamepad, plugged, axis, value, seen):
     sdl2.SDL_JoystickSetVirtualAxis(plugged, axis, ctypes.c_int16(value))
     assert gamepad.read() == pytest.approx(Pad()._replace(**seen), abs=1e-3)
 

@@ -55,6 +55,21 @@ def test_keys_come_without_return_and_the_settings_are_put_back(terminal):
     assert settings() == before
 
 
+def test_a_key_can_be_pressed_from_within_and_loses_nothing(terminal):
+    ours, _ = terminal
+    with key_by_key() as keys:
+        os.write(ours, b"w")
+        keys.press("x")
+        assert keys.read(1.0) + keys.read(1.0) == ["x", "w"]
+
+
+def test_a_signal_throws_no_key_away(terminal):
+    ours, _ = terminal
+    with key_by_key() as keys:
+        os.write(ours, b"w\x03")
+        assert keys.read(1.0) == ["w"]
+
+
 def test_the_settings_are_put_back_after_an_exception(terminal):
     _, settings = terminal
     before = settings()

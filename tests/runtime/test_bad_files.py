@@ -207,3 +207,38 @@ def test_a_vehicle_that_cannot_be_is_refused_with_file_line_and_mend(root, case)
         assert why in str(caught.value) and f"{path}:" in str(caught.value)
     finally:
         path.write_text(whole)
+
+
+AIRCRAFT = {
+    "a motor for more than a full battery": ("air.battery.rated", 60.0, "battery: rated: 60 V, but full it has 50.4 V"),
+    "a battery upside down": ("air.battery.empty", 60.0, "empty at 60 V, full at 50.4 V"),
+    "wheels with encoders": ("sensors.encoders", {"hz": 10.0, "ticks_per_turn": 100}, "encoders: an aircraft has no encoders"),
+    "bumpers": ("sensors.bumpers", [{"name": "a", "angle_min": 0.0, "angle_max": 1.0}], "bumpers: an aircraft has no bumpers"),
+    "a sensor on a link": ("sensors.imu.mount", {"link": "nose"}, "link: an aircraft's model has no links; give xyz and rpy"),
+    "a preset that is not": ("sensors.gnss", {"preset": "bok"}, "preset: no preset 'bok'; did you mean 'book'?"),
+}
+
+
+@pytest.mark.parametrize("case", AIRCRAFT)
+def test_an_aircraft_that_cannot_be_is_refused_with_file_line_and_mend(root, case):
+    way, value, why = AIRCRAFT[case]
+    path = root / FILES["milvus"]
+    whole = path.read_text()
+    try:
+        path.write_text(yaml.safe_dump(spoiled(yaml.safe_load(whole), way.split("."), value)))
+        with pytest.raises(BadInput) as caught:
+            load(root)
+        assert why in str(caught.value) and f"{path}:" in str(caught.value)
+    finally:
+        path.write_text(whole)
+
+
+def test_a_heading_in_degrees_is_refused(root):
+    path = root / FILES["mission"]
+    whole = path.read_text()
+    try:
+        path.write_text(yaml.safe_dump(spoiled(yaml.safe_load(whole), ["vehicles", "milvus", "start", "yaw"], 90.0)))
+        with pytest.raises(BadInput, match=r"start: yaw: Expected `float` <= 7\.0"):
+            load(root)
+    finally:
+        path.write_text(whole)

@@ -5,8 +5,9 @@ import pytest
 import trimesh
 
 from tests.runtime.test_world_geometry import world_of
+from uvf.runtime.footing import Footing
 from uvf.runtime.world_file import Box, Cylinder, Mesh, Sphere
-from uvf.runtime.world_geometry import clearance, floor_plan, floor_segments, reachable_floor
+from uvf.runtime.world_geometry import floor_plan, floor_segments, reachable_floor
 
 RISE = 0.3  # m, height of the platform
 
@@ -65,10 +66,12 @@ def test_a_ramp_of_triangles_is_as_one_of_a_box(tmp_path):
     """The wedge's side faces are obstacles, its slope is none."""
     corners = [(1, 0.5, 0), (3, 0.5, 0), (3, 0.5, RISE), (1, 1.5, 0), (3, 1.5, 0), (3, 1.5, RISE)]
     faces = [(0, 1, 2), (3, 5, 4), (0, 2, 5), (0, 5, 3), (1, 4, 5), (1, 5, 2), (0, 3, 4), (0, 4, 1)]
-    trimesh.Trimesh(corners, faces).export(tmp_path / "wedge.stl")
-    world = world_of(meshes=[Mesh("wedge", str(tmp_path / "wedge.stl"))])
-    assert reaches(world, (2.5, 1.0))
-    assert not reaches(world, (2.5, 0.51))
+    wedge = trimesh.Trimesh(corners, faces)
+    for name, shape in (("coarse", wedge), ("fine", wedge.subdivide_to_size(0.06))):  # the fine one's triangles miss most cells' centres
+        shape.export(tmp_path / f"{name}.stl")
+        world = world_of(meshes=[Mesh("wedge", str(tmp_path / f"{name}.stl"))])
+        assert reaches(world, (2.5, 1.0)), name
+        assert not reaches(world, (2.5, 0.51)), name
 
 
 def test_spheres_and_leaning_posts_count_at_the_height_they_are_bumped_into():
@@ -77,14 +80,14 @@ def test_spheres_and_leaning_posts_count_at_the_height_they_are_bumped_into():
     widest = np.sqrt(0.5**2 - 0.4**2)
     assert plan.cells.sum() * plan.resolution**2 == pytest.approx(np.pi * widest**2, rel=0.1)
     post = Cylinder("post", (2.0, 1.0, 0.0), 0.05, 1.0, rpy=(0.0, np.pi / 4, 0.0))
-    assert clearance(world_of(cylinders=[post]), 2.5, 1.0, (0.5, 0.6)) == 0.0
-    assert clearance(world_of(cylinders=[post]), 2.5, 1.0) > 0.2
+    assert Footing(world_of(cylinders=[post])).room(2.5, 1.0, (0.5, 0.6)) == 0.0
+    assert Footing(world_of(cylinders=[post])).at(2.5, 1.0).room > 0.2
 
 
 def test_what_moves_by_script_is_not_in_the_plan():
     door = Box("door", (2.0, 1.0, 1.0), (0.1, 2.0, 2.0), path=[(0.0, 2.0, 1.0, 0.0), (5.0, 2.0, 1.0, 0.0)])
     assert not floor_plan(world_of(boxes=[door]), 0.05).cells.any()
-    assert clearance(world_of(boxes=[door]), 1.5, 1.0) == pytest.approx(0.45)
+    assert Footing(world_of(boxes=[door])).at(1.5, 1.0).room == pytest.approx(0.45)
 
 
 def test_segments_outline_what_a_lidar_at_that_height_meets():

@@ -18,7 +18,7 @@ def buses():
     endpoint = f"tcp/127.0.0.1:{free_port()}"
     router = open_router(endpoint)
     with ZenohBus(endpoint) as kept, ZenohBus(endpoint) as other:
-        yield endpoint, Keeper(kept, print), other
+        yield endpoint, Keeper(kept), other
     router.close()
 
 

@@ -1,6 +1,6 @@
 """Files from people: what is wrong, where, and how to mend it, in one line."""
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 import msgspec
 import pytest
@@ -20,6 +20,7 @@ class Whole(msgspec.Struct, forbid_unknown_fields=True):
     part: Part = Part()
     parts: list[Part] = []
     named: dict[str, Part] = {}
+    law: Literal["logarithmic", "power"] = "power"
 
 
 def load(tmp_path, text):
@@ -33,6 +34,8 @@ BAD = {
     "parts: [{}, {sise: 1}]": "f.yaml:1: parts[1]: sise: unknown key 'sise'; did you mean 'size'?",
     "named: {a: {x: 1}}": "named: a: x: unknown key 'x'; there are: size, weight",
     "named:\n  a: {}\n  b:\n    weight: -1": "f.yaml:4: named: b: weight: Expected `float` > 0.0",
+    "law: log": "f.yaml:1: law: no 'log' here; there are: logarithmic, power",
+    "law: 3": "f.yaml:1: law: Expected `str`, got `int`",
     "part: {weight: .nan}": "part: weight: nan is no number to work with",
     "part: {size: [1, .inf]}": "part: size[1]: inf is no number to work with",
     "part: {size: [1]}": "part: size: Expected `array` of length 2, got 1",

@@ -1,12 +1,15 @@
 """Point 8: requests are queued to the next step, answered at its end and recorded; long jobs have feedback, a result and a cancel."""
 
+import time
+
 import pytest
 
 from schemas import topics
 from schemas.convert import stamp
 from schemas.messages import ArmRequest, CancelRequest, GoalRequest, NavStatus, Reply, Vector3
-from tests.runtime.modes import RUNS
+from tests.runtime.modes import RUNS, free_port
 from tests.runtime.toys import Cast
+from uvf.runtime import zenoh_bus
 from uvf.runtime.clock import NS, first_step_after, step_time
 from uvf.runtime.service import Service, optional
 from uvf.runtime.shell import QUERIES_MOST
@@ -206,3 +209,20 @@ def test_a_flood_of_requests_is_answered_or_refused_and_nothing_hangs(busy):
     late = asked_outside(busy, [busy.conductor.t_ns / NS])
     wait_for(busy, late, 1.0)
     assert late[0][0][0].accepted
+
+
+def test_a_request_that_is_not_answered_in_time_names_itself(monkeypatch):
+    monkeypatch.setattr(zenoh_bus, "CALL_TIMEOUT", 0.2)
+    endpoint, queries, heard = f"tcp/127.0.0.1:{free_port()}", [], []
+    router = zenoh_bus.open_router(endpoint)
+    with zenoh_bus.ZenohBus(endpoint) as server, zenoh_bus.ZenohBus(endpoint) as client:
+        server.serve("uvf/alpha/srv/arm", queries.append)
+        end = time.monotonic() + 20.0
+        while not any("no answer" in reason for reason in heard):  # before the server is known: "nobody answers"
+            assert time.monotonic() < end, heard
+            client.call("uvf/alpha/srv/arm", b"", 0, lambda reply, reason, _: heard.append(reason))
+            client.wait(0.3)
+            server.poll()
+            client.poll()
+    router.close()
+    assert heard[-1] == "no answer from uvf/alpha/srv/arm within 0.2 s"

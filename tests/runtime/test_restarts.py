@@ -134,3 +134,17 @@ def test_after_the_epoch_has_risen_a_service_recalls_only_what_is_of_the_new_one
     restart(run, "scribe")
     run.run_on(0.3)
     assert round(scribes(run)[-1].recalled[0].distance_left) == before < 10
+
+
+class Idle(Archive):
+    """With a process that has no work in this mission, as the cameras' simulator where no vehicle has a camera."""
+
+    def processes(self):
+        return {**super().processes(), "idle": []}
+
+
+@pytest.mark.parametrize("mode", [mode for mode in RUNS if mode.startswith("zenoh")])
+def test_time_does_not_wait_for_a_process_without_work(mode):
+    with RUNS[mode](Idle()) as made:
+        made.run(0.5)
+        assert made.conductor.t_ns >= 0.5e9

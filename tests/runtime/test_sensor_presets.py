@@ -47,6 +47,17 @@ def test_receivers_by_name(sensors_of):
     assert (book.horizontal_drift * eta, book.vertical_drift * eta) == pytest.approx((0.21, 0.40), rel=1e-3)
 
 
+def test_the_books_receiver_samples_once_a_second(sensors_of):
+    assert sensors_of(gnss={"preset": "book"}).gnss.hz == 1.0
+
+
+def test_the_books_gyros_accelerometers_and_pressures(sensors_of):
+    book = sensors_of(imu={"preset": "book", "mount": {}}, air_data={"preset": "book", "hz": 20.0})
+    assert (math.degrees(book.imu.gyro_noise), book.imu.accel_noise / 9.80665) == pytest.approx((0.13, 0.0025))
+    air = book.air_data
+    assert (air.static_noise, air.static_bias, air.differential_noise, air.differential_bias, air.hz) == (10.0, 125.0, 2.0, 20.0, 20.0)
+
+
 def refusal(sensors_of, **sensors):
     with pytest.raises(BadInput) as caught:
         sensors_of(**sensors)

@@ -4,11 +4,12 @@ import numpy as np
 import pytest
 
 from uvf.maths.raycast3 import Rays, cast
+from uvf.runtime.footing import Footing
 from uvf.runtime.params import BadInput
 from uvf.runtime.scene import scene
 from uvf.runtime.site import ROOT
 from uvf.runtime.world_file import Box, Cylinder, Origin, Wall, WorldFile, load_world
-from uvf.runtime.world_geometry import all_boxes, clearance, floor_plan, reachable_floor, solids
+from uvf.runtime.world_geometry import all_boxes, floor_plan, reachable_floor, solids
 
 HOUSE = load_world(ROOT / "worlds", "house")
 START = (2.2, 1.3)
@@ -90,12 +91,12 @@ def test_the_plan_and_the_rays_agree_on_where_the_walls_are():
     """Each ray ends in or beside an occupied cell and crosses none before."""
     plan = floor_plan(HOUSE, 0.05)
     angles = np.linspace(-np.pi, np.pi, 180, endpoint=False)
-    ranges = level_ranges(HOUSE, START, angles)
+    ranges, footing = level_ranges(HOUSE, START, angles), Footing(HOUSE)
     for angle, distance in zip(angles, ranges, strict=True):
         beyond = (START[0] + (distance + 0.02) * np.cos(angle), START[1] + (distance + 0.02) * np.sin(angle))
         before = (START[0] + (distance - 0.08) * np.cos(angle), START[1] + (distance - 0.08) * np.sin(angle))
         assert plan.cells[plan.cell(*beyond)]
-        assert clearance(HOUSE, *before) <= 0.08 + 1e-9
+        assert footing.at(*before).room <= 0.08 + 1e-9
 
 
 def test_coloured_fields_of_the_house_do_not_overlap():

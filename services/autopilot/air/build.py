@@ -2,6 +2,8 @@
 
 import math
 
+import numpy as np
+
 from schemas.messages import MissionItem
 from services.autopilot.air import intake, plan
 from services.autopilot.air.params import AirParams
@@ -10,6 +12,7 @@ from services.autopilot.plan import item_from_file
 from uvf.maths.geodesy import LocalTangent
 from uvf.runtime.params import BadInput
 from uvf.runtime.site import Host, Member, Site
+from uvf.runtime.world_geometry import relief
 
 
 def hosts(site: Site) -> list[Host]:
@@ -24,7 +27,9 @@ def _host(site: Site, member: Member) -> Host:
     items = [item_from_file(w) for w in member.entry.job.mission]
     if why := _fault(items):
         raise BadInput(f"{site.mission_path}: {member.name}: job: mission: {why}")
-    ship = Ship(member.name, member.entry.system_id, tangent, math.atan2(east, north), items, starts_in_air=member.entry.start.z > 0)
+    start, land = member.entry.start, relief(site.world)
+    ground = 0.0 if land is None else float(land.at(np.array(start.x), np.array(start.y))[0])
+    ship = Ship(member.name, member.entry.system_id, tangent, math.atan2(east, north), items, starts_in_air=start.z > 0, ground=ground)
     params = member.params(AutopilotAir.name, AirParams)
     return Host(AutopilotAir, lambda: AutopilotAir(ship, params), member.name)
 

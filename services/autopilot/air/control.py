@@ -35,12 +35,14 @@ class Wanted:
 
 @dataclass(frozen=True, slots=True)
 class Surfaces:
-    """rad with the signs of SurfaceCommand, throttle 0..1."""
+    """rad with the signs of SurfaceCommand, throttle and brake 0..1."""
 
     aileron: float
     elevator: float
     rudder: float
     throttle: float
+    flap: float = 0.0
+    brake: float = 0.0
 
 
 def clip(value: float, limit: float) -> float:

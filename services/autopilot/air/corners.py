@@ -1,87 +1,168 @@
-"""The way round a corner between two legs: a swing to the outside, an arc, and a swing back.
+"""The way round a corner between two legs: as tight as the bank allows, drifting with the wind, begun in time to roll.
 
-A fillet tangent to the legs (Beard & McLain 11.2) passes R (1 - cos(turn / 2)) inside of them. Shifting it outwards by half of
-that halves the largest distance to the legs; a smooth step before and after the arc leads to the shifted lines.
+Through the air it is a turn at a steady bank, rolled into and out of, a little beyond the new heading, and back with less bank:
+so the second leg is passed as far outside as the corner is cut inside. Over ground the wind carries all of it along, which makes
+it flyable at one airspeed and one bank from any side; where on the two legs it begins and ends follows (Beard & McLain 11.2 round
+corners with arcs over ground, which a wind makes steeper here and flatter there).
 """
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
 
 from services.autopilot.air.guidance import Point
+from uvf.maths.geodesy import GRAVITY
+
+Floats = NDArray[np.float64]
 
 STRAIGHT = 0.02  # rad, below which a corner is none
 SHARPEST = 2.8  # rad, beyond which the waypoint is overflown and the next leg joined from there
-SHORTEST_RADIUS = 0.5  # of the wanted radius; a leg too short for that is joined from the waypoint
-SWING_CURVATURE = 0.45  # of the arc's
-STEEPEST_STEP = 10 / math.sqrt(3)  # largest second derivative of the smooth step
+ROLL_IN = 1.0  # s, from level to the bank of the turn
+BACK = 0.7  # of the turn's bank, for the way back from beyond the second leg
+MOST_BEYOND = 0.6  # rad, of heading
+MOST_OUTSIDE = 0.3  # of the radius through the air, beyond the second leg
+STEP = 0.04  # s, between samples
+HALVINGS = 8
 
 
 @dataclass(frozen=True, slots=True)
+class Flying:
+    """How corners are flown."""
+
+    airspeed: float  # m/s
+    wind: Point  # m/s north and east, the way it blows to
+    bank: float  # rad, of the turn
+
+
+@dataclass(frozen=True)
 class Corner:
-    """turn: +1 right, -1 left; lengths in m. ``before``: from the arc's start to the waypoint, along the first leg."""
+    """Samples of the way, evenly in time; (k,) each. ``before``, ``after``: m of the two legs that it takes the place of."""
 
-    centre: Point
-    radius: float
-    turn: float
-    shift: float  # distance of the shifted lines to the legs, outside
+    points: Floats  # (k, 2) m north and east
+    course: Floats  # rad, unwrapped
+    curvature: Floats  # 1/m, to the right
     before: float
-    swing: float  # length of the step before and after the arc
-    course_out: float  # rad
+    after: float
+
+    @cached_property
+    def s(self) -> Floats:
+        """(k,) m along the way."""
+        steps = np.hypot(*np.diff(self.points, axis=0).T)
+        return np.concatenate(((0.0,), np.cumsum(steps)))
+
+    @property
+    def length(self) -> float:
+        return float(self.s[-1])
+
+    def nearest(self, position: Point) -> tuple[float, float, float]:
+        """(m along the way, m to the right of it, course [rad]) at the point nearest to ``position``; straight on beyond its ends."""
+        away = np.asarray(position) - self.points
+        i = int(np.argmin(np.einsum("ij,ij->i", away, away)))
+        n, e = away[i].tolist()
+        c, s = math.cos(self.course[i]), math.sin(self.course[i])
+        ahead = n * c + e * s
+        curvature = float(self.curvature[i])
+        return float(self.s[i]) + ahead, e * c - n * s - 0.5 * curvature * ahead**2, float(self.course[i]) + curvature * ahead
+
+    def bend(self, s: float) -> float:
+        """Curvature at ``s`` [m] along the way, 0 before and after it [1/m]."""
+        return float(np.interp(s, self.s, self.curvature, left=0.0, right=0.0))
 
 
-def plan(waypoint: Point, courses: tuple[float, float], radius: float, room: float) -> Corner | None:
-    """The corner at ``waypoint`` between two ``courses`` [rad], with ``room`` [m] on each leg to use; None if there is nothing to round."""
-    course_in, course_out = courses
-    change = math.remainder(course_out - course_in, math.tau)
+def plan(waypoint: Point, courses: tuple[float, float], flying: Flying, room: Point) -> Corner | None:
+    """The corner at ``waypoint`` between two ``courses`` [rad] with ``room`` [m] on the two legs; None where it cannot be rounded."""
+    change = math.remainder(courses[1] - courses[0], math.tau)
     if not STRAIGHT < abs(change) < SHARPEST:
         return None
-    radius_fit = _fit(abs(change), radius, room)
-    if radius_fit < SHORTEST_RADIUS * radius:
+    headings = [_heading(course, flying) for course in courses]
+    if None in headings:
         return None
-    turn = math.copysign(1.0, change)
-    shift = _shift(abs(change), radius_fit)
-    half_tan = math.tan(abs(change) / 2)
-    before = (radius_fit - shift) * half_tan
-    sideways = turn * (radius_fit - shift)
-    n, e = math.cos(course_in), math.sin(course_in)
-    centre = (waypoint[0] - before * n - sideways * e, waypoint[1] - before * e + sideways * n)
-    return Corner(centre, radius_fit, turn, shift, before, swing_length(shift, radius_fit), course_out)
+    turn = _same_way(math.remainder(headings[1] - headings[0], math.tau), change)  # type: ignore[operator]
+    made = Planner(waypoint, courses, flying, headings[0], turn).balanced(room[1])  # type: ignore[arg-type]
+    return made if made.before <= room[0] and made.after <= room[1] else None
 
 
-def _shift(change: float, radius: float) -> float:
-    return radius * (1 - math.cos(change / 2)) / 2
+def _heading(course: float, flying: Flying) -> float | None:
+    """rad, through the air, that leads along ``course`` over ground; None when the wind is too strong."""
+    north, east = flying.wind
+    aside = (east * math.cos(course) - north * math.sin(course)) / flying.airspeed
+    return course - math.asin(aside) if abs(aside) < 1 else None
 
 
-def swing_length(shift: float, radius: float) -> float:
-    """m, so that the step bends at most ``SWING_CURVATURE`` as much as the arc."""
-    return math.sqrt(STEEPEST_STEP * shift * radius / SWING_CURVATURE)
+def _same_way(turn: float, change: float) -> float:
+    """The turn through the air, the same way round as that over ground."""
+    return turn if turn * change > 0 else turn + math.copysign(math.tau, change)
 
 
-def _fit(change: float, radius: float, room: float) -> float:
-    """The wanted radius, or the largest with which arc and swing fit into ``room``: both grow with it."""
-    shift = _shift(change, radius)
-    needed = (radius - shift) * math.tan(change / 2) + swing_length(shift, radius)
-    return radius * min(1.0, room / needed)
+@dataclass(frozen=True)
+class Planner:
+    """Corners of one waypoint; they differ in how far they go beyond the new heading."""
+
+    waypoint: Point
+    courses: tuple[float, float]
+    flying: Flying
+    heading: float  # rad, at the beginning
+    turn: float  # rad, of the heading, to the right
+
+    def balanced(self, room: float) -> Corner:
+        """As far outside of the second leg as inside of both, within MOST_OUTSIDE and, where it can be, ``room`` [m] on that leg."""
+        most = MOST_OUTSIDE * self.flying.airspeed**2 / (GRAVITY * math.tan(self.flying.bank))
+        low, high = 0.0, min(MOST_BEYOND, abs(self.turn))
+        for _ in range(HALVINGS):
+            middle = (low + high) / 2
+            corner = self.corner(middle)
+            inside, outside = self._distances(corner)
+            low, high = (middle, high) if outside < min(inside, most) and corner.after < room else (low, middle)
+        return self.corner(low)
+
+    def corner(self, beyond: float) -> Corner:
+        """Turning ``beyond`` [rad] further than to the new heading, and back."""
+        side, v = math.copysign(1.0, self.turn), self.flying.airspeed
+        rate = np.concatenate((_pulse(abs(self.turn) + beyond, self.flying.bank, v), -_pulse(beyond, BACK * self.flying.bank, v))) * side
+        heading = self.heading + _integral(rate)
+        velocity = v * np.column_stack((np.cos(heading), np.sin(heading))) + self.flying.wind
+        way = np.column_stack([_integral(column) for column in velocity.T])
+        along = np.array([(math.cos(c), math.sin(c)) for c in self.courses])
+        before, after = np.linalg.solve(along.T, way[-1]).tolist()
+        course = np.unwrap(np.arctan2(velocity[:, 1], velocity[:, 0]))
+        speed = np.hypot(*velocity.T)
+        # Of the velocity over ground only the part through the air turns, with the heading.
+        turning = v * rate * np.cos(course - heading) / speed
+        return Corner(np.asarray(self.waypoint) - before * along[0] + way, course, turning / speed, before, after)
+
+    def _distances(self, corner: Corner) -> tuple[float, float]:
+        """m: how far the corner is cut, and how far the way goes beyond the second leg."""
+        d, side = corner.points - self.waypoint, math.copysign(1.0, self.turn)
+        first, second = (side * (d[:, 1] * math.cos(c) - d[:, 0] * math.sin(c)) for c in self.courses)
+        return float(np.minimum(first, second).max()), float(-second[len(second) // 2 :].min())
 
 
-@dataclass(frozen=True, slots=True)
-class Offset:
-    """The path's distance to the right of the leg [m], its slope and its second derivative [1/m]."""
+def _pulse(angle: float, bank: float, airspeed: float) -> Floats:
+    """Rates [rad/s] of a turn by ``angle`` [rad]: rolling to ``bank`` [rad], holding it, rolling out; a small one takes less bank."""
+    if angle < 1e-6:
+        return np.zeros(0)
+    ramp = 0.5 - 0.5 * np.cos(np.pi * np.arange(round(ROLL_IN / STEP) + 1) * STEP / ROLL_IN)
+    tangent = math.tan(bank)
+    for _ in range(HALVINGS):
+        rolling = 2 * _area(np.tan(bank * ramp)) * GRAVITY / airspeed
+        if rolling <= angle:
+            break
+        bank, tangent = bank * angle / rolling, math.tan(bank * angle / rolling)
+    steady = GRAVITY / airspeed * tangent
+    held = max(angle - rolling, 0.0) / steady
+    count = math.ceil(held / STEP)
+    shape = np.concatenate((np.tan(bank * ramp), np.full(max(count - 1, 0), tangent), np.tan(bank * ramp[::-1])))
+    rates: Floats = GRAVITY / airspeed * shape
+    return rates * (angle / _area(rates))
 
-    value: float
-    slope: float
-    bend: float
+
+def _area(values: Floats) -> float:
+    return float(np.trapezoid(values) * STEP)
 
 
-def offset(s: float, length: float, entry: Corner | None, exit_: Corner | None) -> Offset:
-    """The swings of both ends at ``s`` [m] along a leg of ``length`` [m]."""
-    value = slope = bend = 0.0
-    for corner, into, sign in ((entry, s, -1.0), (exit_, length - s, 1.0)):
-        if corner is None:
-            continue
-        u = min(max((corner.before + corner.swing - into) / corner.swing, 0.0), 1.0)
-        outside = -corner.turn * corner.shift
-        value += outside * u**3 * (10 - 15 * u + 6 * u * u)
-        slope += sign * outside * 30 * (u * (1 - u)) ** 2 / corner.swing
-        bend += outside * 60 * u * (1 - u) * (1 - 2 * u) / corner.swing**2
-    return Offset(value, slope, bend)
+def _integral(values: Floats) -> Floats:
+    """(k,) from 0 on, by the trapezoidal rule."""
+    return np.concatenate(((0.0,), np.cumsum((values[1:] + values[:-1]) / 2) * STEP))

@@ -24,7 +24,12 @@ KINDS = {
     MissionItem.JUMP: Kind.JUMP,
     MissionItem.SPEED: Kind.SPEED,
 }
-MODES = {Mode.MODE_HOLD: FlightMode.HOLD, Mode.MODE_MISSION: FlightMode.MISSION, Mode.MODE_RETURN: FlightMode.RETURN}
+MODES = {
+    Mode.MODE_HOLD: FlightMode.HOLD,
+    Mode.MODE_MISSION: FlightMode.MISSION,
+    Mode.MODE_RETURN: FlightMode.RETURN,
+    Mode.MODE_MANUAL: FlightMode.MANUAL,
+}
 
 
 def frd(v: Vector3) -> tuple[float, float, float]:

@@ -7,10 +7,13 @@ from services.autopilot.air import corners
 from services.autopilot.air.guidance import Aim
 from services.autopilot.air.params import AirParams
 from services.autopilot.air.plan import NO_JUMPS, Item, Kind, Stop, next_stop
-from services.autopilot.air.route import Arc, Circle, Leg, Level, Place
+from services.autopilot.air.route import Circle, Leg, Level, Place, Turn
 from services.autopilot.air.state import Estimate
 from uvf.maths.geodesy import GRAVITY
 
+REPLANNED = 1.0  # s, after which a corner ahead is planned for the wind known by then
+SETTLED = 2.0  # s before a corner begins, from where on it stays as it is
+LEAVING = 0.6  # of a leg, for the corner at its beginning at most; it needs more than that at its end
 TIGHTEST_ORBIT = 0.6  # of the radius at turn_bank; smaller wishes are widened to that
 
 
@@ -25,7 +28,8 @@ class Navigator:
         self.speed = 0.0  # m/s, 0 = cruise
         self.finished = False
         self._jumps = NO_JUMPS
-        self._piece: Leg | Arc | Circle | None = None
+        self._piece: Leg | Turn | Circle | None = None
+        self._planned = 0.0  # s ago
         self._bearing: float | None = None
         self._turned = 0.0  # rad, on the circle
         self._held = 0.0  # s, on the circle
@@ -57,18 +61,25 @@ class Navigator:
         if self._piece is None:
             here = Place(now.north, now.east, now.height)
             self._piece = self._towards(here, None, now, params)
+        self._replan(now, params, dt)
         self._advance(now, params, dt)
         piece = self._piece
-        if isinstance(piece, Leg):
-            return piece.aim(now, params), piece.level(now)
-        if isinstance(piece, Arc):
-            return piece.aim(now, params), Level(piece.onto.start.height)
-        return piece.aim(now, params), Level(piece.centre.height)
+        return piece.aim(now, params), piece.level(now)
+
+    def _replan(self, now: Estimate, params: AirParams, dt: float) -> None:
+        """The corner at the end of this leg, for the wind as it is known now."""
+        self._planned += dt
+        piece = self._piece
+        if self._planned < REPLANNED or not isinstance(piece, Leg) or piece.exit is None:
+            return
+        self._planned = 0.0
+        if piece.length - piece.exit.before - piece.progress((now.north, now.east)) > SETTLED * now.ground_speed:
+            self._piece = self._towards(piece.start, piece.entry, now, params)
 
     def _advance(self, now: Estimate, params: AirParams, dt: float) -> None:
         """Changes to the next piece where this one ends; the last item stays aimed at."""
         piece, position = self._piece, (now.north, now.east)
-        if isinstance(piece, Arc) and piece.is_flown(position):
+        if isinstance(piece, Turn) and piece.is_flown(position):
             self._piece = piece.onto
         elif (isinstance(piece, Leg) and piece.is_flown(position)) or (isinstance(piece, Circle) and self._circled(piece, now, dt)):
             self._leave(piece, now, params)
@@ -88,7 +99,7 @@ class Navigator:
             self._piece = self._towards(Place(now.north, now.east, piece.centre.height), None, now, params)
             return
         onto = self._towards(piece.end, piece.exit, now, params)
-        self._piece = Arc(piece.exit, onto) if piece.exit is not None and isinstance(onto, Leg) else onto
+        self._piece = Turn(piece.exit, piece, onto) if piece.exit is not None and isinstance(onto, Leg) else onto
 
     def _take(self, stop: Stop) -> None:
         self.index, self._jumps = stop.index, stop.jumps
@@ -106,14 +117,10 @@ class Navigator:
         if stop.index is None or not self.items[stop.index].flies_through:
             return leg
         after = Leg(item.place, self.items[stop.index].place)
-        room = 0.5 * min(leg.length, after.length)
-        corner = corners.plan(item.place.point, (leg.course, after.course), self._turn_radius(now, params), room)
-        return Leg(start, item.place, entry, corner)
-
-    def _turn_radius(self, now: Estimate, params: AirParams) -> float:
-        """m, at turn_bank with the wind behind."""
-        speed = (self.speed or params.trim_airspeed) + math.hypot(now.wind_north, now.wind_east)
-        return speed**2 / (GRAVITY * math.tan(params.turn_bank))
+        room = (leg.length - (entry.after if entry is not None else 0.0), LEAVING * after.length)
+        wind = (now.wind_north, now.wind_east)
+        flying = corners.Flying(self.speed or params.trim_airspeed, wind, params.turn_bank)
+        return Leg(start, item.place, entry, corners.plan(item.place.point, (leg.course, after.course), flying, room))
 
     def _orbit_radius(self, item: Item, params: AirParams) -> float:
         wanted = item.radius or params.hold_radius

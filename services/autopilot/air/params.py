@@ -15,12 +15,12 @@ class AirParams(Params, frozen=True):
     """Names have at most 16 characters, the length of a MAVLink parameter."""
 
     # airframe: what the wing and tail do, from the linear coefficients (see design.py)
-    trim_airspeed: Annotated[float, _meta(5, 60, "m/s", "cruise; surface gains are given for it")] = 25.0
-    min_airspeed: Annotated[float, _meta(5, 60, "m/s", "lowest airspeed commanded")] = 19.0
-    max_airspeed: Annotated[float, _meta(5, 80, "m/s", "highest airspeed commanded")] = 32.0
+    trim_airspeed: Annotated[float, _meta(2, 300, "m/s", "cruise; surface gains are given for it")] = 25.0
+    min_airspeed: Annotated[float, _meta(2, 300, "m/s", "lowest airspeed commanded")] = 19.0
+    max_airspeed: Annotated[float, _meta(2, 400, "m/s", "highest airspeed commanded")] = 32.0
     trim_throttle: Annotated[float, _meta(0, 1, "", "throttle of level cruise")] = 0.6
     alpha_zero_lift: Annotated[float, _meta(-0.3, 0.3, "rad", "angle of attack without lift")] = -0.04
-    alpha_per_load: Annotated[float, _meta(0, 50, "rad m", "rise of the angle of attack per lift acceleration over EAS squared")] = 6.0
+    alpha_per_load: Annotated[float, _meta(0, 2000, "rad m", "rise of the angle of attack per lift acceleration over EAS squared")] = 6.0
     elev_zero_alpha: Annotated[float, _meta(-0.5, 0.5, "rad", "elevator that balances zero angle of attack")] = 0.0
     elev_per_alpha: Annotated[float, _meta(-10, 0, "", "elevator that balances a unit of angle of attack")] = -1.0
 
@@ -38,8 +38,8 @@ class AirParams(Params, frozen=True):
 
     # altitude and airspeed
     altitude_p: Annotated[float, _meta(0, 2, "1/s", "climb rate per error of altitude")] = 0.5
-    climb_p: Annotated[float, _meta(0, 2, "", "pitch per error of climb angle")] = 0.3
-    climb_i: Annotated[float, _meta(0, 1, "1/s", "pitch per integrated error of climb angle")] = 0.3
+    climb_p: Annotated[float, _meta(0, 2, "", "pitch per error of climb angle")] = 1.0
+    climb_i: Annotated[float, _meta(0, 1, "1/s", "pitch per integrated error of climb angle")] = 0.6
     climb_max: Annotated[float, _meta(0.5, 15, "m/s", "fastest climb")] = 4.0
     sink_max: Annotated[float, _meta(0.5, 15, "m/s", "fastest descent")] = 4.0
     airspeed_p: Annotated[float, _meta(0, 1, "s/m", "throttle per error of airspeed")] = 0.08
@@ -55,11 +55,11 @@ class AirParams(Params, frozen=True):
     course_p: Annotated[float, _meta(0.1, 5, "1/s", "turn rate per error of course")] = 1.0
     cross_track_i: Annotated[float, _meta(0, 0.1, "rad/(m s^2)", "turn rate per integrated distance from the path")] = 0.001
     lead_time: Annotated[float, _meta(0, 2, "s", "how early a bend of the path is banked for")] = 0.45
-    bank_limit: Annotated[float, _meta(0.1, 1.2, "rad", "largest bank commanded")] = 0.96
-    turn_bank: Annotated[float, _meta(0.1, 1.1, "rad", "bank that turns between legs are planned for")] = 0.8
+    bank_limit: Annotated[float, _meta(0.1, 1.2, "rad", "largest bank commanded")] = 1.05
+    turn_bank: Annotated[float, _meta(0.1, 1.1, "rad", "bank that turns between legs are planned for")] = 0.9
     pitch_limit: Annotated[float, _meta(0.1, 1, "rad", "largest pitch commanded, up and down")] = 0.45
 
     # modes
-    hold_radius: Annotated[float, _meta(20, 1000, "m", "orbit of Hold and Return, clockwise")] = 90.0
+    hold_radius: Annotated[float, _meta(20, 20000, "m", "orbit of Hold and Return, clockwise")] = 90.0
     return_altitude: Annotated[float, _meta(10, 1000, "m", "lowest altitude of Return, world z")] = 60.0
     min_altitude: Annotated[float, _meta(0, 1000, "m", "a goal below this is flown to at the present altitude")] = 30.0

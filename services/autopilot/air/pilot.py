@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from dataclasses import astuple, dataclass
 from enum import Enum
 
+from services.autopilot.air.by_hand import COMMAND_MAX_AGE, LET_GO, Hand, Stick
 from services.autopilot.air.control import Control, Surfaces, Wanted
 from services.autopilot.air.guidance import Aim, Steering
 from services.autopilot.air.navigator import Navigator
@@ -18,6 +19,7 @@ class FlightMode(Enum):
     HOLD = "Hold"
     MISSION = "Mission"
     RETURN = "Return"
+    MANUAL = "Manual"
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +42,7 @@ class Stand:
 
 
 class Pilot:
-    """Holds, flies the mission or returns. Requests give the reason of a refusal, empty when accepted."""
+    """Holds, flies the mission, returns or lets somebody fly by hand. Requests give the reason of a refusal, empty when accepted."""
 
     def __init__(self, items: Sequence[Item], ground: float = 0.0) -> None:
         """ground: height [m] of home, which lies on the ground below the start."""
@@ -52,6 +54,7 @@ class Pilot:
         self._blind = False
         self.home: Place | None = None
         self.circle: Circle | None = None
+        self._stick = Stick()
         self._control = Control()
         self._steering = Steering()
         self._level = Level(math.nan)
@@ -62,6 +65,8 @@ class Pilot:
             self._begin(now)
         if self.mode is FlightMode.MISSION and (self.navigator.returns_home or self.navigator.finished):
             self._end_mission()
+        if self.mode is FlightMode.MANUAL and (flown := self._by_hand(now, params)) is not None:
+            return flown
         if self.mode is FlightMode.MISSION:
             aim, self._level = self.navigator.step(now, params, dt)
             speed = self.navigator.speed or params.trim_airspeed
@@ -73,6 +78,35 @@ class Pilot:
         level = self._level if now.height_known else Level(now.height)
         surfaces = self._control.step(now, Wanted(bank, level.height, level.climb, speed), params, dt)
         return Flown(surfaces, aim, self._level)
+
+    def hear(self, hand: Hand | None, airborne: bool, dt: float) -> None:
+        """Before each step: what is asked by hand, None = nothing fresh."""
+        self._stick.hold(hand, airborne, dt)
+
+    def rest(self) -> None:
+        """Standing still it learns nothing: the loops begin anew."""
+        self._control, self._steering = Control(), Steering()
+
+    @property
+    def source(self) -> str:
+        """Whose commands reach the surfaces."""
+        if self.mode is not FlightMode.MANUAL or self._stick.hand is None:
+            return "autopilot"
+        return self._stick.hand.source
+
+    def _by_hand(self, now: Estimate, params: AirParams) -> Flown | None:
+        """As the hand asks; None while it is waited for, and once the autopilot has taken over."""
+        stick, aim = self._stick, Aim(0.0, now.course, 0.0, params.k_path, params.chi_inf)
+        self._level = Level(now.height)
+        if stick.hand is not None:
+            self.circle = None
+            return Flown(stick.hand.surfaces, aim, self._level)
+        if not stick.airborne:
+            return Flown(LET_GO, aim, self._level)
+        if stick.abandoned:
+            self._change(FlightMode.HOLD, f"no command by hand for {COMMAND_MAX_AGE:g} s")
+            self._level = Level(max(now.height, params.min_altitude))
+        return None
 
     def _begin(self, now: Estimate) -> None:
         self._fresh = False
@@ -101,16 +135,20 @@ class Pilot:
     @property
     def blocked(self) -> str:
         """Why nothing but Hold may be asked for; empty if everything may."""
-        if self.stopped:
-            return f"stopped by {self.stopped}: release the stop first"
-        return "GNSS is lost: wait until it is back" if self._blind else ""
+        return self._stop_blocks or ("GNSS is lost: wait until it is back" if self._blind else "")
+
+    @property
+    def _stop_blocks(self) -> str:
+        return f"stopped by {self.stopped}: release the stop first" if self.stopped else ""
 
     def _change(self, mode: FlightMode, reason: str) -> None:
         self.mode, self.reason, self.circle = mode, reason, None
+        self._stick.take()
 
     def change_mode(self, mode: FlightMode, source: str) -> str:
-        if self.blocked and mode is not FlightMode.HOLD:
-            return self.blocked
+        blocked = self._stop_blocks if mode is FlightMode.MANUAL else self.blocked
+        if blocked and mode is not FlightMode.HOLD:
+            return blocked
         if mode is FlightMode.MISSION:
             if not self.navigator.items:
                 return "there is no mission: upload one first"
@@ -164,8 +202,9 @@ class Pilot:
 
     def fly_blind(self, blind: bool) -> None:
         """Without GNSS for long it holds where it reckons to be, and goes on holding when GNSS is back, until told."""
-        if blind and not self._blind and not self.stopped:
+        by_hand = self.mode is FlightMode.MANUAL  # which needs no satellites
+        if blind and not self._blind and not self.stopped and not by_hand:
             self._change(FlightMode.HOLD, "GNSS lost: holds by dead reckoning")
-        elif self._blind and not blind and not self.stopped:
+        elif self._blind and not blind and not self.stopped and not by_hand:
             self.reason = "GNSS back: holds until a mode is asked for"
         self._blind = blind

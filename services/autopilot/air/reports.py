@@ -9,7 +9,6 @@ from schemas.messages import (
     FrameTransform,
     Kind,
     MissionProgress,
-    Mode,
     NavState,
     Pose,
     PoseInFrame,
@@ -18,6 +17,7 @@ from schemas.messages import (
     Vector3,
     VehicleStatus,
 )
+from services.autopilot.air import intake
 from services.autopilot.air.control import Surfaces
 from services.autopilot.air.pilot import FlightMode, Flown, Pilot
 from services.autopilot.air.plan import Kind as ItemKind
@@ -26,7 +26,7 @@ from services.autopilot.air.route import Circle, Place
 from services.autopilot.air.state import Estimate
 from uvf.maths.rotations import from_euler
 
-MODES = {FlightMode.HOLD: Mode.MODE_HOLD, FlightMode.MISSION: Mode.MODE_MISSION, FlightMode.RETURN: Mode.MODE_RETURN}
+MODES = {flown: mode for mode, flown in intake.MODES.items()}
 CIRCLE_POINTS = 24
 
 
@@ -64,7 +64,9 @@ def body_frame(state: NavState, vehicle: str) -> FrameTransform:
 def surfaces(t: float, s: Surfaces, armed: bool) -> SurfaceCommand:
     """Disarmed, the motor stays off."""
     throttle = s.throttle if armed else 0.0
-    return SurfaceCommand(timestamp=stamp(t), aileron=s.aileron, elevator=s.elevator, rudder=s.rudder, throttle=throttle)
+    return SurfaceCommand(
+        timestamp=stamp(t), aileron=s.aileron, elevator=s.elevator, rudder=s.rudder, throttle=throttle, flap=s.flap, brake=s.brake
+    )
 
 
 def status(t: float, pilot: Pilot, now: Estimate, flown: Flown) -> VehicleStatus:
@@ -74,7 +76,7 @@ def status(t: float, pilot: Pilot, now: Estimate, flown: Flown) -> VehicleStatus
         kind=Kind.KIND_FIXED_WING,
         mode=MODES[pilot.mode],
         stopped=bool(pilot.stopped),
-        command_source="autopilot",
+        command_source=pilot.source,
         reason=pilot.reason,
         throttle=flown.surfaces.throttle,
         cross_track=flown.aim.error,

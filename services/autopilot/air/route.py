@@ -1,9 +1,9 @@
-"""The pieces of a flown route: a leg with its swings, the arc round its end, a circle."""
+"""The pieces of a flown route: a leg, the turn onto the next, a circle."""
 
 import math
 from dataclasses import dataclass, replace
 
-from services.autopilot.air.corners import Corner, Offset, offset
+from services.autopilot.air.corners import Corner
 from services.autopilot.air.guidance import Aim, Point, line_aim, orbit_aim
 from services.autopilot.air.params import AirParams
 from services.autopilot.air.state import Estimate
@@ -63,52 +63,54 @@ class Leg:
         return (position[0] - self.start.north) * n + (position[1] - self.start.east) * e
 
     def is_flown(self, position: Point) -> bool:
-        """Past the half plane where the arc begins, or through the waypoint."""
+        """Past the half plane where the turn begins, or through the waypoint."""
         return self.progress(position) >= self.length - (self.exit.before if self.exit else 0.0)
 
-    def offset(self, s: float) -> Offset:
-        return offset(s, self.length, self.entry, self.exit)
-
     def bend(self, s: float) -> float:
-        """Curvature of the route at ``s`` [m], the arc at the end included [1/m]."""
-        if self.exit is not None and s > self.length - self.exit.before:
-            return self.exit.turn / self.exit.radius
-        return self.offset(s).bend
+        """Curvature of the route at ``s`` [m], that of the corner at the end included [1/m]."""
+        return self.exit.bend(s - self.length + self.exit.before) if self.exit is not None else 0.0
 
     def aim(self, now: Estimate, params: AirParams) -> Aim:
         position = (now.north, now.east)
-        s = self.progress(position)
-        aside = self.offset(s)
         aim = line_aim(self.along, self.start.point, position, params)
-        course = aim.course + math.atan(aside.slope)
-        return replace(aim, error=aim.error - aside.value, course=course, curvature=self.bend(s + now.ground_speed * params.lead_time))
+        return replace(aim, curvature=self.bend(self.progress(position) + now.ground_speed * params.lead_time))
 
     def level(self, now: Estimate) -> Level:
         """A straight line between the heights of both ends."""
-        length = max(self.length, 1.0)
-        part = self.progress((now.north, now.east)) / length
-        rise = self.end.height - self.start.height
-        climbing = 0 < part < 1
-        climb = now.ground_speed * rise / length if climbing else 0.0
-        return Level(self.start.height + rise * min(max(part, 0.0), 1.0), climb)
+        s = self.progress((now.north, now.east))
+        rise = (self.end.height - self.start.height) / max(self.length, 1.0)
+        return Level(self.height(s), now.ground_speed * rise if 0 < s < self.length else 0.0)
+
+    def height(self, s: float) -> float:
+        """m, of the route at ``s`` [m]."""
+        part = min(max(s / max(self.length, 1.0), 0.0), 1.0)
+        return self.start.height + part * (self.end.height - self.start.height)
 
 
 @dataclass(frozen=True, slots=True)
-class Arc:
-    """Round ``corner`` onto the leg that follows it."""
+class Turn:
+    """Round ``corner`` from one leg onto the next."""
 
     corner: Corner
+    leaves: Leg
     onto: Leg
 
     def is_flown(self, position: Point) -> bool:
-        return self.onto.progress(position) >= self.corner.before
+        return self.corner.nearest(position)[0] >= self.corner.length
 
     def aim(self, now: Estimate, params: AirParams) -> Aim:
         corner = self.corner
-        aim = orbit_aim(corner.centre, corner.turn * corner.radius, (now.north, now.east), params)
-        left = math.remainder(corner.course_out - aim.course, math.tau) * corner.turn * corner.radius
-        ahead = now.ground_speed * params.lead_time - left
-        return replace(aim, curvature=self.onto.bend(corner.before + ahead)) if ahead > 0 else aim
+        s, aside, course = corner.nearest((now.north, now.east))
+        ahead = s + now.ground_speed * params.lead_time
+        curvature = corner.bend(ahead) if ahead <= corner.length else self.onto.bend(corner.after + ahead - corner.length)
+        return Aim(aside, course, curvature, params.k_path, params.chi_inf)
+
+    def level(self, now: Estimate) -> Level:
+        """A straight line between the heights of the two legs where it begins and ends."""
+        corner, leaves = self.corner, self.leaves
+        begin, end = leaves.height(leaves.length - corner.before), self.onto.height(corner.after)
+        part = min(max(corner.nearest((now.north, now.east))[0] / corner.length, 0.0), 1.0)
+        return Level(begin + part * (end - begin), now.ground_speed * (end - begin) / corner.length)
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,6 +129,9 @@ class Circle:
 
     def aim(self, now: Estimate, params: AirParams) -> Aim:
         return orbit_aim(self.centre.point, self.radius, (now.north, now.east), params)
+
+    def level(self, now: Estimate) -> Level:
+        return Level(self.centre.height)
 
     def bearing(self, now: Estimate) -> float:
         """rad, of the aircraft from the centre."""

@@ -1,6 +1,6 @@
 """The autopilot of one fixed-wing aircraft: sensors and requests in, surfaces, estimates and reports out."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from schemas import topics
 from schemas.convert import stamp
@@ -21,12 +21,14 @@ from schemas.messages import (
     Reply,
     SetCurrentRequest,
     StopCommand,
+    SurfaceCommand,
     VehicleStatus,
 )
-from services.autopilot.air import intake, reports
+from services.autopilot.air import by_hand, intake, reports
 from services.autopilot.air.control import Surfaces
 from services.autopilot.air.estimator import Estimator, Fix, Sensed
 from services.autopilot.air.journal import Journal
+from services.autopilot.air.landed import LandDetector
 from services.autopilot.air.losses import GNSS_HOLD, Loss, losses
 from services.autopilot.air.params import AirParams
 from services.autopilot.air.pilot import Pilot
@@ -34,7 +36,6 @@ from services.autopilot.air.state import Estimate
 from uvf.maths.geodesy import GRAVITY, LocalTangent
 from uvf.runtime.service import Outputs, Service, every, optional
 
-FLYING = 0.5  # of min_airspeed: faster than that, through the air or over ground, is airborne
 FIRST_FIX = 1.0  # s, waited for after a restart
 BEFORE = "an operator before the restart"
 
@@ -53,7 +54,7 @@ class Ship:
 
 
 class AutopilotAir(Service):
-    """Hold, Mission and Return from IMU, air data and GNSS; it never sees the truth."""
+    """Hold, Mission and Return from IMU, air data and GNSS, and Manual; it never sees the truth. The only writer of the surfaces."""
 
     name = "autopilot_air"
     hz = 50.0
@@ -63,6 +64,9 @@ class AutopilotAir(Service):
         "gnss": optional(topics.GNSS),
         "battery": optional(topics.BATTERY),
         "stop": optional(topics.STOP.by("*")),
+        "teleop": optional(topics.SURFACES.by("teleop")),
+        "mavlink": optional(topics.SURFACES.by("mavlink")),
+        "client": optional(topics.SURFACES.by("client")),
     }
     outputs = {
         "surfaces": topics.SURFACE_COMMAND,
@@ -96,11 +100,12 @@ class AutopilotAir(Service):
         self._journal = Journal()
         self._fix_stamp = 0
         self._left: NavState | None = None
+        self._now: Estimate | None = None
         self._waited = 0.0  # s, for the first fix
         self._lost: frozenset[Loss] = frozenset()
         self._cycles = 0
         self._told: tuple[object, ...] = ()
-        self._airborne = ship.starts_in_air
+        self._land = LandDetector(ship.starts_in_air)
         self._status = VehicleStatus()
 
     def step(
@@ -111,19 +116,22 @@ class AutopilotAir(Service):
         gnss: Gnss | None,
         battery: Battery | None,
         stop: StopCommand | None,
+        teleop: SurfaceCommand | None,
+        mavlink: SurfaceCommand | None,
+        client: SurfaceCommand | None,
         arm: list[ArmRequest],
         mode: list[ModeRequest],
         goal: list[GoalRequest],
         mission: list[MissionRequest],
         current: list[SetCurrentRequest],
     ) -> Outputs:
-        now = self._estimate(t, imu, air_data, gnss)
+        now = self._now = self._estimate(t, imu, air_data, gnss)
         if now is None:
             waiting = [_reply("there is no satellite fix yet")]
             asked = {"arm": len(arm), "mode": len(mode), "goal": len(goal), "mission": len(mission), "current": len(current)}
             return {**self._announce(t), **{name: waiting * count for name, count in asked.items()}}
         if len(self._lost) < len(Loss):
-            self._airborne = max(now.airspeed, now.ground_speed) > FLYING * self.params.min_airspeed
+            self._land.step(now, self.params, 1 / self.hz)
         self._pilot.fly_blind(self._estimator.unfixed > GNSS_HOLD)
         self._heed(stop)
         replies = {
@@ -133,7 +141,12 @@ class AutopilotAir(Service):
             "mission": [self._set_mission(r.mission) for r in mission],
             "current": [_reply(self._pilot.set_current(r.index)) for r in current],
         }
+        hand = by_hand.choose(t, {"teleop": teleop, "mavlink": mavlink, "client": client})
+        self._pilot.hear(hand, self._land.airborne, 1 / self.hz)
         flown = self._pilot.step(now, self.params, 1 / self.hz)
+        if self._parked:
+            self._pilot.rest()
+            flown = replace(flown, surfaces=by_hand.LET_GO)
         state = reports.nav_state(t, now)
         out: dict[str, object] = {
             "surfaces": reports.surfaces(t, flown.surfaces, self._armed),
@@ -167,7 +180,7 @@ class AutopilotAir(Service):
             self._set_mission(plan)
         if status is not None and status.mode in intake.MODES:
             self._armed = status.armed
-            self._airborne = not status.landed
+            self._land = LandDetector(not status.landed)
             self._pilot.stopped = BEFORE if status.stopped else ""
             self._pilot.take_up(intake.MODES[status.mode], intake.place(status.home), intake.stand(progress))
         if nav_state is not None:
@@ -183,7 +196,7 @@ class AutopilotAir(Service):
         level = Surfaces(0.0, p.elev_zero_alpha + p.elev_per_alpha * alpha, 0.0, p.trim_throttle)
         self._status.reason = f"sensor lost: {', '.join(missing)}"
         return {
-            "surfaces": reports.surfaces(t, level, self._armed and self._airborne),
+            "surfaces": reports.surfaces(t, level, self._armed and self._land.airborne),
             "status": self._stamped_status(t),
             "events": self._journal.lost(t, missing),
         }
@@ -209,17 +222,22 @@ class AutopilotAir(Service):
         is_new, self._fix_stamp = stamp_ns != self._fix_stamp, stamp_ns
         return intake.fix(gnss, self._ship.tangent, t) if is_new else None
 
+    @property
+    def _parked(self) -> bool:
+        """On the ground, disarmed, and nobody at the stick: surfaces neutral, brakes on."""
+        return not (self._armed or self._land.airborne) and self._pilot.source == "autopilot"
+
     def _heed(self, stop: StopCommand | None) -> None:
         """STOP ALL: in the air it holds, at rest it is disarmed. Without a word of it, what was said before counts."""
         if stop is not None:
             self._pilot.stop(stop.source or "unknown" if stop.engaged else "")
-        if self._pilot.stopped and not self._airborne:
+        if self._pilot.stopped and not self._land.airborne:
             self._armed = False
 
     def _arm(self, request: ArmRequest) -> Reply:
-        if request.arm and self._pilot.stopped and not self._airborne:
+        if request.arm and self._pilot.stopped and not self._land.airborne:
             return _reply(self._pilot.blocked)
-        if not request.arm and self._airborne and not request.force:
+        if not request.arm and self._land.airborne and not request.force:
             return _reply("the aircraft is flying: land first, or force it")
         self._armed = request.arm
         return _reply("")
@@ -251,7 +269,7 @@ class AutopilotAir(Service):
     def _stamped_status(self, t: float) -> VehicleStatus:
         status = self._status
         status.timestamp.CopyFrom(stamp(t))
-        status.armed, status.landed, status.system_id = self._armed, not self._airborne, self._ship.system_id
+        status.armed, status.landed, status.system_id = self._armed, not self._land.airborne, self._ship.system_id
         return status
 
 

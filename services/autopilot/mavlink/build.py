@@ -9,7 +9,7 @@ from services.autopilot.mavlink.endpoint import Peer, UdpLink
 from services.autopilot.mavlink.facts import Facts
 from services.autopilot.mavlink.service import MavlinkService
 from uvf.maths.geodesy import LocalTangent
-from uvf.runtime.params import BadInput
+from uvf.runtime.address import peer
 from uvf.runtime.site import Host, Member, Site
 
 TARGETS = "UVF_MAVLINK_TARGETS"
@@ -17,15 +17,16 @@ LISTEN = "UVF_MAVLINK_LISTEN"
 DEFAULT_TARGETS = "127.0.0.1:14550,127.0.0.1:14540"
 AIR = "autopilot_air"
 DEFAULT_LISTEN = "127.0.0.1:14580"
+EXAMPLE = "127.0.0.1:14550"
 
 log = logging.getLogger(__name__)
 
 
 def build(site: Site) -> list[Host]:
     """Raises BadInput when an address in the environment is not ``host:port``."""
-    targets = [address(text, TARGETS) for text in os.environ.get(TARGETS, DEFAULT_TARGETS).split(",") if text.strip()]
+    targets = [peer(text, TARGETS, EXAMPLE) for text in os.environ.get(TARGETS, DEFAULT_TARGETS).split(",") if text.strip()]
     where = os.environ.get(LISTEN, DEFAULT_LISTEN)
-    listen = address(where, LISTEN) if where.strip() else None
+    listen = peer(where, LISTEN, EXAMPLE) if where.strip() else None
     facts = facts_of(site)
     return [Host(MavlinkService, lambda: MavlinkService(facts, open_link(targets, listen)), writes_for=tuple(site.members))]
 
@@ -45,14 +46,6 @@ def numbers_of(member: Member) -> dict[str, float]:
         numbers["hold_radius"] = air.hold_radius
         numbers["return_height"] = air.return_altitude
     return numbers
-
-
-def address(text: str, place: str) -> Peer:
-    """``host:port`` as a peer, the name not yet looked up. Raises BadInput."""
-    host, separator, port = text.strip().rpartition(":")
-    if not separator or not host or not port.isdigit() or not 0 < int(port) < 65536:
-        raise BadInput(f"{place}: '{text.strip()}' is not host:port, as in 127.0.0.1:14550")
-    return host, int(port)
 
 
 def open_link(targets: list[Peer], listen: Peer | None) -> UdpLink:

@@ -1,7 +1,7 @@
-"""MANUAL_CONTROL of a ground vehicle: the sticks as a velocity."""
+"""MANUAL_CONTROL: the sticks as a velocity of a ground vehicle, or as the surfaces of an aircraft."""
 
 from schemas.convert import stamp
-from schemas.messages import DriveCommand, Mode
+from schemas.messages import DriveCommand, Mode, SurfaceCommand
 from services.autopilot.mavlink import dialect as mav
 from services.autopilot.mavlink.facts import Facts, Latest
 
@@ -15,7 +15,7 @@ def drive_command(message: mav.MAVLink_manual_control_message, facts: Facts, lat
     A ground station with a virtual joystick sends sticks at rest all the time; in the other modes they mean nothing.
     """
     body = facts.file.ground
-    if body is None or latest.status is None or latest.status.mode != Mode.MODE_MANUAL or message.z == NOT_THERE:
+    if body is None or not _listens(message, latest):
         return None
     turn = sum(axis for axis in (message.y, message.r) if axis != NOT_THERE)
     return DriveCommand(
@@ -23,6 +23,30 @@ def drive_command(message: mav.MAVLink_manual_control_message, facts: Facts, lat
         linear=_part(message.z) * body.max_linear,
         angular=-_part(turn) * body.max_angular,
     )
+
+
+def surface_command(message: mav.MAVLink_manual_control_message, facts: Facts, latest: Latest) -> SurfaceCommand | None:
+    """x forward = nose down, y right = roll right, r right = yaw right, z 0..1000 = throttle; full stick = the vehicle's limits."""
+    body = facts.file.air
+    if body is None or not _listens(message, latest):
+        return None
+    limits = body.controls
+    return SurfaceCommand(
+        timestamp=stamp(latest.sim_time),
+        aileron=_stick(message.y) * limits.aileron.limit,
+        elevator=_stick(message.x) * limits.elevator.limit,
+        rudder=-_stick(message.r) * limits.rudder.limit,
+        throttle=max(_part(message.z), 0.0),
+    )
+
+
+def _listens(message: mav.MAVLink_manual_control_message, latest: Latest) -> bool:
+    return latest.status is not None and latest.status.mode == Mode.MODE_MANUAL and message.z != NOT_THERE
+
+
+def _stick(axis: int) -> float:
+    """-1..1; 0 for a stick that is not there."""
+    return _part(axis) if axis != NOT_THERE else 0.0
 
 
 def _part(axis: int) -> float:

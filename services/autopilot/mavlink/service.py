@@ -35,7 +35,7 @@ class MavlinkService(Service):
         "events": each_vehicle(every(topics.EVENTS.by("*"))),
         "clock": optional(topics.CLOCK),
     }
-    outputs = {"drive": topics.DRIVE.by("mavlink")}
+    outputs = {"drive": topics.DRIVE.by("mavlink"), "surfaces": topics.SURFACES.by("mavlink")}
     calls = {
         "arm": topics.ARM,
         "set_mode": topics.SET_MODE,
@@ -122,7 +122,7 @@ class MavlinkService(Service):
         for name, vehicle in self._vehicles.items():
             for call, request in vehicle.line.take_requests():
                 outputs.setdefault(call, {}).setdefault(name, []).append(request)
-            if vehicle.drive is not None:
-                outputs.setdefault("drive", {})[name] = vehicle.drive
-                vehicle.drive = None
+            for output, command in vehicle.by_hand.items():
+                outputs.setdefault(output, {})[name] = command
+            vehicle.by_hand.clear()
         return outputs

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from schemas.messages import DriveCommand, Event
+from schemas.messages import DriveCommand, Event, SurfaceCommand
 from services.autopilot.mavlink import dialect as mav
 from services.autopilot.mavlink.actions import ACTIONS, on_set_mode
 from services.autopilot.mavlink.commands import Commands
@@ -13,7 +13,7 @@ from services.autopilot.mavlink.ftp import on_ftp
 from services.autopilot.mavlink.health import health
 from services.autopilot.mavlink.identity import GREETING
 from services.autopilot.mavlink.line import Line, Sender
-from services.autopilot.mavlink.manual import drive_command
+from services.autopilot.mavlink.manual import drive_command, surface_command
 from services.autopilot.mavlink.missions import Missions
 from services.autopilot.mavlink.parameters import Parameters
 from services.autopilot.mavlink.queries import Queries
@@ -32,8 +32,8 @@ ON_CHANGE = (
 class VehicleLink:
     def __init__(self, facts: Facts) -> None:
         self.line = Line(facts)
-        self.drive: DriveCommand | None = None
-        """Set by MANUAL_CONTROL, taken by the service."""
+        self.by_hand: dict[str, DriveCommand | SurfaceCommand] = {}
+        """Output -> what the newest MANUAL_CONTROL means, until the service takes it."""
         self.schedule = Schedule({number: stream.hz for number, stream in STREAMS.items()})
         self._parameters = Parameters(self.line)
         self._missions = Missions(self.line)
@@ -142,7 +142,9 @@ class VehicleLink:
             self.schedule.hurry(message, self.line.t)
 
     def _on_manual(self, message: mav.MAVLink_manual_control_message, sender: Sender) -> None:
-        self.drive = drive_command(message, self.line.facts, self.line.latest) or self.drive
+        for output, read in (("drive", drive_command), ("surfaces", surface_command)):
+            if (command := read(message, self.line.facts, self.line.latest)) is not None:
+                self.by_hand[output] = command
 
     def _on_ping(self, message: mav.MAVLink_ping_message, sender: Sender) -> None:
         if message.target_system == 0:

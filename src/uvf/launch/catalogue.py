@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 from uvf.runtime.params import BadInput, nearest
-from uvf.runtime.quiet import c_errors_discarded
 from uvf.runtime.site import Build, Host, Site
 
 
@@ -29,9 +28,9 @@ class Kind:
 KINDS = (
     Kind("sim_ground", "services.sim_ground.build", "PyBullet world of the ground vehicles, their sensors", "ground", simulator=True),
     Kind("sim_air", "services.sim_air.build", "JSBSim aircraft, wind, their sensors", "fixed_wing", simulator=True),
-    Kind("sim_camera", "services.sim_camera.build", "every vehicle's camera", nice=10),
-    Kind("slam", "services.slam.build", "odometry, mapping, localization", "ground", nice=5),
-    Kind("planner", "services.planner.build", "exploration, paths, tracking", "ground", nice=5),
+    Kind("sim_camera", "services.sim_camera.build", "every vehicle's camera", nice=15),
+    Kind("slam", "services.slam.build", "odometry, mapping, localization", "ground", nice=3),
+    Kind("planner", "services.planner.build", "exploration, paths, tracking", "ground", nice=2),
     Kind("autopilot", "services.autopilot.build", "command multiplexer, estimator, guidance, control, modes", nice=2),
     Kind("mavlink", "services.autopilot.mavlink.build", "MAVLink over UDP for ground stations", clock="wall", nice=5),
     Kind("gcs", "services.gcs.build", "the page at http://127.0.0.1:8080", clock="wall", nice=10),
@@ -59,8 +58,7 @@ def hosts(site: Site, kinds: Sequence[Kind], vehicle: str | None = None) -> list
         raise BadInput(f"no vehicle '{vehicle}' in {site.mission_path}; {nearest(vehicle, site.members)}")
     made: list[Host] = []
     for each in kinds:
-        with c_errors_discarded():
-            build: Build = importlib.import_module(each.build).build
+        build: Build = importlib.import_module(each.build).build
         built = [_with_roles(site, host) for host in build(site)]
         wanted = [host for host in built if vehicle is None or host.vehicle == vehicle]
         if built and not wanted:

@@ -22,9 +22,13 @@ SENSORS: dict[Topic[Any], str] = {
     topics.WHEELS: "encoders",
     topics.GNSS: "gnss",
     topics.SONAR: "sonars",
+    topics.RANGE: "rangefinders",
     topics.AIR_DATA: "air_data",
     topics.IMAGE: "camera",
     topics.CAMERA_INFO: "camera",
+    topics.VIEW.by("chase"): "chase",
+    topics.VIEW.by("gimbal"): "gimbal",
+    topics.GIMBAL_JOINTS: "gimbal",
 }
 """What is written only about vehicles that carry the sensor."""
 

@@ -137,14 +137,28 @@ def replay(
 
 @app.command()
 def teleop(
-    vehicles: Annotated[list[str] | None, typer.Argument(help="Ground vehicles to drive together; the only one by default.")] = None,
+    vehicles: Annotated[list[str] | None, typer.Argument(help="Ground vehicles, driven together, or one aircraft.")] = None,
     mission: MissionOption = DEMO,
 ) -> None:
-    """Drive ground vehicles from this terminal's keyboard, or with a gamepad."""
+    """Drive ground vehicles, or fly an aircraft by its surfaces, from this terminal's keyboard or with a gamepad."""
     from uvf.launch.teleop import teleop as run_teleop
 
     with bad_input_is_one_line():
         run_teleop(vehicles or [], mission, say)
+
+
+@app.command()
+def flightgear(
+    vehicle: Annotated[str, typer.Argument(help="An aircraft of the mission.")],
+    to: Annotated[str, typer.Option(help="HOST:PORT where FlightGear listens.")] = "127.0.0.1:5550",
+    hz: Annotated[float, typer.Option(min=1.0, max=100.0, help="Packets a second.")] = 30.0,
+    mission: MissionOption = DEMO,
+) -> None:
+    """Show an aircraft in FlightGear (native FDM packets over UDP), until Ctrl-C."""
+    from uvf.launch.flightgear import flightgear as run_flightgear
+
+    with bad_input_is_one_line():
+        run_flightgear(vehicle, to, hz, mission)
 
 
 @app.command()

@@ -1,6 +1,5 @@
 """The bodies of the processes of a run: router, conductor, and one for any service."""
 
-import os
 import time
 from collections.abc import Callable
 from typing import Any
@@ -9,7 +8,7 @@ from schemas import topics
 from schemas.convert import stamp_ns
 from schemas.messages import Clock, ClockRequest, Done, Event, Reply
 from uvf.launch import catalogue, settings
-from uvf.launch.worker import Worker, worker
+from uvf.launch.worker import Worker, give_way, spare_the_collector, worker
 from uvf.runtime.address import router_from
 from uvf.runtime.bus import Query, Sample, Sink
 from uvf.runtime.conductor import Conductor
@@ -20,7 +19,6 @@ from uvf.runtime.site import load_site
 from uvf.runtime.wire import Malformed, decode, guarded
 from uvf.runtime.zenoh_bus import ZenohBus, open_router
 
-TICK_LOOK = 0.001  # s, how often the conductor looks whether the next tick is due
 HELD_PERIOD = 0.5  # s, how often the clock is told again while it is held back or paused
 LOOK = 0.05  # s
 CONNECT_PATIENCE = 2.0  # s, one attempt
@@ -33,7 +31,8 @@ def run_router(listen: str) -> None:
         session = open_router(listen)
         try:
             with ZenohBus(listen.replace("0.0.0.0", "127.0.0.1"), timeout=CONNECT_PATIENCE) as bus:
-                keeper = Keeper(bus, life.warn)
+                keeper = Keeper(bus)
+                spare_the_collector()
                 while not life.stop.wait(LOOK) and life.goes_on():
                     keeper.poll()
         finally:
@@ -57,11 +56,13 @@ def run_service(name: str, mission: str, vehicle: str | None, lockstep: bool = F
     """One kind of service for all its vehicles, or for one."""
     with worker(name) as life:
         kind = catalogue.kind(name)
-        os.nice(kind.nice)
+        give_way(kind.nice)
         site = load_site(settings.mission_path(mission))
         hosts = catalogue.hosts(site, [kind], vehicle)
         with open_bus(life, lockstep) as bus:
-            Live(name if vehicle is None else f"{name}.{vehicle}", hosts, bus, life.warn).run(life.stop, lambda: not life.goes_on())
+            live = Live(name if vehicle is None else f"{name}.{vehicle}", hosts, bus, life.warn)
+            spare_the_collector()
+            live.run(life.stop, lambda: not life.goes_on())
 
 
 def run_conductor(mission: str, rate: float, lockstep: bool = False, without: tuple[str, ...] = ()) -> None:
@@ -72,7 +73,9 @@ def run_conductor(mission: str, rate: float, lockstep: bool = False, without: tu
         simulators = [k.name for k in kinds if k.simulator]
         conductor = Conductor(simulators, [k.name for k in kinds if not k.simulator], rate, lockstep)
         with open_bus(life, lockstep) as bus:
-            ConductorLoop(conductor, bus, life).run()
+            loop = ConductorLoop(conductor, bus, life)
+            spare_the_collector()
+            loop.run()
 
 
 class ConductorLoop:
@@ -117,7 +120,7 @@ class ConductorLoop:
 
     def run(self) -> None:
         while not self._life.stop.is_set() and self._life.goes_on():
-            self._bus.wait(TICK_LOOK)
+            self._bus.wait(self._conductor.patience)
             self._bus.poll()
             wall = time.monotonic()
             tick = self._conductor.advance(wall)

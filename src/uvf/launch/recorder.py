@@ -1,6 +1,5 @@
 """The body of the recorder's process: the log of a run as a series of files, within the disk's space and the quota."""
 
-import os
 import re
 import shutil
 import time
@@ -12,7 +11,7 @@ from schemas.messages import Event
 from uvf.launch import settings
 from uvf.launch.processes import open_bus
 from uvf.launch.runs import hold, keep_quota
-from uvf.launch.worker import Worker, worker
+from uvf.launch.worker import Worker, give_way, spare_the_collector, worker
 from uvf.runtime.bus import Sample
 from uvf.runtime.params import BadInput
 from uvf.runtime.recording import DEPTH, Recorder
@@ -24,7 +23,7 @@ FLUSH_PERIOD = 1.0  # s
 ROTATE_BYTES = 500_000_000
 COMMON = "common"  # in vehicles/: parts that several vehicles include
 ROOM = 100_000_000  # bytes free on the disk, from which recording is taken up again
-NICE = 10  # as in catalogue.Kind: writing can wait
+NICE = 15
 LOOK = 0.05  # s
 
 Tell = Callable[[str, Event.Severity], None]
@@ -124,7 +123,7 @@ class LogSeries:
 def run_recorder(folder: Path, mission: str) -> None:
     """Writes everything on the bus to ``folder`` until told to stop."""
     with worker("recorder") as life:
-        os.nice(NICE)
+        give_way(NICE)
         site = load_site(settings.mission_path(mission))
         quota = settings.runs_quota()
         try:
@@ -168,6 +167,7 @@ def _record(life: Worker, bus: ZenohBus, series: LogSeries) -> None:
     arrived: list[Sample] = []
     bus.subscribe_all(arrived.append, DEPTH)
     bus.token(f"@node/sys/recorder/{bus.boot:x}")
+    spare_the_collector()
     flushed, stopped = time.monotonic(), False
     while not stopped:
         # What has arrived until the end is written too.

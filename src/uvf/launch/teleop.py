@@ -1,44 +1,26 @@
-"""``uvf teleop``: ground vehicles driven from the keyboard of a terminal, or with a gamepad."""
+"""``uvf teleop``: vehicles driven or flown from the keyboard of a terminal, or with a gamepad."""
 
 import signal
 import time
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import closing, contextmanager
+from contextlib import closing, contextmanager, suppress
 from types import FrameType
 from typing import Protocol
 
 import uvf
-from schemas import topics
-from schemas.messages import ArmRequest, DriveCommand, Mode, ModeRequest
 from uvf.client import Client
-from uvf.launch import settings
+from uvf.launch import settings, teleop_air
 from uvf.launch.teleop_gamepad import Gamepad
-from uvf.launch.teleop_terminal import TerminalClosed, key_by_key
+from uvf.launch.teleop_link import Link
+from uvf.launch.teleop_loop import END, Console, Padlike, Post, operate
+from uvf.launch.teleop_terminal import Terminal, TerminalClosed, key_by_key
 from uvf.runtime.params import BadInput, nearest
 from uvf.runtime.site import Site, load_site
 from uvf.runtime.teleop_hand import STILL, Command, Hand, Pad
 
-SOURCE = "teleop"
-PERIOD = 1 / topics.DRIVE.hz  # s between commands
-SHOW_EVERY = 4  # commands between two refreshments of the line
-LOST_AFTER = 1.5  # s without a status
-ANSWER_WITHIN = 1.0  # s
 GREETING = """w a s d or arrows: drive    q e z c: curves    space: stop    x or Ctrl-C: end
 r f: linear speed up, down    t g: turn rate up, down    1..9: vehicle on, off    m: take over again
 gamepad: hold the left shoulder button and use the left stick; d-pad: speeds; B: stop"""
-
-
-class Console(Protocol):
-    def read(self, patience: float) -> list[str]: ...
-
-    def show(self, line: str) -> None: ...
-
-
-class Padlike(Protocol):
-    @property
-    def name(self) -> str: ...
-
-    def read(self) -> Pad: ...
 
 
 class Vehicles(Protocol):
@@ -52,70 +34,34 @@ class Vehicles(Protocol):
     def state(self, vehicle: str) -> str: ...
 
 
-class Link:
-    """Vehicles over the bus."""
+class Wheel:
+    """The post of whoever drives ground vehicles; left, all of them are told to stand."""
 
-    def __init__(self, client: Client) -> None:
-        self._client = client
-        self._count: dict[str, int] = {}
-        self._heard_at: dict[str, float] = {}
+    def __init__(self, hand: Hand, vehicles: Vehicles) -> None:
+        self._hand, self._vehicles = hand, vehicles
 
-    def send(self, vehicle: str, command: Command) -> None:
-        self._client.send(vehicle, topics.DRIVE.by(SOURCE), DriveCommand(linear=command.linear, angular=command.angular))
+    def take_over(self) -> str:
+        return "; ".join(filter(None, (self._vehicles.take_over(name) for name in self._hand.vehicles if name in self._hand.active)))
 
-    def take_over(self, vehicle: str) -> str:
-        try:
-            replies = (
-                self._client.ask(vehicle, topics.SET_MODE, ModeRequest(mode=Mode.MODE_MANUAL, source=SOURCE), ANSWER_WITHIN),
-                self._client.ask(vehicle, topics.ARM, ArmRequest(arm=True, source=SOURCE), ANSWER_WITHIN),
-            )
-        except TimeoutError as error:
-            return f"{vehicle}: {error}"
-        return next((f"{vehicle}: {reply.reason}" for reply in replies if not reply.accepted), "")
+    def key(self, t: float, name: str) -> None:
+        self._hand.key(t, name)
 
-    def state(self, vehicle: str) -> str:
-        """LIVE and whose commands count, or for how long nothing has been heard."""
-        now, count = time.monotonic(), self._client.heard(vehicle, topics.STATUS)
-        if count != self._count.get(vehicle, 0):
-            self._count[vehicle], self._heard_at[vehicle] = count, now
-        if vehicle not in self._heard_at:
-            return "NO LINK"
-        age = now - self._heard_at[vehicle]
-        if age > LOST_AFTER:
-            return f"LINK LOST {age:.0f} s"
-        status = self._client.read(vehicle, topics.STATUS)
-        return "LIVE STOP ALL" if status.stopped else f"LIVE {status.command_source or status.reason}"
+    def turn(self, t: float, pad: Pad) -> None:
+        self._hand.pad(t, pad)
+        for name, command in self._hand.commands(t).items():
+            self._vehicles.send(name, command)
+
+    def line(self, t: float, pad: str) -> str:
+        return status_line(self._hand, self._vehicles, pad, t)
+
+    def leave(self) -> None:
+        for name in self._hand.vehicles:
+            self._vehicles.send(name, STILL)
 
 
 def drive(hand: Hand, vehicles: Vehicles, console: Console, pad: Padlike, clock: Callable[[], float]) -> None:
     """Until the key x, or an exception; in every case all vehicles are told to stand."""
-    note = _take_over(hand, vehicles)
-    due, turn = clock(), 0
-    try:
-        while True:
-            keys = console.read(max(due - clock(), 0.0))
-            t = clock()
-            if "x" in keys:
-                return
-            for name in keys:
-                hand.key(t, name)
-            if "m" in keys:
-                note = _take_over(hand, vehicles)
-            if t < due:
-                continue
-            hand.pad(t, pad.read())
-            for name, command in hand.commands(t).items():
-                vehicles.send(name, command)
-            if turn % SHOW_EVERY == 0:
-                console.show(status_line(hand, vehicles, pad.name, t) + (f" | {note}" if note else ""))
-            due, turn = t + PERIOD, turn + 1
-    finally:
-        for name in hand.vehicles:
-            vehicles.send(name, STILL)
-
-
-def _take_over(hand: Hand, vehicles: Vehicles) -> str:
-    return "; ".join(filter(None, (vehicles.take_over(name) for name in hand.vehicles if name in hand.active)))
+    operate(Wheel(hand, vehicles), console, pad, clock)
 
 
 def status_line(hand: Hand, vehicles: Vehicles, pad: str, t: float) -> str:
@@ -141,13 +87,16 @@ def wanted_vehicles(site: Site, names: Sequence[str]) -> tuple[list[str], Comman
 
 
 @contextmanager
-def _signals_end_it() -> Iterator[None]:
-    """A terminal that is closed and a polite kill end it like Ctrl-C; it cannot be put to sleep with a vehicle under way."""
+def _signals_are_the_key(end: str, terminal: Terminal) -> Iterator[None]:
+    """Ctrl-C, a terminal that is closed and a polite kill end it in good order; it cannot be put to sleep with a vehicle under way.
 
-    def end(number: int, frame: FrameType | None) -> None:
-        raise KeyboardInterrupt
+    Ctrl-C too is asked for in so many words: whoever starts a process in the background may have it ignored there.
+    """
 
-    before = {number: signal.signal(number, end) for number in (signal.SIGHUP, signal.SIGTERM)}
+    def press(number: int, frame: FrameType | None) -> None:
+        terminal.press(end)
+
+    before = {number: signal.signal(number, press) for number in (signal.SIGINT, signal.SIGHUP, signal.SIGTERM)}
     before[signal.SIGTSTP] = signal.signal(signal.SIGTSTP, signal.SIG_IGN)
     try:
         yield
@@ -156,12 +105,33 @@ def _signals_end_it() -> Iterator[None]:
             signal.signal(number, handler)
 
 
+def wanted_aircraft(site: Site, names: Sequence[str]) -> str:
+    """The aircraft meant, "" when it is not one. Raises BadInput for several of them."""
+    flying = [name for name in dict.fromkeys(names) if name in site.members and site.members[name].file.air is not None]
+    if flying and len(set(names)) > 1:
+        raise BadInput(f"{site.mission_path}: '{flying[0]}' flies, and one flies one aircraft at a time; name it alone")
+    return flying[0] if flying else ""
+
+
+def post_for(site: Site, names: Sequence[str]) -> tuple[str, Callable[[Client], Post]]:
+    """(words for the operator, what makes the post on a connection). Raises BadInput."""
+    aircraft = wanted_aircraft(site, names)
+    body = site.members[aircraft].file.air if aircraft else None
+    if body is not None:
+        return teleop_air.GREETING, lambda client: teleop_air.cockpit(client, aircraft, body)
+    chosen, most = wanted_vehicles(site, names)
+    return GREETING, lambda client: Wheel(Hand(chosen, most), Link(client))
+
+
 def teleop(names: Sequence[str], mission: str, say: Callable[[str], None]) -> None:
-    """Drives until the operator ends it. Raises BadInput."""
-    chosen, most = wanted_vehicles(load_site(settings.mission_path(mission)), names)
-    with uvf.connect() as client, _signals_end_it(), key_by_key() as terminal, closing(Gamepad()) as pad:
-        say(GREETING)
-        try:
-            drive(Hand(chosen, most), Link(client), terminal, pad, time.monotonic)
-        except (KeyboardInterrupt, TerminalClosed):
-            return
+    """Drives or flies until the operator ends it. Raises BadInput."""
+    greeting, post = post_for(load_site(settings.mission_path(mission)), names)
+    with (
+        uvf.connect() as client,
+        key_by_key() as terminal,
+        _signals_are_the_key(END, terminal),
+        closing(Gamepad()) as pad,
+        suppress(TerminalClosed),
+    ):
+        say(greeting)
+        operate(post(client), terminal, pad, time.monotonic)

@@ -12,7 +12,10 @@ STICK_FULL = 32767.0
 
 
 class Gamepad:
-    """Left stick: drive. Left shoulder: dead-man. B: stop. D-pad: up and down the linear, right and left the angular scale."""
+    """Left stick: drive, or roll and pitch; right one: throttle and rudder. Left shoulder: dead-man. B: stop, or brakes.
+
+    D-pad: up and down the linear, right and left the angular scale; trim and flaps of an aircraft.
+    """
 
     def __init__(self) -> None:
         os.environ.setdefault("SDL_JOYSTICK_ALLOW_BACKGROUND_EVENTS", "1")  # there is no window that could have the focus
@@ -43,6 +46,8 @@ class Gamepad:
             dead_man=self._pressed(sdl.SDL_CONTROLLER_BUTTON_LEFTSHOULDER),
             stop=self._pressed(sdl.SDL_CONTROLLER_BUTTON_B),
             linear_step=self._pressed(sdl.SDL_CONTROLLER_BUTTON_DPAD_UP) - self._pressed(sdl.SDL_CONTROLLER_BUTTON_DPAD_DOWN),
+            right_forward=-self._axis(sdl.SDL_CONTROLLER_AXIS_RIGHTY),
+            right_left=-self._axis(sdl.SDL_CONTROLLER_AXIS_RIGHTX),
             angular_step=self._pressed(sdl.SDL_CONTROLLER_BUTTON_DPAD_RIGHT) - self._pressed(sdl.SDL_CONTROLLER_BUTTON_DPAD_LEFT),
         )
 

@@ -61,12 +61,18 @@ class Terminal:
     def __init__(self, file: int) -> None:
         self._file = file
         self._keys = Keys()
+        self._pressed: list[str] = []
+
+    def press(self, name: str) -> None:
+        """The key counts as pressed; may be called by a signal's handler."""
+        self._pressed.append(name)
 
     def read(self, patience: float) -> list[str]:
         """Keys pressed, waiting at most ``patience`` [s]. Raises TerminalClosed."""
         ready, _, _ = select.select([self._file], [], [], patience)
-        if not ready:
-            return []
+        pressed, self._pressed = self._pressed, []
+        if pressed or not ready:
+            return pressed
         try:
             data = os.read(self._file, CHUNK)
         except OSError as error:
@@ -85,6 +91,13 @@ class Terminal:
             raise TerminalClosed from error
 
 
+def _keep_keys_at_signals(file: int) -> None:
+    """Or Ctrl-C throws away a key that select has just promised, and reading waits for another one for ever."""
+    settings = termios.tcgetattr(file)
+    settings[3] |= termios.NOFLSH
+    termios.tcsetattr(file, termios.TCSANOW, settings)
+
+
 @contextmanager
 def key_by_key() -> Iterator[Terminal]:
     """The terminal without echo and without waiting for the end of a line, until the end in any way. Raises BadInput."""
@@ -93,6 +106,7 @@ def key_by_key() -> Iterator[Terminal]:
         raise BadInput("teleop reads keys, but its input is no terminal: run it in one")
     before = termios.tcgetattr(file)
     tty.setcbreak(file)
+    _keep_keys_at_signals(file)
     try:
         yield Terminal(file)
     finally:

@@ -10,6 +10,7 @@ from schemas.messages import Clock
 from uvf.launch import catalogue, settings
 from uvf.launch.launcher import LOOK, Launcher, Say, stop_flag
 from uvf.launch.output import RotatingLog
+from uvf.launch.waits import Waits
 from uvf.runtime.bus import Sample
 from uvf.runtime.site import load_site
 from uvf.runtime.wire import guarded
@@ -64,6 +65,8 @@ class Run:
         for name in ("conductor", "recorder"):
             told = topics.SYSTEM_EVENTS.by(name)
             bus.subscribe(told.at("sys"), told.qos, guarded(told, lambda event, _: self._say(event.text), self._say), depth=16)
+        waits, signs = Waits(self._say), topics.HEALTH.by("*")
+        bus.subscribe(signs.at("sys"), signs.qos, guarded(signs, lambda health, _: waits.hear(health), self._say), depth=64)
         self._start("conductor", "service", "conductor", "--mission", mission, "--rate", str(self._wanted.rate))
         for name in services:
             self._start(name, "service", name, "--mission", mission)

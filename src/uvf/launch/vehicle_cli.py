@@ -85,6 +85,55 @@ def picture(
 
 
 @vehicle_app.command()
+def linearize(
+    name: NameArgument,
+    speed: Annotated[float | None, typer.Option(min=0.1, help="m/s; by default the trim_speed of the vehicle's file.")] = None,
+    altitude: Annotated[float, typer.Option(min=-500.0, max=80_000.0, help="m AMSL")] = 100.0,
+    picture: Annotated[Path | None, typer.Option(help="Where to draw the map of the poles, a .png.")] = None,
+    json: Annotated[Path | None, typer.Option(help="File for the figures.")] = None,
+) -> None:
+    """An aircraft in level flight: trim, state-space matrices, modes, the book's transfer functions."""
+    from rich.console import Console
+
+    from uvf.launch.vehicles.inspection import folder_of
+    from uvf.launch.vehicles.linearize import linear_models, tables, write_json, write_pole_map
+
+    with bad_input_is_one_line():
+        folder = folder_of(name, _vehicles())
+        models = linear_models(folder, speed, altitude)
+        if picture is not None:
+            write_pole_map(models, f"{folder.name}: {models.trim.airspeed:g} m/s, {altitude:g} m", picture)
+        if json is not None:
+            write_json(models, json)
+    console = Console()
+    for table in tables(models):
+        console.print(table)
+
+
+@vehicle_app.command()
+def tune(
+    name: NameArgument,
+    write: Annotated[bool, typer.Option("--write", help="Put the figures into the vehicle.yaml.")] = False,
+    picture: Annotated[Path | None, typer.Option(help="Where to draw loops and step responses, a .png.")] = None,
+) -> None:
+    """The autopilot's figures of an aircraft from its own model: balance, gains, limits, and the loops' margins."""
+    from rich.console import Console
+
+    from uvf.launch.vehicles import tuning
+    from uvf.launch.vehicles.inspection import folder_of
+
+    with bad_input_is_one_line():
+        found = tuning.tune(folder_of(name, _vehicles()))
+        if picture is not None:
+            tuning.draw(found, picture)
+        written = tuning.write(found) if write else None
+    console = Console()
+    for table in tuning.tables(found):
+        console.print(table)
+    typer.echo(f"uvf: {written} has them now" if written else f"uvf: 'uvf vehicle tune {name} --write' puts them into its vehicle.yaml")
+
+
+@vehicle_app.command()
 def new(
     name: Annotated[str, typer.Argument(help="Of the new folder in vehicles/.")],
     radius: Metres,
@@ -102,12 +151,12 @@ def new(
 
 @vehicle_app.command("import")
 def import_(
-    source: Annotated[Path, typer.Argument(help="A .urdf, .xacro or .sdf.")],
+    source: Annotated[Path, typer.Argument(help="A .urdf, .xacro or .sdf, or a JSBSim aircraft: its .xml or folder.")],
     name: NewName,
     into: IntoOption = None,
     arg: Annotated[list[str] | None, typer.Option(help="Of the xacro, as name:=value.")] = None,
 ) -> None:
-    """Take over a robot of others: a folder in vehicles/, and a note of what was dropped or guessed. Checks it at once."""
+    """Take over a robot or an aircraft of others: a folder in vehicles/, and a note of what was dropped or guessed. Checks it at once."""
     from uvf.launch.vehicles.checking import check_all
     from uvf.launch.vehicles.importing import import_vehicle
 

@@ -1,6 +1,7 @@
 """What every process of a run does alike: signals, one line per warning, and an end when its launcher is gone."""
 
 import contextlib
+import gc
 import os
 import signal
 import sys
@@ -57,3 +58,16 @@ def worker(name: str) -> Iterator[Worker]:
     except BadInput as error:
         life.warn(str(error))
         raise SystemExit(2) from error
+
+
+def give_way(nice: int) -> None:
+    """Lowers this process's priority by ``nice``; then it also waits for its turn instead of interrupting when it wakes."""
+    os.nice(nice)
+    if nice and hasattr(os, "SCHED_BATCH"):
+        os.sched_setscheduler(0, os.SCHED_BATCH, os.sched_param(0))
+
+
+def spare_the_collector() -> None:
+    """What the start has built stays: looking through all of it for garbage would halt the process for 0.1 s now and then."""
+    gc.collect()
+    gc.freeze()

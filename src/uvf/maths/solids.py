@@ -67,6 +67,11 @@ def joined(parts: Sequence[Solids]) -> Solids:
     return Solids(*(np.concatenate(columns) for columns in zip(empty, *parts, strict=True)))
 
 
+def chosen(parts: Solids, which: NDArray[np.bool_]) -> Solids:
+    """Those primitives; which: (n,)."""
+    return Solids(parts.kinds[which], parts.rows[which], parts.low[which], parts.high[which])
+
+
 def _positive(lengths: ArrayLike, what: str) -> Floats:
     values = np.asarray(lengths, dtype=np.float64)
     if not (np.isfinite(values).all() and (values > 0).all()):

@@ -54,6 +54,12 @@ def planar(a_from_b: Transform) -> Pose2:
     return Pose2(float(x), float(y), to_euler(a_from_b.rotation)[2])
 
 
+def from_above(a_from_b: Transform, points_b: Floats) -> Floats:
+    """(n, 2) points of b's plane z = 0 as they are in a, seen from above; also of a frame that hangs upside down."""
+    points_a: Floats = points_b @ matrix(a_from_b.rotation)[:2, :2].T + a_from_b.translation[:2]
+    return points_a
+
+
 def homogeneous(a_from_b: Transform) -> Floats:
     """(4, 4) matrix that does the same to homogeneous points."""
     m = np.eye(4)

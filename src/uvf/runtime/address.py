@@ -29,6 +29,14 @@ def host_and_port(endpoint: str) -> tuple[str, int]:
     return host, int(port)
 
 
+def peer(text: str, place: str, example: str) -> tuple[str, int]:
+    """``host:port`` of something that is spoken to over UDP, the name not yet looked up. Raises BadInput."""
+    host, _, port = text.strip().rpartition(":")
+    if not host or not port.isdecimal() or not 0 < int(port) < 65536:
+        raise BadInput(f"{place}: '{text.strip()}' is not host:port, as in {example}")
+    return host, int(port)
+
+
 def is_loopback(host: str) -> bool:
     try:
         return ipaddress.ip_address(host).is_loopback

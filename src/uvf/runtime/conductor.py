@@ -1,5 +1,6 @@
 """The conductor: decides, from wall time and what the participants report, how far simulation time may go."""
 
+from collections import deque
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
@@ -7,6 +8,7 @@ from schemas import topics
 from schemas.messages import Clock, ClockRequest, Done, Reply
 from uvf.runtime.clock import NS, step_time
 
+LONGEST_LOOK = 0.01  # s, wall: how soon a request is seen
 MAX_BEHIND = 0.25  # s, wall: what a slow simulator costs beyond this is not caught up, the rate drops instead
 
 
@@ -37,7 +39,7 @@ class Conductor:
         self._started = False
         self._allowed = 0.0  # s of simulation time that wall time has earned
         self._last_wall: float | None = None
-        self._window: list[tuple[float, int]] = []
+        self._window: deque[tuple[float, int]] = deque()
         self.tick = 0
         self.t_ns = 0
         self.epoch = 1
@@ -135,6 +137,14 @@ class Conductor:
         self.t_ns = next_ns
         return self.clock(wall)
 
+    @property
+    def patience(self) -> float:
+        """How long [s, wall] nothing can be due; a participant's report ends the wait."""
+        if self.waiting_for() or self._paused or self._rate == 0:
+            return LONGEST_LOOK
+        ahead = step_time(self.tick + 1, topics.CLOCK.hz) / NS - self._allowed
+        return min(max(ahead / self._rate, 0.0), LONGEST_LOOK)
+
     def _earn(self, elapsed: float) -> None:
         if not self._started or self._paused:
             self._allowed = self.t_ns / NS
@@ -156,7 +166,8 @@ class Conductor:
 
     def _achieved(self, wall: float) -> float:
         """Simulation seconds per wall second over the last two seconds."""
-        self._window = [(w, t) for w, t in self._window if wall - w < 2.0]
         self._window.append((wall, self.t_ns))
+        while wall - self._window[0][0] >= 2.0:
+            self._window.popleft()
         first_wall, first_t = self._window[0]
         return (self.t_ns - first_t) / NS / (wall - first_wall) if wall > first_wall else 0.0

@@ -1,4 +1,4 @@
-"""Where ground vehicles drive: the floor, and what rises from it without a step, ramps and the platforms behind them.
+"""Where ground vehicles drive: the floor or the terrain, and what rises from it without a step, ramps and the platforms behind them.
 
 A surface counts when it slopes by no more than ``STEEPEST`` and its rim lies no more than ``LEDGE`` above or below what is drivable
 already; so a ramp is no obstacle, a table top or a kerb stays one. Each spot has one height, the uppermost: there is no driving
@@ -12,12 +12,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uvf.maths.solids import BOX, CYLINDER, SPHERE, TRIANGLE, Solids
+from uvf.runtime.relief import Relief
 
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 A = TypeVar("A", Floats, Mask)
 
 STEEPEST = float(np.radians(15.0))
+STEEPEST_GRADIENT = float(np.tan(STEEPEST)) + 1e-6  # of a surface that is as steep as that by rounding too
 LEDGE = 0.01  # m, a threshold that small wheels get over
 SIDES = 32  # of a disc
 
@@ -33,8 +35,8 @@ class Ground(NamedTuple):
     surface: Mask
 
     def cliffs(self, resolution: float) -> Mask:
-        """Cells beside a step that a vehicle neither climbs nor may fall down."""
-        found = np.zeros(self.height.shape, dtype=np.bool_)
+        """Cells beside a step that a vehicle neither climbs nor may fall down, and where the terrain is too steep."""
+        found = self.slope > STEEPEST_GRADIENT
         for axis in (0, 1):
             allowed = LEDGE + resolution * np.maximum(*_pairs(self.slope, axis))
             lower, upper = _pairs(self.height, axis)
@@ -55,20 +57,25 @@ class _Face(NamedTuple):
     slope: float
 
 
-def drivable(solids: Solids, xs: Floats, ys: Floats) -> Ground:
-    """The ground over the cells with centres at ``xs`` (columns,) and ``ys`` (rows,) [m]."""
-    ground = Ground(np.zeros((len(ys), len(xs))), np.zeros((len(ys), len(xs))), np.zeros(len(solids.kinds), dtype=np.bool_))
-    pending = [face for owner, corners in _upward(solids) if (face := _raster(owner, corners, xs, ys))]
+def drivable(solids: Solids, xs: Floats, ys: Floats, relief: Relief | None = None) -> Ground:
+    """The ground over the cells with centres at ``xs`` (columns,) and ``ys`` (rows,) [m]. relief: without one the floor is z = 0."""
+    height, slope = (np.zeros((len(ys), len(xs))) for _ in range(2)) if relief is None else relief.at(*np.meshgrid(xs, ys))
+    ground = Ground(height, slope, np.zeros(len(solids.kinds), dtype=np.bool_))
+    rastered = [(owner, corners, _raster(owner, corners, xs, ys)) for owner, corners in _upward(solids)]
+    pending = [face for _, _, face in rastered if face is not None]
     pending.sort(key=lambda face: float(face.heights.min()))
     resolution = float(xs[1] - xs[0]) if len(xs) > 1 else 1.0
     while True:
         joined = [face for face in pending if _joins(face, ground, resolution)]
         if not joined:
-            return ground
+            break
         for face in joined:
             _lay(face, ground)
         taken = {id(face) for face in joined}
         pending = [face for face in pending if id(face) not in taken]
+    for owner, corners in [(owner, corners) for owner, corners, cells in rastered if cells is None]:
+        ground.surface[owner] |= _lies_on(corners.mean(axis=0), ground, (xs, ys))
+    return ground
 
 
 def _pairs(values: A, axis: int) -> tuple[A, A]:
@@ -143,6 +150,17 @@ def _joins(face: _Face, ground: Ground, resolution: float) -> bool:
         if (np.abs(ground.height[r, c] - face.heights) <= allowed).any():
             return True
     return False
+
+
+def _lies_on(middle: Floats, ground: Ground, axes: tuple[Floats, Floats]) -> bool:
+    """Whether a face too small to hold a cell's centre is part of the ground: a finely meshed ramp is one of many such."""
+    xs, ys = axes
+    x, y, z = middle
+    resolution = float(xs[1] - xs[0]) if len(xs) > 1 else 1.0
+    r, c = round((y - ys[0]) / resolution), round((x - xs[0]) / resolution)
+    if not (0 <= r < len(ys) and 0 <= c < len(xs)):
+        return False
+    return bool(abs(ground.height[r, c] - z) <= LEDGE + resolution * ground.slope[r, c])
 
 
 def _lay(face: _Face, ground: Ground) -> None:

@@ -30,6 +30,8 @@ class Live:
         shells = [Shell(host, bus, warn) for host in hosts]
         self._sim = [s for s in shells if s.type.clock == "sim"]
         self._wall = [s for s in shells if s.type.clock == "wall"]
+        self._takes_part = bool(self._sim) or not self._wall
+        """In the barrier: also a process that has nothing to do in this mission, or time would wait for it for ever."""
         self._simulator = any(s.type.simulator for s in self._sim)
         self._ticks: list[Clock] = []
         self._epoch = 0
@@ -42,7 +44,7 @@ class Live:
         self._last_heard = 0.0
         self._t_ns = 0
         on_clock = guarded(topics.CLOCK, lambda clock, _: self._ticks.append(clock), warn)
-        bus.subscribe(topics.CLOCK.at("sys"), topics.CLOCK.qos, on_clock, depth=64, wake=True)
+        bus.subscribe(topics.CLOCK.at("sys"), topics.CLOCK.qos, on_clock, depth=64, wake=self._takes_part)
         for shell in shells:
             _declare_tokens(shell, bus)
 
@@ -75,7 +77,7 @@ class Live:
         ticks, self._ticks = [clock for clock in self._ticks if not self._came_too_late(clock)], []
         if ticks:
             self._last_heard = wall
-        elif self._sim and wall - self._last_heard > READY_PERIOD:
+        elif self._takes_part and wall - self._last_heard > READY_PERIOD:
             self._last_heard = wall
             self._report({})
         for clock in ticks:
@@ -132,7 +134,7 @@ class Live:
         for shell in self._wall:
             shell.sim_ns = clock.t_ns
         self._tick, self._t_ns = clock.tick, clock.t_ns
-        if self._sim and (self._simulator or clock.lockstep):
+        if self._takes_part and (self._simulator or clock.lockstep):
             self._report(published)
 
     def _lateness(self, clock: Clock, shell: Shell) -> float:

@@ -8,6 +8,7 @@ from msgspec import Meta
 
 from schemas.topics import SYSTEM
 from uvf.runtime.params import BadInput, Place, load_yaml, nearest
+from uvf.runtime.wind_file import Wind, check_wind
 
 NotNegative = Annotated[float, Meta(ge=0, le=1e6)]
 Metres = Annotated[float, Meta(ge=-1e6, le=1e6)]  # local coordinates stay near the origin
@@ -21,8 +22,11 @@ class Start(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     x: Metres
     y: Metres
     z: Metres = 0.0
-    yaw: float = 0.0  # rad, from east, left positive
-    speed: NotNegative = 0.0  # m/s
+    yaw: Annotated[float, Meta(ge=-7, le=7)] = 0.0  # rad, from east, left positive
+    speed: NotNegative = 0.0  # m/s; of an aircraft through the air, 0 = its trim_speed
+    climb: Annotated[float, Meta(ge=-1.5, le=1.5)] = 0.0  # rad, of an aircraft, up from the horizon
+    turn_rate: Annotated[float, Meta(ge=-3, le=3)] = 0.0  # rad/s, of an aircraft, to the left
+    on_ground: bool = False  # an aircraft stands on its wheels, as one with z = 0 does
 
 
 class Waypoint(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -66,7 +70,7 @@ class Criterion(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class MissionFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """The whole of a mission file."""
+    """The whole of a mission file. ``wind`` stands for that of the world, whole."""
 
     about: str
     world: FolderName
@@ -74,6 +78,7 @@ class MissionFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     seed: int = 1
     duration: Annotated[float, Meta(gt=0, le=1e6)] = 120.0  # s
     criteria: list[Criterion] = []
+    wind: Wind | None = None
 
 
 def load_mission(path: Path) -> MissionFile:
@@ -84,6 +89,8 @@ def load_mission(path: Path) -> MissionFile:
     mission = load_yaml(path, MissionFile)
     file = Place(str(path))
     _check_vehicles(mission.vehicles, file.at("vehicles"))
+    if mission.wind is not None:
+        check_wind(mission.wind, file.at("wind"))
     for i, criterion in enumerate(mission.criteria):
         _check_criterion(criterion, mission.vehicles, file.at("criteria", i))
     return mission

@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from types import UnionType
-from typing import Annotated, Any, NamedTuple, TypeVar, Union, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, Literal, NamedTuple, TypeVar, Union, get_args, get_origin, get_type_hints
 
 import msgspec
 import yaml
@@ -100,6 +100,8 @@ def _check(data: Any, hint: Any, place: Place) -> None:
         _check(value, inner, place.at(key))
     if isinstance(data, float) and not math.isfinite(data):
         raise BadInput(f"{place}: {data} is no number to work with")
+    if isinstance(data, str) and get_origin(hint) is Literal and data not in get_args(hint):
+        raise BadInput(f"{place}: no '{data}' here; {nearest(data, map(str, get_args(hint)))}")
     try:
         msgspec.convert(data, hint)
     except msgspec.ValidationError as error:

@@ -5,8 +5,10 @@ import os
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+from contextvars import ContextVar
 
 OUTPUT, ERRORS = 1, 2
+_sink = ContextVar("_sink", default=os.devnull)
 
 
 @contextmanager
@@ -24,10 +26,21 @@ def c_output_discarded() -> Iterator[None]:
 
 
 @contextmanager
+def c_output_to(path: str) -> Iterator[None]:
+    """What is written is kept in a file, also what would be discarded within."""
+    before = _sink.set(path)
+    try:
+        with c_output_discarded():
+            yield
+    finally:
+        _sink.reset(before)
+
+
+@contextmanager
 def _discarded(descriptor: int) -> Iterator[None]:
     _flush()
     kept = os.dup(descriptor)
-    nowhere = os.open(os.devnull, os.O_WRONLY)
+    nowhere = os.open(_sink.get(), os.O_WRONLY | os.O_APPEND)
     os.dup2(nowhere, descriptor)
     try:
         yield

@@ -114,11 +114,11 @@ class UrdfModel:
         return poses
 
     def below(self, link: str) -> Iterator[str]:
-        """A link and all that hang on it."""
-        yield link
-        for joint in self.joints.values():
-            if joint.parent == link:
-                yield from self.below(joint.child)
+        """A link and all that hang on it, each once, also where joints make a ring."""
+        found = [link]
+        for name in found:  # grows
+            yield name
+            found += [j.child for j in self.joints.values() if j.parent == name and j.child not in found]
 
     def rigid_with(self, link: str) -> set[str]:
         """The links that move as one body with this one."""

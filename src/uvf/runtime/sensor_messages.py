@@ -1,9 +1,15 @@
 """Readings of the instruments that ground and air vehicles share, as messages."""
 
-from schemas.convert import stamp, vector
-from schemas.messages import Gnss, Imu
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from schemas.convert import seconds, stamp, vector
+from schemas.messages import FrameTransforms, Gnss, Imu, LaserScan, Range
 from uvf.maths.instruments import Fix, ImuReading
-from uvf.runtime.vehicle_file import GnssSensor
+from uvf.runtime.service import Value
+from uvf.runtime.vehicle_file import GnssSensor, Lidar, RangeFinder, Sonar
 
 SATELLITES = 14  # seen under an open sky
 
@@ -33,3 +39,31 @@ def gnss_message(gnss: GnssSensor, fix: Fix) -> Gnss:
         speed_accuracy=gnss.speed_noise,
         satellites=SATELLITES,
     )
+
+
+def scan_message(t: float, frame: str, lidar: Lidar, ranges: NDArray[np.float64]) -> LaserScan:
+    """Counter-clockwise from ``start_angle``; the beams share [start, end] evenly, both ends included."""
+    end = lidar.angle_min + (lidar.beams - 1) * lidar.angle_increment
+    scan = LaserScan(timestamp=stamp(t), frame_id=frame, start_angle=lidar.angle_min, end_angle=end, ranges=ranges.tolist())
+    scan.pose.orientation.w = 1.0
+    return scan
+
+
+def range_message(t: float, frame: str, sensor: Sonar | RangeFinder, distance: float) -> Range:
+    """A range finder's cone has no width."""
+    return Range(
+        timestamp=stamp(t),
+        frame_id=frame,
+        range=distance,
+        field_of_view=sensor.fov if isinstance(sensor, Sonar) else 0.0,
+        range_min=sensor.range_min,
+        range_max=sensor.range_max,
+    )
+
+
+def later(read: Value, seconds_later: float) -> Value:
+    """The same readings with stamps ``seconds_later`` [s]."""
+    for message in read if isinstance(read, Sequence) else (read,):
+        for stamped in message.transforms if isinstance(message, FrameTransforms) else (message,):
+            stamped.timestamp.CopyFrom(stamp(seconds(stamped.timestamp) + seconds_later))  # type: ignore[attr-defined]
+    return read

@@ -24,9 +24,9 @@ PRESETS: dict[str, dict[str, dict[str, float]]] = {
     },
     "gnss": {
         # Beard & McLain (2012), table 7.1 and eq. 7.17: increments of 0.21 and 0.40 m a second, forgotten within 1100 s. Their
-        # recursion has the standard deviations 0.21 and 0.40 / sqrt(1 - exp(-2 / 1100)). They sample at 1 Hz.
+        # recursion has the standard deviations 0.21 and 0.40 / sqrt(1 - exp(-2 / 1100)).
         "book": {
-            "hz": 5.0,
+            "hz": 1.0,
             "horizontal_drift": 4.927,
             "vertical_drift": 9.385,
             "drift_time": 1100.0,
@@ -35,6 +35,10 @@ PRESETS: dict[str, dict[str, dict[str, float]]] = {
         },
         "good": {"hz": 5.0, "horizontal_noise": 0.3, "vertical_noise": 0.5, "speed_noise": 0.05, "latency": 0.1},
     },
+    # Beard & McLain (2012), appendix H: 0.13 deg/s, 0.0025 g, a compass of 0.3 deg in a field of 48 uT; 10 and 2 Pa with biases of
+    # 125 and 20 Pa.
+    "imu": {"book": {"hz": 100.0, "gyro_noise": math.radians(0.13), "accel_noise": 0.0025 * 9.80665, "mag_noise": 2.5e-7}},
+    "air_data": {"book": {"hz": 50.0, "static_noise": 10.0, "static_bias": 125.0, "differential_noise": 2.0, "differential_bias": 20.0}},
 }
 
 

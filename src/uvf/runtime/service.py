@@ -31,7 +31,7 @@ class Input:
     """False: it counts however old it is."""
 
 
-FRAME_TOPICS = (topics.TF_STATIC, topics.TF_WORLD, topics.TF_MAP, topics.TF_ODOM, topics.TF_JOINTS, topics.TF_BODY)
+FRAME_TOPICS = (topics.TF_STATIC, topics.TF_WORLD, topics.TF_MAP, topics.TF_ODOM, topics.TF_JOINTS, topics.TF_BODY, topics.TF_GIMBAL)
 """What the tree of frames is told on; the latched ones are static."""
 
 

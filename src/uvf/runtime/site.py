@@ -14,6 +14,7 @@ from uvf.runtime.mission_file import MissionFile, Vehicle, load_mission
 from uvf.runtime.params import BadInput, Place, convert
 from uvf.runtime.service import Params, Service
 from uvf.runtime.vehicle_file import VehicleFile, load_vehicle
+from uvf.runtime.wind_file import Wind
 from uvf.runtime.world_file import WorldFile, load_world
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -45,6 +46,16 @@ class Site:
 
     def of_kind(self, kind: str) -> Iterator[Member]:
         return (m for m in self.members.values() if m.file.kind == kind)
+
+    @property
+    def vehicles_folder(self) -> Path:
+        """Where the models of its vehicles lie, and those that may be put in later."""
+        return next(iter(self.members.values())).folder.parent
+
+    @property
+    def wind(self) -> Wind:
+        """The mission's, or else the world's."""
+        return self.world.wind if self.mission.wind is None else self.mission.wind
 
     def rng(self, *names: str) -> np.random.Generator:
         """A generator of its own for each purpose: the mission's seed and the names decide, nothing else."""

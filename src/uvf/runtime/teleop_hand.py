@@ -32,7 +32,7 @@ SCALINGS = {"r": (STEP, 1.0), "f": (1 / STEP, 1.0), "t": (1.0, STEP), "g": (1.0,
 
 
 class Pad(NamedTuple):
-    """A gamepad's state. forward, left: -1..1 of the stick; steps: -1, 0 or 1, counted when they change."""
+    """A gamepad's state. forward, left: -1..1 of the left stick; steps: -1, 0 or 1, counted when they change."""
 
     forward: float = 0.0
     left: float = 0.0
@@ -40,6 +40,9 @@ class Pad(NamedTuple):
     stop: bool = False
     linear_step: int = 0
     angular_step: int = 0
+    right_forward: float = 0.0
+    right_left: float = 0.0
+    """Of the right stick, with which only aircraft are flown."""
 
 
 class Command(NamedTuple):
@@ -86,7 +89,7 @@ class Hand:
         if pad.stop or (before.dead_man and not pad.dead_man):
             self.stop(t)
         elif pad.dead_man:
-            self.hold(t, (_beyond_dead_zone(pad.forward), _beyond_dead_zone(pad.left)), REPEAT_HOLD)
+            self.hold(t, (beyond_dead_zone(pad.forward), beyond_dead_zone(pad.left)), REPEAT_HOLD)
 
     def hold(self, t: float, direction: tuple[float, float], patience: float) -> None:
         """Drives that way, parts of the linear and the angular scale, for ``patience`` [s] if it is not held anew."""
@@ -130,6 +133,6 @@ def _within(scale: float, most: float) -> float:
     return min(max(scale, LEAST), most)
 
 
-def _beyond_dead_zone(way: float) -> float:
+def beyond_dead_zone(way: float) -> float:
     """0 within the dead zone, from there on rising evenly to 1."""
     return max(abs(way) - DEAD_ZONE, 0.0) / (1 - DEAD_ZONE) * (1.0 if way > 0 else -1.0)

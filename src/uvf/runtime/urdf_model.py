@@ -1,8 +1,5 @@
 """URDF and xacro files as models, and as the plain files that engines load."""
 
-import hashlib
-import os
-import tempfile
 from collections.abc import Iterable
 from dataclasses import replace
 from functools import lru_cache
@@ -10,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from uvf.runtime.handed_file import handed_file
 from uvf.runtime.params import BadInput
 from uvf.runtime.robot_model import Inertial, Link, UrdfModel
 from uvf.runtime.urdf_reader import read_model
@@ -19,6 +17,8 @@ from uvf.runtime.urdf_writer import urdf_text
 
 NO_MASS = Inertial(1e-6, np.zeros(3), np.eye(3) * 1e-9)
 """For frames: to engines a link that gives no mass weighs 1 kg, and a root of no mass stands fixed in the world."""
+MARGIN = 1e-6
+"""Share by which the largest moment stays below the other two together, against rounding in the text."""
 
 
 def read_urdf(path: Path) -> UrdfModel:
@@ -64,15 +64,15 @@ def _written(path: Path, _changed: int, _size: int) -> Path:
     model = load_urdf(path)
     links = {name: _with_mass(link) for name, link in model.links.items()}
     text = urdf_text(replace(model, links=links), lambda mesh: str(mesh.resolve()))
-    folder = Path(tempfile.gettempdir()) / f"uvf-urdf-{os.getuid()}"
-    folder.mkdir(mode=0o700, exist_ok=True)
-    target = folder / f"{path.stem}-{hashlib.sha256(text.encode()).hexdigest()[:16]}.urdf"
-    if not target.is_file():
-        part = target.with_suffix(f".{os.getpid()}")
-        part.write_text(text, encoding="utf-8")
-        part.replace(target)
-    return target
+    return handed_file(path.stem, ".urdf", text.encode())
 
 
 def _with_mass(link: Link) -> Link:
-    return link if link.inertial is not None else replace(link, inertial=NO_MASS)
+    return replace(link, inertial=_within_triangle(link.inertial) if link.inertial is not None else NO_MASS)
+
+
+def _within_triangle(inertial: Inertial) -> Inertial:
+    """Figures of a flat body that were rounded just beyond the triangle rule, brought within: Bullet takes no inertia at all instead."""
+    (a, b, c), axes = np.linalg.eigh(inertial.inertia)
+    largest = (a + b) * (1 - MARGIN)
+    return inertial if c <= largest else replace(inertial, inertia=axes @ np.diag((a, b, largest)) @ axes.T)

@@ -11,12 +11,18 @@ TRIANGLE_SLACK = 1e-3
 """Of the largest principal moment: rounded figures of flat or thin bodies stay within it."""
 
 
+RESERVED = ("base_footprint", "map", "odom")
+"""Frames that every vehicle has besides the URDF's links (REP-105); a root called base_footprint is that frame."""
+
+
 def model_faults(model: UrdfModel) -> Iterator[Fault]:
     """What was found in reading, then inertia, tree and wheels."""
     yield from model.faults
     for link in model.links.values():
         yield from (Fault(model.path, link.line, f"link '{link.name}': {text}") for text in _inertia_faults(model, link))
     yield from _tree_faults(model)
+    for link in (link for name, link in model.links.items() if name in RESERVED and (name != "base_footprint" or name in model.parents)):
+        yield Fault(model.path, link.line, f"link '{link.name}': every vehicle has a frame of that name above base_link; take the link out")
 
 
 def wheel_faults(model: UrdfModel, wheel_joints: tuple[str, ...]) -> Iterator[Fault]:

@@ -38,6 +38,8 @@ def read_xml(path: Path, arguments: Mapping[str, str] | None = None, note: Note 
             document = xacro.process_file(str(path), mappings=dict(arguments or {}), verbosity=0)
         except (xacro.XacroException, substitution_args.ArgException, substitution_args.SubstitutionException) as error:
             raise BadInput(f"{path}: xacro cannot expand it: {_one_line(error)}; mend the macro or give its arguments") from error
+        except RecursionError as error:
+            raise BadInput(f"{path}: xacro cannot expand it: a macro or an included file uses itself; cut the ring") from error
         except (NameError, TypeError, ValueError, KeyError, AttributeError, SyntaxError) as error:
             raise BadInput(f"{path}: xacro cannot expand it: {_one_line(error)}; mend the expression there") from error
     return etree.fromstring(document.toxml().encode())

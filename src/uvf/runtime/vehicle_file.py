@@ -1,6 +1,7 @@
 """``vehicles/<name>/vehicle.yaml``: what a vehicle is, as data."""
 
 import math
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -12,19 +13,16 @@ from uvf.maths.geodesy import LocalTangent
 from uvf.maths.instruments import InertialUnit, Receiver
 from uvf.maths.sampling import Dropout, Line
 from uvf.maths.sensing import Errors
+from uvf.runtime.air_file import AirBody, check_air
 from uvf.runtime.params import BadInput, Place, load_yaml, nearest
+from uvf.runtime.quantities import Name, NotNegative, PhysicsRate, Positive
 from uvf.runtime.vehicle_layers import file_of, fill_vehicle, folders_of
 
-Positive = Annotated[float, Meta(ge=1e-9, le=1e9)]
-NotNegative = Annotated[float, Meta(ge=0, le=1e9)]
 Offset = Annotated[float, Meta(ge=-100, le=100)]
 Triple = tuple[Offset, Offset, Offset]
 SensorRate = Annotated[float, Meta(ge=0.01, le=1000)]
-Deflection = Annotated[float, Meta(ge=0.01, le=1.6)]
-PhysicsRate = Annotated[float, Meta(ge=20, le=5000)]
 Probability = Annotated[float, Meta(ge=0, le=1)]
 Bearing = Annotated[float, Meta(ge=-7, le=7)]
-Name = Annotated[str, Meta(pattern=r"^[A-Za-z0-9_][A-Za-z0-9_./-]*$", max_length=80)]  # of a file, frame or joint
 
 
 class Mount(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -60,7 +58,7 @@ class Lidar(Delivery, frozen=True, forbid_unknown_fields=True):
 
 
 class ImuSensor(Delivery, frozen=True, forbid_unknown_fields=True):
-    """Six axes and a magnetometer. Noise is 1 sigma per sample: a data sheet's density times the root of ``hz``."""
+    """Six axes and a magnetometer; ``preset``: book. Noise is 1 sigma per sample: a data sheet's density times the root of ``hz``."""
 
     mount: Mount
     hz: SensorRate
@@ -83,6 +81,7 @@ class ImuSensor(Delivery, frozen=True, forbid_unknown_fields=True):
     instability_time: Positive = 100.0  # s
     mag_bias: NotNegative = 0.0  # T, 1 sigma
     mag_hz: SensorRate | None = None  # None = hz; the last field is repeated in the readings between
+    preset: str = ""
 
     @property
     def gyro(self) -> Errors:
@@ -166,6 +165,17 @@ class Sonar(Delivery, frozen=True, forbid_unknown_fields=True):
     frame: Name = "sonar"
 
 
+class RangeFinder(Delivery, frozen=True, forbid_unknown_fields=True):
+    """A laser's single beam along its mount's x axis; outside the limits it is sent as 0 = no return. Look down: rpy [0, 1.5708, 0]."""
+
+    mount: Mount
+    hz: SensorRate
+    range_min: NotNegative  # m
+    range_max: Positive  # m
+    noise: NotNegative = 0.0  # m, 1 sigma
+    frame: Name = "rangefinder"
+
+
 class Bumper(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """A sector of the body's outline that feels touches."""
 
@@ -178,11 +188,14 @@ class Bumper(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class AirDataSensor(Delivery, frozen=True, forbid_unknown_fields=True):
+    """Absolute and differential pressure; ``preset``: book."""
+
     hz: SensorRate
     static_noise: NotNegative = 0.0  # Pa
     differential_noise: NotNegative = 0.0  # Pa
     static_bias: NotNegative = 0.0  # Pa, 1 sigma
     differential_bias: NotNegative = 0.0  # Pa, 1 sigma
+    preset: str = ""
 
 
 class Camera(Delivery, frozen=True, forbid_unknown_fields=True):
@@ -197,6 +210,23 @@ class Camera(Delivery, frozen=True, forbid_unknown_fields=True):
     depth_noise: NotNegative = 0.0  # 1/m: 1 sigma is this times the square of the depth
 
 
+class Chase(Camera, frozen=True, forbid_unknown_fields=True):
+    """Behind and above its vehicle, which it sees."""
+
+    frame: Name = "chase"
+
+
+class Gimbal(Camera, frozen=True, forbid_unknown_fields=True):
+    """A camera on three joints: pan about its mount's z axis, then roll, then tilt; it begins along its mount."""
+
+    frame: Name = "gimbal"
+    slew: Positive = 2.0  # rad/s, of each joint
+    pan_max: Annotated[float, Meta(ge=0, le=3.1416)] = 3.1416  # rad, to both sides; half a turn or more: it goes round without a stop
+    roll_max: Annotated[float, Meta(ge=0, le=1.5)] = 0.8  # rad, to both sides
+    tilt_min: Annotated[float, Meta(ge=-1.5708, le=0)] = -0.5  # rad, down positive
+    tilt_max: Annotated[float, Meta(ge=0, le=3.1416)] = 2.1  # rad; more than straight down, to stay there when the nose goes up
+
+
 class Sensors(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """What the vehicle carries; absent = not fitted."""
 
@@ -206,11 +236,14 @@ class Sensors(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     gnss: GnssSensor | None = None
     air_data: AirDataSensor | None = None
     camera: Camera | None = None
+    chase: Chase | None = None
+    gimbal: Gimbal | None = None
     sonars: list[Sonar] = []
+    rangefinders: list[RangeFinder] = []
     bumpers: list[Bumper] = []
 
 
-Sampled = Lidar | ImuSensor | Encoders | GnssSensor | AirDataSensor | Sonar | Camera
+Sampled = Lidar | ImuSensor | Encoders | GnssSensor | AirDataSensor | Sonar | RangeFinder | Camera
 
 
 def line_of(sensor: Sampled, rng: np.random.Generator) -> Line[Any]:
@@ -252,30 +285,6 @@ class GroundBody(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     physics_hz: PhysicsRate = 200.0
 
 
-class BatteryPack(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """An ideal pack whose voltage falls in a straight line with its charge."""
-
-    energy: Positive  # J
-    full: Positive  # V
-    empty: Positive  # V
-    avionics: NotNegative = 0.0  # W, drawn at all times
-
-
-class AirBody(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """A JSBSim aircraft: the model's name in the vehicle's folder and how to command it."""
-
-    model: Name
-    physics_hz: PhysicsRate
-    trim_speed: Positive  # m/s
-    max_aileron: Deflection  # rad
-    max_elevator: Deflection  # rad
-    max_rudder: Deflection  # rad
-    servo_rate: Positive  # rad/s
-    servo_lag: NotNegative  # s
-    mesh: Name | None = None
-    battery: BatteryPack | None = None
-
-
 class VehicleFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """The whole of vehicle.yaml. ``params``: service name -> that service's parameters.
 
@@ -303,13 +312,15 @@ def load_vehicle(vehicles: Path, name: str) -> VehicleFile:
     if getattr(vehicle, section) is None:
         raise BadInput(f"{place.at('kind')}: kind is '{vehicle.kind}' but there is no '{section}:' section")
     _check_lidar(vehicle.sensors.lidar, place.at("sensors", "lidar"))
-    _check_sonars(vehicle.sensors.sonars, place.at("sensors", "sonars"))
+    _check_rangers("sonar", vehicle.sensors.sonars, place.at("sensors", "sonars"))
+    _check_rangers("range finder", vehicle.sensors.rangefinders, place.at("sensors", "rangefinders"))
     _check_bumpers(vehicle.sensors.bumpers, place.at("sensors", "bumpers"))
     ground, air = vehicle.ground, vehicle.air
     if ground is not None and ground.left_joint == ground.right_joint:
         raise BadInput(f"{place.at('ground', 'right_joint')}: the left wheel's joint too; name the right one")
-    if air is not None and air.battery is not None and air.battery.empty >= air.battery.full:
-        raise BadInput(f"{place.at('air', 'battery')}: empty at {air.battery.empty:g} V, full at {air.battery.full:g} V; exchange them")
+    if air is not None:
+        check_air(air, place.at("air"))
+        _check_sensors_of_aircraft(vehicle.sensors, place.at("sensors"))
     return vehicle if vehicle.variant_of is None else _with_files(vehicle, folders_of(folder))
 
 
@@ -323,6 +334,17 @@ def _with_files(vehicle: VehicleFile, folders: list[Path]) -> VehicleFile:
     return msgspec.structs.replace(vehicle, ground=ground, air=air)
 
 
+def _check_sensors_of_aircraft(sensors: Sensors, place: Place) -> None:
+    """What only ground vehicles have would be silent."""
+    for kind in ("encoders", "bumpers"):
+        if getattr(sensors, kind):
+            raise BadInput(f"{place.at(kind)}: an aircraft has no {kind}; leave them out")
+    for kind in ("imu", "lidar", "camera", "chase", "gimbal"):
+        sensor = getattr(sensors, kind)
+        if sensor is not None and sensor.mount.link is not None:
+            raise BadInput(f"{place.at(kind, 'mount', 'link')}: an aircraft's model has no links; give xyz and rpy")
+
+
 def _check_lidar(lidar: Lidar | None, place: Place) -> None:
     if lidar is None:
         return
@@ -333,12 +355,12 @@ def _check_lidar(lidar: Lidar | None, place: Place) -> None:
         raise BadInput(f"{place.at('angle_increment')}: {lidar.beams} beams make {sweep:.3g} rad, more than a full turn; lower it")
 
 
-def _check_sonars(sonars: list[Sonar], place: Place) -> None:
+def _check_rangers(kind: str, sonars: Sequence[Sonar | RangeFinder], place: Place) -> None:
     for i, sonar in enumerate(sonars):
         if sonar.range_min >= sonar.range_max:
             raise BadInput(f"{place.at(i, 'range_min')}: {sonar.range_min:g} m is not below range_max, {sonar.range_max:g} m")
         if sonar.frame in (other.frame for other in sonars[:i]):
-            raise BadInput(f"{place.at(i)}: a second sonar with frame '{sonar.frame}'; give each a frame of its own")
+            raise BadInput(f"{place.at(i)}: a second {kind} with frame '{sonar.frame}'; give each a frame of its own")
 
 
 def _check_bumpers(bumpers: list[Bumper], place: Place) -> None:

@@ -10,6 +10,7 @@ import msgspec
 from msgspec import Meta
 
 from uvf.runtime.params import BadInput, Place, load_yaml, nearest
+from uvf.runtime.wind_file import Wind, check_wind
 
 Share = Annotated[float, Meta(ge=0, le=1)]
 Colour = tuple[Share, Share, Share]
@@ -22,8 +23,8 @@ FileName = Annotated[str, Meta(pattern=r"^[A-Za-z0-9_][A-Za-z0-9_./-]*$", max_le
 Seconds = Annotated[float, Meta(ge=0, le=1e5)]
 Script = list[tuple[Seconds, Metres, Metres, float]]
 """Keys of a motion: t [s], x, y [m], yaw [rad]; closed, for it begins anew at its end."""
-WindSpeed = Annotated[float, Meta(ge=-100, le=100)]
 Tesla = Annotated[float, Meta(ge=-1e-3, le=1e-3)]
+TERRAIN = "terrain"  # what touches it is told so
 LARGEST_FLOOR = 1e6  # m^2; maps and scores cut it into cells
 
 
@@ -92,10 +93,16 @@ class Field(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     colour: Colour
 
 
-class Wind(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """Steady wind: velocity of the air, the way it blows to, ENU [m/s]."""
+class Terrain(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Hills from a grey picture, 8 or 16 bit: black is the height of ``position``, white ``size[2]`` above it, north is up.
 
-    steady: tuple[WindSpeed, WindSpeed, WindSpeed] = (0.0, 0.0, 0.0)
+    Its outermost pixels lie on the rim of ``size[0]`` x ``size[1]``. Beyond it the ground is z = 0, and it lies nowhere lower.
+    """
+
+    heights: FileName  # a PNG in the world's folder; of a loaded world the whole path
+    size: tuple[Positive, Positive, Positive]  # m: east, north, from black to white
+    position: tuple[Metres, Metres, Annotated[float, Meta(ge=0, le=1e4)]] = (0.0, 0.0, 0.0)  # m, world, of the middle
+    colour: Colour = (0.42, 0.52, 0.3)
 
 
 class WorldFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -109,6 +116,7 @@ class WorldFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     cylinders: list[Cylinder] = []
     spheres: list[Sphere] = []
     meshes: list[Mesh] = []
+    terrain: Terrain | None = None
     wind: Wind = Wind()
     magnetic_field: tuple[Tesla, Tesla, Tesla] = (0.0, 22.0e-6, -42.0e-6)  # T, ENU
     ground_colour: Colour = (0.36, 0.5, 0.24)
@@ -123,6 +131,7 @@ def load_world(worlds: Path, name: str) -> WorldFile:
         raise BadInput(f"no world '{name}' in {worlds}; {nearest(name, known)}")
     world = load_yaml(path, WorldFile)
     place = Place(str(path))
+    check_wind(world.wind, place.at("wind"))
     _check_area(world.floor, place.at("floor"))
     x_min, y_min, x_max, y_max = world.floor
     if (x_max - x_min) * (y_max - y_min) > LARGEST_FLOOR:
@@ -133,9 +142,23 @@ def load_world(worlds: Path, name: str) -> WorldFile:
         if any(a == b for a, b in pairwise(wall.points)):
             raise BadInput(f"{place.at('walls', i)}: the same point twice in a row; take one away")
     _check_things(world, path.parent, place)
-    return msgspec.structs.replace(
-        world, meshes=[msgspec.structs.replace(m, file=str((path.parent / m.file).resolve())) for m in world.meshes]
-    )
+    if world.terrain is not None:
+        _check_file(path.parent, world.terrain.heights, place.at("terrain", "heights"))
+    return _with_whole_paths(world, path.parent)
+
+
+def _with_whole_paths(world: WorldFile, folder: Path) -> WorldFile:
+    meshes = [msgspec.structs.replace(m, file=str((folder / m.file).resolve())) for m in world.meshes]
+    if world.terrain is None:
+        return msgspec.structs.replace(world, meshes=meshes)
+    terrain = msgspec.structs.replace(world.terrain, heights=str((folder / world.terrain.heights).resolve()))
+    return msgspec.structs.replace(world, meshes=meshes, terrain=terrain)
+
+
+def _check_file(folder: Path, name: str, place: Place) -> None:
+    if not (folder / name).is_file():
+        near = nearest(name, (p.relative_to(folder).as_posix() for p in folder.rglob("*") if p.is_file()))
+        raise BadInput(f"{place}: no file '{name}' in {folder}; {near}")
 
 
 def _check_area(area: tuple[float, float, float, float], place: Place) -> None:
@@ -146,7 +169,7 @@ def _check_area(area: tuple[float, float, float, float], place: Place) -> None:
 
 def _check_things(world: WorldFile, folder: Path, place: Place) -> None:
     """What is touched is told by its name; scripts close; meshes are there."""
-    seen: set[str] = set()
+    seen = {TERRAIN} if world.terrain is not None else set()
     groups: dict[str, Sequence[Box | Cylinder | Sphere | Mesh]] = {
         "boxes": world.boxes,
         "cylinders": world.cylinders,
@@ -160,9 +183,8 @@ def _check_things(world: WorldFile, folder: Path, place: Place) -> None:
             seen.add(thing.name)
             if isinstance(thing, Box | Cylinder) and thing.path:
                 _check_script(thing.path, place.at(group, i, "path"))
-            if isinstance(thing, Mesh) and not (folder / thing.file).is_file():
-                near = nearest(thing.file, (p.relative_to(folder).as_posix() for p in folder.rglob("*") if p.is_file()))
-                raise BadInput(f"{place.at(group, i, 'file')}: no file '{thing.file}' in {folder}; {near}")
+            if isinstance(thing, Mesh):
+                _check_file(folder, thing.file, place.at(group, i, "file"))
 
 
 def _check_script(keys: Script, place: Place) -> None:

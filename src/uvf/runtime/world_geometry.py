@@ -10,18 +10,18 @@ from scipy import ndimage
 
 from uvf.maths.footprint import Footprint, covered, footprint, segments
 from uvf.maths.rotations import from_euler, rotate
-from uvf.maths.solids import Solids, joined
+from uvf.maths.solids import chosen
 from uvf.runtime.drivable import drivable
-from uvf.runtime.scene import primitives, still
+from uvf.runtime.relief import Relief, relief_of, terrain_mesh
+from uvf.runtime.scene import still
 from uvf.runtime.solid import Keyframes, Solid
-from uvf.runtime.world_file import Box, Script, Wall, WorldFile
+from uvf.runtime.world_file import TERRAIN, Box, Script, Wall, WorldFile
 
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 WALL = "wall"  # every stretch of wall is called so
 GRAZE = 0.001  # m, lower than that nothing is bumped into
 BAND = 0.05  # m, steps of height in which obstacles on ramps are looked for
-COARSE = 0.1  # m, cells in which the ground under one point is looked for
 
 
 @dataclass(frozen=True)
@@ -76,10 +76,18 @@ def all_boxes(world: WorldFile) -> list[Box]:
 
 
 def solids(world: WorldFile, folder: Path = Path()) -> list[Solid]:
-    """Every solid of a world, walls first. The ground, z = 0, is none of them.
+    """Every solid of a world, walls first, the terrain last. The ground, z = 0, is none of them.
 
-    folder: holds the meshes of a world that was not loaded from a file; a loaded one knows where they are.
+    folder: holds the files of a world that was not loaded from a file; a loaded one knows where they are.
     """
+    if world.terrain is None:
+        return things(world, folder)
+    land = terrain_mesh(world.terrain, folder)
+    return [*things(world, folder), Solid(TERRAIN, "mesh", (1.0, 1.0, 1.0), np.zeros(3), colour=world.terrain.colour, mesh=land)]
+
+
+def things(world: WorldFile, folder: Path = Path()) -> list[Solid]:
+    """All that stands on the ground or the terrain; folder: as for ``solids``."""
     made = [Solid(b.name, "box", b.size, np.array(b.centre), from_euler(*b.rpy), b.colour, path=_script(b.path)) for b in all_boxes(world)]
     for c in world.cylinders:
         tilt = from_euler(*c.rpy)
@@ -89,6 +97,11 @@ def solids(world: WorldFile, folder: Path = Path()) -> list[Solid]:
     for m in world.meshes:
         made.append(Solid(m.name, "mesh", m.scale, np.array(m.position), from_euler(*m.rpy), m.colour, folder / m.file))
     return made
+
+
+def relief(world: WorldFile) -> Relief | None:
+    """The terrain's heights; None: it is flat. Raises BadInput."""
+    return None if world.terrain is None else relief_of(world.terrain)
 
 
 def _script(path: Script) -> Keyframes | None:
@@ -101,14 +114,15 @@ def floor_plan(world: WorldFile, resolution: float, height: float = 0.2) -> Floo
     Ramps and platforms with a ramp are driven on (``drivable.py``), their steep edges are obstacles. What moves by script is left out.
     Exact in the plane: a cell is occupied when any part of it is. Raises BadInput for a mesh that cannot be read.
     """
-    plan = _empty_plan(world, resolution)
-    parts = still(solids(world))
-    ground = drivable(parts, *plan.axes())
-    bulk = _chosen(parts, ~ground.surface)
+    plan = empty_plan(world, resolution)
+    parts = still(things(world))
+    ground = drivable(parts, *plan.axes(), relief(world))
+    bulk = chosen(parts, ~ground.surface)
     cells = ground.cliffs(resolution) | plan.under(footprint(bulk, GRAZE, height)) & (ground.height <= GRAZE)
     for low in np.unique(np.floor(ground.height[ground.height > GRAZE] / BAND) * BAND):
-        here = (ground.height > max(low, GRAZE)) & (ground.height <= low + BAND)
-        cells |= here & plan.under(footprint(bulk, low + BAND + GRAZE, low + BAND + height))
+        shadows = footprint(bulk, low + BAND + GRAZE, low + BAND + height)
+        if shadows.outlines or len(shadows.discs):
+            cells |= (ground.height > max(low, GRAZE)) & (ground.height <= low + BAND) & plan.under(shadows)
     return replace(plan, cells=cells)
 
 
@@ -117,44 +131,11 @@ def floor_segments(world: WorldFile, height: float) -> Floats:
     return segments(footprint(still(solids(world)), height - GRAZE, height + GRAZE))
 
 
-def clearance(world: WorldFile, x: float, y: float, heights: tuple[float, float] = (GRAZE, 0.2)) -> float:
-    """Distance [m] from a point to the nearest solid between two ``heights`` [m] above the ground there; 0 inside one.
-
-    What one drives on is no solid in this; what moves counts where it is at the beginning.
-    """
-    every = joined([primitives(solid) for solid in solids(world)])
-    plan = _empty_plan(world, COARSE)
-    ground = drivable(every, *plan.axes())
-    row, column = plan.cell(x, y)
-    inside = 0 <= row < plan.cells.shape[0] and 0 <= column < plan.cells.shape[1]
-    floor = float(ground.height[row, column]) if inside else 0.0
-    return distance(footprint(_chosen(every, ~ground.surface), floor + heights[0], floor + heights[1]), x, y)
-
-
-def distance(shadows: Footprint, x: float, y: float) -> float:
-    """[m] From a point to the nearest shadow, 0 inside one, inf when there is none."""
-    nearest = [max(float(np.hypot(x - cx, y - cy)) - radius, 0.0) for cx, cy, radius in shadows.discs]
-    return min([*nearest, *(_to_outline(outline, np.array((x, y))) for outline in shadows.outlines)], default=np.inf)
-
-
-def _to_outline(outline: Floats, point: Floats) -> float:
-    """[m] From a point to a convex outline (k, 2), anticlockwise."""
-    sides = np.roll(outline, -1, axis=0) - outline
-    away = point - outline
-    if len(outline) > 2 and (sides[:, 0] * away[:, 1] - sides[:, 1] * away[:, 0] >= 0).all():
-        return 0.0
-    share = np.clip((away * sides).sum(axis=1) / np.maximum((sides * sides).sum(axis=1), 1e-18), 0.0, 1.0)
-    return float(np.linalg.norm(away - share[:, np.newaxis] * sides, axis=1).min())
-
-
-def _empty_plan(world: WorldFile, resolution: float) -> FloorPlan:
+def empty_plan(world: WorldFile, resolution: float) -> FloorPlan:
+    """The floor with nothing on it."""
     x_min, y_min, x_max, y_max = world.floor
     rows, columns = (int(np.ceil((high - low) / resolution - 1e-9)) for low, high in ((y_min, y_max), (x_min, x_max)))
     return FloorPlan(np.zeros((rows, columns), dtype=np.bool_), resolution, x_min, y_min)
-
-
-def _chosen(parts: Solids, which: Mask) -> Solids:
-    return Solids(parts.kinds[which], parts.rows[which], parts.low[which], parts.high[which])
 
 
 def reachable_floor(plan: FloorPlan, x: float, y: float, radius: float) -> Mask:

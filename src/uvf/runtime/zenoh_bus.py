@@ -24,6 +24,7 @@ from uvf.runtime.envelope import Envelope, GapCounter, unpack
 from uvf.runtime.params import BadInput
 
 CALL_TIMEOUT = 5.0  # s, wall
+LATE = "Timeout"  # what Zenoh says then, without naming who or what
 LEASE_MS = 2000
 WAIT_BEFORE_DROP_US = 50_000
 RECALL_TIMEOUT = 1.0  # s, wall
@@ -255,7 +256,8 @@ class ZenohBus:
             elif reply.ok is not None:
                 on_reply(reply.ok.payload.to_bytes(), "", _envelope(reply.ok).stamp_ns)
             else:
-                on_reply(None, reply.err.payload.to_string() or f"{key}: no answer", stamp)
+                reason = reply.err.payload.to_string()
+                on_reply(None, reason if reason not in ("", LATE) else f"no answer from {key} within {CALL_TIMEOUT:g} s", stamp)
         self._calls = waiting
 
 

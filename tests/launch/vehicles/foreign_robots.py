@@ -184,6 +184,59 @@ def skid_steer(folder):
     return path
 
 
+def kobuki(folder):
+    """base_footprint before the axle, wheels as mirrored halves in millimetres on hubs, castors before and behind, a cliff sonar first."""
+    folder.mkdir(parents=True, exist_ok=True)
+    half = trimesh.creation.cylinder(35.0, 10.0, sections=60)
+    half.apply_translation((0, 0, 5.0))
+    half.export(folder / "half.stl")
+
+    def joint(name, kind, parent, child, xyz, rpy="0 0 0"):
+        ends = f'<parent link="{parent}"/><child link="{child}"/>'
+        return f'<joint name="{name}" type="{kind}">{ends}<origin xyz="{xyz}" rpy="{rpy}"/><axis xyz="0 1 0"/></joint>'
+
+    def mass(kilograms, inertia):
+        return f'<inertial><mass value="{kilograms}"/>{inertia}</inertial>'
+
+    def wheel(side, y):
+        halves = "".join(
+            f'<collision><geometry><mesh filename="half.stl" scale="0.001 0.001 {z}"/></geometry></collision>' for z in (0.001, -0.001)
+        )
+        return (
+            f'<link name="{side}_hub"/><link name="{side}_tyre">{mass(0.1, WHEEL_INERTIA)}{halves}</link>'
+            + joint(f"wheel_{side}", "continuous", "base_link", f"{side}_hub", f"0 {y} 0.025")
+            + joint(f"{side}_fixed", "fixed", f"{side}_hub", f"{side}_tyre", "0 0 0", "-1.5707963 0 0")
+        )
+
+    def castor(side, x):
+        ball = '<collision><geometry><sphere radius="0.012"/></geometry></collision>'
+        return f'<link name="caster_{side}">{mass(0.02, WHEEL_INERTIA)}{ball}</link>' + joint(
+            f"caster_{side}_joint", "fixed", "base_link", f"caster_{side}", f"{x} 0 0.002"
+        )
+
+    def ray(link, plugin, samples):
+        scan = f"<scan><horizontal><samples>{samples}</samples><min_angle>-0.3</min_angle><max_angle>0.3</max_angle></horizontal></scan>"
+        ranges = "<range><min>0.03</min><max>2.5</max></range>"
+        return (
+            f'<link name="{link}"/>'
+            + joint(f"{link}_joint", "fixed", "base_link", link, "0.1 0 0.15", "0 0 0.2")
+            + f'<gazebo reference="{link}"><sensor type="ray" name="{link}"><update_rate>20</update_rate><ray>{scan}{ranges}</ray>'
+            f'<plugin name="{link}" filename="{plugin}"/></sensor></gazebo>'
+        )
+
+    path = folder / "kobuki.urdf"
+    body = '<collision><origin xyz="0 0 0.06"/><geometry><cylinder radius="0.17" length="0.08"/></geometry></collision>'
+    path.write_text(
+        '<robot name="kobuki"><link name="base_footprint"/>'
+        + joint("base", "fixed", "base_footprint", "base_link", "0.02 0 0.01")
+        + f'<link name="base_link">{mass(2.4, BOX_INERTIA)}{body}</link>'
+        + wheel("left", 0.115) + wheel("right", -0.115) + castor("front", 0.115) + castor("back", -0.115)
+        + ray("front_sonar", "libgazebo_ros_range.so", 5) + ray("laser", "libgazebo_ros_laser.so", 90)
+        + "</robot>"
+    )  # fmt: skip
+    return path
+
+
 def bare(folder):
     """No inertia, no collisions, names in Italian, wheels as meshes made off their axis, root above the axle and behind it."""
     folder.mkdir(parents=True, exist_ok=True)
@@ -211,4 +264,4 @@ def bare(folder):
     return path
 
 
-ROBOTS = {f.__name__: f for f in (solidworks, gazebo_urdf, gazebo_sdf, skid_steer, bare)}
+ROBOTS = {f.__name__: f for f in (solidworks, gazebo_urdf, gazebo_sdf, skid_steer, kobuki, bare)}

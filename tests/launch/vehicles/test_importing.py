@@ -2,14 +2,18 @@
 
 import numpy as np
 import pytest
+import trimesh
 
 from tests.launch.vehicles.driving import drive
 from tests.launch.vehicles.foreign_robots import ROBOTS
 from uvf.launch.vehicles.importing import NOTES, import_vehicle
 from uvf.launch.vehicles.inspection import inspect
 from uvf.runtime.params import BadInput
+from uvf.runtime.solid_mesh import triangles
+from uvf.runtime.urdf_model import load_urdf
 from uvf.runtime.vehicle_file import load_vehicle
 
+XACRO = '<robot name="x" xmlns:xacro="http://www.ros.org/wiki/xacro">'
 TOLD = {
     "solidworks": ["axes turned: forward was (0, 1, 0)", "guessed: whl_l (left) and whl_r (right) drive; wheel radius 0.06 m, track 0.3 m"],
     "gazebo_urdf": [
@@ -23,6 +27,10 @@ TOLD = {
     ],
     "gazebo_sdf": ["caster_wheel (ball)", "plugins dropped: libsomething.so", "radar on chassis", "rates above 100 Hz lowered"],
     "skid_steer": ["skid steer is not modelled", "rear_left_joint, rear_right_joint"],
+    "kobuki": [
+        "castors before and behind the axle lifted by 0.5 mm",
+        "wheel_left (left) and wheel_right (right) drive; wheel radius 0.035 m",
+    ],
     "bare": ["masses guessed", "no collision shape in the file", "giunto_sinistra (left)"],
 }
 
@@ -77,6 +85,75 @@ def test_sensors_are_taken_over_with_their_figures_and_poses(tmp_path):
     assert lidar.mount.rpy == pytest.approx((0, 0, np.pi))
 
 
+def test_a_sonar_made_of_rays_does_not_take_the_lidars_place(tmp_path):
+    import_one(tmp_path, "kobuki")
+    sensors = load_vehicle(tmp_path / "vehicles", "it").sensors
+    (sonar,) = sensors.sonars
+    assert (sonar.hz, sonar.fov, sonar.range_min, sonar.range_max) == (20.0, pytest.approx(0.6), 0.03, 2.5)
+    assert (sensors.lidar.beams, sensors.lidar.frame) == (90, "laser")
+    for mount in (sonar.mount, sensors.lidar.mount):
+        assert (mount.xyz, mount.rpy) == (pytest.approx((0.1, 0.0, 0.16)), pytest.approx((0.0, 0.0, 0.2)))
+
+
+def test_a_pose_in_a_link_may_name_another_frame_of_the_model(tmp_path):
+    plain = '<sensor name="scan" type="gpu_lidar"><pose>0.9 0 0.4 0 0 0</pose>'
+    named = (
+        '<frame name="mast" attached_to="chassis"><pose>0.5 0 0.3 0 0 1.57079632679</pose></frame>',
+        '<sensor name="scan" type="gpu_lidar"><pose relative_to="mast">0 -0.4 0.1 0 0 -1.57079632679</pose>',
+    )
+    mounts = []
+    for edit in ((plain, plain), (plain, named[1])):
+        source = ROBOTS["gazebo_sdf"](tmp_path / "source")
+        source.write_text(source.read_text().replace(*edit).replace("</model>", named[0] + "</model>"))
+        import_vehicle(source, tmp_path / "vehicles" / f"it{len(mounts)}", {})
+        mounts.append(load_vehicle(tmp_path / "vehicles", f"it{len(mounts)}").sensors.lidar.mount)
+    assert mounts[1].xyz == pytest.approx(mounts[0].xyz)
+    assert mounts[1].rpy == pytest.approx(mounts[0].rpy, abs=1e-6)
+
+
+def test_a_base_footprint_below_base_link_is_not_doubled(tmp_path):
+    """As the Husky has it: the frame is there already, above base_link."""
+    foot = '<link name="base_footprint"/><joint name="f" type="fixed"><parent link="telaio"/><child link="base_footprint"/></joint></robot>'
+    notes = import_one(tmp_path, "bare", ("</robot>", foot))
+    assert any("frames without mass or shape dropped: base_footprint" in line for line in notes)
+    assert "base_footprint" not in (tmp_path / "vehicles" / "it" / "it.urdf").read_text()
+
+
+def test_castors_that_swivel_are_no_skid_steer(tmp_path):
+    castors = "".join(
+        f'<link name="fork_{x}"/><joint name="turn_{x}" type="continuous"><parent link="telaio"/><child link="fork_{x}"/>'
+        f'<origin xyz="{x} 0 -0.07"/><axis xyz="0 0 1"/></joint><link name="roll_{x}"><visual><origin rpy="1.57079633 0 0"/>'
+        f'<geometry><cylinder radius="0.03" length="0.02"/></geometry></visual></link><joint name="axle_{x}" type="continuous">'
+        f'<parent link="fork_{x}"/><child link="roll_{x}"/><axis xyz="0 1 0"/></joint>'
+        for x in (-0.05, 0.2)
+    )
+    notes = import_one(tmp_path, "bare", ("</robot>", castors + "</robot>"))
+    assert not any("skid steer" in line for line in notes)
+    assert any("castors became balls" in line and "roll_-0.05" in line and "roll_0.2" in line for line in notes)
+
+
+def test_a_mesh_that_is_missing_is_told_as_the_file_names_it(tmp_path):
+    notes = import_one(tmp_path, "gazebo_urdf", ("package://bot/meshes/shell.stl", "package://elsewhere/gone.stl"))
+    assert any("meshes that are missing: package://elsewhere/gone.stl" in line for line in notes)
+
+
+def test_a_joint_may_be_placed_by_its_parent_and_the_link_by_the_joint(tmp_path):
+    """As sdformat writes a URDF."""
+    source = ROBOTS["gazebo_sdf"](tmp_path / "source")
+    plain = source.read_text()
+    import_vehicle(source, tmp_path / "vehicles" / "plain", {})
+    for side, y in (("left", 0.625029), ("right", -0.625029)):
+        x = 0.554283 if side == "left" else 0.554282
+        joint = f'<joint name="{side}_wheel_joint" type="revolute">'
+        plain = plain.replace(joint, f'{joint}<pose relative_to="chassis">{x + 0.151427} {y} -0.2 0 0 0</pose>')
+        plain = plain.replace(f'relative_to="__model__">{x} {y} -0.025 -1.5707 0 0', f'relative_to="{side}_wheel_joint">0 0 0 -1.5707 0 0')
+    assert plain.count('relative_to="chassis"') == plain.count('_wheel_joint">0 0 0') == 2
+    source.write_text(plain)
+    import_vehicle(source, tmp_path / "vehicles" / "converted", {})
+    one, other = (load_vehicle(tmp_path / "vehicles", name).ground for name in ("plain", "converted"))
+    assert (other.track, other.wheel_radius, other.radius) == pytest.approx((one.track, one.wheel_radius, one.radius), abs=1e-4)
+
+
 def test_arguments_of_the_xacro_reach_it(tmp_path):
     notes = import_one(tmp_path, "gazebo_urdf", arguments={"prefix": "left_handed_"})
     assert any("left_handed_left_wheel_joint (left)" in line for line in notes)
@@ -96,10 +173,32 @@ def test_a_folder_that_exists_is_left_alone(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "text", ["", "no xml", "<html/>", "<robot/>", '<sdf version="1.6"/>', '<sdf version="1.6"><model name="x"/></sdf>']
+    "text",
+    [
+        "",
+        "no xml",
+        "<html/>",
+        "<robot/>",
+        '<sdf version="1.6"/>',
+        '<sdf version="1.6"><model name="x"/></sdf>',
+        '<sdf version="new"><model name="x"><joint name="j"/></model></sdf>',
+        XACRO + '<xacro:macro name="m"><xacro:m/></xacro:macro><xacro:m/></robot>',
+        XACRO + '<xacro:include filename="x.urdf"/></robot>',
+    ],
 )
 def test_a_file_that_is_no_robot_is_refused_in_one_line(tmp_path, text):
     (tmp_path / "x.urdf").write_text(text)
     with pytest.raises(BadInput) as caught:
         import_vehicle(tmp_path / "x.urdf", tmp_path / "it", {})
     assert "\n" not in str(caught.value) and "x.urdf" in str(caught.value)
+
+
+def test_a_small_part_of_a_robot_in_millimetres_is_in_millimetres_too(tmp_path):
+    screw = '<link name="${p}laser"><visual><geometry><mesh filename="meshes/screw.stl"/></geometry></visual></link>'
+    source = ROBOTS["gazebo_urdf"](tmp_path / "source")
+    trimesh.creation.icosphere(radius=3.0).export(source.parent / "meshes" / "screw.stl")
+    source.write_text(source.read_text().replace('<link name="${p}laser"/>', screw))
+    import_vehicle(source, tmp_path / "vehicles" / "it", {})
+    model = load_urdf(next((tmp_path / "vehicles" / "it").glob("*.urdf")))
+    (looks,) = next(link.visuals for name, link in model.links.items() if name.endswith("laser"))
+    assert np.ptp(triangles(looks)[0], axis=0).max() == pytest.approx(0.006, rel=0.01)

@@ -1,5 +1,6 @@
 """Folders with one fault each: each is named, with its file, and nothing else is said."""
 
+import re
 import shutil
 
 import pytest
@@ -12,6 +13,7 @@ URDF, YAML = "burger.urdf", "vehicle.yaml"
 MOVED = '<origin xyz="0 0.08 0.033"/>'
 CHASSIS = '<cylinder radius="0.07" length="0.143"/>'
 LOOSE = '<link name="hook"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial></link></robot>'
+FOOT = '<link name="base_footprint"/><joint name="f" type="fixed"><parent link="lidar"/><child link="base_footprint"/></joint></robot>'
 LEFT_BALL = '<collision>\n      <geometry><sphere radius="0.033"/></geometry>\n    </collision>'
 
 BROKEN = {
@@ -30,6 +32,12 @@ BROKEN = {
     ),
     "a detached link": (URDF, "</robot>", LOOSE, ["one link must be the root, but without a parent joint are: base_link, hook"]),
     "a link given twice": (URDF, "</robot>", LOOSE.replace("hook", "lidar"), ["link 'lidar' is given twice"]),
+    "a second base_footprint": (
+        URDF,
+        "</robot>",
+        FOOT,
+        ["link 'base_footprint': every vehicle has a frame of that name above base_link"],
+    ),
     "an unknown kind of joint": (URDF, 'type="fixed"', 'type="fixd"', ["joint 'castor_joint': type 'fixd'; did you mean 'fixed'?"]),
     "a wheel in the air": (
         URDF,
@@ -154,6 +162,33 @@ def test_a_castor_that_is_missing_is_named(folder):
     )
     (fault,) = inspect(folder).faults
     assert "stands on a line, its wheels alone; give it a castor" in fault
+
+
+def test_castors_that_take_the_wheels_weight_are_a_note(folder):
+    link, joint = (
+        re.search(f'<{tag} name="castor_{tag}".*?</{tag}>', (folder / "burger.urdf").read_text(), re.DOTALL)[0] for tag in ("link", "joint")
+    )
+    second = (link + joint).replace("castor_", "front_").replace('name="castor', 'name="front').replace('xyz="-0.081', 'xyz="0.081')
+    spoil(folder, URDF, "</robot>", second + "</robot>")
+    assert any("castors before and behind the axle" in note for note in inspect(folder).notes)
+
+
+@pytest.mark.parametrize("kind", ["lidar", "encoders"])
+def test_a_sensor_that_every_mission_needs_is_missed_in_a_note(folder, kind):
+    data = yaml.safe_load((folder / YAML).read_text())
+    del data["sensors"][kind]
+    (folder / YAML).write_text(yaml.safe_dump(data, sort_keys=False))
+    found = inspect(folder)
+    assert found.faults == []
+    assert any(note.startswith(f"no {kind}: no mission takes it") for note in found.notes)
+
+
+def test_a_ring_of_joints_about_a_wheel_is_named(folder):
+    hub = '<link name="hub"/>'
+    ends = (("wheel_left_link", "hub"), ("hub", "wheel_left_link"))
+    joints = "".join(f'<joint name="ring_{a}" type="fixed"><parent link="{a}"/><child link="{b}"/></joint>' for a, b in ends)
+    spoil(folder, URDF, "</robot>", hub + joints + "</robot>")
+    assert any("hangs on itself in a ring of joints" in fault for fault in inspect(folder).faults)
 
 
 def test_beams_that_meet_the_body_are_a_note(folder):

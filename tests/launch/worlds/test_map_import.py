@@ -6,9 +6,9 @@ from PIL import Image
 
 from uvf.launch.worlds.imports import Options, import_world
 from uvf.launch.worlds.map_image import greedy_rectangles
+from uvf.runtime.footing import Footing
 from uvf.runtime.params import BadInput
 from uvf.runtime.world_file import load_world
-from uvf.runtime.world_geometry import clearance
 
 CELLS = np.zeros((12, 20), dtype=bool)  # row 0 at the bottom
 CELLS[0] = CELLS[-1] = CELLS[:, 0] = CELLS[:, -1] = True
@@ -27,12 +27,13 @@ def occupied(world, x, y, yaw):
     c, s = np.cos(yaw), np.sin(yaw)
     rows, columns = CELLS.shape
     points = [((j + 0.5) * 0.5, (i + 0.5) * 0.5) for i in range(rows) for j in range(columns)]
-    found = [clearance(world, x + c * dx - s * dy, y + s * dx + c * dy, (0.5, 0.6)) == 0 for dx, dy in points]
+    footing = Footing(world)
+    found = [footing.room(x + c * dx - s * dy, y + s * dx + c * dy, (0.5, 0.6)) == 0 for dx, dy in points]
     return np.array(found).reshape(CELLS.shape)
 
 
 @pytest.mark.parametrize("yaw", [0.0, 0.6])
-@pytest.mark.parametrize("negate", [0, 1])
+@pytest.mark.parametrize("negate", [0, 1, "true"])
 def test_walls_stand_on_the_occupied_cells(tmp_path, yaw, negate):
     pixels = np.where(bool(negate) != CELLS, 0, 254)
     head = f"origin: [-3.0, 2.0, {yaw}]\nnegate: {negate}\noccupied_thresh: 0.65\nfree_thresh: 0.196"
@@ -46,7 +47,15 @@ def test_unknown_cells_are_floor_and_are_told(tmp_path):
     pixels = np.where(CELLS, 0, 254)
     pixels[8:11, 2:6] = 205
     world, notes = taken(tmp_path, "origin: [0, 0, 0]", pixels, "m.png")
-    assert clearance(world, 2.0, 4.75, (0.5, 0.6)) > 0
+    assert Footing(world).room(2.0, 4.75, (0.5, 0.6)) > 0
+    assert "does not know are floor here: 12" in notes
+
+
+def test_the_pixels_of_a_raw_map_are_the_values_of_its_cells(tmp_path):
+    pixels = np.where(CELLS, 100, 0)
+    pixels[8:11, 2:6] = 255
+    world, notes = taken(tmp_path, "origin: [0, 0, 0]\nmode: raw", pixels)
+    assert (occupied(world, 0.0, 0.0, 0.0) == CELLS).all()
     assert "does not know are floor here: 12" in notes
 
 
@@ -65,6 +74,7 @@ def test_rectangles_cover_each_cell_once(seed):
     ("yaml", "part"),
     [
         ("origin: [0, 0, 0]\nresolutoin: 1", "did you mean 'resolution'"),
+        ("origin: [0, 0, 0]\nmode: tri", "no 'tri' here; did you mean 'trinary'"),
         ("origin: [0]", "write x, y"),
         ("origin: [0, 0, 0]", "cannot be read as a pic"),
     ],

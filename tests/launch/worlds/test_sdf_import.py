@@ -255,3 +255,13 @@ def test_a_world_that_is_there_is_not_overwritten_unless_asked(tmp_path):
     taken(tmp_path, model("a", UNIT))
     with pytest.raises(BadInput, match="is there already"):
         taken(tmp_path, model("a", UNIT))
+
+
+@pytest.mark.parametrize(("bits", "touches"), [("0x01", True), ("01", True), ("65535", True), ("0", False), ("0x00", False)])
+def test_what_touches_nothing_is_left_out_however_its_bits_are_written(tmp_path, bits, touches):
+    surface = f"<surface><contact><collide_bitmask>{bits}</collide_bitmask></contact></surface>"
+    ghost = BOX.format("1 1 1").replace("</geometry>", f"</geometry>{surface}")
+    world = taken(
+        tmp_path, model("solid", BOX.format("2 2 2"), "<pose>5 0 1 0 0 0</pose>") + model("ghost", ghost, "<pose>0 0 0.5 0 0 0</pose>")
+    )
+    assert len(world[0].boxes) == 1 + touches

@@ -30,10 +30,10 @@ class FakePage:
 class Station:
     """The service on a fake page, with scripted vehicles; ``run`` lets simulation and wall time pass alike."""
 
-    def __init__(self, accept=True):
+    def __init__(self, accept=True, site=None):
         self.script = Script(accept=accept)
         self.page = FakePage()
-        self.site = demo_site()
+        self.site = site or demo_site()
         self.service = GroundStation(self.site, self.page)
         self.shell = Shell(Host(GroundStation, lambda: self.service), self.script.bus)
         self.t = 0.0

@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import msgspec
 import numpy as np
 
 from schemas import topics
@@ -31,6 +32,7 @@ from uvf.maths.rotations import from_euler
 from uvf.runtime.bus import LocalBus
 from uvf.runtime.clock import NS
 from uvf.runtime.site import ROOT, load_site
+from uvf.runtime.vehicle_file import load_vehicle
 
 UGV, UAV = "burger", "milvus"
 LEGS = ((200.0, -150.0), (200.0, 150.0), (-200.0, 150.0), (-200.0, -150.0))
@@ -38,6 +40,14 @@ LEGS = ((200.0, -150.0), (200.0, 150.0), (-200.0, 150.0), (-200.0, -150.0))
 
 def demo_site():
     return load_site(Path(ROOT / "missions/demo.yaml"))
+
+
+def with_eyes(site, of="milvus_survey"):
+    """The same site, its aircraft with the sensors of another."""
+    file = site.members[UAV].file
+    sensors = load_vehicle(site.vehicles_folder, of).sensors
+    object.__setattr__(site.members[UAV], "file", msgspec.structs.replace(file, sensors=sensors))
+    return site
 
 
 def ugv_at(t):
@@ -68,6 +78,7 @@ class Script:
         self.asked = []
         self.stops = []
         self.drives = []
+        self.gimbals = []
         self.job = "explore"
         self._publishers = {}
         for name in (UGV, UAV):
@@ -75,6 +86,7 @@ class Script:
                 self.bus.serve(request.at(name), lambda query, n=name, r=request: self._answer(n, r, query))
         self.bus.subscribe(topics.STOP.by("gcs").at("sys"), topics.STOP.qos, self._hear_stop)
         self.bus.subscribe(topics.DRIVE.by("gcs").at(UGV), topics.DRIVE.qos, self._hear_drive)
+        self.bus.subscribe(topics.GIMBAL.by("gcs").at(UAV), topics.GIMBAL.qos, self._hear_gimbal)
         self.mode = {UGV: Mode.MODE_MISSION, UAV: Mode.MODE_MISSION}
         self.armed = {UGV: True, UAV: True}
         self.goal = (4.5, 4.2)
@@ -86,6 +98,9 @@ class Script:
     def _hear_drive(self, sample):
         message = topics.DRIVE.message.FromString(sample.payload)
         self.drives.append((message.linear, message.angular))
+
+    def _hear_gimbal(self, sample):
+        self.gimbals.append(topics.GIMBAL.message.FromString(sample.payload))
 
     def _answer(self, name, request, query):
         message = request.message.FromString(query.payload)

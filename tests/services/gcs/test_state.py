@@ -1,5 +1,8 @@
 """The model holds what was heard last, and how long ago."""
 
+import dataclasses
+
+import msgspec
 import numpy as np
 import pytest
 
@@ -9,6 +12,7 @@ from schemas.messages import Clock, Event, FrameTransform, LaserScan, NavState, 
 from services.gcs.state import LOST_AFTER, STALE_AFTER, Model, link_of
 from tests.services.gcs.fakes import Station
 from tests.services.gcs.scripted import UAV, UGV, demo_site, uav_at, ugv_at
+from uvf.runtime.vehicle_file import Mount
 
 
 def test_a_ground_vehicle_is_chosen_first():
@@ -61,6 +65,17 @@ def test_scan_points_lie_where_the_beams_hit():
     mount = model.vehicles[UGV].member.file.sensors.lidar.mount.xyz
     ahead, behind = (3.0, 2.0 + mount[0] + 2.0, mount[2]), (3.0, 2.0 + mount[0] - 1.0, mount[2])
     assert model.vehicles[UGV].scan_points == pytest.approx(np.array((ahead, behind)))
+
+
+def test_the_scan_of_a_lidar_that_hangs_upside_down_is_no_mirror_image():
+    site = demo_site()
+    member = site.members[UGV]
+    lidar = msgspec.structs.replace(member.file.sensors.lidar, mount=Mount(xyz=(0.0, 0.0, 0.2), rpy=(np.pi, 0.0, 0.0)))
+    file = msgspec.structs.replace(member.file, sensors=msgspec.structs.replace(member.file.sensors, lidar=lidar))
+    model = Model(dataclasses.replace(site, members={**site.members, UGV: dataclasses.replace(member, file=file)}))
+    model.hear(0.0, "pose", {UGV: PoseInFrame(pose=planar_pose(0.0, 0.0, 0.0))})
+    model.hear(0.0, "scan", {UGV: LaserScan(start_angle=0.0, end_angle=np.pi / 2, ranges=[1.0, 2.0])})
+    assert model.vehicles[UGV].scan_points == pytest.approx(np.array(((1.0, 0.0, 0.2), (0.0, -2.0, 0.2))))
 
 
 def test_without_a_pose_a_scan_has_no_place():

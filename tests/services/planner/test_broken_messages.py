@@ -12,6 +12,7 @@ from services.planner.planner_service import PlannerParams, PlannerService
 from services.planner.tracker_service import TrackerParams, TrackerService
 from tests.services.autopilot.ground.test_service import BODY
 from tests.services.planner.plans import room
+from uvf.maths import transforms
 from uvf.maths.planar import IDENTITY
 from uvf.runtime.bus import LocalBus
 from uvf.runtime.shell import Shell
@@ -44,7 +45,7 @@ class Bench:
         self.bus, self.told, self.t = LocalBus(), [], 0.0
         makers = {
             PlannerService: lambda: PlannerService(IDENTITY, 0.1, True, PlannerParams()),
-            TrackerService: lambda: TrackerService(BODY, IDENTITY, TrackerParams()),
+            TrackerService: lambda: TrackerService(BODY, transforms.IDENTITY, TrackerParams()),
         }
         self.shells = [Shell(Host(kind, make, "v"), self.bus, self.told.append) for kind, make in makers.items()]
 

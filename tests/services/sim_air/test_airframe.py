@@ -1,13 +1,16 @@
 """Milvus in JSBSim: it trims, stays trimmed, answers its surfaces with the right signs and derivatives."""
 
+import shutil
 from pathlib import Path
 
 import msgspec
 import numpy as np
 import pytest
 
-from services.sim_air.airframe import Airframe, Controls, Start
+from services.sim_air.airframe import Airframe
+from services.sim_air.states import Start
 from services.sim_air.trim import Trim
+from services.sim_air.wiring import Controls
 from uvf.maths import atmosphere, rotations
 from uvf.maths.geodesy import LocalTangent
 from uvf.runtime.params import BadInput
@@ -20,8 +23,8 @@ TANGENT = LocalTangent.from_degrees(40.77, 14.79, 300.0)
 CALM = np.zeros(3)
 
 
-def start(speed=25.0, yaw=0.3, wind=CALM):
-    return Start(np.array((-200.0, -150.0, 60.0)), yaw, speed, wind)
+def start(speed=25.0, yaw=0.3, wind=CALM, **kwargs):
+    return Start(np.array((-200.0, -150.0, 60.0)), yaw, speed, wind, **kwargs)
 
 
 def airborne(**kwargs):
@@ -48,13 +51,47 @@ def euler(motion):
 def test_level_flight_trims(speed):
     _, trim = airborne(speed=speed)
     assert trim.converged
-    assert abs(trim.elevator) < BODY.max_elevator
+    assert abs(trim.elevator) < BODY.controls.elevator.limit
 
 
 @pytest.mark.parametrize("speed", [8.0, 60.0])
 def test_a_speed_that_it_cannot_fly_is_refused(speed):
     with pytest.raises(BadInput, match="no level flight"):
         airborne(speed=speed)
+
+
+@pytest.mark.parametrize("climb", [-0.05, 0.06])
+def test_a_climb_goes_up_as_steeply_as_it_is_told(climb):
+    airframe, trim = airborne(climb=climb)
+    motion = fly(airframe, 5.0)
+    assert motion.position[2] - 60.0 == pytest.approx(25.0 * np.sin(climb) * 5.0, abs=0.3)
+    assert motion.airspeed == pytest.approx(25.0, abs=0.02)
+    assert (trim.throttle > airborne()[1].throttle) == (climb > 0)
+
+
+@pytest.mark.parametrize("turn_rate", [0.2, -0.25])
+def test_a_turn_goes_round_level_at_its_rate_banked_without_side_slip(turn_rate):
+    airframe, trim = airborne(turn_rate=turn_rate)
+    begin = airframe.motion().position
+    motion = fly(airframe, np.pi / abs(turn_rate))  # half a turn
+    radius = 25.0 / turn_rate
+    left = np.array((-np.sin(0.3), np.cos(0.3), 0.0))
+    assert motion.position == pytest.approx(begin + 2 * radius * left, abs=2.0)
+    assert motion.airspeed == pytest.approx(25.0, abs=0.05)
+    assert np.tan(trim.roll) == pytest.approx(-25.0 * turn_rate / 9.8, rel=0.03)
+    assert abs(motion.specific_force[1]) < 0.3
+
+
+def test_more_than_it_can_climb_is_refused():
+    with pytest.raises(BadInput, match=r"no climb or turn like this at 25\.0 m/s"):
+        airborne(climb=0.9)
+
+
+def test_it_begins_in_wind_as_it_does_in_calm_air():
+    calm, windy = airborne(turn_rate=0.2)[0], airborne(turn_rate=0.2, wind=np.array((5.0, 2.0, 0.0)))[0]
+    before, after = fly(calm, 3.0), fly(windy, 3.0)
+    assert after.position - before.position == pytest.approx((15.0, 6.0, 0.0), abs=0.3)
+    assert after.airspeed == pytest.approx(before.airspeed, abs=0.05)
 
 
 def test_trimmed_flight_stays_level_straight_and_as_fast():
@@ -95,6 +132,41 @@ def test_pressures_are_those_of_height_and_airspeed():
     assert air.static_pressure == pytest.approx(atmosphere.pressure(360.0), rel=1e-4)
     rho = atmosphere.density(air.static_pressure, air.temperature)
     assert atmosphere.airspeed(air.differential_pressure, rho) == pytest.approx(25.0, abs=0.02)
+
+
+def test_accelerometers_are_at_the_centre_of_gravity_wherever_the_model_has_its_pilots_eye(tmp_path):
+    shutil.copytree(VEHICLES / "milvus", tmp_path / "milvus")
+    model = tmp_path / "milvus" / "milvus" / "milvus.xml"
+    eye = '<location name="EYEPOINT" unit="M"><x>'
+    model.write_text(model.read_text().replace(eye + "0", eye + "-3"))
+    forces = []
+    for folder in (VEHICLES, tmp_path):
+        airframe = Airframe(folder / "milvus", BODY, TANGENT)
+        airframe.command(held(airframe.start(start()), elevator=-0.1))
+        forces.append(fly(airframe, 0.2).specific_force)
+    assert forces[0] == pytest.approx(forces[1], abs=1e-9)
+    assert abs(forces[0][2] - 9.8) > 2.0, "it pulls up"
+
+
+def test_turning_faster_is_the_slope_of_the_turning():
+    airframe, trim = airborne()
+    airframe.command(held(trim, elevator=-0.05, aileron=0.05))
+    before = fly(airframe, 0.1)
+    after = fly(airframe, 1 / BODY.physics_hz)
+    slope = (after.angular_velocity - before.angular_velocity) * BODY.physics_hz
+    assert slope == pytest.approx(before.angular_acceleration, rel=0.2, abs=0.05)
+
+
+def test_wind_from_the_side_or_from_behind_is_no_airspeed():
+    airframe = Airframe(VEHICLES / "milvus", BODY, TANGENT)
+    pressures = {}
+    for name, wind in (("ahead", (-10.0, 0.0)), ("side", (0.0, 10.0)), ("behind", (10.0, 0.0))):
+        airframe.stand(Start(np.zeros(3), 0.0, 25.0, np.array((*wind, 0.0))))
+        airframe.step()
+        pressures[name] = airframe.air().differential_pressure
+    assert pressures["ahead"] == pytest.approx(0.5 * 1.19 * 100.0, rel=0.02)
+    assert pressures["side"] == pytest.approx(0.0, abs=0.01)
+    assert pressures["behind"] == 0.0
 
 
 def test_a_positive_aileron_rolls_right():
@@ -191,7 +263,7 @@ def test_a_broken_model_is_named(tmp_path):
 
 def test_full_command_is_the_deflection_that_the_vehicle_file_says():
     airframe, _ = airborne()
-    airframe.command(Controls(BODY.max_aileron, -BODY.max_elevator, BODY.max_rudder, 1.0))
+    airframe.command(Controls(BODY.controls.aileron.limit, -BODY.controls.elevator.limit, BODY.controls.rudder.limit, 1.0))
     airframe.step()
     positions = [airframe._fdm[f"fcs/{name}-pos-rad"] for name in ("left-aileron", "elevator", "rudder")]
-    assert positions == pytest.approx((BODY.max_aileron, -BODY.max_elevator, BODY.max_rudder))
+    assert positions == pytest.approx((BODY.controls.aileron.limit, -BODY.controls.elevator.limit, BODY.controls.rudder.limit))

@@ -6,7 +6,8 @@ import shutil
 import numpy as np
 import pytest
 
-from services.sim_air.airframe import Airframe, Start
+from services.sim_air.airframe import Airframe
+from services.sim_air.states import Start
 from uvf.maths.geodesy import LocalTangent
 from uvf.runtime.params import BadInput
 from uvf.runtime.site import ROOT
@@ -25,7 +26,7 @@ MISTAKES = {
     "no metrics": (*without("metrics"), "there is no <metrics> section; add it"),
     "no mass": (*without("mass_balance"), "there is no <mass_balance> section; add it"),
     "no ground reactions": (*without("ground_reactions"), "there is no <ground_reactions> section; add it"),
-    "no propulsion": (*without("propulsion"), "no level flight at 25.0 m/s"),
+    "no propulsion": (*without("propulsion"), "nothing makes the property 'fcs/throttle-pos-norm'; mend its name"),
     "an unknown property": ("aero/alpha-rad", "aero/alhpa-rad", "nothing makes the property 'aero/alhpa-rad'; mend its name"),
     "a broken tag": ("</metrics>", "</metrix>", "milvus.xml:21: not valid XML: mismatched tag"),
     "nothing": (".*", "", "milvus.xml:1: not valid XML: no element found"),
@@ -33,8 +34,9 @@ MISTAKES = {
     "another kind of XML": (".*", "<sdf/>", "the outermost tag is <sdf>; a JSBSim model begins with <fdm_config>"),
     "a mass that is none": (r"> 11\.0 <", "> nan <", "mass_balance: emptywt is 'nan'; it must be a number above zero"),
     "no inertia": (r"> 0\.8244 <", "> 0 <", "mass_balance: ixx is '0'; it must be a number above zero"),
+    "an inertia that no body has": (r"> 1\.759 <", "> 7.1 <", "izz is 7.1, more than ixx + iyy = 1.9594; no body has such inertia"),
     "an unknown unit": ('unit="KG"', 'unit="STONE"', 'JSBSim refuses it: Supplied unit: "STONE" does not exist'),
-    "an engine that is not there": ("milvus_motor", "milvus_moter", "JSBSim refuses it; look at its <file=...> names"),
+    "an engine that is not there": ("milvus_motor", "milvus_moter", "no engine/milvus_moter.xml for the engine; did you mean 'milvus_m"),
 }
 
 

@@ -1,15 +1,16 @@
 """Each sensor's errors are those of the vehicle file, in rate, size and delay."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from services.sim_air.airframe import Air, Motion
-from services.sim_air.sensors import Charge, Gnss, Imu, Pressures
+from services.sim_air.sensors import Gnss, Imu, Pressures
+from services.sim_air.states import Air, Motion
 from uvf.maths import rotations
 from uvf.maths.geodesy import LocalTangent
-from uvf.runtime.vehicle_file import AirDataSensor, BatteryPack, GnssSensor, ImuSensor, Mount
+from uvf.runtime.vehicle_file import AirDataSensor, GnssSensor, ImuSensor, Mount
 
 FIELD = np.array((2e-6, 25e-6, -39e-6))
 TANGENT = LocalTangent.from_degrees(40.77, 14.79, 300.0)
@@ -30,6 +31,14 @@ def test_a_sensor_without_errors_reads_the_truth_in_its_own_frame():
     sample = Imu(ImuSensor(quarter_left, 100.0), FIELD, rng()).read(0.01, moving())
     assert sample.angular_velocity == pytest.approx((0.2, -0.1, 0.3))
     assert sample.specific_force == pytest.approx((0.0, 0.0, 9.81))
+
+
+def test_away_from_the_centre_of_gravity_an_imu_feels_the_turning():
+    """On a disc at w about z, r ahead: w^2 r inwards, and r dw/dt to the left."""
+    turning = replace(moving(), angular_velocity=np.array((0.0, 0.0, 2.0)), angular_acceleration=np.array((0.0, 0.0, 3.0)))
+    sample = Imu(ImuSensor(Mount(xyz=(0.5, 0.0, 0.0)), 100.0), FIELD, rng()).read(0.01, turning)
+    assert sample.specific_force == pytest.approx((-2.0, 1.5, 9.81))
+    assert sample.angular_velocity == pytest.approx((0.0, 0.0, 2.0))
 
 
 def test_imu_errors_are_a_constant_bias_and_white_noise():
@@ -73,20 +82,6 @@ def test_pressures_scatter_about_a_constant_bias():
     assert static.std() == pytest.approx(3.0, rel=0.1)
     assert abs(static.mean() - 97_000) > 1.0
     assert np.mean([r.differential_pressure for r in read]) == pytest.approx(370.0, abs=0.5)
-
-
-def test_a_battery_gives_its_energy_and_sinks_in_voltage():
-    charge = Charge(BatteryPack(energy=1000.0, full=50.0, empty=40.0))
-    charge.draw(85.0, 5.0)
-    assert charge.remaining == pytest.approx(0.5)
-    assert charge.voltage == pytest.approx(45.0)
-    assert charge.current * charge.voltage == pytest.approx(85.0 / Charge.EFFICIENCY)
-
-
-def test_an_empty_battery_stays_empty():
-    charge = Charge(BatteryPack(energy=10.0, full=50.0, empty=40.0, avionics=5.0))
-    charge.draw(0.0, 100.0)
-    assert charge.remaining == 0.0
 
 
 def test_late_readings_keep_the_moment_they_are_valid_for():

@@ -12,10 +12,15 @@ from schemas import topics
 from schemas.convert import wxyz
 from schemas.messages import NavState, SurfaceCommand
 from services.sim_air.actuators import Actuators
-from services.sim_air.airframe import Air, Controls, Motion
+from services.sim_air.aircraft import Aircraft
+from services.sim_air.around import Around
 from services.sim_air.build import build
 from services.sim_air.sensors import Imu
-from services.sim_air.service import Aircraft, SimAir
+from services.sim_air.service import SimAir
+from services.sim_air.stage import Stage
+from services.sim_air.states import Air, Motion
+from services.sim_air.wiring import Controls, JointAngle
+from tests.services.sim_air.shapes import MILVUS_TREE
 from uvf.maths import rotations
 from uvf.maths.rotations import IDENTITY
 from uvf.runtime.bus import LocalBus
@@ -53,13 +58,30 @@ class Glider:
     def air(self):
         return Air(97_000.0, 370.0, 285.0)
 
-    propeller_speed = 500.0
-    shaft_power = 300.0
+    def joints(self):
+        return [JointAngle("elevator", -0.14), JointAngle("propeller", speed=500.0)]
+
+    def touches(self):
+        return []
+
+    motor_power = 350.0
+
+
+EMPTY = Around([], {"g": MILVUS_TREE}, {}.__getitem__)
+
+
+NOTHING_ASKED = {name: [] for name in SimAir.requests}
 
 
 def glider():
     body = Glider()
-    return body, SimAir([Aircraft("g", MILVUS, body, Actuators(Controls(elevator=-0.14, throttle=0.7), MILVUS.air))], np.zeros(3))
+    level = Controls(elevator=-0.14, throttle=0.7)
+    craft = Aircraft("g", MILVUS, body, Actuators(level, MILVUS.air), level)
+    return body, simulator(craft)
+
+
+def simulator(craft):
+    return SimAir(Stage({"g": craft}, Around([], {"g": MILVUS_TREE}, {}.__getitem__), (), None))
 
 
 def run_two(tmp_path, until=3.0):
@@ -78,7 +100,7 @@ def run_two(tmp_path, until=3.0):
 def test_physics_keeps_up_with_the_clock():
     body, service = glider()
     for k in range(1, 101):
-        service.step(k / 100, surfaces={})
+        service.step(k / 100, surfaces={}, truth={}, objects=None, **NOTHING_ASKED)
     assert body.steps == MILVUS.air.physics_hz
 
 
@@ -88,7 +110,7 @@ TRIMMED = Controls(aileron=0.01, elevator=-0.14, rudder=-0.002, throttle=0.7)
 def after_one_command(command, until):
     """What the body is commanded at each physics step when ``command`` comes once, at the start, and then nothing."""
     body = Glider()
-    service = SimAir([Aircraft("g", MILVUS, body, Actuators(TRIMMED, MILVUS.air))], np.zeros(3))
+    service = simulator(Aircraft("g", MILVUS, body, Actuators(TRIMMED, MILVUS.air), TRIMMED))
     lockstep = Lockstep([Host(SimAir, lambda: service)])
     commands = lockstep.bus.publisher(topics.SURFACE_COMMAND.at("g"), SurfaceCommand.DESCRIPTOR.full_name, topics.SURFACE_COMMAND.qos)
     commands.put(command.SerializeToString(), 0)
@@ -129,11 +151,11 @@ def test_an_aircraft_whose_autopilot_dies_while_it_rolls_stops_rolling_and_flies
 @pytest.mark.parametrize("value", [math.nan, math.inf])
 def test_a_command_that_is_not_finite_is_no_command(name, value):
     body, service = glider()
-    service.step(0.01, surfaces={"g": SurfaceCommand(aileron=0.1, elevator=-0.2, throttle=0.9)})
+    service.step(0.01, surfaces={"g": SurfaceCommand(aileron=0.1, elevator=-0.2, throttle=0.9)}, truth={}, objects=None, **NOTHING_ASKED)
     for k in range(2, 101):
         bad = SurfaceCommand(aileron=-0.3, elevator=0.3, throttle=0.1)
         setattr(bad, name, value)
-        service.step(k / 100, surfaces={"g": bad})
+        service.step(k / 100, surfaces={"g": bad}, truth={}, objects=None, **NOTHING_ASKED)
     assert body.commands[-1].aileron == pytest.approx(0.1, abs=1e-6)
     assert body.commands[-1].elevator == pytest.approx(-0.2, abs=1e-6)
     assert body.commands[-1].throttle == pytest.approx(0.9)
@@ -141,13 +163,13 @@ def test_a_command_that_is_not_finite_is_no_command(name, value):
 
 def test_before_the_first_command_the_surfaces_stay_trimmed():
     body, service = glider()
-    service.step(0.01, surfaces={})
+    service.step(0.01, surfaces={}, truth={}, objects=None, **NOTHING_ASKED)
     assert body.commands[-1].elevator == pytest.approx(-0.14)
 
 
-def test_joints_show_where_the_surfaces_are():
+def test_joints_show_where_the_body_has_its_surfaces():
     _, service = glider()
-    joints = [service.step(k / 100, surfaces={})["joints"].get("g") for k in range(1, 6)][-1]
+    joints = [service.step(k / 100, surfaces={}, truth={}, objects=None, **NOTHING_ASKED)["joints"].get("g") for k in range(1, 6)][-1]
     named = {j.name: j for j in joints.joints}
     assert named["elevator"].position == pytest.approx(-0.14)
     assert named["propeller"].velocity == 500.0
@@ -155,7 +177,7 @@ def test_joints_show_where_the_surfaces_are():
 
 def test_a_sensor_that_is_not_fitted_sends_nothing():
     _, service = glider()
-    out = service.step(0.01, surfaces={})
+    out = service.step(0.01, surfaces={}, truth={}, objects=None, **NOTHING_ASKED)
     assert not out["imu"]
     assert not out["gnss"]
 
@@ -184,9 +206,9 @@ def test_a_cameras_optical_frame_is_told_too(tmp_path):
 
 def test_the_imus_frame_is_that_of_the_vehicle_file():
     _, service = glider()
-    (craft,) = service._aircraft
+    (craft,) = service._stage.aircraft.values()
     craft.imu = Imu(msgspec.structs.replace(MILVUS.sensors.imu, frame="nose_imu"), np.zeros(3), np.random.default_rng(1))
-    assert service.step(0.01, surfaces={})["imu"]["g"].frame_id == "g/nose_imu"
+    assert service.step(0.01, surfaces={}, truth={}, objects=None, **NOTHING_ASKED)["imu"]["g"].frame_id == "g/nose_imu"
 
 
 def test_each_sensor_sends_at_its_own_rate_for_every_aircraft(tmp_path):

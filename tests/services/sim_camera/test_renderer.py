@@ -9,11 +9,14 @@ import pytest
 
 from services.sim_camera.backdrop import SKY
 from services.sim_camera.optics import intrinsics, project
-from services.sim_camera.renderer import BulletRenderer, Look, Pose
+from services.sim_camera.renderer import BulletRenderer, Pose
 from uvf.maths.rotations import from_euler, matrix
+from uvf.runtime.aircraft_shape import AircraftShape, aircraft_shape
+from uvf.runtime.mesh_parts import Part
 from uvf.runtime.site import ROOT
 from uvf.runtime.solid import Solid
-from uvf.runtime.vehicle_file import Camera, Mount
+from uvf.runtime.solid_mesh import load_mesh
+from uvf.runtime.vehicle_file import Camera, Mount, load_vehicle
 from uvf.runtime.world_file import Box, Cylinder, Field, Origin, WorldFile
 from uvf.runtime.world_geometry import solids
 
@@ -22,6 +25,10 @@ CAMERA = Camera(mount=Mount((0.1, 0.0, 0.3)), hz=5.0, width=160, height=120, fov
 ORIGIN = Pose(np.zeros(3), from_euler(0.0, 0.0, 0.0))
 BALL = Cylinder("post", (4.0, 1.0, 0.2), 0.1, 0.2, colour=RED)
 EMPTY = WorldFile(about="test", origin=Origin(0.0, 0.0), floor=(0.0, 0.0, 1.0, 1.0))
+
+
+BURGER = ROOT / "vehicles" / "burger" / "burger.urdf"
+MILVUS = aircraft_shape(ROOT / "vehicles" / "milvus", load_vehicle(ROOT / "vehicles", "milvus"))
 
 
 def world_with(**parts):
@@ -82,7 +89,7 @@ def test_what_is_put_in_is_seen_moves_and_is_gone_again():
 def test_a_vehicle_that_is_put_in_is_placed_like_the_others():
     renderer, far = BulletRenderer(EMPTY, [], {}), Pose(np.array((1.5, 0.0, 0.0)), ORIGIN.world_from_body)
     empty = renderer.take(CAMERA, ORIGIN).picture
-    renderer.show({"guest": Look(urdf=ROOT / "vehicles" / "burger" / "burger.urdf")})
+    renderer.show({"guest": BURGER})
     renderer.place(0.0, {"guest": far})
     assert (renderer.take(CAMERA, ORIGIN).picture != empty).any()
     renderer.close()
@@ -110,7 +117,7 @@ def test_rolling_to_the_right_lowers_the_horizon_on_the_left():
     assert sky[10] > sky[150] + 20
 
 
-@pytest.mark.parametrize("look", [Look(), Look(urdf=ROOT / "vehicles/burger/burger.urdf")])
+@pytest.mark.parametrize("look", [MILVUS, BURGER])
 def test_a_vehicle_is_seen_where_it_is_placed(look):
     ahead = Pose(np.array((1.5, 0.0, 0.2)), from_euler(0.0, 0.0, 0.0))
     away = Pose(np.array((1.5, 50.0, 0.2)), from_euler(0.0, 0.0, 0.0))
@@ -126,7 +133,9 @@ def test_a_mesh_is_drawn(tmp_path):
     mesh = tmp_path / "wedge.obj"
     mesh.write_text("v 0 -1 0\nv 0 1 0\nv 0 0 1\nv 0.1 0 0\nf 1 2 3\nf 1 3 2\nf 1 4 3\nf 2 3 4\nf 1 2 4\n")
     pose = {"other": Pose(np.array((6.0, 0.0, 0.0)), from_euler(0.0, 0.0, 0.0))}
-    assert (picture(EMPTY, vehicles={"other": Look(mesh=mesh)}, poses=pose) != picture(EMPTY)).any()
+    assert (
+        picture(EMPTY, vehicles={"other": AircraftShape([Part(*load_mesh(mesh))], [], (0.9, 0.9, 0.9))}, poses=pose) != picture(EMPTY)
+    ).any()
 
 
 def test_the_same_scene_gives_the_same_bytes():

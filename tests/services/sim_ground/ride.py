@@ -38,14 +38,14 @@ class Driver(Service):
         return {"wheels": WheelCommand(timestamp=stamp(t), left=left, right=right)}
 
 
-def site_with(folder, starts, seed=1):
-    """A mission in the house; starts: vehicle -> (x, y, yaw)."""
+def site_with(folder, starts, seed=1, world="house"):
+    """A mission in a world; starts: vehicle -> (x, y, yaw)."""
     vehicles = {
         name: {"model": "burger", "system_id": i, "start": dict(zip(("x", "y", "yaw"), start, strict=True))}
         for i, (name, start) in enumerate(starts.items(), 1)
     }
     path = folder / "ride.yaml"
-    path.write_text(yaml.safe_dump({"about": "test", "world": "house", "seed": seed, "vehicles": vehicles}))
+    path.write_text(yaml.safe_dump({"about": "test", "world": world, "seed": seed, "vehicles": vehicles}))
     return load_site(path)
 
 

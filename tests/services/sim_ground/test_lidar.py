@@ -5,14 +5,15 @@ import numpy as np
 import pybullet
 import pytest
 
-from services.sim_ground.lidar import LidarModel
 from services.sim_ground.world import BulletWorld
 from tests.services.sim_ground.ground_scene import WALL_AHEAD, body_at, post, scene_of
+from uvf.runtime.footing import Footing
+from uvf.runtime.range_sensors import LidarModel
 from uvf.runtime.scene import scene
 from uvf.runtime.site import ROOT
 from uvf.runtime.vehicle_file import Mount, load_vehicle
 from uvf.runtime.world_file import load_world
-from uvf.runtime.world_geometry import clearance, solids
+from uvf.runtime.world_geometry import solids
 
 LDS = load_vehicle(ROOT / "vehicles", "burger").sensors.lidar
 QUIET = msgspec.structs.replace(LDS, noise=0.0, mount=Mount((0.0, 0.0, 0.182)))
@@ -26,8 +27,8 @@ def test_agrees_with_the_engines_rays_in_the_house():
     house = load_world(ROOT / "worlds", "house")
     things = solids(house)
     engine, far = BulletWorld(things, {}), msgspec.structs.replace(QUIET, range_min=0.0, range_max=15.0)
-    model, rng = LidarModel(far, scene(things), np.random.default_rng(0)), np.random.default_rng(5)
-    places = [p for p in rng.uniform((0.2, 0.2), (11.8, 8.8), (60, 2)) if clearance(house, *p) > 0.12][:40]
+    footing, model, rng = Footing(house), LidarModel(far, scene(things), np.random.default_rng(0)), np.random.default_rng(5)
+    places = [p for p in rng.uniform((0.2, 0.2), (11.8, 8.8), (60, 2)) if footing.at(*p).room > 0.12][:40]
     angles = np.radians(np.arange(360))
     errors = []
     for place in places:

@@ -21,9 +21,9 @@ HEARD = (topics.IMU, topics.SCAN, topics.WHEELS, topics.TRUTH, topics.JOINTS, to
 class Run:
     """A burger in the hall that can be asked things between two moments."""
 
-    def __init__(self, folder, script=lambda t: None, drivers=("burger",)):
+    def __init__(self, folder, script=lambda t: None, drivers=("burger",), world="house", start=START):
         hosts = [Host(Driver, lambda: Driver(script), name) for name in drivers]
-        self.lockstep = Lockstep(build(site_with(folder, {"burger": START})) + hosts)
+        self.lockstep = Lockstep(build(site_with(folder, {"burger": start}, world=world)) + hosts)
         self.heard = defaultdict(list)
         for topic in (*HEARD, topics.OBJECTS):
             owner = "*" if topic.per_vehicle else "sys"
@@ -100,6 +100,27 @@ def test_a_vehicle_is_put_elsewhere_and_stands(tmp_path):
     assert run.ask(topics.SET_POSE, SetPoseRequest(name="burger", pose=planar_pose(9.0, 4.4, 1.0)), 2.0).accepted
     assert run.place() == pytest.approx((9.0, 4.4, 0.0), abs=2e-3)
     assert np.hypot(run.of(topics.TRUTH)[-1].velocity.x, run.of(topics.TRUTH)[-1].velocity.y) < 1e-3
+    run.lockstep.close()
+
+
+TERRACE, RAMP = (32.0, 23.0, 0.0), (26.6, 24.0, 0.0)  # of the plaza: 0.4 m up, and half that on the way to it
+
+
+@pytest.mark.parametrize(("start", "height"), [(TERRACE, 0.4), (RAMP, 0.2)])
+def test_a_start_on_a_platform_or_a_ramp_is_on_top_of_it(tmp_path, start, height):
+    run = Run(tmp_path, world="plaza", start=start)
+    run.lockstep.run(1.0)
+    assert run.place() == pytest.approx((*start[:2], height), abs=0.04)
+    run.lockstep.close()
+
+
+def test_a_vehicle_is_put_in_at_the_height_asked_for(tmp_path):
+    run = Run(tmp_path, world="plaza", start=(20.0, 8.0, 0.0))
+    low, high = (SpawnRequest(object=SimObject(name="guest", model="burger", pose=planar_pose(*TERRACE, z))) for z in (0.0, 0.4))
+    assert run.ask(topics.SPAWN, low, 0.3).reason == "'guest' would stand in 'terrace' there; choose another place"
+    assert run.ask(topics.SPAWN, high, 0.6).accepted
+    run.lockstep.run(1.6)
+    assert run.place("guest") == pytest.approx((*TERRACE[:2], 0.4), abs=2e-3)
     run.lockstep.close()
 
 

@@ -13,7 +13,7 @@ from tests.services.sim_ground.ride import site_with
 from uvf.maths.geodesy import LocalTangent
 from uvf.maths.kinematics import WheelSpeeds
 from uvf.runtime.scene import scene
-from uvf.runtime.vehicle_file import Bumper, GnssSensor, Mount, Sonar
+from uvf.runtime.vehicle_file import Bumper, GnssSensor, Mount, RangeFinder, Sonar
 from uvf.runtime.world_geometry import solids
 
 PLACE = np.array((6.0, 4.4, 0.0))
@@ -82,6 +82,17 @@ def test_each_sonar_speaks_in_its_own_frame(stand):
     assert len(heard) == 20
     assert [m.frame_id for m in heard[0][1]] == ["burger/sonar", "burger/rear"]
     assert heard[0][1][0].range != heard[0][1][1].range
+
+
+def test_a_rovers_range_finder_looks_up_at_nothing_and_down_at_the_floor(stand):
+    down, up = (
+        RangeFinder(mount=Mount((0.0, 0.0, 0.2), (0.0, pitch, 0.0)), hz=20.0, range_min=0.01, range_max=4.0, frame=frame)
+        for pitch, frame in ((np.pi / 2, "down"), (-np.pi / 2, "up"))
+    )
+    heard = stand(lambda s: {"rangefinders": [down, up]})["range"]
+    assert len(heard) == 40
+    assert [m.frame_id for m in heard[0][1]] == ["burger/down", "burger/up"]
+    assert [m.range for m in heard[0][1]] == pytest.approx([0.2, 0.0])
 
 
 def test_a_rover_knows_where_on_the_globe_it_is(stand):

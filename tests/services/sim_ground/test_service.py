@@ -6,19 +6,19 @@ import msgspec
 import numpy as np
 import pytest
 
-from schemas.convert import seconds
-from schemas.messages import WheelCommand
+from schemas.convert import seconds, stamp
+from schemas.messages import NavState, Quaternion, Vector3, WheelCommand
 from services.sim_ground.body import BodyState, Touch
 from services.sim_ground.rig import Rig
 from services.sim_ground.service import SimGround
 from services.sim_ground.stage import Stage
-from services.sim_ground.surroundings import Surroundings
 from tests.services.sim_ground.ride import site_with
 from uvf.maths.kinematics import WheelSpeeds
+from uvf.runtime.surroundings import Surroundings, vehicle_tree
 from uvf.runtime.urdf_model import load_urdf
 from uvf.runtime.world_geometry import solids
 
-IDLE = {"commands": {}, "spawn": [], "remove": [], "set_pose": [], "save": [], "restore": []}
+IDLE = {"commands": {}, "truth": {}, "spawn": [], "remove": [], "set_pose": [], "save": [], "restore": []}
 
 
 class StandingWorld:
@@ -42,6 +42,9 @@ class StandingWorld:
     def touches(self, vehicle):
         return self.seen
 
+    def guide(self, guests):
+        self.guests = guests
+
     def poses(self):
         return {}
 
@@ -54,12 +57,12 @@ def site(tmp_path):
     return site_with(tmp_path, {"one": (6.0, 4.4, 0.0), "two": (7.0, 4.4, 0.0)})
 
 
-def service_in(site, world):
+def service_in(site, world, aircraft=()):
     models = {name: load_urdf(member.folder / member.file.ground.urdf) for name, member in site.members.items()}
-    surroundings = Surroundings(solids(site.world), models)
+    surroundings = Surroundings(solids(site.world), {name: vehicle_tree(model) for name, model in models.items()})
     rigs = {name: Rig(site, member, member.file.ground, surroundings.still) for name, member in site.members.items()}
     stage = Stage(world, rigs, surroundings, tuple(rigs), join=None)
-    return SimGround(world, surroundings, stage)
+    return SimGround(world, surroundings, stage, aircraft)
 
 
 def test_each_command_goes_to_its_vehicle_for_one_period(site):
@@ -116,7 +119,31 @@ def test_an_imu_at_200_hz_is_read_after_each_step_of_the_physics(site):
     assert [(duration, round(since, 6)) for _, duration, since in world.told[-2:]] == [(0.005, 0.02), (0.005, 0.025)]
 
 
+def test_an_imu_between_one_and_two_readings_a_step_tells_each_at_the_next_step(site):
+    member = site.members["one"]
+    imu = msgspec.structs.replace(member.file.sensors.imu, hz=120.0)
+    site.members["one"] = replace(
+        member, file=msgspec.structs.replace(member.file, sensors=msgspec.structs.replace(member.file.sensors, imu=imu))
+    )
+    service = service_in(site, StandingWorld({"one": (6.0, 4.4), "two": (7.0, 4.4)}))
+    ages = []
+    for n in range(1, 51):
+        said = service.step(n / 100, **IDLE).get("imu", {}).get("one", [])
+        ages += [n / 100 - seconds(m.timestamp) for m in (said if isinstance(said, list) else [said])]
+    assert len(ages) == 60
+    assert max(ages) < 0.0051
+
+
 def test_closing_gives_the_engine_back(site):
     world = StandingWorld({"one": (6.0, 4.4), "two": (7.0, 4.4)})
     service_in(site, world).close()
     assert world.told == ["closed"]
+
+
+def test_the_physics_hears_of_aircraft_and_of_nobody_else(site):
+    world = StandingWorld({"one": (6.0, 4.4), "two": (7.0, 4.4)})
+    told = NavState(timestamp=stamp(0.49), position=Vector3(x=1.0, z=2.0), velocity=Vector3(x=20.0), orientation=Quaternion(w=1.0))
+    service_in(site, world, ("bird",)).step(0.5, **{**IDLE, "truth": {"bird": told, "one": told}})
+    assert list(world.guests) == ["bird"]
+    assert world.guests["bird"].at(0.5).position == pytest.approx((1.2, 0.0, 2.0))
+    assert world.guests["bird"].at(9.0).position == pytest.approx((3.0, 0.0, 2.0))

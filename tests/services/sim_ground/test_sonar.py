@@ -4,15 +4,15 @@ import msgspec
 import numpy as np
 import pytest
 
-from services.sim_ground.sonar import SonarModel
 from tests.services.sim_ground.ground_scene import WALL_AHEAD, body_at, post
+from uvf.runtime.range_sensors import RangeModel
 from uvf.runtime.vehicle_file import Mount, Sonar
 
 SONAR = Sonar(mount=Mount((0.1, 0.0, 0.1)), hz=10.0, fov=0.5, range_min=0.05, range_max=4.0)
 
 
 def distance(sonar=SONAR, body=None, others=()):
-    return SonarModel(sonar, WALL_AHEAD, np.random.default_rng(0)).range(body or body_at(), others)
+    return RangeModel(sonar, WALL_AHEAD, np.random.default_rng(0)).range(body or body_at(), others)
 
 
 def test_a_wall_ahead_is_as_far_as_it_is_from_the_mount():
@@ -37,7 +37,7 @@ def test_beyond_its_reach_there_is_no_return():
 
 
 def test_noise_has_the_sensors_sigma():
-    model = SonarModel(msgspec.structs.replace(SONAR, noise=0.02), WALL_AHEAD, np.random.default_rng(1))
+    model = RangeModel(msgspec.structs.replace(SONAR, noise=0.02), WALL_AHEAD, np.random.default_rng(1))
     read = [model.range(body_at(), []) for _ in range(1000)]
     assert np.mean(read) == pytest.approx(1.9, abs=0.003)
     assert np.std(read) == pytest.approx(0.02, rel=0.1)

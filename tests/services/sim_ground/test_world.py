@@ -1,5 +1,6 @@
 """The physics behind its Protocol: several worlds side by side, starts, falls, a long wild ride."""
 
+import re
 from dataclasses import replace
 
 import msgspec
@@ -10,11 +11,13 @@ import pytest
 from services.sim_ground.world import BulletWorld, Placed
 from uvf.maths.kinematics import DifferentialDrive, Twist, WheelSpeeds
 from uvf.maths.rotations import from_euler, matrix, multiply, rotate, to_euler
+from uvf.runtime.footing import Footing
 from uvf.runtime.site import ROOT
 from uvf.runtime.solid import Keyframes, Solid
+from uvf.runtime.urdf_model import engine_urdf
 from uvf.runtime.vehicle_file import Friction, load_vehicle
 from uvf.runtime.world_file import load_world
-from uvf.runtime.world_geometry import clearance, solids
+from uvf.runtime.world_geometry import solids
 
 HOUSE = load_world(ROOT / "worlds", "house")
 SOLIDS = solids(HOUSE)
@@ -79,7 +82,7 @@ def test_a_minute_of_wild_driving_neither_tips_it_nor_takes_it_through_a_wall(wo
             lowest_up = min(lowest_up, matrix(state.world_from_body)[2, 2])
             touches.update(touch.other for touch in world.touches("burger"))
             assert abs(state.position[2]) < 0.02
-        assert clearance(HOUSE, *state.position[:2]) > 0.03  # its nose is 0.038 m before the axle
+        assert Footing(HOUSE).at(*state.position[:2]).room > 0.03  # its nose is 0.038 m before the axle
     assert lowest_up > np.cos(0.35)  # it leans at each hard step, as the steps are not shaped
     assert touches
 
@@ -117,12 +120,13 @@ def test_a_person_who_walks_into_it_pushes_it_along():
     hall.close()
 
 
-def slipped(friction, yaw):
+def slipped(friction, yaw, urdf=BURGER.urdf):
     """m, that a burger with its wheels held slips within a second down a slope of tan 0.2 that it heads along at ``yaw``."""
     slope = np.arctan(0.2)
     tilt = from_euler(0.0, slope, 0.0)
     ramp = Solid("ramp", "box", (6.0, 6.0, 0.2), np.array((0.0, 0.0, 2.0)), tilt)
-    world = BulletWorld([ramp], {"burger": replace(BURGER, body=msgspec.structs.replace(BODY, friction=friction), start=(9.0, 9.0, 0.0))})
+    placed = replace(BURGER, body=msgspec.structs.replace(BODY, friction=friction), urdf=urdf, start=(9.0, 9.0, 0.0))
+    world = BulletWorld([ramp], {"burger": placed})
     loaded = world._vehicles["burger"]
     base = multiply(tilt, from_euler(0.0, 0.0, yaw))
     place = ramp.position + rotate(tilt, np.array((0.0, 0.0, 0.1))) + rotate(base, loaded.com_in_base[0])
@@ -144,6 +148,35 @@ def test_on_a_slope_it_slips_where_the_friction_of_that_direction_is_too_small(m
     friction = Friction(mu=mu, mu2=mu2)
     assert (slipped(friction, 0.0) > 0.1) == along
     assert (slipped(friction, np.pi / 2) > 0.1) == across
+
+
+def test_friction_goes_by_the_axle_however_the_wheels_frame_is_turned(tmp_path):
+    """As CAD exports wheels: z along the axle."""
+    text = engine_urdf(BURGER.urdf).read_text()
+    turned = re.sub(r'(<origin xyz="0 -?0\.08 0\.033" rpy=")0 0 0("/>\s*<axis xyz=")0 1 0', r"\1-1.5707963 0 0\g<2>0 0 1", text)
+    assert turned.count('<axis xyz="0 0 1"/>') == 2
+    urdf = tmp_path / "turned.urdf"
+    urdf.write_text(turned)
+    friction = Friction(mu=1.0, mu2=0.1)
+    assert slipped(friction, 0.0, urdf) < 0.1
+    assert slipped(friction, np.pi / 2, urdf) > 0.1
+
+
+@pytest.mark.parametrize("rounded", ["0.0020005", "0.002"])
+def test_a_flat_body_whose_inertia_was_rounded_keeps_it(tmp_path, rounded):
+    """Ten thousandths beyond the triangle rule, which passes the check: Bullet would take no inertia at all."""
+    flat = re.sub(
+        r'ixx="0.002414" ixy="0" ixz="0" iyy="0.002414" iyz="0" izz="0.002019"',
+        f'ixx="0.001" ixy="0" ixz="0" iyy="0.001" iyz="0" izz="{rounded}"',
+        engine_urdf(BURGER.urdf).read_text(),
+    )
+    assert rounded in flat
+    urdf = tmp_path / "flat.urdf"
+    urdf.write_text(flat)
+    world = BulletWorld([], {"burger": replace(BURGER, urdf=engine_urdf(urdf))})
+    moments = pybullet.getDynamicsInfo(world._vehicles["burger"].index, -1, physicsClientId=world._client)[2]
+    world.close()
+    assert moments == pytest.approx((0.001, 0.001, 0.002), rel=1e-3)
 
 
 def test_a_huge_speed_is_no_more_than_its_motors_can_do(world):

@@ -5,12 +5,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from schemas.convert import occupancy_cells, planar_pose, stamp, yaw_of
+from schemas.convert import occupancy_cells, planar_pose, quaternion, stamp, yaw_of
 from schemas.messages import FrameTransform, Imu, LaserScan, Quaternion, Vector3, WheelTicks
 from services.slam.mapping_service import MappingParams, MappingService
 from services.slam.odometry_service import OdometryParams, OdometryService
 from tests.services.live_params import all_settable_are_read
 from tests.services.slam.room import ANGLES, measured
+from uvf.maths.rotations import from_euler
 from uvf.runtime.frames import FrameBuffer
 from uvf.runtime.site import ROOT
 from uvf.runtime.vehicle_file import Lidar, Mount, load_vehicle
@@ -172,6 +173,20 @@ def test_the_map_shows_the_room_where_it_is(drifting_run):
     assert at(-0.5, 0.2) < 30
     assert max(at(0.0, y) for y in (1.93, 1.97)) > 60
     assert at(0.0, 2.3) == -1
+
+
+def test_a_scanner_that_hangs_upside_down_draws_no_mirror_image():
+    pose = (-1.0, 0.2, 0.3)
+    upright, hanging = (MappingService("v", LIDAR, START, MappingParams()) for _ in range(2))
+    expected = upright.step(0.1, scan_at(0.1, pose), frames_with({0.1: pose}))["map"]
+    seen = scan_at(0.1, pose)
+    mirrored = LaserScan(timestamp=seen.timestamp, frame_id=seen.frame_id, start_angle=-seen.end_angle, ranges=seen.ranges[::-1])
+    frames = frames_with({0.1: pose})
+    mount = frame_at(0.0, "base_footprint", "lidar", BASE_FROM_LIDAR)
+    mount.rotation.CopyFrom(quaternion(from_euler(np.pi, 0.0, 0.0)))
+    frames.add(mount, is_static=True)
+    drawn, meant = occupancy_cells(hanging.step(0.1, mirrored, frames)["map"]), occupancy_cells(expected)
+    assert drawn.shape == meant.shape and np.mean(drawn != meant) < 0.01
 
 
 def test_the_map_is_placed_in_the_world_once(drifting_run):

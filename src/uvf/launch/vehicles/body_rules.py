@@ -20,6 +20,7 @@ Floats = NDArray[np.float64]
 
 TOUCH = 0.003  # m: what is no higher touches the floor when the wheels have sunk into their contacts
 SINK = 0.003  # m below the floor at the start, which physics pushes out gently
+LEVEL = 1e-4  # m
 SAME = 0.03  # share by which wheel radius and track may be off
 OFF_CENTRE = 0.005  # m, axle's middle from base_link
 ALONG = np.cos(np.radians(5.0))
@@ -73,7 +74,7 @@ def body_notes(model: UrdfModel, file: VehicleFile) -> list[str]:
     assert file.ground is not None
     body = Body(model, file.ground)
     try:
-        return [*_margin_notes(body), *sensor_notes(model, file.sensors, body.poses, body.turning)]
+        return [*_margin_notes(body), *_castor_notes(body), *sensor_notes(model, file.sensors, body.poses, body.turning)]
     except BadInput:
         return []
 
@@ -170,6 +171,13 @@ def _margin_notes(body: Body) -> Iterator[str]:
     margin = _margin(supports, com[:2]) if supports and com is not None else None
     if margin is not None and 0 <= margin < LOW_MARGIN * body.ground.track:
         yield f"the centre of mass is only {margin * 1000:.0f} mm inside of the supports: it may tip when it accelerates"
+
+
+def _castor_notes(body: Body) -> Iterator[str]:
+    low = [s for s in body.collisions(body.rest) if -float(reach(s, DOWN)[0]) < LEVEL]
+    along = [float(corners[np.argmin(corners[:, 2]), 0]) for corners in (triangles(s)[0] for s in low)]
+    if along and min(along) < -LEVEL and max(along) > LEVEL:
+        yield "castors before and behind the axle, as low as the wheels, take their weight off them: they slip; lift the castors by 0.5 mm"
 
 
 def _supports(body: Body) -> list[Floats]:

@@ -23,8 +23,14 @@ PARALLEL = 0.97
 ALIKE = 0.12  # share by which the radii of a pair may differ
 PASSIVE = re.compile(r"cast[eo]r|swivel|passive|idler|fork|steer|pivot|omni|follow", re.I)
 DRIVEN = re.compile(r"wheel|whl|tire|tyre|ruota|rueda|roue|rad\b|drive|motor|trac", re.I)
-LEFT = re.compile(r"left|izq|sinist|gauche|link?s|(^|[_\-.0-9])l([_\-.0-9]|$)|^l(w|wheel|m)|wheel_?l($|_)|wl($|_)|[a-z]L($|[_A-Z])", re.I)
-RIGHT = re.compile(r"right|der(echa)?_|destr|droit|recht|(^|[_\-.0-9])r([_\-.0-9]|$)|^r(w|wheel|m)|wheel_?r($|_)|wr($|_)", re.I)
+LEFT = re.compile(
+    r"left|izq|sinist|gauche|link?s|(^|[_\-.0-9])l([_\-.0-9]|$)|^l(w|wheel|m)|wheel_?l($|_)|wl($|_)|(?-i:[a-z]L($|[_A-Z]))",
+    re.I,
+)
+RIGHT = re.compile(
+    r"right|der(echa)?_|destr|droit|recht|(^|[_\-.0-9])r([_\-.0-9]|$)|^r(w|wheel|m)|wheel_?r($|_)|wr($|_)|(?-i:[a-z]R($|[_A-Z]))",
+    re.I,
+)
 
 
 @dataclass(frozen=True)

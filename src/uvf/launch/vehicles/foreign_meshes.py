@@ -1,7 +1,9 @@
 """Meshes of others as STL files in metres beside the new vehicle; those that are not there are left out."""
 
+import contextlib
+import re
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -17,53 +19,80 @@ from uvf.runtime.solid_mesh import load_mesh
 
 BIG = 8.0  # m: no part of a ground vehicle; files of larger figures are in millimetres
 GREY = (0.6, 0.6, 0.6)
+Scale = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Tools:
+    """millimetres: scales of this robot's meshes with which one of them would be larger than any part."""
+
+    foreign: Foreign
+    store: MeshStore
+    folder: Path
+    millimetres: frozenset[Scale] = frozenset()
 
 
 def with_own_meshes(foreign: Foreign, folder: Path) -> UrdfModel:
     """Every mesh as a file below ``folder``, of collisions the convex hull, which is what physics takes of a body that moves."""
-    store = MeshStore(folder, foreign.notes)
-    links = {name: _link(link, foreign, store, folder) for name, link in foreign.model.links.items()}
+    tools = Tools(foreign, MeshStore(folder, foreign.notes), folder)
+    tools = replace(tools, millimetres=frozenset(_too_big(tools)))
+    links = {name: _link(link, tools) for name, link in foreign.model.links.items()}
     return replace(foreign.model, links=links)
 
 
-def _link(link: Link, foreign: Foreign, store: MeshStore, folder: Path) -> Link:
+def _too_big(tools: Tools) -> Iterator[Scale]:
+    """One export has one unit: a screw of a robot in millimetres is in millimetres too, though it is small enough to be in metres."""
+    for link in tools.foreign.model.links.values():
+        for solid in (*link.visuals, *link.collisions):
+            if solid.shape == "mesh" and solid.mesh is not None and solid.mesh.is_file():
+                with contextlib.suppress(BadInput):
+                    vertices, _ = load_mesh(tools.folder / tools.store.convert(solid.mesh, Wanted(scale=_scale(solid))))
+                    if np.ptp(vertices, axis=0).max() > BIG:
+                        yield _unsigned(_scale(solid))
+
+
+def _link(link: Link, tools: Tools) -> Link:
     visuals, collisions = (
-        tuple(new for solid in solids for new in _solid(solid, hull, (foreign, store, folder)))
+        tuple(new for solid in solids for new in _solid(solid, hull, tools))
         for solids, hull in ((link.visuals, False), (link.collisions, True))
     )
     if link.visuals and not visuals and collisions:
-        foreign.notes.add("looks taken from the collision shape, for the mesh is missing", link.name)
+        tools.foreign.notes.add("looks taken from the collision shape, for the mesh is missing", link.name)
         visuals = collisions
     if link.collisions and not collisions and visuals:
-        foreign.notes.add("collision shape taken from the looks, for its mesh is missing", link.name)
+        tools.foreign.notes.add("collision shape taken from the looks, for its mesh is missing", link.name)
         collisions = visuals
     return replace(link, visuals=visuals, collisions=collisions)
 
 
-def _solid(solid: Solid, hull: bool, tools: tuple[Foreign, MeshStore, Path]) -> Iterator[Solid]:
+def _solid(solid: Solid, hull: bool, tools: Tools) -> Iterator[Solid]:
     """The solid with its own file; nothing where there is none."""
-    foreign, store, folder = tools
+    notes, store = tools.foreign.notes, tools.store
     if solid.shape != "mesh":
         yield solid
         return
     if solid.mesh is None or not solid.mesh.is_file():
-        foreign.notes.add("meshes that are missing", str(solid.mesh))
+        notes.add("meshes that are missing", _uri(solid.mesh))
         return
     try:
-        written = store.convert(solid.mesh, Wanted(scale=_scale(solid)))
-        file = folder / written
-        vertices, _ = load_mesh(file)
+        file = tools.folder / store.convert(solid.mesh, Wanted(scale=_scale(solid)))
+        load_mesh(file)
     except BadInput as error:
-        foreign.notes.add("meshes that cannot be read", str(error))
+        notes.add("meshes that cannot be read", str(error))
         return
     unit = 1.0
-    if np.ptp(vertices, axis=0).max() > BIG:
-        foreign.notes.add("meshes taken to be in millimetres, for they are larger than 8 m", solid.mesh.name)
+    if _unsigned(_scale(solid)) in tools.millimetres:
+        notes.add("meshes taken to be in millimetres, for one of them is larger than 8 m", solid.mesh.name)
         unit = 0.001
     if hull:
-        file = folder / store.write(_hull(file), f"{solid.mesh.stem}_hull")
+        file = tools.folder / store.write(_hull(file), f"{solid.mesh.stem}_hull")
     colour = (store.colour(solid.mesh) if solid.colour == GREY else None) or solid.colour
     yield replace(solid, mesh=file, size=(unit, unit, unit), colour=colour)
+
+
+def _uri(mesh: Path | None) -> str:
+    """As the robot's file names it: a path joins the slashes after the scheme."""
+    return re.sub(r"^(package|model|file):/(?=[^/])", r"\1://", str(mesh))
 
 
 def _hull(file: Path) -> Any:
@@ -77,6 +106,12 @@ def _hull(file: Path) -> Any:
         return box
 
 
-def _scale(solid: Solid) -> tuple[float, float, float]:
+def _scale(solid: Solid) -> Scale:
     x, y, z = solid.size
+    return x, y, z
+
+
+def _unsigned(scale: Scale) -> Scale:
+    """A mirrored part comes from the same export."""
+    x, y, z = (abs(side) for side in scale)
     return x, y, z

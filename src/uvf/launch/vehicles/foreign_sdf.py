@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from uvf.launch.vehicles.foreign import UNKNOWN, Foreign, ForeignSensor
+from uvf.launch.vehicles.foreign import UNKNOWN, Foreign, ForeignSensor, drive_of
 from uvf.launch.worlds.notes import Notes
 from uvf.launch.worlds.sdf_colours import visual_colour
 from uvf.launch.worlds.sdf_models import Models, read_sdf
-from uvf.launch.worlds.sdf_poses import Scope, numbers, place_of, transform
+from uvf.launch.worlds.sdf_poses import Scope, numbers, place_of, relative_to, transform
 from uvf.maths.rotations import inverse as unturned
 from uvf.maths.rotations import matrix, rotate
 from uvf.maths.transforms import IDENTITY, Transform, compose, inverse
@@ -25,7 +25,7 @@ BASE = "base_link"
 
 
 def read_foreign_sdf(path: Path) -> Foreign:
-    """The file's model, or the first of its world that has joints. Raises BadInput."""
+    """The file's model; of a world's the first with a drive, else the first with joints. Raises BadInput."""
     root, notes = read_sdf(path), Notes()
     models = Models(path, [], notes)
     for tag in (root, *root.findall("world")):
@@ -33,7 +33,16 @@ def read_foreign_sdf(path: Path) -> Foreign:
     moving = [m for m in root.iter("model") if m.find("joint") is not None]
     if not moving:
         raise BadInput(f"{path}: no <model> with joints in it; a vehicle has wheels that turn")
-    return _Reader(path, models, notes, float(root.get("version", "1.6") or 1.6)).read(moving[0])
+    driven = next((m for m in moving if any(map(drive_of, m.iter("plugin")))), moving[0])
+    return _Reader(path, models, notes, _version(path, root)).read(driven)
+
+
+def _version(path: Path, root: Any) -> float:
+    text = root.get("version") or "1.6"
+    try:
+        return float(text)
+    except ValueError as error:
+        raise BadInput(f'{path}:{root.sourceline}: <sdf version="{text}">: write a number, as 1.7') from error
 
 
 class _Reader:
@@ -41,7 +50,7 @@ class _Reader:
         self._path, self._models, self._notes, self._version = path, models, notes, version
 
     def read(self, model: Any) -> Foreign:
-        scope = Scope(model, self._notes)
+        scope = self._scope = Scope(model, self._notes)
         tags = {tag.get("name", "?"): tag for tag in model.findall("link")}
         if model.findall("model"):
             self._notes.add(
@@ -49,7 +58,7 @@ class _Reader:
             )
         joints = [j for j in model.findall("joint") if _text(j, "child") in tags and _text(j, "parent") in tags]
         frames = {name: scope.pose(name) for name in tags}
-        turned = {_text(j, "child"): transform(j.find("pose")) for j in joints}
+        turned = {(n := _text(j, "child")): compose(inverse(frames[n]), scope.pose(j.get("name", "?"))) for j in joints}
         frames = {name: compose(pose, turned.get(name, IDENTITY)) for name, pose in frames.items()}
         links = {name: self._link(name, tag, inverse(turned.get(name, IDENTITY))) for name, tag in tags.items()}
         read = {j.get("name", "?"): self._joint(j, scope, frames) for j in joints}
@@ -58,7 +67,7 @@ class _Reader:
         found.take_plugins(model)
         for name, tag in tags.items():
             for sensor in tag.findall("sensor"):
-                at = compose(inverse(turned.get(name, IDENTITY)), transform(sensor.find("pose")))
+                at = compose(inverse(turned.get(name, IDENTITY)), self._in_link(name, sensor))
                 found.sensors.append(ForeignSensor(sensor.get("type", ""), name, sensor, at))
         return found
 
@@ -76,14 +85,24 @@ class _Reader:
         visuals, collisions = (
             tuple(s for part in tag.findall(kind) for s in self._solids(name, part, frame_from_link)) for kind in ("visual", "collision")
         )
-        return Link(name, _inertial(tag.find("inertial"), frame_from_link), visuals, collisions, line=tag.sourceline or 0)
+        inertial = tag.find("inertial")
+        mass = _inertial(inertial, compose(frame_from_link, self._in_link(name, inertial))) if inertial is not None else None
+        return Link(name, mass, visuals, collisions, line=tag.sourceline or 0)
+
+    def _in_link(self, link: str, part: Any) -> Transform:
+        """Where a part of a link is in it; its <pose> may name another frame of the model."""
+        pose = part.find("pose")
+        named = relative_to(pose)
+        if named in ("", link):
+            return transform(pose)
+        return compose(compose(inverse(self._scope.pose(link)), self._scope.pose(named)), transform(pose))
 
     def _solids(self, link: str, part: Any, frame_from_link: Transform) -> Iterator[Solid]:
         geometry = part.find("geometry")
         shape = next((s for s in geometry if isinstance(s.tag, str)), None) if geometry is not None else None
         if shape is None:
             return
-        pose = compose(frame_from_link, transform(part.find("pose")))
+        pose = compose(frame_from_link, self._in_link(link, part))
         colour = visual_colour(part) or GREY
         if shape.tag == "mesh":
             uri, scale = _text(shape, "uri"), shape.find("scale")
@@ -151,10 +170,7 @@ def _size(shape: Any) -> tuple[str, tuple[float, ...]] | None:
     return None
 
 
-def _inertial(tag: Any, frame_from_link: Transform) -> Inertial | None:
-    if tag is None:
-        return None
-    pose = compose(frame_from_link, transform(tag.find("pose")))
+def _inertial(tag: Any, pose: Transform) -> Inertial:
     mass, inertia = tag.find("mass"), tag.find("inertia")
     values = {t: float(numbers(e, 1)[0]) for t in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz") if (e := _child(inertia, t)) is not None}
     xx, xy, xz, yy, yz, zz = (values.get(t, 0.0) for t in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz"))

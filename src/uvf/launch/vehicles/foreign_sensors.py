@@ -31,6 +31,10 @@ def sensors_section(foreign: Foreign, base_from_link: dict[str, Transform]) -> S
         kind, make = _kind(sensor)
         if make is None or sensor.link not in base_from_link:
             foreign.notes.add("sensors of a kind that is not simulated, dropped", f"{sensor.kind} on {sensor.link}")
+        elif kind == "sonar":
+            sonars = section.setdefault("sonars", [])
+            mount = _mount(compose(base_from_link[sensor.link], sensor.link_from_sensor))
+            sonars.append({"mount": mount, **make(sensor, foreign), "frame": f"{sensor.link}_sonar_{len(sonars) + 1}"})
         elif kind in section:
             foreign.notes.add(f"a vehicle has one {kind}; the others dropped", sensor.link)
         else:
@@ -57,6 +61,8 @@ def _by_names(foreign: Foreign) -> Iterator[ForeignSensor]:
 
 def _kind(sensor: ForeignSensor) -> tuple[str, Callable[[ForeignSensor, Foreign], Section] | None]:
     kind = sensor.kind.lower()
+    if kind == "sonar" or (kind in LIDARS and _gives_one_range(sensor)):
+        return "sonar", _sonar
     if kind in LIDARS:
         return "lidar", _lidar
     if kind in CAMERAS:
@@ -66,6 +72,12 @@ def _kind(sensor: ForeignSensor) -> tuple[str, Callable[[ForeignSensor, Foreign]
     if kind in ("gps", "navsat"):
         return "gnss", lambda sensor, foreign: {}
     return kind, None
+
+
+def _gives_one_range(sensor: ForeignSensor) -> bool:
+    """Whether a plugin makes one range of the rays: sonars and infrared, which Gazebo classic has no sensor for."""
+    plugins = sensor.element.iter("plugin") if sensor.element is not None else ()
+    return any("_range" in (p.get("filename") or "") or (p.findtext("output_type") or "").strip().endswith("Range") for p in plugins)
 
 
 def _is_link_itself(sensor: ForeignSensor) -> bool:
@@ -117,6 +129,19 @@ def _lidar(sensor: ForeignSensor, foreign: Foreign) -> Section:
         "angle_increment": sweep / max(beams if sweep > 2 * np.pi - 0.1 / max(beams, 1) else beams - 1, 1) or 0.01,
         "range_min": max(_number(sensor, "range/min", 0.1), 0.0),
         "range_max": max(_number(sensor, "range/max", 10.0), 0.2),
+        "noise": abs(_number(sensor, "noise/stddev", 0.01)),
+    }
+
+
+def _sonar(sensor: ForeignSensor, foreign: Foreign) -> Section:
+    low, high = _number(sensor, "range/min|sonar/min", 0.02), _number(sensor, "range/max|sonar/max", 4.0)
+    cone = 2 * np.arctan2(_number(sensor, "sonar/radius", 0.25 * high), high)
+    fan = _number(sensor, "horizontal/max_angle", cone / 2) - _number(sensor, "horizontal/min_angle", -cone / 2)
+    return {
+        "hz": _rate(sensor, 10.0, FASTEST, foreign),
+        "fov": round(float(np.clip(fan, 0.01, 3.0)), 6),
+        "range_min": max(low, 0.0),
+        "range_max": max(high, low + 0.1),
         "noise": abs(_number(sensor, "noise/stddev", 0.01)),
     }
 

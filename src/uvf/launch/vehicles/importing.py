@@ -1,4 +1,4 @@
-"""``uvf vehicle import``: a vehicle's folder from a URDF, xacro or SDF of others, with a note of what was dropped or guessed."""
+"""``uvf vehicle import``: a vehicle's folder from a URDF, xacro, SDF or JSBSim model of others, with notes."""
 
 import shutil
 import tempfile
@@ -13,10 +13,12 @@ import yaml
 from uvf.launch.vehicles.creation import check_new
 from uvf.launch.vehicles.drive_pair import DrivePair, find_pair
 from uvf.launch.vehicles.foreign import Foreign
+from uvf.launch.vehicles.foreign_jsbsim import jsbsim_model
 from uvf.launch.vehicles.foreign_meshes import with_own_meshes
 from uvf.launch.vehicles.foreign_sdf import read_foreign_sdf
 from uvf.launch.vehicles.foreign_sensors import sensors_section
 from uvf.launch.vehicles.foreign_urdf import read_foreign_urdf
+from uvf.launch.vehicles.importing_air import import_aircraft
 from uvf.launch.vehicles.rebuilt import rebuilt
 from uvf.maths.geodesy import GRAVITY
 from uvf.maths.transforms import compose
@@ -33,6 +35,8 @@ ROUND = np.column_stack([f(np.linspace(0, 2 * np.pi, 180, endpoint=False)) for f
 def import_vehicle(source: Path, folder: Path, arguments: Mapping[str, str]) -> list[str]:
     """Makes ``folder``; the notes, which also stand in its import.txt. Raises BadInput with what a person must do."""
     check_new(folder)
+    if (aircraft := jsbsim_model(source)) is not None:
+        return import_aircraft(aircraft, folder)
     with tempfile.TemporaryDirectory() as scratch:
         made = Path(scratch) / folder.name
         made.mkdir()
@@ -48,7 +52,7 @@ def import_vehicle(source: Path, folder: Path, arguments: Mapping[str, str]) -> 
 
 def _read(source: Path, arguments: Mapping[str, str]) -> Foreign:
     if not source.is_file():
-        raise BadInput(f"{source}: no such file; give a .urdf, .xacro or .sdf")
+        raise BadInput(f"{source}: no such file; give a .urdf, .xacro or .sdf, or the .xml of a JSBSim aircraft")
     return read_foreign_sdf(source) if _is_sdf(source) else read_foreign_urdf(source, arguments)
 
 

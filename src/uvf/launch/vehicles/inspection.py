@@ -5,15 +5,15 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, get_type_hints
 
-from services.sim_air.airframe import Airframe
+from uvf.launch.vehicles.aircraft_rules import aircraft_faults
 from uvf.launch.vehicles.body_rules import body_faults, body_notes
-from uvf.maths.geodesy import LocalTangent
+from uvf.runtime.air_file import AirBody
 from uvf.runtime.params import BadInput, convert, nearest, read_yaml
 from uvf.runtime.robot_model import UrdfModel
 from uvf.runtime.urdf_model import read_urdf
 from uvf.runtime.urdf_rules import model_faults, wheel_faults
-from uvf.runtime.vehicle_file import AirBody, GroundBody, Sensors, VehicleFile, load_vehicle
-from uvf.runtime.vehicle_layers import file_of, folders_of, holding
+from uvf.runtime.vehicle_file import GroundBody, Sensors, VehicleFile, load_vehicle
+from uvf.runtime.vehicle_layers import file_of, folders_of
 
 SECTIONS = {"ground": GroundBody, "air": AirBody}
 
@@ -47,7 +47,8 @@ def inspect(folder: Path) -> Inspection:
         found.faults.append(str(error))
         found.faults += [line for line in _section_faults(folder) if line not in found.faults]
     if found.file is not None and found.file.air is not None:
-        found.faults += _aircraft_faults(folder, found.file.air)
+        faults, found.notes = aircraft_faults(folder, found.file.air)
+        found.faults += faults
         return found
     urdf = _urdf(folder, found.file)
     if urdf is not None:
@@ -100,12 +101,3 @@ def _inspect_body(found: Inspection, urdf: Path) -> None:
     if found.file is not None and ground is not None and len(model.roots) == 1 and all(w in model.joints for w in wheels):
         found.faults += body_faults(model, found.file, found.folder / "vehicle.yaml")
         found.notes += body_notes(model, found.file)
-
-
-def _aircraft_faults(folder: Path, air: AirBody) -> list[str]:
-    """What the flight simulator says when it loads the model."""
-    try:
-        Airframe(holding(folders_of(folder), air.model), air, LocalTangent.from_degrees(0.0, 0.0, 0.0))
-    except BadInput as error:
-        return [str(error)]
-    return []

@@ -8,11 +8,13 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from services.sim_camera.build import look_at
 from services.sim_camera.renderer import BulletRenderer, Look, Pose
 from uvf.maths.rotations import from_matrix
+from uvf.runtime.aircraft_shape import AircraftShape
 from uvf.runtime.params import BadInput
 from uvf.runtime.solid_mesh import placed, triangles
-from uvf.runtime.urdf_model import engine_urdf, load_urdf
+from uvf.runtime.urdf_model import load_urdf
 from uvf.runtime.vehicle_file import Camera, Mount, VehicleFile
 from uvf.runtime.world_file import Origin, WorldFile
 
@@ -21,7 +23,6 @@ Floats = NDArray[np.float64]
 PIXELS = 640
 FAR_OFF = 30.0  # of the vehicle's size, from which a picture has hardly any perspective
 GROUND = (0.78, 0.78, 0.80)  # the pattern on it makes it lighter
-AIRCRAFT_SIZE = 1.7  # m, about half the span of a small one
 UP = np.array((0.0, 0.0, 1.0))
 
 
@@ -44,11 +45,12 @@ VIEWS = (
 
 def write_picture(folder: Path, file: VehicleFile, target: Path) -> None:
     """A PNG of three views with scales in metres. Raises BadInput where it cannot be written."""
-    look, (middle, size) = _look(folder, file), _extent(folder, file)
+    look = look_at(folder, file)
+    middle, size = _extent(look, folder, file)
     renderer = BulletRenderer(WorldFile("", Origin(0.0, 0.0, 0.0), (-1.0, -1.0, 1.0, 1.0), ground_colour=GROUND), [], {"it": look})
     figure = Figure(figsize=(12.0, 4.4), layout="constrained")
     try:
-        renderer.place(0.0, {"it": Pose(np.array((0.0, 0.0, middle[2] if look.urdf is None else 0.0)), np.array((1.0, 0.0, 0.0, 0.0)))})
+        renderer.place(0.0, {"it": Pose(_origin(look), np.array((1.0, 0.0, 0.0, 0.0)))})
         for view, axes in zip(VIEWS, figure.subplots(1, len(VIEWS)), strict=True):
             _draw(axes, view, _seen(renderer, view, middle, size), (middle, size))
     finally:
@@ -61,22 +63,21 @@ def write_picture(folder: Path, file: VehicleFile, target: Path) -> None:
         raise BadInput(f"{target}: cannot be written: {error}") from error
 
 
-def _extent(folder: Path, file: VehicleFile) -> tuple[Floats, float]:
-    """What the views turn about (3,) m, and how far the vehicle goes from there [m]; aircraft are shown in the air."""
-    if file.ground is None:
-        return np.array((0.0, 0.0, 3.0 * AIRCRAFT_SIZE)), AIRCRAFT_SIZE
+def _origin(look: Look) -> Floats:
+    """(3,) m: aircraft are shown in the air."""
+    return np.array((0.0, 0.0, 1.5 * float(np.ptp(look.bounds, axis=0).max()) if isinstance(look, AircraftShape) else 0.0))
+
+
+def _extent(look: Look, folder: Path, file: VehicleFile) -> tuple[Floats, float]:
+    """What the views turn about (3,) m, and how far the vehicle goes from there [m]."""
+    if isinstance(look, AircraftShape):
+        return _origin(look) + look.bounds.mean(axis=0), 0.55 * float(np.ptp(look.bounds, axis=0).max())
+    assert file.ground is not None
     model = load_urdf(folder / file.ground.urdf)
     poses = model.link_poses()
     points = [triangles(placed(s, poses[n]))[0] for n, link in model.links.items() for s in link.visuals or link.collisions]
     top = float(np.vstack(points)[:, 2].max())
     return np.array((0.0, 0.0, top / 2)), max(file.ground.radius, 0.6 * top)
-
-
-def _look(folder: Path, file: VehicleFile) -> Look:
-    if file.ground is not None:
-        return Look(urdf=engine_urdf(folder / file.ground.urdf))
-    mesh = file.air.mesh if file.air is not None else None
-    return Look(mesh=folder / mesh if mesh is not None else None)
 
 
 def _seen(renderer: BulletRenderer, view: View, middle: Floats, size: float) -> Any:

@@ -12,6 +12,7 @@ from uvf.maths.transforms import IDENTITY, Transform, apply, compose, inverse
 from uvf.runtime.robot_model import Joint, Link, UrdfModel
 from uvf.runtime.solid import Solid
 from uvf.runtime.solid_mesh import placed, reach, triangles
+from uvf.runtime.urdf_rules import RESERVED
 
 Floats = NDArray[np.float64]
 
@@ -21,6 +22,7 @@ Y = np.array((0.0, 1.0, 0.0))
 CASTORS = ("cast", "swivel", "ball", "skid", "support")
 SKID = "skid steer is not modelled: one pair drives, the other wheels became balls that slide"
 LOW = 0.004  # m above the floor, within which a shape is meant to touch it
+LIFT = 0.0005  # m
 NEAR_FLOOR = 0.35  # of the wheel's radius: what a castor's link may be off the floor
 
 
@@ -56,6 +58,7 @@ def rebuilt(foreign: Foreign, pair: DrivePair) -> UrdfModel:
     if held:
         foreign.notes.add("joints that move but drive nothing, held fast at zero", ", ".join(held))
     _lower_feet(parts, foreign)
+    _lift_castors(parts, foreign)
     links = {name: mended(link, name == BASE, foreign.notes) for name, link in parts.links.items()}
     return UrdfModel(model.path, model.name, links, parts.joints)
 
@@ -91,7 +94,8 @@ def _add_fixed(parts: _Parts, name: str, castors: dict[str, Solid], foreign: For
     if name in castors:
         ball = castors[name]
         collisions = (replace(ball, name=new, position=apply(inverse(pose), ball.position[None])[0]),)
-    if not any((link.inertial, link.visuals, collisions)) and any(j.parent == name for j in parts.model.joints.values()):
+    bears = any(j.parent == name for j in parts.model.joints.values())
+    if not any((link.inertial, link.visuals, collisions)) and (bears or name in RESERVED):
         foreign.notes.add("frames without mass or shape dropped", name)
         return
     parts.links[new] = Link(new, link.inertial, link.visuals, collisions)
@@ -100,7 +104,7 @@ def _add_fixed(parts: _Parts, name: str, castors: dict[str, Solid], foreign: For
 
 def _named(name: str, parts: _Parts) -> str:
     clean = "".join(c if c.isalnum() or c in "_.-" else "_" for c in name).strip("_") or "link"
-    return clean if clean not in parts.links else f"{clean}_{len(parts.links)}"
+    return clean if clean not in (*parts.links, *RESERVED) else f"{clean}_{len(parts.links)}"
 
 
 def _add_wheel(parts: _Parts, side: str, wheel: Wheel, names: list[str]) -> None:
@@ -130,13 +134,21 @@ def _castors(parts: _Parts, rest: list[str], foreign: Foreign) -> dict[str, Soli
             ball = _ball(link, parts, name in others or called)
             if ball is not None:
                 found[name] = ball
-    extra = [w.joint.name for w in parts.pair.others if w.joint.child in found]
+    extra = [w.joint.name for w in parts.pair.others if w.joint.child in found and not _swivels(parts.model, w.joint)]
     if len(extra) >= 2:
         foreign.notes.add(SKID, ", ".join(extra))
-    plain = [n for n in found if n not in others or len(extra) < 2]
+    skidding = {parts.model.joints[name].child for name in extra} if len(extra) >= 2 else set()
+    plain = [n for n in found if n not in skidding]
     if plain:
         foreign.notes.add("castors became balls that slide and touch the floor", ", ".join(plain))
     return found
+
+
+def _swivels(model: UrdfModel, joint: Joint) -> bool:
+    """Whether a wheel hangs in a fork that turns too, or is called a castor."""
+    fork = model.parents.get(joint.parent)
+    called = any(word in f"{joint.name} {joint.child}".lower() for word in CASTORS)
+    return called or (fork is not None and fork.kind != "fixed")
 
 
 def _ball(link: Link, parts: _Parts, sure: bool) -> Solid | None:
@@ -168,6 +180,22 @@ def _lower_feet(parts: _Parts, foreign: Foreign) -> None:
         parts.links[name] = Link(name, None, (), (replace(foot, name=name, position=np.zeros(3)),))
         parts.joints[f"castor_{i}_joint"] = Joint(f"castor_{i}_joint", "fixed", BASE, name, at)
     foreign.notes.add("shapes of the body that touch the floor made castors that slide", f"{len(feet)}")
+
+
+def _lift_castors(parts: _Parts, foreign: Foreign) -> None:
+    """A rigid body on castors before and behind its axle leaves its wheels next to no weight: they would slip."""
+    low: dict[str, float] = {}  # joint -> x of what touches the floor
+    for joint in (j for j in parts.joints.values() if j.kind == "fixed"):
+        for solid in (placed(s, joint.parent_from_child) for s in parts.links[joint.child].collisions):
+            if -float(reach(solid, DOWN)[0]) < LIFT:
+                low[joint.name] = float(solid.position[0])
+    if not low or min(low.values()) > -LIFT or max(low.values()) < LIFT:
+        return
+    for name in low:
+        joint = parts.joints[name]
+        at = Transform(joint.parent_from_child.rotation, joint.parent_from_child.translation + np.array((0.0, 0.0, LIFT)))
+        parts.joints[name] = replace(joint, parent_from_child=at)
+    foreign.notes.add(f"castors before and behind the axle lifted by {LIFT * 1000:g} mm, so that the wheels carry weight", ", ".join(low))
 
 
 def _box_about(solids: tuple[Solid, ...]) -> Solid:

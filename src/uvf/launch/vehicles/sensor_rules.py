@@ -14,6 +14,7 @@ from uvf.runtime.vehicle_file import Lidar, Mount, Sensors
 
 APART = 0.03  # m, between a sensor's mount and the link of its name: the link may be the housing
 LOOKS_AT = np.linspace(0.01, 1.0, 60)  # m along a beam
+NEEDED = {"lidar": "preset: lds01, mount: {xyz: [0, 0, 0.2]}", "encoders": "hz: 50, ticks_per_turn: 4096"}
 HOUSINGS = ("lidar", "laser", "scan", "hokuyo", "lds", "rplidar", "sick", "velodyne")
 
 Poses = Mapping[str, Transform]
@@ -40,7 +41,10 @@ def sensor_faults(model: UrdfModel, sensors: Sensors, poses: Poses, place: Place
 
 
 def sensor_notes(model: UrdfModel, sensors: Sensors, poses: Poses, turning: set[str]) -> Iterator[str]:
-    """Beams that the vehicle's own body is in the way of, as a real scanner would see it."""
+    """What missions miss; beams that the vehicle's own body is in the way of, as a real scanner would see it."""
+    for kind, example in NEEDED.items():
+        if getattr(sensors, kind) is None:
+            yield f"no {kind}: no mission takes it, for SLAM needs them; give it sensors: {kind}: {{{example}}}"
     if sensors.lidar is None or next(_around(model, sensors.lidar, poses), None) is not None:
         return
     lidar, origin = sensors.lidar, np.array(sensors.lidar.mount.xyz)
@@ -57,11 +61,12 @@ def sensor_notes(model: UrdfModel, sensors: Sensors, poses: Poses, turning: set[
 
 def mounted(sensors: Sensors) -> Iterator[tuple[tuple[Key, ...], Any]]:
     """(keys in the file, sensor) of those that sit somewhere."""
-    for kind in ("lidar", "imu", "camera"):
+    for kind in ("lidar", "imu", "camera", "chase", "gimbal"):
         sensor = getattr(sensors, kind)
         if sensor is not None:
             yield (kind,), sensor
-    yield from ((("sonars", i), sonar) for i, sonar in enumerate(sensors.sonars))
+    for kind in ("sonars", "rangefinders"):
+        yield from (((kind, i), sensor) for i, sensor in enumerate(getattr(sensors, kind)))
 
 
 def _around(model: UrdfModel, lidar: Lidar, poses: Poses) -> Iterator[str]:

@@ -7,11 +7,13 @@ from numpy.typing import NDArray
 
 from uvf.launch.worlds.report import RESOLUTION
 from uvf.maths.footprint import Footprint, footprint
+from uvf.runtime.footing import Footing
+from uvf.runtime.relief import Relief
 from uvf.runtime.scene import primitives
 from uvf.runtime.site import Site
 from uvf.runtime.solid import Solid
 from uvf.runtime.world_file import WorldFile
-from uvf.runtime.world_geometry import WALL, clearance, floor_plan, free_regions, solids
+from uvf.runtime.world_geometry import WALL, floor_plan, free_regions, relief, things
 
 Floats = NDArray[np.float64]
 
@@ -25,42 +27,50 @@ RIM = 16  # points on a round one's rim
 
 def problems(world: WorldFile, radius: float) -> Iterator[str]:
     """One line each. Raises BadInput for a mesh that cannot be read."""
-    things = solids(world)
-    yield from _heights(things)
+    standing = things(world)
+    yield from _heights(standing, relief(world))
     yield from _out_of_reach(world, radius)
-    yield from _crossings(things)
+    yield from _crossings(standing)
 
 
 def blocked_starts(site: Site) -> Iterator[str]:
     """Ground vehicles of a mission that begin in or too close to something."""
+    footing = Footing(site.world)
     for name, member in site.members.items():
         body, start = member.file.ground, member.entry.start
-        if body is not None and (room := clearance(site.world, start.x, start.y)) < body.radius:
+        if body is not None and (room := footing.at(start.x, start.y).room) < body.radius:
             yield f"start of {name} at ({start.x:g}, {start.y:g}): {room:.2f} m to the nearest thing, its radius is {body.radius:g} m"
 
 
-def _heights(things: list[Solid]) -> Iterator[str]:
+def _heights(things: list[Solid], land: Relief | None) -> Iterator[str]:
     """Things that hang in the air, resting on nothing that stands; things that nobody sees for they lie below the ground."""
     bounds = [_bounds(thing) for thing in things]
-    standing = {i for i, (low, _) in enumerate(bounds) if low[2] <= GAP}
+    grounds = [0.0 if land is None else _land_under(land, *bound) for bound in bounds]
+    standing = {i for i, (low, _) in enumerate(bounds) if low[2] <= grounds[i] + GAP}
     new = set(standing)
     while new:
         reached = {i for i in range(len(things)) if i not in standing and any(_touch(bounds[i], bounds[k]) for k in new)}
         standing |= reached
         new = reached
     for i, thing in enumerate(things):
-        low, high = bounds[i]
+        low, high = (bound[2] - grounds[i] for bound in bounds[i])
         if i not in standing:
-            yield f"{thing.name} floats: nothing between it and the ground, {low[2]:.2f} m below"
-        elif high[2] < -GAP:
-            yield f"{thing.name} is sunk: it ends {-high[2]:.2f} m below the ground"
-        elif -low[2] > high[2] and thing.shape != "mesh" and _level(thing):
-            yield f"{thing.name} is sunk: {-low[2]:.2f} m of it lie below the ground, {high[2]:.2f} m above"
+            yield f"{thing.name} floats: nothing between it and the ground, {low:.2f} m below"
+        elif high < -GAP:
+            yield f"{thing.name} is sunk: it ends {-high:.2f} m below the ground"
+        elif -low > high and thing.shape != "mesh" and _level(thing):
+            yield f"{thing.name} is sunk: {-low:.2f} m of it lie below the ground, {high:.2f} m above"
 
 
 def _bounds(thing: Solid) -> tuple[Floats, Floats]:
     parts = primitives(thing)
     return parts.low.min(axis=0), parts.high.max(axis=0)
+
+
+def _land_under(land: Relief, low: Floats, high: Floats) -> float:
+    """Height [m] of the terrain at its highest under the corners and the middle of a thing: what it stands on."""
+    x, y = np.meshgrid(*np.linspace(low[:2], high[:2], 3).T)
+    return float(land.at(x, y)[0].max())
 
 
 def _touch(one: tuple[Floats, Floats], other: tuple[Floats, Floats]) -> bool:
@@ -73,7 +83,7 @@ def _level(thing: Solid) -> bool:
 
 def _out_of_reach(world: WorldFile, radius: float) -> Iterator[str]:
     """All floor but the largest connected one, and but the hollows of meshes."""
-    hollows = [b for t in solids(world) if t.shape == "mesh" and ((b := _bounds(t))[1] - b[0])[:2].max() <= LARGEST_HOLLOW]
+    hollows = [b for t in things(world) if t.shape == "mesh" and ((b := _bounds(t))[1] - b[0])[:2].max() <= LARGEST_HOLLOW]
     plan = floor_plan(world, RESOLUTION)
     x, y = plan.centres()
     for region in free_regions(plan, radius)[1:]:

@@ -1,7 +1,7 @@
 """Maps of map_server (picture and yaml) as worlds: occupied cells are walls (http://wiki.ros.org/map_server#Map_format)."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 import msgspec
 import numpy as np
@@ -29,8 +29,8 @@ class MapFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     origin: list[float]  # x, y [m], yaw [rad] of the picture's lower left corner
     occupied_thresh: Share = 0.65
     free_thresh: Share = 0.196
-    negate: int = 0
-    mode: str = "trinary"
+    negate: bool | int = 0
+    mode: Literal["trinary", "scale", "raw"] = "trinary"
 
 
 def map_world(path: Path, height: float, notes: Notes) -> WorldFile:
@@ -64,8 +64,11 @@ def _read(path: Path, file: MapFile) -> tuple[Mask, Mask]:
     except (OSError, UnidentifiedImageError, ValueError) as error:
         raise BadInput(f"{picture}: cannot be read as a picture: {error}; give a PGM or PNG") from error
     seen = grey[..., 1] > 0 if has_alpha else np.ones(grey.shape, dtype=np.bool_)
-    value = (grey[..., 0] if has_alpha else grey) / 255
-    p = value if file.negate else 1 - value
+    pixels = grey[..., 0] if has_alpha else grey
+    if file.mode == "raw":  # the pixels are the cells' values: 0 .. 100 %, above that unknown
+        seen, p = seen & (pixels <= 100), pixels / 100
+    else:
+        p = pixels / 255 if file.negate else 1 - pixels / 255
     occupied = seen & (p > file.occupied_thresh)
     return np.flipud(occupied), np.flipud(seen & (occupied | (p < file.free_thresh)))
 

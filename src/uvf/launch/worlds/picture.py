@@ -18,7 +18,7 @@ from uvf.runtime.scene import primitives
 from uvf.runtime.solid import Solid, pose_at
 from uvf.runtime.vehicle_file import Camera, Mount
 from uvf.runtime.world_file import WorldFile
-from uvf.runtime.world_geometry import FloorPlan, solids
+from uvf.runtime.world_geometry import FloorPlan, relief, solids, things
 
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -29,7 +29,8 @@ LOOK_DOWN = np.radians(42.0)
 LOOK_FROM = np.radians(-62.0)  # from the south-east
 ON_THE_FLOOR = 0.02  # m, what lies lower is not drawn into the plan
 WIDE = 3.0  # m, from which on a mesh is taken for a building
-CUT = 1.4  # m, higher walls and things are shown cut there, so that one looks into the rooms
+LINES = 2.0  # m, between lines of equal height
+CUT = 1.4  # m, without terrain: higher walls and things are shown cut there, so that one looks into the rooms
 
 
 def save_picture(world: WorldFile, plan: FloorPlan, reachable: Mask, path: Path) -> None:
@@ -50,7 +51,10 @@ def _draw_plan(axes: Axes, world: WorldFile, plan: FloorPlan, reachable: Mask) -
     shown[plan.cells] = (0.25, 0.25, 0.28)
     far = (plan.x, plan.x + columns * plan.resolution, plan.y, plan.y + rows * plan.resolution)
     axes.imshow(shown, origin="lower", extent=far, interpolation="nearest")
-    for solid in solids(world):
+    if (land := relief(world)) is not None:
+        lines = axes.contour(land.x, land.y, land.heights, np.arange(0.0, land.heights.max(), LINES), colors="saddlebrown", linewidths=0.6)
+        axes.clabel(lines, fontsize=7)
+    for solid in things(world):
         _draw_solid(axes, solid)
         if solid.path is not None:
             axes.plot(solid.path.keys[:, 1], solid.path.keys[:, 2], "--", color=(0.8, 0.1, 0.1), linewidth=0.8)
@@ -78,7 +82,7 @@ def view(world: WorldFile) -> NDArray[np.uint8]:
     """(height, width, 3) RGB from the south-east and above, tall things cut, moving ones at the beginning of their scripts."""
     camera = Camera(Mount((0.0, 0.0, 0.0)), hz=1.0, width=WIDTH, height=HEIGHT, fov=LENS, far=2000.0)
     with TemporaryDirectory() as scratch:
-        placed = [_at_start(_cut(solid, Path(scratch))) for solid in solids(world)]
+        placed = [_at_start(solid if world.terrain else _cut(solid, Path(scratch))) for solid in solids(world)]
         renderer = BulletRenderer(world, placed, {})
         try:
             picture = renderer.take(camera, _standpoint(world)).picture
@@ -112,8 +116,9 @@ def _at_start(solid: Solid) -> Solid:
 
 
 def _standpoint(world: WorldFile) -> Pose:
-    """Where the whole floor fills the view."""
-    x_min, y_min, x_max, y_max = world.floor
+    """Where the whole floor fills the view, or the whole terrain."""
+    land = relief(world)
+    x_min, y_min, x_max, y_max = world.floor if land is None else (land.x[0], land.y[0], land.x[-1], land.y[-1])
     middle = np.array(((x_min + x_max) / 2, y_min + 0.46 * (y_max - y_min), 0.0))
     away = np.array((np.cos(LOOK_FROM) * np.cos(LOOK_DOWN), np.sin(LOOK_FROM) * np.cos(LOOK_DOWN), np.sin(LOOK_DOWN)))
     distance = 0.5 * float(np.hypot(x_max - x_min, y_max - y_min)) / np.tan(LENS / 2) * 1.12

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uvf.runtime.params import BadInput
+from uvf.runtime.relief import relief_of
 from uvf.runtime.world_file import WorldFile, load_world
 from uvf.runtime.world_geometry import FloorPlan, free_regions
 
@@ -31,6 +32,10 @@ def figures(world: WorldFile) -> Iterator[str]:
     origin, east_north_up = world.origin, ", ".join(f"{v:g}" for v in world.wind.steady)
     yield world.about
     yield f"floor    {x_max - x_min:g} x {y_max - y_min:g} m, x {x_min:g} .. {x_max:g}, y {y_min:g} .. {y_max:g}"
+    if world.terrain is not None:
+        land = relief_of(world.terrain)
+        low, high, cell = land.heights.min(), land.heights.max(), land.x[1] - land.x[0]
+        yield f"terrain  {land.x[-1] - land.x[0]:g} x {land.y[-1] - land.y[0]:g} m, {low:.1f} .. {high:.1f} m high, cells of {cell:g} m"
     yield f"origin   {origin.latitude:.5f}, {origin.longitude:.5f} deg, {origin.altitude:g} m"
     yield f"wind     {east_north_up} m/s (east, north, up)"
     yield f"field    {np.linalg.norm(world.magnetic_field) * 1e6:.1f} uT"

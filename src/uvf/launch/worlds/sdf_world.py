@@ -18,7 +18,8 @@ from uvf.launch.worlds.sdf_shapes import Named, Shapes, Thing, is_level
 from uvf.launch.worlds.sdf_state import NOTHING_SAVED, ModelState, deleted, saved_states
 from uvf.maths.transforms import IDENTITY, Transform, compose
 from uvf.runtime.params import BadInput
-from uvf.runtime.world_file import Colour, Origin, Wind, WorldFile
+from uvf.runtime.wind_file import Wind
+from uvf.runtime.world_file import Colour, Origin, WorldFile
 
 Floats = NDArray[np.float64]
 
@@ -117,8 +118,8 @@ class SdfImport:
         frame = relative_to(pose)
         owner = world_from_link if not frame else compose(model.world_from_model, model.scope.pose(frame))
         at = compose(owner, transform(pose))
-        bits = (collision.findtext("surface/contact/collide_bitmask") or "1").strip()
-        if geometry is None or not int(bits, 0):
+        bits = (collision.findtext("surface/contact/collide_bitmask") or "1").strip().lower()
+        if geometry is None or not bits.removeprefix("0x").strip("0"):
             self.notes.add("collisions without a shape or that touch nothing are left out", name)
             return
         colour = self._colour(collision, visuals)

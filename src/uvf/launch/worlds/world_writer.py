@@ -7,7 +7,8 @@ from typing import Any
 import msgspec
 import yaml
 
-from uvf.runtime.world_file import Origin, Wind, WorldFile
+from uvf.runtime.wind_file import Wind
+from uvf.runtime.world_file import Origin, WorldFile
 
 DECIMALS = {"latitude": 8, "longitude": 8, "magnetic_field": 9, "rpy": 6, "scale": 6}
 GROUPS = ("walls", "boxes", "cylinders", "spheres", "meshes", "fields")
@@ -51,6 +52,8 @@ def _default(field: msgspec.structs.FieldInfo) -> Any:
 
 
 def _rounded(value: Any, decimals: int) -> Any:
+    if isinstance(value, msgspec.Struct):
+        return _plain(value, type(value))
     if isinstance(value, float):
         return round(value, decimals) + 0.0  # no -0.0
     if isinstance(value, list | tuple):

@@ -33,6 +33,9 @@ def sensors(t, speed=25.0):
         "gnss": gnss,
         "battery": None,
         "stop": None,
+        "teleop": None,
+        "mavlink": None,
+        "client": None,
     }
 
 
@@ -62,3 +65,10 @@ class Bench:
     @property
     def texts(self):
         return [event.text for out in self.outputs for event in out.get("events", [])]
+
+
+def resting(*args):
+    """A bench whose aircraft has stood still until it is taken to be landed."""
+    bench = Bench(*args)
+    bench.run(cycles=80, speed=0.0)
+    return bench

@@ -17,7 +17,8 @@ from uvf.runtime.lockstep import Lockstep
 from uvf.runtime.mission_file import Job, MissionFile, Start, Vehicle, Waypoint
 from uvf.runtime.site import ROOT, Member, Site
 from uvf.runtime.vehicle_file import load_vehicle
-from uvf.runtime.world_file import Origin, Wind, WorldFile
+from uvf.runtime.wind_file import Wind
+from uvf.runtime.world_file import Origin, WorldFile
 
 WIND = (1.5, 1.3, 0.0)
 CIRCUIT = [(200.0, -150.0), (200.0, 150.0), (-200.0, 150.0), (-200.0, -150.0)]

@@ -13,7 +13,7 @@ from tests.services.autopilot.air.sensing import Bench, sensors
 from tests.services.autopilot.air.test_flight import Flight, distance_to_circuit
 from uvf.maths.rotations import to_euler
 
-IN_A_TURN = 18.0  # s: the demo's aircraft is banked at its first corner
+IN_A_TURN = 14.5  # s: the demo's aircraft is banked at its first corner
 DEAD_RECKONING, BACK = Loss.GNSS.value
 
 
@@ -24,7 +24,7 @@ class Losing(Flight):
         super().__init__()
         self.events = self._record(topics.EVENTS.by("autopilot"))
         (shell,) = [s for s in self.lockstep.shells if s.type.name == "sim_air"]
-        (self._craft,) = shell.service._aircraft
+        (self._craft,) = shell.service._stage.aircraft.values()
         self._fitted = {}
 
     def lose(self, *names):

@@ -54,10 +54,10 @@ def test_a_circuit_is_flown_in_order_and_its_laps_are_counted():
     assert navigator.laps == 2
 
 
-@pytest.mark.parametrize("wind", [(0.0, 0.0), (3.0, 2.0)])
-def test_it_stays_near_the_legs_corners_included(wind):
+@pytest.mark.parametrize(("wind", "most"), [((0.0, 0.0), 12.0), ((3.0, 2.0), 15.0)])
+def test_it_stays_near_the_legs_corners_included(wind, most):
     _, log = fly(CIRCUIT, 100.0, wind=wind)
-    assert max(distance_to_square(now) for _, now in log) < 13.0
+    assert max(distance_to_square(now) for _, now in log) < most
 
 
 def test_the_last_waypoint_finishes_the_mission():

@@ -21,7 +21,7 @@ from schemas.messages import (
     Vector3,
 )
 from services.autopilot.air.service import AutopilotAir
-from tests.services.autopilot.air.sensing import WAYPOINTS, Bench, sensors
+from tests.services.autopilot.air.sensing import WAYPOINTS, Bench, resting, sensors
 
 STOP = StopCommand(engaged=True, source="gcs")
 RELEASED = StopCommand(engaged=False, source="gcs")
@@ -83,11 +83,11 @@ def test_a_mode_is_changed_and_announced_once(mode, text):
     assert bench.texts.count(text) == 1
 
 
-@pytest.mark.parametrize("mode", [Mode.MODE_MANUAL, Mode.MODE_LAND, Mode.MODE_OFFBOARD, 99])
+@pytest.mark.parametrize("mode", [Mode.MODE_STABILIZED, Mode.MODE_LAND, Mode.MODE_OFFBOARD, 99])
 def test_a_mode_that_is_not_flown_is_refused_with_a_reason(mode):
     (reply,) = Bench().run(mode=[ModeRequest(mode=mode)])["mode"]
     assert not reply.accepted
-    assert "Hold, Mission, Return" in reply.reason
+    assert "Hold, Mission, Return, Manual" in reply.reason
 
 
 def test_disarming_in_the_air_takes_force():
@@ -100,8 +100,16 @@ def test_disarming_in_the_air_takes_force():
 
 
 def test_at_rest_it_disarms_without_force():
-    (reply,) = Bench().run(cycles=3, speed=0.0, arm=[ArmRequest(arm=False)])["arm"]
+    (reply,) = resting().run(speed=0.0, arm=[ArmRequest(arm=False)])["arm"]
     assert reply.accepted
+
+
+def test_at_rest_and_disarmed_the_surfaces_are_neutral_and_the_brakes_on():
+    bench = resting()
+    (reply,) = bench.run(speed=0.0, arm=[ArmRequest(arm=False)])["arm"]
+    out = bench.run(cycles=100, speed=0.0)["surfaces"]
+    assert reply.accepted and bench.status.landed
+    assert (out.aileron, out.elevator, out.rudder, out.throttle, out.brake) == (0.0, 0.0, 0.0, 0.0, 1.0)
 
 
 def test_a_stop_holds_until_it_is_released():
@@ -114,8 +122,7 @@ def test_a_stop_holds_until_it_is_released():
 
 
 def test_a_stop_on_the_ground_disarms_and_keeps_it_so():
-    bench = Bench()
-    bench.run(cycles=5, speed=0.0)
+    bench = resting()
     bench.run(speed=0.0, stop=STOP)
     assert (bench.status.armed, bench.status.reason) == (False, "stopped by gcs")
     out = bench.run(speed=0.0, stop=STOP, arm=[ArmRequest(arm=True)])

@@ -3,8 +3,9 @@
 import pytest
 
 from services.autopilot.mavlink import build as build_module
-from services.autopilot.mavlink.build import address, build
+from services.autopilot.mavlink.build import build
 from services.autopilot.mavlink.parameter_table import parameters_of
+from uvf.runtime.address import peer
 from uvf.runtime.params import BadInput
 from uvf.runtime.site import ROOT, load_site
 
@@ -12,11 +13,11 @@ from uvf.runtime.site import ROOT, load_site
 @pytest.mark.parametrize("text", ["", "14550", "host:", ":14550", "host:abc", "host:0", "host:70000"])
 def test_what_is_no_address_is_named_with_its_place(text):
     with pytest.raises(BadInput, match=r"UVF_X: .* is not host:port"):
-        address(text, "UVF_X")
+        peer(text, "UVF_X", "127.0.0.1:14550")
 
 
 def test_addresses():
-    assert address(" 10.0.0.2:14550 ", "X") == ("10.0.0.2", 14550)
+    assert peer(" 10.0.0.2:14550 ", "X", "") == ("10.0.0.2", 14550)
 
 
 def test_parameters_get_the_numbers_of_the_vehicles_own_files():

@@ -10,6 +10,7 @@ from services.autopilot.mavlink.ftp import HEADER, PAYLOAD_BYTES
 from services.autopilot.mavlink.statustext import TextLimiter, chunks
 from services.autopilot.mavlink.streams import Schedule
 from tests.services.autopilot.mavlink.rig import GCS, OTHER, PLANE, ROVER, Rig, of, texts
+from uvf.runtime.air_file import Commands
 
 
 @pytest.mark.parametrize("n", [1, 49, 50, 51, 99, 100, 101, 240])
@@ -71,7 +72,7 @@ def test_sticks_drive_a_rover_in_manual_mode():
     assert drive(rig) == {}
 
 
-@pytest.mark.parametrize("message", [sticks(ROVER, z=32767), sticks(PLANE, z=500), sticks(77, z=500)])
+@pytest.mark.parametrize("message", [sticks(ROVER, z=32767), sticks(PLANE, z=32767), sticks(77, z=500)])
 def test_sticks_that_mean_nobody_drive_nobody(message):
     rig = Rig()
     for vehicle in (rig.rover, rig.plane):
@@ -79,6 +80,25 @@ def test_sticks_that_mean_nobody_drive_nobody(message):
     rig.run()
     rig.say(message)
     assert drive(rig) == {}
+    assert rig.outputs.get("surfaces", {}) == {}
+
+
+def test_sticks_move_the_surfaces_of_an_aircraft_in_manual_mode_within_its_limits():
+    rig = Rig()
+    rig.plane.status.mode = Mode.MODE_MANUAL
+    rig.run()
+    rig.say(sticks(PLANE, x=500, y=1000, z=700, r=-32768))
+    rig.run(0.02)
+    (command,) = rig.outputs["surfaces"].values()
+    limits = Commands()  # the file of the rig's aircraft names none
+    assert command.elevator == 0.5 * limits.elevator.limit  # stick forward: trailing edge down, the nose goes down
+    assert command.aileron == limits.aileron.limit  # right: rolls right
+    assert command.rudder == limits.rudder.limit  # left: yaws left
+    assert command.throttle == 0.7
+    rig.say(sticks(PLANE, y=32767, r=32767, z=-200))
+    rig.run(0.02)
+    (command,) = rig.outputs["surfaces"].values()
+    assert (command.aileron, command.rudder, command.throttle) == (0.0, 0.0, 0.0)
 
 
 def test_sticks_at_rest_do_not_disturb_a_mission():

@@ -1,28 +1,24 @@
-"""Planner and tracker step by step: goals, what they do without inputs, what they do when blocked."""
+"""The planner step by step: goals, what it does without inputs, what it does when blocked."""
 
 import numpy as np
 import pytest
 
-from schemas.convert import occupancy_grid, planar_pose, stamp
+from schemas.convert import occupancy_grid, planar_pose
 from schemas.messages import (
     CancelRequest,
     GoalRequest,
-    LaserScan,
     Mission,
     MissionItem,
     MissionProgress,
     Mode,
     NavStatus,
     PoseInFrame,
-    PosesInFrame,
     Vector3,
     VehicleStatus,
 )
 from services.planner import navigator
 from services.planner.planner_service import PlannerParams, PlannerService
 from services.planner.search import Ways
-from services.planner.tracker_service import TrackerParams, TrackerService
-from tests.services.autopilot.ground.test_service import BODY
 from tests.services.live_params import all_settable_are_read
 from tests.services.planner.plans import room
 
@@ -314,77 +310,3 @@ def test_a_comfort_below_the_radius_does_not_spoil_the_costs():
     bench.service.params = PlannerParams(comfort=0.13)
     assert bench.step(2).state == NavStatus.DRIVING
     assert np.isfinite(bench.service._navigator.costs.cost).all()
-
-
-def scan(t, ahead):
-    """A wall across the way, ``ahead`` [m] of the lidar; nothing elsewhere."""
-    angles = np.radians(np.arange(360.0))
-    ranges = np.where(np.cos(angles) > 0.5, ahead / np.maximum(np.cos(angles), 0.5), 0.0)
-    return LaserScan(timestamp=stamp(t), start_angle=0.0, end_angle=angles[-1], ranges=ranges.tolist())
-
-
-class TrackerBench:
-    """A vehicle at the world's origin that looks east; the wall stays ``ahead``, the path leads 3 m east."""
-
-    def __init__(self):
-        self.service = TrackerService(BODY, (0.0, 0.0, 0.0), TrackerParams())
-        self.t = 0.0
-        self.commands = []
-        self.events = []
-
-    def step(self, n, ahead, blind=False):
-        path = PosesInFrame(poses=[planar_pose(0.1 * i, 0.0, 0.0) for i in range(31)])
-        for _ in range(n):
-            self.t += 0.05
-            poses = [PoseInFrame(timestamp=stamp(self.t - s), pose=planar_pose(0.0, 0.0, 0.0)) for s in (0.04, 0.02)]
-            seen_at = 0.0 if blind else self.t - 0.03
-            out = self.service.step(self.t, path, poses, scan(seen_at, ahead))
-            self.commands.append((out["drive"].linear, out["drive"].angular))
-            self.events += [e.text for e in out.get("events", [])]
-        return self
-
-
-def test_drives_where_the_way_is_free():
-    assert TrackerBench().step(10, ahead=3.0).commands[-1][0] == pytest.approx(TrackerParams().speed)
-
-
-def test_slows_down_and_stops_before_what_it_sees():
-    free, near, close = (TrackerBench().step(3, ahead).commands[-1][0] for ahead in (3.0, 0.4, 0.18))
-    assert free > near > 0.0
-    assert close == 0.0
-
-
-def test_backs_off_when_it_stays_blocked():
-    bench = TrackerBench().step(70, ahead=0.18)
-    assert bench.commands[5][0] == 0.0
-    assert bench.commands[-1][0] == pytest.approx(-TrackerParams().back_off)
-    assert bench.events == ["obstacle ahead"]
-
-
-def test_an_obstacle_that_comes_and_goes_is_told_every_ten_seconds_at_most():
-    bench = TrackerBench()
-    for _ in range(50):
-        bench.step(6, ahead=0.18).step(4, ahead=3.0)
-    assert bench.t == pytest.approx(25.0)
-    assert bench.events == ["obstacle ahead"] * 3
-
-
-def test_blind_it_does_not_move():
-    bench = TrackerBench().step(10, ahead=3.0)
-    assert bench.step(20, ahead=3.0, blind=True).commands[-1] == (0.0, 0.0)
-
-
-def test_stale_inputs_mean_stop():
-    drive = TrackerBench().service.stale(3.0, ("pose",))["drive"]
-    assert (drive.linear, drive.angular) == (0.0, 0.0)
-
-
-def test_parameters_of_the_tracker_count_while_running():
-    bench = TrackerBench()
-    with all_settable_are_read(bench.service):
-        bench.step(5, ahead=3.0).step(40, ahead=0.18)
-    bench = TrackerBench().step(5, ahead=3.0)
-    bench.service.params = TrackerParams(speed=0.1)
-    assert bench.step(5, ahead=3.0).commands[-1][0] == pytest.approx(0.1)
-    bench.service.params = TrackerParams(margin=1.0)
-    assert bench.step(3, ahead=1.0).commands[-1] == (0.0, 0.0)

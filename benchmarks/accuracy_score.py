@@ -1,0 +1,140 @@
+"""Scores a flight of the course from the truth: legs, path, heights, airspeed, circles, and how hard the surfaces worked."""
+
+import itertools
+from dataclasses import dataclass
+from math import pi
+
+import numpy as np
+from numpy.typing import NDArray
+
+from benchmarks.accuracy_course import ENTRY, EXIT, TURNS, Course
+
+Floats = NDArray[np.float64]
+
+SETTLED = 30.0  # s after the start; nothing before it counts
+
+
+@dataclass(frozen=True)
+class Flight:
+    """What was recorded, every row at its time; n samples."""
+
+    t: Floats  # (n,) s
+    truth: Floats  # (n, 3) m north, east, height
+    estimate: Floats  # (n, 3) m
+    airspeed: Floats  # (n,) m/s true
+    surfaces: Floats  # (n, 4) rad where the servos are: aileron, elevator, rudder; throttle
+    off_path: Floats  # (n,) m, the truth's distance to the right of the path planned by the autopilot
+    bank: Floats  # (n,) rad
+    wind_error: Floats  # (n,) m/s, of the estimated wind
+
+
+@dataclass(frozen=True)
+class Window:
+    """Samples of one leg that count; ``k``: (m,) indices."""
+
+    k: NDArray[np.intp]
+    begin: Floats  # (3,) m
+    end: Floats
+
+    @property
+    def along(self) -> Floats:
+        """(2,) unit vector."""
+        d = self.end[:2] - self.begin[:2]
+        unit: Floats = d / np.linalg.norm(d)
+        return unit
+
+    def aside(self, points: Floats) -> Floats:
+        """(m,) m to the right of the leg, of (n, 3) points of the flight."""
+        d = points[self.k, :2] - self.begin[:2]
+        return np.asarray(d[:, 1] * self.along[0] - d[:, 0] * self.along[1])
+
+    def above(self, points: Floats) -> Floats:
+        """(m,) m above the line between the leg's heights."""
+        d = points[self.k] - self.begin
+        part = (d[:, :2] @ self.along) / np.linalg.norm(self.end[:2] - self.begin[:2])
+        return np.asarray(d[:, 2] - part * (self.end[2] - self.begin[2]))
+
+    @property
+    def climbs(self) -> bool:
+        return bool(self.begin[2] != self.end[2])
+
+
+def leg_windows(flight: Flight, course: Course) -> list[Window]:
+    """A leg is left for good at its first sample past its end less EXIT; the first ENTRY of it does not count. Raises ValueError."""
+    corners, first, found = course.corners, int(np.searchsorted(flight.t, SETTLED)), []
+    for begin, end in itertools.pairwise(corners):
+        leg = Window(np.arange(first, len(flight.t)), begin, end)
+        s = (flight.truth[first:, :2] - begin[:2]) @ leg.along
+        length = float(np.linalg.norm(end[:2] - begin[:2]))
+        past = np.flatnonzero(s >= length - EXIT * course.scale)
+        if not len(past):
+            raise ValueError(f"leg {len(found) + 1} of {len(corners) - 1} was not flown to its end")
+        k = first + np.flatnonzero(s[: past[0]] >= ENTRY * course.scale)
+        found.append(Window(k, begin, end))
+        first += int(past[0])
+    return found
+
+
+def circle_windows(flight: Flight, course: Course, after: int) -> list[tuple[NDArray[np.intp], Floats]]:
+    """(indices, distance to the circle) of both circles: two full turns after half a turn. Raises ValueError."""
+    found = []
+    for north, east, radius in course.circles:
+        d = flight.truth[after:, :2] - (north, east)
+        r = np.hypot(d[:, 0], d[:, 1])
+        near = np.flatnonzero(r <= 1.25 * abs(radius))
+        if not len(near):
+            raise ValueError("a circle was not reached")
+        turned = np.sign(radius) * np.unwrap(np.arctan2(d[near[0] :, 1], d[near[0] :, 0]))
+        turned -= turned[0]
+        inside = np.flatnonzero((turned >= pi) & (np.maximum.accumulate(turned) <= (2 * TURNS - 1) * pi))
+        if turned.max() < (2 * TURNS - 1) * pi:
+            raise ValueError("a circle was not flown to its end")
+        k = near[0] + inside
+        found.append((after + k, r[k] - abs(radius)))
+        after += int(k[-1])
+    return found
+
+
+def rms(x: Floats) -> float:
+    return float(np.sqrt(np.mean(np.square(x))))
+
+
+def activity(flight: Flight, k: NDArray[np.intp]) -> float:
+    """deg/s: the way of all surfaces over the time, within windows."""
+    step = np.abs(np.diff(flight.surfaces[:, :3], axis=0)).sum(axis=1)
+    follows = np.flatnonzero(np.diff(k) == 1)
+    seconds = float((flight.t[k[follows + 1]] - flight.t[k[follows]]).sum())
+    return float(np.degrees(step[k[follows]].sum()) / seconds)
+
+
+def score(flight: Flight, course: Course) -> dict[str, float]:
+    """Metric -> value. Raises ValueError for a flight that did not fly the course."""
+    legs = leg_windows(flight, course)
+    level, slopes = [w for w in legs if not w.climbs], [w for w in legs if w.climbs]
+    on_legs = np.concatenate([w.k for w in legs])
+    circles = circle_windows(flight, course, int(legs[-1].k[-1]))
+    on_circles = np.concatenate([k for k, _ in circles])
+    aside = np.concatenate([w.aside(flight.truth) for w in legs])
+    control = np.concatenate([w.aside(flight.estimate) for w in legs])
+    speed = flight.airspeed[on_legs]
+    whole = slice(int(legs[0].k[0]), int(legs[-1].k[-1]))
+    return {
+        "xtrack": rms(aside),
+        "p95": float(np.percentile(np.abs(aside), 95)),
+        "max": float(np.abs(aside).max()),
+        "control": rms(control),
+        "estimation": rms(aside - control),
+        "path": rms(flight.off_path[whole]),
+        "orbit": rms(np.concatenate([r for _, r in circles])),
+        "orbit mean": float(np.mean([r.mean() for _, r in circles])),
+        "level": rms(np.concatenate([w.above(flight.truth) for w in level])),
+        "level est": rms(np.concatenate([w.above(flight.estimate) for w in level])),
+        "slope": rms(np.concatenate([w.above(flight.truth) for w in slopes])),
+        "orbit alt": rms(flight.truth[on_circles, 2] - course.corners[0, 2]),
+        "V sd": float(speed.std()),
+        "V mean": float(speed.mean()) - course.speed,
+        "deg/s": activity(flight, on_legs),
+        "orbit deg/s": activity(flight, on_circles),
+        "bank": float(np.degrees(np.abs(flight.bank[whole]).max())),
+        "wind": rms(flight.wind_error[on_legs]),
+    }

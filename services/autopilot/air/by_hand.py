@@ -1,0 +1,63 @@
+"""Mode Manual: whose surface commands are passed on to the servos, and what follows when nobody sends any."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import astuple, dataclass, replace
+
+from schemas.convert import seconds
+from schemas.messages import SurfaceCommand
+from services.autopilot.air.control import Surfaces
+
+SOURCES = ("teleop", "mavlink", "client")
+"""The first one whose command is fresh wins."""
+COMMAND_MAX_AGE = 0.5  # s
+CLOCK_TOLERANCE = 0.02  # s, one tick: a sender's clock may be that much ahead
+PATIENCE = 0.5  # s that the first command is waited for once the mode is Manual
+LET_GO = Surfaces(0.0, 0.0, 0.0, 0.0, brake=1.0)
+"""On the ground, when nobody holds the stick: motor off, brakes on."""
+
+
+@dataclass(frozen=True, slots=True)
+class Hand:
+    """What a source asks for."""
+
+    source: str
+    surfaces: Surfaces
+
+
+def choose(t: float, commands: Mapping[str, SurfaceCommand | None]) -> Hand | None:
+    """The command that counts at ``t`` [s]; None without a fresh one. One with a number that is not finite is none."""
+    for source in SOURCES:
+        m = commands.get(source)
+        if m is not None and -CLOCK_TOLERANCE <= t - seconds(m.timestamp) <= COMMAND_MAX_AGE:
+            asked = Surfaces(m.aileron, m.elevator, m.rudder, m.throttle, m.flap, m.brake)
+            if all(map(math.isfinite, astuple(asked))):
+                return Hand(source, _within(asked))
+    return None
+
+
+def _within(s: Surfaces) -> Surfaces:
+    """Throttle and brake within 0..1, the flap not above its wing; how far a surface goes is the servos' own limit."""
+    return replace(s, throttle=min(max(s.throttle, 0.0), 1.0), flap=max(s.flap, 0.0), brake=min(max(s.brake, 0.0), 1.0))
+
+
+class Stick:
+    """Whether somebody flies by hand."""
+
+    def __init__(self) -> None:
+        self.hand: Hand | None = None
+        self.airborne = False
+        self._left = PATIENCE
+
+    def take(self) -> None:
+        """Mode Manual begins: somebody is about to speak."""
+        self._left = PATIENCE
+
+    def hold(self, hand: Hand | None, airborne: bool, dt: float) -> None:
+        """What is asked now, and whether the aircraft is in the air."""
+        self.hand, self.airborne = hand, airborne
+        self._left = 0.0 if hand is not None else self._left - dt
+
+    @property
+    def abandoned(self) -> bool:
+        return self.hand is None and self._left <= 0.0

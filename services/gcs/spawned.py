@@ -1,0 +1,61 @@
+"""What has been put into the running simulation, drawn at its true place: shapes, and vehicles that belong to no mission."""
+
+from typing import Any
+
+from schemas.convert import array, wxyz
+from schemas.messages import SimObject
+from services.gcs.bodies import rgb, rover
+from services.gcs.drawing import Colour, Node
+from services.gcs.scenery import at_rest, coloured, merge
+from services.gcs.state import Model, Placed
+from uvf.runtime.aircraft_shape import aircraft_shape
+from uvf.runtime.mesh_parts import Part
+from uvf.runtime.params import BadInput
+from uvf.runtime.spawned import solid_of, unit_wxyz
+from uvf.runtime.vehicle_file import load_vehicle
+
+STRANGER: Colour = (225, 225, 225)
+
+
+class Spawned:
+    """Remembers the meshes it has made, by what they look like."""
+
+    def __init__(self, model: Model) -> None:
+        self._model = model
+        self._made: dict[str, tuple[Any, dict[str, Node]]] = {}
+
+    def nodes(self) -> dict[str, Node]:
+        """Each thing's parts, in its own frame ``/spawned/<name>``."""
+        told = self._model.spawned
+        self._made = {thing.name: self._drawn(thing) for thing in told}
+        return {f"/spawned/{name}/{part}": node for name, (_, parts) in self._made.items() for part, node in parts.items()}
+
+    def _drawn(self, thing: SimObject) -> tuple[Any, dict[str, Node]]:
+        look = (thing.model, thing.shape, tuple(thing.size), thing.color.SerializeToString(deterministic=True))
+        before = self._made.get(thing.name)
+        return before if before is not None and before[0] == look else (look, self._draw(thing))
+
+    def _draw(self, thing: SimObject) -> dict[str, Node]:
+        if not thing.model:
+            solid = solid_of(thing)
+            return {"0": merge([at_rest(solid)], rgb(solid.colour))}
+        try:
+            return coloured(self._parts(thing.model), STRANGER)
+        except BadInput as error:  # the simulator's host has files that this one lacks
+            self._model.note("", f"'{thing.name}' cannot be drawn: {error}")
+            return {}
+
+    def _parts(self, model: str) -> list[Part]:
+        folder = self._model.site.vehicles_folder
+        file = load_vehicle(folder, model)
+        return rover(folder / model / file.ground.urdf) if file.ground is not None else aircraft_shape(folder / model, file).at_rest
+
+    def places(self) -> dict[str, Placed]:
+        """Frames: of a vehicle as its truth tells, of the rest as the list does."""
+        return {f"/spawned/{thing.name}": self._place(thing) for thing in self._model.spawned}
+
+    def _place(self, thing: SimObject) -> Placed:
+        truth = self._model.strangers.get(thing.name)
+        if truth is not None:
+            return Placed(array(truth.position), wxyz(truth.orientation))
+        return Placed(array(thing.pose.position), unit_wxyz(thing.pose))

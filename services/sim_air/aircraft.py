@@ -1,0 +1,180 @@
+"""One aircraft of the simulation: its body, its servos, its sensors, the air about it, and how it ends."""
+
+import copy
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Protocol, Self
+
+import numpy as np
+
+from schemas import topics
+from schemas.messages import SurfaceCommand
+from services.sim_air.actuators import Actuators
+from services.sim_air.battery import Charge
+from services.sim_air.contacts import Touch
+from services.sim_air.crash import Resting, Wreck, crash_of
+from services.sim_air.engine_state import EngineState
+from services.sim_air.rangers import Rangers
+from services.sim_air.sensors import Gnss, Imu, Pressures
+from services.sim_air.states import Air, Motion, Runaway
+from services.sim_air.wind import CALM, AirMass, AirMotion, Flight
+from services.sim_air.wiring import Controls, JointAngle
+from uvf.maths.rotations import Floats
+from uvf.maths.sampling import Due
+from uvf.runtime import mission_file
+from uvf.runtime.vehicle_file import VehicleFile
+
+STILL = np.zeros(3)
+
+
+class Body(Protocol):
+    """What flies: ``airframe.Airframe`` or a test's own. ``step`` may raise Runaway."""
+
+    def command(self, controls: Controls) -> None: ...
+    def step(self) -> None: ...
+    def motion(self) -> Motion: ...
+    def air(self) -> Air: ...
+    def set_wind(self, air: AirMotion) -> None: ...
+    def flight(self) -> Flight: ...
+    def joints(self) -> list[JointAngle]: ...
+    def touches(self) -> list[Touch]: ...
+    def save(self) -> EngineState: ...
+    def restored(self, state: EngineState) -> "Body": ...
+
+    @property
+    def motor_power(self) -> float: ...
+
+
+Begin = Callable[[mission_file.Start], tuple[Body, Controls, Controls]]
+"""A new body of an aircraft, its controls there and those of level flight. Raises BadInput."""
+
+
+class Aircraft:
+    """Absent sensors are not fitted. ``trim``: the controls of level flight, when nobody steers."""
+
+    def __init__(self, name: str, file: VehicleFile, body: Body, actuators: Actuators, trim: Controls) -> None:
+        assert file.air is not None
+        self.name = name
+        self.file = file
+        self.body = body
+        self.actuators = actuators
+        self.trim = trim
+        self.command = actuators.position
+        self.dt = 1 / file.air.physics_hz
+        self.physics_steps = 0
+        self.motion = body.motion()
+        self.wreck: Wreck | None = None
+        self.ended = ""
+        """Why it lies where it lies, until it is told."""
+        self.imu: Imu | None = None
+        self.gnss: Gnss | None = None
+        self.pressures: Pressures | None = None
+        self.rangers: Rangers | None = None
+        self.air_mass: AirMass | None = None
+        self.wind = CALM
+        """(3,) m/s, world: the air about it now."""
+        self.charge = Charge(file.air.battery) if file.air.battery else None
+        self.joints_due = Due(topics.JOINTS.hz)
+        self.truth_due = Due(topics.TRUTH.hz)
+        self.battery_due = Due(topics.BATTERY.hz)
+        self.begin: Begin | None = None
+        self.rests: Resting | None = None
+        """How it lies when it is a wreck; without it that stays in the air."""
+        self._max_sink = file.air.max_sink
+
+    def begin_anew(self, start: mission_file.Start) -> None:
+        """Elsewhere, whole again; sensors and battery go on. Raises BadInput, and is then as it was."""
+        assert self.file.air is not None and self.begin is not None
+        body, now, level = self.begin(start)
+        self.body, self.trim, self.command = body, level, now
+        self.actuators = Actuators(now, self.file.air)
+        self.motion = body.motion()
+        self.wreck, self.ended = None, ""
+
+    def wait_until(self, t: float) -> None:
+        """It begins at ``t`` [s]."""
+        self.physics_steps = round(t / self.dt)
+
+    def keep(self) -> "Kept":
+        """A wreck's body does nothing any more, and its numbers may be none: it is left as it is."""
+        return Kept(copy.deepcopy(self), None if self.wreck else self.body.save())
+
+    def __deepcopy__(self, memo: dict[int, object]) -> Self:
+        """One that goes on from here by itself but for the body, which ``Kept.again`` makes anew."""
+        memo |= {id(part): part for part in (self.file, self.body, self.begin)}
+        twin = object.__new__(type(self))
+        twin.__dict__ = copy.deepcopy(self.__dict__, memo)
+        return twin
+
+    def take(self, command: SurfaceCommand) -> None:
+        """A command with a number that is not finite is none: the engine would not recover from it."""
+        s = (command.aileron, command.elevator, command.rudder, command.throttle, command.flap, command.brake)
+        if all(map(math.isfinite, s)):
+            self.command = Controls(*s)
+
+    def let_go(self) -> None:
+        """Nobody steers: what servos fall back to, the trim of level flight. A motor that was off stays off, and the wheels are braked."""
+        self.command = self.trim if self.command.throttle > 0 else replace(self.trim, throttle=0.0, brake=1.0)
+
+    def fly_to(self, t: float) -> None:
+        """Physics steps up to ``t`` [s]."""
+        due = round(t / self.dt)
+        while self.physics_steps < due:
+            if self.wreck is None:
+                self._step()
+            else:
+                self.wreck.fall(self.dt)
+            self.physics_steps += 1
+            if self.charge is not None:
+                self.charge.draw(0.0 if self.wreck else self.body.motor_power, self.dt)
+        self.motion = self.wreck.motion if self.wreck else self.body.motion()
+
+    def _step(self) -> None:
+        if self.air_mass is not None:
+            moving = self.air_mass.step(self.physics_steps * self.dt, self.dt, self.body.flight())
+            self.body.set_wind(moving)
+            self.wind = moving.velocity
+        wanted = self.command
+        if self.charge is not None:
+            wanted = replace(wanted, throttle=self.charge.throttle(wanted.throttle))
+        self.body.command(self.actuators.step(wanted, self.dt))
+        try:
+            self.body.step()
+        except Runaway as error:
+            self.end(f"its motion ran away ({error}); a higher physics_hz may help", self.motion)
+            return
+        if touches := self.body.touches():
+            motion = self.body.motion()
+            if reason := crash_of(touches, motion, self._max_sink):
+                self.end(reason, motion)
+
+    def end(self, reason: str, motion: Motion, velocity: Floats = STILL) -> None:
+        """Motor off; it falls from where it is with what is left of its ``velocity`` (3,) m/s, world."""
+        self.ended = reason
+        self.wreck = Wreck(replace(motion, velocity=velocity), self.body.air(), self.body.joints(), self.rests)
+
+    def air(self) -> Air:
+        return self.wreck.air if self.wreck else self.body.air()
+
+    def joints(self) -> list[JointAngle]:
+        return self.wreck.joints if self.wreck else self.body.joints()
+
+    @property
+    def throttle(self) -> float:
+        return 0.0 if self.wreck else self.actuators.position.throttle
+
+
+@dataclass(frozen=True)
+class Kept:
+    """An aircraft as it was, and its engine's state."""
+
+    aircraft: Aircraft
+    engine: EngineState | None
+
+    def again(self) -> Aircraft:
+        """One that goes on from there, each time alike."""
+        twin = copy.deepcopy(self.aircraft)
+        if self.engine is not None:
+            twin.body = twin.body.restored(self.engine)
+        return twin

@@ -1,0 +1,70 @@
+"""What is about the aircraft: the world, what moves in it, ground vehicles where they truly are, and the other aircraft."""
+
+from collections.abc import Callable, Mapping, Sequence
+
+from schemas.convert import array, wxyz
+from schemas.messages import NavState, SimObjects
+from services.sim_air.ground import Ground
+from services.sim_air.states import Motion
+from uvf.maths.bvh import Bvh
+from uvf.maths.raycast3 import Body
+from uvf.runtime.solid import Solid
+from uvf.runtime.spawned import solid_of, unit_wxyz
+from uvf.runtime.surroundings import Surroundings, Whereabouts
+
+
+class Around:
+    """Worked out when somebody looks, once a step."""
+
+    def __init__(self, things: Sequence[Solid], vehicles: Mapping[str, Bvh], tree_of: Callable[[str], Bvh]) -> None:
+        """things: of the world; vehicles: the shapes of all; tree_of: the shape of a vehicle model that is put in later."""
+        self.things = things
+        self.shapes = vehicles
+        self._surroundings = Surroundings(things, vehicles)
+        self.still = self._surroundings.still
+        self.ground = Ground(self.still)
+        self._tree_of = tree_of
+        self._put_in: dict[str, tuple[str, tuple[float, ...]]] = {}
+        self._t, self._objects = 0.0, SimObjects()
+        self._truth: Mapping[str, NavState] = {}
+        self._aircraft: Mapping[str, Motion] = {}
+        self._bodies: dict[str, Body] | None = None
+
+    def add_aircraft(self, name: str, shape: Bvh) -> None:
+        self._surroundings.add_vehicle(name, shape)
+
+    def remove_aircraft(self, name: str) -> None:
+        self._surroundings.remove(name)
+
+    def look(self, t: float, truth: Mapping[str, NavState], objects: SimObjects | None, aircraft: Mapping[str, Motion]) -> None:
+        """How it stands at ``t`` [s]: ground vehicles by their newest truth, aircraft by their motion."""
+        self._t, self._truth, self._objects, self._aircraft = t, truth, objects or SimObjects(), aircraft
+        self._bodies = None
+
+    def bodies(self) -> dict[str, Body]:
+        """All that moves, by name."""
+        if self._bodies is None:
+            self._take_in()
+            placed = {o.name: (array(o.pose.position), unit_wxyz(o.pose)) for o in self._objects.objects if not o.model}
+            told = {n: Whereabouts(array(v.position), wxyz(v.orientation)) for n, v in self._truth.items() if n not in self._aircraft}
+            s = self._surroundings
+            self._bodies = {**s.moving(self._t), **s.objects(placed), **s.bodies(told), **s.bodies(self._aircraft)}
+        return self._bodies
+
+    def others(self, name: str) -> list[Body]:
+        """What moves about one aircraft."""
+        return [body for other, body in self.bodies().items() if other != name]
+
+    def _take_in(self) -> None:
+        """What has come into the running simulation since, and gone."""
+        now = {o.name: (o.model or o.shape, tuple(o.size)) for o in self._objects.objects}
+        for name in [name for name, kind in self._put_in.items() if now.get(name) != kind]:
+            self._surroundings.remove(name)
+        for o in self._objects.objects:
+            if self._put_in.get(o.name) == now[o.name]:
+                continue
+            if o.model:
+                self._surroundings.add_vehicle(o.name, self._tree_of(o.model))
+            else:
+                self._surroundings.add_object(o.name, solid_of(o))
+        self._put_in = now

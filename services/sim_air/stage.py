@@ -1,0 +1,141 @@
+"""Who is in the air simulation, and the requests that change it: spawn, remove, set pose, save, restore."""
+
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from schemas.convert import quaternion, stamp, vector
+from schemas.messages import RemoveRequest, Reply, SetPoseRequest, SimObject, SimObjects, SpawnRequest, StateRequest
+from services.sim_air.aircraft import Aircraft, Kept
+from services.sim_air.around import Around
+from services.sim_air.collisions import Collisions
+from services.sim_air.placing import fault_of, place, start_of
+from uvf.maths.bvh import Bvh
+from uvf.runtime import mission_file
+from uvf.runtime.params import BadInput, nearest
+from uvf.runtime.spawned import name_fault
+
+SAVED_MOST = 16
+
+
+class Joining(NamedTuple):
+    """An aircraft that is made ready to be put in, and its shape."""
+
+    aircraft: Aircraft
+    shape: Bvh
+
+
+Join = Callable[[str, str, mission_file.Start], Joining]
+"""From a new name, a folder in vehicles/ and where it begins. Raises BadInput."""
+
+
+@dataclass(frozen=True)
+class KeptWorld:
+    """A state under a name: all aircraft, what had been put in with its shape, and the step at which it was."""
+
+    aircraft: dict[str, Kept]
+    spawned: dict[str, tuple[SimObject, Bvh]]
+    step: int
+
+
+class Stage:
+    """Requests are answered in the order spawn, remove, set pose, save, restore, each in the order asked."""
+
+    def __init__(self, aircraft: Mapping[str, Aircraft], around: Around, taken: tuple[str, ...], join: Join) -> None:
+        """taken: names of what is there from the beginning, of vehicles that others simulate too."""
+        self.aircraft = dict(aircraft)
+        self.around = around
+        self.collisions = Collisions(around)
+        self.late = 0
+        """Steps by which the aircraft's time is behind the clock, because of states that were restored."""
+        self.told: set[str] = set()
+        """Aircraft whose frames have been told."""
+        self._taken = taken
+        self._join = join
+        self._spawned: dict[str, tuple[SimObject, Bvh]] = {}
+        self._kept: dict[str, KeptWorld] = {}
+
+    def spawn(self, t: float, request: SpawnRequest, others: Collection[str]) -> Reply:
+        """others: names of what the ground simulator has put in."""
+        wanted = request.object
+        asked = SetPoseRequest(name=wanted.name, pose=wanted.pose, speed=request.speed)
+        if fault := self._name_fault(wanted.name, others) or fault_of(asked):
+            return Reply(reason=fault)
+        try:
+            joining = self._join(wanted.name, wanted.model, start_of(asked))
+        except BadInput as error:
+            return Reply(reason=str(error))
+        joining.aircraft.wait_until(t)
+        self._put_in(joining.aircraft, wanted, joining.shape)
+        return Reply(accepted=True)
+
+    def _name_fault(self, name: str, others: Collection[str]) -> str:
+        if fault := name_fault(name):
+            return fault
+        if name in self.aircraft or name in self._taken or name in others:
+            return f"there is a '{name}' already; take another name"
+        return ""
+
+    def _put_in(self, craft: Aircraft, told: SimObject, shape: Bvh) -> None:
+        self.aircraft[craft.name] = craft
+        self._spawned[craft.name] = (SimObject(name=craft.name, model=told.model), shape)
+        self.around.add_aircraft(craft.name, shape)
+        self.collisions.add(craft.name, shape)
+
+    def remove(self, request: RemoveRequest) -> Reply:
+        name = request.name
+        if name not in self._spawned:
+            if name in self.aircraft:
+                return Reply(reason=f"'{name}' belongs to the mission; only what has been spawned can be removed")
+            return Reply(reason=f"there is no '{name}' in the air simulation; {nearest(name, self._spawned)}")
+        self._take_out(name)
+        return Reply(accepted=True)
+
+    def _take_out(self, name: str) -> None:
+        self.around.remove_aircraft(name)
+        self.collisions.remove(name)
+        self.told.discard(name)
+        del self.aircraft[name], self._spawned[name]
+
+    def set_pose(self, request: SetPoseRequest) -> Reply:
+        reply = place(self.aircraft, request)
+        if reply.accepted:
+            self.collisions.forget(request.name)
+        return reply
+
+    def save(self, step: int, request: StateRequest) -> Reply:
+        """step: number of the service's step that has been made. The aircraft go on in the state that was saved, to the last bit."""
+        if request.name not in self._kept and len(self._kept) >= SAVED_MOST:
+            return Reply(reason=f"{SAVED_MOST} states are kept already: {', '.join(self._kept)}; use one of these names again")
+        if not request.only_ask:
+            kept = KeptWorld({name: craft.keep() for name, craft in self.aircraft.items()}, dict(self._spawned), step - self.late)
+            self._kept[request.name] = kept
+            self._go_on_from(kept)
+        return Reply(accepted=True)
+
+    def restore(self, step: int, request: StateRequest) -> Reply:
+        """What has been put in since is taken out, what has been taken out since is there again."""
+        kept = self._kept.get(request.name)
+        if kept is None:
+            return Reply(reason=f"no state '{request.name}' of the air simulation has been saved; {nearest(request.name, self._kept)}")
+        if not request.only_ask:
+            for name in list(self._spawned):
+                self._take_out(name)
+            self._go_on_from(kept)
+            for name, (told, shape) in kept.spawned.items():
+                self._put_in(self.aircraft[name], told, shape)
+            self.late = step - kept.step
+        return Reply(accepted=True)
+
+    def _go_on_from(self, kept: KeptWorld) -> None:
+        self.aircraft = {name: one.again() for name, one in kept.aircraft.items()}
+        for name in self.aircraft:
+            self.collisions.forget(name)
+
+    def objects(self, t: float) -> SimObjects:
+        """The aircraft that have been put in, as they are at ``t`` [s]."""
+        for name, (told, _) in self._spawned.items():
+            motion = self.aircraft[name].motion
+            told.pose.position.CopyFrom(vector(motion.position))
+            told.pose.orientation.CopyFrom(quaternion(motion.world_from_body))
+        return SimObjects(timestamp=stamp(t), objects=[told for told, _ in self._spawned.values()])

@@ -1,0 +1,62 @@
+"""Runs what may take the whole process with it in a copy of the process: an engine of others that aborts on a fault in its file."""
+
+import os
+import pickle
+import signal
+import tempfile
+from collections.abc import Callable
+from typing import IO, TypeVar
+
+from uvf.runtime import quiet
+from uvf.runtime.params import BadInput
+
+T = TypeVar("T")
+WORDS = 200  # characters kept of the last thing said
+
+
+class Died(Exception):
+    """The copy was ended by a signal; the text says which, and what was said last."""
+
+
+def guarded(work: Callable[[], T]) -> T:
+    """What ``work`` returns, which must be picklable; or the BadInput that it raises. Raises Died, too."""
+    with tempfile.NamedTemporaryFile() as said:
+        reader, writer = os.pipe()
+        child = os.fork()
+        if child == 0:
+            os.close(reader)
+            _answer(work, writer, said.name)
+        os.close(writer)
+        with os.fdopen(reader, "rb") as pipe:
+            answer = pipe.read()
+        _, status = os.waitpid(child, 0)
+        if not answer:
+            raise Died(_last_words(status, said))
+    result = pickle.loads(answer)
+    if isinstance(result, BadInput):
+        raise result
+    value: T = result
+    return value
+
+
+def _answer(work: Callable[[], T], writer: int, said: str) -> None:
+    """In the copy; never returns."""
+    code = 1
+    try:
+        with quiet.c_output_to(said):
+            try:
+                result: T | BadInput = work()
+            except BadInput as error:
+                result = error
+        with os.fdopen(writer, "wb") as pipe:
+            pipe.write(pickle.dumps(result))
+        code = 0
+    finally:
+        os._exit(code)
+
+
+def _last_words(status: int, said: IO[bytes]) -> str:
+    number = os.waitstatus_to_exitcode(status)
+    how = signal.Signals(-number).name if number < 0 else f"exit code {number}"
+    lines = [line.strip() for line in said.read().decode(errors="replace").splitlines() if line.strip()]
+    return f"{how}: {' '.join(lines)[-WORDS:]}" if lines else how

@@ -1,0 +1,49 @@
+"""What has been put into the running simulation, as its message tells it, and what cannot be."""
+
+import math
+import re
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from schemas.convert import array, wxyz
+from schemas.messages import Pose, SimObject
+from schemas.topics import SYSTEM
+from uvf.runtime.solid import Solid
+
+GREY = (0.6, 0.6, 0.6)
+
+
+NAME = re.compile(r"[a-z][a-z0-9_]{0,39}")
+FARTHEST = 1e5  # m
+
+
+def name_fault(name: str) -> str:
+    """Why nothing can be called so; empty = it may."""
+    if not NAME.fullmatch(name) or name == SYSTEM:
+        return f"'{name}' is no name: small letters, digits and _, a letter first, 40 at most"
+    return ""
+
+
+def pose_fault(pose: Pose) -> str:
+    """Why nothing can be put there; empty = it may."""
+    numbers = (*array(pose.position), *wxyz(pose.orientation))
+    if not all(math.isfinite(x) and abs(x) <= FARTHEST for x in numbers):
+        return f"the pose must be of finite numbers, positions within {FARTHEST:g} m of the world's origin"
+    if np.linalg.norm(wxyz(pose.orientation)) < 0.1:
+        return "the pose's orientation must be a unit quaternion, or left out"
+    return ""
+
+
+def solid_of(told: SimObject) -> Solid:
+    """The shape of what is no vehicle, where it stands in the world."""
+    shape: Any = told.shape
+    colour = (told.color.r, told.color.g, told.color.b) if told.HasField("color") else GREY
+    return Solid(told.name, shape, tuple(told.size), array(told.pose.position), unit_wxyz(told.pose), colour)
+
+
+def unit_wxyz(pose: Pose) -> NDArray[np.float64]:
+    """(4,) w, x, y, z of length 1."""
+    q = wxyz(pose.orientation)
+    return q / float(np.linalg.norm(q))

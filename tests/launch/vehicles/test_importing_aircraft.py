@@ -1,0 +1,80 @@
+"""Aircraft that come with JSBSim become vehicles by one command: they have no faults and fly on as they begin."""
+
+import re
+import shutil
+from pathlib import Path
+
+import jsbsim
+import numpy as np
+import pytest
+
+from services.sim_air.airframe import Airframe
+from uvf.launch.vehicles.aircraft_rules import SEA_LEVEL
+from uvf.launch.vehicles.aircraft_trial import level
+from uvf.launch.vehicles.importing import NOTES, import_vehicle
+from uvf.launch.vehicles.inspection import inspect
+from uvf.runtime.params import BadInput
+from uvf.runtime.vehicle_file import load_vehicle
+
+SHIPPED = Path(jsbsim.get_default_root_dir()) / "aircraft"
+KINDS = {"c172x": "its autopilot and actuators with hysteresis", "T37": "two jets", "sgs126": "a glider"}
+SECONDS = 10.0
+
+
+@pytest.fixture(scope="module", params=KINDS)
+def aircraft(request, tmp_path_factory):
+    """Folder and notes."""
+    folder = tmp_path_factory.mktemp("vehicles") / request.param
+    return folder, import_vehicle(SHIPPED / request.param, folder, {})
+
+
+def test_it_has_no_faults_and_its_notes_are_kept(aircraft):
+    folder, notes = aircraft
+    assert inspect(folder).faults == []
+    assert all(line in (folder / NOTES).read_text() for line in notes)
+    assert any(line.startswith("found: steady flight at ") for line in notes)
+
+
+def test_it_flies_on_as_it_begins(aircraft):
+    folder, _ = aircraft
+    air = load_vehicle(folder.parent, folder.name).air
+    airframe = Airframe(folder, air, SEA_LEVEL)
+    trim = airframe.start(level(air.trim_speed))
+    for _ in range(round(SECONDS * air.physics_hz)):
+        airframe.step()
+    motion = airframe.motion()
+    sunk = air.trim_speed * np.sin(trim.glide) * SECONDS
+    assert motion.airspeed == pytest.approx(air.trim_speed, rel=0.03)
+    assert motion.position[2] == pytest.approx(level(1.0).position[2] - sunk, abs=3.0)
+
+
+def test_what_has_an_engine_has_figures_for_the_autopilot(aircraft):
+    folder, notes = aircraft
+    params = load_vehicle(folder.parent, folder.name).params
+    assert ("autopilot_air" in params) != ("no autopilot figures: it has no engine, and glides" in notes)
+
+
+def shipped_copy(tmp_path, name):
+    """In the layout of JSBSim's distribution."""
+    for folder in ("engine", "systems"):
+        shutil.copytree(SHIPPED.parent / folder, tmp_path / folder)
+    return shutil.copytree(SHIPPED / name, tmp_path / "aircraft" / name) / f"{name}.xml"
+
+
+def test_a_file_that_is_missing_is_told_with_where_to_put_it(tmp_path):
+    model = shipped_copy(tmp_path, "c172x")
+    (tmp_path / "systems" / "GNCUtilities.xml").unlink()
+    with pytest.raises(BadInput, match=r"c172x\.xml: no 'GNCUtilities' for the system; put it into .*Systems and begin again"):
+        import_vehicle(model, tmp_path / "vehicles" / "x", {})
+    assert not (tmp_path / "vehicles").exists()
+
+
+def test_a_model_that_ends_the_process_is_one_line(tmp_path):
+    model = shipped_copy(tmp_path, "c172p")
+    text, count = re.subn(
+        r'(<function name="aero/coefficient/Cmadot">.*?)<product>.*?</product>', r"\1", model.read_text(), count=1, flags=re.DOTALL
+    )
+    assert count
+    model.write_text(text)
+    with pytest.raises(BadInput, match=r"c172p\.xml: JSBSim ends the process with this model \(SIG[A-Z]+"):
+        import_vehicle(model, tmp_path / "vehicles" / "x", {})

@@ -1,0 +1,37 @@
+"""What ends a process ends only its copy."""
+
+import ctypes
+import os
+
+import pytest
+
+from uvf.runtime.guarded import Died, guarded
+from uvf.runtime.params import BadInput
+from uvf.runtime.quiet import c_output_discarded
+
+
+def test_an_answer_comes_back():
+    assert guarded(lambda: {"pid": os.getpid()})["pid"] != os.getpid()
+
+
+def test_bad_input_is_raised_here():
+    def work():
+        raise BadInput("a line")
+
+    with pytest.raises(BadInput, match="a line"):
+        guarded(work)
+
+
+def test_an_abort_is_told_with_the_last_words_even_where_output_is_discarded():
+    def work():
+        with c_output_discarded():
+            os.write(2, b"FATAL: no such table\n")
+            ctypes.CDLL(None).abort()
+
+    with pytest.raises(Died, match="SIGABRT: FATAL: no such table"):
+        guarded(work)
+
+
+def test_an_end_without_an_answer_is_told():
+    with pytest.raises(Died, match="exit code 3"):
+        guarded(lambda: os._exit(3))

@@ -1,0 +1,103 @@
+"""The tracker step by step: driving, slowing down before what it sees, backing off, standing without inputs."""
+
+import numpy as np
+import pytest
+
+from schemas.convert import planar_pose, stamp
+from schemas.messages import (
+    LaserScan,
+    PoseInFrame,
+    PosesInFrame,
+)
+from services.planner.tracker_service import TrackerParams, TrackerService
+from tests.services.autopilot.ground.test_service import BODY
+from tests.services.live_params import all_settable_are_read
+from uvf.maths.rotations import from_euler
+from uvf.maths.transforms import IDENTITY, Transform
+
+
+def scan(t, ahead):
+    """A wall across the way, ``ahead`` [m] of the lidar; nothing elsewhere."""
+    angles = np.radians(np.arange(360.0))
+    ranges = np.where(np.cos(angles) > 0.5, ahead / np.maximum(np.cos(angles), 0.5), 0.0)
+    return LaserScan(timestamp=stamp(t), start_angle=0.0, end_angle=angles[-1], ranges=ranges.tolist())
+
+
+class TrackerBench:
+    """A vehicle at the world's origin that looks east; the wall stays ``ahead``, the path leads 3 m east."""
+
+    def __init__(self, base_from_lidar=IDENTITY):
+        self.service = TrackerService(BODY, base_from_lidar, TrackerParams())
+        self.t = 0.0
+        self.commands = []
+        self.events = []
+
+    def step(self, n, ahead, blind=False):
+        path = PosesInFrame(poses=[planar_pose(0.1 * i, 0.0, 0.0) for i in range(31)])
+        for _ in range(n):
+            self.t += 0.05
+            poses = [PoseInFrame(timestamp=stamp(self.t - s), pose=planar_pose(0.0, 0.0, 0.0)) for s in (0.04, 0.02)]
+            seen_at = 0.0 if blind else self.t - 0.03
+            out = self.service.step(self.t, path, poses, scan(seen_at, ahead))
+            self.commands.append((out["drive"].linear, out["drive"].angular))
+            self.events += [e.text for e in out.get("events", [])]
+        return self
+
+
+def test_drives_where_the_way_is_free():
+    assert TrackerBench().step(10, ahead=3.0).commands[-1][0] == pytest.approx(TrackerParams().speed)
+
+
+def test_slows_down_and_stops_before_what_it_sees():
+    free, near, close = (TrackerBench().step(3, ahead).commands[-1][0] for ahead in (3.0, 0.4, 0.18))
+    assert free > near > 0.0
+    assert close == 0.0
+
+
+def test_what_a_scanner_sees_that_hangs_upside_down_is_on_the_side_where_it_is():
+    """Its right is the vehicle's left: an obstacle in front and on the left slows a curve to the left, not one to the right."""
+    beside = LaserScan(timestamp=stamp(1.0), start_angle=-1.0, end_angle=-0.8, ranges=[0.2] * 9)
+    poses = [PoseInFrame(timestamp=stamp(1.0), pose=planar_pose(0.0, 0.0, 0.0))]
+    hanging = Transform(from_euler(np.pi, 0.0, 0.0), np.zeros(3))
+
+    def speed(side):
+        path = PosesInFrame(poses=[planar_pose(0.1 * i, side * 0.1 * i, 0.0) for i in range(11)])
+        return TrackerService(BODY, hanging, TrackerParams()).step(1.0, path, poses, beside)["drive"].linear
+
+    assert speed(-1.0) > 1.2 * speed(1.0)
+
+
+def test_backs_off_when_it_stays_blocked():
+    bench = TrackerBench().step(70, ahead=0.18)
+    assert bench.commands[5][0] == 0.0
+    assert bench.commands[-1][0] == pytest.approx(-TrackerParams().back_off)
+    assert bench.events == ["obstacle ahead"]
+
+
+def test_an_obstacle_that_comes_and_goes_is_told_every_ten_seconds_at_most():
+    bench = TrackerBench()
+    for _ in range(50):
+        bench.step(6, ahead=0.18).step(4, ahead=3.0)
+    assert bench.t == pytest.approx(25.0)
+    assert bench.events == ["obstacle ahead"] * 3
+
+
+def test_blind_it_does_not_move():
+    bench = TrackerBench().step(10, ahead=3.0)
+    assert bench.step(20, ahead=3.0, blind=True).commands[-1] == (0.0, 0.0)
+
+
+def test_stale_inputs_mean_stop():
+    drive = TrackerBench().service.stale(3.0, ("pose",))["drive"]
+    assert (drive.linear, drive.angular) == (0.0, 0.0)
+
+
+def test_parameters_of_the_tracker_count_while_running():
+    bench = TrackerBench()
+    with all_settable_are_read(bench.service):
+        bench.step(5, ahead=3.0).step(40, ahead=0.18)
+    bench = TrackerBench().step(5, ahead=3.0)
+    bench.service.params = TrackerParams(speed=0.1)
+    assert bench.step(5, ahead=3.0).commands[-1][0] == pytest.approx(0.1)
+    bench.service.params = TrackerParams(margin=1.0)
+    assert bench.step(3, ahead=1.0).commands[-1] == (0.0, 0.0)
