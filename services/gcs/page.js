@@ -65,7 +65,7 @@
     if (!button) return;
     e.preventDefault(); e.stopImmediatePropagation();
     if (!button.dataset.steer) send(JSON.stringify([button.dataset.gcs.replace('@me', me), Date.now()]));
-    else if (!e.repeat) hold(e.code, button);
+    else if (!held.has(e.code)) hold(e.code, button);  // a held key is repeated: it drives on after the panel or the window was away
   }, true);
   window.addEventListener('keyup', e => { if (release(e.code)) e.stopImmediatePropagation(); }, true);
   window.addEventListener('pointerdown', e => {

@@ -1,5 +1,7 @@
 """What a test asks the page's 3-D canvas: where a point of the world is, what colours are seen, what stands in the scene."""
 
+import time
+
 COUNT = """(test) => {
   const canvas = window.__viserMutable.canvas, copy = document.createElement('canvas');
   copy.width = canvas.width; copy.height = canvas.height;
@@ -46,8 +48,9 @@ def on_screen(page, point):
 
 def until(page, holds, seconds=40.0):
     """Whether ``holds()`` comes true in time; the page's own work goes on meanwhile."""
-    for _ in range(round(seconds / 0.1)):
-        if holds():
-            return True
+    end = time.monotonic() + seconds
+    while not holds():
+        if time.monotonic() > end:
+            return False
         page.wait_for_timeout(100)
-    return False
+    return True
