@@ -6,7 +6,7 @@ from dataclasses import astuple, dataclass, replace
 
 from schemas.convert import seconds
 from schemas.messages import SurfaceCommand
-from services.autopilot.air.control import Surfaces
+from services.autopilot.air.commands import Surfaces
 
 SOURCES = ("teleop", "mavlink", "client")
 """The first one whose command is fresh wins."""

@@ -7,7 +7,7 @@ and curvatures positive to the right of the direction of flight.
 import math
 from dataclasses import dataclass
 
-from services.autopilot.air.control import clip
+from services.autopilot.air.cycle import clip
 from services.autopilot.air.params import AirParams
 from services.autopilot.air.state import Estimate
 from uvf.maths.filters import Integral

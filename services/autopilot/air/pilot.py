@@ -6,7 +6,8 @@ from dataclasses import astuple, dataclass
 from enum import Enum
 
 from services.autopilot.air.by_hand import COMMAND_MAX_AGE, LET_GO, Hand, Stick
-from services.autopilot.air.control import Control, Surfaces, Wanted
+from services.autopilot.air.commands import Surfaces, Wanted
+from services.autopilot.air.control import Control
 from services.autopilot.air.guidance import Aim, Steering
 from services.autopilot.air.navigator import Navigator
 from services.autopilot.air.params import AirParams

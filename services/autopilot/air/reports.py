@@ -18,7 +18,7 @@ from schemas.messages import (
     VehicleStatus,
 )
 from services.autopilot.air import intake
-from services.autopilot.air.control import Surfaces
+from services.autopilot.air.commands import Surfaces
 from services.autopilot.air.pilot import FlightMode, Flown, Pilot
 from services.autopilot.air.plan import Kind as ItemKind
 from services.autopilot.air.plan import next_stop

@@ -25,7 +25,7 @@ from schemas.messages import (
     VehicleStatus,
 )
 from services.autopilot.air import by_hand, intake, reports
-from services.autopilot.air.control import Surfaces
+from services.autopilot.air.commands import Surfaces
 from services.autopilot.air.estimator import Estimator, Fix, Sensed
 from services.autopilot.air.journal import Journal
 from services.autopilot.air.landed import LandDetector

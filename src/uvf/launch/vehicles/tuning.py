@@ -70,7 +70,7 @@ def tune(folder: Path) -> Tuning:
 
 
 def _loops(models: LinearModels, figures: Mapping[str, float], body: AirBody) -> Iterator[Loop]:
-    """The attitude loops of services/autopilot/air/control.py at the trim speed."""
+    """The attitude loops of services/autopilot/air/attitude_loops.py at the trim speed."""
     s = 1j * OMEGA
     servo: Complex = np.exp(-DEAD_TIME * s) / (1 + body.servo_lag * s)
     sides = {"roll": (models.lateral, "phi", "delta_a", 1.0), "pitch": (models.longitudinal, "theta", "delta_e", -1.0)}

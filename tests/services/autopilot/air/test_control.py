@@ -4,7 +4,9 @@ import math
 
 import pytest
 
-from services.autopilot.air.control import SURFACE_LIMIT, Control, Wanted
+from services.autopilot.air.attitude_loops import SURFACE_LIMIT
+from services.autopilot.air.commands import Attitude, Wanted
+from services.autopilot.air.control import Control
 from tests.services.autopilot.air.states import PARAMS, cruising
 
 LEVEL = Wanted(bank=0.0, height=60.0, climb=0.0, airspeed=25.0)
@@ -86,3 +88,31 @@ def test_a_standing_error_of_airspeed_is_integrated_away():
     for _ in range(500):
         last = once(cruising(airspeed=24.8), control=control).throttle
     assert last == pytest.approx(first + 500 * 0.02 * PARAMS.airspeed_i * 0.2, abs=1e-3)
+
+
+def test_without_a_height_the_climb_rate_is_held():
+    climbing = Wanted(0.0, None, 2.0, 25.0)
+    assert once(cruising(height=10.0), climbing) == once(cruising(height=900.0), climbing)
+    assert once(cruising(climb=3.0), climbing).elevator > once(cruising(climb=1.0), climbing).elevator
+
+
+def test_an_attitude_is_held_with_the_throttle_that_is_given():
+    surfaces = Control().hold(cruising(), Attitude(0.3, 0.2, 0.4), PARAMS, 0.02)
+    assert surfaces.throttle == 0.4
+    assert surfaces.aileron > 0.02
+    assert surfaces.elevator < Control().hold(cruising(), Attitude(0.3, 0.0, 0.4), PARAMS, 0.02).elevator
+
+
+def test_a_rudder_that_is_given_takes_the_place_of_the_slip_loop_beside_the_damper():
+    still, given = (
+        Control().hold(cruising(r=0.2, side_force=-2.0), Attitude(0.0, 0.05, 0.4, rudder), PARAMS, 0.02) for rudder in (0.0, 0.1)
+    )
+    assert given.rudder == pytest.approx(still.rudder + 0.1)
+
+
+def test_from_an_attitude_to_a_height_pitch_and_throttle_go_on_from_where_they_were():
+    control, now = Control(), cruising(pitch=0.09, height=59.0)
+    held = control.hold(now, Attitude(0.0, 0.09, 0.71), PARAMS, 0.02)
+    taken = control.step(now, LEVEL, PARAMS, 0.02)
+    assert taken.throttle == pytest.approx(held.throttle, abs=0.002)
+    assert taken.elevator == pytest.approx(held.elevator, abs=0.002)

@@ -1,0 +1,35 @@
+"""What the levels of control ask of each other, from guidance down to the servos."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Wanted:
+    """What guidance asks for."""
+
+    bank: float  # rad
+    height: float | None  # m; None: the climb rate is held instead
+    climb: float  # m/s, of the path
+    airspeed: float  # m/s
+
+
+@dataclass(frozen=True, slots=True)
+class Attitude:
+    """What the attitude loops are asked for; the throttle is passed on."""
+
+    bank: float  # rad
+    pitch: float  # rad
+    throttle: float  # 0..1
+    rudder: float | None = None  # rad, beside the yaw damper; None: the side slip is taken out
+
+
+@dataclass(frozen=True, slots=True)
+class Surfaces:
+    """rad with the signs of SurfaceCommand, throttle and brake 0..1."""
+
+    aileron: float
+    elevator: float
+    rudder: float
+    throttle: float
+    flap: float = 0.0
+    brake: float = 0.0
