@@ -24,6 +24,7 @@ from uvf.maths.geodesy import LocalTangent
 from uvf.maths.raycast3 import warm_up
 from uvf.runtime.air_file import AirBody
 from uvf.runtime.aircraft_shape import aircraft_shape
+from uvf.runtime.faults import Faults
 from uvf.runtime.footing import Footing
 from uvf.runtime.guarded import Died, guarded
 from uvf.runtime.mission_file import Start, Vehicle
@@ -109,7 +110,7 @@ def _make(site: Site, land: Land) -> SimAir:
     around = Around(things, on_wheels | {name: one.shape for name, one in joining.items()}, partial(_shape_of, site))
     aircraft = {name: one.aircraft for name, one in joining.items()}
     taken = (*site.members, *(thing.name for thing in things), "floor")
-    return SimAir(Stage(aircraft, around, taken, partial(_join, site, land)))
+    return SimAir(Stage(aircraft, around, taken, partial(_join, site, land)), Faults(site.mission.faults))
 
 
 def _join(site: Site, land: Land, name: str, model: str, start: Start) -> Joining:

@@ -11,6 +11,7 @@ from services.sim_air import readings
 from services.sim_air.aircraft import Aircraft
 from services.sim_air.stage import Stage
 from uvf.maths.sampling import Due
+from uvf.runtime.faults import Faults
 from uvf.runtime.sensor_frames import sensor_frames
 from uvf.runtime.sensor_messages import gnss_message, imu_message, later
 from uvf.runtime.service import Outputs, Service, Value, each_vehicle, optional
@@ -50,8 +51,9 @@ class SimAir(Service):
         "restore": topics.AIR_RESTORE,
     }
 
-    def __init__(self, stage: Stage) -> None:
+    def __init__(self, stage: Stage, faults: Faults | None = None) -> None:
         self._stage = stage
+        self._faults = faults or Faults()
         self._spawned_due = Due(topics.AIR_OBJECTS.hz)
         self._had_spawned = False
 
@@ -72,6 +74,7 @@ class SimAir(Service):
         flown = self._flown(t)
         for craft in stage.aircraft.values():
             if craft.name in surfaces:
+                self._faults.spoil(t, craft.name, {"surfaces": surfaces[craft.name]})
                 craft.take(surfaces[craft.name])
             else:
                 craft.let_go()
@@ -118,7 +121,7 @@ class SimAir(Service):
         stage, late = self._stage, self._stage.late / self.hz
         read: dict[str, dict[str, Value]] = {name: {} for name in self.outputs if name != "spawned"}
         for craft in stage.aircraft.values():
-            for name, said in self._read(self._flown(t), craft).items():
+            for name, said in self._faults.spoil(t, craft.name, self._read(self._flown(t), craft)).items():
                 read[name][craft.name] = later(said, late) if late else said
             if craft.name not in stage.told:
                 read["tf_static"][craft.name] = sensor_frames(craft.name, craft.file.sensors, t)

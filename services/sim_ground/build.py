@@ -8,6 +8,7 @@ from services.sim_ground.stage import Joining, Stage
 from services.sim_ground.world import BulletWorld, Placed
 from uvf.maths.raycast3 import warm_up
 from uvf.runtime.aircraft_shape import aircraft_shape
+from uvf.runtime.faults import Faults
 from uvf.runtime.footing import COARSE, Footing
 from uvf.runtime.mission_file import Start, Vehicle
 from uvf.runtime.params import BadInput
@@ -42,7 +43,8 @@ def _make(site: Site, bodies: dict[str, GroundBody], grounds: dict[str, float]) 
     for name, solid in flying.items():
         world.let_in(name, solid)
     taken = (*site.members, *(thing.name for thing in things), "floor")
-    return SimGround(world, surroundings, Stage(world, rigs, surroundings, taken, partial(_join, site, surroundings)), tuple(flying))
+    stage = Stage(world, rigs, surroundings, taken, partial(_join, site, surroundings))
+    return SimGround(world, surroundings, stage, tuple(flying), Faults(site.mission.faults))
 
 
 def _join(site: Site, surroundings: Surroundings, name: str, model: str, start: tuple[float, float, float], z: float) -> Joining:

@@ -13,6 +13,7 @@ from services.sim_ground.stage import Stage, Stageable
 from uvf.maths.kinematics import WheelSpeeds
 from uvf.maths.raycast3 import Body
 from uvf.maths.sampling import Due
+from uvf.runtime.faults import Faults
 from uvf.runtime.sensor_messages import later
 from uvf.runtime.service import Outputs, Service, Value, each_vehicle, optional
 from uvf.runtime.surroundings import Surroundings, Whereabouts
@@ -68,8 +69,11 @@ class SimGround(Service):
         "restore": topics.RESTORE,
     }
 
-    def __init__(self, world: GroundWorld, surroundings: Surroundings, stage: Stage, aircraft: Collection[str] = ()) -> None:
+    def __init__(
+        self, world: GroundWorld, surroundings: Surroundings, stage: Stage, aircraft: Collection[str] = (), faults: Faults | None = None
+    ) -> None:
         """aircraft: names of those that another simulator moves among these vehicles."""
+        self._faults = faults or Faults()
         self._world = world
         self._surroundings = surroundings
         self._stage = stage
@@ -112,7 +116,7 @@ class SimGround(Service):
         outputs: dict[str, dict[str, Value]] = {}
         for name, rig in rigs.items():
             moment = Moment(states[name], partial(_others, name, bodies), self._world.touches(name))
-            for output, said in rig.read(at, moment).items():
+            for output, said in self._faults.spoil(t, name, dict(rig.read(at, moment))).items():
                 outputs.setdefault(output, {})[name] = later(said, late) if late else said
         if new := [name for name in rigs if name not in self._stage.told]:
             outputs["frames"] = {name: rigs[name].frames(t) for name in new}

@@ -7,6 +7,7 @@ import msgspec
 from msgspec import Meta
 
 from schemas.topics import SYSTEM
+from uvf.runtime.faults import Fault, check_faults
 from uvf.runtime.params import BadInput, Place, load_yaml, nearest
 from uvf.runtime.wind_file import Wind, check_wind
 
@@ -79,6 +80,7 @@ class MissionFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     duration: Annotated[float, Meta(gt=0, le=1e6)] = 120.0  # s
     criteria: list[Criterion] = []
     wind: Wind | None = None
+    faults: list[Fault] = []
 
 
 def load_mission(path: Path) -> MissionFile:
@@ -91,6 +93,7 @@ def load_mission(path: Path) -> MissionFile:
     _check_vehicles(mission.vehicles, file.at("vehicles"))
     if mission.wind is not None:
         check_wind(mission.wind, file.at("wind"))
+    check_faults(mission.faults, mission.vehicles, file.at("faults"))
     for i, criterion in enumerate(mission.criteria):
         _check_criterion(criterion, mission.vehicles, file.at("criteria", i))
     return mission
