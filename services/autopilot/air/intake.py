@@ -6,10 +6,10 @@ from dataclasses import astuple
 
 from schemas.convert import seconds, wxyz
 from schemas.messages import AirData, Gnss, Imu, Mission, MissionItem, MissionProgress, Mode, NavState, Vector3
-from services.autopilot.air.estimator import Fix, Inertial, Pressures
 from services.autopilot.air.pilot import FlightMode, Stand
 from services.autopilot.air.plan import Item, Kind
 from services.autopilot.air.route import Place
+from services.autopilot.air.sensed import Fix, Inertial, Pressures
 from services.autopilot.plan import mission_id
 from uvf.maths.geodesy import LocalTangent
 from uvf.maths.rotations import enu_flu_from_ned_frd, to_euler
@@ -43,9 +43,9 @@ def inertial(message: Imu, t: float) -> Inertial:
     return Inertial(frd(message.angular_velocity), frd(message.specific_force), frd(message.magnetic_field), age)
 
 
-def pressures(message: AirData) -> Pressures | None:
-    """None when a number is none."""
-    p = Pressures(message.static_pressure, message.differential_pressure, message.temperature)
+def pressures(message: AirData, t: float) -> Pressures | None:
+    """As seen at time ``t`` [s]; None when a number is none."""
+    p = Pressures(message.static_pressure, message.differential_pressure, message.temperature, t - seconds(message.timestamp))
     return p if all(map(math.isfinite, astuple(p))) else None
 
 
@@ -65,6 +65,7 @@ def fix(message: Gnss, tangent: LocalTangent, t: float) -> Fix | None:
         v_up=v.z,
         age=age,
         position_sigma=message.horizontal_accuracy,
+        height_sigma=message.vertical_accuracy,
         speed_sigma=message.speed_accuracy,
     )
     return found if all(map(math.isfinite, astuple(found))) else None
@@ -75,7 +76,8 @@ def left_fix(state: NavState, t: float) -> Fix | None:
     p, v, age = state.position, state.velocity, t - seconds(state.timestamp)
     if age > OLDEST_STATE:
         return None
-    return Fix(p.y + age * v.y, p.x + age * v.x, p.z, v.y, v.x, 0.0, 0.0, state.position_sigma + age * TURNED_OFF, TURNED_OFF)
+    sigma = state.position_sigma + age * TURNED_OFF
+    return Fix(p.y + age * v.y, p.x + age * v.x, p.z, v.y, v.x, 0.0, 0.0, sigma, sigma, TURNED_OFF)
 
 
 def place(v: Vector3) -> Place:

@@ -25,13 +25,14 @@ from schemas.messages import (
     VehicleStatus,
 )
 from services.autopilot.air import by_hand, intake, reports
+from services.autopilot.air.book_estimator import BookEstimator
 from services.autopilot.air.commands import Surfaces
-from services.autopilot.air.estimator import Estimator, Fix, Sensed
 from services.autopilot.air.journal import Journal
 from services.autopilot.air.landed import LandDetector
 from services.autopilot.air.losses import GNSS_HOLD, Loss, losses
 from services.autopilot.air.params import AirParams
 from services.autopilot.air.pilot import Pilot
+from services.autopilot.air.sensed import Fix, Sensed
 from services.autopilot.air.state import Estimate
 from uvf.maths.geodesy import GRAVITY, LocalTangent
 from uvf.runtime.service import Outputs, Service, every, optional
@@ -95,7 +96,7 @@ class AutopilotAir(Service):
         self._mission = intake.with_id(ship.items)
         self._announced = False
         self._armed = ship.starts_in_air
-        self._estimator = Estimator(ship.declination)
+        self._estimator = BookEstimator(ship.declination)
         self._pilot = Pilot(intake.items(ship.items), ship.ground)
         self._journal = Journal()
         self._fix_stamp = 0
@@ -208,7 +209,7 @@ class AutopilotAir(Service):
             fix = self._left_fix(t)
             if fix is None:
                 return None
-        pressures = intake.pressures(air_data) if air_data is not None else None
+        pressures = intake.pressures(air_data, t) if air_data is not None else None
         self._lost = losses(self._estimator.unfixed, pressures is not None)
         return self._estimator.step(Sensed([intake.inertial(m, t) for m in imu], pressures, fix), self.params, 1 / self.hz)
 

@@ -1,10 +1,32 @@
 """What the estimator hands to guidance and control. NED and FRD."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+
+
+@dataclass(frozen=True, slots=True)
+class Ratios:
+    """How well the newest measurement of each kind fits, as ECL's ``estimator_innovations`` has it.
+
+    The normalised innovation squared over the square of its gate: below 1 it was used, above it was refused; 0 until there is one.
+    """
+
+    position: float = 0.0  # satellites, horizontal
+    velocity: float = 0.0  # satellites
+    height: float = 0.0  # satellites or barometer, the worse
+    airspeed: float = 0.0
+    slip: float = 0.0  # sideslip, which is supposed to be nil
+    field: float = 0.0  # magnetometer
 
 
 @dataclass(frozen=True, slots=True)
 class Estimate:
+    """For guidance, control and failsafes.
+
+    A failsafe looks at ``position_known``, ``height_known`` and ``airspeed_known`` (what is told of each is measured, not supposed),
+    at the sigmas (how far it may be off: they grow by themselves without measurements) and at ``ratios`` (a sensor that contradicts
+    the others is above 1 for long). An aircraft that reckons on has ``position_known`` False and a growing ``position_sigma``.
+    """
+
     north: float  # m from the world's origin
     east: float  # m
     height: float  # m above the world's origin
@@ -22,5 +44,12 @@ class Estimate:
     side_force: float  # m/s^2, specific force along body y
     wind_north: float  # m/s, the way it blows to
     wind_east: float  # m/s
-    position_sigma: float  # m
+    position_sigma: float  # m, horizontal, of the worse axis
     height_known: bool  # False: neither barometer nor fixes, ``height`` is the last one known
+    height_sigma: float = 0.0  # m
+    airspeed_known: bool = True  # False: neither pressures nor fixes, it is taken to be that of trim
+    position_known: bool = True  # False: no fix for a second, reckoned on with airspeed, heading and wind
+    tilt_sigma: float = 0.0  # rad, of roll and pitch, the worse
+    yaw_sigma: float = 0.0  # rad
+    wind_sigma: float = 0.0  # m/s, of the worse axis
+    ratios: Ratios = field(default_factory=Ratios)

@@ -24,6 +24,7 @@ def sensors(t, speed=25.0):
         altitude=altitude,
         velocity_enu=Vector3(x=speed),
         horizontal_accuracy=0.8,
+        vertical_accuracy=1.5,
         speed_accuracy=0.1,
     )
     imu = [Imu(timestamp=stamp(t - d), specific_force=Vector3(x=0.5, z=9.79)) for d in (0.01, 0.0)]

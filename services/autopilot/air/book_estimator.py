@@ -1,10 +1,10 @@
-"""The state of the aircraft from its sensors: low-passes, attitude, track and height together."""
+"""The book's estimator: low-passes, two-state attitude, seven-state track and a complementary height together."""
 
 import math
-from dataclasses import dataclass
 
 from services.autopilot.air.attitude import Attitude
 from services.autopilot.air.params import AirParams
+from services.autopilot.air.sensed import Fix, Inertial, Pressures, Sensed, Triple
 from services.autopilot.air.state import Estimate
 from services.autopilot.air.track_filter import CHI, PSI, WE, WN, E, N, TrackFilter, V
 from services.autopilot.air.vertical import Vertical
@@ -16,53 +16,13 @@ GYRO_TIME = 0.02  # s
 PRESSURE_TIME = 0.08  # s
 FORCE_TIME = 0.15  # s
 RECKONING_AFTER = 1.0  # s without a fix
-Triple = tuple[float, float, float]
+CLIMB_SIGMA = 1.0  # m/s, with neither barometer nor fixes
 
 
-@dataclass(frozen=True, slots=True)
-class Inertial:
-    """One IMU sample, FRD: rad/s, m/s^2, T."""
+class BookEstimator:
+    """The filters of Beard & McLain, chapter 8, started by the first fix.
 
-    rates: Triple
-    force: Triple
-    field: Triple
-    age: float = 0.0  # s, since it was taken
-
-
-@dataclass(frozen=True, slots=True)
-class Fix:
-    """A satellite fix in the world frame, valid ``age`` [s] ago."""
-
-    north: float  # m
-    east: float  # m
-    height: float  # m
-    v_north: float  # m/s
-    v_east: float  # m/s
-    v_up: float  # m/s
-    age: float  # s
-    position_sigma: float  # m
-    speed_sigma: float  # m/s
-
-
-@dataclass(frozen=True, slots=True)
-class Pressures:
-    static: float  # Pa
-    differential: float  # Pa
-    temperature: float  # K
-
-
-@dataclass(frozen=True, slots=True)
-class Sensed:
-    """What a cycle has: the IMU samples since the last, the newest pressures and a new fix, if any."""
-
-    samples: list[Inertial]
-    pressures: Pressures | None
-    fix: Fix | None
-
-
-class Estimator:
-    """Started by the first fix; alpha is taken from the load on the wing (``alpha_zero_lift``, ``alpha_per_load``).
-
+    Alpha is taken from the load on the wing (``alpha_zero_lift``, ``alpha_per_load``).
     Without fixes it reckons on with heading, airspeed and the wind of before. Without pressures the airspeed is the ground
     velocity less the wind and the height that of the fixes; without both, the airspeed is taken to be that of trim.
     """
@@ -84,6 +44,8 @@ class Estimator:
         """s since the last fix."""
         self._lift = GRAVITY  # m/s^2
         self._age = 0.0  # s, of the newest IMU sample
+        self._pitot = False
+        self._fix_height_sigma = 0.0  # m
         self._aside = 0.0  # rad, of the flight through the air from the nose
 
     def begin_at(self, roll: float, pitch: float) -> None:
@@ -123,6 +85,7 @@ class Estimator:
         here = (fix.north, fix.east, fix.v_north, fix.v_east)
         track.correct_fix(here, fix.age, (fix.position_sigma, fix.speed_sigma))
         height = fix.height + fix.v_up * fix.age
+        self._fix_height_sigma = fix.height_sigma
         if self._baro is None:
             vertical.correct(height, fix.v_up)
         else:
@@ -140,6 +103,7 @@ class Estimator:
         return self._track, self._vertical
 
     def _take_pressures(self, pressures: Pressures | None, params: AirParams, dt: float) -> None:
+        self._pitot = pressures is not None
         if pressures is None:
             self._baro = None
             self._airspeed = self._airspeed_over_ground() if self._height_known else params.trim_airspeed
@@ -222,7 +186,14 @@ class Estimator:
             wind_east=x[WE],
             position_sigma=track.position_sigma,
             height_known=self._height_known,
+            height_sigma=self._height_sigma(),
+            airspeed_known=self._pitot or self._height_known,
+            position_known=self.unfixed < RECKONING_AFTER,
         )
+
+    def _height_sigma(self) -> float:
+        """m; the complementary filter has no covariance, so this is that of the fixes, growing without any."""
+        return self._fix_height_sigma + (0.0 if self._height_known else CLIMB_SIGMA * self.unfixed)
 
 
 def _heading(field: Triple, roll: float, pitch: float) -> float:

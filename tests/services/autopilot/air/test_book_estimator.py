@@ -6,8 +6,9 @@ import math
 import numpy as np
 import pytest
 
-from services.autopilot.air.estimator import Estimator, Fix, Inertial, Pressures, Sensed
+from services.autopilot.air.book_estimator import BookEstimator
 from services.autopilot.air.params import AirParams
+from services.autopilot.air.sensed import Fix, Inertial, Pressures, Sensed
 from uvf.maths import atmosphere
 
 G = 9.80665
@@ -58,13 +59,13 @@ class Turn:
         azimuth = self.rate * t
         through = np.array(self._on_circle(azimuth) if self.rate else (SPEED * t, 0.0))
         north, east = through + np.array(WIND) * t
-        return Fix(north, east, 60.0, SPEED * math.cos(azimuth) + WIND[0], SPEED * math.sin(azimuth) + WIND[1], 0.0, 0.0, 0.8, 0.1)
+        return Fix(north, east, 60.0, SPEED * math.cos(azimuth) + WIND[0], SPEED * math.sin(azimuth) + WIND[1], 0.0, 0.0, 0.8, 1.5, 0.1)
 
 
 @functools.cache
 def flown(roll, seconds=200.0):
     """The last estimate, the turn and the time; it begins in the turn, knowing nothing of it."""
-    turn, estimator = Turn(roll), Estimator(declination=0.0)
+    turn, estimator = Turn(roll), BookEstimator(declination=0.0)
     for k in range(1, round(seconds / DT) + 1):
         t = k * DT
         now = estimator.step(Sensed([turn.sample(t)], PRESSURES, turn.fix(t) if k % 10 == 1 else None), PARAMS, DT)
@@ -94,7 +95,7 @@ def test_position_and_ground_velocity_are_those_of_the_fixes():
 
 def test_a_compass_is_read_with_its_declination():
     east = 0.1
-    turn, estimator = Turn(0.0), Estimator(east)
+    turn, estimator = Turn(0.0), BookEstimator(east)
     turn.field = np.array((24e-6 * math.cos(east), 24e-6 * math.sin(east), 40e-6))
     for k in range(1, 1001):
         now = estimator.step(Sensed([turn.sample(k * DT)], PRESSURES, turn.fix(k * DT) if k % 10 == 1 else None), PARAMS, DT)
@@ -107,7 +108,7 @@ def test_airspeed_is_true_airspeed():
 
 
 def test_it_starts_with_the_first_fix():
-    estimator = Estimator(declination=0.0)
+    estimator = BookEstimator(declination=0.0)
     assert not estimator.started
     now = estimator.step(Sensed([Turn(0.3).sample(0.0)], PRESSURES, Turn(0.3).fix(0.0)), PARAMS, DT)
     assert estimator.started

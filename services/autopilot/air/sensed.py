@@ -1,0 +1,48 @@
+"""What the estimators are given each cycle. NED and FRD."""
+
+from dataclasses import dataclass
+
+Triple = tuple[float, float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Inertial:
+    """One IMU sample, FRD: rad/s, m/s^2, T."""
+
+    rates: Triple
+    force: Triple
+    field: Triple
+    age: float = 0.0  # s, since it was taken
+
+
+@dataclass(frozen=True, slots=True)
+class Fix:
+    """A satellite fix in the world frame, valid ``age`` [s] ago."""
+
+    north: float  # m
+    east: float  # m
+    height: float  # m
+    v_north: float  # m/s
+    v_east: float  # m/s
+    v_up: float  # m/s
+    age: float  # s
+    position_sigma: float  # m
+    height_sigma: float  # m
+    speed_sigma: float  # m/s
+
+
+@dataclass(frozen=True, slots=True)
+class Pressures:
+    static: float  # Pa
+    differential: float  # Pa
+    temperature: float  # K
+    age: float = 0.0  # s, since they were taken
+
+
+@dataclass(frozen=True, slots=True)
+class Sensed:
+    """What a cycle has: the IMU samples since the last, the newest pressures and a new fix, if any."""
+
+    samples: list[Inertial]
+    pressures: Pressures | None
+    fix: Fix | None
