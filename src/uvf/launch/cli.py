@@ -136,6 +136,26 @@ def replay(
 
 
 @app.command()
+def report(
+    run: Annotated[Path | None, typer.Argument(help="Folder of a run, or a log; by default the latest run.")] = None,
+    out: Annotated[Path | None, typer.Option(help="Folder to write into; by default report/ beside the logs.")] = None,
+) -> None:
+    """Report on the flights of a run: a page of plots for each aircraft and a table of figures."""
+    from rich.console import Console
+
+    from uvf.launch import settings
+    from uvf.launch.flights.report import flights, folder_beside, table, write
+
+    with bad_input_is_one_line():
+        run = run or settings.runs_folder() / "latest"
+        aircraft = flights(run)
+        for each in aircraft:
+            Console().print(table(each))
+        for path in write(aircraft, out or folder_beside(run)):
+            say(str(path))
+
+
+@app.command()
 def teleop(
     vehicles: Annotated[list[str] | None, typer.Argument(help="Ground vehicles, driven together, or one aircraft.")] = None,
     mission: MissionOption = DEMO,
