@@ -23,7 +23,8 @@ def seconds(s: Timestamp) -> float:
 
 def vector(v: Floats) -> Vector3:
     """(3,) array as a message."""
-    return Vector3(x=float(v[0]), y=float(v[1]), z=float(v[2]))
+    x, y, z = v.tolist()
+    return Vector3(x=x, y=y, z=z)
 
 
 def array(v: Vector3) -> Floats:
@@ -33,7 +34,8 @@ def array(v: Vector3) -> Floats:
 
 def quaternion(q: Floats) -> Quaternion:
     """(4,) wxyz as a message."""
-    return Quaternion(w=float(q[0]), x=float(q[1]), y=float(q[2]), z=float(q[3]))
+    w, x, y, z = q.tolist()
+    return Quaternion(w=w, x=x, y=y, z=z)
 
 
 def wxyz(q: Quaternion) -> Floats:

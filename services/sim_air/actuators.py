@@ -1,6 +1,7 @@
 """Servos: a rate limit, then a first-order lag."""
 
 import math
+from dataclasses import fields
 
 from services.sim_air.wiring import Controls
 from uvf.runtime.air_file import AirBody, Lever, Surface
@@ -15,11 +16,14 @@ class Servo:
         self._low, self._high = reach
         self._rate = rate
         self._lag = lag
+        self._dt, self._share = 0.0, 0.0
 
     def step(self, command: float, dt: float) -> float:
         """Exact response of the lag over ``dt`` [s] to a held command, cut at the servo's rate."""
+        if dt != self._dt:
+            self._dt, self._share = dt, 1 - math.exp(-dt / self._lag) if self._lag else 1.0
         target = min(max(command, self._low), self._high)
-        move = (target - self.position) * (1 - math.exp(-dt / self._lag) if self._lag else 1.0)
+        move = (target - self.position) * self._share
         most = self._rate * dt
         self.position += min(max(move, -most), most)
         return self.position
@@ -30,12 +34,13 @@ class Actuators:
 
     def __init__(self, start: Controls, body: AirBody) -> None:
         controls = body.controls
-        self._servos = {name: _servo(getattr(controls, name), name, getattr(start, name), body) for name in controls.__struct_fields__}
+        self._servos = [_servo(getattr(controls, field.name), field.name, getattr(start, field.name), body) for field in fields(Controls)]
         self.position = start
 
     def step(self, command: Controls, dt: float) -> Controls:
         """Where the surfaces are ``dt`` [s] later."""
-        self.position = Controls(**{name: servo.step(getattr(command, name), dt) for name, servo in self._servos.items()})
+        commands = (command.aileron, command.elevator, command.rudder, command.throttle, command.flap, command.brake)
+        self.position = Controls(*(servo.step(wanted, dt) for servo, wanted in zip(self._servos, commands, strict=True)))
         return self.position
 
 

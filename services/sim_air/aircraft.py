@@ -137,7 +137,8 @@ class Aircraft:
             self.wind = moving.velocity
         wanted = self.command
         if self.charge is not None:
-            wanted = replace(wanted, throttle=self.charge.throttle(wanted.throttle))
+            left = self.charge.throttle(wanted.throttle)
+            wanted = wanted if left == wanted.throttle else replace(wanted, throttle=left)
         self.body.command(self.actuators.step(wanted, self.dt))
         try:
             self.body.step()

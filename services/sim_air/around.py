@@ -21,6 +21,7 @@ class Around:
         self.things = things
         self.shapes = vehicles
         self._surroundings = Surroundings(things, vehicles)
+        self._scripted = any(thing.path is not None for thing in things)
         self.still = self._surroundings.still
         self.ground = Ground(self.still)
         self._tree_of = tree_of
@@ -40,6 +41,11 @@ class Around:
         """How it stands at ``t`` [s]: ground vehicles by their newest truth, aircraft by their motion."""
         self._t, self._truth, self._objects, self._aircraft = t, truth, objects or SimObjects(), aircraft
         self._bodies = None
+
+    @property
+    def crowded(self) -> bool:
+        """Whether more than one thing may move."""
+        return self._scripted or len(self._aircraft.keys() | self._truth.keys()) + len(self._objects.objects) > 1
 
     def bodies(self) -> dict[str, Body]:
         """All that moves, by name."""

@@ -69,7 +69,7 @@ class Collisions:
 
     def step(self, motions: Mapping[str, Motion]) -> list[Hit]:
         """What has begun to touch."""
-        moving = self._around.bodies()
+        moving = self._around.bodies() if self._around.crowded else {}
         near = self._near(motions, moving)
         hits = [hit for name, motion in motions.items() for hit in self._hits(name, motion, {other: moving[other] for other in near[name]})]
         pairs = {frozenset(hit): hit for hit in reversed(hits)}

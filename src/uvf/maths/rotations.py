@@ -3,6 +3,8 @@
 Names cancel: ``v_world = rotate(world_from_body, v_body)``.
 """
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -22,8 +24,8 @@ def wrap(angle: float) -> float:
 
 def multiply(p: Floats, q: Floats) -> Floats:
     """Hamilton product: ``a_from_c = multiply(a_from_b, b_from_c)``."""
-    pw, px, py, pz = p
-    qw, qx, qy, qz = q
+    pw, px, py, pz = p.tolist()
+    qw, qx, qy, qz = q.tolist()
     return np.array(
         (
             pw * qw - px * qx - py * qy - pz * qz,
@@ -48,7 +50,7 @@ def rotate(a_from_b: Floats, v_b: Floats) -> Floats:
 
 def matrix(q: Floats) -> Floats:
     """(3, 3) rotation matrix of a unit quaternion."""
-    w, x, y, z = q
+    w, x, y, z = q.tolist()
     return np.array(
         (
             (1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
@@ -78,9 +80,9 @@ def from_matrix(r: Floats) -> Floats:
 
 def from_euler(roll: float, pitch: float, yaw: float) -> Floats:
     """Quaternion of yaw about z, then pitch about y, then roll about x [rad]."""
-    cr, sr = np.cos(roll / 2), np.sin(roll / 2)
-    cp, sp = np.cos(pitch / 2), np.sin(pitch / 2)
-    cy, sy = np.cos(yaw / 2), np.sin(yaw / 2)
+    cr, sr = math.cos(roll / 2), math.sin(roll / 2)
+    cp, sp = math.cos(pitch / 2), math.sin(pitch / 2)
+    cy, sy = math.cos(yaw / 2), math.sin(yaw / 2)
     return np.array(
         (
             cr * cp * cy + sr * sp * sy,

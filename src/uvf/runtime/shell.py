@@ -1,7 +1,7 @@
 """The shell of one service instance: its inputs, its due times and ``advance``, the one way any step is called."""
 
 from collections import deque
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -220,6 +220,8 @@ class Shell:
         return queries, requests
 
     def _decodable(self, name: str, request: Request[Any, Any], t_ns: int) -> list[Query]:
+        if not self._queries[name]:
+            return []
         waiting, good = list(self._queries[name]), []
         self._queries[name] = deque(q for q in waiting if not self._is_due(q.stamp_ns, t_ns))
         for query in waiting:
@@ -236,6 +238,8 @@ class Shell:
         return good
 
     def _reply(self, name: str, queries: list[Query], replies: Any, t_ns: int) -> None:
+        if not queries and not replies:
+            return
         flat = [r for owner in sorted(replies) for r in replies[owner]] if isinstance(replies, Mapping) else list(replies)
         if len(flat) != len(queries):
             raise ContractError(f"{self.type.name}: {len(queries)} requests '{name}' but {len(flat)} replies")
@@ -264,9 +268,9 @@ class Shell:
             topic = self.type.outputs.get(name) or self.type.calls.get(name)
             if topic is None:
                 raise ContractError(f"{self.type.name}: step returned '{name}', which is not declared")
-            by_owner = value if isinstance(value, Mapping) else {self.owner: value}
+            by_owner = value if isinstance(value, dict) else {self.owner: value}
             for owner, messages in by_owner.items():
-                for message in messages if isinstance(messages, Sequence) else (messages,):
+                for message in messages if isinstance(messages, (list, tuple)) else (messages,):
                     self._send(name, topic, owner, message, stamp)
 
     def _send(self, name: str, topic: Topic[Any] | Request[Any, Any], owner: str, message: Message, stamp: int) -> None:
