@@ -6,6 +6,7 @@ import numpy as np
 
 from schemas.messages import MissionItem
 from services.autopilot.air import intake, plan
+from services.autopilot.air.by_hand import Travel
 from services.autopilot.air.params import AirParams
 from services.autopilot.air.service import AutopilotAir, Ship
 from services.autopilot.plan import item_from_file
@@ -29,9 +30,24 @@ def _host(site: Site, member: Member) -> Host:
         raise BadInput(f"{site.mission_path}: {member.name}: job: mission: {why}")
     start, land = member.entry.start, relief(site.world)
     ground = 0.0 if land is None else float(land.at(np.array(start.x), np.array(start.y))[0])
-    ship = Ship(member.name, member.entry.system_id, tangent, math.atan2(east, north), items, starts_in_air=start.z > 0, ground=ground)
+    ship = Ship(
+        member.name,
+        member.entry.system_id,
+        tangent,
+        math.atan2(east, north),
+        items,
+        starts_in_air=start.z > 0 and not start.on_ground,
+        ground=ground,
+        travel=_travel(member),
+    )
     params = member.params(AutopilotAir.name, AirParams)
     return Host(AutopilotAir, lambda: AutopilotAir(ship, params), member.name)
+
+
+def _travel(member: Member) -> Travel:
+    assert member.file.air is not None
+    controls = member.file.air.controls
+    return Travel(controls.aileron.limit, controls.elevator.limit, controls.rudder.limit)
 
 
 def _fault(items: list[MissionItem]) -> str:

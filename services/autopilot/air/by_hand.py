@@ -1,4 +1,4 @@
-"""Mode Manual: whose surface commands are passed on to the servos, and what follows when nobody sends any."""
+"""Modes flown by hand: whose surface commands are passed on to the servos, and what follows when nobody sends any."""
 
 import math
 from collections.abc import Mapping
@@ -18,11 +18,39 @@ LET_GO = Surfaces(0.0, 0.0, 0.0, 0.0, brake=1.0)
 
 
 @dataclass(frozen=True, slots=True)
+class Travel:
+    """How far the surfaces of this vehicle go, rad: what a stick at its stop asks for."""
+
+    aileron: float = 0.35
+    elevator: float = 0.35
+    rudder: float = 0.35
+
+
+@dataclass(frozen=True, slots=True)
+class Sticks:
+    """-1..1: right, nose up, right; throttle 0..1."""
+
+    roll: float
+    pitch: float
+    yaw: float
+    throttle: float
+
+
+@dataclass(frozen=True, slots=True)
 class Hand:
     """What a source asks for."""
 
     source: str
     surfaces: Surfaces
+
+    def sticks(self, travel: Travel) -> Sticks:
+        """Where the sticks are that ask for these surfaces."""
+        s = self.surfaces
+        return Sticks(_part(s.aileron, travel.aileron), -_part(s.elevator, travel.elevator), -_part(s.rudder, travel.rudder), s.throttle)
+
+
+def _part(deflection: float, stop: float) -> float:
+    return min(max(deflection / stop, -1.0), 1.0)
 
 
 def choose(t: float, commands: Mapping[str, SurfaceCommand | None]) -> Hand | None:
@@ -45,19 +73,18 @@ class Stick:
     """Whether somebody flies by hand."""
 
     def __init__(self) -> None:
-        self.hand: Hand | None = None
-        self.airborne = False
+        self._held = False
         self._left = PATIENCE
 
     def take(self) -> None:
         """Mode Manual begins: somebody is about to speak."""
         self._left = PATIENCE
 
-    def hold(self, hand: Hand | None, airborne: bool, dt: float) -> None:
-        """What is asked now, and whether the aircraft is in the air."""
-        self.hand, self.airborne = hand, airborne
-        self._left = 0.0 if hand is not None else self._left - dt
+    def hold(self, hand: Hand | None, dt: float) -> None:
+        """What is asked now."""
+        self._held = hand is not None
+        self._left = 0.0 if self._held else self._left - dt
 
     @property
     def abandoned(self) -> bool:
-        return self.hand is None and self._left <= 0.0
+        return not self._held and self._left <= 0.0

@@ -6,7 +6,8 @@ from dataclasses import astuple
 
 from schemas.convert import seconds, wxyz
 from schemas.messages import AirData, Gnss, Imu, Mission, MissionItem, MissionProgress, Mode, NavState, Vector3
-from services.autopilot.air.pilot import FlightMode, Stand
+from services.autopilot.air.modes import FlightMode
+from services.autopilot.air.pilot import Stand
 from services.autopilot.air.plan import Item, Kind
 from services.autopilot.air.route import Place
 from services.autopilot.air.sensed import Fix, Inertial, Pressures
@@ -29,6 +30,9 @@ MODES = {
     Mode.MODE_MISSION: FlightMode.MISSION,
     Mode.MODE_RETURN: FlightMode.RETURN,
     Mode.MODE_MANUAL: FlightMode.MANUAL,
+    Mode.MODE_STABILIZED: FlightMode.STABILIZED,
+    Mode.MODE_ALTITUDE: FlightMode.ALTITUDE,
+    Mode.MODE_POSITION: FlightMode.POSITION,
 }
 
 

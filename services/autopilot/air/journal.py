@@ -3,7 +3,8 @@
 from schemas.convert import stamp
 from schemas.messages import Event
 from services.autopilot.air.losses import Loss
-from services.autopilot.air.pilot import FlightMode, Pilot
+from services.autopilot.air.modes import FlightMode
+from services.autopilot.air.pilot import Pilot
 
 
 class Journal:

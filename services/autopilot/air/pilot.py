@@ -1,26 +1,22 @@
-"""Modes of flight: what is flown now, and which changes are allowed."""
+"""Which mode is flown: requests, what they are refused for, and what follows when a mode ends or loses what it needs."""
 
 import math
 from collections.abc import Sequence
 from dataclasses import astuple, dataclass
-from enum import Enum
 
-from services.autopilot.air.by_hand import COMMAND_MAX_AGE, LET_GO, Hand, Stick
+from services.autopilot.air.by_hand import COMMAND_MAX_AGE, LET_GO, Stick
 from services.autopilot.air.commands import Surfaces, Wanted
-from services.autopilot.air.control import Control
-from services.autopilot.air.guidance import Aim, Steering
+from services.autopilot.air.guidance import Aim
+from services.autopilot.air.helm import Helm
+from services.autopilot.air.modes import TABLE, FlightMode, Need, Situation, refusal
 from services.autopilot.air.navigator import Navigator
 from services.autopilot.air.params import AirParams
+from services.autopilot.air.paths import Circling, Following
 from services.autopilot.air.plan import Item, fault
 from services.autopilot.air.route import Circle, Level, Place
 from services.autopilot.air.state import Estimate
-
-
-class FlightMode(Enum):
-    HOLD = "Hold"
-    MISSION = "Mission"
-    RETURN = "Return"
-    MANUAL = "Manual"
+from services.autopilot.air.stick_modes import STICK_MODES
+from services.autopilot.air.wishes import Phase, Senses, Track, Wish
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,7 +39,7 @@ class Stand:
 
 
 class Pilot:
-    """Holds, flies the mission, returns or lets somebody fly by hand. Requests give the reason of a refusal, empty when accepted."""
+    """Flies one mode of the table. Requests give the reason of a refusal, empty when accepted."""
 
     def __init__(self, items: Sequence[Item], ground: float = 0.0) -> None:
         """ground: height [m] of home, which lies on the ground below the start."""
@@ -54,60 +50,84 @@ class Pilot:
         self.stopped = ""
         self._blind = False
         self.home: Place | None = None
-        self.circle: Circle | None = None
+        self.senses = Senses()
         self._stick = Stick()
-        self._control = Control()
-        self._steering = Steering()
+        self._helm = Helm()
+        self._phase: Phase | None = None
         self._level = Level(math.nan)
         self._fresh = True
 
     def step(self, now: Estimate, params: AirParams, dt: float) -> Flown:
         if self._fresh:
             self._begin(now)
-        if self.mode is FlightMode.MISSION and (self.navigator.returns_home or self.navigator.finished):
-            self._end_mission()
-        if self.mode is FlightMode.MANUAL and (flown := self._by_hand(now, params)) is not None:
-            return flown
-        if self.mode is FlightMode.MISSION:
-            aim, self._level = self.navigator.step(now, params, dt)
-            speed = self.navigator.speed or params.trim_airspeed
-        else:
-            self.circle = self.circle or self._new_circle(now, params)
-            aim, self._level = self.circle.aim(now, params), Level(self.circle.centre.height)
-            speed = params.trim_airspeed
-        bank = self._steering.bank(aim, now, params, dt)
-        level = self._level if now.height_known else Level(now.height)
-        surfaces = self._control.step(now, Wanted(bank, level.height, level.climb, speed), params, dt)
-        return Flown(surfaces, aim, self._level)
+        self._look(now, params)
+        if self._stands:
+            self._helm = Helm()
+            return Flown(LET_GO, self._straight_on(now, params), self._level)
+        phase = self._phase = self._phase or self._begun(now, params)
+        return self._flown(phase.step(now, params, dt), now, params, dt)
 
-    def hear(self, hand: Hand | None, airborne: bool, dt: float) -> None:
-        """Before each step: what is asked by hand, None = nothing fresh."""
-        self._stick.hold(hand, airborne, dt)
-
-    def rest(self) -> None:
-        """Standing still it learns nothing: the loops begin anew."""
-        self._control, self._steering = Control(), Steering()
+    def hear(self, senses: Senses, dt: float) -> None:
+        """Before each step."""
+        self.senses = senses
+        self._stick.hold(senses.hand, dt)
 
     @property
     def source(self) -> str:
         """Whose commands reach the surfaces."""
-        if self.mode is not FlightMode.MANUAL or self._stick.hand is None:
+        if not TABLE[self.mode].by_hand or self.senses.hand is None:
             return "autopilot"
-        return self._stick.hand.source
+        return self.senses.hand.source
 
-    def _by_hand(self, now: Estimate, params: AirParams) -> Flown | None:
-        """As the hand asks; None while it is waited for, and once the autopilot has taken over."""
-        stick, aim = self._stick, Aim(0.0, now.course, 0.0, params.k_path, params.chi_inf)
-        self._level = Level(now.height)
-        if stick.hand is not None:
-            self.circle = None
-            return Flown(stick.hand.surfaces, aim, self._level)
-        if not stick.airborne:
-            return Flown(LET_GO, aim, self._level)
-        if stick.abandoned:
+    @property
+    def circle(self) -> Circle | None:
+        return self._phase.circle if isinstance(self._phase, Circling) else None
+
+    @property
+    def _situation(self) -> Situation:
+        return Situation(self.senses.airborne, not self._blind, bool(self.navigator.items), False, self.stopped)
+
+    @property
+    def _stands(self) -> bool:
+        """On the ground with nothing to do: surfaces neutral, motor off, brakes on."""
+        moves = TABLE[self.mode].on_ground and (self.senses.hand is not None if TABLE[self.mode].by_hand else self.senses.armed)
+        return not self.senses.airborne and not moves
+
+    def _look(self, now: Estimate, params: AirParams) -> None:
+        """Whether this mode goes on."""
+        if self.mode is FlightMode.MISSION and (self.navigator.returns_home or self.navigator.finished):
+            self._end_mission()
+        if TABLE[self.mode].by_hand:
+            self._look_at_stick(now, params)
+
+    def _look_at_stick(self, now: Estimate, params: AirParams) -> None:
+        """Until the first command the autopilot circles; after the last one it takes over."""
+        if self.senses.hand is not None:
+            self._phase = None if isinstance(self._phase, Circling) else self._phase
+        elif self._stick.abandoned and self.senses.airborne:
             self._change(FlightMode.HOLD, f"no command by hand for {COMMAND_MAX_AGE:g} s")
             self._level = Level(max(now.height, params.min_altitude))
-        return None
+        elif not isinstance(self._phase, Circling):
+            self._phase = None
+
+    def _begun(self, now: Estimate, params: AirParams) -> Phase:
+        """The present mode from its beginning."""
+        if self.mode is FlightMode.MISSION:
+            return Following(self.navigator)
+        if TABLE[self.mode].by_hand and self.senses.hand is not None:
+            return STICK_MODES[self.mode](self.senses)
+        return Circling(self._new_circle(now, params))
+
+    def _flown(self, wish: Wish, now: Estimate, params: AirParams, dt: float) -> Flown:
+        asked = wish.asked
+        aim = asked.aim if isinstance(asked, Track) else self._straight_on(now, params)
+        height = asked.height if isinstance(asked, Track | Wanted) else None
+        self._level = Level(now.height if height is None else height, asked.climb if isinstance(asked, Track | Wanted) else 0.0)
+        return Flown(self._helm.step(now, wish, params, dt), aim, self._level)
+
+    @staticmethod
+    def _straight_on(now: Estimate, params: AirParams) -> Aim:
+        return Aim(0.0, now.course, 0.0, params.k_path, params.chi_inf)
 
     def _begin(self, now: Estimate) -> None:
         self._fresh = False
@@ -135,27 +155,20 @@ class Pilot:
 
     @property
     def blocked(self) -> str:
-        """Why nothing but Hold may be asked for; empty if everything may."""
-        return self._stop_blocks or ("GNSS is lost: wait until it is back" if self._blind else "")
-
-    @property
-    def _stop_blocks(self) -> str:
-        return f"stopped by {self.stopped}: release the stop first" if self.stopped else ""
+        """Why it cannot be sent anywhere; empty if it can."""
+        return refusal(FlightMode.ORBIT, self._situation)
 
     def _change(self, mode: FlightMode, reason: str) -> None:
-        self.mode, self.reason, self.circle = mode, reason, None
+        self.mode, self.reason, self._phase = mode, reason, None
         self._stick.take()
 
-    def change_mode(self, mode: FlightMode, source: str) -> str:
-        blocked = self._stop_blocks if mode is FlightMode.MANUAL else self.blocked
-        if blocked and mode is not FlightMode.HOLD:
-            return blocked
-        if mode is FlightMode.MISSION:
-            if not self.navigator.items:
-                return "there is no mission: upload one first"
-            if not self._fresh:
-                self._restart()
-        self._change(mode, f"asked by {source}")
+    def change_mode(self, mode: FlightMode, source: str, reason: str = "") -> str:
+        """reason: what the status tells; by default who asked."""
+        if why := refusal(mode, self._situation):
+            return why
+        if mode is FlightMode.MISSION and not self._fresh:
+            self._restart()
+        self._change(mode, reason or f"asked by {source}")
         return ""
 
     def _restart(self) -> None:
@@ -172,7 +185,7 @@ class Pilot:
             return "the goal is no place: its coordinates are not finite"
         height = place.height if place.height >= params.min_altitude else self._level.height
         self._change(FlightMode.HOLD, f"goal of {source}")
-        self.circle = Circle(Place(place.north, place.east, height), params.hold_radius)
+        self._phase = Circling(Circle(Place(place.north, place.east, height), params.hold_radius))
         return ""
 
     def load(self, items: Sequence[Item]) -> str:
@@ -181,6 +194,7 @@ class Pilot:
             return why
         self.navigator = Navigator(items)
         if self.mode is FlightMode.MISSION:
+            self._phase = None
             if not items:
                 self._change(FlightMode.HOLD, "the mission was cleared")
             elif not self._fresh:
@@ -203,9 +217,11 @@ class Pilot:
 
     def fly_blind(self, blind: bool) -> None:
         """Without GNSS for long it holds where it reckons to be, and goes on holding when GNSS is back, until told."""
-        by_hand = self.mode is FlightMode.MANUAL  # which needs no satellites
-        if blind and not self._blind and not self.stopped and not by_hand:
-            self._change(FlightMode.HOLD, "GNSS lost: holds by dead reckoning")
-        elif self._blind and not blind and not self.stopped and not by_hand:
-            self.reason = "GNSS back: holds until a mode is asked for"
+        row, was = TABLE[self.mode], self._blind
         self._blind = blind
+        if self.stopped or (self.mode is not FlightMode.HOLD and Need.POSITION not in row.keeps):
+            return
+        if blind and not was:
+            self._change(row.without, "GNSS lost: holds by dead reckoning" if row.without is FlightMode.HOLD else "GNSS lost")
+        elif was and not blind:
+            self.reason = "GNSS back: holds until a mode is asked for"

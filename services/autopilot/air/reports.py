@@ -19,7 +19,8 @@ from schemas.messages import (
 )
 from services.autopilot.air import intake
 from services.autopilot.air.commands import Surfaces
-from services.autopilot.air.pilot import FlightMode, Flown, Pilot
+from services.autopilot.air.modes import FlightMode
+from services.autopilot.air.pilot import Flown, Pilot
 from services.autopilot.air.plan import Kind as ItemKind
 from services.autopilot.air.plan import next_stop
 from services.autopilot.air.route import Circle, Place

@@ -1,6 +1,6 @@
 """The autopilot of one fixed-wing aircraft: sensors and requests in, surfaces, estimates and reports out."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field
 
 from schemas import topics
 from schemas.convert import stamp
@@ -34,6 +34,7 @@ from services.autopilot.air.params import AirParams
 from services.autopilot.air.pilot import Pilot
 from services.autopilot.air.sensed import Fix, Sensed
 from services.autopilot.air.state import Estimate
+from services.autopilot.air.wishes import Senses
 from uvf.maths.geodesy import GRAVITY, LocalTangent
 from uvf.runtime.service import Outputs, Service, every, optional
 
@@ -52,6 +53,7 @@ class Ship:
     items: list[MissionItem]
     starts_in_air: bool
     ground: float = 0.0  # m, world: height of the ground below the start
+    travel: by_hand.Travel = field(default_factory=by_hand.Travel)
 
 
 class AutopilotAir(Service):
@@ -143,11 +145,8 @@ class AutopilotAir(Service):
             "current": [_reply(self._pilot.set_current(r.index)) for r in current],
         }
         hand = by_hand.choose(t, {"teleop": teleop, "mavlink": mavlink, "client": client})
-        self._pilot.hear(hand, self._land.airborne, 1 / self.hz)
+        self._pilot.hear(Senses(self._land.airborne, self._armed, hand, self._ship.travel), 1 / self.hz)
         flown = self._pilot.step(now, self.params, 1 / self.hz)
-        if self._parked:
-            self._pilot.rest()
-            flown = replace(flown, surfaces=by_hand.LET_GO)
         state = reports.nav_state(t, now)
         out: dict[str, object] = {
             "surfaces": reports.surfaces(t, flown.surfaces, self._armed),
@@ -222,11 +221,6 @@ class AutopilotAir(Service):
         stamp_ns = gnss.timestamp.ToNanoseconds()
         is_new, self._fix_stamp = stamp_ns != self._fix_stamp, stamp_ns
         return intake.fix(gnss, self._ship.tangent, t) if is_new else None
-
-    @property
-    def _parked(self) -> bool:
-        """On the ground, disarmed, and nobody at the stick: surfaces neutral, brakes on."""
-        return not (self._armed or self._land.airborne) and self._pilot.source == "autopilot"
 
     def _heed(self, stop: StopCommand | None) -> None:
         """STOP ALL: in the air it holds, at rest it is disarmed. Without a word of it, what was said before counts."""

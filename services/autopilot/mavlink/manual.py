@@ -7,10 +7,11 @@ from services.autopilot.mavlink.facts import Facts, Latest
 
 FULL = 1000.0
 NOT_THERE = 2**15 - 1
+BY_HAND = (Mode.MODE_MANUAL, Mode.MODE_STABILIZED, Mode.MODE_ALTITUDE, Mode.MODE_POSITION)
 
 
 def drive_command(message: mav.MAVLink_manual_control_message, facts: Facts, latest: Latest) -> DriveCommand | None:
-    """Throttle stick forward = forward; either stick right = right turn. Only a vehicle in manual mode listens.
+    """Throttle stick forward = forward; either stick right = right turn. Only a vehicle in a mode flown or driven by hand listens.
 
     A ground station with a virtual joystick sends sticks at rest all the time; in the other modes they mean nothing.
     """
@@ -41,7 +42,7 @@ def surface_command(message: mav.MAVLink_manual_control_message, facts: Facts, l
 
 
 def _listens(message: mav.MAVLink_manual_control_message, latest: Latest) -> bool:
-    return latest.status is not None and latest.status.mode == Mode.MODE_MANUAL and message.z != NOT_THERE
+    return latest.status is not None and latest.status.mode in BY_HAND and message.z != NOT_THERE
 
 
 def _stick(axis: int) -> float:

@@ -2,7 +2,8 @@
 
 import pytest
 
-from services.autopilot.air.pilot import FlightMode, Pilot
+from services.autopilot.air.modes import FlightMode
+from services.autopilot.air.pilot import Pilot
 from services.autopilot.air.plan import Item, Kind
 from services.autopilot.air.route import Place
 from tests.services.autopilot.air.states import PARAMS, cruising

@@ -1,0 +1,39 @@
+"""Carries out what a mode wants: steering along paths and both levels of control, with what they have learnt."""
+
+from dataclasses import replace
+
+from services.autopilot.air.commands import Attitude, Surfaces, Wanted
+from services.autopilot.air.control import Control
+from services.autopilot.air.guidance import Steering
+from services.autopilot.air.params import AirParams
+from services.autopilot.air.state import Estimate
+from services.autopilot.air.wishes import Track, Wish
+
+FLAP_RATE = 0.1  # rad/s, slow enough for the loops to follow
+
+
+class Helm:
+    """Holds on to its integrators from mode to mode."""
+
+    def __init__(self) -> None:
+        self._control = Control()
+        self._steering = Steering()
+        self._flap = 0.0
+
+    def step(self, now: Estimate, wish: Wish, params: AirParams, dt: float) -> Surfaces:
+        asked = wish.asked
+        if isinstance(asked, Surfaces):
+            self._flap = asked.flap
+            return asked
+        self._flap += min(max(wish.flap - self._flap, -FLAP_RATE * dt), FLAP_RATE * dt)
+        return replace(self._fly(now, asked, params, dt), flap=self._flap, brake=wish.brake)
+
+    def _fly(self, now: Estimate, asked: Track | Wanted | Attitude, params: AirParams, dt: float) -> Surfaces:
+        if isinstance(asked, Attitude):
+            return self._control.hold(now, asked, params, dt)
+        if isinstance(asked, Track):
+            bank = self._steering.bank(asked.aim, now, params, dt)
+            asked = Wanted(bank, asked.height, asked.climb, asked.airspeed)
+        if asked.height is not None and not now.height_known:
+            asked = replace(asked, height=now.height)
+        return self._control.step(now, asked, params, dt)

@@ -1,0 +1,101 @@
+"""THE TABLE of the modes of flight: what each needs, where it falls when that fails, and what follows when it is done."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import Enum
+
+
+class FlightMode(Enum):
+    MANUAL = "Manual"
+    STABILIZED = "Stabilized"
+    ALTITUDE = "Altitude"
+    POSITION = "Position"
+    TAKEOFF = "Takeoff"
+    MISSION = "Mission"
+    HOLD = "Hold"
+    ORBIT = "Orbit"
+    RETURN = "Return"
+    LAND = "Land"
+    OFFBOARD = "Offboard"
+
+
+@dataclass(frozen=True, slots=True)
+class Situation:
+    """What guards look at."""
+
+    airborne: bool = True
+    position_known: bool = True
+    has_mission: bool = False
+    setpoint: bool = False
+    """Somebody sends setpoints from outside."""
+    stopped: str = ""
+    """Who has stopped the aircraft."""
+
+
+class Need(Enum):
+    """Why a mode is refused without it."""
+
+    RELEASED = "stopped by {stopped}: release the stop first"
+    POSITION = "GNSS is lost: wait until it is back"
+    AIRBORNE = "the aircraft is on the ground: take off first"
+    GROUND = "the aircraft is flying: it can only take off from the ground"
+    MISSION = "there is no mission: upload one first"
+    SETPOINT = "no setpoint is sent: publish cmd/<source>/setpoint first"
+
+    def is_met(self, now: Situation) -> bool:
+        return {
+            Need.RELEASED: not now.stopped,
+            Need.POSITION: now.position_known,
+            Need.AIRBORNE: now.airborne,
+            Need.GROUND: not now.airborne,
+            Need.MISSION: now.has_mission,
+            Need.SETPOINT: now.setpoint,
+        }[self]
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """needs: to be asked for, in the order in which refusals are told; keeps: those whose loss ends it."""
+
+    needs: tuple[Need, ...] = ()
+    keeps: tuple[Need, ...] = ()
+    without: FlightMode = FlightMode.HOLD
+    """What follows when one of ``keeps`` is lost, or nobody holds the stick any more."""
+    done: FlightMode | None = None
+    """What follows when it has come to its end; None: it has none."""
+    by_hand: bool = False
+    """It is steered by a stick, and left when nobody holds that."""
+    on_ground: bool = False
+    """It moves an aircraft that stands; in all other modes that keeps its brakes on and its motor off."""
+
+
+_FLYING = (Need.RELEASED, Need.AIRBORNE, Need.POSITION)
+_HERE = (Need.POSITION,)
+_M = FlightMode
+
+TABLE: Mapping[FlightMode, Row] = {
+    _M.MANUAL: Row((Need.RELEASED,), by_hand=True, on_ground=True),
+    _M.STABILIZED: Row((Need.RELEASED,), by_hand=True, on_ground=True),
+    _M.ALTITUDE: Row((Need.RELEASED, Need.AIRBORNE), by_hand=True),
+    _M.POSITION: Row(_FLYING, _HERE, without=_M.ALTITUDE, by_hand=True),
+    _M.TAKEOFF: Row((Need.RELEASED, Need.GROUND, Need.POSITION), done=_M.HOLD, on_ground=True),
+    _M.MISSION: Row((Need.RELEASED, Need.POSITION, Need.MISSION), _HERE, done=_M.HOLD, on_ground=True),
+    _M.HOLD: Row(),
+    _M.ORBIT: Row(_FLYING, _HERE, done=_M.HOLD),
+    _M.RETURN: Row(_FLYING, _HERE),
+    _M.LAND: Row(_FLYING, _HERE, done=_M.HOLD),
+    _M.OFFBOARD: Row((Need.RELEASED, Need.AIRBORNE, Need.SETPOINT), (Need.SETPOINT,)),
+}
+
+
+def refusal(mode: FlightMode, now: Situation) -> str:
+    """Why this mode may not be asked for now; empty if it may."""
+    for need in TABLE[mode].needs:
+        if not need.is_met(now):
+            return need.value.format(stopped=now.stopped)
+    return ""
+
+
+def lost(mode: FlightMode, now: Situation) -> Need | None:
+    """What this mode lives on and has no longer."""
+    return next((need for need in TABLE[mode].keeps if not need.is_met(now)), None)

@@ -1,0 +1,56 @@
+"""What a mode wants in a cycle, at one of three levels of control, and what it knows beside the estimate."""
+
+from dataclasses import dataclass, field
+
+from services.autopilot.air.by_hand import Hand, Travel
+from services.autopilot.air.commands import Attitude, Surfaces, Wanted
+from services.autopilot.air.guidance import Aim
+from services.autopilot.air.params import AirParams
+from services.autopilot.air.state import Estimate
+
+
+@dataclass(frozen=True, slots=True)
+class Track:
+    """To follow a path over ground."""
+
+    aim: Aim
+    height: float | None  # m; None: the climb rate is held instead
+    climb: float  # m/s, of the path
+    airspeed: float  # m/s
+
+
+@dataclass(frozen=True, slots=True)
+class Wish:
+    """``asked``: a path, a bank with height and airspeed, an attitude, or the surfaces themselves."""
+
+    asked: Track | Wanted | Attitude | Surfaces
+    flap: float = 0.0  # rad
+    brake: float = 0.0  # 0..1
+
+
+@dataclass(slots=True)
+class Senses:
+    """What modes know beside the estimate, renewed before each step."""
+
+    airborne: bool = True
+    armed: bool = True
+    hand: Hand | None = None
+    """What is asked by hand; None = nothing fresh."""
+    travel: Travel = field(default_factory=Travel)
+    clearance: float | None = None
+    """m, of the wheels over the ground, seen by a range finder."""
+    push: float = 0.0
+    """m/s^2, specific force forwards."""
+
+
+class Phase:
+    """One mode, or one part of it."""
+
+    ended = ""
+    """Why it has come to its end; empty while it goes on."""
+    disarms = False
+    """At its end the motor has nothing more to do."""
+
+    def step(self, now: Estimate, params: AirParams, dt: float) -> Wish:
+        """One cycle of ``dt`` [s]."""
+        raise NotImplementedError
