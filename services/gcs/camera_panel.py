@@ -11,7 +11,7 @@ from services.gcs.state import STALE_AFTER, Model, VehicleModel
 
 SHOWN = {"gimbal": "gimbal", "chase": "chase", "image": "camera"}
 """Field of the model (the first one there is shown at first) -> what the camera is called in the vehicle's file."""
-SEEN_FOR = 3.0  # s that a page's word that it looks holds
+SEEN_FOR = 10.0  # s that a page's word that it looks holds: one that draws without a graphics card may say it late
 MODES = {"Follow": GimbalCommand.FOLLOW, "Lock": GimbalCommand.LOCK, "Body": GimbalCommand.BODY}
 
 
