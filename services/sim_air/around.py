@@ -16,14 +16,14 @@ from uvf.runtime.surroundings import Surroundings, Whereabouts
 class Around:
     """Worked out when somebody looks, once a step."""
 
-    def __init__(self, things: Sequence[Solid], vehicles: Mapping[str, Bvh], tree_of: Callable[[str], Bvh]) -> None:
-        """things: of the world; vehicles: the shapes of all; tree_of: the shape of a vehicle model that is put in later."""
+    def __init__(self, things: Sequence[Solid], ground: Ground, vehicles: Mapping[str, Bvh], tree_of: Callable[[str], Bvh]) -> None:
+        """things: of the world; ground: they; vehicles: the shapes of all; tree_of: that of a vehicle model that is put in later."""
         self.things = things
         self.shapes = vehicles
-        self._surroundings = Surroundings(things, vehicles)
+        self.ground = ground
+        self._surroundings = Surroundings(things, vehicles, ground.scene)
         self._scripted = any(thing.path is not None for thing in things)
         self.still = self._surroundings.still
-        self.ground = Ground(self.still)
         self._tree_of = tree_of
         self._put_in: dict[str, tuple[str, tuple[float, ...]]] = {}
         self._t, self._objects = 0.0, SimObjects()

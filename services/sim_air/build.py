@@ -55,8 +55,13 @@ class Land(NamedTuple):
     footing: Footing
     ground: Ground
 
-    def room(self, start: Start) -> float:
-        """m to the nearest thing beside an aircraft at its start, none of them what it stands on."""
+    def check_room(self, who: str, start: Start) -> None:
+        """Raises BadInput with too little room beside an aircraft at its start; what it stands on is none of it."""
+        if (room := self._room(start)) < AIRCRAFT_RADIUS:
+            raise BadInput(f"{who}: {room:.2f} m from a wall or another solid at {start.z:g} m; move it or begin higher")
+
+    def _room(self, start: Start) -> float:
+        """m."""
         height = self.ground.top(start.x, start.y)
         low, high = max(start.z - AIRCRAFT_RADIUS, GRAZE), start.z + AIRCRAFT_RADIUS
         return self.footing.room(start.x, start.y, (height + low, height + high))
@@ -65,10 +70,7 @@ class Land(NamedTuple):
 def _check(site: Site, member: Member, land: Land) -> None:
     """What would otherwise fail only when time runs, or not be noticed at all."""
     _check_rates(member)
-    start = member.entry.start
-    if (room := land.room(start)) < AIRCRAFT_RADIUS:
-        where = Place(str(site.mission_path)).at("vehicles", member.name, "start")
-        raise BadInput(f"{where}: {room:.2f} m from a wall or another solid at {start.z:g} m; move it or begin higher")
+    land.check_room(str(Place(str(site.mission_path)).at("vehicles", member.name, "start")), member.entry.start)
     try:
         guarded(lambda: Airframe(_model_folder(member), _body(member), _tangent(site)).step())
     except Died as error:
@@ -107,7 +109,7 @@ def _make(site: Site, land: Land) -> SimAir:
     flying = [Airframe(_model_folder(m), _body(m), _tangent(site)) for m in members]
     on_wheels = {m.name: vehicle_tree(load_urdf(m.folder / m.file.ground.urdf)) for m in site.of_kind("ground") if m.file.ground}
     joining = {m.name: _joining(site, land, m, airframe) for m, airframe in zip(members, flying, strict=True)}
-    around = Around(things, on_wheels | {name: one.shape for name, one in joining.items()}, partial(_shape_of, site))
+    around = Around(things, land.ground, on_wheels | {name: one.shape for name, one in joining.items()}, partial(_shape_of, site))
     aircraft = {name: one.aircraft for name, one in joining.items()}
     taken = (*site.members, *(thing.name for thing in things), "floor")
     return SimAir(Stage(aircraft, around, taken, partial(_join, site, land)), Faults(site.mission.faults))
@@ -120,7 +122,7 @@ def _join(site: Site, land: Land, name: str, model: str, start: Start) -> Joinin
         raise BadInput(f"'{model}' is no aircraft; this is the air simulator")
     member = Member(name, Vehicle(model=model, start=start, system_id=1), file, folder)
     _check_rates(member)
-    _check_room(land, name, start)
+    land.check_room(f"'{name}'", start)
     airframe = Airframe(_model_folder(member), file.air, _tangent(site))
     return _joining(site, land, member, airframe)
 
@@ -132,18 +134,21 @@ def _joining(site: Site, land: Land, member: Member, airframe: Airframe) -> Join
     return Joining(aircraft, shape)
 
 
-def _check_room(land: Land, name: str, start: Start) -> None:
-    if (room := land.room(start)) < AIRCRAFT_RADIUS:
-        raise BadInput(f"'{name}' would be {room:.2f} m from a wall or another solid there; choose another place")
-
-
 def _begin(site: Site, land: Land, member: Member, start: Start) -> tuple[Airframe, Controls, Controls]:
     """An airframe of its own for a new beginning. Raises BadInput."""
-    _check_room(land, member.name, start)
+    land.check_room(f"'{member.name}'", start)
     airframe = Airframe(_model_folder(member), _body(member), _tangent(site))
+    return airframe, *_begun(land, member, airframe, start, _air(site, member, airframe))
+
+
+def _begun(land: Land, member: Member, airframe: Airframe, start: Start, air: AirMass) -> tuple[Controls, Controls]:
+    """Its controls at its beginning over the land, and those of level flight. Raises BadInput."""
     airframe.over(land.ground)
-    air = AirMass(site.wind, airframe.span, site.rng(member.name, "turbulence"))
-    return airframe, *begun(airframe, as_told(start, _body(member), air, land.ground.top(start.x, start.y)))
+    return begun(airframe, as_told(start, _body(member), air, land.ground.top(start.x, start.y)))
+
+
+def _air(site: Site, member: Member, airframe: Airframe) -> AirMass:
+    return AirMass(site.wind, airframe.span, site.rng(member.name, "turbulence"))
 
 
 def _shape_of(site: Site, model: str) -> Bvh:
@@ -156,9 +161,8 @@ def _shape_of(site: Site, model: str) -> Bvh:
 def _aircraft(site: Site, land: Land, member: Member, airframe: Airframe) -> Aircraft:
     """One aircraft as it starts. Raises BadInput."""
     body, tangent, begin = _body(member), _tangent(site), member.entry.start
-    air = AirMass(site.wind, airframe.span, site.rng(member.name, "turbulence"))
-    airframe.over(land.ground)
-    now, level = begun(airframe, as_told(begin, body, air, land.ground.top(begin.x, begin.y)))
+    air = _air(site, member, airframe)
+    now, level = _begun(land, member, airframe, begin, air)
     aircraft = Aircraft(member.name, member.file, airframe, Actuators(now, body), level)
     aircraft.begin = partial(_begin, site, land, member)
     aircraft.wind, aircraft.air_mass = air.mean(begin.z), None if air.is_steady else air

@@ -5,7 +5,7 @@ from functools import cache, partial
 from typing import Protocol
 
 from schemas import topics
-from schemas.messages import NavState, RemoveRequest, SetPoseRequest, SpawnRequest, StateRequest, WheelCommand
+from schemas.messages import NavState, RemoveRequest, SetPoseRequest, SimObjects, SpawnRequest, StateRequest, WheelCommand
 from services.sim_ground.body import BodyState, Touch
 from services.sim_ground.guest import Course, courses
 from services.sim_ground.rig import STEP_HZ, Moment
@@ -46,7 +46,11 @@ class SimGround(Service):
     hz = STEP_HZ
     scope = "world"
     simulator = True
-    inputs = {"commands": each_vehicle(optional(topics.WHEEL_COMMAND)), "truth": each_vehicle(optional(topics.TRUTH))}
+    inputs = {
+        "commands": each_vehicle(optional(topics.WHEEL_COMMAND)),
+        "truth": each_vehicle(optional(topics.TRUTH)),
+        "flying": optional(topics.AIR_OBJECTS),
+    }
     outputs = {
         "imu": topics.IMU,
         "scan": topics.SCAN,
@@ -87,19 +91,20 @@ class SimGround(Service):
         t: float,
         commands: dict[str, WheelCommand],
         truth: Mapping[str, NavState],
+        flying: SimObjects | None,
         spawn: list[SpawnRequest],
         remove: list[RemoveRequest],
         set_pose: list[SetPoseRequest],
         save: list[StateRequest],
         restore: list[StateRequest],
     ) -> Outputs:
-        """What is asked for holds from this step's end. truth: of the aircraft; that of these vehicles is known better here."""
+        """What is asked for holds from this step's end. truth: of the aircraft; flying: those of them that have been put in."""
         self._guests = courses(truth, self._aircraft)
         self._world.guide(self._guests)
         self._advance(t, {name: WheelSpeeds(c.left, c.right) for name, c in commands.items()})
         read, n, stage = self._read(t), round(t * self.hz), self._stage
         replies = {
-            "spawn": [stage.spawn(r) for r in spawn],
+            "spawn": [stage.spawn(r, [o.name for o in flying.objects] if flying else []) for r in spawn],
             "remove": [stage.remove(r) for r in remove],
             "set_pose": [stage.set_pose(r) for r in set_pose],
             "save": [stage.save(n, r) for r in save],

@@ -1,7 +1,7 @@
 """Who and what is in the ground simulation, and the requests that change it: spawn, remove, set pose, save, restore."""
 
 import copy
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from typing import Any, NamedTuple, Protocol
 
@@ -85,9 +85,10 @@ class Stage:
         self._spawned = 0
         self._kept: dict[str, Kept] = {}
 
-    def spawn(self, request: SpawnRequest) -> Reply:
+    def spawn(self, request: SpawnRequest, others: Collection[str]) -> Reply:
+        """others: names of what the air simulator has put in."""
         wanted = request.object
-        reason = self._name_fault(wanted.name) or pose_fault(wanted.pose) or (_shape_fault(wanted) if not wanted.model else "")
+        reason = self._name_fault(wanted.name, others) or pose_fault(wanted.pose) or (_shape_fault(wanted) if not wanted.model else "")
         if not reason:
             try:
                 reason = self._put_vehicle(wanted) if wanted.model else self._put(wanted)
@@ -99,10 +100,10 @@ class Stage:
             self._numbers[wanted.name] = self._spawned
         return _reply(reason)
 
-    def _name_fault(self, name: str) -> str:
+    def _name_fault(self, name: str, others: Collection[str]) -> str:
         if fault := name_fault(name):
             return fault
-        if name in self._objects or name in self._taken:
+        if name in self._objects or name in self._taken or name in others:
             return f"there is a '{name}' already; take another name"
         return ""
 

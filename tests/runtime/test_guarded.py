@@ -5,6 +5,7 @@ import os
 
 import pytest
 
+from uvf.runtime import guarded as guarding
 from uvf.runtime.guarded import Died, guarded
 from uvf.runtime.params import BadInput
 from uvf.runtime.quiet import c_output_discarded
@@ -35,3 +36,9 @@ def test_an_abort_is_told_with_the_last_words_even_where_output_is_discarded():
 def test_an_end_without_an_answer_is_told():
     with pytest.raises(Died, match="exit code 3"):
         guarded(lambda: os._exit(3))
+
+
+def test_what_never_ends_is_ended(monkeypatch):
+    monkeypatch.setattr(guarding, "PATIENCE", 1)
+    with pytest.raises(Died, match="not done within 1 s"):
+        guarded(lambda: ctypes.CDLL(None).pause())

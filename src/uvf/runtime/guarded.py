@@ -12,6 +12,7 @@ from uvf.runtime.params import BadInput
 
 T = TypeVar("T")
 WORDS = 200  # characters kept of the last thing said
+PATIENCE = 600  # s, after which the copy is ended
 
 
 class Died(Exception):
@@ -42,6 +43,8 @@ def guarded(work: Callable[[], T]) -> T:
 def _answer(work: Callable[[], T], writer: int, said: str) -> None:
     """In the copy; never returns."""
     code = 1
+    signal.signal(signal.SIGALRM, signal.SIG_DFL)  # an engine that hangs in its own code hears nothing else
+    signal.alarm(PATIENCE)
     try:
         with quiet.c_output_to(said):
             try:
@@ -57,6 +60,8 @@ def _answer(work: Callable[[], T], writer: int, said: str) -> None:
 
 def _last_words(status: int, said: IO[bytes]) -> str:
     number = os.waitstatus_to_exitcode(status)
+    if number == -signal.SIGALRM:
+        return f"not done within {PATIENCE} s"
     how = signal.Signals(-number).name if number < 0 else f"exit code {number}"
     lines = [line.strip() for line in said.read().decode(errors="replace").splitlines() if line.strip()]
     return f"{how}: {' '.join(lines)[-WORDS:]}" if lines else how

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uvf.maths.bvh import Bvh, build
-from uvf.maths.raycast3 import Body
+from uvf.maths.raycast3 import Body, Scene
 from uvf.maths.rotations import IDENTITY
 from uvf.maths.solids import joined, mesh
 from uvf.maths.transforms import Transform, compose
@@ -33,9 +33,9 @@ class Whereabouts(NamedTuple):
 class Surroundings:
     """Trees of solids are built once; only poses change."""
 
-    def __init__(self, things: Sequence[Solid], vehicles: Mapping[str, Bvh]) -> None:
-        """vehicles: their collision shapes in their own frames."""
-        self.still = scene(things)
+    def __init__(self, things: Sequence[Solid], vehicles: Mapping[str, Bvh], still: Scene | None = None) -> None:
+        """vehicles: their collision shapes in their own frames; still: the scene of the things, where it is there already."""
+        self.still = still or scene(things)
         self._scripted = [(solid, own_tree(solid)) for solid in things if solid.path is not None]
         self._objects: dict[str, Bvh] = {}
         self._vehicles = dict(vehicles)

@@ -9,12 +9,14 @@ from schemas.messages import Event, NavState, Pose, SimObject, SimObjects
 from services.sim_air.around import Around
 from services.sim_air.build import build
 from services.sim_air.collisions import Collisions, Hit
+from services.sim_air.ground import Ground
 from services.sim_air.states import Motion
 from tests.services.sim_air.shapes import MILVUS_TREE
 from uvf.maths.bvh import build as tree_over
 from uvf.maths.rotations import IDENTITY, from_euler
 from uvf.maths.solids import box
 from uvf.runtime.lockstep import Lockstep
+from uvf.runtime.scene import scene
 from uvf.runtime.site import load_site
 from uvf.runtime.solid import Solid
 
@@ -29,7 +31,7 @@ def motion(x=0.0, y=0.0, z=8.0, yaw=0.0):
 
 def told(steps, truth=None, objects=None):
     """steps: dicts of the aircraft's motions."""
-    around = Around([WALL, MAST], SHAPES, {}.__getitem__)
+    around = Around([WALL, MAST], Ground(scene([WALL, MAST])), SHAPES, {}.__getitem__)
     collisions, hits = Collisions(around), []
     for i, motions in enumerate(steps):
         around.look(i / 100, truth or {}, objects, motions)

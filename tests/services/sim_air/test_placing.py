@@ -93,7 +93,7 @@ def test_after_a_crash_it_flies_again(run):
         ({"pose": planar_pose(0.0, 0.0, 0.0, -5.0)}, "under the ground"),
         ({"pose": planar_pose(0.0, 0.0, 0.0, 60.0), "speed": 60.0}, "no level flight at 60"),
         ({"pose": planar_pose(0.0, 0.0, 0.0, 60.0), "climb": 2.0}, "climb within 1.5 rad"),
-        ({"pose": planar_pose(0.0, 0.0, 0.0, 1.6)}, "from a wall or another solid there"),
+        ({"pose": planar_pose(0.0, 0.0, 0.0, 1.6)}, "from a wall or another solid at 1.6 m"),
     ],
 )
 def test_what_cannot_be_is_refused_and_the_flight_goes_on(run, wanted, why):

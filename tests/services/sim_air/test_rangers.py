@@ -7,12 +7,14 @@ import pytest
 from schemas.convert import quaternion, vector
 from schemas.messages import NavState
 from services.sim_air.around import Around
+from services.sim_air.ground import Ground
 from services.sim_air.rangers import Rangers
 from services.sim_air.states import Motion
 from tests.services.sim_air.shapes import MILVUS_TREE
 from uvf.maths.bvh import build as tree_over
 from uvf.maths.rotations import IDENTITY, from_euler
 from uvf.maths.solids import box
+from uvf.runtime.scene import scene
 from uvf.runtime.solid import Solid
 from uvf.runtime.vehicle_file import Lidar, Mount, RangeFinder, Sensors
 
@@ -28,7 +30,7 @@ def motion(position, roll=0.0):
 
 def read(at=(0.0, 0.0, 40.0), other=AWAY, van=(-500.0, 0.0, 0.0), t=0.1, roll=0.0):
     shapes = {"a": MILVUS_TREE, "b": MILVUS_TREE, "van": tree_over(box((4.0, 2.0, 2.0), (0.0, 0.0, 1.0)))}
-    around = Around([WALL], shapes, {}.__getitem__)
+    around = Around([WALL], Ground(scene([WALL])), shapes, {}.__getitem__)
     sensors = Sensors(lidar=FORWARD, rangefinders=[msgspec.structs.replace(DOWN, latency=0.0)])
     rangers = Rangers("a", sensors, around.still, lambda name: np.random.default_rng(1))
     truth = {"van": NavState(position=vector(np.array(van)), orientation=quaternion(IDENTITY))}

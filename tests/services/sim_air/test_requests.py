@@ -1,6 +1,6 @@
 """What can be asked of the air simulation: spawn, remove, save and restore, each refused in one clear line."""
 
-from collections import Counter, defaultdict
+from collections import Counter
 
 import numpy as np
 import pytest
@@ -9,7 +9,7 @@ from schemas import topics
 from schemas.convert import array, planar_pose, seconds
 from schemas.messages import RemoveRequest, SetPoseRequest, SimObject, SpawnRequest, StateRequest, SurfaceCommand
 from services.sim_air.build import build
-from uvf.runtime.lockstep import Lockstep
+from tests.services.asking import Asked
 from uvf.runtime.service import Service, every
 from uvf.runtime.site import Host, load_site
 
@@ -49,30 +49,16 @@ class Pilot(Service):
         return {"surfaces": SurfaceCommand(aileron=self._script(t), elevator=-0.14, throttle=0.75)}
 
 
-class Run:
+class Run(Asked):
     """An aircraft that can be asked things between two moments."""
 
     def __init__(self, folder, script=None, model="milvus_survey", mission=MISSION):
         path = folder / "one.yaml"
         path.write_text(mission.format(model=model))
         pilot = [Host(Pilot, lambda: Pilot(script), "bird")] if script else []
-        self.lockstep = Lockstep(build(load_site(path)) + pilot)
-        self.heard = defaultdict(list)
-        for topic in (*HEARD, topics.AIR_OBJECTS):
-            keep = lambda sample, kind=topic.message: self.heard[sample.key].append(kind.FromString(sample.payload))  # noqa: E731
-            self.lockstep.bus.subscribe(topic.at("*" if topic.per_vehicle else "sys"), topic.qos, keep)
+        super().__init__(build(load_site(path)) + pilot, "bird", HEARD)
 
-    def ask(self, request, message, until):
-        """The reply; what is asked for is done 0.05 s before ``until`` [s]."""
-        got, stamp = [], round((until - 0.05) * 1e9)
-        self.lockstep.bus.call(request.at("sys"), message.SerializeToString(), stamp, lambda reply, reason, _: got.append((reply, reason)))
-        self.lockstep.run(until)
-        return request.reply.FromString(got[0][0])
-
-    def of(self, topic, owner="bird"):
-        return self.heard[topic.at(owner)]
-
-    def place(self, owner="bird"):
+    def place(self, owner=""):
         return array(self.of(topics.TRUTH, owner)[-1].position)
 
 

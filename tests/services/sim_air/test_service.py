@@ -15,6 +15,7 @@ from services.sim_air.actuators import Actuators
 from services.sim_air.aircraft import Aircraft
 from services.sim_air.around import Around
 from services.sim_air.build import build
+from services.sim_air.ground import LEVEL
 from services.sim_air.sensors import Imu
 from services.sim_air.service import SimAir
 from services.sim_air.stage import Stage
@@ -67,7 +68,7 @@ class Glider:
     motor_power = 350.0
 
 
-EMPTY = Around([], {"g": MILVUS_TREE}, {}.__getitem__)
+EMPTY = Around([], LEVEL, {"g": MILVUS_TREE}, {}.__getitem__)
 
 
 NOTHING_ASKED = {name: [] for name in SimAir.requests}
@@ -81,7 +82,7 @@ def glider():
 
 
 def simulator(craft):
-    return SimAir(Stage({"g": craft}, Around([], {"g": MILVUS_TREE}, {}.__getitem__), (), None))
+    return SimAir(Stage({"g": craft}, Around([], LEVEL, {"g": MILVUS_TREE}, {}.__getitem__), (), None))
 
 
 def run_two(tmp_path, until=3.0):

@@ -1,47 +1,29 @@
 """What can be asked of the running simulation: spawn, remove, set pose, save and restore, each refused in one clear line."""
 
-from collections import defaultdict
-
 import numpy as np
 import pytest
 
 from schemas import topics
-from schemas.convert import planar_pose, seconds
+from schemas.convert import planar_pose, seconds, stamp
 from schemas.messages import RemoveRequest, SetPoseRequest, SimObject, SimObjects, SpawnRequest, StateRequest
 from services.sim_ground.build import build
+from tests.services.asking import Asked
 from tests.services.sim_ground.ride import Driver, site_with
 from uvf.maths.kinematics import Twist
-from uvf.runtime.lockstep import Lockstep
 from uvf.runtime.site import Host
 
 START = (6.0, 4.4, 0.0)
-HEARD = (topics.IMU, topics.SCAN, topics.WHEELS, topics.TRUTH, topics.JOINTS, topics.CONTACT, topics.TF_STATIC)
+HEARD = (topics.IMU, topics.SCAN, topics.WHEELS, topics.TRUTH, topics.JOINTS, topics.CONTACT, topics.TF_STATIC, topics.OBJECTS)
 
 
-class Run:
+class Run(Asked):
     """A burger in the hall that can be asked things between two moments."""
 
     def __init__(self, folder, script=lambda t: None, drivers=("burger",), world="house", start=START):
         hosts = [Host(Driver, lambda: Driver(script), name) for name in drivers]
-        self.lockstep = Lockstep(build(site_with(folder, {"burger": start}, world=world)) + hosts)
-        self.heard = defaultdict(list)
-        for topic in (*HEARD, topics.OBJECTS):
-            owner = "*" if topic.per_vehicle else "sys"
-            keep = lambda sample, kind=topic.message: self.heard[sample.key].append(kind.FromString(sample.payload))  # noqa: E731
-            self.lockstep.bus.subscribe(topic.at(owner), topic.qos, keep)
+        super().__init__(build(site_with(folder, {"burger": start}, world=world)) + hosts, "burger", HEARD)
 
-    def ask(self, request, message, until):
-        """The reply, and what the simulation is asked for holds when ``until`` [s] is reached."""
-        got = []
-        stamp = round((until - 0.05) * 1e9)
-        self.lockstep.bus.call(request.at("sys"), message.SerializeToString(), stamp, lambda reply, reason, _: got.append((reply, reason)))
-        self.lockstep.run(until)
-        return request.reply.FromString(got[0][0])
-
-    def of(self, topic, owner="burger"):
-        return self.heard[topic.at(owner)]
-
-    def place(self, owner="burger"):
+    def place(self, owner=""):
         position = self.of(topics.TRUTH, owner)[-1].position
         return position.x, position.y, position.z
 
@@ -101,6 +83,14 @@ def test_a_vehicle_is_put_elsewhere_and_stands(tmp_path):
     assert run.place() == pytest.approx((9.0, 4.4, 0.0), abs=2e-3)
     assert np.hypot(run.of(topics.TRUTH)[-1].velocity.x, run.of(topics.TRUTH)[-1].velocity.y) < 1e-3
     run.lockstep.close()
+
+
+def test_a_name_that_the_air_simulator_has_put_in_is_taken(run):
+    flying = SimObjects(timestamp=stamp(0.0), objects=[SimObject(name="crate", model="milvus")])
+    publisher = run.lockstep.bus.publisher(topics.AIR_OBJECTS.at("sys"), SimObjects.DESCRIPTOR.full_name, topics.AIR_OBJECTS.qos)
+    publisher.put(flying.SerializeToString(), 0)
+    reply = run.ask(topics.SPAWN, crate(), 0.2)
+    assert reply.reason == "there is a 'crate' already; take another name"
 
 
 TERRACE, RAMP = (32.0, 23.0, 0.0), (26.6, 24.0, 0.0)  # of the plaza: 0.4 m up, and half that on the way to it

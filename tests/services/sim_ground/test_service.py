@@ -18,7 +18,7 @@ from uvf.runtime.surroundings import Surroundings, vehicle_tree
 from uvf.runtime.urdf_model import load_urdf
 from uvf.runtime.world_geometry import solids
 
-IDLE = {"commands": {}, "truth": {}, "spawn": [], "remove": [], "set_pose": [], "save": [], "restore": []}
+IDLE = {"commands": {}, "flying": None, "truth": {}, "spawn": [], "remove": [], "set_pose": [], "save": [], "restore": []}
 
 
 class StandingWorld:
