@@ -19,6 +19,9 @@ def item_from_file(waypoint: Waypoint) -> MissionItem:
         speed=waypoint.speed,
         jump_to=waypoint.jump_to,
         repeat=waypoint.repeat,
+        course=waypoint.course,
+        to_altitude=waypoint.to_altitude,
+        distance=waypoint.distance,
     )
 
 

@@ -8,12 +8,12 @@ corners with arcs over ground, which a wind makes steeper here and flatter there
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from services.autopilot.air.guidance import Point
+from uvf.maths.eased import Way
 from uvf.maths.geodesy import GRAVITY
 
 Floats = NDArray[np.float64]
@@ -21,6 +21,7 @@ Floats = NDArray[np.float64]
 STRAIGHT = 0.02  # rad, below which a corner is none
 SHARPEST = 2.8  # rad, beyond which the waypoint is overflown and the next leg joined from there
 ROLL_IN = 1.0  # s, from level to the bank of the turn
+EASED = 1.2  # s, the same for curves, which may change from one side to the other at once
 BACK = 0.7  # of the turn's bank, for the way back from beyond the second leg
 MOST_BEYOND = 0.6  # rad, of heading
 MOST_OUTSIDE = 0.3  # of the radius through the air, beyond the second leg
@@ -36,40 +37,27 @@ class Flying:
     wind: Point  # m/s north and east, the way it blows to
     bank: float  # rad, of the turn
 
-
-@dataclass(frozen=True)
-class Corner:
-    """Samples of the way, evenly in time; (k,) each. ``before``, ``after``: m of the two legs that it takes the place of."""
-
-    points: Floats  # (k, 2) m north and east
-    course: Floats  # rad, unwrapped
-    curvature: Floats  # 1/m, to the right
-    before: float
-    after: float
-
-    @cached_property
-    def s(self) -> Floats:
-        """(k,) m along the way."""
-        steps = np.hypot(*np.diff(self.points, axis=0).T)
-        return np.concatenate(((0.0,), np.cumsum(steps)))
+    @property
+    def radius(self) -> float:
+        """m, over ground, that takes no more than the bank wherever the wind comes from (Beard & McLain 9.3.2, at its fastest)."""
+        return self._fastest**2 / (GRAVITY * math.tan(self.bank))
 
     @property
-    def length(self) -> float:
-        return float(self.s[-1])
+    def ramp(self) -> float:
+        """m, in which it rolls from level to the bank of the turn."""
+        return EASED * self._fastest
 
-    def nearest(self, position: Point) -> tuple[float, float, float]:
-        """(m along the way, m to the right of it, course [rad]) at the point nearest to ``position``; straight on beyond its ends."""
-        away = np.asarray(position) - self.points
-        i = int(np.argmin(np.einsum("ij,ij->i", away, away)))
-        n, e = away[i].tolist()
-        c, s = math.cos(self.course[i]), math.sin(self.course[i])
-        ahead = n * c + e * s
-        curvature = float(self.curvature[i])
-        return float(self.s[i]) + ahead, e * c - n * s - 0.5 * curvature * ahead**2, float(self.course[i]) + curvature * ahead
+    @property
+    def _fastest(self) -> float:
+        return self.airspeed + math.hypot(*self.wind)
 
-    def bend(self, s: float) -> float:
-        """Curvature at ``s`` [m] along the way, 0 before and after it [1/m]."""
-        return float(np.interp(s, self.s, self.curvature, left=0.0, right=0.0))
+
+@dataclass(frozen=True)
+class Corner(Way):
+    """Samples of the way, evenly in time. ``before``, ``after``: m of the two legs that it takes the place of."""
+
+    before: float
+    after: float
 
 
 def plan(waypoint: Point, courses: tuple[float, float], flying: Flying, room: Point) -> Corner | None:

@@ -24,6 +24,8 @@ KINDS = {
     MissionItem.RETURN: Kind.RETURN,
     MissionItem.JUMP: Kind.JUMP,
     MissionItem.SPEED: Kind.SPEED,
+    MissionItem.TRIGGER: Kind.TRIGGER,
+    MissionItem.TRIGGER_DISTANCE: Kind.TRIGGER_DISTANCE,
 }
 MODES = {
     Mode.MODE_HOLD: FlightMode.HOLD,
@@ -111,9 +113,22 @@ def _item(index: int, m: MissionItem) -> Item:
         name = MissionItem.Kind.Name(m.kind) if m.kind in MissionItem.Kind.values() else f"kind {m.kind}"
         raise ValueError(f"item {index}: {name} is not flown by this autopilot; {', '.join(k.value for k in Kind)} are")
     p = m.position
-    if not all(map(math.isfinite, (p.x, p.y, p.z, m.acceptance_radius, m.hold, m.radius, m.turns, m.speed))):
+    if not all(map(math.isfinite, (p.x, p.y, p.z, m.acceptance_radius, m.hold, m.radius, m.turns, m.speed, m.course, m.distance))):
         raise ValueError(f"item {index} holds a number that is not finite")
-    return Item(KINDS[m.kind], place(m.position), m.hold, m.radius, m.turns, m.speed, m.jump_to, m.repeat)
+    return Item(
+        KINDS[m.kind],
+        place(m.position),
+        m.hold,
+        m.radius,
+        m.turns,
+        m.speed,
+        m.jump_to,
+        m.repeat,
+        course=math.pi / 2 - m.course if m.HasField("course") else None,
+        acceptance=m.acceptance_radius or math.inf,
+        to_altitude=m.to_altitude,
+        distance=m.distance,
+    )
 
 
 def with_id(messages: Sequence[MissionItem]) -> Mission:

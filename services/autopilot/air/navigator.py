@@ -3,18 +3,22 @@
 import math
 from collections.abc import Sequence
 
-from services.autopilot.air import corners
+from services.autopilot.air.camera import Camera
+from services.autopilot.air.corners import Corner
 from services.autopilot.air.guidance import Aim
 from services.autopilot.air.params import AirParams
-from services.autopilot.air.plan import NO_JUMPS, Item, Kind, Stop, next_stop
-from services.autopilot.air.route import Circle, Leg, Level, Place, Turn
+from services.autopilot.air.plan import NO_JUMPS, Item, Kind, Stop, following, next_stop
+from services.autopilot.air.planning import Planner
+from services.autopilot.air.route import Circle, Curve, Leg, Level, Place, Turn
 from services.autopilot.air.state import Estimate
-from uvf.maths.geodesy import GRAVITY
 
-REPLANNED = 1.0  # s, after which a corner ahead is planned for the wind known by then
-SETTLED = 2.0  # s before a corner begins, from where on it stays as it is
-LEAVING = 0.6  # of a leg, for the corner at its beginning at most; it needs more than that at its end
-TIGHTEST_ORBIT = 0.6  # of the radius at turn_bank; smaller wishes are widened to that
+Piece = Leg | Turn | Curve | Circle
+
+REPLANNED = 1.0  # s, after which what comes at the end of a piece is planned for the wind known by then
+SETTLED = 2.0  # s before that begins, from where on it stays as it is
+KNOWN = 4.0  # s before a curve ends, from where on what follows it is known
+ANOTHER_WIND = 1.0  # m/s, of change, for which curves are planned anew
+LEVELLED = 2.0  # m, from the altitude that a circle is to reach
 
 
 class Navigator:
@@ -28,8 +32,10 @@ class Navigator:
         self.speed = 0.0  # m/s, 0 = cruise
         self.finished = False
         self._jumps = NO_JUMPS
-        self._piece: Leg | Turn | Circle | None = None
+        self._piece: Piece | None = None
         self._planned = 0.0  # s ago
+        self._wind = 0.0, 0.0  # m/s, of the latest plan
+        self.camera = Camera()
         self._bearing: float | None = None
         self._turned = 0.0  # rad, on the circle
         self._held = 0.0  # s, on the circle
@@ -59,73 +65,110 @@ class Navigator:
     def step(self, now: Estimate, params: AirParams, dt: float) -> tuple[Aim, Level]:
         """Aim and height towards the current item; call it only while there is one that is not RETURN."""
         if self._piece is None:
-            here = Place(now.north, now.east, now.height)
-            self._piece = self._towards(here, None, now, params)
+            self._piece = self._from_here(now, params)
         self._replan(now, params, dt)
         self._advance(now, params, dt)
+        self.camera.step((now.north, now.east))
         piece = self._piece
         return piece.aim(now, params), piece.level(now)
 
+    def _from_here(self, now: Estimate, params: AirParams) -> Piece:
+        target = self.target
+        course = now.course if target is not None and target.course is not None else None
+        return self._planner(now, params).towards(self._stop, Place(now.north, now.east, now.height), course)
+
+    def _planner(self, now: Estimate, params: AirParams, speed: float = 0.0) -> Planner:
+        self._wind = now.wind_north, now.wind_east
+        return Planner(self.items, params, self._wind, speed or self.speed or params.trim_airspeed)
+
+    @property
+    def _stop(self) -> Stop:
+        """Where it flies to now."""
+        return Stop(self.index, self._jumps, 0, 0.0)
+
     def _replan(self, now: Estimate, params: AirParams, dt: float) -> None:
-        """The corner at the end of this leg, for the wind as it is known now."""
+        """What comes at the end of this piece, for the wind as it is known now."""
         self._planned += dt
-        piece = self._piece
-        if self._planned < REPLANNED or not isinstance(piece, Leg) or piece.exit is None:
+        piece, settled = self._piece, SETTLED * now.ground_speed
+        if self._planned < REPLANNED:
             return
         self._planned = 0.0
-        if piece.length - piece.exit.before - piece.progress((now.north, now.east)) > SETTLED * now.ground_speed:
-            self._piece = self._towards(piece.start, piece.entry, now, params)
+        if isinstance(piece, Curve):
+            self._replan_curve(piece, now, params)
+        elif isinstance(piece, Leg) and piece.exit is not None:
+            left = piece.length - piece.exit.before - piece.progress((now.north, now.east))
+            if left > settled and (isinstance(piece.exit, Corner) or self._wind_turned(now)):
+                self._piece = self._planner(now, params).with_exit(piece, self._stop)
+
+    def _replan_curve(self, piece: Curve, now: Estimate, params: AirParams) -> None:
+        """What follows is planned before it begins; a straight part of it is left for a new way when the wind is another."""
+        if piece.onto is None and piece.left < KNOWN * now.ground_speed:
+            stop = self._stop
+            for _ in piece.passing[piece.passed :]:
+                stop = following(self.items, stop)
+            if stop.index is not None and self.items[stop.index].kind is not Kind.RETURN:
+                piece.onto = self._planner(now, params, stop.speed).towards(stop, piece.end, float(piece.way.course[-1]))
+        elif piece.left > SETTLED * now.ground_speed and self._wind_turned(now) and piece.is_straight and piece.ends_at_item:
+            north, east, course = piece.here
+            self._piece = self._planner(now, params).towards(self._stop, Place(north, east, piece.level(now).height), course)
+
+    def _wind_turned(self, now: Estimate) -> bool:
+        return math.hypot(now.wind_north - self._wind[0], now.wind_east - self._wind[1]) > ANOTHER_WIND
 
     def _advance(self, now: Estimate, params: AirParams, dt: float) -> None:
         """Changes to the next piece where this one ends; the last item stays aimed at."""
         piece, position = self._piece, (now.north, now.east)
-        if isinstance(piece, Turn) and piece.is_flown(position):
-            self._piece = piece.onto
-        elif (isinstance(piece, Leg) and piece.is_flown(position)) or (isinstance(piece, Circle) and self._circled(piece, now, dt)):
+        if isinstance(piece, Curve):
+            self._advance_curve(piece, now, params)
+        elif isinstance(piece, Turn):
+            self._piece = piece.onto if piece.is_flown(position) else piece
+        elif isinstance(piece, Leg) and piece.is_flown(position):
+            if isinstance(piece.exit, Curve):
+                self._piece = piece.exit
+            else:
+                self._leave(piece, now, params)
+        elif isinstance(piece, Circle) and self._circled(piece, now, dt):
             self._leave(piece, now, params)
 
-    def _leave(self, piece: Leg | Circle, now: Estimate, params: AirParams) -> None:
+    def _advance_curve(self, piece: Curve, now: Estimate, params: AirParams) -> None:
+        piece.follow((now.north, now.east))
+        while piece.passed < len(piece.passing) and piece.s >= piece.passing[piece.passed]:
+            piece.passed += 1
+            if not self._pass() or self.returns_home:
+                return
+        if piece.left > 0:
+            return
+        onto = piece.onto or self._planner(now, params).towards(self._stop, piece.end, float(piece.way.course[-1]))
+        self._piece = self._planner(now, params).with_exit(onto, self._stop) if isinstance(onto, Leg) else onto
+
+    def _pass(self) -> bool:
+        """The current item is reached; whether another one follows."""
         assert self.index is not None
         self.reached = self.index
-        stop = next_stop(self.items, self.index + 1, self._jumps)
+        stop = following(self.items, self._stop)
         self.laps += stop.laps
         if stop.index is None:
+            self.camera.stop()
             self.finished = True
-            return
+            return False
         self._take(stop)
-        if self.returns_home:
+        return True
+
+    def _leave(self, piece: Leg | Circle, now: Estimate, params: AirParams) -> None:
+        if not self._pass() or self.returns_home:
             return
         if isinstance(piece, Circle):
-            self._piece = self._towards(Place(now.north, now.east, piece.centre.height), None, now, params)
+            self._piece = self._from_here(now, params)
             return
-        onto = self._towards(piece.end, piece.exit, now, params)
-        self._piece = Turn(piece.exit, piece, onto) if piece.exit is not None and isinstance(onto, Leg) else onto
+        onto = self._planner(now, params).towards(self._stop, piece.end, None, piece.exit)
+        self._piece = Turn(piece.exit, piece, onto) if isinstance(piece.exit, Corner) and isinstance(onto, Leg) else onto
 
     def _take(self, stop: Stop) -> None:
         self.index, self._jumps = stop.index, stop.jumps
         self.speed = stop.speed or self.speed
         self._bearing, self._turned, self._held = None, 0.0, 0.0
-
-    def _towards(self, start: Place, entry: corners.Corner | None, now: Estimate, params: AirParams) -> Leg | Circle:
-        """The piece from ``start`` to the current item, with the corner at its end when one follows."""
-        assert self.index is not None
-        item = self.items[self.index]
-        if not item.flies_through:
-            return Circle(item.place, self._orbit_radius(item, params))
-        leg = Leg(start, item.place, entry)
-        stop = next_stop(self.items, self.index + 1, self._jumps)
-        if stop.index is None or not self.items[stop.index].flies_through:
-            return leg
-        after = Leg(item.place, self.items[stop.index].place)
-        room = (leg.length - (entry.after if entry is not None else 0.0), LEAVING * after.length)
-        wind = (now.wind_north, now.wind_east)
-        flying = corners.Flying(self.speed or params.trim_airspeed, wind, params.turn_bank)
-        return Leg(start, item.place, entry, corners.plan(item.place.point, (leg.course, after.course), flying, room))
-
-    def _orbit_radius(self, item: Item, params: AirParams) -> float:
-        wanted = item.radius or params.hold_radius
-        tightest = TIGHTEST_ORBIT * params.trim_airspeed**2 / (GRAVITY * math.tan(params.turn_bank))
-        return math.copysign(max(abs(wanted), tightest), wanted)
+        for k in stop.triggers:
+            self.camera.obey(self.items[k])
 
     def _circled(self, circle: Circle, now: Estimate, dt: float) -> bool:
         """Whether the turns or the time on this circle are complete; neither given = never."""
@@ -138,6 +181,8 @@ class Navigator:
             self._turned += abs(math.remainder(bearing - self._bearing, math.tau))
             self._held += dt
         self._bearing = bearing
+        if item.to_altitude:
+            return abs(now.height - item.place.height) < LEVELLED
         if item.kind is Kind.ORBIT:
             return item.turns > 0 and self._turned >= math.tau * item.turns
         return self._held >= item.hold

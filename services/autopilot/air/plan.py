@@ -1,5 +1,6 @@
 """A mission as a list of items, and which item is flown next."""
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
@@ -14,13 +15,15 @@ class Kind(Enum):
     RETURN = "return"
     JUMP = "jump"
     SPEED = "speed"
+    TRIGGER = "trigger"
+    TRIGGER_DISTANCE = "trigger_distance"
 
 
 @dataclass(frozen=True, slots=True)
 class Item:
     """One line of a mission; which fields count depends on the kind (see mission.proto).
 
-    An acceptance radius is not among them: a waypoint is passed when its half plane is, or where the arc round it begins.
+    An acceptance radius limits how far from a waypoint the corner may be rounded; the waypoint counts as reached where the corner begins.
     """
 
     kind: Kind
@@ -31,12 +34,23 @@ class Item:
     speed: float = 0.0  # m/s
     jump_to: int = 0
     repeat: int = 0
+    course: float | None = None  # rad, over ground, from north clockwise
+    acceptance: float = math.inf  # m
+    to_altitude: bool = False
+    distance: float = 0.0  # m
 
     @property
     def flies_through(self) -> bool:
         return self.kind is Kind.WAYPOINT and self.hold == 0
 
+    def is_at(self, place: Place) -> bool:
+        """Whether nothing more than this place is asked for."""
+        away = math.hypot(self.place.north - place.north, self.place.east - place.east)
+        return self.flies_through and self.course is None and away < ONE_PLACE
 
+
+TRIGGERS = (Kind.TRIGGER, Kind.TRIGGER_DISTANCE)
+ONE_PLACE = 1.0  # m, between waypoints that are taken for one
 NO_JUMPS: Mapping[int, int] = MappingProxyType({})
 
 
@@ -48,17 +62,21 @@ class Stop:
     jumps: Mapping[int, int]  # jump item -> how often it has been taken
     laps: int  # jumps taken now
     speed: float  # m/s, 0 = unchanged
+    triggers: tuple[int, ...] = ()  # items of the camera
 
 
 def next_stop(items: Sequence[Item], index: int, jumps: Mapping[int, int]) -> Stop:
-    """From ``index`` on past speed changes and jumps; jumps without anything to fly between them end the mission."""
+    """From ``index`` on past speed changes, triggers and jumps; jumps without anything to fly between them end the mission."""
     taken, laps, speed = dict(jumps), 0, 0.0
+    triggers: tuple[int, ...] = ()
     for _ in range(2 * len(items) + 1):
         if index >= len(items):
-            return Stop(None, taken, laps, speed)
+            return Stop(None, taken, laps, speed, triggers)
         item = items[index]
         if item.kind is Kind.SPEED:
             speed, index = item.speed, index + 1
+        elif item.kind in TRIGGERS:
+            triggers, index = (*triggers, index), index + 1
         elif item.kind is Kind.JUMP:
             if 0 <= item.repeat <= taken.get(index, 0):
                 index += 1
@@ -66,8 +84,20 @@ def next_stop(items: Sequence[Item], index: int, jumps: Mapping[int, int]) -> St
                 taken[index] = taken.get(index, 0) + 1
                 laps, index = laps + 1, item.jump_to
         else:
-            return Stop(index, taken, laps, speed)
-    return Stop(None, taken, laps, speed)
+            return Stop(index, taken, laps, speed, triggers)
+    return Stop(None, taken, laps, speed, triggers)
+
+
+def following(items: Sequence[Item], stop: Stop) -> Stop:
+    """After the item of ``stop``: waypoints that are flown through at the same place are passed with it."""
+    assert stop.index is not None
+    here, found = items[stop.index], next_stop(items, stop.index + 1, stop.jumps)
+    for _ in items:
+        if found.index is None or not (here.flies_through and items[found.index].is_at(here.place)):
+            break
+        more = next_stop(items, found.index + 1, found.jumps)
+        found = Stop(more.index, more.jumps, found.laps + more.laps, more.speed or found.speed, found.triggers + more.triggers)
+    return found
 
 
 def fault(items: Sequence[Item]) -> str:

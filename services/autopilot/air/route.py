@@ -3,12 +3,16 @@
 import math
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from services.autopilot.air.corners import Corner
 from services.autopilot.air.guidance import Aim, Point, line_aim, orbit_aim
 from services.autopilot.air.params import AirParams
 from services.autopilot.air.state import Estimate
+from uvf.maths.eased import Way
 
 CAPTURED = 0.3  # of the radius, from the circle: near enough to count turns
+BEHIND, AHEAD = 20.0, 40.0  # m along a curve, where the aircraft is looked for
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,12 +38,12 @@ class Level:
 
 @dataclass(frozen=True, slots=True)
 class Leg:
-    """From ``start`` to ``end``; corners are those rounded at each."""
+    """From ``start`` to ``end``; the corners rounded at each, or the curve flown instead."""
 
     start: Place
     end: Place
-    entry: Corner | None = None
-    exit: Corner | None = None
+    entry: "Corner | Curve | None" = None
+    exit: "Corner | Curve | None" = None
 
     @property
     def length(self) -> float:
@@ -111,6 +115,75 @@ class Turn:
         begin, end = leaves.height(leaves.length - corner.before), self.onto.height(corner.after)
         part = min(max(corner.nearest((now.north, now.east))[0] / corner.length, 0.0), 1.0)
         return Level(begin + part * (end - begin), now.ground_speed * (end - begin) / corner.length)
+
+
+@dataclass
+class Curve:
+    """A way planned beforehand, straight at both ends; it knows how far along it the aircraft is, for it may cross itself.
+
+    ``passing``: m along it where items of the mission are passed. ``heights``: m at its begin, at each of these and at its end.
+    ``before``, ``after``: m of the legs that it takes the place of. ``onto``: what follows, once that is known.
+    """
+
+    way: Way
+    passing: tuple[float, ...]
+    heights: tuple[float, ...]
+    before: float = 0.0
+    after: float = 0.0
+    onto: "Leg | Curve | Circle | None" = None
+    s: float = 0.0  # m
+    passed: int = 0  # of ``passing``
+
+    @property
+    def end(self) -> Place:
+        north, east = self.way.points[-1].tolist()
+        return Place(north, east, self.heights[-1])
+
+    @property
+    def left(self) -> float:
+        """m."""
+        return self.way.length - self.s
+
+    @property
+    def here(self) -> tuple[float, float, float]:
+        """North, east [m] and course [rad] of the way where the aircraft is."""
+        i = int(np.searchsorted(self.way.s, self.s).clip(0, len(self.way.s) - 1))
+        return *self.way.points[i].tolist(), float(self.way.course[i])
+
+    @property
+    def is_straight(self) -> bool:
+        """Where the aircraft is."""
+        return abs(self.way.bend(self.s)) < 1e-9
+
+    @property
+    def ends_at_item(self) -> bool:
+        """With nothing else on the way to it."""
+        return self.passing[self.passed :] == (self.way.length,)
+
+    def follow(self, position: Point) -> None:
+        """To be told of each position."""
+        self.s = self._nearest(position)[0]
+
+    def bend(self, s: float) -> float:
+        """Curvature at ``s`` [m], beyond its end that of what follows [1/m]."""
+        beyond = s - self.way.length
+        if beyond <= 0 or self.onto is None or isinstance(self.onto, Circle):
+            return self.way.bend(s)
+        return self.onto.bend(beyond + self.after)
+
+    def aim(self, now: Estimate, params: AirParams) -> Aim:
+        s, aside, course = self._nearest((now.north, now.east))
+        return Aim(aside, course, self.bend(s + now.ground_speed * params.lead_time), params.k_path, params.chi_inf)
+
+    def level(self, now: Estimate) -> Level:
+        """Straight lines over the length between the heights."""
+        at = np.array((0.0, *self.passing, self.way.length))
+        height = float(np.interp(self.s, at, self.heights))
+        rise = float(np.interp(self.s + 1.0, at, self.heights)) - height
+        return Level(height, now.ground_speed * rise)
+
+    def _nearest(self, position: Point) -> tuple[float, float, float]:
+        return self.way.nearest(position, (self.s - BEHIND, self.s + AHEAD))
 
 
 @dataclass(frozen=True, slots=True)

@@ -22,7 +22,6 @@ SKIPPED = frozenset(
         mav.MAV_CMD_DO_SET_ROI_WPNEXT_OFFSET,
         mav.MAV_CMD_DO_SET_ROI_NONE,
         mav.MAV_CMD_DO_MOUNT_CONTROL,
-        mav.MAV_CMD_DO_SET_CAM_TRIGG_DIST,
         mav.MAV_CMD_SET_CAMERA_MODE,
         mav.MAV_CMD_IMAGE_START_CAPTURE,
         mav.MAV_CMD_IMAGE_STOP_CAPTURE,
@@ -32,18 +31,22 @@ SKIPPED = frozenset(
     }
 )
 """Camera and gimbal items that ground stations add by themselves: they fly as a jump that is never taken."""
+TRIGGERS = {mav.MAV_CMD_DO_DIGICAM_CONTROL: MissionItem.TRIGGER, mav.MAV_CMD_DO_SET_CAM_TRIGG_DIST: MissionItem.TRIGGER_DISTANCE}
+"""Items of the camera that aircraft fly; for ground vehicles they are skipped, too."""
 
 KIND = {
     mav.MAV_CMD_NAV_WAYPOINT: MissionItem.WAYPOINT,
     mav.MAV_CMD_NAV_LOITER_UNLIM: MissionItem.ORBIT,
     mav.MAV_CMD_NAV_LOITER_TURNS: MissionItem.ORBIT,
     mav.MAV_CMD_NAV_LOITER_TIME: MissionItem.WAYPOINT,
+    mav.MAV_CMD_NAV_LOITER_TO_ALT: MissionItem.ORBIT,
     mav.MAV_CMD_NAV_RETURN_TO_LAUNCH: MissionItem.RETURN,
     mav.MAV_CMD_NAV_LAND: MissionItem.LAND,
     mav.MAV_CMD_NAV_TAKEOFF: MissionItem.TAKEOFF,
     mav.MAV_CMD_DO_JUMP: MissionItem.JUMP,
     mav.MAV_CMD_DO_CHANGE_SPEED: MissionItem.SPEED,
     **dict.fromkeys(SKIPPED, MissionItem.JUMP),
+    **TRIGGERS,
 }
 WITH_PLACE = frozenset({MissionItem.WAYPOINT, MissionItem.ORBIT, MissionItem.LAND, MissionItem.TAKEOFF})
 
@@ -54,6 +57,11 @@ class BadItem(Exception):
 
     result: int
     reason: str
+
+
+def is_skipped(command: int, facts: Facts) -> bool:
+    """Whether such an item is carried, but nothing is done for it."""
+    return command in SKIPPED or (facts.is_ground and command in TRIGGERS)
 
 
 def from_wire(item: mav.MAVLink_mission_item_int_message, facts: Facts, home_z: float) -> MissionItem:
@@ -75,8 +83,8 @@ def _from_wire(item: mav.MAVLink_mission_item_int_message, facts: Facts, home_z:
     result = MissionItem(kind=kind, origin=origin)
     if kind in WITH_PLACE:
         result.position.CopyFrom(_place(item, facts, home_z))
-    if item.command == mav.MAV_CMD_DO_CHANGE_SPEED and not item.param2 > 0:
-        result.kind = MissionItem.JUMP  # "no change": a jump that is never taken
+    if is_skipped(item.command, facts) or (item.command == mav.MAV_CMD_DO_CHANGE_SPEED and not item.param2 > 0):
+        result.kind = MissionItem.JUMP  # that is never taken
     _fill(result, item.command, tuple(0.0 if math.isnan(p) else p for p in params))
     return result
 
@@ -100,6 +108,12 @@ def _fill(item: MissionItem, command: int, p: tuple[float, ...]) -> None:
         item.hold = _not_negative(p[0], mav.MAV_MISSION_INVALID_PARAM1, "hold time")
     if command == mav.MAV_CMD_NAV_WAYPOINT:
         item.acceptance_radius = _not_negative(p[1], mav.MAV_MISSION_INVALID_PARAM2, "acceptance radius")
+        if p[3] != 0:  # as ground stations send it who mean nothing by it; north is 360 degrees
+            item.course = math.remainder(math.pi / 2 - math.radians(p[3]), math.tau)
+    if command == mav.MAV_CMD_NAV_LOITER_TO_ALT:
+        item.radius, item.to_altitude = p[1], True
+    if command == mav.MAV_CMD_DO_SET_CAM_TRIGG_DIST:
+        item.distance = _not_negative(p[0], mav.MAV_MISSION_INVALID_PARAM1, "distance between pictures")
     if command in (mav.MAV_CMD_NAV_LOITER_UNLIM, mav.MAV_CMD_NAV_LOITER_TURNS, mav.MAV_CMD_NAV_LOITER_TIME):
         item.radius = p[2]
     if command == mav.MAV_CMD_NAV_LOITER_TURNS:
@@ -148,19 +162,28 @@ def to_wire(item: MissionItem, facts: Facts, home_z: float) -> Body:
         return frame, command, autocontinue, p1, p2, p3, p4, x, y, z
     nan = math.nan
     commands: dict[int, tuple[int, float, float, float, float]] = {
-        MissionItem.WAYPOINT: (mav.MAV_CMD_NAV_WAYPOINT, item.hold, item.acceptance_radius, 0.0, nan),
+        MissionItem.WAYPOINT: (mav.MAV_CMD_NAV_WAYPOINT, item.hold, item.acceptance_radius, 0.0, _yaw(item)),
         MissionItem.ORBIT: (mav.MAV_CMD_NAV_LOITER_UNLIM, 0.0, 0.0, item.radius, nan),
         MissionItem.RETURN: (mav.MAV_CMD_NAV_RETURN_TO_LAUNCH, 0.0, 0.0, 0.0, 0.0),
         MissionItem.JUMP: (mav.MAV_CMD_DO_JUMP, item.jump_to, item.repeat, 0.0, 0.0),
         MissionItem.SPEED: (mav.MAV_CMD_DO_CHANGE_SPEED, 1.0 if facts.is_ground else 0.0, item.speed or -1.0, -1.0, 0.0),
         MissionItem.TAKEOFF: (mav.MAV_CMD_NAV_TAKEOFF, 0.0, 0.0, 0.0, nan),
         MissionItem.LAND: (mav.MAV_CMD_NAV_LAND, 0.0, 0.0, 0.0, nan),
+        MissionItem.TRIGGER: (mav.MAV_CMD_DO_DIGICAM_CONTROL, 0.0, 0.0, 0.0, 0.0),
+        MissionItem.TRIGGER_DISTANCE: (mav.MAV_CMD_DO_SET_CAM_TRIGG_DIST, item.distance, 0.0, 0.0, 0.0),
     }
     command, p1, p2, p3, p4 = commands[item.kind]
     if item.kind == MissionItem.ORBIT and item.turns > 0:
         command, p1 = mav.MAV_CMD_NAV_LOITER_TURNS, item.turns
+    if item.kind == MissionItem.ORBIT and item.to_altitude:
+        command, p1, p2, p3 = mav.MAV_CMD_NAV_LOITER_TO_ALT, 0.0, item.radius, 0.0
     if item.kind not in WITH_PLACE:
         return mav.MAV_FRAME_MISSION, command, 1, p1, p2, p3, p4, 0, 0, 0.0
     latitude, longitude, _ = facts.geodetic(array(item.position))
     z = item.position.z - home_z
     return mav.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT, command, 1, p1, p2, p3, p4, round(latitude * 1e7), round(longitude * 1e7), z
+
+
+def _yaw(item: MissionItem) -> float:
+    """deg clockwise from north, 0 < yaw <= 360; NaN for any."""
+    return 360.0 - (math.degrees(item.course) - 90.0) % 360.0 if item.HasField("course") else math.nan

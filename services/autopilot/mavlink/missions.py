@@ -9,7 +9,7 @@ from schemas.messages import Mission, MissionItem, MissionRequest
 from services.autopilot.mavlink import dialect as mav
 from services.autopilot.mavlink.actions import SOURCE, goal_of_item, set_current
 from services.autopilot.mavlink.line import Line, Sender
-from services.autopilot.mavlink.mission_items import SKIPPED, BadItem, check_whole, from_wire, mission_of, to_wire
+from services.autopilot.mavlink.mission_items import BadItem, check_whole, from_wire, is_skipped, mission_of, to_wire
 
 MISSION = mav.MAV_MISSION_TYPE_MISSION
 PLANS = (mav.MAV_MISSION_TYPE_FENCE, mav.MAV_MISSION_TYPE_RALLY)
@@ -89,7 +89,7 @@ class Missions:
             self._upload = None
             self._refuse(upload.sender, bad, MISSION)
             return
-        upload.skipped |= message.command in SKIPPED
+        upload.skipped |= is_skipped(message.command, self._line.facts)
         upload.tries = 0
         self._proceed(upload)
 

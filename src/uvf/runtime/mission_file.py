@@ -36,7 +36,7 @@ class Waypoint(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     x: Metres = 0.0
     y: Metres = 0.0
     z: Metres = 0.0
-    kind: Literal["waypoint", "orbit", "return", "jump", "speed"] = "waypoint"
+    kind: Literal["waypoint", "orbit", "return", "jump", "speed", "trigger", "trigger_distance"] = "waypoint"
     acceptance_radius: NotNegative = 0.0  # m
     hold: NotNegative = 0.0  # s
     radius: Metres = 0.0
@@ -44,6 +44,9 @@ class Waypoint(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     speed: NotNegative = 0.0  # m/s
     jump_to: Annotated[int, Meta(ge=0, le=65535)] = 0
     repeat: Annotated[int, Meta(ge=-1, le=65535)] = 0  # -1 = for ever
+    course: Annotated[float, Meta(ge=-7, le=7)] | None = None  # rad, over ground, from east, left positive
+    to_altitude: bool = False
+    distance: NotNegative = 0.0  # m
 
 
 class Job(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

@@ -224,12 +224,50 @@ def test_the_older_request_gets_the_same_item():
 def test_camera_items_are_carried_but_not_flown():
     rig = Rig()
     rig.run()
-    camera = item(1, command=206, frame=2, p=(25.0, 0.0, 1.0, 0.0), place=(0, 0, 0.0))
+    camera = item(1, command=2000, frame=2, p=(0.0, 2.0, 0.0, NAN), place=(0, 0, 0.0))
     ack, heard = upload(rig, [PLAN[0], camera])
     assert ack.type == mav.MAV_MISSION_ACCEPTED
     assert "Mission: camera and gimbal items are skipped" in texts(heard)
     skipped = rig.plane.mission.items[1]
     assert (skipped.kind, skipped.repeat) == (MissionItem.JUMP, 0)  # a jump that is never taken
+
+
+def test_triggers_courses_and_circles_to_an_altitude_are_flown():
+    rig = Rig()
+    rig.run()
+    plan = [
+        item(0, command=206, frame=2, p=(25.0, 0.0, 1.0, 0.0), place=(0, 0, 0.0)),
+        item(1, p=(0.0, 0.0, 0.0, 90.0)),
+        item(2, p=(0.0, 0.0, 0.0, 0.0)),
+        item(3, command=31, p=(0.0, -90.0, 0.0, 0.0)),
+        item(4, command=203, frame=2, p=(0.0, 0.0, 0.0, 0.0), place=(0, 0, 0.0)),
+    ]
+    _, heard = upload(rig, plan)
+    assert texts(heard) == []
+    distance, east, any_course, circle, once = rig.plane.mission.items
+    assert (distance.kind, distance.distance) == (MissionItem.TRIGGER_DISTANCE, 25.0)
+    assert east.course == pytest.approx(0.0)
+    assert not any_course.HasField("course")
+    assert (circle.kind, circle.to_altitude, circle.radius) == (MissionItem.ORBIT, True, -90.0)
+    assert once.kind == MissionItem.TRIGGER
+
+
+def test_what_a_mission_file_says_of_courses_and_pictures_comes_back_after_a_download():
+    rig = Rig()
+    items = [
+        MissionItem(position=Vector3(x=100.0, z=60.0), course=math.pi / 2),
+        MissionItem(kind=MissionItem.ORBIT, position=Vector3(x=100.0, z=60.0), radius=90.0, to_altitude=True),
+        MissionItem(kind=MissionItem.TRIGGER_DISTANCE, distance=30.0),
+    ]
+    rig.plane.mission = Mission(id=7, items=items)
+    rig.run()
+    north, circle, camera = download(rig)
+    assert (north.param4, circle.command, camera.command, camera.param1) == (360.0, 31, 206, 30.0)
+    upload(rig, [north, circle, camera])
+    again = rig.plane.mission.items
+    assert again[0].course == pytest.approx(math.pi / 2)
+    assert again[1].to_altitude and again[1].radius == 90.0
+    assert again[2].distance == 30.0
 
 
 def test_progress_is_told_when_it_happens():

@@ -1,0 +1,171 @@
+"""Dubins paths for a vehicle that needs time to change its curvature: a word whose curvature rises and falls along clothoids.
+
+The curvature of a word, smoothed over a length (a running mean along the way), has ramps where the word has steps, as in the
+continuous-curvature paths of Scheuer & Fraichard, "Continuous-curvature path planning for car-like vehicles", IROS 1997. The lengths
+of the three segments are then corrected until the way leads again from the one configuration to the other, straight at both.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import asin, atan2, cos, hypot, remainder, sin, tau
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uvf.maths.curves import Triple, dubins_paths
+
+Floats = NDArray[np.float64]
+
+STEP = 1.0  # m, between samples at most
+ITERATIONS = 12
+CLOSE = 1e-6  # m and, times the radius, rad
+NUDGE = 1e-3  # m, for derivatives
+
+
+@dataclass(frozen=True)
+class Way:
+    """Samples of a way; (k,) each. Curvatures are positive from x towards y."""
+
+    points: Floats  # (k, 2) m
+    course: Floats  # rad, unwrapped
+    curvature: Floats  # 1/m
+
+    @cached_property
+    def s(self) -> Floats:
+        """(k,) m along the way."""
+        steps = np.hypot(*np.diff(self.points, axis=0).T)
+        return np.concatenate(((0.0,), np.cumsum(steps)))
+
+    @property
+    def length(self) -> float:
+        return float(self.s[-1])
+
+    def nearest(self, position: tuple[float, float], within: tuple[float, float] = (-np.inf, np.inf)) -> Triple:
+        """(m along the way, m beside it, course [rad]) at the point nearest to ``position``; straight on beyond its ends.
+
+        Beside is positive in the sense of the curvature. Looked for where the length along the way is ``within`` [m].
+        """
+        low, high = np.searchsorted(self.s, within)
+        low = min(int(low), len(self.s) - 1)
+        away = np.asarray(position) - self.points[low : max(int(high), low + 1)]
+        i = int(np.argmin(np.einsum("ij,ij->i", away, away)))
+        n, e = away[i].tolist()
+        i += low
+        c, s = cos(self.course[i]), sin(self.course[i])
+        ahead = n * c + e * s
+        curvature = float(self.curvature[i])
+        return float(self.s[i]) + ahead, e * c - n * s - 0.5 * curvature * ahead**2, float(self.course[i]) + curvature * ahead
+
+    def bend(self, s: float) -> float:
+        """Curvature at ``s`` [m] along the way, 0 before and after it [1/m]."""
+        return float(np.interp(s, self.s, self.curvature, left=0.0, right=0.0))
+
+
+def eased(start: Triple, end: Triple, radius: float, ramp: float) -> Way:
+    """The shortest word from ``start`` to ``end`` with ramps of ``ramp`` [m] from one curvature to the next.
+
+    Where no word can be corrected (none has been seen), the plain path. Raises ValueError for a radius that is not positive.
+    """
+    begin, finish = _ahead(start, ramp / 2), _ahead(end, -ramp / 2)
+    words = sorted(dubins_paths(begin, finish, radius), key=lambda path: path.length)
+    for path in words:
+        lengths = _corrected(_Word(start, radius, path.turns, ramp), path.lengths, end)
+        if lengths is not None and lengths.min() > -CLOSE and lengths.max() < tau * radius + sum(path.lengths):
+            return _Word(start, radius, path.turns, ramp).way(lengths)
+    shortest = min(dubins_paths(start, end, radius), key=lambda path: path.length)
+    s = np.linspace(0.0, shortest.length, _count(shortest.length))
+    x, y, course = shortest.at(s).T
+    return Way(np.column_stack((x, y)), course, shortest.curvature(s))
+
+
+@dataclass(frozen=True)
+class _Word:
+    start: Triple
+    radius: float
+    turns: tuple[int, int, int]
+    ramp: float
+
+    def way(self, lengths: Floats) -> Way:
+        total = float(lengths.sum()) + self.ramp
+        s = np.linspace(0.0, total, _count(total))
+        begins = np.concatenate(((0.0,), np.cumsum(lengths)))
+        steps = np.diff((0, *self.turns, 0)) / self.radius
+        since = s[:, None] - begins
+        curvature = np.clip(since / self.ramp, 0.0, 1.0) @ steps
+        course = self.start[2] + _risen(since, self.ramp) @ steps
+        # Simpson's rule, with the course between two samples
+        middle = since[:-1] + s[1] / 2
+        half = self.start[2] + _risen(middle, self.ramp) @ steps
+        points = [
+            np.concatenate(((p,), p + np.cumsum(s[1] / 6 * (f(course[:-1]) + 4 * f(half) + f(course[1:])))))
+            for p, f in zip(self.start[:2], (np.cos, np.sin), strict=True)
+        ]
+        return Way(np.column_stack(points), course, curvature)
+
+    def miss(self, lengths: Floats, end: Triple) -> Floats:
+        """(3,) m: ahead, beside and, times the radius, course of the end against the one wanted."""
+        way = self.way(lengths)
+        d, c, s = way.points[-1] - end[:2], cos(end[2]), sin(end[2])
+        return np.array((d[0] * c + d[1] * s, d[1] * c - d[0] * s, self.radius * remainder(way.course[-1] - end[2], tau)))
+
+
+def _corrected(word: _Word, lengths: Triple, end: Triple) -> Floats | None:
+    """Newton's method on the lengths of the segments; None when it leads nowhere."""
+    found = np.array(lengths)
+    for _ in range(ITERATIONS):
+        miss = word.miss(found, end)
+        if np.abs(miss).max() < CLOSE:
+            return found
+        slopes = np.column_stack([(word.miss(found + NUDGE * unit, end) - miss) / NUDGE for unit in np.eye(3)])
+        found = found - np.linalg.lstsq(slopes, miss, rcond=1e-6)[0]
+        if found.min() < -word.radius or found.max() > tau * word.radius + sum(lengths):
+            return None
+    return None
+
+
+def _risen(since: Floats, ramp: float) -> Floats:
+    """The integral [m] of a ramp from 0 to 1."""
+    up = np.clip(since, 0.0, ramp)
+    risen: Floats = up**2 / (2 * ramp) + np.maximum(since - ramp, 0.0)
+    return risen
+
+
+def _ahead(configuration: Triple, distance: float) -> Triple:
+    x, y, course = configuration
+    return x + distance * cos(course), y + distance * sin(course), course
+
+
+def _count(length: float) -> int:
+    return max(int(length / STEP) + 2, 3)
+
+
+def turned_onto(start: Triple, point: tuple[float, float], radius: float, ramp: float) -> Way | None:
+    """From ``start`` one turn, the shorter, until straight on leads through ``point``; None where that is not found.
+
+    A point within the turning circle to one side is reached by the turn to the other.
+    """
+    ways = [way for side in (1, -1) if (way := _one_turn(_Word(start, radius, (side, 0, 0), ramp), point)) is not None]
+    return min(ways, key=lambda way: way.length, default=None)
+
+
+def _one_turn(word: _Word, point: tuple[float, float]) -> Way | None:
+    """The secant method on the length of the turn, from where the circle's tangent leads through the point."""
+    side, radius = word.turns[0], word.radius
+    x, y, course = _ahead(word.start, word.ramp / 2)
+    dx, dy = point[0] - x + side * radius * sin(course), point[1] - y - side * radius * cos(course)
+    if hypot(dx, dy) <= radius:
+        return None
+    tangent = atan2(dy, dx) + side * asin(radius / hypot(dx, dy))
+    turned = (side * (tangent - course)) % tau
+    length, last, missed = turned * radius, turned * radius + NUDGE, None
+    for _ in range(ITERATIONS):
+        way = word.way(np.array((length, 0.0, 0.0)))
+        (n, e), c = point - way.points[-1], float(way.course[-1])
+        if n * cos(c) + e * sin(c) < 0:
+            return None
+        now = float(e * cos(c) - n * sin(c))
+        if abs(now) < CLOSE:
+            return way
+        slope = (now - missed) / (length - last) if missed is not None else -side * hypot(n, e) / radius
+        length, last, missed = length - now / slope, length, now
+    return None
