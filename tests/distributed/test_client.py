@@ -20,8 +20,8 @@ def test_what_a_client_sends_bears_time_and_epoch_of_the_clock():
             clock.put(Clock(t_ns=5_000_000_000, epoch=3).SerializeToString(), 5_000_000_000)
             return client.time == 5.0
 
-        client.wait(ticks, 10.0)
+        client.wait(ticks, 20.0)
         client.send("sys", stop, StopCommand(engaged=True))
-        client.wait(lambda: (bus.poll(), heard)[1], 10.0)
+        client.wait(lambda: (bus.poll(), heard)[1], 20.0)
     router.close()
     assert (heard[-1].epoch, heard[-1].stamp_ns) == (3, 5_000_000_000)
