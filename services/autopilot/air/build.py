@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from schemas.messages import MissionItem
-from services.autopilot.air import intake, plan
+from services.autopilot.air import flyable, intake
 from services.autopilot.air.by_hand import Travel
 from services.autopilot.air.params import AirParams
 from services.autopilot.air.service import AutopilotAir, Ship
@@ -26,7 +26,8 @@ def _host(site: Site, member: Member) -> Host:
     tangent = LocalTangent.from_degrees(origin.latitude, origin.longitude, origin.altitude)
     east, north, _ = site.world.magnetic_field
     items = [item_from_file(w) for w in member.entry.job.mission]
-    if why := _fault(items):
+    params = member.params(AutopilotAir.name, AirParams)
+    if why := _fault(items, params):
         raise BadInput(f"{site.mission_path}: {member.name}: job: mission: {why}")
     start, land = member.entry.start, relief(site.world)
     ground = 0.0 if land is None else float(land.at(np.array(start.x), np.array(start.y))[0])
@@ -40,7 +41,6 @@ def _host(site: Site, member: Member) -> Host:
         ground=ground,
         travel=_travel(member),
     )
-    params = member.params(AutopilotAir.name, AirParams)
     return Host(AutopilotAir, lambda: AutopilotAir(ship, params), member.name)
 
 
@@ -50,9 +50,9 @@ def _travel(member: Member) -> Travel:
     return Travel(controls.aileron.limit, controls.elevator.limit, controls.rudder.limit)
 
 
-def _fault(items: list[MissionItem]) -> str:
+def _fault(items: list[MissionItem], params: AirParams) -> str:
     """Why these items cannot be flown; empty if they can."""
     try:
-        return plan.fault(intake.items(items))
+        return flyable.fault(intake.items(items), params)
     except ValueError as error:
         return str(error)

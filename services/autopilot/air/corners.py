@@ -59,6 +59,10 @@ class Corner(Way):
     before: float
     after: float
 
+    def cut(self, waypoint: Point) -> float:
+        """m, by which the way passes the waypoint."""
+        return float(np.hypot(*(self.points - waypoint).T).min())
+
 
 def plan(waypoint: Point, courses: tuple[float, float], flying: Flying, room: Point) -> Corner | None:
     """The corner at ``waypoint`` between two ``courses`` [rad] with ``room`` [m] on the two legs; None where it cannot be rounded."""

@@ -1,5 +1,7 @@
 """Events: what changed since the last cycle, in words."""
 
+from collections.abc import Iterable
+
 from schemas.convert import stamp
 from schemas.messages import Event
 from services.autopilot.air.losses import Loss
@@ -15,6 +17,8 @@ class Journal:
         self._reason = ""
         self._armed: bool | None = None
         self._reached = -1
+        self._pictures = 0
+        self._notes: list[tuple[str, str]] = []
         self._laps = 0
         self._finished = False
         self._lost = False
@@ -35,12 +39,21 @@ class Journal:
             found.append(_event(t, Event.INFO, f"mission item {navigator.reached} reached"))
         if navigator.laps > self._laps:
             found.append(_event(t, Event.INFO, f"lap {navigator.laps} closed"))
+        if navigator.camera.pictures > self._pictures and navigator.camera.last is not None:
+            north, east = navigator.camera.last
+            found.append(_event(t, Event.INFO, f"camera trigger {navigator.camera.pictures}", f"at x {east:.1f} m, y {north:.1f} m"))
+        found += [_event(t, Event.INFO, text, cause) for text, cause in self._notes]
+        self._pictures, self._notes = navigator.camera.pictures, []
         if navigator.finished and not self._finished:
             found.append(_event(t, Event.NOTICE, "mission complete"))
         self._mode, self._reason, self._armed, self._lost = pilot.mode, pilot.reason, armed, False
         self._losses = losses
         self._reached, self._laps, self._finished = navigator.reached, navigator.laps, navigator.finished
         return found
+
+    def note(self, notes: Iterable[tuple[str, str]]) -> None:
+        """To be told with the next events: what and why."""
+        self._notes += notes
 
     def lost(self, t: float, missing: tuple[str, ...]) -> list[Event]:
         """Without the IMU; once, until it is back."""

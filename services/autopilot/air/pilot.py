@@ -6,13 +6,14 @@ from dataclasses import astuple, dataclass
 
 from services.autopilot.air.by_hand import COMMAND_MAX_AGE, LET_GO, Stick
 from services.autopilot.air.commands import Surfaces, Wanted
+from services.autopilot.air.flyable import fault
 from services.autopilot.air.guidance import Aim
 from services.autopilot.air.helm import Helm
 from services.autopilot.air.modes import TABLE, FlightMode, Need, Situation, refusal
 from services.autopilot.air.navigator import Navigator
 from services.autopilot.air.params import AirParams
 from services.autopilot.air.paths import Circling, Following
-from services.autopilot.air.plan import Item, fault
+from services.autopilot.air.plan import Item
 from services.autopilot.air.route import Circle, Level, Place
 from services.autopilot.air.state import Estimate
 from services.autopilot.air.stick_modes import STICK_MODES
@@ -188,9 +189,9 @@ class Pilot:
         self._phase = Circling(Circle(Place(place.north, place.east, height), params.hold_radius))
         return ""
 
-    def load(self, items: Sequence[Item]) -> str:
+    def load(self, items: Sequence[Item], params: AirParams) -> str:
         """Replaces the mission; while one is flown the new one is begun at once."""
-        if why := fault(items):
+        if why := fault(items, params):
             return why
         self.navigator = Navigator(items)
         if self.mode is FlightMode.MISSION:

@@ -98,13 +98,3 @@ def following(items: Sequence[Item], stop: Stop) -> Stop:
         more = next_stop(items, found.index + 1, found.jumps)
         found = Stop(more.index, more.jumps, found.laps + more.laps, more.speed or found.speed, found.triggers + more.triggers)
     return found
-
-
-def fault(items: Sequence[Item]) -> str:
-    """Why a list of items cannot be flown; empty if it can."""
-    for i, item in enumerate(items):
-        if item.kind is Kind.JUMP and item.jump_to >= len(items):
-            return f"item {i} jumps to {item.jump_to}, but there are {len(items)} items"
-        if item.kind is Kind.SPEED and item.speed <= 0:
-            return f"item {i} sets a speed of {item.speed:g} m/s"
-    return ""

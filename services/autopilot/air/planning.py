@@ -8,8 +8,6 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from services.autopilot.air import bypass, corners
 from services.autopilot.air.guidance import Point
 from services.autopilot.air.params import AirParams
@@ -107,8 +105,7 @@ class Planner:
             needed = self._needed(onto, Leg(onto.end, self._item(beyond).place))
             if needed > onto.length - corner.after:
                 corner = self._rounded(leg, onto, (before, onto.length - needed))
-        cut = math.inf if corner is None else float(np.hypot(*(corner.points - np.array(leg.end.point)).T).min())
-        return corner if cut <= self._item(stop).acceptance else None
+        return corner if corner is not None and corner.cut(leg.end.point) <= self._item(stop).acceptance else None
 
     def _rounded(self, leg: Leg, onto: Leg, room: Point) -> corners.Corner | None:
         return corners.plan(leg.end.point, (leg.course, onto.course), self.flying, room)

@@ -27,6 +27,7 @@ from schemas.messages import (
 from services.autopilot.air import by_hand, intake, reports
 from services.autopilot.air.book_estimator import BookEstimator
 from services.autopilot.air.commands import Surfaces
+from services.autopilot.air.flyable import advice
 from services.autopilot.air.journal import Journal
 from services.autopilot.air.landed import LandDetector
 from services.autopilot.air.losses import GNSS_HOLD, Loss, losses
@@ -101,6 +102,7 @@ class AutopilotAir(Service):
         self._estimator = BookEstimator(ship.declination)
         self._pilot = Pilot(intake.items(ship.items), ship.ground)
         self._journal = Journal()
+        self._journal.note(advice(self._pilot.navigator.items, params))
         self._fix_stamp = 0
         self._left: NavState | None = None
         self._now: Estimate | None = None
@@ -246,11 +248,12 @@ class AutopilotAir(Service):
 
     def _set_mission(self, mission: Mission) -> Reply:
         try:
-            refusal = self._pilot.load(intake.items(mission.items))
+            refusal = self._pilot.load(intake.items(mission.items), self.params)
         except ValueError as error:
             refusal = str(error)
         if not refusal:
             self._mission = intake.with_id(mission.items)
+            self._journal.note(advice(self._pilot.navigator.items, self.params))
             self._announced = False
         return _reply(refusal)
 

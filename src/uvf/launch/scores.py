@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from schemas import topics
 from schemas.convert import array
 from schemas.messages import Contact, Grid, Mission, MissionItem, MissionProgress, NavState, PoseInFrame
+from uvf.maths.rotations import wrap
 from uvf.runtime.bus import Bus, Sample
 from uvf.runtime.mapped_floor import MappedFloor
 from uvf.runtime.mission_file import Criterion
@@ -20,6 +21,8 @@ from uvf.runtime.params import BadInput, nearest
 from uvf.runtime.site import Site
 
 Floats = NDArray[np.float64]
+
+PASSED = 3.0  # s, within which of being told so a waypoint is passed
 
 
 @dataclass
@@ -169,6 +172,31 @@ def altitude_error(track: Track) -> float:
     return float(np.abs(p[:, 3] - altitudes[nearest_leg, np.arange(len(p))]).max())
 
 
+def waypoint_error(track: Track) -> float:
+    """Largest distance [m] in space by which a waypoint was missed; infinite when one was not reached, or there is none."""
+    return max((float(np.linalg.norm(p[0, 1:4] - array(item.position))) for item, p in _passes(track)), default=float("inf"))
+
+
+def course_error(track: Track) -> float:
+    """Largest deviation [rad] over ground from the course that a waypoint asks for; infinite as ``waypoint_error``."""
+    asked = [(item, p) for item, p in _passes(track) if item.HasField("course")]
+    flown = [np.arctan2(*(p[1] - p[0])[[2, 1]]) if len(p) > 1 else np.inf for _, p in asked]
+    return max((abs(float(wrap(c - item.course))) for (item, _), c in zip(asked, flown, strict=True)), default=float("inf"))
+
+
+def _passes(track: Track) -> list[tuple[MissionItem, Floats]]:
+    """Each waypoint with the samples (t, x, y, z) from where it was passed nearest, in the order of the mission."""
+    p, found = track.positions(), []
+    reached = {r: t for t, r, _ in reversed(track.progress)}
+    for index, item in enumerate(track.mission.items if track.mission else ()):
+        if item.kind != MissionItem.WAYPOINT:
+            continue
+        near = p[np.abs(p[:, 0] - reached.get(index, np.inf)) < PASSED]
+        k = int(np.linalg.norm(near[:, 1:4] - array(item.position), axis=1).argmin()) if len(near) else 0
+        found.append((item, near[k:] if len(near) else np.full((1, 4), np.inf)))
+    return found
+
+
 def _corners(track: Track) -> Floats:
     items = track.mission.items if track.mission else ()
     return np.array([array(i.position) for i in items if i.kind == MissionItem.WAYPOINT]).reshape(-1, 3)
@@ -198,5 +226,6 @@ def _altitude(p: Floats, a: Floats, b: Floats) -> Floats:
 
 
 MEASURES: dict[str, Callable[[Track], float]] = {
-    f.__name__: f for f in (distance_driven, contacts, pose_error, mapped_floor, circuits, legs, path_error, altitude_error)
+    f.__name__: f
+    for f in (distance_driven, contacts, pose_error, mapped_floor, circuits, legs, path_error, altitude_error, waypoint_error, course_error)
 }

@@ -116,15 +116,15 @@ def test_a_return_item_ends_in_return():
 
 def test_a_new_mission_is_flown_at_once_and_no_mission_holds():
     pilot = flying()
-    assert pilot.load([FAR[1]]) == ""
+    assert pilot.load([FAR[1]], PARAMS) == ""
     assert pilot.navigator.index == 0
-    assert pilot.load([]) == ""
+    assert pilot.load([], PARAMS) == ""
     assert pilot.mode is FlightMode.HOLD
 
 
 def test_a_mission_that_cannot_be_flown_is_refused_and_the_old_one_kept():
     pilot = flying()
-    assert "jumps to 9" in pilot.load([Item(Kind.JUMP, Place(0, 0, 0), jump_to=9)])
+    assert "jumps to 9" in pilot.load([Item(Kind.JUMP, Place(0, 0, 0), jump_to=9)], PARAMS)
     assert len(pilot.navigator.items) == 2
 
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from services.autopilot.air.plan import NO_JUMPS, Item, Kind, fault, next_stop
+from services.autopilot.air.plan import NO_JUMPS, Item, Kind, following, next_stop
 from services.autopilot.air.route import Place
 
 HERE = Place(0.0, 0.0, 60.0)
@@ -64,7 +64,22 @@ def test_jumps_with_nothing_between_them_end_the_mission():
     assert next_stop([jump(1, -1), jump(0, -1)], 0, NO_JUMPS).index is None
 
 
-def test_faults_are_named():
-    assert "jumps to 7" in fault([waypoint(), jump(7, 1)])
-    assert "speed of 0" in fault([Item(Kind.SPEED, HERE)])
-    assert fault([waypoint(), jump(0, -1)]) == ""
+def test_waypoints_at_one_place_are_passed_together():
+    far = Item(Kind.WAYPOINT, Place(500.0, 0.0, 60.0))
+    items = [waypoint(), Item(Kind.SPEED, HERE, speed=21.0), waypoint(), far, jump(0, 1)]
+    stop = following(items, next_stop(items, 0, NO_JUMPS))
+    assert (stop.index, stop.speed) == (3, 21.0)
+    closed = [waypoint(), far, waypoint(), jump(0, -1)]
+    last = following(closed, next_stop(closed, 2, NO_JUMPS))
+    assert (last.index, last.laps) == (1, 1)
+
+
+def test_a_course_is_asked_for_even_at_the_place_just_passed():
+    items = [waypoint(), Item(Kind.WAYPOINT, HERE, course=1.0)]
+    assert following(items, next_stop(items, 0, NO_JUMPS)).index == 1
+
+
+def test_triggers_are_passed_and_kept():
+    items = [waypoint(), Item(Kind.TRIGGER, HERE), Item(Kind.TRIGGER_DISTANCE, HERE, distance=20.0), waypoint()]
+    stop = next_stop(items, 1, NO_JUMPS)
+    assert (stop.index, stop.triggers) == (3, (1, 2))

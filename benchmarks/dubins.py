@@ -1,0 +1,148 @@
+"""The mission ``dubins`` flown in lockstep, judged where its paths change from one curvature to another.
+
+A switch lasts from where the curvature begins to change to where it is that of the next segment; ``overshoot`` is the largest distance
+of the true aircraft from the planned way from there until two seconds after it.
+``python -m benchmarks.dubins docs`` draws docs/dubins.png.
+"""
+
+import sys
+from collections.abc import Iterator
+from contextlib import closing
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from services.autopilot.air.plan import Item
+from services.autopilot.air.route import Curve
+from services.autopilot.air.service import AutopilotAir
+from services.sim_air.service import SimAir
+from uvf.launch import catalogue
+from uvf.launch.bench import Figures
+from uvf.maths.eased import Way
+from uvf.runtime.lockstep import Lockstep
+from uvf.runtime.site import ROOT, load_site
+
+Floats = NDArray[np.float64]
+
+MISSION = ROOT / "missions" / "dubins.yaml"
+AFTER = 2.0  # s
+ARROW = 50.0  # m
+CURVED = 1e-5  # 1/m^2, change of curvature of a switch
+
+
+@dataclass(frozen=True)
+class Flown:
+    """One curve: the way planned, and (k, 5) t [s], north, east [m], m along it and m beside it of the true aircraft."""
+
+    item: int
+    way: Way
+    rows: Floats
+
+
+class Probe:
+    """Looks into both services at every tick."""
+
+    def __init__(self, lockstep: Lockstep) -> None:
+        services = [shell.service for shell in lockstep.shells]
+        (sim,) = (s for s in services if isinstance(s, SimAir))
+        (self._autopilot,) = (s for s in services if isinstance(s, AutopilotAir))
+        (self._craft,) = sim._stage.aircraft.values()
+        self._curves: list[tuple[int, Curve, list[tuple[float, ...]]]] = []
+
+    def __call__(self, t: float) -> bool:
+        navigator = self._autopilot._pilot.navigator
+        piece, (east, north, _) = navigator._piece, self._craft.motion.position.tolist()
+        if isinstance(piece, Curve) and navigator.index is not None:
+            if not self._curves or self._curves[-1][1] is not piece:
+                self._curves.append((navigator.index, piece, []))
+            s, aside, _ = piece.way.nearest((north, east), (piece.s - 20.0, piece.s + 40.0))
+            self._curves[-1][2].append((t, north, east, s, aside))
+        return not navigator.finished
+
+    @property
+    def items(self) -> tuple[Item, ...]:
+        return self._autopilot._pilot.navigator.items
+
+    def flown(self) -> list[Flown]:
+        return [Flown(item, curve.way, np.array(rows)) for item, curve, rows in self._curves]
+
+
+def fly() -> tuple[list[Flown], tuple[Item, ...]]:
+    site = load_site(MISSION)
+    lockstep = Lockstep(catalogue.hosts(site, [catalogue.kind("sim_air"), catalogue.kind("autopilot")]))
+    with closing(lockstep):
+        probe = Probe(lockstep)
+        lockstep.run(site.mission.duration, probe)
+    return probe.flown(), probe.items
+
+
+def switches(flown: Flown) -> Iterator[tuple[str, float]]:
+    """From which to which curvature (L, R, S; what is not reached before the next switch counts), and the overshoot [m]."""
+    way, rows = flown.way, flown.rows
+    changes = np.abs(np.diff(way.curvature) / np.diff(way.s)) > CURVED
+    edges = np.flatnonzero(np.diff(np.concatenate(((False,), changes, (False,))).astype(int)))
+    for begin, end in edges.reshape(-1, 2):
+        inside = (rows[:, 3] >= way.s[begin]) & (rows[:, 3] <= way.s[end])
+        if not inside.any():
+            continue
+        last = rows[inside][-1, 0] + AFTER
+        window = (rows[:, 0] >= rows[inside][0, 0]) & (rows[:, 0] <= last)
+        yield f"{_letter(way.curvature[begin])}{_letter(way.curvature[end])}", float(np.abs(rows[window, 4]).max())
+
+
+def _letter(curvature: float) -> str:
+    return "S" if abs(curvature) < 1e-4 else "R" if curvature > 0 else "L"
+
+
+def figures(flown: list[Flown]) -> Figures:
+    """By path: its length, its switches with the overshoots, and the RMS beside it."""
+    table: Figures = {}
+    for f in flown:
+        found = list(switches(f))
+        name = f"to item {f.item}: {' '.join(kind for kind, _ in found) or 'straight'}"
+        worst = {f"switch {k + 1}, m": size for k, (_, size) in enumerate(found)}
+        table[name] = {"length, m": f.way.length, "rms, m": float(np.sqrt(np.mean(f.rows[:, 4] ** 2))), **worst}
+    return table
+
+
+def draw(flown: list[Flown], items: tuple[Item, ...], path: Path) -> None:
+    figure = Figure(figsize=(13.0, 7.5), layout="constrained")
+    above, beside = figure.subplots(1, 2, width_ratios=(2, 1))
+    _map(above, flown, items)
+    for f in flown:
+        beside.plot(f.rows[:, 0], f.rows[:, 4], linewidth=1)
+        beside.axvline(f.rows[0, 0], color="0.8", linewidth=0.8)
+    beside.set(title="beside the path (right positive)", xlabel="s", ylabel="m")
+    beside.grid(alpha=0.3)
+    figure.savefig(path, dpi=80)
+
+
+def _map(axes: Axes, flown: list[Flown], items: tuple[Item, ...]) -> None:
+    for f in flown:
+        axes.plot(f.way.points[:, 1], f.way.points[:, 0], "C1", linewidth=4, alpha=0.5, label="planned" if f is flown[0] else None)
+        axes.plot(f.rows[:, 2], f.rows[:, 1], "k", linewidth=0.9, label="flown (truth)" if f is flown[0] else None)
+    for k, item in enumerate(items):
+        assert item.course is not None
+        n, e, c = item.place.north, item.place.east, item.course
+        axes.annotate("", (e + ARROW * np.sin(c), n + ARROW * np.cos(c)), (e, n), arrowprops={"color": "C3", "width": 1, "headwidth": 6})
+        axes.annotate(str(k), (e, n), color="C3", xytext=(5, -12), textcoords="offset points")
+    axes.set(title="Dubins paths of milvus, wind 7 m/s to the south-east", xlabel="east, m", ylabel="north, m", aspect="equal")
+    axes.grid(alpha=0.3)
+    axes.legend()
+
+
+def switches_case(data: Path | None) -> Figures:
+    return figures(fly()[0])
+
+
+CASES = {"switches": switches_case}
+
+if __name__ == "__main__":
+    FLOWN, ITEMS = fly()
+    draw(FLOWN, ITEMS, Path(sys.argv[1]) / "dubins.png")
+    for NAME, ROW in figures(FLOWN).items():
+        sys.stdout.write(f"{NAME:28} {'  '.join(f'{metric} {value:.2f}' for metric, value in ROW.items())}\n")

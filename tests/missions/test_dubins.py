@@ -1,0 +1,16 @@
+"""Fourteen places, each in a given direction, in wind: flown in lockstep on noisy sensors."""
+
+import pytest
+
+from uvf.launch.run import run_lockstep
+from uvf.runtime.site import ROOT, load_site
+
+
+@pytest.fixture(scope="module")
+def flown():
+    return run_lockstep(load_site(ROOT / "missions" / "dubins.yaml"), 220.0)
+
+
+def test_every_place_is_passed_in_its_direction(flown):
+    assert len(flown.verdicts) == 3
+    assert {v.criterion.measure: v.value for v in flown.verdicts if not v.passed} == {}
