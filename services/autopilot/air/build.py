@@ -8,9 +8,13 @@ from schemas.messages import MissionItem
 from services.autopilot.air import flyable, intake
 from services.autopilot.air.by_hand import Travel
 from services.autopilot.air.params import AirParams
+from services.autopilot.air.route import Place
 from services.autopilot.air.service import AutopilotAir, Ship
+from services.autopilot.air.strip import Strip
 from services.autopilot.plan import item_from_file
+from uvf.maths import rotations
 from uvf.maths.geodesy import LocalTangent
+from uvf.runtime import world_file
 from uvf.runtime.params import BadInput
 from uvf.runtime.site import Host, Member, Site
 from uvf.runtime.world_geometry import relief
@@ -40,6 +44,8 @@ def _host(site: Site, member: Member) -> Host:
         starts_in_air=start.z > 0 and not start.on_ground,
         ground=ground,
         travel=_travel(member),
+        strips=tuple(_strip(s) for s in site.world.strips),
+        altimeter=_altimeter(member),
     )
     return Host(AutopilotAir, lambda: AutopilotAir(ship, params), member.name)
 
@@ -48,6 +54,19 @@ def _travel(member: Member) -> Travel:
     assert member.file.air is not None
     controls = member.file.air.controls
     return Travel(controls.aileron.limit, controls.elevator.limit, controls.rudder.limit)
+
+
+def _strip(strip: world_file.Strip) -> Strip:
+    x, y, z = strip.centre
+    return Strip(Place(y, x, z), math.pi / 2 - strip.yaw, strip.length, strip.width)
+
+
+def _altimeter(member: Member) -> str:
+    """The first range finder that looks down within 20 degrees."""
+    for finder in member.file.sensors.rangefinders:
+        if rotations.rotate(rotations.from_euler(*finder.mount.rpy), np.array((1.0, 0.0, 0.0)))[2] < -math.cos(math.radians(20.0)):
+            return f"{member.name}/{finder.frame}"
+    return ""
 
 
 def _fault(items: list[MissionItem], params: AirParams) -> str:

@@ -11,6 +11,8 @@ class Wanted:
     height: float | None  # m; None: the climb rate is held instead
     climb: float  # m/s, of the path
     airspeed: float  # m/s
+    throttle: float | None = None  # 0..1; None: by the airspeed
+    rudder: float | None = None  # rad, beside the yaw damper; None: the side slip is taken out
 
 
 @dataclass(frozen=True, slots=True)

@@ -26,7 +26,8 @@ class Control:
             self._path.begin(cycle, wanted, self._held.pitch, self._held.throttle)
             self._held = None
         pitch, throttle = self._path.step(cycle, wanted)
-        return self._attitude.step(cycle, Attitude(wanted.bank, pitch, throttle))
+        throttle = throttle if wanted.throttle is None else wanted.throttle
+        return self._attitude.step(cycle, Attitude(wanted.bank, pitch, throttle, wanted.rudder))
 
     def hold(self, now: Estimate, wanted: Attitude, params: AirParams, dt: float) -> Surfaces:
         """Holds an attitude with a given throttle: the lower level alone."""

@@ -2,14 +2,18 @@
 
 from dataclasses import replace
 
+import msgspec
+
 from services.autopilot.air.commands import Attitude, Surfaces, Wanted
 from services.autopilot.air.control import Control
+from services.autopilot.air.cycle import clip
 from services.autopilot.air.guidance import Steering
 from services.autopilot.air.params import AirParams
 from services.autopilot.air.state import Estimate
 from services.autopilot.air.wishes import Track, Wish
 
 FLAP_RATE = 0.1  # rad/s, slow enough for the loops to follow
+FIRM_CLIMB, FIRM_PITCH = 2.0, 0.7  # times climb_p and pitch_time
 
 
 class Helm:
@@ -25,6 +29,8 @@ class Helm:
         if isinstance(asked, Surfaces):
             self._flap = asked.flap
             return asked
+        if wish.firm:
+            params = msgspec.structs.replace(params, climb_p=FIRM_CLIMB * params.climb_p, pitch_time=FIRM_PITCH * params.pitch_time)
         self._flap += min(max(wish.flap - self._flap, -FLAP_RATE * dt), FLAP_RATE * dt)
         return replace(self._fly(now, asked, params, dt), flap=self._flap, brake=wish.brake)
 
@@ -33,7 +39,8 @@ class Helm:
             return self._control.hold(now, asked, params, dt)
         if isinstance(asked, Track):
             bank = self._steering.bank(asked.aim, now, params, dt)
-            asked = Wanted(bank, asked.height, asked.climb, asked.airspeed)
+            bank = bank if asked.bank_limit is None else clip(bank, asked.bank_limit)
+            asked = Wanted(bank, asked.height, asked.climb, asked.airspeed, asked.throttle, asked.rudder)
         if asked.height is not None and not now.height_known:
             asked = replace(asked, height=now.height)
         return self._control.step(now, asked, params, dt)

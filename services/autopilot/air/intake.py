@@ -26,6 +26,8 @@ KINDS = {
     MissionItem.SPEED: Kind.SPEED,
     MissionItem.TRIGGER: Kind.TRIGGER,
     MissionItem.TRIGGER_DISTANCE: Kind.TRIGGER_DISTANCE,
+    MissionItem.TAKEOFF: Kind.TAKEOFF,
+    MissionItem.LAND: Kind.LAND,
 }
 MODES = {
     Mode.MODE_HOLD: FlightMode.HOLD,
@@ -35,6 +37,8 @@ MODES = {
     Mode.MODE_STABILIZED: FlightMode.STABILIZED,
     Mode.MODE_ALTITUDE: FlightMode.ALTITUDE,
     Mode.MODE_POSITION: FlightMode.POSITION,
+    Mode.MODE_TAKEOFF: FlightMode.TAKEOFF,
+    Mode.MODE_LAND: FlightMode.LAND,
 }
 
 

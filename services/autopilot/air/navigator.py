@@ -7,7 +7,7 @@ from services.autopilot.air.camera import Camera
 from services.autopilot.air.corners import Corner
 from services.autopilot.air.guidance import Aim
 from services.autopilot.air.params import AirParams
-from services.autopilot.air.plan import NO_JUMPS, Item, Kind, Stop, following, next_stop
+from services.autopilot.air.plan import NO_JUMPS, OFF_PATH, Item, Kind, Stop, following, next_stop
 from services.autopilot.air.planning import Planner
 from services.autopilot.air.route import Circle, Curve, Leg, Level, Place, Turn
 from services.autopilot.air.state import Estimate
@@ -54,16 +54,29 @@ class Navigator:
         """Stands where another navigator of the same items has stood; jumps are counted anew."""
         self.index, self.reached, self.laps, self.finished = index, reached, laps, finished
 
+    def pass_item(self) -> None:
+        """The current item, which is none of legs and circles, is done."""
+        assert self.index is not None
+        self.reached = self.index
+        stop = next_stop(self.items, self.index + 1, self._jumps)
+        self.laps += stop.laps
+        self._take(stop)
+        self.finished, self._piece = self.index is None, None
+
     @property
     def returns_home(self) -> bool:
         return self.index is not None and self.items[self.index].kind is Kind.RETURN
+
+    @property
+    def _off_path(self) -> bool:
+        return self.index is not None and self.items[self.index].kind in OFF_PATH
 
     @property
     def target(self) -> Item | None:
         return self.items[self.index] if self.index is not None else None
 
     def step(self, now: Estimate, params: AirParams, dt: float) -> tuple[Aim, Level]:
-        """Aim and height towards the current item; call it only while there is one that is not RETURN."""
+        """Aim and height towards the current item; call it only while there is one that is flown along a path."""
         if self._piece is None:
             self._piece = self._from_here(now, params)
         self._replan(now, params, dt)
@@ -106,7 +119,7 @@ class Navigator:
             stop = self._stop
             for _ in piece.passing[piece.passed :]:
                 stop = following(self.items, stop)
-            if stop.index is not None and self.items[stop.index].kind is not Kind.RETURN:
+            if stop.index is not None and self.items[stop.index].kind not in OFF_PATH:
                 piece.onto = self._planner(now, params, stop.speed).towards(stop, piece.end, float(piece.way.course[-1]))
         elif piece.left > SETTLED * now.ground_speed and self._wind_turned(now) and piece.is_straight and piece.ends_at_item:
             north, east, course = piece.here
@@ -134,7 +147,7 @@ class Navigator:
         piece.follow((now.north, now.east))
         while piece.passed < len(piece.passing) and piece.s >= piece.passing[piece.passed]:
             piece.passed += 1
-            if not self._pass() or self.returns_home:
+            if not self._pass() or self._off_path:
                 return
         if piece.left > 0:
             return
@@ -155,7 +168,7 @@ class Navigator:
         return True
 
     def _leave(self, piece: Leg | Circle, now: Estimate, params: AirParams) -> None:
-        if not self._pass() or self.returns_home:
+        if not self._pass() or self._off_path:
             return
         if isinstance(piece, Circle):
             self._piece = self._from_here(now, params)

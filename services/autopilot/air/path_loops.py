@@ -4,6 +4,8 @@ import math
 
 from services.autopilot.air.commands import Wanted
 from services.autopilot.air.cycle import Cycle, clip
+from services.autopilot.air.params import AirParams
+from services.autopilot.air.state import Estimate
 from uvf.maths.filters import Integral
 
 CLIMB_TRIM_LIMIT = 0.15  # rad, of the integrator on pitch
@@ -63,3 +65,9 @@ def climb_rate(cycle: Cycle, wanted: Wanted) -> float:
     params = cycle.params
     higher = 0.0 if wanted.height is None else wanted.height - cycle.now.height
     return min(max(wanted.climb + params.altitude_p * higher, -params.sink_max), params.climb_max)
+
+
+def climb_at(now: Estimate, params: AirParams) -> float:
+    """m/s that full throttle may be spent on: the fastest climb at cruise, none at the lowest airspeed."""
+    spare = (now.airspeed - params.min_airspeed) / (params.trim_airspeed - params.min_airspeed)
+    return params.climb_max * min(max(spare, 0.0), 1.0)

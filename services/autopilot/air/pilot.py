@@ -6,17 +6,21 @@ from dataclasses import astuple, dataclass
 
 from services.autopilot.air.by_hand import COMMAND_MAX_AGE, LET_GO, Stick
 from services.autopilot.air.commands import Surfaces, Wanted
+from services.autopilot.air.field import Field
 from services.autopilot.air.flyable import fault
 from services.autopilot.air.guidance import Aim
 from services.autopilot.air.helm import Helm
+from services.autopilot.air.landing import Landing
+from services.autopilot.air.mission_flight import MissionFlight
 from services.autopilot.air.modes import TABLE, FlightMode, Need, Situation, refusal
 from services.autopilot.air.navigator import Navigator
 from services.autopilot.air.params import AirParams
-from services.autopilot.air.paths import Circling, Following
+from services.autopilot.air.paths import Circling
 from services.autopilot.air.plan import Item
 from services.autopilot.air.route import Circle, Level, Place
 from services.autopilot.air.state import Estimate
 from services.autopilot.air.stick_modes import STICK_MODES
+from services.autopilot.air.strip import Strip
 from services.autopilot.air.wishes import Phase, Senses, Track, Wish
 
 
@@ -42,9 +46,12 @@ class Stand:
 class Pilot:
     """Flies one mode of the table. Requests give the reason of a refusal, empty when accepted."""
 
-    def __init__(self, items: Sequence[Item], ground: float = 0.0) -> None:
+    def __init__(self, items: Sequence[Item], ground: float = 0.0, strips: Sequence[Strip] = ()) -> None:
         """ground: height [m] of home, which lies on the ground below the start."""
         self._ground = ground
+        self._field = Field(strips)
+        self.disarms = False
+        """The motor has nothing more to do: whoever arms takes notice and resets this."""
         self.navigator = Navigator(items)
         self.mode = FlightMode.MISSION if items else FlightMode.HOLD
         self.reason = "start"
@@ -70,7 +77,7 @@ class Pilot:
 
     def hear(self, senses: Senses, dt: float) -> None:
         """Before each step."""
-        self.senses = senses
+        self.senses.update(senses)
         self._stick.hold(senses.hand, dt)
 
     @property
@@ -82,7 +89,13 @@ class Pilot:
 
     @property
     def circle(self) -> Circle | None:
-        return self._phase.circle if isinstance(self._phase, Circling) else None
+        return self._phase.circle if isinstance(self._phase, Circling | Landing) else None
+
+    @property
+    def landing(self) -> Landing | None:
+        """The landing that is being flown."""
+        part = self._phase.part if isinstance(self._phase, MissionFlight) else self._phase
+        return part if isinstance(part, Landing) else None
 
     @property
     def _situation(self) -> Situation:
@@ -92,12 +105,16 @@ class Pilot:
     def _stands(self) -> bool:
         """On the ground with nothing to do: surfaces neutral, motor off, brakes on."""
         moves = TABLE[self.mode].on_ground and (self.senses.hand is not None if TABLE[self.mode].by_hand else self.senses.armed)
-        return not self.senses.airborne and not moves
+        return not self.senses.airborne and not moves and not self._rolls_out
 
     def _look(self, now: Estimate, params: AirParams) -> None:
         """Whether this mode goes on."""
-        if self.mode is FlightMode.MISSION and (self.navigator.returns_home or self.navigator.finished):
-            self._end_mission()
+        if self.mode is FlightMode.MISSION:
+            self._phase = self._phase or self._begun(now, params)
+        if isinstance(self._phase, MissionFlight):
+            self._phase.look(now, params)
+        if self._phase is not None and self._phase.ended:
+            self._end(self._phase)
         if TABLE[self.mode].by_hand:
             self._look_at_stick(now, params)
 
@@ -113,8 +130,13 @@ class Pilot:
 
     def _begun(self, now: Estimate, params: AirParams) -> Phase:
         """The present mode from its beginning."""
+        assert self.home is not None
         if self.mode is FlightMode.MISSION:
-            return Following(self.navigator)
+            return MissionFlight(self.navigator, self._field, self.home, self.senses)
+        if self.mode is FlightMode.TAKEOFF:
+            return self._field.take_off(now, self.home.height + params.takeoff_alt, self.senses)
+        if self.mode is FlightMode.LAND:
+            return self._field.landing(now, self.home, self.senses, params)
         if TABLE[self.mode].by_hand and self.senses.hand is not None:
             return STICK_MODES[self.mode](self.senses)
         return Circling(self._new_circle(now, params))
@@ -142,22 +164,26 @@ class Pilot:
         self.mode, self.home, self.reason = mode, home, "started again"
         self.navigator.take_up(stand.index, stand.reached, stand.laps, stand.finished)
 
-    def _end_mission(self) -> None:
-        if self.navigator.returns_home:
-            self._change(FlightMode.RETURN, "mission: return")
-            return
-        self._change(FlightMode.HOLD, "mission complete")
+    def _end(self, phase: Phase) -> None:
+        """What the table says follows."""
+        becomes = phase.becomes if isinstance(phase, MissionFlight) else None
+        self.disarms = self.disarms or phase.disarms
+        self._change(becomes or TABLE[self.mode].done or FlightMode.HOLD, phase.ended)
 
     def _new_circle(self, now: Estimate, params: AirParams) -> Circle:
         if self.mode is FlightMode.RETURN and self.home is not None:
             height = max(self._level.height, params.return_altitude)
             return Circle(Place(self.home.north, self.home.east, height), params.hold_radius)
-        return Circle.ahead(now, self._level.height, params.hold_radius)
+        return Circle.ahead(now, max(self._level.height, params.min_altitude), params.hold_radius)
 
     @property
     def blocked(self) -> str:
         """Why it cannot be sent anywhere; empty if it can."""
         return refusal(FlightMode.ORBIT, self._situation)
+
+    @property
+    def _rolls_out(self) -> bool:
+        return self.landing is not None and self.landing.rolls
 
     def _change(self, mode: FlightMode, reason: str) -> None:
         self.mode, self.reason, self._phase = mode, reason, None
@@ -165,7 +191,7 @@ class Pilot:
 
     def change_mode(self, mode: FlightMode, source: str, reason: str = "") -> str:
         """reason: what the status tells; by default who asked."""
-        if why := refusal(mode, self._situation):
+        if why := refusal(mode, self._situation) or ("the aircraft is rolling out after its landing" if self._rolls_out else ""):
             return why
         if mode is FlightMode.MISSION and not self._fresh:
             self._restart()
@@ -210,7 +236,7 @@ class Pilot:
 
     def stop(self, source: str) -> None:
         """STOP ALL: an airborne aircraft holds until it is released (an empty source)."""
-        if source and not self.stopped:
+        if source and not self.stopped and not self._rolls_out:
             self._change(FlightMode.HOLD, f"stopped by {source}")
         elif self.stopped and not source:
             self.reason = "stop released"
@@ -220,7 +246,7 @@ class Pilot:
         """Without GNSS for long it holds where it reckons to be, and goes on holding when GNSS is back, until told."""
         row, was = TABLE[self.mode], self._blind
         self._blind = blind
-        if self.stopped or (self.mode is not FlightMode.HOLD and Need.POSITION not in row.keeps):
+        if self.stopped or self._rolls_out or (self.mode is not FlightMode.HOLD and Need.POSITION not in row.keeps):
             return
         if blind and not was:
             self._change(row.without, "GNSS lost: holds by dead reckoning" if row.without is FlightMode.HOLD else "GNSS lost")

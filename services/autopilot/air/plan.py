@@ -17,6 +17,12 @@ class Kind(Enum):
     SPEED = "speed"
     TRIGGER = "trigger"
     TRIGGER_DISTANCE = "trigger_distance"
+    TAKEOFF = "takeoff"
+    LAND = "land"
+
+
+OFF_PATH = (Kind.RETURN, Kind.TAKEOFF, Kind.LAND)
+"""What is not flown along legs and circles."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -21,8 +21,8 @@ from services.autopilot.air import intake
 from services.autopilot.air.commands import Surfaces
 from services.autopilot.air.modes import FlightMode
 from services.autopilot.air.pilot import Flown, Pilot
+from services.autopilot.air.plan import OFF_PATH, next_stop
 from services.autopilot.air.plan import Kind as ItemKind
-from services.autopilot.air.plan import next_stop
 from services.autopilot.air.route import Circle, Place
 from services.autopilot.air.state import Estimate
 from uvf.maths.rotations import from_euler
@@ -135,7 +135,7 @@ def _ahead(pilot: Pilot) -> list[Place]:
     index = navigator.index
     while index is not None and navigator.items[index].kind is not ItemKind.RETURN:
         item = navigator.items[index]
-        places += [item.place] if item.flies_through else _round(Circle(item.place, item.radius or 1.0))
+        places += [item.place] if item.flies_through or item.kind in OFF_PATH else _round(Circle(item.place, item.radius or 1.0))
         if index in seen:
             break
         seen.append(index)

@@ -18,6 +18,7 @@ from schemas.messages import (
     Mode,
     ModeRequest,
     NavState,
+    Range,
     Reply,
     SetCurrentRequest,
     StopCommand,
@@ -31,10 +32,12 @@ from services.autopilot.air.flyable import advice
 from services.autopilot.air.journal import Journal
 from services.autopilot.air.landed import LandDetector
 from services.autopilot.air.losses import GNSS_HOLD, Loss, losses
+from services.autopilot.air.over_ground import OverGround
 from services.autopilot.air.params import AirParams
 from services.autopilot.air.pilot import Pilot
 from services.autopilot.air.sensed import Fix, Sensed
 from services.autopilot.air.state import Estimate
+from services.autopilot.air.strip import Strip
 from services.autopilot.air.wishes import Senses
 from uvf.maths.geodesy import GRAVITY, LocalTangent
 from uvf.runtime.service import Outputs, Service, every, optional
@@ -55,6 +58,9 @@ class Ship:
     starts_in_air: bool
     ground: float = 0.0  # m, world: height of the ground below the start
     travel: by_hand.Travel = field(default_factory=by_hand.Travel)
+    strips: tuple[Strip, ...] = ()
+    altimeter: str = ""
+    """Frame of the range finder that looks down."""
 
 
 class AutopilotAir(Service):
@@ -67,6 +73,7 @@ class AutopilotAir(Service):
         "air_data": optional(topics.AIR_DATA),
         "gnss": optional(topics.GNSS),
         "battery": optional(topics.BATTERY),
+        "range": optional(every(topics.RANGE)),
         "stop": optional(topics.STOP.by("*")),
         "teleop": optional(topics.SURFACES.by("teleop")),
         "mavlink": optional(topics.SURFACES.by("mavlink")),
@@ -100,7 +107,8 @@ class AutopilotAir(Service):
         self._announced = False
         self._armed = ship.starts_in_air
         self._estimator = BookEstimator(ship.declination)
-        self._pilot = Pilot(intake.items(ship.items), ship.ground)
+        self._pilot = Pilot(intake.items(ship.items), ship.ground, ship.strips)
+        self._over_ground = OverGround(ship.altimeter)
         self._journal = Journal()
         self._journal.note(advice(self._pilot.navigator.items, params))
         self._fix_stamp = 0
@@ -120,6 +128,7 @@ class AutopilotAir(Service):
         air_data: AirData | None,
         gnss: Gnss | None,
         battery: Battery | None,
+        range: list[Range],
         stop: StopCommand | None,
         teleop: SurfaceCommand | None,
         mavlink: SurfaceCommand | None,
@@ -147,8 +156,13 @@ class AutopilotAir(Service):
             "current": [_reply(self._pilot.set_current(r.index)) for r in current],
         }
         hand = by_hand.choose(t, {"teleop": teleop, "mavlink": mavlink, "client": client})
-        self._pilot.hear(Senses(self._land.airborne, self._armed, hand, self._ship.travel), 1 / self.hz)
+        self._over_ground.hear(range, [intake.inertial(m, t) for m in imu], 1 / self.hz)
+        clearance = self._over_ground.clearance(t, now, self.params.gear_height)
+        senses = Senses(self._land.airborne, self._armed, hand, self._ship.travel, clearance, self._over_ground.push)
+        self._pilot.hear(senses, 1 / self.hz)
         flown = self._pilot.step(now, self.params, 1 / self.hz)
+        if self._pilot.disarms:
+            self._pilot.disarms = self._armed = False
         state = reports.nav_state(t, now)
         out: dict[str, object] = {
             "surfaces": reports.surfaces(t, flown.surfaces, self._armed),

@@ -17,6 +17,9 @@ class Track:
     height: float | None  # m; None: the climb rate is held instead
     climb: float  # m/s, of the path
     airspeed: float  # m/s
+    bank_limit: float | None = None  # rad; None: the vehicle's
+    throttle: float | None = None  # 0..1; None: by the airspeed
+    rudder: float | None = None  # rad, beside the yaw damper; None: the side slip is taken out
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,6 +29,8 @@ class Wish:
     asked: Track | Wanted | Attitude | Surfaces
     flap: float = 0.0  # rad
     brake: float = 0.0  # 0..1
+    firm: bool = False
+    """Climb and pitch are held more firmly than is good for comfort: near the ground."""
 
 
 @dataclass(slots=True)
@@ -41,6 +46,11 @@ class Senses:
     """m, of the wheels over the ground, seen by a range finder."""
     push: float = 0.0
     """m/s^2, specific force forwards."""
+
+    def update(self, other: "Senses") -> None:
+        """Whoever holds this one sees what is known now."""
+        for name in self.__slots__:
+            setattr(self, name, getattr(other, name))
 
 
 class Phase:

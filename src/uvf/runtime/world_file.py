@@ -93,6 +93,16 @@ class Field(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     colour: Colour
 
 
+class Strip(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A level runway that aircraft take off from and land on in both directions."""
+
+    name: str
+    centre: tuple[Metres, Metres, Metres]  # m, world; z of its surface
+    yaw: Angle  # rad, from east, left positive, of one of its directions
+    length: Annotated[float, Meta(ge=20, le=1e4)]  # m
+    width: Annotated[float, Meta(ge=2, le=200)]  # m
+
+
 class Terrain(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Hills from a grey picture, 8 or 16 bit: black is the height of ``position``, white ``size[2]`` above it, north is up.
 
@@ -117,6 +127,7 @@ class WorldFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     spheres: list[Sphere] = []
     meshes: list[Mesh] = []
     terrain: Terrain | None = None
+    strips: list[Strip] = []
     wind: Wind = Wind()
     magnetic_field: tuple[Tesla, Tesla, Tesla] = (0.0, 22.0e-6, -42.0e-6)  # T, ENU
     ground_colour: Colour = (0.36, 0.5, 0.24)

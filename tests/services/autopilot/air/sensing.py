@@ -33,6 +33,7 @@ def sensors(t, speed=25.0):
         "air_data": AirData(timestamp=stamp(t), static_pressure=static, differential_pressure=0.5 * rho * speed**2, temperature=285.8),
         "gnss": gnss,
         "battery": None,
+        "range": [],
         "stop": None,
         "teleop": None,
         "mavlink": None,

@@ -1,0 +1,45 @@
+"""Where one takes off and lands: the strips of the world and home."""
+
+import math
+from collections.abc import Sequence
+
+from services.autopilot.air.landing import Landing
+from services.autopilot.air.params import AirParams
+from services.autopilot.air.route import Place
+from services.autopilot.air.state import Estimate
+from services.autopilot.air.strip import Strip, lane_for
+from services.autopilot.air.takeoff import TakeOff
+from services.autopilot.air.wishes import Senses
+
+NEAR = 150.0  # m: an item this near to a strip means the strip
+
+
+class Field:
+    """Makes take-offs and landings for where the aircraft is."""
+
+    def __init__(self, strips: Sequence[Strip]) -> None:
+        self._strips = tuple(strips)
+
+    def take_off(self, now: Estimate, height: float, senses: Senses) -> TakeOff:
+        """height: m, world, at which it is done. On a strip there is the room that lies ahead on it."""
+        on = next((s for s in self._strips if _distance(s, now.north, now.east) < s.length / 2), None)
+        if on is None:
+            return TakeOff(now, height, senses)
+        lane = on.lane(now.yaw)
+        distance, _ = lane.locate(now)
+        return TakeOff(now, height, senses, lane.rest + distance)
+
+    def landing(self, now: Estimate, home: Place, senses: Senses, params: AirParams) -> Landing:
+        """On the nearest strip, without any at home."""
+        place = Place(now.north, now.east, home.height) if self._strips else home
+        return Landing(now, lane_for(place, self._strips, now), senses, params)
+
+    def landing_at(self, now: Estimate, place: Place, senses: Senses, params: AirParams) -> Landing:
+        """On the strip there, or on the place itself."""
+        near = [s for s in self._strips if _distance(s, place.north, place.east) < s.length / 2 + NEAR]
+        return Landing(now, lane_for(place, near, now), senses, params)
+
+
+def _distance(strip: Strip, north: float, east: float) -> float:
+    """m, from its middle."""
+    return math.hypot(strip.middle.north - north, strip.middle.east - east)

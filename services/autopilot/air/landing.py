@@ -1,0 +1,206 @@
+"""Landing: down a circle, along the glide slope into the wind, flare, decrab, roll-out; or round again.
+
+Heights are those of the wheels over the strip. The path of the flare is laid over the ground: from the slope a parabola leads to the
+sink rate of touching down right where the wheels are meant to touch, whatever the wind.
+"""
+
+import math
+from enum import Enum, auto
+
+from services.autopilot.air.cycle import clip
+from services.autopilot.air.guidance import line_aim
+from services.autopilot.air.params import AirParams
+from services.autopilot.air.path_loops import climb_at
+from services.autopilot.air.route import Circle, Place
+from services.autopilot.air.state import Estimate
+from services.autopilot.air.strip import Lane
+from services.autopilot.air.wheels import Gyros, rolling, rudder_along
+from services.autopilot.air.wishes import Phase, Senses, Track, Wish
+
+FINAL_TIME = 25.0  # s at the lowest airspeed: the length of the final approach
+ON_CIRCLE = 5.0  # m of height, with which it may be left
+ALIGNED = 0.3  # rad, of the course on leaving the circle
+GUST_SHARE, GUST_MOST = 0.3, 0.1  # of the wind, of min_airspeed: what is added to it on the approach
+RANGED_BELOW, RANGED_WITHIN = 20.0, 150.0  # m of height and distance: from here on the range finder sees the strip's level
+RANGE_TIME = 1.0  # s
+GATE = 10.0, 2.0  # m of height, between which the approach has to be a stable one
+TOO_HIGH, TOO_FAST = 3.0, 7.0  # m, m/s
+FLARE_TIME = 3.0  # s
+TOUCH_SINK = 0.55  # m/s
+FLARE_P = 0.8  # 1/s, climb rate per error of height
+TOUCH_SPEED, SLOWS_BELOW = 0.93, 3.0  # of min_airspeed; m
+DECRAB_BELOW = 0.7  # m
+CRAB_LEFT = 0.1  # rad, that the wheels take
+LOW, LOW_BANK = 5.0, 0.15  # m, rad
+TOUCHED, STUCK = 0.12, 0.3  # m; m/s less sink than asked for
+TOUCH_TIME, STUCK_TIME = 0.08, 1.0  # s
+BRAKES_AFTER, BRAKE = 0.8, 0.6  # s
+STOPPED, STANDS = 0.7, 1.5  # m/s, s
+
+
+class Stage(Enum):
+    CIRCLE = auto()
+    FINAL = auto()
+    ROLL = auto()
+    AROUND = auto()
+
+
+class Landing(Phase):
+    """On a lane. ``around`` asks for another approach."""
+
+    def __init__(self, now: Estimate, lane: Lane, senses: Senses, params: AirParams) -> None:
+        self.lane = lane
+        self.why_around = ""
+        self._senses = senses
+        self._length = FINAL_TIME * params.min_airspeed
+        self._offset = 0.0  # m, of the height seen by the range finder from the estimated one
+        self._since = 0.0
+        self._gyros = Gyros(now)
+        slow = now.airspeed < 0.6 * params.min_airspeed  # started anew while it rolls out
+        self._stage = Stage.ROLL if slow else Stage.CIRCLE
+        self._circle = self._new_circle(now, params)
+        self._still = 0.0
+
+    @property
+    def circle(self) -> Circle | None:
+        return self._circle if self._stage is Stage.CIRCLE else None
+
+    @property
+    def rolls(self) -> bool:
+        """The wheels carry it: nothing but the end of the landing can follow."""
+        return self._stage is Stage.ROLL
+
+    def around(self, why: str) -> None:
+        if not self.rolls:
+            self.why_around = why
+            self._to(Stage.AROUND)
+
+    def step(self, now: Estimate, params: AirParams, dt: float) -> Wish:
+        self._since += dt
+        if self._stage is Stage.CIRCLE:
+            return self._descend(now, params)
+        if self._stage is Stage.FINAL:
+            return self._final(now, params, dt)
+        return self._roll(now, dt) if self._stage is Stage.ROLL else self._go_around(now, params)
+
+    def _to(self, stage: Stage) -> None:
+        self._stage, self._since, self._still = stage, 0.0, 0.0
+
+    def _new_circle(self, now: Estimate, params: AirParams) -> Circle:
+        """Beside the lane on the aircraft's side, round into the beginning of the final approach."""
+        _, right = self.lane.locate(now)
+        radius = math.copysign(params.hold_radius, right)
+        north, east = self.lane.before(self._length, radius)
+        height = self.lane.aim.height + params.gear_height + self._slope(params) * self._length
+        return Circle(Place(north, east, height), radius)
+
+    @staticmethod
+    def _slope(params: AirParams) -> float:
+        return math.tan(params.glide_slope)
+
+    def _descend(self, now: Estimate, params: AirParams) -> Wish:
+        circle = self._circle
+        distance, right = self.lane.locate(now)
+        lead = abs(distance - self._length) < 0.4 * abs(circle.radius) and abs(right) < 0.2 * abs(circle.radius)
+        if lead and abs(self.lane.off(now.course)) < ALIGNED and abs(now.height - circle.centre.height) < ON_CIRCLE:
+            self._to(Stage.FINAL)
+        near = now.height < circle.centre.height + 2 * ON_CIRCLE
+        airspeed = self._airspeed(now, params) if near else params.trim_airspeed
+        return Wish(Track(circle.aim(now, params), circle.centre.height, 0.0, airspeed), params.land_flap if near else 0.0)
+
+    def _height(self, now: Estimate, params: AirParams, distance: float, dt: float) -> float:
+        """m, of the wheels over the strip; the range finder corrects the estimate once it sees the strip's level."""
+        estimated = now.height - params.gear_height - self.lane.aim.height
+        seen = self._senses.clearance
+        if seen is not None and distance < RANGED_WITHIN and seen < RANGED_BELOW:
+            self._offset += dt / RANGE_TIME * (seen - estimated - self._offset)
+        return estimated + self._offset
+
+    def _final(self, now: Estimate, params: AirParams, dt: float) -> Wish:
+        distance, right = self.lane.locate(now)
+        height = self._height(now, params, distance, dt)
+        wanted, slope, flares = flare(distance, now.ground_speed, self._slope(params))
+        fast = self._airspeed(now, params)
+        if why := self._unstable(now, height, height - wanted, right, fast):
+            self.around(why)
+        climb = -slope * now.ground_speed + (FLARE_P if flares else params.altitude_p) * (wanted - height)
+        aim = line_aim(self.lane.along, self.lane.before(0.0), (now.north, now.east), params)
+        if not flares:
+            bank = LOW_BANK if height < LOW else None
+            return Wish(Track(aim, None, climb, fast, bank_limit=bank), params.land_flap, firm=True)
+        if self._has_touched(now, climb, dt):
+            self._gyros = Gyros(now)
+            self._to(Stage.ROLL)
+        climb = max(climb, -TOUCH_SINK - 0.4 * max(height, 0.0))
+        rudder = self._decrab(now, params, right) if height < DECRAB_BELOW else None
+        throttle = touch_throttle(now, params, climb, fast, height)
+        track = Track(aim, None, climb, fast, bank_limit=LOW_BANK, rudder=rudder, throttle=throttle)
+        return Wish(track, params.land_flap, firm=True)
+
+    def _airspeed(self, now: Estimate, params: AirParams) -> float:
+        wind = math.hypot(now.wind_north, now.wind_east)
+        return params.min_airspeed + min(GUST_SHARE * wind, GUST_MOST * params.min_airspeed)
+
+    def _unstable(self, now: Estimate, height: float, above: float, right: float, airspeed: float) -> str:
+        """Why this approach is given up; empty while it is good."""
+        distance, _ = self.lane.locate(now)
+        if -distance > self.lane.rest / 2:
+            return "half of the strip passed without touching"
+        if not GATE[1] < height < GATE[0]:
+            return ""
+        if abs(above) > TOO_HIGH:
+            return f"{abs(above):.1f} m too {'high' if above > 0 else 'low'}"
+        if abs(right) > self.lane.width / 2:
+            return f"{abs(right):.1f} m aside"
+        return f"{now.airspeed - airspeed:.1f} m/s too fast" if now.airspeed > airspeed + TOO_FAST else ""
+
+    def _decrab(self, now: Estimate, params: AirParams, right: float) -> float:
+        """rad of rudder that turns the nose along the strip but for what the wheels take."""
+        off = self.lane.off(now.yaw)
+        return rudder_along(now, self.lane.course + clip(off, CRAB_LEFT), 0.0)
+
+    def _has_touched(self, now: Estimate, climb: float, dt: float) -> bool:
+        """Seen by the range finder; or it sinks no more although it should."""
+        seen = self._senses.clearance
+        near, limit = (seen < TOUCHED, TOUCH_TIME) if seen is not None else (now.climb > climb + STUCK, STUCK_TIME)
+        self._still = self._still + dt if near else 0.0
+        return self._still > limit
+
+    def _roll(self, now: Estimate, dt: float) -> Wish:
+        _, right = self.lane.locate(now)
+        level = self._gyros.step(now, dt)
+        stands = now.ground_speed < STOPPED or not self._senses.airborne
+        self._still = self._still + dt if stands else 0.0
+        if self._still > STANDS:
+            self.ended, self.disarms = "landed", True
+        rudder = rudder_along(level, self.lane.course, right)
+        return Wish(rolling(level, rudder, 0.0, BRAKE if self._since > BRAKES_AFTER else 0.0))
+
+    def _go_around(self, now: Estimate, params: AirParams) -> Wish:
+        circle = self._circle.centre.height
+        if now.height > circle - ON_CIRCLE:
+            self._circle = self._new_circle(now, params)
+            self._to(Stage.CIRCLE)
+        aim = line_aim(self.lane.along, self.lane.before(0.0), (now.north, now.east), params)
+        low = now.height < self.lane.aim.height + LOW
+        return Wish(Track(aim, None, climb_at(now, params), params.trim_airspeed, bank_limit=LOW_BANK if low else None, throttle=1.0))
+
+
+def flare(distance: float, ground_speed: float, slope: float) -> tuple[float, float, bool]:
+    """Height [m] and slope of the path ``distance`` [m] before the point to touch at, and whether it has left the straight one."""
+    speed = max(ground_speed, 5.0)
+    touching = min(TOUCH_SINK / speed, slope)
+    begins = FLARE_TIME * speed
+    bend = (slope - touching) / (2 * begins)
+    if distance > begins:
+        return touching * begins + bend * begins**2 + slope * (distance - begins), slope, False
+    on = max(distance, 0.0)
+    return touching * distance + bend * on**2, touching + 2 * bend * on, True
+
+
+def touch_throttle(now: Estimate, params: AirParams, climb: float, airspeed: float, height: float) -> float:
+    """From the airspeed of the approach to that of touching down, which is below the lowest one that the loops hold."""
+    touching = TOUCH_SPEED * airspeed
+    airspeed = touching + (airspeed - touching) * min(max(height / SLOWS_BELOW, 0.0), 1.0)
+    ahead = params.trim_throttle + params.throttle_speed * (airspeed - params.trim_airspeed) + params.throttle_climb * climb
+    return min(max(ahead + params.airspeed_p * (airspeed - now.airspeed), 0.0), 1.0)

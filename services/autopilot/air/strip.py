@@ -1,0 +1,72 @@
+"""Places to take off from and to land on: strips of the world, and one of the two directions of each."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from services.autopilot.air.guidance import Point
+from services.autopilot.air.route import Place
+from services.autopilot.air.state import Estimate
+
+AIM_SHARE, AIM_MOST = 0.25, 60.0  # of the length, m: how far behind the threshold the wheels are meant to touch
+MEADOW = 400.0, 30.0  # m, length and width of what is supposed to be free about a place without a strip
+
+
+@dataclass(frozen=True, slots=True)
+class Strip:
+    """``middle`` lies on the ground; ``course`` [rad] is that of one of its directions; length and width in m."""
+
+    middle: Place
+    course: float
+    length: float
+    width: float
+
+    def lane(self, course: float) -> "Lane":
+        """The direction nearer to this course [rad]."""
+        turned = self.course if math.cos(course - self.course) >= 0 else self.course + math.pi
+        back = self.length / 2 - min(AIM_SHARE * self.length, AIM_MOST)
+        n, e, up = self.middle.north, self.middle.east, self.middle.height
+        aim = Place(n - back * math.cos(turned), e - back * math.sin(turned), up)
+        return Lane(aim, math.remainder(turned, math.tau), self.length / 2 + back, self.width)
+
+
+@dataclass(frozen=True, slots=True)
+class Lane:
+    """One direction of a strip from the point where the wheels are to touch; ``rest`` [m] of it lies behind that."""
+
+    aim: Place
+    course: float  # rad
+    rest: float
+    width: float  # m
+
+    @property
+    def along(self) -> Point:
+        """Unit vector, north and east."""
+        return math.cos(self.course), math.sin(self.course)
+
+    def locate(self, now: Estimate) -> tuple[float, float]:
+        """m before the point to touch at, and to the right of the middle."""
+        n, e = now.north - self.aim.north, now.east - self.aim.east
+        cn, ce = self.along
+        return -(n * cn + e * ce), e * cn - n * ce
+
+    def before(self, distance: float, aside: float = 0.0) -> Point:
+        """North and east of a point so far before the point to touch at, and aside to the right [m]."""
+        cn, ce = self.along
+        return self.aim.north - distance * cn - aside * ce, self.aim.east - distance * ce + aside * cn
+
+    def off(self, angle: float) -> float:
+        """rad, of a course or heading, to the right of the lane's."""
+        return math.remainder(angle - self.course, math.tau)
+
+
+def lane_for(place: Place, strips: Sequence[Strip], now: Estimate) -> Lane:
+    """The strip nearest to ``place``, against the wind; without any the place itself, from where the aircraft is when it is calm."""
+    if math.hypot(now.wind_north, now.wind_east) > 1.0:
+        upwind = math.atan2(-now.wind_east, -now.wind_north)
+    else:
+        upwind = math.atan2(place.east - now.east, place.north - now.north)
+    if not strips:
+        return Lane(place, upwind, MEADOW[0] / 2, MEADOW[1])
+    nearest = min(strips, key=lambda s: math.hypot(s.middle.north - place.north, s.middle.east - place.east))
+    return nearest.lane(upwind)
