@@ -34,7 +34,7 @@ from services.autopilot.air.landed import LandDetector
 from services.autopilot.air.losses import GNSS_HOLD, Loss, losses
 from services.autopilot.air.over_ground import OverGround
 from services.autopilot.air.params import AirParams
-from services.autopilot.air.pilot import Pilot
+from services.autopilot.air.pilot import Flown, Pilot
 from services.autopilot.air.sensed import Fix, Sensed
 from services.autopilot.air.state import Estimate
 from services.autopilot.air.strip import Strip
@@ -157,12 +157,7 @@ class AutopilotAir(Service):
         }
         hand = by_hand.choose(t, {"teleop": teleop, "mavlink": mavlink, "client": client})
         self._over_ground.hear(range, [intake.inertial(m, t) for m in imu], 1 / self.hz)
-        clearance = self._over_ground.clearance(t, now, self.params.gear_height)
-        senses = Senses(self._land.airborne, self._armed, hand, self._ship.travel, clearance, self._over_ground.push)
-        self._pilot.hear(senses, 1 / self.hz)
-        flown = self._pilot.step(now, self.params, 1 / self.hz)
-        if self._pilot.disarms:
-            self._pilot.disarms = self._armed = False
+        flown = self._fly(t, now, hand)
         state = reports.nav_state(t, now)
         out: dict[str, object] = {
             "surfaces": reports.surfaces(t, flown.surfaces, self._armed),
@@ -171,6 +166,22 @@ class AutopilotAir(Service):
             "body_frame": reports.body_frame(state, self._ship.name),
             "events": self._journal.events(t, self._pilot, self._armed, self._lost),
         }
+        out |= self._reports(t, now, flown, battery)
+        self._cycles += 1
+        return {**out, **self._announce(t), **replies}  # type: ignore[dict-item]
+
+    def _fly(self, t: float, now: Estimate, hand: by_hand.Hand | None) -> Flown:
+        clearance = self._over_ground.clearance(t, now, self.params.gear_height)
+        senses = Senses(self._land.airborne, self._armed, hand, self._ship.travel, clearance, self._over_ground.push)
+        self._pilot.hear(senses, 1 / self.hz)
+        flown = self._pilot.step(now, self.params, 1 / self.hz)
+        if self._pilot.disarms:
+            self._pilot.disarms = self._armed = False
+        return flown
+
+    def _reports(self, t: float, now: Estimate, flown: Flown, battery: Battery | None) -> dict[str, object]:
+        """What is told less often than each cycle."""
+        out: dict[str, object] = {}
         told = (self._pilot.mode, self._pilot.reason, self._pilot.stopped, self._armed)
         if self._cycles % 5 == 0 or told != self._told:
             self._told = told
@@ -181,8 +192,7 @@ class AutopilotAir(Service):
         if self._cycles % 25 == 0:
             out["progress"] = reports.progress(t, self._pilot, self._mission.id)
             out["path"] = reports.path(t, self._pilot)
-        self._cycles += 1
-        return {**out, **self._announce(t), **replies}  # type: ignore[dict-item]
+        return out
 
     def recall(
         self,

@@ -36,7 +36,7 @@ def test_items_keep_their_meaning():
     assert (item.radius, item.turns) == (-80, 2)
 
 
-@pytest.mark.parametrize("kind", [MissionItem.TAKEOFF, MissionItem.LAND, 99])
+@pytest.mark.parametrize("kind", [98, 99])
 def test_an_item_that_cannot_be_flown_yet_is_named(kind):
     with pytest.raises(ValueError, match=r"item 0: .* is not flown"):
         intake.items([MissionItem(kind=kind)])
