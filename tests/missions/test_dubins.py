@@ -7,8 +7,9 @@ from uvf.runtime.site import ROOT, load_site
 
 
 @pytest.fixture(scope="module")
-def flown():
-    return run_lockstep(load_site(ROOT / "missions" / "dubins.yaml"), 220.0)
+def flown(tmp_path_factory):
+    log = tmp_path_factory.mktemp("dubins") / "log.mcap"
+    return run_lockstep(load_site(ROOT / "missions" / "dubins.yaml"), 260.0, log)
 
 
 def test_every_place_is_passed_in_its_direction(flown):

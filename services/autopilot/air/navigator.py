@@ -42,6 +42,7 @@ class Navigator:
 
     def jump_to(self, index: int) -> None:
         """Goes on with this item from wherever the aircraft is."""
+        self.speed = self._speed_at(index)
         self._take(next_stop(self.items, index, self._jumps))
         self.finished = self.index is None
         self._piece = None
@@ -53,6 +54,11 @@ class Navigator:
     def take_up(self, index: int | None, reached: int, laps: int, finished: bool) -> None:
         """Stands where another navigator of the same items has stood; jumps are counted anew."""
         self.index, self.reached, self.laps, self.finished = index, reached, laps, finished
+        self.speed = self._speed_at(index or 0)
+
+    def _speed_at(self, index: int) -> float:
+        """m/s, that the items before this one ask for; 0 = cruise."""
+        return next((item.speed for item in reversed(self.items[:index]) if item.kind is Kind.SPEED), 0.0)
 
     def pass_item(self) -> None:
         """The current item, which is none of legs and circles, is done."""

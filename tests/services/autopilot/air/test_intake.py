@@ -1,5 +1,7 @@
 """Messages into the autopilot's frames, and mission items kept as they came."""
 
+import math
+
 import pytest
 
 from schemas.convert import stamp
@@ -34,6 +36,12 @@ def test_items_keep_their_meaning():
     (item,) = intake.items([orbit])
     assert (item.kind, item.place.north, item.place.east, item.place.height) == (Kind.ORBIT, 2, 1, 3)
     assert (item.radius, item.turns) == (-80, 2)
+
+
+def test_a_course_is_turned_from_the_mathematical_to_the_compass_sense_and_may_be_absent():
+    south_east, some = intake.items([MissionItem(course=-math.pi / 4, acceptance_radius=5.0), MissionItem()])
+    assert (south_east.course, south_east.acceptance) == pytest.approx((3 * math.pi / 4, 5.0))
+    assert (some.course, some.acceptance) == (None, math.inf)
 
 
 @pytest.mark.parametrize("kind", [98, 99])

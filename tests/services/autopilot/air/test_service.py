@@ -174,6 +174,27 @@ def test_a_mission_is_taken_announced_and_its_wire_form_kept():
     assert "plan" not in bench.run()
 
 
+def test_a_circle_too_tight_is_refused_on_upload_and_a_short_leg_told_of():
+    bench = Bench()
+    bench.run()
+    tight = MissionItem(kind=MissionItem.ORBIT, position=Vector3(x=500.0, z=80.0), radius=20.0)
+    out = bench.run(mission=[MissionRequest(mission=Mission(items=[tight]))])
+    assert out["mission"][0].reason.startswith("item 0 is a circle of 20 m, too tight at ")
+    places = [(0.0, 0.0), (400.0, 0.0), (400.0, 40.0), (0.0, 40.0)]
+    rows = Mission(items=[MissionItem(position=Vector3(x=x, y=y, z=80.0)) for x, y in places])
+    out = bench.run(mission=[MissionRequest(mission=rows)])
+    assert out["mission"][0].accepted
+    assert "item 1: a curve is flown past it" in [e.text for e in out["events"]] + [e.text for e in bench.run()["events"]]
+
+
+def test_pictures_on_a_mission_are_events_with_their_place():
+    bench = Bench()
+    bench.run()
+    items = [MissionItem(kind=MissionItem.TRIGGER), MissionItem(position=Vector3(x=900.0, z=80.0))]
+    told = [*bench.run(mission=[MissionRequest(mission=Mission(items=items))])["events"], *bench.run()["events"]]
+    assert [e.cause[:5] for e in told if e.text == "camera trigger 1"] == ["at x "]
+
+
 def test_a_mission_that_cannot_be_flown_is_refused_and_nothing_changes():
     bench = Bench()
     bench.run()
