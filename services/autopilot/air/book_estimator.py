@@ -16,6 +16,7 @@ GYRO_TIME = 0.02  # s
 PRESSURE_TIME = 0.08  # s
 FORCE_TIME = 0.15  # s
 RECKONING_AFTER = 1.0  # s without a fix
+LONGEST = 0.1  # s, of a step: the IMU may have been silent for longer
 CLIMB_SIGMA = 1.0  # m/s, with neither barometer nor fixes
 
 
@@ -34,7 +35,7 @@ class BookEstimator:
         self._static, self._differential = LowPass(PRESSURE_TIME), LowPass(PRESSURE_TIME)
         self._side = LowPass(FORCE_TIME)
         self._attitude = Attitude()
-        self._attitude_known = False
+        self._yaw: float | None = None  # rad, left by another estimator
         self._track: TrackFilter | None = None
         self._vertical: Vertical | None = None
         self.density = atmosphere.RHO0
@@ -48,10 +49,10 @@ class BookEstimator:
         self._fix_height_sigma = 0.0  # m
         self._aside = 0.0  # rad, of the flight through the air from the nose
 
-    def begin_at(self, roll: float, pitch: float) -> None:
+    def begin_at(self, roll: float, pitch: float, yaw: float) -> None:
         """Attitude [rad] to begin with, where another estimator has left it; else level flight is supposed."""
         self._attitude.roll, self._attitude.pitch = roll, pitch
-        self._attitude_known = True
+        self._yaw = yaw
 
     @property
     def started(self) -> bool:
@@ -59,6 +60,7 @@ class BookEstimator:
 
     def step(self, sensed: Sensed, params: AirParams, dt: float) -> Estimate:
         """One cycle of ``dt`` [s]."""
+        dt = min(dt, LONGEST)
         samples, fix = sensed.samples, sensed.fix
         self.unfixed = 0.0 if fix is not None else self.unfixed + dt
         self._take_pressures(sensed.pressures, params, dt)
@@ -98,7 +100,9 @@ class BookEstimator:
     def _start(self, samples: list[Inertial], fix: Fix) -> tuple[TrackFilter, Vertical]:
         self._track = TrackFilter(fix.north, fix.east, fix.v_north, fix.v_east)
         self._vertical = Vertical(fix.height, fix.v_up)
-        if samples and not self._attitude_known:
+        if self._yaw is not None:
+            self._track.x[PSI] = self._yaw
+        elif samples:
             self._attitude.start(samples[-1].force)
         return self._track, self._vertical
 

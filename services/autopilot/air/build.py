@@ -7,6 +7,8 @@ import numpy as np
 from schemas.messages import MissionItem
 from services.autopilot.air import flyable, intake
 from services.autopilot.air.by_hand import Travel
+from services.autopilot.air.ekf import datasheet
+from services.autopilot.air.estimators import Instruments
 from services.autopilot.air.params import AirParams
 from services.autopilot.air.route import Place
 from services.autopilot.air.service import AutopilotAir, Ship
@@ -17,6 +19,7 @@ from uvf.maths.geodesy import LocalTangent
 from uvf.runtime import world_file
 from uvf.runtime.params import BadInput
 from uvf.runtime.site import Host, Member, Site
+from uvf.runtime.vehicle_file import Mount
 from uvf.runtime.world_geometry import relief
 
 
@@ -28,7 +31,6 @@ def hosts(site: Site) -> list[Host]:
 def _host(site: Site, member: Member) -> Host:
     origin = site.world.origin
     tangent = LocalTangent.from_degrees(origin.latitude, origin.longitude, origin.altitude)
-    east, north, _ = site.world.magnetic_field
     items = [item_from_file(w) for w in member.entry.job.mission]
     params = member.params(AutopilotAir.name, AirParams)
     if why := _fault(items, params):
@@ -39,7 +41,7 @@ def _host(site: Site, member: Member) -> Host:
         member.name,
         member.entry.system_id,
         tangent,
-        math.atan2(east, north),
+        _instruments(site, member),
         items,
         starts_in_air=start.z > 0 and not start.on_ground,
         ground=ground,
@@ -48,6 +50,13 @@ def _host(site: Site, member: Member) -> Host:
         altimeter=_altimeter(member),
     )
     return Host(AutopilotAir, lambda: AutopilotAir(ship, params), member.name)
+
+
+def _instruments(site: Site, member: Member) -> Instruments:
+    east, north, up = site.world.magnetic_field
+    sensors = member.file.sensors
+    mount = sensors.imu.mount if sensors.imu is not None else Mount()
+    return Instruments((north, east, -up), datasheet.read(sensors), mount.xyz, mount.rpy)
 
 
 def _travel(member: Member) -> Travel:

@@ -94,10 +94,9 @@ def place(v: Vector3) -> Place:
     return Place(v.y, v.x, v.z)
 
 
-def roll_and_pitch(state: NavState) -> tuple[float, float]:
-    """rad, FRD against NED."""
-    roll, pitch, _ = to_euler(enu_flu_from_ned_frd(wxyz(state.orientation)))
-    return roll, pitch
+def attitude(state: NavState) -> tuple[float, float, float]:
+    """Roll, pitch and yaw [rad], FRD against NED."""
+    return to_euler(enu_flu_from_ned_frd(wxyz(state.orientation)))
 
 
 def stand(progress: MissionProgress | None) -> Stand:

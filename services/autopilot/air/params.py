@@ -1,6 +1,6 @@
 """Parameters of the air autopilot; a vehicle.yaml sets those of its airframe, the rest are good for its class."""
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 from msgspec import Meta
 
@@ -13,6 +13,8 @@ def _meta(low: float, high: float, unit: str, about: str) -> Meta:
 
 class AirParams(Params, frozen=True):
     """Names have at most 16 characters, the length of a MAVLink parameter."""
+
+    estimator: Annotated[Literal["full", "book"], Meta(description="error-state filter, or the two filters of Beard & McLain")] = "full"
 
     # airframe: what the wing and tail do, from the linear coefficients (see design.py)
     trim_airspeed: Annotated[float, _meta(2, 300, "m/s", "cruise; surface gains are given for it")] = 25.0

@@ -26,12 +26,13 @@ from schemas.messages import (
     VehicleStatus,
 )
 from services.autopilot.air import by_hand, intake, reports
-from services.autopilot.air.book_estimator import BookEstimator
 from services.autopilot.air.commands import Surfaces
+from services.autopilot.air.estimators import Instruments, estimator
 from services.autopilot.air.flyable import advice
 from services.autopilot.air.journal import Journal
 from services.autopilot.air.landed import LandDetector
 from services.autopilot.air.losses import GNSS_HOLD, Loss, losses
+from services.autopilot.air.mount import ImuMount
 from services.autopilot.air.over_ground import OverGround
 from services.autopilot.air.params import AirParams
 from services.autopilot.air.pilot import Flown, Pilot
@@ -53,7 +54,7 @@ class Ship:
     name: str
     system_id: int
     tangent: LocalTangent
-    declination: float  # rad, magnetic north east of true north
+    instruments: Instruments
     items: list[MissionItem]
     starts_in_air: bool
     ground: float = 0.0  # m, world: height of the ground below the start
@@ -98,6 +99,7 @@ class AutopilotAir(Service):
         "current": topics.SET_CURRENT,
     }
     recalls = {"status": topics.STATUS, "plan": topics.MISSION, "progress": topics.PROGRESS, "nav_state": topics.NAV_STATE}
+    fixed_params = frozenset({"estimator"})
     params: AirParams
 
     def __init__(self, ship: Ship, params: AirParams) -> None:
@@ -106,7 +108,9 @@ class AutopilotAir(Service):
         self._mission = intake.with_id(ship.items)
         self._announced = False
         self._armed = ship.starts_in_air
-        self._estimator = BookEstimator(ship.declination)
+        self._estimator = estimator(params.estimator, ship.instruments)
+        self._mount = ImuMount(ship.instruments.imu_xyz, ship.instruments.imu_rpy)
+        self._estimated = 0.0  # s
         self._pilot = Pilot(intake.items(ship.items), ship.ground, ship.strips)
         self._over_ground = OverGround(ship.altimeter)
         self._journal = Journal()
@@ -211,7 +215,7 @@ class AutopilotAir(Service):
             self._pilot.take_up(intake.MODES[status.mode], intake.place(status.home), intake.stand(progress))
         if nav_state is not None:
             self._left = nav_state
-            self._estimator.begin_at(*intake.roll_and_pitch(nav_state))
+            self._estimator.begin_at(*intake.attitude(nav_state))
 
     def stale(self, t: float, missing: tuple[str, ...]) -> Outputs:
         """Without the IMU nothing can be steered: surfaces at trim until it is back; before the first cycle the servos hold."""
@@ -236,7 +240,11 @@ class AutopilotAir(Service):
                 return None
         pressures = intake.pressures(air_data, t) if air_data is not None else None
         self._lost = losses(self._estimator.unfixed, pressures is not None)
-        return self._estimator.step(Sensed([intake.inertial(m, t) for m in imu], pressures, fix), self.params, 1 / self.hz)
+        period = 1 / self._ship.instruments.sheet.imu_hz
+        samples = [self._mount.at_centre(intake.inertial(m, t), period) for m in imu]
+        dt = t - self._estimated if self._estimator.started else 1 / self.hz
+        self._estimated = t
+        return self._estimator.step(Sensed(samples, pressures, fix), self.params, dt)
 
     def _left_fix(self, t: float) -> Fix | None:
         """After a restart without GNSS: where the instance before has been, once a fix has been waited for."""

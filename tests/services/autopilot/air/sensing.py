@@ -2,6 +2,7 @@
 
 from schemas.convert import stamp
 from schemas.messages import AirData, Gnss, Imu, MissionItem, Vector3
+from services.autopilot.air.estimators import Instruments
 from services.autopilot.air.params import AirParams
 from services.autopilot.air.service import AutopilotAir, Ship
 from uvf.maths import atmosphere
@@ -42,7 +43,7 @@ def sensors(t, speed=25.0):
 
 
 def autopilot(items=WAYPOINTS):
-    return AutopilotAir(Ship("milvus", 7, TANGENT, 0.0, list(items), starts_in_air=True), AirParams())
+    return AutopilotAir(Ship("milvus", 7, TANGENT, Instruments(), list(items), starts_in_air=True), AirParams())
 
 
 class Bench:

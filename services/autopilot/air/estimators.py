@@ -1,0 +1,45 @@
+"""The estimators there are, and what they are told of the instruments."""
+
+import math
+from dataclasses import dataclass, field
+from typing import Literal, Protocol
+
+from services.autopilot.air.book_estimator import BookEstimator
+from services.autopilot.air.ekf.datasheet import Datasheet
+from services.autopilot.air.ekf.estimator import FullEstimator
+from services.autopilot.air.params import AirParams
+from services.autopilot.air.sensed import Sensed, Triple
+from services.autopilot.air.state import Estimate
+
+
+@dataclass(frozen=True)
+class Instruments:
+    """What is known of them on the ground."""
+
+    earth: Triple = (0.0, 0.0, 0.0)  # T, NED: the magnetic field here; zero = a compass does not point
+    sheet: Datasheet = field(default_factory=Datasheet)
+    imu_xyz: Triple = (0.0, 0.0, 0.0)  # m, FLU, in base_link
+    imu_rpy: Triple = (0.0, 0.0, 0.0)  # rad
+
+
+class Estimator(Protocol):
+    """From sensors to the state, cycle by cycle, once there is a fix."""
+
+    unfixed: float
+    """s since the last fix."""
+
+    @property
+    def started(self) -> bool: ...
+
+    def begin_at(self, roll: float, pitch: float, yaw: float) -> None:
+        """Attitude [rad] to begin with, where another estimator has left it."""
+
+    def step(self, sensed: Sensed, params: AirParams, dt: float) -> Estimate:
+        """One cycle, ``dt`` [s] after the one before; the first needs a fix."""
+
+
+def estimator(kind: Literal["full", "book"], instruments: Instruments) -> Estimator:
+    if kind == "full":
+        return FullEstimator(instruments.earth, instruments.sheet)
+    north, east, _ = instruments.earth
+    return BookEstimator(math.atan2(east, north))
