@@ -91,6 +91,15 @@ class Navigator:
         piece = self._piece
         return piece.aim(now, params), piece.level(now)
 
+    def curve_ahead(self) -> list[Place]:
+        """What is left of a curve to the current item, about each 10 m; empty on other pieces."""
+        piece = self._piece
+        if not isinstance(piece, Curve) or not piece.ends_at_item:
+            return []
+        count = max(int(piece.left / 10.0), 1)
+        lengths = [piece.s + k * piece.left / count for k in range(count)]
+        return [piece.place(s) for s in lengths]
+
     def _from_here(self, now: Estimate, params: AirParams) -> Piece:
         target = self.target
         course = now.course if target is not None and target.course is not None else None

@@ -130,7 +130,7 @@ def path(t: float, pilot: Pilot) -> PosesInFrame:
 def _ahead(pilot: Pilot) -> list[Place]:
     """Each item once, then back to the first when the circuit closes."""
     navigator = pilot.navigator
-    places: list[Place] = []
+    places = navigator.curve_ahead()
     seen: list[int] = []
     index = navigator.index
     while index is not None and navigator.items[index].kind is not ItemKind.RETURN:

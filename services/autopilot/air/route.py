@@ -150,6 +150,11 @@ class Curve:
         i = int(np.searchsorted(self.way.s, self.s).clip(0, len(self.way.s) - 1))
         return *self.way.points[i].tolist(), float(self.way.course[i])
 
+    def place(self, s: float) -> Place:
+        """On the way at ``s`` [m]."""
+        north, east = (float(np.interp(s, self.way.s, column)) for column in self.way.points.T)
+        return Place(north, east, self._height(s))
+
     @property
     def is_straight(self) -> bool:
         """Where the aircraft is."""
@@ -177,10 +182,11 @@ class Curve:
 
     def level(self, now: Estimate) -> Level:
         """Straight lines over the length between the heights."""
-        at = np.array((0.0, *self.passing, self.way.length))
-        height = float(np.interp(self.s, at, self.heights))
-        rise = float(np.interp(self.s + 1.0, at, self.heights)) - height
-        return Level(height, now.ground_speed * rise)
+        height = self._height(self.s)
+        return Level(height, now.ground_speed * (self._height(self.s + 1.0) - height))
+
+    def _height(self, s: float) -> float:
+        return float(np.interp(s, (0.0, *self.passing, self.way.length), self.heights))
 
     def _nearest(self, position: Point) -> tuple[float, float, float]:
         return self.way.nearest(position, (self.s - BEHIND, self.s + AHEAD))

@@ -57,6 +57,16 @@ def test_every_course_is_flown_at_its_place_without_overshoot(wind):
         assert np.abs(off).min() < 0.1
 
 
+def test_what_is_left_of_a_path_can_be_drawn():
+    navigator = Navigator([waypoint(200, 0, 0), waypoint(500, 300, 90, height=100.0)])
+    navigator.resume()
+    navigator.step(Kinematic().estimate(), PARAMS, 0.02)
+    ahead = navigator.curve_ahead()
+    assert len(ahead) == 19 or len(ahead) == 20
+    assert (ahead[0].north, ahead[0].east) == pytest.approx((0.0, 0.0), abs=0.1)
+    assert ahead[-1].north == pytest.approx(190.0, abs=1.0)
+
+
 def test_the_aim_does_not_jump_where_one_path_ends_and_the_next_begins():
     flight = Flight([waypoint(*c) for c in COURSES])
     assert np.abs(np.diff(flight.errors)).max() < 0.1
