@@ -87,6 +87,11 @@ class FullEstimator:
         """kg/m^3."""
         return self._air.density
 
+    @property
+    def gyro_bias(self) -> Floats:
+        """(3,) rad/s, as known now."""
+        return self._aiding.filter.state.x[GYRO_BIAS].copy() if self._aiding is not None else np.zeros(3)
+
     def step(self, sensed: Sensed, params: AirParams, dt: float) -> Estimate:
         """One cycle, ``dt`` [s] after the one before."""
         self._t += dt

@@ -1,0 +1,189 @@
+"""Estimators beside the truth: flights of the accuracy course in JSBSim, the sensors of each taken by both estimators.
+
+The aircraft is flown by its own estimator; what that was given is given to the others too, so that all see the same noise. RMS errors
+from 30 s on (angles in deg, lengths in m, speeds in m/s; wind is that about the aircraft, gusts included), and NEES, the squared error
+over its covariance per state: 1 = as wrong as foretold. ``outage`` takes the fixes away from 60 to 90 s: drift is the error of position
+then, sigma what the filter says. ``bias`` adds 0.02 rad/s to each gyroscope: settled is when all errors of bias stay below 0.002 rad/s.
+"""
+
+import tempfile
+from collections.abc import Callable
+from contextlib import closing
+from dataclasses import replace
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from benchmarks.accuracy import Case, Probe, course_site
+from services.autopilot.air.ekf.estimator import FullEstimator
+from services.autopilot.air.estimators import Estimator, Instruments, estimator
+from services.autopilot.air.params import AirParams
+from services.autopilot.air.sensed import Sensed
+from services.autopilot.air.state import Estimate
+from uvf.launch import catalogue
+from uvf.launch.bench import Figures
+from uvf.maths import rotations
+from uvf.runtime.lockstep import Lockstep
+
+Floats = NDArray[np.float64]
+
+SECONDS, SETTLED = 120.0, 30.0  # s
+SEEDS = range(1, 21)
+OUTAGE = (60.0, 90.0)  # s
+BIAS, FOUND = 0.02, 0.002  # rad/s
+COLUMNS = ("roll", "pitch", "yaw", "position", "height", "velocity", "airspeed", "wind")
+
+
+class Recorded(NamedTuple):
+    """A flight: per cycle what was sensed, the time since the cycle before, and (12,) the truth in the order of ``_row``."""
+
+    cycles: list[tuple[float, Sensed, float]]
+    truth: Floats
+    instruments: Instruments
+    params: AirParams
+
+
+class Tap:
+    """Stands before an estimator and writes down what it is given."""
+
+    def __init__(self, inner: Estimator) -> None:
+        self._inner = inner
+        self.given: tuple[Sensed, float] | None = None
+
+    @property
+    def unfixed(self) -> float:
+        return self._inner.unfixed
+
+    @property
+    def started(self) -> bool:
+        return self._inner.started
+
+    def begin_at(self, roll: float, pitch: float, yaw: float) -> None:
+        self._inner.begin_at(roll, pitch, yaw)
+
+    def step(self, sensed: Sensed, params: AirParams, dt: float) -> Estimate:
+        self.given = sensed, dt
+        return self._inner.step(sensed, params, dt)
+
+
+def record(case: Case) -> Recorded:
+    """One flight with the satellites ``good``."""
+    with tempfile.TemporaryDirectory() as folder:
+        site, _ = course_site("milvus", case, "good", Path(folder))
+    lockstep = Lockstep(catalogue.hosts(site, [catalogue.kind("sim_air"), catalogue.kind("autopilot")]))
+    cycles: list[tuple[float, Sensed, float]] = []
+    truth: list[tuple[float, ...]] = []
+    with closing(lockstep):
+        probe = Probe(lockstep)
+        tap = Tap(probe.autopilot._estimator)
+        probe.autopilot._estimator = tap
+
+        def look(t: float) -> bool:
+            if tap.given is not None:
+                cycles.append((t, *tap.given))
+                tap.given = None
+                motion, wind = probe.craft.motion, probe.craft.wind
+                angles = rotations.to_euler(rotations.enu_flu_from_ned_frd(motion.world_from_body))
+                (e, n, u), (ve, vn, vu) = motion.position.tolist(), motion.velocity.tolist()
+                truth.append((n, e, u, vn, ve, vu, *angles, motion.airspeed, wind[1], wind[0]))
+            return True
+
+        lockstep.run(SECONDS, look)
+        return Recorded(cycles, np.array(truth), probe.autopilot._ship.instruments, probe.autopilot.params)
+
+
+def _row(now: Estimate) -> tuple[float, ...]:
+    vn, ve = now.ground_speed * np.cos(now.course), now.ground_speed * np.sin(now.course)
+    air = (now.airspeed, now.wind_north, now.wind_east)
+    return (now.north, now.east, now.height, float(vn), float(ve), now.climb, now.roll, now.pitch, now.yaw, *air)
+
+
+class Run(NamedTuple):
+    """t: (n,) s; errors: (n, 12) by ``_row``; sigmas: (n, 4) m position, rad tilt and yaw, m/s wind; bias: (n, 3) rad/s estimated."""
+
+    t: Floats
+    errors: Floats
+    sigmas: Floats
+    bias: Floats
+
+
+def replay(kind: str, flight: Recorded, change: Callable[[float, Sensed], Sensed] = lambda _, sensed: sensed) -> Run:
+    """An estimator over the sensors of a flight, changed on the way."""
+    one = estimator("full" if kind == "full" else "book", flight.instruments)
+    t, errors, sigmas, bias = [], [], [], []
+    for (at, given, dt), true in zip(flight.cycles, flight.truth, strict=True):
+        now = one.step(change(at, given), flight.params, dt)
+        error = np.array(_row(now)) - true
+        error[6:9] = np.remainder(error[6:9] + np.pi, 2 * np.pi) - np.pi
+        t.append(at)
+        errors.append(error)
+        sigmas.append((now.position_sigma, now.tilt_sigma, now.yaw_sigma, now.wind_sigma))
+        bias.append(one.gyro_bias if isinstance(one, FullEstimator) else np.zeros(3))
+    return Run(np.array(t), np.array(errors), np.array(sigmas), np.array(bias))
+
+
+def _rms(x: Floats) -> float:
+    return float(np.sqrt(np.mean(np.square(x))))
+
+
+def scores(run: Run) -> dict[str, float]:
+    k = run.t > SETTLED
+    e = run.errors[k]
+    roll, pitch, yaw = (np.degrees(_rms(e[:, i])) for i in (6, 7, 8))
+    rest = (_rms(e[:, :2]), _rms(e[:, 2]), _rms(e[:, 3:6]), _rms(e[:, 9]), _rms(e[:, 10:12]))
+    found = dict(zip(COLUMNS, (roll, pitch, yaw, *rest), strict=True))
+    sigma = run.sigmas[k]
+    if sigma[:, 1].all():
+        found["NEES position"] = float(np.mean(e[:, :2] ** 2 / sigma[:, :1] ** 2))
+        found["NEES tilt"] = float(np.mean(e[:, 6:8] ** 2 / sigma[:, 1:2] ** 2))
+        found["NEES yaw"] = float(np.mean(e[:, 8] ** 2 / sigma[:, 2] ** 2))
+        found["NEES wind"] = float(np.mean(e[:, 10:12] ** 2 / sigma[:, 3:4] ** 2))
+    return found
+
+
+def _without_fixes(t: float, sensed: Sensed) -> Sensed:
+    return replace(sensed, fix=None) if OUTAGE[0] < t < OUTAGE[1] else sensed
+
+
+def _biased(_: float, sensed: Sensed) -> Sensed:
+    turned = [replace(s, rates=(s.rates[0] + BIAS, s.rates[1] - BIAS, s.rates[2] + BIAS)) for s in sensed.samples]
+    return replace(sensed, samples=turned)
+
+
+def outage_scores(run: Run) -> dict[str, float]:
+    last = int(np.searchsorted(run.t, OUTAGE[1])) - 1
+    return {"drift": float(np.hypot(*run.errors[last, :2])), "sigma": float(run.sigmas[last, 0])}
+
+
+def settled(run: Run, plain: Run) -> float:
+    """s, from where on the bias found is that found without the added one and the added one."""
+    off = np.abs(run.bias - plain.bias[-1] - np.array((BIAS, -BIAS, BIAS))).max(axis=1) > FOUND
+    return float(run.t[np.flatnonzero(off)[-1]]) if off.any() else 0.0
+
+
+def _mean(rows: list[dict[str, float]]) -> dict[str, float]:
+    return {metric: float(np.mean([row[metric] for row in rows])) for metric in rows[0]}
+
+
+def flights(case: Callable[[int], Case], seeds: range = SEEDS) -> dict[str, dict[str, float]]:
+    """By estimator, the mean over the seeds."""
+    rows: dict[str, list[dict[str, float]]] = {"full": [], "book": []}
+    for seed in seeds:
+        flight = record(case(seed))
+        for kind, found in rows.items():
+            plain = replay(kind, flight)
+            row = scores(plain) | outage_scores(replay(kind, flight, _without_fixes))
+            found.append(row | ({"bias s": settled(replay(kind, flight, _biased), plain)} if kind == "full" else {}))
+    return {kind: _mean(found) for kind, found in rows.items()}
+
+
+def _case(name: str, of: Callable[[int], Case]) -> Callable[[Path | None], Figures]:
+    return lambda data: {f"{name}, {kind}": row for kind, row in flights(of).items()}
+
+
+CASES = {
+    "calm": _case("calm", lambda seed: Case(seed=seed)),
+    "moderate": _case("10 from E, moderate", lambda seed: Case((0.0, -10.0), "moderate", seed)),
+}
