@@ -22,6 +22,7 @@ class Mode(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
     MODE_LAND: _ClassVar[Mode]
     MODE_ORBIT: _ClassVar[Mode]
     MODE_OFFBOARD: _ClassVar[Mode]
+    MODE_FOLLOW: _ClassVar[Mode]
 
 class Kind(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
     __slots__ = ()
@@ -40,6 +41,7 @@ MODE_TAKEOFF: Mode
 MODE_LAND: Mode
 MODE_ORBIT: Mode
 MODE_OFFBOARD: Mode
+MODE_FOLLOW: Mode
 KIND_UNSPECIFIED: Kind
 KIND_GROUND: Kind
 KIND_FIXED_WING: Kind

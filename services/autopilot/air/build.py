@@ -13,6 +13,7 @@ from services.autopilot.air.params import AirParams
 from services.autopilot.air.route import Place
 from services.autopilot.air.service import AutopilotAir, Ship
 from services.autopilot.air.strip import Strip
+from services.autopilot.air.wingmen import wingman
 from services.autopilot.plan import item_from_file
 from uvf.maths import rotations
 from uvf.maths.geodesy import LocalTangent
@@ -49,6 +50,8 @@ def _host(site: Site, member: Member) -> Host:
         strips=tuple(_strip(s) for s in site.world.strips),
         altimeter=_altimeter(member),
     )
+    if member.entry.job.follow is not None:
+        return wingman(site, ship, params)
     return Host(AutopilotAir, lambda: AutopilotAir(ship, params), member.name)
 
 

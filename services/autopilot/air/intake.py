@@ -39,6 +39,7 @@ MODES = {
     Mode.MODE_POSITION: FlightMode.POSITION,
     Mode.MODE_TAKEOFF: FlightMode.TAKEOFF,
     Mode.MODE_LAND: FlightMode.LAND,
+    Mode.MODE_FOLLOW: FlightMode.FOLLOW,
 }
 
 

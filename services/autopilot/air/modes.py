@@ -17,6 +17,7 @@ class FlightMode(Enum):
     RETURN = "Return"
     LAND = "Land"
     OFFBOARD = "Offboard"
+    FOLLOW = "Follow"
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,6 +31,8 @@ class Situation:
     """Somebody sends setpoints from outside."""
     stopped: str = ""
     """Who has stopped the aircraft."""
+    led: bool = False
+    """The aircraft has a leader, which is heard."""
 
 
 class Need(Enum):
@@ -41,6 +44,7 @@ class Need(Enum):
     GROUND = "the aircraft is flying: it can only take off from the ground"
     MISSION = "there is no mission: upload one first"
     SETPOINT = "no setpoint is sent: publish cmd/<source>/setpoint first"
+    LEADER = "there is no leader to follow, or nothing is heard of it: see 'follow' of the mission's job"
 
     def is_met(self, now: Situation) -> bool:
         return {
@@ -50,6 +54,7 @@ class Need(Enum):
             Need.GROUND: not now.airborne,
             Need.MISSION: now.has_mission,
             Need.SETPOINT: now.setpoint,
+            Need.LEADER: now.led,
         }[self]
 
 
@@ -85,6 +90,7 @@ TABLE: Mapping[FlightMode, Row] = {
     _M.RETURN: Row(_FLYING, _HERE),
     _M.LAND: Row(_FLYING, _HERE, done=_M.HOLD),
     _M.OFFBOARD: Row((Need.RELEASED, Need.AIRBORNE, Need.SETPOINT), (Need.SETPOINT,)),
+    _M.FOLLOW: Row((*_FLYING, Need.LEADER), (Need.POSITION, Need.LEADER)),
 }
 
 

@@ -61,6 +61,11 @@ class AirParams(Params, frozen=True):
     turn_bank: Annotated[float, _meta(0.1, 1.1, "rad", "bank that turns between legs are planned for")] = 0.9
     pitch_limit: Annotated[float, _meta(0.1, 1, "rad", "largest pitch commanded, up and down")] = 0.45
 
+    # following a leader
+    follow_p: Annotated[float, _meta(0, 2, "1/s", "speed per distance behind the station")] = 0.25
+    follow_i: Annotated[float, _meta(0, 0.5, "1/s^2", "speed per integrated distance behind the station")] = 0.01
+    follow_sep: Annotated[float, _meta(2, 500, "m", "least distance from another aircraft of the formation")] = 10.0
+
     # modes
     hold_radius: Annotated[float, _meta(20, 20000, "m", "orbit of Hold and Return, clockwise")] = 90.0
     return_altitude: Annotated[float, _meta(10, 1000, "m", "lowest altitude of Return, world z")] = 60.0

@@ -8,6 +8,7 @@ from services.autopilot.air.by_hand import COMMAND_MAX_AGE, LET_GO, Stick
 from services.autopilot.air.commands import Surfaces, Wanted
 from services.autopilot.air.field import Field
 from services.autopilot.air.flyable import fault
+from services.autopilot.air.formation import Formation, Trailing
 from services.autopilot.air.guidance import Aim
 from services.autopilot.air.helm import Helm
 from services.autopilot.air.landing import Landing
@@ -59,6 +60,7 @@ class Pilot:
         self._blind = False
         self.home: Place | None = None
         self.senses = Senses()
+        self.formation: Formation | None = None
         self._stick = Stick()
         self._helm = Helm()
         self._phase: Phase | None = None
@@ -98,8 +100,18 @@ class Pilot:
         return part if isinstance(part, Landing) else None
 
     @property
+    def station(self) -> float | None:
+        """m, of the aircraft from its station behind a leader."""
+        return self._phase.distance if isinstance(self._phase, Trailing) else None
+
+    def join(self, formation: Formation) -> None:
+        """Before the first step: follows from the start on."""
+        self.formation, self.mode = formation, FlightMode.FOLLOW
+
+    @property
     def _situation(self) -> Situation:
-        return Situation(self.senses.airborne, not self._blind, bool(self.navigator.items), False, self.stopped)
+        led = self.formation is not None and self.formation.is_led
+        return Situation(self.senses.airborne, not self._blind, bool(self.navigator.items), False, self.stopped, led)
 
     @property
     def _stands(self) -> bool:
@@ -117,6 +129,17 @@ class Pilot:
             self._end(self._phase)
         if TABLE[self.mode].by_hand:
             self._look_at_stick(now, params)
+        if self.formation is not None:
+            self._look_at_leader(self.formation)
+
+    def _look_at_leader(self, formation: Formation) -> None:
+        """Without a leader it holds; once the leader is back it follows again, unless it has been told something else."""
+        if self.mode is FlightMode.FOLLOW and formation.is_lost:
+            self._change(FlightMode.HOLD, formation.lost_reason)
+        elif self.mode is FlightMode.HOLD and self.reason == formation.lost_reason:
+            self.change_mode(FlightMode.FOLLOW, "autopilot", formation.reason)
+        if self.mode is FlightMode.FOLLOW and formation.is_led:
+            self.reason = formation.reason
 
     def _look_at_stick(self, now: Estimate, params: AirParams) -> None:
         """Until the first command the autopilot circles; after the last one it takes over."""
@@ -137,6 +160,8 @@ class Pilot:
             return self._field.take_off(now, self.home.height + params.takeoff_alt, self.senses)
         if self.mode is FlightMode.LAND:
             return self._field.landing(now, self.home, self.senses, params)
+        if self.mode is FlightMode.FOLLOW and self.formation is not None:
+            return Trailing(self.formation)
         if TABLE[self.mode].by_hand and self.senses.hand is not None:
             return STICK_MODES[self.mode](self.senses)
         return Circling(self._new_circle(now, params))

@@ -91,7 +91,9 @@ def status(t: float, pilot: Pilot, now: Estimate, flown: Flown) -> VehicleStatus
 
 
 def _distance(pilot: Pilot, now: Estimate) -> float:
-    """m, to the current item's place, or to the centre of the circle that is held."""
+    """m, to the current item's place, to the centre of the circle that is held, or to the station behind a leader."""
+    if pilot.station is not None:
+        return pilot.station
     target = pilot.navigator.target
     place = target.place if pilot.mode is FlightMode.MISSION and target else pilot.circle.centre if pilot.circle else None
     return math.hypot(place.north - now.north, place.east - now.east) if place else 0.0
@@ -122,6 +124,8 @@ def path(t: float, pilot: Pilot) -> PosesInFrame:
     """What is flown, for display: the items still to come up to a return to the first of them, or the circle."""
     if pilot.mode is FlightMode.MISSION and pilot.navigator.index is not None:
         places = _ahead(pilot)
+    elif pilot.mode is FlightMode.FOLLOW and pilot.formation is not None:
+        places = pilot.formation.ahead()
     else:
         places = _round(pilot.circle) if pilot.circle else []
     return PosesInFrame(timestamp=stamp(t), frame_id="world", poses=[_pose(p) for p in places])

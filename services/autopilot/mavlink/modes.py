@@ -40,6 +40,7 @@ TABLE = (
     Row(Mode.MODE_RETURN, "Return", 4, 5, _AUTO),
     Row(Mode.MODE_LAND, "Land", 4, 6, _AUTO, mav.MAV_STANDARD_MODE_LAND),
     Row(Mode.MODE_ORBIT, "Orbit", 3, 1, _AUTO, properties=mav.MAV_MODE_PROPERTY_NOT_USER_SELECTABLE),
+    Row(Mode.MODE_FOLLOW, "Follow", 4, 8, _AUTO, listed=False),
     Row(Mode.MODE_OFFBOARD, "Offboard", 6, 0, _AUTO, properties=mav.MAV_MODE_PROPERTY_ADVANCED, listed=False),
 )
 LISTED = tuple(row for row in TABLE if row.listed)

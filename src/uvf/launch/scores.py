@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from schemas import topics
 from schemas.convert import array
 from schemas.messages import Contact, Grid, Mission, MissionItem, MissionProgress, NavState, PoseInFrame
+from uvf.launch import formation_scores
 from uvf.maths.rotations import wrap
 from uvf.runtime.bus import Bus, Sample
 from uvf.runtime.mapped_floor import MappedFloor
@@ -31,7 +32,7 @@ class Track:
 
     name: str
     site: Site
-    truth: list[tuple[float, float, float, float]] = field(default_factory=list)  # t, x, y, z
+    truth: list[tuple[float, float, float, float, float]] = field(default_factory=list)  # t, x, y, z, airspeed
     pose: list[tuple[float, float, float]] = field(default_factory=list)  # t, x, y
     progress: list[tuple[float, int, int]] = field(default_factory=list)  # t, reached, laps
     contacts: int = 0
@@ -39,13 +40,15 @@ class Track:
     felt: bool = False
     grid: Grid | None = None
     mission: Mission | None = None
+    team: "dict[str, Track]" = field(default_factory=dict)  # all of the run, this one included
 
     def heard(self, sample: Sample) -> None:
         t = sample.stamp_ns / 1e9
         name = sample.key.split("/", 2)[2]
         if name == "truth/state":
-            p = NavState.FromString(sample.payload).position
-            self.truth.append((t, p.x, p.y, p.z))
+            state = NavState.FromString(sample.payload)
+            p = state.position
+            self.truth.append((t, p.x, p.y, p.z, state.airspeed))
         elif name == "nav/pose":
             q = PoseInFrame.FromString(sample.payload).pose.position
             self.pose.append((t, q.x, q.y))
@@ -61,9 +64,17 @@ class Track:
             progress = MissionProgress.FromString(sample.payload)
             self.progress.append((t, progress.reached, progress.laps))
 
+    @property
+    def flies(self) -> bool:
+        return self.site.members[self.name].file.kind == "fixed_wing"
+
     def positions(self) -> Floats:
         """(n, 4) true t, x, y, z."""
-        return np.array(self.truth).reshape(-1, 4)
+        return self.motion()[:, :4]
+
+    def motion(self) -> Floats:
+        """(n, 5) true t, x, y, z and airspeed."""
+        return np.array(self.truth).reshape(-1, 5)
 
 
 def check_criteria(site: Site) -> None:
@@ -79,7 +90,8 @@ class Scorer:
     def __init__(self, site: Site) -> None:
         self._site = site
         check_criteria(site)
-        self._tracks = {name: Track(name, site) for name in site.members}
+        self._tracks: dict[str, Track] = {}
+        self._tracks.update({name: Track(name, site, team=self._tracks) for name in site.members})
 
     def follow(self, bus: Bus) -> None:
         """Subscribes to what the measures need."""
@@ -197,6 +209,31 @@ def _passes(track: Track) -> list[tuple[MissionItem, Floats]]:
     return found
 
 
+def separation(track: Track) -> float:
+    """Least distance [m] from the other aircraft; 0 when nothing was heard of it."""
+    others = [other.motion() for name, other in track.team.items() if name != track.name and other.flies and other.truth]
+    return formation_scores.separation(track.motion(), others) if track.truth else 0.0
+
+
+def spacing_error(track: Track) -> float:
+    """RMS [m] along the leader's track, of a follower from its station; infinite for one that follows nobody."""
+    errors = _station_errors(track)
+    return float(np.sqrt(np.mean(errors[:, 1] ** 2))) if len(errors) else float("inf")
+
+
+def station_error(track: Track) -> float:
+    """RMS [m] of the distance of a follower from its station; infinite for one that follows nobody."""
+    errors = _station_errors(track)
+    return float(np.sqrt(np.mean((errors[:, 1:] ** 2).sum(axis=1)))) if len(errors) else float("inf")
+
+
+def _station_errors(track: Track) -> Floats:
+    follow = track.site.members[track.name].entry.job.follow
+    if follow is None or not track.truth or not track.team[follow.leader].truth:
+        return np.zeros((0, 4))
+    return formation_scores.station_errors(track.motion(), track.team[follow.leader].motion(), follow)
+
+
 def _corners(track: Track) -> Floats:
     items = track.mission.items if track.mission else ()
     return np.array([array(i.position) for i in items if i.kind == MissionItem.WAYPOINT]).reshape(-1, 3)
@@ -225,7 +262,6 @@ def _altitude(p: Floats, a: Floats, b: Floats) -> Floats:
     return altitude
 
 
-MEASURES: dict[str, Callable[[Track], float]] = {
-    f.__name__: f
-    for f in (distance_driven, contacts, pose_error, mapped_floor, circuits, legs, path_error, altitude_error, waypoint_error, course_error)
-}
+_MEASURES = (distance_driven, contacts, pose_error, mapped_floor, circuits, legs, path_error, altitude_error, waypoint_error, course_error)
+_OF_FORMATIONS = (separation, spacing_error, station_error)
+MEASURES: dict[str, Callable[[Track], float]] = {f.__name__: f for f in (*_MEASURES, *_OF_FORMATIONS)}

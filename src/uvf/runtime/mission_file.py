@@ -8,6 +8,7 @@ from msgspec import Meta
 
 from schemas.topics import SYSTEM
 from uvf.runtime.faults import Fault, check_faults
+from uvf.runtime.formation_file import Follow, check_follow
 from uvf.runtime.params import BadInput, Place, load_yaml, nearest
 from uvf.runtime.wind_file import Wind, check_wind
 
@@ -54,6 +55,7 @@ class Job(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     explore: bool = False
     mission: list[Waypoint] = []
+    follow: Follow | None = None
 
 
 class Vehicle(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -94,6 +96,7 @@ def load_mission(path: Path) -> MissionFile:
     mission = load_yaml(path, MissionFile)
     file = Place(str(path))
     _check_vehicles(mission.vehicles, file.at("vehicles"))
+    _check_follow(mission.vehicles, file.at("vehicles"))
     if mission.wind is not None:
         check_wind(mission.wind, file.at("wind"))
     check_faults(mission.faults, mission.vehicles, file.at("faults"))
@@ -115,6 +118,13 @@ def _check_vehicles(vehicles: dict[str, Vehicle], place: Place) -> None:
             if other not in vehicles:
                 raise BadInput(f"{place.at(name, 'roles', role)}: no vehicle '{other}'; {nearest(other, vehicles)}")
         _check_jumps(vehicle.job.mission, place.at(name, "job", "mission"))
+
+
+def _check_follow(vehicles: dict[str, Vehicle], place: Place) -> None:
+    for name, vehicle in vehicles.items():
+        if vehicle.job.follow is not None and (vehicle.job.mission or vehicle.job.explore):
+            raise BadInput(f"{place.at(name, 'job', 'follow')}: {name} has a mission of its own besides; leave one of them out")
+    check_follow({name: v.job.follow for name, v in vehicles.items() if v.job.follow is not None}, vehicles, place)
 
 
 def _check_jumps(items: list[Waypoint], place: Place) -> None:
