@@ -10,6 +10,7 @@ from uvf.launch.scores import MEASURES, Scorer
 from uvf.runtime.lockstep import Lockstep
 from uvf.runtime.site import ROOT, load_site
 
+pytestmark = pytest.mark.timeout(300)
 SECONDS = 60.0
 FOLLOWERS = ("milvus2", "milvus3")
 
