@@ -14,6 +14,7 @@ Floats = NDArray[np.float64]
 KILOMETRE = 1000.0
 WATT_HOUR = 3600.0  # J
 AIRBORNE = 5.0  # m/s through the air, where no status tells whether the aircraft has landed
+NEAR = 50.0  # m from its path, beyond which an aircraft is on its way to it
 SETTLED = 10.0  # s, from the beginning on, in which an estimate may still converge
 
 
@@ -34,7 +35,7 @@ class Deviation:
     height: Floats  # m above the wanted one, as the autopilot knows it
     wanted: Floats  # m, height
     true_cross_track: Floats | None  # m
-    on_mission: NDArray[np.bool_]
+    on_path: NDArray[np.bool_]  # in mode Mission, and near it
 
 
 def deviation(history: History) -> Deviation | None:
@@ -49,8 +50,8 @@ def deviation(history: History) -> Deviation | None:
         off = truth.at(t).position - now.position
         speed = np.maximum(np.hypot(now.velocity[:, 0], now.velocity[:, 1]), 1e-3)
         true_across = across + (off[:, 0] * now.velocity[:, 1] - off[:, 1] * now.velocity[:, 0]) / speed
-    on_mission = (rows[:, 1] == Mode.MODE_MISSION) & (rows[:, 2] == 0)
-    return Deviation(t, across, rows[:, 4], now.position[:, 2] - rows[:, 4], true_across, on_mission)
+    on_path = (rows[:, 1] == Mode.MODE_MISSION) & (rows[:, 2] == 0) & (np.abs(across) < NEAR)
+    return Deviation(t, across, rows[:, 4], now.position[:, 2] - rows[:, 4], true_across, on_path)
 
 
 def energy(history: History) -> Floats:
@@ -102,9 +103,9 @@ def _airborne(flown: Motion, history: History) -> NDArray[np.bool_]:
 
 def _path(history: History) -> Iterator[Figure]:
     off = deviation(history)
-    if off is None or not off.on_mission.any():
+    if off is None or not off.on_path.any():
         return
-    on = off.on_mission
+    on = off.on_path
     if off.true_cross_track is not None:
         yield Figure("cross-track, truth", _spread(off.true_cross_track[on]))
     yield Figure("cross-track, as known", _spread(off.cross_track[on]))

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from schemas.convert import mode_name
 from schemas.messages import Event, MissionItem
-from uvf.launch.flights.figures import WATT_HOUR, deviation, energy, figures
+from uvf.launch.flights.figures import NEAR, WATT_HOUR, deviation, energy, figures
 from uvf.launch.flights.history import History, Motion
 
 Floats = NDArray[np.float64]
@@ -195,7 +195,8 @@ def _cross_track(axes: Any, history: History) -> None:
         if off.true_cross_track is not None:
             _line(axes, off.t, off.true_cross_track, "truth", TRUTH)
         _line(axes, off.t, off.cross_track, "as known", ESTIMATE)
-        most = 1.2 * float(np.percentile(np.abs(off.cross_track), 99.5))
+        near = np.abs(off.cross_track[off.on_path])
+        most = 1.2 * float(np.percentile(near, 99.5)) if len(near) else NEAR
         axes.set_ylim(-max(most, 1.0), max(most, 1.0))
     _finish(axes, "cross-track, m to the right")
 
