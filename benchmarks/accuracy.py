@@ -18,6 +18,7 @@ import yaml
 
 from benchmarks.accuracy_course import Course
 from benchmarks.accuracy_score import Flight, score
+from services.autopilot.air import thesis
 from services.autopilot.air.params import AirParams
 from services.autopilot.air.service import AutopilotAir
 from services.sim_air.service import SimAir
@@ -31,7 +32,10 @@ from uvf.runtime.site import Site, load_site
 LONGEST = 1200.0  # s
 PLANE = "plane"
 SEEDS = range(1, 6)
-SHOWN = ("xtrack", "p95", "max", "control", "estimation", "path", "orbit", "level", "slope", "V sd", "deg/s", "orbit deg/s")
+SHOWN = ("xtrack", "p95", "max", "control", "estimation", "path", "orbit", "level", "slope", "V sd", "deg/s", "orbit deg/s", "throttle/s")
+COMPARED = ("xtrack", "orbit", "level", "V sd", "deg/s", "orbit deg/s", "throttle/s")
+"""Of the same flights by the thesis' control."""
+BESIDE = (*SHOWN, *(f"thesis {metric}" for metric in COMPARED), "of thesis")
 
 
 @dataclass(frozen=True)
@@ -111,34 +115,46 @@ class Probe:
         return Flight(x[:, 0], x[:, 1:4], x[:, 4:7], x[:, 7], x[:, 8:12], x[:, 12], x[:, 13], x[:, 14])
 
 
-def fly(model: str, case: Case, preset: str = "good", params: Mapping[str, float] = {}) -> tuple[Flight, Course]:
-    """One flight of the course. Raises BadInput."""
+def fly(model: str, case: Case, preset: str = "good", params: Mapping[str, Any] = {}, law: str = "energy") -> tuple[Flight, Course]:
+    """One flight of the course by one of the autopilot's laws of control. Raises BadInput."""
     with tempfile.TemporaryDirectory() as folder:
         site, course = course_site(model, case, preset, Path(folder))
     hosts = catalogue.hosts(site, [catalogue.kind("sim_air"), catalogue.kind("autopilot")])
     lockstep = Lockstep(hosts)
     with closing(lockstep):
         probe = Probe(lockstep)
-        probe.autopilot.params = msgspec.structs.replace(probe.autopilot.params, **params)
+        own = probe.autopilot.params
+        gains = thesis.preset(own.trim_airspeed) if law == "thesis" else {}
+        probe.autopilot.params = msgspec.structs.replace(own, **{**gains, **params})
         lockstep.run(LONGEST, probe)
     return probe.flight(), course
 
 
-def scored(model: str, preset: str, params: Mapping[str, float], case: Case) -> dict[str, float]:
-    return score(*fly(model, case, preset, params))
+def scored(model: str, preset: str, params: Mapping[str, Any], case: Case, law: str = "energy") -> dict[str, float]:
+    return score(*fly(model, case, preset, params, law))
 
 
-def table(model: str, preset: str, names: list[str], params: Mapping[str, float]) -> Iterator[tuple[str, dict[str, float]]]:
-    """Name of the case -> mean over its seeds."""
+def compared(model: str, preset: str, params: Mapping[str, Any], case: Case) -> dict[str, float]:
+    """What the thesis' control makes of the same flight; nan where it does not fly the course."""
+    try:
+        row = scored(model, preset, params, case, "thesis")
+    except ValueError:
+        row = dict.fromkeys(COMPARED, float("nan"))
+    return {f"thesis {metric}": row[metric] for metric in COMPARED}
+
+
+def table(model: str, preset: str, names: list[str], params: Mapping[str, Any]) -> Iterator[tuple[str, dict[str, float]]]:
+    """Name of the case -> mean over its seeds, and beside it the thesis' control over the same seeds."""
     with ProcessPoolExecutor() as pool:
-        done = {n: [pool.submit(scored, model, preset, params, case) for case in ONE[n]] for n in names}
-        for name, jobs in done.items():
-            rows = [job.result() for job in jobs]
-            yield name, {metric: float(np.mean([row[metric] for row in rows])) for metric in rows[0]}
+        jobs = {n: [[pool.submit(law, model, preset, params, case) for law in (scored, compared)] for case in ONE[n]] for n in names}
+        for name, pairs in jobs.items():
+            rows = [ours.result() | theirs.result() for ours, theirs in pairs]
+            mean = {metric: float(np.mean([row[metric] for row in rows])) for metric in rows[0]}
+            yield name, mean | {"of thesis": mean["deg/s"] / mean["thesis deg/s"]}
 
 
 def case(model: str, preset: str) -> Callable[[Path | None], Figures]:
-    return lambda data: {f"{model}, {preset}, {name}": {m: row[m] for m in SHOWN} for name, row in table(model, preset, list(ONE), {})}
+    return lambda data: {f"{model}, {preset}, {name}": {m: row[m] for m in BESIDE} for name, row in table(model, preset, list(ONE), {})}
 
 
 CASES = {"milvus": case("milvus", "good"), "milvus_book": case("milvus", "book"), "stick25": case("stick25", "good")}

@@ -99,12 +99,13 @@ def rms(x: Floats) -> float:
     return float(np.sqrt(np.mean(np.square(x))))
 
 
-def activity(flight: Flight, k: NDArray[np.intp]) -> float:
-    """deg/s: the way of all surfaces over the time, within windows."""
-    step = np.abs(np.diff(flight.surfaces[:, :3], axis=0)).sum(axis=1)
+def activity(flight: Flight, k: NDArray[np.intp]) -> Floats:
+    """(4,) rad/s and 1/s: the way of each surface and of the throttle over the time, within windows."""
+    step = np.abs(np.diff(flight.surfaces, axis=0))
     follows = np.flatnonzero(np.diff(k) == 1)
     seconds = float((flight.t[k[follows + 1]] - flight.t[k[follows]]).sum())
-    return float(np.degrees(step[k[follows]].sum()) / seconds)
+    way: Floats = step[k[follows]].sum(axis=0) / seconds
+    return way
 
 
 def score(flight: Flight, course: Course) -> dict[str, float]:
@@ -117,6 +118,7 @@ def score(flight: Flight, course: Course) -> dict[str, float]:
     aside = np.concatenate([w.aside(flight.truth) for w in legs])
     control = np.concatenate([w.aside(flight.estimate) for w in legs])
     speed = flight.airspeed[on_legs]
+    busy, busy_turning = activity(flight, on_legs), activity(flight, on_circles)
     whole = slice(int(legs[0].k[0]), int(legs[-1].k[-1]))
     return {
         "xtrack": rms(aside),
@@ -133,8 +135,9 @@ def score(flight: Flight, course: Course) -> dict[str, float]:
         "orbit alt": rms(flight.truth[on_circles, 2] - course.corners[0, 2]),
         "V sd": float(speed.std()),
         "V mean": float(speed.mean()) - course.speed,
-        "deg/s": activity(flight, on_legs),
-        "orbit deg/s": activity(flight, on_circles),
+        "deg/s": float(np.degrees(busy[:3].sum())),
+        "orbit deg/s": float(np.degrees(busy_turning[:3].sum())),
+        "throttle/s": float(busy[3]),
         "bank": float(np.degrees(np.abs(flight.bank[whole]).max())),
         "wind": rms(flight.wind_error[on_legs]),
     }

@@ -186,6 +186,7 @@ class BookEstimator:
             airspeed=self._airspeed,
             density=self.density,
             side_force=self._side.value or 0.0,
+            lift=self._lift,
             wind_north=x[WN],
             wind_east=x[WE],
             position_sigma=track.position_sigma,

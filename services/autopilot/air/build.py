@@ -6,12 +6,12 @@ import numpy as np
 
 from schemas.messages import MissionItem
 from services.autopilot.air import flyable, intake
-from services.autopilot.air.by_hand import Travel
 from services.autopilot.air.ekf import datasheet
 from services.autopilot.air.estimators import Instruments
 from services.autopilot.air.params import AirParams
 from services.autopilot.air.route import Place
 from services.autopilot.air.service import AutopilotAir, Ship
+from services.autopilot.air.servos import Servo, Servos
 from services.autopilot.air.strip import Strip
 from services.autopilot.air.wingmen import wingman
 from services.autopilot.plan import item_from_file
@@ -46,9 +46,9 @@ def _host(site: Site, member: Member) -> Host:
         items,
         starts_in_air=start.z > 0 and not start.on_ground,
         ground=ground,
-        travel=_travel(member),
         strips=tuple(_strip(s) for s in site.world.strips),
         altimeter=_altimeter(member),
+        servos=_servos(member),
     )
     if member.entry.job.follow is not None:
         return wingman(site, ship, params)
@@ -62,10 +62,11 @@ def _instruments(site: Site, member: Member) -> Instruments:
     return Instruments((north, east, -up), datasheet.read(sensors), mount.xyz, mount.rpy)
 
 
-def _travel(member: Member) -> Travel:
-    assert member.file.air is not None
-    controls = member.file.air.controls
-    return Travel(controls.aileron.limit, controls.elevator.limit, controls.rudder.limit)
+def _servos(member: Member) -> Servos:
+    body = member.file.air
+    assert body is not None
+    moved = (body.controls.aileron, body.controls.elevator, body.controls.rudder)
+    return Servos(*(Servo(surface.limit, surface.rate or body.servo_rate) for surface in moved))
 
 
 def _strip(strip: world_file.Strip) -> Strip:

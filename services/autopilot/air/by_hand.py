@@ -7,6 +7,7 @@ from dataclasses import astuple, dataclass, replace
 from schemas.convert import seconds
 from schemas.messages import SurfaceCommand
 from services.autopilot.air.commands import Surfaces
+from services.autopilot.air.servos import Servos
 
 SOURCES = ("teleop", "mavlink", "client")
 """The first one whose command is fresh wins."""
@@ -15,15 +16,6 @@ CLOCK_TOLERANCE = 0.02  # s, one tick: a sender's clock may be that much ahead
 PATIENCE = 0.5  # s that the first command is waited for once the mode is Manual
 LET_GO = Surfaces(0.0, 0.0, 0.0, 0.0, brake=1.0)
 """On the ground, when nobody holds the stick: motor off, brakes on."""
-
-
-@dataclass(frozen=True, slots=True)
-class Travel:
-    """How far the surfaces of this vehicle go, rad: what a stick at its stop asks for."""
-
-    aileron: float = 0.35
-    elevator: float = 0.35
-    rudder: float = 0.35
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,10 +35,12 @@ class Hand:
     source: str
     surfaces: Surfaces
 
-    def sticks(self, travel: Travel) -> Sticks:
+    def sticks(self, servos: Servos) -> Sticks:
         """Where the sticks are that ask for these surfaces."""
         s = self.surfaces
-        return Sticks(_part(s.aileron, travel.aileron), -_part(s.elevator, travel.elevator), -_part(s.rudder, travel.rudder), s.throttle)
+        roll, pitch = _part(s.aileron, servos.aileron.limit), _part(s.elevator, servos.elevator.limit)
+        yaw = _part(s.rudder, servos.rudder.limit)
+        return Sticks(roll, -pitch, -yaw, s.throttle)
 
 
 def _part(deflection: float, stop: float) -> float:

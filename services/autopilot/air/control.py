@@ -1,35 +1,50 @@
 """Control in two levels: a path is held by attitude and throttle, an attitude by the surfaces.
 
-Either level may be asked. Changing from the lower to the upper, the upper's integrators start without a bump.
+Either level may be asked. Changing from the lower to the upper, or from law to law, what the upper has learnt starts without a bump.
 """
+
+from typing import Protocol
 
 from services.autopilot.air.attitude_loops import AttitudeLoops
 from services.autopilot.air.commands import Attitude, Surfaces, Wanted
 from services.autopilot.air.cycle import Cycle
+from services.autopilot.air.energy import EnergyLoops
 from services.autopilot.air.params import AirParams
-from services.autopilot.air.path_loops import PathLoops
+from services.autopilot.air.servos import Servos
 from services.autopilot.air.state import Estimate
+from services.autopilot.air.thesis import ThesisAttitude, ThesisPath
+
+
+class Inner(Protocol):
+    def step(self, cycle: Cycle, wanted: Attitude) -> Surfaces: ...
+
+
+class Outer(Protocol):
+    def begin(self, cycle: Cycle, wanted: Wanted, pitch: float, throttle: float) -> None: ...
+
+    def step(self, cycle: Cycle, wanted: Wanted) -> tuple[float, float]: ...
 
 
 class Control:
-    """Both levels and what they have learnt."""
+    """Both levels of the law that is chosen, and what they have learnt."""
 
-    def __init__(self) -> None:
-        self._attitude = AttitudeLoops()
-        self._path = PathLoops()
+    def __init__(self, servos: Servos) -> None:
+        self._inner: dict[str, Inner] = {"energy": AttitudeLoops(servos), "thesis": ThesisAttitude(servos)}
+        self._outer: dict[str, Outer] = {"energy": EnergyLoops(), "thesis": ThesisPath()}
+        self._flown = ""  # the law of the upper level in the last cycle; none when an attitude was held
         self._held: Attitude | None = None
 
     def step(self, now: Estimate, wanted: Wanted, params: AirParams, dt: float) -> Surfaces:
         """Holds a height or a climb rate, and an airspeed."""
-        cycle = Cycle(now, params, dt)
-        if self._held is not None:
-            self._path.begin(cycle, wanted, self._held.pitch, self._held.throttle)
-            self._held = None
-        pitch, throttle = self._path.step(cycle, wanted)
-        throttle = throttle if wanted.throttle is None else wanted.throttle
-        return self._attitude.step(cycle, Attitude(wanted.bank, pitch, throttle, wanted.rudder))
+        cycle, outer = Cycle(now, params, dt), self._outer[params.law]
+        if self._held is not None and self._flown != params.law:
+            outer.begin(cycle, wanted, self._held.pitch, self._held.throttle)
+        self._flown = params.law
+        pitch, throttle = outer.step(cycle, wanted)
+        self._held = Attitude(wanted.bank, pitch, throttle, wanted.rudder)
+        return self._inner[params.law].step(cycle, self._held)
 
     def hold(self, now: Estimate, wanted: Attitude, params: AirParams, dt: float) -> Surfaces:
         """Holds an attitude with a given throttle: the lower level alone."""
-        self._held = wanted
-        return self._attitude.step(Cycle(now, params, dt), wanted)
+        self._held, self._flown = wanted, ""
+        return self._inner[params.law].step(Cycle(now, params, dt), wanted)

@@ -9,6 +9,7 @@ from services.autopilot.air.control import Control
 from services.autopilot.air.cycle import clip
 from services.autopilot.air.guidance import Steering
 from services.autopilot.air.params import AirParams
+from services.autopilot.air.servos import Servos
 from services.autopilot.air.state import Estimate
 from services.autopilot.air.wishes import Track, Wish
 
@@ -19,8 +20,8 @@ FIRM_CLIMB, FIRM_PITCH = 2.0, 0.7  # times climb_p and pitch_time
 class Helm:
     """Holds on to its integrators from mode to mode."""
 
-    def __init__(self) -> None:
-        self._control = Control()
+    def __init__(self, servos: Servos) -> None:
+        self._control = Control(servos)
         self._steering = Steering()
         self._flap = 0.0
 

@@ -8,9 +8,9 @@ import math
 from enum import Enum, auto
 
 from services.autopilot.air.cycle import clip
+from services.autopilot.air.energy import climb_at
 from services.autopilot.air.guidance import line_aim
 from services.autopilot.air.params import AirParams
-from services.autopilot.air.path_loops import climb_at
 from services.autopilot.air.route import Circle, Place
 from services.autopilot.air.state import Estimate
 from services.autopilot.air.strip import Lane

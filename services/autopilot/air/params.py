@@ -23,6 +23,7 @@ class AirParams(Params, frozen=True):
     trim_throttle: Annotated[float, _meta(0, 1, "", "throttle of level cruise")] = 0.6
     alpha_zero_lift: Annotated[float, _meta(-0.3, 0.3, "rad", "angle of attack without lift")] = -0.04
     alpha_per_load: Annotated[float, _meta(0, 2000, "rad m", "rise of the angle of attack per lift acceleration over EAS squared")] = 6.0
+    alpha_max: Annotated[float, _meta(0.05, 0.6, "rad", "largest angle of attack flown")] = 0.2
     elev_zero_alpha: Annotated[float, _meta(-0.5, 0.5, "rad", "elevator that balances zero angle of attack")] = 0.0
     elev_per_alpha: Annotated[float, _meta(-10, 0, "", "elevator that balances a unit of angle of attack")] = -1.0
 
@@ -39,14 +40,18 @@ class AirParams(Params, frozen=True):
     slip_i: Annotated[float, _meta(0, 1, "rad s/m", "rudder per integrated side force")] = 0.01
 
     # altitude and airspeed
+    law: Annotated[Literal["energy", "thesis"], Meta(description="energy: total energy and rate loops; thesis: its loops and gains")] = (
+        "energy"
+    )
     altitude_p: Annotated[float, _meta(0, 2, "1/s", "climb rate per error of altitude")] = 0.5
     climb_p: Annotated[float, _meta(0, 2, "", "pitch per error of climb angle")] = 1.0
     climb_i: Annotated[float, _meta(0, 1, "1/s", "pitch per integrated error of climb angle")] = 0.6
     climb_max: Annotated[float, _meta(0.5, 15, "m/s", "fastest climb")] = 4.0
     sink_max: Annotated[float, _meta(0.5, 15, "m/s", "fastest descent")] = 4.0
-    airspeed_p: Annotated[float, _meta(0, 1, "s/m", "throttle per error of airspeed")] = 0.08
-    airspeed_i: Annotated[float, _meta(0, 1, "1/m", "throttle per integrated error of airspeed")] = 0.02
+    airspeed_p: Annotated[float, _meta(0.05, 2, "1/s", "acceleration per error of airspeed")] = 0.8
+    power_pole: Annotated[float, _meta(0.05, 5, "rad/s", "how fast the power that throttle and trim do not explain is learnt")] = 0.9
     throttle_climb: Annotated[float, _meta(0, 0.5, "s/m", "throttle per climb rate")] = 0.04
+    idle_sink: Annotated[float, _meta(0.1, 20, "m/s", "sink at cruise airspeed when less throttle brakes no more")] = 5.0
     throttle_load: Annotated[float, _meta(0, 0.5, "", "throttle per load factor squared beyond one")] = 0.01
     throttle_speed: Annotated[float, _meta(0, 0.2, "s/m", "throttle per airspeed beyond cruise")] = 0.03
 
@@ -59,6 +64,7 @@ class AirParams(Params, frozen=True):
     lead_time: Annotated[float, _meta(0, 2, "s", "how early a bend of the path is banked for")] = 0.45
     bank_limit: Annotated[float, _meta(0.1, 1.2, "rad", "largest bank commanded")] = 1.05
     turn_bank: Annotated[float, _meta(0.1, 1.1, "rad", "bank that turns between legs are planned for")] = 0.9
+    load_max: Annotated[float, _meta(1.05, 10, "", "largest load factor flown")] = 3.0
     pitch_limit: Annotated[float, _meta(0.1, 1, "rad", "largest pitch commanded, up and down")] = 0.45
 
     # following a leader

@@ -19,6 +19,7 @@ from services.autopilot.air.params import AirParams
 from services.autopilot.air.paths import Circling
 from services.autopilot.air.plan import Item
 from services.autopilot.air.route import Circle, Level, Place
+from services.autopilot.air.servos import SERVOS, Servos
 from services.autopilot.air.state import Estimate
 from services.autopilot.air.stick_modes import STICK_MODES
 from services.autopilot.air.strip import Strip
@@ -47,7 +48,7 @@ class Stand:
 class Pilot:
     """Flies one mode of the table. Requests give the reason of a refusal, empty when accepted."""
 
-    def __init__(self, items: Sequence[Item], ground: float = 0.0, strips: Sequence[Strip] = ()) -> None:
+    def __init__(self, items: Sequence[Item], ground: float = 0.0, strips: Sequence[Strip] = (), servos: Servos = SERVOS) -> None:
         """ground: height [m] of home, which lies on the ground below the start."""
         self._ground = ground
         self._field = Field(strips)
@@ -62,7 +63,8 @@ class Pilot:
         self.senses = Senses()
         self.formation: Formation | None = None
         self._stick = Stick()
-        self._helm = Helm()
+        self._servos = servos
+        self._helm = Helm(servos)
         self._phase: Phase | None = None
         self._level = Level(math.nan)
         self._fresh = True
@@ -72,7 +74,7 @@ class Pilot:
             self._begin(now)
         self._look(now, params)
         if self._stands:
-            self._helm = Helm()
+            self._helm = Helm(self._servos)
             return Flown(LET_GO, self._straight_on(now, params), self._level)
         phase = self._phase = self._phase or self._begun(now, params)
         return self._flown(phase.step(now, params, dt), now, params, dt)

@@ -1,6 +1,6 @@
 """The autopilot of one fixed-wing aircraft: sensors and requests in, surfaces, estimates and reports out."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from schemas import topics
 from schemas.convert import stamp
@@ -37,6 +37,7 @@ from services.autopilot.air.over_ground import OverGround
 from services.autopilot.air.params import AirParams
 from services.autopilot.air.pilot import Flown, Pilot
 from services.autopilot.air.sensed import Fix, Sensed
+from services.autopilot.air.servos import SERVOS, Servos
 from services.autopilot.air.state import Estimate
 from services.autopilot.air.strip import Strip
 from services.autopilot.air.wishes import Senses
@@ -58,7 +59,7 @@ class Ship:
     items: list[MissionItem]
     starts_in_air: bool
     ground: float = 0.0  # m, world: height of the ground below the start
-    travel: by_hand.Travel = field(default_factory=by_hand.Travel)
+    servos: Servos = SERVOS
     strips: tuple[Strip, ...] = ()
     altimeter: str = ""
     """Frame of the range finder that looks down."""
@@ -111,7 +112,7 @@ class AutopilotAir(Service):
         self._estimator = estimator(params.estimator, ship.instruments)
         self._mount = ImuMount(ship.instruments.imu_xyz, ship.instruments.imu_rpy)
         self._estimated = 0.0  # s
-        self._pilot = Pilot(intake.items(ship.items), ship.ground, ship.strips)
+        self._pilot = Pilot(intake.items(ship.items), ship.ground, ship.strips, ship.servos)
         self._over_ground = OverGround(ship.altimeter)
         self._journal = Journal()
         self._journal.note(advice(self._pilot.navigator.items, params))
@@ -176,7 +177,7 @@ class AutopilotAir(Service):
 
     def _fly(self, t: float, now: Estimate, hand: by_hand.Hand | None) -> Flown:
         clearance = self._over_ground.clearance(t, now, self.params.gear_height)
-        senses = Senses(self._land.airborne, self._armed, hand, self._ship.travel, clearance, self._over_ground.push)
+        senses = Senses(self._land.airborne, self._armed, hand, self._ship.servos, clearance, self._over_ground.push)
         self._pilot.hear(senses, 1 / self.hz)
         flown = self._pilot.step(now, self.params, 1 / self.hz)
         if self._pilot.disarms:

@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass, field
 
+from uvf.maths.geodesy import GRAVITY
+
 
 @dataclass(frozen=True, slots=True)
 class Ratios:
@@ -47,6 +49,7 @@ class Estimate:
     position_sigma: float  # m, horizontal, of the worse axis
     height_known: bool  # False: neither barometer nor fixes, ``height`` is the last one known
     height_sigma: float = 0.0  # m
+    lift: float = GRAVITY  # m/s^2, specific force up along body z
     airspeed_known: bool = True  # False: neither pressures nor fixes, it is taken to be that of trim
     position_known: bool = True  # False: no fix for a second, reckoned on with airspeed, heading and wind
     tilt_sigma: float = 0.0  # rad, of roll and pitch, the worse

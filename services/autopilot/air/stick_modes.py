@@ -30,7 +30,7 @@ class ByHand(Phase):
     @property
     def _sticks(self) -> Sticks:
         hand = self._senses.hand
-        return hand.sticks(self._senses.travel) if hand is not None else Sticks(0.0, 0.0, 0.0, 0.0)
+        return hand.sticks(self._senses.servos) if hand is not None else Sticks(0.0, 0.0, 0.0, 0.0)
 
 
 class Manual(ByHand):

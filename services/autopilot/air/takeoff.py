@@ -4,9 +4,9 @@ import math
 from enum import Enum, auto
 
 from services.autopilot.air.commands import Attitude, Surfaces
+from services.autopilot.air.energy import climb_at
 from services.autopilot.air.guidance import Point, line_aim
 from services.autopilot.air.params import AirParams
-from services.autopilot.air.path_loops import climb_at
 from services.autopilot.air.state import Estimate
 from services.autopilot.air.wheels import Gyros, aside, held, rolling, rudder_along
 from services.autopilot.air.wishes import Phase, Senses, Track, Wish

@@ -1,11 +1,12 @@
 """What a mode wants in a cycle, at one of three levels of control, and what it knows beside the estimate."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
-from services.autopilot.air.by_hand import Hand, Travel
+from services.autopilot.air.by_hand import Hand
 from services.autopilot.air.commands import Attitude, Surfaces, Wanted
 from services.autopilot.air.guidance import Aim
 from services.autopilot.air.params import AirParams
+from services.autopilot.air.servos import SERVOS, Servos
 from services.autopilot.air.state import Estimate
 
 
@@ -41,7 +42,7 @@ class Senses:
     armed: bool = True
     hand: Hand | None = None
     """What is asked by hand; None = nothing fresh."""
-    travel: Travel = field(default_factory=Travel)
+    servos: Servos = SERVOS
     clearance: float | None = None
     """m, of the wheels over the ground, seen by a range finder."""
     push: float = 0.0

@@ -1,11 +1,16 @@
 """The figures of an airframe that the air autopilot needs, from steady flights and linear models of the running model."""
 
+from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from services.sim_air.airframe import Airframe
-from services.sim_air.linear import linearize
+from services.sim_air.equilibrium import Condition, find
+from services.sim_air.linear import LinearModels, held_still, linearize
+from services.sim_air.performance import climb_rate, performance
+from services.sim_air.states import Start
 from services.sim_air.trim import Trim
 from uvf.launch.vehicles.aircraft_rules import HEIGHT
 from uvf.launch.vehicles.aircraft_trial import level
@@ -21,11 +26,17 @@ BANK = 0.7  # tangent of the bank of a holding circle
 RESPONSE = 3.0  # time constants of the free motion within which a commanded angle is reached
 PROPORTIONAL, INTEGRAL = {"roll": 0.29, "pitch": 1.02}, {"roll": 0.86, "pitch": 2.7}  # of the feed-forward; 1/s; as for Milvus
 SPEED = 25.0  # m/s, for which the defaults of the autopilot are
+MARGIN = 1.1  # of a speed over that at which the wing stalls
+HIGHEST_ALPHA = 0.25  # rad, where a model tells of no stall
+IDLING = (0.0, 0.15, 0.3)
+YAW, SLIP = 3.0, 0.2  # of the aircraft's own damping; rad/s
 
 
 def autopilot_figures(airframe: Airframe, body: AirBody) -> dict[str, float]:
     """Parameter name -> value, of an aircraft with an engine. Raises BadInput where it does not fly so."""
-    found = {**_balance(airframe, body.trim_speed), **_rates(airframe, body), **_measures(body.trim_speed)}
+    models = linearize(airframe, body.trim_speed, HEIGHT, Path(body.model))
+    found = {**_balance(airframe, body.trim_speed), **_rates(models, body), **_yaw(models), **_measures(body.trim_speed)}
+    found |= _slowest(airframe, body, found) | {"idle_sink": _within(_idle_sink(airframe, body), 0.1, 20.0)}
     reserve = {"climb_max": 1 - found["trim_throttle"], "sink_max": found["trim_throttle"]}
     for name, left in reserve.items():
         reach = SHARE * left / max(found["throttle_climb"], 1e-3)
@@ -34,7 +45,7 @@ def autopilot_figures(airframe: Airframe, body: AirBody) -> dict[str, float]:
 
 
 def _balance(airframe: Airframe, speed: float) -> dict[str, float]:
-    """Lift, elevator and throttle from three steady flights: cruise, at another speed, climbing."""
+    """Lift, elevator and throttle from four steady flights: cruise, at another speed, climbing, turning."""
     cruise, climbing = airframe.start(level(speed)), airframe.start(level(speed, CLIMB))
     factor, other = _other(airframe, speed)
     per_load = (cruise.alpha - other.alpha) / (GRAVITY * (1 - factor**-2)) * speed**2
@@ -46,6 +57,7 @@ def _balance(airframe: Airframe, speed: float) -> dict[str, float]:
         "elev_zero_alpha": _within(cruise.elevator - per_alpha * cruise.alpha, -0.5, 0.5),
         "elev_per_alpha": _within(per_alpha, -10.0, 0.0),
         "throttle_speed": _within((other.throttle - cruise.throttle) / ((factor - 1) * speed), 0.0, 0.2),
+        "throttle_load": _within(airframe.start(_turning(speed)).throttle - cruise.throttle, 0.0, 0.5),
         "throttle_climb": _within((climbing.throttle - cruise.throttle) / (speed * np.sin(CLIMB)), 0.0, 0.5),
     }
 
@@ -61,9 +73,45 @@ def _other(airframe: Airframe, speed: float) -> tuple[float, Trim]:
     return last, airframe.start(level(last * speed))
 
 
-def _rates(airframe: Airframe, body: AirBody) -> dict[str, float]:
-    """Gains of the rate loops: the feed-forward holds a rate against the damping (see services/autopilot/air/design.py)."""
-    models = linearize(airframe, body.trim_speed, HEIGHT, Path(body.model))
+def _idle_sink(airframe: Airframe, body: AirBody) -> float:
+    """m/s, the steepest of steady descents at cruise airspeed with little throttle: a propeller brakes most while it still turns."""
+    near = Condition(body.trim_speed, HEIGHT, climb=-0.1)
+    with held_still(airframe):
+        flown = [find(airframe, replace(near, throttle=throttle), ("airspeed", "throttle")) for throttle in IDLING]
+    return -min((climb_rate(c) for c in flown if c is not None), default=-STEEPEST * body.trim_speed)
+
+
+def _turning(speed: float) -> Start:
+    """Level, banked by 45 degrees: twice the load factor squared."""
+    return replace(level(speed), turn_rate=GRAVITY / speed)
+
+
+def _slowest(airframe: Airframe, body: AirBody, found: Mapping[str, float]) -> dict[str, float]:
+    """The largest angle of attack: what the elevator balances gliding, within a margin to the stall; and the airspeed that goes with it."""
+    with held_still(airframe):
+        can = performance(airframe, body, HEIGHT)
+    zero = found["alpha_zero_lift"]
+    alpha = _within(min(can.slowest.alpha, zero + (can.stall_alpha - zero) / MARGIN**2), 0.05, HIGHEST_ALPHA)
+    stalled = (found["alpha_per_load"] * GRAVITY / (alpha - zero)) ** 0.5
+    return {"alpha_max": alpha, "min_airspeed": max(SLOWEST * body.trim_speed, MARGIN * stalled)}
+
+
+def _yaw(models: LinearModels) -> dict[str, float]:
+    """The damper in proportion to the aircraft's own damping; the slip loop by the side force that a rudder makes in the end."""
+    side = models.lateral
+    power, damping = side.slope("r", "delta_r"), side.slope("r", "r")
+    forced = side.slope("v", "delta_r") - side.slope("v", "v") * power / side.slope("r", "v")
+    return {
+        "yaw_damping": _within(YAW * damping / power, 0.0, 1.0),
+        "slip_i": _within(SLIP / abs(forced), 0.0, 1.0),
+    }
+
+
+def _rates(models: LinearModels, body: AirBody) -> dict[str, float]:
+    """Gains of the rate loops: the feed-forward of a rate is the deflection that holds it against the damping.
+
+    That is a_phi1 / a_phi2 and a_theta1 / a_theta3 of Beard & McLain (5.26, 5.30).
+    """
     sides = {"roll": (models.lateral, "p", "delta_a", 0.3), "pitch": (models.longitudinal, "q", "delta_e", 0.4)}
     found = {}
     for axis, (side, rate, surface, quickest) in sides.items():
@@ -82,10 +130,7 @@ def _measures(speed: float) -> dict[str, float]:
     """What goes with the speed alone."""
     return {
         "trim_airspeed": speed,
-        "min_airspeed": SLOWEST * speed,
         "max_airspeed": FASTEST * speed,
-        "airspeed_p": 0.08 * SPEED / speed,
-        "airspeed_i": 0.02 * SPEED / speed,
         "k_path": 0.04 * SPEED / speed,
         "hold_radius": max(speed**2 / (GRAVITY * BANK), 20.0),
     }
