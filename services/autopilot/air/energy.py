@@ -81,12 +81,13 @@ class EnergyLoops:
         return max(min(pitch, cycle.highest_pitch), -cycle.params.pitch_limit), self._throttle
 
     def _asked(self, cycle: Cycle, wanted: Wanted) -> Power:
-        """Within what throttle can reach: first the airspeed, then the path."""
-        params, now = cycle.params, cycle.now
-        faster = cycle.speed / GRAVITY * clip(params.airspeed_p * (self._airspeed(cycle, wanted) - now.airspeed), ACCELERATION_LIMIT)
-        higher = 0.0 if wanted.height is None else wanted.height - now.height
+        """Within what throttle can reach: full, the airspeed comes before the path; idling, the highest airspeed does."""
+        params = cycle.params
+        faster = _acceleration(cycle, self._airspeed(cycle, wanted))
+        higher = 0.0 if wanted.height is None else wanted.height - cycle.now.height
         climb = min(max(wanted.climb + params.altitude_p * higher, -params.sink_max), params.climb_max * _room(cycle))
-        most, least = (made(cycle, throttle) + self._power.unexplained - faster for throttle in (1.0, 0.0))
+        most = made(cycle, 1.0) + self._power.unexplained - faster
+        least = made(cycle, 0.0) + self._power.unexplained - _acceleration(cycle, params.max_airspeed)
         return Power(climb, faster, min(max(climb, least), most))
 
     def _pitch(self, cycle: Cycle, climb: float) -> float:
@@ -98,6 +99,11 @@ class EnergyLoops:
     @staticmethod
     def _airspeed(cycle: Cycle, wanted: Wanted) -> float:
         return min(max(wanted.airspeed, cycle.slowest), cycle.params.max_airspeed)
+
+
+def _acceleration(cycle: Cycle, airspeed: float) -> float:
+    """m/s, the power V V' / g towards this airspeed [m/s]."""
+    return cycle.speed / GRAVITY * clip(cycle.params.airspeed_p * (airspeed - cycle.now.airspeed), ACCELERATION_LIMIT)
 
 
 def _room(cycle: Cycle) -> float:

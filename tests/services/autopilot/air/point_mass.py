@@ -58,9 +58,9 @@ class Point:
         self.path += (self.lift * math.cos(self.bank) - G * math.cos(self.path)) / self.speed * DT
 
 
-def fly(point, wanted_at, seconds, params=PARAMS, gust_at=lambda k: (0.0, 0.0)):
-    """Flies by the energy loops; wanted_at(t): Wanted. The estimates and (pitch, throttle) asked for, cycle by cycle."""
-    loops, seen = EnergyLoops(), []
+def fly(point, wanted_at, seconds, params=PARAMS, gust_at=lambda k: (0.0, 0.0), loops=None):
+    """Flies by the energy loops, unless others are given; wanted_at(t): Wanted. The estimate, pitch and throttle of every cycle."""
+    loops, seen = loops or EnergyLoops(), []
     for k in range(round(seconds / DT)):
         now = point.estimate(gust_at(k))
         wanted = wanted_at(k * DT)
