@@ -34,6 +34,7 @@ from services.autopilot.air.params import AirParams
 from services.autopilot.air.sensed import Fix, Inertial, Sensed, Triple
 from services.autopilot.air.state import Estimate
 from uvf.maths.filters import LowPass
+from uvf.maths.geodesy import GRAVITY
 
 GYRO_TIME, FORCE_TIME = 0.02, 0.15  # s
 RECKONING_AFTER = 1.0  # s without a fix
@@ -59,7 +60,7 @@ class FullEstimator:
         self._earth = np.array(earth) / MAGNETIC
         self._sheet = sheet
         self._gyros = [LowPass(GYRO_TIME) for _ in range(3)]
-        self._side = LowPass(FORCE_TIME)
+        self._side, self._lift = LowPass(FORCE_TIME), LowPass(FORCE_TIME)
         self._air = AirData()
         self._standstill = Standstill()
         self._handover = Handover()
@@ -162,6 +163,7 @@ class FullEstimator:
             for low_pass, rate in zip(self._gyros, sample.rates, strict=True):
                 low_pass.step(rate, dt)
             self._side.step(sample.force[1], dt)
+            self._lift.step(-sample.force[2], dt)
             self._standstill.step(rates - state.x[GYRO_BIAS], force, self._fastest(aiding), dt)
         passed = self._sampled - begun
         if passed > 0.0:
@@ -261,6 +263,7 @@ class FullEstimator:
             airspeed=self._airspeed(aiding, params),
             density=self._air.density,
             side_force=self._side.value or 0.0,
+            lift=self._lift.value if self._lift.value is not None else GRAVITY,
             wind_north=wind_north,
             wind_east=wind_east,
             position_sigma=filter_.sigma(slice(6, 8)) + self._handover.off,
