@@ -159,7 +159,7 @@ def fly(seed: int, wind: tuple[float, float] | None = None, model: str = "milvus
 
 def score(seed: int, wind: tuple[float, float], watch: Watch, crash: str) -> Landed:
     rows, lane = watch.rows, watch.lane
-    arounds = sum("go-around" in e.text for e in watch.events)
+    arounds = sum("go-around" in e.cause for e in watch.events)
     if crash or lane is None:
         return Landed(seed, False, crash or rows[-1].mode, (0.0, 0.0), arounds=arounds)
     cn, ce = lane.along

@@ -19,15 +19,17 @@ from foxglove_schemas_protobuf.Quaternion_pb2 import Quaternion
 from foxglove_schemas_protobuf.Vector3_pb2 import Vector3
 from google.protobuf.timestamp_pb2 import Timestamp
 
-from schemas.v1.command_pb2 import DriveCommand, GimbalCommand, StopCommand, SurfaceCommand, WheelCommand
+from schemas.v1.command_pb2 import DriveCommand, FlightSetpoint, GimbalCommand, StopCommand, SurfaceCommand, WheelCommand
 from schemas.v1.mission_pb2 import (
     CancelRequest,
     GoalRequest,
+    GoAroundRequest,
     Mission,
     MissionItem,
     MissionProgress,
     MissionRequest,
     NavStatus,
+    OrbitRequest,
     SetCurrentRequest,
 )
 from schemas.v1.sensor_pb2 import AirData, Battery, Contact, Gnss, Imu, Range, WheelTicks
@@ -62,7 +64,10 @@ __all__ = [
     "FrameTransforms",
     "GimbalCommand",
     "Gnss",
+    "FlightSetpoint",
+    "GoAroundRequest",
     "GoalRequest",
+    "OrbitRequest",
     "Grid",
     "Health",
     "Imu",

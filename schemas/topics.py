@@ -146,6 +146,7 @@ MAP = Topic(f"{_V}/map/grid", m.Grid, 0, _Q.LATCHED, "occupancy, int8: -1 unknow
 # commands and actuators
 DRIVE = Topic(f"{_V}/cmd/<source>", m.DriveCommand, 20, _Q.CONTROL, "velocity asked of a ground vehicle")
 SURFACES = Topic(f"{_V}/cmd/<source>/surfaces", m.SurfaceCommand, 20, _Q.CONTROL, "surfaces and throttle asked of an aircraft")
+SETPOINT = Topic(f"{_V}/cmd/<source>/setpoint", m.FlightSetpoint, 20, _Q.CONTROL, "what mode Offboard follows: attitude, course or path")
 GIMBAL = Topic(f"{_V}/cmd/<source>/gimbal", m.GimbalCommand, 0, _Q.LATCHED, "where the gimbal is to look, and relative to what")
 WHEEL_COMMAND = Topic(f"{_V}/actuator/wheels", m.WheelCommand, 50, _Q.CONTROL, "wheel speeds")
 SURFACE_COMMAND = Topic(f"{_V}/actuator/surfaces", m.SurfaceCommand, 50, _Q.CONTROL, "control surfaces and throttle")
@@ -171,6 +172,8 @@ AIR_POSE = Request(f"{_S}/srv/air/pose", m.SetPoseRequest, m.Reply, "put an airc
 ARM = Request(f"{_V}/srv/arm", m.ArmRequest, m.Reply, "arm or disarm")
 SET_MODE = Request(f"{_V}/srv/mode", m.ModeRequest, m.Reply, "change the flight or drive mode")
 GOAL = Request(f"{_V}/srv/goal", m.GoalRequest, m.Reply, "go to a point")
+ORBIT = Request(f"{_V}/srv/orbit", m.OrbitRequest, m.Reply, "circle a place, in mode Orbit")
+GO_AROUND = Request(f"{_V}/srv/go_around", m.GoAroundRequest, m.Reply, "give up the approach and fly another one")
 CANCEL = Request(f"{_V}/srv/cancel", m.CancelRequest, m.Reply, "give up the goal that is being driven to")
 SET_MISSION = Request(f"{_V}/srv/mission", m.MissionRequest, m.Reply, "replace the mission")
 SET_CURRENT = Request(f"{_V}/srv/current", m.SetCurrentRequest, m.Reply, "jump to a mission item")

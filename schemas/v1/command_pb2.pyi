@@ -1,3 +1,4 @@
+from foxglove_schemas_protobuf import Vector3_pb2 as _Vector3_pb2
 from google.protobuf import timestamp_pb2 as _timestamp_pb2
 from google.protobuf.internal import enum_type_wrapper as _enum_type_wrapper
 from google.protobuf import descriptor as _descriptor
@@ -73,3 +74,57 @@ class StopCommand(_message.Message):
     engaged: bool
     source: str
     def __init__(self, timestamp: _Optional[_Union[_timestamp_pb2.Timestamp, _Mapping]] = ..., engaged: bool = ..., source: _Optional[str] = ...) -> None: ...
+
+class FlightSetpoint(_message.Message):
+    __slots__ = ("timestamp", "attitude", "course", "line", "circle")
+    TIMESTAMP_FIELD_NUMBER: _ClassVar[int]
+    ATTITUDE_FIELD_NUMBER: _ClassVar[int]
+    COURSE_FIELD_NUMBER: _ClassVar[int]
+    LINE_FIELD_NUMBER: _ClassVar[int]
+    CIRCLE_FIELD_NUMBER: _ClassVar[int]
+    timestamp: _timestamp_pb2.Timestamp
+    attitude: AttitudeSetpoint
+    course: CourseSetpoint
+    line: LineSetpoint
+    circle: CircleSetpoint
+    def __init__(self, timestamp: _Optional[_Union[_timestamp_pb2.Timestamp, _Mapping]] = ..., attitude: _Optional[_Union[AttitudeSetpoint, _Mapping]] = ..., course: _Optional[_Union[CourseSetpoint, _Mapping]] = ..., line: _Optional[_Union[LineSetpoint, _Mapping]] = ..., circle: _Optional[_Union[CircleSetpoint, _Mapping]] = ...) -> None: ...
+
+class AttitudeSetpoint(_message.Message):
+    __slots__ = ("bank", "pitch", "throttle")
+    BANK_FIELD_NUMBER: _ClassVar[int]
+    PITCH_FIELD_NUMBER: _ClassVar[int]
+    THROTTLE_FIELD_NUMBER: _ClassVar[int]
+    bank: float
+    pitch: float
+    throttle: float
+    def __init__(self, bank: _Optional[float] = ..., pitch: _Optional[float] = ..., throttle: _Optional[float] = ...) -> None: ...
+
+class CourseSetpoint(_message.Message):
+    __slots__ = ("course", "altitude", "airspeed")
+    COURSE_FIELD_NUMBER: _ClassVar[int]
+    ALTITUDE_FIELD_NUMBER: _ClassVar[int]
+    AIRSPEED_FIELD_NUMBER: _ClassVar[int]
+    course: float
+    altitude: float
+    airspeed: float
+    def __init__(self, course: _Optional[float] = ..., altitude: _Optional[float] = ..., airspeed: _Optional[float] = ...) -> None: ...
+
+class LineSetpoint(_message.Message):
+    __slots__ = ("origin", "direction", "airspeed")
+    ORIGIN_FIELD_NUMBER: _ClassVar[int]
+    DIRECTION_FIELD_NUMBER: _ClassVar[int]
+    AIRSPEED_FIELD_NUMBER: _ClassVar[int]
+    origin: _Vector3_pb2.Vector3
+    direction: _Vector3_pb2.Vector3
+    airspeed: float
+    def __init__(self, origin: _Optional[_Union[_Vector3_pb2.Vector3, _Mapping]] = ..., direction: _Optional[_Union[_Vector3_pb2.Vector3, _Mapping]] = ..., airspeed: _Optional[float] = ...) -> None: ...
+
+class CircleSetpoint(_message.Message):
+    __slots__ = ("centre", "radius", "airspeed")
+    CENTRE_FIELD_NUMBER: _ClassVar[int]
+    RADIUS_FIELD_NUMBER: _ClassVar[int]
+    AIRSPEED_FIELD_NUMBER: _ClassVar[int]
+    centre: _Vector3_pb2.Vector3
+    radius: float
+    airspeed: float
+    def __init__(self, centre: _Optional[_Union[_Vector3_pb2.Vector3, _Mapping]] = ..., radius: _Optional[float] = ..., airspeed: _Optional[float] = ...) -> None: ...

@@ -124,6 +124,24 @@ class GoalRequest(_message.Message):
     source: str
     def __init__(self, position: _Optional[_Union[_Vector3_pb2.Vector3, _Mapping]] = ..., yaw: _Optional[float] = ..., source: _Optional[str] = ...) -> None: ...
 
+class OrbitRequest(_message.Message):
+    __slots__ = ("centre", "radius", "speed", "source")
+    CENTRE_FIELD_NUMBER: _ClassVar[int]
+    RADIUS_FIELD_NUMBER: _ClassVar[int]
+    SPEED_FIELD_NUMBER: _ClassVar[int]
+    SOURCE_FIELD_NUMBER: _ClassVar[int]
+    centre: _Vector3_pb2.Vector3
+    radius: float
+    speed: float
+    source: str
+    def __init__(self, centre: _Optional[_Union[_Vector3_pb2.Vector3, _Mapping]] = ..., radius: _Optional[float] = ..., speed: _Optional[float] = ..., source: _Optional[str] = ...) -> None: ...
+
+class GoAroundRequest(_message.Message):
+    __slots__ = ("source",)
+    SOURCE_FIELD_NUMBER: _ClassVar[int]
+    source: str
+    def __init__(self, source: _Optional[str] = ...) -> None: ...
+
 class CancelRequest(_message.Message):
     __slots__ = ("source",)
     SOURCE_FIELD_NUMBER: _ClassVar[int]

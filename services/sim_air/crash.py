@@ -32,10 +32,11 @@ def crash_of(touches: list[Touch], motion: Motion, max_sink: float) -> str:
     attitude in which nobody lands.
     """
     speed = float(np.linalg.norm(motion.velocity))
+    moving = speed + float(np.linalg.norm(motion.angular_velocity))  # of a point within a metre
     for touch in touches:
         if not touch.is_wheel and speed > SCRAPE:
             return f"{touch.name} touched the ground at {speed:.1f} m/s"
-        if touch.speed > max_sink:
+        if touch.speed > max_sink and moving > SCRAPE:  # in its first step the engine may tell of a wheel's speed that is none
             return f"{touch.name} hit the ground sinking at {touch.speed:.1f} m/s; it bears {max_sink:g} m/s"
     roll, pitch, _ = rotations.to_euler(motion.world_from_body)
     if touches and max(abs(roll), abs(pitch)) > STEEPEST:

@@ -49,6 +49,7 @@ def _host(site: Site, member: Member) -> Host:
         strips=tuple(_strip(s) for s in site.world.strips),
         altimeter=_altimeter(member),
         servos=_servos(member),
+        starts_armed=member.entry.job.armed,
     )
     if member.entry.job.follow is not None:
         return wingman(site, ship, params)

@@ -5,11 +5,11 @@ from collections.abc import Iterable, Sequence
 from dataclasses import astuple
 
 from schemas.convert import seconds, wxyz
-from schemas.messages import AirData, Gnss, Imu, Mission, MissionItem, MissionProgress, Mode, NavState, Vector3
+from schemas.messages import AirData, Gnss, Imu, Mission, MissionItem, MissionProgress, Mode, NavState, OrbitRequest, Vector3
 from services.autopilot.air.modes import FlightMode
 from services.autopilot.air.pilot import Stand
 from services.autopilot.air.plan import Item, Kind
-from services.autopilot.air.route import Place
+from services.autopilot.air.route import Circle, Place
 from services.autopilot.air.sensed import Fix, Inertial, Pressures
 from services.autopilot.plan import mission_id
 from uvf.maths.geodesy import LocalTangent
@@ -40,6 +40,8 @@ MODES = {
     Mode.MODE_TAKEOFF: FlightMode.TAKEOFF,
     Mode.MODE_LAND: FlightMode.LAND,
     Mode.MODE_FOLLOW: FlightMode.FOLLOW,
+    Mode.MODE_ORBIT: FlightMode.ORBIT,
+    Mode.MODE_OFFBOARD: FlightMode.OFFBOARD,
 }
 
 
@@ -93,6 +95,11 @@ def left_fix(state: NavState, t: float) -> Fix | None:
 
 def place(v: Vector3) -> Place:
     return Place(v.y, v.x, v.z)
+
+
+def circle(request: OrbitRequest) -> Circle:
+    """A radius of 0 is left to the pilot."""
+    return Circle(place(request.centre), request.radius)
 
 
 def attitude(state: NavState) -> tuple[float, float, float]:

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import astuple, dataclass
+from dataclasses import astuple, dataclass, replace
 
 from services.autopilot.air.by_hand import COMMAND_MAX_AGE, LET_GO, Stick
 from services.autopilot.air.commands import Surfaces, Wanted
@@ -15,6 +15,7 @@ from services.autopilot.air.landing import Landing
 from services.autopilot.air.mission_flight import MissionFlight
 from services.autopilot.air.modes import TABLE, FlightMode, Need, Situation, refusal
 from services.autopilot.air.navigator import Navigator
+from services.autopilot.air.offboard import OLDEST, Offboard
 from services.autopilot.air.params import AirParams
 from services.autopilot.air.paths import Circling
 from services.autopilot.air.plan import Item
@@ -24,6 +25,7 @@ from services.autopilot.air.state import Estimate
 from services.autopilot.air.stick_modes import STICK_MODES
 from services.autopilot.air.strip import Strip
 from services.autopilot.air.wishes import Phase, Senses, Track, Wish
+from uvf.maths.geodesy import GRAVITY
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,7 +115,7 @@ class Pilot:
     @property
     def _situation(self) -> Situation:
         led = self.formation is not None and self.formation.is_led
-        return Situation(self.senses.airborne, not self._blind, bool(self.navigator.items), False, self.stopped, led)
+        return Situation(self.senses.airborne, not self._blind, bool(self.navigator.items), self.senses.setpoint is not None, self.stopped, led)
 
     @property
     def _stands(self) -> bool:
@@ -127,12 +129,16 @@ class Pilot:
             self._phase = self._phase or self._begun(now, params)
         if isinstance(self._phase, MissionFlight):
             self._phase.look(now, params)
+        if self.landing is not None and self.landing.why_around:
+            self.reason, self.landing.why_around = f"go-around: {self.landing.why_around}", ""
         if self._phase is not None and self._phase.ended:
             self._end(self._phase)
         if TABLE[self.mode].by_hand:
             self._look_at_stick(now, params)
         if self.formation is not None:
             self._look_at_leader(self.formation)
+        if Need.SETPOINT in TABLE[self.mode].keeps and self.senses.setpoint is None:
+            self._change(TABLE[self.mode].without, f"no setpoint for {OLDEST:g} s")
 
     def _look_at_leader(self, formation: Formation) -> None:
         """Without a leader it holds; once the leader is back it follows again, unless it has been told something else."""
@@ -164,6 +170,8 @@ class Pilot:
             return self._field.landing(now, self.home, self.senses, params)
         if self.mode is FlightMode.FOLLOW and self.formation is not None:
             return Trailing(self.formation)
+        if self.mode is FlightMode.OFFBOARD:
+            return Offboard(self.senses)
         if TABLE[self.mode].by_hand and self.senses.hand is not None:
             return STICK_MODES[self.mode](self.senses)
         return Circling(self._new_circle(now, params))
@@ -240,6 +248,31 @@ class Pilot:
         height = place.height if place.height >= params.min_altitude else self._level.height
         self._change(FlightMode.HOLD, f"goal of {source}")
         self._phase = Circling(Circle(Place(place.north, place.east, height), params.hold_radius))
+        return ""
+
+    def orbit(self, circle: Circle, airspeed: float, source: str, params: AirParams) -> str:
+        """Mode Orbit; a radius or airspeed of 0 is the vehicle's own."""
+        if why := refusal(FlightMode.ORBIT, self._situation) or ("it is rolling out after its landing" if self._rolls_out else ""):
+            return why
+        if not all(map(math.isfinite, (*astuple(circle.centre), circle.radius, airspeed))):
+            return "the circle is none: its numbers are not finite"
+        if airspeed and not params.min_airspeed <= airspeed <= params.max_airspeed:
+            return f"{airspeed:g} m/s cannot be flown: {params.min_airspeed:g} to {params.max_airspeed:g} m/s can"
+        tightest = (airspeed or params.trim_airspeed) ** 2 / (GRAVITY * math.tan(params.turn_bank))
+        if circle.radius and abs(circle.radius) < tightest:
+            return f"a circle of {abs(circle.radius):g} m is too tight at this airspeed: {math.ceil(tightest)} m is not"
+        height = circle.centre.height if circle.centre.height >= params.min_altitude else self._level.height
+        self._change(FlightMode.ORBIT, f"asked by {source}")
+        place = replace(circle.centre, height=height)
+        self._phase = Circling(Circle(place, circle.radius or params.hold_radius), airspeed)
+        return ""
+
+    def go_around(self, source: str) -> str:
+        if self.landing is None:
+            return "there is no approach to be given up"
+        if self.landing.rolls:
+            return "the aircraft is rolling out after its landing"
+        self.landing.around(f"asked by {source}")
         return ""
 
     def load(self, items: Sequence[Item], params: AirParams) -> str:

@@ -8,8 +8,10 @@ from schemas.messages import (
     AirData,
     ArmRequest,
     Battery,
+    FlightSetpoint,
     Gnss,
     GoalRequest,
+    GoAroundRequest,
     Imu,
     Mission,
     MissionItem,
@@ -18,6 +20,7 @@ from schemas.messages import (
     Mode,
     ModeRequest,
     NavState,
+    OrbitRequest,
     Range,
     Reply,
     SetCurrentRequest,
@@ -25,7 +28,7 @@ from schemas.messages import (
     SurfaceCommand,
     VehicleStatus,
 )
-from services.autopilot.air import by_hand, intake, reports
+from services.autopilot.air import by_hand, intake, offboard, reports
 from services.autopilot.air.commands import Surfaces
 from services.autopilot.air.estimators import Instruments, estimator
 from services.autopilot.air.flyable import advice
@@ -63,6 +66,7 @@ class Ship:
     strips: tuple[Strip, ...] = ()
     altimeter: str = ""
     """Frame of the range finder that looks down."""
+    starts_armed: bool = False
 
 
 class AutopilotAir(Service):
@@ -80,6 +84,7 @@ class AutopilotAir(Service):
         "teleop": optional(topics.SURFACES.by("teleop")),
         "mavlink": optional(topics.SURFACES.by("mavlink")),
         "client": optional(topics.SURFACES.by("client")),
+        "setpoint": optional(topics.SETPOINT.by("*")),
     }
     outputs = {
         "surfaces": topics.SURFACE_COMMAND,
@@ -98,6 +103,8 @@ class AutopilotAir(Service):
         "goal": topics.GOAL,
         "mission": topics.SET_MISSION,
         "current": topics.SET_CURRENT,
+        "orbit": topics.ORBIT,
+        "go_around": topics.GO_AROUND,
     }
     recalls = {"status": topics.STATUS, "plan": topics.MISSION, "progress": topics.PROGRESS, "nav_state": topics.NAV_STATE}
     fixed_params = frozenset({"estimator"})
@@ -108,7 +115,7 @@ class AutopilotAir(Service):
         self._ship = ship
         self._mission = intake.with_id(ship.items)
         self._announced = False
-        self._armed = ship.starts_in_air
+        self._armed = ship.starts_in_air or ship.starts_armed
         self._estimator = estimator(params.estimator, ship.instruments)
         self._mount = ImuMount(ship.instruments.imu_xyz, ship.instruments.imu_rpy)
         self._estimated = 0.0  # s
@@ -138,16 +145,20 @@ class AutopilotAir(Service):
         teleop: SurfaceCommand | None,
         mavlink: SurfaceCommand | None,
         client: SurfaceCommand | None,
+        setpoint: FlightSetpoint | None,
         arm: list[ArmRequest],
         mode: list[ModeRequest],
         goal: list[GoalRequest],
         mission: list[MissionRequest],
         current: list[SetCurrentRequest],
+        orbit: list[OrbitRequest],
+        go_around: list[GoAroundRequest],
     ) -> Outputs:
         now = self._now = self._estimate(t, imu, air_data, gnss)
         if now is None:
             waiting = [_reply("there is no satellite fix yet")]
             asked = {"arm": len(arm), "mode": len(mode), "goal": len(goal), "mission": len(mission), "current": len(current)}
+            asked |= {"orbit": len(orbit), "go_around": len(go_around)}
             return {**self._announce(t), **{name: waiting * count for name, count in asked.items()}}
         if len(self._lost) < len(Loss):
             self._land.step(now, self.params, 1 / self.hz)
@@ -159,10 +170,12 @@ class AutopilotAir(Service):
             "goal": [_reply(self._pilot.go_to(intake.place(r.position), r.source, self.params)) for r in goal],
             "mission": [self._set_mission(r.mission) for r in mission],
             "current": [_reply(self._pilot.set_current(r.index)) for r in current],
+            "orbit": [_reply(self._pilot.orbit(intake.circle(r), r.speed, r.source, self.params)) for r in orbit],
+            "go_around": [_reply(self._pilot.go_around(r.source)) for r in go_around],
         }
         hand = by_hand.choose(t, {"teleop": teleop, "mavlink": mavlink, "client": client})
         self._over_ground.hear(range, [intake.inertial(m, t) for m in imu], 1 / self.hz)
-        flown = self._fly(t, now, hand)
+        flown = self._fly(t, now, hand, offboard.fresh(t, setpoint))
         state = reports.nav_state(t, now)
         out: dict[str, object] = {
             "surfaces": reports.surfaces(t, flown.surfaces, self._armed),
@@ -175,9 +188,9 @@ class AutopilotAir(Service):
         self._cycles += 1
         return {**out, **self._announce(t), **replies}  # type: ignore[dict-item]
 
-    def _fly(self, t: float, now: Estimate, hand: by_hand.Hand | None) -> Flown:
+    def _fly(self, t: float, now: Estimate, hand: by_hand.Hand | None, setpoint: FlightSetpoint | None) -> Flown:
         clearance = self._over_ground.clearance(t, now, self.params.gear_height)
-        senses = Senses(self._land.airborne, self._armed, hand, self._ship.servos, clearance, self._over_ground.push)
+        senses = Senses(self._land.airborne, self._armed, hand, self._ship.servos, clearance, self._over_ground.push, setpoint)
         self._pilot.hear(senses, 1 / self.hz)
         flown = self._pilot.step(now, self.params, 1 / self.hz)
         if self._pilot.disarms:

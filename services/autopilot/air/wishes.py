@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from schemas.messages import FlightSetpoint
 from services.autopilot.air.by_hand import Hand
 from services.autopilot.air.commands import Attitude, Surfaces, Wanted
 from services.autopilot.air.guidance import Aim
@@ -47,6 +48,8 @@ class Senses:
     """m, of the wheels over the ground, seen by a range finder."""
     push: float = 0.0
     """m/s^2, specific force forwards."""
+    setpoint: FlightSetpoint | None = None
+    """What mode Offboard is asked for; None = nothing fresh."""
 
     def update(self, other: "Senses") -> None:
         """Whoever holds this one sees what is known now."""

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from schemas import topics
 from schemas.convert import array
 from schemas.messages import Contact, Grid, Mission, MissionItem, MissionProgress, NavState, PoseInFrame
-from uvf.launch import formation_scores
+from uvf.launch import formation_scores, touchdown
 from uvf.maths.rotations import wrap
 from uvf.runtime.bus import Bus, Sample
 from uvf.runtime.mapped_floor import MappedFloor
@@ -262,6 +262,22 @@ def _altitude(p: Floats, a: Floats, b: Floats) -> Floats:
     return altitude
 
 
+def touchdown_sink(track: Track) -> float:
+    """Sink [m/s] with which the aircraft has touched the ground for good; infinite unless it stands at the end."""
+    return touchdown.sink(track.positions())
+
+
+def touchdown_error(track: Track) -> float:
+    """Distance [m] along the strip from where its wheels were to touch; infinite without a landing on a strip."""
+    return touchdown.error(track.positions(), track.site.world.strips)
+
+
+def speed_at_end(track: Track) -> float:
+    """True speed [m/s] over the last second."""
+    return touchdown.speed_at_end(track.positions())
+
+
 _MEASURES = (distance_driven, contacts, pose_error, mapped_floor, circuits, legs, path_error, altitude_error, waypoint_error, course_error)
+_OF_LANDINGS = (touchdown_sink, touchdown_error, speed_at_end)
 _OF_FORMATIONS = (separation, spacing_error, station_error)
-MEASURES: dict[str, Callable[[Track], float]] = {f.__name__: f for f in (*_MEASURES, *_OF_FORMATIONS)}
+MEASURES: dict[str, Callable[[Track], float]] = {f.__name__: f for f in (*_MEASURES, *_OF_FORMATIONS, *_OF_LANDINGS)}

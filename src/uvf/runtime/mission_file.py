@@ -54,6 +54,7 @@ class Job(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """What a vehicle does with nobody touching anything; empty = hold."""
 
     explore: bool = False
+    armed: bool = False  # an aircraft that stands is armed from the beginning, and takes off when its mission begins
     mission: list[Waypoint] = []
     follow: Follow | None = None
 

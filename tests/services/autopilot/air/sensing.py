@@ -9,7 +9,7 @@ from uvf.maths import atmosphere
 from uvf.maths.geodesy import LocalTangent
 
 TANGENT = LocalTangent.from_degrees(40.77, 14.79, 300.0)
-NOTHING_ASKED = {"arm": [], "mode": [], "goal": [], "mission": [], "current": []}
+NOTHING_ASKED = {"arm": [], "mode": [], "goal": [], "mission": [], "current": [], "orbit": [], "go_around": []}
 WAYPOINTS = [MissionItem(position=Vector3(x=900.0, z=60.0)), MissionItem(position=Vector3(x=900.0, y=900.0, z=60.0))]
 
 
@@ -39,6 +39,7 @@ def sensors(t, speed=25.0):
         "teleop": None,
         "mavlink": None,
         "client": None,
+        "setpoint": None,
     }
 
 

@@ -1,0 +1,75 @@
+"""Mode Offboard: what somebody outside asks for, as an attitude, a course with altitude and airspeed, or a path."""
+
+import math
+from collections.abc import Iterator
+
+from schemas.convert import seconds
+from schemas.messages import FlightSetpoint
+from services.autopilot.air.commands import Attitude
+from services.autopilot.air.cycle import clip
+from services.autopilot.air.guidance import Aim, line_aim, orbit_aim
+from services.autopilot.air.params import AirParams
+from services.autopilot.air.state import Estimate
+from services.autopilot.air.wishes import Phase, Senses, Track, Wish
+
+OLDEST = 0.5  # s
+CLOCK_TOLERANCE = 0.02  # s, one tick
+
+
+def fresh(t: float, message: FlightSetpoint | None) -> FlightSetpoint | None:
+    """The setpoint that counts at ``t`` [s]; None when it is old, empty, no path, or a number of it is not finite."""
+    if message is None or not -CLOCK_TOLERANCE <= t - seconds(message.timestamp) <= OLDEST:
+        return None
+    return message if all(map(math.isfinite, _numbers(message))) and _is_whole(message) else None
+
+
+def _is_whole(m: FlightSetpoint) -> bool:
+    if m.HasField("line"):
+        return math.hypot(m.line.direction.x, m.line.direction.y) > 0
+    if m.HasField("circle"):
+        return m.circle.radius != 0
+    return m.HasField("attitude") or m.HasField("course")
+
+
+def _numbers(m: FlightSetpoint) -> Iterator[float]:
+    a, c, o, r = m.attitude, m.course, m.line, m.circle
+    yield from (a.bank, a.pitch, a.throttle, c.course, c.altitude, c.airspeed, o.airspeed, r.radius, r.airspeed)
+    for v in (o.origin, o.direction, r.centre):
+        yield from (v.x, v.y, v.z)
+
+
+class Offboard(Phase):
+    """``step`` is called while there is a setpoint."""
+
+    def __init__(self, senses: Senses) -> None:
+        self._senses = senses
+
+    def step(self, now: Estimate, params: AirParams, dt: float) -> Wish:
+        message = self._senses.setpoint
+        assert message is not None, "the table ends this mode without a setpoint"
+        if message.HasField("attitude"):
+            a = message.attitude
+            pitch, throttle = clip(a.pitch, params.pitch_limit), min(max(a.throttle, 0.0), 1.0)
+            return Wish(Attitude(clip(a.bank, params.bank_limit), pitch, throttle))
+        if message.HasField("course"):
+            c = message.course
+            aim = Aim(0.0, c.course, 0.0, params.k_path, params.chi_inf)
+            return Wish(Track(aim, c.altitude, 0.0, c.airspeed or params.trim_airspeed))
+        return _line(message, now, params) if message.HasField("line") else _circle(message, now, params)
+
+
+def _line(message: FlightSetpoint, now: Estimate, params: AirParams) -> Wish:
+    line = message.line
+    origin, d = line.origin, line.direction
+    level = math.hypot(d.x, d.y)
+    along = (d.y / level, d.x / level)
+    aim = line_aim(along, (origin.y, origin.x), (now.north, now.east), params)
+    flown = (now.north - origin.y) * along[0] + (now.east - origin.x) * along[1]
+    slope = d.z / level
+    return Wish(Track(aim, origin.z + slope * flown, slope * now.ground_speed, line.airspeed or params.trim_airspeed))
+
+
+def _circle(message: FlightSetpoint, now: Estimate, params: AirParams) -> Wish:
+    circle = message.circle
+    aim = orbit_aim((circle.centre.y, circle.centre.x), circle.radius, (now.north, now.east), params)
+    return Wish(Track(aim, circle.centre.z, 0.0, circle.airspeed or params.trim_airspeed))
