@@ -11,6 +11,7 @@ from uvf.maths.wind_profile import logarithmic, one_minus_cosine, power
 from uvf.runtime.wind_file import Gust, Shear, Wind
 
 CALM = np.zeros(3)
+STILL = 1.0  # m/s through the air, below which turning air is left out: the engine divides by the airspeed of the step before
 
 
 class Flight(NamedTuple):
@@ -55,7 +56,7 @@ class AirMass:
             g = self._turbulence.step(flight.airspeed * dt, dt, strength(flight.height, data.at_20_feet, data.severity))
             c, s = math.cos(flight.yaw), math.sin(flight.yaw)
             velocity = velocity + np.array((c * g.u + s * g.v, s * g.u - c * g.v, -g.w))
-            rates = np.array((g.p, g.q, g.r))
+            rates = np.array((g.p, g.q, g.r)) if flight.airspeed > STILL else CALM
         return AirMotion(velocity, rates)
 
     def _share(self, i: int, gust: Gust, t: float, flown: float, flight: Flight) -> float:

@@ -86,7 +86,7 @@ TABLE: Mapping[FlightMode, Row] = {
     _M.TAKEOFF: Row((Need.RELEASED, Need.GROUND, Need.POSITION), done=_M.HOLD, on_ground=True),
     _M.MISSION: Row((Need.RELEASED, Need.POSITION, Need.MISSION), _HERE, done=_M.HOLD, on_ground=True),
     _M.HOLD: Row(),
-    _M.ORBIT: Row(_FLYING, _HERE, done=_M.HOLD),
+    _M.ORBIT: Row(_FLYING, _HERE),
     _M.RETURN: Row(_FLYING, _HERE),
     _M.LAND: Row(_FLYING, _HERE, done=_M.HOLD),
     _M.OFFBOARD: Row((Need.RELEASED, Need.AIRBORNE, Need.SETPOINT), (Need.SETPOINT,)),

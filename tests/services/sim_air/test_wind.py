@@ -23,6 +23,13 @@ def flight(x=0.0, height=60.0, yaw=0.0, airspeed=25.0):
     return Flight(np.array((x, 0.0, height)), height, yaw, airspeed)
 
 
+def test_air_that_an_aircraft_stands_still_in_does_not_turn_it():
+    mass = AirMass(Wind((8.0, 0.0, 0.0), turbulence=Turbulence(w20=8.0)), 2.9, np.random.default_rng(2))
+    standing = Flight(np.zeros(3), 0.4, 0.0, 0.0)
+    assert not mass.step(0.0, 0.005, standing).rates.any()
+    assert mass.step(0.005, 0.005, standing._replace(airspeed=8.0)).rates.any()
+
+
 def test_steady_wind_is_the_same_everywhere_and_turns_nothing():
     air = mass(Wind((3.0, -2.0, 0.5)))
     assert air.is_steady
