@@ -115,7 +115,9 @@ class Pilot:
     @property
     def _situation(self) -> Situation:
         led = self.formation is not None and self.formation.is_led
-        return Situation(self.senses.airborne, not self._blind, bool(self.navigator.items), self.senses.setpoint is not None, self.stopped, led)
+        return Situation(
+            self.senses.airborne, not self._blind, bool(self.navigator.items), self.senses.setpoint is not None, self.stopped, led
+        )
 
     @property
     def _stands(self) -> bool:

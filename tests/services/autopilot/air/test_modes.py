@@ -16,8 +16,8 @@ from uvf.runtime.site import ROOT
 
 M = FlightMode
 SITUATIONS = [
-    Situation(airborne, known, mission, setpoint, stopped)
-    for airborne, known, mission, setpoint in itertools.product((False, True), repeat=4)
+    Situation(airborne, known, mission, setpoint, stopped, led)
+    for airborne, known, mission, setpoint, led in itertools.product((False, True), repeat=5)
     for stopped in ("", "gcs")
 ]
 MET = {
@@ -27,6 +27,7 @@ MET = {
     Need.GROUND: lambda s: not s.airborne,
     Need.MISSION: lambda s: s.has_mission,
     Need.SETPOINT: lambda s: s.setpoint,
+    Need.LEADER: lambda s: s.led,
 }
 FAR = [Item(Kind.WAYPOINT, Place(900.0, 0.0, 70.0)), Item(Kind.WAYPOINT, Place(900.0, 900.0, 70.0))]
 

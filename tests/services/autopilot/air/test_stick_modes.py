@@ -2,20 +2,21 @@
 
 import pytest
 
-from services.autopilot.air.by_hand import Hand, Travel
+from services.autopilot.air.by_hand import Hand
 from services.autopilot.air.commands import Attitude, Surfaces, Wanted
 from services.autopilot.air.cycle import Cycle
+from services.autopilot.air.servos import Servo, Servos
 from services.autopilot.air.stick_modes import STEEPEST, Altitude, Manual, Position, Stabilized
 from services.autopilot.air.wishes import Senses, Track
 from tests.services.autopilot.air.states import PARAMS, cruising
 
-TRAVEL = Travel(0.4, 0.5, 0.3)
+SERVOS = Servos(Servo(0.4), Servo(0.5), Servo(0.3))
 NOW = cruising()
 
 
 def stick(roll=0.0, pitch=0.0, yaw=0.0, throttle=0.5):
-    surfaces = Surfaces(roll * TRAVEL.aileron, -pitch * TRAVEL.elevator, -yaw * TRAVEL.rudder, throttle, flap=0.1, brake=0.2)
-    return Senses(hand=Hand("teleop", surfaces), travel=TRAVEL)
+    surfaces = Surfaces(roll * 0.4, -pitch * 0.5, -yaw * 0.3, throttle, flap=0.1, brake=0.2)
+    return Senses(hand=Hand("teleop", surfaces), servos=SERVOS)
 
 
 def asked(mode, senses, now=NOW):
