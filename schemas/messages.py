@@ -20,6 +20,8 @@ from foxglove_schemas_protobuf.Vector3_pb2 import Vector3
 from google.protobuf.timestamp_pb2 import Timestamp
 
 from schemas.v1.command_pb2 import DriveCommand, FlightSetpoint, GimbalCommand, StopCommand, SurfaceCommand, WheelCommand
+from schemas.v1.fence_pb2 import Fence, FenceRequest, FenceZone
+from schemas.v1.link_pb2 import Link
 from schemas.v1.mission_pb2 import (
     CancelRequest,
     GoalRequest,
@@ -60,6 +62,9 @@ __all__ = [
     "Done",
     "DriveCommand",
     "Event",
+    "Fence",
+    "FenceRequest",
+    "FenceZone",
     "FrameTransform",
     "FrameTransforms",
     "GimbalCommand",
@@ -76,6 +81,7 @@ __all__ = [
     "KeyValuePair",
     "Kind",
     "LaserScan",
+    "Link",
     "Mission",
     "MissionItem",
     "MissionProgress",

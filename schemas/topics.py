@@ -155,7 +155,10 @@ SURFACE_COMMAND = Topic(f"{_V}/actuator/surfaces", m.SurfaceCommand, 50, _Q.CONT
 STATUS = Topic(f"{_V}/state/vehicle", m.VehicleStatus, 10, _Q.STATE, "mode, arming, who commands and why", kept=True)
 EVENTS = Topic(f"{_V}/state/events/<source>", m.Event, 0, _Q.EVENT, "what happened to the vehicle")
 MISSION = Topic(f"{_V}/mission/plan", m.Mission, 0, _Q.LATCHED, "mission in force", kept=True)
+FENCE = Topic(f"{_V}/mission/fence", m.Fence, 0, _Q.LATCHED, "where the vehicle may be", kept=True)
 PROGRESS = Topic(f"{_V}/mission/progress", m.MissionProgress, 2, _Q.STATE, "where in the mission", kept=True)
+
+LINK = Topic(f"{_V}/state/link", m.Link, 2, _Q.STATE, "ground stations that are in touch with the vehicle")
 
 # requests
 CLOCK_REQUEST = Request(f"{_S}/srv/clock", m.ClockRequest, m.Reply, "rate, pause, resume, single step, reset")
@@ -176,6 +179,7 @@ ORBIT = Request(f"{_V}/srv/orbit", m.OrbitRequest, m.Reply, "circle a place, in 
 GO_AROUND = Request(f"{_V}/srv/go_around", m.GoAroundRequest, m.Reply, "give up the approach and fly another one")
 CANCEL = Request(f"{_V}/srv/cancel", m.CancelRequest, m.Reply, "give up the goal that is being driven to")
 SET_MISSION = Request(f"{_V}/srv/mission", m.MissionRequest, m.Reply, "replace the mission")
+SET_FENCE = Request(f"{_V}/srv/fence", m.FenceRequest, m.Reply, "replace the fence, or take it away")
 SET_CURRENT = Request(f"{_V}/srv/current", m.SetCurrentRequest, m.Reply, "jump to a mission item")
 PARAM = Request(f"{_V}/srv/param/<source>", m.ParamRequest, m.ParamReply, "read or set a service's parameters")
 

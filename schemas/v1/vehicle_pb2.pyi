@@ -1,10 +1,11 @@
 from foxglove_schemas_protobuf import Quaternion_pb2 as _Quaternion_pb2
 from foxglove_schemas_protobuf import Vector3_pb2 as _Vector3_pb2
 from google.protobuf import timestamp_pb2 as _timestamp_pb2
+from google.protobuf.internal import containers as _containers
 from google.protobuf.internal import enum_type_wrapper as _enum_type_wrapper
 from google.protobuf import descriptor as _descriptor
 from google.protobuf import message as _message
-from typing import ClassVar as _ClassVar, Mapping as _Mapping, Optional as _Optional, Union as _Union
+from typing import ClassVar as _ClassVar, Iterable as _Iterable, Mapping as _Mapping, Optional as _Optional, Union as _Union
 
 DESCRIPTOR: _descriptor.FileDescriptor
 
@@ -67,7 +68,7 @@ class NavState(_message.Message):
     def __init__(self, timestamp: _Optional[_Union[_timestamp_pb2.Timestamp, _Mapping]] = ..., position: _Optional[_Union[_Vector3_pb2.Vector3, _Mapping]] = ..., velocity: _Optional[_Union[_Vector3_pb2.Vector3, _Mapping]] = ..., orientation: _Optional[_Union[_Quaternion_pb2.Quaternion, _Mapping]] = ..., angular_velocity: _Optional[_Union[_Vector3_pb2.Vector3, _Mapping]] = ..., airspeed: _Optional[float] = ..., wind: _Optional[_Union[_Vector3_pb2.Vector3, _Mapping]] = ..., position_sigma: _Optional[float] = ...) -> None: ...
 
 class VehicleStatus(_message.Message):
-    __slots__ = ("timestamp", "kind", "mode", "armed", "landed", "stopped", "command_source", "reason", "throttle", "battery_remaining", "battery_voltage", "waypoint", "cross_track", "altitude_error", "distance_to_waypoint", "home", "system_id")
+    __slots__ = ("timestamp", "kind", "mode", "armed", "landed", "stopped", "command_source", "reason", "throttle", "battery_remaining", "battery_voltage", "waypoint", "cross_track", "altitude_error", "distance_to_waypoint", "home", "system_id", "prearm", "failsafes")
     TIMESTAMP_FIELD_NUMBER: _ClassVar[int]
     KIND_FIELD_NUMBER: _ClassVar[int]
     MODE_FIELD_NUMBER: _ClassVar[int]
@@ -85,6 +86,8 @@ class VehicleStatus(_message.Message):
     DISTANCE_TO_WAYPOINT_FIELD_NUMBER: _ClassVar[int]
     HOME_FIELD_NUMBER: _ClassVar[int]
     SYSTEM_ID_FIELD_NUMBER: _ClassVar[int]
+    PREARM_FIELD_NUMBER: _ClassVar[int]
+    FAILSAFES_FIELD_NUMBER: _ClassVar[int]
     timestamp: _timestamp_pb2.Timestamp
     kind: Kind
     mode: Mode
@@ -102,7 +105,9 @@ class VehicleStatus(_message.Message):
     distance_to_waypoint: float
     home: _Vector3_pb2.Vector3
     system_id: int
-    def __init__(self, timestamp: _Optional[_Union[_timestamp_pb2.Timestamp, _Mapping]] = ..., kind: _Optional[_Union[Kind, str]] = ..., mode: _Optional[_Union[Mode, str]] = ..., armed: bool = ..., landed: bool = ..., stopped: bool = ..., command_source: _Optional[str] = ..., reason: _Optional[str] = ..., throttle: _Optional[float] = ..., battery_remaining: _Optional[float] = ..., battery_voltage: _Optional[float] = ..., waypoint: _Optional[int] = ..., cross_track: _Optional[float] = ..., altitude_error: _Optional[float] = ..., distance_to_waypoint: _Optional[float] = ..., home: _Optional[_Union[_Vector3_pb2.Vector3, _Mapping]] = ..., system_id: _Optional[int] = ...) -> None: ...
+    prearm: _containers.RepeatedScalarFieldContainer[str]
+    failsafes: _containers.RepeatedScalarFieldContainer[str]
+    def __init__(self, timestamp: _Optional[_Union[_timestamp_pb2.Timestamp, _Mapping]] = ..., kind: _Optional[_Union[Kind, str]] = ..., mode: _Optional[_Union[Mode, str]] = ..., armed: bool = ..., landed: bool = ..., stopped: bool = ..., command_source: _Optional[str] = ..., reason: _Optional[str] = ..., throttle: _Optional[float] = ..., battery_remaining: _Optional[float] = ..., battery_voltage: _Optional[float] = ..., waypoint: _Optional[int] = ..., cross_track: _Optional[float] = ..., altitude_error: _Optional[float] = ..., distance_to_waypoint: _Optional[float] = ..., home: _Optional[_Union[_Vector3_pb2.Vector3, _Mapping]] = ..., system_id: _Optional[int] = ..., prearm: _Optional[_Iterable[str]] = ..., failsafes: _Optional[_Iterable[str]] = ...) -> None: ...
 
 class ArmRequest(_message.Message):
     __slots__ = ("arm", "force", "source")

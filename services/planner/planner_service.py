@@ -1,6 +1,6 @@
 """Map, pose and job -> the path to drive, four times a second; plans anew only when the map or the job has changed."""
 
-from math import hypot, isinf, isnan
+from math import hypot, inf, isinf, isnan
 from typing import Annotated
 
 import numpy as np
@@ -12,6 +12,7 @@ from schemas.convert import occupancy_cells, planar_pose, seconds, stamp, yaw_of
 from schemas.messages import (
     CancelRequest,
     Event,
+    Fence,
     GoalRequest,
     Grid,
     Mission,
@@ -34,6 +35,7 @@ from services.planner.navigator import Navigator, Plan
 from services.planner.smoothing import length
 from uvf.maths.planar import IDENTITY, Pose2, compose, inverse, transform
 from uvf.maths.rotations import wrap
+from uvf.runtime.fence_file import fencing
 from uvf.runtime.service import Answer, Outputs, Params, Service, optional
 
 Floats = NDArray[np.float64]
@@ -68,6 +70,7 @@ class PlannerService(Service):
         "status": optional(topics.STATUS),
         "mission": optional(topics.MISSION),
         "progress": optional(topics.PROGRESS),
+        "bounds": optional(topics.FENCE),
     }
     outputs = {"path": topics.PATH, "nav_status": topics.NAV_STATUS, "events": topics.EVENTS.by("planner")}
     requests = {"goal": topics.GOAL, "cancel": topics.CANCEL}
@@ -99,6 +102,7 @@ class PlannerService(Service):
         self._tries = 0
         self._asks: list[ModeRequest] = []
         self._events: list[Event] = []
+        self._bounds: Fence | None = None
 
     def step(
         self,
@@ -108,12 +112,14 @@ class PlannerService(Service):
         status: VehicleStatus | None,
         mission: Mission | None,
         progress: MissionProgress | None,
+        bounds: Fence | None,
         goal: list[GoalRequest],
         cancel: list[CancelRequest],
         set_mode: list[Answer[ModeRequest, Reply]],
     ) -> Outputs:
         here = compose(self._map_from_world, Pose2(pose.pose.position.x, pose.pose.position.y, yaw_of(pose.pose.orientation)))
         self._explorer.taste = self._taste
+        self._bounds = bounds
         changed = self._navigator.fit(self._body) | self._take_map(map)
         replies: dict[str, list[Reply]] = {"goal": self._ask_all(t, here, goal, status)}
         job = choose(status, self._goal, mission_target(mission, progress, self._orders.home), self._orders)
@@ -171,10 +177,17 @@ class PlannerService(Service):
 
     def _ask(self, here: Pose2, request: GoalRequest, status: VehicleStatus | None) -> Reply:
         wanted = (request.position.x, request.position.y)
-        reason = not_now(status) or self._navigator.refusal(here[:2], self._in_map(wanted))
+        reason = not_now(status) or self._beyond(wanted) or self._navigator.refusal(here[:2], self._in_map(wanted))
         if isinf(request.yaw):
             reason = "the heading is infinite; give it in rad, or NaN for any"
         return Reply(accepted=not reason, reason=reason)
+
+    def _beyond(self, wanted: Point) -> str:
+        """Why a place lies too near to the fence, or outside of it; empty if it does not."""
+        room = inf if self._bounds is None else fencing(self._bounds).region.at(wanted)
+        if room < 0:
+            return f"the goal is {-room:.1f} m outside of the fence"
+        return f"the goal is {room:.2f} m from the fence, too near" if room < self._radius + self.params.margin else ""
 
     def _cancel(self, t: float, request: CancelRequest) -> Reply:
         """The vehicle stops; it stays as long as at a goal that was reached before its job goes on."""

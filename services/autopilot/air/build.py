@@ -8,6 +8,7 @@ from schemas.messages import MissionItem
 from services.autopilot.air import flyable, intake
 from services.autopilot.air.ekf import datasheet
 from services.autopilot.air.estimators import Instruments
+from services.autopilot.air.fence_plan import fence_fit, mission_fault
 from services.autopilot.air.params import AirParams
 from services.autopilot.air.route import Place
 from services.autopilot.air.service import AutopilotAir, Ship
@@ -18,6 +19,7 @@ from services.autopilot.plan import item_from_file
 from uvf.maths import rotations
 from uvf.maths.geodesy import LocalTangent
 from uvf.runtime import world_file
+from uvf.runtime.fence_file import fence_message, fencing
 from uvf.runtime.params import BadInput
 from uvf.runtime.site import Host, Member, Site
 from uvf.runtime.vehicle_file import Mount
@@ -50,7 +52,10 @@ def _host(site: Site, member: Member) -> Host:
         altimeter=_altimeter(member),
         servos=_servos(member),
         starts_armed=member.entry.job.armed,
+        fence=fence_message(member.entry.fence, f"{site.mission_path}: {member.name}: fence"),
     )
+    if why := _fence_fault(ship, Place(start.y, start.x, start.z), params):
+        raise BadInput(f"{site.mission_path}: {member.name}: fence: {why}")
     if member.entry.job.follow is not None:
         return wingman(site, ship, params)
     return Host(AutopilotAir, lambda: AutopilotAir(ship, params), member.name)
@@ -81,6 +86,13 @@ def _altimeter(member: Member) -> str:
         if rotations.rotate(rotations.from_euler(*finder.mount.rpy), np.array((1.0, 0.0, 0.0)))[2] < -math.cos(math.radians(20.0)):
             return f"{member.name}/{finder.frame}"
     return ""
+
+
+def _fence_fault(ship: Ship, here: Place, params: AirParams) -> str:
+    """Why this aircraft cannot keep its fence; empty if it can."""
+    fence = fencing(ship.fence)
+    fault = fence_fit(fence, here, ship.starts_in_air, params)
+    return fault or mission_fault(intake.items(ship.items), fence, params)
 
 
 def _fault(items: list[MissionItem], params: AirParams) -> str:

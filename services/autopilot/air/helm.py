@@ -7,6 +7,7 @@ import msgspec
 from services.autopilot.air.commands import Attitude, Surfaces, Wanted
 from services.autopilot.air.control import Control
 from services.autopilot.air.cycle import clip
+from services.autopilot.air.fence_guard import FenceGuard, kept
 from services.autopilot.air.guidance import Steering
 from services.autopilot.air.params import AirParams
 from services.autopilot.air.servos import Servos
@@ -20,7 +21,8 @@ FIRM_CLIMB, FIRM_PITCH = 2.0, 0.7  # times climb_p and pitch_time
 class Helm:
     """Holds on to its integrators from mode to mode."""
 
-    def __init__(self, servos: Servos) -> None:
+    def __init__(self, servos: Servos, fence: FenceGuard | None = None) -> None:
+        self._fence = fence or FenceGuard()
         self._control = Control(servos)
         self._steering = Steering()
         self._flap = 0.0
@@ -42,6 +44,7 @@ class Helm:
             bank = self._steering.bank(asked.aim, now, params, dt)
             bank = bank if asked.bank_limit is None else clip(bank, asked.bank_limit)
             asked = Wanted(bank, asked.height, asked.climb, asked.airspeed, asked.throttle, asked.rudder)
+        asked = kept(asked, self._fence, now, params)
         if asked.height is not None and not now.height_known:
             asked = replace(asked, height=now.height)
         return self._control.step(now, asked, params, dt)

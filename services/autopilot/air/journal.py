@@ -4,7 +4,6 @@ from collections.abc import Iterable
 
 from schemas.convert import stamp
 from schemas.messages import Event
-from services.autopilot.air.losses import Loss
 from services.autopilot.air.modes import FlightMode
 from services.autopilot.air.pilot import Pilot
 
@@ -22,15 +21,12 @@ class Journal:
         self._laps = 0
         self._finished = False
         self._lost = False
-        self._losses: frozenset[Loss] = frozenset()
 
-    def events(self, t: float, pilot: Pilot, armed: bool, losses: frozenset[Loss]) -> list[Event]:
+    def events(self, t: float, pilot: Pilot, armed: bool) -> list[Event]:
         navigator = pilot.navigator
         found: list[Event] = []
         if self._lost:
             found.append(_event(t, Event.NOTICE, "IMU back"))
-        found += [_event(t, Event.CRITICAL, loss.begins) for loss in Loss if loss in losses - self._losses]
-        found += [_event(t, Event.NOTICE, loss.ends) for loss in Loss if loss in self._losses - losses]
         if (pilot.mode, pilot.reason) != (self._mode, self._reason):
             found.append(_event(t, Event.NOTICE, f"mode {pilot.mode.value}", pilot.reason))
         if self._armed is not None and armed != self._armed:
@@ -47,7 +43,6 @@ class Journal:
         if navigator.finished and not self._finished:
             found.append(_event(t, Event.NOTICE, "mission complete"))
         self._mode, self._reason, self._armed, self._lost = pilot.mode, pilot.reason, armed, False
-        self._losses = losses
         self._reached, self._laps, self._finished = navigator.reached, navigator.laps, navigator.finished
         return found
 

@@ -4,14 +4,14 @@ from typing import Annotated, Literal
 
 from msgspec import Meta
 
-from uvf.runtime.service import Params
+from services.autopilot.air.failsafe_params import FailsafeParams
 
 
 def _meta(low: float, high: float, unit: str, about: str) -> Meta:
     return Meta(ge=low, le=high, description=about, extra_json_schema={"unit": unit})
 
 
-class AirParams(Params, frozen=True):
+class AirParams(FailsafeParams, frozen=True):
     """Names have at most 16 characters, the length of a MAVLink parameter."""
 
     estimator: Annotated[Literal["full", "book"], Meta(description="error-state filter, or the two filters of Beard & McLain")] = "full"

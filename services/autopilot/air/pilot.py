@@ -6,6 +6,7 @@ from dataclasses import astuple, dataclass, replace
 
 from services.autopilot.air.by_hand import COMMAND_MAX_AGE, LET_GO, Stick
 from services.autopilot.air.commands import Surfaces, Wanted
+from services.autopilot.air.fence_guard import FenceGuard
 from services.autopilot.air.field import Field
 from services.autopilot.air.flyable import fault
 from services.autopilot.air.formation import Formation, Trailing
@@ -66,7 +67,8 @@ class Pilot:
         self.formation: Formation | None = None
         self._stick = Stick()
         self._servos = servos
-        self._helm = Helm(servos)
+        self.fence = FenceGuard()
+        self._helm = Helm(self._servos, self.fence)
         self._phase: Phase | None = None
         self._level = Level(math.nan)
         self._fresh = True
@@ -76,7 +78,7 @@ class Pilot:
             self._begin(now)
         self._look(now, params)
         if self._stands:
-            self._helm = Helm(self._servos)
+            self._helm = Helm(self._servos, self.fence)
             return Flown(LET_GO, self._straight_on(now, params), self._level)
         phase = self._phase = self._phase or self._begun(now, params)
         return self._flown(phase.step(now, params, dt), now, params, dt)

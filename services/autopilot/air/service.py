@@ -1,6 +1,7 @@
 """The autopilot of one fixed-wing aircraft: sensors and requests in, surfaces, estimates and reports out."""
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 
 from schemas import topics
 from schemas.convert import stamp
@@ -8,11 +9,14 @@ from schemas.messages import (
     AirData,
     ArmRequest,
     Battery,
+    Fence,
+    FenceRequest,
     FlightSetpoint,
     Gnss,
     GoalRequest,
     GoAroundRequest,
     Imu,
+    Link,
     Mission,
     MissionItem,
     MissionProgress,
@@ -30,24 +34,25 @@ from schemas.messages import (
 )
 from services.autopilot.air import by_hand, intake, offboard, reports
 from services.autopilot.air.commands import Surfaces
-from services.autopilot.air.estimators import Instruments, estimator
+from services.autopilot.air.estimators import Instruments
+from services.autopilot.air.failsafes import GNSS_HOLD
+from services.autopilot.air.fence_plan import mission_fault, place_fault
 from services.autopilot.air.flyable import advice
 from services.autopilot.air.journal import Journal
 from services.autopilot.air.landed import LandDetector
-from services.autopilot.air.losses import GNSS_HOLD, Loss, losses
-from services.autopilot.air.mount import ImuMount
 from services.autopilot.air.over_ground import OverGround
 from services.autopilot.air.params import AirParams
 from services.autopilot.air.pilot import Flown, Pilot
-from services.autopilot.air.sensed import Fix, Sensed
+from services.autopilot.air.prearm import Standing, faults
+from services.autopilot.air.safety import Safety, Seen
+from services.autopilot.air.sensing import Said, Sensing
 from services.autopilot.air.servos import SERVOS, Servos
 from services.autopilot.air.state import Estimate
 from services.autopilot.air.strip import Strip
 from services.autopilot.air.wishes import Senses
 from uvf.maths.geodesy import GRAVITY, LocalTangent
-from uvf.runtime.service import Outputs, Service, every, optional
+from uvf.runtime.service import Outputs, Service, Value, every, optional
 
-FIRST_FIX = 1.0  # s, waited for after a restart
 BEFORE = "an operator before the restart"
 
 
@@ -67,6 +72,7 @@ class Ship:
     altimeter: str = ""
     """Frame of the range finder that looks down."""
     starts_armed: bool = False
+    fence: Fence = field(default_factory=Fence)
 
 
 class AutopilotAir(Service):
@@ -80,6 +86,7 @@ class AutopilotAir(Service):
         "gnss": optional(topics.GNSS),
         "battery": optional(topics.BATTERY),
         "range": optional(every(topics.RANGE)),
+        "link": optional(topics.LINK),
         "stop": optional(topics.STOP.by("*")),
         "teleop": optional(topics.SURFACES.by("teleop")),
         "mavlink": optional(topics.SURFACES.by("mavlink")),
@@ -93,6 +100,7 @@ class AutopilotAir(Service):
         "body_frame": topics.TF_BODY,
         "status": topics.STATUS,
         "plan": topics.MISSION,
+        "bounds": topics.FENCE,
         "progress": topics.PROGRESS,
         "path": topics.PATH,
         "events": topics.EVENTS.by("autopilot"),
@@ -105,8 +113,15 @@ class AutopilotAir(Service):
         "current": topics.SET_CURRENT,
         "orbit": topics.ORBIT,
         "go_around": topics.GO_AROUND,
+        "fence": topics.SET_FENCE,
     }
-    recalls = {"status": topics.STATUS, "plan": topics.MISSION, "progress": topics.PROGRESS, "nav_state": topics.NAV_STATE}
+    recalls = {
+        "status": topics.STATUS,
+        "plan": topics.MISSION,
+        "bounds": topics.FENCE,
+        "progress": topics.PROGRESS,
+        "nav_state": topics.NAV_STATE,
+    }
     fixed_params = frozenset({"estimator"})
     params: AirParams
 
@@ -115,19 +130,17 @@ class AutopilotAir(Service):
         self._ship = ship
         self._mission = intake.with_id(ship.items)
         self._announced = False
+        self._bounds_told = False
         self._armed = ship.starts_in_air or ship.starts_armed
-        self._estimator = estimator(params.estimator, ship.instruments)
-        self._mount = ImuMount(ship.instruments.imu_xyz, ship.instruments.imu_rpy)
-        self._estimated = 0.0  # s
         self._pilot = Pilot(intake.items(ship.items), ship.ground, ship.strips, ship.servos)
         self._over_ground = OverGround(ship.altimeter)
+        self._safety = Safety(self._pilot, ship.servos)
+        self._safety.set_fence(ship.fence, None, params)
         self._journal = Journal()
         self._journal.note(advice(self._pilot.navigator.items, params))
-        self._fix_stamp = 0
-        self._left: NavState | None = None
+        self._sensing = Sensing(ship.instruments, ship.tangent, params.estimator, self._safety.believed)
+        self._surfaces = by_hand.LET_GO
         self._now: Estimate | None = None
-        self._waited = 0.0  # s, for the first fix
-        self._lost: frozenset[Loss] = frozenset()
         self._cycles = 0
         self._told: tuple[object, ...] = ()
         self._land = LandDetector(ship.starts_in_air)
@@ -141,6 +154,7 @@ class AutopilotAir(Service):
         gnss: Gnss | None,
         battery: Battery | None,
         range: list[Range],
+        link: Link | None,
         stop: StopCommand | None,
         teleop: SurfaceCommand | None,
         mavlink: SurfaceCommand | None,
@@ -153,25 +167,29 @@ class AutopilotAir(Service):
         current: list[SetCurrentRequest],
         orbit: list[OrbitRequest],
         go_around: list[GoAroundRequest],
+        fence: list[FenceRequest],
     ) -> Outputs:
-        now = self._now = self._estimate(t, imu, air_data, gnss)
+        now = self._now = self._sensing.step(t, Said(imu, air_data, gnss, self._land.airborne), self.params, 1 / self.hz)
         if now is None:
             waiting = [_reply("there is no satellite fix yet")]
-            asked = {"arm": len(arm), "mode": len(mode), "goal": len(goal), "mission": len(mission), "current": len(current)}
-            asked |= {"orbit": len(orbit), "go_around": len(go_around)}
-            return {**self._announce(t), **{name: waiting * count for name, count in asked.items()}}
-        if len(self._lost) < len(Loss):
+            requests: dict[str, Sequence[object]] = {"arm": arm, "mode": mode, "goal": goal, "mission": mission}
+            requests |= {"current": current, "orbit": orbit, "go_around": go_around, "fence": fence}
+            return {**self._announce(t), **{name: waiting * len(asked) for name, asked in requests.items()}}
+        if now.position_known or now.airspeed_known:
             self._land.step(now, self.params, 1 / self.hz)
-        self._pilot.fly_blind(self._estimator.unfixed > GNSS_HOLD)
+        self._safety.hear(t, link, battery)
+        warnings = self._safety.step(t, self._seen(now), self.params, 1 / self.hz)
+        self._pilot.fly_blind(self._sensing.unfixed > GNSS_HOLD or self._safety.blind)
         self._heed(stop)
         replies = {
             "arm": [self._arm(r) for r in arm],
             "mode": [self._set_mode(r) for r in mode],
-            "goal": [_reply(self._pilot.go_to(intake.place(r.position), r.source, self.params)) for r in goal],
+            "goal": [self._go_to(r) for r in goal],
             "mission": [self._set_mission(r.mission) for r in mission],
             "current": [_reply(self._pilot.set_current(r.index)) for r in current],
             "orbit": [_reply(self._pilot.orbit(intake.circle(r), r.speed, r.source, self.params)) for r in orbit],
             "go_around": [_reply(self._pilot.go_around(r.source)) for r in go_around],
+            "fence": [self._set_fence(r.fence) for r in fence],
         }
         hand = by_hand.choose(t, {"teleop": teleop, "mavlink": mavlink, "client": client})
         self._over_ground.hear(range, [intake.inertial(m, t) for m in imu], 1 / self.hz)
@@ -182,9 +200,9 @@ class AutopilotAir(Service):
             "nav_state": state,
             "pose": reports.pose(state),
             "body_frame": reports.body_frame(state, self._ship.name),
-            "events": self._journal.events(t, self._pilot, self._armed, self._lost),
+            "events": warnings + self._journal.events(t, self._pilot, self._armed),
         }
-        out |= self._reports(t, now, flown, battery)
+        out |= self._report(t, now, flown)
         self._cycles += 1
         return {**out, **self._announce(t), **replies}  # type: ignore[dict-item]
 
@@ -192,20 +210,22 @@ class AutopilotAir(Service):
         clearance = self._over_ground.clearance(t, now, self.params.gear_height)
         senses = Senses(self._land.airborne, self._armed, hand, self._ship.servos, clearance, self._over_ground.push, setpoint)
         self._pilot.hear(senses, 1 / self.hz)
-        flown = self._pilot.step(now, self.params, 1 / self.hz)
+        flown = self._pilot.step(now, self._safety.demands(self.params), 1 / self.hz)
+        self._surfaces = flown.surfaces
         if self._pilot.disarms:
             self._pilot.disarms = self._armed = False
         return flown
 
-    def _reports(self, t: float, now: Estimate, flown: Flown, battery: Battery | None) -> dict[str, object]:
-        """What is told less often than each cycle."""
+    def _report(self, t: float, now: Estimate, flown: Flown) -> dict[str, object]:
+        """What is told now and then, and the status also when it changes."""
         out: dict[str, object] = {}
         told = (self._pilot.mode, self._pilot.reason, self._pilot.stopped, self._armed)
         if self._cycles % 5 == 0 or told != self._told:
             self._told = told
             self._status = reports.status(t, self._pilot, now, flown)
-            self._status.battery_remaining = battery.remaining if battery is not None else -1.0
-            self._status.battery_voltage = battery.voltage if battery is not None else 0.0
+            self._status.battery_remaining, self._status.battery_voltage = self._safety.endurance.shown
+            self._status.prearm.extend(self._faults())
+            self._status.failsafes.extend(self._safety.texts)
             out["status"] = self._stamped_status(t)
         if self._cycles % 25 == 0:
             out["progress"] = reports.progress(t, self._pilot, self._mission.id)
@@ -216,20 +236,22 @@ class AutopilotAir(Service):
         self,
         status: VehicleStatus | None = None,
         plan: Mission | None = None,
+        bounds: Fence | None = None,
         progress: MissionProgress | None = None,
         nav_state: NavState | None = None,
     ) -> None:
         """Goes on in the mode, at the item and from the attitude where the instance before has been."""
         if plan is not None:
             self._set_mission(plan)
+        if bounds is not None:
+            self._set_fence(bounds)
         if status is not None and status.mode in intake.MODES:
             self._armed = status.armed
             self._land = LandDetector(not status.landed)
             self._pilot.stopped = BEFORE if status.stopped else ""
             self._pilot.take_up(intake.MODES[status.mode], intake.place(status.home), intake.stand(progress))
         if nav_state is not None:
-            self._left = nav_state
-            self._estimator.begin_at(*intake.attitude(nav_state))
+            self._sensing.begin_from(nav_state)
 
     def stale(self, t: float, missing: tuple[str, ...]) -> Outputs:
         """Without the IMU nothing can be steered: surfaces at trim until it is back; before the first cycle the servos hold."""
@@ -245,30 +267,29 @@ class AutopilotAir(Service):
             "events": self._journal.lost(t, missing),
         }
 
-    def _estimate(self, t: float, imu: list[Imu], air_data: AirData | None, gnss: Gnss | None) -> Estimate | None:
-        """None until the first fix."""
-        fix = self._new_fix(t, gnss) if gnss is not None else None
-        if fix is None and not self._estimator.started:
-            fix = self._left_fix(t)
-            if fix is None:
-                return None
-        pressures = intake.pressures(air_data, t) if air_data is not None else None
-        self._lost = losses(self._estimator.unfixed, pressures is not None)
-        period = 1 / self._ship.instruments.sheet.imu_hz
-        samples = [self._mount.at_centre(intake.inertial(m, t), period) for m in imu]
-        dt = t - self._estimated if self._estimator.started else 1 / self.hz
-        self._estimated = t
-        return self._estimator.step(Sensed(samples, pressures, fix), self.params, dt)
+    def _seen(self, now: Estimate) -> Seen:
+        return Seen(now, self._sensing.unfixed, self._land.airborne, self._surfaces)
 
-    def _left_fix(self, t: float) -> Fix | None:
-        """After a restart without GNSS: where the instance before has been, once a fix has been waited for."""
-        self._waited += 1 / self.hz
-        return intake.left_fix(self._left, t) if self._left is not None and self._waited > FIRST_FIX else None
-
-    def _new_fix(self, t: float, gnss: Gnss) -> Fix | None:
-        stamp_ns = gnss.timestamp.ToNanoseconds()
-        is_new, self._fix_stamp = stamp_ns != self._fix_stamp, stamp_ns
-        return intake.fix(gnss, self._ship.tangent, t) if is_new else None
+    def _faults(self) -> list[str]:
+        """Why it should not be armed; nothing of it counts in the air."""
+        if self._now is None:
+            return ["there is no satellite fix yet"]
+        if self._land.airborne:
+            return []
+        safety, pilot, now = self._safety, self._pilot, self._now
+        fence = pilot.fence.fencing
+        standing = Standing(
+            now,
+            self.params,
+            unfixed=self._sensing.unfixed,
+            accuracy=self._sensing.accuracy,
+            charge=safety.endurance.charge,
+            has_air_data=safety.has_air_data,
+            field=self._sensing.field,
+            fence_fault="it stands outside" if fence.region.at((now.east, now.north)) < 0 else "",
+            mission_fault=mission_fault(pilot.navigator.items, fence, self.params),
+        )
+        return faults(standing)
 
     def _heed(self, stop: StopCommand | None) -> None:
         """STOP ALL: in the air it holds, at rest it is disarmed. Without a word of it, what was said before counts."""
@@ -280,6 +301,8 @@ class AutopilotAir(Service):
     def _arm(self, request: ArmRequest) -> Reply:
         if request.arm and self._pilot.stopped and not self._land.airborne:
             return _reply(self._pilot.blocked)
+        if request.arm and not request.force and not self._armed and (why := self._faults()):
+            return _reply("; ".join(why))
         if not request.arm and self._land.airborne and not request.force:
             return _reply("the aircraft is flying: land first, or force it")
         self._armed = request.arm
@@ -290,11 +313,28 @@ class AutopilotAir(Service):
             wanted = ", ".join(m.value for m in intake.MODES.values())
             known = Mode.Name(request.mode) if request.mode in Mode.values() else f"mode {request.mode}"
             return _reply(f"{known} is not flown by this autopilot; {wanted} are")
-        return _reply(self._pilot.change_mode(intake.MODES[request.mode], request.source))
+        refusal = self._pilot.change_mode(intake.MODES[request.mode], request.source)
+        if not refusal:
+            self._safety.watch.overrule()
+        return _reply(refusal)
+
+    def _go_to(self, request: GoalRequest) -> Reply:
+        place, fence = intake.place(request.position), self._pilot.fence.fencing
+        refusal = "" if fence.is_open else place_fault(place, fence, self.params, self.params.hold_radius)
+        refusal = refusal or self._pilot.go_to(place, request.source, self.params)
+        if not refusal:
+            self._safety.watch.overrule()
+        return _reply(refusal)
+
+    def _set_fence(self, fence: Fence) -> Reply:
+        refusal = self._safety.set_fence(fence, self._seen(self._now) if self._now is not None else None, self.params)
+        self._bounds_told = self._bounds_told and bool(refusal)
+        return _reply(refusal)
 
     def _set_mission(self, mission: Mission) -> Reply:
         try:
-            refusal = self._pilot.load(intake.items(mission.items), self.params)
+            items = intake.items(mission.items)
+            refusal = mission_fault(items, self._pilot.fence.fencing, self.params) or self._pilot.load(items, self.params)
         except ValueError as error:
             refusal = str(error)
         if not refusal:
@@ -304,11 +344,16 @@ class AutopilotAir(Service):
         return _reply(refusal)
 
     def _announce(self, t: float) -> Outputs:
-        if self._announced:
-            return {}
-        self._announced = True
-        self._mission.timestamp.CopyFrom(stamp(t))
-        return {"plan": self._mission}
+        out: dict[str, Value] = {}
+        if not self._announced:
+            self._announced = True
+            self._mission.timestamp.CopyFrom(stamp(t))
+            out["plan"] = self._mission
+        if not self._bounds_told:
+            self._bounds_told = True
+            self._safety.fence.timestamp.CopyFrom(stamp(t))
+            out["bounds"] = self._safety.fence
+        return out
 
     def _stamped_status(self, t: float) -> VehicleStatus:
         status = self._status

@@ -1,8 +1,10 @@
 """The autopilot of every ground vehicle of the mission."""
 
+from services.autopilot.ground import fence as fences
 from services.autopilot.ground.mission import refusal
 from services.autopilot.ground.service import GroundAutopilot, GroundAutopilotParams
 from services.autopilot.plan import item_from_file
+from uvf.runtime.fence_file import fence_message, fencing
 from uvf.runtime.params import BadInput
 from uvf.runtime.site import Host, Member, Site
 
@@ -20,10 +22,13 @@ def _host(member: Member, site: Site) -> Host:
     reason = refusal(items)
     if reason:
         raise BadInput(f"{site.mission_path}: {member.name}: job: mission: {reason}")
+    fence = fence_message(member.entry.fence, f"{site.mission_path}: {member.name}: fence")
+    if outside := fences.refusal(items, fencing(fence), body.radius):
+        raise BadInput(f"{site.mission_path}: {member.name}: fence: {outside}")
     begins = job.explore or bool(items)
     params = member.params("autopilot_ground", GroundAutopilotParams)
 
     def make() -> GroundAutopilot:
-        return GroundAutopilot(body, (start.x, start.y), (begins, items), member.entry.system_id, params)
+        return GroundAutopilot(body, (start.x, start.y), (begins, items), member.entry.system_id, params, fence)
 
     return Host(GroundAutopilot, make, member.name)

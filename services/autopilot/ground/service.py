@@ -7,12 +7,15 @@ from typing import Annotated, Any
 from msgspec import Meta
 
 from schemas import topics
-from schemas.convert import mode_name, seconds, stamp
+from schemas.convert import mode_name, seconds, stamp, yaw_of
 from schemas.messages import (
     ArmRequest,
     DriveCommand,
     Event,
+    Fence,
+    FenceRequest,
     Kind,
+    Link,
     Mission,
     MissionItem,
     MissionProgress,
@@ -26,9 +29,11 @@ from schemas.messages import (
     VehicleStatus,
     WheelCommand,
 )
+from services.autopilot.ground import fence as fences
 from services.autopilot.ground.drive import Limits, Ramp, within_limits
 from services.autopilot.ground.mission import MissionEngine, Point, mission_of, refusal, vector
 from services.autopilot.ground.multiplexer import SOURCES, Choice, Velocity, choose
+from services.autopilot.ground.safety import Safety, place
 from uvf.maths.kinematics import DifferentialDrive, Twist
 from uvf.runtime.service import Outputs, Params, Service, optional
 from uvf.runtime.vehicle_file import GroundBody
@@ -41,6 +46,7 @@ REFUSALS_EVERY = 10.0  # s between two events about commands that are no numbers
 
 class GroundAutopilotParams(Params, frozen=True):
     acceptance_radius: Annotated[float, Meta(gt=0)] = 0.25  # m, of waypoints that name none
+    link_timeout: Annotated[float, Meta(ge=1, le=300)] = 5.0  # s of silence of all ground stations, after which it holds
 
 
 class GroundAutopilot(Service):
@@ -57,20 +63,34 @@ class GroundAutopilot(Service):
         "planner": optional(topics.DRIVE.by("planner")),
         "stop": optional(topics.STOP.by("*")),
         "pose": optional(topics.POSE),
+        "link": optional(topics.LINK),
     }
     outputs = {
         "wheels": topics.WHEEL_COMMAND,
         "status": topics.STATUS,
         "mission": topics.MISSION,
+        "bounds": topics.FENCE,
         "progress": topics.PROGRESS,
         "events": topics.EVENTS.by("autopilot"),
     }
-    requests = {"arm": topics.ARM, "set_mode": topics.SET_MODE, "set_mission": topics.SET_MISSION, "set_current": topics.SET_CURRENT}
-    recalls = {"status": topics.STATUS, "mission": topics.MISSION, "progress": topics.PROGRESS}
+    requests = {
+        "arm": topics.ARM,
+        "set_mode": topics.SET_MODE,
+        "set_mission": topics.SET_MISSION,
+        "set_current": topics.SET_CURRENT,
+        "set_fence": topics.SET_FENCE,
+    }
+    recalls = {"status": topics.STATUS, "mission": topics.MISSION, "progress": topics.PROGRESS, "bounds": topics.FENCE}
     params: GroundAutopilotParams
 
     def __init__(
-        self, body: GroundBody, home: Point, job: tuple[bool, list[MissionItem]], system_id: int, params: GroundAutopilotParams
+        self,
+        body: GroundBody,
+        home: Point,
+        job: tuple[bool, list[MissionItem]],
+        system_id: int,
+        params: GroundAutopilotParams,
+        fence: Fence | None = None,
     ) -> None:
         """home: start pose [m, world]; job: whether it begins at once, and the mission's items, perhaps none."""
         self.params = params
@@ -88,6 +108,9 @@ class GroundAutopilot(Service):
         self._engine = MissionEngine(home, params.acceptance_radius)
         self._engine.load(mission_of(items, stamp(0.0)))
         self._mission_is_new = True
+        self._safety = Safety((body.radius, body.max_linear_acceleration), fence or Fence())
+        self._fence_is_new = True
+        self._here: fences.Place | None = None
         self._steps = 0
         self._events: list[Event] = []
 
@@ -102,17 +125,22 @@ class GroundAutopilot(Service):
         planner: DriveCommand | None,
         stop: StopCommand | None,
         pose: PoseInFrame | None,
+        link: Link | None,
         arm: list[ArmRequest],
         set_mode: list[ModeRequest],
         set_mission: list[MissionRequest],
         set_current: list[SetCurrentRequest],
+        set_fence: list[FenceRequest],
     ) -> Outputs:
         self._heed_stop(t, stop)
+        self._here = place(pose, yaw_of(pose.pose.orientation)) if pose is not None else None
+        self._watch(t, link)
         replies = {
             "arm": [self._arm(t, r) for r in arm],
             "set_mode": [self._set_mode(t, r) for r in set_mode],
             "set_mission": [self._set_mission(t, r) for r in set_mission],
             "set_current": [self._set_current(t, r) for r in set_current],
+            "set_fence": [self._set_fence(t, r) for r in set_fence],
         }
         commands = {"teleop": teleop, "mavlink": mavlink, "gcs": gcs, "client": client, "offboard": offboard, "planner": planner}
         position = (pose.pose.position.x, pose.pose.position.y) if pose is not None else None
@@ -120,14 +148,43 @@ class GroundAutopilot(Service):
         self._choose(t, {k: Velocity(seconds(c.timestamp), c.linear, c.angular) for k, c in commands.items() if c is not None})
         return {"wheels": self._wheels(t), **replies, **self._reports(t, position)}
 
-    def recall(self, status: VehicleStatus | None = None, mission: Mission | None = None, progress: MissionProgress | None = None) -> None:
+    def recall(
+        self,
+        status: VehicleStatus | None = None,
+        mission: Mission | None = None,
+        progress: MissionProgress | None = None,
+        bounds: Fence | None = None,
+    ) -> None:
         """Goes on in the mode, armed or not, stopped or not, and at the mission's item where the instance before has been."""
         if status is not None and status.mode in SOURCES:
             self._mode, self._armed = status.mode, status.armed
         if status is not None:
             self._stopped = status.stopped  # until it is released, even by somebody who has not seen it engaged
+        if bounds is not None:
+            self._safety.set_fence(bounds, None)
         if mission is not None and progress is not None:
             self._engine.resume(mission, progress)
+
+    def _watch(self, t: float, link: Link | None) -> None:
+        """What the failsafes order: to hold, whatever the mode."""
+        auto = self._mode in (Mode.MODE_MISSION, Mode.MODE_RETURN)
+        needs = {
+            "moves": self._armed and not self._stopped and self._mode != Mode.MODE_HOLD,
+            "unplaced": auto and self._here is None,
+            "unsteered": self._mode == Mode.MODE_OFFBOARD and not self._choice.source,
+        }
+        events, order = self._safety.step(t, link, needs, self.params.link_timeout, 1.0 / self.hz)
+        self._events += events
+        if order is not None and order.action:
+            self._mode = Mode.MODE_HOLD
+            self._tell(t, "mode HOLD", order.rule.begins, Event.WARNING)
+
+    def _set_fence(self, t: float, request: FenceRequest) -> Reply:
+        reason = self._safety.set_fence(request.fence, self._here)
+        if not reason:
+            self._fence_is_new = True
+            self._tell(t, f"new fence of {len(request.fence.zones)} zones", f"asked by {request.source or 'unknown'}")
+        return Reply(accepted=not reason, reason=reason)
 
     def _heed_stop(self, t: float, stop: StopCommand | None) -> None:
         engaged = stop is not None and stop.engaged
@@ -148,13 +205,15 @@ class GroundAutopilot(Service):
         if request.mode not in SOURCES:
             known = ", ".join(mode_name(mode) for mode in SOURCES)
             return Reply(accepted=False, reason=f"a ground vehicle has no mode {request.mode}; there are: {known}")
+        self._safety.watch.overrule()
         if request.mode != self._mode:
             self._mode = request.mode
             self._tell(t, f"mode {mode_name(request.mode)}", f"asked by {request.source or 'unknown'}")
         return Reply(accepted=True)
 
     def _set_mission(self, t: float, request: MissionRequest) -> Reply:
-        reason = refusal(request.mission.items)
+        items = list(request.mission.items)
+        reason = refusal(items) or fences.refusal(items, self._safety.fencing, self._body.radius)
         if reason:
             return Reply(accepted=False, reason=reason)
         self._engine.load(mission_of(request.mission.items, stamp(t)))
@@ -187,6 +246,8 @@ class GroundAutopilot(Service):
     def _wheels(self, t: float) -> WheelCommand:
         top_speed = self._engine.speed if self._mode == Mode.MODE_MISSION and self._engine.speed else self._body.max_linear
         wanted = within_limits(self._choice.linear, self._choice.angular, self._ramp.limits, top_speed)
+        if self._safety.brakes(self._here, wanted[0]):
+            wanted = 0.0, wanted[1]
         left, right = self._drive.wheels(Twist(*self._ramp.lead(*wanted, 1.0 / self.hz)))
         return WheelCommand(timestamp=stamp(t), left=left, right=right)
 
@@ -201,6 +262,9 @@ class GroundAutopilot(Service):
         if self._mission_is_new:
             reports["mission"] = self._engine.mission
             self._mission_is_new = False
+        if self._fence_is_new:
+            reports["bounds"] = self._safety.fence
+            self._fence_is_new = False
         return reports
 
     def _status(self, t: float, position: Point | None) -> VehicleStatus:
@@ -221,6 +285,7 @@ class GroundAutopilot(Service):
             distance_to_waypoint=left,
             home=vector(self._home),
             system_id=self._system_id,
+            failsafes=[rule.begins for rule in self._safety.watch.holding.values()],
         )
 
     def _tell(self, t: float, text: str, cause: str, severity: Event.Severity = Event.NOTICE) -> None:

@@ -17,6 +17,7 @@ LISTEN = "UVF_MAVLINK_LISTEN"
 DEFAULT_TARGETS = "127.0.0.1:14550,127.0.0.1:14540"
 AIR = "autopilot_air"
 DEFAULT_LISTEN = "127.0.0.1:14580"
+LINK_ACTIONS = {"warn": 0, "hold": 1, "return": 2, "land": 3}  # of NAV_DLL_ACT
 EXAMPLE = "127.0.0.1:14550"
 
 log = logging.getLogger(__name__)
@@ -45,6 +46,10 @@ def numbers_of(member: Member) -> dict[str, float]:
         numbers["trim_airspeed"] = air.trim_airspeed
         numbers["hold_radius"] = air.hold_radius
         numbers["return_height"] = air.return_altitude
+        numbers["link_timeout"] = air.link_timeout
+        numbers["link_action"] = float(LINK_ACTIONS[air.link_action])
+        numbers["battery_low"] = air.battery_low
+        numbers["battery_critical"] = air.battery_critical
     return numbers
 
 

@@ -67,4 +67,5 @@ def _complaints(facts: Facts, latest: Latest) -> tuple[str, ...]:
         said.append("STOP ALL is engaged")
     if facts.sensors.gnss and not _has_fix(latest):
         said.append("no satellite fix")
+    said += [why for why in (latest.status.prearm if latest.status is not None else ()) if why not in said]
     return tuple(said)

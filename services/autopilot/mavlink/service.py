@@ -6,13 +6,16 @@ from typing import Any
 from google.protobuf.message import Message
 
 from schemas import topics
-from schemas.messages import Battery, Clock, Event, Gnss, Mission, MissionProgress, NavState, VehicleStatus
+from schemas.convert import stamp
+from schemas.messages import Battery, Clock, Event, Gnss, Link, Mission, MissionProgress, NavState, VehicleStatus
 from services.autopilot.mavlink import dialect as mav
+from services.autopilot.mavlink import endpoint
 from services.autopilot.mavlink.codec import AUTOPILOT, Codec
-from services.autopilot.mavlink.endpoint import Link
 from services.autopilot.mavlink.facts import Facts
 from services.autopilot.mavlink.line import Sender
+from services.autopilot.mavlink.stations import Stations
 from services.autopilot.mavlink.vehicle_link import VehicleLink
+from uvf.maths.sampling import Due
 from uvf.runtime.service import Answer, Outputs, Service, each_vehicle, every, optional
 
 Answers = list[Answer[Any, Any]]
@@ -35,7 +38,7 @@ class MavlinkService(Service):
         "events": each_vehicle(every(topics.EVENTS.by("*"))),
         "clock": optional(topics.CLOCK),
     }
-    outputs = {"drive": topics.DRIVE.by("mavlink"), "surfaces": topics.SURFACES.by("mavlink")}
+    outputs = {"drive": topics.DRIVE.by("mavlink"), "surfaces": topics.SURFACES.by("mavlink"), "link": topics.LINK}
     calls = {
         "arm": topics.ARM,
         "set_mode": topics.SET_MODE,
@@ -44,11 +47,13 @@ class MavlinkService(Service):
         "goal": topics.GOAL,
     }
 
-    def __init__(self, facts: Sequence[Facts], link: Link) -> None:
+    def __init__(self, facts: Sequence[Facts], link: endpoint.Link) -> None:
         self.codec = Codec()
         self._link = link
         self._vehicles = {one.name: VehicleLink(one) for one in facts}
         self._own_ids = {one.system_id for one in facts}
+        self._stations = Stations()
+        self._link_due = Due(topics.LINK.hz)
 
     def step(
         self,
@@ -82,9 +87,10 @@ class MavlinkService(Service):
         for datagram, peer in self._link.receive(t):
             for message in self.codec.parse(datagram):
                 header = message.get_header()
+                self._stations.hear(t, message)
                 self._route(message, Sender(peer, header.srcSystem, header.srcComponent))
         self._speak(t, events)
-        return self._outputs()
+        return {**self._outputs(), **self._links(t)}
 
     def close(self) -> None:
         self._link.close()
@@ -116,6 +122,13 @@ class MavlinkService(Service):
                 packet = self.codec.pack(vehicle.line.facts.system_id, message)
                 for peer in to if packet else ():
                     self._link.send(packet, peer)
+
+    def _links(self, t: float) -> Outputs:
+        """Told of every vehicle alike: a station hears them all."""
+        if not self._link_due.at(t):
+            return {}
+        count = self._stations.count(t)
+        return {"link": {name: Link(timestamp=stamp(v.line.latest.sim_time), stations=count) for name, v in self._vehicles.items()}}
 
     def _outputs(self) -> Outputs:
         outputs: dict[str, dict[str, Any]] = {}

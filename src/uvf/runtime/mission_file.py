@@ -8,6 +8,7 @@ from msgspec import Meta
 
 from schemas.topics import SYSTEM
 from uvf.runtime.faults import Fault, check_faults
+from uvf.runtime.fence_file import FenceFile, fence_message
 from uvf.runtime.formation_file import Follow, check_follow
 from uvf.runtime.params import BadInput, Place, load_yaml, nearest
 from uvf.runtime.wind_file import Wind, check_wind
@@ -65,6 +66,7 @@ class Vehicle(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     system_id: Annotated[int, Meta(ge=1, le=244)]
     job: Job = Job()
     roles: dict[str, str] = {}
+    fence: FenceFile = FenceFile()
 
 
 class Criterion(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -118,6 +120,7 @@ def _check_vehicles(vehicles: dict[str, Vehicle], place: Place) -> None:
         for role, other in vehicle.roles.items():
             if other not in vehicles:
                 raise BadInput(f"{place.at(name, 'roles', role)}: no vehicle '{other}'; {nearest(other, vehicles)}")
+        fence_message(vehicle.fence, place.at(name, "fence"))
         _check_jumps(vehicle.job.mission, place.at(name, "job", "mission"))
 
 

@@ -6,6 +6,8 @@ import pytest
 from schemas.convert import occupancy_grid, planar_pose
 from schemas.messages import (
     CancelRequest,
+    Fence,
+    FenceZone,
     GoalRequest,
     Mission,
     MissionItem,
@@ -43,11 +45,11 @@ class Bench:
         self.events = []
         self.asked = []
 
-    def step(self, n=1, status=READY, mission=None, progress=None, goal=(), cancel=()):
+    def step(self, n=1, status=READY, mission=None, progress=None, goal=(), cancel=(), bounds=None):
         for _ in range(n):
             self.t += 0.25
             pose = PoseInFrame(pose=planar_pose(*world(*self.here), self.yaw))
-            self.said = self.service.step(self.t, pose, self.grid, status, mission, progress, list(goal), list(cancel), [])
+            self.said = self.service.step(self.t, pose, self.grid, status, mission, progress, bounds, list(goal), list(cancel), [])
             self.events += [e.text for e in self.said["events"]]
             self.asked += self.said["set_mode"]
         return self
@@ -64,6 +66,15 @@ def world(x, y):
 def asked(x, y, yaw=float("nan")):
     position = world(x, y)
     return GoalRequest(position=Vector3(x=position[0], y=position[1]), yaw=yaw, source="test")
+
+
+def test_a_goal_beyond_the_fence_is_refused():
+    x, y = world(3.0, 2.0)
+    fence = Fence(zones=[FenceZone(centre=Vector3(x=x, y=y), radius=0.5)])
+    for goal, why in ((asked(2.0, 2.0), "0.5 m outside of the fence"), (asked(3.0, 1.55), "0.05 m from the fence")):
+        bench = Bench().step(bounds=fence, goal=[goal])
+        assert why in bench.said["goal"][0].reason
+    assert Bench().step(bounds=fence, goal=[asked(3.0, 2.0)]).said["goal"][0].accepted
 
 
 def test_a_goal_gets_a_path_in_the_world_frame():

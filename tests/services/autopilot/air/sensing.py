@@ -1,5 +1,7 @@
 """Sensor messages of steady level flight to the east, for the service without a simulator."""
 
+import math
+
 from schemas.convert import stamp
 from schemas.messages import AirData, Gnss, Imu, MissionItem, Vector3
 from services.autopilot.air.estimators import Instruments
@@ -9,13 +11,13 @@ from uvf.maths import atmosphere
 from uvf.maths.geodesy import LocalTangent
 
 TANGENT = LocalTangent.from_degrees(40.77, 14.79, 300.0)
-NOTHING_ASKED = {"arm": [], "mode": [], "goal": [], "mission": [], "current": [], "orbit": [], "go_around": []}
+NOTHING_ASKED = {"arm": [], "mode": [], "goal": [], "mission": [], "current": [], "orbit": [], "go_around": [], "fence": []}
 WAYPOINTS = [MissionItem(position=Vector3(x=900.0, z=60.0)), MissionItem(position=Vector3(x=900.0, y=900.0, z=60.0))]
 
 
 def sensors(t, speed=25.0):
     latitude, longitude, altitude = TANGENT.geodetic([speed * t, 0.0, 60.0])
-    static = atmosphere.pressure(360.0)
+    static = atmosphere.pressure(360.0) + 1e-3 * math.sin(1000.0 * t)  # a sensor that never changes has frozen
     rho = atmosphere.density(static, 285.8)
     gnss = Gnss(
         timestamp=stamp(t),
@@ -35,6 +37,7 @@ def sensors(t, speed=25.0):
         "gnss": gnss,
         "battery": None,
         "range": [],
+        "link": None,
         "stop": None,
         "teleop": None,
         "mavlink": None,

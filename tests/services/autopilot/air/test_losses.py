@@ -8,13 +8,14 @@ import pytest
 from schemas import topics
 from schemas.convert import wxyz
 from schemas.messages import Gnss, GoalRequest, Mode, ModeRequest, Vector3
-from services.autopilot.air.losses import Loss, losses
+from services.autopilot.air.failsafes import AIR_RULES
 from tests.services.autopilot.air.sensing import Bench, sensors
 from tests.services.autopilot.air.test_flight import Flight, distance_to_circuit
 from uvf.maths.rotations import to_euler
 
 IN_A_TURN = 14.5  # s: the demo's aircraft is banked at its first corner
-DEAD_RECKONING, BACK = Loss.GNSS.value
+RULES = {rule.name: rule for rule in AIR_RULES}
+DEAD_RECKONING, BACK = RULES["gnss"].begins, RULES["gnss"].ends
 
 
 class Losing(Flight):
@@ -113,7 +114,7 @@ def test_without_air_data_the_mission_goes_on():
     assert max(map(distance_to_circuit, flight.positions())) < 15.0
     assert np.abs(flight.positions()[:, 2] - 60.0).max() < 6.0
     assert max(abs(m.airspeed - 25.0) for _, m in flight.truth) < 3.0
-    assert Loss.AIR_DATA.begins in [text for _, text in flight.texts]
+    assert RULES["air_data"].begins in [text for _, text in flight.texts]
 
 
 def test_with_the_imu_alone_it_stays_upright():
@@ -175,7 +176,7 @@ def test_pressures_that_are_not_finite_are_none(field):
     setattr(bad, field, math.nan)
     state = bench.run(cycles=10, air_data=bad)["nav_state"]
     assert math.isfinite(state.airspeed) and math.isfinite(state.position.z)
-    assert Loss.AIR_DATA.begins in bench.texts
+    assert RULES["air_data"].begins in bench.texts
 
 
 def test_an_autopilot_started_again_without_gnss_reckons_on_from_what_was_left():
@@ -195,9 +196,3 @@ def test_what_was_left_long_ago_is_not_reckoned_on_from():
     heir.service.recall(status=bench.status, nav_state=left)
     heir.n = 3000
     assert "surfaces" not in heir.run(cycles=100, gnss=None)
-
-
-def test_both_losses_are_told_apart():
-    assert losses(0.2, True) == frozenset()
-    assert losses(2.5, True) == {Loss.GNSS}
-    assert losses(2.5, False) == {Loss.GNSS, Loss.AIR_DATA}

@@ -36,8 +36,8 @@ BODY = GroundBody(
     motor=Motor(stall_torque=1.0, no_load_speed=100.0),
 )
 WAYPOINTS = [MissionItem(position=Vector3(x=1.0)), MissionItem(position=Vector3(x=2.0))]
-NOBODY = dict.fromkeys(("teleop", "mavlink", "gcs", "client", "offboard", "planner", "stop", "pose"))
-NOTHING_ASKED = {"arm": [], "set_mode": [], "set_mission": [], "set_current": []}
+NOBODY = dict.fromkeys(("teleop", "mavlink", "gcs", "client", "offboard", "planner", "stop", "pose", "link"))
+NOTHING_ASKED = {"arm": [], "set_mode": [], "set_mission": [], "set_current": [], "set_fence": []}
 
 
 class Bench:

@@ -50,7 +50,16 @@ _ROVER_FILE = {
         "motor": {"stall_torque": 1, "no_load_speed": 100},
     },
 }
-_PLANE_NUMBERS = {"system_id": 1.0, "trim_airspeed": 25.0, "hold_radius": 90.0, "return_height": 40.0}
+_PLANE_NUMBERS = {
+    "system_id": 1.0,
+    "trim_airspeed": 25.0,
+    "hold_radius": 90.0,
+    "return_height": 40.0,
+    "link_timeout": 5.0,
+    "link_action": 2.0,
+    "battery_low": 0.15,
+    "battery_critical": 0.07,
+}
 PLANE_FACTS = Facts("plane", PLANE, convert(_PLANE_FILE, VehicleFile, "test"), ORIGIN, _PLANE_NUMBERS)
 ROVER_FACTS = Facts("rover", ROVER, convert(_ROVER_FILE, VehicleFile, "test"), ORIGIN, {"system_id": 2.0})
 

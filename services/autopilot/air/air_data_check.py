@@ -1,0 +1,102 @@
+"""Whether the pressures can be believed: frozen ones, and a pitot pressure that does not go with ground speed and wind."""
+
+import math
+from dataclasses import dataclass, replace
+
+from services.autopilot.air.params import AirParams
+from services.autopilot.air.sensed import Pressures
+from services.autopilot.air.state import Estimate
+from uvf.maths import atmosphere
+from uvf.maths.filters import LowPass
+
+FROZEN = 50  # readings that are the same to the last bit: real ones have noise
+SMOOTHED = 0.5  # s, of the comparison: a gust is no fault
+AGREES = 5.0  # s of agreement before the sensor is watched, and before it is believed again
+WIND_TIME = 30.0  # s, behind which the wind that counts follows the one that is estimated
+UNFIXED = 2.0  # s without a fix: nothing to compare with
+
+
+class Frozen:
+    """Counts how often a value has come again unchanged."""
+
+    def __init__(self) -> None:
+        self._last: object = None
+        self._times = 0
+
+    def same(self, value: object, limit: int) -> bool:
+        """Whether this new reading is the ``limit``-th repetition or a later one."""
+        self._times = self._times + 1 if value == self._last else 0
+        self._last = value
+        return self._times >= limit
+
+
+@dataclass(frozen=True, slots=True)
+class Flying:
+    """The last estimate, and how far it can be relied on."""
+
+    now: Estimate
+    unfixed: float  # s
+    airborne: bool
+
+
+class AirDataCheck:
+    """Hands on what can be believed; in place of a pitot pressure that cannot, one of ground speed and wind."""
+
+    def __init__(self) -> None:
+        self.gap = 0.0
+        """m/s, measured less expected airspeed while the sensor is not believed; 0 while it is."""
+        self._static, self._pitot = Frozen(), Frozen()
+        self._stamp: object = None
+        self._frozen = (False, False)
+        self._smoothed = LowPass(SMOOTHED)
+        self._wind: tuple[float, float] | None = None
+        self._agreed = 0.0  # s
+        self._watched = False
+
+    def step(self, read: tuple[object, Pressures] | None, flying: Flying | None, params: AirParams, dt: float) -> Pressures | None:
+        """``read``: stamp and pressures. None: neither height nor airspeed can be taken from them."""
+        if read is None or flying is None or not flying.airborne:
+            self._forget()
+            return read[1] if read is not None else None
+        stamp, pressures = read
+        if stamp != self._stamp:
+            self._stamp = stamp
+            self._frozen = self._static.same(pressures.static, FROZEN), self._pitot.same(pressures.differential, FROZEN)
+        if self._frozen[0]:
+            return None
+        return self._checked(pressures, flying, params, dt)
+
+    def _forget(self) -> None:
+        self.gap, self._agreed, self._watched, self._wind = 0.0, 0.0, False, None
+
+    def _checked(self, pressures: Pressures, flying: Flying, params: AirParams, dt: float) -> Pressures:
+        now = flying.now
+        density = atmosphere.density(pressures.static, pressures.temperature)
+        if flying.unfixed > UNFIXED:
+            expected = params.trim_airspeed
+        else:
+            expected = self._expected(now, dt)
+            gap = self._smoothed.step(atmosphere.airspeed(pressures.differential, density) - expected, dt)
+            self._judge(gap, params.airspeed_gap * params.trim_airspeed, dt)
+        return replace(pressures, differential=0.5 * density * expected**2) if self.gap else pressures
+
+    def _expected(self, now: Estimate, dt: float) -> float:
+        """m/s, of the ground velocity less the wind as it was while the sensor was right."""
+        wind = (now.wind_north, now.wind_east)
+        if self._wind is None or not self._watched:
+            self._wind = wind
+        elif not self.gap:
+            part = dt / WIND_TIME
+            self._wind = tuple(w + part * (new - w) for w, new in zip(self._wind, wind, strict=True))  # type: ignore[assignment]
+        wn, we = self._wind  # type: ignore[misc]
+        north, east = now.ground_speed * math.cos(now.course) - wn, now.ground_speed * math.sin(now.course) - we
+        return math.hypot(north, east, now.climb)
+
+    def _judge(self, gap: float, limit: float, dt: float) -> None:
+        """Believed until it differs by more than ``limit`` [m/s] or stands still; again after it has agreed to half of that."""
+        agrees = abs(gap) < 0.5 * limit and not self._frozen[1]
+        self._agreed = self._agreed + dt if agrees else 0.0
+        if self._agreed > AGREES:
+            self._watched, self.gap = True, 0.0
+        elif self._watched and (abs(gap) > limit or self._frozen[1]):
+            self.gap = gap or math.ulp(1.0)

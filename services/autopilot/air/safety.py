@@ -1,0 +1,164 @@
+"""Keeps watch over an aircraft: gathers what the failsafes look at, and has the pilot do what they order."""
+
+import math
+from dataclasses import dataclass, field
+
+import msgspec
+
+from schemas.convert import seconds, stamp
+from schemas.messages import Battery, Event, Fence, Link
+from services.autopilot.air.air_data_check import AirDataCheck, Flying
+from services.autopilot.air.commands import Surfaces
+from services.autopilot.air.endurance import Endurance
+from services.autopilot.air.failsafes import AIR_RULES, Known
+from services.autopilot.air.fence_guard import circle_within
+from services.autopilot.air.fence_plan import fence_fit, mission_fault, place_fault, tightest
+from services.autopilot.air.modes import FlightMode
+from services.autopilot.air.params import AirParams
+from services.autopilot.air.pilot import Pilot
+from services.autopilot.air.route import Place
+from services.autopilot.air.saturation import Saturation, eased
+from services.autopilot.air.sensed import Pressures
+from services.autopilot.air.servos import Servos
+from services.autopilot.air.state import Estimate
+from services.autopilot.failsafes import Action, Change, Order, Watch
+from uvf.runtime.fence_file import fence_fault, fencing
+
+RANK = {FlightMode.HOLD: Action.HOLD, FlightMode.RETURN: Action.RETURN, FlightMode.LAND: Action.LAND}
+FENCE_ACTIONS = {Fence.RETURN: Action.RETURN, Fence.HOLD: Action.HOLD, Fence.WARN: Action.WARN}
+
+
+@dataclass(slots=True)
+class Seen:
+    """Of one cycle."""
+
+    now: Estimate
+    unfixed: float  # s
+    airborne: bool
+    surfaces: Surfaces = field(default_factory=lambda: Surfaces(0.0, 0.0, 0.0, 0.0))
+
+
+class Safety:
+    """One aircraft's failsafes, with the pilot whom they order about."""
+
+    def __init__(self, pilot: Pilot, servos: Servos) -> None:
+        self.watch = Watch(AIR_RULES)
+        self.endurance = Endurance()
+        self.fence = Fence()
+        """As it was set."""
+        self.has_air_data = True
+        self._pilot = pilot
+        self._air_data = AirDataCheck()
+        self._saturation = Saturation(servos)
+        self._heard: float | None = None
+        self._silence = 0.0
+
+    def hear(self, t: float, link: Link | None, battery: Battery | None) -> None:
+        """What comes from outside, before each step."""
+        self.endurance.take(t, battery)
+        if link is not None and link.stations:
+            self._heard = seconds(link.timestamp)
+        self._silence = t - self._heard if self._heard is not None else 0.0
+
+    def believed(self, read: tuple[object, Pressures] | None, flying: Flying | None, params: AirParams, dt: float) -> Pressures | None:
+        """The pressures (with their stamp) as far as they can be believed."""
+        pressures = self._air_data.step(read, flying, params, dt)
+        self.has_air_data = pressures is not None
+        return pressures
+
+    @property
+    def blind(self) -> bool:
+        """Whether modes that need a position are not to be flown."""
+        return "estimator" in self.watch.holding
+
+    @property
+    def texts(self) -> list[str]:
+        """What is wrong now."""
+        return [rule.begins for rule in self.watch.holding.values()]
+
+    def demands(self, params: AirParams) -> AirParams:
+        """What may be asked of the aircraft now."""
+        return eased(params) if "saturation" in self.watch.holding else params
+
+    def step(self, t: float, seen: Seen, params: AirParams, dt: float) -> list[Event]:
+        """Before the pilot's step; ``seen.surfaces`` are those of the cycle before."""
+        self._saturation.step(seen.surfaces, dt)
+        changes, order = self.watch.step(self._known(seen, params), dt)
+        if order is not None and seen.airborne:
+            self._obey(order, seen.now, params)
+        return [_event(t, change) for change in changes]
+
+    def _known(self, seen: Seen, params: AirParams) -> Known:
+        self._pilot.fence.grounds = not seen.airborne or self._pilot.landing is not None
+        now, outlook = seen.now, self._pilot.fence.look(seen.now, params)
+        stop, stopped_for = self._saturation.worst
+        return Known(
+            params=params,
+            airborne=seen.airborne,
+            silence=self._silence,
+            unfixed=seen.unfixed,
+            sigma=now.position_sigma,
+            has_air_data=self.has_air_data,
+            pitot_gap=self._air_data.gap,
+            charge=self.endurance.charge,
+            spare=self.endurance.spare(now, self._pilot.home, params) if seen.airborne else math.inf,
+            fence=outlook.spare(params),
+            breached=outlook.breached,
+            fence_action=FENCE_ACTIONS[self._pilot.fence.fencing.action],
+            stop=stop,
+            stopped_for=stopped_for,
+            roll=now.roll,
+            pitch=now.pitch,
+            wind=math.hypot(now.wind_north, now.wind_east),
+        )
+
+    def _obey(self, order: Order[Known], now: Estimate, params: AirParams) -> None:
+        """The mode ordered, or the next best; one that goes as far already stays."""
+        pilot, reason = self._pilot, order.rule.begins
+        if RANK.get(pilot.mode, Action.WARN) >= order.action:
+            return
+        wanted = [mode for mode, rank in RANK.items() if rank <= order.action and self._may(mode, params)]
+        for mode in sorted(wanted, key=lambda m: -RANK[m]):
+            if mode is FlightMode.HOLD and self._hold_within(now, reason, params):
+                return
+            if not pilot.change_mode(mode, "failsafe", reason):
+                return
+
+    def _may(self, mode: FlightMode, params: AirParams) -> bool:
+        """Not home, where home is not within the fence."""
+        home, fence = self._pilot.home, self._pilot.fence.fencing
+        if mode is FlightMode.HOLD or home is None or not fence.steers:
+            return True
+        return not place_fault(Place(home.north, home.east, params.return_altitude), fence, params, params.hold_radius)
+
+    def _hold_within(self, now: Estimate, reason: str, params: AirParams) -> bool:
+        """On a circle that lies within the fence, if there is a fence and room for one."""
+        fence = self._pilot.fence.fencing
+        if fence.is_open or not fence.steers:
+            return False
+        here = Place(now.north, now.east, now.height)
+        for radius in (params.hold_radius, tightest(params)):
+            circle = circle_within(fence, here, radius, params)
+            sized = msgspec.structs.replace(params, hold_radius=radius)
+            if circle is not None and not self._pilot.go_to(circle.centre, "the failsafe", sized):
+                self._pilot.reason = reason
+                return True
+        return False
+
+    def set_fence(self, fence: Fence, seen: Seen | None, params: AirParams) -> str:
+        """Why it is refused; empty if it is in force from now on."""
+        new = fencing(fence)
+        here = Place(seen.now.north, seen.now.east, seen.now.height) if seen is not None else None
+        why = fence_fault(fence) or fence_fit(new, here, seen is not None and seen.airborne, params)
+        if not why and (item := mission_fault(self._pilot.navigator.items, new, params)):
+            why = f"the mission does not lie within it: {item}"
+        if not why:
+            self.fence = fence
+            self._pilot.fence.take(new)
+        return why
+
+
+def _event(t: float, change: Change[Known]) -> Event:
+    rule, severity = change.rule, change.rule.severity if change.began else Event.NOTICE
+    text = rule.begins if change.began else rule.ends
+    return Event(timestamp=stamp(t), severity=severity, text=text, cause=change.cause, source="autopilot")

@@ -1,0 +1,102 @@
+"""Failsafes as rules: when something counts as wrong, when as mended, and what is done about it. Pure; for every kind of vehicle."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from enum import IntEnum
+from typing import Generic, TypeVar
+
+from schemas.messages import Event
+
+K = TypeVar("K")
+
+
+class Action(IntEnum):
+    """The later ones come before the earlier ones."""
+
+    WARN = 0
+    HOLD = 1
+    RETURN = 2
+    LAND = 3
+
+
+ACTIONS = {"warn": Action.WARN, "hold": Action.HOLD, "return": Action.RETURN, "land": Action.LAND}
+
+
+@dataclass(frozen=True)
+class Rule(Generic[K]):
+    """One line of a table of failsafes. Between ``wrong`` and ``mended`` there may be a gap: then it stays as it is."""
+
+    name: str
+    wrong: Callable[[K], bool]
+    mended: Callable[[K], bool]
+    begins: str
+    """What is said when it begins, and when it ends."""
+    ends: str
+    figures: Callable[[K], str]
+    """The numbers of the case, for the event's cause."""
+    action: Callable[[K], Action] = lambda known: Action.WARN
+    after: Callable[[K], float] = lambda known: 0.0
+    """s that it has to be wrong without a break."""
+    clears: float = 0.0
+    """s that it has to be mended without a break."""
+    severity: Event.Severity = Event.WARNING
+    parameters: tuple[str, ...] = ()
+    does: str = ""
+    """What else follows, for the table in the documentation."""
+
+
+@dataclass(frozen=True)
+class Change(Generic[K]):
+    """A rule that has begun or ended in this cycle."""
+
+    rule: Rule[K]
+    began: bool
+    cause: str
+
+
+@dataclass(frozen=True)
+class Order(Generic[K]):
+    """What is to be done now, and why."""
+
+    action: Action
+    rule: Rule[K]
+
+
+class Watch(Generic[K]):
+    """Which rules hold. An order is given once, when a rule begins; what somebody asks for afterwards is theirs to ask for."""
+
+    def __init__(self, rules: Sequence[Rule[K]]) -> None:
+        self._rules = tuple(rules)
+        self._time: dict[str, float] = {}
+        """s that a rule that does not hold has been wrong, or one that holds mended."""
+        self.holding: dict[str, Rule[K]] = {}
+        self._in_charge = Action.WARN
+
+    def overrule(self) -> None:
+        """Somebody has asked for a mode: of what holds already nothing is ordered any more."""
+        self._in_charge = Action.WARN
+
+    def step(self, known: K, dt: float) -> tuple[list[Change[K]], Order[K] | None]:
+        """The changes of this cycle of ``dt`` [s], and the order that follows, if it goes beyond what is in force."""
+        changes = [change for rule in self._rules if (change := self._look(rule, known, dt)) is not None]
+        if not any(rule.action(known) for rule in self.holding.values()):
+            self._in_charge = Action.WARN
+        begun = [Order(change.rule.action(known), change.rule) for change in changes if change.began]
+        order = max(begun, key=lambda o: o.action, default=None)
+        if order is None or order.action <= self._in_charge:
+            return changes, None
+        self._in_charge = order.action
+        return changes, order
+
+    def _look(self, rule: Rule[K], known: K, dt: float) -> Change[K] | None:
+        holds = rule.name in self.holding
+        turns = rule.mended(known) if holds else rule.wrong(known)
+        self._time[rule.name] = self._time.get(rule.name, 0.0) + dt if turns else 0.0
+        if not turns or self._time[rule.name] < (rule.clears if holds else rule.after(known)):
+            return None
+        self._time[rule.name] = 0.0
+        if holds:
+            del self.holding[rule.name]
+        else:
+            self.holding[rule.name] = rule
+        return Change(rule, not holds, rule.figures(known))

@@ -1,0 +1,105 @@
+"""A ground vehicle holds when its link or its setpoints end, and stops before its fence."""
+
+import math
+
+import pytest
+
+from schemas.convert import stamp
+from schemas.messages import Fence, FenceRequest, FenceZone, Link, Mission, MissionItem, MissionRequest, Mode, ModeRequest, Vector3
+from services.autopilot.ground.failsafes import GROUND_RULES
+from services.autopilot.ground.fence import MARGIN, Place, stops
+from tests.services.autopilot.ground.test_service import BODY, Bench
+from uvf.maths.zones import Disc, Region
+from uvf.runtime.fence_file import Fencing
+from uvf.runtime.site import ROOT
+
+DISC = Fencing(Region((Disc((0.0, 0.0), 3.0),)), -math.inf, math.inf, Fence.HOLD)
+KEEP = (BODY.radius, BODY.max_linear_acceleration)
+AREA = Fence(zones=[FenceZone(radius=3.0)], action=Fence.HOLD)
+
+
+def fenced():
+    bench = Bench()
+    bench.step(pose=(0.0, 0.0), set_fence=[FenceRequest(fence=AREA, source="test")])
+    assert bench.said["set_fence"][0].accepted
+    return bench
+
+
+def drive(bench, mode, source, seconds):
+    """Moves with the commanded speed along x; returns the places."""
+    x, places = 0.0, []
+    bench.step(set_mode=[ModeRequest(mode=mode)])
+    for _ in range(round(seconds / 0.02)):
+        bench.step(linear=0.5, source=source, pose=(x, 0.0))
+        x += 0.02 * bench.speed
+        places.append(x)
+    return places
+
+
+@pytest.mark.parametrize(
+    ("mode", "source"), [(Mode.MODE_MANUAL, "teleop"), (Mode.MODE_MISSION, "planner"), (Mode.MODE_OFFBOARD, "offboard")]
+)
+def test_it_stops_before_the_fence_in_every_mode_and_may_turn_back(mode, source):
+    bench = fenced()
+    places = drive(bench, mode, source, 10.0)
+    assert 3.0 - BODY.radius - MARGIN - 0.25 < places[-1] < 3.0 - BODY.radius
+    assert bench.speed == 0.0 and "fence ahead: stopped" in bench.events
+    bench.step(n=60, linear=-0.5, source=source, pose=(places[-1], 0.0))
+    assert bench.speed == pytest.approx(-0.5)
+    bench.step(n=60, linear=-0.5, source=source, pose=(1.0, 0.0))
+    assert "clear of the fence" in bench.events
+
+
+def test_only_what_leads_nearer_is_stopped():
+    edge = Place(2.95, 0.0, 0.0)
+    assert stops(DISC, edge, 0.2, KEEP) and not stops(DISC, edge, -0.2, KEEP)
+    assert not stops(DISC, Place(0.0, 0.0, 0.0), 0.5, KEEP)
+    assert not stops(DISC, Place(2.95, 0.0, math.pi), 0.2, KEEP)
+
+
+def test_missions_and_fences_that_do_not_go_together_are_refused():
+    bench = fenced()
+    far = Mission(items=[MissionItem(), MissionItem(position=Vector3(x=5.0))])
+    bench.step(pose=(0.0, 0.0), set_mission=[MissionRequest(mission=far)])
+    assert "item 1: (5.0, 0.0) is 2.0 m outside of the fence" in bench.said["set_mission"][0].reason
+    away = Fence(zones=[FenceZone(centre=Vector3(x=9.0), radius=1.0)])
+    bench.step(pose=(0.0, 0.0), set_fence=[FenceRequest(fence=away)])
+    assert "outside of it" in bench.said["set_fence"][0].reason
+    assert bench.said["bounds"].zones[0].radius == 3.0
+
+
+def test_without_its_ground_station_it_holds_until_told_otherwise():
+    bench = Bench()
+    bench.step(n=50, linear=0.3, pose=(0.0, 0.0), link=Link(timestamp=stamp(0.9), stations=1))
+    bench.step(n=260, linear=0.3, pose=(0.0, 0.0), link=Link(timestamp=stamp(1.5), stations=0))
+    assert "ground station lost" in bench.events
+    assert bench.said["status"].mode == Mode.MODE_HOLD and bench.speed == 0.0
+    bench.step(set_mode=[ModeRequest(mode=Mode.MODE_MISSION)])
+    bench.step(n=100, linear=0.3, pose=(0.0, 0.0))
+    assert bench.said["status"].mode == Mode.MODE_MISSION and list(bench.said["status"].failsafes) == ["ground station lost"]
+    bench.step(pose=(0.0, 0.0), link=Link(timestamp=stamp(bench.t), stations=1))
+    assert "ground station back" in bench.events
+
+
+def test_offboard_without_setpoints_becomes_hold():
+    bench = Bench()
+    bench.step(set_mode=[ModeRequest(mode=Mode.MODE_OFFBOARD)])
+    bench.step(n=50, linear=0.3, source="offboard")
+    bench.step(n=70)
+    assert bench.said["status"].mode == Mode.MODE_HOLD
+    assert "no setpoint from outside" in bench.events
+
+
+def test_without_a_pose_a_mission_stands_and_says_so():
+    bench = Bench()
+    bench.step(n=60)
+    assert "position lost: stands" in bench.events
+    bench.step(n=60, pose=(0.0, 0.0))
+    assert "position back" in bench.events
+
+
+def test_the_documented_table_is_that_of_the_code():
+    text = (ROOT / "docs" / "failsafes.md").read_text().partition("## Ground")[2]
+    rows = [line.strip("|").split("|") for line in text.splitlines() if line.startswith("| `")]
+    assert [row[0].strip(" `") for row in rows] == [rule.name for rule in GROUND_RULES]
+    assert all(rule.begins.split(":")[0] in row[4] for rule, row in zip(GROUND_RULES, rows, strict=True))

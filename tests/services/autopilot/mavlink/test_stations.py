@@ -1,0 +1,52 @@
+"""Vehicles are told how many ground stations are in touch, by their heartbeats."""
+
+from schemas.convert import seconds
+from services.autopilot.mavlink import dialect as mav
+from tests.services.autopilot.mavlink.rig import OTHER, Rig, texts
+
+
+def heartbeat(kind):
+    return mav.MAVLink_heartbeat_message(kind, mav.MAV_AUTOPILOT_INVALID, 0, 0, 0, 3)
+
+
+def told(rig, duration):
+    """The counts that were published meanwhile for the aircraft."""
+    links = []
+    for _ in range(round(duration / 0.02)):
+        rig.run(0.02)
+        links += [rig.outputs["link"]["plane"]] if "link" in rig.outputs else []
+    return links
+
+
+def test_stations_count_while_their_heartbeats_come():
+    rig = Rig()
+    assert {link.stations for link in told(rig, 2.0)} == {0}
+    rig.say(heartbeat(mav.MAV_TYPE_GCS))
+    rig.say(heartbeat(mav.MAV_TYPE_GCS), system=254, peer=OTHER)
+    assert {link.stations for link in told(rig, 2.0)} == {2}
+    rig.say(heartbeat(mav.MAV_TYPE_GCS))
+    assert told(rig, 2.0)[-1].stations == 1
+    assert told(rig, 3.0)[-1].stations == 0
+
+
+def test_a_companion_is_no_ground_station():
+    rig = Rig()
+    rig.say(heartbeat(mav.MAV_TYPE_ONBOARD_CONTROLLER))
+    assert {link.stations for link in told(rig, 1.0)} == {0}
+
+
+def test_every_vehicle_is_told_twice_a_second_with_its_own_time():
+    rig = Rig()
+    links = told(rig, 4.0)
+    assert len(links) == 8
+    assert seconds(links[-1].timestamp) > seconds(links[0].timestamp)
+    while "link" not in rig.outputs:
+        rig.run(0.02)
+    assert set(rig.outputs["link"]) == {"plane", "rover"}
+
+
+def test_reasons_against_arming_are_said_to_the_ground_station():
+    rig = Rig()
+    rig.run(1.0)
+    rig.plane.status.prearm.append("battery low: 5 %, 15 % are needed")
+    assert "PreArm: battery low: 5 %, 15 % are needed" in texts(rig.run(1.0))
