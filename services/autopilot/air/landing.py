@@ -16,11 +16,12 @@ from services.autopilot.air.state import Estimate
 from services.autopilot.air.strip import Lane
 from services.autopilot.air.wheels import Gyros, rolling, rudder_along
 from services.autopilot.air.wishes import Phase, Senses, Track, Wish
+from uvf.maths.geodesy import GRAVITY
 
 FINAL_TIME = 25.0  # s at the lowest airspeed: the length of the final approach
 ON_CIRCLE = 5.0  # m of height, with which it may be left
 ALIGNED = 0.3  # rad, of the course on leaving the circle
-GUST_SHARE, GUST_MOST = 0.3, 0.1  # of the wind, of min_airspeed: what is added to it on the approach
+GUST_SHARE, GUST_MOST = 0.4, 0.2  # of the wind, of min_airspeed: what is added to it on the approach
 RANGED_BELOW, RANGED_WITHIN = 20.0, 150.0  # m of height and distance: from here on the range finder sees the strip's level
 RANGE_TIME = 1.0  # s
 GATE = 10.0, 2.0  # m of height, between which the approach has to be a stable one
@@ -202,5 +203,6 @@ def touch_throttle(now: Estimate, params: AirParams, climb: float, airspeed: flo
     """From the airspeed of the approach to that of touching down, which is below the lowest one that the loops hold."""
     touching = TOUCH_SPEED * airspeed
     airspeed = touching + (airspeed - touching) * min(max(height / SLOWS_BELOW, 0.0), 1.0)
-    ahead = params.trim_throttle + params.throttle_speed * (airspeed - params.trim_airspeed) + params.throttle_climb * climb
-    return min(max(ahead + params.airspeed_p * (airspeed - now.airspeed), 0.0), 1.0)
+    ahead = params.trim_throttle + params.throttle_speed * (airspeed - params.trim_airspeed)
+    faster = now.airspeed / GRAVITY * params.airspeed_p * (airspeed - now.airspeed)
+    return min(max(ahead + params.throttle_climb * (climb + faster), 0.0), 1.0)
