@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from functools import partial
 
 from services.autopilot.air.landing import Landing
 from services.autopilot.air.params import AirParams
@@ -32,12 +33,12 @@ class Field:
     def landing(self, now: Estimate, home: Place, senses: Senses, params: AirParams) -> Landing:
         """On the nearest strip, without any at home."""
         place = Place(now.north, now.east, home.height) if self._strips else home
-        return Landing(now, lane_for(place, self._strips, now), senses, params)
+        return Landing(now, partial(lane_for, place, self._strips), senses, params)
 
     def landing_at(self, now: Estimate, place: Place, senses: Senses, params: AirParams) -> Landing:
         """On the strip there, or on the place itself."""
         near = [s for s in self._strips if _distance(s, place.north, place.east) < s.length / 2 + NEAR]
-        return Landing(now, lane_for(place, near, now), senses, params)
+        return Landing(now, partial(lane_for, place, near), senses, params)
 
 
 def _distance(strip: Strip, north: float, east: float) -> float:

@@ -15,7 +15,7 @@ from services.autopilot.air.state import Estimate
 from services.autopilot.air.wishes import Track, Wish
 
 FLAP_RATE = 0.1  # rad/s, slow enough for the loops to follow
-FIRM_CLIMB, FIRM_PITCH = 2.0, 0.7  # times climb_p and pitch_time
+FIRM_CLIMB, FIRM_PITCH = 3.0, 0.7  # times climb_p and pitch_time
 
 
 class Helm:

@@ -5,6 +5,7 @@ sink rate of touching down right where the wheels are meant to touch, whatever t
 """
 
 import math
+from collections.abc import Callable
 from enum import Enum, auto
 
 from services.autopilot.air.cycle import clip
@@ -20,6 +21,7 @@ from uvf.maths.geodesy import GRAVITY
 
 FINAL_TIME = 25.0  # s at the lowest airspeed: the length of the final approach
 ON_CIRCLE = 5.0  # m of height, with which it may be left
+MOST_TAILWIND = 1.5  # m/s, with which it lands
 ALIGNED = 0.3  # rad, of the course on leaving the circle
 GUST_SHARE, GUST_MOST = 0.4, 0.2  # of the wind, of min_airspeed: what is added to it on the approach
 RANGED_BELOW, RANGED_WITHIN = 20.0, 150.0  # m of height and distance: from here on the range finder sees the strip's level
@@ -27,13 +29,14 @@ RANGE_TIME = 1.0  # s
 GATE = 10.0, 2.0  # m of height, between which the approach has to be a stable one
 TOO_HIGH, TOO_FAST = 3.0, 7.0  # m, m/s
 FLARE_TIME = 3.0  # s
-TOUCH_SINK = 0.4  # m/s
+TOUCH_SINK = 0.3  # m/s
 FLARE_P = 0.8  # 1/s, climb rate per error of height
 TOUCH_SPEED, SLOWS_BELOW = 0.96, 3.0  # of min_airspeed; m
 DECRAB_BELOW = 0.7  # m
 CRAB_LEFT = 0.1  # rad, that the wheels take
 LOW, LOW_BANK = 3.0, 0.17  # m, rad
 TOUCHED, STUCK = 0.12, 0.3  # m; m/s less sink than asked for
+IDLES_BELOW = 0.5  # m
 TOUCH_TIME, STUCK_TIME = 0.08, 1.0  # s
 BRAKES_AFTER, BRAKE = 0.8, 0.6  # s
 STOPPED, STANDS = 0.7, 1.5  # m/s, s
@@ -47,10 +50,11 @@ class Stage(Enum):
 
 
 class Landing(Phase):
-    """On a lane. ``around`` asks for another approach."""
+    """On a lane, which is chosen again as long as the wind is found out on the circle. ``around`` asks for another approach."""
 
-    def __init__(self, now: Estimate, lane: Lane, senses: Senses, params: AirParams) -> None:
-        self.lane = lane
+    def __init__(self, now: Estimate, choose: Callable[[Estimate], Lane], senses: Senses, params: AirParams) -> None:
+        self.lane = choose(now)
+        self._choose = choose
         self.why_around = ""
         self._senses = senses
         self._length = FINAL_TIME * params.min_airspeed
@@ -100,6 +104,9 @@ class Landing(Phase):
         return math.tan(params.glide_slope)
 
     def _descend(self, now: Estimate, params: AirParams) -> Wish:
+        if self.lane.tailwind(now) > MOST_TAILWIND and (other := self._choose(now)) != self.lane:
+            self.lane = other
+            self._circle = self._new_circle(now, params)
         circle = self._circle
         distance, right = self.lane.locate(now)
         lead = abs(distance - self._length) < 0.4 * abs(circle.radius) and abs(right) < 0.2 * abs(circle.radius)
@@ -134,7 +141,7 @@ class Landing(Phase):
             self._to(Stage.ROLL)
         climb = max(climb, -TOUCH_SINK - 0.4 * max(height, 0.0))
         rudder = self._decrab(now, params, right) if height < DECRAB_BELOW else None
-        throttle = touch_throttle(now, params, climb, fast, height)
+        throttle = touch_throttle(now, params, climb, fast, height) if height < IDLES_BELOW else None
         track = Track(aim, None, climb, fast, bank_limit=LOW_BANK, rudder=rudder, throttle=throttle)
         return Wish(track, params.land_flap, firm=True)
 

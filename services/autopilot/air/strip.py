@@ -50,6 +50,10 @@ class Lane:
         cn, ce = self.along
         return -(n * cn + e * ce), e * cn - n * ce
 
+    def tailwind(self, now: Estimate) -> float:
+        """m/s."""
+        return now.wind_north * self.along[0] + now.wind_east * self.along[1]
+
     def before(self, distance: float, aside: float = 0.0) -> Point:
         """North and east of a point so far before the point to touch at, and aside to the right [m]."""
         cn, ce = self.along

@@ -124,9 +124,7 @@ def test_after_a_restore_the_run_repeats_bit_for_bit(tmp_path):
     assert run.ask(topics.AIR_RESTORE, StateRequest(name="here"), again).accepted
     marks = Counter({key: len(messages) for key, messages in run.heard.items()})
     run.lockstep.run(again + lasting)
-    assert (
-        sum(len(messages) > 3 for messages in first.values()) == 2 * 5 + 1
-    )  # imu, gnss, air data, truth and joints of both, one range finder
+    assert sum(len(messages) > 3 for messages in first.values()) == 2 * 6  # imu, gnss, air data, truth, joints and range finder of both
     for key, messages in first.items():
         second = run.heard[key][marks[key] :]
         assert [seconds(m.timestamp) for m in second] == pytest.approx([seconds(m.timestamp) + again - saved for m in messages])

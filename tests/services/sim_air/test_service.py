@@ -200,6 +200,7 @@ def test_a_cameras_optical_frame_is_told_too(tmp_path):
     (frames,) = house_readings(tmp_path, topics.TF_STATIC)
     assert {f.child_frame_id: f.parent_frame_id for f in frames.transforms} == {
         "first/imu": "first/base_link",
+        "first/altimeter": "first/base_link",
         "first/camera": "first/base_link",
         "first/camera_optical": "first/camera",
     }

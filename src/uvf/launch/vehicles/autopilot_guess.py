@@ -35,7 +35,8 @@ YAW, SLIP = 3.0, 0.2  # of the aircraft's own damping; rad/s
 def autopilot_figures(airframe: Airframe, body: AirBody) -> dict[str, float]:
     """Parameter name -> value, of an aircraft with an engine. Raises BadInput where it does not fly so."""
     models = linearize(airframe, body.trim_speed, HEIGHT, Path(body.model))
-    found = {**_balance(airframe, body.trim_speed), **_rates(models, body), **_yaw(models), **_measures(body.trim_speed)}
+    rates = _rates(models, body)  # first: it tells of an aircraft that cannot bank, which would not fly a turn either
+    found = {**_balance(airframe, body.trim_speed), **rates, **_yaw(models), **_measures(body.trim_speed)}
     found |= _slowest(airframe, body, found) | {"idle_sink": _within(_idle_sink(airframe, body), 0.1, 20.0)}
     reserve = {"climb_max": 1 - found["trim_throttle"], "sink_max": found["trim_throttle"]}
     for name, left in reserve.items():
