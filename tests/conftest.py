@@ -1,8 +1,16 @@
-"""What runs against the wall clock may miss a deadline on a busy machine: it has a second try, which the summary tells (R)."""
+"""What all tests keep to.
+
+What runs against the wall clock may miss a deadline on a busy machine: it has a second try, which the summary tells (R).
+Hypothesis tries the same examples each time.
+"""
 
 from pathlib import Path
 
 import pytest
+from hypothesis import settings
+
+settings.register_profile("repeatable", derandomize=True)
+settings.load_profile("repeatable")
 
 WALL = [Path(__file__).parent / folder for folder in ("browser", "distributed")]
 

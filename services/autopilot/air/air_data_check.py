@@ -13,7 +13,7 @@ FROZEN = 50  # readings that are the same to the last bit: real ones have noise
 SMOOTHED = 0.5  # s, of the comparison: a gust is no fault
 AGREES = 5.0  # s of agreement before the sensor is watched, and before it is believed again
 WIND_TIME = 30.0  # s, behind which the wind that counts follows the one that is estimated
-SHEAR = 0.7  # of the wind, that an aircraft may lose or meet on its way down or up: no fault of a sensor
+SHEAR = 0.35  # of the wind, that an aircraft may lose or meet on its way down or up: no fault of a sensor
 UNFIXED = 2.0  # s without a fix: nothing to compare with
 
 
@@ -78,7 +78,7 @@ class AirDataCheck:
         else:
             expected = self._expected(now, dt)
             gap = self._smoothed.step(atmosphere.airspeed(pressures.differential, density) - expected, dt)
-            self._judge(gap, params.airspeed_gap * params.trim_airspeed + SHEAR * math.hypot(now.wind_north, now.wind_east), dt)
+            self._judge(gap, params.airspeed_gap * params.trim_airspeed + SHEAR * math.hypot(*self._wind or (0.0, 0.0)), dt)
         return replace(pressures, differential=0.5 * density * expected**2) if self.gap else pressures
 
     def _expected(self, now: Estimate, dt: float) -> float:
