@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from services.autopilot.air.guidance import Point
+from services.autopilot.air.guidance import Point, turn_radius
 from uvf.maths.eased import Way
 from uvf.maths.geodesy import GRAVITY
 
@@ -40,7 +40,7 @@ class Flying:
     @property
     def radius(self) -> float:
         """m, over ground, that takes no more than the bank wherever the wind comes from (Beard & McLain 9.3.2, at its fastest)."""
-        return self._fastest**2 / (GRAVITY * math.tan(self.bank))
+        return turn_radius(self._fastest, self.bank)
 
     @property
     def ramp(self) -> float:
@@ -101,7 +101,7 @@ class Planner:
 
     def balanced(self, room: float) -> Corner:
         """As far outside of the second leg as inside of both, within MOST_OUTSIDE and, where it can be, ``room`` [m] on that leg."""
-        most = MOST_OUTSIDE * self.flying.airspeed**2 / (GRAVITY * math.tan(self.flying.bank))
+        most = MOST_OUTSIDE * turn_radius(self.flying.airspeed, self.flying.bank)
         low, high = 0.0, min(MOST_BEYOND, abs(self.turn))
         for _ in range(HALVINGS):
             middle = (low + high) / 2

@@ -11,8 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from services.autopilot.air.commands import Wanted
+from services.autopilot.air.guidance import turn_radius
 from services.autopilot.air.params import AirParams
-from services.autopilot.air.route import Circle, Level, Place
+from services.autopilot.air.route import Circle, Place
 from services.autopilot.air.state import Estimate
 from uvf.maths.geodesy import GRAVITY
 from uvf.runtime.fence_file import OPEN, Fencing
@@ -121,7 +122,7 @@ class FenceGuard:
 
 
 def _radius(now: Estimate, params: AirParams) -> float:
-    return max(now.airspeed, 0.7 * params.trim_airspeed) ** 2 / (GRAVITY * math.tan(params.turn_bank))
+    return turn_radius(max(now.airspeed, 0.7 * params.trim_airspeed), params.turn_bank)
 
 
 def turn(now: Estimate, bank: float) -> Floats:
@@ -164,8 +165,3 @@ def circle_within(fencing: Fencing, near: Place, radius: float, params: AirParam
     if room < needed:
         return None
     return Circle(Place(north, east, clamped(near.height, fencing, params)), radius)
-
-
-def at_level(level: Level, fencing: Fencing, params: AirParams) -> Level:
-    height = clamped(level.height, fencing, params)
-    return level if height == level.height else Level(height)

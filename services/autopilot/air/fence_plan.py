@@ -1,12 +1,11 @@
 """Whether missions, goals and fences go together."""
 
-import math
 from collections.abc import Sequence
 
+from services.autopilot.air.guidance import turn_radius
 from services.autopilot.air.params import AirParams
 from services.autopilot.air.plan import Item, Kind
 from services.autopilot.air.route import Place
-from uvf.maths.geodesy import GRAVITY
 from uvf.maths.zones import Point
 from uvf.runtime.fence_file import Fencing
 
@@ -62,4 +61,4 @@ def fence_fit(fencing: Fencing, here: Place | None, airborne: bool, params: AirP
 
 def tightest(params: AirParams) -> float:
     """m, radius of the tightest circle that it can be asked to hold."""
-    return WIDER * params.trim_airspeed**2 / (GRAVITY * math.tan(params.turn_bank))
+    return WIDER * turn_radius(params.trim_airspeed, params.turn_bank)

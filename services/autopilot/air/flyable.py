@@ -9,6 +9,7 @@ import math
 from collections.abc import Iterator, Sequence
 
 from services.autopilot.air import corners
+from services.autopilot.air.guidance import turn_radius
 from services.autopilot.air.params import AirParams
 from services.autopilot.air.plan import NO_JUMPS, Item, Kind, Stop, following
 from services.autopilot.air.planning import Planner
@@ -29,7 +30,7 @@ def _fault(item: Item, count: int, speed: float, params: AirParams) -> str:
         return f"sets a speed of {item.speed:g} m/s; this aircraft flies {params.min_airspeed:g} to {params.max_airspeed:g} m/s"
     if item.kind is Kind.WAYPOINT and item.hold > 0 and item.course is not None:
         return "has a hold time and a course: it is circled, in every direction; leave one of both out"
-    tightest = speed**2 / (GRAVITY * math.tan(params.bank_limit))
+    tightest = turn_radius(speed, params.bank_limit)
     if (item.kind is Kind.ORBIT or item.hold > 0) and 0 < abs(item.radius) < tightest:
         most = math.sqrt(abs(item.radius) * GRAVITY * math.tan(params.bank_limit))
         mend = f"or at most {most:.1f} m/s" if most >= params.min_airspeed else "(0 = the aircraft's own)"

@@ -18,6 +18,11 @@ INTEGRATES_WITHIN = 5.0  # m
 TURN_TRIM_LIMIT = 0.05  # rad/s
 
 
+def turn_radius(speed: float, bank: float) -> float:
+    """m, of a coordinated turn with this bank [rad] at this speed [m/s] (Beard & McLain 9.3.2)."""
+    return speed**2 / (GRAVITY * math.tan(bank))
+
+
 @dataclass(frozen=True, slots=True)
 class Aim:
     """Where a path wants the aircraft now."""

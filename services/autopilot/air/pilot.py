@@ -10,7 +10,7 @@ from services.autopilot.air.fence_guard import FenceGuard
 from services.autopilot.air.field import Field
 from services.autopilot.air.flyable import fault
 from services.autopilot.air.formation import Formation, Trailing
-from services.autopilot.air.guidance import Aim
+from services.autopilot.air.guidance import Aim, turn_radius
 from services.autopilot.air.helm import Helm
 from services.autopilot.air.landing import Landing
 from services.autopilot.air.mission_flight import MissionFlight
@@ -26,7 +26,6 @@ from services.autopilot.air.state import Estimate
 from services.autopilot.air.stick_modes import STICK_MODES
 from services.autopilot.air.strip import Strip
 from services.autopilot.air.wishes import Phase, Senses, Track, Wish
-from uvf.maths.geodesy import GRAVITY
 
 
 @dataclass(frozen=True, slots=True)
@@ -262,7 +261,7 @@ class Pilot:
             return "the circle is none: its numbers are not finite"
         if airspeed and not params.min_airspeed <= airspeed <= params.max_airspeed:
             return f"{airspeed:g} m/s cannot be flown: {params.min_airspeed:g} to {params.max_airspeed:g} m/s can"
-        tightest = (airspeed or params.trim_airspeed) ** 2 / (GRAVITY * math.tan(params.turn_bank))
+        tightest = turn_radius(airspeed or params.trim_airspeed, params.turn_bank)
         if circle.radius and abs(circle.radius) < tightest:
             return f"a circle of {abs(circle.radius):g} m is too tight at this airspeed: {math.ceil(tightest)} m is not"
         height = circle.centre.height if circle.centre.height >= params.min_altitude else self._level.height

@@ -9,12 +9,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from services.autopilot.air import bypass, corners
-from services.autopilot.air.guidance import Point
+from services.autopilot.air.guidance import Point, turn_radius
 from services.autopilot.air.params import AirParams
 from services.autopilot.air.plan import Item, Stop, following
 from services.autopilot.air.route import Circle, Curve, Leg, Place
 from uvf.maths.eased import eased, turned_onto
-from uvf.maths.geodesy import GRAVITY
 
 LEAVING = 0.6  # of a leg, for the corner at its beginning at most; it needs more than that at its end
 TIGHTEST_ORBIT = 0.6  # of the radius at turn_bank; smaller wishes are widened to that
@@ -66,7 +65,7 @@ class Planner:
     def orbit_radius(self, item: Item) -> float:
         """m, positive clockwise."""
         wanted = item.radius or self.params.hold_radius
-        tightest = TIGHTEST_ORBIT * self.params.trim_airspeed**2 / (GRAVITY * math.tan(self.params.turn_bank))
+        tightest = TIGHTEST_ORBIT * turn_radius(self.params.trim_airspeed, self.params.turn_bank)
         return math.copysign(max(abs(wanted), tightest), wanted)
 
     def _item(self, stop: Stop) -> Item:

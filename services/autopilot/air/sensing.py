@@ -4,13 +4,13 @@ import math
 from collections.abc import Callable
 from typing import Literal, NamedTuple
 
-from schemas.messages import AirData, Gnss, Imu, NavState
+from schemas.messages import AirData, Gnss, NavState
 from services.autopilot.air import intake
 from services.autopilot.air.air_data_check import Flying, Frozen
 from services.autopilot.air.estimators import Instruments, estimator
 from services.autopilot.air.mount import ImuMount
 from services.autopilot.air.params import AirParams
-from services.autopilot.air.sensed import Fix, Pressures, Sensed
+from services.autopilot.air.sensed import Fix, Inertial, Pressures, Sensed
 from services.autopilot.air.state import Estimate
 from uvf.maths.geodesy import LocalTangent
 
@@ -24,7 +24,7 @@ Believe = Callable[[tuple[object, Pressures] | None, Flying | None, AirParams, f
 class Said(NamedTuple):
     """In one cycle."""
 
-    imu: list[Imu]
+    imu: list[Inertial]
     air_data: AirData | None
     gnss: Gnss | None
     airborne: bool
@@ -66,7 +66,7 @@ class Sensing:
             fix = self._left_fix(t, dt)
             if fix is None:
                 return None
-        samples = [self._mount.at_centre(intake.inertial(m, t), self._period) for m in said.imu]
+        samples = [self._mount.at_centre(sample, self._period) for sample in said.imu]
         passed = t - self._estimated if self._estimator.started else dt
         self._estimated = t
         flying = Flying(self._now, self.unfixed, said.airborne) if self._now is not None else None

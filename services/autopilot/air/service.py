@@ -169,7 +169,8 @@ class AutopilotAir(Service):
         go_around: list[GoAroundRequest],
         fence: list[FenceRequest],
     ) -> Outputs:
-        now = self._now = self._sensing.step(t, Said(imu, air_data, gnss, self._land.airborne), self.params, 1 / self.hz)
+        samples = [intake.inertial(m, t) for m in imu]
+        now = self._now = self._sensing.step(t, Said(samples, air_data, gnss, self._land.airborne), self.params, 1 / self.hz)
         if now is None:
             waiting = [_reply("there is no satellite fix yet")]
             requests: dict[str, Sequence[object]] = {"arm": arm, "mode": mode, "goal": goal, "mission": mission}
@@ -192,7 +193,7 @@ class AutopilotAir(Service):
             "fence": [self._set_fence(r.fence) for r in fence],
         }
         hand = by_hand.choose(t, {"teleop": teleop, "mavlink": mavlink, "client": client})
-        self._over_ground.hear(range, [intake.inertial(m, t) for m in imu], 1 / self.hz)
+        self._over_ground.hear(range, samples, 1 / self.hz)
         flown = self._fly(t, now, hand, offboard.fresh(t, setpoint))
         state = reports.nav_state(t, now)
         out: dict[str, object] = {
