@@ -10,6 +10,7 @@ from schemas.messages import (
     Clock,
     CompressedImage,
     Event,
+    Fence,
     FrameTransform,
     Grid,
     Health,
@@ -58,6 +59,7 @@ class GroundStation(Service):
         "path": each_vehicle(topics.PATH),
         "mission": each_vehicle(topics.MISSION),
         "progress": each_vehicle(topics.PROGRESS),
+        "fence": each_vehicle(topics.FENCE),
         "scan": each_vehicle(topics.SCAN),
         "image": each_vehicle(topics.IMAGE),
         "chase": each_vehicle(topics.VIEW.by("chase")),
@@ -100,6 +102,7 @@ class GroundStation(Service):
         path: Mapping[str, PosesInFrame],
         mission: Mapping[str, Mission],
         progress: Mapping[str, MissionProgress],
+        fence: Mapping[str, Fence],
         scan: Mapping[str, LaserScan],
         image: Mapping[str, CompressedImage],
         chase: Mapping[str, CompressedImage],
@@ -120,6 +123,7 @@ class GroundStation(Service):
             "path": path,
             "mission": mission,
             "progress": progress,
+            "fence": fence,
             "scan": scan,
             "image": image,
             "chase": chase,
@@ -132,8 +136,7 @@ class GroundStation(Service):
         self._hear_system(t, clock, processes, health)
         self._model.hear_objects((objects, aircraft), truth)
         self._model.hear_stop(stops)
-        for what, messages in newest.items():
-            self._model.hear(t, what, messages)
+        self._model.hear_newest(t, newest)
         self._model.hear_events(t, events)
         self._commander.hear(t, (*goal, *cancel, *arm, *mode))
         return self._act(t)

@@ -13,6 +13,7 @@ from schemas.messages import (
     Clock,
     CompressedImage,
     Event,
+    Fence,
     FrameTransform,
     GimbalCommand,
     Grid,
@@ -48,7 +49,7 @@ LOST_AFTER = 5.0  # s
 SIGNS_OF_LIFE = ("nav", "pose", "odometry", "status", "nav_status", "progress")
 SHOWN_BY_THE_CLOCK = ("conductor",)
 """Sources whose warnings tell of a state that the page reads from the clock: they stand in the log, not as notices."""
-LAYERS = ("Map", "Scan", "Paths", "Tracks", "Labels", "Walls", "True pose")
+LAYERS = ("Map", "Scan", "Paths", "Fences", "Tracks", "Labels", "Walls", "True pose")
 SHOWN_AT_FIRST = frozenset(LAYERS) - {"True pose"}
 COLOURS = ("#4ea1ff", "#f2913d", "#3fbf7f", "#b98cf5", "#e8c547", "#5fd4d6")
 """Vehicles' own colours, told apart by colour-blind people too; red and magenta keep their meanings."""
@@ -88,6 +89,7 @@ class VehicleModel:
     path: PosesInFrame | None = None
     mission: Mission | None = None
     progress: MissionProgress | None = None
+    fence: Fence | None = None
     scan: LaserScan | None = None
     image: CompressedImage | None = None
     chase: CompressedImage | None = None
@@ -195,6 +197,11 @@ class Model:
     def look(self, t: float, page: str) -> None:
         """A page has the picture before somebody's eyes; pages that are gone are forgotten."""
         self.looking = {**{name: at for name, at in self.looking.items() if t - at < LOST_AFTER}, page: t}
+
+    def hear_newest(self, t: float, newest: Mapping[str, Mapping[str, Message]]) -> None:
+        """By kind, then by vehicle."""
+        for what, messages in newest.items():
+            self.hear(t, what, messages)
 
     def hear(self, t: float, what: str, messages: Mapping[str, Message]) -> None:
         """Takes in the newest message of one kind for each vehicle that has a new one."""

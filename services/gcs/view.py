@@ -10,6 +10,7 @@ from schemas.convert import array, occupancy_cells, wxyz
 from schemas.messages import FrameTransform, Grid, NavStatus
 from services.gcs import bodies
 from services.gcs.drawing import Colour, FloorPicture, Node, Points, Polyline, Text
+from services.gcs.fences import fence_nodes
 from services.gcs.map_image import known_part, occupancy_png
 from services.gcs.moving_parts import MovingParts
 from services.gcs.scenery import circuit_line, coloured, moving, places_of, rgb_of, scenery
@@ -87,6 +88,7 @@ class View:
             "path": ("Paths", lambda: self._path(v)),
             "goal": ("Paths", lambda: self._goal(v)),
             "mission": ("Paths", lambda: self._mission(v)),
+            "fence": ("Fences", lambda: self._fence(v)),
             "track": ("Tracks", lambda: self._track(v)),
             "label": ("Labels", lambda: self._label(v)),
             "height": ("Labels", lambda: self._height(v)),
@@ -149,6 +151,16 @@ class View:
             number = self._make(f"mission {v.name} {i}", (x, y, z), lambda at=(x, y, z), n=i + 1: Text(f"{n}", at))  # type: ignore[misc]
             line[f"/{i}"] = number[""]
         return line
+
+    def _fence(self, v: VehicleModel) -> dict[str, Node]:
+        fence = v.fence
+        if fence is None:
+            return {}
+        drawn: dict[str, Node] = {}
+        for part in (f"/{i}/{what}" for i in range(len(fence.zones)) for what in ("edge", "wall")):
+            made = self._make(f"fence {v.name}{part}", fence, lambda p=part: fence_nodes(fence, rgb_of(v.colour), v.flies)[p])  # type: ignore[misc]
+            drawn[part] = made[""]
+        return drawn
 
     def _track(self, v: VehicleModel) -> dict[str, Node]:
         colour, up = rgb_of(v.colour), np.array((0, 0, 0.0 if v.flies else UP))

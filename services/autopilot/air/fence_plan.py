@@ -13,6 +13,21 @@ PATH_ROOM = 4.0  # m beyond fence_margin: an aircraft is not on its path to the 
 WIDER = 1.2  # than the tightest circle, in wind
 
 
+class Remembered:
+    """``mission_fault``, worked out once per mission, fence and parameters: they are asked for many times a second."""
+
+    def __init__(self) -> None:
+        self._of: tuple[object, ...] = ()
+        self._fault = ""
+
+    def mission_fault(self, items: Sequence[Item], fencing: Fencing, params: AirParams) -> str:
+        """Which item leaves the fence; empty if none does."""
+        of = items, fencing, params
+        if len(self._of) != len(of) or any(one is not other for one, other in zip(self._of, of, strict=True)):
+            self._of, self._fault = of, mission_fault(items, fencing, params)
+        return self._fault
+
+
 def mission_fault(items: Sequence[Item], fencing: Fencing, params: AirParams) -> str:
     """Which item leaves the fence; empty if none does. Jumps are taken as read: their items are looked at where they stand."""
     if fencing.is_open:

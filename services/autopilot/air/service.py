@@ -36,7 +36,7 @@ from services.autopilot.air import by_hand, intake, offboard, reports
 from services.autopilot.air.commands import Surfaces
 from services.autopilot.air.estimators import Instruments
 from services.autopilot.air.failsafes import GNSS_HOLD
-from services.autopilot.air.fence_plan import mission_fault, place_fault
+from services.autopilot.air.fence_plan import Remembered, mission_fault, place_fault
 from services.autopilot.air.flyable import advice
 from services.autopilot.air.journal import Journal
 from services.autopilot.air.landed import LandDetector
@@ -134,6 +134,7 @@ class AutopilotAir(Service):
         self._armed = ship.starts_in_air or ship.starts_armed
         self._pilot = Pilot(intake.items(ship.items), ship.ground, ship.strips, ship.servos)
         self._over_ground = OverGround(ship.altimeter)
+        self._within = Remembered()
         self._safety = Safety(self._pilot, ship.servos)
         self._safety.set_fence(ship.fence, None, params)
         self._journal = Journal()
@@ -288,7 +289,7 @@ class AutopilotAir(Service):
             has_air_data=safety.has_air_data,
             field=self._sensing.field,
             fence_fault="it stands outside" if fence.region.at((now.east, now.north)) < 0 else "",
-            mission_fault=mission_fault(pilot.navigator.items, fence, self.params),
+            mission_fault=self._within.mission_fault(pilot.navigator.items, fence, self.params),
         )
         return faults(standing)
 

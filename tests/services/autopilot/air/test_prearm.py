@@ -5,6 +5,7 @@ from dataclasses import replace
 import pytest
 
 from schemas.messages import ArmRequest, Battery, Fence, FenceRequest, FenceZone, StopCommand, Vector3
+from services.autopilot.air import fence_plan
 from services.autopilot.air.prearm import CHECKS, Standing, faults
 from services.autopilot.air.state import Ratios
 from tests.services.autopilot.air.sensing import resting
@@ -79,3 +80,16 @@ def test_outside_of_the_fence_it_is_not_armed():
     assert reply.accepted, reply.reason
     (reply,) = bench.run(speed=0.0, arm=ARM)["arm"]
     assert "fence: it stands outside" in reply.reason
+
+
+def test_the_mission_is_looked_at_once_and_again_when_mission_or_fence_change(monkeypatch):
+    looks = []
+    monkeypatch.setattr(fence_plan, "mission_fault", lambda *of: looks.append(of) or "")
+    bench = resting()
+    bench.run(speed=0.0, cycles=100)
+    assert len(looks) == 1
+    around = Fence(zones=[FenceZone(radius=3000.0)])
+    (reply,) = bench.run(speed=0.0, fence=[FenceRequest(fence=around)])["fence"]
+    before = len(looks)
+    bench.run(speed=0.0, cycles=100)
+    assert reply.accepted and len(looks) == before + 1
