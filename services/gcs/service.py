@@ -136,8 +136,7 @@ class GroundStation(Service):
         self._hear_system(t, clock, processes, health)
         self._model.hear_objects((objects, aircraft), truth)
         self._model.hear_stop(stops)
-        self._model.hear_newest(t, newest)
-        self._model.hear_events(t, events)
+        self._model.hear_newest(t, newest, events)
         self._commander.hear(t, (*goal, *cancel, *arm, *mode))
         return self._act(t)
 

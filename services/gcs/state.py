@@ -198,10 +198,11 @@ class Model:
         """A page has the picture before somebody's eyes; pages that are gone are forgotten."""
         self.looking = {**{name: at for name, at in self.looking.items() if t - at < LOST_AFTER}, page: t}
 
-    def hear_newest(self, t: float, newest: Mapping[str, Mapping[str, Message]]) -> None:
-        """By kind, then by vehicle."""
+    def hear_newest(self, t: float, newest: Mapping[str, Mapping[str, Message]], events: Mapping[str, Sequence[Event]]) -> None:
+        """newest: by kind, then by vehicle; events: by vehicle."""
         for what, messages in newest.items():
             self.hear(t, what, messages)
+        self.hear_events(t, events)
 
     def hear(self, t: float, what: str, messages: Mapping[str, Message]) -> None:
         """Takes in the newest message of one kind for each vehicle that has a new one."""
