@@ -70,13 +70,6 @@ def browser():
         chromium.close()
 
 
-@pytest.fixture(scope="module")
-def station(browser):
-    station = LiveStation()
-    yield station
-    station.close()
-
-
 @contextlib.contextmanager
 def opened(browser, port, node, size=(1200, 700)):
     """The page once ``node`` stands in its scene; an error in its script fails the tests that use it."""
@@ -92,8 +85,45 @@ def opened(browser, port, node, size=(1200, 700)):
     assert errors == []
 
 
+@contextlib.contextmanager
+def staged(browser):
+    """(station, page): a station of its own and a page that looks at it."""
+    with contextlib.closing(LiveStation()) as station, opened(browser, station.port, "/vehicles/milvus/0") as page:
+        yield station, page
+
+
+class Stage:
+    """One station and one page for all tests of a module, until a test fails: its second try has new ones."""
+
+    def __init__(self, browser):
+        self._browser, self._stack, self.set = browser, contextlib.ExitStack(), None
+
+    def fresh(self):
+        self.close()
+        self.set = self._stack.enter_context(staged(self._browser))
+
+    def close(self):
+        self._stack.close()
+
+
 @pytest.fixture(scope="module")
-def page(browser, station):
-    """One page for all tests of a module."""
-    with opened(browser, station.port, "/vehicles/milvus/0") as page:
-        yield page
+def stage(browser):
+    with contextlib.closing(Stage(browser)) as stage:
+        yield stage
+
+
+@pytest.fixture
+def staging(stage, request):
+    if stage.set is None or getattr(request.node, "execution_count", 1) > 1:
+        stage.fresh()
+    return stage.set
+
+
+@pytest.fixture
+def station(staging):
+    return staging[0]
+
+
+@pytest.fixture
+def page(staging):
+    return staging[1]

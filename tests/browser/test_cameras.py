@@ -22,7 +22,7 @@ def jpeg(colour):
     return stream.getvalue()
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture
 def looking(page, station):
     """The page with the aircraft chosen, whose gimbal has sent a picture."""
     view = topics.VIEW.by("gimbal")

@@ -92,7 +92,27 @@ def test_follow_takes_the_view_along(page, station):
 CAMERA = "() => window.__viserMutable.camera.position.toArray()"
 
 
+def view_at_rest(page):
+    """The camera's place once it has held still for half a second: a key without the wheel moves it, and it glides on."""
+
+    def rests():
+        before = page.evaluate(CAMERA)
+        page.wait_for_timeout(500)
+        return page.evaluate(CAMERA) == before
+
+    assert until(page, rests)
+    return page.evaluate(CAMERA)
+
+
+def last(drives):
+    return drives[-1] if drives else None
+
+
 def take_the_wheel(page):
+    """Whatever was chosen before, and whoever has the wheel, this page too."""
+    page.get_by_role("button", name="Select burger").dispatch_event("pointerdown")
+    if page.locator("#gcs-wheel .g-keys").is_visible():
+        return
     page.locator("#gcs-wheel [data-gcs='wheel:@me:on']").dispatch_event("pointerdown")
     page.locator("#gcs-wheel .g-keys").wait_for(state="visible", timeout=20_000)
 
@@ -103,38 +123,40 @@ def test_keys_drive_only_while_they_are_held_and_leave_the_view_alone(page, stat
     page.wait_for_timeout(500)
     assert drives == []
     take_the_wheel(page)
-    view = page.evaluate(CAMERA)
+    view = view_at_rest(page)
     page.keyboard.down("w")
     page.keyboard.down("ArrowLeft")
-    assert until(page, lambda: drives and drives[-1] == pytest.approx((0.5, 0.5)))
+    assert until(page, lambda: last(drives) == pytest.approx((0.5, 0.5)))
     page.wait_for_timeout(1500)  # longer than a direction counts: the page repeats it
-    assert drives[-1] == pytest.approx((0.5, 0.5))
+    assert last(drives) == pytest.approx((0.5, 0.5))
     page.keyboard.up("w")
-    assert until(page, lambda: drives[-1] == pytest.approx((0.0, 0.5)))
+    assert until(page, lambda: last(drives) == pytest.approx((0.0, 0.5)))
     page.keyboard.up("ArrowLeft")
-    assert until(page, lambda: drives[-1] == (0.0, 0.0))
+    assert until(page, lambda: last(drives) == (0.0, 0.0))
     assert page.evaluate(CAMERA) == pytest.approx(view)
 
 
 @pytest.mark.parametrize("event", ["window.dispatchEvent(new Event('blur'))", "window.dispatchEvent(new Event('pagehide'))"])
 def test_a_held_button_is_let_go_by_a_page_that_is_left(page, station, event):
     drives = station.script.drives
+    take_the_wheel(page)
     page.get_by_role("button", name="backward", exact=True).hover()
     page.mouse.down()
-    assert until(page, lambda: drives[-1] == pytest.approx((-0.5, 0.0)))
+    assert until(page, lambda: last(drives) == pytest.approx((-0.5, 0.0)))
     page.evaluate(f"() => {event}")
-    assert until(page, lambda: drives[-1] == (0.0, 0.0), 5.0)
+    assert until(page, lambda: last(drives) == (0.0, 0.0), 5.0)
     page.mouse.up()
 
 
 def test_another_page_takes_the_wheel_and_its_end_is_the_end_of_driving(page, browser, station):
     drives = station.script.drives
+    take_the_wheel(page)
     with opened(browser, station.port, "/vehicles/milvus/0", (700, 500)) as other:
         take_the_wheel(other)
         assert until(page, lambda: not page.locator("#gcs-wheel .g-keys").is_visible())
         other.keyboard.down("s")
-        assert until(other, lambda: drives[-1] == pytest.approx((-0.5, 0.0)))
-    assert until(page, lambda: drives[-1] == (0.0, 0.0), 5.0)
+        assert until(other, lambda: last(drives) == pytest.approx((-0.5, 0.0)))
+    assert until(page, lambda: last(drives) == (0.0, 0.0), 5.0)
     sent = len(drives)
     assert not until(page, lambda: len(drives) > sent + 15, 2.0), "it falls not silent"
 

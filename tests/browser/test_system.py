@@ -23,7 +23,7 @@ def system(browser, tmp_path_factory):
         yield running
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture
 def page(browser, system):
     with opened(browser, system.page, "/vehicles/burger/0", (1000, 640)) as page:
         yield page
@@ -97,8 +97,7 @@ def test_it_goes_while_a_key_is_held_and_stands_within_a_second_of_its_release(p
     assert place(system)[0] > HALL[0] + 0.05
 
 
-def test_it_stands_when_the_page_that_drives_is_closed(browser, page, system):
-    page.goto("about:blank")  # one page at a time: drawing in software takes a processor, and the system needs the other
-    with opened(browser, system.page, "/vehicles/burger/0", (700, 500)) as other:
-        drive_forward(other, system)
+def test_it_stands_when_the_page_that_drives_is_closed(browser, system):
+    with opened(browser, system.page, "/vehicles/burger/0", (700, 500)) as page:
+        drive_forward(page, system)
     assert stands_within(system, 1.5)
