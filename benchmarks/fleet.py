@@ -78,7 +78,7 @@ def engine(site: Site) -> list[float]:
     world = service._world  # type: ignore[attr-defined]
     commands = {name: WheelCommand(left=0.6, right=5.4) for name in site.members}
     for n in range(1, 51):
-        service.step(n / 100, commands=commands, spawn=[], remove=[], set_pose=[], save=[], restore=[])
+        service.step(n / 100, commands=commands, truth={}, flying=None, spawn=[], remove=[], set_pose=[], save=[], restore=[])
     with stopwatch() as taken:
         for _ in range(round(SECONDS * world.rate)):
             pybullet.stepSimulation(physicsClientId=world._client)

@@ -4,7 +4,6 @@ import math
 import re
 from collections.abc import Callable, Collection
 from dataclasses import dataclass
-from functools import partial
 from typing import NamedTuple, Protocol
 
 from uvf.runtime.air_file import STANDARD_JOINTS, AirBody, JointReading, Surface, unnumbered
@@ -96,13 +95,15 @@ class Wiring:
         told = {name: joint for name, joint in STANDARD_JOINTS.items() if (joint.position or joint.speed) in self._known}
         for name, joint in body.joints.items():
             self._there(joint.position or joint.speed or "", place.at(name, "speed" if joint.position is None else "position"))
-        return [partial(_read, self._properties, name, joint) for name, joint in (body.joints or told).items()]
+        return [_reader(self._properties, name, joint) for name, joint in (body.joints or told).items()]
 
 
-def _read(properties: Properties, name: str, joint: JointReading) -> JointAngle:
+def _reader(properties: Properties, name: str, joint: JointReading) -> Callable[[], JointAngle]:
     source = joint.position or joint.speed or ""
-    value = properties[source] * _unit(source, joint)
-    return JointAngle(name, position=value) if joint.position else JointAngle(name, speed=value)
+    unit = _unit(source, joint)
+    if joint.position:
+        return lambda: JointAngle(name, position=properties[source] * unit)
+    return lambda: JointAngle(name, speed=properties[source] * unit)
 
 
 def _unit(source: str, joint: JointReading) -> float:

@@ -11,6 +11,7 @@ from services.gcs.cameras import cameras
 from services.gcs.service import GroundStation
 from services.gcs.state import Model
 from services.gcs.viser_page import ViserPage
+from tests.second_try import Shared
 from tests.services.gcs.scripted import Script, demo_site, with_eyes
 from tests.services.gcs.wire import free_port
 from uvf.runtime.address import Address
@@ -80,8 +81,10 @@ def opened(browser, port, node, size=(1200, 700)):
     page.wait_for_function("(name) => window.__viserSceneTree && name in window.__viserSceneTree.getState()", arg=node, timeout=90_000)
     with contextlib.suppress(Exception):
         page.locator(".mantine-Notification-closeButton").click(timeout=5_000)
-    yield page
-    page.close()
+    try:
+        yield page
+    finally:
+        page.close()
     assert errors == []
 
 
@@ -92,31 +95,16 @@ def staged(browser):
         yield station, page
 
 
-class Stage:
-    """One station and one page for all tests of a module, until a test fails: its second try has new ones."""
-
-    def __init__(self, browser):
-        self._browser, self._stack, self.set = browser, contextlib.ExitStack(), None
-
-    def fresh(self):
-        self.close()
-        self.set = self._stack.enter_context(staged(self._browser))
-
-    def close(self):
-        self._stack.close()
-
-
 @pytest.fixture(scope="module")
 def stage(browser):
-    with contextlib.closing(Stage(browser)) as stage:
+    """One station and one page for all tests of a module."""
+    with contextlib.closing(Shared(lambda: staged(browser))) as stage:
         yield stage
 
 
 @pytest.fixture
 def staging(stage, request):
-    if stage.set is None or getattr(request.node, "execution_count", 1) > 1:
-        stage.fresh()
-    return stage.set
+    return stage.for_test(request)
 
 
 @pytest.fixture

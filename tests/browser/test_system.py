@@ -1,5 +1,7 @@
 """The whole system in a real browser: tracks move, and a click sends the rover where it points."""
 
+from contextlib import closing
+
 import numpy as np
 import pytest
 
@@ -9,6 +11,7 @@ from schemas.messages import Mode, SetPoseRequest
 from tests.browser.canvas import TRACK, TRACK_BLUE, on_screen, pixels, until
 from tests.browser.conftest import opened
 from tests.distributed.system import System
+from tests.second_try import Shared
 
 pytestmark = pytest.mark.timeout(240)
 
@@ -18,9 +21,14 @@ HALL = (5.5, 4.3)  # m, world: its western end
 
 
 @pytest.fixture(scope="module")
-def system(browser, tmp_path_factory):
-    with System(tmp_path_factory.mktemp("runs"), page=True) as running:
-        yield running
+def systems(browser, tmp_path_factory):
+    with closing(Shared(lambda: System(tmp_path_factory.mktemp("runs"), page=True))) as shared:
+        yield shared
+
+
+@pytest.fixture
+def system(systems, request):
+    return systems.for_test(request)
 
 
 @pytest.fixture

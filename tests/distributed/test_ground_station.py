@@ -1,6 +1,7 @@
 """MAVSDK 4.1 against the whole system: both vehicles, positions, a mission flown by the real autopilot."""
 
 import math
+from contextlib import closing, contextmanager
 
 import pytest
 from mavsdk import ComponentType, Configuration, Mavsdk
@@ -12,6 +13,7 @@ from schemas import topics
 from schemas.convert import array
 from tests.distributed.system import System
 from tests.distributed.test_mavsdk import wait
+from tests.second_try import Shared
 from uvf.maths.geodesy import LocalTangent
 from uvf.runtime.site import ROOT, load_site
 
@@ -20,18 +22,34 @@ DEGREE = math.radians(1.0)
 POINTS = [(150.0, -150.0, 70.0), (250.0, 0.0, 70.0), (100.0, 100.0, 80.0)]  # m: east, north, up
 
 
-@pytest.fixture(scope="module")
-def system(tmp_path_factory):
-    with System(tmp_path_factory.mktemp("runs")) as running:
-        yield running
-
-
-@pytest.fixture(scope="module")
-def vehicles(system):
-    with Mavsdk(Configuration.create_with_component_type(ComponentType.GROUND_STATION)) as sdk:
+@contextmanager
+def staged(runs):
+    """(system, what MAVSDK found of its vehicles by number)"""
+    with System(runs) as system, Mavsdk(Configuration.create_with_component_type(ComponentType.GROUND_STATION)) as sdk:
         sdk.add_any_connection(f"udpin://127.0.0.1:{system.mavlink}")
-        wait(lambda: len(sdk.get_systems()) == 2, 20.0)
-        yield {each.get_system_id(): each for each in sdk.get_systems()}
+        wait(lambda: len(sdk.get_systems()) == 2, 30.0)
+        yield system, {each.get_system_id(): each for each in sdk.get_systems()}
+
+
+@pytest.fixture(scope="module")
+def stages(tmp_path_factory):
+    with closing(Shared(lambda: staged(tmp_path_factory.mktemp("runs")))) as shared:
+        yield shared
+
+
+@pytest.fixture
+def stage(stages, request):
+    return stages.for_test(request)
+
+
+@pytest.fixture
+def system(stage):
+    return stage[0]
+
+
+@pytest.fixture
+def vehicles(stage):
+    return stage[1]
 
 
 @pytest.fixture(scope="module")

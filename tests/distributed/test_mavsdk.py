@@ -2,6 +2,7 @@
 
 import socket
 import time
+from contextlib import closing, contextmanager
 
 import pytest
 from mavsdk import Autopilot, ComponentType, Configuration, Mavsdk, Vehicle
@@ -15,6 +16,7 @@ from schemas.messages import Mission as PlanMessage
 from schemas.messages import MissionItem as ItemMessage
 from schemas.messages import Vector3
 from tests.distributed.mavlink_vehicles import LiveVehicles
+from tests.second_try import Shared
 from tests.services.autopilot.mavlink.rig import PLANE, PLANE_FACTS, ROVER
 
 POINTS = [(40.7705, 14.7900, 60.0), (40.7705, 14.7906, 70.0), (40.7700, 14.7906, 80.0)]  # deg, deg, m above home
@@ -36,8 +38,9 @@ def wait(condition, seconds=10.0):
         time.sleep(0.02)
 
 
-@pytest.fixture(scope="module")
-def live():
+@contextmanager
+def station():
+    """The vehicles, what MAVSDK found of them by number, and their telemetry."""
     port = free_port()
     with (
         LiveVehicles([("127.0.0.1", port)]) as vehicles,
@@ -47,6 +50,17 @@ def live():
         wait(lambda: len(sdk.get_systems()) == 2, 30.0)
         systems = {system.get_system_id(): system for system in sdk.get_systems()}
         yield vehicles, systems, {number: Telemetry(system) for number, system in systems.items()}
+
+
+@pytest.fixture(scope="module")
+def stations():
+    with closing(Shared(station)) as shared:
+        yield shared
+
+
+@pytest.fixture
+def live(stations, request):
+    return stations.for_test(request)
 
 
 def test_both_vehicles_are_found_as_what_they_are(live):

@@ -4,6 +4,7 @@ import os
 import signal
 import subprocess
 import sys
+from contextlib import closing
 
 import numpy as np
 import pytest
@@ -12,14 +13,20 @@ from schemas import topics
 from schemas.convert import array
 from schemas.messages import StopCommand
 from tests.distributed.system import System
+from tests.second_try import Shared
 from uvf.runtime.recording import read_log
 from uvf.runtime.site import ROOT
 
 
 @pytest.fixture(scope="module")
-def system(tmp_path_factory):
-    with System(tmp_path_factory.mktemp("runs")) as running:
-        yield running
+def systems(tmp_path_factory):
+    with closing(Shared(lambda: System(tmp_path_factory.mktemp("runs")))) as shared:
+        yield shared
+
+
+@pytest.fixture
+def system(systems, request):
+    return systems.for_test(request)
 
 
 def position(system, owner):
@@ -87,6 +94,7 @@ def test_whoever_else_is_killed_comes_back_and_time_goes_on(system, name, owner,
 
 def test_a_process_that_hangs_is_ended_and_started_again(system):
     hung = system.children()["planner"]
+    system.client.wait(lambda: system.client.read("sys", topics.HEALTH.by("planner")).pid == hung.pid, 20.0, "the planner does not live")
     os.kill(hung.pid, signal.SIGSTOP)
     system.client.wait(lambda: not moves(system), 20.0, "the rover goes on without a planner")
     system.client.wait(lambda: system.children()["planner"].restarts > hung.restarts, 40.0, "the planner hangs")

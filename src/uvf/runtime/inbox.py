@@ -16,7 +16,8 @@ EVERY_DEPTH = 256
 class Slot:
     """One topic of one owner (or of several sources) as one input sees it."""
 
-    def __init__(self, declared: Input, ageless: bool) -> None:
+    def __init__(self, declared: Input, ageless: bool, malformed: list[str]) -> None:
+        """malformed: takes a line about each refused message."""
         self._input = declared
         self._max_age = declared.topic.max_age * NS if declared.ages and not ageless else float("inf")
         self._ageless = ageless
@@ -24,7 +25,7 @@ class Slot:
         self._latest: tuple[int, Message] | None = None
         self.arrived: deque[Sample] = deque(maxlen=EVERY_DEPTH)
         self.accepted: Sample | None = None
-        self.malformed: list[str] = []
+        self._malformed = malformed
 
     def push(self, sample: Sample) -> None:
         self.arrived.append(sample)
@@ -32,6 +33,9 @@ class Slot:
     def take(self, t_ns: int) -> None:
         """Makes readable what is stamped before ``t_ns``, ordered by (epoch, stamp, key, seq)."""
         if not self.arrived:
+            return
+        if len(self.arrived) == 1 and (self._ageless or self.arrived[0].stamp_ns < t_ns):
+            self._accept(self.arrived.popleft())
             return
         ready = [s for s in self.arrived if self._ageless or s.stamp_ns < t_ns]
         if not ready:
@@ -49,7 +53,7 @@ class Slot:
         try:
             message = decode_sample(sample, self._input.topic.message)
         except Malformed as error:
-            self.malformed.append(str(error))
+            self._malformed.append(str(error))
             return False
         before = self.accepted
         if before is not None and not self._input.every and (sample.epoch, sample.stamp_ns) < (before.epoch, before.stamp_ns):
@@ -79,6 +83,7 @@ class InputBox:
         self._ageless = ageless
         self.epoch = epoch
         self._slots: dict[str, Slot] = {}
+        self._malformed: list[str] = []
 
     def push(self, sample: Sample) -> None:
         """Takes a message of this epoch (or of none); what an old one still sends is dropped, an operator's word is not."""
@@ -88,7 +93,8 @@ class InputBox:
             sample = sample._replace(stamp_ns=-1)
         owner = sample.key.split("/")[1] if self.declared.each_vehicle else ""
         if owner not in self._slots:
-            self._slots[owner] = Slot(self.declared, self._ageless)
+            self._slots[owner] = Slot(self.declared, self._ageless, self._malformed)
+            self._slots = dict(sorted(self._slots.items()))
         self._slots[owner].push(sample)
 
     def surviving(self, epoch: int) -> list[Sample]:
@@ -112,14 +118,13 @@ class InputBox:
 
     def value(self, t_ns: int) -> Any:
         if self.declared.each_vehicle:
-            return {owner: slot.value(t_ns) for owner, slot in sorted(self._slots.items()) if slot.is_fresh(t_ns)}
+            return {owner: slot.value(t_ns) for owner, slot in self._slots.items() if slot.is_fresh(t_ns)}
         if not self._slots:
             return [] if self.declared.every else None
         return self._slots[""].value(t_ns)
 
     def malformed(self) -> list[str]:
         """Lines about refused messages since the last call."""
-        lines = [line for slot in self._slots.values() for line in slot.malformed]
-        for slot in self._slots.values():
-            slot.malformed.clear()
+        lines = self._malformed[:]
+        self._malformed.clear()
         return lines

@@ -101,6 +101,7 @@ class Shell:
         self.service = self.host.make()
         ageless = self.type.clock == "wall"
         self._boxes = {name: InputBox(declared, ageless, self.epoch) for name, declared in self.type.declared_inputs().items()}
+        self._valued = [name for name in self._boxes if name in self.type.inputs]
         self._frames = {name: FrameBuffer() for name, declared in self.type.inputs.items() if isinstance(declared, Frames)}
         self._param_server = ParamServer(self.service)
         self.n = 1
@@ -133,9 +134,15 @@ class Shell:
             self._param_server.queue(query)
 
     @property
-    def due_ns(self) -> int:
-        """When the next step is due [ns]."""
-        return step_time(self.n, self.type.hz)
+    def n(self) -> int:
+        """The number of the next step, from 1."""
+        return self._n
+
+    @n.setter
+    def n(self, n: int) -> None:
+        self._n = n
+        self.due_ns = step_time(n, self.type.hz)
+        """When it is due [ns]; asked far more often than it changes."""
 
     def skip_to(self, t_ns: int, count: bool = True) -> None:
         """Leaves out the steps due before the newest one that is due at ``t_ns``, and counts them as skipped."""
@@ -165,11 +172,11 @@ class Shell:
             return
         self.counters.steps += 1
         queries, requests = self._take_requests(t_ns)
-        values = {name: box.value(t_ns) for name, box in self._boxes.items() if name in self.type.inputs}
+        values = {name: self._boxes[name].value(t_ns) for name in self._valued}
         outputs = self.service.step(t_ns / NS, **values, **self._frames, **requests, **self._take_answers(t_ns))
         self._publish(outputs, t_ns)
-        for name, asked in queries.items():
-            self._reply(name, asked, outputs.get(name, ()), t_ns)
+        for name in self.type.requests:
+            self._reply(name, queries.get(name, []), outputs.get(name, ()), t_ns)
 
     def _is_due(self, stamp_ns: int, t_ns: int) -> bool:
         """Whether a request counts at ``t_ns``: one from a clock of its own would else wait for ever, it is taken as it comes."""
@@ -183,6 +190,8 @@ class Shell:
 
     def _feed_frames(self, t_ns: int) -> None:
         """What is told while ``step`` is held back is taken in too."""
+        if not self._frames:
+            return
         for name, box in self._boxes.items():
             buffer = self._frames.get(name.partition("/")[0])
             if buffer is None:
@@ -198,6 +207,9 @@ class Shell:
     def _take_answers(self, t_ns: int) -> dict[str, list[Answer[Any, Any]]]:
         taken: dict[str, list[Answer[Any, Any]]] = {}
         for name, waiting in self._answers.items():
+            if not waiting:
+                taken[name] = []
+                continue
             taken[name] = [answer for stamp, answer in waiting if self._is_readable(stamp, t_ns)]
             self._answers[name] = deque(x for x in waiting if not self._is_readable(x[0], t_ns))
         return taken
@@ -207,9 +219,13 @@ class Shell:
         queries: dict[str, list[Query]] = {}
         requests: dict[str, Any] = {}
         for name, request in self.type.requests.items():
+            by_owner = self.type.scope == "world" and request.per_vehicle
+            if not self._queries[name]:
+                requests[name] = {} if by_owner else []
+                continue
             queries[name] = self._decodable(name, request, t_ns)
             decoded = [(q.key.split("/")[1], request.message.FromString(q.payload)) for q in queries[name]]
-            if self.type.scope == "world" and request.per_vehicle:
+            if by_owner:
                 by_vehicle: dict[str, list[Message]] = {}
                 for owner, message in decoded:
                     by_vehicle.setdefault(owner, []).append(message)
@@ -220,8 +236,6 @@ class Shell:
         return queries, requests
 
     def _decodable(self, name: str, request: Request[Any, Any], t_ns: int) -> list[Query]:
-        if not self._queries[name]:
-            return []
         waiting, good = list(self._queries[name]), []
         self._queries[name] = deque(q for q in waiting if not self._is_due(q.stamp_ns, t_ns))
         for query in waiting:
