@@ -71,7 +71,8 @@ class Collisions:
         """What has begun to touch."""
         moving = self._around.bodies() if self._around.crowded else {}
         near = self._near(motions, moving)
-        hits = [hit for name, motion in motions.items() for hit in self._hits(name, motion, {other: moving[other] for other in near[name]})]
+        close = {name: {other: moving[other] for other in others} for name, others in near.items()}
+        hits = [hit for name, motion in motions.items() for hit in self._hits(name, motion, close.get(name, {}))]
         pairs = {frozenset(hit): hit for hit in reversed(hits)}
         new = [hit for pair, hit in pairs.items() if pair not in self._touching]
         self._touching, self._before = set(pairs), motions
@@ -80,7 +81,7 @@ class Collisions:
     def _near(self, motions: Mapping[str, Motion], moving: Mapping[str, Body]) -> dict[str, list[str]]:
         """What is within MARGIN of each aircraft's bounding sphere, itself left out; all pairs at once, since this is done every step."""
         if not moving:
-            return {name: [] for name in motions}
+            return {}
         names = list(moving)
         bounds = np.abs([body.tree.bounds[0] for body in moving.values()])
         radii = np.sqrt((np.maximum(bounds[:, :3], bounds[:, 3:]) ** 2).sum(axis=1))

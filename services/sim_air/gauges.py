@@ -10,7 +10,7 @@ from services.sim_air.states import Air, Motion
 from services.sim_air.wind import Flight
 from services.sim_air.wiring import Properties
 from uvf.maths import rotations
-from uvf.maths.geodesy import LocalTangent, ecef_from_geodetic
+from uvf.maths.geodesy import LocalTangent
 from uvf.maths.rotations import Floats
 from uvf.runtime.air_file import BatteryPack
 
@@ -39,28 +39,30 @@ class Gauges:
 
     def __init__(self, properties: Properties, known: Collection[str], tangent: LocalTangent) -> None:
         self._properties = properties
-        self._enu_from_ecef = tangent.enu_from_ecef
-        self._origin_ecef = ecef_from_geodetic(tangent.latitude, tangent.longitude, tangent.altitude)
+        self._enu_from_ecef = tangent.enu_from_ecef.tolist()
+        self._origin_ecef = tangent.origin_ecef.tolist()
         self._has_engines = "forces/fbx-prop-lbs" in known
         self.powered = any(name.startswith("propulsion/engine") for name in known)
         self._powers = [name for name in known if POWER.fullmatch(name)]
 
     def motion(self) -> Motion:
         p = self._properties
-        velocity = np.array((p["velocities/v-east-fps"], p["velocities/v-north-fps"], -p["velocities/v-down-fps"])) * FT
+        velocity = np.array((p["velocities/v-east-fps"] * FT, p["velocities/v-north-fps"] * FT, p["velocities/v-down-fps"] * -FT))
         # ENU and FLU are each half a turn away from NED and FRD: yaw is mirrored, pitch changes sign with y and z.
         attitude = rotations.from_euler(p["attitude/phi-rad"], -p["attitude/theta-rad"], np.pi / 2 - p["attitude/psi-rad"])
         rates = np.array((p["velocities/p-rad_sec"], -p["velocities/q-rad_sec"], -p["velocities/r-rad_sec"]))
-        force = np.array((p["accelerations/Nx"], -p["accelerations/Ny"], p["accelerations/Nz"])) * G  # of the centre of gravity, z up
+        force = np.array(
+            (p["accelerations/Nx"] * G, p["accelerations/Ny"] * -G, p["accelerations/Nz"] * G)
+        )  # at the centre of gravity, z up
         spin = np.array((p["accelerations/pdot-rad_sec2"], -p["accelerations/qdot-rad_sec2"], -p["accelerations/rdot-rad_sec2"]))
         return Motion(self.position(), velocity, attitude, rates, force, p["velocities/vt-fps"] * FT, spin)
 
     def position(self) -> Floats:
         """(3,) m, world."""
         p = self._properties
-        ecef = np.array((p["position/ecef-x-ft"], p["position/ecef-y-ft"], p["position/ecef-z-ft"])) * FT
-        position: Floats = self._enu_from_ecef @ (ecef - self._origin_ecef)
-        return position
+        x0, y0, z0 = self._origin_ecef
+        x, y, z = p["position/ecef-x-ft"] * FT - x0, p["position/ecef-y-ft"] * FT - y0, p["position/ecef-z-ft"] * FT - z0
+        return np.array([a * x + b * y + c * z for a, b, c in self._enu_from_ecef])  # asked for too often for matrices
 
     def height(self) -> float:
         """m above the ground."""

@@ -25,6 +25,7 @@ class Imu:
         self._line: Line[ImuReading] = line_of(data, rng.spawn(1)[0])
         self._unit = data.unit(rng)
         self._arm = np.array(data.mount.xyz)
+        self._is_off_centre = bool(self._arm.any())
         self._sensor_from_body = rotations.matrix(rotations.from_euler(*data.mount.rpy)).T
         self._field_enu = field
 
@@ -36,7 +37,7 @@ class Imu:
         field_body = rotations.matrix(motion.world_from_body).T @ self._field_enu
         turning = motion.angular_velocity
         force = motion.specific_force
-        if self._arm.any():
+        if self._is_off_centre:
             force = force + np.cross(motion.angular_acceleration, self._arm) + np.cross(turning, np.cross(turning, self._arm))
         return self._unit.read(t, *(self._sensor_from_body @ v for v in (turning, force, field_body)))
 

@@ -119,12 +119,12 @@ class SimAir(Service):
     def _read_all(self, t: float) -> dict[str, dict[str, Value]]:
         """What the sensors give, by output and aircraft, stamped by the clock."""
         stage, late = self._stage, self._stage.late / self.hz
-        read: dict[str, dict[str, Value]] = {name: {} for name in self.outputs if name != "spawned"}
+        read: dict[str, dict[str, Value]] = {}
         for craft in stage.aircraft.values():
             for name, said in self._faults.spoil(t, craft.name, self._read(self._flown(t), craft)).items():
-                read[name][craft.name] = later(said, late) if late else said
+                read.setdefault(name, {})[craft.name] = later(said, late) if late else said
             if craft.name not in stage.told:
-                read["tf_static"][craft.name] = sensor_frames(craft.name, craft.file.sensors, t)
+                read.setdefault("tf_static", {})[craft.name] = sensor_frames(craft.name, craft.file.sensors, t)
                 stage.told.add(craft.name)
         return read
 

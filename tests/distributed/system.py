@@ -72,6 +72,6 @@ class System:
         family = [] if self.popen.poll() is not None else psutil.Process(self.popen.pid).children(recursive=True)
         if family:
             self.popen.send_signal(signal.SIGINT)
-        self.popen.wait(timeout=30)
+        self.popen.wait(timeout=60)
         _, alive = psutil.wait_procs(family, timeout=1)
         assert not alive, f"left behind: {alive}"

@@ -124,7 +124,7 @@ def test_stop_all_stops_the_rover_and_lets_the_aircraft_loiter_until_released(sy
 def test_the_tools_see_the_system(system):
     def tool(*arguments):
         command = [system._command[0], "-m", "uvf.launch.cli", *arguments]
-        return subprocess.run(command, capture_output=True, text=True, env=system.environment, timeout=30, check=True).stdout
+        return subprocess.run(command, capture_output=True, text=True, env=system.environment, timeout=90, check=True).stdout
 
     assert "mapping" in tool("node", "list")
     assert "uvf/burger/nav/pose" in tool("node", "graph")
@@ -134,7 +134,7 @@ def test_the_tools_see_the_system(system):
 
 
 def test_a_second_up_on_the_same_ports_is_one_line(system):
-    done = subprocess.run(system._command, capture_output=True, text=True, env=system.environment, timeout=30, check=False)
+    done = subprocess.run(system._command, capture_output=True, text=True, env=system.environment, timeout=90, check=False)
     assert done.returncode == 2
     assert "is taken" in done.stderr and "UVF_ROUTER" in done.stderr
 
@@ -151,7 +151,7 @@ def test_the_clock_never_runs_ahead_and_a_killed_simulator_starts_a_new_epoch(sy
 
 def test_it_ends_by_itself_and_leaves_a_whole_log(tmp_path):
     with System(tmp_path, "--for", "25") as running:
-        running.popen.wait(timeout=60)
+        running.popen.wait(timeout=90)
     assert running.popen.returncode == 0
     keys = {s.key for s in read_log(next(tmp_path.glob("latest/log-*.mcap")))}
     assert {"uvf/burger/sensor/scan", "uvf/milvus/sensor/imu", "uvf/burger/map/grid"} <= keys
@@ -161,7 +161,7 @@ def test_a_vehicle_that_cannot_be_built_ends_it_with_its_line(tmp_path):
     running = System(tmp_path)
     running.environment["UVF_GCS_PORT"] = "99999"
     done = subprocess.run(
-        [a for a in running._command if a != "--no-gcs"], capture_output=True, text=True, env=running.environment, timeout=60, check=False
+        [a for a in running._command if a != "--no-gcs"], capture_output=True, text=True, env=running.environment, timeout=90, check=False
     )
     assert done.returncode != 0
     assert "99999: not a port" in done.stdout + done.stderr

@@ -18,7 +18,7 @@ from uvf.launch.worker import ALIVE_FILE, PARENT
 DEATHS = 3
 DEATH_WINDOW = 30.0  # s: this many deaths within it, and a process is given up
 BAD_INPUT = 2  # exit code: starting it again cannot help
-TERM_PATIENCE = 5.0  # s
+TERM_PATIENCE = 20.0  # s; a log is written to its end on a busy machine too
 HANGS = 10.0  # s without a sign of life
 
 

@@ -1,6 +1,7 @@
 """WGS84 and the local tangent plane: latitude, longitude, altitude into ENU metres and back."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -47,19 +48,22 @@ class LocalTangent:
     def from_degrees(cls, latitude: float, longitude: float, altitude: float) -> "LocalTangent":
         return cls(float(np.radians(latitude)), float(np.radians(longitude)), altitude)
 
-    @property
+    @cached_property
     def enu_from_ecef(self) -> Floats:
         """(3, 3) rotation."""
         sp, cp = np.sin(self.latitude), np.cos(self.latitude)
         sl, cl = np.sin(self.longitude), np.cos(self.longitude)
         return np.array(((-sl, cl, 0.0), (-sp * cl, -sp * sl, cp), (cp * cl, cp * sl, sp)))
 
+    @cached_property
+    def origin_ecef(self) -> Floats:
+        """(3,) m."""
+        return ecef_from_geodetic(self.latitude, self.longitude, self.altitude)
+
     def enu(self, latitude: float, longitude: float, altitude: float) -> Floats:
         """(3,) m east, north, up of a point given in rad, rad, m."""
-        origin = ecef_from_geodetic(self.latitude, self.longitude, self.altitude)
-        return self.enu_from_ecef @ (ecef_from_geodetic(latitude, longitude, altitude) - origin)
+        return self.enu_from_ecef @ (ecef_from_geodetic(latitude, longitude, altitude) - self.origin_ecef)
 
     def geodetic(self, enu: Floats) -> tuple[float, float, float]:
         """(latitude, longitude [rad], altitude [m]) of a point in the plane's frame."""
-        origin = ecef_from_geodetic(self.latitude, self.longitude, self.altitude)
-        return geodetic_from_ecef(origin + self.enu_from_ecef.T @ enu)
+        return geodetic_from_ecef(self.origin_ecef + self.enu_from_ecef.T @ enu)

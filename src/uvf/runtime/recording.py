@@ -134,21 +134,27 @@ class Recorder:
         if self.error:
             return
         self._counter.count(sample.key, sample.boot, sample.seq)
-        with self._disk():
+        try:
             channel = self._channels.get(sample.key) or self._add_channel(sample)
             self._writer.add_message(channel, sample.stamp_ns, sample.payload, time.time_ns(), sample.seq)
             self.hash.add(sample.key, sample.stamp_ns, sample.seq, sample.payload)
             self.written += 1
+        except OSError as error:
+            self._end(error)
 
     @contextlib.contextmanager
     def _disk(self) -> Iterator[None]:
-        """What the disk refuses ends this file; what came since the last flush may be lost with it and counts as missed."""
+        """What the disk refuses ends this file."""
         try:
             yield
         except OSError as error:
-            self.error = f"log {self.path}: {error.strerror}: recording ends here with {self.written} messages"
-            for key, count in self._unsaved.items():
-                self._counter.gaps[key] += count
+            self._end(error)
+
+    def _end(self, error: OSError) -> None:
+        """What came since the last flush may be lost with the file and counts as missed."""
+        self.error = f"log {self.path}: {error.strerror}: recording ends here with {self.written} messages"
+        for key, count in self._unsaved.items():
+            self._counter.gaps[key] += count
 
     @property
     def gaps(self) -> dict[str, int]:

@@ -170,7 +170,7 @@ def test_before_the_first_command_the_surfaces_stay_trimmed():
 
 def test_joints_show_where_the_body_has_its_surfaces():
     _, service = glider()
-    joints = [service.step(k / 100, surfaces={}, truth={}, objects=None, **NOTHING_ASKED)["joints"].get("g") for k in range(1, 6)][-1]
+    joints = [service.step(k / 100, surfaces={}, truth={}, objects=None, **NOTHING_ASKED).get("joints", {}).get("g") for k in range(1, 6)][-1]
     named = {j.name: j for j in joints.joints}
     assert named["elevator"].position == pytest.approx(-0.14)
     assert named["propeller"].velocity == 500.0
@@ -179,8 +179,8 @@ def test_joints_show_where_the_body_has_its_surfaces():
 def test_a_sensor_that_is_not_fitted_sends_nothing():
     _, service = glider()
     out = service.step(0.01, surfaces={}, truth={}, objects=None, **NOTHING_ASKED)
-    assert not out["imu"]
-    assert not out["gnss"]
+    assert "imu" not in out
+    assert "gnss" not in out
 
 
 def house_readings(tmp_path, topic):
