@@ -13,3 +13,14 @@ GROUPS = sorted(path.stem for path in (ROOT / "benchmarks").glob("*.py") if "CAS
 def test_a_group_has_cases_that_can_be_called(group):
     cases = importlib.import_module(f"benchmarks.{group}").CASES
     assert cases and all(map(callable, cases.values()))
+
+
+@pytest.mark.parametrize("group", ["air", "fleet", "sim"])
+def test_real_time_factors_are_measured(group, monkeypatch):
+    module = importlib.import_module(f"benchmarks.{group}")
+    monkeypatch.setattr(module, "SECONDS", 0.2)
+    if hasattr(module, "FLEETS"):
+        monkeypatch.setattr(module, "FLEETS", (1,))
+    for case in module.CASES.values():
+        figures = case(None)
+        assert figures and all(value > 0 for row in figures.values() for value in row.values())
