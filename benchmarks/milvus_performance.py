@@ -15,12 +15,12 @@ from scipy.optimize import brentq
 
 from benchmarks.milvus_coefficients import AREA, BODY, FOLDER, INDUCED, MASS
 from services.sim_air.airframe import Airframe
-from services.sim_air.battery import lasts
 from services.sim_air.equilibrium import Condition, find
 from services.sim_air.linear import held_still
 from services.sim_air.states import Start
 from uvf.maths import atmosphere
 from uvf.maths.geodesy import LocalTangent
+from uvf.runtime.battery import lasts
 
 Figures = dict[str, dict[str, float]]
 

@@ -17,6 +17,10 @@ class Action(IntEnum):
     HOLD = 1
     RETURN = 2
     LAND = 3
+    STAND = 4
+    """Of a ground vehicle: it stands where it is, for whatever was ordered cannot be done."""
+    OFF = 5
+    """The same, disarmed."""
 
 
 ACTIONS = {"warn": Action.WARN, "hold": Action.HOLD, "return": Action.RETURN, "land": Action.LAND}
@@ -71,10 +75,17 @@ class Watch(Generic[K]):
         """s that a rule that does not hold has been wrong, or one that holds mended."""
         self.holding: dict[str, Rule[K]] = {}
         self._in_charge = Action.WARN
+        self._overruled: set[str] = set()
 
     def overrule(self) -> None:
         """Somebody has asked for a mode: of what holds already nothing is ordered any more."""
         self._in_charge = Action.WARN
+        self._overruled = set(self.holding)
+
+    def in_force(self, known: K) -> Order[K] | None:
+        """What has been ordered last by a rule that still holds, unless somebody has overruled it."""
+        held = [Order(rule.action(known), rule) for name, rule in self.holding.items() if name not in self._overruled]
+        return max((order for order in held if order.action), key=lambda o: o.action, default=None)
 
     def step(self, known: K, dt: float) -> tuple[list[Change[K]], Order[K] | None]:
         """The changes of this cycle of ``dt`` [s], and the order that follows, if it goes beyond what is in force."""
@@ -97,6 +108,7 @@ class Watch(Generic[K]):
         self._time[rule.name] = 0.0
         if holds:
             del self.holding[rule.name]
+            self._overruled.discard(rule.name)
         else:
             self.holding[rule.name] = rule
         return Change(rule, not holds, rule.figures(known))

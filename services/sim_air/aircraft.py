@@ -11,7 +11,6 @@ import numpy as np
 from schemas import topics
 from schemas.messages import SurfaceCommand
 from services.sim_air.actuators import Actuators
-from services.sim_air.battery import Charge
 from services.sim_air.contacts import Touch
 from services.sim_air.crash import Resting, Wreck, crash_of
 from services.sim_air.engine_state import EngineState
@@ -23,6 +22,7 @@ from services.sim_air.wiring import Controls, JointAngle
 from uvf.maths.rotations import Floats
 from uvf.maths.sampling import Due
 from uvf.runtime import mission_file
+from uvf.runtime.battery import Charge
 from uvf.runtime.vehicle_file import VehicleFile
 
 STILL = np.zeros(3)

@@ -7,12 +7,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from services.sim_air.airframe import Airframe
-from services.sim_air.battery import lasts
 from services.sim_air.equilibrium import Condition, find
 from services.sim_air.states import Held
 from services.sim_air.wiring import Controls
 from uvf.maths.geodesy import GRAVITY
 from uvf.runtime.air_file import AirBody
+from uvf.runtime.battery import lasts
 from uvf.runtime.params import BadInput
 
 ALPHAS = tuple(np.radians(np.arange(0.0, 16.01, 0.5)).tolist())

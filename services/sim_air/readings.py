@@ -1,8 +1,7 @@
 """Sensor samples as messages."""
 
 from schemas.convert import quaternion, stamp, vector
-from schemas.messages import AirData, Battery, Event, JointState, JointStates, NavState
-from services.sim_air.battery import Charge
+from schemas.messages import AirData, Event, JointState, JointStates, NavState
 from services.sim_air.states import Air, Motion
 from services.sim_air.wiring import JointAngle
 from uvf.maths.rotations import Floats
@@ -15,10 +14,6 @@ def air_data(t: float, air: Air) -> AirData:
         differential_pressure=air.differential_pressure,
         temperature=air.temperature,
     )
-
-
-def battery(t: float, charge: Charge) -> Battery:
-    return Battery(timestamp=stamp(t), voltage=charge.voltage, current=charge.current, remaining=charge.remaining)
 
 
 def joints(t: float, angles: list[JointAngle], throttle: float) -> JointStates:

@@ -13,7 +13,7 @@ from services.sim_air.stage import Stage
 from uvf.maths.sampling import Due
 from uvf.runtime.faults import Faults
 from uvf.runtime.sensor_frames import sensor_frames
-from uvf.runtime.sensor_messages import gnss_message, imu_message, later
+from uvf.runtime.sensor_messages import battery_message, gnss_message, imu_message, later
 from uvf.runtime.service import Outputs, Service, Value, each_vehicle, optional
 
 
@@ -141,7 +141,7 @@ class SimAir(Service):
         if craft.rangers is not None:
             read |= craft.rangers.read(t, motion, partial(self._stage.around.others, craft.name))
         if craft.charge is not None and craft.battery_due.at(t):
-            read["battery"] = readings.battery(t, craft.charge)
+            read["battery"] = battery_message(t, craft.charge)
         if craft.joints_due.at(t):
             read["joints"] = readings.joints(t, craft.joints(), craft.throttle)
         if craft.ended:

@@ -25,6 +25,14 @@ class WheelMotor:
         self.reference = wanted + (self.reference - wanted) * self._keep
         return self.torque(speed, self.reference - speed)
 
+    def power(self, torque: float, speed: float) -> float:
+        """W, electric, at this torque [N m] and speed [rad/s]: the mechanical one and the winding's loss, which at a stand is all of it.
+
+        The loss is I^2 R, and at the stall torque V^2 / R, which is stall torque times no-load speed. What braking gives back is lost.
+        """
+        loss = torque**2 * self._motor.no_load_speed / self._motor.stall_torque
+        return max(torque * speed + loss, 0.0)
+
     def torque(self, speed: float, error: float) -> float:
         """N m >= 0 in the direction of ``error``: full at a stand and against the turning, where the driver limits the current."""
         with_it = speed if error >= 0.0 else -speed

@@ -18,9 +18,10 @@ from uvf.maths.geodesy import LocalTangent
 from uvf.maths.instruments import Receiver
 from uvf.maths.raycast3 import Body, Scene
 from uvf.maths.sampling import Due, Line
+from uvf.runtime.battery import Charge
 from uvf.runtime.link_frames import Links
 from uvf.runtime.range_sensors import LidarModel, RangeModel
-from uvf.runtime.sensor_messages import gnss_message, imu_message, range_message, scan_message
+from uvf.runtime.sensor_messages import battery_message, gnss_message, imu_message, range_message, scan_message
 from uvf.runtime.service import Value
 from uvf.runtime.site import Member, Site
 from uvf.runtime.vehicle_file import Encoders, GnssSensor, GroundBody, ImuSensor, Lidar, RangeFinder, Sampled, Sonar, line_of
@@ -36,6 +37,7 @@ class Moment(NamedTuple):
     body: BodyState
     others: Callable[[], list[Body]] = list
     touches: Sequence[Touch] = ()
+    motor_energy: float = 0.0  # J that the motors have drawn since the moment before
 
 
 Read = Callable[[float, Moment], Message]
@@ -70,6 +72,8 @@ class Rig:
         self._truth_due = Due(topics.TRUTH.hz)
         self._contact_due = Due(topics.CONTACT.hz)
         self._joints_due = Due(topics.JOINTS.hz)
+        self._battery_due = Due(topics.BATTERY.hz)
+        self.charge = Charge(ground.battery) if ground.battery is not None else None
         self._fitted = dict(self._fit())
         sonars, finders = member.file.sensors.sonars, member.file.sensors.rangefinders
         self._rangers = {"sonar": [self._ranger("sonar", s) for s in sonars], "range": [self._ranger("range", f) for f in finders]}
@@ -85,6 +89,11 @@ class Rig:
             yield "wheels", self._with_line(self._encoders(sensors.encoders), sensors.encoders, "encoders")
         if sensors.gnss is not None:
             yield "gnss", self._with_line(self._gnss(sensors.gnss), sensors.gnss, "gnss")
+
+    @property
+    def is_flat(self) -> bool:
+        """The battery is empty."""
+        return self.charge is not None and self.charge.remaining == 0
 
     def frames(self, t: float) -> FrameTransforms:
         """What does not move on the vehicle, stamped ``t`` [s]."""
@@ -115,6 +124,10 @@ class Rig:
                 found[output] = heard
         if self._truth_due.at(t):
             found["truth"] = readings.truth_message(t, moment.body)
+        if self.charge is not None:
+            self.charge.draw(moment.motor_energy * STEP_HZ, 1 / STEP_HZ)
+            if self._battery_due.at(t):
+                found["battery"] = battery_message(t, self.charge)
         if self._contact_due.at(t):
             found["contact"] = readings.contact_message(t, self._bumpers, self._touches)
             self._touches = []

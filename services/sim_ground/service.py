@@ -31,6 +31,8 @@ class GroundWorld(Stageable, Protocol):
 
     def touches(self, vehicle: str) -> list[Touch]: ...
 
+    def motor_energy(self, vehicle: str) -> float: ...
+
     def guide(self, guests: Mapping[str, Course]) -> None: ...
 
     def close(self) -> None: ...
@@ -59,6 +61,7 @@ class SimGround(Service):
         "sonar": topics.SONAR,
         "range": topics.RANGE,
         "contact": topics.CONTACT,
+        "battery": topics.BATTERY,
         "joints": topics.JOINTS,
         "joint_frames": topics.TF_JOINTS,
         "frames": topics.TF_STATIC,
@@ -101,7 +104,7 @@ class SimGround(Service):
         """What is asked for holds from this step's end. truth: of the aircraft; flying: those of them that have been put in."""
         self._guests = courses(truth, self._aircraft)
         self._world.guide(self._guests)
-        self._advance(t, {name: WheelSpeeds(c.left, c.right) for name, c in commands.items()})
+        self._advance(t, {name: WheelSpeeds(c.left, c.right) for name, c in commands.items() if not self._is_flat(name)})
         read, n, stage = self._read(t), round(t * self.hz), self._stage
         replies = {
             "spawn": [stage.spawn(r, [o.name for o in flying.objects] if flying else []) for r in spawn],
@@ -120,13 +123,17 @@ class SimGround(Service):
         bodies = cache(lambda: (self._moving(t), self._surroundings.bodies({**states, **self._flying(t)})))
         outputs: dict[str, dict[str, Value]] = {}
         for name, rig in rigs.items():
-            moment = Moment(states[name], partial(_others, name, bodies), self._world.touches(name))
+            drawn = self._world.motor_energy(name) if rig.charge is not None else 0.0
+            moment = Moment(states[name], partial(_others, name, bodies), self._world.touches(name), drawn)
             for output, said in self._faults.spoil(t, name, dict(rig.read(at, moment))).items():
                 outputs.setdefault(output, {})[name] = later(said, late) if late else said
         if new := [name for name in rigs if name not in self._stage.told]:
             outputs["frames"] = {name: rigs[name].frames(t) for name in new}
             self._stage.told.update(new)
         return outputs
+
+    def _is_flat(self, name: str) -> bool:
+        return name in self._stage.rigs and self._stage.rigs[name].is_flat
 
     def _flying(self, t: float) -> dict[str, Whereabouts]:
         return {name: course.at(t) for name, course in self._guests.items()}

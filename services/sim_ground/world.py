@@ -78,6 +78,7 @@ class BulletWorld:
         self._objects: dict[str, int] = {}
         self._scripted: list[tuple[int, Solid, Keyframes]] = []
         self._guests: dict[str, tuple[int, Course | None]] = {}
+        self._drawn: dict[str, float] = {}
         pybullet.setGravity(0.0, 0.0, -GRAVITY, physicsClientId=self._client)
         pybullet.setPhysicsEngineParameter(
             fixedTimeStep=1 / self.rate, numSolverIterations=50, deterministicOverlappingPairs=1, physicsClientId=self._client
@@ -152,10 +153,15 @@ class BulletWorld:
             self._move_scripted(since + n / self.rate)
             self._move_guests(since + n / self.rate)
             for name, vehicle in self._vehicles.items():
-                self._drive(vehicle, wanted[name])
+                self._drawn[name] = self._drawn.get(name, 0.0) + self._drive(vehicle, wanted[name])
             pybullet.stepSimulation(physicsClientId=self._client)
 
-    def _drive(self, vehicle: _Loaded, wanted: WheelSpeeds) -> None:
+    def motor_energy(self, vehicle: str) -> float:
+        """J that its motors have drawn since this was asked last."""
+        return self._drawn.pop(vehicle, 0.0)
+
+    def _drive(self, vehicle: _Loaded, wanted: WheelSpeeds) -> float:
+        """J drawn in the step before."""
         (left, right), (left_motor, right_motor) = self._joint_states(vehicle), vehicle.motors
         forces = [left_motor.step(wanted[0], left[1]), right_motor.step(wanted[1], right[1])]
         pybullet.setJointMotorControlArray(
@@ -166,6 +172,7 @@ class BulletWorld:
             forces=forces,
             physicsClientId=self._client,
         )
+        return (left_motor.power(left[3], left[1]) + right_motor.power(right[3], right[1])) / self.rate
 
     def _joint_states(self, vehicle: _Loaded) -> Any:
         """Of the left and the right wheel: angle [rad], speed [rad/s], ..."""

@@ -1,4 +1,7 @@
-"""Whether the pressures can be believed: frozen ones, and a pitot pressure that does not go with ground speed and wind."""
+"""Whether the pressures can be believed: frozen ones, and a pitot pressure that goes neither with ground speed and wind nor with the lift.
+
+Ground speed alone would take a front of wind for a fault; so the airspeed that the lift at this angle of attack tells of is asked too.
+"""
 
 import math
 from dataclasses import dataclass, replace
@@ -14,6 +17,9 @@ SMOOTHED = 0.5  # s, of the comparison: a gust is no fault
 AGREES = 5.0  # s of agreement before the sensor is watched, and before it is believed again
 WIND_TIME = 30.0  # s, behind which the wind that counts follows the one that is estimated
 SHEAR = 0.35  # of the wind, that an aircraft may lose or meet on its way down or up: no fault of a sensor
+LIFT_TIME = 2.0  # s, of the comparison with the lift: updraughts turn the angle of attack
+LIFT_SHARE = 0.15  # of trim_airspeed, from which on the lift contradicts too
+LEAST_ALPHA, MOST_BANK = 0.03, 0.9  # rad, over that of no lift; rad: within these the lift tells the airspeed
 UNFIXED = 2.0  # s without a fix: nothing to compare with
 
 
@@ -50,6 +56,7 @@ class AirDataCheck:
         self._stamp: object = None
         self._frozen = (False, False)
         self._smoothed = LowPass(SMOOTHED)
+        self._by_lift = LowPass(LIFT_TIME)
         self._wind: tuple[float, float] | None = None
         self._agreed = 0.0  # s
         self._watched = False
@@ -77,7 +84,12 @@ class AirDataCheck:
             expected = params.trim_airspeed
         else:
             expected = self._expected(now, dt)
-            gap = self._smoothed.step(atmosphere.airspeed(pressures.differential, density) - expected, dt)
+            measured = atmosphere.airspeed(pressures.differential, density)
+            gap = self._smoothed.step(measured - expected, dt)
+            if (lifted := lift_airspeed(now, params)) is not None:
+                self._by_lift.step(measured - lifted, dt)
+            against = abs(self._by_lift.value or 0.0) > LIFT_SHARE * params.trim_airspeed
+            gap = gap if against or self.gap else 0.0
             self._judge(gap, params.airspeed_gap * params.trim_airspeed + SHEAR * math.hypot(*self._wind or (0.0, 0.0)), dt)
         return replace(pressures, differential=0.5 * density * expected**2) if self.gap else pressures
 
@@ -101,3 +113,15 @@ class AirDataCheck:
             self._watched, self.gap = True, 0.0
         elif self._watched and (abs(gap) > limit or self._frozen[1]):
             self.gap = gap or math.ulp(1.0)
+
+
+def lift_airspeed(now: Estimate, params: AirParams) -> float | None:
+    """m/s, true, at which the angle of attack of now carries the lift of now; None where that tells nothing.
+
+    The angle of attack is that between pitch and path, in air that does not rise or sink.
+    """
+    path = math.asin(min(max(now.climb / max(now.airspeed, 0.5 * params.trim_airspeed), -0.5), 0.5))
+    alpha = (now.pitch - path) / math.cos(min(abs(now.roll), MOST_BANK)) - params.alpha_zero_lift
+    if alpha < LEAST_ALPHA or abs(now.roll) > MOST_BANK or now.lift <= 0:
+        return None
+    return math.sqrt(params.alpha_per_load * now.lift / alpha * atmosphere.RHO0 / now.density)

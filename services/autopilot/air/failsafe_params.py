@@ -20,6 +20,8 @@ class FailsafeParams(Params, frozen=True):
     link_timeout: Annotated[float, _meta(1, 300, "s", "silence of all ground stations until the link is lost")] = 5.0
     link_action: Annotated[Choice, Meta(description="when the link is lost")] = "return"
     sigma_max: Annotated[float, _meta(1, 1000, "m", "uncertainty of the position from which it is not relied on")] = 50.0
+    gnss_time: Annotated[float, _meta(10, 3600, "s", "circled by dead reckoning without a position until gnss_action")] = 120.0
+    gnss_action: Annotated[Choice, Meta(description="then; land: down where it is, without a position")] = "land"
     airspeed_gap: Annotated[float, _meta(0.1, 1, "", "of trim_airspeed: measured against ground speed less wind")] = 0.25
     battery_low: Annotated[float, _meta(0, 0.9, "", "charge that is low")] = 0.15
     battery_critical: Annotated[float, _meta(0, 0.9, "", "charge that is critical, and that the way home leaves")] = 0.07

@@ -24,6 +24,7 @@ class Known:
     silence: float = 0.0  # s since a ground station was heard; 0 while none ever was
     unfixed: float = 0.0  # s since the last fix
     sigma: float = 0.0  # m
+    lost_for: float = 0.0  # s without a position that modes rely on, while nobody flies by hand
     has_air_data: bool = True
     pitot_gap: float = 0.0  # m/s, measured less expected airspeed, while the pitot pressure is not believed
     charge: float = 1.0  # 0..1
@@ -79,6 +80,18 @@ AIR_RULES: tuple[Rule[Known], ...] = (
         clears=1.0,
         severity=Event.CRITICAL,
         parameters=("sigma_max",),
+    ),
+    Rule(
+        "position",
+        wrong=lambda k: k.airborne and k.lost_for > k.params.gnss_time,
+        mended=lambda k: k.lost_for == 0.0,
+        begins="without a position for long",
+        ends="with a position again",
+        figures=lambda k: f"dead reckoning for {k.lost_for:.0f} s, good to {k.sigma:.0f} m",
+        action=_chosen("gnss_action"),
+        severity=Event.CRITICAL,
+        parameters=("gnss_time", "gnss_action"),
+        does="comes down where it is, into the wind; Hold as soon as the position is back",
     ),
     Rule(
         "air_data",

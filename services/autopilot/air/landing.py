@@ -26,6 +26,7 @@ ALIGNED = 0.3  # rad, of the course on leaving the circle
 GUST_SHARE, GUST_MOST = 0.4, 0.2  # of the wind, of min_airspeed: what is added to it on the approach
 RANGED_BELOW, RANGED_WITHIN = 20.0, 150.0  # m of height and distance: from here on the range finder sees the strip's level
 RANGE_TIME = 1.0  # s
+COMMITTED = 12.0  # m: below it, without satellites, it is landed by dead reckoning
 GATE = 10.0, 2.0  # m of height, between which the approach has to be a stable one
 TOO_HIGH, TOO_FAST = 3.0, 7.0  # m, m/s
 FLARE_TIME = 3.0  # s
@@ -65,6 +66,7 @@ class Landing(Phase):
         self._stage = Stage.ROLL if slow else Stage.CIRCLE
         self._circle = self._new_circle(now, params)
         self._still = 0.0
+        self._low = False
 
     @property
     def circle(self) -> Circle | None:
@@ -74,6 +76,11 @@ class Landing(Phase):
     def rolls(self) -> bool:
         """The wheels carry it: nothing but the end of the landing can follow."""
         return self._stage is Stage.ROLL
+
+    @property
+    def committed(self) -> bool:
+        """Too near to the ground to be turned away without a position."""
+        return self._stage is Stage.ROLL or (self._stage is Stage.FINAL and self._low)
 
     def around(self, why: str) -> None:
         if not self.rolls:
@@ -127,6 +134,7 @@ class Landing(Phase):
     def _final(self, now: Estimate, params: AirParams, dt: float) -> Wish:
         distance, right = self.lane.locate(now)
         height = self._height(now, params, distance, dt)
+        self._low = height < COMMITTED
         wanted, slope, flares = flare(distance, now.ground_speed, self._slope(params))
         fast = self._airspeed(now, params)
         if why := self._unstable(now, height, height - wanted, right, fast):

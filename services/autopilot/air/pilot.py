@@ -6,6 +6,7 @@ from dataclasses import astuple, dataclass, replace
 
 from services.autopilot.air.by_hand import COMMAND_MAX_AGE, LET_GO, Stick
 from services.autopilot.air.commands import Surfaces, Wanted
+from services.autopilot.air.descent import Descent
 from services.autopilot.air.fence_guard import FenceGuard
 from services.autopilot.air.field import Field
 from services.autopilot.air.flyable import fault
@@ -26,6 +27,8 @@ from services.autopilot.air.state import Estimate
 from services.autopilot.air.stick_modes import STICK_MODES
 from services.autopilot.air.strip import Strip
 from services.autopilot.air.wishes import Phase, Senses, Track, Wish
+
+BACK = "GNSS back: holds until a mode is asked for"
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,13 +99,27 @@ class Pilot:
 
     @property
     def circle(self) -> Circle | None:
-        return self._phase.circle if isinstance(self._phase, Circling | Landing) else None
+        return self._phase.circle if isinstance(self._phase, Circling | Landing | Descent) else None
 
     @property
     def landing(self) -> Landing | None:
         """The landing that is being flown."""
         part = self._phase.part if isinstance(self._phase, MissionFlight) else self._phase
         return part if isinstance(part, Landing) else None
+
+    @property
+    def is_blind(self) -> bool:
+        """Modes that need a position are not flown."""
+        return self._blind
+
+    @property
+    def is_by_hand(self) -> bool:
+        return TABLE[self.mode].by_hand and self.senses.hand is not None
+
+    @property
+    def goes_down(self) -> bool:
+        """It lands, with a position or without one."""
+        return self.landing is not None or isinstance(self._phase, Descent)
 
     @property
     def station(self) -> float | None:
@@ -221,7 +238,8 @@ class Pilot:
 
     @property
     def _rolls_out(self) -> bool:
-        return self.landing is not None and self.landing.rolls
+        descends = isinstance(self._phase, Descent) and self._phase.rolls
+        return descends or (self.landing is not None and self.landing.rolls)
 
     def _change(self, mode: FlightMode, reason: str) -> None:
         self.mode, self.reason, self._phase = mode, reason, None
@@ -252,6 +270,14 @@ class Pilot:
         self._change(FlightMode.HOLD, f"goal of {source}")
         self._phase = Circling(Circle(Place(place.north, place.east, height), params.hold_radius))
         return ""
+
+    def descend(self, now: Estimate, reason: str, params: AirParams) -> None:
+        """Mode Land without a position: down where it is."""
+        if self._rolls_out or isinstance(self._phase, Descent):
+            return
+        circle = self.circle or Circle.ahead(now, now.height, params.hold_radius)
+        self._change(FlightMode.LAND, reason)
+        self._phase = Descent(circle, self.home.height if self.home is not None else self._ground, self.senses)
 
     def orbit(self, circle: Circle, airspeed: float, source: str, params: AirParams) -> str:
         """Mode Orbit; a radius or airspeed of 0 is the vehicle's own."""
@@ -306,12 +332,18 @@ class Pilot:
         self.stopped = source
 
     def fly_blind(self, blind: bool) -> None:
-        """Without GNSS for long it holds where it reckons to be, and goes on holding when GNSS is back, until told."""
-        row, was = TABLE[self.mode], self._blind
-        self._blind = blind
-        if self.stopped or self._rolls_out or (self.mode is not FlightMode.HOLD and Need.POSITION not in row.keeps):
+        """Without GNSS for long it holds where it reckons to be, and goes on holding when GNSS is back, until told.
+
+        On the last metres of a landing it goes on by dead reckoning: to turn away there is worse.
+        """
+        row, was, self._blind = TABLE[self.mode], self._blind, blind
+        needs, holds = Need.POSITION in row.keeps, self.mode is FlightMode.HOLD
+        committed = self.landing is not None and self.landing.committed
+        if self.stopped or self._rolls_out or committed or not (needs or holds):
             return
-        if blind and not was:
+        if blind and not isinstance(self._phase, Descent) and (needs or not was):
             self._change(row.without, "GNSS lost: holds by dead reckoning" if row.without is FlightMode.HOLD else "GNSS lost")
+        elif was and not blind and isinstance(self._phase, Descent):
+            self._change(FlightMode.HOLD, BACK)
         elif was and not blind:
-            self.reason = "GNSS back: holds until a mode is asked for"
+            self.reason = BACK

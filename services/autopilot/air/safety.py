@@ -51,6 +51,8 @@ class Safety:
         self._air_data = AirDataCheck()
         self._saturation = Saturation(servos)
         self._heard: float | None = None
+        self._lost_for = 0.0  # s
+        self._was_blind = False
         self._silence = 0.0
 
     def hear(self, t: float, link: Link | None, battery: Battery | None) -> None:
@@ -83,14 +85,23 @@ class Safety:
     def step(self, t: float, seen: Seen, params: AirParams, dt: float) -> list[Event]:
         """Before the pilot's step; ``seen.surfaces`` are those of the cycle before."""
         self._saturation.step(seen.surfaces, dt)
-        changes, order = self.watch.step(self._known(seen, params), dt)
+        if not self._pilot.is_blind:
+            self._lost_for = 0.0
+        elif not self._pilot.is_by_hand:
+            self._lost_for += dt
+        known = self._known(seen, params)
+        changes, order = self.watch.step(known, dt)
+        if self._pilot.is_blind != self._was_blind:
+            # What was ordered may have been given up for want of a position, or may be carried out by now.
+            self._was_blind = self._pilot.is_blind
+            order = order or self.watch.in_force(known)
         if order is not None and seen.airborne:
             self._obey(order, seen.now, params)
         return [_event(t, change) for change in changes]
 
     def _known(self, seen: Seen, params: AirParams) -> Known:
-        self._pilot.fence.grounds = not seen.airborne or self._pilot.landing is not None
-        now, outlook = seen.now, self._pilot.fence.look(seen.now, params)
+        self._pilot.fence.grounds = not seen.airborne or self._pilot.goes_down
+        now, outlook = seen.now, self._pilot.fence.look(seen.now, self.demands(params))
         stop, stopped_for = self._saturation.worst
         return Known(
             params=params,
@@ -98,6 +109,7 @@ class Safety:
             silence=self._silence,
             unfixed=seen.unfixed,
             sigma=now.position_sigma,
+            lost_for=self._lost_for,
             has_air_data=self.has_air_data,
             pitot_gap=self._air_data.gap,
             charge=self.endurance.charge,
@@ -116,6 +128,9 @@ class Safety:
         """The mode ordered, or the next best; one that goes as far already stays."""
         pilot, reason = self._pilot, order.rule.begins
         if RANK.get(pilot.mode, Action.WARN) >= order.action:
+            return
+        if pilot.is_blind and order.action is Action.LAND:
+            pilot.descend(now, reason, params)
             return
         wanted = [mode for mode, rank in RANK.items() if rank <= order.action and self._may(mode, params)]
         for mode in sorted(wanted, key=lambda m: -RANK[m]):

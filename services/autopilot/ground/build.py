@@ -2,7 +2,8 @@
 
 from services.autopilot.ground import fence as fences
 from services.autopilot.ground.mission import refusal
-from services.autopilot.ground.service import GroundAutopilot, GroundAutopilotParams
+from services.autopilot.ground.params import GroundAutopilotParams
+from services.autopilot.ground.service import GroundAutopilot
 from services.autopilot.plan import item_from_file
 from uvf.runtime.fence_file import fence_message, fencing
 from uvf.runtime.params import BadInput
@@ -25,10 +26,12 @@ def _host(member: Member, site: Site) -> Host:
     fence = fence_message(member.entry.fence, f"{site.mission_path}: {member.name}: fence")
     if outside := fences.refusal(items, fencing(fence), body.radius):
         raise BadInput(f"{site.mission_path}: {member.name}: fence: {outside}")
+    imu = member.file.sensors.imu
+    imu_rpy = imu.mount.rpy if imu is not None else (0.0, 0.0, 0.0)
     begins = job.explore or bool(items)
     params = member.params("autopilot_ground", GroundAutopilotParams)
 
     def make() -> GroundAutopilot:
-        return GroundAutopilot(body, (start.x, start.y), (begins, items), member.entry.system_id, params, fence)
+        return GroundAutopilot(body, (start.x, start.y), (begins, items), member.entry.system_id, params, fence, imu_rpy)
 
     return Host(GroundAutopilot, make, member.name)

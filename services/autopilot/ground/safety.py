@@ -1,24 +1,62 @@
 """Keeps watch over a ground vehicle: what its failsafes look at, and its fence."""
 
+from dataclasses import dataclass, field
+
 from schemas.convert import seconds, stamp
-from schemas.messages import Event, Fence, Link, PoseInFrame
-from services.autopilot.failsafes import Order, Watch
-from services.autopilot.ground.failsafes import GROUND_RULES, Known
+from schemas.messages import Battery, Event, Fence, FrameTransform, Imu, LaserScan, Link, Mode, PoseInFrame, WheelTicks
+from services.autopilot.failsafes import Action, Change, Order, Watch
+from services.autopilot.ground.failsafes import GROUND_RULES, STANDS, Known
 from services.autopilot.ground.fence import Place, stops
+from services.autopilot.ground.motion import Grip, Tilt, Wheels
+from services.autopilot.ground.params import GroundAutopilotParams
+from services.autopilot.ground.sight import Sight
+from uvf.maths.kinematics import WheelSpeeds
 from uvf.runtime.fence_file import Fencing, fence_fault, fencing
+from uvf.runtime.vehicle_file import GroundBody
+
+BY_ITSELF = (Mode.MODE_MISSION, Mode.MODE_RETURN)
+
+
+@dataclass(slots=True)
+class Sensed:
+    """What has come in a cycle; None: nothing fresh."""
+
+    here: Place | None = None
+    link: Link | None = None
+    imu: list[Imu] = field(default_factory=list)
+    wheels: WheelTicks | None = None
+    scan: LaserScan | None = None
+    correction: FrameTransform | None = None
+    battery: Battery | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Doing:
+    """What the vehicle is about."""
+
+    mode: int
+    free: bool
+    """Armed and not stopped."""
+    is_steered: bool
+    """A command is there."""
+    asked: WheelSpeeds
+    """m/s at the rims, of the cycle before."""
 
 
 class Safety:
     """``step`` once a cycle, then ``brakes`` for the velocity that was chosen."""
 
-    def __init__(self, keep: tuple[float, float], fence: Fence) -> None:
-        """keep: the vehicle's radius [m] and its deceleration [m/s^2]."""
+    def __init__(self, body: GroundBody, fence: Fence, imu_rpy: tuple[float, float, float]) -> None:
         self.watch = Watch(GROUND_RULES)
         self.fence = fence
         self.fencing: Fencing = fencing(fence)
-        self._keep = keep
+        self.battery: Battery | None = None
+        """As told last."""
+        self._keep = body.radius, body.max_linear_acceleration
         self._heard: float | None = None
         self._times = {"unplaced": 0.0, "unsteered": 0.0}
+        self._wheels = Wheels(body.wheel_radius)
+        self._grip, self._tilt, self._sight = Grip(self._wheels), Tilt(imu_rpy), Sight()
         self._fenced = False
 
     def set_fence(self, fence: Fence, here: Place | None) -> str:
@@ -30,33 +68,73 @@ class Safety:
             self.fence, self.fencing = fence, fencing(fence)
         return why
 
-    def step(
-        self, t: float, link: Link | None, needs: dict[str, bool], link_timeout: float, dt: float
-    ) -> tuple[list[Event], Order[Known] | None]:
-        """needs: whether it moves, and whether it is without a pose or a command that its mode needs."""
-        if link is not None and link.stations:
-            self._heard = seconds(link.timestamp)
-        for name, time in self._times.items():
-            self._times[name] = time + dt if needs[name] else 0.0
-        silence = t - self._heard if self._heard is not None else 0.0
-        known = Known(link_timeout, needs["moves"], silence, self._times["unplaced"], self._times["unsteered"], self._fenced)
-        changes, order = self.watch.step(known, dt)
-        return [
-            Event(
-                timestamp=stamp(t),
-                severity=c.rule.severity if c.began else Event.NOTICE,
-                text=c.rule.begins if c.began else c.rule.ends,
-                cause=c.cause,
-                source="autopilot",
-            )
-            for c in changes
-        ], order
+    def overrule(self) -> None:
+        """Somebody has asked for a mode."""
+        self.watch.overrule()
+        self._grip.forget()
 
-    def brakes(self, here: Place | None, linear: float) -> bool:
-        """Whether it has to stop before the fence."""
+    def step(
+        self, t: float, sensed: Sensed, doing: Doing, params: GroundAutopilotParams, dt: float
+    ) -> tuple[list[Event], Order[Known] | None]:
+        """What has begun and ended, and what is to be done."""
+        self._hear(t, sensed, doing, dt)
+        changes, order = self.watch.step(self._known(t, doing, params), dt)
+        return [_event(t, change) for change in changes], order
+
+    def _hear(self, t: float, sensed: Sensed, doing: Doing, dt: float) -> None:
+        if sensed.link is not None and sensed.link.stations:
+            self._heard = seconds(sensed.link.timestamp)
+        if sensed.battery is not None and sensed.battery.remaining >= 0:
+            self.battery = sensed.battery
+        lacks = {
+            "unplaced": doing.mode in BY_ITSELF and sensed.here is None,
+            "unsteered": doing.mode == Mode.MODE_OFFBOARD and not doing.is_steered,
+        }
+        for name, lacking in lacks.items():
+            self._times[name] = self._times[name] + dt if lacking else 0.0
+        self._wheels.step(sensed.wheels)
+        self._grip.step(doing.asked, sensed.here, dt)
+        self._tilt.step(sensed.imu, dt)
+        self._sight.step(t, sensed.scan, sensed.correction, self._wheels.travelled)
+
+    def _known(self, t: float, doing: Doing, params: GroundAutopilotParams) -> Known:
+        return Known(
+            params=params,
+            moves=doing.free and doing.mode != Mode.MODE_HOLD,
+            by_itself=doing.mode in BY_ITSELF,
+            by_hand=doing.mode == Mode.MODE_MANUAL,
+            silence=t - self._heard if self._heard is not None else 0.0,
+            unplaced=self._times["unplaced"],
+            unsteered=self._times["unsteered"],
+            unseen=self._sight.unseen,
+            unmapped=self._sight.unmapped,
+            stuck_for=self._grip.stuck_for,
+            stuck=self._grip.how,
+            tilt=self._tilt.angle,
+            charge=self.battery.remaining if self.battery is not None else 1.0,
+            fence=self._fenced,
+        )
+
+    def brakes(self, here: Place | None, linear: float, mode: int) -> bool:
+        """Whether it has to stop before the fence, or for want of sight."""
         self._fenced = here is not None and stops(self.fencing, here, linear, self._keep)
-        return self._fenced
+        return self._fenced or (mode in BY_ITSELF and any(name in self.watch.holding for name in STANDS))
+
+    def faults(self) -> list[str]:
+        """Why it should not be armed."""
+        return [rule.begins for rule in self.watch.holding.values() if rule.name in ("tipped", "battery_critical")]
+
+
+def mode_of(action: Action) -> int:
+    """The mode that carries it out."""
+    return Mode.MODE_RETURN if action is Action.RETURN else Mode.MODE_HOLD
 
 
 def place(pose: PoseInFrame, yaw: float) -> Place:
     return Place(pose.pose.position.x, pose.pose.position.y, yaw)
+
+
+def _event(t: float, change: Change[Known]) -> Event:
+    rule, severity = change.rule, change.rule.severity if change.began else Event.NOTICE
+    text = rule.begins if change.began else rule.ends
+    return Event(timestamp=stamp(t), severity=severity, text=text, cause=change.cause, source="autopilot")

@@ -2,19 +2,21 @@
 
 from collections.abc import Mapping
 from math import hypot, inf
-from typing import Annotated, Any
-
-from msgspec import Meta
+from typing import Any
 
 from schemas import topics
 from schemas.convert import mode_name, seconds, stamp, yaw_of
 from schemas.messages import (
     ArmRequest,
+    Battery,
     DriveCommand,
     Event,
     Fence,
     FenceRequest,
+    FrameTransform,
+    Imu,
     Kind,
+    LaserScan,
     Link,
     Mission,
     MissionItem,
@@ -28,25 +30,23 @@ from schemas.messages import (
     StopCommand,
     VehicleStatus,
     WheelCommand,
+    WheelTicks,
 )
+from services.autopilot.failsafes import Action
 from services.autopilot.ground import fence as fences
 from services.autopilot.ground.drive import Limits, Ramp, within_limits
 from services.autopilot.ground.mission import MissionEngine, Point, mission_of, refusal, vector
 from services.autopilot.ground.multiplexer import SOURCES, Choice, Velocity, choose
-from services.autopilot.ground.safety import Safety, place
-from uvf.maths.kinematics import DifferentialDrive, Twist
-from uvf.runtime.service import Outputs, Params, Service, optional
+from services.autopilot.ground.params import GroundAutopilotParams
+from services.autopilot.ground.safety import Doing, Safety, Sensed, mode_of, place
+from uvf.maths.kinematics import DifferentialDrive, Twist, WheelSpeeds
+from uvf.runtime.service import Outputs, Service, every, optional
 from uvf.runtime.vehicle_file import GroundBody
 
 STATUS_EVERY, PROGRESS_EVERY = 5, 25
 """Steps between two messages: 10 Hz and 2 Hz."""
 UNKNOWN_BATTERY = -1.0
 REFUSALS_EVERY = 10.0  # s between two events about commands that are no numbers
-
-
-class GroundAutopilotParams(Params, frozen=True):
-    acceptance_radius: Annotated[float, Meta(gt=0)] = 0.25  # m, of waypoints that name none
-    link_timeout: Annotated[float, Meta(ge=1, le=300)] = 5.0  # s of silence of all ground stations, after which it holds
 
 
 class GroundAutopilot(Service):
@@ -64,6 +64,11 @@ class GroundAutopilot(Service):
         "stop": optional(topics.STOP.by("*")),
         "pose": optional(topics.POSE),
         "link": optional(topics.LINK),
+        "imu": optional(every(topics.IMU)),
+        "ticks": optional(topics.WHEELS),
+        "scan": optional(topics.SCAN),
+        "correction": optional(topics.TF_MAP),
+        "battery": optional(topics.BATTERY),
     }
     outputs = {
         "wheels": topics.WHEEL_COMMAND,
@@ -91,8 +96,9 @@ class GroundAutopilot(Service):
         system_id: int,
         params: GroundAutopilotParams,
         fence: Fence | None = None,
+        imu_rpy: tuple[float, float, float] = (0.0, 0.0, 0.0),
     ) -> None:
-        """home: start pose [m, world]; job: whether it begins at once, and the mission's items, perhaps none."""
+        """home: start pose [m, world]; job: whether it begins at once, and the mission's items, perhaps none; imu_rpy: of its mount."""
         self.params = params
         self._body = body
         self._home = home
@@ -108,7 +114,7 @@ class GroundAutopilot(Service):
         self._engine = MissionEngine(home, params.acceptance_radius)
         self._engine.load(mission_of(items, stamp(0.0)))
         self._mission_is_new = True
-        self._safety = Safety((body.radius, body.max_linear_acceleration), fence or Fence())
+        self._safety = Safety(body, fence or Fence(), imu_rpy)
         self._fence_is_new = True
         self._here: fences.Place | None = None
         self._steps = 0
@@ -126,6 +132,11 @@ class GroundAutopilot(Service):
         stop: StopCommand | None,
         pose: PoseInFrame | None,
         link: Link | None,
+        imu: list[Imu],
+        ticks: WheelTicks | None,
+        scan: LaserScan | None,
+        correction: FrameTransform | None,
+        battery: Battery | None,
         arm: list[ArmRequest],
         set_mode: list[ModeRequest],
         set_mission: list[MissionRequest],
@@ -134,7 +145,7 @@ class GroundAutopilot(Service):
     ) -> Outputs:
         self._heed_stop(t, stop)
         self._here = place(pose, yaw_of(pose.pose.orientation)) if pose is not None else None
-        self._watch(t, link)
+        self._watch(t, Sensed(self._here, link, imu, ticks, scan, correction, battery))
         replies = {
             "arm": [self._arm(t, r) for r in arm],
             "set_mode": [self._set_mode(t, r) for r in set_mode],
@@ -165,19 +176,21 @@ class GroundAutopilot(Service):
         if mission is not None and progress is not None:
             self._engine.resume(mission, progress)
 
-    def _watch(self, t: float, link: Link | None) -> None:
-        """What the failsafes order: to hold, whatever the mode."""
-        auto = self._mode in (Mode.MODE_MISSION, Mode.MODE_RETURN)
-        needs = {
-            "moves": self._armed and not self._stopped and self._mode != Mode.MODE_HOLD,
-            "unplaced": auto and self._here is None,
-            "unsteered": self._mode == Mode.MODE_OFFBOARD and not self._choice.source,
-        }
-        events, order = self._safety.step(t, link, needs, self.params.link_timeout, 1.0 / self.hz)
+    def _watch(self, t: float, sensed: Sensed) -> None:
+        """What the failsafes order, whatever the mode."""
+        rims = self._drive.wheels(Twist(self._ramp.linear, self._ramp.angular))
+        asked = WheelSpeeds(rims.left * self._body.wheel_radius, rims.right * self._body.wheel_radius)
+        doing = Doing(self._mode, self._armed and not self._stopped, bool(self._choice.source), asked)
+        events, order = self._safety.step(t, sensed, doing, self.params, 1.0 / self.hz)
         self._events += events
-        if order is not None and order.action:
-            self._mode = Mode.MODE_HOLD
-            self._tell(t, "mode HOLD", order.rule.begins, Event.WARNING)
+        if order is None or not order.action:
+            return
+        if (mode := mode_of(order.action)) != self._mode:
+            self._mode = mode
+            self._tell(t, f"mode {mode_name(mode)}", order.rule.begins, Event.WARNING)
+        if order.action is Action.OFF and self._armed:
+            self._armed = False
+            self._tell(t, "disarmed", order.rule.begins, Event.WARNING)
 
     def _set_fence(self, t: float, request: FenceRequest) -> Reply:
         reason = self._safety.set_fence(request.fence, self._here)
@@ -196,6 +209,8 @@ class GroundAutopilot(Service):
     def _arm(self, t: float, request: ArmRequest) -> Reply:
         if request.arm and self._stopped:
             return Reply(accepted=False, reason="STOP ALL is engaged: release it first")
+        if request.arm and not request.force and not self._armed and (why := self._safety.faults()):
+            return Reply(accepted=False, reason="; ".join(why))
         if request.arm != self._armed:
             self._armed = request.arm
             self._tell(t, "armed" if request.arm else "disarmed", f"asked by {request.source or 'unknown'}")
@@ -205,7 +220,7 @@ class GroundAutopilot(Service):
         if request.mode not in SOURCES:
             known = ", ".join(mode_name(mode) for mode in SOURCES)
             return Reply(accepted=False, reason=f"a ground vehicle has no mode {request.mode}; there are: {known}")
-        self._safety.watch.overrule()
+        self._safety.overrule()
         if request.mode != self._mode:
             self._mode = request.mode
             self._tell(t, f"mode {mode_name(request.mode)}", f"asked by {request.source or 'unknown'}")
@@ -246,7 +261,7 @@ class GroundAutopilot(Service):
     def _wheels(self, t: float) -> WheelCommand:
         top_speed = self._engine.speed if self._mode == Mode.MODE_MISSION and self._engine.speed else self._body.max_linear
         wanted = within_limits(self._choice.linear, self._choice.angular, self._ramp.limits, top_speed)
-        if self._safety.brakes(self._here, wanted[0]):
+        if self._safety.brakes(self._here, wanted[0], self._mode):
             wanted = 0.0, wanted[1]
         left, right = self._drive.wheels(Twist(*self._ramp.lead(*wanted, 1.0 / self.hz)))
         return WheelCommand(timestamp=stamp(t), left=left, right=right)
@@ -268,7 +283,7 @@ class GroundAutopilot(Service):
         return reports
 
     def _status(self, t: float, position: Point | None) -> VehicleStatus:
-        target = self._engine.target
+        target, battery = self._engine.target, self._safety.battery
         left = hypot(position[0] - target[0], position[1] - target[1]) if position and target else 0.0
         return VehicleStatus(
             timestamp=stamp(t),
@@ -280,7 +295,9 @@ class GroundAutopilot(Service):
             command_source=self._choice.source,
             reason=self._choice.reason,
             throttle=abs(self._ramp.linear) / self._body.max_linear,
-            battery_remaining=UNKNOWN_BATTERY,
+            battery_remaining=battery.remaining if battery is not None else UNKNOWN_BATTERY,
+            battery_voltage=battery.voltage if battery is not None else 0.0,
+            prearm=self._safety.faults(),
             waypoint=self._engine.current,
             distance_to_waypoint=left,
             home=vector(self._home),

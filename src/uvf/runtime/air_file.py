@@ -121,14 +121,18 @@ def unnumbered(name: str) -> str:
     return re.sub(r"\[\d+\]$", "", name)
 
 
+def check_battery(pack: BatteryPack, place: Place) -> None:
+    """Raises BadInput."""
+    if pack.empty >= pack.full:
+        raise BadInput(f"{place}: empty at {pack.empty:g} V, full at {pack.full:g} V; exchange them")
+    if pack.rated is not None and pack.rated > pack.full:
+        raise BadInput(f"{place.at('rated')}: {pack.rated:g} V, but full it has {pack.full:g} V; give it more cells")
+
+
 def check_air(air: AirBody, place: Place) -> None:
     """What the types do not say. Raises BadInput."""
-    if air.battery is not None and air.battery.empty >= air.battery.full:
-        raise BadInput(f"{place.at('battery')}: empty at {air.battery.empty:g} V, full at {air.battery.full:g} V; exchange them")
-    if air.battery is not None and air.battery.rated is not None and air.battery.rated > air.battery.full:
-        raise BadInput(
-            f"{place.at('battery', 'rated')}: {air.battery.rated:g} V, but full it has {air.battery.full:g} V; give it more cells"
-        )
+    if air.battery is not None:
+        check_battery(air.battery, place.at("battery"))
     for name, joint in air.joints.items():
         at = place.at("joints", name)
         if (joint.position is None) == (joint.speed is None):

@@ -6,8 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from schemas.convert import seconds, stamp, vector
-from schemas.messages import FrameTransforms, Gnss, Imu, LaserScan, Range
+from schemas.messages import Battery, FrameTransforms, Gnss, Imu, LaserScan, Range
 from uvf.maths.instruments import Fix, ImuReading
+from uvf.runtime.battery import Charge
 from uvf.runtime.service import Value
 from uvf.runtime.vehicle_file import GnssSensor, Lidar, RangeFinder, Sonar
 
@@ -59,6 +60,10 @@ def range_message(t: float, frame: str, sensor: Sonar | RangeFinder, distance: f
         range_min=sensor.range_min,
         range_max=sensor.range_max,
     )
+
+
+def battery_message(t: float, charge: Charge) -> Battery:
+    return Battery(timestamp=stamp(t), voltage=charge.voltage, current=charge.current, remaining=charge.remaining)
 
 
 def later(read: Value, seconds_later: float) -> Value:

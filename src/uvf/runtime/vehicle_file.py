@@ -13,7 +13,7 @@ from uvf.maths.geodesy import LocalTangent
 from uvf.maths.instruments import InertialUnit, Receiver
 from uvf.maths.sampling import Dropout, Line
 from uvf.maths.sensing import Errors
-from uvf.runtime.air_file import AirBody, check_air
+from uvf.runtime.air_file import AirBody, BatteryPack, check_air, check_battery
 from uvf.runtime.params import BadInput, Place, load_yaml, nearest
 from uvf.runtime.quantities import Name, NotNegative, PhysicsRate, Positive
 from uvf.runtime.vehicle_layers import file_of, fill_vehicle, folders_of
@@ -282,6 +282,7 @@ class GroundBody(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     max_angular_acceleration: Positive  # rad/s^2
     motor: Motor
     friction: Friction = Friction()
+    battery: BatteryPack | None = None
     physics_hz: PhysicsRate = 200.0
 
 
@@ -318,10 +319,20 @@ def load_vehicle(vehicles: Path, name: str) -> VehicleFile:
     ground, air = vehicle.ground, vehicle.air
     if ground is not None and ground.left_joint == ground.right_joint:
         raise BadInput(f"{place.at('ground', 'right_joint')}: the left wheel's joint too; name the right one")
+    if ground is not None and ground.battery is not None:
+        _check_ground_battery(ground.battery, place.at("ground", "battery"))
     if air is not None:
         check_air(air, place.at("air"))
         _check_sensors_of_aircraft(vehicle.sensors, place.at("sensors"))
     return vehicle if vehicle.variant_of is None else _with_files(vehicle, folders_of(folder))
+
+
+def _check_ground_battery(pack: BatteryPack, place: Place) -> None:
+    """What the wheels' motors draw follows from their torque and speed."""
+    check_battery(pack, place)
+    for name in ("power", "rated"):
+        if getattr(pack, name) is not None:
+            raise BadInput(f"{place.at(name)}: is for an aircraft; leave it out, the motors' own figures say it")
 
 
 def _with_files(vehicle: VehicleFile, folders: list[Path]) -> VehicleFile:

@@ -31,6 +31,9 @@ class StandingWorld:
         self.seen = list(touches)
         self.told = []
 
+    def motor_energy(self, vehicle):
+        return 0.0
+
     def advance(self, wheels, duration, since):
         self.told.append((dict(wheels), duration, since))
 

@@ -17,6 +17,7 @@ CAUSES = {
     "link": {"silence": 6.0},
     "gnss": {"unfixed": 3.0},
     "estimator": {"sigma": 60.0},
+    "position": {"lost_for": 130.0},
     "air_data": {"has_air_data": False},
     "airspeed": {"pitot_gap": -9.0},
     "battery_low": {"charge": 0.12},

@@ -7,6 +7,7 @@ from schemas import topics
 from schemas.convert import wxyz
 from schemas.messages import Fence, FenceRequest, FenceZone, GoalRequest, Mission, MissionItem, MissionRequest, Mode, ModeRequest, Vector3
 from tests.services.autopilot.air.trouble import Trouble
+from tests.services.autopilot.proofs import shows
 from uvf.maths.rotations import to_euler
 from uvf.runtime.fence_file import FenceFile, ZoneFile
 
@@ -15,6 +16,7 @@ BOX = [(-500.0, -500.0), (500.0, -500.0), (500.0, 500.0), (-500.0, 500.0)]
 MISSION = ModeRequest(mode=Mode.MODE_MISSION, source="test")
 
 
+@shows("air", "link")
 def test_without_its_ground_station_it_returns_and_goes_on_when_asked():
     flight = Trouble()
     flight.linked = True
@@ -31,6 +33,7 @@ def test_without_its_ground_station_it_returns_and_goes_on_when_asked():
     flight.ask(topics.SET_MODE, MISSION, 20.0)
     flight.run(21.0)
     assert flight.mode_at(21.0).mode == Mode.MODE_MISSION and not flight.mode_at(21.0).failsafes
+    return flight
 
 
 def test_who_asks_for_the_mission_after_a_failsafe_gets_it():
@@ -46,6 +49,7 @@ def test_who_asks_for_the_mission_after_a_failsafe_gets_it():
 
 
 @pytest.mark.parametrize(("kind", "size"), [("lost", 0.0), ("frozen", 0.0), ("bias", -220.0)])
+@shows("air", "airspeed")
 def test_a_pitot_tube_that_fails_is_noticed_flown_without_and_believed_again(kind, size):
     flight = Trouble(faults=[("pitot", kind, 20.0, 40.0, size)], wind=(4.0, 3.0, 0.0))
     flight.run(50.0)
@@ -53,40 +57,55 @@ def test_a_pitot_tube_that_fails_is_noticed_flown_without_and_believed_again(kin
     assert flight.told("airspeed sensor back") == pytest.approx([45.0], abs=2.5)
     assert max(abs(m.airspeed - 25.0) for t, m in flight.truth if t > 19.0) < 3.0
     assert flight.mode_at(50.0).mode == Mode.MODE_MISSION
+    return flight
 
 
+@shows("air", "gnss")
 def test_a_receiver_that_freezes_is_lost_and_one_that_moves_again_is_back():
     flight = Trouble(faults=[("gnss", "frozen", 10.0, 20.0, 0.0)])
     flight.run(24.0)
     assert flight.told("GNSS lost") == pytest.approx([12.8], abs=1.0)
     assert flight.told("GNSS back") == pytest.approx([20.2], abs=0.5)
+    return flight
 
 
+@shows("air", "air_data")
 def test_a_static_port_that_freezes_is_no_height():
     flight = Trouble(faults=[("static", "frozen", 10.0, 20.0, 0.0)])
     flight.run(24.0)
     assert flight.told("air data lost") == pytest.approx([11.0], abs=0.5)
     assert flight.told("air data back") == pytest.approx([20.1], abs=0.5)
     assert np.abs(flight.positions(after=10.0)[:, 2] - 60.0).max() < 8.0
+    return flight
 
 
-def test_on_a_battery_that_runs_out_it_turns_home_while_that_is_left():
-    flight = Trouble(energy=18e3)
-    flight.run(48.0)
+@shows("air", "battery_low", "battery_critical")
+def test_on_a_battery_that_runs_out_it_turns_home_while_that_is_left_and_lands():
+    """Until the pack's gauge finds that there is more in it than it told."""
+    flight = Trouble(energy=18e3, faults=[("battery", "bias", 48.0, None, 0.5)])
+    flight.run(53.0)
     (low,) = flight.told("battery low")
     assert low < flight.told("battery critical")[0]
     home = next(m.battery_remaining for t, m in flight.status if t >= low)
     assert home > 0.2, "the way home counts, not only what is left"
     assert flight.mode_at(low + 0.5).mode == Mode.MODE_RETURN
+    assert flight.mode_at(flight.told("battery critical")[0] + 0.5).mode == Mode.MODE_LAND
+    return flight
 
 
-def test_in_a_wind_that_leaves_no_way_back_it_does_not_stay_out():
-    flight = Trouble(wind=(0.0, 20.0, 0.0))
-    flight.run(14.0)
-    assert len(flight.told("wind too strong")) == 1
-    assert flight.mode_at(14.0).mode == Mode.MODE_RETURN
+@shows("air", "wind")
+def test_in_a_storm_that_leaves_no_way_back_it_does_not_stay_out_until_it_is_over():
+    flight = Trouble(storm=(24.0, 1500.0))
+    flight.run(78.0)
+    (began,) = flight.told("wind too strong")
+    assert flight.mode_at(began + 1.0).mode == Mode.MODE_RETURN
+    assert len(flight.told("wind has slackened")) == 1
+    assert not flight.told("airspeed sensor failed"), "wind that rises by 1 m/s in a second is no fault of the pitot"
+    assert max(abs(m.airspeed - 25.0) for _, m in flight.truth) < 4.0
+    return flight
 
 
+@shows("air", "saturation")
 def test_an_elevator_at_its_stop_is_asked_for_less():
     flight = Trouble(faults=[("elevator", "bias", 5.0, 40.0, 0.17)], params={"saturation_time": 2.0})
     flight.run(60.0)
@@ -94,6 +113,7 @@ def test_an_elevator_at_its_stop_is_asked_for_less():
     assert began and began[0] < 40.0
     assert ended and ended[-1] > began[-1]
     assert flight.positions(after=50.0)[:, 2].min() > 40.0
+    return flight
 
 
 def fenced(action, wind=(10.0, 0.0, 0.0)):
@@ -107,6 +127,7 @@ def fenced(action, wind=(10.0, 0.0, 0.0)):
 
 
 @pytest.mark.parametrize(("action", "mode"), [("hold", Mode.MODE_HOLD), ("return", Mode.MODE_RETURN)])
+@shows("air", "fence")
 def test_a_fence_is_never_left(action, mode):
     flight = fenced(action)
     flight.run(45.0)
@@ -116,8 +137,10 @@ def test_a_fence_is_never_left(action, mode):
     assert len(flight.told("fence ahead")) == 1 and flight.told("clear of the fence")
     assert flight.mode_at(45.0).mode == mode
     assert not flight.told("outside")
+    return flight
 
 
+@shows("air", "breach")
 def test_a_fence_that_warns_tells_of_the_breach_and_of_its_end():
     flight = fenced("warn")
     flight.run(20.0)
@@ -127,6 +150,7 @@ def test_a_fence_that_warns_tells_of_the_breach_and_of_its_end():
     flight.ask(topics.SET_MODE, ModeRequest(mode=Mode.MODE_RETURN, source="test"), 20.0)
     flight.run(45.0)
     assert flight.told("inside of the fence")
+    return flight
 
 
 def test_goals_and_missions_outside_are_refused_and_a_new_fence_is_told():
@@ -149,6 +173,7 @@ def test_goals_and_missions_outside_are_refused_and_a_new_fence_is_told():
     assert "the mission does not lie within it: item 0" in fence.reason
 
 
+@shows("air", "attitude")
 def test_an_attitude_that_nobody_wants_ends_the_flight_by_hand():
     flight = Trouble()
     flight.hand = {**NEUTRAL, "elevator": -0.13, "aileron": 0.15}
@@ -158,3 +183,4 @@ def test_an_attitude_that_nobody_wants_ends_the_flight_by_hand():
     assert flight.told("attitude beyond limits") and flight.told("attitude within limits")
     assert flight.mode_at(25.0).mode == Mode.MODE_HOLD
     assert abs(to_euler(wxyz(flight.truth[-1][1].orientation))[0]) < 1.0
+    return flight

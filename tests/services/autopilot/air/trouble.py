@@ -6,25 +6,31 @@ import msgspec
 
 from schemas import topics
 from schemas.convert import stamp
-from schemas.messages import Link, SurfaceCommand
+from schemas.messages import Link, Mode, ModeRequest, SurfaceCommand
 from tests.services.autopilot.air.test_flight import LAPS, Flight, site
 from uvf.runtime.faults import Fault
 from uvf.runtime.fence_file import FenceFile
+from uvf.runtime.wind_file import Gust, Wind
 
 
-def troubled(faults=(), fence=None, wind=(0.0, 0.0, 0.0), job=LAPS, energy=None, params=None):
-    """A site whose aircraft meets these; faults: (part, kind, at, until, size)."""
+def troubled(faults=(), fence=None, wind=(0.0, 0.0, 0.0), job=LAPS, energy=None, params=None, storm=None, altimeter=True):
+    """A site whose aircraft meets these; faults: (part, kind, at, until, size); storm: m/s to the north at most, m of air flown in it."""
     made = site(job, wind=wind)
     member = made.members["milvus"]
     file = member.file
     if energy is not None:
         air = msgspec.structs.replace(file.air, battery=msgspec.structs.replace(file.air.battery, energy=energy))
         file = msgspec.structs.replace(file, air=air)
+    if not altimeter:
+        file = msgspec.structs.replace(file, sensors=msgspec.structs.replace(file.sensors, rangefinders=[]))
     if params:
         file = msgspec.structs.replace(file, params={"autopilot_air": {**file.params["autopilot_air"], **params}})
     entry = msgspec.structs.replace(member.entry, fence=fence or FenceFile())
     listed = [Fault("milvus", part, kind, at, until, size) for part, kind, at, until, size in faults]
     mission = msgspec.structs.replace(made.mission, faults=listed, vehicles={"milvus": entry})
+    if storm is not None:
+        gust = Gust((0.0, storm[0], 0.0), storm[1], time=1.0)
+        made = dataclasses.replace(made, world=msgspec.structs.replace(made.world, wind=Wind(wind, gusts=[gust])))
     return dataclasses.replace(made, mission=mission, members={"milvus": dataclasses.replace(member, entry=entry, file=file)})
 
 
@@ -35,6 +41,7 @@ class Trouble(Flight):
         flown = troubled(**trouble)
         super().__init__(flown)
         self.events = self._record(topics.EVENTS.by("autopilot"))
+        self.crash_events = self._record(topics.EVENTS.by("sim_air"))
         self._link = self._publisher(topics.LINK)
         self._hand = self._publisher(topics.SURFACES.by("client"))
         self.linked = False
@@ -52,6 +59,15 @@ class Trouble(Flight):
         if self.hand is not None and round(t * 100) % 5 == 0:
             self._hand.put(SurfaceCommand(timestamp=stamp(t), **self.hand).SerializeToString(), round(t * 1e9))
         return True
+
+    def take(self, mode):
+        """Asks for a mode."""
+        t = self.status[-1][0]
+        self.ask(topics.SET_MODE, ModeRequest(mode=Mode.Value(f"MODE_{mode.upper()}"), source="test"), t)
+
+    @property
+    def crashed(self):
+        return any(m.text == "crashed" for _, m in self.crash_events)
 
     def told(self, text):
         """Times [s] at which this was said."""

@@ -1,13 +1,17 @@
 """A ground vehicle holds when its link or its setpoints end, and stops before its fence."""
 
 import math
+import re
+from typing import get_args
 
 import pytest
 
 from schemas.convert import stamp
 from schemas.messages import Fence, FenceRequest, FenceZone, Link, Mission, MissionItem, MissionRequest, Mode, ModeRequest, Vector3
-from services.autopilot.ground.failsafes import GROUND_RULES
+from services.autopilot.failsafes import Action, Watch
+from services.autopilot.ground.failsafes import ACTIONS, GROUND_RULES, Known
 from services.autopilot.ground.fence import MARGIN, Place, stops
+from services.autopilot.ground.params import Choice
 from tests.services.autopilot.ground.test_service import BODY, Bench
 from uvf.maths.zones import Disc, Region
 from uvf.runtime.fence_file import Fencing
@@ -102,4 +106,59 @@ def test_the_documented_table_is_that_of_the_code():
     text = (ROOT / "docs" / "failsafes.md").read_text().partition("## Ground")[2]
     rows = [line.strip("|").split("|") for line in text.splitlines() if line.startswith("| `")]
     assert [row[0].strip(" `") for row in rows] == [rule.name for rule in GROUND_RULES]
+    assert [re.findall(r"`(\w+)`", row[2]) for row in rows] == [list(rule.parameters) for rule in GROUND_RULES]
     assert all(rule.begins.split(":")[0] in row[4] for rule, row in zip(GROUND_RULES, rows, strict=True))
+
+
+CAUSES = {
+    "link": {"silence": 6.0},
+    "pose": {"unplaced": 1.5},
+    "scan": {"unseen": 2.0},
+    "map": {"unmapped": 6.0},
+    "offboard": {"unsteered": 1.0},
+    "fence": {"fence": True},
+    "stuck": {"stuck_for": 5.0, "stuck": "wheels are held fast"},
+    "tipped": {"tilt": 0.8},
+    "battery_low": {"charge": 0.15},
+    "battery_critical": {"charge": 0.05},
+}
+
+
+def after(seconds, watch, **changes):
+    seen, orders = [], []
+    for _ in range(round(seconds / 0.02)):
+        changed, order = watch.step(Known(**changes), 0.02)
+        seen += [(c.rule.name, c.began) for c in changed]
+        orders += [order.action] if order else []
+    return seen, orders
+
+
+@pytest.mark.parametrize("rule", GROUND_RULES, ids=lambda rule: rule.name)
+def test_each_rule_begins_once_on_its_cause_and_ends_with_it(rule):
+    watch = Watch([rule])
+    assert after(10.0, watch)[0] == []
+    assert after(10.0, watch, **CAUSES[rule.name])[0] == [(rule.name, True)]
+    assert after(10.0, watch)[0] == [(rule.name, False)]
+
+
+def test_who_is_stuck_on_the_way_home_stands_and_who_is_stuck_by_hand_is_told_only():
+    watch = Watch(GROUND_RULES)
+    assert after(5.0, watch, charge=0.15)[1] == [Action.RETURN]
+    assert after(1.0, watch, charge=0.15, stuck_for=5.0)[1] == [Action.STAND]
+    assert after(1.0, Watch(GROUND_RULES), by_hand=True, stuck_for=5.0) == ([("stuck", True)], [])
+
+
+def test_what_is_ordered_stays_in_force_until_its_cause_ends_or_somebody_overrules_it():
+    watch = Watch(GROUND_RULES)
+    after(5.0, watch, charge=0.15)
+    assert watch.in_force(Known()).rule.name == "battery_low"
+    watch.overrule()
+    assert watch.in_force(Known()) is None
+    after(5.0, watch)
+    after(5.0, watch, charge=0.15)
+    assert watch.in_force(Known()).rule.name == "battery_low"
+
+
+def test_every_choice_of_an_action_is_known():
+    choices = set(get_args(Choice))
+    assert choices == set(ACTIONS)

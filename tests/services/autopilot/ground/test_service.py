@@ -5,6 +5,7 @@ import pytest
 from schemas.convert import planar_pose, stamp
 from schemas.messages import (
     ArmRequest,
+    Battery,
     DriveCommand,
     Mission,
     MissionItem,
@@ -18,7 +19,8 @@ from schemas.messages import (
     Vector3,
 )
 from services.autopilot.ground.multiplexer import SOURCES
-from services.autopilot.ground.service import GroundAutopilot, GroundAutopilotParams
+from services.autopilot.ground.params import GroundAutopilotParams
+from services.autopilot.ground.service import GroundAutopilot
 from tests.services.live_params import all_settable_are_read
 from uvf.runtime.vehicle_file import GroundBody, Motor
 
@@ -37,6 +39,7 @@ BODY = GroundBody(
 )
 WAYPOINTS = [MissionItem(position=Vector3(x=1.0)), MissionItem(position=Vector3(x=2.0))]
 NOBODY = dict.fromkeys(("teleop", "mavlink", "gcs", "client", "offboard", "planner", "stop", "pose", "link"))
+NOBODY |= {"imu": [], "ticks": None, "scan": None, "correction": None, "battery": None}
 NOTHING_ASKED = {"arm": [], "set_mode": [], "set_mission": [], "set_current": [], "set_fence": []}
 
 
@@ -228,7 +231,8 @@ def test_a_speed_item_limits_the_mission_but_not_the_person():
 def test_parameters_set_while_running_count():
     bench = Bench(items=WAYPOINTS)
     with all_settable_are_read(bench.service):
-        bench.step(1, pose=(0.0, 0.0))
+        bench.step(170, pose=(0.0, 0.0), battery=Battery(remaining=0.01))
+    bench = Bench(items=WAYPOINTS)
     bench.step(30, pose=(0.5, 0.0))
     assert bench.said["progress"].reached == -1
     bench.service.params = GroundAutopilotParams(acceptance_radius=0.6)

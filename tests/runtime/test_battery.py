@@ -4,8 +4,8 @@ from math import sqrt
 
 import pytest
 
-from services.sim_air.battery import Charge, lasts
 from uvf.runtime.air_file import BatteryPack
+from uvf.runtime.battery import Charge, lasts
 
 IDEAL = BatteryPack(energy=1000.0, full=50.0, empty=40.0)
 REAL = BatteryPack(energy=2.6e6, full=50.4, empty=42.0, resistance=0.06, rated=44.4)

@@ -1,4 +1,4 @@
-"""An aircraft's battery: charge, voltage under load, and what its voltage leaves of the throttle."""
+"""A vehicle's battery: charge, voltage under load, and what its voltage leaves of the throttle."""
 
 import math
 

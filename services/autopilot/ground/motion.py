@@ -1,0 +1,116 @@
+"""Whether a ground vehicle moves as its wheels are told to, and whether it stands upright: by encoders, pose and accelerometer."""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from schemas.messages import Imu, WheelTicks
+from services.autopilot.ground.fence import Place
+from uvf.maths.filters import LowPass
+from uvf.maths.kinematics import WheelSpeeds
+from uvf.maths.rotations import from_euler, matrix
+
+ASKED = 0.03  # m/s of a wheel, from which on it is asked to turn
+TURNS = 0.2  # of what is asked for; less is held fast
+SLIP = 0.35  # of the wheels' way, from which on they turn in vain; the map leads the pose back by as much
+LAG, POSE_LAG = 0.4, 1.0  # s
+WELL = 1.0  # s of moving as asked, after which it is stuck no more
+TILT_TIME = 0.3  # s
+JUMP = 0.5  # m, of a pose that was set anew
+
+
+class Wheels:
+    """Speeds by the ticks [m/s]."""
+
+    def __init__(self, radius: float) -> None:
+        """radius: m."""
+        self.left, self.right = LowPass(LAG), LowPass(LAG)
+        self.travelled = 0.0
+        """m, by the one that went further, since the start."""
+        self._radius = radius
+        self._last: WheelTicks | None = None
+
+    def step(self, ticks: WheelTicks | None) -> None:
+        last = self._last
+        if ticks is None or (last is not None and ticks.timestamp == last.timestamp):
+            return
+        self._last = ticks
+        if last is None:
+            return
+        dt = (ticks.timestamp.ToNanoseconds() - last.timestamp.ToNanoseconds()) * 1e-9
+        per_tick = ticks.radians_per_tick * self._radius
+        left, right = (ticks.left - last.left) * per_tick, (ticks.right - last.right) * per_tick
+        if dt > 0 and max(abs(left), abs(right)) < JUMP:
+            self.left.step(left / dt, dt)
+            self.right.step(right / dt, dt)
+            self.travelled += max(abs(left), abs(right))
+
+    @property
+    def speed(self) -> float:
+        """m/s, ahead."""
+        return ((self.left.value or 0.0) + (self.right.value or 0.0)) / 2
+
+
+class Grip:
+    """``stuck_for``: s that wheels have been held fast, or have turned while the vehicle stayed; it stands still while nothing is asked."""
+
+    def __init__(self, wheels: Wheels) -> None:
+        self.stuck_for = 0.0
+        self.how = ""
+        self._wheels = wheels
+        self._ahead = LowPass(POSE_LAG)
+        self._rolls = LowPass(POSE_LAG)
+        self._here: Place | None = None
+        self._well = 0.0
+
+    def forget(self) -> None:
+        """Somebody has it try again."""
+        self.stuck_for = self._well = 0.0
+
+    def step(self, asked: WheelSpeeds, here: Place | None, dt: float) -> None:
+        """asked: m/s at the rims."""
+        slips = self._slips(here, dt)
+        wheels = self._wheels
+        pairs = ((asked.left, wheels.left.value), (asked.right, wheels.right.value))
+        if wheels.left.value is None or max(map(abs, asked)) < ASKED:
+            return
+        fast = any(abs(a) >= ASKED and abs(v or 0.0) < TURNS * abs(a) for a, v in pairs)
+        self.how = "wheels are held fast" if fast else "wheels turn in vain"
+        self._well = 0.0 if fast or slips else self._well + dt
+        if fast or slips:
+            self.stuck_for += dt
+        elif self._well >= WELL:
+            self.stuck_for = 0.0
+
+    def _slips(self, here: Place | None, dt: float) -> bool:
+        """Whether the pose does not come along with the wheels."""
+        before, self._here = self._here, here
+        if here is None or before is None:
+            return False
+        dx, dy = here.x - before.x, here.y - before.y
+        if math.hypot(dx, dy) < JUMP:
+            self._ahead.step((dx * math.cos(here.yaw) + dy * math.sin(here.yaw)) / dt, dt)
+            self._rolls.step(self._wheels.speed, dt)
+        rolls = self._rolls.value or 0.0
+        return abs(rolls) >= ASKED and (rolls - (self._ahead.value or 0.0)) * math.copysign(1.0, rolls) > SLIP * abs(rolls)
+
+
+class Tilt:
+    """The angle [rad] between the body's upward axis and what the accelerometer feels as up."""
+
+    def __init__(self, imu_rpy: tuple[float, float, float]) -> None:
+        self.angle = 0.0
+        self._up = matrix(from_euler(*imu_rpy))[2]
+        self._force = (LowPass(TILT_TIME), LowPass(TILT_TIME), LowPass(TILT_TIME))
+
+    def step(self, imu: Sequence[Imu], dt: float) -> None:
+        for sample in imu:
+            felt = sample.specific_force
+            for part, value in zip(self._force, (felt.x, felt.y, felt.z), strict=True):
+                if math.isfinite(value):
+                    part.step(value, dt / len(imu))
+        force = np.array([part.value or 0.0 for part in self._force])
+        size = float(np.linalg.norm(force))
+        if size > 1.0:
+            self.angle = math.acos(min(max(float(self._up @ force) / size, -1.0), 1.0))

@@ -1,0 +1,31 @@
+"""How long a ground vehicle has been without what it drives by itself by: a scan that changes, a mapping that speaks."""
+
+from schemas.convert import seconds
+from schemas.messages import FrameTransform, LaserScan
+
+MOVED = 0.03  # m of the wheels, after which a scan that is the same to the last bit has frozen
+
+
+class Sight:
+    """``unseen`` and ``unmapped``: s; 0 as long as there never was any."""
+
+    def __init__(self) -> None:
+        self.unseen = self.unmapped = 0.0
+        self._seen: float | None = None
+        self._mapped: float | None = None
+        self._scan: LaserScan | None = None
+        self._travelled = 0.0
+
+    def step(self, t: float, scan: LaserScan | None, correction: FrameTransform | None, travelled: float) -> None:
+        """travelled: m by the wheels since the start."""
+        if scan is not None and (self._scan is None or scan.timestamp != self._scan.timestamp):
+            changed = self._scan is None or scan.ranges != self._scan.ranges
+            if changed or travelled - self._travelled < MOVED:
+                self._seen = seconds(scan.timestamp)
+            if changed:
+                self._travelled = travelled
+            self._scan = scan
+        if correction is not None:
+            self._mapped = seconds(correction.timestamp)
+        self.unseen = t - self._seen if self._seen is not None else 0.0
+        self.unmapped = t - self._mapped if self._mapped is not None else 0.0
