@@ -33,4 +33,4 @@ class FailsafeParams(Params, frozen=True):
     wind_action: Annotated[Choice, Meta(description="when the wind is too strong")] = "return"
     attitude_max: Annotated[float, _meta(0.8, 3.2, "rad", "bank, and 0.7 of it in pitch, that nobody wants")] = 1.3
     attitude_action: Annotated[Choice, Meta(description="when the attitude is beyond it, by hand too")] = "hold"
-    saturation_time: Annotated[float, _meta(0.5, 60, "s", "a surface at its stop until less is asked for")] = 10.0
+    saturation_time: Annotated[float, _meta(0.5, 60, "s", "a surface at its stop until less is asked for")] = 2.0

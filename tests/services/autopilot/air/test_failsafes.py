@@ -32,7 +32,7 @@ IN_BETWEEN = {
     "estimator": {"sigma": 45.0},
     "battery_low": {"charge": 0.16},
     "battery_critical": {"charge": 0.08},
-    "saturation": {"stop": "elevator", "stopped_for": 5.0},
+    "saturation": {"stop": "elevator", "stopped_for": 1.0},
     "attitude": {"roll": 1.2},
     "wind": {"wind": 16.0},
 }
