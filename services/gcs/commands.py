@@ -38,6 +38,8 @@ MODES: Mapping[str, Mapping[str, Any]] = {
     "ground": {"Hold": Mode.MODE_HOLD, "Mission": Mode.MODE_MISSION, "Manual": Mode.MODE_MANUAL},
     "fixed_wing": {"Hold": Mode.MODE_HOLD, "Mission": Mode.MODE_MISSION, "Return": Mode.MODE_RETURN, "Manual": Mode.MODE_MANUAL},
 }
+FOLLOWER: Mapping[str, Any] = {"Hold": Mode.MODE_HOLD, "Follow leader": Mode.MODE_FOLLOW, **MODES["fixed_wing"]}
+"""Of an aircraft that the mission gives a leader."""
 
 
 @dataclass(frozen=True)
@@ -164,6 +166,11 @@ def describe(request: Message) -> str:
         case CancelRequest():
             return "cancel the goal"
     return request.DESCRIPTOR.name
+
+
+def modes_of(vehicle: VehicleModel) -> Mapping[str, Any]:
+    """What can be asked of it, by the words on the buttons."""
+    return FOLLOWER if vehicle.leader else MODES[vehicle.member.file.kind]
 
 
 def mode_name(mode: Any) -> str:
@@ -317,7 +324,7 @@ class Commander:
         vehicle = self._model.chosen
         if vehicle is None:
             return
-        value = MODES[vehicle.member.file.kind].get(mode)
+        value = modes_of(vehicle).get(mode)
         request = ModeRequest(mode=value, source=SOURCE)
         if value is not None and self._is_reachable(t, vehicle, request):
             self.by_hand.leave(t)

@@ -2,8 +2,9 @@
 
 from collections.abc import Callable
 
+from schemas.messages import ModeRequest
 from services.gcs import camera_panel, panels, records, status, wheel
-from services.gcs.commands import MODES, Arm, Cancel, Commander, SetMode, StopAll, mode_name
+from services.gcs.commands import Arm, Cancel, Commander, SetMode, StopAll, describe, modes_of
 from services.gcs.drawing import Button, Picture
 from services.gcs.overview import Overview
 from services.gcs.state import Model
@@ -64,9 +65,10 @@ class Composer:
         ]
         if v is None:
             return shown
-        mode = mode_name(v.status.mode) if v.status is not None else ""
+        mode = v.status.mode if v.status is not None else None
         shown += [
-            Button(f"mode {name}", name, SetMode(name), f"{v.name}: mode {name}", lit=name == mode) for name in MODES[v.member.file.kind]
+            Button(f"mode {name}", name, SetMode(name), f"{v.name}: {describe(ModeRequest(mode=value))}", lit=value == mode)
+            for name, value in modes_of(v).items()
         ]
         armed = v.status is not None and v.status.armed
         word = "Disarm" if armed else "Arm"

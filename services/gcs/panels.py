@@ -5,7 +5,7 @@ from math import atan2, degrees, hypot, pi
 from pathlib import Path
 
 from schemas.convert import wxyz
-from schemas.messages import MissionProgress, NavStatus
+from schemas.messages import MissionProgress, Mode, NavStatus
 from services.gcs.commands import mode_name
 from services.gcs.instruments import Drive, Flight, drive_panel, primary_flight_display
 from services.gcs.state import Model, VehicleModel, link_of
@@ -135,13 +135,17 @@ def orders(v: VehicleModel) -> str:
 
 
 def progress_line(v: VehicleModel) -> str:
-    """The mission or the way to the goal: in words, and as a bar where there is an end to it."""
+    """The mission, the way to the goal or the station behind a leader: in words, and as a bar where there is an end to it."""
     p = v.progress
+    if v.status is not None and v.status.mode == Mode.MODE_FOLLOW:
+        return _progress(f"{escape(v.status.reason)}: {v.status.distance_to_waypoint:.0f} m from its station", None)
     if p is not None and p.state != MissionProgress.NO_MISSION:
         state = MissionProgress.State.Name(p.state).lower().replace("_", " ")
         done = 1.0 if p.state == MissionProgress.COMPLETE else p.current / max(p.total, 1)
         left = f", {v.status.distance_to_waypoint:.0f} m to go" if v.status is not None and p.state == MissionProgress.ACTIVE else ""
         return _progress(f"mission {state}: waypoint {waypoint_text(v)}{left}", done)
+    if v.leader:
+        return _progress(f"does not follow {v.leader}: ask for Follow leader", None)
     if v.flies or (p is not None and v.nav_status is None):
         return _progress("no mission is loaded: upload one with a ground station", None)
     if v.nav_status is None:

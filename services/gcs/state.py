@@ -114,6 +114,12 @@ class VehicleModel:
         return self.member.file.kind == "fixed_wing"
 
     @property
+    def leader(self) -> str:
+        """Whom the mission has it follow; empty for one that follows nobody."""
+        follow = self.member.entry.job.follow
+        return follow.leader if follow is not None else ""
+
+    @property
     def stopped(self) -> bool:
         """It says itself that it heeds STOP ALL."""
         return self.status is not None and self.status.stopped

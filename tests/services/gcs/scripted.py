@@ -31,6 +31,8 @@ from schemas.messages import (
 from uvf.maths.rotations import from_euler
 from uvf.runtime.bus import LocalBus
 from uvf.runtime.clock import NS
+from uvf.runtime.formation_file import Follow
+from uvf.runtime.mission_file import Job
 from uvf.runtime.site import ROOT, load_site
 from uvf.runtime.vehicle_file import load_vehicle
 
@@ -47,6 +49,13 @@ def with_eyes(site, of="milvus_survey"):
     file = site.members[UAV].file
     sensors = load_vehicle(site.vehicles_folder, of).sensors
     object.__setattr__(site.members[UAV], "file", msgspec.structs.replace(file, sensors=sensors))
+    return site
+
+
+def with_leader(site, leader="milvus1"):
+    """The same site, its aircraft with a place behind a leader instead of a mission."""
+    entry = msgspec.structs.replace(site.members[UAV].entry, job=Job(follow=Follow(leader, behind=40.0)))
+    object.__setattr__(site.members[UAV], "entry", entry)
     return site
 
 

@@ -3,10 +3,11 @@
 import pytest
 
 from schemas import topics
+from schemas.messages import Mode
 from services.gcs.commands import Arm, Select, SetMode, StopAll
 from services.gcs.service import GroundStation
 from tests.services.gcs.fakes import Station
-from tests.services.gcs.scripted import UAV
+from tests.services.gcs.scripted import UAV, demo_site, with_leader
 
 
 @pytest.fixture
@@ -36,6 +37,26 @@ def test_each_kind_has_its_own_buttons(station):
     assert list(buttons(station)) == ["STOP ALL", "Release STOP", "Hold", "Mission", "Manual", "Disarm burger"]
     station.press(Select(UAV))
     assert list(buttons(station)) == ["STOP ALL", "Release STOP", "Hold", "Mission", "Return", "Manual", "Disarm milvus"]
+
+
+def test_only_an_aircraft_with_a_leader_can_be_told_to_follow_it(station):
+    led = Station(site=with_leader(demo_site()))
+    led.run(0.5)
+    assert "Follow leader" not in buttons(led)
+    led.press(Select(UAV))
+    assert list(buttons(led)) == ["STOP ALL", "Release STOP", "Hold", "Follow leader", "Mission", "Return", "Manual", "Disarm milvus"]
+    assert buttons(led)["Follow leader"].action == SetMode("Follow leader")
+    station.press(Select(UAV), SetMode("Follow leader"))
+    assert station.script.asked == []
+
+
+def test_follow_leader_asks_for_the_mode_which_is_lit_then():
+    led = Station(site=with_leader(demo_site()))
+    led.run(0.5)
+    led.press(Select(UAV), SetMode("Follow leader"), seconds=0.5)
+    ((name, request),) = led.script.asked
+    assert (name, request.mode) == (UAV, Mode.MODE_FOLLOW)
+    assert [label for label, b in buttons(led).items() if b.lit] == ["Follow leader"]
 
 
 def test_the_present_mode_is_lit(station):
