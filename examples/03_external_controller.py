@@ -9,7 +9,7 @@ from schemas.convert import yaw_of
 from schemas.messages import DriveCommand, Mode, ModeRequest
 
 with uvf.connect() as run:
-    print(run.ask("burger", topics.SET_MODE, ModeRequest(mode=Mode.MODE_MANUAL, source="client")))
+    print(run.ask("burger", topics.SET_MODE, ModeRequest(mode=Mode.MODE_OFFBOARD, source="client")))
     goal = yaw_of(run.read("burger", topics.POSE).pose.orientation) + 1.0
 
     def turned() -> bool:

@@ -19,7 +19,18 @@ from foxglove_schemas_protobuf.Quaternion_pb2 import Quaternion
 from foxglove_schemas_protobuf.Vector3_pb2 import Vector3
 from google.protobuf.timestamp_pb2 import Timestamp
 
-from schemas.v1.command_pb2 import DriveCommand, FlightSetpoint, GimbalCommand, StopCommand, SurfaceCommand, WheelCommand
+from schemas.v1.command_pb2 import (
+    AttitudeSetpoint,
+    CircleSetpoint,
+    CourseSetpoint,
+    DriveCommand,
+    FlightSetpoint,
+    GimbalCommand,
+    LineSetpoint,
+    StopCommand,
+    SurfaceCommand,
+    WheelCommand,
+)
 from schemas.v1.fence_pb2 import Fence, FenceRequest, FenceZone
 from schemas.v1.link_pb2 import Link
 from schemas.v1.mission_pb2 import (
@@ -51,14 +62,17 @@ from schemas.v1.vehicle_pb2 import (
 __all__ = [
     "AirData",
     "ArmRequest",
+    "AttitudeSetpoint",
     "Battery",
     "CameraCalibration",
     "CancelRequest",
+    "CircleSetpoint",
     "Clock",
     "ClockRequest",
     "Color",
     "CompressedImage",
     "Contact",
+    "CourseSetpoint",
     "Done",
     "DriveCommand",
     "Event",
@@ -81,6 +95,7 @@ __all__ = [
     "KeyValuePair",
     "Kind",
     "LaserScan",
+    "LineSetpoint",
     "Link",
     "Mission",
     "MissionItem",

@@ -174,6 +174,7 @@ def test_examples_run(system):
         ("03_external_controller", "turned"),
         ("04_frames", "nearest thing at (2.0"),
         ("05_surfaces", "flown by client"),
+        ("06_setpoints", "mode MODE_OFFBOARD: course"),
     ):
         command = [sys.executable, f"examples/{number}.py"]
         done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, env=system.environment, timeout=90, check=False)

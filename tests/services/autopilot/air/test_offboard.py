@@ -5,8 +5,7 @@ import math
 import pytest
 
 from schemas.convert import stamp
-from schemas.messages import FlightSetpoint, Mode, ModeRequest
-from schemas.v1.command_pb2 import AttitudeSetpoint, CircleSetpoint, CourseSetpoint, LineSetpoint
+from schemas.messages import AttitudeSetpoint, CircleSetpoint, CourseSetpoint, FlightSetpoint, LineSetpoint, Mode, ModeRequest
 from services.autopilot.air.offboard import Offboard, fresh
 from services.autopilot.air.wishes import Senses
 from tests.services.autopilot.air.sensing import Bench

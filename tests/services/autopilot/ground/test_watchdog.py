@@ -1,4 +1,4 @@
-"""A teleoperator falls silent: multiplexer, ramp, motors and physics bring the vehicle to a stand."""
+"""A teleoperator or a program falls silent: multiplexer, ramp, motors and physics bring the vehicle to a stand."""
 
 import numpy as np
 import pytest
@@ -24,14 +24,23 @@ class Operator(Service):
     """Takes over, drives straight on, and dies."""
 
     name = "operator"
+    mode = Mode.MODE_MANUAL
     hz = 20.0
     outputs = {"drive": topics.DRIVE.by("teleop")}
     calls = {"mode": topics.SET_MODE, "arm": topics.ARM}
 
     def step(self, t, mode, arm):
-        asks = {"mode": [ModeRequest(mode=Mode.MODE_MANUAL)], "arm": [ArmRequest(arm=True)]} if t < 0.06 else {}
+        asks = {"mode": [ModeRequest(mode=self.mode)], "arm": [ArmRequest(arm=True)]} if t < 0.06 else {}
         drive = {"drive": DriveCommand(timestamp=stamp(t), linear=SPEED)} if t <= SILENT_FROM else {}
         return asks | drive
+
+
+class Program(Operator):
+    """The same from outside, in mode Offboard."""
+
+    name = "program"
+    mode = Mode.MODE_OFFBOARD
+    outputs = {"drive": topics.DRIVE.by("offboard")}
 
 
 class Page(Service):
@@ -45,10 +54,10 @@ class Page(Service):
         return {"drive": DriveCommand(timestamp=stamp(t), angular=0.5)}
 
 
-def ride(folder, *others):
+def ride(folder, *drivers):
     """(times [s], speeds [m/s], turn rates [rad/s]) of the truth, and the status messages."""
     site = site_with(folder, {"burger": START})
-    commanders = [Host(service, service, "burger") for service in (Operator, *others)]
+    commanders = [Host(service, service, "burger") for service in drivers]
     run = Lockstep([*build_simulator(site), *hosts(site), *commanders])
     truth, status = [], []
     for topic, kept in ((topics.TRUTH, truth), (topics.STATUS, status)):
@@ -61,7 +70,7 @@ def ride(folder, *others):
 
 @pytest.fixture(scope="module")
 def alone(tmp_path_factory):
-    return ride(tmp_path_factory.mktemp("alone"))
+    return ride(tmp_path_factory.mktemp("alone"), Operator)
 
 
 def test_while_it_commands_the_vehicle_drives(alone):
@@ -85,8 +94,17 @@ def test_the_reason_is_told(alone):
 
 
 def test_teleop_comes_before_the_others_and_they_only_follow_when_it_is_silent(tmp_path):
-    (t, speed, turn), status = ride(tmp_path, Page)
+    (t, speed, turn), status = ride(tmp_path, Operator, Page)
     assert abs(turn[(t > 1.0) & (t < SILENT_FROM)]).max() < 0.05
     assert turn[t > 3.5] == pytest.approx(0.5, abs=0.05)
     assert speed[t > 3.5].max() < 0.02
     assert status[-1].command_source == "gcs"
+
+
+def test_a_program_drives_in_offboard_until_it_is_silent_then_it_stands_and_holds(tmp_path):
+    (t, speed, _), status = ride(tmp_path, Program)
+    assert speed[(t > 1.0) & (t < SILENT_FROM)] == pytest.approx(SPEED, rel=0.05)
+    assert speed[t > SILENT_FROM + COMMAND_MAX_AGE + SPEED / BRAKE + 0.15].max() < 0.005
+    told = {round(seconds(m.timestamp), 1): m for m in status}
+    assert (told[1.9].mode, told[1.9].command_source) == (Mode.MODE_OFFBOARD, "offboard")
+    assert (told[2.9].mode, told[3.9].mode) == (Mode.MODE_OFFBOARD, Mode.MODE_HOLD)
