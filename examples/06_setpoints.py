@@ -22,8 +22,11 @@ with uvf.connect() as run:
         off = math.remainder(math.atan2(nav.velocity.x, nav.velocity.y) - wanted.course, math.tau)
         return abs(off) < 0.05 and abs(nav.position.z - wanted.altitude) < 1.0 and abs(nav.airspeed - wanted.airspeed) < 0.5
 
-    there()  # the first setpoint is there before the mode is asked for
-    print(run.ask("milvus", topics.SET_MODE, ModeRequest(mode=Mode.MODE_OFFBOARD, source="client")))
+    def taken() -> bool:
+        there()  # the mode is refused until setpoints have come
+        return run.ask("milvus", topics.SET_MODE, ModeRequest(mode=Mode.MODE_OFFBOARD, source="client")).accepted
+
+    run.wait(taken, timeout=20.0, what="Offboard is refused")
     run.wait(there, timeout=60.0, what="has not turned about and climbed")
     nav, status = run.read("milvus", topics.NAV_STATE), run.read("milvus", topics.STATUS)
     course = math.degrees(math.atan2(nav.velocity.x, nav.velocity.y)) % 360
