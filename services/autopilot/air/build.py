@@ -9,6 +9,7 @@ from services.autopilot.air import flyable, intake
 from services.autopilot.air.ekf import datasheet
 from services.autopilot.air.estimators import Instruments
 from services.autopilot.air.fence_plan import fence_fit, mission_fault
+from services.autopilot.air.leading import reserved
 from services.autopilot.air.params import AirParams
 from services.autopilot.air.route import Place
 from services.autopilot.air.service import AutopilotAir, Ship
@@ -35,7 +36,9 @@ def _host(site: Site, member: Member) -> Host:
     origin = site.world.origin
     tangent = LocalTangent.from_degrees(origin.latitude, origin.longitude, origin.altitude)
     items = [item_from_file(w) for w in member.entry.job.mission]
+    leads = any(m.entry.job.follow is not None and m.entry.job.follow.leader == member.name for m in site.members.values())
     params = member.params(AutopilotAir.name, AirParams)
+    params = reserved(params) if leads else params
     if why := _fault(items, params):
         raise BadInput(f"{site.mission_path}: {member.name}: job: mission: {why}")
     start, land = member.entry.start, relief(site.world)
@@ -52,6 +55,7 @@ def _host(site: Site, member: Member) -> Host:
         altimeter=_altimeter(member),
         servos=_servos(member),
         starts_armed=member.entry.job.armed,
+        leads=leads,
         fence=fence_message(member.entry.fence, f"{site.mission_path}: {member.name}: fence"),
     )
     if why := _fence_fault(ship, Place(start.y, start.x, start.z), params):

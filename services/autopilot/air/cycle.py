@@ -65,9 +65,14 @@ class Cycle:
     @cached_property
     def slowest(self) -> float:
         """m/s, the lowest airspeed to ask for with the load of now."""
+        return max(self.params.min_airspeed, self.stalled)
+
+    @cached_property
+    def stalled(self) -> float:
+        """m/s, true airspeed at which the load of now takes ``alpha_max``."""
         params = self.params
-        stalled = math.sqrt(params.alpha_per_load * self.load * GRAVITY / (params.alpha_max - params.alpha_zero_lift))
-        return max(params.min_airspeed, stalled * self.speed / self.eas)
+        eas = math.sqrt(params.alpha_per_load * self.load * GRAVITY / (params.alpha_max - params.alpha_zero_lift))
+        return eas * self.speed / self.eas
 
     @cached_property
     def highest_pitch(self) -> float:

@@ -68,7 +68,7 @@ class AirParams(FailsafeParams, frozen=True):
     pitch_limit: Annotated[float, _meta(0.1, 1, "rad", "largest pitch commanded, up and down")] = 0.45
 
     # following a leader
-    follow_p: Annotated[float, _meta(0, 2, "1/s", "speed per distance behind the station")] = 0.25
+    follow_p: Annotated[float, _meta(0, 2, "1/s", "speed per distance behind the station")] = 0.4
     follow_i: Annotated[float, _meta(0, 0.5, "1/s^2", "speed per integrated distance behind the station")] = 0.01
     follow_sep: Annotated[float, _meta(2, 500, "m", "least distance from another aircraft of the formation")] = 10.0
 

@@ -14,12 +14,13 @@ from services.autopilot.air.formation import Formation, Trailing
 from services.autopilot.air.guidance import Aim, turn_radius
 from services.autopilot.air.helm import Helm
 from services.autopilot.air.landing import Landing
+from services.autopilot.air.leading import Steadied
 from services.autopilot.air.mission_flight import MissionFlight
 from services.autopilot.air.modes import TABLE, FlightMode, Need, Situation, refusal
 from services.autopilot.air.navigator import Navigator
 from services.autopilot.air.offboard import OLDEST, Offboard
 from services.autopilot.air.params import AirParams
-from services.autopilot.air.paths import Circling
+from services.autopilot.air.paths import Circling, Following
 from services.autopilot.air.plan import Item
 from services.autopilot.air.route import Circle, Level, Place
 from services.autopilot.air.servos import SERVOS, Servos
@@ -67,6 +68,8 @@ class Pilot:
         self.home: Place | None = None
         self.senses = Senses()
         self.formation: Formation | None = None
+        self.leads: Steadied | None = None
+        """Of an aircraft that others follow."""
         self._stick = Stick()
         self._servos = servos
         self.fence = FenceGuard()
@@ -104,8 +107,11 @@ class Pilot:
     @property
     def landing(self) -> Landing | None:
         """The landing that is being flown."""
-        part = self._phase.part if isinstance(self._phase, MissionFlight) else self._phase
-        return part if isinstance(part, Landing) else None
+        return self._part if isinstance(self._part, Landing) else None
+
+    @property
+    def _part(self) -> Phase | None:
+        return self._phase.part if isinstance(self._phase, MissionFlight) else self._phase
 
     @property
     def is_blind(self) -> bool:
@@ -197,6 +203,8 @@ class Pilot:
         return Circling(self._new_circle(now, params))
 
     def _flown(self, wish: Wish, now: Estimate, params: AirParams, dt: float) -> Flown:
+        if self.leads is not None and isinstance(self._part, Circling | Following):
+            wish = self.leads.step(wish, now, params, dt)
         asked = wish.asked
         aim = asked.aim if isinstance(asked, Track) else self._straight_on(now, params)
         height = asked.height if isinstance(asked, Track | Wanted) else None

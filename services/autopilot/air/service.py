@@ -40,6 +40,7 @@ from services.autopilot.air.fence_plan import Remembered, mission_fault, place_f
 from services.autopilot.air.flyable import advice
 from services.autopilot.air.journal import Journal
 from services.autopilot.air.landed import LandDetector
+from services.autopilot.air.leading import Steadied
 from services.autopilot.air.over_ground import OverGround
 from services.autopilot.air.params import AirParams
 from services.autopilot.air.pilot import Flown, Pilot
@@ -73,6 +74,8 @@ class Ship:
     """Frame of the range finder that looks down."""
     starts_armed: bool = False
     fence: Fence = field(default_factory=Fence)
+    leads: bool = False
+    """Others follow it."""
 
 
 class AutopilotAir(Service):
@@ -133,6 +136,7 @@ class AutopilotAir(Service):
         self._bounds_told = False
         self._armed = ship.starts_in_air or ship.starts_armed
         self._pilot = Pilot(intake.items(ship.items), ship.ground, ship.strips, ship.servos)
+        self._pilot.leads = Steadied() if ship.leads else None
         self._over_ground = OverGround(ship.altimeter)
         self._within = Remembered()
         self._safety = Safety(self._pilot, ship.servos)

@@ -1,24 +1,25 @@
 """Keeps an aircraft at its station behind a leader: along the leader's trail, some metres aside of it and above it."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from services.autopilot.air.cycle import clip
+from services.autopilot.air.cycle import Cycle, clip
 from services.autopilot.air.guidance import Aim, Point
 from services.autopilot.air.params import AirParams
 from services.autopilot.air.state import Estimate
 from services.autopilot.air.trail import Spot, Trail
-from uvf.maths.filters import Integral, LowPass
+from uvf.maths.filters import Integral
+from uvf.maths.geodesy import GRAVITY
 
 STRAYED = 100.0  # m, from the trail: any spot of it may be the nearest one
 TRIM_LIMIT = 2.0  # m/s
 CATCHING_UP = 5.0  # m/s, faster or slower than the leader
-GUST_TIME = 0.7  # s
 HASTE = 1.2  # more airspeed asked for per speed that is wanting over ground: the loops behind it take a second or two
 TRIMS_WITHIN = 5.0  # m
 SIDE_ACCELERATION = 1.2  # m/s^2, at most, for an offset to swing round
 SIDE_TIME = 1.5  # s
-SLOW_TURN = 0.88  # of the airspeed of cruise, below which no steep bank is flown
+SEEN_AHEAD = (0.0, 0.75, 1.5)  # s: a turn wants its airspeed before it begins
+SLOW_MARGIN = 1.06  # of the airspeed with which the wing can just carry the turn
 SIDE_SHARE = 0.5  # of the speeds that there are to spare, for an offset to swing round
 
 
@@ -76,10 +77,19 @@ class Boom:
         self._direction += self._rate * dt
 
 
-def _slowest(now: Estimate, params: AirParams) -> float:
-    """m/s, with which the wing carries the aircraft in its bank; near that of cruise a leader turns as steeply."""
-    load = 1 / math.cos(clip(now.roll, params.bank_limit))
-    return max(params.min_airspeed, min(params.min_airspeed * math.sqrt(load), SLOW_TURN * params.trim_airspeed))
+def _slowest(trail: Trail, spot: Spot, now: Estimate, params: AirParams) -> float:
+    """m/s through the air, with which the wing carries the turns of the trail from ``spot`` on, at the bank that they need this fast."""
+    sharpest = max(abs(trail.at(spot.t + ahead).curvature) for ahead in SEEN_AHEAD)
+    bank = min(math.atan(sharpest * now.ground_speed**2 / GRAVITY), params.bank_limit)
+    return max(params.min_airspeed, SLOW_MARGIN * Cycle(replace(now, roll=bank), params, 0.0).stalled)
+
+
+def _airspeed(wanted: Point, now: Estimate) -> float:
+    """m/s, that gives a velocity over ground [m/s] in the wind and in the gust that the aircraft is in."""
+    v_north, v_east = now.ground_speed * math.cos(now.course), now.ground_speed * math.sin(now.course)
+    gust = now.airspeed - math.hypot(v_north - now.wind_north, v_east - now.wind_east)
+    haste = HASTE * (math.hypot(*wanted) - now.ground_speed)
+    return math.hypot(wanted[0] - now.wind_north, wanted[1] - now.wind_east) + gust + haste
 
 
 class StationKeeping:
@@ -89,7 +99,6 @@ class StationKeeping:
         self.station = station
         self._boom = Boom(station.right)
         self._trim = Integral(TRIM_LIMIT)
-        self._gust = LowPass(GUST_TIME)
         self._offset: Point = (0.0, 0.0)
         self._spot: Spot | None = None
 
@@ -100,9 +109,10 @@ class StationKeeping:
         c, s = math.cos(spot.course), math.sin(spot.course)
         along, aside = moves[0] * c + moves[1] * s, moves[1] * c - moves[0] * s
         late = (t - self.station.behind / trail.pace - spot.t) * spot.speed
-        speed = spot.speed + along + self._catching_up(late, params, dt)
-        airspeed = self._airspeed((speed * c - aside * s, speed * s + aside * c), now, dt)
-        airspeed = min(max(airspeed, _slowest(now, params)), params.max_airspeed)
+        moving = spot.speed * self.station.behind * trail.pace_rate / trail.pace**2
+        speed = spot.speed + moving + along + self._catching_up(late, params, dt)
+        airspeed = _airspeed((speed * c - aside * s, speed * s + aside * c), now)
+        airspeed = min(max(airspeed, _slowest(trail, spot, now, params)), params.max_airspeed)
         height = spot.height + self.station.above
         aim = self._aim(trail, spot, (along, aside), now, params)
         return Steered(aim, height, spot.climb, airspeed, late, math.hypot(late, aim.error, height - now.height))
@@ -120,13 +130,6 @@ class StationKeeping:
         if abs(late) < TRIMS_WITHIN:
             self._trim.step(params.follow_i * late, dt)
         return clip(params.follow_p * late, CATCHING_UP) + self._trim.value
-
-    def _airspeed(self, wanted: Point, now: Estimate, dt: float) -> float:
-        """m/s, that gives a velocity over ground [m/s] in the wind and in the gust that the aircraft is in."""
-        v_north, v_east = now.ground_speed * math.cos(now.course), now.ground_speed * math.sin(now.course)
-        gust = self._gust.step(now.airspeed - math.hypot(v_north - now.wind_north, v_east - now.wind_east), dt)
-        haste = HASTE * (math.hypot(*wanted) - now.ground_speed)
-        return math.hypot(wanted[0] - now.wind_north, wanted[1] - now.wind_east) + gust + haste
 
     def _aim(self, trail: Trail, spot: Spot, moves: Point, now: Estimate, params: AirParams) -> Aim:
         here = (now.north - self._offset[0] - spot.north, now.east - self._offset[1] - spot.east)

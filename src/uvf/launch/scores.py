@@ -104,6 +104,10 @@ class Scorer:
         if track is not None:
             track.heard(sample)
 
+    def motions(self) -> dict[str, Floats]:
+        """``Track.motion`` of each aircraft."""
+        return {name: track.motion() for name, track in self._tracks.items() if track.flies}
+
     def judge(self) -> list["Verdict"]:
         """One verdict for each criterion of the mission."""
         return [Verdict(c, MEASURES[c.measure](self._tracks[c.vehicle])) for c in self._site.mission.criteria]

@@ -11,7 +11,7 @@ from services.autopilot.air.commands import Wanted
 from services.autopilot.air.formation import Formation, Trailing
 from services.autopilot.air.modes import FlightMode
 from services.autopilot.air.pilot import Pilot
-from services.autopilot.air.station import Boom, Station, StationKeeping
+from services.autopilot.air.station import Boom, Station, StationKeeping, _slowest
 from services.autopilot.air.trail import Report, Spot, Trail
 from tests.services.autopilot.air.states import PARAMS, Kinematic, cruising
 
@@ -29,7 +29,7 @@ class Pair:
         self.leader, self.heading = np.zeros(2), 0.0
         self.trail, self.keeping = Trail(), StationKeeping(station)
         self.follower = Kinematic(-station.behind * (25 + wind[0]) / 25 - late, station.right, wind=wind)
-        self.airspeed = 25.0
+        self.airspeed = self.pace = 25.0
         self.seen = []
 
     def fly(self, seconds, rate=None):
@@ -44,7 +44,7 @@ class Pair:
 
     def _lead(self):
         v = 25.0 * np.array((math.cos(self.heading), math.sin(self.heading))) + self.wind
-        self.trail.add(Report(self.t, *self.leader, 60.0, *v, 0.0, 25.0))
+        self.trail.add(Report(self.t, *self.leader, 60.0, *v, 0.0, self.pace))
         self.leader, self.heading, self.t = self.leader + v * DT, self.heading + self.rate * DT, self.t + DT
 
     def _estimate(self):
@@ -112,6 +112,24 @@ def test_an_offset_swings_round_no_faster_than_airspeed_allows_and_arrives():
     assert offsets[-1] == pytest.approx((-arm, 0.0), abs=0.3)
     assert max(speeds) <= spare + 1e-6
     assert np.hypot(*np.array(offsets).T) == pytest.approx(np.full(1500, arm))
+
+
+def test_in_a_turn_it_flies_no_slower_than_the_wing_carries_it():
+    trails = [Pair(Station(40.0), rate=rate).fly(10.0).trail for rate in (0.0, 0.5)]
+    slow = cruising(airspeed=20.0, ground_speed=20.0)
+    straight, turning = (_slowest(trail, trail.at(6.0), slow, PARAMS) for trail in trails)
+    assert straight == PARAMS.min_airspeed
+    load = 1 / math.cos(math.atan(0.5 / 25.0 * 20.0**2 / 9.80665))
+    stalls = math.sqrt(PARAMS.alpha_per_load * load * 9.80665 / (PARAMS.alpha_max - PARAMS.alpha_zero_lift))
+    assert 1.05 * stalls < turning < 1.1 * stalls
+
+
+def test_a_station_that_moves_with_the_pace_is_kept():
+    """A leader in gusts: the time that its followers stay behind changes by and by."""
+    pair = Pair(Station(80.0)).fly(30.0)
+    pair.pace = 28.0
+    settled = pair.fly(15.0).since(33.0)
+    assert np.abs(settled[:, 1]).max() < 0.5
 
 
 def state(t, north, east=0.0, height=60.0, sigma=0.3):

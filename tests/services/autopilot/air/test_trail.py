@@ -86,3 +86,19 @@ def test_broken_and_old_reports_tell_nothing(bad):
     trail = straight(seconds=4.0)
     trail.add(bad)
     assert trail.newest.t == pytest.approx(4.0)
+
+
+def gusty(seconds):
+    """North, through gusts of 5 s."""
+    trail, air = Trail(), SPEED + 2 * np.sin(2 * math.pi * np.arange(round(seconds * 50) + 1) / 250)
+    for i, airspeed in enumerate(air):
+        trail.add(told(i / 50, SPEED * i / 50, 0.0, 0.0, airspeed=airspeed))
+    return trail, air
+
+
+@pytest.mark.parametrize(("seconds", "over"), [(12.0, 12.0), (47.0, 20.0)])
+def test_the_pace_is_the_mean_airspeed_and_its_rate_tells_how_that_changes(seconds, over):
+    trail, air = gusty(seconds)
+    assert trail.pace == pytest.approx(air[-round(50 * over) :].mean(), abs=0.02)
+    (earlier, _), (later, _) = gusty(seconds - 0.1), gusty(seconds + 0.1)
+    assert trail.pace_rate == pytest.approx((later.pace - earlier.pace) / 0.2, abs=0.01)
