@@ -1,7 +1,8 @@
 """The mission ``dubins`` flown in lockstep, judged where its paths change from one curvature to another.
 
 A switch lasts from where the curvature begins to change to where it is that of the next segment; ``overshoot`` is the largest distance
-of the true aircraft from the planned way from there until two seconds after it.
+of the true aircraft from the planned way from there until two seconds after it, ``control`` the same of where it believes to be: the
+rest is the estimate's error.
 ``python -m benchmarks.dubins docs`` draws docs/dubins.png.
 """
 
@@ -36,7 +37,7 @@ CURVED = 1e-5  # 1/m^2, change of curvature of a switch
 
 @dataclass(frozen=True)
 class Flown:
-    """One curve: the way planned, and (k, 5) t [s], north, east [m], m along it and m beside it of the true aircraft."""
+    """One curve: the way planned, and (k, 6) t [s], north, east [m], m along it and beside it of the true aircraft, and of its estimate."""
 
     item: int
     way: Way
@@ -59,8 +60,11 @@ class Probe:
         if isinstance(piece, Curve) and navigator.index is not None:
             if not self._curves or self._curves[-1][1] is not piece:
                 self._curves.append((navigator.index, piece, []))
-            s, aside, _ = piece.way.nearest((north, east), (piece.s - 20.0, piece.s + 40.0))
-            self._curves[-1][2].append((t, north, east, s, aside))
+            about, now = (piece.s - 20.0, piece.s + 40.0), self._autopilot._now
+            assert now is not None
+            s, aside, _ = piece.way.nearest((north, east), about)
+            _, believed, _ = piece.way.nearest((now.north, now.east), about)
+            self._curves[-1][2].append((t, north, east, s, aside, believed))
         return not navigator.finished
 
     @property
@@ -80,8 +84,8 @@ def fly() -> tuple[list[Flown], tuple[Item, ...]]:
     return probe.flown(), probe.items
 
 
-def switches(flown: Flown) -> Iterator[tuple[str, float]]:
-    """From which to which curvature (L, R, S; what is not reached before the next switch counts), and the overshoot [m]."""
+def switches(flown: Flown) -> Iterator[tuple[str, float, float]]:
+    """From which to which curvature (L, R, S; what is not reached before the next switch counts), the overshoot and that of control [m]."""
     way, rows = flown.way, flown.rows
     changes = np.abs(np.diff(way.curvature) / np.diff(way.s)) > CURVED
     edges = np.flatnonzero(np.diff(np.concatenate(((False,), changes, (False,))).astype(int)))
@@ -91,7 +95,7 @@ def switches(flown: Flown) -> Iterator[tuple[str, float]]:
             continue
         last = rows[inside][-1, 0] + AFTER
         window = (rows[:, 0] >= rows[inside][0, 0]) & (rows[:, 0] <= last)
-        yield f"{_letter(way.curvature[begin])}{_letter(way.curvature[end])}", float(np.abs(rows[window, 4]).max())
+        yield f"{_letter(way.curvature[begin])}{_letter(way.curvature[end])}", *np.abs(rows[window, 4:]).max(axis=0).tolist()
 
 
 def _letter(curvature: float) -> str:
@@ -103,9 +107,12 @@ def figures(flown: list[Flown]) -> Figures:
     table: Figures = {}
     for f in flown:
         found = list(switches(f))
-        name = f"to item {f.item}: {' '.join(kind for kind, _ in found) or 'straight'}"
-        worst = {f"switch {k + 1}, m": size for k, (_, size) in enumerate(found)}
-        table[name] = {"length, m": f.way.length, "rms, m": float(np.sqrt(np.mean(f.rows[:, 4] ** 2))), **worst}
+        name = f"to item {f.item}: {' '.join(kind for kind, _, _ in found) or 'straight'}"
+        worst: dict[str, float] = {}
+        for k, (_, size, control) in enumerate(found, 1):
+            worst |= {f"switch {k}, m": size, f"control {k}, m": control}
+        true, believed = np.sqrt(np.mean(f.rows[:, 4:] ** 2, axis=0))
+        table[name] = {"length, m": f.way.length, "rms, m": float(true), "control rms, m": float(believed), **worst}
     return table
 
 
@@ -115,8 +122,9 @@ def draw(flown: list[Flown], items: tuple[Item, ...], path: Path) -> None:
     _map(above, flown, items)
     for f in flown:
         beside.plot(f.rows[:, 0], f.rows[:, 4], linewidth=1)
+        beside.plot(f.rows[:, 0], f.rows[:, 5], "0.6", linewidth=0.7)
         beside.axvline(f.rows[0, 0], color="0.8", linewidth=0.8)
-    beside.set(title="beside the path (right positive)", xlabel="s", ylabel="m")
+    beside.set(title="beside the path; grey: as estimated", xlabel="s", ylabel="m")
     beside.grid(alpha=0.3)
     figure.savefig(path, dpi=80)
 
