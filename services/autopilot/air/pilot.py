@@ -27,6 +27,7 @@ from services.autopilot.air.servos import SERVOS, Servos
 from services.autopilot.air.state import Estimate
 from services.autopilot.air.stick_modes import STICK_MODES
 from services.autopilot.air.strip import Strip
+from services.autopilot.air.takeoff import TakeOff
 from services.autopilot.air.wishes import Phase, Senses, Track, Wish
 
 BACK = "GNSS back: holds until a mode is asked for"
@@ -126,6 +127,11 @@ class Pilot:
     def goes_down(self) -> bool:
         """It lands, with a position or without one."""
         return self.landing is not None or isinstance(self._phase, Descent)
+
+    def starts(self, now: Estimate) -> bool:
+        """Its take-off has not come so far that another mode could follow."""
+        part = self._phase.part if isinstance(self._phase, MissionFlight) else self._phase
+        return isinstance(part, TakeOff) and part.is_low(now)
 
     @property
     def station(self) -> float | None:

@@ -52,7 +52,7 @@ class Safety:
         self._saturation = Saturation(servos)
         self._heard: float | None = None
         self._lost_for = 0.0  # s
-        self._was_blind = False
+        self._was_blind = self._waits = False
         self._silence = 0.0
 
     def hear(self, t: float, link: Link | None, battery: Battery | None) -> None:
@@ -91,11 +91,14 @@ class Safety:
             self._lost_for += dt
         known = self._known(seen, params)
         changes, order = self.watch.step(known, dt)
-        if self._pilot.is_blind != self._was_blind:
+        starts = self._pilot.starts(seen.now)
+        if self._pilot.is_blind != self._was_blind or (self._waits and not starts):
             # What was ordered may have been given up for want of a position, or may be carried out by now.
-            self._was_blind = self._pilot.is_blind
+            self._was_blind, self._waits = self._pilot.is_blind, False
             order = order or self.watch.in_force(known)
-        if order is not None and seen.airborne:
+        if order is not None and starts:
+            self._waits = True
+        elif order is not None and seen.airborne:
             self._obey(order, seen.now, params)
         return [_event(t, change) for change in changes]
 

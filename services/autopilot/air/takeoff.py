@@ -47,6 +47,10 @@ class TakeOff(Phase):
         self._pushed = 0.0
         self._why = ""
 
+    def is_low(self, now: Estimate) -> bool:
+        """On its wheels, or so low that the wings have to stay level: no other mode can follow."""
+        return self._stage is not Stage.CLIMB or self._rise(now) < STRAIGHT
+
     def step(self, now: Estimate, params: AirParams, dt: float) -> Wish:
         self._since += dt
         level = self._gyros.step(now, dt)
