@@ -19,6 +19,7 @@ import yaml
 
 from schemas import topics
 from schemas.messages import ArmRequest, Event, Reply
+from services.autopilot.air.guidance import from_line
 from services.autopilot.air.service import AutopilotAir
 from services.autopilot.air.strip import Lane
 from services.sim_air.service import SimAir
@@ -195,9 +196,7 @@ def score(seed: int, wind: tuple[float, float], watch: Watch, crash: str) -> Lan
 
 def _on(lane: Lane, row: Row) -> tuple[float, float]:
     """m beyond the point to touch at, and to the right of the middle."""
-    n, e = row.position[1] - lane.aim.north, row.position[0] - lane.aim.east
-    cn, ce = lane.along
-    return n * cn + e * ce, e * cn - n * ce
+    return from_line(lane.along, (lane.aim.north, lane.aim.east), (row.position[1], row.position[0]))
 
 
 def _flown(seed: int) -> Landed:

@@ -41,7 +41,8 @@ class AttitudeLoops:
         bank = clip(now.roll, FULL_BANK)
         turning = GRAVITY / cycle.speed * math.sin(bank) * math.tan(bank)  # q of a level coordinated turn
         asked = (pitch - now.pitch) / params.pitch_time * math.cos(bank)
-        rate = max(min(asked, _pull(cycle, cycle.load_limit - cycle.load)), -_pull(cycle, params.load_max - 1)) + turning
+        carried = min(cycle.load, now.lift / GRAVITY)  # lift that is lost, as the airspeed falls, is to be won back
+        rate = max(min(asked, _pull(cycle, cycle.load_limit - carried)), -_pull(cycle, params.load_max - 1)) + turning
         error = rate - now.q
         balance = params.elev_zero_alpha + params.elev_per_alpha * cycle.alpha
         moving = math.sqrt(cycle.scale) * params.pitch_ff * rate + cycle.scale * params.pitch_p * error

@@ -75,7 +75,7 @@ def _instruments(site: Site, member: Member) -> Instruments:
 def _servos(member: Member) -> Servos:
     body = member.file.air
     assert body is not None
-    moved = (body.controls.aileron, body.controls.elevator, body.controls.rudder)
+    moved = (body.controls.aileron, body.controls.elevator, body.controls.rudder, body.controls.flap)
     return Servos(*(Servo(surface.limit, surface.rate or body.servo_rate) for surface in moved))
 
 

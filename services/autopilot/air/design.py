@@ -25,6 +25,8 @@ class Airframe:
     pitch_elevator: float
     roll_p: float
     roll_aileron: float
+    lift_flap: float = 0.0
+    pitch_flap: float = 0.0
 
 
 def gains(frame: Airframe, airspeed: float) -> dict[str, float]:
@@ -39,6 +41,7 @@ def gains(frame: Airframe, airspeed: float) -> dict[str, float]:
     return {
         "alpha_zero_lift": -lift_0 / lift_alpha,
         "alpha_per_load": 2 * frame.mass / (RHO0 * frame.wing_area * lift_alpha),
+        "flap_alpha": (frame.lift_flap - frame.lift_elevator * frame.pitch_flap / frame.pitch_elevator) / lift_alpha,
         "elev_zero_alpha": elevator_0,
         "elev_per_alpha": elevator_alpha,
         "roll_ff": -frame.roll_p / frame.roll_aileron * frame.span / (2 * airspeed),

@@ -34,11 +34,16 @@ class Aim:
     limit: float  # rad, course correction far away
 
 
+def from_line(along: Point, origin: Point, position: Point) -> tuple[float, float]:
+    """m ahead of ``origin`` in the direction ``along`` (unit, north and east), and to the right of the line."""
+    north, east = position[0] - origin[0], position[1] - origin[1]
+    return along[0] * north + along[1] * east, along[0] * east - along[1] * north
+
+
 def line_aim(along: Point, origin: Point, position: Point, params: AirParams) -> Aim:
     """The line through ``origin`` in the direction ``along`` (unit, north and east)."""
-    north, east = position[0] - origin[0], position[1] - origin[1]
-    error = -along[1] * north + along[0] * east
-    return Aim(error, math.atan2(along[1], along[0]), 0.0, params.k_path, params.chi_inf)
+    _, right = from_line(along, origin, position)
+    return Aim(right, math.atan2(along[1], along[0]), 0.0, params.k_path, params.chi_inf)
 
 
 def orbit_aim(centre: Point, radius: float, position: Point, params: AirParams) -> Aim:

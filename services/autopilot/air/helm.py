@@ -6,7 +6,7 @@ import msgspec
 
 from services.autopilot.air.commands import Attitude, Surfaces, Wanted
 from services.autopilot.air.control import Control
-from services.autopilot.air.cycle import clip
+from services.autopilot.air.cycle import Cycle, clip
 from services.autopilot.air.fence_guard import FenceGuard, kept
 from services.autopilot.air.guidance import Steering
 from services.autopilot.air.params import AirParams
@@ -23,6 +23,7 @@ class Helm:
 
     def __init__(self, servos: Servos, fence: FenceGuard | None = None) -> None:
         self._fence = fence or FenceGuard()
+        self._servos = servos
         self._control = Control(servos)
         self._steering = Steering()
         self._flap = 0.0
@@ -35,7 +36,18 @@ class Helm:
         if wish.firm:
             params = msgspec.structs.replace(params, climb_p=FIRM_CLIMB * params.climb_p, pitch_time=FIRM_PITCH * params.pitch_time)
         self._flap += min(max(wish.flap - self._flap, -FLAP_RATE * dt), FLAP_RATE * dt)
-        return replace(self._fly(now, asked, params, dt), flap=self._flap, brake=wish.brake)
+        flap = self._lifting(wish.lift, Cycle(now, params, dt))
+        if self._flap > 0:
+            params = msgspec.structs.replace(params, alpha_zero_lift=params.alpha_zero_lift - params.flap_alpha * self._flap)
+        return replace(self._fly(now, asked, params, dt), flap=flap, brake=wish.brake)
+
+    def _lifting(self, lift: float, cycle: Cycle) -> float:
+        """rad of flap that makes so much lift [m/s^2] beside what it makes already."""
+        params = cycle.params
+        if params.flap_alpha == 0:
+            return self._flap
+        moved = lift * params.alpha_per_load / (params.flap_alpha * cycle.eas**2)
+        return min(max(self._flap + moved, 0.0), max(self._servos.flap.limit, self._flap))
 
     def _fly(self, now: Estimate, asked: Track | Wanted | Attitude, params: AirParams, dt: float) -> Surfaces:
         if isinstance(asked, Attitude):

@@ -15,6 +15,7 @@ from services.autopilot.air.params import AirParams
 from services.autopilot.air.route import Circle, Place
 from services.autopilot.air.state import Estimate
 from services.autopilot.air.strip import Lane
+from services.autopilot.air.wheel_height import WheelHeight
 from services.autopilot.air.wheels import Gyros, rolling, rudder_along
 from services.autopilot.air.wishes import Phase, Senses, Track, Wish
 from uvf.maths.geodesy import GRAVITY
@@ -24,18 +25,20 @@ ON_CIRCLE = 5.0  # m of height, with which it may be left
 MOST_TAILWIND = 1.5  # m/s, with which it lands
 ALIGNED = 0.3  # rad, of the course on leaving the circle
 GUST_SHARE, GUST_MOST = 0.4, 0.2  # of the wind, of min_airspeed: what is added to it on the approach
-RANGED_BELOW, RANGED_WITHIN = 20.0, 150.0  # m of height and distance: from here on the range finder sees the strip's level
-RANGE_TIME = 1.0  # s
 COMMITTED = 12.0  # m: below it, without satellites, it is landed by dead reckoning
 GATE = 10.0, 2.0  # m of height, between which the approach has to be a stable one
 TOO_HIGH, TOO_FAST = 3.0, 7.0  # m, m/s
 FLARE_TIME = 3.0  # s
-TOUCH_SINK = 0.3  # m/s
-FLARE_P = 0.8  # 1/s, climb rate per error of height
+LEAD = 0.5  # s, by which the sink asked for is ahead of the path: the climb follows that much later
+TOUCH_SINK = 0.4  # m/s
+FLARE_P = 1.5  # 1/s, climb rate per error of height
 TOUCH_SPEED, SLOWS_BELOW = 0.96, 3.0  # of min_airspeed; m
 DECRAB_BELOW = 0.7  # m
 CRAB_LEFT = 0.1  # rad, that the wheels take
 LOW, LOW_BANK = 3.0, 0.17  # m, rad
+MOST_SINK, SINK_PER_M = 0.6, 0.4  # m/s, 1/s: to come down onto the path of the flare, by the height
+LIFTS_BELOW = 8.0  # m; from here on the flaps make lift at once
+LIFT_P, LIFT_A = 3.0, 1.0  # 1/s, per climb rate that is wanting; per lift that is not felt
 TOUCHED, STUCK = 0.12, 0.15  # m; m/s less sink than asked for
 IDLES_BELOW = 0.5  # m
 TOUCH_TIME, STUCK_TIME = 0.08, 1.0  # s
@@ -59,7 +62,7 @@ class Landing(Phase):
         self.why_around = ""
         self._senses = senses
         self._length = FINAL_TIME * params.min_airspeed
-        self._offset = 0.0  # m, of the height seen by the range finder from the estimated one
+        self._wheels = WheelHeight(self.lane.aim.height)
         self._since = 0.0
         self._gyros = Gyros(now)
         slow = now.airspeed < 0.6 * params.min_airspeed  # started anew while it rolls out
@@ -123,35 +126,37 @@ class Landing(Phase):
         airspeed = self._airspeed(now, params) if near else params.trim_airspeed
         return Wish(Track(circle.aim(now, params), circle.centre.height, 0.0, airspeed), params.land_flap if near else 0.0)
 
-    def _height(self, now: Estimate, params: AirParams, distance: float, dt: float) -> float:
-        """m, of the wheels over the strip; the range finder corrects the estimate once it sees the strip's level."""
-        estimated = now.height - params.gear_height - self.lane.aim.height
-        seen = self._senses.clearance
-        if seen is not None and distance < RANGED_WITHIN and seen < RANGED_BELOW:
-            self._offset += dt / RANGE_TIME * (seen - estimated - self._offset)
-        return estimated + self._offset
-
     def _final(self, now: Estimate, params: AirParams, dt: float) -> Wish:
         distance, right = self.lane.locate(now)
-        height = self._height(now, params, distance, dt)
-        self._low = height < COMMITTED
-        wanted, slope, flares = flare(distance, now.ground_speed, self._slope(params))
+        wheels = self._wheels
+        wheels.step(now, self._senses.clearance, distance, params, dt)
+        self._low = wheels.height < COMMITTED
+        wanted, _, flares = flare(distance, now.ground_speed, self._slope(params))
+        _, slope, _ = flare(distance - LEAD * now.ground_speed, now.ground_speed, self._slope(params))
         fast = self._airspeed(now, params)
-        if why := self._unstable(now, height, height - wanted, right, fast):
+        if why := self._unstable(now, wheels.height, wheels.height - wanted, right, fast):
             self.around(why)
-        climb = -slope * now.ground_speed + (FLARE_P if flares else params.altitude_p) * (wanted - height)
-        aim = line_aim(self.lane.along, self.lane.before(0.0), (now.north, now.east), params)
-        if not flares:
-            bank = LOW_BANK if height < LOW else None
-            return Wish(Track(aim, None, climb, fast, bank_limit=bank), params.land_flap, firm=True)
-        if self._has_touched(now, climb, dt):
+        climb = -slope * now.ground_speed + (FLARE_P if flares else params.altitude_p) * (wanted - wheels.height)
+        if flares:
+            climb = max(climb, -MOST_SINK - SINK_PER_M * max(wheels.height, 0.0))
+        climb += now.climb - wheels.climb  # as the estimate has it
+        if flares and self._has_touched(now, climb, dt):
             self._gyros = Gyros(now)
             self._to(Stage.ROLL)
-        climb = max(climb, -TOUCH_SINK - 0.4 * max(height, 0.0))
-        rudder = self._decrab(now, params, right) if height < DECRAB_BELOW else None
-        throttle = touch_throttle(now, params, climb, fast, height) if height < IDLES_BELOW else None
-        track = Track(aim, None, climb, fast, bank_limit=LOW_BANK, rudder=rudder, throttle=throttle)
-        return Wish(track, params.land_flap, firm=True)
+        lift = self._lift(now, climb) if wheels.height < LIFTS_BELOW else 0.0
+        return Wish(self._down(now, params, climb, fast), params.land_flap, lift=lift, firm=True)
+
+    def _down(self, now: Estimate, params: AirParams, climb: float, airspeed: float) -> Track:
+        """Along the lane; near the ground wings about level, then the nose along the strip and the throttle closing."""
+        height = self._wheels.height
+        aim = line_aim(self.lane.along, self.lane.before(0.0), (now.north, now.east), params)
+        rudder = self._decrab(now) if height < DECRAB_BELOW else None
+        throttle = touch_throttle(now, params, climb, airspeed, height) if height < IDLES_BELOW else None
+        return Track(aim, None, climb, airspeed, LOW_BANK if height < LOW else None, throttle, rudder)
+
+    def _lift(self, now: Estimate, climb: float) -> float:
+        """m/s^2 that are wanting: by the climb, and by the lift that is felt, which tells of a gust before it has moved anything."""
+        return LIFT_P * (climb - now.climb) + LIFT_A * (GRAVITY - self._senses.heave)
 
     def _airspeed(self, now: Estimate, params: AirParams) -> float:
         wind = math.hypot(now.wind_north, now.wind_east)
@@ -170,7 +175,7 @@ class Landing(Phase):
             return f"{abs(right):.1f} m aside"
         return f"{now.airspeed - airspeed:.1f} m/s too fast" if now.airspeed > airspeed + TOO_FAST else ""
 
-    def _decrab(self, now: Estimate, params: AirParams, right: float) -> float:
+    def _decrab(self, now: Estimate) -> float:
         """rad of rudder that turns the nose along the strip but for what the wheels take."""
         off = self.lane.off(now.yaw)
         return rudder_along(now, self.lane.course + clip(off, CRAB_LEFT), 0.0)

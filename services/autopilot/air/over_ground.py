@@ -8,10 +8,11 @@ from schemas.messages import Range
 from services.autopilot.air.sensed import Inertial
 from services.autopilot.air.state import Estimate
 from uvf.maths.filters import LowPass
+from uvf.maths.geodesy import GRAVITY
 
 OLDEST = 0.3  # s
 STEEPEST = 0.7  # rad of bank or pitch, beyond which the beam says nothing of the height
-PUSH_TIME = 0.05  # s
+PUSH_TIME, HEAVE_TIME = 0.05, 0.03  # s
 
 
 class OverGround:
@@ -21,8 +22,11 @@ class OverGround:
         self._frame = frame
         self._reading: Range | None = None
         self._push = LowPass(PUSH_TIME)
+        self._heave = LowPass(HEAVE_TIME)
         self.push = 0.0
         """m/s^2, specific force forwards."""
+        self.heave = GRAVITY
+        """m/s^2, specific force upwards."""
 
     def hear(self, ranges: Sequence[Range], samples: Sequence[Inertial], dt: float) -> None:
         for reading in ranges:
@@ -30,6 +34,7 @@ class OverGround:
                 self._reading = reading
         for sample in samples:
             self.push = self._push.step(sample.force[0], dt / len(samples))
+            self.heave = self._heave.step(-sample.force[2], dt / len(samples))
 
     def clearance(self, t: float, now: Estimate, gear_height: float) -> float | None:
         """m, of the wheels over the ground below at ``t`` [s]; None without a fresh echo or when the beam looks aside."""

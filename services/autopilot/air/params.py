@@ -24,6 +24,7 @@ class AirParams(FailsafeParams, frozen=True):
     alpha_zero_lift: Annotated[float, _meta(-0.3, 0.3, "rad", "angle of attack without lift")] = -0.04
     alpha_per_load: Annotated[float, _meta(0, 2000, "rad m", "rise of the angle of attack per lift acceleration over EAS squared")] = 6.0
     alpha_max: Annotated[float, _meta(0.05, 0.6, "rad", "largest angle of attack flown")] = 0.2
+    flap_alpha: Annotated[float, _meta(0, 1, "", "fall of the angle of attack per flap; 0: flaps make no lift at once")] = 0.0
     elev_zero_alpha: Annotated[float, _meta(-0.5, 0.5, "rad", "elevator that balances zero angle of attack")] = 0.0
     elev_per_alpha: Annotated[float, _meta(-10, 0, "", "elevator that balances a unit of angle of attack")] = -1.0
 

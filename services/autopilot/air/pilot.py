@@ -31,6 +31,7 @@ from services.autopilot.air.takeoff import TakeOff
 from services.autopilot.air.wishes import Phase, Senses, Track, Wish
 
 BACK = "GNSS back: holds until a mode is asked for"
+ROLLS_OUT = "the aircraft is rolling out after its landing"
 
 
 @dataclass(frozen=True, slots=True)
@@ -259,9 +260,12 @@ class Pilot:
         self.mode, self.reason, self._phase = mode, reason, None
         self._stick.take()
 
+    def _refused(self, mode: FlightMode) -> str:
+        return refusal(mode, self._situation) or (ROLLS_OUT if self._rolls_out else "")
+
     def change_mode(self, mode: FlightMode, source: str, reason: str = "") -> str:
         """reason: what the status tells; by default who asked."""
-        if why := refusal(mode, self._situation) or ("the aircraft is rolling out after its landing" if self._rolls_out else ""):
+        if why := self._refused(mode):
             return why
         if mode is FlightMode.MISSION and not self._fresh:
             self._restart()
@@ -295,7 +299,7 @@ class Pilot:
 
     def orbit(self, circle: Circle, airspeed: float, source: str, params: AirParams) -> str:
         """Mode Orbit; a radius or airspeed of 0 is the vehicle's own."""
-        if why := refusal(FlightMode.ORBIT, self._situation) or ("it is rolling out after its landing" if self._rolls_out else ""):
+        if why := self._refused(FlightMode.ORBIT):
             return why
         if not all(map(math.isfinite, (*astuple(circle.centre), circle.radius, airspeed))):
             return "the circle is none: its numbers are not finite"
@@ -314,7 +318,7 @@ class Pilot:
         if self.landing is None:
             return "there is no approach to be given up"
         if self.landing.rolls:
-            return "the aircraft is rolling out after its landing"
+            return ROLLS_OUT
         self.landing.around(f"asked by {source}")
         return ""
 

@@ -31,10 +31,11 @@ class Said(NamedTuple):
 
 
 class Sensing:
-    """``accuracy``: m, of the last fix; ``field``: T, strength of the magnetic field."""
+    """``felt``: by the IMU in this cycle, in the body's axes; ``accuracy``: m, of the last fix; ``field``: T, of the magnetic field."""
 
     def __init__(self, instruments: Instruments, tangent: LocalTangent, kind: Literal["full", "book"], believe: Believe) -> None:
         """kind: of the estimator."""
+        self.felt: list[Inertial] = []
         self.accuracy = 0.0
         self.field = 0.0
         self._estimator = estimator(kind, instruments)
@@ -66,7 +67,7 @@ class Sensing:
             fix = self._left_fix(t, dt)
             if fix is None:
                 return None
-        samples = [self._mount.at_centre(sample, self._period) for sample in said.imu]
+        samples = self.felt = [self._mount.at_centre(sample, self._period) for sample in said.imu]
         passed = t - self._estimated if self._estimator.started else dt
         self._estimated = t
         flying = Flying(self._now, self.unfixed, said.airborne) if self._now is not None else None

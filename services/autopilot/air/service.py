@@ -198,7 +198,7 @@ class AutopilotAir(Service):
             "fence": [self._set_fence(r.fence) for r in fence],
         }
         hand = by_hand.choose(t, {"teleop": teleop, "mavlink": mavlink, "client": client})
-        self._over_ground.hear(range, samples, 1 / self.hz)
+        self._over_ground.hear(range, self._sensing.felt, 1 / self.hz)
         flown = self._fly(t, now, hand, offboard.fresh(t, setpoint))
         state = reports.nav_state(t, now)
         out: dict[str, object] = {
@@ -214,7 +214,8 @@ class AutopilotAir(Service):
 
     def _fly(self, t: float, now: Estimate, hand: by_hand.Hand | None, setpoint: FlightSetpoint | None) -> Flown:
         clearance = self._over_ground.clearance(t, now, self.params.gear_height)
-        senses = Senses(self._land.airborne, self._armed, hand, self._ship.servos, clearance, self._over_ground.push, setpoint)
+        felt = self._over_ground
+        senses = Senses(self._land.airborne, self._armed, hand, self._ship.servos, clearance, felt.push, felt.heave, setpoint)
         self._pilot.hear(senses, 1 / self.hz)
         flown = self._pilot.step(now, self._safety.demands(self.params), 1 / self.hz)
         self._surfaces = flown.surfaces

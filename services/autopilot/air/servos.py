@@ -19,11 +19,12 @@ class Servo:
 
 @dataclass(frozen=True)
 class Servos:
-    """Of the surfaces that the loops move."""
+    """Of the surfaces that the loops move; the flap from 0 down to its limit."""
 
     aileron: Servo
     elevator: Servo
     rudder: Servo
+    flap: Servo = Servo(0.0)
 
 
 SERVOS = Servos(Servo(0.35), Servo(0.35), Servo(0.35))

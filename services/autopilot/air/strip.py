@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from services.autopilot.air.guidance import Point
+from services.autopilot.air.guidance import Point, from_line
 from services.autopilot.air.route import Place
 from services.autopilot.air.state import Estimate
 
@@ -46,9 +46,8 @@ class Lane:
 
     def locate(self, now: Estimate) -> tuple[float, float]:
         """m before the point to touch at, and to the right of the middle."""
-        n, e = now.north - self.aim.north, now.east - self.aim.east
-        cn, ce = self.along
-        return -(n * cn + e * ce), e * cn - n * ce
+        ahead, right = from_line(self.along, (self.aim.north, self.aim.east), (now.north, now.east))
+        return -ahead, right
 
     def tailwind(self, now: Estimate) -> float:
         """m/s."""

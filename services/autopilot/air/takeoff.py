@@ -5,10 +5,10 @@ from enum import Enum, auto
 
 from services.autopilot.air.commands import Attitude, Surfaces
 from services.autopilot.air.energy import climb_at
-from services.autopilot.air.guidance import Point, line_aim
+from services.autopilot.air.guidance import Point, from_line, line_aim
 from services.autopilot.air.params import AirParams
 from services.autopilot.air.state import Estimate
-from services.autopilot.air.wheels import Gyros, aside, held, rolling, rudder_along
+from services.autopilot.air.wheels import Gyros, held, rolling, rudder_along
 from services.autopilot.air.wishes import Phase, Senses, Track, Wish
 
 ROTATION = 0.9  # of min_airspeed
@@ -76,7 +76,7 @@ class TakeOff(Phase):
         return Wish(READY)
 
     def _roll(self, now: Estimate, level: Estimate, params: AirParams) -> Wish:
-        right = aside(now, self._origin, self._course)
+        right = self._right(now)
         self._why = self._fault(level, params, right)
         if self._why:
             self._to(Stage.REJECTED)
@@ -101,7 +101,7 @@ class TakeOff(Phase):
     def _reject(self, now: Estimate, level: Estimate) -> Wish:
         if now.ground_speed < STOPPED:
             self.ended, self.disarms = f"take-off rejected: {self._why}", True
-        right = aside(now, self._origin, self._course)
+        right = self._right(now)
         return Wish(rolling(level, rudder_along(level, self._course, right), 0.0, BRAKE))
 
     def _climb(self, now: Estimate, level: Estimate, params: AirParams) -> Wish:
@@ -110,9 +110,17 @@ class TakeOff(Phase):
         if self._rise(now) < STRAIGHT or now.airspeed < ROTATION * params.min_airspeed:
             spare = (now.airspeed - params.min_airspeed) / params.min_airspeed
             return Wish(held(now, level, Attitude(0.0, params.takeoff_pitch * min(max(0.75 + 2.5 * spare, 0.3), 1.0), 1.0)))
-        along = (math.cos(self._course), math.sin(self._course))
-        aim = line_aim(along, self._origin, (now.north, now.east), params)
+        aim = line_aim(self._along, self._origin, (now.north, now.east), params)
         return Wish(Track(aim, None, climb_at(now, params), params.trim_airspeed, bank_limit=BANKED, throttle=1.0))
+
+    @property
+    def _along(self) -> Point:
+        """Unit vector, north and east."""
+        return math.cos(self._course), math.sin(self._course)
+
+    def _right(self, now: Estimate) -> float:
+        """m to the right of the line of the take-off."""
+        return from_line(self._along, self._origin, (now.north, now.east))[1]
 
     def _rise(self, now: Estimate) -> float:
         """m above where it stood."""

@@ -4,7 +4,6 @@ import math
 from dataclasses import replace
 
 from services.autopilot.air.commands import Attitude, Surfaces
-from services.autopilot.air.guidance import Point
 from services.autopilot.air.state import Estimate
 
 STEER_SPEED = 10.0  # m/s for which the gains hold: a fast wheel turns the nose more
@@ -48,8 +47,3 @@ def rudder_along(now: Estimate, course: float, right: float) -> float:
     aside = min(max(right, -MOST_ASIDE), MOST_ASIDE)
     asked = gain * (PER_HEADING * off + PER_RATE * now.r + PER_METRE * aside)
     return min(max(asked, -FURTHEST), FURTHEST)
-
-
-def aside(now: Estimate, origin: Point, course: float) -> float:
-    """m to the right of the line through ``origin``."""
-    return (now.east - origin[1]) * math.cos(course) - (now.north - origin[0]) * math.sin(course)

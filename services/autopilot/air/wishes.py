@@ -9,6 +9,7 @@ from services.autopilot.air.guidance import Aim
 from services.autopilot.air.params import AirParams
 from services.autopilot.air.servos import SERVOS, Servos
 from services.autopilot.air.state import Estimate
+from uvf.maths.geodesy import GRAVITY
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,6 +32,7 @@ class Wish:
     asked: Track | Wanted | Attitude | Surfaces
     flap: float = 0.0  # rad
     brake: float = 0.0  # 0..1
+    lift: float = 0.0  # m/s^2, made at once by the flaps, beside what pitch makes
     firm: bool = False
     """Climb and pitch are held more firmly than is good for comfort: near the ground."""
 
@@ -48,6 +50,8 @@ class Senses:
     """m, of the wheels over the ground, seen by a range finder."""
     push: float = 0.0
     """m/s^2, specific force forwards."""
+    heave: float = GRAVITY
+    """m/s^2, specific force upwards."""
     setpoint: FlightSetpoint | None = None
     """What mode Offboard is asked for; None = nothing fresh."""
 

@@ -27,6 +27,8 @@ AEROSONDE = Airframe(
     pitch_elevator=-0.99,
     roll_p=-0.51,
     roll_aileron=0.17,
+    lift_flap=0.96,
+    pitch_flap=-0.11,
 )
 
 

@@ -91,10 +91,9 @@ def test_it_follows_the_slope():
 
 def test_a_range_finder_corrects_the_height():
     landing, now = on_final(100.0, flare(100.0, 19.0, SLOPE)[0], clearance=flare(100.0, 19.0, SLOPE)[0] + 1.0)
-    first = landing.step(now, PARAMS, 0.02).asked.climb
-    for _ in range(200):
-        last = landing.step(now, PARAMS, 0.02).asked.climb
-    assert last - first == pytest.approx(-PARAMS.altitude_p, abs=0.05)
+    for _ in range(300):
+        track = landing.step(now, PARAMS, 0.02).asked
+    assert track.climb == pytest.approx(-SLOPE * 19.0 - PARAMS.altitude_p, abs=0.02)
 
 
 def test_in_wind_it_approaches_a_little_faster():
