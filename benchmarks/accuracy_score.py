@@ -1,6 +1,7 @@
 """Scores a flight of the course from the truth: legs, path, heights, airspeed, circles, and how hard the surfaces worked."""
 
 import itertools
+from collections.abc import Callable
 from dataclasses import dataclass
 from math import pi
 
@@ -10,6 +11,8 @@ from numpy.typing import NDArray
 from benchmarks.accuracy_course import ENTRY, EXIT, TURNS, Course
 
 Floats = NDArray[np.float64]
+Pair = tuple[Floats, Floats]
+"""Of the truth, and of the estimate."""
 
 SETTLED = 30.0  # s after the start; nothing before it counts
 
@@ -21,9 +24,9 @@ class Flight:
     t: Floats  # (n,) s
     truth: Floats  # (n, 3) m north, east, height
     estimate: Floats  # (n, 3) m
-    airspeed: Floats  # (n,) m/s true
+    airspeed: Floats  # (n, 2) m/s true airspeed: the truth, and the estimate
     surfaces: Floats  # (n, 4) rad where the servos are: aileron, elevator, rudder; throttle
-    off_path: Floats  # (n,) m, the truth's distance to the right of the path planned by the autopilot
+    off_path: Floats  # (n, 2) m to the right of the path planned by the autopilot: the truth, and the estimate
     bank: Floats  # (n,) rad
     wind_error: Floats  # (n,) m/s, of the estimated wind
 
@@ -75,8 +78,22 @@ def leg_windows(flight: Flight, course: Course) -> list[Window]:
     return found
 
 
-def circle_windows(flight: Flight, course: Course, after: int) -> list[tuple[NDArray[np.intp], Floats]]:
-    """(indices, distance to the circle) of both circles: two full turns after half a turn. Raises ValueError."""
+@dataclass(frozen=True)
+class Ring:
+    """Samples of one circle that count."""
+
+    k: NDArray[np.intp]
+    centre: Floats  # (2,) m
+    radius: float  # m
+
+    def outside(self, points: Floats) -> Floats:
+        """(m,) m from the circle."""
+        d = points[self.k, :2] - self.centre
+        return np.asarray(np.hypot(d[:, 0], d[:, 1]) - self.radius)
+
+
+def circle_windows(flight: Flight, course: Course, after: int) -> list[Ring]:
+    """Both circles: two full turns after half a turn. Raises ValueError."""
     found = []
     for north, east, radius in course.circles:
         d = flight.truth[after:, :2] - (north, east)
@@ -86,12 +103,12 @@ def circle_windows(flight: Flight, course: Course, after: int) -> list[tuple[NDA
             raise ValueError("a circle was not reached")
         turned = np.sign(radius) * np.unwrap(np.arctan2(d[near[0] :, 1], d[near[0] :, 0]))
         turned -= turned[0]
-        inside = np.flatnonzero((turned >= pi) & (np.maximum.accumulate(turned) <= (2 * TURNS - 1) * pi))
         if turned.max() < (2 * TURNS - 1) * pi:
             raise ValueError("a circle was not flown to its end")
-        k = near[0] + inside
-        found.append((after + k, r[k] - abs(radius)))
-        after += int(k[-1])
+        inside = np.flatnonzero((turned >= pi) & (np.maximum.accumulate(turned) <= (2 * TURNS - 1) * pi))
+        k = after + near[0] + inside
+        found.append(Ring(k, np.array((north, east)), abs(radius)))
+        after = int(k[-1])
     return found
 
 
@@ -108,36 +125,47 @@ def activity(flight: Flight, k: NDArray[np.intp]) -> Floats:
     return way
 
 
+def spread(x: Floats) -> float:
+    return float(np.std(x))
+
+
 def score(flight: Flight, course: Course) -> dict[str, float]:
-    """Metric -> value. Raises ValueError for a flight that did not fly the course."""
+    """Metric -> value; those that begin with ``control`` are of the estimate, with ``estimation`` of the truth less the estimate.
+
+    Raises ValueError for a flight that did not fly the course.
+    """
     legs = leg_windows(flight, course)
+    rings = circle_windows(flight, course, int(legs[-1].k[-1]))
+    on_legs, on_rings = np.concatenate([w.k for w in legs]), np.concatenate([ring.k for ring in rings])
     level, slopes = [w for w in legs if not w.climbs], [w for w in legs if w.climbs]
-    on_legs = np.concatenate([w.k for w in legs])
-    circles = circle_windows(flight, course, int(legs[-1].k[-1]))
-    on_circles = np.concatenate([k for k, _ in circles])
-    aside = np.concatenate([w.aside(flight.truth) for w in legs])
-    control = np.concatenate([w.aside(flight.estimate) for w in legs])
-    speed = flight.airspeed[on_legs]
-    busy, busy_turning = activity(flight, on_legs), activity(flight, on_circles)
     whole = slice(int(legs[0].k[0]), int(legs[-1].k[-1]))
+
+    def both(deviation: Callable[[Floats], list[Floats]]) -> Pair:
+        true, known = (np.concatenate(deviation(points)) for points in (flight.truth, flight.estimate))
+        return true, known
+
+    aside = both(lambda points: [w.aside(points) for w in legs])
+    off_path, speed = flight.off_path[whole].T, flight.airspeed[on_legs].T
+    busy, busy_turning = activity(flight, on_legs), activity(flight, on_rings)
     return {
-        "xtrack": rms(aside),
-        "p95": float(np.percentile(np.abs(aside), 95)),
-        "max": float(np.abs(aside).max()),
-        "control": rms(control),
-        "estimation": rms(aside - control),
-        "path": rms(flight.off_path[whole]),
-        "orbit": rms(np.concatenate([r for _, r in circles])),
-        "orbit mean": float(np.mean([r.mean() for _, r in circles])),
-        "level": rms(np.concatenate([w.above(flight.truth) for w in level])),
-        "level est": rms(np.concatenate([w.above(flight.estimate) for w in level])),
-        "slope": rms(np.concatenate([w.above(flight.truth) for w in slopes])),
-        "orbit alt": rms(flight.truth[on_circles, 2] - course.corners[0, 2]),
-        "V sd": float(speed.std()),
-        "V mean": float(speed.mean()) - course.speed,
+        **_split("xtrack", aside, rms),
+        "p95": float(np.percentile(np.abs(aside[0]), 95)),
+        "max": float(np.abs(aside[0]).max()),
+        **_split("path", (off_path[0], off_path[1]), rms),
+        **_split("orbit", both(lambda points: [ring.outside(points) for ring in rings]), rms),
+        **_split("level", both(lambda points: [w.above(points) for w in level]), rms),
+        **_split("slope", both(lambda points: [w.above(points) for w in slopes]), rms),
+        **_split("orbit alt", both(lambda points: [points[on_rings, 2] - course.corners[0, 2]]), rms),
+        **_split("V sd", (speed[0], speed[1]), spread),
+        "V mean": float(speed[0].mean()) - course.speed,
         "deg/s": float(np.degrees(busy[:3].sum())),
         "orbit deg/s": float(np.degrees(busy_turning[:3].sum())),
         "throttle/s": float(busy[3]),
         "bank": float(np.degrees(np.abs(flight.bank[whole]).max())),
         "wind": rms(flight.wind_error[on_legs]),
     }
+
+
+def _split(name: str, pair: Pair, measure: Callable[[Floats], float]) -> dict[str, float]:
+    true, known = pair
+    return {name: measure(true), f"control {name}": measure(known), f"estimation {name}": measure(true - known)}

@@ -4,19 +4,25 @@ The aircraft is flown by its own estimator; what that was given is given to the 
 from 30 s on (angles in deg, lengths in m, speeds in m/s; wind is that about the aircraft, gusts included), and NEES, the squared error
 over its covariance per state: 1 = as wrong as foretold. ``outage`` takes the fixes away from 60 to 90 s: drift is the error of position
 then, sigma what the filter says. ``bias`` adds 0.02 rad/s to each gyroscope: settled is when all errors of bias stay below 0.002 rad/s.
+``python -m benchmarks.estimator docs`` draws docs/estimator.png.
 """
 
+import copy
+import sys
 import tempfile
 from collections.abc import Callable
 from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from benchmarks.accuracy import Case, Probe, course_site
+from benchmarks.accuracy_flight import Case, Probe, course_site
+from benchmarks.kept import several
 from services.autopilot.air.ekf.estimator import FullEstimator
 from services.autopilot.air.estimators import Estimator, Instruments, estimator
 from services.autopilot.air.params import AirParams
@@ -28,12 +34,15 @@ from uvf.maths import rotations
 from uvf.runtime.lockstep import Lockstep
 
 Floats = NDArray[np.float64]
+Kind = Literal["full", "book"]
+Change = Callable[[float, Sensed], Sensed]
 
 SECONDS, SETTLED = 120.0, 30.0  # s
 SEEDS = range(1, 21)
 OUTAGE = (60.0, 90.0)  # s
 BIAS, FOUND = 0.02, 0.002  # rad/s
 COLUMNS = ("roll", "pitch", "yaw", "position", "height", "velocity", "airspeed", "wind")
+AIR = {"calm": Case(), "10 from E, moderate": Case((0.0, -10.0), "moderate")}
 
 
 class Recorded(NamedTuple):
@@ -43,6 +52,11 @@ class Recorded(NamedTuple):
     truth: Floats
     instruments: Instruments
     params: AirParams
+
+    def part(self, begin: float, end: float) -> "Recorded":
+        """From ``begin`` to ``end`` [s]."""
+        first, last = (int(k) for k in np.searchsorted([t for t, _, _ in self.cycles], (begin, end)))
+        return self._replace(cycles=self.cycles[first:last], truth=self.truth[first:last])
 
 
 class Tap:
@@ -77,8 +91,8 @@ def record(case: Case) -> Recorded:
     truth: list[tuple[float, ...]] = []
     with closing(lockstep):
         probe = Probe(lockstep)
-        tap = Tap(probe.autopilot._estimator)
-        probe.autopilot._estimator = tap
+        tap = Tap(probe.autopilot._sensing._estimator)
+        probe.autopilot._sensing._estimator = tap
 
         def look(t: float) -> bool:
             if tap.given is not None:
@@ -109,9 +123,16 @@ class Run(NamedTuple):
     bias: Floats
 
 
-def replay(kind: str, flight: Recorded, change: Callable[[float, Sensed], Sensed] = lambda _, sensed: sensed) -> Run:
+def begun(kind: Kind, flight: Recorded) -> Estimator:
+    return estimator(kind, flight.instruments)
+
+
+def _as_it_is(_: float, sensed: Sensed) -> Sensed:
+    return sensed
+
+
+def replay(one: Estimator, flight: Recorded, change: Change = _as_it_is) -> Run:
     """An estimator over the sensors of a flight, changed on the way."""
-    one = estimator("full" if kind == "full" else "book", flight.instruments)
     t, errors, sigmas, bias = [], [], [], []
     for (at, given, dt), true in zip(flight.cycles, flight.truth, strict=True):
         now = one.step(change(at, given), flight.params, dt)
@@ -143,18 +164,13 @@ def scores(run: Run) -> dict[str, float]:
     return found
 
 
-def _without_fixes(t: float, sensed: Sensed) -> Sensed:
-    return replace(sensed, fix=None) if OUTAGE[0] < t < OUTAGE[1] else sensed
+def _without_fixes(_: float, sensed: Sensed) -> Sensed:
+    return replace(sensed, fix=None)
 
 
 def _biased(_: float, sensed: Sensed) -> Sensed:
     turned = [replace(s, rates=(s.rates[0] + BIAS, s.rates[1] - BIAS, s.rates[2] + BIAS)) for s in sensed.samples]
     return replace(sensed, samples=turned)
-
-
-def outage_scores(run: Run) -> dict[str, float]:
-    last = int(np.searchsorted(run.t, OUTAGE[1])) - 1
-    return {"drift": float(np.hypot(*run.errors[last, :2])), "sigma": float(run.sigmas[last, 0])}
 
 
 def settled(run: Run, plain: Run) -> float:
@@ -163,27 +179,66 @@ def settled(run: Run, plain: Run) -> float:
     return float(run.t[np.flatnonzero(off)[-1]]) if off.any() else 0.0
 
 
-def _mean(rows: list[dict[str, float]]) -> dict[str, float]:
-    return {metric: float(np.mean([row[metric] for row in rows])) for metric in rows[0]}
+def with_outage(kind: Kind, flight: Recorded) -> tuple[Run, Run]:
+    """The whole flight, and the outage as it would have been."""
+    one, outage = begun(kind, flight), flight.part(*OUTAGE)
+    before = replay(one, flight.part(0.0, OUTAGE[0]))
+    without = replay(copy.deepcopy(one), outage, _without_fixes)
+    after = replay(one, flight.part(OUTAGE[0], SECONDS + 1))
+    return Run(*(np.concatenate(both) for both in zip(before, after, strict=True))), without
 
 
-def flights(case: Callable[[int], Case], seeds: range = SEEDS) -> dict[str, dict[str, float]]:
+def judged(kind: Kind, flight: Recorded) -> dict[str, float]:
+    run, without = with_outage(kind, flight)
+    row = scores(run) | {"drift": float(np.hypot(*without.errors[-1, :2])), "sigma": float(without.sigmas[-1, 0])}
+    if kind == "full":
+        row["bias s"] = settled(replay(begun(kind, flight), flight.part(0.0, OUTAGE[0]), _biased), run)
+    return row
+
+
+def flown(case: Case) -> dict[str, dict[str, float]]:
+    """By estimator."""
+    flight = record(case)
+    return {"full": judged("full", flight), "book": judged("book", flight)}
+
+
+def figures(name: str) -> Figures:
     """By estimator, the mean over the seeds."""
-    rows: dict[str, list[dict[str, float]]] = {"full": [], "book": []}
-    for seed in seeds:
-        flight = record(case(seed))
-        for kind, found in rows.items():
-            plain = replay(kind, flight)
-            row = scores(plain) | outage_scores(replay(kind, flight, _without_fixes))
-            found.append(row | ({"bias s": settled(replay(kind, flight, _biased), plain)} if kind == "full" else {}))
-    return {kind: _mean(found) for kind, found in rows.items()}
+    rows = list(several(flown, [(replace(AIR[name], seed=seed),) for seed in SEEDS]))
+    return {
+        f"{name}, {kind}": {metric: float(np.mean([row[kind][metric] for row in rows])) for metric in rows[0][kind]}
+        for kind in ("full", "book")
+    }
 
 
-def _case(name: str, of: Callable[[int], Case]) -> Callable[[Path | None], Figures]:
-    return lambda data: {f"{name}, {kind}": row for kind, row in flights(of).items()}
+def draw(path: Path) -> None:
+    """Errors of one flight in wind and turbulence between their bounds of three sigmas, and of its outage."""
+    run, without = with_outage("full", record(AIR["10 from E, moderate"]))
+    figure = Figure(figsize=(12.0, 8.0), layout="constrained")
+    angle, metre = 180 / np.pi, 1.0
+    shown = {"roll, deg": (6, 1, angle), "pitch, deg": (7, 1, angle), "yaw, deg": (8, 2, angle)}
+    shown |= {"north, m": (0, 0, metre), "wind to the north, m/s": (10, 3, metre), "north without fixes, m": (0, 0, metre)}
+    for axes, (title, (state, sigma, unit)) in zip(figure.subplots(2, 3).flat, shown.items(), strict=True):
+        one = without if "without" in title else run
+        _bounded(axes, one.t, unit * one.errors[:, state], unit * one.sigmas[:, sigma])
+        axes.set(title=title, xlabel="s")
+    figure.savefig(path, dpi=80)
 
 
-CASES = {
-    "calm": _case("calm", lambda seed: Case(seed=seed)),
-    "moderate": _case("10 from E, moderate", lambda seed: Case((0.0, -10.0), "moderate", seed)),
-}
+def _bounded(axes: Axes, t: Floats, error: Floats, sigma: Floats) -> None:
+    axes.fill_between(t, -3 * sigma, 3 * sigma, color="0.88", label="3 sigma")
+    axes.plot(t, error, linewidth=0.8, label="estimate less truth")
+    reach = 1.3 * max(float(np.abs(error[len(error) // 8 :]).max()), 3 * float(np.median(sigma)))
+    axes.set_ylim(-reach, reach)
+    axes.grid(alpha=0.3)
+    axes.legend(fontsize=8)
+
+
+def _case(name: str) -> Callable[[Path | None], Figures]:
+    return lambda data: figures(name)
+
+
+CASES = {"calm": _case("calm"), "moderate": _case("10 from E, moderate")}
+
+if __name__ == "__main__":
+    draw(Path(sys.argv[1]) / "estimator.png")

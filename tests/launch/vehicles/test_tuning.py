@@ -64,6 +64,12 @@ def test_a_file_without_parameters_gets_them():
     assert parsed("kind: fixed_wing\n") == {"roll_p": 0.051235, "roll_time": 0.3}
 
 
+def test_empty_braces_give_way_to_them_and_others_are_not_torn_apart():
+    assert parsed("kind: fixed_wing\nparams: {}  # none\n") == {"roll_p": 0.051235, "roll_time": 0.3}
+    with pytest.raises(BadInput, match="'params:' on a line of its own"):
+        with_params("params: {slam: {a: 1}}\n", FIGURES, PLACE)
+
+
 def test_parameters_of_others_stay():
     text = "params:\n  slam:\n    a: 1\nsensors: {}\n"
     made = yaml.safe_load(with_params(text, FIGURES, PLACE))

@@ -168,7 +168,7 @@ class FullEstimator:
         passed = self._sampled - begun
         if passed > 0.0:
             f = transition(state, self._acceleration, self._sheet.drift_time, passed)
-            aiding.filter.predict(f, self._gain(aiding, passed))
+            aiding.filter.predict(f, self._gain(aiding, passed) + self._mechanisation.take_missed())
             aiding.delay.keep(self._sampled, state.x)
 
     def _fastest(self, aiding: Aiding) -> float:

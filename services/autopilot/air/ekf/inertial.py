@@ -1,7 +1,7 @@
 """What gyroscopes and accelerometers say of the motion, and what becomes of the errors meanwhile."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -30,11 +30,13 @@ FALL = np.array((0.0, 0.0, GRAVITY))
 class Mechanisation:
     """Strapdown integration over flat ground by the trapezoidal rule; readings are of moments, not means.
 
-    rates, force: (3,) FRD, the newest readings; rad/s, m/s^2.
+    rates, force: (3,) FRD, the newest readings; rad/s, m/s^2. ``missed``: (25,) variance of what the trapezoids leave out, until it is
+    taken: in gusts and in the first moment of a roll readings change between two samples by more than their noise.
     """
 
     rates: Floats
     force: Floats
+    missed: Floats = field(default_factory=lambda: np.zeros(SIZE))
 
     def step(self, state: State, rates: Floats, force: Floats, dt: float) -> Floats:
         """Moves the state on by ``dt`` [s] to the new readings; returns the mean acceleration (3,) m/s^2, NED, gravity included."""
@@ -46,8 +48,17 @@ class Mechanisation:
         acceleration: Floats = felt + FALL
         x[POSITION] += dt * x[VELOCITY] + (0.5 * dt * dt) * acceleration
         x[VELOCITY] += dt * acceleration
+        mixed = state.rotation**2 * (dt * dt / 12)
+        self.missed[TILT] += mixed @ (rates - self.rates) ** 2
+        self.missed[VELOCITY] += mixed @ (force - self.force) ** 2
         self.rates, self.force = rates, force
         return acceleration
+
+    def take_missed(self) -> Floats:
+        """(25,) since the last time. The integral of a Brownian motion between two values d apart, dt after each other, has a variance
+        of d^2 dt^2 / 12 about the trapezoid."""
+        missed, self.missed = self.missed, np.zeros(SIZE)
+        return missed
 
 
 def transition(state: State, acceleration: Floats, drift_time: float, dt: float) -> Floats:

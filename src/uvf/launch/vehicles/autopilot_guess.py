@@ -124,7 +124,7 @@ def _rates(models: LinearModels, body: AirBody) -> dict[str, float]:
         found[f"{axis}_ff"] = _within(ahead, 0.0, 2.0)
         found[f"{axis}_p"] = _within(PROPORTIONAL[axis] * ahead, 0.0, 2.0)
         found[f"{axis}_i"] = _within(INTEGRAL[axis] * ahead, 0.0, 2.0)
-    return found
+    return found | {"lead_time": found["roll_time"]}  # a bank that follows a ramp is late by the time constant
 
 
 def _measures(speed: float) -> dict[str, float]:

@@ -92,7 +92,7 @@ def with_params(text: str, figures: Mapping[str, float], place: Place) -> str:
     if begin is None:
         if f"{SERVICE}:" in text:
             raise BadInput(f"{place}: write '{SERVICE}:' on a line of its own under 'params:', two blanks in, and a parameter a line below")
-        begin = _new_block(lines)
+        begin = _new_block(lines, place)
     left = dict(figures)
     end = begin + 1
     while end < len(lines) and (not lines[end].strip() or lines[end].startswith("    ")):
@@ -103,11 +103,14 @@ def with_params(text: str, figures: Mapping[str, float], place: Place) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _new_block(lines: list[str]) -> int:
-    """Adds the autopilot's block; its line."""
-    params = next((i for i, line in enumerate(lines) if re.fullmatch(r"params:\s*(#.*)?", line)), None)
+def _new_block(lines: list[str], place: Place) -> int:
+    """Adds the autopilot's block; its line. Raises BadInput."""
+    params = next((i for i, line in enumerate(lines) if re.match(r"params:", line)), None)
     if params is None:
         lines += ["", "params:"]
         params = len(lines) - 1
+    if not (found := re.fullmatch(r"params:\s*(?:\{\s*\})?\s*(#.*)?", lines[params])):
+        raise BadInput(f"{place}: write 'params:' on a line of its own, and each service below, two blanks in")
+    lines[params] = " ".join(filter(None, ("params:", found[1])))
     lines.insert(params + 1, f"  {SERVICE}:")
     return params + 1
