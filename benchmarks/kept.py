@@ -21,12 +21,13 @@ Figure = Callable[..., dict[str, Any]]
 def several(function: Figure, jobs: Sequence[tuple[Any, ...]]) -> Iterator[dict[str, Any]]:
     """``function(*job)`` of each job, in their order; a dict that JSON can hold. Jobs: of what ``repr`` shows whole."""
     with ProcessPoolExecutor() as pool:
-        found = [pool.submit(_kept, function, job) for job in jobs]
+        found = [pool.submit(figures_of, function, job) for job in jobs]
         for future in found:
             yield future.result()
 
 
-def _kept(function: Figure, job: tuple[Any, ...]) -> dict[str, Any]:
+def figures_of(function: Figure, job: tuple[Any, ...]) -> dict[str, Any]:
+    """``function(*job)``, or what it was when it was last asked for."""
     name = hashlib.sha256(repr((_sources(inspect.getfile(function)), function.__name__, job)).encode()).hexdigest()[:24]
     path = FOLDER / f"{function.__name__}-{name}.json"
     if path.exists():

@@ -4,6 +4,7 @@ import importlib
 
 import pytest
 
+from benchmarks import kept
 from uvf.runtime.site import ROOT
 
 GROUPS = sorted(path.stem for path in (ROOT / "benchmarks").glob("*.py") if "CASES = " in path.read_text())
@@ -24,3 +25,18 @@ def test_real_time_factors_are_measured(group, monkeypatch):
     for case in module.CASES.values():
         figures = case(None)
         assert figures and all(value > 0 for row in figures.values() for value in row.values())
+
+
+def test_what_has_been_flown_is_kept_until_its_sources_change(tmp_path, monkeypatch):
+    flown = []
+
+    def fly(seed):
+        flown.append(seed)
+        return {"seed": seed}
+
+    monkeypatch.setattr(kept, "FOLDER", tmp_path)
+    assert [kept.figures_of(fly, (seed,)) for seed in (1, 2, 1)] == [{"seed": 1}, {"seed": 2}, {"seed": 1}]
+    assert flown == [1, 2]
+    monkeypatch.setattr(kept, "_sources", lambda own: "changed")
+    kept.figures_of(fly, (1,))
+    assert flown == [1, 2, 1]

@@ -12,6 +12,8 @@ from benchmarks.accuracy_flight import PLANE, Probe
 from uvf.launch.vehicles.tuning import tune, write
 from uvf.runtime.site import ROOT, load_site
 
+pytestmark = pytest.mark.timeout(300)  # tune flies many steady flights
+
 CORNERS = [(350.0, 0.0, 100.0), (350.0, 300.0, 115.0), (0.0, 300.0, 115.0)]
 MISSION = [{"x": x, "y": y, "z": z} for x, y, z in CORNERS]
 WIND = {"steady": [0.0, 4.0, 0.0]}

@@ -41,7 +41,7 @@ def cruising(**changes):
 class Kinematic:
     """An aircraft that banks with a lag and turns as the bank says, in a steady wind (north, east) [m/s]."""
 
-    LAG = 0.4  # s
+    LAG = PARAMS.roll_time
 
     def __init__(self, north=0.0, east=0.0, heading=0.0, wind=(0.0, 0.0), params=PARAMS):
         self.position = [north, east]
