@@ -65,8 +65,10 @@ def test_a_flying_mission_is_refused_for_a_ground_vehicle(site):
 
 
 def test_a_vehicle_with_a_job_begins_armed_and_one_without_does_not(site):
-    nothing = dict.fromkeys(("teleop", "mavlink", "gcs", "client", "offboard", "planner", "stop", "pose", "link"))
-    asked = {"arm": [], "set_mode": [], "set_mission": [], "set_current": [], "set_fence": []}
+    nothing = dict.fromkeys(
+        ("teleop", "mavlink", "gcs", "client", "offboard", "planner", "stop", "pose", "link", "ticks", "scan", "correction", "battery")
+    )
+    asked = {"imu": [], "arm": [], "set_mode": [], "set_mission": [], "set_current": [], "set_fence": []}
     for job, armed, mode in (({"explore": True}, True, Mode.MODE_MISSION), ({}, False, Mode.MODE_HOLD)):
         status = hosts(with_job(site, **job))[0].make().step(0.02, **nothing, **asked)["status"]
         assert (status.armed, status.mode) == (armed, mode)

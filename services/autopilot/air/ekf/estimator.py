@@ -135,11 +135,13 @@ class FullEstimator:
         """And the sigmas of tilt and yaw [rad]."""
         speed = math.hypot(fix.v_north, fix.v_east)
         if self._left is not None:
-            return attitude(*self._left), LEFT_SIGMA, LEFT_SIGMA
-        roll, pitch = levelled(np.array(sample.force))
-        tilt = LEVEL_SIGMA if speed < STANDS else FLYING_SIGMA
-        if any(sample.field) and points(self._earth):
+            (roll, pitch, yaw), tilt = self._left, LEFT_SIGMA
+        else:
+            (roll, pitch), yaw, tilt = levelled(np.array(sample.force)), None, LEVEL_SIGMA if speed < STANDS else FLYING_SIGMA
+        if any(sample.field) and points(self._earth):  # of now: in a turn the yaw that was left is long over
             return attitude(roll, pitch, heading(np.array(sample.field), self._earth, roll, pitch)), tilt, max(NORTH_SIGMA, tilt)
+        if yaw is not None:
+            return attitude(roll, pitch, yaw), tilt, LEFT_SIGMA
         return attitude(roll, pitch, math.atan2(fix.v_east, fix.v_north)), tilt, NO_YAW
 
     # each cycle
