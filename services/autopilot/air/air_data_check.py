@@ -88,9 +88,7 @@ class AirDataCheck:
             gap = self._smoothed.step(measured - expected, dt)
             if (lifted := lift_airspeed(now, params)) is not None:
                 self._by_lift.step(measured - lifted, dt)
-            against = abs(self._by_lift.value or 0.0) > LIFT_SHARE * params.trim_airspeed
-            gap = gap if against or self.gap else 0.0
-            self._judge(gap, params.airspeed_gap * params.trim_airspeed + SHEAR * math.hypot(*self._wind or (0.0, 0.0)), dt)
+            self._judge(gap, params.airspeed_gap * params.trim_airspeed + SHEAR * math.hypot(*self._wind or (0.0, 0.0)), params, dt)
         return replace(pressures, differential=0.5 * density * expected**2) if self.gap else pressures
 
     def _expected(self, now: Estimate, dt: float) -> float:
@@ -105,13 +103,14 @@ class AirDataCheck:
         north, east = now.ground_speed * math.cos(now.course) - wn, now.ground_speed * math.sin(now.course) - we
         return math.hypot(north, east, now.climb)
 
-    def _judge(self, gap: float, limit: float, dt: float) -> None:
-        """Believed until it differs by more than ``limit`` [m/s] or stands still; again after it has agreed to half of that."""
+    def _judge(self, gap: float, limit: float, params: AirParams, dt: float) -> None:
+        """Believed until it is off by more than ``limit`` [m/s], and by the lift too, or stands still; again after 5 s within half of it."""
+        against = abs(self._by_lift.value or 0.0) > LIFT_SHARE * params.trim_airspeed
         agrees = abs(gap) < 0.5 * limit and not self._frozen[1]
         self._agreed = self._agreed + dt if agrees else 0.0
         if self._agreed > AGREES:
             self._watched, self.gap = True, 0.0
-        elif self._watched and (abs(gap) > limit or self._frozen[1]):
+        elif self._watched and ((abs(gap) > limit and (against or self.gap)) or self._frozen[1]):
             self.gap = gap or math.ulp(1.0)
 
 

@@ -131,8 +131,7 @@ class Pilot:
 
     def starts(self, now: Estimate) -> bool:
         """Its take-off has not come so far that another mode could follow."""
-        part = self._phase.part if isinstance(self._phase, MissionFlight) else self._phase
-        return isinstance(part, TakeOff) and part.is_low(now)
+        return isinstance(self._part, TakeOff) and self._part.is_low(now)
 
     @property
     def station(self) -> float | None:
