@@ -104,7 +104,7 @@ class AirDataCheck:
         return math.hypot(north, east, now.climb)
 
     def _judge(self, gap: float, limit: float, params: AirParams, dt: float) -> None:
-        """Believed until it is off by more than ``limit`` [m/s], and by the lift too, or stands still; again after 5 s within half of it."""
+        """Believed until off by more than ``limit`` [m/s], and by the lift too, or stands still; again after 5 s within half of it."""
         against = abs(self._by_lift.value or 0.0) > LIFT_SHARE * params.trim_airspeed
         agrees = abs(gap) < 0.5 * limit and not self._frozen[1]
         self._agreed = self._agreed + dt if agrees else 0.0
