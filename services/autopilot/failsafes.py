@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from enum import IntEnum
 from typing import Generic, TypeVar
 
+from schemas.convert import stamp
 from schemas.messages import Event
 
 K = TypeVar("K")
@@ -56,6 +57,12 @@ class Change(Generic[K]):
     rule: Rule[K]
     began: bool
     cause: str
+
+    def event(self, t: float) -> Event:
+        """What is said of it at ``t`` [s]."""
+        severity = self.rule.severity if self.began else Event.NOTICE
+        text = self.rule.begins if self.began else self.rule.ends
+        return Event(timestamp=stamp(t), severity=severity, text=text, cause=self.cause, source="autopilot")
 
 
 @dataclass(frozen=True)

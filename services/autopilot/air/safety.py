@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 import msgspec
 
-from schemas.convert import seconds, stamp
+from schemas.convert import seconds
 from schemas.messages import Battery, Event, Fence, Link
 from services.autopilot.air.air_data_check import AirDataCheck, Flying
 from services.autopilot.air.commands import Surfaces
@@ -21,7 +21,7 @@ from services.autopilot.air.saturation import Saturation, eased
 from services.autopilot.air.sensed import Pressures
 from services.autopilot.air.servos import Servos
 from services.autopilot.air.state import Estimate
-from services.autopilot.failsafes import Action, Change, Order, Watch
+from services.autopilot.failsafes import Action, Order, Watch
 from uvf.runtime.fence_file import fence_fault, fencing
 
 RANK = {FlightMode.HOLD: Action.HOLD, FlightMode.RETURN: Action.RETURN, FlightMode.LAND: Action.LAND}
@@ -100,7 +100,7 @@ class Safety:
             self._waits = True
         elif order is not None and seen.airborne:
             self._obey(order, seen.now, params)
-        return [_event(t, change) for change in changes]
+        return [change.event(t) for change in changes]
 
     def _known(self, seen: Seen, params: AirParams) -> Known:
         self._pilot.fence.grounds = not seen.airborne or self._pilot.goes_down
@@ -174,9 +174,3 @@ class Safety:
             self.fence = fence
             self._pilot.fence.take(new)
         return why
-
-
-def _event(t: float, change: Change[Known]) -> Event:
-    rule, severity = change.rule, change.rule.severity if change.began else Event.NOTICE
-    text = rule.begins if change.began else rule.ends
-    return Event(timestamp=stamp(t), severity=severity, text=text, cause=change.cause, source="autopilot")

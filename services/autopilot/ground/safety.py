@@ -2,9 +2,9 @@
 
 from dataclasses import dataclass, field
 
-from schemas.convert import seconds, stamp
+from schemas.convert import seconds
 from schemas.messages import Battery, Event, Fence, FrameTransform, Imu, LaserScan, Link, Mode, PoseInFrame, WheelTicks
-from services.autopilot.failsafes import Action, Change, Order, Watch
+from services.autopilot.failsafes import Action, Order, Watch
 from services.autopilot.ground.failsafes import GROUND_RULES, STANDS, Known
 from services.autopilot.ground.fence import Place, stops
 from services.autopilot.ground.motion import Grip, Tilt, Wheels
@@ -79,7 +79,7 @@ class Safety:
         """What has begun and ended, and what is to be done."""
         self._hear(t, sensed, doing, dt)
         changes, order = self.watch.step(self._known(t, doing, params), dt)
-        return [_event(t, change) for change in changes], order
+        return [change.event(t) for change in changes], order
 
     def _hear(self, t: float, sensed: Sensed, doing: Doing, dt: float) -> None:
         if sensed.link is not None and sensed.link.stations:
@@ -132,9 +132,3 @@ def mode_of(action: Action) -> int:
 
 def place(pose: PoseInFrame, yaw: float) -> Place:
     return Place(pose.pose.position.x, pose.pose.position.y, yaw)
-
-
-def _event(t: float, change: Change[Known]) -> Event:
-    rule, severity = change.rule, change.rule.severity if change.began else Event.NOTICE
-    text = rule.begins if change.began else rule.ends
-    return Event(timestamp=stamp(t), severity=severity, text=text, cause=change.cause, source="autopilot")
