@@ -6,7 +6,8 @@ throttle does not explain of the power is learnt by an observer in place of an i
 so nothing winds up at its stops.
 
 Pitch holds the path, for gusts would shake it through the airspeed, as long as throttle makes the energy that path and airspeed need
-together. What it cannot make is taken from the path: with the throttle at a stop, or the motor dead, the airspeed comes first.
+together. What it cannot make is taken from the airspeed for a while, then from the path: in a long climb, or with the motor dead,
+the airspeed comes first.
 """
 
 import math
@@ -86,7 +87,7 @@ class EnergyLoops:
         faster = _acceleration(cycle, self._airspeed(cycle, wanted))
         higher = 0.0 if wanted.height is None else wanted.height - cycle.now.height
         climb = min(max(wanted.climb + params.altitude_p * higher, -params.sink_max), params.climb_max * _room(cycle))
-        most = made(cycle, 1.0) + self._power.unexplained - faster
+        most = made(cycle, 1.0) + self._power.unexplained - _acceleration(cycle, self._airspeed(cycle, wanted) - _lent(cycle, wanted))
         least = made(cycle, 0.0) + self._power.unexplained - _acceleration(cycle, params.max_airspeed)
         return Power(climb, faster, min(max(climb, least), most))
 
@@ -104,6 +105,19 @@ class EnergyLoops:
 def _acceleration(cycle: Cycle, airspeed: float) -> float:
     """m/s, the power V V' / g towards this airspeed [m/s]."""
     return cycle.speed / GRAVITY * clip(cycle.params.airspeed_p * (airspeed - cycle.now.airspeed), ACCELERATION_LIMIT)
+
+
+def _lent(cycle: Cycle, wanted: Wanted) -> float:
+    """m/s of airspeed that a climb may take beyond full throttle, for a while: at most half of what is above the slowest.
+
+    The lower it is already, the less, and none from where that airspeed is worth no more height: so a downdraught
+    is flown through on the path, while a long climb and a glide come back to the airspeed asked for.
+    """
+    spare = wanted.airspeed - cycle.slowest
+    if wanted.height is None or spare <= 0:
+        return 0.0
+    worth = (wanted.airspeed**2 - cycle.slowest**2) / (2 * GRAVITY)
+    return spare / 2 * min(max(1 - (wanted.height - cycle.now.height) / worth, 0.0), 1.0)
 
 
 def _room(cycle: Cycle) -> float:

@@ -59,6 +59,22 @@ def test_when_the_motor_is_back_it_climbs_back_and_settles_without_overshoot_of_
     assert airspeeds(seen)[-1] == pytest.approx(25.0, abs=0.2)
 
 
+def test_short_of_power_for_some_seconds_it_keeps_the_path_and_lends_it_airspeed():
+    """As in a downdraught: 5 s with a third of the thrust."""
+    point = Point()
+
+    def climbing(t):
+        point.engine = 0.33 if 10.0 < t < 15.0 else 1.0
+        return Wanted(0.0, 100.0 + 2.0 * t, 2.0, 25.0)
+
+    seen = fly(point, climbing, 60.0)
+    behind = 100.0 + 2.0 * DT * np.arange(len(seen)) - heights(seen)
+    assert throttles(seen).max() == 1.0
+    assert behind[500:].max() < 2.5
+    assert 22.0 < airspeeds(seen).min() < 24.0
+    assert airspeeds(seen)[-1] == pytest.approx(25.0, abs=0.3)
+
+
 def test_a_weaker_motor_than_the_parameters_say_leaves_no_error_behind():
     seen = fly(Point(engine=0.9), cruise(), 60.0)
     assert heights(seen)[-1] == pytest.approx(100.0, abs=0.1)
