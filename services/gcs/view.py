@@ -1,5 +1,6 @@
 """From what is known to what is drawn. A node stays the same object until what it shows has changed."""
 
+import math
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
@@ -29,6 +30,7 @@ GHOST: Colour = (190, 200, 215)
 SHOWN_SIZE, MOST_SCALE = 8.5, 4.0  # m
 """Small aircraft are drawn larger than they are, to be seen from where their whole circuit is."""
 MAP_PERIOD = 1.0  # s between two pictures of the map
+LEVEL = np.array((1.0, 0.0, 0.0, 0.0))
 UP = 0.02  # m above the floor, so that what lies on it is seen
 
 
@@ -68,6 +70,7 @@ class View:
                 if v.flies:
                     moving = self._moving[v.name].places(v.joints)
                     placed |= {f"/vehicles/{v.name}/{part}": place for part, place in moving.items()}
+                    placed[f"/height/{v.name}"] = Placed(v.place.position, LEVEL)
             if v.true_place is not None and "True pose" in self._model.layers:
                 placed[f"/true/{v.name}"] = v.true_place
         return placed
@@ -182,12 +185,15 @@ class View:
         return self._make(f"label {v.name}", (x, y, z), lambda: Text(f"{v.name}  {z:.0f} m", (x, y, z + 2.5)))
 
     def _height(self, v: VehicleModel) -> dict[str, Node]:
-        """A line from an aircraft down to the ground, so that its place can be read."""
+        """A line from an aircraft down to the ground, so that its place can be read.
+
+        It hangs on a frame, and its points are whole metres: a browser moves frames at once, new points a while later.
+        """
         if v.place is None or not v.flies:
             return {}
-        x, y, z = (round(float(c), 2) for c in v.place.position)
-        foot = np.array(((x, y, 0.0), (x, y, z)))
-        return self._make(f"height {v.name}", (x, y, z), lambda: Polyline(foot, rgb_of(v.colour), 1.5))
+        down = math.ceil(v.place.position[2])
+        foot = np.array(((0.0, 0.0, -down), (0.0, 0.0, 0.0)))
+        return {"/line": self._make(f"height {v.name}", down, lambda: Polyline(foot, rgb_of(v.colour), 1.5))[""]}
 
 
 def _shape(v: VehicleModel) -> AircraftShape:

@@ -100,9 +100,12 @@ def test_an_aircraft_is_labelled_with_its_height(station):
     label = station.page.now.nodes[f"/label/{UAV}"]
     assert isinstance(label, Text)
     assert label.text == f"{UAV}  {uav_at(2.0)[0][2]:.0f} m"
-    top, foot = station.page.now.nodes[f"/height/{UAV}"].points[::-1]
+    frame = station.page.now.places[f"/height/{UAV}"]
+    top, foot = frame.position + station.page.now.nodes[f"/height/{UAV}/line"].points[::-1]
+    assert frame.wxyz == pytest.approx((1, 0, 0, 0))
     assert top == pytest.approx(uav_at(2.0)[0], abs=0.01)
-    assert foot == pytest.approx((*top[:2], 0.0))
+    assert foot[:2] == pytest.approx(top[:2])
+    assert -1.0 < foot[2] <= 0.0
 
 
 def test_no_node_that_has_a_place_of_its_own_is_the_parent_of_another(station):
