@@ -129,9 +129,13 @@ class Pilot:
         """It lands, with a position or without one."""
         return self.landing is not None or isinstance(self._phase, Descent)
 
-    def starts(self, now: Estimate) -> bool:
-        """Its take-off has not come so far that another mode could follow."""
-        return isinstance(self._part, TakeOff) and self._part.is_low(now)
+    def is_committed(self, now: Estimate) -> bool:
+        """So near to the ground that no other mode should follow: at the begin of a take-off, on the last metres of a landing."""
+        return self._settles or (isinstance(self._part, TakeOff) and self._part.is_low(now))
+
+    @property
+    def _settles(self) -> bool:
+        return self.landing is not None and self.landing.committed
 
     @property
     def station(self) -> float | None:
@@ -355,8 +359,7 @@ class Pilot:
         """
         row, was, self._blind = TABLE[self.mode], self._blind, blind
         needs, holds = Need.POSITION in row.keeps, self.mode is FlightMode.HOLD
-        committed = self.landing is not None and self.landing.committed
-        if self.stopped or self._rolls_out or committed or not (needs or holds):
+        if self.stopped or self._rolls_out or self._settles or not (needs or holds):
             return
         if blind and not isinstance(self._phase, Descent) and (needs or not was):
             self._change(row.without, "GNSS lost: holds by dead reckoning" if row.without is FlightMode.HOLD else "GNSS lost")

@@ -91,12 +91,12 @@ class Safety:
             self._lost_for += dt
         known = self._known(seen, params)
         changes, order = self.watch.step(known, dt)
-        starts = self._pilot.starts(seen.now)
-        if self._pilot.is_blind != self._was_blind or (self._waits and not starts):
+        committed = self._pilot.is_committed(seen.now)
+        if self._pilot.is_blind != self._was_blind or (self._waits and not committed):
             # What was ordered may have been given up for want of a position, or may be carried out by now.
             self._was_blind, self._waits = self._pilot.is_blind, False
             order = order or self.watch.in_force(known)
-        if order is not None and starts:
+        if order is not None and committed:
             self._waits = True
         elif order is not None and seen.airborne:
             self._obey(order, seen.now, params)

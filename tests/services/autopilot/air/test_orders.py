@@ -3,6 +3,7 @@
 import pytest
 
 from schemas.messages import Battery
+from services.autopilot.air.mission_flight import MissionFlight
 from services.autopilot.air.modes import FlightMode
 from services.autopilot.air.pilot import Pilot
 from services.autopilot.air.safety import Safety, Seen
@@ -48,6 +49,23 @@ def test_an_order_whose_cause_is_over_when_it_flies_is_none():
     start.fly(ROLLS, 5.0, charge=0.03)
     start.fly(ROLLS, 5.0, charge=0.9)
     assert start.fly(cruising(height=14.0, airspeed=20.0), 0.5, charge=0.9) is FlightMode.TAKEOFF
+
+
+@pytest.mark.parametrize(("height", "mode"), [(30.0, FlightMode.RETURN), (8.0, FlightMode.MISSION)])
+def test_a_landing_of_a_mission_is_given_up_for_a_failsafe_only_while_there_is_height(height, mode):
+    landing, now = on_final(height / 0.08, height)
+    landing.step(now, PARAMS, 0.02)
+    start = Start()
+    start.fly(now, 0.5)
+    flight = MissionFlight(start.pilot.navigator, start.pilot._field, start.pilot.home, start.pilot.senses)
+    flight.part = landing
+    start.pilot.mode, start.pilot._phase = FlightMode.MISSION, flight
+    for _ in range(400):  # the pilot stands still: this is one moment of the approach
+        start.t += 0.02
+        start.safety.hear(start.t, None, Battery(remaining=0.1))
+        start.safety.step(start.t, Seen(now, 0.0, True), PARAMS, 0.02)
+    assert start.safety.texts == ["battery low"]
+    assert start.pilot.mode is mode
 
 
 @pytest.mark.parametrize(("height", "goes_on"), [(30.0, False), (8.0, True)])
