@@ -61,8 +61,8 @@ def _with_sensors(site: Site, preset: str) -> Site:
         own = getattr(sensors, kind)
         if own is not None and preset in presets:
             placed = {name: getattr(own, name) for name in PLACED if hasattr(own, name)}
-            taken = msgspec.structs.replace(msgspec.convert({**presets[preset]}, type(own)), **placed)
-            sensors = msgspec.structs.replace(sensors, **{kind: taken})
+            taken: dict[str, Any] = {**presets[preset], **placed}
+            sensors = msgspec.structs.replace(sensors, **{kind: type(own)(**taken)})
     return replace(site, members={PLANE: replace(member, file=msgspec.structs.replace(member.file, sensors=sensors))})
 
 

@@ -114,8 +114,17 @@ class Airframe:
             raise BadInput(f"{self._path}: it does not come to rest on its wheels in {SETTLE:g} s; look at <ground_reactions>, physics_hz")
         motion = self.motion()
         roll, pitch, _ = rotations.to_euler(motion.world_from_body)
-        self._place(at_rest(place, float(motion.position[2])), Attitude(roll, -pitch, 0.0, (0.0, 0.0, 0.0)))
-        self.blow(place.wind)
+        self._wait_in_the_wind(at_rest(place, float(motion.position[2])), Attitude(roll, -pitch, 0.0, (0.0, 0.0, 0.0)), place.wind)
+
+    def _wait_in_the_wind(self, start: Start, lies: Attitude, wind: Floats) -> None:
+        """Functions of a model read ``aero/ci2vel`` of the step before; after a calm one that is the chord over no airspeed."""
+        steps = 2
+        self.hold_still(True)
+        self._place(start, lies, steps / self._body.physics_hz)
+        self.blow(wind)
+        for _ in range(steps):
+            self._fdm.run()
+        self.hold_still(False)
 
     def drop(self, place: Start, height: float) -> None:
         """Puts the aircraft level and at rest with its wheels ``height`` [m] above the ground, brakes on, motor off, in calm air."""

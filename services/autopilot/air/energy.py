@@ -63,9 +63,10 @@ class EnergyLoops:
     def begin(self, cycle: Cycle, wanted: Wanted, pitch: float, throttle: float) -> None:
         """What is learnt starts so that the first step asks for this pitch [rad] and throttle, as far as limits allow."""
         self._power, self._trim.value, self._throttle = PowerObserver(), 0.0, None
-        asked = self._asked(cycle, wanted)
-        level = level_throttle(cycle, self._airspeed(cycle, wanted))
-        self._power.unexplained = asked.climb + asked.faster - (throttle - level) / _slope(cycle)
+        if wanted.throttle is None:
+            asked = self._asked(cycle, wanted)
+            level = level_throttle(cycle, self._airspeed(cycle, wanted))
+            self._power.unexplained = asked.climb + asked.faster - (throttle - level) / _slope(cycle)
         self._trim.value = clip(pitch - self._pitch(cycle, self._asked(cycle, wanted).reached), CLIMB_TRIM_LIMIT)
 
     def step(self, cycle: Cycle, wanted: Wanted) -> tuple[float, float]:
@@ -82,13 +83,16 @@ class EnergyLoops:
         return max(min(pitch, cycle.highest_pitch), -cycle.params.pitch_limit), self._throttle
 
     def _asked(self, cycle: Cycle, wanted: Wanted) -> Power:
-        """Within what throttle can reach: full, the airspeed comes before the path; idling, the highest airspeed does."""
+        """Within what throttle can reach: full, the airspeed comes before the path; idling or given, the highest airspeed does.
+
+        With a given throttle the path is not given up for airspeed: it is closed to land, and then airspeed is what has to go.
+        """
         params = cycle.params
         faster = _acceleration(cycle, self._airspeed(cycle, wanted))
         higher = 0.0 if wanted.height is None else wanted.height - cycle.now.height
         climb = min(max(wanted.climb + params.altitude_p * higher, -params.sink_max), params.climb_max * _room(cycle))
         most = made(cycle, 1.0) + self._power.unexplained - _acceleration(cycle, self._airspeed(cycle, wanted) - _lent(cycle, wanted))
-        least = made(cycle, 0.0) + self._power.unexplained - _acceleration(cycle, params.max_airspeed)
+        least = made(cycle, wanted.throttle or 0.0) + self._power.unexplained - _acceleration(cycle, params.max_airspeed)
         return Power(climb, faster, min(max(climb, least), most))
 
     def _pitch(self, cycle: Cycle, climb: float) -> float:

@@ -11,10 +11,14 @@ import pytest
 from schemas import topics
 from schemas.convert import array, wxyz
 from schemas.messages import Event, NavState, SurfaceCommand
+from services.sim_air.airframe import Airframe
 from services.sim_air.build import build
+from services.sim_air.states import Start
 from uvf.maths import rotations
+from uvf.maths.geodesy import LocalTangent
 from uvf.runtime.lockstep import Lockstep
 from uvf.runtime.site import ROOT, load_site
+from uvf.runtime.vehicle_file import load_vehicle
 
 MISSION = "about: One.\nworld: empty\nvehicles:\n  bird: {{model: {model}, system_id: 1, start: {{x: 0.0, y: 0.0, z: 80.0}}}}\n"
 SKYHAWK = """
@@ -73,6 +77,18 @@ def test_it_flies_a_minute_with_its_surfaces_held_at_the_trim(tmp_path, model, s
     assert np.abs(flight.heights - 80.0).max() < bound
     assert np.linalg.norm(array(flight.truth[-1].velocity)) == pytest.approx(speed, rel=0.02)
     assert math.hypot(*array(flight.truth[-1].position)[:2]) > 0.5 * 60 * speed
+
+
+def test_a_light_aircraft_stands_still_in_a_wind(tmp_path):
+    file = load_vehicle(ROOT / "vehicles", "stick25")
+    airframe = Airframe(ROOT / "vehicles" / "stick25", file.air, LocalTangent.from_degrees(40.77, 14.79, 300.0))
+    airframe.stand(Start(np.zeros(3), 0.0, 0.0, np.array((-5.0, 2.0, 0.0))))
+    before = airframe.motion()
+    for _ in range(800):
+        airframe.step()
+    after = airframe.motion()
+    assert np.linalg.norm(after.position - before.position) < 0.02
+    assert rotations.to_euler(after.world_from_body) == pytest.approx(rotations.to_euler(before.world_from_body), abs=0.02)
 
 
 def trainer(state):

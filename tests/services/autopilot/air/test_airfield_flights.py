@@ -1,4 +1,4 @@
-"""Flights with the simulator: thrown by a catapult; return, an approach given up by request, and a landing."""
+"""Flights with the simulator: thrown by a catapult and by hand; return, approaches given up by request and by itself, and landings."""
 
 import dataclasses
 import shutil
@@ -14,29 +14,45 @@ from tests.services.autopilot.air.test_flight import Flight, site
 from uvf.launch import touchdown
 from uvf.maths.rotations import to_euler
 from uvf.runtime.mission_file import Job, Start, Waypoint
-from uvf.runtime.site import ROOT
+from uvf.runtime.site import ROOT, Member
+from uvf.runtime.vehicle_file import load_vehicle
 from uvf.runtime.world_file import Strip
 
 POUND = 4.4482216  # N
-PUSH = 275.0  # N on 11 kg, forwards and a little up
-ARMED, SHOT, GONE = 4.0, 6.0, 6.9  # s
-CATAPULT = """<external_reactions><force name="catapult" frame="BODY"><location unit="M"><x>0</x><y>0</y><z>0</z></location>
-<direction><x>0.97</x><y>0</y><z>-0.24</z></direction></force></external_reactions></fdm_config>"""
+ARMED, SHOT = 4.0, 6.0  # s
+REACTION = """<external_reactions><force name="push" frame="BODY"><location unit="M"><x>{}</x><y>0</y><z>0</z></location>
+<direction><x>{}</x><y>{}</y><z>{}</z></direction></force></external_reactions></fdm_config>"""
+CENTRES = {"milvus": 0.0, "stick25": 0.222}  # m, of mass, aft in the models' frames
+CATAPULT, ARM, GUST = (0.97, 0.0, -0.24), (0.85, 0.0, -0.53), (0.0, 1.0, 0.0)
 STRIP = Strip("strip", (0.0, 0.0, 0.0), 0.0, 300.0, 12.0)
-GIVEN_UP = 12.0  # m
+GIVEN_UP, GUSTY = 12.0, 11.0  # m
 
 pytestmark = pytest.mark.timeout(400)
 
 
 def on_site(start, job, folder=None, **params):
     made = site(job, wind=(-4.0, 2.0, 0.0))
-    member = made.members["milvus"]
-    entry = msgspec.structs.replace(member.entry, start=start)
-    file = msgspec.structs.replace(member.file, params={"autopilot_air": {**member.file.params["autopilot_air"], **params}})
-    member = dataclasses.replace(member, entry=entry, file=file, folder=folder or member.folder)
+    folder = folder or made.members["milvus"].folder
+    entry = msgspec.structs.replace(made.members["milvus"].entry, model=folder.name, start=start)
+    file = load_vehicle(folder.parent, folder.name)
+    file = msgspec.structs.replace(file, params={"autopilot_air": {**file.params["autopilot_air"], **params}})
+    member = Member("milvus", entry, file, folder)
     mission = msgspec.structs.replace(made.mission, vehicles={"milvus": entry})
     world = msgspec.structs.replace(made.world, strips=[STRIP])
     return dataclasses.replace(made, mission=mission, world=world, members={"milvus": member})
+
+
+def pushed(tmp, model, along):
+    """A copy of a vehicle's folder that can be pushed at its centre of mass in this direction of its body."""
+    folder = tmp / model
+    shutil.copytree(ROOT / "vehicles" / model, folder)
+    xml = folder / model / f"{model}.xml"
+    xml.write_text(xml.read_text().replace("</fdm_config>", REACTION.format(CENTRES[model], *along)))
+    return folder
+
+
+def push(flight, newtons):
+    craft(flight).body._fdm["external_reactions/push/magnitude"] = newtons / POUND
 
 
 def craft(flight):
@@ -44,37 +60,50 @@ def craft(flight):
     return stage.aircraft["milvus"]
 
 
-@pytest.fixture(scope="module")
-def thrown(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("catapult") / "milvus"
-    shutil.copytree(ROOT / "vehicles" / "milvus", folder)
-    model = folder / "milvus" / "milvus.xml"
-    model.write_text(model.read_text().replace("</fdm_config>", CATAPULT))
+@dataclasses.dataclass(frozen=True)
+class Throw:
+    """Of an aircraft that stands at ``start`` [m east of the strip's middle] against the wind."""
+
+    model: str
+    along: tuple[float, float, float]  # of the push, body
+    newtons: float
+    gone: float  # s, when it is let go
+    start: float = -140.0
+
+
+THROWS = {"catapult": Throw("milvus", CATAPULT, 275.0, 6.9), "arm": Throw("stick25", ARM, 75.0, 6.3)}
+
+
+@pytest.fixture(scope="module", params=list(THROWS))
+def thrown(request, tmp_path_factory):
+    throw = THROWS[request.param]
+    folder = pushed(tmp_path_factory.mktemp("thrown"), throw.model, throw.along)
     job = Job(mission=[Waypoint(kind="takeoff", z=30.0), Waypoint(x=600.0, z=40.0)])
-    flight = Flight(on_site(Start(-140.0, 0.0), job, folder, launch_push=15.0))
+    flight = Flight(on_site(Start(throw.start, 0.0), job, folder, launch_push=15.0))
+    flight.gone = throw.gone
 
     def watch(t):
         if t == pytest.approx(ARMED):
             flight.ask(topics.ARM, ArmRequest(arm=True, source="test"), t)
-        craft(flight).body._fdm["external_reactions/catapult/magnitude"] = PUSH / POUND if SHOT < t < GONE else 0.0
+        push(flight, throw.newtons if SHOT < t < throw.gone else 0.0)
         return True
 
-    flight.lockstep.run(20.0, watch)
+    flight.lockstep.run(24.0, watch)
     return flight
 
 
-def test_armed_it_waits_for_the_catapult_with_its_motor_off(thrown):
+def test_armed_it_waits_for_the_throw_with_its_motor_off(thrown):
     assert thrown.replies[0].accepted
     assert max(m.throttle for t, m in thrown.surfaces if ARMED < t < SHOT) == 0.0
 
 
 def test_thrown_it_starts_its_motor_and_climbs_away_without_touching_again(thrown):
     assert craft(thrown).wreck is None
-    assert min(m.throttle for t, m in thrown.surfaces if SHOT + 0.3 < t < GONE + 2.0) == 1.0
-    heights = thrown.positions(after=GONE)[:, 2]
-    assert heights.min() > 0.5 and heights[-1] > 30.0
-    rolls = [to_euler(wxyz(m.orientation))[0] for t, m in thrown.truth if SHOT < t < GONE + 3.0]
-    assert max(map(abs, rolls)) < 0.3
+    assert min(m.throttle for t, m in thrown.surfaces if SHOT + 0.3 < t < thrown.gone + 1.0) == 1.0
+    heights = thrown.positions(after=thrown.gone)[:, 2]
+    assert heights.min() > 0.5 and heights[-1] > 28.0
+    rolls = [to_euler(wxyz(m.orientation))[0] for t, m in thrown.truth if SHOT < t < thrown.gone + 3.0]
+    assert max(map(abs, rolls)) < 0.5
     assert thrown.progress[-1][1].current == 1
 
 
@@ -116,3 +145,31 @@ def test_it_lands_on_the_strip_afterwards_and_is_disarmed(landed):
     assert touchdown.sink(track) < 1.0
     assert touchdown.error(track, [STRIP]) < 12.0
     assert abs(track[-1, 2]) < STRIP.width / 2
+
+
+@pytest.fixture(scope="module")
+def swept_aside(tmp_path_factory):
+    """On its approach a gust from the left, felt below 11 m, carries it beside the strip."""
+    folder = pushed(tmp_path_factory.mktemp("gust"), "milvus", GUST)
+    flight = Flight(on_site(Start(200.0, 150.0, 60.0, 3.1, 25.0), Job(mission=[Waypoint(kind="land")]), folder))
+    flight.gusts = []
+
+    def watch(t):
+        low = t > 5.0 and flight.truth[-1][1].position.z < GUSTY
+        if low and (not flight.gusts or t < flight.gusts[0] + 3.0):
+            flight.gusts.append(t)
+        push(flight, 80.0 if flight.gusts and flight.gusts[-1] == t else 0.0)
+        return t < 20.0 or flight.status[-1][1].armed
+
+    flight.lockstep.run(300.0, watch)
+    return flight
+
+
+def test_blown_beside_the_strip_it_goes_around_by_itself_and_lands_at_the_next_approach(swept_aside):
+    (why,) = {m.reason for _, m in swept_aside.status if "go-around" in m.reason}
+    assert "m aside" in why
+    around = next(t for t, m in swept_aside.status if "go-around" in m.reason)
+    assert swept_aside.positions(around, around + 25.0)[:, 2].min() > 1.0
+    assert craft(swept_aside).wreck is None
+    assert not swept_aside.status[-1][1].armed
+    assert abs(swept_aside.truth[-1][1].position.y) < STRIP.width / 2

@@ -81,6 +81,17 @@ def test_a_weaker_motor_than_the_parameters_say_leaves_no_error_behind():
     assert airspeeds(seen)[-1] == pytest.approx(25.0, abs=0.1)
 
 
+def test_with_its_throttle_given_the_climb_keeps_it_from_flying_too_fast():
+    """As on a take-off with plenty of power, from the first cycle after an attitude was held on."""
+    loops, point = EnergyLoops(), Point(speed=PARAMS.max_airspeed + 1.0)
+    climbing = Wanted(0.0, None, 2.0, 25.0, throttle=1.0)
+    loops.begin(Cycle(point.estimate(), PARAMS, DT), climbing, 0.2, 1.0)
+    seen = fly(point, lambda t: climbing, 20.0, loops=loops)
+    climbs = np.array([now.climb for now, _, _ in seen])
+    assert climbs[100:].min() > 2.0
+    assert airspeeds(seen)[500:].max() < PARAMS.max_airspeed + 0.5
+
+
 def test_a_higher_airspeed_is_reached_without_giving_up_height():
     seen = fly(Point(), cruise(airspeed=28.0), 40.0)
     assert airspeeds(seen)[-1] == pytest.approx(28.0, abs=0.2)
