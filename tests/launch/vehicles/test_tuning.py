@@ -38,7 +38,7 @@ def test_a_step_ends_at_what_is_asked_and_does_not_swing(tuning):
 def test_the_vehicles_have_the_figures_that_their_models_give(tuning):
     for name in ("alpha_zero_lift", "elev_zero_alpha"):
         assert tuning.before[name] == pytest.approx(tuning.figures[name], abs=2e-3)
-    for name in ("alpha_per_load", "elev_per_alpha", "roll_ff", "pitch_ff", "trim_throttle"):
+    for name in ("alpha_per_load", "elev_per_alpha", "roll_ff", "pitch_ff", "trim_throttle", "flap_alpha"):
         assert tuning.before[name] == pytest.approx(tuning.figures[name], rel=0.02), name
 
 

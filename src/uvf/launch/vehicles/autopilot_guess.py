@@ -10,11 +10,14 @@ from services.sim_air.airframe import Airframe
 from services.sim_air.equilibrium import Condition, find
 from services.sim_air.linear import LinearModels, held_still, linearize
 from services.sim_air.performance import climb_rate, performance
-from services.sim_air.states import Start
+from services.sim_air.states import Held, Start
 from services.sim_air.trim import Trim
+from services.sim_air.wiring import Controls
 from uvf.launch.vehicles.aircraft_rules import HEIGHT
 from uvf.launch.vehicles.aircraft_trial import level
 from uvf.maths.geodesy import GRAVITY
+from uvf.maths.rotations import Floats
+from uvf.maths.state_space import jacobian
 from uvf.runtime.air_file import AirBody
 from uvf.runtime.params import BadInput
 
@@ -29,6 +32,7 @@ SPEED = 25.0  # m/s, for which the defaults of the autopilot are
 MARGIN = 1.1  # of a speed over that at which the wing stalls
 HIGHEST_ALPHA = 0.25  # rad, where a model tells of no stall
 IDLING = (0.0, 0.15, 0.3)
+LOWERED, FLAP_STEPS = 0.1, (1e-3, 1e-3, 0.05)  # rad of flap; rad of alpha, elevator and flap
 YAW, SLIP = 3.0, 0.2  # of the aircraft's own damping; rad/s
 
 
@@ -37,6 +41,7 @@ def autopilot_figures(airframe: Airframe, body: AirBody) -> dict[str, float]:
     models = linearize(airframe, body.trim_speed, HEIGHT, Path(body.model))
     rates = _rates(models, body)  # first: it tells of an aircraft that cannot bank, which would not fly a turn either
     found = {**_balance(airframe, body.trim_speed), **rates, **_yaw(models), **_measures(body.trim_speed)}
+    found["flap_alpha"] = _within(_flap_lift(airframe, models.trim), 0.0, 1.0)
     found |= _slowest(airframe, body, found) | {"idle_sink": _within(_idle_sink(airframe, body), 0.1, 20.0)}
     reserve = {"climb_max": 1 - found["trim_throttle"], "sink_max": found["trim_throttle"]}
     for name, left in reserve.items():
@@ -106,6 +111,20 @@ def _yaw(models: LinearModels) -> dict[str, float]:
         "yaw_damping": _within(YAW * damping / power, 0.0, 1.0),
         "slip_i": _within(SLIP / abs(forced), 0.0, 1.0),
     }
+
+
+def _flap_lift(airframe: Airframe, trim: Condition) -> float:
+    """How far the angle of attack falls per flap that is lowered, lift and pitching moment as before; 0 without flaps."""
+
+    def left(x: Floats) -> Floats:
+        alpha, elevator, flap = x.tolist()
+        state = replace(trim, alpha=alpha).state
+        controls = Controls(trim.aileron, elevator, trim.rudder, trim.throttle, flap=flap)
+        return airframe.accelerations_held(Held(state[:3], state[3:6], state[6:9], trim.altitude), controls)[[2, 4]]
+
+    with held_still(airframe):
+        slopes = jacobian(left, np.array((trim.alpha, trim.elevator, LOWERED)), FLAP_STEPS)
+    return -float(np.linalg.solve(slopes[:, :2], -slopes[:, 2])[0])
 
 
 def _rates(models: LinearModels, body: AirBody) -> dict[str, float]:
