@@ -30,6 +30,7 @@ class System:
             "UVF_MAVLINK_TARGETS": f"127.0.0.1:{self.mavlink}",
             "UVF_MAVLINK_LISTEN": f"127.0.0.1:{free_port()}",
             "UVF_RUNS": str(runs),
+            "UVF_STATE": str(runs / "state"),
         }
         self._command = [sys.executable, "-m", "uvf.launch.cli", "up", "demo", *([] if page else ["--no-gcs"]), *arguments]
         self._output = runs / "up.txt"
