@@ -47,7 +47,7 @@ from schemas.v1.mission_pb2 import (
 )
 from schemas.v1.sensor_pb2 import AirData, Battery, Contact, Gnss, Imu, Range, WheelTicks
 from schemas.v1.simulator_pb2 import RemoveRequest, SetPoseRequest, SimObject, SimObjects, SpawnRequest, StateRequest
-from schemas.v1.system_pb2 import Event, Health, Param, ParamReply, ParamRequest, Process, Processes
+from schemas.v1.system_pb2 import Event, Health, Param, ParamReply, ParamRequest, ParamValues, Process, Processes
 from schemas.v1.time_pb2 import Clock, ClockRequest, Done
 from schemas.v1.vehicle_pb2 import (
     ArmRequest,
@@ -110,6 +110,7 @@ __all__ = [
     "Param",
     "ParamReply",
     "ParamRequest",
+    "ParamValues",
     "Pose",
     "PoseInFrame",
     "PosesInFrame",

@@ -158,6 +158,7 @@ MISSION = Topic(f"{_V}/mission/plan", m.Mission, 0, _Q.LATCHED, "mission in forc
 FENCE = Topic(f"{_V}/mission/fence", m.Fence, 0, _Q.LATCHED, "where the vehicle may be", kept=True)
 PROGRESS = Topic(f"{_V}/mission/progress", m.MissionProgress, 2, _Q.STATE, "where in the mission", kept=True)
 
+PARAMS = Topic(f"{_V}/state/params/<source>", m.ParamValues, 0, _Q.LATCHED, "a service's parameters that are in force", kept=True)
 LINK = Topic(f"{_V}/state/link", m.Link, 2, _Q.STATE, "ground stations that are in touch with the vehicle")
 
 # requests

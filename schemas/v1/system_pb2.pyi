@@ -108,6 +108,23 @@ class ParamReply(_message.Message):
     params: _containers.RepeatedCompositeFieldContainer[Param]
     def __init__(self, accepted: bool = ..., reason: _Optional[str] = ..., params: _Optional[_Iterable[_Union[Param, _Mapping]]] = ...) -> None: ...
 
+class ParamValues(_message.Message):
+    __slots__ = ("timestamp", "changes", "values")
+    class ValuesEntry(_message.Message):
+        __slots__ = ("key", "value")
+        KEY_FIELD_NUMBER: _ClassVar[int]
+        VALUE_FIELD_NUMBER: _ClassVar[int]
+        key: str
+        value: str
+        def __init__(self, key: _Optional[str] = ..., value: _Optional[str] = ...) -> None: ...
+    TIMESTAMP_FIELD_NUMBER: _ClassVar[int]
+    CHANGES_FIELD_NUMBER: _ClassVar[int]
+    VALUES_FIELD_NUMBER: _ClassVar[int]
+    timestamp: _timestamp_pb2.Timestamp
+    changes: int
+    values: _containers.ScalarMap[str, str]
+    def __init__(self, timestamp: _Optional[_Union[_timestamp_pb2.Timestamp, _Mapping]] = ..., changes: _Optional[int] = ..., values: _Optional[_Mapping[str, str]] = ...) -> None: ...
+
 class Process(_message.Message):
     __slots__ = ("name", "state", "pid", "restarts", "reason")
     class State(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):

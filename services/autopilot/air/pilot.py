@@ -245,7 +245,7 @@ class Pilot:
 
     def _new_circle(self, now: Estimate, params: AirParams) -> Circle:
         if self.mode is FlightMode.RETURN and self.home is not None:
-            height = max(self._level.height, params.return_altitude)
+            height = max(self._level.height, self.home.height + params.return_altitude)
             return Circle(Place(self.home.north, self.home.east, height), params.hold_radius)
         return Circle.ahead(now, max(self._level.height, params.min_altitude), params.hold_radius)
 

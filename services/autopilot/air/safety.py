@@ -147,7 +147,7 @@ class Safety:
         home, fence = self._pilot.home, self._pilot.fence.fencing
         if mode is FlightMode.HOLD or home is None or not fence.steers:
             return True
-        return not place_fault(Place(home.north, home.east, params.return_altitude), fence, params, params.hold_radius)
+        return not place_fault(Place(home.north, home.east, home.height + params.return_altitude), fence, params, params.hold_radius)
 
     def _hold_within(self, now: Estimate, reason: str, params: AirParams) -> bool:
         """On a circle that lies within the fence, if there is a fence and room for one."""

@@ -25,6 +25,7 @@ from schemas.messages import (
     ModeRequest,
     NavState,
     OrbitRequest,
+    ParamValues,
     Range,
     Reply,
     SetCurrentRequest,
@@ -51,6 +52,7 @@ from services.autopilot.air.servos import SERVOS, Servos
 from services.autopilot.air.state import Estimate
 from services.autopilot.air.strip import Strip
 from services.autopilot.air.wishes import Senses
+from services.autopilot.told_params import ToldParams
 from uvf.maths.geodesy import GRAVITY, LocalTangent
 from uvf.runtime.service import Outputs, Service, Value, every, optional
 
@@ -107,6 +109,7 @@ class AutopilotAir(Service):
         "progress": topics.PROGRESS,
         "path": topics.PATH,
         "events": topics.EVENTS.by("autopilot"),
+        "params": topics.PARAMS.by("autopilot_air"),
     }
     requests = {
         "arm": topics.ARM,
@@ -124,6 +127,7 @@ class AutopilotAir(Service):
         "bounds": topics.FENCE,
         "progress": topics.PROGRESS,
         "nav_state": topics.NAV_STATE,
+        "params": topics.PARAMS.by("autopilot_air"),
     }
     fixed_params = frozenset({"estimator"})
     params: AirParams
@@ -134,6 +138,7 @@ class AutopilotAir(Service):
         self._mission = intake.with_id(ship.items)
         self._announced = False
         self._bounds_told = False
+        self._told_params = ToldParams()
         self._armed = ship.starts_in_air or ship.starts_armed
         self._pilot = Pilot(intake.items(ship.items), ship.ground, ship.strips, ship.servos)
         self._pilot.leads = Steadied() if ship.leads else None
@@ -246,8 +251,11 @@ class AutopilotAir(Service):
         bounds: Fence | None = None,
         progress: MissionProgress | None = None,
         nav_state: NavState | None = None,
+        params: ParamValues | None = None,
     ) -> None:
-        """Goes on in the mode, at the item and from the attitude where the instance before has been."""
+        """Goes on in the mode, at the item, from the attitude and with the parameters where the instance before has been."""
+        if params is not None:
+            self.params = self._told_params.taken_up(params, self.params)
         if plan is not None:
             self._set_mission(plan)
         if bounds is not None:
@@ -360,7 +368,7 @@ class AutopilotAir(Service):
             self._bounds_told = True
             self._safety.fence.timestamp.CopyFrom(stamp(t))
             out["bounds"] = self._safety.fence
-        return out
+        return {**out, **self._told_params.news(t, self.params)}
 
     def _stamped_status(self, t: float) -> VehicleStatus:
         status = self._status

@@ -45,8 +45,8 @@ GROUND_RULES: tuple[Rule[Known], ...] = (
         begins="ground station lost",
         ends="ground station back",
         figures=lambda k: f"silent for {k.silence:.0f} s",
-        action=lambda k: Action.HOLD,
-        parameters=("link_timeout",),
+        action=lambda k: ACTIONS[k.params.link_action],
+        parameters=("link_timeout", "link_action"),
     ),
     Rule(
         "pose",

@@ -6,17 +6,25 @@ from msgspec import Meta
 
 from uvf.runtime.service import Params
 
+
+def _meta(low: float, high: float, unit: str, about: str) -> Meta:
+    return Meta(ge=low, le=high, description=about, extra_json_schema={"unit": unit})
+
+
 Choice = Literal["warn", "hold", "return", "off"]
 
 
 class GroundAutopilotParams(Params, frozen=True):
-    acceptance_radius: Annotated[float, Meta(gt=0)] = 0.25  # m, of waypoints that name none
-    link_timeout: Annotated[float, Meta(ge=1, le=300)] = 5.0  # s of silence of all ground stations, after which it holds
-    stuck_time: Annotated[float, Meta(ge=0.5, le=60)] = 4.0  # s that wheels are held fast, or turn in vain, until it counts as stuck
-    tilt_max: Annotated[float, Meta(ge=0.1, le=1.5)] = 0.6  # rad from upright that no ramp has
-    scan_timeout: Annotated[float, Meta(ge=0.3, le=60)] = 1.0  # s without a new scan, after which nothing drives by itself
-    map_timeout: Annotated[float, Meta(ge=1, le=300)] = 5.0  # s without a word of the mapping, the same
-    battery_low: Annotated[float, Meta(ge=0, le=0.9)] = 0.2  # charge that is low
-    battery_critical: Annotated[float, Meta(ge=0, le=0.9)] = 0.07  # charge that is critical
-    low_action: Choice = "return"
-    critical_action: Choice = "off"
+    """Names have at most 16 characters, the length of a MAVLink parameter; the radius has a shorter one there."""
+
+    acceptance_radius: Annotated[float, _meta(0.01, 10, "m", "of waypoints that name none")] = 0.25
+    link_timeout: Annotated[float, _meta(1, 300, "s", "silence of all ground stations until the link is lost")] = 5.0
+    link_action: Annotated[Choice, Meta(description="when the link is lost")] = "hold"
+    stuck_time: Annotated[float, _meta(0.5, 60, "s", "wheels held fast, or turning in vain, until it counts as stuck")] = 4.0
+    tilt_max: Annotated[float, _meta(0.1, 1.5, "rad", "from upright, that no ramp has")] = 0.6
+    scan_timeout: Annotated[float, _meta(0.3, 60, "s", "without a new scan, after which nothing drives by itself")] = 1.0
+    map_timeout: Annotated[float, _meta(1, 300, "s", "without a word of the mapping, the same")] = 5.0
+    battery_low: Annotated[float, _meta(0, 0.9, "", "charge that is low")] = 0.2
+    battery_critical: Annotated[float, _meta(0, 0.9, "", "charge that is critical")] = 0.07
+    low_action: Annotated[Choice, Meta(description="when the battery is low")] = "return"
+    critical_action: Annotated[Choice, Meta(description="when the battery is critical; off: disarmed where it stands")] = "off"

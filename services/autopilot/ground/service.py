@@ -24,6 +24,7 @@ from schemas.messages import (
     MissionRequest,
     Mode,
     ModeRequest,
+    ParamValues,
     PoseInFrame,
     Reply,
     SetCurrentRequest,
@@ -39,6 +40,7 @@ from services.autopilot.ground.mission import MissionEngine, Point, mission_of, 
 from services.autopilot.ground.multiplexer import SOURCES, Choice, Velocity, choose
 from services.autopilot.ground.params import GroundAutopilotParams
 from services.autopilot.ground.safety import Doing, Safety, Sensed, mode_of, place
+from services.autopilot.told_params import ToldParams
 from uvf.maths.kinematics import DifferentialDrive, Twist, WheelSpeeds
 from uvf.runtime.service import Outputs, Service, every, optional
 from uvf.runtime.vehicle_file import GroundBody
@@ -77,6 +79,7 @@ class GroundAutopilot(Service):
         "bounds": topics.FENCE,
         "progress": topics.PROGRESS,
         "events": topics.EVENTS.by("autopilot"),
+        "params": topics.PARAMS.by("autopilot_ground"),
     }
     requests = {
         "arm": topics.ARM,
@@ -85,7 +88,13 @@ class GroundAutopilot(Service):
         "set_current": topics.SET_CURRENT,
         "set_fence": topics.SET_FENCE,
     }
-    recalls = {"status": topics.STATUS, "mission": topics.MISSION, "progress": topics.PROGRESS, "bounds": topics.FENCE}
+    recalls = {
+        "status": topics.STATUS,
+        "mission": topics.MISSION,
+        "progress": topics.PROGRESS,
+        "bounds": topics.FENCE,
+        "params": topics.PARAMS.by("autopilot_ground"),
+    }
     params: GroundAutopilotParams
 
     def __init__(
@@ -116,6 +125,7 @@ class GroundAutopilot(Service):
         self._mission_is_new = True
         self._safety = Safety(body, fence or Fence(), imu_rpy)
         self._fence_is_new = True
+        self._told_params = ToldParams()
         self._here: fences.Place | None = None
         self._steps = 0
         self._events: list[Event] = []
@@ -165,8 +175,11 @@ class GroundAutopilot(Service):
         mission: Mission | None = None,
         progress: MissionProgress | None = None,
         bounds: Fence | None = None,
+        params: ParamValues | None = None,
     ) -> None:
-        """Goes on in the mode, armed or not, stopped or not, and at the mission's item where the instance before has been."""
+        """Goes on in the mode, armed or not, stopped or not, at the mission's item and with the parameters of the instance before."""
+        if params is not None:
+            self.params = self._told_params.taken_up(params, self.params)
         if status is not None and status.mode in SOURCES:
             self._mode, self._armed = status.mode, status.armed
         if status is not None:
@@ -268,7 +281,7 @@ class GroundAutopilot(Service):
 
     def _reports(self, t: float, position: Point | None) -> dict[str, Any]:
         self._steps += 1
-        reports: dict[str, Any] = {"events": self._events}
+        reports: dict[str, Any] = {"events": self._events, **self._told_params.news(t, self.params)}
         self._events = []
         if self._steps % STATUS_EVERY == 1:
             reports["status"] = self._status(t, position)

@@ -35,6 +35,14 @@ def test_return_circles_home_at_a_safe_height():
     assert pilot.circle.centre == Place(40.0, 0.0, PARAMS.return_altitude)
 
 
+def test_the_height_of_return_counts_from_home():
+    pilot = Pilot(FAR, 120.0)
+    pilot.step(cruising(height=150.0), PARAMS, 0.02)
+    pilot.change_mode(FlightMode.RETURN, "test")
+    pilot.step(cruising(north=500.0, height=150.0), PARAMS, 0.02)
+    assert pilot.circle.centre.height == 120.0 + PARAMS.return_altitude
+
+
 def test_return_does_not_descend():
     pilot = flying(height=150.0)
     pilot.change_mode(FlightMode.HOLD, "test")

@@ -46,6 +46,7 @@ def test_each_report_has_its_own_rate():
         "progress": 4,
         "path": 4,
         "plan": 1,
+        "params": 1,
         "bounds": 1,
     }
 
