@@ -7,7 +7,7 @@ import time
 import pytest
 
 from services.autopilot.mavlink.build import open_link
-from services.autopilot.mavlink.endpoint import FORGET_AFTER, UdpLink
+from services.autopilot.mavlink.endpoint import FORGET_AFTER, MOST_LEARNED, UdpLink
 
 
 @pytest.fixture
@@ -51,11 +51,26 @@ def test_whoever_calls_the_listening_port_is_answered_from_it_and_forgotten_afte
         caller.settimeout(2.0)
         caller.sendto(b"hi", link.addresses[1])
         ((_, peer),) = receive(link, 10.0)
+        assert peer not in link.peers(10.0), "nothing sound has come yet"
+        link.keep(10.0, peer)
         link.send(b"there", peer)
         assert caller.recvfrom(100) == (b"there", link.addresses[1])
         assert peer in link.peers(10.0)
         link.receive(10.0 + FORGET_AFTER + 0.1)
         assert peer not in link.peers(71.0) and len(link.peers(71.0)) == 1
+
+
+def test_when_too_many_call_the_longest_silent_one_makes_room(link):
+    callers = [socket.socket(socket.AF_INET, socket.SOCK_DGRAM) for _ in range(MOST_LEARNED + 1)]
+    for t, caller in enumerate(callers):
+        caller.sendto(b"hi", link.addresses[1])
+        for _, peer in receive(link, float(t)):
+            link.keep(float(t), peer)
+    learned = link.peers(40.0)[1:]
+    assert len(learned) == MOST_LEARNED
+    assert [caller.getsockname()[1] for caller in callers[1:]] == [port for _, port in learned]
+    for caller in callers:
+        caller.close()
 
 
 def test_nobody_listening_is_normal_and_a_later_station_hears():

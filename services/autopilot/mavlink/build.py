@@ -3,17 +3,28 @@
 import logging
 import os
 import socket
+import time
+from collections.abc import Mapping
 
 from services.autopilot.air.params import AirParams
 from services.autopilot.mavlink.endpoint import Peer, UdpLink
 from services.autopilot.mavlink.facts import Facts
+from services.autopilot.mavlink.key_store import KeyStore
 from services.autopilot.mavlink.service import MavlinkService
+from services.autopilot.mavlink.signing import Signing
 from uvf.maths.geodesy import LocalTangent
 from uvf.runtime.address import peer
+from uvf.runtime.params import BadInput, nearest
 from uvf.runtime.site import Host, Member, Site
+from uvf.runtime.state_folder import state_folder
 
 TARGETS = "UVF_MAVLINK_TARGETS"
 LISTEN = "UVF_MAVLINK_LISTEN"
+IDENTITY = "UVF_MAVLINK_IDENTITY"
+REQUIRE_SIGNING = "UVF_MAVLINK_REQUIRE_SIGNING"
+IDENTITIES = {"px4": False, "generic": True}
+SWITCH = {"0": False, "1": True}
+KEYS = "mavlink-keys.json"
 DEFAULT_TARGETS = "127.0.0.1:14550,127.0.0.1:14540"
 AIR = "autopilot_air"
 DEFAULT_LISTEN = "127.0.0.1:14580"
@@ -24,18 +35,43 @@ log = logging.getLogger(__name__)
 
 
 def build(site: Site) -> list[Host]:
-    """Raises BadInput when an address in the environment is not ``host:port``."""
+    """Raises BadInput when an address in the environment is not ``host:port``, or a choice none of those that there are."""
     targets = [peer(text, TARGETS, EXAMPLE) for text in os.environ.get(TARGETS, DEFAULT_TARGETS).split(",") if text.strip()]
     where = os.environ.get(LISTEN, DEFAULT_LISTEN)
     listen = peer(where, LISTEN, EXAMPLE) if where.strip() else None
-    facts = facts_of(site)
-    return [Host(MavlinkService, lambda: MavlinkService(facts, open_link(targets, listen)), writes_for=tuple(site.members))]
+    generic = chosen(IDENTITY, IDENTITIES, "px4", os.environ)
+    required = chosen(REQUIRE_SIGNING, SWITCH, "0", os.environ)
+
+    def make() -> MavlinkService:
+        started = time.time()
+        return MavlinkService(facts_of(site, generic, started), open_link(targets, listen), open_keys(started, required))
+
+    return [Host(MavlinkService, make, writes_for=tuple(site.members))]
 
 
-def facts_of(site: Site) -> list[Facts]:
+def chosen(name: str, choices: Mapping[str, bool], default: str, environment: Mapping[str, str]) -> bool:
+    """Raises BadInput."""
+    text = environment.get(name, default)
+    if text not in choices:
+        raise BadInput(f"{name}={text}: {nearest(text, choices)}")
+    return choices[text]
+
+
+def facts_of(site: Site, generic: bool = False, started: float = 0.0) -> list[Facts]:
     origin = site.world.origin
     tangent = LocalTangent.from_degrees(origin.latitude, origin.longitude, origin.altitude)
-    return [Facts(m.name, m.entry.system_id, m.file, tangent, numbers_of(m)) for m in site.members.values()]
+    return [Facts(m.name, m.entry.system_id, m.file, tangent, numbers_of(m), generic, started) for m in site.members.values()]
+
+
+def open_keys(started: float, required: bool) -> Signing:
+    """A file that is none of ours is put aside: without its keys everybody is a stranger, which ``required`` refuses."""
+    path = state_folder() / KEYS
+    try:
+        return Signing(KeyStore(path), started, required)
+    except ValueError as error:
+        path.replace(path.with_suffix(".broken"))
+        log.warning("mavlink: %s (it is put aside)", error)
+        return Signing(KeyStore(path), started, required)
 
 
 def numbers_of(member: Member) -> dict[str, float]:

@@ -2,9 +2,12 @@
 
 import struct
 from collections import defaultdict
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 
 from services.autopilot.mavlink import dialect as mav
+from services.autopilot.mavlink.endpoint import Peer
+from services.autopilot.mavlink.framing import Sign, body, frame
 
 AUTOPILOT = mav.MAV_COMP_ID_AUTOPILOT1
 
@@ -25,21 +28,27 @@ class Codec:
 
     def __init__(self) -> None:
         self.counts = Counts()
-        self._mav = mav.MAVLink(None, srcComponent=AUTOPILOT)
+        self._mav = mav.MAVLink(None)
         self._mav.robust_parsing = True
-        self._seq: defaultdict[int, int] = defaultdict(int)
+        self._seq: defaultdict[tuple[int, Peer], int] = defaultdict(int)
+        """The next number of each system to each peer: one who is told less than another misses nothing."""
 
-    def pack(self, system: int, message: mav.MAVLink_message) -> bytes:
-        """One MAVLink 2 packet from a system's autopilot; empty when a number does not fit."""
-        self._mav.srcSystem = system
-        self._mav.seq = self._seq[system]
+    def packets(self, system: int, message: mav.MAVLink_message, to: Sequence[tuple[Peer, Sign | None]]) -> Iterator[tuple[bytes, Peer]]:
+        """MAVLink 2 packets from a system's autopilot, for each peer with its own numbering; none when a number does not fit."""
         try:
-            packet: bytes = message.pack(self._mav)
+            what = body(message)
         except (struct.error, OverflowError):
             self.counts.unsendable += 1
-            return b""
-        self._seq[system] = (self._seq[system] + 1) % 256
-        return packet
+            return
+        for peer, sign in to:
+            seq = self._seq[system, peer]
+            self._seq[system, peer] = (seq + 1) % 256
+            yield frame(what, seq, (system, AUTOPILOT), sign), peer
+
+    def forget(self, peers: Collection[Peer]) -> None:
+        """Counts only for these peers on."""
+        for key in [key for key in self._seq if key[1] not in peers]:
+            del self._seq[key]
 
     def parse(self, datagram: bytes) -> list[mav.MAVLink_message]:
         """The messages of a datagram. A packet never spans two, so a broken one spoils nothing after it."""

@@ -22,6 +22,9 @@ class Link(Protocol):
     def peers(self, t: float) -> list[Peer]:
         """Who hears what is meant for everybody."""
 
+    def keep(self, t: float, peer: Peer) -> None:
+        """Something sound has come from a peer, in the last call: it hears the vehicles while it says something now and then."""
+
     def send(self, datagram: bytes, peer: Peer) -> None: ...
 
     def close(self) -> None: ...
@@ -40,6 +43,8 @@ class UdpLink:
         self._own = _bound(("127.0.0.1" if loopback else "0.0.0.0", 0))
         self._sockets = [self._own]
         self._learned: dict[Peer, tuple[float, socket.socket]] = {}
+        self._arrived: dict[Peer, socket.socket] = {}
+        """Where the datagrams of the last call have come in."""
         if listen is not None:
             try:
                 self._sockets.append(_bound(listen))
@@ -53,12 +58,13 @@ class UdpLink:
         return [sock.getsockname() for sock in self._sockets]
 
     def receive(self, t: float) -> list[tuple[bytes, Peer]]:
-        arrived = [(data, peer) for sock in self._sockets for data, peer in self._drain(sock, t)]
+        self._arrived.clear()
+        arrived = [(data, peer) for sock in self._sockets for data, peer in self._drain(sock)]
         for peer in [p for p, (heard, _) in self._learned.items() if t - heard > FORGET_AFTER]:
             del self._learned[peer]
         return arrived
 
-    def _drain(self, sock: socket.socket, t: float) -> list[tuple[bytes, Peer]]:
+    def _drain(self, sock: socket.socket) -> list[tuple[bytes, Peer]]:
         arrived: list[tuple[bytes, Peer]] = []
         for _ in range(DATAGRAMS_PER_CALL):
             try:
@@ -67,10 +73,16 @@ class UdpLink:
                 break
             except OSError:
                 continue  # "connection refused" of an earlier datagram: nobody listens there yet
-            if peer not in self._targets and (peer in self._learned or len(self._learned) < MOST_LEARNED):
-                self._learned[peer] = (t, sock)
+            self._arrived[peer] = sock
             arrived.append((data, peer))
         return arrived
+
+    def keep(self, t: float, peer: Peer) -> None:
+        if peer in self._targets:
+            return
+        if peer not in self._learned and len(self._learned) >= MOST_LEARNED:
+            del self._learned[min(self._learned, key=lambda p: self._learned[p][0])]
+        self._learned[peer] = (t, self._arrived[peer])
 
     def peers(self, t: float) -> list[Peer]:
         return [*self._targets, *self._learned]

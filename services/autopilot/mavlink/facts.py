@@ -25,6 +25,10 @@ class Facts:
     file: VehicleFile
     origin: LocalTangent
     numbers: Mapping[str, float]
+    generic: bool = False
+    """Says that it is a generic autopilot instead of a PX4-compatible one; all else is the same."""
+    started: float = 0.0
+    """Unix time [s] when the link came up, 0 = unknown."""
 
     @property
     def kind(self) -> Kind:

@@ -34,7 +34,13 @@ def _own_version() -> tuple[int, int, int]:
 
 
 VERSION = _own_version()
-GREETING = f"UVF {'.'.join(map(str, VERSION))} simulated autopilot (PX4-compatible MAVLink, not PX4)"
+VENDOR = 0x5556
+PRODUCT = {Kind.KIND_FIXED_WING: 1, Kind.KIND_GROUND: 2}
+
+
+def greeting(facts: Facts) -> str:
+    interface = "generic MAVLink" if facts.generic else "PX4-compatible MAVLink, not PX4"
+    return f"UVF {'.'.join(map(str, VERSION))} simulated autopilot ({interface})"
 
 
 def heartbeat(facts: Facts, latest: Latest) -> mav.MAVLink_heartbeat_message:
@@ -46,7 +52,8 @@ def heartbeat(facts: Facts, latest: Latest) -> mav.MAVLink_heartbeat_message:
     if status is not None and status.armed:
         flags |= mav.MAV_MODE_FLAG_SAFETY_ARMED
     custom = row.custom if row else 0
-    return mav.MAVLink_heartbeat_message(TYPE[facts.kind], mav.MAV_AUTOPILOT_PX4, flags, custom, _system_status(latest), 3)
+    autopilot = mav.MAV_AUTOPILOT_GENERIC if facts.generic else mav.MAV_AUTOPILOT_PX4
+    return mav.MAVLink_heartbeat_message(TYPE[facts.kind], autopilot, flags, custom, _system_status(latest), 3)
 
 
 def _system_status(latest: Latest) -> int:
@@ -59,7 +66,7 @@ def _system_status(latest: Latest) -> int:
 
 def autopilot_version(facts: Facts) -> mav.MAVLink_autopilot_version_message:
     """Version type DEV (0): an official one is compared with the newest PX4. Own version in the custom bytes, reversed."""
-    major, minor, patch = EMULATED_PX4
+    major, minor, patch = VERSION if facts.generic else EMULATED_PX4
     own = VERSION[0] << 24 | VERSION[1] << 16 | VERSION[2] << 8
     custom = (VERSION[2], VERSION[1], VERSION[0], 0, 0, 0, 0, 0)
     digest = hashlib.sha256(f"{facts.name}/{facts.system_id}".encode()).digest()
@@ -73,8 +80,8 @@ def autopilot_version(facts: Facts) -> mav.MAVLink_autopilot_version_message:
         custom,
         custom,
         (0,) * 8,
-        0,
-        0,
+        VENDOR,
+        PRODUCT[facts.kind],
         uid,
         tuple(digest[:18]),
     )

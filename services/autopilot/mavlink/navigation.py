@@ -20,6 +20,12 @@ def boot_ms(t: float) -> int:
     return whole(t * 1e3, (0, 2**32 - 1))
 
 
+def system_time(facts: Facts, latest: Latest, t: float) -> Message:
+    """Wall time, as of all that goes over the link."""
+    unix = whole((facts.started + t) * 1e6, (0, 2**63)) if facts.started else 0
+    return mav.MAVLink_system_time_message(unix, boot_ms(t))
+
+
 def ned_from_frd(enu_from_flu: Floats) -> Floats:
     """(4,) wxyz; the change of conventions is its own inverse."""
     return enu_flu_from_ned_frd(enu_from_flu)

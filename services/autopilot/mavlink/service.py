@@ -8,12 +8,11 @@ from google.protobuf.message import Message
 from schemas import topics
 from schemas.convert import stamp
 from schemas.messages import Battery, Clock, Event, Gnss, Link, Mission, MissionProgress, NavState, VehicleStatus
-from services.autopilot.mavlink import dialect as mav
 from services.autopilot.mavlink import endpoint
-from services.autopilot.mavlink.codec import AUTOPILOT, Codec
+from services.autopilot.mavlink.codec import Codec
 from services.autopilot.mavlink.facts import Facts
-from services.autopilot.mavlink.line import Sender
-from services.autopilot.mavlink.stations import Stations
+from services.autopilot.mavlink.reception import Reception
+from services.autopilot.mavlink.signing import Signing
 from services.autopilot.mavlink.vehicle_link import VehicleLink
 from uvf.maths.sampling import Due
 from uvf.runtime.service import Answer, Outputs, Service, each_vehicle, every, optional
@@ -47,12 +46,12 @@ class MavlinkService(Service):
         "goal": topics.GOAL,
     }
 
-    def __init__(self, facts: Sequence[Facts], link: endpoint.Link) -> None:
+    def __init__(self, facts: Sequence[Facts], link: endpoint.Link, signing: Signing | None = None) -> None:
         self.codec = Codec()
         self._link = link
         self._vehicles = {one.name: VehicleLink(one) for one in facts}
-        self._own_ids = {one.system_id for one in facts}
-        self._stations = Stations()
+        self._signing = signing or Signing()
+        self._reception = Reception(list(self._vehicles.values()), link, self._signing)
         self._link_due = Due(topics.LINK.hz)
 
     def step(
@@ -86,9 +85,7 @@ class MavlinkService(Service):
             self._vehicles[answer.vehicle].line.answered(answer)
         for datagram, peer in self._link.receive(t):
             for message in self.codec.parse(datagram):
-                header = message.get_header()
-                self._stations.hear(t, message)
-                self._route(message, Sender(peer, header.srcSystem, header.srcComponent))
+                self._reception.take(t, message, peer)
         self._speak(t, events)
         return {**self._outputs(), **self._links(t)}
 
@@ -103,31 +100,23 @@ class MavlinkService(Service):
                 if name in by_vehicle:
                     setattr(vehicle.line.latest, what, by_vehicle[name])
 
-    def _route(self, message: mav.MAVLink_message, sender: Sender) -> None:
-        """To the vehicle it is addressed to, or to all; own packets that come back are nobody's."""
-        if sender.system in self._own_ids:
-            return
-        target = getattr(message, "target_system", getattr(message, "target", 0))
-        if getattr(message, "target_component", 0) not in (0, AUTOPILOT):
-            return
-        for vehicle in self._vehicles.values():
-            if target in (0, vehicle.line.facts.system_id):
-                vehicle.hear(message, sender)
-
     def _speak(self, t: float, events: Mapping[str, Sequence[Event]]) -> None:
         peers = self._link.peers(t)
+        self.codec.forget(peers)
+        signers = {peer: self._signing.signer(t, peer) for peer in peers}
         for name, vehicle in self._vehicles.items():
             vehicle.forget(peers)
             for message, to in vehicle.tick(peers, events.get(name, ())):
-                packet = self.codec.pack(vehicle.line.facts.system_id, message)
-                for peer in to if packet else ():
+                for packet, peer in self.codec.packets(
+                    vehicle.line.facts.system_id, message, [(p, signers[p]) for p in to if p in signers]
+                ):
                     self._link.send(packet, peer)
 
     def _links(self, t: float) -> Outputs:
         """Told of every vehicle alike: a station hears them all."""
         if not self._link_due.at(t):
             return {}
-        count = self._stations.count(t)
+        count = self._reception.stations.count(t)
         return {"link": {name: Link(timestamp=stamp(v.line.latest.sim_time), stations=count) for name, v in self._vehicles.items()}}
 
     def _outputs(self) -> Outputs:

@@ -48,9 +48,15 @@ class Schedule:
                 result.append((message, to))
         return result
 
+    def renew(self, peer: Peer) -> None:
+        """Default rates for a peer again."""
+        self._own = {key: interval for key, interval in self._own.items() if key[1] != peer}
+        self._due = {key: at for key, at in self._due.items() if key[1] != peer}
+
     def forget(self, peers: Sequence[Peer]) -> None:
         """Drops the wishes of peers that are gone."""
-        self._own = {key: interval for key, interval in self._own.items() if key[1] in peers}
+        for gone in {peer for _, peer in self._own if peer not in peers}:
+            self.renew(gone)
 
     def _is_due(self, key: tuple[int, Peer | None], interval: float | None, t: float) -> bool:
         if interval is None:

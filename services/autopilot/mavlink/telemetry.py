@@ -171,7 +171,7 @@ def _quaternion(facts: Facts, latest: Latest, t: float) -> Message:
 STREAMS: dict[int, Stream] = {
     mav.MAVLINK_MSG_ID_HEARTBEAT: Stream(lambda f, n, t: identity.heartbeat(f, n), 1),
     mav.MAVLINK_MSG_ID_SYS_STATUS: Stream(_sys_status, 1),
-    mav.MAVLINK_MSG_ID_SYSTEM_TIME: Stream(lambda f, n, t: mav.MAVLink_system_time_message(0, navigation.boot_ms(t)), 1),
+    mav.MAVLINK_MSG_ID_SYSTEM_TIME: Stream(navigation.system_time, 1),
     mav.MAVLINK_MSG_ID_GPS_RAW_INT: Stream(_gps_raw, 5),
     mav.MAVLINK_MSG_ID_ATTITUDE: Stream(navigation.attitude, 20),
     mav.MAVLINK_MSG_ID_ATTITUDE_QUATERNION: Stream(_quaternion, 20),

@@ -11,7 +11,7 @@ from services.autopilot.mavlink.endpoint import Peer
 from services.autopilot.mavlink.facts import Facts
 from services.autopilot.mavlink.ftp import on_ftp
 from services.autopilot.mavlink.health import health
-from services.autopilot.mavlink.identity import GREETING
+from services.autopilot.mavlink.identity import greeting
 from services.autopilot.mavlink.line import Line, Sender
 from services.autopilot.mavlink.manual import drive_command, surface_command
 from services.autopilot.mavlink.missions import Missions
@@ -38,7 +38,6 @@ class VehicleLink:
         self._parameters = Parameters(self.line)
         self._missions = Missions(self.line)
         self._handlers = self._all_handlers()
-        self._greeted: set[Peer] = set()
         self._state: tuple[object, ...] = ()
         self._item: tuple[object, ...] = ()
         self._reached: tuple[int, int] | None = None
@@ -72,15 +71,16 @@ class VehicleLink:
         }
 
     def hear(self, message: mav.MAVLink_message, sender: Sender) -> None:
-        """One message for this vehicle. A peer's first one is greeted with what this vehicle is."""
-        if sender.peer not in self._greeted:
-            self._greeted.add(sender.peer)
-            self.line.text(mav.MAV_SEVERITY_INFO, GREETING, sender.peer)
-            for complaint in self._complaints:
-                self.line.text(mav.MAV_SEVERITY_WARNING, f"PreArm: {complaint}", sender.peer)
+        """One message for this vehicle."""
         handler = self._handlers.get(message.get_msgId())
         if handler is not None:
             handler(message, sender)
+
+    def greet(self, peer: Peer) -> None:
+        """Somebody is new there: what this vehicle is, and why it should not arm."""
+        self.line.text(mav.MAV_SEVERITY_INFO, greeting(self.line.facts), peer)
+        for complaint in self._complaints:
+            self.line.text(mav.MAV_SEVERITY_WARNING, f"PreArm: {complaint}", peer)
 
     def tick(self, peers: Sequence[Peer], events: Sequence[Event]) -> list[tuple[mav.MAVLink_message, list[Peer]]]:
         """What goes out now, and to whom, after the messages of this step have been heard."""
@@ -99,8 +99,7 @@ class VehicleLink:
         return out
 
     def forget(self, peers: Sequence[Peer]) -> None:
-        """Peers that are gone are greeted again, and get default rates, when they come back."""
-        self._greeted &= set(peers)
+        """Drops what peers that are gone have wished for."""
         self.schedule.forget(peers)
 
     def _note_changes(self) -> None:

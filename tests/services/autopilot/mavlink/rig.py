@@ -79,6 +79,10 @@ class MemoryLink:
     def peers(self, t):
         return self.listening
 
+    def keep(self, t, peer):
+        if peer not in self.listening:
+            self.listening.append(peer)
+
     def send(self, datagram, peer):
         self.outgoing.append((datagram, peer))
 

@@ -53,3 +53,23 @@ def test_the_environment_chooses_other_addresses(opened, monkeypatch):
     (host,) = build(load_site(ROOT / "missions" / "demo.yaml"))
     host.make()
     assert opened == [([("gcs.local", 14550), ("10.0.0.2", 9)], None)]
+
+
+@pytest.mark.parametrize("text", ["px5", "PX4", ""])
+def test_an_identity_that_there_is_not_is_named_with_its_place(text, monkeypatch):
+    monkeypatch.setenv("UVF_MAVLINK_IDENTITY", text)
+    with pytest.raises(BadInput, match="UVF_MAVLINK_IDENTITY"):
+        build(load_site(ROOT / "missions" / "demo.yaml"))
+
+
+def test_the_environment_chooses_identity_and_whether_signing_is_required(opened, monkeypatch, tmp_path):
+    site = load_site(ROOT / "missions" / "demo.yaml")
+    monkeypatch.setenv("UVF_STATE", str(tmp_path))
+    made = []
+    monkeypatch.setattr(build_module, "MavlinkService", lambda *arguments: made.append(arguments))
+    for identity, required in (("px4", "0"), ("generic", "1")):
+        monkeypatch.setenv("UVF_MAVLINK_IDENTITY", identity)
+        monkeypatch.setenv("UVF_MAVLINK_REQUIRE_SIGNING", required)
+        build(site)[0].make()
+    chosen = [({f.generic for f in facts}, signing._required) for facts, _, signing in made]
+    assert chosen == [({False}, False), ({True}, True)]

@@ -15,6 +15,12 @@ def packet(message, mavlink1=False):
     return message.pack(mav.MAVLink(None, 255, 190), force_mavlink1=mavlink1)
 
 
+def first(codec, message):
+    """The packet to the only peer."""
+    ((data, _),) = codec.packets(1, message, [(GCS, None)])
+    return data
+
+
 def test_a_broken_checksum_is_counted_and_the_next_packet_read():
     codec = Codec()
     good = packet(BEAT)
@@ -33,7 +39,7 @@ def test_half_a_packet_does_not_swallow_the_next_datagram():
 def test_mavlink_1_is_understood_and_never_spoken():
     codec = Codec()
     assert len(codec.parse(packet(BEAT, mavlink1=True))) == 1
-    assert codec.pack(1, BEAT)[0] == mav.PROTOCOL_MARKER_V2
+    assert first(codec, BEAT)[0] == mav.PROTOCOL_MARKER_V2
 
 
 def test_foreign_messages_are_counted_as_unknown():
@@ -46,8 +52,8 @@ def test_foreign_messages_are_counted_as_unknown():
 
 def test_a_number_that_does_not_fit_costs_no_sequence_number():
     codec = Codec()
-    assert codec.pack(1, mav.MAVLink_heartbeat_message(300, 8, 0, 0, 0, 3)) == b""
-    assert codec.pack(1, BEAT)[4] == 0
+    assert list(codec.packets(1, mav.MAVLink_heartbeat_message(300, 8, 0, 0, 0, 3), [(GCS, None)])) == []
+    assert first(codec, BEAT)[4] == 0
 
 
 def random_datagram(rng):

@@ -1,0 +1,43 @@
+"""The signing keys that ground stations have given, kept across restarts in a file that only its owner reads."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import msgspec
+
+from uvf.runtime.state_folder import write_private
+
+KEY_BYTES = 32
+MOST_KEYS = 16
+
+
+class Kept(msgspec.Struct, forbid_unknown_fields=True):
+    """keys: in hexadecimal, the newest first; newest: timestamp of a signature, never to be gone below."""
+
+    keys: list[str] = []
+    newest: int = 0
+
+
+@dataclass
+class KeyStore:
+    """path: None keeps nothing. Keys are never part of a text: neither of an error nor of a log."""
+
+    path: Path | None = None
+
+    def load(self) -> tuple[list[bytes], int]:
+        """Keys, the newest first, and the newest timestamp. Raises ValueError, without its contents, for a file that is none of ours."""
+        if self.path is None or not self.path.exists():
+            return [], 0
+        try:
+            kept = msgspec.json.decode(self.path.read_bytes(), type=Kept)
+            keys = [bytes.fromhex(text) for text in kept.keys]
+        except (msgspec.DecodeError, ValueError, OSError):
+            keys = [b""]
+        if any(len(key) != KEY_BYTES for key in keys):
+            raise ValueError(f"{self.path}: not a file of signing keys; remove it, and set signing up again") from None
+        return keys, kept.newest
+
+    def save(self, keys: list[bytes], newest: int) -> None:
+        """Raises OSError."""
+        if self.path is not None:
+            write_private(self.path, msgspec.json.encode(Kept([key.hex() for key in keys[:MOST_KEYS]], newest)))

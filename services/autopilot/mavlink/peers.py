@@ -1,0 +1,38 @@
+"""Which systems speak through each peer, and when a connection begins: with the first word, or the first after a silence."""
+
+from typing import NamedTuple
+
+from services.autopilot.mavlink.endpoint import Peer
+from services.autopilot.mavlink.line import Sender
+
+CONNECTION_ENDS = 10.0  # s, wall, without a word: ten heartbeats
+
+
+class News(NamedTuple):
+    """connection: nobody was there at this peer; system: this one was not."""
+
+    connection: bool
+    system: bool
+
+
+class Peers:
+    """A router may speak for several systems at one address; a ground station may be started anew at the same one."""
+
+    def __init__(self) -> None:
+        self._heard: dict[Peer, dict[int, float]] = {}
+
+    def hear(self, t: float, sender: Sender) -> News:
+        """One message at ``t`` [s, wall]: is its peer, or its system, newly there?"""
+        there = self._heard.setdefault(sender.peer, {})
+        before = self.systems(t, sender.peer)
+        there[sender.system] = t
+        return News(connection=not before, system=sender.system not in before)
+
+    def systems(self, t: float, peer: Peer) -> set[int]:
+        """Those who have spoken through a peer lately."""
+        return {system for system, heard in self._heard.get(peer, {}).items() if t - heard <= CONNECTION_ENDS}
+
+    def forget(self, t: float) -> None:
+        """Drops who has not been heard for long, so that callers from ever new addresses leave nothing behind."""
+        for peer in [peer for peer in self._heard if not self.systems(t, peer)]:
+            del self._heard[peer]

@@ -1,0 +1,76 @@
+"""What comes in: whose it is, whether it may be heard, and for which vehicle. A new connection is greeted."""
+
+from collections.abc import Sequence
+
+from services.autopilot.mavlink import dialect as mav
+from services.autopilot.mavlink.codec import AUTOPILOT
+from services.autopilot.mavlink.endpoint import Link, Peer
+from services.autopilot.mavlink.line import Sender
+from services.autopilot.mavlink.peers import Peers
+from services.autopilot.mavlink.signing import Signing, Verdict
+from services.autopilot.mavlink.stations import Stations
+from services.autopilot.mavlink.vehicle_link import VehicleLink
+
+
+class Reception:
+    def __init__(self, vehicles: Sequence[VehicleLink], link: Link, signing: Signing) -> None:
+        self.stations = Stations()
+        self._vehicles = vehicles
+        self._own_ids = {vehicle.line.facts.system_id for vehicle in vehicles}
+        self._link = link
+        self._signing = signing
+        self._peers = Peers()
+
+    def take(self, t: float, message: mav.MAVLink_message, peer: Peer) -> None:
+        """One sound message at ``t`` [s, wall]; own packets that come back are nobody's."""
+        header = message.get_header()
+        sender = Sender(peer, header.srcSystem, header.srcComponent)
+        if sender.system in self._own_ids:
+            return
+        self._link.keep(t, peer)
+        self._welcome(t, sender)
+        verdict = self._signing.check(t, message, sender)
+        if verdict in (Verdict.SIGNED, Verdict.UNSIGNED):
+            self.stations.hear(t, message)
+        self._pass_on(t, message, sender, verdict)
+
+    def _welcome(self, t: float, sender: Sender) -> None:
+        """A connection begins with default rates, unsigned, and with a word about what this is to each system in it."""
+        news = self._peers.hear(t, sender)
+        if not news.system:
+            return
+        self._peers.forget(t)
+        if news.connection:
+            self._signing.forget(sender.peer)
+        for vehicle in self._vehicles:
+            if news.connection:
+                vehicle.schedule.renew(sender.peer)
+            vehicle.greet(sender.peer)
+
+    def _pass_on(self, t: float, message: mav.MAVLink_message, sender: Sender, verdict: Verdict) -> None:
+        addressed = self._addressed(message)
+        if isinstance(message, mav.MAVLink_setup_signing_message):
+            self._set_up(message, sender, verdict, addressed)
+            return
+        for vehicle in addressed:
+            if verdict is Verdict.REFUSED:
+                vehicle.line.text(mav.MAV_SEVERITY_WARNING, self._signing.why_refused(sender.peer), sender.peer)
+            elif verdict is not Verdict.REPLAYED:
+                vehicle.hear(message, sender)
+
+    def _addressed(self, message: mav.MAVLink_message) -> list[VehicleLink]:
+        """The vehicle with the number that the message names, or all."""
+        target = getattr(message, "target_system", getattr(message, "target", 0))
+        if getattr(message, "target_component", 0) not in (0, AUTOPILOT):
+            return []
+        return [vehicle for vehicle in self._vehicles if target in (0, vehicle.line.facts.system_id)]
+
+    def _set_up(
+        self, message: mav.MAVLink_setup_signing_message, sender: Sender, verdict: Verdict, addressed: Sequence[VehicleLink]
+    ) -> None:
+        """The link is one for all vehicles; the one that is asked answers."""
+        if not addressed:
+            return
+        armed = any(vehicle.line.latest.status is not None and vehicle.line.latest.status.armed for vehicle in addressed)
+        if said := self._signing.setup(message, sender, verdict, armed):
+            addressed[0].line.text(mav.MAV_SEVERITY_INFO if "from now" in said else mav.MAV_SEVERITY_WARNING, said, sender.peer)
