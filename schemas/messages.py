@@ -45,12 +45,22 @@ from schemas.v1.mission_pb2 import (
     OrbitRequest,
     SetCurrentRequest,
 )
+from schemas.v1.order_pb2 import (
+    AltitudeOrder,
+    HomeOrder,
+    OrderRequest,
+    PictureOrder,
+    RestartOrder,
+    SpeedOrder,
+    TakeoffOrder,
+)
 from schemas.v1.sensor_pb2 import AirData, Battery, Contact, Gnss, Imu, Range, WheelTicks
 from schemas.v1.simulator_pb2 import RemoveRequest, SetPoseRequest, SimObject, SimObjects, SpawnRequest, StateRequest
 from schemas.v1.system_pb2 import Event, Health, Param, ParamReply, ParamRequest, ParamValues, Process, Processes
 from schemas.v1.time_pb2 import Clock, ClockRequest, Done
 from schemas.v1.vehicle_pb2 import (
     ArmRequest,
+    Circle,
     Kind,
     Mode,
     ModeRequest,
@@ -61,11 +71,13 @@ from schemas.v1.vehicle_pb2 import (
 
 __all__ = [
     "AirData",
+    "AltitudeOrder",
     "ArmRequest",
     "AttitudeSetpoint",
     "Battery",
     "CameraCalibration",
     "CancelRequest",
+    "Circle",
     "CircleSetpoint",
     "Clock",
     "ClockRequest",
@@ -86,6 +98,7 @@ __all__ = [
     "FlightSetpoint",
     "GoAroundRequest",
     "GoalRequest",
+    "HomeOrder",
     "OrbitRequest",
     "Grid",
     "Health",
@@ -106,11 +119,13 @@ __all__ = [
     "NavState",
     "NavStatus",
     "Odometry",
+    "OrderRequest",
     "PackedElementField",
     "Param",
     "ParamReply",
     "ParamRequest",
     "ParamValues",
+    "PictureOrder",
     "Pose",
     "PoseInFrame",
     "PosesInFrame",
@@ -120,14 +135,17 @@ __all__ = [
     "Range",
     "RemoveRequest",
     "Reply",
+    "RestartOrder",
     "SetCurrentRequest",
     "SetPoseRequest",
     "SimObject",
     "SimObjects",
     "SpawnRequest",
+    "SpeedOrder",
     "StateRequest",
     "StopCommand",
     "SurfaceCommand",
+    "TakeoffOrder",
     "Timestamp",
     "Vector3",
     "VehicleStatus",

@@ -178,6 +178,7 @@ SET_MODE = Request(f"{_V}/srv/mode", m.ModeRequest, m.Reply, "change the flight 
 GOAL = Request(f"{_V}/srv/goal", m.GoalRequest, m.Reply, "go to a point")
 ORBIT = Request(f"{_V}/srv/orbit", m.OrbitRequest, m.Reply, "circle a place, in mode Orbit")
 GO_AROUND = Request(f"{_V}/srv/go_around", m.GoAroundRequest, m.Reply, "give up the approach and fly another one")
+ORDER = Request(f"{_V}/srv/order", m.OrderRequest, m.Reply, "take off to a height; speed, altitude, home, camera; begin anew")
 CANCEL = Request(f"{_V}/srv/cancel", m.CancelRequest, m.Reply, "give up the goal that is being driven to")
 SET_MISSION = Request(f"{_V}/srv/mission", m.MissionRequest, m.Reply, "replace the mission")
 SET_FENCE = Request(f"{_V}/srv/fence", m.FenceRequest, m.Reply, "replace the fence, or take it away")

@@ -115,14 +115,18 @@ class SetCurrentRequest(_message.Message):
     def __init__(self, index: _Optional[int] = ..., source: _Optional[str] = ...) -> None: ...
 
 class GoalRequest(_message.Message):
-    __slots__ = ("position", "yaw", "source")
+    __slots__ = ("position", "yaw", "source", "radius", "speed")
     POSITION_FIELD_NUMBER: _ClassVar[int]
     YAW_FIELD_NUMBER: _ClassVar[int]
     SOURCE_FIELD_NUMBER: _ClassVar[int]
+    RADIUS_FIELD_NUMBER: _ClassVar[int]
+    SPEED_FIELD_NUMBER: _ClassVar[int]
     position: _Vector3_pb2.Vector3
     yaw: float
     source: str
-    def __init__(self, position: _Optional[_Union[_Vector3_pb2.Vector3, _Mapping]] = ..., yaw: _Optional[float] = ..., source: _Optional[str] = ...) -> None: ...
+    radius: float
+    speed: float
+    def __init__(self, position: _Optional[_Union[_Vector3_pb2.Vector3, _Mapping]] = ..., yaw: _Optional[float] = ..., source: _Optional[str] = ..., radius: _Optional[float] = ..., speed: _Optional[float] = ...) -> None: ...
 
 class OrbitRequest(_message.Message):
     __slots__ = ("centre", "radius", "speed", "source")

@@ -68,7 +68,7 @@ class NavState(_message.Message):
     def __init__(self, timestamp: _Optional[_Union[_timestamp_pb2.Timestamp, _Mapping]] = ..., position: _Optional[_Union[_Vector3_pb2.Vector3, _Mapping]] = ..., velocity: _Optional[_Union[_Vector3_pb2.Vector3, _Mapping]] = ..., orientation: _Optional[_Union[_Quaternion_pb2.Quaternion, _Mapping]] = ..., angular_velocity: _Optional[_Union[_Vector3_pb2.Vector3, _Mapping]] = ..., airspeed: _Optional[float] = ..., wind: _Optional[_Union[_Vector3_pb2.Vector3, _Mapping]] = ..., position_sigma: _Optional[float] = ...) -> None: ...
 
 class VehicleStatus(_message.Message):
-    __slots__ = ("timestamp", "kind", "mode", "armed", "landed", "stopped", "command_source", "reason", "throttle", "battery_remaining", "battery_voltage", "waypoint", "cross_track", "altitude_error", "distance_to_waypoint", "home", "system_id", "prearm", "failsafes")
+    __slots__ = ("timestamp", "kind", "mode", "armed", "landed", "stopped", "command_source", "reason", "throttle", "battery_remaining", "battery_voltage", "waypoint", "cross_track", "altitude_error", "distance_to_waypoint", "home", "system_id", "prearm", "failsafes", "circle")
     TIMESTAMP_FIELD_NUMBER: _ClassVar[int]
     KIND_FIELD_NUMBER: _ClassVar[int]
     MODE_FIELD_NUMBER: _ClassVar[int]
@@ -88,6 +88,7 @@ class VehicleStatus(_message.Message):
     SYSTEM_ID_FIELD_NUMBER: _ClassVar[int]
     PREARM_FIELD_NUMBER: _ClassVar[int]
     FAILSAFES_FIELD_NUMBER: _ClassVar[int]
+    CIRCLE_FIELD_NUMBER: _ClassVar[int]
     timestamp: _timestamp_pb2.Timestamp
     kind: Kind
     mode: Mode
@@ -107,7 +108,16 @@ class VehicleStatus(_message.Message):
     system_id: int
     prearm: _containers.RepeatedScalarFieldContainer[str]
     failsafes: _containers.RepeatedScalarFieldContainer[str]
-    def __init__(self, timestamp: _Optional[_Union[_timestamp_pb2.Timestamp, _Mapping]] = ..., kind: _Optional[_Union[Kind, str]] = ..., mode: _Optional[_Union[Mode, str]] = ..., armed: bool = ..., landed: bool = ..., stopped: bool = ..., command_source: _Optional[str] = ..., reason: _Optional[str] = ..., throttle: _Optional[float] = ..., battery_remaining: _Optional[float] = ..., battery_voltage: _Optional[float] = ..., waypoint: _Optional[int] = ..., cross_track: _Optional[float] = ..., altitude_error: _Optional[float] = ..., distance_to_waypoint: _Optional[float] = ..., home: _Optional[_Union[_Vector3_pb2.Vector3, _Mapping]] = ..., system_id: _Optional[int] = ..., prearm: _Optional[_Iterable[str]] = ..., failsafes: _Optional[_Iterable[str]] = ...) -> None: ...
+    circle: Circle
+    def __init__(self, timestamp: _Optional[_Union[_timestamp_pb2.Timestamp, _Mapping]] = ..., kind: _Optional[_Union[Kind, str]] = ..., mode: _Optional[_Union[Mode, str]] = ..., armed: bool = ..., landed: bool = ..., stopped: bool = ..., command_source: _Optional[str] = ..., reason: _Optional[str] = ..., throttle: _Optional[float] = ..., battery_remaining: _Optional[float] = ..., battery_voltage: _Optional[float] = ..., waypoint: _Optional[int] = ..., cross_track: _Optional[float] = ..., altitude_error: _Optional[float] = ..., distance_to_waypoint: _Optional[float] = ..., home: _Optional[_Union[_Vector3_pb2.Vector3, _Mapping]] = ..., system_id: _Optional[int] = ..., prearm: _Optional[_Iterable[str]] = ..., failsafes: _Optional[_Iterable[str]] = ..., circle: _Optional[_Union[Circle, _Mapping]] = ...) -> None: ...
+
+class Circle(_message.Message):
+    __slots__ = ("centre", "radius")
+    CENTRE_FIELD_NUMBER: _ClassVar[int]
+    RADIUS_FIELD_NUMBER: _ClassVar[int]
+    centre: _Vector3_pb2.Vector3
+    radius: float
+    def __init__(self, centre: _Optional[_Union[_Vector3_pb2.Vector3, _Mapping]] = ..., radius: _Optional[float] = ...) -> None: ...
 
 class ArmRequest(_message.Message):
     __slots__ = ("arm", "force", "source")

@@ -1,6 +1,6 @@
 """What a ground vehicle is to do now: return, a person's goal, the mission, exploring, in this order."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from schemas.convert import mode_name
 from schemas.messages import Mission, MissionItem, MissionProgress, Mode, VehicleStatus
@@ -36,6 +36,10 @@ class Orders:
 
     home: Point
     explores: bool
+
+    def now(self, status: VehicleStatus | None) -> "Orders":
+        """With home where the autopilot has it."""
+        return self if status is None or not status.HasField("home") else replace(self, home=(status.home.x, status.home.y))
 
 
 IDLE = Job("idle")

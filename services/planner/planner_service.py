@@ -122,7 +122,8 @@ class PlannerService(Service):
         self._bounds = bounds
         changed = self._navigator.fit(self._body) | self._take_map(map)
         replies: dict[str, list[Reply]] = {"goal": self._ask_all(t, here, goal, status)}
-        job = choose(status, self._goal, mission_target(mission, progress, self._orders.home), self._orders)
+        orders = self._orders.now(status)
+        job = choose(status, self._goal, mission_target(mission, progress, orders.home), orders)
         if job != self._job:
             self._begin(t, job)
             changed = True

@@ -12,8 +12,9 @@ from services.autopilot.air.fence_plan import fence_fit, mission_fault
 from services.autopilot.air.leading import reserved
 from services.autopilot.air.params import AirParams
 from services.autopilot.air.route import Place
-from services.autopilot.air.service import AutopilotAir, Ship
+from services.autopilot.air.service import AutopilotAir
 from services.autopilot.air.servos import Servo, Servos
+from services.autopilot.air.ship import Ship
 from services.autopilot.air.strip import Strip
 from services.autopilot.air.wingmen import wingman
 from services.autopilot.plan import item_from_file

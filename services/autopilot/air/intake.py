@@ -7,8 +7,7 @@ from dataclasses import astuple
 from schemas.convert import seconds, wxyz
 from schemas.messages import AirData, Gnss, Imu, Mission, MissionItem, MissionProgress, Mode, NavState, OrbitRequest, Vector3
 from services.autopilot.air.modes import FlightMode
-from services.autopilot.air.pilot import Stand
-from services.autopilot.air.plan import Item, Kind
+from services.autopilot.air.plan import Item, Kind, Stand
 from services.autopilot.air.route import Circle, Place
 from services.autopilot.air.sensed import Fix, Inertial, Pressures
 from services.autopilot.plan import mission_id

@@ -16,7 +16,7 @@ class Journal:
         self._reason = ""
         self._armed: bool | None = None
         self._reached = -1
-        self._pictures = 0
+        self._pictures = (0, 0)
         self._notes: list[tuple[str, str]] = []
         self._laps = 0
         self._finished = False
@@ -35,11 +35,13 @@ class Journal:
             found.append(_event(t, Event.INFO, f"mission item {navigator.reached} reached"))
         if navigator.laps > self._laps:
             found.append(_event(t, Event.INFO, f"lap {navigator.laps} closed"))
-        if navigator.camera.pictures > self._pictures and navigator.camera.last is not None:
-            north, east = navigator.camera.last
-            found.append(_event(t, Event.INFO, f"camera trigger {navigator.camera.pictures}", f"at x {east:.1f} m, y {north:.1f} m"))
+        pictures = (navigator.camera.pictures, pilot.shutter.pictures)
+        for camera, before in zip((navigator.camera, pilot.shutter), self._pictures, strict=True):
+            if camera.pictures > before and camera.last is not None:
+                north, east = camera.last
+                found.append(_event(t, Event.INFO, f"camera trigger {sum(pictures)}", f"at x {east:.1f} m, y {north:.1f} m"))
         found += [_event(t, Event.INFO, text, cause) for text, cause in self._notes]
-        self._pictures, self._notes = navigator.camera.pictures, []
+        self._pictures, self._notes = pictures, []
         if navigator.finished and not self._finished:
             found.append(_event(t, Event.NOTICE, "mission complete"))
         self._mode, self._reason, self._armed, self._lost = pilot.mode, pilot.reason, armed, False

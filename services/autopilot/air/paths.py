@@ -1,10 +1,36 @@
 """Modes that follow a path: circles, and the legs of a mission."""
 
+import math
+from dataclasses import dataclass
+
+from services.autopilot.air.guidance import turn_radius
 from services.autopilot.air.navigator import Navigator
 from services.autopilot.air.params import AirParams
 from services.autopilot.air.route import Circle
 from services.autopilot.air.state import Estimate
 from services.autopilot.air.wishes import Phase, Track, Wish
+
+
+@dataclass(frozen=True, slots=True)
+class Round:
+    """How a place is circled: radius [m], positive clockwise, and airspeed [m/s]; 0 = the vehicle's own."""
+
+    radius: float = 0.0
+    airspeed: float = 0.0
+
+    def fault(self, params: AirParams) -> str:
+        """Why it cannot be flown; empty if it can."""
+        if not (math.isfinite(self.radius) and math.isfinite(self.airspeed)):
+            return "the circle is none: its numbers are not finite"
+        if self.airspeed and not params.min_airspeed <= self.airspeed <= params.max_airspeed:
+            return f"{self.airspeed:g} m/s cannot be flown: {params.min_airspeed:g} to {params.max_airspeed:g} m/s can"
+        tightest = turn_radius(self.airspeed or params.trim_airspeed, params.turn_bank)
+        if self.radius and abs(self.radius) < tightest:
+            return f"a circle of {abs(self.radius):g} m is too tight at this airspeed: {math.ceil(tightest)} m is not"
+        return ""
+
+
+OWN = Round()
 
 
 class Circling(Phase):
@@ -13,10 +39,10 @@ class Circling(Phase):
     def __init__(self, circle: Circle, airspeed: float = 0.0) -> None:
         """airspeed: m/s, 0 = cruise."""
         self.circle = circle
-        self._airspeed = airspeed
+        self.airspeed = airspeed
 
     def step(self, now: Estimate, params: AirParams, dt: float) -> Wish:
-        return Wish(Track(self.circle.aim(now, params), self.circle.centre.height, 0.0, self._airspeed or params.trim_airspeed))
+        return Wish(Track(self.circle.aim(now, params), self.circle.centre.height, 0.0, self.airspeed or params.trim_airspeed))
 
 
 class Following(Phase):

@@ -5,13 +5,14 @@ from collections.abc import Sequence
 from dataclasses import astuple, dataclass, replace
 
 from services.autopilot.air.by_hand import COMMAND_MAX_AGE, LET_GO, Stick
+from services.autopilot.air.camera import Camera
 from services.autopilot.air.commands import Surfaces, Wanted
 from services.autopilot.air.descent import Descent
 from services.autopilot.air.fence_guard import FenceGuard
 from services.autopilot.air.field import Field
 from services.autopilot.air.flyable import fault
 from services.autopilot.air.formation import Formation, Trailing
-from services.autopilot.air.guidance import Aim, turn_radius
+from services.autopilot.air.guidance import Aim
 from services.autopilot.air.helm import Helm
 from services.autopilot.air.landing import Landing
 from services.autopilot.air.leading import Steadied
@@ -19,9 +20,10 @@ from services.autopilot.air.mission_flight import MissionFlight
 from services.autopilot.air.modes import TABLE, FlightMode, Need, Situation, refusal
 from services.autopilot.air.navigator import Navigator
 from services.autopilot.air.offboard import OLDEST, Offboard
+from services.autopilot.air.pace import Pace
 from services.autopilot.air.params import AirParams
-from services.autopilot.air.paths import Circling, Following
-from services.autopilot.air.plan import Item
+from services.autopilot.air.paths import OWN, Circling, Following, Round
+from services.autopilot.air.plan import Item, Stand
 from services.autopilot.air.route import Circle, Level, Place
 from services.autopilot.air.servos import SERVOS, Servos
 from services.autopilot.air.state import Estimate
@@ -43,16 +45,6 @@ class Flown:
     level: Level
 
 
-@dataclass(frozen=True, slots=True)
-class Stand:
-    """Where in a mission an aircraft is; index None: not begun."""
-
-    index: int | None
-    reached: int
-    laps: int
-    finished: bool
-
-
 class Pilot:
     """Flies one mode of the table. Requests give the reason of a refusal, empty when accepted."""
 
@@ -72,6 +64,10 @@ class Pilot:
         self.formation: Formation | None = None
         self.leads: Steadied | None = None
         """Of an aircraft that others follow."""
+        self.pace = Pace()
+        self.shutter = Camera()
+        """Triggered by orders; the mission's is the navigator's."""
+        self._climb_to: float | None = None  # m, world; of a take-off that was asked for with a height
         self._stick = Stick()
         self._servos = servos
         self.fence = FenceGuard()
@@ -88,6 +84,8 @@ class Pilot:
             self._helm = Helm(self._servos, self.fence)
             return Flown(LET_GO, self._straight_on(now, params), self._level)
         phase = self._phase = self._phase or self._begun(now, params)
+        self._set_pace(now, params)
+        self.shutter.step((now.north, now.east))
         return self._flown(phase.step(now, params, dt), now, params, dt)
 
     def hear(self, senses: Senses, dt: float) -> None:
@@ -101,6 +99,17 @@ class Pilot:
         if not TABLE[self.mode].by_hand or self.senses.hand is None:
             return "autopilot"
         return self.senses.hand.source
+
+    def _set_pace(self, now: Estimate, params: AirParams) -> None:
+        part = self._part
+        if isinstance(part, Following):
+            self.navigator.speed = self.pace.of(now, params, self.navigator.speed)
+        elif isinstance(part, Circling):
+            part.airspeed = self.pace.of(now, params, part.airspeed)
+
+    @property
+    def circling(self) -> Circling | None:
+        return self._phase if isinstance(self._phase, Circling) else None
 
     @property
     def circle(self) -> Circle | None:
@@ -201,7 +210,8 @@ class Pilot:
         if self.mode is FlightMode.MISSION:
             return MissionFlight(self.navigator, self._field, self.home, self.senses)
         if self.mode is FlightMode.TAKEOFF:
-            return self._field.take_off(now, self.home.height + params.takeoff_alt, self.senses)
+            usual = self.home.height + params.takeoff_alt
+            return self._field.take_off(now, usual if self._climb_to is None else self._climb_to, self.senses)
         if self.mode is FlightMode.LAND:
             return self._field.landing(now, self.home, self.senses, params)
         if self.mode is FlightMode.FOLLOW and self.formation is not None:
@@ -260,7 +270,8 @@ class Pilot:
         return descends or (self.landing is not None and self.landing.rolls)
 
     def _change(self, mode: FlightMode, reason: str) -> None:
-        self.mode, self.reason, self._phase = mode, reason, None
+        self.pace.begin(anew=mode is not self.mode)
+        self.mode, self.reason, self._phase, self._climb_to = mode, reason, None, None
         self._stick.take()
 
     def _refused(self, mode: FlightMode) -> str:
@@ -281,15 +292,31 @@ class Pilot:
             self.navigator = Navigator(self.navigator.items)
         self.navigator.resume()
 
-    def go_to(self, place: Place, source: str, params: AirParams) -> str:
+    def take_off(self, height: float, source: str) -> str:
+        """Mode Takeoff up to ``height`` [m, world]."""
+        if not (why := self.change_mode(FlightMode.TAKEOFF, source)):
+            self._climb_to = height
+        return why
+
+    def settle(self, home: Place) -> None:
+        """Home is there from now on; on its way to the old one it turns to the new one."""
+        self.home = home
+        if self.mode is FlightMode.RETURN:
+            self._phase = None
+
+    def go_to(self, place: Place, source: str, params: AirParams, how: Round = OWN) -> str:
         """Flies there and holds over it; too low a height means the present one."""
         if self.blocked:
             return self.blocked
         if not all(map(math.isfinite, astuple(place))):
             return "the goal is no place: its coordinates are not finite"
+        if why := how.fault(params):
+            return why
         height = place.height if place.height >= params.min_altitude else self._level.height
         self._change(FlightMode.HOLD, f"goal of {source}")
-        self._phase = Circling(Circle(Place(place.north, place.east, height), params.hold_radius))
+        self._phase = Circling(Circle(Place(place.north, place.east, height), how.radius or params.hold_radius), how.airspeed)
+        if how.airspeed:
+            self.pace.begin(anew=True)
         return ""
 
     def descend(self, now: Estimate, reason: str, params: AirParams) -> None:
@@ -304,13 +331,10 @@ class Pilot:
         """Mode Orbit; a radius or airspeed of 0 is the vehicle's own."""
         if why := self._refused(FlightMode.ORBIT):
             return why
-        if not all(map(math.isfinite, (*astuple(circle.centre), circle.radius, airspeed))):
+        if not all(map(math.isfinite, astuple(circle.centre))):
             return "the circle is none: its numbers are not finite"
-        if airspeed and not params.min_airspeed <= airspeed <= params.max_airspeed:
-            return f"{airspeed:g} m/s cannot be flown: {params.min_airspeed:g} to {params.max_airspeed:g} m/s can"
-        tightest = turn_radius(airspeed or params.trim_airspeed, params.turn_bank)
-        if circle.radius and abs(circle.radius) < tightest:
-            return f"a circle of {abs(circle.radius):g} m is too tight at this airspeed: {math.ceil(tightest)} m is not"
+        if why := Round(circle.radius, airspeed).fault(params):
+            return why
         height = circle.centre.height if circle.centre.height >= params.min_altitude else self._level.height
         self._change(FlightMode.ORBIT, f"asked by {source}")
         place = replace(circle.centre, height=height)

@@ -55,6 +55,16 @@ class Item:
         return self.flies_through and self.course is None and away < ONE_PLACE
 
 
+@dataclass(frozen=True, slots=True)
+class Stand:
+    """Where in a mission an aircraft is; index None: not begun."""
+
+    index: int | None
+    reached: int
+    laps: int
+    finished: bool
+
+
 TRIGGERS = (Kind.TRIGGER, Kind.TRIGGER_DISTANCE)
 ONE_PLACE = 1.0  # m, between waypoints that are taken for one
 NO_JUMPS: Mapping[int, int] = MappingProxyType({})

@@ -85,6 +85,10 @@ def status(t: float, pilot: Pilot, now: Estimate, flown: Flown) -> VehicleStatus
         distance_to_waypoint=_distance(pilot, now),
         waypoint=pilot.navigator.index or 0,
     )
+    if pilot.circle is not None:
+        centre = pilot.circle.centre
+        message.circle.centre.CopyFrom(Vector3(x=centre.east, y=centre.north, z=centre.height))
+        message.circle.radius = pilot.circle.radius
     if pilot.home is not None:
         message.home.x, message.home.y, message.home.z = pilot.home.east, pilot.home.north, pilot.home.height
     return message

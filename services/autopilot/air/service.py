@@ -1,7 +1,7 @@
 """The autopilot of one fixed-wing aircraft: sensors and requests in, surfaces, estimates and reports out."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import replace
 
 from schemas import topics
 from schemas.convert import stamp
@@ -18,13 +18,13 @@ from schemas.messages import (
     Imu,
     Link,
     Mission,
-    MissionItem,
     MissionProgress,
     MissionRequest,
     Mode,
     ModeRequest,
     NavState,
     OrbitRequest,
+    OrderRequest,
     ParamValues,
     Range,
     Reply,
@@ -33,9 +33,8 @@ from schemas.messages import (
     SurfaceCommand,
     VehicleStatus,
 )
-from services.autopilot.air import by_hand, intake, offboard, reports
+from services.autopilot.air import by_hand, intake, offboard, orders, reports
 from services.autopilot.air.commands import Surfaces
-from services.autopilot.air.estimators import Instruments
 from services.autopilot.air.failsafes import GNSS_HOLD
 from services.autopilot.air.fence_plan import Remembered, mission_fault, place_fault
 from services.autopilot.air.flyable import advice
@@ -44,40 +43,20 @@ from services.autopilot.air.landed import LandDetector
 from services.autopilot.air.leading import Steadied
 from services.autopilot.air.over_ground import OverGround
 from services.autopilot.air.params import AirParams
+from services.autopilot.air.paths import Round
 from services.autopilot.air.pilot import Flown, Pilot
 from services.autopilot.air.prearm import Standing, faults
+from services.autopilot.air.route import Place
 from services.autopilot.air.safety import Safety, Seen
 from services.autopilot.air.sensing import Said, Sensing
-from services.autopilot.air.servos import SERVOS, Servos
+from services.autopilot.air.ship import Ship
 from services.autopilot.air.state import Estimate
-from services.autopilot.air.strip import Strip
 from services.autopilot.air.wishes import Senses
 from services.autopilot.told_params import ToldParams
-from uvf.maths.geodesy import GRAVITY, LocalTangent
+from uvf.maths.geodesy import GRAVITY
 from uvf.runtime.service import Outputs, Service, Value, every, optional
 
 BEFORE = "an operator before the restart"
-
-
-@dataclass(frozen=True)
-class Ship:
-    """What the autopilot is told of its vehicle at the start."""
-
-    name: str
-    system_id: int
-    tangent: LocalTangent
-    instruments: Instruments
-    items: list[MissionItem]
-    starts_in_air: bool
-    ground: float = 0.0  # m, world: height of the ground below the start
-    servos: Servos = SERVOS
-    strips: tuple[Strip, ...] = ()
-    altimeter: str = ""
-    """Frame of the range finder that looks down."""
-    starts_armed: bool = False
-    fence: Fence = field(default_factory=Fence)
-    leads: bool = False
-    """Others follow it."""
 
 
 class AutopilotAir(Service):
@@ -119,6 +98,7 @@ class AutopilotAir(Service):
         "current": topics.SET_CURRENT,
         "orbit": topics.ORBIT,
         "go_around": topics.GO_AROUND,
+        "order": topics.ORDER,
         "fence": topics.SET_FENCE,
     }
     recalls = {
@@ -136,6 +116,7 @@ class AutopilotAir(Service):
         self.params = params
         self._ship = ship
         self._mission = intake.with_id(ship.items)
+        self._restarts = False
         self._announced = False
         self._bounds_told = False
         self._told_params = ToldParams()
@@ -177,14 +158,17 @@ class AutopilotAir(Service):
         current: list[SetCurrentRequest],
         orbit: list[OrbitRequest],
         go_around: list[GoAroundRequest],
+        order: list[OrderRequest],
         fence: list[FenceRequest],
     ) -> Outputs:
+        if self._restarts:
+            self._restart()
         samples = [intake.inertial(m, t) for m in imu]
         now = self._now = self._sensing.step(t, Said(samples, air_data, gnss, self._land.airborne), self.params, 1 / self.hz)
         if now is None:
             waiting = [_reply("there is no satellite fix yet")]
             requests: dict[str, Sequence[object]] = {"arm": arm, "mode": mode, "goal": goal, "mission": mission}
-            requests |= {"current": current, "orbit": orbit, "go_around": go_around, "fence": fence}
+            requests |= {"current": current, "orbit": orbit, "go_around": go_around, "order": order, "fence": fence}
             return {**self._announce(t), **{name: waiting * len(asked) for name, asked in requests.items()}}
         if now.position_known or now.airspeed_known:
             self._land.step(now, self.params, 1 / self.hz)
@@ -198,23 +182,16 @@ class AutopilotAir(Service):
             "goal": [self._go_to(r) for r in goal],
             "mission": [self._set_mission(r.mission) for r in mission],
             "current": [_reply(self._pilot.set_current(r.index)) for r in current],
-            "orbit": [_reply(self._pilot.orbit(intake.circle(r), r.speed, r.source, self.params)) for r in orbit],
+            "orbit": [_reply(self._orbit(r)) for r in orbit],
             "go_around": [_reply(self._pilot.go_around(r.source)) for r in go_around],
+            "order": [_reply(self._carry_out(r, now)) for r in order],
             "fence": [self._set_fence(r.fence) for r in fence],
         }
         hand = by_hand.choose(t, {"teleop": teleop, "mavlink": mavlink, "client": client})
         self._over_ground.hear(range, self._sensing.felt, 1 / self.hz)
         flown = self._fly(t, now, hand, offboard.fresh(t, setpoint))
-        state = reports.nav_state(t, now)
-        out: dict[str, object] = {
-            "surfaces": reports.surfaces(t, flown.surfaces, self._armed),
-            "nav_state": state,
-            "pose": reports.pose(state),
-            "body_frame": reports.body_frame(state, self._ship.name),
-            "events": warnings + self._journal.events(t, self._pilot, self._armed),
-        }
-        out |= self._report(t, now, flown)
-        self._cycles += 1
+        out = self._report(t, now, flown)
+        out["events"] = warnings + self._journal.events(t, self._pilot, self._armed)
         return {**out, **self._announce(t), **replies}  # type: ignore[dict-item]
 
     def _fly(self, t: float, now: Estimate, hand: by_hand.Hand | None, setpoint: FlightSetpoint | None) -> Flown:
@@ -229,8 +206,14 @@ class AutopilotAir(Service):
         return flown
 
     def _report(self, t: float, now: Estimate, flown: Flown) -> dict[str, object]:
-        """What is told now and then, and the status also when it changes."""
-        out: dict[str, object] = {}
+        """Surfaces and motion; what is told now and then, and the status also when it changes."""
+        state = reports.nav_state(t, now)
+        out: dict[str, object] = {
+            "surfaces": reports.surfaces(t, flown.surfaces, self._armed),
+            "nav_state": state,
+            "pose": reports.pose(state),
+            "body_frame": reports.body_frame(state, self._ship.name),
+        }
         told = (self._pilot.mode, self._pilot.reason, self._pilot.stopped, self._armed)
         if self._cycles % 5 == 0 or told != self._told:
             self._told = told
@@ -242,6 +225,7 @@ class AutopilotAir(Service):
         if self._cycles % 25 == 0:
             out["progress"] = reports.progress(t, self._pilot, self._mission.id)
             out["path"] = reports.path(t, self._pilot)
+        self._cycles += 1
         return out
 
     def recall(
@@ -334,12 +318,34 @@ class AutopilotAir(Service):
         return _reply(refusal)
 
     def _go_to(self, request: GoalRequest) -> Reply:
-        place, fence = intake.place(request.position), self._pilot.fence.fencing
-        refusal = "" if fence.is_open else place_fault(place, fence, self.params, self.params.hold_radius)
-        refusal = refusal or self._pilot.go_to(place, request.source, self.params)
+        place, how = intake.place(request.position), Round(request.radius, request.speed)
+        refusal = self._outside(place, how.radius) or self._pilot.go_to(place, request.source, self.params, how)
         if not refusal:
             self._safety.watch.overrule()
         return _reply(refusal)
+
+    def _orbit(self, request: OrbitRequest) -> str:
+        circle = intake.circle(request)
+        refusal = self._outside(circle.centre, circle.radius)
+        return refusal or self._pilot.orbit(circle, request.speed, request.source, self.params)
+
+    def _outside(self, place: Place, radius: float) -> str:
+        """Why this circle does not lie within the fence; empty if it does."""
+        fence = self._pilot.fence.fencing
+        return "" if fence.is_open else place_fault(place, fence, self.params, abs(radius) or self.params.hold_radius)
+
+    def _carry_out(self, order: OrderRequest, now: Estimate) -> str:
+        if order.WhichOneof("kind") != "restart":
+            return orders.carry_out(order, self._pilot, now, self.params)
+        if self._armed or self._land.airborne or self._pilot.formation is not None:
+            return "it is armed, flies, or follows a leader: land and disarm it first"
+        self._restarts = True
+        return ""
+
+    def _restart(self) -> None:
+        """As after power has been off, with the plan and the fence of now."""
+        ship = replace(self._ship, starts_in_air=False, starts_armed=False, items=list(self._mission.items), fence=self._safety.fence)
+        vars(self).update(vars(AutopilotAir(ship, self.params)))
 
     def _set_fence(self, fence: Fence) -> Reply:
         refusal = self._safety.set_fence(fence, self._seen(self._now) if self._now is not None else None, self.params)

@@ -7,7 +7,8 @@ from schemas import topics
 from schemas.messages import NavState
 from services.autopilot.air.formation import Formation
 from services.autopilot.air.params import AirParams
-from services.autopilot.air.service import AutopilotAir, Ship
+from services.autopilot.air.service import AutopilotAir
+from services.autopilot.air.ship import Ship
 from uvf.runtime.service import Outputs, each_vehicle
 
 

@@ -4,7 +4,7 @@ import math
 
 from services.autopilot.air.formation import Formation
 from services.autopilot.air.params import AirParams
-from services.autopilot.air.service import Ship
+from services.autopilot.air.ship import Ship
 from services.autopilot.air.station import Station
 from services.autopilot.air.wingman import AutopilotWingman
 from uvf.runtime.formation_file import Follow, chain_of, offset_of

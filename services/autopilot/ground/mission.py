@@ -56,7 +56,7 @@ class MissionEngine:
         self.speed = 0.0  # m/s, 0 = the vehicle's own
         self.acceptance_radius = acceptance_radius
         """m, of items that name none."""
-        self._home = home
+        self.home = home
         self._jumps: dict[int, int] = {}
         self._arrived_at: float | None = None
 
@@ -93,7 +93,7 @@ class MissionEngine:
         if self.state in (MissionProgress.NO_MISSION, MissionProgress.COMPLETE):
             return None
         item = self.mission.items[self.current]
-        return self._home if item.kind == MissionItem.RETURN else (item.position.x, item.position.y)
+        return self.home if item.kind == MissionItem.RETURN else (item.position.x, item.position.y)
 
     def advance(self, t: float, position: Point | None, active: bool) -> int | None:
         """One cycle at ``t`` [s] and ``position`` [m, world]; the index of an item just completed, or None."""

@@ -24,6 +24,7 @@ from schemas.messages import (
     MissionRequest,
     Mode,
     ModeRequest,
+    OrderRequest,
     ParamValues,
     PoseInFrame,
     Reply,
@@ -35,6 +36,7 @@ from schemas.messages import (
 )
 from services.autopilot.failsafes import Action
 from services.autopilot.ground import fence as fences
+from services.autopilot.ground import orders
 from services.autopilot.ground.drive import Limits, Ramp, within_limits
 from services.autopilot.ground.mission import MissionEngine, Point, mission_of, refusal, vector
 from services.autopilot.ground.multiplexer import SOURCES, Choice, Velocity, choose
@@ -87,6 +89,7 @@ class GroundAutopilot(Service):
         "set_mission": topics.SET_MISSION,
         "set_current": topics.SET_CURRENT,
         "set_fence": topics.SET_FENCE,
+        "order": topics.ORDER,
     }
     recalls = {
         "status": topics.STATUS,
@@ -110,7 +113,7 @@ class GroundAutopilot(Service):
         """home: start pose [m, world]; job: whether it begins at once, and the mission's items, perhaps none; imu_rpy: of its mount."""
         self.params = params
         self._body = body
-        self._home = home
+        self._made_with = (body, home, system_id, imu_rpy)
         self._system_id = system_id
         self._drive = DifferentialDrive(body.wheel_radius, body.track)
         self._ramp = Ramp(Limits(body.max_linear, body.max_angular, body.max_linear_acceleration, body.max_angular_acceleration))
@@ -126,8 +129,10 @@ class GroundAutopilot(Service):
         self._safety = Safety(body, fence or Fence(), imu_rpy)
         self._fence_is_new = True
         self._told_params = ToldParams()
+        self._restarts = False
         self._here: fences.Place | None = None
         self._steps = 0
+        self._told: tuple[object, ...] = ()
         self._events: list[Event] = []
 
     def step(
@@ -152,6 +157,7 @@ class GroundAutopilot(Service):
         set_mission: list[MissionRequest],
         set_current: list[SetCurrentRequest],
         set_fence: list[FenceRequest],
+        order: list[OrderRequest],
     ) -> Outputs:
         self._heed_stop(t, stop)
         self._here = place(pose, yaw_of(pose.pose.orientation)) if pose is not None else None
@@ -162,12 +168,16 @@ class GroundAutopilot(Service):
             "set_mission": [self._set_mission(t, r) for r in set_mission],
             "set_current": [self._set_current(t, r) for r in set_current],
             "set_fence": [self._set_fence(t, r) for r in set_fence],
+            "order": [self._carry_out(t, r) for r in order],
         }
         commands = {"teleop": teleop, "mavlink": mavlink, "gcs": gcs, "client": client, "offboard": offboard, "planner": planner}
         position = (pose.pose.position.x, pose.pose.position.y) if pose is not None else None
         self._follow_mission(t, position)
         self._choose(t, {k: Velocity(seconds(c.timestamp), c.linear, c.angular) for k, c in commands.items() if c is not None})
-        return {"wheels": self._wheels(t), **replies, **self._reports(t, position)}
+        out = {"wheels": self._wheels(t), **replies, **self._reports(t, position)}
+        if self._restarts:
+            self._restart()
+        return out
 
     def recall(
         self,
@@ -255,6 +265,23 @@ class GroundAutopilot(Service):
             self._tell(t, f"mission item {request.index} is next", f"asked by {request.source or 'unknown'}")
         return Reply(accepted=not reason, reason=reason)
 
+    def _carry_out(self, t: float, order: OrderRequest) -> Reply:
+        kind, here = order.WhichOneof("kind"), self._here
+        if kind == "restart":
+            reason = "it is armed: disarm it first" if self._armed else ""
+            self._restarts = not reason
+        else:
+            reason = orders.carry_out(order, self._engine, (here.x, here.y) if here is not None else None, self._body)
+        if not reason:
+            self._tell(t, f"order {kind}", f"asked by {order.source or 'unknown'}")
+        return Reply(accepted=not reason, reason=reason)
+
+    def _restart(self) -> None:
+        """As after power has been off, with the plan and the fence of now."""
+        body, home, system_id, imu_rpy = self._made_with
+        job = (False, list(self._engine.mission.items))
+        vars(self).update(vars(GroundAutopilot(body, home, job, system_id, self.params, self._safety.fence, imu_rpy)))
+
     def _follow_mission(self, t: float, position: Point | None) -> None:
         active = self._mode == Mode.MODE_MISSION and self._armed and not self._stopped
         self._engine.acceptance_radius = self.params.acceptance_radius
@@ -283,7 +310,9 @@ class GroundAutopilot(Service):
         self._steps += 1
         reports: dict[str, Any] = {"events": self._events, **self._told_params.news(t, self.params)}
         self._events = []
-        if self._steps % STATUS_EVERY == 1:
+        told = (self._mode, self._armed, self._stopped)
+        if self._steps % STATUS_EVERY == 1 or told != self._told:
+            self._told = told
             reports["status"] = self._status(t, position)
         if self._steps % PROGRESS_EVERY == 1:
             reports["progress"] = self._engine.progress(stamp(t))
@@ -313,7 +342,7 @@ class GroundAutopilot(Service):
             prearm=self._safety.faults(),
             waypoint=self._engine.current,
             distance_to_waypoint=left,
-            home=vector(self._home),
+            home=vector(self._engine.home),
             system_id=self._system_id,
             failsafes=[rule.begins for rule in self._safety.watch.holding.values()],
         )

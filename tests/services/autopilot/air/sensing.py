@@ -6,12 +6,13 @@ from schemas.convert import stamp
 from schemas.messages import AirData, Gnss, Imu, MissionItem, Vector3
 from services.autopilot.air.estimators import Instruments
 from services.autopilot.air.params import AirParams
-from services.autopilot.air.service import AutopilotAir, Ship
+from services.autopilot.air.service import AutopilotAir
+from services.autopilot.air.ship import Ship
 from uvf.maths import atmosphere
 from uvf.maths.geodesy import LocalTangent
 
 TANGENT = LocalTangent.from_degrees(40.77, 14.79, 300.0)
-NOTHING_ASKED = {"arm": [], "mode": [], "goal": [], "mission": [], "current": [], "orbit": [], "go_around": [], "fence": []}
+NOTHING_ASKED = {name: [] for name in AutopilotAir.requests}
 WAYPOINTS = [MissionItem(position=Vector3(x=900.0, z=60.0)), MissionItem(position=Vector3(x=900.0, y=900.0, z=60.0))]
 
 

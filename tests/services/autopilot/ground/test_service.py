@@ -40,7 +40,7 @@ BODY = GroundBody(
 WAYPOINTS = [MissionItem(position=Vector3(x=1.0)), MissionItem(position=Vector3(x=2.0))]
 NOBODY = dict.fromkeys(("teleop", "mavlink", "gcs", "client", "offboard", "planner", "stop", "pose", "link"))
 NOBODY |= {"imu": [], "ticks": None, "scan": None, "correction": None, "battery": None}
-NOTHING_ASKED = {"arm": [], "set_mode": [], "set_mission": [], "set_current": [], "set_fence": []}
+NOTHING_ASKED = {name: [] for name in GroundAutopilot.requests}
 
 
 class Bench:

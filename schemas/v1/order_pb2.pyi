@@ -1,0 +1,60 @@
+from foxglove_schemas_protobuf import Vector3_pb2 as _Vector3_pb2
+from google.protobuf import descriptor as _descriptor
+from google.protobuf import message as _message
+from typing import ClassVar as _ClassVar, Mapping as _Mapping, Optional as _Optional, Union as _Union
+
+DESCRIPTOR: _descriptor.FileDescriptor
+
+class OrderRequest(_message.Message):
+    __slots__ = ("takeoff", "speed", "altitude", "home", "picture", "restart", "source")
+    TAKEOFF_FIELD_NUMBER: _ClassVar[int]
+    SPEED_FIELD_NUMBER: _ClassVar[int]
+    ALTITUDE_FIELD_NUMBER: _ClassVar[int]
+    HOME_FIELD_NUMBER: _ClassVar[int]
+    PICTURE_FIELD_NUMBER: _ClassVar[int]
+    RESTART_FIELD_NUMBER: _ClassVar[int]
+    SOURCE_FIELD_NUMBER: _ClassVar[int]
+    takeoff: TakeoffOrder
+    speed: SpeedOrder
+    altitude: AltitudeOrder
+    home: HomeOrder
+    picture: PictureOrder
+    restart: RestartOrder
+    source: str
+    def __init__(self, takeoff: _Optional[_Union[TakeoffOrder, _Mapping]] = ..., speed: _Optional[_Union[SpeedOrder, _Mapping]] = ..., altitude: _Optional[_Union[AltitudeOrder, _Mapping]] = ..., home: _Optional[_Union[HomeOrder, _Mapping]] = ..., picture: _Optional[_Union[PictureOrder, _Mapping]] = ..., restart: _Optional[_Union[RestartOrder, _Mapping]] = ..., source: _Optional[str] = ...) -> None: ...
+
+class TakeoffOrder(_message.Message):
+    __slots__ = ("altitude",)
+    ALTITUDE_FIELD_NUMBER: _ClassVar[int]
+    altitude: float
+    def __init__(self, altitude: _Optional[float] = ...) -> None: ...
+
+class SpeedOrder(_message.Message):
+    __slots__ = ("speed", "over_ground")
+    SPEED_FIELD_NUMBER: _ClassVar[int]
+    OVER_GROUND_FIELD_NUMBER: _ClassVar[int]
+    speed: float
+    over_ground: bool
+    def __init__(self, speed: _Optional[float] = ..., over_ground: bool = ...) -> None: ...
+
+class AltitudeOrder(_message.Message):
+    __slots__ = ("altitude",)
+    ALTITUDE_FIELD_NUMBER: _ClassVar[int]
+    altitude: float
+    def __init__(self, altitude: _Optional[float] = ...) -> None: ...
+
+class HomeOrder(_message.Message):
+    __slots__ = ("position",)
+    POSITION_FIELD_NUMBER: _ClassVar[int]
+    position: _Vector3_pb2.Vector3
+    def __init__(self, position: _Optional[_Union[_Vector3_pb2.Vector3, _Mapping]] = ...) -> None: ...
+
+class PictureOrder(_message.Message):
+    __slots__ = ("distance",)
+    DISTANCE_FIELD_NUMBER: _ClassVar[int]
+    distance: float
+    def __init__(self, distance: _Optional[float] = ...) -> None: ...
+
+class RestartOrder(_message.Message):
+    __slots__ = ()
+    def __init__(self) -> None: ...

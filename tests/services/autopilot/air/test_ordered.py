@@ -1,0 +1,212 @@
+"""Orders beside the mode: a height for the take-off, speed, altitude, home, pictures, beginning anew."""
+
+import math
+
+import pytest
+
+from schemas.messages import (
+    AltitudeOrder,
+    ArmRequest,
+    HomeOrder,
+    Mission,
+    MissionRequest,
+    OrderRequest,
+    PictureOrder,
+    RestartOrder,
+    SpeedOrder,
+    TakeoffOrder,
+    Vector3,
+)
+from services.autopilot.air.modes import FlightMode
+from services.autopilot.air.orders import carry_out
+from services.autopilot.air.pace import airspeed_over_ground
+from services.autopilot.air.paths import Round
+from services.autopilot.air.pilot import Pilot
+from services.autopilot.air.plan import Item, Kind
+from services.autopilot.air.route import Circle, Place
+from services.autopilot.air.wishes import Senses
+from tests.services.autopilot.air.sensing import WAYPOINTS, resting
+from tests.services.autopilot.air.states import PARAMS, cruising
+
+M = FlightMode
+FAR = [
+    Item(Kind.WAYPOINT, Place(900.0, 0.0, 70.0)),
+    Item(Kind.SPEED, Place(0.0, 0.0, 0.0), speed=21.0),
+    Item(Kind.WAYPOINT, Place(900.0, 900.0, 70.0)),
+]
+CRUISE = PARAMS.trim_airspeed
+
+
+def flying(items=(), **now):
+    pilot = Pilot(items)
+    pilot.step(cruising(**now), PARAMS, 0.02)
+    return pilot
+
+
+def asked(pilot, now=None, **order):
+    return carry_out(OrderRequest(source="test", **order), pilot, now or cruising(), PARAMS)
+
+
+def speed_of(pilot, now=None):
+    """m/s, airspeed flown in the next cycle."""
+    pilot.step(now or cruising(), PARAMS, 0.02)
+    return (pilot.circling.airspeed if pilot.circling else pilot.navigator.speed) or CRUISE
+
+
+@pytest.mark.parametrize("items", [(), FAR])
+def test_an_airspeed_holds_until_another_one_cruise_or_another_mode_is_asked_for(items):
+    pilot = flying(items)
+    assert asked(pilot, speed=SpeedOrder(speed=29.0)) == ""
+    assert [speed_of(pilot) for _ in range(3)] == [29.0] * 3
+    assert asked(pilot, speed=SpeedOrder(speed=22.0)) == ""
+    assert speed_of(pilot) == 22.0
+    assert asked(pilot, speed=SpeedOrder(speed=0.0)) == ""
+    assert speed_of(pilot) == CRUISE
+    asked(pilot, speed=SpeedOrder(speed=29.0))
+    pilot.change_mode(M.RETURN, "test")
+    assert speed_of(pilot) == CRUISE
+
+
+def test_a_goal_in_the_same_mode_keeps_the_speed_and_one_with_a_speed_of_its_own_replaces_it():
+    pilot = flying()
+    asked(pilot, speed=SpeedOrder(speed=29.0))
+    pilot.go_to(Place(0.0, 300.0, 80.0), "test", PARAMS)
+    assert speed_of(pilot) == 29.0
+    pilot.go_to(Place(0.0, 300.0, 80.0), "test", PARAMS, Round(-120.0, 22.0))
+    assert (speed_of(pilot), pilot.circle.radius) == (22.0, -120.0)
+
+
+def test_an_item_of_the_mission_that_sets_a_speed_ends_what_was_asked_for():
+    pilot = flying(FAR)
+    asked(pilot, speed=SpeedOrder(speed=29.0))
+    assert speed_of(pilot) == 29.0
+    pilot.set_current(2)
+    assert [speed_of(pilot) for _ in range(2)] == [21.0] * 2
+
+
+@pytest.mark.parametrize(
+    ("speed", "over_ground", "accepted"), [(18.0, False, False), (33.0, False, False), (14.0, True, True), (8.0, True, False)]
+)
+def test_speeds_outside_of_the_limits_are_refused_with_them(speed, over_ground, accepted):
+    now = cruising(wind_north=-6.0)
+    why = asked(flying(), now, speed=SpeedOrder(speed=speed, over_ground=over_ground))
+    assert (why == "") == accepted and ("m/s can" in why) != accepted
+
+
+def test_a_speed_over_ground_is_flown_through_the_wind():
+    pilot, now = flying(), cruising(wind_north=-6.0, course=0.0)
+    asked(pilot, now, speed=SpeedOrder(speed=20.0, over_ground=True))
+    assert speed_of(pilot, now) == pytest.approx(26.0)
+    assert airspeed_over_ground(cruising(wind_north=6.0, wind_east=8.0), 21.0, PARAMS) == PARAMS.min_airspeed
+    assert airspeed_over_ground(cruising(wind_east=8.0), 21.0, PARAMS) == pytest.approx(math.hypot(21.0, 8.0))
+
+
+def test_speed_and_height_are_not_free_by_hand_and_on_the_ground():
+    pilot = flying(FAR)
+    assert "Hold, Orbit and Return" in asked(pilot, altitude=AltitudeOrder(altitude=90.0))
+    pilot.change_mode(M.MANUAL, "test")
+    assert "the speed is not free" in asked(pilot, speed=SpeedOrder(speed=25.0))
+    pilot.senses.airborne = False
+    for order in ({"speed": SpeedOrder(speed=25.0)}, {"altitude": AltitudeOrder(altitude=90.0)}):
+        assert "on the ground" in asked(pilot, **order)
+
+
+@pytest.mark.parametrize("mode", [M.HOLD, M.RETURN, M.ORBIT])
+def test_a_circle_is_flown_higher_in_its_place(mode):
+    pilot = flying()
+    pilot.orbit(Circle(Place(200.0, 100.0, 80.0), -120.0), 0.0, "test", PARAMS) if mode is M.ORBIT else pilot.change_mode(mode, "test")
+    pilot.step(cruising(), PARAMS, 0.02)
+    before = pilot.circle
+    assert asked(pilot, altitude=AltitudeOrder(altitude=130.0)) == ""
+    assert pilot.step(cruising(), PARAMS, 0.02).level.height == 130.0
+    assert (pilot.mode, pilot.circle.centre.point, pilot.circle.radius) == (mode, before.centre.point, before.radius)
+
+
+@pytest.mark.parametrize("altitude", [PARAMS.min_altitude - 1.0, math.nan, math.inf, -math.inf])
+def test_a_height_that_is_none_or_too_low_is_refused(altitude):
+    assert "too low" in asked(flying(), altitude=AltitudeOrder(altitude=altitude))
+
+
+def standing(ground=0.0):
+    pilot = Pilot((), ground)
+    pilot.hear(Senses(airborne=False, armed=False), 0.02)
+    pilot.step(cruising(height=ground, airspeed=0.0, ground_speed=0.0), PARAMS, 0.02)
+    return pilot
+
+
+def test_a_take_off_ends_at_the_height_that_was_asked_for():
+    pilot = standing(ground=12.0)
+    assert asked(pilot, takeoff=TakeoffOrder(altitude=100.0)) == ""
+    pilot.hear(Senses(airborne=True), 0.02)
+    pilot.step(cruising(height=99.0), PARAMS, 0.02)
+    assert pilot.mode is M.TAKEOFF
+    pilot.step(cruising(height=100.5), PARAMS, 0.02)
+    pilot.step(cruising(height=100.5), PARAMS, 0.02)
+    assert (pilot.mode, pilot.reason) == (M.HOLD, "take-off complete")
+
+
+def test_a_take_off_to_a_height_below_the_trees_or_in_the_air_is_refused():
+    assert "too low" in asked(standing(ground=12.0), takeoff=TakeoffOrder(altitude=16.0))
+    assert "the altitude is none" in asked(standing(), takeoff=TakeoffOrder(altitude=math.nan))
+    assert "flying" in asked(flying(), takeoff=TakeoffOrder(altitude=100.0))
+
+
+def test_the_next_take_off_goes_to_its_usual_height_again():
+    pilot = standing()
+    asked(pilot, takeoff=TakeoffOrder(altitude=400.0))
+    pilot.change_mode(M.HOLD, "test")
+    pilot.change_mode(M.TAKEOFF, "test")
+    pilot.hear(Senses(airborne=True), 0.02)
+    for _ in range(2):
+        pilot.step(cruising(height=PARAMS.takeoff_alt + 1.0), PARAMS, 0.02)
+    assert pilot.mode is M.HOLD
+
+
+def test_return_turns_to_a_new_home_on_its_way():
+    pilot = flying()
+    pilot.change_mode(M.RETURN, "test")
+    pilot.step(cruising(), PARAMS, 0.02)
+    assert asked(pilot, home=HomeOrder(position=Vector3(x=500.0, y=-300.0, z=7.0))) == ""
+    pilot.step(cruising(), PARAMS, 0.02)
+    assert pilot.circle.centre.point == (-300.0, 500.0)
+    assert pilot.home == Place(-300.0, 500.0, 7.0)
+
+
+def test_home_here_lies_below_the_aircraft_and_needs_a_position():
+    pilot = flying()
+    assert asked(pilot, cruising(north=40.0, east=9.0, height=90.0), home=HomeOrder()) == ""
+    assert pilot.home == Place(40.0, 9.0, 0.0)
+    pilot.fly_blind(True)
+    assert "GNSS is lost" in asked(pilot, home=HomeOrder())
+    assert "not finite" in asked(pilot, home=HomeOrder(position=Vector3(x=math.nan)))
+
+
+def test_pictures_are_taken_once_or_each_so_many_metres_in_any_mode():
+    pilot = flying()
+    assert asked(pilot, picture=PictureOrder()) == ""
+    pilot.step(cruising(), PARAMS, 0.02)
+    assert pilot.shutter.pictures == 1
+    assert asked(pilot, picture=PictureOrder(distance=50.0)) == ""
+    for north in range(0, 201, 10):
+        pilot.step(cruising(north=float(north)), PARAMS, 0.02)
+    assert pilot.shutter.pictures == 1 + 5
+    assert asked(pilot, picture=PictureOrder(distance=0.0)) == ""
+    pilot.step(cruising(north=900.0), PARAMS, 0.02)
+    assert pilot.shutter.pictures == 6
+    assert "none" in asked(pilot, picture=PictureOrder(distance=-1.0))
+
+
+def test_an_empty_order_is_refused():
+    assert "nothing" in asked(flying())
+
+
+def test_begun_anew_it_is_disarmed_with_its_plan_and_knows_nothing_of_where_it_was():
+    bench = resting(WAYPOINTS)
+    plan = bench.service._mission.id
+    bench.run(arm=[ArmRequest(arm=True, force=True)], speed=0.0)
+    assert "disarm it" in bench.run(order=[OrderRequest(restart=RestartOrder())], speed=0.0)["order"][0].reason
+    bench.run(arm=[ArmRequest(arm=False)], mission=[MissionRequest(mission=Mission(items=WAYPOINTS[:1]))], speed=0.0)
+    assert bench.run(order=[OrderRequest(restart=RestartOrder())], speed=0.0)["order"][0].accepted
+    bench.run(speed=0.0)
+    assert bench.service._mission.id not in (0, plan)
+    assert not bench.service._armed and bench.service._cycles <= 1
