@@ -57,6 +57,7 @@ from schemas.v1.order_pb2 import (
 from schemas.v1.sensor_pb2 import AirData, Battery, Contact, Gnss, Imu, Range, WheelTicks
 from schemas.v1.simulator_pb2 import RemoveRequest, SetPoseRequest, SimObject, SimObjects, SpawnRequest, StateRequest
 from schemas.v1.system_pb2 import Event, Health, Param, ParamReply, ParamRequest, ParamValues, Process, Processes
+from schemas.v1.targets_pb2 import EstimateQuality, Targets
 from schemas.v1.time_pb2 import Clock, ClockRequest, Done
 from schemas.v1.vehicle_pb2 import (
     ArmRequest,
@@ -87,6 +88,7 @@ __all__ = [
     "CourseSetpoint",
     "Done",
     "DriveCommand",
+    "EstimateQuality",
     "Event",
     "Fence",
     "FenceRequest",
@@ -146,6 +148,7 @@ __all__ = [
     "StopCommand",
     "SurfaceCommand",
     "TakeoffOrder",
+    "Targets",
     "Timestamp",
     "Vector3",
     "VehicleStatus",

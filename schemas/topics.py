@@ -139,6 +139,7 @@ TF_BODY = Topic(f"{_V}/tf/body", m.FrameTransform, 50, _Q.STATE, "world from bas
 ODOMETRY = Topic(f"{_V}/nav/odometry", m.Odometry, 50, _Q.STATE, "wheels and IMU, odom frame: smooth, drifts", kept=True)
 POSE = Topic(f"{_V}/nav/pose", m.PoseInFrame, 50, _Q.STATE, "best estimate of the pose, world frame")
 NAV_STATE = Topic(f"{_V}/nav/state", m.NavState, 50, _Q.STATE, "best estimate of the whole motion, world frame", kept=True)
+QUALITY = Topic(f"{_V}/nav/quality", m.EstimateQuality, 2, _Q.STATE, "how far the estimate may be off, and how well measurements fit")
 PATH = Topic(f"{_V}/nav/path", m.PosesInFrame, 2, _Q.STATE, "path being followed, world frame")
 NAV_STATUS = Topic(f"{_V}/nav/status", m.NavStatus, 2, _Q.STATE, "what the planner is doing", kept=True)
 MAP = Topic(f"{_V}/map/grid", m.Grid, 0, _Q.LATCHED, "occupancy, int8: -1 unknown, 0..100", kept=True)
@@ -153,6 +154,7 @@ SURFACE_COMMAND = Topic(f"{_V}/actuator/surfaces", m.SurfaceCommand, 50, _Q.CONT
 
 # state and mission
 STATUS = Topic(f"{_V}/state/vehicle", m.VehicleStatus, 10, _Q.STATE, "mode, arming, who commands and why", kept=True)
+TARGETS = Topic(f"{_V}/state/targets", m.Targets, 10, _Q.STATE, "what the autopilot is steering at")
 EVENTS = Topic(f"{_V}/state/events/<source>", m.Event, 0, _Q.EVENT, "what happened to the vehicle")
 MISSION = Topic(f"{_V}/mission/plan", m.Mission, 0, _Q.LATCHED, "mission in force", kept=True)
 FENCE = Topic(f"{_V}/mission/fence", m.Fence, 0, _Q.LATCHED, "where the vehicle may be", kept=True)

@@ -34,6 +34,11 @@ class Control:
         self._flown = ""  # the law of the upper level in the last cycle; none when an attitude was held
         self._held: Attitude | None = None
 
+    @property
+    def held(self) -> Attitude | None:
+        """What the lower level was asked for in the last cycle."""
+        return self._held
+
     def step(self, now: Estimate, wanted: Wanted, params: AirParams, dt: float) -> Surfaces:
         """Holds a height or a climb rate, and an airspeed."""
         cycle, outer = Cycle(now, params, dt), self._outer[params.law]

@@ -27,9 +27,14 @@ class Helm:
         self._control = Control(servos)
         self._steering = Steering()
         self._flap = 0.0
+        self.attitude: Attitude | None = None
+        """That is held; None while the surfaces are moved by hand."""
+        self.airspeed: float | None = None
+        """m/s, that is held; None while an attitude or surfaces are asked for."""
 
     def step(self, now: Estimate, wish: Wish, params: AirParams, dt: float) -> Surfaces:
         asked = wish.asked
+        self.attitude = self.airspeed = None
         if isinstance(asked, Surfaces):
             self._flap = asked.flap
             return asked
@@ -39,7 +44,10 @@ class Helm:
         flap = self._lifting(wish.lift, Cycle(now, params, dt))
         if self._flap > 0:
             params = msgspec.structs.replace(params, alpha_zero_lift=params.alpha_zero_lift - params.flap_alpha * self._flap)
-        return replace(self._fly(now, asked, params, dt), flap=flap, brake=wish.brake)
+        surfaces = self._fly(now, asked, params, dt)
+        self.attitude = self._control.held
+        self.airspeed = None if isinstance(asked, Attitude) else asked.airspeed
+        return replace(surfaces, flap=flap, brake=wish.brake)
 
     def _lifting(self, lift: float, cycle: Cycle) -> float:
         """rad of flap that makes so much lift [m/s^2] beside what it makes already."""

@@ -6,7 +6,7 @@ from dataclasses import astuple, dataclass, replace
 
 from services.autopilot.air.by_hand import COMMAND_MAX_AGE, LET_GO, Stick
 from services.autopilot.air.camera import Camera
-from services.autopilot.air.commands import Surfaces, Wanted
+from services.autopilot.air.commands import Attitude, Surfaces, Wanted
 from services.autopilot.air.descent import Descent
 from services.autopilot.air.fence_guard import FenceGuard
 from services.autopilot.air.field import Field
@@ -43,6 +43,10 @@ class Flown:
     surfaces: Surfaces
     aim: Aim
     level: Level
+    attitude: Attitude | None = None
+    """That is held; None while the surfaces are moved by hand."""
+    airspeed: float | None = None
+    """m/s, that is held."""
 
 
 class Pilot:
@@ -229,7 +233,7 @@ class Pilot:
         aim = asked.aim if isinstance(asked, Track) else self._straight_on(now, params)
         height = asked.height if isinstance(asked, Track | Wanted) else None
         self._level = Level(now.height if height is None else height, asked.climb if isinstance(asked, Track | Wanted) else 0.0)
-        return Flown(self._helm.step(now, wish, params, dt), aim, self._level)
+        return Flown(self._helm.step(now, wish, params, dt), aim, self._level, self._helm.attitude, self._helm.airspeed)
 
     @staticmethod
     def _straight_on(now: Estimate, params: AirParams) -> Aim:

@@ -33,7 +33,7 @@ from schemas.messages import (
     SurfaceCommand,
     VehicleStatus,
 )
-from services.autopilot.air import by_hand, intake, offboard, orders, reports
+from services.autopilot.air import by_hand, intake, offboard, orders, reports, telling
 from services.autopilot.air.commands import Surfaces
 from services.autopilot.air.failsafes import GNSS_HOLD
 from services.autopilot.air.fence_plan import Remembered, mission_fault, place_fault
@@ -83,6 +83,8 @@ class AutopilotAir(Service):
         "pose": topics.POSE,
         "body_frame": topics.TF_BODY,
         "status": topics.STATUS,
+        "targets": topics.TARGETS,
+        "quality": topics.QUALITY,
         "plan": topics.MISSION,
         "bounds": topics.FENCE,
         "progress": topics.PROGRESS,
@@ -222,7 +224,10 @@ class AutopilotAir(Service):
             self._status.prearm.extend(self._faults())
             self._status.failsafes.extend(self._safety.texts)
             out["status"] = self._stamped_status(t)
+        if self._cycles % 5 == 0:
+            out["targets"] = telling.targets(t, self._pilot, flown)
         if self._cycles % 25 == 0:
+            out["quality"] = telling.quality(t, now)
             out["progress"] = reports.progress(t, self._pilot, self._mission.id)
             out["path"] = reports.path(t, self._pilot)
         self._cycles += 1

@@ -43,6 +43,8 @@ def test_each_report_has_its_own_rate():
         "body_frame": 100,
         "events": 100,
         "status": 20,
+        "targets": 20,
+        "quality": 4,
         "progress": 4,
         "path": 4,
         "plan": 1,
