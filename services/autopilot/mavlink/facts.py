@@ -1,16 +1,44 @@
 """What the link knows of one vehicle: what never changes, and the newest message of each kind."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Protocol, TypeVar
 
 import numpy as np
+from google.protobuf.timestamp_pb2 import Timestamp
 
 from schemas.convert import array, seconds
-from schemas.messages import Battery, Clock, Gnss, Kind, Mission, MissionProgress, NavState, Vector3, VehicleStatus
+from schemas.messages import (
+    AirData,
+    Battery,
+    Clock,
+    EstimateQuality,
+    Gnss,
+    Imu,
+    Kind,
+    Mission,
+    MissionProgress,
+    NavState,
+    NavStatus,
+    SurfaceCommand,
+    Targets,
+    Vector3,
+    VehicleStatus,
+    WheelCommand,
+)
+from services.autopilot.mavlink.vibration import Vibration
 from uvf.maths.geodesy import Floats, LocalTangent
 from uvf.runtime.vehicle_file import Sensors, VehicleFile
 
 SILENT_AFTER = 2.0  # s of simulation time
+
+
+class Stamped(Protocol):
+    @property
+    def timestamp(self) -> Timestamp: ...
+
+
+S = TypeVar("S", bound=Stamped)
 
 
 @dataclass(frozen=True)
@@ -64,6 +92,16 @@ class Latest:
     gnss: Gnss | None = None
     battery: Battery | None = None
     clock: Clock | None = None
+    imu: Imu | None = None
+    air_data: AirData | None = None
+    surface_command: SurfaceCommand | None = None
+    wheel_command: WheelCommand | None = None
+    targets: Targets | None = None
+    quality: EstimateQuality | None = None
+    planning: NavStatus | None = None
+    vibration: Vibration = field(default_factory=Vibration)
+    others: Sequence[tuple[Facts, "Latest"]] = ()
+    """The other vehicles of the mission."""
     intended_custom_mode: int = field(default=0)
     """The last mode that a ground station asked for, 0 = none yet."""
 
@@ -83,6 +121,10 @@ class Latest:
         """Whether estimator or autopilot have not been heard for a while of simulation time, or never."""
         oldest = min(seconds(m.timestamp) if m is not None else -np.inf for m in (self.nav, self.status))
         return bool(self.sim_time - oldest > SILENT_AFTER)
+
+    def fresh(self, message: S | None) -> S | None:
+        """The message, or None when it is old: what is no longer told is not known."""
+        return message if message is not None and self.sim_time - seconds(message.timestamp) <= SILENT_AFTER else None
 
     @property
     def home(self) -> Floats | None:

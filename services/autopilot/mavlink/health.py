@@ -52,7 +52,8 @@ def _knows_where_it_is(facts: Facts, latest: Latest) -> bool:
 
 
 def _has_fix(latest: Latest) -> bool:
-    return latest.gnss is not None and latest.gnss.fix >= Gnss.FIX_3D
+    gnss = latest.fresh(latest.gnss)
+    return gnss is not None and gnss.fix >= Gnss.FIX_3D
 
 
 def _complaints(facts: Facts, latest: Latest) -> tuple[str, ...]:

@@ -1,5 +1,6 @@
 """One vehicle's end of the link: what goes out, and what was asked of the services and is not answered yet."""
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, NamedTuple
@@ -10,6 +11,7 @@ from services.autopilot.mavlink import dialect as mav
 from services.autopilot.mavlink.endpoint import Peer
 from services.autopilot.mavlink.facts import Facts, Latest
 from services.autopilot.mavlink.statustext import TextLimiter, chunks
+from services.autopilot.mavlink.vibration import Vibration
 from uvf.runtime.service import Answer
 
 ANSWER_WITHIN = 2.5  # s: inside MAVSDK's three tries and QGroundControl's 3 s
@@ -52,7 +54,8 @@ class Line:
 
     def __init__(self, facts: Facts) -> None:
         self.facts = facts
-        self.latest = Latest()
+        imu = facts.sensors.imu
+        self.latest = Latest(vibration=Vibration(imu.accel_range if imu is not None else math.inf))
         self.t = 0.0
         self.outbox: list[Out] = []
         self.requests: list[tuple[str, Message]] = []

@@ -5,10 +5,10 @@ import math
 import numpy as np
 
 from schemas.convert import array, wxyz, yaw_of
-from schemas.messages import Mode, NavState
+from schemas.messages import NavState
 from services.autopilot.mavlink import dialect as mav
 from services.autopilot.mavlink.facts import Facts, Latest
-from services.autopilot.mavlink.scaling import I16, I32, U16, compass, heading_degrees, whole
+from services.autopilot.mavlink.scaling import I16, I32, U16, heading_degrees, whole
 from uvf.maths.geodesy import Floats
 from uvf.maths.rotations import enu_flu_from_ned_frd, to_euler
 
@@ -96,18 +96,6 @@ def hud(facts: Facts, latest: Latest, t: float) -> Message:
     throttle = whole(latest.status.throttle * 100, (0, 100)) if latest.status is not None else 0
     amsl = nav.position.z + facts.origin.altitude
     return mav.MAVLink_vfr_hud_message(nav.airspeed, ground_speed, heading, throttle, amsl, nav.velocity.z)
-
-
-def controller_output(facts: Facts, latest: Latest, t: float) -> Message:
-    """Bearing, distance and errors of the mission item flown now; the attitude asked of the controller is not reported."""
-    status, nav, mission = latest.status, latest.nav, latest.mission
-    if status is None or nav is None or mission is None or status.mode != Mode.MODE_MISSION or status.waypoint >= len(mission.items):
-        return None
-    to_item = array(mission.items[status.waypoint].position) - array(nav.position)
-    bearing = whole(compass(to_item), I16)
-    distance = whole(status.distance_to_waypoint, U16)
-    nan = math.nan
-    return mav.MAVLink_nav_controller_output_message(nan, nan, bearing, bearing, distance, status.altitude_error, nan, status.cross_track)
 
 
 def global_origin(facts: Facts, latest: Latest, t: float) -> Message:

@@ -59,9 +59,9 @@ def _answer(line: Line, command: Command, ack: Acknowledger, number: int) -> Non
     if stream is None:
         ack(mav.MAV_RESULT_UNSUPPORTED)
         return
-    message = stream.build(line.facts, line.latest, line.t)
-    ack(mav.MAV_RESULT_ACCEPTED if message is not None else mav.MAV_RESULT_TEMPORARILY_REJECTED)
-    if message is not None:
+    messages = stream.messages(line.facts, line.latest, line.t)
+    ack(mav.MAV_RESULT_ACCEPTED if messages else mav.MAV_RESULT_TEMPORARILY_REJECTED)
+    for message in messages:
         line.send(message, command.sender.peer)
 
 

@@ -7,7 +7,24 @@ from google.protobuf.message import Message
 
 from schemas import topics
 from schemas.convert import stamp
-from schemas.messages import Battery, Clock, Event, Gnss, Link, Mission, MissionProgress, NavState, VehicleStatus
+from schemas.messages import (
+    AirData,
+    Battery,
+    Clock,
+    EstimateQuality,
+    Event,
+    Gnss,
+    Imu,
+    Link,
+    Mission,
+    MissionProgress,
+    NavState,
+    NavStatus,
+    SurfaceCommand,
+    Targets,
+    VehicleStatus,
+    WheelCommand,
+)
 from services.autopilot.mavlink import endpoint
 from services.autopilot.mavlink.codec import Codec
 from services.autopilot.mavlink.facts import Facts
@@ -34,6 +51,13 @@ class MavlinkService(Service):
         "progress": each_vehicle(topics.PROGRESS),
         "gnss": each_vehicle(topics.GNSS),
         "battery": each_vehicle(topics.BATTERY),
+        "imu": each_vehicle(topics.IMU),
+        "air_data": each_vehicle(topics.AIR_DATA),
+        "surface_command": each_vehicle(topics.SURFACE_COMMAND),
+        "wheel_command": each_vehicle(topics.WHEEL_COMMAND),
+        "targets": each_vehicle(topics.TARGETS),
+        "quality": each_vehicle(topics.QUALITY),
+        "planning": each_vehicle(topics.NAV_STATUS),
         "events": each_vehicle(every(topics.EVENTS.by("*"))),
         "clock": optional(topics.CLOCK),
     }
@@ -52,6 +76,8 @@ class MavlinkService(Service):
         self._vehicles = {one.name: VehicleLink(one) for one in facts}
         self._signing = signing or Signing()
         self._reception = Reception(list(self._vehicles.values()), link, self._signing)
+        for name, vehicle in self._vehicles.items():
+            vehicle.line.latest.others = [(v.line.facts, v.line.latest) for other, v in self._vehicles.items() if other != name]
         self._link_due = Due(topics.LINK.hz)
 
     def step(
@@ -63,6 +89,13 @@ class MavlinkService(Service):
         progress: dict[str, MissionProgress],
         gnss: dict[str, Gnss],
         battery: dict[str, Battery],
+        imu: dict[str, Imu],
+        air_data: dict[str, AirData],
+        surface_command: dict[str, SurfaceCommand],
+        wheel_command: dict[str, WheelCommand],
+        targets: dict[str, Targets],
+        quality: dict[str, EstimateQuality],
+        planning: dict[str, NavStatus],
         events: dict[str, list[Event]],
         clock: Clock | None,
         arm: Answers,
@@ -79,6 +112,13 @@ class MavlinkService(Service):
             "progress": progress,
             "gnss": gnss,
             "battery": battery,
+            "imu": imu,
+            "air_data": air_data,
+            "surface_command": surface_command,
+            "wheel_command": wheel_command,
+            "targets": targets,
+            "quality": quality,
+            "planning": planning,
         }
         self._update(t, news, clock)
         for answer in (*arm, *set_mode, *set_mission, *set_current, *goal):
@@ -99,6 +139,8 @@ class MavlinkService(Service):
             for what, by_vehicle in news.items():
                 if name in by_vehicle:
                     setattr(vehicle.line.latest, what, by_vehicle[name])
+            if name in news["imu"]:
+                vehicle.line.latest.vibration.hear(news["imu"][name])  # type: ignore[arg-type]
 
     def _speak(self, t: float, events: Mapping[str, Sequence[Event]]) -> None:
         peers = self._link.peers(t)

@@ -1,6 +1,6 @@
 """What a vehicle tells unasked: estimated motion, status, battery, mission, as MAVLink messages.
 
-Every builder takes (facts, latest, t [s since the link came up]) and returns None while it knows nothing to say.
+Every builder takes (facts, latest, t [s since the link came up]) and returns None while it knows nothing to say, or a list.
 """
 
 import math
@@ -12,14 +12,15 @@ import numpy as np
 from schemas.convert import array, wxyz
 from schemas.messages import Gnss, Mode
 from services.autopilot.mavlink import dialect as mav
-from services.autopilot.mavlink import identity, navigation
+from services.autopilot.mavlink import estimate_quality, identity, navigation, sensor_messages, steering
 from services.autopilot.mavlink.facts import Facts, Latest
 from services.autopilot.mavlink.health import health
 from services.autopilot.mavlink.scaling import I32, U16, whole
 from services.autopilot.mavlink.scaling import compass as compass_of
+from services.autopilot.mavlink.traffic import traffic
 
 Message = mav.MAVLink_message | None
-Build = Callable[[Facts, Latest, float], Message]
+Build = Callable[[Facts, Latest, float], Message | list[mav.MAVLink_message]]
 
 LOW, CRITICAL, EMERGENCY = 0.15, 0.07, 0.05  # of a full battery; as BAT_LOW_THR, BAT_CRIT_THR, BAT_EMERGEN_THR say
 
@@ -30,6 +31,11 @@ class Stream:
 
     build: Build
     hz: float
+
+    def messages(self, facts: Facts, latest: Latest, t: float) -> list[mav.MAVLink_message]:
+        """What there is to say at ``t`` [s]: none, one, or several."""
+        told = self.build(facts, latest, t)
+        return told if isinstance(told, list) else [told] if told is not None else []
 
 
 def _sys_status(facts: Facts, latest: Latest, t: float) -> Message:
@@ -72,14 +78,14 @@ def charge_state(remaining: float) -> int:
 
 
 def _gps_raw(facts: Facts, latest: Latest, t: float) -> Message:
-    """Only vehicles with a receiver have one to report. Dilutions of precision are not modelled: unknown."""
+    """Only vehicles with a receiver have one to report; one that has fallen silent has no fix. Dilutions of precision are not modelled."""
     gnss = latest.gnss
     if gnss is None or facts.sensors.gnss is None:
         return None
     velocity = array(gnss.velocity_enu)
     return mav.MAVLink_gps_raw_int_message(
         whole(t * 1e6, (0, 2**63)),
-        mav.GPS_FIX_TYPE_3D_FIX if gnss.fix >= Gnss.FIX_3D else mav.GPS_FIX_TYPE_NO_FIX,
+        mav.GPS_FIX_TYPE_3D_FIX if gnss.fix >= Gnss.FIX_3D and latest.fresh(gnss) else mav.GPS_FIX_TYPE_NO_FIX,
         whole(math.degrees(gnss.latitude) * 1e7, I32),
         whole(math.degrees(gnss.longitude) * 1e7, I32),
         whole(gnss.altitude * 1e3, I32),
@@ -92,27 +98,6 @@ def _gps_raw(facts: Facts, latest: Latest, t: float) -> Message:
         v_acc=whole(gnss.vertical_accuracy * 1e3, (0, 2**32 - 1)),
         vel_acc=whole(gnss.speed_accuracy * 1e3, (0, 2**32 - 1)),
     )
-
-
-def _wind(facts: Facts, latest: Latest, t: float) -> Message:
-    """Velocity of the air in NED; aircraft only."""
-    if latest.nav is None or facts.is_ground:
-        return None
-    east, north, up = array(latest.nav.wind)
-    return mav.MAVLink_wind_cov_message(whole(t * 1e6, (0, 2**63)), north, east, -up, 0.0, 0.0, math.nan, 0.0, 0.0)
-
-
-def _estimator_status(facts: Facts, latest: Latest, t: float) -> Message:
-    if latest.nav is None:
-        return None
-    flags = mav.ESTIMATOR_ATTITUDE | mav.ESTIMATOR_VELOCITY_HORIZ | mav.ESTIMATOR_POS_HORIZ_REL
-    flags |= mav.ESTIMATOR_POS_HORIZ_ABS | mav.ESTIMATOR_PRED_POS_HORIZ_REL | mav.ESTIMATOR_PRED_POS_HORIZ_ABS
-    flags |= 0 if facts.is_ground else mav.ESTIMATOR_VELOCITY_VERT | mav.ESTIMATOR_POS_VERT_ABS
-    if latest.is_silent:
-        flags = mav.ESTIMATOR_CONST_POS_MODE
-    nan = math.nan
-    sigma = latest.nav.position_sigma
-    return mav.MAVLink_estimator_status_message(whole(t * 1e6, (0, 2**63)), flags, nan, nan, nan, nan, nan, nan, sigma, nan)
 
 
 def _home_position(facts: Facts, latest: Latest, t: float) -> Message:
@@ -178,12 +163,19 @@ STREAMS: dict[int, Stream] = {
     mav.MAVLINK_MSG_ID_LOCAL_POSITION_NED: Stream(navigation.local_position, 5),
     mav.MAVLINK_MSG_ID_GLOBAL_POSITION_INT: Stream(navigation.global_position, 10),
     mav.MAVLINK_MSG_ID_MISSION_CURRENT: Stream(lambda f, n, t: mission_current(n), 1),
-    mav.MAVLINK_MSG_ID_NAV_CONTROLLER_OUTPUT: Stream(navigation.controller_output, 3),
+    mav.MAVLINK_MSG_ID_NAV_CONTROLLER_OUTPUT: Stream(steering.controller_output, 3),
     mav.MAVLINK_MSG_ID_VFR_HUD: Stream(navigation.hud, 10),
     mav.MAVLINK_MSG_ID_ALTITUDE: Stream(navigation.altitude, 5),
     mav.MAVLINK_MSG_ID_BATTERY_STATUS: Stream(_battery_status, 1),
-    mav.MAVLINK_MSG_ID_ESTIMATOR_STATUS: Stream(_estimator_status, 1),
-    mav.MAVLINK_MSG_ID_WIND_COV: Stream(_wind, 1),
+    mav.MAVLINK_MSG_ID_ESTIMATOR_STATUS: Stream(estimate_quality.estimator_status, 1),
+    mav.MAVLINK_MSG_ID_WIND_COV: Stream(estimate_quality.wind, 1),
+    mav.MAVLINK_MSG_ID_SERVO_OUTPUT_RAW: Stream(sensor_messages.servo_output, 4),
+    mav.MAVLINK_MSG_ID_HIGHRES_IMU: Stream(sensor_messages.highres_imu, 5),
+    mav.MAVLINK_MSG_ID_SCALED_PRESSURE: Stream(sensor_messages.scaled_pressure, 1),
+    mav.MAVLINK_MSG_ID_VIBRATION: Stream(sensor_messages.vibration, 1),
+    mav.MAVLINK_MSG_ID_ATTITUDE_TARGET: Stream(steering.attitude_target, 5),
+    mav.MAVLINK_MSG_ID_POSITION_TARGET_GLOBAL_INT: Stream(steering.position_target, 2),
+    mav.MAVLINK_MSG_ID_ADSB_VEHICLE: Stream(traffic, 1),
     mav.MAVLINK_MSG_ID_HOME_POSITION: Stream(_home_position, 0.5),
     mav.MAVLINK_MSG_ID_EXTENDED_SYS_STATE: Stream(_extended_sys_state, 1),
     mav.MAVLINK_MSG_ID_CURRENT_MODE: Stream(lambda f, n, t: identity.current_mode(n), 0.5),

@@ -7,6 +7,7 @@ from schemas.messages import DriveCommand, Event, SurfaceCommand
 from services.autopilot.mavlink import dialect as mav
 from services.autopilot.mavlink.actions import ACTIONS, on_set_mode
 from services.autopilot.mavlink.commands import Commands
+from services.autopilot.mavlink.data_streams import set_rates
 from services.autopilot.mavlink.endpoint import Peer
 from services.autopilot.mavlink.facts import Facts
 from services.autopilot.mavlink.ftp import on_ftp
@@ -65,6 +66,7 @@ class VehicleLink:
             mav.MAVLINK_MSG_ID_MISSION_SET_CURRENT: missions.on_set_current,
             mav.MAVLINK_MSG_ID_FILE_TRANSFER_PROTOCOL: lambda m, sender: on_ftp(line, m, sender),
             mav.MAVLINK_MSG_ID_MANUAL_CONTROL: self._on_manual,
+            mav.MAVLINK_MSG_ID_REQUEST_DATA_STREAM: lambda m, sender: set_rates(self.schedule, m, sender.peer),
             mav.MAVLINK_MSG_ID_PING: self._on_ping,
             mav.MAVLINK_MSG_ID_TIMESYNC: self._on_timesync,
             mav.MAVLINK_MSG_ID_LOG_REQUEST_LIST: self._on_log_list,
@@ -93,9 +95,7 @@ class VehicleLink:
         self._note_changes()
         out = [(message, [to] if to is not None else list(peers)) for message, to in line.take_out()]
         for number, to in self.schedule.due(line.t, peers):
-            message = STREAMS[number].build(line.facts, line.latest, line.t)
-            if message is not None:
-                out.append((message, to))
+            out += [(message, to) for message in STREAMS[number].messages(line.facts, line.latest, line.t)]
         return out
 
     def forget(self, peers: Sequence[Peer]) -> None:

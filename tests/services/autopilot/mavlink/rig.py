@@ -97,6 +97,8 @@ class Vehicle:
         self.refuse = {}
         self.asked = []
         self.battery = None
+        self.sensed = {}
+        """Messages of sensors and of what goes to the actuators, by the names of the service's inputs."""
         self.gnss = Gnss(fix=Gnss.FIX_3D, latitude=0.7, longitude=0.2, altitude=400, satellites=12)
         self.nav = NavState(velocity=Vector3(x=3.0, y=4.0, z=1.0), airspeed=25.0)
         self.nav.position.CopyFrom(Vector3(x=position[0], y=position[1], z=position[2]))
@@ -125,6 +127,7 @@ class Vehicle:
 class Rig:
     """``say`` a message, ``run`` the service, look at what a ground station ``heard``."""
 
+    SENSED = ("imu", "air_data", "surface_command", "wheel_command", "targets", "quality", "planning")
     CALLS = ("arm", "set_mode", "set_mission", "set_current", "goal")
 
     def __init__(self, answers=True):
@@ -135,6 +138,7 @@ class Rig:
         self.vehicles = {"plane": self.plane, "rover": self.rover}
         self.reported = set(self.vehicles)
         self.answers = answers
+        self.hears_satellites = True
         self.clock = Clock(state=Clock.RUNNING)
         self.events = {}
         self.outputs = {}
@@ -166,6 +170,10 @@ class Rig:
         for v in live.values():
             v.nav.timestamp.CopyFrom(sim)
             v.status.timestamp.CopyFrom(sim)
+            if self.hears_satellites:
+                v.gnss.timestamp.CopyFrom(sim)
+            for told in v.sensed.values():
+                told.timestamp.CopyFrom(sim)
         answers, self._waiting = self._waiting, {call: [] for call in self.CALLS}
         events, self.events = self.events, {}
         self.outputs = self.service.step(
@@ -176,6 +184,7 @@ class Rig:
             progress={n: v.progress for n, v in live.items()},
             gnss={"plane": self.plane.gnss} if "plane" in live else {},
             battery={n: v.battery for n, v in live.items() if v.battery is not None},
+            **{what: {n: v.sensed[what] for n, v in live.items() if what in v.sensed} for what in self.SENSED},
             events=events,
             clock=self.clock,
             **answers,

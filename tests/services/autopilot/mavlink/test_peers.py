@@ -94,3 +94,53 @@ def test_a_new_connection_begins_with_default_rates():
     assert not of(rig.run(CONNECTION_ENDS), "ATTITUDE", PLANE)
     rig.say(BEAT)
     assert of(rig.run(1.0), "ATTITUDE", PLANE)
+
+
+def rates(rig, peer, seconds=4.0):
+    """Messages a second of the plane, by type."""
+    rig.run(seconds)
+    kinds = [m.get_type() for m in rig.heard(peer) if m.get_srcSystem() == PLANE]
+    return {kind: kinds.count(kind) / seconds for kind in set(kinds)}
+
+
+def test_a_data_stream_changes_the_rates_of_its_group_for_its_peer_alone():
+    rig = Rig()
+    rig.run()
+    rig.say(mav.MAVLink_request_data_stream_message(PLANE, 1, mav.MAV_DATA_STREAM_EXTRA1, 5, 1))
+    mine, theirs = rates(rig, GCS), rates(Rig(), OTHER)
+    assert mine["ATTITUDE"] == mine["ATTITUDE_QUATERNION"] == 5 and theirs["ATTITUDE"] == 20
+    assert mine["GLOBAL_POSITION_INT"] == theirs["GLOBAL_POSITION_INT"] == 10
+
+
+def test_all_data_streams_as_mavproxy_asks_for_them_leave_heartbeat_and_home_alone():
+    rig = Rig()
+    rig.run()
+    for _ in range(3):
+        rig.say(mav.MAVLink_request_data_stream_message(PLANE, 0, mav.MAV_DATA_STREAM_ALL, 4, 1))
+        rig.run(1.0)
+    seen = rates(rig, GCS)
+    assert {seen[k] for k in ("ATTITUDE", "VFR_HUD", "GLOBAL_POSITION_INT", "SYS_STATUS", "GPS_RAW_INT")} == {4.0}
+    assert (seen["HEARTBEAT"], seen["HOME_POSITION"], seen["EXTENDED_SYS_STATE"]) == (1.0, 0.5, 1.0)
+
+
+def test_a_data_stream_is_stopped_and_goes_back_to_what_it_was():
+    rig = Rig()
+    rig.run()
+    for rate, start, wanted in ((4, 0, None), (0, 1, 10.0)):
+        rig.say(mav.MAVLink_request_data_stream_message(PLANE, 1, mav.MAV_DATA_STREAM_POSITION, rate, start))
+        rig.run()
+        assert rates(rig, GCS).get("GLOBAL_POSITION_INT") == wanted
+    rig.say(mav.MAVLink_request_data_stream_message(PLANE, 1, 99, 4, 1))
+    rig.run()
+
+
+def test_intervals_are_set_told_and_given_back():
+    rig = Rig()
+    rig.run()
+    number = float(mav.MAVLINK_MSG_ID_VFR_HUD)
+    for microseconds, hz, told in ((500_000.0, 2.0, 500_000), (-1.0, None, -1), (0.0, 10.0, 100_000), (1.0, 50.0, 20_000)):
+        rig.say(long(SET_INTERVAL, number, microseconds))
+        rig.run()
+        rig.say(long(mav.MAV_CMD_GET_MESSAGE_INTERVAL, number))
+        assert [(m.message_id, m.interval_us) for m in of(rig.run(), "MESSAGE_INTERVAL")] == [(74, told)]
+        assert rates(rig, GCS).get("VFR_HUD") == hz
