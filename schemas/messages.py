@@ -54,6 +54,7 @@ from schemas.v1.order_pb2 import (
     SpeedOrder,
     TakeoffOrder,
 )
+from schemas.v1.rally_pb2 import RallyPoints, RallyRequest
 from schemas.v1.sensor_pb2 import AirData, Battery, Contact, Gnss, Imu, Range, WheelTicks
 from schemas.v1.simulator_pb2 import RemoveRequest, SetPoseRequest, SimObject, SimObjects, SpawnRequest, StateRequest
 from schemas.v1.system_pb2 import Event, Health, Param, ParamReply, ParamRequest, ParamValues, Process, Processes
@@ -61,6 +62,7 @@ from schemas.v1.targets_pb2 import EstimateQuality, Targets
 from schemas.v1.time_pb2 import Clock, ClockRequest, Done
 from schemas.v1.vehicle_pb2 import (
     ArmRequest,
+    Breach,
     Circle,
     Kind,
     Mode,
@@ -76,6 +78,7 @@ __all__ = [
     "ArmRequest",
     "AttitudeSetpoint",
     "Battery",
+    "Breach",
     "CameraCalibration",
     "CancelRequest",
     "Circle",
@@ -134,6 +137,8 @@ __all__ = [
     "Process",
     "Processes",
     "Quaternion",
+    "RallyPoints",
+    "RallyRequest",
     "Range",
     "RemoveRequest",
     "Reply",

@@ -158,6 +158,7 @@ TARGETS = Topic(f"{_V}/state/targets", m.Targets, 10, _Q.STATE, "what the autopi
 EVENTS = Topic(f"{_V}/state/events/<source>", m.Event, 0, _Q.EVENT, "what happened to the vehicle")
 MISSION = Topic(f"{_V}/mission/plan", m.Mission, 0, _Q.LATCHED, "mission in force", kept=True)
 FENCE = Topic(f"{_V}/mission/fence", m.Fence, 0, _Q.LATCHED, "where the vehicle may be", kept=True)
+RALLY = Topic(f"{_V}/mission/rally", m.RallyPoints, 0, _Q.LATCHED, "where Return may lead beside home", kept=True)
 PROGRESS = Topic(f"{_V}/mission/progress", m.MissionProgress, 2, _Q.STATE, "where in the mission", kept=True)
 
 PARAMS = Topic(f"{_V}/state/params/<source>", m.ParamValues, 0, _Q.LATCHED, "a service's parameters that are in force", kept=True)
@@ -184,6 +185,7 @@ ORDER = Request(f"{_V}/srv/order", m.OrderRequest, m.Reply, "take off to a heigh
 CANCEL = Request(f"{_V}/srv/cancel", m.CancelRequest, m.Reply, "give up the goal that is being driven to")
 SET_MISSION = Request(f"{_V}/srv/mission", m.MissionRequest, m.Reply, "replace the mission")
 SET_FENCE = Request(f"{_V}/srv/fence", m.FenceRequest, m.Reply, "replace the fence, or take it away")
+SET_RALLY = Request(f"{_V}/srv/rally", m.RallyRequest, m.Reply, "replace the rally points")
 SET_CURRENT = Request(f"{_V}/srv/current", m.SetCurrentRequest, m.Reply, "jump to a mission item")
 PARAM = Request(f"{_V}/srv/param/<source>", m.ParamRequest, m.ParamReply, "read or set a service's parameters")
 

@@ -26,19 +26,19 @@ from foxglove_schemas_protobuf import Vector3_pb2 as foxglove_dot_Vector3__pb2
 from google.protobuf import timestamp_pb2 as google_dot_protobuf_dot_timestamp__pb2
 
 
-DESCRIPTOR = _descriptor_pool.Default().AddSerializedFile(b'\n\x12uvf/v1/fence.proto\x12\x06uvf.v1\x1a\x16\x66oxglove/Vector3.proto\x1a\x1fgoogle/protobuf/timestamp.proto\"u\n\tFenceZone\x12#\n\x08vertices\x18\x01 \x03(\x0b\x32\x11.foxglove.Vector3\x12!\n\x06\x63\x65ntre\x18\x02 \x01(\x0b\x32\x11.foxglove.Vector3\x12\x0e\n\x06radius\x18\x03 \x01(\x01\x12\x10\n\x08\x65xcludes\x18\x04 \x01(\x08\"\xe8\x01\n\x05\x46\x65nce\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12 \n\x05zones\x18\x02 \x03(\x0b\x32\x11.uvf.v1.FenceZone\x12\x12\n\x05\x66loor\x18\x03 \x01(\x01H\x00\x88\x01\x01\x12\x14\n\x07\x63\x65iling\x18\x04 \x01(\x01H\x01\x88\x01\x01\x12$\n\x06\x61\x63tion\x18\x05 \x01(\x0e\x32\x14.uvf.v1.Fence.Action\"(\n\x06\x41\x63tion\x12\n\n\x06RETURN\x10\x00\x12\x08\n\x04HOLD\x10\x01\x12\x08\n\x04WARN\x10\x02\x42\x08\n\x06_floorB\n\n\x08_ceiling\"<\n\x0c\x46\x65nceRequest\x12\x1c\n\x05\x66\x65nce\x18\x01 \x01(\x0b\x32\r.uvf.v1.Fence\x12\x0e\n\x06source\x18\x02 \x01(\tb\x06proto3')
+DESCRIPTOR = _descriptor_pool.Default().AddSerializedFile(b'\n\x12uvf/v1/fence.proto\x12\x06uvf.v1\x1a\x16\x66oxglove/Vector3.proto\x1a\x1fgoogle/protobuf/timestamp.proto\"\x84\x01\n\tFenceZone\x12#\n\x08vertices\x18\x01 \x03(\x0b\x32\x11.foxglove.Vector3\x12!\n\x06\x63\x65ntre\x18\x02 \x01(\x0b\x32\x11.foxglove.Vector3\x12\x0e\n\x06radius\x18\x03 \x01(\x01\x12\x10\n\x08\x65xcludes\x18\x04 \x01(\x08\x12\r\n\x05group\x18\x05 \x01(\r\"\xb3\x02\n\x05\x46\x65nce\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12 \n\x05zones\x18\x02 \x03(\x0b\x32\x11.uvf.v1.FenceZone\x12\x12\n\x05\x66loor\x18\x03 \x01(\x01H\x00\x88\x01\x01\x12\x14\n\x07\x63\x65iling\x18\x04 \x01(\x01H\x01\x88\x01\x01\x12$\n\x06\x61\x63tion\x18\x05 \x01(\x0e\x32\x14.uvf.v1.Fence.Action\x12\x10\n\x08\x64isabled\x18\x06 \x01(\x08\x12\'\n\x0creturn_point\x18\x07 \x01(\x0b\x32\x11.foxglove.Vector3\x12\x0e\n\x06origin\x18\x08 \x03(\x0c\"(\n\x06\x41\x63tion\x12\n\n\x06RETURN\x10\x00\x12\x08\n\x04HOLD\x10\x01\x12\x08\n\x04WARN\x10\x02\x42\x08\n\x06_floorB\n\n\x08_ceiling\"<\n\x0c\x46\x65nceRequest\x12\x1c\n\x05\x66\x65nce\x18\x01 \x01(\x0b\x32\r.uvf.v1.Fence\x12\x0e\n\x06source\x18\x02 \x01(\tb\x06proto3')
 
 _globals = globals()
 _builder.BuildMessageAndEnumDescriptors(DESCRIPTOR, _globals)
 _builder.BuildTopDescriptorsAndMessages(DESCRIPTOR, 'uvf.v1.fence_pb2', _globals)
 if not _descriptor._USE_C_DESCRIPTORS:
   DESCRIPTOR._loaded_options = None
-  _globals['_FENCEZONE']._serialized_start=87
-  _globals['_FENCEZONE']._serialized_end=204
-  _globals['_FENCE']._serialized_start=207
-  _globals['_FENCE']._serialized_end=439
-  _globals['_FENCE_ACTION']._serialized_start=377
-  _globals['_FENCE_ACTION']._serialized_end=417
-  _globals['_FENCEREQUEST']._serialized_start=441
-  _globals['_FENCEREQUEST']._serialized_end=501
+  _globals['_FENCEZONE']._serialized_start=88
+  _globals['_FENCEZONE']._serialized_end=220
+  _globals['_FENCE']._serialized_start=223
+  _globals['_FENCE']._serialized_end=530
+  _globals['_FENCE_ACTION']._serialized_start=468
+  _globals['_FENCE_ACTION']._serialized_end=508
+  _globals['_FENCEREQUEST']._serialized_start=532
+  _globals['_FENCEREQUEST']._serialized_end=592
 # @@protoc_insertion_point(module_scope)

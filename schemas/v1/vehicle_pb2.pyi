@@ -30,6 +30,13 @@ class Kind(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
     KIND_UNSPECIFIED: _ClassVar[Kind]
     KIND_GROUND: _ClassVar[Kind]
     KIND_FIXED_WING: _ClassVar[Kind]
+
+class Breach(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
+    __slots__ = ()
+    BREACH_NONE: _ClassVar[Breach]
+    BREACH_FLOOR: _ClassVar[Breach]
+    BREACH_CEILING: _ClassVar[Breach]
+    BREACH_EDGE: _ClassVar[Breach]
 MODE_UNSPECIFIED: Mode
 MODE_MANUAL: Mode
 MODE_HOLD: Mode
@@ -46,6 +53,10 @@ MODE_FOLLOW: Mode
 KIND_UNSPECIFIED: Kind
 KIND_GROUND: Kind
 KIND_FIXED_WING: Kind
+BREACH_NONE: Breach
+BREACH_FLOOR: Breach
+BREACH_CEILING: Breach
+BREACH_EDGE: Breach
 
 class NavState(_message.Message):
     __slots__ = ("timestamp", "position", "velocity", "orientation", "angular_velocity", "airspeed", "wind", "position_sigma")
@@ -68,7 +79,7 @@ class NavState(_message.Message):
     def __init__(self, timestamp: _Optional[_Union[_timestamp_pb2.Timestamp, _Mapping]] = ..., position: _Optional[_Union[_Vector3_pb2.Vector3, _Mapping]] = ..., velocity: _Optional[_Union[_Vector3_pb2.Vector3, _Mapping]] = ..., orientation: _Optional[_Union[_Quaternion_pb2.Quaternion, _Mapping]] = ..., angular_velocity: _Optional[_Union[_Vector3_pb2.Vector3, _Mapping]] = ..., airspeed: _Optional[float] = ..., wind: _Optional[_Union[_Vector3_pb2.Vector3, _Mapping]] = ..., position_sigma: _Optional[float] = ...) -> None: ...
 
 class VehicleStatus(_message.Message):
-    __slots__ = ("timestamp", "kind", "mode", "armed", "landed", "stopped", "command_source", "reason", "throttle", "battery_remaining", "battery_voltage", "waypoint", "cross_track", "altitude_error", "distance_to_waypoint", "home", "system_id", "prearm", "failsafes", "circle")
+    __slots__ = ("timestamp", "kind", "mode", "armed", "landed", "stopped", "command_source", "reason", "throttle", "battery_remaining", "battery_voltage", "waypoint", "cross_track", "altitude_error", "distance_to_waypoint", "home", "system_id", "prearm", "failsafes", "circle", "breach", "breaches")
     TIMESTAMP_FIELD_NUMBER: _ClassVar[int]
     KIND_FIELD_NUMBER: _ClassVar[int]
     MODE_FIELD_NUMBER: _ClassVar[int]
@@ -89,6 +100,8 @@ class VehicleStatus(_message.Message):
     PREARM_FIELD_NUMBER: _ClassVar[int]
     FAILSAFES_FIELD_NUMBER: _ClassVar[int]
     CIRCLE_FIELD_NUMBER: _ClassVar[int]
+    BREACH_FIELD_NUMBER: _ClassVar[int]
+    BREACHES_FIELD_NUMBER: _ClassVar[int]
     timestamp: _timestamp_pb2.Timestamp
     kind: Kind
     mode: Mode
@@ -109,7 +122,9 @@ class VehicleStatus(_message.Message):
     prearm: _containers.RepeatedScalarFieldContainer[str]
     failsafes: _containers.RepeatedScalarFieldContainer[str]
     circle: Circle
-    def __init__(self, timestamp: _Optional[_Union[_timestamp_pb2.Timestamp, _Mapping]] = ..., kind: _Optional[_Union[Kind, str]] = ..., mode: _Optional[_Union[Mode, str]] = ..., armed: bool = ..., landed: bool = ..., stopped: bool = ..., command_source: _Optional[str] = ..., reason: _Optional[str] = ..., throttle: _Optional[float] = ..., battery_remaining: _Optional[float] = ..., battery_voltage: _Optional[float] = ..., waypoint: _Optional[int] = ..., cross_track: _Optional[float] = ..., altitude_error: _Optional[float] = ..., distance_to_waypoint: _Optional[float] = ..., home: _Optional[_Union[_Vector3_pb2.Vector3, _Mapping]] = ..., system_id: _Optional[int] = ..., prearm: _Optional[_Iterable[str]] = ..., failsafes: _Optional[_Iterable[str]] = ..., circle: _Optional[_Union[Circle, _Mapping]] = ...) -> None: ...
+    breach: Breach
+    breaches: int
+    def __init__(self, timestamp: _Optional[_Union[_timestamp_pb2.Timestamp, _Mapping]] = ..., kind: _Optional[_Union[Kind, str]] = ..., mode: _Optional[_Union[Mode, str]] = ..., armed: bool = ..., landed: bool = ..., stopped: bool = ..., command_source: _Optional[str] = ..., reason: _Optional[str] = ..., throttle: _Optional[float] = ..., battery_remaining: _Optional[float] = ..., battery_voltage: _Optional[float] = ..., waypoint: _Optional[int] = ..., cross_track: _Optional[float] = ..., altitude_error: _Optional[float] = ..., distance_to_waypoint: _Optional[float] = ..., home: _Optional[_Union[_Vector3_pb2.Vector3, _Mapping]] = ..., system_id: _Optional[int] = ..., prearm: _Optional[_Iterable[str]] = ..., failsafes: _Optional[_Iterable[str]] = ..., circle: _Optional[_Union[Circle, _Mapping]] = ..., breach: _Optional[_Union[Breach, str]] = ..., breaches: _Optional[int] = ...) -> None: ...
 
 class Circle(_message.Message):
     __slots__ = ("centre", "radius")

@@ -1,9 +1,10 @@
 """What a ground vehicle is to do now: return, a person's goal, the mission, exploring, in this order."""
 
-from dataclasses import dataclass, replace
+import math
+from dataclasses import dataclass
 
 from schemas.convert import mode_name
-from schemas.messages import Mission, MissionItem, MissionProgress, Mode, VehicleStatus
+from schemas.messages import Mission, MissionItem, MissionProgress, Mode, RallyPoints, VehicleStatus
 
 Point = tuple[float, float]
 
@@ -32,14 +33,10 @@ class Job:
 
 @dataclass(frozen=True)
 class Orders:
-    """What the mission file says. home: start [m, world]; explores: what it does when nothing else is to be done."""
+    """haven: where the way back leads [m, world]; explores: what it does when nothing else is to be done."""
 
-    home: Point
+    haven: Point
     explores: bool
-
-    def now(self, status: VehicleStatus | None) -> "Orders":
-        """With home where the autopilot has it."""
-        return self if status is None or not status.HasField("home") else replace(self, home=(status.home.x, status.home.y))
 
 
 IDLE = Job("idle")
@@ -56,15 +53,34 @@ def mission_target(mission: Mission | None, progress: MissionProgress | None, ho
     return home if item.kind == MissionItem.RETURN else (item.position.x, item.position.y)
 
 
+class Havens:
+    """Where mode Return leads: the nearest of home and rally points when it begins; it does not change on the way."""
+
+    def __init__(self) -> None:
+        self._chosen: Point | None = None
+
+    def step(self, status: VehicleStatus | None, here: Point, home: Point, rally: RallyPoints | None) -> Point:
+        """Each cycle. All in m, world."""
+        places = [home, *((p.x, p.y) for p in (rally.points if rally is not None else ()))]
+        if status is None or status.mode != Mode.MODE_RETURN or self._chosen not in places:
+            self._chosen = min(places, key=lambda place: math.dist(place, here))
+        return self._chosen
+
+
 def choose(status: VehicleStatus | None, goal: Goal | None, target: Point | None, orders: Orders) -> Job:
     """target: of the mission's current item, if there is one."""
     if status is not None and status.mode == Mode.MODE_RETURN:
-        return Job("return", orders.home)
+        return Job("return", orders.haven)
     if goal is not None:
         return Job("goal", goal.point, goal.yaw)
     if target is not None:
         return Job("mission", target)
     return EXPLORE if orders.explores else IDLE
+
+
+def home_of(status: VehicleStatus | None) -> Point | None:
+    """m, world; None while the autopilot has not told it."""
+    return (status.home.x, status.home.y) if status is not None and status.HasField("home") else None
 
 
 def not_now(status: VehicleStatus | None) -> str:

@@ -23,6 +23,7 @@ from schemas.messages import (
     Pose,
     PoseInFrame,
     PosesInFrame,
+    RallyPoints,
     Reply,
     Vector3,
     VehicleStatus,
@@ -30,7 +31,7 @@ from schemas.messages import (
 from services.planner.costmap import Body
 from services.planner.exploring import Explorer, Patrol
 from services.planner.frontiers import Taste
-from services.planner.jobs import IDLE, Goal, Job, Orders, choose, mission_target, not_now
+from services.planner.jobs import IDLE, Goal, Havens, Job, Orders, choose, home_of, mission_target, not_now
 from services.planner.navigator import Navigator, Plan
 from services.planner.smoothing import length
 from uvf.maths.planar import IDENTITY, Pose2, compose, inverse, transform
@@ -71,6 +72,7 @@ class PlannerService(Service):
         "mission": optional(topics.MISSION),
         "progress": optional(topics.PROGRESS),
         "bounds": optional(topics.FENCE),
+        "rally": optional(topics.RALLY),
     }
     outputs = {"path": topics.PATH, "nav_status": topics.NAV_STATUS, "events": topics.EVENTS.by("planner")}
     requests = {"goal": topics.GOAL, "cancel": topics.CANCEL}
@@ -82,7 +84,8 @@ class PlannerService(Service):
         self.params = params
         self._world_from_map = world_from_map
         self._map_from_world = inverse(world_from_map)
-        self._orders = Orders(world_from_map[:2], explores)
+        self._explores = explores
+        self._havens = Havens()
         self._radius = radius
         self._navigator = Navigator(self._body)
         self._explorer = Explorer(self._taste)
@@ -113,6 +116,7 @@ class PlannerService(Service):
         mission: Mission | None,
         progress: MissionProgress | None,
         bounds: Fence | None,
+        rally: RallyPoints | None,
         goal: list[GoalRequest],
         cancel: list[CancelRequest],
         set_mode: list[Answer[ModeRequest, Reply]],
@@ -122,8 +126,9 @@ class PlannerService(Service):
         self._bounds = bounds
         changed = self._navigator.fit(self._body) | self._take_map(map)
         replies: dict[str, list[Reply]] = {"goal": self._ask_all(t, here, goal, status)}
-        orders = self._orders.now(status)
-        job = choose(status, self._goal, mission_target(mission, progress, orders.home), orders)
+        home = home_of(status) or self._world_from_map[:2]
+        haven = self._havens.step(status, (pose.pose.position.x, pose.pose.position.y), home, rally)
+        job = choose(status, self._goal, mission_target(mission, progress, home), Orders(haven, self._explores))
         if job != self._job:
             self._begin(t, job)
             changed = True

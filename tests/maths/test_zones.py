@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 
-from uvf.maths.zones import Disc, Polygon, Region
+from uvf.maths.zones import Disc, Overlap, Polygon, Region
 
 SQUARE = Polygon([(0.0, 0.0), (100.0, 0.0), (100.0, 100.0), (0.0, 100.0)])
 L_SHAPE = Polygon([(0.0, 0.0), (100.0, 0.0), (100.0, 40.0), (40.0, 40.0), (40.0, 100.0), (0.0, 100.0)])
@@ -88,3 +88,11 @@ def test_room_is_found_near_by_and_else_where_there_is_most():
     assert room >= 20.0 and math.dist(place, (5.0, 50.0)) < 18.0
     assert region.roomiest((50.0, 50.0), 20.0)[0] == (50.0, 50.0)
     assert region.roomiest((5.0, 50.0), 80.0)[1] == pytest.approx(50.0, abs=1.5)
+
+
+def test_an_overlap_is_what_lies_within_all_of_its_areas():
+    both = Overlap((SQUARE, Disc((100.0, 50.0), 30.0)))
+    assert at(both, (90.0, 50.0), (105.0, 50.0), (50.0, 50.0)) == pytest.approx([10.0, -5.0, -20.0])
+    assert both.box == ((70.0, 20.0), (100.0, 80.0))
+    apart = Overlap((SQUARE, Disc((300.0, 50.0), 30.0)))
+    assert Region((apart,)).at((150.0, 50.0)) < 0

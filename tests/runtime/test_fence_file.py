@@ -66,3 +66,19 @@ def test_messages_from_elsewhere_are_looked_at_too():
     assert "32 are possible" in fence_fault(Fence(zones=[FenceZone(radius=1.0)] * 33))
     assert "no action 9" in fence_fault(Fence(action=9))
     assert fence_fault(Fence(zones=[FenceZone(vertices=[Vector3(), Vector3(x=1.0), Vector3(y=1.0)])])) == ""
+
+
+def test_zones_of_one_group_count_together_and_those_of_a_file_each_alone(tmp_path):
+    left, right = FenceZone(radius=10.0), FenceZone(centre=Vector3(x=15.0), radius=10.0)
+    together = fencing(Fence(zones=[left, right])).region
+    assert together.at((7.5, 0.0)) > 0 > together.at((-5.0, 0.0))
+    other = FenceZone(centre=Vector3(x=-5.0), radius=3.0, group=1)
+    assert fencing(Fence(zones=[left, right, other])).region.at((-5.0, 0.0)) == pytest.approx(3.0)
+    zones = [{"circle": [0, 0, 10]}, {"circle": [15, 0, 10]}]
+    alone = fencing(fence_message(mission(tmp_path, {"zones": zones}).vehicles["milvus"].fence, "here")).region
+    assert alone.at((-5.0, 0.0)) > 0 and alone.at((20.0, 0.0)) > 0
+
+
+def test_a_fence_that_is_disabled_is_kept_and_keeps_nothing_out():
+    fence = Fence(zones=[FenceZone(radius=10.0)], disabled=True)
+    assert fence_fault(fence) == "" and fencing(fence).is_open

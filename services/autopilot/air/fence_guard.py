@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from schemas.messages import Breach
 from services.autopilot.air.commands import Wanted
 from services.autopilot.air.guidance import turn_radius
 from services.autopilot.air.params import AirParams
@@ -37,11 +38,21 @@ class Outlook:
     least: float = math.inf  # of the better turn that could be begun now
     side: float = 1.0  # of that turn, positive right
     height_room: float = math.inf  # to floor or ceiling, where climb or descent can be ended
+    low: bool = False  # the floor is the nearer one
 
     @property
     def breached(self) -> bool:
         """Whether the aircraft is outside."""
         return self.clearance < 0 or self.height_room < 0
+
+    @property
+    def breach(self) -> Breach:
+        """What of the fence it is outside of."""
+        if self.clearance < 0:
+            return Breach.BREACH_EDGE
+        if self.height_room >= 0:
+            return Breach.BREACH_NONE
+        return Breach.BREACH_FLOOR if self.low else Breach.BREACH_CEILING
 
     def spare(self, params: AirParams) -> float:
         """m beyond the distances that are kept; negative: it has to turn away, or to end its climb or descent."""
@@ -72,7 +83,8 @@ class FenceGuard:
         side = max(sides, key=lambda s: sides[s])
         if self._side and self._side in sides and sides[self._side] > sides[side] - SLACK:
             side = self._side  # two turns that are about as good do not take turns
-        self.outlook = Outlook(clearance, sides[side], side, self._height_room(now))
+        above, below = self._height_rooms(now)
+        self.outlook = Outlook(clearance, sides[side], side, min(above, below), below < above)
         return self.outlook
 
     @property
@@ -112,13 +124,13 @@ class FenceGuard:
         away = np.flatnonzero(room > lowest + AWAY * _radius(now, params))
         return float(lowest[away[0]] if len(away) else lowest[-1])
 
-    def _height_room(self, now: Estimate) -> float:
-        """m, left where the climb or descent of now would end; the floor counts once the aircraft has been above it."""
+    def _height_rooms(self, now: Estimate) -> tuple[float, float]:
+        """m, to ceiling and floor, where the climb or descent of now would end; the floor counts once it has been above it."""
         fence = self.fencing
         self._above_floor = not self.grounds and (self._above_floor or now.height > fence.floor)
         end = now.height + now.climb * REACTION + now.climb * abs(now.climb) / (2 * PULL)
         floor = fence.floor if self._above_floor else -math.inf
-        return min(fence.ceiling - max(end, now.height), min(end, now.height) - floor)
+        return fence.ceiling - max(end, now.height), min(end, now.height) - floor
 
 
 def _radius(now: Estimate, params: AirParams) -> float:

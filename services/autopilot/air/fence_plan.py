@@ -68,6 +68,8 @@ def fence_fit(fencing: Fencing, here: Place | None, airborne: bool, params: AirP
         return f"the aircraft is at {here.height:.0f} m, outside of it"
     if fencing.ceiling - fencing.floor < 3 * params.fence_height:
         return f"floor and ceiling are {fencing.ceiling - fencing.floor:.0f} m apart, {3 * params.fence_height:g} m are needed"
+    if (p := fencing.return_point) is not None and (why := place_fault(Place(p[1], p[0], p[2]), fencing, params, params.hold_radius)):
+        return f"its return point: {why}"
     near = (here.east, here.north) if here is not None else (0.0, 0.0)
     needed = tightest(params) + params.fence_margin
     room = fencing.region.roomiest(near, needed)[1]

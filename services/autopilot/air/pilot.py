@@ -13,6 +13,7 @@ from services.autopilot.air.field import Field
 from services.autopilot.air.flyable import fault
 from services.autopilot.air.formation import Formation, Trailing
 from services.autopilot.air.guidance import Aim
+from services.autopilot.air.havens import haven
 from services.autopilot.air.helm import Helm
 from services.autopilot.air.landing import Landing
 from services.autopilot.air.leading import Steadied
@@ -64,6 +65,8 @@ class Pilot:
         self.stopped = ""
         self._blind = False
         self.home: Place | None = None
+        self.rally: tuple[Place, ...] = ()
+        """Where Return may lead beside home."""
         self.senses = Senses()
         self.formation: Formation | None = None
         self.leads: Steadied | None = None
@@ -258,10 +261,13 @@ class Pilot:
         self._change(becomes or TABLE[self.mode].done or FlightMode.HOLD, phase.ended)
 
     def _new_circle(self, now: Estimate, params: AirParams) -> Circle:
-        if self.mode is FlightMode.RETURN and self.home is not None:
-            height = max(self._level.height, self.home.height + params.return_altitude)
-            return Circle(Place(self.home.north, self.home.east, height), params.hold_radius)
+        if self.mode is FlightMode.RETURN and (to := self.haven(now, params)) is not None:
+            return Circle(replace(to, height=max(self._level.height, to.height)), params.hold_radius)
         return Circle.ahead(now, max(self._level.height, params.min_altitude), params.hold_radius)
+
+    def haven(self, now: Estimate, params: AirParams) -> Place | None:
+        """Where Return would lead now."""
+        return haven(now, self.home, self.rally, self.fence.fencing, params) if self.home is not None else None
 
     @property
     def blocked(self) -> str:

@@ -6,13 +6,14 @@ from dataclasses import dataclass, field
 import msgspec
 
 from schemas.convert import seconds
-from schemas.messages import Battery, Event, Fence, Link
+from schemas.messages import Battery, Breach, Event, Fence, Link
 from services.autopilot.air.air_data_check import AirDataCheck, Flying
 from services.autopilot.air.commands import Surfaces
 from services.autopilot.air.endurance import Endurance
 from services.autopilot.air.failsafes import AIR_RULES, Known
 from services.autopilot.air.fence_guard import circle_within
-from services.autopilot.air.fence_plan import fence_fit, mission_fault, place_fault, tightest
+from services.autopilot.air.fence_plan import fence_fit, mission_fault, tightest
+from services.autopilot.air.havens import is_within
 from services.autopilot.air.modes import FlightMode
 from services.autopilot.air.params import AirParams
 from services.autopilot.air.pilot import Pilot
@@ -25,6 +26,7 @@ from services.autopilot.failsafes import Action, Order, Watch
 from uvf.runtime.fence_file import fence_fault, fencing
 
 RANK = {FlightMode.HOLD: Action.HOLD, FlightMode.RETURN: Action.RETURN, FlightMode.LAND: Action.LAND}
+FENCED = "fence", "breach"  # rows whose action is the fence's
 FENCE_ACTIONS = {Fence.RETURN: Action.RETURN, Fence.HOLD: Action.HOLD, Fence.WARN: Action.WARN}
 
 
@@ -54,6 +56,8 @@ class Safety:
         self._lost_for = 0.0  # s
         self._was_blind = self._waits = False
         self._silence = 0.0
+        self.breaches = 0
+        """How often it has been outside of a fence."""
 
     def hear(self, t: float, link: Link | None, battery: Battery | None) -> None:
         """What comes from outside, before each step."""
@@ -74,6 +78,11 @@ class Safety:
         return "estimator" in self.watch.holding
 
     @property
+    def breach(self) -> Breach:
+        """How it is outside of its fence."""
+        return self._pilot.fence.outlook.breach if "breach" in self.watch.holding else Breach.BREACH_NONE
+
+    @property
     def texts(self) -> list[str]:
         """What is wrong now."""
         return [rule.begins for rule in self.watch.holding.values()]
@@ -91,6 +100,7 @@ class Safety:
             self._lost_for += dt
         known = self._known(seen, params)
         changes, order = self.watch.step(known, dt)
+        self.breaches += any(change.began and change.rule.name == "breach" for change in changes)
         committed = self._pilot.is_committed(seen.now)
         if self._pilot.is_blind != self._was_blind or (self._waits and not committed):
             # What was ordered may have been given up for want of a position, or may be carried out by now.
@@ -116,7 +126,7 @@ class Safety:
             has_air_data=self.has_air_data,
             pitot_gap=self._air_data.gap,
             charge=self.endurance.charge,
-            spare=self.endurance.spare(now, self._pilot.home, params) if seen.airborne else math.inf,
+            spare=self.endurance.spare(now, self._pilot.haven(now, params), params) if seen.airborne else math.inf,
             fence=outlook.spare(params),
             breached=outlook.breached,
             fence_action=FENCE_ACTIONS[self._pilot.fence.fencing.action],
@@ -135,19 +145,27 @@ class Safety:
         if pilot.is_blind and order.action is Action.LAND:
             pilot.descend(now, reason, params)
             return
-        wanted = [mode for mode, rank in RANK.items() if rank <= order.action and self._may(mode, params)]
+        if order.rule.name in FENCED and order.action is Action.RETURN and self._return_point(reason, params):
+            return
+        wanted = [mode for mode, rank in RANK.items() if rank <= order.action and self._may(mode, now, params)]
         for mode in sorted(wanted, key=lambda m: -RANK[m]):
             if mode is FlightMode.HOLD and self._hold_within(now, reason, params):
                 return
             if not pilot.change_mode(mode, "failsafe", reason):
                 return
 
-    def _may(self, mode: FlightMode, params: AirParams) -> bool:
-        """Not home, where home is not within the fence."""
-        home, fence = self._pilot.home, self._pilot.fence.fencing
-        if mode is FlightMode.HOLD or home is None or not fence.steers:
-            return True
-        return not place_fault(Place(home.north, home.east, home.height + params.return_altitude), fence, params, params.hold_radius)
+    def _may(self, mode: FlightMode, now: Estimate, params: AirParams) -> bool:
+        """Not home, where neither home nor a rally point is within the fence."""
+        to = self._pilot.haven(now, params)
+        return mode is FlightMode.HOLD or to is None or is_within(to, self._pilot.fence.fencing, params)
+
+    def _return_point(self, reason: str, params: AirParams) -> bool:
+        """To the place that the fence itself names."""
+        to = self._pilot.fence.fencing.return_point
+        if to is None or self._pilot.go_to(Place(to[1], to[0], to[2]), "the failsafe", params):
+            return False
+        self._pilot.reason = reason
+        return True
 
     def _hold_within(self, now: Estimate, reason: str, params: AirParams) -> bool:
         """On a circle that lies within the fence, if there is a fence and room for one."""

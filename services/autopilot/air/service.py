@@ -26,6 +26,8 @@ from schemas.messages import (
     OrbitRequest,
     OrderRequest,
     ParamValues,
+    RallyPoints,
+    RallyRequest,
     Range,
     Reply,
     SetCurrentRequest,
@@ -36,7 +38,7 @@ from schemas.messages import (
 from services.autopilot.air import by_hand, intake, offboard, orders, reports, telling
 from services.autopilot.air.commands import Surfaces
 from services.autopilot.air.failsafes import GNSS_HOLD
-from services.autopilot.air.fence_plan import Remembered, mission_fault, place_fault
+from services.autopilot.air.fence_plan import Remembered, place_fault
 from services.autopilot.air.flyable import advice
 from services.autopilot.air.journal import Journal
 from services.autopilot.air.landed import LandDetector
@@ -45,6 +47,7 @@ from services.autopilot.air.over_ground import OverGround
 from services.autopilot.air.params import AirParams
 from services.autopilot.air.paths import Round
 from services.autopilot.air.pilot import Flown, Pilot
+from services.autopilot.air.plans import Plans
 from services.autopilot.air.prearm import Standing, faults
 from services.autopilot.air.route import Place
 from services.autopilot.air.safety import Safety, Seen
@@ -54,7 +57,7 @@ from services.autopilot.air.state import Estimate
 from services.autopilot.air.wishes import Senses
 from services.autopilot.told_params import ToldParams
 from uvf.maths.geodesy import GRAVITY
-from uvf.runtime.service import Outputs, Service, Value, every, optional
+from uvf.runtime.service import Outputs, Service, every, optional
 
 BEFORE = "an operator before the restart"
 
@@ -87,6 +90,7 @@ class AutopilotAir(Service):
         "quality": topics.QUALITY,
         "plan": topics.MISSION,
         "bounds": topics.FENCE,
+        "rally": topics.RALLY,
         "progress": topics.PROGRESS,
         "path": topics.PATH,
         "events": topics.EVENTS.by("autopilot"),
@@ -102,11 +106,13 @@ class AutopilotAir(Service):
         "go_around": topics.GO_AROUND,
         "order": topics.ORDER,
         "fence": topics.SET_FENCE,
+        "set_rally": topics.SET_RALLY,
     }
     recalls = {
         "status": topics.STATUS,
         "plan": topics.MISSION,
         "bounds": topics.FENCE,
+        "rally": topics.RALLY,
         "progress": topics.PROGRESS,
         "nav_state": topics.NAV_STATE,
         "params": topics.PARAMS.by("autopilot_air"),
@@ -117,10 +123,7 @@ class AutopilotAir(Service):
     def __init__(self, ship: Ship, params: AirParams) -> None:
         self.params = params
         self._ship = ship
-        self._mission = intake.with_id(ship.items)
         self._restarts = False
-        self._announced = False
-        self._bounds_told = False
         self._told_params = ToldParams()
         self._armed = ship.starts_in_air or ship.starts_armed
         self._pilot = Pilot(intake.items(ship.items), ship.ground, ship.strips, ship.servos)
@@ -131,11 +134,13 @@ class AutopilotAir(Service):
         self._safety.set_fence(ship.fence, None, params)
         self._journal = Journal()
         self._journal.note(advice(self._pilot.navigator.items, params))
+        self._plans = Plans(ship.items, self._pilot, self._safety, self._journal)
         self._sensing = Sensing(ship.instruments, ship.tangent, params.estimator, self._safety.believed)
         self._surfaces = by_hand.LET_GO
         self._now: Estimate | None = None
         self._cycles = 0
         self._told: tuple[object, ...] = ()
+        self._where: tuple[object, ...] = ()
         self._land = LandDetector(ship.starts_in_air)
         self._status = VehicleStatus()
 
@@ -162,6 +167,7 @@ class AutopilotAir(Service):
         go_around: list[GoAroundRequest],
         order: list[OrderRequest],
         fence: list[FenceRequest],
+        set_rally: list[RallyRequest],
     ) -> Outputs:
         if self._restarts:
             self._restart()
@@ -171,7 +177,8 @@ class AutopilotAir(Service):
             waiting = [_reply("there is no satellite fix yet")]
             requests: dict[str, Sequence[object]] = {"arm": arm, "mode": mode, "goal": goal, "mission": mission}
             requests |= {"current": current, "orbit": orbit, "go_around": go_around, "order": order, "fence": fence}
-            return {**self._announce(t), **{name: waiting * len(asked) for name, asked in requests.items()}}
+            requests["set_rally"] = set_rally
+            return {**self._news(t), **{name: waiting * len(asked) for name, asked in requests.items()}}
         if now.position_known or now.airspeed_known:
             self._land.step(now, self.params, 1 / self.hz)
         self._safety.hear(t, link, battery)
@@ -182,19 +189,20 @@ class AutopilotAir(Service):
             "arm": [self._arm(r) for r in arm],
             "mode": [self._set_mode(r) for r in mode],
             "goal": [self._go_to(r) for r in goal],
-            "mission": [self._set_mission(r.mission) for r in mission],
+            "mission": [_reply(self._plans.set_mission(r.mission, self.params)) for r in mission],
             "current": [_reply(self._pilot.set_current(r.index)) for r in current],
             "orbit": [_reply(self._orbit(r)) for r in orbit],
             "go_around": [_reply(self._pilot.go_around(r.source)) for r in go_around],
             "order": [_reply(self._carry_out(r, now)) for r in order],
-            "fence": [self._set_fence(r.fence) for r in fence],
+            "fence": [_reply(self._plans.set_fence(r.fence, self._seen(now), self.params)) for r in fence],
+            "set_rally": [_reply(self._plans.set_rally(r.rally, self.params)) for r in set_rally],
         }
         hand = by_hand.choose(t, {"teleop": teleop, "mavlink": mavlink, "client": client})
         self._over_ground.hear(range, self._sensing.felt, 1 / self.hz)
         flown = self._fly(t, now, hand, offboard.fresh(t, setpoint))
         out = self._report(t, now, flown)
         out["events"] = warnings + self._journal.events(t, self._pilot, self._armed)
-        return {**out, **self._announce(t), **replies}  # type: ignore[dict-item]
+        return {**out, **self._news(t), **replies}  # type: ignore[dict-item]
 
     def _fly(self, t: float, now: Estimate, hand: by_hand.Hand | None, setpoint: FlightSetpoint | None) -> Flown:
         clearance = self._over_ground.clearance(t, now, self.params.gear_height)
@@ -223,12 +231,17 @@ class AutopilotAir(Service):
             self._status.battery_remaining, self._status.battery_voltage = self._safety.endurance.shown
             self._status.prearm.extend(self._faults())
             self._status.failsafes.extend(self._safety.texts)
+            self._status.breach, self._status.breaches = self._safety.breach, self._safety.breaches
             out["status"] = self._stamped_status(t)
         if self._cycles % 5 == 0:
             out["targets"] = telling.targets(t, self._pilot, flown)
+        navigator = self._pilot.navigator
+        where = (navigator.index, navigator.reached, navigator.laps, navigator.finished)
+        if self._cycles % 25 == 0 or where != self._where:
+            self._where = where
+            out["progress"] = reports.progress(t, self._pilot, self._plans.mission.id)
         if self._cycles % 25 == 0:
             out["quality"] = telling.quality(t, now)
-            out["progress"] = reports.progress(t, self._pilot, self._mission.id)
             out["path"] = reports.path(t, self._pilot)
         self._cycles += 1
         return out
@@ -238,6 +251,7 @@ class AutopilotAir(Service):
         status: VehicleStatus | None = None,
         plan: Mission | None = None,
         bounds: Fence | None = None,
+        rally: RallyPoints | None = None,
         progress: MissionProgress | None = None,
         nav_state: NavState | None = None,
         params: ParamValues | None = None,
@@ -246,9 +260,11 @@ class AutopilotAir(Service):
         if params is not None:
             self.params = self._told_params.taken_up(params, self.params)
         if plan is not None:
-            self._set_mission(plan)
+            self._plans.set_mission(plan, self.params)
         if bounds is not None:
-            self._set_fence(bounds)
+            self._plans.set_fence(bounds, None, self.params)
+        if rally is not None:
+            self._plans.set_rally(rally, self.params)
         if status is not None and status.mode in intake.MODES:
             self._armed = status.armed
             self._land = LandDetector(not status.landed)
@@ -260,7 +276,7 @@ class AutopilotAir(Service):
     def stale(self, t: float, missing: tuple[str, ...]) -> Outputs:
         """Without the IMU nothing can be steered: surfaces at trim until it is back; before the first cycle the servos hold."""
         if not self._cycles:
-            return self._announce(t)
+            return self._news(t)
         p = self.params
         alpha = p.alpha_zero_lift + p.alpha_per_load * GRAVITY / p.trim_airspeed**2
         level = Surfaces(0.0, p.elev_zero_alpha + p.elev_per_alpha * alpha, 0.0, p.trim_throttle)
@@ -348,38 +364,15 @@ class AutopilotAir(Service):
         return ""
 
     def _restart(self) -> None:
-        """As after power has been off, with the plan and the fence of now."""
-        ship = replace(self._ship, starts_in_air=False, starts_armed=False, items=list(self._mission.items), fence=self._safety.fence)
+        """As after power has been off, with mission, fence and rally points of now."""
+        plans = self._plans
+        ship = replace(self._ship, starts_in_air=False, starts_armed=False, items=list(plans.mission.items), fence=self._safety.fence)
         vars(self).update(vars(AutopilotAir(ship, self.params)))
+        self._plans.set_rally(plans.rally, self.params)
 
-    def _set_fence(self, fence: Fence) -> Reply:
-        refusal = self._safety.set_fence(fence, self._seen(self._now) if self._now is not None else None, self.params)
-        self._bounds_told = self._bounds_told and bool(refusal)
-        return _reply(refusal)
-
-    def _set_mission(self, mission: Mission) -> Reply:
-        try:
-            items = intake.items(mission.items)
-            refusal = mission_fault(items, self._pilot.fence.fencing, self.params) or self._pilot.load(items, self.params)
-        except ValueError as error:
-            refusal = str(error)
-        if not refusal:
-            self._mission = intake.with_id(mission.items)
-            self._journal.note(advice(self._pilot.navigator.items, self.params))
-            self._announced = False
-        return _reply(refusal)
-
-    def _announce(self, t: float) -> Outputs:
-        out: dict[str, Value] = {}
-        if not self._announced:
-            self._announced = True
-            self._mission.timestamp.CopyFrom(stamp(t))
-            out["plan"] = self._mission
-        if not self._bounds_told:
-            self._bounds_told = True
-            self._safety.fence.timestamp.CopyFrom(stamp(t))
-            out["bounds"] = self._safety.fence
-        return {**out, **self._told_params.news(t, self.params)}
+    def _news(self, t: float) -> Outputs:
+        """What is told once, and again when it has changed."""
+        return {**self._plans.news(t), **self._told_params.news(t, self.params)}
 
     def _stamped_status(self, t: float) -> VehicleStatus:
         status = self._status

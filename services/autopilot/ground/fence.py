@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 
-from schemas.messages import MissionItem
+from schemas.messages import MissionItem, RallyPoints, Vector3
 from services.autopilot.ground.mission import DRIVABLE
 from uvf.runtime.fence_file import Fencing
 
@@ -35,9 +35,24 @@ def stops(fencing: Fencing, here: Place, linear: float, keep: tuple[float, float
 def refusal(items: list[MissionItem], fencing: Fencing, radius: float) -> str:
     """Which item lies outside, or too near to the edge; empty if none does."""
     for i, item in enumerate(items):
-        if item.kind in DRIVABLE and item.kind != MissionItem.RETURN:
-            room = fencing.region.at((item.position.x, item.position.y))
-            if room < radius + MARGIN:
-                far = f"{-room:.1f} m outside of the fence" if room < 0 else f"{room:.1f} m from the fence, too near"
-                return f"item {i}: ({item.position.x:.1f}, {item.position.y:.1f}) is {far}"
+        if item.kind in DRIVABLE and item.kind != MissionItem.RETURN and (why := _fault(item.position, fencing, radius)):
+            return f"item {i}: {why}"
     return ""
+
+
+def rally_refusal(rally: RallyPoints, fencing: Fencing, radius: float) -> str:
+    """Which rally point cannot be driven to; empty if all can."""
+    for i, point in enumerate(rally.points):
+        if not (math.isfinite(point.x) and math.isfinite(point.y)):
+            return f"item {i} holds a number that is not finite"
+        if why := _fault(point, fencing, radius):
+            return f"item {i}: {why}"
+    return ""
+
+
+def _fault(place: Vector3, fencing: Fencing, radius: float) -> str:
+    room = fencing.region.at((place.x, place.y))
+    if room >= radius + MARGIN:
+        return ""
+    far = f"{-room:.1f} m outside of the fence" if room < 0 else f"{room:.1f} m from the fence, too near"
+    return f"({place.x:.1f}, {place.y:.1f}) is {far}"

@@ -58,6 +58,10 @@ class Safety:
         self._wheels = Wheels(body.wheel_radius)
         self._grip, self._tilt, self._sight = Grip(self._wheels), Tilt(imu_rpy), Sight()
         self._fenced = False
+        self.is_outside = False
+        """Of its fence."""
+        self.breaches = 0
+        """How often it has been."""
 
     def set_fence(self, fence: Fence, here: Place | None) -> str:
         """Why it is refused; empty if it is in force from now on."""
@@ -78,6 +82,9 @@ class Safety:
     ) -> tuple[list[Event], Order[Known] | None]:
         """What has begun and ended, and what is to be done."""
         self._hear(t, sensed, doing, dt)
+        if sensed.here is not None:
+            was, self.is_outside = self.is_outside, self.fencing.region.at((sensed.here.x, sensed.here.y)) < 0
+            self.breaches += self.is_outside and not was
         changes, order = self.watch.step(self._known(t, doing, params), dt)
         return [change.event(t) for change in changes], order
 

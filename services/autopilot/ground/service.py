@@ -9,6 +9,7 @@ from schemas.convert import mode_name, seconds, stamp, yaw_of
 from schemas.messages import (
     ArmRequest,
     Battery,
+    Breach,
     DriveCommand,
     Event,
     Fence,
@@ -27,6 +28,8 @@ from schemas.messages import (
     OrderRequest,
     ParamValues,
     PoseInFrame,
+    RallyPoints,
+    RallyRequest,
     Reply,
     SetCurrentRequest,
     StopCommand,
@@ -79,6 +82,7 @@ class GroundAutopilot(Service):
         "status": topics.STATUS,
         "mission": topics.MISSION,
         "bounds": topics.FENCE,
+        "rally": topics.RALLY,
         "progress": topics.PROGRESS,
         "events": topics.EVENTS.by("autopilot"),
         "params": topics.PARAMS.by("autopilot_ground"),
@@ -90,12 +94,14 @@ class GroundAutopilot(Service):
         "set_current": topics.SET_CURRENT,
         "set_fence": topics.SET_FENCE,
         "order": topics.ORDER,
+        "set_rally": topics.SET_RALLY,
     }
     recalls = {
         "status": topics.STATUS,
         "mission": topics.MISSION,
         "progress": topics.PROGRESS,
         "bounds": topics.FENCE,
+        "rally": topics.RALLY,
         "params": topics.PARAMS.by("autopilot_ground"),
     }
     params: GroundAutopilotParams
@@ -130,6 +136,8 @@ class GroundAutopilot(Service):
         self._fence_is_new = True
         self._told_params = ToldParams()
         self._restarts = False
+        self._rally = RallyPoints()
+        self._rally_is_new = True
         self._here: fences.Place | None = None
         self._steps = 0
         self._told: tuple[object, ...] = ()
@@ -158,6 +166,7 @@ class GroundAutopilot(Service):
         set_current: list[SetCurrentRequest],
         set_fence: list[FenceRequest],
         order: list[OrderRequest],
+        set_rally: list[RallyRequest],
     ) -> Outputs:
         self._heed_stop(t, stop)
         self._here = place(pose, yaw_of(pose.pose.orientation)) if pose is not None else None
@@ -169,6 +178,7 @@ class GroundAutopilot(Service):
             "set_current": [self._set_current(t, r) for r in set_current],
             "set_fence": [self._set_fence(t, r) for r in set_fence],
             "order": [self._carry_out(t, r) for r in order],
+            "set_rally": [self._set_rally(r.rally) for r in set_rally],
         }
         commands = {"teleop": teleop, "mavlink": mavlink, "gcs": gcs, "client": client, "offboard": offboard, "planner": planner}
         position = (pose.pose.position.x, pose.pose.position.y) if pose is not None else None
@@ -186,6 +196,7 @@ class GroundAutopilot(Service):
         progress: MissionProgress | None = None,
         bounds: Fence | None = None,
         params: ParamValues | None = None,
+        rally: RallyPoints | None = None,
     ) -> None:
         """Goes on in the mode, armed or not, stopped or not, at the mission's item and with the parameters of the instance before."""
         if params is not None:
@@ -196,6 +207,8 @@ class GroundAutopilot(Service):
             self._stopped = status.stopped  # until it is released, even by somebody who has not seen it engaged
         if bounds is not None:
             self._safety.set_fence(bounds, None)
+        if rally is not None:
+            self._set_rally(rally)
         if mission is not None and progress is not None:
             self._engine.resume(mission, progress)
 
@@ -220,6 +233,13 @@ class GroundAutopilot(Service):
         if not reason:
             self._fence_is_new = True
             self._tell(t, f"new fence of {len(request.fence.zones)} zones", f"asked by {request.source or 'unknown'}")
+        return Reply(accepted=not reason, reason=reason)
+
+    def _set_rally(self, rally: RallyPoints) -> Reply:
+        """The planner drives there in mode Return."""
+        reason = fences.rally_refusal(rally, self._safety.fencing, self._body.radius)
+        if not reason:
+            self._rally, self._rally_is_new = rally, True
         return Reply(accepted=not reason, reason=reason)
 
     def _heed_stop(self, t: float, stop: StopCommand | None) -> None:
@@ -277,10 +297,12 @@ class GroundAutopilot(Service):
         return Reply(accepted=not reason, reason=reason)
 
     def _restart(self) -> None:
-        """As after power has been off, with the plan and the fence of now."""
+        """As after power has been off, with mission, fence and rally points of now."""
+        rally = self._rally
         body, home, system_id, imu_rpy = self._made_with
         job = (False, list(self._engine.mission.items))
         vars(self).update(vars(GroundAutopilot(body, home, job, system_id, self.params, self._safety.fence, imu_rpy)))
+        self._set_rally(rally)
 
     def _follow_mission(self, t: float, position: Point | None) -> None:
         active = self._mode == Mode.MODE_MISSION and self._armed and not self._stopped
@@ -322,6 +344,10 @@ class GroundAutopilot(Service):
         if self._fence_is_new:
             reports["bounds"] = self._safety.fence
             self._fence_is_new = False
+        if self._rally_is_new:
+            self._rally.timestamp.CopyFrom(stamp(t))
+            reports["rally"] = self._rally
+            self._rally_is_new = False
         return reports
 
     def _status(self, t: float, position: Point | None) -> VehicleStatus:
@@ -344,6 +370,8 @@ class GroundAutopilot(Service):
             distance_to_waypoint=left,
             home=vector(self._engine.home),
             system_id=self._system_id,
+            breach=Breach.BREACH_EDGE if self._safety.is_outside else Breach.BREACH_NONE,
+            breaches=self._safety.breaches,
             failsafes=[rule.begins for rule in self._safety.watch.holding.values()],
         )
 

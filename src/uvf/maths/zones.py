@@ -79,6 +79,24 @@ class Polygon:
         return None
 
 
+@dataclass(frozen=True)
+class Overlap:
+    """What lies within all of some areas, at least one."""
+
+    areas: tuple[Area, ...]
+
+    def inside(self, points: Floats) -> Floats:
+        least: Floats = np.min([area.inside(points) for area in self.areas], axis=0)
+        return least
+
+    @property
+    def box(self) -> tuple[Point, Point]:
+        """Of what may overlap; a point where nothing does."""
+        lows, highs = zip(*(area.box for area in self.areas), strict=True)
+        low = max(x for x, _ in lows), max(y for _, y in lows)
+        return low, (max(low[0], min(x for x, _ in highs)), max(low[1], min(y for _, y in highs)))
+
+
 def _cross(one: tuple[Point, Point], other: tuple[Point, Point]) -> bool:
     def side(a: Point, b: Point, p: Point) -> float:
         return (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0])

@@ -9,7 +9,7 @@ import msgspec
 from msgspec import Meta
 
 from schemas.messages import Fence, FenceZone, Vector3
-from uvf.maths.zones import Area, Disc, Point, Polygon, Region
+from uvf.maths.zones import Area, Disc, Overlap, Point, Polygon, Region
 from uvf.runtime.params import BadInput
 
 Metres = Annotated[float, Meta(ge=-1e6, le=1e6)]
@@ -42,6 +42,8 @@ class Fencing:
     floor: float
     ceiling: float
     action: Fence.Action
+    return_point: tuple[float, float, float] | None = None
+    """m, where action RETURN leads; None: to home or a rally point."""
 
     @property
     def steers(self) -> bool:
@@ -64,6 +66,7 @@ def fence_message(file: FenceFile, place: object) -> Fence:
         if (zone.polygon is None) == (zone.circle is None):
             raise BadInput(f"{place}: zones: {i}: a zone is a polygon or a circle, one of the two")
         zones.append(_zone_message(zone))
+        zones[-1].group = 0 if zone.exclude else i
     message = Fence(zones=zones, floor=file.floor, ceiling=file.ceiling, action=ACTIONS[file.action])
     if why := fence_fault(message):
         raise BadInput(f"{place}: {why}")
@@ -101,12 +104,20 @@ def _zone_fault(zone: FenceZone) -> str:
 
 
 def fencing(message: Fence) -> Fencing:
-    """Of a message without fault."""
-    include = tuple(_area(zone) for zone in message.zones if not zone.excludes)
+    """Of a message without fault; one that is disabled keeps out of nothing."""
+    if message.disabled:
+        return OPEN
+    groups: dict[int, list[Area]] = {}
+    for zone in message.zones:
+        if not zone.excludes:
+            groups.setdefault(zone.group, []).append(_area(zone))
+    include = tuple(areas[0] if len(areas) == 1 else Overlap(tuple(areas)) for areas in groups.values())
     exclude = tuple(_area(zone) for zone in message.zones if zone.excludes)
     floor = message.floor if message.HasField("floor") else -inf
     ceiling = message.ceiling if message.HasField("ceiling") else inf
-    return Fencing(Region(include, exclude), floor, ceiling, message.action)
+    p = message.return_point
+    back = (p.x, p.y, p.z) if message.HasField("return_point") else None
+    return Fencing(Region(include, exclude), floor, ceiling, message.action, back)
 
 
 def _area(zone: FenceZone) -> Area:

@@ -2,8 +2,8 @@
 
 import pytest
 
-from schemas.messages import Mission, MissionItem, MissionProgress, Mode, Vector3, VehicleStatus
-from services.planner.jobs import EXPLORE, IDLE, Goal, Orders, choose, mission_target, not_now
+from schemas.messages import Mission, MissionItem, MissionProgress, Mode, RallyPoints, Vector3, VehicleStatus
+from services.planner.jobs import EXPLORE, IDLE, Goal, Havens, Orders, choose, mission_target, not_now
 
 HOME = (1.0, 2.0)
 READY = VehicleStatus(mode=Mode.MODE_MISSION, armed=True)
@@ -42,3 +42,13 @@ def test_a_goal_waits_for_a_vehicle_that_may_drive():
     assert "STOP ALL" in not_now(VehicleStatus(mode=Mode.MODE_MISSION, armed=True, stopped=True))
     assert "arm" in not_now(VehicleStatus(mode=Mode.MODE_MISSION))
     assert "HOLD" in not_now(VehicleStatus(mode=Mode.MODE_HOLD, armed=True))
+
+
+def test_the_way_back_leads_to_what_is_nearest_when_it_begins_and_does_not_change_on_the_way():
+    returning, havens = VehicleStatus(mode=Mode.MODE_RETURN), Havens()
+    rally = RallyPoints(points=[Vector3(x=10.0), Vector3(y=10.0)])
+    assert havens.step(READY, (9.0, 0.0), HOME, rally) == (10.0, 0.0)
+    assert havens.step(returning, (9.0, 0.0), HOME, rally) == (10.0, 0.0)
+    assert havens.step(returning, (0.0, 9.0), HOME, rally) == (10.0, 0.0)
+    assert havens.step(READY, (0.0, 9.0), HOME, rally) == (0.0, 10.0)
+    assert havens.step(returning, (0.0, 9.0), HOME, None) == HOME  # taken away on the way

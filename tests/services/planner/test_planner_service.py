@@ -45,11 +45,12 @@ class Bench:
         self.events = []
         self.asked = []
 
-    def step(self, n=1, status=READY, mission=None, progress=None, goal=(), cancel=(), bounds=None):
+    def step(self, n=1, status=READY, mission=None, progress=None, goal=(), cancel=(), bounds=None, rally=None):
         for _ in range(n):
             self.t += 0.25
             pose = PoseInFrame(pose=planar_pose(*world(*self.here), self.yaw))
-            self.said = self.service.step(self.t, pose, self.grid, status, mission, progress, bounds, list(goal), list(cancel), [])
+            told = (status, mission, progress, bounds, rally)
+            self.said = self.service.step(self.t, pose, self.grid, *told, list(goal), list(cancel), [])
             self.events += [e.text for e in self.said["events"]]
             self.asked += self.said["set_mode"]
         return self

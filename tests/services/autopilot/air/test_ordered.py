@@ -202,11 +202,11 @@ def test_an_empty_order_is_refused():
 
 def test_begun_anew_it_is_disarmed_with_its_plan_and_knows_nothing_of_where_it_was():
     bench = resting(WAYPOINTS)
-    plan = bench.service._mission.id
+    plan = bench.service._plans.mission.id
     bench.run(arm=[ArmRequest(arm=True, force=True)], speed=0.0)
     assert "disarm it" in bench.run(order=[OrderRequest(restart=RestartOrder())], speed=0.0)["order"][0].reason
     bench.run(arm=[ArmRequest(arm=False)], mission=[MissionRequest(mission=Mission(items=WAYPOINTS[:1]))], speed=0.0)
     assert bench.run(order=[OrderRequest(restart=RestartOrder())], speed=0.0)["order"][0].accepted
     bench.run(speed=0.0)
-    assert bench.service._mission.id not in (0, plan)
+    assert bench.service._plans.mission.id not in (0, plan)
     assert not bench.service._armed and bench.service._cycles <= 1

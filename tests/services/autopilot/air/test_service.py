@@ -50,6 +50,7 @@ def test_each_report_has_its_own_rate():
         "plan": 1,
         "params": 1,
         "bounds": 1,
+        "rally": 1,
     }
 
 
