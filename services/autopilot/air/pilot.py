@@ -2,11 +2,11 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import astuple, dataclass, replace
+from dataclasses import astuple, replace
 
 from services.autopilot.air.by_hand import COMMAND_MAX_AGE, LET_GO, Stick
 from services.autopilot.air.camera import Camera
-from services.autopilot.air.commands import Attitude, Surfaces, Wanted
+from services.autopilot.air.commands import Wanted
 from services.autopilot.air.descent import Descent
 from services.autopilot.air.fence_guard import FenceGuard
 from services.autopilot.air.field import Field
@@ -31,23 +31,10 @@ from services.autopilot.air.state import Estimate
 from services.autopilot.air.stick_modes import STICK_MODES
 from services.autopilot.air.strip import Strip
 from services.autopilot.air.takeoff import TakeOff
-from services.autopilot.air.wishes import Phase, Senses, Track, Wish
+from services.autopilot.air.wishes import Flown, Phase, Senses, Track, Wish
 
 BACK = "GNSS back: holds until a mode is asked for"
 ROLLS_OUT = "the aircraft is rolling out after its landing"
-
-
-@dataclass(frozen=True, slots=True)
-class Flown:
-    """What a cycle came to."""
-
-    surfaces: Surfaces
-    aim: Aim
-    level: Level
-    attitude: Attitude | None = None
-    """That is held; None while the surfaces are moved by hand."""
-    airspeed: float | None = None
-    """m/s, that is held."""
 
 
 class Pilot:

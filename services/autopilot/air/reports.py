@@ -20,11 +20,12 @@ from schemas.messages import (
 from services.autopilot.air import intake
 from services.autopilot.air.commands import Surfaces
 from services.autopilot.air.modes import FlightMode
-from services.autopilot.air.pilot import Flown, Pilot
+from services.autopilot.air.pilot import Pilot
 from services.autopilot.air.plan import OFF_PATH, next_stop
 from services.autopilot.air.plan import Kind as ItemKind
 from services.autopilot.air.route import Circle, Place
 from services.autopilot.air.state import Estimate
+from services.autopilot.air.wishes import Flown
 from uvf.maths.rotations import from_euler
 
 MODES = {flown: mode for mode, flown in intake.MODES.items()}

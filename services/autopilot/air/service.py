@@ -46,7 +46,7 @@ from services.autopilot.air.leading import Steadied
 from services.autopilot.air.over_ground import OverGround
 from services.autopilot.air.params import AirParams
 from services.autopilot.air.paths import Round
-from services.autopilot.air.pilot import Flown, Pilot
+from services.autopilot.air.pilot import Pilot
 from services.autopilot.air.plans import Plans
 from services.autopilot.air.prearm import Standing, faults
 from services.autopilot.air.route import Place
@@ -54,7 +54,7 @@ from services.autopilot.air.safety import Safety, Seen
 from services.autopilot.air.sensing import Said, Sensing
 from services.autopilot.air.ship import Ship
 from services.autopilot.air.state import Estimate
-from services.autopilot.air.wishes import Senses
+from services.autopilot.air.wishes import Flown, Senses
 from services.autopilot.told_params import ToldParams
 from uvf.maths.geodesy import GRAVITY
 from uvf.runtime.service import Outputs, Service, every, optional

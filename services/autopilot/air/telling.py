@@ -3,9 +3,10 @@
 from schemas.convert import stamp
 from schemas.messages import EstimateQuality, Targets, Vector3
 from services.autopilot.air.modes import FlightMode
-from services.autopilot.air.pilot import Flown, Pilot
+from services.autopilot.air.pilot import Pilot
 from services.autopilot.air.plan import OFF_PATH
 from services.autopilot.air.state import Estimate
+from services.autopilot.air.wishes import Flown
 
 
 def targets(t: float, pilot: Pilot, flown: Flown) -> Targets:

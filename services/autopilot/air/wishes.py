@@ -7,6 +7,7 @@ from services.autopilot.air.by_hand import Hand
 from services.autopilot.air.commands import Attitude, Surfaces, Wanted
 from services.autopilot.air.guidance import Aim
 from services.autopilot.air.params import AirParams
+from services.autopilot.air.route import Level
 from services.autopilot.air.servos import SERVOS, Servos
 from services.autopilot.air.state import Estimate
 from uvf.maths.geodesy import GRAVITY
@@ -35,6 +36,19 @@ class Wish:
     lift: float = 0.0  # m/s^2, made at once by the flaps, beside what pitch makes
     firm: bool = False
     """Climb and pitch are held more firmly than is good for comfort: near the ground."""
+
+
+@dataclass(frozen=True, slots=True)
+class Flown:
+    """What a cycle came to."""
+
+    surfaces: Surfaces
+    aim: Aim
+    level: Level
+    attitude: Attitude | None = None
+    """That is held; None while the surfaces are moved by hand."""
+    airspeed: float | None = None
+    """m/s, that is held."""
 
 
 @dataclass(slots=True)
