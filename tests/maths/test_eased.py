@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from uvf.maths.curves import dubins
-from uvf.maths.eased import eased, turned_onto
+from uvf.maths.eased import eased, turned_onto, turned_onto_circle
 
 RADIUS, RAMP = 60.0, 30.0
 START = (10.0, -20.0, 0.3)
@@ -66,3 +66,25 @@ def test_a_turn_onto_a_point_ends_looking_at_it(point):
     (n, e), c = np.array(point) - way.points[-1], way.course[-1]
     assert e * math.cos(c) - n * math.sin(c) == pytest.approx(0.0, abs=1e-3)
     assert n * math.cos(c) + e * math.sin(c) > -1e-3
+
+
+@settings(max_examples=100, deadline=None)
+@given(
+    bearing=st.floats(-math.pi, math.pi),
+    away=st.floats(250.0, 600.0),
+    course=st.floats(-math.pi, math.pi),
+    radius=st.sampled_from((-90.0, 90.0)),
+)
+def test_a_turn_and_a_straight_piece_touch_a_circle_in_its_sense(bearing, away, course, radius):
+    start = away * math.cos(bearing), away * math.sin(bearing), course
+    way = turned_onto_circle(start, (0.0, 0.0, radius), RADIUS, RAMP)
+    (x, y), c = way.points[-1], way.course[-1]
+    assert way.points[0] == pytest.approx(start[:2])
+    assert x * math.sin(c) - y * math.cos(c) == pytest.approx(radius, abs=0.01), "the centre is as far to the side"
+    assert x * math.cos(c) + y * math.sin(c) == pytest.approx(0.0, abs=0.01), "and abeam"
+    assert np.abs(way.curvature).max() <= 1 / RADIUS + 1e-9
+    assert np.hypot(*np.diff(way.points, axis=0).T).max() < 1.5
+
+
+def test_from_within_a_circle_it_cannot_be_touched():
+    assert turned_onto_circle((10.0, 20.0, 0.0), (0.0, 0.0, 90.0), RADIUS, RAMP) is None

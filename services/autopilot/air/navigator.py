@@ -102,7 +102,7 @@ class Navigator:
 
     def _from_here(self, now: Estimate, params: AirParams) -> Piece:
         target = self.target
-        course = now.course if target is not None and target.course is not None else None
+        course = now.course if target is not None and (target.course is not None or not target.flies_through) else None
         return self._planner(now, params).towards(self._stop, Place(now.north, now.east, now.height), course)
 
     def _planner(self, now: Estimate, params: AirParams, speed: float = 0.0) -> Planner:

@@ -11,9 +11,9 @@ from dataclasses import dataclass, replace
 from services.autopilot.air import bypass, corners
 from services.autopilot.air.guidance import Point, turn_radius
 from services.autopilot.air.params import AirParams
-from services.autopilot.air.plan import Item, Stop, following
+from services.autopilot.air.plan import OFF_PATH, Item, Stop, following
 from services.autopilot.air.route import Circle, Curve, Leg, Place
-from uvf.maths.eased import eased, turned_onto
+from uvf.maths.eased import eased, turned_onto, turned_onto_circle
 
 LEAVING = 0.6  # of a leg, for the corner at its beginning at most; it needs more than that at its end
 TIGHTEST_ORBIT = 0.6  # of the radius at turn_bank; smaller wishes are widened to that
@@ -40,7 +40,7 @@ class Planner:
         """The piece from ``start`` to the item of ``stop``; with a ``course`` [rad] it begins in that direction."""
         item = self._item(stop)
         if not item.flies_through:
-            return Circle(item.place, self.orbit_radius(item))
+            return (self._onto_circle(start, course, item) if course is not None else None) or self._circle(item)
         if course is not None and item.course is not None:
             return self._between(start, course, item)
         leg = Leg(start, item.place, entry)
@@ -52,7 +52,7 @@ class Planner:
         """The leg to the item of ``stop`` with what is flown at its end, if something is."""
         onward = self._after(stop)
         if onward is None:
-            return replace(leg, exit=None)
+            return replace(leg, exit=self._circle_ahead(leg, stop))
         item, then = self._item(stop), self._item(onward)
         if then.course is not None:
             curve = self._between(item.place, leg.course, then)
@@ -61,6 +61,24 @@ class Planner:
         if abs(_change(leg, onto)) < corners.STRAIGHT:
             return replace(leg, exit=None)
         return replace(leg, exit=self._corner(leg, onto, stop, onward) or self._bypass(leg, stop))
+
+    def _circle_ahead(self, leg: Leg, stop: Stop) -> Curve | None:
+        """From the end of a leg onto the circle that follows it, if one does."""
+        then = following(self.items, stop)
+        if then.index is None or self._item(then).kind in OFF_PATH:
+            return None
+        curve = self._onto_circle(leg.end, leg.course, self._item(then))
+        return replace(curve, passing=(0.0,), heights=(curve.heights[0], *curve.heights)) if curve is not None else None
+
+    def _onto_circle(self, start: Place, course: float, item: Item) -> Curve | None:
+        """By a turn and straight on; None where it begins within the circle."""
+        circle = self._circle(item)
+        flying, ring = self.flying, (*circle.centre.point, circle.radius)
+        way = turned_onto_circle((*start.point, course), ring, flying.radius, flying.ramp)
+        return Curve(way, (), (start.height, item.place.height), onto=circle) if way is not None else None
+
+    def _circle(self, item: Item) -> Circle:
+        return Circle(item.place, self.orbit_radius(item))
 
     def orbit_radius(self, item: Item) -> float:
         """m, positive clockwise."""

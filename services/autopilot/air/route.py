@@ -172,9 +172,9 @@ class Curve:
     def bend(self, s: float) -> float:
         """Curvature at ``s`` [m], beyond its end that of what follows [1/m]."""
         beyond = s - self.way.length
-        if beyond <= 0 or self.onto is None or isinstance(self.onto, Circle):
+        if beyond <= 0 or self.onto is None:
             return self.way.bend(s)
-        return self.onto.bend(beyond + self.after)
+        return 1 / self.onto.radius if isinstance(self.onto, Circle) else self.onto.bend(beyond + self.after)
 
     def aim(self, now: Estimate, params: AirParams) -> Aim:
         s, aside, course = self._nearest((now.north, now.east))

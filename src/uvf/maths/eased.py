@@ -19,6 +19,7 @@ Floats = NDArray[np.float64]
 STEP = 1.0  # m, between samples at most
 ITERATIONS = 12
 CLOSE = 1e-6  # m and, times the radius, rad
+TOUCHING = 1e-3  # m
 NUDGE = 1e-3  # m, for derivatives
 
 
@@ -146,6 +147,49 @@ def turned_onto(start: Triple, point: tuple[float, float], radius: float, ramp: 
     """
     ways = [way for side in (1, -1) if (way := _one_turn(_Word(start, radius, (side, 0, 0), ramp), point)) is not None]
     return min(ways, key=lambda way: way.length, default=None)
+
+
+def turned_onto_circle(start: Triple, circle: Triple, radius: float, ramp: float) -> Way | None:
+    """From ``start`` one turn, then straight on up to where ``circle`` is touched in its sense; None from within it.
+
+    circle: x, y of the centre [m], its radius [m], positive from x towards y.
+    """
+    ways = [way for side in (1, -1) if (way := _turn_and_tangent(_Word(start, radius, (side, 0, 0), ramp), circle)) is not None]
+    return min(ways, key=lambda way: way.length, default=None)
+
+
+def _turn_and_tangent(word: _Word, circle: Triple) -> Way | None:
+    """The turn decides the tangent and the tangent the turn: found by repetition."""
+    touching = _tangent((word.start[0], word.start[1]), circle)
+    for _ in range(ITERATIONS):
+        way = _one_turn(word, touching) if touching is not None else None
+        if way is None or touching is None:
+            return None
+        before, touching = touching, _tangent((float(way.points[-1, 0]), float(way.points[-1, 1])), circle)
+        if touching is not None and hypot(touching[0] - before[0], touching[1] - before[1]) < TOUCHING:
+            return _straight_on(way, touching)
+    return None
+
+
+def _tangent(point: tuple[float, float], circle: Triple) -> tuple[float, float] | None:
+    """Where the circle is touched by the straight line from a point outside; None from within."""
+    x, y, radius = circle
+    dx, dy = x - point[0], y - point[1]
+    away = hypot(dx, dy)
+    if away <= abs(radius):
+        return None
+    course, length = atan2(dy, dx) - asin(radius / away), (away**2 - radius**2) ** 0.5
+    return point[0] + length * cos(course), point[1] + length * sin(course)
+
+
+def _straight_on(way: Way, point: tuple[float, float]) -> Way:
+    """The way with a straight piece up to ``point``, which lies ahead of its end."""
+    last = way.points[-1]
+    count = _count(hypot(point[0] - last[0], point[1] - last[1]))
+    parts = np.linspace(0.0, 1.0, count)[1:, None]
+    points = last + parts * (np.asarray(point) - last)
+    courses = np.concatenate((way.course, np.full(count - 1, way.course[-1])))
+    return Way(np.concatenate((way.points, points)), courses, np.concatenate((way.curvature, np.zeros(count - 1))))
 
 
 def _one_turn(word: _Word, point: tuple[float, float]) -> Way | None:

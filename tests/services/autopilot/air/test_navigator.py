@@ -76,6 +76,16 @@ def test_an_orbit_turns_as_often_and_the_way_it_is_told(radius):
     assert navigator.reached >= 0
 
 
+@pytest.mark.parametrize("wind", [(0.0, 0.0), (-6.0, 4.0)])
+@pytest.mark.parametrize("radius", [100.0, -100.0])
+def test_a_circle_after_a_leg_is_touched_and_then_kept(wind, radius):
+    _, log = fly([waypoint(400.0, 0.0), Item(Kind.ORBIT, Place(300.0, 500.0, 60.0), radius=radius)], 60.0, wind=wind)
+    outside = [math.hypot(now.north - 300.0, now.east - 500.0) - abs(radius) for index, now in log if index == 1]
+    first = next(k for k, away in enumerate(outside) if away < 2.0)
+    assert max(abs(away) for away in outside[first:]) < 3.0
+    assert max(abs(now.roll) for _, now in log) < 1.15 * PARAMS.turn_bank
+
+
 def test_an_orbit_without_turns_never_ends():
     navigator, _ = fly([Item(Kind.ORBIT, Place(300.0, 0.0, 60.0), radius=90.0), waypoint(0.0, 0.0)], 200.0)
     assert navigator.index == 0
