@@ -12,7 +12,7 @@ CLOCK_TOLERANCE = 0.02  # s, one tick: a sender's clock may be that much ahead
 
 SOURCES: Mapping[int, tuple[str, ...]] = {
     Mode.MODE_MANUAL: ("teleop", "mavlink", "gcs", "client"),
-    Mode.MODE_OFFBOARD: ("offboard", "client"),
+    Mode.MODE_OFFBOARD: ("offboard", "client", "mavlink"),
     Mode.MODE_MISSION: ("planner",),
     Mode.MODE_RETURN: ("planner",),
     Mode.MODE_HOLD: (),

@@ -1,9 +1,8 @@
-"""Commands that make the vehicle do something: arm, modes, go to, mission."""
+"""Commands for arming, modes and the mission."""
 
 import math
 
-from schemas.convert import vector
-from schemas.messages import ArmRequest, GoalRequest, Mode, ModeRequest, SetCurrentRequest
+from schemas.messages import ArmRequest, Mode, ModeRequest, SetCurrentRequest
 from services.autopilot.mavlink import dialect as mav
 from services.autopilot.mavlink import modes
 from services.autopilot.mavlink.commands import Acknowledger, Command, Handler
@@ -13,9 +12,6 @@ from services.autopilot.mavlink.telemetry import mission_current
 SOURCE = "mavlink"
 FORCE = (2989.0, 21196.0)  # magic numbers of param 2: force arm, force disarm
 LAST_ITEM = 0xFFFE
-HIGHEST = 1e5  # m
-AMSL_FRAMES = (mav.MAV_FRAME_GLOBAL, mav.MAV_FRAME_GLOBAL_INT)
-HOME_FRAMES = (mav.MAV_FRAME_GLOBAL_RELATIVE_ALT, mav.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT)
 
 
 def set_mode(line: Line, mode: Mode, done: Done) -> None:
@@ -74,11 +70,13 @@ def _arm(line: Line, command: Command, ack: Acknowledger) -> None:
     line.ask("arm", request, ack.outcome("Arming denied" if request.arm else "Disarming denied"))
 
 
-def _takeoff(line: Line, command: Command, ack: Acknowledger) -> None:
-    if math.isfinite(command.p[6]) and command.p[6] != 0:
-        ack(mav.MAV_RESULT_DENIED, "Takeoff: an altitude of one's own is not supported; leave it out")
+def _do_set_standard_mode(line: Line, command: Command, ack: Acknowledger) -> None:
+    wanted = command.p[0]
+    row = modes.from_standard(int(wanted)) if math.isfinite(wanted) else None
+    if row is None:
+        ack(mav.MAV_RESULT_DENIED, f"There is no standard mode {wanted:g} here")
         return
-    set_mode(line, Mode.MODE_TAKEOFF, ack.outcome("Takeoff refused"))
+    set_mode(line, row.mode, ack.outcome(f"Mode {row.name} refused"))
 
 
 def _pause_continue(line: Line, command: Command, ack: Acknowledger) -> None:
@@ -112,83 +110,11 @@ def _mission_start(line: Line, command: Command, ack: Acknowledger) -> None:
         jumped(True, "")
 
 
-def _reposition(line: Line, command: Command, ack: Acknowledger) -> None:
-    """All of the place left out = hold here; a part left out = as now. COMMAND_LONG has altitudes above sea level."""
-    latitude, longitude, height = command.p[4:7]
-    if all(math.isnan(v) for v in (latitude, longitude, height)):
-        set_mode(line, Mode.MODE_HOLD, ack.outcome("Hold refused"))
-        return
-    here = line.latest.position
-    frame = mav.MAV_FRAME_GLOBAL if command.frame is None else command.frame
-    if frame not in AMSL_FRAMES + HOME_FRAMES:
-        ack(mav.MAV_RESULT_COMMAND_UNSUPPORTED_MAV_FRAME, f"Go to: frame {frame} is not supported")
-        return
-    if here is None or line.latest.home is None:
-        ack(mav.MAV_RESULT_TEMPORARILY_REJECTED, "Go to refused: own position or home is unknown")
-        return
-    if abs(latitude) > 90 or abs(longitude) > 180 or abs(height) > HIGHEST:
-        ack(mav.MAV_RESULT_DENIED, "Go to: latitude, longitude or altitude is out of range")
-        return
-    now = line.facts.geodetic(here)
-    if frame in HOME_FRAMES:
-        height += line.facts.geodetic(line.latest.home)[2]
-    place = [now[i] if math.isnan(v) else v for i, v in enumerate((latitude, longitude, height))]
-    goal = GoalRequest(position=line.facts.world(*place), yaw=math.nan, source=SOURCE)
-    may_change_mode = math.isfinite(command.p[1]) and int(command.p[1]) & mav.MAV_DO_REPOSITION_FLAGS_CHANGE_MODE
-    _go_to(line, goal, bool(may_change_mode), ack.outcome("Go to refused"))
-
-
-def _go_to(line: Line, goal: GoalRequest, may_change_mode: bool, done: Done) -> None:
-    """A rover's planner drives in mode Mission only: changed to first, if that may be, and back if there is no way."""
-    before = line.latest.status.mode if line.latest.status is not None else Mode.MODE_MISSION
-
-    def in_mission() -> bool:
-        return line.latest.status is not None and line.latest.status.mode == Mode.MODE_MISSION
-
-    def changed(accepted: bool, reason: str) -> None:
-        if accepted:
-            line.when(in_mission, drive)
-        else:
-            done(False, reason)
-
-    def drive(accepted: bool, reason: str) -> None:
-        if accepted:
-            line.ask("goal", goal, driven)
-        else:
-            driven(False, reason)
-
-    def driven(accepted: bool, reason: str) -> None:
-        if not accepted:
-            set_mode(line, before, lambda back, why: None)
-        done(accepted, reason)
-
-    if line.facts.is_ground and may_change_mode and not in_mission():
-        set_mode(line, Mode.MODE_MISSION, changed)
-    else:
-        line.ask("goal", goal, done)
-
-
-def goal_of_item(line: Line, item: mav.MAVLink_mission_item_int_message, done: Done) -> None:
-    """A "guided" item (current = 2) of Mission Planner and MAVProxy: go there; horizontal place from the item."""
-    here = line.latest.position
-    if here is None or abs(item.x) > 900_000_000 or abs(item.y) > 1_800_000_000 or abs(item.z) > HIGHEST:
-        done(False, "own position unknown, or the place is out of range")
-        return
-    place = line.facts.world(item.x * 1e-7, item.y * 1e-7, 0.0)
-    target = vector(here)
-    target.x, target.y = place.x, place.y
-    if not line.facts.is_ground and math.isfinite(item.z) and line.latest.home is not None:
-        base = float(line.latest.home[2]) if item.frame in HOME_FRAMES else -line.facts.origin.altitude
-        target.z = item.z + base
-    _go_to(line, GoalRequest(position=target, yaw=math.nan, source=SOURCE), True, done)
-
-
 ACTIONS: dict[int, Handler] = {
     mav.MAV_CMD_NAV_RETURN_TO_LAUNCH: _to_mode(Mode.MODE_RETURN),
     mav.MAV_CMD_NAV_LAND: _to_mode(Mode.MODE_LAND),
-    mav.MAV_CMD_NAV_TAKEOFF: _takeoff,
     mav.MAV_CMD_DO_SET_MODE: _do_set_mode,
-    mav.MAV_CMD_DO_REPOSITION: _reposition,
+    mav.MAV_CMD_DO_SET_STANDARD_MODE: _do_set_standard_mode,
     mav.MAV_CMD_DO_PAUSE_CONTINUE: _pause_continue,
     mav.MAV_CMD_DO_SET_MISSION_CURRENT: _set_mission_current,
     mav.MAV_CMD_MISSION_START: _mission_start,

@@ -81,6 +81,7 @@ def numbers_of(member: Member) -> dict[str, float]:
         air = member.params(AIR, AirParams)
         numbers["trim_airspeed"] = air.trim_airspeed
         numbers["hold_radius"] = air.hold_radius
+        numbers["min_altitude"] = air.min_altitude
         numbers["return_height"] = air.return_altitude
         numbers["link_timeout"] = air.link_timeout
         numbers["link_action"] = float(LINK_ACTIONS[air.link_action])

@@ -10,6 +10,7 @@ from services.autopilot.mavlink.line import Line, Sender
 LARGEST = 1e9  # no parameter of any command means anything beyond
 NOT_GIVEN = 2**31 - 1  # x or y of a COMMAND_INT without a place
 SCALE = 1e-7  # deg per unit of x and y
+REPEATED_WITHIN = 1.0  # s: two tries of MAVSDK
 
 
 @dataclass(frozen=True)
@@ -45,6 +46,8 @@ class Pending:
     """A command and its outcome, so that a repetition is answered and not executed again."""
 
     command: Command
+    t: float
+    """s, wall: when it came."""
     result: int | None = None
 
 
@@ -88,8 +91,8 @@ class Commands:
     def __init__(self, line: Line, handlers: dict[int, Handler]) -> None:
         self._line = line
         self._handlers = handlers
-        self._last: dict[tuple[int, int], Pending] = {}
-        """The newest command of each sender (system, component)."""
+        self._last: dict[tuple[int, int, int], Pending] = {}
+        """The newest of each command (system, component, number)."""
 
     def on_long(self, message: mav.MAVLink_command_long_message, sender: Sender) -> None:
         self._execute(Command.from_long(message, sender))
@@ -98,15 +101,18 @@ class Commands:
         self._execute(Command.from_int(message, sender))
 
     def on_cancel(self, message: mav.MAVLink_command_cancel_message, sender: Sender) -> None:
-        """No command here runs long enough to be cancelled."""
+        """What was asked of the autopilot cannot be called back: a command that waits gets its own answer, which is the only one."""
+        last = self._last.get((sender.system, sender.component, message.command))
+        if last is not None and last.result is None:
+            return
         ack = mav.MAVLink_command_ack_message(message.command, mav.MAV_RESULT_UNSUPPORTED, 0, 0, sender.system, sender.component)
         self._line.send(ack, sender.peer)
 
     def _execute(self, command: Command) -> None:
         if self._is_repetition(command):
             return
-        pending = Pending(command)
-        self._last[command.sender.system, command.sender.component] = pending
+        pending = Pending(command, self._line.t)
+        self._last[command.sender.system, command.sender.component, command.number] = pending
         done = Acknowledger(self._line, pending)
         handler = self._handlers.get(command.number)
         if handler is None:
@@ -117,14 +123,14 @@ class Commands:
             handler(self._line, command, done)
 
     def _is_repetition(self, command: Command) -> bool:
-        """A sender repeats, counting ``confirmation`` up, when the answer was late or lost."""
-        last = self._last.get((command.sender.system, command.sender.component))
+        """A sender repeats when the answer was late or lost: COMMAND_LONG counts ``confirmation`` up, COMMAND_INT cannot."""
+        last = self._last.get((command.sender.system, command.sender.component, command.number))
         if last is None or not last.command.same_as(command):
             return False
         if last.result is None:
             acknowledge(self._line, command, mav.MAV_RESULT_IN_PROGRESS)
             return True
-        if command.confirmation > 0:
+        if command.confirmation > 0 or (command.frame is not None and self._line.t - last.t < REPEATED_WITHIN):
             acknowledge(self._line, command, last.result)
             return True
         return False

@@ -102,6 +102,8 @@ class Latest:
     vibration: Vibration = field(default_factory=Vibration)
     others: Sequence[tuple[Facts, "Latest"]] = ()
     """The other vehicles of the mission."""
+    rc_channels: tuple[int, ...] = ()
+    """us, of each channel that a ground station overrides; 0 = released. Empty: none is."""
     intended_custom_mode: int = field(default=0)
     """The last mode that a ground station asked for, 0 = none yet."""
 

@@ -19,6 +19,8 @@ CAPABILITIES = (
     | mav.MAV_PROTOCOL_CAPABILITY_COMMAND_INT
     | mav.MAV_PROTOCOL_CAPABILITY_PARAM_ENCODE_BYTEWISE
     | mav.MAV_PROTOCOL_CAPABILITY_MAVLINK2
+    | mav.MAV_PROTOCOL_CAPABILITY_SET_POSITION_TARGET_LOCAL_NED
+    | mav.MAV_PROTOCOL_CAPABILITY_SET_POSITION_TARGET_GLOBAL_INT
 )
 
 TYPE = {Kind.KIND_GROUND: mav.MAV_TYPE_GROUND_ROVER, Kind.KIND_FIXED_WING: mav.MAV_TYPE_FIXED_WING}
@@ -72,7 +74,7 @@ def autopilot_version(facts: Facts) -> mav.MAVLink_autopilot_version_message:
     digest = hashlib.sha256(f"{facts.name}/{facts.system_id}".encode()).digest()
     uid = int.from_bytes(digest[:8], "little") or 1
     return mav.MAVLink_autopilot_version_message(
-        CAPABILITIES,
+        CAPABILITIES | (0 if facts.is_ground else mav.MAV_PROTOCOL_CAPABILITY_SET_ATTITUDE_TARGET),
         major << 24 | minor << 16 | patch << 8,
         own,
         0,

@@ -14,6 +14,7 @@ from services.autopilot.mavlink.statustext import TextLimiter, chunks
 from services.autopilot.mavlink.vibration import Vibration
 from uvf.runtime.service import Answer
 
+HELD_FOR = 1.0  # s, wall: as long a station that steers may be silent before another one may
 ANSWER_WITHIN = 2.5  # s: inside MAVSDK's three tries and QGroundControl's 3 s
 
 
@@ -49,6 +50,24 @@ class Awaited:
     until: float
 
 
+class Holder:
+    """Only one station steers: the first one, until it has been silent for a while."""
+
+    def __init__(self, line: "Line", otherwise: str) -> None:
+        """otherwise: what another one is told."""
+        self._line, self._otherwise = line, otherwise
+        self._system = 0
+        self._heard = -math.inf
+
+    def admits(self, sender: Sender) -> bool:
+        free = self._line.t - self._heard > HELD_FOR
+        if not free and sender.system != self._system:
+            self._line.text(mav.MAV_SEVERITY_WARNING, f"{self._otherwise}: station {self._system} steers", sender.peer)
+            return False
+        self._system, self._heard = sender.system, self._line.t
+        return True
+
+
 class Line:
     """What the protocols of one vehicle share; ``t`` [s, wall] is set before each step's work."""
 
@@ -60,6 +79,8 @@ class Line:
         self.outbox: list[Out] = []
         self.requests: list[tuple[str, Message]] = []
         """(name of the call, request) to be sent with this step."""
+        self.commands: dict[str, Message] = {}
+        """Output -> the newest command of sticks or setpoints, until the service takes it."""
         self._asked: list[Asked] = []
         self._awaited: list[Awaited] = []
         self._limiter = TextLimiter()

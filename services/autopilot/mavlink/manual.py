@@ -1,54 +1,124 @@
-"""MANUAL_CONTROL: the sticks as a velocity of a ground vehicle, or as the surfaces of an aircraft."""
+"""Sticks: MANUAL_CONTROL and RC_CHANNELS_OVERRIDE as the velocity of a ground vehicle, or the surfaces of an aircraft.
+
+Of one station at a time, and only in a mode flown or driven by hand: a ground station with a virtual joystick sends sticks at rest
+all the time; in the other modes they mean nothing.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
 
 from schemas.convert import stamp
 from schemas.messages import DriveCommand, Mode, SurfaceCommand
 from services.autopilot.mavlink import dialect as mav
-from services.autopilot.mavlink.facts import Facts, Latest
+from services.autopilot.mavlink.line import Holder, Line, Sender
 
 FULL = 1000.0
 NOT_THERE = 2**15 - 1
 BY_HAND = (Mode.MODE_MANUAL, Mode.MODE_STABILIZED, Mode.MODE_ALTITUDE, Mode.MODE_POSITION)
+RELEASED, UNCHANGED, RELEASED_HIGH = 0, 0xFFFF, 0xFFFE
+CHANNELS = 18
+PLAIN = 8  # channels from 9 on have other words for released and unchanged
+MIDDLE, HALF = 1500.0, 500.0  # us
+SILENT_AFTER = 0.5  # s, wall: COM_RC_LOSS_T
+ROLL, PITCH, THROTTLE, YAW = range(4)
 
 
-def drive_command(message: mav.MAVLink_manual_control_message, facts: Facts, latest: Latest) -> DriveCommand | None:
-    """Throttle stick forward = forward; either stick right = right turn. Only a vehicle in a mode flown or driven by hand listens.
+@dataclass(frozen=True, slots=True)
+class Sticks:
+    """-1..1: forward (nose down), right, right, forward; of an aircraft the throttle is 0..1."""
 
-    A ground station with a virtual joystick sends sticks at rest all the time; in the other modes they mean nothing.
-    """
-    body = facts.file.ground
-    if body is None or not _listens(message, latest):
+    pitch: float
+    roll: float
+    yaw: float
+    throttle: float
+
+
+def of_manual_control(m: mav.MAVLink_manual_control_message) -> Sticks | None:
+    """None without a throttle. Another stick that is not there is centred."""
+    if m.z == NOT_THERE:
         return None
-    turn = sum(axis for axis in (message.y, message.r) if axis != NOT_THERE)
-    return DriveCommand(
-        timestamp=stamp(latest.sim_time),
-        linear=_part(message.z) * body.max_linear,
-        angular=-_part(turn) * body.max_angular,
-    )
+    x, y, r = (0 if axis == NOT_THERE else axis for axis in (m.x, m.y, m.r))
+    return Sticks(_part(x / FULL), _part(y / FULL), _part(r / FULL), _part(m.z / FULL))
 
 
-def surface_command(message: mav.MAVLink_manual_control_message, facts: Facts, latest: Latest) -> SurfaceCommand | None:
-    """x forward = nose down, y right = roll right, r right = yaw right, z 0..1000 = throttle; full stick = the vehicle's limits."""
-    body = facts.file.air
-    if body is None or not _listens(message, latest):
+def of_channels(channels: list[int], is_ground: bool) -> Sticks | None:
+    """Channels 1 to 4 [us]: roll, pitch (high = stick back), throttle, yaw. None without a throttle."""
+    if not channels[THROTTLE]:
         return None
-    limits = body.controls
-    return SurfaceCommand(
-        timestamp=stamp(latest.sim_time),
-        aileron=_stick(message.y) * limits.aileron.limit,
-        elevator=_stick(message.x) * limits.elevator.limit,
-        rudder=-_stick(message.r) * limits.rudder.limit,
-        throttle=max(_part(message.z), 0.0),
-    )
+    roll, pitch, throttle, yaw = (_part((us - MIDDLE) / HALF) if us else 0.0 for us in channels[: YAW + 1])
+    return Sticks(-pitch, roll, yaw, throttle if is_ground else (throttle + 1.0) / 2.0)
 
 
-def _listens(message: mav.MAVLink_manual_control_message, latest: Latest) -> bool:
-    return latest.status is not None and latest.status.mode in BY_HAND and message.z != NOT_THERE
+def _part(value: float) -> float:
+    return min(max(value, -1.0), 1.0)
 
 
-def _stick(axis: int) -> float:
-    """-1..1; 0 for a stick that is not there."""
-    return _part(axis) if axis != NOT_THERE else 0.0
+class ByHand:
+    """What the newest sticks mean goes into ``line.commands``."""
 
+    def __init__(self, line: Line) -> None:
+        self._line = line
+        self._holder = Holder(line, "Sticks ignored")
+        self._channels = [RELEASED] * CHANNELS
+        self._heard = -math.inf
 
-def _part(axis: int) -> float:
-    return min(max(axis / FULL, -1.0), 1.0)
+    def handlers(self) -> dict[int, Callable[[Any, Sender], None]]:
+        return {
+            mav.MAVLINK_MSG_ID_MANUAL_CONTROL: lambda m, sender: self._take(of_manual_control(m), sender),
+            mav.MAVLINK_MSG_ID_RC_CHANNELS_OVERRIDE: self._on_override,
+        }
+
+    def tick(self) -> None:
+        """Channels that nobody has repeated for a while are released."""
+        if self._line.t - self._heard > SILENT_AFTER and any(self._channels):
+            self._channels = [RELEASED] * CHANNELS
+            self._line.latest.rc_channels = ()
+
+    def _on_override(self, m: mav.MAVLink_rc_channels_override_message, sender: Sender) -> None:
+        if not self._listens or not self._holder.admits(sender):
+            return
+        self._heard = self._line.t
+        for i in range(CHANNELS):
+            said = getattr(m, f"chan{i + 1}_raw")
+            if i < PLAIN:
+                self._channels[i] = self._channels[i] if said == UNCHANGED else said
+            elif said not in (0, UNCHANGED):
+                self._channels[i] = RELEASED if said == RELEASED_HIGH else said
+        self._line.latest.rc_channels = tuple(self._channels)
+        self._take(of_channels(self._channels, self._line.facts.is_ground), sender)
+
+    @property
+    def _listens(self) -> bool:
+        status = self._line.latest.status
+        return status is not None and status.mode in BY_HAND
+
+    def _take(self, sticks: Sticks | None, sender: Sender) -> None:
+        if sticks is None or not self._listens or not self._holder.admits(sender):
+            return
+        if self._line.facts.is_ground:
+            self._drive(sticks)
+        else:
+            self._fly(sticks)
+
+    def _drive(self, sticks: Sticks) -> None:
+        """Throttle stick forward = forward; either stick right = right turn."""
+        body = self._line.facts.file.ground
+        assert body is not None
+        now, turn = stamp(self._line.latest.sim_time), _part(sticks.roll + sticks.yaw)
+        linear, angular = sticks.throttle * body.max_linear, -turn * body.max_angular
+        self._line.commands["drive"] = DriveCommand(timestamp=now, linear=linear, angular=angular)
+
+    def _fly(self, sticks: Sticks) -> None:
+        """Full stick = the vehicle's limits."""
+        body = self._line.facts.file.air
+        assert body is not None
+        limits = body.controls
+        self._line.commands["surfaces"] = SurfaceCommand(
+            timestamp=stamp(self._line.latest.sim_time),
+            aileron=sticks.roll * limits.aileron.limit,
+            elevator=sticks.pitch * limits.elevator.limit,
+            rudder=-sticks.yaw * limits.rudder.limit,
+            throttle=max(sticks.throttle, 0.0),
+        )

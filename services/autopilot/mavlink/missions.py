@@ -7,7 +7,8 @@ from dataclasses import dataclass, field
 
 from schemas.messages import Mission, MissionItem, MissionRequest
 from services.autopilot.mavlink import dialect as mav
-from services.autopilot.mavlink.actions import SOURCE, goal_of_item, set_current
+from services.autopilot.mavlink.actions import SOURCE, set_current
+from services.autopilot.mavlink.guided import goal_of_item
 from services.autopilot.mavlink.line import Line, Sender
 from services.autopilot.mavlink.mission_items import BadItem, check_whole, from_wire, is_skipped, mission_of, to_wire
 

@@ -22,7 +22,6 @@ class Row:
     flags: int
     standard: int = mav.MAV_STANDARD_MODE_NON_STANDARD
     properties: int = 0
-    listed: bool = True
 
     @property
     def custom(self) -> int:
@@ -33,21 +32,26 @@ TABLE = (
     Row(Mode.MODE_MANUAL, "Manual", 1, 0, _MANUAL),
     Row(Mode.MODE_STABILIZED, "Stabilized", 7, 0, _MANUAL | _STABLE),
     Row(Mode.MODE_ALTITUDE, "Altitude", 2, 0, _MANUAL | _STABLE, mav.MAV_STANDARD_MODE_ALTITUDE_HOLD),
-    Row(Mode.MODE_POSITION, "Position", 3, 0, _MANUAL | _STABLE, listed=False),
+    Row(Mode.MODE_POSITION, "Position", 3, 0, _MANUAL | _STABLE),
     Row(Mode.MODE_TAKEOFF, "Takeoff", 4, 2, _AUTO, mav.MAV_STANDARD_MODE_TAKEOFF),
     Row(Mode.MODE_HOLD, "Hold", 4, 3, _AUTO),
     Row(Mode.MODE_MISSION, "Mission", 4, 4, _AUTO, mav.MAV_STANDARD_MODE_MISSION),
     Row(Mode.MODE_RETURN, "Return", 4, 5, _AUTO),
     Row(Mode.MODE_LAND, "Land", 4, 6, _AUTO, mav.MAV_STANDARD_MODE_LAND),
     Row(Mode.MODE_ORBIT, "Orbit", 3, 1, _AUTO, properties=mav.MAV_MODE_PROPERTY_NOT_USER_SELECTABLE),
-    Row(Mode.MODE_FOLLOW, "Follow", 4, 8, _AUTO, listed=False),
-    Row(Mode.MODE_OFFBOARD, "Offboard", 6, 0, _AUTO, properties=mav.MAV_MODE_PROPERTY_ADVANCED, listed=False),
+    Row(Mode.MODE_FOLLOW, "Follow", 4, 8, _AUTO),
+    Row(Mode.MODE_OFFBOARD, "Offboard", 6, 0, _AUTO, properties=mav.MAV_MODE_PROPERTY_ADVANCED),
 )
-LISTED = tuple(row for row in TABLE if row.listed)
 """The same for aircraft and rovers: QGroundControl keeps one list for all PX4-like vehicles. Each refuses what it cannot do."""
 
 _BY_MODE = {row.mode: row for row in TABLE}
 _BY_CUSTOM = {row.custom: row for row in TABLE}
+_BY_STANDARD = {row.standard: row for row in TABLE if row.standard != mav.MAV_STANDARD_MODE_NON_STANDARD} | {
+    mav.MAV_STANDARD_MODE_ORBIT: _BY_MODE[Mode.MODE_ORBIT],
+    mav.MAV_STANDARD_MODE_CRUISE: _BY_MODE[Mode.MODE_POSITION],
+    mav.MAV_STANDARD_MODE_SAFE_RECOVERY: _BY_MODE[Mode.MODE_RETURN],
+}
+"""Asked for by these numbers; told as non-standard where QGroundControl's name for them is another than ours."""
 
 
 def row_of(mode: Mode) -> Row | None:
@@ -57,6 +61,11 @@ def row_of(mode: Mode) -> Row | None:
 def from_custom(custom: int) -> Row | None:
     """The mode of a custom_mode word, or None when there is no such mode."""
     return _BY_CUSTOM.get(custom)
+
+
+def from_standard(standard: int) -> Row | None:
+    """The mode of a MAV_STANDARD_MODE, or None."""
+    return _BY_STANDARD.get(standard)
 
 
 def from_command(param2: float, param3: float) -> Row | None:
@@ -71,7 +80,7 @@ def from_command(param2: float, param3: float) -> Row | None:
 
 def available(index: int) -> mav.MAVLink_available_modes_message | None:
     """AVAILABLE_MODES number ``index`` (from 1), or None beyond the list."""
-    if not 1 <= index <= len(LISTED):
+    if not 1 <= index <= len(TABLE):
         return None
-    row = LISTED[index - 1]
-    return mav.MAVLink_available_modes_message(len(LISTED), index, row.standard, row.custom, row.properties, row.name.encode())
+    row = TABLE[index - 1]
+    return mav.MAVLink_available_modes_message(len(TABLE), index, row.standard, row.custom, row.properties, row.name.encode())

@@ -73,7 +73,7 @@ def _available_modes(line: Line, command: Command, ack: Acknowledger) -> None:
     """Parameter 2: which one, from 1; 0 or not given = all."""
     wanted = command.p[1]
     index = _number(wanted) if math.isfinite(wanted) else 0
-    indices = range(1, len(modes.LISTED) + 1) if index == 0 else (index,)
+    indices = range(1, len(modes.TABLE) + 1) if index == 0 else (index,)
     messages = [m for m in map(modes.available, indices) if m is not None]
     if not messages:
         ack(mav.MAV_RESULT_DENIED, f"There is no mode number {index}")

@@ -61,13 +61,21 @@ class MavlinkService(Service):
         "events": each_vehicle(every(topics.EVENTS.by("*"))),
         "clock": optional(topics.CLOCK),
     }
-    outputs = {"drive": topics.DRIVE.by("mavlink"), "surfaces": topics.SURFACES.by("mavlink"), "link": topics.LINK}
+    outputs = {
+        "drive": topics.DRIVE.by("mavlink"),
+        "surfaces": topics.SURFACES.by("mavlink"),
+        "setpoint": topics.SETPOINT.by("mavlink"),
+        "link": topics.LINK,
+    }
     calls = {
         "arm": topics.ARM,
         "set_mode": topics.SET_MODE,
         "set_mission": topics.SET_MISSION,
         "set_current": topics.SET_CURRENT,
         "goal": topics.GOAL,
+        "orbit": topics.ORBIT,
+        "go_around": topics.GO_AROUND,
+        "order": topics.ORDER,
     }
 
     def __init__(self, facts: Sequence[Facts], link: endpoint.Link, signing: Signing | None = None) -> None:
@@ -103,6 +111,9 @@ class MavlinkService(Service):
         set_mission: Answers,
         set_current: Answers,
         goal: Answers,
+        orbit: Answers,
+        go_around: Answers,
+        order: Answers,
     ) -> Outputs:
         """``t`` [s]: wall time since the start; answers end the commands that wait for them."""
         news: dict[str, Mapping[str, Message]] = {
@@ -121,7 +132,7 @@ class MavlinkService(Service):
             "planning": planning,
         }
         self._update(t, news, clock)
-        for answer in (*arm, *set_mode, *set_mission, *set_current, *goal):
+        for answer in (*arm, *set_mode, *set_mission, *set_current, *goal, *orbit, *go_around, *order):
             self._vehicles[answer.vehicle].line.answered(answer)
         for datagram, peer in self._link.receive(t):
             for message in self.codec.parse(datagram):
@@ -166,7 +177,7 @@ class MavlinkService(Service):
         for name, vehicle in self._vehicles.items():
             for call, request in vehicle.line.take_requests():
                 outputs.setdefault(call, {}).setdefault(name, []).append(request)
-            for output, command in vehicle.by_hand.items():
+            for output, command in vehicle.line.commands.items():
                 outputs.setdefault(output, {})[name] = command
-            vehicle.by_hand.clear()
+            vehicle.line.commands.clear()
         return outputs

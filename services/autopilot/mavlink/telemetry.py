@@ -12,7 +12,7 @@ import numpy as np
 from schemas.convert import array, wxyz
 from schemas.messages import Gnss, Mode
 from services.autopilot.mavlink import dialect as mav
-from services.autopilot.mavlink import estimate_quality, identity, navigation, sensor_messages, steering
+from services.autopilot.mavlink import estimate_quality, identity, navigation, sensor_messages, steering, steering_telemetry
 from services.autopilot.mavlink.facts import Facts, Latest
 from services.autopilot.mavlink.health import health
 from services.autopilot.mavlink.scaling import I32, U16, whole
@@ -179,6 +179,8 @@ STREAMS: dict[int, Stream] = {
     mav.MAVLINK_MSG_ID_HOME_POSITION: Stream(_home_position, 0.5),
     mav.MAVLINK_MSG_ID_EXTENDED_SYS_STATE: Stream(_extended_sys_state, 1),
     mav.MAVLINK_MSG_ID_CURRENT_MODE: Stream(lambda f, n, t: identity.current_mode(n), 0.5),
+    mav.MAVLINK_MSG_ID_ORBIT_EXECUTION_STATUS: Stream(steering_telemetry.orbit_status, 2),
+    mav.MAVLINK_MSG_ID_RC_CHANNELS: Stream(steering_telemetry.rc_channels, 2),
     mav.MAVLINK_MSG_ID_GPS_GLOBAL_ORIGIN: Stream(navigation.global_origin, 0),
     mav.MAVLINK_MSG_ID_AUTOPILOT_VERSION: Stream(lambda f, n, t: identity.autopilot_version(f), 0),
     mav.MAVLINK_MSG_ID_PROTOCOL_VERSION: Stream(lambda f, n, t: identity.protocol_version(), 0),

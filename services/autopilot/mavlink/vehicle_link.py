@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from schemas.messages import DriveCommand, Event, SurfaceCommand
+from schemas.messages import Event
 from services.autopilot.mavlink import dialect as mav
 from services.autopilot.mavlink.actions import ACTIONS, on_set_mode
 from services.autopilot.mavlink.commands import Commands
@@ -11,13 +11,16 @@ from services.autopilot.mavlink.data_streams import set_rates
 from services.autopilot.mavlink.endpoint import Peer
 from services.autopilot.mavlink.facts import Facts
 from services.autopilot.mavlink.ftp import on_ftp
+from services.autopilot.mavlink.guided import GUIDED
 from services.autopilot.mavlink.health import health
 from services.autopilot.mavlink.identity import greeting
 from services.autopilot.mavlink.line import Line, Sender
-from services.autopilot.mavlink.manual import drive_command, surface_command
+from services.autopilot.mavlink.manual import ByHand
 from services.autopilot.mavlink.missions import Missions
+from services.autopilot.mavlink.orders import ORDERS, on_set_home_position, on_set_origin
 from services.autopilot.mavlink.parameters import Parameters
 from services.autopilot.mavlink.queries import Queries
+from services.autopilot.mavlink.setpoints import Setpoints
 from services.autopilot.mavlink.statustext import SEVERITY, event_text
 from services.autopilot.mavlink.streams import Schedule
 from services.autopilot.mavlink.telemetry import STREAMS
@@ -33,24 +36,27 @@ ON_CHANGE = (
 class VehicleLink:
     def __init__(self, facts: Facts) -> None:
         self.line = Line(facts)
-        self.by_hand: dict[str, DriveCommand | SurfaceCommand] = {}
-        """Output -> what the newest MANUAL_CONTROL means, until the service takes it."""
         self.schedule = Schedule({number: stream.hz for number, stream in STREAMS.items()})
         self._parameters = Parameters(self.line)
         self._missions = Missions(self.line)
+        self._by_hand = ByHand(self.line)
+        self._setpoints = Setpoints(self.line)
         self._handlers = self._all_handlers()
         self._state: tuple[object, ...] = ()
         self._item: tuple[object, ...] = ()
+        self._home: tuple[float, ...] = ()
         self._reached: tuple[int, int] | None = None
         self._complaints: tuple[str, ...] = ()
 
     def _all_handlers(self) -> dict[int, Handler]:
-        line, commands = self.line, Commands(self.line, {**ACTIONS, **Queries(self.schedule).handlers()})
+        line, commands = self.line, Commands(self.line, {**ACTIONS, **GUIDED, **ORDERS, **Queries(self.schedule).handlers()})
         parameters, missions = self._parameters, self._missions
         return {
             mav.MAVLINK_MSG_ID_COMMAND_LONG: commands.on_long,
             mav.MAVLINK_MSG_ID_COMMAND_INT: commands.on_int,
             mav.MAVLINK_MSG_ID_COMMAND_CANCEL: commands.on_cancel,
+            mav.MAVLINK_MSG_ID_SET_HOME_POSITION: lambda m, sender: on_set_home_position(line, m),
+            mav.MAVLINK_MSG_ID_SET_GPS_GLOBAL_ORIGIN: lambda m, sender: on_set_origin(line, m, sender),
             mav.MAVLINK_MSG_ID_SET_MODE: lambda m, sender: on_set_mode(line, m),
             mav.MAVLINK_MSG_ID_PARAM_REQUEST_LIST: parameters.on_request_list,
             mav.MAVLINK_MSG_ID_PARAM_REQUEST_READ: parameters.on_request_read,
@@ -65,8 +71,9 @@ class VehicleLink:
             mav.MAVLINK_MSG_ID_MISSION_WRITE_PARTIAL_LIST: missions.on_write_partial,
             mav.MAVLINK_MSG_ID_MISSION_SET_CURRENT: missions.on_set_current,
             mav.MAVLINK_MSG_ID_FILE_TRANSFER_PROTOCOL: lambda m, sender: on_ftp(line, m, sender),
-            mav.MAVLINK_MSG_ID_MANUAL_CONTROL: self._on_manual,
             mav.MAVLINK_MSG_ID_REQUEST_DATA_STREAM: lambda m, sender: set_rates(self.schedule, m, sender.peer),
+            **self._by_hand.handlers(),
+            **self._setpoints.handlers(),
             mav.MAVLINK_MSG_ID_PING: self._on_ping,
             mav.MAVLINK_MSG_ID_TIMESYNC: self._on_timesync,
             mav.MAVLINK_MSG_ID_LOG_REQUEST_LIST: self._on_log_list,
@@ -90,6 +97,8 @@ class VehicleLink:
         line.settle()
         self._parameters.tick()
         self._missions.tick()
+        self._by_hand.tick()
+        self._setpoints.tick()
         for event in events:
             line.text(SEVERITY.get(event.severity, mav.MAV_SEVERITY_INFO), event_text(event))
         self._note_changes()
@@ -109,6 +118,10 @@ class VehicleLink:
         if state != self._state:
             self._state = state
             self._hurry(*ON_CHANGE)
+        home = tuple(self.line.latest.home) if self.line.latest.home is not None else ()
+        if home != self._home:
+            self._home = home
+            self._hurry(mav.MAVLINK_MSG_ID_HOME_POSITION)
         item = (progress.current, progress.state, progress.mission_id) if progress is not None else ()
         if item != self._item:
             self._item = item
@@ -139,11 +152,6 @@ class VehicleLink:
     def _hurry(self, *messages: int) -> None:
         for message in messages:
             self.schedule.hurry(message, self.line.t)
-
-    def _on_manual(self, message: mav.MAVLink_manual_control_message, sender: Sender) -> None:
-        for output, read in (("drive", drive_command), ("surfaces", surface_command)):
-            if (command := read(message, self.line.facts, self.line.latest)) is not None:
-                self.by_hand[output] = command
 
     def _on_ping(self, message: mav.MAVLink_ping_message, sender: Sender) -> None:
         if message.target_system == 0:

@@ -3,7 +3,7 @@
 import numpy as np
 
 from schemas.convert import quaternion, stamp
-from schemas.messages import Clock, Gnss, Kind, Mission, MissionProgress, Mode, NavState, Reply, Vector3, VehicleStatus
+from schemas.messages import Circle, Clock, Gnss, Kind, Mission, MissionProgress, Mode, NavState, Reply, Vector3, VehicleStatus
 from services.autopilot.mavlink import dialect as mav
 from services.autopilot.mavlink.facts import Facts
 from services.autopilot.mavlink.service import MavlinkService
@@ -23,7 +23,12 @@ _IMU = {"mount": {}, "hz": 100}
 _PLANE_FILE = {
     "kind": "fixed_wing",
     "about": "test",
-    "sensors": {"imu": _IMU, "gnss": {"hz": 5}, "air_data": {"hz": 50}},
+    "sensors": {
+        "imu": _IMU,
+        "gnss": {"hz": 5},
+        "air_data": {"hz": 50},
+        "camera": {"mount": {}, "hz": 5, "width": 64, "height": 48, "fov": 1.0},
+    },
     "air": {
         "model": "x",
         "physics_hz": 100,
@@ -54,6 +59,7 @@ _PLANE_NUMBERS = {
     "system_id": 1.0,
     "trim_airspeed": 25.0,
     "hold_radius": 90.0,
+    "min_altitude": 30.0,
     "return_height": 40.0,
     "link_timeout": 5.0,
     "link_action": 2.0,
@@ -106,6 +112,14 @@ class Vehicle:
         self.status = VehicleStatus(kind=kind, mode=Mode.MODE_HOLD, home=Vector3(x=0.0, y=0.0, z=20.0))
         self.mission = Mission()
         self.progress = MissionProgress(reached=-1)
+        self._hold()
+
+    def _hold(self):
+        """Aircraft circle in some modes."""
+        if self.status.kind == Kind.KIND_FIXED_WING and self.status.mode in (Mode.MODE_HOLD, Mode.MODE_RETURN):
+            self.status.circle.CopyFrom(Circle(centre=Vector3(x=50.0, y=60.0, z=80.0), radius=90.0))
+        else:
+            self.status.ClearField("circle")
 
     def answer(self, name, request):
         self.asked.append((name, request))
@@ -115,12 +129,18 @@ class Vehicle:
             self.status.armed = request.arm
         elif name == "set_mode":
             self.status.mode = request.mode
+            self._hold()
         elif name == "set_mission":
             self.mission = request.mission
             state = MissionProgress.NOT_STARTED if request.mission.items else MissionProgress.NO_MISSION
             self.progress = MissionProgress(state=state, total=len(request.mission.items), reached=-1, mission_id=request.mission.id)
         elif name == "set_current":
             self.progress.current = request.index
+        elif name == "order" and request.WhichOneof("kind") == "takeoff":
+            self.status.mode = Mode.MODE_TAKEOFF
+        elif name == "orbit":
+            self.status.mode = Mode.MODE_ORBIT
+            self.status.circle.CopyFrom(Circle(centre=request.centre, radius=request.radius))
         return Reply(accepted=True)
 
 
@@ -128,7 +148,7 @@ class Rig:
     """``say`` a message, ``run`` the service, look at what a ground station ``heard``."""
 
     SENSED = ("imu", "air_data", "surface_command", "wheel_command", "targets", "quality", "planning")
-    CALLS = ("arm", "set_mode", "set_mission", "set_current", "goal")
+    CALLS = tuple(MavlinkService.calls)
 
     def __init__(self, answers=True):
         self.link = MemoryLink()

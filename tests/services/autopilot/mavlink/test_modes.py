@@ -65,7 +65,7 @@ def test_plane_and_rover_send_the_same_list_with_the_five_that_buttons_need():
 def test_index_0_sends_all_and_beyond_the_end_is_refused():
     rig = Rig()
     rig.say(long(512, 435.0, 0.0))
-    assert len(of(rig.run(), "AVAILABLE_MODES")) == len(modes.LISTED)
+    assert len(of(rig.run(), "AVAILABLE_MODES")) == len(modes.TABLE)
     rig.say(long(512, 435.0, 99.0))
     assert acks(rig.run()) == [(512, 2)]
 
