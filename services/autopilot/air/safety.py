@@ -5,7 +5,6 @@ from dataclasses import dataclass, field
 
 import msgspec
 
-from schemas.convert import seconds
 from schemas.messages import Battery, Breach, Event, Fence, Link
 from services.autopilot.air.air_data_check import AirDataCheck, Flying
 from services.autopilot.air.commands import Surfaces
@@ -23,6 +22,7 @@ from services.autopilot.air.sensed import Pressures
 from services.autopilot.air.servos import Servos
 from services.autopilot.air.state import Estimate
 from services.autopilot.failsafes import Action, Order, Watch
+from services.autopilot.link_watch import LinkWatch
 from uvf.runtime.fence_file import fence_fault, fencing
 
 RANK = {FlightMode.HOLD: Action.HOLD, FlightMode.RETURN: Action.RETURN, FlightMode.LAND: Action.LAND}
@@ -52,19 +52,16 @@ class Safety:
         self._pilot = pilot
         self._air_data = AirDataCheck()
         self._saturation = Saturation(servos)
-        self._heard: float | None = None
+        self._link = LinkWatch()
         self._lost_for = 0.0  # s
         self._was_blind = self._waits = False
-        self._silence = 0.0
         self.breaches = 0
         """How often it has been outside of a fence."""
 
     def hear(self, t: float, link: Link | None, battery: Battery | None) -> None:
         """What comes from outside, before each step."""
         self.endurance.take(t, battery)
-        if link is not None and link.stations:
-            self._heard = seconds(link.timestamp)
-        self._silence = t - self._heard if self._heard is not None else 0.0
+        self._link.step(t, link)
 
     def believed(self, read: tuple[object, Pressures] | None, flying: Flying | None, params: AirParams, dt: float) -> Pressures | None:
         """The pressures (with their stamp) as far as they can be believed."""
@@ -119,7 +116,7 @@ class Safety:
         return Known(
             params=params,
             airborne=seen.airborne,
-            silence=self._silence,
+            silence=self._link.silence,
             unfixed=seen.unfixed,
             sigma=now.position_sigma,
             lost_for=self._lost_for,

@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass, field
 
-from schemas.convert import seconds
 from schemas.messages import Battery, Event, Fence, FrameTransform, Imu, LaserScan, Link, Mode, PoseInFrame, WheelTicks
 from services.autopilot.failsafes import Action, Order, Watch
 from services.autopilot.ground.failsafes import GROUND_RULES, STANDS, Known
@@ -10,6 +9,7 @@ from services.autopilot.ground.fence import Place, stops
 from services.autopilot.ground.motion import Grip, Tilt, Wheels
 from services.autopilot.ground.params import GroundAutopilotParams
 from services.autopilot.ground.sight import Sight
+from services.autopilot.link_watch import LinkWatch
 from uvf.maths.kinematics import WheelSpeeds
 from uvf.runtime.fence_file import Fencing, fence_fault, fencing
 from uvf.runtime.vehicle_file import GroundBody
@@ -53,7 +53,7 @@ class Safety:
         self.battery: Battery | None = None
         """As told last."""
         self._keep = body.radius, body.max_linear_acceleration
-        self._heard: float | None = None
+        self._link = LinkWatch()
         self._times = {"unplaced": 0.0, "unsteered": 0.0}
         self._wheels = Wheels(body.wheel_radius)
         self._grip, self._tilt, self._sight = Grip(self._wheels), Tilt(imu_rpy), Sight()
@@ -89,8 +89,7 @@ class Safety:
         return [change.event(t) for change in changes], order
 
     def _hear(self, t: float, sensed: Sensed, doing: Doing, dt: float) -> None:
-        if sensed.link is not None and sensed.link.stations:
-            self._heard = seconds(sensed.link.timestamp)
+        self._link.step(t, sensed.link)
         if sensed.battery is not None and sensed.battery.remaining >= 0:
             self.battery = sensed.battery
         lacks = {
@@ -110,7 +109,7 @@ class Safety:
             moves=doing.free and doing.mode != Mode.MODE_HOLD,
             by_itself=doing.mode in BY_ITSELF,
             by_hand=doing.mode == Mode.MODE_MANUAL,
-            silence=t - self._heard if self._heard is not None else 0.0,
+            silence=self._link.silence,
             unplaced=self._times["unplaced"],
             unsteered=self._times["unsteered"],
             unseen=self._sight.unseen,

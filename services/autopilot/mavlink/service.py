@@ -169,8 +169,13 @@ class MavlinkService(Service):
         """Told of every vehicle alike: a station hears them all."""
         if not self._link_due.at(t):
             return {}
-        count = self._reception.stations.count(t)
-        return {"link": {name: Link(timestamp=stamp(v.line.latest.sim_time), stations=count) for name, v in self._vehicles.items()}}
+        count, silence = self._reception.stations.count(t), self._reception.stations.silence(t)
+        links = {}
+        for name, vehicle in self._vehicles.items():
+            latest = vehicle.line.latest
+            rate = latest.clock.rate if latest.clock is not None else 1.0
+            links[name] = Link(timestamp=stamp(latest.sim_time), stations=count, silence=silence, rate=rate)
+        return {"link": links}
 
     def _outputs(self) -> Outputs:
         outputs: dict[str, dict[str, Any]] = {}

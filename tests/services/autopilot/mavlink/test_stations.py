@@ -1,6 +1,9 @@
 """Vehicles are told how many ground stations are in touch, by their heartbeats."""
 
+import pytest
+
 from schemas.convert import seconds
+from schemas.messages import Clock
 from services.autopilot.mavlink import dialect as mav
 from tests.services.autopilot.mavlink.rig import OTHER, Rig, texts
 
@@ -27,6 +30,26 @@ def test_stations_count_while_their_heartbeats_come():
     rig.say(heartbeat(mav.MAV_TYPE_GCS))
     assert told(rig, 2.0)[-1].stations == 1
     assert told(rig, 3.0)[-1].stations == 0
+
+
+def test_silence_is_wall_time_since_any_station_also_while_the_simulation_is_paused():
+    rig = Rig()
+    assert {link.silence for link in told(rig, 2.0)} == {0.0}
+    rig.say(heartbeat(mav.MAV_TYPE_GCS))
+    rig.run(0.5)
+    rig.say(heartbeat(mav.MAV_TYPE_GCS), system=254, peer=OTHER)
+    rig.clock.state, rig.clock.rate = Clock.PAUSED, 0.0
+    assert [link.silence for link in told(rig, 4.0)] == pytest.approx([0.5 * n for n in range(8)], abs=0.52)
+    rig.say(heartbeat(mav.MAV_TYPE_GCS))
+    newest = told(rig, 0.5)[-1]
+    assert newest.silence < 0.55 and newest.stations == 1
+
+
+@pytest.mark.parametrize("rate", [0.2, 10.0])
+def test_the_rate_of_the_simulation_goes_with_it(rate):
+    rig = Rig()
+    rig.clock.rate = rate
+    assert told(rig, 1.0)[-1].rate == rate
 
 
 def test_a_companion_is_no_ground_station():
