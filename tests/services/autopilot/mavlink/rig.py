@@ -159,6 +159,8 @@ class Rig:
         self.reported = set(self.vehicles)
         self.answers = answers
         self.hears_satellites = True
+        self.rate = 1.0
+        """Simulated seconds in one of wall time."""
         self.clock = Clock(state=Clock.RUNNING)
         self.events = {}
         self.outputs = {}
@@ -184,7 +186,7 @@ class Rig:
     def _step(self):
         self.n += 1
         if self.clock.state == Clock.RUNNING:
-            self.clock.t_ns += round(DT * 1e9)
+            self.clock.t_ns += round(DT * self.rate * 1e9)
         sim = stamp(self.clock.t_ns * 1e-9)
         live = {name: v for name, v in self.vehicles.items() if name in self.reported}
         for v in live.values():

@@ -1,12 +1,13 @@
 """Rubbish on the link: counted, never obeyed, never fatal."""
 
+import itertools
 import math
 import random
 from collections import Counter
 
 import pytest
 
-from schemas.messages import Mode
+from schemas.messages import Clock, Mode
 from services.autopilot.mavlink import dialect as mav
 from services.autopilot.mavlink.actions import ACTIONS
 from services.autopilot.mavlink.codec import Codec
@@ -14,6 +15,7 @@ from services.autopilot.mavlink.guided import GUIDED
 from services.autopilot.mavlink.orders import ORDERS
 from services.autopilot.mavlink.streams import Schedule
 from tests.services.autopilot.mavlink.rig import GCS, PLANE, ROVER, Rig, acks, long, of
+from tests.services.autopilot.mavlink.storm import KINDS, rage
 
 BEAT = mav.MAVLink_heartbeat_message(6, 8, 0, 0, 0, 3)
 
@@ -63,28 +65,42 @@ def test_a_number_that_does_not_fit_costs_no_sequence_number():
     assert first(codec, BEAT)[4] == 0
 
 
-def random_datagram(rng):
-    kind = rng.randrange(4)
-    data = bytearray(packet(long(400, 1.0)))
-    if kind == 0:
-        return rng.randbytes(rng.randrange(300))
-    if kind == 1:
-        return bytes(data[: rng.randrange(len(data))])
-    if kind == 2:
-        data[rng.randrange(1, len(data))] ^= rng.randrange(1, 256)
-        return bytes(data)
-    return bytes((mav.PROTOCOL_MARKER_V2,)) + rng.randbytes(rng.randrange(40))
-
-
-def test_5000_random_packets_arm_nothing():
-    rng, rig = random.Random(1), Rig()
-    for _ in range(100):
-        rig.link.incoming += [(random_datagram(rng), GCS) for _ in range(50)]
-        rig.run(0.02)
-    assert rig.plane.asked == rig.rover.asked == []
-    assert rig.service.codec.counts.broken > 2000
+@pytest.mark.parametrize("kind", KINDS)
+def test_no_kind_of_bad_packet_is_obeyed(kind):
+    rng, rig = random.Random(2), Rig()
+    rig.run()
+    rig.link.incoming += [(kind(rng), GCS) for _ in range(300)]
+    heard = rig.run(0.1)
+    assert rig.plane.asked == rig.rover.asked == [] and rig.outputs.get("drive") is rig.outputs.get("surfaces") is None
+    assert not {m.get_type() for m in heard} & {"COMMAND_ACK", "MISSION_REQUEST_INT", "PARAM_VALUE"}
     rig.say(long(400, 1.0))
     assert acks(rig.run()) == [(400, 0)]
+
+
+def test_100000_packets_stop_nothing_and_order_nothing():
+    rig = Rig()
+    rage(rig, random.Random(1), 100_000)
+    counts = rig.service.codec.counts
+    assert rig.plane.asked == rig.rover.asked == []
+    assert counts.broken > 30_000 and counts.unknown > 5_000 and counts.received > 30_000
+    rig.say(long(400, 1.0))
+    heard = rig.run(1.1)
+    assert acks(heard) == [(400, 0)] and of(heard, "HEARTBEAT", PLANE)
+
+
+@pytest.mark.parametrize(("state", "rate"), [(Clock.PAUSED, 0.0), (Clock.RUNNING, 0.2), (Clock.RUNNING, 10.0)])
+def test_heartbeats_answers_and_telemetry_follow_the_wall_however_time_runs(state, rate):
+    rig = Rig()
+    rig.run(1.0)
+    rig.clock.state, rig.rate = state, rate
+    beats, answered = [], 0
+    for _ in range(500):
+        rig.say(long(512, 148.0, confirmation=rig.n % 100))
+        heard = rig.run(0.02)
+        beats += [rig.t for _ in of(heard, "HEARTBEAT", PLANE)]
+        answered += len(of(heard, "COMMAND_ACK"))
+    assert len(beats) in (9, 10, 11) and max(b - a for a, b in itertools.pairwise(beats)) <= 1.5
+    assert answered == 500
 
 
 def random_message(rng, number):
