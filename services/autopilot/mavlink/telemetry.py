@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from schemas.convert import array, wxyz
-from schemas.messages import Gnss, Mode
+from schemas.messages import Gnss, MissionItem, Mode
 from services.autopilot.mavlink import dialect as mav
 from services.autopilot.mavlink import estimate_quality, identity, navigation, sensor_messages, steering, steering_telemetry
 from services.autopilot.mavlink.facts import Facts, Latest
@@ -127,7 +127,16 @@ def landed_state(facts: Facts, latest: Latest) -> int:
     if status.landed:
         return int(mav.MAV_LANDED_STATE_ON_GROUND)
     special = {Mode.MODE_TAKEOFF: mav.MAV_LANDED_STATE_TAKEOFF, Mode.MODE_LAND: mav.MAV_LANDED_STATE_LANDING}
-    return int(special.get(status.mode, mav.MAV_LANDED_STATE_IN_AIR))
+    return int(special.get(status.mode, _of_item(latest) if status.mode == Mode.MODE_MISSION else mav.MAV_LANDED_STATE_IN_AIR))
+
+
+def _of_item(latest: Latest) -> int:
+    """A mission takes off and lands by its items; ground stations offer to abort a landing while they see one."""
+    status, mission = latest.status, latest.mission
+    if status is None or mission is None or status.waypoint >= len(mission.items):
+        return int(mav.MAV_LANDED_STATE_IN_AIR)
+    special = {MissionItem.TAKEOFF: mav.MAV_LANDED_STATE_TAKEOFF, MissionItem.LAND: mav.MAV_LANDED_STATE_LANDING}
+    return int(special.get(mission.items[status.waypoint].kind, mav.MAV_LANDED_STATE_IN_AIR))
 
 
 def _extended_sys_state(facts: Facts, latest: Latest, t: float) -> Message:

@@ -312,6 +312,18 @@ def test_a_rovers_speed_is_over_ground():
     assert order.speed.over_ground
 
 
+# what is seen of take-offs and landings of a mission
+
+
+@pytest.mark.parametrize(("item", "state"), [(0, 3), (1, 2), (2, 4)])
+def test_take_off_and_landing_of_a_mission_are_told(item, state):
+    rig = rig_in(Mode.MODE_MISSION)
+    rig.plane.status.armed = True
+    rig.plane.mission.items.extend([MissionItem(kind=MissionItem.TAKEOFF), MissionItem(), MissionItem(kind=MissionItem.LAND)])
+    rig.plane.status.waypoint = item
+    assert of(rig.run(1.1), "EXTENDED_SYS_STATE", PLANE)[-1].landed_state == state
+
+
 # guided items
 
 
