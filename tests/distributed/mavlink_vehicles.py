@@ -10,7 +10,7 @@ from schemas.convert import array, quaternion, stamp, vector
 from schemas.messages import Gnss, Kind, Mission, MissionItem, MissionProgress, Mode, NavState, Reply, VehicleStatus
 from services.autopilot.mavlink.endpoint import UdpLink
 from services.autopilot.mavlink.service import MavlinkService
-from tests.services.autopilot.mavlink.rig import ORIGIN, PLANE_FACTS, ROVER_FACTS
+from tests.services.autopilot.mavlink.rig import ORIGIN, PLANE_FACTS, ROVER_FACTS, shelves
 from uvf.maths.rotations import from_euler
 from uvf.runtime.bus import LocalBus
 from uvf.runtime.clock import NS
@@ -133,7 +133,7 @@ class LiveVehicles:
         self.plane = ScriptedVehicle(Kind.KIND_FIXED_WING, (0.0, 0.0, 50.0))
         self.rover = ScriptedVehicle(Kind.KIND_GROUND, (3.0, 4.0, 0.0))
         bus = LocalBus()
-        service = MavlinkService([PLANE_FACTS, ROVER_FACTS], self.link)
+        service = MavlinkService([PLANE_FACTS, ROVER_FACTS], self.link, shelves())
         self._shells = [
             Shell(Host(ScriptedVehicle, lambda: self.plane, "plane"), bus),
             Shell(Host(ScriptedVehicle, lambda: self.rover, "rover"), bus),

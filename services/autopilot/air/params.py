@@ -11,6 +11,10 @@ def _meta(low: float, high: float, unit: str, about: str) -> Meta:
     return Meta(ge=low, le=high, description=about, extra_json_schema={"unit": unit})
 
 
+FIXED = frozenset({"estimator"})
+"""Read only when the autopilot starts."""
+
+
 class AirParams(FailsafeParams, frozen=True):
     """Names have at most 16 characters, the length of a MAVLink parameter."""
 

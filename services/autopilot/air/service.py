@@ -44,7 +44,7 @@ from services.autopilot.air.journal import Journal
 from services.autopilot.air.landed import LandDetector
 from services.autopilot.air.leading import Steadied
 from services.autopilot.air.over_ground import OverGround
-from services.autopilot.air.params import AirParams
+from services.autopilot.air.params import FIXED, AirParams
 from services.autopilot.air.paths import Round
 from services.autopilot.air.pilot import Pilot
 from services.autopilot.air.plans import Plans
@@ -117,7 +117,7 @@ class AutopilotAir(Service):
         "nav_state": topics.NAV_STATE,
         "params": topics.PARAMS.by("autopilot_air"),
     }
-    fixed_params = frozenset({"estimator"})
+    fixed_params = FIXED
     params: AirParams
 
     def __init__(self, ship: Ship, params: AirParams) -> None:

@@ -6,15 +6,18 @@ import socket
 import time
 from collections.abc import Mapping
 
-from services.autopilot.air.params import AirParams
+from services.autopilot.air.params import FIXED, AirParams
+from services.autopilot.ground.params import GroundAutopilotParams
 from services.autopilot.mavlink.endpoint import Peer, UdpLink
 from services.autopilot.mavlink.facts import Facts
 from services.autopilot.mavlink.key_store import KeyStore
+from services.autopilot.mavlink.parameter_store import FileStore
 from services.autopilot.mavlink.service import MavlinkService
 from services.autopilot.mavlink.signing import Signing
 from uvf.maths.geodesy import LocalTangent
 from uvf.runtime.address import peer
 from uvf.runtime.params import BadInput, nearest
+from uvf.runtime.service import Params
 from uvf.runtime.site import Host, Member, Site
 from uvf.runtime.state_folder import state_folder
 
@@ -26,9 +29,8 @@ IDENTITIES = {"px4": False, "generic": True}
 SWITCH = {"0": False, "1": True}
 KEYS = "mavlink-keys.json"
 DEFAULT_TARGETS = "127.0.0.1:14550,127.0.0.1:14540"
-AIR = "autopilot_air"
+AIR, GROUND = "autopilot_air", "autopilot_ground"
 DEFAULT_LISTEN = "127.0.0.1:14580"
-LINK_ACTIONS = {"warn": 0, "hold": 1, "return": 2, "land": 3}  # of NAV_DLL_ACT
 EXAMPLE = "127.0.0.1:14550"
 
 log = logging.getLogger(__name__)
@@ -42,9 +44,11 @@ def build(site: Site) -> list[Host]:
     generic = chosen(IDENTITY, IDENTITIES, "px4", os.environ)
     required = chosen(REQUIRE_SIGNING, SWITCH, "0", os.environ)
 
+    stores = {name: store_of(site, name) for name in site.members}
+
     def make() -> MavlinkService:
         started = time.time()
-        return MavlinkService(facts_of(site, generic, started), open_link(targets, listen), open_keys(started, required))
+        return MavlinkService(facts_of(site, generic, started), open_link(targets, listen), stores, open_keys(started, required))
 
     return [Host(MavlinkService, make, writes_for=tuple(site.members))]
 
@@ -60,7 +64,8 @@ def chosen(name: str, choices: Mapping[str, bool], default: str, environment: Ma
 def facts_of(site: Site, generic: bool = False, started: float = 0.0) -> list[Facts]:
     origin = site.world.origin
     tangent = LocalTangent.from_degrees(origin.latitude, origin.longitude, origin.altitude)
-    return [Facts(m.name, m.entry.system_id, m.file, tangent, numbers_of(m), generic, started) for m in site.members.values()]
+    own = {m.name: own_of(m) for m in site.members.values()}
+    return [Facts(m.name, m.entry.system_id, m.file, tangent, *own[m.name], generic, started) for m in site.members.values()]
 
 
 def open_keys(started: float, required: bool) -> Signing:
@@ -74,20 +79,16 @@ def open_keys(started: float, required: bool) -> Signing:
         return Signing(KeyStore(path), started, required)
 
 
-def numbers_of(member: Member) -> dict[str, float]:
-    """What the parameter table may name: m, m/s; return_height above home."""
-    numbers = {"system_id": float(member.entry.system_id)}
-    if member.file.kind == "fixed_wing":
-        air = member.params(AIR, AirParams)
-        numbers["trim_airspeed"] = air.trim_airspeed
-        numbers["hold_radius"] = air.hold_radius
-        numbers["min_altitude"] = air.min_altitude
-        numbers["return_height"] = air.return_altitude
-        numbers["link_timeout"] = air.link_timeout
-        numbers["link_action"] = float(LINK_ACTIONS[air.link_action])
-        numbers["battery_low"] = air.battery_low
-        numbers["battery_critical"] = air.battery_critical
-    return numbers
+def own_of(member: Member) -> tuple[Params, frozenset[str]]:
+    """The autopilot's parameters as its file sets them, and those that it reads only when it starts."""
+    if member.file.kind == "ground":
+        return member.params(GROUND, GroundAutopilotParams), frozenset()
+    return member.params(AIR, AirParams), FIXED
+
+
+def store_of(site: Site, vehicle: str) -> FileStore:
+    """Of one vehicle of one mission: another mission's begins with its own file."""
+    return FileStore(state_folder() / "parameters" / site.mission_path.stem / f"{vehicle}.json")
 
 
 def open_link(targets: list[Peer], listen: Peer | None) -> UdpLink:

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Protocol, TypeVar
+from typing import Any, Protocol, TypeVar
 
 import numpy as np
 from google.protobuf.timestamp_pb2 import Timestamp
@@ -20,6 +20,7 @@ from schemas.messages import (
     MissionProgress,
     NavState,
     NavStatus,
+    ParamValues,
     SurfaceCommand,
     Targets,
     Vector3,
@@ -28,6 +29,7 @@ from schemas.messages import (
 )
 from services.autopilot.mavlink.vibration import Vibration
 from uvf.maths.geodesy import Floats, LocalTangent
+from uvf.runtime.service import Params
 from uvf.runtime.vehicle_file import Sensors, VehicleFile
 
 SILENT_AFTER = 2.0  # s of simulation time
@@ -45,14 +47,15 @@ S = TypeVar("S", bound=Stamped)
 class Facts:
     """origin: of the world frame; its altitude counts as above mean sea level.
 
-    numbers: what parameters of ``parameters.yaml`` name instead of a value.
+    params: the autopilot's, as the vehicle's file sets them; fixed_params: those that it reads only when it starts.
     """
 
     name: str
     system_id: int
     file: VehicleFile
     origin: LocalTangent
-    numbers: Mapping[str, float]
+    params: Params
+    fixed_params: frozenset[str] = frozenset()
     generic: bool = False
     """Says that it is a generic autopilot instead of a PX4-compatible one; all else is the same."""
     started: float = 0.0
@@ -104,8 +107,11 @@ class Latest:
     """The other vehicles of the mission."""
     rc_channels: tuple[int, ...] = ()
     """us, of each channel that a ground station overrides; 0 = released. Empty: none is."""
+    params: ParamValues | None = None
     intended_custom_mode: int = field(default=0)
     """The last mode that a ground station asked for, 0 = none yet."""
+    own: Mapping[str, Any] = field(default_factory=dict)
+    """The autopilot's parameters that are in force, by its own names."""
 
     @property
     def sim_time(self) -> float:

@@ -31,7 +31,7 @@ def _reposition(line: Line, command: Command, ack: Acknowledger) -> None:
         _drive(line, place_in(line, command), speed, ack)
     else:
         turn = -1.0 if direction == COUNTERCLOCKWISE else 1.0
-        ring = turn * (radius if radius > 0 else line.facts.numbers["hold_radius"] if turn < 0 else 0.0)
+        ring = turn * (radius if radius > 0 else line.latest.own["hold_radius"] if turn < 0 else 0.0)
         place = place_in(line, command)
         _check_height(line, place, height)
         speed = max(speed, 0.0) if math.isfinite(speed) else 0.0
@@ -56,7 +56,7 @@ def _mode_name(line: Line) -> str:
 
 def _check_height(line: Line, place: Vector3, asked: float) -> None:
     """Lower than it goes, the autopilot would stay at its height: no answer to somebody who has named one."""
-    lowest = line.facts.numbers.get("min_altitude", -math.inf)
+    lowest = line.latest.own.get("min_altitude", -math.inf)
     if not math.isnan(asked) and place.z < lowest:
         raise BadPlace(mav.MAV_RESULT_DENIED, f"too low: {lowest + line.facts.origin.altitude:.0f} m above sea level at least")
 

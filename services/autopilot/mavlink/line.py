@@ -1,7 +1,7 @@
 """One vehicle's end of the link: what goes out, and what was asked of the services and is not answered yet."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -76,6 +76,8 @@ class Line:
         imu = facts.sensors.imu
         self.latest = Latest(vibration=Vibration(imu.accel_range if imu is not None else math.inf))
         self.t = 0.0
+        self.files: Mapping[str, bytes] = {}
+        """What can be read over MAVLink FTP, by path."""
         self.outbox: list[Out] = []
         self.requests: list[tuple[str, Message]] = []
         """(name of the call, request) to be sent with this step."""

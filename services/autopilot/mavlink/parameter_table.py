@@ -1,27 +1,42 @@
-"""The parameters of one vehicle: read from ``parameters.yaml``, numbered, and as the bytes that go over the wire."""
+"""The parameters of one vehicle: those of ``parameters.yaml`` and the autopilot's own, numbered in the order of their names."""
 
-import struct
-import zlib
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 import msgspec
+import numpy as np
 
 from services.autopilot.mavlink import dialect as mav
 from services.autopilot.mavlink.facts import Facts
+from services.autopilot.mavlink.own_params import Own, own_params
 from uvf.runtime.params import BadInput, load_yaml, nearest
 
 FILE = Path(__file__).with_name("parameters.yaml")
-Value = float | str
 Kind = Literal["ground", "fixed_wing"]
+OWN_NAME_MOST = 16  # characters
+WHOLE = (-(2**31), 2**31 - 1)
+
+
+class Case(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """One number of an enumeration: what it is called, and the autopilot's parameters that say the same."""
+
+    says: str
+    sets: dict[str, str] = {}
 
 
 class Row(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """As the head of ``parameters.yaml`` explains."""
+
     type: Literal["int", "real"]
-    value: Value
-    ground: Value | None = None
-    fixed_wing: Value | None = None
+    group: str
+    about: str
+    value: float | Literal["system_id"] = 0
+    ground: float | None = None
+    fixed: str = ""
+    own: str = ""
+    cases: dict[int, Case] = {}
     absent: list[Kind] = []
 
 
@@ -31,44 +46,77 @@ class Table(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 @dataclass(frozen=True)
 class Parameter:
-    """raw: the four bytes of the value; an integer travels as its own bytes in the float field."""
+    """One on the wire. ``fixed``: why it cannot be set; else it is ``own``, a number, or one of ``cases``."""
 
     name: str
-    index: int
     type: int
-    raw: bytes
+    group: str
+    about: str
+    index: int = 0
+    unit: str = ""
+    low: float = -np.inf
+    high: float = np.inf
+    value: float = 0.0
+    fixed: str = ""
+    own: str = ""
+    cases: Mapping[int, Case] = field(default_factory=dict)
+
+    @property
+    def is_int(self) -> bool:
+        return self.type == mav.MAV_PARAM_TYPE_INT32
+
+    def number(self, own: Mapping[str, Any]) -> float:
+        """On the wire, for these of the autopilot's own parameters."""
+        if self.own and not self.cases:
+            return round(own[self.own]) if self.is_int else float(own[self.own])
+        fits = (number for number, case in self.cases.items() if all(own[name] == value for name, value in case.sets.items()))
+        return next(fits, self.value)
+
+    def settings(self, number: float) -> dict[str, Any]:
+        """The autopilot's parameters that make it this number; empty if it cannot be.
+
+        Limits count as they are in single precision: who sends 0.3 means the limit 0.3.
+        """
+        if self.cases:
+            return dict(self.cases[int(number)].sets) if number in self.cases else {}
+        if not np.float32(self.low) <= np.float32(number) <= np.float32(self.high):
+            return {}
+        return {self.own: float(min(max(number, self.low), self.high))}
 
 
 def parameters_of(facts: Facts) -> list[Parameter]:
-    """In order of name, numbered from 0."""
+    """In order of name, numbered from 0. Raises BadInput when the file names what the autopilot has not."""
+    own = own_params(facts.params, facts.fixed_params)
     rows = {name: row for name, row in load_yaml(FILE, Table).parameters.items() if facts.file.kind not in row.absent}
-    return [_parameter(name, index, rows[name], facts) for index, name in enumerate(sorted(rows))]
+    found = [_standard(name, row, own, facts) for name, row in rows.items()]
+    found += [_offered(one) for one in own.values() if len(one.name) <= OWN_NAME_MOST]
+    return [replace(p, index=index) for index, p in enumerate(sorted(found, key=lambda p: p.name))]
 
 
-def _parameter(name: str, index: int, row: Row, facts: Facts) -> Parameter:
-    special = row.ground if facts.is_ground else row.fixed_wing
-    value = row.value if special is None else special
-    if isinstance(value, str):
-        if value not in facts.numbers:
-            raise BadInput(f"{FILE.name}: {name}: '{value}' is no number of a {facts.file.kind} vehicle; {nearest(value, facts.numbers)}")
-        value = facts.numbers[value]
-    if row.type == "int":
-        return Parameter(name, index, mav.MAV_PARAM_TYPE_INT32, struct.pack("<i", int(value)))
-    return Parameter(name, index, mav.MAV_PARAM_TYPE_REAL32, struct.pack("<f", value))
+def _standard(name: str, row: Row, own: Mapping[str, Own], facts: Facts) -> Parameter:
+    named = {row.own} if row.own else {key for case in row.cases.values() for key in case.sets}
+    for key in named - own.keys() if not row.fixed else ():
+        raise BadInput(f"{FILE.name}: {name}: '{key}' is no parameter of a {facts.file.kind} autopilot; {nearest(key, own)}")
+    if not named and not row.fixed:
+        raise BadInput(f"{FILE.name}: {name}: say what it sets ('own', 'cases') or why it is 'fixed'")
+    type_ = mav.MAV_PARAM_TYPE_INT32 if row.type == "int" else mav.MAV_PARAM_TYPE_REAL32
+    value = facts.system_id if row.value == "system_id" else row.ground if facts.is_ground and row.ground is not None else row.value
+    plain = Parameter(name, type_, row.group, row.about, value=float(value))
+    if not named <= own.keys() or not named:
+        return replace(plain, fixed=row.fixed)
+    if row.own:
+        mine = own[row.own]
+        return replace(plain, own=row.own, unit=mine.unit, low=mine.low, high=mine.high)
+    cases = {n: case for n, case in row.cases.items() if all(value in own[key].choices for key, value in case.sets.items())}
+    return replace(plain, cases=cases)
 
 
-def hash_of(parameters: list[Parameter]) -> int:
-    """CRC-32 (start 0, not inverted) over names and values in order, as PX4's ``param_hash_check``."""
-    data = b"".join(p.name.encode() + p.raw for p in parameters)
-    return zlib.crc32(data, 0xFFFFFFFF) ^ 0xFFFFFFFF
-
-
-def param_value(name: str, raw: bytes, type_: int, place: tuple[int, int]) -> mav.MAVLink_param_value_message:
-    """PARAM_VALUE with exactly these four bytes; place: (count, index).
-
-    Through a Python float some bit patterns of integers (signalling NaNs) would change, so the field is packed as bytes.
-    """
-    message = mav.MAVLink_param_value_message(name.encode(), 0.0, type_, *place)
-    message.unpacker = struct.Struct("<4sHH16sB")
-    message.param_value = raw  # type: ignore[assignment]
-    return message
+def _offered(one: Own) -> Parameter:
+    """One of the autopilot's own, under its name in capitals; a choice is the number of its place."""
+    if not one.choices:
+        real = mav.MAV_PARAM_TYPE_REAL32
+        plain = Parameter(one.name.upper(), real, one.group, one.about, unit=one.unit, low=one.low, high=one.high, own=one.name)
+    else:
+        cases = {number: Case(choice, {one.name: choice}) for number, choice in enumerate(one.choices)}
+        plain = Parameter(one.name.upper(), mav.MAV_PARAM_TYPE_INT32, one.group, one.about, cases=cases)
+    return replace(plain, fixed=one.fixed)

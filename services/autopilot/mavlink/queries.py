@@ -5,8 +5,10 @@ import math
 from services.autopilot.mavlink import dialect as mav
 from services.autopilot.mavlink import modes
 from services.autopilot.mavlink.commands import Acknowledger, Command, Handler
+from services.autopilot.mavlink.component_metadata import component_metadata
 from services.autopilot.mavlink.health import health
 from services.autopilot.mavlink.line import Line
+from services.autopilot.mavlink.navigation import boot_ms
 from services.autopilot.mavlink.streams import Schedule
 from services.autopilot.mavlink.telemetry import STREAMS
 
@@ -32,6 +34,9 @@ class Queries:
         number = _number(command.p[0])
         if number == mav.MAVLINK_MSG_ID_AVAILABLE_MODES:
             _available_modes(line, command, ack)
+        elif number == mav.MAVLINK_MSG_ID_COMPONENT_METADATA:
+            ack(mav.MAV_RESULT_ACCEPTED)
+            line.send(component_metadata(line.files, boot_ms(line.t)), command.sender.peer)
         else:
             _answer(line, command, ack, number)
 

@@ -20,6 +20,7 @@ from schemas.messages import (
     MissionProgress,
     NavState,
     NavStatus,
+    ParamValues,
     SurfaceCommand,
     Targets,
     VehicleStatus,
@@ -28,6 +29,7 @@ from schemas.messages import (
 from services.autopilot.mavlink import endpoint
 from services.autopilot.mavlink.codec import Codec
 from services.autopilot.mavlink.facts import Facts
+from services.autopilot.mavlink.parameter_store import Store
 from services.autopilot.mavlink.reception import Reception
 from services.autopilot.mavlink.signing import Signing
 from services.autopilot.mavlink.vehicle_link import VehicleLink
@@ -59,6 +61,7 @@ class MavlinkService(Service):
         "quality": each_vehicle(topics.QUALITY),
         "planning": each_vehicle(topics.NAV_STATUS),
         "events": each_vehicle(every(topics.EVENTS.by("*"))),
+        "params": each_vehicle(topics.PARAMS.by("*")),
         "clock": optional(topics.CLOCK),
     }
     outputs = {
@@ -76,12 +79,15 @@ class MavlinkService(Service):
         "orbit": topics.ORBIT,
         "go_around": topics.GO_AROUND,
         "order": topics.ORDER,
+        "air_param": topics.PARAM.by("autopilot_air"),
+        "ground_param": topics.PARAM.by("autopilot_ground"),
     }
 
-    def __init__(self, facts: Sequence[Facts], link: endpoint.Link, signing: Signing | None = None) -> None:
+    def __init__(self, facts: Sequence[Facts], link: endpoint.Link, stores: Mapping[str, Store], signing: Signing | None = None) -> None:
+        """stores: by vehicle, where what is set over MAVLink is remembered."""
         self.codec = Codec()
         self._link = link
-        self._vehicles = {one.name: VehicleLink(one) for one in facts}
+        self._vehicles = {one.name: VehicleLink(one, stores[one.name]) for one in facts}
         self._signing = signing or Signing()
         self._reception = Reception(list(self._vehicles.values()), link, self._signing)
         for name, vehicle in self._vehicles.items():
@@ -105,6 +111,7 @@ class MavlinkService(Service):
         quality: dict[str, EstimateQuality],
         planning: dict[str, NavStatus],
         events: dict[str, list[Event]],
+        params: dict[str, ParamValues],
         clock: Clock | None,
         arm: Answers,
         set_mode: Answers,
@@ -114,6 +121,8 @@ class MavlinkService(Service):
         orbit: Answers,
         go_around: Answers,
         order: Answers,
+        air_param: Answers,
+        ground_param: Answers,
     ) -> Outputs:
         """``t`` [s]: wall time since the start; answers end the commands that wait for them."""
         news: dict[str, Mapping[str, Message]] = {
@@ -130,9 +139,10 @@ class MavlinkService(Service):
             "targets": targets,
             "quality": quality,
             "planning": planning,
+            "params": params,
         }
         self._update(t, news, clock)
-        for answer in (*arm, *set_mode, *set_mission, *set_current, *goal, *orbit, *go_around, *order):
+        for answer in (*arm, *set_mode, *set_mission, *set_current, *goal, *orbit, *go_around, *order, *air_param, *ground_param):
             self._vehicles[answer.vehicle].line.answered(answer)
         for datagram, peer in self._link.receive(t):
             for message in self.codec.parse(datagram):

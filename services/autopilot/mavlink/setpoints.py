@@ -144,7 +144,7 @@ class Setpoints:
             return None
         place = np.where(np.isfinite(target.place), target.place, array(nav.position))
         if not target.has_velocity:
-            return FlightSetpoint(circle=CircleSetpoint(centre=_vector(place), radius=self._line.facts.numbers["hold_radius"]))
+            return FlightSetpoint(circle=CircleSetpoint(centre=_vector(place), radius=self._line.latest.own["hold_radius"]))
         if not math.hypot(*target.velocity[:2]) > 0:
             return None
         if not target.has_place:

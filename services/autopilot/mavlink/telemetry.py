@@ -22,7 +22,7 @@ from services.autopilot.mavlink.traffic import traffic
 Message = mav.MAVLink_message | None
 Build = Callable[[Facts, Latest, float], Message | list[mav.MAVLink_message]]
 
-LOW, CRITICAL, EMERGENCY = 0.15, 0.07, 0.05  # of a full battery; as BAT_LOW_THR, BAT_CRIT_THR, BAT_EMERGEN_THR say
+EMERGENCY = 0.05  # of a full battery, as BAT_EMERGEN_THR says
 
 
 @dataclass(frozen=True)
@@ -62,19 +62,19 @@ def _battery_status(facts: Facts, latest: Latest, t: float) -> Message:
         -1,
         -1,
         whole(battery.remaining * 100, (-1, 100), -1),
-        charge_state=charge_state(battery.remaining),
+        charge_state=charge_state(battery.remaining, latest.own["battery_low"], latest.own["battery_critical"]),
     )
 
 
-def charge_state(remaining: float) -> int:
-    """MAV_BATTERY_CHARGE_STATE of a charge 0..1; negative or NaN = unknown."""
+def charge_state(remaining: float, low: float, critical: float) -> int:
+    """MAV_BATTERY_CHARGE_STATE of a charge 0..1; negative or NaN = unknown. low, critical: the autopilot's limits."""
     if not remaining >= 0:
         return int(mav.MAV_BATTERY_CHARGE_STATE_UNDEFINED)
-    if remaining < EMERGENCY:
+    if remaining < min(EMERGENCY, critical):
         return int(mav.MAV_BATTERY_CHARGE_STATE_EMERGENCY)
-    if remaining < CRITICAL:
+    if remaining < critical:
         return int(mav.MAV_BATTERY_CHARGE_STATE_CRITICAL)
-    return int(mav.MAV_BATTERY_CHARGE_STATE_LOW if remaining < LOW else mav.MAV_BATTERY_CHARGE_STATE_OK)
+    return int(mav.MAV_BATTERY_CHARGE_STATE_LOW if remaining < low else mav.MAV_BATTERY_CHARGE_STATE_OK)
 
 
 def _gps_raw(facts: Facts, latest: Latest, t: float) -> Message:

@@ -7,10 +7,11 @@ from schemas.messages import Event
 from services.autopilot.mavlink import dialect as mav
 from services.autopilot.mavlink.actions import ACTIONS, on_set_mode
 from services.autopilot.mavlink.commands import Commands
+from services.autopilot.mavlink.component_metadata import files_of
 from services.autopilot.mavlink.data_streams import set_rates
 from services.autopilot.mavlink.endpoint import Peer
 from services.autopilot.mavlink.facts import Facts
-from services.autopilot.mavlink.ftp import on_ftp
+from services.autopilot.mavlink.ftp import FileServer
 from services.autopilot.mavlink.guided import GUIDED
 from services.autopilot.mavlink.health import health
 from services.autopilot.mavlink.identity import greeting
@@ -18,6 +19,7 @@ from services.autopilot.mavlink.line import Line, Sender
 from services.autopilot.mavlink.manual import ByHand
 from services.autopilot.mavlink.missions import Missions
 from services.autopilot.mavlink.orders import ORDERS, on_set_home_position, on_set_origin
+from services.autopilot.mavlink.parameter_store import Store
 from services.autopilot.mavlink.parameters import Parameters
 from services.autopilot.mavlink.queries import Queries
 from services.autopilot.mavlink.setpoints import Setpoints
@@ -34,10 +36,12 @@ ON_CHANGE = (
 
 
 class VehicleLink:
-    def __init__(self, facts: Facts) -> None:
+    def __init__(self, facts: Facts, store: Store) -> None:
         self.line = Line(facts)
         self.schedule = Schedule({number: stream.hz for number, stream in STREAMS.items()})
-        self._parameters = Parameters(self.line)
+        self._parameters = Parameters(self.line, store)
+        self.line.files = files_of(facts, self._parameters.table)
+        self._ftp = FileServer(self.line, self.line.files)
         self._missions = Missions(self.line)
         self._by_hand = ByHand(self.line)
         self._setpoints = Setpoints(self.line)
@@ -49,7 +53,10 @@ class VehicleLink:
         self._complaints: tuple[str, ...] = ()
 
     def _all_handlers(self) -> dict[int, Handler]:
-        line, commands = self.line, Commands(self.line, {**ACTIONS, **GUIDED, **ORDERS, **Queries(self.schedule).handlers()})
+        line, commands = (
+            self.line,
+            Commands(self.line, {**ACTIONS, **GUIDED, **ORDERS, **Queries(self.schedule).handlers(), **self._parameters.commands()}),
+        )
         parameters, missions = self._parameters, self._missions
         return {
             mav.MAVLINK_MSG_ID_COMMAND_LONG: commands.on_long,
@@ -70,7 +77,7 @@ class VehicleLink:
             mav.MAVLINK_MSG_ID_MISSION_CLEAR_ALL: missions.on_clear,
             mav.MAVLINK_MSG_ID_MISSION_WRITE_PARTIAL_LIST: missions.on_write_partial,
             mav.MAVLINK_MSG_ID_MISSION_SET_CURRENT: missions.on_set_current,
-            mav.MAVLINK_MSG_ID_FILE_TRANSFER_PROTOCOL: lambda m, sender: on_ftp(line, m, sender),
+            mav.MAVLINK_MSG_ID_FILE_TRANSFER_PROTOCOL: self._ftp.on_ftp,
             mav.MAVLINK_MSG_ID_REQUEST_DATA_STREAM: lambda m, sender: set_rates(self.schedule, m, sender.peer),
             **self._by_hand.handlers(),
             **self._setpoints.handlers(),
@@ -88,6 +95,8 @@ class VehicleLink:
     def greet(self, peer: Peer) -> None:
         """Somebody is new there: what this vehicle is, and why it should not arm."""
         self.line.text(mav.MAV_SEVERITY_INFO, greeting(self.line.facts), peer)
+        if self._parameters.note:
+            self.line.text(mav.MAV_SEVERITY_WARNING, self._parameters.note, peer)
         for complaint in self._complaints:
             self.line.text(mav.MAV_SEVERITY_WARNING, f"PreArm: {complaint}", peer)
 
@@ -99,6 +108,7 @@ class VehicleLink:
         self._missions.tick()
         self._by_hand.tick()
         self._setpoints.tick()
+        self._ftp.tick()
         for event in events:
             line.text(SEVERITY.get(event.severity, mav.MAV_SEVERITY_INFO), event_text(event))
         self._note_changes()

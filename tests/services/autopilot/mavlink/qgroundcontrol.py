@@ -4,17 +4,13 @@ After ``Vehicle/InitialConnectStateMachine.cc``, ``FactSystem/ParameterManager.c
 setup checks of ``AutoPilotPlugins/PX4`` in QGroundControl's master of May 2026.
 """
 
-import struct
-
 from services.autopilot.mavlink import dialect as mav
+from tests.services.autopilot.mavlink.qgc_parameters import ParameterManager
 from tests.services.autopilot.mavlink.rig import GCS, long, of
 
-ACK_WAIT, MESSAGE_WAIT, PARAM_WAIT, GAP_WAIT, PLAN_WAIT, ITEM_WAIT = 1.2, 1.0, 5.0, 3.0, 1.5, 0.25  # s
-BATCH = 10  # missing parameters asked for at once
+ACK_WAIT, MESSAGE_WAIT, PLAN_WAIT, ITEM_WAIT = 1.2, 1.0, 1.5, 0.25  # s
 TRIES = 3
 BUTTON_MODES = {50593792: "Hold", 67371008: "Mission", 84148224: "Return", 33816576: "Takeoff", 100925440: "Land"}
-NO_PARAMETERS = "Vehicle did not respond to request for parameters"
-SOME_PARAMETERS = "unable to retrieve the full set of parameters from vehicle"
 SETUP = "One or more vehicle components require setup prior to flight"
 MISSING = "Parameters are missing from firmware"
 PLAN = "Mission transfer failed"
@@ -24,15 +20,15 @@ NO_HOME = "Unable to change altitude, home position unknown"
 READ_AT_A_CLICK = ("RTL_RETURN_ALT", "COM_FLTMODE1", "GF_ACTION", "BAT_LOW_THR", "NAV_RCL_ACT", "MAV_SYS_ID", "COM_RC_LOSS_T")
 
 
-class QGroundControl:
+class QGroundControl(ParameterManager):
     """Connects to one vehicle of a rig; ``spoil`` may change or swallow what the vehicle says."""
 
     def __init__(self, rig, system, spoil=lambda message: message):
+        super().__init__()
         self.rig = rig
         self.system = system
         self.complaints = []
         self.modes = {}
-        self.parameters = {}
         self.plan = []
         self._spoil = spoil
         self._heard = []
@@ -47,9 +43,8 @@ class QGroundControl:
             return self.rig.t - start
         self._version()
         self._modes()
-        for optional in (397, 395):
-            self._request(optional, None)
-        self._parameters()
+        self._download_metadata()
+        self._download_parameters()
         self._setup_check(beat)
         self._download_plan()
         self._await("HOME_POSITION", 2.1) or self.complaints.append(NO_HOME)
@@ -105,38 +100,6 @@ class QGroundControl:
             total, index = mode.number_modes, mode.mode_index + 1
         self.complaints += [f"button {name} sets an empty mode" for word, name in BUTTON_MODES.items() if word not in self.modes]
 
-    def _parameters(self):
-        self.rig.say(mav.MAVLink_param_request_read_message(self.system, 1, b"_HASH_CHECK", -1))
-        self._await("PARAM_VALUE", 1.0, lambda m: m.param_id == "_HASH_CHECK")
-        values = {}
-        for _ in range(5):
-            self.rig.say(mav.MAVLink_param_request_list_message(self.system, 0))
-            if self._collect(values, PARAM_WAIT):
-                break
-        total = next((m.param_count for m in values.values()), None)
-        for _ in range(5):
-            missing = [index for index in range(total or 0) if index not in values]
-            for index in missing[:BATCH]:
-                self.rig.say(mav.MAVLink_param_request_read_message(self.system, 1, b"", index))
-            if not missing:
-                break
-            self._collect(values, GAP_WAIT)
-        if total is None:
-            self.complaints.append(NO_PARAMETERS)
-            return
-        if len(values) < total:
-            self.complaints.append(SOME_PARAMETERS)
-        self.parameters = {m.param_id: _number(m) for m in values.values()}
-
-    def _collect(self, values, seconds):
-        """Takes in parameters until there are all or a while passes without one; whether any came."""
-        any_came = False
-        while m := self._await("PARAM_VALUE", seconds, lambda m: m.param_index != 0xFFFF):
-            values[m.param_index], any_came, seconds = m, True, GAP_WAIT
-            if len(values) == m.param_count:
-                break
-        return any_came
-
     def _setup_check(self, beat):
         p = self.parameters
         if not p:
@@ -170,8 +133,3 @@ class QGroundControl:
             if (answer := self._await(kind, seconds, fits)) is not None:
                 return answer
         return None
-
-
-def _number(message):
-    raw = struct.pack("<f", message.param_value)
-    return struct.unpack("<i" if message.param_type == mav.MAV_PARAM_TYPE_INT32 else "<f", raw)[0]

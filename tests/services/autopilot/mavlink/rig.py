@@ -1,16 +1,36 @@
 """The MAVLink service on a link in memory, with vehicles that answer its requests, and a ground station beside it."""
 
+import json
+
 import numpy as np
 
 from schemas.convert import quaternion, stamp
-from schemas.messages import Circle, Clock, Gnss, Kind, Mission, MissionProgress, Mode, NavState, Reply, Vector3, VehicleStatus
+from schemas.messages import (
+    Circle,
+    Clock,
+    Gnss,
+    Kind,
+    Mission,
+    MissionProgress,
+    Mode,
+    NavState,
+    ParamRequest,
+    Reply,
+    Vector3,
+    VehicleStatus,
+)
+from services.autopilot.air.params import FIXED, AirParams
+from services.autopilot.ground.params import GroundAutopilotParams
 from services.autopilot.mavlink import dialect as mav
 from services.autopilot.mavlink.facts import Facts
+from services.autopilot.mavlink.parameter_store import Unreadable
 from services.autopilot.mavlink.service import MavlinkService
+from services.autopilot.told_params import ToldParams
 from uvf.maths.geodesy import LocalTangent
 from uvf.maths.rotations import from_euler
+from uvf.runtime.param_server import ParamServer
 from uvf.runtime.params import convert
-from uvf.runtime.service import Answer
+from uvf.runtime.service import Answer, Service
 from uvf.runtime.vehicle_file import VehicleFile
 
 PLANE, ROVER = 1, 2
@@ -55,19 +75,38 @@ _ROVER_FILE = {
         "motor": {"stall_torque": 1, "no_load_speed": 100},
     },
 }
-_PLANE_NUMBERS = {
-    "system_id": 1.0,
-    "trim_airspeed": 25.0,
-    "hold_radius": 90.0,
-    "min_altitude": 30.0,
-    "return_height": 40.0,
-    "link_timeout": 5.0,
-    "link_action": 2.0,
-    "battery_low": 0.15,
-    "battery_critical": 0.07,
-}
-PLANE_FACTS = Facts("plane", PLANE, convert(_PLANE_FILE, VehicleFile, "test"), ORIGIN, _PLANE_NUMBERS)
-ROVER_FACTS = Facts("rover", ROVER, convert(_ROVER_FILE, VehicleFile, "test"), ORIGIN, {"system_id": 2.0})
+_PLANE_PARAMS = AirParams(trim_airspeed=25.0, hold_radius=90.0, return_altitude=40.0)
+PLANE_FACTS = Facts("plane", PLANE, convert(_PLANE_FILE, VehicleFile, "test"), ORIGIN, _PLANE_PARAMS, FIXED)
+ROVER_FACTS = Facts("rover", ROVER, convert(_ROVER_FILE, VehicleFile, "test"), ORIGIN, GroundAutopilotParams())
+
+
+class Shelf:
+    """Remembers settings as a file does."""
+
+    def __init__(self, **settings):
+        self.settings = settings
+        self.trouble = None
+
+    def load(self):
+        if isinstance(self.trouble, Unreadable):
+            raise self.trouble
+        return dict(self.settings)
+
+    def save(self, settings):
+        if isinstance(self.trouble, OSError):
+            raise self.trouble
+        self.settings = dict(settings)
+
+
+def shelves():
+    """One for each vehicle."""
+    return {"plane": Shelf(), "rover": Shelf()}
+
+
+class Autopilot(Service):
+    """Only its parameters."""
+
+    name = "autopilot"
 
 
 class MemoryLink:
@@ -113,6 +152,24 @@ class Vehicle:
         self.mission = Mission()
         self.progress = MissionProgress(reached=-1)
         self._hold()
+        self.begin(GroundAutopilotParams() if kind == Kind.KIND_GROUND else _PLANE_PARAMS)
+
+    def begin(self, params):
+        """The autopilot is started with its file's parameters."""
+        self.autopilot = Autopilot()
+        self.autopilot.params, self.autopilot.fixed_params = params, FIXED
+        self._told = ToldParams()
+        self.params = None
+        self.tell()
+
+    def tell(self):
+        self.params = self._told.news(0.0, self.autopilot.params).get("params", self.params)
+
+    def set(self, name, value):
+        """By the page, or anybody else."""
+        reply = ParamServer(self.autopilot).reply(ParamRequest(name=name, value=json.dumps(value)))
+        self.tell()
+        return reply
 
     def _hold(self):
         """Aircraft circle in some modes."""
@@ -125,6 +182,8 @@ class Vehicle:
         self.asked.append((name, request))
         if name in self.refuse:
             return Reply(accepted=False, reason=self.refuse[name])
+        if name.endswith("_param"):
+            return self.set(request.name, json.loads(request.value))
         if name == "arm":
             self.status.armed = request.arm
         elif name == "set_mode":
@@ -150,9 +209,10 @@ class Rig:
     SENSED = ("imu", "air_data", "surface_command", "wheel_command", "targets", "quality", "planning")
     CALLS = tuple(MavlinkService.calls)
 
-    def __init__(self, answers=True):
+    def __init__(self, answers=True, shelf=None):
         self.link = MemoryLink()
-        self.service = MavlinkService([PLANE_FACTS, ROVER_FACTS], self.link)
+        self.shelf = shelf or Shelf()
+        self.restart()
         self.plane = Vehicle(Kind.KIND_FIXED_WING, (100.0, 200.0, 80.0))
         self.rover = Vehicle(Kind.KIND_GROUND, (1.0, 2.0, 0.0))
         self.vehicles = {"plane": self.plane, "rover": self.rover}
@@ -171,6 +231,10 @@ class Rig:
     @property
     def t(self):
         return self.n * DT
+
+    def restart(self):
+        """The process begins anew; the vehicles go on."""
+        self.service = MavlinkService([PLANE_FACTS, ROVER_FACTS], self.link, {**shelves(), "plane": self.shelf})
 
     def say(self, message, system=255, component=190, peer=GCS):
         self._mav.srcSystem, self._mav.srcComponent = system, component
@@ -207,6 +271,7 @@ class Rig:
             gnss={"plane": self.plane.gnss} if "plane" in live else {},
             battery={n: v.battery for n, v in live.items() if v.battery is not None},
             **{what: {n: v.sensed[what] for n, v in live.items() if what in v.sensed} for what in self.SENSED},
+            params={n: v.params for n, v in live.items()},
             events=events,
             clock=self.clock,
             **answers,

@@ -25,7 +25,7 @@ def test_parameters_get_the_numbers_of_the_vehicles_own_files():
     for facts in build_module.facts_of(site):
         values = {p.name for p in parameters_of(facts)}
         assert ("NAV_LOITER_RAD" in values) == (facts.file.kind == "fixed_wing")
-        assert facts.numbers["system_id"] == facts.system_id
+        assert {p.value for p in parameters_of(facts) if p.name == "MAV_SYS_ID"} == {facts.system_id}
 
 
 @pytest.fixture
@@ -71,5 +71,5 @@ def test_the_environment_chooses_identity_and_whether_signing_is_required(opened
         monkeypatch.setenv("UVF_MAVLINK_IDENTITY", identity)
         monkeypatch.setenv("UVF_MAVLINK_REQUIRE_SIGNING", required)
         build(site)[0].make()
-    chosen = [({f.generic for f in facts}, signing._required) for facts, _, signing in made]
+    chosen = [({f.generic for f in facts}, signing._required) for facts, _, _, signing in made]
     assert chosen == [({False}, False), ({True}, True)]

@@ -213,7 +213,7 @@ def test_a_requested_message_follows_its_acknowledgement():
     kinds = [m.get_type() for m in rig.run() if m.get_srcSystem() == PLANE]
     for name in ("AUTOPILOT_VERSION", "PROTOCOL_VERSION", "HOME_POSITION", "EXTENDED_SYS_STATE"):
         assert kinds[kinds.index(name) - 1] == "COMMAND_ACK"
-    rig.say(long(512, 397.0))
+    rig.say(long(512, 395.0))
     assert acks(rig.run()) == [(512, UNSUPPORTED)]
 
 

@@ -8,6 +8,7 @@ import pytest
 from schemas.messages import Mission, MissionItem, Vector3
 from services.autopilot.mavlink import dialect as mav
 from tests.services.autopilot.mavlink import qgroundcontrol as qgc
+from tests.services.autopilot.mavlink.qgc_parameters import NO_PARAMETERS, SOME_PARAMETERS
 from tests.services.autopilot.mavlink.qgroundcontrol import QGroundControl
 from tests.services.autopilot.mavlink.rig import PLANE, ROVER, Rig
 
@@ -22,7 +23,7 @@ def connect(system=PLANE, spoil=lambda message: message):
 @pytest.mark.parametrize("system", [PLANE, ROVER])
 def test_it_connects_within_five_seconds_and_without_a_complaint(system):
     station, seconds = connect(system)
-    assert station.complaints == []
+    assert station.complaints == station.notes == []
     assert seconds < 5.0
     assert len(station.plan) == (3 if system == PLANE else 0)
 
@@ -60,8 +61,8 @@ def without_mode(message):
     ("spoil", "complaint"),
     [
         (without("HEARTBEAT"), "no vehicle"),
-        (without("PARAM_VALUE"), qgc.NO_PARAMETERS),
-        (without_parameter("BAT_LOW_THR"), qgc.SOME_PARAMETERS),
+        (without("PARAM_VALUE"), NO_PARAMETERS),
+        (without_parameter("BAT_LOW_THR"), SOME_PARAMETERS),
         (without("MISSION_COUNT"), qgc.PLAN),
         (without("MISSION_ITEM_INT"), qgc.PLAN),
         (without("HOME_POSITION"), qgc.NO_HOME),
@@ -106,7 +107,7 @@ def test_a_fifth_of_all_packets_lost_either_way_costs_time_but_no_complaint(seed
     rig.say = lambda message, **where: lost("up", message) or say(message, **where)
     rig.plane.mission = Mission(id=3, items=[MissionItem(position=Vector3(x=x, y=0.0, z=60.0)) for x in (0.0, 100.0, 200.0)])
     station = QGroundControl(rig, PLANE, lambda message: None if lost("down", message) else message)
-    assert station.connect() < 30.0
+    assert station.connect() < 40.0  # some 20 s as a rule: QGroundControl's own limits of 1 to 5 s, once for each answer that is lost
     assert station.complaints == []
     assert len(station.plan) == 3
 

@@ -8,14 +8,14 @@ from services.autopilot.mavlink import dialect as mav
 from services.autopilot.mavlink.identity import VERSION
 from services.autopilot.mavlink.parameters import HASH
 from services.autopilot.mavlink.service import MavlinkService
-from tests.services.autopilot.mavlink.rig import PLANE, PLANE_FACTS, ROVER, ROVER_FACTS, Rig, acks, long, of, texts
+from tests.services.autopilot.mavlink.rig import PLANE, PLANE_FACTS, ROVER, ROVER_FACTS, Rig, acks, long, of, shelves, texts
 
 BEAT = mav.MAVLink_heartbeat_message(mav.MAV_TYPE_GCS, mav.MAV_AUTOPILOT_INVALID, 0, 0, 0, 3)
 
 
 def rig_as(generic):
     rig = Rig()
-    rig.service = MavlinkService([replace(facts, generic=generic) for facts in (PLANE_FACTS, ROVER_FACTS)], rig.link)
+    rig.service = MavlinkService([replace(facts, generic=generic) for facts in (PLANE_FACTS, ROVER_FACTS)], rig.link, shelves())
     rig.run()
     return rig
 

@@ -11,7 +11,7 @@ from services.autopilot.mavlink.build import open_keys
 from services.autopilot.mavlink.key_store import KeyStore
 from services.autopilot.mavlink.service import MavlinkService
 from services.autopilot.mavlink.signing import BEGINNING, PER_SECOND, Signing
-from tests.services.autopilot.mavlink.rig import GCS, OTHER, PLANE, PLANE_FACTS, ROVER_FACTS, Rig, acks, long, of, texts
+from tests.services.autopilot.mavlink.rig import GCS, OTHER, PLANE, PLANE_FACTS, ROVER_FACTS, Rig, acks, long, of, shelves, texts
 
 KEY = hashlib.sha256(b"open sesame").digest()
 FAR = ("192.168.1.20", 14550)
@@ -48,7 +48,7 @@ class Signer:
 
 def rig_with(required=False, store=None, started=NOW):
     rig = Rig()
-    rig.service = MavlinkService([PLANE_FACTS, ROVER_FACTS], rig.link, Signing(store, started, required))
+    rig.service = MavlinkService([PLANE_FACTS, ROVER_FACTS], rig.link, shelves(), Signing(store, started, required))
     rig.link.listening.append(FAR)
     rig.run()
     return rig

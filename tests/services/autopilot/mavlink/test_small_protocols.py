@@ -1,12 +1,9 @@
 """Texts in chunks, sticks, file transfer, ping, time, logs: one small protocol each."""
 
-import struct
-
 import pytest
 
 from schemas.messages import Mode
 from services.autopilot.mavlink import dialect as mav
-from services.autopilot.mavlink.ftp import HEADER, PAYLOAD_BYTES
 from services.autopilot.mavlink.statustext import TextLimiter, chunks
 from services.autopilot.mavlink.streams import Schedule
 from tests.services.autopilot.mavlink.rig import GCS, OTHER, PLANE, ROVER, Rig, of, texts
@@ -109,19 +106,6 @@ def test_sticks_at_rest_do_not_disturb_a_mission():
     assert drive(rig) == {}
 
 
-@pytest.mark.parametrize(
-    ("opcode", "answer", "error"), [(4, 129, 10), (3, 129, 10), (5, 129, 4), (6, 129, 9), (13, 129, 9), (99, 129, 7), (2, 128, None)]
-)
-def test_file_transfer_is_answered_at_once_that_there_is_nothing(opcode, answer, error):
-    rig = Rig()
-    payload = HEADER.pack(7, 1, opcode, 0, 0, 0, 0) + b"@PARAM/param.pck"
-    rig.say(mav.MAVLink_file_transfer_protocol_message(0, PLANE, 1, payload.ljust(PAYLOAD_BYTES, b"\0")))
-    (reply,) = of(rig.run(0.04), "FILE_TRANSFER_PROTOCOL")
-    seq, _, kind, size, asked, *_ = HEADER.unpack_from(bytes(reply.payload))
-    assert (seq, kind, asked) == (8, answer, opcode)
-    assert (size, reply.payload[HEADER.size]) == ((1, error) if error else (0, 0))
-
-
 def test_ping_timesync_and_log_list_are_answered():
     rig = Rig()
     rig.say(mav.MAVLink_ping_message(123, 4, 0, 0))
@@ -137,7 +121,3 @@ def test_an_answered_ping_is_not_answered_again():
     rig = Rig()
     rig.say(mav.MAVLink_ping_message(123, 4, PLANE, 1))
     assert not of(rig.run(), "PING")
-
-
-def test_the_header_of_file_transfer_is_twelve_bytes():
-    assert HEADER.size == struct.calcsize("<HBBBBBBI") == 12

@@ -142,8 +142,8 @@ def test_battery():
 
 
 def test_charge_states_fall_with_the_charge():
-    assert [charge_state(r) for r in (0.9, 0.15, 0.14, 0.06, 0.01)] == [1, 1, 2, 3, 4]
-    assert charge_state(-1.0) == charge_state(math.nan) == 0
+    assert [charge_state(r, 0.15, 0.07) for r in (0.9, 0.15, 0.14, 0.06, 0.01)] == [1, 1, 2, 3, 4]
+    assert charge_state(-1.0, 0.15, 0.07) == charge_state(math.nan, 0.15, 0.07) == 0
 
 
 def test_distance_and_bearing_to_the_item_flown():
@@ -212,7 +212,7 @@ def test_version_says_simulated_level_and_own_number():
     assert plane.middleware_sw_version > 0
     assert plane.flight_sw_version == 1 << 24 | 16 << 16
     assert plane.uid != rover.uid and bytes(plane.uid2) != bytes(rover.uid2)
-    for capability in (mav.MAV_PROTOCOL_CAPABILITY_MISSION_FENCE, mav.MAV_PROTOCOL_CAPABILITY_FTP):
+    for capability in (mav.MAV_PROTOCOL_CAPABILITY_MISSION_FENCE,):
         assert not plane.capabilities & capability
 
 

@@ -1,0 +1,71 @@
+"""Component metadata: files that tell a ground station what each parameter means, offered over MAVLink FTP.
+
+After the component metadata protocol of the MAVLink guide; forms as in ``general.schema.json`` and ``parameter.schema.json`` of
+mavlink/mavlink. Without them QGroundControl would show PX4's own texts.
+"""
+
+import json
+import lzma
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import msgspec
+
+from services.autopilot.mavlink import dialect as mav
+from services.autopilot.mavlink.facts import Facts
+from services.autopilot.mavlink.identity import VERSION
+from services.autopilot.mavlink.parameter_table import Parameter
+from services.autopilot.mavlink.parameter_values import crc32
+
+GENERAL = "/etc/extras/general.json"
+PARAMETERS = "/etc/extras/parameters.json.xz"
+FORMAT = 1  # of both files: the only one that QGroundControl reads
+COARSE = 30.0  # numbers that become so large need few decimals
+
+
+def files_of(facts: Facts, table: Sequence[Parameter]) -> dict[str, bytes]:
+    """Path -> content; the same for the same vehicle."""
+    own = msgspec.to_builtins(facts.params)
+    told = {"version": FORMAT, "parameters": [described(p, own) for p in table]}
+    # Small decoders know CRC-32 alone as the check of an xz stream.
+    parameters = lzma.compress(_json(told), check=lzma.CHECK_CRC32)
+    types = [{"type": mav.COMP_METADATA_TYPE_PARAMETER, "uri": f"mftp://{PARAMETERS}", "fileCrc": crc32(parameters)}]
+    general = {
+        "version": FORMAT,
+        "vendorName": "UVF",
+        "modelName": facts.name,
+        "firmwareVersion": ".".join(map(str, VERSION)),
+        "metadataTypes": types,
+    }
+    return {GENERAL: _json(general), PARAMETERS: parameters}
+
+
+def described(p: Parameter, own: Mapping[str, Any]) -> dict[str, Any]:
+    """One entry; its default is what the vehicle's file says."""
+    entry: dict[str, Any] = {
+        "name": p.name,
+        "type": "Int32" if p.is_int else "Float",
+        "shortDesc": p.about[:1].upper() + p.about[1:],
+        "group": p.group,
+        "category": "Standard",
+        "default": p.number(own),
+    }
+    if p.fixed:
+        entry |= {"longDesc": f"Fixed in this simulator: {p.fixed}.", "readOnly": True}
+    elif p.cases:
+        entry["values"] = [{"value": number, "description": case.says} for number, case in p.cases.items()]
+    else:
+        entry |= {"min": p.low, "max": p.high}
+    if p.unit:
+        entry["units"] = p.unit
+    if not p.is_int:
+        entry["decimalPlaces"] = 2 if p.high > COARSE else 5
+    return entry
+
+
+def component_metadata(files: Mapping[str, bytes], boot_ms: int) -> mav.MAVLink_component_metadata_message:
+    return mav.MAVLink_component_metadata_message(boot_ms, crc32(files[GENERAL]), f"mftp://{GENERAL}".encode())
+
+
+def _json(data: object) -> bytes:
+    return json.dumps(data, separators=(",", ":")).encode()

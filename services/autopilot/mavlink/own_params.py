@@ -1,0 +1,49 @@
+"""The autopilot's own parameters as its type describes them: limits, units, choices, words."""
+
+from collections.abc import Mapping, Set
+from dataclasses import dataclass
+from typing import Annotated, Any, Literal, get_args, get_origin, get_type_hints
+
+from msgspec import Meta
+
+from services.autopilot.air.failsafe_params import FailsafeParams
+from uvf.runtime.service import Params
+
+GROUND_FAILSAFES = ("link_timeout", "link_action", "battery_low", "battery_critical", "low_action", "critical_action")
+READ_ONCE = "it is read only when the autopilot starts; the vehicle's file sets it"
+
+
+@dataclass(frozen=True)
+class Own:
+    """choices: of a parameter that is a word; else low..high are the limits of a number."""
+
+    name: str
+    about: str
+    group: str
+    unit: str = ""
+    low: float = -float("inf")
+    high: float = float("inf")
+    choices: tuple[str, ...] = ()
+    fixed: str = ""
+
+
+def own_params(params: Params, fixed: Set[str]) -> dict[str, Own]:
+    """Of a set of parameters, by name. Raises TypeError for one that is neither a number within limits nor a choice."""
+    hints = get_type_hints(type(params), include_extras=True)
+    return {name: _described(name, hints[name], READ_ONCE if name in fixed else "") for name in params.__struct_fields__}
+
+
+def _described(name: str, hint: Any, fixed: str) -> Own:
+    meta: Meta = get_args(hint)[1] if get_origin(hint) is Annotated else Meta()
+    kind = get_args(hint)[0] if get_origin(hint) is Annotated else hint
+    about, group = meta.description or "", _group(name)
+    if get_origin(kind) is Literal:
+        return Own(name, about, group, choices=get_args(kind), fixed=fixed)
+    if kind is float and meta.ge is not None and meta.le is not None:
+        extra: Mapping[str, str] = meta.extra_json_schema or {}
+        return Own(name, about, group, extra.get("unit", ""), float(meta.ge), float(meta.le), fixed=fixed)
+    raise TypeError(f"{name}: {hint} cannot be offered over MAVLink")
+
+
+def _group(name: str) -> str:
+    return "Failsafes" if name in FailsafeParams.__struct_fields__ or name in GROUND_FAILSAFES else "Autopilot"
