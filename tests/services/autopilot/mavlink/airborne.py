@@ -8,7 +8,7 @@ from services.autopilot.mavlink import dialect as mav
 from services.autopilot.mavlink.build import facts_of
 from services.autopilot.mavlink.service import MavlinkService
 from services.sim_air.build import build as build_sim
-from tests.services.autopilot.mavlink.rig import GCS, MemoryLink
+from tests.services.autopilot.mavlink.rig import GCS, MemoryLink, Shelf
 from uvf.runtime.lockstep import Lockstep
 from uvf.runtime.mission_file import Job
 from uvf.runtime.shell import Shell
@@ -34,7 +34,7 @@ class Airborne:
         site = site or field()
         self.link = MemoryLink()
         self.run = Lockstep([*build_sim(site), *hosts(site)])
-        service = MavlinkService(facts_of(site), self.link)
+        service = MavlinkService(facts_of(site), self.link, {name: Shelf() for name in site.members})
         self._shell = Shell(Host(MavlinkService, lambda: service, writes_for=tuple(site.members)), self.run.bus)
         self.heard = []
         """(t, message) to the ground station."""
