@@ -7,6 +7,7 @@ says to one station. ``bad packets/s``: so many are read and refused in a second
 
 import random
 import socket
+import tempfile
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -23,6 +24,7 @@ from services.autopilot.mavlink.build import facts_of
 from services.autopilot.mavlink.codec import Codec
 from services.autopilot.mavlink.endpoint import UdpLink
 from services.autopilot.mavlink.facts import Facts
+from services.autopilot.mavlink.parameter_store import FileStore
 from services.autopilot.mavlink.service import MavlinkService
 from uvf.runtime.bus import LocalBus, Publisher
 from uvf.runtime.clock import NS
@@ -97,7 +99,9 @@ class Station:
 def load(data: Path | None) -> dict[str, dict[str, float]]:
     fleet, bus, stations = five(), LocalBus(), [Station(), Station()]
     link = UdpLink([station.sock.getsockname() for station in stations])
-    shell = Shell(Host(MavlinkService, lambda: MavlinkService(fleet, link)), bus)
+    nowhere = FileStore(Path(tempfile.gettempdir()) / "uvf-no-settings.json")  # nothing is set, so it is never written
+    stores = {facts.name: nowhere for facts in fleet}
+    shell = Shell(Host(MavlinkService, lambda: MavlinkService(fleet, link, stores)), bus)
     world, cpu = World(bus, fleet), 0.0
     for n in range(1, round((WARM_UP + SECONDS) / DT) + 1):
         if n == round(WARM_UP / DT):
