@@ -9,7 +9,7 @@ from schemas.convert import quaternion
 from schemas.messages import AirData, Battery, EstimateQuality, Imu, Mode, SurfaceCommand, Targets, Vector3
 from services.autopilot.mavlink import dialect as mav
 from services.autopilot.mavlink.service import MavlinkService
-from tests.services.autopilot.mavlink.rig import ORIGIN, PLANE, PLANE_FACTS, Rig, of
+from tests.services.autopilot.mavlink.rig import ORIGIN, PLANE, PLANE_FACTS, Rig, of, shelves
 from uvf.maths import atmosphere
 from uvf.maths.rotations import from_euler
 
@@ -112,7 +112,7 @@ def test_what_is_left_of_the_battery_never_rises_and_its_state_falls_with_it():
 
 def test_the_time_of_day_goes_by_on_the_wall():
     rig = Rig()
-    rig.service = MavlinkService([replace(PLANE_FACTS, started=1.8e9)], rig.link)
+    rig.service = MavlinkService([replace(PLANE_FACTS, started=1.8e9)], rig.link, shelves())
     rig.vehicles = {"plane": rig.plane}
     m = of(rig.run(2.5), "SYSTEM_TIME", PLANE)[-1]
     assert m.time_unix_usec == pytest.approx(1.8e15 + m.time_boot_ms * 1e3, abs=1000) and m.time_boot_ms > 1000
