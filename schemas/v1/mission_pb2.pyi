@@ -9,7 +9,7 @@ from typing import ClassVar as _ClassVar, Iterable as _Iterable, Mapping as _Map
 DESCRIPTOR: _descriptor.FileDescriptor
 
 class MissionItem(_message.Message):
-    __slots__ = ("kind", "position", "acceptance_radius", "hold", "radius", "turns", "speed", "jump_to", "repeat", "origin", "course", "to_altitude", "distance", "leaves_ahead")
+    __slots__ = ("kind", "position", "acceptance_radius", "hold", "radius", "turns", "speed", "jump_to", "repeat", "origin", "course", "to_altitude", "distance")
     class Kind(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
         __slots__ = ()
         WAYPOINT: _ClassVar[MissionItem.Kind]
@@ -21,8 +21,6 @@ class MissionItem(_message.Message):
         LAND: _ClassVar[MissionItem.Kind]
         TRIGGER: _ClassVar[MissionItem.Kind]
         TRIGGER_DISTANCE: _ClassVar[MissionItem.Kind]
-        LAND_START: _ClassVar[MissionItem.Kind]
-        SET_HOME: _ClassVar[MissionItem.Kind]
     WAYPOINT: MissionItem.Kind
     ORBIT: MissionItem.Kind
     RETURN: MissionItem.Kind
@@ -32,8 +30,6 @@ class MissionItem(_message.Message):
     LAND: MissionItem.Kind
     TRIGGER: MissionItem.Kind
     TRIGGER_DISTANCE: MissionItem.Kind
-    LAND_START: MissionItem.Kind
-    SET_HOME: MissionItem.Kind
     KIND_FIELD_NUMBER: _ClassVar[int]
     POSITION_FIELD_NUMBER: _ClassVar[int]
     ACCEPTANCE_RADIUS_FIELD_NUMBER: _ClassVar[int]
@@ -47,7 +43,6 @@ class MissionItem(_message.Message):
     COURSE_FIELD_NUMBER: _ClassVar[int]
     TO_ALTITUDE_FIELD_NUMBER: _ClassVar[int]
     DISTANCE_FIELD_NUMBER: _ClassVar[int]
-    LEAVES_AHEAD_FIELD_NUMBER: _ClassVar[int]
     kind: MissionItem.Kind
     position: _Vector3_pb2.Vector3
     acceptance_radius: float
@@ -61,8 +56,7 @@ class MissionItem(_message.Message):
     course: float
     to_altitude: bool
     distance: float
-    leaves_ahead: bool
-    def __init__(self, kind: _Optional[_Union[MissionItem.Kind, str]] = ..., position: _Optional[_Union[_Vector3_pb2.Vector3, _Mapping]] = ..., acceptance_radius: _Optional[float] = ..., hold: _Optional[float] = ..., radius: _Optional[float] = ..., turns: _Optional[float] = ..., speed: _Optional[float] = ..., jump_to: _Optional[int] = ..., repeat: _Optional[int] = ..., origin: _Optional[bytes] = ..., course: _Optional[float] = ..., to_altitude: bool = ..., distance: _Optional[float] = ..., leaves_ahead: bool = ...) -> None: ...
+    def __init__(self, kind: _Optional[_Union[MissionItem.Kind, str]] = ..., position: _Optional[_Union[_Vector3_pb2.Vector3, _Mapping]] = ..., acceptance_radius: _Optional[float] = ..., hold: _Optional[float] = ..., radius: _Optional[float] = ..., turns: _Optional[float] = ..., speed: _Optional[float] = ..., jump_to: _Optional[int] = ..., repeat: _Optional[int] = ..., origin: _Optional[bytes] = ..., course: _Optional[float] = ..., to_altitude: bool = ..., distance: _Optional[float] = ...) -> None: ...
 
 class Mission(_message.Message):
     __slots__ = ("timestamp", "items", "id")

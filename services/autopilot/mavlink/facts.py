@@ -13,6 +13,7 @@ from schemas.messages import (
     Battery,
     Clock,
     EstimateQuality,
+    Fence,
     Gnss,
     Imu,
     Kind,
@@ -21,6 +22,7 @@ from schemas.messages import (
     NavState,
     NavStatus,
     ParamValues,
+    RallyPoints,
     SurfaceCommand,
     Targets,
     Vector3,
@@ -92,6 +94,10 @@ class Latest:
     status: VehicleStatus | None = None
     mission: Mission | None = None
     progress: MissionProgress | None = None
+    fence: Fence | None = None
+    rally: RallyPoints | None = None
+    breached_at: float | None = None
+    """s, wall: when the vehicle has left its fence last; None while it never has."""
     gnss: Gnss | None = None
     battery: Battery | None = None
     clock: Clock | None = None

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from schemas.messages import Gnss
 from services.autopilot.mavlink import dialect as mav
 from services.autopilot.mavlink.facts import Facts, Latest
+from uvf.runtime.fence_file import fencing
 
 _IMU = mav.MAV_SYS_STATUS_SENSOR_3D_GYRO | mav.MAV_SYS_STATUS_SENSOR_3D_ACCEL | mav.MAV_SYS_STATUS_SENSOR_3D_MAG
 _AIR_DATA = mav.MAV_SYS_STATUS_SENSOR_ABSOLUTE_PRESSURE | mav.MAV_SYS_STATUS_SENSOR_DIFFERENTIAL_PRESSURE
@@ -34,10 +35,14 @@ def health(facts: Facts, latest: Latest) -> Health:
     present |= _AIR_DATA if facts.sensors.air_data else 0
     present |= mav.MAV_SYS_STATUS_SENSOR_GPS
     present |= mav.MAV_SYS_STATUS_SENSOR_BATTERY if latest.battery is not None else 0
+    fenced = latest.fence is not None and not fencing(latest.fence).is_open
+    present |= mav.MAV_SYS_STATUS_GEOFENCE if fenced else 0
     complaints = _complaints(facts, latest)
     healthy = 0 if latest.is_silent else present
     if complaints:
         healthy &= ~mav.MAV_SYS_STATUS_PREARM_CHECK
+    if latest.status is not None and latest.status.breach:
+        healthy &= ~mav.MAV_SYS_STATUS_GEOFENCE
     if not _knows_where_it_is(facts, latest):
         healthy &= ~mav.MAV_SYS_STATUS_SENSOR_GPS
     return Health(present, healthy, complaints)

@@ -45,9 +45,13 @@ KIND = {
     mav.MAV_CMD_NAV_TAKEOFF: MissionItem.TAKEOFF,
     mav.MAV_CMD_DO_JUMP: MissionItem.JUMP,
     mav.MAV_CMD_DO_CHANGE_SPEED: MissionItem.SPEED,
+    mav.MAV_CMD_DO_LAND_START: MissionItem.JUMP,  # that is never taken: a mark for whoever is told to land
+    mav.MAV_CMD_NAV_DELAY: MissionItem.WAYPOINT,
     **dict.fromkeys(SKIPPED, MissionItem.JUMP),
     **TRIGGERS,
 }
+REFUSED = {mav.MAV_CMD_CONDITION_YAW: "CONDITION_YAW: it points where it goes"}
+"""Commands that change what is flown and that cannot be done."""
 WITH_PLACE = frozenset({MissionItem.WAYPOINT, MissionItem.ORBIT, MissionItem.LAND, MissionItem.TAKEOFF})
 
 
@@ -65,31 +69,38 @@ def is_skipped(command: int, facts: Facts) -> bool:
 
 
 def from_wire(item: mav.MAVLink_mission_item_int_message, facts: Facts, home_z: float) -> MissionItem:
-    """home_z: height of home [m, world]. Raises BadItem, which names the item."""
-    try:
-        return _from_wire(item, facts, home_z)
-    except BadItem as bad:
-        raise BadItem(bad.result, f"item {item.seq}: {bad.reason}") from bad
-
-
-def _from_wire(item: mav.MAVLink_mission_item_int_message, facts: Facts, home_z: float) -> MissionItem:
+    """home_z: height of home [m, world]. Raises BadItem."""
     kind = KIND.get(item.command)
+    if item.command in REFUSED:
+        raise BadItem(mav.MAV_MISSION_UNSUPPORTED, REFUSED[item.command])
     if kind is None:
         raise BadItem(mav.MAV_MISSION_UNSUPPORTED, f"command {item.command} is not supported")
     params = (item.param1, item.param2, item.param3, item.param4)
     if any(math.isinf(v) for v in (*params, item.z)):
         raise BadItem(mav.MAV_MISSION_INVALID, "a parameter is infinite")
-    origin = ORIGIN.pack(item.frame, item.command, item.autocontinue, *params, item.x, item.y, item.z)
-    result = MissionItem(kind=kind, origin=origin)
-    if kind in WITH_PLACE:
-        result.position.CopyFrom(_place(item, facts, home_z))
+    result = MissionItem(kind=kind, origin=packed(item))
+    if kind in WITH_PLACE and item.command != mav.MAV_CMD_NAV_DELAY:
+        result.position.CopyFrom(place_of(item, facts, home_z))
     if is_skipped(item.command, facts) or (item.command == mav.MAV_CMD_DO_CHANGE_SPEED and not item.param2 > 0):
         result.kind = MissionItem.JUMP  # that is never taken
     _fill(result, item.command, tuple(0.0 if math.isnan(p) else p for p in params))
     return result
 
 
-def _place(item: mav.MAVLink_mission_item_int_message, facts: Facts, home_z: float) -> Vector3:
+def packed(item: mav.MAVLink_mission_item_int_message) -> bytes:
+    """As in ``ORIGIN``."""
+    params = (item.param1, item.param2, item.param3, item.param4)
+    return ORIGIN.pack(item.frame, item.command, item.autocontinue, *params, item.x, item.y, item.z)
+
+
+def unpacked(origin: bytes) -> "Body":
+    """As in ``ORIGIN``."""
+    frame, command, autocontinue, p1, p2, p3, p4, x, y, z = ORIGIN.unpack(origin)
+    return frame, command, autocontinue, p1, p2, p3, p4, x, y, z
+
+
+def place_of(item: mav.MAVLink_mission_item_int_message, facts: Facts, home_z: float) -> Vector3:
+    """home_z: height of home [m, world]. Raises BadItem."""
     if item.frame not in RELATIVE + ABSOLUTE:
         raise BadItem(mav.MAV_MISSION_UNSUPPORTED_FRAME, f"frame {item.frame} is not supported")
     if abs(item.x) > 900_000_000:
@@ -104,7 +115,7 @@ def _place(item: mav.MAVLink_mission_item_int_message, facts: Facts, home_z: flo
 
 def _fill(item: MissionItem, command: int, p: tuple[float, ...]) -> None:
     """What the parameters ``p`` (from param1 on) mean for the command. Raises BadItem."""
-    if command in (mav.MAV_CMD_NAV_WAYPOINT, mav.MAV_CMD_NAV_LOITER_TIME):
+    if command in (mav.MAV_CMD_NAV_WAYPOINT, mav.MAV_CMD_NAV_LOITER_TIME, mav.MAV_CMD_NAV_DELAY):
         item.hold = _not_negative(p[0], mav.MAV_MISSION_INVALID_PARAM1, "hold time")
     if command == mav.MAV_CMD_NAV_WAYPOINT:
         item.acceptance_radius = _not_negative(p[1], mav.MAV_MISSION_INVALID_PARAM2, "acceptance radius")
@@ -138,8 +149,14 @@ def _count(value: float) -> int:
 
 
 def check_whole(items: list[MissionItem]) -> None:
-    """What only the whole plan shows. Raises BadItem."""
+    """What only the whole plan shows; a delay takes the place of the item before it. Raises BadItem."""
+    before: MissionItem | None = None
     for index, item in enumerate(items):
+        if item.kind in WITH_PLACE and not item.HasField("position"):
+            if before is None:
+                raise BadItem(mav.MAV_MISSION_INVALID_SEQUENCE, f"item {index}: a delay needs a place before it")
+            item.position.CopyFrom(before.position)
+        before = item if item.kind in WITH_PLACE else before
         if item.kind == MissionItem.JUMP and item.jump_to >= len(items):
             raise BadItem(mav.MAV_MISSION_INVALID_PARAM1, f"item {index}: jump to item {item.jump_to} of {len(items)}")
 
@@ -158,8 +175,7 @@ def to_wire(item: MissionItem, facts: Facts, home_z: float) -> Body:
     The latter with altitudes above home (``home_z`` [m, world]): MAVSDK takes no others.
     """
     if len(item.origin) == ORIGIN.size:
-        frame, command, autocontinue, p1, p2, p3, p4, x, y, z = ORIGIN.unpack(item.origin)
-        return frame, command, autocontinue, p1, p2, p3, p4, x, y, z
+        return unpacked(item.origin)
     nan = math.nan
     commands: dict[int, tuple[int, float, float, float, float]] = {
         MissionItem.WAYPOINT: (mav.MAV_CMD_NAV_WAYPOINT, item.hold, item.acceptance_radius, 0.0, _yaw(item)),

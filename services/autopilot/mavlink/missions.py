@@ -1,20 +1,18 @@
-"""The mission protocol: upload as a transaction, download in any order, clear, set current.
+"""The mission protocol for mission, fence and rally points: upload as a transaction, download in any order, clear, set current."""
 
-Fence and rally points are not enforced, so they are not claimed: their lists are empty and stay so.
-"""
-
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Any
 
-from schemas.messages import Mission, MissionItem, MissionRequest
 from services.autopilot.mavlink import dialect as mav
-from services.autopilot.mavlink.actions import SOURCE, set_current
+from services.autopilot.mavlink.actions import set_current
 from services.autopilot.mavlink.guided import goal_of_item
 from services.autopilot.mavlink.line import Line, Sender
-from services.autopilot.mavlink.mission_items import BadItem, check_whole, from_wire, is_skipped, mission_of, to_wire
+from services.autopilot.mavlink.mission_items import BadItem
+from services.autopilot.mavlink.old_items import as_int
+from services.autopilot.mavlink.plans import FencePlan, MissionPlan, Plan, RallyPlan
 
 MISSION = mav.MAV_MISSION_TYPE_MISSION
-PLANS = (mav.MAV_MISSION_TYPE_FENCE, mav.MAV_MISSION_TYPE_RALLY)
-LARGEST = 500  # items
 ASK_AGAIN = 0.25  # s
 TRIES = 8
 GUIDED = 2  # in the field `current` of an item: not part of a plan, fly there now
@@ -25,10 +23,10 @@ class Upload:
     """The old plan stays in force until the last item is in and the autopilot has taken the new one."""
 
     sender: Sender
+    kind: int
     count: int
     asked_at: float
-    items: list[MissionItem] = field(default_factory=list)
-    skipped: bool = False
+    items: list[Any] = field(default_factory=list)
     tries: int = 1
     is_complete: bool = False
 
@@ -36,36 +34,38 @@ class Upload:
 class Missions:
     def __init__(self, line: Line) -> None:
         self._line = line
+        self._plans: dict[int, Plan[Any]] = {
+            MISSION: MissionPlan(line),
+            mav.MAV_MISSION_TYPE_FENCE: FencePlan(line),
+            mav.MAV_MISSION_TYPE_RALLY: RallyPlan(line),
+        }
         self._upload: Upload | None = None
-        self._accepted: tuple[int, Mission] | None = None
-        """(id of the plan that was published before, plan just taken): serves downloads until the autopilot's shows up."""
+        """One at a time, whatever the plan."""
 
-    @property
-    def plan(self) -> Mission:
-        published = self._line.latest.mission or Mission()
-        if self._accepted is not None and published.id != self._accepted[0]:
-            self._accepted = None
-        return self._accepted[1] if self._accepted is not None else published
-
-    @property
-    def _home_z(self) -> float:
-        """m, world; of the origin while home is unknown."""
-        home = self._line.latest.home
-        return float(home[2]) if home is not None else 0.0
+    def handlers(self) -> dict[int, Callable[[Any, Sender], None]]:
+        return {
+            mav.MAVLINK_MSG_ID_MISSION_COUNT: self.on_count,
+            mav.MAVLINK_MSG_ID_MISSION_ITEM_INT: self.on_item,
+            mav.MAVLINK_MSG_ID_MISSION_ITEM: lambda message, sender: self.on_item(as_int(message), sender),
+            mav.MAVLINK_MSG_ID_MISSION_REQUEST_LIST: self.on_request_list,
+            mav.MAVLINK_MSG_ID_MISSION_REQUEST_INT: self.on_request,
+            mav.MAVLINK_MSG_ID_MISSION_REQUEST: self.on_request,
+            mav.MAVLINK_MSG_ID_MISSION_ACK: self.on_ack,
+            mav.MAVLINK_MSG_ID_MISSION_CLEAR_ALL: self.on_clear,
+            mav.MAVLINK_MSG_ID_MISSION_WRITE_PARTIAL_LIST: self.on_write_partial,
+            mav.MAVLINK_MSG_ID_MISSION_SET_CURRENT: self.on_set_current,
+        }
 
     def on_count(self, message: mav.MAVLink_mission_count_message, sender: Sender) -> None:
-        kind, line = message.mission_type, self._line
-        busy = self._upload
-        if kind in PLANS and message.count == 0:
-            self._ack(sender, mav.MAV_MISSION_ACCEPTED, kind)
-        elif kind != MISSION:
-            self._refuse(sender, BadItem(mav.MAV_MISSION_UNSUPPORTED, "fence and rally points are not supported"), kind)
+        kind, plan, busy = message.mission_type, self._plans.get(message.mission_type), self._upload
+        if plan is None:
+            self._ack(sender, mav.MAV_MISSION_UNSUPPORTED, kind)
         elif busy is not None and (busy.is_complete or busy.sender[1:] != sender[1:]):
             self._ack(sender, mav.MAV_MISSION_DENIED, kind)
-        elif message.count > LARGEST:
-            self._refuse(sender, BadItem(mav.MAV_MISSION_NO_SPACE, f"{message.count} items; {LARGEST} are possible"), kind)
+        elif message.count > plan.largest:
+            self._refuse(sender, BadItem(mav.MAV_MISSION_NO_SPACE, f"{message.count} items; {plan.largest} are possible"), kind)
         else:
-            self._upload = Upload(sender, message.count, line.t)
+            self._upload = Upload(sender, kind, message.count, self._line.t)
             self._proceed(self._upload)
 
     def on_item(self, message: mav.MAVLink_mission_item_int_message, sender: Sender) -> None:
@@ -74,7 +74,7 @@ class Missions:
         if message.current == GUIDED and message.mission_type == MISSION:
             goal_of_item(self._line, message, lambda accepted, reason: self._guided(sender, accepted, reason))
             return
-        if upload is None or upload.is_complete or upload.sender[1:] != sender[1:] or message.mission_type != MISSION:
+        if upload is None or upload.is_complete or (upload.sender[1:], upload.kind) != (sender[1:], message.mission_type):
             return
         if message.seq > len(upload.items):
             self._request_next(upload)
@@ -83,14 +83,11 @@ class Missions:
 
     def _accept(self, upload: Upload, message: mav.MAVLink_mission_item_int_message) -> None:
         try:
-            upload.items.append(from_wire(message, self._line.facts, self._home_z))
-            if len(upload.items) == upload.count:
-                check_whole(upload.items)
+            upload.items.append(self._plans[upload.kind].read(message))
         except BadItem as bad:
             self._upload = None
-            self._refuse(upload.sender, bad, MISSION)
+            self._refuse(upload.sender, BadItem(bad.result, f"item {message.seq}: {bad.reason}"), upload.kind)
             return
-        upload.skipped |= is_skipped(message.command, self._line.facts)
         upload.tries = 0
         self._proceed(upload)
 
@@ -99,27 +96,33 @@ class Missions:
             self._request_next(upload)
             return
         upload.is_complete = True
-        plan = mission_of(upload.items)
+        plan = self._plans[upload.kind]
+        try:
+            made = plan.made(upload.items)
+        except BadItem as bad:
+            self._upload = None
+            self._refuse(upload.sender, bad, upload.kind)
+            return
 
         def done(accepted: bool, reason: str) -> None:
             self._upload = None
             if not accepted:
-                self._refuse(upload.sender, BadItem(mav.MAV_MISSION_ERROR, reason or "refused"), MISSION)
+                result = mav.MAV_MISSION_INVALID if reason.startswith("item ") else mav.MAV_MISSION_ERROR
+                self._refuse(upload.sender, BadItem(result, reason or "refused"), upload.kind)
                 return
-            before = self._line.latest.mission
-            if before is None or before.id != plan.id:
-                self._accepted = (before.id if before is not None else 0, plan)
-            self._ack(upload.sender, mav.MAV_MISSION_ACCEPTED, MISSION, plan.id)
-            if upload.skipped:
-                self._line.text(mav.MAV_SEVERITY_WARNING, "Mission: camera and gimbal items are skipped")
+            plan.accept(made)
+            self._ack(upload.sender, mav.MAV_MISSION_ACCEPTED, upload.kind, plan.id_of(made))
+            if note := plan.note(upload.items):
+                self._line.text(mav.MAV_SEVERITY_WARNING, note)
 
-        self._line.ask("set_mission", MissionRequest(mission=plan, source=SOURCE), done)
+        self._line.ask(plan.call, plan.request(made), done)
 
     def _request_next(self, upload: Upload) -> None:
         upload.asked_at = self._line.t
         upload.tries += 1
         _, system, component = upload.sender
-        self._line.send(mav.MAVLink_mission_request_int_message(system, component, len(upload.items), MISSION), upload.sender.peer)
+        request = mav.MAVLink_mission_request_int_message(system, component, len(upload.items), upload.kind)
+        self._line.send(request, upload.sender.peer)
 
     def tick(self) -> None:
         """Asks again for an item that does not come, and gives up in the end."""
@@ -130,28 +133,28 @@ class Missions:
             self._request_next(upload)
             return
         self._upload = None
-        self._ack(upload.sender, mav.MAV_MISSION_OPERATION_CANCELLED, MISSION)
+        self._ack(upload.sender, mav.MAV_MISSION_OPERATION_CANCELLED, upload.kind)
 
     def on_request_list(self, message: mav.MAVLink_mission_request_list_message, sender: Sender) -> None:
-        kind = message.mission_type
-        if kind != MISSION and kind not in PLANS:
+        kind, plan = message.mission_type, self._plans.get(message.mission_type)
+        if plan is None:
             self._ack(sender, mav.MAV_MISSION_UNSUPPORTED, kind)
             return
-        plan = self.plan if kind == MISSION else Mission()
-        count = mav.MAVLink_mission_count_message(sender.system, sender.component, len(plan.items), kind, plan.id)
+        count = mav.MAVLink_mission_count_message(sender.system, sender.component, len(plan.bodies()), kind, plan.id_of(plan.now))
         self._line.send(count, sender.peer)
 
     def on_request(self, message: mav.MAVLink_mission_request_int_message, sender: Sender) -> None:
         """MISSION_REQUEST_INT, or the older MISSION_REQUEST: the same item either way."""
-        items = self.plan.items if message.mission_type == MISSION else ()
-        if message.seq >= len(items):
-            self._ack(sender, mav.MAV_MISSION_INVALID_SEQUENCE, message.mission_type)
+        kind, seq = message.mission_type, message.seq
+        bodies = self._plans[kind].bodies() if kind in self._plans else []
+        if seq >= len(bodies):
+            self._ack(sender, mav.MAV_MISSION_INVALID_SEQUENCE, kind)
             return
         progress = self._line.latest.progress
-        current = int(progress is not None and progress.current == message.seq)
-        frame, command, autocontinue, p1, p2, p3, p4, x, y, z = to_wire(items[message.seq], self._line.facts, self._home_z)
-        head = (sender.system, sender.component, message.seq, frame, command, current, autocontinue)
-        self._line.send(mav.MAVLink_mission_item_int_message(*head, p1, p2, p3, p4, x, y, z, MISSION), sender.peer)
+        current = int(kind == MISSION and progress is not None and progress.current == seq)
+        frame, command, autocontinue, p1, p2, p3, p4, x, y, z = bodies[seq]
+        head = (sender.system, sender.component, seq, frame, command, current, autocontinue)
+        self._line.send(mav.MAVLink_mission_item_int_message(*head, p1, p2, p3, p4, x, y, z, kind), sender.peer)
 
     def on_ack(self, message: mav.MAVLink_mission_ack_message, sender: Sender) -> None:
         """Ends a download; anything but "accepted" ends the sender's own upload too."""
@@ -160,14 +163,31 @@ class Missions:
             self._upload = None
 
     def on_clear(self, message: mav.MAVLink_mission_clear_all_message, sender: Sender) -> None:
+        """An empty upload; of all three plans with one answer, which is the first refusal if there is one."""
         kind = message.mission_type
-        if kind in PLANS:
-            self._ack(sender, mav.MAV_MISSION_ACCEPTED, kind)
-        elif kind in (MISSION, mav.MAV_MISSION_TYPE_ALL):
-            empty = mav.MAVLink_mission_count_message(0, 0, 0, MISSION)
-            self.on_count(empty, sender)
-        else:
-            self._ack(sender, mav.MAV_MISSION_UNSUPPORTED, kind)
+        if kind != mav.MAV_MISSION_TYPE_ALL:
+            self.on_count(mav.MAVLink_mission_count_message(0, 0, 0, kind), sender)
+            return
+        if self._upload is not None:
+            self._ack(sender, mav.MAV_MISSION_DENIED, kind)
+            return
+        self._clear(list(self._plans.values()), sender)
+
+    def _clear(self, plans: list[Plan[Any]], sender: Sender) -> None:
+        if not plans:
+            self._ack(sender, mav.MAV_MISSION_ACCEPTED, mav.MAV_MISSION_TYPE_ALL)
+            return
+        plan, *others = plans
+        empty = plan.made([])
+
+        def done(accepted: bool, reason: str) -> None:
+            if accepted:
+                plan.accept(empty)
+                self._clear(others, sender)
+            else:
+                self._refuse(sender, BadItem(mav.MAV_MISSION_ERROR, reason), mav.MAV_MISSION_TYPE_ALL)
+
+        self._line.ask(plan.call, plan.request(empty), done)
 
     def on_write_partial(self, message: mav.MAVLink_mission_write_partial_list_message, sender: Sender) -> None:
         self._ack(sender, mav.MAV_MISSION_UNSUPPORTED, message.mission_type)
@@ -187,7 +207,8 @@ class Missions:
 
     def _refuse(self, sender: Sender, bad: BadItem, kind: int) -> None:
         self._ack(sender, bad.result, kind)
-        self._line.text(mav.MAV_SEVERITY_WARNING, f"Mission refused: {bad.reason}")
+        name = self._plans[kind].name if kind in self._plans else "Plan"
+        self._line.text(mav.MAV_SEVERITY_WARNING, f"{name} refused: {bad.reason}")
 
     def _ack(self, to: Sender, result: int, kind: int, opaque_id: int = 0) -> None:
         self._line.send(mav.MAVLink_mission_ack_message(to.system, to.component, result, kind, opaque_id), to.peer)

@@ -13,6 +13,7 @@ from schemas.messages import (
     Clock,
     EstimateQuality,
     Event,
+    Fence,
     Gnss,
     Imu,
     Link,
@@ -21,6 +22,7 @@ from schemas.messages import (
     NavState,
     NavStatus,
     ParamValues,
+    RallyPoints,
     SurfaceCommand,
     Targets,
     VehicleStatus,
@@ -51,6 +53,8 @@ class MavlinkService(Service):
         "status": each_vehicle(topics.STATUS),
         "mission": each_vehicle(topics.MISSION),
         "progress": each_vehicle(topics.PROGRESS),
+        "fence": each_vehicle(topics.FENCE),
+        "rally": each_vehicle(topics.RALLY),
         "gnss": each_vehicle(topics.GNSS),
         "battery": each_vehicle(topics.BATTERY),
         "imu": each_vehicle(topics.IMU),
@@ -75,6 +79,8 @@ class MavlinkService(Service):
         "set_mode": topics.SET_MODE,
         "set_mission": topics.SET_MISSION,
         "set_current": topics.SET_CURRENT,
+        "set_fence": topics.SET_FENCE,
+        "set_rally": topics.SET_RALLY,
         "goal": topics.GOAL,
         "orbit": topics.ORBIT,
         "go_around": topics.GO_AROUND,
@@ -101,6 +107,8 @@ class MavlinkService(Service):
         status: dict[str, VehicleStatus],
         mission: dict[str, Mission],
         progress: dict[str, MissionProgress],
+        fence: dict[str, Fence],
+        rally: dict[str, RallyPoints],
         gnss: dict[str, Gnss],
         battery: dict[str, Battery],
         imu: dict[str, Imu],
@@ -117,6 +125,8 @@ class MavlinkService(Service):
         set_mode: Answers,
         set_mission: Answers,
         set_current: Answers,
+        set_fence: Answers,
+        set_rally: Answers,
         goal: Answers,
         orbit: Answers,
         go_around: Answers,
@@ -128,8 +138,6 @@ class MavlinkService(Service):
         news: dict[str, Mapping[str, Message]] = {
             "nav": nav,
             "status": status,
-            "mission": mission,
-            "progress": progress,
             "gnss": gnss,
             "battery": battery,
             "imu": imu,
@@ -141,8 +149,10 @@ class MavlinkService(Service):
             "planning": planning,
             "params": params,
         }
+        news |= {"mission": mission, "progress": progress, "fence": fence, "rally": rally}
         self._update(t, news, clock)
-        for answer in (*arm, *set_mode, *set_mission, *set_current, *goal, *orbit, *go_around, *order, *air_param, *ground_param):
+        plans = (*set_mission, *set_current, *set_fence, *set_rally)
+        for answer in (*arm, *set_mode, *plans, *goal, *orbit, *go_around, *order, *air_param, *ground_param):
             self._vehicles[answer.vehicle].line.answered(answer)
         for datagram, peer in self._link.receive(t):
             for message in self.codec.parse(datagram):

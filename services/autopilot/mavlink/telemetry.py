@@ -10,14 +10,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from schemas.convert import array, wxyz
-from schemas.messages import Gnss, MissionItem, Mode
+from schemas.messages import Breach, Gnss, MissionItem, Mode
 from services.autopilot.mavlink import dialect as mav
 from services.autopilot.mavlink import estimate_quality, identity, navigation, sensor_messages, steering, steering_telemetry
 from services.autopilot.mavlink.facts import Facts, Latest
 from services.autopilot.mavlink.health import health
+from services.autopilot.mavlink.plan_ids import fence_id, rally_id
 from services.autopilot.mavlink.scaling import I32, U16, whole
 from services.autopilot.mavlink.scaling import compass as compass_of
 from services.autopilot.mavlink.traffic import traffic
+from uvf.runtime.fence_file import fencing
 
 Message = mav.MAVLink_message | None
 Build = Callable[[Facts, Latest, float], Message | list[mav.MAVLink_message]]
@@ -146,12 +148,24 @@ def _extended_sys_state(facts: Facts, latest: Latest, t: float) -> Message:
 def mission_current(latest: Latest, seq: int | None = None) -> mav.MAVLink_mission_current_message:
     """``seq``: an item just set, ahead of the autopilot's next report."""
     progress = latest.progress
+    ids = fence_id(latest.fence), rally_id(latest.rally)
     if progress is None or progress.state == progress.NO_MISSION:
-        return mav.MAVLink_mission_current_message(0, 0, mav.MISSION_STATE_NO_MISSION)
+        return mav.MAVLink_mission_current_message(0, 0, mav.MISSION_STATE_NO_MISSION, 0, 0, *ids)
     state = progress.state + 1  # MISSION_STATE counts from UNKNOWN
     flying = latest.status is not None and latest.status.mode == Mode.MODE_MISSION
     item = min(progress.current if seq is None else seq, 0xFFFF)
-    return mav.MAVLink_mission_current_message(item, min(progress.total, 0xFFFE), state, 1 if flying else 2, progress.mission_id)
+    return mav.MAVLink_mission_current_message(item, min(progress.total, 0xFFFE), state, 1 if flying else 2, progress.mission_id, *ids)
+
+
+def _fence_status(facts: Facts, latest: Latest, t: float) -> Message:
+    """Only while there is a fence. Breach has the numbers of FENCE_BREACH."""
+    status = latest.status
+    if status is None or latest.fence is None or fencing(latest.fence).is_open:
+        return None
+    at = latest.breached_at
+    time = 0 if at is None else navigation.boot_ms(at)
+    breached = int(status.breach != Breach.BREACH_NONE)
+    return mav.MAVLink_fence_status_message(breached, min(status.breaches, 0xFFFF), status.breach, time, mav.FENCE_MITIGATE_UNKNOWN)
 
 
 def _quaternion(facts: Facts, latest: Latest, t: float) -> Message:
@@ -171,6 +185,7 @@ STREAMS: dict[int, Stream] = {
     mav.MAVLINK_MSG_ID_ATTITUDE_QUATERNION: Stream(_quaternion, 20),
     mav.MAVLINK_MSG_ID_LOCAL_POSITION_NED: Stream(navigation.local_position, 5),
     mav.MAVLINK_MSG_ID_GLOBAL_POSITION_INT: Stream(navigation.global_position, 10),
+    mav.MAVLINK_MSG_ID_FENCE_STATUS: Stream(_fence_status, 1),
     mav.MAVLINK_MSG_ID_MISSION_CURRENT: Stream(lambda f, n, t: mission_current(n), 1),
     mav.MAVLINK_MSG_ID_NAV_CONTROLLER_OUTPUT: Stream(steering.controller_output, 3),
     mav.MAVLINK_MSG_ID_VFR_HUD: Stream(navigation.hud, 10),

@@ -11,6 +11,7 @@ from services.autopilot.mavlink.component_metadata import files_of
 from services.autopilot.mavlink.data_streams import set_rates
 from services.autopilot.mavlink.endpoint import Peer
 from services.autopilot.mavlink.facts import Facts
+from services.autopilot.mavlink.fence_switch import FENCE_SWITCH
 from services.autopilot.mavlink.ftp import FileServer
 from services.autopilot.mavlink.guided import GUIDED
 from services.autopilot.mavlink.health import health
@@ -27,11 +28,15 @@ from services.autopilot.mavlink.statustext import SEVERITY, event_text
 from services.autopilot.mavlink.streams import Schedule
 from services.autopilot.mavlink.telemetry import STREAMS
 
+FIXED = {**ACTIONS, **GUIDED, **ORDERS, **FENCE_SWITCH}
+"""Commands whose handlers keep nothing."""
 Handler = Callable[[Any, Sender], None]
 ON_CHANGE = (
     mav.MAVLINK_MSG_ID_HEARTBEAT,
     mav.MAVLINK_MSG_ID_EXTENDED_SYS_STATE,
     mav.MAVLINK_MSG_ID_CURRENT_MODE,
+    mav.MAVLINK_MSG_ID_FENCE_STATUS,
+    mav.MAVLINK_MSG_ID_SYS_STATUS,
 )
 
 
@@ -53,11 +58,9 @@ class VehicleLink:
         self._complaints: tuple[str, ...] = ()
 
     def _all_handlers(self) -> dict[int, Handler]:
-        line, commands = (
-            self.line,
-            Commands(self.line, {**ACTIONS, **GUIDED, **ORDERS, **Queries(self.schedule).handlers(), **self._parameters.commands()}),
-        )
-        parameters, missions = self._parameters, self._missions
+        line, queries = self.line, Queries(self.schedule).handlers()
+        commands = Commands(line, {**FIXED, **queries, **self._parameters.commands()})
+        parameters = self._parameters
         return {
             mav.MAVLINK_MSG_ID_COMMAND_LONG: commands.on_long,
             mav.MAVLINK_MSG_ID_COMMAND_INT: commands.on_int,
@@ -68,15 +71,7 @@ class VehicleLink:
             mav.MAVLINK_MSG_ID_PARAM_REQUEST_LIST: parameters.on_request_list,
             mav.MAVLINK_MSG_ID_PARAM_REQUEST_READ: parameters.on_request_read,
             mav.MAVLINK_MSG_ID_PARAM_SET: parameters.on_set,
-            mav.MAVLINK_MSG_ID_MISSION_COUNT: missions.on_count,
-            mav.MAVLINK_MSG_ID_MISSION_ITEM_INT: missions.on_item,
-            mav.MAVLINK_MSG_ID_MISSION_REQUEST_LIST: missions.on_request_list,
-            mav.MAVLINK_MSG_ID_MISSION_REQUEST_INT: missions.on_request,
-            mav.MAVLINK_MSG_ID_MISSION_REQUEST: missions.on_request,
-            mav.MAVLINK_MSG_ID_MISSION_ACK: missions.on_ack,
-            mav.MAVLINK_MSG_ID_MISSION_CLEAR_ALL: missions.on_clear,
-            mav.MAVLINK_MSG_ID_MISSION_WRITE_PARTIAL_LIST: missions.on_write_partial,
-            mav.MAVLINK_MSG_ID_MISSION_SET_CURRENT: missions.on_set_current,
+            **self._missions.handlers(),
             mav.MAVLINK_MSG_ID_FILE_TRANSFER_PROTOCOL: self._ftp.on_ftp,
             mav.MAVLINK_MSG_ID_REQUEST_DATA_STREAM: lambda m, sender: set_rates(self.schedule, m, sender.peer),
             **self._by_hand.handlers(),
@@ -124,8 +119,10 @@ class VehicleLink:
     def _note_changes(self) -> None:
         """Mode, arming, mission item and reasons against arming are told at once, not at their next turn."""
         status, progress = self.line.latest.status, self.line.latest.progress
-        state = (status.mode, status.armed, status.landed, status.stopped) if status is not None else ()
+        state = (status.mode, status.armed, status.landed, status.stopped, status.breach) if status is not None else ()
         if state != self._state:
+            if status is not None and status.breach and not any(self._state[-1:]):
+                self.line.latest.breached_at = self.line.t
             self._state = state
             self._hurry(*ON_CHANGE)
         home = tuple(self.line.latest.home) if self.line.latest.home is not None else ()

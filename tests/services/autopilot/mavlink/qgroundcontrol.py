@@ -4,6 +4,8 @@ After ``Vehicle/InitialConnectStateMachine.cc``, ``FactSystem/ParameterManager.c
 setup checks of ``AutoPilotPlugins/PX4`` in QGroundControl's master of May 2026.
 """
 
+import copy
+
 from services.autopilot.mavlink import dialect as mav
 from tests.services.autopilot.mavlink.qgc_parameters import ParameterManager
 from tests.services.autopilot.mavlink.rig import GCS, long, of
@@ -13,7 +15,10 @@ TRIES = 3
 BUTTON_MODES = {50593792: "Hold", 67371008: "Mission", 84148224: "Return", 33816576: "Takeoff", 100925440: "Land"}
 SETUP = "One or more vehicle components require setup prior to flight"
 MISSING = "Parameters are missing from firmware"
-PLAN = "Mission transfer failed"
+PLANS = {0: "Mission transfer failed", 1: "GeoFence transfer failed", 2: "Rally Point transfer failed"}
+NOT_ALL_ITEMS = "Vehicle did not request all items from ground station"
+NO_FINAL_ACK = "Vehicle failed to send final ack"
+CAPABILITY = {1: mav.MAV_PROTOCOL_CAPABILITY_MISSION_FENCE, 2: mav.MAV_PROTOCOL_CAPABILITY_MISSION_RALLY}
 OLD_FIRMWARE = "supports PX4 Pro firmware Version 1.4.1 and above"
 NOT_STABLE = "Vehicle is not running latest stable firmware"
 NO_HOME = "Unable to change altitude, home position unknown"
@@ -29,7 +34,8 @@ class QGroundControl(ParameterManager):
         self.system = system
         self.complaints = []
         self.modes = {}
-        self.plan = []
+        self.plans = {}
+        self.capabilities = CAPABILITY[1] | CAPABILITY[2]  # assumed of a PX4 that does not say
         self._spoil = spoil
         self._heard = []
         self._beat_at = -1.0
@@ -46,7 +52,7 @@ class QGroundControl(ParameterManager):
         self._download_metadata()
         self._download_parameters()
         self._setup_check(beat)
-        self._download_plan()
+        self._download_plans()
         self._await("HOME_POSITION", 2.1) or self.complaints.append(NO_HOME)
         return self.rig.t - start
 
@@ -83,6 +89,7 @@ class QGroundControl(ParameterManager):
         if version is None:
             return
         major, minor, patch, kind = version.flight_sw_version.to_bytes(4, "big")
+        self.capabilities = version.capabilities
         if (major, minor, patch) < (1, 4, 1):
             self.complaints.append(OLD_FIRMWARE)
         if kind == 255:
@@ -115,16 +122,55 @@ class QGroundControl(ParameterManager):
         if missing := [name for name in READ_AT_A_CLICK if name not in p]:
             self.complaints.append(f"{MISSING}: {missing}")
 
-    def _download_plan(self):
-        count = self._ask(mav.MAVLink_mission_request_list_message(self.system, 1, 0), "MISSION_COUNT", PLAN_WAIT)
+    def _download_plans(self):
+        """Fence and rally points only of a vehicle that says it has them."""
+        for kind, complaint in PLANS.items():
+            if kind == 0 or self.capabilities & CAPABILITY[kind]:
+                self._download(kind, complaint)
+
+    def _download(self, kind, complaint):
+        items = self.plans[kind] = []
+        asked = mav.MAVLink_mission_request_list_message(self.system, 1, kind)
+        count = self._ask(asked, "MISSION_COUNT", PLAN_WAIT, lambda m: m.mission_type == kind)
         for seq in range(count.count if count is not None else 0):
-            request = mav.MAVLink_mission_request_int_message(self.system, 1, seq, 0)
-            item = self._ask(request, "MISSION_ITEM_INT", ITEM_WAIT, lambda m, seq=seq: m.seq == seq)
+            request = mav.MAVLink_mission_request_int_message(self.system, 1, seq, kind)
+            item = self._ask(request, "MISSION_ITEM_INT", ITEM_WAIT, lambda m, seq=seq: (m.seq, m.mission_type) == (seq, kind))
             if item is None:
                 break
-            self.plan.append(item)
-        if count is None or len(self.plan) < count.count:
-            self.complaints.append(PLAN)
+            items.append(item)
+        if count is None or len(items) < count.count:
+            self.complaints.append(complaint)
+
+    def upload(self, items, kind=0):
+        """Says each item only when it is asked for, never again on its own; the seconds it took, or None with a complaint."""
+        start, sent = self.rig.t, -1
+        self.rig.say(mav.MAVLink_mission_count_message(self.system, 1, len(items), kind))
+        while True:
+            answer = self._await_any(("MISSION_REQUEST_INT", "MISSION_ACK"), PLAN_WAIT, lambda m: m.mission_type == kind)
+            if answer is None:
+                self.complaints.append(NO_FINAL_ACK if sent == len(items) - 1 else NOT_ALL_ITEMS)
+                return None
+            if answer.get_type() == "MISSION_ACK":
+                if answer.type != mav.MAV_MISSION_ACCEPTED:
+                    self.complaints.append(PLANS[kind])
+                elif sent < len(items) - 1:
+                    self.complaints.append(NOT_ALL_ITEMS)
+                return self.rig.t - start
+            sent = max(sent, answer.seq)
+            item = copy.copy(items[answer.seq])
+            item.target_system = self.system
+            self.rig.say(item)
+
+    def _await_any(self, kinds, seconds, fits):
+        end = self.rig.t + seconds
+        while True:
+            found = next((m for m in self._heard if m.get_type() in kinds and fits(m)), None)
+            if found is not None:
+                self._heard.remove(found)
+                return found
+            if self.rig.t >= end:
+                return None
+            self._listen(0.02)
 
     def _ask(self, request, kind, seconds, fits=lambda m: True):
         """With five repetitions, as the plan's managers do."""

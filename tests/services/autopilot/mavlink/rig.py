@@ -8,6 +8,7 @@ from schemas.convert import quaternion, stamp
 from schemas.messages import (
     Circle,
     Clock,
+    Fence,
     Gnss,
     Kind,
     Mission,
@@ -15,6 +16,7 @@ from schemas.messages import (
     Mode,
     NavState,
     ParamRequest,
+    RallyPoints,
     Reply,
     Vector3,
     VehicleStatus,
@@ -150,6 +152,8 @@ class Vehicle:
         self.nav.orientation.CopyFrom(quaternion(from_euler(0.1, -0.2, 0.3)))
         self.status = VehicleStatus(kind=kind, mode=Mode.MODE_HOLD, home=Vector3(x=0.0, y=0.0, z=20.0))
         self.mission = Mission()
+        self.fence = Fence()
+        self.rally = RallyPoints()
         self.progress = MissionProgress(reached=-1)
         self._hold()
         self.begin(GroundAutopilotParams() if kind == Kind.KIND_GROUND else _PLANE_PARAMS)
@@ -193,6 +197,10 @@ class Vehicle:
             self.mission = request.mission
             state = MissionProgress.NOT_STARTED if request.mission.items else MissionProgress.NO_MISSION
             self.progress = MissionProgress(state=state, total=len(request.mission.items), reached=-1, mission_id=request.mission.id)
+        elif name == "set_fence":
+            self.fence = request.fence
+        elif name == "set_rally":
+            self.rally = request.rally
         elif name == "set_current":
             self.progress.current = request.index
         elif name == "order" and request.WhichOneof("kind") == "takeoff":
@@ -268,6 +276,8 @@ class Rig:
             status={n: v.status for n, v in live.items()},
             mission={n: v.mission for n, v in live.items()},
             progress={n: v.progress for n, v in live.items()},
+            fence={n: v.fence for n, v in live.items()},
+            rally={n: v.rally for n, v in live.items()},
             gnss={"plane": self.plane.gnss} if "plane" in live else {},
             battery={n: v.battery for n, v in live.items() if v.battery is not None},
             **{what: {n: v.sensed[what] for n, v in live.items() if what in v.sensed} for what in self.SENSED},

@@ -25,7 +25,7 @@ def test_it_connects_within_five_seconds_and_without_a_complaint(system):
     station, seconds = connect(system)
     assert station.complaints == station.notes == []
     assert seconds < 5.0
-    assert len(station.plan) == (3 if system == PLANE else 0)
+    assert len(station.plans[0]) == (3 if system == PLANE else 0)
 
 
 def test_plane_and_rover_leave_the_same_modes_behind():
@@ -63,8 +63,8 @@ def without_mode(message):
         (without("HEARTBEAT"), "no vehicle"),
         (without("PARAM_VALUE"), NO_PARAMETERS),
         (without_parameter("BAT_LOW_THR"), SOME_PARAMETERS),
-        (without("MISSION_COUNT"), qgc.PLAN),
-        (without("MISSION_ITEM_INT"), qgc.PLAN),
+        (without("MISSION_COUNT"), qgc.PLANS[0]),
+        (without("MISSION_ITEM_INT"), qgc.PLANS[0]),
         (without("HOME_POSITION"), qgc.NO_HOME),
         (without_mode, "button Return sets an empty mode"),
         (changed("AUTOPILOT_VERSION", flight_sw_version=1 << 24 | 2 << 16), qgc.OLD_FIRMWARE),
@@ -109,7 +109,7 @@ def test_a_fifth_of_all_packets_lost_either_way_costs_time_but_no_complaint(seed
     station = QGroundControl(rig, PLANE, lambda message: None if lost("down", message) else message)
     assert station.connect() < 40.0  # some 20 s as a rule: QGroundControl's own limits of 1 to 5 s, once for each answer that is lost
     assert station.complaints == []
-    assert len(station.plan) == 3
+    assert len(station.plans[0]) == 3
 
 
 def test_a_lost_packet_now_and_then_costs_time_but_no_complaint():

@@ -21,10 +21,10 @@ def count(n, kind=0):
     return mav.MAVLink_mission_count_message(PLANE, 1, n, kind)
 
 
-def upload(rig, items, lose=lambda n: False):
+def upload(rig, items, lose=lambda n: False, kind=0):
     """As QGroundControl: says an item only when it is asked for; ``lose(n)`` drops the n-th packet either way."""
     packet = iter(range(10_000))
-    rig.say(count(len(items)))
+    rig.say(count(len(items), kind))
     for _ in range(2000):
         heard = rig.run(0.02)
         if ack := of(heard, "MISSION_ACK"):
@@ -35,12 +35,12 @@ def upload(rig, items, lose=lambda n: False):
     raise AssertionError("no final acknowledgement")
 
 
-def download(rig, system=255, peer=GCS):
-    rig.say(mav.MAVLink_mission_request_list_message(PLANE, 1, 0), system=system, peer=peer)
+def download(rig, system=255, peer=GCS, kind=0):
+    rig.say(mav.MAVLink_mission_request_list_message(PLANE, 1, kind), system=system, peer=peer)
     rig.run()
     n = of(rig.heard(peer), "MISSION_COUNT")[-1].count
     for seq in reversed(range(n)):
-        rig.say(mav.MAVLink_mission_request_int_message(PLANE, 1, seq, 0), system=system, peer=peer)
+        rig.say(mav.MAVLink_mission_request_int_message(PLANE, 1, seq, kind), system=system, peer=peer)
     rig.run()
     return sorted(of(rig.heard(peer), "MISSION_ITEM_INT"), key=lambda m: m.seq)
 
@@ -133,7 +133,8 @@ def test_duplicates_and_items_out_of_order_do_no_harm():
     ("bad", "result"),
     [
         (item(1, command=5000), mav.MAV_MISSION_UNSUPPORTED),
-        (item(1, command=189, frame=2), mav.MAV_MISSION_UNSUPPORTED),
+        (item(1, command=115, frame=2), mav.MAV_MISSION_UNSUPPORTED),
+        (item(1, command=183, frame=2), mav.MAV_MISSION_UNSUPPORTED),
         (item(1, frame=10), mav.MAV_MISSION_UNSUPPORTED_FRAME),
         (item(1, place=(2_000_000_000, LON, 50.0)), mav.MAV_MISSION_INVALID_PARAM5_X),
         (item(1, place=(LAT, 2_000_000_000, 50.0)), mav.MAV_MISSION_INVALID_PARAM6_Y),
@@ -189,17 +190,6 @@ def test_clearing(message):
     rig.say(message)
     assert [(m.type, m.opaque_id) for m in of(rig.run(), "MISSION_ACK")] == [(mav.MAV_MISSION_ACCEPTED, 0)]
     assert download(rig) == []
-
-
-@pytest.mark.parametrize("kind", [1, 2])
-def test_fence_and_rally_points_are_empty_and_refused(kind):
-    rig = Rig()
-    rig.say(mav.MAVLink_mission_request_list_message(PLANE, 1, kind))
-    assert [(m.count, m.mission_type) for m in of(rig.run(), "MISSION_COUNT")] == [(0, kind)]
-    rig.say(count(4, kind))
-    rig.say(count(0, kind))
-    answers = [(m.type, m.mission_type) for m in of(rig.run(), "MISSION_ACK")]
-    assert answers == [(mav.MAV_MISSION_UNSUPPORTED, kind), (mav.MAV_MISSION_ACCEPTED, kind)]
 
 
 def test_what_is_out_of_range_or_not_offered_gets_its_code():
@@ -301,3 +291,31 @@ def test_a_guided_item_is_flown_to_and_kept_out_of_the_plan():
     assert [m.type for m in of(rig.run(), "MISSION_ACK")] == [mav.MAV_MISSION_ACCEPTED]
     ((name, goal),) = rig.plane.asked
     assert name == "goal" and goal.position.z == pytest.approx(70.0)
+
+
+def test_a_landing_pattern_is_taken_with_its_mark_and_a_delay_is_spent_where_it_stands():
+    rig = Rig()
+    rig.run()
+    nowhere = (0, 0, 0.0)
+    plan = [
+        item(0),
+        item(1, command=93, frame=2, p=(20.0, -1.0, -1.0, -1.0), place=nowhere),
+        item(2, command=189, frame=2, p=(0.0, 0.0, 0.0, 0.0), place=nowhere),
+        item(3, command=31, p=(1.0, 80.0, 0.0, 1.0)),
+        item(4, command=21, p=(0.0, 0.0, 0.0, NAN), place=(LAT, LON, 0.0)),
+    ]
+    ack, heard = upload(rig, plan)
+    assert ack.type == mav.MAV_MISSION_ACCEPTED and texts(heard) == []
+    way, delay, mark, circle, land = rig.plane.mission.items
+    assert (delay.kind, delay.hold, delay.position) == (MissionItem.WAYPOINT, 20.0, way.position)
+    assert (mark.kind, mark.repeat) == (MissionItem.JUMP, 0)  # never taken
+    assert (circle.to_altitude, circle.radius, land.kind) == (True, 80.0, MissionItem.LAND)
+    assert [content(m) for m in download(rig)] == [content(m) for m in plan]
+
+
+def test_a_delay_with_no_place_before_it_is_refused():
+    rig = Rig()
+    rig.run()
+    ack, heard = upload(rig, [item(0, command=93, frame=2, p=(20.0, -1.0, -1.0, -1.0), place=(0, 0, 0.0))])
+    assert ack.type == mav.MAV_MISSION_INVALID_SEQUENCE
+    assert "Mission refused: item 0: a delay needs a place before it" in texts(heard)

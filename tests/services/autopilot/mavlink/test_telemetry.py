@@ -212,8 +212,8 @@ def test_version_says_simulated_level_and_own_number():
     assert plane.middleware_sw_version > 0
     assert plane.flight_sw_version == 1 << 24 | 16 << 16
     assert plane.uid != rover.uid and bytes(plane.uid2) != bytes(rover.uid2)
-    for capability in (mav.MAV_PROTOCOL_CAPABILITY_MISSION_FENCE,):
-        assert not plane.capabilities & capability
+    for capability in (mav.MAV_PROTOCOL_CAPABILITY_MISSION_FENCE, mav.MAV_PROTOCOL_CAPABILITY_MISSION_RALLY):
+        assert plane.capabilities & rover.capabilities & capability
 
 
 def test_a_vehicle_says_about_a_hundred_messages_a_second():

@@ -1,0 +1,24 @@
+"""Ids of plans: CRC-32 of what they say; 0 means an empty plan and no other."""
+
+import zlib
+
+from schemas.messages import Fence, RallyPoints
+
+
+def fence_id(fence: Fence | None) -> int:
+    """Of zones and return point: floor, ceiling and action are parameters, no items."""
+    if fence is None:
+        return 0
+    parts = [zone.SerializeToString(deterministic=True) for zone in fence.zones]
+    parts += [fence.return_point.SerializeToString(deterministic=True)] if fence.HasField("return_point") else []
+    return _id([*parts, *fence.origin])
+
+
+def rally_id(rally: RallyPoints | None) -> int:
+    if rally is None:
+        return 0
+    return _id([*(point.SerializeToString(deterministic=True) for point in rally.points), *rally.origin])
+
+
+def _id(parts: list[bytes]) -> int:
+    return (zlib.crc32(b"\n".join(parts)) or 1) if parts else 0

@@ -1,0 +1,166 @@
+"""The three plans of the mission protocol: what an item of each means, what is in force, and how it is replaced."""
+
+from typing import Any, Generic, TypeVar
+
+from google.protobuf.message import Message
+
+from schemas.convert import array
+from schemas.messages import Fence, FenceRequest, Mission, MissionItem, MissionRequest, RallyPoints, RallyRequest
+from services.autopilot.mavlink import dialect as mav
+from services.autopilot.mavlink import fence_items
+from services.autopilot.mavlink.actions import SOURCE
+from services.autopilot.mavlink.line import Line
+from services.autopilot.mavlink.mission_items import (
+    BadItem,
+    Body,
+    check_whole,
+    from_wire,
+    is_skipped,
+    mission_of,
+    packed,
+    place_of,
+    to_wire,
+    unpacked,
+)
+from services.autopilot.mavlink.plan_ids import fence_id, rally_id
+
+Item = mav.MAVLink_mission_item_int_message
+P = TypeVar("P", Mission, Fence, RallyPoints)
+
+
+class Plan(Generic[P]):
+    """One of them, of one vehicle. What was just accepted serves downloads until the autopilot's own report shows up."""
+
+    name: str
+    largest: int
+    call: str
+
+    def __init__(self, line: Line) -> None:
+        self._line = line
+        self._accepted: tuple[int, P] | None = None
+        """(id of what was published before, what has been accepted)."""
+
+    @property
+    def now(self) -> P:
+        published = self.published()
+        if self._accepted is not None and self.id_of(published) != self._accepted[0]:
+            self._accepted = None
+        return self._accepted[1] if self._accepted is not None else published
+
+    def accept(self, plan: P) -> None:
+        before = self.id_of(self.published())
+        self._accepted = (before, plan) if before != self.id_of(plan) else None
+
+    @property
+    def home_z(self) -> float:
+        """m, world; of the origin while home is unknown."""
+        home = self._line.latest.home
+        return float(home[2]) if home is not None else 0.0
+
+    def published(self) -> P:
+        raise NotImplementedError
+
+    def id_of(self, plan: P) -> int:
+        raise NotImplementedError
+
+    def bodies(self) -> list[Body]:
+        """Of the plan in force, in their order."""
+        raise NotImplementedError
+
+    def read(self, item: Item) -> Any:
+        """What an item means by itself. Raises BadItem."""
+        raise NotImplementedError
+
+    def made(self, items: list[Any]) -> P:
+        """The whole plan of what has been read. Raises BadItem, which names the item."""
+        raise NotImplementedError
+
+    def request(self, plan: P) -> Message:
+        raise NotImplementedError
+
+    def note(self, items: list[Any]) -> str:
+        """What has to be said of an accepted plan."""
+        return ""
+
+
+class MissionPlan(Plan[Mission]):
+    name, largest, call = "Mission", 500, "set_mission"
+
+    def published(self) -> Mission:
+        return self._line.latest.mission or Mission()
+
+    def id_of(self, plan: Mission) -> int:
+        return plan.id
+
+    def bodies(self) -> list[Body]:
+        return [to_wire(item, self._line.facts, self.home_z) for item in self.now.items]
+
+    def read(self, item: Item) -> MissionItem:
+        return from_wire(item, self._line.facts, self.home_z)
+
+    def made(self, items: list[MissionItem]) -> Mission:
+        check_whole(items)
+        return mission_of(items)
+
+    def request(self, plan: Mission) -> MissionRequest:
+        return MissionRequest(mission=plan, source=SOURCE)
+
+    def note(self, items: list[MissionItem]) -> str:
+        skipped = any(is_skipped(unpacked(item.origin)[1], self._line.facts) for item in items)
+        return "Mission: camera and gimbal items are skipped" if skipped else ""
+
+
+class FencePlan(Plan[Fence]):
+    name, largest, call = "Fence", 500, "set_fence"
+
+    def published(self) -> Fence:
+        return self._line.latest.fence or Fence()
+
+    def id_of(self, plan: Fence) -> int:
+        return fence_id(plan)
+
+    def bodies(self) -> list[Body]:
+        return fence_items.bodies(self.now, self._line.facts, self.home_z)
+
+    def read(self, item: Item) -> Item:
+        return fence_items.checked(item, self._line.facts, self.home_z)
+
+    def made(self, items: list[Item]) -> Fence:
+        return fence_items.fence_of(items, self.now, self._line.facts, self.home_z)
+
+    def request(self, plan: Fence) -> FenceRequest:
+        return FenceRequest(fence=plan, source=SOURCE)
+
+
+class RallyPlan(Plan[RallyPoints]):
+    name, largest, call = "Rally", 20, "set_rally"
+
+    def published(self) -> RallyPoints:
+        return self._line.latest.rally or RallyPoints()
+
+    def id_of(self, plan: RallyPoints) -> int:
+        return rally_id(plan)
+
+    def bodies(self) -> list[Body]:
+        now, facts = self.now, self._line.facts
+        if now.origin:
+            return [unpacked(origin) for origin in now.origin]
+        found: list[Body] = []
+        for p in now.points:
+            latitude, longitude, _ = facts.geodetic(array(p))
+            where = (round(latitude * 1e7), round(longitude * 1e7), p.z - self.home_z)
+            found.append((mav.MAV_FRAME_GLOBAL_RELATIVE_ALT, mav.MAV_CMD_NAV_RALLY_POINT, 1, 0.0, 0.0, 0.0, 0.0, *where))
+        return found
+
+    def read(self, item: Item) -> Item:
+        if item.command != mav.MAV_CMD_NAV_RALLY_POINT:
+            raise BadItem(mav.MAV_MISSION_UNSUPPORTED, f"command {item.command} is no rally point")
+        place_of(item, self._line.facts, self.home_z)
+        return item
+
+    def made(self, items: list[Item]) -> RallyPoints:
+        points = [place_of(item, self._line.facts, self.home_z) for item in items]
+        return RallyPoints(points=points, origin=[packed(item) for item in items])
+
+    def request(self, plan: RallyPoints) -> RallyRequest:
+        return RallyRequest(rally=plan, source=SOURCE)
