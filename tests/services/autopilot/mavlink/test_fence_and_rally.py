@@ -163,7 +163,9 @@ def test_a_breach_is_told_at_once_and_its_end_too():
     rig = Rig()
     rig.run()
     geofence = mav.MAV_SYS_STATUS_GEOFENCE
-    assert of(rig.run(1.1), "FENCE_STATUS", PLANE) == []
+    heard = rig.run(1.1)
+    assert of(heard, "FENCE_STATUS", PLANE) == []
+    assert of(heard, "SYS_STATUS", PLANE)[-1].onboard_control_sensors_health & geofence, "MAVProxy would say 'fence breach'"
     upload(rig, FENCE, kind=1)
     rig.run(1.1)
     rig.plane.status.breach, rig.plane.status.breaches = Breach.BREACH_CEILING, 1
