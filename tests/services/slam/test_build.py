@@ -7,6 +7,7 @@ import pytest
 
 from schemas.messages import Mode
 from services.autopilot.ground.build import hosts
+from services.autopilot.ground.service import GroundAutopilot
 from services.planner.build import build as build_planner
 from services.slam.build import build as build_slam
 from uvf.runtime.mission_file import Job, Waypoint
@@ -68,7 +69,7 @@ def test_a_vehicle_with_a_job_begins_armed_and_one_without_does_not(site):
     nothing = dict.fromkeys(
         ("teleop", "mavlink", "gcs", "client", "offboard", "planner", "stop", "pose", "link", "ticks", "scan", "correction", "battery")
     )
-    asked = {"imu": [], "arm": [], "set_mode": [], "set_mission": [], "set_current": [], "set_fence": []}
+    asked = {"imu": [], **{request: [] for request in GroundAutopilot.requests}}
     for job, armed, mode in (({"explore": True}, True, Mode.MODE_MISSION), ({}, False, Mode.MODE_HOLD)):
         status = hosts(with_job(site, **job))[0].make().step(0.02, **nothing, **asked)["status"]
         assert (status.armed, status.mode) == (armed, mode)
