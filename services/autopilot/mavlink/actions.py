@@ -37,12 +37,7 @@ def on_set_mode(line: Line, message: mav.MAVLink_set_mode_message) -> None:
     if row is None:
         line.text(mav.MAV_SEVERITY_WARNING, f"There is no mode {message.custom_mode:#010x}")
         return
-
-    def done(accepted: bool, reason: str) -> None:
-        if not accepted:
-            line.text(mav.MAV_SEVERITY_WARNING, f"Mode {row.name} refused: {reason or 'no reason given'}")
-
-    set_mode(line, row.mode, done)
+    set_mode(line, row.mode, line.refusal(f"Mode {row.name}"))
 
 
 def _to_mode(mode: Mode) -> Handler:

@@ -7,7 +7,7 @@ from schemas.convert import array
 from schemas.messages import Fence, FenceZone
 from services.autopilot.mavlink import dialect as mav
 from services.autopilot.mavlink.facts import Facts
-from services.autopilot.mavlink.mission_items import BadItem, Body, packed, place_of, unpacked
+from services.autopilot.mavlink.mission_items import BadItem, Body, packed, place_of, point_body, unpacked
 from uvf.maths.zones import Polygon
 from uvf.runtime.fence_file import MOST_VERTICES, MOST_ZONES
 
@@ -87,7 +87,5 @@ def bodies(fence: Fence, facts: Facts, home_z: float) -> list[Body]:
             head = (mav.MAV_FRAME_GLOBAL, command, 1, float(first), float(zone.group), 0.0, 0.0)
             found.append((*head, round(latitude * 1e7), round(longitude * 1e7), 0.0))
     if fence.HasField("return_point"):
-        latitude, longitude, _ = facts.geodetic(array(fence.return_point))
-        where = (round(latitude * 1e7), round(longitude * 1e7), fence.return_point.z - home_z)
-        found.append((mav.MAV_FRAME_GLOBAL_RELATIVE_ALT, POINT, 1, 0.0, 0.0, 0.0, 0.0, *where))
+        found.append(point_body(POINT, fence.return_point, facts, home_z))
     return found

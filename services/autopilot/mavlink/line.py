@@ -97,6 +97,15 @@ class Line:
         for chunk in chunks(severity, text, self._limiter.next_id()):
             self.send(chunk, to)
 
+    def refusal(self, what: str) -> Done:
+        """For ``ask``, where the protocol has no answer of its own: a refusal is said in words."""
+
+        def done(accepted: bool, reason: str) -> None:
+            if not accepted:
+                self.text(mav.MAV_SEVERITY_WARNING, f"{what} refused: {reason or 'no reason given'}")
+
+        return done
+
     def ask(self, call: str, request: Message, done: Done) -> None:
         """Sends a request to a service; ``done`` hears the answer, or why there is none. Never waits in a pause."""
         if self.latest.is_paused:

@@ -8,13 +8,12 @@ from schemas.convert import array
 from schemas.messages import Mission, MissionItem, Vector3
 from services.autopilot.mavlink import dialect as mav
 from services.autopilot.mavlink.facts import Facts
+from services.autopilot.mavlink.places import AMSL_FRAMES, HOME_FRAMES
 from services.autopilot.plan import mission_id
 
 ORIGIN = struct.Struct("<BHB4fiif")
 """Frame, command, autocontinue, param1..4, x, y, z: kept with each item and given back unchanged."""
 
-RELATIVE = (mav.MAV_FRAME_GLOBAL_RELATIVE_ALT, mav.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT)
-ABSOLUTE = (mav.MAV_FRAME_GLOBAL, mav.MAV_FRAME_GLOBAL_INT)
 
 SKIPPED = frozenset(
     {
@@ -101,7 +100,7 @@ def unpacked(origin: bytes) -> "Body":
 
 def place_of(item: mav.MAVLink_mission_item_int_message, facts: Facts, home_z: float) -> Vector3:
     """home_z: height of home [m, world]. Raises BadItem."""
-    if item.frame not in RELATIVE + ABSOLUTE:
+    if item.frame not in HOME_FRAMES + AMSL_FRAMES:
         raise BadItem(mav.MAV_MISSION_UNSUPPORTED_FRAME, f"frame {item.frame} is not supported")
     if abs(item.x) > 900_000_000:
         raise BadItem(mav.MAV_MISSION_INVALID_PARAM5_X, "latitude is out of range")
@@ -109,7 +108,7 @@ def place_of(item: mav.MAVLink_mission_item_int_message, facts: Facts, home_z: f
         raise BadItem(mav.MAV_MISSION_INVALID_PARAM6_Y, "longitude is out of range")
     if not math.isfinite(item.z):
         raise BadItem(mav.MAV_MISSION_INVALID_PARAM7, "altitude is missing")
-    base = home_z + facts.origin.altitude if item.frame in RELATIVE else 0.0
+    base = home_z + facts.origin.altitude if item.frame in HOME_FRAMES else 0.0
     return facts.world(item.x * 1e-7, item.y * 1e-7, base + item.z)
 
 
@@ -203,3 +202,10 @@ def to_wire(item: MissionItem, facts: Facts, home_z: float) -> Body:
 def _yaw(item: MissionItem) -> float:
     """deg clockwise from north, 0 < yaw <= 360; NaN for any."""
     return 360.0 - (math.degrees(item.course) - 90.0) % 360.0 if item.HasField("course") else math.nan
+
+
+def point_body(command: int, point: Vector3, facts: Facts, home_z: float) -> Body:
+    """Of an item that is nothing but a place (rally point, return point), above home."""
+    latitude, longitude, _ = facts.geodetic(array(point))
+    where = round(latitude * 1e7), round(longitude * 1e7), point.z - home_z
+    return mav.MAV_FRAME_GLOBAL_RELATIVE_ALT, command, 1, 0.0, 0.0, 0.0, 0.0, *where

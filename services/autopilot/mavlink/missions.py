@@ -140,13 +140,13 @@ class Missions:
         if plan is None:
             self._ack(sender, mav.MAV_MISSION_UNSUPPORTED, kind)
             return
-        count = mav.MAVLink_mission_count_message(sender.system, sender.component, len(plan.bodies()), kind, plan.id_of(plan.now))
+        count = mav.MAVLink_mission_count_message(sender.system, sender.component, len(plan.bodies), kind, plan.id_of(plan.now))
         self._line.send(count, sender.peer)
 
     def on_request(self, message: mav.MAVLink_mission_request_int_message, sender: Sender) -> None:
         """MISSION_REQUEST_INT, or the older MISSION_REQUEST: the same item either way."""
         kind, seq = message.mission_type, message.seq
-        bodies = self._plans[kind].bodies() if kind in self._plans else []
+        bodies = self._plans[kind].bodies if kind in self._plans else []
         if seq >= len(bodies):
             self._ack(sender, mav.MAV_MISSION_INVALID_SEQUENCE, kind)
             return
@@ -193,11 +193,7 @@ class Missions:
         self._ack(sender, mav.MAV_MISSION_UNSUPPORTED, message.mission_type)
 
     def on_set_current(self, message: mav.MAVLink_mission_set_current_message, sender: Sender) -> None:
-        def done(accepted: bool, reason: str) -> None:
-            if not accepted:
-                self._line.text(mav.MAV_SEVERITY_WARNING, f"Set waypoint refused: {reason}")
-
-        set_current(self._line, message.seq, done)
+        set_current(self._line, message.seq, self._line.refusal("Set waypoint"))
 
     def _guided(self, sender: Sender, accepted: bool, reason: str) -> None:
         if accepted:

@@ -106,11 +106,7 @@ def _set_home(line: Line, command: Command, ack: Acknowledger) -> None:
 
 def on_set_home_position(line: Line, m: mav.MAVLink_set_home_position_message) -> None:
     """Has no answer but the next HOME_POSITION; a refusal is said in words."""
-
-    def done(accepted: bool, reason: str) -> None:
-        if not accepted:
-            line.text(mav.MAV_SEVERITY_WARNING, f"New home refused: {reason}")
-
+    done = line.refusal("New home")
     try:
         place = place_of(line, mav.MAV_FRAME_GLOBAL, (m.latitude * 1e-7, m.longitude * 1e-7), m.altitude * 1e-3)
     except BadPlace as bad:

@@ -4,7 +4,6 @@ from typing import Any, Generic, TypeVar
 
 from google.protobuf.message import Message
 
-from schemas.convert import array
 from schemas.messages import Fence, FenceRequest, Mission, MissionItem, MissionRequest, RallyPoints, RallyRequest
 from services.autopilot.mavlink import dialect as mav
 from services.autopilot.mavlink import fence_items
@@ -19,6 +18,7 @@ from services.autopilot.mavlink.mission_items import (
     mission_of,
     packed,
     place_of,
+    point_body,
     to_wire,
     unpacked,
 )
@@ -39,6 +39,8 @@ class Plan(Generic[P]):
         self._line = line
         self._accepted: tuple[int, P] | None = None
         """(id of what was published before, what has been accepted)."""
+        self._written: tuple[P, float, list[Body]] | None = None
+        """(plan, height of home, its items)."""
 
     @property
     def now(self) -> P:
@@ -63,8 +65,15 @@ class Plan(Generic[P]):
     def id_of(self, plan: P) -> int:
         raise NotImplementedError
 
+    @property
     def bodies(self) -> list[Body]:
-        """Of the plan in force, in their order."""
+        """Of the plan in force, in their order: written once, for each item is asked for by itself."""
+        plan, home_z = self.now, self.home_z
+        if self._written is None or self._written[0] is not plan or self._written[1] != home_z:
+            self._written = plan, home_z, self.write(plan)
+        return self._written[2]
+
+    def write(self, plan: P) -> list[Body]:
         raise NotImplementedError
 
     def read(self, item: Item) -> Any:
@@ -92,8 +101,8 @@ class MissionPlan(Plan[Mission]):
     def id_of(self, plan: Mission) -> int:
         return plan.id
 
-    def bodies(self) -> list[Body]:
-        return [to_wire(item, self._line.facts, self.home_z) for item in self.now.items]
+    def write(self, plan: Mission) -> list[Body]:
+        return [to_wire(item, self._line.facts, self.home_z) for item in plan.items]
 
     def read(self, item: Item) -> MissionItem:
         return from_wire(item, self._line.facts, self.home_z)
@@ -119,8 +128,8 @@ class FencePlan(Plan[Fence]):
     def id_of(self, plan: Fence) -> int:
         return fence_id(plan)
 
-    def bodies(self) -> list[Body]:
-        return fence_items.bodies(self.now, self._line.facts, self.home_z)
+    def write(self, plan: Fence) -> list[Body]:
+        return fence_items.bodies(plan, self._line.facts, self.home_z)
 
     def read(self, item: Item) -> Item:
         return fence_items.checked(item, self._line.facts, self.home_z)
@@ -141,16 +150,10 @@ class RallyPlan(Plan[RallyPoints]):
     def id_of(self, plan: RallyPoints) -> int:
         return rally_id(plan)
 
-    def bodies(self) -> list[Body]:
-        now, facts = self.now, self._line.facts
-        if now.origin:
-            return [unpacked(origin) for origin in now.origin]
-        found: list[Body] = []
-        for p in now.points:
-            latitude, longitude, _ = facts.geodetic(array(p))
-            where = (round(latitude * 1e7), round(longitude * 1e7), p.z - self.home_z)
-            found.append((mav.MAV_FRAME_GLOBAL_RELATIVE_ALT, mav.MAV_CMD_NAV_RALLY_POINT, 1, 0.0, 0.0, 0.0, 0.0, *where))
-        return found
+    def write(self, plan: RallyPoints) -> list[Body]:
+        if plan.origin:
+            return [unpacked(origin) for origin in plan.origin]
+        return [point_body(mav.MAV_CMD_NAV_RALLY_POINT, point, self._line.facts, self.home_z) for point in plan.points]
 
     def read(self, item: Item) -> Item:
         if item.command != mav.MAV_CMD_NAV_RALLY_POINT:

@@ -89,12 +89,7 @@ class Setpoints:
         if status is None or status.mode not in TO_GO[line.facts.is_ground]:
             line.text(mav.MAV_SEVERITY_WARNING, "Go to refused: a position target needs mode Hold, or Offboard and two each second")
             return
-
-        def done(accepted: bool, reason: str) -> None:
-            if not accepted:
-                line.text(mav.MAV_SEVERITY_WARNING, f"Go to refused: {reason}")
-
-        go_to(line, GoalRequest(position=place, yaw=math.nan, source=SOURCE), True, done)
+        go_to(line, GoalRequest(position=place, yaw=math.nan, source=SOURCE), True, line.refusal("Go to"))
 
     def _on_local(self, m: mav.MAVLink_set_position_target_local_ned_message, sender: Sender) -> None:
         velocity = (m.vx, m.vy, m.vz)

@@ -8,7 +8,7 @@ import copy
 
 from services.autopilot.mavlink import dialect as mav
 from tests.services.autopilot.mavlink.qgc_parameters import ParameterManager
-from tests.services.autopilot.mavlink.rig import GCS, long, of
+from tests.services.autopilot.mavlink.rig import GCS, long
 
 ACK_WAIT, MESSAGE_WAIT, PLAN_WAIT, ITEM_WAIT = 1.2, 1.0, 1.5, 0.25  # s
 TRIES = 3
@@ -65,15 +65,7 @@ class QGroundControl(ParameterManager):
         self._heard += [m for m in heard if m is not None]
 
     def _await(self, kind, seconds, fits=lambda m: True):
-        end = self.rig.t + seconds
-        while True:
-            found = next((m for m in of(self._heard, kind) if fits(m)), None)
-            if found is not None:
-                self._heard.remove(found)
-                return found
-            if self.rig.t >= end:
-                return None
-            self._listen(0.02)
+        return self._await_any((kind,), seconds, fits)
 
     def _request(self, number, kind, p2=0.0):
         """REQUEST_MESSAGE: three tries for the acknowledgement, then a second for the message. None = refused or silent."""
