@@ -19,15 +19,15 @@ from benchmarks.timing import stopwatch
 from schemas import topics
 from schemas.convert import stamp
 from schemas.messages import Gnss, Kind, Mode, Targets, Vector3, VehicleStatus
-from services.autopilot.mavlink import dialect as mav
 from services.autopilot.mavlink.build import facts_of
-from services.autopilot.mavlink.codec import Codec
-from services.autopilot.mavlink.endpoint import UdpLink
 from services.autopilot.mavlink.facts import Facts
 from services.autopilot.mavlink.parameter_store import FileStore
 from services.autopilot.mavlink.service import MavlinkService
 from uvf.runtime.bus import LocalBus, Publisher
 from uvf.runtime.clock import NS
+from uvf.runtime.mavlink import dialect as mav
+from uvf.runtime.mavlink.codec import Codec
+from uvf.runtime.mavlink.endpoint import UdpLink
 from uvf.runtime.service import Input
 from uvf.runtime.shell import Shell
 from uvf.runtime.site import ROOT, Host, load_site

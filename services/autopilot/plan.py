@@ -1,7 +1,4 @@
-"""Missions as messages, the same for every kind of vehicle: from a mission file, and the id of their content."""
-
-import zlib
-from collections.abc import Sequence
+"""Missions as messages, the same for every kind of vehicle: from a mission file."""
 
 from schemas.messages import MissionItem, Vector3
 from uvf.runtime.mission_file import Waypoint
@@ -23,9 +20,3 @@ def item_from_file(waypoint: Waypoint) -> MissionItem:
         to_altitude=waypoint.to_altitude,
         distance=waypoint.distance,
     )
-
-
-def mission_id(items: Sequence[MissionItem]) -> int:
-    """CRC-32 of the items; 0 means an empty mission and no other."""
-    crc = zlib.crc32(b"".join(item.SerializeToString(deterministic=True) for item in items))
-    return (crc or 1) if items else 0

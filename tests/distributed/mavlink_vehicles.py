@@ -8,12 +8,12 @@ import numpy as np
 from schemas import topics
 from schemas.convert import array, quaternion, stamp, vector
 from schemas.messages import Gnss, Kind, Mission, MissionItem, MissionProgress, Mode, NavState, Reply, VehicleStatus
-from services.autopilot.mavlink.endpoint import UdpLink
 from services.autopilot.mavlink.service import MavlinkService
 from tests.services.autopilot.mavlink.rig import ORIGIN, PLANE_FACTS, ROVER_FACTS, shelves
 from uvf.maths.rotations import from_euler
 from uvf.runtime.bus import LocalBus
 from uvf.runtime.clock import NS
+from uvf.runtime.mavlink.endpoint import UdpLink
 from uvf.runtime.service import Service
 from uvf.runtime.shell import Shell
 from uvf.runtime.site import Host

@@ -10,9 +10,9 @@ from services.autopilot.air.modes import FlightMode
 from services.autopilot.air.plan import Item, Kind, Stand
 from services.autopilot.air.route import Circle, Place
 from services.autopilot.air.sensed import Fix, Inertial, Pressures
-from services.autopilot.plan import mission_id
 from uvf.maths.geodesy import LocalTangent
 from uvf.maths.rotations import enu_flu_from_ned_frd, to_euler
+from uvf.runtime.plan_ids import mission_id
 
 OLDEST_FIX = 1.0  # s
 OLDEST_STATE = 30.0  # s

@@ -3,11 +3,11 @@
 import math
 
 from schemas.messages import ArmRequest, Mode, ModeRequest, SetCurrentRequest
-from services.autopilot.mavlink import dialect as mav
-from services.autopilot.mavlink import modes
 from services.autopilot.mavlink.commands import Acknowledger, Command, Handler
 from services.autopilot.mavlink.line import Done, Line
 from services.autopilot.mavlink.telemetry import mission_current
+from uvf.runtime.mavlink import dialect as mav
+from uvf.runtime.mavlink import modes
 
 SOURCE = "mavlink"
 FORCE = (2989.0, 21196.0)  # magic numbers of param 2: force arm, force disarm

@@ -8,7 +8,6 @@ from collections.abc import Mapping
 
 from services.autopilot.air.params import FIXED, AirParams
 from services.autopilot.ground.params import GroundAutopilotParams
-from services.autopilot.mavlink.endpoint import Peer, UdpLink
 from services.autopilot.mavlink.facts import Facts
 from services.autopilot.mavlink.key_store import KeyStore
 from services.autopilot.mavlink.parameter_store import FileStore
@@ -16,6 +15,7 @@ from services.autopilot.mavlink.service import MavlinkService
 from services.autopilot.mavlink.signing import Signing
 from uvf.maths.geodesy import LocalTangent
 from uvf.runtime.address import peer
+from uvf.runtime.mavlink.endpoint import Peer, UdpLink
 from uvf.runtime.params import BadInput, nearest
 from uvf.runtime.service import Params
 from uvf.runtime.site import Host, Member, Site

@@ -4,8 +4,8 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from services.autopilot.mavlink import dialect as mav
 from services.autopilot.mavlink.line import Line, Sender
+from uvf.runtime.mavlink import dialect as mav
 
 LARGEST = 1e9  # no parameter of any command means anything beyond
 NOT_GIVEN = 2**31 - 1  # x or y of a COMMAND_INT without a place

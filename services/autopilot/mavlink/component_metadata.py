@@ -11,11 +11,11 @@ from typing import Any
 
 import msgspec
 
-from services.autopilot.mavlink import dialect as mav
 from services.autopilot.mavlink.facts import Facts
 from services.autopilot.mavlink.identity import VERSION
 from services.autopilot.mavlink.parameter_table import Parameter
 from services.autopilot.mavlink.parameter_values import crc32
+from uvf.runtime.mavlink import dialect as mav
 
 GENERAL = "/etc/extras/general.json"
 PARAMETERS = "/etc/extras/parameters.json.xz"

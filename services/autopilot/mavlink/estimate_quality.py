@@ -4,9 +4,9 @@ import math
 
 from schemas.convert import array
 from schemas.messages import EstimateQuality
-from services.autopilot.mavlink import dialect as mav
 from services.autopilot.mavlink.facts import Facts, Latest
-from services.autopilot.mavlink.scaling import whole
+from uvf.runtime.mavlink import dialect as mav
+from uvf.runtime.mavlink.scaling import whole
 
 Message = mav.MAVLink_message | None
 HORIZONTAL = mav.ESTIMATOR_POS_HORIZ_REL | mav.ESTIMATOR_PRED_POS_HORIZ_REL | mav.ESTIMATOR_VELOCITY_HORIZ

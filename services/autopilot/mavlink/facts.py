@@ -25,12 +25,12 @@ from schemas.messages import (
     RallyPoints,
     SurfaceCommand,
     Targets,
-    Vector3,
     VehicleStatus,
     WheelCommand,
 )
 from services.autopilot.mavlink.vibration import Vibration
 from uvf.maths.geodesy import Floats, LocalTangent
+from uvf.runtime.mavlink.geo import Placed
 from uvf.runtime.service import Params
 from uvf.runtime.vehicle_file import Sensors, VehicleFile
 
@@ -46,7 +46,7 @@ S = TypeVar("S", bound=Stamped)
 
 
 @dataclass(frozen=True)
-class Facts:
+class Facts(Placed):
     """origin: of the world frame; its altitude counts as above mean sea level.
 
     params: the autopilot's, as the vehicle's file sets them; fixed_params: those that it reads only when it starts.
@@ -74,16 +74,6 @@ class Facts:
     @property
     def sensors(self) -> Sensors:
         return self.file.sensors
-
-    def geodetic(self, position: Floats) -> tuple[float, float, float]:
-        """(latitude, longitude [deg], altitude [m AMSL]) of a world position (3,) [m]."""
-        latitude, longitude, _ = self.origin.geodetic(np.array((position[0], position[1], 0.0)))
-        return float(np.degrees(latitude)), float(np.degrees(longitude)), float(position[2]) + self.origin.altitude
-
-    def world(self, latitude: float, longitude: float, altitude: float) -> Vector3:
-        """World position of a point given in deg, deg, m AMSL; inverse of ``geodetic``."""
-        x, y, _ = self.origin.enu(float(np.radians(latitude)), float(np.radians(longitude)), self.origin.altitude)
-        return Vector3(x=float(x), y=float(y), z=altitude - self.origin.altitude)
 
 
 @dataclass

@@ -1,10 +1,10 @@
 """DO_FENCE_ENABLE: the fence in force is put out of force, or back into it."""
 
 from schemas.messages import Fence, FenceRequest
-from services.autopilot.mavlink import dialect as mav
 from services.autopilot.mavlink.actions import SOURCE
 from services.autopilot.mavlink.commands import Acknowledger, Command, Handler
 from services.autopilot.mavlink.line import Line
+from uvf.runtime.mavlink import dialect as mav
 
 
 def _enable(line: Line, command: Command, ack: Acknowledger) -> None:

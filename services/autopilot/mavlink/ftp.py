@@ -7,10 +7,10 @@ import struct
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
-from services.autopilot.mavlink import dialect as mav
 from services.autopilot.mavlink.file_tree import FileTree
 from services.autopilot.mavlink.line import Line, Sender
 from services.autopilot.mavlink.parameter_values import crc32
+from uvf.runtime.mavlink import dialect as mav
 
 HEADER = struct.Struct("<HBBBBBxI")  # sequence, session, opcode, size, requested opcode, burst complete, offset
 PAYLOAD_BYTES = 251

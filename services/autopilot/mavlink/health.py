@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 
 from schemas.messages import Gnss
-from services.autopilot.mavlink import dialect as mav
 from services.autopilot.mavlink.facts import Facts, Latest
 from uvf.runtime.fence_file import fencing
+from uvf.runtime.mavlink import dialect as mav
 
 _IMU = mav.MAV_SYS_STATUS_SENSOR_3D_GYRO | mav.MAV_SYS_STATUS_SENSOR_3D_ACCEL | mav.MAV_SYS_STATUS_SENSOR_3D_MAG
 _AIR_DATA = mav.MAV_SYS_STATUS_SENSOR_ABSOLUTE_PRESSURE | mav.MAV_SYS_STATUS_SENSOR_DIFFERENTIAL_PRESSURE

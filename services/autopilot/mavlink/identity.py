@@ -6,9 +6,9 @@ import tomllib
 from importlib.metadata import version
 
 from schemas.messages import Kind
-from services.autopilot.mavlink import dialect as mav
 from services.autopilot.mavlink.facts import Facts, Latest
-from services.autopilot.mavlink.modes import row_of
+from uvf.runtime.mavlink import dialect as mav
+from uvf.runtime.mavlink.modes import row_of
 from uvf.runtime.site import ROOT
 
 EMULATED_PX4 = (1, 16, 0)

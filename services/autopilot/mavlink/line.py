@@ -7,11 +7,11 @@ from typing import Any, NamedTuple
 
 from google.protobuf.message import Message
 
-from services.autopilot.mavlink import dialect as mav
-from services.autopilot.mavlink.endpoint import Peer
 from services.autopilot.mavlink.facts import Facts, Latest
 from services.autopilot.mavlink.statustext import TextLimiter, chunks
 from services.autopilot.mavlink.vibration import Vibration
+from uvf.runtime.mavlink import dialect as mav
+from uvf.runtime.mavlink.endpoint import Peer
 from uvf.runtime.service import Answer
 
 HELD_FOR = 1.0  # s, wall: as long a station that steers may be silent before another one may

@@ -11,8 +11,8 @@ from typing import Any
 
 from schemas.convert import stamp
 from schemas.messages import DriveCommand, Mode, SurfaceCommand
-from services.autopilot.mavlink import dialect as mav
 from services.autopilot.mavlink.line import Holder, Line, Sender
+from uvf.runtime.mavlink import dialect as mav
 
 FULL = 1000.0
 NOT_THERE = 2**15 - 1

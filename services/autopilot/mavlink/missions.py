@@ -4,13 +4,13 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
-from services.autopilot.mavlink import dialect as mav
 from services.autopilot.mavlink.actions import set_current
 from services.autopilot.mavlink.guided import goal_of_item
 from services.autopilot.mavlink.line import Line, Sender
-from services.autopilot.mavlink.mission_items import BadItem
 from services.autopilot.mavlink.old_items import as_int
 from services.autopilot.mavlink.plans import FencePlan, MissionPlan, Plan, RallyPlan
+from uvf.runtime.mavlink import dialect as mav
+from uvf.runtime.mavlink.mission_items import BadItem
 
 MISSION = mav.MAV_MISSION_TYPE_MISSION
 ASK_AGAIN = 0.25  # s

@@ -6,11 +6,11 @@ import numpy as np
 
 from schemas.convert import array, wxyz, yaw_of
 from schemas.messages import NavState
-from services.autopilot.mavlink import dialect as mav
 from services.autopilot.mavlink.facts import Facts, Latest
-from services.autopilot.mavlink.scaling import I16, I32, U16, heading_degrees, whole
 from uvf.maths.geodesy import Floats
 from uvf.maths.rotations import enu_flu_from_ned_frd, to_euler
+from uvf.runtime.mavlink import dialect as mav
+from uvf.runtime.mavlink.scaling import I16, I32, U16, heading_degrees, whole
 
 Message = mav.MAVLink_message | None
 

@@ -14,13 +14,14 @@ from schemas.messages import (
     SpeedOrder,
     TakeoffOrder,
 )
-from services.autopilot.mavlink import dialect as mav
 from services.autopilot.mavlink.actions import SOURCE, set_current, set_mode
 from services.autopilot.mavlink.commands import Acknowledger, Command, Handler
 from services.autopilot.mavlink.line import Line, Sender
-from services.autopilot.mavlink.mission_items import ORIGIN
 from services.autopilot.mavlink.navigation import global_origin
-from services.autopilot.mavlink.places import HOME_FRAMES, BadPlace, altitude_of, frame_of, of_aircraft, place_in, place_of, refusing
+from services.autopilot.mavlink.places import BadPlace, altitude_of, frame_of, of_aircraft, place_in, place_of, refusing
+from uvf.runtime.mavlink import dialect as mav
+from uvf.runtime.mavlink.geo import HOME_FRAMES
+from uvf.runtime.mavlink.mission_items import ORIGIN
 
 RISE = 10.0  # m above where it is: an altitude below that is meant above home, not above sea level
 NO_CHANGE, DEFAULT = -1.0, -2.0

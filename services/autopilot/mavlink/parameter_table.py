@@ -8,9 +8,9 @@ from typing import Any, Literal
 import msgspec
 import numpy as np
 
-from services.autopilot.mavlink import dialect as mav
 from services.autopilot.mavlink.facts import Facts
 from services.autopilot.mavlink.own_params import Own, own_params
+from uvf.runtime.mavlink import dialect as mav
 from uvf.runtime.params import BadInput, load_yaml, nearest
 
 FILE = Path(__file__).with_name("parameters.yaml")

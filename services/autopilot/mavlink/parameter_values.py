@@ -6,8 +6,8 @@ import zlib
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from services.autopilot.mavlink import dialect as mav
 from services.autopilot.mavlink.parameter_table import WHOLE, Parameter
+from uvf.runtime.mavlink import dialect as mav
 
 
 class ParameterValues:

@@ -2,14 +2,14 @@
 
 import math
 
-from services.autopilot.mavlink import dialect as mav
 from services.autopilot.mavlink.commands import Acknowledger, Command, Handler
-from services.autopilot.mavlink.endpoint import Peer
 from services.autopilot.mavlink.line import Line, Sender
 from services.autopilot.mavlink.parameter_store import Store
 from services.autopilot.mavlink.parameter_table import Parameter, parameters_of
 from services.autopilot.mavlink.parameter_values import ParameterValues, decoded, param_value, raw_of
 from services.autopilot.mavlink.settings import ParameterSettings
+from uvf.runtime.mavlink import dialect as mav
+from uvf.runtime.mavlink.endpoint import Peer
 
 PER_STEP = 4  # at 50 steps a second: 200 a second
 HASH = "_HASH_CHECK"

@@ -2,8 +2,8 @@
 
 from typing import NamedTuple
 
-from services.autopilot.mavlink.endpoint import Peer
 from services.autopilot.mavlink.line import Sender
+from uvf.runtime.mavlink.endpoint import Peer
 
 CONNECTION_ENDS = 10.0  # s, wall, without a word: ten heartbeats
 

@@ -5,12 +5,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from schemas.messages import Vector3
-from services.autopilot.mavlink import dialect as mav
 from services.autopilot.mavlink.commands import Acknowledger, Command, Handler
 from services.autopilot.mavlink.line import Line
+from uvf.runtime.mavlink import dialect as mav
+from uvf.runtime.mavlink.geo import AMSL_FRAMES, HOME_FRAMES
 
-AMSL_FRAMES = (mav.MAV_FRAME_GLOBAL, mav.MAV_FRAME_GLOBAL_INT)
-HOME_FRAMES = (mav.MAV_FRAME_GLOBAL_RELATIVE_ALT, mav.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT)
 HIGHEST = 1e5  # m
 FARTHEST = 2e5  # m from the world's origin: beyond, somebody has left latitude and longitude at zero
 

@@ -5,11 +5,11 @@ from typing import Any, Generic, TypeVar
 from google.protobuf.message import Message
 
 from schemas.messages import Fence, FenceRequest, Mission, MissionItem, MissionRequest, RallyPoints, RallyRequest
-from services.autopilot.mavlink import dialect as mav
-from services.autopilot.mavlink import fence_items
 from services.autopilot.mavlink.actions import SOURCE
 from services.autopilot.mavlink.line import Line
-from services.autopilot.mavlink.mission_items import (
+from uvf.runtime.mavlink import dialect as mav
+from uvf.runtime.mavlink import fence_items
+from uvf.runtime.mavlink.mission_items import (
     BadItem,
     Body,
     check_whole,
@@ -22,7 +22,7 @@ from services.autopilot.mavlink.mission_items import (
     to_wire,
     unpacked,
 )
-from services.autopilot.mavlink.plan_ids import fence_id, rally_id
+from uvf.runtime.plan_ids import fence_id, rally_id
 
 Item = mav.MAVLink_mission_item_int_message
 P = TypeVar("P", Mission, Fence, RallyPoints)

@@ -2,8 +2,6 @@
 
 import math
 
-from services.autopilot.mavlink import dialect as mav
-from services.autopilot.mavlink import modes
 from services.autopilot.mavlink.commands import Acknowledger, Command, Handler
 from services.autopilot.mavlink.component_metadata import component_metadata
 from services.autopilot.mavlink.health import health
@@ -11,6 +9,8 @@ from services.autopilot.mavlink.line import Line
 from services.autopilot.mavlink.navigation import boot_ms
 from services.autopilot.mavlink.streams import Schedule
 from services.autopilot.mavlink.telemetry import STREAMS
+from uvf.runtime.mavlink import dialect as mav
+from uvf.runtime.mavlink import modes
 
 
 class Queries:

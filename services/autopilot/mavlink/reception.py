@@ -2,14 +2,14 @@
 
 from collections.abc import Sequence
 
-from services.autopilot.mavlink import dialect as mav
-from services.autopilot.mavlink.codec import AUTOPILOT
-from services.autopilot.mavlink.endpoint import Link, Peer
 from services.autopilot.mavlink.line import Sender
 from services.autopilot.mavlink.peers import Peers
 from services.autopilot.mavlink.signing import Signing, Verdict
 from services.autopilot.mavlink.stations import Stations
 from services.autopilot.mavlink.vehicle_link import VehicleLink
+from uvf.runtime.mavlink import dialect as mav
+from uvf.runtime.mavlink.codec import AUTOPILOT
+from uvf.runtime.mavlink.endpoint import Link, Peer
 
 
 class Reception:

@@ -28,14 +28,14 @@ from schemas.messages import (
     VehicleStatus,
     WheelCommand,
 )
-from services.autopilot.mavlink import endpoint
-from services.autopilot.mavlink.codec import Codec
 from services.autopilot.mavlink.facts import Facts
 from services.autopilot.mavlink.parameter_store import Store
 from services.autopilot.mavlink.reception import Reception
 from services.autopilot.mavlink.signing import Signing
 from services.autopilot.mavlink.vehicle_link import VehicleLink
 from uvf.maths.sampling import Due
+from uvf.runtime.mavlink import endpoint
+from uvf.runtime.mavlink.codec import Codec
 from uvf.runtime.service import Answer, Outputs, Service, each_vehicle, every, optional
 
 Answers = list[Answer[Any, Any]]

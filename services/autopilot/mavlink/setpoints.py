@@ -22,13 +22,13 @@ from schemas.messages import (
     Mode,
     Vector3,
 )
-from services.autopilot.mavlink import dialect as mav
 from services.autopilot.mavlink.actions import SOURCE
 from services.autopilot.mavlink.guided import go_to
 from services.autopilot.mavlink.line import Holder, Line, Sender
 from services.autopilot.mavlink.places import BadPlace, place_of
 from uvf.maths.geodesy import Floats
 from uvf.maths.rotations import to_euler
+from uvf.runtime.mavlink import dialect as mav
 
 ALONE = 1.0  # s, wall: after which a target without another is no stream
 IGNORE_PLACE, IGNORE_Z, IGNORE_VELOCITY, IGNORE_VZ, IGNORE_RATE = 0b011, 0b100, 0b011_000, 0b100_000, 1 << 11

@@ -7,9 +7,9 @@ from typing import Any
 import msgspec
 
 from schemas.messages import ParamRequest, ParamValues
-from services.autopilot.mavlink import dialect as mav
 from services.autopilot.mavlink.line import Done, Line
 from services.autopilot.mavlink.parameter_store import Store, Unreadable
+from uvf.runtime.mavlink import dialect as mav
 from uvf.runtime.params import BadInput, convert
 
 SOURCE = "mavlink"

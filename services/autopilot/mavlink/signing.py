@@ -6,12 +6,12 @@ from dataclasses import dataclass
 from enum import Enum
 from functools import partial
 
-from services.autopilot.mavlink import dialect as mav
-from services.autopilot.mavlink.endpoint import Peer
-from services.autopilot.mavlink.framing import SIGNED, Sign
 from services.autopilot.mavlink.key_store import KeyStore
 from services.autopilot.mavlink.line import Sender
 from uvf.runtime.address import is_loopback
+from uvf.runtime.mavlink import dialect as mav
+from uvf.runtime.mavlink.endpoint import Peer
+from uvf.runtime.mavlink.framing import SIGNED, Sign
 
 BLOCK = mav.MAVLINK_SIGNATURE_BLOCK_LEN
 HASH_BYTES = 6

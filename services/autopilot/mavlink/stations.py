@@ -1,6 +1,6 @@
 """Which ground stations are in touch: those whose HEARTBEAT of a while ago at most has been heard."""
 
-from services.autopilot.mavlink import dialect as mav
+from uvf.runtime.mavlink import dialect as mav
 
 SILENT_AFTER = 3.0  # s, wall: three heartbeats
 

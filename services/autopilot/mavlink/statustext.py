@@ -3,7 +3,7 @@
 from collections.abc import Hashable
 
 from schemas.messages import Event
-from services.autopilot.mavlink import dialect as mav
+from uvf.runtime.mavlink import dialect as mav
 
 CHUNK_BYTES = 50
 REPEAT_AFTER = 10.0  # s

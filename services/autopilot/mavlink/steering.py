@@ -6,12 +6,12 @@ import numpy as np
 
 from schemas.convert import array, yaw_of
 from schemas.messages import Mode, NavStatus
-from services.autopilot.mavlink import dialect as mav
 from services.autopilot.mavlink.facts import Facts, Latest
 from services.autopilot.mavlink.navigation import boot_ms
-from services.autopilot.mavlink.scaling import I16, I32, U16, compass, whole
 from uvf.maths.geodesy import Floats
 from uvf.maths.rotations import from_euler
+from uvf.runtime.mavlink import dialect as mav
+from uvf.runtime.mavlink.scaling import I16, I32, U16, compass, whole
 
 Message = mav.MAVLink_message | None
 

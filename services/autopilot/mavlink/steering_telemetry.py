@@ -2,10 +2,10 @@
 
 from schemas.convert import array
 from schemas.messages import Mode
-from services.autopilot.mavlink import dialect as mav
 from services.autopilot.mavlink.facts import Facts, Latest
 from services.autopilot.mavlink.navigation import boot_ms
-from services.autopilot.mavlink.scaling import I32, whole
+from uvf.runtime.mavlink import dialect as mav
+from uvf.runtime.mavlink.scaling import I32, whole
 
 Message = mav.MAVLink_message | None
 UNUSED, UNKNOWN_STRENGTH = 0xFFFF, 255

@@ -11,15 +11,15 @@ import numpy as np
 
 from schemas.convert import array, wxyz
 from schemas.messages import Breach, Gnss, MissionItem, Mode
-from services.autopilot.mavlink import dialect as mav
 from services.autopilot.mavlink import estimate_quality, identity, navigation, sensor_messages, steering, steering_telemetry
 from services.autopilot.mavlink.facts import Facts, Latest
 from services.autopilot.mavlink.health import health
-from services.autopilot.mavlink.plan_ids import fence_id, rally_id
-from services.autopilot.mavlink.scaling import I32, U16, whole
-from services.autopilot.mavlink.scaling import compass as compass_of
 from services.autopilot.mavlink.traffic import traffic
 from uvf.runtime.fence_file import fencing
+from uvf.runtime.mavlink import dialect as mav
+from uvf.runtime.mavlink.scaling import I32, U16, whole
+from uvf.runtime.mavlink.scaling import compass as compass_of
+from uvf.runtime.plan_ids import fence_id, rally_id
 
 Message = mav.MAVLink_message | None
 Build = Callable[[Facts, Latest, float], Message | list[mav.MAVLink_message]]

@@ -7,9 +7,9 @@ import re
 import numpy as np
 
 from schemas.convert import array, yaw_of
-from services.autopilot.mavlink import dialect as mav
 from services.autopilot.mavlink.facts import Facts, Latest
-from services.autopilot.mavlink.scaling import I16, I32, U16, compass, heading_degrees, whole
+from uvf.runtime.mavlink import dialect as mav
+from uvf.runtime.mavlink.scaling import I16, I32, U16, compass, heading_degrees, whole
 
 CALLSIGN = 8  # characters
 STANDS = 0.2  # m/s, below which a vehicle goes where it looks

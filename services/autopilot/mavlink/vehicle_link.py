@@ -4,12 +4,10 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from schemas.messages import Event
-from services.autopilot.mavlink import dialect as mav
 from services.autopilot.mavlink.actions import ACTIONS, on_set_mode
 from services.autopilot.mavlink.commands import Commands
 from services.autopilot.mavlink.component_metadata import files_of
 from services.autopilot.mavlink.data_streams import set_rates
-from services.autopilot.mavlink.endpoint import Peer
 from services.autopilot.mavlink.facts import Facts
 from services.autopilot.mavlink.fence_switch import FENCE_SWITCH
 from services.autopilot.mavlink.ftp import FileServer
@@ -27,6 +25,8 @@ from services.autopilot.mavlink.setpoints import Setpoints
 from services.autopilot.mavlink.statustext import SEVERITY, event_text
 from services.autopilot.mavlink.streams import Schedule
 from services.autopilot.mavlink.telemetry import STREAMS
+from uvf.runtime.mavlink import dialect as mav
+from uvf.runtime.mavlink.endpoint import Peer
 
 FIXED = {**ACTIONS, **GUIDED, **ORDERS, **FENCE_SWITCH}
 """Commands whose handlers keep nothing."""

@@ -4,12 +4,12 @@ import msgspec
 
 from schemas import topics
 from services.autopilot.air.build import hosts
-from services.autopilot.mavlink import dialect as mav
 from services.autopilot.mavlink.build import facts_of
 from services.autopilot.mavlink.service import MavlinkService
 from services.sim_air.build import build as build_sim
 from tests.services.autopilot.mavlink.rig import GCS, MemoryLink, Shelf
 from uvf.runtime.lockstep import Lockstep
+from uvf.runtime.mavlink import dialect as mav
 from uvf.runtime.mission_file import Job
 from uvf.runtime.shell import Shell
 from uvf.runtime.site import ROOT, Host, Member, load_site

@@ -7,8 +7,8 @@ import json
 import lzma
 import struct
 
-from services.autopilot.mavlink import dialect as mav
 from tests.services.autopilot.mavlink.file_reader import FileReader
+from uvf.runtime.mavlink import dialect as mav
 
 PARAM_WAIT, GAP_WAIT = 5.0, 3.0  # s
 TRIES = 3

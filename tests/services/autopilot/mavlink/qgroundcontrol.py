@@ -6,9 +6,9 @@ setup checks of ``AutoPilotPlugins/PX4`` in QGroundControl's master of May 2026.
 
 import copy
 
-from services.autopilot.mavlink import dialect as mav
 from tests.services.autopilot.mavlink.qgc_parameters import ParameterManager
 from tests.services.autopilot.mavlink.rig import GCS, long
+from uvf.runtime.mavlink import dialect as mav
 
 ACK_WAIT, MESSAGE_WAIT, PLAN_WAIT, ITEM_WAIT = 1.2, 1.0, 1.5, 0.25  # s
 TRIES = 3

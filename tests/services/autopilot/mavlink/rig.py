@@ -23,13 +23,13 @@ from schemas.messages import (
 )
 from services.autopilot.air.params import FIXED, AirParams
 from services.autopilot.ground.params import GroundAutopilotParams
-from services.autopilot.mavlink import dialect as mav
 from services.autopilot.mavlink.facts import Facts
 from services.autopilot.mavlink.parameter_store import Unreadable
 from services.autopilot.mavlink.service import MavlinkService
 from services.autopilot.told_params import ToldParams
 from uvf.maths.geodesy import LocalTangent
 from uvf.maths.rotations import from_euler
+from uvf.runtime.mavlink import dialect as mav
 from uvf.runtime.param_server import ParamServer
 from uvf.runtime.params import convert
 from uvf.runtime.service import Answer, Service

@@ -4,8 +4,8 @@ import random
 import sys
 import time
 
-from services.autopilot.mavlink import dialect as mav
 from tests.services.autopilot.mavlink.rig import GCS, OTHER, PLANE, ROVER, Rig, long
+from uvf.runtime.mavlink import dialect as mav
 
 AT_ONCE = 500  # datagrams in a step
 NOBODY = 99

@@ -5,8 +5,8 @@ import math
 import pytest
 
 from schemas.messages import Clock, Mode
-from services.autopilot.mavlink import dialect as mav
 from tests.services.autopilot.mavlink.rig import GCS, OTHER, PLANE, ROVER, Rig, acks, long, of, texts
+from uvf.runtime.mavlink import dialect as mav
 
 NAN = math.nan
 ACCEPTED, REJECTED, DENIED, UNSUPPORTED, IN_PROGRESS = 0, 1, 2, 3, 5

@@ -6,11 +6,11 @@ import re
 
 import pytest
 
-from services.autopilot.mavlink import dialect as mav
 from services.autopilot.mavlink.component_metadata import GENERAL, PARAMETERS, files_of
 from services.autopilot.mavlink.parameter_table import parameters_of
 from services.autopilot.mavlink.parameter_values import crc32
 from tests.services.autopilot.mavlink.rig import PLANE, PLANE_FACTS, ROVER_FACTS, Rig, acks, long, of
+from uvf.runtime.mavlink import dialect as mav
 
 NUMBER = (int, float)
 VERSION = r"^\d+\.\d+\.\d+(\.\d+)?$"

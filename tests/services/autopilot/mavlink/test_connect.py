@@ -6,11 +6,11 @@ from collections import defaultdict
 import pytest
 
 from schemas.messages import Mission, MissionItem, Vector3
-from services.autopilot.mavlink import dialect as mav
 from tests.services.autopilot.mavlink import qgroundcontrol as qgc
 from tests.services.autopilot.mavlink.qgc_parameters import NO_PARAMETERS, SOME_PARAMETERS
 from tests.services.autopilot.mavlink.qgroundcontrol import QGroundControl
 from tests.services.autopilot.mavlink.rig import PLANE, ROVER, Rig
+from uvf.runtime.mavlink import dialect as mav
 
 
 def connect(system=PLANE, spoil=lambda message: message):

@@ -5,12 +5,12 @@ import math
 import pytest
 
 from schemas.messages import Breach, Fence, FenceZone, RallyPoints, Vector3
-from services.autopilot.mavlink import dialect as mav
 from tests.services.autopilot.mavlink import qgroundcontrol as qgc
 from tests.services.autopilot.mavlink.qgroundcontrol import QGroundControl
 from tests.services.autopilot.mavlink.rig import PLANE, ROVER, Rig, acks, long, of, texts
 from tests.services.autopilot.mavlink.test_missions import LAT, LON, NAN, content, count, download, item, upload
 from uvf.runtime.fence_file import fencing
+from uvf.runtime.mavlink import dialect as mav
 
 STEP = 20_000  # 1e-7 deg, about 220 m
 

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from services.autopilot.air.params import AirParams
-from services.autopilot.mavlink import dialect as mav
 from services.autopilot.mavlink.build import facts_of
 from tests.services.autopilot.mavlink.airborne import Airborne, field
 from tests.services.autopilot.mavlink.rig import long
+from uvf.runtime.mavlink import dialect as mav
 
 SEA = 300.0  # m: of the field
 ORIGIN = facts_of(field())[0].origin

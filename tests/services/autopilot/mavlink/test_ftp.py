@@ -4,12 +4,12 @@ import struct
 
 import pytest
 
-from services.autopilot.mavlink import dialect as mav
 from services.autopilot.mavlink.component_metadata import GENERAL, PARAMETERS
 from services.autopilot.mavlink.file_tree import FileTree
 from services.autopilot.mavlink.ftp import HEADER, PAYLOAD_BYTES, SESSIONS_MOST
 from services.autopilot.mavlink.parameter_values import crc32
 from tests.services.autopilot.mavlink.rig import GCS, OTHER, PLANE, Rig, of
+from uvf.runtime.mavlink import dialect as mav
 
 TERMINATE, RESET, LIST, OPEN, READ, CREATE, RENAME, CRC, BURST = 1, 2, 3, 4, 5, 6, 13, 14, 15
 ACK, NAK = 128, 129

@@ -5,10 +5,10 @@ import math
 import pytest
 
 from schemas.messages import MissionItem, Mode, Vector3
-from services.autopilot.mavlink import dialect as mav
-from services.autopilot.mavlink.mission_items import ORIGIN
 from tests.services.autopilot.mavlink.rig import ORIGIN as FIELD
 from tests.services.autopilot.mavlink.rig import PLANE, ROVER, Rig, acks, long, of, texts
+from uvf.runtime.mavlink import dialect as mav
+from uvf.runtime.mavlink.mission_items import ORIGIN
 
 NAN = math.nan
 ACCEPTED, REJECTED, DENIED, UNSUPPORTED, BAD_FRAME = 0, 1, 2, 3, 9

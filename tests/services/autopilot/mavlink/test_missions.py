@@ -6,8 +6,8 @@ import struct
 import pytest
 
 from schemas.messages import Mission, MissionItem, Vector3
-from services.autopilot.mavlink import dialect as mav
 from tests.services.autopilot.mavlink.rig import GCS, OTHER, PLANE, Rig, of, texts
+from uvf.runtime.mavlink import dialect as mav
 
 LAT, LON = 407_701_234, 147_905_678
 NAN = math.nan

@@ -5,8 +5,8 @@ import math
 import pytest
 
 from schemas.messages import Mode
-from services.autopilot.mavlink import modes
 from tests.services.autopilot.mavlink.rig import PLANE, ROVER, Rig, acks, long, of
+from uvf.runtime.mavlink import modes
 
 WORDS = {
     Mode.MODE_MANUAL: 65536,

@@ -5,11 +5,11 @@ import lzma
 
 import pytest
 
-from services.autopilot.mavlink import dialect as mav
 from services.autopilot.mavlink.component_metadata import GENERAL, PARAMETERS
 from tests.services.autopilot.mavlink.qgc_parameters import FOREIGN_TEXTS, WRITE
 from tests.services.autopilot.mavlink.qgroundcontrol import QGroundControl
 from tests.services.autopilot.mavlink.rig import PLANE, ROVER, Rig
+from uvf.runtime.mavlink import dialect as mav
 
 
 def connected(system=PLANE, spoil=lambda message: message, rig=None):

@@ -8,14 +8,14 @@ from collections import Counter
 import pytest
 
 from schemas.messages import Clock, Mode
-from services.autopilot.mavlink import dialect as mav
 from services.autopilot.mavlink.actions import ACTIONS
-from services.autopilot.mavlink.codec import Codec
 from services.autopilot.mavlink.guided import GUIDED
 from services.autopilot.mavlink.orders import ORDERS
 from services.autopilot.mavlink.streams import Schedule
 from tests.services.autopilot.mavlink.rig import GCS, PLANE, ROVER, Rig, acks, long, of
 from tests.services.autopilot.mavlink.storm import KINDS, rage
+from uvf.runtime.mavlink import dialect as mav
+from uvf.runtime.mavlink.codec import Codec
 
 BEAT = mav.MAVLink_heartbeat_message(6, 8, 0, 0, 0, 3)
 

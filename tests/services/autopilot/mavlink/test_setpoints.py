@@ -6,9 +6,9 @@ import pytest
 
 from schemas.convert import quaternion
 from schemas.messages import Mode, Vector3
-from services.autopilot.mavlink import dialect as mav
 from tests.services.autopilot.mavlink.rig import OTHER, PLANE, ROVER, Rig, long, of, texts
 from uvf.maths.rotations import from_euler
+from uvf.runtime.mavlink import dialect as mav
 
 POSITION, VELOCITY, BOTH, CLIMBING_ONLY = 0b110111111000, 0b110111000111, 0b110111000000, 0b110111000011
 LOCAL, BODY, GLOBAL, ABOVE_HOME = 1, 8, 5, 6

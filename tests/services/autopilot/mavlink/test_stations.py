@@ -4,8 +4,8 @@ import pytest
 
 from schemas.convert import seconds
 from schemas.messages import Clock
-from services.autopilot.mavlink import dialect as mav
 from tests.services.autopilot.mavlink.rig import OTHER, Rig, texts
+from uvf.runtime.mavlink import dialect as mav
 
 
 def heartbeat(kind):

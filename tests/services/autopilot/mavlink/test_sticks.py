@@ -3,9 +3,9 @@
 import pytest
 
 from schemas.messages import Mode
-from services.autopilot.mavlink import dialect as mav
 from tests.services.autopilot.mavlink.rig import OTHER, PLANE, ROVER, Rig, of, texts
 from uvf.runtime.air_file import Commands
+from uvf.runtime.mavlink import dialect as mav
 
 LIMITS = Commands()  # the file of the rig's aircraft names none
 UNCHANGED, RELEASED = 65535, 0

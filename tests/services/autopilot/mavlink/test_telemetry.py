@@ -7,10 +7,10 @@ import pytest
 
 from schemas.convert import quaternion
 from schemas.messages import Battery, Clock, Event, Mission, MissionItem, MissionProgress, Mode, Vector3
-from services.autopilot.mavlink import dialect as mav
 from services.autopilot.mavlink.telemetry import charge_state
 from tests.services.autopilot.mavlink.rig import OTHER, PLANE, ROVER, Rig, long, of, texts
 from uvf.maths.rotations import from_euler
+from uvf.runtime.mavlink import dialect as mav
 
 
 def newest(rig, name, system=PLANE, seconds=2.1):

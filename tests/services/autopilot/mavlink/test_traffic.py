@@ -6,9 +6,9 @@ from dataclasses import replace
 import pytest
 
 from schemas.messages import Vector3
-from services.autopilot.mavlink import dialect as mav
 from services.autopilot.mavlink.traffic import address, callsign
 from tests.services.autopilot.mavlink.rig import PLANE, PLANE_FACTS, ROVER, ROVER_FACTS, Rig, acks, long, of
+from uvf.runtime.mavlink import dialect as mav
 
 
 def test_each_vehicle_sees_the_others_once_a_second():

@@ -7,11 +7,11 @@ import pytest
 
 from schemas.convert import quaternion
 from schemas.messages import AirData, Battery, EstimateQuality, Imu, Mode, SurfaceCommand, Targets, Vector3
-from services.autopilot.mavlink import dialect as mav
 from services.autopilot.mavlink.service import MavlinkService
 from tests.services.autopilot.mavlink.rig import ORIGIN, PLANE, PLANE_FACTS, Rig, of, shelves
 from uvf.maths import atmosphere
 from uvf.maths.rotations import from_euler
+from uvf.runtime.mavlink import dialect as mav
 
 SECONDS = 20.0
 RATES = {

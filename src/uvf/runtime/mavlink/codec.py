@@ -5,9 +5,9 @@ from collections import defaultdict
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 
-from services.autopilot.mavlink import dialect as mav
-from services.autopilot.mavlink.endpoint import Peer
-from services.autopilot.mavlink.framing import Sign, body, frame
+from uvf.runtime.mavlink import dialect as mav
+from uvf.runtime.mavlink.endpoint import Peer
+from uvf.runtime.mavlink.framing import Sign, body, frame
 
 AUTOPILOT = mav.MAV_COMP_ID_AUTOPILOT1
 

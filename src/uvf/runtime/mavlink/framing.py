@@ -4,7 +4,7 @@ import struct
 from collections.abc import Callable
 from typing import NamedTuple
 
-from services.autopilot.mavlink import dialect as mav
+from uvf.runtime.mavlink import dialect as mav
 
 HEADER = struct.Struct("<BBBBBBBHB")  # marker, length, incompatible and compatible flags, sequence, system, component, number
 SIGNED = mav.MAVLINK_IFLAG_SIGNED

@@ -6,10 +6,9 @@ from dataclasses import dataclass
 
 from schemas.convert import array
 from schemas.messages import Mission, MissionItem, Vector3
-from services.autopilot.mavlink import dialect as mav
-from services.autopilot.mavlink.facts import Facts
-from services.autopilot.mavlink.places import AMSL_FRAMES, HOME_FRAMES
-from services.autopilot.plan import mission_id
+from uvf.runtime.mavlink import dialect as mav
+from uvf.runtime.mavlink.geo import AMSL_FRAMES, HOME_FRAMES, Placed
+from uvf.runtime.plan_ids import mission_id
 
 ORIGIN = struct.Struct("<BHB4fiif")
 """Frame, command, autocontinue, param1..4, x, y, z: kept with each item and given back unchanged."""
@@ -62,12 +61,12 @@ class BadItem(Exception):
     reason: str
 
 
-def is_skipped(command: int, facts: Facts) -> bool:
+def is_skipped(command: int, facts: Placed) -> bool:
     """Whether such an item is carried, but nothing is done for it."""
     return command in SKIPPED or (facts.is_ground and command in TRIGGERS)
 
 
-def from_wire(item: mav.MAVLink_mission_item_int_message, facts: Facts, home_z: float) -> MissionItem:
+def from_wire(item: mav.MAVLink_mission_item_int_message, facts: Placed, home_z: float) -> MissionItem:
     """home_z: height of home [m, world]. Raises BadItem."""
     kind = KIND.get(item.command)
     if item.command in REFUSED:
@@ -98,7 +97,7 @@ def unpacked(origin: bytes) -> "Body":
     return frame, command, autocontinue, p1, p2, p3, p4, x, y, z
 
 
-def place_of(item: mav.MAVLink_mission_item_int_message, facts: Facts, home_z: float) -> Vector3:
+def place_of(item: mav.MAVLink_mission_item_int_message, facts: Placed, home_z: float) -> Vector3:
     """home_z: height of home [m, world]. Raises BadItem."""
     if item.frame not in HOME_FRAMES + AMSL_FRAMES:
         raise BadItem(mav.MAV_MISSION_UNSUPPORTED_FRAME, f"frame {item.frame} is not supported")
@@ -168,7 +167,7 @@ def mission_of(items: list[MissionItem]) -> Mission:
 Body = tuple[int, int, int, float, float, float, float, int, int, float]
 
 
-def to_wire(item: MissionItem, facts: Facts, home_z: float) -> Body:
+def to_wire(item: MissionItem, facts: Placed, home_z: float) -> Body:
     """As in ``ORIGIN``: what came over the wire, or the nearest to an item of a mission file.
 
     The latter with altitudes above home (``home_z`` [m, world]): MAVSDK takes no others.
@@ -204,7 +203,7 @@ def _yaw(item: MissionItem) -> float:
     return 360.0 - (math.degrees(item.course) - 90.0) % 360.0 if item.HasField("course") else math.nan
 
 
-def point_body(command: int, point: Vector3, facts: Facts, home_z: float) -> Body:
+def point_body(command: int, point: Vector3, facts: Placed, home_z: float) -> Body:
     """Of an item that is nothing but a place (rally point, return point), above home."""
     latitude, longitude, _ = facts.geodetic(array(point))
     where = round(latitude * 1e7), round(longitude * 1e7), point.z - home_z

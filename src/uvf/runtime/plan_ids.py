@@ -1,8 +1,14 @@
 """Ids of plans: CRC-32 of what they say; 0 means an empty plan and no other."""
 
 import zlib
+from collections.abc import Sequence
 
-from schemas.messages import Fence, RallyPoints
+from schemas.messages import Fence, MissionItem, RallyPoints
+
+
+def mission_id(items: Sequence[MissionItem]) -> int:
+    crc = zlib.crc32(b"".join(item.SerializeToString(deterministic=True) for item in items))
+    return (crc or 1) if items else 0
 
 
 def fence_id(fence: Fence | None) -> int:
