@@ -13,6 +13,7 @@ from services.autopilot.mavlink.key_store import KeyStore
 from services.autopilot.mavlink.parameter_store import FileStore
 from services.autopilot.mavlink.service import MavlinkService
 from services.autopilot.mavlink.signing import Signing
+from services.autopilot.mavlink.targets import reserved, targets_from
 from uvf.maths.geodesy import LocalTangent
 from uvf.runtime.address import peer
 from uvf.runtime.mavlink.endpoint import Peer, UdpLink
@@ -37,8 +38,8 @@ log = logging.getLogger(__name__)
 
 
 def build(site: Site) -> list[Host]:
-    """Raises BadInput when an address in the environment is not ``host:port``, or a choice none of those that there are."""
-    targets = [peer(text, TARGETS, EXAMPLE) for text in os.environ.get(TARGETS, DEFAULT_TARGETS).split(",") if text.strip()]
+    """Raises BadInput when an address in the environment is not ``host:port`` or ``host:port/system_id``, or a choice none of those that there are."""
+    targets = targets_from(os.environ.get(TARGETS, DEFAULT_TARGETS), TARGETS, [m.entry.system_id for m in site.members.values()])
     where = os.environ.get(LISTEN, DEFAULT_LISTEN)
     listen = peer(where, LISTEN, EXAMPLE) if where.strip() else None
     generic = chosen(IDENTITY, IDENTITIES, "px4", os.environ)
@@ -48,7 +49,8 @@ def build(site: Site) -> list[Host]:
 
     def make() -> MavlinkService:
         started = time.time()
-        return MavlinkService(facts_of(site, generic, started), open_link(targets, listen), stores, open_keys(started, required))
+        link = open_link([target.peer for target in targets], listen)
+        return MavlinkService(facts_of(site, generic, started), link, stores, open_keys(started, required), reserved(targets))
 
     return [Host(MavlinkService, make, writes_for=tuple(site.members))]
 

@@ -74,5 +74,7 @@ def _complaints(facts: Facts, latest: Latest) -> tuple[str, ...]:
         said.append("STOP ALL is engaged")
     if facts.sensors.gnss and not _has_fix(latest):
         said.append("no satellite fix")
-    said += [why for why in (latest.status.prearm if latest.status is not None else ()) if why not in said]
+    # What speaks against arming an aircraft that stands is no complaint about one that is armed and rolls.
+    disarmed = latest.status is not None and not latest.status.armed
+    said += [why for why in (latest.status.prearm if latest.status is not None and disarmed else ()) if why not in said]
     return tuple(said)

@@ -6,6 +6,7 @@ from services.autopilot.mavlink.line import Sender
 from services.autopilot.mavlink.peers import Peers
 from services.autopilot.mavlink.signing import Signing, Verdict
 from services.autopilot.mavlink.stations import Stations
+from services.autopilot.mavlink.targets import Reserved
 from services.autopilot.mavlink.vehicle_link import VehicleLink
 from uvf.runtime.mavlink import dialect as mav
 from uvf.runtime.mavlink.codec import AUTOPILOT
@@ -13,12 +14,13 @@ from uvf.runtime.mavlink.endpoint import Link, Peer
 
 
 class Reception:
-    def __init__(self, vehicles: Sequence[VehicleLink], link: Link, signing: Signing) -> None:
+    def __init__(self, vehicles: Sequence[VehicleLink], link: Link, signing: Signing, reserved: Reserved) -> None:
         self.stations = Stations()
         self._vehicles = vehicles
         self._own_ids = {vehicle.line.facts.system_id for vehicle in vehicles}
         self._link = link
         self._signing = signing
+        self._reserved = reserved
         self._peers = Peers()
 
     def take(self, t: float, message: mav.MAVLink_message, peer: Peer) -> None:
@@ -42,13 +44,13 @@ class Reception:
         self._peers.forget(t)
         if news.connection:
             self._signing.forget(sender.peer)
-        for vehicle in self._vehicles:
+        for vehicle in self._at(sender.peer):
             if news.connection:
                 vehicle.schedule.renew(sender.peer)
             vehicle.greet(sender.peer)
 
     def _pass_on(self, t: float, message: mav.MAVLink_message, sender: Sender, verdict: Verdict) -> None:
-        addressed = self._addressed(message)
+        addressed = self._addressed(message, sender.peer)
         if isinstance(message, mav.MAVLink_setup_signing_message):
             self._set_up(message, sender, verdict, addressed)
             return
@@ -58,12 +60,17 @@ class Reception:
             elif verdict is not Verdict.REPLAYED:
                 vehicle.hear(message, sender)
 
-    def _addressed(self, message: mav.MAVLink_message) -> list[VehicleLink]:
+    def _at(self, peer: Peer) -> list[VehicleLink]:
+        """All vehicles, or the one that a port is reserved for."""
+        only = self._reserved.get(peer)
+        return [vehicle for vehicle in self._vehicles if only in (None, vehicle.line.facts.system_id)]
+
+    def _addressed(self, message: mav.MAVLink_message, peer: Peer) -> list[VehicleLink]:
         """The vehicle with the number that the message names, or all."""
         target = getattr(message, "target_system", getattr(message, "target", 0))
         if getattr(message, "target_component", 0) not in (0, AUTOPILOT):
             return []
-        return [vehicle for vehicle in self._vehicles if target in (0, vehicle.line.facts.system_id)]
+        return [vehicle for vehicle in self._at(peer) if target in (0, vehicle.line.facts.system_id)]
 
     def _set_up(
         self, message: mav.MAVLink_setup_signing_message, sender: Sender, verdict: Verdict, addressed: Sequence[VehicleLink]

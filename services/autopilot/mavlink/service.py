@@ -32,6 +32,7 @@ from services.autopilot.mavlink.facts import Facts
 from services.autopilot.mavlink.parameter_store import Store
 from services.autopilot.mavlink.reception import Reception
 from services.autopilot.mavlink.signing import Signing
+from services.autopilot.mavlink.targets import Reserved
 from services.autopilot.mavlink.vehicle_link import VehicleLink
 from uvf.maths.sampling import Due
 from uvf.runtime.mavlink import endpoint
@@ -89,13 +90,21 @@ class MavlinkService(Service):
         "ground_param": topics.PARAM.by("autopilot_ground"),
     }
 
-    def __init__(self, facts: Sequence[Facts], link: endpoint.Link, stores: Mapping[str, Store], signing: Signing | None = None) -> None:
+    def __init__(
+        self,
+        facts: Sequence[Facts],
+        link: endpoint.Link,
+        stores: Mapping[str, Store],
+        signing: Signing | None = None,
+        reserved: Reserved | None = None,
+    ) -> None:
         """stores: by vehicle, where what is set over MAVLink is remembered."""
         self.codec = Codec()
         self._link = link
         self._vehicles = {one.name: VehicleLink(one, stores[one.name]) for one in facts}
         self._signing = signing or Signing()
-        self._reception = Reception(list(self._vehicles.values()), link, self._signing)
+        self._reserved = reserved or {}
+        self._reception = Reception(list(self._vehicles.values()), link, self._signing, self._reserved)
         for name, vehicle in self._vehicles.items():
             vehicle.line.latest.others = [(v.line.facts, v.line.latest) for other, v in self._vehicles.items() if other != name]
         self._link_due = Due(topics.LINK.hz)
@@ -179,10 +188,10 @@ class MavlinkService(Service):
         signers = {peer: self._signing.signer(t, peer) for peer in peers}
         for name, vehicle in self._vehicles.items():
             vehicle.forget(peers)
-            for message, to in vehicle.tick(peers, events.get(name, ())):
-                for packet, peer in self.codec.packets(
-                    vehicle.line.facts.system_id, message, [(p, signers[p]) for p in to if p in signers]
-                ):
+            system_id = vehicle.line.facts.system_id
+            listening = [peer for peer in peers if self._reserved.get(peer, system_id) == system_id]
+            for message, to in vehicle.tick(listening, events.get(name, ())):
+                for packet, peer in self.codec.packets(system_id, message, [(p, signers[p]) for p in to if p in signers]):
                     self._link.send(packet, peer)
 
     def _links(self, t: float) -> Outputs:

@@ -1,5 +1,6 @@
 """Everything that one vehicle hears and says: messages to the protocols, telemetry by schedule, changes at once."""
 
+import re
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -149,12 +150,13 @@ class VehicleLink:
     def _note_complaints(self) -> None:
         latest = self.line.latest
         complaints = health(self.line.facts, latest).complaints if latest.status is not None else ()
-        if complaints == self._complaints:
-            return
-        for complaint in (c for c in complaints if c not in self._complaints):
-            self.line.text(mav.MAV_SEVERITY_WARNING, f"PreArm: {complaint}")
+        known, kinds = (tuple(map(_without_figures, some)) for some in (self._complaints, complaints))
+        for complaint, kind in zip(complaints, kinds, strict=True):
+            if kind not in known:
+                self.line.text(mav.MAV_SEVERITY_WARNING, f"PreArm: {complaint}")
         self._complaints = complaints
-        self._hurry(mav.MAVLINK_MSG_ID_SYS_STATUS)
+        if kinds != known:
+            self._hurry(mav.MAVLINK_MSG_ID_SYS_STATUS)
 
     def _hurry(self, *messages: int) -> None:
         for message in messages:
@@ -173,3 +175,8 @@ class VehicleLink:
     def _on_log_list(self, message: mav.MAVLink_log_request_list_message, sender: Sender) -> None:
         """No logs are served over MAVLink."""
         self.line.send(mav.MAVLink_log_entry_message(0, 0, 0, 0, 0), sender.peer)
+
+
+def _without_figures(complaint: str) -> str:
+    """A speed that is another one at each step is no new complaint."""
+    return re.sub(r"[\d.]+", "", complaint)

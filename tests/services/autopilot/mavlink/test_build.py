@@ -71,5 +71,5 @@ def test_the_environment_chooses_identity_and_whether_signing_is_required(opened
         monkeypatch.setenv("UVF_MAVLINK_IDENTITY", identity)
         monkeypatch.setenv("UVF_MAVLINK_REQUIRE_SIGNING", required)
         build(site)[0].make()
-    chosen = [({f.generic for f in facts}, signing._required) for facts, _, _, signing in made]
+    chosen = [({f.generic for f in facts}, signing._required) for facts, _, _, signing, _ in made]
     assert chosen == [({False}, False), ({True}, True)]

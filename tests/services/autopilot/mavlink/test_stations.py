@@ -4,7 +4,7 @@ import pytest
 
 from schemas.convert import seconds
 from schemas.messages import Clock
-from tests.services.autopilot.mavlink.rig import OTHER, Rig, texts
+from tests.services.autopilot.mavlink.rig import OTHER, PLANE, Rig, of, texts
 from uvf.runtime.mavlink import dialect as mav
 
 
@@ -73,3 +73,18 @@ def test_reasons_against_arming_are_said_to_the_ground_station():
     rig.run(1.0)
     rig.plane.status.prearm.append("battery low: 5 %, 15 % are needed")
     assert "PreArm: battery low: 5 %, 15 % are needed" in texts(rig.run(1.0))
+
+
+def test_a_reason_whose_figure_changes_is_said_once_and_none_while_armed():
+    rig = Rig()
+    rig.run(1.0)
+    said = []
+    for speed in range(30):
+        rig.plane.status.prearm[:] = [f"it moves at {0.1 * speed:.1f} m/s over ground"]
+        said += texts(rig.run(0.5))
+    assert said == ["PreArm: it moves at 0.0 m/s over ground"]
+    rig.plane.status.armed = True
+    rig.plane.status.prearm[:] = ["airspeed reads 12 m/s at rest: look at the pitot tube"]
+    heard = rig.run(2.0)
+    assert texts(heard) == []
+    assert of(heard, "SYS_STATUS", PLANE)[-1].onboard_control_sensors_health & mav.MAV_SYS_STATUS_PREARM_CHECK

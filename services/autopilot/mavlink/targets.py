@@ -1,0 +1,50 @@
+"""Where the vehicles send to: ports that hear all of them, and ports of one vehicle alone.
+
+Programs that take the first vehicle they hear for the only one, as MAVSDK 3 does, need a port of one vehicle.
+"""
+
+import socket
+from collections.abc import Collection, Mapping, Sequence
+from typing import NamedTuple
+
+from uvf.runtime.address import peer
+from uvf.runtime.mavlink.endpoint import Peer
+from uvf.runtime.params import BadInput
+
+Reserved = Mapping[Peer, int]
+"""Ports that hear one vehicle, and are heard by it: numeric address -> system_id."""
+
+
+class Target(NamedTuple):
+    """system_id: of the one vehicle that this port is for, or None."""
+
+    peer: Peer
+    system_id: int | None = None
+
+
+def targets_from(text: str, name: str, system_ids: Collection[int]) -> list[Target]:
+    """``host:port`` or ``host:port/system_id``, with commas between. name: of the variable. Raises BadInput."""
+    return [_target(part.strip(), name, system_ids) for part in text.split(",") if part.strip()]
+
+
+def _target(text: str, name: str, system_ids: Collection[int]) -> Target:
+    place, slash, number = text.partition("/")
+    where = peer(place, name, "127.0.0.1:14550")
+    if not slash:
+        return Target(where)
+    if not number.isdecimal() or int(number) not in system_ids:
+        there = ", ".join(map(str, sorted(system_ids)))
+        raise BadInput(f"{name}: '{text}': no vehicle has system_id '{number}'; the mission has {there}")
+    return Target(where, int(number))
+
+
+def reserved(targets: Sequence[Target]) -> Reserved:
+    """Names that nobody knows are left out."""
+    found = {}
+    for (host, port), system_id in targets:
+        if system_id is not None:
+            try:
+                found[socket.gethostbyname(host), port] = system_id
+            except OSError:
+                continue  # ``open_link`` tells of it
+    return found
