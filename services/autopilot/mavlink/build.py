@@ -38,7 +38,7 @@ log = logging.getLogger(__name__)
 
 
 def build(site: Site) -> list[Host]:
-    """Raises BadInput when an address in the environment is not ``host:port`` or ``host:port/system_id``, or a choice none of those that there are."""
+    """Raises BadInput when an address in the environment is none or names a vehicle that there is not, or a choice is none of those."""
     targets = targets_from(os.environ.get(TARGETS, DEFAULT_TARGETS), TARGETS, [m.entry.system_id for m in site.members.values()])
     where = os.environ.get(LISTEN, DEFAULT_LISTEN)
     listen = peer(where, LISTEN, EXAMPLE) if where.strip() else None
