@@ -26,7 +26,7 @@ from foxglove_schemas_protobuf import Vector3_pb2 as foxglove_dot_Vector3__pb2
 from google.protobuf import timestamp_pb2 as google_dot_protobuf_dot_timestamp__pb2
 
 
-DESCRIPTOR = _descriptor_pool.Default().AddSerializedFile(b'\n\x14uvf/v1/mission.proto\x12\x06uvf.v1\x1a\x16\x66oxglove/Vector3.proto\x1a\x1fgoogle/protobuf/timestamp.proto\"\xa5\x03\n\x0bMissionItem\x12&\n\x04kind\x18\x01 \x01(\x0e\x32\x18.uvf.v1.MissionItem.Kind\x12#\n\x08position\x18\x02 \x01(\x0b\x32\x11.foxglove.Vector3\x12\x19\n\x11\x61\x63\x63\x65ptance_radius\x18\x03 \x01(\x01\x12\x0c\n\x04hold\x18\x04 \x01(\x01\x12\x0e\n\x06radius\x18\x05 \x01(\x01\x12\r\n\x05turns\x18\x06 \x01(\x01\x12\r\n\x05speed\x18\x07 \x01(\x01\x12\x0f\n\x07jump_to\x18\x08 \x01(\r\x12\x0e\n\x06repeat\x18\t \x01(\x05\x12\x0e\n\x06origin\x18\n \x01(\x0c\x12\x13\n\x06\x63ourse\x18\x0b \x01(\x01H\x00\x88\x01\x01\x12\x13\n\x0bto_altitude\x18\x0c \x01(\x08\x12\x10\n\x08\x64istance\x18\r \x01(\x01\"z\n\x04Kind\x12\x0c\n\x08WAYPOINT\x10\x00\x12\t\n\x05ORBIT\x10\x01\x12\n\n\x06RETURN\x10\x02\x12\x08\n\x04JUMP\x10\x03\x12\t\n\x05SPEED\x10\x04\x12\x0b\n\x07TAKEOFF\x10\x05\x12\x08\n\x04LAND\x10\x06\x12\x0b\n\x07TRIGGER\x10\x07\x12\x14\n\x10TRIGGER_DISTANCE\x10\x08\x42\t\n\x07_course\"h\n\x07Mission\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12\"\n\x05items\x18\x02 \x03(\x0b\x32\x13.uvf.v1.MissionItem\x12\n\n\x02id\x18\x03 \x01(\r\"\x91\x02\n\x0fMissionProgress\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12,\n\x05state\x18\x02 \x01(\x0e\x32\x1d.uvf.v1.MissionProgress.State\x12\x0f\n\x07\x63urrent\x18\x03 \x01(\r\x12\r\n\x05total\x18\x04 \x01(\r\x12\x0f\n\x07reached\x18\x05 \x01(\x05\x12\x0c\n\x04laps\x18\x06 \x01(\r\x12\x12\n\nmission_id\x18\x07 \x01(\r\"N\n\x05State\x12\x0e\n\nNO_MISSION\x10\x00\x12\x0f\n\x0bNOT_STARTED\x10\x01\x12\n\n\x06\x41\x43TIVE\x10\x02\x12\n\n\x06PAUSED\x10\x03\x12\x0c\n\x08\x43OMPLETE\x10\x04\"B\n\x0eMissionRequest\x12 \n\x07mission\x18\x01 \x01(\x0b\x32\x0f.uvf.v1.Mission\x12\x0e\n\x06source\x18\x02 \x01(\t\"2\n\x11SetCurrentRequest\x12\r\n\x05index\x18\x01 \x01(\r\x12\x0e\n\x06source\x18\x02 \x01(\t\"n\n\x0bGoalRequest\x12#\n\x08position\x18\x01 \x01(\x0b\x32\x11.foxglove.Vector3\x12\x0b\n\x03yaw\x18\x02 \x01(\x01\x12\x0e\n\x06source\x18\x03 \x01(\t\x12\x0e\n\x06radius\x18\x04 \x01(\x01\x12\r\n\x05speed\x18\x05 \x01(\x01\"`\n\x0cOrbitRequest\x12!\n\x06\x63\x65ntre\x18\x01 \x01(\x0b\x32\x11.foxglove.Vector3\x12\x0e\n\x06radius\x18\x02 \x01(\x01\x12\r\n\x05speed\x18\x03 \x01(\x01\x12\x0e\n\x06source\x18\x04 \x01(\t\"!\n\x0fGoAroundRequest\x12\x0e\n\x06source\x18\x01 \x01(\t\"\x1f\n\rCancelRequest\x12\x0e\n\x06source\x18\x01 \x01(\t\"\xb0\x02\n\tNavStatus\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12&\n\x05state\x18\x02 \x01(\x0e\x32\x17.uvf.v1.NavStatus.State\x12\x0b\n\x03job\x18\x03 \x01(\t\x12\x1f\n\x04goal\x18\x04 \x01(\x0b\x32\x11.foxglove.Vector3\x12\x15\n\rdistance_left\x18\x05 \x01(\x01\x12\x0e\n\x06reason\x18\x06 \x01(\t\x12\x10\n\x08\x65xplored\x18\x07 \x01(\x01\"e\n\x05State\x12\x08\n\x04IDLE\x10\x00\x12\x0c\n\x08PLANNING\x10\x01\x12\x0b\n\x07\x44RIVING\x10\x02\x12\x0b\n\x07REACHED\x10\x03\x12\x0b\n\x07\x42LOCKED\x10\x04\x12\x0e\n\nRECOVERING\x10\x05\x12\r\n\tCANCELLED\x10\x06\x62\x06proto3')
+DESCRIPTOR = _descriptor_pool.Default().AddSerializedFile(b'\n\x14uvf/v1/mission.proto\x12\x06uvf.v1\x1a\x16\x66oxglove/Vector3.proto\x1a\x1fgoogle/protobuf/timestamp.proto\"\xc4\x03\n\x0bMissionItem\x12&\n\x04kind\x18\x01 \x01(\x0e\x32\x18.uvf.v1.MissionItem.Kind\x12#\n\x08position\x18\x02 \x01(\x0b\x32\x11.foxglove.Vector3\x12\x19\n\x11\x61\x63\x63\x65ptance_radius\x18\x03 \x01(\x01\x12\x0c\n\x04hold\x18\x04 \x01(\x01\x12\x0e\n\x06radius\x18\x05 \x01(\x01\x12\r\n\x05turns\x18\x06 \x01(\x01\x12\r\n\x05speed\x18\x07 \x01(\x01\x12\x0f\n\x07jump_to\x18\x08 \x01(\r\x12\x0e\n\x06repeat\x18\t \x01(\x05\x12\x0e\n\x06origin\x18\n \x01(\x0c\x12\x13\n\x06\x63ourse\x18\x0b \x01(\x01H\x00\x88\x01\x01\x12\x13\n\x0bto_altitude\x18\x0c \x01(\x08\x12\x10\n\x08\x64istance\x18\r \x01(\x01\"\x98\x01\n\x04Kind\x12\x0c\n\x08WAYPOINT\x10\x00\x12\t\n\x05ORBIT\x10\x01\x12\n\n\x06RETURN\x10\x02\x12\x08\n\x04JUMP\x10\x03\x12\t\n\x05SPEED\x10\x04\x12\x0b\n\x07TAKEOFF\x10\x05\x12\x08\n\x04LAND\x10\x06\x12\x0b\n\x07TRIGGER\x10\x07\x12\x14\n\x10TRIGGER_DISTANCE\x10\x08\x12\x0e\n\nLAND_START\x10\t\x12\x0c\n\x08SET_HOME\x10\nB\t\n\x07_course\"h\n\x07Mission\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12\"\n\x05items\x18\x02 \x03(\x0b\x32\x13.uvf.v1.MissionItem\x12\n\n\x02id\x18\x03 \x01(\r\"\x91\x02\n\x0fMissionProgress\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12,\n\x05state\x18\x02 \x01(\x0e\x32\x1d.uvf.v1.MissionProgress.State\x12\x0f\n\x07\x63urrent\x18\x03 \x01(\r\x12\r\n\x05total\x18\x04 \x01(\r\x12\x0f\n\x07reached\x18\x05 \x01(\x05\x12\x0c\n\x04laps\x18\x06 \x01(\r\x12\x12\n\nmission_id\x18\x07 \x01(\r\"N\n\x05State\x12\x0e\n\nNO_MISSION\x10\x00\x12\x0f\n\x0bNOT_STARTED\x10\x01\x12\n\n\x06\x41\x43TIVE\x10\x02\x12\n\n\x06PAUSED\x10\x03\x12\x0c\n\x08\x43OMPLETE\x10\x04\"B\n\x0eMissionRequest\x12 \n\x07mission\x18\x01 \x01(\x0b\x32\x0f.uvf.v1.Mission\x12\x0e\n\x06source\x18\x02 \x01(\t\"2\n\x11SetCurrentRequest\x12\r\n\x05index\x18\x01 \x01(\r\x12\x0e\n\x06source\x18\x02 \x01(\t\"n\n\x0bGoalRequest\x12#\n\x08position\x18\x01 \x01(\x0b\x32\x11.foxglove.Vector3\x12\x0b\n\x03yaw\x18\x02 \x01(\x01\x12\x0e\n\x06source\x18\x03 \x01(\t\x12\x0e\n\x06radius\x18\x04 \x01(\x01\x12\r\n\x05speed\x18\x05 \x01(\x01\"`\n\x0cOrbitRequest\x12!\n\x06\x63\x65ntre\x18\x01 \x01(\x0b\x32\x11.foxglove.Vector3\x12\x0e\n\x06radius\x18\x02 \x01(\x01\x12\r\n\x05speed\x18\x03 \x01(\x01\x12\x0e\n\x06source\x18\x04 \x01(\t\"!\n\x0fGoAroundRequest\x12\x0e\n\x06source\x18\x01 \x01(\t\"\x1f\n\rCancelRequest\x12\x0e\n\x06source\x18\x01 \x01(\t\"\xb0\x02\n\tNavStatus\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12&\n\x05state\x18\x02 \x01(\x0e\x32\x17.uvf.v1.NavStatus.State\x12\x0b\n\x03job\x18\x03 \x01(\t\x12\x1f\n\x04goal\x18\x04 \x01(\x0b\x32\x11.foxglove.Vector3\x12\x15\n\rdistance_left\x18\x05 \x01(\x01\x12\x0e\n\x06reason\x18\x06 \x01(\t\x12\x10\n\x08\x65xplored\x18\x07 \x01(\x01\"e\n\x05State\x12\x08\n\x04IDLE\x10\x00\x12\x0c\n\x08PLANNING\x10\x01\x12\x0b\n\x07\x44RIVING\x10\x02\x12\x0b\n\x07REACHED\x10\x03\x12\x0b\n\x07\x42LOCKED\x10\x04\x12\x0e\n\nRECOVERING\x10\x05\x12\r\n\tCANCELLED\x10\x06\x62\x06proto3')
 
 _globals = globals()
 _builder.BuildMessageAndEnumDescriptors(DESCRIPTOR, _globals)
@@ -34,29 +34,29 @@ _builder.BuildTopDescriptorsAndMessages(DESCRIPTOR, 'uvf.v1.mission_pb2', _globa
 if not _descriptor._USE_C_DESCRIPTORS:
   DESCRIPTOR._loaded_options = None
   _globals['_MISSIONITEM']._serialized_start=90
-  _globals['_MISSIONITEM']._serialized_end=511
-  _globals['_MISSIONITEM_KIND']._serialized_start=378
-  _globals['_MISSIONITEM_KIND']._serialized_end=500
-  _globals['_MISSION']._serialized_start=513
-  _globals['_MISSION']._serialized_end=617
-  _globals['_MISSIONPROGRESS']._serialized_start=620
-  _globals['_MISSIONPROGRESS']._serialized_end=893
-  _globals['_MISSIONPROGRESS_STATE']._serialized_start=815
-  _globals['_MISSIONPROGRESS_STATE']._serialized_end=893
-  _globals['_MISSIONREQUEST']._serialized_start=895
-  _globals['_MISSIONREQUEST']._serialized_end=961
-  _globals['_SETCURRENTREQUEST']._serialized_start=963
-  _globals['_SETCURRENTREQUEST']._serialized_end=1013
-  _globals['_GOALREQUEST']._serialized_start=1015
-  _globals['_GOALREQUEST']._serialized_end=1125
-  _globals['_ORBITREQUEST']._serialized_start=1127
-  _globals['_ORBITREQUEST']._serialized_end=1223
-  _globals['_GOAROUNDREQUEST']._serialized_start=1225
-  _globals['_GOAROUNDREQUEST']._serialized_end=1258
-  _globals['_CANCELREQUEST']._serialized_start=1260
-  _globals['_CANCELREQUEST']._serialized_end=1291
-  _globals['_NAVSTATUS']._serialized_start=1294
-  _globals['_NAVSTATUS']._serialized_end=1598
-  _globals['_NAVSTATUS_STATE']._serialized_start=1497
-  _globals['_NAVSTATUS_STATE']._serialized_end=1598
+  _globals['_MISSIONITEM']._serialized_end=542
+  _globals['_MISSIONITEM_KIND']._serialized_start=379
+  _globals['_MISSIONITEM_KIND']._serialized_end=531
+  _globals['_MISSION']._serialized_start=544
+  _globals['_MISSION']._serialized_end=648
+  _globals['_MISSIONPROGRESS']._serialized_start=651
+  _globals['_MISSIONPROGRESS']._serialized_end=924
+  _globals['_MISSIONPROGRESS_STATE']._serialized_start=846
+  _globals['_MISSIONPROGRESS_STATE']._serialized_end=924
+  _globals['_MISSIONREQUEST']._serialized_start=926
+  _globals['_MISSIONREQUEST']._serialized_end=992
+  _globals['_SETCURRENTREQUEST']._serialized_start=994
+  _globals['_SETCURRENTREQUEST']._serialized_end=1044
+  _globals['_GOALREQUEST']._serialized_start=1046
+  _globals['_GOALREQUEST']._serialized_end=1156
+  _globals['_ORBITREQUEST']._serialized_start=1158
+  _globals['_ORBITREQUEST']._serialized_end=1254
+  _globals['_GOAROUNDREQUEST']._serialized_start=1256
+  _globals['_GOAROUNDREQUEST']._serialized_end=1289
+  _globals['_CANCELREQUEST']._serialized_start=1291
+  _globals['_CANCELREQUEST']._serialized_end=1322
+  _globals['_NAVSTATUS']._serialized_start=1325
+  _globals['_NAVSTATUS']._serialized_end=1629
+  _globals['_NAVSTATUS_STATE']._serialized_start=1528
+  _globals['_NAVSTATUS_STATE']._serialized_end=1629
 # @@protoc_insertion_point(module_scope)

@@ -21,6 +21,8 @@ class MissionItem(_message.Message):
         LAND: _ClassVar[MissionItem.Kind]
         TRIGGER: _ClassVar[MissionItem.Kind]
         TRIGGER_DISTANCE: _ClassVar[MissionItem.Kind]
+        LAND_START: _ClassVar[MissionItem.Kind]
+        SET_HOME: _ClassVar[MissionItem.Kind]
     WAYPOINT: MissionItem.Kind
     ORBIT: MissionItem.Kind
     RETURN: MissionItem.Kind
@@ -30,6 +32,8 @@ class MissionItem(_message.Message):
     LAND: MissionItem.Kind
     TRIGGER: MissionItem.Kind
     TRIGGER_DISTANCE: MissionItem.Kind
+    LAND_START: MissionItem.Kind
+    SET_HOME: MissionItem.Kind
     KIND_FIELD_NUMBER: _ClassVar[int]
     POSITION_FIELD_NUMBER: _ClassVar[int]
     ACCEPTANCE_RADIUS_FIELD_NUMBER: _ClassVar[int]

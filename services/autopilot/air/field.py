@@ -4,11 +4,12 @@ import math
 from collections.abc import Sequence
 from functools import partial
 
+from services.autopilot.air.approach import Approach
 from services.autopilot.air.landing import Landing
 from services.autopilot.air.params import AirParams
 from services.autopilot.air.route import Place
 from services.autopilot.air.state import Estimate
-from services.autopilot.air.strip import Strip, lane_for
+from services.autopilot.air.strip import Strip, lane_by, lane_for
 from services.autopilot.air.takeoff import TakeOff
 from services.autopilot.air.wishes import Senses
 
@@ -35,8 +36,11 @@ class Field:
         place = Place(now.north, now.east, home.height) if self._strips else home
         return Landing(now, partial(lane_for, place, self._strips), senses, params)
 
-    def landing_at(self, now: Estimate, place: Place, senses: Senses, params: AirParams) -> Landing:
-        """On the strip there, or on the place itself."""
+    def landing_at(self, now: Estimate, place: Place, senses: Senses, params: AirParams, approach: Approach | None = None) -> Landing:
+        """On the strip there, or on the place itself; by the approach that a mission lays down, whatever the wind."""
+        if approach is not None:
+            lane = lane_by(place, approach.course, self._strips)
+            return Landing(now, lambda _: lane, senses, params, approach)
         near = [s for s in self._strips if _distance(s, place.north, place.east) < s.length / 2 + NEAR]
         return Landing(now, partial(lane_for, place, near), senses, params)
 

@@ -9,6 +9,7 @@ import math
 from collections.abc import Iterator, Sequence
 
 from services.autopilot.air import corners
+from services.autopilot.air.approach import laid_down
 from services.autopilot.air.guidance import turn_radius
 from services.autopilot.air.params import AirParams
 from services.autopilot.air.plan import NO_JUMPS, Item, Kind, Stop, following
@@ -20,13 +21,14 @@ from uvf.maths.geodesy import GRAVITY
 def fault(items: Sequence[Item], params: AirParams) -> str:
     """Why a mission cannot be flown: which item, what, and how to mend it; empty if it can."""
     speeds = _speeds(items, params)
-    return next((f"item {i} {why}" for i, item in enumerate(items) if (why := _fault(item, len(items), speeds[i], params))), "")
+    faults = (_fault(item, len(items), speeds[i], params) or _landing_fault(items, i, params) for i, item in enumerate(items))
+    return next((f"item {i} {why}" for i, why in enumerate(faults) if why), "")
 
 
 def _fault(item: Item, count: int, speed: float, params: AirParams) -> str:
     if item.kind is Kind.JUMP and item.jump_to >= count:
         return f"jumps to {item.jump_to}, but there are {count} items"
-    if item.kind is Kind.SPEED and not params.min_airspeed <= item.speed <= params.max_airspeed:
+    if item.kind is Kind.SPEED and item.speed != 0 and not params.min_airspeed <= item.speed <= params.max_airspeed:
         return f"sets a speed of {item.speed:g} m/s; this aircraft flies {params.min_airspeed:g} to {params.max_airspeed:g} m/s"
     if item.kind is Kind.WAYPOINT and item.hold > 0 and item.course is not None:
         return "has a hold time and a course: it is circled, in every direction; leave one of both out"
@@ -38,15 +40,26 @@ def _fault(item: Item, count: int, speed: float, params: AirParams) -> str:
     return ""
 
 
+def _landing_fault(items: Sequence[Item], index: int, params: AirParams) -> str:
+    if items[index].kind is Kind.LAND:
+        try:
+            laid_down(items, index, params)
+        except ValueError as error:
+            return str(error)
+    return ""
+
+
 def _speeds(items: Sequence[Item], params: AirParams) -> list[float]:
     """m/s through the air at each item, as far as it stands before it."""
-    told = itertools.accumulate(items, lambda v, item: item.speed if item.kind is Kind.SPEED else v, initial=params.trim_airspeed)
+    cruise = params.trim_airspeed
+    sets = ((item.speed or cruise) if item.kind is Kind.SPEED else None for item in items)
+    told = itertools.accumulate(sets, lambda v, told: v if told is None else told, initial=cruise)
     return [speed for _, speed in zip(items, told, strict=False)]
 
 
 def advice(items: Sequence[Item], params: AirParams) -> Iterator[tuple[str, str]]:
     """What and why for each waypoint that is not rounded by a corner of its own, in calm air."""
-    speeds, stops = _speeds(items, params), [Stop(i, NO_JUMPS, 0, 0.0) for i in range(len(items))]
+    speeds, stops = _speeds(items, params), [Stop(i, NO_JUMPS, 0, None) for i in range(len(items))]
     for stop in stops:
         assert stop.index is not None
         item = items[stop.index]

@@ -6,6 +6,7 @@ from dataclasses import astuple
 
 from schemas.convert import seconds, wxyz
 from schemas.messages import AirData, Gnss, Imu, Mission, MissionItem, MissionProgress, Mode, NavState, OrbitRequest, Vector3
+from services.autopilot.air.approach import with_courses
 from services.autopilot.air.modes import FlightMode
 from services.autopilot.air.plan import Item, Kind, Stand
 from services.autopilot.air.route import Circle, Place
@@ -27,6 +28,8 @@ KINDS = {
     MissionItem.TRIGGER_DISTANCE: Kind.TRIGGER_DISTANCE,
     MissionItem.TAKEOFF: Kind.TAKEOFF,
     MissionItem.LAND: Kind.LAND,
+    MissionItem.LAND_START: Kind.LAND_START,
+    MissionItem.SET_HOME: Kind.SET_HOME,
 }
 MODES = {
     Mode.MODE_HOLD: FlightMode.HOLD,
@@ -115,7 +118,7 @@ def stand(progress: MissionProgress | None) -> Stand:
 
 def items(messages: Iterable[MissionItem]) -> list[Item]:
     """Raises ValueError for a kind that cannot be flown yet and for a number that is none."""
-    return [_item(i, m) for i, m in enumerate(messages)]
+    return with_courses([_item(i, m) for i, m in enumerate(messages)])
 
 
 def _item(index: int, m: MissionItem) -> Item:
@@ -138,6 +141,7 @@ def _item(index: int, m: MissionItem) -> Item:
         acceptance=m.acceptance_radius or math.inf,
         to_altitude=m.to_altitude,
         distance=m.distance,
+        here=not m.HasField("position"),
     )
 
 

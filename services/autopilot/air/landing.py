@@ -8,6 +8,7 @@ import math
 from collections.abc import Callable
 from enum import Enum, auto
 
+from services.autopilot.air.approach import Approach
 from services.autopilot.air.cycle import clip
 from services.autopilot.air.energy import climb_at
 from services.autopilot.air.guidance import line_aim
@@ -56,12 +57,20 @@ class Stage(Enum):
 class Landing(Phase):
     """On a lane, which is chosen again as long as the wind is found out on the circle. ``around`` asks for another approach."""
 
-    def __init__(self, now: Estimate, choose: Callable[[Estimate], Lane], senses: Senses, params: AirParams) -> None:
+    def __init__(
+        self,
+        now: Estimate,
+        choose: Callable[[Estimate], Lane],
+        senses: Senses,
+        params: AirParams,
+        approach: Approach | None = None,
+    ) -> None:
         self.lane = choose(now)
+        self._approach = approach
         self._choose = choose
         self.why_around = ""
         self._senses = senses
-        self._length = FINAL_TIME * params.min_airspeed
+        self._length = FINAL_TIME * params.min_airspeed if approach is None else approach.length
         self._wheels = WheelHeight(self.lane.aim.height)
         self._since = 0.0
         self._gyros = Gyros(now)
@@ -102,16 +111,24 @@ class Landing(Phase):
         self._stage, self._since, self._still = stage, 0.0, 0.0
 
     def _new_circle(self, now: Estimate, params: AirParams) -> Circle:
-        """Beside the lane on the aircraft's side, round into the beginning of the final approach."""
+        """Round into the beginning of the final approach: the mission's, or one beside the lane on the aircraft's side."""
         _, right = self.lane.locate(now)
-        radius = math.copysign(params.hold_radius, right)
+        laid = self._approach
+        radius = laid.radius if laid is not None and laid.radius else math.copysign(params.hold_radius, right)
         north, east = self.lane.before(self._length, radius)
-        height = self.lane.aim.height + params.gear_height + self._slope(params) * self._length
-        return Circle(Place(north, east, height), radius)
+        own = self.lane.aim.height + params.gear_height + self._slope(params) * self._length
+        return Circle(Place(north, east, laid.height if laid is not None else own), radius)
 
-    @staticmethod
-    def _slope(params: AirParams) -> float:
-        return math.tan(params.glide_slope)
+    def _slope(self, params: AirParams) -> float:
+        """As steep as a mission's approach has to be; one that is flatter is flown level until the slope is met."""
+        own = math.tan(params.glide_slope)
+        return own if self._approach is None else max(own, self._approach.slope)
+
+    def _path(self, distance: float, ground_speed: float, params: AirParams) -> tuple[float, float, bool]:
+        """As ``flare``, but nowhere above the height at which a mission's approach begins."""
+        height, slope, flares = flare(distance, ground_speed, self._slope(params))
+        top = math.inf if self._approach is None else self._approach.height - self.lane.aim.height - params.gear_height
+        return (height, slope, flares) if height < top else (top, 0.0, False)
 
     def _descend(self, now: Estimate, params: AirParams) -> Wish:
         if self.lane.tailwind(now) > MOST_TAILWIND and (other := self._choose(now)) != self.lane:
@@ -122,7 +139,7 @@ class Landing(Phase):
         lead = abs(distance - self._length) < 0.4 * abs(circle.radius) and abs(right) < 0.2 * abs(circle.radius)
         if lead and abs(self.lane.off(now.course)) < ALIGNED and abs(now.height - circle.centre.height) < ON_CIRCLE:
             self._to(Stage.FINAL)
-        near = now.height < circle.centre.height + 2 * ON_CIRCLE
+        near = now.height < circle.centre.height + 2 * ON_CIRCLE and circle.is_captured(now)  # slow, it could not turn in
         airspeed = self._airspeed(now, params) if near else params.trim_airspeed
         return Wish(Track(circle.aim(now, params), circle.centre.height, 0.0, airspeed), params.land_flap if near else 0.0)
 
@@ -131,8 +148,8 @@ class Landing(Phase):
         wheels = self._wheels
         wheels.step(now, self._senses.clearance, distance, params, dt)
         self._low = wheels.height < COMMITTED
-        wanted, _, flares = flare(distance, now.ground_speed, self._slope(params))
-        _, slope, _ = flare(distance - LEAD * now.ground_speed, now.ground_speed, self._slope(params))
+        wanted, _, flares = self._path(distance, now.ground_speed, params)
+        _, slope, _ = self._path(distance - LEAD * now.ground_speed, now.ground_speed, params)
         fast = self._airspeed(now, params)
         if why := self._unstable(now, wheels.height, wheels.height - wanted, right, fast):
             self.around(why)

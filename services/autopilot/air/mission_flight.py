@@ -65,5 +65,5 @@ class MissionFlight(Phase):
         if self._starts:
             return self._field.take_off(now, lowest, self._senses)
         if target is not None and target.kind is Kind.LAND:
-            return self._field.landing_at(now, target.place, self._senses, params)
+            return self._field.landing_at(now, target.place, self._senses, params, self._navigator.approach(params))
         return Following(self._navigator)

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 
+from services.autopilot.air.approach import Approach, laid_down
 from services.autopilot.air.camera import Camera
 from services.autopilot.air.corners import Corner
 from services.autopilot.air.guidance import Aim
@@ -36,6 +37,8 @@ class Navigator:
         self._planned = 0.0  # s ago
         self._wind = 0.0, 0.0  # m/s, of the latest plan
         self.camera = Camera()
+        self.homes: list[Item] = []
+        """Passed, and not yet carried out: that is the pilot's."""
         self._bearing: float | None = None
         self._turned = 0.0  # rad, on the circle
         self._held = 0.0  # s, on the circle
@@ -68,6 +71,10 @@ class Navigator:
         self.laps += stop.laps
         self._take(stop)
         self.finished, self._piece = self.index is None, None
+
+    def approach(self, params: AirParams) -> Approach | None:
+        """Of the landing that is the current item, if the mission lays one down."""
+        return laid_down(self.items, self.index, params) if self.index is not None else None
 
     @property
     def returns_home(self) -> bool:
@@ -105,14 +112,15 @@ class Navigator:
         course = now.course if target is not None and (target.course is not None or not target.flies_through) else None
         return self._planner(now, params).towards(self._stop, Place(now.north, now.east, now.height), course)
 
-    def _planner(self, now: Estimate, params: AirParams, speed: float = 0.0) -> Planner:
+    def _planner(self, now: Estimate, params: AirParams, speed: float | None = None) -> Planner:
+        """speed: m/s, 0 = cruise, None = that of now."""
         self._wind = now.wind_north, now.wind_east
-        return Planner(self.items, params, self._wind, speed or self.speed or params.trim_airspeed)
+        return Planner(self.items, params, self._wind, (self.speed if speed is None else speed) or params.trim_airspeed)
 
     @property
     def _stop(self) -> Stop:
         """Where it flies to now."""
-        return Stop(self.index, self._jumps, 0, 0.0)
+        return Stop(self.index, self._jumps, 0, None)
 
     def _replan(self, now: Estimate, params: AirParams, dt: float) -> None:
         """What comes at the end of this piece, for the wind as it is known now."""
@@ -193,10 +201,13 @@ class Navigator:
 
     def _take(self, stop: Stop) -> None:
         self.index, self._jumps = stop.index, stop.jumps
-        self.speed = stop.speed or self.speed
+        self.speed = self.speed if stop.speed is None else stop.speed
         self._bearing, self._turned, self._held = None, 0.0, 0.0
-        for k in stop.triggers:
-            self.camera.obey(self.items[k])
+        for item in (self.items[k] for k in stop.deeds):
+            if item.kind is Kind.SET_HOME:
+                self.homes.append(item)
+            else:
+                self.camera.obey(item)
 
     def _circled(self, circle: Circle, now: Estimate, dt: float) -> bool:
         """Whether the turns or the time on this circle are complete; neither given = never."""

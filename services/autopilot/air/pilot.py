@@ -168,6 +168,7 @@ class Pilot:
             self._phase = self._phase or self._begun(now, params)
         if isinstance(self._phase, MissionFlight):
             self._phase.look(now, params)
+        self._move_home(now)
         if self.landing is not None and self.landing.why_around:
             self.reason, self.landing.why_around = f"go-around: {self.landing.why_around}", ""
         if self._phase is not None and self._phase.ended:
@@ -300,6 +301,12 @@ class Pilot:
         self.home = home
         if self.mode is FlightMode.RETURN:
             self._phase = None
+
+    def _move_home(self, now: Estimate) -> None:
+        """As items of the mission say that have been passed; "here" is on the ground that home had before."""
+        for item in self.navigator.homes:
+            self.settle(Place(now.north, now.east, self.home.height if self.home else self._ground) if item.here else item.place)
+        self.navigator.homes.clear()
 
     def go_to(self, place: Place, source: str, params: AirParams, how: Round = OWN) -> str:
         """Flies there and holds over it; too low a height means the present one."""

@@ -19,6 +19,8 @@ class Kind(Enum):
     TRIGGER_DISTANCE = "trigger_distance"
     TAKEOFF = "takeoff"
     LAND = "land"
+    LAND_START = "land_start"
+    SET_HOME = "set_home"
 
 
 OFF_PATH = (Kind.RETURN, Kind.TAKEOFF, Kind.LAND)
@@ -37,13 +39,14 @@ class Item:
     hold: float = 0.0  # s
     radius: float = 0.0  # m, positive clockwise
     turns: float = 0.0
-    speed: float = 0.0  # m/s
+    speed: float = 0.0  # m/s; SPEED: 0 = cruise again
     jump_to: int = 0
     repeat: int = 0
     course: float | None = None  # rad, over ground, from north clockwise
     acceptance: float = math.inf  # m
     to_altitude: bool = False
     distance: float = 0.0  # m
+    here: bool = False
 
     @property
     def flies_through(self) -> bool:
@@ -65,7 +68,7 @@ class Stand:
     finished: bool
 
 
-TRIGGERS = (Kind.TRIGGER, Kind.TRIGGER_DISTANCE)
+DEEDS = (Kind.TRIGGER, Kind.TRIGGER_DISTANCE, Kind.SET_HOME)
 ONE_PLACE = 1.0  # m, between waypoints that are taken for one
 NO_JUMPS: Mapping[int, int] = MappingProxyType({})
 
@@ -77,22 +80,25 @@ class Stop:
     index: int | None
     jumps: Mapping[int, int]  # jump item -> how often it has been taken
     laps: int  # jumps taken now
-    speed: float  # m/s, 0 = unchanged
-    triggers: tuple[int, ...] = ()  # items of the camera
+    speed: float | None  # m/s, 0 = cruise, None = unchanged
+    deeds: tuple[int, ...] = ()  # items that are carried out in passing
 
 
 def next_stop(items: Sequence[Item], index: int, jumps: Mapping[int, int]) -> Stop:
-    """From ``index`` on past speed changes, triggers and jumps; jumps without anything to fly between them end the mission."""
-    taken, laps, speed = dict(jumps), 0, 0.0
-    triggers: tuple[int, ...] = ()
+    """From ``index`` on past speed changes, deeds, marks and jumps; jumps without anything to fly between them end the mission."""
+    taken, laps = dict(jumps), 0
+    speed: float | None = None
+    deeds: tuple[int, ...] = ()
     for _ in range(2 * len(items) + 1):
         if index >= len(items):
-            return Stop(None, taken, laps, speed, triggers)
+            return Stop(None, taken, laps, speed, deeds)
         item = items[index]
         if item.kind is Kind.SPEED:
             speed, index = item.speed, index + 1
-        elif item.kind in TRIGGERS:
-            triggers, index = (*triggers, index), index + 1
+        elif item.kind in DEEDS:
+            deeds, index = (*deeds, index), index + 1
+        elif item.kind is Kind.LAND_START:
+            index += 1
         elif item.kind is Kind.JUMP:
             if 0 <= item.repeat <= taken.get(index, 0):
                 index += 1
@@ -100,8 +106,8 @@ def next_stop(items: Sequence[Item], index: int, jumps: Mapping[int, int]) -> St
                 taken[index] = taken.get(index, 0) + 1
                 laps, index = laps + 1, item.jump_to
         else:
-            return Stop(index, taken, laps, speed, triggers)
-    return Stop(None, taken, laps, speed, triggers)
+            return Stop(index, taken, laps, speed, deeds)
+    return Stop(None, taken, laps, speed, deeds)
 
 
 def following(items: Sequence[Item], stop: Stop) -> Stop:
@@ -112,5 +118,6 @@ def following(items: Sequence[Item], stop: Stop) -> Stop:
         if found.index is None or not (here.flies_through and items[found.index].is_at(here.place)):
             break
         more = next_stop(items, found.index + 1, found.jumps)
-        found = Stop(more.index, more.jumps, found.laps + more.laps, more.speed or found.speed, found.triggers + more.triggers)
+        speed = found.speed if more.speed is None else more.speed
+        found = Stop(more.index, more.jumps, found.laps + more.laps, speed, found.deeds + more.deeds)
     return found

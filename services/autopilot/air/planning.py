@@ -9,14 +9,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from services.autopilot.air import bypass, corners
-from services.autopilot.air.guidance import Point, turn_radius
+from services.autopilot.air.approach import orbit_radius
+from services.autopilot.air.guidance import Point
 from services.autopilot.air.params import AirParams
 from services.autopilot.air.plan import OFF_PATH, Item, Stop, following
 from services.autopilot.air.route import Circle, Curve, Leg, Place
 from uvf.maths.eased import eased, turned_onto, turned_onto_circle
 
 LEAVING = 0.6  # of a leg, for the corner at its beginning at most; it needs more than that at its end
-TIGHTEST_ORBIT = 0.6  # of the radius at turn_bank; smaller wishes are widened to that
 MOST_PASSED = 4  # waypoints, by one curve
 
 
@@ -78,13 +78,7 @@ class Planner:
         return Curve(way, (), (start.height, item.place.height), onto=circle) if way is not None else None
 
     def _circle(self, item: Item) -> Circle:
-        return Circle(item.place, self.orbit_radius(item))
-
-    def orbit_radius(self, item: Item) -> float:
-        """m, positive clockwise."""
-        wanted = item.radius or self.params.hold_radius
-        tightest = TIGHTEST_ORBIT * turn_radius(self.params.trim_airspeed, self.params.turn_bank)
-        return math.copysign(max(abs(wanted), tightest), wanted)
+        return Circle(item.place, orbit_radius(item, self.params))
 
     def _item(self, stop: Stop) -> Item:
         assert stop.index is not None

@@ -20,6 +20,7 @@ from schemas.messages import (
 from services.autopilot.air import intake
 from services.autopilot.air.commands import Surfaces
 from services.autopilot.air.modes import FlightMode
+from services.autopilot.air.navigator import Navigator
 from services.autopilot.air.pilot import Pilot
 from services.autopilot.air.plan import OFF_PATH, next_stop
 from services.autopilot.air.plan import Kind as ItemKind
@@ -117,12 +118,19 @@ def progress(t: float, pilot: Pilot, mission_id: int) -> MissionProgress:
     return MissionProgress(
         timestamp=stamp(t),
         state=state,
-        current=navigator.index or 0,
+        current=_current(navigator),
         total=len(navigator.items),
         reached=navigator.reached,
         laps=navigator.laps,
         mission_id=mission_id,
     )
+
+
+def _current(navigator: Navigator) -> int:
+    """The last one once all are done, the first before it begins."""
+    if navigator.index is not None:
+        return navigator.index
+    return len(navigator.items) - 1 if navigator.finished else 0
 
 
 def path(t: float, pilot: Pilot) -> PosesInFrame:

@@ -9,6 +9,7 @@ from services.autopilot.air.route import Place
 from services.autopilot.air.state import Estimate
 
 AIM_SHARE, AIM_MOST = 0.25, 60.0  # of the length, m: how far behind the threshold the wheels are meant to touch
+ALONG = 0.35  # rad, between a strip and an approach to it
 MEADOW = 400.0, 30.0  # m, length and width of what is supposed to be free about a place without a strip
 
 
@@ -73,3 +74,16 @@ def lane_for(place: Place, strips: Sequence[Strip], now: Estimate) -> Lane:
         return Lane(place, upwind, MEADOW[0] / 2, MEADOW[1])
     nearest = min(strips, key=lambda s: math.hypot(s.middle.north - place.north, s.middle.east - place.east))
     return nearest.lane(upwind)
+
+
+def lane_by(place: Place, course: float, strips: Sequence[Strip]) -> Lane:
+    """To touch right at ``place`` by ``course`` [rad]; with the room that is left of the strip there, if it lies on one and along it."""
+    for strip in strips:
+        axis = math.cos(strip.course), math.sin(strip.course)
+        ahead, right = from_line(axis, strip.middle.point, place.point)
+        way = math.copysign(1.0, math.cos(course - strip.course))
+        on = abs(ahead) < strip.length / 2 and abs(right) < strip.width / 2
+        if on and abs(math.sin(course - strip.course)) < math.sin(ALONG):
+            touch = Place(place.north, place.east, strip.middle.height)
+            return Lane(touch, course, strip.length / 2 - way * ahead, strip.width)
+    return Lane(place, course, MEADOW[0] / 2, MEADOW[1])

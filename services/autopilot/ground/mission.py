@@ -9,7 +9,7 @@ from uvf.runtime.plan_ids import mission_id
 Point = tuple[float, float]
 
 DRIVABLE = (MissionItem.WAYPOINT, MissionItem.RETURN)
-SUPPORTED = (*DRIVABLE, MissionItem.JUMP, MissionItem.SPEED)
+SUPPORTED = (*DRIVABLE, MissionItem.JUMP, MissionItem.SPEED, MissionItem.SET_HOME)
 
 
 def refusal(items: Sequence[MissionItem]) -> str:
@@ -59,6 +59,7 @@ class MissionEngine:
         self.home = home
         self._jumps: dict[int, int] = {}
         self._arrived_at: float | None = None
+        self._here: Point | None = None  # m, world
 
     def load(self, mission: Mission) -> None:
         """Begins another mission at its first item; ``refusal`` has been asked before."""
@@ -100,7 +101,7 @@ class MissionEngine:
         target = self.target
         if target is None:
             return None
-        self.state = MissionProgress.ACTIVE if active else MissionProgress.PAUSED
+        self.state, self._here = MissionProgress.ACTIVE if active else MissionProgress.PAUSED, position
         if not active or position is None:
             return None
         item = self.mission.items[self.current]
@@ -135,8 +136,8 @@ class MissionEngine:
         taken: set[int] = set()
         items = self.mission.items
         while index < len(items) and items[index].kind not in DRIVABLE:
-            if items[index].kind == MissionItem.SPEED:
-                self.speed = items[index].speed
+            if items[index].kind in (MissionItem.SPEED, MissionItem.SET_HOME):
+                self._carry_out(items[index])
                 index += 1
             elif index not in taken and self._may_jump(index):
                 taken.add(index)
@@ -148,6 +149,12 @@ class MissionEngine:
         elif items:
             self.current = len(items) - 1
             self.state = MissionProgress.COMPLETE
+
+    def _carry_out(self, item: MissionItem) -> None:
+        if item.kind == MissionItem.SPEED:
+            self.speed = item.speed
+        else:
+            self.home = (item.position.x, item.position.y) if item.HasField("position") else self._here or self.home
 
     def _may_jump(self, index: int) -> bool:
         item = self.mission.items[index]

@@ -21,10 +21,9 @@ from services.autopilot.mavlink.navigation import global_origin
 from services.autopilot.mavlink.places import BadPlace, altitude_of, frame_of, of_aircraft, place_in, place_of, refusing
 from uvf.runtime.mavlink import dialect as mav
 from uvf.runtime.mavlink.geo import HOME_FRAMES
-from uvf.runtime.mavlink.mission_items import ORIGIN
+from uvf.runtime.mavlink.mission_items import CRUISE, NO_CHANGE
 
 RISE = 10.0  # m above where it is: an altitude below that is meant above home, not above sea level
-NO_CHANGE, DEFAULT = -1.0, -2.0
 SPEED_TYPES = {mav.SPEED_TYPE_AIRSPEED: False, mav.SPEED_TYPE_GROUNDSPEED: True}
 RESTART = 1.0
 
@@ -56,10 +55,10 @@ def _change_speed(line: Line, command: Command, ack: Acknowledger) -> None:
         ack(mav.MAV_RESULT_DENIED, f"Change of speed refused: there is no type {kind:g} here, 0 is airspeed, 1 ground speed")
     elif math.isnan(speed) or speed == NO_CHANGE:
         ack(mav.MAV_RESULT_ACCEPTED)
-    elif speed <= 0 and speed != DEFAULT:
+    elif speed <= 0 and speed != CRUISE:
         ack(mav.MAV_RESULT_DENIED, f"Change of speed refused: {speed:g} m/s is none")
     else:
-        order = SpeedOrder(speed=0.0 if speed == DEFAULT else speed, over_ground=over_ground or line.facts.is_ground)
+        order = SpeedOrder(speed=0.0 if speed == CRUISE else speed, over_ground=over_ground or line.facts.is_ground)
         line.ask("order", OrderRequest(speed=order, source=SOURCE), ack.outcome("Change of speed refused"))
 
 
@@ -86,8 +85,8 @@ def _land_start(line: Line, command: Command, ack: Acknowledger) -> None:
 
 def landing_begins(plan: Sequence[MissionItem]) -> int | None:
     """Index in the plan, or None without a landing."""
-    marked = (i for i, m in enumerate(plan) if len(m.origin) == ORIGIN.size and ORIGIN.unpack(m.origin)[1] == mav.MAV_CMD_DO_LAND_START)
-    return next(marked, next((i for i, item in enumerate(plan) if item.kind == MissionItem.LAND), None))
+    kinds = [item.kind for item in plan]
+    return next((kinds.index(kind) for kind in (MissionItem.LAND_START, MissionItem.LAND) if kind in kinds), None)
 
 
 def _set_home(line: Line, command: Command, ack: Acknowledger) -> None:

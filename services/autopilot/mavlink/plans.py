@@ -115,7 +115,8 @@ class MissionPlan(Plan[Mission]):
         return MissionRequest(mission=plan, source=SOURCE)
 
     def note(self, items: list[MissionItem]) -> str:
-        skipped = any(is_skipped(unpacked(item.origin)[1], self._line.facts) for item in items)
+        bodies = [unpacked(item.origin) for item in items]
+        skipped = any(is_skipped(body[1], body[5], self._line.facts) for body in bodies)
         return "Mission: camera and gimbal items are skipped" if skipped else ""
 
 

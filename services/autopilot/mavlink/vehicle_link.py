@@ -22,6 +22,7 @@ from services.autopilot.mavlink.orders import ORDERS, on_set_home_position, on_s
 from services.autopilot.mavlink.parameter_store import Store
 from services.autopilot.mavlink.parameters import Parameters
 from services.autopilot.mavlink.queries import Queries
+from services.autopilot.mavlink.reached import ReachedItems
 from services.autopilot.mavlink.setpoints import Setpoints
 from services.autopilot.mavlink.statustext import SEVERITY, event_text
 from services.autopilot.mavlink.streams import Schedule
@@ -55,7 +56,7 @@ class VehicleLink:
         self._state: tuple[object, ...] = ()
         self._item: tuple[object, ...] = ()
         self._home: tuple[float, ...] = ()
-        self._reached: tuple[int, int] | None = None
+        self._reached = ReachedItems()
         self._complaints: tuple[str, ...] = ()
 
     def _all_handlers(self) -> dict[int, Handler]:
@@ -138,14 +139,11 @@ class VehicleLink:
         self._note_complaints()
 
     def _note_reached(self) -> None:
-        """Each item once for each lap; nothing for what was reached before the link came up."""
-        progress = self.line.latest.progress
-        if progress is None:
+        progress, mission = self.line.latest.progress, self.line.latest.mission
+        if progress is None or mission is None:
             return
-        reached = (progress.laps, progress.reached)
-        if self._reached not in (None, reached) and progress.reached >= 0:
-            self.line.send(mav.MAVLink_mission_item_reached_message(min(progress.reached, 0xFFFF)))
-        self._reached = reached
+        for index in self._reached.look(progress, mission.items):
+            self.line.send(mav.MAVLink_mission_item_reached_message(index))
 
     def _note_complaints(self) -> None:
         latest = self.line.latest

@@ -38,7 +38,9 @@ class Waypoint(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     x: Metres = 0.0
     y: Metres = 0.0
     z: Metres = 0.0
-    kind: Literal["waypoint", "orbit", "return", "jump", "speed", "trigger", "trigger_distance", "takeoff", "land"] = "waypoint"
+    kind: Literal[
+        "waypoint", "orbit", "return", "jump", "speed", "trigger", "trigger_distance", "takeoff", "land", "land_start", "set_home"
+    ] = "waypoint"
     acceptance_radius: NotNegative = 0.0  # m
     hold: NotNegative = 0.0  # s
     radius: Metres = 0.0

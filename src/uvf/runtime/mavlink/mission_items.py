@@ -21,7 +21,6 @@ SKIPPED = frozenset(
         mav.MAV_CMD_DO_SET_ROI_NONE,
         mav.MAV_CMD_DO_MOUNT_CONTROL,
         mav.MAV_CMD_SET_CAMERA_MODE,
-        mav.MAV_CMD_IMAGE_START_CAPTURE,
         mav.MAV_CMD_IMAGE_STOP_CAPTURE,
         mav.MAV_CMD_VIDEO_START_CAPTURE,
         mav.MAV_CMD_VIDEO_STOP_CAPTURE,
@@ -29,8 +28,12 @@ SKIPPED = frozenset(
     }
 )
 """Camera and gimbal items that ground stations add by themselves: they fly as a jump that is never taken."""
-TRIGGERS = {mav.MAV_CMD_DO_DIGICAM_CONTROL: MissionItem.TRIGGER, mav.MAV_CMD_DO_SET_CAM_TRIGG_DIST: MissionItem.TRIGGER_DISTANCE}
-"""Items of the camera that aircraft fly; for ground vehicles they are skipped, too."""
+TRIGGERS = {
+    mav.MAV_CMD_DO_DIGICAM_CONTROL: MissionItem.TRIGGER,
+    mav.MAV_CMD_IMAGE_START_CAPTURE: MissionItem.TRIGGER,
+    mav.MAV_CMD_DO_SET_CAM_TRIGG_DIST: MissionItem.TRIGGER_DISTANCE,
+}
+"""Items of the camera that aircraft fly, but for series of pictures by time; for ground vehicles they are skipped, too."""
 
 KIND = {
     mav.MAV_CMD_NAV_WAYPOINT: MissionItem.WAYPOINT,
@@ -43,7 +46,8 @@ KIND = {
     mav.MAV_CMD_NAV_TAKEOFF: MissionItem.TAKEOFF,
     mav.MAV_CMD_DO_JUMP: MissionItem.JUMP,
     mav.MAV_CMD_DO_CHANGE_SPEED: MissionItem.SPEED,
-    mav.MAV_CMD_DO_LAND_START: MissionItem.JUMP,  # that is never taken: a mark for whoever is told to land
+    mav.MAV_CMD_DO_LAND_START: MissionItem.LAND_START,
+    mav.MAV_CMD_DO_SET_HOME: MissionItem.SET_HOME,
     mav.MAV_CMD_NAV_DELAY: MissionItem.WAYPOINT,
     **dict.fromkeys(SKIPPED, MissionItem.JUMP),
     **TRIGGERS,
@@ -51,6 +55,9 @@ KIND = {
 REFUSED = {mav.MAV_CMD_CONDITION_YAW: "CONDITION_YAW: it points where it goes"}
 """Commands that change what is flown and that cannot be done."""
 WITH_PLACE = frozenset({MissionItem.WAYPOINT, MissionItem.ORBIT, MissionItem.LAND, MissionItem.TAKEOFF})
+OF_AIRCRAFT = frozenset({MissionItem.ORBIT, MissionItem.LAND, MissionItem.LAND_START, MissionItem.TAKEOFF})
+NO_CHANGE, CRUISE = -1.0, -2.0  # of DO_CHANGE_SPEED
+HERE = 1.0  # of DO_SET_HOME
 
 
 @dataclass
@@ -61,9 +68,10 @@ class BadItem(Exception):
     reason: str
 
 
-def is_skipped(command: int, facts: Placed) -> bool:
-    """Whether such an item is carried, but nothing is done for it."""
-    return command in SKIPPED or (facts.is_ground and command in TRIGGERS)
+def is_skipped(command: int, pictures: float, facts: Placed) -> bool:
+    """Whether such an item is carried, but nothing is done for it. pictures: its param3."""
+    series = command == mav.MAV_CMD_IMAGE_START_CAPTURE and pictures != 1
+    return command in SKIPPED or series or (facts.is_ground and command in TRIGGERS)
 
 
 def from_wire(item: mav.MAVLink_mission_item_int_message, facts: Placed, home_z: float) -> MissionItem:
@@ -74,15 +82,23 @@ def from_wire(item: mav.MAVLink_mission_item_int_message, facts: Placed, home_z:
     if kind is None:
         raise BadItem(mav.MAV_MISSION_UNSUPPORTED, f"command {item.command} is not supported")
     params = (item.param1, item.param2, item.param3, item.param4)
+    if facts.is_ground and kind in OF_AIRCRAFT:
+        raise BadItem(mav.MAV_MISSION_UNSUPPORTED, f"{MissionItem.Kind.Name(kind)} is not for a ground vehicle")
     if any(math.isinf(v) for v in (*params, item.z)):
         raise BadItem(mav.MAV_MISSION_INVALID, "a parameter is infinite")
     result = MissionItem(kind=kind, origin=packed(item))
-    if kind in WITH_PLACE and item.command != mav.MAV_CMD_NAV_DELAY:
+    if _has_place(item, kind):
         result.position.CopyFrom(place_of(item, facts, home_z))
-    if is_skipped(item.command, facts) or (item.command == mav.MAV_CMD_DO_CHANGE_SPEED and not item.param2 > 0):
+    if is_skipped(item.command, item.param3, facts) or (kind == MissionItem.SPEED and not (item.param2 > 0 or item.param2 == CRUISE)):
         result.kind = MissionItem.JUMP  # that is never taken
     _fill(result, item.command, tuple(0.0 if math.isnan(p) else p for p in params))
     return result
+
+
+def _has_place(item: mav.MAVLink_mission_item_int_message, kind: "MissionItem.Kind") -> bool:
+    if kind == MissionItem.SET_HOME:
+        return bool(item.param1 != HERE)
+    return kind in WITH_PLACE and item.command != mav.MAV_CMD_NAV_DELAY
 
 
 def packed(item: mav.MAVLink_mission_item_int_message) -> bytes:
@@ -180,9 +196,11 @@ def to_wire(item: MissionItem, facts: Placed, home_z: float) -> Body:
         MissionItem.ORBIT: (mav.MAV_CMD_NAV_LOITER_UNLIM, 0.0, 0.0, item.radius, nan),
         MissionItem.RETURN: (mav.MAV_CMD_NAV_RETURN_TO_LAUNCH, 0.0, 0.0, 0.0, 0.0),
         MissionItem.JUMP: (mav.MAV_CMD_DO_JUMP, item.jump_to, item.repeat, 0.0, 0.0),
-        MissionItem.SPEED: (mav.MAV_CMD_DO_CHANGE_SPEED, 1.0 if facts.is_ground else 0.0, item.speed or -1.0, -1.0, 0.0),
+        MissionItem.SPEED: (mav.MAV_CMD_DO_CHANGE_SPEED, 1.0 if facts.is_ground else 0.0, item.speed or CRUISE, -1.0, 0.0),
         MissionItem.TAKEOFF: (mav.MAV_CMD_NAV_TAKEOFF, 0.0, 0.0, 0.0, nan),
         MissionItem.LAND: (mav.MAV_CMD_NAV_LAND, 0.0, 0.0, 0.0, nan),
+        MissionItem.LAND_START: (mav.MAV_CMD_DO_LAND_START, 0.0, 0.0, 0.0, 0.0),
+        MissionItem.SET_HOME: (mav.MAV_CMD_DO_SET_HOME, float(not item.HasField("position")), 0.0, 0.0, 0.0),
         MissionItem.TRIGGER: (mav.MAV_CMD_DO_DIGICAM_CONTROL, 0.0, 0.0, 0.0, 0.0),
         MissionItem.TRIGGER_DISTANCE: (mav.MAV_CMD_DO_SET_CAM_TRIGG_DIST, item.distance, 0.0, 0.0, 0.0),
     }
@@ -191,7 +209,7 @@ def to_wire(item: MissionItem, facts: Placed, home_z: float) -> Body:
         command, p1 = mav.MAV_CMD_NAV_LOITER_TURNS, item.turns
     if item.kind == MissionItem.ORBIT and item.to_altitude:
         command, p1, p2, p3 = mav.MAV_CMD_NAV_LOITER_TO_ALT, 0.0, item.radius, 0.0
-    if item.kind not in WITH_PLACE:
+    if item.kind not in WITH_PLACE and not (item.kind == MissionItem.SET_HOME and item.HasField("position")):
         return mav.MAV_FRAME_MISSION, command, 1, p1, p2, p3, p4, 0, 0, 0.0
     latitude, longitude, _ = facts.geodetic(array(item.position))
     z = item.position.z - home_z

@@ -25,7 +25,7 @@ def speed(value):
     ("items", "why"),
     [
         ([waypoint(), Item(Kind.JUMP, HERE, jump_to=7)], "item 1 jumps to 7, but there are 2 items"),
-        ([speed(0.0)], "item 0 sets a speed of 0 m/s; this aircraft flies 19 to 32 m/s"),
+        ([speed(5.0)], "item 0 sets a speed of 5 m/s; this aircraft flies 19 to 32 m/s"),
         ([waypoint(), speed(40.0)], "item 1 sets a speed of 40 m/s"),
         ([waypoint(hold=10.0, course=1.0)], "item 0 has a hold time and a course"),
         ([Item(Kind.ORBIT, HERE, radius=-30.0)], "item 0 is a circle of 30 m, too tight at 25 m/s: give at least 37 m or at most 22.6 m/s"),

@@ -82,4 +82,15 @@ def test_a_course_is_asked_for_even_at_the_place_just_passed():
 def test_triggers_are_passed_and_kept():
     items = [waypoint(), Item(Kind.TRIGGER, HERE), Item(Kind.TRIGGER_DISTANCE, HERE, distance=20.0), waypoint()]
     stop = next_stop(items, 1, NO_JUMPS)
-    assert (stop.index, stop.triggers) == (3, (1, 2))
+    assert (stop.index, stop.deeds) == (3, (1, 2))
+
+
+def test_home_is_set_and_marks_are_passed_on_the_way():
+    items = [waypoint(), Item(Kind.SET_HOME, HERE, here=True), Item(Kind.LAND_START, HERE), waypoint()]
+    stop = next_stop(items, 1, NO_JUMPS)
+    assert (stop.index, stop.deeds) == (3, (1,))
+
+
+def test_a_speed_of_0_is_cruise_again_and_none_is_unchanged():
+    items = [Item(Kind.SPEED, HERE, speed=22.0), Item(Kind.SPEED, HERE), waypoint(), waypoint()]
+    assert [next_stop(items, k, NO_JUMPS).speed for k in (0, 1, 2)] == [0.0, 0.0, None]

@@ -223,7 +223,7 @@ def test_no_change_of_speed_is_none():
 
 def plan(*commands):
     origins = [ORIGIN.pack(3, command, 1, 0, 0, 0, 0, 0, 0, 0) for command in commands]
-    kinds = {16: MissionItem.WAYPOINT, 21: MissionItem.LAND, 189: MissionItem.JUMP}
+    kinds = {16: MissionItem.WAYPOINT, 21: MissionItem.LAND, 189: MissionItem.LAND_START}
     return [MissionItem(kind=kinds[c], origin=o, position=Vector3(z=60.0)) for c, o in zip(commands, origins, strict=True)]
 
 

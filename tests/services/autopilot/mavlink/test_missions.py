@@ -6,7 +6,7 @@ import struct
 import pytest
 
 from schemas.messages import Mission, MissionItem, Vector3
-from tests.services.autopilot.mavlink.rig import GCS, OTHER, PLANE, Rig, of, texts
+from tests.services.autopilot.mavlink.rig import GCS, OTHER, PLANE, ROVER, Rig, of, texts
 from uvf.runtime.mavlink import dialect as mav
 
 LAT, LON = 407_701_234, 147_905_678
@@ -308,9 +308,47 @@ def test_a_landing_pattern_is_taken_with_its_mark_and_a_delay_is_spent_where_it_
     assert ack.type == mav.MAV_MISSION_ACCEPTED and texts(heard) == []
     way, delay, mark, circle, land = rig.plane.mission.items
     assert (delay.kind, delay.hold, delay.position) == (MissionItem.WAYPOINT, 20.0, way.position)
-    assert (mark.kind, mark.repeat) == (MissionItem.JUMP, 0)  # never taken
+    assert mark.kind == MissionItem.LAND_START
     assert (circle.to_altitude, circle.radius, land.kind) == (True, 80.0, MissionItem.LAND)
     assert [content(m) for m in download(rig)] == [content(m) for m in plan]
+
+
+def test_home_cruise_and_single_pictures_are_items_too():
+    rig = Rig()
+    rig.run()
+    nowhere = (0, 0, 0.0)
+    plan = [
+        item(0),
+        item(1, command=179, p=(0.0, 0.0, 0.0, 0.0), place=(LAT, LON, 5.0)),
+        item(2, command=179, frame=2, p=(1.0, 0.0, 0.0, 0.0), place=nowhere),
+        item(3, command=178, frame=2, p=(0.0, -2.0, -1.0, 0.0), place=nowhere),
+        item(4, command=2000, frame=2, p=(0.0, 0.0, 1.0, 0.0), place=nowhere),
+    ]
+    ack, heard = upload(rig, plan)
+    assert ack.type == mav.MAV_MISSION_ACCEPTED and texts(heard) == []
+    _, there, here, cruise, picture = rig.plane.mission.items
+    assert there.kind == here.kind == MissionItem.SET_HOME
+    assert there.position.z == pytest.approx(25.0) and not here.HasField("position")
+    assert (cruise.kind, cruise.speed, picture.kind) == (MissionItem.SPEED, 0.0, MissionItem.TRIGGER)
+    rig.plane.mission = Mission(id=8, items=[MissionItem.FromString(m.SerializeToString()) for m in rig.plane.mission.items])
+    for message in rig.plane.mission.items:
+        message.ClearField("origin")
+    rig.run()
+    assert [(m.command, m.param1, m.param2) for m in download(rig)][1:4] == [(179, 0.0, 0.0), (179, 1.0, 0.0), (178, 0.0, -2.0)]
+
+
+@pytest.mark.parametrize("command", [18, 21, 22, 31, 189])
+def test_what_only_aircraft_do_is_refused_by_a_rover_as_unsupported(command):
+    rig = Rig()
+    rig.run()
+    plan = item(0, command=command)
+    rig.say(mav.MAVLink_mission_count_message(ROVER, 1, 1, 0))
+    rig.run()
+    plan.target_system = ROVER
+    rig.say(plan)
+    heard = rig.run()
+    assert [m.type for m in of(heard, "MISSION_ACK")] == [mav.MAV_MISSION_UNSUPPORTED]
+    assert any(text.endswith("is not for a ground vehicle") for text in texts(heard))
 
 
 def test_a_delay_with_no_place_before_it_is_refused():
