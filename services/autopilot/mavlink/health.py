@@ -38,8 +38,8 @@ def health(facts: Facts, latest: Latest) -> Health:
     fenced = latest.fence is not None and not fencing(latest.fence).is_open
     present |= mav.MAV_SYS_STATUS_GEOFENCE if fenced else 0
     complaints = _complaints(facts, latest)
-    # The fence's bit also without a fence: MAVProxy says "fence breach" as soon as it is missing.
-    healthy = 0 if latest.is_silent else present | mav.MAV_SYS_STATUS_GEOFENCE
+    # The fence's bit also without a fence, and of a vehicle that is silent: MAVProxy says "fence breach" as soon as it is missing.
+    healthy = (0 if latest.is_silent else present) | mav.MAV_SYS_STATUS_GEOFENCE
     if complaints:
         healthy &= ~mav.MAV_SYS_STATUS_PREARM_CHECK
     if latest.status is not None and latest.status.breach:

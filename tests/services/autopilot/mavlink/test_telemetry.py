@@ -162,7 +162,7 @@ def test_a_vehicle_that_falls_silent_is_critical_and_not_ready():
     rig.reported = {"rover"}
     heard = rig.run(4.0)
     assert of(heard, "HEARTBEAT", PLANE)[-1].system_status == mav.MAV_STATE_CRITICAL
-    assert of(heard, "SYS_STATUS", PLANE)[-1].onboard_control_sensors_health == 0
+    assert of(heard, "SYS_STATUS", PLANE)[-1].onboard_control_sensors_health == mav.MAV_SYS_STATUS_GEOFENCE
     assert "PreArm: estimator or autopilot has gone silent" in texts(heard)
     assert of(heard, "HEARTBEAT", ROVER)[-1].system_status == mav.MAV_STATE_STANDBY
 
