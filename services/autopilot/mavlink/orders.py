@@ -30,7 +30,7 @@ RESTART = 1.0
 
 def _takeoff(line: Line, command: Command, ack: Acknowledger) -> None:
     """Without an altitude to the autopilot's own height."""
-    altitude, frame = command.p[6], frame_of(command)
+    altitude, frame = command.p[6], _frame_of_takeoff(line, command)
     if math.isnan(altitude):
         set_mode(line, Mode.MODE_TAKEOFF, ack.outcome("Takeoff refused"))
         return
@@ -45,6 +45,12 @@ def _takeoff(line: Line, command: Command, ack: Acknowledger) -> None:
         )
     else:
         line.ask("order", OrderRequest(takeoff=TakeoffOrder(altitude=z), source=SOURCE), ack.outcome("Takeoff refused"))
+
+
+def _frame_of_takeoff(line: Line, command: Command) -> int:
+    """Of a COMMAND_LONG: PX4 takes its altitude from the sea; MAVSDK and MAVProxy give any other autopilot one above home."""
+    generic = line.facts.generic and command.frame is None
+    return int(mav.MAV_FRAME_GLOBAL_RELATIVE_ALT) if generic else frame_of(command)
 
 
 def _change_speed(line: Line, command: Command, ack: Acknowledger) -> None:

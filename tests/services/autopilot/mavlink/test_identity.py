@@ -83,3 +83,13 @@ def test_the_greeting_says_what_this_is(generic, words):
     rig.say(BEAT)
     greetings = [t for t in texts(rig.run(2.0)) if "simulated autopilot" in t]
     assert greetings == [f"UVF {'.'.join(map(str, VERSION))} simulated autopilot ({words})"] * 2
+
+
+@pytest.mark.parametrize(("generic", "altitude", "height"), [(False, 380.0, 80.0), (True, 60.0, 80.0)])
+def test_the_altitude_of_a_take_off_is_that_of_the_convention(generic, altitude, height):
+    """Home is 320 m above the sea, and the world's origin 300 m."""
+    rig = rig_as(generic)
+    rig.plane.nav.position.z = 20.0
+    rig.say(long(mav.MAV_CMD_NAV_TAKEOFF, *[float("nan")] * 6, altitude))
+    assert acks(rig.run()) == [(mav.MAV_CMD_NAV_TAKEOFF, mav.MAV_RESULT_ACCEPTED)]
+    assert [order.takeoff.altitude for name, order in rig.plane.asked if name == "order"] == [pytest.approx(height)]
