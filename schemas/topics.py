@@ -155,6 +155,7 @@ SURFACE_COMMAND = Topic(f"{_V}/actuator/surfaces", m.SurfaceCommand, 50, _Q.CONT
 # state and mission
 STATUS = Topic(f"{_V}/state/vehicle", m.VehicleStatus, 10, _Q.STATE, "mode, arming, who commands and why", kept=True)
 TARGETS = Topic(f"{_V}/state/targets", m.Targets, 10, _Q.STATE, "what the autopilot is steering at")
+GUEST = Topic(f"{_V}/state/guest", m.Guest, 0, _Q.LATCHED, "a vehicle that no mission names: flown elsewhere", across_epochs=True)
 EVENTS = Topic(f"{_V}/state/events/<source>", m.Event, 0, _Q.EVENT, "what happened to the vehicle")
 MISSION = Topic(f"{_V}/mission/plan", m.Mission, 0, _Q.LATCHED, "mission in force", kept=True)
 FENCE = Topic(f"{_V}/mission/fence", m.Fence, 0, _Q.LATCHED, "where the vehicle may be", kept=True)

@@ -13,6 +13,7 @@ from schemas.messages import (
     Fence,
     FrameTransform,
     Grid,
+    Guest,
     Health,
     JointStates,
     LaserScan,
@@ -50,6 +51,7 @@ class GroundStation(Service):
         "aircraft": optional(topics.AIR_OBJECTS),
         "health": optional(every(topics.HEALTH.by("*"))),
         "stops": optional(topics.STOP.by("*")),
+        "guests": each_vehicle(topics.GUEST),
         "nav": each_vehicle(topics.NAV_STATE),
         "pose": each_vehicle(topics.POSE),
         "odometry": each_vehicle(topics.ODOMETRY),
@@ -93,6 +95,7 @@ class GroundStation(Service):
         cancel: Sequence[Answer[Any, Any]],
         arm: Sequence[Answer[Any, Any]],
         mode: Sequence[Answer[Any, Any]],
+        guests: Mapping[str, Guest],
         nav: Mapping[str, NavState],
         pose: Mapping[str, PoseInFrame],
         odometry: Mapping[str, Odometry],
@@ -134,8 +137,8 @@ class GroundStation(Service):
             "world_from_map": world_from_map,
         }
         self._hear_system(t, clock, processes, health)
+        self._hear_others(guests, stops)
         self._model.hear_objects((objects, aircraft), truth)
-        self._model.hear_stop(stops)
         self._model.hear_newest(t, newest, events)
         self._commander.hear(t, (*goal, *cancel, *arm, *mode))
         return self._act(t)
@@ -144,6 +147,10 @@ class GroundStation(Service):
         self._model.hear_clock(t, clock)
         self._model.hear_processes(processes)
         self._model.hear_health(t, health)
+
+    def _hear_others(self, guests: Mapping[str, Guest], stops: StopCommand | None) -> None:
+        self._model.hear_guests(guests)
+        self._model.hear_stop(stops)
 
     def _act(self, t: float) -> Outputs:
         """Does what people have asked on the page, and shows how things stand."""

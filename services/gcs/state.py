@@ -17,6 +17,7 @@ from schemas.messages import (
     FrameTransform,
     GimbalCommand,
     Grid,
+    Guest,
     Health,
     JointStates,
     LaserScan,
@@ -40,7 +41,10 @@ from services.gcs.tracks import Track
 from services.gcs.vitals import Vitals
 from uvf.maths.rotations import from_euler, matrix
 from uvf.runtime.mapped_floor import MappedFloor
+from uvf.runtime.mission_file import Start, Vehicle
+from uvf.runtime.params import BadInput
 from uvf.runtime.site import Member, Site
+from uvf.runtime.vehicle_file import load_vehicle
 
 Floats = NDArray[np.float64]
 
@@ -163,10 +167,9 @@ class Model:
 
     def __init__(self, site: Site) -> None:
         self.site = site
-        self.vehicles = {
-            name: VehicleModel(name, member, COLOURS[i % len(COLOURS)], _track(member))
-            for i, (name, member) in enumerate(sorted(site.members.items()))
-        }
+        self.vehicles: dict[str, VehicleModel] = {}
+        for name, member in sorted(site.members.items()):
+            self._add(name, member)
         grounded = [v.name for v in self.vehicles.values() if not v.flies]
         self.selected = next(iter(grounded or self.vehicles), "")
         self.layers = set(SHOWN_AT_FIRST)
@@ -186,6 +189,12 @@ class Model:
         """What has been put into the running simulation."""
         self.strangers: Mapping[str, NavState] = {}
         """True motion of the vehicles among it."""
+        self._turned_away: dict[str, str] = {}
+        """Guests that cannot be drawn, and the model that they name."""
+
+    def _add(self, name: str, member: Member) -> None:
+        colour = COLOURS[len(self.vehicles) % len(COLOURS)]
+        self.vehicles[name] = VehicleModel(name, member, colour, _track(member))
 
     @property
     def chosen(self) -> VehicleModel | None:
@@ -223,7 +232,8 @@ class Model:
             elif what == "scan":
                 vehicle.scan_points = scan_in_world(vehicle)
             elif what == "grid" and not vehicle.flies:
-                vehicle.mapped = self._floors[name].share(vehicle.grid) if vehicle.grid and vehicle.grid.column_count else None
+                floor = self._floors.get(name)
+                vehicle.mapped = floor.share(vehicle.grid) if floor and vehicle.grid and vehicle.grid.column_count else None
 
     def hear_clock(self, t: float, clock: Clock | None) -> None:
         if clock is None or clock is self.clock:
@@ -252,6 +262,21 @@ class Model:
         """lists: of each simulator, what has been put into it."""
         self.spawned = [thing for told in lists if told is not None for thing in told.objects]
         self.strangers = {name: state for name, state in truth.items() if name not in self.vehicles}
+
+    def hear_guests(self, guests: Mapping[str, Guest]) -> None:
+        """Vehicles that no mission names are shown like all others, once it is known what they look like."""
+        for name, guest in guests.items():
+            if name in self.vehicles or self._turned_away.get(name) == guest.model:
+                continue
+            try:
+                file = load_vehicle(self.site.vehicles_folder, guest.model)
+            except BadInput as error:
+                self._turned_away[name] = guest.model
+                self.note("", f"'{name}' cannot be shown: {error}", Event.WARNING)
+                continue
+            entry = Vehicle(model=guest.model, start=Start(x=0.0, y=0.0), system_id=1)
+            self._add(name, Member(name, entry, file, self.site.vehicles_folder / guest.model))
+            self.note(name, f"a guest: {guest.about}", Event.NOTICE)
 
     def hear_health(self, t: float, reports: Sequence[Health]) -> None:
         for report in reports:

@@ -43,15 +43,25 @@ class View:
         self._used: set[str] = set()
         self._surroundings = scenery(model.site.world)
         self._scripted = moving(model.site.world)
-        shapes = {v.name: _shape(v) for v in model.vehicles.values() if v.flies}
-        self._bodies = {v.name: _body(v, shapes.get(v.name)) for v in model.vehicles.values()}
-        self._ghosts = {v.name: coloured(_parts(v, shapes.get(v.name)), GHOST, v.name) for v in model.vehicles.values()}
-        self._moving = {name: MovingParts(shape.movables) for name, shape in shapes.items()}
+        self._bodies: dict[str, dict[str, Node]] = {}
+        self._ghosts: dict[str, dict[str, Node]] = {}
+        self._moving: dict[str, MovingParts] = {}
+        self._learn()
         self._spawned = Spawned(model)
         self._map_due: dict[str, float] = {}
 
+    def _learn(self) -> None:
+        """What the vehicles look like; guests come later."""
+        for v in [v for v in self._model.vehicles.values() if v.name not in self._bodies]:
+            shape = _shape(v) if v.flies else None
+            self._bodies[v.name] = _body(v, shape)
+            self._ghosts[v.name] = coloured(_parts(v, shape), GHOST, v.name)
+            if shape is not None:
+                self._moving[v.name] = MovingParts(shape.movables)
+
     def nodes(self, t: float) -> dict[str, Node]:
         """Everything in the scene, by name; ``/vehicles/<v>/...`` is given in that vehicle's frame."""
+        self._learn()
         shown = {k: n for k, n in self._surroundings.items() if "Walls" in self._model.layers or not k.startswith("/world/walls")}
         shown |= self._spawned.nodes()
         self._used = set()
@@ -63,6 +73,7 @@ class View:
 
     def places(self) -> dict[str, Placed]:
         """Poses of the frames of vehicles and of what moves by script."""
+        self._learn()
         placed = places_of(self._scripted, self._model.sim_time) | self._spawned.places()
         for v in self._model.vehicles.values():
             if v.place is not None:

@@ -28,6 +28,9 @@ DEMO = "demo"
 MissionArgument = Annotated[str, typer.Argument(help="Name in missions/ or path of a mission file.")]
 MissionOption = Annotated[str, typer.Option("--mission", "-m", help="Name in missions/ or path of a mission file.")]
 
+BRIDGE_ADDRESS = """udp:HOST:PORT or udpin:HOST:PORT: wait there for autopilots that send to it, as simulators do to 14550.
+udpout:HOST:PORT: call an autopilot that listens there."""
+
 
 def say(line: str) -> None:
     typer.echo(f"uvf: {line}")
@@ -179,6 +182,20 @@ def flightgear(
 
     with bad_input_is_one_line():
         run_flightgear(vehicle, to, hz, mission)
+
+
+@app.command("mavlink-bridge")
+def mavlink_bridge(
+    address: Annotated[str, typer.Argument(help=BRIDGE_ADDRESS)],
+    name: Annotated[list[str] | None, typer.Option(help="NAME of the first autopilot; NAME=SYSTEM for one of several, by its id.")] = None,
+    mission: Annotated[str, typer.Option("--mission", "-m", help="Whose world it is; without one the world begins at home.")] = "",
+    model: Annotated[str, typer.Option(help="In vehicles/: with whose body it is drawn.")] = "",
+) -> None:
+    """Take the autopilots at a MAVLink address (PX4, ArduPilot, ours) as vehicles on the bus, until Ctrl-C."""
+    from uvf.launch.mavlink_bridge import Wanted, bridge
+
+    with bad_input_is_one_line():
+        bridge(Wanted(address, tuple(name or ()), model, mission))
 
 
 @app.command()

@@ -27,7 +27,7 @@ class Live:
         self._name = name
         self._bus = bus
         self._warn = warn
-        shells = [Shell(host, bus, warn) for host in hosts]
+        self._shells = shells = [Shell(host, bus, warn) for host in hosts]
         self._sim = [s for s in shells if s.type.clock == "sim"]
         self._wall = [s for s in shells if s.type.clock == "wall"]
         self._takes_part = bool(self._sim) or not self._wall
@@ -47,6 +47,15 @@ class Live:
         bus.subscribe(topics.CLOCK.at("sys"), topics.CLOCK.qos, on_clock, depth=64, wake=self._takes_part)
         for shell in shells:
             _declare_tokens(shell, bus)
+
+    def join(self, host: Host) -> None:
+        """One more instance on wall time, from now on."""
+        shell = Shell(host, self._bus, self._warn)
+        shell.join(self._epoch)
+        shell.sim_ns = self._t_ns
+        self._wall.append(shell)
+        self._shells.append(shell)
+        _declare_tokens(shell, self._bus)
 
     def run(self, stop: Event, until: Callable[[], bool] = lambda: False) -> None:
         """Until ``stop`` is set (or ``until()``); closes the services in every case."""

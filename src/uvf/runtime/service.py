@@ -91,11 +91,21 @@ class Answer(Generic[Q, R]):
     reason: str = ""
 
 
+class Later(Generic[R]):
+    """Stands in a step's replies for one that a later step will know: the request stays open until ``give`` is called."""
+
+    reply: R | None = None
+
+    def give(self, reply: R) -> None:
+        """The first one counts."""
+        self.reply = self.reply or reply
+
+
 class Service:
     """One instance per vehicle (``scope = "vehicle"``) or one for the whole world (``scope = "world"``).
 
     ``step`` takes ``t`` [s] and one keyword argument per declared input, request and call, and returns messages by
-    the declared names of outputs, requests (replies, in the order asked) and calls (requests to send). Its result
+    the declared names of outputs, requests (replies or ``Later``, in the order asked) and calls (requests to send). Its result
     depends only on the constructor's arguments, the parameters and the history of its inputs.
     """
 

@@ -13,7 +13,7 @@ from uvf.runtime.clock import NS, first_step_after, step_time
 from uvf.runtime.frames import FrameBuffer
 from uvf.runtime.inbox import EVERY_DEPTH, InputBox
 from uvf.runtime.param_server import ParamServer
-from uvf.runtime.service import Answer, Frames, Input, Outputs, Service
+from uvf.runtime.service import Answer, Frames, Input, Later, Outputs, Service
 from uvf.runtime.site import Host
 from uvf.runtime.wire import Malformed, decode
 
@@ -54,6 +54,8 @@ class Shell:
         self._publishers: dict[str, Publisher] = {}
         self._queries: dict[str, deque[Query]] = {name: deque() for name in self.type.requests}
         self._answers: dict[str, deque[tuple[int, Answer[Any, Any]]]] = {name: deque() for name in self.type.calls}
+        self._open: list[tuple[Query, Request[Any, Any], Later[Any]]] = []
+        """Requests that a later step answers."""
         self._told: set[str] = set()
         self.service: Service
         self._boxes: dict[str, InputBox] = {}
@@ -82,6 +84,9 @@ class Shell:
             while waiting:
                 waiting.popleft().refuse(reason)
         self._param_server.refuse_all(reason)
+        for query, _, _ in self._open:
+            query.refuse(reason)
+        self._open.clear()
         for answers in self._answers.values():
             answers.clear()
 
@@ -177,6 +182,7 @@ class Shell:
         self._publish(outputs, t_ns)
         for name in self.type.requests:
             self._reply(name, queries.get(name, []), outputs.get(name, ()), t_ns)
+        self._end_open(t_ns)
 
     def _is_due(self, stamp_ns: int, t_ns: int) -> bool:
         """Whether a request counts at ``t_ns``: one from a clock of its own would else wait for ever, it is taken as it comes."""
@@ -258,7 +264,20 @@ class Shell:
         if len(flat) != len(queries):
             raise ContractError(f"{self.type.name}: {len(queries)} requests '{name}' but {len(flat)} replies")
         for query, reply in zip(queries, flat, strict=True):
-            self._answer(query, self.type.requests[name], reply, t_ns)
+            if isinstance(reply, Later):
+                self._open.append((query, self.type.requests[name], reply))
+            else:
+                self._answer(query, self.type.requests[name], reply, t_ns)
+
+    def _end_open(self, t_ns: int) -> None:
+        """Answers what has waited for this step."""
+        still = []
+        for query, request, later in self._open:
+            if later.reply is None:
+                still.append((query, request, later))
+            else:
+                self._answer(query, request, later.reply, t_ns)
+        self._open = still
 
     def _answer(self, query: Query, request: Request[Any, Any], reply: Message, t_ns: int) -> None:
         """Sends the reply, and both halves as messages of their own, so that logs hold them."""

@@ -26,7 +26,9 @@ class Counts:
 class Codec:
     """All systems behind one link."""
 
-    def __init__(self) -> None:
+    def __init__(self, component: int = AUTOPILOT) -> None:
+        """component: that its systems speak as."""
+        self._component = component
         self.counts = Counts()
         self._mav = mav.MAVLink(None)
         self._mav.robust_parsing = True
@@ -34,7 +36,7 @@ class Codec:
         """The next number of each system to each peer: one who is told less than another misses nothing."""
 
     def packets(self, system: int, message: mav.MAVLink_message, to: Sequence[tuple[Peer, Sign | None]]) -> Iterator[tuple[bytes, Peer]]:
-        """MAVLink 2 packets from a system's autopilot, for each peer with its own numbering; none when a number does not fit."""
+        """MAVLink 2 packets from a system, for each peer with its own numbering; none when a number does not fit."""
         try:
             what = body(message)
         except (struct.error, OverflowError):
@@ -43,7 +45,7 @@ class Codec:
         for peer, sign in to:
             seq = self._seq[system, peer]
             self._seq[system, peer] = (seq + 1) % 256
-            yield frame(what, seq, (system, AUTOPILOT), sign), peer
+            yield frame(what, seq, (system, self._component), sign), peer
 
     def forget(self, peers: Collection[Peer]) -> None:
         """Counts only for these peers on."""

@@ -1,0 +1,162 @@
+"""One autopilot at the far end: its link, what is asked of it, and what the bus is told of it."""
+
+import math
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from schemas.messages import Event, MissionProgress, VehicleStatus
+from services.mavlink_bridge.commands import Commands
+from services.mavlink_bridge.connecting import Connecting
+from services.mavlink_bridge.frame import Chart, Origin
+from services.mavlink_bridge.modes import Modes
+from services.mavlink_bridge.parameters import Parameters
+from services.mavlink_bridge.plan_book import PlanBook
+from services.mavlink_bridge.station import LOST_AFTER
+from services.mavlink_bridge.status import Told, progress_of, status_of
+from services.mavlink_bridge.telemetry import Telemetry
+from services.mavlink_bridge.transfers import Transfers
+from services.mavlink_bridge.wire import Text, Wire
+from uvf.runtime.mavlink import dialect as mav
+
+BOOT_BACK = 2000  # ms: a clock that goes back by more has started anew
+PLANS_AFTER = 2.0  # s after the connection, at the latest: before, the autopilot may say which plans it can have
+CLOCKS = (mav.MAVLINK_MSG_ID_GLOBAL_POSITION_INT, mav.MAVLINK_MSG_ID_ATTITUDE, mav.MAVLINK_MSG_ID_ATTITUDE_QUATERNION)
+SEVERITY = {
+    mav.MAV_SEVERITY_ERROR: Event.ERROR,
+    mav.MAV_SEVERITY_WARNING: Event.WARNING,
+    mav.MAV_SEVERITY_NOTICE: Event.NOTICE,
+    mav.MAV_SEVERITY_INFO: Event.INFO,
+    mav.MAV_SEVERITY_DEBUG: Event.INFO,
+}
+
+
+class Autopilot:
+    def __init__(self, system: int, component: int, heartbeat: mav.MAVLink_heartbeat_message, origin: Origin) -> None:
+        self.wire = Wire(system, component)
+        self.commands = Commands(self.wire)
+        self.transfers = Transfers(self.wire)
+        self.parameters = Parameters(self.wire)
+        self.telemetry = Telemetry()
+        self.is_ardupilot = heartbeat.autopilot == mav.MAV_AUTOPILOT_ARDUPILOTMEGA
+        self.parameters.bytewise = not self.is_ardupilot
+        self.modes = Modes(heartbeat.autopilot, heartbeat.type)
+        self.told = Told(self.wire, self.telemetry, self.modes, heartbeat)
+        self.first = 1 if self.is_ardupilot else 0
+        """Where its mission begins: ArduPilot keeps home in item 0."""
+        self.plans = PlanBook(self.transfers, self.telemetry, self.first, self.say)
+        self.events: list[tuple[Event.Severity, str]] = []
+        self.is_lost = True
+        self._heard_at = -math.inf
+        self._origin = origin
+        self._connecting = Connecting(self.wire, self.commands, self.modes)
+        self._plans_due: float | None = None
+        self._reached = -1
+        self._home: tuple[float, float, float] | None = None
+        """For which the plans have been written out: their heights are above it."""
+        self._boot_ms = 0
+        self._handlers = self._merged()
+
+    def _merged(self) -> dict[int, list[Callable[[Any], None]]]:
+        own: dict[int, Callable[[Any], None]] = {
+            mav.MAVLINK_MSG_ID_HEARTBEAT: self._on_heartbeat,
+            mav.MAVLINK_MSG_ID_COMMAND_ACK: self.commands.on_ack,
+            mav.MAVLINK_MSG_ID_STATUSTEXT: self._on_text,
+            mav.MAVLINK_MSG_ID_MISSION_ITEM_REACHED: self._on_reached,
+            mav.MAVLINK_MSG_ID_MISSION_CURRENT: self.plans.on_current,
+            **dict.fromkeys(CLOCKS, self._on_clock),
+        }
+        merged: dict[int, list[Callable[[Any], None]]] = {}
+        parts = (self.telemetry.handlers(), self.transfers.handlers(), self.parameters.handlers(), self._connecting.handlers(), own)
+        for handlers in parts:
+            for number, handler in handlers.items():
+                merged.setdefault(number, []).append(handler)
+        return merged
+
+    @property
+    def chart(self) -> Chart | None:
+        return self.plans.chart
+
+    def say(self, severity: Event.Severity, text: str) -> None:
+        self.events.append((severity, text))
+
+    def step(self, t: float, messages: Sequence[mav.MAVLink_message]) -> None:
+        """Takes in what has come until ``t`` [s, wall], and goes on with what is under way."""
+        self.wire.t = self.telemetry.t = t
+        for message in messages:
+            for handler in self._handlers.get(message.get_msgId(), ()):
+                handler(message)
+        self._watch_link()
+        self._find_place()
+        if self._plans_due is not None and (self._connecting.capabilities or t >= self._plans_due):
+            self._plans_due = None
+            self.plans.read_all(self._connecting.capabilities)
+        self.commands.tick()
+        self.transfers.tick()
+        self.parameters.tick()
+
+    def _on_heartbeat(self, message: mav.MAVLink_heartbeat_message) -> None:
+        self.told.heartbeat = message
+        self._heard_at = self.wire.t
+        if self.is_lost:
+            self.is_lost = False
+            self.say(Event.NOTICE, f"in touch with system {self.wire.system}")
+            self._connect()
+
+    def _connect(self) -> None:
+        self._connecting.begin()
+        self._plans_due = self.wire.t + PLANS_AFTER
+
+    def _watch_link(self) -> None:
+        if not self.is_lost and self.wire.t - self._heard_at > LOST_AFTER:
+            self.is_lost = True
+            self.say(Event.ERROR, f"link lost: no heartbeat for {LOST_AFTER:g} s")
+            self._give_up("the link was lost")
+
+    def _give_up(self, reason: str) -> None:
+        self._plans_due = None
+        self.commands.give_up(reason)
+        self.transfers.give_up(reason)
+        self.parameters.give_up(reason)
+
+    def _on_clock(self, message: Any) -> None:
+        """Its own clock, which goes back only when it starts anew."""
+        if message.time_boot_ms < self._boot_ms - BOOT_BACK and not self.is_lost:
+            self.say(Event.WARNING, "the autopilot has started anew")
+            self._give_up("the autopilot has started anew")
+            self.telemetry.forget()
+            self._reached = -1
+            self._connect()
+        self._boot_ms = message.time_boot_ms
+
+    def _on_text(self, message: mav.MAVLink_statustext_message) -> None:
+        text: Text | None = self.wire.hear_text(message)
+        if text is not None and text.text:
+            self.say(SEVERITY.get(text.severity, Event.CRITICAL), text.text)
+
+    def _on_reached(self, message: mav.MAVLink_mission_item_reached_message) -> None:
+        self._reached = message.seq
+
+    def _find_place(self) -> None:
+        """Without a site, home is where the world begins."""
+        home = self.telemetry.home
+        if home is not None and self._origin.settle(*home):
+            self.say(Event.NOTICE, f"no site is given: the world begins at home, {home[0]:.6f}, {home[1]:.6f}, {home[2]:.1f} m")
+        tangent = self._origin.tangent
+        if tangent is not None and (self.chart is None or home != self._home):
+            self._home = home
+            self.plans.place(Chart(tangent, self.told.heartbeat.type == mav.MAV_TYPE_GROUND_ROVER))
+
+    def status(self) -> VehicleStatus:
+        status = status_of(self.told, self.chart, self.first)
+        if self.is_lost:
+            silence = self.wire.t - self._heard_at
+            words = f"link lost: no heartbeat for {silence:.0f} s" if math.isfinite(silence) else "link lost"
+            status.failsafes.append(words)
+            status.reason = words
+        return status
+
+    def progress(self) -> MissionProgress | None:
+        mission = self.plans.mission
+        if mission is None:
+            return None
+        return progress_of(self.told, len(mission.items), mission.id, self.first, self._reached)

@@ -1,0 +1,116 @@
+"""Commands to an autopilot: sent again while it is silent, answered by its COMMAND_ACK, a refusal with the words it has for it."""
+
+import math
+from collections import deque
+from dataclasses import dataclass
+
+from services.mavlink_bridge.station import COMPONENT, SYSTEM
+from services.mavlink_bridge.wire import TEXT_WITHIN, Done, Wire
+from uvf.runtime.mavlink import dialect as mav
+
+AGAIN_AFTER = 0.8  # s; autopilots take a repetition (confirmation > 0) for the same command
+TRIES = 4
+IN_PROGRESS_FOR = 3.0  # s, after which a command that was "in progress" is asked for again
+RESULTS = {
+    mav.MAV_RESULT_TEMPORARILY_REJECTED: "not now",
+    mav.MAV_RESULT_DENIED: "denied",
+    mav.MAV_RESULT_UNSUPPORTED: "the autopilot does not know this command",
+    mav.MAV_RESULT_FAILED: "it failed",
+    mav.MAV_RESULT_CANCELLED: "cancelled",
+    mav.MAV_RESULT_COMMAND_LONG_ONLY: "the autopilot takes it only as COMMAND_LONG",
+    mav.MAV_RESULT_COMMAND_INT_ONLY: "the autopilot takes it only as COMMAND_INT",
+    mav.MAV_RESULT_COMMAND_UNSUPPORTED_MAV_FRAME: "the autopilot does not take places in this frame",
+}
+NAN = math.nan
+
+
+@dataclass
+class Command:
+    """p: parameters 1 to 7, NaN = left out. frame: of a COMMAND_INT, whose parameters 5 and 6 are deg; None = COMMAND_LONG."""
+
+    number: int
+    p: tuple[float, ...]
+    done: Done
+    frame: int | None = None
+    begun: float = 0.0
+    sent_at: float = -math.inf
+    wait: float = AGAIN_AFTER
+    tries: int = 0
+    refused: str = ""
+    """Why, once it is; its words are still waited for."""
+
+
+def command(number: int, p: tuple[float, ...], done: Done, frame: int | None = None) -> Command:
+    """Parameters that are left out at the end are NaN."""
+    return Command(number, (*p, *(NAN,) * (7 - len(p))), done, frame)
+
+
+class Commands:
+    """One at a time of each number, for an ACK names nothing else; the others wait for their turn."""
+
+    def __init__(self, wire: Wire) -> None:
+        self._wire = wire
+        self._queues: dict[int, deque[Command]] = {}
+
+    def ask(self, asked: Command) -> None:
+        self._queues.setdefault(asked.number, deque()).append(asked)
+        self.tick()
+
+    def on_ack(self, message: mav.MAVLink_command_ack_message) -> None:
+        """Only of what was asked; an autopilot answers other stations, too."""
+        queue = self._queues.get(message.command)
+        if not queue or queue[0].tries == 0 or queue[0].refused or not _for_us(message):
+            return
+        asked = queue[0]
+        if message.result == mav.MAV_RESULT_IN_PROGRESS:
+            asked.sent_at, asked.wait = self._wire.t, IN_PROGRESS_FOR
+        elif message.result == mav.MAV_RESULT_ACCEPTED:
+            self._end(asked, True, "")
+        else:
+            asked.refused = RESULTS.get(message.result, f"result {message.result}")
+            asked.sent_at = self._wire.t
+            self.tick()
+
+    def tick(self) -> None:
+        for queue in [q for q in self._queues.values() if q]:
+            asked = queue[0]
+            silent = self._wire.t - asked.sent_at
+            if asked.refused:
+                words = self._wire.worry_since(asked.begun)
+                if words or silent >= TEXT_WITHIN:
+                    self._end(asked, False, f"{asked.refused}: {words}" if words else asked.refused)
+            elif silent >= asked.wait:
+                self._try(asked)
+
+    def _try(self, asked: Command) -> None:
+        if asked.tries >= TRIES:
+            self._end(asked, False, f"no answer from the autopilot within {self._wire.t - asked.begun:.1f} s")
+            return
+        if asked.tries == 0:
+            asked.begun = self._wire.t
+        self._wire.send(self._message(asked))
+        asked.tries += 1
+        asked.sent_at, asked.wait = self._wire.t, AGAIN_AFTER
+
+    def _message(self, asked: Command) -> mav.MAVLink_message:
+        system, component = self._wire.system, self._wire.component
+        if asked.frame is None:
+            return mav.MAVLink_command_long_message(system, component, asked.number, asked.tries, *asked.p)
+        x, y = (round(v * 1e7) if math.isfinite(v) else 2**31 - 1 for v in asked.p[4:6])
+        p1, p2, p3, p4 = asked.p[:4]
+        return mav.MAVLink_command_int_message(system, component, asked.frame, asked.number, 0, 0, p1, p2, p3, p4, x, y, asked.p[6])
+
+    def _end(self, asked: Command, accepted: bool, reason: str) -> None:
+        self._queues[asked.number].popleft()
+        asked.done(accepted, reason)
+
+    def give_up(self, reason: str) -> None:
+        """Nothing that was asked is done any more."""
+        queues, self._queues = self._queues, {}
+        for asked in (asked for queue in queues.values() for asked in queue):
+            asked.done(False, reason)
+
+
+def _for_us(message: mav.MAVLink_command_ack_message) -> bool:
+    """Older autopilots leave the addressee out."""
+    return message.target_system in (0, SYSTEM) and message.target_component in (0, COMPONENT)

@@ -1,0 +1,144 @@
+"""Parameters of an autopilot by name: read, and set until it says that the new value is in force."""
+
+import json
+import math
+import struct
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from schemas.messages import Param, ParamReply
+from services.mavlink_bridge.wire import TEXT_WITHIN, Wire
+from uvf.runtime.mavlink import dialect as mav
+
+AGAIN_AFTER, TRIES = 0.7, 5  # s
+NAME_BYTES = 16
+INTEGER = {
+    mav.MAV_PARAM_TYPE_UINT8: "<Bxxx",
+    mav.MAV_PARAM_TYPE_INT8: "<bxxx",
+    mav.MAV_PARAM_TYPE_UINT16: "<Hxx",
+    mav.MAV_PARAM_TYPE_INT16: "<hxx",
+    mav.MAV_PARAM_TYPE_UINT32: "<I",
+    mav.MAV_PARAM_TYPE_INT32: "<i",
+}
+ERRORS = {
+    1: "there is none of this name",
+    2: "out of range",
+    3: "may not be set",
+    5: "read only",
+    6: "of a kind that is not known",
+    7: "wrong type",
+}
+Value = int | float
+
+
+@dataclass
+class Wanted:
+    name: str
+    value: Value | None
+    """To be set; None = only read."""
+    done: Callable[[ParamReply], None]
+    kind: int | None = None
+    """MAV_PARAM_TYPE, known once it has been read."""
+    sent_at: float = -math.inf
+    tries: int = 0
+    why: str = ""
+
+
+class Parameters:
+    """bytewise: whether integers travel as their bytes (PX4), or as the float next to them (ArduPilot)."""
+
+    def __init__(self, wire: Wire) -> None:
+        self._wire = wire
+        self.bytewise = True
+        self._wanted: list[Wanted] = []
+
+    def handlers(self) -> dict[int, Callable[[Any], None]]:
+        return {mav.MAVLINK_MSG_ID_PARAM_VALUE: self._on_value, mav.MAVLINK_MSG_ID_PARAM_ERROR: self._on_error}
+
+    def ask(self, name: str, value: str, done: Callable[[ParamReply], None]) -> None:
+        """value: JSON, empty = read only."""
+        wanted = None
+        if value:
+            try:
+                wanted = json.loads(value)
+            except ValueError:
+                wanted = value
+            if isinstance(wanted, bool) or not isinstance(wanted, (int, float)) or not math.isfinite(wanted):
+                done(ParamReply(accepted=False, reason=f"{name}: {value} is no number"))
+                return
+        if not name or len(name) > NAME_BYTES or not name.isascii():
+            done(ParamReply(accepted=False, reason="name one parameter of the autopilot, of at most 16 letters"))
+            return
+        self._wanted.append(Wanted(name, wanted, done))
+        self.tick()
+
+    def tick(self) -> None:
+        for wanted in list(self._wanted):
+            if wanted.why and self._wire.t - wanted.sent_at > TEXT_WITHIN:
+                self._end(wanted, ParamReply(accepted=False, reason=wanted.why))
+            elif not wanted.why and self._wire.t - wanted.sent_at > AGAIN_AFTER:
+                self._try(wanted)
+
+    def _try(self, wanted: Wanted) -> None:
+        if wanted.tries >= TRIES:
+            self._end(wanted, ParamReply(accepted=False, reason=f"{wanted.name}: no answer; the autopilot may have none of this name"))
+            return
+        wanted.tries += 1
+        wanted.sent_at = self._wire.t
+        to, name = (self._wire.system, self._wire.component), wanted.name.encode()
+        if wanted.value is None or wanted.kind is None:
+            self._wire.send(mav.MAVLink_param_request_read_message(*to, name, -1))
+        else:
+            self._wire.send(mav.MAVLink_param_set_message(*to, name, self._coded(wanted.value, wanted.kind), wanted.kind))
+
+    def _on_value(self, message: mav.MAVLink_param_value_message) -> None:
+        name = _name(message.param_id)
+        value = self._decoded(message.param_value, message.param_type)
+        for wanted in [w for w in self._wanted if w.name == name]:
+            known = wanted.kind is not None
+            wanted.kind = message.param_type
+            if wanted.value is None or (known and _same(value, wanted.value)):
+                param = Param(name=name, value=json.dumps(value))
+                self._end(wanted, ParamReply(accepted=True, params=[param]))
+            elif message.param_type in INTEGER and wanted.value != int(wanted.value):
+                self._end(wanted, ParamReply(accepted=False, reason=f"{name}: {wanted.value:g} is no whole number"))
+            elif known:
+                words = self._wire.worry_since(wanted.sent_at)
+                wanted.why = wanted.why or f"{name} stays {value:g}" + (f": {words}" if words else "")
+            else:
+                wanted.tries, wanted.sent_at = 0, -math.inf
+        self.tick()
+
+    def _on_error(self, message: mav.MAVLink_param_error_message) -> None:
+        for wanted in [w for w in self._wanted if w.name == _name(message.param_id)]:
+            wanted.why = f"{wanted.name}: {ERRORS.get(message.error, f'error {message.error}')}"
+
+    def _coded(self, value: Value, kind: int) -> float:
+        if kind not in INTEGER or not self.bytewise:
+            return float(value)
+        coded: float = struct.unpack("<f", struct.pack(INTEGER[kind], int(value)))[0]
+        return coded
+
+    def _decoded(self, value: float, kind: int) -> Value:
+        if kind not in INTEGER:
+            return value
+        whole: int = struct.unpack(INTEGER[kind], struct.pack("<f", value))[0] if self.bytewise else round(value)
+        return whole
+
+    def _end(self, wanted: Wanted, reply: ParamReply) -> None:
+        self._wanted.remove(wanted)
+        wanted.done(reply)
+
+    def give_up(self, reason: str) -> None:
+        for wanted in list(self._wanted):
+            self._end(wanted, ParamReply(accepted=False, reason=reason))
+
+
+def _name(raw: str | bytes) -> str:
+    return raw.rstrip("\0") if isinstance(raw, str) else bytes(raw).split(b"\0")[0].decode("ascii", "replace")
+
+
+def _same(one: Value, other: Value) -> bool:
+    """As the wire has them: 32-bit floats."""
+    return math.isclose(one, other, rel_tol=1e-6, abs_tol=1e-9)

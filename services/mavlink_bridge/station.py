@@ -1,0 +1,106 @@
+"""The bridge's end of a link: which autopilots are heard there, and each one's messages for the vehicle that it is."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from uvf.runtime.mavlink import dialect as mav
+from uvf.runtime.mavlink.codec import Codec
+from uvf.runtime.mavlink.endpoint import Link, Peer
+
+SYSTEM, COMPONENT = 255, mav.MAV_COMP_ID_UDP_BRIDGE
+"""Who the bridge is on the link: a ground station, as far as the autopilot's failsafes are concerned."""
+LOST_AFTER = 3.5  # s without a heartbeat, as QGroundControl has it
+HEARTBEAT_PERIOD = 1.0  # s
+INBOX_MOST = 2000
+"""Messages of one autopilot that nobody has fetched: what is older is dropped."""
+
+
+@dataclass
+class Autopilot:
+    """One system at the address; its id may be anybody's again once it has been silent."""
+
+    system: int
+    component: int
+    peer: Peer
+    heartbeat: mav.MAVLink_heartbeat_message
+    heard_at: float
+    inbox: list[mav.MAVLink_message] = field(default_factory=list)
+    rivals: set[Peer] = field(default_factory=set)
+    """Other addresses that have used its id meanwhile."""
+
+    def is_lost(self, t: float) -> bool:
+        return t - self.heard_at > LOST_AFTER
+
+
+class Station:
+    """Shared by all vehicles at one address."""
+
+    def __init__(self, link: Link) -> None:
+        self.autopilots: dict[int, Autopilot] = {}
+        """By system id."""
+        self._link = link
+        self._codec = Codec(COMPONENT)
+        self._last_heartbeat = -HEARTBEAT_PERIOD
+
+    def poll(self, t: float) -> list[str]:
+        """Takes in what has arrived until ``t`` [s, wall] and says that the station is there; returns what has to be told."""
+        told: list[str] = []
+        for datagram, peer in self._link.receive(t):
+            messages = self._codec.parse(datagram)
+            if messages:
+                self._link.keep(t, peer)
+            for message in messages:
+                told += self._take(t, message, peer)
+        if t - self._last_heartbeat >= HEARTBEAT_PERIOD:
+            self._last_heartbeat = t
+            hello = mav.MAVLink_heartbeat_message(mav.MAV_TYPE_GCS, mav.MAV_AUTOPILOT_INVALID, 0, 0, mav.MAV_STATE_ACTIVE, 3)
+            self._send(hello, self._link.peers(t))
+        return told
+
+    def _take(self, t: float, message: mav.MAVLink_message, peer: Peer) -> list[str]:
+        system, component = message.get_srcSystem(), message.get_srcComponent()
+        is_heartbeat = message.get_msgId() == mav.MAVLINK_MSG_ID_HEARTBEAT
+        known = self.autopilots.get(system)
+        if is_heartbeat and known is None and is_autopilot(message) and system not in (0, SYSTEM):
+            known = self.autopilots[system] = Autopilot(system, component, peer, message, t)  # type: ignore[arg-type]
+        if known is None or component != known.component:
+            return []
+        if peer != known.peer and not known.is_lost(t):
+            first = peer not in known.rivals
+            known.rivals.add(peer)
+            return [f"system {system} speaks from {_text(peer)} too; only {_text(known.peer)} counts: give one another id"] if first else []
+        if is_heartbeat and is_autopilot(message):
+            known.peer, known.heartbeat, known.heard_at = peer, message, t  # type: ignore[assignment]
+            known.rivals.discard(peer)
+        if peer == known.peer:
+            known.inbox.append(message)
+            del known.inbox[:-INBOX_MOST]
+        return []
+
+    def fetch(self, system: int) -> list[mav.MAVLink_message]:
+        """What an autopilot has said since the last call."""
+        taken = self.autopilots[system].inbox
+        self.autopilots[system].inbox = []
+        return taken
+
+    def send(self, system: int, messages: Sequence[mav.MAVLink_message]) -> None:
+        """To one autopilot, where it was heard last."""
+        for message in messages:
+            self._send(message, [self.autopilots[system].peer])
+
+    def _send(self, message: mav.MAVLink_message, peers: Sequence[Peer]) -> None:
+        for packet, peer in self._codec.packets(SYSTEM, message, [(peer, None) for peer in peers]):
+            self._link.send(packet, peer)
+
+    def close(self) -> None:
+        self._link.close()
+
+
+def is_autopilot(message: Any) -> bool:
+    """Whether a heartbeat is that of something that flies or drives, and not of a camera, a gimbal or a ground station."""
+    return bool(message.autopilot != mav.MAV_AUTOPILOT_INVALID and message.type != mav.MAV_TYPE_GCS)
+
+
+def _text(peer: Peer) -> str:
+    return f"{peer[0]}:{peer[1]}"

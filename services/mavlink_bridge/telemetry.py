@@ -1,0 +1,177 @@
+"""What an autopilot tells of itself, as the system's messages; what it has not told is left out."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from schemas.convert import array, quaternion
+from schemas.messages import Battery, Circle, Gnss, NavState, Vector3
+from services.mavlink_bridge.frame import Chart
+from uvf.maths.geodesy import Floats
+from uvf.maths.rotations import enu_flu_from_ned_frd, from_euler
+from uvf.runtime.mavlink import dialect as mav
+
+FRESH = 2.0  # s: what is told at least each second
+UNKNOWN_U16 = 0xFFFF
+Message = Any
+
+
+@dataclass
+class Heard:
+    message: Message
+    at: float  # s, wall
+
+
+class Telemetry:
+    """The newest message of each kind, and what follows from them. Times are wall time [s]."""
+
+    KINDS = (
+        mav.MAVLINK_MSG_ID_ATTITUDE,
+        mav.MAVLINK_MSG_ID_ATTITUDE_QUATERNION,
+        mav.MAVLINK_MSG_ID_GLOBAL_POSITION_INT,
+        mav.MAVLINK_MSG_ID_VFR_HUD,
+        mav.MAVLINK_MSG_ID_SYS_STATUS,
+        mav.MAVLINK_MSG_ID_BATTERY_STATUS,
+        mav.MAVLINK_MSG_ID_GPS_RAW_INT,
+        mav.MAVLINK_MSG_ID_WIND_COV,
+        mav.MAVLINK_MSG_ID_ESTIMATOR_STATUS,
+        mav.MAVLINK_MSG_ID_HOME_POSITION,
+        mav.MAVLINK_MSG_ID_EXTENDED_SYS_STATE,
+        mav.MAVLINK_MSG_ID_NAV_CONTROLLER_OUTPUT,
+        mav.MAVLINK_MSG_ID_ORBIT_EXECUTION_STATUS,
+        mav.MAVLINK_MSG_ID_FENCE_STATUS,
+        mav.MAVLINK_MSG_ID_MISSION_CURRENT,
+    )
+
+    def __init__(self) -> None:
+        self.t = 0.0
+        self._heard: dict[int, Heard] = {}
+        self._news: set[int] = set()
+        """Kinds heard since the last look."""
+
+    def handlers(self) -> dict[int, Callable[[Message], None]]:
+        return dict.fromkeys(self.KINDS, self._hear)
+
+    def _hear(self, message: Message) -> None:
+        kind = message.get_msgId()
+        self._heard[kind] = Heard(message, self.t)
+        self._news.add(kind)
+
+    def forget(self) -> None:
+        """After a restart of the autopilot nothing of before holds."""
+        self._heard.clear()
+        self._news.clear()
+
+    def newest(self, kind: int, within: float = math.inf) -> Message | None:
+        heard = self._heard.get(kind)
+        return heard.message if heard is not None and self.t - heard.at <= within else None
+
+    def is_new(self, *kinds: int) -> bool:
+        """Whether one of them has come since this was asked last."""
+        found = bool(self._news & set(kinds))
+        self._news -= set(kinds)
+        return found
+
+    @property
+    def home(self) -> tuple[float, float, float] | None:
+        """deg, deg, m AMSL."""
+        home = self.newest(mav.MAVLINK_MSG_ID_HOME_POSITION)
+        return (home.latitude * 1e-7, home.longitude * 1e-7, home.altitude * 1e-3) if home is not None else None
+
+    def nav(self, chart: Chart) -> NavState | None:
+        """None until position and attitude have been told, and while there is nothing new of either."""
+        kinds = (mav.MAVLINK_MSG_ID_GLOBAL_POSITION_INT, mav.MAVLINK_MSG_ID_ATTITUDE_QUATERNION, mav.MAVLINK_MSG_ID_ATTITUDE)
+        if not self.is_new(*kinds):
+            return None
+        here = self.newest(mav.MAVLINK_MSG_ID_GLOBAL_POSITION_INT, FRESH)
+        turned = self._orientation()
+        if here is None or turned is None or (here.lat == 0 and here.lon == 0):
+            return None
+        turn, rates = turned
+        nav = NavState(
+            position=chart.world(here.lat * 1e-7, here.lon * 1e-7, here.alt * 1e-3),
+            velocity=Vector3(x=here.vy * 0.01, y=here.vx * 0.01, z=-here.vz * 0.01),
+            orientation=quaternion(turn),
+            angular_velocity=Vector3(x=rates[0], y=-rates[1], z=-rates[2]),
+        )
+        return self._filled(nav, chart) if np.isfinite((*array(nav.position), *turn, *rates)).all() else None
+
+    def _orientation(self) -> tuple[Floats, tuple[float, float, float]] | None:
+        """World (ENU) from body (FLU), and the rates [rad/s, FRD]."""
+        exact = self.newest(mav.MAVLINK_MSG_ID_ATTITUDE_QUATERNION, FRESH)
+        if exact is not None:
+            wire = np.array((exact.q1, exact.q2, exact.q3, exact.q4))
+            length = float(np.linalg.norm(wire))
+            if 0.9 < length < 1.1:
+                return enu_flu_from_ned_frd(wire / length), (exact.rollspeed, exact.pitchspeed, exact.yawspeed)
+        angles = self.newest(mav.MAVLINK_MSG_ID_ATTITUDE, FRESH)
+        if angles is None or not np.isfinite((angles.roll, angles.pitch, angles.yaw)).all():
+            return None
+        turn = enu_flu_from_ned_frd(from_euler(angles.roll, angles.pitch, angles.yaw))
+        return turn, (angles.rollspeed, angles.pitchspeed, angles.yawspeed)
+
+    def _filled(self, nav: NavState, chart: Chart) -> NavState:
+        """Airspeed, wind and accuracy, where they are told."""
+        hud = self.newest(mav.MAVLINK_MSG_ID_VFR_HUD, FRESH)
+        if hud is not None and math.isfinite(hud.airspeed) and not chart.is_ground:
+            nav.airspeed = hud.airspeed
+        wind = self.newest(mav.MAVLINK_MSG_ID_WIND_COV, 3 * FRESH)
+        if wind is not None and math.isfinite(wind.wind_x + wind.wind_y):
+            up = -wind.wind_z if math.isfinite(wind.wind_z) else 0.0
+            nav.wind.CopyFrom(Vector3(x=wind.wind_y, y=wind.wind_x, z=up))
+        quality = self.newest(mav.MAVLINK_MSG_ID_ESTIMATOR_STATUS, 3 * FRESH)
+        gps = self.newest(mav.MAVLINK_MSG_ID_GPS_RAW_INT, FRESH)
+        if quality is not None and math.isfinite(quality.pos_horiz_accuracy):
+            nav.position_sigma = quality.pos_horiz_accuracy
+        elif gps is not None and gps.h_acc:
+            nav.position_sigma = gps.h_acc * 1e-3
+        return nav
+
+    def gnss(self) -> Gnss | None:
+        """A new reading of the receiver, if there is one."""
+        gps = self.newest(mav.MAVLINK_MSG_ID_GPS_RAW_INT)
+        if gps is None or not self.is_new(mav.MAVLINK_MSG_ID_GPS_RAW_INT):
+            return None
+        told = Gnss(fix=Gnss.FIX_3D if gps.fix_type >= mav.GPS_FIX_TYPE_3D_FIX else Gnss.NONE)
+        told.latitude, told.longitude, told.altitude = math.radians(gps.lat * 1e-7), math.radians(gps.lon * 1e-7), gps.alt * 1e-3
+        told.horizontal_accuracy, told.vertical_accuracy, told.speed_accuracy = gps.h_acc * 1e-3, gps.v_acc * 1e-3, gps.vel_acc * 1e-3
+        told.satellites = gps.satellites_visible if gps.satellites_visible != 255 else 0
+        if UNKNOWN_U16 not in (gps.vel, gps.cog):
+            course = math.radians(gps.cog * 0.01)
+            told.velocity_enu.CopyFrom(Vector3(x=gps.vel * 0.01 * math.sin(course), y=gps.vel * 0.01 * math.cos(course)))
+        return told
+
+    def battery(self) -> Battery | None:
+        """The first battery; a new reading, if all of it is known."""
+        if not self.is_new(mav.MAVLINK_MSG_ID_BATTERY_STATUS, mav.MAVLINK_MSG_ID_SYS_STATUS):
+            return None
+        volts, amperes, remaining = self.charge()
+        if math.isnan(volts + amperes) or remaining < 0:
+            return None
+        return Battery(voltage=volts, current=amperes, remaining=remaining)
+
+    def charge(self) -> tuple[float, float, float]:
+        """Voltage [V], current [A], both NaN when unknown, and what is left (0..1, negative = unknown)."""
+        pack, status = self.newest(mav.MAVLINK_MSG_ID_BATTERY_STATUS, 5 * FRESH), self.newest(mav.MAVLINK_MSG_ID_SYS_STATUS, 5 * FRESH)
+        volts = amperes = math.nan
+        left = -1
+        if status is not None:
+            volts = status.voltage_battery * 1e-3 if status.voltage_battery != UNKNOWN_U16 else math.nan
+            amperes = status.current_battery * 0.01 if status.current_battery >= 0 else math.nan
+            left = status.battery_remaining
+        if pack is not None and pack.id == 0:
+            cells = [v for v in pack.voltages if v != UNKNOWN_U16]
+            volts = sum(cells) * 1e-3 if cells else volts
+            amperes = pack.current_battery * 0.01 if pack.current_battery >= 0 else amperes
+            left = pack.battery_remaining if pack.battery_remaining >= 0 else left
+        return volts, amperes, left * 0.01 if left >= 0 else -1.0
+
+    def circle(self, chart: Chart) -> Circle | None:
+        """Being flown, as long as it is told."""
+        told = self.newest(mav.MAVLINK_MSG_ID_ORBIT_EXECUTION_STATUS, FRESH)
+        if told is None or told.frame not in (mav.MAV_FRAME_GLOBAL, mav.MAV_FRAME_GLOBAL_INT) or not math.isfinite(told.radius + told.z):
+            return None
+        return Circle(centre=chart.world(told.x * 1e-7, told.y * 1e-7, told.z), radius=told.radius)

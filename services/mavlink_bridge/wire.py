@@ -1,0 +1,67 @@
+"""One autopilot as its protocols see it: whom to write to, what it is, and what it has said in words."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from uvf.runtime.mavlink import dialect as mav
+
+Done = Callable[[bool, str], None]
+"""Called once with (accepted, reason)."""
+TEXT_KEPT = 20.0  # s
+TEXT_WITHIN = 0.3  # s after a refusal: the words often come behind it
+CHUNK_BYTES = 50
+CHUNKS_WITHIN = 2.0  # s
+WORRYING = mav.MAV_SEVERITY_WARNING
+"""A text of this severity or a graver one may explain a refusal."""
+
+
+@dataclass(frozen=True)
+class Text:
+    t: float
+    severity: int
+    text: str
+
+
+class Wire:
+    """``t`` [s, wall] is set before each step's work."""
+
+    def __init__(self, system: int, component: int) -> None:
+        self.t = 0.0
+        self.system, self.component = system, component
+        self.outbox: list[mav.MAVLink_message] = []
+        self.texts: list[Text] = []
+        """The newest ones, oldest first."""
+        self._parts: dict[int, tuple[float, int, list[bytes]]] = {}
+
+    def send(self, message: mav.MAVLink_message) -> None:
+        self.outbox.append(message)
+
+    def take_out(self) -> list[mav.MAVLink_message]:
+        out, self.outbox = self.outbox, []
+        return out
+
+    def hear_text(self, message: mav.MAVLink_statustext_message) -> Text | None:
+        """A whole text, once its last chunk is there; of a text that lost one, the rest is said."""
+        raw = message.text.encode("utf-8", "replace") if isinstance(message.text, str) else bytes(message.text)
+        part = raw.split(b"\0")[0]
+        if message.id == 0:
+            return self._said(message.severity, part)
+        begun, severity, parts = self._parts.get(message.id, (self.t, message.severity, []))
+        if self.t - begun > CHUNKS_WITHIN:
+            begun, parts = self.t, []
+        parts.append(part)
+        self._parts[message.id] = (begun, severity, parts)
+        if len(part) == CHUNK_BYTES:
+            return None
+        del self._parts[message.id]
+        return self._said(severity, b"".join(parts))
+
+    def _said(self, severity: int, raw: bytes) -> Text:
+        text = Text(self.t, severity, raw.decode("utf-8", "replace").strip())
+        self.texts = [old for old in self.texts if self.t - old.t < TEXT_KEPT] + [text]
+        return text
+
+    def worry_since(self, t: float) -> str:
+        """The newest grave text from ``t`` [s] on, or nothing."""
+        grave = [text.text for text in self.texts if text.t >= t - 1e-9 and text.severity <= WORRYING]
+        return grave[-1] if grave else ""

@@ -1,0 +1,80 @@
+"""A request whose answer only a later step knows stays open until then, and no longer."""
+
+from collections import deque
+
+import pytest
+
+from schemas import topics
+from schemas.messages import ArmRequest, Reply
+from uvf.runtime.bus import LocalBus
+from uvf.runtime.service import Later, Service
+from uvf.runtime.shell import Shell
+from uvf.runtime.site import Host
+
+
+class Slow(Service):
+    """Answers each request three steps after it has come, one to disarm at once."""
+
+    name = "slow"
+    hz = 10.0
+    requests = {"arm": topics.ARM}
+
+    def __init__(self):
+        self.waiting = deque()
+        self.n = 0
+
+    def step(self, t, arm):
+        self.n += 1
+        while self.waiting and self.waiting[0][0] <= self.n:
+            self.waiting.popleft()[1].give(Reply(accepted=True, reason=f"step {self.n}"))
+        replies = []
+        for request in arm:
+            later = Later()
+            if request.arm:
+                self.waiting.append((self.n + 3, later))
+            else:
+                later.give(Reply(accepted=False, reason="at once"))
+            replies.append(later)
+        return {"arm": replies}
+
+
+@pytest.fixture
+def bus():
+    return LocalBus()
+
+
+@pytest.fixture
+def shell(bus):
+    return Shell(Host(Slow, Slow, "alpha"), bus)
+
+
+def ask(bus, arm):
+    got = []
+    bus.call(topics.ARM.at("alpha"), ArmRequest(arm=arm).SerializeToString(), 0, lambda reply, why, at: got.append((reply, why)))
+    return got
+
+
+def test_the_answer_comes_with_the_step_that_knows_it(bus, shell):
+    got, at_once = ask(bus, True), ask(bus, False)
+    shell.advance()
+    assert not got and Reply.FromString(at_once[0][0]).reason == "at once"
+    shell.advance()
+    shell.advance()
+    assert not got
+    shell.advance()
+    shell.advance()
+    assert [Reply.FromString(reply).reason for reply, _ in got] == ["step 4"]
+
+
+def test_the_first_answer_counts():
+    later = Later()
+    later.give(Reply(reason="first"))
+    later.give(Reply(reason="second"))
+    assert later.reply.reason == "first"
+
+
+def test_when_time_starts_over_what_is_open_is_refused(bus, shell):
+    got = ask(bus, True)
+    shell.advance()
+    shell.restart(2)
+    assert got[0][0] is None and "time has started over" in got[0][1]

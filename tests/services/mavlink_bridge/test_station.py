@@ -1,0 +1,147 @@
+"""Who is heard at an address: autopilots and nobody else, each by its id, from one place at a time."""
+
+import random
+
+import pytest
+
+from services.mavlink_bridge.discovery import Discovery, Names, names_from
+from services.mavlink_bridge.station import COMPONENT, LOST_AFTER, SYSTEM, Station
+from tests.services.autopilot.mavlink.rig import MemoryLink
+from tests.services.mavlink_bridge.far_end import heartbeat, text
+from uvf.runtime.mavlink import dialect as mav
+from uvf.runtime.params import BadInput
+
+HERE, THERE = ("127.0.0.1", 5001), ("127.0.0.1", 5002)
+
+
+class Air:
+    def __init__(self):
+        self.link = MemoryLink()
+        self.link.listening = []
+        self.station = Station(self.link)
+
+    def say(self, message, system=1, component=1, peer=HERE):
+        self.link.incoming.append((message.pack(mav.MAVLink(None, system, component)), peer))
+
+    def sent(self, to):
+        client = mav.MAVLink(None)
+        return [m for data, peer in self.link.outgoing if peer == to for m in client.parse_buffer(data) or ()]
+
+
+@pytest.fixture
+def air():
+    return Air()
+
+
+def test_a_heartbeat_of_an_autopilot_makes_it_known_and_it_is_answered_where_it_speaks_from(air):
+    air.say(heartbeat())
+    air.say(text("hello"))
+    assert air.station.poll(0.0) == []
+    assert [m.get_type() for m in air.station.fetch(1)] == ["HEARTBEAT", "STATUSTEXT"]
+    assert air.station.fetch(1) == []
+    air.station.send(1, [mav.MAVLink_mission_request_list_message(1, 1, 0)])
+    assert [(m.get_type(), m.get_srcSystem(), m.get_srcComponent()) for m in air.sent(HERE)][-1] == (
+        "MISSION_REQUEST_LIST",
+        SYSTEM,
+        COMPONENT,
+    )
+
+
+@pytest.mark.parametrize(
+    ("message", "system", "component"),
+    [
+        (heartbeat(mav.MAV_AUTOPILOT_INVALID, mav.MAV_TYPE_GCS), 255, 190),
+        (heartbeat(mav.MAV_AUTOPILOT_INVALID, mav.MAV_TYPE_CAMERA), 1, 100),
+        (heartbeat(mav.MAV_AUTOPILOT_INVALID, mav.MAV_TYPE_ONBOARD_CONTROLLER), 1, 191),
+        (heartbeat(), 0, 1),
+        (text("no heartbeat yet"), 1, 1),
+    ],
+)
+def test_ground_stations_cameras_and_the_nameless_are_no_vehicles(air, message, system, component):
+    air.say(message, system, component)
+    air.station.poll(0.0)
+    assert air.station.autopilots == {}
+
+
+def test_other_components_of_a_vehicle_do_not_speak_for_it(air):
+    air.say(heartbeat())
+    air.say(text("from the camera"), component=100)
+    air.station.poll(0.0)
+    assert [m.get_type() for m in air.station.fetch(1)] == ["HEARTBEAT"]
+
+
+def test_whoever_is_heard_hears_once_a_second_that_a_station_is_there(air):
+    for t in range(50):
+        air.say(heartbeat())
+        air.station.poll(t * 0.1)
+    beats = air.sent(HERE)
+    assert 4 <= len(beats) <= 6 and {m.type for m in beats} == {mav.MAV_TYPE_GCS}
+
+
+def test_two_of_one_id_at_a_time_only_the_first_counts_and_it_is_told_once(air):
+    air.say(heartbeat())
+    air.station.poll(0.0)
+    told = []
+    for t in (0.1, 1.0, 2.0):
+        air.say(heartbeat(custom=65536), peer=THERE)
+        air.say(heartbeat())
+        told += air.station.poll(t)
+    assert told == ["system 1 speaks from 127.0.0.1:5002 too; only 127.0.0.1:5001 counts: give one another id"]
+    assert air.station.autopilots[1].peer == HERE and air.station.autopilots[1].heartbeat.custom_mode == 50593792
+
+
+def test_one_that_comes_back_from_another_port_after_a_silence_is_the_same(air):
+    air.say(heartbeat())
+    air.station.poll(0.0)
+    air.say(heartbeat(), peer=THERE)
+    assert air.station.poll(LOST_AFTER + 1) == []
+    assert air.station.autopilots[1].peer == THERE
+    assert len(air.station.fetch(1)) == 2
+
+
+def test_garbage_and_broken_packets_hurt_nobody_and_make_no_peers(air):
+    rng = random.Random(3)
+    whole = heartbeat().pack(mav.MAVLink(None, 9, 1))
+    for n in range(3000):
+        data = bytearray(whole if n % 2 else rng.randbytes(rng.randrange(1, 60)))
+        data[rng.randrange(len(data))] ^= 1 << rng.randrange(8)
+        air.link.incoming.append((bytes(data), HERE))
+    air.station.poll(0.0)
+    assert set(air.station.autopilots) <= {9} and air.link.listening in ([], [HERE])
+
+
+def test_nobody_who_reads_costs_no_memory(air):
+    air.say(heartbeat())
+    for _ in range(5000):
+        air.say(text("again"))
+    air.station.poll(0.0)
+    assert len(air.station.fetch(1)) == 2000
+
+
+def test_each_new_system_is_found_once_under_its_name_and_silence_is_told_of(air):
+    found, said = [], []
+    discovery = Discovery(air.station, Names("plane2", {7: "rover2"}), lambda name, system: found.append((name, system)), said.append)
+    discovery.step(5.5)
+    assert said == ["no autopilot heard for 5 s; listening on"]
+    for system in (3, 7, 4, 3):
+        air.say(heartbeat(), system)
+        discovery.step(6.0)
+    assert found == [("plane2", 3), ("rover2", 7), ("plane2_4", 4)]
+
+
+@pytest.mark.parametrize(
+    ("texts", "why"),
+    [
+        (["plane 2"], "write NAME"),
+        (["sys"], "write NAME"),
+        (["a=0"], "1 to 254"),
+        (["a=x"], "1 to 254"),
+        (["a="], "1 to 254"),
+        (["a=1", "b=1"], "system 1 is called a already"),
+        (["a=1", "a=2"], "two vehicles of one name"),
+        (["a", "b"], "write b=SYSTEM"),
+    ],
+)
+def test_names_that_cannot_be_are_refused(texts, why):
+    with pytest.raises(BadInput, match=why):
+        names_from(texts)
