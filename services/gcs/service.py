@@ -137,8 +137,7 @@ class GroundStation(Service):
             "world_from_map": world_from_map,
         }
         self._hear_system(t, clock, processes, health)
-        self._hear_others(guests, stops)
-        self._model.hear_objects((objects, aircraft), truth)
+        self._hear_others(guests, stops, (objects, aircraft), truth)
         self._model.hear_newest(t, newest, events)
         self._commander.hear(t, (*goal, *cancel, *arm, *mode))
         return self._act(t)
@@ -148,9 +147,12 @@ class GroundStation(Service):
         self._model.hear_processes(processes)
         self._model.hear_health(t, health)
 
-    def _hear_others(self, guests: Mapping[str, Guest], stops: StopCommand | None) -> None:
+    def _hear_others(
+        self, guests: Mapping[str, Guest], stop: StopCommand | None, things: Sequence[SimObjects | None], truth: Mapping[str, NavState]
+    ) -> None:
         self._model.hear_guests(guests)
-        self._model.hear_stop(stops)
+        self._model.hear_objects(things, truth)
+        self._model.hear_stop(stop)
 
     def _act(self, t: float) -> Outputs:
         """Does what people have asked on the page, and shows how things stand."""
