@@ -128,8 +128,7 @@ class Commands:
         if last is None or not last.command.same_as(command):
             return False
         if last.result is None:
-            acknowledge(self._line, command, mav.MAV_RESULT_IN_PROGRESS)
-            return True
+            return True  # no "in progress": MAVSDK takes it for a refusal, and version 4 ends its program at the answer that follows
         if command.confirmation > 0 or (command.frame is not None and self._line.t - last.t < REPEATED_WITHIN):
             acknowledge(self._line, command, last.result)
             return True

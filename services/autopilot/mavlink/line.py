@@ -15,7 +15,7 @@ from uvf.runtime.mavlink.endpoint import Peer
 from uvf.runtime.service import Answer
 
 HELD_FOR = 1.0  # s, wall: as long a station that steers may be silent before another one may
-ANSWER_WITHIN = 2.5  # s: inside MAVSDK's three tries and QGroundControl's 3 s
+ANSWER_WITHIN = 1.9  # s: inside MAVSDK's four tries of 0.5 s and QGroundControl's 3 s
 
 
 class Sender(NamedTuple):

@@ -59,7 +59,7 @@ class Airborne:
         """The result of a command, and how long it took [s]."""
         begun = self.t
         self.say(message)
-        at, ack = self.hears("COMMAND_ACK", seconds, lambda m: m.command == message.command and m.result != 5)
+        at, ack = self.hears("COMMAND_ACK", seconds, lambda m: m.command == message.command)
         return ack.result, at - begun
 
     def hears(self, kind, seconds, fits=lambda m: True):
