@@ -189,7 +189,7 @@ def test_a_broadcast_reaches_every_vehicle():
 def test_without_an_answer_the_command_ends_all_the_same():
     rig = Rig(answers=False)
     rig.say(long(400, 1.0))
-    assert acks(rig.run(2.0)) == []
+    assert acks(rig.run(1.5)) == []
     heard = rig.run(1.0)
     assert acks(heard) == [(400, REJECTED)]
     assert "Arming denied: the autopilot did not answer" in texts(heard)
