@@ -12,6 +12,10 @@ import typer
 from uvf.runtime.site import ROOT
 
 
+ON_THE_WALL = ["tests/browser", "tests/distributed"]
+"""Tests of real processes in real time: two at once would make each other late."""
+
+
 def left_out() -> list[str]:
     """What the tests will leave out here, and what would bring it in."""
     lines = []
@@ -29,7 +33,12 @@ def data_folder() -> Path | None:
 
 
 def run_tests(arguments: Sequence[str]) -> int:
-    """Runs pytest in a process of its own; returns its exit code."""
+    """Runs pytest in processes of its own; returns the first exit code that is not 0.
+
+    Without arguments all tests: on every core those that have their own time, then by themselves those that live on the wall clock.
+    """
     for line in left_out():
         typer.echo(f"uvf: {line}")
-    return subprocess.run([sys.executable, "-m", "pytest", *arguments], cwd=ROOT, check=False).returncode
+    runs = [list(arguments)] if arguments else [["-n", "auto", "--dist", "loadfile", *(f"--ignore={f}" for f in ON_THE_WALL)], ON_THE_WALL]
+    codes = [subprocess.run([sys.executable, "-m", "pytest", *run], cwd=ROOT, check=False).returncode for run in runs]
+    return next((code for code in codes if code), 0)
