@@ -168,11 +168,11 @@ def _order(autopilot: Autopilot, request: OrderRequest, done: Done) -> None:
 
 
 def _takeoff(autopilot: Autopilot, order: Any, chart: Chart, done: Done) -> None:
-    """Where it stands, up to a height: above home for ArduPilot, above the sea for the others."""
-    if autopilot.is_ardupilot:
-        p = (*(0.0,) * 6, order.altitude - autopilot.plans.home_z)
-    else:
+    """Where it stands, up to a height: above the sea for PX4, above home for the others."""
+    if autopilot.told.heartbeat.autopilot == mav.MAV_AUTOPILOT_PX4:
         p = (*(NAN,) * 6, order.altitude + chart.origin.altitude)
+    else:
+        p = (*(0.0,) * 6, order.altitude - autopilot.plans.home_z)
     autopilot.commands.ask(command(mav.MAV_CMD_NAV_TAKEOFF, p, done))
 
 

@@ -28,7 +28,10 @@ DEMO = "demo"
 MissionArgument = Annotated[str, typer.Argument(help="Name in missions/ or path of a mission file.")]
 MissionOption = Annotated[str, typer.Option("--mission", "-m", help="Name in missions/ or path of a mission file.")]
 
-BRIDGE_ADDRESS = """udp:HOST:PORT or udpin:HOST:PORT: wait there for autopilots that send to it, as simulators do to 14550.
+BRIDGE_ADDRESS = """udpin:HOST:PORT: listen for autopilots that send there, as simulators do to 14550.
+
+udp:HOST:PORT: the same, as MAVProxy has it.
+
 udpout:HOST:PORT: call an autopilot that listens there."""
 
 
