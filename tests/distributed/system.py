@@ -20,7 +20,7 @@ PATIENCE = 90.0
 class System:
     """``uvf up`` in a process of its own; a context manager that checks that nothing is left behind."""
 
-    def __init__(self, runs, *arguments, page=False):
+    def __init__(self, runs, *arguments, page=False, mission="demo"):
         self.router, self.page, self.mavlink = (free_port() for _ in range(3))
         self.endpoint = f"tcp/127.0.0.1:{self.router}"
         self.environment = {
@@ -32,7 +32,7 @@ class System:
             "UVF_RUNS": str(runs),
             "UVF_STATE": str(runs / "state"),
         }
-        self._command = [sys.executable, "-m", "uvf.launch.cli", "up", "demo", *([] if page else ["--no-gcs"]), *arguments]
+        self._command = [sys.executable, "-m", "uvf.launch.cli", "up", mission, *([] if page else ["--no-gcs"]), *arguments]
         self._output = runs / "up.txt"
 
     def __enter__(self):
