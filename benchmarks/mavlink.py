@@ -1,6 +1,6 @@
-"""The MAVLink service alone: what three aircraft and two rovers cost, told to two ground stations over UDP.
+"""The MAVLink service alone: what three aircraft and two rovers cost, told to three ground stations over UDP.
 
-Every topic that it reads comes at its own rate, encoded, over a bus in this process; both stations send heartbeats and a command a second.
+Every topic that it reads comes at its own rate, encoded, over a bus in this process; all stations send heartbeats and a command a second.
 ``core %`` is the CPU time of the service's steps, with decoding and sending, in parts of real time. ``messages/s`` is what one aircraft
 says to one station. ``bad packets/s``: so many are read and refused in a second of CPU time.
 """
@@ -34,6 +34,7 @@ from uvf.runtime.site import ROOT, Host, load_site
 
 SECONDS, WARM_UP = 20.0, 2.0
 DT = 0.02
+STATIONS = 3
 PACKETS = 50_000
 FILLED: dict[str, Message] = {
     "status": VehicleStatus(kind=Kind.KIND_FIXED_WING, mode=Mode.MODE_MISSION, armed=True, home=Vector3(z=20.0)),
@@ -97,7 +98,7 @@ class Station:
 
 
 def load(data: Path | None) -> dict[str, dict[str, float]]:
-    fleet, bus, stations = five(), LocalBus(), [Station(), Station()]
+    fleet, bus, stations = five(), LocalBus(), [Station() for _ in range(STATIONS)]
     link = UdpLink([station.sock.getsockname() for station in stations])
     nowhere = FileStore(Path(tempfile.gettempdir()) / "uvf-no-settings.json")  # nothing is set, so it is never written
     stores = {facts.name: nowhere for facts in fleet}
@@ -117,7 +118,7 @@ def load(data: Path | None) -> dict[str, dict[str, float]]:
     for station in stations:
         station.sock.close()
     link.close()
-    return {"5 vehicles, 2 stations": {"core %": 100 * cpu / SECONDS, "messages/s": stations[0].heard / SECONDS}}
+    return {f"5 vehicles, {STATIONS} stations": {"core %": 100 * cpu / SECONDS, "messages/s": stations[0].heard / SECONDS}}
 
 
 def rubbish(data: Path | None) -> dict[str, dict[str, float]]:
