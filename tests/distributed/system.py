@@ -20,14 +20,15 @@ PATIENCE = 90.0
 class System:
     """``uvf up`` in a process of its own; a context manager that checks that nothing is left behind."""
 
-    def __init__(self, runs, *arguments, page=False, mission="demo"):
+    def __init__(self, runs, *arguments, page=False, mission="demo", programs=()):
+        """programs: ports to which MAVLink is sent, besides ``mavlink``."""
         self.router, self.page, self.mavlink = (free_port() for _ in range(3))
         self.endpoint = f"tcp/127.0.0.1:{self.router}"
         self.environment = {
             **os.environ,
             "UVF_ROUTER": self.endpoint,
             "UVF_GCS_PORT": str(self.page),
-            "UVF_MAVLINK_TARGETS": f"127.0.0.1:{self.mavlink}",
+            "UVF_MAVLINK_TARGETS": ",".join(f"127.0.0.1:{port}" for port in (self.mavlink, *programs)),
             "UVF_MAVLINK_LISTEN": f"127.0.0.1:{free_port()}",
             "UVF_RUNS": str(runs),
             "UVF_STATE": str(runs / "state"),
