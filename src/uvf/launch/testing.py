@@ -11,7 +11,6 @@ import typer
 
 from uvf.runtime.site import ROOT
 
-
 ON_THE_WALL = ["tests/browser", "tests/distributed"]
 """Tests of real processes in real time: two at once would make each other late."""
 
