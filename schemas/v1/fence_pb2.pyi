@@ -29,9 +29,11 @@ class Fence(_message.Message):
         RETURN: _ClassVar[Fence.Action]
         HOLD: _ClassVar[Fence.Action]
         WARN: _ClassVar[Fence.Action]
+        LAND: _ClassVar[Fence.Action]
     RETURN: Fence.Action
     HOLD: Fence.Action
     WARN: Fence.Action
+    LAND: Fence.Action
     TIMESTAMP_FIELD_NUMBER: _ClassVar[int]
     ZONES_FIELD_NUMBER: _ClassVar[int]
     FLOOR_FIELD_NUMBER: _ClassVar[int]

@@ -24,7 +24,7 @@ class Action(IntEnum):
     """The same, disarmed."""
 
 
-ACTIONS = {"warn": Action.WARN, "hold": Action.HOLD, "return": Action.RETURN, "land": Action.LAND}
+ACTIONS = {"wait": Action.WARN, "warn": Action.WARN, "hold": Action.HOLD, "return": Action.RETURN, "land": Action.LAND}
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,6 @@ from services.autopilot.air.servos import Servos
 
 SOURCES = ("teleop", "mavlink", "client")
 """The first one whose command is fresh wins."""
-COMMAND_MAX_AGE = 0.5  # s
 CLOCK_TOLERANCE = 0.02  # s, one tick: a sender's clock may be that much ahead
 PATIENCE = 0.5  # s that the first command is waited for once the mode is Manual
 LET_GO = Surfaces(0.0, 0.0, 0.0, 0.0, brake=1.0)
@@ -47,11 +46,11 @@ def _part(deflection: float, stop: float) -> float:
     return min(max(deflection / stop, -1.0), 1.0)
 
 
-def choose(t: float, commands: Mapping[str, SurfaceCommand | None]) -> Hand | None:
-    """The command that counts at ``t`` [s]; None without a fresh one. One with a number that is not finite is none."""
+def choose(t: float, commands: Mapping[str, SurfaceCommand | None], longest: float) -> Hand | None:
+    """The command that counts at ``t`` [s]; None without one of the last ``longest`` [s]. One with a number that is not finite is none."""
     for source in SOURCES:
         m = commands.get(source)
-        if m is not None and -CLOCK_TOLERANCE <= t - seconds(m.timestamp) <= COMMAND_MAX_AGE:
+        if m is not None and -CLOCK_TOLERANCE <= t - seconds(m.timestamp) <= longest:
             asked = Surfaces(m.aileron, m.elevator, m.rudder, m.throttle, m.flap, m.brake)
             if all(map(math.isfinite, astuple(asked))):
                 return Hand(source, _within(asked))

@@ -19,6 +19,11 @@ class FailsafeParams(Params, frozen=True):
 
     link_timeout: Annotated[float, _meta(1, 300, "s", "silence of all ground stations until the link is lost")] = 5.0
     link_action: Annotated[Choice, Meta(description="when the link is lost")] = "return"
+    stick_timeout: Annotated[float, _meta(0.2, 10, "s", "that a command by hand counts")] = 0.5
+    stick_action: Annotated[
+        Literal["wait", "hold", "return", "land"],
+        Meta(description="when nobody flies by hand any more; wait: it circles until somebody does again"),
+    ] = "hold"
     sigma_max: Annotated[float, _meta(1, 1000, "m", "uncertainty of the position from which it is not relied on")] = 50.0
     gnss_time: Annotated[float, _meta(10, 3600, "s", "circled by dead reckoning without a position until gnss_action")] = 120.0
     gnss_action: Annotated[Choice, Meta(description="then; land: down where it is, without a position")] = "land"
@@ -27,6 +32,14 @@ class FailsafeParams(Params, frozen=True):
     battery_critical: Annotated[float, _meta(0, 0.9, "", "charge that is critical, and that the way home leaves")] = 0.07
     low_action: Annotated[Choice, Meta(description="when the battery is low, or only just takes it home")] = "return"
     critical_action: Annotated[Choice, Meta(description="when the battery is critical")] = "land"
+    emergency_charge: Annotated[float, _meta(0, 0.9, "", "charge that is an emergency")] = 0.05
+    emergency_action: Annotated[Choice, Meta(description="when it is")] = "land"
+    fence_action: Annotated[
+        Literal["plan", "warn", "hold", "return", "land"],
+        Meta(description="at the fence; plan: what the fence itself says"),
+    ] = "plan"
+    max_distance: Annotated[float, _meta(0, 100_000, "m", "fence about home; 0: there is none")] = 0.0
+    max_height: Annotated[float, _meta(0, 20_000, "m", "ceiling above home; 0: there is none")] = 0.0
     fence_margin: Annotated[float, _meta(0, 500, "m", "kept from the fence by turning away in time")] = 8.0
     fence_height: Annotated[float, _meta(0, 200, "m", "kept from the fence's floor and ceiling")] = 5.0
     wind_max: Annotated[float, _meta(0.1, 1.5, "", "of trim_airspeed: wind in which it does not stay out")] = 0.7

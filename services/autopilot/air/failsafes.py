@@ -22,6 +22,7 @@ class Known:
     params: AirParams
     airborne: bool = True
     silence: float = 0.0  # s since a ground station was heard; 0 while none ever was
+    let_go: bool = False  # a mode is flown by hand, and by nobody any more
     unfixed: float = 0.0  # s since the last fix
     sigma: float = 0.0  # m
     lost_for: float = 0.0  # s without a position that modes rely on, while nobody flies by hand
@@ -57,6 +58,16 @@ AIR_RULES: tuple[Rule[Known], ...] = (
         figures=lambda k: f"silent for {k.silence:.0f} s",
         action=_chosen("link_action"),
         parameters=("link_timeout", "link_action"),
+    ),
+    Rule(
+        "sticks",
+        wrong=lambda k: k.airborne and k.let_go,
+        mended=lambda k: not k.let_go,
+        begins="nobody flies by hand any more",
+        ends="flown by hand again, or in another mode",
+        figures=lambda k: f"no command for {k.params.stick_timeout:g} s",
+        action=_chosen("stick_action"),
+        parameters=("stick_timeout", "stick_action"),
     ),
     Rule(
         "gnss",
@@ -140,6 +151,19 @@ AIR_RULES: tuple[Rule[Known], ...] = (
         parameters=("battery_critical", "critical_action"),
     ),
     Rule(
+        "battery_emergency",
+        wrong=lambda k: k.charge < k.params.emergency_charge,
+        mended=lambda k: k.charge > k.params.emergency_charge + RECHARGED,
+        begins="battery all but empty",
+        ends="battery no longer all but empty",
+        figures=lambda k: f"{100 * k.charge:.0f} % left",
+        action=_chosen("emergency_action"),
+        after=lambda k: 3.0,
+        clears=3.0,
+        severity=Event.CRITICAL,
+        parameters=("emergency_charge", "emergency_action"),
+    ),
+    Rule(
         "fence",
         wrong=lambda k: k.airborne and k.fence < 0,
         mended=lambda k: k.fence > 0,
@@ -148,7 +172,7 @@ AIR_RULES: tuple[Rule[Known], ...] = (
         figures=lambda k: f"{max(-k.fence, 0.0):.0f} m nearer than it may come, were it turned now",
         action=lambda k: k.fence_action,
         clears=2.0,
-        parameters=("fence_margin", "fence_height"),
+        parameters=("max_distance", "max_height", "fence_margin", "fence_height", "fence_action"),
         does="it is turned round in time, whatever the mode",
     ),
     Rule(
@@ -161,6 +185,7 @@ AIR_RULES: tuple[Rule[Known], ...] = (
         action=lambda k: k.fence_action,
         clears=1.0,
         severity=Event.CRITICAL,
+        parameters=("fence_action",),
         does="it is turned back in",
     ),
     Rule(

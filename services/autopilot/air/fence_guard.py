@@ -96,7 +96,9 @@ class FenceGuard:
         least, margin = self.outlook.least, params.fence_margin
         if not self.fencing.steers or self.grounds:
             return wanted
-        if not self._side and least < margin:
+        if self.outlook.clearance < -margin and self._leads_away(now):
+            self._side = 0.0  # far outside, of a fence that has just been set: on its way back it is let go
+        elif not self._side and least < margin:
             self._side = self.outlook.side
         elif self._side and least > margin + SLACK and self._leads_away(now):
             self._side = 0.0

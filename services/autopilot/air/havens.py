@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 from services.autopilot.air.fence_plan import place_fault
 from services.autopilot.air.params import AirParams
-from services.autopilot.air.route import Place
+from services.autopilot.air.route import Circle, Place
 from services.autopilot.air.state import Estimate
 from uvf.runtime.fence_file import Fencing
 
@@ -13,13 +13,13 @@ from uvf.runtime.fence_file import Fencing
 def haven(now: Estimate, home: Place, rally: Sequence[Place], fencing: Fencing, params: AirParams) -> Place:
     """The place to circle over, no lower than ``return_altitude`` above home; home without any that lies within the fence."""
     places = [_over(place, home, params) for place in (home, *rally)]
-    kept = [place for place in places if is_within(place, fencing, params)]
+    kept = [place for place in places if is_within(Circle(place, params.hold_radius), fencing, params)]
     return min(kept or places[:1], key=lambda place: math.hypot(place.north - now.north, place.east - now.east))
 
 
-def is_within(place: Place, fencing: Fencing, params: AirParams) -> bool:
-    """Whether the circle about it lies within a fence that steers."""
-    return not fencing.steers or not place_fault(place, fencing, params, params.hold_radius)
+def is_within(circle: Circle, fencing: Fencing, params: AirParams) -> bool:
+    """Whether it lies within a fence that steers."""
+    return not fencing.steers or not place_fault(circle.centre, fencing, params, abs(circle.radius))
 
 
 def _over(place: Place, home: Place, params: AirParams) -> Place:

@@ -65,11 +65,11 @@ class Row:
     needs: tuple[Need, ...] = ()
     keeps: tuple[Need, ...] = ()
     without: FlightMode = FlightMode.HOLD
-    """What follows when one of ``keeps`` is lost, or nobody holds the stick any more."""
+    """What follows when one of ``keeps`` is lost."""
     done: FlightMode | None = None
     """What follows when it has come to its end; None: it has none."""
     by_hand: bool = False
-    """It is steered by a stick, and left when nobody holds that."""
+    """It is steered by a stick; when nobody holds that the aircraft circles, and a failsafe follows."""
     on_ground: bool = False
     """It moves an aircraft that stands; in all other modes that keeps its brakes on and its motor off."""
 
@@ -87,7 +87,7 @@ TABLE: Mapping[FlightMode, Row] = {
     _M.MISSION: Row((Need.RELEASED, Need.POSITION, Need.MISSION), _HERE, done=_M.HOLD, on_ground=True),
     _M.HOLD: Row(),
     _M.ORBIT: Row(_FLYING, _HERE),
-    _M.RETURN: Row(_FLYING, _HERE),
+    _M.RETURN: Row(_FLYING, _HERE, done=_M.LAND),
     _M.LAND: Row(_FLYING, _HERE, done=_M.HOLD),
     _M.OFFBOARD: Row((Need.RELEASED, Need.AIRBORNE, Need.SETPOINT), (Need.SETPOINT,)),
     _M.FOLLOW: Row((*_FLYING, Need.LEADER), (Need.POSITION, Need.LEADER)),

@@ -80,6 +80,8 @@ class AirParams(FailsafeParams, frozen=True):
     # modes
     hold_radius: Annotated[float, _meta(20, 20000, "m", "orbit of Hold and Return, clockwise")] = 90.0
     return_altitude: Annotated[float, _meta(10, 1000, "m", "lowest altitude of Return, above home")] = 60.0
+    descend_alt: Annotated[float, _meta(0, 1000, "m", "height above home that Return comes down to, over it; 0: it stays up")] = 0.0
+    land_delay: Annotated[float, _meta(-1, 3600, "s", "circled over home by Return until it lands; below 0: it does not land")] = -1.0
     takeoff_alt: Annotated[float, _meta(5, 1000, "m", "height above the start at which a take-off is done")] = 40.0
     takeoff_pitch: Annotated[float, _meta(0.05, 0.5, "rad", "nose up when the wheels are to leave the ground")] = 0.2
     launch_push: Annotated[float, _meta(0, 200, "m/s^2", "forward push of a catapult or throw; 0: takes off from its wheels")] = 0.0

@@ -1,7 +1,7 @@
 """Modes that follow a path: circles, and the legs of a mission."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from services.autopilot.air.guidance import turn_radius
 from services.autopilot.air.navigator import Navigator
@@ -36,12 +36,15 @@ OWN = Round()
 class Circling(Phase):
     """Round a circle at its height, for ever."""
 
-    def __init__(self, circle: Circle, airspeed: float = 0.0) -> None:
-        """airspeed: m/s, 0 = cruise."""
+    def __init__(self, circle: Circle, how: Round) -> None:
+        """Without a radius in ``how`` that of the circle follows ``hold_radius``."""
         self.circle = circle
-        self.airspeed = airspeed
+        self.airspeed = how.airspeed
+        self._sized = how.radius != 0.0
 
     def step(self, now: Estimate, params: AirParams, dt: float) -> Wish:
+        if not self._sized and self.circle.radius != params.hold_radius:
+            self.circle = replace(self.circle, radius=params.hold_radius)
         return Wish(Track(self.circle.aim(now, params), self.circle.centre.height, 0.0, self.airspeed or params.trim_airspeed))
 
 

@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import astuple, replace
 
-from services.autopilot.air.by_hand import COMMAND_MAX_AGE, LET_GO, Stick
+from services.autopilot.air.by_hand import LET_GO, Stick
 from services.autopilot.air.camera import Camera
 from services.autopilot.air.commands import Wanted
 from services.autopilot.air.descent import Descent
@@ -15,6 +15,7 @@ from services.autopilot.air.formation import Formation, Trailing
 from services.autopilot.air.guidance import Aim
 from services.autopilot.air.havens import haven
 from services.autopilot.air.helm import Helm
+from services.autopilot.air.homeward import Homeward
 from services.autopilot.air.landing import Landing
 from services.autopilot.air.leading import Steadied
 from services.autopilot.air.mission_flight import MissionFlight
@@ -128,6 +129,11 @@ class Pilot:
         return TABLE[self.mode].by_hand and self.senses.hand is not None
 
     @property
+    def is_let_go(self) -> bool:
+        """In a mode that is flown by hand nobody does any more."""
+        return TABLE[self.mode].by_hand and self._stick.abandoned
+
+    @property
     def goes_down(self) -> bool:
         """It lands, with a position or without one."""
         return self.landing is not None or isinstance(self._phase, Descent)
@@ -166,6 +172,8 @@ class Pilot:
         """Whether this mode goes on."""
         if self.mode is FlightMode.MISSION:
             self._phase = self._phase or self._begun(now, params)
+        if isinstance(self._phase, TakeOff) and self._climb_to is None and self.home is not None:
+            self._phase.height = self.home.height + params.takeoff_alt
         if isinstance(self._phase, MissionFlight):
             self._phase.look(now, params)
         self._move_home(now)
@@ -174,7 +182,7 @@ class Pilot:
         if self._phase is not None and self._phase.ended:
             self._end(self._phase)
         if TABLE[self.mode].by_hand:
-            self._look_at_stick(now, params)
+            self._look_at_stick()
         if self.formation is not None:
             self._look_at_leader(self.formation)
         if Need.SETPOINT in TABLE[self.mode].keeps and self.senses.setpoint is None:
@@ -189,14 +197,9 @@ class Pilot:
         if self.mode is FlightMode.FOLLOW and formation.is_led:
             self.reason = formation.reason
 
-    def _look_at_stick(self, now: Estimate, params: AirParams) -> None:
-        """Until the first command the autopilot circles; after the last one it takes over."""
-        if self.senses.hand is not None:
-            self._phase = None if isinstance(self._phase, Circling) else self._phase
-        elif self._stick.abandoned and self.senses.airborne:
-            self._change(FlightMode.HOLD, f"no command by hand for {COMMAND_MAX_AGE:g} s")
-            self._level = Level(max(now.height, params.min_altitude))
-        elif not isinstance(self._phase, Circling):
+    def _look_at_stick(self) -> None:
+        """Before the first command and after the last one the autopilot circles; the failsafe ``sticks`` may order more."""
+        if isinstance(self._phase, Circling) == (self.senses.hand is not None):
             self._phase = None
 
     def _begun(self, now: Estimate, params: AirParams) -> Phase:
@@ -215,7 +218,9 @@ class Pilot:
             return Offboard(self.senses)
         if TABLE[self.mode].by_hand and self.senses.hand is not None:
             return STICK_MODES[self.mode](self.senses)
-        return Circling(self._new_circle(now, params))
+        if self.mode is FlightMode.RETURN and (to := self.haven(now, params)) is not None:
+            return Homeward(to, self._lowest_over(to), self.home.height, self._level.height)
+        return Circling(Circle.ahead(now, max(self._level.height, params.min_altitude), params.hold_radius), OWN)
 
     def _flown(self, wish: Wish, now: Estimate, params: AirParams, dt: float) -> Flown:
         if self.leads is not None and isinstance(self._part, Circling | Following):
@@ -248,10 +253,9 @@ class Pilot:
         self.disarms = self.disarms or phase.disarms
         self._change(becomes or TABLE[self.mode].done or FlightMode.HOLD, phase.ended)
 
-    def _new_circle(self, now: Estimate, params: AirParams) -> Circle:
-        if self.mode is FlightMode.RETURN and (to := self.haven(now, params)) is not None:
-            return Circle(replace(to, height=max(self._level.height, to.height)), params.hold_radius)
-        return Circle.ahead(now, max(self._level.height, params.min_altitude), params.hold_radius)
+    def _lowest_over(self, to: Place) -> float:
+        """m, world: a rally point is not flown over lower than it says."""
+        return next((rally.height for rally in self.rally if rally.point == to.point), -math.inf)
 
     def haven(self, now: Estimate, params: AirParams) -> Place | None:
         """Where Return would lead now."""
@@ -318,7 +322,7 @@ class Pilot:
             return why
         height = place.height if place.height >= params.min_altitude else self._level.height
         self._change(FlightMode.HOLD, f"goal of {source}")
-        self._phase = Circling(Circle(Place(place.north, place.east, height), how.radius or params.hold_radius), how.airspeed)
+        self._phase = Circling(Circle(Place(place.north, place.east, height), how.radius or params.hold_radius), how)
         if how.airspeed:
             self.pace.begin(anew=True)
         return ""
@@ -337,12 +341,13 @@ class Pilot:
             return why
         if not all(map(math.isfinite, astuple(circle.centre))):
             return "the circle is none: its numbers are not finite"
-        if why := Round(circle.radius, airspeed).fault(params):
+        how = Round(circle.radius, airspeed)
+        if why := how.fault(params):
             return why
         height = circle.centre.height if circle.centre.height >= params.min_altitude else self._level.height
         self._change(FlightMode.ORBIT, f"asked by {source}")
         place = replace(circle.centre, height=height)
-        self._phase = Circling(Circle(place, circle.radius or params.hold_radius), airspeed)
+        self._phase = Circling(Circle(place, circle.radius or params.hold_radius), how)
         return ""
 
     def go_around(self, source: str) -> str:

@@ -3,20 +3,20 @@
 import math
 from dataclasses import dataclass, field
 
-import msgspec
-
 from schemas.messages import Battery, Breach, Event, Fence, Link
 from services.autopilot.air.air_data_check import AirDataCheck, Flying
 from services.autopilot.air.commands import Surfaces
 from services.autopilot.air.endurance import Endurance
 from services.autopilot.air.failsafes import AIR_RULES, Known
 from services.autopilot.air.fence_guard import circle_within
+from services.autopilot.air.fence_in_force import FenceInForce, in_force
 from services.autopilot.air.fence_plan import fence_fit, mission_fault, tightest
 from services.autopilot.air.havens import is_within
 from services.autopilot.air.modes import FlightMode
 from services.autopilot.air.params import AirParams
+from services.autopilot.air.paths import Round
 from services.autopilot.air.pilot import Pilot
-from services.autopilot.air.route import Place
+from services.autopilot.air.route import Circle, Place
 from services.autopilot.air.saturation import Saturation, eased
 from services.autopilot.air.sensed import Pressures
 from services.autopilot.air.servos import Servos
@@ -27,7 +27,7 @@ from uvf.runtime.fence_file import fence_fault, fencing
 
 RANK = {FlightMode.HOLD: Action.HOLD, FlightMode.RETURN: Action.RETURN, FlightMode.LAND: Action.LAND}
 FENCED = "fence", "breach"  # rows whose action is the fence's
-FENCE_ACTIONS = {Fence.RETURN: Action.RETURN, Fence.HOLD: Action.HOLD, Fence.WARN: Action.WARN}
+FENCE_ACTIONS = {Fence.RETURN: Action.RETURN, Fence.HOLD: Action.HOLD, Fence.WARN: Action.WARN, Fence.LAND: Action.LAND}
 
 
 @dataclass(slots=True)
@@ -55,6 +55,7 @@ class Safety:
         self._link = LinkWatch()
         self._lost_for = 0.0  # s
         self._was_blind = self._waits = False
+        self._in_force = FenceInForce()
         self.breaches = 0
         """How often it has been outside of a fence."""
 
@@ -95,6 +96,7 @@ class Safety:
             self._lost_for = 0.0
         elif not self._pilot.is_by_hand:
             self._lost_for += dt
+        self._keep_fence(params)
         known = self._known(seen, params)
         changes, order = self.watch.step(known, dt)
         self.breaches += any(change.began and change.rule.name == "breach" for change in changes)
@@ -117,6 +119,7 @@ class Safety:
             params=params,
             airborne=seen.airborne,
             silence=self._link.silence,
+            let_go=self._pilot.is_let_go,
             unfixed=seen.unfixed,
             sigma=now.position_sigma,
             lost_for=self._lost_for,
@@ -137,7 +140,8 @@ class Safety:
     def _obey(self, order: Order[Known], now: Estimate, params: AirParams) -> None:
         """The mode ordered, or the next best; one that goes as far already stays."""
         pilot, reason = self._pilot, order.rule.begins
-        if RANK.get(pilot.mode, Action.WARN) >= order.action:
+        outside = order.rule.name in FENCED and order.action and self._circles_outside(params)
+        if RANK.get(pilot.mode, Action.WARN) >= order.action and not outside:
             return
         if pilot.is_blind and order.action is Action.LAND:
             pilot.descend(now, reason, params)
@@ -151,10 +155,15 @@ class Safety:
             if not pilot.change_mode(mode, "failsafe", reason):
                 return
 
+    def _circles_outside(self, params: AirParams) -> bool:
+        """Holding where it does leads out of the fence."""
+        circling = self._pilot.circling
+        return circling is not None and not is_within(circling.circle, self._pilot.fence.fencing, params)
+
     def _may(self, mode: FlightMode, now: Estimate, params: AirParams) -> bool:
         """Not home, where neither home nor a rally point is within the fence."""
         to = self._pilot.haven(now, params)
-        return mode is FlightMode.HOLD or to is None or is_within(to, self._pilot.fence.fencing, params)
+        return mode is FlightMode.HOLD or to is None or is_within(Circle(to, params.hold_radius), self._pilot.fence.fencing, params)
 
     def _return_point(self, reason: str, params: AirParams) -> bool:
         """To the place that the fence itself names."""
@@ -170,22 +179,27 @@ class Safety:
         if fence.is_open or not fence.steers:
             return False
         here = Place(now.north, now.east, now.height)
-        for radius in (params.hold_radius, tightest(params)):
-            circle = circle_within(fence, here, radius, params)
-            sized = msgspec.structs.replace(params, hold_radius=radius)
-            if circle is not None and not self._pilot.go_to(circle.centre, "the failsafe", sized):
+        for radius in (0.0, tightest(params)):
+            circle = circle_within(fence, here, radius or params.hold_radius, params)
+            if circle is not None and not self._pilot.go_to(circle.centre, "the failsafe", params, Round(radius)):
                 self._pilot.reason = reason
                 return True
         return False
+
+    def _keep_fence(self, params: AirParams) -> None:
+        found = self._in_force.of(self.fence, self._pilot.home, params)
+        if found is not self._pilot.fence.fencing:
+            self._pilot.fence.take(found)
 
     def set_fence(self, fence: Fence, seen: Seen | None, params: AirParams) -> str:
         """Why it is refused; empty if it is in force from now on."""
         new = fencing(fence)
         here = Place(seen.now.north, seen.now.east, seen.now.height) if seen is not None else None
         why = fence_fault(fence) or fence_fit(new, here, seen is not None and seen.airborne, params)
-        if not why and (item := mission_fault(self._pilot.navigator.items, new, params)):
+        kept = new if why else in_force(fence, self._pilot.home, params)
+        if not why and (item := mission_fault(self._pilot.navigator.items, kept, params)):
             why = f"the mission does not lie within it: {item}"
         if not why:
             self.fence = fence
-            self._pilot.fence.take(new)
+            self._keep_fence(params)
         return why

@@ -38,6 +38,7 @@ from schemas.messages import (
 from services.autopilot.air import by_hand, intake, offboard, orders, reports, telling
 from services.autopilot.air.commands import Surfaces
 from services.autopilot.air.failsafes import GNSS_HOLD
+from services.autopilot.air.fence_in_force import too_small
 from services.autopilot.air.fence_plan import Remembered, place_fault
 from services.autopilot.air.flyable import advice
 from services.autopilot.air.journal import Journal
@@ -197,7 +198,7 @@ class AutopilotAir(Service):
             "fence": [_reply(self._plans.set_fence(r.fence, self._seen(now), self.params)) for r in fence],
             "set_rally": [_reply(self._plans.set_rally(r.rally, self.params)) for r in set_rally],
         }
-        hand = by_hand.choose(t, {"teleop": teleop, "mavlink": mavlink, "client": client})
+        hand = by_hand.choose(t, {"teleop": teleop, "mavlink": mavlink, "client": client}, self.params.stick_timeout)
         self._over_ground.hear(range, self._sensing.felt, 1 / self.hz)
         flown = self._fly(t, now, hand, offboard.fresh(t, setpoint))
         out = self._report(t, now, flown)
@@ -306,7 +307,7 @@ class AutopilotAir(Service):
             charge=safety.endurance.charge,
             has_air_data=safety.has_air_data,
             field=self._sensing.field,
-            fence_fault="it stands outside" if fence.region.at((now.east, now.north)) < 0 else "",
+            fence_fault="it stands outside" if fence.region.at((now.east, now.north)) < 0 else too_small(self.params),
             mission_fault=self._within.mission_fault(pilot.navigator.items, fence, self.params),
         )
         return faults(standing)

@@ -37,7 +37,8 @@ class TakeOff(Phase):
 
     def __init__(self, now: Estimate, height: float, senses: Senses, room: float = math.inf) -> None:
         """height: m, world, at which it is done."""
-        self._senses, self._height, self._room = senses, height, room
+        self.height = height
+        self._senses, self._room = senses, room
         self._ground = now.height
         self._course = now.yaw if not senses.airborne else now.course
         self._origin: Point = (now.north, now.east)
@@ -105,7 +106,7 @@ class TakeOff(Phase):
         return Wish(rolling(level, rudder_along(level, self._course, right), 0.0, BRAKE))
 
     def _climb(self, now: Estimate, level: Estimate, params: AirParams) -> Wish:
-        if now.height >= self._height:
+        if now.height >= self.height:
             self.ended = "take-off complete"
         if self._rise(now) < STRAIGHT or now.airspeed < ROTATION * params.min_airspeed:
             spare = (now.airspeed - params.min_airspeed) / params.min_airspeed

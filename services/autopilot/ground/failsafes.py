@@ -11,7 +11,7 @@ OFFBOARD_SILENT = 0.5  # s
 TIPPED = 0.5  # s
 CALMER = 0.8  # of tilt_max
 RECHARGED = 0.03  # of charge, beyond a limit
-ACTIONS = {"warn": Action.WARN, "hold": Action.HOLD, "return": Action.RETURN, "off": Action.OFF}
+ACTIONS = {"wait": Action.WARN, "warn": Action.WARN, "hold": Action.HOLD, "return": Action.RETURN, "off": Action.OFF}
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,6 +25,8 @@ class Known:
     """In Mission or Return: by map and scan."""
     by_hand: bool = False
     silence: float = 0.0  # s since a ground station was heard; 0 while none ever was
+    let_go: bool = False
+    """It has been driven by hand, and is not any more."""
     unplaced: float = 0.0  # s without a pose, in a mode that needs one
     unsteered: float = 0.0  # s without a command, in Offboard
     unseen: float = 0.0  # s without a new scan
@@ -47,6 +49,16 @@ GROUND_RULES: tuple[Rule[Known], ...] = (
         figures=lambda k: f"silent for {k.silence:.0f} s",
         action=lambda k: ACTIONS[k.params.link_action],
         parameters=("link_timeout", "link_action"),
+    ),
+    Rule(
+        "sticks",
+        wrong=lambda k: k.moves and k.let_go and k.params.stick_action != "wait",
+        mended=lambda k: not k.let_go,
+        begins="nobody drives by hand any more",
+        ends="driven by hand again, or in another mode",
+        figures=lambda k: f"no command for {k.params.stick_timeout:g} s",
+        action=lambda k: ACTIONS[k.params.stick_action],
+        parameters=("stick_timeout", "stick_action"),
     ),
     Rule(
         "pose",
@@ -94,6 +106,8 @@ GROUND_RULES: tuple[Rule[Known], ...] = (
         begins="fence ahead: stopped",
         ends="clear of the fence",
         figures=lambda k: "it may drive where that leads away",
+        action=lambda k: ACTIONS[k.params.fence_action],
+        parameters=("max_distance", "fence_action"),
         clears=1.0,
     ),
     Rule(
@@ -143,6 +157,19 @@ GROUND_RULES: tuple[Rule[Known], ...] = (
         clears=3.0,
         severity=Event.CRITICAL,
         parameters=("battery_critical", "critical_action"),
+    ),
+    Rule(
+        "battery_emergency",
+        wrong=lambda k: k.charge < k.params.emergency_charge,
+        mended=lambda k: k.charge > k.params.emergency_charge + RECHARGED,
+        begins="battery all but empty",
+        ends="battery no longer all but empty",
+        figures=lambda k: f"{100 * k.charge:.0f} % left",
+        action=lambda k: ACTIONS[k.params.emergency_action],
+        after=lambda k: 3.0,
+        clears=3.0,
+        severity=Event.CRITICAL,
+        parameters=("emergency_charge", "emergency_action"),
     ),
 )
 STANDS = ("scan", "map")

@@ -22,15 +22,16 @@ SOURCES: Mapping[int, tuple[str, ...]] = {
 
 @dataclass(frozen=True)
 class Velocity:
-    """A command as it came. t: when it was sent [s]; linear m/s, angular rad/s."""
+    """A command as it came. t: when it was sent [s]; linear m/s, angular rad/s; lasts: how long it counts [s]."""
 
     t: float
     linear: float
     angular: float
+    lasts: float = COMMAND_MAX_AGE
 
     def is_fresh(self, t: float) -> bool:
         """Neither too old at ``t`` [s] nor from the future, where it would never grow old."""
-        return -CLOCK_TOLERANCE <= t - self.t <= COMMAND_MAX_AGE
+        return -CLOCK_TOLERANCE <= t - self.t <= self.lasts
 
     @property
     def is_finite(self) -> bool:

@@ -20,6 +20,13 @@ class GroundAutopilotParams(Params, frozen=True):
     acceptance_radius: Annotated[float, _meta(0.01, 10, "m", "of waypoints that name none")] = 0.25
     link_timeout: Annotated[float, _meta(1, 300, "s", "silence of all ground stations until the link is lost")] = 5.0
     link_action: Annotated[Choice, Meta(description="when the link is lost")] = "hold"
+    stick_timeout: Annotated[float, _meta(0.2, 10, "s", "that a command by hand counts; then it stands")] = 0.5
+    stick_action: Annotated[
+        Literal["wait", "hold", "return", "off"],
+        Meta(description="when nobody drives by hand any more; wait: it stands until somebody does again"),
+    ] = "wait"
+    fence_action: Annotated[Choice, Meta(description="when it has stopped before the fence")] = "warn"
+    max_distance: Annotated[float, _meta(0, 100_000, "m", "fence about home; 0: there is none")] = 0.0
     stuck_time: Annotated[float, _meta(0.5, 60, "s", "wheels held fast, or turning in vain, until it counts as stuck")] = 4.0
     tilt_max: Annotated[float, _meta(0.1, 1.5, "rad", "from upright, that no ramp has")] = 0.6
     scan_timeout: Annotated[float, _meta(0.3, 60, "s", "without a new scan, after which nothing drives by itself")] = 1.0
@@ -28,3 +35,5 @@ class GroundAutopilotParams(Params, frozen=True):
     battery_critical: Annotated[float, _meta(0, 0.9, "", "charge that is critical")] = 0.07
     low_action: Annotated[Choice, Meta(description="when the battery is low")] = "return"
     critical_action: Annotated[Choice, Meta(description="when the battery is critical; off: disarmed where it stands")] = "off"
+    emergency_charge: Annotated[float, _meta(0, 0.9, "", "charge that is an emergency")] = 0.05
+    emergency_action: Annotated[Choice, Meta(description="when it is")] = "off"

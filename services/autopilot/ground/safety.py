@@ -6,12 +6,13 @@ from schemas.messages import Battery, Event, Fence, FrameTransform, Imu, LaserSc
 from services.autopilot.failsafes import Action, Order, Watch
 from services.autopilot.ground.failsafes import GROUND_RULES, STANDS, Known
 from services.autopilot.ground.fence import Place, stops
+from services.autopilot.ground.mission import Point
 from services.autopilot.ground.motion import Grip, Tilt, Wheels
 from services.autopilot.ground.params import GroundAutopilotParams
 from services.autopilot.ground.sight import Sight
 from services.autopilot.link_watch import LinkWatch
 from uvf.maths.kinematics import WheelSpeeds
-from uvf.runtime.fence_file import Fencing, fence_fault, fencing
+from uvf.runtime.fence_file import Fencing, fence_fault, fencing, near_home
 from uvf.runtime.vehicle_file import GroundBody
 
 BY_ITSELF = (Mode.MODE_MISSION, Mode.MODE_RETURN)
@@ -49,7 +50,10 @@ class Safety:
     def __init__(self, body: GroundBody, fence: Fence, imu_rpy: tuple[float, float, float]) -> None:
         self.watch = Watch(GROUND_RULES)
         self.fence = fence
-        self.fencing: Fencing = fencing(fence)
+        self._plan: Fencing = fencing(fence)
+        self._about: tuple[Point, float] = (0.0, 0.0), 0.0
+        self.fencing = self._plan
+        """That is kept: the plan's, and the one about home."""
         self.battery: Battery | None = None
         """As told last."""
         self._keep = body.radius, body.max_linear_acceleration
@@ -57,7 +61,7 @@ class Safety:
         self._times = {"unplaced": 0.0, "unsteered": 0.0}
         self._wheels = Wheels(body.wheel_radius)
         self._grip, self._tilt, self._sight = Grip(self._wheels), Tilt(imu_rpy), Sight()
-        self._fenced = False
+        self._fenced = self._driven = False
         self.is_outside = False
         """Of its fence."""
         self.breaches = 0
@@ -69,8 +73,18 @@ class Safety:
         if not why and here is not None and (room := fencing(fence).region.at((here.x, here.y))) < 0:
             why = f"the vehicle is {-room:.1f} m outside of it"
         if not why:
-            self.fence, self.fencing = fence, fencing(fence)
+            self.fence, self._plan = fence, fencing(fence)
+            self._renew()
         return why
+
+    def keep_near(self, home: Point, distance: float) -> None:
+        """No farther than ``distance`` [m] from home; 0: however far."""
+        if (home, distance) != self._about:
+            self._about = home, distance
+            self._renew()
+
+    def _renew(self) -> None:
+        self.fencing = self._plan if self.fence.disabled else near_home(self._plan, *self._about)
 
     def overrule(self) -> None:
         """Somebody has asked for a mode."""
@@ -96,6 +110,8 @@ class Safety:
             "unplaced": doing.mode in BY_ITSELF and sensed.here is None,
             "unsteered": doing.mode == Mode.MODE_OFFBOARD and not doing.is_steered,
         }
+        self._driven = doing.mode == Mode.MODE_MANUAL and (doing.is_steered or self._driven)
+        self._let_go = self._driven and not doing.is_steered
         for name, lacking in lacks.items():
             self._times[name] = self._times[name] + dt if lacking else 0.0
         self._wheels.step(sensed.wheels)
@@ -110,6 +126,7 @@ class Safety:
             by_itself=doing.mode in BY_ITSELF,
             by_hand=doing.mode == Mode.MODE_MANUAL,
             silence=self._link.silence,
+            let_go=self._let_go,
             unplaced=self._times["unplaced"],
             unsteered=self._times["unsteered"],
             unseen=self._sight.unseen,

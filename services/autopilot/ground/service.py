@@ -42,7 +42,7 @@ from services.autopilot.ground import fence as fences
 from services.autopilot.ground import orders
 from services.autopilot.ground.drive import Limits, Ramp, within_limits
 from services.autopilot.ground.mission import MissionEngine, Point, mission_of, refusal, vector
-from services.autopilot.ground.multiplexer import SOURCES, Choice, Velocity, choose
+from services.autopilot.ground.multiplexer import COMMAND_MAX_AGE, SOURCES, Choice, Velocity, choose
 from services.autopilot.ground.params import GroundAutopilotParams
 from services.autopilot.ground.safety import Doing, Safety, Sensed, mode_of, place
 from services.autopilot.told_params import ToldParams
@@ -183,7 +183,8 @@ class GroundAutopilot(Service):
         commands = {"teleop": teleop, "mavlink": mavlink, "gcs": gcs, "client": client, "offboard": offboard, "planner": planner}
         position = (pose.pose.position.x, pose.pose.position.y) if pose is not None else None
         self._follow_mission(t, position)
-        self._choose(t, {k: Velocity(seconds(c.timestamp), c.linear, c.angular) for k, c in commands.items() if c is not None})
+        lasts = self.params.stick_timeout if self._mode == Mode.MODE_MANUAL else COMMAND_MAX_AGE
+        self._choose(t, {k: Velocity(seconds(c.timestamp), c.linear, c.angular, lasts) for k, c in commands.items() if c is not None})
         out = {"wheels": self._wheels(t), **replies, **self._reports(t, position)}
         if self._restarts:
             self._restart()
@@ -217,6 +218,7 @@ class GroundAutopilot(Service):
         rims = self._drive.wheels(Twist(self._ramp.linear, self._ramp.angular))
         asked = WheelSpeeds(rims.left * self._body.wheel_radius, rims.right * self._body.wheel_radius)
         doing = Doing(self._mode, self._armed and not self._stopped, bool(self._choice.source), asked)
+        self._safety.keep_near(self._engine.home, self.params.max_distance)
         events, order = self._safety.step(t, sensed, doing, self.params, 1.0 / self.hz)
         self._events += events
         if order is None or not order.action:

@@ -30,11 +30,14 @@ from schemas.messages import (
 )
 from services.autopilot.mavlink.vibration import Vibration
 from uvf.maths.geodesy import Floats, LocalTangent
+from uvf.runtime.fence_file import fencing
 from uvf.runtime.mavlink.geo import Placed
 from uvf.runtime.service import Params
 from uvf.runtime.vehicle_file import Sensors, VehicleFile
 
 SILENT_AFTER = 2.0  # s of simulation time
+HOME_FENCE = "max_distance", "max_height"
+"""The autopilot's parameters of the fence about home."""
 
 
 class Stamped(Protocol):
@@ -119,6 +122,13 @@ class Latest:
     @property
     def is_paused(self) -> bool:
         return self.clock is not None and self.clock.state != Clock.RUNNING
+
+    @property
+    def is_fenced(self) -> bool:
+        """By a plan, or by parameters about home."""
+        if self.fence is None or self.fence.disabled:
+            return False
+        return not fencing(self.fence).is_open or any(self.own.get(limit, 0.0) > 0 for limit in HOME_FENCE)
 
     @property
     def is_silent(self) -> bool:

@@ -4,7 +4,6 @@ from dataclasses import dataclass
 
 from schemas.messages import Gnss
 from services.autopilot.mavlink.facts import Facts, Latest
-from uvf.runtime.fence_file import fencing
 from uvf.runtime.mavlink import dialect as mav
 
 _IMU = mav.MAV_SYS_STATUS_SENSOR_3D_GYRO | mav.MAV_SYS_STATUS_SENSOR_3D_ACCEL | mav.MAV_SYS_STATUS_SENSOR_3D_MAG
@@ -35,8 +34,7 @@ def health(facts: Facts, latest: Latest) -> Health:
     present |= _AIR_DATA if facts.sensors.air_data else 0
     present |= mav.MAV_SYS_STATUS_SENSOR_GPS
     present |= mav.MAV_SYS_STATUS_SENSOR_BATTERY if latest.battery is not None else 0
-    fenced = latest.fence is not None and not fencing(latest.fence).is_open
-    present |= mav.MAV_SYS_STATUS_GEOFENCE if fenced else 0
+    present |= mav.MAV_SYS_STATUS_GEOFENCE if latest.is_fenced else 0
     complaints = _complaints(facts, latest)
     # The fence's bit also without a fence, and of a vehicle that is silent: MAVProxy says "fence breach" as soon as it is missing.
     healthy = (0 if latest.is_silent else present) | mav.MAV_SYS_STATUS_GEOFENCE

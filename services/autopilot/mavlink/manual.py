@@ -21,7 +21,6 @@ RELEASED, UNCHANGED, RELEASED_HIGH = 0, 0xFFFF, 0xFFFE
 CHANNELS = 18
 PLAIN = 8  # channels from 9 on have other words for released and unchanged
 MIDDLE, HALF = 1500.0, 500.0  # us
-SILENT_AFTER = 0.5  # s, wall: COM_RC_LOSS_T
 ROLL, PITCH, THROTTLE, YAW = range(4)
 
 
@@ -72,7 +71,7 @@ class ByHand:
 
     def tick(self) -> None:
         """Channels that nobody has repeated for a while are released."""
-        if self._line.t - self._heard > SILENT_AFTER and any(self._channels):
+        if self._line.t - self._heard > self._line.latest.own["stick_timeout"] and any(self._channels):
             self._channels = [RELEASED] * CHANNELS
             self._line.latest.rc_channels = ()
 

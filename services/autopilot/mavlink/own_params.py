@@ -9,7 +9,6 @@ from msgspec import Meta
 from services.autopilot.air.failsafe_params import FailsafeParams
 from uvf.runtime.service import Params
 
-GROUND_FAILSAFES = ("link_timeout", "link_action", "battery_low", "battery_critical", "low_action", "critical_action")
 READ_ONCE = "it is read only when the autopilot starts; the vehicle's file sets it"
 
 
@@ -46,4 +45,4 @@ def _described(name: str, hint: Any, fixed: str) -> Own:
 
 
 def _group(name: str) -> str:
-    return "Failsafes" if name in FailsafeParams.__struct_fields__ or name in GROUND_FAILSAFES else "Autopilot"
+    return "Failsafes" if name in FailsafeParams.__struct_fields__ else "Autopilot"

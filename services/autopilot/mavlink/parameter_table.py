@@ -86,22 +86,32 @@ class Parameter:
 
 def parameters_of(facts: Facts) -> list[Parameter]:
     """In order of name, numbered from 0. Raises BadInput when the file names what the autopilot has not."""
-    own = own_params(facts.params, facts.fixed_params)
-    rows = {name: row for name, row in load_yaml(FILE, Table).parameters.items() if facts.file.kind not in row.absent}
-    found = [_standard(name, row, own, facts) for name, row in rows.items()]
+    return parameters_with(own_params(facts.params, facts.fixed_params), facts.file.kind, facts.system_id)
+
+
+def parameters_with(own: Mapping[str, Own], kind: Kind, system_id: int = 0) -> list[Parameter]:
+    """Of an autopilot of this kind with these parameters of its own. Raises BadInput."""
+    rows = {name: row for name, row in load_yaml(FILE, Table).parameters.items() if kind not in row.absent}
+    found = [_standard(name, _of_kind(row, kind, system_id), own, kind) for name, row in rows.items()]
     found += [_offered(one) for one in own.values() if len(one.name) <= OWN_NAME_MOST]
     return [replace(p, index=index) for index, p in enumerate(sorted(found, key=lambda p: p.name))]
 
 
-def _standard(name: str, row: Row, own: Mapping[str, Own], facts: Facts) -> Parameter:
+def _of_kind(row: Row, kind: Kind, system_id: int) -> Row:
+    """With the value of this vehicle."""
+    if row.value == "system_id":
+        return msgspec.structs.replace(row, value=float(system_id))
+    return msgspec.structs.replace(row, value=row.ground) if kind == "ground" and row.ground is not None else row
+
+
+def _standard(name: str, row: Row, own: Mapping[str, Own], kind: Kind) -> Parameter:
     named = {row.own} if row.own else {key for case in row.cases.values() for key in case.sets}
     for key in named - own.keys() if not row.fixed else ():
-        raise BadInput(f"{FILE.name}: {name}: '{key}' is no parameter of a {facts.file.kind} autopilot; {nearest(key, own)}")
+        raise BadInput(f"{FILE.name}: {name}: '{key}' is no parameter of a {kind} autopilot; {nearest(key, own)}")
     if not named and not row.fixed:
         raise BadInput(f"{FILE.name}: {name}: say what it sets ('own', 'cases') or why it is 'fixed'")
     type_ = mav.MAV_PARAM_TYPE_INT32 if row.type == "int" else mav.MAV_PARAM_TYPE_REAL32
-    value = facts.system_id if row.value == "system_id" else row.ground if facts.is_ground and row.ground is not None else row.value
-    plain = Parameter(name, type_, row.group, row.about, value=float(value))
+    plain = Parameter(name, type_, row.group, row.about, value=float(row.value))
     if not named <= own.keys() or not named:
         return replace(plain, fixed=row.fixed)
     if row.own:

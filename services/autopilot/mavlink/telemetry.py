@@ -4,7 +4,7 @@ Every builder takes (facts, latest, t [s since the link came up]) and returns No
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,7 +15,6 @@ from services.autopilot.mavlink import estimate_quality, identity, navigation, s
 from services.autopilot.mavlink.facts import Facts, Latest
 from services.autopilot.mavlink.health import health
 from services.autopilot.mavlink.traffic import traffic
-from uvf.runtime.fence_file import fencing
 from uvf.runtime.mavlink import dialect as mav
 from uvf.runtime.mavlink.scaling import I32, U16, whole
 from uvf.runtime.mavlink.scaling import compass as compass_of
@@ -23,8 +22,6 @@ from uvf.runtime.plan_ids import fence_id, rally_id
 
 Message = mav.MAVLink_message | None
 Build = Callable[[Facts, Latest, float], Message | list[mav.MAVLink_message]]
-
-EMERGENCY = 0.05  # of a full battery, as BAT_EMERGEN_THR says
 
 
 @dataclass(frozen=True)
@@ -64,19 +61,19 @@ def _battery_status(facts: Facts, latest: Latest, t: float) -> Message:
         -1,
         -1,
         whole(battery.remaining * 100, (-1, 100), -1),
-        charge_state=charge_state(battery.remaining, latest.own["battery_low"], latest.own["battery_critical"]),
+        charge_state=charge_state(battery.remaining, latest.own),
     )
 
 
-def charge_state(remaining: float, low: float, critical: float) -> int:
-    """MAV_BATTERY_CHARGE_STATE of a charge 0..1; negative or NaN = unknown. low, critical: the autopilot's limits."""
+def charge_state(remaining: float, own: Mapping[str, float]) -> int:
+    """MAV_BATTERY_CHARGE_STATE of a charge 0..1; negative or NaN = unknown. own: the autopilot's parameters, its limits among them."""
     if not remaining >= 0:
         return int(mav.MAV_BATTERY_CHARGE_STATE_UNDEFINED)
-    if remaining < min(EMERGENCY, critical):
+    if remaining < own["emergency_charge"]:
         return int(mav.MAV_BATTERY_CHARGE_STATE_EMERGENCY)
-    if remaining < critical:
+    if remaining < own["battery_critical"]:
         return int(mav.MAV_BATTERY_CHARGE_STATE_CRITICAL)
-    return int(mav.MAV_BATTERY_CHARGE_STATE_LOW if remaining < low else mav.MAV_BATTERY_CHARGE_STATE_OK)
+    return int(mav.MAV_BATTERY_CHARGE_STATE_LOW if remaining < own["battery_low"] else mav.MAV_BATTERY_CHARGE_STATE_OK)
 
 
 def _gps_raw(facts: Facts, latest: Latest, t: float) -> Message:
@@ -160,7 +157,7 @@ def mission_current(latest: Latest, seq: int | None = None) -> mav.MAVLink_missi
 def _fence_status(facts: Facts, latest: Latest, t: float) -> Message:
     """Only while there is a fence. Breach has the numbers of FENCE_BREACH."""
     status = latest.status
-    if status is None or latest.fence is None or fencing(latest.fence).is_open:
+    if status is None or not latest.is_fenced:
         return None
     at = latest.breached_at
     time = 0 if at is None else navigation.boot_ms(at)

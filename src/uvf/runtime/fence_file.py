@@ -1,7 +1,7 @@
 """A fence as people write it in a mission file, as a message, and as the region it stands for."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf
 from typing import Annotated, Literal
 
@@ -14,7 +14,7 @@ from uvf.runtime.params import BadInput
 
 Metres = Annotated[float, Meta(ge=-1e6, le=1e6)]
 MOST_ZONES, MOST_VERTICES = 32, 128
-ACTIONS = {"return": Fence.RETURN, "hold": Fence.HOLD, "warn": Fence.WARN}
+ACTIONS = {"return": Fence.RETURN, "hold": Fence.HOLD, "warn": Fence.WARN, "land": Fence.LAND}
 
 
 class ZoneFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -31,7 +31,7 @@ class FenceFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     zones: list[ZoneFile] = []
     floor: Metres | None = None  # m, world z, of an aircraft in flight
     ceiling: Metres | None = None  # m, world z
-    action: Literal["return", "hold", "warn"] = "return"
+    action: Literal["return", "hold", "warn", "land"] = "return"
 
 
 @dataclass(frozen=True)
@@ -118,6 +118,15 @@ def fencing(message: Fence) -> Fencing:
     p = message.return_point
     back = (p.x, p.y, p.z) if message.HasField("return_point") else None
     return Fencing(Region(include, exclude), floor, ceiling, message.action, back)
+
+
+def near_home(plan: Fencing, home: Point, distance: float) -> Fencing:
+    """The same, and not farther than ``distance`` [m] from home; 0: however far."""
+    if not distance:
+        return plan
+    disc, region = Disc(home, distance), plan.region
+    include = tuple(Overlap((area, disc)) for area in region.include) or (disc,)
+    return replace(plan, region=Region(include, region.exclude))
 
 
 def _area(zone: FenceZone) -> Area:

@@ -58,7 +58,7 @@ def test_a_source_that_falls_silent_in_the_air_leaves_it_to_hold_after_half_a_se
     assert told(held["surfaces"]) == ASKED
     bench.run(cycles=4, teleop=command(last - 0.02))
     assert bench.status.mode == Mode.MODE_HOLD
-    assert bench.status.reason == "no command by hand for 0.5 s"
+    assert bench.status.reason == "nobody flies by hand any more"
     assert told(bench.outputs[-1]["surfaces"]) != ASKED
     by_hand(bench, 10)
     assert bench.status.mode == Mode.MODE_HOLD, "who comes back has to ask for the mode"
@@ -115,22 +115,22 @@ def test_flying_by_hand_needs_no_satellites(bench):
 def test_the_order_of_the_sources_decides():
     commands = dict.fromkeys(SOURCES, command(10.0))
     for source in SOURCES:
-        assert choose(10.0, commands).source == source
+        assert choose(10.0, commands, 0.5).source == source
         del commands[source]
-    assert choose(10.0, commands) is None
+    assert choose(10.0, commands, 0.5) is None
 
 
 @pytest.mark.parametrize(("age", "counts"), [(0.0, True), (0.5, True), (0.52, False), (-0.02, True), (-0.1, False)])
 def test_only_what_is_fresh_counts(age, counts):
-    assert (choose(10.0, {"client": command(10.0 - age)}) is not None) is counts
+    assert (choose(10.0, {"client": command(10.0 - age)}, 0.5) is not None) is counts
 
 
 @pytest.mark.parametrize("name", ASKED)
 @pytest.mark.parametrize("value", [math.nan, math.inf])
 def test_no_numbers_are_passed_on_and_the_next_source_counts(name, value):
-    assert choose(10.0, {"teleop": command(10.0, **{name: value}), "client": command(10.0)}).source == "client"
+    assert choose(10.0, {"teleop": command(10.0, **{name: value}), "client": command(10.0)}, 0.5).source == "client"
 
 
 def test_throttle_brake_and_flap_keep_their_ranges():
-    asked = choose(10.0, {"client": command(10.0, throttle=1.7, brake=-0.2, flap=-0.1)}).surfaces
+    asked = choose(10.0, {"client": command(10.0, throttle=1.7, brake=-0.2, flap=-0.1)}, 0.5).surfaces
     assert (asked.throttle, asked.brake, asked.flap) == (1.0, 0.0, 0.0)

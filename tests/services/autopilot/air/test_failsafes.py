@@ -15,6 +15,7 @@ PARAMS = AirParams()
 DT = 0.02
 CAUSES = {
     "link": {"silence": 6.0},
+    "sticks": {"let_go": True},
     "gnss": {"unfixed": 3.0},
     "estimator": {"sigma": 60.0},
     "position": {"lost_for": 130.0},
@@ -22,6 +23,7 @@ CAUSES = {
     "airspeed": {"pitot_gap": -9.0},
     "battery_low": {"charge": 0.12},
     "battery_critical": {"charge": 0.05},
+    "battery_emergency": {"charge": 0.03},
     "fence": {"fence": -1.0},
     "breach": {"breached": True},
     "saturation": {"stop": "elevator", "stopped_for": 11.0},
@@ -32,6 +34,7 @@ IN_BETWEEN = {
     "estimator": {"sigma": 45.0},
     "battery_low": {"charge": 0.16},
     "battery_critical": {"charge": 0.08},
+    "battery_emergency": {"charge": 0.06},
     "saturation": {"stop": "elevator", "stopped_for": 1.0},
     "attitude": {"roll": 1.2},
     "wind": {"wind": 16.0},
@@ -85,11 +88,19 @@ def test_a_cause_that_comes_and_goes_does_not_flap(name):
         assert run(watch, 0.1, **CAUSES[name])[0] == []
 
 
-@pytest.mark.parametrize(("name", "parameter"), [(n, p) for n, r in RULES.items() for p in r.parameters if p.endswith("_action")])
+ACTED = [(n, p) for n, r in RULES.items() for p in r.parameters if p.endswith("_action") and p != "fence_action"]
+
+
+@pytest.mark.parametrize(("name", "parameter"), ACTED)
 @pytest.mark.parametrize("choice", ["warn", "hold", "return", "land"])
 def test_the_parameter_decides_what_is_done(name, parameter, choice):
     changed = Known(msgspec.structs.replace(PARAMS, **{parameter: choice}))
     assert RULES[name].action(changed) is Action[choice.upper()]
+
+
+def test_nobody_at_the_stick_is_told_when_it_shall_only_be_waited_for():
+    waiting = Known(msgspec.structs.replace(PARAMS, stick_action="wait"), let_go=True)
+    assert RULES["sticks"].action(waiting) is Action.WARN
 
 
 def test_the_way_home_counts_before_the_battery_is_low():

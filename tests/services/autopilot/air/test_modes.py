@@ -110,14 +110,17 @@ def test_modes_through_the_air_need_no_satellites(mode):
 
 
 @pytest.mark.parametrize("mode", [m for m in FlightMode if TABLE[m].by_hand])
-def test_a_stick_that_is_let_go_leads_to_hold(mode):
+def test_a_stick_that_is_let_go_is_told_and_meanwhile_it_circles(mode):
     pilot = flying()
     assert pilot.change_mode(mode, "test") == ""
     holding_the_stick(pilot)
     for _ in range(30):
         pilot.hear(Senses(), 0.02)
         pilot.step(cruising(), PARAMS, 0.02)
-    assert (pilot.mode, pilot.reason) == (M.HOLD, "no command by hand for 0.5 s")
+    assert pilot.is_let_go and pilot.mode is mode and pilot.circle is not None
+    holding_the_stick(pilot)
+    pilot.step(cruising(), PARAMS, 0.02)
+    assert not pilot.is_let_go and pilot.circle is None
 
 
 @pytest.mark.parametrize("mode", [m for m in FlightMode if not TABLE[m].on_ground])

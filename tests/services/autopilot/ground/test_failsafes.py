@@ -11,7 +11,7 @@ from schemas.messages import Fence, FenceRequest, FenceZone, Link, Mission, Miss
 from services.autopilot.failsafes import Action, Watch
 from services.autopilot.ground.failsafes import ACTIONS, GROUND_RULES, Known
 from services.autopilot.ground.fence import MARGIN, Place, stops
-from services.autopilot.ground.params import Choice
+from services.autopilot.ground.params import Choice, GroundAutopilotParams
 from tests.services.autopilot.ground.test_service import BODY, Bench
 from uvf.maths.zones import Disc, Region
 from uvf.runtime.fence_file import Fencing
@@ -112,6 +112,7 @@ def test_the_documented_table_is_that_of_the_code():
 
 CAUSES = {
     "link": {"silence": 6.0},
+    "sticks": {"let_go": True, "params": GroundAutopilotParams(stick_action="hold")},
     "pose": {"unplaced": 1.5},
     "scan": {"unseen": 2.0},
     "map": {"unmapped": 6.0},
@@ -121,6 +122,7 @@ CAUSES = {
     "tipped": {"tilt": 0.8},
     "battery_low": {"charge": 0.15},
     "battery_critical": {"charge": 0.05},
+    "battery_emergency": {"charge": 0.03},
 }
 
 
@@ -160,5 +162,4 @@ def test_what_is_ordered_stays_in_force_until_its_cause_ends_or_somebody_overrul
 
 
 def test_every_choice_of_an_action_is_known():
-    choices = set(get_args(Choice))
-    assert choices == set(ACTIONS)
+    assert {*get_args(Choice), "wait"} == set(ACTIONS)

@@ -3,9 +3,11 @@
 import struct
 import zlib
 
+import numpy as np
 import pytest
 
-from schemas.messages import Battery
+from schemas.messages import Battery, Fence
+from services.autopilot.mavlink import parameter_page
 from services.autopilot.mavlink.parameter_table import FILE, Table, parameters_of
 from services.autopilot.mavlink.parameter_values import param_value
 from tests.services.autopilot.mavlink.rig import OTHER, PLANE, PLANE_FACTS, ROVER, ROVER_FACTS, Rig, of, texts
@@ -74,6 +76,8 @@ def test_what_qgroundcontrol_reads_without_complaint_is_there(system):
 def test_values_follow_the_vehicle():
     plane = {m.param_id: value(m) for m in ask_list(Rig())}
     rover = {m.param_id: value(m) for m in ask_list(Rig(), ROVER)}
+    assert [plane[name] for name in ("COM_LOW_BAT_ACT", "GF_ACTION", "NAV_RCL_ACT")] == [1, -1, 1]
+    assert [rover[name] for name in ("GF_ACTION", "NAV_RCL_ACT")] == [1, 0]
     assert (plane["FW_AIRSPD_TRIM"], plane["RTL_RETURN_ALT"], plane["NAV_DLL_ACT"], plane["COM_DL_LOSS_T"]) == (25.0, 40.0, 2, 5)
     assert (rover["NAV_DLL_ACT"], rover["BAT_LOW_THR"], rover["COM_LOW_BAT_ACT"]) == (1, pytest.approx(0.2), 4)
     assert "FW_AIRSPD_TRIM" not in rover and rover["RTL_RETURN_ALT"] == 0.0
@@ -175,6 +179,15 @@ INT = mav.MAV_PARAM_TYPE_INT32
         ("COM_DL_LOSS_T", 12, INT, {"link_timeout": 12.0}),
         ("NAV_DLL_ACT", 3, INT, {"link_action": "land"}),
         ("COM_LOW_BAT_ACT", 2, INT, {"low_action": "warn", "critical_action": "land"}),
+        ("COM_LOW_BAT_ACT", 3, INT, {"low_action": "warn", "critical_action": "return", "emergency_action": "land"}),
+        ("BAT_EMERGEN_THR", 0.125, mav.MAV_PARAM_TYPE_REAL32, {"emergency_charge": 0.125}),
+        ("COM_RC_LOSS_T", 2.0, mav.MAV_PARAM_TYPE_REAL32, {"stick_timeout": 2.0}),
+        ("NAV_RCL_ACT", 2, INT, {"stick_action": "return"}),
+        ("GF_ACTION", 5, INT, {"fence_action": "land"}),
+        ("GF_MAX_HOR_DIST", 800.0, mav.MAV_PARAM_TYPE_REAL32, {"max_distance": 800.0}),
+        ("GF_MAX_VER_DIST", 100.0, mav.MAV_PARAM_TYPE_REAL32, {"max_height": 100.0}),
+        ("RTL_DESCEND_ALT", 40.0, mav.MAV_PARAM_TYPE_REAL32, {"descend_alt": 40.0}),
+        ("RTL_LAND_DELAY", 0.0, mav.MAV_PARAM_TYPE_REAL32, {"land_delay": 0.0}),
         ("LAW", 1, INT, {"law": "thesis"}),
     ],
 )
@@ -194,7 +207,7 @@ def test_what_a_number_means_is_told_under_all_its_names():
     rig.run()
     rig.say(setting("COM_LOW_BAT_ACT", 0, INT))
     told = {m.param_id: value(m) for m in of(rig.run(0.3), "PARAM_VALUE")}
-    assert told == {"COM_LOW_BAT_ACT": 0, "LOW_ACTION": 0, "CRITICAL_ACTION": 0}
+    assert told == {"COM_LOW_BAT_ACT": 0, "LOW_ACTION": 0, "CRITICAL_ACTION": 0, "EMERGENCY_ACTION": 0}
     rig.say(setting("LOW_ACTION", 1, INT))
     assert {m.param_id: value(m) for m in of(rig.run(0.3), "PARAM_VALUE")} == {"COM_LOW_BAT_ACT": -1, "LOW_ACTION": 1}
 
@@ -209,7 +222,7 @@ def test_every_parameter_can_be_set_or_says_why_not():
             before = vehicle.autopilot.params
             numbers = [n for n, case in p.cases.items() if case.sets] or ([p.low, (p.low + p.high) / 2] if p.own else [1.0])
             now = p.number({name: getattr(before, name) for name in before.__struct_fields__})
-            other = next((n for n in numbers if n != now), now)
+            other = next((n for n in numbers if np.float32(n) != np.float32(now)), now)
             rig.say(setting(p.name, int(other) if p.is_int else other, p.type, system))
             heard = rig.run(0.16)
             errors = [m.error for m in of(heard, "PARAM_ERROR")]
@@ -301,10 +314,35 @@ def test_nothing_is_set_in_a_pause_or_by_a_silent_autopilot():
     assert [m.error for m in of(silent.run(3.0), "PARAM_ERROR")] == [mav.MAV_PARAM_ERROR_PERMISSION_DENIED]
 
 
+def test_the_documented_page_is_that_of_the_code():
+    assert parameter_page.PAGE.read_text() == parameter_page.render(), parameter_page.COMMAND
+
+
+def test_a_fence_about_home_is_a_fence_until_it_is_switched_off():
+    rig = Rig()
+    rig.run()
+    assert of(rig.run(1.1), "FENCE_STATUS", PLANE) == []
+    rig.say(setting("GF_MAX_VER_DIST", 100.0))
+    rig.run(0.2)
+    heard = rig.run(1.1)
+    assert (
+        of(heard, "FENCE_STATUS", PLANE)
+        and of(heard, "SYS_STATUS", PLANE)[-1].onboard_control_sensors_present & mav.MAV_SYS_STATUS_GEOFENCE
+    )
+    rig.plane.fence = Fence(disabled=True)
+    rig.run(0.1)
+    assert of(rig.run(1.1), "FENCE_STATUS", PLANE) == []
+
+
 def test_thresholds_of_the_battery_are_those_of_its_warnings():
     rig = Rig()
     rig.plane.battery = Battery(voltage=11.0, remaining=0.3)
     assert {m.charge_state for m in of(rig.run(1.1), "BATTERY_STATUS", PLANE)} == {mav.MAV_BATTERY_CHARGE_STATE_OK}
-    rig.say(setting("BAT_LOW_THR", 0.4))
-    rig.run(0.2)
-    assert {m.charge_state for m in of(rig.run(1.1), "BATTERY_STATUS", PLANE)} == {mav.MAV_BATTERY_CHARGE_STATE_LOW}
+    for name, state in (
+        ("BAT_LOW_THR", mav.MAV_BATTERY_CHARGE_STATE_LOW),
+        ("BAT_CRIT_THR", mav.MAV_BATTERY_CHARGE_STATE_CRITICAL),
+        ("BAT_EMERGEN_THR", mav.MAV_BATTERY_CHARGE_STATE_EMERGENCY),
+    ):
+        rig.say(setting(name, 0.4))
+        rig.run(0.2)
+        assert {m.charge_state for m in of(rig.run(1.1), "BATTERY_STATUS", PLANE)} == {state}

@@ -12,6 +12,8 @@ from tests.services.autopilot.mavlink.rig import OTHER, PLANE, ROVER, Rig, long,
 from uvf.maths.rotations import from_euler
 from uvf.runtime.mavlink import dialect as mav
 
+LIMITS = {"battery_low": 0.15, "battery_critical": 0.07, "emergency_charge": 0.05}
+
 
 def newest(rig, name, system=PLANE, seconds=2.1):
     return of(rig.run(seconds), name, system)[-1]
@@ -142,8 +144,8 @@ def test_battery():
 
 
 def test_charge_states_fall_with_the_charge():
-    assert [charge_state(r, 0.15, 0.07) for r in (0.9, 0.15, 0.14, 0.06, 0.01)] == [1, 1, 2, 3, 4]
-    assert charge_state(-1.0, 0.15, 0.07) == charge_state(math.nan, 0.15, 0.07) == 0
+    assert [charge_state(r, LIMITS) for r in (0.9, 0.15, 0.14, 0.06, 0.01)] == [1, 1, 2, 3, 4]
+    assert charge_state(-1.0, LIMITS) == charge_state(math.nan, LIMITS) == 0
 
 
 def test_distance_and_bearing_to_the_item_flown():

@@ -1,0 +1,52 @@
+"""Which fence is kept: that of the plan, and a simple one about home by parameters; and what is done at both."""
+
+from dataclasses import replace
+
+from schemas.messages import Fence
+from services.autopilot.air.fence_plan import tightest
+from services.autopilot.air.params import AirParams
+from services.autopilot.air.route import Place
+from uvf.runtime.fence_file import ACTIONS, Fencing, fencing, near_home
+
+HEIGHT_NEEDED = 3  # fence_height, between floor and ceiling
+
+
+class FenceInForce:
+    """Worked out anew when the plan, home or a parameter is another one."""
+
+    def __init__(self) -> None:
+        self._of: tuple[object, ...] = ()
+        self._found = fencing(Fence())
+
+    def of(self, fence: Fence, home: Place | None, params: AirParams) -> Fencing:
+        """The same object as long as nothing changes."""
+        about = params.max_distance, params.max_height, params.fence_action, too_small(params)
+        of = id(fence), home, about
+        if of != self._of:
+            self._of, self._plan, self._found = of, fence, in_force(fence, home, params)
+        return self._found
+
+
+def in_force(fence: Fence, home: Place | None, params: AirParams) -> Fencing:
+    """A fence that is disabled keeps out of nothing, home's neither."""
+    plan = fencing(fence)
+    if fence.disabled:
+        return plan
+    if params.fence_action != "plan":
+        plan = replace(plan, action=ACTIONS[params.fence_action])
+    if home is None:
+        return plan
+    found = near_home(plan, (home.east, home.north), params.max_distance)
+    if params.max_height:
+        found = replace(found, ceiling=min(found.ceiling, home.height + params.max_height))
+    return replace(found, action=Fence.WARN) if too_small(params) else found
+
+
+def too_small(params: AirParams) -> str:
+    """Why the fence about home cannot be kept, and is only told of; empty if it can."""
+    room, height = tightest(params) + params.fence_margin, HEIGHT_NEEDED * params.fence_height
+    if 0 < params.max_distance < room:
+        return f"max_distance of {params.max_distance:.0f} m leaves no room to circle: {room:.0f} m are needed"
+    if 0 < params.max_height < height:
+        return f"max_height of {params.max_height:.0f} m is too low: {height:.0f} m are needed"
+    return ""
