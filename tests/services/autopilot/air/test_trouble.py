@@ -79,10 +79,10 @@ def test_a_static_port_that_freezes_is_no_height():
     return flight
 
 
-@shows("air", "battery_low", "battery_critical")
+@shows("air", "battery_low", "battery_critical", "battery_emergency")
 def test_on_a_battery_that_runs_out_it_turns_home_while_that_is_left_and_lands():
     """Until the pack's gauge finds that there is more in it than it told."""
-    flight = Trouble(energy=18e3, faults=[("battery", "bias", 48.0, None, 0.5)])
+    flight = Trouble(energy=18e3, faults=[("battery", "bias", 48.0, None, 0.5)], params={"emergency_charge": 0.069})
     flight.run(53.0)
     (low,) = flight.told("battery low")
     assert low < flight.told("battery critical")[0]
@@ -142,15 +142,17 @@ def test_a_fence_is_never_left(action, mode):
     return flight
 
 
-@shows("air", "breach")
-def test_a_fence_that_warns_tells_of_the_breach_and_of_its_end():
+@shows("air", "breach", "sticks")
+def test_a_fence_that_warns_tells_of_the_breach_and_nobody_at_the_stick_is_told_too():
     flight = fenced("warn")
     flight.run(20.0)
     assert flight.told("fence ahead") and flight.told("outside of the fence")
     assert flight.mode_at(20.0).mode == Mode.MODE_ALTITUDE
     flight.hand = None
-    flight.ask(topics.SET_MODE, ModeRequest(mode=Mode.MODE_RETURN, source="test"), 20.0)
-    flight.run(45.0)
+    flight.run(21.0)
+    assert (flight.mode_at(21.0).mode, flight.mode_at(21.0).reason) == (Mode.MODE_HOLD, "nobody flies by hand any more")
+    flight.ask(topics.SET_MODE, ModeRequest(mode=Mode.MODE_RETURN, source="test"), 21.0)
+    flight.run(46.0)
     assert flight.told("inside of the fence")
     return flight
 

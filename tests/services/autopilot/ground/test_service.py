@@ -7,6 +7,10 @@ from schemas.messages import (
     ArmRequest,
     Battery,
     DriveCommand,
+    Fence,
+    FenceRequest,
+    FenceZone,
+    Link,
     Mission,
     MissionItem,
     MissionProgress,
@@ -231,7 +235,12 @@ def test_a_speed_item_limits_the_mission_but_not_the_person():
 def test_parameters_set_while_running_count():
     bench = Bench(items=WAYPOINTS)
     with all_settable_are_read(bench.service):
-        bench.step(170, pose=(0.0, 0.0), battery=Battery(remaining=0.01))
+        bench.step(170, pose=(0.0, 0.0), battery=Battery(remaining=0.01), link=Link(stations=1))
+        bench.step(arm=[ArmRequest(arm=True, force=True)], set_mode=[ModeRequest(mode=Mode.MODE_MANUAL)])
+        bench.step(30, linear=0.4, source="teleop", pose=(0.0, 0.0)).step(300)
+        fence = Fence(zones=[FenceZone(centre=Vector3(x=0.0), radius=0.5)])
+        bench.step(set_fence=[FenceRequest(fence=fence)], set_mode=[ModeRequest(mode=Mode.MODE_MANUAL)], pose=(0.0, 0.0))
+        bench.step(30, linear=0.4, source="teleop", pose=(0.28, 0.0))
     bench = Bench(items=WAYPOINTS)
     bench.step(30, pose=(0.5, 0.0))
     assert bench.said["progress"].reached == -1

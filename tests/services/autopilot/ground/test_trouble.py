@@ -55,8 +55,8 @@ def test_setpoints_that_end_are_a_hold(tmp_path):
     return trip
 
 
-@shows("ground", "fence")
-def test_driven_by_hand_it_stops_before_its_fence_and_may_turn_back(tmp_path):
+@shows("ground", "fence", "sticks")
+def test_driven_by_hand_it_stops_before_its_fence_may_turn_back_and_is_missed_when_let_go(tmp_path):
     fence = {"zones": [{"circle": [5.0, 4.4, 0.6]}]}
     trip = Trip(tmp_path, entry={**ON_ITS_OWN, "fence": fence, "job": {"mission": [{"x": 5.2, "y": 4.4}]}})
     trip.hand = (0.2, 0.0)
@@ -68,6 +68,10 @@ def test_driven_by_hand_it_stops_before_its_fence_and_may_turn_back(tmp_path):
     trip.hand = (-0.2, 0.0)
     trip.run(7.5)
     assert trip.way(5.0, 7.5) > 0.3
+    trip.set("stick_action", "hold")
+    trip.hand = None
+    trip.run(8.5)
+    assert trip.mode == "HOLD"
     return trip
 
 
@@ -119,11 +123,12 @@ def test_tipped_over_its_motors_are_off_until_it_is_upright_and_armed_again(tmp_
     return trip
 
 
-@shows("ground", "battery_low", "battery_critical")
+@shows("ground", "battery_low", "battery_critical", "battery_emergency")
 def test_on_a_battery_that_runs_out_it_drives_home_and_then_stands_disarmed(tmp_path):
     """Until the pack's gauge finds that there is more in it than it told."""
     pack = BatteryPack(energy=200.0, full=12.6, empty=9.6, resistance=0.1, avionics=6.0)
     trip = Trip(tmp_path, [("battery", "bias", 36.0, None, 0.5)], ON_ITS_OWN, {"battery": pack})
+    trip.set("emergency_charge", 0.069)
     trip.run(44.0)
     (low,), (critical,) = trip.told("battery low"), trip.told("battery critical")
     assert next(m.mode for t, m in trip.status if t > low + 0.2) == Mode.MODE_RETURN

@@ -1,13 +1,14 @@
 """Drives in lockstep with physics, SLAM and planner, with faults and what stands in the way, for the tests of failsafes."""
 
 import dataclasses
+import json
 
 import msgspec
 import yaml
 
 from schemas import topics
 from schemas.convert import stamp
-from schemas.messages import DriveCommand, Link, Mode, ModeRequest, Reply
+from schemas.messages import DriveCommand, Link, Mode, ModeRequest, ParamRequest, Reply
 from services.autopilot.ground.build import hosts
 from services.planner.build import build as planner
 from services.sim_ground.build import build as simulator
@@ -72,6 +73,11 @@ class Trip:
     def ask(self, request, message, owner="burger"):
         on_reply = lambda reply, reason, _: self.replies.append(Reply.FromString(reply) if reply else Reply(reason=reason))  # noqa: E731
         self.bus.call(request.at(owner), message.SerializeToString(), round(self.t * 1e9), on_reply)
+
+    def set(self, name, value):
+        """A parameter of the autopilot."""
+        request = ParamRequest(name=name, value=json.dumps(value))
+        self.ask(topics.PARAM.by("autopilot_ground"), request)
 
     def take(self, mode):
         self.ask(topics.SET_MODE, ModeRequest(mode=Mode.Value(f"MODE_{mode.upper()}"), source="test"))
