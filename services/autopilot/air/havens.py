@@ -17,6 +17,11 @@ def haven(now: Estimate, home: Place, rally: Sequence[Place], fencing: Fencing, 
     return min(kept or places[:1], key=lambda place: math.hypot(place.north - now.north, place.east - now.east))
 
 
+def lowest_over(to: Place, rally: Sequence[Place]) -> float:
+    """m, world: a rally point is not flown over lower than it says."""
+    return next((place.height for place in rally if place.point == to.point), -math.inf)
+
+
 def is_within(circle: Circle, fencing: Fencing, params: AirParams) -> bool:
     """Whether it lies within a fence that steers."""
     return not fencing.steers or not place_fault(circle.centre, fencing, params, abs(circle.radius))

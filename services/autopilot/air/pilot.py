@@ -13,7 +13,7 @@ from services.autopilot.air.field import Field
 from services.autopilot.air.flyable import fault
 from services.autopilot.air.formation import Formation, Trailing
 from services.autopilot.air.guidance import Aim
-from services.autopilot.air.havens import haven
+from services.autopilot.air.havens import haven, lowest_over
 from services.autopilot.air.helm import Helm
 from services.autopilot.air.homeward import Homeward
 from services.autopilot.air.landing import Landing
@@ -219,7 +219,7 @@ class Pilot:
         if TABLE[self.mode].by_hand and self.senses.hand is not None:
             return STICK_MODES[self.mode](self.senses)
         if self.mode is FlightMode.RETURN and (to := self.haven(now, params)) is not None:
-            return Homeward(to, self._lowest_over(to), self.home.height, self._level.height)
+            return Homeward(to, lowest_over(to, self.rally), self.home.height, self._level.height)
         return Circling(Circle.ahead(now, max(self._level.height, params.min_altitude), params.hold_radius), OWN)
 
     def _flown(self, wish: Wish, now: Estimate, params: AirParams, dt: float) -> Flown:
@@ -252,10 +252,6 @@ class Pilot:
         becomes = phase.becomes if isinstance(phase, MissionFlight) else None
         self.disarms = self.disarms or phase.disarms
         self._change(becomes or TABLE[self.mode].done or FlightMode.HOLD, phase.ended)
-
-    def _lowest_over(self, to: Place) -> float:
-        """m, world: a rally point is not flown over lower than it says."""
-        return next((rally.height for rally in self.rally if rally.point == to.point), -math.inf)
 
     def haven(self, now: Estimate, params: AirParams) -> Place | None:
         """Where Return would lead now."""

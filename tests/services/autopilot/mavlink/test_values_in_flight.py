@@ -1,0 +1,129 @@
+"""Parameters over MAVLink in one flight with physics: what is set counts at once, and is seen in the motion."""
+
+import msgspec
+import numpy as np
+import pytest
+
+from services.autopilot.mavlink.build import facts_of
+from services.autopilot.mavlink.parameter_table import parameters_of
+from tests.services.autopilot.mavlink.airborne import Airborne, field
+from tests.services.autopilot.mavlink.rig import long
+from tests.services.autopilot.mavlink.test_parameters import INT, setting, value
+from uvf.runtime.mavlink import dialect as mav
+from uvf.runtime.site import Member
+
+REAL = mav.MAV_PARAM_TYPE_REAL32
+HOLD, RETURN, LAND = 0x03040000, 0x05040000, 0x06040000
+
+pytestmark = pytest.mark.timeout(900)
+
+
+def in_the_air():
+    """Milvus in Hold over the airfield, in a light wind without turbulence."""
+    site = field()
+    member = site.members["milvus"]
+    start = msgspec.structs.replace(member.entry.start, x=0.0, y=0.0, z=80.0, speed=25.0)
+    entry = msgspec.structs.replace(member.entry, start=start)
+    site.members["milvus"] = Member(member.name, entry, member.file, member.folder)
+    return site
+
+
+class Station(Airborne):
+    """Sends heartbeats."""
+
+    def __init__(self, site):
+        super().__init__(site)
+        self.facts = facts_of(site)[0]
+
+    def _tick(self, t):
+        if round(t * 100) % 100 == 0:
+            self.say(mav.MAVLink_heartbeat_message(mav.MAV_TYPE_GCS, mav.MAV_AUTOPILOT_INVALID, 0, 0, 0, 3))
+        return super()._tick(t)
+
+    def newest(self, kind):
+        return next((m for _, m in reversed(self.heard) if m.get_type() == kind), None)
+
+    @property
+    def mode(self):
+        return self.newest("HEARTBEAT").custom_mode
+
+    def set(self, name, number, kind=REAL):
+        """Waits, as QGroundControl does, until it is told."""
+        self.say(setting(name, number, kind))
+        self.hears("PARAM_VALUE", 1.0, lambda m: m.param_id == name and value(m) == pytest.approx(number, rel=1e-6, abs=1e-9))
+
+    def take(self, mode):
+        self.say(mav.MAVLink_set_mode_message(1, 157, mode))
+        self.hears("HEARTBEAT", 1.0, lambda m: m.custom_mode == mode)
+
+    def until(self, seconds, sees):
+        """s until it has become so."""
+        begun = self.t
+        assert self.fly(seconds, sees), (self.t, self.mode, self.texts()[-8:])
+        return self.t - begun
+
+    def centre(self):
+        """(2,) m, world, of the circle that is flown."""
+        target = self.newest("POSITION_TARGET_GLOBAL_INT")
+        place = self.facts.world(target.lat_int * 1e-7, target.lon_int * 1e-7, 0.0)
+        return np.array((place.x, place.y))
+
+    def radii(self, seconds):
+        """m, from that centre, lately."""
+        places = [(m.position.x, m.position.y) for t, m in self.truth if t > self.t - seconds]
+        return np.hypot(*(np.array(places) - self.centre()).T)
+
+
+@pytest.fixture(scope="module")
+def station():
+    flight = Station(in_the_air())
+    assert flight.fly(20.0, lambda: flight.newest("HEARTBEAT") is not None and flight.mode == HOLD)
+    flight.fly(3.0)
+    return flight
+
+
+def test_each_that_can_be_written_is_the_flying_autopilots_at_once(station):
+    """All of them, a little beside their values, and back; the aircraft flies on."""
+    service = next(s.service for s in station.run.shells if s.service.name == "autopilot_air")
+    before = service.params
+    for p in parameters_of(station.facts):
+        if p.fixed or p.cases:
+            continue
+        was = float(getattr(before, p.own))
+        other = was + (1 if p.is_int else 0.01 * max(abs(was), 0.1)) * (1 if was < 0.9 * p.high else -1)
+        station.set(p.name, int(other) if p.is_int else other, p.type)
+        assert getattr(service.params, p.own) == pytest.approx(other, rel=1e-6), p.name
+        station.set(p.name, round(was) if p.is_int else was, p.type)
+    for p in parameters_of(station.facts):
+        for number, case in p.cases.items() if not p.fixed and p.name != "LAW" else ():
+            if case.sets:
+                station.set(p.name, number, INT)
+                assert all(getattr(service.params, name) == word for name, word in case.sets.items()), p.name
+    station.say(long(245, 2.0))
+    station.until(3.0, lambda: msgspec.to_builtins(service.params) == msgspec.to_builtins(before))
+    assert station.mode in (HOLD, RETURN, LAND)
+
+
+def test_airspeed_and_radius_of_a_circle_that_is_flown_follow(station):
+    station.take(HOLD)
+    station.set("FW_AIRSPD_TRIM", 28.0)
+    station.set("NAV_LOITER_RAD", 130.0)
+    station.fly(22.0)
+    assert station.radii(5.0) == pytest.approx(130.0, rel=0.1)
+    assert np.mean([m.airspeed for t, m in station.truth if t > station.t - 5.0]) == pytest.approx(28.0, abs=0.7)
+    station.set("FW_AIRSPD_TRIM", 25.0)
+    station.set("NAV_LOITER_RAD", 90.0)
+
+
+def test_return_climbs_comes_down_and_lands_as_they_say(station):
+    station.take(RETURN)
+    station.set("RTL_RETURN_ALT", 105.0)
+    station.until(25.0, lambda: station.now[0][2] > 102.0)
+    station.set("RTL_DESCEND_ALT", 85.0)
+    station.until(40.0, lambda: station.now[0][2] < 88.0)
+    station.fly(2.0)
+    assert station.mode == RETURN and station.now[0][2] > 80.0
+    station.set("RTL_LAND_DELAY", 0.0)
+    station.until(5.0, lambda: station.mode == LAND)
+    station.set("RTL_DESCEND_ALT", 0.0)
+    station.set("RTL_LAND_DELAY", -1.0)
