@@ -46,7 +46,7 @@ def _part(deflection: float, stop: float) -> float:
     return min(max(deflection / stop, -1.0), 1.0)
 
 
-def choose(t: float, commands: Mapping[str, SurfaceCommand | None], longest: float) -> Hand | None:
+def choose(t: float, commands: Mapping[str, SurfaceCommand], longest: float) -> Hand | None:
     """The command that counts at ``t`` [s]; None without one of the last ``longest`` [s]. One with a number that is not finite is none."""
     for source in SOURCES:
         m = commands.get(source)

@@ -1,6 +1,6 @@
 """The autopilot of one fixed-wing aircraft: sensors and requests in, surfaces, estimates and reports out."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from schemas import topics
@@ -138,6 +138,7 @@ class AutopilotAir(Service):
         self._plans = Plans(ship.items, self._pilot, self._safety, self._journal)
         self._sensing = Sensing(ship.instruments, ship.tangent, params.estimator, self._safety.believed)
         self._surfaces = by_hand.LET_GO
+        self._sticks: dict[str, SurfaceCommand] = {}
         self._now: Estimate | None = None
         self._cycles = 0
         self._told: tuple[object, ...] = ()
@@ -198,12 +199,17 @@ class AutopilotAir(Service):
             "fence": [_reply(self._plans.set_fence(r.fence, self._seen(now), self.params)) for r in fence],
             "set_rally": [_reply(self._plans.set_rally(r.rally, self.params)) for r in set_rally],
         }
-        hand = by_hand.choose(t, {"teleop": teleop, "mavlink": mavlink, "client": client}, self.params.stick_timeout)
+        hand = self._hand(t, {"teleop": teleop, "mavlink": mavlink, "client": client})
         self._over_ground.hear(range, self._sensing.felt, 1 / self.hz)
         flown = self._fly(t, now, hand, offboard.fresh(t, setpoint))
         out = self._report(t, now, flown)
         out["events"] = warnings + self._journal.events(t, self._pilot, self._armed)
         return {**out, **self._news(t), **replies}  # type: ignore[dict-item]
+
+    def _hand(self, t: float, said: Mapping[str, SurfaceCommand | None]) -> by_hand.Hand | None:
+        """An input is gone once it is stale; how long a command counts is the parameter's to say."""
+        self._sticks |= {source: m for source, m in said.items() if m is not None}
+        return by_hand.choose(t, self._sticks, self.params.stick_timeout)
 
     def _fly(self, t: float, now: Estimate, hand: by_hand.Hand | None, setpoint: FlightSetpoint | None) -> Flown:
         clearance = self._over_ground.clearance(t, now, self.params.gear_height)

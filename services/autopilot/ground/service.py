@@ -1,6 +1,7 @@
 """The autopilot of a ground vehicle: modes, arming, STOP ALL, the command multiplexer, limits and missions."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from math import hypot, inf
 from typing import Any
 
@@ -129,6 +130,7 @@ class GroundAutopilot(Service):
         self._stopped = False
         self._choice = Choice("", "starting")
         self._refused_at = -inf
+        self._heard: dict[str, Velocity] = {}
         self._engine = MissionEngine(home, params.acceptance_radius)
         self._engine.load(mission_of(items, stamp(0.0)))
         self._mission_is_new = True
@@ -184,7 +186,9 @@ class GroundAutopilot(Service):
         position = (pose.pose.position.x, pose.pose.position.y) if pose is not None else None
         self._follow_mission(t, position)
         lasts = self.params.stick_timeout if self._mode == Mode.MODE_MANUAL else COMMAND_MAX_AGE
-        self._choose(t, {k: Velocity(seconds(c.timestamp), c.linear, c.angular, lasts) for k, c in commands.items() if c is not None})
+        # An input is gone once it is stale; how long a command counts is the parameter's to say.
+        self._heard |= {k: Velocity(seconds(c.timestamp), c.linear, c.angular) for k, c in commands.items() if c is not None}
+        self._choose(t, {k: replace(c, lasts=lasts) for k, c in self._heard.items()})
         out = {"wheels": self._wheels(t), **replies, **self._reports(t, position)}
         if self._restarts:
             self._restart()
