@@ -39,7 +39,7 @@ def bench():
 
 @pytest.mark.parametrize("source", SOURCES)
 def test_what_a_source_asks_for_reaches_the_surfaces_unchanged(bench, source):
-    assert told(by_hand(bench, 10, source)["surfaces"]) == ASKED
+    assert told(by_hand(bench, 40, source)["surfaces"]) == ASKED  # teleop counts half a second on
     assert (bench.status.mode, bench.status.command_source) == (Mode.MODE_MANUAL, source)
 
 
