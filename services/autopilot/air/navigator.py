@@ -168,10 +168,10 @@ class Navigator:
 
     def _advance_curve(self, piece: Curve, now: Estimate, params: AirParams) -> None:
         piece.follow((now.north, now.east))
-        while piece.passed < len(piece.passing) and piece.s >= piece.passing[piece.passed]:
-            piece.passed += 1
-            if not self._pass() or self._off_path:
-                return
+        if piece.passed < len(piece.passing) and piece.s >= piece.passing[piece.passed]:
+            piece.passed += 1  # one in a cycle, so that each is told of
+            self._pass()
+            return
         if piece.left > 0:
             return
         onto = piece.onto or self._planner(now, params).towards(self._stop, piece.end, float(piece.way.course[-1]))

@@ -13,15 +13,17 @@ class ReachedItems:
 
     def __init__(self) -> None:
         self._before: tuple[int, int, bool] | None = None
+        self._current = 0  # of the look before
 
     def look(self, progress: MissionProgress, items: Sequence[MissionItem]) -> range:
         """Those done since the look before."""
         begun = progress.state not in UNBEGUN or progress.reached >= 0
         now = (progress.laps, progress.reached, begun)
         before, self._before = self._before, now
+        first, self._current = min(self._current, progress.reached), progress.current
         if before is None or before == now or not begun:
             return range(0)
-        return range(max(progress.reached, 0), _end(progress, items))
+        return range(max(first, 0), _end(progress, items))
 
 
 def _end(progress: MissionProgress, items: Sequence[MissionItem]) -> int:

@@ -22,7 +22,11 @@ def test_a_jump_is_told_with_the_item_before_it():
 
 
 def test_waypoints_passed_as_one_are_told_together():
-    assert told((ACTIVE, 1, -1, 0), (ACTIVE, 6, 2, 0)) == [[], [2, 3, 4, 5]]
+    assert told((ACTIVE, 2, 1, 0), (ACTIVE, 6, 2, 0)) == [[], [2, 3, 4, 5]]
+
+
+def test_two_that_are_reached_between_two_looks_are_both_told():
+    assert told((ACTIVE, 2, 1, 0), (ACTIVE, 2, 4, 1)) == [[], [2, 3, 4, 5]]
 
 
 def test_at_the_end_the_last_item_is_told_whatever_it_is():

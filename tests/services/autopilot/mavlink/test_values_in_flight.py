@@ -4,82 +4,17 @@ import msgspec
 import numpy as np
 import pytest
 
-from services.autopilot.mavlink.build import facts_of
 from services.autopilot.mavlink.parameter_table import parameters_of
-from tests.services.autopilot.mavlink.airborne import Airborne, field
 from tests.services.autopilot.mavlink.rig import long
-from tests.services.autopilot.mavlink.test_parameters import INT, setting, value
-from uvf.runtime.mavlink import dialect as mav
-from uvf.runtime.site import Member
-
-REAL = mav.MAV_PARAM_TYPE_REAL32
-HOLD, RETURN, LAND = 0x03040000, 0x05040000, 0x06040000
+from tests.services.autopilot.mavlink.station_in_flight import HOLD, LAND, RETURN, circling, in_the_air
+from tests.services.autopilot.mavlink.test_parameters import INT
 
 pytestmark = pytest.mark.timeout(900)
 
 
-def in_the_air():
-    """Milvus in Hold over the airfield, in a light wind without turbulence."""
-    site = field()
-    member = site.members["milvus"]
-    start = msgspec.structs.replace(member.entry.start, x=0.0, y=0.0, z=80.0, speed=25.0)
-    entry = msgspec.structs.replace(member.entry, start=start)
-    site.members["milvus"] = Member(member.name, entry, member.file, member.folder)
-    return site
-
-
-class Station(Airborne):
-    """Sends heartbeats."""
-
-    def __init__(self, site):
-        super().__init__(site)
-        self.facts = facts_of(site)[0]
-
-    def _tick(self, t):
-        if round(t * 100) % 100 == 0:
-            self.say(mav.MAVLink_heartbeat_message(mav.MAV_TYPE_GCS, mav.MAV_AUTOPILOT_INVALID, 0, 0, 0, 3))
-        return super()._tick(t)
-
-    def newest(self, kind):
-        return next((m for _, m in reversed(self.heard) if m.get_type() == kind), None)
-
-    @property
-    def mode(self):
-        return self.newest("HEARTBEAT").custom_mode
-
-    def set(self, name, number, kind=REAL):
-        """Waits, as QGroundControl does, until it is told."""
-        self.say(setting(name, number, kind))
-        self.hears("PARAM_VALUE", 1.0, lambda m: m.param_id == name and value(m) == pytest.approx(number, rel=1e-6, abs=1e-9))
-
-    def take(self, mode):
-        self.say(mav.MAVLink_set_mode_message(1, 157, mode))
-        self.hears("HEARTBEAT", 1.0, lambda m: m.custom_mode == mode)
-
-    def until(self, seconds, sees):
-        """s until it has become so."""
-        begun = self.t
-        assert self.fly(seconds, sees), (self.t, self.mode, self.texts()[-8:])
-        return self.t - begun
-
-    def centre(self):
-        """(2,) m, world, of the circle that is flown."""
-        target = self.newest("POSITION_TARGET_GLOBAL_INT")
-        place = self.facts.world(target.lat_int * 1e-7, target.lon_int * 1e-7, 0.0)
-        return np.array((place.x, place.y))
-
-    def radii(self, seconds):
-        """m, from that centre, lately."""
-        places = [(m.position.x, m.position.y) for t, m in self.truth if t > self.t - seconds]
-        return np.hypot(*(np.array(places) - self.centre()).T)
-
-
 @pytest.fixture(scope="module")
 def station():
-    flight = Station(in_the_air())
-    assert flight.fly(20.0, lambda: flight.newest("HEARTBEAT") is not None and flight.mode == HOLD)
-    flight.fly(3.0)
-    return flight
+    return circling(in_the_air())
 
 
 def test_each_that_can_be_written_is_the_flying_autopilots_at_once(station):
