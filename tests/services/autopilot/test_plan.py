@@ -8,6 +8,7 @@ import pytest
 from schemas.messages import MissionItem
 from services.autopilot import plan
 from uvf.runtime.mission_file import Waypoint
+from uvf.runtime.plan_ids import mission_id
 
 
 def test_a_line_of_a_mission_file_becomes_an_item():
@@ -23,11 +24,11 @@ def test_no_number_of_a_line_is_left_out(field):
 
 def test_an_id_tells_missions_apart():
     one, other = MissionItem(repeat=1), MissionItem(repeat=2)
-    assert plan.mission_id([one]) == plan.mission_id([MissionItem(repeat=1)]) != plan.mission_id([other])
-    assert plan.mission_id([one, other]) != plan.mission_id([other, one])
+    assert mission_id([one]) == mission_id([MissionItem(repeat=1)]) != mission_id([other])
+    assert mission_id([one, other]) != mission_id([other, one])
 
 
 def test_only_an_empty_mission_has_the_id_0(monkeypatch):
-    assert plan.mission_id([]) == 0
+    assert mission_id([]) == 0
     monkeypatch.setattr(zlib, "crc32", lambda content: 0)
-    assert plan.mission_id([MissionItem()]) == 1
+    assert mission_id([MissionItem()]) == 1
