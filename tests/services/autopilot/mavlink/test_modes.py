@@ -5,7 +5,8 @@ import math
 import pytest
 
 from schemas.messages import Mode
-from tests.services.autopilot.mavlink.rig import PLANE, ROVER, Rig, acks, long, of
+from tests.services.autopilot.mavlink.rig import GCS, OTHER, PLANE, ROVER, Rig, acks, long, of
+from uvf.runtime.mavlink import dialect as mav
 from uvf.runtime.mavlink import modes
 
 WORDS = {
@@ -77,3 +78,14 @@ def test_current_mode_tells_what_was_wanted_too():
     rig.say(long(176, 1.0, 4.0, 4.0))
     told = of(rig.run(2.1), "CURRENT_MODE", PLANE)[-1]
     assert (told.custom_mode, told.intended_custom_mode) == (WORDS[Mode.MODE_HOLD], WORDS[Mode.MODE_MISSION])
+
+
+def test_of_two_stations_that_fight_over_the_mode_the_last_word_counts_and_both_see_it():
+    rig = Rig()
+    rig.run(0.5)
+    other = {"system": 250, "peer": OTHER}
+    for mode, station in ((Mode.MODE_RETURN, {}), (Mode.MODE_HOLD, other), (Mode.MODE_MISSION, {})):
+        rig.say(mav.MAVLink_set_mode_message(PLANE, 157, WORDS[mode]), **station)
+    rig.run(0.1)
+    assert [of(rig.heard(peer), "HEARTBEAT", PLANE)[-1].custom_mode for peer in (GCS, OTHER)] == [WORDS[Mode.MODE_MISSION]] * 2
+    assert [request.mode for _, request in rig.plane.asked] == [Mode.MODE_RETURN, Mode.MODE_HOLD, Mode.MODE_MISSION]
