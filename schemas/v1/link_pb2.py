@@ -25,7 +25,7 @@ _sym_db = _symbol_database.Default()
 from google.protobuf import timestamp_pb2 as google_dot_protobuf_dot_timestamp__pb2
 
 
-DESCRIPTOR = _descriptor_pool.Default().AddSerializedFile(b'\n\x11uvf/v1/link.proto\x12\x06uvf.v1\x1a\x1fgoogle/protobuf/timestamp.proto\"f\n\x04Link\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12\x10\n\x08stations\x18\x02 \x01(\r\x12\x0f\n\x07silence\x18\x03 \x01(\x01\x12\x0c\n\x04rate\x18\x04 \x01(\x01\x62\x06proto3')
+DESCRIPTOR = _descriptor_pool.Default().AddSerializedFile(b'\n\x11uvf/v1/link.proto\x12\x06uvf.v1\x1a\x1fgoogle/protobuf/timestamp.proto\"t\n\x04Link\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12\x10\n\x08stations\x18\x02 \x01(\r\x12\x0f\n\x07silence\x18\x03 \x01(\x01\x12\x0c\n\x04rate\x18\x04 \x01(\x01\x12\x0c\n\x04port\x18\x05 \x01(\rb\x06proto3')
 
 _globals = globals()
 _builder.BuildMessageAndEnumDescriptors(DESCRIPTOR, _globals)
@@ -33,5 +33,5 @@ _builder.BuildTopDescriptorsAndMessages(DESCRIPTOR, 'uvf.v1.link_pb2', _globals)
 if not _descriptor._USE_C_DESCRIPTORS:
   DESCRIPTOR._loaded_options = None
   _globals['_LINK']._serialized_start=62
-  _globals['_LINK']._serialized_end=164
+  _globals['_LINK']._serialized_end=178
 # @@protoc_insertion_point(module_scope)

@@ -2,12 +2,15 @@
 
 from collections.abc import Callable, Mapping, Sequence
 
+from schemas import topics
+from schemas.messages import Link
 from schemas.topics import SYSTEM
 from services.mavlink_bridge.station import Station
 from uvf.runtime.params import BadInput
-from uvf.runtime.service import Outputs, Service
+from uvf.runtime.service import Outputs, Service, each_vehicle
 
 PATIENCE = 5.0  # s, after which it is said that nobody is there
+HESITATION = 1.2  # s, after which this bus has told whether the new one is its own
 Found = Callable[[str, int], None]
 """Called with the name and system id of a new vehicle."""
 Say = Callable[[str], None]
@@ -65,17 +68,23 @@ class Discovery(Service):
     hz = 50.0
     scope = "world"
     clock = "wall"
+    inputs = {"links": each_vehicle(topics.LINK)}
 
     def __init__(self, station: Station, names: Names, found: Found, say: Say) -> None:
         self._station, self._names, self._found, self._say = station, names, found, say
         self._known: set[int] = set()
         self._is_patient = True
 
-    def step(self, t: float) -> Outputs:
-        """``t`` [s]: wall time since the start."""
-        for line in self._station.poll(t):
+    def step(self, t: float, links: Mapping[str, Link]) -> Outputs:
+        """``t`` [s]: wall time since the start. A vehicle of this bus that speaks to the address, too, is none more."""
+        own = {link.port for link in links.values()}
+        for line in self._station.poll(t, own):
             self._say(line)
-        for system in [s for s in self._station.autopilots if s not in self._known]:
+        new = {system: one for system, one in self._station.autopilots.items() if system not in self._known}
+        for system in [system for system, one in new.items() if one.peer[1] in own]:
+            self._station.forget(system)
+            new.pop(system)
+        for system in [system for system, one in new.items() if t - one.since >= HESITATION]:
             self._known.add(system)
             self._found(self._names.of(system), system)
         if self._is_patient and not self._known and t > PATIENCE:

@@ -1,6 +1,6 @@
 """The bridge's end of a link: which autopilots are heard there, and each one's messages for the vehicle that it is."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -25,6 +25,7 @@ class Autopilot:
     peer: Peer
     heartbeat: mav.MAVLink_heartbeat_message
     heard_at: float
+    since: float
     inbox: list[mav.MAVLink_message] = field(default_factory=list)
     rivals: set[Peer] = field(default_factory=set)
     """Other addresses that have used its id meanwhile."""
@@ -43,10 +44,15 @@ class Station:
         self._codec = Codec(COMPONENT)
         self._last_heartbeat = -HEARTBEAT_PERIOD
 
-    def poll(self, t: float) -> list[str]:
-        """Takes in what has arrived until ``t`` [s, wall] and says that the station is there; returns what has to be told."""
+    def poll(self, t: float, own: Collection[int] = ()) -> list[str]:
+        """Takes in what has arrived until ``t`` [s, wall] and says that the station is there; returns what has to be told.
+
+        own: ports from which this bus's own vehicles speak; they are on it already.
+        """
         told: list[str] = []
         for datagram, peer in self._link.receive(t):
+            if peer[1] in own:
+                continue
             messages = self._codec.parse(datagram)
             if messages:
                 self._link.keep(t, peer)
@@ -63,7 +69,7 @@ class Station:
         is_heartbeat = message.get_msgId() == mav.MAVLINK_MSG_ID_HEARTBEAT
         known = self.autopilots.get(system)
         if is_heartbeat and known is None and is_autopilot(message) and system not in (0, SYSTEM):
-            known = self.autopilots[system] = Autopilot(system, component, peer, message, t)  # type: ignore[arg-type]
+            known = self.autopilots[system] = Autopilot(system, component, peer, message, t, t)  # type: ignore[arg-type]
         if known is None or component != known.component:
             return []
         if peer != known.peer and not known.is_lost(t):
@@ -77,6 +83,10 @@ class Station:
             known.inbox.append(message)
             del known.inbox[:-INBOX_MOST]
         return []
+
+    def forget(self, system: int) -> None:
+        """It is none for this bus."""
+        del self.autopilots[system]
 
     def fetch(self, system: int) -> list[mav.MAVLink_message]:
         """What an autopilot has said since the last call."""

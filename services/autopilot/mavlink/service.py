@@ -203,7 +203,7 @@ class MavlinkService(Service):
         for name, vehicle in self._vehicles.items():
             latest = vehicle.line.latest
             rate = latest.clock.rate if latest.clock is not None else 1.0
-            links[name] = Link(timestamp=stamp(latest.sim_time), stations=count, silence=silence, rate=rate)
+            links[name] = Link(timestamp=stamp(latest.sim_time), stations=count, silence=silence, rate=rate, port=self._link.port)
         return {"link": links}
 
     def _outputs(self) -> Outputs:

@@ -4,6 +4,7 @@ import random
 
 import pytest
 
+from schemas.messages import Link
 from services.mavlink_bridge.discovery import Discovery, Names, names_from
 from services.mavlink_bridge.station import COMPONENT, LOST_AFTER, SYSTEM, Station
 from tests.services.autopilot.mavlink.rig import MemoryLink
@@ -121,12 +122,28 @@ def test_nobody_who_reads_costs_no_memory(air):
 def test_each_new_system_is_found_once_under_its_name_and_silence_is_told_of(air):
     found, said = [], []
     discovery = Discovery(air.station, Names("plane2", {7: "rover2"}), lambda name, system: found.append((name, system)), said.append)
-    discovery.step(5.5)
+    discovery.step(5.5, {})
     assert said == ["no autopilot heard for 5 s; listening on"]
-    for system in (3, 7, 4, 3):
+    for t, system in enumerate((3, 7, 4, 3), 6):
         air.say(heartbeat(), system)
-        discovery.step(6.0)
-    assert found == [("plane2", 3), ("rover2", 7), ("plane2_4", 4)]
+        discovery.step(float(t), {})
+    assert found == [("plane2", 3), ("rover2", 7)]
+    discovery.step(12.0, {})
+    assert found[2:] == [("plane2_4", 4)]
+
+
+def test_a_vehicle_of_the_own_bus_is_left_alone_and_keeps_its_number_from_nobody(air):
+    found = []
+    discovery = Discovery(air.station, Names("plane2", {}), lambda *who: found.append(who), lambda line: None)
+    for t in range(30):
+        air.say(heartbeat())
+        discovery.step(t * 0.1, {"milvus": Link(port=HERE[1])} if t > 5 else {})
+    assert found == [] and air.station.autopilots == {}
+    for t in range(30, 50):
+        air.say(heartbeat())
+        air.say(heartbeat(), peer=THERE)
+        discovery.step(t * 0.1, {"milvus": Link(port=HERE[1])})
+    assert found == [("plane2", 1)] and air.station.autopilots[1].peer == THERE
 
 
 @pytest.mark.parametrize(

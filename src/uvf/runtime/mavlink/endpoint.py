@@ -16,6 +16,10 @@ DATAGRAMS_PER_CALL = 500
 class Link(Protocol):
     """Datagrams from and to peers."""
 
+    @property
+    def port(self) -> int:
+        """From which this end speaks first."""
+
     def receive(self, t: float) -> list[tuple[bytes, Peer]]:
         """Everything that has arrived, without waiting; ``t`` [s] is now."""
 
@@ -51,6 +55,10 @@ class UdpLink:
             except OSError:
                 self._own.close()
                 raise
+
+    @property
+    def port(self) -> int:
+        return int(self._own.getsockname()[1])
 
     @property
     def addresses(self) -> list[Peer]:

@@ -114,6 +114,8 @@ class Autopilot(Service):
 class MemoryLink:
     """Datagrams in lists; two peers always listen."""
 
+    port = 14600
+
     def __init__(self):
         self.incoming = []
         self.outgoing = []
