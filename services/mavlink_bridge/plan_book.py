@@ -10,6 +10,7 @@ from services.mavlink_bridge.telemetry import Telemetry
 from services.mavlink_bridge.transfers import Transfers
 from services.mavlink_bridge.wire import Done
 from uvf.runtime.mavlink import dialect as mav
+from uvf.runtime.mavlink import rally_items
 from uvf.runtime.mavlink.mission_items import BadItem, Body
 
 MISSION, FENCE, RALLY = mav.MAV_MISSION_TYPE_MISSION, mav.MAV_MISSION_TYPE_FENCE, mav.MAV_MISSION_TYPE_RALLY
@@ -126,7 +127,7 @@ class PlanBook:
             return self._scribe.bodies(plan, chart, self._telemetry.home, self.home_z)
         if isinstance(plan, Fence):
             return plans.fence_bodies(plan, chart, self.home_z)
-        return plans.rally_bodies(plan, chart, self.home_z)
+        return rally_items.bodies(plan, chart, self.home_z)
 
     def tell_again(self) -> None:
         """To a bus whose time has started over."""

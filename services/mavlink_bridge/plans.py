@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from schemas.messages import Fence, Mission, MissionItem, RallyPoints
 from services.mavlink_bridge.frame import Chart
 from uvf.runtime.mavlink import dialect as mav
-from uvf.runtime.mavlink import fence_items
+from uvf.runtime.mavlink import fence_items, rally_items
 from uvf.runtime.mavlink.mission_items import (
     ORIGIN,
     WITH_PLACE,
@@ -16,7 +16,6 @@ from uvf.runtime.mavlink.mission_items import (
     mission_of,
     packed,
     place_of,
-    point_body,
     to_wire,
     unpacked,
 )
@@ -111,11 +110,4 @@ def fence_bodies(fence: Fence, chart: Chart, home_z: float) -> list[Body]:
 
 def rally_read(bodies: Sequence[Body], chart: Chart, home_z: float) -> RallyPoints:
     """Raises BadItem."""
-    items = [as_item(body) for body in bodies]
-    return RallyPoints(points=[place_of(item, chart, home_z) for item in items], origin=[packed(item) for item in items])
-
-
-def rally_bodies(rally: RallyPoints, chart: Chart, home_z: float) -> list[Body]:
-    if rally.origin:
-        return [unpacked(origin) for origin in rally.origin]
-    return [point_body(mav.MAV_CMD_NAV_RALLY_POINT, point, chart, home_z) for point in rally.points]
+    return rally_items.rally_of([as_item(body) for body in bodies], chart, home_z)

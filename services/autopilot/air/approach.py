@@ -45,21 +45,39 @@ def orbit_radius(item: Item, params: AirParams) -> float:
 def laid_down(items: Sequence[Item], index: int, params: AirParams) -> Approach | None:
     """The approach of the landing at ``index``: a circle down to an altitude right before it, or a waypoint of its landing pattern.
 
-    None where the mission leaves it to the aircraft. Raises ValueError, without the item's number, where it cannot be flown.
+    None where the mission leaves it to the aircraft, and where no tangent leads from the circle to the place.
     """
     place, before = items[index].place, _before(items, index)
     if before is None:
         return None
     item = items[before]
-    north, east = place.north - item.place.north, place.east - item.place.east
-    distance, course = math.hypot(north, east), math.atan2(east, north)
+    distance, course = _way(item.place, place)
     if item.kind is Kind.WAYPOINT:
-        return _flyable(Approach(place, course, distance, item.place.height), before, params)
+        return Approach(place, course, distance, item.place.height)
     radius = orbit_radius(item, params)
     if distance <= abs(radius):
-        raise ValueError(f"lies within the circle of item {before}, which leads to it: {distance:.0f} m of {abs(radius):.0f} m")
+        return None
     course = math.remainder(course + math.asin(radius / distance), math.tau)
-    return _flyable(Approach(place, course, math.sqrt(distance**2 - radius**2), item.place.height, radius), before, params)
+    return Approach(place, course, math.sqrt(distance**2 - radius**2), item.place.height, radius)
+
+
+def approach_fault(items: Sequence[Item], index: int, params: AirParams) -> str:
+    """Why the approach that is laid down for the landing at ``index`` cannot be flown, and how to mend it; empty if it can."""
+    before = _before(items, index)
+    if before is None:
+        return ""
+    found = laid_down(items, index, params)
+    if found is None:
+        distance, _ = _way(items[before].place, items[index].place)
+        radius = abs(orbit_radius(items[before], params))
+        return f"lies within the circle of item {before}, which leads to it: {distance:.0f} m of {radius:.0f} m"
+    return _fault(found, before, params)
+
+
+def _way(start: Place, end: Place) -> tuple[float, float]:
+    """Distance [m] and course [rad]."""
+    north, east = end.north - start.north, end.east - start.east
+    return math.hypot(north, east), math.atan2(east, north)
 
 
 def _before(items: Sequence[Item], index: int) -> int | None:
@@ -80,19 +98,18 @@ def _is_of_pattern(before: Sequence[Item]) -> bool:
     return next(marks, Kind.LAND) is Kind.LAND_START
 
 
-def _flyable(approach: Approach, begin: int, params: AirParams) -> Approach:
-    """Raises ValueError."""
+def _fault(approach: Approach, begin: int, params: AirParams) -> str:
     shortest = SHORTEST * params.min_airspeed
     if approach.length < shortest:
-        raise ValueError(f"has a final approach of {approach.length:.0f} m from item {begin}: {math.ceil(shortest)} m at least")
+        return f"has a final approach of {approach.length:.0f} m from item {begin}: {math.ceil(shortest)} m at least"
     steepest = min(math.tan(STEEPEST), OF_IDLE * params.idle_sink / params.trim_airspeed)
     if approach.slope > max(steepest, math.tan(params.glide_slope)):
         lower = approach.place.height + steepest * approach.length
         angle, most = (math.degrees(math.atan(v)) for v in (approach.slope, steepest))
-        raise ValueError(f"is approached at {angle:.1f} degrees, {most:.1f} at most: put item {begin} at {lower:.0f} m or further away")
+        return f"is approached at {angle:.1f} degrees, {most:.1f} at most: put item {begin} at {lower:.0f} m or further away"
     if approach.slope <= 0:
-        raise ValueError(f"lies no lower than item {begin}, from where it is approached")
-    return approach
+        return f"lies no lower than item {begin}, from where it is approached"
+    return ""
 
 
 def with_courses(items: Sequence[Item]) -> list[Item]:
@@ -101,6 +118,6 @@ def with_courses(items: Sequence[Item]) -> list[Item]:
     for index in (i for i, item in enumerate(items) if item.kind is Kind.LAND):
         before = _before(items, index)
         if before is not None and items[before].kind is Kind.WAYPOINT and items[before].course is None:
-            at, to = items[before].place, items[index].place
-            found[before] = replace(items[before], course=math.atan2(to.east - at.east, to.north - at.north))
+            _, course = _way(items[before].place, items[index].place)
+            found[before] = replace(items[before], course=course)
     return found

@@ -15,15 +15,15 @@ class FenceInForce:
     """Worked out anew when the plan, home or a parameter is another one."""
 
     def __init__(self) -> None:
+        self._fence = Fence()
         self._of: tuple[object, ...] = ()
-        self._found = fencing(Fence())
+        self._found = fencing(self._fence)
 
     def of(self, fence: Fence, home: Place | None, params: AirParams) -> Fencing:
         """The same object as long as nothing changes."""
-        about = params.max_distance, params.max_height, params.fence_action, too_small(params)
-        of = id(fence), home, about
-        if of != self._of:
-            self._of, self._plan, self._found = of, fence, in_force(fence, home, params)
+        of = home, params.max_distance, params.max_height, params.fence_action, too_small(params)
+        if fence is not self._fence or of != self._of:
+            self._fence, self._of, self._found = fence, of, in_force(fence, home, params)
         return self._found
 
 

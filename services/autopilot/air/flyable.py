@@ -9,7 +9,7 @@ import math
 from collections.abc import Iterator, Sequence
 
 from services.autopilot.air import corners
-from services.autopilot.air.approach import laid_down
+from services.autopilot.air.approach import approach_fault
 from services.autopilot.air.guidance import turn_radius
 from services.autopilot.air.params import AirParams
 from services.autopilot.air.plan import NO_JUMPS, Item, Kind, Stop, following
@@ -41,12 +41,7 @@ def _fault(item: Item, count: int, speed: float, params: AirParams) -> str:
 
 
 def _landing_fault(items: Sequence[Item], index: int, params: AirParams) -> str:
-    if items[index].kind is Kind.LAND:
-        try:
-            laid_down(items, index, params)
-        except ValueError as error:
-            return str(error)
-    return ""
+    return approach_fault(items, index, params) if items[index].kind is Kind.LAND else ""
 
 
 def _speeds(items: Sequence[Item], params: AirParams) -> list[float]:

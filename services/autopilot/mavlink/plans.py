@@ -8,7 +8,7 @@ from schemas.messages import Fence, FenceRequest, Mission, MissionItem, MissionR
 from services.autopilot.mavlink.actions import SOURCE
 from services.autopilot.mavlink.line import Line
 from uvf.runtime.mavlink import dialect as mav
-from uvf.runtime.mavlink import fence_items
+from uvf.runtime.mavlink import fence_items, rally_items
 from uvf.runtime.mavlink.mission_items import (
     BadItem,
     Body,
@@ -16,9 +16,7 @@ from uvf.runtime.mavlink.mission_items import (
     from_wire,
     is_skipped,
     mission_of,
-    packed,
     place_of,
-    point_body,
     to_wire,
     unpacked,
 )
@@ -152,9 +150,7 @@ class RallyPlan(Plan[RallyPoints]):
         return rally_id(plan)
 
     def write(self, plan: RallyPoints) -> list[Body]:
-        if plan.origin:
-            return [unpacked(origin) for origin in plan.origin]
-        return [point_body(mav.MAV_CMD_NAV_RALLY_POINT, point, self._line.facts, self.home_z) for point in plan.points]
+        return rally_items.bodies(plan, self._line.facts, self.home_z)
 
     def read(self, item: Item) -> Item:
         if item.command != mav.MAV_CMD_NAV_RALLY_POINT:
@@ -163,8 +159,7 @@ class RallyPlan(Plan[RallyPoints]):
         return item
 
     def made(self, items: list[Item]) -> RallyPoints:
-        points = [place_of(item, self._line.facts, self.home_z) for item in items]
-        return RallyPoints(points=points, origin=[packed(item) for item in items])
+        return rally_items.rally_of(items, self._line.facts, self.home_z)
 
     def request(self, plan: RallyPoints) -> RallyRequest:
         return RallyRequest(rally=plan, source=SOURCE)

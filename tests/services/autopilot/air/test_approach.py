@@ -86,6 +86,13 @@ def test_what_cannot_be_flown_is_refused_with_the_item_and_the_remedy(items, why
     assert fault(items, PARAMS).startswith(why)
 
 
+def test_parameters_that_change_in_flight_never_leave_it_without_a_landing():
+    """What is refused of a new mission may come true of the one that is flown."""
+    short = [MARK, waypoint(0.0, -100.0, 10.0), LAND]
+    assert laid_down(short, 2, PARAMS).length == pytest.approx(100.0)
+    assert laid_down([circle(0.0, -60.0), LAND], 1, PARAMS) is None
+
+
 def test_the_remedy_of_a_steep_approach_works():
     assert fault([MARK, waypoint(0.0, -300.0, 48.0), LAND], PARAMS) == ""
 

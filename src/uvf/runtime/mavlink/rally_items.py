@@ -1,0 +1,21 @@
+"""Rally points as items on the wire, and back."""
+
+from collections.abc import Sequence
+
+from schemas.messages import RallyPoints
+from uvf.runtime.mavlink import dialect as mav
+from uvf.runtime.mavlink.geo import Placed
+from uvf.runtime.mavlink.mission_items import Body, packed, place_of, point_body, unpacked
+
+
+def rally_of(items: Sequence[mav.MAVLink_mission_item_int_message], facts: Placed, home_z: float) -> RallyPoints:
+    """home_z: height of home [m, world]. Raises BadItem."""
+    points = [place_of(item, facts, home_z) for item in items]
+    return RallyPoints(points=points, origin=[packed(item) for item in items])
+
+
+def bodies(rally: RallyPoints, facts: Placed, home_z: float) -> list[Body]:
+    """What came over the wire, or the places above home."""
+    if rally.origin:
+        return [unpacked(origin) for origin in rally.origin]
+    return [point_body(mav.MAV_CMD_NAV_RALLY_POINT, point, facts, home_z) for point in rally.points]
