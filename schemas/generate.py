@@ -5,12 +5,12 @@ import sys
 import tempfile
 from pathlib import Path
 
-from foxglove_schemas_protobuf import Color_pb2, Pose_pb2, Quaternion_pb2, Vector3_pb2
+from foxglove_schemas_protobuf import Color_pb2, Grid_pb2, PackedElementField_pb2, Pose_pb2, Quaternion_pb2, Vector2_pb2, Vector3_pb2
 from google.protobuf import timestamp_pb2
 from google.protobuf.descriptor_pb2 import FileDescriptorSet
 
 HERE = Path(__file__).parent
-IMPORTED = (timestamp_pb2, Vector3_pb2, Quaternion_pb2, Color_pb2, Pose_pb2)
+IMPORTED = (timestamp_pb2, Vector2_pb2, Vector3_pb2, Quaternion_pb2, Color_pb2, Pose_pb2, PackedElementField_pb2, Grid_pb2)
 
 
 def generate(scratch: Path) -> dict[str, str]:

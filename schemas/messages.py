@@ -33,6 +33,7 @@ from schemas.v1.command_pb2 import (
 )
 from schemas.v1.fence_pb2 import Fence, FenceRequest, FenceZone
 from schemas.v1.link_pb2 import Link
+from schemas.v1.map_pb2 import MapFix, MapReply, MapRequest, MapSession, PlaceRequest, RelocalizeRequest, SaveMapRequest
 from schemas.v1.mission_pb2 import (
     CancelRequest,
     GoalRequest,
@@ -45,6 +46,7 @@ from schemas.v1.mission_pb2 import (
     OrbitRequest,
     SetCurrentRequest,
 )
+from schemas.v1.octree_pb2 import OctreeMap, OctreeSaveRequest
 from schemas.v1.order_pb2 import (
     AltitudeOrder,
     HomeOrder,
@@ -117,6 +119,10 @@ __all__ = [
     "LaserScan",
     "LineSetpoint",
     "Link",
+    "MapFix",
+    "MapReply",
+    "MapRequest",
+    "MapSession",
     "Mission",
     "MissionItem",
     "MissionProgress",
@@ -125,6 +131,8 @@ __all__ = [
     "ModeRequest",
     "NavState",
     "NavStatus",
+    "OctreeMap",
+    "OctreeSaveRequest",
     "Odometry",
     "OrderRequest",
     "PackedElementField",
@@ -133,6 +141,7 @@ __all__ = [
     "ParamRequest",
     "ParamValues",
     "PictureOrder",
+    "PlaceRequest",
     "Pose",
     "PoseInFrame",
     "PosesInFrame",
@@ -142,9 +151,11 @@ __all__ = [
     "RallyPoints",
     "RallyRequest",
     "Range",
+    "RelocalizeRequest",
     "RemoveRequest",
     "Reply",
     "RestartOrder",
+    "SaveMapRequest",
     "SetCurrentRequest",
     "SetPoseRequest",
     "SimObject",

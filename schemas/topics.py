@@ -132,6 +132,9 @@ AIR_OBJECTS = Topic(f"{_S}/truth/aircraft", m.SimObjects, 20, _Q.STATE, "aircraf
 TF_STATIC = Topic(f"{_V}/tf/static", m.FrameTransforms, 0, _Q.LATCHED, "base_link, links that do not move, sensors")
 TF_WORLD = Topic(f"{_V}/tf/world", m.FrameTransform, 0, _Q.LATCHED, "world from map, placed at the mission's start pose")
 TF_MAP = Topic(f"{_V}/tf/map", m.FrameTransform, 10, _Q.STATE, "map from odom", kept=True)
+OCTREE = Topic(f"{_V}/map/octree", m.OctreeMap, 0, _Q.LATCHED, "what is occupied and free in space, world frame", kept=True)
+SLICE = Topic(f"{_V}/map/slice", m.Grid, 0, _Q.LATCHED, "a level slice of the octree, int8: -1 unknown, 0 free, 100 occupied")
+HEIGHTS = Topic(f"{_V}/map/heights", m.Grid, 0, _Q.LATCHED, "top and ground by the octree, 2 float32 [m], NaN unknown")
 TF_ODOM = Topic(f"{_V}/tf/odom", m.FrameTransform, 50, _Q.STATE, "odom from base_footprint")
 TF_JOINTS = Topic(f"{_V}/tf/joints", m.FrameTransforms, 20, _Q.STATE, "links that joints move: the wheels")
 TF_GIMBAL = Topic(f"{_V}/tf/gimbal", m.FrameTransform, 5, _Q.STATE, "base_link from the gimbal's camera, where it looks now")
@@ -142,7 +145,12 @@ NAV_STATE = Topic(f"{_V}/nav/state", m.NavState, 50, _Q.STATE, "best estimate of
 QUALITY = Topic(f"{_V}/nav/quality", m.EstimateQuality, 2, _Q.STATE, "how far the estimate may be off, and how well measurements fit")
 PATH = Topic(f"{_V}/nav/path", m.PosesInFrame, 2, _Q.STATE, "path being followed, world frame")
 NAV_STATUS = Topic(f"{_V}/nav/status", m.NavStatus, 2, _Q.STATE, "what the planner is doing", kept=True)
+MAP_FIX = Topic(f"{_V}/nav/fix", m.MapFix, 5, _Q.STATE, "where the newest sweep places the vehicle in its map, and how surely")
+MAP_SESSION = Topic(f"{_V}/map/session", m.MapSession, 0, _Q.LATCHED, "keyframes, poses and edges of the map", logged=False, kept=True)
 MAP = Topic(f"{_V}/map/grid", m.Grid, 0, _Q.LATCHED, "occupancy, int8: -1 unknown, 0..100", kept=True)
+KNOWN_MAP = Topic(f"{_V}/map/known", m.Grid, 0, _Q.LATCHED, "a saved map that the vehicle was given, world frame; as map/grid")
+KEEP_OUT = Topic(f"{_V}/map/keepout", m.Grid, 0, _Q.LATCHED, "where not to drive, world frame, int8: 100 keep out, 0 not")
+SPEED_MAP = Topic(f"{_V}/map/speed", m.Grid, 0, _Q.LATCHED, "speed allowed, world frame, int8: per cent of the vehicle's own")
 
 # commands and actuators
 DRIVE = Topic(f"{_V}/cmd/<source>", m.DriveCommand, 20, _Q.CONTROL, "velocity asked of a ground vehicle")
@@ -188,6 +196,11 @@ SET_MISSION = Request(f"{_V}/srv/mission", m.MissionRequest, m.Reply, "replace t
 SET_FENCE = Request(f"{_V}/srv/fence", m.FenceRequest, m.Reply, "replace the fence, or take it away")
 SET_RALLY = Request(f"{_V}/srv/rally", m.RallyRequest, m.Reply, "replace the rally points")
 SET_CURRENT = Request(f"{_V}/srv/current", m.SetCurrentRequest, m.Reply, "jump to a mission item")
+SAVE_OCTREE = Request(f"{_V}/srv/octree/save", m.OctreeSaveRequest, m.Reply, "write the octree into a .bt file")
+SAVE_MAP = Request(f"{_V}/srv/map/save", m.SaveMapRequest, m.Reply, "write the map that is being drawn to a file")
+PLACE = Request(f"{_V}/srv/slam/pose", m.PlaceRequest, m.Reply, "where the vehicle is, to one that is localized on a known map")
+RELOCALIZE = Request(f"{_V}/srv/slam/relocalize", m.RelocalizeRequest, m.Reply, "look for the vehicle in the whole known map")
+GET_MAP = Request(f"{_V}/srv/map/get", m.MapRequest, m.MapReply, "the map that is being drawn, the one given, or a mask")
 PARAM = Request(f"{_V}/srv/param/<source>", m.ParamRequest, m.ParamReply, "read or set a service's parameters")
 
 TOPICS: dict[str, Topic[Any]] = {k: v for k, v in globals().items() if isinstance(v, Topic)}

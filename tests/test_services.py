@@ -10,7 +10,8 @@ from uvf.launch.checks import check_mission
 from uvf.runtime.site import ROOT, load_site
 
 SITE = load_site(ROOT / "missions" / "demo.yaml")
-HOSTS = {kind.name: catalogue.hosts(SITE, [kind]) for kind in catalogue.KINDS}
+ASKING = load_site(ROOT / "missions" / "mapping.yaml")
+HOSTS = {kind.name: catalogue.hosts(ASKING if kind.needs == "asked" else SITE, [kind]) for kind in catalogue.KINDS}
 SERVICES = sorted({host.service for hosts in HOSTS.values() for host in hosts}, key=lambda s: s.name)
 
 

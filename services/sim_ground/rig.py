@@ -16,7 +16,9 @@ from services.sim_ground.body import BodyState, Touch
 from services.sim_ground.imu import ImuModel
 from uvf.maths.geodesy import LocalTangent
 from uvf.maths.instruments import Receiver
+from uvf.maths.kinematics import spin_velocity
 from uvf.maths.raycast3 import Body, Scene
+from uvf.maths.rotations import rotate
 from uvf.maths.sampling import Due, Line
 from uvf.runtime.battery import Charge
 from uvf.runtime.link_frames import Links
@@ -184,7 +186,10 @@ def _read_encoders(encoders: Encoders, t: float, moment: Moment) -> Message:
 
 
 def _read_gnss(gnss: GnssSensor, receiver: Receiver, t: float, moment: Moment) -> Message:
-    return gnss_message(gnss, receiver.read(t, moment.body.position, moment.body.velocity))
+    body, arm = moment.body, np.array(gnss.mount.xyz)
+    position = body.position + rotate(body.world_from_body, arm)
+    velocity = body.velocity + rotate(body.world_from_body, spin_velocity(body.angular_velocity, arm))
+    return gnss_message(gnss, receiver.read(t, position, velocity))
 
 
 def _read_range(frame: str, sensor: Sonar | RangeFinder, model: RangeModel, t: float, moment: Moment) -> Message:

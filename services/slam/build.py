@@ -1,44 +1,92 @@
-"""Odometry and mapping for every ground vehicle of the mission."""
+"""Odometry and mapping for every ground vehicle of the mission, and the maps that it is given."""
 
 import numpy as np
 
-from services.slam.correlative import search
-from services.slam.mapper import Mapper, Scan
+from services.slam.localization.known_map import known_map
+from services.slam.localization.localizer import Localizer
+from services.slam.localization.params import FilterParams
+from services.slam.localization_service import Beginning, LocalizationService
 from services.slam.mapping_service import MappingParams, MappingService
-from services.slam.odometry_service import OdometryParams, OdometryService
-from uvf.maths.planar import IDENTITY, Pose2
-from uvf.runtime.params import BadInput
+from services.slam.maps.serving import map_servers
+from services.slam.method import SlamMethod
+from services.slam.methods import METHODS, make_method
+from services.slam.odometry.filter import DriveFilter
+from services.slam.odometry.params import OdometryParams
+from services.slam.odometry.service import OdometryService
+from services.slam.odometry.states import Noise, Step
+from services.slam.reading import Beams, Reading
+from uvf.maths.geodesy import LocalTangent
+from uvf.maths.planar import IDENTITY, Pose2, compose, inverse
+from uvf.runtime.mission_file import Maps
+from uvf.runtime.params import BadInput, nearest
 from uvf.runtime.site import Host, Member, Site
+from uvf.runtime.vehicle_file import Lidar
 
 
 def build(site: Site) -> list[Host]:
-    """Raises BadInput for a vehicle without lidar or wheel encoders."""
-    members = list(site.of_kind("ground"))
-    if members:
-        _warm_up()
-    return [host for member in members for host in _hosts(member)]
+    """Raises BadInput for a vehicle without lidar or wheel encoders, and for files that are no maps."""
+    hosts = [host for member in site.of_kind("ground") for host in _hosts(site, member)]
+    return hosts + map_servers(site)
 
 
-def _hosts(member: Member) -> list[Host]:
-    start, sensors = member.entry.start, member.file.sensors
+def _hosts(site: Site, member: Member) -> list[Host]:
+    sensors = member.file.sensors
     lidar = sensors.lidar
     if lidar is None or sensors.encoders is None:
         path, missing = member.folder / "vehicle.yaml", "lidar" if lidar is None else "encoders"
         raise BadInput(f"{path}: sensors: no {missing}: SLAM needs lidar and encoders; 'uvf vehicle check {member.entry.model}' shows how")
-    world_from_map = Pose2(start.x, start.y, start.yaw)
-    odometry = member.params("odometry", OdometryParams)
+    world_from_map = _world_from_map(member)
     mapping = member.params("mapping", MappingParams)
+    maps = member.entry.maps
+    if maps is not None and maps.localize is not None:
+        return [_odometry(site, member), _localization(site, member, lidar, maps)]
+    _warm_up(_method(member, mapping))
     return [
-        Host(OdometryService, lambda: OdometryService(member.name, member.file, world_from_map, odometry), member.name),
-        Host(MappingService, lambda: MappingService(member.name, lidar, world_from_map, mapping), member.name),
+        _odometry(site, member),
+        Host(MappingService, lambda: MappingService(member.name, lidar, world_from_map, mapping, _method(member, mapping)), member.name),
     ]
 
 
-def _warm_up() -> None:
-    """Compiles the kernels, or loads them from their cache, before the first scan."""
-    mapper = Mapper(0.05, 0.0, 0.0)
-    angles = np.linspace(-np.pi, np.pi, 60)
-    hits = np.column_stack((np.cos(angles), np.sin(angles)))
-    for _ in range(2):
-        mapper.add(IDENTITY, Scan(hits, 2.0 * hits[:2], (0.0, 0.0)))
-    search(mapper.occupancy, IDENTITY, hits)
+def _world_from_map(member: Member) -> Pose2:
+    start = member.entry.start
+    return Pose2(start.x, start.y, start.yaw)
+
+
+def _odometry(site: Site, member: Member) -> Host:
+    params, origin = member.params("odometry", OdometryParams), site.world.origin
+    tangent = LocalTangent.from_degrees(origin.latitude, origin.longitude, origin.altitude)
+    start = _world_from_map(member)
+    return Host(OdometryService, lambda: OdometryService(member.name, member.file, start, params, tangent), member.name)
+
+
+def _localization(site: Site, member: Member, lidar: Lidar, maps: Maps) -> Host:
+    """In the place of mapping. Raises BadInput for a file that is no map."""
+    start, params, known = _world_from_map(member), member.params("localization", FilterParams), None
+    if maps.known is not None:
+        known = known_map(maps.known, site.mission_path.parent, compose(inverse(start), Pose2(*maps.known_at)))
+        _warm_up(Localizer(known, params, 0, IDENTITY))
+    seed = int(site.rng(member.name, "localization").integers(1 << 31))
+    beginning = Beginning(known, maps.localize == "anywhere", seed)
+    return Host(LocalizationService, lambda: LocalizationService(member.name, lidar, start, params, beginning), member.name)
+
+
+def _method(member: Member, mapping: MappingParams) -> SlamMethod:
+    """By the name that the vehicle's file gives, with the parameters of that name. Raises BadInput."""
+    path = str(member.folder / "vehicle.yaml")
+    if mapping.method not in METHODS:
+        raise BadInput(f"{path}: params.mapping.method: no SLAM method '{mapping.method}'; {nearest(mapping.method, METHODS)}")
+    return make_method(mapping.method, member.params(mapping.method, METHODS[mapping.method].params))
+
+
+def _warm_up(method: SlamMethod) -> None:
+    """Compiles the kernels, or loads them from their cache, before the first scan: there and back through a made-up corridor."""
+    beams = Beams((0.0, 0.0), np.linspace(-np.pi, np.pi, 120), 0.1, 10.0)
+    for k in range(50):
+        x = 0.4 * min(k, 50 - k)
+        along, across = np.abs(beams.directions).T
+        ranges = np.minimum(
+            1.5 / np.maximum(across, 1e-6), np.where(beams.directions[:, 0] > 0.0, 14.0 - x, 2.0 + x) / np.maximum(along, 1e-6)
+        )
+        method.add(Reading(float(k), ranges, beams, Pose2(x, 0.0, 0.0)))
+    method.finish()
+    DriveFilter("ekf", Noise(), 0.2).step(Step(0.02, 0.0, 0.0))

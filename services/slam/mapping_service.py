@@ -1,141 +1,151 @@
 """Lidar scans and frames -> the map, and where the odometry frame lies in it."""
 
-from typing import Annotated
+from collections.abc import Iterator
+from contextlib import suppress
+from typing import Annotated, Protocol, runtime_checkable
 
 import numpy as np
 from msgspec import Meta
 from numpy.typing import NDArray
 
 from schemas import topics
-from schemas.convert import occupancy_cells, occupancy_grid, quaternion, scan_rays, seconds, stamp, yaw_of
-from schemas.messages import Event, FrameTransform, Grid, LaserScan, Vector3
-from services.slam.mapper import Mapper, Scan, toward
+from schemas.convert import occupancy_grid, stamp, yaw_of
+from schemas.messages import Event, FrameTransform, Grid, LaserScan, MapFix, MapSession
+from services.slam.graph.uncertainty import turned
+from services.slam.maps.session import Session
+from services.slam.maps.tiles import TileMap
+from services.slam.method import Keyframe, SlamMethod
+from services.slam.placing_service import PlacingParams, PlacingService, Positive, fix_message
+from services.slam.reading import Reading
 from uvf.maths.planar import IDENTITY, Pose2, compose, inverse
-from uvf.maths.rotations import from_euler
-from uvf.maths.transforms import Transform, from_above, planar
+from uvf.maths.transforms import planar
 from uvf.runtime.frames import FrameBuffer, FrameError
-from uvf.runtime.service import Outputs, Params, Service, frames
+from uvf.runtime.params import BadInput
+from uvf.runtime.service import Outputs, frames
 from uvf.runtime.vehicle_file import Lidar
 
 Floats = NDArray[np.float64]
-Positive = Annotated[float, Meta(gt=0)]
 
-PATIENCE = 2.0  # s without a scan that has a place, until this is told
-NO_RETURN_REACH = 0.9
-"""Part of the lidar's range that a beam without a return counts as free."""
+LEAP, LEAP_TURN = 0.3, 0.1  # m, rad: a correction that moves the vehicle by more is told
 
 
-class MappingParams(Params, frozen=True):
+class MappingParams(PlacingParams, frozen=True):
+    method: str = "graph"
     resolution: Annotated[float, Meta(ge=0.02, le=0.2)] = 0.05  # m
-    insert_distance: Positive = 0.1  # m driven between scans that go into the map
-    insert_turn: Positive = 0.1  # rad turned, the same
     map_period: Positive = 1.0  # s between publications of the map
-    correction_speed: Positive = 0.1  # m/s, how fast the published correction follows the matched one
-    correction_turn: Positive = 0.1  # rad/s
+    session_period: Positive = 10.0  # s between publications of the session
 
 
-class MappingService(Service):
-    """One map per vehicle, begun at the mission's start pose; ``correction`` is ``map_from_odom`` without jumps."""
+@runtime_checkable
+class Resumable(SlamMethod, Protocol):
+    """A method whose work another instance can go on with."""
+
+    def session(self) -> Session:
+        """All of it."""
+
+    def resume(self, session: Session, map_from_base: Pose2) -> None:
+        """Before the first reading; map_from_base: where the vehicle is now."""
+
+
+class MappingService(PlacingService):
+    """One map per vehicle, begun at the mission's start pose; ``correction`` is ``map_from_odom`` without jumps, ``fix`` is raw."""
 
     name = "mapping"
-    hz = 10.0
+    purpose = "mapped"
     inputs = {"scan": topics.SCAN, "frames": frames()}
-    outputs = {"correction": topics.TF_MAP, "placing": topics.TF_WORLD, "map": topics.MAP, "events": topics.EVENTS.by("mapping")}
-    recalls = {"map": topics.MAP, "correction": topics.TF_MAP}
+    outputs = {
+        "correction": topics.TF_MAP,
+        "placing": topics.TF_WORLD,
+        "map": topics.MAP,
+        "fix": topics.MAP_FIX,
+        "session": topics.MAP_SESSION,
+        "events": topics.EVENTS.by("mapping"),
+    }
+    recalls = {"session": topics.MAP_SESSION, "correction": topics.TF_MAP}
     params: MappingParams
-    fixed_params = frozenset({"resolution"})
+    fixed_params = frozenset({"resolution", "method"})
 
-    def __init__(self, vehicle: str, lidar: Lidar, world_from_map: Pose2, params: MappingParams) -> None:
+    def __init__(self, vehicle: str, lidar: Lidar, world_from_map: Pose2, params: MappingParams, method: SlamMethod) -> None:
         self.params = params
-        self._vehicle = vehicle
-        self._lidar = lidar
-        self._world_from_map = world_from_map
-        self._mapper = Mapper(params.resolution, params.insert_distance, params.insert_turn)
-        self._odom_from_base: Pose2 = IDENTITY
-        self._published: Pose2 = IDENTITY
-        self._scan_time = -1.0
-        self._placeless_since: float | None = None
-        self._told = False
-        self._map_time = -np.inf
-        self._changed = False
+        super().__init__(vehicle, lidar, world_from_map)
+        self._method = method
+        self._map = TileMap(params.resolution)
+        self._map_from_first = IDENTITY
+        self._begun_elsewhere = False
+        self._left: Session | None = None
         self._placed = False
+        self._map_time = self._session_time = -np.inf
+        self._keyframes = 0
 
     def step(self, t: float, scan: LaserScan, frames: FrameBuffer) -> Outputs:
-        self._mapper.insert_distance, self._mapper.insert_turn = self.params.insert_distance, self.params.insert_turn
+        outputs: dict[str, FrameTransform | Grid | MapFix | MapSession | list[Event]] = {}
         try:
             self._odom_from_base = planar(frames.lookup(self._frame("odom"), self._frame("base_footprint")))
-            self._look(scan, frames)
+            if (reading := self._reading(scan, frames)) is not None:
+                outputs |= self._look(t, reading)
             self._placeless_since = None
         except FrameError as error:
             return {"events": self._wait(t, str(error))}
-        outputs: dict[str, FrameTransform | Grid] = {"correction": self._correction(t)}
+        outputs["correction"] = self._correction(t)
         if not self._placed:
             outputs["placing"] = self._transform(t, "world", "map", self._world_from_map)
             self._placed = True
-        if self._changed and t - self._map_time >= self.params.map_period - 1e-9:
-            outputs["map"] = self._map(t)
-            self._changed, self._map_time = False, t
-        return outputs
+        if t - self._map_time >= self.params.map_period - 1e-9 and self._map.follow(self._keyframes_in_map()):
+            outputs["map"] = self._drawn(t)
+            self._map_time = t
+        return outputs | self._session(t)
 
-    def _look(self, scan: LaserScan, frames: FrameBuffer) -> None:
-        """Takes in a new scan from where the lidar has been when it was taken. Raises FrameError."""
-        taken_at = seconds(scan.timestamp)
-        if taken_at <= self._scan_time:
+    def recall(self, session: MapSession | None = None, correction: FrameTransform | None = None) -> None:
+        """Goes on where the vehicle has been, with the session published last if the method can; else a new map grows there."""
+        if correction is None:
             return
-        odom_from_base = planar(frames.lookup(self._frame("odom"), self._frame("base_footprint"), taken_at))
-        base_from_lidar = frames.lookup(self._frame("base_footprint"), scan.frame_id)
-        self._scan_time = taken_at
-        self._changed |= self._mapper.add(odom_from_base, self._in_base(base_from_lidar, scan))
-
-    def _wait(self, t: float, reason: str) -> list[Event]:
-        """A scan may be ahead of the frames for a moment; when it lasts, a person has to know why there is no map."""
-        if self._placeless_since is None:
-            self._placeless_since = t
-        if self._told or t - self._placeless_since < PATIENCE:
-            return []
-        self._told = True
-        return [Event(timestamp=stamp(t), severity=Event.WARNING, text="scans cannot be mapped", cause=reason, source="mapping")]
-
-    def _frame(self, name: str) -> str:
-        return f"{self._vehicle}/{name}"
-
-    def recall(self, map: Grid | None = None, correction: FrameTransform | None = None) -> None:
-        """Goes on with the last map published; the next scan finds its place in it."""
-        if map is None or correction is None or map.cell_size.x != self.params.resolution:
-            return
-        self._mapper.occupancy.restore(occupancy_cells(map), np.array((map.pose.position.x, map.pose.position.y)))
         shift = correction.translation
-        self._published = self._mapper.map_from_odom = Pose2(shift.x, shift.y, yaw_of(correction.rotation))
+        self._published = self._map_from_odom = Pose2(shift.x, shift.y, yaw_of(correction.rotation))
+        self._begun_elsewhere = True
+        if session is not None and isinstance(self._method, Resumable):
+            with suppress(BadInput):
+                self._left = Session.decoded(session.data, "on the bus")
 
-    def _in_base(self, base_from_lidar: Transform, scan: LaserScan) -> Scan:
-        """A range beyond the lidar's own is no return (REP-117): the map shall not grow to where nobody can see."""
-        ranges, rays = scan_rays(scan)
-        hit = (ranges > 0.0) & (ranges <= self._lidar.range_max)
-        hits = from_above(base_from_lidar, rays[hit] * ranges[hit, None])
-        open_ends = from_above(base_from_lidar, rays[~hit] * (NO_RETURN_REACH * self._lidar.range_max))
-        x, y, _ = base_from_lidar.translation
-        return Scan(hits, open_ends, (float(x), float(y)))
+    def _look(self, t: float, reading: Reading) -> dict[str, MapFix | list[Event]]:
+        guess = compose(self._map_from_odom, reading.odom_from_base)
+        if self._begun_elsewhere:
+            self._begin(guess)
+        estimate = self._method.add(reading)
+        map_from_base = compose(self._map_from_first, estimate.map_from_base)
+        self._map_from_odom = compose(map_from_base, inverse(reading.odom_from_base))
+        moved = compose(inverse(guess), map_from_base)
+        distance = float(np.hypot(moved[0], moved[1]))
+        turn = turned(self._map_from_first.yaw)
+        fix = fix_message(reading.t, map_from_base, turn @ estimate.covariance @ turn.T, estimate.quality)
+        if distance <= LEAP and abs(moved[2]) <= LEAP_TURN:
+            return {"fix": fix}
+        cause = f"a place seen again moved the vehicle by {distance:.2f} m and {np.degrees(moved[2]):.1f} deg"
+        event = Event(timestamp=stamp(t), severity=Event.INFO, text="map corrected", cause=cause, source="mapping")
+        return {"fix": fix, "events": [event]}
 
-    def _correction(self, t: float) -> FrameTransform:
-        """Limited at the vehicle, not at the frames' origins, which may lie far away."""
-        period = 1.0 / self.hz
-        now = compose(self._published, self._odom_from_base)
-        wanted = compose(self._mapper.map_from_odom, self._odom_from_base)
-        limited = toward(now, wanted, self.params.correction_speed * period, self.params.correction_turn * period)
-        self._published = compose(limited, inverse(self._odom_from_base))
-        return self._transform(t, "map", "odom", self._published)
+    def _begin(self, map_from_base: Pose2) -> None:
+        """After a restart, with the first reading."""
+        self._begun_elsewhere = False
+        if self._left is not None and isinstance(self._method, Resumable):
+            self._method.resume(self._left, map_from_base)
+            self._left = None
+        else:
+            self._map_from_first = map_from_base
 
-    def _transform(self, t: float, parent: str, child: str, parent_from_child: Pose2) -> FrameTransform:
-        x, y, heading = parent_from_child
-        return FrameTransform(
-            timestamp=stamp(t),
-            parent_frame_id=parent if parent == "world" else f"{self._vehicle}/{parent}",
-            child_frame_id=f"{self._vehicle}/{child}",
-            translation=Vector3(x=x, y=y),
-            rotation=quaternion(from_euler(0.0, 0.0, heading)),
-        )
+    def _keyframes_in_map(self) -> Iterator[Keyframe]:
+        for keyframe in self._method.keyframes():
+            yield Keyframe(compose(self._map_from_first, keyframe.map_from_base), keyframe.reading)
 
-    def _map(self, t: float) -> Grid:
-        occupancy = self._mapper.occupancy
-        x, y = occupancy.origin
-        return occupancy_grid(occupancy.cells(), occupancy.resolution, float(x), float(y), f"{self._vehicle}/map", t)
+    def _session(self, t: float) -> dict[str, MapSession]:
+        """Now and then, when there is a keyframe more."""
+        if t - self._session_time < self.params.session_period - 1e-9 or not isinstance(self._method, Resumable):
+            return {}
+        session = self._method.session()
+        if len(session.keyframes) == self._keyframes:
+            return {}
+        self._session_time, self._keyframes = t, len(session.keyframes)
+        return {"session": MapSession(timestamp=stamp(t), data=session.encoded("on the bus"))}
+
+    def _drawn(self, t: float) -> Grid:
+        cells, (x, y) = self._map.cells()
+        return occupancy_grid(cells, self._map.resolution, float(x), float(y), f"{self._vehicle}/map", t)

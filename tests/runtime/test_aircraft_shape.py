@@ -19,7 +19,8 @@ from uvf.runtime.params import BadInput
 from uvf.runtime.site import ROOT
 from uvf.runtime.vehicle_file import Sensors, VehicleFile, load_vehicle
 
-OWN = [path.parent.name for path in sorted((ROOT / "vehicles").glob("*/vehicle.yaml")) if "urdf" not in path.read_text()]
+NAMES = sorted(path.parent.name for path in (ROOT / "vehicles").glob("*/vehicle.yaml"))
+OWN = [name for name in NAMES if load_vehicle(ROOT / "vehicles", name).kind == "fixed_wing"]
 SHIPPED = Path(jsbsim.get_default_root_dir()) / "aircraft"
 
 

@@ -212,6 +212,11 @@ def test_a_vehicle_that_cannot_be_is_refused_with_file_line_and_mend(root, case)
 AIRCRAFT = {
     "a motor for more than a full battery": ("air.battery.rated", 60.0, "battery: rated: 60 V, but full it has 50.4 V"),
     "a battery upside down": ("air.battery.empty", 60.0, "empty at 60 V, full at 50.4 V"),
+    "a receiver aside": (
+        "sensors.gnss",
+        {"hz": 5.0, "mount": {"xyz": [1.0, 0.0, 0.0]}},
+        "gnss: mount: an aircraft's receiver is at its centre of gravity; leave it out",
+    ),
     "wheels with encoders": ("sensors.encoders", {"hz": 10.0, "ticks_per_turn": 100}, "encoders: an aircraft has no encoders"),
     "bumpers": ("sensors.bumpers", [{"name": "a", "angle_min": 0.0, "angle_max": 1.0}], "bumpers: an aircraft has no bumpers"),
     "a sensor on a link": ("sensors.imu.mount", {"link": "nose"}, "link: an aircraft's model has no links; give xyz and rpy"),

@@ -42,3 +42,16 @@ def test_what_never_ends_is_ended(monkeypatch):
     monkeypatch.setattr(guarding, "PATIENCE", 1)
     with pytest.raises(Died, match="not done within 1 s"):
         guarded(lambda: ctypes.CDLL(None).pause())
+
+
+def test_a_copy_that_is_stuck_is_made_again(monkeypatch, tmp_path):
+    monkeypatch.setattr(guarding, "IDLE", 0.2)
+    first = tmp_path / "first"
+
+    def work():
+        if not first.exists():
+            first.touch()
+            ctypes.CDLL(None).pause()
+        return "done"
+
+    assert guarded(work) == "done"

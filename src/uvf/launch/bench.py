@@ -8,14 +8,14 @@ from pathlib import Path
 from typing import Any
 
 from rich.console import Console
-from rich.table import Table
+from rich.table import Column, Table
 
 from uvf.runtime.params import BadInput, nearest
 from uvf.runtime.site import ROOT
 
 Figures = dict[str, dict[str, float]]
 Case = Callable[[Path | None], Figures]
-WIDTH = 160  # columns, of a table that goes into a file
+WIDTH = 200  # columns, of a table that goes into a file
 RESULTS = ROOT / "benchmarks" / "results.md"
 
 
@@ -45,14 +45,24 @@ def _module(group: str) -> Any:
 
 
 def _run(group: str, wanted: Sequence[str], data: Path | None) -> Figures:
-    cases: dict[str, Case] = _module(group).CASES
+    """A name stands for the case of that name, or for all whose names begin with it and a colon."""
+    cases = cases_of(_module(group), data)
+    chosen: dict[str, Case] = {}
     for name in wanted:
-        if name not in cases:
+        found = {case: cases[case] for case in cases if case == name or case.startswith(f"{name}:")}
+        if not found:
             raise BadInput(f"no case '{name}' in {group}; {nearest(name, cases)}")
+        chosen |= found
     rows: Figures = {}
-    for name in wanted or cases:
-        rows |= cases[name](data)
+    for case in (chosen or cases).values():
+        rows |= case(data)
     return rows
+
+
+def cases_of(module: Any, data: Path | None) -> dict[str, Case]:
+    """What a group measures; CASES may be a function of the data folder, where the cases depend on it. Raises BadInput."""
+    found: dict[str, Case] = module.CASES(data) if callable(module.CASES) else module.CASES
+    return found
 
 
 def _columns(figures: Figures) -> list[str]:
@@ -61,7 +71,7 @@ def _columns(figures: Figures) -> list[str]:
 
 def _table(group: str, figures: Figures) -> Table:
     columns = _columns(figures)
-    table = Table(group, *columns)
+    table = Table(Column(group, no_wrap=True), *columns)
     for name, row in figures.items():
         table.add_row(name, *(f"{row[c]:.4g}" if c in row else "" for c in columns))
     return table

@@ -8,8 +8,10 @@ from typing import Annotated
 
 import typer
 
+from uvf.launch.map_cli import map_app
 from uvf.launch.refusal import bad_input_is_one_line
 from uvf.launch.sim_cli import sim_app
+from uvf.launch.slam_cli import slam
 from uvf.launch.vehicle_cli import vehicle_app
 from uvf.launch.world_cli import world_app
 
@@ -20,9 +22,11 @@ log_app = typer.Typer(no_args_is_help=True, help="Look at recorded runs.")
 app.add_typer(topic_app, name="topic")
 app.add_typer(node_app, name="node")
 app.add_typer(log_app, name="log")
+app.add_typer(map_app, name="map")
 app.add_typer(sim_app, name="sim")
 app.add_typer(vehicle_app, name="vehicle")
 app.add_typer(world_app, name="world")
+app.command()(slam)
 
 DEMO = "demo"
 MissionArgument = Annotated[str, typer.Argument(help="Name in missions/ or path of a mission file.")]

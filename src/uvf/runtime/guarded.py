@@ -2,10 +2,13 @@
 
 import os
 import pickle
+import select
 import signal
 import tempfile
 from collections.abc import Callable
 from typing import IO, TypeVar
+
+import psutil
 
 from uvf.runtime import quiet
 from uvf.runtime.params import BadInput
@@ -13,6 +16,8 @@ from uvf.runtime.params import BadInput
 T = TypeVar("T")
 WORDS = 200  # characters kept of the last thing said
 PATIENCE = 600  # s, after which the copy is ended
+IDLE = 20.0  # s without work after which it has taken a lock along from a thread that is not in the copy: another one is made
+COPIES = 2
 
 
 class Died(Exception):
@@ -21,6 +26,20 @@ class Died(Exception):
 
 def guarded(work: Callable[[], T]) -> T:
     """What ``work`` returns, which must be picklable; or the BadInput that it raises. Raises Died, too."""
+    for _ in range(COPIES):
+        try:
+            return _once(work)
+        except _Stuck:
+            continue
+    raise Died(f"does nothing for {IDLE} s")
+
+
+class _Stuck(Exception):
+    """The copy does nothing."""
+
+
+def _once(work: Callable[[], T]) -> T:
+    """Raises _Stuck."""
     with tempfile.NamedTemporaryFile() as said:
         reader, writer = os.pipe()
         child = os.fork()
@@ -29,6 +48,7 @@ def guarded(work: Callable[[], T]) -> T:
             _answer(work, writer, said.name)
         os.close(writer)
         with os.fdopen(reader, "rb") as pipe:
+            _wait(child, reader)
             answer = pipe.read()
         _, status = os.waitpid(child, 0)
         if not answer:
@@ -38,6 +58,18 @@ def guarded(work: Callable[[], T]) -> T:
         raise result
     value: T = result
     return value
+
+
+def _wait(child: int, reader: int) -> None:
+    """Until there is something to be read. Raises _Stuck, with the copy ended, when it has not worked for so long."""
+    worked = -1.0
+    while not select.select((reader,), (), (), IDLE)[0]:
+        now = sum(psutil.Process(child).cpu_times()[:2])
+        if now == worked:
+            os.kill(child, signal.SIGKILL)
+            os.waitpid(child, 0)
+            raise _Stuck
+        worked = now
 
 
 def _answer(work: Callable[[], T], writer: int, said: str) -> None:

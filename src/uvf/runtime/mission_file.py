@@ -62,6 +62,24 @@ class Job(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     follow: Follow | None = None
 
 
+class Maps(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Maps of map_server, world frame: files (from the mission file's folder on), or names of saved ones. An empty one serves too.
+
+    speed: a mask whose values v, 1..100, allow speed_base + speed_multiplier * v.
+    known: may be a session of a mapping (.npz), too. known_at: x, y [m], yaw [rad] of the frame of its file in the world.
+    localize: the vehicle draws no map, but is localized on ``known``, or on what comes on map/known: from its start pose, or anywhere.
+    """
+
+    known: str | None = None
+    known_at: tuple[Metres, Metres, Metres] = (0.0, 0.0, 0.0)
+    localize: Literal["start", "anywhere"] | None = None
+    keepout: str | None = None
+    speed: str | None = None
+    speed_unit: Literal["percent", "m/s"] = "percent"
+    speed_base: float = 100.0
+    speed_multiplier: float = -1.0
+
+
 class Vehicle(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     model: FolderName
     start: Start
@@ -69,6 +87,7 @@ class Vehicle(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     job: Job = Job()
     roles: dict[str, str] = {}
     fence: FenceFile = FenceFile()
+    maps: Maps | None = None  # of a ground vehicle: it serves these, and its own
 
 
 class Criterion(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

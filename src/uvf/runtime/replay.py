@@ -85,7 +85,7 @@ def into_service(log: Path, host: Host, tolerance: float = TOLERANCE) -> Iterato
     """
     owners = (host.vehicle,) if host.vehicle else host.writes_for or (SYSTEM,)
     served = [request.at(owner) for request in host.service.requests.values() for owner in owners]
-    writes = [topic.at(owner) for topic in host.service.outputs.values() for owner in owners]
+    writes = [topic.at(owner) for topic in host.service.outputs.values() for owner in owners if topic.logged]
     writes += [f"{key}/{half}" for key in served for half in ("request", "reply")]
     samples = list(read_log(log))
     own = [s for s in samples if _any(writes, s.key)]

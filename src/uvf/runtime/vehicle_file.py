@@ -126,7 +126,7 @@ class Encoders(Delivery, frozen=True, forbid_unknown_fields=True):
 
 
 class GnssSensor(Delivery, frozen=True, forbid_unknown_fields=True):
-    """A satellite receiver at base_link. ``preset``: book (drifts as in Beard & McLain, chapter 7) or good (does not)."""
+    """A satellite receiver. ``preset``: book (drifts as in Beard & McLain, chapter 7) or good (does not)."""
 
     hz: SensorRate
     horizontal_noise: NotNegative = 0.0  # m, 1 sigma per axis
@@ -136,6 +136,7 @@ class GnssSensor(Delivery, frozen=True, forbid_unknown_fields=True):
     vertical_drift: NotNegative = 0.0  # m
     drift_time: Positive = 1100.0  # s
     preset: str = ""
+    mount: Mount = Mount()  # of a ground vehicle; an aircraft's is at base_link
 
     @property
     def position(self) -> Errors:
@@ -350,6 +351,8 @@ def _check_sensors_of_aircraft(sensors: Sensors, place: Place) -> None:
     for kind in ("encoders", "bumpers"):
         if getattr(sensors, kind):
             raise BadInput(f"{place.at(kind)}: an aircraft has no {kind}; leave them out")
+    if sensors.gnss is not None and sensors.gnss.mount != Mount():
+        raise BadInput(f"{place.at('gnss', 'mount')}: an aircraft's receiver is at its centre of gravity; leave it out")
     for kind in ("imu", "lidar", "camera", "chase", "gimbal"):
         sensor = getattr(sensors, kind)
         if sensor is not None and sensor.mount.link is not None:

@@ -148,7 +148,7 @@ def test_slam_that_is_started_again_finds_the_vehicle_in_its_old_map():
     """Both slam services die on the way and are back two seconds later; the vehicle stands meanwhile."""
     house = House(load_site(ROOT / "missions" / "demo.yaml"))
     newest = {}
-    for topic in (topics.ODOMETRY, topics.TF_MAP, topics.MAP):
+    for topic in (topics.ODOMETRY, topics.TF_MAP, topics.MAP_SESSION):
         house.bus.subscribe(topic.at(VEHICLE), topic.qos, lambda sample: newest.update({sample.key: sample.payload}))
     house.run.run(12.0)
     before = house.places()[-1]

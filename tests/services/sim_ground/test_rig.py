@@ -101,6 +101,15 @@ def test_a_rover_knows_where_on_the_globe_it_is(stand):
     assert enu == pytest.approx(PLACE, abs=1e-6)
 
 
+def test_a_receiver_aside_of_the_middle_goes_round_it(stand):
+    tangent = LocalTangent.from_degrees(40.77, 14.79, 300.0)
+    plain, aside = (
+        stand(lambda s, m=mount: {"gnss": GnssSensor(5.0, mount=m)})["gnss"][0][1] for mount in (Mount(), Mount((-0.3, 0.2, 0.5)))
+    )
+    places = [tangent.enu(fix.latitude, fix.longitude, fix.altitude) for fix in (plain, aside)]
+    assert places[1] - places[0] == pytest.approx((-0.3, 0.2, 0.5), abs=1e-6)
+
+
 def test_the_bumpers_that_feel_a_touch_are_named(stand):
     sectors = [Bumper("left", 0.0, 1.6), Bumper("right", -1.6, 0.0), Bumper("rear", 1.6, 4.7)]
     at = {0.07: Touch("sofa", 0.5), 0.12: Touch("door", -3.0), 0.13: Touch("door", -0.7)}

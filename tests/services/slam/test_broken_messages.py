@@ -7,10 +7,10 @@ import pytest
 
 from schemas.convert import occupancy_cells, planar_pose, stamp
 from schemas.messages import FrameTransform, Imu, KeyValuePair, LaserScan, Odometry, Vector3, WheelTicks
-from services.slam.mapping_service import MappingParams, MappingService
-from services.slam.odometry_service import OdometryParams, OdometryService
+from services.slam.odometry.params import OdometryParams
+from services.slam.odometry.service import OdometryService
 from tests.services.slam.room import ANGLES
-from tests.services.slam.test_services import BURGER, LIDAR, START, drive, frames_with
+from tests.services.slam.test_services import BURGER, LIDAR, START, drive, frames_with, mapping
 
 
 def scan(t, ranges):
@@ -19,7 +19,7 @@ def scan(t, ranges):
 
 def mapped(*scans):
     """The last map of a mapper that stands still and is handed these scans, and the mapper."""
-    service = MappingService("v", LIDAR, START, MappingParams(insert_distance=1e-9, map_period=0.1))
+    service = mapping(map_period=0.1)
     grid = None
     for k, ranges in enumerate(scans, 1):
         t = 0.2 * k

@@ -1,0 +1,199 @@
+"""Where a vehicle is on a known map: tracking, starting from nothing, and noticing that it has been carried away."""
+
+from collections.abc import Iterator
+from enum import Enum
+from math import hypot
+
+import numpy as np
+from numpy.typing import NDArray
+
+from services.slam.localization.beams import beams_of
+from services.slam.localization.fit import UsualFit
+from services.slam.localization.groups import near
+from services.slam.localization.known_map import KnownMap
+from services.slam.localization.motion import OdometryNoise
+from services.slam.localization.params import FilterParams
+from services.slam.localization.particle_filter import Hypothesis, ParticleFilter, Sweep
+from services.slam.localization.recent import Moved, RecentSweeps
+from services.slam.localization.whole_map import Lately, whole_map
+from services.slam.matching.cloud import cloud_of
+from services.slam.method import Estimate, Keyframe
+from services.slam.reading import Reading
+from uvf.maths.planar import IDENTITY, Pose2, compose, inverse
+from uvf.maths.rotations import wrap
+
+Floats = NDArray[np.float64]
+
+START = np.diag((0.1, 0.1, 0.05)) ** 2  # covariance of a start pose that is given without one
+REMEMBERED = np.diag((0.2, 0.2, 0.06)) ** 2  # of the pose by odometry, while it is not known whether it still holds
+FOUND = np.diag((0.1, 0.1, 0.04)) ** 2  # of a place found in the whole map
+LEAP, LEAP_TURN = 2.0, 2.0  # m, rad between two sweeps that no odometry has driven
+STOOD = 1e-4  # m, rad
+NEWS_WAY, NEWS_TURN = 0.25, 0.35
+"""m, rad of motion after which a sweep counts in full: what is seen from the same place tells nothing new."""
+MATCHED = 0.25  # part of the odometry's noise that is left when sweeps have been matched to those before
+SEARCH_WAY = 1.0  # m between searches in the whole map
+MOST_PLACES = 8
+SURE, SURE_WAY = 0.95, 1.0
+"""Weight that a hypothesis needs for so many metres, so that it is believed."""
+FITS = 0.7  # part of what is usual that such a one has to fit
+BROKEN, BROKEN_WAY = 0.6, 2.0
+"""Part of the usual fit to the sweeps before below which the view has changed at once, and m for which that may have been a kidnapping."""
+FALLEN_WAY = 4.0
+"""m that sweeps may fit badly where nothing has broken: a room that the map does not know."""
+HALF_SURE = 0.5
+PUT_IN = 0.4  # weight of what a search has found while it is not known where the vehicle is
+
+
+class State(Enum):
+    TRACKING = "tracking"
+    SEARCHING = "searching"
+    LOST = "lost"
+
+
+class Localizer:
+    """A ``SlamMethod`` on a map that is given: poses are those of the known map's frame."""
+
+    def __init__(self, known: KnownMap, params: FilterParams, seed: int, start: Pose2 | None = None, covariance: Floats = START) -> None:
+        """start: map_from_base at the first reading; None where nothing is known."""
+        self.known, self.params = known, params
+        self.filter = ParticleFilter(known, (params.least_particles, params.most_particles), np.random.default_rng(seed))
+        self.hypotheses: list[Hypothesis] = []
+        self.fit = UsualFit()
+        self._recent, self._lately = RecentSweeps(), Lately()
+        self._poses: list[Pose2] = []
+        self._odometry: Pose2 | None = None
+        self.pose = start or IDENTITY
+        self.relocalize() if start is None else self.set_pose(start, covariance)
+
+    def set_pose(self, pose: Pose2, covariance: Floats = START) -> None:
+        """The vehicle is at ``pose`` (map_from_base), with a covariance (3, 3) of (x, y, yaw)."""
+        self.state = State.TRACKING
+        self.filter.begin_at(pose, covariance)
+        self._begin(pose)
+
+    def relocalize(self) -> None:
+        """Nothing is known of where the vehicle is."""
+        self.state = State.SEARCHING
+        self.filter.begin_anywhere()
+        self._begin(self.pose)
+
+    def _begin(self, pose: Pose2) -> None:
+        self.pose = pose
+        self._lately.forget()
+        self._searched_at = -np.inf
+        self._sure_since: float | None = None
+        self.is_fresh = True
+        self._broken_at, self._fitted_at = -np.inf, self._lately.way
+        self.hypotheses = []
+        self.fit.forget_newest()
+
+    def add(self, reading: Reading) -> Estimate:
+        told = self._step(reading.odom_from_base)
+        stands = hypot(told.x, told.y) < STOOD and abs(told.yaw) < STOOD
+        cloud = cloud_of(reading)
+        moved = Moved(IDENTITY, True, 1.0) if stands and not self.is_fresh else self._recent.add(cloud, told)
+        news = 1.0 if self.is_fresh else min(1.0, hypot(told.x, told.y) / NEWS_WAY + abs(told.yaw) / NEWS_TURN)
+        self._lately.add(self._recent.pose, cloud.points)
+        if news > 0.0:
+            sweep = Sweep(cloud, beams_of(reading, self.params.beams), news)
+            self.is_fresh = False
+            if self.state is not State.TRACKING and self._lately.way - self._searched_at >= SEARCH_WAY:
+                self._search()
+            self.hypotheses = self.filter.update(moved.step, self._noise(moved), sweep)
+            self._decide(moved, news)
+        self._poses.append(self.pose)
+        return Estimate(self.pose, self._covariance(), self.quality)
+
+    def _noise(self, moved: Moved) -> OdometryNoise:
+        p = self.params
+        noise = OdometryNoise(p.turn_by_turn, p.turn_by_way, p.way_by_way, p.way_by_turn)
+        return noise.times(MATCHED) if moved.matched else noise
+
+    def trajectory(self) -> Floats:
+        return np.array(self._poses).reshape(-1, 3)
+
+    def keyframes(self) -> Iterator[Keyframe]:
+        """The map is given."""
+        return iter(())
+
+    def finish(self) -> None:
+        """Nothing has been put off."""
+
+    @property
+    def quality(self) -> float:
+        """0..1: how sure it is that the vehicle is there, and how well what it sees fits."""
+        own = self._own
+        if own is None:
+            return 0.0
+        sure = own.weight * (1.0 if self.state is State.TRACKING else HALF_SURE)
+        return float(np.clip(sure * self.fit.share, 0.0, 1.0))
+
+    @property
+    def _own(self) -> Hypothesis | None:
+        """The hypothesis that is told: the one that goes on from the last pose; while it is looked for from nothing, the best one."""
+        if not self.hypotheses or self.state is State.SEARCHING:
+            return next(iter(self.hypotheses), None)
+        return next((h for h in self.hypotheses if near(h.pose, self.pose)), None)
+
+    def _covariance(self) -> Floats:
+        own = self._own
+        return own.covariance if own else self.filter.spread()
+
+    def _step(self, odometry: Pose2) -> Pose2:
+        """Since the last reading; a leap that no vehicle drives counts as none: where it has come to will be seen."""
+        last, self._odometry = self._odometry, odometry
+        step = compose(inverse(last), odometry) if last is not None else IDENTITY
+        return IDENTITY if hypot(step.x, step.y) > LEAP or abs(wrap(step.yaw)) > LEAP_TURN else step
+
+    def _decide(self, moved: Moved, news: float) -> None:
+        self.pose = compose(self.pose, moved.step)
+        own = self._own
+        if own is None and self.state is State.TRACKING:
+            own = self.hypotheses[0]
+        if own is not None:
+            if own.matched or not near(own.pose, self.pose):
+                self.pose = own.pose
+            self.fit.add(own.fit, news, self.state is State.TRACKING)
+        if moved.fits < BROKEN:
+            self._broken_at = self._lately.way
+        if self.state is State.TRACKING:
+            self._notice()
+            return
+        best = self.hypotheses[0]
+        if best.weight < SURE or not self.fit.is_usual(best.fit, FITS):
+            self._sure_since = None
+        elif self._sure_since is None:
+            self._sure_since = self._lately.way
+        elif self._lately.way - self._sure_since >= SURE_WAY and not self._has_rival(best):
+            self.state = State.TRACKING
+            self.pose = best.pose
+            self.fit.recover(best.fit)
+            self._fitted_at = self._lately.way
+
+    def _notice(self) -> None:
+        """A fit that has fallen together with the view of a moment ago, or for long, means that the vehicle is elsewhere."""
+        way = self._lately.way
+        if not self.fit.has_fallen:
+            self._fitted_at = way
+        elif way - self._broken_at < BROKEN_WAY or way - self._fitted_at > FALLEN_WAY:
+            self.state = State.LOST
+            self._lately.forget()
+            self._searched_at, self._sure_since = -np.inf, None
+
+    def _search(self) -> None:
+        """Puts in the places of the whole map where what was seen lately fits and where no hypothesis is yet, and the one of before."""
+        self._searched_at = self._lately.way
+        found = [f.pose for f in whole_map(self.known, self._lately.points(), MOST_PLACES)]
+        self.filter.put_in([p for p in found if not any(near(p, h.pose) for h in self.hypotheses)], FOUND, PUT_IN)
+        if self.state is State.LOST and self._own is None:
+            self.filter.put_in([self.pose], REMEMBERED, PUT_IN)
+
+    def _has_rival(self, own: Hypothesis) -> bool:
+        """Whether what was seen lately fits somewhere else better; that place then becomes a hypothesis, too."""
+        found = whole_map(self.known, self._lately.points(), 2)
+        if not found or near(found[0].pose, own.pose, 1.0):
+            return False
+        self._sure_since = None
+        self.filter.put_in([found[0].pose], FOUND, PUT_IN)
+        return True

@@ -1,0 +1,155 @@
+"""Monte Carlo localization with as many particles as are needed, drawn around matched sweeps, in hypotheses of their own.
+
+Particles that stand for the same place are a group; each group keeps its weight until sweeps tell against it, however few
+particles it has: hypotheses that fit equally well are not lost by chance (Milstein et al. 2002).
+"""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from services.slam.localization.beams import Beams, field_of, scores
+from services.slam.localization.groups import LEAST_WEIGHT, Group, groups_of
+from services.slam.localization.kld import bins_of, enough
+from services.slam.localization.known_map import KnownMap
+from services.slam.localization.motion import OdometryNoise, sample_motion
+from services.slam.localization.proposals import Proposal, proposal
+from services.slam.matching.cloud import Cloud
+from uvf.maths.planar import IDENTITY, Pose2
+
+Floats = NDArray[np.float64]
+
+MOST_GROUPS = 12
+LEAST_PART = 0.04  # of the particles, for each group
+FIRST = 100  # particles drawn before they are counted
+IN_GROUP = 60  # particles of a hypothesis that is put in
+
+
+@dataclass(frozen=True)
+class Hypothesis:
+    """Where the vehicle may be. weight: 0..1 of all; fit: share of the sweep 0..1, -1 where the map does not know enough."""
+
+    pose: Pose2
+    covariance: Floats
+    weight: float
+    fit: float
+    matched: bool
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """What was measured: cloud for matching, beams for weighing, both in the base frame. news: 0..1, how far it tells something new."""
+
+    cloud: Cloud
+    beams: Beams
+    news: float
+
+
+class _Drawn(NamedTuple):
+    """poses: (n, 3); logs: (n,) of prediction over proposal; of: (n,) which proposal."""
+
+    poses: Floats
+    logs: Floats
+    of: NDArray[np.int64]
+
+
+class ParticleFilter:
+    """poses: (n, 3) map_from_base; weights: (n,), sum 1."""
+
+    def __init__(self, known: KnownMap, limits: tuple[int, int], rng: np.random.Generator) -> None:
+        """limits: fewest and most particles."""
+        self.known, self.limits = known, limits
+        self._rng = rng
+        self._field = field_of(known)
+        self._places = known.places
+        self.poses, self.weights = np.zeros((1, 3)), np.ones(1)
+
+    def begin_at(self, pose: Pose2, covariance: Floats) -> None:
+        """All particles around one pose."""
+        self.poses = self._around(pose, covariance, self.limits[0])
+        self.weights = np.full(self.limits[0], 1.0 / self.limits[0])
+
+    def begin_anywhere(self) -> None:
+        """As many particles as there may be, where a vehicle can stand."""
+        n = self.limits[1]
+        places = self._places[self._rng.integers(len(self._places), size=n)]
+        jitter = (self._rng.random((n, 2)) - 0.5) * self.known.grid.resolution
+        self.poses = np.column_stack((places + jitter, self._rng.uniform(-np.pi, np.pi, n)))
+        self.weights = np.full(n, 1.0 / n)
+
+    def put_in(self, poses: list[Pose2], covariance: Floats, part: float) -> None:
+        """New hypotheses that together get ``part`` of the weight."""
+        if not poses:
+            return
+        fresh = [self._around(pose, covariance, IN_GROUP) for pose in poses]
+        n = len(poses) * IN_GROUP
+        self.poses = np.concatenate((self.poses, *fresh))
+        self.weights = np.concatenate((self.weights * (1.0 - part), np.full(n, part / n)))
+
+    def update(self, step: Pose2, noise: OdometryNoise, sweep: Sweep) -> list[Hypothesis]:
+        """One motion and one sweep; the hypotheses, the heaviest first."""
+        moved = sample_motion(self.poses, step, noise, self._rng)
+        groups, loose = groups_of(moved, self.weights, MOST_GROUPS)
+        proposals = [proposal(self.known, group, sweep.cloud) for group in groups]
+        rest = float(self.weights[loose].sum())
+        if rest > LEAST_WEIGHT:
+            proposals.append(Proposal(Group(loose, rest, IDENTITY, np.eye(3)), None, near=False))
+        drawn = self._drawn(proposals, moved)
+        totals = self._weigh(proposals, drawn, sweep)
+        return self._hypotheses(proposals[: len(groups)], totals, sweep.beams)
+
+    def _drawn(self, proposals: list[Proposal], moved: Floats) -> _Drawn:
+        """New particles around what has been matched, until there are enough for the bins they are in; the others go on."""
+        before = (moved, self.weights)
+        unmatched = [(k, p.keep(before, self._rng)) for k, p in enumerate(proposals) if p.match is None]
+        kept = [_Drawn(*drawn, np.full(len(drawn[0]), k)) for k, drawn in unmatched]
+        matched = [(k, p) for k, p in enumerate(proposals) if p.match is not None]
+        parts = np.maximum([p.group.weight for _, p in matched], LEAST_PART)
+        parts /= parts.sum()
+        found: list[_Drawn] = []
+        n, wanted = 0, min(FIRST, self.limits[0])
+        while matched and n < wanted:
+            for (k, p), part in zip(matched, parts, strict=True):
+                count = int(np.ceil((wanted - n) * part))
+                found.append(_Drawn(*p.draw(count, before, self._rng), np.full(count, k)))
+                n += count
+            wanted = int(np.clip(enough(bins_of(np.concatenate([d.poses for d in found]))), *self.limits))
+        return _Drawn(*(np.concatenate(column) for column in zip(*kept, *found, strict=True)))
+
+    def _weigh(self, proposals: list[Proposal], drawn: _Drawn, sweep: Sweep) -> Floats:
+        """Puts the new particles in force; the weight of each proposal's.
+
+        Groups that the sweep cannot be matched to keep their inner weights: it does not tell where in them the vehicle is.
+        """
+        logs, _ = scores(drawn.poses, sweep.beams, self._field, len(proposals) > 1)
+        logs *= sweep.news
+        top = float(logs.max())
+        weights, totals = np.empty(len(logs)), np.zeros(len(proposals))
+        for k, p in enumerate(proposals):
+            own = drawn.of == k
+            both = logs[own] + drawn.logs[own]
+            totals[k] = p.group.weight * np.exp(both - top).mean()
+            inner = drawn.logs[own] if p.match is None and p.near else both
+            inner = np.exp(inner - inner.max())
+            weights[own] = inner / inner.sum() * totals[k]
+        self.poses, self.weights = drawn.poses, weights / weights.sum()
+        shares: Floats = totals / totals.sum()
+        return shares
+
+    def _hypotheses(self, proposals: list[Proposal], totals: Floats, beams: Beams) -> list[Hypothesis]:
+        _, fits = scores(np.array([p.pose for p in proposals]), beams, self._field, True)
+        found = [
+            Hypothesis(p.pose, p.covariance, float(weight), float(fit), p.match is not None)
+            for p, weight, fit in zip(proposals, totals, fits, strict=False)
+        ]
+        return sorted(found, key=lambda h: -h.weight)
+
+    def spread(self) -> Floats:
+        """(3, 3) covariance of all particles."""
+        off = self.poses - self.weights @ self.poses
+        return (self.weights[:, None] * off).T @ off
+
+    def _around(self, pose: Pose2, covariance: Floats, n: int) -> Floats:
+        return self._rng.multivariate_normal(np.array(pose), covariance, n, method="cholesky")

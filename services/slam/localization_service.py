@@ -1,0 +1,167 @@
+"""Lidar scans, frames and a known map -> where the odometry frame lies in it."""
+
+from dataclasses import dataclass
+from math import isfinite
+
+import numpy as np
+
+from schemas import topics
+from schemas.convert import stamp, yaw_of
+from schemas.messages import Event, FrameTransform, Grid, LaserScan, MapFix, PlaceRequest, RelocalizeRequest, Reply
+from services.slam.localization.known_map import KnownMap, of_grid
+from services.slam.localization.localizer import Localizer, State
+from services.slam.localization.params import FilterParams
+from services.slam.placing_service import PlacingService, fix_message
+from services.slam.reading import Reading
+from uvf.maths.planar import IDENTITY, Pose2, compose, inverse
+from uvf.maths.transforms import planar
+from uvf.runtime.frames import FrameBuffer, FrameError
+from uvf.runtime.grid_message import as_map, as_message
+from uvf.runtime.params import BadInput
+from uvf.runtime.service import Outputs, frames, optional
+from uvf.runtime.vehicle_file import Lidar
+
+POSITION_SIGMA, YAW_SIGMA = 0.3, 0.2  # m, rad, of a pose that is set without
+
+
+@dataclass(frozen=True)
+class Beginning:
+    """known: the map, in the map frame; None: it comes on map/known. anywhere: nothing is known of where the vehicle is."""
+
+    known: KnownMap | None
+    anywhere: bool
+    seed: int
+
+
+class LocalizationService(PlacingService):
+    """In the place of mapping where a map is given; its outputs are those of mapping, the map is as it was given."""
+
+    name = "localization"
+    purpose = "placed in the map"
+    inputs = {"scan": topics.SCAN, "frames": frames(), "known": optional(topics.KNOWN_MAP)}
+    outputs = {
+        "correction": topics.TF_MAP,
+        "placing": topics.TF_WORLD,
+        "map": topics.MAP,
+        "fix": topics.MAP_FIX,
+        "events": topics.EVENTS.by("localization"),
+    }
+    requests = {"pose": topics.PLACE, "relocalize": topics.RELOCALIZE}
+    recalls = {"correction": topics.TF_MAP}
+    params: FilterParams
+    fixed_params = frozenset({"least_particles", "most_particles"})
+
+    def __init__(self, vehicle: str, lidar: Lidar, world_from_map: Pose2, params: FilterParams, beginning: Beginning) -> None:
+        super().__init__(vehicle, lidar, world_from_map)
+        self.params = params
+        self._beginning = beginning
+        self._localizer: Localizer | None = None
+        self._start: Pose2 | None = None if beginning.anywhere else IDENTITY
+        self._set_to: tuple[Pose2, float, float] | None = None
+        self._map_told = False
+        self._refused = ""
+
+    def step(
+        self,
+        t: float,
+        scan: LaserScan,
+        frames: FrameBuffer,
+        known: Grid | None,
+        pose: list[PlaceRequest],
+        relocalize: list[RelocalizeRequest],
+    ) -> Outputs:
+        events = self._take_map(t, known)
+        outputs: dict[str, FrameTransform | Grid | MapFix | list[Event] | list[Reply]] = {
+            "pose": [self._placed(request) for request in pose],
+            "relocalize": [self._looked_for() for _ in relocalize],
+        }
+        try:
+            self._odom_from_base = planar(frames.lookup(self._frame("odom"), self._frame("base_footprint")))
+            if self._localizer is not None and (reading := self._reading(scan, frames)) is not None:
+                outputs["fix"], told = self._look(t, self._localizer, reading)
+                events += told
+            self._placeless_since = None if self._localizer is not None else self._placeless_since
+        except FrameError as error:
+            return outputs | {"events": events + self._wait(t, str(error))}
+        if self._localizer is None:
+            return outputs | {"events": events + self._wait(t, "there is no map on map/known, and the mission gives none under 'maps:'")}
+        outputs["correction"] = self._correction(t)
+        if not self._map_told:
+            self._map_told = True
+            outputs["placing"] = self._transform(t, "world", "map", self._world_from_map)
+            outputs["map"] = as_message(self._localizer.known.grid, self._frame("map"), t)
+        return outputs | {"events": events}
+
+    def recall(self, correction: FrameTransform | None = None) -> None:
+        """Goes on where the vehicle was last believed to be."""
+        if correction is not None:
+            shift = correction.translation
+            self._published = self._map_from_odom = self._start = Pose2(shift.x, shift.y, yaw_of(correction.rotation))
+
+    def _take_map(self, t: float, known: Grid | None) -> list[Event]:
+        """The one of the mission, or the first on map/known that can be used; one that cannot is told of once."""
+        if self._localizer is not None:
+            return []
+        try:
+            given = self._beginning.known
+            if given is None and known is not None:
+                given = of_grid(as_map(known), inverse(self._world_from_map), "map/known")
+        except BadInput as error:
+            if str(error) == self._refused:
+                return []
+            self._refused = str(error)
+            return [self._event(t, Event.ERROR, "the map given is of no use", str(error))]
+        if given is not None:
+            self._localizer = Localizer(given, self.params, self._beginning.seed)
+        return []
+
+    def _look(self, t: float, localizer: Localizer, reading: Reading) -> tuple[MapFix, list[Event]]:
+        if self._start is not None:
+            localizer.set_pose(compose(self._start, reading.odom_from_base))
+            self._start = None
+        if self._set_to is not None:
+            pose, position, yaw = self._set_to
+            localizer.set_pose(pose, np.diag((position, position, yaw)) ** 2)
+            self._set_to = None
+        localizer.params = self.params
+        before, jumps = localizer.state, localizer.is_fresh
+        estimate = localizer.add(reading)
+        self._map_from_odom = compose(estimate.map_from_base, inverse(reading.odom_from_base))
+        if jumps or (before is not State.TRACKING and localizer.state is State.TRACKING):
+            self._published = self._map_from_odom
+        fix = fix_message(reading.t, estimate.map_from_base, estimate.covariance, estimate.quality)
+        return fix, self._changed(t, before, localizer)
+
+    def _changed(self, t: float, before: State, localizer: Localizer) -> list[Event]:
+        if localizer.state is before:
+            return []
+        if localizer.state is State.TRACKING:
+            x, y, yaw = compose(self._world_from_map, localizer.pose)
+            where = f"at ({x:.2f}, {y:.2f}), {np.degrees(yaw):.0f} deg in the world"
+            return [self._event(t, Event.INFO, "the vehicle is localized", where)]
+        cause = f"scans fit the map to {100 * localizer.fit.share:.0f} % of what is usual; it is looked for in the whole map"
+        return [self._event(t, Event.WARNING, "the vehicle is not where it was believed to be", cause)]
+
+    def _placed(self, request: PlaceRequest) -> Reply:
+        if self._localizer is None:
+            return Reply(reason="there is no map yet")
+        position = request.pose.position
+        wanted = Pose2(position.x, position.y, yaw_of(request.pose.orientation))
+        sigmas = (request.position_sigma or POSITION_SIGMA, request.yaw_sigma or YAW_SIGMA)
+        if not all(isfinite(v) for v in (*wanted, *sigmas)) or min(sigmas) <= 0.0:
+            return Reply(reason="a pose of finite numbers with sigmas above 0 is needed")
+        pose = compose(inverse(self._world_from_map), wanted)
+        if not self._localizer.known.covers(pose):
+            return Reply(reason=f"({wanted.x:.2f}, {wanted.y:.2f}) is outside the map")
+        self._set_to, self._start = (pose, *sigmas), None
+        return Reply(accepted=True)
+
+    def _looked_for(self) -> Reply:
+        if self._localizer is None:
+            return Reply(reason="there is no map yet")
+        self._start = self._set_to = None
+        self._localizer.relocalize()
+        return Reply(accepted=True)
+
+    def _event(self, t: float, severity: Event.Severity, text: str, cause: str) -> Event:
+        return Event(timestamp=stamp(t), severity=severity, text=text, cause=cause, source=self.name)

@@ -1,0 +1,138 @@
+"""Our own logs (MCAP): the scans of a ground vehicle, where they sit on it, and its odometry -> a LaserLog.
+
+The odometry is the one that was published, wheels and IMU fused; nothing that a vehicle cannot know is read.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from google.protobuf.message import DecodeError
+from numpy.typing import NDArray
+
+from schemas import topics
+from schemas.convert import seconds, yaw_of
+from schemas.messages import FrameTransforms, LaserScan, Odometry
+from services.slam.logs.laser_log import LaserLog, OdometryTrack
+from services.slam.logs.leaps import leaps, without_leaps
+from services.slam.logs.no_return import farthest_return
+from services.slam.reading import Beams, Reading
+from services.slam.scan_message import Shape, beams_of, shape_of
+from uvf.maths.planar import Pose2
+from uvf.maths.planar_arrays import composed, inverted
+from uvf.runtime.bus import Sample, matches
+from uvf.runtime.frames import FrameBuffer, FrameError
+from uvf.runtime.params import BadInput, nearest
+from uvf.runtime.recording import read_log
+
+Floats = NDArray[np.float64]
+
+ENDING = ".mcap"
+REACH = 0.1
+"""s by which a scan may lie outside of the odometry's times: it is then taken to have been at the nearest end."""
+
+
+@dataclass
+class _Heard:
+    """What a log has of one vehicle."""
+
+    scans: list[LaserScan] = field(default_factory=list)
+    odometry: list[tuple[float, float, float, float]] = field(default_factory=list)
+    """t, x, y, yaw."""
+    frames: FrameBuffer = field(default_factory=FrameBuffer)
+    broken: int = 0
+
+    def take(self, topic: Any, sample: Sample) -> None:
+        try:
+            message = topic.message.FromString(sample.payload)
+        except DecodeError:
+            self.broken += 1
+            return
+        if isinstance(message, LaserScan):
+            self.scans.append(message)
+        elif isinstance(message, Odometry):
+            p = message.pose
+            self.odometry.append((seconds(message.timestamp), p.position.x, p.position.y, yaw_of(p.orientation)))
+        elif isinstance(message, FrameTransforms):
+            self.frames.add(message, is_static=True)
+
+
+def samples_of(path: Path) -> Iterator[Sample]:
+    """Of a log, or of all logs of a run's folder in order. Raises BadInput."""
+    for log in sorted(path.glob(f"*{ENDING}")) if path.is_dir() else [path]:
+        yield from read_log(log)
+
+
+def read_mcap(path: Path, vehicle: str | None = None) -> LaserLog:
+    """Of one vehicle, which needs a name where several have a lidar. path: a log or a run's folder. Raises BadInput."""
+    heard: dict[str, _Heard] = {}
+    wanted = (topics.SCAN, topics.ODOMETRY, topics.TF_STATIC)
+    for sample in samples_of(path):
+        for topic in wanted:
+            if matches(topic.at("*"), sample.key):
+                heard.setdefault(sample.key.split("/")[1], _Heard()).take(topic, sample)
+    name = _chosen(path, [name for name, h in heard.items() if h.scans], vehicle)
+    return _assembled(path, name, heard[name])
+
+
+def _chosen(path: Path, with_scans: list[str], vehicle: str | None) -> str:
+    if not with_scans:
+        raise BadInput(f"log {path}: no scan in it: no vehicle of the run has a lidar")
+    if vehicle is None and len(with_scans) > 1:
+        raise BadInput(f"log {path}: several vehicles have scans; name one with --vehicle: {', '.join(sorted(with_scans))}")
+    if vehicle is not None and vehicle not in with_scans:
+        raise BadInput(f"log {path}: no scan of a vehicle '{vehicle}'; {nearest(vehicle, with_scans)}")
+    return vehicle or with_scans[0]
+
+
+def _assembled(path: Path, name: str, heard: _Heard) -> LaserLog:
+    if not heard.odometry:
+        raise BadInput(f"log {path}: no odometry of '{name}' in it")
+    track = np.array(heard.odometry)
+    track = track[np.unique(track[:, 0], return_index=True)[1]]
+    leapt = len(leaps(track[:, 0], track[:, 1:]))
+    track[:, 1:] = without_leaps(track[:, 0], track[:, 1:])
+    scans = sorted(heard.scans, key=lambda s: seconds(s.timestamp))
+    stamps = np.array([seconds(s.timestamp) for s in scans])
+    usable = (stamps >= track[0, 0] - REACH) & (stamps <= track[-1, 0] + REACH)
+    scans, stamps = [s for s, kept in zip(scans, usable, strict=True) if kept], stamps[usable]
+    if not scans:
+        raise BadInput(f"log {path}: the scans and the odometry of '{name}' are of different times")
+    poses = _interpolated(track, stamps)
+    start = inverted(poses[0])
+    beams = _beams(path, name, scans, heard.frames)
+    readings = [
+        Reading(t, np.array(scan.ranges), shape, Pose2(*pose))
+        for t, scan, shape, pose in zip(stamps.tolist(), scans, beams, composed(start, poses).tolist(), strict=True)
+    ]
+    counts = (
+        (int((~usable).sum()), "scans without odometry are left out"),
+        (heard.broken, "messages that cannot be read are left out"),
+        (leapt, "leaps of the odometry are taken for standing still"),
+    )
+    notes = tuple(f"log {path}: {count} {what}" for count, what in counts if count)
+    return LaserLog(f"{path.stem}-{name}", readings, stamps, OdometryTrack(track[:, 0], composed(start, track[:, 1:])), notes)
+
+
+def _interpolated(track: Floats, t: Floats) -> Floats:
+    """(n, 3) poses at the times of a track of rows t, x, y, yaw."""
+    return np.column_stack([np.interp(t, track[:, 0], c) for c in (track[:, 1], track[:, 2], np.unwrap(track[:, 3]))])
+
+
+def _beams(path: Path, name: str, scans: list[LaserScan], frames: FrameBuffer) -> list[Beams]:
+    """For each scan; equal ones are one object."""
+    limit = farthest_return([np.array(s.ranges) for s in scans])
+    known: dict[Shape, Beams] = {}
+    found = []
+    for scan in scans:
+        key = shape_of(scan)
+        if key not in known:
+            try:
+                base_from_lidar = frames.lookup(f"{name}/base_footprint", scan.frame_id)
+            except FrameError as error:
+                raise BadInput(f"log {path}: where the lidar sits on '{name}' is not told: {error}") from error
+            known[key] = beams_of(scan, base_from_lidar, (0.0, limit))
+        found.append(known[key])
+    return found

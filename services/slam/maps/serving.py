@@ -1,0 +1,49 @@
+"""Which vehicles serve maps, and from which files: what the mission says under ``maps:``."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+from services.slam.localization.known_map import is_session, known_map
+from services.slam.maps.map_server import MapServer
+from services.slam.maps.masks import KeepOut, SpeedLimit
+from uvf.maths.planar import Pose2, compose
+from uvf.runtime.map_file import GridMap, find_map, map_path, save_map
+from uvf.runtime.mission_file import Maps
+from uvf.runtime.params import BadInput, Place
+from uvf.runtime.site import Host, Member, Site
+
+
+def map_servers(site: Site) -> list[Host]:
+    """One for each ground vehicle with ``maps:``. Raises BadInput: a file that is no map, or maps for an aircraft."""
+    place = Place(str(site.mission_path)).at("vehicles")
+    for member in site.of_kind("fixed_wing"):
+        if member.entry.maps is not None:
+            raise BadInput(f"{place.at(member.name, 'maps')}: an aircraft does not drive by maps; leave it out")
+    return [
+        _host(member, member.entry.maps, site.mission_path.parent) for member in site.of_kind("ground") if member.entry.maps is not None
+    ]
+
+
+def _host(member: Member, maps: Maps, folder: Path) -> Host:
+    assert member.file.ground is not None
+    layers = dict(_layers(maps, folder, member.file.ground.max_linear))
+    return Host(MapServer, lambda: MapServer(layers, _save), member.name)
+
+
+def _layers(maps: Maps, folder: Path, full_speed: float) -> Iterator[tuple[str, GridMap]]:
+    if maps.known is not None:
+        yield "known", known_map(maps.known, folder, Pose2(*maps.known_at)).grid if is_session(maps.known) else _placed(maps, folder)
+    if maps.keepout is not None:
+        yield "keepout", KeepOut(find_map(maps.keepout, folder)).layer()
+    if maps.speed is not None:
+        mask = find_map(maps.speed, folder)
+        yield "speed", SpeedLimit(mask, maps.speed_unit, maps.speed_base, maps.speed_multiplier).layer(full_speed)
+
+
+def _placed(maps: Maps, folder: Path) -> GridMap:
+    grid = find_map(maps.known or "", folder)
+    return GridMap(grid.cells, grid.resolution, compose(Pose2(*maps.known_at), grid.origin))
+
+
+def _save(grid: GridMap, name: str, mode: str) -> Path:
+    return save_map(grid, map_path(name), mode)

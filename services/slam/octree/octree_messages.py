@@ -1,0 +1,42 @@
+"""The octree and what is seen of it from above as messages."""
+
+import numpy as np
+
+from schemas.convert import occupancy_grid, stamp
+from schemas.messages import Grid, OctreeMap, PackedElementField
+from services.slam.octree.columns import Columns
+from services.slam.octree.files import read_octree, to_bt
+from services.slam.octree.leaves import DEPTH, coarser, leaves_of
+from services.slam.octree.octree import Octree
+
+FRAME = "world"
+
+
+def octree_message(octree: Octree, most: int, t: float) -> OctreeMap:
+    """The whole map; where its file would be longer than ``most`` bytes, with cells of twice the side, and so on. Raises TooLarge."""
+    leaves, depth = leaves_of(octree), DEPTH
+    data = to_bt(leaves, octree.resolution)
+    while len(data) > most and depth > 1:
+        depth -= 1
+        leaves = coarser(leaves, depth)
+        data = to_bt(leaves, octree.resolution)
+    return OctreeMap(timestamp=stamp(t), frame_id=FRAME, resolution=octree.resolution, depth=depth, data=data)
+
+
+def octree_from(message: OctreeMap) -> Octree:
+    """Raises BadInput."""
+    return read_octree(message.data, f"the octree told at {message.timestamp.seconds} s")
+
+
+def slice_message(columns: Columns, t: float) -> Grid:
+    return occupancy_grid(columns.slice, columns.resolution, columns.x, columns.y, FRAME, t)
+
+
+def heights_message(columns: Columns, t: float) -> Grid:
+    """Two numbers a cell, ``top`` and ``ground`` [m]."""
+    grid = occupancy_grid(columns.slice, columns.resolution, columns.x, columns.y, FRAME, t)
+    grid.cell_stride, grid.row_stride = 8, 8 * grid.column_count
+    del grid.fields[:]
+    grid.fields.extend(PackedElementField(name=n, offset=o, type=PackedElementField.FLOAT32) for n, o in (("top", 0), ("ground", 4)))
+    grid.data = np.stack((columns.top, columns.ground), axis=2).astype("<f4").tobytes()
+    return grid

@@ -1,0 +1,181 @@
+"""Depth pictures, lidar sweeps and frames -> a map in space, and what a ground vehicle needs of it."""
+
+import re
+from collections import deque
+from collections.abc import Callable
+from contextlib import suppress
+from typing import Annotated, NamedTuple
+
+from msgspec import Meta
+
+from schemas import topics
+from schemas.convert import seconds, stamp
+from schemas.messages import CameraCalibration, CompressedImage, Event, LaserScan, OctreeMap, OctreeSaveRequest, Reply
+from services.slam.octree.beams import Beams, depth_beams, sweep_beams
+from services.slam.octree.columns import columns_of
+from services.slam.octree.files import to_bt
+from services.slam.octree.leaves import TooLarge, leaves_of
+from services.slam.octree.octree import Octree
+from services.slam.octree.octree_messages import FRAME, heights_message, octree_from, octree_message, slice_message
+from uvf.maths.transforms import apply
+from uvf.runtime.frames import FrameBuffer, FrameError
+from uvf.runtime.params import BadInput
+from uvf.runtime.service import Outputs, Params, Service, Value, every, frames, optional
+from uvf.runtime.vehicle_file import Sensors
+
+Positive = Annotated[float, Meta(gt=0)]
+Height = Annotated[float, Meta(ge=-10000, le=10000)]
+
+PATIENCE = 2.0  # s that a picture or sweep waits until it is known where it was taken, and without any that is, until this is told
+WAITING_MOST = 256
+MESSAGE_MOST = 2_000_000  # bytes of the map's file in a message
+COLUMNS_MOST = 1_000_000
+MEMORY_MOST = 2_000_000_000  # bytes of the map
+NAME = re.compile(r"[A-Za-z0-9_-]{1,64}")
+
+
+class OctreeParams(Params, frozen=True):
+    resolution: Annotated[float, Meta(ge=0.01, le=10)] = 0.1  # m, side of a cell
+    depth_reach: Positive = 5.0  # m, what a depth camera sees farther away is not put in, only free space as far as there
+    lidar_reach: Positive = 30.0  # m, the same of a lidar
+    map_period: Positive = 5.0  # s between publications
+    slice_low: Height = 0.05  # m in the world, of the slice published as an occupancy grid
+    slice_high: Height = 0.5  # m
+
+
+class Taken(NamedTuple):
+    """A picture or a sweep that waits for its place."""
+
+    at: float
+    frame: str
+    beams: Beams
+
+
+class OctreeService(Service):
+    """One map per vehicle, in the world frame: each picture and sweep is put in from where the vehicle believes it was taken."""
+
+    name = "octree"
+    hz = 2.0
+    inputs = {
+        "depth": optional(every(topics.DEPTH)),
+        "info": optional(topics.CAMERA_INFO),
+        "scan": optional(every(topics.SCAN)),
+        "frames": frames(),
+    }
+    outputs = {
+        "map": topics.OCTREE,
+        "slice": topics.SLICE,
+        "heights": topics.HEIGHTS,
+        "events": topics.EVENTS.by("octree"),
+    }
+    requests = {"save": topics.SAVE_OCTREE}
+    recalls = {"map": topics.OCTREE}
+    params: OctreeParams
+    fixed_params = frozenset({"resolution"})
+
+    def __init__(self, sensors: Sensors, keep: Callable[[str, bytes], str], params: OctreeParams) -> None:
+        """keep: writes a file under a name and tells where; raises BadInput."""
+        self.params = params
+        self._sensors = sensors
+        self._keep = keep
+        self._octree = Octree(params.resolution)
+        self._waiting: deque[Taken] = deque(maxlen=WAITING_MOST)
+        self._told: set[str] = set()
+        self._changed = False
+        self._published_at = float("-inf")
+        self._placed_at = 0.0
+
+    def step(
+        self,
+        t: float,
+        depth: list[CompressedImage],
+        info: CameraCalibration | None,
+        scan: list[LaserScan],
+        frames: FrameBuffer,
+        save: list[OctreeSaveRequest],
+    ) -> Outputs:
+        events = [*self._take(t, depth, info, scan), *self._place(t, frames)]
+        maps: dict[str, Value] = {}
+        if self._changed and t - self._published_at >= self.params.map_period - 1e-9:
+            self._changed, self._published_at = False, t
+            try:
+                maps = self._maps(t)
+            except TooLarge as error:
+                events += self._tell(t, "the map is not published", f"{error}; set a larger 'resolution'")
+        replies = [self._saved(request) for request in save]
+        events += [self._event(t, Event.INFO, f"map written to {place}") for _, place in replies if place]
+        return {**maps, "events": events, "save": [reply for reply, _ in replies]}
+
+    def recall(self, map: OctreeMap | None = None) -> None:
+        """Goes on with the last map published, as sure as clamping allows of what it says."""
+        if map is not None and map.resolution == self.params.resolution:
+            with suppress(BadInput):  # it begins anew, as it would without a map
+                self._octree = octree_from(map)
+                self._changed = True
+
+    def _take(self, t: float, depth: list[CompressedImage], info: CameraCalibration | None, scan: list[LaserScan]) -> list[Event]:
+        """What has come joins those that wait for their place."""
+        events: list[Event] = []
+        if info is not None and (camera := self._sensors.camera) is not None:
+            for picture in depth:
+                try:
+                    beams = depth_beams(picture, info, min(self.params.depth_reach, camera.far))
+                except BadInput as error:
+                    events += self._tell(t, "a depth picture is left out", str(error))
+                else:
+                    self._waiting.append(Taken(seconds(picture.timestamp), picture.frame_id, beams))
+        if (lidar := self._sensors.lidar) is not None:
+            for sweep in scan:
+                beams = sweep_beams(sweep, min(self.params.lidar_reach, lidar.range_max))
+                self._waiting.append(Taken(seconds(sweep.timestamp), sweep.frame_id, beams))
+        return events
+
+    def _place(self, t: float, frames: FrameBuffer) -> list[Event]:
+        """Puts in what has a place by now; what has waited in vain is dropped."""
+        if self._octree.memory > MEMORY_MOST:
+            self._waiting.clear()
+            full = f"it takes {MEMORY_MOST / 1e9:g} GB; set a larger 'resolution' or a shorter reach"
+            return self._tell(t, "the map is full: nothing is put in any more", full)
+        still: list[Taken] = []
+        reason = ""
+        for taken in self._waiting:
+            try:
+                world_from_sensor = frames.lookup(FRAME, taken.frame, taken.at)
+            except FrameError as error:
+                if t - taken.at < PATIENCE:
+                    still.append(taken)
+                else:
+                    reason = str(error)
+                continue
+            self._octree.insert(world_from_sensor.translation, apply(world_from_sensor, taken.beams.ends), taken.beams.reach)
+            self._changed, self._placed_at = True, t
+        self._waiting = deque(still, maxlen=WAITING_MOST)
+        return self._tell(t, "pictures or sweeps cannot be mapped", reason) if reason and t - self._placed_at >= PATIENCE else []
+
+    def _maps(self, t: float) -> dict[str, Value]:
+        """Raises TooLarge."""
+        maps: dict[str, Value] = {"map": octree_message(self._octree, MESSAGE_MOST, t)}
+        columns = columns_of(self._octree, self.params.slice_low, self.params.slice_high, COLUMNS_MOST)
+        if columns is not None:
+            maps |= {"slice": slice_message(columns, t), "heights": heights_message(columns, t)}
+        return maps
+
+    def _saved(self, request: OctreeSaveRequest) -> tuple[Reply, str]:
+        """The answer, and where the file is."""
+        if not NAME.fullmatch(request.name):
+            return Reply(accepted=False, reason=f"'{request.name}' is no name for a file: give letters, digits, - and _, 64 at most"), ""
+        try:
+            place = self._keep(request.name, to_bt(leaves_of(self._octree), self._octree.resolution))
+        except (BadInput, TooLarge) as error:
+            return Reply(accepted=False, reason=str(error)), ""
+        return Reply(accepted=True), place
+
+    def _tell(self, t: float, text: str, cause: str) -> list[Event]:
+        """Each kind of trouble once."""
+        if text in self._told:
+            return []
+        self._told.add(text)
+        return [self._event(t, Event.WARNING, text, cause)]
+
+    def _event(self, t: float, severity: Event.Severity, text: str, cause: str = "") -> Event:
+        return Event(timestamp=stamp(t), severity=severity, text=text, cause=cause, source=self.name)

@@ -1,0 +1,69 @@
+"""Wheel and inertial messages -> steps for the filter; what cannot be true makes none."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from schemas.convert import array, seconds
+from schemas.messages import Imu, WheelTicks
+from services.slam.odometry.states import Step
+from uvf.maths.rotations import from_euler, matrix
+from uvf.runtime.vehicle_file import GroundBody, Mount
+
+Floats = NDArray[np.float64]
+
+MAX_GAP = 0.1  # s between two wheel messages above which the inertial samples do not cover the interval
+JUMP = 10.0  # times the vehicle's greatest speed: what the wheels never turn
+MAX_RATE, MAX_FORCE = 100.0, 1000.0  # rad/s, m/s^2: what no vehicle survives
+
+
+class Readings:
+    """Keeps what has come until a wheel message closes a step."""
+
+    def __init__(self, body: GroundBody, imu: Mount | None) -> None:
+        mount = imu or Mount()
+        self._radius, self._fastest = body.wheel_radius, body.max_linear
+        self._body_from_imu: Floats = matrix(from_euler(*mount.rpy))
+        self._arm = mount.xyz
+        self._waiting: list[Imu] = []
+        self._turning = 0.0
+        self.last: WheelTicks | None = None
+
+    @property
+    def resolution(self) -> float:
+        """m that a wheel rolls from one tick to the next."""
+        return self.last.radians_per_tick * self._radius if self.last else 0.0
+
+    def take(self, wheels: WheelTicks, imu: list[Imu]) -> Step | None:
+        """The step that ends with a wheel message newer than the one before; counters that jump, because they began anew or are broken,
+        make none."""
+        self._waiting += imu
+        last, self.last = self.last, wheels
+        now = seconds(wheels.timestamp)
+        dt = now - seconds(last.timestamp) if last else 0.0
+        if last is None or now > seconds(last.timestamp):
+            rates, forces = self._until(now)
+        if last is None or dt <= 0.0 or not 0.0 < wheels.radians_per_tick <= 2 * np.pi:
+            return None
+        left = (wheels.left - last.left) * wheels.radians_per_tick * self._radius
+        right = (wheels.right - last.right) * wheels.radians_per_tick * self._radius
+        if max(abs(left), abs(right)) > JUMP * self._fastest * dt + wheels.radians_per_tick * self._radius:
+            return None
+        if dt > MAX_GAP or not len(rates):
+            return Step(dt, left, right)
+        return self._step(dt, (left, right), self._body_from_imu @ rates.mean(axis=0), self._body_from_imu @ forces.mean(axis=0))
+
+    def _step(self, dt: float, ways: tuple[float, float], rate: Floats, force: Floats) -> Step:
+        """Means of the inertial unit in the body's axes; its accelerometer feels the turning, too, where it sits off the axle."""
+        turning = float(rate[2])
+        if np.abs(rate).max() > MAX_RATE:
+            return Step(dt, *ways)
+        angular, self._turning = (turning - self._turning) / dt, turning
+        forward = float(force[0]) + turning**2 * self._arm[0] + angular * self._arm[1]
+        feels = np.any(force) and np.abs(force).max() < MAX_FORCE
+        return Step(dt, *ways, turning, forward if feels else None, float(rate[1]))
+
+    def _until(self, now: float) -> tuple[Floats, Floats]:
+        """(n, 3) rates and forces of the samples of the interval that the wheels tell of."""
+        due = [m for m in self._waiting if seconds(m.timestamp) <= now]
+        self._waiting = self._waiting[len(due) :]
+        return np.array([array(m.angular_velocity) for m in due]), np.array([array(m.specific_force) for m in due])

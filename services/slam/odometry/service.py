@@ -1,0 +1,195 @@
+"""Wheels, inertial unit, satellites and the map's correction -> odometry, pose and motion of a ground vehicle, 50 times a second."""
+
+from math import isfinite
+
+from schemas import topics
+from schemas.convert import planar_pose, seconds, stamp, yaw_of
+from schemas.messages import Event, FrameTransform, Gnss, Imu, Odometry, PoseInFrame, WheelTicks
+from services.slam.odometry import telling
+from services.slam.odometry.calibration import Scales, SegmentMaker, WheelCalibration
+from services.slam.odometry.filter import DriveFilter
+from services.slam.odometry.params import OdometryParams
+from services.slam.odometry.readings import Readings
+from services.slam.odometry.slip import Episodes, MatchedMotion, Unseen
+from services.slam.odometry.states import Step
+from services.slam.odometry.world import MapPose, SatellitePose
+from uvf.maths.geodesy import LocalTangent
+from uvf.maths.kinematics import Twist, move
+from uvf.maths.planar import Pose2
+from uvf.maths.sampling import Due
+from uvf.runtime.service import Outputs, Service, Value, every, optional
+from uvf.runtime.vehicle_file import VehicleFile
+
+MAX_PREDICTION = 0.1  # s, wheel data older than this is not extrapolated further
+
+LEFT, RIGHT, BIAS, SCALES = "left_ticks", "right_ticks", "gyro_bias", "scales"
+"""What the odometry carries beside the pose, for an instance that is to go on after it."""
+
+
+class OdometryService(Service):
+    """The pose is the odometry seen through the newest ``map_from_odom``, or what satellites make of it where the vehicle hears any."""
+
+    name = "odometry"
+    hz = 50.0
+    inputs = {
+        "wheels": topics.WHEELS,
+        "imu": optional(every(topics.IMU)),
+        "correction": optional(topics.TF_MAP),
+        "gnss": optional(every(topics.GNSS)),
+    }
+    outputs = {
+        "odometry": topics.ODOMETRY,
+        "moving": topics.TF_ODOM,
+        "pose": topics.POSE,
+        "nav_state": topics.NAV_STATE,
+        "quality": topics.QUALITY,
+        "events": topics.EVENTS.by("odometry"),
+    }
+    recalls = {"odometry": topics.ODOMETRY, "correction": topics.TF_MAP}
+    params: OdometryParams
+    fixed_params = frozenset({"filter", "bias_start", "scale_start", "position_start", "heading_start"})
+
+    def __init__(
+        self, vehicle: str, file: VehicleFile, world_from_map: Pose2, params: OdometryParams, tangent: LocalTangent | None = None
+    ) -> None:
+        """tangent: at the world's origin, for satellites."""
+        if file.ground is None:
+            raise ValueError(f"{vehicle} is not a ground vehicle")
+        self.params = params
+        self._vehicle, self._track = vehicle, file.ground.track
+        self._readings = Readings(file.ground, file.sensors.imu.mount if file.sensors.imu else None)
+        self._filter = DriveFilter(params.filter, params.noise(0.0), self._track)
+        self._map = MapPose(world_from_map)
+        self._satellites: SatellitePose | None = None
+        if file.sensors.gnss is not None and tangent is not None:
+            second = DriveFilter(params.filter, params.noise(0.0), self._track, file.sensors.gnss)
+            self._satellites = SatellitePose(
+                second, file.sensors.gnss, tangent, (world_from_map, params.position_start, params.heading_start)
+            )
+        self._scales, self._applied = Scales(), Scales()
+        self._begin_calibration()
+        self._matched, self._episodes = MatchedMotion(), Episodes()
+        self._unseen: Unseen | None = None
+        self._driven = 0.0
+        self._quality_due = Due(topics.QUALITY.hz)
+
+    def step(
+        self, t: float, wheels: WheelTicks, imu: list[Imu], correction: FrameTransform | None, gnss: list[Gnss] | None = None
+    ) -> Outputs:
+        self._set_up()
+        events: list[Event] = []
+        if (step := self._readings.take(wheels, imu)) is not None:
+            self._move(seconds(wheels.timestamp), step)
+            cause = self._filter.doubt or (self._unseen.cause if self._unseen is not None else None)
+            if (episode := self._episodes.step(cause, step.dt)) is not None:
+                events.append(telling.slipping(t, episode.cause))
+        if correction is not None:
+            self._correct(correction)
+        if self._satellites is not None:
+            self._satellites.take(gnss or [], self._filter.pose)
+        events += self._calibrate(t)
+        ahead = min(t - seconds(wheels.timestamp), MAX_PREDICTION)
+        return self._told(t, move(self._filter.pose, Twist(*self._filter.speeds), ahead)) | ({"events": events} if events else {})
+
+    def recall(self, odometry: Odometry | None = None, correction: FrameTransform | None = None) -> None:
+        """Goes on at the last pose told; what was driven since then is in the ticks counted since then."""
+        if odometry is not None:
+            self._resume(odometry)
+        if correction is not None:
+            self._correct(correction)
+
+    def _resume(self, odometry: Odometry) -> None:
+        """Nothing from a message that somebody else has left: it lacks the ticks."""
+        known = {pair.key: pair.value for pair in odometry.metadata}
+        try:
+            bias, left, right = float(known[BIAS]), int(known[LEFT]), int(known[RIGHT])
+            applied = Scales(*map(float, known[SCALES].split())) if SCALES in known else Scales()
+        except (KeyError, ValueError, TypeError):
+            return
+        position = odometry.pose.position
+        pose = Pose2(position.x, position.y, yaw_of(odometry.pose.orientation))
+        self._filter.resume(pose, telling.pose_covariance(odometry), bias if isfinite(bias) else 0.0)
+        self._applied = applied if all(0.7 < scale < 1.4 for scale in applied) else Scales()
+        self._readings.last = WheelTicks(timestamp=odometry.timestamp, left=left, right=right)
+
+    def _set_up(self) -> None:
+        """Parameters as they are now, and the wheels by them and by what has been found."""
+        noise = self.params.noise(self._readings.resolution)
+        scales = Scales(*(a * b for a, b in zip(self.params.scales, self._applied, strict=True)))
+        for drive in self._drives:
+            drive.noise = noise
+        if scales != self._scales:
+            for drive in self._drives:
+                drive.believe_radii()
+                drive.track = self._track * scales.track
+            self._scales = scales
+            self._begin_calibration()
+
+    @property
+    def _drives(self) -> list[DriveFilter]:
+        return [self._filter] if self._satellites is None else [self._filter, self._satellites.drive]
+
+    def _move(self, t: float, told: Step) -> None:
+        step = told._replace(left=told.left * self._scales.left, right=told.right * self._scales.right)
+        self._driven += abs(step.left + step.right) / 2
+        for drive in self._drives:
+            drive.is_unseen = self._unseen is not None
+            drive.step(step)
+        if self._satellites is not None:
+            self._satellites.note(t, self._filter.pose)
+        slipping = self._episodes.active or self._filter.doubt is not None
+        self._segments.roll(step.left, step.right, self._filter.pose.yaw, slipping)
+
+    def _correct(self, correction: FrameTransform) -> None:
+        shift, t = correction.translation, seconds(correction.timestamp)
+        newest = Pose2(shift.x, shift.y, yaw_of(correction.rotation))
+        pose = self._filter.pose
+        if not self._map.correct(newest, self._filter.covariance):
+            return
+        self._unseen = self._matched.compare(t, pose, newest)
+        if self._unseen is not None:
+            for drive in self._drives:
+                drive.see(self._unseen.speed)
+        self._segments.match(self._map.map_from(pose))
+        if self._satellites is not None:
+            drift = self.params.map_sigma + self.params.map_drift * self._driven**0.5
+            self._satellites.mapped(t, self._map.world_from(pose), drift)
+
+    def _begin_calibration(self) -> None:
+        """On top of the scales in force."""
+        self._calibration = WheelCalibration(self._track * self._scales.track)
+        self._segments = SegmentMaker(self._calibration)
+        self._has_told = False
+
+    def _calibrate(self, t: float) -> list[Event]:
+        """Scales that have become certain are told once, and put in force where this is wanted."""
+        if self.params.calibrate == "off" or self._has_told or not self._calibration.is_certain:
+            return []
+        self._has_told = True
+        if not self._calibration.differs:
+            return []
+        applies = self.params.calibrate == "apply"
+        event = telling.calibrated(t, self._calibration, self._scales, applies)
+        if applies:
+            self._applied = Scales(*(a * b for a, b in zip(self._applied, self._calibration.scales, strict=True)))
+        return [event]
+
+    def _told(self, t: float, odom_from_base: Pose2) -> dict[str, Value]:
+        drive, last = self._filter, self._readings.last or WheelTicks()
+        left_over = {LEFT: str(last.left), RIGHT: str(last.right), BIAS: repr(drive.bias)}
+        if self._applied != Scales():
+            left_over[SCALES] = " ".join(map(repr, self._applied))
+        pose, sigma = self._map.world_from(odom_from_base), self._map.sigma(drive.covariance, self.params.map_sigma)
+        known, ratio = self._map.is_known(drive.covariance), 0.0
+        if self._satellites is not None:
+            pose = self._satellites.shown(drive.pose, odom_from_base, self.params.correction_speed / self.hz)
+            sigma, known, ratio = self._satellites.sigma, self._satellites.is_known(t), self._satellites.ratio
+        told: dict[str, Value] = {
+            "odometry": telling.odometry(t, self._vehicle, odom_from_base, drive, left_over),
+            "moving": telling.moving(t, self._vehicle, odom_from_base),
+            "pose": PoseInFrame(timestamp=stamp(t), frame_id="world", pose=planar_pose(*pose)),
+            "nav_state": telling.nav_state(t, pose, drive.speeds, sigma),
+        }
+        if self._quality_due.at(t):
+            told["quality"] = telling.quality(t, sigma, drive, (known, ratio))
+        return told

@@ -1,0 +1,44 @@
+"""What the filters estimate, what a step is told, and how much each source is trusted."""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+X, Y, HEADING, SPEED, GYRO_BIAS, ACCEL_OFFSET, LEFT, RIGHT, GNSS_X, GNSS_Y = range(10)
+"""m, m, rad (not wrapped: a mean of headings is a plain mean), m/s forward, rad/s, m/s^2, and the errors of the wheels' radii as parts
+of them: a wheel has rolled (1 + error) times what its radius says. The last two are the slow errors of satellite positions [m], where
+there are any.
+"""
+
+POSE = slice(0, 3)
+STATES = 8
+STATES_WITH_GNSS = 10
+
+
+class Step(NamedTuple):
+    """What the sensors told of the last ``dt`` [s]."""
+
+    dt: float
+    left: float  # m, way of each wheel by its nominal radius
+    right: float
+    rate: float | None = None  # rad/s, mean of the gyroscope about the upward axis
+    force: float | None = None  # m/s^2, mean of the accelerometer's forward axis at the middle of the axle
+    pitching: float = 0.0  # rad/s, mean of the gyroscope about the left axis
+
+
+@dataclass(frozen=True)
+class Noise:
+    """1 sigma each."""
+
+    distance: float = 0.005  # m per square root of m that a wheel rolls
+    resolution: float = 1e-4  # m, way of a wheel from one tick to the next
+    skid: float = 0.05  # part of a turn by which the wheels may tell it wrong
+    turn: float = 0.003  # rad per square root of rad turned, of the gyroscope
+    gyro: float = 3e-4  # rad per square root of s
+    bias_walk: float = 3e-5  # rad/s per square root of s
+    bias_start: float = 0.05  # rad/s
+    accel: float = 0.01  # m/s per square root of s
+    offset_walk: float = 0.005  # m/s^2 per square root of s
+    offset_start: float = 0.5  # m/s^2
+    scale_start: float = 0.01  # of each wheel's radius
+    scale_walk: float = 1e-5  # per square root of m
+    rest: float = 0.001  # rad/s, of the gyroscope's mean over a step while standing, beside its noise

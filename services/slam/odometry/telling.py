@@ -1,0 +1,98 @@
+"""The estimates as messages."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from schemas.convert import planar_pose, quaternion, stamp
+from schemas.messages import EstimateQuality, Event, FrameTransform, KeyValuePair, NavState, Odometry, Vector3
+from services.slam.odometry.calibration import Scales, WheelCalibration
+from services.slam.odometry.filter import DriveFilter
+from services.slam.odometry.slip import sigma
+from services.slam.odometry.states import HEADING, POSE, SPEED
+from uvf.maths.planar import Pose2
+from uvf.maths.rotations import from_euler
+
+Floats = NDArray[np.float64]
+
+SOURCE = "odometry"
+PLANAR = (0, 1, 5)  # rows of a covariance in space: x, y, heading
+NO_SIDEWAYS = 1e-4  # m^2/s^2, variance of a speed that there is none of
+
+
+def odometry(t: float, vehicle: str, odom_from_base: Pose2, drive: DriveFilter, left_over: dict[str, str]) -> Odometry:
+    """left_over: what the next instance needs."""
+    linear, angular = drive.speeds
+    pose, twist = np.zeros((6, 6)), np.zeros((6, 6))
+    pose[np.ix_(PLANAR, PLANAR)] = drive.covariance[POSE, POSE]
+    twist[0, 0], twist[1, 1], twist[5, 5] = drive.covariance[SPEED, SPEED], NO_SIDEWAYS, drive.turn_rate_variance
+    return Odometry(
+        timestamp=stamp(t),
+        frame_id=f"{vehicle}/odom",
+        body_frame_id=f"{vehicle}/base_footprint",
+        pose=planar_pose(*odom_from_base),
+        linear_velocity=Vector3(x=linear),
+        angular_velocity=Vector3(z=angular),
+        pose_covariance=pose.ravel().tolist(),
+        velocity_covariance=twist.ravel().tolist(),
+        metadata=[KeyValuePair(key=k, value=v) for k, v in left_over.items()],
+    )
+
+
+def pose_covariance(told: Odometry) -> Floats:
+    """(3, 3) of x, y and heading; zero where the message has none."""
+    if len(told.pose_covariance) != 36:
+        return np.zeros((3, 3))
+    found = np.array(told.pose_covariance).reshape(6, 6)[np.ix_(PLANAR, PLANAR)]
+    is_one = bool(np.isfinite(found).all()) and np.allclose(found, found.T) and np.linalg.eigvalsh(found)[0] > -1e-9
+    return found if is_one else np.zeros((3, 3))
+
+
+def moving(t: float, vehicle: str, odom_from_base: Pose2) -> FrameTransform:
+    x, y, heading = odom_from_base
+    return FrameTransform(
+        timestamp=stamp(t),
+        parent_frame_id=f"{vehicle}/odom",
+        child_frame_id=f"{vehicle}/base_footprint",
+        translation=Vector3(x=x, y=y),
+        rotation=quaternion(from_euler(0.0, 0.0, heading)),
+    )
+
+
+def nav_state(t: float, world_from_base: Pose2, speeds: tuple[float, float], position_sigma: float) -> NavState:
+    linear, angular = speeds
+    x, y, heading = world_from_base
+    return NavState(
+        timestamp=stamp(t),
+        position=Vector3(x=x, y=y),
+        velocity=Vector3(x=linear * np.cos(heading), y=linear * np.sin(heading)),
+        orientation=quaternion(from_euler(0.0, 0.0, heading)),
+        angular_velocity=Vector3(z=angular),
+        position_sigma=position_sigma,
+    )
+
+
+def quality(t: float, position_sigma: float, drive: DriveFilter, satellites: tuple[bool, float]) -> EstimateQuality:
+    """satellites: whether the position is measured, and how the newest fix fits."""
+    return EstimateQuality(
+        timestamp=stamp(t),
+        position_known=satellites[0],
+        position_sigma=position_sigma,
+        yaw_sigma=sigma(drive.covariance[HEADING, HEADING]),
+        position_ratio=satellites[1],
+        slip_ratio=drive.slip_ratio,
+    )
+
+
+def slipping(t: float, cause: str) -> Event:
+    return Event(timestamp=stamp(t), severity=Event.WARNING, text="wheels slip: the odometry is less certain", cause=cause, source=SOURCE)
+
+
+def calibrated(t: float, calibration: WheelCalibration, before: Scales, applied: bool) -> Event:
+    """before: the scales in force, which the found ones come on top of."""
+    found = Scales(*(a * b for a, b in zip(before, calibration.scales, strict=True)))
+    sigmas = calibration.sigmas
+    values = ", ".join(f"{n}_scale: {v:.4f}" for n, v in zip(Scales._fields, found, strict=True))
+    verb = "in force now; to keep them" if applied else "to use them"
+    text = f"wheels calibrated, {verb}: params: {{odometry: {{{values}}}}}"
+    cause = f"{calibration.used} matched motions; 1 sigma {', '.join(f'{s:.4f}' for s in sigmas)}"
+    return Event(timestamp=stamp(t), severity=Event.INFO, text=text, cause=cause, source=SOURCE)

@@ -1,0 +1,102 @@
+"""What places the sweeps of a vehicle in a map, drawn or given: from messages to readings, and back to frames."""
+
+from typing import Annotated, ClassVar
+
+import numpy as np
+from msgspec import Meta
+from numpy.typing import NDArray
+
+from schemas.convert import quaternion, seconds, stamp
+from schemas.messages import Event, FrameTransform, LaserScan, MapFix, Vector3
+from services.slam.correction import toward
+from services.slam.reading import Beams, Reading
+from services.slam.scan_message import Shape, beams_of, shape_of
+from uvf.maths.planar import IDENTITY, Pose2, compose, inverse
+from uvf.maths.rotations import from_euler
+from uvf.maths.transforms import planar
+from uvf.runtime.frames import FrameBuffer
+from uvf.runtime.service import Params, Service
+from uvf.runtime.vehicle_file import Lidar
+
+Floats = NDArray[np.float64]
+Positive = Annotated[float, Meta(gt=0)]
+
+PATIENCE = 2.0  # s without a scan that has a place, until this is told
+
+
+class PlacingParams(Params, frozen=True):
+    correction_speed: Positive = 0.1  # m/s, how fast the published correction follows the matched one
+    correction_turn: Positive = 0.1  # rad/s
+
+
+class PlacingService(Service):
+    """Base of the services that tell where the odometry's frame lies in the map, without jumps."""
+
+    hz = 10.0
+    params: PlacingParams
+    purpose: ClassVar[str]
+    """What scans without a place cannot be: the end of a sentence."""
+
+    def __init__(self, vehicle: str, lidar: Lidar, world_from_map: Pose2) -> None:
+        self._vehicle = vehicle
+        self._lidar = lidar
+        self._world_from_map = world_from_map
+        self._beams: dict[Shape, Beams] = {}
+        self._map_from_odom = self._published = self._odom_from_base = IDENTITY
+        self._scan_time = -1.0
+        self._ranges = np.zeros(0)
+        self._placeless_since: float | None = None
+        self._told = False
+
+    def _reading(self, scan: LaserScan, frames: FrameBuffer) -> Reading | None:
+        """A new scan from where the lidar was when it was taken; None for one that has been seen. Raises FrameError.
+
+        Noise makes each scan another: one that is equal comes from a lidar that is frozen, whatever its stamp says.
+        """
+        taken_at = seconds(scan.timestamp)
+        if taken_at <= self._scan_time or not len(scan.ranges):
+            return None
+        odom_from_base = planar(frames.lookup(self._frame("odom"), self._frame("base_footprint"), taken_at))
+        if shape_of(scan) not in self._beams:
+            base_from_lidar = frames.lookup(self._frame("base_footprint"), scan.frame_id)
+            limits = (self._lidar.range_min, self._lidar.range_max)
+            self._beams[shape_of(scan)] = beams_of(scan, base_from_lidar, limits)
+        self._scan_time, ranges = taken_at, np.array(scan.ranges)
+        frozen, self._ranges = np.array_equal(ranges, self._ranges), ranges
+        return None if frozen else Reading(taken_at, ranges, self._beams[shape_of(scan)], odom_from_base)
+
+    def _wait(self, t: float, reason: str) -> list[Event]:
+        """A scan may be ahead of the frames for a moment; when it lasts, a person has to know why there is no map."""
+        if self._placeless_since is None:
+            self._placeless_since = t
+        if self._told or t - self._placeless_since < PATIENCE:
+            return []
+        self._told = True
+        return [Event(timestamp=stamp(t), severity=Event.WARNING, text=f"scans cannot be {self.purpose}", cause=reason, source=self.name)]
+
+    def _frame(self, name: str) -> str:
+        return f"{self._vehicle}/{name}"
+
+    def _correction(self, t: float) -> FrameTransform:
+        """Limited at the vehicle, not at the frames' origins, which may lie far away."""
+        period = 1.0 / self.hz
+        now = compose(self._published, self._odom_from_base)
+        wanted = compose(self._map_from_odom, self._odom_from_base)
+        limited = toward(now, wanted, self.params.correction_speed * period, self.params.correction_turn * period)
+        self._published = compose(limited, inverse(self._odom_from_base))
+        return self._transform(t, "map", "odom", self._published)
+
+    def _transform(self, t: float, parent: str, child: str, parent_from_child: Pose2) -> FrameTransform:
+        x, y, heading = parent_from_child
+        return FrameTransform(
+            timestamp=stamp(t),
+            parent_frame_id=parent if parent == "world" else f"{self._vehicle}/{parent}",
+            child_frame_id=f"{self._vehicle}/{child}",
+            translation=Vector3(x=x, y=y),
+            rotation=quaternion(from_euler(0.0, 0.0, heading)),
+        )
+
+
+def fix_message(t: float, map_from_base: Pose2, covariance: Floats, quality: float) -> MapFix:
+    x, y, yaw = map_from_base
+    return MapFix(timestamp=stamp(t), x=x, y=y, yaw=yaw, covariance=covariance.ravel().tolist(), quality=quality)

@@ -1,0 +1,141 @@
+"""A Rao-Blackwellized particle filter: each particle has a path and the map that goes with it.
+
+Grisetti, Stachniss & Burgard, "Improved Techniques for Grid Mapping with Rao-Blackwellized Particle Filters" (2007). Unlike
+there, readings between two updates are matched to the best particle's map, so that each has a good pose and each update a
+good start.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from math import hypot
+
+import numpy as np
+from numpy.typing import NDArray
+
+from services.slam.maps.shared_tiles import Evidence, SharedTiles
+from services.slam.matching.points import points_of, step_between
+from services.slam.method import Estimate, Keyframe
+from services.slam.rbpf.fit import Gaussian, Sweep
+from services.slam.rbpf.motion import MotionModel
+from services.slam.rbpf.params import RbpfParams
+from services.slam.rbpf.particle_step import draw_pose, match
+from services.slam.rbpf.particles import Particles
+from services.slam.rbpf.surfaces import CHANNELS, add_surfaces
+from services.slam.reading import Reading
+from uvf.maths.planar import IDENTITY, Pose2, compose, inverse
+from uvf.maths.planar_arrays import composed, wrapped
+
+Floats = NDArray[np.float64]
+
+EVIDENCE = Evidence(hit=17, miss=-8, lowest=-60, highest=70)
+"""In units of 0.05 (Thrun et al. 2005, table 9.2)."""
+POINTS = 180  # of a sweep that are matched, at most
+STOOD = 1e-4  # m, rad: odometry that moves less has not moved
+
+
+@dataclass
+class RbpfSlam:
+    """See ``SlamMethod``."""
+
+    params: RbpfParams = field(default_factory=RbpfParams)
+
+    def __post_init__(self) -> None:
+        p = self.params
+        self.particles = Particles(p.particles)
+        self.tiles = SharedTiles(p.particles, CHANNELS, p.delta)
+        self.resampled = 0
+        """How often."""
+        self._rng = np.random.default_rng(p.seed)
+        self._model = MotionModel(p.srr, p.srt, p.str, p.stt)
+        self._readings: list[Reading] = []
+        self._placed: list[tuple[int, Pose2]] = []
+        self._odometry: Pose2 | None = None
+        self._driven = self._tracked = IDENTITY
+        self._noise = np.zeros((3, 3))
+        self._quality = 1.0
+
+    def add(self, reading: Reading) -> Estimate:
+        sweep = (points_of(reading, self.params.maxUrange, POINTS), reading.beams.origin)
+        last, self._odometry = self._odometry, reading.odom_from_base
+        if last is None:
+            self._begin(reading)
+            return self._place()
+        step = step_between(last, reading.odom_from_base)
+        self._driven, self._tracked = compose(self._driven, step), compose(self._tracked, step)
+        if hypot(step.x, step.y) > STOOD or abs(step.yaw) > STOOD:
+            self._track(sweep)
+        if hypot(self._tracked.x, self._tracked.y) > self.params.linearUpdate or abs(self._tracked.yaw) > self.params.angularUpdate:
+            self._update(reading, sweep)
+        return self._place()
+
+    def trajectory(self) -> Floats:
+        nodes = np.array([node for node, _ in self._placed], dtype=np.int64)
+        moved = np.array([pose for _, pose in self._placed]).reshape(-1, 3)
+        path = self.particles.path(self.particles.best)
+        return composed(path[nodes], moved) if len(nodes) else moved
+
+    def keyframes(self) -> Iterator[Keyframe]:
+        """The readings that the best particle's map is made of, from where it has them."""
+        for pose, reading in zip(self.particles.path(self.particles.best).tolist(), self._readings, strict=True):
+            yield Keyframe(Pose2(*pose), reading)
+
+    def finish(self) -> None:
+        """Nothing has been put off."""
+
+    def _begin(self, reading: Reading) -> None:
+        """All particles begin with one map."""
+        self._draw(0, reading)
+        self.tiles.take(np.zeros(len(self.particles), dtype=np.int64))
+        self._keep(reading)
+
+    def _keep(self, reading: Reading) -> None:
+        self.particles.keep()
+        self._readings.append(reading)
+        self._driven = self._tracked = IDENTITY
+
+    def _place(self) -> Estimate:
+        self._placed.append((self.particles.steps - 1, self._tracked))
+        return Estimate(compose(self._pose(self.particles.best), self._tracked), self.particles.spread() + self._noise, self._quality)
+
+    def _track(self, sweep: Sweep) -> None:
+        """Between updates: where the best particle's map has the sweep."""
+        best = self.particles.best
+        prior, before = self._prior(best), self._pose(best)
+        matched = match(np.array(compose(before, self._tracked)), sweep, self.tiles.grid(best), prior, self.params)
+        self._noise, self._quality = matched.covariance(prior, self.params), matched.share
+        self._tracked = compose(inverse(before), Pose2(*matched.pose.tolist()))
+
+    def _update(self, reading: Reading, sweep: Sweep) -> None:
+        """Algorithm 1: every particle finds its place, those that fit best live on."""
+        factors = np.zeros(len(self.particles))
+        poses = np.empty((len(self.particles), 3))
+        for k in range(len(self.particles)):
+            prior, grid = self._prior(k), self.tiles.grid(k)
+            matched = match(np.array(compose(self._pose(k), self._tracked)), sweep, grid, prior, self.params)
+            poses[k], factors[k] = draw_pose(matched, sweep, grid, prior, self.params, self._rng)
+        poses[:, 2] = wrapped(poses[:, 2])
+        self.particles.poses = poses
+        self.particles.reweigh(factors)
+        self._keep(reading)
+        for k in range(len(self.particles)):
+            self._draw(k, reading)
+        if self.particles.effective < self.params.resampleThreshold * len(self.particles):
+            self.tiles.take(self.particles.resample(self._rng))
+            self.resampled += 1
+
+    def _draw(self, k: int, reading: Reading) -> None:
+        if reading.ranges.shape != reading.beams.bearings.shape:
+            return
+        drawn = self.tiles.draw(k, reading, self._pose(k), EVIDENCE, self.params.maxUrange)
+        if drawn is not None:
+            add_surfaces(drawn.ends, drawn.hit, drawn.sensor, drawn.first, self.tiles.grid(k))
+
+    def _pose(self, k: int) -> Pose2:
+        return Pose2(*self.particles.poses[k].tolist())
+
+    def _prior(self, k: int) -> Gaussian:
+        """p(x_t | x_t-1, u_t) of particle k."""
+        mean = compose(self._pose(k), self._driven)
+        c, s = np.cos(mean.yaw), np.sin(mean.yaw)
+        map_from_end = np.array(((c, -s, 0.0), (s, c, 0.0), (0.0, 0.0, 1.0)))
+        return np.array(mean), map_from_end @ np.linalg.inv(self._model.covariance(self._driven)) @ map_from_end.T

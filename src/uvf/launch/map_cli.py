@@ -1,0 +1,76 @@
+"""``uvf map ...``: maps written to files, checked, served and compared."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from uvf.launch.refusal import bad_input_is_one_line
+
+map_app = typer.Typer(no_args_is_help=True, help="Maps: save, load, compare.")
+
+MapArgument = Annotated[str, typer.Argument(help="A saved map's name, or a file (.yaml, .pgm, .png).")]
+VehicleOption = Annotated[str | None, typer.Option("--vehicle", "-v", help="Whose; not needed when only one has a map.")]
+
+
+@map_app.command("save")
+def map_save(
+    name: MapArgument,
+    vehicle: VehicleOption = None,
+    mode: Annotated[str, typer.Option(help="trinary, scale (keeps each cell's value, PNG) or raw (the same, PGM).")] = "trinary",
+    own_frame: Annotated[bool, typer.Option("--own-frame", help="Origin in the vehicle's map frame instead of the world's.")] = False,
+) -> None:
+    """Write the map of a running vehicle as picture and yaml, as map_saver does."""
+    from uvf.launch.maps.running import drawn_map
+    from uvf.runtime.map_file import map_path, save_map
+
+    with bad_input_is_one_line():
+        owner, grid = drawn_map(vehicle, own_frame)
+        typer.echo(f"uvf: map of {owner}: {save_map(grid, map_path(name), mode)}")
+
+
+@map_app.command("load")
+def map_load(
+    name: MapArgument,
+    vehicle: Annotated[
+        str | None, typer.Option("--vehicle", "-v", help="Serve it to this vehicle until Ctrl-C, as map_server does.")
+    ] = None,
+) -> None:
+    """Check a map and tell what is in it; with --vehicle serve it on map/known."""
+    from uvf.launch.maps.report import figures
+    from uvf.launch.maps.running import serve
+    from uvf.runtime.map_file import find_map
+
+    with bad_input_is_one_line():
+        grid = find_map(name)
+        for line in figures(grid):
+            typer.echo(line)
+        if vehicle is not None:
+            serve(grid, vehicle, lambda: typer.echo(f"uvf: served on {vehicle}/map/known   Ctrl-C ends"))
+
+
+@map_app.command("compare")
+def map_compare(
+    a: MapArgument,
+    b: Annotated[str | None, typer.Argument(help="Another map, taken for true.")] = None,
+    world: Annotated[str | None, typer.Option(help="A world in worlds/, whose floor plan is the truth, instead of another map.")] = None,
+    shift: Annotated[tuple[float, float, float], typer.Option(help="Where the first map lies in the other's frame: x y [m] yaw [deg].")] = (
+        0.0,
+        0.0,
+        0.0,
+    ),
+    out: Annotated[Path, typer.Option(help="Picture of the differences.")] = Path("compare.png"),
+) -> None:
+    """Compare two maps, or a map with a world: figures, and a picture of the differences."""
+    from uvf.launch.maps.report import compared, scored
+    from uvf.runtime.map_file import find_map
+    from uvf.runtime.params import BadInput
+
+    with bad_input_is_one_line():
+        if (b is None) == (world is None):
+            raise BadInput("'uvf map compare' needs one thing to compare with: another map, or --world NAME")
+        first = find_map(a)
+        lines = compared(first, find_map(b), shift, out) if b is not None else scored(first, str(world), shift, out)
+        for line in lines:
+            typer.echo(line)
+        typer.echo(f"uvf: {out}: white and black the same, red only in {a}, blue only in {b or world}")

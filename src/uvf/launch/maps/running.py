@@ -1,0 +1,55 @@
+"""Maps from and for a running system."""
+
+import time
+from collections.abc import Callable
+
+import uvf.client
+from schemas import topics
+from services.slam.maps.map_server import in_world
+from uvf.runtime.address import router_from
+from uvf.runtime.grid_message import as_map, as_message
+from uvf.runtime.map_file import GridMap
+from uvf.runtime.params import BadInput, nearest
+from uvf.runtime.zenoh_bus import ZenohBus
+
+PATIENCE = 5.0  # s
+
+
+def drawn_map(vehicle: str | None, own_frame: bool) -> tuple[str, GridMap]:
+    """(vehicle, its map in the world frame or in its own). Raises BadInput."""
+    owner = _chosen(vehicle, _writers())
+    with uvf.client.connect() as run:
+        try:
+            grid = as_map(run.read(owner, topics.MAP, PATIENCE))
+            return owner, grid if own_frame else in_world(grid, run.read(owner, topics.TF_WORLD, PATIENCE))
+        except TimeoutError as error:
+            raise BadInput(f"{error}: {owner} has not drawn a map yet") from error
+
+
+def serve(grid: GridMap, vehicle: str, ready: Callable[[], None]) -> None:
+    """Publishes a map, world frame, for whoever comes, until Ctrl-C. Raises BadInput."""
+    with uvf.client.connect() as run:
+        run.send(vehicle, topics.KNOWN_MAP, as_message(grid, "world", run.time))
+        ready()
+        try:
+            while True:
+                time.sleep(1.0)
+        except KeyboardInterrupt:
+            return
+
+
+def _writers() -> list[str]:
+    """The vehicles whose map somebody draws."""
+    with ZenohBus(router_from(), timeout=3.0) as bus:
+        ends = [token.split("/") for token in bus.tokens("@ep/**")]
+    return sorted({owner for _, owner, _, way, where, _ in ends if way == "pub" and where.replace("%", "/") == topics.MAP.at(owner)})
+
+
+def _chosen(vehicle: str | None, owners: list[str]) -> str:
+    if not owners:
+        raise BadInput("no vehicle in the running system draws a map; a mission with a ground vehicle does")
+    if vehicle is None and len(owners) > 1:
+        raise BadInput(f"{len(owners)} vehicles draw maps; choose one by --vehicle: {', '.join(owners)}")
+    if vehicle is not None and vehicle not in owners:
+        raise BadInput(f"no map of '{vehicle}'; {nearest(vehicle, owners)}")
+    return vehicle or owners[0]

@@ -1,0 +1,52 @@
+"""What is known of a log to score runs over it by: relations, reference trajectories, and the truth of a simulated run.
+
+The truth is read here, where methods do not get to see it.
+"""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from schemas import topics
+from schemas.convert import seconds, yaw_of
+from schemas.messages import NavState
+from services.slam.evaluation.beside import references_beside, relations_beside
+from services.slam.evaluation.reference import Trajectory
+from services.slam.evaluation.relations import Relations, read_relations
+from services.slam.logs.laser_log import LaserLog
+from services.slam.logs.mcap_log import samples_of
+from services.slam.logs.opening import is_recorded
+from uvf.runtime.bus import matches
+from uvf.runtime.params import BadInput
+
+
+@dataclass(frozen=True)
+class Known:
+    """By the name of the file they come from."""
+
+    relations: dict[str, Relations]
+    references: dict[str, Trajectory]
+
+
+def known_of(path: Path, log: LaserLog, vehicle: str | None, relations: Path | None) -> Known:
+    """relations: a file to score by, instead of those beside the log. Raises BadInput."""
+    chosen = {relations.name: read_relations(relations)} if relations else relations_beside(path, log)
+    references = references_beside(path, log)
+    if is_recorded(path) and (truth := _truth(path, log, vehicle)) is not None:
+        references["truth"] = truth
+    return Known(chosen, references)
+
+
+def _truth(path: Path, log: LaserLog, vehicle: str | None) -> Trajectory | None:
+    """At the stamps of the readings, as far as they are between those of the truth; None where there is none."""
+    name = vehicle or log.name.removeprefix(f"{path.stem}-")
+    states = [NavState.FromString(s.payload) for s in samples_of(path) if matches(topics.TRUTH.at(name), s.key)]
+    if len(states) < 2:
+        return None
+    track = np.array([(seconds(s.timestamp), s.position.x, s.position.y, yaw_of(s.orientation)) for s in states])
+    track[:, 3] = np.unwrap(track[:, 3])
+    stamps = log.stamps[(log.stamps >= track[0, 0]) & (log.stamps <= track[-1, 0])]
+    if not len(stamps):
+        raise BadInput(f"log {path}: its scans and its truth are of different times")
+    return Trajectory(stamps, np.column_stack([np.interp(stamps, track[:, 0], column) for column in track[:, 1:].T]))

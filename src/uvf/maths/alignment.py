@@ -1,0 +1,22 @@
+"""The rigid motion that lays one trajectory onto another."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uvf.maths.planar import Pose2
+
+Floats = NDArray[np.float64]
+
+
+def aligned(a: Floats, b: Floats) -> Pose2:
+    """a_from_b by least squares over pairs of points (n, 2) each; the yaw is 0 where the points do not tell it.
+
+    Umeyama, "Least-squares estimation of transformation parameters between two point patterns" (1991), in the plane and
+    without scale: the sums of dot and cross products of the centred points give cosine and sine.
+    """
+    mean_a, mean_b = a.mean(axis=0), b.mean(axis=0)
+    p, q = a - mean_a, b - mean_b
+    yaw = float(np.arctan2((q[:, 0] * p[:, 1] - q[:, 1] * p[:, 0]).sum(), (p * q).sum()))
+    c, s = np.cos(yaw), np.sin(yaw)
+    x, y = mean_a - np.array(((c, -s), (s, c))) @ mean_b
+    return Pose2(float(x), float(y), yaw)

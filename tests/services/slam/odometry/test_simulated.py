@@ -1,0 +1,137 @@
+"""In the ground simulator: the demo's rover as far off as it says it may be; wheels that spin against a bookcase; a receiver outdoors."""
+
+from dataclasses import replace
+
+import msgspec
+import numpy as np
+import pytest
+
+from schemas import topics
+from schemas.convert import seconds, yaw_of
+from schemas.messages import WheelCommand
+from services.autopilot.ground.build import hosts as autopilot
+from services.planner.build import build as planner
+from services.sim_ground.build import build as simulator
+from services.slam.build import build as slam
+from uvf.maths.planar import Pose2, compose, inverse
+from uvf.maths.rotations import wrap
+from uvf.runtime.lockstep import Lockstep
+from uvf.runtime.service import Service
+from uvf.runtime.site import ROOT, Host, load_site
+from uvf.runtime.vehicle_file import GnssSensor, Mount
+
+KEPT = ("ODOMETRY", "TRUTH", "EVENTS", "NAV_STATE")
+CHANGE = msgspec.structs.replace
+
+
+def demo(**changes):
+    """The demo's site, with parts of the rover's file changed."""
+    site = load_site(ROOT / "missions" / "demo.yaml")
+    burger = site.members["burger"]
+    return replace(site, members={**site.members, "burger": replace(burger, file=CHANGE(burger.file, **changes))})
+
+
+def run(hosts, duration):
+    """All messages of ``KEPT``, by topic name."""
+    lockstep, heard = Lockstep(hosts), {name: [] for name in KEPT}
+    for name in KEPT:
+        topic = getattr(topics, name)
+        lockstep.bus.subscribe(
+            topic.by("*").at("burger"), topic.qos, lambda s, n=name, m=topic.message: heard[n].append(m.FromString(s.payload))
+        )
+    lockstep.run(duration)
+    lockstep.close()
+    return heard
+
+
+def beside_truth(heard):
+    """(t, odometry, true pose since the start, way) at each odometry whose time the truth knows, too."""
+    true = {round(seconds(m.timestamp), 3): Pose2(m.position.x, m.position.y, yaw_of(m.orientation)) for m in heard["TRUTH"]}
+    start, way, last = None, 0.0, None
+    for told in heard["ODOMETRY"]:
+        t = round(seconds(told.timestamp), 3)
+        if t in true:
+            start, last = start or true[t], last or true[t]
+            way += float(np.hypot(true[t].x - last.x, true[t].y - last.y))
+            last = true[t]
+            yield t, told, compose(inverse(start), last), way
+
+
+def wheels_only(turning):
+    """Commands of both wheels [rad/s] after a second of standing."""
+
+    class Driver(Service):
+        name, hz, outputs = "driver", 50.0, {"wheels": topics.WHEEL_COMMAND}
+
+        def step(self, t):
+            left, right = turning(t) if t > 1.0 else (0.0, 0.0)
+            return {"wheels": WheelCommand(left=left, right=right)}
+
+    return Host(Driver, Driver, "burger")
+
+
+@pytest.fixture(scope="module")
+def explored():
+    site = demo()
+    return run([host for build in (simulator, slam, planner, autopilot) for host in build(site)], 40.0)
+
+
+def test_the_rover_is_no_farther_off_than_its_covariance_says(explored):
+    errors = []
+    for t, told, true, way in beside_truth(explored):
+        pose = told.pose
+        e = np.array((pose.position.x - true.x, pose.position.y - true.y, wrap(yaw_of(pose.orientation) - true.yaw)))
+        p = np.array(told.pose_covariance).reshape(6, 6)[np.ix_((0, 1, 5), (0, 1, 5))]
+        if t > 5.0:
+            errors.append((e @ np.linalg.solve(p, e) / 3, np.hypot(*e[:2]) / way))
+    assert way > 8.0
+    assert np.max(errors, axis=0)[0] < 4.0
+    assert np.max(errors, axis=0)[1] < 0.02
+
+
+def test_a_rover_that_drives_about_does_not_slip_by_its_own_account(explored):
+    assert [event.text for event in explored["EVENTS"] if event.source == "odometry"] == []
+
+
+def test_wheels_that_spin_against_a_bookcase_are_noticed():
+    """Strong motors on a slippery floor: the wheels turn on when the rover stands before the shelf after 9.5 s."""
+    ground = load_site(ROOT / "missions" / "demo.yaml").members["burger"].file.ground
+    strong = CHANGE(ground, motor=CHANGE(ground.motor, stall_torque=2.0), friction=CHANGE(ground.friction, mu=0.4, mu2=0.4))
+    site = demo(ground=strong)
+    heard = run([*simulator(site), *slam(site), wheels_only(lambda t: (9.0, 9.0))], 18.0)
+    *_, (_, told, true, _) = beside_truth(heard)
+    rolled = 9.0 * strong.wheel_radius * 17.0
+    assert rolled - true.x > 2.0
+    assert told.pose.position.x - true.x < 0.25 * (rolled - true.x)
+    assert any("wheels slip" in event.text and seconds(event.timestamp) > 9.0 for event in heard["EVENTS"])
+
+
+UP_THE_RAMP = """
+about: A rover before the western ramp of the terrace.
+world: plaza
+vehicles:
+  burger: {model: burger, system_id: 2, start: {x: 24.5, y: 24.0, yaw: 0.0}}
+"""
+
+
+def test_a_ramp_is_no_slip(tmp_path):
+    mission = tmp_path / "ramp.yaml"
+    mission.write_text(UP_THE_RAMP)
+    site = load_site(mission)
+    heard = run([*simulator(site), *slam(site), wheels_only(lambda t: (9.0, 9.0))], 14.0)
+    assert heard["TRUTH"][-1].position.z > 0.35
+    assert [event.text for event in heard["EVENTS"]] == []
+    *_, (_, told, true, way) = beside_truth(heard)
+    assert told.pose.position.x == pytest.approx(true.x, abs=0.02 * way)
+
+
+def test_a_receiver_keeps_the_pose_in_the_world():
+    sensors = load_site(ROOT / "missions" / "demo.yaml").members["burger"].file.sensors
+    gnss = GnssSensor(hz=5.0, horizontal_noise=0.3, vertical_noise=0.5, speed_noise=0.05, latency=0.1, mount=Mount((-0.05, 0.03, 0.2)))
+    site = demo(sensors=CHANGE(sensors, gnss=gnss))
+    heard = run([*simulator(site), *slam(site), wheels_only(lambda t: (9.0, 9.0 + 2.0 * (t > 4.0)))], 9.0)
+    state, truth = heard["NAV_STATE"][-1], heard["TRUTH"][-1]
+    off = np.hypot(state.position.x - truth.position.x, state.position.y - truth.position.y)
+    assert off < 0.2
+    assert off < 4.0 * state.position_sigma
+    assert heard["ODOMETRY"][0].pose.position.x == pytest.approx(0.0, abs=0.01)
