@@ -2,16 +2,20 @@
 
 import os
 import signal
+import subprocess
+import sys
 import time
+from pathlib import Path
 
 import pytest
 
 from schemas.messages import Process
 from tests.runtime.modes import free_port
 from uvf.launch import supervisor as module
-from uvf.launch.supervisor import DEATHS, Supervisor
+from uvf.launch.supervisor import DEATHS, HANGS, Child, Supervisor
 
 PATIENCE = 20.0
+BUSY = "while True: pass"
 
 
 def nowhere(line):
@@ -91,3 +95,42 @@ def test_a_process_that_has_not_begun_its_loop_is_given_all_the_time_it_needs(su
     until(supervisor, lambda: any(b"waiting: no router" in line for line in printed))
     assert supervisor.children["recorder"].restarts == 0
     assert supervisor.children["recorder"].state == Process.RUNNING
+
+
+@pytest.fixture
+def child(tmp_path):
+    alive = tmp_path / "alive"
+    alive.touch()
+    return Child("toy", [], print, alive)
+
+
+def test_without_a_sign_of_life_it_hangs(child, monkeypatch):
+    monkeypatch.setattr(Child, "_waited", lambda self: 3.0)
+    assert not child.is_silent(100.0)
+    assert not child.is_silent(100.0 + HANGS)
+    assert child.is_silent(100.1 + HANGS)
+
+
+def test_the_time_in_which_there_was_no_processor_for_it_does_not_count(child, monkeypatch):
+    waited = [3.0]
+    monkeypatch.setattr(Child, "_waited", lambda self: waited[0])
+    assert not child.is_silent(100.0)
+    waited[0] += 8.0
+    assert not child.is_silent(107.9 + HANGS)
+    assert child.is_silent(108.1 + HANGS)
+
+
+@pytest.mark.skipif(not Path("/proc/self/schedstat").exists(), reason="this system does not tell how long a process waits")
+def test_two_on_one_processor_keep_each_other_waiting(child):
+    command = [sys.executable, "-c", f"import os; os.sched_setaffinity(0, [{min(os.sched_getaffinity(0))}])\n{BUSY}"]
+    child.popen, other = subprocess.Popen(command), subprocess.Popen(command)
+    try:
+        end = time.monotonic() + 30
+        while child._waited() < 0.5:
+            assert time.monotonic() < end
+            time.sleep(0.01)
+    finally:
+        for popen in (child.popen, other):
+            popen.kill()
+            popen.wait()
+    assert child._waited() == 0.0

@@ -1,6 +1,7 @@
 """What ends a process ends only its copy."""
 
 import ctypes
+import gc
 import os
 
 import pytest
@@ -55,3 +56,21 @@ def test_a_copy_that_is_stuck_is_made_again(monkeypatch, tmp_path):
         return "done"
 
     assert guarded(work) == "done"
+
+
+class Waiting:
+    """What is only let go of by a thread that the copy does not have."""
+
+    def __init__(self):
+        self.itself, self.home = self, os.getpid()
+
+    def __del__(self):
+        if os.getpid() != self.home:
+            ctypes.CDLL(None).pause()
+
+
+def test_the_copy_does_not_collect_what_the_process_has_left_behind(monkeypatch):
+    monkeypatch.setattr(guarding, "IDLE", 0.2)
+    gc.collect()
+    Waiting()
+    assert guarded(lambda: len([[] for _ in range(100_000)])) == 100_000

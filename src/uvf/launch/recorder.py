@@ -23,7 +23,7 @@ FLUSH_PERIOD = 1.0  # s
 ROTATE_BYTES = 500_000_000
 COMMON = "common"  # in vehicles/: parts that several vehicles include
 ROOM = 100_000_000  # bytes free on the disk, from which recording is taken up again
-NICE = 15
+NICE = 10
 LOOK = 0.05  # s
 
 Tell = Callable[[str, Event.Severity], None]

@@ -19,7 +19,7 @@ DEATHS = 3
 DEATH_WINDOW = 30.0  # s: this many deaths within it, and a process is given up
 BAD_INPUT = 2  # exit code: starting it again cannot help
 TERM_PATIENCE = 20.0  # s; a log is written to its end on a busy machine too
-HANGS = 10.0  # s without a sign of life
+HANGS = 10.0  # s without a sign of life, in which it was not kept waiting for a processor
 
 
 @dataclass
@@ -35,6 +35,7 @@ class Child:
     output: Output | None = None
     touched: int | None = None  # ns, of the file's own clock: only looked at for a change
     heard: float = 0.0  # s, when that changed
+    kept_waiting: float = 0.0  # s in all, until then
     hung: bool = False
     state: Process.State = Process.STARTING
     restarts: int = 0
@@ -46,13 +47,22 @@ class Child:
         return Process(name=self.name, state=self.state, pid=pid, restarts=self.restarts, reason=self.reason)
 
     def is_silent(self, now: float) -> bool:
-        """Whether its loop has begun and has not gone round for ``HANGS``; now [s, monotonic]."""
+        """Whether its loop has begun and has not gone round for ``HANGS``; now [s, monotonic].
+
+        On a machine with too much to do, one that gives way to others may get no processor for longer than that.
+        """
         touched = None
         with contextlib.suppress(FileNotFoundError):
             touched = self.alive.stat().st_mtime_ns
         if touched != self.touched:
-            self.touched, self.heard = touched, now
-        return touched is not None and now - self.heard > HANGS
+            self.touched, self.heard, self.kept_waiting = touched, now, self._waited()
+        return touched is not None and now - self.heard > HANGS + (self._waited() - self.kept_waiting)
+
+    def _waited(self) -> float:
+        """Seconds in which its main thread could have run and no processor was free; 0 on systems that do not tell."""
+        with contextlib.suppress(OSError):
+            return int(Path(f"/proc/{_popen(self).pid}/schedstat").read_text().split()[1]) / 1e9
+        return 0.0
 
 
 class Supervisor:

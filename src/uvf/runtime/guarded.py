@@ -1,5 +1,6 @@
 """Runs what may take the whole process with it in a copy of the process: an engine of others that aborts on a fault in its file."""
 
+import gc
 import os
 import pickle
 import select
@@ -75,6 +76,7 @@ def _wait(child: int, reader: int) -> None:
 def _answer(work: Callable[[], T], writer: int, said: str) -> None:
     """In the copy; never returns."""
     code = 1
+    gc.disable()  # what it would collect may wait for ever for threads that are not in the copy: a session of Zenoh does
     signal.signal(signal.SIGALRM, signal.SIG_DFL)  # an engine that hangs in its own code hears nothing else
     signal.alarm(PATIENCE)
     try:
