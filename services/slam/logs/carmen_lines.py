@@ -18,6 +18,8 @@ Triple = tuple[float, float, float]
 STAMP = 3
 """Words at the end of each line: ipc stamp, host, logger stamp."""
 FEWEST_BEAMS = 2
+NOWHERE = 1e9
+"""m: no place on Earth is so far from another one."""
 
 
 class Unreadable(ValueError):
@@ -70,7 +72,7 @@ def read_lines(text: Iterable[str]) -> Lines:
 
 
 def _take(line: str, lines: Lines) -> None:
-    kind, _, rest = line.partition(" ")
+    kind, rest = (*line.split(maxsplit=1), "", "")[:2]
     if kind == "FLASER":
         lines.sweeps.append(_flaser(rest))
     elif kind == "ROBOTLASER1":
@@ -118,7 +120,9 @@ def _robotlaser(rest: str) -> Sweep:
         raise Unreadable("not as many ranges as the line says")
     start, view, step = _triple(numbers[1:4])
     range_max = float(numbers[4])
-    step = step if step > 0.0 else view / max(n - 1, 1)
+    step = step if step > 0.0 else view / (n - 1)
+    if not step > 0.0:
+        raise Unreadable("beams that all point the same way")
     return Sweep(stamp, numbers[8 : 8 + n], _triple(tail[3:6]), _triple(tail[:3]), Fan(start, step, range_max))
 
 
@@ -132,6 +136,6 @@ def _count(numbers: Floats, place: int) -> int:
 
 def _triple(numbers: Floats) -> Triple:
     x, y, yaw = numbers.tolist()
-    if not (isfinite(x) and isfinite(y) and isfinite(yaw)):
-        raise Unreadable("a pose or a direction is no number")
+    if not all(isfinite(v) and abs(v) < NOWHERE for v in (x, y, yaw)):
+        raise Unreadable("a pose or a direction that cannot be")
     return x, y, yaw

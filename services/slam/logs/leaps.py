@@ -14,21 +14,18 @@ QUICKEST, WIDEST = 2 * np.pi, 1.0
 """rad/s and rad: the same of turns."""
 
 
-def leaps(stamps: Floats, odom_from_base: Floats) -> NDArray[np.int64]:
-    """Indices of the poses (n, 3) that are reached by a leap from the one before. stamps: (n,) s, perhaps out of order."""
-    moved, period = steps(odom_from_base), np.abs(np.diff(stamps))
-    far = np.hypot(moved[:, 0], moved[:, 1]) > FARTHEST + FASTEST * period
-    return np.flatnonzero(far | (np.abs(moved[:, 2]) > WIDEST + QUICKEST * period)) + 1
-
-
-def without_leaps(stamps: Floats, odom_from_base: Floats) -> Floats:
-    """The poses as if the vehicle had stood still while its odometry leapt: what else it did, nobody knows."""
-    found = leaps(stamps, odom_from_base)
-    if not len(found):
-        return odom_from_base
-    moved = steps(odom_from_base)
-    moved[found - 1] = IDENTITY
+def without_leaps(times: Floats, odom_from_base: Floats) -> tuple[Floats, NDArray[np.int64]]:
+    """The poses (n, 3) as if the vehicle had stood still while its odometry leapt (what else it did, nobody knows), and the indices
+    of those that were reached by a leap. times: (n,) s, never falling.
+    """
+    moved, period = steps(odom_from_base), np.diff(times)
+    near = np.hypot(moved[:, 0], moved[:, 1]) <= FARTHEST + FASTEST * period
+    slow = np.abs(moved[:, 2]) <= WIDEST + QUICKEST * period
+    leapt = np.flatnonzero(~(near & slow))
+    if not len(leapt):
+        return odom_from_base, leapt
+    moved[leapt] = IDENTITY
     poses = [Pose2(*odom_from_base[0].tolist())]
     for step in moved.tolist():
         poses.append(compose(poses[-1], Pose2(*step)))
-    return np.array(poses)
+    return np.array(poses), leapt + 1

@@ -16,7 +16,7 @@ from schemas import topics
 from schemas.convert import seconds, yaw_of
 from schemas.messages import FrameTransforms, LaserScan, Odometry
 from services.slam.logs.laser_log import LaserLog, OdometryTrack
-from services.slam.logs.leaps import leaps, without_leaps
+from services.slam.logs.leaps import without_leaps
 from services.slam.logs.no_return import farthest_return
 from services.slam.reading import Beams, Reading
 from services.slam.scan_message import Shape, beams_of, shape_of
@@ -92,8 +92,7 @@ def _assembled(path: Path, name: str, heard: _Heard) -> LaserLog:
         raise BadInput(f"log {path}: no odometry of '{name}' in it")
     track = np.array(heard.odometry)
     track = track[np.unique(track[:, 0], return_index=True)[1]]
-    leapt = len(leaps(track[:, 0], track[:, 1:]))
-    track[:, 1:] = without_leaps(track[:, 0], track[:, 1:])
+    track[:, 1:], leapt = without_leaps(track[:, 0], track[:, 1:])
     scans = sorted(heard.scans, key=lambda s: seconds(s.timestamp))
     stamps = np.array([seconds(s.timestamp) for s in scans])
     usable = (stamps >= track[0, 0] - REACH) & (stamps <= track[-1, 0] + REACH)
@@ -110,7 +109,7 @@ def _assembled(path: Path, name: str, heard: _Heard) -> LaserLog:
     counts = (
         (int((~usable).sum()), "scans without odometry are left out"),
         (heard.broken, "messages that cannot be read are left out"),
-        (leapt, "leaps of the odometry are taken for standing still"),
+        (len(leapt), "leaps of the odometry are taken for standing still"),
     )
     notes = tuple(f"log {path}: {count} {what}" for count, what in counts if count)
     return LaserLog(f"{path.stem}-{name}", readings, stamps, OdometryTrack(track[:, 0], composed(start, track[:, 1:])), notes)

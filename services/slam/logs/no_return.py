@@ -24,12 +24,12 @@ def farthest_return(ranges: Sequence[Floats]) -> float:
     histogram that stand out. Where none does every reading is a return, and the answer lies just above the longest.
     """
     known = np.concatenate(ranges)
-    known = known[np.isfinite(known) & (known > 0.0)]
+    known = np.sort(known[np.isfinite(known) & (known > 0.0)])
     if not len(known):
         return 0.0
-    end = known.max()
+    end = known[-min(LEAST, len(known))]  # the few that are longer may be garbled
     values, counts = np.unique(known[known > end - BAND - BEFORE], return_counts=True)
     last = values >= end - BAND
     usual = counts[~last].mean() if not last.all() else 1.0
     codes = values[last & (counts >= max(LEAST, OUTSTANDING * usual))]
-    return float(codes.min() if len(codes) else np.nextafter(end, np.inf))
+    return float(codes.min() if len(codes) else np.nextafter(known[-1], np.inf))

@@ -10,7 +10,7 @@ from tests.services.slam.logs.carmen_text import flaser, odom, robotlaser, write
 from uvf.maths.planar_arrays import composed
 from uvf.runtime.params import BadInput
 
-RANGES = (1.0,) * 180
+RANGES = tuple(round(1.0 + 0.01 * i, 2) for i in range(180))
 
 
 def driving(n, speed=0.5):
@@ -66,12 +66,20 @@ def test_corrected_laser_poses_beside_raw_robot_poses_are_no_place_on_the_robot(
 
 
 @pytest.mark.parametrize(
-    ("count", "last", "step"), [(180, 89.0, 1.0), (181, 90.0, 1.0), (360, 89.5, 0.5), (361, 90.0, 0.5), (541, 135.0, 0.5)]
+    ("count", "last", "step"),
+    [(180, 89.0, 1.0), (181, 90.0, 1.0), (360, 89.5, 0.5), (361, 90.0, 0.5), (541, 135.0, 0.5), (1081, 135.0, 0.25)],
 )
 def test_the_beams_of_a_flaser_line_follow_from_their_number(tmp_path, count, last, step):
-    beams = read_carmen(write(tmp_path, flaser(1.0, (0, 0, 0), (1.0,) * count))).readings[0].beams
+    log = read_carmen(write(tmp_path, flaser(1.0, (0, 0, 0), np.linspace(1.0, 8.0, count))))
+    beams = log.readings[0].beams
+    assert log.notes == ()
     assert np.degrees(beams.bearings[-1]) == pytest.approx(last)
     assert np.degrees(np.diff(beams.bearings)) == pytest.approx(step)
+
+
+def test_a_number_of_beams_that_no_usual_lidar_has_is_told(tmp_path):
+    log = read_carmen(write(tmp_path, flaser(1.0, (0, 0, 0), np.linspace(1.0, 8.0, 401))))
+    assert [n for n in log.notes if "401 beams: taken for half a circle" in n]
 
 
 def test_the_beams_follow_from_the_parameters_where_these_fit(tmp_path):
@@ -134,6 +142,31 @@ def test_the_largest_range_of_the_robot_or_the_line_holds(tmp_path):
     assert (by_param.readings[0].returned.sum(), by_line.readings[0].returned.sum()) == (10, 20)
 
 
+def test_a_largest_range_of_zero_is_none(tmp_path):
+    log = read_carmen(write(tmp_path, "PARAM robot_front_laser_max 0 nohost 0", *driving(2)))
+    assert log.readings[0].returned.all()
+
+
+def test_a_few_garbled_ranges_do_not_hide_what_is_no_return(tmp_path):
+    rng = np.random.default_rng(6)
+    ranges = [np.where(rng.random(180) < 0.1, 81.83, rng.uniform(0.5, 30.0, 180)).round(2) for _ in range(20)]
+    ranges[3][5], ranges[7][9] = 8183.0, 1e30
+    log = read_carmen(write(tmp_path, *(flaser(i, (0, 0, 0), r) for i, r in enumerate(ranges))))
+    assert all(np.array_equal(reading.returned, r < 80.0) for reading, r in zip(log, ranges, strict=True))
+
+
+@pytest.mark.parametrize(("ranges", "told"), [(np.zeros(180), "nothing to map"), (1000.0 * np.array(RANGES), "CARMEN's are in metres")])
+def test_ranges_that_no_map_can_be_made_of_are_told(tmp_path, ranges, told):
+    log = read_carmen(write(tmp_path, flaser(1.0, (0, 0, 0), ranges)))
+    assert told in log.notes[0]
+
+
+def test_odometry_that_never_moves_is_told(tmp_path):
+    still, moving = (read_carmen(write(tmp_path, *driving(3, speed))).notes for speed in (0.0, 0.5))
+    assert "never moves" in still[0]
+    assert moving == ()
+
+
 def test_odometry_that_begins_far_away_begins_at_zero(tmp_path):
     lines = [flaser(i, (576.5, 0.1 + i, pi / 2), RANGES) for i in range(3)]
     log = read_carmen(write(tmp_path, odom(0.5, (576.5, 0.6, pi / 2)), *lines))
@@ -164,11 +197,54 @@ def test_broken_lines_are_left_out_counted_and_told_once(tmp_path):
         assert part in log.notes[0]
 
 
+@pytest.mark.parametrize("change", [lambda line: line.replace(" ", "\t"), lambda line: f"  {line}\r"])
+def test_white_space_of_any_kind_parts_the_words(tmp_path, change):
+    assert len(read_carmen(write(tmp_path, *map(change, driving(3))))) == 3
+
+
+def test_beams_that_all_point_the_same_way_and_poses_beyond_the_earth_are_left_out(tmp_path):
+    good = robotlaser(1.0, (0, 0, 0), (2.0,) * 31, (0, 0, 0))
+    flat = robotlaser(2.0, (0, 0, 0), (2.0,) * 31, (0, 0, 0), fan=(0.0, 0.0, 0.0, 20.0))
+    lost = robotlaser(3.0, (1e300, 0, 0), (2.0,) * 31, (0, 0, 0))
+    log = read_carmen(write(tmp_path, good, flat, lost))
+    assert len(log) == 1
+    assert "1 lines with beams that all point the same way (first: line 2)" in log.notes[0]
+    assert "1 lines with a pose or a direction that cannot be (first: line 3)" in log.notes[0]
+
+
+def test_a_laser_that_cannot_be_on_the_robot_is_refused(tmp_path):
+    with pytest.raises(BadInput, match=r"made\.clf: the laser is said to sit .* mend PARAM robot_frontlaser_offset"):
+        read_carmen(write(tmp_path, "PARAM robot_frontlaser_offset 1e300 nohost 0", *driving(2)))
+
+
 def test_a_clock_that_is_set_back_goes_on(tmp_path):
     stamps = [100.0, 100.1, 100.2, 40.0, 40.1]
     log = read_carmen(write(tmp_path, *(flaser(t, (0.1 * i, 0, 0), RANGES) for i, t in enumerate(stamps))))
     assert [r.t for r in log] == pytest.approx([100.0, 100.1, 100.2, 100.3, 100.4])
     assert any("set back 1 times" in n for n in log.notes)
+
+
+@pytest.mark.parametrize("garbled", [0.0, 1e12])
+def test_a_single_garbled_stamp_moves_no_other_one(tmp_path, garbled):
+    stamps = [100.0, 100.1, garbled, 100.3, 100.4]
+    log = read_carmen(write(tmp_path, *(flaser(t, (0.1 * i, 0, 0), RANGES) for i, t in enumerate(stamps))))
+    assert [r.t for r in log] == pytest.approx([100.0, 100.1, 100.2, 100.3, 100.4])
+    assert log.stamps.tolist() == stamps
+    assert len(log.notes) == 1 and "1 stamps are far from those before and after" in log.notes[0]
+
+
+def test_a_track_whose_clock_was_set_back_is_not_laid_beside_the_sweeps(tmp_path):
+    stamps = [100.0, 100.1, 100.2, 40.0, 40.1]
+    lines = [line for i, t in enumerate(stamps) for line in (odom(t, (0.1 * i, 0, 0)), flaser(t, (0.1 * i, 0, 0), RANGES))]
+    assert read_carmen(write(tmp_path, *lines[:6])).odometry is not None
+    assert read_carmen(write(tmp_path, *lines)).odometry is None
+
+
+def test_odometry_and_clock_that_begin_anew_together_are_a_leap(tmp_path):
+    lines = [flaser(5000.0 + 0.1 * i, (30.0 + 0.1 * i, 0, 0), RANGES) for i in range(5)]
+    lines += [flaser(0.1 * i, (0.1 * i, 0, 0), RANGES) for i in range(5)]
+    log = read_carmen(write(tmp_path, *lines))
+    assert log.odom_from_base[:, 0] == pytest.approx([0.0, 0.1, 0.2, 0.3, 0.4, 0.4, 0.5, 0.6, 0.7, 0.8])
 
 
 def test_a_long_time_without_sweeps_is_told(tmp_path):
