@@ -100,6 +100,20 @@ def test_notes_on_the_log_are_told_once_and_stand_in_the_report(tmp_path):
     assert "left out 1 lines with" in (tmp_path / "r" / "report.md").read_text()
 
 
+def test_relations_of_another_log_are_refused(tmp_path):
+    (tmp_path / "foreign.txt").write_text("1 2 0 0 0 0 0 0\n")
+    answer = slam(write_room_log(tmp_path), "--relations", tmp_path / "foreign.txt", "--out", tmp_path / "r")
+    assert (answer.exit_code, answer.output.count("\n")) == (2, 1)
+    assert "foreign.txt: none of them is between two readings of the log" in answer.output
+
+
+def test_a_folder_of_results_that_is_none_is_told_before_the_run(tmp_path):
+    (tmp_path / "taken").write_text("")
+    answer = slam(write_room_log(tmp_path), "--out", tmp_path / "taken")
+    assert (answer.exit_code, answer.output.count("\n")) == (2, 1)
+    assert "taken: cannot be a folder: File exists" in answer.output
+
+
 @pytest.mark.parametrize(
     ("words", "told"),
     [

@@ -1,7 +1,9 @@
 """What lies beside a log to score its runs by: relations and reference trajectories that share its stamps."""
 
-from collections.abc import Iterator
+from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,6 +11,9 @@ from numpy.typing import NDArray
 from services.slam.evaluation.reference import Trajectory, read_trajectory
 from services.slam.evaluation.relations import Relations, index_of, read_relations
 from services.slam.logs.laser_log import LaserLog
+from uvf.runtime.params import BadInput
+
+Found = TypeVar("Found")
 
 RELATIONS = "*.relations"
 TRAJECTORIES = ("*poses.txt", "*trajectory.txt", "*.tum")
@@ -16,21 +21,41 @@ SHARED = 0.5
 """Share of a file's stamps that the log must have, for the file to be about it."""
 
 
-def relations_beside(path: Path, log: LaserLog) -> dict[str, Relations]:
-    """By the name of their file; of the log's own stem first."""
-    found = {p: read_relations(p) for p in _by_stem(path, [*path.parent.glob(RELATIONS)])}
-    return {p.name: r for p, r in found.items() if _is_about(log, r.stamps)}
+@dataclass(frozen=True)
+class Beside:
+    """By the name of their file; those of the log's own stem first."""
+
+    relations: dict[str, Relations]
+    references: dict[str, Trajectory]
+    notes: tuple[str, ...] = ()
+    """Files that cannot be read, a line each: nobody has named them, so they end nothing."""
 
 
-def references_beside(path: Path, log: LaserLog) -> dict[str, Trajectory]:
-    """By the name of their file; of the log's own stem first."""
-    found = {p: read_trajectory(p) for p in _by_stem(path, [p for pattern in TRAJECTORIES for p in path.parent.glob(pattern)])}
-    return {p.name: t for p, t in found.items() if _is_about(log, t.stamps)}
+def beside(path: Path, log: LaserLog) -> Beside:
+    """path: of the log, whose folder is searched."""
+    relations, of_relations = _readable(read_relations, _by_stem(path, log, (RELATIONS,)))
+    references, of_references = _readable(read_trajectory, _by_stem(path, log, TRAJECTORIES))
+    return Beside(
+        {name: r for name, r in relations.items() if _is_about(log, r.stamps)},
+        {name: t for name, t in references.items() if _is_about(log, t.stamps)},
+        (*of_relations, *of_references),
+    )
 
 
-def _by_stem(log: Path, files: list[Path]) -> Iterator[Path]:
+def _by_stem(path: Path, log: LaserLog, patterns: tuple[str, ...]) -> list[Path]:
     stem = log.name.split(".")[0]
-    yield from sorted(files, key=lambda p: (not p.name.startswith(stem), p.name))
+    files = {p for pattern in patterns for p in path.parent.glob(pattern)}
+    return sorted(files, key=lambda p: (not p.name.startswith(stem), p.name))
+
+
+def _readable(read: Callable[[Path], Found], files: list[Path]) -> tuple[dict[str, Found], list[str]]:
+    found, notes = {}, []
+    for path in files:
+        try:
+            found[path.name] = read(path)
+        except BadInput as error:
+            notes.append(f"left out: {error}")
+    return found, notes
 
 
 def _is_about(log: LaserLog, stamps: NDArray[np.float64]) -> bool:

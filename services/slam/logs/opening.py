@@ -16,10 +16,10 @@ def open_log(path: Path, vehicle: str | None = None) -> LaserLog:
     if is_recorded(path):
         return read_mcap(path, vehicle)
     if path.is_dir():
-        inside = sorted(p.name for p in path.iterdir() if p.suffix in CARMEN_ENDINGS)
+        inside = sorted(p.name for p in path.iterdir() if p.suffix.lower() in CARMEN_ENDINGS)
         hint = f"name a log in it: {', '.join(inside)}" if inside else "and there is no log in it"
         raise BadInput(f"log {path}: is a folder; {hint}")
-    if path.suffix not in CARMEN_ENDINGS:
+    if path.suffix.lower() not in CARMEN_ENDINGS:
         raise BadInput(f"log {path}: neither a CARMEN log ({', '.join(CARMEN_ENDINGS)}) nor a log of a run ({MCAP_ENDING})")
     if vehicle is not None:
         raise BadInput(f"log {path}: CARMEN logs are of one robot, which has no name; leave out --vehicle")

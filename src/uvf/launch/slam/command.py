@@ -46,16 +46,25 @@ def run_job(job: SlamJob) -> None:
     """Raises BadInput."""
     params = method_params(job.method, _values(job.values), "--set")
     log = open_log(job.log, job.vehicle)
-    for note in log.notes:
-        typer.echo(f"uvf: {note}", err=True)
     known = known_of(job.log, log, job.vehicle, job.relations)
+    for note in (*log.notes, *known.notes):
+        typer.echo(f"uvf: {note}", err=True)
+    folder = job.out or settings.runs_folder() / "slam" / f"{log.name}-{job.method}"
+    _make(folder)
     run = _watched(log, job.method, params)
     found = figures(run, known)
-    folder = job.out or settings.runs_folder() / "slam" / f"{log.name}-{job.method}"
     write_results(run, known, Made(job.method, params, job.resolution), found, folder)
     for heading, rows in all_tables(found).items():
         console.print(_table(heading, rows))
     typer.echo(f"results in {folder}")
+
+
+def _make(folder: Path) -> None:
+    """Before the run, which may take minutes. Raises BadInput."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise BadInput(f"--out {folder}: cannot be a folder: {error.strerror}") from error
 
 
 def _values(words: tuple[str, ...]) -> dict[str, Any]:

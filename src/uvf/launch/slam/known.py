@@ -11,9 +11,9 @@ import numpy as np
 from schemas import topics
 from schemas.convert import seconds, yaw_of
 from schemas.messages import NavState
-from services.slam.evaluation.beside import references_beside, relations_beside
+from services.slam.evaluation.beside import beside
 from services.slam.evaluation.reference import Trajectory
-from services.slam.evaluation.relations import Relations, read_relations
+from services.slam.evaluation.relations import Relations, index_of, read_relations
 from services.slam.logs.laser_log import LaserLog
 from services.slam.logs.mcap_log import samples_of
 from services.slam.logs.opening import is_recorded
@@ -27,15 +27,26 @@ class Known:
 
     relations: dict[str, Relations]
     references: dict[str, Trajectory]
+    notes: tuple[str, ...] = ()
+    """What is left out, a line each."""
 
 
 def known_of(path: Path, log: LaserLog, vehicle: str | None, relations: Path | None) -> Known:
     """relations: a file to score by, instead of those beside the log. Raises BadInput."""
-    chosen = {relations.name: read_relations(relations)} if relations else relations_beside(path, log)
-    references = references_beside(path, log)
+    found = beside(path, log)
+    chosen = {relations.name: _about(log, relations)} if relations else found.relations
+    references = dict(found.references)
     if is_recorded(path) and (truth := _truth(path, log, vehicle)) is not None:
         references["truth"] = truth
-    return Known(chosen, references)
+    return Known(chosen, references, found.notes)
+
+
+def _about(log: LaserLog, path: Path) -> Relations:
+    """Raises BadInput for a file that is broken or of another log."""
+    relations = read_relations(path)
+    if not (index_of(log.stamps, relations.stamps) >= 0).all(axis=1).any():
+        raise BadInput(f"relations {path}: none of them is between two readings of the log; it belongs to another one")
+    return relations
 
 
 def _truth(path: Path, log: LaserLog, vehicle: str | None) -> Trajectory | None:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize
 
-from services.slam.evaluation.beside import references_beside, relations_beside
+from services.slam.evaluation.beside import beside
 from services.slam.evaluation.reference import Trajectory, absolute_error, paired, read_trajectory, relative_error
 from tests.services.slam.evaluation.made_log import made_log, way
 from uvf.maths.alignment import aligned
@@ -96,5 +96,17 @@ def test_what_lies_beside_a_log_counts_if_it_is_about_it(tmp_path):
     (tmp_path / "foreign.relations").write_text(relation.format(1.0, 2.0))
     (tmp_path / "made.gmapping_poses.txt").write_text(f"{log.stamps[5]:.6f} 0 0 0\n")
     (tmp_path / "index_poses.txt").write_text("0 0 0 0\n1 0 0 0\n")
-    assert list(relations_beside(path, log)) == ["made.relations", "another.relations"]
-    assert list(references_beside(path, log)) == ["made.gmapping_poses.txt"]
+    found = beside(path, log)
+    assert list(found.relations) == ["made.relations", "another.relations"]
+    assert list(found.references) == ["made.gmapping_poses.txt"]
+    assert found.notes == ()
+
+
+def test_what_lies_beside_a_log_and_cannot_be_read_ends_nothing_and_is_told(tmp_path):
+    log = made_log()
+    (tmp_path / "made.relations").write_text(f"{log.stamps[0]:.6f} {log.stamps[1]:.6f} 0 0 0 0 0 0\n")
+    (tmp_path / "other.relations").write_text("hello\n")
+    (tmp_path / "my_poses.txt").write_text("my notes on poses\n")
+    found = beside(tmp_path / "made.clf", log)
+    assert (list(found.relations), list(found.references)) == (["made.relations"], [])
+    assert [note.split(":1:")[0].rpartition("/")[2] for note in found.notes] == ["other.relations", "my_poses.txt"]
