@@ -3,7 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from schemas.messages import Grid, LaserScan, Mode, PackedElementField, Pose, Quaternion, Timestamp, Vector3
+from schemas.messages import FrameTransform, Grid, LaserScan, Mode, PackedElementField, Pose, Quaternion, Timestamp, Vector3
+from uvf.maths.planar import Pose2
 
 Floats = NDArray[np.float64]
 
@@ -56,6 +57,16 @@ def planar_pose(x: float, y: float, yaw: float, z: float = 0.0) -> Pose:
         position=Vector3(x=x, y=y, z=z),
         orientation=Quaternion(w=float(np.cos(yaw / 2)), z=float(np.sin(yaw / 2))),
     )
+
+
+def pose2_of(pose: Pose) -> Pose2:
+    """A pose seen from above."""
+    return Pose2(pose.position.x, pose.position.y, yaw_of(pose.orientation))
+
+
+def pose2_of_frame(transform: FrameTransform) -> Pose2:
+    """``parent_from_child`` seen from above."""
+    return Pose2(transform.translation.x, transform.translation.y, yaw_of(transform.rotation))
 
 
 def scan_rays(scan: LaserScan) -> tuple[Floats, Floats]:

@@ -8,7 +8,7 @@ from msgspec import Meta
 from numpy.typing import NDArray
 
 from schemas import topics
-from schemas.convert import occupancy_cells, planar_pose, seconds, stamp, yaw_of
+from schemas.convert import occupancy_cells, planar_pose, pose2_of, seconds, stamp
 from schemas.messages import (
     CancelRequest,
     Event,
@@ -121,7 +121,7 @@ class PlannerService(Service):
         cancel: list[CancelRequest],
         set_mode: list[Answer[ModeRequest, Reply]],
     ) -> Outputs:
-        here = compose(self._map_from_world, Pose2(pose.pose.position.x, pose.pose.position.y, yaw_of(pose.pose.orientation)))
+        here = compose(self._map_from_world, pose2_of(pose.pose))
         self._explorer.taste = self._taste
         self._bounds = bounds
         changed = self._navigator.fit(self._body) | self._take_map(map)

@@ -7,7 +7,7 @@ from msgspec import Meta
 from numpy.typing import NDArray
 
 from schemas import topics
-from schemas.convert import scan_points, seconds, stamp, yaw_of
+from schemas.convert import pose2_of, scan_points, seconds, stamp, yaw_of
 from schemas.messages import DriveCommand, Event, LaserScan, PoseInFrame, PosesInFrame
 from services.planner.safety import safe_share
 from services.planner.tracking import Pace, Tracker
@@ -60,8 +60,7 @@ class TrackerService(Service):
 
     def step(self, t: float, path: PosesInFrame, pose: list[PoseInFrame], scan: LaserScan) -> Outputs:
         for message in pose:
-            position = message.pose.position
-            self._pose = Pose2(position.x, position.y, yaw_of(message.pose.orientation))
+            self._pose = pose2_of(message.pose)
             self._history.add(seconds(message.timestamp), self._pose)
         self._look(scan)
         self._tracker.pace = self._pace

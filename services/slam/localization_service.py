@@ -6,7 +6,7 @@ from math import isfinite
 import numpy as np
 
 from schemas import topics
-from schemas.convert import stamp, yaw_of
+from schemas.convert import pose2_of, pose2_of_frame, stamp
 from schemas.messages import Event, FrameTransform, Grid, LaserScan, MapFix, PlaceRequest, RelocalizeRequest, Reply
 from services.slam.localization.known_map import KnownMap, of_grid
 from services.slam.localization.localizer import Localizer, State
@@ -95,8 +95,7 @@ class LocalizationService(PlacingService):
     def recall(self, correction: FrameTransform | None = None) -> None:
         """Goes on where the vehicle was last believed to be."""
         if correction is not None:
-            shift = correction.translation
-            self._published = self._map_from_odom = self._start = Pose2(shift.x, shift.y, yaw_of(correction.rotation))
+            self._published = self._map_from_odom = self._start = pose2_of_frame(correction)
 
     def _take_map(self, t: float, known: Grid | None) -> list[Event]:
         """The one of the mission, or the first on map/known that can be used; one that cannot is told of once."""
@@ -145,8 +144,7 @@ class LocalizationService(PlacingService):
     def _placed(self, request: PlaceRequest) -> Reply:
         if self._localizer is None:
             return Reply(reason="there is no map yet")
-        position = request.pose.position
-        wanted = Pose2(position.x, position.y, yaw_of(request.pose.orientation))
+        wanted = pose2_of(request.pose)
         sigmas = (request.position_sigma or POSITION_SIGMA, request.yaw_sigma or YAW_SIGMA)
         if not all(isfinite(v) for v in (*wanted, *sigmas)) or min(sigmas) <= 0.0:
             return Reply(reason="a pose of finite numbers with sigmas above 0 is needed")

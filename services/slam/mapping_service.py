@@ -9,7 +9,7 @@ from msgspec import Meta
 from numpy.typing import NDArray
 
 from schemas import topics
-from schemas.convert import occupancy_grid, stamp, yaw_of
+from schemas.convert import occupancy_grid, pose2_of_frame, stamp
 from schemas.messages import Event, FrameTransform, Grid, LaserScan, MapFix, MapSession
 from services.slam.graph.uncertainty import turned
 from services.slam.maps.session import Session
@@ -99,8 +99,7 @@ class MappingService(PlacingService):
         """Goes on where the vehicle has been, with the session published last if the method can; else a new map grows there."""
         if correction is None:
             return
-        shift = correction.translation
-        self._published = self._map_from_odom = Pose2(shift.x, shift.y, yaw_of(correction.rotation))
+        self._published = self._map_from_odom = pose2_of_frame(correction)
         self._begun_elsewhere = True
         if session is not None and isinstance(self._method, Resumable):
             with suppress(BadInput):

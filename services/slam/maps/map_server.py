@@ -5,9 +5,9 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from schemas import topics
-from schemas.convert import yaw_of
+from schemas.convert import pose2_of_frame
 from schemas.messages import FrameTransform, Grid, MapReply, MapRequest, Reply, SaveMapRequest
-from uvf.maths.planar import Pose2, compose
+from uvf.maths.planar import compose
 from uvf.runtime.grid_message import as_map, as_message
 from uvf.runtime.map_file import GridMap
 from uvf.runtime.params import BadInput, nearest
@@ -68,6 +68,4 @@ class MapServer(Service):
 
 def in_world(grid: GridMap, world_from_map: FrameTransform) -> GridMap:
     """A vehicle's map where it lies in the world."""
-    shift = world_from_map.translation
-    placed = compose(Pose2(shift.x, shift.y, yaw_of(world_from_map.rotation)), grid.origin)
-    return GridMap(grid.cells, grid.resolution, placed)
+    return GridMap(grid.cells, grid.resolution, compose(pose2_of_frame(world_from_map), grid.origin))

@@ -50,20 +50,24 @@ class Readings:
             return None
         if dt > MAX_GAP or not len(rates):
             return Step(dt, left, right)
-        return self._step(dt, (left, right), self._body_from_imu @ rates.mean(axis=0), self._body_from_imu @ forces.mean(axis=0))
+        return self._step(dt, (left, right), rates.mean(axis=0), forces.mean(axis=0))
 
     def _step(self, dt: float, ways: tuple[float, float], rate: Floats, force: Floats) -> Step:
-        """Means of the inertial unit in the body's axes; its accelerometer feels the turning, too, where it sits off the axle."""
-        turning = float(rate[2])
-        if np.abs(rate).max() > MAX_RATE:
+        """rate, force: (3,) means of the inertial unit, in its axes; what is no number or no vehicle survives is left out.
+
+        The accelerometer feels the turning, too, where it sits off the axle.
+        """
+        if not np.abs(rate).max() <= MAX_RATE:
             return Step(dt, *ways)
+        _, pitching, turning = (self._body_from_imu @ rate).tolist()
         angular, self._turning = (turning - self._turning) / dt, turning
-        forward = float(force[0]) + turning**2 * self._arm[0] + angular * self._arm[1]
-        feels = np.any(force) and np.abs(force).max() < MAX_FORCE
-        return Step(dt, *ways, turning, forward if feels else None, float(rate[1]))
+        if not (np.any(force) and np.abs(force).max() < MAX_FORCE):
+            return Step(dt, *ways, turning, None, pitching)
+        forward = float(self._body_from_imu[0] @ force) + turning**2 * self._arm[0] + angular * self._arm[1]
+        return Step(dt, *ways, turning, forward, pitching)
 
     def _until(self, now: float) -> tuple[Floats, Floats]:
         """(n, 3) rates and forces of the samples of the interval that the wheels tell of."""
         due = [m for m in self._waiting if seconds(m.timestamp) <= now]
-        self._waiting = self._waiting[len(due) :]
+        self._waiting = [m for m in self._waiting if seconds(m.timestamp) > now]
         return np.array([array(m.angular_velocity) for m in due]), np.array([array(m.specific_force) for m in due])

@@ -59,7 +59,8 @@ class Satellites:
     def take(self, fix: Gnss, world: DriveFilter, odom_from_base: Pose2) -> bool:
         """A fix into the filter, whose pose belongs to ``odom_from_base``; whether it was used."""
         t = seconds(fix.timestamp)
-        known = fix.fix == Gnss.FIX_3D and isfinite(fix.horizontal_accuracy) and fix.horizontal_accuracy > 0.0
+        told = (fix.latitude, fix.longitude, fix.altitude, fix.horizontal_accuracy)
+        known = fix.fix == Gnss.FIX_3D and all(map(isfinite, told)) and fix.horizontal_accuracy > 0.0
         then = self._history.at(t)
         if t <= self._newest or not known or then is None:
             return False

@@ -3,7 +3,7 @@
 from math import isfinite
 
 from schemas import topics
-from schemas.convert import planar_pose, seconds, stamp, yaw_of
+from schemas.convert import planar_pose, pose2_of, pose2_of_frame, seconds, stamp
 from schemas.messages import Event, FrameTransform, Gnss, Imu, Odometry, PoseInFrame, WheelTicks
 from services.slam.odometry import telling
 from services.slam.odometry.calibration import Scales, SegmentMaker, WheelCalibration
@@ -106,8 +106,9 @@ class OdometryService(Service):
             applied = Scales(*map(float, known[SCALES].split())) if SCALES in known else Scales()
         except (KeyError, ValueError, TypeError):
             return
-        position = odometry.pose.position
-        pose = Pose2(position.x, position.y, yaw_of(odometry.pose.orientation))
+        pose = pose2_of(odometry.pose)
+        if not all(map(isfinite, pose)):
+            return
         self._filter.resume(pose, telling.pose_covariance(odometry), bias if isfinite(bias) else 0.0)
         self._applied = applied if all(0.7 < scale < 1.4 for scale in applied) else Scales()
         self._readings.last = WheelTicks(timestamp=odometry.timestamp, left=left, right=right)
@@ -141,8 +142,9 @@ class OdometryService(Service):
         self._segments.roll(step.left, step.right, self._filter.pose.yaw, slipping)
 
     def _correct(self, correction: FrameTransform) -> None:
-        shift, t = correction.translation, seconds(correction.timestamp)
-        newest = Pose2(shift.x, shift.y, yaw_of(correction.rotation))
+        newest, t = pose2_of_frame(correction), seconds(correction.timestamp)
+        if not all(map(isfinite, newest)):
+            return
         pose = self._filter.pose
         if not self._map.correct(newest, self._filter.covariance):
             return

@@ -1,8 +1,7 @@
 """Maps as messages."""
 
-from schemas.convert import occupancy_cells, occupancy_grid, planar_pose, yaw_of
+from schemas.convert import occupancy_cells, occupancy_grid, planar_pose, pose2_of
 from schemas.messages import Grid
-from uvf.maths.planar import Pose2
 from uvf.runtime.map_file import GridMap
 from uvf.runtime.params import BadInput
 
@@ -21,5 +20,4 @@ def as_map(message: Grid) -> GridMap:
         raise BadInput(f"a grid of {columns} columns with {len(message.data)} bytes is no map of whole rows")
     if not size.x > 0.0 or size.x != size.y:
         raise BadInput(f"a grid with cells of {size.x:g} x {size.y:g} m is no map: they have to be squares")
-    position = message.pose.position
-    return GridMap(occupancy_cells(message), size.x, Pose2(position.x, position.y, yaw_of(message.pose.orientation)))
+    return GridMap(occupancy_cells(message), size.x, pose2_of(message.pose))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from schemas.convert import occupancy_cells, planar_pose, stamp
-from schemas.messages import FrameTransform, Imu, KeyValuePair, LaserScan, Odometry, Vector3, WheelTicks
+from schemas.messages import FrameTransform, Imu, KeyValuePair, LaserScan, Odometry, Quaternion, Vector3, WheelTicks
 from services.slam.odometry.params import OdometryParams
 from services.slam.odometry.service import OdometryService
 from tests.services.slam.room import ANGLES
@@ -63,13 +63,27 @@ def test_ticks_of_no_size_move_nothing(size):
     assert abs(out["odometry"].pose.position.x) < 0.05
 
 
-def test_a_gyroscope_gone_mad_leaves_finite_numbers():
+@pytest.mark.parametrize("mad", [1e11, math.nan, math.inf])
+@pytest.mark.parametrize("axis", ["x", "z"])
+@pytest.mark.parametrize("of", ["angular_velocity", "specific_force"])
+def test_an_inertial_unit_gone_mad_leaves_finite_numbers(mad, axis, of):
     service = OdometryService("v", BURGER, START, OdometryParams())
     drive(service, 5)
-    mad = [Imu(timestamp=stamp(0.1), angular_velocity=Vector3(z=1e11))]
-    out = service.step(0.12, WheelTicks(timestamp=stamp(0.1), left=24, right=24, radians_per_tick=0.001), mad, None)
-    pose = out["odometry"].pose
-    assert all(map(math.isfinite, (pose.position.x, pose.position.y, pose.orientation.w, pose.orientation.z)))
+    imu = Imu(timestamp=stamp(0.1), specific_force=Vector3(z=9.81))
+    setattr(getattr(imu, of), axis, mad)
+    out = service.step(0.12, WheelTicks(timestamp=stamp(0.1), left=24, right=24, radians_per_tick=0.001), [imu], None)
+    assert_finite(out)
+
+
+def assert_finite(out):
+    for pose in (out["odometry"].pose, out["pose"].pose):
+        assert all(map(math.isfinite, (pose.position.x, pose.position.y, pose.orientation.w, pose.orientation.z)))
+
+
+@pytest.mark.parametrize("broken", [{"translation": Vector3(x=math.nan)}, {"rotation": Quaternion(w=math.nan)}])
+def test_a_correction_that_is_no_number_is_none(broken):
+    service = OdometryService("v", BURGER, START, OdometryParams())
+    assert_finite(drive(service, 5, correction=FrameTransform(timestamp=stamp(0.1), **broken)))
 
 
 def test_a_correction_without_orientation_is_none_of_the_heading():

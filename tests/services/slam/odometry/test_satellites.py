@@ -152,6 +152,8 @@ def test_a_fix_that_is_none_is_not_used():
         Gnss(timestamp=stamp(39.0)),
         Gnss(timestamp=stamp(39.1), fix=Gnss.FIX_3D),
         Gnss(timestamp=stamp(1e6), fix=Gnss.FIX_3D, horizontal_accuracy=1.0),
+        Gnss(timestamp=stamp(39.2), fix=Gnss.FIX_3D, latitude=float("nan"), horizontal_accuracy=1.0),
     ):
         pose.take([broken], odometry.pose)
     assert not pose.is_known(40.0)
+    assert pose.ratio == 0.0
