@@ -6,15 +6,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from services.slam.graph.drift import Drift
+from services.slam.graph.fitting import fitted, information_of
 from services.slam.graph.nodes import Nodes, Submap
 from services.slam.matching.branch_and_bound import Window, search
-from services.slam.matching.imls import Match, match
-from services.slam.matching.visibility import AGREES, THROUGH, verdicts
-from uvf.maths.planar import Pose2, compose, inverse
+from uvf.maths.planar import Pose2, compose
 from uvf.maths.rotations import wrap
 
 Floats = NDArray[np.float64]
-NO_PRIOR = np.zeros((3, 3))
 
 SPACING = 6  # keyframes from one anchor to the next
 LEAST_WAY = 12.0  # m of driving between two keyframes below which they tell nothing new of each other
@@ -25,11 +23,6 @@ TRIES = 2  # anchors that are tried there
 LEAST_SCORE = 0.5
 DISTINCT = 0.93
 """A second place whose score comes as near to the best one's as that leaves it open which of them it is."""
-LEAST_SHARE, MOST_RMS = 0.6, 0.05
-MOST_THROUGH = 0.15
-"""Of the surfaces that the other sees, those it has looked through."""
-FLOOR = np.diag((0.01, 0.01, 0.003)) ** 2
-"""Covariance that no match is better than: objects move, floors tilt the lidar [m^2, rad^2]."""
 QUERY_GRID, QUERY_RANGE = 0.1, 15.0
 """m between points and m of range of what is searched for."""
 
@@ -112,26 +105,8 @@ class LoopSearch:
         return thinned
 
     def _match(self, k: int, submap: Submap, guess: Pose2, score: float) -> Closure | None:
-        found = match(guess, self.nodes.all[k].cloud, submap.surfaces, NO_PRIOR)
-        if found.share < LEAST_SHARE or found.rms > MOST_RMS or self._blocked(k, submap, found):
-            return None
-        covariance = np.linalg.inv(found.information + 10.0 * np.eye(3)) + FLOOR
-        return Closure(submap.anchor, k, found.map_from_base, np.linalg.inv(covariance), score * found.share)
-
-    def _blocked(self, k: int, submap: Submap, found: Match) -> bool:
-        """Whether one looks through what the other sees."""
-        agree = through = 0
-        node, anchor_from_k = self.nodes.all[k], found.map_from_base
-        for m in (submap.members[0], submap.anchor, submap.members[-1]):
-            member = self.nodes.all[m]
-            member_from_k = compose(inverse(submap.anchor_from_member[m - submap.members[0]]), anchor_from_k)
-            seen = (
-                verdicts(node.cloud.points, member_from_k, member.rays),
-                verdicts(member.cloud.points, inverse(member_from_k), node.rays),
-            )
-            agree += sum(int(np.count_nonzero(v == AGREES)) for v in seen)
-            through += sum(int(np.count_nonzero(v == THROUGH)) for v in seen)
-        return through > MOST_THROUGH * (agree + through)
+        found = fitted(self.nodes.all[k], submap, self.nodes, guess)
+        return Closure(submap.anchor, k, found.map_from_base, information_of(found), score * found.share) if found else None
 
 
 def _apart(p: Pose2, q: Pose2) -> bool:

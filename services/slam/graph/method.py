@@ -13,6 +13,7 @@ from services.slam.graph.edges import Edge
 from services.slam.graph.loops import LoopSearch
 from services.slam.graph.nodes import Node, Nodes
 from services.slam.graph.pose_graph import PoseGraph
+from services.slam.graph.restored import LOOP, add_edges, add_keyframes
 from services.slam.graph.tracker import UNKNOWN, LocalMap, Motion, Tracker
 from services.slam.graph.uncertainty import followed, turned
 from services.slam.maps.session import KINDS, Edges, Session
@@ -114,20 +115,13 @@ class GraphSlam:
 
     def resume(self, session: Session, map_from_base: Pose2) -> None:
         """Goes on with a session before the first reading; the vehicle stands near map_from_base, wherever the session has ended."""
-        way = turn = 0.0
-        for keyframe in session.keyframes:
-            pose = keyframe.map_from_base
-            moved = compose(inverse(self.nodes.poses[-1]), pose) if len(self.nodes) else IDENTITY
-            way, turn = way + hypot(moved[0], moved[1]), turn + abs(moved[2])
+        way, turn = add_keyframes(session, self.nodes)
+        for pose in self.nodes.poses:
             self.graph.add_pose(pose)
-            self.nodes.add(Node(keyframe.reading, cloud_of(keyframe.reading), way, turn), pose)
+        add_edges(session.edges, self.graph)
         e = session.edges
-        for (i, j), measured, information, kind in zip(e.ends.tolist(), e.measured.tolist(), e.information, e.kinds, strict=True):
-            loop = kind == KINDS.index("loop")
-            self.graph.add_edge(Edge(i, j, Pose2(*measured), information, robust=loop))
-            self.ways.add(i, j, TIED if loop else hypot(measured[0], measured[1]))
-        for edge in np.flatnonzero(~e.enabled).tolist():
-            self.graph.enable(edge, False)
+        for (i, j), measured, kind in zip(e.ends.tolist(), e.measured.tolist(), e.kinds.tolist(), strict=True):
+            self.ways.add(i, j, TIED if kind == LOOP else hypot(measured[0], measured[1]))
         self._way, self._turn, self._pose = way, turn, map_from_base
         self._near = self.nodes.nearest(map_from_base)
         self._node_covariance = self._covariance = self.graph.relative_covariance(0, self._near) if self._near else np.zeros((3, 3))

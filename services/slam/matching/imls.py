@@ -170,3 +170,18 @@ def honest(h: Floats) -> Floats:
     shrink[:2, :2] = axes @ np.diag(np.sqrt(kept)) @ axes.T
     less: Floats = shrink @ h @ shrink
     return less
+
+
+def offsets(points: Floats, normals: Floats, surfaces: PointMap) -> Floats:
+    """(n,) m from points with normals, (n, 2) each, to the surface of the same side; infinite where there is none within CELL."""
+    return _offsets(points, normals, surfaces.table)
+
+
+@compiled
+def _offsets(points: Floats, normals: Floats, table: Table) -> Floats:
+    found = np.full(points.shape[0], np.inf)
+    for i in range(points.shape[0]):
+        nx, ny, e = _surface(points[i, 0], points[i, 1], (normals[i, 0], normals[i, 1]), table, CELL)
+        if nx != 0.0 or ny != 0.0:
+            found[i] = e
+    return found
