@@ -1,6 +1,6 @@
 """The map seen from above: a slice of it as an occupancy grid, and heights."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,7 +38,8 @@ def columns_of(octree: Octree, low: float, high: float, most: int) -> Columns | 
     """All columns; None while nothing is known.
 
     The slice holds the cells that reach into low..high [m]: one occupied cell makes its column occupied, else one free cell makes it free.
-    Where there would be more than ``most`` columns they are put together, four in one, until there are not.
+    Where there would be more than ``most`` columns they are put together, four in one, until there are not; no larger grid is made
+    on the way.
     """
     blocks = octree.blocks
     if octree.is_empty:
@@ -46,57 +47,39 @@ def columns_of(octree: Octree, low: float, high: float, most: int) -> Columns | 
     places = block_places(blocks.keys[: blocks.counts[BLOCKS]])
     order = np.lexsort((places[:, 2], places[:, 0], places[:, 1]))
     corner, last = places[:, :2].min(axis=0), places[:, :2].max(axis=0)
-    columns, rows = ((last - corner + 1) * SIDE).tolist()
+    size = (last - corner + 1)[::-1] * SIDE
+    halvings = 0
+    while np.prod(-(-size >> halvings)) > most:
+        halvings += 1
+    shape = tuple((-(-size >> halvings)).tolist())
     band = (int(np.floor(low / octree.resolution)) + REACH, int(np.ceil(high / octree.resolution)) + REACH)
-    out = (
-        np.full((rows, columns), UNKNOWN, dtype=np.int8),
-        np.full((rows, columns), np.nan, dtype=np.float32),
-        np.full((rows, columns), np.nan, dtype=np.float32),
-    )
-    _look_down(blocks, (places[order], order, corner), band, out)
+    out = (np.full(shape, UNKNOWN, dtype=np.int8), *(np.full(shape, np.nan, dtype=np.float32) for _ in range(2)))
+    _look_down(blocks, (places[order], order, corner), (*band, halvings), out)
     x, y = ((corner * SIDE - REACH) * octree.resolution).tolist()
     cells, top, ground = out[0], *((heights - REACH) * np.float32(octree.resolution) for heights in out[1:])
-    seen = Columns(cells, top.astype(np.float32), ground.astype(np.float32), octree.resolution, x, y)
-    while seen.slice.size > most:
-        seen = _halved(seen)
-    return seen
-
-
-def _halved(seen: Columns) -> Columns:
-    """Four columns in one: what is occupied and what is high counts most, of the ground what is low."""
-    return replace(
-        seen,
-        slice=_fours(seen.slice, UNKNOWN).max(axis=0),
-        top=np.fmax.reduce(_fours(seen.top, np.nan), axis=0),
-        ground=np.fmin.reduce(_fours(seen.ground, np.nan), axis=0),
-        resolution=2 * seen.resolution,
-    )
-
-
-def _fours(grid: NDArray, fill: float) -> NDArray:  # type: ignore[type-arg]
-    """(4, rows / 2, columns / 2): the four cells of each square of them; an odd edge is filled up."""
-    rows, columns = grid.shape
-    even = np.pad(grid, ((0, rows % 2), (0, columns % 2)), constant_values=fill)
-    return np.stack([even[i::2, j::2] for i in (0, 1) for j in (0, 1)])
+    return Columns(cells, top.astype(np.float32), ground.astype(np.float32), octree.resolution * 2**halvings, x, y)
 
 
 @compiled
-def _look_down(blocks: Blocks, sorted_: tuple[Ints, Ints, Ints], band: tuple[int, int], out: tuple[Cells, Singles, Singles]) -> None:
+def _look_down(blocks: Blocks, sorted_: tuple[Ints, Ints, Ints], how: tuple[int, int, int], out: tuple[Cells, Singles, Singles]) -> None:
     """sorted_: places (n, 3) of the blocks, upwards within each column of them, their numbers (n,), and the lowest x and y (2,);
-    band: the first cell of the slice and the first above it; heights go out in cells from the map's lowest corner.
+    how: the first cell of the slice, the first above it, and how often four columns are put together: of these what is occupied and what
+    is high counts, of the ground what is low. Heights go out in cells from the map's lowest corner.
     """
     places, numbers, corner = sorted_
+    low, high, halvings = how
     cells, top, ground = out
-    under = np.empty((SIDE, SIDE), dtype=np.int64)
+    under, stands = np.empty((SIDE, SIDE), dtype=np.int64), np.empty((SIDE, SIDE), dtype=np.bool_)
     for i in range(places.shape[0]):
         if i == 0 or places[i, 0] != places[i - 1, 0] or places[i, 1] != places[i - 1, 1]:
             under[:] = -1  # the occupied cell that would be the ground if the next one is free
+            stands[:] = False  # whether the ground has been found
         number, base = numbers[i], places[i, 2] * SIDE
         slot = blocks.slots[number]
         for ly in range(SIDE):
-            row = (places[i, 1] - corner[1]) * SIDE + ly
+            row = ((places[i, 1] - corner[1]) * SIDE + ly) >> halvings
             for lx in range(SIDE):
-                column = (places[i, 0] - corner[0]) * SIDE + lx
+                column = ((places[i, 0] - corner[0]) * SIDE + lx) >> halvings
                 for lz in range(SIDE):
                     inside = SPREAD[lx] | SPREAD[ly] << 1 | SPREAD[lz] << 2
                     value = blocks.uniform[number] if slot < 0 else blocks.values[slot, inside]
@@ -104,9 +87,12 @@ def _look_down(blocks: Blocks, sorted_: tuple[Ints, Ints, Ints], band: tuple[int
                         continue
                     z = base + lz
                     if value >= 0.0:
-                        top[row, column] = z + 1
+                        if not top[row, column] >= z + 1:
+                            top[row, column] = z + 1
                         under[ly, lx] = z
-                    elif under[ly, lx] == z - 1 and np.isnan(ground[row, column]):
-                        ground[row, column] = z
-                    if band[0] <= z < band[1]:
-                        cells[row, column] = OCCUPIED if value >= 0.0 else max(cells[row, column], FREE)
+                    elif under[ly, lx] == z - 1 and not stands[ly, lx]:
+                        stands[ly, lx] = True
+                        if not ground[row, column] <= z:
+                            ground[row, column] = z
+                    if low <= z < high:
+                        cells[row, column] = max(cells[row, column], OCCUPIED if value >= 0.0 else FREE)

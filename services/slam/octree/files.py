@@ -5,6 +5,7 @@ log-odds (a single-precision number) and one bit for each child that is there. .
 2 occupied, 3 has children. Both equal OctoMap's to the byte (``AbstractOcTree::write``, ``AbstractOccupancyOcTree::writeBinary``).
 """
 
+import re
 from typing import NamedTuple
 
 import numpy as np
@@ -24,6 +25,7 @@ Flags = NDArray[np.bool_]
 
 FULL, BINARY = "# Octomap OcTree file", "# Octomap OcTree binary file"
 COMMENT = "\n# (feel free to add / change comments, but leave the first line as it is!)\n#\n"
+HEADER_END = re.compile(rb"^data[ \t\r]*\n", re.MULTILINE)
 NODE = np.dtype([("value", "<f4"), ("children", "u1")])
 
 
@@ -83,15 +85,12 @@ _NOTHING = (np.empty(0, dtype=np.int64), np.empty(0, dtype=np.uint8), np.empty(0
 
 def _read_header(data: bytes, name: str) -> tuple[str, float, int, bytes]:
     """First line, resolution [m], number of nodes, and what comes after the header."""
-    lines, found, rest = [], False, data
-    while rest and not found:
-        line, _, rest = rest.partition(b"\n")
-        lines.append(line.decode("ascii", "replace").strip())
-        found = lines[-1] == "data"
-    if not lines or lines[0] not in (FULL, BINARY):
+    if not data.startswith((FULL.encode(), BINARY.encode())):
         raise BadInput(f"{name}: no OctoMap file; the first line of one is '{BINARY}' or '{FULL}'")
-    if not found:
+    end = HEADER_END.search(data)
+    if end is None:
         raise BadInput(f"{name}: the header has no line 'data'; the file is cut short")
+    lines = [line.strip() for line in data[: end.start()].decode("ascii", "replace").splitlines()]
     fields = {key: value for key, _, value in (line.partition(" ") for line in lines) if not key.startswith("#")}
     if fields.get("id") != "OcTree":
         raise BadInput(f"{name}: a tree of kind '{fields.get('id', '')}'; only 'OcTree' is read")
@@ -101,7 +100,7 @@ def _read_header(data: bytes, name: str) -> tuple[str, float, int, bytes]:
         raise BadInput(f"{name}: the header says no 'res' and 'size' as numbers") from None
     if not (0.0 < resolution < np.inf and size >= 0):
         raise BadInput(f"{name}: res {resolution:g}, size {size}: both must be above zero")
-    return lines[0], resolution, size, rest
+    return lines[0], resolution, size, data[end.end() :]
 
 
 @compiled

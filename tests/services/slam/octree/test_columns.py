@@ -5,6 +5,7 @@ import pytest
 
 from services.slam.octree.columns import FREE, OCCUPIED, UNKNOWN, columns_of
 from services.slam.octree.octree import Octree
+from tests.services.slam.octree.scenes import room_scan
 
 MANY = 1_000_000
 
@@ -60,6 +61,31 @@ def test_too_many_columns_are_put_together_and_nothing_occupied_is_lost(scene):
     assert (half.slice == OCCUPIED).sum() == (whole.slice == OCCUPIED).sum() == 1
     assert np.nanmax(half.top) == np.nanmax(whole.top) and np.nanmin(half.ground) == np.nanmin(whole.ground)
     assert half.slice[int((0.75 - half.y) / half.resolution), int((0.75 - half.x) / half.resolution)] == OCCUPIED
+
+
+@pytest.mark.parametrize("most", [1000, 300, 20])
+def test_put_together_they_say_what_the_single_ones_say(most):
+    octree, rng = Octree(0.1), np.random.default_rng(4)
+    for _ in range(4):
+        octree.insert(*room_scan(rng))
+    whole, few = columns_of(octree, 0.3, 0.9, MANY), columns_of(octree, 0.3, 0.9, most)
+    side = round(few.resolution / whole.resolution)
+    assert side > 1 and few.slice.size <= most and (few.x, few.y) == (whole.x, whole.y)
+    rows, columns = np.indices(whole.slice.shape) // side
+    for name, put, start in (("slice", np.maximum, UNKNOWN), ("top", np.fmax, np.nan), ("ground", np.fmin, np.nan)):
+        wanted = np.full(few.slice.shape, start, dtype=getattr(whole, name).dtype)
+        put.at(wanted, (rows, columns), getattr(whole, name))
+        assert np.array_equal(getattr(few, name), wanted, equal_nan=name != "slice"), name
+
+
+def test_a_map_of_two_far_places_makes_no_huge_grid_on_the_way():
+    """Between them are 4e9 columns, which would take 36 GB."""
+    octree = Octree(0.1)
+    for place in (np.array((-3200.0, -3200.0, 1.0)), np.array((3200.0, 3200.0, 1.0))):
+        octree.insert(place, place[None] + (1.0, 0.0, 0.0))
+    seen = columns_of(octree, 0.5, 1.5, MANY)
+    assert seen.slice.size <= MANY
+    assert (seen.slice == OCCUPIED).sum() == 2 and seen.slice[0, 0] == OCCUPIED and seen.slice[-1, -1] == OCCUPIED
 
 
 def test_uniform_blocks_count_like_others():

@@ -87,6 +87,11 @@ def test_morton_numbers_lead_back_and_keep_cubes_together(places):
     assert (morton(places >> 1) == codes >> 3).all()
 
 
+def test_a_file_whose_lines_end_as_on_windows_is_read():
+    header, _, body = GOOD.partition(b"data\n")
+    assert read_octree(header.replace(b"\n", b"\r\n") + b"data\r\n" + body, "map.bt").states(np.zeros((1, 3))) == 0
+
+
 def test_a_full_cube_is_one_leaf():
     leaves = pruned(cells_of(np.full((32, 32, 32), LOWEST), (0, -32, 64)))
     assert leaves.depths.tolist() == [11]
@@ -131,6 +136,7 @@ FULL = to_ot(pruned(cells_of(np.full((3, 3, 3), LOWEST), (0, 0, 0))), 0.1)
         (b"", "no OctoMap file"),
         (b"\x89PNG\r\n", "no OctoMap file"),
         (GOOD[:60], "the header has no line 'data'"),
+        (b"# Octomap OcTree file\n" + b"\n" * 300_000, "the header has no line 'data'"),
         (GOOD[:-5], "the data are cut short"),
         (FULL[:-3], "the data are cut short"),
         (GOOD.replace(b"size ", b"size 1"), "the data are"),
