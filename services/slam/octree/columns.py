@@ -53,11 +53,12 @@ def columns_of(octree: Octree, low: float, high: float, most: int) -> Columns | 
         halvings += 1
     shape = tuple((-(-size >> halvings)).tolist())
     band = (int(np.floor(low / octree.resolution)) + REACH, int(np.ceil(high / octree.resolution)) + REACH)
-    out = (np.full(shape, UNKNOWN, dtype=np.int8), *(np.full(shape, np.nan, dtype=np.float32) for _ in range(2)))
-    _look_down(blocks, (places[order], order, corner), (*band, halvings), out)
+    cells = np.full(shape, UNKNOWN, dtype=np.int8)
+    top, ground = np.full((2, *shape), np.nan, dtype=np.float32)
+    _look_down(blocks, (places[order], order, corner), (*band, halvings), (cells, top, ground))
     x, y = ((corner * SIDE - REACH) * octree.resolution).tolist()
-    cells, top, ground = out[0], *((heights - REACH) * np.float32(octree.resolution) for heights in out[1:])
-    return Columns(cells, top.astype(np.float32), ground.astype(np.float32), octree.resolution * 2**halvings, x, y)
+    top, ground = ((heights - REACH) * np.float32(octree.resolution) for heights in (top, ground))
+    return Columns(cells, top, ground, octree.resolution * 2**halvings, x, y)
 
 
 @compiled
