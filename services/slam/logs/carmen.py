@@ -140,8 +140,9 @@ def _beams(path: Path, sweeps: Sequence[Sweep], params: dict[str, str]) -> list[
     range_max = _number(params, "robot_front_laser_max", 0.0)
     farthest = min(farthest_return([s.ranges for s in sweeps]), range_max if range_max > 0.0 else np.inf)
     base_from_laser = _mount(sweeps, params)
-    if not max(map(abs, base_from_laser[:2])) < LARGEST_ROBOT:
-        raise BadInput(f"log {path}: the laser is said to sit {base_from_laser[:2]} m from the robot; mend PARAM robot_frontlaser_offset")
+    x, y, yaw = base_from_laser
+    if not (max(abs(x), abs(y)) < LARGEST_ROBOT and abs(yaw) <= 2 * pi):
+        raise BadInput(f"log {path}: the laser is said to sit at ({x:g}, {y:g}) m, {yaw:g} rad; mend PARAM robot_frontlaser_...offset")
     known: dict[tuple[int, Fan | None], Beams] = {}
     for sweep in sweeps:
         key = (len(sweep.ranges), sweep.fan)
@@ -180,7 +181,7 @@ def _mount(sweeps: Sequence[Sweep], params: dict[str, str]) -> tuple[float, floa
             x, y, yaw = composed(seen[0], np.median(spread, axis=0)).tolist()
             return x, y, yaw
     forward, side, turn = (_number(params, f"robot_frontlaser_{what}offset", 0.0) for what in ("", "side_", "angular_"))
-    return forward, side, turn if abs(turn) <= 2 * pi else radians(turn)
+    return forward, side, turn if abs(turn) <= 2 * pi else radians(turn)  # written by hand, it may be in degrees
 
 
 def _number(params: dict[str, str], key: str, otherwise: float) -> float:

@@ -96,6 +96,8 @@ class SharedTiles:
         sketch(ends, hit, start, GAP / self.cell, (self._window[:size], columns * TILE))
         window = self._window[:size].reshape(rows * TILE, columns * TILE)
         tiles = touched_tiles(window.view(np.int64))
+        if not len(tiles):
+            return None
         slots = self._writable(k, tiles + np.array((row, column)))
         add_evidence(window, tiles, slots, self._pool, (evidence.hit, evidence.miss, evidence.lowest, evidence.highest))
         return Stroke(ends, hit, start, (row, column))

@@ -212,9 +212,10 @@ def test_beams_that_all_point_the_same_way_and_poses_beyond_the_earth_are_left_o
     assert "1 lines with a pose or a direction that cannot be (first: line 3)" in log.notes[0]
 
 
-def test_a_laser_that_cannot_be_on_the_robot_is_refused(tmp_path):
-    with pytest.raises(BadInput, match=r"made\.clf: the laser is said to sit .* mend PARAM robot_frontlaser_offset"):
-        read_carmen(write(tmp_path, "PARAM robot_frontlaser_offset 1e300 nohost 0", *driving(2)))
+@pytest.mark.parametrize("which", ["", "side_", "angular_"])
+def test_a_laser_that_cannot_be_on_the_robot_is_refused(tmp_path, which):
+    with pytest.raises(BadInput, match=r"made\.clf: the laser is said to sit at .* mend PARAM robot_frontlaser"):
+        read_carmen(write(tmp_path, f"PARAM robot_frontlaser_{which}offset 1e300 nohost 0", *driving(2)))
 
 
 def test_a_clock_that_is_set_back_goes_on(tmp_path):

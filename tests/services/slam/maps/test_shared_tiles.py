@@ -1,10 +1,13 @@
 """Maps that share tiles until they differ."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from services.slam.maps.shared_kernels import slot_of
 from services.slam.maps.shared_tiles import Evidence, SharedTiles
 from services.slam.maps.tile_kernels import TILE
+from services.slam.reading import Beams
 from tests.services.slam.drives import drive
 from uvf.maths.planar import IDENTITY, Pose2
 
@@ -70,6 +73,12 @@ def test_what_lies_nowhere_is_not_drawn():
     tiles = two_maps()
     for pose in (Pose2(float("nan"), 0.0, 0.0), Pose2(1e12, 0.0, 0.0), Pose2(0.0, 0.0, float("inf"))):
         assert tiles.draw(0, READING, pose, EVIDENCE) is None
+    assert (cells(tiles, 0) == cells(tiles, 1)).all()
+
+
+def test_beams_that_end_where_they_begin_draw_nothing():
+    tiles, nothing = two_maps(), Beams((0.0, 0.0), READING.beams.bearings, 0.0, 1e-6)
+    assert tiles.draw(0, replace(READING, beams=nothing), IDENTITY, EVIDENCE) is None
     assert (cells(tiles, 0) == cells(tiles, 1)).all()
 
 
