@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 from contextlib import suppress
-from typing import Annotated, Protocol, runtime_checkable
+from typing import Annotated
 
 import numpy as np
 from msgspec import Meta
@@ -17,6 +17,7 @@ from services.slam.maps.tiles import TileMap
 from services.slam.method import Keyframe, SlamMethod
 from services.slam.placing_service import PlacingParams, PlacingService, Positive, fix_message
 from services.slam.reading import Reading
+from services.slam.resumable import Resumable
 from uvf.maths.planar import IDENTITY, Pose2, compose, inverse
 from uvf.maths.transforms import planar
 from uvf.runtime.frames import FrameBuffer, FrameError
@@ -34,17 +35,6 @@ class MappingParams(PlacingParams, frozen=True):
     resolution: Annotated[float, Meta(ge=0.02, le=0.2)] = 0.05  # m
     map_period: Positive = 1.0  # s between publications of the map
     session_period: Positive = 10.0  # s between publications of the session
-
-
-@runtime_checkable
-class Resumable(SlamMethod, Protocol):
-    """A method whose work another instance can go on with."""
-
-    def session(self) -> Session:
-        """All of it."""
-
-    def resume(self, session: Session, map_from_base: Pose2) -> None:
-        """Before the first reading; map_from_base: where the vehicle is now."""
 
 
 class MappingService(PlacingService):

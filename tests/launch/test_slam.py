@@ -9,6 +9,7 @@ from typer.testing import CliRunner
 
 from services.slam.evaluation.reference import Trajectory, absolute_error, read_trajectory
 from services.slam.evaluation.relations import read_relations
+from services.slam.maps.session import Session
 from tests.services.slam.room_log import PERIOD, READINGS, stamps, true_way, write_room_log
 from uvf.launch.cli import app
 from uvf.maths.planar_arrays import composed, inverted
@@ -34,7 +35,7 @@ def done(tmp_path_factory):
 def test_the_results_are_all_there(done):
     printed, folder = done
     names = {"trajectory.txt", "trajectory_online.txt", "map.pgm", "map.yaml", "figures.json", "params.yaml", "report.md"}
-    assert names | {"map.png", "report.png"} == {p.name for p in folder.iterdir()}
+    assert names | {"map.png", "report.png", "session.npz"} == {p.name for p in folder.iterdir()}
     assert "errors of room.relations" in printed
     assert str(folder) in printed
 
@@ -44,6 +45,12 @@ def test_the_trajectory_is_that_of_the_room(done):
     assert len(final) == READINGS
     assert final.stamps == pytest.approx(stamps())
     assert absolute_error(final, TRUTH).max < 0.03
+
+
+def test_the_session_is_that_of_the_map(done):
+    session = Session.load(done[1] / "session.npz")
+    assert session.method == "graph"
+    assert len(session.keyframes) == json.loads((done[1] / "figures.json").read_text())["run"]["keyframes"]
 
 
 def test_the_figures_are_those_of_the_trajectory(done):

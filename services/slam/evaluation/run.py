@@ -8,7 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from services.slam.logs.laser_log import LaserLog, OdometryTrack
+from services.slam.maps.session import Session
 from services.slam.method import Keyframe, SlamMethod
+from services.slam.resumable import Resumable
 from services.slam.synchronised import Synchronised
 
 Floats = NDArray[np.float64]
@@ -28,6 +30,8 @@ class Run:
     quality: Floats
     """(readings,) 0..1, of the online poses."""
     keyframes: tuple[Keyframe, ...]
+    session: Session | None
+    """Of a method that has one."""
     skew: float
     """s, where the odometry of a sweep's stamp is found beside its own; 0 when none has been taken off."""
     wall: float
@@ -57,6 +61,7 @@ def run_over(log: LaserLog, method: SlamMethod, watch: Callable[[int], None] = l
         np.array([e.covariance for e in estimates]),
         np.array([e.quality for e in estimates]),
         tuple(method.keyframes()),
+        method.session() if isinstance(method, Resumable) else None,
         fed.skew.seconds if fed.shifts else 0.0,
         wall,
         cpu,

@@ -1,4 +1,4 @@
-"""``uvf map ...``: maps written to files, checked, served and compared."""
+"""``uvf map ...``: maps written to files, checked, served, merged and compared."""
 
 from pathlib import Path
 from typing import Annotated
@@ -7,7 +7,7 @@ import typer
 
 from uvf.launch.refusal import bad_input_is_one_line
 
-map_app = typer.Typer(no_args_is_help=True, help="Maps: save, load, compare.")
+map_app = typer.Typer(no_args_is_help=True, help="Maps: save, load, merge, compare.")
 
 MapArgument = Annotated[str, typer.Argument(help="A saved map's name, or a file (.yaml, .pgm, .png).")]
 VehicleOption = Annotated[str | None, typer.Option("--vehicle", "-v", help="Whose; not needed when only one has a map.")]
@@ -19,14 +19,19 @@ def map_save(
     vehicle: VehicleOption = None,
     mode: Annotated[str, typer.Option(help="trinary, scale (keeps each cell's value, PNG) or raw (the same, PGM).")] = "trinary",
     own_frame: Annotated[bool, typer.Option("--own-frame", help="Origin in the vehicle's map frame instead of the world's.")] = False,
+    session: Annotated[bool, typer.Option("--session", help="Also NAME.npz: to merge, to be localized on, to go on with.")] = False,
 ) -> None:
     """Write the map of a running vehicle as picture and yaml, as map_saver does."""
-    from uvf.launch.maps.running import drawn_map
+    from uvf.launch.maps.running import drawn_map, running_session
     from uvf.runtime.map_file import map_path, save_map
 
     with bad_input_is_one_line():
         owner, grid = drawn_map(vehicle, own_frame)
-        typer.echo(f"uvf: map of {owner}: {save_map(grid, map_path(name), mode)}")
+        yaml = save_map(grid, map_path(name), mode)
+        typer.echo(f"uvf: map of {owner}: {yaml}")
+        if session:
+            running_session(owner).save(yaml.with_suffix(".npz"))
+            typer.echo(f"uvf: session of {owner}, in its own map frame: {yaml.with_suffix('.npz')}")
 
 
 @map_app.command("load")
@@ -47,6 +52,23 @@ def map_load(
             typer.echo(line)
         if vehicle is not None:
             serve(grid, vehicle, lambda: typer.echo(f"uvf: served on {vehicle}/map/known   Ctrl-C ends"))
+
+
+@map_app.command("merge")
+def map_merge(
+    sessions: Annotated[list[Path], typer.Argument(help="Session files (.npz): of 'uvf slam', or of 'uvf map save --session'.")],
+    out: Annotated[str, typer.Option(help="A saved map's name, or a file: map, session (.npz) and picture (.png) are written.")] = "merged",
+    resolution: Annotated[float, typer.Option(min=0.01, max=1.0, help="Side of the map's cells, m.")] = 0.05,
+) -> None:
+    """Put the maps of several vehicles, or of several days, together, wherever each of them began; 1 when nothing fits."""
+    from uvf.launch.maps.merging import merge_files
+
+    with bad_input_is_one_line():
+        lines, merged = merge_files(sessions, out, resolution)
+        for line in lines:
+            typer.echo(f"uvf: {line}")
+    if not merged:
+        raise typer.Exit(1)
 
 
 @map_app.command("compare")

@@ -6,6 +6,7 @@ from collections.abc import Callable
 import uvf.client
 from schemas import topics
 from services.slam.maps.map_server import in_world
+from services.slam.maps.session import Session
 from uvf.runtime.address import router_from
 from uvf.runtime.grid_message import as_map, as_message
 from uvf.runtime.map_file import GridMap
@@ -24,6 +25,16 @@ def drawn_map(vehicle: str | None, own_frame: bool) -> tuple[str, GridMap]:
             return owner, grid if own_frame else in_world(grid, run.read(owner, topics.TF_WORLD, PATIENCE))
         except TimeoutError as error:
             raise BadInput(f"{error}: {owner} has not drawn a map yet") from error
+
+
+def running_session(vehicle: str | None) -> Session:
+    """Of the vehicle's mapping, as it was published last. Raises BadInput."""
+    owner = _chosen(vehicle, _writers())
+    with uvf.client.connect() as run:
+        try:
+            return Session.decoded(run.read(owner, topics.MAP_SESSION, PATIENCE).data, f"of {owner}")
+        except TimeoutError as error:
+            raise BadInput(f"{error}: {owner} has no session yet, or maps by a method that has none") from error
 
 
 def serve(grid: GridMap, vehicle: str, ready: Callable[[], None]) -> None:

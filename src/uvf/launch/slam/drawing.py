@@ -1,5 +1,6 @@
 """Pictures of a run: the map with the trajectory on it, and a page of how it came about."""
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -30,10 +31,15 @@ FRINGE, MARGIN = 0.002, 2.0
 
 def draw_map(grid: GridMap, run: Run, title: str, target: Path) -> None:
     """The map as large as it may be, with the final trajectory coloured by time. Writes a PNG."""
+    draw_on_map(grid, lambda axes: _show_way(axes, run), title, target)
+
+
+def draw_on_map(grid: GridMap, draw: Callable[[Any], None], title: str, target: Path) -> None:
+    """The map as large as it may be, with what ``draw`` puts on its axes [m]. Writes a PNG."""
     sheet = matplotlib.figure.Figure(layout="constrained")
     axes = sheet.add_subplot()
     _show_map(axes, grid)
-    _show_way(axes, run)
+    draw(axes)
     width, height = (float(np.ptp(limits)) for limits in (axes.get_xlim(), axes.get_ylim()))
     scale = LARGEST / max(width, height)
     sheet.set_size_inches(max(width * scale, 4.0), max(height * scale, 3.0) + 0.5)

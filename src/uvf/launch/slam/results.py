@@ -1,6 +1,7 @@
 """The folder that a run over a log leaves: trajectories, map, figures, parameters, report."""
 
 import json
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -12,6 +13,7 @@ from numpy.typing import NDArray
 
 from services.slam.evaluation.run import Run
 from services.slam.maps.tiles import TileMap
+from services.slam.method import Keyframe
 from uvf.launch.slam.drawing import draw_map, draw_page
 from uvf.launch.slam.known import Known
 from uvf.launch.slam.scoring import Figures
@@ -24,10 +26,10 @@ from uvf.runtime.whole_file import write_whole
 Floats = NDArray[np.float64]
 
 
-def grid_of(run: Run, resolution: float) -> GridMap:
-    """The occupancy map of a run's keyframes. Raises BadInput."""
+def grid_of(keyframes: Iterable[Keyframe], resolution: float) -> GridMap:
+    """The occupancy map of keyframes. Raises BadInput."""
     tiles = TileMap(resolution)
-    tiles.follow(run.keyframes)
+    tiles.follow(keyframes)
     cells, corner = tiles.cells()
     return GridMap(cells, resolution, Pose2(corner[0], corner[1], 0.0))
 
@@ -43,10 +45,12 @@ class Made:
 
 def write_results(run: Run, known: Known, made: Made, figures: Figures, folder: Path) -> None:
     """Raises BadInput."""
-    grid = grid_of(run, made.resolution)
+    grid = grid_of(run.keyframes, made.resolution)
     write_whole(folder / "trajectory.txt", _trajectory(run, run.final))
     write_whole(folder / "trajectory_online.txt", _trajectory(run, run.online))
     save_map(grid, folder / "map.yaml")
+    if run.session is not None:
+        run.session.save(folder / "session.npz")
     write_whole(folder / "figures.json", json.dumps(figures, indent=1).encode())
     effective = {"method": made.method, "resolution": made.resolution, "params": msgspec.to_builtins(made.params)}
     write_whole(folder / "params.yaml", yaml.safe_dump(effective, sort_keys=False).encode())

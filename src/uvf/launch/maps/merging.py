@@ -1,0 +1,68 @@
+"""``uvf map merge``: session files put together, and what is written of it."""
+
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+import numpy as np
+
+from services.slam.maps.session import Session
+from services.slam.merging.team import Group, Team
+from uvf.launch.slam.drawing import draw_on_map
+from uvf.launch.slam.results import grid_of
+from uvf.runtime.map_file import map_path, save_map
+from uvf.runtime.params import BadInput
+
+SUFFIX = ".npz"
+COLOURS = matplotlib.colormaps["tab10"].colors  # type: ignore[attr-defined]
+
+
+def merge_files(paths: list[Path], out: str, resolution: float) -> tuple[list[str], bool]:
+    """(lines about each session and what was written, whether any of them fit). Raises BadInput."""
+    if len(paths) < 2:
+        raise BadInput("'uvf map merge' needs two sessions at least")
+    twice = next((path for path in paths if paths.count(path) > 1), None)
+    if twice is not None:
+        raise BadInput(f"session {twice}: given twice")
+    team = Team()
+    for path in paths:
+        team.follow(str(path), Session.load(path))
+    team.finish()
+    group = max(team.groups, key=lambda group: len(group.names))
+    lines = [_line(team, group, str(path)) for path in paths]
+    if len(group.names) == 1:
+        return [*lines, "nothing is written: no two of them have enough in common to be sure that they are of one place"], False
+    return [*lines, f"written: {_write(team, group, out, resolution)}"], True
+
+
+def _line(team: Team, group: Group, name: str) -> str:
+    own = team.group_of(name)
+    if len(own.names) == 1:
+        return f"{name}: fits nowhere"
+    if own is not group:
+        return f"{name}: fits {', '.join(other for other in own.names if other != name)}, but not {group.names[0]}"
+    if name == group.names[0]:
+        return f"{name}: the frame of the others"
+    x, y, yaw = team.team_from_map(name)
+    closures = sum(name in (c.a, c.b) for c in group.joint.crossings)
+    where = f"its origin is at ({x:.2f}, {y:.2f}) m, {np.degrees(yaw):.1f} deg in {group.names[0]}"
+    return f"{name}: {where}; {closures} closures, {group.quality:.0%} of what was seen twice is the same"
+
+
+def _write(team: Team, group: Group, out: str, resolution: float) -> str:
+    """Map, session and picture. Raises BadInput."""
+    session = team.session_of(group)
+    path = map_path(out)
+    stem = path.with_suffix("") if path.suffix in (".yaml", ".pgm", ".png", SUFFIX) else path
+    grid = grid_of(session.keyframes, resolution)
+    yaml = save_map(grid, stem.with_name(f"{stem.name}.yaml"))
+    session.save(yaml.with_suffix(SUFFIX))
+
+    def tracks(axes: Any) -> None:
+        for colour, (name, poses) in zip(COLOURS * len(group.names), group.joint.poses.items(), strict=False):
+            axes.plot(*poses[:, :2].T, lw=1.0, color=colour, label=Path(name).name)
+            axes.plot(*poses[0, :2], "o", ms=5, color=colour)
+        axes.legend(fontsize=8)
+
+    draw_on_map(grid, tracks, f"{len(group.names)} sessions", yaml.with_suffix(".png"))
+    return ", ".join(str(yaml.with_suffix(suffix)) for suffix in (".yaml", SUFFIX, ".png"))
