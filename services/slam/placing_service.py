@@ -10,7 +10,7 @@ from schemas.convert import quaternion, seconds, stamp
 from schemas.messages import Event, FrameTransform, LaserScan, MapFix, Vector3
 from services.slam.correction import toward
 from services.slam.reading import Beams, Reading
-from services.slam.scan_message import Shape, beams_of, shape_of
+from services.slam.scan_message import Shape, beams_of, is_usable, shape_of
 from uvf.maths.planar import IDENTITY, Pose2, compose, inverse
 from uvf.maths.rotations import from_euler
 from uvf.maths.transforms import planar
@@ -54,7 +54,7 @@ class PlacingService(Service):
         Noise makes each scan another: one that is equal comes from a lidar that is frozen, whatever its stamp says.
         """
         taken_at = seconds(scan.timestamp)
-        if taken_at <= self._scan_time or not len(scan.ranges):
+        if taken_at <= self._scan_time or not is_usable(scan):
             return None
         odom_from_base = planar(frames.lookup(self._frame("odom"), self._frame("base_footprint"), taken_at))
         if shape_of(scan) not in self._beams:

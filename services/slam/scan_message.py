@@ -1,5 +1,7 @@
 """Lidar messages as beams of the base: any field of view, direction of turning, place and attitude of the lidar."""
 
+from math import isfinite
+
 import numpy as np
 
 from schemas.messages import LaserScan
@@ -7,6 +9,11 @@ from services.slam.reading import Beams
 from uvf.maths.transforms import Transform, from_above
 
 Shape = tuple[str, float, float, int]
+
+
+def is_usable(scan: LaserScan) -> bool:
+    """Whether it has beams whose directions are numbers; what their ranges are does not matter."""
+    return len(scan.ranges) > 0 and isfinite(scan.start_angle) and isfinite(scan.end_angle)
 
 
 def shape_of(scan: LaserScan) -> Shape:

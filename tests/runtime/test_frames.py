@@ -74,6 +74,19 @@ def test_the_order_of_arrival_does_not_matter(order, t):
     assert found.rotation == pytest.approx(from_euler(0, 0, t), abs=1e-6)
 
 
+@pytest.mark.parametrize(
+    "broken", [(0.0, 0.0, 0.0, np.nan, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0, np.inf, 0.0), (np.nan, 0.0, 0.0, 0.0, 0.0, 0.0)]
+)
+def test_a_transform_that_is_no_number_is_as_if_it_had_not_been_told(broken):
+    frames = FrameBuffer()
+    frames.add(edge("a", "c", broken))
+    with pytest.raises(FrameError, match="no frame"):
+        frames.lookup("a", "c")
+    frames.add(edge("a", "b", moved(1.0), t=1.0))
+    frames.add(edge("a", "b", broken, t=2.0))
+    assert frames.lookup("a", "b").translation.tolist() == [1.0, 0.0, 0.0]
+
+
 def test_static_edges_hold_at_all_times_whenever_they_were_said():
     frames = buffer_of(static=[edge("base", "lidar", moved(0.1), 5.0)])
     assert [frames.lookup("base", "lidar", t).translation[0] for t in (0.0, 5.0, 1e6)] == [0.1, 0.1, 0.1]

@@ -5,6 +5,7 @@ The odometry is the one that was published, wheels and IMU fused; nothing that a
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from math import isfinite
 from pathlib import Path
 from typing import Any
 
@@ -13,13 +14,13 @@ from google.protobuf.message import DecodeError
 from numpy.typing import NDArray
 
 from schemas import topics
-from schemas.convert import seconds, yaw_of
+from schemas.convert import pose2_of, seconds
 from schemas.messages import FrameTransforms, LaserScan, Odometry
 from services.slam.logs.laser_log import LaserLog, OdometryTrack
 from services.slam.logs.leaps import without_leaps
 from services.slam.logs.no_return import farthest_return
 from services.slam.reading import Beams, Reading
-from services.slam.scan_message import Shape, beams_of, shape_of
+from services.slam.scan_message import Shape, beams_of, is_usable, shape_of
 from uvf.maths.planar import Pose2
 from uvf.maths.planar_arrays import composed, inverted
 from uvf.runtime.bus import Sample, matches
@@ -51,12 +52,18 @@ class _Heard:
             self.broken += 1
             return
         if isinstance(message, LaserScan):
-            self.scans.append(message)
+            self._take_if(is_usable(message), self.scans, message)
         elif isinstance(message, Odometry):
-            p = message.pose
-            self.odometry.append((seconds(message.timestamp), p.position.x, p.position.y, yaw_of(p.orientation)))
+            pose = pose2_of(message.pose)
+            self._take_if(all(map(isfinite, pose)), self.odometry, (seconds(message.timestamp), *pose))
         elif isinstance(message, FrameTransforms):
             self.frames.add(message, is_static=True)
+
+    def _take_if(self, usable: bool, place: list[Any], what: Any) -> None:
+        if usable:
+            place.append(what)
+        else:
+            self.broken += 1
 
 
 def samples_of(path: Path) -> Iterator[Sample]:

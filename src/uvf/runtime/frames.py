@@ -87,14 +87,17 @@ class FrameBuffer:
             raise TypeError(f"{type(message).__name__} is no transform")
 
     def _add(self, message: FrameTransform, is_static: bool) -> None:
+        """One that is no number is left out, as if it had not been told."""
+        rotation, translation = wxyz(message.rotation), array(message.translation)
+        if not (np.isfinite(rotation).all() and np.isfinite(translation).all()):
+            return
         child, parent = message.child_frame_id, message.parent_frame_id
         edge = self._edges.get(child)
         if edge is None or (edge.parent, edge.is_static) != (parent, is_static):
             edge = self._edges[child] = Edge(parent, is_static)
             self._parents.add(parent)
         t_ns = message.timestamp.seconds * NS + message.timestamp.nanos
-        rotation = wxyz(message.rotation)
-        edge.add(t_ns, Transform(rotation / np.linalg.norm(rotation), array(message.translation)), self._history_ns)
+        edge.add(t_ns, Transform(rotation / np.linalg.norm(rotation), translation), self._history_ns)
 
     @property
     def frames(self) -> set[str]:

@@ -40,6 +40,15 @@ def test_no_scan_makes_the_map_grow_beyond_what_the_lidar_sees(broken):
     assert (cells > 60).any()
 
 
+def test_a_scan_whose_directions_are_no_numbers_is_left_out():
+    service = mapping()
+    pointless = scan(0.2, good())
+    pointless.end_angle = math.nan
+    service.step(0.21, pointless, frames_with(dict.fromkeys((0.15, 0.2), (0.0, 0.0, 0.0))))
+    out = service.step(0.41, scan(0.4, good()), frames_with(dict.fromkeys((0.35, 0.4), (0.0, 0.0, 0.0))))
+    assert (occupancy_cells(out["map"]) > 60).any()
+
+
 def test_a_beam_beyond_the_range_is_no_return():
     far, none = mapped([9.0] * 360)[0], mapped([0.0] * 360)[0]
     assert far.data == none.data

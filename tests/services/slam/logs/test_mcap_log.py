@@ -107,6 +107,18 @@ def test_what_cannot_be_used_is_left_out_and_told(tmp_path):
     assert "1 messages" in log.notes[1]
 
 
+def test_what_is_no_number_is_left_out_and_told(tmp_path):
+    pointless = scan("rover", 0.5)
+    pointless.start_angle = float("nan")
+    broken = [(topics.SCAN, "rover", 0.5, pointless), (topics.SCAN, "rover", 0.55, scan("rover", 0.55, ()))]
+    for t, message in ((0.35, odometry(0.35, float("nan"))), (0.45, odometry(0.45, 1.0, float("nan")))):
+        broken.append((topics.ODOMETRY, "rover", t, message))
+    log = open_log(recorded(tmp_path, [*run(), *broken]))
+    assert log.stamps.tolist() == [0.2, 0.4, 0.6]
+    assert log.odom_from_base[:, 0] == pytest.approx([0.0, 0.2, 0.4])
+    assert len(log.notes) == 1 and "4 messages" in log.notes[0]
+
+
 @pytest.mark.parametrize(
     ("kept", "told"), [("tf", "where the lidar sits"), ("odometry", "no odometry of 'rover'"), ("scan", "no scan in it")]
 )
@@ -114,6 +126,11 @@ def test_a_log_that_lacks_something_says_what(tmp_path, kept, told):
     topic = {"tf": topics.TF_STATIC, "odometry": topics.ODOMETRY, "scan": topics.SCAN}[kept]
     with pytest.raises(BadInput, match=told):
         open_log(recorded(tmp_path, [m for m in run() if m[0] is not topic]))
+
+
+def test_a_mount_that_is_no_number_is_not_told(tmp_path):
+    with pytest.raises(BadInput, match="where the lidar sits"):
+        open_log(recorded(tmp_path, [(topics.TF_STATIC, "rover", 0.0, mount("rover", x=float("nan"))), *run()[1:]]))
 
 
 def test_files_of_other_kinds_are_refused_by_what_they_are(tmp_path):
