@@ -69,9 +69,11 @@ class Synchronised:
         self.method.finish()
 
     def _corrected(self, reading: Reading) -> Reading:
-        if not self._shifts:
+        """Beyond the ends of the track the sweep's own odometry has to do."""
+        taken = reading.t + self.skew.seconds
+        if not (self._shifts and self._t[0] <= taken <= self._t[-1]):
             return reading
-        x, y, yaw = (float(np.interp(reading.t + self.skew.seconds, self._t, column)) for column in self._poses.T)
+        x, y, yaw = (float(np.interp(taken, self._t, column)) for column in self._poses.T)
         return Reading(reading.t, reading.ranges, reading.beams, Pose2(x, y, yaw))
 
     def _learn(self, reading: Reading, estimate: Estimate) -> None:

@@ -53,7 +53,7 @@ def _row(numbers: list[float], place: str) -> tuple[float, float, float, float]:
         stamp, x, y, yaw = numbers
     else:
         stamp, x, y, _, qx, qy, qz, qw = numbers
-        yaw = np.arctan2(2.0 * (qw * qz + qx * qy), 1.0 - 2.0 * (qy * qy + qz * qz))
+        yaw = np.arctan2(2.0 * (qw * qz + qx * qy), qw * qw + qx * qx - qy * qy - qz * qz)  # of any length: files round
     return stamp, x, y, float(yaw)
 
 

@@ -98,6 +98,8 @@ class OctreeService(Service):
         maps: dict[str, Value] = {}
         if self._changed and t - self._published_at >= self.params.map_period - 1e-9:
             self._changed, self._published_at = False, t
+            if self.params.slice_low > self.params.slice_high:
+                events += self._tell(t, "the slice of the map is empty", "'slice_low' lies above 'slice_high'")
             try:
                 maps = self._maps(t)
             except TooLarge as error:

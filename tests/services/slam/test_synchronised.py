@@ -49,6 +49,31 @@ def test_a_skew_is_found_and_taken_off(late):
     assert np.hypot(*(poses - made.map_from_base)[:, :2].T).max() < 0.25
 
 
+def test_a_track_that_ends_before_the_sweeps_leaves_the_rest_to_their_own_odometry():
+    made = driven(0.15)
+    track = made.log.odometry
+    half = 2 * len(track.t) // 3
+    cut = replace(made, log=replace(made.log, odometry=OdometryTrack(track.t[:half], track.odom_from_base[:half])))
+    fed = Followed()
+    method = Synchronised(fed, cut.log.odometry)
+    for reading in cut.log:
+        method.add(reading)
+    told, own = (np.array(p)[:, :2] for p in (fed.odometry, [r.odom_from_base for r in cut.log]))
+    assert 0.05 < np.hypot(*(told - own).T).max() < 0.5
+
+
+class Followed(GraphSlam):
+    """Notes what odometry it is fed with."""
+
+    def __init__(self):
+        super().__init__()
+        self.odometry = []
+
+    def add(self, reading):
+        self.odometry.append(reading.odom_from_base)
+        return super().add(reading)
+
+
 def test_a_good_log_is_left_alone():
     made = driven(0.0)
     method, poses = mapped(made)

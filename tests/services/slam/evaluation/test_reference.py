@@ -79,6 +79,8 @@ def test_trajectories_are_read_in_both_forms_and_broken_lines_are_named(tmp_path
     assert read_trajectory(path).stamps.tolist() == [1.0, 2.0]
     path.write_text("1 0.5 0.25 0 0 0 0.7071067811865476 0.7071067811865476\n")
     assert read_trajectory(path).world_from_base[0] == pytest.approx((0.5, 0.25, pi / 2))
+    path.write_text("1 0.5 0.25 0 0 0 0.35 0.35\n")
+    assert read_trajectory(path).world_from_base[0] == pytest.approx((0.5, 0.25, pi / 2))
     for bad in ("1 2 3", "1 2 3 x", "1 2 3 nan"):
         path.write_text(f"0 0 0 0\n{bad}\n")
         with pytest.raises(BadInput, match=r"made_poses\.txt:2"):

@@ -134,6 +134,12 @@ def test_the_slice_and_the_heights_fit_the_map():
     assert values[row, column, 0] == pytest.approx(2.0, abs=0.11)
 
 
+def test_a_slice_of_no_height_is_told_of():
+    outputs = step(service(OctreeParams(slice_low=1.3, slice_high=1.2)), 1.0, depth=[wall_picture(0.8)])
+    assert [(e.text, e.cause) for e in outputs["events"]] == [("the slice of the map is empty", "'slice_low' lies above 'slice_high'")]
+    assert (occupancy_cells(outputs["slice"]) == -1).all()
+
+
 def test_a_map_too_large_for_a_message_is_told_with_larger_cells(monkeypatch):
     monkeypatch.setattr(octree_service, "MESSAGE_MOST", 600)
     told = step(service(), 1.0, depth=[wall_picture(0.8)])["map"]
