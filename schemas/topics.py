@@ -148,6 +148,10 @@ NAV_STATUS = Topic(f"{_V}/nav/status", m.NavStatus, 2, _Q.STATE, "what the plann
 MAP_FIX = Topic(f"{_V}/nav/fix", m.MapFix, 5, _Q.STATE, "where the newest sweep places the vehicle in its map, and how surely")
 MAP_SESSION = Topic(f"{_V}/map/session", m.MapSession, 0, _Q.LATCHED, "keyframes, poses and edges of the map", logged=False, kept=True)
 MAP = Topic(f"{_V}/map/grid", m.Grid, 0, _Q.LATCHED, "occupancy, int8: -1 unknown, 0..100", kept=True)
+TEAM_MAP = Topic(
+    f"{_V}/map/team", m.Grid, 0, _Q.LATCHED, "maps that were found to be of one place, in the map frame of the first; as map/grid"
+)
+TEAM_PLACE = Topic(f"{_V}/map/place", m.FrameTransform, 0, _Q.LATCHED, "where the vehicle's map lies in that of the first of its team")
 KNOWN_MAP = Topic(f"{_V}/map/known", m.Grid, 0, _Q.LATCHED, "a saved map that the vehicle was given, world frame; as map/grid")
 KEEP_OUT = Topic(f"{_V}/map/keepout", m.Grid, 0, _Q.LATCHED, "where not to drive, world frame, int8: 100 keep out, 0 not")
 SPEED_MAP = Topic(f"{_V}/map/speed", m.Grid, 0, _Q.LATCHED, "speed allowed, world frame, int8: per cent of the vehicle's own")

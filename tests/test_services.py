@@ -11,7 +11,9 @@ from uvf.runtime.site import ROOT, load_site
 
 SITE = load_site(ROOT / "missions" / "demo.yaml")
 ASKING = load_site(ROOT / "missions" / "mapping.yaml")
-HOSTS = {kind.name: catalogue.hosts(ASKING if kind.needs == "asked" else SITE, [kind]) for kind in catalogue.KINDS}
+TEAM = load_site(ROOT / "missions" / "team.yaml")
+SITES = {"asked": ASKING, "team": TEAM}
+HOSTS = {kind.name: catalogue.hosts(SITES.get(kind.needs, SITE), [kind]) for kind in catalogue.KINDS}
 SERVICES = sorted({host.service for hosts in HOSTS.values() for host in hosts}, key=lambda s: s.name)
 
 
@@ -39,7 +41,7 @@ def test_what_is_recalled_is_kept_and_wanted(service):
 def test_it_is_known_about_which_vehicles_a_service_writes(host):
     per_vehicle = any(topic.per_vehicle for topic in host.service.outputs.values())
     assert bool(host.vehicle or host.writes_for) or not per_vehicle
-    assert set(host.writes_for) <= set(SITE.members)
+    assert set(host.writes_for) <= set(SITE.members) | set(TEAM.members)
 
 
 @pytest.mark.parametrize("kind", catalogue.KINDS, ids=lambda k: k.name)

@@ -69,6 +69,7 @@ class GroundStation(Service):
         "gimbal_joints": each_vehicle(topics.GIMBAL_JOINTS),
         "joints": each_vehicle(topics.JOINTS),
         "grid": each_vehicle(topics.MAP),
+        "team_map": each_vehicle(topics.TEAM_MAP),
         "world_from_map": each_vehicle(topics.TF_WORLD),
         "events": each_vehicle(every(topics.EVENTS.by("*"))),
     }
@@ -113,6 +114,7 @@ class GroundStation(Service):
         gimbal_joints: Mapping[str, JointStates],
         joints: Mapping[str, JointStates],
         grid: Mapping[str, Grid],
+        team_map: Mapping[str, Grid],
         world_from_map: Mapping[str, FrameTransform],
     ) -> Outputs:
         """One refresh of the page at ``t`` [s, wall]."""
@@ -134,13 +136,12 @@ class GroundStation(Service):
             "gimbal_joints": gimbal_joints,
             "joints": joints,
             "grid": grid,
+            "team_map": team_map,
             "world_from_map": world_from_map,
         }
         self._hear_system(t, clock, processes, health)
         self._hear_others(guests, stops, (objects, aircraft), truth)
-        self._model.hear_newest(t, newest, events)
-        self._commander.hear(t, (*goal, *cancel, *arm, *mode))
-        return self._act(t)
+        return self._act(t, newest, events, (*goal, *cancel, *arm, *mode))
 
     def _hear_system(self, t: float, clock: Clock | None, processes: Sequence[Processes], health: Sequence[Health]) -> None:
         self._model.hear_clock(t, clock)
@@ -154,8 +155,12 @@ class GroundStation(Service):
         self._model.hear_objects(things, truth)
         self._model.hear_stop(stop)
 
-    def _act(self, t: float) -> Outputs:
-        """Does what people have asked on the page, and shows how things stand."""
+    def _act(
+        self, t: float, newest: Mapping[str, Mapping[str, Any]], events: Mapping[str, Sequence[Event]], answers: Sequence[Answer[Any, Any]]
+    ) -> Outputs:
+        """Takes in what the vehicles say, does what people have asked on the page, and shows how things stand."""
+        self._model.hear_newest(t, newest, events)
+        self._commander.hear(t, answers)
         out = self._commander.act(t, self._page.actions())
         self._commander.expire(t)
         self._page.show(self._composer.picture(t))

@@ -53,8 +53,8 @@ LOST_AFTER = 5.0  # s
 SIGNS_OF_LIFE = ("nav", "pose", "odometry", "status", "nav_status", "progress")
 SHOWN_BY_THE_CLOCK = ("conductor",)
 """Sources whose warnings tell of a state that the page reads from the clock: they stand in the log, not as notices."""
-LAYERS = ("Map", "Scan", "Paths", "Fences", "Tracks", "Labels", "Walls", "True pose")
-SHOWN_AT_FIRST = frozenset(LAYERS) - {"True pose"}
+LAYERS = ("Map", "Scan", "Paths", "Fences", "Tracks", "Labels", "Walls", "Team maps", "True pose")
+SHOWN_AT_FIRST = frozenset(LAYERS) - {"Team maps", "True pose"}
 COLOURS = ("#4ea1ff", "#f2913d", "#3fbf7f", "#b98cf5", "#e8c547", "#5fd4d6")
 """Vehicles' own colours, told apart by colour-blind people too; red and magenta keep their meanings."""
 
@@ -101,6 +101,7 @@ class VehicleModel:
     gimbal_joints: JointStates | None = None
     joints: JointStates | None = None
     grid: Grid | None = None
+    team_map: Grid | None = None
     world_from_map: FrameTransform | None = None
     heard_at: dict[str, float] = field(default_factory=dict)
     """Field -> when its newest message came [s, wall]."""

@@ -97,7 +97,8 @@ class View:
 
     def _layers(self, v: VehicleModel, t: float) -> Mapping[str, tuple[str, Callable[[], dict[str, Node]]]]:
         return {
-            "map": ("Map", lambda: self._map(v, t)),
+            "map": ("Map", lambda: self._map(v, f"map {v.name}", v.grid, t)),
+            "team": ("Team maps", lambda: self._map(v, f"team map {v.name}", v.team_map, t)),
             "scan": ("Scan", lambda: self._scan(v)),
             "path": ("Paths", lambda: self._path(v)),
             "goal": ("Paths", lambda: self._goal(v)),
@@ -116,8 +117,7 @@ class View:
             self._made[name] = (of, make())
         return {"": self._made[name][1]}
 
-    def _map(self, v: VehicleModel, t: float) -> dict[str, Node]:
-        name, grid = f"map {v.name}", v.grid
+    def _map(self, v: VehicleModel, name: str, grid: Grid | None, t: float) -> dict[str, Node]:
         if grid is None or not grid.data or grid.column_count == 0:
             return {}
         if v.world_from_map is None and grid.frame_id != "world":

@@ -1,11 +1,10 @@
 """Odometry and mapping for every ground vehicle of the mission, and the maps that it is given."""
 
-import numpy as np
-
 from services.slam.localization.known_map import known_map
 from services.slam.localization.localizer import Localizer
 from services.slam.localization.params import FilterParams
 from services.slam.localization_service import Beginning, LocalizationService
+from services.slam.made_corridor import there_and_back
 from services.slam.mapping_service import MappingParams, MappingService
 from services.slam.maps.serving import map_servers
 from services.slam.method import SlamMethod
@@ -14,7 +13,6 @@ from services.slam.odometry.filter import DriveFilter
 from services.slam.odometry.params import OdometryParams
 from services.slam.odometry.service import OdometryService
 from services.slam.odometry.states import Noise, Step
-from services.slam.reading import Beams, Reading
 from uvf.maths.geodesy import LocalTangent
 from uvf.maths.planar import IDENTITY, Pose2, compose, inverse
 from uvf.runtime.mission_file import Maps
@@ -79,14 +77,8 @@ def _method(member: Member, mapping: MappingParams) -> SlamMethod:
 
 
 def _warm_up(method: SlamMethod) -> None:
-    """Compiles the kernels, or loads them from their cache, before the first scan: there and back through a made-up corridor."""
-    beams = Beams((0.0, 0.0), np.linspace(-np.pi, np.pi, 120), 0.1, 10.0)
-    for k in range(50):
-        x = 0.4 * min(k, 50 - k)
-        along, across = np.abs(beams.directions).T
-        ranges = np.minimum(
-            1.5 / np.maximum(across, 1e-6), np.where(beams.directions[:, 0] > 0.0, 14.0 - x, 2.0 + x) / np.maximum(along, 1e-6)
-        )
-        method.add(Reading(float(k), ranges, beams, Pose2(x, 0.0, 0.0)))
+    """Compiles the kernels, or loads them from their cache, before the first scan."""
+    for reading in there_and_back():
+        method.add(reading)
     method.finish()
     DriveFilter("ekf", Noise(), 0.2).step(Step(0.02, 0.0, 0.0))

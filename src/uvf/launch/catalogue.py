@@ -12,7 +12,7 @@ from uvf.runtime.site import Build, Host, Site
 @dataclass(frozen=True)
 class Kind:
     """``build``: module with ``build(site)``; ``needs``: the vehicles without which it has no work, or ``asked``: one that has parameters
-    for it.
+    for it, or ``team``: two that draw maps.
 
     ``nice``: how far it gives way to those that keep time (router, conductor, simulators) when processors are few.
     """
@@ -20,7 +20,7 @@ class Kind:
     name: str
     build: str
     about: str
-    needs: Literal["ground", "fixed_wing", "any", "asked"] = "any"
+    needs: Literal["ground", "fixed_wing", "any", "asked", "team"] = "any"
     clock: Literal["sim", "wall"] = "sim"
     simulator: bool = False
     nice: int = 0
@@ -32,6 +32,7 @@ KINDS = (
     Kind("sim_camera", "services.sim_camera.build", "every vehicle's camera", nice=15),
     Kind("slam", "services.slam.build", "odometry, mapping, localization", "ground", nice=3),
     Kind("octree", "services.slam.octree.build", "3-D maps of the vehicles that ask for one", "asked", nice=12),
+    Kind("merging", "services.slam.merging.build", "one map of those who map the same place", "team", nice=12),
     Kind("planner", "services.planner.build", "exploration, paths, tracking", "ground", nice=2),
     Kind("autopilot", "services.autopilot.build", "command multiplexer, estimator, guidance, control, modes", nice=2),
     Kind("mavlink", "services.autopilot.mavlink.build", "MAVLink over UDP for ground stations", clock="wall", nice=5),
@@ -50,8 +51,10 @@ def kind(name: str) -> Kind:
 
 def needed(site: Site) -> list[Kind]:
     """The kinds that have work in a mission."""
-    kinds = {member.file.kind for member in site.members.values()}
+    kinds: set[str] = {member.file.kind for member in site.members.values()}
     asked = {name for member in site.members.values() for name in member.file.params}
+    mapping = [m for m in site.of_kind("ground") if m.entry.maps is None or m.entry.maps.localize is None]
+    kinds |= {"team"} if len(mapping) > 1 else set()
     return [k for k in KINDS if k.needs in ("any", *kinds) or (k.needs == "asked" and k.name in asked)]
 
 

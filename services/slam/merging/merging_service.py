@@ -1,0 +1,89 @@
+"""Sessions of vehicles that map -> one map of those that were at the same places, and where the map of each lies in it."""
+
+from collections.abc import Mapping
+
+from schemas import topics
+from schemas.convert import occupancy_grid, quaternion, stamp
+from schemas.messages import Event, FrameTransform, Grid, MapSession, Vector3
+from services.slam.maps.session import Session
+from services.slam.maps.tiles import TileMap
+from services.slam.merging.team import Group, Team
+from uvf.maths.rotations import from_euler
+from uvf.runtime.params import BadInput
+from uvf.runtime.service import Outputs, Service, each_vehicle
+
+PLACES = 4  # that are searched for in a step
+RESOLUTION = 0.05  # m
+
+
+class MergingService(Service):
+    """Takes in one session a step, and what is new of it. Nothing is known of where the vehicles began.
+
+    The frame of a team is the map frame of its first vehicle, which its map is published for.
+    """
+
+    name = "merging"
+    hz = 0.5
+    scope = "world"
+    inputs = {"session": each_vehicle(topics.MAP_SESSION)}
+    outputs = {"map": topics.TEAM_MAP, "place": topics.TEAM_PLACE, "events": topics.EVENTS.by("merging")}
+
+    def __init__(self) -> None:
+        self._team = Team()
+        self._taken: dict[str, MapSession] = {}
+        self._told: dict[str, Group] = {}
+        self._maps: dict[str, TileMap] = {}
+
+    def step(self, t: float, session: Mapping[str, MapSession]) -> Outputs:
+        events = self._take(t, session)
+        self._team.work(PLACES)
+        news = [g for g in self._team.groups if len(g.names) > 1 and self._told.get(g.names[0]) is not g]
+        maps = {group.names[0]: grid for group in news if (grid := self._map(t, group)) is not None}
+        places = {name: self._place(t, name, group.names[0]) for group in news for name in group.names}
+        events |= {group.names[0]: told for group in news if (told := self._joined(t, group))}
+        self._told |= {group.names[0]: group for group in news}
+        return {"map": maps, "place": places, "events": events}
+
+    def _take(self, t: float, sessions: Mapping[str, MapSession]) -> dict[str, list[Event]]:
+        """The session that has waited longest, if any is new."""
+        new = [name for name, message in sessions.items() if self._taken.get(name) is not message]
+        if not new:
+            return {}
+        name = min(new, key=lambda name: (name in self._taken, sessions[name].timestamp.ToNanoseconds(), name))
+        self._taken[name] = sessions[name]
+        try:
+            self._team.follow(name, Session.decoded(sessions[name].data, f"of {name}"))
+        except BadInput as error:
+            return {name: [_event(t, Event.WARNING, "the map cannot be put together with those of others", str(error))]}
+        return {}
+
+    def _map(self, t: float, group: Group) -> Grid | None:
+        """Of all keyframes; None where it would be as it was."""
+        first = group.names[0]
+        tiles = self._maps.setdefault(first, TileMap(RESOLUTION))
+        if not tiles.follow(self._team.session_of(group).keyframes):
+            return None
+        cells, (x, y) = tiles.cells()
+        return occupancy_grid(cells, RESOLUTION, x, y, f"{first}/map", t)
+
+    def _joined(self, t: float, group: Group) -> list[Event]:
+        """Told where vehicles have come to it."""
+        before = self._told.get(group.names[0])
+        if before is not None and set(group.names) <= set(before.names):
+            return []
+        cause = f"{len(group.joint.crossings)} places fit; {group.quality:.0%} of what was seen twice is the same"
+        return [_event(t, Event.INFO, f"the maps of {' and '.join(group.names)} are one", cause)]
+
+    def _place(self, t: float, name: str, first: str) -> FrameTransform:
+        x, y, yaw = self._team.team_from_map(name)
+        return FrameTransform(
+            timestamp=stamp(t),
+            parent_frame_id=f"{first}/map",
+            child_frame_id=f"{name}/map",
+            translation=Vector3(x=x, y=y),
+            rotation=quaternion(from_euler(0.0, 0.0, yaw)),
+        )
+
+
+def _event(t: float, severity: Event.Severity, text: str, cause: str) -> Event:
+    return Event(timestamp=stamp(t), severity=severity, text=text, cause=cause, source=MergingService.name)
