@@ -1,5 +1,7 @@
 """Scan matching on a pyramid of maps."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -30,11 +32,21 @@ def test_offered_odometry_is_not_looked_at_unless_asked_for():
 
 
 def test_odometry_is_where_the_search_begins_when_asked_for():
-    readings = drive(40, turns=1.3)[::4]
-    assert np.abs(odometry_of(readings) - run(drive(40)[::4])[0].trajectory()).max() > 0.1
-    method, _ = run(readings, use_odometry=True)
-    away = method.trajectory() - truth(40)[::4]
-    assert np.abs(away).max() < 0.05
+    """Ten times as slow a lidar: by itself it is lost, and so is the odometry, which turns too far by a third."""
+    readings = drive(turns=1.3)[::10]
+    alone, held = (run(readings, use_odometry=used)[0].trajectory() for used in (False, True))
+    by_laser, by_both, by_odometry = (np.hypot(*(p - truth()[::10])[:, :2].T).max() for p in (alone, held, odometry_of(readings)))
+    assert min(by_laser, by_odometry) > 0.5
+    assert by_both < 0.05
+
+
+def test_what_the_vehicle_has_before_its_own_lidar_is_left_out_by_its_range():
+    def masked(reading):
+        return replace(reading, ranges=np.where((np.arange(360) >= 100) & (np.arange(360) < 300), 0.25, reading.ranges))
+
+    readings = [masked(reading) for reading in drive()]
+    assert off_by(run(readings, laser_min_dist=0.5)[0].trajectory())[0] < 0.06
+    assert off_by(run(readings)[0].trajectory())[0] > 0.5
 
 
 def test_a_lidar_that_turns_clockwise_and_sits_aside_is_tracked_too():
@@ -58,7 +70,8 @@ def test_readings_go_into_the_maps_after_a_motion_only():
 def test_the_covariance_is_small_where_walls_are_and_large_where_nothing_is():
     readings = drive(20)
     method, told = run(readings)
-    assert np.sqrt(np.diag(told[-1].covariance)) == pytest.approx((0.01, 0.01, 0.005), abs=0.01)
+    sigmas = np.sqrt(np.diag(told[-1].covariance))
+    assert (sigmas > (1e-3, 1e-3, 5e-4)).all() and (sigmas < (0.01, 0.01, 0.005)).all()
     blind = method.add(type(readings[0])(1e3, np.zeros(360), readings[0].beams, readings[0].odom_from_base))
     assert blind.covariance[0, 0] > 0.5
     assert blind.quality == 0.0
