@@ -5,14 +5,15 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from uvf.maths.compiled import compiled
 from uvf.maths.planar import Pose2
-from uvf.maths.planar_arrays import wrapped
 from uvf.maths.rotations import wrap
 
 Floats = NDArray[np.float64]
 
 RADIUS, TURN = 0.6, 0.5  # m, rad from the heaviest particle of a group to its others
 LEAST_WEIGHT = 1e-4  # of a group that is followed
+NONE, DROPPED = -1, -2
 
 
 @dataclass(frozen=True)
@@ -27,27 +28,56 @@ class Group:
 
 def groups_of(poses: Floats, weights: Floats, most: int) -> tuple[list[Group], NDArray[np.int64]]:
     """(at most so many groups, the heaviest first; indices of the particles in none of them): leader clustering."""
-    left = np.arange(len(poses))
-    found: list[Group] = []
-    while len(found) < most and len(left):
-        leader = poses[left[np.argmax(weights[left])]]
-        near = np.hypot(*(poses[left, :2] - leader[:2]).T) < RADIUS
-        near &= np.abs(wrapped(poses[left, 2] - leader[2])) < TURN
-        group = _group(poses, weights, left[near], leader[2])
-        if group.weight >= LEAST_WEIGHT or not found:
-            found.append(group)
-        left = left[~near]
-    return sorted(found, key=lambda g: -g.weight), left
+    labels, count = _led(poses, weights, most)
+    found = [_group(poses, weights, np.flatnonzero(labels == k)) for k in range(count)]
+    return sorted(found, key=lambda g: -g.weight), np.flatnonzero(labels == NONE)
 
 
-def _group(poses: Floats, weights: Floats, members: NDArray[np.int64], yaw: float) -> Group:
-    own = weights[members]
-    total = float(own.sum())
-    share = own / total if total > 0.0 else np.full(len(own), 1.0 / len(own))
-    away = np.column_stack((poses[members, :2], wrapped(poses[members, 2] - yaw)))
-    mean = share @ away
-    off = away - mean
-    return Group(members, total, Pose2(float(mean[0]), float(mean[1]), wrap(float(yaw + mean[2]))), (share[:, None] * off).T @ off)
+@compiled
+def _led(poses: Floats, weights: Floats, most: int) -> tuple[NDArray[np.int64], int]:
+    """((n,) number of each particle's group, NONE or DROPPED; how many groups there are)."""
+    labels = np.full(poses.shape[0], NONE)
+    count, left = 0, poses.shape[0]
+    while count < most and left > 0:
+        leader = -1
+        for i in range(poses.shape[0]):
+            if labels[i] == NONE and (leader < 0 or weights[i] > weights[leader]):
+                leader = i
+        total = 0.0
+        for i in range(poses.shape[0]):
+            dx, dy = poses[i, 0] - poses[leader, 0], poses[i, 1] - poses[leader, 1]
+            turn = (poses[i, 2] - poses[leader, 2] + np.pi) % (2.0 * np.pi) - np.pi
+            if labels[i] == NONE and dx * dx + dy * dy < RADIUS * RADIUS and abs(turn) < TURN:
+                labels[i] = count
+                total += weights[i]
+                left -= 1
+        if total >= LEAST_WEIGHT or count == 0:
+            count += 1
+        else:
+            labels[labels == count] = DROPPED
+    return labels, count
+
+
+def _group(poses: Floats, weights: Floats, members: NDArray[np.int64]) -> Group:
+    total, mean, covariance = _moments(poses[members], weights[members])
+    return Group(members, total, Pose2(float(mean[0]), float(mean[1]), wrap(float(mean[2]))), covariance)
+
+
+@compiled
+def _moments(poses: Floats, weights: Floats) -> tuple[float, Floats, Floats]:
+    """(sum of the weights, mean, covariance) of poses whose headings are near each other."""
+    total = weights.sum()
+    shares = weights / total if total > 0.0 else np.full(weights.shape[0], 1.0 / weights.shape[0])
+    off = poses - poses[0]
+    off[:, 2] = (off[:, 2] + np.pi) % (2.0 * np.pi) - np.pi
+    mean, covariance = np.zeros(3), np.zeros((3, 3))
+    for i in range(off.shape[0]):
+        mean += shares[i] * off[i]
+    for i in range(off.shape[0]):
+        for a in range(3):
+            for b in range(3):
+                covariance[a, b] += shares[i] * (off[i, a] - mean[a]) * (off[i, b] - mean[b])
+    return total, poses[0] + mean, covariance
 
 
 def near(p: Pose2, q: Pose2, distance: float = RADIUS, turn: float = TURN) -> bool:

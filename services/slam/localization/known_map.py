@@ -29,15 +29,16 @@ FARTHEST = 1.0  # m, distances are kept up to this
 SEARCH_CELL, SEARCH_SIGMA, SEARCH_DEPTH = 0.1, 0.12, 3  # m, m, levels of bounds
 LEAST_SURFACE = 20  # points
 MOST_CELLS = 100_000_000
-UNKNOWN = -1.0
+UNKNOWN, OUTSIDE = -1.0, -2.0  # distances where nothing is known begin at the one and end at the other
 
 
 @dataclass(frozen=True)
 class KnownMap:
     """All in the map frame.
 
-    grid: occupancy, its axes those of the frame; distances: (rows, columns) m to the nearest occupied cell, -1 where the map
-    knows nothing; surfaces: what sweeps are matched to; field: where a sweep is searched for in the whole map.
+    grid: occupancy, its axes those of the frame; distances: (rows, columns) m to the nearest occupied cell, as much below -1 where
+    the map does not know whether the floor is free; surfaces: what sweeps are matched to; field: where a sweep is searched for in
+    the whole map.
     """
 
     grid: GridMap
@@ -107,6 +108,7 @@ def _known(grid: GridMap, cloud: Cloud, source: str) -> KnownMap:
     if len(cloud.points) < LEAST_SURFACE:
         raise BadInput(f"{source}: a map with {len(cloud.points)} cells of walls beside free floor: there is nothing to be localized by")
     distances = np.minimum(distance_field(grid.cells > OCCUPIED) * grid.resolution, FARTHEST).astype(np.float32)
-    distances[grid.cells < 0] = UNKNOWN
+    unknown = (grid.cells < 0) | ((grid.cells > FREE) & (grid.cells <= OCCUPIED))
+    distances[unknown] = UNKNOWN - distances[unknown]
     field = likelihood_field(cloud.points, SEARCH_CELL, SEARCH_SIGMA, SEARCH_DEPTH)
     return KnownMap(grid, distances, point_map([cloud]), field)

@@ -8,15 +8,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from services.slam.localization.beams import beams_of
-from services.slam.localization.fit import UsualFit
+from services.slam.localization.fit import UsualFit, UsualMatch
 from services.slam.localization.groups import near
 from services.slam.localization.known_map import KnownMap
 from services.slam.localization.motion import OdometryNoise
 from services.slam.localization.params import FilterParams
-from services.slam.localization.particle_filter import Hypothesis, ParticleFilter, Sweep
+from services.slam.localization.particle_filter import Hypothesis, ParticleFilter, Prediction, Sweep
 from services.slam.localization.recent import Moved, RecentSweeps
 from services.slam.localization.whole_map import Lately, whole_map
-from services.slam.matching.cloud import cloud_of
+from services.slam.matching.cloud import Cloud, cloud_of
 from services.slam.method import Estimate, Keyframe
 from services.slam.reading import Reading
 from uvf.maths.planar import IDENTITY, Pose2, compose, inverse
@@ -28,6 +28,7 @@ START = np.diag((0.1, 0.1, 0.05)) ** 2  # covariance of a start pose that is giv
 REMEMBERED = np.diag((0.2, 0.2, 0.06)) ** 2  # of the pose by odometry, while it is not known whether it still holds
 FOUND = np.diag((0.1, 0.1, 0.04)) ** 2  # of a place found in the whole map
 LEAP, LEAP_TURN = 2.0, 2.0  # m, rad between two sweeps that no odometry has driven
+LEAPS = 0.15, 0.15  # m, rad by which the map may correct the odometry at once, so that it is believed alone
 STOOD = 1e-4  # m, rad
 NEWS_WAY, NEWS_TURN = 0.25, 0.35
 """m, rad of motion after which a sweep counts in full: what is seen from the same place tells nothing new."""
@@ -39,8 +40,8 @@ SURE, SURE_WAY = 0.95, 1.0
 FITS = 0.7  # part of what is usual that such a one has to fit
 BROKEN, BROKEN_WAY = 0.6, 2.0
 """Part of the usual fit to the sweeps before below which the view has changed at once, and m for which that may have been a kidnapping."""
-FALLEN_WAY = 4.0
-"""m that sweeps may fit badly where nothing has broken: a room that the map does not know."""
+AGAINST_WAY = 1.0
+"""m for which sweeps may contradict the map where nothing has broken: something large stands in the way, or the odometry has slipped."""
 HALF_SURE = 0.5
 PUT_IN = 0.4  # weight of what a search has found while it is not known where the vehicle is
 
@@ -59,7 +60,7 @@ class Localizer:
         self.known, self.params = known, params
         self.filter = ParticleFilter(known, (params.least_particles, params.most_particles), np.random.default_rng(seed))
         self.hypotheses: list[Hypothesis] = []
-        self.fit = UsualFit()
+        self.fit, self._usual = UsualFit(), UsualMatch()
         self._recent, self._lately = RecentSweeps(), Lately()
         self._poses: list[Pose2] = []
         self._odometry: Pose2 | None = None
@@ -84,15 +85,14 @@ class Localizer:
         self._searched_at = -np.inf
         self._sure_since: float | None = None
         self.is_fresh = True
-        self._broken_at, self._fitted_at = -np.inf, self._lately.way
+        self._broken_at, self._agreed_at = -np.inf, self._lately.way
         self.hypotheses = []
         self.fit.forget_newest()
 
     def add(self, reading: Reading) -> Estimate:
         told = self._step(reading.odom_from_base)
-        stands = hypot(told.x, told.y) < STOOD and abs(told.yaw) < STOOD
         cloud = cloud_of(reading)
-        moved = Moved(IDENTITY, True, 1.0) if stands and not self.is_fresh else self._recent.add(cloud, told)
+        moved, prediction = self._moved(cloud, told)
         news = 1.0 if self.is_fresh else min(1.0, hypot(told.x, told.y) / NEWS_WAY + abs(told.yaw) / NEWS_TURN)
         self._lately.add(self._recent.pose, cloud.points)
         if news > 0.0:
@@ -100,15 +100,32 @@ class Localizer:
             self.is_fresh = False
             if self.state is not State.TRACKING and self._lately.way - self._searched_at >= SEARCH_WAY:
                 self._search()
-            self.hypotheses = self.filter.update(moved.step, self._noise(moved), sweep)
+                prediction = None
+            self.hypotheses = self.filter.correct(prediction or self.filter.predict(moved.step, self._noise(moved), cloud), sweep)
             self._decide(moved, news)
         self._poses.append(self.pose)
         return Estimate(self.pose, self._covariance(), self.quality)
 
-    def _noise(self, moved: Moved) -> OdometryNoise:
+    def _moved(self, cloud: Cloud, told: Pose2) -> tuple[Moved, Prediction | None]:
+        """The step; and where it leads, if the map has told it: a tracked vehicle whose sweep fits well needs no other sweeps.
+
+        told: by the odometry.
+        """
+        if not self.is_fresh and hypot(told.x, told.y) < STOOD and abs(told.yaw) < STOOD:
+            return Moved(IDENTITY, True, 1.0), None
+        if self.state is State.TRACKING and not self.is_fresh:
+            prediction = self.filter.predict(told, self._odometry_noise(), cloud)
+            own = prediction.only
+            if own is not None and own.match is not None and self._usual.add(own.match) and near(own.pose, own.group.mean, *LEAPS):
+                return self._recent.follow(cloud, compose(inverse(self.pose), own.pose)), prediction
+        return self._recent.add(cloud, told), None
+
+    def _odometry_noise(self) -> OdometryNoise:
         p = self.params
-        noise = OdometryNoise(p.turn_by_turn, p.turn_by_way, p.way_by_way, p.way_by_turn)
-        return noise.times(MATCHED) if moved.matched else noise
+        return OdometryNoise(p.turn_by_turn, p.turn_by_way, p.way_by_way, p.way_by_turn)
+
+    def _noise(self, moved: Moved) -> OdometryNoise:
+        return self._odometry_noise().times(MATCHED) if moved.matched else self._odometry_noise()
 
     def trajectory(self) -> Floats:
         return np.array(self._poses).reshape(-1, 3)
@@ -151,16 +168,19 @@ class Localizer:
         own = self._own
         if own is None and self.state is State.TRACKING:
             own = self.hypotheses[0]
+        if moved.fits < BROKEN and self.fit.shows_some:
+            self._broken_at = self._lately.way
         if own is not None:
             if own.matched or not near(own.pose, self.pose):
                 self.pose = own.pose
             self.fit.add(own.fit, news, self.state is State.TRACKING)
-        if moved.fits < BROKEN:
-            self._broken_at = self._lately.way
         if self.state is State.TRACKING:
             self._notice()
-            return
-        best = self.hypotheses[0]
+        else:
+            self._find(self.hypotheses[0])
+
+    def _find(self, best: Hypothesis) -> None:
+        """Who has been sure for long enough is there."""
         if best.weight < SURE or not self.fit.is_usual(best.fit, FITS):
             self._sure_since = None
         elif self._sure_since is None:
@@ -168,15 +188,19 @@ class Localizer:
         elif self._lately.way - self._sure_since >= SURE_WAY and not self._has_rival(best):
             self.state = State.TRACKING
             self.pose = best.pose
-            self.fit.recover(best.fit)
-            self._fitted_at = self._lately.way
+            self.fit.begin(best.fit)
+            self._agreed_at = self._lately.way
 
     def _notice(self) -> None:
-        """A fit that has fallen together with the view of a moment ago, or for long, means that the vehicle is elsewhere."""
+        """Sweeps that contradict the map, at once with a view that has changed at once or for long, tell that the vehicle is elsewhere.
+
+        So does a view that has changed at once from one that the map shows to one that it does not.
+        """
         way = self._lately.way
-        if not self.fit.has_fallen:
-            self._fitted_at = way
-        elif way - self._broken_at < BROKEN_WAY or way - self._fitted_at > FALLEN_WAY:
+        broken = way - self._broken_at < BROKEN_WAY
+        if not self.fit.contradicts:
+            self._agreed_at = way
+        if (self.fit.contradicts and (broken or way - self._agreed_at > AGAINST_WAY)) or (broken and self.fit.shows_nothing):
             self.state = State.LOST
             self._lately.forget()
             self._searched_at, self._sure_since = -np.inf, None

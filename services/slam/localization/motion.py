@@ -1,13 +1,13 @@
 """Motion of particles by odometry: Thrun, Burgard & Fox, "Probabilistic Robotics" (2005), table 5.6."""
 
 from dataclasses import dataclass
-from math import atan2, hypot, pi
+from math import atan2, hypot, pi, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
 
+from uvf.maths.compiled import compiled
 from uvf.maths.planar import Pose2
-from uvf.maths.planar_arrays import composed
 from uvf.maths.rotations import wrap
 
 Floats = NDArray[np.float64]
@@ -48,13 +48,29 @@ def sample_motion(poses: Floats, step: Pose2, noise: OdometryNoise, rng: np.rand
         first, way = wrap(first + pi), -way
     second = wrap(step.yaw - first)
     turned = min(first**2, step.yaw**2), min(second**2, step.yaw**2)
-    n = len(poses)
-    turn_1 = first + _sigma(noise.turn, noise.turn_by_turn * turned[0], noise.turn_by_way * way**2) * rng.standard_normal(n)
-    ways = way + _sigma(noise.way, noise.way_by_way * way**2, noise.way_by_turn * sum(turned)) * rng.standard_normal(n)
-    turn_2 = second + _sigma(noise.turn, noise.turn_by_turn * turned[1], noise.turn_by_way * way**2) * rng.standard_normal(n)
-    aside = noise.way * rng.standard_normal(n)
-    return composed(poses, np.column_stack((ways * np.cos(turn_1), ways * np.sin(turn_1) + aside, turn_1 + turn_2)))
+    sigmas = (
+        _sigma(noise.turn, noise.turn_by_turn * turned[0], noise.turn_by_way * way**2),
+        _sigma(noise.way, noise.way_by_way * way**2, noise.way_by_turn * sum(turned)),
+        _sigma(noise.turn, noise.turn_by_turn * turned[1], noise.turn_by_way * way**2),
+        noise.way,
+    )
+    return _moved(poses, (first, way, second), sigmas, rng.standard_normal((len(poses), 4)))
+
+
+@compiled
+def _moved(poses: Floats, parts: tuple[float, float, float], sigmas: tuple[float, float, float, float], normals: Floats) -> Floats:
+    """sigmas: of the first turn [rad], the way [m], the second turn [rad] and aside [m]; normals: (n, 4)."""
+    out = np.empty_like(poses)
+    for i in range(poses.shape[0]):
+        first = parts[0] + sigmas[0] * normals[i, 0]
+        way, aside = parts[1] + sigmas[1] * normals[i, 1], sigmas[3] * normals[i, 3]
+        x, y = way * np.cos(first), way * np.sin(first) + aside
+        c, s = np.cos(poses[i, 2]), np.sin(poses[i, 2])
+        turn = first + parts[2] + sigmas[2] * normals[i, 2]
+        out[i, 0], out[i, 1] = poses[i, 0] + c * x - s * y, poses[i, 1] + s * x + c * y
+        out[i, 2] = (poses[i, 2] + turn + np.pi) % (2.0 * np.pi) - np.pi
+    return out
 
 
 def _sigma(least: float, *variances: float) -> float:
-    return float(np.sqrt(least**2 + sum(variances)))
+    return sqrt(least**2 + sum(variances))

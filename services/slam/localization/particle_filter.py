@@ -10,7 +10,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from services.slam.localization.beams import Beams, field_of, scores
+from services.slam.localization.beams import Beams, field_of, scores, ways
+from services.slam.localization.fit import Fit
+from services.slam.localization.gaussian import drawn
 from services.slam.localization.groups import LEAST_WEIGHT, Group, groups_of
 from services.slam.localization.kld import bins_of, enough
 from services.slam.localization.known_map import KnownMap
@@ -20,6 +22,7 @@ from services.slam.matching.cloud import Cloud
 from uvf.maths.planar import IDENTITY, Pose2
 
 Floats = NDArray[np.float64]
+Mask = NDArray[np.bool_]
 
 MOST_GROUPS = 12
 LEAST_PART = 0.04  # of the particles, for each group
@@ -29,12 +32,12 @@ IN_GROUP = 60  # particles of a hypothesis that is put in
 
 @dataclass(frozen=True)
 class Hypothesis:
-    """Where the vehicle may be. weight: 0..1 of all; fit: share of the sweep 0..1, -1 where the map does not know enough."""
+    """Where the vehicle may be. weight: 0..1 of all; fit: of the newest sweep."""
 
     pose: Pose2
     covariance: Floats
     weight: float
-    fit: float
+    fit: Fit
     matched: bool
 
 
@@ -45,6 +48,18 @@ class Sweep:
     cloud: Cloud
     beams: Beams
     news: float
+
+
+class Prediction(NamedTuple):
+    """poses: (n, 3) of all particles after the motion; proposals: of their groups, the heaviest first, and of those in none."""
+
+    poses: Floats
+    proposals: list[Proposal]
+
+    @property
+    def only(self) -> Proposal | None:
+        """Of the one place that the particles stand for; None while there are several."""
+        return self.proposals[0] if len(self.proposals) == 1 and self.proposals[0].near else None
 
 
 class _Drawn(NamedTuple):
@@ -88,23 +103,35 @@ class ParticleFilter:
         self.poses = np.concatenate((self.poses, *fresh))
         self.weights = np.concatenate((self.weights * (1.0 - part), np.full(n, part / n)))
 
-    def update(self, step: Pose2, noise: OdometryNoise, sweep: Sweep) -> list[Hypothesis]:
-        """One motion and one sweep; the hypotheses, the heaviest first."""
+    def predict(self, step: Pose2, noise: OdometryNoise, cloud: Cloud) -> Prediction:
+        """Where one motion leads, and what a sweep fits there. Nothing is changed yet."""
         moved = sample_motion(self.poses, step, noise, self._rng)
         groups, loose = groups_of(moved, self.weights, MOST_GROUPS)
-        proposals = [proposal(self.known, group, sweep.cloud) for group in groups]
+        proposals = [proposal(self.known, group, cloud) for group in groups]
         rest = float(self.weights[loose].sum())
         if rest > LEAST_WEIGHT:
             proposals.append(Proposal(Group(loose, rest, IDENTITY, np.eye(3)), None, near=False))
-        drawn = self._drawn(proposals, moved)
-        totals = self._weigh(proposals, drawn, sweep)
-        return self._hypotheses(proposals[: len(groups)], totals, sweep.beams)
+        return Prediction(moved, proposals)
+
+    def correct(self, prediction: Prediction, sweep: Sweep) -> list[Hypothesis]:
+        """One motion and one sweep; the hypotheses, the heaviest first."""
+        proposals = prediction.proposals
+        places = np.array([p.pose for p in proposals])
+        blocked = ways(places, sweep.beams, self._field)
+        totals = self._weigh(proposals, self._drawn(proposals, prediction.poses), sweep, blocked)
+        found = scores(places, sweep.beams, self._field, blocked, np.arange(len(places)))
+        hypotheses = [
+            Hypothesis(p.pose, p.covariance, float(weight), Fit(float(on_walls), float(against)), p.match is not None)
+            for p, weight, on_walls, against in zip(proposals, totals, found.fits, found.against, strict=True)
+            if p.near
+        ]
+        return sorted(hypotheses, key=lambda h: -h.weight)
 
     def _drawn(self, proposals: list[Proposal], moved: Floats) -> _Drawn:
         """New particles around what has been matched, until there are enough for the bins they are in; the others go on."""
         before = (moved, self.weights)
         unmatched = [(k, p.keep(before, self._rng)) for k, p in enumerate(proposals) if p.match is None]
-        kept = [_Drawn(*drawn, np.full(len(drawn[0]), k)) for k, drawn in unmatched]
+        kept = [_Drawn(*particles, np.full(len(particles[0]), k)) for k, particles in unmatched]
         matched = [(k, p) for k, p in enumerate(proposals) if p.match is not None]
         parts = np.maximum([p.group.weight for _, p in matched], LEAST_PART)
         parts /= parts.sum()
@@ -118,33 +145,26 @@ class ParticleFilter:
             wanted = int(np.clip(enough(bins_of(np.concatenate([d.poses for d in found]))), *self.limits))
         return _Drawn(*(np.concatenate(column) for column in zip(*kept, *found, strict=True)))
 
-    def _weigh(self, proposals: list[Proposal], drawn: _Drawn, sweep: Sweep) -> Floats:
+    def _weigh(self, proposals: list[Proposal], fresh: _Drawn, sweep: Sweep, blocked: Mask) -> Floats:
         """Puts the new particles in force; the weight of each proposal's.
 
+        blocked: where beams go through walls, seen from the places of the proposals: particles about a match see them so, too.
         Groups that the sweep cannot be matched to keep their inner weights: it does not tell where in them the vehicle is.
         """
-        logs, _ = scores(drawn.poses, sweep.beams, self._field, len(proposals) > 1)
-        logs *= sweep.news
+        follows = np.array([p.match is None for p in proposals])
+        logs = scores(fresh.poses, sweep.beams, self._field, blocked, np.where(follows[fresh.of], -1, fresh.of)).logs * sweep.news
         top = float(logs.max())
         weights, totals = np.empty(len(logs)), np.zeros(len(proposals))
         for k, p in enumerate(proposals):
-            own = drawn.of == k
-            both = logs[own] + drawn.logs[own]
+            own = fresh.of == k
+            both = logs[own] + fresh.logs[own]
             totals[k] = p.group.weight * np.exp(both - top).mean()
-            inner = drawn.logs[own] if p.match is None and p.near else both
+            inner = fresh.logs[own] if p.match is None and p.near else both
             inner = np.exp(inner - inner.max())
             weights[own] = inner / inner.sum() * totals[k]
-        self.poses, self.weights = drawn.poses, weights / weights.sum()
+        self.poses, self.weights = fresh.poses, weights / weights.sum()
         shares: Floats = totals / totals.sum()
         return shares
-
-    def _hypotheses(self, proposals: list[Proposal], totals: Floats, beams: Beams) -> list[Hypothesis]:
-        _, fits = scores(np.array([p.pose for p in proposals]), beams, self._field, True)
-        found = [
-            Hypothesis(p.pose, p.covariance, float(weight), float(fit), p.match is not None)
-            for p, weight, fit in zip(proposals, totals, fits, strict=False)
-        ]
-        return sorted(found, key=lambda h: -h.weight)
 
     def spread(self) -> Floats:
         """(3, 3) covariance of all particles."""
@@ -152,4 +172,4 @@ class ParticleFilter:
         return (self.weights[:, None] * off).T @ off
 
     def _around(self, pose: Pose2, covariance: Floats, n: int) -> Floats:
-        return self._rng.multivariate_normal(np.array(pose), covariance, n, method="cholesky")
+        return drawn(np.array(pose), covariance, self._rng.standard_normal((n, 3)))

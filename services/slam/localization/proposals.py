@@ -5,17 +5,18 @@ the proposal is a Gaussian about the match; a part is drawn by the motion model,
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
+from services.slam.localization.gaussian import drawn, inverse, log_density
 from services.slam.localization.groups import Group
 from services.slam.localization.known_map import KnownMap
 from services.slam.matching.branch_and_bound import Window, search
 from services.slam.matching.cloud import Cloud
 from services.slam.matching.imls import Match, match
 from uvf.maths.planar import Pose2
-from uvf.maths.planar_arrays import wrapped
 
 Floats = NDArray[np.float64]
 
@@ -48,13 +49,13 @@ class Proposal:
     def pose(self) -> Pose2:
         return self.match.map_from_base if self.match else self.group.mean
 
-    @property
+    @cached_property
     def covariance(self) -> Floats:
         """(3, 3) of the pose."""
         predicted: Floats = self.group.covariance + LEAST_SPREAD
         if self.match is None:
             return predicted
-        found: Floats = _inverse(self.match.information + _inverse(predicted)) + FLOOR
+        found: Floats = inverse(self.match.information + inverse(predicted)) + FLOOR
         return found
 
     def draw(self, n: int, moved: tuple[Floats, Floats], rng: np.random.Generator) -> tuple[Floats, Floats]:
@@ -62,9 +63,9 @@ class Proposal:
         by_motion = int(np.ceil(BY_MOTION * n))
         poses = moved[0][resampled(self.group.members, moved[1][self.group.members], by_motion, rng)]
         wide = WIDER * self.covariance
-        poses = np.concatenate((poses, rng.multivariate_normal(np.array(self.pose), wide, n - by_motion, method="cholesky")))
-        predicted = _log_density(poses, self.group.mean, WIDER * (self.group.covariance + LEAST_SPREAD) + FLOOR)
-        matched = _log_density(poses, self.pose, wide)
+        poses = np.concatenate((poses, drawn(np.array(self.pose), wide, rng.standard_normal((n - by_motion, 3)))))
+        predicted = log_density(poses, np.array(self.group.mean), WIDER * (self.group.covariance + LEAST_SPREAD) + FLOOR)
+        matched = log_density(poses, np.array(self.pose), wide)
         mixed = np.logaddexp(np.log(BY_MOTION) + predicted, np.log(1.0 - BY_MOTION) + matched)
         return poses, predicted - mixed
 
@@ -78,25 +79,12 @@ class Proposal:
         return moved[0][resampled(self.group.members, own, n, rng)], np.zeros(n)
 
 
-def _inverse(matrix: Floats) -> Floats:
-    found: Floats = np.linalg.inv(matrix).astype(np.float64)
-    return found
-
-
 def resampled(members: NDArray[np.int64], weights: Floats, n: int, rng: np.random.Generator) -> NDArray[np.int64]:
     """n of the members by their weights, with low variance (Thrun et al. 2005, table 4.4)."""
     ends = np.cumsum(weights)
     places = (rng.random() + np.arange(n)) / n * ends[-1]
-    drawn: NDArray[np.int64] = members[np.minimum(np.searchsorted(ends, places), len(members) - 1)]
-    return drawn
-
-
-def _log_density(poses: Floats, mean: Pose2, covariance: Floats) -> Floats:
-    """(n,) of a Gaussian, but for a constant that is the same for all."""
-    off: Floats = poses - np.array(mean, dtype=np.float64)
-    off[:, 2] = wrapped(off[:, 2])
-    squares: Floats = np.einsum("ni,ij,nj->n", off, _inverse(covariance), off)
-    return -0.5 * (squares + float(np.linalg.slogdet(covariance)[1]))
+    found: NDArray[np.int64] = members[np.minimum(np.searchsorted(ends, places), len(members) - 1)]
+    return found
 
 
 def proposal(known: KnownMap, group: Group, cloud: Cloud) -> Proposal:
@@ -104,7 +92,7 @@ def proposal(known: KnownMap, group: Group, cloud: Cloud) -> Proposal:
     if len(cloud.points) == 0:
         return Proposal(group, None)
     spread = group.covariance + LEAST_SPREAD
-    prior = _inverse(spread)
+    prior = inverse(spread)
     found = match(group.mean, cloud, known.surfaces, prior)
     side, turn = _window(spread)
     held = side < SIDE and turn < TURN

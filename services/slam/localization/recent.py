@@ -35,20 +35,30 @@ class RecentSweeps:
     def add(self, cloud: Cloud, step: Pose2) -> Moved:
         """step: by the odometry."""
         before = self.pose
-        if self._local is None:
+        if not self._kept:
             self._keep(cloud)
             return Moved(step, False, 1.0)
         usual = self._tracker.share
+        self._local = self._local or LocalMap(point_map([c.moved(pose) for pose, c in self._kept]))
         tracked = self._tracker.track(self._local, Motion(before, step, self._tracker.noise), cloud)
         lost = tracked.match.share == 0.0
         self.pose = tracked.match.map_from_base
-        since = compose(inverse(self._kept[-1][0]), self.pose)
         if lost:
             self._kept.clear()
-        if lost or hypot(since.x, since.y) > SPACING or abs(since.yaw) > SPACING_TURN:
-            self._keep(cloud)
+        self._keep(cloud)
         return Moved(compose(inverse(before), self.pose), not tracked.doubted, tracked.match.share / max(usual, 1e-3))
 
+    def follow(self, cloud: Cloud, step: Pose2) -> Moved:
+        """step: as it is known already."""
+        self.pose = compose(self.pose, step)
+        self._keep(cloud)
+        return Moved(step, True, 1.0)
+
     def _keep(self, cloud: Cloud) -> None:
+        """What is needed no sooner than that the vehicle has moved on."""
+        if self._kept:
+            since = compose(inverse(self._kept[-1][0]), self.pose)
+            if hypot(since.x, since.y) <= SPACING and abs(since.yaw) <= SPACING_TURN:
+                return
         self._kept.append((self.pose, cloud))
-        self._local = LocalMap(point_map([c.moved(pose) for pose, c in self._kept]))
+        self._local = None
