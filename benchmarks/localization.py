@@ -5,8 +5,8 @@ that the second contradicts: ``map %``), the vehicle is localized on the second 
 ``tracked``: from a start pose that is off by 0.1 m and 3 deg (1 sigma); ``odometry``: the same with noise added to the odometry until its
 sigma is 1.5 times what it was, and 5 deg of veering a metre; ``corrupted``: with a fifth of all beams saying anything.
 ``global``: from nothing; ``kidnapped``: carried to another place, of which the odometry knows nothing. Found is who is within 0.3 m and
-5 deg of the tracked pose after at most 10 m, and stays so until 12 m; ``sure of a wrong place`` is who has said to be localized
-where he was not. Seeds choose places that the map knows.
+5 deg of the tracked pose after at most 10 m, and stays so until 12 m, wherever the map knows the place; ``sure of a wrong place`` is who
+has said to be localized where he was not. Seeds choose places that the map knows, and half of the next 10 m.
 Relations are those within the second half, in rooms that the first has not seen, too; those whose two places the map knows are in
 ``known m`` and ``known deg``; ``LOST %`` are sweeps at which it was looked for. Times are those of the thread, per sweep.
 """
@@ -68,6 +68,15 @@ class Prepared:
     fits: Floats
     way: Floats
     lost: bool
+
+    @property
+    def places(self) -> NDArray[np.int64]:
+        """Readings that the map knows, and half of those of the next metres."""
+        ends = np.searchsorted(self.way, self.way + GIVEN)
+        known = np.concatenate(((0,), np.cumsum(self.fits > KNOWN)))
+        begins = np.arange(len(self.way))
+        ahead = (known[ends] - known[begins]) / np.maximum(ends - begins, 1)
+        return np.flatnonzero((self.fits > KNOWN) & (ahead > 0.5) & (self.way < self.way[-1] - WATCHED))
 
 
 @cache
@@ -156,7 +165,7 @@ def tracked(path: Path, spoil: Callable[[LaserLog, Floats, int], LaserLog], seed
 
 def found(path: Path, carried: bool, seed: int) -> dict[str, float]:
     p, rng = prepared(path), np.random.default_rng(seed)
-    places = np.flatnonzero((p.fits > KNOWN) & (p.way < p.way[-1] - WATCHED))
+    places = p.places
     begin = int(rng.choice(places))
     readings = p.log.readings[begin:]
     localizer = Localizer(p.known, PARAMS, seed)
@@ -171,6 +180,7 @@ def found(path: Path, carried: bool, seed: int) -> dict[str, float]:
     told = list(timed(localizer, readings[: int(np.searchsorted(way, WATCHED))]))
     off = composed(inverted(p.reference[begin:][: len(told)]), np.array([pose for pose, _, _ in told]))
     wrong = (np.hypot(off[:, 0], off[:, 1]) > NEAR) | (np.abs(off[:, 2]) > NEAR_TURN)
+    wrong &= p.fits[begin:][: len(told)] > KNOWN
     tracking = np.array([state is State.TRACKING for _, state, _ in told])
     looked_for = np.flatnonzero(~tracking)
     noticed = int(looked_for[0]) if len(looked_for) else len(told)

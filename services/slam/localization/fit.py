@@ -12,12 +12,18 @@ SHORT, LONG = 0.6, 0.02
 USUAL = 0.6  # agreement that is usual at first
 LEAST_USUAL = 0.3
 ENOUGH = 0.25  # of a sweep's beams that have to fit or contradict, so that it says something
-MOST_AGAINST = 0.4
-"""Of a sweep's beams that may contradict: at a wrong place of a map it is more in 85 of 100 cases, at the right one in 2."""
+MOST_AGAINST, MANY_AGAINST = 0.4, 0.25
+"""Of a sweep's beams that may contradict for long, and after the view has changed at once."""
 NOTHING, SOME = 0.15, 0.3
 """Of a sweep's beams on walls up to which the map shows nothing of what is seen, and from which on it shows some of it."""
 WELL, LOOSE, LEARNT = 0.5, 1.5, 0.02
 """Part of the usual share and times the usual rms at which a match is no longer a good one; rate of what is usual."""
+PER_RMS = 4.0
+
+
+def worth(found: Match) -> float:
+    """Matches are compared by it: the share of points that find a surface, less PER_RMS for each metre of their distance."""
+    return found.share - PER_RMS * found.rms
 
 
 @dataclass
@@ -29,10 +35,13 @@ class UsualMatch:
 
     def add(self, found: Match) -> bool:
         """Whether it is as good as matches usually are."""
-        good = found.share >= WELL * self.share and found.rms <= LOOSE * self.rms
+        good = self.is_good(found)
         self.share += LEARNT * (found.share - self.share)
         self.rms += LEARNT * (found.rms - self.rms)
         return good
+
+    def is_good(self, found: Match) -> bool:
+        return found.share >= WELL * self.share and found.rms <= LOOSE * self.rms
 
 
 @dataclass(frozen=True)
@@ -76,9 +85,9 @@ class UsualFit:
         """0..1, how well it agrees now for what is usual."""
         return min(self.agreement / max(self.usual, LEAST_USUAL), 1.0)
 
-    @property
-    def contradicts(self) -> bool:
-        return self.against > max(MOST_AGAINST, self.on_walls)
+    def contradicts(self, most: float) -> bool:
+        """Whether more beams than ``most`` tell against the place, and more than tell for it."""
+        return self.against > max(most, self.on_walls)
 
     @property
     def shows_nothing(self) -> bool:

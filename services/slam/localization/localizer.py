@@ -7,16 +7,19 @@ from math import hypot
 import numpy as np
 from numpy.typing import NDArray
 
+from services.slam.graph.tracker import MotionNoise
 from services.slam.localization.beams import beams_of
-from services.slam.localization.fit import UsualFit, UsualMatch
+from services.slam.localization.fit import MANY_AGAINST, MOST_AGAINST, UsualFit, UsualMatch, worth
 from services.slam.localization.groups import near
 from services.slam.localization.known_map import KnownMap
 from services.slam.localization.motion import OdometryNoise
 from services.slam.localization.params import FilterParams
 from services.slam.localization.particle_filter import Hypothesis, ParticleFilter, Prediction, Sweep
+from services.slam.localization.proposals import Proposal
 from services.slam.localization.recent import Moved, RecentSweeps
 from services.slam.localization.whole_map import Lately, whole_map
-from services.slam.matching.cloud import Cloud, cloud_of
+from services.slam.matching.cloud import cloud_of
+from services.slam.matching.imls import match
 from services.slam.method import Estimate, Keyframe
 from services.slam.reading import Reading
 from uvf.maths.planar import IDENTITY, Pose2, compose, inverse
@@ -28,7 +31,8 @@ START = np.diag((0.1, 0.1, 0.05)) ** 2  # covariance of a start pose that is giv
 REMEMBERED = np.diag((0.2, 0.2, 0.06)) ** 2  # of the pose by odometry, while it is not known whether it still holds
 FOUND = np.diag((0.1, 0.1, 0.04)) ** 2  # of a place found in the whole map
 LEAP, LEAP_TURN = 2.0, 2.0  # m, rad between two sweeps that no odometry has driven
-LEAPS = 0.15, 0.15  # m, rad by which the map may correct the odometry at once, so that it is believed alone
+LEAPS = 0.1, 0.1  # m, rad by which the map may correct a step without being doubted
+STEP, BETTER = MotionNoise(), 0.02  # of a step that leads to a match beside; worth by which a leap has to be better than that
 STOOD = 1e-4  # m, rad
 NEWS_WAY, NEWS_TURN = 0.25, 0.35
 """m, rad of motion after which a sweep counts in full: what is seen from the same place tells nothing new."""
@@ -43,6 +47,7 @@ BROKEN, BROKEN_WAY = 0.6, 2.0
 AGAINST_WAY = 1.0
 """m for which sweeps may contradict the map where nothing has broken: something large stands in the way, or the odometry has slipped."""
 HALF_SURE = 0.5
+OWN_PART = 0.3  # weight of the heaviest hypothesis beside the last pose that a nearer one has to have, to be the one that goes on
 PUT_IN = 0.4  # weight of what a search has found while it is not known where the vehicle is
 
 
@@ -85,28 +90,28 @@ class Localizer:
         self._searched_at = -np.inf
         self._sure_since: float | None = None
         self.is_fresh = True
-        self._broken_at, self._agreed_at = -np.inf, self._lately.way
+        self._broken_at = self._showed_at = -np.inf
+        self._agreed_at = self._lately.way
         self.hypotheses = []
         self.fit.forget_newest()
 
     def add(self, reading: Reading) -> Estimate:
         told = self._step(reading.odom_from_base)
-        cloud = cloud_of(reading)
-        moved, prediction = self._moved(cloud, told)
         news = 1.0 if self.is_fresh else min(1.0, hypot(told.x, told.y) / NEWS_WAY + abs(told.yaw) / NEWS_TURN)
-        self._lately.add(self._recent.pose, cloud.points)
+        sweep = Sweep(cloud_of(reading), beams_of(reading, self.params.beams), news)
+        moved, prediction = self._moved(sweep, told)
+        self._lately.add(self._recent.pose, sweep.cloud.points)
         if news > 0.0:
-            sweep = Sweep(cloud, beams_of(reading, self.params.beams), news)
             self.is_fresh = False
             if self.state is not State.TRACKING and self._lately.way - self._searched_at >= SEARCH_WAY:
                 self._search()
                 prediction = None
-            self.hypotheses = self.filter.correct(prediction or self.filter.predict(moved.step, self._noise(moved), cloud), sweep)
+            self.hypotheses = self.filter.correct(prediction or self._predicted(moved.step, self._noise(moved), sweep), sweep)
             self._decide(moved, news)
         self._poses.append(self.pose)
         return Estimate(self.pose, self._covariance(), self.quality)
 
-    def _moved(self, cloud: Cloud, told: Pose2) -> tuple[Moved, Prediction | None]:
+    def _moved(self, sweep: Sweep, told: Pose2) -> tuple[Moved, Prediction | None]:
         """The step; and where it leads, if the map has told it: a tracked vehicle whose sweep fits well needs no other sweeps.
 
         told: by the odometry.
@@ -114,11 +119,27 @@ class Localizer:
         if not self.is_fresh and hypot(told.x, told.y) < STOOD and abs(told.yaw) < STOOD:
             return Moved(IDENTITY, True, 1.0), None
         if self.state is State.TRACKING and not self.is_fresh:
-            prediction = self.filter.predict(told, self._odometry_noise(), cloud)
+            prediction = self._predicted(told, self._odometry_noise(), sweep)
             own = prediction.only
-            if own is not None and own.match is not None and self._usual.add(own.match) and near(own.pose, own.group.mean, *LEAPS):
-                return self._recent.follow(cloud, compose(inverse(self.pose), own.pose)), prediction
-        return self._recent.add(cloud, told), None
+            if own is not None and own.match is not None and self._usual.add(own.match) and self._follows(own, told):
+                return self._recent.follow(sweep.cloud, compose(inverse(self.pose), own.pose)), prediction
+        return self._recent.add(sweep.cloud, told), None
+
+    def _follows(self, own: Proposal, step: Pose2) -> bool:
+        """Whether a match is where a step leads."""
+        return near(own.pose, compose(self.pose, step), *LEAPS)
+
+    def _predicted(self, step: Pose2, noise: OdometryNoise, sweep: Sweep) -> Prediction:
+        """Where a step leads. A tracked vehicle's match that leaps counts only where it is better than one that does not (many a
+        corridor looks the same a little further on), and no less than half as good as usual (few walls fit in many places)."""
+        prediction = self.filter.predict(step, noise, sweep)
+        own = prediction.proposals[0]
+        if self.state is not State.TRACKING or own.match is None or self._follows(own, step):
+            return prediction
+        other = match(compose(self.pose, step), sweep.cloud, self.known.surfaces, STEP.information(step))
+        if worth(other) >= worth(own.match) - BETTER:
+            return prediction.instead(other)
+        return prediction if self._usual.is_good(own.match) else prediction.instead(None)
 
     def _odometry_noise(self) -> OdometryNoise:
         p = self.params
@@ -151,7 +172,9 @@ class Localizer:
         """The hypothesis that is told: the one that goes on from the last pose; while it is looked for from nothing, the best one."""
         if not self.hypotheses or self.state is State.SEARCHING:
             return next(iter(self.hypotheses), None)
-        return next((h for h in self.hypotheses if near(h.pose, self.pose)), None)
+        beside = [h for h in self.hypotheses if near(h.pose, self.pose)]
+        heavy = [h for h in beside if h.weight > OWN_PART * beside[0].weight]
+        return min(heavy, key=lambda h: hypot(h.pose.x - self.pose.x, h.pose.y - self.pose.y), default=None)
 
     def _covariance(self) -> Floats:
         own = self._own
@@ -168,10 +191,11 @@ class Localizer:
         own = self._own
         if own is None and self.state is State.TRACKING:
             own = self.hypotheses[0]
-        if moved.fits < BROKEN and self.fit.shows_some:
+        if moved.fits < BROKEN:
             self._broken_at = self._lately.way
+            self._showed_at = self._lately.way if self.fit.shows_some else self._showed_at
         if own is not None:
-            if own.matched or not near(own.pose, self.pose):
+            if own.matched:
                 self.pose = own.pose
             self.fit.add(own.fit, news, self.state is State.TRACKING)
         if self.state is State.TRACKING:
@@ -197,10 +221,11 @@ class Localizer:
         So does a view that has changed at once from one that the map shows to one that it does not.
         """
         way = self._lately.way
-        broken = way - self._broken_at < BROKEN_WAY
-        if not self.fit.contradicts:
+        if not self.fit.contradicts(MOST_AGAINST):
             self._agreed_at = way
-        if (self.fit.contradicts and (broken or way - self._agreed_at > AGAINST_WAY)) or (broken and self.fit.shows_nothing):
+        at_once = way - self._broken_at < BROKEN_WAY and self.fit.contradicts(MANY_AGAINST)
+        gone = way - self._showed_at < BROKEN_WAY and self.fit.shows_nothing
+        if at_once or gone or way - self._agreed_at > AGAINST_WAY:
             self.state = State.LOST
             self._lately.forget()
             self._searched_at, self._sure_since = -np.inf, None

@@ -4,21 +4,22 @@ Particles that stand for the same place are a group; each group keeps its weight
 particles it has: hypotheses that fit equally well are not lost by chance (Milstein et al. 2002).
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from services.slam.localization.beams import Beams, field_of, scores, ways
+from services.slam.localization.beams import Beams, field_of, fits_at, scores, ways
 from services.slam.localization.fit import Fit
 from services.slam.localization.gaussian import drawn
 from services.slam.localization.groups import LEAST_WEIGHT, Group, groups_of
 from services.slam.localization.kld import bins_of, enough
 from services.slam.localization.known_map import KnownMap
 from services.slam.localization.motion import OdometryNoise, sample_motion
-from services.slam.localization.proposals import Proposal, proposal
+from services.slam.localization.proposals import FITS, Proposal, proposal
 from services.slam.matching.cloud import Cloud
+from services.slam.matching.imls import Match
 from uvf.maths.planar import IDENTITY, Pose2
 
 Floats = NDArray[np.float64]
@@ -60,6 +61,10 @@ class Prediction(NamedTuple):
     def only(self) -> Proposal | None:
         """Of the one place that the particles stand for; None while there are several."""
         return self.proposals[0] if len(self.proposals) == 1 and self.proposals[0].near else None
+
+    def instead(self, other: Match | None) -> "Prediction":
+        """The same with another match of the heaviest group."""
+        return self._replace(proposals=[replace(self.proposals[0], match=other), *self.proposals[1:]])
 
 
 class _Drawn(NamedTuple):
@@ -103,15 +108,22 @@ class ParticleFilter:
         self.poses = np.concatenate((self.poses, *fresh))
         self.weights = np.concatenate((self.weights * (1.0 - part), np.full(n, part / n)))
 
-    def predict(self, step: Pose2, noise: OdometryNoise, cloud: Cloud) -> Prediction:
+    def predict(self, step: Pose2, noise: OdometryNoise, sweep: Sweep) -> Prediction:
         """Where one motion leads, and what a sweep fits there. Nothing is changed yet."""
         moved = sample_motion(self.poses, step, noise, self._rng)
         groups, loose = groups_of(moved, self.weights, MOST_GROUPS)
-        proposals = [proposal(self.known, group, cloud) for group in groups]
+        proposals = [self._agreeing(proposal(self.known, group, sweep.cloud), sweep.beams) for group in groups]
         rest = float(self.weights[loose].sum())
         if rest > LEAST_WEIGHT:
             proposals.append(Proposal(Group(loose, rest, IDENTITY, np.eye(3)), None, near=False))
         return Prediction(moved, proposals)
+
+    def _agreeing(self, found: Proposal, beams: Beams) -> Proposal:
+        """Without its match where the rest of the sweep contradicts it."""
+        if found.match is None or found.match.share >= FITS:
+            return found
+        at = fits_at(np.array([found.pose]), beams, self._field)
+        return found if at.fits[0] > at.against[0] else replace(found, match=None)
 
     def correct(self, prediction: Prediction, sweep: Sweep) -> list[Hypothesis]:
         """One motion and one sweep; the hypotheses, the heaviest first."""
