@@ -14,8 +14,8 @@ LEAST_USUAL = 0.3
 ENOUGH = 0.25  # of a sweep's beams that have to fit or contradict, so that it says something
 MOST_AGAINST, MANY_AGAINST = 0.4, 0.25
 """Of a sweep's beams that may contradict for long, and after the view has changed at once."""
-NOTHING, SOME = 0.15, 0.3
-"""Of a sweep's beams on walls up to which the map shows nothing of what is seen, and from which on it shows some of it."""
+NOTHING = 0.15
+"""Of a sweep's beams on walls up to which the map shows nothing of what is seen."""
 WELL, LOOSE, LEARNT = 0.5, 1.5, 0.02
 """Part of the usual share and times the usual rms at which a match is no longer a good one; rate of what is usual."""
 PER_RMS = 4.0
@@ -93,10 +93,6 @@ class UsualFit:
     def shows_nothing(self) -> bool:
         return self.on_walls < NOTHING
 
-    @property
-    def shows_some(self) -> bool:
-        return self.on_walls > SOME
-
     def is_usual(self, fit: Fit, part: float) -> bool:
         return fit.says_something and fit.agreement > part * max(self.usual, LEAST_USUAL)
 
@@ -105,4 +101,4 @@ class UsualFit:
         self.on_walls, self.against, self.agreement = fit.on_walls, fit.against, fit.agreement
 
     def forget_newest(self) -> None:
-        self.on_walls, self.against, self.agreement = max(self.on_walls, SOME), 0.0, max(self.agreement, self.usual)
+        self.on_walls, self.against, self.agreement = max(self.on_walls, USUAL), 0.0, max(self.agreement, self.usual)

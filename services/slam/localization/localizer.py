@@ -90,8 +90,7 @@ class Localizer:
         self._searched_at = -np.inf
         self._sure_since: float | None = None
         self.is_fresh = True
-        self._broken_at = self._showed_at = -np.inf
-        self._agreed_at = self._lately.way
+        self._broken_at, self._agreed_at = -np.inf, self._lately.way
         self.hypotheses = []
         self.fit.forget_newest()
 
@@ -193,7 +192,6 @@ class Localizer:
             own = self.hypotheses[0]
         if moved.fits < BROKEN:
             self._broken_at = self._lately.way
-            self._showed_at = self._lately.way if self.fit.shows_some else self._showed_at
         if own is not None:
             if own.matched:
                 self.pose = own.pose
@@ -218,14 +216,13 @@ class Localizer:
     def _notice(self) -> None:
         """Sweeps that contradict the map, at once with a view that has changed at once or for long, tell that the vehicle is elsewhere.
 
-        So does a view that has changed at once from one that the map shows to one that it does not.
+        So does a view that has changed at once to one of which the map shows nothing: then nothing speaks for the place any more.
         """
         way = self._lately.way
         if not self.fit.contradicts(MOST_AGAINST):
             self._agreed_at = way
-        at_once = way - self._broken_at < BROKEN_WAY and self.fit.contradicts(MANY_AGAINST)
-        gone = way - self._showed_at < BROKEN_WAY and self.fit.shows_nothing
-        if at_once or gone or way - self._agreed_at > AGAINST_WAY:
+        unsupported = self.fit.contradicts(MANY_AGAINST) or self.fit.shows_nothing
+        if (way - self._broken_at < BROKEN_WAY and unsupported) or way - self._agreed_at > AGAINST_WAY:
             self.state = State.LOST
             self._lately.forget()
             self._searched_at, self._sure_since = -np.inf, None
