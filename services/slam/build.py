@@ -7,12 +7,14 @@ from services.slam.localization_service import Beginning, LocalizationService
 from services.slam.made_corridor import there_and_back
 from services.slam.mapping_service import MappingParams, MappingService
 from services.slam.maps.serving import map_servers
+from services.slam.maps.session import Session
 from services.slam.method import SlamMethod
 from services.slam.methods import METHODS, make_method
 from services.slam.odometry.filter import DriveFilter
 from services.slam.odometry.params import OdometryParams
 from services.slam.odometry.service import OdometryService
 from services.slam.odometry.states import Noise, Step
+from services.slam.resumable import Resumable
 from uvf.maths.geodesy import LocalTangent
 from uvf.maths.planar import IDENTITY, Pose2, compose, inverse
 from uvf.runtime.mission_file import Maps
@@ -36,13 +38,35 @@ def _hosts(site: Site, member: Member) -> list[Host]:
     world_from_map = _world_from_map(member)
     mapping = member.params("mapping", MappingParams)
     maps = member.entry.maps
+    if maps is not None and maps.localize is not None and maps.continues is not None:
+        place = f"{site.mission_path}: vehicles.{member.name}.maps"
+        raise BadInput(f"{place}: a vehicle either 'continues' a map or is localized on one; leave one of them out")
     if maps is not None and maps.localize is not None:
         return [_odometry(site, member), _localization(site, member, lidar, maps)]
     _warm_up(_method(member, mapping))
-    return [
-        _odometry(site, member),
-        Host(MappingService, lambda: MappingService(member.name, lidar, world_from_map, mapping, _method(member, mapping)), member.name),
-    ]
+    left = _left(site, member, mapping, maps.continues) if maps is not None and maps.continues is not None else None
+
+    def make() -> MappingService:
+        return MappingService(member.name, lidar, world_from_map, mapping, _method(member, mapping), left)
+
+    return [_odometry(site, member), Host(MappingService, make, member.name)]
+
+
+def _left(site: Site, member: Member, mapping: MappingParams, name: str) -> Session:
+    """The session that a mapping goes on with, in the vehicle's map frame. Raises BadInput where it cannot."""
+    assert member.entry.maps is not None
+    path, method = site.mission_path.parent / name, _method(member, mapping)
+    map_from_file = compose(inverse(_world_from_map(member)), Pose2(*member.entry.maps.known_at))
+    session = Session.load(path).moved(map_from_file)
+    if not isinstance(method, Resumable):
+        raise BadInput(f"{member.name}: maps: continues: method {mapping.method} cannot go on with a session; graph does")
+    if not session.keyframes:
+        raise BadInput(f"session {path}: holds nothing to go on with")
+    try:
+        method.resume(session, IDENTITY)
+    except ValueError as error:
+        raise BadInput(f"session {path}: {error}") from error
+    return session
 
 
 def _world_from_map(member: Member) -> Pose2:

@@ -55,14 +55,17 @@ class MappingService(PlacingService):
     params: MappingParams
     fixed_params = frozenset({"resolution", "method"})
 
-    def __init__(self, vehicle: str, lidar: Lidar, world_from_map: Pose2, params: MappingParams, method: SlamMethod) -> None:
+    def __init__(
+        self, vehicle: str, lidar: Lidar, world_from_map: Pose2, params: MappingParams, method: SlamMethod, left: Session | None = None
+    ) -> None:
+        """left: a session to go on with, in the vehicle's map frame."""
         self.params = params
         super().__init__(vehicle, lidar, world_from_map)
         self._method = method
         self._map = TileMap(params.resolution)
         self._map_from_first = IDENTITY
-        self._begun_elsewhere = False
-        self._left: Session | None = None
+        self._begun_elsewhere = left is not None
+        self._left = left
         self._placed = False
         self._map_time = self._session_time = -np.inf
         self._keyframes = 0

@@ -9,7 +9,7 @@ import struct
 import zipfile
 import zlib
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from services.slam.method import Keyframe
 from services.slam.reading import Beams, Reading
-from uvf.maths.planar import Pose2
+from uvf.maths.planar import Pose2, compose
 from uvf.runtime.params import BadInput
 from uvf.runtime.whole_file import write_whole
 
@@ -67,6 +67,10 @@ class Session:
     edges: Edges
     method: str
     parameters: dict[str, Any]
+
+    def moved(self, a_from_map: Pose2) -> "Session":
+        """The same in frame a."""
+        return replace(self, keyframes=tuple(Keyframe(compose(a_from_map, k.map_from_base), k.reading) for k in self.keyframes))
 
     def save(self, path: Path) -> None:
         """Ranges are kept as float32. Raises BadInput, also for what ``load`` would refuse; what was there before then stays."""

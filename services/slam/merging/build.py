@@ -12,11 +12,11 @@ def build(site: Site) -> list[Host]:
     names = tuple(m.name for m in site.of_kind("ground") if m.entry.maps is None or m.entry.maps.localize is None)
     if len(names) < 2:
         return []
-    _warm_up()
+    warm_up()
     return [Host(MergingService, MergingService, writes_for=names)]
 
 
-def _warm_up() -> None:
+def warm_up() -> None:
     """Compiles the kernels, or loads them from their cache, before the first session: one that meets itself."""
     slam, team = GraphSlam(), Team()
     for reading in there_and_back():

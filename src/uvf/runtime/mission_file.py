@@ -67,11 +67,13 @@ class Maps(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     speed: a mask whose values v, 1..100, allow speed_base + speed_multiplier * v.
     known: may be a session of a mapping (.npz), too. known_at: x, y [m], yaw [rad] of the frame of its file in the world.
+    continues: a session (.npz) that the vehicle's mapping goes on with, from its start pose; known_at is that of its frame, too.
     localize: the vehicle draws no map, but is localized on ``known``, or on what comes on map/known: from its start pose, or anywhere.
     """
 
     known: str | None = None
     known_at: tuple[Metres, Metres, Metres] = (0.0, 0.0, 0.0)
+    continues: str | None = None
     localize: Literal["start", "anywhere"] | None = None
     keepout: str | None = None
     speed: str | None = None

@@ -10,7 +10,7 @@ from services.slam.maps.session import Session
 from services.slam.merging.team import Group, Team
 from uvf.launch.slam.drawing import draw_on_map
 from uvf.launch.slam.results import grid_of
-from uvf.runtime.map_file import map_path, save_map
+from uvf.runtime.map_file import GridMap, map_path, save_map
 from uvf.runtime.params import BadInput
 
 SUFFIX = ".npz"
@@ -57,12 +57,17 @@ def _write(team: Team, group: Group, out: str, resolution: float) -> str:
     grid = grid_of(session.keyframes, resolution)
     yaml = save_map(grid, stem.with_name(f"{stem.name}.yaml"))
     session.save(yaml.with_suffix(SUFFIX))
+    draw_team(group, grid, yaml.with_suffix(".png"))
+    return ", ".join(str(yaml.with_suffix(suffix)) for suffix in (".yaml", SUFFIX, ".png"))
 
-    def tracks(axes: Any) -> None:
+
+def draw_team(group: Group, grid: GridMap, target: Path) -> None:
+    """The map with the way of each session in its colour. Writes a PNG."""
+
+    def ways(axes: Any) -> None:
         for colour, (name, poses) in zip(COLOURS * len(group.names), group.joint.poses.items(), strict=False):
             axes.plot(*poses[:, :2].T, lw=1.0, color=colour, label=Path(name).name)
             axes.plot(*poses[0, :2], "o", ms=5, color=colour)
         axes.legend(fontsize=8)
 
-    draw_on_map(grid, tracks, f"{len(group.names)} sessions", yaml.with_suffix(".png"))
-    return ", ".join(str(yaml.with_suffix(suffix)) for suffix in (".yaml", SUFFIX, ".png"))
+    draw_on_map(grid, ways, f"{len(group.names)} sessions", target)

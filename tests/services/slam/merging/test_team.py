@@ -98,9 +98,7 @@ def test_edges_that_make_no_graph_are_refused_in_one_line():
 
 
 def test_the_frame_of_a_session_does_not_matter():
-    shift, session = np.array((100.0, -40.0, 2.0)), bert().session
-    moved = [replace(k, map_from_base=Pose2(*composed(shift, np.array(k.map_from_base)).tolist())) for k in session.keyframes]
-    team = team_of(anne=anne().session, bert=replace(session, keyframes=tuple(moved)))
+    team = team_of(anne=anne().session, bert=bert().session.moved(Pose2(100.0, -40.0, 2.0)))
     team_from_first = Pose2(*team.groups[0].joint.poses["bert"][0].tolist())
     metres, radians = off_by(team_from_first, anne().map_from(bert()))
     assert metres < 0.1 and radians < 0.01

@@ -1,0 +1,150 @@
+"""Merging of sessions whose robots know nothing of each other, over every log below DATA/slam.
+
+``LOG:cut N``: a log with relations is cut in two after N % of its readings, as if two robots had driven; each begins at its own zero, the
+second one's map is laid anywhere. What counts are the relations across the cut; ``unbroken m`` is the error of the same relations when
+one robot drives all of it. ``LOG+LOG``: the first 40 % of logs of two buildings (two folders), which must not join.
+CPU and wall time are those of the merging, after a warm-up; pictures are put into ``runs/slam/bench``.
+"""
+
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cache, partial
+from itertools import combinations
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from services.slam.evaluation.relations import Relations, read_relations, relation_errors
+from services.slam.evaluation.run import Run, run_over
+from services.slam.evaluation.variants import halves
+from services.slam.logs.opening import CARMEN_ENDINGS, open_log
+from services.slam.maps.session import Session
+from services.slam.merging.build import warm_up
+from services.slam.merging.team import Team
+from services.slam.methods import make_method, method_params
+from uvf.launch import settings
+from uvf.launch.bench import Case, Figures
+from uvf.launch.maps.merging import draw_team
+from uvf.launch.slam.results import grid_of
+from uvf.launch.slam_cli import DEFAULT_METHOD
+from uvf.maths.planar import Pose2
+from uvf.maths.planar_arrays import composed, inverted
+from uvf.runtime.params import BadInput
+
+Floats = NDArray[np.float64]
+
+CUTS = (50, 25)  # per cent
+BEGINNING = 0.4
+RESOLUTION = 0.05  # m
+NOTHING = Relations(np.zeros((0, 2)), np.zeros((0, 3)))
+ANYWHERE = 100.0  # m
+
+
+@dataclass(frozen=True)
+class Merged:
+    team: Team
+    cpu: float
+    wall: float
+
+    @property
+    def figures(self) -> dict[str, float]:
+        return {"joined": float(len(self.team.groups) == 1), "CPU s": round(self.cpu, 2), "wall s": round(self.wall, 2)}
+
+
+def merged(sessions: dict[str, Session]) -> Merged:
+    warm_up()
+    wall, cpu, team = time.perf_counter(), time.process_time(), Team()
+    for name, session in sessions.items():
+        team.follow(name, session)
+    team.finish()
+    return Merged(team, time.process_time() - cpu, time.perf_counter() - wall)
+
+
+@cache
+def unbroken(path: Path) -> Run:
+    return run_over(open_log(path), make_method(DEFAULT_METHOD, method_params(DEFAULT_METHOD, {}, "defaults")))
+
+
+@cache
+def parts(path: Path, share: float, both: bool) -> list[Run]:
+    """Of the log up to a share of its readings, and of the rest if it is wanted."""
+    logs = halves(open_log(path), NOTHING, share)[: 2 if both else 1]
+    return [run_over(log, make_method(DEFAULT_METHOD, method_params(DEFAULT_METHOD, {}, "defaults"))) for log in logs]
+
+
+def session_of(run: Run) -> Session:
+    assert run.session is not None
+    return run.session
+
+
+def laid_anywhere(session: Session, seed: int) -> Session:
+    x, y, yaw = np.random.default_rng(seed).uniform(-1.0, 1.0, 3).tolist()
+    return session.moved(Pose2(x * ANYWHERE, y * ANYWHERE, yaw * np.pi))
+
+
+def team_from_readings(run: Run, placed: Floats) -> Floats:
+    """(readings, 3): each with the keyframe before it. placed: (keyframes, 3) team_from_base."""
+    own = np.array([k.map_from_base for k in run.keyframes])
+    stamps = np.array([k.reading.t for k in run.keyframes])
+    of = np.maximum(np.searchsorted(stamps, [reading.t for reading in run.log], side="right") - 1, 0)
+    return composed(placed[of], composed(inverted(own[of]), run.final))
+
+
+def errors(relations: Relations, stamps: Floats, poses: Floats) -> dict[str, float]:
+    found = relation_errors(relations, stamps, poses)
+    metres = found.freiburg_translation
+    return {
+        "pairs": len(metres),
+        "m": float(metres.mean()),
+        "median m": float(np.median(metres)),
+        "worst m": float(metres.max()),
+        "> 0.5 m": float((metres > 0.5).sum()),
+        "deg": float(np.degrees(found.rotation.mean())),
+    }
+
+
+def cut(path: Path, per_cent: int, data: Path | None) -> Figures:
+    first, second = parts(path, per_cent / 100.0, True)
+    found = merged({"first": session_of(first), "second": laid_anywhere(session_of(second), per_cent)})
+    row = found.figures
+    if row["joined"]:
+        group, whole = found.team.groups[0], unbroken(path)
+        relations = halves(whole.log, read_relations(next(path.parent.glob("*.relations"))), per_cent / 100.0)[2]
+        poses = [team_from_readings(run, group.joint.poses[name]) for run, name in ((first, "first"), (second, "second"))]
+        row = {"joined": 1.0, **errors(relations, np.concatenate((first.log.stamps, second.log.stamps)), np.concatenate(poses))}
+        row |= {"unbroken m": errors(relations, whole.log.stamps, whole.final)["m"], "closures": float(len(group.joint.crossings))}
+        row |= {"agreement": round(group.quality, 3)} | found.figures
+        folder = settings.runs_folder() / "slam" / "bench"
+        folder.mkdir(parents=True, exist_ok=True)
+        draw_team(group, grid_of(found.team.session_of(group).keyframes, RESOLUTION), folder / f"merge-{path.stem}-{per_cent}.png")
+    return {f"{path.stem}:cut {per_cent}": row}
+
+
+def strangers(path: Path, other: Path, data: Path | None) -> Figures:
+    sessions = {name: session_of(parts(p, BEGINNING, False)[0]) for name, p in (("one", path), ("other", other))}
+    return {f"{path.stem}+{other.stem}": merged(sessions).figures}
+
+
+def logs(data: Path) -> Iterator[Path]:
+    yield from sorted(p for p in (data / "slam").rglob("*") if p.suffix in CARMEN_ENDINGS)
+
+
+def cases(data: Path | None) -> dict[str, Case]:
+    """Raises BadInput without a folder of logs."""
+    if data is None or not (data / "slam").is_dir():
+        raise BadInput(
+            f"bench merge needs logs: {f'there is no folder {data}/slam' if data else 'name the folder above slam/ with --data'}"
+        )
+    found: dict[str, Case] = {}
+    for path in logs(data):
+        if any(path.parent.glob("*.relations")):
+            found |= {f"{path.stem}:cut {n}": partial(cut, path, n) for n in CUTS}
+    for path, other in combinations(logs(data), 2):
+        if path.parent != other.parent:
+            found[f"{path.stem}+{other.stem}"] = partial(strangers, path, other)
+    return found
+
+
+CASES = cases
