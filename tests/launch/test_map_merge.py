@@ -38,6 +38,15 @@ def test_sessions_that_fit_are_one_map_and_one_session(merge, tmp_path):
     assert (tmp_path / "team.png").stat().st_size > 1000
 
 
+def test_saved_sessions_are_known_by_their_names(merge, tmp_path):
+    for name in ("anne", "bert"):
+        (tmp_path / "state" / "maps").mkdir(parents=True, exist_ok=True)
+        (tmp_path / f"{name}.npz").rename(tmp_path / "state" / "maps" / f"{name}.npz")
+    code, said = merge("anne", "bert", "--out", "both")
+    assert code == 0 and "bert: its origin is at" in said
+    assert (tmp_path / "state" / "maps" / "both.npz").exists()
+
+
 def test_when_nothing_fits_nothing_is_written_and_the_exit_code_tells(merge, tmp_path):
     code, said = merge("anne.npz", "stranger.npz")
     assert code == 1

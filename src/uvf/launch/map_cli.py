@@ -56,7 +56,7 @@ def map_load(
 
 @map_app.command("merge")
 def map_merge(
-    sessions: Annotated[list[Path], typer.Argument(help="Session files (.npz): of 'uvf slam', or of 'uvf map save --session'.")],
+    sessions: Annotated[list[str], typer.Argument(help="Files (.npz) of 'uvf slam', or names given to 'uvf map save --session'.")],
     out: Annotated[str, typer.Option(help="A saved map's name, or a file: map, session (.npz) and picture (.png) are written.")] = "merged",
     resolution: Annotated[float, typer.Option(min=0.01, max=1.0, help="Side of the map's cells, m.")] = 0.05,
 ) -> None:

@@ -17,19 +17,20 @@ SUFFIX = ".npz"
 COLOURS = matplotlib.colormaps["tab10"].colors  # type: ignore[attr-defined]
 
 
-def merge_files(paths: list[Path], out: str, resolution: float) -> tuple[list[str], bool]:
-    """(lines about each session and what was written, whether any of them fit). Raises BadInput."""
-    if len(paths) < 2:
+def merge_files(names: list[str], out: str, resolution: float) -> tuple[list[str], bool]:
+    """(lines about each session and what was written, whether any of them fit). names: files, or saved ones. Raises BadInput."""
+    if len(names) < 2:
         raise BadInput("'uvf map merge' needs two sessions at least")
-    twice = next((path for path in paths if paths.count(path) > 1), None)
+    twice = next((name for name in names if names.count(name) > 1), None)
     if twice is not None:
         raise BadInput(f"session {twice}: given twice")
     team = Team()
-    for path in paths:
-        team.follow(str(path), Session.load(path))
+    for name in names:
+        path = map_path(name)
+        team.follow(name, Session.load(path if path == Path(name) else path.with_suffix(SUFFIX)))
     team.finish()
     group = max(team.groups, key=lambda group: len(group.names))
-    lines = [_line(team, group, str(path)) for path in paths]
+    lines = [_line(team, group, name) for name in names]
     if len(group.names) == 1:
         return [*lines, "nothing is written: no two of them have enough in common to be sure that they are of one place"], False
     return [*lines, f"written: {_write(team, group, out, resolution)}"], True
