@@ -97,6 +97,15 @@ def test_the_noise_of_a_log_is_told_by_better_poses_and_steady_errors_are_none()
     assert OdometryNoise.of(noisy[:50], way(50)) == OdometryNoise()
 
 
+def test_wheels_that_slipped_now_and_then_are_no_noise():
+    noisy = steps(disturbed(made_log(9000), OdometryNoise(along=0.03, turning=0.08, veering=0.02), 2).odom_from_base)
+    slipped = noisy.copy()
+    slipped[500::2000, 0] += 1.5
+    slipped[900::2000, 2] += 1.0
+    usual, found = (OdometryNoise.of(chained(moved), way(9000)) for moved in (noisy, slipped))
+    assert (found.along, found.turning) == pytest.approx((usual.along, usual.turning), rel=0.2)
+
+
 def test_doubled_noise_doubles_the_errors_of_the_odometry_and_is_the_same_every_time():
     relations, best = made_relations(9000, apart=2), way(9000)
     log = disturbed(made_log(9000), OdometryNoise(along=0.03, turning=0.08, veering=0.02), 3)

@@ -26,6 +26,12 @@ def test_a_room_is_tracked_within_centimetres_by_the_laser_alone():
     assert np.median([e.quality for e in told]) > 0.7
 
 
+def test_a_vehicle_that_goes_on_as_it_went_is_found_by_a_slow_lidar():
+    """Half a metre and a third of a radian between readings: from the last pose on, without the motion so far, it would be lost."""
+    away = run(drive(odometry=False)[::8])[0].trajectory() - truth()[::8]
+    assert np.hypot(*away[:, :2].T).max() < 0.05
+
+
 def test_offered_odometry_is_not_looked_at_unless_asked_for():
     right, wrong = (run(drive(turns=turns))[0].trajectory() for turns in (1.0, 3.0))
     assert (right == wrong).all()

@@ -99,6 +99,13 @@ def test_beams_without_return_are_free_up_to_the_reach():
     assert states(told, (7.5, 0.05, 1.55), (8.5, 0.05, 1.55)) == [FREE, NOT_KNOWN]
 
 
+def test_a_picture_clears_no_farther_than_the_camera_sees():
+    told = step(service(OctreeParams(depth_reach=50.0)), 1.0, depth=[wall_picture(0.8, 0.0)])["map"]
+    beside = np.array((24.0, 0.5, 0.5)) / 24.0  # along the pixel next to the middle
+    on_the_way, beyond = (tuple(np.array((0.0, 0.0, 1.0)) + length * beside) for length in (9.5, 10.5))
+    assert states(told, on_the_way, beyond) == [FREE, NOT_KNOWN]
+
+
 def test_nothing_is_told_while_nothing_has_changed():
     made = service()
     assert "map" in step(made, 1.0, scan=[sweep(0.5)])

@@ -7,7 +7,7 @@ from benchmarks.odometry_drive import TRACK, World, drive
 from schemas.convert import stamp
 from schemas.messages import Gnss, Vector3
 from services.slam.odometry.filter import DriveFilter
-from services.slam.odometry.states import Noise
+from services.slam.odometry.states import GNSS_X, Noise
 from services.slam.odometry.world import SatellitePose
 from uvf.maths.geodesy import LocalTangent
 from uvf.maths.planar import Pose2, compose, transform
@@ -125,9 +125,11 @@ def test_without_fixes_the_uncertainty_grows_and_covers_the_error():
 
 def test_a_receiver_that_wanders_is_not_averaged_away():
     sensor = GnssSensor(hz=5.0, horizontal_noise=0.1, horizontal_drift=3.0, drift_time=1000.0, speed_noise=0.05, mount=Mount((*ARM, 0.5)))
-    rows, _, _ = driven(7, known=100.0, sensor=sensor, off=lambda t: (2.0, 2.0))
+    rows, _, pose = driven(7, known=100.0, sensor=sensor, off=lambda t: (2.0, 2.0))
     assert rows[-1][4] > 1.5
     assert error(rows[-1]) < 3 * rows[-1][4]
+    seen = np.eye(2, len(pose.drive.state)) + np.eye(2, len(pose.drive.state), GNSS_X)
+    assert (np.sqrt(np.diag(seen @ pose.drive.covariance @ seen.T)) < 0.12).all()  # m: where it sees itself is known well
 
 
 def test_a_start_that_is_known_shows_how_far_off_the_receiver_is():

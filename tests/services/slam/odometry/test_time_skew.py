@@ -47,6 +47,11 @@ def test_wrong_matches_long_wheels_and_noise_do_not_mislead_it(trouble):
     assert abs(estimate.seconds + 0.1) < 3 * estimate.sigma < 0.12
 
 
+def test_wheels_that_tell_every_turn_too_long_make_the_skew_no_less_certain():
+    right, long = (found(turning(rng, 20.0), -0.1, rng, seconds=20.0, gain=g) for g in (1.0, 1.35) for rng in [np.random.default_rng(3)])
+    assert long.sigma < 1.2 * right.sigma
+
+
 def test_a_few_turns_are_enough():
     rng = np.random.default_rng(3)
     estimate = found(turning(rng, 12.0), -0.15, rng, seconds=12.0)

@@ -5,10 +5,12 @@ import pytest
 
 from services.slam.matching.points import points_of
 from services.slam.methods import make_method, method_params
+from services.slam.rbpf.fit import log_likelihood
 from services.slam.rbpf.method import RbpfSlam
 from services.slam.rbpf.motion import MotionModel
 from services.slam.rbpf.params import RbpfParams
 from services.slam.rbpf.particle_step import draw_pose, match
+from services.slam.rbpf.proposal import proposal
 from tests.services.slam.drives import broken, drive, odometry_of, off_by, truth
 from uvf.maths.planar import Pose2
 from uvf.runtime.params import BadInput
@@ -64,6 +66,37 @@ def test_the_proposal_is_narrower_than_the_motion_model_where_the_sweep_tells():
     drawn = np.array([draw_pose(matched, sweep, grid, prior, RbpfParams(), rng)[0] for _ in range(60)])
     assert (drawn.std(axis=0) < 0.3 * np.sqrt(np.diag(model))).all()
     assert np.abs(drawn.mean(axis=0) - truth(2)[1]).max() < 0.02
+
+
+def test_the_weight_of_a_particle_is_the_integral_of_likelihood_times_motion_model():
+    """Equation 19, found a second way: the mean likelihood at poses drawn from the motion model."""
+    readings = drive(2)
+    method, _ = run(readings[:1])
+    sweep, grid = (points_of(readings[1], 80.0, 60), (0.0, 0.0)), method.tiles.grid(0)
+    model, sigma = np.diag((0.03, 0.03, 0.02)) ** 2, 0.3
+    prior = (truth(2)[1] + (0.01, -0.01, 0.01), np.linalg.inv(model))
+    matched = match(prior[0], sweep, grid, prior, RbpfParams(sigma=sigma))
+    rng = np.random.default_rng(1)
+    told = [proposal(matched.pose, matched.h, prior, (sweep, grid, sigma, 1.0), rng).log_weight for _ in range(40)]
+    drawn = prior[0] + rng.standard_normal((4000, 3)) @ np.sqrt(model)
+    likelihoods = np.exp([log_likelihood(pose, sweep, grid, sigma) for pose in drawn])
+    assert np.mean(np.exp(told)) == pytest.approx(likelihoods.mean(), rel=0.15)
+
+
+def test_the_motion_model_by_hand():
+    """0.01 m and 0.005 rad of no motion; 1 m ahead and 0.5 rad on the spot on top."""
+    model = MotionModel(srr=0.1, srt=0.2, str_=0.3, stt=0.4)
+    ahead, turned = (np.sqrt(np.diag(model.covariance(m))) for m in (Pose2(1.0, 0.0, 0.0), Pose2(0.0, 0.0, -0.5)))
+    assert ahead == pytest.approx((0.11, 0.11, 0.305))
+    assert turned == pytest.approx((0.11, 0.11, 0.205))
+
+
+def test_particles_that_lie_apart_make_the_pose_uncertain():
+    readings = drive(12)
+    method, told = run(readings)
+    assert told[-1].covariance[0, 0] < 0.01
+    method.particles.poses[:, 0] += np.arange(5.0)
+    assert method.add(readings[-1]).covariance[0, 0] > 1.0
 
 
 def test_where_nothing_is_seen_the_pose_is_drawn_from_the_motion_model():
