@@ -136,6 +136,4 @@ class RbpfSlam:
     def _prior(self, k: int) -> Gaussian:
         """p(x_t | x_t-1, u_t) of particle k."""
         mean = compose(self._pose(k), self._driven)
-        c, s = np.cos(mean.yaw), np.sin(mean.yaw)
-        map_from_end = np.array(((c, -s, 0.0), (s, c, 0.0), (0.0, 0.0, 1.0)))
-        return np.array(mean), map_from_end @ np.linalg.inv(self._model.covariance(self._driven)) @ map_from_end.T
+        return np.array(mean), np.linalg.inv(self._model.covariance(self._driven)).astype(np.float64)

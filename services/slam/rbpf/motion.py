@@ -26,7 +26,7 @@ class MotionModel:
     stt: float
 
     def covariance(self, motion: Pose2) -> Floats:
-        """(3, 3) of (x, y, yaw) in the frame in which the motion ended."""
+        """(3, 3) of (x, y, yaw), the same in every frame: no direction is surer than another."""
         way, turn = hypot(motion.x, motion.y), abs(motion.yaw)
         position = LEAST + self.srr * way + self.srt * turn
         heading = LEAST_TURN + self.str_ * way + self.stt * turn
