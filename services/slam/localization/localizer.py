@@ -42,8 +42,9 @@ MOST_PLACES = 8
 SURE, SURE_WAY = 0.95, 1.0
 """Weight that a hypothesis needs for so many metres, so that it is believed."""
 FITS = 0.7  # part of what is usual that such a one has to fit
-BROKEN, BROKEN_WAY = 0.6, 2.0
-"""Part of the usual fit to the sweeps before below which the view has changed at once, and m for which that may have been a kidnapping."""
+BROKEN, TORN, BROKEN_WAY = 0.6, 0.4, 2.0
+"""Parts of the usual fit to the sweeps before below which the view has changed at once, and altogether; m for which that may have been
+a kidnapping."""
 AGAINST_WAY = 1.0
 """m for which sweeps may contradict the map where nothing has broken: something large stands in the way, or the odometry has slipped."""
 HALF_SURE = 0.5
@@ -90,7 +91,8 @@ class Localizer:
         self._searched_at = -np.inf
         self._sure_since: float | None = None
         self.is_fresh = True
-        self._broken_at, self._agreed_at = -np.inf, self._lately.way
+        self._broken_at = self._torn_at = -np.inf
+        self._agreed_at = self._lately.way
         self.hypotheses = []
         self.fit.forget_newest()
 
@@ -192,6 +194,8 @@ class Localizer:
             own = self.hypotheses[0]
         if moved.fits < BROKEN:
             self._broken_at = self._lately.way
+        if moved.fits < TORN:
+            self._torn_at = self._lately.way
         if own is not None:
             if own.matched:
                 self.pose = own.pose
@@ -216,13 +220,14 @@ class Localizer:
     def _notice(self) -> None:
         """Sweeps that contradict the map, at once with a view that has changed at once or for long, tell that the vehicle is elsewhere.
 
-        So does a view that has changed at once to one of which the map shows nothing: then nothing speaks for the place any more.
+        So does a view that has changed altogether to one of which the map shows nothing: then nothing speaks for the place any more.
         """
         way = self._lately.way
         if not self.fit.contradicts(MOST_AGAINST):
             self._agreed_at = way
-        unsupported = self.fit.contradicts(MANY_AGAINST) or self.fit.shows_nothing
-        if (way - self._broken_at < BROKEN_WAY and unsupported) or way - self._agreed_at > AGAINST_WAY:
+        at_once = way - self._broken_at < BROKEN_WAY and self.fit.contradicts(MANY_AGAINST)
+        unsupported = way - self._torn_at < BROKEN_WAY and self.fit.shows_nothing
+        if at_once or unsupported or way - self._agreed_at > AGAINST_WAY:
             self.state = State.LOST
             self._lately.forget()
             self._searched_at, self._sure_since = -np.inf, None
