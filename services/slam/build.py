@@ -25,11 +25,13 @@ from uvf.runtime.vehicle_file import Lidar
 
 def build(site: Site) -> list[Host]:
     """Raises BadInput for a vehicle without lidar or wheel encoders, and for files that are no maps."""
-    hosts = [host for member in site.of_kind("ground") for host in _hosts(site, member)]
+    warm: set[str] = set()
+    hosts = [host for member in site.of_kind("ground") for host in _hosts(site, member, warm)]
     return hosts + map_servers(site)
 
 
-def _hosts(site: Site, member: Member) -> list[Host]:
+def _hosts(site: Site, member: Member, warm: set[str]) -> list[Host]:
+    """warm: names of the methods that have been compiled."""
     sensors = member.file.sensors
     lidar = sensors.lidar
     if lidar is None or sensors.encoders is None:
@@ -43,7 +45,10 @@ def _hosts(site: Site, member: Member) -> list[Host]:
         raise BadInput(f"{place}: a vehicle either 'continues' a map or is localized on one; leave one of them out")
     if maps is not None and maps.localize is not None:
         return [_odometry(site, member), _localization(site, member, lidar, maps)]
-    _warm_up(_method(member, mapping))
+    method = _method(member, mapping)
+    if mapping.method not in warm:
+        _warm_up(method)
+        warm.add(mapping.method)
     left = _left(site, member, mapping, maps.continues) if maps is not None and maps.continues is not None else None
 
     def make() -> MappingService:

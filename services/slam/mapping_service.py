@@ -68,7 +68,7 @@ class MappingService(PlacingService):
         self._left = left
         self._placed = False
         self._map_time = self._session_time = -np.inf
-        self._keyframes = 0
+        self._drawn = self._kept = 0
 
     def step(self, t: float, scan: LaserScan, frames: FrameBuffer) -> Outputs:
         outputs: dict[str, FrameTransform | Grid | MapFix | MapSession | list[Event]] = {}
@@ -83,10 +83,7 @@ class MappingService(PlacingService):
         if not self._placed:
             outputs["placing"] = self._transform(t, "world", "map", self._world_from_map)
             self._placed = True
-        if t - self._map_time >= self.params.map_period - 1e-9 and self._map.follow(self._keyframes_in_map()):
-            outputs["map"] = self._drawn(t)
-            self._map_time = t
-        return outputs | self._session(t)
+        return outputs | self._grid(t) | self._session(t)
 
     def recall(self, session: MapSession | None = None, correction: FrameTransform | None = None) -> None:
         """Goes on where the vehicle has been, with the session published last if the method can; else a new map grows there."""
@@ -128,16 +125,22 @@ class MappingService(PlacingService):
         for keyframe in self._method.keyframes():
             yield Keyframe(compose(self._map_from_first, keyframe.map_from_base), keyframe.reading)
 
-    def _session(self, t: float) -> dict[str, MapSession]:
+    def _grid(self, t: float) -> dict[str, Grid]:
         """Now and then, when there is a keyframe more."""
-        if t - self._session_time < self.params.session_period - 1e-9 or not isinstance(self._method, Resumable):
+        count = self._method.keyframe_count()
+        if count == self._drawn or t - self._map_time < self.params.map_period - 1e-9:
             return {}
-        session = self._method.session()
-        if len(session.keyframes) == self._keyframes:
-            return {}
-        self._session_time, self._keyframes = t, len(session.keyframes)
-        return {"session": MapSession(timestamp=stamp(t), data=session.encoded("on the bus"))}
-
-    def _drawn(self, t: float) -> Grid:
+        self._map_time, self._drawn = t, count
+        self._map.follow(self._keyframes_in_map())
         cells, (x, y) = self._map.cells()
-        return occupancy_grid(cells, self._map.resolution, float(x), float(y), f"{self._vehicle}/map", t)
+        return {"map": occupancy_grid(cells, self._map.resolution, float(x), float(y), f"{self._vehicle}/map", t)}
+
+    def _session(self, t: float) -> dict[str, MapSession]:
+        """The same of what another could go on with."""
+        count = self._method.keyframe_count()
+        if count == self._kept or t - self._session_time < self.params.session_period - 1e-9:
+            return {}
+        if not isinstance(self._method, Resumable):
+            return {}
+        self._session_time, self._kept = t, count
+        return {"session": MapSession(timestamp=stamp(t), data=self._method.session().encoded("on the bus"))}

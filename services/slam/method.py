@@ -48,5 +48,8 @@ class SlamMethod(Protocol):
     def keyframes(self) -> Iterator[Keyframe]:
         """What the map is to be drawn from, by what is known now."""
 
+    def keyframe_count(self) -> int:
+        """Of ``keyframes``; as long as readings come these are the same, at the same poses, until there is one more."""
+
     def finish(self) -> None:
         """After the last reading: work that had been put off."""

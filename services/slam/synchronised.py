@@ -65,6 +65,9 @@ class Synchronised:
     def keyframes(self) -> Iterator[Keyframe]:
         return self.method.keyframes()
 
+    def keyframe_count(self) -> int:
+        return self.method.keyframe_count()
+
     def finish(self) -> None:
         self.method.finish()
 

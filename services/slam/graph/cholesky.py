@@ -125,9 +125,12 @@ def factorise(tree: Tree, normal: Normal, damping: float, panels: Floats, update
         if not _eliminate(front, columns):
             return False
         at = tree.panels[s]
-        panels[at : at + columns * size] = space[: columns * size]
+        for k in range(columns * size):
+            panels[at + k] = space[k]
         at, rest = tree.updates[s], size - columns
-        updates[at : at + rest * rest].reshape(rest, rest)[:] = front[columns:, columns:]
+        for c in range(rest):
+            for r in range(rest):
+                updates[at + c * rest + r] = front[columns + c, columns + r]
     return True
 
 
@@ -172,11 +175,13 @@ def solve(tree: Tree, panels: Floats, right: Floats) -> Floats:
     out, x = np.empty_like(right), np.empty(3 * n)
     for side in range(right.shape[0]):
         for k in range(n):
-            x[3 * k : 3 * k + 3] = right[side, tree.pivots[k]]
+            for a in range(3):
+                x[3 * k + a] = right[side, tree.pivots[k], a]
         for s in tree.sequence:
             _forward(tree, s, panels, x)
         for s in tree.sequence[::-1]:
             _backward(tree, s, panels, x)
         for k in range(n):
-            out[side, tree.pivots[k]] = x[3 * k : 3 * k + 3]
+            for a in range(3):
+                out[side, tree.pivots[k], a] = x[3 * k + a]
     return out

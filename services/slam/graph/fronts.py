@@ -52,14 +52,21 @@ class Tree(NamedTuple):
     updates: Ints
 
 
-@compiled
 def structure(poses: int, ends: Ints, fixed: int) -> Structure:
     """ends: (m, 2)."""
+    slots, pairs = _pairs(poses, ends, fixed)
+    return _adjacency(poses, slots, pairs)
+
+
+@compiled
+def _pairs(poses: int, ends: Ints, fixed: int) -> tuple[Ints, Ints]:
+    """(slots, (n, 2) poses of each pair)."""
     m = ends.shape[0]
-    count = np.zeros(poses + 1, np.int64)
+    begin = np.zeros(poses + 1, np.int64)
     for k in range(m):
-        count[min(ends[k, 0], ends[k, 1]) + 1] += 1
-    begin = np.cumsum(count)
+        begin[min(ends[k, 0], ends[k, 1]) + 1] += 1
+    for i in range(poses):
+        begin[i + 1] += begin[i]
     by_lower, fill = np.empty(m, np.int64), begin.copy()
     for k in range(m):
         i = min(ends[k, 0], ends[k, 1])
@@ -75,10 +82,10 @@ def structure(poses: int, ends: Ints, fixed: int) -> Structure:
                 continue
             if seen[u] < before:
                 seen[u] = found
-                pairs[found] = i, u
+                pairs[found, 0], pairs[found, 1] = i, u
                 found += 1
             slots[k] = seen[u]
-    return _adjacency(poses, slots, pairs[:found])
+    return slots, pairs[:found]
 
 
 @compiled
@@ -87,11 +94,12 @@ def _adjacency(poses: int, slots: Ints, pairs: Ints) -> Structure:
     for k in range(pairs.shape[0]):
         start[pairs[k, 0] + 1] += 1
         start[pairs[k, 1] + 1] += 1
-    start = np.cumsum(start)
-    fill = start[:-1].copy()
+    for i in range(poses):
+        start[i + 1] += start[i]
+    fill = start.copy()
     neighbours, pair_of = np.empty(2 * pairs.shape[0], np.int64), np.empty(2 * pairs.shape[0], np.int64)
     for k in range(pairs.shape[0]):
-        i, j = pairs[k]
+        i, j = pairs[k, 0], pairs[k, 1]
         neighbours[fill[i]], neighbours[fill[j]] = j, i
         pair_of[fill[i]], pair_of[fill[j]] = k, k
         fill[i] += 1
@@ -124,7 +132,8 @@ def _grouped(parents: Ints) -> tuple[Ints, Ints]:
     for parent in parents:
         if parent >= 0:
             starts[parent + 1] += 1
-    starts = np.cumsum(starts)
+    for s in range(parents.shape[0]):
+        starts[s + 1] += starts[s]
     fill, children = starts.copy(), np.empty(starts[-1], np.int64)
     for s in range(parents.shape[0]):
         if parents[s] >= 0:
@@ -170,29 +179,31 @@ def _offsets(sequence: Ints, starts: Ints, row_starts: Ints) -> tuple[Ints, Ints
 
 
 @compiled
-def plan(given: Structure) -> Tree:
-    """The tree for a structure."""
-    e = minimum_degree(given.start, given.neighbours)
-    n, supernodes = e.pivots.shape[0], e.starts.shape[0] - 1
-    place, owner = np.empty(n, np.int64), np.empty(n, np.int64)
-    for s in range(supernodes):
+def _placed(e: Elimination) -> tuple[Ints, Ints]:
+    """(place of each pose in the pivots, supernode of each place)."""
+    place, owner = np.empty_like(e.pivots), np.empty_like(e.pivots)
+    for s in range(e.starts.shape[0] - 1):
         for k in range(e.starts[s], e.starts[s + 1]):
             place[e.pivots[k]], owner[k] = k, s
-    rows, parents = _parents(e, place, owner)
-    child_starts, children = _grouped(parents)
-    sequence = _postorder(parents, child_starts, children)
-    panels, updates = _offsets(sequence, e.starts, e.row_starts)
+    return place, owner
+
+
+@compiled
+def _fill(given: Structure, e: Elimination, rows: Ints, place: Ints, family: tuple[Ints, Ints]) -> tuple[Ints, Ints, Ints]:
+    """(inside, entry_starts, entries) of the tree; family: child_starts and children."""
+    child_starts, children = family
+    supernodes = e.starts.shape[0] - 1
     inside = np.zeros_like(rows)
     entry_starts, entries = np.zeros(supernodes + 1, np.int64), np.empty((given.neighbours.shape[0] // 2, 3), np.int64)
-    block, found = np.zeros(n, np.int64), 0
+    block, found = np.zeros_like(place), 0
     for s in range(supernodes):
         a, b = e.starts[s], e.starts[s + 1]
         for k in range(a, b):
             block[k] = k - a
         for k in range(e.row_starts[s], e.row_starts[s + 1]):
             block[rows[k]] = b - a + k - e.row_starts[s]
-        for child in children[child_starts[s] : child_starts[s + 1]]:
-            for k in range(e.row_starts[child], e.row_starts[child + 1]):
+        for c in range(child_starts[s], child_starts[s + 1]):
+            for k in range(e.row_starts[children[c]], e.row_starts[children[c] + 1]):
                 inside[k] = block[rows[k]]
         for k in range(a, b):
             i = e.pivots[k]
@@ -202,5 +213,17 @@ def plan(given: Structure) -> Tree:
                     entries[found, 0], entries[found, 1], entries[found, 2] = given.pair_of[t], k - a, block[later]
                     found += 1
         entry_starts[s + 1] = found
+    return inside, entry_starts, entries
+
+
+def plan(given: Structure) -> Tree:
+    """The tree for a structure. In parts, as each kernel is compiled with all that it calls."""
+    e = minimum_degree(given.start, given.neighbours)
+    place, owner = _placed(e)
+    rows, parents = _parents(e, place, owner)
+    child_starts, children = _grouped(parents)
+    sequence = _postorder(parents, child_starts, children)
+    panels, updates = _offsets(sequence, e.starts, e.row_starts)
+    inside, entry_starts, entries = _fill(given, e, rows, place, (child_starts, children))
     tree = (e.pivots, place, e.starts, rows, e.row_starts, parents, sequence, child_starts, children, inside)
     return Tree(*tree, entry_starts, entries, panels, updates)

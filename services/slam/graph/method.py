@@ -131,6 +131,9 @@ class GraphSlam:
         for pose, node in zip(self.nodes.poses, self.nodes.all, strict=True):
             yield Keyframe(pose, node.reading)
 
+    def keyframe_count(self) -> int:
+        return len(self.nodes)
+
     def finish(self) -> None:
         if len(self.nodes) > 1:
             self.closing.settle()

@@ -179,10 +179,13 @@ def _eliminate(q: Quotient, queue: Queue, p: int, members: Ints, work: tuple[Int
 def minimum_degree(start: Ints, neighbours: Ints) -> Elimination:
     """Neighbours of pose i: neighbours[start[i] : start[i + 1]], each once, without i itself, and i among theirs."""
     n = start.shape[0] - 1
+    near = np.empty(n, np.int64)
+    for i in range(n):
+        near[i] = start[i + 1] - start[i]
     q = Quotient(
         start,
         neighbours.copy(),
-        start[1:] - start[:-1],
+        near,
         np.empty_like(neighbours),
         np.zeros(n, np.int64),
         np.zeros(n, np.int64),
@@ -197,7 +200,8 @@ def minimum_degree(start: Ints, neighbours: Ints) -> Elimination:
     work = np.full(n, -1), np.zeros(n, np.int64), np.empty(n, np.int64)
     members = np.empty(8 * n + neighbours.shape[0], np.int64)
     starts, row_starts = np.zeros(n + 1, np.int64), np.zeros(n + 1, np.int64)
-    done = supernodes = top = least = 0
+    done, top = starts[0], row_starts[0]
+    supernodes = least = 0
     while done < n:
         while queue.head[least] < 0:
             least += 1

@@ -90,5 +90,7 @@ def diagonal_of_inverse(tree: Tree, panels: Floats) -> Floats:
         _close(panel, inverse, columns)
         for k in range(tree.starts[s], tree.starts[s + 1]):
             c = 3 * (k - tree.starts[s])
-            out[tree.pivots[k]] = inverse[c : c + 3, c : c + 3]
+            for a in range(3):
+                for b in range(3):
+                    out[tree.pivots[k], a, b] = inverse[c + a, c + b]
     return out

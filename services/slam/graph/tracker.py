@@ -11,7 +11,6 @@ from services.slam.matching.cloud import Cloud
 from services.slam.matching.imls import Match, match
 from services.slam.matching.likelihood import LikelihoodField, likelihood_field
 from services.slam.matching.point_map import PointMap
-from uvf.maths.compiled import compiled
 from uvf.maths.planar import IDENTITY, Pose2, compose
 from uvf.maths.rotations import wrap
 
@@ -161,12 +160,10 @@ def _strays(motion: Motion, cloud: Cloud) -> bool:
     return position + heading * _usual_range(cloud.points) > FARTHEST
 
 
-@compiled
 def _usual_range(points: Floats) -> float:
     """m, median; 0 for no points."""
-    if points.shape[0] == 0:
-        return 0.0
-    return float(np.median(np.sqrt(points[:, 0] ** 2 + points[:, 1] ** 2)))
+    middle = len(points) // 2
+    return float(np.sqrt(np.partition(points[:, 0] ** 2 + points[:, 1] ** 2, middle)[middle])) if len(points) else 0.0
 
 
 def _leaps(guess: Pose2, found: Pose2) -> bool:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from services.slam.maps.shared_kernels import Grid, slot_of
 from services.slam.maps.tile_kernels import TILE
 from uvf.maths.compiled import compiled
+from uvf.maths.three import solve
 
 Floats = NDArray[np.float64]
 
@@ -65,7 +66,7 @@ def climb(start: Floats, points: Floats, grid: Grid, rounds: int, hold: tuple[Fl
         h, g, _ = normal_equations(pose, points, grid)
         away = pose - hold[0]
         away[2] = (away[2] + np.pi) % (2.0 * np.pi) - np.pi
-        step = np.linalg.solve(h + np.diag(hold[1]), g - hold[1] * away)
+        step = solve(h + np.diag(hold[1]), g - hold[1] * away)
         step[2] = min(max(step[2], -TURN), TURN)
         pose = pose + step
     return pose

@@ -78,6 +78,9 @@ class HectorSlam:
     def keyframes(self) -> Iterator[Keyframe]:
         return iter(self._keyframes)
 
+    def keyframe_count(self) -> int:
+        return len(self._keyframes)
+
     def finish(self) -> None:
         """Nothing has been put off."""
 

@@ -156,6 +156,9 @@ class Localizer:
         """The map is given."""
         return iter(())
 
+    def keyframe_count(self) -> int:
+        return 0
+
     def finish(self) -> None:
         """Nothing has been put off."""
 

@@ -15,6 +15,7 @@ from services.slam.matching.point_map import CELL, PointMap, Table
 from uvf.maths.compiled import compiled
 from uvf.maths.planar import Pose2
 from uvf.maths.rotations import wrap
+from uvf.maths.three import solve
 
 Floats = NDArray[np.float64]
 
@@ -124,6 +125,23 @@ def _normal_equations(pose: Floats, points: Floats, lines: Floats, sharp: bool) 
 
 
 @compiled
+def _step(pose: Floats, h: Floats, g: Floats, prior: tuple[Floats, Floats]) -> Floats:
+    """(3,) of Gauss-Newton, held by the prior."""
+    away = np.empty(3)
+    for a in range(3):
+        away[a] = pose[a] - prior[0][a]
+    away[2] = (away[2] + np.pi) % (2 * np.pi) - np.pi
+    left, right = np.empty((3, 3)), np.empty(3)
+    for a in range(3):
+        right[a] = -g[a]
+        for b in range(3):
+            left[a, b] = h[a, b] + prior[1][a, b]
+            right[a] -= prior[1][a, b] * away[b]
+        left[a, a] += 1e-6
+    return solve(left, right)
+
+
+@compiled
 def refine(
     start: Floats, cloud: tuple[Floats, Floats, Floats], table: Table, prior: tuple[Floats, Floats], reach: float
 ) -> tuple[Floats, Floats, float, float]:
@@ -137,14 +155,13 @@ def refine(
         for _ in range(STEPS):
             h, g, found, squares = _normal_equations(pose, cloud[0], lines, turn > 0)
             share, rms = found / max(cloud[0].shape[0], 1), np.sqrt(squares / max(found, 1))
-            away = pose - prior[0]
-            away[2] = (away[2] + np.pi) % (2 * np.pi) - np.pi
-            step = np.linalg.solve(h + prior[1] + 1e-6 * np.eye(3), -(g + prior[1] @ away))
-            pose = pose + step
+            step = _step(pose, h, g, prior)
+            for a in range(3):
+                pose[a] += step[a]
             if abs(step[0]) + abs(step[1]) < STILL and abs(step[2]) < STILL_TURN:
                 break
-        moved = np.abs(pose - before)
-        if turn > 0 and moved[0] + moved[1] < STILL and moved[2] < STILL_TURN:
+        moved = abs(pose[0] - before[0]) + abs(pose[1] - before[1])
+        if turn > 0 and moved < STILL and abs(pose[2] - before[2]) < STILL_TURN:
             break
     return pose, h, share, rms
 

@@ -29,6 +29,19 @@ def rays_of(reading: Reading) -> Rays:
 
 
 @compiled
+def _place(rising: Floats, value: float) -> int:
+    """Of the first that is not below a value."""
+    low, high = 0, rising.shape[0]
+    while low < high:
+        middle = (low + high) // 2
+        if rising[middle] < value:
+            low = middle + 1
+        else:
+            high = middle
+    return low
+
+
+@compiled
 def verdicts(points: Floats, base_from_points: tuple[float, float, float], rays: Rays) -> NDArray[np.int8]:
     """(n,) of surface points (n, 2) [m]: AGREES where the sweep sees them, THROUGH where it looks through them, 0 where neither."""
     origin, bearings, ranges = rays
@@ -43,7 +56,7 @@ def verdicts(points: Floats, base_from_points: tuple[float, float, float], rays:
         dy = s * points[i, 0] + c * points[i, 1] + base_from_points[1] - origin[1]
         rho = np.sqrt(dx * dx + dy * dy)
         angle = bearings[0] + (np.arctan2(dy, dx) - bearings[0]) % (2.0 * np.pi)
-        k = np.searchsorted(bearings, angle)
+        k = _place(bearings, angle)
         if k > last or rho < 0.1:
             continue
         near, seen, met = np.inf, False, False

@@ -7,6 +7,7 @@ from services.slam.maps.shared_kernels import Grid, slot_of
 from services.slam.maps.tile_kernels import TILE
 from services.slam.rbpf.surfaces import line_at
 from uvf.maths.compiled import compiled
+from uvf.maths.three import solve
 
 Floats = NDArray[np.float64]
 Sweep = tuple[Floats, tuple[float, float]]
@@ -73,7 +74,7 @@ def climb(start: Floats, sweep: Sweep, grid: Grid, prior: Gaussian, scale: tuple
         h, g, found, score = normal_equations(pose, sweep, grid, sigma * max(1.0, WIDE * 0.5**k))
         away = pose - prior[0]
         away[2] = _wrapped(away[2])
-        step = np.linalg.solve(h + unit * prior[1], -(g + unit * (prior[1] @ away)))
+        step = solve(h + unit * prior[1], -(g + unit * (prior[1] @ away)))
         pose = pose + step
         if k > 1 and abs(step[0]) + abs(step[1]) < STILL and abs(step[2]) < STILL_TURN:
             break

@@ -79,6 +79,9 @@ class RbpfSlam:
         for pose, reading in zip(self.particles.path(self.particles.best).tolist(), self._readings, strict=True):
             yield Keyframe(Pose2(*pose), reading)
 
+    def keyframe_count(self) -> int:
+        return len(self._readings)
+
     def finish(self) -> None:
         """Nothing has been put off."""
 

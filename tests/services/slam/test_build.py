@@ -9,7 +9,9 @@ from schemas.messages import Mode
 from services.autopilot.ground.build import hosts
 from services.autopilot.ground.service import GroundAutopilot
 from services.planner.build import build as build_planner
+from services.slam import build as slam_build
 from services.slam.build import build as build_slam
+from services.slam.methods import make_method
 from uvf.runtime.mission_file import Job, Waypoint
 from uvf.runtime.params import BadInput
 from uvf.runtime.site import ROOT, load_site
@@ -39,6 +41,13 @@ def test_only_ground_vehicles_get_them(site):
 def test_each_is_made_afresh(site):
     for host in [h for build in BUILDS for h in build(site)]:
         assert host.make() is not host.make()
+
+
+def test_kernels_are_compiled_once_for_all_vehicles_of_a_method(site, monkeypatch):
+    made = []
+    monkeypatch.setattr(slam_build, "make_method", lambda name, params: made.append(name) or make_method(name, params))
+    build_slam(replace(site, members={**site.members, "second": replace(site.members["burger"], name="second")}))
+    assert made == ["graph"]
 
 
 def test_a_mission_without_ground_vehicles_gets_none(site):

@@ -168,6 +168,15 @@ def test_the_map_is_published_once_a_second_and_only_when_it_has_changed(driftin
     assert sum("map" in out for _, out in standing) == 1
 
 
+def test_keyframes_are_looked_through_only_when_there_is_one_more(monkeypatch):
+    looked = []
+    for name in ("keyframes", "session"):
+        told = getattr(GraphSlam, name)
+        monkeypatch.setattr(GraphSlam, name, lambda self, name=name, told=told: looked.append(name) or told(self))
+    map_for(15.0, lambda t: (0.0, 0.0, 0.0), lambda p: p)
+    assert looked == ["keyframes", "session", "keyframes"]  # the session holds the keyframes
+
+
 def test_the_map_shows_the_room_where_it_is(drifting_run):
     grid = [out["map"] for _, out in drifting_run if "map" in out][-1]
     cells = occupancy_cells(grid)
