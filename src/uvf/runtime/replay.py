@@ -99,7 +99,7 @@ def into_service(log: Path, host: Host, tolerance: float = TOLERANCE) -> Iterato
     if begin:
         _take_up(shell, samples, begin)
     feed = [s for s in samples if not _any(writes, s.key)] + [s for s in own if s.key.endswith("/request")]
-    _run(shell, bus, sorted(feed, key=lambda s: s.stamp_ns), max((s.stamp_ns for s in samples), default=0))
+    play(shell, bus, sorted(feed, key=lambda s: s.stamp_ns), max((s.stamp_ns for s in samples), default=0))
     shell.service.close()
     # Of the steps before, whose outputs may come late, none has been run here.
     since = begin + round(host.service.latency * NS) if begin else -1
@@ -132,8 +132,11 @@ def _answer_from_log(bus: LocalBus, asked: Iterable[str], samples: Sequence[Samp
         bus.serve(key, answer)
 
 
-def _run(shell: Shell, bus: LocalBus, feed: Sequence[Sample], end_ns: int) -> None:
-    """A recorded request carries the stamp of the step that answered it: it was there before that step."""
+def play(shell: Shell, bus: LocalBus, feed: Sequence[Sample], end_ns: int) -> None:
+    """Steps a service up to ``end_ns``; feed: all that it may hear, by stamp.
+
+    A recorded request carries the stamp of the step that answered it: it was there before that step.
+    """
     waiting = deque(feed)
     while shell.due_ns <= end_ns:
         while waiting and waiting[0].stamp_ns < shell.due_ns + waiting[0].key.endswith("/request"):

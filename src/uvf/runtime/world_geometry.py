@@ -131,6 +131,12 @@ def floor_segments(world: WorldFile, height: float) -> Floats:
     return segments(footprint(still(solids(world)), height - GRAZE, height + GRAZE))
 
 
+def section(world: WorldFile, resolution: float, height: float) -> FloorPlan:
+    """Which cells hold anything that stands still at ``height`` [m]: what a level lidar there meets."""
+    plan = empty_plan(world, resolution)
+    return replace(plan, cells=plan.under(footprint(still(solids(world)), height - GRAZE, height + GRAZE)))
+
+
 def empty_plan(world: WorldFile, resolution: float) -> FloorPlan:
     """The floor with nothing on it."""
     x_min, y_min, x_max, y_max = world.floor

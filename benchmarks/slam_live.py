@@ -1,0 +1,161 @@
+"""A rover explores a world live: every service in its own process, over Zenoh, at real time. Its map and pose against the truth.
+
+Walls are those that a lidar at its height meets, and the map lies where the start pose of the mission has it: nothing is aligned.
+``floor %``: of the floor that the rover can reach, how much the map knows. Errors are those of ``nav/pose`` against the true pose.
+``slam core %``: CPU time of the process of odometry and mapping, with all that it hears and says, in parts of simulated time;
+``odometry core %`` and ``mapping core %``: the steps of each alone, fed from the log of the same run. ``x real time`` below 0.98: the
+machine had too little to spare; late steps may then have been skipped. Pictures are put into ``runs/slam_live``.
+"""
+
+import tempfile
+import time
+from collections.abc import Sequence
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+import yaml
+from google.protobuf.timestamp_pb2 import Timestamp
+from numpy.typing import NDArray
+
+from benchmarks.slam_live_picture import Shown, draw
+from benchmarks.timing import stopwatch
+from schemas import topics
+from schemas.convert import seconds, yaw_of
+from schemas.messages import Quaternion, Vector3
+from services.slam.logs.mcap_log import samples_of
+from services.slam.maps.map_server import in_world
+from services.slam.maps.quality import score
+from uvf.client import Client
+from uvf.launch import catalogue, settings
+from uvf.launch.apart import apart
+from uvf.launch.bench import Figures
+from uvf.maths.planar import IDENTITY
+from uvf.maths.planar_arrays import wrapped
+from uvf.runtime.bus import LocalBus, Sample
+from uvf.runtime.grid_message import as_map
+from uvf.runtime.map_file import GridMap
+from uvf.runtime.replay import play
+from uvf.runtime.shell import Shell
+from uvf.runtime.site import Site, load_site
+from uvf.runtime.world_geometry import floor_plan, floor_segments, reachable_floor, section
+
+Floats = NDArray[np.float64]
+Row = dict[str, float]
+
+VEHICLE, SLAM = "rover", "slam"
+STARTS = {"house": (2.2, 1.3, 0.5), "watkins": (1.0, 1.2, 0.0)}
+DURATIONS = {"house": 240.0, "watkins": 420.0}  # s: all rooms have been seen
+BEGUN = 5.0  # s, from which on CPU time counts
+PLAN_CELL = 0.02  # m
+PATIENCE = 4.0  # times as long as a run should take
+
+
+def live(world: str, data: Path | None) -> Figures:
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        site = load_site(mission(world, folder))
+        with apart(site.mission_path, folder) as client:
+            costs = driven(client, DURATIONS[world])
+        run = Run(list(samples_of((folder / "latest").resolve())))
+    row = run.errors() | run.of_map(site) | costs | run.steps(site)
+    pictures = settings.runs_folder() / "slam_live"
+    pictures.mkdir(parents=True, exist_ok=True)
+    draw(Shown(run.grid(), floor_segments(site.world, lidar_height(site)), run.truth, run.poses), world, pictures / f"{world}.png")
+    return {world: row}
+
+
+def mission(world: str, folder: Path) -> Path:
+    x, y, yaw = STARTS[world]
+    rover = {"model": "burger", "system_id": 1, "start": {"x": x, "y": y, "yaw": yaw}, "job": {"explore": True}}
+    path = folder / f"{world}.yaml"
+    path.write_text(yaml.safe_dump({"about": "A rover explores.", "world": world, "seed": 1, "vehicles": {VEHICLE: rover}}))
+    return path
+
+
+def driven(client: Client, duration: float) -> Row:
+    """Waits for the end; what that has cost."""
+    health = topics.HEALTH.by(SLAM)
+    client.wait(lambda: client.time > BEGUN, PATIENCE * BEGUN, "time stands")
+    begun, first, wall = client.time, client.read(topics.SYSTEM, health), time.monotonic()
+    client.wait(lambda: client.time > duration, PATIENCE * duration, "time stands")
+    last = client.read(topics.SYSTEM, health)
+    core = (last.cpu_time - first.cpu_time) / (seconds(last.timestamp) - seconds(first.timestamp))
+    return {
+        "slam core %": 100.0 * core,
+        "x real time": (client.time - begun) / (time.monotonic() - wall),
+        "skipped": float(last.skipped - first.skipped),
+    }
+
+
+class Run:
+    """What the log of a run tells. Only what judges it may read the truth."""
+
+    def __init__(self, samples: Sequence[Sample]) -> None:
+        self._samples = samples
+        self.truth = np.array([_row(m.timestamp, m.position, m.orientation) for m in self._all(topics.TRUTH)])
+        self.poses = np.array([_row(m.timestamp, m.pose.position, m.pose.orientation) for m in self._all(topics.POSE)])
+
+    def _all(self, topic: topics.Topic[topics.M]) -> list[topics.M]:
+        return [topic.message.FromString(s.payload) for s in self._samples if s.key == topic.at(VEHICLE)]
+
+    def grid(self) -> GridMap:
+        """The last one, in the world frame."""
+        return in_world(as_map(self._all(topics.MAP)[-1]), self._all(topics.TF_WORLD)[-1])
+
+    def errors(self) -> Row:
+        truth = np.column_stack([np.interp(self.poses[:, 0], self.truth[:, 0], c) for c in _unwound(self.truth[:, 1:])])
+        off = self.poses[:, 1:] - truth
+        distances, turns = np.hypot(off[:, 0], off[:, 1]), wrapped(off[:, 2])
+        return {
+            "RMSE m": float(np.sqrt((distances**2).mean())),
+            "RMSE deg": float(np.degrees(np.sqrt((turns**2).mean()))),
+            "max m": float(distances.max()),
+            "driven m": float(np.hypot(*np.diff(self.truth[:, 1:3], axis=0).T).sum()),
+        }
+
+    def of_map(self, site: Site) -> Row:
+        start, member = site.members[VEHICLE].entry.start, site.members[VEHICLE]
+        radius = member.file.ground.radius if member.file.ground else 0.0
+        floor = reachable_floor(floor_plan(site.world, PLAN_CELL), start.x, start.y, radius)
+        seen = score(self.grid(), section(site.world, PLAN_CELL, lidar_height(site)), IDENTITY, floor)
+        fine, coarse = seen.walls.detections
+        return {
+            "F1 5 cm": fine.f1,
+            "F1 10 cm": coarse.f1,
+            "walls off 95 % m": seen.walls.to_true[1],
+            "double walls": float(seen.double_walls),
+            "floor %": 100.0 * (1.0 - seen.unknown),
+        }
+
+    def steps(self, site: Site) -> Row:
+        """CPU of the services' steps alone."""
+        end, row = max(s.stamp_ns for s in self._samples), {}
+        for host in catalogue.hosts(site, [catalogue.kind(SLAM)]):
+            bus = LocalBus()
+            shell = Shell(host, bus)
+            read = {declared.topic.at(owner) for _, declared, owner in shell.reads()}
+            feed = [s for s in self._samples if s.key in read]
+            with stopwatch() as taken:
+                play(shell, bus, feed, end)
+            row[f"{host.service.name} core %"] = 100.0 * taken[0] / (end / 1e9)
+        return row
+
+
+def lidar_height(site: Site) -> float:
+    """m above the floor."""
+    lidar = site.members[VEHICLE].file.sensors.lidar
+    return lidar.mount.xyz[2] if lidar is not None else 0.0
+
+
+def _row(timestamp: Timestamp, position: Vector3, orientation: Quaternion) -> tuple[float, float, float, float]:
+    """t, x, y, yaw."""
+    return seconds(timestamp), position.x, position.y, yaw_of(orientation)
+
+
+def _unwound(poses: Floats) -> Floats:
+    """(3, n) x, y and a yaw without leaps."""
+    return np.array((poses[:, 0], poses[:, 1], np.unwrap(poses[:, 2])))
+
+
+CASES = {world: partial(live, world) for world in STARTS}
