@@ -59,7 +59,7 @@ def test_bad_files_are_one_line(merge, tmp_path):
     first(anne().session, 0).save(tmp_path / "empty.npz")
     for files, part in (
         (("anne.npz",), "two sessions at least"),
-        (("anne.npz", "anne.npz"), "given twice"),
+        (("anne.npz", "./anne.npz"), "session ./anne.npz: given twice"),
         (("anne.npz", "none.npz"), "no such file"),
         (("anne.npz", "broken.npz"), "not a session"),
     ):

@@ -31,11 +31,10 @@ class Crossing:
 
 @dataclass(frozen=True)
 class Joint:
-    """poses: (n, 3) by session, team_from_base; crossings: those that are believed; trust: part of them that is."""
+    """poses: (n, 3) by session, team_from_base; crossings: those that are believed."""
 
     poses: dict[str, Floats]
     crossings: list[Crossing]
-    trust: float
 
 
 def settled(parts: Mapping[str, Part], crossings: Sequence[Crossing], starts: Mapping[str, Floats]) -> Joint:
@@ -54,7 +53,7 @@ def settled(parts: Mapping[str, Part], crossings: Sequence[Crossing], starts: Ma
     believed = [c for c, number in zip(crossings, numbers, strict=True) if graph.weights[number] > 0.5]
     poses = graph.poses.copy()
     poses[:, 2] = wrapped(poses[:, 2])
-    return Joint({name: poses[k : k + len(parts[name])] for name, k in first.items()}, believed, len(believed) / max(len(crossings), 1))
+    return Joint({name: poses[k : k + len(parts[name])] for name, k in first.items()}, believed)
 
 
 def start_by(closure: Closure, placed_a: Floats, own_b: Floats) -> Floats:

@@ -1,6 +1,8 @@
 """Sessions of vehicles that map -> one map of those that were at the same places, and where the map of each lies in it."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+
+import numpy as np
 
 from schemas import topics
 from schemas.convert import occupancy_grid, quaternion, stamp
@@ -37,12 +39,22 @@ class MergingService(Service):
     def step(self, t: float, session: Mapping[str, MapSession]) -> Outputs:
         events = self._take(t, session)
         self._team.work(PLACES)
-        news = [g for g in self._team.groups if len(g.names) > 1 and self._told.get(g.names[0]) is not g]
-        maps = {group.names[0]: grid for group in news if (grid := self._map(t, group)) is not None}
+        teams = {group.names[0]: group for group in self._team.groups if len(group.names) > 1}
+        news = [group for first, group in teams.items() if self._told.get(first) is not group]
+        maps: dict[str, Grid] = {}
         places = {name: self._place(t, name, group.names[0]) for group in news for name in group.names}
-        events |= {group.names[0]: told for group in news if (told := self._joined(t, group))}
-        self._told |= {group.names[0]: group for group in news}
-        return {"map": maps, "place": places, "events": events}
+        for group in news:
+            told = events.setdefault(group.names[0], [])
+            told += self._joined(t, group)
+            try:
+                maps |= self._map(t, group)
+            except BadInput as error:
+                told += [_event(t, Event.WARNING, "the map of the team cannot be drawn", str(error))]
+        ended, alone = self._told.keys() - teams.keys(), _names(self._told.values()) - _names(teams.values())
+        maps |= {first: _nothing(t, first) for first in ended if self._maps.pop(first, None)}
+        places |= {name: self._place(t, name, name) for name in sorted(alone)}
+        self._told = teams
+        return {"map": maps, "place": places, "events": {name: told for name, told in events.items() if told}}
 
     def _take(self, t: float, sessions: Mapping[str, MapSession]) -> dict[str, list[Event]]:
         """The session that has waited longest, if any is new."""
@@ -57,14 +69,14 @@ class MergingService(Service):
             return {name: [_event(t, Event.WARNING, "the map cannot be put together with those of others", str(error))]}
         return {}
 
-    def _map(self, t: float, group: Group) -> Grid | None:
-        """Of all keyframes; None where it would be as it was."""
+    def _map(self, t: float, group: Group) -> dict[str, Grid]:
+        """Of all keyframes, by its first vehicle; nothing where it would be as it was. Raises BadInput where it is too large."""
         first = group.names[0]
         tiles = self._maps.setdefault(first, TileMap(RESOLUTION))
         if not tiles.follow(self._team.session_of(group).keyframes):
-            return None
+            return {}
         cells, (x, y) = tiles.cells()
-        return occupancy_grid(cells, RESOLUTION, x, y, f"{first}/map", t)
+        return {first: occupancy_grid(cells, RESOLUTION, x, y, f"{first}/map", t)}
 
     def _joined(self, t: float, group: Group) -> list[Event]:
         """Told where vehicles have come to it."""
@@ -83,6 +95,15 @@ class MergingService(Service):
             translation=Vector3(x=x, y=y),
             rotation=quaternion(from_euler(0.0, 0.0, yaw)),
         )
+
+
+def _names(groups: Iterable[Group]) -> set[str]:
+    return {name for group in groups for name in group.names}
+
+
+def _nothing(t: float, first: str) -> Grid:
+    """In the place of the map of a team that is no more."""
+    return occupancy_grid(np.full((1, 1), -1, dtype=np.int8), RESOLUTION, 0.0, 0.0, f"{first}/map", t)
 
 
 def _event(t: float, severity: Event.Severity, text: str, cause: str) -> Event:

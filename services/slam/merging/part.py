@@ -2,11 +2,13 @@
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_matrix
+from scipy.sparse.csgraph import connected_components
 
 from services.slam.graph.nodes import Nodes
 from services.slam.graph.pose_graph import PoseGraph
 from services.slam.graph.restored import add_edges, add_keyframes
-from services.slam.maps.session import NO_EDGES, Session
+from services.slam.maps.session import NO_EDGES, Edges, Session
 from services.slam.matching.likelihood import LikelihoodField, likelihood_field
 from services.slam.merging.headings import facing
 from uvf.maths.planar import Pose2, transform
@@ -19,6 +21,8 @@ Mask = NDArray[np.bool_]
 RESOLUTION, SIGMA, DEPTH = 0.1, 0.12, 3
 """Of the field in which places of other sessions are searched: m, m, levels of bounds."""
 GRAIN = 0.05  # m between the points it is drawn from
+MOST_CELLS = 100_000_000
+"""Of a field: a square kilometre."""
 VIEW = 2.0  # m around keyframes in which a vehicle of another session is looked for
 APART, APART_TURN = 2.0, 0.8
 """m, rad between places that are searched for: nearer ones tell nothing new."""
@@ -50,11 +54,12 @@ class Part:
     def follow(self, session: Session) -> bool:
         """Takes in what the session is now; False, and nothing done, where that does not go on from what it was before.
 
-        Raises BadInput for edges that make no graph.
+        Raises BadInput for edges that make no graph or leave keyframes untied, and where it is too large to be searched in.
         """
         before = [node.reading.t for node in self.nodes.all]
         if before != [keyframe.reading.t for keyframe in session.keyframes[: len(before)]]:
             return False
+        self._check(session)
         graph = PoseGraph()
         for keyframe in session.keyframes:
             graph.add_pose(keyframe.map_from_base)
@@ -68,6 +73,16 @@ class Part:
         self._covariances.clear()
         self._choose(len(before))
         return True
+
+    def _check(self, session: Session) -> None:
+        if len(session.keyframes) < 2:
+            return
+        across, along = np.ptp([keyframe.map_from_base[:2] for keyframe in session.keyframes], axis=0).tolist()
+        if across / RESOLUTION * (along / RESOLUTION) > MOST_CELLS:
+            raise BadInput(f"session {self.name}: of {across:.4g} x {along:.4g} m, too large to be merged; look for a jump in the odometry")
+        pieces = _pieces(session.edges, len(session.keyframes))
+        if pieces > 1:
+            raise BadInput(f"session {self.name}: edges leave it in {pieces} pieces whose places to each other nothing tells")
 
     @property
     def poses(self) -> Floats:
@@ -89,9 +104,9 @@ class Part:
         if self._near is None:
             self._near = np.zeros(self.field.levels.shape[1:], dtype=np.bool_)
             reach = round(VIEW / RESOLUTION)
-            cells = ((self.poses[:, :2] - np.array(self.field.corner)) / RESOLUTION).astype(np.int64)
+            cells = np.floor((self.poses[:, :2] - np.array(self.field.corner)) / RESOLUTION).astype(np.int64)
             for column, row in np.unique(cells, axis=0).tolist():
-                self._near[max(0, column - reach) : column + reach, max(0, row - reach) : row + reach] = True
+                self._near[max(0, column - reach) : max(0, column + reach), max(0, row - reach) : max(0, row + reach)] = True
         return self._near
 
     @property
@@ -125,6 +140,12 @@ class Part:
                 self.places.append(i)
 
     def _has_place(self, pose: Pose2) -> bool:
-        others = self.poses[self.places]
+        others = np.array([self.nodes.poses[i] for i in self.places]).reshape(-1, 3)
         near = np.hypot(*(others[:, :2] - pose[:2]).T) < APART
         return bool((near & (np.abs(wrapped(others[:, 2] - pose.yaw)) < APART_TURN)).any())
+
+
+def _pieces(edges: Edges, keyframes: int) -> int:
+    """How many sets of keyframes there are that no edge ties to each other."""
+    i, j = edges.ends[edges.enabled].T
+    return int(connected_components(csr_matrix((np.ones(len(i)), (i, j)), (keyframes, keyframes)), directed=False, return_labels=False))

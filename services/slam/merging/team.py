@@ -1,7 +1,7 @@
 """Sessions of several vehicles that begin without knowing of each other, and grow together where they have been at the same places."""
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
 from itertools import permutations, product
 
 import numpy as np
@@ -11,9 +11,9 @@ from services.slam.maps.session import Session
 from services.slam.merging.joint import Crossing, Joint, session_of, settled, start_by
 from services.slam.merging.pair import Pair
 from services.slam.merging.part import Part
-from services.slam.merging.ties import NO_TIES, Ties, ties
+from services.slam.merging.ties import Ties, agreement, ties
 from uvf.maths.alignment import aligned
-from uvf.maths.planar import Pose2
+from uvf.maths.planar import IDENTITY, Pose2
 from uvf.maths.planar_arrays import composed, inverted
 
 Floats = NDArray[np.float64]
@@ -25,10 +25,10 @@ AT_ONCE = 8  # places that are searched for before it is seen whether these are 
 
 @dataclass(frozen=True)
 class Group:
-    """Sessions in one frame, the map of the first. common: places where two of them must have seen the same."""
+    """Sessions in one frame, the map of the first. common: by two of them, places where they must have seen the same."""
 
     joint: Joint
-    common: Ties = NO_TIES
+    common: Mapping[tuple[str, str], Ties] = field(default_factory=dict)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -37,7 +37,7 @@ class Group:
     @property
     def quality(self) -> float:
         """0..1: how far what its sessions tell of common places is the same; 1 for a session alone."""
-        return self.common.agreement
+        return agreement(self.common.values())
 
 
 class Team:
@@ -48,7 +48,6 @@ class Team:
         self.groups: list[Group] = []
         self._pairs: dict[tuple[str, str], Pair] = {}
         self._refused: dict[tuple[str, str], int] = {}
-        self._tied: dict[str, int] = {}
 
     def follow(self, name: str, session: Session) -> None:
         """A session that does not go on from what it was is taken for a new one. Raises BadInput."""
@@ -58,7 +57,7 @@ class Team:
             part.follow(session)
             self._forget(name)
             self.parts[name] = part
-            self.groups.append(Group(Joint({name: part.poses}, [], 1.0)))
+            self.groups.append(_alone(name, part))
             self._pairs |= {(other, name): Pair(self.parts[other], part) for other in self.parts if other != name}
         for pair in self._pairs.values():
             pair.grow()
@@ -84,6 +83,8 @@ class Team:
 
     def team_from_map(self, name: str) -> Pose2:
         """Where the map of a session lies in the frame of its group, as a whole."""
+        if not len(self.parts[name]):
+            return IDENTITY
         return aligned(self.group_of(name).joint.poses[name][:, :2], self.parts[name].poses[:, :2])
 
     def session_of(self, group: Group) -> Session:
@@ -102,21 +103,23 @@ class Team:
         self.groups.remove(group)
         crossings = [c for c in group.joint.crossings if name not in (c.a, c.b)]
         for names in _components([n for n in group.names if n != name], crossings):
-            left = Joint({n: group.joint.poses[n] for n in names}, [c for c in crossings if c.a in names], group.joint.trust)
-            self.groups.append(Group(left))
+            first = self.parts[names[0]]
+            self.groups.append(_left(group, names, first.poses[0]) if len(names) > 1 else _alone(names[0], first))
 
     def _grow(self, group: Group) -> bool:
         """Brings a group up to what its sessions are now."""
-        before = group.joint.poses
-        if all(len(before[n]) == len(self.parts[n]) for n in group.names):
+        parts = [self.parts[n] for n in group.names]
+        if all(len(poses) == len(part) for poses, part in zip(group.joint.poses.values(), parts, strict=True)):
             return False
-        poses = {n: _extended(before[n], self.parts[n].poses) for n in group.names}
-        new = NO_TIES
-        for a, b in permutations(group.names, 2):
-            new += ties(self.parts, poses, a, b, len(before[b]))
-        joint = settled(self._members(group), [*group.joint.crossings, *new.crossings], poses)
-        self.groups[self.groups.index(group)] = Group(joint, group.common + new)
+        self.groups[self.groups.index(group)] = self._grown(group) if len(group.names) > 1 else _alone(group.names[0], *parts)
         return True
+
+    def _grown(self, group: Group) -> Group:
+        before = group.joint.poses
+        poses = {n: _extended(before[n], self.parts[n].poses) for n in group.names}
+        new = {(a, b): ties(self.parts, poses, a, b, len(before[b])) for a, b in permutations(group.names, 2)}
+        joint = settled(self._members(group), [*group.joint.crossings, *_crossings(new)], poses)
+        return Group(joint, {two: group.common[two] + more for two, more in new.items()})
 
     def _try(self, a: str, b: str, pair: Pair) -> bool:
         """Joins the groups of two sessions if these have met."""
@@ -140,13 +143,29 @@ class Team:
         starts = poses | {name: composed(shift, there) for name, there in other.joint.poses.items()}
         members, known = self._members(one, other), [*one.joint.crossings, *other.joint.crossings]
         joint = settled(members, [*known, *crossings], starts)
-        found = NO_TIES
-        for a, b in product(one.names, other.names):
-            found += ties(self.parts, joint.poses, a, b) + ties(self.parts, joint.poses, b, a)
-        if found.agreement < AGREEMENT or len(found.crossings) < len(crossings):
+        both_ways = [*product(one.names, other.names), *product(other.names, one.names)]
+        found = {(a, b): ties(self.parts, joint.poses, a, b) for a, b in both_ways}
+        if agreement(found.values()) < AGREEMENT or len(_crossings(found)) < len(crossings):
             return None
-        joint = settled(members, [*known, *found.crossings], joint.poses)
-        return Group(joint, one.common + other.common + found)
+        joint = settled(members, [*known, *_crossings(found)], joint.poses)
+        return Group(joint, {**one.common, **other.common, **found})
+
+
+def _alone(name: str, part: Part) -> Group:
+    return Group(Joint({name: part.poses}, []))
+
+
+def _left(group: Group, names: list[str], map_from_first: Floats) -> Group:
+    """Those of a group, in the map frame of the first of them. map_from_first: (3,) where its first keyframe is in that."""
+    joint = group.joint
+    first_from_team = composed(map_from_first, inverted(joint.poses[names[0]][0]))
+    poses = {n: composed(first_from_team, joint.poses[n]) for n in names}
+    common = {pair: found for pair, found in group.common.items() if set(pair) <= set(names)}
+    return Group(Joint(poses, [c for c in joint.crossings if {c.a, c.b} <= set(names)]), common)
+
+
+def _crossings(found: Mapping[tuple[str, str], Ties]) -> list[Crossing]:
+    return [crossing for of_two in found.values() for crossing in of_two.crossings]
 
 
 def _extended(placed: Floats, own: Floats) -> Floats:

@@ -1,6 +1,6 @@
 """Further closures between sessions whose place to each other is known: wherever one comes near the other's way."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -26,16 +26,15 @@ class Ties:
     looked: int
     crossings: tuple[Crossing, ...]
 
-    @property
-    def agreement(self) -> float:
-        """0..1: how far what they tell is confirmed there, on average; 1 where there is no such place."""
-        return sum(c.closure.score for c in self.crossings) / self.looked if self.looked else 1.0
-
     def __add__(self, other: "Ties") -> "Ties":
         return Ties(self.looked + other.looked, self.crossings + other.crossings)
 
 
-NO_TIES = Ties(0, ())
+def agreement(found: Iterable[Ties]) -> float:
+    """0..1: how far what they tell is confirmed where they are near each other, on average; 1 where there is no such place."""
+    every = list(found)
+    looked = sum(of_two.looked for of_two in every)
+    return sum(c.closure.score for of_two in every for c in of_two.crossings) / looked if looked else 1.0
 
 
 def ties(parts: Mapping[str, Part], poses: Mapping[str, Floats], a: str, b: str, since: int = 0) -> Ties:

@@ -21,19 +21,24 @@ def merge_files(names: list[str], out: str, resolution: float) -> tuple[list[str
     """(lines about each session and what was written, whether any of them fit). names: files, or saved ones. Raises BadInput."""
     if len(names) < 2:
         raise BadInput("'uvf map merge' needs two sessions at least")
-    twice = next((name for name in names if names.count(name) > 1), None)
+    paths = [_session_path(name) for name in names]
+    twice = next((name for k, name in enumerate(names) if paths[k].resolve() in [path.resolve() for path in paths[:k]]), None)
     if twice is not None:
         raise BadInput(f"session {twice}: given twice")
     team = Team()
-    for name in names:
-        path = map_path(name)
-        team.follow(name, Session.load(path if path == Path(name) else path.with_suffix(SUFFIX)))
+    for name, path in zip(names, paths, strict=True):
+        team.follow(name, Session.load(path))
     team.finish()
     group = max(team.groups, key=lambda group: len(group.names))
     lines = [_line(team, group, name) for name in names]
     if len(group.names) == 1:
         return [*lines, "nothing is written: no two of them have enough in common to be sure that they are of one place"], False
     return [*lines, f"written: {_write(team, group, out, resolution)}"], True
+
+
+def _session_path(name: str) -> Path:
+    path = map_path(name)
+    return path if path == Path(name) else path.with_suffix(SUFFIX)
 
 
 def _line(team: Team, group: Group, name: str) -> str:

@@ -5,6 +5,7 @@ import pytest
 
 from schemas.convert import occupancy_cells, stamp, yaw_of
 from schemas.messages import Event, MapSession
+from services.slam.maps import tiles
 from services.slam.merging.build import build
 from services.slam.merging.merging_service import MergingService
 from tests.services.slam.merging.offices import anne, bert, first, off_by
@@ -58,6 +59,29 @@ def test_sessions_that_grow_on_are_followed():
     assert any(run(service, early, 8)["map"])
     later = run(service, early | {"anne": told(30.0, anne().session)}, 2, 30.0)
     assert later["map"][0] and not later["map"][1] and not any(later["events"])
+
+
+def test_a_team_that_is_no_more_has_no_map_and_is_told_of_again_when_it_is_back():
+    service = MergingService()
+    sessions = {"anne": told(1.0, anne().session), "bert": told(1.0, bert().session)}
+    run(service, sessions, 8)
+    anew = run(service, sessions | {"anne": told(20.0, first(bert(2).session, 20))}, 2, 20.0)
+    assert (occupancy_cells(anew["map"][0]["anne"]) == -1).all()
+    for name, place in anew["place"][0].items():
+        assert place.parent_frame_id == place.child_frame_id == f"{name}/map"
+        assert (place.translation.x, place.translation.y) == pytest.approx((0.0, 0.0), abs=1e-9)
+    assert set(anew["place"][0]) == {"anne", "bert"} and not any(anew["map"][1:]) and not any(anew["place"][1:])
+    back = run(service, sessions | {"anne": told(30.0, anne().session)}, 8, 30.0)
+    assert [e.text for by_name in back["events"] for of_one in by_name.values() for e in of_one] == ["the maps of bert and anne are one"]
+
+
+def test_a_team_too_large_to_be_drawn_is_told_of(monkeypatch):
+    monkeypatch.setattr(tiles, "MOST_CELLS", 1000)
+    service = MergingService()
+    outputs = run(service, {"anne": told(1.0, anne().session), "bert": told(1.0, bert().session)}, 8)
+    events = [event for by_name in outputs["events"] for event in by_name.get("anne", [])]
+    assert [e.severity for e in events] == [Event.INFO, Event.WARNING] and "more than 1000 cells" in events[1].cause
+    assert not any(outputs["map"]) and any(outputs["place"])
 
 
 def test_vehicles_in_different_buildings_are_left_alone():

@@ -5,10 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from services.slam.maps.session import Session
+from services.slam.maps.session import NO_EDGES, Session
+from services.slam.merging.part import Part
 from services.slam.merging.team import Team
-from tests.services.slam.merging.offices import anne, bert, first, off_by
-from uvf.maths.planar import Pose2
+from services.slam.method import Keyframe
+from services.slam.reading import Beams, Reading
+from tests.services.slam.merging.offices import BERT, anne, bert, first, mapped, off_by
+from uvf.maths.planar import IDENTITY, Pose2
 from uvf.maths.planar_arrays import composed
 from uvf.runtime.params import BadInput
 
@@ -84,6 +87,18 @@ def test_a_session_begun_anew_leaves_the_group():
     assert len(team.parts["anne"]) == 20
 
 
+def test_those_who_are_left_by_the_first_are_in_the_frame_of_the_next():
+    team = team_of(anne=anne().session, bert=bert().session, carl=mapped(BERT, 1, 5).session)
+    before = team.groups[0].quality
+    team.follow("anne", first(bert(2).session, 20))
+    (left,) = (group for group in team.groups if group.names == ("bert", "carl"))
+    assert team.team_from_map("bert") == pytest.approx((0.0, 0.0, 0.0), abs=0.02)
+    metres, radians = off_by(team.team_from_map("carl"), IDENTITY)
+    assert metres < 0.1 and radians < 0.01
+    assert {c.a for c in left.joint.crossings} | {c.b for c in left.joint.crossings} == {"bert", "carl"}
+    assert 0.7 < left.quality < 1.0 and left.quality != before
+
+
 def test_sessions_with_hardly_anything_in_them_are_no_trouble():
     team = team_of(anne=anne().session, empty=first(bert().session, 0), one=first(bert().session, 1))
     assert sorted(group.names for group in team.groups) == [("anne",), ("empty",), ("one",)]
@@ -95,6 +110,29 @@ def test_edges_that_make_no_graph_are_refused_in_one_line():
     wrong[2] = -np.eye(3)
     with pytest.raises(BadInput, match="session anne: edge 2 -> 3: information is no inverse covariance"):
         Team().follow("anne", replace(session, edges=replace(session.edges, information=wrong)))
+
+
+def test_a_session_in_pieces_is_refused_for_nothing_tells_how_they_lie_to_each_other():
+    session = anne().session
+    cut = replace(session.edges, enabled=session.edges.ends.max(axis=1) != 50)
+    with pytest.raises(BadInput, match=r"session anne: edges leave it in [23] pieces"):
+        Team().follow("anne", replace(session, edges=cut))
+
+
+def test_a_session_too_large_to_be_searched_in_is_refused_in_one_line():
+    session = anne().session
+    wide = tuple(replace(k, map_from_base=Pose2(1e4 * k.map_from_base.x, 1e4 * k.map_from_base.y, 0.0)) for k in session.keyframes)
+    with pytest.raises(BadInput, match=r"session anne: of .* m, too large to be merged"):
+        Team().follow("anne", replace(session, keyframes=wide))
+
+
+def test_keyframes_beside_the_field_make_no_floor_far_from_them():
+    """One wall, seen from so far away that the vehicle is not near any of it."""
+    lidar = Beams((0.0, 0.0), np.radians(np.linspace(-10.0, 10.0, 41)), 0.1, 30.0)
+    reading = Reading(0.0, 20.0 / np.cos(lidar.bearings), lidar, IDENTITY)
+    part = Part("anne")
+    part.follow(Session((Keyframe(IDENTITY, reading),), NO_EDGES, "graph", {}))
+    assert not part.near.any()
 
 
 def test_the_frame_of_a_session_does_not_matter():
