@@ -11,10 +11,11 @@ from services.slam.graph.closing import TIED, Closing
 from services.slam.graph.drift import Ways
 from services.slam.graph.edges import Edge
 from services.slam.graph.loops import LoopSearch
+from services.slam.graph.motion import UNKNOWN, Motion
 from services.slam.graph.nodes import Node, Nodes
 from services.slam.graph.pose_graph import PoseGraph
 from services.slam.graph.restored import LOOP, add_edges, add_keyframes
-from services.slam.graph.tracker import UNKNOWN, LocalMap, Motion, Tracker
+from services.slam.graph.tracker import LocalMap, Tracker
 from services.slam.graph.uncertainty import followed, turned
 from services.slam.maps.session import KINDS, Edges, Session
 from services.slam.matching.cloud import cloud_of
@@ -93,7 +94,7 @@ class GraphSlam:
         tracked = self.tracker.track(self._local, motion, cloud)
         found, self._pose = tracked.match, tracked.match.map_from_base
         self._doubted = self._doubted or tracked.doubted
-        if motion.disputed or motion.noise is UNKNOWN:
+        if not motion.told:
             self._blind = True
             self._count(compose(inverse(motion.before), self._pose))
         moved = self._moved()

@@ -50,13 +50,10 @@ class Submap:
     members: range
     anchor_from_member: list[Pose2]
     surfaces: PointMap
-    drawn: LikelihoodField | None = None
 
-    @property
+    @cached_property
     def field(self) -> LikelihoodField:
-        if self.drawn is None:
-            self.drawn = likelihood_field(self.surfaces.points, RESOLUTION, SIGMA, DEPTH)
-        return self.drawn
+        return likelihood_field(self.surfaces.points, RESOLUTION, SIGMA, DEPTH)
 
 
 class Nodes:

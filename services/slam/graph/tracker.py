@@ -1,27 +1,34 @@
 """Where the vehicle is from sweep to sweep: each is matched to the surfaces of the last keyframes."""
 
 from dataclasses import dataclass, field
+from functools import cached_property
 from math import hypot
 
 import numpy as np
 from numpy.typing import NDArray
 
+from services.slam.graph.motion import UNKNOWN, Motion, MotionNoise
+from services.slam.graph.trust import LEARNT, Trust
 from services.slam.matching.branch_and_bound import Window, search
 from services.slam.matching.cloud import Cloud
 from services.slam.matching.imls import Match, match
 from services.slam.matching.likelihood import LikelihoodField, likelihood_field
 from services.slam.matching.point_map import PointMap
-from uvf.maths.planar import IDENTITY, Pose2, compose
+from uvf.maths.planar import IDENTITY, Pose2
 from uvf.maths.rotations import wrap
 
 Floats = NDArray[np.float64]
 
 WELL, LOOSE = 0.75, 2.0
 """Part of the usual share and times the usual rms at which a match is doubted."""
-USUAL_SHARE, USUAL_RMS, LEARNT = 0.7, 0.02, 0.02
-"""What is usual at first, and how far each sweep moves it to its own."""
+USUAL_SHARE, USUAL_RMS = 0.7, 0.02
+"""What is usual at first; each sweep moves it a little to its own."""
 LOST = 0.4
 """Part of the usual share below which the odometry alone is believed."""
+INCREDIBLE, FIRM = 8.0, 0.75
+"""Surprise above which a match must have such a share: half a sweep fits into vegetation at many places."""
+PLAIN_SHARE, PLAIN_RMS = 0.8, 0.025
+"""Sweeps that fit better show how far the odometry is off; in vegetation and crowds it is the sweeps that are."""
 LEAP, LEAP_TURN = 0.3, 0.3  # m, rad: a match that moves the prediction by more is doubted
 SIDE, TURN, SIGMAS = 0.35, 0.45, 3.0
 """m, rad: the window that is searched when a match is doubted, or so many sigmas of the odometry's step if these are more."""
@@ -29,56 +36,10 @@ FARTHEST = 0.15
 """m by which a typical point may be off by the odometry's step: beyond, the nearest surface may be the wrong one."""
 LEAST_SCORE = 0.3
 BETTER = 0.02
-PER_RMS = 4.0
-"""Share that 1 m of rms costs a match when two are compared."""
+PER_RMS, PER_SURPRISE = 4.0, 0.02
+"""Share that 1 m of rms, and one of surprise at where it lies, costs a match when two are compared."""
 RESOLUTION, SIGMA, DEPTH = 0.05, 0.08, 3  # m, m, levels: of the field in which is searched
 SEARCHED = 90  # points at most
-
-
-@dataclass(frozen=True)
-class MotionNoise:
-    """1 sigma of a step of odometry: m and rad at once, per m driven and per rad turned."""
-
-    position: tuple[float, float, float] = (0.005, 0.1, 0.03)
-    heading: tuple[float, float, float] = (0.003, 0.02, 0.15)
-
-    def sigmas(self, step: Pose2) -> tuple[float, float]:
-        """m, rad."""
-        way = np.array((1.0, hypot(step[0], step[1]), abs(step[2])))
-        return float(way @ self.position), float(way @ self.heading)
-
-    def information(self, step: Pose2) -> Floats:
-        """(3, 3) of (x, y, yaw)."""
-        position, heading = self.sigmas(step)
-        return np.diag((position**-2, position**-2, heading**-2))
-
-
-@dataclass(frozen=True)
-class Motion:
-    """From where the vehicle was (map_from_base), by the odometry; disputed: something tells that this is wrong."""
-
-    before: Pose2
-    step: Pose2
-    noise: MotionNoise
-    disputed: bool = False
-
-    @property
-    def guess(self) -> Pose2:
-        return compose(self.before, self.step)
-
-    @property
-    def sigmas(self) -> tuple[float, float]:
-        """m, rad."""
-        return self.noise.sigmas(self.step)
-
-    @property
-    def information(self) -> Floats:
-        """(3, 3) of (x, y, yaw)."""
-        return self.noise.information(self.step)
-
-
-UNKNOWN = MotionNoise((0.25, 0.1, 0.03), (0.25, 0.02, 0.15))
-"""Of a step that the odometry has not told."""
 
 
 @dataclass
@@ -86,13 +47,10 @@ class LocalMap:
     """Surfaces of the last keyframes in the map frame, and their likelihood field once it is needed."""
 
     surfaces: PointMap
-    drawn: LikelihoodField | None = None
 
-    @property
+    @cached_property
     def field(self) -> LikelihoodField:
-        if self.drawn is None:
-            self.drawn = likelihood_field(self.surfaces.points, RESOLUTION, SIGMA, DEPTH)
-        return self.drawn
+        return likelihood_field(self.surfaces.points, RESOLUTION, SIGMA, DEPTH)
 
 
 @dataclass(frozen=True)
@@ -108,6 +66,7 @@ class Tracker:
     """Matches sweeps to local maps. searched counts those that had to be looked for, lost those that were not found."""
 
     noise: MotionNoise = field(default_factory=MotionNoise)
+    trust: Trust = field(default_factory=Trust)
     searched: int = 0
     lost: int = 0
     share: float = USUAL_SHARE
@@ -118,21 +77,30 @@ class Tracker:
 
         A step after which the sweep fits badly is none of the vehicle's if it fits well near where that was before.
         """
+        step, motion = motion.step, self.trust.straightened(motion)
         found = self._found(local, motion, cloud)
-        if motion.disputed or (motion.noise is not UNKNOWN and self._doubts(found)):
+        if motion.disputed or (motion.told and self._doubts(found)):
             other = self._found(local, Motion(motion.before, IDENTITY, UNKNOWN), cloud)
-            if not self._doubts(other) and _worth(other) > _worth(found) + BETTER:
+            wins = _is_better(other, found) if motion.disputed else self._wins(motion, other, found)
+            if wins and not self._doubts(other):
                 found = other
-        guess, doubted = motion.guess, self._doubts(found)
-        self.share += LEARNT * (found.share - self.share)
-        self.rms += LEARNT * (found.rms - self.rms)
+        doubted = self._doubts(found)
+        self._learn(step, motion, found)
         if found.share < LOST * self.share:
             self.lost += 1
-            return Tracked(Match(guess, np.zeros((3, 3)), 0.0, found.rms), True)
+            return Tracked(Match(motion.guess, np.zeros((3, 3)), 0.0, found.rms), True)
         return Tracked(found, doubted)
+
+    def _learn(self, step: Pose2, motion: Motion, found: Match) -> None:
+        self.share += LEARNT * (found.share - self.share)
+        self.rms += LEARNT * (found.rms - self.rms)
+        if motion.told and _plain(found):
+            self.trust.learn(step, motion, found.map_from_base)
 
     def _found(self, local: LocalMap, motion: Motion, cloud: Cloud) -> Match:
         found = match(motion.guess, cloud, local.surfaces, motion.information)
+        if not _plain(found):
+            found = match(motion.guess, cloud, local.surfaces, self.trust.information(motion))
         if self._doubts(found) or _leaps(motion.guess, found.map_from_base) or _strays(motion, cloud):
             return self._searched(local, motion, cloud, found)
         return found
@@ -151,7 +119,15 @@ class Tracker:
         if place is None:
             return doubted
         other = match(place.pose, cloud, local.surfaces, 0.1 * motion.information)
-        return other if _worth(other) > _worth(doubted) + BETTER else doubted
+        return other if self._wins(motion, other, doubted) else doubted
+
+    def _wins(self, motion: Motion, other: Match, found: Match) -> bool:
+        """Whether the other one fits better by more than where it lies surprises."""
+        surprise = self.trust.surprise(motion, other.map_from_base)
+        if surprise > INCREDIBLE and other.share < FIRM:
+            return False
+        more = surprise - self.trust.surprise(motion, found.map_from_base)
+        return _is_better(other, found, PER_SURPRISE * more)
 
 
 def _strays(motion: Motion, cloud: Cloud) -> bool:
@@ -170,5 +146,10 @@ def _leaps(guess: Pose2, found: Pose2) -> bool:
     return hypot(found[0] - guess[0], found[1] - guess[1]) > LEAP or abs(wrap(found[2] - guess[2])) > LEAP_TURN
 
 
-def _worth(found: Match) -> float:
-    return found.share - PER_RMS * found.rms
+def _plain(found: Match) -> bool:
+    return found.share > PLAIN_SHARE and found.rms < PLAIN_RMS
+
+
+def _is_better(other: Match, found: Match, handicap: float = 0.0) -> bool:
+    """Whether the other one fits better, by a share of more than what it is handicapped by."""
+    return other.share - PER_RMS * other.rms > found.share - PER_RMS * found.rms + BETTER + handicap

@@ -7,7 +7,7 @@ from math import hypot
 import numpy as np
 from numpy.typing import NDArray
 
-from services.slam.graph.tracker import MotionNoise
+from services.slam.graph.motion import MotionNoise
 from services.slam.localization.beams import beams_of
 from services.slam.localization.fit import MANY_AGAINST, MOST_AGAINST, UsualFit, UsualMatch, worth
 from services.slam.localization.groups import near

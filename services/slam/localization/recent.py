@@ -4,7 +4,8 @@ from collections import deque
 from dataclasses import dataclass
 from math import hypot
 
-from services.slam.graph.tracker import LocalMap, Motion, Tracker
+from services.slam.graph.motion import Motion
+from services.slam.graph.tracker import LocalMap, Tracker
 from services.slam.matching.cloud import Cloud
 from services.slam.matching.point_map import point_map
 from uvf.maths.planar import IDENTITY, Pose2, compose, inverse
