@@ -32,7 +32,7 @@ def _hosts(member: Member) -> list[Host]:
     tracker = member.params("tracker", TrackerParams)
     return [
         Host(PlannerService, lambda: PlannerService(world_from_map, body.radius, member.entry.job.explore, planner), member.name),
-        Host(TrackerService, lambda: TrackerService(body, base_from_lidar, tracker), member.name),
+        Host(TrackerService, lambda: TrackerService(body, base_from_lidar, tracker, lidar.sweeping), member.name),
     ]
 
 

@@ -7,19 +7,20 @@ from msgspec import Meta
 from numpy.typing import NDArray
 
 from schemas import topics
-from schemas.convert import pose2_of, scan_points, seconds, stamp, yaw_of
+from schemas.convert import pose2_of, scan_rays, seconds, stamp, yaw_of
 from schemas.messages import DriveCommand, Event, LaserScan, PoseInFrame, PosesInFrame
 from services.planner.safety import safe_share
 from services.planner.tracking import Pace, Tracker
 from uvf.maths.planar import IDENTITY, Pose2, PoseHistory, inverse, transform
 from uvf.maths.transforms import Transform, from_above
 from uvf.runtime.service import Outputs, Params, Service, every
+from uvf.runtime.sweeping import AT_ONCE, Sweeping
 from uvf.runtime.vehicle_file import GroundBody
 
 Floats = NDArray[np.float64]
 Positive = Annotated[float, Meta(gt=0)]
 
-HISTORY = 50  # poses kept, 1 s
+HISTORY = 100  # poses kept, 2 s: a sweep may take one
 SCAN_MAX_AGE = 0.6  # s; without sight nothing moves
 NEAR = 1.2  # m, points farther away cannot be reached before the next scan
 REACTION = 0.3  # s, from sight to the wheels
@@ -45,10 +46,11 @@ class TrackerService(Service):
     outputs = {"drive": topics.DRIVE.by("planner"), "events": topics.EVENTS.by("tracker")}
     params: TrackerParams
 
-    def __init__(self, body: GroundBody, base_from_lidar: Transform, params: TrackerParams) -> None:
+    def __init__(self, body: GroundBody, base_from_lidar: Transform, params: TrackerParams, sweeping: Sweeping = AT_ONCE) -> None:
         self.params = params
         self._body = body
         self._base_from_lidar = base_from_lidar
+        self._sweeping = sweeping
         self._tracker = Tracker(self._pace)
         self._history = PoseHistory(HISTORY)
         self._pose: Pose2 = IDENTITY
@@ -88,14 +90,17 @@ class TrackerService(Service):
 
     def _look(self, scan: LaserScan) -> None:
         """Keeps the points of a new scan where they were seen, so that they stay while the vehicle moves on."""
-        taken_at = seconds(scan.timestamp)
-        world_from_base = self._history.at(taken_at)
-        if taken_at <= self._scan_time or world_from_base is None:
+        taken_at = self._sweeping.end(scan)
+        if taken_at <= self._scan_time:
             return
-        self._scan_time = taken_at
-        points = scan_points(scan)
-        near = points[np.hypot(*points.T) < NEAR]
-        self._seen = transform(world_from_base, from_above(self._base_from_lidar, near))
+        ranges, rays = scan_rays(scan)
+        near, seen = (ranges > 0.0) & (ranges < NEAR), []
+        for at, beams in self._sweeping.parts(scan):
+            if (world_from_base := self._history.at(at)) is None:
+                return
+            points = (rays[beams] * ranges[beams, None])[near[beams]]
+            seen.append(transform(world_from_base, from_above(self._base_from_lidar, points)))
+        self._scan_time, self._seen = taken_at, np.concatenate(seen)
 
     def _made_safe(self, t: float, wanted: tuple[float, float], around: Floats) -> tuple[tuple[float, float], list[Event]]:
         """The wanted velocity, slowed so that it ends before anything; backwards a little when that stays zero."""

@@ -21,6 +21,7 @@ from uvf.maths.raycast3 import Body, Scene
 from uvf.maths.rotations import rotate
 from uvf.maths.sampling import Due, Line
 from uvf.runtime.battery import Charge
+from uvf.runtime.body_track import BodyTrack
 from uvf.runtime.link_frames import Links
 from uvf.runtime.range_sensors import LidarModel, RangeModel
 from uvf.runtime.sensor_messages import battery_message, gnss_message, imu_message, range_message, scan_message
@@ -76,6 +77,8 @@ class Rig:
         self._joints_due = Due(topics.JOINTS.hz)
         self._battery_due = Due(topics.BATTERY.hz)
         self.charge = Charge(ground.battery) if ground.battery is not None else None
+        self._track: BodyTrack | None = None
+        """Of the body, for a lidar that takes its time."""
         self._fitted = dict(self._fit())
         sonars, finders = member.file.sensors.sonars, member.file.sensors.rangefinders
         self._rangers = {"sonar": [self._ranger("sonar", s) for s in sonars], "range": [self._ranger("range", f) for f in finders]}
@@ -112,6 +115,8 @@ class Rig:
         A touch counts until it has been told, so that a short one between two messages is not lost.
         """
         self._touches += moment.touches
+        if self._track is not None:
+            self._track.add(t, moment.body)
         found: dict[str, Value] = {}
         for output, sensor in self._fitted.items():
             message = sensor.step(t, moment)
@@ -151,7 +156,10 @@ class Rig:
         return partial(_read_imu, self._frame(imu.frame), ImuModel(imu, np.array(self._site.world.magnetic_field), self._rng("imu")))
 
     def _lidar(self, lidar: Lidar) -> Read:
-        return partial(_read_lidar, self._frame(lidar.frame), lidar, LidarModel(lidar, self._scene, self._rng("lidar")))
+        model = LidarModel(lidar, self._scene, self._rng("lidar"))
+        if lidar.sweep_time > 0.0:
+            self._track = model.track
+        return partial(_read_lidar, self._frame(lidar.frame), lidar, model)
 
     def _encoders(self, encoders: Encoders) -> Read:
         return partial(_read_encoders, encoders)
@@ -178,6 +186,9 @@ def _read_imu(frame: str, model: ImuModel, t: float, moment: Moment) -> Message:
 
 
 def _read_lidar(frame: str, lidar: Lidar, model: LidarModel, t: float, moment: Moment) -> Message:
+    """Of the sweep that ends at ``t`` [s]; its stamp is that of the first beam."""
+    if lidar.sweep_time > 0.0:
+        return scan_message(t - lidar.sweep_time, frame, lidar, model.sweep(t, moment.others()))
     return scan_message(t, frame, lidar, model.scan(moment.body, moment.others()))
 
 

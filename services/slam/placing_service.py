@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from schemas.convert import quaternion, seconds, stamp
 from schemas.messages import Event, FrameTransform, LaserScan, MapFix, Vector3
 from services.slam.correction import toward
+from services.slam.deskew import straightened
 from services.slam.reading import Beams, Reading
 from services.slam.scan_message import Shape, beams_of, is_usable, shape_of
 from uvf.maths.planar import IDENTITY, Pose2, compose, inverse
@@ -49,21 +50,28 @@ class PlacingService(Service):
         self._told = False
 
     def _reading(self, scan: LaserScan, frames: FrameBuffer) -> Reading | None:
-        """A new scan from where the lidar was when it was taken; None for one that has been seen. Raises FrameError.
+        """A new scan from where the lidar was at its last beam; None for one that has been seen. Raises FrameError.
 
         Noise makes each scan another: one that is equal comes from a lidar that is frozen, whatever its stamp says.
         """
         taken_at = seconds(scan.timestamp)
         if taken_at <= self._scan_time or not is_usable(scan):
             return None
-        odom_from_base = planar(frames.lookup(self._frame("odom"), self._frame("base_footprint"), taken_at))
         if shape_of(scan) not in self._beams:
             base_from_lidar = frames.lookup(self._frame("base_footprint"), scan.frame_id)
             limits = (self._lidar.range_min, self._lidar.range_max)
-            self._beams[shape_of(scan)] = beams_of(scan, base_from_lidar, limits)
-        self._scan_time, ranges = taken_at, np.array(scan.ranges)
+            self._beams[shape_of(scan)] = beams_of(scan, base_from_lidar, limits, self._lidar.sweeping)
+        odom, base = self._frame("odom"), self._frame("base_footprint")
+        ranges = self._lidar.sweeping.ranges(scan)
+        reading = straightened(
+            ranges,
+            self._beams[shape_of(scan)],
+            taken_at,
+            lambda times: np.array([planar(frames.lookup(odom, base, t)) for t in times.tolist()]),
+        )
+        self._scan_time = taken_at
         frozen, self._ranges = np.array_equal(ranges, self._ranges), ranges
-        return None if frozen else Reading(taken_at, ranges, self._beams[shape_of(scan)], odom_from_base)
+        return None if frozen else reading
 
     def _wait(self, t: float, reason: str) -> list[Event]:
         """A scan may be ahead of the frames for a moment; when it lasts, a person has to know why there is no map."""

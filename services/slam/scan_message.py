@@ -1,4 +1,4 @@
-"""Lidar messages as beams of the base: any field of view, direction of turning, place and attitude of the lidar."""
+"""Lidar messages as beams of the base: any field of view, direction of turning, time of a sweep, place and attitude of the lidar."""
 
 from math import isfinite
 
@@ -7,6 +7,7 @@ import numpy as np
 from schemas.messages import LaserScan
 from services.slam.reading import Beams
 from uvf.maths.transforms import Transform, from_above
+from uvf.runtime.sweeping import AT_ONCE, Sweeping
 
 Shape = tuple[str, float, float, int]
 
@@ -21,10 +22,15 @@ def shape_of(scan: LaserScan) -> Shape:
     return scan.frame_id, scan.start_angle, scan.end_angle, len(scan.ranges)
 
 
-def beams_of(scan: LaserScan, base_from_lidar: Transform, limits: tuple[float, float]) -> Beams:
-    """limits: least and largest range that are a return [m]. Seen from above, so that a lidar that hangs upside down turns clockwise."""
+def beams_of(scan: LaserScan, base_from_lidar: Transform, limits: tuple[float, float], sweeping: Sweeping = AT_ONCE) -> Beams:
+    """In the order in which they are measured; limits: least and largest range that are a return [m].
+
+    Seen from above, so that a lidar that hangs upside down turns clockwise.
+    """
     angles = np.linspace(scan.start_angle, scan.end_angle, len(scan.ranges))
+    if sweeping.clockwise:
+        angles = angles[::-1]
     places = from_above(base_from_lidar, np.vstack((np.zeros((1, 2)), np.column_stack((np.cos(angles), np.sin(angles))))))
     directions = places[1:] - places[0]
     x, y = places[0].tolist()
-    return Beams((x, y), np.unwrap(np.arctan2(directions[:, 1], directions[:, 0])), *limits)
+    return Beams((x, y), np.unwrap(np.arctan2(directions[:, 1], directions[:, 0])), *limits, sweeping.duration)

@@ -24,6 +24,12 @@ def test_quaternion_and_matrix_are_the_same_rotation(roll, pitch, yaw):
     assert abs(back @ q) == pytest.approx(1, abs=1e-9)
 
 
+@given(ANGLE, ANGLE, ANGLE)
+def test_many_matrices_are_those_of_one_each(roll, pitch, yaw):
+    attitudes = np.array([r.from_euler(roll, pitch, yaw), r.from_euler(yaw, roll / 3, pitch)])
+    np.testing.assert_allclose(r.matrices(attitudes), [r.matrix(q) for q in attitudes], atol=1e-12)
+
+
 @given(ANGLE, ANGLE, ANGLE, ANGLE)
 def test_product_is_composition(a, b, c, d):
     p, q = r.from_euler(a, b / 3, c), r.from_euler(d, a / 3, b)

@@ -79,6 +79,44 @@ def test_a_section_that_is_none_is_refused_as_ever(sensors_of, data):
     assert "sensors" in refusal(sensors_of, gnss=data if data is not None else [])
 
 
+SLOW = {"preset": "lds01", "mount": {}, "sweep_time": 0.2}
+
+
+def test_a_lidar_may_take_its_time(sensors_of):
+    lidar = sensors_of(lidar={**SLOW, "clockwise": True}).lidar
+    assert (lidar.sweep_time, lidar.clockwise, lidar.sweeping) == (0.2, True, (0.2, True))
+    assert sensors_of(lidar={"preset": "lds01", "mount": {}}).lidar.sweeping == (0.0, False)
+
+
+@pytest.mark.parametrize(
+    ("changed", "told"),
+    [
+        ({"hz": 10.0}, "sensors: lidar: sweep_time: 0.2 s is longer than from scan to scan, 0.1 s; lower it"),
+        ({"sweep_time": -0.1}, "sweep_time"),
+        ({"sweep_time": 2.0, "hz": 0.1}, "sweep_time"),
+        ({"sweep_time": "slow"}, "sweep_time"),
+        ({"clockwise": 3}, "clockwise"),
+    ],
+)
+def test_a_sweep_that_cannot_be_is_refused_in_one_line(sensors_of, changed, told):
+    text = refusal(sensors_of, lidar={**SLOW, **changed})
+    assert told in text
+    assert "\n" not in text
+
+
+def test_an_aircrafts_lidar_takes_all_beams_at_once(tmp_path):
+    for name in ("milvus", "milvus_survey"):
+        shutil.copytree(ROOT / "vehicles" / name, tmp_path / name)
+    path = tmp_path / "milvus_survey/vehicle.yaml"
+    data = yaml.safe_load(path.read_text())
+    data["sensors"]["lidar"]["sweep_time"] = 0.02
+    path.write_text(yaml.safe_dump(data))
+    with pytest.raises(BadInput) as caught:
+        load_vehicle(tmp_path, "milvus_survey")
+    assert "sensors: lidar: sweep_time: an aircraft's lidar takes all beams at once; leave it out" in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
 SONAR = {"mount": {}, "hz": 10.0, "fov": 0.5, "range_min": 0.02, "range_max": 4.0}
 
 

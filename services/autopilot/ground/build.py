@@ -8,6 +8,7 @@ from services.autopilot.plan import item_from_file
 from uvf.runtime.fence_file import fence_message, fencing
 from uvf.runtime.params import BadInput
 from uvf.runtime.site import Host, Member, Site
+from uvf.runtime.sweeping import AT_ONCE
 
 
 def hosts(site: Site) -> list[Host]:
@@ -26,12 +27,13 @@ def _host(member: Member, site: Site) -> Host:
     fence = fence_message(member.entry.fence, f"{site.mission_path}: {member.name}: fence")
     if outside := fences.refusal(items, fencing(fence), body.radius):
         raise BadInput(f"{site.mission_path}: {member.name}: fence: {outside}")
-    imu = member.file.sensors.imu
+    imu, lidar = member.file.sensors.imu, member.file.sensors.lidar
     imu_rpy = imu.mount.rpy if imu is not None else (0.0, 0.0, 0.0)
+    sweeping = lidar.sweeping if lidar is not None else AT_ONCE
     begins = job.explore or bool(items)
     params = member.params("autopilot_ground", GroundAutopilotParams)
 
     def make() -> GroundAutopilot:
-        return GroundAutopilot(body, (start.x, start.y), (begins, items), member.entry.system_id, params, fence, imu_rpy)
+        return GroundAutopilot(body, (start.x, start.y), (begins, items), member.entry.system_id, params, fence, imu_rpy, sweeping)
 
     return Host(GroundAutopilot, make, member.name)

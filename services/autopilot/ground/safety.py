@@ -13,6 +13,7 @@ from services.autopilot.ground.sight import Sight
 from services.autopilot.link_watch import LinkWatch
 from uvf.maths.kinematics import WheelSpeeds
 from uvf.runtime.fence_file import Fencing, fence_fault, fencing, near_home
+from uvf.runtime.sweeping import Sweeping
 from uvf.runtime.vehicle_file import GroundBody
 
 BY_ITSELF = (Mode.MODE_MISSION, Mode.MODE_RETURN)
@@ -47,7 +48,7 @@ class Doing:
 class Safety:
     """``step`` once a cycle, then ``brakes`` for the velocity that was chosen."""
 
-    def __init__(self, body: GroundBody, fence: Fence, imu_rpy: tuple[float, float, float]) -> None:
+    def __init__(self, body: GroundBody, fence: Fence, imu_rpy: tuple[float, float, float], sweeping: Sweeping) -> None:
         self.watch = Watch(GROUND_RULES)
         self.fence = fence
         self._plan: Fencing = fencing(fence)
@@ -60,7 +61,7 @@ class Safety:
         self._link = LinkWatch()
         self._times = {"unplaced": 0.0, "unsteered": 0.0}
         self._wheels = Wheels(body.wheel_radius)
-        self._grip, self._tilt, self._sight = Grip(self._wheels), Tilt(imu_rpy), Sight()
+        self._grip, self._tilt, self._sight = Grip(self._wheels), Tilt(imu_rpy), Sight(sweeping)
         self._fenced = self._driven = False
         self.is_outside = False
         """Of its fence."""

@@ -49,6 +49,7 @@ from services.autopilot.ground.safety import Doing, Safety, Sensed, mode_of, pla
 from services.autopilot.told_params import ToldParams
 from uvf.maths.kinematics import DifferentialDrive, Twist, WheelSpeeds
 from uvf.runtime.service import Outputs, Service, every, optional
+from uvf.runtime.sweeping import AT_ONCE, Sweeping
 from uvf.runtime.vehicle_file import GroundBody
 
 STATUS_EVERY, PROGRESS_EVERY = 5, 25
@@ -116,11 +117,15 @@ class GroundAutopilot(Service):
         params: GroundAutopilotParams,
         fence: Fence | None = None,
         imu_rpy: tuple[float, float, float] = (0.0, 0.0, 0.0),
+        sweeping: Sweeping = AT_ONCE,
     ) -> None:
-        """home: start pose [m, world]; job: whether it begins at once, and the mission's items, perhaps none; imu_rpy: of its mount."""
+        """home: start pose [m, world]; job: whether it begins at once, and the mission's items, perhaps none.
+
+        imu_rpy: of its mount; sweeping: of its lidar.
+        """
         self.params = params
         self._body = body
-        self._made_with = (body, home, system_id, imu_rpy)
+        self._made_with = (body, home, system_id, imu_rpy, sweeping)
         self._system_id = system_id
         self._drive = DifferentialDrive(body.wheel_radius, body.track)
         self._ramp = Ramp(Limits(body.max_linear, body.max_angular, body.max_linear_acceleration, body.max_angular_acceleration))
@@ -134,7 +139,7 @@ class GroundAutopilot(Service):
         self._engine = MissionEngine(home, params.acceptance_radius)
         self._engine.load(mission_of(items, stamp(0.0)))
         self._mission_is_new = True
-        self._safety = Safety(body, fence or Fence(), imu_rpy)
+        self._safety = Safety(body, fence or Fence(), imu_rpy, sweeping)
         self._fence_is_new = True
         self._told_params = ToldParams()
         self._restarts = False
@@ -305,9 +310,9 @@ class GroundAutopilot(Service):
     def _restart(self) -> None:
         """As after power has been off, with mission, fence and rally points of now."""
         rally = self._rally
-        body, home, system_id, imu_rpy = self._made_with
+        body, home, system_id, imu_rpy, sweeping = self._made_with
         job = (False, list(self._engine.mission.items))
-        vars(self).update(vars(GroundAutopilot(body, home, job, system_id, self.params, self._safety.fence, imu_rpy)))
+        vars(self).update(vars(GroundAutopilot(body, home, job, system_id, self.params, self._safety.fence, imu_rpy, sweeping)))
         self._set_rally(rally)
 
     def _follow_mission(self, t: float, position: Point | None) -> None:

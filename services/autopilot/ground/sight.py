@@ -2,14 +2,16 @@
 
 from schemas.convert import seconds
 from schemas.messages import FrameTransform, LaserScan
+from uvf.runtime.sweeping import Sweeping
 
 MOVED = 0.03  # m of the wheels, after which a scan that is the same to the last bit has frozen
 
 
 class Sight:
-    """``unseen`` and ``unmapped``: s; 0 as long as there never was any."""
+    """``unseen`` and ``unmapped``: s; 0 as long as there never was any. A scan is as old as its last beam."""
 
-    def __init__(self) -> None:
+    def __init__(self, sweeping: Sweeping) -> None:
+        self._sweeping = sweeping
         self.unseen = self.unmapped = 0.0
         self._seen: float | None = None
         self._mapped: float | None = None
@@ -21,7 +23,7 @@ class Sight:
         if scan is not None and (self._scan is None or scan.timestamp != self._scan.timestamp):
             changed = self._scan is None or scan.ranges != self._scan.ranges
             if changed or travelled - self._travelled < MOVED:
-                self._seen = seconds(scan.timestamp)
+                self._seen = self._sweeping.end(scan)
             if changed:
                 self._travelled = travelled
             self._scan = scan

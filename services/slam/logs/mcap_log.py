@@ -16,17 +16,19 @@ from numpy.typing import NDArray
 from schemas import topics
 from schemas.convert import pose2_of, seconds
 from schemas.messages import FrameTransforms, LaserScan, Odometry
+from services.slam.deskew import straightened
 from services.slam.logs.laser_log import LaserLog, OdometryTrack
 from services.slam.logs.leaps import without_leaps
 from services.slam.logs.no_return import farthest_return
-from services.slam.reading import Beams, Reading
+from services.slam.reading import Beams
 from services.slam.scan_message import Shape, beams_of, is_usable, shape_of
-from uvf.maths.planar import Pose2
 from uvf.maths.planar_arrays import composed, inverted
 from uvf.runtime.bus import Sample, matches
 from uvf.runtime.frames import FrameBuffer, FrameError
 from uvf.runtime.params import BadInput, nearest
-from uvf.runtime.recording import read_log
+from uvf.runtime.recording import log_attachments, read_log
+from uvf.runtime.replay import logged_site
+from uvf.runtime.sweeping import AT_ONCE, Sweeping
 
 Floats = NDArray[np.float64]
 
@@ -68,8 +70,12 @@ class _Heard:
 
 def samples_of(path: Path) -> Iterator[Sample]:
     """Of a log, or of all logs of a run's folder in order. Raises BadInput."""
-    for log in sorted(path.glob(f"*{ENDING}")) if path.is_dir() else [path]:
+    for log in _logs(path):
         yield from read_log(log)
+
+
+def _logs(path: Path) -> list[Path]:
+    return sorted(path.glob(f"*{ENDING}")) if path.is_dir() else [path]
 
 
 def read_mcap(path: Path, vehicle: str | None = None) -> LaserLog:
@@ -100,35 +106,52 @@ def _assembled(path: Path, name: str, heard: _Heard) -> LaserLog:
     track = np.array(heard.odometry)
     track = track[np.unique(track[:, 0], return_index=True)[1]]
     track[:, 1:], leapt = without_leaps(track[:, 0], track[:, 1:])
+    track[:, 3] = np.unwrap(track[:, 3])
+    sweeping, unknown = _sweeping(path, name)
     scans = sorted(heard.scans, key=lambda s: seconds(s.timestamp))
-    stamps = np.array([seconds(s.timestamp) for s in scans])
-    usable = (stamps >= track[0, 0] - REACH) & (stamps <= track[-1, 0] + REACH)
-    scans, stamps = [s for s, kept in zip(scans, usable, strict=True) if kept], stamps[usable]
+    first = np.array([seconds(s.timestamp) for s in scans])
+    usable = (first >= track[0, 0] - REACH) & (first + sweeping.duration <= track[-1, 0] + REACH)
+    scans, first = [s for s, kept in zip(scans, usable, strict=True) if kept], first[usable]
     if not scans:
         raise BadInput(f"log {path}: the scans and the odometry of '{name}' are of different times")
-    poses = _interpolated(track, stamps)
-    start = inverted(poses[0])
-    beams = _beams(path, name, scans, heard.frames)
+    stamps = first + sweeping.duration
+    track[:, 1:] = composed(inverted(_interpolated(track, stamps[:1])[0]), track[:, 1:])
+    track[:, 3] = np.unwrap(track[:, 3])
+    beams = _beams(path, name, scans, (heard.frames, sweeping))
     readings = [
-        Reading(t, np.array(scan.ranges), shape, Pose2(*pose))
-        for t, scan, shape, pose in zip(stamps.tolist(), scans, beams, composed(start, poses).tolist(), strict=True)
+        straightened(sweeping.ranges(scan), shape, t, lambda times: _interpolated(track, times))
+        for t, scan, shape in zip(first.tolist(), scans, beams, strict=True)
     ]
     counts = (
         (int((~usable).sum()), "scans without odometry are left out"),
         (heard.broken, "messages that cannot be read are left out"),
         (len(leapt), "leaps of the odometry are taken for standing still"),
     )
-    notes = tuple(f"log {path}: {count} {what}" for count, what in counts if count)
-    return LaserLog(f"{path.stem}-{name}", readings, stamps, OdometryTrack(track[:, 0], composed(start, track[:, 1:])), notes)
+    notes = (*(f"log {path}: {count} {what}" for count, what in counts if count), *unknown)
+    return LaserLog(f"{path.stem}-{name}", readings, stamps, OdometryTrack(track[:, 0], track[:, 1:]), notes)
+
+
+def _sweeping(path: Path, name: str) -> tuple[Sweeping, tuple[str, ...]]:
+    """As the vehicle's file in the log has it, and what is to be told; without such a file, all beams at once."""
+    log = _logs(path)[0]
+    if not log_attachments(log):
+        return AT_ONCE, ()
+    try:
+        with logged_site(log) as site:
+            lidar = site.members[name].file.sensors.lidar if name in site.members else None
+            return (lidar.sweeping if lidar is not None else AT_ONCE), ()
+    except BadInput:
+        return AT_ONCE, (f"log {path}: the files of the run in it cannot be read: all beams of a scan are taken to be of its stamp",)
 
 
 def _interpolated(track: Floats, t: Floats) -> Floats:
-    """(n, 3) poses at the times of a track of rows t, x, y, yaw."""
-    return np.column_stack([np.interp(t, track[:, 0], c) for c in (track[:, 1], track[:, 2], np.unwrap(track[:, 3]))])
+    """(n, 3) poses at the times of a track of rows t, x, y, yaw; yaws that lie near each other."""
+    return np.column_stack([np.interp(t, track[:, 0], column) for column in track[:, 1:].T])
 
 
-def _beams(path: Path, name: str, scans: list[LaserScan], frames: FrameBuffer) -> list[Beams]:
-    """For each scan; equal ones are one object."""
+def _beams(path: Path, name: str, scans: list[LaserScan], lidar: tuple[FrameBuffer, Sweeping]) -> list[Beams]:
+    """For each scan; equal ones are one object. lidar: where it sits, and how it sweeps."""
+    frames, sweeping = lidar
     limit = farthest_return([np.array(s.ranges) for s in scans])
     known: dict[Shape, Beams] = {}
     found = []
@@ -139,6 +162,6 @@ def _beams(path: Path, name: str, scans: list[LaserScan], frames: FrameBuffer) -
                 base_from_lidar = frames.lookup(f"{name}/base_footprint", scan.frame_id)
             except FrameError as error:
                 raise BadInput(f"log {path}: where the lidar sits on '{name}' is not told: {error}") from error
-            known[key] = beams_of(scan, base_from_lidar, (0.0, limit))
+            known[key] = beams_of(scan, base_from_lidar, (0.0, limit), sweeping)
         found.append(known[key])
     return found

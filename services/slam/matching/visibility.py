@@ -23,8 +23,9 @@ Rays = tuple[tuple[float, float], Floats, Floats]
 def rays_of(reading: Reading) -> Rays:
     ranges = np.where(reading.returned, reading.ranges, 0.0)
     bearings = np.ascontiguousarray(reading.beams.bearings)
-    if len(bearings) > 1 and bearings[0] > bearings[-1]:
-        bearings, ranges = bearings[::-1].copy(), ranges[::-1].copy()
+    if (np.diff(bearings) < 0.0).any():  # it turns clockwise, or has moved past an edge while it swept
+        order = np.argsort(bearings, kind="stable")
+        bearings, ranges = bearings[order], ranges[order]
     return reading.beams.origin, bearings, ranges
 
 

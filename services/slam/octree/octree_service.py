@@ -6,7 +6,9 @@ from collections.abc import Callable
 from contextlib import suppress
 from typing import Annotated, NamedTuple
 
+import numpy as np
 from msgspec import Meta
+from numpy.typing import NDArray
 
 from schemas import topics
 from schemas.convert import seconds, stamp
@@ -21,8 +23,10 @@ from uvf.maths.transforms import apply
 from uvf.runtime.frames import FrameBuffer, FrameError
 from uvf.runtime.params import BadInput
 from uvf.runtime.service import Outputs, Params, Service, Value, every, frames, optional
+from uvf.runtime.sweeping import Part
 from uvf.runtime.vehicle_file import Sensors
 
+Floats = NDArray[np.float64]
 Positive = Annotated[float, Meta(gt=0)]
 Height = Annotated[float, Meta(ge=-10000, le=10000)]
 
@@ -44,11 +48,17 @@ class OctreeParams(Params, frozen=True):
 
 
 class Taken(NamedTuple):
-    """A picture or a sweep that waits for its place."""
+    """A picture or a sweep that waits for its place. parts: its beams by when they were measured."""
 
-    at: float
+    parts: list[Part]
     frame: str
     beams: Beams
+
+    def placed(self, frames: FrameBuffer) -> tuple[Floats, Floats]:
+        """(3,), (n, 3) m, world: where it was taken from, a sweep from where its middle was, and the beams' ends. Raises FrameError."""
+        places = [frames.lookup(FRAME, self.frame, part.at) for part in self.parts]
+        ends = [apply(place, self.beams.ends[part.beams]) for place, part in zip(places, self.parts, strict=True)]
+        return places[len(places) // 2].translation, np.concatenate(ends)
 
 
 class OctreeService(Service):
@@ -125,11 +135,11 @@ class OctreeService(Service):
                 except BadInput as error:
                     events += self._tell(t, "a depth picture is left out", str(error))
                 else:
-                    self._waiting.append(Taken(seconds(picture.timestamp), picture.frame_id, beams))
+                    self._waiting.append(Taken([Part(seconds(picture.timestamp), slice(None))], picture.frame_id, beams))
         if (lidar := self._sensors.lidar) is not None:
             for sweep in scan:
                 beams = sweep_beams(sweep, min(self.params.lidar_reach, lidar.range_max))
-                self._waiting.append(Taken(seconds(sweep.timestamp), sweep.frame_id, beams))
+                self._waiting.append(Taken(lidar.sweeping.parts(sweep), sweep.frame_id, beams))
         return events
 
     def _place(self, t: float, frames: FrameBuffer) -> list[Event]:
@@ -142,14 +152,14 @@ class OctreeService(Service):
         reason = ""
         for taken in self._waiting:
             try:
-                world_from_sensor = frames.lookup(FRAME, taken.frame, taken.at)
+                origin, ends = taken.placed(frames)
             except FrameError as error:
-                if t - taken.at < PATIENCE:
+                if t - taken.parts[-1].at < PATIENCE:
                     still.append(taken)
                 else:
                     reason = str(error)
                 continue
-            self._octree.insert(world_from_sensor.translation, apply(world_from_sensor, taken.beams.ends), taken.beams.reach)
+            self._octree.insert(origin, ends, taken.beams.reach)
             self._changed, self._placed_at = True, t
         self._waiting = deque(still, maxlen=WAITING_MOST)
         return self._tell(t, "pictures or sweeps cannot be mapped", reason) if reason and t - self._placed_at >= PATIENCE else []

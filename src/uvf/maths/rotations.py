@@ -60,6 +60,17 @@ def matrix(q: Floats) -> Floats:
     )
 
 
+def matrices(q: Floats) -> Floats:
+    """(n, 3, 3) ``a_from_b`` of unit quaternions (n, 4)."""
+    w, x, y, z = q.T
+    rows = (
+        (1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
+        (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),
+        (2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)),
+    )
+    return np.moveaxis(np.array(rows), 2, 0)
+
+
 def from_matrix(r: Floats) -> Floats:
     """Unit quaternion of a (3, 3) rotation matrix, w >= 0 (Shepperd 1978: divide by the largest component)."""
     trace = float(np.trace(r))

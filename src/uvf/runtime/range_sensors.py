@@ -1,28 +1,19 @@
 """Lidars, sonars and range finders of all vehicles: rays among what stands in the world and what moves about the vehicle."""
 
 from collections.abc import Sequence
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from uvf.maths.raycast3 import Body, Rays, Scene, cast
-from uvf.maths.rotations import from_euler, matrix
+from uvf.maths.rotations import from_euler, matrices, matrix
 from uvf.maths.sensing import Channel, Errors
+from uvf.runtime.body_track import BodyTrack, Placed
 from uvf.runtime.vehicle_file import Lidar, Mount, RangeFinder, Sonar
 
 Floats = NDArray[np.float64]
 
 SPACING = np.radians(1.5)  # at most, between a sonar's rays: a leg of 3 cm is met within 1.1 m
-
-
-class Placed(Protocol):
-    """A body's pose in the world: position (3,) m, world_from_body wxyz."""
-
-    @property
-    def position(self) -> Floats: ...
-    @property
-    def world_from_body(self) -> Floats: ...
 
 
 class Fan:
@@ -39,6 +30,13 @@ class Fan:
         rays = Rays(body.position + world_from_body @ self._origin, self._directions @ world_from_body.T)
         return cast(scene, others, rays, reach)
 
+    def cast_on_the_move(self, scene: Scene, others: Sequence[Body], poses: tuple[Floats, Floats], reach: float) -> Floats:
+        """The same with a pose of the body for each ray: positions (n, 3), attitudes (n, 4)."""
+        positions, attitudes = poses
+        world_from_body = matrices(attitudes)
+        directions = np.einsum("nij,nj->ni", world_from_body, self._directions)
+        return cast(scene, others, Rays(positions + world_from_body @ self._origin, directions), reach)
+
 
 class LidarModel:
     """One scanner, in its own plane however the vehicle stands."""
@@ -50,10 +48,22 @@ class LidarModel:
         self._bias = float(rng.spawn(1)[0].normal(0.0, lidar.bias))
         self._fan = Fan(lidar.mount, lidar.angle_min + lidar.angle_increment * np.arange(lidar.beams, dtype=np.float64))
         self._reach = lidar.range_max + abs(self._bias) + 10.0 * lidar.noise  # what noise may bring within range is cast too
+        moments = np.linspace(-lidar.sweep_time, 0.0, lidar.beams)
+        self._moments = moments[::-1] if lidar.clockwise else moments
+        """s from the end of the sweep, of each beam."""
+        self.track = BodyTrack(lidar.sweep_time)
+        """Of the body; who calls ``sweep`` keeps it."""
 
     def scan(self, body: Placed, others: Sequence[Body]) -> Floats:
         """(beams,) ranges [m], counter-clockwise from ``angle_min``, 0 = no return. others: what moves about the body."""
-        true = self._fan.cast(self._scene, others, body, self._reach)
+        return self._measured(self._fan.cast(self._scene, others, body, self._reach))
+
+    def sweep(self, t: float, others: Sequence[Body]) -> Floats:
+        """The same of a sweep that ends at ``t`` [s], each beam from where the body was. others: where they are at its end."""
+        poses = self.track.at(t + self._moments)
+        return self._measured(self._fan.cast_on_the_move(self._scene, others, poses, self._reach))
+
+    def _measured(self, true: Floats) -> Floats:
         measured = true + self._bias + self._rng.normal(0.0, self._lidar.noise, true.shape)
         seen = (measured >= self._lidar.range_min) & (measured <= self._lidar.range_max)
         return np.where(seen, measured, 0.0)

@@ -13,9 +13,9 @@ from uvf.maths.rotations import IDENTITY
 from uvf.maths.solids import joined, mesh
 from uvf.maths.transforms import Transform, compose
 from uvf.runtime.aircraft_shape import AircraftShape
+from uvf.runtime.body_track import Placed
 from uvf.runtime.handed_file import mesh_file
 from uvf.runtime.mesh_parts import joined as joined_parts
-from uvf.runtime.range_sensors import Placed
 from uvf.runtime.robot_model import UrdfModel
 from uvf.runtime.scene import primitives, scene
 from uvf.runtime.solid import Solid, pose_at

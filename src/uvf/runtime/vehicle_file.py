@@ -16,6 +16,7 @@ from uvf.maths.sensing import Errors
 from uvf.runtime.air_file import AirBody, BatteryPack, check_air, check_battery
 from uvf.runtime.params import BadInput, Place, load_yaml, nearest
 from uvf.runtime.quantities import Name, NotNegative, PhysicsRate, Positive
+from uvf.runtime.sweeping import Sweeping
 from uvf.runtime.vehicle_layers import file_of, fill_vehicle, folders_of
 
 Offset = Annotated[float, Meta(ge=-100, le=100)]
@@ -42,7 +43,10 @@ class Delivery(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
 
 
 class Lidar(Delivery, frozen=True, forbid_unknown_fields=True):
-    """A 2-D scanner; ``range`` outside the limits is sent as 0 = no return. ``preset``: lds01, utm30lx or ust10."""
+    """A 2-D scanner; ``range`` outside the limits is sent as 0 = no return. ``preset``: lds01, utm30lx or ust10.
+
+    The stamp of a scan is that of the beam that is measured first.
+    """
 
     mount: Mount
     hz: SensorRate
@@ -55,6 +59,12 @@ class Lidar(Delivery, frozen=True, forbid_unknown_fields=True):
     frame: Name = "lidar"
     bias: NotNegative = 0.0  # m, 1 sigma of the constant of all beams
     preset: str = ""
+    sweep_time: Annotated[float, Meta(ge=0, le=1)] = 0.0  # s from the first beam to the last; 0: all are taken at once
+    clockwise: bool = False  # the beam at angle_min is measured last
+
+    @property
+    def sweeping(self) -> Sweeping:
+        return Sweeping(self.sweep_time, self.clockwise)
 
 
 class ImuSensor(Delivery, frozen=True, forbid_unknown_fields=True):
@@ -353,6 +363,8 @@ def _check_sensors_of_aircraft(sensors: Sensors, place: Place) -> None:
             raise BadInput(f"{place.at(kind)}: an aircraft has no {kind}; leave them out")
     if sensors.gnss is not None and sensors.gnss.mount != Mount():
         raise BadInput(f"{place.at('gnss', 'mount')}: an aircraft's receiver is at its centre of gravity; leave it out")
+    if sensors.lidar is not None and sensors.lidar.sweep_time > 0.0:
+        raise BadInput(f"{place.at('lidar', 'sweep_time')}: an aircraft's lidar takes all beams at once; leave it out")
     for kind in ("imu", "lidar", "camera", "chase", "gimbal"):
         sensor = getattr(sensors, kind)
         if sensor is not None and sensor.mount.link is not None:
@@ -367,6 +379,9 @@ def _check_lidar(lidar: Lidar | None, place: Place) -> None:
     sweep = (lidar.beams - 1) * lidar.angle_increment
     if sweep > 2 * math.pi + 1e-6:
         raise BadInput(f"{place.at('angle_increment')}: {lidar.beams} beams make {sweep:.3g} rad, more than a full turn; lower it")
+    if lidar.sweep_time * lidar.hz > 1.0 + 1e-9:
+        period = 1 / lidar.hz
+        raise BadInput(f"{place.at('sweep_time')}: {lidar.sweep_time:g} s is longer than from scan to scan, {period:g} s; lower it")
 
 
 def _check_rangers(kind: str, sonars: Sequence[Sonar | RangeFinder], place: Place) -> None:

@@ -14,6 +14,7 @@ from tests.services.autopilot.ground.test_service import BODY
 from tests.services.live_params import all_settable_are_read
 from uvf.maths.rotations import from_euler
 from uvf.maths.transforms import IDENTITY, Transform
+from uvf.runtime.sweeping import AT_ONCE, SPACING, Sweeping
 
 
 def scan(t, ahead):
@@ -65,6 +66,50 @@ def test_what_a_scanner_sees_that_hangs_upside_down_is_on_the_side_where_it_is()
         return TrackerService(BODY, hanging, TrackerParams()).step(1.0, path, poses, beside)["drive"].linear
 
     assert speed(-1.0) > 1.2 * speed(1.0)
+
+
+TURNING = 1.5  # rad/s
+SWEEP = 0.2  # s
+
+
+def swept_post(clockwise):
+    """A post 0.5 m east of a vehicle that turns left on the spot, and its lidar with it; the sweep ends at 1 s."""
+    moments, angles = np.linspace(1.0 - SWEEP, 1.0, 360), np.radians(np.arange(360.0))
+    seen_along = angles + TURNING * (moments[::-1] if clockwise else moments)
+    ranges = np.where(np.cos(seen_along) > np.cos(0.1), 0.5, 0.0)
+    return LaserScan(timestamp=stamp(1.0 - SWEEP), start_angle=0.0, end_angle=angles[-1], ranges=ranges.tolist())
+
+
+def poses_until(end):
+    return [PoseInFrame(timestamp=stamp(t), pose=planar_pose(0.0, 0.0, TURNING * t)) for t in np.arange(0.0, end + 1e-9, 0.02)]
+
+
+def post_seen(sweeping, clockwise, end=1.02):
+    """Bearings [rad] in the world at which it is taken to stand."""
+    service = TrackerService(BODY, IDENTITY, TrackerParams(), sweeping)
+    service.step(1.02, PosesInFrame(), poses_until(end), swept_post(clockwise))
+    return np.arctan2(service._seen[:, 1], service._seen[:, 0])
+
+
+@pytest.mark.parametrize("clockwise", [False, True])
+def test_what_a_slow_lidar_sees_is_where_it_was_when_it_was_seen(clockwise):
+    found = post_seen(Sweeping(SWEEP, clockwise), clockwise)
+    assert len(found) > 8
+    assert np.abs(found).max() < 0.1 + TURNING * SPACING / 2
+    assert np.abs(post_seen(AT_ONCE, clockwise)).max() > 0.15
+
+
+def test_a_sweep_counts_when_the_pose_at_its_last_beam_is_known():
+    assert len(post_seen(Sweeping(SWEEP), False, end=0.96)) == 0
+
+
+def test_a_slow_scan_is_as_old_as_its_last_beam():
+    wall = scan(1.0, ahead=3.0)
+    path = PosesInFrame(poses=[planar_pose(0.1 * i, 0.0, 0.0) for i in range(31)])
+    service = TrackerService(BODY, IDENTITY, TrackerParams(), Sweeping(0.5))
+    poses = [PoseInFrame(timestamp=stamp(0.02 * k), pose=planar_pose(0.0, 0.0, 0.0)) for k in range(100)]
+    assert service.step(2.0, path, poses, wall)["drive"].linear > 0.1
+    assert service.step(2.2, path, [], wall)["drive"].linear == 0.0
 
 
 def test_backs_off_when_it_stays_blocked():

@@ -3,10 +3,12 @@
 import numpy as np
 import pytest
 
+from benchmarks.slow_lidar import slow_site
 from schemas import topics
 from schemas.convert import planar_pose, quaternion, stamp
 from schemas.messages import FrameTransform, FrameTransforms, LaserScan, Odometry, Vector3
 from services.slam.logs.opening import open_log
+from uvf.launch.recorder import attachments
 from uvf.maths.rotations import from_euler
 from uvf.runtime.bus import Sample
 from uvf.runtime.params import BadInput
@@ -32,10 +34,10 @@ def odometry(t, x, yaw=0.0):
     return Odometry(timestamp=stamp(t), pose=planar_pose(x, 0.0, yaw))
 
 
-def recorded(folder, messages, name="made.mcap"):
-    """messages: (topic, vehicle, t, message)."""
+def recorded(folder, messages, name="made.mcap", files=None):
+    """messages: (topic, vehicle, t, message); files: what is attached."""
     path = folder / name
-    with Recorder(path) as recorder:
+    with Recorder(path, files) as recorder:
         for i, (topic, vehicle, t, message) in enumerate(messages):
             data = message if isinstance(message, bytes) else message.SerializeToString()
             recorder.write(Sample(topic.at(vehicle), topic.message.DESCRIPTOR.full_name, data, round(t * 1e9), i, 0))
@@ -71,6 +73,39 @@ def test_a_lidar_upside_down_turns_the_other_way(tmp_path):
     assert upright.bearings == pytest.approx((0.0, 0.5, 1.0))
     assert hanging.bearings == pytest.approx((0.0, -0.5, -1.0))
     assert hanging.origin == pytest.approx((0.1, 0.0))
+
+
+def points_of(reading):
+    return reading.beams.directions * reading.ranges[:, None] + np.array(reading.beams.origin)
+
+
+@pytest.mark.parametrize("clockwise", [False, True])
+def test_the_sweeps_of_a_slow_lidar_are_set_straight(tmp_path, clockwise):
+    """At 1 m/s, seen from the last beam's place, what the first of three beams has hit is 0.2 m farther back, and 0.1 m the second."""
+    files = attachments(slow_site(tmp_path / "site", clockwise))
+    slow = open_log(recorded(tmp_path, run(scans=(0.2, 0.4)), files=files))
+    once = open_log(recorded(tmp_path, run(scans=(0.2, 0.4)), "bare.mcap"))
+    assert slow.stamps == pytest.approx([0.4, 0.6])
+    assert [r.t for r in slow] == pytest.approx([0.4, 0.6])
+    assert slow.odom_from_base == pytest.approx(np.array([(0.0, 0.0, 0.0), (0.2, 0.0, 0.0)]))
+    before, after = points_of(once.readings[0])[:2], points_of(slow.readings[0])
+    back = np.array(((0.0, 0.0), (0.1, 0.0)) if clockwise else ((0.2, 0.0), (0.1, 0.0)))
+    assert (after[::-1] if clockwise else after)[:2] == pytest.approx(before - back)
+    assert slow.readings[0].returned.sum() == once.readings[0].returned.sum() == 2
+    assert (slow.notes, once.notes) == ((), ())
+
+
+def test_a_sweep_that_ends_after_the_odometry_is_left_out(tmp_path):
+    log = open_log(recorded(tmp_path, run(scans=(0.2, 0.65)), files=attachments(slow_site(tmp_path / "site"))))
+    assert log.stamps == pytest.approx([0.4])
+    assert "1 scans without odometry" in log.notes[0]
+
+
+def test_files_in_a_log_that_cannot_be_read_are_told_of(tmp_path):
+    files = attachments(slow_site(tmp_path / "site")) | {"vehicles/slow/vehicle.yaml": b"kind: balloon"}
+    log = open_log(recorded(tmp_path, run(scans=(0.2, 0.4)), files=files))
+    assert log.stamps.tolist() == [0.2, 0.4]
+    assert len(log.notes) == 1 and "the files of the run in it cannot be read" in log.notes[0]
 
 
 def test_odometry_that_leaps_is_taken_for_standing_still(tmp_path):

@@ -64,3 +64,11 @@ def test_a_lidar_of_one_beam_looks_through_nothing(n):
 def test_points_of_another_frame_are_taken_to_the_lidars():
     found = verdicts(np.zeros((1, 2)), Pose2(4.0, 0.5, 2.0), rays_of(seen(ROOM)))
     assert found.tolist() == [AGREES]
+
+
+def test_beams_that_have_come_out_of_order_are_put_into_it():
+    whole = seen(ROOM)
+    order = np.random.default_rng(1).permutation(len(whole.ranges))
+    mixed = replace(whole, ranges=whole.ranges[order], beams=replace(whole.beams, bearings=whole.beams.bearings[order]))
+    for points in (ACROSS, EAST):
+        assert looked_through(points, mixed) == looked_through(points, whole)

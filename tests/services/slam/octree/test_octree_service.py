@@ -87,6 +87,28 @@ def test_a_sweep_is_put_in_at_the_height_and_time_of_the_lidar():
     assert states(told, *beside) == [FREE, OCCUPIED, NOT_KNOWN, NOT_KNOWN]
 
 
+@pytest.mark.parametrize("clockwise", [False, True])
+def test_the_beams_of_a_slow_lidar_are_put_in_from_where_it_was(clockwise):
+    """At 1 m/s: the sweep is of 0.5 to 0.7 s; its right end, its middle and its left end."""
+    slow = msgspec.structs.replace(LIDAR, sweep_time=0.2, clockwise=clockwise)
+    made = OctreeService(Sensors(lidar=slow), lambda name, content: name, PARAMS)
+    moving = {0.0: (0.0, 0.0, 1.0), 1.0: (1.0, 0.0, 1.0)}
+    told = step(made, 1.2, scan=[sweep(0.5, 2.98)], places=moving)["map"]
+    right, left = (0.7, 0.5) if clockwise else (0.5, 0.7)
+    ahead, aside = 2.98 * np.cos(0.3), 2.98 * np.sin(0.3)
+    meant = ((right + ahead, -aside, 1.55), (0.6 + 2.98, 0.05, 1.55), (left + ahead, aside, 1.55))
+    assert states(told, *meant) == [OCCUPIED] * 3
+    assert states(told, (left + ahead, -aside, 1.55)) != [OCCUPIED]
+    assert states(told, (right + ahead, aside, 1.55)) != [OCCUPIED]
+
+
+def test_a_slow_sweep_waits_until_the_place_of_its_last_beam_is_known():
+    made = OctreeService(Sensors(lidar=msgspec.structs.replace(LIDAR, sweep_time=0.2)), lambda name, content: name, PARAMS)
+    early = {0.0: (0.0, 0.0, 1.0), 0.6: (0.0, 0.0, 1.0)}
+    assert "map" not in step(made, 1.0, scan=[sweep(0.5)], places=early)
+    assert "map" in step(made, 1.5)
+
+
 def test_what_is_taken_waits_until_its_place_is_known():
     made = service()
     early = {0.0: (0.0, 0.0, 1.0), 0.5: (0.0, 0.0, 1.0)}

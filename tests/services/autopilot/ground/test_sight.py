@@ -1,0 +1,39 @@
+"""How long ago a ground vehicle has seen anything."""
+
+import pytest
+
+from schemas.convert import stamp
+from schemas.messages import FrameTransform, LaserScan
+from services.autopilot.ground.sight import MOVED, Sight
+from uvf.runtime.sweeping import AT_ONCE, Sweeping
+
+
+def scan(t, ahead=1.0):
+    return LaserScan(timestamp=stamp(t), ranges=[ahead])
+
+
+@pytest.mark.parametrize(("sweeping", "unseen"), [(AT_ONCE, 0.3), (Sweeping(0.2), 0.1)])
+def test_a_scan_is_as_old_as_its_last_beam(sweeping, unseen):
+    sight = Sight(sweeping)
+    sight.step(3.0, None, None, 0.0)
+    assert (sight.unseen, sight.unmapped) == (0.0, 0.0)
+    sight.step(3.3, scan(3.0), None, 0.0)
+    assert sight.unseen == pytest.approx(unseen)
+
+
+def test_a_scan_that_stays_the_same_while_the_wheels_turn_is_not_seen():
+    sight = Sight(AT_ONCE)
+    sight.step(1.0, scan(1.0), None, 0.0)
+    sight.step(2.0, scan(2.0), None, 0.5 * MOVED)
+    assert sight.unseen == 0.0
+    sight.step(3.0, scan(3.0), None, 2.0 * MOVED)
+    assert sight.unseen == pytest.approx(1.0)
+    sight.step(4.0, scan(4.0, 1.1), None, 3.0 * MOVED)
+    assert sight.unseen == 0.0
+
+
+def test_a_mapping_that_falls_silent_is_told_apart():
+    sight = Sight(AT_ONCE)
+    sight.step(1.0, scan(1.0), FrameTransform(timestamp=stamp(1.0)), 0.0)
+    sight.step(2.0, scan(2.0), None, 0.0)
+    assert (sight.unseen, sight.unmapped) == (0.0, pytest.approx(1.0))
