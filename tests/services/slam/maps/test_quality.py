@@ -1,5 +1,7 @@
 """Measures of maps, on maps whose faults are known because they were made by hand."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -80,6 +82,17 @@ def test_walls_that_are_not_there_cost_precision_and_missing_ones_recall():
     assert missing.walls.detections[1].recall == pytest.approx(1 - share, abs=0.02)
     assert invented.walls.detections[1].recall == 1.0
     assert invented.walls.detections[1].precision == pytest.approx(1 - share, abs=0.02)
+
+
+@pytest.mark.parametrize("row", [slice(20, 100), 60])
+def test_a_false_wall_one_cell_thick_costs_whichever_way_it_runs(row):
+    grid = mapped(plan(), CORNER)
+    right = score(grid, plan(), IDENTITY).walls.detections[1]
+    false = grid.cells.copy()
+    at = (row, 45) if isinstance(row, slice) else (row, slice(15, 50))
+    false[at] = 97
+    wrong = score(replace(grid, cells=false), plan(), IDENTITY).walls.detections[1]
+    assert wrong.precision < right.precision - 0.03 and wrong.recall == pytest.approx(right.recall, abs=0.01)
 
 
 def test_what_was_not_seen_is_unknown_not_missing():
