@@ -13,14 +13,15 @@ import yaml
 from numpy.typing import NDArray
 
 from schemas import topics
-from schemas.convert import seconds, yaw_of
-from schemas.messages import MapFix, NavState
+from schemas.convert import seconds
+from schemas.messages import MapFix
 from services.slam.logs.mcap_log import read_mcap
 from services.slam.maps.session import NO_EDGES, Session
 from services.slam.methods import make_method, method_params
 from uvf.launch.bench import Figures
 from uvf.launch.run import run_lockstep
 from uvf.launch.slam_cli import DEFAULT_METHOD
+from uvf.launch.truth import poses_at, true_poses
 from uvf.maths.planar_arrays import composed, wrapped
 from uvf.runtime.recording import read_log
 from uvf.runtime.site import load_site
@@ -57,7 +58,7 @@ def mapped(log: Path, folder: Path) -> tuple[float, float, float]:
         method.add(reading)
     method.finish()
     Session(tuple(method.keyframes()), NO_EDGES, DEFAULT_METHOD, {}).save(folder / "known.npz")
-    x, y, yaw = _at(_truth(log), np.array(readings.stamps[:1]))[0].tolist()
+    x, y, yaw = poses_at(true_poses(read_log(log), VEHICLE), np.array(readings.stamps[:1]))[0].tolist()
     return x, y, yaw
 
 
@@ -66,7 +67,7 @@ def visits(world: str, data: Path | None) -> Figures:
         folder, rows = Path(name), {}
         first = drive(folder, "first", mission(world, 1, {"explore": True}, None), MAPPING)
         known: dict[str, object] = {"known": "known.npz", "known_at": list(mapped(first, folder))}
-        job: dict[str, object] = {"mission": _waypoints(_truth(first))}
+        job: dict[str, object] = {"mission": _waypoints(true_poses(read_log(first), VEHICLE))}
         for begun in ("start", "anywhere"):
             log = drive(folder, begun, mission(world, 2, job, known | {"localize": begun}), VISIT)
             rows[f"{world} from {begun}"] = _row(log, STARTS[world])
@@ -76,9 +77,9 @@ def visits(world: str, data: Path | None) -> Figures:
 def _row(log: Path, world_from_map: tuple[float, float, float]) -> dict[str, float]:
     fixes = [MapFix.FromString(s.payload) for s in read_log(log) if s.key == topics.MAP_FIX.at(VEHICLE)]
     stamps = np.array([seconds(f.timestamp) for f in fixes])
-    truth = _truth(log)
+    truth = true_poses(read_log(log), VEHICLE)
     told = composed(np.array(world_from_map), np.array([(f.x, f.y, f.yaw) for f in fixes]))
-    off = told - _at(truth, stamps)
+    off = told - poses_at(truth, stamps)
     off[:, 2] = wrapped(off[:, 2])
     wrong = np.flatnonzero((np.hypot(*off[:, :2].T) > NEAR) | (np.abs(off[:, 2]) > NEAR_TURN))
     settled = stamps > max(SETTLED, stamps[wrong[-1]] if len(wrong) else 0.0)
@@ -95,16 +96,6 @@ def _row(log: Path, world_from_map: tuple[float, float, float]) -> dict[str, flo
         "driven m": float(np.hypot(*np.diff(truth[:, 1:3], axis=0).T).sum()),
         "quality": float(np.mean([f.quality for f in fixes])),
     }
-
-
-def _truth(log: Path) -> Floats:
-    """(n, 4) t, x, y, yaw in the world."""
-    states = [NavState.FromString(s.payload) for s in read_log(log) if s.key == topics.TRUTH.at(VEHICLE)]
-    return np.array([(seconds(s.timestamp), s.position.x, s.position.y, yaw_of(s.orientation)) for s in states])
-
-
-def _at(truth: Floats, stamps: Floats) -> Floats:
-    return np.column_stack([np.interp(stamps, truth[:, 0], c) for c in (truth[:, 1], truth[:, 2], np.unwrap(truth[:, 3]))])
 
 
 def _waypoints(truth: Floats) -> list[dict[str, float]]:

@@ -15,14 +15,13 @@ from pathlib import Path
 
 import numpy as np
 import yaml
-from google.protobuf.timestamp_pb2 import Timestamp
 from numpy.typing import NDArray
 
 from benchmarks.slam_live_picture import Shown, draw
 from benchmarks.timing import stopwatch
 from schemas import topics
 from schemas.convert import seconds, yaw_of
-from schemas.messages import Quaternion, Vector3
+from schemas.messages import PoseInFrame
 from services.slam.logs.mcap_log import samples_of
 from services.slam.maps.map_server import in_world
 from services.slam.maps.quality import score
@@ -30,11 +29,13 @@ from uvf.client import Client
 from uvf.launch import catalogue, settings
 from uvf.launch.apart import apart
 from uvf.launch.bench import Figures
+from uvf.launch.truth import poses_at, true_poses, within
 from uvf.maths.planar import IDENTITY
 from uvf.maths.planar_arrays import wrapped
 from uvf.runtime.bus import LocalBus, Sample
 from uvf.runtime.grid_message import as_map
 from uvf.runtime.map_file import GridMap
+from uvf.runtime.params import BadInput
 from uvf.runtime.replay import play
 from uvf.runtime.shell import Shell
 from uvf.runtime.site import Site, load_site
@@ -93,19 +94,26 @@ class Run:
 
     def __init__(self, samples: Sequence[Sample]) -> None:
         self._samples = samples
-        self.truth = np.array([_row(m.timestamp, m.position, m.orientation) for m in self._all(topics.TRUTH)])
-        self.poses = np.array([_row(m.timestamp, m.pose.position, m.pose.orientation) for m in self._all(topics.POSE)])
+        self.truth = true_poses(samples, VEHICLE)
+        self.poses = np.array([_row(message) for message in self._all(topics.POSE)]).reshape(-1, 4)
+        """(n, 4) t [s], x, y [m], yaw [rad] in the world frame, as ``truth``."""
 
     def _all(self, topic: topics.Topic[topics.M]) -> list[topics.M]:
         return [topic.message.FromString(s.payload) for s in self._samples if s.key == topic.at(VEHICLE)]
 
     def grid(self) -> GridMap:
-        """The last one, in the world frame."""
-        return in_world(as_map(self._all(topics.MAP)[-1]), self._all(topics.TF_WORLD)[-1])
+        """The last one, in the world frame. Raises BadInput without any."""
+        maps, places = self._all(topics.MAP), self._all(topics.TF_WORLD)
+        if not maps or not places:
+            raise BadInput(f"the log of the run holds no map of '{VEHICLE}', or not where it lies")
+        return in_world(as_map(maps[-1]), places[-1])
 
     def errors(self) -> Row:
-        truth = np.column_stack([np.interp(self.poses[:, 0], self.truth[:, 0], c) for c in _unwound(self.truth[:, 1:])])
-        off = self.poses[:, 1:] - truth
+        """Of the poses that were told while the truth is known. Raises BadInput without any."""
+        if not len(self.poses) or not len(self.truth):
+            raise BadInput(f"the log of the run holds no poses of '{VEHICLE}', or not the true ones")
+        told = self.poses[within(self.truth, self.poses[:, 0])]
+        off = told[:, 1:] - poses_at(self.truth, told[:, 0])
         distances, turns = np.hypot(off[:, 0], off[:, 1]), wrapped(off[:, 2])
         return {
             "RMSE m": float(np.sqrt((distances**2).mean())),
@@ -148,14 +156,9 @@ def lidar_height(site: Site) -> float:
     return lidar.mount.xyz[2] if lidar is not None else 0.0
 
 
-def _row(timestamp: Timestamp, position: Vector3, orientation: Quaternion) -> tuple[float, float, float, float]:
-    """t, x, y, yaw."""
-    return seconds(timestamp), position.x, position.y, yaw_of(orientation)
-
-
-def _unwound(poses: Floats) -> Floats:
-    """(3, n) x, y and a yaw without leaps."""
-    return np.array((poses[:, 0], poses[:, 1], np.unwrap(poses[:, 2])))
+def _row(message: PoseInFrame) -> tuple[float, float, float, float]:
+    pose = message.pose
+    return seconds(message.timestamp), pose.position.x, pose.position.y, yaw_of(pose.orientation)
 
 
 CASES = {world: partial(live, world) for world in STARTS}

@@ -16,6 +16,7 @@ from uvf.runtime.site import ROOT
 
 PATIENCE = 180.0  # s, until time runs: kernels may have to be compiled
 LOOK = 0.2  # s
+STOPPING = 60.0  # s, for all services to end and the log to be closed
 OUTPUT = "up.txt"
 
 
@@ -34,7 +35,16 @@ def apart(mission: Path, folder: Path) -> Iterator[Client]:
         with connect(endpoint) as client:
             yield client
     finally:
-        process.send_signal(signal.SIGINT)
+        _stop(process)
+
+
+def _stop(process: subprocess.Popen[bytes]) -> None:
+    """As Ctrl-C does; what does not heed it is ended, and its services notice that their launcher is gone."""
+    process.send_signal(signal.SIGINT)
+    try:
+        process.wait(STOPPING)
+    except subprocess.TimeoutExpired:
+        process.kill()
         process.wait()
 
 
@@ -42,8 +52,8 @@ def _environment(endpoint: str, folder: Path) -> dict[str, str]:
     return {
         **os.environ,
         "UVF_ROUTER": endpoint,
-        "UVF_MAVLINK_TARGETS": f"127.0.0.1:{_free_port()}",
-        "UVF_MAVLINK_LISTEN": f"127.0.0.1:{_free_port()}",
+        "UVF_MAVLINK_TARGETS": f"127.0.0.1:{_free_port(socket.SOCK_DGRAM)}",
+        "UVF_MAVLINK_LISTEN": f"127.0.0.1:{_free_port(socket.SOCK_DGRAM)}",
         "UVF_RUNS": str(folder),
         "UVF_STATE": str(folder / "state"),
     }
@@ -51,14 +61,15 @@ def _environment(endpoint: str, folder: Path) -> dict[str, str]:
 
 def _wait_for_time(process: subprocess.Popen[bytes], output: Path) -> None:
     end = time.monotonic() + PATIENCE
-    while "time runs" not in output.read_text():
+    while "time runs" not in (said := output.read_text(errors="replace")):
         if process.poll() is not None or time.monotonic() > end:
-            raise BadInput(f"'uvf up' does not begin to run: {output.read_text().strip()}")
+            last = next((line.strip() for line in reversed(said.splitlines()) if line.strip()), "it says nothing")
+            raise BadInput(f"'uvf up' does not begin to run: {last}")
         time.sleep(LOOK)
 
 
-def _free_port() -> int:
-    with socket.socket() as probe:
+def _free_port(kind: socket.SocketKind = socket.SOCK_STREAM) -> int:
+    with socket.socket(type=kind) as probe:
         probe.bind(("127.0.0.1", 0))
         port: int = probe.getsockname()[1]
         return port

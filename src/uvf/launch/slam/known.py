@@ -6,18 +6,13 @@ The truth is read here, where methods do not get to see it.
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-
-from schemas import topics
-from schemas.convert import seconds, yaw_of
-from schemas.messages import NavState
 from services.slam.evaluation.beside import beside
 from services.slam.evaluation.reference import Trajectory
 from services.slam.evaluation.relations import Relations, index_of, read_relations
 from services.slam.logs.laser_log import LaserLog
 from services.slam.logs.mcap_log import samples_of
 from services.slam.logs.opening import is_recorded
-from uvf.runtime.bus import matches
+from uvf.launch.truth import poses_at, true_poses, within
 from uvf.runtime.params import BadInput
 
 
@@ -52,12 +47,10 @@ def _about(log: LaserLog, path: Path) -> Relations:
 def _truth(path: Path, log: LaserLog, vehicle: str | None) -> Trajectory | None:
     """At the stamps of the readings, as far as they are between those of the truth; None where there is none."""
     name = vehicle or log.name.removeprefix(f"{path.stem}-")
-    states = [NavState.FromString(s.payload) for s in samples_of(path) if matches(topics.TRUTH.at(name), s.key)]
-    if len(states) < 2:
+    track = true_poses(samples_of(path), name)
+    if len(track) < 2:
         return None
-    track = np.array([(seconds(s.timestamp), s.position.x, s.position.y, yaw_of(s.orientation)) for s in states])
-    track[:, 3] = np.unwrap(track[:, 3])
-    stamps = log.stamps[(log.stamps >= track[0, 0]) & (log.stamps <= track[-1, 0])]
+    stamps = log.stamps[within(track, log.stamps)]
     if not len(stamps):
         raise BadInput(f"log {path}: its scans and its truth are of different times")
-    return Trajectory(stamps, np.column_stack([np.interp(stamps, track[:, 0], column) for column in track[:, 1:].T]))
+    return Trajectory(stamps, poses_at(track, stamps))
