@@ -1,6 +1,9 @@
 """Odometry and mapping for every ground vehicle of the mission, and the maps that it is given."""
 
-from services.slam.localization.known_map import known_map
+from collections.abc import Callable
+from functools import partial
+
+from services.slam.localization import known_map
 from services.slam.localization.localizer import Localizer
 from services.slam.localization.params import FilterParams
 from services.slam.localization_service import Beginning, LocalizationService
@@ -8,7 +11,7 @@ from services.slam.made_corridor import there_and_back
 from services.slam.mapping_service import MappingParams, MappingService
 from services.slam.maps.serving import map_servers
 from services.slam.maps.session import Session
-from services.slam.method import SlamMethod
+from services.slam.method import Keyframe, SlamMethod
 from services.slam.methods import METHODS, make_method
 from services.slam.odometry.filter import DriveFilter
 from services.slam.odometry.params import OdometryParams
@@ -31,7 +34,7 @@ def build(site: Site) -> list[Host]:
 
 
 def _hosts(site: Site, member: Member, warm: set[str]) -> list[Host]:
-    """warm: names of the methods that have been compiled."""
+    """warm: names of what has been compiled: methods, and localization."""
     sensors = member.file.sensors
     lidar = sensors.lidar
     if lidar is None or sensors.encoders is None:
@@ -44,15 +47,18 @@ def _hosts(site: Site, member: Member, warm: set[str]) -> list[Host]:
         place = f"{site.mission_path}: vehicles.{member.name}.maps"
         raise BadInput(f"{place}: a vehicle either 'continues' a map or is localized on one; leave one of them out")
     if maps is not None and maps.localize is not None:
+        if "localization" not in warm:
+            _warm_up_localization()
+            warm.add("localization")
         return [_odometry(site, member), _localization(site, member, lidar, maps)]
     method = _method(member, mapping)
     if mapping.method not in warm:
-        _warm_up(method)
+        _warm_up(method())
         warm.add(mapping.method)
     left = _left(site, member, mapping, maps.continues) if maps is not None and maps.continues is not None else None
 
     def make() -> MappingService:
-        return MappingService(member.name, lidar, world_from_map, mapping, _method(member, mapping), left)
+        return MappingService(member.name, lidar, world_from_map, mapping, method(), left)
 
     return [_odometry(site, member), Host(MappingService, make, member.name)]
 
@@ -60,7 +66,7 @@ def _hosts(site: Site, member: Member, warm: set[str]) -> list[Host]:
 def _left(site: Site, member: Member, mapping: MappingParams, name: str) -> Session:
     """The session that a mapping goes on with, in the vehicle's map frame. Raises BadInput where it cannot."""
     assert member.entry.maps is not None
-    path, method = site.mission_path.parent / name, _method(member, mapping)
+    path, method = site.mission_path.parent / name, _method(member, mapping)()
     map_from_file = compose(inverse(_world_from_map(member)), Pose2(*member.entry.maps.known_at))
     session = Session.load(path).moved(map_from_file)
     if not isinstance(method, Resumable):
@@ -90,19 +96,18 @@ def _localization(site: Site, member: Member, lidar: Lidar, maps: Maps) -> Host:
     """In the place of mapping. Raises BadInput for a file that is no map."""
     start, params, known = _world_from_map(member), member.params("localization", FilterParams), None
     if maps.known is not None:
-        known = known_map(maps.known, site.mission_path.parent, compose(inverse(start), Pose2(*maps.known_at)))
-        _warm_up(Localizer(known, params, 0, IDENTITY))
+        known = known_map.known_map(maps.known, site.mission_path.parent, compose(inverse(start), Pose2(*maps.known_at)))
     seed = int(site.rng(member.name, "localization").integers(1 << 31))
     beginning = Beginning(known, maps.localize == "anywhere", seed)
     return Host(LocalizationService, lambda: LocalizationService(member.name, lidar, start, params, beginning), member.name)
 
 
-def _method(member: Member, mapping: MappingParams) -> SlamMethod:
-    """By the name that the vehicle's file gives, with the parameters of that name. Raises BadInput."""
+def _method(member: Member, mapping: MappingParams) -> Callable[[], SlamMethod]:
+    """Makes it by the name that the vehicle's file gives, with the parameters of that name. Raises BadInput."""
     path = str(member.folder / "vehicle.yaml")
     if mapping.method not in METHODS:
         raise BadInput(f"{path}: params.mapping.method: no SLAM method '{mapping.method}'; {nearest(mapping.method, METHODS)}")
-    return make_method(mapping.method, member.params(mapping.method, METHODS[mapping.method].params))
+    return partial(make_method, mapping.method, member.params(mapping.method, METHODS[mapping.method].params))
 
 
 def _warm_up(method: SlamMethod) -> None:
@@ -110,4 +115,19 @@ def _warm_up(method: SlamMethod) -> None:
     for reading in there_and_back():
         method.add(reading)
     method.finish()
+    _warm_up_odometry()
+
+
+def _warm_up_localization() -> None:
+    """The same on a made-up map: the one of the mission may come later."""
+    readings = list(there_and_back())
+    known = known_map.of_grid(known_map.of_keyframes([Keyframe(r.odom_from_base, r) for r in readings]).grid)
+    lost, tracked = Localizer(known, FilterParams(), 0), Localizer(known, FilterParams(), 0, IDENTITY)
+    for localizer, drive in ((lost, readings[:2]), (tracked, readings)):
+        for reading in drive:
+            localizer.add(reading)
+    _warm_up_odometry()
+
+
+def _warm_up_odometry() -> None:
     DriveFilter("ekf", Noise(), 0.2).step(Step(0.02, 0.0, 0.0))

@@ -22,6 +22,8 @@ from uvf.runtime.service import Outputs, frames, optional
 from uvf.runtime.vehicle_file import Lidar
 
 POSITION_SIGMA, YAW_SIGMA = 0.3, 0.2  # m, rad, of a pose that is set without
+LEAST_SIGMA, MOST_SIGMA = 1e-4, 1000.0
+"""m and rad: what is surer, or less sure than a whole map, is a mistake."""
 
 
 @dataclass(frozen=True)
@@ -59,7 +61,7 @@ class LocalizationService(PlacingService):
         self._start: Pose2 | None = None if beginning.anywhere else IDENTITY
         self._set_to: tuple[Pose2, float, float] | None = None
         self._map_told = False
-        self._refused = ""
+        self._refused: Grid | None = None
 
     def step(
         self,
@@ -99,16 +101,14 @@ class LocalizationService(PlacingService):
 
     def _take_map(self, t: float, known: Grid | None) -> list[Event]:
         """The one of the mission, or the first on map/known that can be used; one that cannot is told of once."""
-        if self._localizer is not None:
+        if self._localizer is not None or (known is not None and known is self._refused):
             return []
         try:
             given = self._beginning.known
             if given is None and known is not None:
                 given = of_grid(as_map(known), inverse(self._world_from_map), "map/known")
         except BadInput as error:
-            if str(error) == self._refused:
-                return []
-            self._refused = str(error)
+            self._refused = known
             return [self._event(t, Event.ERROR, "the map given is of no use", str(error))]
         if given is not None:
             self._localizer = Localizer(given, self.params, self._beginning.seed)
@@ -146,8 +146,8 @@ class LocalizationService(PlacingService):
             return Reply(reason="there is no map yet")
         wanted = pose2_of(request.pose)
         sigmas = (request.position_sigma or POSITION_SIGMA, request.yaw_sigma or YAW_SIGMA)
-        if not all(isfinite(v) for v in (*wanted, *sigmas)) or min(sigmas) <= 0.0:
-            return Reply(reason="a pose of finite numbers with sigmas above 0 is needed")
+        if not all(isfinite(v) for v in wanted) or not all(LEAST_SIGMA <= sigma <= MOST_SIGMA for sigma in sigmas):
+            return Reply(reason=f"a pose of finite numbers is needed, with sigmas from {LEAST_SIGMA:g} to {MOST_SIGMA:g} m and rad")
         pose = compose(inverse(self._world_from_map), wanted)
         if not self._localizer.known.covers(pose):
             return Reply(reason=f"({wanted.x:.2f}, {wanted.y:.2f}) is outside the map")

@@ -1,11 +1,11 @@
 """The odometry as it is, in the shape of a SLAM method: the row that every other one is compared with."""
 
-from collections.abc import Iterator
 from math import hypot
 
 import numpy as np
 from numpy.typing import NDArray
 
+from services.slam.incremental import IncrementalMethod
 from services.slam.method import Estimate, Keyframe
 from services.slam.reading import Reading
 from uvf.maths.planar import IDENTITY, Pose2, compose, inverse
@@ -24,12 +24,11 @@ class OdometryMethodParams(Params, frozen=True):
     """It has none."""
 
 
-class OdometryMethod:
+class OdometryMethod(IncrementalMethod):
     """Where the odometry has the vehicle; uncertainty grows with the way, the quality of what is not checked is 0."""
 
     def __init__(self, params: OdometryMethodParams) -> None:
-        self._poses: list[Pose2] = []
-        self._keyframes: list[Keyframe] = []
+        super().__init__()
         self._base_from_odom: Pose2 = IDENTITY
         self._driven = self._turned = 0.0
 
@@ -42,27 +41,9 @@ class OdometryMethod:
             self._driven += hypot(pose.x - before.x, pose.y - before.y)
             self._turned += abs(wrap(pose.yaw - before.yaw))
         self._poses.append(pose)
-        if self._is_new(pose):
+        if self._has_moved(SPACING, TURN):
             self._keyframes.append(Keyframe(pose, reading))
         return Estimate(pose, self._covariance(), 0.0)
-
-    def trajectory(self) -> Floats:
-        return np.array(self._poses, dtype=np.float64).reshape(-1, 3)
-
-    def keyframes(self) -> Iterator[Keyframe]:
-        return iter(self._keyframes)
-
-    def keyframe_count(self) -> int:
-        return len(self._keyframes)
-
-    def finish(self) -> None:
-        """Nothing has been put off."""
-
-    def _is_new(self, pose: Pose2) -> bool:
-        if not self._keyframes:
-            return True
-        last = self._keyframes[-1].map_from_base
-        return hypot(pose.x - last.x, pose.y - last.y) >= SPACING or abs(wrap(pose.yaw - last.yaw)) >= TURN
 
     def _covariance(self) -> Floats:
         along, heading = DRIFT[0] ** 2 * self._driven, DRIFT[1] ** 2 * self._driven + DRIFT[2] ** 2 * self._turned

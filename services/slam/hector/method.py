@@ -4,17 +4,18 @@ Kohlbrecher, von Stryk, Meyer & Klingauf, "A Flexible and Scalable SLAM System w
 in the plane. Each level is a map of its own that the beams are drawn into, no coarser copy of the finest one.
 """
 
-from collections.abc import Iterator
 from dataclasses import dataclass, field
-from math import hypot, log
+from math import log
 
 import numpy as np
 from numpy.typing import NDArray
 
 from services.slam.hector.gradient import UNIT, climb, normal_equations
 from services.slam.hector.params import HectorParams
+from services.slam.incremental import IncrementalMethod
+from services.slam.logs.leaps import step_between
 from services.slam.maps.shared_tiles import Evidence, SharedTiles
-from services.slam.matching.points import points_of, step_between
+from services.slam.matching.points import points_of
 from services.slam.method import Estimate, Keyframe
 from services.slam.reading import Reading
 from uvf.maths.planar import IDENTITY, Pose2, compose, inverse
@@ -43,46 +44,33 @@ NOTHING = np.diag((1.0, 1.0, 0.3)) ** 2
 
 
 @dataclass
-class HectorSlam:
+class HectorSlam(IncrementalMethod):
     """See ``SlamMethod``."""
 
     params: HectorParams = field(default_factory=HectorParams)
 
     def __post_init__(self) -> None:
+        super().__init__()
         p = self.params
         self.levels = [SharedTiles(1, 1, p.map_resolution * 2**level) for level in range(p.map_multi_res_levels)]
         bound = round(BOUND / UNIT)
         self._evidence = Evidence(_units(p.update_factor_occupied), _units(p.update_factor_free), -bound, bound)
-        self._poses: list[Pose2] = []
-        self._keyframes: list[Keyframe] = []
-        self._odometry: Pose2 | None = None
+        self._last: Reading | None = None
 
     def add(self, reading: Reading) -> Estimate:
-        last, self._odometry = self._odometry, reading.odom_from_base
+        last, self._last = self._last, reading
         if last is None:
             self._poses.append(IDENTITY)
             self._insert(reading)
             return Estimate(IDENTITY, np.zeros((3, 3)), 1.0)
         guess = self._poses[-1]
         if self.params.use_odometry:
-            guess = compose(guess, step_between(last, reading.odom_from_base))
+            guess = compose(guess, step_between(last, reading) or IDENTITY)
         estimate = self._best(guess, reading)
         self._poses.append(estimate.map_from_base)
-        if self._has_moved():
+        if self._has_moved(self.params.map_update_distance_thresh, self.params.map_update_angle_thresh):
             self._insert(reading)
         return estimate
-
-    def trajectory(self) -> Floats:
-        return np.array(self._poses, dtype=np.float64).reshape(-1, 3)
-
-    def keyframes(self) -> Iterator[Keyframe]:
-        return iter(self._keyframes)
-
-    def keyframe_count(self) -> int:
-        return len(self._keyframes)
-
-    def finish(self) -> None:
-        """Nothing has been put off."""
 
     def _best(self, guess: Pose2, reading: Reading) -> Estimate:
         """Of several starts: a lidar that is slow, or turned quickly, is farther away than a hill is wide."""
@@ -121,14 +109,6 @@ class HectorSlam:
         ranges = np.hypot(*(points - np.array(reading.beams.origin)).T)
         used: Floats = points[ranges >= self.params.laser_min_dist]
         return used
-
-    def _has_moved(self) -> bool:
-        """Since the last reading that went into the maps."""
-        if not self._keyframes:
-            return True
-        now, last = self._poses[-1], self._keyframes[-1].map_from_base
-        moved = hypot(now.x - last.x, now.y - last.y) > self.params.map_update_distance_thresh
-        return moved or abs(wrap(now.yaw - last.yaw)) > self.params.map_update_angle_thresh
 
     def _insert(self, reading: Reading) -> None:
         if reading.ranges.shape != reading.beams.bearings.shape:

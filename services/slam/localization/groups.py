@@ -47,7 +47,7 @@ def _led(poses: Floats, weights: Floats, most: int) -> tuple[NDArray[np.int64], 
         for i in range(poses.shape[0]):
             dx, dy = poses[i, 0] - poses[leader, 0], poses[i, 1] - poses[leader, 1]
             turn = (poses[i, 2] - poses[leader, 2] + np.pi) % (2.0 * np.pi) - np.pi
-            if labels[i] == NONE and dx * dx + dy * dy < RADIUS * RADIUS and abs(turn) < TURN:
+            if i == leader or (labels[i] == NONE and dx * dx + dy * dy < RADIUS * RADIUS and abs(turn) < TURN):
                 labels[i] = count
                 total += weights[i]
                 left -= 1

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -46,11 +47,20 @@ class KnownMap:
     surfaces: PointMap
     field: LikelihoodField
 
-    @property
+    @cached_property
     def places(self) -> Floats:
         """(n, 2) m, the middles of the cells where a vehicle may stand."""
-        free = (self.grid.cells >= 0) & (self.grid.cells <= FREE)
-        return centres(self.grid)[free.ravel()]
+        row, column = np.nonzero((self.grid.cells >= 0) & (self.grid.cells <= FREE))
+        return transform(self.grid.origin, np.column_stack((column + 0.5, row + 0.5)) * self.grid.resolution)
+
+    @cached_property
+    def floor(self) -> NDArray[np.bool_]:
+        """(columns, rows) of the field's cells in which a vehicle may stand."""
+        floor = np.zeros(self.field.levels.shape[1:], dtype=np.bool_)
+        cells = np.floor((self.places - np.array(self.field.corner)) / self.field.resolution).astype(np.int64)
+        inside = ((cells >= 0) & (cells < floor.shape)).all(axis=1)
+        floor[cells[inside, 0], cells[inside, 1]] = True
+        return floor
 
     def covers(self, pose: Pose2) -> bool:
         """Whether a pose is within the grid."""

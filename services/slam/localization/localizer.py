@@ -1,6 +1,5 @@
 """Where a vehicle is on a known map: tracking, starting from nothing, and noticing that it has been carried away."""
 
-from collections.abc import Iterator
 from enum import Enum
 from math import hypot
 
@@ -18,19 +17,18 @@ from services.slam.localization.particle_filter import Hypothesis, ParticleFilte
 from services.slam.localization.proposals import Proposal
 from services.slam.localization.recent import Moved, RecentSweeps
 from services.slam.localization.whole_map import Lately, whole_map
+from services.slam.logs.leaps import step_between
 from services.slam.matching.cloud import cloud_of
 from services.slam.matching.imls import match
-from services.slam.method import Estimate, Keyframe
+from services.slam.method import Estimate
 from services.slam.reading import Reading
 from uvf.maths.planar import IDENTITY, Pose2, compose, inverse
-from uvf.maths.rotations import wrap
 
 Floats = NDArray[np.float64]
 
 START = np.diag((0.1, 0.1, 0.05)) ** 2  # covariance of a start pose that is given without one
 REMEMBERED = np.diag((0.2, 0.2, 0.06)) ** 2  # of the pose by odometry, while it is not known whether it still holds
 FOUND = np.diag((0.1, 0.1, 0.04)) ** 2  # of a place found in the whole map
-LEAP, LEAP_TURN = 2.0, 2.0  # m, rad between two sweeps that no odometry has driven
 LEAPS = 0.1, 0.1  # m, rad by which the map may correct a step without being doubted
 STEP, BETTER = MotionNoise(), 0.02  # of a step that leads to a match beside; worth by which a leap has to be better than that
 STOOD = 1e-4  # m, rad
@@ -59,7 +57,7 @@ class State(Enum):
 
 
 class Localizer:
-    """A ``SlamMethod`` on a map that is given: poses are those of the known map's frame."""
+    """Fed with readings as a ``SlamMethod`` is; poses are those of the known map's frame."""
 
     def __init__(self, known: KnownMap, params: FilterParams, seed: int, start: Pose2 | None = None, covariance: Floats = START) -> None:
         """start: map_from_base at the first reading; None where nothing is known."""
@@ -68,8 +66,7 @@ class Localizer:
         self.hypotheses: list[Hypothesis] = []
         self.fit, self._usual = UsualFit(), UsualMatch()
         self._recent, self._lately = RecentSweeps(), Lately()
-        self._poses: list[Pose2] = []
-        self._odometry: Pose2 | None = None
+        self._last: Reading | None = None
         self.pose = start or IDENTITY
         self.relocalize() if start is None else self.set_pose(start, covariance)
 
@@ -97,7 +94,7 @@ class Localizer:
         self.fit.forget_newest()
 
     def add(self, reading: Reading) -> Estimate:
-        told = self._step(reading.odom_from_base)
+        told = self._step(reading)
         news = 1.0 if self.is_fresh else min(1.0, hypot(told.x, told.y) / NEWS_WAY + abs(told.yaw) / NEWS_TURN)
         sweep = Sweep(cloud_of(reading), beams_of(reading, self.params.beams), news)
         moved, prediction = self._moved(sweep, told)
@@ -109,7 +106,6 @@ class Localizer:
                 prediction = None
             self.hypotheses = self.filter.correct(prediction or self._predicted(moved.step, self._noise(moved), sweep), sweep)
             self._decide(moved, news)
-        self._poses.append(self.pose)
         return Estimate(self.pose, self._covariance(), self.quality)
 
     def _moved(self, sweep: Sweep, told: Pose2) -> tuple[Moved, Prediction | None]:
@@ -149,19 +145,6 @@ class Localizer:
     def _noise(self, moved: Moved) -> OdometryNoise:
         return self._odometry_noise().times(MATCHED) if moved.matched else self._odometry_noise()
 
-    def trajectory(self) -> Floats:
-        return np.array(self._poses).reshape(-1, 3)
-
-    def keyframes(self) -> Iterator[Keyframe]:
-        """The map is given."""
-        return iter(())
-
-    def keyframe_count(self) -> int:
-        return 0
-
-    def finish(self) -> None:
-        """Nothing has been put off."""
-
     @property
     def quality(self) -> float:
         """0..1: how sure it is that the vehicle is there, and how well what it sees fits."""
@@ -184,11 +167,10 @@ class Localizer:
         own = self._own
         return own.covariance if own else self.filter.spread()
 
-    def _step(self, odometry: Pose2) -> Pose2:
+    def _step(self, reading: Reading) -> Pose2:
         """Since the last reading; a leap that no vehicle drives counts as none: where it has come to will be seen."""
-        last, self._odometry = self._odometry, odometry
-        step = compose(inverse(last), odometry) if last is not None else IDENTITY
-        return IDENTITY if hypot(step.x, step.y) > LEAP or abs(wrap(step.yaw)) > LEAP_TURN else step
+        last, self._last = self._last, reading
+        return IDENTITY if last is None else step_between(last, reading) or IDENTITY
 
     def _decide(self, moved: Moved, news: float) -> None:
         self.pose = compose(self.pose, moved.step)

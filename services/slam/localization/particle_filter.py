@@ -140,9 +140,12 @@ class ParticleFilter:
         return sorted(hypotheses, key=lambda h: -h.weight)
 
     def _drawn(self, proposals: list[Proposal], moved: Floats) -> _Drawn:
-        """New particles around what has been matched, until there are enough for the bins they are in; the others go on."""
+        """New particles around what has been matched, until there are enough for the bins they are in; the others go on, those that
+        are put in on top of the most that there may be."""
         before = (moved, self.weights)
-        unmatched = [(k, p.keep(before, self._rng)) for k, p in enumerate(proposals) if p.match is None]
+        crowd = sum(len(p.group.members) for p in proposals if p.match is None)
+        part = min(1.0, (self.limits[1] + MOST_GROUPS * IN_GROUP) / max(crowd, 1))
+        unmatched = [(k, p.keep(part, before, self._rng)) for k, p in enumerate(proposals) if p.match is None]
         kept = [_Drawn(*particles, np.full(len(particles[0]), k)) for k, particles in unmatched]
         matched = [(k, p) for k, p in enumerate(proposals) if p.match is not None]
         parts = np.maximum([p.group.weight for _, p in matched], LEAST_PART)

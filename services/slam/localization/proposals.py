@@ -69,13 +69,14 @@ class Proposal:
         mixed = np.logaddexp(np.log(BY_MOTION) + predicted, np.log(1.0 - BY_MOTION) + matched)
         return poses, predicted - mixed
 
-    def keep(self, moved: tuple[Floats, Floats], rng: np.random.Generator) -> tuple[Floats, Floats]:
-        """The particles of the group with the log of their weights, which are 1 on average; drawn anew where few have most of it."""
+    def keep(self, part: float, moved: tuple[Floats, Floats], rng: np.random.Generator) -> tuple[Floats, Floats]:
+        """The particles of the group with the log of their weights, which are 1 on average; drawn anew where few have most of it,
+        or where only a part (0..1) of them is to be kept."""
         own = moved[1][self.group.members]
         weights = own * len(own) / own.sum()
-        if (weights**2).mean() < MOST_UNEQUAL and len(own) >= FEWEST:
+        if part >= 1.0 and (weights**2).mean() < MOST_UNEQUAL and len(own) >= FEWEST:
             return moved[0][self.group.members], np.log(np.maximum(weights, 1e-300))
-        n = max(len(own), FEWEST)
+        n = max(int(part * len(own)), FEWEST)
         return moved[0][resampled(self.group.members, own, n, rng)], np.zeros(n)
 
 

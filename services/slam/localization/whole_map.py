@@ -13,12 +13,12 @@ from services.slam.matching.everywhere import Floor, all_turns, everywhere
 from uvf.maths.planar import Pose2, compose, inverse, transform
 
 Floats = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 
 RIVAL = 0.8  # part of the best score that another place has to reach
 LEAST = 0.3  # score
 
 KEPT_WAY, SPACING, SPACING_TURN = 2.5, 0.2, 0.2  # m of way, m and rad between sweeps of what was seen lately
+MOST_KEPT = 60  # sweeps: who turns on the spot makes no way
 GRID, POINTS, REACH = 0.1, 160, 20.0  # m between points, number of them, m
 
 
@@ -26,7 +26,7 @@ class Lately:
     """The points seen on the last metres of the way, put together by odometry alone."""
 
     def __init__(self) -> None:
-        self._seen: deque[tuple[float, Pose2, Floats]] = deque()
+        self._seen: deque[tuple[float, Pose2, Floats]] = deque(maxlen=MOST_KEPT)
         self.way = 0.0
         self._last: Pose2 | None = None
 
@@ -40,6 +40,10 @@ class Lately:
         self._seen.append((self.way, odom_from_base, points))
         while self.way - self._seen[0][0] > KEPT_WAY:
             self._seen.popleft()
+
+    def __len__(self) -> int:
+        """Sweeps that are kept."""
+        return len(self._seen)
 
     def forget(self) -> None:
         self._seen.clear()
@@ -58,14 +62,4 @@ class Lately:
 
 def whole_map(known: KnownMap, points: Floats, most: int) -> list[Found]:
     """The best places for points (n, 2) [m, base frame], no two of them the same, the best first."""
-    return everywhere(points, all_turns(points, known.field.sigma), known.field, Floor(_free(known), LEAST, RIVAL, most))
-
-
-def _free(known: KnownMap) -> Mask:
-    """(columns, rows) of the field's cells in which a vehicle may stand."""
-    field = known.field
-    free = np.zeros(field.levels.shape[1:], dtype=np.bool_)
-    cells = np.floor((known.places - np.array(field.corner)) / field.resolution).astype(np.int64)
-    inside = ((cells >= 0) & (cells < free.shape)).all(axis=1)
-    free[cells[inside, 0], cells[inside, 1]] = True
-    return free
+    return everywhere(points, all_turns(points, known.field.sigma), known.field, Floor(known.floor, LEAST, RIVAL, most))

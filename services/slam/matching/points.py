@@ -1,16 +1,11 @@
 """The ends of a sweep's beams, for methods that match to grids."""
 
-from math import isfinite
-
 import numpy as np
 from numpy.typing import NDArray
 
 from services.slam.reading import Reading
-from uvf.maths.planar import IDENTITY, Pose2, compose, inverse
 
 Floats = NDArray[np.float64]
-
-FARTHEST, WIDEST = 5.0, 1.5  # m, rad between two readings: more is no motion, the odometry has leapt
 
 
 def points_of(reading: Reading, reach: float, most: int) -> Floats:
@@ -24,11 +19,3 @@ def points_of(reading: Reading, reach: float, most: int) -> Floats:
     used = used[:: -(-len(used) // most)] if len(used) else used
     points: Floats = reading.beams.directions[used] * reading.ranges[used, None] + np.array(reading.beams.origin)
     return points
-
-
-def step_between(odom_from_last: Pose2, odom_from_base: Pose2) -> Pose2:
-    """last_from_base; none where the odometry tells what no vehicle does."""
-    if not all(isfinite(v) for v in (*odom_from_last, *odom_from_base)):
-        return IDENTITY
-    step = compose(inverse(odom_from_last), odom_from_base)
-    return step if abs(step.x) + abs(step.y) < FARTHEST and abs(step.yaw) < WIDEST else IDENTITY

@@ -12,8 +12,9 @@ from math import hypot
 import numpy as np
 from numpy.typing import NDArray
 
+from services.slam.logs.leaps import step_between
 from services.slam.maps.shared_tiles import Evidence, SharedTiles
-from services.slam.matching.points import points_of, step_between
+from services.slam.matching.points import points_of
 from services.slam.method import Estimate, Keyframe
 from services.slam.rbpf.fit import Gaussian, Sweep
 from services.slam.rbpf.motion import MotionModel
@@ -49,18 +50,18 @@ class RbpfSlam:
         self._model = MotionModel(p.srr, p.srt, p.str, p.stt)
         self._readings: list[Reading] = []
         self._placed: list[tuple[int, Pose2]] = []
-        self._odometry: Pose2 | None = None
+        self._last: Reading | None = None
         self._driven = self._tracked = IDENTITY
         self._noise = np.zeros((3, 3))
         self._quality = 1.0
 
     def add(self, reading: Reading) -> Estimate:
         sweep = (points_of(reading, self.params.maxUrange, POINTS), reading.beams.origin)
-        last, self._odometry = self._odometry, reading.odom_from_base
+        last, self._last = self._last, reading
         if last is None:
             self._begin(reading)
             return self._place()
-        step = step_between(last, reading.odom_from_base)
+        step = step_between(last, reading) or IDENTITY
         self._driven, self._tracked = compose(self._driven, step), compose(self._tracked, step)
         if hypot(step.x, step.y) > STOOD or abs(step.yaw) > STOOD:
             self._track(sweep)

@@ -49,6 +49,16 @@ def test_kernels_are_compiled_once_for_all_vehicles_of_a_method(site, monkeypatc
     assert len(warmed) == 1
 
 
+def test_a_method_is_made_for_the_warm_up_and_for_each_instance_and_no_more(site, monkeypatch):
+    made, make = [], slam_build.make_method
+    monkeypatch.setattr(slam_build, "make_method", lambda *of: made.append(of) or make(*of))
+    hosts = build_slam(replace(site, members={**site.members, "second": replace(site.members["burger"], name="second")}))
+    assert len(made) == 1
+    for host in hosts:
+        host.make()
+    assert len(made) == 3
+
+
 def test_a_mission_without_ground_vehicles_gets_none(site):
     air = replace(site, members={n: m for n, m in site.members.items() if m.file.kind != "ground"})
     assert [host for build in BUILDS for host in build(air)] == []

@@ -9,6 +9,7 @@ import pytest
 
 from schemas.convert import occupancy_cells, planar_pose, stamp, yaw_of
 from schemas.messages import Event, FrameTransform, LaserScan, PlaceRequest, RelocalizeRequest, Vector3
+from services.slam import localization_service
 from services.slam.build import build
 from services.slam.localization import known_map
 from services.slam.localization.params import FilterParams
@@ -137,6 +138,24 @@ def test_a_map_that_is_of_no_use_is_told_of_once():
     said = drive(service(None), readings(ROOM, ellipse(8)), empty)
     (event,) = [e for out in said for e in out["events"]]
     assert event.cause == "map/known: a map with 0 cells of walls beside free floor: there is nothing to be localized by"
+
+
+def test_a_map_of_no_use_is_looked_at_once(monkeypatch):
+    looks, of_grid = [], localization_service.of_grid
+    monkeypatch.setattr(localization_service, "of_grid", lambda *map_: looks.append(map_) or of_grid(*map_))
+    empty = as_message(replace(map_of(ROOM).grid, cells=np.zeros((4, 4), dtype=np.int8)), "world", 1.0)
+    drive(service(None), readings(ROOM, ellipse(8)), empty)
+    assert len(looks) == 1
+
+
+@pytest.mark.parametrize("sigma", [1e200, 1e4, 1e-200, -1.0, np.inf, np.nan])
+@pytest.mark.parametrize("of", ["position_sigma", "yaw_sigma"])
+def test_a_pose_that_is_less_sure_than_any_map_is_wide_is_refused(room, sigma, of):
+    known, _ = moved(room, ellipse(8))
+    asked = {2: {"pose": [PlaceRequest(pose=planar_pose(*WORLD_FROM_MAP), **{of: sigma})]}}
+    said = drive(service(known), readings(ROOM, ellipse(4)), asked=asked)
+    (reply,) = said[2]["pose"]
+    assert not reply.accepted and reply.reason.startswith("a pose of finite numbers is needed, with sigmas from 0.0001 to 1000")
 
 
 def test_parameters_count_while_running(room):

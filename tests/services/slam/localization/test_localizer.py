@@ -1,13 +1,18 @@
 """A vehicle on a known map: tracked, found from nothing, found again after it was carried away."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from services.slam.localization import known_map
 from services.slam.localization.localizer import Localizer, State
 from services.slam.localization.params import FilterParams
+from services.slam.localization.particle_filter import IN_GROUP, MOST_GROUPS
+from services.slam.localization.whole_map import MOST_KEPT, Lately
+from services.slam.matching.cloud import cloud_of
 from tests.planar_rays import rectangles
-from tests.services.slam.localization.places import ROOM, SYMMETRIC, ellipse, errors, map_of, readings
+from tests.services.slam.localization.places import ROOM, SYMMETRIC, ellipse, errors, map_of, readings, seen
 from uvf.maths.planar import IDENTITY, Pose2, compose
 from uvf.runtime.map_file import GridMap
 
@@ -153,6 +158,31 @@ def test_a_map_of_cells_serves_too(room):
     localizer = Localizer(known_map.of_grid(grid), PARAMS, 1, pose(way[0]))
     metres, radians = rmse(run(localizer, readings(ROOM, way))[5:], way[5:])
     assert metres < 0.03 and np.degrees(radians) < 0.7
+
+
+def test_who_turns_on_the_spot_for_hours_keeps_no_more_of_what_was_seen(room):
+    way = np.column_stack((np.full(200, -0.3), np.full(200, 0.1), 0.25 * np.arange(200)))
+    lately = Lately()
+    for at, reading in zip(way, readings(ROOM, way, worse=1.0), strict=True):
+        lately.add(pose(at), cloud_of(reading).points)
+    assert lately.way == 0.0 and len(lately) == MOST_KEPT
+
+
+def test_a_lidar_that_shows_another_room_each_time_costs_no_more_particles_each_time(room):
+    rng, localizer = np.random.default_rng(3), Localizer(room, FilterParams(most_particles=500), 1)
+    for k, reading in enumerate(readings(ROOM, ellipse(120))):
+        anywhere = rng.uniform((-1.5, -0.8, -3.0), (1.5, 0.8, 3.0))
+        localizer.add(replace(reading, ranges=seen((SYMMETRIC, ROOM)[k % 2], anywhere, rng)))
+    assert len(localizer.filter.poses) < 500 + 2 * MOST_GROUPS * IN_GROUP
+
+
+def test_odometry_that_is_no_number_is_a_step_that_nobody_knows(room):
+    way = ellipse(40)
+    drive = readings(ROOM, way)
+    for k, wrong in ((20, np.nan), (25, np.inf)):
+        drive[k] = replace(drive[k], odom_from_base=Pose2(wrong, 0.0, wrong))
+    estimates = run(Localizer(room, PARAMS, 1, pose(way[0])), drive)
+    assert errors([estimates[-1].map_from_base], way[-1:])[0][0] < 0.05
 
 
 def test_the_same_seed_gives_the_same_poses(room):
