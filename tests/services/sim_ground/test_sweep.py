@@ -1,5 +1,6 @@
 """A lidar that takes its time: each beam from where the body was at its moment."""
 
+import copy
 from dataclasses import replace
 
 import msgspec
@@ -8,6 +9,7 @@ import pytest
 
 from schemas import topics
 from schemas.convert import seconds
+from services.sim_ground.rig import Moment, Rig
 from tests.services.sim_ground.ground_scene import body_at, scene_of
 from tests.services.sim_ground.ride import ride, site_with
 from tests.services.sim_ground.test_lidar import QUIET
@@ -68,16 +70,34 @@ def test_standing_still_a_sweep_is_a_scan():
     np.testing.assert_allclose(swept(noisy, lambda t: standing), scan, atol=1e-9)
 
 
+def slow_site(folder, sweep_time, latency=0.0):
+    """The burger in the house, its lidar changed."""
+    site = site_with(folder, {"burger": (2.2, 1.3, 0.5)})
+    burger = site.members["burger"]
+    lidar = msgspec.structs.replace(burger.file.sensors.lidar, sweep_time=sweep_time, latency=latency)
+    sensors = msgspec.structs.replace(burger.file.sensors, lidar=lidar)
+    return replace(site, members={"burger": replace(burger, file=msgspec.structs.replace(burger.file, sensors=sensors))})
+
+
 @pytest.mark.parametrize("sweep_time", [0.0, 0.15])
 def test_the_stamp_is_that_of_the_first_beam_and_the_scan_comes_after_the_last(tmp_path, sweep_time):
-    site = site_with(tmp_path, {"burger": (2.2, 1.3, 0.5)})
-    burger = site.members["burger"]
-    sensors = msgspec.structs.replace(
-        burger.file.sensors, lidar=msgspec.structs.replace(burger.file.sensors.lidar, sweep_time=sweep_time, latency=0.03)
-    )
-    site = replace(site, members={"burger": replace(burger, file=msgspec.structs.replace(burger.file, sensors=sensors))})
-    record = ride(site, 1.0, {"burger": lambda t: Twist(0.0, 1.0)})
+    record = ride(slow_site(tmp_path, sweep_time, latency=0.03), 1.0, {"burger": lambda t: Twist(0.0, 1.0)})
     stamps = [seconds(scan.timestamp) for scan in record.of(topics.SCAN)]
     assert stamps == pytest.approx([0.2 * k - sweep_time for k in range(1, 5)])
     sent = [stamp_ns / 1e9 for key, stamp_ns, _ in record.data if key == topics.SCAN.at("burger")]
     assert sent == pytest.approx([0.2 * k + 0.03 for k in range(1, 5)])
+
+
+def test_a_state_that_is_kept_within_a_sweep_goes_on_with_its_first_half(tmp_path):
+    site = slow_site(tmp_path, 0.2)
+    member = site.members["burger"]
+    rig = Rig(site, member, member.file.ground, BOX)
+
+    def scan(rig, steps, turn):
+        return [rig.read(0.01 * k, Moment(body_at(yaw=turn * 0.01 * k))).get("scan") for k in steps][-1]
+
+    scan(rig, range(1, 31), 1.5)
+    kept = copy.deepcopy(rig)
+    assert scan(rig, range(31, 41), -3.0).ranges != scan(copy.deepcopy(kept), range(31, 41), 1.5).ranges
+    whole = Rig(site, member, member.file.ground, BOX)
+    assert scan(kept, range(31, 41), 1.5).ranges == scan(whole, range(1, 41), 1.5).ranges
