@@ -19,8 +19,8 @@ from numpy.typing import NDArray
 
 from benchmarks.timing import stopwatch
 from schemas import topics
-from schemas.convert import seconds, stamp, yaw_of
-from schemas.messages import MapFix, NavState, WheelCommand
+from schemas.convert import seconds, stamp
+from schemas.messages import MapFix, WheelCommand
 from services.sim_ground.body import BodyState
 from services.sim_ground.build import build as simulator
 from services.slam.build import build as slam
@@ -32,6 +32,7 @@ from services.slam.reading import Reading
 from uvf.launch.bench import Figures
 from uvf.launch.recorder import attachments
 from uvf.launch.slam_cli import DEFAULT_METHOD
+from uvf.launch.truth import poses_at, true_poses
 from uvf.maths.kinematics import DifferentialDrive, Twist, WheelSpeeds
 from uvf.maths.planar import Pose2
 from uvf.maths.planar_arrays import composed, inverted, wrapped
@@ -109,9 +110,8 @@ def without_files(log: Path) -> Path:
 def at_the_middle(log: LaserLog) -> LaserLog:
     """All beams taken to be measured half a sweep after the stamp."""
     assert log.odometry is not None
-    t, (x, y, yaw) = log.odometry.t, log.odometry.odom_from_base.T
-    stamps, columns = log.stamps + SWEEP / 2, (x, y, np.unwrap(yaw))
-    poses = np.column_stack([np.interp(stamps, t, column) for column in columns])
+    (x, y, yaw), stamps = log.odometry.odom_from_base.T, log.stamps + SWEEP / 2
+    poses = poses_at(np.column_stack((log.odometry.t, x, y, np.unwrap(yaw))), stamps)
     readings = [
         Reading(s, r.ranges, r.beams, Pose2(*pose)) for s, r, pose in zip(stamps.tolist(), log.readings, poses.tolist(), strict=True)
     ]
@@ -126,7 +126,7 @@ class Truth:
     walls: Floats
 
     def at(self, stamps: Floats) -> Floats:
-        return np.column_stack([np.interp(stamps, self.track[:, 0], column) for column in self.track[:, 1:].T])
+        return poses_at(self.track, stamps)
 
     def off(self, readings: Sequence[Reading], world_from_base: Floats) -> tuple[float, float]:
         """m, mean and 95th percentile: from what was hit to the nearest surface."""
@@ -150,10 +150,7 @@ def _to_segments(points: Floats, walls: Floats) -> Floats:
 
 
 def truth_of(log: Path, site: Site) -> Truth:
-    states = [NavState.FromString(s.payload) for s in read_log(log) if s.key == topics.TRUTH.at(VEHICLE)]
-    track = np.array([(seconds(s.timestamp), s.position.x, s.position.y, yaw_of(s.orientation)) for s in states])
-    track[:, 3] = np.unwrap(track[:, 3])
-    return Truth(track, floor_segments(site.world, lidar_of(site).mount.xyz[2]))
+    return Truth(true_poses(read_log(log), VEHICLE), floor_segments(site.world, lidar_of(site).mount.xyz[2]))
 
 
 def lidar_of(site: Site) -> Lidar:
