@@ -22,6 +22,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from benchmarks.logs import has_relations, logs_below
 from services.slam.evaluation.odometry_noise import OdometryNoise, disturbed
 from services.slam.evaluation.relations import Relations, read_relations, relation_errors
 from services.slam.evaluation.variants import halves
@@ -30,14 +31,13 @@ from services.slam.localization.beams import beams_of, field_of, fits_at
 from services.slam.localization.localizer import Localizer, State
 from services.slam.localization.params import FilterParams
 from services.slam.logs.laser_log import LaserLog
-from services.slam.logs.opening import CARMEN_ENDINGS, open_log
+from services.slam.logs.opening import open_log
 from services.slam.methods import make_method, method_params
 from services.slam.reading import Reading
 from uvf.launch.bench import Case, Figures
 from uvf.launch.slam_cli import DEFAULT_METHOD
 from uvf.maths.planar import Pose2, compose, inverse
 from uvf.maths.planar_arrays import composed, inverted, steps
-from uvf.runtime.params import BadInput
 
 Floats = NDArray[np.float64]
 Drive = list[Reading]
@@ -206,20 +206,12 @@ def over_seeds(one: "partial[dict[str, float]]", name: str, data: Path | None) -
     return {name: {"seeds": seeds, "map %": 100.0 * prepared(one.args[0]).part, **row}}
 
 
-def _logs(data: Path) -> Iterator[Path]:
-    for path in sorted((data / "slam").rglob("*")):
-        if path.suffix in CARMEN_ENDINGS and any(path.parent.glob("*.relations")):
-            yield path
-
-
 def cases(data: Path | None) -> dict[str, Case]:
     """Raises BadInput without a folder of logs."""
-    if data is None or not (data / "slam").is_dir():
-        raise BadInput(
-            f"bench localization needs logs: {f'there is no folder {data}/slam' if data else 'name the folder above slam/ with --data'}"
-        )
     every: dict[str, Case] = {}
-    for path in _logs(data):
+    for log, path in logs_below(data, "localization").items():
+        if not has_relations(path):
+            continue
         ways = {
             "tracked": partial(tracked, path, unchanged),
             "odometry": partial(tracked, path, worse_odometry),
@@ -227,7 +219,7 @@ def cases(data: Path | None) -> dict[str, Case]:
             "global": partial(found, path, False),
             "kidnapped": partial(found, path, True),
         }
-        every |= {f"{path.stem}:{what}": partial(over_seeds, one, f"{path.stem}:{what}") for what, one in ways.items()}
+        every |= {f"{log}:{what}": partial(over_seeds, one, f"{log}:{what}") for what, one in ways.items()}
     return every
 
 

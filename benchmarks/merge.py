@@ -7,7 +7,6 @@ CPU and wall time are those of the merging, after a warm-up; pictures are put in
 """
 
 import time
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache, partial
 from itertools import combinations
@@ -16,10 +15,11 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from benchmarks.logs import has_relations, logs_below
 from services.slam.evaluation.relations import Relations, read_relations, relation_errors
 from services.slam.evaluation.run import Run, run_over
 from services.slam.evaluation.variants import halves
-from services.slam.logs.opening import CARMEN_ENDINGS, open_log
+from services.slam.logs.opening import open_log
 from services.slam.maps.session import Session
 from services.slam.merging.build import warm_up
 from services.slam.merging.team import Team
@@ -31,7 +31,6 @@ from uvf.launch.slam.results import grid_of
 from uvf.launch.slam_cli import DEFAULT_METHOD
 from uvf.maths.planar import Pose2
 from uvf.maths.planar_arrays import composed, inverted
-from uvf.runtime.params import BadInput
 
 Floats = NDArray[np.float64]
 
@@ -105,7 +104,7 @@ def errors(relations: Relations, stamps: Floats, poses: Floats) -> dict[str, flo
     }
 
 
-def cut(path: Path, per_cent: int, data: Path | None) -> Figures:
+def cut(log: str, path: Path, per_cent: int, data: Path | None) -> Figures:
     first, second = parts(path, per_cent / 100.0, True)
     found = merged({"first": session_of(first), "second": laid_anywhere(session_of(second), per_cent)})
     row = found.figures
@@ -118,32 +117,26 @@ def cut(path: Path, per_cent: int, data: Path | None) -> Figures:
         row |= {"agreement": round(group.quality, 3)} | found.figures
         folder = settings.runs_folder() / "slam" / "bench"
         folder.mkdir(parents=True, exist_ok=True)
-        draw_team(group, grid_of(found.team.session_of(group).keyframes, RESOLUTION), folder / f"merge-{path.stem}-{per_cent}.png")
-    return {f"{path.stem}:cut {per_cent}": row}
+        picture = folder / f"merge-{log.replace('/', '-')}-{per_cent}.png"
+        draw_team(group, grid_of(found.team.session_of(group).keyframes, RESOLUTION), picture)
+    return {f"{log}:cut {per_cent}": row}
 
 
-def strangers(path: Path, other: Path, data: Path | None) -> Figures:
-    sessions = {name: session_of(parts(p, BEGINNING, False)[0]) for name, p in (("one", path), ("other", other))}
-    return {f"{path.stem}+{other.stem}": merged(sessions).figures}
-
-
-def logs(data: Path) -> Iterator[Path]:
-    yield from sorted(p for p in (data / "slam").rglob("*") if p.suffix in CARMEN_ENDINGS)
+def strangers(name: str, path: Path, other: Path, data: Path | None) -> Figures:
+    sessions = {of: session_of(parts(p, BEGINNING, False)[0]) for of, p in (("one", path), ("other", other))}
+    return {name: merged(sessions).figures}
 
 
 def cases(data: Path | None) -> dict[str, Case]:
     """Raises BadInput without a folder of logs."""
-    if data is None or not (data / "slam").is_dir():
-        raise BadInput(
-            f"bench merge needs logs: {f'there is no folder {data}/slam' if data else 'name the folder above slam/ with --data'}"
-        )
+    logs = logs_below(data, "merge")
     found: dict[str, Case] = {}
-    for path in logs(data):
-        if any(path.parent.glob("*.relations")):
-            found |= {f"{path.stem}:cut {n}": partial(cut, path, n) for n in CUTS}
-    for path, other in combinations(logs(data), 2):
-        if path.parent != other.parent:
-            found[f"{path.stem}+{other.stem}"] = partial(strangers, path, other)
+    for log, path in logs.items():
+        if has_relations(path):
+            found |= {f"{log}:cut {n}": partial(cut, log, path, n) for n in CUTS}
+    for (one, path), (other, other_path) in combinations(logs.items(), 2):
+        if path.parent != other_path.parent:
+            found[f"{one}+{other}"] = partial(strangers, f"{one}+{other}", path, other_path)
     return found
 
 

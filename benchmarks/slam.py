@@ -18,6 +18,7 @@ import typer
 import yaml
 from numpy.typing import NDArray
 
+from benchmarks.logs import has_relations, logs_below
 from services.slam.evaluation.relations import Relations, relation_errors
 from services.slam.evaluation.run import run_over
 from services.slam.evaluation.variants import VARIANTS
@@ -58,24 +59,14 @@ class Outcome:
 
 def cases(data: Path | None) -> dict[str, Case]:
     """Raises BadInput without a folder of logs."""
-    if data is None or not (data / "slam").is_dir():
-        raise BadInput(f"bench slam needs logs: {f'there is no folder {data}/slam' if data else 'name the folder above slam/ with --data'}")
     found: dict[str, Case] = {}
-    for name, log in _logs(data / "slam").items():
-        has_relations = any(log.parent.glob("*.relations"))
+    for name, log in logs_below(data, "slam", (*CARMEN_ENDINGS, MCAP_ENDING)).items():
         for method in METHODS:
-            varied = method == DEFAULT_METHOD and has_relations
+            varied = method == DEFAULT_METHOD and has_relations(log)
             for variant in VARIANTS if varied else (UNCHANGED,):
                 found[f"{name}:{method}:{variant}"] = partial(_case, log, name, method, variant)
         found |= {f"{name}:published:{by}": _constant({f"{name}:published:{by}": row}) for by, row in _published(name).items()}
     return found
-
-
-def _logs(folder: Path) -> dict[str, Path]:
-    """By stem; where two folders have the same, by folder and stem."""
-    paths = sorted(p for p in folder.rglob("*") if p.suffix in (*CARMEN_ENDINGS, MCAP_ENDING))
-    stems = [p.stem for p in paths]
-    return {p.stem if stems.count(p.stem) == 1 else f"{p.parent.name}/{p.stem}": p for p in paths}
 
 
 def _constant(rows: Rows) -> Callable[[Path | None], Rows]:

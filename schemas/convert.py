@@ -5,6 +5,7 @@ from numpy.typing import NDArray
 
 from schemas.messages import FrameTransform, Grid, LaserScan, Mode, PackedElementField, Pose, Quaternion, Timestamp, Vector3
 from uvf.maths.planar import Pose2
+from uvf.maths.rotations import from_euler
 
 Floats = NDArray[np.float64]
 
@@ -62,6 +63,18 @@ def planar_pose(x: float, y: float, yaw: float, z: float = 0.0) -> Pose:
 def pose2_of(pose: Pose) -> Pose2:
     """A pose seen from above."""
     return Pose2(pose.position.x, pose.position.y, yaw_of(pose.orientation))
+
+
+def planar_frame(t: float, parent: str, child: str, parent_from_child: Pose2) -> FrameTransform:
+    """Where one frame lies in another, both by their full names."""
+    x, y, yaw = parent_from_child
+    return FrameTransform(
+        timestamp=stamp(t),
+        parent_frame_id=parent,
+        child_frame_id=child,
+        translation=Vector3(x=x, y=y),
+        rotation=quaternion(from_euler(0.0, 0.0, yaw)),
+    )
 
 
 def pose2_of_frame(transform: FrameTransform) -> Pose2:

@@ -6,14 +6,13 @@ import numpy as np
 from msgspec import Meta
 from numpy.typing import NDArray
 
-from schemas.convert import quaternion, seconds, stamp
-from schemas.messages import Event, FrameTransform, LaserScan, MapFix, Vector3
+from schemas.convert import planar_frame, seconds, stamp
+from schemas.messages import Event, FrameTransform, LaserScan, MapFix
 from services.slam.correction import toward
 from services.slam.deskew import straightened
 from services.slam.reading import Beams, Reading
 from services.slam.scan_message import Shape, beams_of, is_usable, shape_of
 from uvf.maths.planar import IDENTITY, Pose2, compose, inverse
-from uvf.maths.rotations import from_euler
 from uvf.maths.transforms import planar
 from uvf.runtime.frames import FrameBuffer
 from uvf.runtime.service import Params, Service
@@ -95,14 +94,7 @@ class PlacingService(Service):
         return self._transform(t, "map", "odom", self._published)
 
     def _transform(self, t: float, parent: str, child: str, parent_from_child: Pose2) -> FrameTransform:
-        x, y, heading = parent_from_child
-        return FrameTransform(
-            timestamp=stamp(t),
-            parent_frame_id=parent if parent == "world" else f"{self._vehicle}/{parent}",
-            child_frame_id=f"{self._vehicle}/{child}",
-            translation=Vector3(x=x, y=y),
-            rotation=quaternion(from_euler(0.0, 0.0, heading)),
-        )
+        return planar_frame(t, parent if parent == "world" else self._frame(parent), self._frame(child), parent_from_child)
 
 
 def fix_message(t: float, map_from_base: Pose2, covariance: Floats, quality: float) -> MapFix:

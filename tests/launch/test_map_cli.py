@@ -64,6 +64,13 @@ def test_what_cannot_be_compared_is_one_line(uvf, tmp_path):
         assert code == 2 and part in said and said.count("\n") == 1
 
 
+@pytest.mark.parametrize("shift", [("nan", "0", "0"), ("0", "inf", "0")])
+def test_a_shift_that_is_no_number_is_one_line(uvf, tmp_path, shift):
+    save_map(GridMap(ROOM, 0.05, IDENTITY), tmp_path / "a.yaml")
+    code, said = uvf("compare", "a.yaml", "a.yaml", "--shift", *shift)
+    assert (code, said.count("\n")) == (2, 1) and "three finite numbers are needed" in said
+
+
 def test_a_map_is_measured_against_a_world(uvf, tmp_path):
     save_map(GridMap(np.full((20, 20), -1, dtype=np.int8), 0.05, IDENTITY), tmp_path / "a.yaml")
     code, said = uvf("compare", "a.yaml", "--world", "watkins", "--out", "a.png")

@@ -151,6 +151,12 @@ def test_a_map_that_was_renamed_is_still_found(tmp_path):
     assert load_map(tmp_path / "m.pgm").cells.tolist() == [[100, 0]]
 
 
+def test_a_file_of_another_kind_is_not_taken_for_the_map_beside_it(tmp_path):
+    save_map(GridMap(np.zeros((4, 4), dtype=np.int8), 0.05, Pose2(0.0, 0.0, 0.0)), tmp_path / "first.yaml")
+    with pytest.raises(BadInput, match=r"first\.npz: no map by its ending"):
+        load_map(tmp_path / "first.npz")
+
+
 def test_a_picture_without_its_yaml_is_told(tmp_path):
     with pytest.raises(BadInput, match="no such file; the picture's yaml"):
         load_map(tmp_path / "m.pgm")

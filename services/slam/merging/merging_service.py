@@ -5,12 +5,11 @@ from collections.abc import Iterable, Mapping
 import numpy as np
 
 from schemas import topics
-from schemas.convert import occupancy_grid, quaternion, stamp
-from schemas.messages import Event, FrameTransform, Grid, MapSession, Vector3
+from schemas.convert import occupancy_grid, planar_frame, stamp
+from schemas.messages import Event, FrameTransform, Grid, MapSession
 from services.slam.maps.session import Session
 from services.slam.maps.tiles import TileMap
 from services.slam.merging.team import Group, Team
-from uvf.maths.rotations import from_euler
 from uvf.runtime.params import BadInput
 from uvf.runtime.service import Outputs, Service, each_vehicle
 
@@ -87,14 +86,7 @@ class MergingService(Service):
         return [_event(t, Event.INFO, f"the maps of {' and '.join(group.names)} are one", cause)]
 
     def _place(self, t: float, name: str, first: str) -> FrameTransform:
-        x, y, yaw = self._team.team_from_map(name)
-        return FrameTransform(
-            timestamp=stamp(t),
-            parent_frame_id=f"{first}/map",
-            child_frame_id=f"{name}/map",
-            translation=Vector3(x=x, y=y),
-            rotation=quaternion(from_euler(0.0, 0.0, yaw)),
-        )
+        return planar_frame(t, f"{first}/map", f"{name}/map", self._team.team_from_map(name))
 
 
 def _names(groups: Iterable[Group]) -> set[str]:

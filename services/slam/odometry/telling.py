@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from schemas.convert import planar_pose, quaternion, stamp
+from schemas.convert import planar_frame, planar_pose, quaternion, stamp
 from schemas.messages import EstimateQuality, Event, FrameTransform, KeyValuePair, NavState, Odometry, Vector3
 from services.slam.odometry.calibration import Scales, WheelCalibration
 from services.slam.odometry.filter import DriveFilter
@@ -48,14 +48,7 @@ def pose_covariance(told: Odometry) -> Floats:
 
 
 def moving(t: float, vehicle: str, odom_from_base: Pose2) -> FrameTransform:
-    x, y, heading = odom_from_base
-    return FrameTransform(
-        timestamp=stamp(t),
-        parent_frame_id=f"{vehicle}/odom",
-        child_frame_id=f"{vehicle}/base_footprint",
-        translation=Vector3(x=x, y=y),
-        rotation=quaternion(from_euler(0.0, 0.0, heading)),
-    )
+    return planar_frame(t, f"{vehicle}/odom", f"{vehicle}/base_footprint", odom_from_base)
 
 
 def nav_state(t: float, world_from_base: Pose2, speeds: tuple[float, float], position_sigma: float) -> NavState:

@@ -73,6 +73,8 @@ def find_map(name: str, folder: Path = Path()) -> GridMap:
 def load_map(path: Path) -> GridMap:
     """A map by its yaml, or by its picture when the yaml lies beside it under the same name. Raises BadInput."""
     if path.suffix not in YAML:
+        if path.suffix and path.suffix.lower() not in PICTURES:
+            raise BadInput(f"{path}: no map by its ending: a map is a .yaml with a picture (.pgm or .png) beside it")
         path = path.with_suffix(YAML[0])
     if not path.is_file():
         raise BadInput(f"{path}: no such file; the picture's yaml says its resolution and origin")

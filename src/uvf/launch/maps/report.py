@@ -2,7 +2,7 @@
 
 import io
 from collections.abc import Iterator
-from math import radians
+from math import isfinite, radians
 from pathlib import Path
 
 import numpy as np
@@ -103,6 +103,9 @@ def _placed(grid: GridMap, shift: Shift) -> GridMap:
 
 
 def _pose(shift: Shift) -> Pose2:
+    """Raises BadInput."""
+    if not all(isfinite(v) for v in shift):
+        raise BadInput(f"--shift: {' '.join(map(str, shift))}: three finite numbers are needed")
     return Pose2(shift[0], shift[1], radians(shift[2]))
 
 
