@@ -5,11 +5,11 @@ from dataclasses import dataclass
 import pytest
 
 from schemas import topics
-from schemas.messages import Clock, NavState, PoseInFrame
+from schemas.messages import Clock, NavState, Odometry, PoseInFrame
 from uvf.runtime.bus import LocalBus, Sample
 from uvf.runtime.params import BadInput
 from uvf.runtime.recording import Recorder, log_begin
-from uvf.runtime.replay import into_service, logged_site, onto_bus
+from uvf.runtime.replay import differing, into_service, logged_site, onto_bus
 from uvf.runtime.service import Service
 from uvf.runtime.site import ROOT, Host
 
@@ -139,3 +139,26 @@ def test_nothing_is_written_outside_of_its_own_folder(tmp_path):
     with pytest.raises(BadInput), logged_site(where):
         pass
     assert not (tmp_path / "out").exists()
+
+
+def told(covariance=(0.25, 0.5), text="0.0012345678901234"):
+    message = Odometry(pose_covariance=covariance)
+    message.metadata.add(key="a", value=text)
+    return message
+
+
+@pytest.mark.parametrize(
+    ("other", "fields"),
+    [
+        (told((0.25, 0.5 + 1e-12)), []),
+        (told((0.25, 0.501)), ["pose_covariance"]),
+        (told((0.25,)), ["pose_covariance"]),
+        (told(text="0.0012345678901235"), []),
+        (told(text="1.2345678901234e-03"), []),
+        (told(text="0.00124"), ["metadata[0].value"]),
+        (told(text="nan"), ["metadata[0].value"]),
+        (told(text="wheels"), ["metadata[0].value"]),
+    ],
+)
+def test_what_processors_round_differently_is_no_difference(other, fields):
+    assert [name for name, *_ in differing(told(), other, 1e-9)] == fields

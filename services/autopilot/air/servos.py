@@ -54,5 +54,8 @@ class SurfaceTrim:
     def _lacks(self, asked: float, dt: float) -> float:
         """rad that the surface cannot give of what is asked."""
         target, most = clip(asked, self._servo.limit), self._servo.rate * dt
-        self._reached = target if self._reached is None else self._reached + clip(target - self._reached, most)
+        if self._reached is None or abs(target - self._reached) <= most:
+            self._reached = target  # not by adding the difference, whose rounding would be taken for something that is lacking
+        else:
+            self._reached += clip(target - self._reached, most)
         return asked - self._reached

@@ -1,12 +1,14 @@
 """A log put to use again: onto the bus at its own pace, or into one service whose outputs are compared."""
 
 import contextlib
+import re
 import tempfile
 import time
 from collections import defaultdict, deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any, TypeGuard
 
 from google.protobuf.message import Message
 
@@ -19,6 +21,7 @@ from uvf.runtime.shell import Shell
 from uvf.runtime.site import Host, Site, load_site
 
 TOLERANCE = 1e-9
+FLOAT = re.compile(r"-?\d+\.\d+(e-?\d+)?|-?\d+e-?\d+")
 
 
 @contextlib.contextmanager
@@ -189,9 +192,18 @@ def differing(a: Message, b: Message, tolerance: float, prefix: str = "") -> Ite
         elif _is_list(x) and len(x) == len(y) and field.message_type is not None:
             for i, (p, q) in enumerate(zip(x, y, strict=True)):
                 yield from differing(p, q, tolerance, f"{name}[{i}].")
-        elif x != y and not (isinstance(x, float) and abs(x - y) <= tolerance):
+        elif x != y and not _near(x, y, tolerance):
             yield name, str(x)[:60], str(y)[:60]
 
 
-def _is_list(value: object) -> bool:
+def _near(x: object, y: object, tolerance: float) -> bool:
+    """Whether both are floats, lists of these, or such as text, that differ by no more."""
+    if isinstance(x, str) and isinstance(y, str):
+        return FLOAT.fullmatch(x) is not None and FLOAT.fullmatch(y) is not None and abs(float(x) - float(y)) <= tolerance
+    if _is_list(x) and _is_list(y):
+        return len(x) == len(y) and all(p == q or _near(p, q, tolerance) for p, q in zip(x, y, strict=True))
+    return isinstance(x, float) and isinstance(y, float) and abs(x - y) <= tolerance
+
+
+def _is_list(value: object) -> TypeGuard[Sequence[Any]]:
     return isinstance(value, Sequence) and not isinstance(value, str | bytes)

@@ -88,3 +88,12 @@ def test_the_stops_of_the_vehicle_are_those_of_the_commands():
     assert surfaces.aileron == 0.2
     assert abs(surfaces.elevator) <= 0.25
     assert abs(surfaces.rudder) == 0.15
+
+
+def test_an_integrator_does_not_wait_for_a_servo_that_keeps_up():
+    trim, plain = SurfaceTrim(Servo(0.4, rate=5.0)), 0.0
+    for k in range(200):
+        asked = 0.02 * math.sin(0.37 * k)
+        trim.step(asked, 1.0, 0.01 * math.cos(0.11 * k), 0.02)
+        plain += 0.01 * math.cos(0.11 * k) * 0.02
+    assert trim.value == pytest.approx(plain, rel=1e-9)
