@@ -11,6 +11,7 @@ from services.slam.made_corridor import there_and_back
 from services.slam.mapping_service import MappingParams, MappingService
 from services.slam.maps.serving import map_servers
 from services.slam.maps.session import Session
+from services.slam.maps.tiles import TileMap
 from services.slam.method import Keyframe, SlamMethod
 from services.slam.methods import METHODS, make_method
 from services.slam.odometry.filter import DriveFilter
@@ -75,7 +76,10 @@ def _left(site: Site, member: Member, mapping: MappingParams, name: str) -> Sess
         raise BadInput(f"session {path}: holds nothing to go on with")
     try:
         method.resume(session, IDENTITY)
-    except ValueError as error:
+        drawn = TileMap(mapping.resolution)
+        drawn.follow(method.keyframes())
+        drawn.cells()
+    except (ValueError, BadInput) as error:
         raise BadInput(f"session {path}: {error}") from error
     return session
 

@@ -69,13 +69,15 @@ class MappingService(PlacingService):
         self._placed = False
         self._map_time = self._session_time = -np.inf
         self._drawn = self._kept = 0
+        self._undrawn = False
 
     def step(self, t: float, scan: LaserScan, frames: FrameBuffer) -> Outputs:
         outputs: dict[str, FrameTransform | Grid | MapFix | MapSession | list[Event]] = {}
+        events: list[Event] = []
         try:
             self._odom_from_base = planar(frames.lookup(self._frame("odom"), self._frame("base_footprint")))
             if (reading := self._reading(scan, frames)) is not None:
-                outputs |= self._look(t, reading)
+                outputs["fix"], events = self._look(t, reading)
             self._placeless_since = None
         except FrameError as error:
             return {"events": self._wait(t, str(error))}
@@ -83,7 +85,11 @@ class MappingService(PlacingService):
         if not self._placed:
             outputs["placing"] = self._transform(t, "world", "map", self._world_from_map)
             self._placed = True
-        return outputs | self._grid(t) | self._session(t)
+        try:
+            outputs |= self._grid(t)
+        except BadInput as error:
+            events += self._cannot_draw(t, str(error))
+        return outputs | self._session(t) | {"events": events}
 
     def recall(self, session: MapSession | None = None, correction: FrameTransform | None = None) -> None:
         """Goes on where the vehicle has been, with the session published last if the method can; else a new map grows there."""
@@ -95,7 +101,7 @@ class MappingService(PlacingService):
             with suppress(BadInput):
                 self._left = Session.decoded(session.data, "on the bus")
 
-    def _look(self, t: float, reading: Reading) -> dict[str, MapFix | list[Event]]:
+    def _look(self, t: float, reading: Reading) -> tuple[MapFix, list[Event]]:
         guess = compose(self._map_from_odom, reading.odom_from_base)
         if self._begun_elsewhere:
             self._begin(guess)
@@ -107,10 +113,10 @@ class MappingService(PlacingService):
         turn = turned(self._map_from_first.yaw)
         fix = fix_message(reading.t, map_from_base, turn @ estimate.covariance @ turn.T, estimate.quality)
         if distance <= LEAP and abs(moved[2]) <= LEAP_TURN:
-            return {"fix": fix}
+            return fix, []
         cause = f"a place seen again moved the vehicle by {distance:.2f} m and {np.degrees(moved[2]):.1f} deg"
         event = Event(timestamp=stamp(t), severity=Event.INFO, text="map corrected", cause=cause, source="mapping")
-        return {"fix": fix, "events": [event]}
+        return fix, [event]
 
     def _begin(self, map_from_base: Pose2) -> None:
         """After a restart, with the first reading."""
@@ -134,6 +140,13 @@ class MappingService(PlacingService):
         self._map.follow(self._keyframes_in_map())
         cells, (x, y) = self._map.cells()
         return {"map": occupancy_grid(cells, self._map.resolution, float(x), float(y), f"{self._vehicle}/map", t)}
+
+    def _cannot_draw(self, t: float, cause: str) -> list[Event]:
+        """Told once; poses and session go on."""
+        if self._undrawn:
+            return []
+        self._undrawn = True
+        return [Event(timestamp=stamp(t), severity=Event.ERROR, text="the map cannot be drawn", cause=cause, source="mapping")]
 
     def _session(self, t: float) -> dict[str, MapSession]:
         """The same of what another could go on with."""

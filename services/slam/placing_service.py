@@ -21,6 +21,7 @@ from uvf.runtime.vehicle_file import Lidar
 Floats = NDArray[np.float64]
 Positive = Annotated[float, Meta(gt=0)]
 
+MOST_SHAPES = 16  # of scans, that are kept; more come from a lidar whose angles are never the same
 PATIENCE = 2.0  # s without a scan that has a place, until this is told
 
 
@@ -57,6 +58,8 @@ class PlacingService(Service):
         if taken_at <= self._scan_time or not is_usable(scan):
             return None
         if shape_of(scan) not in self._beams:
+            if len(self._beams) == MOST_SHAPES:
+                self._beams.clear()
             base_from_lidar = frames.lookup(self._frame("base_footprint"), scan.frame_id)
             limits = (self._lidar.range_min, self._lidar.range_max)
             self._beams[shape_of(scan)] = beams_of(scan, base_from_lidar, limits, self._lidar.sweeping)

@@ -17,6 +17,7 @@ from services.slam.graph.pose_graph import PoseGraph
 from services.slam.graph.restored import LOOP, add_edges, add_keyframes
 from services.slam.graph.tracker import LocalMap, Tracker
 from services.slam.graph.uncertainty import followed, turned
+from services.slam.logs.leaps import step_between
 from services.slam.maps.session import KINDS, Edges, Session
 from services.slam.matching.cloud import cloud_of
 from services.slam.matching.imls import Match
@@ -32,7 +33,6 @@ RECENT = 12  # keyframes a sweep is matched to
 STOOD = 1e-4  # m, rad: odometry that moves less has not moved
 EDGE_FLOOR = (0.003, 0.001, 0.008)
 """1 sigma of an edge between two keyframes that no match betters: m, rad, rad per rad turned."""
-LEAP, LEAP_TURN = 3.0, 2.0  # m, rad: more between two sweeps is none of a vehicle's motions
 CHANGED, MOST_CHANGED = 0.1, 0.25
 """m by which a range is another one, and the share of them that are others when it is not only people who have moved."""
 DOUBTED = 0.01
@@ -67,7 +67,7 @@ class GraphSlam:
         self._local = LocalMap(point_map([]))
         self._placed: list[_Placed] = []
         self._pose = IDENTITY
-        self._odometry: Pose2 | None = None
+        self._last: Reading | None = None
         self._matched: Reading | None = None
         self._doubted = self._blind = False
         self._near = 0
@@ -140,14 +140,13 @@ class GraphSlam:
             self.closing.settle()
 
     def _step(self, reading: Reading) -> Pose2 | None:
-        """Of the odometry since the last reading; None where it is no number or no vehicle's."""
+        """Of the odometry since the last reading that had one; None where it is no number or no vehicle's."""
         if not np.isfinite(reading.odom_from_base).all():
             return None
-        last, self._odometry = self._odometry, reading.odom_from_base
-        step = compose(inverse(last), reading.odom_from_base) if last else IDENTITY
-        if not (hypot(step[0], step[1]) <= LEAP and abs(step[2]) <= LEAP_TURN):
-            return None
-        self._count(step)
+        last, self._last = self._last, reading
+        step = step_between(last, reading) if last else IDENTITY
+        if step is not None:
+            self._count(step)
         return step
 
     def _count(self, step: Pose2) -> None:

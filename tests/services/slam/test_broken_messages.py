@@ -10,7 +10,7 @@ from schemas.messages import FrameTransform, Imu, KeyValuePair, LaserScan, Odome
 from services.slam.odometry.params import OdometryParams
 from services.slam.odometry.service import OdometryService
 from tests.services.slam.room import ANGLES
-from tests.services.slam.test_services import BURGER, LIDAR, START, drive, frames_with, mapping
+from tests.services.slam.test_services import BURGER, LIDAR, START, drive, frames_with, mapping, scan_at
 
 
 def scan(t, ranges):
@@ -105,3 +105,17 @@ def test_an_odometry_left_by_somebody_else_is_not_taken_up_blindly(left):
     service = OdometryService("v", BURGER, START, OdometryParams())
     service.recall(odometry=Odometry(pose=planar_pose(1.0, 2.0, 0.0), metadata=[KeyValuePair(key=k, value=v) for k, v in left.items()]))
     assert math.isfinite(drive(service, 5)["odometry"].pose.position.x)
+
+
+def test_a_map_that_is_too_large_is_told_of_once_and_the_pose_goes_on(monkeypatch):
+    monkeypatch.setattr("services.slam.maps.tiles.MOST_CELLS", 100)
+    service, said = mapping(map_period=0.1), []
+    for k in range(1, 30):
+        here = (0.06 * k, 0.0, 0.0)
+        frames = frames_with(dict.fromkeys((0.2 * k - 0.05, 0.2 * k), here))
+        said.append(service.step(0.2 * k + 0.01, scan_at(0.2 * k, here), frames))
+    told = [event for out in said for event in out["events"]]
+    assert [event.text for event in told] == ["the map cannot be drawn"]
+    assert "look for a jump in the odometry" in told[0].cause
+    assert all("fix" in out and "correction" in out for out in said)
+    assert not any("map" in out for out in said)

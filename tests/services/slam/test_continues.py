@@ -72,11 +72,15 @@ def test_the_earlier_map_is_there_at_once_and_grows_on(session, tmp_path):
 def test_what_cannot_be_gone_on_with_is_one_line(session, tmp_path):
     session.save(tmp_path / "room.npz")
     replace(session, keyframes=(), edges=type(session.edges)(*(a[:0] for a in vars(session.edges).values()))).save(tmp_path / "empty.npz")
+    last = session.keyframes[-1]
+    away = replace(last, map_from_base=Pose2(5e5, 4e5, 0.0))
+    replace(session, keyframes=(*session.keyframes[:-1], away)).save(tmp_path / "wide.npz")
     (tmp_path / "broken.npz").write_bytes(b"PK\x03\x04 no zip")
     for maps, words in (
         (Maps(continues="none.npz"), "no such file"),
         (Maps(continues="broken.npz"), "not a session"),
         (Maps(continues="empty.npz"), "nothing to go on with"),
+        (Maps(continues="wide.npz"), "look for a jump in the odometry"),
         (Maps(continues="room.npz", known="house", localize="start"), "leave one of them out"),
     ):
         with pytest.raises(BadInput, match=words) as refused:
