@@ -8,8 +8,8 @@ from services.slam.localization.localizer import Localizer
 from services.slam.localization.params import FilterParams
 from services.slam.localization_service import Beginning, LocalizationService
 from services.slam.made_corridor import there_and_back
+from services.slam.map_serving import map_servers
 from services.slam.mapping_service import MappingParams, MappingService
-from services.slam.maps.serving import map_servers
 from services.slam.maps.session import Session
 from services.slam.maps.tiles import TileMap
 from services.slam.method import Keyframe, SlamMethod

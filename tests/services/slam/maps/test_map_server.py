@@ -7,8 +7,8 @@ import pytest
 
 from schemas.convert import occupancy_cells, quaternion, yaw_of
 from schemas.messages import FrameTransform, MapRequest, SaveMapRequest, Vector3
+from services.slam.map_serving import map_servers
 from services.slam.maps.map_server import MapServer
-from services.slam.maps.serving import map_servers
 from uvf.maths.planar import IDENTITY, Pose2
 from uvf.maths.rotations import from_euler
 from uvf.runtime.grid_message import as_map, as_message
