@@ -21,8 +21,8 @@ from services.slam.methods import make_method, method_params
 from uvf.launch.bench import Figures
 from uvf.launch.run import run_lockstep
 from uvf.launch.slam_cli import DEFAULT_METHOD
-from uvf.launch.truth import poses_at, true_poses
-from uvf.maths.planar_arrays import composed, wrapped
+from uvf.launch.truth import true_poses
+from uvf.maths.planar_arrays import composed, interpolated, wrapped
 from uvf.runtime.recording import read_log
 from uvf.runtime.site import load_site
 
@@ -58,7 +58,7 @@ def mapped(log: Path, folder: Path) -> tuple[float, float, float]:
         method.add(reading)
     method.finish()
     Session(tuple(method.keyframes()), NO_EDGES, DEFAULT_METHOD, {}).save(folder / "known.npz")
-    x, y, yaw = poses_at(true_poses(read_log(log), VEHICLE), np.array(readings.stamps[:1]))[0].tolist()
+    x, y, yaw = interpolated(true_poses(read_log(log), VEHICLE), np.array(readings.stamps[:1]))[0].tolist()
     return x, y, yaw
 
 
@@ -79,7 +79,7 @@ def _row(log: Path, world_from_map: tuple[float, float, float]) -> dict[str, flo
     stamps = np.array([seconds(f.timestamp) for f in fixes])
     truth = true_poses(read_log(log), VEHICLE)
     told = composed(np.array(world_from_map), np.array([(f.x, f.y, f.yaw) for f in fixes]))
-    off = told - poses_at(truth, stamps)
+    off = told - interpolated(truth, stamps)
     off[:, 2] = wrapped(off[:, 2])
     wrong = np.flatnonzero((np.hypot(*off[:, :2].T) > NEAR) | (np.abs(off[:, 2]) > NEAR_TURN))
     settled = stamps > max(SETTLED, stamps[wrong[-1]] if len(wrong) else 0.0)

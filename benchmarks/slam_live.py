@@ -30,9 +30,9 @@ from uvf.client import Client
 from uvf.launch import catalogue, settings
 from uvf.launch.apart import apart
 from uvf.launch.bench import Figures
-from uvf.launch.truth import poses_at, true_poses, within
+from uvf.launch.truth import true_poses, within
 from uvf.maths.planar import IDENTITY
-from uvf.maths.planar_arrays import wrapped
+from uvf.maths.planar_arrays import interpolated, wrapped
 from uvf.runtime.bus import LocalBus, Sample
 from uvf.runtime.grid_message import as_map
 from uvf.runtime.map_file import GridMap
@@ -122,7 +122,7 @@ class Run:
         if not len(self.poses) or not len(self.truth):
             raise BadInput(f"the log of the run holds no poses of '{VEHICLE}', or not the true ones")
         told = self.poses[within(self.truth, self.poses[:, 0])]
-        off = told[:, 1:] - poses_at(self.truth, told[:, 0])
+        off = told[:, 1:] - interpolated(self.truth, told[:, 0])
         distances, turns = np.hypot(off[:, 0], off[:, 1]), wrapped(off[:, 2])
         return {
             "RMSE m": float(np.sqrt((distances**2).mean())),

@@ -32,10 +32,10 @@ from services.slam.reading import Reading
 from uvf.launch.bench import Figures
 from uvf.launch.recorder import attachments
 from uvf.launch.slam_cli import DEFAULT_METHOD
-from uvf.launch.truth import poses_at, true_poses
+from uvf.launch.truth import true_poses
 from uvf.maths.kinematics import DifferentialDrive, Twist, WheelSpeeds
 from uvf.maths.planar import Pose2
-from uvf.maths.planar_arrays import composed, inverted, wrapped
+from uvf.maths.planar_arrays import composed, interpolated, inverted, wrapped
 from uvf.maths.rotations import from_euler
 from uvf.runtime.lockstep import Lockstep
 from uvf.runtime.range_sensors import LidarModel
@@ -111,7 +111,7 @@ def at_the_middle(log: LaserLog) -> LaserLog:
     """All beams taken to be measured half a sweep after the stamp."""
     assert log.odometry is not None
     (x, y, yaw), stamps = log.odometry.odom_from_base.T, log.stamps + SWEEP / 2
-    poses = poses_at(np.column_stack((log.odometry.t, x, y, np.unwrap(yaw))), stamps)
+    poses = interpolated(np.column_stack((log.odometry.t, x, y, np.unwrap(yaw))), stamps)
     readings = [
         Reading(s, r.ranges, r.beams, Pose2(*pose)) for s, r, pose in zip(stamps.tolist(), log.readings, poses.tolist(), strict=True)
     ]
@@ -126,7 +126,7 @@ class Truth:
     walls: Floats
 
     def at(self, stamps: Floats) -> Floats:
-        return poses_at(self.track, stamps)
+        return interpolated(self.track, stamps)
 
     def off(self, readings: Sequence[Reading], world_from_base: Floats) -> tuple[float, float]:
         """m, mean and 95th percentile: from what was hit to the nearest surface."""

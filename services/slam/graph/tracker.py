@@ -99,7 +99,7 @@ class Tracker:
 
     def _found(self, local: LocalMap, motion: Motion, cloud: Cloud) -> Match:
         found = match(motion.guess, cloud, local.surfaces, motion.information)
-        if not _plain(found):
+        if motion.told and not _plain(found):
             found = match(motion.guess, cloud, local.surfaces, self.trust.information(motion))
         if self._doubts(found) or _leaps(motion.guess, found.map_from_base) or _strays(motion, cloud):
             return self._searched(local, motion, cloud, found)

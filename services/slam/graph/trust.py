@@ -18,8 +18,8 @@ STRAIGHT = 0.05  # rad: steps that turn by less tell how far the odometry is off
 LEAST_TRUST, MOST_SIGMAS = 0.2, 3.0
 """What a usual error is at least, and what a single one counts for at most."""
 
-VEERING_SIGMAS = (0.02, 0.05)
-"""rad per m and rad per rad that odometry is known to veer by."""
+PRIOR = np.diag(np.array((0.02, 0.05)) ** -2.0)
+"""(2, 2) information: rad per m and rad per rad that odometry is known to veer by, 1 sigma."""
 REMEMBERED = 10.0
 """m (or rad) of motion after which what has been learnt of the veering counts for 1/e."""
 
@@ -31,7 +31,7 @@ class Veering:
     Weighted least squares with a zero-mean prior, in which older steps fade.
     """
 
-    _normal: Floats = field(default_factory=lambda: np.diag(np.array(VEERING_SIGMAS) ** -2.0))
+    _normal: Floats = field(default_factory=PRIOR.copy)
     _right: Floats = field(default_factory=lambda: np.zeros(2))
 
     def straightened(self, step: Pose2) -> Pose2:
@@ -39,9 +39,9 @@ class Veering:
 
     def learn(self, step: Pose2, off: float, sigma: float) -> None:
         """off: rad by which the heading came to be another one than by the step; sigma: rad, of that."""
-        ways, prior = _ways(step), np.diag(np.array(VEERING_SIGMAS) ** -2.0)
+        ways = _ways(step)
         fading = exp(-float(np.abs(ways).sum()) / REMEMBERED)
-        self._normal = prior + fading * (self._normal - prior) + np.outer(ways, ways) / sigma**2
+        self._normal = PRIOR + fading * (self._normal - PRIOR) + np.outer(ways, ways) / sigma**2
         self._right = fading * self._right + ways * off / sigma**2
 
 

@@ -22,7 +22,7 @@ from services.slam.logs.leaps import without_leaps
 from services.slam.logs.no_return import farthest_return
 from services.slam.reading import Beams
 from services.slam.scan_message import Shape, beams_of, is_usable, shape_of
-from uvf.maths.planar_arrays import composed, inverted
+from uvf.maths.planar_arrays import composed, interpolated, inverted
 from uvf.runtime.bus import Sample, matches
 from uvf.runtime.frames import FrameBuffer, FrameError
 from uvf.runtime.params import BadInput, nearest
@@ -115,11 +115,11 @@ def _assembled(path: Path, name: str, heard: _Heard) -> LaserLog:
     if not scans:
         raise BadInput(f"log {path}: the scans and the odometry of '{name}' are of different times")
     stamps = first + sweeping.duration
-    track[:, 1:] = composed(inverted(_interpolated(track, stamps[:1])[0]), track[:, 1:])
+    track[:, 1:] = composed(inverted(interpolated(track, stamps[:1])[0]), track[:, 1:])
     track[:, 3] = np.unwrap(track[:, 3])
     beams = _beams(path, name, scans, (heard.frames, sweeping))
     readings = [
-        straightened(sweeping.ranges(scan), shape, t, lambda times: _interpolated(track, times))
+        straightened(sweeping.ranges(scan), shape, t, lambda times: interpolated(track, times))
         for t, scan, shape in zip(first.tolist(), scans, beams, strict=True)
     ]
     counts = (
@@ -142,11 +142,6 @@ def _sweeping(path: Path, name: str) -> tuple[Sweeping, tuple[str, ...]]:
             return (lidar.sweeping if lidar is not None else AT_ONCE), ()
     except BadInput:
         return AT_ONCE, (f"log {path}: the files of the run in it cannot be read: all beams of a scan are taken to be of its stamp",)
-
-
-def _interpolated(track: Floats, t: Floats) -> Floats:
-    """(n, 3) poses at the times of a track of rows t, x, y, yaw; yaws that lie near each other."""
-    return np.column_stack([np.interp(t, track[:, 0], column) for column in track[:, 1:].T])
 
 
 def _beams(path: Path, name: str, scans: list[LaserScan], lidar: tuple[FrameBuffer, Sweeping]) -> list[Beams]:

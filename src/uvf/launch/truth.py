@@ -21,11 +21,6 @@ def true_poses(samples: Iterable[Sample], vehicle: str) -> Floats:
     return track
 
 
-def poses_at(track: Floats, stamps: Floats) -> Floats:
-    """(m, 3) x, y, yaw at stamps (m,) [s], between those of a track (n, 4); outside of it the first one or the last."""
-    return np.column_stack([np.interp(stamps, track[:, 0], column) for column in track[:, 1:].T])
-
-
 def within(track: Floats, stamps: Floats) -> NDArray[np.bool_]:
     """(m,) which of the stamps (m,) [s] a track (n, 4) reaches over."""
     reached: NDArray[np.bool_] = (stamps >= track[0, 0]) & (stamps <= track[-1, 0])

@@ -30,3 +30,10 @@ def inverted(a_from_b: Floats) -> Floats:
 def steps(world_from_base: Floats) -> Floats:
     """(n - 1, 3): each pose (n, 3) seen from the one before it."""
     return composed(inverted(world_from_base[:-1]), world_from_base[1:])
+
+
+def interpolated(track: Floats, times: Floats) -> Floats:
+    """(m, 3) poses at ``times`` (m,), between those of a track (n, 4) of rows t, x, y, yaw, whose yaws lie near each other;
+    outside of it the first one or the last.
+    """
+    return np.column_stack([np.interp(times, track[:, 0], column) for column in track[:, 1:].T])

@@ -4,11 +4,13 @@ Names cancel: ``v_world = rotate(world_from_body, v_body)``.
 """
 
 import math
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
+Number = TypeVar("Number", float, Floats)
 
 IDENTITY: Floats = np.array((1.0, 0.0, 0.0, 0.0))
 ENU_FROM_NED: Floats = np.array(((0.0, 1.0, 0.0), (1.0, 0.0, 0.0), (0.0, 0.0, -1.0)))
@@ -50,25 +52,20 @@ def rotate(a_from_b: Floats, v_b: Floats) -> Floats:
 
 def matrix(q: Floats) -> Floats:
     """(3, 3) rotation matrix of a unit quaternion."""
-    w, x, y, z = q.tolist()
-    return np.array(
-        (
-            (1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
-            (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),
-            (2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)),
-        )
-    )
+    return np.array(_rows(*q.tolist()))
 
 
 def matrices(q: Floats) -> Floats:
     """(n, 3, 3) ``a_from_b`` of unit quaternions (n, 4)."""
-    w, x, y, z = q.T
-    rows = (
+    return np.moveaxis(np.array(_rows(*q.T)), 2, 0)
+
+
+def _rows(w: Number, x: Number, y: Number, z: Number) -> tuple[tuple[Number, Number, Number], ...]:
+    return (
         (1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
         (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),
         (2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)),
     )
-    return np.moveaxis(np.array(rows), 2, 0)
 
 
 def from_matrix(r: Floats) -> Floats:

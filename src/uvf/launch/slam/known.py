@@ -12,7 +12,8 @@ from services.slam.evaluation.relations import Relations, index_of, read_relatio
 from services.slam.logs.laser_log import LaserLog
 from services.slam.logs.mcap_log import samples_of
 from services.slam.logs.opening import is_recorded
-from uvf.launch.truth import poses_at, true_poses, within
+from uvf.launch.truth import true_poses, within
+from uvf.maths.planar_arrays import interpolated
 from uvf.runtime.params import BadInput
 
 
@@ -53,4 +54,4 @@ def _truth(path: Path, log: LaserLog, vehicle: str | None) -> Trajectory | None:
     stamps = log.stamps[within(track, log.stamps)]
     if not len(stamps):
         raise BadInput(f"log {path}: its scans and its truth are of different times")
-    return Trajectory(stamps, poses_at(track, stamps))
+    return Trajectory(stamps, interpolated(track, stamps))
