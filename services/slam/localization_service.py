@@ -9,7 +9,7 @@ from schemas import topics
 from schemas.convert import pose2_of, pose2_of_frame, stamp
 from schemas.messages import Event, FrameTransform, Grid, LaserScan, MapFix, PlaceRequest, RelocalizeRequest, Reply
 from services.slam.localization.known_map import KnownMap, of_grid
-from services.slam.localization.localizer import Localizer, State
+from services.slam.localization.localizer import HALF_SURE, Localizer, State
 from services.slam.localization.params import FilterParams
 from services.slam.placing_service import PlacingService, fix_message
 from services.slam.reading import Reading
@@ -49,7 +49,7 @@ class LocalizationService(PlacingService):
         "events": topics.EVENTS.by("localization"),
     }
     requests = {"pose": topics.PLACE, "relocalize": topics.RELOCALIZE}
-    recalls = {"correction": topics.TF_MAP}
+    recalls = {"correction": topics.TF_MAP, "fix": topics.MAP_FIX}
     params: FilterParams
     fixed_params = frozenset({"least_particles", "most_particles"})
 
@@ -59,6 +59,7 @@ class LocalizationService(PlacingService):
         self._beginning = beginning
         self._localizer: Localizer | None = None
         self._start: Pose2 | None = None if beginning.anywhere else IDENTITY
+        self._is_doubtful = False
         self._set_to: tuple[Pose2, float, float] | None = None
         self._map_told = False
         self._refused: Grid | None = None
@@ -94,10 +95,11 @@ class LocalizationService(PlacingService):
             outputs["map"] = as_message(self._localizer.known.grid, self._frame("map"), t)
         return outputs | {"events": events}
 
-    def recall(self, correction: FrameTransform | None = None) -> None:
-        """Goes on where the vehicle was last believed to be."""
+    def recall(self, correction: FrameTransform | None = None, fix: MapFix | None = None) -> None:
+        """Goes on where the vehicle was last believed to be, as surely as it was believed."""
         if correction is not None:
             self._published = self._map_from_odom = self._start = pose2_of_frame(correction)
+            self._is_doubtful = fix is not None and not fix.quality > HALF_SURE
 
     def _take_map(self, t: float, known: Grid | None) -> list[Event]:
         """The one of the mission, or the first on map/known that can be used; one that cannot is told of once."""
@@ -116,7 +118,8 @@ class LocalizationService(PlacingService):
 
     def _look(self, t: float, localizer: Localizer, reading: Reading) -> tuple[MapFix, list[Event]]:
         if self._start is not None:
-            localizer.set_pose(compose(self._start, reading.odom_from_base))
+            begin = localizer.doubt if self._is_doubtful else localizer.set_pose
+            begin(compose(self._start, reading.odom_from_base))
             self._start = None
         if self._set_to is not None:
             pose, position, yaw = self._set_to

@@ -12,7 +12,7 @@ from scipy.optimize import nnls
 
 from services.slam.logs.laser_log import LaserLog, OdometryTrack
 from uvf.maths.planar import Pose2, compose
-from uvf.maths.planar_arrays import composed, inverted, steps, wrapped
+from uvf.maths.planar_arrays import composed, interpolated, inverted, steps, wrapped
 
 Floats = NDArray[np.float64]
 
@@ -89,14 +89,19 @@ def exaggerated(log: LaserLog, map_from_base: Floats) -> LaserLog:
 
 def _with_odometry(log: LaserLog, noisy: Floats) -> LaserLog:
     """The readings get these poses (n, 3), the raw track goes with them."""
-    poses, times = log.odom_from_base, np.array([r.t for r in log])
     readings = [replace(r, odom_from_base=Pose2(*pose)) for r, pose in zip(log, noisy.tolist(), strict=True)]
     if log.odometry is None:
         return replace(log, readings=readings)
+    times, wanted = np.array([r.t for r in log]), log.odometry.t
+    before, after = (interpolated(_track(times, poses), wanted) for poses in (log.odom_from_base, noisy))
     # What the track is off the readings' poses stays.
-    carried = composed(inverted(_at(times, poses, log.odometry.t)), log.odometry.odom_from_base)
-    track = OdometryTrack(log.odometry.t, composed(_at(times, noisy, log.odometry.t), carried))
-    return replace(log, readings=readings, odometry=track)
+    carried = composed(inverted(before), log.odometry.odom_from_base)
+    return replace(log, readings=readings, odometry=OdometryTrack(wanted, composed(after, carried)))
+
+
+def _track(times: Floats, poses: Floats) -> Floats:
+    """(n, 4) rows t, x, y, yaw, yaws without leaps."""
+    return np.column_stack((times, poses[:, :2], np.unwrap(poses[:, 2])))
 
 
 def _walked(poses: Floats, noise: OdometryNoise, rng: np.random.Generator) -> Floats:
@@ -117,8 +122,3 @@ def _chained(moved: Floats) -> Floats:
     for step in moved.tolist():
         found.append(compose(found[-1], Pose2(*step)))
     return np.array(found)
-
-
-def _at(times: Floats, poses: Floats, wanted: Floats) -> Floats:
-    """Poses between those of the readings; before the first and after the last these two."""
-    return np.column_stack([np.interp(wanted, times, c) for c in (poses[:, 0], poses[:, 1], np.unwrap(poses[:, 2]))])

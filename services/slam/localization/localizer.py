@@ -46,6 +46,7 @@ a kidnapping."""
 AGAINST_WAY = 1.0
 """m for which sweeps may contradict the map where nothing has broken: something large stands in the way, or the odometry has slipped."""
 HALF_SURE = 0.5
+"""Quality that is never exceeded while the vehicle is looked for."""
 OWN_PART = 0.3  # weight of the heaviest hypothesis beside the last pose that a nearer one has to have, to be the one that goes on
 PUT_IN = 0.4  # weight of what a search has found while it is not known where the vehicle is
 
@@ -74,6 +75,12 @@ class Localizer:
         """The vehicle is at ``pose`` (map_from_base), with a covariance (3, 3) of (x, y, yaw)."""
         self.state = State.TRACKING
         self.filter.begin_at(pose, covariance)
+        self._begin(pose)
+
+    def doubt(self, pose: Pose2) -> None:
+        """The vehicle may be at ``pose`` (map_from_base), or anywhere."""
+        self.state = State.LOST
+        self.filter.begin_at(pose, REMEMBERED)
         self._begin(pose)
 
     def relocalize(self) -> None:

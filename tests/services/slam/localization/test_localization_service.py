@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 
 from schemas.convert import occupancy_cells, planar_pose, stamp, yaw_of
-from schemas.messages import Event, FrameTransform, LaserScan, PlaceRequest, RelocalizeRequest, Vector3
+from schemas.messages import Event, FrameTransform, LaserScan, MapFix, PlaceRequest, RelocalizeRequest, Vector3
 from services.slam import localization_service
 from services.slam.build import build
 from services.slam.localization import known_map
+from services.slam.localization.localizer import HALF_SURE
 from services.slam.localization.params import FilterParams
 from services.slam.localization_service import Beginning, LocalizationService
 from services.slam.maps.session import NO_EDGES, Session
@@ -119,6 +120,27 @@ def test_a_pose_can_be_set_and_the_vehicle_be_looked_for(room):
     assert good.accepted and outside.reason == "(100.00, 0.00) is outside the map"
     fix = said[41]["fix"]
     assert errors([(fix.x, fix.y, fix.yaw)], true[41:42])[0][0] < 0.05
+
+
+@pytest.mark.parametrize("off", [(0.0, 0.0, 0.0), (1.2, -0.7, 2.0)])
+@pytest.mark.parametrize("quality", [0.45, np.nan])
+def test_one_started_again_while_the_vehicle_was_looked_for_goes_on_looking(room, off, quality):
+    way = ellipse(80, end=3.8 * np.pi)
+    localization = service(moved(room, way)[0], anywhere=True)
+    localization.recall(correction=frame(0.0, "map", "odom", off), fix=MapFix(quality=quality))
+    said = drive(localization, readings(ROOM, way))
+    assert said[0]["fix"].quality <= HALF_SURE
+    assert [e.text for out in said for e in out["events"]] == ["the vehicle is localized"]
+    fix = said[-1]["fix"]
+    assert errors([(fix.x, fix.y, fix.yaw)], begun_at_zero(way)[-1:])[0][0] < 0.05
+
+
+def test_one_started_again_while_the_vehicle_was_tracked_goes_on_tracking(room):
+    way = ellipse(20)
+    localization = service(moved(room, way)[0], anywhere=True)
+    localization.recall(correction=frame(0.0, "map", "odom", (0.0, 0.0, 0.0)), fix=MapFix(quality=0.9))
+    said = drive(localization, readings(ROOM, way))
+    assert said[1]["fix"].quality > HALF_SURE and not [e for out in said for e in out["events"]]
 
 
 def test_the_map_may_come_on_the_bus(room):
