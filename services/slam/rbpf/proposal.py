@@ -17,7 +17,7 @@ Floats = NDArray[np.float64]
 SAMPLES = 16
 WIDER = 1.5
 """How much wider than the Gaussian expected the samples are spread: what is sampled must cover what is sought."""
-FLOOR = (1e-3, 1e-3, 5e-4)
+FLOOR = (1e-3, 1e-3, 1e-3)
 """m, m, rad: 1 sigma that the proposal has at least."""
 
 
