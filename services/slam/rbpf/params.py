@@ -20,7 +20,7 @@ class RbpfParams(Params, frozen=True):
     delta: Annotated[float, Meta(ge=0.01, le=0.5)] = 0.05  # m, side of a cell
     sigma: Annotated[float, Meta(ge=0.005, le=0.5)] = 0.05  # m, of a beam's end while a sweep is matched
     lsigma: Annotated[float, Meta(ge=0.005, le=0.5)] = 0.03  # m, the same where particles are compared
-    ogain: Annotated[float, Meta(ge=1.0, le=1000.0)] = 120.0  # what the log-likelihood of a sweep is divided by: neighbouring beams are not independent
+    ogain: Annotated[float, Meta(ge=1.0, le=1000.0)] = 120.0  # what log-likelihoods are divided by: beams are not independent
     srr: Noise = 0.1  # m per m, 1 sigma of the odometry's way by the way driven
     srt: Noise = 0.1  # m per rad, of its way by the turn
     str: Noise = 0.1  # rad per m, of its turn by the way driven
