@@ -4,21 +4,18 @@ from collections.abc import Callable
 from functools import partial
 
 from services.slam.localization import known_map
-from services.slam.localization.localizer import Localizer
 from services.slam.localization.params import FilterParams
 from services.slam.localization_service import Beginning, LocalizationService
-from services.slam.made_corridor import there_and_back
 from services.slam.map_serving import map_servers
 from services.slam.mapping_service import MappingParams, MappingService
 from services.slam.maps.session import Session
 from services.slam.maps.tiles import TileMap
-from services.slam.method import Keyframe, SlamMethod
+from services.slam.method import SlamMethod
 from services.slam.methods import METHODS, make_method
-from services.slam.odometry.filter import DriveFilter
 from services.slam.odometry.params import OdometryParams
 from services.slam.odometry.service import OdometryService
-from services.slam.odometry.states import Noise, Step
 from services.slam.resumable import Resumable
+from services.slam.warming import warm_up, warm_up_localization
 from uvf.maths.geodesy import LocalTangent
 from uvf.maths.planar import IDENTITY, Pose2, compose, inverse
 from uvf.runtime.mission_file import Maps
@@ -49,12 +46,12 @@ def _hosts(site: Site, member: Member, warm: set[str]) -> list[Host]:
         raise BadInput(f"{place}: a vehicle either 'continues' a map or is localized on one; leave one of them out")
     if maps is not None and maps.localize is not None:
         if "localization" not in warm:
-            _warm_up_localization()
+            warm_up_localization()
             warm.add("localization")
         return [_odometry(site, member), _localization(site, member, lidar, maps)]
     method = _method(member, mapping)
     if mapping.method not in warm:
-        _warm_up(method())
+        warm_up(method())
         warm.add(mapping.method)
     left = _left(site, member, mapping, maps.continues) if maps is not None and maps.continues is not None else None
 
@@ -112,26 +109,3 @@ def _method(member: Member, mapping: MappingParams) -> Callable[[], SlamMethod]:
     if mapping.method not in METHODS:
         raise BadInput(f"{path}: params.mapping.method: no SLAM method '{mapping.method}'; {nearest(mapping.method, METHODS)}")
     return partial(make_method, mapping.method, member.params(mapping.method, METHODS[mapping.method].params))
-
-
-def _warm_up(method: SlamMethod) -> None:
-    """Compiles the kernels, or loads them from their cache, before the first scan."""
-    for reading in there_and_back():
-        method.add(reading)
-    method.finish()
-    _warm_up_odometry()
-
-
-def _warm_up_localization() -> None:
-    """The same on a made-up map: the one of the mission may come later."""
-    readings = list(there_and_back())
-    known = known_map.of_grid(known_map.of_keyframes([Keyframe(r.odom_from_base, r) for r in readings]).grid)
-    lost, tracked = Localizer(known, FilterParams(), 0), Localizer(known, FilterParams(), 0, IDENTITY)
-    for localizer, drive in ((lost, readings[:2]), (tracked, readings)):
-        for reading in drive:
-            localizer.add(reading)
-    _warm_up_odometry()
-
-
-def _warm_up_odometry() -> None:
-    DriveFilter("ekf", Noise(), 0.2).step(Step(0.02, 0.0, 0.0))

@@ -14,7 +14,9 @@ from services.slam.graph.covariance import Marginals
 from services.slam.graph.descent import Descent, descend
 from services.slam.graph.edges import Bools, EdgeRows
 from services.slam.graph.linear import LinearSystem
-from services.slam.graph.linearise import chi_squares, residual
+from services.slam.graph.linearise import chi_squares
+from uvf.maths.planar import Pose2, compose, inverse
+from uvf.maths.rotations import wrap
 
 Floats = NDArray[np.float64]
 
@@ -98,7 +100,8 @@ class RobustSolver:
         marginals = Marginals(system, settled.poses)
         for k in np.flatnonzero(asked):
             i, j = rows.ends[k].tolist()
-            off = np.array(residual(settled.poses, i, j, rows.measured[k]))
+            off = np.array(compose(inverse(Pose2(*settled.poses[i].tolist())), Pose2(*settled.poses[j].tolist()))) - rows.measured[k]
+            off[2] = wrap(off[2])
             open_ = np.eye(3) + marginals.relative(i, j) @ rows.information[k]
             out[k] = off @ rows.information[k] @ np.linalg.solve(open_, off) < self._limit
         return out

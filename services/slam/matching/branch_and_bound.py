@@ -151,6 +151,7 @@ def search(points: Floats, field: LikelihoodField, window: Window, least: float)
     """The pose in the window at which points (n, 2) [m] score best, None where none reaches ``least`` (0..1)."""
     if len(points) == 0:
         return None
+    points = np.ascontiguousarray(points)  # one layout, one compiled kernel
     turns = np.linspace(-window.turn, window.turn, 2 * int(window.turn / _turn_step(points, field.sigma)) + 1)
     side = int(np.ceil(window.side / field.resolution))
     whole = FULL * len(points)

@@ -44,7 +44,7 @@ def test_each_is_made_afresh(site):
 
 def test_kernels_are_compiled_once_for_all_vehicles_of_a_method(site, monkeypatch):
     warmed = []
-    monkeypatch.setattr(slam_build, "_warm_up", warmed.append)
+    monkeypatch.setattr(slam_build, "warm_up", warmed.append)
     build_slam(replace(site, members={**site.members, "second": replace(site.members["burger"], name="second")}))
     assert len(warmed) == 1
 

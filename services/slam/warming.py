@@ -1,0 +1,43 @@
+"""Kernels are compiled, or loaded from their cache, before the first scan: later it would hold up the vehicle for seconds."""
+
+from services.slam.localization import known_map
+from services.slam.localization.localizer import Localizer
+from services.slam.localization.params import FilterParams
+from services.slam.made_corridor import there_and_back
+from services.slam.maps.tiles import TileMap
+from services.slam.matching.branch_and_bound import Window, search
+from services.slam.matching.cloud import cloud_of
+from services.slam.matching.likelihood import likelihood_field
+from services.slam.method import Keyframe, SlamMethod
+from services.slam.odometry.filter import DriveFilter
+from services.slam.odometry.states import Noise, Step
+from uvf.maths.planar import IDENTITY
+
+
+def warm_up(method: SlamMethod) -> None:
+    """Odometry, a method and the map that is drawn of it; and the search for a place, which a corridor needs nowhere."""
+    readings = list(there_and_back())
+    for reading in readings:
+        method.add(reading)
+    method.finish()
+    points = cloud_of(readings[0]).points
+    search(points, likelihood_field(points, 0.1, 0.1, 2), Window(IDENTITY, 0.2, 0.1), 0.5)
+    drawn = TileMap()
+    drawn.follow(method.keyframes())
+    drawn.cells()
+    _warm_up_odometry()
+
+
+def warm_up_localization() -> None:
+    """The same on a made-up map: the one of the mission may come later."""
+    readings = list(there_and_back())
+    known = known_map.of_grid(known_map.of_keyframes([Keyframe(r.odom_from_base, r) for r in readings]).grid)
+    lost, tracked = Localizer(known, FilterParams(), 0), Localizer(known, FilterParams(), 0, IDENTITY)
+    for localizer, drive in ((lost, readings[:2]), (tracked, readings)):
+        for reading in drive:
+            localizer.add(reading)
+    _warm_up_odometry()
+
+
+def _warm_up_odometry() -> None:
+    DriveFilter("ekf", Noise(), 0.2).step(Step(0.02, 0.0, 0.0))
