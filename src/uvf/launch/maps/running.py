@@ -1,12 +1,12 @@
 """Maps from and for a running system."""
 
-import time
 from collections.abc import Callable
 
 import uvf.client
 from schemas import topics
 from services.slam.maps.map_server import in_world
 from services.slam.maps.session import Session
+from uvf.launch.launcher import stop_flag
 from uvf.runtime.address import router_from
 from uvf.runtime.grid_message import as_map, as_message
 from uvf.runtime.map_file import GridMap
@@ -38,15 +38,12 @@ def running_session(vehicle: str | None) -> Session:
 
 
 def serve(grid: GridMap, vehicle: str, ready: Callable[[], None]) -> None:
-    """Publishes a map, world frame, for whoever comes, until Ctrl-C. Raises BadInput."""
+    """Publishes a map, world frame, for whoever comes, until Ctrl-C or SIGTERM. Raises BadInput."""
+    stop = stop_flag()
     with uvf.client.connect() as run:
         run.send(vehicle, topics.KNOWN_MAP, as_message(grid, "world", run.time))
         ready()
-        try:
-            while True:
-                time.sleep(1.0)
-        except KeyboardInterrupt:
-            return
+        stop.wait()
 
 
 def _writers() -> list[str]:
