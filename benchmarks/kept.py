@@ -11,6 +11,8 @@ from concurrent.futures import ProcessPoolExecutor
 from functools import cache
 from typing import Any
 
+import typer
+
 from uvf.runtime.site import ROOT
 
 FOLDER = ROOT / "runs" / "benchmarks"
@@ -22,8 +24,9 @@ def several(function: Figure, jobs: Sequence[tuple[Any, ...]]) -> Iterator[dict[
     """``function(*job)`` of each job, in their order; a dict that JSON can hold. Jobs: of what ``repr`` shows whole."""
     with ProcessPoolExecutor() as pool:
         found = [pool.submit(figures_of, function, job) for job in jobs]
-        for future in found:
+        for number, future in enumerate(found, 1):
             yield future.result()
+            typer.echo(f"uvf: {number} of {len(jobs)} flights", err=True)
 
 
 def figures_of(function: Figure, job: tuple[Any, ...]) -> dict[str, Any]:

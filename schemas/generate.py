@@ -36,7 +36,8 @@ def generate(scratch: Path) -> dict[str, str]:
 
 
 def _mend_imports(text: str) -> str:
-    return re.sub(r"from foxglove import", "from foxglove_schemas_protobuf import", text)
+    own = re.sub(r"from uvf\.v1 import", "from schemas.v1 import", text)
+    return re.sub(r"from foxglove import", "from foxglove_schemas_protobuf import", own)
 
 
 def main() -> None:

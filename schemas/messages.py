@@ -28,6 +28,8 @@ from schemas.v1.command_pb2 import (
     GimbalCommand,
     LineSetpoint,
     StopCommand,
+    StopEngagement,
+    StopState,
     SurfaceCommand,
     WheelCommand,
 )
@@ -164,6 +166,8 @@ __all__ = [
     "SpeedOrder",
     "StateRequest",
     "StopCommand",
+    "StopEngagement",
+    "StopState",
     "SurfaceCommand",
     "TakeoffOrder",
     "Targets",

@@ -20,6 +20,8 @@ PREFIX = "uvf"
 SYSTEM = "sys"
 STALE_PERIODS = 10
 ACTUATOR_MAX_AGE = 0.5  # s
+OPERATORS = ("gcs", "client", "teleop", "mavlink")
+"""Sources through which people speak: only they release STOP ALL."""
 
 
 class Qos(Enum):
@@ -98,7 +100,8 @@ _Q = Qos
 # time and supervision
 CLOCK = Topic(f"{_S}/time/clock", m.Clock, 100, _Q.LOCKSTEP, "simulation time, from the conductor", kept=True)
 DONE = Topic(f"{_S}/time/done/<source>", m.Done, 100, _Q.LOCKSTEP, "a participant has reached this time", logged=False)
-STOP = Topic(f"{_S}/cmd/<source>", m.StopCommand, 0, _Q.LATCHED, "STOP ALL and its release", across_epochs=True)
+STOP = Topic(f"{_S}/cmd/<source>", m.StopCommand, 0, _Q.LATCHED, "STOP ALL and its release by name", across_epochs=True)
+STOP_STATE = Topic(f"{_S}/state/stop", m.StopState, 0, _Q.LATCHED, "who engages STOP ALL, kept beside the router", across_epochs=True)
 PROCESSES = Topic(f"{_S}/state/processes/<source>", m.Processes, 0, _Q.LATCHED, "what runs", logged=False, across_epochs=True)
 HEALTH = Topic(f"{_S}/state/health/<source>", m.Health, 2, _Q.STATE, "sign of life and counters of a process", logged=False)
 SYSTEM_EVENTS = Topic(f"{_S}/state/events/<source>", m.Event, 0, _Q.EVENT, "what happened to the system")

@@ -1,9 +1,10 @@
 from foxglove_schemas_protobuf import Vector3_pb2 as _Vector3_pb2
 from google.protobuf import timestamp_pb2 as _timestamp_pb2
+from google.protobuf.internal import containers as _containers
 from google.protobuf.internal import enum_type_wrapper as _enum_type_wrapper
 from google.protobuf import descriptor as _descriptor
 from google.protobuf import message as _message
-from typing import ClassVar as _ClassVar, Mapping as _Mapping, Optional as _Optional, Union as _Union
+from typing import ClassVar as _ClassVar, Iterable as _Iterable, Mapping as _Mapping, Optional as _Optional, Union as _Union
 
 DESCRIPTOR: _descriptor.FileDescriptor
 
@@ -65,15 +66,43 @@ class GimbalCommand(_message.Message):
     mode: GimbalCommand.Mode
     def __init__(self, timestamp: _Optional[_Union[_timestamp_pb2.Timestamp, _Mapping]] = ..., pan: _Optional[float] = ..., tilt: _Optional[float] = ..., mode: _Optional[_Union[GimbalCommand.Mode, str]] = ...) -> None: ...
 
+class StopEngagement(_message.Message):
+    __slots__ = ("source", "id", "reason", "since")
+    SOURCE_FIELD_NUMBER: _ClassVar[int]
+    ID_FIELD_NUMBER: _ClassVar[int]
+    REASON_FIELD_NUMBER: _ClassVar[int]
+    SINCE_FIELD_NUMBER: _ClassVar[int]
+    source: str
+    id: int
+    reason: str
+    since: _timestamp_pb2.Timestamp
+    def __init__(self, source: _Optional[str] = ..., id: _Optional[int] = ..., reason: _Optional[str] = ..., since: _Optional[_Union[_timestamp_pb2.Timestamp, _Mapping]] = ...) -> None: ...
+
 class StopCommand(_message.Message):
-    __slots__ = ("timestamp", "engaged", "source")
+    __slots__ = ("timestamp", "engaged", "source", "id", "reason", "releases")
     TIMESTAMP_FIELD_NUMBER: _ClassVar[int]
     ENGAGED_FIELD_NUMBER: _ClassVar[int]
     SOURCE_FIELD_NUMBER: _ClassVar[int]
+    ID_FIELD_NUMBER: _ClassVar[int]
+    REASON_FIELD_NUMBER: _ClassVar[int]
+    RELEASES_FIELD_NUMBER: _ClassVar[int]
     timestamp: _timestamp_pb2.Timestamp
     engaged: bool
     source: str
-    def __init__(self, timestamp: _Optional[_Union[_timestamp_pb2.Timestamp, _Mapping]] = ..., engaged: bool = ..., source: _Optional[str] = ...) -> None: ...
+    id: int
+    reason: str
+    releases: _containers.RepeatedCompositeFieldContainer[StopEngagement]
+    def __init__(self, timestamp: _Optional[_Union[_timestamp_pb2.Timestamp, _Mapping]] = ..., engaged: bool = ..., source: _Optional[str] = ..., id: _Optional[int] = ..., reason: _Optional[str] = ..., releases: _Optional[_Iterable[_Union[StopEngagement, _Mapping]]] = ...) -> None: ...
+
+class StopState(_message.Message):
+    __slots__ = ("timestamp", "engagements", "released")
+    TIMESTAMP_FIELD_NUMBER: _ClassVar[int]
+    ENGAGEMENTS_FIELD_NUMBER: _ClassVar[int]
+    RELEASED_FIELD_NUMBER: _ClassVar[int]
+    timestamp: _timestamp_pb2.Timestamp
+    engagements: _containers.RepeatedCompositeFieldContainer[StopEngagement]
+    released: _containers.RepeatedCompositeFieldContainer[StopEngagement]
+    def __init__(self, timestamp: _Optional[_Union[_timestamp_pb2.Timestamp, _Mapping]] = ..., engagements: _Optional[_Iterable[_Union[StopEngagement, _Mapping]]] = ..., released: _Optional[_Iterable[_Union[StopEngagement, _Mapping]]] = ...) -> None: ...
 
 class FlightSetpoint(_message.Message):
     __slots__ = ("timestamp", "attitude", "course", "line", "circle")

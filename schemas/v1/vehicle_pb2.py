@@ -25,33 +25,34 @@ _sym_db = _symbol_database.Default()
 from foxglove_schemas_protobuf import Quaternion_pb2 as foxglove_dot_Quaternion__pb2
 from foxglove_schemas_protobuf import Vector3_pb2 as foxglove_dot_Vector3__pb2
 from google.protobuf import timestamp_pb2 as google_dot_protobuf_dot_timestamp__pb2
+from schemas.v1 import command_pb2 as uvf_dot_v1_dot_command__pb2
 
 
-DESCRIPTOR = _descriptor_pool.Default().AddSerializedFile(b'\n\x14uvf/v1/vehicle.proto\x12\x06uvf.v1\x1a\x19\x66oxglove/Quaternion.proto\x1a\x16\x66oxglove/Vector3.proto\x1a\x1fgoogle/protobuf/timestamp.proto\"\xa6\x02\n\x08NavState\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12#\n\x08position\x18\x02 \x01(\x0b\x32\x11.foxglove.Vector3\x12#\n\x08velocity\x18\x03 \x01(\x0b\x32\x11.foxglove.Vector3\x12)\n\x0borientation\x18\x04 \x01(\x0b\x32\x14.foxglove.Quaternion\x12+\n\x10\x61ngular_velocity\x18\x05 \x01(\x0b\x32\x11.foxglove.Vector3\x12\x10\n\x08\x61irspeed\x18\x06 \x01(\x01\x12\x1f\n\x04wind\x18\x07 \x01(\x0b\x32\x11.foxglove.Vector3\x12\x16\n\x0eposition_sigma\x18\x08 \x01(\x01\"\x9a\x04\n\rVehicleStatus\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12\x1a\n\x04kind\x18\x02 \x01(\x0e\x32\x0c.uvf.v1.Kind\x12\x1a\n\x04mode\x18\x03 \x01(\x0e\x32\x0c.uvf.v1.Mode\x12\r\n\x05\x61rmed\x18\x04 \x01(\x08\x12\x0e\n\x06landed\x18\x05 \x01(\x08\x12\x0f\n\x07stopped\x18\x06 \x01(\x08\x12\x16\n\x0e\x63ommand_source\x18\x07 \x01(\t\x12\x0e\n\x06reason\x18\x08 \x01(\t\x12\x10\n\x08throttle\x18\t \x01(\x01\x12\x19\n\x11\x62\x61ttery_remaining\x18\n \x01(\x01\x12\x17\n\x0f\x62\x61ttery_voltage\x18\x0b \x01(\x01\x12\x10\n\x08waypoint\x18\x0c \x01(\r\x12\x13\n\x0b\x63ross_track\x18\r \x01(\x01\x12\x16\n\x0e\x61ltitude_error\x18\x0e \x01(\x01\x12\x1c\n\x14\x64istance_to_waypoint\x18\x0f \x01(\x01\x12\x1f\n\x04home\x18\x10 \x01(\x0b\x32\x11.foxglove.Vector3\x12\x11\n\tsystem_id\x18\x11 \x01(\r\x12\x0e\n\x06prearm\x18\x12 \x03(\t\x12\x11\n\tfailsafes\x18\x13 \x03(\t\x12\x1e\n\x06\x63ircle\x18\x14 \x01(\x0b\x32\x0e.uvf.v1.Circle\x12\x1e\n\x06\x62reach\x18\x15 \x01(\x0e\x32\x0e.uvf.v1.Breach\x12\x10\n\x08\x62reaches\x18\x16 \x01(\r\"T\n\x05Guest\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12\r\n\x05model\x18\x02 \x01(\t\x12\r\n\x05\x61\x62out\x18\x03 \x01(\t\";\n\x06\x43ircle\x12!\n\x06\x63\x65ntre\x18\x01 \x01(\x0b\x32\x11.foxglove.Vector3\x12\x0e\n\x06radius\x18\x02 \x01(\x01\"8\n\nArmRequest\x12\x0b\n\x03\x61rm\x18\x01 \x01(\x08\x12\r\n\x05\x66orce\x18\x02 \x01(\x08\x12\x0e\n\x06source\x18\x03 \x01(\t\"9\n\x0bModeRequest\x12\x1a\n\x04mode\x18\x01 \x01(\x0e\x32\x0c.uvf.v1.Mode\x12\x0e\n\x06source\x18\x02 \x01(\t\")\n\x05Reply\x12\x10\n\x08\x61\x63\x63\x65pted\x18\x01 \x01(\x08\x12\x0e\n\x06reason\x18\x02 \x01(\t*\xef\x01\n\x04Mode\x12\x14\n\x10MODE_UNSPECIFIED\x10\x00\x12\x0f\n\x0bMODE_MANUAL\x10\x01\x12\r\n\tMODE_HOLD\x10\x02\x12\x10\n\x0cMODE_MISSION\x10\x03\x12\x0f\n\x0bMODE_RETURN\x10\x04\x12\x13\n\x0fMODE_STABILIZED\x10\x05\x12\x11\n\rMODE_ALTITUDE\x10\x06\x12\x11\n\rMODE_POSITION\x10\x07\x12\x10\n\x0cMODE_TAKEOFF\x10\x08\x12\r\n\tMODE_LAND\x10\t\x12\x0e\n\nMODE_ORBIT\x10\n\x12\x11\n\rMODE_OFFBOARD\x10\x0b\x12\x0f\n\x0bMODE_FOLLOW\x10\x0c*B\n\x04Kind\x12\x14\n\x10KIND_UNSPECIFIED\x10\x00\x12\x0f\n\x0bKIND_GROUND\x10\x01\x12\x13\n\x0fKIND_FIXED_WING\x10\x02*P\n\x06\x42reach\x12\x0f\n\x0b\x42REACH_NONE\x10\x00\x12\x10\n\x0c\x42REACH_FLOOR\x10\x01\x12\x12\n\x0e\x42REACH_CEILING\x10\x02\x12\x0f\n\x0b\x42REACH_EDGE\x10\x03\x62\x06proto3')
+DESCRIPTOR = _descriptor_pool.Default().AddSerializedFile(b'\n\x14uvf/v1/vehicle.proto\x12\x06uvf.v1\x1a\x19\x66oxglove/Quaternion.proto\x1a\x16\x66oxglove/Vector3.proto\x1a\x1fgoogle/protobuf/timestamp.proto\x1a\x14uvf/v1/command.proto\"\xa6\x02\n\x08NavState\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12#\n\x08position\x18\x02 \x01(\x0b\x32\x11.foxglove.Vector3\x12#\n\x08velocity\x18\x03 \x01(\x0b\x32\x11.foxglove.Vector3\x12)\n\x0borientation\x18\x04 \x01(\x0b\x32\x14.foxglove.Quaternion\x12+\n\x10\x61ngular_velocity\x18\x05 \x01(\x0b\x32\x11.foxglove.Vector3\x12\x10\n\x08\x61irspeed\x18\x06 \x01(\x01\x12\x1f\n\x04wind\x18\x07 \x01(\x0b\x32\x11.foxglove.Vector3\x12\x16\n\x0eposition_sigma\x18\x08 \x01(\x01\"\xc1\x04\n\rVehicleStatus\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12\x1a\n\x04kind\x18\x02 \x01(\x0e\x32\x0c.uvf.v1.Kind\x12\x1a\n\x04mode\x18\x03 \x01(\x0e\x32\x0c.uvf.v1.Mode\x12\r\n\x05\x61rmed\x18\x04 \x01(\x08\x12\x0e\n\x06landed\x18\x05 \x01(\x08\x12\x0f\n\x07stopped\x18\x06 \x01(\x08\x12\x16\n\x0e\x63ommand_source\x18\x07 \x01(\t\x12\x0e\n\x06reason\x18\x08 \x01(\t\x12\x10\n\x08throttle\x18\t \x01(\x01\x12\x19\n\x11\x62\x61ttery_remaining\x18\n \x01(\x01\x12\x17\n\x0f\x62\x61ttery_voltage\x18\x0b \x01(\x01\x12\x10\n\x08waypoint\x18\x0c \x01(\r\x12\x13\n\x0b\x63ross_track\x18\r \x01(\x01\x12\x16\n\x0e\x61ltitude_error\x18\x0e \x01(\x01\x12\x1c\n\x14\x64istance_to_waypoint\x18\x0f \x01(\x01\x12\x1f\n\x04home\x18\x10 \x01(\x0b\x32\x11.foxglove.Vector3\x12\x11\n\tsystem_id\x18\x11 \x01(\r\x12\x0e\n\x06prearm\x18\x12 \x03(\t\x12\x11\n\tfailsafes\x18\x13 \x03(\t\x12\x1e\n\x06\x63ircle\x18\x14 \x01(\x0b\x32\x0e.uvf.v1.Circle\x12\x1e\n\x06\x62reach\x18\x15 \x01(\x0e\x32\x0e.uvf.v1.Breach\x12\x10\n\x08\x62reaches\x18\x16 \x01(\r\x12%\n\x05stops\x18\x17 \x03(\x0b\x32\x16.uvf.v1.StopEngagement\"T\n\x05Guest\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12\r\n\x05model\x18\x02 \x01(\t\x12\r\n\x05\x61\x62out\x18\x03 \x01(\t\";\n\x06\x43ircle\x12!\n\x06\x63\x65ntre\x18\x01 \x01(\x0b\x32\x11.foxglove.Vector3\x12\x0e\n\x06radius\x18\x02 \x01(\x01\"8\n\nArmRequest\x12\x0b\n\x03\x61rm\x18\x01 \x01(\x08\x12\r\n\x05\x66orce\x18\x02 \x01(\x08\x12\x0e\n\x06source\x18\x03 \x01(\t\"9\n\x0bModeRequest\x12\x1a\n\x04mode\x18\x01 \x01(\x0e\x32\x0c.uvf.v1.Mode\x12\x0e\n\x06source\x18\x02 \x01(\t\")\n\x05Reply\x12\x10\n\x08\x61\x63\x63\x65pted\x18\x01 \x01(\x08\x12\x0e\n\x06reason\x18\x02 \x01(\t*\xef\x01\n\x04Mode\x12\x14\n\x10MODE_UNSPECIFIED\x10\x00\x12\x0f\n\x0bMODE_MANUAL\x10\x01\x12\r\n\tMODE_HOLD\x10\x02\x12\x10\n\x0cMODE_MISSION\x10\x03\x12\x0f\n\x0bMODE_RETURN\x10\x04\x12\x13\n\x0fMODE_STABILIZED\x10\x05\x12\x11\n\rMODE_ALTITUDE\x10\x06\x12\x11\n\rMODE_POSITION\x10\x07\x12\x10\n\x0cMODE_TAKEOFF\x10\x08\x12\r\n\tMODE_LAND\x10\t\x12\x0e\n\nMODE_ORBIT\x10\n\x12\x11\n\rMODE_OFFBOARD\x10\x0b\x12\x0f\n\x0bMODE_FOLLOW\x10\x0c*B\n\x04Kind\x12\x14\n\x10KIND_UNSPECIFIED\x10\x00\x12\x0f\n\x0bKIND_GROUND\x10\x01\x12\x13\n\x0fKIND_FIXED_WING\x10\x02*P\n\x06\x42reach\x12\x0f\n\x0b\x42REACH_NONE\x10\x00\x12\x10\n\x0c\x42REACH_FLOOR\x10\x01\x12\x12\n\x0e\x42REACH_CEILING\x10\x02\x12\x0f\n\x0b\x42REACH_EDGE\x10\x03\x62\x06proto3')
 
 _globals = globals()
 _builder.BuildMessageAndEnumDescriptors(DESCRIPTOR, _globals)
 _builder.BuildTopDescriptorsAndMessages(DESCRIPTOR, 'uvf.v1.vehicle_pb2', _globals)
 if not _descriptor._USE_C_DESCRIPTORS:
   DESCRIPTOR._loaded_options = None
-  _globals['_MODE']._serialized_start=1262
-  _globals['_MODE']._serialized_end=1501
-  _globals['_KIND']._serialized_start=1503
-  _globals['_KIND']._serialized_end=1569
-  _globals['_BREACH']._serialized_start=1571
-  _globals['_BREACH']._serialized_end=1651
-  _globals['_NAVSTATE']._serialized_start=117
-  _globals['_NAVSTATE']._serialized_end=411
-  _globals['_VEHICLESTATUS']._serialized_start=414
-  _globals['_VEHICLESTATUS']._serialized_end=952
-  _globals['_GUEST']._serialized_start=954
-  _globals['_GUEST']._serialized_end=1038
-  _globals['_CIRCLE']._serialized_start=1040
-  _globals['_CIRCLE']._serialized_end=1099
-  _globals['_ARMREQUEST']._serialized_start=1101
-  _globals['_ARMREQUEST']._serialized_end=1157
-  _globals['_MODEREQUEST']._serialized_start=1159
-  _globals['_MODEREQUEST']._serialized_end=1216
-  _globals['_REPLY']._serialized_start=1218
-  _globals['_REPLY']._serialized_end=1259
+  _globals['_MODE']._serialized_start=1323
+  _globals['_MODE']._serialized_end=1562
+  _globals['_KIND']._serialized_start=1564
+  _globals['_KIND']._serialized_end=1630
+  _globals['_BREACH']._serialized_start=1632
+  _globals['_BREACH']._serialized_end=1712
+  _globals['_NAVSTATE']._serialized_start=139
+  _globals['_NAVSTATE']._serialized_end=433
+  _globals['_VEHICLESTATUS']._serialized_start=436
+  _globals['_VEHICLESTATUS']._serialized_end=1013
+  _globals['_GUEST']._serialized_start=1015
+  _globals['_GUEST']._serialized_end=1099
+  _globals['_CIRCLE']._serialized_start=1101
+  _globals['_CIRCLE']._serialized_end=1160
+  _globals['_ARMREQUEST']._serialized_start=1162
+  _globals['_ARMREQUEST']._serialized_end=1218
+  _globals['_MODEREQUEST']._serialized_start=1220
+  _globals['_MODEREQUEST']._serialized_end=1277
+  _globals['_REPLY']._serialized_start=1279
+  _globals['_REPLY']._serialized_end=1320
 # @@protoc_insertion_point(module_scope)

@@ -1,6 +1,7 @@
 from foxglove_schemas_protobuf import Quaternion_pb2 as _Quaternion_pb2
 from foxglove_schemas_protobuf import Vector3_pb2 as _Vector3_pb2
 from google.protobuf import timestamp_pb2 as _timestamp_pb2
+from schemas.v1 import command_pb2 as _command_pb2
 from google.protobuf.internal import containers as _containers
 from google.protobuf.internal import enum_type_wrapper as _enum_type_wrapper
 from google.protobuf import descriptor as _descriptor
@@ -79,7 +80,7 @@ class NavState(_message.Message):
     def __init__(self, timestamp: _Optional[_Union[_timestamp_pb2.Timestamp, _Mapping]] = ..., position: _Optional[_Union[_Vector3_pb2.Vector3, _Mapping]] = ..., velocity: _Optional[_Union[_Vector3_pb2.Vector3, _Mapping]] = ..., orientation: _Optional[_Union[_Quaternion_pb2.Quaternion, _Mapping]] = ..., angular_velocity: _Optional[_Union[_Vector3_pb2.Vector3, _Mapping]] = ..., airspeed: _Optional[float] = ..., wind: _Optional[_Union[_Vector3_pb2.Vector3, _Mapping]] = ..., position_sigma: _Optional[float] = ...) -> None: ...
 
 class VehicleStatus(_message.Message):
-    __slots__ = ("timestamp", "kind", "mode", "armed", "landed", "stopped", "command_source", "reason", "throttle", "battery_remaining", "battery_voltage", "waypoint", "cross_track", "altitude_error", "distance_to_waypoint", "home", "system_id", "prearm", "failsafes", "circle", "breach", "breaches")
+    __slots__ = ("timestamp", "kind", "mode", "armed", "landed", "stopped", "command_source", "reason", "throttle", "battery_remaining", "battery_voltage", "waypoint", "cross_track", "altitude_error", "distance_to_waypoint", "home", "system_id", "prearm", "failsafes", "circle", "breach", "breaches", "stops")
     TIMESTAMP_FIELD_NUMBER: _ClassVar[int]
     KIND_FIELD_NUMBER: _ClassVar[int]
     MODE_FIELD_NUMBER: _ClassVar[int]
@@ -102,6 +103,7 @@ class VehicleStatus(_message.Message):
     CIRCLE_FIELD_NUMBER: _ClassVar[int]
     BREACH_FIELD_NUMBER: _ClassVar[int]
     BREACHES_FIELD_NUMBER: _ClassVar[int]
+    STOPS_FIELD_NUMBER: _ClassVar[int]
     timestamp: _timestamp_pb2.Timestamp
     kind: Kind
     mode: Mode
@@ -124,7 +126,8 @@ class VehicleStatus(_message.Message):
     circle: Circle
     breach: Breach
     breaches: int
-    def __init__(self, timestamp: _Optional[_Union[_timestamp_pb2.Timestamp, _Mapping]] = ..., kind: _Optional[_Union[Kind, str]] = ..., mode: _Optional[_Union[Mode, str]] = ..., armed: bool = ..., landed: bool = ..., stopped: bool = ..., command_source: _Optional[str] = ..., reason: _Optional[str] = ..., throttle: _Optional[float] = ..., battery_remaining: _Optional[float] = ..., battery_voltage: _Optional[float] = ..., waypoint: _Optional[int] = ..., cross_track: _Optional[float] = ..., altitude_error: _Optional[float] = ..., distance_to_waypoint: _Optional[float] = ..., home: _Optional[_Union[_Vector3_pb2.Vector3, _Mapping]] = ..., system_id: _Optional[int] = ..., prearm: _Optional[_Iterable[str]] = ..., failsafes: _Optional[_Iterable[str]] = ..., circle: _Optional[_Union[Circle, _Mapping]] = ..., breach: _Optional[_Union[Breach, str]] = ..., breaches: _Optional[int] = ...) -> None: ...
+    stops: _containers.RepeatedCompositeFieldContainer[_command_pb2.StopEngagement]
+    def __init__(self, timestamp: _Optional[_Union[_timestamp_pb2.Timestamp, _Mapping]] = ..., kind: _Optional[_Union[Kind, str]] = ..., mode: _Optional[_Union[Mode, str]] = ..., armed: bool = ..., landed: bool = ..., stopped: bool = ..., command_source: _Optional[str] = ..., reason: _Optional[str] = ..., throttle: _Optional[float] = ..., battery_remaining: _Optional[float] = ..., battery_voltage: _Optional[float] = ..., waypoint: _Optional[int] = ..., cross_track: _Optional[float] = ..., altitude_error: _Optional[float] = ..., distance_to_waypoint: _Optional[float] = ..., home: _Optional[_Union[_Vector3_pb2.Vector3, _Mapping]] = ..., system_id: _Optional[int] = ..., prearm: _Optional[_Iterable[str]] = ..., failsafes: _Optional[_Iterable[str]] = ..., circle: _Optional[_Union[Circle, _Mapping]] = ..., breach: _Optional[_Union[Breach, str]] = ..., breaches: _Optional[int] = ..., stops: _Optional[_Iterable[_Union[_command_pb2.StopEngagement, _Mapping]]] = ...) -> None: ...
 
 class Guest(_message.Message):
     __slots__ = ("timestamp", "model", "about")

@@ -59,10 +59,10 @@ class Change(Generic[K]):
     cause: str
 
     def event(self, t: float) -> Event:
-        """What is said of it at ``t`` [s]."""
+        """What is said of it at ``t`` [s]; the figures are those of a beginning."""
         severity = self.rule.severity if self.began else Event.NOTICE
         text = self.rule.begins if self.began else self.rule.ends
-        return Event(timestamp=stamp(t), severity=severity, text=text, cause=self.cause, source="autopilot")
+        return Event(timestamp=stamp(t), severity=severity, text=text, cause=self.cause if self.began else "", source="autopilot")
 
 
 @dataclass(frozen=True)

@@ -1,6 +1,6 @@
 """What people ask for on the page, checked here before anything is sent: a page can ask for anything at any time."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -8,7 +8,6 @@ import numpy as np
 from google.protobuf.message import Message
 from numpy.typing import NDArray
 
-from schemas import convert
 from schemas.convert import stamp
 from schemas.messages import (
     ArmRequest,
@@ -23,8 +22,11 @@ from schemas.messages import (
     Vector3,
 )
 from services.gcs.by_hand import ByHand
+from services.gcs.session import Session
 from services.gcs.state import LAYERS, LOST_AFTER, Model, Order, VehicleModel
+from services.gcs.wording import describe, modes_of
 from uvf.runtime.service import Answer
+from uvf.runtime.stop_all import StopVoice
 from uvf.runtime.teleop_hand import SCALINGS, Command
 
 Floats = NDArray[np.float64]
@@ -34,34 +36,47 @@ CONFIRM_WITHIN = 5.0  # s
 ANSWER_WITHIN = 5.0  # s
 REACH = 50.0  # m, how far outside the floor a goal may still lie
 OBEYING_PLANNER = (Mode.MODE_MISSION, Mode.MODE_RETURN)
-MODES: Mapping[str, Mapping[str, Any]] = {
-    "ground": {"Hold": Mode.MODE_HOLD, "Mission": Mode.MODE_MISSION, "Manual": Mode.MODE_MANUAL},
-    "fixed_wing": {"Hold": Mode.MODE_HOLD, "Mission": Mode.MODE_MISSION, "Return": Mode.MODE_RETURN, "Manual": Mode.MODE_MANUAL},
-}
-FOLLOWER: Mapping[str, Any] = {"Hold": Mode.MODE_HOLD, "Follow leader": Mode.MODE_FOLLOW, **MODES["fixed_wing"]}
-"""Of an aircraft that the mission gives a leader."""
+
+
+@dataclass(frozen=True)
+class Join:
+    """A browser has connected. page: here and below, which browser."""
+
+    page: int
+
+
+@dataclass(frozen=True)
+class Leave:
+    """A browser is gone."""
+
+    page: int
 
 
 @dataclass(frozen=True)
 class Select:
+    page: int
     vehicle: str
 
 
 @dataclass(frozen=True)
 class ClickGround:
-    """A click that hit no vehicle: the ray of sight, world frame."""
+    """A click that hit no vehicle: the ray of sight, world frame. vehicle: here and below, the one shown where it was asked for."""
 
+    vehicle: str
     origin: tuple[float, float, float]
     direction: tuple[float, float, float]
 
 
 @dataclass(frozen=True)
 class Arm:
+    page: int
+    vehicle: str
     arm: bool
 
 
 @dataclass(frozen=True)
 class SetMode:
+    vehicle: str
     mode: str
 
 
@@ -78,35 +93,46 @@ class Layer:
 
 @dataclass(frozen=True)
 class Cancel:
-    """Of the goal that the chosen vehicle drives to."""
+    """Of the goal that it drives to."""
+
+    vehicle: str
 
 
 @dataclass(frozen=True)
 class TakeWheel:
-    """page: its own word for itself; empty: nobody shall drive by hand."""
+    """The page wants to drive the vehicle by hand."""
 
-    page: str
+    page: int
+    vehicle: str
+
+
+@dataclass(frozen=True)
+class LeaveWheel:
+    """The page does not want to drive by hand any more."""
+
+    page: int
 
 
 @dataclass(frozen=True)
 class Steer:
     """What a page holds: parts (-1..1) of the linear and the angular scale."""
 
-    page: str
+    page: int
     forward: float
     left: float
 
 
 @dataclass(frozen=True)
 class Rescale:
-    page: str
+    page: int
     key: str
 
 
 @dataclass(frozen=True)
 class ShowCamera:
-    """Which of the chosen vehicle's cameras: image, chase or gimbal."""
+    """Which of the vehicle's cameras the page shows: image, chase or gimbal."""
 
+    page: int
     name: str
 
 
@@ -114,7 +140,7 @@ class ShowCamera:
 class Looking:
     """A page says that the picture is before somebody's eyes."""
 
-    page: str
+    page: int
 
 
 @dataclass(frozen=True)
@@ -127,7 +153,9 @@ class AimGimbal:
     mode: GimbalCommand.Mode
 
 
-Action = Select | ClickGround | Arm | SetMode | StopAll | Layer | Cancel | TakeWheel | Steer | Rescale | ShowCamera | Looking | AimGimbal
+Shown = Join | Leave | Select | Layer | ShowCamera | Looking
+"""What changes only what is seen."""
+Action = Shown | ClickGround | Arm | SetMode | StopAll | Cancel | TakeWheel | LeaveWheel | Steer | Rescale | AimGimbal
 
 
 @dataclass
@@ -154,43 +182,19 @@ def ground_point(origin: Sequence[float], direction: Sequence[float]) -> tuple[f
     return float(hit[0]), float(hit[1])
 
 
-def describe(request: Message) -> str:
-    """A request in the operator's words."""
-    match request:
-        case GoalRequest():
-            return f"go to ({request.position.x:.1f}, {request.position.y:.1f}) m"
-        case ModeRequest():
-            return f"mode {mode_name(request.mode)}"
-        case ArmRequest():
-            return "arm" if request.arm else "disarm"
-        case CancelRequest():
-            return "cancel the goal"
-    return request.DESCRIPTOR.name
-
-
-def modes_of(vehicle: VehicleModel) -> Mapping[str, Any]:
-    """What can be asked of it, by the words on the buttons."""
-    return FOLLOWER if vehicle.leader else MODES[vehicle.member.file.kind]
-
-
-def mode_name(mode: Any) -> str:
-    """``MODE_RETURN`` -> ``Return``."""
-    return convert.mode_name(mode).capitalize()
-
-
 class Commander:
     """Turns actions into requests, and follows each until it is answered."""
 
     def __init__(self, model: Model) -> None:
         self._model = model
-        self._to_confirm: tuple[str, bool, float] | None = None
+        self._voice = StopVoice(SOURCE)
         self._mode_before: dict[str, int] = {}
         self._back: dict[str, int] = {}
         bodies = {v.name: v.member.file.ground for v in model.vehicles.values()}
         self.by_hand = ByHand({n: Command(b.max_linear, b.max_angular) for n, b in bodies.items() if b is not None})
 
-    def waits_for_confirmation(self, vehicle: str, arm: bool, t: float) -> bool:
-        asked = self._to_confirm
+    def waits_for_confirmation(self, session: Session, vehicle: str, arm: bool, t: float) -> bool:
+        asked = session.to_confirm
         return asked is not None and asked[:2] == (vehicle, arm) and t - asked[2] <= CONFIRM_WITHIN
 
     def act(self, t: float, actions: Sequence[Action]) -> Outbox:
@@ -201,30 +205,26 @@ class Commander:
         self._back.clear()
         for action in actions:
             match action:
-                case Select(name):
-                    self._select(t, name)
-                case Layer(name, on):
-                    self._layer(name, on)
+                case Join() | Leave() | Select() | Layer() | ShowCamera() | Looking():
+                    self._show(t, action)
                 case StopAll(engaged):
                     self._stop(t, engaged, out)
-                case ClickGround(origin, direction):
-                    self._go(t, ground_point(origin, direction), out)
-                case Arm(arm):
-                    self._arm(t, arm, out)
-                case SetMode(mode):
-                    self._set_mode(t, mode, out)
-                case Cancel():
-                    self._cancel(t, out)
-                case TakeWheel(page):
-                    self._take_wheel(t, page, out)
+                case ClickGround(vehicle, origin, direction):
+                    self._go(t, vehicle, ground_point(origin, direction), out)
+                case Arm():
+                    self._arm(t, action, out)
+                case SetMode(vehicle, mode):
+                    self._set_mode(t, vehicle, mode, out)
+                case Cancel(vehicle):
+                    self._cancel(t, vehicle, out)
+                case TakeWheel(page, vehicle):
+                    self._take_wheel(t, page, vehicle, out)
+                case LeaveWheel(page):
+                    self.by_hand.let_go(t, page)
                 case Steer(page, forward, left):
                     self.by_hand.steer(t, page, (forward, left))
                 case Rescale(page, key) if key in SCALINGS:
                     self.by_hand.rescale(t, page, key)
-                case ShowCamera(name):
-                    self._model.camera = name
-                case Looking(page):
-                    self._model.look(t, page)
                 case AimGimbal():
                     self._aim(action, out)
         now = stamp(self._model.sim_time)
@@ -232,12 +232,32 @@ class Commander:
             out.drive[name] = DriveCommand(timestamp=now, linear=linear, angular=angular)
         return out
 
-    def _select(self, t: float, name: str) -> None:
+    def _show(self, t: float, action: Shown) -> None:
+        """What a page changes of its own view (layers: of everybody's); only one that has joined is heard."""
+        session = None if isinstance(action, Layer) else self._model.sessions.get(action.page)
+        match action:
+            case Layer(name, on):
+                self._layer(name, on)
+            case Join(page):
+                self._model.join(page)
+            case _ if session is None:
+                pass
+            case Leave(page):
+                self.by_hand.let_go(t, page)
+                del self._model.sessions[page]
+            case Select(_, name):
+                self._select(t, session, name)
+            case ShowCamera(_, name):
+                session.camera = name
+            case Looking():
+                session.looked_at = t
+
+    def _select(self, t: float, session: Session, name: str) -> None:
         if name in self._model.vehicles:
-            if name != self.by_hand.vehicle:
-                self.by_hand.leave(t)
-            self._model.selected = name
-            self._to_confirm = None
+            if name != self.by_hand.held_by(session.page):
+                self.by_hand.let_go(t, session.page)
+            session.vehicle = name
+            session.to_confirm = None
 
     def _aim(self, asked: AimGimbal, out: Outbox) -> None:
         vehicle = self._model.vehicles.get(asked.vehicle)
@@ -254,14 +274,14 @@ class Commander:
     def _stop(self, t: float, engaged: bool, out: Outbox) -> None:
         if engaged:
             self.by_hand.leave(t)
-        command = StopCommand(timestamp=stamp(self._model.sim_time), engaged=engaged, source=SOURCE)
-        self._model.stop = command
-        out.stop.append(command)
+        now_ns = round(self._model.sim_time * 1e9)
+        stops = self._model.stops
+        out.stop.append(self._voice.engage(now_ns, "pressed on the page") if engaged else self._voice.release(now_ns, stops))
         word = "engaged" if engaged else "released"
         self._model.note("", f"STOP ALL {word} on this page", Event.WARNING if engaged else Event.NOTICE, of_operator=True)
 
-    def _go(self, t: float, point: tuple[float, float] | None, out: Outbox) -> None:
-        vehicle = self._model.chosen
+    def _go(self, t: float, name: str, point: tuple[float, float] | None, out: Outbox) -> None:
+        vehicle = self._model.vehicles.get(name)
         if vehicle is None or point is None:
             return
         request = GoalRequest(position=Vector3(x=point[0], y=point[1]), yaw=float("nan"), source=SOURCE)
@@ -275,24 +295,26 @@ class Commander:
             self._refuse(t, vehicle, describe(request), why)
         elif self._is_reachable(t, vehicle, request):
             vehicle.goal_asked = point
-            self.by_hand.leave(t)
+            self.by_hand.free(t, vehicle.name)
             self._mode_before.pop(vehicle.name, None)
             if vehicle.status is not None and vehicle.status.mode not in OBEYING_PLANNER:
                 self._mode_before[vehicle.name] = vehicle.status.mode
                 out.mode.setdefault(vehicle.name, []).append(ModeRequest(mode=Mode.MODE_MISSION, source=SOURCE))
             out.goal.setdefault(vehicle.name, []).append(request)
 
-    def _cancel(self, t: float, out: Outbox) -> None:
-        vehicle, request = self._model.chosen, CancelRequest(source=SOURCE)
+    def _cancel(self, t: float, name: str, out: Outbox) -> None:
+        vehicle, request = self._model.vehicles.get(name), CancelRequest(source=SOURCE)
         if vehicle is not None and not vehicle.flies and self._is_reachable(t, vehicle, request):
             out.cancel.setdefault(vehicle.name, []).append(request)
 
-    def _take_wheel(self, t: float, page: str, out: Outbox) -> None:
+    def _take_wheel(self, t: float, page: int, name: str, out: Outbox) -> None:
         """Like ``uvf teleop``, it asks for mode MANUAL; arming stays a matter of two clicks."""
-        vehicle, request = self._model.chosen, ModeRequest(mode=Mode.MODE_MANUAL, source=SOURCE)
-        self.by_hand.leave(t)
-        if not page or vehicle is None or not self.by_hand.can_drive(vehicle.name):
+        vehicle, request = self._model.vehicles.get(name), ModeRequest(mode=Mode.MODE_MANUAL, source=SOURCE)
+        session = self._model.sessions.get(page)
+        if session is None or session.vehicle != name or vehicle is None or not self.by_hand.can_drive(name):
             return
+        self.by_hand.let_go(t, page)
+        self.by_hand.free(t, name)
         if why := self._cannot_drive(vehicle):
             self._refuse(t, vehicle, "drive by hand", why)
         elif self._is_reachable(t, vehicle, request):
@@ -308,26 +330,26 @@ class Commander:
             return f"{vehicle.name} is disarmed: arm it first"
         return ""
 
-    def _arm(self, t: float, arm: bool, out: Outbox) -> None:
-        vehicle = self._model.chosen
-        if vehicle is None:
+    def _arm(self, t: float, asked: Arm, out: Outbox) -> None:
+        vehicle, session = self._model.vehicles.get(asked.vehicle), self._model.sessions.get(asked.page)
+        if vehicle is None or session is None:
             return
-        if not self.waits_for_confirmation(vehicle.name, arm, t):
-            self._to_confirm = (vehicle.name, arm, t)
+        if not self.waits_for_confirmation(session, vehicle.name, asked.arm, t):
+            session.to_confirm = (vehicle.name, asked.arm, t)
             return
-        self._to_confirm = None
-        request = ArmRequest(arm=arm, source=SOURCE)
+        session.to_confirm = None
+        request = ArmRequest(arm=asked.arm, source=SOURCE)
         if self._is_reachable(t, vehicle, request):
             out.arm.setdefault(vehicle.name, []).append(request)
 
-    def _set_mode(self, t: float, mode: str, out: Outbox) -> None:
-        vehicle = self._model.chosen
+    def _set_mode(self, t: float, name: str, mode: str, out: Outbox) -> None:
+        vehicle = self._model.vehicles.get(name)
         if vehicle is None:
             return
         value = modes_of(vehicle).get(mode)
         request = ModeRequest(mode=value, source=SOURCE)
         if value is not None and self._is_reachable(t, vehicle, request):
-            self.by_hand.leave(t)
+            self.by_hand.free(t, vehicle.name)
             out.mode.setdefault(vehicle.name, []).append(request)
 
     def _is_reachable(self, t: float, vehicle: VehicleModel, request: Message) -> bool:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from services.gcs.camera_panel import GimbalPanel
 from services.gcs.commands import Action
+from services.gcs.markup import Html
 from services.gcs.state import Placed
 
 Floats = NDArray[np.float64]
@@ -87,15 +88,26 @@ class Camera:
 
 
 @dataclass(frozen=True)
-class Picture:
-    """What a page shows after one step. A node that is the same object as before has not changed."""
+class Panel:
+    """What one browser alone shows: its vehicle, and the buttons for it."""
 
-    nodes: Mapping[str, Node] = field(default_factory=dict)
-    places: Mapping[str, Placed] = field(default_factory=dict)
-    html: Mapping[str, str] = field(default_factory=dict)
+    vehicle: str = ""
+    html: Mapping[str, Html] = field(default_factory=dict)
     buttons: Sequence[Button] = ()
     image: bytes | None = None
     gimbal: GimbalPanel | None = None
+
+
+@dataclass(frozen=True)
+class Picture:
+    """What all browsers show after one step, and each of its own. A node that is the same object as before has not changed."""
+
+    nodes: Mapping[str, Node] = field(default_factory=dict)
+    places: Mapping[str, Placed] = field(default_factory=dict)
+    html: Mapping[str, Html] = field(default_factory=dict)
+    buttons: Sequence[Button] = ()
+    panels: Mapping[int, Panel] = field(default_factory=dict)
+    """By page, as in ``Session.page``."""
 
 
 class Page(Protocol):

@@ -46,6 +46,12 @@ class Guard:
 
     def answer(self, path: str, headers: Mapping[str, str]) -> Response | None:
         """The guard's own answer to a request, or None to let viser answer."""
+        try:
+            return self._answer(path, headers)
+        except (ValueError, LookupError):  # half an IPv6 address, letters that are none, a header given twice
+            return _response(http.HTTPStatus.BAD_REQUEST, b"400: not a request of a browser\n", {"Content-Type": "text/plain"})
+
+    def _answer(self, path: str, headers: Mapping[str, str]) -> Response | None:
         if urlsplit(path).path == "/healthz" and not headers.get("Origin"):
             return _response(http.HTTPStatus.OK, self.health(), {"Content-Type": "application/json"})
         reason = self.refuses(path, headers)

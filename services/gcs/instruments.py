@@ -1,7 +1,9 @@
-"""Instruments as SVG: a primary flight display and a driver's panel; plain numbers in, text out."""
+"""Instruments as SVG: a primary flight display and a driver's panel; nothing but numbers and markup goes in, so what is drawn is markup."""
 
 from dataclasses import dataclass
 from math import cos, degrees, radians, sin
+
+from services.gcs.markup import Html, trusted
 
 WIDTH, HEIGHT = 340, 250
 CX, CY = 170.0, 122.0
@@ -21,7 +23,7 @@ class Flight:
     altitude: float
     climb: float
     ground_speed: float
-    mode: str
+    mode: Html
     armed: bool
 
 
@@ -35,14 +37,14 @@ class Drive:
     max_speed: float
     max_turn_rate: float
     distance_left: float | None
-    mode: str
+    mode: Html
     armed: bool
 
 
-def primary_flight_display(f: Flight) -> str:
+def primary_flight_display(f: Flight) -> Html:
     roll, pitch, heading = degrees(f.roll), degrees(f.pitch), degrees(f.heading) % 360
     label = f"roll {roll:.0f} deg, pitch {pitch:.0f} deg, heading {heading:03.0f}, {f.airspeed:.1f} m/s, {f.altitude:.0f} m"
-    return (
+    return trusted(
         f"<svg id='gcs-pfd' role='img' aria-label='{label}' viewBox='0 0 {WIDTH} {HEIGHT}' width='100%' {FONT} fill='{INK}' font-size='11'>"
         f"<defs><clipPath id='pfd-all'><rect width='{WIDTH}' height='{HEIGHT}' rx='10'/></clipPath>"
         "<linearGradient id='pfd-sky' x1='0' y1='0' x2='0' y2='1'><stop offset='0' stop-color='#174a8c'/>"
@@ -138,12 +140,12 @@ def _corners(f: Flight) -> str:
     )
 
 
-def drive_panel(d: Drive) -> str:
+def drive_panel(d: Drive) -> Html:
     heading = degrees(d.heading) % 360
     label = f"heading {heading:03.0f}, {d.speed:.2f} m/s, turning {degrees(d.turn_rate):.0f} deg/s"
     armed = (GREEN, "ARMED") if d.armed else (AMBER, "DISARMED")
     left = "–" if d.distance_left is None else f"{d.distance_left:.1f} m"
-    return (
+    return trusted(
         f"<svg id='gcs-drive' role='img' aria-label='{label}' viewBox='0 0 {WIDTH} 170' width='100%' {FONT} fill='{INK}' font-size='11'>"
         f"<rect width='{WIDTH}' height='170' rx='10' fill='#101a2b'/>{_rose(heading)}"
         f"<text x='176' y='26' fill='{GREEN}' font-size='13' font-weight='700'>{d.mode}</text>"

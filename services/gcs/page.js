@@ -6,13 +6,20 @@
   document.title = 'UVF ground station';
   document.hasFocus = () => true;
   window.__gcsBridge = bridge;
+  window.__gcsJoined = performance.now();
   if (window.__gcs) return;
   window.__gcs = true;
-  const me = 'page' + Math.random().toString(36).slice(2, 10);
+  let wanted = '', asked = 0;  // the vehicle shown here, asked for again after a lost connection
   const send = text => { const m = window.__viserMutable; if (m) m.sendMessage({type: 'GuiUpdateMessage', uuid: window.__gcsBridge, updates: {value: text}}); };
   document.body.dataset.log = 'notice';
   document.addEventListener('click', e => { const filter = e.target.closest && e.target.closest('[data-log]'); if (filter && filter !== document.body) document.body.dataset.log = filter.dataset.log; });
-  const press = e => { const card = e.target.closest && e.target.closest('[data-gcs]'); if (card) send(JSON.stringify([card.dataset.gcs.replace('@me', me), Date.now()])); };
+  const say = text => send(JSON.stringify([text, Date.now()]));
+  const press = e => {
+    const card = e.target.closest && e.target.closest('[data-gcs]');
+    if (!card) return;
+    if (card.dataset.gcs.startsWith('select:')) wanted = card.dataset.gcs.slice(7);
+    say(card.dataset.gcs);
+  };
   document.addEventListener('pointerdown', press);
   document.addEventListener('keydown', e => { if (e.key === 'Enter' || e.key === ' ') press(e); });
   const hand = e => { const page = window.__viserMutable; if (page && e.target === page.canvas && (e.type === 'wheel' || e.buttons)) window.__gcsHand = true; };
@@ -27,12 +34,15 @@
       const box = canvas.getBoundingClientRect(), root = document.documentElement.style;
       root.setProperty('--gcs-left', box.left + 'px'); root.setProperty('--gcs-width', box.width + 'px');
       const seen = (box.width / Math.max(box.height, 1)).toFixed(3), time = performance.now();
-      if (seen !== shape || time - told > 2000) { shape = seen; told = time; send(JSON.stringify([(window.__gcsHand ? 'hand:' : 'shape:') + shape, Date.now()])); }
+      if (seen !== shape || time - told > 2000) { shape = seen; told = time; say((window.__gcsHand ? 'hand:' : 'shape:') + shape); }
     }
     const cameras = document.getElementById('gcs-cameras'), seen = cameras && !document.hidden && cameras.getClientRects().length > 0;
-    if (seen && performance.now() - looked > 1000) { looked = performance.now(); send(JSON.stringify([`looks:${me}`, Date.now()])); }
+    if (seen && performance.now() - looked > 1000) { looked = performance.now(); say('looks'); }
     const source = document.getElementById('gcs-bar-source');
-    const now = performance.now();
+    const now = performance.now(), shown = source && source.querySelector('.g-follow');
+    const again = wanted && now - window.__gcsJoined < 3000;
+    if (shown && !again) wanted = shown.dataset.name;
+    else if (shown && shown.dataset.name !== wanted && now - asked > 500) { asked = now; say('select:' + wanted); }
     silent += Math.min(now - ticked, 400);  // a page that stood still itself has yet to read what came meanwhile
     ticked = now;
     if (source && source.dataset.beat !== beat) { beat = source.dataset.beat; silent = 0; if (bar.innerHTML !== source.innerHTML) bar.innerHTML = source.innerHTML; }
@@ -40,10 +50,7 @@
     bar.classList.toggle('g-dead', dead);
     if (dead) bar.innerHTML = LOST;
   }, 200);
-  const own = document.createElement('style');
-  own.textContent = `#gcs-wheel[data-driver="${me}"] .g-theirs,#gcs-wheel:not([data-driver="${me}"]) .g-mine{display:none}`;
-  document.head.append(own);
-  const wheel = () => document.querySelector(`#gcs-wheel[data-driver="${me}"]`);
+  const wheel = () => document.querySelector('#gcs-wheel[data-driver="mine"]');
   const held = new Map();  // the key or pointer that holds it -> [forward, left]
   let drove = false;
   const steer = () => {
@@ -51,7 +58,7 @@
     if (!held.size && !drove) return;
     const way = [0, 1].map(i => Math.max(-1, Math.min(1, [...held.values()].reduce((sum, one) => sum + Number(one[i]), 0))));
     drove = held.size > 0;
-    send(JSON.stringify([`steer:${me}:${way.join(':')}`, Date.now()]));
+    say(`steer:${way.join(':')}`);
   };
   setInterval(steer, 100);
   const hold = (by, button) => { held.set(by, button.dataset.steer.split(' ')); steer(); };
@@ -64,7 +71,7 @@
     const button = panel.querySelector(`[data-keys~="${CSS.escape(e.key.length === 1 ? e.key.toLowerCase() : e.key)}"]`);
     if (!button) return;
     e.preventDefault(); e.stopImmediatePropagation();
-    if (!button.dataset.steer) send(JSON.stringify([button.dataset.gcs.replace('@me', me), Date.now()]));
+    if (!button.dataset.steer) say(button.dataset.gcs);
     else if (!held.has(e.code)) hold(e.code, button);  // a held key is repeated: it drives on after the panel or the window was away
   }, true);
   window.addEventListener('keyup', e => { if (release(e.code)) e.stopImmediatePropagation(); }, true);

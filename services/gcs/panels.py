@@ -1,32 +1,42 @@
-"""The page's words about vehicles: fleet cards, what was asked of one and how far it is, its facts. Text from the bus is escaped."""
+"""The page's words about vehicles: fleet cards, what was asked of one and how far it is, its facts."""
 
-from html import escape
+from collections.abc import Iterable
 from math import atan2, degrees, hypot, pi
 from pathlib import Path
 
 from schemas.convert import wxyz
 from schemas.messages import MissionProgress, Mode, NavStatus
-from services.gcs.commands import mode_name
+from services.gcs.enum_names import enum_name
 from services.gcs.instruments import Drive, Flight, drive_panel, primary_flight_display
+from services.gcs.markup import Html, html, joined
 from services.gcs.state import Model, VehicleModel, link_of
+from services.gcs.wording import mode_name
 from uvf.maths.rotations import to_euler
 
 HELP = Path(__file__).with_name("help.html")
 
 
-def fleet(model: Model, t: float) -> str:
-    return "<div class='g-fleet'>" + "".join(_card(model, v, t) for v in model.vehicles.values()) + "</div>"
+def fleet(model: Model, chosen: VehicleModel, t: float) -> Html:
+    return html("<div class='g-fleet'>{}</div>", joined(_card(v, v is chosen, t) for v in model.vehicles.values()))
 
 
-def _card(model: Model, v: VehicleModel, t: float) -> str:
+def _card(v: VehicleModel, is_chosen: bool, t: float) -> Html:
     word, style = link_of(v.heard, t)
     badge, badge_style = badge_of(v)
-    chosen = " g-chosen" if v.name == model.selected else ""
-    rows = "".join(f"<tr><td>{name}</td><td>{value}</td></tr>" for name, value in _numbers(v))
-    title = f"<b><i class='g-dot'></i>{'✈' if v.flies else '▣'} {v.name}</b><em class='g-badge g-b-{badge_style}'>{badge}</em>"
-    return (
-        f"<button type='button' class='g-card{chosen}' data-gcs='select:{v.name}' aria-label='Select {v.name}' style='--c:{v.colour}'>"
-        f"<span class='g-top'>{title}</span><table>{rows}<tr><td>link</td><td class='g-{style}'>{word}</td></tr></table></button>"
+    chosen = " g-chosen" if is_chosen else ""
+    rows = _rows(_numbers(v))
+    title = html("<b><i class='g-dot'></i>{} {}</b><em class='g-badge g-b-{}'>{}</em>", "✈" if v.flies else "▣", v.name, badge_style, badge)
+    return html(
+        "<button type='button' class='g-card{}' data-gcs='select:{}' aria-label='Select {}' style='--c:{}'>"
+        "<span class='g-top'>{}</span><table>{}<tr><td>link</td><td class='g-{}'>{}</td></tr></table></button>",
+        chosen,
+        v.name,
+        v.name,
+        v.colour,
+        title,
+        rows,
+        style,
+        word,
     )
 
 
@@ -49,7 +59,7 @@ def _numbers(v: VehicleModel) -> list[tuple[str, str]]:
         height = f"{v.nav.position.z:.0f} m" if v.nav is not None else "–"
         return [("airspeed", airspeed), ("altitude", height), ("waypoint", waypoint_text(v))]
     mapped = f"{100 * v.mapped:.0f} %" if v.mapped is not None else "–"
-    job = escape(v.nav_status.job) or "–" if v.nav_status is not None else "–"
+    job = v.nav_status.job or "–" if v.nav_status is not None else "–"
     return [("speed", f"{v.speed:.2f} m/s"), ("job", job), ("mapped floor", mapped)]
 
 
@@ -66,8 +76,8 @@ def signed(value: float) -> str:
     return f"{round(value, 1) + 0.0:+.1f}"
 
 
-def instrument(v: VehicleModel) -> str:
-    mode = mode_name(v.status.mode).upper() if v.status is not None else "NO STATUS"
+def instrument(v: VehicleModel) -> Html:
+    mode = html("{}", mode_name(v.status.mode).upper() if v.status is not None else "NO STATUS")
     armed = v.status is not None and v.status.armed
     place, ground = v.place, v.member.file.ground
     roll, pitch, yaw = to_euler(place.wxyz) if place is not None else (0.0, 0.0, pi / 2)
@@ -77,14 +87,14 @@ def instrument(v: VehicleModel) -> str:
         return drive_panel(Drive(heading, v.speed, v.turn_rate, ground.max_linear, ground.max_angular, left, mode, armed))
     nav = v.nav
     if nav is None:
-        return "<div class='g-empty'>No estimate of the motion yet</div>"
+        return html("<div class='g-empty'>No estimate of the motion yet</div>")
     roll, pitch, yaw = to_euler(wxyz(nav.orientation))
     speed = hypot(nav.velocity.x, nav.velocity.y)
     flight = Flight(roll, -pitch, pi / 2 - yaw, nav.airspeed, nav.position.z, nav.velocity.z, speed, mode, armed)
     return primary_flight_display(flight)
 
 
-def facts(v: VehicleModel, t: float) -> str:
+def facts(v: VehicleModel, t: float) -> Html:
     """The chosen vehicle's facts as a table of two columns."""
     rows: list[tuple[str, str]] = []
     if v.place is not None:
@@ -92,16 +102,20 @@ def facts(v: VehicleModel, t: float) -> str:
         rows.append(("position", f"{x:.2f}, {y:.2f}, {z:.2f} m"))
     if v.status is not None:
         s = v.status
-        rows.append(("commands from", escape(s.command_source) or "–"))
+        rows.append(("commands from", s.command_source or "–"))
         if s.reason:
-            rows.append(("because", escape(s.reason)))
+            rows.append(("because", s.reason))
         if v.flies:
             rows += [("off the leg", f"{signed(s.cross_track)} m"), ("altitude error", f"{signed(s.altitude_error)} m")]
             rows += [("waypoint", f"{waypoint_text(v)}, {s.distance_to_waypoint:.0f} m"), ("throttle", f"{100 * s.throttle:.0f} %")]
         if s.battery_voltage > 0:
             rows.append(("battery", f"{100 * s.battery_remaining:.0f} %, {s.battery_voltage:.1f} V"))
     rows += _wind(v) + _job(v)
-    return "<table class='g-facts'>" + "".join(f"<tr><td>{a}</td><td>{b}</td></tr>" for a, b in rows) + "</table>"
+    return html("<table class='g-facts'>{}</table>", _rows(rows))
+
+
+def _rows(pairs: Iterable[tuple[str, str]]) -> Html:
+    return joined(html("<tr><td>{}</td><td>{}</td></tr>", *pair) for pair in pairs)
 
 
 def _wind(v: VehicleModel) -> list[tuple[str, str]]:
@@ -124,23 +138,23 @@ def _crab(v: VehicleModel, yaw: float) -> float:
 def _job(v: VehicleModel) -> list[tuple[str, str]]:
     if v.nav_status is None:
         return []
-    state = NavStatus.State.Name(v.nav_status.state).lower()
-    why = f": {escape(v.nav_status.reason)}" if v.nav_status.reason else ""
+    state = enum_name(NavStatus.State, v.nav_status.state)
+    why = f": {v.nav_status.reason}" if v.nav_status.reason else ""
     return [("planner", f"{state}{why}"), ("explored, as it guesses", f"{100 * v.nav_status.explored:.0f} %")]
 
 
-def orders(v: VehicleModel) -> str:
+def orders(v: VehicleModel) -> Html:
     """Under the buttons: what became of the last order, and how far the vehicle is with its job."""
-    return f"{order_line(v)}{progress_line(v)}"
+    return joined((order_line(v), progress_line(v)))
 
 
-def progress_line(v: VehicleModel) -> str:
+def progress_line(v: VehicleModel) -> Html:
     """The mission, the way to the goal or the station behind a leader: in words, and as a bar where there is an end to it."""
     p = v.progress
     if v.status is not None and v.status.mode == Mode.MODE_FOLLOW:
-        return _progress(f"{escape(v.status.reason)}: {v.status.distance_to_waypoint:.0f} m from its station", None)
+        return _progress(f"{v.status.reason}: {v.status.distance_to_waypoint:.0f} m from its station", None)
     if p is not None and p.state != MissionProgress.NO_MISSION:
-        state = MissionProgress.State.Name(p.state).lower().replace("_", " ")
+        state = enum_name(MissionProgress.State, p.state)
         done = 1.0 if p.state == MissionProgress.COMPLETE else p.current / max(p.total, 1)
         left = f", {v.status.distance_to_waypoint:.0f} m to go" if v.status is not None and p.state == MissionProgress.ACTIVE else ""
         return _progress(f"mission {state}: waypoint {waypoint_text(v)}{left}", done)
@@ -149,11 +163,11 @@ def progress_line(v: VehicleModel) -> str:
     if v.flies or (p is not None and v.nav_status is None):
         return _progress("no mission is loaded: upload one with a ground station", None)
     if v.nav_status is None:
-        return ""
-    state = NavStatus.State.Name(v.nav_status.state).lower()
+        return html("")
+    state = enum_name(NavStatus.State, v.nav_status.state)
     left = f", {v.nav_status.distance_left:.1f} m to go" if v.nav_status.state == NavStatus.DRIVING else ""
-    why = f": {escape(v.nav_status.reason)}" if v.nav_status.reason else ""
-    return _progress(f"{escape(v.nav_status.job) or 'no job'}: {state}{left}{why}", None)
+    why = f": {v.nav_status.reason}" if v.nav_status.reason else ""
+    return _progress(f"{v.nav_status.job or 'no job'}: {state}{left}{why}", None)
 
 
 def drives_to_goal(v: VehicleModel) -> bool:
@@ -162,15 +176,15 @@ def drives_to_goal(v: VehicleModel) -> bool:
     return v.nav_status is not None and v.nav_status.job == "goal" and v.nav_status.state not in ended
 
 
-def _progress(text: str, share: float | None) -> str:
-    bar = "" if share is None else f"<span class='g-meter'><i style='width:{100 * share:.0f}%'></i></span>"
-    return f"<div class='g-progress'>{text}{bar}</div>"
+def _progress(text: str, share: float | None) -> Html:
+    bar = "" if share is None else html("<span class='g-meter'><i style='width:{:.0f}%'></i></span>", 100 * share)
+    return html("<div class='g-progress'>{}{}</div>", text, bar)
 
 
-def order_line(v: VehicleModel) -> str:
+def order_line(v: VehicleModel) -> Html:
     """The last order: sent, accepted or refused and why."""
     if v.order is None:
-        return "<div class='g-order g-idle'>Nothing asked yet</div>"
+        return html("<div class='g-order g-idle'>Nothing asked yet</div>")
     sign, style = {"sent": ("…", "warn"), "accepted": ("✓", "good"), "refused": ("✖", "bad")}[v.order.state]
-    reason = f": {escape(v.order.reason)}" if v.order.reason else ""
-    return f"<div class='g-order g-{style}' role='status'>{sign} {escape(v.order.text)} – {v.order.state}{reason}</div>"
+    reason = f": {v.order.reason}" if v.order.reason else ""
+    return html("<div class='g-order g-{}' role='status'>{} {} – {}{}</div>", style, sign, v.order.text, v.order.state, reason)

@@ -1,10 +1,11 @@
-"""The tables of the tabs Log and System. Text from the bus is escaped."""
+"""The tables of the tabs Log and System."""
 
 from collections.abc import Sequence
-from html import escape
 
 from schemas.messages import Event, Process
+from services.gcs.enum_names import enum_name
 from services.gcs.journal import Journal, Line
+from services.gcs.markup import Html, html, joined
 from services.gcs.state import Model
 from services.gcs.status import SEVERITY, clock_text
 from services.gcs.vitals import Vitals
@@ -31,23 +32,26 @@ HINTS = (
 )
 
 
-def event_log(journal: Journal) -> str:
+def event_log(journal: Journal) -> Html:
     """What the operator has done stays on top; below, everything, filtered by the page itself (``data-log``)."""
     lines = list(journal)
     if not lines:
-        return "<div class='g-empty'>Nothing has happened yet</div>"
+        return html("<div class='g-empty'>Nothing has happened yet</div>")
     mine = [line for line in lines if line.of_operator][-OF_OPERATOR:]
-    asked = _rows(mine) if mine else "<tr><td>Nothing has been asked for on this page yet</td></tr>"
-    choice = "".join(f"<button type='button' data-log='{key}'>{name}</button>" for key, name in FILTERS.items())
+    asked = _rows(mine) if mine else html("<tr><td>Nothing has been asked for on this page yet</td></tr>")
+    choice = joined(html("<button type='button' data-log='{}'>{}</button>", key, name) for key, name in FILTERS.items())
     rest = _rows([line for line in lines if not line.of_operator])
-    return (
-        f"<h4 class='g-h'>Asked for on this page</h4><table class='g-log' aria-live='polite'>{asked}</table>"
-        f"<h4 class='g-h'>Events <span class='g-filter' role='group' aria-label='events shown'>{choice}</span></h4>"
-        f"<table class='g-log g-events'>{rest}</table>"
+    return html(
+        "<h4 class='g-h'>Asked for on this page</h4><table class='g-log' aria-live='polite'>{}</table>"
+        "<h4 class='g-h'>Events <span class='g-filter' role='group' aria-label='events shown'>{}</span></h4>"
+        "<table class='g-log g-events'>{}</table>",
+        asked,
+        choice,
+        rest,
     )
 
 
-def _rows(lines: Sequence[Line]) -> str:
+def _rows(lines: Sequence[Line]) -> Html:
     """Newest first; of those that a filter would leave, enough whatever the filter."""
     rows, shown = [], dict.fromkeys(("operator", *FILTERS), 0)
     for line in reversed(lines):
@@ -55,48 +59,56 @@ def _rows(lines: Sequence[Line]) -> str:
         if shown[line.kind] > SHOWN:
             continue
         sign, style = SEVERITY.get(line.severity, SEVERITY[Event.INFO])
-        who = f"<b>{escape(line.vehicle)}</b> " if line.vehicle else ""
-        cells = f"<td>{clock_text(line.t)}</td><td class='g-{style}'>{sign}</td><td>{who}{escape(line.text)}</td>"
-        rows.append(f"<tr class='g-k-{line.kind}'>{cells}</tr>")
-    return "".join(rows)
+        who = html("<b>{}</b> ", line.vehicle) if line.vehicle else ""
+        cells = html("<td>{}</td><td class='g-{}'>{}</td><td>{}{}</td>", clock_text(line.t), style, sign, who, line.text)
+        rows.append(html("<tr class='g-k-{}'>{}</tr>", line.kind, cells))
+    return joined(rows)
 
 
-def processes(model: Model, t: float) -> str:
+def processes(model: Model, t: float) -> Html:
     """One row a process: what the launchers say of it, and what it says of itself."""
+    refused = html("<div class='g-warn'>⚠ not taken in from the bus: {}</div>", model.refused) if str(model.refused) else html("")
     names = sorted(model.processes.keys() | model.health.keys())
     if not names:
-        return "<div class='g-empty'>No process has spoken yet</div>"
-    head = "".join(f"<th title='{hint}'>{name}</th>" for name, hint in zip(HEADINGS, HINTS, strict=True))
-    rows = "".join(_process(name, model.processes.get(name), model.health.get(name), t) for name in names)
+        return html("<div class='g-empty'>No process has spoken yet</div>{}", refused)
+    head = joined(html("<th title='{}'>{}</th>", hint, name) for name, hint in zip(HEADINGS, HINTS, strict=True))
+    rows = joined(_process(name, model.processes.get(name), model.health.get(name), t) for name in names)
     loads = [v.load for v in model.health.values() if v.load is not None]
-    total = f"<tr><td>together</td><td></td><td></td><td>{100 * sum(loads):.0f}</td><td colspan='3'></td></tr>"
-    return f"<table class='g-system'><tr>{head}</tr>{rows}{total}</table>"
+    total = html("<tr><td>together</td><td></td><td></td><td>{:.0f}</td><td colspan='3'></td></tr>", 100 * sum(loads))
+    return html("<table class='g-system'><tr>{}</tr>{}{}</table>{}", head, rows, total, refused)
 
 
-def _process(name: str, process: Process | None, vitals: Vitals | None, t: float) -> str:
-    word, style = STATES[process.state] if process is not None else ("by hand", "idle")
+def _process(name: str, process: Process | None, vitals: Vitals | None, t: float) -> Html:
+    word, style = _state(process)
     if vitals is not None and vitals.silence(t) and word in ("running", "by hand"):
         word, style = f"silent {vitals.silence(t):.0f} s", "bad"
     starts = str(process.restarts) if process is not None else "–"
     more = [process.reason] if process is not None and process.reason else []
     if vitals is not None and vitals.report.missing and process is not None and process.state == Process.RUNNING:
         more.append(f"waits for {', '.join(vitals.report.missing)}")
-    why = f"<tr class='g-why'><td colspan='7'>{escape('; '.join(more))}</td></tr>" if more else ""
-    figures = "".join(_figures(vitals))
-    return f"<tr><td>{escape(name)}</td><td class='g-{style}'>{word}</td><td>{starts}</td>{figures}</tr>{why}"
+    why = html("<tr class='g-why'><td colspan='7'>{}</td></tr>", "; ".join(more)) if more else ""
+    figures = joined(_figures(vitals))
+    return html("<tr><td>{}</td><td class='g-{}'>{}</td><td>{}</td>{}</tr>{}", name, style, word, starts, figures, why)
 
 
-def _figures(vitals: Vitals | None) -> list[str]:
+def _state(process: Process | None) -> tuple[str, str]:
+    """(words, class)."""
+    if process is None:
+        return "by hand", "idle"
+    return STATES.get(process.state) or (enum_name(Process.State, process.state), "warn")
+
+
+def _figures(vitals: Vitals | None) -> list[Html]:
     if vitals is None:
-        return ["<td>–</td>"] * 4
+        return [html("<td>–</td>")] * 4
     worst = vitals.report.worst_lateness
     return [
-        f"<td>{100 * vitals.load:.0f}</td>" if vitals.load is not None else "<td>…</td>",
-        f"<td{_marked(vitals.late > LATE)}>{100 * vitals.late:.1f}</td>",
-        f"<td{_marked(worst > LATENESS)}>{1e3 * worst:.0f}</td>",
-        f"<td{_marked(vitals.gaps > 0)}>{vitals.gaps}</td>",
+        html("<td>{:.0f}</td>", 100 * vitals.load) if vitals.load is not None else html("<td>…</td>"),
+        html("<td{}>{:.1f}</td>", _marked(vitals.late > LATE), 100 * vitals.late),
+        html("<td{}>{:.0f}</td>", _marked(worst > LATENESS), 1000.0 * worst),
+        html("<td{}>{}</td>", _marked(vitals.gaps > 0), vitals.gaps),
     ]
 
 
-def _marked(bad: bool) -> str:
-    return " class='g-warn'" if bad else ""
+def _marked(bad: bool) -> Html:
+    return html(" class='g-warn'" if bad else "")

@@ -26,15 +26,15 @@ from schemas.messages import (
     PosesInFrame,
     Processes,
     SimObjects,
-    StopCommand,
     VehicleStatus,
 )
 from services.gcs.commands import SOURCE, Commander
 from services.gcs.drawing import Page
 from services.gcs.page_frame import Composer
 from services.gcs.state import Model
-from uvf.runtime.service import Answer, Outputs, Service, each_vehicle, every, optional
+from uvf.runtime.service import Answer, Outputs, Service, each_vehicle, every, optional, stop_all
 from uvf.runtime.site import Site
+from uvf.runtime.stop_all import StopStatus
 
 
 class GroundStation(Service):
@@ -50,7 +50,7 @@ class GroundStation(Service):
         "objects": optional(topics.OBJECTS),
         "aircraft": optional(topics.AIR_OBJECTS),
         "health": optional(every(topics.HEALTH.by("*"))),
-        "stops": optional(topics.STOP.by("*")),
+        "stop": stop_all(),
         "guests": each_vehicle(topics.GUEST),
         "nav": each_vehicle(topics.NAV_STATE),
         "pose": each_vehicle(topics.POSE),
@@ -90,7 +90,7 @@ class GroundStation(Service):
         objects: SimObjects | None,
         aircraft: SimObjects | None,
         health: Sequence[Health],
-        stops: StopCommand | None,
+        stop: StopStatus,
         events: Mapping[str, Sequence[Event]],
         goal: Sequence[Answer[Any, Any]],
         cancel: Sequence[Answer[Any, Any]],
@@ -140,7 +140,7 @@ class GroundStation(Service):
             "world_from_map": world_from_map,
         }
         self._hear_system(t, clock, processes, health)
-        self._hear_others(guests, stops, (objects, aircraft), truth)
+        self._hear_others(guests, stop, (objects, aircraft), truth)
         return self._act(t, newest, events, (*goal, *cancel, *arm, *mode))
 
     def _hear_system(self, t: float, clock: Clock | None, processes: Sequence[Processes], health: Sequence[Health]) -> None:
@@ -149,7 +149,7 @@ class GroundStation(Service):
         self._model.hear_health(t, health)
 
     def _hear_others(
-        self, guests: Mapping[str, Guest], stop: StopCommand | None, things: Sequence[SimObjects | None], truth: Mapping[str, NavState]
+        self, guests: Mapping[str, Guest], stop: StopStatus, things: Sequence[SimObjects | None], truth: Mapping[str, NavState]
     ) -> None:
         self._model.hear_guests(guests)
         self._model.hear_objects(things, truth)

@@ -7,7 +7,7 @@ from schemas.messages import SimObject
 from services.gcs.bodies import rgb, rover
 from services.gcs.drawing import Colour, Node
 from services.gcs.scenery import at_rest, coloured, merge
-from services.gcs.state import Model, Placed
+from services.gcs.state import Model, Placed, model_name
 from uvf.runtime.aircraft_shape import aircraft_shape
 from uvf.runtime.mesh_parts import Part
 from uvf.runtime.params import BadInput
@@ -47,7 +47,7 @@ class Spawned:
 
     def _parts(self, model: str) -> list[Part]:
         folder = self._model.site.vehicles_folder
-        file = load_vehicle(folder, model)
+        file = load_vehicle(folder, model_name(model))
         return rover(folder / model / file.ground.urdf) if file.ground is not None else aircraft_shape(folder / model, file).at_rest
 
     def places(self) -> dict[str, Placed]:

@@ -32,11 +32,13 @@ from schemas.messages import (
     Processes,
     SimObject,
     SimObjects,
-    StopCommand,
+    StopEngagement,
     VehicleStatus,
 )
 from schemas.topics import SYSTEM
 from services.gcs.journal import Journal, Line
+from services.gcs.refusals import Refusals
+from services.gcs.session import Session
 from services.gcs.tracks import Track
 from services.gcs.vitals import Vitals
 from uvf.maths.rotations import from_euler, matrix
@@ -44,12 +46,18 @@ from uvf.runtime.mapped_floor import MappedFloor
 from uvf.runtime.mission_file import Start, Vehicle
 from uvf.runtime.params import BadInput
 from uvf.runtime.site import Member, Site
+from uvf.runtime.spawned import name_fault, object_fault
+from uvf.runtime.stop_all import StopStatus, name_of, told
 from uvf.runtime.vehicle_file import load_vehicle
 
 Floats = NDArray[np.float64]
 
 STALE_AFTER = 1.5  # s, wall clock
 LOST_AFTER = 5.0  # s
+MOST_VEHICLES = 64
+MOST_PROCESSES = 256
+MOST_OBJECTS = 256
+LONGEST_TEXT = 500  # letters of an event or of what a guest says of itself
 SIGNS_OF_LIFE = ("nav", "pose", "odometry", "status", "nav_status", "progress")
 SHOWN_BY_THE_CLOCK = ("conductor",)
 """Sources whose warnings tell of a state that the page reads from the clock: they stand in the log, not as notices."""
@@ -164,25 +172,20 @@ class VehicleModel:
 
 
 class Model:
-    """All vehicles of a mission, the clock, the log, and what the operator has chosen."""
+    """All vehicles of a mission, the clock, the log, and what each browser has chosen."""
 
     def __init__(self, site: Site) -> None:
         self.site = site
         self.vehicles: dict[str, VehicleModel] = {}
         for name, member in sorted(site.members.items()):
             self._add(name, member)
-        grounded = [v.name for v in self.vehicles.values() if not v.flies]
-        self.selected = next(iter(grounded or self.vehicles), "")
+        self.sessions: dict[int, Session] = {}
+        """Of each browser that is connected."""
         self.layers = set(SHOWN_AT_FIRST)
-        self.camera = ""
-        """The field of the vehicle whose picture is on show, where it has that camera."""
-        self.looking: dict[str, float] = {}
-        """Page -> when it last said that somebody has the picture before his eyes [s, wall]."""
         self.clock: Clock | None = None
         self.clock_at: float | None = None
         self.processes: dict[str, Process] = {}
-        self.stop: StopCommand | None = None
-        self._stop_heard: StopCommand | None = None
+        self.stop = StopStatus()
         self.log = Journal()
         self._floors = {v.name: MappedFloor(site.world, v.member) for v in self.vehicles.values() if not v.flies}
         self.health: dict[str, Vitals] = {}
@@ -190,6 +193,7 @@ class Model:
         """What has been put into the running simulation."""
         self.strangers: Mapping[str, NavState] = {}
         """True motion of the vehicles among it."""
+        self.refused = Refusals(self._warn)
         self._turned_away: dict[str, str] = {}
         """Guests that cannot be drawn, and the model that they name."""
 
@@ -197,22 +201,31 @@ class Model:
         colour = COLOURS[len(self.vehicles) % len(COLOURS)]
         self.vehicles[name] = VehicleModel(name, member, colour, _track(member))
 
-    @property
-    def chosen(self) -> VehicleModel | None:
-        return self.vehicles.get(self.selected)
+    def join(self, page: int) -> None:
+        """A browser has connected; it shows a ground vehicle at first, if there is one."""
+        grounded = [v.name for v in self.vehicles.values() if not v.flies]
+        self.sessions[page] = Session(page, next(iter(grounded or self.vehicles), ""))
+
+    def chosen_by(self, session: Session) -> VehicleModel | None:
+        """None while no vehicle is known; then the first that comes."""
+        if session.vehicle not in self.vehicles:
+            session.vehicle = next(iter(self.vehicles), "")
+        return self.vehicles.get(session.vehicle)
 
     @property
     def stopped(self) -> bool:
-        """STOP ALL is engaged: by the last command of anybody, or as a vehicle reports it."""
-        return (self.stop is not None and self.stop.engaged) or any(v.stopped for v in self.vehicles.values())
+        """STOP ALL is engaged: by a word of anybody, or as a vehicle reports it."""
+        return bool(self.stop) or any(v.stopped for v in self.vehicles.values())
+
+    @property
+    def stops(self) -> list[StopEngagement]:
+        """Every engagement that is known here or that a vehicle reports."""
+        reported = [one for v in self.vehicles.values() if v.status is not None for one in v.status.stops]
+        return list({name_of(one): one for one in (*reported, *self.stop.engagements)}.values())
 
     @property
     def sim_time(self) -> float:
         return self.clock.t_ns * 1e-9 if self.clock is not None else 0.0
-
-    def look(self, t: float, page: str) -> None:
-        """A page has the picture before somebody's eyes; pages that are gone are forgotten."""
-        self.looking = {**{name: at for name, at in self.looking.items() if t - at < LOST_AFTER}, page: t}
 
     def hear_newest(self, t: float, newest: Mapping[str, Mapping[str, Message]], events: Mapping[str, Sequence[Event]]) -> None:
         """newest: by kind, then by vehicle; events: by vehicle."""
@@ -248,46 +261,81 @@ class Model:
 
     def hear_processes(self, told: Sequence[Processes]) -> None:
         """Each launcher tells of its own; together they are what runs."""
-        self.processes |= {process.name: process for message in told for process in message.processes}
+        for process in (process for message in told for process in message.processes):
+            if process.name in self.processes or len(self.processes) < MOST_PROCESSES:
+                self.processes[process.name] = process
+            else:
+                self.refused.add("processes", process.name, f"more than {MOST_PROCESSES} processes are told of: not all are listed")
 
-    def hear_stop(self, stop: StopCommand | None) -> None:
-        """The newest STOP ALL or release of all sources holds, also over our own."""
-        if stop is not None and stop is not self._stop_heard:
-            known = self.stop is not None and (self.stop.engaged, self.stop.source) == (stop.engaged, stop.source)
-            self._stop_heard = self.stop = stop
-            if not known:
-                word = "engaged" if stop.engaged else "released"
-                self.note("", f"STOP ALL {word} by {stop.source or 'somebody unnamed'}", Event.WARNING if stop.engaged else Event.NOTICE)
+    def hear_stop(self, stop: StopStatus) -> None:
+        """Writes down who engages STOP ALL, and who has released the last engagement."""
+        before, self.stop = self.stop, stop
+        known = {name_of(one) for one in before.engagements}
+        for one in stop.engagements:
+            if name_of(one) not in known:
+                self.note("", f"STOP ALL engaged by {told([one])}", Event.WARNING)
+        if before and not stop:
+            self.note("", f"STOP ALL released by {stop.released_by or 'somebody unnamed'}", Event.NOTICE)
 
     def hear_objects(self, lists: Sequence[SimObjects | None], truth: Mapping[str, NavState]) -> None:
         """lists: of each simulator, what has been put into it."""
-        self.spawned = [thing for told in lists if told is not None for thing in told.objects]
+        told = (thing for one in lists if one is not None for thing in one.objects)
+        self.spawned = [thing for thing in told if self._is_sound(thing)][:MOST_OBJECTS]
         self.strangers = {name: state for name, state in truth.items() if name not in self.vehicles}
 
     def hear_guests(self, guests: Mapping[str, Guest]) -> None:
         """Vehicles that no mission names are shown like all others, once it is known what they look like."""
         for name, guest in guests.items():
-            if name in self.vehicles or self._turned_away.get(name) == guest.model:
-                continue
-            try:
-                file = load_vehicle(self.site.vehicles_folder, guest.model)
-            except BadInput as error:
-                self._turned_away[name] = guest.model
-                self.note("", f"'{name}' cannot be shown: {error}", Event.WARNING)
-                continue
-            entry = Vehicle(model=guest.model, start=Start(x=0.0, y=0.0), system_id=1)
-            self._add(name, Member(name, entry, file, self.site.vehicles_folder / guest.model))
-            self.note(name, f"a guest: {guest.about}", Event.NOTICE)
+            if name not in self.vehicles and self._turned_away.get(name) != guest.model and self._is_name(name):
+                self._meet(name, guest)
+
+    def _meet(self, name: str, guest: Guest) -> None:
+        """Takes a guest in, or turns it away: its model is one of those in ``vehicles/``, never a path."""
+        if name not in self._turned_away and len(self.vehicles) + len(self._turned_away) >= MOST_VEHICLES:
+            self.refused.add("vehicles", name, f"more than {MOST_VEHICLES} vehicles are on the bus: not all are shown")
+            return
+        try:
+            file = load_vehicle(self.site.vehicles_folder, model_name(guest.model))
+        except BadInput as error:
+            if name not in self._turned_away:
+                self._warn(f"'{name}' cannot be shown: {error}")
+            self._turned_away[name] = guest.model
+            return
+        self._turned_away.pop(name, None)
+        entry = Vehicle(model=guest.model, start=Start(x=0.0, y=0.0), system_id=1)
+        self._add(name, Member(name, entry, file, self.site.vehicles_folder / guest.model))
+        self.note(name, f"a guest: {guest.about[:LONGEST_TEXT]}", Event.NOTICE)
+
+    def _is_sound(self, thing: SimObject) -> bool:
+        if why := object_fault(thing):
+            self.refused.add("objects", thing.name, f"something on the bus is not shown: {why}")
+        return not why
+
+    def _is_name(self, name: str) -> bool:
+        """What may stand for a vehicle or an object: those of the mission, and what is spelt like them."""
+        fault = "" if name in self.vehicles else name_fault(name)
+        if fault:
+            self.refused.add("names", name, f"something on the bus is not shown: {fault}")
+        return not fault
+
+    def _warn(self, text: str) -> None:
+        self.note("", text[:LONGEST_TEXT], Event.WARNING)
 
     def hear_health(self, t: float, reports: Sequence[Health]) -> None:
         for report in reports:
-            self.health.setdefault(report.service, Vitals()).hear(t, report)
+            if report.service in self.health or len(self.health) < MOST_PROCESSES:
+                self.health.setdefault(report.service, Vitals()).hear(t, report)
+            else:
+                self.refused.add("processes", report.service, f"more than {MOST_PROCESSES} processes report: not all are listed")
 
     def hear_events(self, t: float, by_vehicle: Mapping[str, Sequence[Event]]) -> None:
         for name, events in by_vehicle.items():
+            if name != SYSTEM and not self._is_name(name):
+                continue
             for event in events:
                 cause = f" ({event.cause})" if event.cause else ""
-                line = Line(seconds(event.timestamp), event.severity, "" if name == SYSTEM else name, event.text + cause)
+                text = f"{event.text}{cause}"[:LONGEST_TEXT]
+                line = Line(seconds(event.timestamp), event.severity, "" if name == SYSTEM else name, text)
                 self.log.write(line)
                 if line.severity >= Event.WARNING and event.source not in SHOWN_BY_THE_CLOCK:
                     self.log.tell(t, line)
@@ -297,6 +345,13 @@ class Model:
         line = Line(self.sim_time, severity, vehicle, text, of_operator)
         self.log.write(line)
         return line
+
+
+def model_name(told: str) -> str:
+    """What somebody on the bus gives as the name of a folder in ``vehicles/``. Raises BadInput when it cannot be one."""
+    if fault := name_fault(told):
+        raise BadInput(f"its model: {fault}")
+    return told
 
 
 def _track(member: Member) -> Track:

@@ -1,11 +1,12 @@
 """The bar over the scene: link and time, the states that want attention as long as they last, and notices of late."""
 
 from collections.abc import Iterator
-from html import escape
 
-from schemas.messages import Clock, Event, NavStatus, Process
+from schemas.messages import Clock, Event, NavStatus, Process, StopEngagement
 from services.gcs.commands import SOURCE
-from services.gcs.state import Model, link_of
+from services.gcs.markup import Html, html, joined
+from services.gcs.state import Model, VehicleModel, link_of
+from uvf.runtime.stop_all import told
 
 SEVERITY: dict[int, tuple[str, str]] = {
     Event.INFO: ("·", "info"),
@@ -14,7 +15,8 @@ SEVERITY: dict[int, tuple[str, str]] = {
     Event.ERROR: ("✖", "bad"),
     Event.CRITICAL: ("✖", "bad"),
 }
-SOURCES = {SOURCE: "this page", "mavlink": "a MAVLink ground station", "launcher": "the launcher, because a service failed"}
+SOURCES = {SOURCE: "this page", "mavlink": "a MAVLink ground station", "launcher": "the launcher"}
+STOPS_SHOWN = 3
 UNWELL = {Process.RESTARTING: ("is started again", "warn"), Process.FAILED: ("has failed for good", "bad")}
 
 
@@ -34,20 +36,21 @@ def system_link(model: Model, t: float) -> tuple[str, str]:
     return word, style
 
 
-def status_bar(model: Model, t: float) -> str:
+def status_bar(model: Model, chosen: VehicleModel | None, t: float) -> Html:
     word, style = system_link(model, t)
     rate = f"× {model.clock.rate:.2f}" if model.clock is not None and model.clock.rate > 0 else ""
     live = sum(link_of(v.heard, t)[1] == "good" for v in model.vehicles.values())
-    chosen = model.chosen
     parts = [
-        f"<b class='g-{style}'>● {word}</b>",
-        f"<span>sim <b>{clock_text(model.sim_time)}</b> <i>{rate}</i></span>",
-        f"<span>{live} of {len(model.vehicles)} vehicles</span>",
+        html("<b class='g-{}'>● {}</b>", style, word),
+        html("<span>sim <b>{}</b> <i>{}</i></span>", clock_text(model.sim_time), rate),
+        html("<span>{} of {} vehicles</span>", live, len(model.vehicles)),
     ]
     if chosen is not None:
-        parts.append(f"<span class='g-follow' hidden data-name='{chosen.name}' data-distance='{40 if chosen.flies else 3}'></span>")
-    states = "".join(f"<div class='g-alert g-a-{style}'>{escape(text)}</div>" for style, text in alerts(model, t))
-    return f"<div class='g-status'>{''.join(parts)}</div>{states}{_notices(model, t)}"
+        parts.append(
+            html("<span class='g-follow' hidden data-name='{}' data-distance='{}'></span>", chosen.name, 40 if chosen.flies else 3)
+        )
+    states = joined(html("<div class='g-alert g-a-{}'>{}</div>", style, text) for style, text in alerts(model, t))
+    return html("<div class='g-status'>{}</div>{}{}", joined(parts), states, _notices(model, t))
 
 
 def alerts(model: Model, t: float) -> Iterator[tuple[str, str]]:
@@ -69,31 +72,33 @@ def alerts(model: Model, t: float) -> Iterator[tuple[str, str]]:
 
 
 def _by_whom(model: Model) -> str:
-    stop = model.stop
-    if stop is None or not stop.engaged:
+    stops = model.stops
+    if not stops:
         return "as a vehicle reports"
-    return f"by {SOURCES.get(stop.source, stop.source or 'somebody unnamed')}, {clock_text(stop.timestamp.seconds)}"
+    named = [StopEngagement(source=SOURCES.get(one.source, one.source), reason=one.reason) for one in stops[:STOPS_SHOWN]]
+    words = [f"by {told([one])}, {clock_text(whole.since.seconds)}" for one, whole in zip(named, stops, strict=False)]
+    return "; ".join(words) + (f" and {len(stops) - STOPS_SHOWN} more" if len(stops) > STOPS_SHOWN else "")
 
 
-def _notices(model: Model, t: float) -> str:
+def _notices(model: Model, t: float) -> Html:
     rows = []
     for line, good, _ in model.log.notices(t):
         sign, style = ("✓", "good") if good else SEVERITY.get(line.severity, SEVERITY[Event.INFO])
-        who = f"<b>{escape(line.vehicle)}</b> " if line.vehicle else ""
-        rows.append(f"<div class='g-note'><b class='g-{style}'>{sign}</b> {who}{escape(line.text)} <i>{clock_text(line.t)}</i></div>")
-    return f"<div class='g-notices' aria-live='polite'>{''.join(rows)}</div>" if rows else ""
+        who = html("<b>{}</b> ", line.vehicle) if line.vehicle else ""
+        rows.append(
+            html("<div class='g-note'><b class='g-{}'>{}</b> {}{} <i>{}</i></div>", style, sign, who, line.text, clock_text(line.t))
+        )
+    return html("<div class='g-notices' aria-live='polite'>{}</div>", joined(rows)) if rows else html("")
 
 
-def stop_line(model: Model) -> str:
+def stop_line(model: Model) -> Html:
     """Under STOP ALL: whether it is engaged, since when and by whom, which vehicles heed it, how it ends."""
     if not model.stopped:
-        return "<div class='g-stopline'>STOP ALL is not engaged</div>"
-    heeding = [v.name for v in model.vehicles.values() if v.stopped]
-    missing = [v.name for v in model.vehicles.values() if not v.stopped]
-    told = f"<span class='g-good'>✓ heeded by {', '.join(heeding)}</span>" if heeding else ""
-    silent = f"<span class='g-bad'>✖ not confirmed by {', '.join(missing)}</span>" if missing else ""
-    who = escape(_by_whom(model))
-    return (
-        f"<div class='g-stopline g-engaged' role='status'><b>■ ENGAGED</b> {who}<br>{'<br>'.join(filter(None, (told, silent)))}"
-        "<br>Holds until <b>Release STOP</b></div>"
-    )
+        return html("<div class='g-stopline'>STOP ALL is not engaged</div>")
+    heeding = ", ".join(v.name for v in model.vehicles.values() if v.stopped)
+    missing = ", ".join(v.name for v in model.vehicles.values() if not v.stopped)
+    lines = [html("<b>■ ENGAGED</b> {}", _by_whom(model))]
+    lines += [html("<span class='g-good'>✓ heeded by {}</span>", heeding)] if heeding else []
+    lines += [html("<span class='g-bad'>✖ not confirmed by {}</span>", missing)] if missing else []
+    lines += [html("Holds until <b>Release STOP</b>")]
+    return html("<div class='g-stopline g-engaged' role='status'>{}</div>", joined(lines, html("<br>")))

@@ -1,24 +1,23 @@
-"""The folder with the chosen vehicle's camera picture, and below it the sliders of its gimbal; sent only what has changed."""
+"""One browser's folder with its vehicle's camera picture, and below it the sliders of its gimbal; sent only what has changed."""
 
 from collections.abc import Callable
 from math import degrees, radians
 from typing import Any
 
 import numpy as np
-import viser
 
 from services.gcs.camera_panel import MODES, GimbalPanel
 from services.gcs.commands import Action, AimGimbal
-from services.gcs.drawing import Picture
+from services.gcs.drawing import Panel
 
 FULL_TURN = 180.0  # deg
+ROUNDED = radians(0.5)  # the sliders' ends are whole degrees
 
 
 class ViserCameras:
-    """ask: takes what is asked for with the sliders."""
+    """gui: that of the browser; ask: takes what is asked for with the sliders."""
 
-    def __init__(self, server: viser.ViserServer, ask: Callable[[Action], None]) -> None:
-        gui = server.gui
+    def __init__(self, gui: Any, ask: Callable[[Action], None]) -> None:
         self._ask = ask
         self._image: bytes | None = None
         self._panel: GimbalPanel | None = None
@@ -38,20 +37,23 @@ class ViserCameras:
         return self._pan, self._tilt, self._mode
 
     async def _moved(self, event: Any) -> None:
-        """By somebody on a page, not by us."""
-        if event.client is not None and self._panel is not None:
-            pan, tilt = radians(self._pan.value), radians(self._tilt.value)
-            self._ask(AimGimbal(self._panel.vehicle, pan, tilt, MODES[self._mode.value]))
+        """By somebody on a page, not by us, and within what the sliders can be set to."""
+        panel, mode = self._panel, MODES.get(self._mode.value)
+        if event.client is None or panel is None or mode is None:
+            return
+        pan, tilt = radians(self._pan.value), radians(self._tilt.value)
+        if abs(pan) <= panel.pan_max + ROUNDED and panel.tilts[0] - ROUNDED <= tilt <= panel.tilts[1] + ROUNDED:
+            self._ask(AimGimbal(panel.vehicle, pan, tilt, mode))
 
-    def show(self, picture: Picture) -> None:
-        self._show_controls(picture.gimbal)
-        there = bool(picture.html.get("cameras"))
+    def show(self, shown: Panel) -> None:
+        self._show_controls(shown.gimbal)
+        there = bool(shown.html.get("cameras"))
         if self._folder.visible != there:
             self._folder.visible = there
-        if picture.image is not None and picture.image != self._image:
-            self._image = self._picture._data = picture.image
-        if self._picture.visible != (picture.image is not None):
-            self._picture.visible = picture.image is not None
+        if shown.image is not None and shown.image != self._image:
+            self._image = self._picture._data = shown.image
+        if self._picture.visible != (shown.image is not None):
+            self._picture.visible = shown.image is not None
 
     def _show_controls(self, panel: GimbalPanel | None) -> None:
         """Set when another gimbal comes on show; from then on whoever moves them does."""

@@ -1,15 +1,13 @@
 """What runs in the browser besides viser (``page.js``, ``page.css``), and how it speaks with us."""
 
 import json
-import re
 from pathlib import Path
 
-from services.gcs.commands import Action, Looking, Rescale, Select, ShowCamera, Steer, TakeWheel
+from services.gcs.commands import Action, LeaveWheel, Looking, Rescale, Select, ShowCamera, Steer, TakeWheel
+from services.gcs.markup import Html, html
 
 STYLE = Path(__file__).with_name("page.css")
 SCRIPT = Path(__file__).with_name("page.js")
-PAGE = re.compile("[a-z0-9]{4,16}")
-"""A page's own word for itself, drawn by its script."""
 
 
 def script(bridge: str) -> str:
@@ -23,14 +21,14 @@ def follow(on: bool) -> str:
     return f"window.__gcsFollow = {json.dumps(on)}; window.__gcsHand = false"
 
 
-def bar_source(content: str, beat: int) -> str:
+def bar_source(content: Html, beat: int) -> str:
     """The hidden element that the bar is copied from; a new ``beat`` shows that the ground station lives."""
-    return f"<div id='gcs-bar-source' data-beat='{beat}' hidden>{content}</div>"
+    return str(html("<div id='gcs-bar-source' data-beat='{}' hidden>{}</div>", beat, content))
 
 
-def padded(content: str) -> str:
-    """viser lays HTML flush with the panel's edge; buttons and pictures stand a little off it."""
-    return f"<div class='g-pad'>{content}</div>"
+def padded(content: Html) -> str:
+    """viser lays HTML flush with the panel's edge; buttons and pictures stand a little off it. A plain string, as viser sends no other."""
+    return str(html("<div class='g-pad'>{}</div>", content))
 
 
 def said_in(value: str) -> tuple[str, str]:
@@ -45,21 +43,23 @@ def said_in(value: str) -> tuple[str, str]:
     return what, about
 
 
-def action_in(value: str) -> Action | None:
-    """What a message of the page's own script asks for; None when it asks for nothing."""
+def action_in(value: str, page: int, vehicle: str) -> Action | None:
+    """What a message of a page's own script asks for; None when it asks for nothing.
+
+    page, vehicle: which page it came from and which vehicle that one shows; its script has no say in that.
+    """
     what, about = said_in(value)
-    page, *rest = about.split(":")
-    if what == "select":
-        return Select(about)
-    if what == "camera":
-        return ShowCamera(about)
-    if not PAGE.fullmatch(page):
-        return None
-    match what, rest:
-        case "looks", []:
+    match what, about.split(":"):
+        case "select", [name]:
+            return Select(page, name)
+        case "camera", [name]:
+            return ShowCamera(page, name)
+        case "looks", [""]:
             return Looking(page)
-        case "wheel", ["on" | "off" as word]:
-            return TakeWheel(page if word == "on" else "")
+        case "wheel", ["on"]:
+            return TakeWheel(page, vehicle)
+        case "wheel", ["off"]:
+            return LeaveWheel(page)
         case "scale", [key]:
             return Rescale(page, key)
         case "steer", [forward, left]:
@@ -67,7 +67,7 @@ def action_in(value: str) -> Action | None:
     return None
 
 
-def _steer(page: str, *way: str) -> Steer | None:
+def _steer(page: int, *way: str) -> Steer | None:
     try:
         forward, left = (float(part) for part in way)
     except ValueError:

@@ -38,6 +38,8 @@ class ViserViews:
     async def choose(self, event: Any) -> None:
         """A click on the row of views: it counts for the page that asked alone."""
         name = event.target.value
+        if name not in self.names:
+            return
         event.client._websock_connection.queue_message(_messages.RunJavascriptMessage(source=follow(name == FOLLOW)))
         if name == FOLLOW:
             self._chosen.pop(event.client.client_id, None)

@@ -2,8 +2,9 @@
 
 from schemas.messages import Mode
 from services.gcs.by_hand import ByHand
-from services.gcs.commands import mode_name
+from services.gcs.markup import Html, html, joined
 from services.gcs.state import VehicleModel
+from services.gcs.wording import mode_name
 from uvf.runtime.teleop_hand import DIRECTIONS
 
 ROWS = (("q", "w", "e"), ("a", "", "d"), ("z", "s", "c"))
@@ -21,40 +22,58 @@ WORDS = {
 ARROWS = {"w": "ArrowUp", "a": "ArrowLeft", "s": "ArrowDown", "d": "ArrowRight"}
 
 
-def wheel(v: VehicleModel, by_hand: ByHand) -> str:
-    """Each page shows the part that is meant for it: the one that drives ``g-mine``, the others ``g-theirs``."""
+def wheel(v: VehicleModel, by_hand: ByHand, page: int) -> Html:
+    """As this page sees it: it drives the vehicle itself, another page does, or nobody."""
     if not by_hand.can_drive(v.name):
-        return ""
-    take = "Take the wheel" if by_hand.page else "Drive by hand"
-    theirs = f"<div>{'driven from another page' if by_hand.page else ''}</div><button type='button' data-gcs='wheel:@me:on'>{take}</button>"
-    mine = f"<button type='button' data-gcs='wheel:@me:off'>Stop driving by hand</button>{_pad(v, by_hand)}" if by_hand.page else ""
-    return f"<div id='gcs-wheel' data-driver='{by_hand.page}'><div class='g-theirs'>{theirs}</div><div class='g-mine'>{mine}</div></div>"
+        return html("")
+    holder = by_hand.holder(v.name)
+    if holder == page:
+        stop = html("<button type='button' data-gcs='wheel:off'>Stop driving by hand</button>")
+        return html("<div id='gcs-wheel' data-driver='mine'><div class='g-mine'>{}{}</div></div>", stop, _pad(v, by_hand))
+    driver, who, take = ("nobody", "", "Drive by hand") if holder is None else ("theirs", "driven from another page", "Take the wheel")
+    button = html("<button type='button' data-gcs='wheel:on'>{}</button>", take)
+    return html("<div id='gcs-wheel' data-driver='{}'><div class='g-theirs'><div>{}</div>{}</div></div>", driver, who, button)
 
 
-def _pad(v: VehicleModel, by_hand: ByHand) -> str:
-    keys = "".join(_key(key) if key else "<span></span>" for row in ROWS for key in row)
+def _pad(v: VehicleModel, by_hand: ByHand) -> Html:
+    keys = joined(_key(key) if key else html("<span></span>") for row in ROWS for key in row)
     linear, angular = by_hand.scale(v.name)
-    scales = _scale("rf", f"{linear:.2f} m/s", "speed") + _scale("tg", f"{angular:.2f} rad/s", "turn rate")
-    return f"<div class='g-drives'>{_state(v)}</div><div class='g-keys'>{keys}</div>{scales}"
+    scales = joined((_scale("rf", f"{linear:.2f} m/s", "speed"), _scale("tg", f"{angular:.2f} rad/s", "turn rate")))
+    return html("<div class='g-drives'>{}</div><div class='g-keys'>{}</div>{}", _state(v), keys, scales)
 
 
-def _state(v: VehicleModel) -> str:
+def _state(v: VehicleModel) -> Html:
     if v.status is None or v.status.mode != Mode.MODE_MANUAL:
         mode = mode_name(v.status.mode) if v.status is not None else "unknown"
-        return f"<span class='g-warn'>⚠ {v.name} does not obey: its mode is {mode}, not Manual</span>"
-    return f"<b>▶ {v.name} goes while a key or button is held</b>"
+        return html("<span class='g-warn'>⚠ {} does not obey: its mode is {}, not Manual</span>", v.name, mode)
+    return html("<b>▶ {} goes while a key or button is held</b>", v.name)
 
 
-def _key(key: str) -> str:
+def _key(key: str) -> Html:
     forward, left = DIRECTIONS[key]
     keys = f"{key} {ARROWS.get(key, '')}".strip()
-    return f"<button type='button' data-keys='{keys}' data-steer='{forward:g} {left:g}' aria-label='{WORDS[key]}'>{SIGNS[key]}</button>"
+    return html(
+        "<button type='button' data-keys='{}' data-steer='{:g} {:g}' aria-label='{}'>{}</button>",
+        keys,
+        forward,
+        left,
+        WORDS[key],
+        SIGNS[key],
+    )
 
 
-def _scale(keys: str, value: str, what: str) -> str:
+def _scale(keys: str, value: str, what: str) -> Html:
     """keys: the one that raises it and the one that lowers it."""
     up, down = (
-        f"<button type='button' data-keys='{key}' data-gcs='scale:@me:{key}' aria-label='{what} {word}' title='key {key}'>{sign}</button>"
+        html(
+            "<button type='button' data-keys='{}' data-gcs='scale:{}' aria-label='{} {}' title='key {}'>{}</button>",
+            key,
+            key,
+            what,
+            word,
+            key,
+            sign,
+        )
         for key, word, sign in zip(keys, ("up", "down"), "+−", strict=True)
     )
-    return f"<div class='g-scale'><span>{what}</span>{down}<b>{value}</b>{up}</div>"
+    return html("<div class='g-scale'><span>{}</span>{}<b>{}</b>{}</div>", what, down, value, up)

@@ -11,6 +11,7 @@ from services.mavlink_bridge.frame import Chart, Origin
 from services.mavlink_bridge.modes import Modes
 from services.mavlink_bridge.parameters import Parameters
 from services.mavlink_bridge.plan_book import PlanBook
+from services.mavlink_bridge.refusals import Refusals
 from services.mavlink_bridge.station import LOST_AFTER
 from services.mavlink_bridge.status import Told, progress_of, status_of
 from services.mavlink_bridge.telemetry import Telemetry
@@ -19,9 +20,15 @@ from services.mavlink_bridge.wire import Text, Wire
 from uvf.runtime.mavlink import dialect as mav
 
 BOOT_BACK = 2000  # ms: a clock that goes back by more has started anew
+RESTARTS_APART = 5.0  # s: clocks that jump to and fro are none
+PLACED_APART = 1.0  # s, between two places of home for which the plans are told anew
+TEXTS_PER_SECOND, TEXTS_AT_ONCE = 20.0, 50.0
 PLANS_AFTER = 2.0  # s after the connection, at the latest: before, the autopilot may say which plans it can have
 CLOCKS = (mav.MAVLINK_MSG_ID_GLOBAL_POSITION_INT, mav.MAVLINK_MSG_ID_ATTITUDE, mav.MAVLINK_MSG_ID_ATTITUDE_QUATERNION)
 SEVERITY = {
+    mav.MAV_SEVERITY_EMERGENCY: Event.CRITICAL,
+    mav.MAV_SEVERITY_ALERT: Event.CRITICAL,
+    mav.MAV_SEVERITY_CRITICAL: Event.CRITICAL,
     mav.MAV_SEVERITY_ERROR: Event.ERROR,
     mav.MAV_SEVERITY_WARNING: Event.WARNING,
     mav.MAV_SEVERITY_NOTICE: Event.NOTICE,
@@ -36,7 +43,9 @@ class Autopilot:
         self.commands = Commands(self.wire)
         self.transfers = Transfers(self.wire)
         self.parameters = Parameters(self.wire)
-        self.telemetry = Telemetry()
+        self.events: list[tuple[Event.Severity, str]] = []
+        self.refusals = Refusals(self.say)
+        self.telemetry = Telemetry(self.refusals.refuse)
         self.is_ardupilot = heartbeat.autopilot == mav.MAV_AUTOPILOT_ARDUPILOTMEGA
         self.parameters.bytewise = not self.is_ardupilot
         self.modes = Modes(heartbeat.autopilot, heartbeat.type)
@@ -44,7 +53,6 @@ class Autopilot:
         self.first = 1 if self.is_ardupilot else 0
         """Where its mission begins: ArduPilot keeps home in item 0."""
         self.plans = PlanBook(self.transfers, self.telemetry, self.first, self.say)
-        self.events: list[tuple[Event.Severity, str]] = []
         self.is_lost = True
         self._heard_at = -math.inf
         self._origin = origin
@@ -53,7 +61,10 @@ class Autopilot:
         self._reached = -1
         self._home: tuple[float, float, float] | None = None
         """For which the plans have been written out: their heights are above it."""
+        self._placed_at = -math.inf
         self._boot_ms = 0
+        self._started_at = -math.inf
+        self._texts_left = TEXTS_AT_ONCE
         self._handlers = self._merged()
 
     def _merged(self) -> dict[int, list[Callable[[Any], None]]]:
@@ -81,6 +92,7 @@ class Autopilot:
 
     def step(self, t: float, messages: Sequence[mav.MAVLink_message]) -> None:
         """Takes in what has come until ``t`` [s, wall], and goes on with what is under way."""
+        self._texts_left = min(self._texts_left + TEXTS_PER_SECOND * (t - self.wire.t), TEXTS_AT_ONCE)
         self.wire.t = self.telemetry.t = t
         for message in messages:
             for handler in self._handlers.get(message.get_msgId(), ()):
@@ -120,7 +132,11 @@ class Autopilot:
 
     def _on_clock(self, message: Any) -> None:
         """Its own clock, which goes back only when it starts anew."""
-        if message.time_boot_ms < self._boot_ms - BOOT_BACK and not self.is_lost:
+        went_back = message.time_boot_ms < self._boot_ms - BOOT_BACK and not self.is_lost
+        if went_back and self.wire.t - self._started_at < RESTARTS_APART:
+            self.refusals.refuse("the time since its start", "it goes to and fro")
+        elif went_back:
+            self._started_at = self.wire.t
             self.say(Event.WARNING, "the autopilot has started anew")
             self._give_up("the autopilot has started anew")
             self.telemetry.forget()
@@ -130,8 +146,13 @@ class Autopilot:
 
     def _on_text(self, message: mav.MAVLink_statustext_message) -> None:
         text: Text | None = self.wire.hear_text(message)
-        if text is not None and text.text:
-            self.say(SEVERITY.get(text.severity, Event.CRITICAL), text.text)
+        if text is None or not text.text:
+            return
+        if self._texts_left < 1.0:
+            self.refusals.refuse("STATUSTEXT", f"there are more than {TEXTS_PER_SECOND:g} each second, of which the others are left out")
+            return
+        self._texts_left -= 1.0
+        self.say(SEVERITY.get(text.severity, Event.WARNING), text.text)
 
     def _on_reached(self, message: mav.MAVLink_mission_item_reached_message) -> None:
         self._reached = message.seq
@@ -142,12 +163,15 @@ class Autopilot:
         if home is not None and self._origin.settle(*home):
             self.say(Event.NOTICE, f"no site is given: the world begins at home, {home[0]:.6f}, {home[1]:.6f}, {home[2]:.1f} m")
         tangent = self._origin.tangent
-        if tangent is not None and (self.chart is None or home != self._home):
-            self._home = home
+        waits = self.wire.t - self._placed_at < PLACED_APART
+        if tangent is not None and (self.chart is None or (home != self._home and not waits)):
+            self._home, self._placed_at = home, self.wire.t
             self.plans.place(Chart(tangent, self.told.heartbeat.type == mav.MAV_TYPE_GROUND_ROVER))
 
     def status(self) -> VehicleStatus:
         status = status_of(self.told, self.chart, self.first)
+        if self.plans.mission is not None:
+            status.waypoint = min(status.waypoint, len(self.plans.mission.items))
         if self.is_lost:
             silence = self.wire.t - self._heard_at
             words = f"link lost: no heartbeat for {silence:.0f} s" if math.isfinite(silence) else "link lost"

@@ -8,9 +8,13 @@ from services.mavlink_bridge.station import COMPONENT, SYSTEM
 from services.mavlink_bridge.wire import TEXT_WITHIN, Done, Wire
 from uvf.runtime.mavlink import dialect as mav
 
+ANSWER_WITHIN = 4.5  # s: whoever asks over the bus hears nothing after 5
 AGAIN_AFTER = 0.8  # s; autopilots take a repetition (confirmation > 0) for the same command
 TRIES = 4
 IN_PROGRESS_FOR = 3.0  # s, after which a command that was "in progress" is asked for again
+LONGEST = 60.0  # s, after which one that is "in progress" still has failed
+WAITING_MOST = 32
+"""Commands of one number."""
 RESULTS = {
     mav.MAV_RESULT_TEMPORARILY_REJECTED: "not now",
     mav.MAV_RESULT_DENIED: "denied",
@@ -36,6 +40,8 @@ class Command:
     sent_at: float = -math.inf
     wait: float = AGAIN_AFTER
     tries: int = 0
+    until: float = math.inf
+    """If its turn comes later [s], it is not sent any more."""
     refused: str = ""
     """Why, once it is; its words are still waited for."""
 
@@ -52,8 +58,26 @@ class Commands:
         self._wire = wire
         self._queues: dict[int, deque[Command]] = {}
 
-    def ask(self, asked: Command) -> None:
-        self._queues.setdefault(asked.number, deque()).append(asked)
+    def ask(self, asked: Command, patience: float = ANSWER_WITHIN) -> None:
+        """patience: how long it may wait for its turn [s]; a vehicle does not obey what was given up long ago."""
+        queue = self._queues.setdefault(asked.number, deque())
+        if len(queue) >= WAITING_MOST:
+            asked.done(False, f"{WAITING_MOST} commands of this kind wait for the autopilot already: ask again later, and less often")
+            return
+        asked.until = self._wire.t + patience
+        queue.append(asked)
+        self.tick()
+
+    def ask_first(self, asked: Command) -> None:
+        """Goes out at once, whatever is under way, and ends what waits: to hold, to disarm."""
+        queue = self._queues.setdefault(asked.number, deque())
+        under_way = [each for each in queue if each.tries]
+        overtaken = [each for each in queue if not each.tries]
+        self._queues[asked.number] = deque((*under_way, asked))
+        if under_way:
+            self._wire.send(self._message(asked))  # and again when its turn comes: only then an ACK is its own
+        for each in overtaken:
+            each.done(False, "not sent: a command to hold or to disarm came first")
         self.tick()
 
     def on_ack(self, message: mav.MAVLink_command_ack_message) -> None:
@@ -62,7 +86,9 @@ class Commands:
         if not queue or queue[0].tries == 0 or queue[0].refused or not _for_us(message):
             return
         asked = queue[0]
-        if message.result == mav.MAV_RESULT_IN_PROGRESS:
+        if message.result == mav.MAV_RESULT_IN_PROGRESS and self._wire.t - asked.begun > LONGEST:
+            self._end(asked, False, f"the autopilot says that it is in progress, for more than {LONGEST:g} s")
+        elif message.result == mav.MAV_RESULT_IN_PROGRESS:
             asked.sent_at, asked.wait = self._wire.t, IN_PROGRESS_FOR
         elif message.result == mav.MAV_RESULT_ACCEPTED:
             self._end(asked, True, "")
@@ -72,7 +98,9 @@ class Commands:
             self.tick()
 
     def tick(self) -> None:
-        for queue in [q for q in self._queues.values() if q]:
+        for queue in list(self._queues.values()):
+            if not queue:
+                continue  # or it is empty by now: whoever hears of an end may ask for something else
             asked = queue[0]
             silent = self._wire.t - asked.sent_at
             if asked.refused:
@@ -85,6 +113,9 @@ class Commands:
     def _try(self, asked: Command) -> None:
         if asked.tries >= TRIES:
             self._end(asked, False, f"no answer from the autopilot within {self._wire.t - asked.begun:.1f} s")
+            return
+        if asked.tries == 0 and self._wire.t > asked.until:
+            self._end(asked, False, "it was not sent: the autopilot was busy with earlier commands of this kind")
             return
         if asked.tries == 0:
             asked.begun = self._wire.t

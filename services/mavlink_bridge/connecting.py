@@ -1,5 +1,6 @@
 """What an autopilot is asked as soon as it is heard, and again after a restart or a silence: what it is, its rates, its modes."""
 
+import math
 from collections.abc import Callable
 from typing import Any
 
@@ -35,6 +36,8 @@ class Connecting:
         self.capabilities = 0
         """MAV_PROTOCOL_CAPABILITY, 0 until they are told."""
         self._refused = 0
+        self._mode_due = 0
+        """Which line of its list of modes was asked for."""
 
     def handlers(self) -> dict[int, Callable[[Any], None]]:
         return {mav.MAVLINK_MSG_ID_AUTOPILOT_VERSION: self._on_version, mav.MAVLINK_MSG_ID_AVAILABLE_MODES: self._on_mode}
@@ -43,7 +46,7 @@ class Connecting:
         self._refused = 0
         self._request(mav.MAVLINK_MSG_ID_AUTOPILOT_VERSION)
         self._request(mav.MAVLINK_MSG_ID_HOME_POSITION)
-        self._request(mav.MAVLINK_MSG_ID_AVAILABLE_MODES, 1)
+        self._ask_mode(1)
         for number, hz in RATES.items():
             self._rate(number, hz)
 
@@ -56,16 +59,21 @@ class Connecting:
                 to = self._wire.system, self._wire.component
                 self._wire.send(mav.MAVLink_request_data_stream_message(*to, mav.MAV_DATA_STREAM_ALL, OLD_STREAM_HZ, 1))
 
-        self._commands.ask(command(mav.MAV_CMD_SET_MESSAGE_INTERVAL, (number, 1e6 / hz, 0.0, 0.0, 0.0, 0.0, 0.0), done))
+        self._commands.ask(command(mav.MAV_CMD_SET_MESSAGE_INTERVAL, (number, 1e6 / hz, 0.0, 0.0, 0.0, 0.0, 0.0), done), math.inf)
 
     def _request(self, number: int, index: float = 0.0) -> None:
         asked = (number, index, 0.0, 0.0, 0.0, 0.0, 0.0)
-        self._commands.ask(command(mav.MAV_CMD_REQUEST_MESSAGE, asked, lambda accepted, reason: None))
+        self._commands.ask(command(mav.MAV_CMD_REQUEST_MESSAGE, asked, lambda accepted, reason: None), math.inf)
+
+    def _ask_mode(self, index: int) -> None:
+        self._mode_due = index
+        self._request(mav.MAVLINK_MSG_ID_AVAILABLE_MODES, index)
 
     def _on_version(self, message: mav.MAVLink_autopilot_version_message) -> None:
         self.capabilities = message.capabilities
 
     def _on_mode(self, message: mav.MAVLink_available_modes_message) -> None:
+        """Each line asks for the next one: once, however often it comes."""
         self._modes.hear(message)
-        if message.mode_index < min(message.number_modes, LARGEST_LIST):
-            self._request(mav.MAVLINK_MSG_ID_AVAILABLE_MODES, message.mode_index + 1)
+        if message.mode_index == self._mode_due < min(message.number_modes, LARGEST_LIST):
+            self._ask_mode(self._mode_due + 1)

@@ -27,6 +27,11 @@ class Names:
     def asked_for(self) -> list[str]:
         return [self.free, *self._by_system.values()]
 
+    @property
+    def systems(self) -> frozenset[int]:
+        """Ids that are named."""
+        return frozenset(self._by_system)
+
     def of(self, system: int) -> str:
         if system in self._by_system:
             return self._by_system[system]
@@ -72,6 +77,7 @@ class Discovery(Service):
 
     def __init__(self, station: Station, names: Names, found: Found, say: Say) -> None:
         self._station, self._names, self._found, self._say = station, names, found, say
+        station.expected = names.systems
         self._known: set[int] = set()
         self._is_patient = True
 

@@ -1,6 +1,7 @@
 """What an autopilot's ``custom_mode`` means: by its own list where it has one (AVAILABLE_MODES), else by PX4's or ArduPilot's numbers."""
 
 from schemas.messages import Mode
+from services.mavlink_bridge.limits import legible
 from uvf.runtime.mavlink import dialect as mav
 from uvf.runtime.mavlink.modes import TABLE
 
@@ -77,6 +78,9 @@ NAMES = {
 }
 """As autopilots call their modes, where no standard mode is told."""
 LARGEST_LIST = 255
+MODES_MOST = 2 * LARGEST_LIST
+"""That are remembered: those of the tables, and those that an autopilot tells."""
+NAME_LETTERS = 35
 
 
 class Modes:
@@ -92,7 +96,10 @@ class Modes:
     def hear(self, message: mav.MAVLink_available_modes_message) -> None:
         """One line of the autopilot's own list: its name counts; its meaning, where it can be told."""
         raw = message.mode_name
-        name = (raw if isinstance(raw, str) else bytes(raw).decode("utf-8", "replace")).rstrip("\0")
+        text = (raw if isinstance(raw, str) else bytes(raw).decode("utf-8", "replace")).rstrip("\0")
+        name = legible(text, NAME_LETTERS)
+        if message.custom_mode not in self._by_custom and len(self._by_custom) >= MODES_MOST:
+            return
         known = self._by_custom.get(message.custom_mode, ("", Mode.MODE_UNSPECIFIED))[1]
         mode = STANDARD.get(message.standard_mode) or NAMES.get(name.lower()) or known
         self._by_custom[message.custom_mode] = (name, mode)

@@ -8,11 +8,15 @@ from dataclasses import dataclass
 from typing import Any
 
 from schemas.messages import Param, ParamReply
+from services.mavlink_bridge.limits import LARGEST_FLOAT, WHOLE_FLOAT, Refused, legible
 from services.mavlink_bridge.wire import TEXT_WITHIN, Wire
 from uvf.runtime.mavlink import dialect as mav
 
 AGAIN_AFTER, TRIES = 0.7, 5  # s
 NAME_BYTES = 16
+NUMBER_LETTERS = 40
+WAITING_MOST = 64
+"""Parameters that are being asked for."""
 INTEGER = {
     mav.MAV_PARAM_TYPE_UINT8: "<Bxxx",
     mav.MAV_PARAM_TYPE_INT8: "<bxxx",
@@ -21,6 +25,16 @@ INTEGER = {
     mav.MAV_PARAM_TYPE_UINT32: "<I",
     mav.MAV_PARAM_TYPE_INT32: "<i",
 }
+LIMITS = {
+    mav.MAV_PARAM_TYPE_UINT8: (0, 2**8 - 1),
+    mav.MAV_PARAM_TYPE_INT8: (-(2**7), 2**7 - 1),
+    mav.MAV_PARAM_TYPE_UINT16: (0, 2**16 - 1),
+    mav.MAV_PARAM_TYPE_INT16: (-(2**15), 2**15 - 1),
+    mav.MAV_PARAM_TYPE_UINT32: (0, 2**32 - 1),
+    mav.MAV_PARAM_TYPE_INT32: (-(2**31), 2**31 - 1),
+    mav.MAV_PARAM_TYPE_REAL32: (-LARGEST_FLOAT, LARGEST_FLOAT),
+}
+"""Of each type that goes over the wire in four bytes."""
 ERRORS = {
     1: "there is none of this name",
     2: "out of range",
@@ -58,17 +72,13 @@ class Parameters:
 
     def ask(self, name: str, value: str, done: Callable[[ParamReply], None]) -> None:
         """value: JSON, empty = read only."""
-        wanted = None
-        if value:
-            try:
-                wanted = json.loads(value)
-            except ValueError:
-                wanted = value
-            if isinstance(wanted, bool) or not isinstance(wanted, (int, float)) or not math.isfinite(wanted):
-                done(ParamReply(accepted=False, reason=f"{name}: {value} is no number"))
-                return
-        if not name or len(name) > NAME_BYTES or not name.isascii():
-            done(ParamReply(accepted=False, reason="name one parameter of the autopilot, of at most 16 letters"))
+        try:
+            wanted = _number(name, value) if value else None
+            _check_name(name)
+            if len(self._wanted) >= WAITING_MOST:
+                raise Refused(f"{WAITING_MOST} parameters are being asked for already: ask again later, and less often")
+        except Refused as refused:
+            done(ParamReply(accepted=False, reason=str(refused)))
             return
         self._wanted.append(Wanted(name, wanted, done))
         self.tick()
@@ -94,37 +104,62 @@ class Parameters:
 
     def _on_value(self, message: mav.MAVLink_param_value_message) -> None:
         name = _name(message.param_id)
-        value = self._decoded(message.param_value, message.param_type)
         for wanted in [w for w in self._wanted if w.name == name]:
-            known = wanted.kind is not None
-            wanted.kind = message.param_type
-            if wanted.value is None or (known and _same(value, wanted.value)):
-                param = Param(name=name, value=json.dumps(value))
-                self._end(wanted, ParamReply(accepted=True, params=[param]))
-            elif message.param_type in INTEGER and wanted.value != int(wanted.value):
-                self._end(wanted, ParamReply(accepted=False, reason=f"{name}: {wanted.value:g} is no whole number"))
-            elif known:
-                words = self._wire.worry_since(wanted.sent_at)
-                wanted.why = wanted.why or f"{name} stays {value:g}" + (f": {words}" if words else "")
+            try:
+                value = self._decoded(message.param_value, message.param_type)
+                self._check(wanted.value, message.param_type)
+            except Refused as refused:
+                self._end(wanted, ParamReply(accepted=False, reason=f"{name}: {refused}"))
             else:
-                wanted.tries, wanted.sent_at = 0, -math.inf
+                self._compare(wanted, message.param_type, value)
         self.tick()
+
+    def _compare(self, wanted: Wanted, kind: int, value: Value) -> None:
+        """What the autopilot has now, with what it shall have."""
+        known, wanted.kind = wanted.kind is not None, kind
+        if wanted.value is None or (known and _same(value, wanted.value)):
+            param = Param(name=wanted.name, value=json.dumps(value))
+            self._end(wanted, ParamReply(accepted=True, params=[param]))
+        elif known:
+            words = self._wire.worry_since(wanted.sent_at)
+            wanted.why = wanted.why or f"{wanted.name} stays {value:g}" + (f": {words}" if words else "")
+        else:
+            wanted.tries, wanted.sent_at = 0, -math.inf
 
     def _on_error(self, message: mav.MAVLink_param_error_message) -> None:
         for wanted in [w for w in self._wanted if w.name == _name(message.param_id)]:
             wanted.why = f"{wanted.name}: {ERRORS.get(message.error, f'error {message.error}')}"
 
+    def _check(self, value: Value | None, kind: int) -> None:
+        """Whether the parameter can have a value. Raises Refused."""
+        if value is None:
+            return
+        low, high = LIMITS[kind]
+        if not low <= value <= high:
+            raise Refused(f"{value:g} is not within {low:g} and {high:g}, all that a parameter of its type can be")
+        if kind in INTEGER and value != int(value):
+            raise Refused(f"{value:g} is no whole number")
+        if kind in INTEGER and not self.bytewise and abs(value) > WHOLE_FLOAT and struct.unpack("<f", struct.pack("<f", value))[0] != value:
+            raise Refused(f"{value:.0f} cannot be told to this autopilot, which takes whole numbers as 32-bit floats")
+
     def _coded(self, value: Value, kind: int) -> float:
+        """Of a value that has been checked."""
         if kind not in INTEGER or not self.bytewise:
             return float(value)
         coded: float = struct.unpack("<f", struct.pack(INTEGER[kind], int(value)))[0]
         return coded
 
     def _decoded(self, value: float, kind: int) -> Value:
-        if kind not in INTEGER:
-            return value
-        whole: int = struct.unpack(INTEGER[kind], struct.pack("<f", value))[0] if self.bytewise else round(value)
-        return whole
+        """What the autopilot means. Raises Refused when that is no number."""
+        if kind not in LIMITS:
+            raise Refused(f"the autopilot tells it as one of type {kind}, which the bridge does not know")
+        if kind in INTEGER and self.bytewise:
+            whole: int = struct.unpack(INTEGER[kind], struct.pack("<f", value))[0]
+            return whole
+        low, high = LIMITS[kind]
+        if not low <= value <= high:
+            raise Refused(f"the autopilot tells {value:g}, which is no number of its type")
+        return round(value) if kind in INTEGER else value
 
     def _end(self, wanted: Wanted, reply: ParamReply) -> None:
         self._wanted.remove(wanted)
@@ -133,6 +168,25 @@ class Parameters:
     def give_up(self, reason: str) -> None:
         for wanted in list(self._wanted):
             self._end(wanted, ParamReply(accepted=False, reason=reason))
+
+
+def _number(name: str, text: str) -> Value:
+    """Of a request. Raises Refused."""
+    value: object = None
+    if len(text) <= NUMBER_LETTERS:
+        try:
+            value = json.loads(text)
+        except ValueError:
+            value = None
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
+        raise Refused(f"{legible(name, NAME_BYTES)}: {legible(text, NUMBER_LETTERS)} is no number")
+    return value
+
+
+def _check_name(name: str) -> None:
+    """Raises Refused."""
+    if not name or len(name) > NAME_BYTES or not (name.isascii() and name.isprintable()):
+        raise Refused("name one parameter of the autopilot, of at most 16 letters")
 
 
 def _name(raw: str | bytes) -> str:

@@ -1,5 +1,6 @@
 """The autopilot's three plans as the bus knows them: read at connect and when somebody else has changed them, replaced on request."""
 
+import math
 from collections.abc import Callable
 from typing import Any
 
@@ -10,7 +11,6 @@ from services.mavlink_bridge.telemetry import Telemetry
 from services.mavlink_bridge.transfers import Transfers
 from services.mavlink_bridge.wire import Done
 from uvf.runtime.mavlink import dialect as mav
-from uvf.runtime.mavlink import rally_items
 from uvf.runtime.mavlink.mission_items import BadItem, Body
 
 MISSION, FENCE, RALLY = mav.MAV_MISSION_TYPE_MISSION, mav.MAV_MISSION_TYPE_FENCE, mav.MAV_MISSION_TYPE_RALLY
@@ -21,6 +21,7 @@ CAPABILITY = {
     RALLY: mav.MAV_PROTOCOL_CAPABILITY_MISSION_RALLY,
 }
 UNKNOWN = 0xFFFF
+READ_APART = 1.0  # s, between two downloads of a plan, however often its id changes
 Say = Callable[[Event.Severity, str], None]
 Plan = Mission | Fence | RallyPoints
 
@@ -39,6 +40,7 @@ class PlanBook:
         """Opaque id of each plan as it was read or written last."""
         self._total = 0
         self._reading: set[int] = set()
+        self._read_at: dict[int, float] = {}
 
     @property
     def home_z(self) -> float:
@@ -56,6 +58,7 @@ class PlanBook:
         if kind in self._reading:
             return
         self._reading.add(kind)
+        self._read_at[kind] = self._telemetry.t
 
         def done(items: list[Body] | None, reason: str, opaque_id: int) -> None:
             self._reading.discard(kind)
@@ -95,13 +98,18 @@ class PlanBook:
     def on_current(self, message: mav.MAVLink_mission_current_message) -> None:
         """Somebody else may have replaced a plan: by its id where there are ids, by its length otherwise."""
         told = {MISSION: message.mission_id, FENCE: message.fence_id, RALLY: message.rally_points_id}
-        for kind in [kind for kind in told if kind in self._ids and told[kind] != self._ids[kind]]:
+        for kind in [kind for kind in told if kind in self._ids and told[kind] != self._ids[kind] and self._is_due(kind)]:
             if any(self._ids.values()) or any(told.values()):
                 self._ids[kind] = told[kind]
                 self._read(kind)
-        if not any(told.values()) and message.total not in (0, UNKNOWN, self._total, self._total - 1) and MISSION in self._ids:
+        is_other = message.total not in (0, UNKNOWN, self._total, self._total - 1)
+        if not any(told.values()) and is_other and MISSION in self._ids and self._is_due(MISSION):
             self._total = message.total
             self._read(MISSION)
+
+    def _is_due(self, kind: int) -> bool:
+        """Otherwise it is looked at again when the next id comes."""
+        return kind not in self._reading and self._telemetry.t - self._read_at.get(kind, -math.inf) >= READ_APART
 
     def write(self, plan: Plan, done: Done) -> None:
         """Replaces one; the bus is told once the autopilot has it."""
@@ -127,7 +135,7 @@ class PlanBook:
             return self._scribe.bodies(plan, chart, self._telemetry.home, self.home_z)
         if isinstance(plan, Fence):
             return plans.fence_bodies(plan, chart, self.home_z)
-        return rally_items.bodies(plan, chart, self.home_z)
+        return plans.rally_bodies(plan, chart, self.home_z)
 
     def tell_again(self) -> None:
         """To a bus whose time has started over."""

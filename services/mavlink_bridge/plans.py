@@ -2,8 +2,9 @@
 
 from collections.abc import Sequence
 
-from schemas.messages import Fence, Mission, MissionItem, RallyPoints
+from schemas.messages import Fence, Mission, MissionItem, RallyPoints, Vector3
 from services.mavlink_bridge.frame import Chart
+from services.mavlink_bridge.limits import far_off
 from uvf.runtime.mavlink import dialect as mav
 from uvf.runtime.mavlink import fence_items, rally_items
 from uvf.runtime.mavlink.mission_items import (
@@ -15,13 +16,14 @@ from uvf.runtime.mavlink.mission_items import (
     from_wire,
     mission_of,
     packed,
-    place_of,
     to_wire,
     unpacked,
 )
+from uvf.runtime.validation import error_in
 
 Item = mav.MAVLink_mission_item_int_message
 SAME_PLACE = 0.5  # m
+MADE_UP = mav.MAV_MISSION_INVALID
 
 
 def as_item(body: Body) -> Item:
@@ -53,13 +55,20 @@ class MissionScribe:
             read = from_wire(item, chart, home_z)
         except BadItem:
             return MissionItem(kind=MissionItem.JUMP, origin=packed(item))
+        if error_in(read):  # a height that no reader on the bus would take the mission with
+            return MissionItem(kind=MissionItem.JUMP, origin=packed(item))
         if read.kind == MissionItem.JUMP and item.command == mav.MAV_CMD_DO_JUMP:
             read.jump_to = max(read.jump_to - self.first, 0)
         return read
 
     def bodies(self, mission: Mission, chart: Chart, home: tuple[float, float, float] | None, home_z: float) -> list[Body]:
         """home: deg, deg, m AMSL. What the items came from counts only as long as it means the same here. Raises BadItem."""
-        found = [self._body(item, chart, home_z) for item in mission.items]
+        found: list[Body] = []
+        for index, item in enumerate(mission.items):
+            own = self._trusted(item, chart, home_z)
+            if reason := _wrong(own, len(mission.items)):
+                raise BadItem(MADE_UP, f"item {index}: {reason}")
+            found.append(self._body(own, chart, home_z))
         if not self.first or not found:
             return found
         if home is None:
@@ -67,12 +76,16 @@ class MissionScribe:
         at = round(home[0] * 1e7), round(home[1] * 1e7), home[2]
         return [(mav.MAV_FRAME_GLOBAL, mav.MAV_CMD_NAV_WAYPOINT, 1, 0.0, 0.0, 0.0, 0.0, *at), *found]
 
-    def _body(self, item: MissionItem, chart: Chart, home_z: float) -> Body:
+    def _trusted(self, item: MissionItem, chart: Chart, home_z: float) -> MissionItem:
+        """Without what it came from, where that says something else."""
         own = MissionItem()
         own.CopyFrom(item)
         if len(item.origin) == ORIGIN.size and not _means_the_same(item, chart, home_z):
             own.ClearField("origin")
-        body = to_wire(own, chart, home_z)
+        return own
+
+    def _body(self, item: MissionItem, chart: Chart, home_z: float) -> Body:
+        body = to_wire(item, chart, home_z)
         if self.first and body[1] == mav.MAV_CMD_DO_JUMP:
             return (*body[:3], float(item.jump_to + self.first), *body[4:])
         return body
@@ -82,32 +95,118 @@ def _is_nowhere(item: MissionItem) -> bool:
     return item.kind in WITH_PLACE and not item.HasField("position")
 
 
+def _wrong(item: MissionItem, items: int) -> str:
+    """Why an item of so many can be sent to no autopilot; empty if it can."""
+    if item.kind not in MissionItem.Kind.values():
+        return f"there is no kind {item.kind} of mission item"
+    if item.origin:
+        return _misshapen([item.origin])
+    if item.kind in WITH_PLACE and not item.HasField("position"):
+        return f"a {MissionItem.Kind.Name(item.kind)} needs a position"
+    if item.kind == MissionItem.JUMP and item.jump_to >= items:
+        return f"a jump to item {item.jump_to}: the last one is {items - 1}"
+    return far_off(item.position)
+
+
+def _misshapen(origins: Sequence[bytes]) -> str:
+    """Why wire items that a plan came from are none; empty if they are."""
+    lengths = [len(origin) for origin in origins if len(origin) != ORIGIN.size]
+    if not lengths:
+        return ""
+    return f"an origin of {lengths[0]} bytes, not {ORIGIN.size}: leave origin out, or give it back as it was read"
+
+
 def _means_the_same(item: MissionItem, chart: Chart, home_z: float) -> bool:
-    """Whether the wire item lies where the mission's item does: with another home, or moved by somebody, it does not."""
-    if item.kind not in WITH_PLACE:
-        return True
+    """Whether the wire item is what the item is and lies where it does: with another home, or changed by somebody, it does not."""
     wire = as_item(unpacked(item.origin))
-    if wire.command == mav.MAV_CMD_NAV_DELAY:
-        return True
     try:
-        place = place_of(wire, chart, home_z)
+        read = from_wire(wire, chart, home_z)
     except BadItem:
+        return item.kind == MissionItem.JUMP  # one that the system has no word for
+    if item.kind == MissionItem.JUMP:
+        return read.kind == MissionItem.JUMP or _is_nowhere(read) or bool(error_in(read))
+    if read.HasField("position") and not _is_same_place(read.position, item.position):
         return False
-    return max(abs(place.x - item.position.x), abs(place.y - item.position.y), abs(place.z - item.position.z)) < SAME_PLACE
+    own = MissionItem()
+    own.CopyFrom(item)
+    for each in (read, own):
+        each.ClearField("position")
+        each.ClearField("origin")
+    return read == own
+
+
+def _is_same_place(one: Vector3, other: Vector3, ignore_height: bool = False) -> bool:
+    apart = abs(one.x - other.x), abs(one.y - other.y), 0.0 if ignore_height else abs(one.z - other.z)
+    return max(apart) < SAME_PLACE
 
 
 def fence_read(bodies: Sequence[Body], chart: Chart, home_z: float) -> Fence:
     """Raises BadItem."""
-    return fence_items.fence_of([fence_items.checked(as_item(body), chart, home_z) for body in bodies], Fence(), chart, home_z)
+    fence = fence_items.fence_of([fence_items.checked(as_item(body), chart, home_z) for body in bodies], Fence(), chart, home_z)
+    if reason := error_in(fence):
+        raise BadItem(MADE_UP, reason)
+    return fence
 
 
 def fence_bodies(fence: Fence, chart: Chart, home_z: float) -> list[Body]:
-    """Raises BadItem where the fence has what no item says."""
+    """Raises BadItem where the fence has what no item says, or none that makes sense."""
     if fence.HasField("floor") or fence.HasField("ceiling") or fence.disabled:
         raise BadItem(mav.MAV_MISSION_UNSUPPORTED, "floor, ceiling and the switch are parameters of the autopilot, no items of a fence")
-    return fence_items.bodies(fence, chart, home_z)
+    given = _given(fence.origin)
+    if given and _is_same_fence(fence_read(given, chart, home_z), fence):
+        return given
+    _check_near([point for zone in fence.zones for point in zone.vertices or [zone.centre]] + [fence.return_point])
+    own = Fence()
+    own.CopyFrom(fence)
+    own.ClearField("origin")
+    found = fence_items.bodies(own, chart, home_z)
+    fence_read(found, chart, home_z)
+    return found
+
+
+def _given(origins: Sequence[bytes]) -> list[Body]:
+    """The wire items that a plan came from. Raises BadItem."""
+    if reason := _misshapen(origins):
+        raise BadItem(MADE_UP, reason)
+    return [unpacked(origin) for origin in origins]
+
+
+def _check_near(places: Sequence[Vector3]) -> None:
+    """Raises BadItem."""
+    for reason in filter(None, map(far_off, places)):
+        raise BadItem(MADE_UP, reason)
+
+
+def _is_same_fence(one: Fence, other: Fence) -> bool:
+    """But for rounding."""
+    if len(one.zones) != len(other.zones) or one.HasField("return_point") != other.HasField("return_point"):
+        return False
+    for a, b in zip(one.zones, other.zones, strict=True):
+        if (a.excludes, a.group, len(a.vertices)) != (b.excludes, b.group, len(b.vertices)) or abs(a.radius - b.radius) > SAME_PLACE:
+            return False
+        pairs = zip(a.vertices, b.vertices, strict=True) if a.vertices else [(a.centre, b.centre)]
+        if not all(_is_same_place(p, q, ignore_height=True) for p, q in pairs):
+            return False
+    return _is_same_place(one.return_point, other.return_point)
 
 
 def rally_read(bodies: Sequence[Body], chart: Chart, home_z: float) -> RallyPoints:
     """Raises BadItem."""
-    return rally_items.rally_of([as_item(body) for body in bodies], chart, home_z)
+    rally = rally_items.rally_of([as_item(body) for body in bodies], chart, home_z)
+    if reason := error_in(rally):
+        raise BadItem(MADE_UP, reason)
+    return rally
+
+
+def rally_bodies(rally: RallyPoints, chart: Chart, home_z: float) -> list[Body]:
+    """Raises BadItem."""
+    given = _given(rally.origin)
+    if given and _is_same_rally(rally_read(given, chart, home_z), rally):
+        return given
+    _check_near(rally.points)
+    return rally_items.bodies(RallyPoints(points=rally.points), chart, home_z)
+
+
+def _is_same_rally(one: RallyPoints, other: RallyPoints) -> bool:
+    """But for rounding."""
+    return len(one.points) == len(other.points) and all(map(_is_same_place, one.points, other.points))

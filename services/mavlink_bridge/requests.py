@@ -6,6 +6,7 @@ from typing import Any
 
 from google.protobuf.message import Message
 
+from schemas.convert import mode_name
 from schemas.messages import (
     ArmRequest,
     CancelRequest,
@@ -23,29 +24,30 @@ from schemas.messages import (
     RallyRequest,
     Reply,
     SetCurrentRequest,
-    Vector3,
 )
 from services.mavlink_bridge.autopilot import Autopilot
-from services.mavlink_bridge.commands import NAN, command
+from services.mavlink_bridge.commands import ANSWER_WITHIN, NAN, Command, command
 from services.mavlink_bridge.frame import Chart
+from services.mavlink_bridge.limits import HIGHEST, Refused, amsl, where
 from services.mavlink_bridge.wire import Done
 from uvf.runtime.mavlink import dialect as mav
 from uvf.runtime.service import Later
 
-ANSWER_WITHIN = 4.5  # s: whoever asks over the bus hears nothing after 5
 FORCE = {True: 2989.0, False: 21196.0}
 CHANGE_MODE = float(mav.MAV_DO_REPOSITION_FLAGS_CHANGE_MODE)
 AMSL = mav.MAV_FRAME_GLOBAL
+LAST_ITEM = 0xFFFE  # a plan's highest number on the wire; the next one is "unknown"
+FASTEST = 1000.0  # m/s
 MOVING = (ModeRequest, GoalRequest, OrbitRequest, OrderRequest, GoAroundRequest, SetCurrentRequest)
 """What STOP ALL forbids; arming is forbidden beside."""
 
 
 class Requests:
-    """``stopped`` is set while STOP ALL is engaged."""
+    """``stopped`` says who engages STOP ALL, while anybody does."""
 
     def __init__(self, autopilot: Autopilot) -> None:
         self._autopilot = autopilot
-        self.stopped = False
+        self.stopped = ""
         self._open: list[tuple[float, Later[Any], type[Any]]] = []
         """(until when, what is not answered yet, by what kind of reply)."""
 
@@ -60,11 +62,14 @@ class Requests:
         if self._autopilot.is_lost:
             later.give(kind(accepted=False, reason="no link to the autopilot"))
         elif self.stopped and (isinstance(request, MOVING) or (isinstance(request, ArmRequest) and request.arm)):
-            done(False, "STOP ALL is engaged: release it first")
+            done(False, f"STOP ALL is engaged by {self.stopped}: release it first")
         elif isinstance(request, ParamRequest):
             self._autopilot.parameters.ask(request.name, request.value, later.give)
         else:
-            HANDLERS[type(request)](self._autopilot, request, done)
+            try:
+                HANDLERS[type(request)](self._autopilot, request, done)
+            except Refused as refused:
+                done(False, str(refused))
         self._open.append((self._autopilot.wire.t + ANSWER_WITHIN, later, kind))
         return later
 
@@ -81,16 +86,26 @@ def hold(autopilot: Autopilot, done: Done) -> None:
 
 
 def set_mode(autopilot: Autopilot, mode: Mode, done: Done) -> None:
+    """Mode Hold comes before any other."""
     custom = autopilot.modes.custom_of(mode)
     if custom is None:
-        done(False, f"the autopilot has no mode like {Mode.Name(mode).removeprefix('MODE_').capitalize()}")
+        done(False, f"the autopilot has no mode like {mode_name(mode).capitalize()}")
         return
-    autopilot.commands.ask(command(mav.MAV_CMD_DO_SET_MODE, (*autopilot.modes.command_parameters(custom), 0.0, 0.0, 0.0, 0.0), done))
+    asked = command(mav.MAV_CMD_DO_SET_MODE, (*autopilot.modes.command_parameters(custom), 0.0, 0.0, 0.0, 0.0), done)
+    _send(autopilot, asked, mode == Mode.MODE_HOLD)
 
 
 def arm(autopilot: Autopilot, armed: bool, force: bool, done: Done) -> None:
+    """To disarm comes before to arm."""
     p = (float(armed), FORCE[armed] if force else 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-    autopilot.commands.ask(command(mav.MAV_CMD_COMPONENT_ARM_DISARM, p, done))
+    _send(autopilot, command(mav.MAV_CMD_COMPONENT_ARM_DISARM, p, done), not armed)
+
+
+def _send(autopilot: Autopilot, asked: Command, first: bool) -> None:
+    if first:
+        autopilot.commands.ask_first(asked)
+    else:
+        autopilot.commands.ask(asked)
 
 
 def _arm(autopilot: Autopilot, request: ArmRequest, done: Done) -> None:
@@ -98,6 +113,8 @@ def _arm(autopilot: Autopilot, request: ArmRequest, done: Done) -> None:
 
 
 def _mode(autopilot: Autopilot, request: ModeRequest, done: Done) -> None:
+    if request.mode not in Mode.values():
+        raise Refused(f"there is no mode {request.mode}: name one of {', '.join(map(mode_name, Mode.values()[1:]))}")
     set_mode(autopilot, request.mode, done)
 
 
@@ -106,6 +123,10 @@ def _cancel(autopilot: Autopilot, request: CancelRequest, done: Done) -> None:
 
 
 def _current(autopilot: Autopilot, request: SetCurrentRequest, done: Done) -> None:
+    mission = autopilot.plans.mission
+    last = len(mission.items) - 1 if mission is not None else LAST_ITEM - autopilot.first
+    if request.index > last:
+        raise Refused(f"there is no mission item {request.index}: " + (f"the last one is {last}" if last >= 0 else "there is no mission"))
     seq = float(request.index + autopilot.first)
     autopilot.commands.ask(command(mav.MAV_CMD_DO_SET_MISSION_CURRENT, (seq, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), done))
 
@@ -134,24 +155,33 @@ def _placed(handle: Callable[[Autopilot, Any, Chart, Done], None]) -> Callable[[
     return handler
 
 
-def _where(chart: Chart, place: Vector3) -> tuple[float, float, float]:
-    """deg, deg, m AMSL."""
-    latitude, longitude, _ = chart.geodetic((place.x, place.y, place.z))  # type: ignore[arg-type]
-    return latitude, longitude, place.z + chart.origin.altitude
+def _radius(value: float) -> float:
+    return _within("a radius", value, -HIGHEST, HIGHEST, "m")
+
+
+def _flyable(speed: float) -> float:
+    return _within("a speed", speed, 0.0, FASTEST, "m/s")
+
+
+def _within(what: str, value: float, low: float, high: float, unit: str) -> float:
+    """Raises Refused."""
+    if not low <= value <= high:
+        raise Refused(f"{what} of {value:g} {unit}: name one from {low:g} to {high:g} {unit}")
+    return value
 
 
 def _goal(autopilot: Autopilot, request: GoalRequest, chart: Chart, done: Done) -> None:
     """Aircraft circle over it (direction by the radius' sign), ground vehicles drive there and stand."""
-    at = _where(chart, request.position)
-    speed = request.speed if request.speed > 0 else -1.0
+    at = where(chart, request.position)
+    speed = _flyable(request.speed) if request.speed > 0 else -1.0
     flies = autopilot.told.kind == Kind.KIND_FIXED_WING
     way = float(request.radius < 0) if flies else math.pi / 2 - request.yaw if math.isfinite(request.yaw) else NAN
-    p = (speed, CHANGE_MODE, abs(request.radius), way, *at)
+    p = (speed, CHANGE_MODE, abs(_radius(request.radius)), way, *at)
     autopilot.commands.ask(command(mav.MAV_CMD_DO_REPOSITION, p, done, AMSL))
 
 
 def _orbit(autopilot: Autopilot, request: OrbitRequest, chart: Chart, done: Done) -> None:
-    p = (request.radius or NAN, request.speed or NAN, 0.0, NAN, *_where(chart, request.centre))
+    p = (_radius(request.radius) or NAN, _flyable(request.speed) or NAN, 0.0, NAN, *where(chart, request.centre))
     autopilot.commands.ask(command(mav.MAV_CMD_DO_ORBIT, p, done, AMSL))
 
 
@@ -169,8 +199,9 @@ def _order(autopilot: Autopilot, request: OrderRequest, done: Done) -> None:
 
 def _takeoff(autopilot: Autopilot, order: Any, chart: Chart, done: Done) -> None:
     """Where it stands, up to a height: above the sea for PX4, above home for the others."""
+    to = amsl(chart, order.altitude)
     if autopilot.told.heartbeat.autopilot == mav.MAV_AUTOPILOT_PX4:
-        p = (*(NAN,) * 6, order.altitude + chart.origin.altitude)
+        p = (*(NAN,) * 6, to)
     else:
         p = (*(0.0,) * 6, order.altitude - autopilot.plans.home_z)
     autopilot.commands.ask(command(mav.MAV_CMD_NAV_TAKEOFF, p, done))
@@ -178,22 +209,22 @@ def _takeoff(autopilot: Autopilot, order: Any, chart: Chart, done: Done) -> None
 
 def _speed(autopilot: Autopilot, order: Any, done: Done) -> None:
     over_ground = order.over_ground or autopilot.told.kind == Kind.KIND_GROUND
-    p = (float(over_ground), order.speed if order.speed > 0 else -2.0, -1.0, 0.0, 0.0, 0.0, 0.0)
+    p = (float(over_ground), _flyable(order.speed) if order.speed > 0 else -2.0, -1.0, 0.0, 0.0, 0.0, 0.0)
     autopilot.commands.ask(command(mav.MAV_CMD_DO_CHANGE_SPEED, p, done))
 
 
 def _altitude(autopilot: Autopilot, order: Any, chart: Chart, done: Done) -> None:
     """As QGroundControl asks it of PX4: a new place that is only higher or lower."""
-    amsl = order.altitude + chart.origin.altitude
+    to = amsl(chart, order.altitude)
     if autopilot.is_ardupilot:
-        autopilot.commands.ask(command(mav.MAV_CMD_DO_CHANGE_ALTITUDE, (amsl, float(AMSL), 0.0, 0.0, 0.0, 0.0, 0.0), done))
+        autopilot.commands.ask(command(mav.MAV_CMD_DO_CHANGE_ALTITUDE, (to, float(AMSL), 0.0, 0.0, 0.0, 0.0, 0.0), done))
     else:
-        autopilot.commands.ask(command(mav.MAV_CMD_DO_REPOSITION, (-1.0, CHANGE_MODE, 0.0, NAN, NAN, NAN, amsl), done))
+        autopilot.commands.ask(command(mav.MAV_CMD_DO_REPOSITION, (-1.0, CHANGE_MODE, 0.0, NAN, NAN, NAN, to), done))
 
 
 def _home(autopilot: Autopilot, order: Any, chart: Chart, done: Done) -> None:
     if order.HasField("position"):
-        p = (0.0, 0.0, 0.0, NAN, *_where(chart, order.position))
+        p = (0.0, 0.0, 0.0, NAN, *where(chart, order.position))
         autopilot.commands.ask(command(mav.MAV_CMD_DO_SET_HOME, p, done, AMSL))
     else:
         autopilot.commands.ask(command(mav.MAV_CMD_DO_SET_HOME, (1.0, 0.0, 0.0, NAN, 0.0, 0.0, 0.0), done))
@@ -201,7 +232,8 @@ def _home(autopilot: Autopilot, order: Any, chart: Chart, done: Done) -> None:
 
 def _picture(autopilot: Autopilot, order: Any, done: Done) -> None:
     if order.HasField("distance"):
-        asked = command(mav.MAV_CMD_DO_SET_CAM_TRIGG_DIST, (order.distance, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), done)
+        apart = _within("a distance between pictures", order.distance, 0.0, HIGHEST, "m")
+        asked = command(mav.MAV_CMD_DO_SET_CAM_TRIGG_DIST, (apart, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), done)
     else:
         asked = command(mav.MAV_CMD_DO_DIGICAM_CONTROL, (0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0), done)
     autopilot.commands.ask(asked)

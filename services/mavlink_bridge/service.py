@@ -27,7 +27,6 @@ from schemas.messages import (
     PoseInFrame,
     RallyRequest,
     SetCurrentRequest,
-    StopCommand,
     Vector3,
 )
 from services.mavlink_bridge.autopilot import Autopilot
@@ -36,7 +35,8 @@ from services.mavlink_bridge.requests import Requests
 from services.mavlink_bridge.station import Station
 from services.mavlink_bridge.stopping import Stopping
 from uvf.maths.sampling import Due
-from uvf.runtime.service import Later, Outputs, Service, optional
+from uvf.runtime.service import Later, Outputs, Service, optional, stop_all
+from uvf.runtime.stop_all import StopStatus
 
 SOURCE = "mavlink_bridge"
 Asked = Sequence[Any]
@@ -48,7 +48,7 @@ class BridgedVehicle(Service):
     name = "mavlink_bridge"
     hz = 50.0
     clock = "wall"
-    inputs = {"clock": optional(topics.CLOCK), "stops": optional(topics.STOP.by("*"))}
+    inputs = {"clock": optional(topics.CLOCK), "stop": stop_all()}
     outputs = {
         "nav_state": topics.NAV_STATE,
         "pose": topics.POSE,
@@ -86,6 +86,7 @@ class BridgedVehicle(Service):
         self._autopilot = Autopilot(system, heard.component, heard.heartbeat, origin)
         self._requests = Requests(self._autopilot)
         self._stopping = Stopping(self._autopilot)
+        self._stop = StopStatus()
         self._guest: Guest | None = guest
         self._epoch = 0
         self._status_due, self._progress_due = Due(topics.STATUS.hz), Due(topics.PROGRESS.hz)
@@ -94,7 +95,7 @@ class BridgedVehicle(Service):
         self,
         t: float,
         clock: Clock | None,
-        stops: StopCommand | None,
+        stop: StopStatus,
         arm: Sequence[ArmRequest],
         set_mode: Sequence[ModeRequest],
         set_mission: Sequence[MissionRequest],
@@ -115,7 +116,9 @@ class BridgedVehicle(Service):
             self._autopilot.plans.tell_again()
         system = self._autopilot.wire.system
         self._autopilot.step(t, self._station.fetch(system))
-        self._requests.stopped = self._stopping.engaged(stops)
+        self._stop = stop
+        self._stopping.heed(stop)
+        self._requests.stopped = stop.who
         asked: dict[str, Asked] = {"arm": arm, "set_mode": set_mode, "set_mission": set_mission, "set_current": set_current}
         asked |= {"set_fence": set_fence, "set_rally": set_rally, "goal": goal, "orbit": orbit, "go_around": go_around}
         asked |= {"order": order, "cancel": cancel, "param": param}
@@ -133,7 +136,8 @@ class BridgedVehicle(Service):
         told |= {name: message for name, message in (("gnss", telemetry.gnss()), ("battery", telemetry.battery())) if message is not None}
         if self._status_due.at(t):
             told["status"] = self._autopilot.status()
-            told["status"].stopped = self._requests.stopped
+            told["status"].stopped = bool(self._stop)
+            told["status"].stops.extend(self._stop.engagements)
         if self._progress_due.at(t) and (progress := self._autopilot.progress()) is not None:
             told["progress"] = progress
         if self._guest is not None:

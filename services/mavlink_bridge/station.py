@@ -14,6 +14,9 @@ LOST_AFTER = 3.5  # s without a heartbeat, as QGroundControl has it
 HEARTBEAT_PERIOD = 1.0  # s
 INBOX_MOST = 2000
 """Messages of one autopilot that nobody has fetched: what is older is dropped."""
+AUTOPILOTS_MOST = 32
+"""At one address, beside those that are named by their ids."""
+RIVALS_MOST = 8
 
 
 @dataclass
@@ -40,6 +43,12 @@ class Station:
     def __init__(self, link: Link) -> None:
         self.autopilots: dict[int, Autopilot] = {}
         """By system id."""
+        self.expected: frozenset[int] = frozenset()
+        """Ids that are taken however many others there are."""
+        self._refused: set[int] = set()
+        self._unsendable: set[str] = set()
+        """Kinds of messages that did not fit into their fields."""
+        self._untold: list[str] = []
         self._link = link
         self._codec = Codec(COMPONENT)
         self._last_heartbeat = -HEARTBEAT_PERIOD
@@ -53,28 +62,32 @@ class Station:
         for datagram, peer in self._link.receive(t):
             if peer[1] in own:
                 continue
-            messages = self._codec.parse(datagram)
-            if messages:
-                self._link.keep(t, peer)
-            for message in messages:
+            for message in self._codec.parse(datagram):
                 told += self._take(t, message, peer)
+            if any(known.peer == peer for known in self.autopilots.values()):
+                self._link.keep(t, peer)
         if t - self._last_heartbeat >= HEARTBEAT_PERIOD:
             self._last_heartbeat = t
             hello = mav.MAVLink_heartbeat_message(mav.MAV_TYPE_GCS, mav.MAV_AUTOPILOT_INVALID, 0, 0, mav.MAV_STATE_ACTIVE, 3)
-            self._send(hello, self._link.peers(t))
-        return told
+            peers = self._link.peers(t)
+            self._codec.forget([*peers, *(known.peer for known in self.autopilots.values())])
+            self._send(hello, peers)
+        untold, self._untold = self._untold, []
+        return told + untold
 
     def _take(self, t: float, message: mav.MAVLink_message, peer: Peer) -> list[str]:
         system, component = message.get_srcSystem(), message.get_srcComponent()
         is_heartbeat = message.get_msgId() == mav.MAVLINK_MSG_ID_HEARTBEAT
         known = self.autopilots.get(system)
         if is_heartbeat and known is None and is_autopilot(message) and system not in (0, SYSTEM):
+            if len(self.autopilots) >= AUTOPILOTS_MOST and system not in self.expected:
+                return self._refuse(system)
             known = self.autopilots[system] = Autopilot(system, component, peer, message, t, t)  # type: ignore[arg-type]
         if known is None or component != known.component:
             return []
         if peer != known.peer and not known.is_lost(t):
-            first = peer not in known.rivals
-            known.rivals.add(peer)
+            first = peer not in known.rivals and len(known.rivals) < RIVALS_MOST
+            known.rivals |= {peer} if first else set()
             return [f"system {system} speaks from {_text(peer)} too; only {_text(known.peer)} counts: give one another id"] if first else []
         if is_heartbeat and is_autopilot(message):
             known.peer, known.heartbeat, known.heard_at = peer, message, t  # type: ignore[assignment]
@@ -83,6 +96,14 @@ class Station:
             known.inbox.append(message)
             del known.inbox[:-INBOX_MOST]
         return []
+
+    def _refuse(self, system: int) -> list[str]:
+        """Told once for all of them; there are no more than ids."""
+        self._refused.add(system)
+        if len(self._refused) > 1:
+            return []
+        mend = f"name it by --name NAME={system}"
+        return [f"system {system} is left alone, as all others that come: {AUTOPILOTS_MOST} are at one address; {mend}"]
 
     def forget(self, system: int) -> None:
         """It is none for this bus."""
@@ -100,8 +121,12 @@ class Station:
             self._send(message, [self.autopilots[system].peer])
 
     def _send(self, message: mav.MAVLink_message, peers: Sequence[Peer]) -> None:
+        unsendable = self._codec.counts.unsendable
         for packet, peer in self._codec.packets(SYSTEM, message, [(peer, None) for peer in peers]):
             self._link.send(packet, peer)
+        if self._codec.counts.unsendable > unsendable and message.get_type() not in self._unsendable:
+            self._unsendable.add(message.get_type())
+            self._untold.append(f"{message.get_type()} is not sent: a number does not fit its field")
 
     def close(self) -> None:
         self._link.close()

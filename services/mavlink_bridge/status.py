@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 from schemas.messages import Breach, Kind, MissionProgress, Mode, VehicleStatus
 from services.mavlink_bridge.frame import Chart
+from services.mavlink_bridge.limits import is_sound
 from services.mavlink_bridge.modes import Modes
 from services.mavlink_bridge.telemetry import FRESH, Telemetry
 from services.mavlink_bridge.wire import Wire
@@ -90,9 +91,9 @@ def status_of(told: Told, chart: Chart | None, first: int) -> VehicleStatus:
 def _steering(status: VehicleStatus, telemetry: Telemetry, first: int) -> None:
     hud = telemetry.newest(mav.MAVLINK_MSG_ID_VFR_HUD, FRESH)
     if hud is not None:
-        status.throttle = hud.throttle * 0.01
+        status.throttle = min(hud.throttle * 0.01, 1.0)
     steers = telemetry.newest(mav.MAVLINK_MSG_ID_NAV_CONTROLLER_OUTPUT, FRESH)
-    if steers is not None and math.isfinite(steers.xtrack_error + steers.alt_error):
+    if steers is not None and is_sound(steers.xtrack_error, steers.alt_error):
         status.cross_track, status.altitude_error = steers.xtrack_error, -steers.alt_error
         status.distance_to_waypoint = steers.wp_dist
     current = telemetry.newest(mav.MAVLINK_MSG_ID_MISSION_CURRENT)
@@ -118,12 +119,12 @@ def progress_of(told: Told, items: int, mission_id: int, first: int, reached: in
     current = told.telemetry.newest(mav.MAVLINK_MSG_ID_MISSION_CURRENT)
     if current is None:
         return None
-    at = max(current.seq - first, 0) if current.seq != NOT_TOLD else 0
+    at = min(max(current.seq - first, 0), items) if current.seq != NOT_TOLD else 0
     return MissionProgress(
         state=_state(told, current.mission_state, items, at),
         current=at,
         total=items,
-        reached=max(reached - first, -1) if reached >= 0 else -1,
+        reached=min(max(reached - first, -1), items - 1) if reached >= 0 else -1,
         mission_id=mission_id,
     )
 

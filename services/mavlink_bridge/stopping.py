@@ -1,8 +1,9 @@
 """STOP ALL, as far as an autopilot elsewhere can be made to heed it: it holds, or disarms where it stands."""
 
-from schemas.messages import Event, Kind, StopCommand
+from schemas.messages import Event, Kind
 from services.mavlink_bridge.autopilot import Autopilot
 from services.mavlink_bridge.requests import arm, hold
+from uvf.runtime.stop_all import StopStatus
 
 
 class Stopping:
@@ -12,15 +13,12 @@ class Stopping:
         self._autopilot = autopilot
         self._sent = False
 
-    def engaged(self, stop: StopCommand | None) -> bool:
-        """Whether STOP ALL is engaged; stop: the newest word of anybody."""
-        is_engaged = stop is not None and stop.engaged
-        if not is_engaged or self._autopilot.is_lost:
+    def heed(self, stop: StopStatus) -> None:
+        if not stop or self._autopilot.is_lost:
             self._sent = False
         elif not self._sent:
             self._sent = True
             self._stop()
-        return is_engaged
 
     def _stop(self) -> None:
         told = self._autopilot.told

@@ -10,6 +10,7 @@ import numpy as np
 from schemas.convert import array, quaternion
 from schemas.messages import Battery, Circle, Gnss, NavState, Vector3
 from services.mavlink_bridge.frame import Chart
+from services.mavlink_bridge.limits import HIGHEST, is_on_earth, is_sound
 from uvf.maths.geodesy import Floats
 from uvf.maths.rotations import enu_flu_from_ned_frd, from_euler
 from uvf.runtime.mavlink import dialect as mav
@@ -46,8 +47,10 @@ class Telemetry:
         mav.MAVLINK_MSG_ID_MISSION_CURRENT,
     )
 
-    def __init__(self) -> None:
+    def __init__(self, refuse: Callable[[str, str], None]) -> None:
+        """refuse: called with what of a message is left out, and why."""
         self.t = 0.0
+        self._refuse = refuse
         self._heard: dict[int, Heard] = {}
         self._news: set[int] = set()
         """Kinds heard since the last look."""
@@ -56,7 +59,11 @@ class Telemetry:
         return dict.fromkeys(self.KINDS, self._hear)
 
     def _hear(self, message: Message) -> None:
+        """What cannot be true is not kept: what was told before it counts on."""
         kind = message.get_msgId()
+        if why := nonsense(message):
+            self._refuse(message.get_type(), why)
+            return
         self._heard[kind] = Heard(message, self.t)
         self._news.add(kind)
 
@@ -97,7 +104,7 @@ class Telemetry:
             orientation=quaternion(turn),
             angular_velocity=Vector3(x=rates[0], y=-rates[1], z=-rates[2]),
         )
-        return self._filled(nav, chart) if np.isfinite((*array(nav.position), *turn, *rates)).all() else None
+        return self._filled(nav, chart) if is_sound(*array(nav.position), *rates) else None
 
     def _orientation(self) -> tuple[Floats, tuple[float, float, float]] | None:
         """World (ENU) from body (FLU), and the rates [rad/s, FRD]."""
@@ -108,7 +115,7 @@ class Telemetry:
             if 0.9 < length < 1.1:
                 return enu_flu_from_ned_frd(wire / length), (exact.rollspeed, exact.pitchspeed, exact.yawspeed)
         angles = self.newest(mav.MAVLINK_MSG_ID_ATTITUDE, FRESH)
-        if angles is None or not np.isfinite((angles.roll, angles.pitch, angles.yaw)).all():
+        if angles is None or not is_sound(angles.roll, angles.pitch, angles.yaw):
             return None
         turn = enu_flu_from_ned_frd(from_euler(angles.roll, angles.pitch, angles.yaw))
         return turn, (angles.rollspeed, angles.pitchspeed, angles.yawspeed)
@@ -116,15 +123,15 @@ class Telemetry:
     def _filled(self, nav: NavState, chart: Chart) -> NavState:
         """Airspeed, wind and accuracy, where they are told."""
         hud = self.newest(mav.MAVLINK_MSG_ID_VFR_HUD, FRESH)
-        if hud is not None and math.isfinite(hud.airspeed) and not chart.is_ground:
+        if hud is not None and is_sound(hud.airspeed) and not chart.is_ground:
             nav.airspeed = hud.airspeed
         wind = self.newest(mav.MAVLINK_MSG_ID_WIND_COV, 3 * FRESH)
-        if wind is not None and math.isfinite(wind.wind_x + wind.wind_y):
-            up = -wind.wind_z if math.isfinite(wind.wind_z) else 0.0
+        if wind is not None and is_sound(wind.wind_x, wind.wind_y):
+            up = -wind.wind_z if is_sound(wind.wind_z) else 0.0
             nav.wind.CopyFrom(Vector3(x=wind.wind_y, y=wind.wind_x, z=up))
         quality = self.newest(mav.MAVLINK_MSG_ID_ESTIMATOR_STATUS, 3 * FRESH)
         gps = self.newest(mav.MAVLINK_MSG_ID_GPS_RAW_INT, FRESH)
-        if quality is not None and math.isfinite(quality.pos_horiz_accuracy):
+        if quality is not None and is_sound(quality.pos_horiz_accuracy) and quality.pos_horiz_accuracy >= 0:
             nav.position_sigma = quality.pos_horiz_accuracy
         elif gps is not None and gps.h_acc:
             nav.position_sigma = gps.h_acc * 1e-3
@@ -167,11 +174,36 @@ class Telemetry:
             volts = sum(cells) * 1e-3 if cells else volts
             amperes = pack.current_battery * 0.01 if pack.current_battery >= 0 else amperes
             left = pack.battery_remaining if pack.battery_remaining >= 0 else left
-        return volts, amperes, left * 0.01 if left >= 0 else -1.0
+        return volts, amperes, left * 0.01 if 0 <= left <= 100 else -1.0
 
     def circle(self, chart: Chart) -> Circle | None:
         """Being flown, as long as it is told."""
         told = self.newest(mav.MAVLINK_MSG_ID_ORBIT_EXECUTION_STATUS, FRESH)
-        if told is None or told.frame not in (mav.MAV_FRAME_GLOBAL, mav.MAV_FRAME_GLOBAL_INT) or not math.isfinite(told.radius + told.z):
+        if told is None or told.frame not in (mav.MAV_FRAME_GLOBAL, mav.MAV_FRAME_GLOBAL_INT) or not is_sound(told.radius, told.z):
             return None
         return Circle(centre=chart.world(told.x * 1e-7, told.y * 1e-7, told.z), radius=told.radius)
+
+
+PLACES = {
+    mav.MAVLINK_MSG_ID_GLOBAL_POSITION_INT: ("lat", "lon", "alt"),
+    mav.MAVLINK_MSG_ID_GPS_RAW_INT: ("lat", "lon", "alt"),
+    mav.MAVLINK_MSG_ID_HOME_POSITION: ("latitude", "longitude", "altitude"),
+}
+"""Fields in 1e-7 deg and mm."""
+
+
+def nonsense(message: Message) -> str:
+    """Why a message says nothing that can be true; empty if it may be."""
+    kind = message.get_msgId()
+    if kind == mav.MAVLINK_MSG_ID_ORBIT_EXECUTION_STATUS:
+        return "" if is_on_earth(message.x * 1e-7, message.y * 1e-7) else "its centre is nowhere on earth"
+    if kind not in PLACES:
+        return ""
+    latitude, longitude, altitude = (getattr(message, name) for name in PLACES[kind])
+    if not is_on_earth(latitude * 1e-7, longitude * 1e-7):
+        return f"latitude {latitude * 1e-7:.6f}, longitude {longitude * 1e-7:.6f} are nowhere on earth"
+    if kind == mav.MAVLINK_MSG_ID_HOME_POSITION and latitude == 0 and longitude == 0:
+        return "latitude and longitude are 0"
+    if abs(altitude * 1e-3) > HIGHEST:
+        return f"an altitude of {altitude * 1e-3:.0f} m"
+    return ""

@@ -13,8 +13,11 @@ from uvf.runtime.mavlink.mission_items import ORIGIN, Body, packed, unpacked
 LIST_AGAIN, ITEM_AGAIN = 0.8, 0.4  # s
 TRIES = 10
 SILENT_FOR = 5.0  # s, after which an upload has failed: the autopilot asks for what it wants
+STANDS_FOR = 30.0  # s, after which it has failed, too: always the same items are asked for
 ACK_WITHIN = 1.5  # s after the last item was sent; then the plan is read back, to see what has become of it
-LARGEST = 5000
+LARGEST = 5000  # items
+WAITING_MOST = 8
+"""Plans that are being read or written."""
 RESULTS = {
     mav.MAV_MISSION_ERROR: "the autopilot did not take it",
     mav.MAV_MISSION_UNSUPPORTED_FRAME: "an altitude or place in a frame that it does not know",
@@ -50,6 +53,10 @@ class Upload:
     begun: float = 0.0
     asked_at: float | None = None
     """When the autopilot has asked for an item last; None: not yet."""
+    farthest: int = -1
+    """The last item that has been asked for."""
+    got_on_at: float = 0.0
+    """When it was asked for first."""
     last_sent: float | None = None
     """When the last item of all went out."""
     sent_at: float = 0.0
@@ -79,8 +86,13 @@ class Transfers:
         self.tick()
 
     def write(self, kind: int, items: Sequence[Body], done: Callable[[bool, str, int], None]) -> None:
-        self._queue.append(Upload(kind, items, done, self._wire.t))
-        self.tick()
+        if len(items) > LARGEST:
+            done(False, f"a plan of {len(items)} items: at most {LARGEST} go over the bridge", 0)
+        elif len(self._queue) >= WAITING_MOST:
+            done(False, f"{WAITING_MOST} plans are being read or written already: ask again later, and less often", 0)
+        else:
+            self._queue.append(Upload(kind, items, done, self._wire.t))
+            self.tick()
 
     def give_up(self, reason: str) -> None:
         queue, self._queue = self._queue, deque()
@@ -148,6 +160,8 @@ class Transfers:
             self._look_what_became(job)
         elif now - job.asked_at > SILENT_FOR:
             self._fail(job, f"the autopilot stopped asking for items {SILENT_FOR:g} s ago")
+        elif now - job.got_on_at > STANDS_FOR:
+            self._fail(job, f"for {STANDS_FOR:g} s the autopilot has asked for no item after item {job.farthest}")
 
     def _announce(self, job: Upload) -> None:
         """The count, or that there shall be no plan; again until the autopilot answers."""
@@ -172,6 +186,8 @@ class Transfers:
         if job is None or job.refused or message.seq >= len(job.items):
             return
         job.asked_at = self._wire.t
+        if message.seq > job.farthest:
+            job.farthest, job.got_on_at = message.seq, self._wire.t
         frame, command, autocontinue, p1, p2, p3, p4, x, y, z = job.items[message.seq]
         head = (self._wire.system, self._wire.component, message.seq, frame, command, int(message.seq == 0), autocontinue)
         self._wire.send(mav.MAVLink_mission_item_int_message(*head, p1, p2, p3, p4, x, y, z, job.kind))

@@ -3,14 +3,21 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from services.mavlink_bridge.limits import legible
 from uvf.runtime.mavlink import dialect as mav
 
 Done = Callable[[bool, str], None]
 """Called once with (accepted, reason)."""
 TEXT_KEPT = 20.0  # s
 TEXT_WITHIN = 0.3  # s after a refusal: the words often come behind it
+TEXTS_MOST = 100
+"""So many are remembered for as long."""
+TEXT_LETTERS = 1000
 CHUNK_BYTES = 50
 CHUNKS_WITHIN = 2.0  # s
+CHUNKS_MOST = 20
+PARTS_MOST = 8
+"""Texts that are still coming, chunk by chunk."""
 WORRYING = mav.MAV_SEVERITY_WARNING
 """A text of this severity or a graver one may explain a refusal."""
 
@@ -50,15 +57,17 @@ class Wire:
         if self.t - begun > CHUNKS_WITHIN:
             begun, parts = self.t, []
         parts.append(part)
-        self._parts[message.id] = (begun, severity, parts)
-        if len(part) == CHUNK_BYTES:
+        self._parts.pop(message.id, None)
+        if len(part) == CHUNK_BYTES and len(parts) < CHUNKS_MOST:
+            self._parts[message.id] = (begun, severity, parts)
+            if len(self._parts) > PARTS_MOST:
+                del self._parts[next(iter(self._parts))]
             return None
-        del self._parts[message.id]
         return self._said(severity, b"".join(parts))
 
     def _said(self, severity: int, raw: bytes) -> Text:
-        text = Text(self.t, severity, raw.decode("utf-8", "replace").strip())
-        self.texts = [old for old in self.texts if self.t - old.t < TEXT_KEPT] + [text]
+        text = Text(self.t, severity, legible(raw.decode("utf-8", "replace"), TEXT_LETTERS))
+        self.texts = [old for old in self.texts[-TEXTS_MOST + 1 :] if self.t - old.t < TEXT_KEPT] + [text]
         return text
 
     def worry_since(self, t: float) -> str:

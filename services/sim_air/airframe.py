@@ -324,3 +324,11 @@ def _check_properties(path: Path, fdm: jsbsim.FGFDMExec, body: AirBody) -> None:
 def _refusal(path: Path, error: Exception) -> BadInput:
     """What the engine says in several lines, as one."""
     return BadInput(f"{path}: JSBSim refuses it: {' '.join(str(error).split())}")
+
+
+def fly_one_step(models: str, body: AirBody, origin: tuple[float, float, float]) -> None:
+    """Makes the aircraft and moves it once, to be run in a subprocess: JSBSim ends the process at some faults in a model.
+
+    models: path of the folder; origin: latitude, longitude [deg], altitude [m]. Raises BadInput.
+    """
+    Airframe(Path(models), body, LocalTangent.from_degrees(*origin)).step()

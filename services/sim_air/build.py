@@ -8,7 +8,7 @@ import numpy as np
 
 from services.sim_air.actuators import Actuators
 from services.sim_air.aircraft import Aircraft
-from services.sim_air.airframe import Airframe
+from services.sim_air.airframe import Airframe, fly_one_step
 from services.sim_air.around import Around
 from services.sim_air.beginning import as_told, begun
 from services.sim_air.crash import Resting
@@ -26,11 +26,11 @@ from uvf.runtime.air_file import AirBody
 from uvf.runtime.aircraft_shape import aircraft_shape
 from uvf.runtime.faults import Faults
 from uvf.runtime.footing import Footing
-from uvf.runtime.guarded import Died, guarded
 from uvf.runtime.mission_file import Start, Vehicle
 from uvf.runtime.params import BadInput, Place
 from uvf.runtime.scene import scene
 from uvf.runtime.site import AIRCRAFT_RADIUS, Host, Member, Site
+from uvf.runtime.subprocess_jobs import Died, run_in_subprocess
 from uvf.runtime.surroundings import aircraft_tree, vehicle_tree
 from uvf.runtime.urdf_model import load_urdf
 from uvf.runtime.vehicle_file import load_vehicle
@@ -71,8 +71,9 @@ def _check(site: Site, member: Member, land: Land) -> None:
     """What would otherwise fail only when time runs, or not be noticed at all."""
     _check_rates(member)
     land.check_room(str(Place(str(site.mission_path)).at("vehicles", member.name, "start")), member.entry.start)
+    origin = site.world.origin
     try:
-        guarded(lambda: Airframe(_model_folder(member), _body(member), _tangent(site)).step())
+        run_in_subprocess(fly_one_step, str(_model_folder(member)), _body(member), (origin.latitude, origin.longitude, origin.altitude))
     except Died as error:
         where = Place(str(member.folder / "vehicle.yaml"))
         raise BadInput(f"{where.at('air', 'model')}: JSBSim ends the process with this model ({error}); 'uvf vehicle check' it") from error

@@ -12,7 +12,7 @@ from services.sim_camera.renderer import Look, Pose, Shot
 from uvf.runtime.sensor_frames import mounted
 from uvf.runtime.service import Outputs, Service, Value, each_vehicle, optional
 from uvf.runtime.solid import Solid
-from uvf.runtime.spawned import solid_of
+from uvf.runtime.spawned import object_fault, solid_of
 from uvf.runtime.vehicle_file import Camera
 
 INFO = {"image": "info", "chase": "chase_info", "gimbal": "gimbal_info"}
@@ -71,7 +71,7 @@ class SimCamera(Service):
         gimbals: Mapping[str, GimbalCommand],
     ) -> Outputs:
         """objects, aircraft: what has been put in while the simulation runs."""
-        put_in = [o for told in (objects, aircraft) if told is not None for o in told.objects]
+        put_in = [o for told in (objects, aircraft) if told is not None for o in told.objects if not object_fault(o)]
         self._renderer.show({o.name: self._look_of(o.model) if o.model else solid_of(o) for o in put_in})
         poses = {name: Pose(array(state.position), wxyz(state.orientation)) for name, state in truth.items()}
         self._renderer.place(t, poses)

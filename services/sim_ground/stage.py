@@ -15,12 +15,10 @@ from services.sim_ground.world import Placed
 from uvf.runtime.params import BadInput, nearest
 from uvf.runtime.robot_model import UrdfModel
 from uvf.runtime.solid import Solid
-from uvf.runtime.spawned import name_fault, pose_fault, solid_of, unit_wxyz
+from uvf.runtime.spawned import name_fault, pose_fault, shape_fault, solid_of, unit_wxyz
 from uvf.runtime.surroundings import Surroundings, vehicle_tree
 
 Floats = NDArray[np.float64]
-SIZES = {"box": 3, "cylinder": 2, "sphere": 1}
-LARGEST, HEAVIEST = 100.0, 1e5  # m, kg
 SAVED_MOST = 16
 
 
@@ -88,7 +86,7 @@ class Stage:
     def spawn(self, request: SpawnRequest, others: Collection[str]) -> Reply:
         """others: names of what the air simulator has put in."""
         wanted = request.object
-        reason = self._name_fault(wanted.name, others) or pose_fault(wanted.pose) or (_shape_fault(wanted) if not wanted.model else "")
+        reason = self._name_fault(wanted.name, others) or pose_fault(wanted.pose) or (shape_fault(wanted) if not wanted.model else "")
         if not reason:
             try:
                 reason = self._put_vehicle(wanted) if wanted.model else self._put(wanted)
@@ -183,16 +181,6 @@ class Stage:
             self._objects[name].pose.position.CopyFrom(vector(position))
             self._objects[name].pose.orientation.CopyFrom(quaternion(orientation))
         return SimObjects(timestamp=stamp(t), objects=self._objects.values())
-
-
-def _shape_fault(wanted: SimObject) -> str:
-    if wanted.shape not in SIZES:
-        return f"there is no shape '{wanted.shape}'; {nearest(wanted.shape, SIZES)}"
-    if len(wanted.size) != SIZES[wanted.shape]:
-        return f"a {wanted.shape} has {SIZES[wanted.shape]} measures [m], not {len(wanted.size)}"
-    if not all(1e-3 <= side <= LARGEST for side in wanted.size):
-        return f"the measures of a {wanted.shape} must be 0.001 to {LARGEST:g} m"
-    return "" if 0.0 <= wanted.mass <= HEAVIEST else f"the mass must be 0 (it stands fast) to {HEAVIEST:g} kg"
 
 
 def _inside(name: str, met: str) -> str:

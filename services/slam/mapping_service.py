@@ -17,7 +17,7 @@ from services.slam.maps.tiles import TileMap
 from services.slam.method import Keyframe, SlamMethod
 from services.slam.placing_service import PlacingParams, PlacingService, Positive, fix_message
 from services.slam.reading import Reading
-from services.slam.resumable import Resumable
+from services.slam.resumable import Noting, Resumable
 from uvf.maths.planar import IDENTITY, Pose2, compose, inverse
 from uvf.maths.transforms import planar
 from uvf.runtime.frames import FrameBuffer, FrameError
@@ -68,7 +68,7 @@ class MappingService(PlacingService):
         self._left = left
         self._placed = False
         self._map_time = self._session_time = -np.inf
-        self._drawn = self._kept = 0
+        self._drawn = self._kept = self._noted = 0
         self._undrawn = False
 
     def step(self, t: float, scan: LaserScan, frames: FrameBuffer) -> Outputs:
@@ -89,7 +89,7 @@ class MappingService(PlacingService):
             outputs |= self._grid(t)
         except BadInput as error:
             events += self._cannot_draw(t, str(error))
-        return outputs | self._session(t) | {"events": events}
+        return outputs | self._session(t) | {"events": events + self._notes(t)}
 
     def recall(self, session: MapSession | None = None, correction: FrameTransform | None = None) -> None:
         """Goes on where the vehicle has been, with the session published last if the method can; else a new map grows there."""
@@ -147,6 +147,12 @@ class MappingService(PlacingService):
             return []
         self._undrawn = True
         return [Event(timestamp=stamp(t), severity=Event.ERROR, text="the map cannot be drawn", cause=cause, source="mapping")]
+
+    def _notes(self, t: float) -> list[Event]:
+        """What the method tells of its limits, each once."""
+        new = self._method.notes[self._noted :] if isinstance(self._method, Noting) else []
+        self._noted += len(new)
+        return [Event(timestamp=stamp(t), severity=Event.WARNING, text="mapping is limited", cause=note, source="mapping") for note in new]
 
     def _session(self, t: float) -> dict[str, MapSession]:
         """The same of what another could go on with."""

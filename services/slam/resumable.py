@@ -1,4 +1,4 @@
-"""Methods whose work another instance, or another day, can go on with."""
+"""What some methods can beside: their work can be gone on with by another instance, or another day; they tell of their limits."""
 
 from typing import Protocol, runtime_checkable
 
@@ -16,3 +16,12 @@ class Resumable(SlamMethod, Protocol):
 
     def resume(self, session: Session, map_from_base: Pose2) -> None:
         """Before the first reading; map_from_base: where the vehicle is now."""
+
+
+@runtime_checkable
+class Noting(SlamMethod, Protocol):
+    """A method that tells what the user should know of its work."""
+
+    @property
+    def notes(self) -> list[str]:
+        """A line each, and no line goes again."""

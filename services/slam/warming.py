@@ -1,9 +1,12 @@
 """Kernels are compiled, or loaded from their cache, before the first scan: later it would hold up the vehicle for seconds."""
 
+import numpy as np
+
 from services.slam.localization import known_map
 from services.slam.localization.localizer import Localizer
 from services.slam.localization.params import FilterParams
 from services.slam.made_corridor import there_and_back
+from services.slam.maps.shared_kernels import NO_KEY, moved_keys
 from services.slam.maps.tiles import TileMap
 from services.slam.matching.branch_and_bound import Window, search
 from services.slam.matching.cloud import cloud_of
@@ -22,6 +25,7 @@ def warm_up(method: SlamMethod) -> None:
     method.finish()
     points = cloud_of(readings[0]).points
     search(points, likelihood_field(points, 0.1, 0.1, 2), Window(IDENTITY, 0.2, 0.1), 0.5)
+    moved_keys(np.full(2, NO_KEY), np.zeros(2, dtype=np.int32), np.arange(1), 4)  # first called when a map has grown
     drawn = TileMap()
     drawn.follow(method.keyframes())
     drawn.cells()

@@ -23,12 +23,14 @@ from schemas.messages import Clock
 from schemas.topics import Request, Topic
 from uvf.runtime.address import router_from
 from uvf.runtime.bus import Publisher, Sample
+from uvf.runtime.stop_all import StopBook, StopVoice, told
 from uvf.runtime.zenoh_bus import ZenohBus
 
 M = TypeVar("M", bound=Message)
 Q = TypeVar("Q", bound=Message)
 R = TypeVar("R", bound=Message)
 LOOK = 0.005  # s
+STOPS_DEPTH = 64
 TOGETHER = 0.3  # s of simulation time, within which a request reaches all it is asked of
 
 
@@ -47,6 +49,9 @@ class Client:
         self._subscribed: set[str] = set()
         self._publishers: dict[str, Publisher] = {}
         self._watch(topics.CLOCK.at(topics.SYSTEM), topics.CLOCK)
+        self._voice, self._stops = StopVoice("client"), StopBook()
+        for topic in (topics.STOP.by("*"), topics.STOP_STATE):
+            bus.subscribe(topic.at(topics.SYSTEM), topic.qos, self._stops.push, STOPS_DEPTH)
 
     def __enter__(self) -> "Client":
         return self
@@ -79,7 +84,7 @@ class Client:
         self._bus.poll()
         newest = self._newest.get(topics.CLOCK.at(topics.SYSTEM))
         clock = Clock.FromString(newest.payload) if newest else Clock()
-        # What is sent bears the epoch, or a word of somebody else in this epoch would count as said later.
+        # What is sent bears the epoch: what comes of an earlier one is taken for late.
         self._bus.epoch = clock.epoch
         return clock
 
@@ -115,6 +120,17 @@ class Client:
         if key not in self._publishers:
             self._publishers[key] = self._bus.publisher(key, topic.message.DESCRIPTOR.full_name, topic.qos)
         self._publishers[key].put(message.SerializeToString(deterministic=True), now_ns)
+
+    def stop_all(self, reason: str) -> None:
+        """Engages STOP ALL: rovers stand, aircraft hold or stay on the ground, until ``release_stop`` or another operator's release."""
+        self.send(topics.SYSTEM, topics.STOP.by("client"), self._voice.engage(round(self.time * 1e9), reason))
+
+    def release_stop(self) -> list[str]:
+        """Releases every engagement of STOP ALL that is known here, also those of others; returns who had engaged it."""
+        self._bus.poll()
+        engagements = self._stops.now.engagements
+        self.send(topics.SYSTEM, topics.STOP.by("client"), self._voice.release(round(self.time * 1e9), engagements))
+        return [told([one]) for one in engagements]
 
     def ask(self, owner: str, request: Request[Q, R], message: Q, timeout: float = 5.0) -> R:
         """Sends a request and waits for its reply. Raises TimeoutError, also when nobody answers."""

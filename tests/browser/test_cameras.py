@@ -32,11 +32,15 @@ def looking(page, station):
     return page
 
 
+def sessions(station):
+    return list(station.service._model.sessions.values())
+
+
 def test_the_picture_comes_while_it_is_seen_and_costs_nothing_behind_another_tab(looking, station):
     assert until(looking, lambda: looking.evaluate(PICTURES) == 1)
     looking.get_by_role("tab", name="Log").click()
-    assert until(looking, lambda: not is_watched(station.service._model, station.t))
-    assert until(looking, lambda: station.page._cameras._picture.visible is False)
+    assert until(looking, lambda: not any(is_watched(session, station.t) for session in sessions(station)))
+    assert until(looking, lambda: all(panel._cameras._picture.visible is False for panel in list(station.page._panels.values())))
     looking.get_by_role("tab", name="Vehicle").click()
     assert until(looking, lambda: looking.evaluate(PICTURES) == 1)
 

@@ -113,7 +113,7 @@ def take_the_wheel(page):
     page.get_by_role("button", name="Select burger").dispatch_event("pointerdown")
     if page.locator("#gcs-wheel .g-keys").is_visible():
         return
-    page.locator("#gcs-wheel [data-gcs='wheel:@me:on']").dispatch_event("pointerdown")
+    page.locator("#gcs-wheel [data-gcs='wheel:on']").dispatch_event("pointerdown")
     page.locator("#gcs-wheel .g-keys").wait_for(state="visible", timeout=20_000)
 
 

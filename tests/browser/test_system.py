@@ -82,7 +82,7 @@ def is_under_way(page, system):
 
 def drive_forward(page, system):
     """Takes the wheel and holds the key until the rover is under way."""
-    page.locator("#gcs-wheel [data-gcs='wheel:@me:on']").dispatch_event("pointerdown")
+    page.locator("#gcs-wheel [data-gcs='wheel:on']").dispatch_event("pointerdown")
     page.locator("#gcs-wheel .g-keys").wait_for(state="visible", timeout=20_000)
     assert until(page, lambda: system.client.read("burger", topics.STATUS).mode == Mode.MODE_MANUAL)
     to_the_hall(system)

@@ -2,13 +2,12 @@
 
 import uvf
 from schemas import topics
-from schemas.messages import Clock, StopCommand
+from schemas.messages import Clock
 from tests.runtime.modes import free_port
 from uvf.runtime.zenoh_bus import ZenohBus, open_router
 
 
 def test_what_a_client_sends_bears_time_and_epoch_of_the_clock():
-    """Otherwise a release that the page has said before would count as later than a client's STOP ALL."""
     endpoint = f"tcp/127.0.0.1:{free_port()}"
     router = open_router(endpoint)
     stop, heard = topics.STOP.by("client"), []
@@ -21,7 +20,7 @@ def test_what_a_client_sends_bears_time_and_epoch_of_the_clock():
             return client.time == 5.0
 
         client.wait(ticks, 20.0)
-        client.send("sys", stop, StopCommand(engaged=True))
+        client.stop_all("test")
         client.wait(lambda: (bus.poll(), heard)[1], 20.0)
     router.close()
     assert (heard[-1].epoch, heard[-1].stamp_ns) == (3, 5_000_000_000)

@@ -11,7 +11,6 @@ import pytest
 
 from schemas import topics
 from schemas.convert import array
-from schemas.messages import StopCommand
 from tests.distributed.system import System
 from tests.second_try import Shared
 from uvf.runtime.recording import read_log
@@ -64,7 +63,7 @@ def test_a_killed_autopilot_takes_the_flight_up_again(system):
     system.kill("autopilot")
     time_then = system.client.time
     system.client.wait(lambda: system.client.time > time_then + 5.0, 40.0)
-    status, progress = system.client.read("milvus", topics.STATUS), system.client.read("milvus", topics.PROGRESS)
+    status, progress = (system.client.read("milvus", topic, timeout=40.0) for topic in (topics.STATUS, topics.PROGRESS))
     assert status.armed and status.mode == 3
     assert (progress.laps, progress.current) >= (laps.laps, laps.current)
     assert position(system, "milvus")[2] > 40
@@ -111,13 +110,13 @@ def test_whoever_hangs_is_ended_and_time_goes_on_without_a_new_epoch(system, nam
 
 
 def test_stop_all_stops_the_rover_and_lets_the_aircraft_loiter_until_released(system):
-    stop = topics.STOP.by("client")
-    system.client.send("sys", stop, StopCommand(engaged=True, source="client"))
+    system.client.stop_all("test")
     system.client.wait(lambda: system.client.read("burger", topics.STATUS).stopped, 20.0, "burger is not stopped")
     system.client.wait(lambda: system.client.read("milvus", topics.STATUS).stopped, 20.0, "milvus is not stopped")
     system.client.wait(lambda: not moves(system), 20.0, "still rolls")
     assert position(system, "milvus")[2] > 40
-    system.client.send("sys", stop, StopCommand(engaged=False, source="client"))
+    assert system.client.read("burger", topics.STATUS).stops[0].reason == "test"
+    system.client.release_stop()
     system.client.wait(lambda: not system.client.read("burger", topics.STATUS).stopped, 20.0, "not released")
 
 

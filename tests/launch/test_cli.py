@@ -7,6 +7,7 @@ import sys
 import pytest
 import yaml
 
+from uvf.launch import settings
 from uvf.runtime.site import ROOT
 
 
@@ -83,8 +84,44 @@ def test_without_a_router_the_tools_say_so():
     assert "no router at tcp/127.0.0.1:9" in done.stderr
 
 
-def test_help_imports_no_engine():
-    code = "import sys, uvf.launch.cli as c\ntry: c.app(['--help'])\nexcept SystemExit: pass\n"
-    code += "print([m for m in ('zenoh', 'numpy', 'numba', 'pybullet', 'jsbsim', 'viser') if m in sys.modules])"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+def without_engines(*arguments):
+    """What a command says; none of the engines may have been imported for it."""
+    code = f"import sys, uvf.launch.cli as c\ntry: c.app({list(arguments)!r})\nexcept SystemExit as end: print('exit', end.code)\n"
+    code += "print([m for m in ('zenoh', 'numpy', 'numba', 'pybullet', 'jsbsim', 'viser', 'trimesh') if m in sys.modules])"
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
     assert done.stdout.strip().endswith("[]")
+    return done
+
+
+def test_help_imports_no_engine():
+    assert "exit 0" in without_engines("--help").stdout
+
+
+MISSPELT = {
+    ("run", "dmeo"): "no mission 'dmeo'; did you mean 'demo'?",
+    ("run", "dmeo", "--lockstep"): "no mission 'dmeo'; did you mean 'demo'?",
+    ("up", "dmeo"): "no mission 'dmeo'; did you mean 'demo'?",
+    ("check", "dmeo"): "no mission 'dmeo'; did you mean 'demo'?",
+    ("teleop", "burger", "-m", "dmeo"): "no mission 'dmeo'; did you mean 'demo'?",
+    ("service", "planner", "-m", "dmeo"): "no mission 'dmeo'; did you mean 'demo'?",
+    ("replay", "tests/golden/dmo.mcap"): "no log tests/golden/dmo.mcap; did you mean 'demo.mcap'?",
+    ("replay", "tests/golden/demo.mcap", "-m", "dmeo"): "no mission 'dmeo'; did you mean 'demo'?",
+    ("log", "info", "tests/golden/dmo.mcap"): "no log tests/golden/dmo.mcap; did you mean 'demo.mcap'?",
+    ("report", "tests/goldn"): "no run tests/goldn; did you mean 'golden'?",
+    ("report", "nothing"): "no run nothing; runs are recorded in {runs}",
+    ("bench", "buss"): "no benchmark group 'buss'; did you mean 'bus'?",
+}
+
+
+@pytest.mark.parametrize("arguments", MISSPELT, ids=" ".join)
+def test_a_misspelt_name_is_answered_in_one_line_before_anything_is_loaded(arguments):
+    done = without_engines(*arguments)
+    assert done.stderr == f"uvf: {MISSPELT[arguments].format(runs=settings.runs_folder())}\n"
+    assert "exit 2" in done.stdout
+
+
+def test_run_without_lockstep_is_refused_in_one_line_that_names_both_ways():
+    done = without_engines("run", "formation")
+    assert "exit 2" in done.stdout
+    assert len(done.stderr.splitlines()) == 1
+    assert "'uvf run formation --lockstep'" in done.stderr and "'uvf up formation'" in done.stderr

@@ -150,9 +150,18 @@ def test_bad_input_is_one_line(made, tmp_path):
     (tmp_path / "file").write_text("")
     for arguments, said in (
         ([str(tmp_path / "empty")], "no log-*.mcap"),
-        ([str(tmp_path / "none.mcap")], "No such file"),
+        ([str(tmp_path / "none.mcap")], "no run"),
         ([str(rover)], "no aircraft"),
         ([str(shutil.copy(made, tmp_path / "log.mcap")), "--out", str(tmp_path / "file" / "x")], "--out"),
     ):
         done = CliRunner().invoke(app, ["report", *arguments])
         assert done.exit_code == 2 and said in done.output.replace("\n", ""), done.output
+
+
+def test_what_strangers_have_put_into_the_log_does_not_end_the_report(tmp_path):
+    good = list(straight_flight(20))
+    broken = [s._replace(payload=b"\xff") for s in good[:5]] + [s._replace(type_name="nonsense") for s in good[:5]]
+    stray = [good[0]._replace(key=key) for key in ("uvf/kite", "uvf/kite/", "uvf//nav/state")]
+    log = write(tmp_path / "a.mcap", [*good, *broken, *stray])
+    clean = write(tmp_path / "b.mcap", good)
+    assert figures(flights(log)[0]) == figures(flights(clean)[0])

@@ -7,8 +7,10 @@ import pytest
 from schemas import topics
 from schemas.messages import Clock, Grid
 from tests.runtime.modes import free_port
+from uvf.runtime.bus import Sample
 from uvf.runtime.keeper import Keeper
-from uvf.runtime.zenoh_bus import ZenohBus, open_router
+from uvf.runtime.stop_all import StopBook, StopVoice
+from uvf.runtime.zenoh_bus import ZenohBus, kept_key, open_router
 
 KEY = topics.MAP.at("alpha")
 
@@ -67,3 +69,52 @@ def test_a_new_epoch_forgets(buses):
     clock.put(Clock(epoch=2, t_ns=10_000_000).SerializeToString(), 10_000_000)
     settle(keeper)
     assert recall(keeper, other) is None
+
+
+def test_history_that_comes_late_does_not_take_the_place_of_what_is_newer(buses):
+    _, keeper, _ = buses
+    name, kept = Grid.DESCRIPTOR.full_name, keeper._keep
+    kept(Sample(KEY, name, b"new", 20, 2, 7, 1))
+    kept(Sample(KEY, name, b"old", 10, 1, 7, 1))
+    kept(Sample(KEY, name, b"of a writer that has died", 10, 9, 6, 1))
+    kept(Sample(KEY, name, b"of the epoch before", 99, 3, 7, 0))
+    assert keeper._newest[kept_key(KEY)].payload == b"new"
+    kept(Sample(KEY, name, b"newer", 20, 3, 7, 1))
+    assert keeper._newest[kept_key(KEY)].payload == b"newer"
+
+
+def test_a_message_ahead_of_the_clock_is_not_kept(buses):
+    _, keeper, _ = buses
+    keeper._on_clock(Sample(topics.CLOCK.at("sys"), Clock.DESCRIPTOR.full_name, b"", 1_000_000_000, 1, 7, 1))
+    for stamp, epoch in ((1_000_000_000, 9), (60_000_000_000, 1)):
+        keeper._keep(Sample(KEY, Grid.DESCRIPTOR.full_name, b"poison", stamp, 1, 8, epoch))
+    assert kept_key(KEY) not in keeper._newest
+
+
+def test_who_comes_late_hears_of_a_stop_whose_sender_has_died_and_of_its_release(buses):
+    endpoint, keeper, other = buses
+    voice, key = StopVoice("gcs"), topics.STOP.by("gcs").at("sys")
+    with ZenohBus(endpoint) as page:
+        page.publisher(key, "uvf.v1.StopCommand", topics.STOP.qos).put(voice.engage(0, "pressed").SerializeToString(), 0)
+        settle(keeper)
+    book = StopBook()
+    for topic in (topics.STOP.by("*"), topics.STOP_STATE):
+        other.subscribe(topic.at("sys"), topic.qos, book.push, 64)
+    until(keeper, other, lambda: book.now)
+    assert book.now.who == "gcs (pressed)"
+    with ZenohBus(endpoint) as client:
+        release = StopVoice("client").release(0, book.now.engagements)
+        client.publisher(topics.STOP.by("client").at("sys"), "uvf.v1.StopCommand", topics.STOP.qos).put(release.SerializeToString(), 0)
+        until(keeper, other, lambda: not book.now)
+    late = StopBook()
+    other.subscribe(topics.STOP_STATE.at("sys"), topics.STOP_STATE.qos, late.push, 64)
+    until(keeper, other, lambda: late._released)
+    assert not late.now
+
+
+def until(keeper, bus, condition, patience=10.0):
+    end = time.monotonic() + patience
+    while not condition():
+        assert time.monotonic() < end
+        settle(keeper, 0.02)
+        bus.poll()

@@ -1,5 +1,6 @@
 """Logs hold the bytes as they travelled, open elsewhere, survive a kill and a full disk."""
 
+import random
 from pathlib import Path
 
 import pytest
@@ -197,3 +198,27 @@ def test_wherever_it_was_cut_off_it_is_told_in_one_line(tmp_path):
         (tmp_path / "cut.mcap").write_bytes(whole[:length])
         with pytest.raises(BadInput, match="uvf log recover"):
             list(read_log(tmp_path / "cut.mcap"))
+
+
+def test_a_log_is_read_in_the_order_of_mcaps_own_reader_however_the_stamps_of_its_chunks_overlap(tmp_path):
+    dice = random.Random(1)
+    with Recorder(tmp_path / "a.mcap") as recorder:
+        for n in range(1, 3000):
+            key = dice.choice(("uvf/v/nav/pose", "uvf/w/nav/pose", "uvf/v/map/grid"))
+            stamp_ns = dice.choice((n, n, n, 0, n // 2, dice.randrange(4000)))
+            recorder.write(Sample(key, "foxglove.PoseInFrame", b"%d" % n, stamp_ns, n, 5))
+            if n % 50 == 0:
+                recorder.flush()
+    with (tmp_path / "a.mcap").open("rb") as file:
+        expected = [(c.topic[1:], m.data) for _, c, m in make_reader(file).iter_messages()]
+    assert [(s.key, s.payload) for s in read_log(tmp_path / "a.mcap")] == expected
+    of_v = [pair for pair in expected if pair[0].startswith("uvf/v/")]
+    assert [(s.key, s.payload) for s in read_log(tmp_path / "a.mcap", ["uvf/v/nav/pose", "uvf/v/map/grid"])] == of_v
+
+
+def test_a_log_is_not_saved_into_itself(tmp_path):
+    record(tmp_path / "a.mcap", range(1, 9))
+    (tmp_path / "same.mcap").symlink_to(tmp_path / "a.mcap")
+    with pytest.raises(BadInput, match="name another file"):
+        recover(tmp_path / "a.mcap", tmp_path / "same.mcap")
+    assert len(list(read_log(tmp_path / "a.mcap"))) == 8

@@ -5,12 +5,14 @@ from dataclasses import dataclass
 import pytest
 
 from schemas import topics
-from schemas.messages import Clock, NavState, Odometry, PoseInFrame
+from schemas.messages import ArmRequest, Clock, ModeRequest, NavState, Odometry, PoseInFrame, Reply
 from uvf.runtime.bus import LocalBus, Sample
+from uvf.runtime.comparison import differing
 from uvf.runtime.params import BadInput
-from uvf.runtime.recording import Recorder, log_begin
-from uvf.runtime.replay import differing, into_service, logged_site, onto_bus
+from uvf.runtime.recording import Recorder, log_begin, read_log
+from uvf.runtime.replay import hand_over, into_service, logged_site, onto_bus, play
 from uvf.runtime.service import Service
+from uvf.runtime.shell import Shell
 from uvf.runtime.site import ROOT, Host
 
 NS = 1_000_000_000
@@ -85,6 +87,147 @@ def test_in_a_later_file_a_change_is_noticed_as_well(log):
     changed = list(into_service(log.second, Host(Adder, lambda: Adder(1.5), "v")))
     assert {d.field for d in changed} == {"position.x"}
     assert len(changed) > 15
+
+
+class Caller(Service):
+    """Answers mode requests, asks to arm at each full second, says a half second late what it was answered."""
+
+    name = "caller"
+    hz = 10.0
+    latency = 0.5
+    inputs = {"clock": topics.CLOCK}
+    outputs = {"state": topics.NAV_STATE}
+    requests = {"mode": topics.SET_MODE}
+    calls = {"arm": topics.ARM}
+
+    def __init__(self, say=lambda n: True, addend=0.0):
+        self.say, self.addend = say, addend
+        self.n, self.answers = 0, []
+
+    def stale(self, t, missing):
+        return {}
+
+    def step(self, t, clock, mode, arm):
+        self.n += 1
+        self.answers += [a.reply.reason if a.reply is not None else a.reason for a in arm]
+        message = NavState()
+        message.position.x, message.position.y = self.n + self.addend, len(mode)
+        replies = [Reply(reason=f"{self.n}") for _ in mode]
+        return {"state": [message] if self.say(self.n) else [], "mode": replies, "arm": [ArmRequest()] if self.n % 10 == 0 else []}
+
+
+class Arming(Service):
+    """Answers with the number of the question."""
+
+    name = "arming"
+    hz = 5.0
+    requests = {"arm": topics.ARM}
+
+    def __init__(self):
+        self.n = 0
+
+    def step(self, t, arm):
+        self.n += len(arm)
+        return {"arm": [Reply(reason=f"answer {self.n}") for _ in arm]}
+
+
+def recorded(path, seconds, ask_at=()):
+    """A log of Caller and Arming; when Caller is asked for a mode [s]."""
+    from uvf.runtime.lockstep import Lockstep
+
+    lockstep = Lockstep([Host(Caller, Caller, "v"), Host(Arming, Arming, "v")])
+
+    def ask(t):
+        if any(abs(t - at) < 1e-6 for at in ask_at):
+            lockstep.bus.call(topics.SET_MODE.at("v"), ModeRequest().SerializeToString(), round(t * NS), lambda *reply: None)
+        return True
+
+    with Recorder(path) as recorder:
+        recorder.follow(lockstep.bus)
+        lockstep.run(seconds, ask)
+    return path
+
+
+def test_requests_and_answers_come_to_a_service_as_they_did(tmp_path):
+    log = recorded(tmp_path / "a.mcap", 5.0, ask_at=(0.55, 1.25, 3.1))
+    made = []
+
+    def make():
+        made.append(Caller())
+        return made[-1]
+
+    assert [str(d) for d in into_service(log, Host(Caller, make, "v"))] == []
+    assert made[-1].answers == ["answer 1", "answer 2", "answer 3", "answer 4"]
+
+
+def compared_as_a_whole(log, make):
+    """The differences, of all messages held in memory at once."""
+    bus, made = LocalBus(), []
+    keys = [topics.NAV_STATE.at("v"), *(f"{topics.SET_MODE.at('v')}/{half}" for half in ("request", "reply"))]
+    for key in keys:
+        bus.subscribe(key, topics.Qos.STATE, made.append)
+    samples = list(read_log(log))
+    for _ in play(Shell(Host(Caller, make, "v"), bus), samples, lambda s: hand_over(bus, s) if s.key not in keys[::2] else None, 4 * NS):
+        pass
+    logged, now = ({(s.key, s.stamp_ns): s for s in side if s.key in keys} for side in (samples, made))
+    for which, old in logged.items():
+        new = now.pop(which, None)
+        if new is None:
+            yield old.key, old.stamp_ns, "missing"
+        elif new.payload != old.payload:
+            yield old.key, old.stamp_ns, "changed"
+    yield from ((new.key, new.stamp_ns, "surplus") for new in now.values())
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda: Caller(lambda n: n % 3),
+        lambda: Caller(addend=0.5),
+        lambda: Caller(lambda n: n % 7, addend=0.5),
+    ],
+)
+def test_differences_come_in_the_order_of_the_log_and_what_it_does_not_hold_at_the_end(tmp_path, make):
+    log = recorded(tmp_path / "a.mcap", 4.0, ask_at=(1.25, 3.1))
+    with Recorder(tmp_path / "b.mcap") as thinned:
+        for sample in read_log(log):
+            if sample.key not in (topics.NAV_STATE.at("v"), f"{topics.SET_MODE.at('v')}/reply") or sample.seq % 4:
+                thinned.write(sample)
+    found = []
+    for d in into_service(tmp_path / "b.mcap", Host(Caller, make, "v")):
+        kind = "missing" if d.now == "missing" else "surplus" if d.logged == "missing" else "changed"
+        if (d.key, d.stamp_ns, kind) not in found[-1:]:
+            found.append((d.key, d.stamp_ns, kind))
+    expected = list(compared_as_a_whole(tmp_path / "b.mcap", make))
+    assert found == expected
+    assert {kind for *_, kind in expected} >= {"surplus"} and len(expected) > 5
+
+
+def with_a_strangers(log, path, **changes):
+    with Recorder(path) as recorder:
+        for sample in read_log(log):
+            recorder.write(sample)
+        recorder.write(sample._replace(**changes))
+    return path
+
+
+def test_what_is_stamped_long_after_all_others_is_left_out_and_told(tmp_path):
+    log = recorded(tmp_path / "a.mcap", 2.0)
+    far = with_a_strangers(log, tmp_path / "far.mcap", key="uvf/v/stranger", stamp_ns=2**62)
+    told, bus = [], LocalBus()
+    assert [str(d) for d in into_service(far, Host(Caller, Caller, "v"), warn=told.append)] == []
+    assert onto_bus(far, bus, rate=1e6, warn=told.append) == len(list(read_log(log)))
+    assert len(told) == 2
+    assert "1 messages are stamped more than 3600 s after all others and are left out" in told[0]
+
+
+def test_broken_bytes_on_the_key_of_a_service_are_a_difference(tmp_path):
+    log = recorded(tmp_path / "a.mcap", 2.0)
+    with Recorder(tmp_path / "b.mcap") as recorder:
+        for sample in read_log(log):
+            broken = sample.key == topics.NAV_STATE.at("v") and sample.seq == 5
+            recorder.write(sample._replace(payload=b"\xff") if broken else sample)
+    assert [d.logged for d in into_service(tmp_path / "b.mcap", Host(Caller, Caller, "v"))] == ["broken bytes"]
 
 
 def test_what_stands_at_the_head_is_said_at_once_and_the_rest_at_its_pace(tmp_path):

@@ -17,7 +17,7 @@ from schemas.messages import (
     StopCommand,
     WheelCommand,
 )
-from uvf.runtime.service import Params, Service, each_vehicle, every, of_role, optional
+from uvf.runtime.service import Params, Service, each_vehicle, every, of_role, optional, stop_all
 from uvf.runtime.site import Host
 
 VEHICLES = ("alpha", "beta")
@@ -60,7 +60,7 @@ class Pilot(Service):
 
     name = "pilot"
     hz = 50.0
-    inputs = {"imu": every(topics.IMU), "goal": optional(topics.NAV_STATUS), "stop": optional(topics.STOP.by("*"))}
+    inputs = {"imu": every(topics.IMU), "goal": optional(topics.NAV_STATUS), "stop": stop_all()}
     outputs = {"wheels": topics.WHEEL_COMMAND, "events": topics.EVENTS.by("pilot")}
     requests = {"arm": topics.ARM}
 
@@ -75,7 +75,7 @@ class Pilot(Service):
     def step(self, t, imu, goal, stop, arm):
         self.times.append(t)
         self.imu_times += [(t, i.angular_velocity.x) for i in imu]
-        self.stops += stop is not None and stop.engaged
+        self.stops += bool(stop)
         if goal is not None:
             self.goal_stamps.append((t, seconds(goal.timestamp)))
         force = imu[-1].specific_force.x if imu else 0.0

@@ -8,6 +8,7 @@ from schemas.convert import seconds
 from schemas.messages import SurfaceCommand
 from services.autopilot.air.commands import Surfaces
 from services.autopilot.air.servos import Servos
+from services.autopilot.multiplexing import Multiplexer, in_turn
 
 SOURCES = ("teleop", "mavlink", "client")
 """The first one whose command is fresh wins."""
@@ -46,15 +47,26 @@ def _part(deflection: float, stop: float) -> float:
     return min(max(deflection / stop, -1.0), 1.0)
 
 
-def choose(t: float, commands: Mapping[str, SurfaceCommand], longest: float) -> Hand | None:
-    """The command that counts at ``t`` [s]; None without one of the last ``longest`` [s]. One with a number that is not finite is none."""
-    for source in SOURCES:
-        m = commands.get(source)
-        if m is not None and -CLOCK_TOLERANCE <= t - seconds(m.timestamp) <= longest:
-            asked = Surfaces(m.aileron, m.elevator, m.rudder, m.throttle, m.flap, m.brake)
-            if all(map(math.isfinite, astuple(asked))):
-                return Hand(source, _within(asked))
-    return None
+class Hands(Multiplexer):
+    """Of all senders, by their keys."""
+
+    def __init__(self) -> None:
+        super().__init__("commands by hand", in_turn(SOURCES))
+        self._said: dict[str, SurfaceCommand] = {}
+
+    def choose(self, t: float, said: Mapping[str, SurfaceCommand | None], longest: float) -> Hand | None:
+        """The command that counts at ``t`` [s]; None without one of the last ``longest`` [s], whose input may be stale by then.
+
+        One with a number that is not finite is none.
+        """
+        self._said |= {source: m for source, m in said.items() if m is not None}
+        fresh: dict[str, Hand] = {}
+        for source, m in self._said.items():
+            if -CLOCK_TOLERANCE <= t - seconds(m.timestamp) <= longest:
+                asked = Surfaces(m.aileron, m.elevator, m.rudder, m.throttle, m.flap, m.brake)
+                if all(map(math.isfinite, astuple(asked))):
+                    fresh[source] = Hand(source, _within(asked))
+        return fresh.get(self.pick(fresh))
 
 
 def _within(s: Surfaces) -> Surfaces:

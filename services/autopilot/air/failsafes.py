@@ -192,7 +192,7 @@ AIR_RULES: tuple[Rule[Known], ...] = (
         "saturation",
         wrong=lambda k: k.stopped_for > k.params.saturation_time,
         mended=lambda k: k.stopped_for == 0.0,
-        begins="surface at its stop: less bank and climb",
+        begins="surface at its stop: it banks and climbs less",
         ends="surfaces free again",
         figures=lambda k: f"{k.stop} for {k.stopped_for:.0f} s",
         clears=5.0,

@@ -43,7 +43,7 @@ class Need(Enum):
     AIRBORNE = "the aircraft is on the ground: take off first"
     GROUND = "the aircraft is flying: it can only take off from the ground"
     MISSION = "there is no mission: upload one first"
-    SETPOINT = "no setpoint is sent: publish cmd/<source>/setpoint first"
+    SETPOINT = "no program sends setpoints: they have to come before this mode, as client, offboard or mavlink"
     LEADER = "there is no leader to follow, or nothing is heard of it: see 'follow' of the mission's job"
 
     def is_met(self, now: Situation) -> bool:

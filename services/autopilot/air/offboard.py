@@ -1,7 +1,7 @@
 """Mode Offboard: what somebody outside asks for, as an attitude, a course with altitude and airspeed, or a path."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from schemas.convert import seconds
 from schemas.messages import FlightSetpoint
@@ -11,6 +11,7 @@ from services.autopilot.air.guidance import Aim, line_aim, orbit_aim
 from services.autopilot.air.params import AirParams
 from services.autopilot.air.state import Estimate
 from services.autopilot.air.wishes import Phase, Senses, Track, Wish
+from services.autopilot.multiplexing import OFFBOARD, Multiplexer
 
 OLDEST = 0.5  # s
 CLOCK_TOLERANCE = 0.02  # s, one tick
@@ -36,6 +37,18 @@ def _numbers(m: FlightSetpoint) -> Iterator[float]:
     yield from (a.bank, a.pitch, a.throttle, c.course, c.altitude, c.airspeed, o.airspeed, r.radius, r.airspeed)
     for v in (o.origin, o.direction, r.centre):
         yield from (v.x, v.y, v.z)
+
+
+class Setpoints(Multiplexer):
+    """Of all senders, by their keys."""
+
+    def __init__(self) -> None:
+        super().__init__("setpoints", OFFBOARD)
+
+    def choose(self, t: float, said: Mapping[str, FlightSetpoint | None]) -> FlightSetpoint | None:
+        """The one that is followed at ``t`` [s]."""
+        counted = {source: m for source, message in said.items() if (m := fresh(t, message)) is not None}
+        return counted.get(self.pick(counted))
 
 
 class Offboard(Phase):

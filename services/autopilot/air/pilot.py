@@ -90,10 +90,10 @@ class Pilot:
 
     @property
     def source(self) -> str:
-        """Whose commands reach the surfaces."""
-        if not TABLE[self.mode].by_hand or self.senses.hand is None:
-            return "autopilot"
-        return self.senses.hand.source
+        """Whose commands reach the surfaces, or whose setpoints are followed."""
+        if TABLE[self.mode].by_hand and self.senses.hand is not None:
+            return self.senses.hand.source
+        return (self.mode is FlightMode.OFFBOARD and self.senses.setpoint_from) or "autopilot"
 
     def _set_pace(self, now: Estimate, params: AirParams) -> None:
         part = self._part

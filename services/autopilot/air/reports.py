@@ -80,7 +80,7 @@ def status(t: float, pilot: Pilot, now: Estimate, flown: Flown) -> VehicleStatus
         mode=MODES[pilot.mode],
         stopped=bool(pilot.stopped),
         command_source=pilot.source,
-        reason=pilot.reason,
+        reason=_reason(pilot),
         throttle=flown.surfaces.throttle,
         cross_track=flown.aim.error,
         altitude_error=now.height - flown.level.height,
@@ -94,6 +94,12 @@ def status(t: float, pilot: Pilot, now: Estimate, flown: Flown) -> VehicleStatus
     if pilot.home is not None:
         message.home.x, message.home.y, message.home.z = pilot.home.east, pilot.home.north, pilot.home.height
     return message
+
+
+def _reason(pilot: Pilot) -> str:
+    """Of the mode; and who is not listened to."""
+    waits = ", ".join(pilot.senses.setpoints_wait) if pilot.mode is FlightMode.OFFBOARD else ""
+    return f"{pilot.reason}; setpoints from {pilot.source}, those of {waits} wait" if waits else pilot.reason
 
 
 def _distance(pilot: Pilot, now: Estimate) -> float:

@@ -1,6 +1,6 @@
 """The autopilot of one fixed-wing aircraft: sensors and requests in, surfaces, estimates and reports out."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 from schemas import topics
@@ -31,11 +31,10 @@ from schemas.messages import (
     Range,
     Reply,
     SetCurrentRequest,
-    StopCommand,
     SurfaceCommand,
     VehicleStatus,
 )
-from services.autopilot.air import by_hand, intake, offboard, orders, reports, telling
+from services.autopilot.air import by_hand, intake, orders, reports, telling
 from services.autopilot.air.commands import Surfaces
 from services.autopilot.air.failsafes import GNSS_HOLD
 from services.autopilot.air.fence_in_force import too_small
@@ -44,6 +43,7 @@ from services.autopilot.air.flyable import advice
 from services.autopilot.air.journal import Journal
 from services.autopilot.air.landed import LandDetector
 from services.autopilot.air.leading import Steadied
+from services.autopilot.air.outside import Outside
 from services.autopilot.air.over_ground import OverGround
 from services.autopilot.air.params import FIXED, AirParams
 from services.autopilot.air.paths import Round
@@ -56,11 +56,11 @@ from services.autopilot.air.sensing import Said, Sensing
 from services.autopilot.air.ship import Ship
 from services.autopilot.air.state import Estimate
 from services.autopilot.air.wishes import Flown, Senses
+from services.autopilot.safe_state import coming_down
 from services.autopilot.told_params import ToldParams
 from uvf.maths.geodesy import GRAVITY
-from uvf.runtime.service import Outputs, Service, every, optional
-
-BEFORE = "an operator before the restart"
+from uvf.runtime.service import Outputs, Service, every, optional, stop_all
+from uvf.runtime.stop_all import StopStatus
 
 
 class AutopilotAir(Service):
@@ -75,11 +75,13 @@ class AutopilotAir(Service):
         "battery": optional(topics.BATTERY),
         "range": optional(every(topics.RANGE)),
         "link": optional(topics.LINK),
-        "stop": optional(topics.STOP.by("*")),
+        "stop": stop_all(),
         "teleop": optional(topics.SURFACES.by("teleop")),
         "mavlink": optional(topics.SURFACES.by("mavlink")),
         "client": optional(topics.SURFACES.by("client")),
-        "setpoint": optional(topics.SETPOINT.by("*")),
+        "setpoint_offboard": optional(topics.SETPOINT.by("offboard")),
+        "setpoint_client": optional(topics.SETPOINT.by("client")),
+        "setpoint_mavlink": optional(topics.SETPOINT.by("mavlink")),
     }
     outputs = {
         "surfaces": topics.SURFACE_COMMAND,
@@ -138,13 +140,14 @@ class AutopilotAir(Service):
         self._plans = Plans(ship.items, self._pilot, self._safety, self._journal)
         self._sensing = Sensing(ship.instruments, ship.tangent, params.estimator, self._safety.believed)
         self._surfaces = by_hand.LET_GO
-        self._sticks: dict[str, SurfaceCommand] = {}
+        self._steering = Outside()
         self._now: Estimate | None = None
         self._cycles = 0
         self._told: tuple[object, ...] = ()
         self._where: tuple[object, ...] = ()
         self._land = LandDetector(ship.starts_in_air)
         self._status = VehicleStatus()
+        self._stop = StopStatus()
 
     def step(
         self,
@@ -155,11 +158,13 @@ class AutopilotAir(Service):
         battery: Battery | None,
         range: list[Range],
         link: Link | None,
-        stop: StopCommand | None,
+        stop: StopStatus,
         teleop: SurfaceCommand | None,
         mavlink: SurfaceCommand | None,
         client: SurfaceCommand | None,
-        setpoint: FlightSetpoint | None,
+        setpoint_offboard: FlightSetpoint | None,
+        setpoint_client: FlightSetpoint | None,
+        setpoint_mavlink: FlightSetpoint | None,
         arm: list[ArmRequest],
         mode: list[ModeRequest],
         goal: list[GoalRequest],
@@ -176,11 +181,9 @@ class AutopilotAir(Service):
         samples = [intake.inertial(m, t) for m in imu]
         now = self._now = self._sensing.step(t, Said(samples, air_data, gnss, self._land.airborne), self.params, 1 / self.hz)
         if now is None:
-            waiting = [_reply("there is no satellite fix yet")]
-            requests: dict[str, Sequence[object]] = {"arm": arm, "mode": mode, "goal": goal, "mission": mission}
-            requests |= {"current": current, "orbit": orbit, "go_around": go_around, "order": order, "fence": fence}
-            requests["set_rally"] = set_rally
-            return {**self._news(t), **{name: waiting * len(asked) for name, asked in requests.items()}}
+            requests: dict[str, Sequence[object]] = {"arm": arm, "mode": mode, "goal": goal, "mission": mission, "current": current}
+            requests |= {"orbit": orbit, "go_around": go_around, "order": order, "fence": fence, "set_rally": set_rally}
+            return {**self._news(t), **{name: [_reply("there is no satellite fix yet")] * len(asked) for name, asked in requests.items()}}
         if now.position_known or now.airspeed_known:
             self._land.step(now, self.params, 1 / self.hz)
         self._safety.hear(t, link, battery)
@@ -199,25 +202,22 @@ class AutopilotAir(Service):
             "fence": [_reply(self._plans.set_fence(r.fence, self._seen(now), self.params)) for r in fence],
             "set_rally": [_reply(self._plans.set_rally(r.rally, self.params)) for r in set_rally],
         }
-        hand = self._hand(t, {"teleop": teleop, "mavlink": mavlink, "client": client})
+        hands = {"teleop": teleop, "mavlink": mavlink, "client": client}
+        setpoints = {"offboard": setpoint_offboard, "client": setpoint_client, "mavlink": setpoint_mavlink}
+        self._steering.hear(t, hands, setpoints, self.params.stick_timeout)
         self._over_ground.hear(range, self._sensing.felt, 1 / self.hz)
-        flown = self._fly(t, now, hand, offboard.fresh(t, setpoint))
-        out = self._report(t, now, flown)
+        out = self._report(t, now, self._fly(t, now))
         out["events"] = warnings + self._journal.events(t, self._pilot, self._armed)
         return {**out, **self._news(t), **replies}  # type: ignore[dict-item]
 
-    def _hand(self, t: float, said: Mapping[str, SurfaceCommand | None]) -> by_hand.Hand | None:
-        """An input is gone once it is stale; how long a command counts is the parameter's to say."""
-        self._sticks |= {source: m for source, m in said.items() if m is not None}
-        return by_hand.choose(t, self._sticks, self.params.stick_timeout)
-
-    def _fly(self, t: float, now: Estimate, hand: by_hand.Hand | None, setpoint: FlightSetpoint | None) -> Flown:
+    def _fly(self, t: float, now: Estimate) -> Flown:
         clearance = self._over_ground.clearance(t, now, self.params.gear_height)
         felt = self._over_ground
-        senses = Senses(self._land.airborne, self._armed, hand, self._ship.servos, clearance, felt.push, felt.heave, setpoint)
-        self._pilot.hear(senses, 1 / self.hz)
+        senses = Senses(self._land.airborne, self._armed, None, self._ship.servos, clearance, felt.push, felt.heave)
+        self._pilot.hear(self._steering.tell(senses), 1 / self.hz)
         flown = self._pilot.step(now, self._safety.demands(self.params), 1 / self.hz)
         self._surfaces = flown.surfaces
+        self._journal.note(self._steering.news(t, self._pilot))
         if self._pilot.disarms:
             self._pilot.disarms = self._armed = False
         return flown
@@ -231,13 +231,15 @@ class AutopilotAir(Service):
             "pose": reports.pose(state),
             "body_frame": reports.body_frame(state, self._ship.name),
         }
-        told = (self._pilot.mode, self._pilot.reason, self._pilot.stopped, self._armed)
+        pilot = self._pilot
+        told = (pilot.mode, pilot.reason, pilot.stopped, self._armed, self._steering.followed(pilot))
         if self._cycles % 5 == 0 or told != self._told:
             self._told = told
             self._status = reports.status(t, self._pilot, now, flown)
             self._status.battery_remaining, self._status.battery_voltage = self._safety.endurance.shown
             self._status.prearm.extend(self._faults())
             self._status.failsafes.extend(self._safety.texts)
+            self._status.stops.extend(self._stop.engagements)
             self._status.breach, self._status.breaches = self._safety.breach, self._safety.breaches
             out["status"] = self._stamped_status(t)
         if self._cycles % 5 == 0:
@@ -275,7 +277,8 @@ class AutopilotAir(Service):
         if status is not None and status.mode in intake.MODES:
             self._armed = status.armed
             self._land = LandDetector(not status.landed)
-            self._pilot.stopped = BEFORE if status.stopped else ""
+            self._stop = StopStatus(tuple(status.stops))
+            self._pilot.stopped = self._stop.who
             self._pilot.take_up(intake.MODES[status.mode], intake.place(status.home), intake.stand(progress))
         if nav_state is not None:
             self._sensing.begin_from(nav_state)
@@ -293,6 +296,9 @@ class AutopilotAir(Service):
             "status": self._stamped_status(t),
             "events": self._journal.lost(t, missing),
         }
+
+    given_up = "its motor is off and it comes down in a turn"
+    stand_in = staticmethod(coming_down)
 
     def _seen(self, now: Estimate) -> Seen:
         return Seen(now, self._sensing.unfixed, self._land.airborne, self._surfaces)
@@ -318,10 +324,10 @@ class AutopilotAir(Service):
         )
         return faults(standing)
 
-    def _heed(self, stop: StopCommand | None) -> None:
-        """STOP ALL: in the air it holds, at rest it is disarmed. Without a word of it, what was said before counts."""
-        if stop is not None:
-            self._pilot.stop(stop.source or "unknown" if stop.engaged else "")
+    def _heed(self, stop: StopStatus) -> None:
+        """STOP ALL: in the air it holds, at rest it is disarmed."""
+        self._stop = stop
+        self._pilot.stop(stop.who)
         if self._pilot.stopped and not self._land.airborne:
             self._armed = False
 

@@ -68,6 +68,10 @@ class Senses:
     """m/s^2, specific force upwards."""
     setpoint: FlightSetpoint | None = None
     """What mode Offboard is asked for; None = nothing fresh."""
+    setpoint_from: str = ""
+    """Whose setpoint that is."""
+    setpoints_wait: tuple[str, ...] = ()
+    """Who else sends some, which are not followed."""
 
     def update(self, other: "Senses") -> None:
         """Whoever holds this one sees what is known now."""

@@ -6,18 +6,21 @@ from math import isfinite
 
 from schemas.convert import mode_name
 from schemas.messages import Mode
+from services.autopilot.multiplexing import OFFBOARD, Order, holder, in_turn
 
 COMMAND_MAX_AGE = 0.5  # s
 CLOCK_TOLERANCE = 0.02  # s, one tick: a sender's clock may be that much ahead
 
 SOURCES: Mapping[int, tuple[str, ...]] = {
     Mode.MODE_MANUAL: ("teleop", "mavlink", "gcs", "client"),
-    Mode.MODE_OFFBOARD: ("offboard", "client", "mavlink"),
+    Mode.MODE_OFFBOARD: tuple(source for rank in OFFBOARD for source in rank),
     Mode.MODE_MISSION: ("planner",),
     Mode.MODE_RETURN: ("planner",),
     Mode.MODE_HOLD: (),
 }
 """Modes of a ground vehicle and whose commands each lets through, the first that is fresh wins."""
+RANKS: Mapping[int, Order] = {mode: in_turn(sources) for mode, sources in SOURCES.items()} | {Mode.MODE_OFFBOARD: OFFBOARD}
+"""But in Offboard, where some are equals: of these the one that holds."""
 
 
 @dataclass(frozen=True)
@@ -52,8 +55,8 @@ class Choice:
     refused: str = ""
 
 
-def choose(t: float, mode: int, commands: Mapping[str, Velocity], obstacle: str) -> Choice:
-    """The command that counts at ``t`` [s]. obstacle: why nothing may move (STOP ALL, disarmed), "" if it may."""
+def choose(t: float, mode: int, commands: Mapping[str, Velocity], obstacle: str, held: str = "") -> Choice:
+    """The command that counts at ``t`` [s]. obstacle: why nothing may move (STOP ALL, disarmed), "" if it may; held: whose did before."""
     if obstacle:
         return Choice("", obstacle)
     admitted = SOURCES[mode]
@@ -61,9 +64,9 @@ def choose(t: float, mode: int, commands: Mapping[str, Velocity], obstacle: str)
         return Choice("", f"mode {mode_name(mode)}")
     fresh = {source: commands[source] for source in admitted if source in commands and commands[source].is_fresh(t)}
     refused = ", ".join(f"{source} ({c.linear:g} m/s, {c.angular:g} rad/s)" for source, c in fresh.items() if not c.is_finite)
-    for source, command in fresh.items():
-        if command.is_finite:
-            return Choice(source, f"mode {mode_name(mode)}: {source}", command.linear, command.angular, refused)
+    source = holder([source for source, command in fresh.items() if command.is_finite], RANKS[mode], held)
+    if source:
+        return Choice(source, f"mode {mode_name(mode)}: {source}", fresh[source].linear, fresh[source].angular, refused)
     if refused:
         return Choice("", f"mode {mode_name(mode)}: not a velocity: {refused}", refused=refused)
     return Choice("", f"mode {mode_name(mode)}: no fresh command from {', '.join(admitted)}")

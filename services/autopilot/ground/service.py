@@ -33,7 +33,6 @@ from schemas.messages import (
     RallyRequest,
     Reply,
     SetCurrentRequest,
-    StopCommand,
     VehicleStatus,
     WheelCommand,
     WheelTicks,
@@ -46,9 +45,12 @@ from services.autopilot.ground.mission import MissionEngine, Point, mission_of, 
 from services.autopilot.ground.multiplexer import COMMAND_MAX_AGE, SOURCES, Choice, Velocity, choose
 from services.autopilot.ground.params import GroundAutopilotParams
 from services.autopilot.ground.safety import Doing, Safety, Sensed, mode_of, place
+from services.autopilot.multiplexing import Once
+from services.autopilot.safe_state import standing
 from services.autopilot.told_params import ToldParams
 from uvf.maths.kinematics import DifferentialDrive, Twist, WheelSpeeds
-from uvf.runtime.service import Outputs, Service, every, optional
+from uvf.runtime.service import Outputs, Service, every, optional, stop_all
+from uvf.runtime.stop_all import StopStatus
 from uvf.runtime.sweeping import AT_ONCE, Sweeping
 from uvf.runtime.vehicle_file import GroundBody
 
@@ -70,7 +72,7 @@ class GroundAutopilot(Service):
         "client": optional(topics.DRIVE.by("client")),
         "offboard": optional(topics.DRIVE.by("offboard")),
         "planner": optional(topics.DRIVE.by("planner")),
-        "stop": optional(topics.STOP.by("*")),
+        "stop": stop_all(),
         "pose": optional(topics.POSE),
         "link": optional(topics.LINK),
         "imu": optional(every(topics.IMU)),
@@ -132,9 +134,10 @@ class GroundAutopilot(Service):
         begins, items = job
         self._armed = begins
         self._mode: int = Mode.MODE_MISSION if begins else Mode.MODE_HOLD
-        self._stopped = False
+        self._stop = StopStatus()
         self._choice = Choice("", "starting")
         self._refused_at = -inf
+        self._once = Once()
         self._heard: dict[str, Velocity] = {}
         self._engine = MissionEngine(home, params.acceptance_radius)
         self._engine.load(mission_of(items, stamp(0.0)))
@@ -159,7 +162,7 @@ class GroundAutopilot(Service):
         client: DriveCommand | None,
         offboard: DriveCommand | None,
         planner: DriveCommand | None,
-        stop: StopCommand | None,
+        stop: StopStatus,
         pose: PoseInFrame | None,
         link: Link | None,
         imu: list[Imu],
@@ -214,7 +217,7 @@ class GroundAutopilot(Service):
         if status is not None and status.mode in SOURCES:
             self._mode, self._armed = status.mode, status.armed
         if status is not None:
-            self._stopped = status.stopped  # until it is released, even by somebody who has not seen it engaged
+            self._stop = StopStatus(tuple(status.stops))
         if bounds is not None:
             self._safety.set_fence(bounds, None)
         if rally is not None:
@@ -222,11 +225,14 @@ class GroundAutopilot(Service):
         if mission is not None and progress is not None:
             self._engine.resume(mission, progress)
 
+    given_up = "its wheels stand"
+    stand_in = staticmethod(standing)
+
     def _watch(self, t: float, sensed: Sensed) -> None:
         """What the failsafes order, whatever the mode."""
         rims = self._drive.wheels(Twist(self._ramp.linear, self._ramp.angular))
         asked = WheelSpeeds(rims.left * self._body.wheel_radius, rims.right * self._body.wheel_radius)
-        doing = Doing(self._mode, self._armed and not self._stopped, bool(self._choice.source), asked)
+        doing = Doing(self._mode, self._armed and not self._stop, bool(self._choice.source), asked)
         self._safety.keep_near(self._engine.home, self.params.max_distance)
         events, order = self._safety.step(t, sensed, doing, self.params, 1.0 / self.hz)
         self._events += events
@@ -253,16 +259,16 @@ class GroundAutopilot(Service):
             self._rally, self._rally_is_new = rally, True
         return Reply(accepted=not reason, reason=reason)
 
-    def _heed_stop(self, t: float, stop: StopCommand | None) -> None:
-        engaged = stop is not None and stop.engaged
-        if engaged != self._stopped and stop is not None:
-            self._stopped = engaged
-            text = "STOP ALL: standing until it is released" if engaged else "STOP ALL is released"
-            self._tell(t, text, f"stop from {stop.source or 'unknown'}", Event.WARNING if engaged else Event.NOTICE)
+    def _heed_stop(self, t: float, stop: StopStatus) -> None:
+        before, self._stop = self._stop, stop
+        if stop and stop.who != before.who:
+            self._tell(t, "STOP ALL: standing until it is released", f"engaged by {stop.who}", Event.WARNING)
+        elif before and not stop:
+            self._tell(t, "STOP ALL is released", f"released by {stop.released_by or 'unknown'}")
 
     def _arm(self, t: float, request: ArmRequest) -> Reply:
-        if request.arm and self._stopped:
-            return Reply(accepted=False, reason="STOP ALL is engaged: release it first")
+        if request.arm and self._stop:
+            return Reply(accepted=False, reason=f"STOP ALL is engaged by {self._stop.who}: release it first")
         if request.arm and not request.force and not self._armed and (why := self._safety.faults()):
             return Reply(accepted=False, reason="; ".join(why))
         if request.arm != self._armed:
@@ -273,7 +279,8 @@ class GroundAutopilot(Service):
     def _set_mode(self, t: float, request: ModeRequest) -> Reply:
         if request.mode not in SOURCES:
             known = ", ".join(mode_name(mode) for mode in SOURCES)
-            return Reply(accepted=False, reason=f"a ground vehicle has no mode {request.mode}; there are: {known}")
+            asked = mode_name(request.mode) if request.mode in Mode.values() else request.mode
+            return Reply(accepted=False, reason=f"a ground vehicle has no mode {asked}; there are: {known}")
         self._safety.overrule()
         if request.mode != self._mode:
             self._mode = request.mode
@@ -316,16 +323,17 @@ class GroundAutopilot(Service):
         self._set_rally(rally)
 
     def _follow_mission(self, t: float, position: Point | None) -> None:
-        active = self._mode == Mode.MODE_MISSION and self._armed and not self._stopped
+        active = self._mode == Mode.MODE_MISSION and self._armed and not self._stop
         self._engine.acceptance_radius = self.params.acceptance_radius
         reached = self._engine.advance(t, position, active)
         if reached is not None:
             self._tell(t, f"mission item {reached} reached", "within its acceptance radius")
 
     def _choose(self, t: float, commands: Mapping[str, Velocity]) -> None:
-        obstacle = "STOP ALL is engaged" if self._stopped else "" if self._armed else "disarmed"
-        before, self._choice = self._choice, choose(t, self._mode, commands, obstacle)
-        if before.source != self._choice.source:
+        obstacle = f"STOP ALL is engaged by {self._stop.who}" if self._stop else "" if self._armed else "disarmed"
+        before, self._choice = self._choice, choose(t, self._mode, commands, obstacle, self._choice.source)
+        hand_over = f"{before.source} {self._choice.source}" if before.source and self._choice.source else ""
+        if before.source != self._choice.source and not (hand_over and not self._once.is_new(t, hand_over)):
             self._tell(t, f"commands from {self._choice.source or 'nobody'}", self._choice.reason)
         if self._choice.refused and t - self._refused_at >= REFUSALS_EVERY:
             self._refused_at = t
@@ -343,7 +351,7 @@ class GroundAutopilot(Service):
         self._steps += 1
         reports: dict[str, Any] = {"events": self._events, **self._told_params.news(t, self.params)}
         self._events = []
-        told = (self._mode, self._armed, self._stopped)
+        told = (self._mode, self._armed, self._stop.who)
         if self._steps % STATUS_EVERY == 1 or told != self._told:
             self._told = told
             reports["status"] = self._status(t, position)
@@ -370,7 +378,8 @@ class GroundAutopilot(Service):
             mode=Mode.Name(self._mode),
             armed=self._armed,
             landed=True,
-            stopped=self._stopped,
+            stopped=bool(self._stop),
+            stops=self._stop.engagements,
             command_source=self._choice.source,
             reason=self._choice.reason,
             throttle=abs(self._ramp.linear) / self._body.max_linear,

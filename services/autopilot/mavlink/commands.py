@@ -6,11 +6,14 @@ from dataclasses import dataclass
 
 from services.autopilot.mavlink.line import Line, Sender
 from uvf.runtime.mavlink import dialect as mav
+from uvf.runtime.mavlink.bounded import make_room
 
 LARGEST = 1e9  # no parameter of any command means anything beyond
 NOT_GIVEN = 2**31 - 1  # x or y of a COMMAND_INT without a place
 SCALE = 1e-7  # deg per unit of x and y
 REPEATED_WITHIN = 1.0  # s: two tries of MAVSDK
+MOST_SENDERS, MOST_COMMANDS = 64, 32
+REMEMBERED_FOR = 60.0  # s: longer than anybody repeats
 
 
 @dataclass(frozen=True)
@@ -91,8 +94,8 @@ class Commands:
     def __init__(self, line: Line, handlers: dict[int, Handler]) -> None:
         self._line = line
         self._handlers = handlers
-        self._last: dict[tuple[int, int, int], Pending] = {}
-        """The newest of each command (system, component, number)."""
+        self._last: dict[Sender, dict[int, Pending]] = {}
+        """The newest of each command, by number, of each sender."""
 
     def on_long(self, message: mav.MAVLink_command_long_message, sender: Sender) -> None:
         self._execute(Command.from_long(message, sender))
@@ -102,17 +105,33 @@ class Commands:
 
     def on_cancel(self, message: mav.MAVLink_command_cancel_message, sender: Sender) -> None:
         """What was asked of the autopilot cannot be called back: a command that waits gets its own answer, which is the only one."""
-        last = self._last.get((sender.system, sender.component, message.command))
+        last = self._last.get(sender, {}).get(message.command)
         if last is not None and last.result is None:
             return
         ack = mav.MAVLink_command_ack_message(message.command, mav.MAV_RESULT_UNSUPPORTED, 0, 0, sender.system, sender.component)
         self._line.send(ack, sender.peer)
 
+    def forget(self) -> None:
+        """Drops what nobody will repeat any more."""
+        since = self._line.t - REMEMBERED_FOR
+        for sender, mine in list(self._last.items()):
+            self._last[sender] = {number: pending for number, pending in mine.items() if pending.t > since}
+            if not self._last[sender]:
+                del self._last[sender]
+
+    def _remember(self, pending: Pending) -> None:
+        """A command that waits for its outcome, or a sender with one, makes room after all others."""
+        sender, number = pending.command.sender, pending.command.number
+        make_room(self._last, sender, MOST_SENDERS, lambda who: max((p.result is None, p.t) for p in self._last[who].values()))
+        mine = self._last.setdefault(sender, {})
+        make_room(mine, number, MOST_COMMANDS, lambda other: (mine[other].result is None, mine[other].t))
+        mine[number] = pending
+
     def _execute(self, command: Command) -> None:
         if self._is_repetition(command):
             return
         pending = Pending(command, self._line.t)
-        self._last[command.sender.system, command.sender.component, command.number] = pending
+        self._remember(pending)
         done = Acknowledger(self._line, pending)
         handler = self._handlers.get(command.number)
         if handler is None:
@@ -124,7 +143,7 @@ class Commands:
 
     def _is_repetition(self, command: Command) -> bool:
         """A sender repeats when the answer was late or lost: COMMAND_LONG counts ``confirmation`` up, COMMAND_INT cannot."""
-        last = self._last.get((command.sender.system, command.sender.component, command.number))
+        last = self._last.get(command.sender, {}).get(command.number)
         if last is None or not last.command.same_as(command):
             return False
         if last.result is None:

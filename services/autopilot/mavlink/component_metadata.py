@@ -17,10 +17,18 @@ from services.autopilot.mavlink.parameter_table import Parameter
 from services.autopilot.mavlink.parameter_values import crc32
 from uvf.runtime.mavlink import dialect as mav
 
-GENERAL = "/etc/extras/general.json"
-PARAMETERS = "/etc/extras/parameters.json.xz"
+FOLDER = "/etc/extras"
 FORMAT = 1  # of both files: the only one that QGroundControl reads
 COARSE = 30.0  # numbers that become so large need few decimals
+
+
+def general_of(system_id: int) -> str:
+    """Path of the first file. QGroundControl keeps what it downloads under its name: with one name for all it mixes vehicles up."""
+    return f"{FOLDER}/general_{system_id}.json"
+
+
+def parameters_file_of(system_id: int) -> str:
+    return f"{FOLDER}/parameters_{system_id}.json.xz"
 
 
 def files_of(facts: Facts, table: Sequence[Parameter]) -> dict[str, bytes]:
@@ -29,7 +37,8 @@ def files_of(facts: Facts, table: Sequence[Parameter]) -> dict[str, bytes]:
     told = {"version": FORMAT, "parameters": [described(p, own) for p in table]}
     # Small decoders know CRC-32 alone as the check of an xz stream.
     parameters = lzma.compress(_json(told), check=lzma.CHECK_CRC32)
-    types = [{"type": mav.COMP_METADATA_TYPE_PARAMETER, "uri": f"mftp://{PARAMETERS}", "fileCrc": crc32(parameters)}]
+    path = parameters_file_of(facts.system_id)
+    types = [{"type": mav.COMP_METADATA_TYPE_PARAMETER, "uri": f"mftp://{path}", "fileCrc": crc32(parameters)}]
     general = {
         "version": FORMAT,
         "vendorName": "UVF",
@@ -37,7 +46,7 @@ def files_of(facts: Facts, table: Sequence[Parameter]) -> dict[str, bytes]:
         "firmwareVersion": ".".join(map(str, VERSION)),
         "metadataTypes": types,
     }
-    return {GENERAL: _json(general), PARAMETERS: parameters}
+    return {general_of(facts.system_id): _json(general), path: parameters}
 
 
 def described(p: Parameter, own: Mapping[str, Any]) -> dict[str, Any]:
@@ -52,10 +61,10 @@ def described(p: Parameter, own: Mapping[str, Any]) -> dict[str, Any]:
     }
     if p.fixed:
         entry |= {"longDesc": f"Fixed in this simulator: {p.fixed}.", "readOnly": True}
-    elif p.cases:
-        entry["values"] = [{"value": number, "description": case.says} for number, case in p.cases.items()]
-    else:
+    elif not p.cases:
         entry |= {"min": p.low, "max": p.high}
+    if says := {**p.means, **{number: case.says for number, case in p.cases.items()}}:
+        entry["values"] = [{"value": number, "description": text} for number, text in says.items()]
     if p.unit:
         entry["units"] = p.unit
     if not p.is_int:
@@ -63,8 +72,9 @@ def described(p: Parameter, own: Mapping[str, Any]) -> dict[str, Any]:
     return entry
 
 
-def component_metadata(files: Mapping[str, bytes], boot_ms: int) -> mav.MAVLink_component_metadata_message:
-    return mav.MAVLink_component_metadata_message(boot_ms, crc32(files[GENERAL]), f"mftp://{GENERAL}".encode())
+def component_metadata(facts: Facts, files: Mapping[str, bytes], boot_ms: int) -> mav.MAVLink_component_metadata_message:
+    general = general_of(facts.system_id)
+    return mav.MAVLink_component_metadata_message(boot_ms, crc32(files[general]), f"mftp://{general}".encode())
 
 
 def _json(data: object) -> bytes:

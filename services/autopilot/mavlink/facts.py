@@ -131,6 +131,12 @@ class Latest:
         return not fencing(self.fence).is_open or any(self.own.get(limit, 0.0) > 0 for limit in HOME_FENCE)
 
     @property
+    def is_gliding(self) -> bool:
+        """An aircraft in the air that is disarmed."""
+        status = self.status
+        return status is not None and status.kind == Kind.KIND_FIXED_WING and not status.armed and not status.landed
+
+    @property
     def is_silent(self) -> bool:
         """Whether estimator or autopilot have not been heard for a while of simulation time, or never."""
         oldest = min(seconds(m.timestamp) if m is not None else -np.inf for m in (self.nav, self.status))

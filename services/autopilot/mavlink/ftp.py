@@ -11,13 +11,16 @@ from services.autopilot.mavlink.file_tree import FileTree
 from services.autopilot.mavlink.line import Line, Sender
 from services.autopilot.mavlink.parameter_values import crc32
 from uvf.runtime.mavlink import dialect as mav
+from uvf.runtime.mavlink.bounded import make_room
 
 HEADER = struct.Struct("<HBBBBBxI")  # sequence, session, opcode, size, requested opcode, burst complete, offset
 PAYLOAD_BYTES = 251
 DATA_BYTES = PAYLOAD_BYTES - HEADER.size
-SESSIONS_MOST = 32
+SESSIONS_MOST, SESSIONS_EACH = 32, 4
+TALKS_MOST = 64
 FORGET_AFTER = 10.0  # s of silence
 BURST_PER_STEP = 8  # packets; at 50 steps a second 96 kB/s
+BURSTS_AT_ONCE = 4
 
 ACK, NAK = mav.MAV_FTP_OPCODE_ACK, mav.MAV_FTP_OPCODE_NAK
 _WRITING = range(mav.MAV_FTP_OPCODE_CREATEFILE, mav.MAV_FTP_OPCODE_RENAME + 1)
@@ -57,11 +60,12 @@ class Said:
 
 @dataclass
 class Session:
-    """A file that one peer reads."""
+    """A file that one peer reads, perhaps has begun to read."""
 
     owner: Sender
     content: bytes
     t: float
+    is_read: bool = False
 
 
 @dataclass
@@ -119,6 +123,7 @@ class FileServer:
             talk.t = self._line.t
             self._line.send(talk.reply, sender.peer)
             return
+        make_room(self._talks, sender, TALKS_MOST, lambda who: (self._talks[who].burst is not None, self._talks[who].t))
         talk = self._talks[sender] = Talk(asked, self._line.t)
         try:
             said = self._answer(asked, sender)
@@ -139,8 +144,9 @@ class FileServer:
         t = self._line.t
         self._sessions = {number: s for number, s in self._sessions.items() if t - s.t < FORGET_AFTER}
         self._talks = {sender: talk for sender, talk in self._talks.items() if t - talk.t < FORGET_AFTER}
-        for sender, talk in self._talks.items():
-            for _ in range(BURST_PER_STEP if talk.burst is not None else 0):
+        bursts = [(sender, talk) for sender, talk in self._talks.items() if talk.burst is not None]
+        for sender, talk in sorted(bursts, key=lambda one: one[1].t)[:BURSTS_AT_ONCE]:
+            for _ in range(BURST_PER_STEP):
                 talk.t = t
                 self._burst_on(talk, sender)
 
@@ -167,7 +173,7 @@ class FileServer:
         session = self._sessions.get(asked.session)
         if session is None or session.owner != sender:
             raise Refused(mav.MAV_FTP_ERR_INVALIDSESSION)
-        session.t = self._line.t
+        session.t, session.is_read = self._line.t, True
         if asked.offset >= len(session.content):
             raise Refused(mav.MAV_FTP_ERR_EOF)
         return session
@@ -199,8 +205,9 @@ class FileServer:
 
     def _open(self, asked: Asked, sender: Sender) -> Said:
         content = self._content(asked)
-        if len(self._sessions) >= SESSIONS_MOST:
+        if sum(session.owner == sender for session in self._sessions.values()) >= SESSIONS_EACH:
             raise Refused(mav.MAV_FTP_ERR_NOSESSIONSAVAILABLE)
+        make_room(self._sessions, -1, SESSIONS_MOST, lambda number: (self._sessions[number].is_read, self._sessions[number].t))
         while self._next in self._sessions:
             self._next = (self._next + 1) % 256
         number, self._next = self._next, (self._next + 1) % 256

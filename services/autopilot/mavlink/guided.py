@@ -26,7 +26,7 @@ def _reposition(line: Line, command: Command, ack: Acknowledger) -> None:
     elif all(map(math.isnan, (latitude, longitude, height))) and not special:
         set_mode(line, Mode.MODE_HOLD, ack.outcome("Hold refused"))
     elif math.isnan(latitude) and math.isnan(longitude) and not special:
-        _only_higher(line, altitude_of(line, frame_of(command), height), ack)
+        _only_higher(line, command, ack)
     elif line.facts.is_ground:
         _drive(line, place_in(line, command), speed, ack)
     else:
@@ -77,12 +77,13 @@ def _drive(line: Line, place: Vector3, speed: float, ack: Acknowledger) -> None:
     go_to(line, GoalRequest(position=place, yaw=math.nan, source=SOURCE), True, on_its_way)
 
 
-def _only_higher(line: Line, z: float, ack: Acknowledger) -> None:
-    """A circle keeps its place. From another mode it holds first."""
+def _only_higher(line: Line, command: Command, ack: Acknowledger) -> None:
+    """A circle keeps its place. From another mode it holds first. To a rover it means "stay here": so QGroundControl pauses it."""
     if line.facts.is_ground:
-        ack(mav.MAV_RESULT_DENIED, "Change of altitude refused: a ground vehicle has none")
+        set_mode(line, Mode.MODE_HOLD, ack.outcome("Hold refused"))
         return
-    request, done = OrderRequest(altitude=AltitudeOrder(altitude=z), source=SOURCE), ack.outcome("Change of altitude refused")
+    z, done = altitude_of(line, frame_of(command), command.p[6]), ack.outcome("Change of altitude refused")
+    request = OrderRequest(altitude=AltitudeOrder(altitude=z), source=SOURCE)
 
     def circles(accepted: bool, reason: str) -> None:
         if accepted:

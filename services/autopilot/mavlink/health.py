@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from schemas.messages import Gnss
 from services.autopilot.mavlink.facts import Facts, Latest
 from uvf.runtime.mavlink import dialect as mav
+from uvf.runtime.stop_all import told
 
 _IMU = mav.MAV_SYS_STATUS_SENSOR_3D_GYRO | mav.MAV_SYS_STATUS_SENSOR_3D_ACCEL | mav.MAV_SYS_STATUS_SENSOR_3D_MAG
 _AIR_DATA = mav.MAV_SYS_STATUS_SENSOR_ABSOLUTE_PRESSURE | mav.MAV_SYS_STATUS_SENSOR_DIFFERENTIAL_PRESSURE
@@ -69,7 +70,9 @@ def _complaints(facts: Facts, latest: Latest) -> tuple[str, ...]:
     if not said and latest.is_silent:
         said.append("estimator or autopilot has gone silent")
     if latest.status is not None and latest.status.stopped:
-        said.append("STOP ALL is engaged")
+        said.append(f"STOP ALL is engaged by {told(latest.status.stops) or 'somebody'}")
+    if latest.is_gliding:
+        said.append("it glides, the motor is off")
     if facts.sensors.gnss and not _has_fix(latest):
         said.append("no satellite fix")
     # What speaks against arming an aircraft that stands is no complaint about one that is armed and rolls.

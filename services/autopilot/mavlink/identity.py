@@ -64,7 +64,7 @@ def heartbeat(facts: Facts, latest: Latest) -> mav.MAVLink_heartbeat_message:
 def _system_status(latest: Latest) -> int:
     if latest.status is None:
         return int(mav.MAV_STATE_BOOT)
-    if latest.is_silent or latest.status.stopped:
+    if latest.is_silent or latest.status.stopped or latest.is_gliding:
         return int(mav.MAV_STATE_CRITICAL)
     return int(mav.MAV_STATE_ACTIVE if latest.status.armed else mav.MAV_STATE_STANDBY)
 

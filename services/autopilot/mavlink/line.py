@@ -1,20 +1,21 @@
 """One vehicle's end of the link: what goes out, and what was asked of the services and is not answered yet."""
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from google.protobuf.message import Message
 
 from services.autopilot.mavlink.facts import Facts, Latest
-from services.autopilot.mavlink.statustext import TextLimiter, chunks
+from services.autopilot.mavlink.statustext import TextLimiter, chunks, counted_from_one
 from services.autopilot.mavlink.vibration import Vibration
 from uvf.runtime.mavlink import dialect as mav
 from uvf.runtime.mavlink.endpoint import Peer
 from uvf.runtime.service import Answer
 
 HELD_FOR = 1.0  # s, wall: as long a station that steers may be silent before another one may
+MOST_ASKED = 64  # requests at once that nobody has answered yet
 ANSWER_WITHIN = 1.9  # s: inside MAVSDK's four tries of 0.5 s and QGroundControl's 3 s
 
 
@@ -56,16 +57,23 @@ class Holder:
     def __init__(self, line: "Line", otherwise: str) -> None:
         """otherwise: what another one is told."""
         self._line, self._otherwise = line, otherwise
-        self._system = 0
+        self._holder: Sender | None = None
         self._heard = -math.inf
 
     def admits(self, sender: Sender) -> bool:
-        free = self._line.t - self._heard > HELD_FOR
-        if not free and sender.system != self._system:
-            self._line.text(mav.MAV_SEVERITY_WARNING, f"{self._otherwise}: station {self._system} steers", sender.peer)
+        holder, free = self._holder, self._line.t - self._heard > HELD_FOR
+        if holder is not None and not free and sender != holder:
+            self._line.text(mav.MAV_SEVERITY_WARNING, f"{self._otherwise}: {_named(holder, sender)} steers", sender.peer)
             return False
-        self._system, self._heard = sender.system, self._line.t
+        self._holder, self._heard = sender, self._line.t
         return True
+
+
+def _named(station: Sender, to: Sender) -> str:
+    """A station in words to another one, which may have the same number."""
+    if station.system != to.system:
+        return f"station {station.system}"
+    return f"another station {station.system} (at {station.peer[0]}:{station.peer[1]})"
 
 
 class Line:
@@ -76,6 +84,8 @@ class Line:
         imu = facts.sensors.imu
         self.latest = Latest(vibration=Vibration(imu.accel_range if imu is not None else math.inf))
         self.t = 0.0
+        self.alone: Collection[Peer] = ()
+        """Who hears this vehicle and no other."""
         self.files: Mapping[str, bytes] = {}
         """What can be read over MAVLink FTP, by path."""
         self.outbox: list[Out] = []
@@ -90,8 +100,13 @@ class Line:
     def send(self, message: mav.MAVLink_message, to: Peer | None = None) -> None:
         self.outbox.append(Out(message, to))
 
+    def tells(self, number: int, peer: Peer) -> bool:
+        """Whether a peer gets messages of this number: who hears the other vehicles themselves needs no picture of them as traffic."""
+        return number != mav.MAVLINK_MSG_ID_ADSB_VEHICLE or peer in self.alone
+
     def text(self, severity: int, text: str, to: Peer | None = None) -> None:
-        """STATUSTEXT in chunks; the same text to the same peers at most every 10 s."""
+        """STATUSTEXT in chunks; the same text to the same peers at most every 10 s. Items are counted as on a station's map."""
+        text = counted_from_one(text)
         if not self._limiter.admits(self.t, (text, to)):
             return
         for chunk in chunks(severity, text, self._limiter.next_id()):
@@ -110,6 +125,9 @@ class Line:
         """Sends a request to a service; ``done`` hears the answer, or why there is none. Never waits in a pause."""
         if self.latest.is_paused:
             done(False, "the simulation is paused")
+            return
+        if len(self._asked) >= MOST_ASKED:
+            done(False, "too much is asked at once")
             return
         self._asked.append(Asked(request, done, self.t + ANSWER_WITHIN))
         self.requests.append((call, request))

@@ -10,11 +10,15 @@ from services.autopilot.mavlink.line import Line, Sender
 from services.autopilot.mavlink.old_items import as_int
 from services.autopilot.mavlink.plans import FencePlan, MissionPlan, Plan, RallyPlan
 from uvf.runtime.mavlink import dialect as mav
+from uvf.runtime.mavlink.bounded import make_room
 from uvf.runtime.mavlink.mission_items import BadItem
 
 MISSION = mav.MAV_MISSION_TYPE_MISSION
 ASK_AGAIN = 0.25  # s
 TRIES = 8
+TOLD_WITHIN = 4.0  # s, wall: plans are told when an autopilot starts, and kept for who comes later
+ASKED_FOR = 10.0  # s: QGroundControl asks six times, every 1.5 s
+MOST_WAITING = 64
 GUIDED = 2  # in the field `current` of an item: not part of a plan, fly there now
 
 
@@ -41,6 +45,10 @@ class Missions:
         }
         self._upload: Upload | None = None
         """One at a time, whatever the plan."""
+        self._waiting: dict[tuple[Sender, int], float] = {}
+        """Who has asked for a plan that is not known yet, and when [s]."""
+        self._reporting: float | None = None
+        """Since when [s] the autopilot has been heard."""
 
     def handlers(self) -> dict[int, Callable[[Any, Sender], None]]:
         return {
@@ -60,7 +68,7 @@ class Missions:
         kind, plan, busy = message.mission_type, self._plans.get(message.mission_type), self._upload
         if plan is None:
             self._ack(sender, mav.MAV_MISSION_UNSUPPORTED, kind)
-        elif busy is not None and (busy.is_complete or busy.sender[1:] != sender[1:]):
+        elif busy is not None and (busy.is_complete or busy.sender != sender):
             self._ack(sender, mav.MAV_MISSION_DENIED, kind)
         elif message.count > plan.largest:
             self._refuse(sender, BadItem(mav.MAV_MISSION_NO_SPACE, f"{message.count} items; {plan.largest} are possible"), kind)
@@ -74,7 +82,7 @@ class Missions:
         if message.current == GUIDED and message.mission_type == MISSION:
             goal_of_item(self._line, message, lambda accepted, reason: self._guided(sender, accepted, reason))
             return
-        if upload is None or upload.is_complete or (upload.sender[1:], upload.kind) != (sender[1:], message.mission_type):
+        if upload is None or upload.is_complete or (upload.sender, upload.kind) != (sender, message.mission_type):
             return
         if message.seq > len(upload.items):
             self._request_next(upload)
@@ -125,7 +133,11 @@ class Missions:
         self._line.send(request, upload.sender.peer)
 
     def tick(self) -> None:
-        """Asks again for an item that does not come, and gives up in the end."""
+        """Tells the plans that have become known; asks again for an item that does not come, and gives up in the end."""
+        if self._reporting is None and self._line.latest.status is not None:
+            self._reporting = self._line.t
+        self._waiting = {who: t for who, t in self._waiting.items() if self._line.t - t < ASKED_FOR}
+        self._count()
         upload = self._upload
         if upload is None or upload.is_complete or self._line.t - upload.asked_at < ASK_AGAIN - 1e-9:
             return
@@ -136,12 +148,28 @@ class Missions:
         self._ack(upload.sender, mav.MAV_MISSION_OPERATION_CANCELLED, upload.kind)
 
     def on_request_list(self, message: mav.MAVLink_mission_request_list_message, sender: Sender) -> None:
-        kind, plan = message.mission_type, self._plans.get(message.mission_type)
-        if plan is None:
+        """Answered as soon as the plan is known: of a count of 0 no station asks again whether it was only too early."""
+        kind = message.mission_type
+        if kind not in self._plans:
             self._ack(sender, mav.MAV_MISSION_UNSUPPORTED, kind)
             return
-        count = mav.MAVLink_mission_count_message(sender.system, sender.component, len(plan.bodies), kind, plan.id_of(plan.now))
-        self._line.send(count, sender.peer)
+        make_room(self._waiting, (sender, kind), MOST_WAITING, lambda who: self._waiting[who])
+        self._waiting[sender, kind] = self._line.t
+        self._count()
+
+    def _count(self) -> None:
+        """MISSION_COUNT to who has asked for a plan that is known by now."""
+        for sender, kind in list(self._waiting):
+            plan = self._plans[kind]
+            if plan.is_told or self._is_settled:
+                del self._waiting[sender, kind]
+                found = len(plan.bodies), kind, plan.id_of(plan.now)
+                self._line.send(mav.MAVLink_mission_count_message(sender.system, sender.component, *found), sender.peer)
+
+    @property
+    def _is_settled(self) -> bool:
+        """The autopilot has been heard for so long that a plan which it has not told is none."""
+        return self._reporting is not None and self._line.t - self._reporting >= TOLD_WITHIN
 
     def on_request(self, message: mav.MAVLink_mission_request_int_message, sender: Sender) -> None:
         """MISSION_REQUEST_INT, or the older MISSION_REQUEST: the same item either way."""
@@ -159,33 +187,36 @@ class Missions:
     def on_ack(self, message: mav.MAVLink_mission_ack_message, sender: Sender) -> None:
         """Ends a download; anything but "accepted" ends the sender's own upload too."""
         upload = self._upload
-        if upload is not None and not upload.is_complete and upload.sender[1:] == sender[1:] and message.type != mav.MAV_MISSION_ACCEPTED:
+        if upload is not None and not upload.is_complete and upload.sender == sender and message.type != mav.MAV_MISSION_ACCEPTED:
             self._upload = None
 
     def on_clear(self, message: mav.MAVLink_mission_clear_all_message, sender: Sender) -> None:
-        """An empty upload; of all three plans with one answer, which is the first refusal if there is one."""
-        kind = message.mission_type
-        if kind != mav.MAV_MISSION_TYPE_ALL:
-            self.on_count(mav.MAVLink_mission_count_message(0, 0, 0, kind), sender)
-            return
-        if self._upload is not None:
+        """Each plan by itself, whatever else goes on: QGroundControl clears all three within a millisecond, and asks once."""
+        kind, busy = message.mission_type, self._upload
+        kinds = list(self._plans) if kind == mav.MAV_MISSION_TYPE_ALL else [kind]
+        if kind not in (*self._plans, mav.MAV_MISSION_TYPE_ALL):
+            self._ack(sender, mav.MAV_MISSION_UNSUPPORTED, kind)
+        elif busy is not None and busy.kind in kinds and busy.sender != sender:
             self._ack(sender, mav.MAV_MISSION_DENIED, kind)
-            return
-        self._clear(list(self._plans.values()), sender)
+        else:
+            if busy is not None and busy.kind in kinds and not busy.is_complete:
+                self._upload = None
+            self._clear([self._plans[each] for each in kinds], sender, kind)
 
-    def _clear(self, plans: list[Plan[Any]], sender: Sender) -> None:
-        if not plans:
-            self._ack(sender, mav.MAV_MISSION_ACCEPTED, mav.MAV_MISSION_TYPE_ALL)
-            return
+    def _clear(self, plans: list[Plan[Any]], sender: Sender, kind: int) -> None:
+        """One after the other, with one answer, which is the first refusal if there is one."""
         plan, *others = plans
         empty = plan.made([])
 
         def done(accepted: bool, reason: str) -> None:
-            if accepted:
-                plan.accept(empty)
-                self._clear(others, sender)
+            if not accepted:
+                self._refuse(sender, BadItem(mav.MAV_MISSION_ERROR, reason), kind)
+                return
+            plan.accept(empty)
+            if others:
+                self._clear(others, sender, kind)
             else:
-                self._refuse(sender, BadItem(mav.MAV_MISSION_ERROR, reason), mav.MAV_MISSION_TYPE_ALL)
+                self._ack(sender, mav.MAV_MISSION_ACCEPTED, kind)
 
         self._line.ask(plan.call, plan.request(empty), done)
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from functools import cache
 from pathlib import Path
 from typing import Any, Literal
 
@@ -16,6 +17,7 @@ from uvf.runtime.params import BadInput, load_yaml, nearest
 FILE = Path(__file__).with_name("parameters.yaml")
 Kind = Literal["ground", "fixed_wing"]
 OWN_NAME_MOST = 16  # characters
+FULL_CELL = 4.2  # V, of lithium polymer
 WHOLE = (-(2**31), 2**31 - 1)
 
 
@@ -32,9 +34,10 @@ class Row(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     type: Literal["int", "real"]
     group: str
     about: str
-    value: float | Literal["system_id"] = 0
+    value: float | Literal["system_id", "cells", "cell_full", "cell_empty"] = 0
     ground: float | None = None
     fixed: str = ""
+    means: dict[int, str] = {}
     own: str = ""
     cases: dict[int, Case] = {}
     absent: list[Kind] = []
@@ -58,6 +61,8 @@ class Parameter:
     high: float = np.inf
     value: float = 0.0
     fixed: str = ""
+    means: Mapping[int, str] = field(default_factory=dict)
+    """What its numbers are called, where it is fixed."""
     own: str = ""
     cases: Mapping[int, Case] = field(default_factory=dict)
 
@@ -86,21 +91,36 @@ class Parameter:
 
 def parameters_of(facts: Facts) -> list[Parameter]:
     """In order of name, numbered from 0. Raises BadInput when the file names what the autopilot has not."""
-    return parameters_with(own_params(facts.params, facts.fixed_params), facts.file.kind, facts.system_id)
+    return parameters_with(own_params(facts.params, facts.fixed_params), facts.file.kind, {"system_id": facts.system_id, **_battery(facts)})
 
 
-def parameters_with(own: Mapping[str, Own], kind: Kind, system_id: int = 0) -> list[Parameter]:
-    """Of an autopilot of this kind with these parameters of its own. Raises BadInput."""
-    rows = {name: row for name, row in load_yaml(FILE, Table).parameters.items() if kind not in row.absent}
-    found = [_standard(name, _of_kind(row, kind, system_id), own, kind) for name, row in rows.items()]
+def _battery(facts: Facts) -> dict[str, float]:
+    """Of the vehicle's file; without a battery nothing."""
+    body = facts.file.ground or facts.file.air
+    pack = body.battery if body is not None else None
+    if pack is None:
+        return {}
+    cells = max(round(pack.full / FULL_CELL), 1)
+    return {"cells": cells, "cell_full": pack.full / cells, "cell_empty": pack.empty / cells}
+
+
+def parameters_with(own: Mapping[str, Own], kind: Kind, given: Mapping[str, float] | None = None) -> list[Parameter]:
+    """Of an autopilot of this kind with these parameters of its own; given: what the vehicle's file says. Raises BadInput."""
+    rows = {name: row for name, row in _table().parameters.items() if kind not in row.absent}
+    found = [_standard(name, _of_kind(row, kind, given or {}), own, kind) for name, row in rows.items()]
     found += [_offered(one) for one in own.values() if len(one.name) <= OWN_NAME_MOST]
     return [replace(p, index=index) for index, p in enumerate(sorted(found, key=lambda p: p.name))]
 
 
-def _of_kind(row: Row, kind: Kind, system_id: int) -> Row:
+@cache
+def _table() -> Table:
+    return load_yaml(FILE, Table)
+
+
+def _of_kind(row: Row, kind: Kind, given: Mapping[str, float]) -> Row:
     """With the value of this vehicle."""
-    if row.value == "system_id":
-        return msgspec.structs.replace(row, value=float(system_id))
+    if isinstance(row.value, str):
+        return msgspec.structs.replace(row, value=float(given.get(row.value, 0.0)))
     return msgspec.structs.replace(row, value=row.ground) if kind == "ground" and row.ground is not None else row
 
 
@@ -113,7 +133,7 @@ def _standard(name: str, row: Row, own: Mapping[str, Own], kind: Kind) -> Parame
     type_ = mav.MAV_PARAM_TYPE_INT32 if row.type == "int" else mav.MAV_PARAM_TYPE_REAL32
     plain = Parameter(name, type_, row.group, row.about, value=float(row.value))
     if not named <= own.keys() or not named:
-        return replace(plain, fixed=row.fixed)
+        return replace(plain, fixed=row.fixed, means=row.means)
     if row.own:
         mine = own[row.own]
         return replace(plain, own=row.own, unit=mine.unit, low=mine.low, high=mine.high)

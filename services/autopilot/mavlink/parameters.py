@@ -1,6 +1,8 @@
 """The parameter protocol: the list, paced; single values; values set, or refused with the reason."""
 
 import math
+from collections.abc import Collection
+from itertools import islice
 
 from services.autopilot.mavlink.commands import Acknowledger, Command, Handler
 from services.autopilot.mavlink.line import Line, Sender
@@ -12,6 +14,7 @@ from uvf.runtime.mavlink import dialect as mav
 from uvf.runtime.mavlink.endpoint import Peer
 
 PER_STEP = 4  # at 50 steps a second: 200 a second
+LISTS_AT_ONCE = 8  # who asks beyond waits its turn
 HASH = "_HASH_CHECK"
 HASH_INDEX = 0xFFFF  # outside the list
 LOAD, SAVE, RESET = 0.0, 1.0, 2.0  # of MAV_CMD_PREFLIGHT_STORAGE
@@ -83,12 +86,16 @@ class Parameters:
 
         self._settings.set(settings, done)
 
+    def forget(self, peers: Collection[Peer]) -> None:
+        """Who is gone waits for no list."""
+        self._progress = {peer: start for peer, start in self._progress.items() if peer in peers}
+
     def tick(self) -> None:
         """What others have changed, to everybody; and the next few values for each peer that waits for the list."""
         if self._settings.hear():
             self._tell()
         self._settings.tick()
-        for peer, start in list(self._progress.items()):
+        for peer, start in list(islice(self._progress.items(), LISTS_AT_ONCE)):
             for parameter in self.table[start : start + PER_STEP]:
                 self._send(parameter, peer)
             self._progress[peer] = start + PER_STEP

@@ -32,6 +32,7 @@ class Plan(Generic[P]):
     name: str
     largest: int
     call: str
+    empty: type[P]
 
     def __init__(self, line: Line) -> None:
         self._line = line
@@ -57,8 +58,17 @@ class Plan(Generic[P]):
         home = self._line.latest.home
         return float(home[2]) if home is not None else 0.0
 
-    def published(self) -> P:
+    def told(self) -> P | None:
+        """What the autopilot has said last, None while it has said nothing."""
         raise NotImplementedError
+
+    @property
+    def is_told(self) -> bool:
+        return self.told() is not None or self._accepted is not None
+
+    def published(self) -> P:
+        told = self.told()
+        return self.empty() if told is None else told
 
     def id_of(self, plan: P) -> int:
         raise NotImplementedError
@@ -92,9 +102,10 @@ class Plan(Generic[P]):
 
 class MissionPlan(Plan[Mission]):
     name, largest, call = "Mission", 500, "set_mission"
+    empty = Mission
 
-    def published(self) -> Mission:
-        return self._line.latest.mission or Mission()
+    def told(self) -> Mission | None:
+        return self._line.latest.mission
 
     def id_of(self, plan: Mission) -> int:
         return plan.id
@@ -120,9 +131,10 @@ class MissionPlan(Plan[Mission]):
 
 class FencePlan(Plan[Fence]):
     name, largest, call = "Fence", 500, "set_fence"
+    empty = Fence
 
-    def published(self) -> Fence:
-        return self._line.latest.fence or Fence()
+    def told(self) -> Fence | None:
+        return self._line.latest.fence
 
     def id_of(self, plan: Fence) -> int:
         return fence_id(plan)
@@ -142,9 +154,10 @@ class FencePlan(Plan[Fence]):
 
 class RallyPlan(Plan[RallyPoints]):
     name, largest, call = "Rally", 20, "set_rally"
+    empty = RallyPoints
 
-    def published(self) -> RallyPoints:
-        return self._line.latest.rally or RallyPoints()
+    def told(self) -> RallyPoints | None:
+        return self._line.latest.rally
 
     def id_of(self, plan: RallyPoints) -> int:
         return rally_id(plan)

@@ -36,7 +36,7 @@ class Queries:
             _available_modes(line, command, ack)
         elif number == mav.MAVLINK_MSG_ID_COMPONENT_METADATA:
             ack(mav.MAV_RESULT_ACCEPTED)
-            line.send(component_metadata(line.files, boot_ms(line.t)), command.sender.peer)
+            line.send(component_metadata(line.facts, line.files, boot_ms(line.t)), command.sender.peer)
         else:
             _answer(line, command, ack, number)
 
@@ -64,7 +64,7 @@ def _answer(line: Line, command: Command, ack: Acknowledger, number: int) -> Non
     if stream is None:
         ack(mav.MAV_RESULT_UNSUPPORTED)
         return
-    messages = stream.messages(line.facts, line.latest, line.t)
+    messages = stream.messages(line.facts, line.latest, line.t) if line.tells(number, command.sender.peer) else []
     ack(mav.MAV_RESULT_ACCEPTED if messages else mav.MAV_RESULT_TEMPORARILY_REJECTED)
     for message in messages:
         line.send(message, command.sender.peer)

@@ -12,6 +12,22 @@ from uvf.runtime.mavlink import dialect as mav
 from uvf.runtime.mavlink.codec import AUTOPILOT
 from uvf.runtime.mavlink.endpoint import Link, Peer
 
+ENGAGING = frozenset(
+    {
+        *range(mav.MAVLINK_MSG_ID_PARAM_REQUEST_READ, mav.MAVLINK_MSG_ID_PARAM_SET + 1),
+        *range(mav.MAVLINK_MSG_ID_MISSION_ITEM, mav.MAVLINK_MSG_ID_MISSION_ACK + 1),
+        mav.MAVLINK_MSG_ID_MISSION_REQUEST_INT,
+        mav.MAVLINK_MSG_ID_MISSION_ITEM_INT,
+        mav.MAVLINK_MSG_ID_FILE_TRANSFER_PROTOCOL,
+        mav.MAVLINK_MSG_ID_MANUAL_CONTROL,
+        mav.MAVLINK_MSG_ID_RC_CHANNELS_OVERRIDE,
+        mav.MAVLINK_MSG_ID_SET_ATTITUDE_TARGET,
+        mav.MAVLINK_MSG_ID_SET_POSITION_TARGET_LOCAL_NED,
+        mav.MAVLINK_MSG_ID_SET_POSITION_TARGET_GLOBAL_INT,
+    }
+)
+"""Words of who transfers something or steers, and is not to be forgotten for the sake of who only calls."""
+
 
 class Reception:
     def __init__(self, vehicles: Sequence[VehicleLink], link: Link, signing: Signing, reserved: Reserved) -> None:
@@ -29,11 +45,11 @@ class Reception:
         sender = Sender(peer, header.srcSystem, header.srcComponent)
         if sender.system in self._own_ids:
             return
-        self._link.keep(t, peer)
+        self._link.keep(t, peer, message.get_msgId() in ENGAGING)
         self._welcome(t, sender)
         verdict = self._signing.check(t, message, sender)
         if verdict in (Verdict.SIGNED, Verdict.UNSIGNED):
-            self.stations.hear(t, message)
+            self.stations.hear(t, message, sender)
         self._pass_on(t, message, sender, verdict)
 
     def _welcome(self, t: float, sender: Sender) -> None:
@@ -41,13 +57,19 @@ class Reception:
         news = self._peers.hear(t, sender)
         if not news.system:
             return
-        self._peers.forget(t)
+        self.forget(t)
         if news.connection:
             self._signing.forget(sender.peer)
         for vehicle in self._at(sender.peer):
             if news.connection:
                 vehicle.schedule.renew(sender.peer)
-            vehicle.greet(sender.peer)
+            vehicle.welcome(sender.peer)
+
+    def forget(self, t: float) -> None:
+        """Drops what is known of peers that are gone."""
+        known = self._link.peers(t)
+        self._peers.forget(t, known)
+        self._signing.forget_all_but(known)
 
     def _pass_on(self, t: float, message: mav.MAVLink_message, sender: Sender, verdict: Verdict) -> None:
         addressed = self._addressed(message, sender.peer)

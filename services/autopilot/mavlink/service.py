@@ -106,6 +106,7 @@ class MavlinkService(Service):
         self._reserved = reserved or {}
         self._reception = Reception(list(self._vehicles.values()), link, self._signing, self._reserved)
         for name, vehicle in self._vehicles.items():
+            vehicle.line.alone = [peer for peer, system in self._reserved.items() if system == vehicle.line.facts.system_id]
             vehicle.line.latest.others = [(v.line.facts, v.line.latest) for other, v in self._vehicles.items() if other != name]
         self._link_due = Due(topics.LINK.hz)
 
@@ -185,19 +186,19 @@ class MavlinkService(Service):
     def _speak(self, t: float, events: Mapping[str, Sequence[Event]]) -> None:
         peers = self._link.peers(t)
         self.codec.forget(peers)
-        signers = {peer: self._signing.signer(t, peer) for peer in peers}
         for name, vehicle in self._vehicles.items():
             vehicle.forget(peers)
             system_id = vehicle.line.facts.system_id
             listening = [peer for peer in peers if self._reserved.get(peer, system_id) == system_id]
             for message, to in vehicle.tick(listening, events.get(name, ())):
-                for packet, peer in self.codec.packets(system_id, message, [(p, signers[p]) for p in to if p in signers]):
+                for packet, peer in self.codec.packets(system_id, message, [(p, self._signing.signer(t, p)) for p in to]):
                     self._link.send(packet, peer)
 
     def _links(self, t: float) -> Outputs:
         """Told of every vehicle alike: a station hears them all."""
         if not self._link_due.at(t):
             return {}
+        self._reception.forget(t)
         count, silence = self._reception.stations.count(t), self._reception.stations.silence(t)
         links = {}
         for name, vehicle in self._vehicles.items():

@@ -2,11 +2,12 @@
 
 import hashlib
 import hmac
+from collections.abc import Collection
 from dataclasses import dataclass
 from enum import Enum
 from functools import partial
 
-from services.autopilot.mavlink.key_store import KeyStore
+from services.autopilot.mavlink.key_store import MOST_KEYS, KeyStore
 from services.autopilot.mavlink.line import Sender
 from uvf.runtime.address import is_loopback
 from uvf.runtime.mavlink import dialect as mav
@@ -20,6 +21,7 @@ PER_SECOND = 100_000  # timestamps count 10 us
 BEGINNING = 1_420_070_400  # 2015-01-01 UTC, Unix time [s]
 LATEST = 2**47  # in the year 2059; a timestamp has 48 bits
 OLDEST = 60 * PER_SECOND
+MOST_STREAMS = 512
 ALWAYS_HEARD = (mav.MAVLINK_MSG_ID_HEARTBEAT, mav.MAVLINK_MSG_ID_RADIO_STATUS)
 NO_KEY = bytes(32)
 NOT_SIGNED = "Unsigned message refused: this link is signed"
@@ -89,6 +91,8 @@ class Signing:
             return self._disable(sender.peer)
         if message.initial_timestamp > LATEST:
             return "Signing refused: the timestamp lies in the far future"
+        if not self._has_room(key):
+            return f"Signing refused: {MOST_KEYS} keys are in use already"
         self._by_peer[sender.peer] = key
         self._keys = [key, *(k for k in self._keys if k != key)]
         self._last = max(self._last, message.initial_timestamp)
@@ -98,6 +102,19 @@ class Signing:
         """What signs a packet to a peer at ``t`` [s]; None where nothing is signed."""
         key = self._by_peer.get(peer)
         return partial(self._sign, t, key) if key is not None else None
+
+    def _has_room(self, key: bytes) -> bool:
+        """Beyond the most that are kept the oldest that no link uses is given up."""
+        if key in self._keys or len(self._keys) < MOST_KEYS:
+            return True
+        used = set(self._by_peer.values())
+        idle = next((k for k in reversed(self._keys) if k not in used), None)
+        if idle is not None:
+            self._keys.remove(idle)
+        return idle is not None
+
+    def forget_all_but(self, peers: Collection[Peer]) -> None:
+        self._by_peer = {peer: key for peer, key in self._by_peer.items() if peer in peers}
 
     def forget(self, peer: Peer) -> None:
         """A connection ends: whoever comes next signs, or does not."""
@@ -130,11 +147,17 @@ class Signing:
         link, timestamp = packet[-BLOCK], int.from_bytes(packet[-BLOCK + 1 : -HASH_BYTES], "little")
         stream = (key, link, sender.system, sender.component)
         now = max(self._last, round((self._started - BEGINNING + t) * PER_SECOND))
-        if not self._streams.get(stream, now - OLDEST - 1) < timestamp <= LATEST:
+        if not self._streams.get(stream, now - OLDEST - 1) < timestamp <= LATEST or not self._may_begin(stream, now):
             return False
         self._streams[stream] = timestamp
         self._last = max(self._last, timestamp)
         return True
+
+    def _may_begin(self, stream: tuple[bytes, int, int, int], now: int) -> bool:
+        """Streams of more than a minute ago are forgotten without loss: what they repeat is too old. A younger one never is."""
+        if stream not in self._streams and len(self._streams) >= MOST_STREAMS:
+            self._streams = {known: newest for known, newest in self._streams.items() if newest >= now - OLDEST}
+        return stream in self._streams or len(self._streams) < MOST_STREAMS
 
     def _disable(self, peer: Peer) -> str:
         """The key of this link is given up everywhere."""

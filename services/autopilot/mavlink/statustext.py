@@ -1,12 +1,16 @@
 """STATUSTEXT: long texts in chunks, the same text not too often, severities of events."""
 
+import re
 from collections.abc import Hashable
 
 from schemas.messages import Event
 from uvf.runtime.mavlink import dialect as mav
+from uvf.runtime.mavlink.bounded import make_room
 
 CHUNK_BYTES = 50
 REPEAT_AFTER = 10.0  # s
+ITEMS = re.compile(r"\bitems? \d+( and \d+)?")
+MOST_REMEMBERED = 256  # texts
 
 SEVERITY = {
     Event.INFO: mav.MAV_SEVERITY_INFO,
@@ -32,6 +36,11 @@ def event_text(event: Event) -> str:
     return f"{event.text}: {event.cause}" if event.cause else event.text
 
 
+def counted_from_one(text: str) -> str:
+    """Items of plans are counted from 0 in mission files and messages, and from 1 on the map beside which the text is read."""
+    return ITEMS.sub(lambda named: re.sub(r"\d+", lambda number: str(int(number[0]) + 1), named[0]), text)
+
+
 class TextLimiter:
     """Says which texts may go out now, and numbers the chunked ones."""
 
@@ -43,6 +52,7 @@ class TextLimiter:
         self._said = {key: at for key, at in self._said.items() if t - at < REPEAT_AFTER}
         if what in self._said:
             return False
+        make_room(self._said, what, MOST_REMEMBERED, lambda other: self._said[other])
         self._said[what] = t
         return True
 

@@ -20,6 +20,7 @@ from uvf.runtime.mavlink.scaling import I32, U16, whole
 from uvf.runtime.mavlink.scaling import compass as compass_of
 from uvf.runtime.plan_ids import fence_id, rally_id
 
+RANGE_ERROR = 1.0  # m, 1 sigma of the distance to one satellite
 Message = mav.MAVLink_message | None
 Build = Callable[[Facts, Latest, float], Message | list[mav.MAVLink_message]]
 
@@ -77,7 +78,10 @@ def charge_state(remaining: float, own: Mapping[str, float]) -> int:
 
 
 def _gps_raw(facts: Facts, latest: Latest, t: float) -> Message:
-    """Only vehicles with a receiver have one to report; one that has fallen silent has no fix. Dilutions of precision are not modelled."""
+    """Only vehicles with a receiver have one to report; one that has fallen silent has no fix.
+
+    Dilutions of precision follow from the accuracy: without them QGroundControl shows no count of satellites either.
+    """
     gnss = latest.gnss
     if gnss is None or facts.sensors.gnss is None:
         return None
@@ -88,8 +92,8 @@ def _gps_raw(facts: Facts, latest: Latest, t: float) -> Message:
         whole(math.degrees(gnss.latitude) * 1e7, I32),
         whole(math.degrees(gnss.longitude) * 1e7, I32),
         whole(gnss.altitude * 1e3, I32),
-        0xFFFF,
-        0xFFFF,
+        _dilution(gnss.horizontal_accuracy),
+        _dilution(gnss.vertical_accuracy),
         whole(float(np.hypot(velocity[0], velocity[1])) * 100, U16, 0xFFFF),
         whole(compass_of(velocity) * 100, U16, 0xFFFF),
         min(gnss.satellites, 255),
@@ -97,6 +101,11 @@ def _gps_raw(facts: Facts, latest: Latest, t: float) -> Message:
         v_acc=whole(gnss.vertical_accuracy * 1e3, (0, 2**32 - 1)),
         vel_acc=whole(gnss.speed_accuracy * 1e3, (0, 2**32 - 1)),
     )
+
+
+def _dilution(accuracy: float) -> int:
+    """In hundredths, of an accuracy [m, 1 sigma]."""
+    return whole(accuracy / RANGE_ERROR * 100, (0, 0xFFFE), 0xFFFF)
 
 
 def _home_position(facts: Facts, latest: Latest, t: float) -> Message:
@@ -183,7 +192,7 @@ STREAMS: dict[int, Stream] = {
     mav.MAVLINK_MSG_ID_LOCAL_POSITION_NED: Stream(navigation.local_position, 5),
     mav.MAVLINK_MSG_ID_GLOBAL_POSITION_INT: Stream(navigation.global_position, 10),
     mav.MAVLINK_MSG_ID_FENCE_STATUS: Stream(_fence_status, 1),
-    mav.MAVLINK_MSG_ID_MISSION_CURRENT: Stream(lambda f, n, t: mission_current(n), 1),
+    mav.MAVLINK_MSG_ID_MISSION_CURRENT: Stream(lambda f, n, t: mission_current(n) if n.progress is not None else None, 1),
     mav.MAVLINK_MSG_ID_NAV_CONTROLLER_OUTPUT: Stream(steering.controller_output, 3),
     mav.MAVLINK_MSG_ID_VFR_HUD: Stream(navigation.hud, 10),
     mav.MAVLINK_MSG_ID_ALTITUDE: Stream(navigation.altitude, 5),

@@ -9,6 +9,7 @@ from services.autopilot.mavlink.actions import ACTIONS, on_set_mode
 from services.autopilot.mavlink.commands import Commands
 from services.autopilot.mavlink.component_metadata import files_of
 from services.autopilot.mavlink.data_streams import set_rates
+from services.autopilot.mavlink.events import News
 from services.autopilot.mavlink.facts import Facts
 from services.autopilot.mavlink.fence_switch import FENCE_SWITCH
 from services.autopilot.mavlink.ftp import FileServer
@@ -18,6 +19,8 @@ from services.autopilot.mavlink.identity import greeting
 from services.autopilot.mavlink.line import Line, Sender
 from services.autopilot.mavlink.manual import ByHand
 from services.autopilot.mavlink.missions import Missions
+from services.autopilot.mavlink.not_offered import NOT_OFFERED
+from services.autopilot.mavlink.not_offered import handlers as not_offered
 from services.autopilot.mavlink.orders import ORDERS, on_set_home_position, on_set_origin
 from services.autopilot.mavlink.parameter_store import Store
 from services.autopilot.mavlink.parameters import Parameters
@@ -30,8 +33,9 @@ from services.autopilot.mavlink.telemetry import STREAMS
 from uvf.runtime.mavlink import dialect as mav
 from uvf.runtime.mavlink.endpoint import Peer
 
-FIXED = {**ACTIONS, **GUIDED, **ORDERS, **FENCE_SWITCH}
+FIXED = {**ACTIONS, **GUIDED, **ORDERS, **FENCE_SWITCH, **NOT_OFFERED}
 """Commands whose handlers keep nothing."""
+HEARTBEAT_WITHIN = 1.5  # s: one a second goes out
 Handler = Callable[[Any, Sender], None]
 ON_CHANGE = (
     mav.MAVLINK_MSG_ID_HEARTBEAT,
@@ -52,17 +56,21 @@ class VehicleLink:
         self._missions = Missions(self.line)
         self._by_hand = ByHand(self.line)
         self._setpoints = Setpoints(self.line)
+        queries = Queries(self.schedule).handlers()
+        self._commands = Commands(self.line, {**FIXED, **queries, **self._parameters.commands()})
         self._handlers = self._all_handlers()
         self._state: tuple[object, ...] = ()
         self._item: tuple[object, ...] = ()
         self._home: tuple[float, ...] = ()
         self._reached = ReachedItems()
         self._complaints: tuple[str, ...] = ()
+        self._news = News()
+        self._to_greet: dict[Peer, float] = {}
+        """Who is new, and when [s] it has heard a heartbeat at the latest."""
 
     def _all_handlers(self) -> dict[int, Handler]:
-        line, queries = self.line, Queries(self.schedule).handlers()
-        commands = Commands(line, {**FIXED, **queries, **self._parameters.commands()})
-        parameters = self._parameters
+        line = self.line
+        parameters, commands = self._parameters, self._commands
         return {
             mav.MAVLINK_MSG_ID_COMMAND_LONG: commands.on_long,
             mav.MAVLINK_MSG_ID_COMMAND_INT: commands.on_int,
@@ -80,17 +88,24 @@ class VehicleLink:
             **self._setpoints.handlers(),
             mav.MAVLINK_MSG_ID_PING: self._on_ping,
             mav.MAVLINK_MSG_ID_TIMESYNC: self._on_timesync,
-            mav.MAVLINK_MSG_ID_LOG_REQUEST_LIST: self._on_log_list,
+            **not_offered(line),
         }
 
     def hear(self, message: mav.MAVLink_message, sender: Sender) -> None:
-        """One message for this vehicle."""
+        """One message for this vehicle. Who calls it by its number knows it, and listens."""
+        if sender.peer in self._to_greet and getattr(message, "target_system", 0) == self.line.facts.system_id:
+            self._greet(sender.peer)
         handler = self._handlers.get(message.get_msgId())
         if handler is not None:
             handler(message, sender)
 
-    def greet(self, peer: Peer) -> None:
-        """Somebody is new there: what this vehicle is, and why it should not arm."""
+    def welcome(self, peer: Peer) -> None:
+        """Somebody is new there: ground stations drop texts of a vehicle whose heartbeat they have not heard yet."""
+        self._to_greet[peer] = self.line.t + HEARTBEAT_WITHIN
+
+    def _greet(self, peer: Peer) -> None:
+        """What this vehicle is, and why it should not arm."""
+        del self._to_greet[peer]
         self.line.text(mav.MAV_SEVERITY_INFO, greeting(self.line.facts), peer)
         if self._parameters.note:
             self.line.text(mav.MAV_SEVERITY_WARNING, self._parameters.note, peer)
@@ -106,17 +121,23 @@ class VehicleLink:
         self._by_hand.tick()
         self._setpoints.tick()
         self._ftp.tick()
-        for event in events:
+        for peer in [peer for peer, at in self._to_greet.items() if line.t >= at]:
+            self._greet(peer)
+        for event in self._news.of(line.latest, events):
             line.text(SEVERITY.get(event.severity, mav.MAV_SEVERITY_INFO), event_text(event))
         self._note_changes()
         out = [(message, [to] if to is not None else list(peers)) for message, to in line.take_out()]
         for number, to in self.schedule.due(line.t, peers):
-            out += [(message, to) for message in STREAMS[number].messages(line.facts, line.latest, line.t)]
+            hearing = [peer for peer in to if line.tells(number, peer)]
+            out += [(message, hearing) for message in STREAMS[number].messages(line.facts, line.latest, line.t)]
         return out
 
     def forget(self, peers: Sequence[Peer]) -> None:
         """Drops what peers that are gone have wished for."""
         self.schedule.forget(peers)
+        self._parameters.forget(peers)
+        self._to_greet = {peer: at for peer, at in self._to_greet.items() if peer in peers}
+        self._commands.forget()
 
     def _note_changes(self) -> None:
         """Mode, arming, mission item and reasons against arming are told at once, not at their next turn."""
@@ -169,10 +190,6 @@ class VehicleLink:
         if message.tc1 == 0:
             now = round(self.line.t * 1e9)
             self.line.send(mav.MAVLink_timesync_message(now, message.ts1, sender.system, sender.component), sender.peer)
-
-    def _on_log_list(self, message: mav.MAVLink_log_request_list_message, sender: Sender) -> None:
-        """No logs are served over MAVLink."""
-        self.line.send(mav.MAVLink_log_entry_message(0, 0, 0, 0, 0), sender.peer)
 
 
 def _without_figures(complaint: str) -> str:

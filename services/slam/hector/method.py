@@ -35,6 +35,8 @@ HOLD = (SIGMA / np.array((0.1, 0.1, 0.1))) ** 2
 """Weights of the guess, whose 1 sigma is 0.1 m and 0.1 rad."""
 DOUBTED, TURNS = 0.7, (-0.48, -0.36, -0.24, -0.12, 0.12, 0.24, 0.36, 0.48)
 """Mean occupancy below which turned starts [rad] are tried, too."""
+MEMORY = 300e6
+"""Bytes that each level may take; of the finest one that is as much as 370 000 m^2 at 0.05 m."""
 BETTER = 0.05
 """By which a turned start has to be better than a straight one."""
 LEAST = 0.3
@@ -52,7 +54,7 @@ class HectorSlam(IncrementalMethod):
     def __post_init__(self) -> None:
         super().__init__()
         p = self.params
-        self.levels = [SharedTiles(1, 1, p.map_resolution * 2**level) for level in range(p.map_multi_res_levels)]
+        self.levels = [SharedTiles(1, np.int16, p.map_resolution * 2**level, MEMORY) for level in range(p.map_multi_res_levels)]
         bound = round(BOUND / UNIT)
         self._evidence = Evidence(_units(p.update_factor_occupied), _units(p.update_factor_free), -bound, bound)
         self._last: Reading | None = None

@@ -3,9 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from services.slam.maps.shared_kernels import Grid, slot_of
+from services.slam.maps.shared_kernels import slot_of
 from services.slam.maps.tile_kernels import TILE
-from services.slam.rbpf.surfaces import line_at
+from services.slam.rbpf.surfaces import ParticleMap, line_at
 from uvf.maths.compiled import compiled
 from uvf.maths.three import solve
 
@@ -29,13 +29,13 @@ def _wrapped(angle: float) -> float:
 
 
 @compiled
-def normal_equations(pose: Floats, sweep: Sweep, grid: Grid, sigma: float) -> tuple[Floats, Floats, int, float]:
+def normal_equations(pose: Floats, sweep: Sweep, maps: ParticleMap, sigma: float) -> tuple[Floats, Floats, int, float]:
     """(H, g, points that found their surface, score) at a pose (3,), of the score: the sum of exp(-d^2 / 2 sigma^2).
 
     H is in units of 1 / m^2 of a point: what the sweep tells is H / sigma^2.
     """
     points, sensor = sweep
-    cell = grid[4]
+    cell = maps[0][4]
     h, g, j = np.zeros((3, 3)), np.zeros(3), np.zeros(3)
     found_, score = 0, 0.0
     c, s = np.cos(pose[2]), np.sin(pose[2])
@@ -44,7 +44,7 @@ def normal_equations(pose: Floats, sweep: Sweep, grid: Grid, sigma: float) -> tu
         ax, ay = c * points[i, 0] - s * points[i, 1], s * points[i, 0] + c * points[i, 1]
         x, y = pose[0] + ax, pose[1] + ay
         length = np.sqrt((sx - x) ** 2 + (sy - y) ** 2) + 1e-9
-        nx, ny, distance, found = line_at(x / cell, y / cell, ((sx - x) / length, (sy - y) / length), grid)
+        nx, ny, distance, found = line_at(x / cell, y / cell, ((sx - x) / length, (sy - y) / length), maps)
         if not found:
             continue
         found_ += 1
@@ -60,7 +60,7 @@ def normal_equations(pose: Floats, sweep: Sweep, grid: Grid, sigma: float) -> tu
 
 
 @compiled
-def climb(start: Floats, sweep: Sweep, grid: Grid, prior: Gaussian, scale: tuple[float, float]) -> tuple[Floats, Floats, int, float]:
+def climb(start: Floats, sweep: Sweep, maps: ParticleMap, prior: Gaussian, scale: tuple[float, float]) -> tuple[Floats, Floats, int, float]:
     """(pose, H, points that found their surface, score) at the best pose near ``start``.
 
     Gauss-Newton on the score with weights of the last step, which climbs it. prior: holds the pose where the sweep does not;
@@ -71,7 +71,7 @@ def climb(start: Floats, sweep: Sweep, grid: Grid, prior: Gaussian, scale: tuple
     h, found, score = np.zeros((3, 3)), 0, 0.0
     unit = sigma * sigma / worth
     for k in range(ITERATIONS):
-        h, g, found, score = normal_equations(pose, sweep, grid, sigma * max(1.0, WIDE * 0.5**k))
+        h, g, found, score = normal_equations(pose, sweep, maps, sigma * max(1.0, WIDE * 0.5**k))
         away = pose - prior[0]
         away[2] = _wrapped(away[2])
         step = solve(h + unit * prior[1], -(g + unit * (prior[1] @ away)))
@@ -82,22 +82,22 @@ def climb(start: Floats, sweep: Sweep, grid: Grid, prior: Gaussian, scale: tuple
 
 
 @compiled
-def log_likelihood(pose: Floats, sweep: Sweep, grid: Grid, sigma: float) -> float:
+def log_likelihood(pose: Floats, sweep: Sweep, maps: ParticleMap, sigma: float) -> float:
     """ln p(z | x, m) of all points as if they were independent; 0 where each lies on its surface."""
     points, sensor = sweep
-    cell = grid[4]
+    cell = maps[0][4]
     total = 0.0
     c, s = np.cos(pose[2]), np.sin(pose[2])
     sx, sy = pose[0] + c * sensor[0] - s * sensor[1], pose[1] + s * sensor[0] + c * sensor[1]
     for i in range(points.shape[0]):
         x, y = pose[0] + c * points[i, 0] - s * points[i, 1], pose[1] + s * points[i, 0] + c * points[i, 1]
         length = np.sqrt((sx - x) ** 2 + (sy - y) ** 2) + 1e-9
-        _, _, distance, found = line_at(x / cell, y / cell, ((sx - x) / length, (sy - y) / length), grid)
+        _, _, distance, found = line_at(x / cell, y / cell, ((sx - x) / length, (sy - y) / length), maps)
         if found:
             e = distance * cell
             total += np.log(STRAY + (1.0 - STRAY) * np.exp(-e * e / (2.0 * sigma * sigma)))
             continue
         row, column = int(np.floor(y / cell)), int(np.floor(x / cell))
-        known = grid[0][slot_of(row, column, grid), row % TILE, column % TILE, 0]
+        known = maps[0][0][slot_of(row, column, maps[0]), row % TILE, column % TILE, 0]
         total += np.log(STRAY if known < FREE else UNKNOWN)
     return total

@@ -7,13 +7,14 @@ good start.
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from math import hypot
+from math import hypot, pi, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
 
 from services.slam.logs.leaps import step_between
 from services.slam.maps.shared_tiles import Evidence, SharedTiles
+from services.slam.maps.tile_pool import TilePool
 from services.slam.matching.points import points_of
 from services.slam.method import Estimate, Keyframe
 from services.slam.rbpf.fit import Gaussian, Sweep
@@ -21,7 +22,7 @@ from services.slam.rbpf.motion import MotionModel
 from services.slam.rbpf.params import RbpfParams
 from services.slam.rbpf.particle_step import draw_pose, match
 from services.slam.rbpf.particles import Particles
-from services.slam.rbpf.surfaces import CHANNELS, add_surfaces
+from services.slam.rbpf.surfaces import SURFACES, ParticleMap, add_surfaces
 from services.slam.reading import Reading
 from uvf.maths.planar import IDENTITY, Pose2, compose, inverse
 from uvf.maths.planar_arrays import composed, wrapped
@@ -31,6 +32,7 @@ Floats = NDArray[np.float64]
 EVIDENCE = Evidence(hit=17, miss=-8, lowest=-60, highest=70)
 """In units of 0.05 (Thrun et al. 2005, table 9.2)."""
 POINTS = 180  # of a sweep that are matched, at most
+MEGABYTE = 1_000_000
 STOOD = 1e-4  # m, rad: odometry that moves less has not moved
 
 
@@ -43,7 +45,10 @@ class RbpfSlam:
     def __post_init__(self) -> None:
         p = self.params
         self.particles = Particles(p.particles)
-        self.tiles = SharedTiles(p.particles, CHANNELS, p.delta)
+        memory = p.mapMemory * MEGABYTE
+        self.tiles = SharedTiles(p.particles, np.int8, p.delta, 2 * memory / 3)
+        self.surfaces = TilePool(p.particles, SURFACES, p.delta, memory / 3)
+        self._reach = min(p.maxUrange, self._reach_that_fits())
         self.resampled = 0
         """How often."""
         self._rng = np.random.default_rng(p.seed)
@@ -56,7 +61,7 @@ class RbpfSlam:
         self._quality = 1.0
 
     def add(self, reading: Reading) -> Estimate:
-        sweep = (points_of(reading, self.params.maxUrange, POINTS), reading.beams.origin)
+        sweep = (points_of(reading, self._reach, POINTS), reading.beams.origin)
         last, self._last = self._last, reading
         if last is None:
             self._begin(reading)
@@ -83,13 +88,22 @@ class RbpfSlam:
     def keyframe_count(self) -> int:
         return len(self._readings)
 
+    @property
+    def notes(self) -> list[str]:
+        full, found = f"the {self.params.mapMemory:g} MB of mapMemory", []
+        if self._readings and self._reach < min(self.params.maxUrange, self._readings[0].beams.range_max):
+            found.append(f"beams are used up to {self._reach:.0f} m only: more of {len(self.particles)} particles does not fit into {full}")
+        if self.tiles.forgotten or self.surfaces.forgotten:
+            found.append(f"{full} are full: maps forget what was seen longest ago, and loops that lead back there are not closed")
+        return found
+
     def finish(self) -> None:
         """Nothing has been put off."""
 
     def _begin(self, reading: Reading) -> None:
         """All particles begin with one map."""
         self._draw(0, reading)
-        self.tiles.take(np.zeros(len(self.particles), dtype=np.int64))
+        self._take(np.zeros(len(self.particles), dtype=np.int64))
         self._keep(reading)
 
     def _keep(self, reading: Reading) -> None:
@@ -105,7 +119,7 @@ class RbpfSlam:
         """Between updates: where the best particle's map has the sweep."""
         best = self.particles.best
         prior, before = self._prior(best), self._pose(best)
-        matched = match(np.array(compose(before, self._tracked)), sweep, self.tiles.grid(best), prior, self.params)
+        matched = match(np.array(compose(before, self._tracked)), sweep, self._map(best), prior, self.params)
         self._noise, self._quality = matched.covariance(prior, self.params), matched.share
         self._tracked = compose(inverse(before), Pose2(*matched.pose.tolist()))
 
@@ -114,9 +128,9 @@ class RbpfSlam:
         factors = np.zeros(len(self.particles))
         poses = np.empty((len(self.particles), 3))
         for k in range(len(self.particles)):
-            prior, grid = self._prior(k), self.tiles.grid(k)
-            matched = match(np.array(compose(self._pose(k), self._tracked)), sweep, grid, prior, self.params)
-            poses[k], factors[k] = draw_pose(matched, sweep, grid, prior, self.params, self._rng)
+            prior, maps = self._prior(k), self._map(k)
+            matched = match(np.array(compose(self._pose(k), self._tracked)), sweep, maps, prior, self.params)
+            poses[k], factors[k] = draw_pose(matched, sweep, maps, prior, self.params, self._rng)
         poses[:, 2] = wrapped(poses[:, 2])
         self.particles.poses = poses
         self.particles.reweigh(factors)
@@ -124,15 +138,27 @@ class RbpfSlam:
         for k in range(len(self.particles)):
             self._draw(k, reading)
         if self.particles.effective < self.params.resampleThreshold * len(self.particles):
-            self.tiles.take(self.particles.resample(self._rng))
+            self._take(self.particles.resample(self._rng))
             self.resampled += 1
 
     def _draw(self, k: int, reading: Reading) -> None:
         if reading.ranges.shape != reading.beams.bearings.shape:
             return
-        drawn = self.tiles.draw(k, reading, self._pose(k), EVIDENCE, self.params.maxUrange)
+        drawn = self.tiles.draw(k, reading, self._pose(k), EVIDENCE, self._reach)
         if drawn is not None:
-            add_surfaces(drawn.ends, drawn.hit, drawn.sensor, drawn.first, self.tiles.grid(k))
+            add_surfaces(drawn, self.surfaces, k)
+
+    def _map(self, k: int) -> ParticleMap:
+        return self.tiles.grid(k), self.surfaces.grid(k)
+
+    def _take(self, ancestors: NDArray[np.int64]) -> None:
+        self.tiles.take(ancestors)
+        self.surfaces.take(ancestors)
+
+    def _reach_that_fits(self) -> float:
+        """m; so far that a sweep of each particle fills three quarters of the tiles, so that none draws in vain."""
+        side, own = self.tiles.kind.side * self.tiles.cell, 0.75 * self.tiles.capacity / len(self.particles)
+        return side * max(1.0, sqrt(own / pi) - 1.0)
 
     def _pose(self, k: int) -> Pose2:
         return Pose2(*self.particles.poses[k].tolist())

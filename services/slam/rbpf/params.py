@@ -26,4 +26,5 @@ class RbpfParams(Params, frozen=True):
     str: Noise = 0.1  # rad per m, of its turn by the way driven
     stt: Noise = 0.2  # rad per rad, of its turn by the turn
     resampleThreshold: Share = 0.5  # part of the particles below which the effective ones are resampled
+    mapMemory: Annotated[float, Meta(ge=10.0, le=100_000.0)] = 1000.0  # MB that the maps of all particles may take together
     seed: Annotated[int, Meta(ge=0)] = 1

@@ -5,10 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from services.slam.maps.shared_kernels import Grid
 from services.slam.rbpf.fit import Gaussian, Sweep, climb, log_likelihood
 from services.slam.rbpf.params import RbpfParams
 from services.slam.rbpf.proposal import proposal
+from services.slam.rbpf.surfaces import ParticleMap
 
 Floats = NDArray[np.float64]
 
@@ -37,22 +37,22 @@ class Matched:
         return covariance
 
 
-def match(start: Floats, sweep: Sweep, grid: Grid, prior: Gaussian, params: RbpfParams) -> Matched:
+def match(start: Floats, sweep: Sweep, maps: ParticleMap, prior: Gaussian, params: RbpfParams) -> Matched:
     """The best pose near ``start`` (3,): step 1 of the paper's algorithm."""
-    pose, h, found, score = climb(start, sweep, grid, prior, (params.sigma, WORTH))
+    pose, h, found, score = climb(start, sweep, maps, prior, (params.sigma, WORTH))
     share = found / max(len(sweep[0]), 1)
     good = found >= LEAST_POINTS and share >= LEAST_SHARE and score >= params.minimumScore and bool(np.isfinite(pose).all())
     return Matched(pose if good else start, h, share, good)
 
 
 def draw_pose(
-    matched: Matched, sweep: Sweep, grid: Grid, prior: Gaussian, params: RbpfParams, rng: np.random.Generator
+    matched: Matched, sweep: Sweep, maps: ParticleMap, prior: Gaussian, params: RbpfParams, rng: np.random.Generator
 ) -> tuple[Floats, float]:
     """(map_from_base (3,), ln of the factor of the weight): from the proposal, or from the motion model where nothing matches."""
-    target = (sweep, grid, params.lsigma, WORTH)
+    target = (sweep, maps, params.lsigma, WORTH)
     if matched.found:
         proposed = proposal(matched.pose, matched.h, prior, target, rng)
         root = np.linalg.cholesky(proposed.covariance)
         return proposed.mean + root @ rng.standard_normal(3), proposed.log_weight / params.ogain
     pose = prior[0] + np.linalg.cholesky(np.linalg.inv(prior[1])) @ rng.standard_normal(3)
-    return pose, log_likelihood(pose, sweep, grid, params.lsigma) * WORTH / params.ogain
+    return pose, log_likelihood(pose, sweep, maps, params.lsigma) * WORTH / params.ogain

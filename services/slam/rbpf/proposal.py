@@ -8,11 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from services.slam.maps.shared_kernels import Grid
 from services.slam.rbpf.fit import Gaussian, Sweep, log_likelihood
+from services.slam.rbpf.surfaces import ParticleMap
 from uvf.maths.compiled import compiled
 
 Floats = NDArray[np.float64]
+
+Target = tuple[Sweep, ParticleMap, float, float]
 
 SAMPLES = 16
 WIDER = 1.5
@@ -31,23 +33,21 @@ class Proposal:
 
 
 @compiled
-def weighed(
-    offsets: Floats, normals: Floats, matched: Floats, prior: Gaussian, target: tuple[Sweep, Grid, float, float]
-) -> tuple[Floats, Floats, float]:
+def weighed(offsets: Floats, normals: Floats, matched: Floats, prior: Gaussian, target: Target) -> tuple[Floats, Floats, float]:
     """(mean, covariance, ln eta) of equations 16 to 19, from samples ``matched`` + ``offsets`` (K, 3).
 
     The paper draws the samples x_j evenly; here they are drawn from a Gaussian q, ``normals`` (K, 3) being their places in its
     unit sphere, and each counts p(z | m, x_j) p(x_j | x_t-1, u) / q(x_j). So eta is the same integral, found with fewer samples.
     target: sweep, map, sigma of a beam [m], and how many independent beams a point is worth.
     """
-    sweep, grid, sigma, worth = target
+    sweep, maps, sigma, worth = target
     k = offsets.shape[0]
     logs = np.empty(k)
     for j in range(k):
         pose = matched + offsets[j]
         away = pose - prior[0]
         away[2] = (away[2] + np.pi) % (2.0 * np.pi) - np.pi
-        logs[j] = worth * log_likelihood(pose, sweep, grid, sigma) - 0.5 * away @ (prior[1] @ away) + 0.5 * normals[j] @ normals[j]
+        logs[j] = worth * log_likelihood(pose, sweep, maps, sigma) - 0.5 * away @ (prior[1] @ away) + 0.5 * normals[j] @ normals[j]
     most = logs.max()
     parts = np.exp(logs - most)
     total = parts.sum()
@@ -60,7 +60,7 @@ def weighed(
     return matched + mean, covariance, most + np.log(total / k)
 
 
-def proposal(matched: Floats, h: Floats, prior: Gaussian, target: tuple[Sweep, Grid, float, float], rng: np.random.Generator) -> Proposal:
+def proposal(matched: Floats, h: Floats, prior: Gaussian, target: Target, rng: np.random.Generator) -> Proposal:
     """About a matched pose (3,), where the points of the sweep have the normal matrix ``h``. prior: the motion model."""
     _, _, sigma, worth = target
     spread = WIDER**2 * np.linalg.inv(worth * h / sigma**2 + prior[1])

@@ -1,18 +1,29 @@
-"""What a cell of a particle's map holds beside its log-odds: the mean place of the beams that ended in it, and where they came from.
+"""The surfaces in a particle's map: of each cell the mean place of the beams that ended in it, and where they came from.
 
-Whole numbers, so that a tile is small: log-odds, number of hits, place within the cell (x, y), direction towards the lidar (x, y).
+Whole numbers, so that a tile is small: number of hits, place within the cell (x, y), direction towards the lidar (x, y). Few cells
+have any, so tiles are small, too, and stand beside those of the log-odds.
 """
 
 import numpy as np
 from numpy.typing import NDArray
 
-from services.slam.maps.shared_kernels import Cells, Grid, slot_of
+from services.slam.maps.shared_kernels import Cells, Grid, slot_at, slot_of
+from services.slam.maps.shared_tiles import Stroke
 from services.slam.maps.tile_kernels import TILE
+from services.slam.maps.tile_pool import TileKind, TilePool
 from uvf.maths.compiled import compiled
 
 Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Numbers = NDArray[np.int16]
+ParticleMap = tuple[Grid, Grid]
+"""Log-odds, and surfaces in tiles of ``SIDE``."""
 
-CHANNELS = 6
+SIDE = 16
+"""Cells along the side of a tile of surfaces."""
+SURFACES = TileKind(SIDE, 5, np.int16)
+_ROW = 1 << 32
+
 PART = 16384
 """What stands for 1: a cell's side, and the length of a direction."""
 MEMORY = 30
@@ -27,17 +38,16 @@ FLAT = 0.15  # largest ratio of the two variances of a line
 
 
 @compiled
-def _add(x: float, y: float, sensor: tuple[float, float], tile: tuple[Cells, int, int]) -> None:
-    """One place on a surface [cells from the corner of the stroke]; tile: where its cell is."""
-    cell = tile[0][tile[1], tile[2]]
+def _add(x: float, y: float, sensor: tuple[float, float], cell: Numbers) -> None:
+    """One place on a surface [cells from the corner of the stroke], into the cell (5,) that it is in."""
     dx, dy = sensor[0] - x, sensor[1] - y
     length = np.sqrt(dx * dx + dy * dy) + 1e-9
-    n = min(cell[1] + 1, MEMORY)
-    cell[1] = n
-    cell[2] += int(np.rint(((x - np.floor(x)) * PART - cell[2]) / n))
-    cell[3] += int(np.rint(((y - np.floor(y)) * PART - cell[3]) / n))
-    cell[4] += int(np.rint((dx / length * PART - cell[4]) / n))
-    cell[5] += int(np.rint((dy / length * PART - cell[5]) / n))
+    n = min(cell[0] + 1, MEMORY)
+    cell[0] = n
+    cell[1] += int(np.rint(((x - np.floor(x)) * PART - cell[1]) / n))
+    cell[2] += int(np.rint(((y - np.floor(y)) * PART - cell[2]) / n))
+    cell[3] += int(np.rint((dx / length * PART - cell[3]) / n))
+    cell[4] += int(np.rint((dy / length * PART - cell[4]) / n))
 
 
 @compiled
@@ -54,55 +64,77 @@ def _straight(ends: Floats, hit: NDArray[np.bool_], i: int) -> bool:
 
 
 @compiled
-def add_surfaces(ends: Floats, hit: NDArray[np.bool_], sensor: tuple[float, float], first: tuple[int, int], grid: Grid) -> None:
-    """Ends of beams that hit something, and the straight surfaces between them; (n, 2) in cells from the corner of tile ``first``.
+def _on_surfaces(ends: Floats, hit: NDArray[np.bool_], cell: float) -> Floats:
+    """(m, 2) ends of beams that hit something, and places on the straight surfaces between them; all in cells of ``cell`` [m].
 
     Far away beams end in few cells of a wall; what lies between them is drawn so that the heading can be held by it.
-    sensor: the lidar's place, likewise.
     """
-    pool = grid[0]
+    found, n = np.empty((ends.shape[0] * (1 + int(BRIDGE / cell)), 2)), 0
     for i in range(ends.shape[0]):
         if not hit[i]:
             continue
-        column, row = int(np.floor(ends[i, 0])), int(np.floor(ends[i, 1]))
-        here = slot_of(first[0] * TILE + row, first[1] * TILE + column, grid)
-        _add(ends[i, 0], ends[i, 1], sensor, (pool[here], row % TILE, column % TILE))
+        found[n], n = ends[i], n + 1
         if i + 1 == ends.shape[0] or not hit[i + 1]:
             continue
         dx, dy = ends[i + 1, 0] - ends[i, 0], ends[i + 1, 1] - ends[i, 1]
         steps = int(np.sqrt(dx * dx + dy * dy))
-        if steps < 2 or steps * grid[4] > BRIDGE or not _straight(ends, hit, i):
+        if steps < 2 or steps * cell > BRIDGE or not _straight(ends, hit, i):
             continue
         for k in range(1, steps):
             x, y = ends[i, 0] + dx * k / steps, ends[i, 1] + dy * k / steps
-            column, row = int(np.floor(x)), int(np.floor(y))
-            # Only tiles of the ends are sure to be this map's own.
-            if slot_of(first[0] * TILE + row, first[1] * TILE + column, grid) == here:
-                _add(x, y, sensor, (pool[here], row % TILE, column % TILE))
+            # Only tiles of the ends are sure to be known.
+            if np.floor(x / TILE) == np.floor(ends[i, 0] / TILE) and np.floor(y / TILE) == np.floor(ends[i, 1] / TILE):
+                found[n, 0], found[n, 1] = x, y
+                n += 1
+    return found[:n]
 
 
 @compiled
-def line_at(x: float, y: float, view: tuple[float, float], grid: Grid) -> tuple[float, float, float, bool]:
+def _add_all(points: Floats, slots: Ints, sensor: tuple[float, float], pool: Cells) -> None:
+    """Points (n, 2) as of ``_on_surfaces``, each into the tile that it is in; place 0 is none."""
+    for i in range(points.shape[0]):
+        if slots[i] != 0:
+            x, y = points[i, 0], points[i, 1]
+            _add(x, y, sensor, pool[slots[i], int(np.floor(y)) % SIDE, int(np.floor(x)) % SIDE])
+
+
+def add_surfaces(stroke: Stroke, surfaces: TilePool, k: int) -> None:
+    """What a sweep has hit, into map k."""
+    points = _on_surfaces(stroke.ends, stroke.hit, surfaces.cell)
+    tiles = np.floor(points[:, ::-1] / SIDE).astype(np.int64) + np.array(stroke.first) * (TILE // SIDE)
+    _, first, which = np.unique(tiles[:, 0] * _ROW + tiles[:, 1], return_index=True, return_inverse=True)
+    slots = surfaces.writable(k, tiles[first])
+    _add_all(points, slots[which], stroke.sensor, surfaces.grid(k)[0])
+
+
+@compiled
+def line_at(x: float, y: float, view: tuple[float, float], maps: ParticleMap) -> tuple[float, float, float, bool]:
     """(normal x, normal y, distance along it [cells], found) of the surface near (x, y) [cells] that is seen from ``view``.
 
     A line through the means of the cells around, weighted by their distance: moving least squares.
     """
-    pool = grid[0]
+    known, surfaces = maps
     column, row = int(np.floor(x)), int(np.floor(y))
-    low_r, high_r, low_c, high_c = row - REACH, row + REACH, column - REACH, column + REACH
-    single = low_r // TILE == high_r // TILE and low_c // TILE == high_c // TILE
-    slot = slot_of(row, column, grid)
+    low_r, low_c = (row - REACH) // SIDE, (column - REACH) // SIDE
+    one_r, one_c = (row + REACH) // SIDE == low_r, (column + REACH) // SIDE == low_c
+    s00 = slot_at(low_r, low_c, surfaces)
+    s01 = s00 if one_c else slot_at(low_r, low_c + 1, surfaces)
+    s10 = s00 if one_r else slot_at(low_r + 1, low_c, surfaces)
+    s11 = s10 if one_c else s01 if one_r else slot_at(low_r + 1, low_c + 1, surfaces)
     w = sx = sy = sxx = sxy = syy = 0.0
     used = 0
-    if single and slot == 0:
+    if s00 + s01 + s10 + s11 == 0:
         return 0.0, 0.0, 0.0, False
-    for r in range(low_r, high_r + 1):
-        for c in range(low_c, high_c + 1):
-            cell = pool[slot if single else slot_of(r, c, grid), r % TILE, c % TILE]
-            if cell[0] < 0 or cell[1] == 0 or cell[4] * view[0] + cell[5] * view[1] < SAME_SIDE * PART:
+    for r in range(row - REACH, row + REACH + 1):
+        left, right = (s00, s01) if r // SIDE == low_r else (s10, s11)
+        for c in range(column - REACH, column + REACH + 1):
+            cell = surfaces[0][left if c // SIDE == low_c else right, r % SIDE, c % SIDE]
+            if cell[0] == 0 or cell[3] * view[0] + cell[4] * view[1] < SAME_SIDE * PART:
                 continue
-            px, py = c + cell[2] / PART - x, r + cell[3] / PART - y
-            weight = min(float(cell[1]), 10.0) * np.exp(-(px * px + py * py) / (2.0 * KERNEL * KERNEL))
+            if known[0][slot_of(r, c, known), r % TILE, c % TILE, 0] < 0:
+                continue
+            px, py = c + cell[1] / PART - x, r + cell[2] / PART - y
+            weight = min(float(cell[0]), 10.0) * np.exp(-(px * px + py * py) / (2.0 * KERNEL * KERNEL))
             w += weight
             sx += weight * px
             sy += weight * py

@@ -1,17 +1,20 @@
-"""``uvf bench``: runs the cases of ``benchmarks/<group>.py``, prints a table a group, keeps the figures."""
+"""``uvf bench``: runs the cases of ``benchmarks/<group>.py``, prints a table a group, checks goals, keeps the figures."""
 
 import importlib
 import json
 import sys
-from collections.abc import Callable, Sequence
+import time
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+import typer
 from rich.console import Console
 from rich.table import Column, Table
 
+from uvf.launch.bench_page import Facts, facts_now, notes_of, replace_section, verdicts
+from uvf.launch.settings import ROOT, benchmark_group, benchmark_groups
 from uvf.runtime.params import BadInput, nearest
-from uvf.runtime.site import ROOT
 
 Figures = dict[str, dict[str, float]]
 Case = Callable[[Path | None], Figures]
@@ -20,42 +23,60 @@ RESULTS = ROOT / "benchmarks" / "results.md"
 
 
 def run_groups(names: Sequence[str], data: Path | None, json_file: Path | None, write: bool) -> None:
-    """Groups, each followed by the cases wanted of it (none = all). Raises BadInput."""
-    groups = [p.stem for p in (ROOT / "benchmarks").glob("*.py") if "CASES = " in p.read_text()]
-    wanted: dict[str, list[str]] = {}
+    """Groups, each followed by the cases wanted of it (none = all); every name is looked up before anything runs. Raises BadInput."""
+    wanted = _wanted(names)
+    chosen = {group: _chosen(group, cases, data) for group, cases in wanted.items()}
+    console = Console(width=None if sys.stdout.isatty() else WIDTH)
+    measured: Figures = {}
+    for group, cases in chosen.items():
+        before = facts_now([group, *wanted[group], *(["--data", "DIR"] if data else [])])
+        rows = _run(group, cases, data)
+        measured |= rows
+        console.print(_table(group, rows))
+        for line in verdicts(group, rows):
+            console.print(line, markup=False, highlight=False)
+        if write:
+            _write(group, rows, before)
+    if json_file:
+        json_file.write_text(json.dumps(measured, indent=1))
+
+
+def _wanted(names: Sequence[str]) -> dict[str, list[str]]:
+    groups, wanted = benchmark_groups(), dict[str, list[str]]()
     for name in names:
-        if name in groups:
-            wanted[name] = []
-        elif not wanted:
-            raise BadInput(f"no benchmark group '{name}'; {nearest(name, groups)}")
+        if name in groups or not wanted:
+            wanted[benchmark_group(name)] = []
         else:
             wanted[next(reversed(wanted))].append(name)
-    figures: dict[str, Figures] = {group: _run(group, cases, data) for group, cases in wanted.items()}
-    console = Console(width=None if sys.stdout.isatty() else WIDTH)
-    for group, rows in figures.items():
-        console.print(_table(group, rows))
-        if write:
-            RESULTS.write_text(replace_section(RESULTS.read_text() if RESULTS.exists() else "# Results\n", group, rows))
-    if json_file:
-        json_file.write_text(json.dumps({name: row for rows in figures.values() for name, row in rows.items()}, indent=1))
+    return wanted
 
 
-def _module(group: str) -> Any:
-    return importlib.import_module(f"benchmarks.{group}")
+def _write(group: str, rows: Figures, facts: Facts) -> None:
+    page = RESULTS.read_text(encoding="utf-8") if RESULTS.exists() else "# Results\n"
+    lines = [facts.line(), *notes_of(group), *verdicts(group, rows)]
+    RESULTS.write_text(replace_section(page, group, rows, lines), encoding="utf-8")
 
 
-def _run(group: str, wanted: Sequence[str], data: Path | None) -> Figures:
-    """A name stands for the case of that name, or for all whose names begin with it and a colon."""
-    cases = cases_of(_module(group), data)
+def _chosen(group: str, wanted: Sequence[str], data: Path | None) -> dict[str, Case]:
+    """A name stands for the case of that name, or for all whose names begin with it and a colon. Raises BadInput."""
+    cases = cases_of(importlib.import_module(f"benchmarks.{group}"), data)
     chosen: dict[str, Case] = {}
     for name in wanted:
         found = {case: cases[case] for case in cases if case == name or case.startswith(f"{name}:")}
         if not found:
             raise BadInput(f"no case '{name}' in {group}; {nearest(name, cases)}")
         chosen |= found
+    return chosen or cases
+
+
+def _run(group: str, cases: Mapping[str, Case], data: Path | None) -> Figures:
+    """One plain line a step to stderr, so that a table that is piped away leaves the progress on the screen."""
     rows: Figures = {}
-    for case in (chosen or cases).values():
+    for number, (name, case) in enumerate(cases.items(), 1):
+        typer.echo(f"uvf: {group} {name} ({number} of {len(cases)})", err=True)
+        begun = time.perf_counter()
         rows |= case(data)
+        typer.echo(f"uvf: {group} {name} took {time.perf_counter() - begun:.1f} s", err=True)
     return rows
 
 
@@ -65,25 +86,9 @@ def cases_of(module: Any, data: Path | None) -> dict[str, Case]:
     return found
 
 
-def _columns(figures: Figures) -> list[str]:
-    return list(dict.fromkeys(metric for row in figures.values() for metric in row))
-
-
 def _table(group: str, figures: Figures) -> Table:
-    columns = _columns(figures)
+    columns = list(dict.fromkeys(metric for row in figures.values() for metric in row))
     table = Table(Column(group, no_wrap=True), *columns)
     for name, row in figures.items():
         table.add_row(name, *(f"{row[c]:.4g}" if c in row else "" for c in columns))
     return table
-
-
-def replace_section(text: str, group: str, figures: Figures) -> str:
-    """The results page with the section of one group renewed."""
-    columns = _columns(figures)
-    lines = [f"| {group} | {' | '.join(columns)} |", "|---" * (len(columns) + 1) + "|"]
-    lines += [f"| {n} | {' | '.join(f'{row[c]:.4g}' if c in row else '' for c in columns)} |" for n, row in figures.items()]
-    section = f"\n## {group}\n\n" + "\n".join(lines) + "\n"
-    before, found, after = text.partition(f"\n## {group}\n")
-    rest = after.partition("\n## ")
-    tail = f"\n## {rest[2]}" if found and rest[1] else ""
-    return before.rstrip("\n") + "\n" + section + tail

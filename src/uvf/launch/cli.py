@@ -8,6 +8,7 @@ from typing import Annotated
 
 import typer
 
+from uvf.launch import settings
 from uvf.launch.map_cli import map_app
 from uvf.launch.refusal import bad_input_is_one_line
 from uvf.launch.sim_cli import sim_app
@@ -28,9 +29,40 @@ app.add_typer(vehicle_app, name="vehicle")
 app.add_typer(world_app, name="world")
 app.command()(slam)
 
+
+def known_mission(name: str | None) -> str | None:
+    """Answers a misspelt mission before anything is imported."""
+    with bad_input_is_one_line():
+        if name:
+            settings.mission_path(name)
+    return name
+
+
+def known_log(path: Path) -> Path:
+    with bad_input_is_one_line():
+        return settings.log_path(path)
+
+
+def known_run(path: Path | None) -> Path | None:
+    with bad_input_is_one_line():
+        return path and settings.log_path(path, "run")
+
+
+def known_benchmarks(names: list[str]) -> list[str]:
+    """The first is a group; those that follow may be cases of it, which only the group knows."""
+    with bad_input_is_one_line():
+        settings.benchmark_group(names[0])
+    return names
+
+
 DEMO = "demo"
-MissionArgument = Annotated[str, typer.Argument(help="Name in missions/ or path of a mission file.")]
-MissionOption = Annotated[str, typer.Option("--mission", "-m", help="Name in missions/ or path of a mission file.")]
+AS_TODAY = "With these files instead of those attached to the log."
+RUN = "Folder of a run, or a log; by default the latest run."
+BENCHMARKS = "Groups (bus, sim, ...), each followed by the cases wanted of it."
+MISSION = "Name in missions/ or path of a mission file."
+MissionArgument = Annotated[str, typer.Argument(help=MISSION, callback=known_mission)]
+MissionOption = Annotated[str, typer.Option("--mission", "-m", help=MISSION, callback=known_mission)]
+LogArgument = Annotated[Path, typer.Argument(help="An MCAP log.", callback=known_log)]
 
 BRIDGE_ADDRESS = """udpin:HOST:PORT: listen for autopilots that send there, as simulators do to 14550.
 
@@ -51,7 +83,6 @@ def up(
     seconds: Annotated[float | None, typer.Option("--for", help="Stop so many seconds after time has begun to run.")] = None,
 ) -> None:
     """Start a whole mission: every service in its own process, watched over, until Ctrl-C."""
-    from uvf.launch import settings
     from uvf.launch.runs import new_run
     from uvf.launch.up import Wanted
     from uvf.launch.up import up as run_up
@@ -76,12 +107,13 @@ def run(
     until: Annotated[float | None, typer.Option(help="Simulation seconds; by default the mission's duration.")] = None,
     log: Annotated[Path | None, typer.Option(help="Where to record; by default in runs/.")] = None,
 ) -> None:
-    """Run a mission to its end and score it: exit code 0 when every criterion holds."""
+    """Run a mission in lockstep to its end and score it: exit code 0 when every criterion holds. Needs --lockstep; 'uvf up' is live."""
+    if not lockstep:
+        ways = f"'uvf run {mission} --lockstep' simulates and scores it as fast as it goes, 'uvf up {mission}' runs it in real time"
+        typer.echo(f"uvf: say which way to run it: {ways}", err=True)
+        raise typer.Exit(2)
     from uvf.launch.report import run_and_report
 
-    if not lockstep:
-        typer.echo("uvf: 'uvf run' needs --lockstep; 'uvf up' runs a mission in real time", err=True)
-        raise typer.Exit(2)
     with bad_input_is_one_line():
         raise typer.Exit(run_and_report(mission, until, log))
 
@@ -132,11 +164,11 @@ def record(folder: Annotated[Path, typer.Argument(help="Where the log goes.")], 
 
 @app.command()
 def replay(
-    log: Annotated[Path, typer.Argument(help="An MCAP log.")],
+    log: LogArgument,
     rate: Annotated[float, typer.Option(min=0.01, help="Times real time.")] = 1.0,
     service: Annotated[str | None, typer.Option(help="Into this service instead, comparing what comes out.")] = None,
     vehicle: Annotated[str | None, typer.Option(help="Of this vehicle.")] = None,
-    mission: Annotated[str | None, typer.Option("--mission", "-m", help="With these files instead of those attached to the log.")] = None,
+    mission: Annotated[str | None, typer.Option("--mission", "-m", help=AS_TODAY, callback=known_mission)] = None,
 ) -> None:
     """Put a log back onto the bus, or into one service to see what comes out otherwise."""
     from uvf.launch.report import replay_into, replay_onto_bus
@@ -147,13 +179,12 @@ def replay(
 
 @app.command()
 def report(
-    run: Annotated[Path | None, typer.Argument(help="Folder of a run, or a log; by default the latest run.")] = None,
+    run: Annotated[Path | None, typer.Argument(help=RUN, callback=known_run)] = None,
     out: Annotated[Path | None, typer.Option(help="Folder to write into; by default report/ beside the logs.")] = None,
 ) -> None:
     """Report on the flights of a run: a page of plots for each aircraft and a table of figures."""
     from rich.console import Console
 
-    from uvf.launch import settings
     from uvf.launch.flights.report import flights, folder_beside, table, write
 
     with bad_input_is_one_line():
@@ -228,7 +259,7 @@ def doctor() -> None:
 
 @app.command()
 def bench(
-    names: Annotated[list[str], typer.Argument(help="Groups (bus, sim, ...), each followed by the cases wanted of it.")],
+    names: Annotated[list[str], typer.Argument(help=BENCHMARKS, callback=known_benchmarks)],
     data: Annotated[Path | None, typer.Option(envvar="UVF_DATA", help="Folder with data sets.")] = None,
     json: Annotated[Path | None, typer.Option(help="Write the figures there.")] = None,
     write: Annotated[bool, typer.Option("--write", help="Renew benchmarks/results.md.")] = False,
@@ -309,7 +340,7 @@ def node_graph() -> None:
 
 
 @log_app.command("info")
-def log_info(log: Path) -> None:
+def log_info(log: LogArgument) -> None:
     """Topics, counts, length, gaps and hash of a log."""
     from uvf.launch.report import describe_log
 
@@ -318,7 +349,7 @@ def log_info(log: Path) -> None:
 
 
 @log_app.command("recover")
-def log_recover(log: Path, out: Annotated[Path | None, typer.Option(help="By default <log>-recovered.mcap.")] = None) -> None:
+def log_recover(log: LogArgument, out: Annotated[Path | None, typer.Option(help="By default <log>-recovered.mcap.")] = None) -> None:
     """Save what can be saved of a log that was cut off."""
     from uvf.launch.report import recover_log
 

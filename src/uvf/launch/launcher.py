@@ -6,15 +6,17 @@ from threading import Event as Flag
 
 from schemas import topics
 from schemas.convert import stamp_ns
-from schemas.messages import Clock, Event, Processes, StopCommand
+from schemas.messages import Clock, Event, Processes, StopCommand, StopEngagement
 from uvf.launch.output import Write
 from uvf.launch.supervisor import Supervisor
 from uvf.runtime.address import router_from
 from uvf.runtime.bus import Publisher
+from uvf.runtime.stop_all import StopBook, StopVoice, name_of
 from uvf.runtime.wire import Malformed, decode
 from uvf.runtime.zenoh_bus import ZenohBus
 
 LOOK = 0.1  # s, how often to look for the dead
+STOP_DEPTH = 64
 
 Say = Callable[[str], None]
 
@@ -31,6 +33,8 @@ class Launcher:
         self._say = say
         self._supervisor = Supervisor(self._on_death)
         self._untold: list[tuple[str, bool]] = []
+        self._stops = StopBook()
+        self._voice = StopVoice(name)
         self._t_ns = 0
 
     def start(self, name: str, arguments: list[str], write: Write) -> None:
@@ -43,6 +47,8 @@ class Launcher:
         self._events = self._publisher(bus, topics.SYSTEM_EVENTS)
         self._stop = self._publisher(bus, topics.STOP)
         self._processes = self._publisher(bus, topics.PROCESSES)
+        for key in (topics.STOP.by("*").at("sys"), topics.STOP_STATE.at("sys")):
+            bus.subscribe(key, topics.STOP.qos, self._stops.push, STOP_DEPTH)
         bus.token(f"@node/sys/{self.name}/{bus.boot:x}")
         self.tell()
         return bus
@@ -60,16 +66,23 @@ class Launcher:
         except Malformed as error:
             self._say(str(error))
             return
-        self._t_ns = clock.t_ns
-        # Without its epoch a STOP ALL would count as older than any release said before it.
-        bus.epoch = clock.epoch
+        self._t_ns, bus.epoch = clock.t_ns, clock.epoch
 
     def look(self) -> None:
         """Hears the bus, starts again what has died, tells what has changed."""
         if self.bus is not None:
             self.bus.poll()
+            self._heed_release()
         if self._supervisor.look():
             self.tell()
+
+    def _heed_release(self) -> None:
+        """Once an operator has released what it had engaged, it no longer says so to those who come late."""
+        if self._voice.engages is not None and self._voice.engages not in map(name_of, self._stops.now.engagements):
+            self._say_stop(self._voice.withdraw(self._t_ns))
+
+    def _say_stop(self, command: StopCommand) -> None:
+        self._stop.put(command.SerializeToString(deterministic=True), self._t_ns)
 
     def _on_death(self, line: str, given_up: bool) -> None:
         self._say(line)
@@ -90,8 +103,9 @@ class Launcher:
             self._events.put(event.SerializeToString(deterministic=True), now)
             if given_up:
                 # What cannot be kept alive: every vehicle goes to its safe state until somebody releases it.
-                stop = StopCommand(timestamp=stamp_ns(now), engaged=True, source=source)
-                self._stop.put(stop.SerializeToString(deterministic=True), now)
+                stop = self._voice.engage(now, line)
+                self._stops.take_up([StopEngagement(source=source, id=stop.id)])
+                self._say_stop(stop)
         self._untold.clear()
         processes = Processes(timestamp=stamp_ns(now), processes=self._supervisor.describe())
         self._processes.put(processes.SerializeToString(deterministic=True), now)

@@ -13,6 +13,7 @@ from uvf.launch.processes import open_bus
 from uvf.launch.runs import hold, keep_quota
 from uvf.launch.worker import Worker, give_way, spare_the_collector, worker
 from uvf.runtime.bus import Sample
+from uvf.runtime.log_bounds import REFUSED
 from uvf.runtime.params import BadInput
 from uvf.runtime.recording import DEPTH, Recorder
 from uvf.runtime.site import Site, load_site
@@ -65,6 +66,7 @@ class LogSeries:
         self._rotate_bytes = rotate_bytes
         self._free = free
         self._told = False
+        self._told_refused: set[str] = set()
         self._number = next_number(folder)
         self._recorder = self._begin(None)
 
@@ -98,10 +100,17 @@ class LogSeries:
     def flush(self) -> None:
         """Now and then: what has been written is safe, and recording is taken up again where the disk had refused."""
         self._recorder.flush()
+        self._tell_refused()
         if not self._recorder.error and not self._recorder.path.exists():
             self._recorder.error = f"log {self._recorder.path}: has been removed: recording ends here"
         if self._recorder.error:
             self._take_up_again()
+
+    def _tell_refused(self) -> None:
+        """Each kind once; the log's metadata have the counts."""
+        for why in self._recorder.refused.keys() - self._told_refused:
+            self._told_refused.add(why)
+            self._tell(f"not recorded: messages {REFUSED[why]}; 'uvf log info' shows how many", Event.WARNING)
 
     def _take_up_again(self) -> None:
         if not self._told:

@@ -70,7 +70,7 @@ def replay_onto_bus(log: Path, rate: float) -> int:
     stop = Event()
     signal.signal(signal.SIGINT, lambda *_: stop.set())
     with ZenohBus(router_from(), blocking=True, timeout=5.0) as bus:
-        count = onto_bus(log, bus, rate, lambda: not stop.is_set())
+        count = onto_bus(log, bus, rate, lambda: not stop.is_set(), _to_stderr)
     typer.echo(f"{count} messages replayed")
     return 0
 
@@ -83,12 +83,18 @@ def replay_into(log: Path, service: str, vehicle: str | None, mission: str | Non
             typer.echo(
                 f"the log begins at {begin / 1e9:.1f} s: {service} begins there like one that is started again, so some differ by that"
             )
-        differences = [line for host in hosts for line in into_service(log, host)]
-    for difference in differences[:SHOWN]:
-        typer.echo(str(difference))
+        count = 0
+        for difference in (line for host in hosts for line in into_service(log, host, warn=_to_stderr)):
+            count += 1
+            if count <= SHOWN:
+                typer.echo(str(difference))
     what = ", ".join(f"{h.service.name} of {h.vehicle or 'all vehicles'}" for h in hosts)
-    typer.echo(f"{what}: {len(differences)} differences" if differences else f"{what}: puts out the same")
-    return 1 if differences else 0
+    typer.echo(f"{what}: {count} differences" if count else f"{what}: puts out the same")
+    return 1 if count else 0
+
+
+def _to_stderr(line: str) -> None:
+    typer.echo(line, err=True)
 
 
 def _hosts_named(name: str, site: Site, vehicle: str | None) -> list[Host]:
@@ -109,18 +115,22 @@ def _hosts_named(name: str, site: Site, vehicle: str | None) -> list[Host]:
 
 def describe_log(log: Path) -> None:
     """Topics with type, count and rate."""
-    samples = [(s.key, s.type_name, s.stamp_ns, len(s.payload)) for s in read_log(log)]
-    counts, types = Counter(key for key, *_ in samples), {key: name for key, name, *_ in samples}
+    counts: Counter[str] = Counter()
     sizes: Counter[str] = Counter()
-    for key, _, _, size in samples:
-        sizes[key] += size
+    types: dict[str, str] = {}
+    end_ns = 0
+    for sample in read_log(log):
+        counts[sample.key] += 1
+        sizes[sample.key] += len(sample.payload)
+        types[sample.key] = sample.type_name
+        end_ns = max(end_ns, sample.stamp_ns)
     begin = log_begin(log) / 1e9
-    end = max((stamp for _, _, stamp, _ in samples), default=0) / 1e9
+    end = end_ns / 1e9
     width = max(map(len, counts), default=0)
     for key in sorted(counts):
         rate = counts[key] / max(end - begin, 1e-9)
         typer.echo(f"{key:{width}}  {types[key]:28}  {counts[key]:7} messages  {rate:6.1f} Hz  {sizes[key] / 1000:8.0f} kB")
-    typer.echo(f"{len(samples)} messages, " + (f"from {begin:.1f} s to {end:.1f} s" if begin else f"{end:.1f} s"))
+    typer.echo(f"{counts.total()} messages, " + (f"from {begin:.1f} s to {end:.1f} s" if begin else f"{end:.1f} s"))
     for name, value in log_metadata(log).items():
         typer.echo(f"{name}: {value}")
 

@@ -45,7 +45,7 @@ def run_lockstep(
     hosts = catalogue.hosts(site, [k for k in catalogue.needed(site) if k.clock == "sim"])
     refuse_problems(site, hosts)
     with Recorder(log, attachments(site)) as recorder:
-        lockstep = Lockstep(hosts, warn=warn)
+        lockstep = Lockstep(hosts, warn=warn, contains=True)
         try:
             recorder.follow(lockstep.bus)
             scorer.follow(lockstep.bus)

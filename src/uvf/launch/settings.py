@@ -1,11 +1,15 @@
-"""What the surroundings decide: endpoints, folders and limits, each by one environment variable with a default."""
+"""What the surroundings decide: endpoints, folders and limits, each by one environment variable with a default; and what names mean.
 
+Imports nothing heavy: a misspelt name is answered before any engine is loaded.
+"""
+
+import difflib
 import os
 from pathlib import Path
 
 from uvf.runtime.params import BadInput, nearest
-from uvf.runtime.site import ROOT
 
+ROOT = Path(__file__).resolve().parents[3]
 GIGABYTE = 1_000_000_000
 
 
@@ -29,3 +33,23 @@ def mission_path(name: str) -> Path:
             return path
     known = [p.stem for p in (ROOT / "missions").glob("*.yaml")]
     raise BadInput(f"no mission '{name}'; {nearest(Path(name).stem, known)}")
+
+
+def log_path(path: Path, what: str = "log") -> Path:
+    """A log, or a run's folder, that is there. Raises BadInput."""
+    if path.exists():
+        return path
+    close = difflib.get_close_matches(path.name, [p.name for p in path.parent.glob("*")], n=1)
+    raise BadInput(f"no {what} {path}; " + (f"did you mean '{close[0]}'?" if close else f"runs are recorded in {runs_folder()}"))
+
+
+def benchmark_groups() -> list[str]:
+    return sorted(p.stem for p in (ROOT / "benchmarks").glob("*.py") if "CASES = " in p.read_text(encoding="utf-8"))
+
+
+def benchmark_group(name: str) -> str:
+    """Raises BadInput."""
+    groups = benchmark_groups()
+    if name not in groups:
+        raise BadInput(f"no benchmark group '{name}'; {nearest(name, groups)}")
+    return name

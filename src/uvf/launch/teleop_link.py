@@ -5,6 +5,7 @@ import time
 from schemas import topics
 from schemas.messages import ArmRequest, DriveCommand, Mode, ModeRequest
 from uvf.client import Client
+from uvf.runtime.stop_all import told
 from uvf.runtime.teleop_hand import Command
 
 SOURCE = "teleop"
@@ -44,4 +45,6 @@ class Link:
         if age > LOST_AFTER:
             return f"LINK LOST {age:.0f} s"
         status = self._client.read(vehicle, topics.STATUS)
-        return "LIVE STOP ALL" if status.stopped else f"LIVE {status.command_source or status.reason}"
+        return (
+            f"LIVE STOP ALL by {told(status.stops) or 'somebody'}" if status.stopped else f"LIVE {status.command_source or status.reason}"
+        )

@@ -12,7 +12,7 @@ from schemas.topics import PREFIX, REQUESTS, TOPICS
 from uvf.runtime.address import router_from
 from uvf.runtime.bus import Sample, matches
 from uvf.runtime.params import BadInput, nearest
-from uvf.runtime.recording import topic_of
+from uvf.runtime.topic_lookup import topic_of
 from uvf.runtime.zenoh_bus import ZenohBus
 
 LOOK = 0.02  # s

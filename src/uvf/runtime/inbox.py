@@ -1,16 +1,23 @@
 """What has arrived for one service: ordered, decoded once, aged in message time."""
 
 from collections import deque
+from collections.abc import Iterator
 from typing import Any
 
 from google.protobuf.message import Message
 
+from schemas.topics import SYSTEM
 from uvf.runtime.bus import Sample
 from uvf.runtime.clock import NS
 from uvf.runtime.service import Input
+from uvf.runtime.spawned import name_fault
 from uvf.runtime.wire import Malformed, decode_sample
 
 EVERY_DEPTH = 256
+AHEAD_MOST = 2 * NS
+"""How far ahead of a step something may be stamped: by the latency of who sent it. What is stamped later was by another clock."""
+OWNERS_MOST = 128  # vehicles of one input
+NEXT_EPOCH_DEPTH = 8  # messages of the epoch to come that wait until the clock tells of it
 
 
 class Slot:
@@ -26,12 +33,15 @@ class Slot:
         self.arrived: deque[Sample] = deque(maxlen=EVERY_DEPTH)
         self.accepted: Sample | None = None
         self._malformed = malformed
+        self._good: tuple[tuple[int, Message] | None, Sample | None] = (None, None)
+        """What held before the newest ``take``."""
 
     def push(self, sample: Sample) -> None:
         self.arrived.append(sample)
 
     def take(self, t_ns: int) -> None:
         """Makes readable what is stamped before ``t_ns``, ordered by (epoch, stamp, key, seq)."""
+        self._good = (self._latest, self.accepted)
         if not self.arrived:
             return
         if len(self.arrived) == 1 and (self._ageless or self.arrived[0].stamp_ns < t_ns):
@@ -39,8 +49,9 @@ class Slot:
             return
         ready = [s for s in self.arrived if self._ageless or s.stamp_ns < t_ns]
         if not ready:
+            self._hold_back(list(self.arrived), t_ns)
             return
-        self.arrived = deque((s for s in self.arrived if not (self._ageless or s.stamp_ns < t_ns)), maxlen=EVERY_DEPTH)
+        self._hold_back([s for s in self.arrived if not (self._ageless or s.stamp_ns < t_ns)], t_ns)
         ready.sort(key=lambda s: (s.epoch, s.stamp_ns, s.key, s.seq))
         if self._input.every:
             for sample in ready:
@@ -48,6 +59,18 @@ class Slot:
         else:
             # A broken message hides none of the good ones before it.
             any(self._accept(sample) for sample in reversed(ready))
+
+    def _hold_back(self, later: list[Sample], t_ns: int) -> None:
+        """What is stamped farther ahead than anybody's latency would wait here for ever, in the place of what is true."""
+        self.arrived = deque((s for s in later if s.stamp_ns <= t_ns + AHEAD_MOST), maxlen=EVERY_DEPTH)
+        if len(self.arrived) < len(later):
+            key = next(s.key for s in later if s.stamp_ns > t_ns + AHEAD_MOST)
+            self._malformed += [f"{key}: stamped more than {AHEAD_MOST / NS:g} s ahead of the clock"] * (len(later) - len(self.arrived))
+
+    def undo(self) -> None:
+        """Forgets what the newest ``take`` has made readable."""
+        self._latest, self.accepted = self._good
+        self._fresh.clear()
 
     def _accept(self, sample: Sample) -> bool:
         try:
@@ -75,6 +98,10 @@ class Slot:
         return self._latest[1] if self._latest is not None and self.is_fresh(t_ns) else None
 
 
+def _ahead(sample: Sample) -> str:
+    return f"{sample.key}: of epoch {sample.epoch}, which the clock has not begun"
+
+
 class InputBox:
     """All owners of one declared input."""
 
@@ -84,6 +111,16 @@ class InputBox:
         self.epoch = epoch
         self._slots: dict[str, Slot] = {}
         self._malformed: list[str] = []
+        self._next: deque[Sample] = deque(maxlen=NEXT_EPOCH_DEPTH)
+        """Of an epoch that the clock has not begun yet."""
+        self._next_since: int | None = None
+
+    def begin(self, epoch: int) -> None:
+        """The clock tells of an epoch; what was sent ahead of it counts from now on, or never."""
+        self.epoch = epoch
+        ahead, self._next, self._next_since = self._next, deque(maxlen=NEXT_EPOCH_DEPTH), None
+        for sample in ahead:
+            self.push(sample)
 
     def push(self, sample: Sample) -> None:
         """Takes a message of this epoch (or of none); what an old one still sends is dropped, an operator's word is not."""
@@ -91,11 +128,42 @@ class InputBox:
             if not self.declared.topic.across_epochs:
                 return
             sample = sample._replace(stamp_ns=-1)
+        elif sample.epoch > self.epoch:
+            self._hold_for_next_epoch(sample)
+            return
         owner = sample.key.split("/")[1] if self.declared.each_vehicle else ""
-        if owner not in self._slots:
+        if owner in self._slots or self._is_welcome(owner):
+            self._slots[owner].push(sample)
+
+    def _is_welcome(self, owner: str) -> bool:
+        """Makes room for one more owner, if it is called as a vehicle may be called and there are not too many."""
+        if owner not in ("", SYSTEM) and (why := name_fault(owner)):
+            self._malformed.append(f"{self.declared.topic.key}: {why}")
+        elif len(self._slots) >= OWNERS_MOST:
+            self._malformed.append(f"{self.declared.topic.key}: of more than {OWNERS_MOST} vehicles")
+        else:
             self._slots[owner] = Slot(self.declared, self._ageless, self._malformed)
             self._slots = dict(sorted(self._slots.items()))
-        self._slots[owner].push(sample)
+            return True
+        return False
+
+    def _hold_for_next_epoch(self, sample: Sample) -> None:
+        """Only the clock begins an epoch. Its next one may be heard of late; any other is nobody's."""
+        if self.epoch > 0 and sample.epoch > self.epoch + 1:
+            self._malformed.append(_ahead(sample))
+            return
+        if len(self._next) == NEXT_EPOCH_DEPTH:
+            self._malformed.append(_ahead(self._next[0]))
+        self._next.append(sample)
+
+    def _give_up_next_epoch(self, t_ns: int) -> None:
+        """What was ahead of the clock for so long was never of its epoch."""
+        if self._next_since is None:
+            self._next_since = t_ns
+        elif t_ns > self._next_since + AHEAD_MOST:
+            self._malformed += [_ahead(sample) for sample in self._next]
+            self._next.clear()
+            self._next_since = None
 
     def surviving(self, epoch: int) -> list[Sample]:
         """What still counts when time starts over: the new epoch's own messages, and what holds across epochs.
@@ -103,15 +171,28 @@ class InputBox:
         The latter is stamped anew with the beginning of time, so that everything said later comes after it.
         """
         slots = self._slots.values()
-        new = [s for slot in slots for s in slot.arrived if s.epoch >= epoch]
+        new = [s for slot in slots for s in slot.arrived if s.epoch >= epoch] + [s for s in self._next if s.epoch == epoch]
         if not self.declared.topic.across_epochs:
             return new
         old = [s for slot in slots for s in (slot.accepted, *slot.arrived) if s is not None and s.epoch < epoch]
         return [s._replace(stamp_ns=-1) for s in sorted(old, key=lambda s: (s.epoch, s.stamp_ns))[-1:]] + new
 
     def take(self, t_ns: int) -> None:
+        if self._next:
+            self._give_up_next_epoch(t_ns)
         for slot in self._slots.values():
             slot.take(t_ns)
+
+    def undo(self) -> None:
+        """Forgets what the newest ``take`` has made readable, of all owners."""
+        for slot in self._slots.values():
+            slot.undo()
+
+    def accepted(self) -> Iterator[tuple[str, bytes]]:
+        """Key and bytes of the newest message of each owner."""
+        for slot in self._slots.values():
+            if slot.accepted is not None:
+                yield slot.accepted.key, slot.accepted.payload
 
     def is_missing(self, t_ns: int) -> bool:
         return self.declared.required and not any(slot.is_fresh(t_ns) for slot in self._slots.values())

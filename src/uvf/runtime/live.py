@@ -27,7 +27,7 @@ class Live:
         self._name = name
         self._bus = bus
         self._warn = warn
-        self._shells = shells = [Shell(host, bus, warn) for host in hosts]
+        self._shells = shells = [Shell(host, bus, warn, contains=True) for host in hosts]
         self._sim = [s for s in shells if s.type.clock == "sim"]
         self._wall = [s for s in shells if s.type.clock == "wall"]
         self._takes_part = bool(self._sim) or not self._wall
@@ -50,7 +50,7 @@ class Live:
 
     def join(self, host: Host) -> None:
         """One more instance on wall time, from now on."""
-        shell = Shell(host, self._bus, self._warn)
+        shell = Shell(host, self._bus, self._warn, contains=True)
         shell.join(self._epoch)
         shell.sim_ns = self._t_ns
         self._wall.append(shell)

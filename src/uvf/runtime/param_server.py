@@ -60,6 +60,8 @@ class ParamServer:
                 self._set(request.name, request.value)
             except (msgspec.ValidationError, msgspec.DecodeError) as error:
                 return ParamReply(accepted=False, reason=f"{request.name}: {error}")
+            except RecursionError:
+                return ParamReply(accepted=False, reason=f"{request.name}: nested too deeply")
         wanted = [request.name] if request.name else fields
         return ParamReply(accepted=True, params=[self._describe(name) for name in wanted])
 

@@ -2,47 +2,43 @@
 
 import contextlib
 import errno
-import functools
 import hashlib
+import heapq
 import io
+import itertools
 import struct
 import time
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Container, Iterable, Iterator, Mapping
 from pathlib import Path
 from types import TracebackType
 from typing import IO, Any
 
 from google.protobuf.descriptor import FileDescriptor
 from google.protobuf.descriptor_pb2 import FileDescriptorSet
-from google.protobuf.message import Message as ProtobufMessage
+from mcap.data_stream import ReadDataStream
 from mcap.exceptions import McapError
 from mcap.reader import make_reader
-from mcap.records import Attachment, Channel, McapRecord, Message, Schema
-from mcap.stream_reader import StreamReader
+from mcap.records import Attachment, Channel, Chunk, McapRecord, Message, Schema
+from mcap.stream_reader import StreamReader, breakup_chunk
 from mcap.writer import MCAP0_MAGIC, CompressionType, Writer
 from zstandard import ZstdError
 
-from schemas.topics import CLOCK, PREFIX, REQUESTS, SYSTEM, TOPICS, Qos, Topic
-from uvf.runtime.bus import Bus, Sample, matches
+from schemas.topics import CLOCK, PREFIX, SYSTEM, Qos
+from uvf.runtime.bus import Bus, Sample
 from uvf.runtime.clock import NS
-from uvf.runtime.envelope import GapCounter
+from uvf.runtime.envelope import WRAP, GapCounter
+from uvf.runtime.log_bounds import Admission, Standing
 from uvf.runtime.params import BadInput
+from uvf.runtime.topic_lookup import MESSAGES, topic_of
 
 CHUNK = 1_000_000  # bytes
 BROKEN = (McapError, ZstdError, EOFError, ValueError, KeyError, struct.error, OverflowError, MemoryError)
 """What the readers raise for bytes that are no log, the last two for lengths that are nonsense."""
+HELD = 16_000_000  # bytes of chunks, while a log is read in order of time
 DEPTH = 65_536  # messages that may wait for the writer
-_SAID = [t.message for t in TOPICS.values()] + [m for r in REQUESTS.values() for m in (r.message, r.reply)]
-_TYPES: dict[str, Any] = {message.DESCRIPTOR.full_name: message for message in _SAID}
 _WALL_SOURCES = {"gcs", "mavlink", "recorder", "launcher"}
 _NO_SPACE = (errno.ENOSPC, errno.EDQUOT)
-
-
-@functools.cache
-def topic_of(key: str) -> Topic[ProtobufMessage] | None:
-    """The line of the table that a key belongs to."""
-    return next((topic for topic in TOPICS.values() if matches(topic.by("*").at("*"), key)), None)
 
 
 class LogHash:
@@ -67,8 +63,10 @@ class LogHash:
 class Recorder:
     """Writes every logged message that it is given; a context manager, so that the footer is always there.
 
-    before: the recorder of the file before this one. Its count of gaps goes on, and this file begins with the newest message
+    before: the recorder of the file before this one. Its counts go on, and this file begins with the newest message
     of each topic that stands until the next one (latched and kept topics), so that it can be read and replayed alone.
+
+    Sequence numbers have 32 bits in a log: after 4294967295 comes 0. What no log can hold is refused and counted.
     """
 
     def __init__(self, path: Path, attachments: Mapping[str, bytes] | None = None, before: "Recorder | None" = None) -> None:
@@ -80,16 +78,17 @@ class Recorder:
         self.hash = LogHash()
         self._file = self._open()
         self._writer = Writer(self._file, chunk_size=CHUNK, compression=CompressionType.ZSTD)
-        self._channels: dict[str, int] = {}
+        self._channels: dict[tuple[str, str], int] = {}
         self._schemas: dict[str, int] = {}
         self._counter: GapCounter = before._counter if before else GapCounter()
-        self._standing: dict[str, Sample] = dict(before._standing) if before else {}
+        self._admission: Admission = before._admission if before else Admission()
+        self._standing: Standing = before._standing if before else Standing()
         self._unsaved: Counter[str] = Counter()
         with self._disk():
             self._writer.start(profile="", library="uvf")
             for name, data in (attachments or {}).items():
                 self._writer.add_attachment(0, 0, name, "application/octet-stream", data)
-        for sample in _in_force(self._standing.values()):
+        for sample in self._standing.in_force():
             self._put(sample)
         self.carried = self.written
         """How many messages at the head are repeated from before."""
@@ -116,28 +115,23 @@ class Recorder:
     def write(self, sample: Sample) -> None:
         """One message; a full disk ends the recording with one line in ``error``, never the program."""
         topic = topic_of(sample.key)
-        if topic is not None:
-            if not topic.logged:
-                return
-            if topic.kept or topic.qos is Qos.LATCHED:
-                self._remember(sample)
+        if (topic is not None and not topic.logged) or not self._admission.admits(sample):
+            return
+        stands = topic is not None and (topic.kept or topic.qos is Qos.LATCHED)
+        if stands and not self._standing.remember(sample):
+            self.refused["head"] += 1
         self._unsaved[sample.key] += not self.error
         self._put(sample)
-
-    def _remember(self, sample: Sample) -> None:
-        """History that comes late does not take the place of what is newer."""
-        old = self._standing.get(sample.key)
-        if old is None or old.boot != sample.boot or old.seq <= sample.seq:
-            self._standing[sample.key] = sample
 
     def _put(self, sample: Sample) -> None:
         if self.error:
             return
         self._counter.count(sample.key, sample.boot, sample.seq)
+        seq = sample.seq % WRAP
         try:
-            channel = self._channels.get(sample.key) or self._add_channel(sample)
-            self._writer.add_message(channel, sample.stamp_ns, sample.payload, time.time_ns(), sample.seq)
-            self.hash.add(sample.key, sample.stamp_ns, sample.seq, sample.payload)
+            channel = self._channels.get((sample.key, sample.type_name)) or self._add_channel(sample)
+            self._writer.add_message(channel, sample.stamp_ns, sample.payload, time.time_ns(), seq)
+            self.hash.add(sample.key, sample.stamp_ns, seq, sample.payload)
             self.written += 1
         except OSError as error:
             self._end(error)
@@ -162,6 +156,11 @@ class Recorder:
         return dict(self._counter.gaps)
 
     @property
+    def refused(self) -> Counter[str]:
+        """Messages that could not be recorded since the first file of the run began, by the words of ``log_bounds.REFUSED``."""
+        return self._admission.refused
+
+    @property
     def size(self) -> int:
         """Bytes written so far; the open chunk comes on top."""
         return self._file.tell()
@@ -171,16 +170,14 @@ class Recorder:
             data = descriptor_set(sample.type_name)
             self._schemas[sample.type_name] = self._writer.register_schema(sample.type_name, "protobuf" if data else "", data)
         channel = self._writer.register_channel("/" + sample.key, "protobuf", self._schemas[sample.type_name], {"zenoh_key": sample.key})
-        self._channels[sample.key] = channel
+        self._channels[sample.key, sample.type_name] = channel
         return channel
 
     def flush(self) -> None:
         """Closes the chunk, so that a killed recorder loses no more than what came after."""
         if not self.error:
             with self._disk():
-                # The writer closes a chunk by size only and offers no public way to do it by time.
-                getattr(self._writer, "_Writer__finalize_chunk")()  # noqa: B009
-                self._file.flush()
+                self._writer.flush()  # type: ignore[no-untyped-call]
                 self._unsaved.clear()
 
     def close(self) -> None:
@@ -196,20 +193,15 @@ class Recorder:
             self._file.close()
 
     def _summary(self) -> dict[str, str]:
-        summary = {"messages": str(self.written), "carried": str(self.carried), "complete": str(not self.gaps).lower()}
-        return summary | {"hash": self.hash.hexdigest()} | {f"gap {key}": str(n) for key, n in self.gaps.items()}
-
-
-def _in_force(samples: Iterable[Sample]) -> list[Sample]:
-    """Without those of an epoch that is over, except what holds on when time starts over (an operator's word)."""
-    samples = sorted(samples, key=lambda s: (s.stamp_ns, s.key))
-    newest = max((s.epoch for s in samples), default=0)
-    return [s for s in samples if s.epoch in (0, newest) or ((topic := topic_of(s.key)) is not None and topic.across_epochs)]
+        complete = str(not self.gaps and not self.refused).lower()
+        summary = {"messages": str(self.written), "carried": str(self.carried), "complete": complete, "hash": self.hash.hexdigest()}
+        refused = {f"refused {why}": str(n) for why, n in self.refused.items()}
+        return summary | refused | {f"gap {key}": str(n) for key, n in self.gaps.items()}
 
 
 def descriptor_set(type_name: str) -> bytes:
     """The FileDescriptorSet of a type of the table with all that it imports; empty for an unknown type."""
-    if type_name not in _TYPES:
+    if type_name not in MESSAGES:
         return b""
     files: dict[str, FileDescriptor] = {}
 
@@ -218,7 +210,7 @@ def descriptor_set(type_name: str) -> bytes:
             add(imported)
         files[file.name] = file
 
-    add(_TYPES[type_name].DESCRIPTOR.file)
+    add(MESSAGES[type_name].DESCRIPTOR.file)
     out = FileDescriptorSet()
     for file in files.values():
         file.CopyToProto(out.file.add())
@@ -251,10 +243,66 @@ def _check_kind(path: Path, file: IO[bytes]) -> None:
     file.seek(0)
 
 
-def read_log(path: Path) -> Iterator[Sample]:
-    """The messages of a log in order of time. Raises BadInput for a file that is not a whole log."""
+class _HeldChunks:
+    """The messages of chunks, each in order of time, as far as they fit into HELD; the others are read again when they are needed."""
+
+    def __init__(self, file: IO[bytes], channels: Container[int]) -> None:
+        self._file = file
+        self._channels = channels
+        self._held: dict[int, tuple[int, list[Message]]] = {}  # offset -> size, messages; the one used last at the end
+
+    def get(self, offset: int) -> list[Message]:
+        size, messages = self._held.pop(offset) if offset in self._held else self._read(offset)
+        self._held[offset] = size, messages
+        while sum(size for size, _ in self._held.values()) > HELD and len(self._held) > 1:
+            self.drop(next(iter(self._held)))
+        return messages
+
+    def drop(self, offset: int) -> None:
+        del self._held[offset]
+
+    def _read(self, offset: int) -> tuple[int, list[Message]]:
+        self._file.seek(offset + 9)  # behind the kind and length of the record
+        chunk = Chunk.read(ReadDataStream(self._file))
+        found = [r for r in breakup_chunk(chunk) if isinstance(r, Message) and r.channel_id in self._channels]
+        return chunk.uncompressed_size, sorted(found, key=lambda m: m.log_time)
+
+
+def _in_order(file: IO[bytes], topics: Container[str] | None = None) -> Iterator[tuple[Schema | None, Channel, Message]]:
+    """In order of (log time, chunk, place in the chunk), as ``iter_messages`` of mcap's reader.
+
+    That one holds a chunk from its earliest message to its latest: with one message without a stamp in each, the whole log.
+    """
+    reader = make_reader(file)
+    summary = reader.get_summary()
+    if summary is None or not summary.chunk_indexes:
+        # Of an empty log, or of one without an index, which none of ours is.
+        yield from (found for found in reader.iter_messages() if topics is None or found[1].topic in topics)
+        return
+    channels = {n: c for n, c in summary.channels.items() if topics is None or c.topic in topics}
+    wanted = [i for i in summary.chunk_indexes if not i.message_index_offsets or not channels.keys().isdisjoint(i.message_index_offsets)]
+    held = _HeldChunks(file, channels)
+    ahead = [(index.message_start_time, index.chunk_start_offset, 0) for index in wanted]
+    heapq.heapify(ahead)
+    while ahead:
+        _, offset, begin = heapq.heappop(ahead)
+        messages = held.get(offset)
+        for n in range(begin, len(messages)):
+            message = messages[n]
+            if ahead and (message.log_time, offset) > ahead[0][:2]:
+                heapq.heappush(ahead, (message.log_time, offset, n))
+                break
+            channel = channels[message.channel_id]
+            yield summary.schemas.get(channel.schema_id), channel, message
+        else:
+            held.drop(offset)
+
+
+def read_log(path: Path, keys: Iterable[str] | None = None) -> Iterator[Sample]:
+    """The messages of a log, of all keys or of these, in order of time. Raises BadInput for a file that is not a whole log."""
+    topics = None if keys is None else {f"/{key}" for key in keys}
     with _opened(path) as file:
-        for schema, channel, message in make_reader(file).iter_messages():
+        for schema, channel, message in _in_order(file, topics):
             name = schema.name if schema else ""
             yield Sample(channel.topic[1:], name, message.data, message.log_time, message.sequence, 0)
 
@@ -264,9 +312,18 @@ def log_begin(path: Path) -> int:
 
     What is stamped earlier stands at the head of the file and is repeated from before.
     """
+    first = next(read_log(path, [CLOCK.at(SYSTEM)]), None)
+    return first.stamp_ns if first is not None and first.stamp_ns > NS / CLOCK.hz else 0
+
+
+def log_end(path: Path) -> int | None:
+    """The simulation time [ns] of the last tick of the clock; None without any. Raises BadInput.
+
+    What is stamped later is of services whose outputs come late.
+    """
     with _opened(path) as file:
-        first = next((m for *_, m in make_reader(file).iter_messages(topics=[f"/{CLOCK.at(SYSTEM)}"])), None)
-    return first.log_time if first is not None and first.log_time > NS / CLOCK.hz else 0
+        ticks = make_reader(file).iter_messages([f"/{CLOCK.at(SYSTEM)}"], reverse=True)
+        return next((tick.log_time for *_, tick in ticks), None)
 
 
 def log_metadata(path: Path) -> dict[str, str]:
@@ -284,24 +341,30 @@ def log_attachments(path: Path) -> dict[str, bytes]:
 def recover(source: Path, target: Path) -> int:
     """Copies every message of the whole chunks of a cut-off log, and what is attached, into a new, complete one; returns how many.
 
-    Raises BadInput when there is nothing to save.
+    Raises BadInput when there is nothing to save, or where the new log would take the place of the old one.
     """
+    if target.exists() and target.samefile(source):
+        raise BadInput(f"log {target}: is the log that is to be saved; name another file")
     with _opened(source) as file:
-        records = list(_whole_records(io.BytesIO(file.read())))
-    saved = list(_samples(records))
-    if not saved:
-        raise BadInput(f"log {source}: holds no whole message that could be saved")
-    with Recorder(target, {r.name: r.data for r in records if isinstance(r, Attachment)}) as out:
-        for sample in saved:
-            out.write(sample)
+        attached = {r.name: r.data for r in _whole_records(file, emit_chunks=True) if isinstance(r, Attachment)}
+        samples = _samples(_whole_records(file))
+        first = next(samples, None)
+        if first is None:
+            raise BadInput(f"log {source}: holds no whole message that could be saved")
+        with Recorder(target, attached) as out:
+            for sample in itertools.chain((first,), samples):
+                out.write(sample)
     if out.error:
         raise BadInput(out.error)
     return out.written
 
 
-def _whole_records(file: IO[bytes]) -> Iterator[McapRecord]:
+def _whole_records(file: IO[bytes], emit_chunks: bool = False) -> Iterator[McapRecord]:
+    """From the beginning of the file, as they are read; a length that is nonsense ends them."""
+    size = file.seek(0, io.SEEK_END)
+    file.seek(0)
     with contextlib.suppress(*BROKEN):
-        yield from StreamReader(file).records
+        yield from StreamReader(file, emit_chunks=emit_chunks, record_size_limit=size).records
 
 
 def _samples(records: Iterable[McapRecord]) -> Iterator[Sample]:

@@ -53,6 +53,21 @@ def frames(team: bool = False) -> Frames:
     return Frames(team)
 
 
+@dataclass(frozen=True)
+class StopInput:
+    """STOP ALL as one input: ``step`` is handed a ``stop_all.StopStatus``."""
+
+    def parts(self, name: str) -> dict[str, Input]:
+        """The inputs that it consists of."""
+        heard: dict[str, Topic[Any]] = {"said": topics.STOP.by("*"), "known": topics.STOP_STATE}
+        return {f"{name}/{part}": Input(topic, every=True, required=False, ages=False) for part, topic in heard.items()}
+
+
+def stop_all() -> StopInput:
+    """Who engages STOP ALL, by every word that was said before the step; never holds the step back."""
+    return StopInput()
+
+
 def _as_input(topic: "Topic[Any] | Input") -> Input:
     return topic if isinstance(topic, Input) else Input(topic)
 
@@ -118,7 +133,7 @@ class Service:
     simulator: ClassVar[bool] = False
     """Simulators report the time they have reached; the clock never runs ahead of them."""
 
-    inputs: ClassVar[Mapping[str, Topic[Any] | Input | Frames]] = {}
+    inputs: ClassVar[Mapping[str, Topic[Any] | Input | Frames | StopInput]] = {}
     outputs: ClassVar[Mapping[str, Topic[Any]]] = {}
     requests: ClassVar[Mapping[str, Request[Any, Any]]] = {}
     calls: ClassVar[Mapping[str, Request[Any, Any]]] = {}
@@ -141,13 +156,21 @@ class Service:
         """Called instead of ``step`` while required inputs are absent or old: the place of failsafes."""
         return {}
 
+    given_up: ClassVar[str] = "the vehicle does without it"
+    """What becomes of the vehicle when this service has failed too often, for people to read."""
+    stand_in: ClassVar["staticmethod[[float, str], Outputs] | None"] = None
+    """``stand_in(t, reason)`` gives the outputs of each step in place of such an instance: what brings the vehicle to its safe state.
+
+    It knows nothing of the instance, whose state may be what is wrong. Of services without one, the others miss the outputs.
+    """
+
     def close(self) -> None:
         """Gives back engines and sockets; called once, when the process or the run ends."""
 
     @classmethod
     def declared_inputs(cls) -> dict[str, Input]:
-        """Every topic read, by the name of the input; ``frames()`` is one for each of its topics."""
+        """Every topic read, by the name of the input; ``frames()`` and ``stop_all()`` are one for each of their topics."""
         declared: dict[str, Input] = {}
         for name, asked in cls.inputs.items():
-            declared |= asked.parts(name) if isinstance(asked, Frames) else {name: _as_input(asked)}
+            declared |= asked.parts(name) if isinstance(asked, Frames | StopInput) else {name: _as_input(asked)}
         return declared

@@ -7,25 +7,26 @@ from typing import Any
 
 from google.protobuf.message import Message
 
+from schemas import topics
+from schemas.convert import stamp_ns
+from schemas.messages import Event, VehicleStatus
 from schemas.topics import PARAM, SYSTEM, Qos, Request, Topic
+from uvf.runtime.bulkhead import FAILURES, WINDOW, Bulkhead, cause_of
 from uvf.runtime.bus import Bus, Publisher, Query
 from uvf.runtime.clock import NS, first_step_after, step_time
 from uvf.runtime.frames import FrameBuffer
-from uvf.runtime.inbox import EVERY_DEPTH, InputBox
+from uvf.runtime.inbox import AHEAD_MOST, EVERY_DEPTH, InputBox
 from uvf.runtime.param_server import ParamServer
-from uvf.runtime.service import Answer, Frames, Input, Later, Outputs, Service
+from uvf.runtime.request_desk import QUERIES_MOST, ContractError, RequestDesk
+from uvf.runtime.service import Answer, Frames, Input, Outputs, Service, StopInput
 from uvf.runtime.site import Host
+from uvf.runtime.stop_all import StopBook, StopStatus
 from uvf.runtime.wire import Malformed, decode
 
 Warn = Callable[[str], None]
 LATEST_DEPTH = 8  # more than one, for the newest may be too new to be read yet
-QUERIES_MOST = 256
 TOLD_MOST = 100  # different lines about broken messages
-AHEAD_MOST = 2 * NS  # of latency; a request that is stamped farther ahead was stamped by another clock
-
-
-class ContractError(Exception):
-    """A service returned something that it did not declare."""
+AFRESH = "time has started over: ask again"
 
 
 @dataclass
@@ -34,6 +35,7 @@ class Counters:
     stale: int = 0
     skipped: int = 0
     malformed: int = 0
+    failures: int = 0
     missing: tuple[str, ...] = ()
     published: dict[str, int] = field(default_factory=dict)
 
@@ -41,7 +43,8 @@ class Counters:
 class Shell:
     """Runs one instance on a bus: live, in lockstep and in tests alike."""
 
-    def __init__(self, host: Host, bus: Bus, warn: Warn = lambda line: None) -> None:
+    def __init__(self, host: Host, bus: Bus, warn: Warn = lambda line: None, contains: bool = False) -> None:
+        """contains: what goes wrong in the instance of a vehicle is kept from those of the others; else it is raised."""
         self.host = host
         self.type = host.service
         self.owner = host.vehicle or SYSTEM
@@ -51,42 +54,44 @@ class Shell:
         """Simulation time now, kept by the loop: the stamp of what wall-clock services send."""
         self._bus = bus
         self._warn = warn
+        self._bulkhead = Bulkhead() if contains and self.type.scope == "vehicle" and not self.type.simulator else None
         self._publishers: dict[str, Publisher] = {}
-        self._queries: dict[str, deque[Query]] = {name: deque() for name in self.type.requests}
+        self._left: dict[str, bytes] = {}
+        """The newest bytes that it has put on each key that it recalls."""
+        self._desk = RequestDesk(self.type, self._put, self._refused)
         self._answers: dict[str, deque[tuple[int, Answer[Any, Any]]]] = {name: deque() for name in self.type.calls}
-        self._open: list[tuple[Query, Request[Any, Any], Later[Any]]] = []
-        """Requests that a later step answers."""
         self._told: set[str] = set()
+        self._stops = StopBook(at_once=self.type.clock == "wall")
         self.service: Service
         self._boxes: dict[str, InputBox] = {}
         self._frames: dict[str, FrameBuffer] = {}
         self._make()
+        self._listen()
         self._subscribe()
 
     def join(self, epoch: int) -> None:
         """Goes on in an epoch, without being made afresh: at the first clock, and wall-clock services always."""
         self.epoch = epoch
         for box in self._boxes.values():
-            box.epoch = epoch
+            box.begin(epoch)
 
     def restart(self, epoch: int) -> None:
         """Makes the service afresh because time has started over; what was asked in the old epoch is refused."""
         self.service.close()
         self.epoch = epoch
         kept = [(name, sample) for name, box in self._boxes.items() for sample in box.surviving(epoch)]
-        self._refuse_all("time has started over: ask again")
+        self._refuse_all(AFRESH)
+        if self._bulkhead is not None:
+            self._bulkhead = Bulkhead()
+        self._left.clear()
         self._make()
+        self._listen()
         for name, sample in kept:
             self._boxes[name].push(sample)
 
     def _refuse_all(self, reason: str) -> None:
-        for waiting in self._queries.values():
-            while waiting:
-                waiting.popleft().refuse(reason)
+        self._desk.refuse_all(reason)
         self._param_server.refuse_all(reason)
-        for query, _, _ in self._open:
-            query.refuse(reason)
-        self._open.clear()
         for answers in self._answers.values():
             answers.clear()
 
@@ -99,17 +104,28 @@ class Shell:
                 messages |= {name: decode(name, payload, topic.message)} if payload is not None else {}
             except Malformed as error:
                 self._warn(f"{self.type.name}: {error}")
+        for message in messages.values():
+            if isinstance(message, VehicleStatus):
+                self._stops.take_up(message.stops)
         if messages:
             self.service.recall(**messages)
 
     def _make(self) -> None:
         self.service = self.host.make()
+        self._param_server = ParamServer(self.service)
+
+    def _listen(self) -> None:
+        """Begins with nothing heard, but for STOP ALL, which holds on."""
         ageless = self.type.clock == "wall"
-        self._boxes = {name: InputBox(declared, ageless, self.epoch) for name, declared in self.type.declared_inputs().items()}
+        heard = self.type.declared_inputs().items()
+        self._boxes = {name: InputBox(declared, ageless, self.epoch) for name, declared in heard if not self._is_stop(name)}
         self._valued = [name for name in self._boxes if name in self.type.inputs]
         self._frames = {name: FrameBuffer() for name, declared in self.type.inputs.items() if isinstance(declared, Frames)}
-        self._param_server = ParamServer(self.service)
+        self._stop_inputs = [name for name, declared in self.type.inputs.items() if isinstance(declared, StopInput)]
         self.n = 1
+
+    def _is_stop(self, name: str) -> bool:
+        return isinstance(self.type.inputs.get(name.partition("/")[0]), StopInput)
 
     def reads(self) -> Iterator[tuple[str, Input, str]]:
         """Each declared input with the owner whose messages it takes; ``*`` = of every vehicle."""
@@ -120,17 +136,12 @@ class Shell:
         for name, declared, owner in self.reads():
             wide = declared.every or declared.each_vehicle or declared.topic.qos in (Qos.LATCHED, Qos.EVENT)
             depth = EVERY_DEPTH if wide else LATEST_DEPTH
-            self._bus.subscribe(declared.topic.at(owner), declared.topic.qos, lambda s, n=name: self._boxes[n].push(s), depth)  # type: ignore[misc]
+            sink = self._stops.push if self._is_stop(name) else lambda s, n=name: self._boxes[n].push(s)
+            self._bus.subscribe(declared.topic.at(owner), declared.topic.qos, sink, depth)
         everyone = "*" if self.type.scope == "world" else self.owner
         for name, request in self.type.requests.items():
-            self._bus.serve(request.at(everyone), lambda query, n=name: self._queue(n, query))  # type: ignore[misc]
+            self._bus.serve(request.at(everyone), lambda query, n=name: self._desk.queue(n, query))  # type: ignore[misc]
         self._bus.serve(self._param_server.key(self.owner), self._queue_param)
-
-    def _queue(self, name: str, query: Query) -> None:
-        if len(self._queries[name]) >= QUERIES_MOST:
-            query.refuse(f"{self.type.name}: {QUERIES_MOST} requests wait already")
-        else:
-            self._queries[name].append(query)
 
     def _queue_param(self, query: Query) -> None:
         if self._param_server.waiting >= QUERIES_MOST:
@@ -160,36 +171,104 @@ class Shell:
         """One step at the due time: fresh inputs in, outputs published, requests answered."""
         t_ns = self.due_ns
         self.n += 1
-        for query, reply in self._param_server.answer(lambda stamp: self._is_due(stamp, t_ns)):
-            self._answer(query, PARAM, reply, t_ns)
+        if self._bulkhead is None:
+            self._step(t_ns)
+        elif self._bulkhead.given_up:
+            self._stand_in(t_ns)
+        else:
+            self._step_contained(t_ns)
+
+    def _step_contained(self, t_ns: int) -> None:
+        """What is raised in this instance, whatever it is, ends here: the process goes on for the other vehicles."""
+        try:
+            self._step(t_ns)
+        except Exception as error:  # noqa: BLE001  # a bulkhead: nobody knows what a fault will raise
+            self._fail(t_ns, error)
+
+    def _fail(self, t_ns: int, error: Exception) -> None:
+        """Made afresh from the state that it has left, or given up after the third time."""
+        assert self._bulkhead is not None
+        self.counters.failures += 1
+        cause = cause_of(error)
+        try:
+            self.service.close()
+            again = not self._bulkhead.failed(t_ns / NS, cause)
+            if again:
+                self._revive()
+        except Exception as second:  # noqa: BLE001  # neither may its end nor its beginning harm the others
+            again = not self._bulkhead.failed(t_ns / NS, cause_of(second))
+        self._tell_failure(t_ns, cause, again)
+
+    def _revive(self) -> None:
+        """A new instance with the state that the last one has left, without what has come since its last good step."""
+        for box in self._boxes.values():
+            box.undo()
+        heard = {key: payload for box in self._boxes.values() for key, payload in box.accepted()}
+        self._make()
+        self.recall({**heard, **self._left}.get)
+
+    def _tell_failure(self, t_ns: int, cause: str, again: bool) -> None:
+        name = f"{self.type.name} of {self.owner}"
+        given_up = f"{name} has failed {FAILURES} times within {WINDOW:g} s and is given up: {self.type.given_up}"
+        text = f"{name} has failed and was started afresh" if again else given_up
+        self._refuse_all(f"{name} has failed: {cause}")
+        self._warn(f"{text}: {cause}")
+        severity = Event.ERROR if again else Event.CRITICAL
+        event = Event(timestamp=stamp_ns(self._now(t_ns)), severity=severity, text=text, cause=cause, source=self.type.name)
+        self._publish_one(topics.EVENTS.by(self.type.name), self.owner, event, self._now(t_ns))
+
+    def _stand_in(self, t_ns: int) -> None:
+        """In place of an instance that was given up: what is safe, until time starts over or the process is started again."""
+        assert self._bulkhead is not None
+        reason = f"{self.type.name} of {self.owner} was given up: {self._bulkhead.given_up}"
+        self._param_server.refuse_all(reason)
+        self._desk.refuse_due(reason, lambda stamp: True, t_ns)
+        self._stops.take(t_ns)
         for box in self._boxes.values():
             box.take(t_ns)
             for line in box.malformed():
-                self.counters.malformed += 1
-                self._tell_once(line)
-        self._feed_frames(t_ns)
+                self._refused(line)
+        if self.type.stand_in is not None:
+            self._publish(self.type.stand_in(t_ns / NS, reason), t_ns)
+
+    def _step(self, t_ns: int) -> None:
+        for query, reply in self._param_server.answer(lambda stamp: self._is_due(stamp, t_ns)):
+            self._desk.answer(query, PARAM, reply, t_ns)
+        stops = self._take(t_ns)
         missing = tuple(name for name, box in self._boxes.items() if box.is_missing(t_ns))
         self.counters.missing = missing
         if missing:
             self.counters.stale += 1
             self._publish(self.service.stale(t_ns / NS, missing), t_ns)
-            self._refuse_requests(missing, t_ns)
+            reason = f"{self.type.name} waits for {', '.join(missing)}"
+            self._desk.refuse_due(reason, lambda stamp: self._is_due(stamp, t_ns), t_ns)
             return
         self.counters.steps += 1
-        queries, requests = self._take_requests(t_ns)
+        requests = self._desk.take(lambda stamp: self._is_due(stamp, t_ns))
         values = {name: self._boxes[name].value(t_ns) for name in self._valued}
-        outputs = self.service.step(t_ns / NS, **values, **self._frames, **requests, **self._take_answers(t_ns))
+        outputs = self.service.step(t_ns / NS, **values, **stops, **self._frames, **requests, **self._take_answers(t_ns))
         self._publish(outputs, t_ns)
-        for name in self.type.requests:
-            self._reply(name, queries.get(name, []), outputs.get(name, ()), t_ns)
-        self._end_open(t_ns)
+        self._desk.reply(outputs, t_ns)
+
+    def _take(self, t_ns: int) -> dict[str, StopStatus]:
+        """Makes readable what this step may read; returns the inputs that are STOP ALL."""
+        for box in self._boxes.values():
+            box.take(t_ns)
+            for line in box.malformed():
+                self._refused(line)
+        self._feed_frames(t_ns)
+        stops = {name: self._stops.take(t_ns) for name in self._stop_inputs}
+        for line in self._stops.refused():
+            self._refused(line)
+        return stops
 
     def _is_due(self, stamp_ns: int, t_ns: int) -> bool:
         """Whether a request counts at ``t_ns``: one from a clock of its own would else wait for ever, it is taken as it comes."""
         return self._is_readable(stamp_ns, t_ns) or stamp_ns > t_ns + AHEAD_MOST
 
-    def _tell_once(self, line: str) -> None:
+    def _refused(self, line: str) -> None:
         """A broken sender is told of, but not at each of its messages: these are counted."""
+        self.counters.malformed += 1
         if line not in self._told and len(self._told) < TOLD_MOST:
             self._told.add(line)
             self._warn(f"{self.type.name}: {line}")
@@ -220,81 +299,8 @@ class Shell:
             self._answers[name] = deque(x for x in waiting if not self._is_readable(x[0], t_ns))
         return taken
 
-    def _take_requests(self, t_ns: int) -> tuple[dict[str, list[Query]], dict[str, Any]]:
-        """The queries that may be read at ``t_ns`` and, decoded, what ``step`` sees of them."""
-        queries: dict[str, list[Query]] = {}
-        requests: dict[str, Any] = {}
-        for name, request in self.type.requests.items():
-            by_owner = self.type.scope == "world" and request.per_vehicle
-            if not self._queries[name]:
-                requests[name] = {} if by_owner else []
-                continue
-            queries[name] = self._decodable(name, request, t_ns)
-            decoded = [(q.key.split("/")[1], request.message.FromString(q.payload)) for q in queries[name]]
-            if by_owner:
-                by_vehicle: dict[str, list[Message]] = {}
-                for owner, message in decoded:
-                    by_vehicle.setdefault(owner, []).append(message)
-                queries[name].sort(key=lambda q: q.key.split("/")[1])
-                requests[name] = dict(sorted(by_vehicle.items()))
-            else:
-                requests[name] = [message for _, message in decoded]
-        return queries, requests
-
-    def _decodable(self, name: str, request: Request[Any, Any], t_ns: int) -> list[Query]:
-        waiting, good = list(self._queries[name]), []
-        self._queries[name] = deque(q for q in waiting if not self._is_due(q.stamp_ns, t_ns))
-        for query in waiting:
-            if not self._is_due(query.stamp_ns, t_ns):
-                continue
-            try:
-                decode(query.key, query.payload, request.message)
-                good.append(query)
-            except Malformed as error:
-                self.counters.malformed += 1
-                self._tell_once(str(error))
-                reply = request.reply(accepted=False, reason=str(error))
-                query.answer(reply.SerializeToString(deterministic=True), query.stamp_ns)
-        return good
-
-    def _reply(self, name: str, queries: list[Query], replies: Any, t_ns: int) -> None:
-        if not queries and not replies:
-            return
-        flat = [r for owner in sorted(replies) for r in replies[owner]] if isinstance(replies, Mapping) else list(replies)
-        if len(flat) != len(queries):
-            raise ContractError(f"{self.type.name}: {len(queries)} requests '{name}' but {len(flat)} replies")
-        for query, reply in zip(queries, flat, strict=True):
-            if isinstance(reply, Later):
-                self._open.append((query, self.type.requests[name], reply))
-            else:
-                self._answer(query, self.type.requests[name], reply, t_ns)
-
-    def _end_open(self, t_ns: int) -> None:
-        """Answers what has waited for this step."""
-        still = []
-        for query, request, later in self._open:
-            if later.reply is None:
-                still.append((query, request, later))
-            else:
-                self._answer(query, request, later.reply, t_ns)
-        self._open = still
-
-    def _answer(self, query: Query, request: Request[Any, Any], reply: Message, t_ns: int) -> None:
-        """Sends the reply, and both halves as messages of their own, so that logs hold them."""
-        payload = reply.SerializeToString(deterministic=True)
-        query.answer(payload, t_ns)
-        self._put(f"{query.key}/request", request.message, Qos.EVENT, query.payload, t_ns)
-        self._put(f"{query.key}/reply", request.reply, Qos.EVENT, payload, t_ns)
-
-    def _refuse_requests(self, missing: tuple[str, ...], t_ns: int) -> None:
-        for name, request in self.type.requests.items():
-            for query in self._decodable(name, request, t_ns):
-                reply = request.reply(accepted=False, reason=f"{self.type.name} waits for {', '.join(missing)}")
-                self._answer(query, self.type.requests[name], reply, t_ns)
-
     def _publish(self, outputs: Outputs, t_ns: int) -> None:
-        now = t_ns if self.type.clock == "sim" else self.sim_ns
-        stamp = now + round(self.type.latency * NS)
+        stamp = self._now(t_ns) + round(self.type.latency * NS)
         for name, value in outputs.items():
             if name in self.type.requests:
                 continue
@@ -306,6 +312,13 @@ class Shell:
                 for message in messages if isinstance(messages, (list, tuple)) else (messages,):
                     self._send(name, topic, owner, message, stamp)
 
+    def _now(self, t_ns: int) -> int:
+        """The stamp of what a step at ``t_ns`` says."""
+        return t_ns if self.type.clock == "sim" else self.sim_ns
+
+    def _publish_one(self, topic: Topic[Any], owner: str, message: Message, stamp: int) -> None:
+        self._put(topic.at(owner), topic.message, topic.qos, message.SerializeToString(deterministic=True), stamp)
+
     def _send(self, name: str, topic: Topic[Any] | Request[Any, Any], owner: str, message: Message, stamp: int) -> None:
         if not isinstance(message, topic.message):
             raise ContractError(f"{self.type.name}: '{name}' is {type(message).__name__}, declared {topic.message.__name__}")
@@ -314,6 +327,8 @@ class Shell:
         if isinstance(topic, Request):
             self._call(name, topic, owner, message, payload, stamp)
             return
+        if topic.kept:
+            self._left[key] = payload
         self._put(key, topic.message, topic.qos, payload, stamp)
 
     def _put(self, key: str, message: type[Message], qos: Qos, payload: bytes, stamp: int) -> None:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from schemas.convert import array, wxyz
 from schemas.messages import Pose, SimObject
 from schemas.topics import SYSTEM
+from uvf.runtime.params import nearest
 from uvf.runtime.solid import Solid
 
 GREY = (0.6, 0.6, 0.6)
@@ -17,12 +18,14 @@ GREY = (0.6, 0.6, 0.6)
 
 NAME = re.compile(r"[a-z][a-z0-9_]{0,39}")
 FARTHEST = 1e5  # m
+SIZES = {"box": 3, "cylinder": 2, "sphere": 1}
+LARGEST, HEAVIEST = 100.0, 1e5  # m, kg
 
 
 def name_fault(name: str) -> str:
     """Why nothing can be called so; empty = it may."""
     if not NAME.fullmatch(name) or name == SYSTEM:
-        return f"'{name}' is no name: small letters, digits and _, a letter first, 40 at most"
+        return f"{name[:60]!a} is no name: small letters, digits and _, a letter first, 40 at most"
     return ""
 
 
@@ -34,6 +37,22 @@ def pose_fault(pose: Pose) -> str:
     if np.linalg.norm(wxyz(pose.orientation)) < 0.1:
         return "the pose's orientation must be a unit quaternion, or left out"
     return ""
+
+
+def shape_fault(told: SimObject) -> str:
+    """Why nothing has that shape; empty = it may."""
+    if told.shape not in SIZES:
+        return f"there is no shape {told.shape[:60]!a}; {nearest(told.shape, SIZES)}"
+    if len(told.size) != SIZES[told.shape]:
+        return f"a {told.shape} has {SIZES[told.shape]} measures [m], not {len(told.size)}"
+    if not all(1e-3 <= side <= LARGEST for side in told.size):
+        return f"the measures of a {told.shape} must be 0.001 to {LARGEST:g} m"
+    return "" if 0.0 <= told.mass <= HEAVIEST else f"the mass must be 0 (it stands fast) to {HEAVIEST:g} kg"
+
+
+def object_fault(told: SimObject) -> str:
+    """Why what is told of cannot be in a simulation; empty = it can."""
+    return name_fault(told.name) or pose_fault(told.pose) or ("" if told.model else shape_fault(told))
 
 
 def solid_of(told: SimObject) -> Solid:

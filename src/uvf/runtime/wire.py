@@ -5,9 +5,10 @@ from typing import Any, TypeVar
 
 from google.protobuf.message import DecodeError, Message
 
+from schemas.limits import size_of
 from schemas.topics import Topic
 from uvf.runtime.bus import Sample, Sink
-from uvf.runtime.soundness import fault
+from uvf.runtime.validation import error_in
 
 M = TypeVar("M", bound=Message)
 
@@ -17,21 +18,29 @@ class Malformed(Exception):
 
 
 def decode(key: str, payload: bytes, type_: type[M]) -> M:
-    """Raises Malformed, also for numbers that no service can work with."""
+    """Raises Malformed, also for what is beyond the limits of the schema."""
+    if len(payload) > size_of(type_):
+        raise Malformed(f"{key}: {len(payload)} bytes, {size_of(type_)} are the most for {type_.DESCRIPTOR.full_name}")
     try:
         message = type_.FromString(payload)
     except DecodeError as error:
         raise Malformed(f"{key}: broken {type_.DESCRIPTOR.full_name}: {error}") from error
-    if why := fault(message):
+    if why := error_in(message):
         raise Malformed(f"{key}: broken {type_.DESCRIPTOR.full_name}: {why}")
     return message
+
+
+def _shown(text: str) -> str:
+    """A stranger's text in a line of ours: short, and nothing that a terminal would obey."""
+    text = text[:60]
+    return text if text.isprintable() else ascii(text)
 
 
 def decode_sample(sample: Sample, type_: type[M]) -> M:
     """Raises Malformed, also for another type than the one that is due."""
     name = type_.DESCRIPTOR.full_name
     if sample.type_name != name:
-        raise Malformed(f"{sample.key}: {sample.type_name or 'untyped bytes'} where {name} is due")
+        raise Malformed(f"{sample.key}: {_shown(sample.type_name) or 'untyped bytes'} where {name} is due")
     return decode(sample.key, sample.payload, type_)
 
 

@@ -19,6 +19,7 @@ from uvf.runtime.vehicle_file import load_vehicle
 SHIPPED = Path(jsbsim.get_default_root_dir()) / "aircraft"
 KINDS = {"c172x": "its autopilot and actuators with hysteresis", "T37": "two jets", "sgs126": "a glider"}
 SECONDS = 10.0
+pytestmark = pytest.mark.timeout(400)  # the trim of a whole aircraft takes minutes on a busy machine
 
 
 @pytest.fixture(scope="module", params=KINDS)

@@ -1,20 +1,46 @@
 """A page that only remembers, and a ground station that runs on it."""
 
+from dataclasses import dataclass
+from typing import Any
+
+from services.gcs.commands import Join
 from services.gcs.service import GroundStation
 from tests.services.gcs.scripted import Script, demo_site
 from uvf.runtime.shell import Shell
 from uvf.runtime.site import Host
 
+ME, OTHER = 1, 2
+"""Two browsers; the first one has joined from the start."""
+
+
+@dataclass
+class Seen:
+    """All that one browser shows: what is everybody's and what is its own."""
+
+    nodes: Any
+    places: Any
+    html: Any
+    buttons: Any
+    image: Any
+    gimbal: Any
+    vehicle: str
+
 
 class FakePage:
     def __init__(self):
         self.pictures = []
-        self.clicks = []
+        self.clicks = [Join(ME)]
         self.closed = False
 
     @property
     def now(self):
-        return self.pictures[-1]
+        return self.seen_by(ME)
+
+    def seen_by(self, page):
+        picture = self.pictures[-1]
+        own = picture.panels[page]
+        html, buttons = {**picture.html, **own.html}, [*picture.buttons, *own.buttons]
+        return Seen(picture.nodes, picture.places, html, buttons, own.image, own.gimbal, own.vehicle)
 
     def show(self, picture):
         self.pictures.append(picture)

@@ -4,13 +4,12 @@ import pytest
 
 from schemas.messages import CancelRequest, Mode, ModeRequest, NavStatus
 from services.gcs.by_hand import PATIENCE, ByHand
-from services.gcs.commands import Cancel, ClickGround, Rescale, Select, SetMode, Steer, StopAll, TakeWheel
+from services.gcs.commands import Cancel, ClickGround, Join, Leave, LeaveWheel, Rescale, Select, SetMode, Steer, StopAll, TakeWheel
 from services.gcs.viser_script import action_in
-from tests.services.gcs.fakes import Station
+from tests.services.gcs.fakes import ME, OTHER, Station
 from tests.services.gcs.scripted import UAV, UGV
 from uvf.runtime.teleop_hand import START_ANGULAR, START_LINEAR, STILL, ZEROS, Command
 
-ME, OTHER = "page0me", "page0other"
 START = Command(START_LINEAR, START_ANGULAR)
 
 
@@ -23,7 +22,7 @@ def station():
 
 @pytest.fixture
 def driven(station):
-    station.press(TakeWheel(ME))
+    station.press(TakeWheel(ME, UGV))
     return station
 
 
@@ -34,7 +33,7 @@ def modes_asked(station):
 def test_taking_the_wheel_asks_for_mode_manual_and_sends_nothing_yet(driven):
     assert modes_asked(driven) == [Mode.MODE_MANUAL]
     assert driven.script.drives == []
-    assert f"data-driver='{ME}'" in driven.page.now.html["wheel"]
+    assert "data-driver='mine'" in driven.page.now.html["wheel"]
 
 
 def test_a_held_direction_drives_at_the_scales_of_teleop(driven):
@@ -56,11 +55,12 @@ def test_without_a_word_it_is_told_to_stand_after_half_a_second_and_then_nothing
     "action",
     [
         Steer(ME, 0.0, 0.0),
-        TakeWheel(""),
-        Select(UAV),
-        SetMode("Hold"),
+        LeaveWheel(ME),
+        Leave(ME),
+        Select(ME, UAV),
+        SetMode(UGV, "Hold"),
         StopAll(True),
-        ClickGround((3.0, 2.0, 5.0), (0.0, 0.0, -1.0)),
+        ClickGround(UGV, (3.0, 2.0, 5.0), (0.0, 0.0, -1.0)),
     ],
 )
 def test_it_is_told_to_stand_at_once_when(driven, action):
@@ -72,7 +72,7 @@ def test_it_is_told_to_stand_at_once_when(driven, action):
 def test_only_the_driver_is_heard_and_another_page_may_take_over(driven):
     driven.press(Steer(OTHER, 1.0, 0.0), Rescale(OTHER, "f"))
     assert driven.script.drives == []
-    driven.press(TakeWheel(OTHER), Steer(OTHER, 1.0, 0.0))
+    driven.press(Join(OTHER), TakeWheel(OTHER, UGV), Steer(OTHER, 1.0, 0.0))
     assert driven.script.drives[-1] == pytest.approx((START.linear, 0.0))
 
 
@@ -86,8 +86,8 @@ def test_nobody_takes_the_wheel_of_what_would_not_move(station, hindered):
     if hindered == "disarmed":
         station.script.armed[UGV] = False
         station.run(0.2)
-    station.press({"stopped": StopAll(True), "aircraft": Select(UAV)}.get(hindered, Select(UGV)))
-    station.press(TakeWheel(ME))
+    station.press({"stopped": StopAll(True), "aircraft": Select(ME, UAV)}.get(hindered, Select(ME, UGV)))
+    station.press(TakeWheel(ME, UAV if hindered == "aircraft" else UGV))
     station.press(Steer(ME, 1.0, 0.0))
     assert station.script.drives == [] and modes_asked(station) == []
 
@@ -107,30 +107,30 @@ def test_commands_of_nobody_are_none():
 @pytest.mark.parametrize(
     ("said", "action"),
     [
-        ('["wheel:page0me:on", 1]', TakeWheel(ME)),
-        ('["wheel:page0me:off", 1]', TakeWheel("")),
-        ('["steer:page0me:1:-0.5", 1]', Steer(ME, 1.0, -0.5)),
-        ('["scale:page0me:r", 1]', Rescale(ME, "r")),
-        ('["select:burger", 1]', Select("burger")),
-        ('["steer:page0me:2:0", 1]', None),
-        ('["steer:page0me:nan:0", 1]', None),
-        ('["steer:page0me:1", 1]', None),
-        ('["wheel:<i>\'x:on", 1]', None),
+        ('["wheel:on", 1]', TakeWheel(ME, UGV)),
+        ('["wheel:off", 1]', LeaveWheel(ME)),
+        ('["steer:1:-0.5", 1]', Steer(ME, 1.0, -0.5)),
+        ('["scale:r", 1]', Rescale(ME, "r")),
+        ('["select:burger", 1]', Select(ME, "burger")),
+        ('["steer:2:0", 1]', None),
+        ('["steer:nan:0", 1]', None),
+        ('["steer:1", 1]', None),
+        ('["wheel:<i>:on", 1]', None),
         ('["shape:1.2", 1]', None),
         ("{", None),
     ],
 )
 def test_the_words_of_the_page_are_read(said, action):
-    assert action_in(said) == action
+    assert action_in(said, ME, UGV) == action
 
 
 def test_a_goal_can_be_cancelled_while_it_is_driven_to(station):
-    assert "cancel" not in {b.key for b in station.page.now.buttons}
+    assert "Cancel goal" not in {b.label for b in station.page.now.buttons}
     station.script.job = "goal"
     station.run(0.2)
     assert station.model.vehicles[UGV].nav_status.state == NavStatus.DRIVING
-    (button,) = (b for b in station.page.now.buttons if b.key == "cancel")
+    (button,) = (b for b in station.page.now.buttons if b.label == "Cancel goal")
     station.press(button.action)
-    assert button.action == Cancel()
+    assert button.action == Cancel(UGV)
     assert [(n, m.source) for n, m in station.script.asked if isinstance(m, CancelRequest)] == [(UGV, "gcs")]
     assert station.model.vehicles[UGV].order.text == "cancel the goal"

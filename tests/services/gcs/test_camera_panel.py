@@ -10,10 +10,10 @@ from schemas.messages import GimbalCommand, JointState, JointStates
 from services.gcs.camera_panel import SEEN_FOR
 from services.gcs.commands import AimGimbal, Looking, Select, ShowCamera
 from services.gcs.viser_script import action_in
-from tests.services.gcs.fakes import Station
+from tests.services.gcs.fakes import ME, Station
 from tests.services.gcs.scripted import UAV, UGV, demo_site, with_eyes
 
-PAGE = Looking("page1234")
+PAGE = Looking(ME)
 TOPICS = {"camera": topics.IMAGE, "chase": topics.VIEW.by("chase"), "gimbal": topics.VIEW.by("gimbal")}
 
 
@@ -27,7 +27,7 @@ def station():
     station.script.put(UGV, topics.IMAGE, topics.IMAGE.message(data=b"ground", format="jpeg"), 0.5)
     joints = [JointState(name="pan", position=0.5), JointState(name="tilt", position=-0.1)]
     station.script.put(UAV, topics.GIMBAL_JOINTS, JointStates(timestamp=stamp(0.5), joints=joints), 0.5)
-    station.press(Select(UAV))
+    station.press(Select(ME, UAV))
     return station
 
 
@@ -43,9 +43,9 @@ def test_the_picture_is_that_of_the_camera_and_the_vehicle_chosen(station):
     station.press(PAGE)
     assert station.page.now.image == b"air gimbal"
     for name, picture in {"chase": b"air chase", "image": b"air camera", "../secret": b"air gimbal"}.items():
-        station.press(ShowCamera(name))
+        station.press(ShowCamera(ME, name))
         assert station.page.now.image == picture
-    station.press(Select(UGV))
+    station.press(Select(ME, UGV))
     assert (station.page.now.image, station.page.now.gimbal) == (b"ground", None)
 
 
@@ -58,7 +58,7 @@ def test_the_age_of_the_picture_is_told_and_warned_of(station):
 
 def test_a_vehicle_without_cameras_has_no_panel():
     station = Station(site=with_eyes(demo_site(), of="nas10"))
-    station.press(PAGE, Select(UAV), seconds=0.5)
+    station.press(PAGE, Select(ME, UAV), seconds=0.5)
     assert (station.page.now.html["cameras"], station.page.now.image, station.page.now.gimbal) == ("", None, None)
 
 
@@ -66,7 +66,7 @@ def test_sliders_are_there_while_the_gimbals_picture_is(station):
     panel = station.page.now.gimbal
     assert (panel.vehicle, panel.pan, panel.tilt, panel.mode) == (UAV, 0.0, 0.0, "Follow")
     assert panel.tilts == (-0.5, 2.1)
-    station.press(ShowCamera("chase"))
+    station.press(ShowCamera(ME, "chase"))
     assert station.page.now.gimbal is None
 
 
@@ -84,6 +84,6 @@ def test_what_cannot_be_aimed_is_not(station, name, pan):
 
 
 def test_the_pages_own_words():
-    assert action_in('["looks:page1234", 1]') == PAGE
-    assert action_in('["camera:chase", 1]') == ShowCamera("chase")
-    assert action_in('["looks:no such page", 1]') is None
+    assert action_in('["looks:", 1]', ME, UAV) == PAGE
+    assert action_in('["camera:chase", 1]', ME, UAV) == ShowCamera(ME, "chase")
+    assert action_in('["looks:another", 1]', ME, UAV) is None

@@ -4,15 +4,16 @@ import numpy as np
 import pytest
 
 from schemas import topics
-from schemas.messages import ArmRequest, GoalRequest, Mode, ModeRequest, StopCommand
+from schemas.messages import ArmRequest, GoalRequest, Mode, ModeRequest
 from services.gcs.commands import ANSWER_WITHIN, CONFIRM_WITHIN, Arm, ClickGround, Layer, Select, SetMode, StopAll, describe, ground_point
-from tests.services.gcs.fakes import Station
+from tests.services.gcs.fakes import ME, Station
 from tests.services.gcs.scripted import UAV, UGV
+from uvf.runtime.stop_all import StopVoice
 
 
-def click(x, y):
+def click(x, y, vehicle=UGV):
     """A click that looks at the point from the south-west, 10 m up."""
-    return ClickGround((x - 5.0, y - 7.0, 10.0), (5.0, 7.0, -10.0))
+    return ClickGround(vehicle, (x - 5.0, y - 7.0, 10.0), (5.0, 7.0, -10.0))
 
 
 @pytest.fixture
@@ -66,7 +67,8 @@ def test_a_goal_that_would_move_nothing_is_refused_with_the_mend(station):
     station.run(0.2)
     station.press(click(4.0, 3.0))
     assert "arm it first" in station.model.vehicles[UGV].order.reason
-    station.press(StopAll(True), click(4.0, 3.0))
+    station.press(StopAll(True))
+    station.press(click(4.0, 3.0))
     assert "release it first" in station.model.vehicles[UGV].order.reason
     assert station.script.asked == []
 
@@ -82,8 +84,7 @@ def test_a_refusal_is_shown_with_its_reason():
 
 
 def test_a_click_does_not_send_an_aircraft(station):
-    station.press(Select(UAV))
-    station.press(click(4.0, 3.0))
+    station.press(click(4.0, 3.0, UAV))
     assert station.script.asked == []
     assert station.model.vehicles[UAV].order.state == "refused"
 
@@ -103,38 +104,38 @@ def test_a_vehicle_that_fell_silent_gets_no_orders(station):
 
 
 def test_arming_wants_a_second_press(station):
-    station.press(Arm(False))
+    station.press(Arm(ME, UGV, False))
     assert station.script.asked == []
-    station.press(Arm(False))
+    station.press(Arm(ME, UGV, False))
     ((name, request),) = station.script.asked
     assert (name, request.arm, request.force) == (UGV, False, False)
 
 
-@pytest.mark.parametrize("between", [[Select(UAV), Select(UGV)], [Arm(True)]])
+@pytest.mark.parametrize("between", [[Select(ME, UAV), Select(ME, UGV)], [Arm(ME, UGV, True)]])
 def test_a_second_press_counts_only_for_the_same_question(station, between):
-    station.press(Arm(False), *between, Arm(False))
+    station.press(Arm(ME, UGV, False), *between, Arm(ME, UGV, False))
     assert station.script.asked == []
 
 
 def test_a_second_press_must_come_soon(station):
-    station.press(Arm(False))
+    station.press(Arm(ME, UGV, False))
     station.run(CONFIRM_WITHIN)
-    station.press(Arm(False))
+    station.press(Arm(ME, UGV, False))
     assert station.script.asked == []
 
 
 def test_modes_go_to_the_chosen_vehicle(station):
-    station.press(Select(UAV), SetMode("Return"))
+    station.press(Select(ME, UAV), SetMode(UAV, "Return"))
     ((name, request),) = station.script.asked
     assert (name, request.mode) == (UAV, Mode.MODE_RETURN)
 
 
-@pytest.mark.parametrize("action", [SetMode("Return"), SetMode("nonsense"), Select("nobody"), Layer("nothing", True)])
+@pytest.mark.parametrize("action", [SetMode(UGV, "Return"), SetMode(UGV, "nonsense"), Select(ME, "nobody"), Layer("nothing", True)])
 def test_what_a_page_cannot_ask_is_not_sent(station, action):
     layers = set(station.model.layers)
     station.press(action)
     assert station.script.asked == []
-    assert station.model.selected == UGV
+    assert station.page.now.vehicle == UGV
     assert station.model.layers == layers
 
 
@@ -150,11 +151,21 @@ def test_stop_all_goes_out_at_once_and_holds_until_released(station):
 
 def test_another_source_may_release_our_stop_and_engage_its_own(station):
     station.press(StopAll(True), seconds=0.5)
-    for engaged in (False, True):
-        station.script.put("sys", topics.STOP.by("client"), StopCommand(engaged=engaged, source="client"), station.t)
-        station.script.stops.append(StopCommand(engaged=engaged))
+    client = StopVoice("client")
+    for said, stopped in ((client.release(0, station.model.stops), False), (client.engage(0, ""), True)):
+        station.script.put("sys", topics.STOP.by("client"), said, station.t)
+        station.script.stops.append(said)
         station.run(0.3)
-        assert station.model.stopped is engaged
+        assert station.model.stopped is stopped
+
+
+def test_the_page_releases_by_name_what_others_have_engaged(station):
+    station.script.put("sys", topics.STOP.by("launcher"), StopVoice("launcher").engage(0, "slam was given up"), station.t)
+    station.run(0.3)
+    (engagement,) = station.model.stops
+    station.press(StopAll(False), seconds=0.3)
+    assert [(one.source, one.id) for one in station.script.stops[-1].releases] == [("launcher", engagement.id)]
+    assert not station.model.stopped
 
 
 def test_stop_all_needs_no_link(station):
@@ -175,7 +186,7 @@ def test_an_order_that_nobody_answers_ends_as_refused(station):
 
 def test_an_order_without_a_server_is_refused_with_the_reason(station):
     station.script.bus._servers.clear()
-    station.press(SetMode("Hold"))
+    station.press(SetMode(UGV, "Hold"))
     assert "nobody answers" in station.model.vehicles[UGV].order.reason
 
 

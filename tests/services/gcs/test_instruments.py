@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 
 from services.gcs.instruments import CX, CY, PX_PER_DEGREE, Drive, Flight, drive_panel, primary_flight_display
+from services.gcs.markup import html
 
-LEVEL = Flight(0.0, 0.0, np.pi / 2, 24.3, 60.0, 0.4, 25.0, "MISSION", True)
-STILL = Drive(0.0, 0.0, 0.0, 0.5, 2.0, None, "HOLD", False)
+LEVEL = Flight(0.0, 0.0, np.pi / 2, 24.3, 60.0, 0.4, 25.0, html("MISSION"), True)
+STILL = Drive(0.0, 0.0, 0.0, 0.5, 2.0, None, html("HOLD"), False)
 
 
 def texts(svg):

@@ -8,7 +8,7 @@ from schemas.convert import quaternion
 from schemas.messages import Clock, Event, NavState, Process, Processes, Vector3
 from services.gcs import panels, status
 from services.gcs.commands import ClickGround, Select, StopAll
-from tests.services.gcs.fakes import Station
+from tests.services.gcs.fakes import ME, Station
 from tests.services.gcs.scripted import UAV, UGV
 from uvf.maths.rotations import from_euler
 
@@ -83,7 +83,7 @@ def test_a_card_says_disarmed_before_its_mode(station):
 
 def test_the_instrument_is_that_of_the_chosen_vehicle(station):
     assert "gcs-drive" in station.page.now.html["instrument"]
-    station.press(Select(UAV))
+    station.press(Select(ME, UAV))
     assert "gcs-pfd" in station.page.now.html["instrument"]
 
 
@@ -102,7 +102,7 @@ def test_crosswind_shows_as_an_angle_between_nose_and_course(station):
 
 
 def test_the_last_order_is_shown_with_its_fate(station):
-    station.press(ClickGround((4.0, 3.0, 9.0), (0.0, 0.0, -1.0)), seconds=0.5)
+    station.press(ClickGround(UGV, (4.0, 3.0, 9.0), (0.0, 0.0, -1.0)), seconds=0.5)
     assert "✓ go to (4.0, 3.0) m – accepted" in station.page.now.html["orders"]
     assert "go to (4.0, 3.0) m: accepted" in station.page.now.html["log"]
 
@@ -110,7 +110,7 @@ def test_the_last_order_is_shown_with_its_fate(station):
 def test_a_refused_order_is_shown_escaped():
     station = Station(accept=False)
     station.run(0.5)
-    station.press(ClickGround((4.0, 3.0, 9.0), (0.0, 0.0, -1.0)), seconds=0.5)
+    station.press(ClickGround(UGV, (4.0, 3.0, 9.0), (0.0, 0.0, -1.0)), seconds=0.5)
     assert "refused: the &lt;goal&gt; lies inside a wall" in station.page.now.html["orders"]
     assert "refused: the &lt;goal&gt; lies inside a wall" in station.page.now.html["bar"]
 
@@ -153,7 +153,7 @@ def test_text_from_the_bus_is_never_markup(station):
         vehicle.status.command_source = vehicle.status.reason = EVIL
     station.model.vehicles[UGV].nav_status.job = station.model.vehicles[UGV].nav_status.reason = EVIL
     for chosen in (UGV, UAV):
-        station.page.clicks.append(Select(chosen))
+        station.page.clicks.append(Select(ME, chosen))
         station.run(0.5, silent=True)
         html = all_html(station)
         assert "<img" not in html

@@ -8,7 +8,7 @@ from schemas import topics
 from schemas.messages import Event, Health, Process, Processes
 from services.gcs.commands import SetMode
 from tests.services.gcs.fakes import Station
-from tests.services.gcs.scripted import UAV
+from tests.services.gcs.scripted import UAV, UGV
 
 
 @pytest.fixture
@@ -53,7 +53,7 @@ def test_what_a_running_process_waits_for_stands_under_it(station):
 
 
 def test_what_the_operator_did_stays_on_top_of_any_number_of_events(station):
-    station.press(SetMode("Hold"))
+    station.press(SetMode(UGV, "Hold"))
     for i in range(300):
         station.script.say(UAV, f"mission item {i} reached", Event.INFO, t=float(i))
         station.run(0.05)

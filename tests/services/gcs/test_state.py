@@ -15,8 +15,10 @@ from tests.services.gcs.scripted import UAV, UGV, demo_site, uav_at, ugv_at
 from uvf.runtime.vehicle_file import Mount
 
 
-def test_a_ground_vehicle_is_chosen_first():
-    assert Model(demo_site()).selected == UGV
+def test_a_browser_shows_a_ground_vehicle_first():
+    model = Model(demo_site())
+    model.join(7)
+    assert model.chosen_by(model.sessions[7]).name == UGV
 
 
 def test_vehicles_are_where_they_say():

@@ -64,15 +64,15 @@ def test_stop_all_says_since_when_by_whom_and_who_heeds_it(station):
     assert "not engaged" in station.page.now.html["stop"]
     station.press(StopAll(True), seconds=0.5)
     stop = station.page.now.html["stop"]
-    assert "by this page, 00:00:01" in stop and f"heeded by {UGV}, {UAV}" in stop and "Release STOP" in stop
+    assert "by this page (pressed on the page), 00:00:01" in stop and f"heeded by {UGV}, {UAV}" in stop and "Release STOP" in stop
     station.press(StopAll(False), seconds=0.5)
     assert "not engaged" in station.page.now.html["stop"]
 
 
 def test_a_stop_of_somebody_else_is_theirs_and_stands_in_the_log(station):
-    command = StopCommand(engaged=True, source="launcher", timestamp=Timestamp(seconds=1))
+    command = StopCommand(engaged=True, source="launcher", reason="slam was given up", timestamp=Timestamp(seconds=1))
     station.script.put("sys", topics.STOP.by("launcher"), command, 1.0)
     station.run(0.5)
-    assert told(station) == ["■ STOP ALL ENGAGED by the launcher, because a service failed, 00:00:01"]
+    assert told(station) == ["■ STOP ALL ENGAGED by the launcher (slam was given up), 00:00:01"]
     assert f"not confirmed by {UGV}, {UAV}" in station.page.now.html["stop"]
-    assert "STOP ALL engaged by launcher" in station.page.now.html["log"]
+    assert "STOP ALL engaged by launcher (slam was given up)" in station.page.now.html["log"]

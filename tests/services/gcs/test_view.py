@@ -84,7 +84,7 @@ def test_the_path_the_scan_and_the_goal_are_drawn(station):
 
 
 def test_an_accepted_click_moves_the_goal(station):
-    station.press(ClickGround((4.0, 3.0, 9.0), (0.0, 0.0, -1.0)), seconds=0.3)
+    station.press(ClickGround(UGV, (4.0, 3.0, 9.0), (0.0, 0.0, -1.0)), seconds=0.3)
     assert station.page.now.nodes[f"/goal/{UGV}"].points[:, :2].mean(axis=0) == pytest.approx((4.0, 3.0), abs=0.05)
 
 

@@ -2,8 +2,9 @@
 
 import asyncio
 import http.client
-import json
 import time
+import warnings
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -11,14 +12,15 @@ import pytest
 import websockets
 
 from services.gcs.cameras import cameras
-from services.gcs.commands import SetMode, StopAll
-from services.gcs.drawing import Button, Picture, Points, Polyline
+from services.gcs.commands import Join, Leave, Select, SetMode, StopAll, TakeWheel
+from services.gcs.drawing import Button, Panel, Picture, Points, Polyline
+from services.gcs.markup import html
 from services.gcs.state import Model, Placed
 from services.gcs.viser_page import ViserPage
 from services.gcs.viser_script import action_in, shape_in
-from tests.services.gcs.fakes import Station
+from tests.services.gcs.fakes import ME, Station
 from tests.services.gcs.scripted import UAV, demo_site
-from tests.services.gcs.wire import connect, free_port, join
+from tests.services.gcs.wire import Browser, connect, free_port, join, until
 from uvf.runtime.address import Address
 from uvf.runtime.params import BadInput
 
@@ -41,30 +43,64 @@ def names(messages):
     return {m["name"] for m in messages if "name" in m and "props" in m}
 
 
+@pytest.fixture
+def browser(page):
+    browser = Browser(page.port)
+    browser.page = wait_for_actions(page)[0].page
+    yield browser
+    browser.close()
+
+
 def test_a_late_joiner_gets_the_whole_picture(page):
     station = Station()
     station.run(3.0)
-    page.show(station.page.now)
+    page.show(station.page.pictures[-1])
     messages = join(page.port)
     assert station.page.now.nodes.keys() <= names(messages)
     places = {m["name"]: m["position"] for m in of_type(messages, "SetPositionMessage")}
     assert places[f"/vehicles/{UAV}"] == pytest.approx(station.page.now.places[f"/vehicles/{UAV}"].position)
-    labels = {m["props"]["label"] for m in of_type(messages, "GuiButtonMessage")}
-    assert {"STOP ALL", "Release STOP", "Hold", "Mission", "Manual", "Disarm burger"} <= labels
-    html = json.dumps(of_type(messages, "GuiHtmlMessage", "GuiUpdateMessage"), default=str)
-    assert "gcs-drive" in html and "Select burger" in html and "gcs-bar-source" in html
+    assert {m["props"]["label"] for m in of_type(messages, "GuiButtonMessage")} == {"STOP ALL", "Release STOP"}
+
+
+def test_a_browser_gets_its_own_panel_and_its_own_script(page, browser):
+    station = Station()
+    station.run(3.0)
+    shown = station.page.pictures[-1]
+    page.show(replace(shown, panels={browser.page: shown.panels[ME]}))
+    assert until(lambda: {"STOP ALL", "Release STOP", "Hold", "Mission", "Manual", "Disarm burger"} == browser.labels())
+    assert until(lambda: "gcs-drive" in browser.html() and "Select burger" in browser.html() and "gcs-bar-source" in browser.html())
+    assert len(browser.scripts) == 1
+
+
+def test_another_browser_gets_none_of_it(page, browser):
+    page.show(Picture(panels={browser.page: Panel("burger", {"facts": html("mine")}, [Button("b", "Hold", SetMode("burger", "Hold"))])}))
+    assert until(lambda: "mine" in browser.html() and browser.labels() == {"Hold"})
+    assert "mine" not in str(join(page.port)) and "Hold" not in str(join(page.port))
+
+
+def test_who_goes_is_told_of_and_forgotten(page):
+    browser = Browser(page.port)
+    (joined,) = wait_for_actions(page)
+    page.show(Picture(panels={joined.page: Panel("burger")}))
+    assert isinstance(joined, Join) and joined.page in page._panels
+    browser.close()
+    assert wait_for_actions(page) == [Leave(joined.page)]
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        page.show(Picture(panels={joined.page: Panel("burger")}))
+    assert not page._panels
 
 
 def test_only_changes_are_sent(page):
     station = Station()
     station.run(3.0)
-    page.show(station.page.now)
+    page.show(station.page.pictures[-1])
     buffer = page._server._websock_server._broadcast_buffer
     before = buffer.message_counter
-    page.show(station.page.now)
+    page.show(station.page.pictures[-1])
     assert buffer.message_counter == before
     station.run(0.05)
-    page.show(station.page.now)
+    page.show(station.page.pictures[-1])
     assert 0 < buffer.message_counter - before < 40
 
 
@@ -89,11 +125,6 @@ def test_a_longer_line_and_other_points_replace_the_old_ones(page):
     assert len(of_type([m for m in messages if m.get("name") == "/b"], "PointCloudMessage")) == 1
 
 
-def press(page, label):
-    button = next(handle for handle, b in page._buttons.values() if b.label == label)
-    join(page.port, {"type": "GuiUpdateMessage", "uuid": button._impl.uuid, "updates": {"value": True}})
-
-
 def wait_for_actions(page):
     deadline = time.monotonic() + 5
     while time.monotonic() < deadline:
@@ -103,15 +134,33 @@ def wait_for_actions(page):
     return []
 
 
-def test_a_button_asks_for_what_it_is_now(page):
-    page.show(Picture(buttons=[Button("b", "Hold", SetMode("Hold"))]))
+def test_a_button_asks_for_what_it_is_now(page, browser):
+    page.show(Picture(buttons=[Button("b", "Hold", SetMode("burger", "Hold"))]))
     page.show(Picture(buttons=[Button("b", "STOP", StopAll(True), lit=True, colour="red")]))
-    press(page, "STOP")
+    assert until(lambda: browser.labels() == {"STOP"})
+    browser.press("STOP")
     assert wait_for_actions(page) == [StopAll(True)]
 
 
+def test_a_greyed_out_button_asks_for_nothing_whoever_presses_it(page, browser):
+    page.show(Picture(buttons=[Button("b", "Release", StopAll(False), enabled=False), Button("c", "STOP", StopAll(True))]))
+    assert until(lambda: len(browser.labels()) == 2)
+    browser.press("Release")
+    browser.press("STOP")
+    assert wait_for_actions(page) == [StopAll(True)]
+
+
+def test_what_a_browser_says_counts_for_itself_and_for_what_it_is_shown(page, browser):
+    page.show(Picture(panels={browser.page: Panel("burger")}))
+    assert until(lambda: browser.scripts)
+    browser.say("wheel:on")
+    assert wait_for_actions(page) == [TakeWheel(browser.page, "burger")]
+    browser.say("select:milvus")
+    assert wait_for_actions(page) == [Select(browser.page, "milvus")]
+
+
 def test_a_button_that_is_gone_is_gone(page):
-    page.show(Picture(buttons=[Button("b", "Hold", SetMode("Hold"))]))
+    page.show(Picture(buttons=[Button("b", "Hold", SetMode("burger", "Hold"))]))
     page.show(Picture())
     assert "Hold" not in {m["props"]["label"] for m in of_type(join(page.port), "GuiButtonMessage")}
 
@@ -155,7 +204,7 @@ def test_a_closed_page_frees_its_port_for_the_next():
 
 @pytest.mark.parametrize("said", ["nonsense", "[]", '{"a": 1}', "[1]", '["arm:burger"]', '["stop:burger"]'])
 def test_a_page_can_say_no_more_than_it_needs_to(said):
-    assert action_in(said) is None
+    assert action_in(said, 1, "burger") is None
 
 
 @pytest.mark.parametrize(

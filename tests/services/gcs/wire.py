@@ -1,7 +1,10 @@
 """A client of the page's websocket that is no browser: joins, and reads what is sent."""
 
 import asyncio
+import json
 import socket
+import threading
+import time
 
 import msgspec
 import viser
@@ -35,7 +38,12 @@ def decode(batch):
 
 def connect(port, origin=None, headers=None):
     return websockets.connect(
-        f"ws://127.0.0.1:{port}", subprotocols=[f"viser-v{viser.__version__}"], max_size=None, origin=origin, additional_headers=headers
+        f"ws://127.0.0.1:{port}",
+        subprotocols=[f"viser-v{viser.__version__}"],
+        max_size=None,
+        close_timeout=1.0,
+        origin=origin,
+        additional_headers=headers,
     )
 
 
@@ -52,3 +60,83 @@ async def _join(port, send):
 def join(port, *send):
     """All messages that a page gets when it joins, to the end of the replay."""
     return asyncio.run(_join(port, send))
+
+
+class Browser:
+    """A client that stays connected and keeps what it is sent: of the GUI the newest of each property."""
+
+    def __init__(self, port):
+        self.port = port
+        self.elements = {}
+        self.scripts = []
+        self._loop = asyncio.new_event_loop()
+        self._thread = threading.Thread(target=self._loop.run_forever, daemon=True)
+        self._thread.start()
+        self._socket = self._do(self._open())
+        self._reading = asyncio.run_coroutine_threadsafe(self._read(), self._loop)
+
+    def _do(self, coroutine):
+        return asyncio.run_coroutine_threadsafe(coroutine, self._loop).result(20)
+
+    async def _open(self):
+        socket = await connect(self.port)
+        await socket.send(msgspec.msgpack.encode(CAMERA))
+        return socket
+
+    async def _read(self):
+        async for batch in self._socket:
+            for message in decode(batch):
+                self._take(message)
+
+    def _take(self, message):
+        kind = message["type"]
+        if kind == "GuiUpdateMessage" and message["uuid"] in self.elements:
+            self.elements[message["uuid"]] |= message["updates"]
+        elif kind == "GuiRemoveMessage":
+            self.elements.pop(message["uuid"], None)
+        elif kind.startswith("Gui") and "props" in message:
+            self.elements[message["uuid"]] = {**message["props"], "value": message.get("value"), "kind": kind}
+        elif kind == "RunJavascriptMessage":
+            self.scripts.append(message["source"])
+
+    @property
+    def alive(self):
+        return not self._reading.done()
+
+    def html(self):
+        """All words on show."""
+        return "".join(e["content"] for e in list(self.elements.values()) if e["kind"] == "GuiHtmlMessage")
+
+    def button(self, label):
+        """Its id; None when there is no such button."""
+        found = [uuid for uuid, e in list(self.elements.items()) if e["kind"] == "GuiButtonMessage" and e["label"] == label]
+        return found[-1] if found else None
+
+    def labels(self):
+        return {e["label"] for e in list(self.elements.values()) if e["kind"] == "GuiButtonMessage"}
+
+    def send(self, message):
+        self._do(self._socket.send(msgspec.msgpack.encode(message)))
+
+    def press(self, label):
+        self.send({"type": "GuiUpdateMessage", "uuid": self.button(label), "updates": {"value": True}})
+
+    def say(self, text):
+        """What the page's own script would say through its hidden field."""
+        bridge = next(uuid for uuid, e in list(self.elements.items()) if e["kind"] == "GuiTextMessage")
+        self.send({"type": "GuiUpdateMessage", "uuid": bridge, "updates": {"value": json.dumps([text, time.monotonic()])}})
+
+    def close(self):
+        self._do(self._socket.close())
+        self._loop.call_soon_threadsafe(self._loop.stop)
+        self._thread.join(5)
+
+
+def until(holds, seconds=10.0):
+    """Whether it comes true in time."""
+    end = time.monotonic() + seconds
+    while not holds():
+        if time.monotonic() > end:
+            return False
+        time.sleep(0.02)
+    return True

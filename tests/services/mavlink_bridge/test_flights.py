@@ -41,6 +41,7 @@ from tests.services.mavlink_bridge.flown import Sides
 from uvf.maths.rotations import inverse, multiply
 from uvf.runtime.mission_file import Job
 from uvf.runtime.site import ROOT, Member, load_site
+from uvf.runtime.stop_all import StopVoice
 
 SPEED = 30.0  # m/s, faster than it flies
 
@@ -177,11 +178,12 @@ def test_a_parameter_of_the_autopilot_is_read_and_set(plane):
 def test_stop_all_makes_it_hold_and_nothing_else_is_taken_until_the_release(plane):
     plane.ask(topics.SET_MODE, ModeRequest(mode=Mode.MODE_MISSION))
     stop = plane.bus.publisher(topics.STOP.by("gcs").at("sys"), StopCommand.DESCRIPTOR.full_name, topics.STOP.qos)
-    stop.put(StopCommand(engaged=True, source="gcs").SerializeToString(), 0)
+    voice = StopVoice("gcs")
+    stop.put(voice.engage(0, "").SerializeToString(), 0)
     assert plane.run(3.0, lambda: mode(plane) == Mode.MODE_HOLD and plane.newest(topics.STATUS).stopped)
     refused = plane.ask(topics.SET_MODE, ModeRequest(mode=Mode.MODE_MISSION))
     assert not refused.accepted and "STOP ALL" in refused.reason
-    stop.put(StopCommand(engaged=False, source="gcs").SerializeToString(), 0)
+    stop.put(voice.release(0, plane.newest(topics.STATUS).stops).SerializeToString(), 0)
     assert plane.ask(topics.SET_MODE, ModeRequest(mode=Mode.MODE_RETURN)).accepted
     assert plane.run(1.0, lambda: mode(plane) == Mode.MODE_RETURN)
 

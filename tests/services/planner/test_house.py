@@ -5,7 +5,7 @@ import pytest
 
 from schemas import topics
 from schemas.convert import occupancy_cells, yaw_of
-from schemas.messages import CancelRequest, GoalRequest, Mode, NavStatus, StopCommand, Vector3
+from schemas.messages import CancelRequest, GoalRequest, Mode, NavStatus, Vector3
 from services.autopilot.ground.build import hosts
 from services.planner.build import build as build_planner
 from services.sim_ground.build import build as build_simulator
@@ -15,6 +15,7 @@ from uvf.maths.planar import inverse, transform
 from uvf.runtime.lockstep import Lockstep
 from uvf.runtime.shell import Shell
 from uvf.runtime.site import ROOT, load_site
+from uvf.runtime.stop_all import StopVoice
 from uvf.runtime.world_geometry import floor_plan, reachable_floor
 
 VEHICLE = "burger"
@@ -31,7 +32,9 @@ class House:
         self.run = Lockstep([host for part in build for host in part(self.site)])
         self.bus = self.run.bus
         self.start = self.site.members[VEHICLE].entry.start
+        self.voice = StopVoice("client")
         kept = {"truth": topics.TRUTH, "pose": topics.POSE, "contact": topics.CONTACT, "map": topics.MAP, "nav": topics.NAV_STATUS}
+        kept |= {"status": topics.STATUS}
         self.kept = {name: [] for name in kept}
         for name, topic in kept.items():
             self.bus.subscribe(topic.at(VEHICLE), topic.qos, self._keep(self.kept[name], topic.message))
@@ -45,8 +48,9 @@ class House:
         return np.array([(t, m.position.x, m.position.y) for t, m in self.kept["truth"]])
 
     def put_stop(self, t, engaged):
-        message = StopCommand(engaged=engaged, source="test")
-        key = topics.STOP.by("test").at("sys")
+        stops = self.kept["status"][-1][1].stops
+        message = self.voice.engage(0, "") if engaged else self.voice.release(0, stops)
+        key = topics.STOP.by("client").at("sys")
         self.bus.publisher(key, message.DESCRIPTOR.full_name, topics.STOP.qos).put(message.SerializeToString(), round(t * 1e9))
 
     def ask_goal(self, t, x, y):

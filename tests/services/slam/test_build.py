@@ -11,6 +11,7 @@ from services.autopilot.ground.service import GroundAutopilot
 from services.planner.build import build as build_planner
 from services.slam import build as slam_build
 from services.slam.build import build as build_slam
+from tests.stops import NOBODY
 from uvf.runtime.mission_file import Job, Waypoint
 from uvf.runtime.params import BadInput
 from uvf.runtime.site import ROOT, load_site
@@ -85,9 +86,9 @@ def test_a_flying_mission_is_refused_for_a_ground_vehicle(site):
 
 def test_a_vehicle_with_a_job_begins_armed_and_one_without_does_not(site):
     nothing = dict.fromkeys(
-        ("teleop", "mavlink", "gcs", "client", "offboard", "planner", "stop", "pose", "link", "ticks", "scan", "correction", "battery")
+        ("teleop", "mavlink", "gcs", "client", "offboard", "planner", "pose", "link", "ticks", "scan", "correction", "battery")
     )
-    asked = {"imu": [], **{request: [] for request in GroundAutopilot.requests}}
+    asked = {"imu": [], "stop": NOBODY, **{request: [] for request in GroundAutopilot.requests}}
     for job, armed, mode in (({"explore": True}, True, Mode.MODE_MISSION), ({}, False, Mode.MODE_HOLD)):
         status = hosts(with_job(site, **job))[0].make().step(0.02, **nothing, **asked)["status"]
         assert (status.armed, status.mode) == (armed, mode)

@@ -1,5 +1,6 @@
 """What a log tells of each aircraft, as arrays over time: thinned out while it is read, so that hours fit into memory."""
 
+import contextlib
 import tempfile
 from array import array
 from collections.abc import Callable, Iterator
@@ -11,9 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from schemas.messages import Battery, Event, Kind, Mission, MissionProgress, NavState, PosesInFrame, SurfaceCommand, VehicleStatus
+from schemas.topics import SYSTEM
 from uvf.runtime.bus import Sample
 from uvf.runtime.params import BadInput
 from uvf.runtime.recording import log_metadata, read_log, recover
+from uvf.runtime.wire import Malformed, decode_sample
 
 Floats = NDArray[np.float64]
 
@@ -115,18 +118,19 @@ class History:
     kind: int = Kind.KIND_UNSPECIFIED
 
     def heard(self, name: str, sample: Sample) -> None:
+        """Raises Malformed."""
         t = sample.stamp_ns / 1e9
         if name in STREAMS:
             stream = STREAMS[name]
-            message = stream.message.FromString(sample.payload)
+            message = decode_sample(sample, stream.message)
             self.series[name].add(t, stream.numbers(message), stream.period)
             self.kind = message.kind if name == "state/vehicle" else self.kind
         elif name.startswith("state/events/"):
-            self.events.append((t, Event.FromString(sample.payload)))
+            self.events.append((t, decode_sample(sample, Event)))
         elif name == "mission/plan":
-            self.plans.append(Mission.FromString(sample.payload))
+            self.plans.append(decode_sample(sample, Mission))
         elif name == "nav/path" and self.path is None:
-            path = PosesInFrame.FromString(sample.payload)
+            path = decode_sample(sample, PosesInFrame)
             self.path = path if path.poses else None
 
     def rows(self, name: str) -> Floats:
@@ -163,9 +167,12 @@ def histories(logs: list[Path]) -> dict[str, History]:
     found: dict[str, History] = {}
     for log in logs:
         for sample in _samples(log):
-            _, owner, name = sample.key.split("/", 2)
-            if owner != "sys":
-                found.setdefault(owner, History(owner)).heard(name, sample)
+            _, owner, *name = sample.key.split("/", 2)
+            if owner == SYSTEM or not name:
+                continue
+            # What is broken or of another type was refused by every service, too.
+            with contextlib.suppress(Malformed):
+                found.setdefault(owner, History(owner)).heard(name[0], sample)
     return dict(sorted(found.items()))
 
 

@@ -15,6 +15,7 @@ from services.slam.evaluation.run import Run, run_over
 from services.slam.logs.laser_log import LaserLog
 from services.slam.logs.opening import open_log
 from services.slam.methods import make_method, method_params
+from services.slam.resumable import Noting
 from uvf.launch import settings
 from uvf.launch.slam.known import known_of
 from uvf.launch.slam.results import Made, write_results
@@ -88,6 +89,7 @@ def _watched(log: LaserLog, name: str, params: Params) -> Run:
         TextColumn("{task.completed} of {task.total} readings"),
         TimeRemainingColumn(),
     )
+    method = make_method(name, params)
     with Progress(*columns, console=console, transient=True) as bar:
         task = bar.add_task(f"{log.name}, {name}", total=len(log))
 
@@ -95,7 +97,10 @@ def _watched(log: LaserLog, name: str, params: Params) -> Run:
             if done % SHOWN_EVERY == 0:
                 bar.update(task, completed=done)
 
-        return run_over(log, make_method(name, params), watch)
+        run = run_over(log, method, watch)
+    for note in method.notes if isinstance(method, Noting) else []:
+        typer.echo(f"uvf: {note}", err=True)
+    return run
 
 
 def _table(heading: str, rows: Rows) -> Table:

@@ -13,8 +13,8 @@ from services.sim_air.states import Runaway, Start
 from services.sim_air.trim import Trim
 from uvf.maths.geodesy import LocalTangent
 from uvf.runtime.air_file import AirBody, Surface
-from uvf.runtime.guarded import Died, guarded
 from uvf.runtime.params import BadInput, Place
+from uvf.runtime.subprocess_jobs import Died, run_in_subprocess
 from uvf.runtime.vehicle_layers import folders_of, holding
 
 SEA_LEVEL = LocalTangent.from_degrees(0.0, 0.0, 0.0)
@@ -32,13 +32,15 @@ WEAK = 1e-3  # rad/s^2
 def aircraft_faults(folder: Path, air: AirBody) -> tuple[list[str], list[str]]:
     """(faults, notes), a line each; also of a model at which the engine ends its process."""
     try:
-        return guarded(lambda: _aircraft_faults(folder, air))
+        return run_in_subprocess(_aircraft_faults, str(folder), air)
     except Died as error:
         line = f"JSBSim ends the process with this model ({error}); look at what was changed last, and at its own names and tables"
         return [f"{folder / 'vehicle.yaml'}: air: model: {line}"], []
 
 
-def _aircraft_faults(folder: Path, air: AirBody) -> tuple[list[str], list[str]]:
+def _aircraft_faults(vehicle: str, air: AirBody) -> tuple[list[str], list[str]]:
+    """vehicle: path of its folder."""
+    folder = Path(vehicle)
     models, place = holding(folders_of(folder), air.model), Place(str(folder / "vehicle.yaml"), ("air",))
     path = models / air.model / f"{air.model}.xml"
     try:

@@ -19,8 +19,8 @@ from uvf.launch.worlds.notes import Notes
 from uvf.maths.atmosphere import RHO0
 from uvf.maths.geodesy import GRAVITY
 from uvf.runtime.air_file import AirBody, Commands
-from uvf.runtime.guarded import Died, guarded
 from uvf.runtime.params import BadInput
+from uvf.runtime.subprocess_jobs import Died, run_in_subprocess
 
 NOTES = "import.txt"
 LIFT = 0.5  # coefficient at which the speed is first tried
@@ -43,7 +43,7 @@ def import_aircraft(path: Path, folder: Path) -> list[str]:
         made.mkdir()
         model = copy_model(path, made)
         try:
-            data, lines = guarded(lambda: _described(made, model))
+            data, lines = run_in_subprocess(_described, str(made), model)
         except Died as error:
             raise BadInput(f"{path}: JSBSim ends the process with this model ({error}); mend the model") from error
         data["about"] = f"{path.stem}, imported from {path.name} of JSBSim"
@@ -55,8 +55,9 @@ def import_aircraft(path: Path, folder: Path) -> list[str]:
     return lines
 
 
-def _described(folder: Path, model: str) -> tuple[dict[str, Any], list[str]]:
-    notes = Notes()
+def _described(vehicle: str, model: str) -> tuple[dict[str, Any], list[str]]:
+    """vehicle: path of its folder. What its file says, and the notes."""
+    folder, notes = Path(vehicle), Notes()
     mass, wing = weight_and_wing(folder / model / f"{model}.xml")
     rate, lag = SERVOS[mass < LIGHT]
     speed = float(f"{math.sqrt(2 * mass * GRAVITY / (RHO0 * wing * LIFT)):.2g}")

@@ -1,14 +1,19 @@
 """UDP to ground stations: the vehicle speaks first to configured peers, and answers whoever else calls."""
 
+import math
 import socket
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Protocol
+
+from uvf.runtime.mavlink.bounded import make_room
 
 Peer = tuple[str, int]
 """Address and port of a ground station."""
 
 FORGET_AFTER = 60.0  # s of silence, learned peers only
 MOST_LEARNED = 32
+ENGAGED_FOR = 2.0  # s since the last word of a transfer, or of sticks
 DATAGRAM_BYTES = 65536
 DATAGRAMS_PER_CALL = 500
 
@@ -26,12 +31,42 @@ class Link(Protocol):
     def peers(self, t: float) -> list[Peer]:
         """Who hears what is meant for everybody."""
 
-    def keep(self, t: float, peer: Peer) -> None:
-        """Something sound has come from a peer, in the last call: it hears the vehicles while it says something now and then."""
+    def keep(self, t: float, peer: Peer, engaged: bool = False) -> None:
+        """Something sound has come from a peer, in the last call: it hears the vehicles while it says something now and then.
+
+        engaged: it transfers something, or steers.
+        """
 
     def send(self, datagram: bytes, peer: Peer) -> None: ...
 
     def close(self) -> None: ...
+
+
+@dataclass
+class Caller:
+    """When a peer was heard, and when it transferred something or steered [s]."""
+
+    heard: float
+    engaged: float = -math.inf
+
+
+class Callers:
+    """Who has called and is heard now and then: never more than a few, however many strangers there are."""
+
+    def __init__(self) -> None:
+        self._heard: dict[Peer, Caller] = {}
+
+    def keep(self, t: float, peer: Peer, engaged: bool = False) -> None:
+        """The one that has been idle longest makes room; one that transfers or steers after all that do not."""
+        make_room(self._heard, peer, MOST_LEARNED, lambda p: (t - self._heard[p].engaged <= ENGAGED_FOR, self._heard[p].heard))
+        caller = self._heard.setdefault(peer, Caller(t))
+        caller.heard = t
+        if engaged:
+            caller.engaged = t
+
+    def peers(self, t: float) -> list[Peer]:
+        self._heard = {peer: caller for peer, caller in self._heard.items() if t - caller.heard <= FORGET_AFTER}
+        return list(self._heard)
 
 
 class UdpLink:
@@ -46,9 +81,9 @@ class UdpLink:
         loopback = all(host.startswith("127.") for host, _ in self._targets)
         self._own = _bound(("127.0.0.1" if loopback else "0.0.0.0", 0))
         self._sockets = [self._own]
-        self._learned: dict[Peer, tuple[float, socket.socket]] = {}
-        self._arrived: dict[Peer, socket.socket] = {}
-        """Where the datagrams of the last call have come in."""
+        self._callers = Callers()
+        self._called_at: dict[Peer, socket.socket] = {}
+        """Where the callers, and whoever else has sent something in the last call, have come in."""
         if listen is not None:
             try:
                 self._sockets.append(_bound(listen))
@@ -66,11 +101,9 @@ class UdpLink:
         return [sock.getsockname() for sock in self._sockets]
 
     def receive(self, t: float) -> list[tuple[bytes, Peer]]:
-        self._arrived.clear()
-        arrived = [(data, peer) for sock in self._sockets for data, peer in self._drain(sock)]
-        for peer in [p for p, (heard, _) in self._learned.items() if t - heard > FORGET_AFTER]:
-            del self._learned[peer]
-        return arrived
+        callers = self._callers.peers(t)
+        self._called_at = {peer: sock for peer, sock in self._called_at.items() if peer in callers}
+        return [(data, peer) for sock in self._sockets for data, peer in self._drain(sock)]
 
     def _drain(self, sock: socket.socket) -> list[tuple[bytes, Peer]]:
         arrived: list[tuple[bytes, Peer]] = []
@@ -81,22 +114,20 @@ class UdpLink:
                 break
             except OSError:
                 continue  # "connection refused" of an earlier datagram: nobody listens there yet
-            self._arrived[peer] = sock
+            self._called_at[peer] = sock
             arrived.append((data, peer))
         return arrived
 
-    def keep(self, t: float, peer: Peer) -> None:
-        if peer in self._targets:
-            return
-        if peer not in self._learned and len(self._learned) >= MOST_LEARNED:
-            del self._learned[min(self._learned, key=lambda p: self._learned[p][0])]
-        self._learned[peer] = (t, self._arrived[peer])
+    def keep(self, t: float, peer: Peer, engaged: bool = False) -> None:
+        if peer not in self._targets:
+            self._callers.keep(t, peer, engaged)
 
     def peers(self, t: float) -> list[Peer]:
-        return [*self._targets, *self._learned]
+        return [*self._targets, *self._callers.peers(t)]
 
     def send(self, datagram: bytes, peer: Peer) -> None:
-        sock = self._learned[peer][1] if peer in self._learned else self._own
+        """An answer comes from where it was asked; a configured peer always hears the socket that spoke first."""
+        sock = self._own if peer in self._targets else self._called_at.get(peer, self._own)
         try:
             sock.sendto(datagram, peer)
         except OSError:

@@ -13,7 +13,11 @@ _AUTO = mav.MAV_MODE_FLAG_AUTO_ENABLED | mav.MAV_MODE_FLAG_GUIDED_ENABLED | _STA
 
 @dataclass(frozen=True)
 class Row:
-    """One mode on the wire; ``standard`` is filled only where a ground station's own name for it is right."""
+    """One mode on the wire; ``standard`` only where every ground station's name for that number is ours.
+
+    The numbers from 5 on were moved in 2024: 6, 7, 8 are Mission, Land, Takeoff now, and were Safe Recovery, Mission, Land. A station
+    of before would show our Land as "Mission".
+    """
 
     mode: Mode
     name: str
@@ -33,11 +37,11 @@ TABLE = (
     Row(Mode.MODE_STABILIZED, "Stabilized", 7, 0, _MANUAL | _STABLE),
     Row(Mode.MODE_ALTITUDE, "Altitude", 2, 0, _MANUAL | _STABLE, mav.MAV_STANDARD_MODE_ALTITUDE_HOLD),
     Row(Mode.MODE_POSITION, "Position", 3, 0, _MANUAL | _STABLE),
-    Row(Mode.MODE_TAKEOFF, "Takeoff", 4, 2, _AUTO, mav.MAV_STANDARD_MODE_TAKEOFF),
+    Row(Mode.MODE_TAKEOFF, "Takeoff", 4, 2, _AUTO),
     Row(Mode.MODE_HOLD, "Hold", 4, 3, _AUTO),
-    Row(Mode.MODE_MISSION, "Mission", 4, 4, _AUTO, mav.MAV_STANDARD_MODE_MISSION),
+    Row(Mode.MODE_MISSION, "Mission", 4, 4, _AUTO),
     Row(Mode.MODE_RETURN, "Return", 4, 5, _AUTO),
-    Row(Mode.MODE_LAND, "Land", 4, 6, _AUTO, mav.MAV_STANDARD_MODE_LAND),
+    Row(Mode.MODE_LAND, "Land", 4, 6, _AUTO),
     Row(Mode.MODE_ORBIT, "Orbit", 3, 1, _AUTO, properties=mav.MAV_MODE_PROPERTY_NOT_USER_SELECTABLE),
     Row(Mode.MODE_FOLLOW, "Follow", 4, 8, _AUTO),
     Row(Mode.MODE_OFFBOARD, "Offboard", 6, 0, _AUTO, properties=mav.MAV_MODE_PROPERTY_ADVANCED),
@@ -50,8 +54,11 @@ _BY_STANDARD = {row.standard: row for row in TABLE if row.standard != mav.MAV_ST
     mav.MAV_STANDARD_MODE_ORBIT: _BY_MODE[Mode.MODE_ORBIT],
     mav.MAV_STANDARD_MODE_CRUISE: _BY_MODE[Mode.MODE_POSITION],
     mav.MAV_STANDARD_MODE_SAFE_RECOVERY: _BY_MODE[Mode.MODE_RETURN],
+    mav.MAV_STANDARD_MODE_MISSION: _BY_MODE[Mode.MODE_MISSION],
+    mav.MAV_STANDARD_MODE_LAND: _BY_MODE[Mode.MODE_LAND],
+    mav.MAV_STANDARD_MODE_TAKEOFF: _BY_MODE[Mode.MODE_TAKEOFF],
 }
-"""Asked for by these numbers; told as non-standard where QGroundControl's name for them is another than ours."""
+"""Asked for by these numbers; told as non-standard where some ground station's name for them is another than ours."""
 
 
 def row_of(mode: Mode) -> Row | None:

@@ -8,6 +8,7 @@ from services.autopilot.air.estimators import Instruments
 from services.autopilot.air.params import AirParams
 from services.autopilot.air.service import AutopilotAir
 from services.autopilot.air.ship import Ship
+from tests.stops import NOBODY
 from uvf.maths import atmosphere
 from uvf.maths.geodesy import LocalTangent
 
@@ -39,11 +40,13 @@ def sensors(t, speed=25.0):
         "battery": None,
         "range": [],
         "link": None,
-        "stop": None,
+        "stop": NOBODY,
         "teleop": None,
         "mavlink": None,
         "client": None,
-        "setpoint": None,
+        "setpoint_offboard": None,
+        "setpoint_client": None,
+        "setpoint_mavlink": None,
     }
 
 

@@ -5,9 +5,10 @@ import math
 import pytest
 
 from schemas.convert import stamp
-from schemas.messages import ArmRequest, Mode, ModeRequest, StopCommand, SurfaceCommand
-from services.autopilot.air.by_hand import SOURCES, choose
+from schemas.messages import ArmRequest, Mode, ModeRequest, SurfaceCommand
+from services.autopilot.air.by_hand import SOURCES, Hands
 from tests.services.autopilot.air.sensing import Bench, resting
+from tests.stops import ENGAGED
 
 MANUAL = [ModeRequest(mode=Mode.MODE_MANUAL, source="test")]
 ASKED = {"aileron": 0.11, "elevator": -0.07, "rudder": 0.05, "throttle": 0.6, "flap": 0.2, "brake": 0.3}
@@ -23,6 +24,10 @@ def by_hand(bench, cycles, source="teleop", speed=25.0, **asked):
         bench.run(speed=speed, **{source: command(bench.n * 0.02), **asked})
         asked = {}
     return bench.outputs[-1]
+
+
+def choose(t, commands, longest):
+    return Hands().choose(t, commands, longest)
 
 
 def told(surfaces):
@@ -100,8 +105,8 @@ def test_disarmed_the_motor_stays_off_by_hand(bench):
 
 
 def test_stop_all_comes_before_the_hand(bench):
-    bench.run(teleop=command(bench.n * 0.02), stop=StopCommand(engaged=True, source="gcs"))
-    (reply,) = by_hand(bench, 1, mode=MANUAL)["mode"]
+    bench.run(teleop=command(bench.n * 0.02), stop=ENGAGED)
+    (reply,) = by_hand(bench, 1, stop=ENGAGED, mode=MANUAL)["mode"]
     assert not reply.accepted
     assert bench.status.mode == Mode.MODE_HOLD
 
@@ -134,3 +139,15 @@ def test_no_numbers_are_passed_on_and_the_next_source_counts(name, value):
 def test_throttle_brake_and_flap_keep_their_ranges():
     asked = choose(10.0, {"client": command(10.0, throttle=1.7, brake=-0.2, flap=-0.1)}, 0.5).surfaces
     assert (asked.throttle, asked.brake, asked.flap) == (1.0, 0.0, 0.0)
+
+
+def test_a_hand_that_waits_and_a_hand_over_are_told_once(bench):
+    by_hand(bench, 5)
+    for _ in range(20):
+        bench.run(teleop=command(bench.n * 0.02), mavlink=command(bench.n * 0.02, aileron=-0.1))
+    assert told(bench.outputs[-1]["surfaces"]) == ASKED
+    by_hand(bench, 40, "mavlink")
+    assert [text for text in bench.texts if "by hand" in text] == [
+        "commands by hand of mavlink wait",
+        "commands by hand from mavlink, no longer from teleop",
+    ]

@@ -8,7 +8,7 @@ import pytest
 from services.autopilot.air.failsafe_params import FailsafeParams
 from services.autopilot.air.failsafes import AIR_RULES, Known
 from services.autopilot.air.params import AirParams
-from services.autopilot.failsafes import Action, Watch
+from services.autopilot.failsafes import Action, Change, Watch
 from uvf.runtime.site import ROOT
 
 PARAMS = AirParams()
@@ -146,3 +146,10 @@ def test_the_documented_table_is_that_of_the_code():
     for name, rule in RULES.items():
         assert re.findall(r"`(\w+)`", shown[name][2]) == list(rule.parameters), name
         assert rule.begins.split(":")[0] in shown[name][4], name
+
+
+@pytest.mark.parametrize("rule", AIR_RULES, ids=lambda rule: rule.name)
+def test_the_end_of_a_failsafe_quotes_no_figure_of_its_beginning_and_no_text_reads_as_an_order(rule):
+    assert Change(rule, True, "aileron for 3 s").event(0.0).cause == "aileron for 3 s"
+    assert Change(rule, False, "aileron for 0 s").event(0.0).cause == ""
+    assert "less bank" not in rule.begins

@@ -9,13 +9,14 @@ import pytest
 
 from schemas import topics
 from schemas.convert import wxyz
-from schemas.messages import ModeRequest, Reply, StopCommand
+from schemas.messages import ModeRequest, Reply
 from services.autopilot.air.build import hosts
 from services.sim_air.build import build as build_sim
 from uvf.maths.rotations import to_euler
 from uvf.runtime.lockstep import Lockstep
 from uvf.runtime.mission_file import Job, MissionFile, Start, Vehicle, Waypoint
 from uvf.runtime.site import ROOT, Member, Site
+from uvf.runtime.stop_all import StopVoice
 from uvf.runtime.vehicle_file import load_vehicle
 from uvf.runtime.wind_file import Wind
 from uvf.runtime.world_file import Origin, WorldFile
@@ -143,12 +144,12 @@ def test_hold_is_a_circle_in_the_wind():
 def test_a_stop_in_flight_leads_onto_a_circle_and_the_mission_goes_on_after_it():
     flight = Flight()
     flight.lockstep.run(10.0)
-    stop = flight.bus.publisher(topics.STOP.by("test").at("sys"), "uvf.v1.StopCommand", topics.STOP.qos)
-    stop.put(StopCommand(engaged=True, source="test").SerializeToString(), round(10e9))
+    stop, voice = flight.bus.publisher(topics.STOP.by("client").at("sys"), "uvf.v1.StopCommand", topics.STOP.qos), StopVoice("client")
+    stop.put(voice.engage(0, "").SerializeToString(), round(10e9))
     flight.lockstep.run(40.0)
     assert flight.status[-1][1].stopped
     assert np.ptp(flight.positions(after=12.0)[:, 0]) < 220.0
-    stop.put(StopCommand(engaged=False, source="test").SerializeToString(), round(40e9))
+    stop.put(voice.release(0, flight.status[-1][1].stops).SerializeToString(), round(40e9))
     flight.lockstep.run(40.5)
     flight.ask(topics.SET_MODE, ModeRequest(mode=3, source="test"), 40.5)
     flight.lockstep.run(90.0)

@@ -4,12 +4,17 @@ import math
 
 import pytest
 
+from schemas import topics
 from schemas.convert import stamp
 from schemas.messages import AttitudeSetpoint, CircleSetpoint, CourseSetpoint, FlightSetpoint, LineSetpoint, Mode, ModeRequest
 from services.autopilot.air.offboard import Offboard, fresh
+from services.autopilot.air.service import AutopilotAir
 from services.autopilot.air.wishes import Senses
-from tests.services.autopilot.air.sensing import Bench
+from tests.services.autopilot.air.sensing import Bench, autopilot, sensors
 from tests.services.autopilot.air.states import PARAMS, cruising
+from uvf.runtime.bus import LocalBus
+from uvf.runtime.shell import Shell
+from uvf.runtime.site import Host
 
 OFFBOARD = [ModeRequest(mode=Mode.MODE_OFFBOARD, source="test")]
 
@@ -62,11 +67,153 @@ def test_what_is_no_setpoint_does_not_count():
 def test_without_a_setpoint_the_mode_is_refused_and_left():
     bench = Bench()
     bench.run(cycles=10)
-    assert "no setpoint" in bench.run(mode=OFFBOARD)["mode"][0].reason
-    bench.run(setpoint=attitude(bench.n * 0.02))
-    assert bench.run(setpoint=attitude(bench.n * 0.02), mode=OFFBOARD)["mode"][0].accepted
+    assert "no program sends setpoints" in bench.run(mode=OFFBOARD)["mode"][0].reason
+    bench.run(setpoint_client=attitude(bench.n * 0.02))
+    assert bench.run(setpoint_client=attitude(bench.n * 0.02), mode=OFFBOARD)["mode"][0].accepted
     last = attitude(bench.n * 0.02)
-    bench.run(cycles=24, setpoint=last)
+    bench.run(cycles=24, setpoint_client=last)
     assert bench.status.mode == Mode.MODE_OFFBOARD
-    bench.run(cycles=4, setpoint=last)
+    bench.run(cycles=4, setpoint_client=last)
     assert (bench.status.mode, bench.status.reason) == (Mode.MODE_HOLD, "no setpoint for 0.5 s")
+
+
+class Senders:
+    """A bench in Offboard, flown by ``client``; ``fly`` lets sources send banks at 50 Hz, each its own."""
+
+    BANKS = {"offboard": 0.3, "client": 0.2, "mavlink": -0.2}
+
+    def __init__(self, first="client"):
+        self.bench = Bench()
+        self.bench.run(cycles=10)
+        self.fly(0.1, first)
+        assert self.fly(0.02, first, mode=OFFBOARD)["mode"][0].accepted
+
+    def fly(self, seconds, *sources, **asked):
+        for _ in range(round(seconds * 50)):
+            now = self.bench.n * 0.02
+            out = self.bench.run(**{f"setpoint_{s}": attitude(now, self.BANKS[s]) for s in sources}, **asked)
+            asked = {}
+        return out
+
+    @property
+    def bank(self):
+        return self.bench.service._pilot.senses.setpoint.attitude.bank
+
+    @property
+    def texts(self):
+        return [text for text in self.bench.texts if "setpoints" in text]
+
+
+@pytest.mark.parametrize(("first", "second"), [("client", "mavlink"), ("mavlink", "client")])
+def test_of_two_equal_senders_the_one_that_holds_is_followed_without_a_break(first, second):
+    senders = Senders(first)
+    for _ in range(100):
+        senders.fly(0.02, first, second)
+        assert senders.bank == Senders.BANKS[first]
+    status = senders.bench.status
+    assert (status.command_source, status.mode) == (first, Mode.MODE_OFFBOARD)
+    assert status.reason == f"asked by test; setpoints from {first}, those of {second} wait"
+    assert senders.texts == [f"setpoints of {second} wait"]
+
+
+def test_when_the_holder_falls_silent_the_other_one_takes_over_after_half_a_second():
+    senders = Senders("client")
+    last = attitude(senders.bench.n * 0.02, 0.2)
+    for _ in range(24):
+        senders.fly(0.02, "mavlink", setpoint_client=last)
+        assert senders.bank == 0.2
+    senders.fly(0.08, "mavlink", setpoint_client=last)
+    assert senders.bank == -0.2 and senders.bench.status.command_source == "mavlink"
+    assert "setpoints from mavlink, no longer from client" in senders.texts
+    senders.fly(1.0, "mavlink", "client")
+    assert senders.bank == -0.2, "who comes back waits"
+
+
+def test_a_program_on_board_comes_first_and_gives_back():
+    senders = Senders("mavlink")
+    senders.fly(0.1, "mavlink", "offboard")
+    assert (senders.bank, senders.bench.status.command_source) == (0.3, "offboard")
+    senders.fly(0.2, "mavlink")
+    assert senders.bank == -0.2 and senders.bench.status.mode == Mode.MODE_OFFBOARD
+
+
+def test_one_that_comes_and_goes_all_the_time_is_told_of_once():
+    senders = Senders("mavlink")
+    for _ in range(10):
+        senders.fly(0.2, "mavlink", "offboard")
+        senders.fly(0.2, "mavlink")
+    assert len(senders.texts) == len(set(senders.texts)) <= 3
+
+
+def test_one_sender_alone_is_told_of_as_before():
+    senders = Senders("client")
+    senders.fly(1.0, "client")
+    assert senders.texts == [] and senders.bench.status.reason == "asked by test"
+
+
+def test_a_broken_setpoint_of_the_holder_lets_the_next_one_fly():
+    senders = Senders("client")
+    now = senders.bench.n * 0.02
+    senders.bench.run(setpoint_client=FlightSetpoint(timestamp=stamp(now)), setpoint_mavlink=attitude(now, -0.2))
+    assert senders.bank == -0.2
+
+
+class OnBus:
+    """The autopilot on a bus, where whoever knows a key may write to it; ``banks`` are those that were followed."""
+
+    def __init__(self):
+        self.bus, self.banks, self.status = LocalBus(), [], None
+        self.shell = Shell(Host(AutopilotAir, autopilot, "milvus"), self.bus)
+        self.bus.subscribe(topics.STATUS.at("milvus"), topics.STATUS.qos, self._see)
+
+    def _see(self, sample):
+        self.status = topics.STATUS.message.FromString(sample.payload)
+
+    def _put(self, topic, message, t):
+        self.bus.deliver(topic.at("milvus"), message.DESCRIPTOR.full_name, topic.qos, message.SerializeToString(), round(t * 1e9))
+
+    def run(self, seconds, *said):
+        """said: (source, bank, how far its clock is ahead [s])."""
+        for _ in range(round(seconds * 50)):
+            t = self.shell.due_ns * 1e-9
+            told = sensors(t - 0.01)
+            for imu in told["imu"]:
+                self._put(topics.IMU, imu, t - 0.01)
+            self._put(topics.AIR_DATA, told["air_data"], t - 0.01)
+            self._put(topics.GNSS, told["gnss"], t - 0.01)
+            for source, bank, ahead in said:
+                self._put(topics.SETPOINT.by(source), attitude(t - 0.01 + ahead, bank), t - 0.01)
+            self.shell.advance()
+            setpoint = self.shell.service._pilot.senses.setpoint
+            self.banks.append(setpoint.attitude.bank if setpoint is not None else None)
+
+    def ask_offboard(self):
+        replies = []
+        payload, reply_of = OFFBOARD[0].SerializeToString(), topics.SET_MODE.reply.FromString
+        self.bus.call(topics.SET_MODE.at("milvus"), payload, 0, lambda reply, why, at: replies.append(reply_of(reply)))
+        return replies
+
+
+def test_two_senders_on_the_bus_do_not_alternate():
+    on_bus = OnBus()
+    on_bus.run(0.5, ("mavlink", -0.2, 0.0))
+    accepted = on_bus.ask_offboard()
+    on_bus.run(0.1, ("mavlink", -0.2, 0.0))
+    assert accepted[0].accepted
+    on_bus.banks.clear()
+    for _ in range(50):
+        on_bus.run(0.02, ("mavlink", -0.2, 0.0))
+        on_bus.run(0.02, ("client", 0.2, 0.0))
+    assert set(on_bus.banks) == {-0.2}
+    on_bus.run(0.2, ("mavlink", -0.2, 0.0), ("client", 0.5, 1000.0))
+    assert (on_bus.status.command_source, on_bus.status.mode) == ("mavlink", Mode.MODE_OFFBOARD)
+
+
+def test_a_sender_under_another_key_is_not_heard_and_deafens_nobody():
+    on_bus = OnBus()
+    on_bus.run(0.5, ("evil", 0.7, 0.0))
+    refused = on_bus.ask_offboard()
+    on_bus.run(0.1, ("evil", 0.7, 0.0))
+    assert refused[0].reason.startswith("no program sends setpoints: they have to come before this mode, as client")
+    on_bus.run(0.1, ("evil", 0.7, 1000.0), ("client", 0.2, 0.0))
+    assert on_bus.banks[-1] == 0.2

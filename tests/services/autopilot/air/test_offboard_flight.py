@@ -65,7 +65,7 @@ def mode_at(flown, t):
 
 def test_it_is_refused_before_anybody_sends_setpoints_and_flown_afterwards(flown):
     refused, accepted = flown.replies
-    assert "no setpoint is sent" in refused.reason
+    assert "no program sends setpoints" in refused.reason
     assert accepted.accepted
     assert {m.mode for t, m in flown.status if 2.0 < t <= SILENT} == {Mode.MODE_OFFBOARD}
 

@@ -4,12 +4,13 @@ from dataclasses import replace
 
 import pytest
 
-from schemas.messages import ArmRequest, Battery, Fence, FenceRequest, FenceZone, StopCommand, Vector3
+from schemas.messages import ArmRequest, Battery, Fence, FenceRequest, FenceZone, Vector3
 from services.autopilot.air import fence_plan
 from services.autopilot.air.prearm import CHECKS, Standing, faults
 from services.autopilot.air.state import Ratios
 from tests.services.autopilot.air.sensing import resting
 from tests.services.autopilot.air.states import PARAMS, cruising
+from tests.stops import ENGAGED
 
 AT_REST = Standing(cruising(ground_speed=0.1, airspeed=2.0, height=0.0, pitch=0.1), PARAMS, accuracy=0.8, field=46e-6)
 WRONG = {
@@ -61,7 +62,7 @@ def test_force_overrides_everything_but_a_stop():
     bench.run(speed=0.0, arm=[ArmRequest(arm=False)], battery=Battery(remaining=0.05))
     (reply,) = bench.run(speed=0.0, arm=FORCE)["arm"]
     assert reply.accepted
-    stop = StopCommand(engaged=True, source="gcs")
+    stop = ENGAGED
     (reply,) = bench.run(speed=0.0, stop=stop, arm=FORCE)["arm"]
     assert not reply.accepted and "release the stop" in reply.reason
 

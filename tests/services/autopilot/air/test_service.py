@@ -17,14 +17,11 @@ from schemas.messages import (
     Mode,
     ModeRequest,
     SetCurrentRequest,
-    StopCommand,
     Vector3,
 )
 from services.autopilot.air.service import AutopilotAir
 from tests.services.autopilot.air.sensing import WAYPOINTS, Bench, resting, sensors
-
-STOP = StopCommand(engaged=True, source="gcs")
-RELEASED = StopCommand(engaged=False, source="gcs")
+from tests.stops import ENGAGED, RELEASED
 
 
 def test_step_takes_what_is_declared():
@@ -119,20 +116,20 @@ def test_at_rest_and_disarmed_the_surfaces_are_neutral_and_the_brakes_on():
 
 def test_a_stop_holds_until_it_is_released():
     bench = Bench()
-    bench.run(cycles=10, stop=STOP)
-    assert (bench.status.mode, bench.status.stopped, bench.status.reason) == (Mode.MODE_HOLD, True, "stopped by gcs")
-    (refused,) = bench.run(stop=STOP, mode=[ModeRequest(mode=Mode.MODE_MISSION)])["mode"]
-    (accepted,) = bench.run(stop=StopCommand(engaged=False), mode=[ModeRequest(mode=Mode.MODE_MISSION)])["mode"]
+    bench.run(cycles=10, stop=ENGAGED)
+    assert (bench.status.mode, bench.status.stopped, bench.status.reason) == (Mode.MODE_HOLD, True, "stopped by gcs (button)")
+    (refused,) = bench.run(stop=ENGAGED, mode=[ModeRequest(mode=Mode.MODE_MISSION)])["mode"]
+    (accepted,) = bench.run(stop=RELEASED, mode=[ModeRequest(mode=Mode.MODE_MISSION)])["mode"]
     assert (refused.accepted, accepted.accepted) == (False, True)
 
 
 def test_a_stop_on_the_ground_disarms_and_keeps_it_so():
     bench = resting()
-    bench.run(speed=0.0, stop=STOP)
-    assert (bench.status.armed, bench.status.reason) == (False, "stopped by gcs")
-    out = bench.run(speed=0.0, stop=STOP, arm=[ArmRequest(arm=True)])
+    bench.run(speed=0.0, stop=ENGAGED)
+    assert (bench.status.armed, bench.status.reason) == (False, "stopped by gcs (button)")
+    out = bench.run(speed=0.0, stop=ENGAGED, arm=[ArmRequest(arm=True)])
     assert not out["arm"][0].accepted
-    assert "stopped by gcs" in out["arm"][0].reason
+    assert "stopped by gcs (button)" in out["arm"][0].reason
     assert out["surfaces"].throttle == 0.0
     assert bench.run(speed=0.0, stop=RELEASED, arm=[ArmRequest(arm=True)])["arm"][0].accepted
 
@@ -142,16 +139,16 @@ def test_a_stop_in_the_air_leaves_the_motor_alone_even_with_a_blocked_pitot_tube
     bench.run(cycles=50)
     blocked = sensors(1.0)["air_data"]
     blocked.differential_pressure = 0.0
-    bench.run(cycles=50, stop=STOP, air_data=blocked)
+    bench.run(cycles=50, stop=ENGAGED, air_data=blocked)
     assert bench.status.armed
     assert not bench.status.landed
 
 
 def test_a_stop_outlasts_a_restart_until_it_is_released():
     bench, heir = Bench(), Bench()
-    bench.run(cycles=10, stop=STOP)
+    bench.run(cycles=10, stop=ENGAGED)
     heir.service.recall(status=bench.status)
-    (refused,) = heir.run(mode=[ModeRequest(mode=Mode.MODE_MISSION)])["mode"]
+    (refused,) = heir.run(stop=ENGAGED, mode=[ModeRequest(mode=Mode.MODE_MISSION)])["mode"]
     assert not refused.accepted
     assert "release the stop" in refused.reason
     assert heir.status.stopped
@@ -164,8 +161,8 @@ def test_a_change_of_mode_or_arming_is_in_the_status_at_once():
     bench.run(cycles=6)
     assert bench.run(mode=[ModeRequest(mode=Mode.MODE_HOLD)])["status"].mode == Mode.MODE_HOLD
     assert not bench.run(arm=[ArmRequest(arm=False, force=True)])["status"].armed
-    assert bench.run(stop=STOP)["status"].stopped
-    assert "status" not in bench.run(stop=STOP)
+    assert bench.run(stop=ENGAGED)["status"].stopped
+    assert "status" not in bench.run(stop=ENGAGED)
 
 
 def test_a_mission_is_taken_announced_and_its_wire_form_kept():

@@ -64,3 +64,12 @@ def test_behind_a_refused_command_the_next_source_counts():
     choice = choose(10.0, Mode.MODE_MANUAL, {"teleop": Velocity(10.0, nan, 0.0), "client": Velocity(10.0, 0.2, 0.1)}, "")
     assert (choice.source, choice.linear, choice.angular) == ("client", 0.2, 0.1)
     assert choice.refused == "teleop (nan m/s, 0 rad/s)"
+
+
+def test_in_offboard_equals_do_not_alternate_and_a_program_on_board_comes_first():
+    client, mavlink, board = Velocity(10.0, 0.1, 0.0), Velocity(10.0, 0.2, 0.0), Velocity(10.0, 0.3, 0.0)
+    both = {"client": client, "mavlink": mavlink}
+    for held in both:
+        assert choose(10.0, Mode.MODE_OFFBOARD, both, "", held).source == held
+    assert choose(10.0, Mode.MODE_OFFBOARD, {**both, "offboard": board}, "", "mavlink").source == "offboard"
+    assert choose(10.0, Mode.MODE_MANUAL, {**both, "teleop": board}, "", "mavlink").source == "teleop"

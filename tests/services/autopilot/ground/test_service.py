@@ -19,13 +19,14 @@ from schemas.messages import (
     ModeRequest,
     PoseInFrame,
     SetCurrentRequest,
-    StopCommand,
     Vector3,
 )
 from services.autopilot.ground.multiplexer import SOURCES
 from services.autopilot.ground.params import GroundAutopilotParams
 from services.autopilot.ground.service import GroundAutopilot
 from tests.services.live_params import all_settable_are_read
+from tests.stops import ENGAGED, RELEASED
+from uvf.runtime.stop_all import StopStatus
 from uvf.runtime.vehicle_file import GroundBody, Motor
 
 BODY = GroundBody(
@@ -42,8 +43,8 @@ BODY = GroundBody(
     motor=Motor(stall_torque=1.0, no_load_speed=100.0),
 )
 WAYPOINTS = [MissionItem(position=Vector3(x=1.0)), MissionItem(position=Vector3(x=2.0))]
-NOBODY = dict.fromkeys(("teleop", "mavlink", "gcs", "client", "offboard", "planner", "stop", "pose", "link"))
-NOBODY |= {"imu": [], "ticks": None, "scan": None, "correction": None, "battery": None}
+NOBODY = dict.fromkeys(("teleop", "mavlink", "gcs", "client", "offboard", "planner", "pose", "link"))
+NOBODY |= {"stop": StopStatus(), "imu": [], "ticks": None, "scan": None, "correction": None, "battery": None}
 NOTHING_ASKED = {name: [] for name in GroundAutopilot.requests}
 
 
@@ -120,24 +121,25 @@ def test_refusals_are_told_at_most_every_ten_seconds():
 
 def test_stop_all_holds_until_it_is_released():
     bench = Bench().step(40, linear=0.4)
-    engaged = StopCommand(engaged=True, source="gcs")
-    bench.step(25, linear=0.4, stop=engaged)
+    bench.step(25, linear=0.4, stop=ENGAGED)
     assert bench.speed == 0.0
-    bench.step(200, linear=0.4, stop=engaged)
+    bench.step(200, linear=0.4, stop=ENGAGED)
     assert bench.speed == 0.0
     assert bench.said["status"].stopped
-    bench.step(40, linear=0.4, stop=StopCommand(engaged=False, source="gcs"))
+    bench.step(40, linear=0.4, stop=RELEASED)
     assert bench.speed == pytest.approx(0.4)
     assert [e for e in bench.events if "STOP" in e] == ["STOP ALL: standing until it is released", "STOP ALL is released"]
 
 
-def test_stop_all_stays_when_its_sender_falls_silent():
-    bench = Bench().step(1, stop=StopCommand(engaged=True)).step(40, linear=0.4)
-    assert bench.speed == 0.0
+def test_what_it_says_names_who_engaged_stop_all_and_why():
+    bench = Bench().step(30, linear=0.4, stop=ENGAGED)
+    assert bench.said["status"].reason == "STOP ALL is engaged by gcs (button)"
+    refused = bench.step(stop=ENGAGED, arm=[ArmRequest(arm=True)]).said["arm"][0].reason
+    assert refused == "STOP ALL is engaged by gcs (button): release it first"
 
 
 def test_cannot_be_armed_under_stop_all():
-    bench = Bench(begins=False).step(stop=StopCommand(engaged=True), arm=[ArmRequest(arm=True)])
+    bench = Bench(begins=False).step(stop=ENGAGED, arm=[ArmRequest(arm=True)])
     assert not bench.said["arm"][0].accepted
 
 
@@ -167,6 +169,7 @@ def test_a_mode_that_a_ground_vehicle_lacks_is_refused():
     reply = Bench().step(set_mode=[ModeRequest(mode=Mode.MODE_LAND)]).said["set_mode"][0]
     assert not reply.accepted
     assert "MANUAL" in reply.reason
+    assert "no mode LAND" in reply.reason
 
 
 def test_the_mission_advances_with_the_pose():
@@ -210,19 +213,19 @@ def test_started_again_it_goes_on_as_it_was():
 
 
 def test_stop_all_stays_through_a_restart_until_it_is_released():
-    old = Bench().step(30, linear=0.4, stop=StopCommand(engaged=True))
+    old = Bench().step(30, linear=0.4, stop=ENGAGED)
     new = Bench()
     new.service.recall(status=old.said["status"])
-    new.step(40, linear=0.4)
-    assert (new.speed, new.said["status"].stopped) == (0.0, True)
-    assert new.step(40, linear=0.4, stop=StopCommand(engaged=False)).speed == pytest.approx(0.4)
+    new.step(40, linear=0.4, stop=ENGAGED)
+    assert (new.speed, new.said["status"].stopped, list(new.said["status"].stops)) == (0.0, True, list(ENGAGED.engagements))
+    assert new.step(40, linear=0.4, stop=RELEASED).speed == pytest.approx(0.4)
 
 
 def test_a_release_that_was_missed_during_a_restart_counts():
-    old = Bench().step(30, stop=StopCommand(engaged=True))
+    old = Bench().step(30, stop=ENGAGED)
     new = Bench()
     new.service.recall(status=old.said["status"])
-    assert new.step(40, linear=0.4, stop=StopCommand(engaged=False)).speed == pytest.approx(0.4)
+    assert new.step(40, linear=0.4, stop=RELEASED).speed == pytest.approx(0.4)
 
 
 def test_a_speed_item_limits_the_mission_but_not_the_person():

@@ -35,6 +35,7 @@ class Airborne:
         self.link = MemoryLink()
         self.run = Lockstep([*build_sim(site), *hosts(site)])
         service = MavlinkService(facts_of(site), self.link, {name: Shelf() for name in site.members})
+        self.service = service
         self._shell = Shell(Host(MavlinkService, lambda: service, writes_for=tuple(site.members)), self.run.bus)
         self.heard = []
         """(t, message) to the ground station."""
@@ -92,8 +93,11 @@ class Airborne:
         while self._shell.due_ns <= round(t * NS):
             self._shell.sim_ns = self._shell.due_ns
             self._shell.advance()
+        self._hear(t)
+        self.link.outgoing.clear()
+        return True
+
+    def _hear(self, t):
         for data, to in self.link.outgoing:
             if to == GCS:
                 self.heard += [(t, m) for m in self._client.parse_buffer(data) or ()]
-        self.link.outgoing.clear()
-        return True

@@ -25,6 +25,29 @@ NO_HOME = "Unable to change altitude, home position unknown"
 READ_AT_A_CLICK = ("RTL_RETURN_ALT", "COM_FLTMODE1", "GF_ACTION", "BAT_LOW_THR", "NAV_RCL_ACT", "MAV_SYS_ID", "COM_RC_LOSS_T")
 
 
+STANDARD_NAMES = {
+    2024: {1: "Position", 2: "Orbit", 3: "Cruise", 4: "Altitude", 5: "Return", 6: "Safe Recovery", 7: "Mission", 8: "Land", 9: "Takeoff"},
+    2026: {1: "Position", 2: "Orbit", 3: "Cruise", 4: "Altitude", 5: "Safe Recovery", 6: "Mission", 7: "Land", 8: "Takeoff"},
+}
+"""What a station calls a mode with a standard number, by the year of its list (``Vehicle/StandardModes.cc``)."""
+_RC = [f"RC_MAP_{name}" for name in ("ROLL", "PITCH", "YAW", "THROTTLE", "FLAPS", "AUX1", "AUX2", "PARAM1", "PARAM2", "PARAM3")]
+_SWITCHES = [f"RC_MAP_{name}_SW" for name in ("RETURN", "KILL", "OFFB", "MODE", "POSCTL", "LOITER", "ACRO", "ARM", "GEAR", "TRANS")]
+_RATES = [f"FW_{axis}R_{part}" for axis in "RPY" for part in ("P", "I", "D", "FF")]
+_BATTERY = ("SOURCE", "N_CELLS", "V_CHARGED", "V_EMPTY", "V_LOAD_DROP", "V_DIV", "A_PER_V")
+PAGES = {
+    "Summary": ["BAT1_SOURCE", "BAT1_N_CELLS", "BAT1_V_EMPTY", "BAT1_V_CHARGED", "COM_LOW_BAT_ACT", "NAV_RCL_ACT", "RTL_DESCEND_ALT"],
+    "Safety": ["SDLOG_MODE", "COM_DISARM_LAND", "CP_DIST", "COM_OBS_AVOID", "GF_ACTION", "COM_LOW_BAT_ACT", "NAV_RCL_ACT", "NAV_DLL_ACT"],
+    "Radio": _RC,
+    "Flight Modes": ["RC_MAP_FLTMODE", *_SWITCHES, *(f"COM_FLTMODE{n}" for n in range(1, 7))],
+    "Power": [f"{battery}_{name}" for battery in ("BAT", "BAT1") for name in _BATTERY],
+    "PID Tuning": [*_RATES, "FW_RLL_TO_YAW_FF", "FW_R_TC", "FW_P_TC"],
+}
+"""Parameters that the pages of vehicle setup read without asking whether they exist (``AutoPilotPlugins/PX4/*.qml``, 2016 to 2026)."""
+PLANE_PAGES = ("PID Tuning",)
+LISTS = ("_SW", "RC_MAP_", "COM_FLTMODE", "_SOURCE", "_ACT", "GF_ACTION", "SDLOG_MODE", "COM_OBS_AVOID")
+"""Of parameters that are shown as one of a list."""
+
+
 class QGroundControl(ParameterManager):
     """Connects to one vehicle of a rig; ``spoil`` may change or swallow what the vehicle says."""
 
@@ -33,8 +56,11 @@ class QGroundControl(ParameterManager):
         self.rig = rig
         self.system = system
         self.complaints = []
-        self.modes = {}
+        self.modes, self.standards = {}, {}
         self.plans = {}
+        self.texts = []
+        """Of the vehicle, once its heartbeat has been heard: those before are dropped."""
+        self._knows_vehicle = False
         self.capabilities = CAPABILITY[1] | CAPABILITY[2]  # assumed of a PX4 that does not say
         self._spoil = spoil
         self._heard = []
@@ -63,6 +89,40 @@ class QGroundControl(ParameterManager):
             self.rig.say(mav.MAVLink_heartbeat_message(mav.MAV_TYPE_GCS, mav.MAV_AUTOPILOT_INVALID, 0, 0, 0, 3))
         heard = [self._spoil(m) for m in self.rig.run(seconds) if m.get_srcSystem() == self.system]
         self._heard += [m for m in heard if m is not None]
+        for m in heard:
+            self._knows_vehicle |= m is not None and m.get_type() == "HEARTBEAT"
+            if m is not None and m.get_type() == "STATUSTEXT" and self._knows_vehicle:
+                self._put_together(m)
+
+    def _put_together(self, m):
+        if m.id and m.chunk_seq and self.texts:
+            self.texts[-1] += m.text
+        else:
+            self.texts.append(m.text)
+
+    def shown_modes(self, year):
+        """Name on the button -> the mode it sets, for a station with the numbers of a year."""
+        names = STANDARD_NAMES[year]
+        return {names.get(self.standards[word], name): word for word, name in self.modes.items()}
+
+    def clear(self):
+        """Its button Clear: all three plans within a millisecond, and no second try."""
+        for kind in PLANS:
+            self.rig.say(mav.MAVLink_mission_clear_all_message(self.system, 1, kind))
+        for kind, complaint in PLANS.items():
+            ack = self._await("MISSION_ACK", PLAN_WAIT, lambda m, kind=kind: m.mission_type == kind)
+            if ack is None or ack.type != mav.MAV_MISSION_ACCEPTED:
+                self.complaints.append(complaint)
+
+    def open(self, page):
+        """A page of vehicle setup: what is missing pops up, and a number without a name is shown as unknown."""
+        names = [] if page in PLANE_PAGES and "FW_AIRSPD_TRIM" not in self.parameters else PAGES[page]
+        if missing := [name for name in names if name not in self.parameters]:
+            self.complaints.append(f"{MISSING}: {missing}")
+        for name in names:
+            known = [choice["value"] for choice in self.metadata.get(name, {}).get("values", ())]
+            if name in self.parameters and any(part in name for part in LISTS) and self.parameters[name] not in known:
+                self.complaints.append(f"Unknown: {self.parameters[name]} ({name})")
 
     def _await(self, kind, seconds, fits=lambda m: True):
         return self._await_any((kind,), seconds, fits)
@@ -95,7 +155,7 @@ class QGroundControl(ParameterManager):
             if mode is None:
                 self.modes = dict(BUTTON_MODES)  # its own list of PX4 modes
                 return
-            self.modes[mode.custom_mode] = mode.mode_name
+            self.modes[mode.custom_mode], self.standards[mode.custom_mode] = mode.mode_name, mode.standard_mode
             total, index = mode.number_modes, mode.mode_index + 1
         self.complaints += [f"button {name} sets an empty mode" for word, name in BUTTON_MODES.items() if word not in self.modes]
 

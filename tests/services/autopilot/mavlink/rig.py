@@ -30,6 +30,7 @@ from services.autopilot.told_params import ToldParams
 from uvf.maths.geodesy import LocalTangent
 from uvf.maths.rotations import from_euler
 from uvf.runtime.mavlink import dialect as mav
+from uvf.runtime.mavlink.endpoint import Callers
 from uvf.runtime.param_server import ParamServer
 from uvf.runtime.params import convert
 from uvf.runtime.service import Answer, Service
@@ -120,17 +121,18 @@ class MemoryLink:
         self.incoming = []
         self.outgoing = []
         self.listening = [GCS, OTHER]
+        self.callers = Callers()
 
     def receive(self, t):
         taken, self.incoming = self.incoming, []
         return taken
 
     def peers(self, t):
-        return self.listening
+        return [*self.listening, *self.callers.peers(t)]
 
-    def keep(self, t, peer):
+    def keep(self, t, peer, engaged=False):
         if peer not in self.listening:
-            self.listening.append(peer)
+            self.callers.keep(t, peer, engaged)
 
     def send(self, datagram, peer):
         self.outgoing.append((datagram, peer))
@@ -152,7 +154,7 @@ class Vehicle:
         self.nav = NavState(velocity=Vector3(x=3.0, y=4.0, z=1.0), airspeed=25.0)
         self.nav.position.CopyFrom(Vector3(x=position[0], y=position[1], z=position[2]))
         self.nav.orientation.CopyFrom(quaternion(from_euler(0.1, -0.2, 0.3)))
-        self.status = VehicleStatus(kind=kind, mode=Mode.MODE_HOLD, home=Vector3(x=0.0, y=0.0, z=20.0))
+        self.status = VehicleStatus(kind=kind, mode=Mode.MODE_HOLD, landed=True, home=Vector3(x=0.0, y=0.0, z=20.0))
         self.mission = Mission()
         self.fence = Fence()
         self.rally = RallyPoints()
@@ -219,8 +221,9 @@ class Rig:
     SENSED = ("imu", "air_data", "surface_command", "wheel_command", "targets", "quality", "planning")
     CALLS = tuple(MavlinkService.calls)
 
-    def __init__(self, answers=True, shelf=None):
+    def __init__(self, answers=True, shelf=None, reserved=None):
         self.link = MemoryLink()
+        self.reserved = reserved
         self.shelf = shelf or Shelf()
         self.restart()
         self.plane = Vehicle(Kind.KIND_FIXED_WING, (100.0, 200.0, 80.0))
@@ -244,7 +247,7 @@ class Rig:
 
     def restart(self):
         """The process begins anew; the vehicles go on."""
-        self.service = MavlinkService([PLANE_FACTS, ROVER_FACTS], self.link, {**shelves(), "plane": self.shelf})
+        self.service = MavlinkService([PLANE_FACTS, ROVER_FACTS], self.link, {**shelves(), "plane": self.shelf}, reserved=self.reserved)
 
     def say(self, message, system=255, component=190, peer=GCS):
         self._mav.srcSystem, self._mav.srcComponent = system, component
@@ -276,8 +279,8 @@ class Rig:
             self.t,
             nav={n: v.nav for n, v in live.items()},
             status={n: v.status for n, v in live.items()},
-            mission={n: v.mission for n, v in live.items()},
-            progress={n: v.progress for n, v in live.items()},
+            mission={n: v.mission for n, v in live.items() if v.mission is not None},
+            progress={n: v.progress for n, v in live.items() if v.progress is not None},
             fence={n: v.fence for n, v in live.items()},
             rally={n: v.rally for n, v in live.items()},
             gnss={"plane": self.plane.gnss} if "plane" in live else {},

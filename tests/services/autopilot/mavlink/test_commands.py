@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from schemas.messages import Clock, Mode
+from schemas.messages import Clock, Mode, StopEngagement
 from tests.services.autopilot.mavlink.rig import GCS, OTHER, PLANE, ROVER, Rig, acks, long, of, texts
 from uvf.runtime.mavlink import dialect as mav
 
@@ -247,7 +247,8 @@ def test_prearm_checks_name_the_reasons():
     rig = Rig()
     rig.run(0.5)
     rig.plane.status.stopped = True
-    assert "PreArm: STOP ALL is engaged" in texts(rig.run())
+    rig.plane.status.stops.extend([StopEngagement(source="gcs", reason="button")])
+    assert "PreArm: STOP ALL is engaged by gcs (button)" in texts(rig.run())
     bit = mav.MAV_SYS_STATUS_PREARM_CHECK
     status = of(rig.run(1.1), "SYS_STATUS", PLANE)[-1]
     assert status.onboard_control_sensors_enabled & bit and not status.onboard_control_sensors_health & bit

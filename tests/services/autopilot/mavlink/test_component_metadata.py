@@ -6,7 +6,7 @@ import re
 
 import pytest
 
-from services.autopilot.mavlink.component_metadata import GENERAL, PARAMETERS, files_of
+from services.autopilot.mavlink.component_metadata import files_of, general_of, parameters_file_of
 from services.autopilot.mavlink.parameter_table import parameters_of
 from services.autopilot.mavlink.parameter_values import crc32
 from tests.services.autopilot.mavlink.rig import PLANE, PLANE_FACTS, ROVER_FACTS, Rig, acks, long, of
@@ -56,7 +56,8 @@ def obeys(data, rules, required):
 
 def read(facts):
     files = files_of(facts, parameters_of(facts))
-    return json.loads(files[GENERAL]), json.loads(lzma.decompress(files[PARAMETERS])), files
+    general, parameters = general_of(facts.system_id), parameters_file_of(facts.system_id)
+    return json.loads(files[general]), json.loads(lzma.decompress(files[parameters])), files
 
 
 @pytest.mark.parametrize("facts", [PLANE_FACTS, ROVER_FACTS])
@@ -90,7 +91,7 @@ def test_every_parameter_is_explained_and_its_default_is_possible(facts):
 
 def test_the_stream_is_one_that_small_decoders_read():
     """xz magic, then the stream flags: 0 and 1 = CRC-32."""
-    assert read(PLANE_FACTS)[2][PARAMETERS][:8] == b"\xfd7zXZ\0\0\x01"
+    assert read(PLANE_FACTS)[2][parameters_file_of(PLANE)][:8] == b"\xfd7zXZ\0\0\x01"
 
 
 def test_the_files_of_a_vehicle_are_always_the_same():
@@ -103,8 +104,8 @@ def test_where_they_are_is_told_when_asked():
     heard = rig.run()
     (told,) = of(heard, "COMPONENT_METADATA")
     assert acks(heard) == [(512, mav.MAV_RESULT_ACCEPTED)]
-    assert told.uri == f"mftp://{GENERAL}"
-    assert told.file_crc == crc32(rig.service._vehicles["plane"].line.files[GENERAL])
+    assert told.uri == f"mftp://{general_of(PLANE)}"
+    assert told.file_crc == crc32(rig.service._vehicles["plane"].line.files[general_of(PLANE)])
     assert told.get_srcSystem() == PLANE
 
 

@@ -107,23 +107,23 @@ def test_rally_points_reach_the_autopilot_and_those_of_elsewhere_a_ground_statio
 @pytest.mark.parametrize(
     ("bad", "result", "why"),
     [
-        ([*SQUARE[:3]], mav.MAV_MISSION_INVALID, "item 0: a polygon of 4 corners ends after 3"),
-        ([*SQUARE[:2], circle(2)], mav.MAV_MISSION_INVALID, "item 0: a polygon of 4 corners ends after 2"),
-        ([vertex(0, 0, 0, corners=2.0)], mav.MAV_MISSION_INVALID_PARAM1, "item 0: a polygon of 2 corners"),
-        ([vertex(0, 0, 0, corners=NAN)], mav.MAV_MISSION_INVALID_PARAM1, "item 0: a polygon of nan corners"),
-        ([vertex(0, 0, 0, group=-1.0)], mav.MAV_MISSION_INVALID_PARAM2, "item 0: group"),
-        ([circle(0), circle(1, radius=-5.0)], mav.MAV_MISSION_INVALID_PARAM1, "item 1: radius -5"),
-        ([circle(0, frame=10)], mav.MAV_MISSION_UNSUPPORTED_FRAME, "item 0: frame 10"),
-        ([item(0, kind=1)], mav.MAV_MISSION_UNSUPPORTED, "item 0: command 16 is none of a fence"),
+        ([*SQUARE[:3]], mav.MAV_MISSION_INVALID, "item 1: a polygon of 4 corners ends after 3"),
+        ([*SQUARE[:2], circle(2)], mav.MAV_MISSION_INVALID, "item 1: a polygon of 4 corners ends after 2"),
+        ([vertex(0, 0, 0, corners=2.0)], mav.MAV_MISSION_INVALID_PARAM1, "item 1: a polygon of 2 corners"),
+        ([vertex(0, 0, 0, corners=NAN)], mav.MAV_MISSION_INVALID_PARAM1, "item 1: a polygon of nan corners"),
+        ([vertex(0, 0, 0, group=-1.0)], mav.MAV_MISSION_INVALID_PARAM2, "item 1: group"),
+        ([circle(0), circle(1, radius=-5.0)], mav.MAV_MISSION_INVALID_PARAM1, "item 2: radius -5"),
+        ([circle(0, frame=10)], mav.MAV_MISSION_UNSUPPORTED_FRAME, "item 1: frame 10"),
+        ([item(0, kind=1)], mav.MAV_MISSION_UNSUPPORTED, "item 1: command 16 is none of a fence"),
         (
             [item(0, command=5004, p=(9.0, 0, 0, 0), place=(2**31 - 1, LON, 0.0), kind=1)],
             mav.MAV_MISSION_INVALID_PARAM5_X,
-            "item 0: latitude",
+            "item 1: latitude",
         ),
         (
             [vertex(i, *corner) for i, corner in enumerate([(-2, -2), (2, 2), (2, -2), (-2, 2)])],
             mav.MAV_MISSION_INVALID,
-            "item 0: the polygon's edges from items 0 and 2 cross each other",
+            "item 1: the polygon's edges from items 1 and 3 cross each other",
         ),
         ([circle(i) for i in range(33)], mav.MAV_MISSION_NO_SPACE, "33 zones"),
     ],
@@ -144,7 +144,7 @@ def test_the_autopilots_refusal_is_told_with_its_reason():
     rig.plane.refuse["set_rally"] = "item 1: (4000, 0) is 2500 m outside of the fence"
     ack, heard = upload(rig, RALLY, kind=2)
     assert ack.type == mav.MAV_MISSION_INVALID
-    assert "Rally refused: item 1: (4000, 0) is 2500 m outside of the fence" in texts(heard)
+    assert "Rally refused: item 2: (4000, 0) is 2500 m outside of the fence" in texts(heard)
     rig.say(count(21, 2))
     assert [(m.type, m.mission_type) for m in of(rig.run(), "MISSION_ACK")] == [(mav.MAV_MISSION_NO_SPACE, 2)]
 

@@ -4,12 +4,14 @@ import struct
 
 import pytest
 
-from services.autopilot.mavlink.component_metadata import GENERAL, PARAMETERS
+from services.autopilot.mavlink.component_metadata import general_of, parameters_file_of
 from services.autopilot.mavlink.file_tree import FileTree
-from services.autopilot.mavlink.ftp import HEADER, PAYLOAD_BYTES, SESSIONS_MOST
+from services.autopilot.mavlink.ftp import HEADER, PAYLOAD_BYTES, SESSIONS_EACH
 from services.autopilot.mavlink.parameter_values import crc32
 from tests.services.autopilot.mavlink.rig import GCS, OTHER, PLANE, Rig, of
 from uvf.runtime.mavlink import dialect as mav
+
+GENERAL, PARAMETERS = general_of(PLANE), parameters_file_of(PLANE)
 
 TERMINATE, RESET, LIST, OPEN, READ, CREATE, RENAME, CRC, BURST = 1, 2, 3, 4, 5, 6, 13, 14, 15
 ACK, NAK = 128, 129
@@ -100,7 +102,7 @@ def test_folders_are_listed_entry_by_entry():
     client = Client(rig)
     assert client.ask(LIST, b"/")[2] == b"Detc\0"
     listed = client.ask(LIST, b"/etc/extras\0")[2].split(b"\0")
-    assert listed == [b"Fgeneral.json\t%d" % len(files(rig)[GENERAL]), b"Fparameters.json.xz\t%d" % len(files(rig)[PARAMETERS]), b""]
+    assert listed == [b"Fgeneral_1.json\t%d" % len(files(rig)[GENERAL]), b"Fparameters_1.json.xz\t%d" % len(files(rig)[PARAMETERS]), b""]
     assert client.ask(LIST, b"/etc/extras", offset=1)[2].startswith(b"Fparameters")
     assert client.ask(LIST, b"/etc/extras", offset=2)[2] == bytes((mav.MAV_FTP_ERR_EOF,))
     assert client.ask(LIST, b"/nowhere")[2] == bytes((mav.MAV_FTP_ERR_FILENOTFOUND,))
@@ -181,7 +183,7 @@ def test_several_read_at_once_and_nobody_reads_on_in_anothers_session():
 def test_a_silent_session_ends_and_makes_room():
     rig = Rig()
     client = Client(rig)
-    sessions = [client.open(GENERAL)[0] for _ in range(SESSIONS_MOST)]
+    sessions = [client.open(GENERAL)[0] for _ in range(SESSIONS_EACH)]
     assert client.ask(OPEN, GENERAL.encode())[2] == bytes((mav.MAV_FTP_ERR_NOSESSIONSAVAILABLE,))
     rig.run(10.1)
     assert client.ask(READ, session=sessions[0], size=10)[2] == bytes((mav.MAV_FTP_ERR_INVALIDSESSION,))

@@ -318,7 +318,7 @@ def test_a_rovers_speed_is_over_ground():
 @pytest.mark.parametrize(("item", "state"), [(0, 3), (1, 2), (2, 4)])
 def test_take_off_and_landing_of_a_mission_are_told(item, state):
     rig = rig_in(Mode.MODE_MISSION)
-    rig.plane.status.armed = True
+    rig.plane.status.armed, rig.plane.status.landed = True, False
     rig.plane.mission.items.extend([MissionItem(kind=MissionItem.TAKEOFF), MissionItem(), MissionItem(kind=MissionItem.LAND)])
     rig.plane.status.waypoint = item
     assert of(rig.run(1.1), "EXTENDED_SYS_STATE", PLANE)[-1].landed_state == state

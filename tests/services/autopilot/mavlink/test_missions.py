@@ -150,7 +150,7 @@ def test_a_bad_item_is_refused_by_name_and_the_old_plan_stays(bad, result):
     upload(rig, PLAN)
     ack, heard = upload(rig, [PLAN[0], bad])
     assert ack.type == result
-    assert any(text.startswith("Mission refused: item 1") for text in texts(heard))
+    assert any(text.startswith("Mission refused: item 2") for text in texts(heard))
     assert len(download(rig)) == len(PLAN)
 
 
@@ -356,4 +356,4 @@ def test_a_delay_with_no_place_before_it_is_refused():
     rig.run()
     ack, heard = upload(rig, [item(0, command=93, frame=2, p=(20.0, -1.0, -1.0, -1.0), place=(0, 0, 0.0))])
     assert ack.type == mav.MAV_MISSION_INVALID_SEQUENCE
-    assert "Mission refused: item 0: a delay needs a place before it" in texts(heard)
+    assert "Mission refused: item 1: a delay needs a place before it" in texts(heard)

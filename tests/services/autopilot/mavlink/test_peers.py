@@ -37,8 +37,8 @@ def test_a_connection_ends_with_silence_and_leaves_nothing_behind():
     peers.hear(0.0, Sender(GCS, 255, 190))
     assert peers.hear(CONNECTION_ENDS, Sender(GCS, 255, 190)) == (False, False)
     assert peers.hear(2 * CONNECTION_ENDS + 0.1, Sender(GCS, 255, 190)) == (True, True)
-    peers.forget(100.0)
-    assert peers._heard == {}
+    peers.forget(100.0, [GCS])
+    assert len(peers) == 0
 
 
 def test_a_ground_station_is_greeted_once_a_connection_and_again_when_it_comes_back():

@@ -5,11 +5,13 @@ import lzma
 
 import pytest
 
-from services.autopilot.mavlink.component_metadata import GENERAL, PARAMETERS
+from services.autopilot.mavlink.component_metadata import general_of, parameters_file_of
 from tests.services.autopilot.mavlink.qgc_parameters import FOREIGN_TEXTS, WRITE
 from tests.services.autopilot.mavlink.qgroundcontrol import QGroundControl
 from tests.services.autopilot.mavlink.rig import PLANE, ROVER, Rig
 from uvf.runtime.mavlink import dialect as mav
+
+GENERAL, PARAMETERS = general_of(PLANE), parameters_file_of(PLANE)
 
 
 def connected(system=PLANE, spoil=lambda message: message, rig=None):

@@ -42,7 +42,7 @@ def test_it_is_greeted_by_its_vehicle_and_cannot_command_another(rig):
     rig.run(0.5)
     rig.say(long(mav.MAV_CMD_REQUEST_MESSAGE, VERSION, system=0), peer=OTHER)
     rig.say(long(mav.MAV_CMD_COMPONENT_ARM_DISARM, 1.0, 0.0, system=PLANE), peer=OTHER)
-    rig.run(0.5)
+    rig.run(1.6)
     heard = rig.heard(OTHER)
     assert len([text for text in texts(heard) if "simulated autopilot" in text]) == 1
     assert [m.get_srcSystem() for m in of(heard, "AUTOPILOT_VERSION")] == [ROVER]

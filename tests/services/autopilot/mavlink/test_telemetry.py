@@ -199,7 +199,7 @@ def test_every_peer_is_greeted_once_with_what_this_is():
     rig.run()
     beat = mav.MAVLink_heartbeat_message(mav.MAV_TYPE_GCS, mav.MAV_AUTOPILOT_INVALID, 0, 0, 0, 3)
     rig.say(beat)
-    greetings = [t for t in texts(rig.run()) if "not PX4" in t]
+    greetings = [t for t in texts(rig.run(1.6)) if "not PX4" in t]
     assert len(greetings) == 2
     assert not of(rig.heard(OTHER), "STATUSTEXT")
     rig.say(beat)

@@ -8,7 +8,7 @@ import pytest
 from schemas.convert import quaternion
 from schemas.messages import AirData, Battery, EstimateQuality, Imu, Mode, SurfaceCommand, Targets, Vector3
 from services.autopilot.mavlink.service import MavlinkService
-from tests.services.autopilot.mavlink.rig import ORIGIN, PLANE, PLANE_FACTS, Rig, of, shelves
+from tests.services.autopilot.mavlink.rig import GCS, ORIGIN, PLANE, PLANE_FACTS, Rig, of, shelves
 from uvf.maths import atmosphere
 from uvf.maths.rotations import from_euler
 from uvf.runtime.mavlink import dialect as mav
@@ -25,14 +25,14 @@ RATES = {
 
 def truthful():
     """Climbing at 2 m/s in a bank to the right, nose up, to the north-east; home 20 m over the world's origin."""
-    rig = Rig()
+    rig = Rig(reserved={GCS: PLANE})
     plane = rig.plane
     latitude, longitude, altitude = ORIGIN.geodetic([100.0, 200.0, 80.0])
     plane.gnss.latitude, plane.gnss.longitude, plane.gnss.altitude = latitude, longitude, altitude
     plane.gnss.velocity_enu.CopyFrom(Vector3(x=15.0, y=15.0, z=2.0))
     plane.nav.velocity.CopyFrom(Vector3(x=15.0, y=15.0, z=2.0))
     plane.nav.orientation.CopyFrom(quaternion(from_euler(0.3, -0.1, math.radians(45.0))))
-    plane.status.mode, plane.status.armed = Mode.MODE_HOLD, True
+    plane.status.mode, plane.status.armed, plane.status.landed = Mode.MODE_HOLD, True, False
     plane.battery = Battery(voltage=11.1, current=5.0, remaining=0.8)
     static = atmosphere.pressure(380.0)
     plane.sensed = {

@@ -13,6 +13,7 @@ from uvf.maths.planar import IDENTITY, Pose2
 
 EVIDENCE = Evidence(17, -8, -60, 70)
 READING = drive(1)[0]
+MEMORY = 20e6
 
 
 def cells(tiles, k, reach=100):
@@ -23,14 +24,14 @@ def cells(tiles, k, reach=100):
 
 
 def two_maps():
-    tiles = SharedTiles(2, 1, 0.05)
+    tiles = SharedTiles(2, np.int16, 0.05, MEMORY)
     tiles.draw(0, READING, IDENTITY, EVIDENCE)
     tiles.take(np.array((0, 0)))
     return tiles
 
 
 def test_a_copy_is_the_same_map_and_takes_no_tile():
-    tiles = SharedTiles(2, 1, 0.05)
+    tiles = SharedTiles(2, np.int16, 0.05, MEMORY)
     tiles.draw(0, READING, IDENTITY, EVIDENCE)
     before = tiles.tiles
     assert not cells(tiles, 1).any()
@@ -83,7 +84,7 @@ def test_beams_that_end_where_they_begin_draw_nothing():
 
 
 def test_evidence_stays_within_its_bounds():
-    tiles = SharedTiles(1, 1, 0.05)
+    tiles = SharedTiles(1, np.int8, 0.05, MEMORY)
     for _ in range(9):
         tiles.draw(0, READING, IDENTITY, EVIDENCE)
     assert (cells(tiles, 0).min(), cells(tiles, 0).max()) == (-60, 70)

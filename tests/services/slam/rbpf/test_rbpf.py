@@ -58,7 +58,7 @@ def test_the_same_seed_gives_the_same_path_and_another_one_another():
 def test_the_proposal_is_narrower_than_the_motion_model_where_the_sweep_tells():
     readings = drive(2)
     method, _ = run(readings[:1])
-    sweep, grid = (points_of(readings[1], 80.0, 180), (0.0, 0.0)), method.tiles.grid(0)
+    sweep, grid = (points_of(readings[1], 80.0, 180), (0.0, 0.0)), method._map(0)
     model = MotionModel(0.1, 0.1, 0.1, 0.2).covariance(Pose2(0.5, 0.0, 0.3))
     prior = (truth(2)[1] + (0.04, -0.03, 0.02), np.linalg.inv(model))
     matched = match(prior[0], sweep, grid, prior, RbpfParams())
@@ -72,7 +72,7 @@ def test_the_weight_of_a_particle_is_the_integral_of_likelihood_times_motion_mod
     """Equation 19, found a second way: the mean likelihood at poses drawn from the motion model."""
     readings = drive(2)
     method, _ = run(readings[:1])
-    sweep, grid = (points_of(readings[1], 80.0, 60), (0.0, 0.0)), method.tiles.grid(0)
+    sweep, grid = (points_of(readings[1], 80.0, 60), (0.0, 0.0)), method._map(0)
     model, sigma = np.diag((0.03, 0.03, 0.02)) ** 2, 0.3
     prior = (truth(2)[1] + (0.01, -0.01, 0.01), np.linalg.inv(model))
     matched = match(prior[0], sweep, grid, prior, RbpfParams(sigma=sigma))
@@ -103,9 +103,9 @@ def test_where_nothing_is_seen_the_pose_is_drawn_from_the_motion_model():
     method, _ = run(drive(1))
     model = MotionModel(0.1, 0.1, 0.1, 0.2).covariance(Pose2(0.5, 0.0, 0.3))
     prior, nothing = (np.array((0.5, 0.0, 0.3)), np.linalg.inv(model)), (np.zeros((0, 2)), (0.0, 0.0))
-    matched = match(prior[0], nothing, method.tiles.grid(0), prior, RbpfParams())
+    matched = match(prior[0], nothing, method._map(0), prior, RbpfParams())
     rng = np.random.default_rng(1)
-    drawn = np.array([draw_pose(matched, nothing, method.tiles.grid(0), prior, RbpfParams(), rng)[0] for _ in range(400)])
+    drawn = np.array([draw_pose(matched, nothing, method._map(0), prior, RbpfParams(), rng)[0] for _ in range(400)])
     assert not matched.found
     assert drawn.std(axis=0) == pytest.approx(np.sqrt(np.diag(model)), rel=0.15)
 

@@ -1,0 +1,90 @@
+"""Memory and time that tools take for a log of 2 GB: pictures that do not compress, and many small messages.
+
+Each runs in a process of its own; ``growth MB`` is what its peak of resident memory is above that of the started process.
+"""
+
+import json
+import random
+import re
+import subprocess
+import sys
+import tempfile
+import time
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from benchmarks.timing import stopwatch
+from schemas import topics
+from schemas.messages import Clock, Imu, NavState, Vector3
+from uvf.launch.bench import Figures
+from uvf.launch.report import describe_log
+from uvf.runtime.bus import LocalBus, Sample
+from uvf.runtime.recording import Recorder, recover
+from uvf.runtime.replay import into_service, onto_bus
+from uvf.runtime.service import Service
+from uvf.runtime.site import ROOT, Host
+
+PICTURE, BYTES = 1_000_000, 2_000_000_000
+SMALL = 200  # messages beside each picture
+PERIOD = 100_000_000  # ns
+
+
+class Watcher(Service):
+    """Hears what is in the log, and puts out what is not."""
+
+    name = "watcher"
+    hz = 10.0
+    inputs = {"image": topics.IMAGE, "imu": topics.IMU}
+    outputs = {"state": topics.NAV_STATE}
+
+    def step(self, t: float, image: Any, imu: Any) -> Any:
+        return {"state": NavState()}
+
+
+TOOLS = {
+    "recover": lambda log: recover(log, log.with_suffix(".saved")),
+    "replay onto a bus": lambda log: onto_bus(log, LocalBus(), rate=1e9),
+    "replay into a service": lambda log: sum(1 for _ in into_service(log, Host(Watcher, Watcher, "v"))),
+    "info": describe_log,
+}
+
+
+def write_log(path: Path) -> None:
+    noise = random.Random(1).randbytes(PICTURE + 9973)
+    imu = Imu(specific_force=Vector3(z=9.81)).SerializeToString()
+    with Recorder(path) as recorder:
+        for n in range(1, BYTES // PICTURE + 1):
+            begin = n % 9973
+            recorder.write(_sample(topics.IMAGE, noise[begin : begin + PICTURE], n * PERIOD, n))
+            recorder.write(_sample(topics.CLOCK, Clock(t_ns=n * PERIOD).SerializeToString(), n * PERIOD, n))
+            for k in range(SMALL):
+                recorder.write(_sample(topics.IMU, imu, n * PERIOD + k * PERIOD // SMALL, n * SMALL + k))
+
+
+def _sample(topic: topics.Topic[Any], payload: bytes, stamp_ns: int, seq: int) -> Sample:
+    return Sample(topic.at("v"), topic.message.DESCRIPTOR.full_name, payload, stamp_ns, seq, 1)
+
+
+def peak_kb() -> int:
+    found = re.search(r"VmHWM:\s+(\d+)", Path("/proc/self/status").read_text())
+    return int(found[1]) if found else 0
+
+
+def measure(tool: str, _: Path | None = None) -> Figures:
+    with tempfile.TemporaryDirectory() as folder:
+        log = Path(folder) / "log.mcap"
+        write_log(log)
+        command = (sys.executable, "-m", "benchmarks.log_memory", tool, str(log))
+        done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
+    return {tool: json.loads(done.stdout.splitlines()[-1])}
+
+
+CASES = {tool: partial(measure, tool) for tool in TOOLS}
+
+if __name__ == "__main__":
+    before, began = peak_kb(), time.perf_counter()
+    with stopwatch() as taken:
+        TOOLS[sys.argv[1]](Path(sys.argv[2]))
+    row = {"log MB": Path(sys.argv[2]).stat().st_size / 1e6, "peak MB": peak_kb() / 1e3, "growth MB": (peak_kb() - before) / 1e3}
+    sys.stdout.write(json.dumps(row | {"CPU s": taken[0], "wall s": taken[1]}) + "\n")

@@ -1,0 +1,73 @@
+"""What fits into the messages of THE TABLE: sizes of whole messages, and what a field may hold where the common limits do not fit.
+
+Everybody who hears a message checks it against these before anything else is done with it.
+"""
+
+from google.protobuf.message import Message
+
+from schemas import messages as m
+
+KB, MB = 1024, 1024 * 1024
+SIZE = 64 * KB
+"""Bytes of a message, unless it is named in ``SIZES``."""
+SIZES: dict[type[Message], int] = {
+    m.CameraCalibration: 64 * KB,
+    m.CompressedImage: 16 * MB,
+    m.Grid: 128 * MB,
+    m.MapReply: 128 * MB,
+    m.MapSession: 512 * MB,
+    m.OctreeMap: 128 * MB,
+    m.LaserScan: 2 * MB,
+    m.PosesInFrame: 8 * MB,
+    m.FrameTransforms: MB,
+    m.Clock: MB,
+    m.Done: MB,
+    m.Health: MB,
+    m.Processes: MB,
+    m.SimObjects: MB,
+    m.Fence: 2 * MB,
+    m.FenceRequest: 2 * MB,
+    m.Mission: 2 * MB,
+    m.MissionRequest: 2 * MB,
+    m.ParamReply: MB,
+    m.ParamValues: MB,
+}
+
+NUMBER = 1e12
+"""Of any unit: beyond it squares lose the rest, and indices leave their integers."""
+INTEGER = 2**53
+TEXT = 2000  # characters; printable ones, line ends and tabs
+ENTRIES = 10_000  # of a list or map
+LENGTHS: dict[str, int] = {
+    "foxglove.LaserScan.ranges": 200_000,
+    "foxglove.LaserScan.intensities": 200_000,
+    "foxglove.PosesInFrame.poses": 100_000,
+    "foxglove.PoseInFrame.frame_id": 100,
+    "foxglove.FrameTransform.parent_frame_id": 100,
+    "foxglove.FrameTransform.child_frame_id": 100,
+    "uvf.v1.Param.description": 4000,
+    "uvf.v1.ParamRequest.name": 100,
+    "uvf.v1.SimObjects.objects": 1000,
+    "uvf.v1.StopState.engagements": 100,
+    "uvf.v1.StopState.released": 1000,
+    "uvf.v1.StopCommand.releases": 100,
+}
+"""Of texts, lists and maps that are not held to ``TEXT`` and ``ENTRIES``."""
+OPEN: dict[str, frozenset[str]] = {
+    "foxglove.LaserScan": frozenset(("ranges", "intensities")),  # no return may be written as infinite
+    "uvf.v1.GoalRequest": frozenset(("yaw",)),  # NaN = any
+    "uvf.v1.Param": frozenset(("min", "max")),  # infinite = no limit
+}
+"""Numbers of any value."""
+MODEL = r"([A-Za-z0-9_][A-Za-z0-9_.-]{0,79})?"
+PATTERNS: dict[str, str] = {"uvf.v1.Guest.model": MODEL, "uvf.v1.SimObject.model": MODEL}
+"""Texts that become names of files, where they are not empty."""
+ITEM = 32
+BYTES: dict[str, int] = {"uvf.v1.MissionItem.origin": ITEM, "uvf.v1.Fence.origin": ITEM, "uvf.v1.RallyPoints.origin": ITEM}
+"""Bytes of one length, where they are not empty: an item of MAVLink's mission protocol as it came over the wire."""
+GRID_SIDE = 50_000  # cells
+GRID_CELL = (1e-3, 1e4)  # m
+
+
+def size_of(type_: type[Message]) -> int:
+    return SIZES.get(type_, SIZE)

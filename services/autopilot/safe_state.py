@@ -1,0 +1,23 @@
+"""What is sent to a vehicle's actuators when its autopilot has failed too often to be tried again."""
+
+from schemas.convert import stamp
+from schemas.messages import Kind, Mode, SurfaceCommand, VehicleStatus, WheelCommand
+from uvf.runtime.service import Outputs
+
+SPIRAL = 0.1  # rad of rudder: with the motor off it comes down in a wide turn instead of gliding out of sight
+
+
+def standing(t: float, reason: str) -> Outputs:
+    """A ground vehicle's wheels stand."""
+    return {"wheels": WheelCommand(timestamp=stamp(t)), "status": _status(t, Kind.KIND_GROUND, reason)}
+
+
+def coming_down(t: float, reason: str) -> Outputs:
+    """Nothing is left that could fly it: motor off and a little rudder, as a radio without signal does; on the ground it brakes."""
+    down = SurfaceCommand(timestamp=stamp(t), rudder=SPIRAL, brake=1.0)
+    return {"surfaces": down, "status": _status(t, Kind.KIND_FIXED_WING, reason)}
+
+
+def _status(t: float, kind: Kind, reason: str) -> VehicleStatus:
+    landed = kind == Kind.KIND_GROUND
+    return VehicleStatus(timestamp=stamp(t), kind=kind, mode=Mode.MODE_HOLD, landed=landed, reason=reason, failsafes=[reason])

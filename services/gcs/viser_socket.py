@@ -1,0 +1,171 @@
+"""What a browser may say to viser: few kinds of small messages of a known form, and not too many of them.
+
+viser itself takes every kind of its messages from any client, of up to 50 MB, and sets whatever attribute of a button or
+slider the client names: one message could take the meaning from STOP ALL for everybody.
+"""
+
+import asyncio
+import math
+import time
+from collections.abc import Callable
+from typing import Annotated, Any, Literal
+
+import msgspec
+import viser
+from websockets.asyncio.server import ServerConnection
+
+VERSION = f"viser-v{viser.__version__}"
+LARGEST = 16 * 1024  # bytes of a message
+MOST_OPEN = 64  # connections to the port, also those that have not said yet what they want
+MOST_BROWSERS = 16
+RATE, BURST = 100.0, 200.0  # messages/s of one browser: a page sends 30 at most
+FAULTS = 20  # more messages of no known form than sound ones, after which a connection is closed
+
+Word = Annotated[str, msgspec.Meta(max_length=256)]
+Name = Annotated[str, msgspec.Meta(max_length=512)]
+Modifier = Annotated[str, msgspec.Meta(max_length=32)] | None
+Pixels = Annotated[int, msgspec.Meta(ge=0, le=100_000)]
+Vector = tuple[float, float, float]
+Quaternion = tuple[float, float, float, float]
+Screen = tuple[float, float]
+
+
+class Camera(msgspec.Struct, tag="ViewerCameraMessage", forbid_unknown_fields=True):
+    """As ``viser._messages.ViewerCameraMessage``; the names below likewise."""
+
+    wxyz: Quaternion
+    position: Vector
+    fov: float
+    near: float
+    far: float
+    image_height: Pixels
+    image_width: Pixels
+    look_at: Vector
+    up_direction: Vector
+
+
+class Value(msgspec.Struct, forbid_unknown_fields=True):
+    """Of a button, slider, choice or text; nothing else of them is a client's to set."""
+
+    value: bool | int | float | Word
+
+
+class Update(msgspec.Struct, tag="GuiUpdateMessage", forbid_unknown_fields=True):
+    uuid: Word
+    updates: Value
+
+
+class Click(msgspec.Struct, tag="ScenePointerMessage", forbid_unknown_fields=True):
+    event_type: Literal["click"]
+    ray_origin: Vector
+    ray_direction: Vector
+    screen_pos: tuple[Screen]
+    modifier: Modifier
+
+
+class NodeClick(msgspec.Struct, tag="SceneNodeClickMessage", forbid_unknown_fields=True):
+    name: Name
+    ray_origin: Vector
+    ray_direction: Vector
+    screen_pos: Screen
+    instance_index: int | None
+    modifier: Modifier
+    owner: Word = ""
+
+
+DECODER: msgspec.msgpack.Decoder[Any] = msgspec.msgpack.Decoder(Camera | Update | Click | NodeClick)
+
+
+def is_sound(raw: object) -> bool:
+    """Whether it is a message of a page, and its numbers are finite."""
+    if not isinstance(raw, bytes):
+        return False
+    try:
+        message = DECODER.decode(raw)
+    except (msgspec.DecodeError, RecursionError, UnicodeDecodeError):
+        return False
+    return all(math.isfinite(number) and abs(number) < 1e12 for number in _numbers(msgspec.structs.astuple(message)))
+
+
+def _numbers(parts: Any) -> list[float]:
+    found = []
+    for part in parts:
+        if isinstance(part, tuple):
+            found += _numbers(part)
+        elif isinstance(part, Value):
+            found += _numbers((part.value,))
+        elif isinstance(part, int | float):
+            found.append(part)
+    return found
+
+
+class Door:
+    """Counts the connections to one port."""
+
+    def __init__(self) -> None:
+        self.open = 0
+        self.browsers = 0
+        self.refused = 0
+        """Messages of no known form."""
+
+    def connection(self, *args: Any, **kwargs: Any) -> "PageConnection":
+        """What websockets' server makes of each."""
+        return PageConnection(self, *args, **kwargs)
+
+    def handler(self, serve: Callable[[Any], Any]) -> Callable[[Any], Any]:
+        """viser's own for each browser, for as many as there may be at a time."""
+
+        async def bounded(connection: Any) -> None:
+            if connection.subprotocol != VERSION:
+                await connection.close(1002, f"Version mismatch. Client: {str(connection.subprotocol)[:40]}, Server: {VERSION}")
+                return
+            if self.browsers >= MOST_BROWSERS:
+                await connection.close(1013, f"{MOST_BROWSERS} browsers are connected already")
+                return
+            self.browsers += 1
+            try:
+                await serve(connection)
+            finally:
+                self.browsers -= 1
+
+        return bounded
+
+
+class PageConnection(ServerConnection):
+    """Hands on what is sound; who sends more than a page does is read more slowly, who sends nonsense is cut off."""
+
+    def __init__(self, door: Door, *args: Any, **kwargs: Any) -> None:
+        super().__init__(*args, **kwargs)
+        self._door = door
+        self._allowance, self._counted_at = BURST, time.monotonic()
+        self._faults = 0
+
+    def connection_made(self, transport: Any) -> None:
+        super().connection_made(transport)
+        self._door.open += 1
+        if self._door.open > MOST_OPEN:
+            transport.abort()
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        super().connection_lost(exc)
+        self._door.open -= 1
+
+    async def recv(self, decode: bool | None = None) -> Any:
+        while True:
+            raw = await super().recv(decode)
+            await self._in_turn()
+            if is_sound(raw):
+                self._faults = max(0, self._faults - 1)
+                return raw
+            self._faults += 1
+            self._door.refused += 1
+            if self._faults > FAULTS:
+                await self.close(1008, "these are no messages of this page")
+
+    async def _in_turn(self) -> None:
+        """Waits while this client is over its rate; meanwhile nothing more of it is read, and its own socket fills."""
+        now = time.monotonic()
+        self._allowance = min(BURST, self._allowance + RATE * (now - self._counted_at)) - 1.0
+        self._counted_at = now
+        if self._allowance < 0:
+            await asyncio.sleep(-self._allowance / RATE)

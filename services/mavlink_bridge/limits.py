@@ -1,0 +1,58 @@
+"""What fits into MAVLink's fields, what can be a place, and what of an autopilot's numbers and words the bus can carry."""
+
+import math
+
+from schemas.messages import Vector3
+from services.mavlink_bridge.frame import Chart
+
+HIGHEST = 1e5  # m AMSL, either way
+FARTHEST = 2e5  # m from the world's origin, as our own autopilots have it
+LARGEST = 1e9  # of any unit: a thousand of them together are below what a reader on the bus refuses
+LARGEST_FLOAT = 3.4028234663852886e38  # of 32 bits
+WHOLE_FLOAT = 2**24  # up to here each whole number is a 32-bit float
+
+
+class Refused(Exception):
+    """What was asked cannot go to the autopilot; the text says why, and how to mend it."""
+
+
+def where(chart: Chart, place: Vector3) -> tuple[float, float, float]:
+    """(latitude, longitude [deg], altitude [m AMSL]) of a place that an autopilot may be sent to. Raises Refused."""
+    if reason := far_off(place):
+        raise Refused(reason)
+    latitude, longitude, _ = chart.geodetic((place.x, place.y, place.z))  # type: ignore[arg-type]
+    return latitude, longitude, amsl(chart, place.z)
+
+
+def amsl(chart: Chart, z: float) -> float:
+    """m AMSL of a height in the world. Raises Refused."""
+    altitude = z + chart.origin.altitude
+    if not abs(altitude) <= HIGHEST:
+        raise Refused(f"an altitude of {altitude:g} m above sea level: name one within {HIGHEST:g} m")
+    return altitude
+
+
+def far_off(place: Vector3) -> str:
+    """Why no autopilot is sent to a place of the world; empty if it may be."""
+    away = math.hypot(place.x, place.y)
+    if not away <= FARTHEST:
+        return f"that place is {away / 1e3:g} km from the world's origin: name one within {FARTHEST / 1e3:g} km"
+    if not abs(place.z) <= HIGHEST:
+        return f"that place is {place.z:g} m high: name one within {HIGHEST:g} m"
+    return ""
+
+
+def is_on_earth(latitude: float, longitude: float) -> bool:
+    """Of degrees that an autopilot tells."""
+    return abs(latitude) <= 90.0 and abs(longitude) <= 180.0
+
+
+def is_sound(*told: float) -> bool:
+    """Whether numbers that an autopilot tells are finite and can be true."""
+    return all(abs(number) < LARGEST for number in told)
+
+
+def legible(words: str, most: int) -> str:
+    """Words of an autopilot on one line, without what would steer a terminal or turn the text round."""
+    kept = "".join(letter if letter.isprintable() else " " for letter in words[: most + 1]).strip()
+    return kept if len(kept) <= most else f"{kept[: most - 1]}…"

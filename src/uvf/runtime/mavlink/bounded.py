@@ -1,0 +1,12 @@
+"""Tables that strangers fill: each has an end, and who counts least makes room."""
+
+from collections.abc import Callable, MutableMapping
+from typing import Any, TypeVar
+
+K = TypeVar("K")
+
+
+def make_room(table: MutableMapping[K, Any], key: K, most: int, rank: Callable[[K], Any]) -> None:
+    """Before ``key`` is put in: where it would be one more than ``most``, the lowest of ``rank`` goes."""
+    while key not in table and len(table) >= most:
+        del table[min(table, key=rank)]

@@ -1,0 +1,205 @@
+"""STOP ALL as every process knows it: in force while any engagement of any source has not been released by name.
+
+Engagements and releases are two sets that only grow (a two-phase set, Shapiro et al. 2011, "A comprehensive study of
+convergent and commutative replicated data types", 3.3.2), so that all who have heard the same words agree, in whatever order
+these came, whatever their stamps and epochs, and however often they were repeated.
+"""
+
+import hashlib
+import secrets
+from collections import Counter
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+
+from schemas import topics
+from schemas.convert import stamp_ns
+from schemas.messages import StopCommand, StopEngagement, StopState
+from schemas.topics import OPERATORS
+from uvf.runtime.bus import Sample
+from uvf.runtime.wire import Malformed, decode_sample
+
+ENGAGEMENTS_MOST = 64
+"""Held at a time; beyond, the oldest of the source that has most is dropped: the others keep STOP ALL in force."""
+RELEASED_MOST = 512
+"""Names remembered; a word that is repeated after its release has been forgotten engages again."""
+REPEATED_MOST = 64  # releases that a sender says again with each of its words
+Name = tuple[str, int]
+
+
+@dataclass(frozen=True)
+class StopStatus:
+    """Who engages STOP ALL now; true while anybody does."""
+
+    engagements: tuple[StopEngagement, ...] = ()
+    released_by: str = ""
+    """The operator whose release was the last one heard."""
+
+    def __bool__(self) -> bool:
+        return bool(self.engagements)
+
+    @property
+    def who(self) -> str:
+        """Each source once with its reason: ``gcs (button); launcher (slam was given up)``."""
+        return told(self.engagements)
+
+
+def told(engagements: Iterable[StopEngagement]) -> str:
+    """Who engages STOP ALL and why, for people; empty when nobody does."""
+    reasons: dict[str, list[str]] = {}
+    for one in engagements:
+        reasons.setdefault(one.source or "somebody unnamed", []).append(one.reason)
+    parts = [(source, ", ".join(dict.fromkeys(filter(None, why)))) for source, why in reasons.items()]
+    return "; ".join(f"{source} ({why})" if why else source for source, why in parts)
+
+
+def name_of(engagement: StopEngagement) -> Name:
+    return engagement.source, engagement.id
+
+
+class StopBook:
+    """Every word about STOP ALL that one process has heard."""
+
+    def __init__(self, at_once: bool = True) -> None:
+        """at_once: words count when they arrive. Else a step reads those stamped before it, and at the step after at the latest."""
+        self._at_once = at_once
+        self._waiting: list[tuple[Sample, bool]] = []
+        self._engaged: dict[Name, StopEngagement] = {}
+        self._released: dict[Name, None] = {}
+        self._released_by = ""
+        self._refused: list[str] = []
+        self._view = StopStatus()
+
+    def push(self, sample: Sample) -> None:
+        """Takes a word from the bus, of a source or of the book beside the router."""
+        if self._at_once:
+            self._apply(sample)
+        else:
+            self._waiting.append((sample, False))
+
+    def take(self, t_ns: int) -> StopStatus:
+        """What holds for the step at ``t_ns``. No stamp, however odd, holds a word back for more than one step."""
+        if self._waiting:
+            waiting, self._waiting = self._waiting, []
+            for sample, seen in waiting:
+                if seen or sample.stamp_ns < t_ns:
+                    self._apply(sample)
+                else:
+                    self._waiting.append((sample, True))
+        return self._view
+
+    @property
+    def now(self) -> StopStatus:
+        return self._view
+
+    def refused(self) -> list[str]:
+        """Lines about words that did not count, since the last call."""
+        lines, self._refused = self._refused, []
+        return lines
+
+    def take_up(self, engagements: Iterable[StopEngagement]) -> None:
+        """Engagements that somebody else has heard: an instance before this one, or the book beside the router."""
+        for engagement in engagements:
+            self._engage(engagement)
+        self._look()
+
+    def state(self, now_ns: int) -> StopState:
+        """The book as a message for those who come late."""
+        released = [StopEngagement(source=source, id=id_) for source, id_ in list(self._released)[-REPEATED_MOST:]]
+        return StopState(timestamp=stamp_ns(now_ns), engagements=self._view.engagements, released=released)
+
+    def _apply(self, sample: Sample) -> None:
+        try:
+            if sample.key == topics.STOP_STATE.at(topics.SYSTEM):
+                self._hear_state(decode_sample(sample, StopState))
+            else:
+                self._hear_command(sample, decode_sample(sample, StopCommand))
+        except Malformed as error:
+            self._refused.append(str(error))
+        self._look()
+
+    def _hear_state(self, state: StopState) -> None:
+        for name in state.released:
+            self._release(name_of(name))
+        for engagement in state.engagements:
+            self._engage(engagement)
+
+    def _hear_command(self, sample: Sample, command: StopCommand) -> None:
+        source = sample.key.rpartition("/")[2]
+        if command.releases and source not in OPERATORS:
+            self._refused.append(f"{sample.key}: STOP ALL is released only by {', '.join(OPERATORS)}, not by {source}")
+        elif command.releases:
+            self._released_by = source
+            for name in command.releases:
+                self._release(name_of(name))
+        elif not command.engaged and not command.id:
+            self._refused.append(f"{sample.key}: a release of STOP ALL that names nothing; 'releases' says which engagements end")
+        if command.engaged:
+            id_ = command.id or self._own_id(sample, source)
+            self._engage(StopEngagement(source=source, id=id_, reason=command.reason, since=command.timestamp))
+
+    def _own_id(self, sample: Sample, source: str) -> int:
+        """Of an engagement without a name: of its envelope, else of its bytes, each time after a release another one."""
+        if sample.boot or sample.seq:
+            return _digest(b"%d/%d" % (sample.boot, sample.seq))
+        ids = (_digest(sample.payload + b"/%d" % n) for n in range(RELEASED_MOST + 1))
+        return next(id_ for id_ in ids if (source, id_) not in self._released)
+
+    def _engage(self, engagement: StopEngagement) -> None:
+        name = name_of(engagement)
+        if name in self._released or name in self._engaged:
+            return
+        self._engaged[name] = engagement
+        if len(self._engaged) > ENGAGEMENTS_MOST:
+            most = Counter(source for source, _ in self._engaged).most_common(1)[0][0]
+            del self._engaged[next(name for name in self._engaged if name[0] == most)]
+
+    def _release(self, name: Name) -> None:
+        self._engaged.pop(name, None)
+        self._released[name] = None
+        while len(self._released) > RELEASED_MOST:
+            del self._released[next(iter(self._released))]
+
+    def _look(self) -> None:
+        """In an order that does not depend on that of arrival."""
+        now = tuple(self._engaged[name] for name in sorted(self._engaged))
+        if now != self._view.engagements or self._released_by != self._view.released_by:
+            self._view = StopStatus(now, self._released_by)
+
+
+def _digest(data: bytes) -> int:
+    """A name that is never 0."""
+    return int.from_bytes(hashlib.blake2b(data, digest_size=8).digest(), "big") | 1
+
+
+class StopVoice:
+    """What one source says of STOP ALL; each word repeats its earlier releases, for whoever hears only the last one."""
+
+    def __init__(self, source: str, new_id: Callable[[], int] = lambda: secrets.randbits(63) | 1) -> None:
+        self._source = source
+        self._new_id = new_id
+        self._said = StopCommand(source=source)
+
+    @property
+    def engages(self) -> Name | None:
+        """The engagement that it stands by."""
+        return (self._source, self._said.id) if self._said.engaged else None
+
+    def engage(self, now_ns: int, reason: str) -> StopCommand:
+        """A new engagement, also where an older one holds: a release that is under way does not name it."""
+        return self._say(now_ns, engaged=True, id=self._new_id(), reason=reason)
+
+    def withdraw(self, now_ns: int) -> StopCommand:
+        """No longer stands by an engagement that an operator has released."""
+        return self._say(now_ns, engaged=False, id=self._said.id, reason="")
+
+    def release(self, now_ns: int, engagements: Iterable[StopEngagement]) -> StopCommand:
+        """Ends these by name."""
+        names = {name_of(one): StopEngagement(source=one.source, id=one.id) for one in (*self._said.releases, *engagements)}
+        own = (self._source, self._said.id)
+        command = StopCommand(releases=list(names.values())[-REPEATED_MOST:])
+        return self._say(now_ns, engaged=self._said.engaged and own not in names, id=self._said.id, reason="", releases=command.releases)
+
+    def _say(self, now_ns: int, releases: Iterable[StopEngagement] | None = None, **said: bool | int | str) -> StopCommand:
+        kept = list(self._said.releases if releases is None else releases)
+        self._said = StopCommand(timestamp=stamp_ns(now_ns), source=self._source, releases=kept, **said)  # type: ignore[arg-type]
+        return self._said

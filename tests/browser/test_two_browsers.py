@@ -1,0 +1,50 @@
+"""Two people, two real browsers: each sees the vehicle that he has chosen, and what he asks for goes there."""
+
+import pytest
+
+from schemas.messages import ArmRequest, ModeRequest
+from tests.browser.canvas import until
+from tests.browser.conftest import opened
+from tests.services.gcs.scripted import UAV, UGV
+
+pytestmark = pytest.mark.timeout(240)
+
+
+@pytest.fixture
+def other(browser, station):
+    with opened(browser, station.port, f"/vehicles/{UAV}/0", (900, 600)) as other:
+        yield other
+
+
+def choose(page, vehicle):
+    page.get_by_role("button", name=f"Select {vehicle}").dispatch_event("pointerdown")
+    page.locator("#gcs-drive" if vehicle == UGV else "#gcs-pfd").wait_for(timeout=40_000)
+
+
+def asked(station, kind):
+    return [name for name, message in station.script.asked if isinstance(message, kind)]
+
+
+def test_each_sees_and_commands_his_own(page, other, station):
+    choose(page, UGV)
+    choose(other, UAV)
+    assert page.locator("#gcs-drive").is_visible() and not page.locator("#gcs-pfd").count()
+    page.get_by_role("button", name="Hold", exact=True).click()
+    assert until(page, lambda: asked(station, ModeRequest) == [UGV])
+    other.get_by_role("button", name="Hold", exact=True).click()
+    assert until(other, lambda: asked(station, ModeRequest) == [UGV, UAV])
+    page.get_by_role("button", name=f"Disarm {UGV}", exact=True).click()
+    page.get_by_role("button", name=f"Confirm: disarm {UGV}").wait_for(timeout=20_000)
+    assert not other.get_by_role("button", name="Confirm").count()
+    assert asked(station, ArmRequest) == []
+
+
+def test_who_loses_the_connection_sees_the_same_vehicle_again(page, other, station):
+    choose(page, UGV)
+    choose(other, UAV)
+    before = set(station.service._model.sessions)
+    station.page._server._websock_server.disconnect_all_clients()
+    assert until(page, lambda: len(station.service._model.sessions) == 2 and not before & set(station.service._model.sessions))
+    assert until(other, lambda: sorted(s.vehicle for s in station.service._model.sessions.values()) == sorted((UGV, UAV)))
+    other.locator("#gcs-pfd").wait_for(timeout=40_000)
+    page.locator("#gcs-drive").wait_for(timeout=40_000)

@@ -1,0 +1,37 @@
+"""A ground station before scripted vehicles, as a process of its own: ``python -m tests.hostile.page_station PORT``.
+
+Each line of its output says what it has sent so far: STOPs, requests, drives, aims of the gimbal.
+"""
+
+import sys
+import time
+from functools import partial
+
+from services.gcs.cameras import cameras
+from services.gcs.service import GroundStation
+from services.gcs.state import Model
+from services.gcs.viser_page import ViserPage
+from tests.services.gcs.scripted import Script, demo_site, with_eyes
+from uvf.runtime.address import Address
+from uvf.runtime.shell import Shell
+from uvf.runtime.site import Host
+
+
+def main(port: int) -> None:
+    site, script = with_eyes(demo_site()), Script()
+    page = ViserPage(Address(port=port), partial(cameras, site), Model(site).layers)
+    shell = Shell(Host(GroundStation, lambda: GroundStation(site, page)), script.bus)
+    begin, told = time.monotonic(), None
+    while True:
+        script.publish(time.monotonic() - begin)
+        shell.advance()
+        sent = (len(script.stops), len(script.asked), len(script.drives), len(script.gimbals))
+        if sent != told:
+            sys.stdout.write(f"{' '.join(map(str, sent))}\n")
+            sys.stdout.flush()
+            told = sent
+        time.sleep(0.05)
+
+
+if __name__ == "__main__":
+    main(int(sys.argv[1]))

@@ -1,0 +1,48 @@
+"""Programs run by tests in processes of their own, to see how much memory they take: ``python -m tests.runtime.log_tools NAME LOG``."""
+
+import re
+import sys
+from pathlib import Path
+
+from schemas import topics
+from schemas.messages import NavState
+from uvf.launch.report import describe_log
+from uvf.runtime.bus import LocalBus
+from uvf.runtime.recording import recover
+from uvf.runtime.replay import into_service, onto_bus
+from uvf.runtime.service import Service
+from uvf.runtime.site import Host
+
+
+class Watcher(Service):
+    """Hears large messages and puts out what the log does not hold."""
+
+    name = "watcher"
+    hz = 10.0
+    inputs = {"image": topics.IMAGE}
+    outputs = {"state": topics.NAV_STATE}
+
+    def step(self, t, image):
+        return {"state": NavState()}
+
+    def stale(self, t, missing):
+        return {}
+
+
+PROGRAMS = {
+    "recover": lambda log: recover(log, log.with_suffix(".saved.mcap")),
+    "onto_bus": lambda log: onto_bus(log, LocalBus(), rate=1e9),
+    "into_service": lambda log: sum(1 for _ in into_service(log, Host(Watcher, Watcher, "v"))),
+    "describe": describe_log,
+}
+
+
+def peak():
+    """Of the resident memory of this process [kB]."""
+    return int(re.search(r"VmHWM:\s+(\d+)", Path("/proc/self/status").read_text())[1])
+
+
+if __name__ == "__main__":
+    before = peak()
+    PROGRAMS[sys.argv[1]](Path(sys.argv[2]))
+    sys.stdout.write(f"{peak() - before}\n")

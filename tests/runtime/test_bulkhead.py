@@ -1,0 +1,161 @@
+"""What goes wrong in the instance of one vehicle stays there: it is made afresh, or given up and made safe; nobody else notices."""
+
+import pytest
+
+from schemas import topics
+from schemas.convert import stamp
+from schemas.messages import ArmRequest, Battery, Event, Imu, NavStatus, Reply, Vector3, WheelCommand
+from uvf.runtime.bulkhead import Bulkhead
+from uvf.runtime.bus import LocalBus
+from uvf.runtime.lockstep import Lockstep
+from uvf.runtime.service import Service, every, optional
+from uvf.runtime.site import Host
+
+VEHICLES = ("alpha", "beta", "gamma")
+BAD = 666.0
+
+
+class Plant(Service):
+    """Feeds all vehicles the same."""
+
+    name = "plant"
+    hz = 100.0
+    scope = "world"
+    simulator = True
+    outputs = {"imu": topics.IMU}
+
+    def step(self, t):
+        return {"imu": {name: Imu(timestamp=stamp(t), specific_force=Vector3(x=t)) for name in VEHICLES}}
+
+
+class Driver(Service):
+    """Counts, keeps its count, and fails where it is told to."""
+
+    name = "driver"
+    hz = 50.0
+    inputs = {"imu": every(topics.IMU), "battery": optional(topics.BATTERY)}
+    outputs = {"wheels": topics.WHEEL_COMMAND, "kept": topics.NAV_STATUS}
+    requests = {"arm": topics.ARM}
+    recalls = {"kept": topics.NAV_STATUS}
+    given_up = "its wheels stand"
+    fails = staticmethod(lambda vehicle, t, battery: False)
+    made = []
+
+    def __init__(self, vehicle):
+        self.vehicle, self.count, self.times = vehicle, 0, []
+        type(self).made.append(self)
+
+    def step(self, t, imu, battery, arm):
+        if type(self).fails(self.vehicle, t, battery):
+            raise ZeroDivisionError("division by\nzero")
+        self.count += 1
+        self.times.append(t)
+        wheels = WheelCommand(timestamp=stamp(t), left=sum(i.specific_force.x for i in imu), right=self.count)
+        return {"wheels": wheels, "kept": NavStatus(distance_left=self.count), "arm": [Reply(accepted=True) for _ in arm]}
+
+    def recall(self, kept=None):
+        self.count = round(kept.distance_left)
+
+    @staticmethod
+    def stand_in(t, reason):
+        return {"wheels": WheelCommand(timestamp=stamp(t))}
+
+
+@pytest.fixture
+def run(monkeypatch):
+    monkeypatch.setattr(Driver, "made", [])
+
+    def go(fails=lambda vehicle, t, battery: False, until=2.0, at=lambda lockstep: None):
+        monkeypatch.setattr(Driver, "fails", staticmethod(fails))
+        return Run(until, at)
+
+    return go
+
+
+class Run:
+    def __init__(self, until, at):
+        self.bus, self.events, self.warnings, self.replies = LocalBus(), [], [], []
+        self.wheels = {name: [] for name in VEHICLES}
+        for name in VEHICLES:
+            self.bus.subscribe(topics.WHEEL_COMMAND.at(name), topics.WHEEL_COMMAND.qos, lambda s, n=name: self.wheels[n].append(s.payload))
+        self.bus.subscribe("uvf/*/state/events/driver", topics.EVENTS.qos, lambda s: self.events.append(Event.FromString(s.payload)))
+        hosts = [Host(Plant, Plant)] + [Host(Driver, lambda n=name: Driver(n), name) for name in VEHICLES]
+        self.lockstep = Lockstep(hosts, self.bus, self.warnings.append, contains=True)
+        self.lockstep.run(until, lambda t: at(self) or True)
+
+    def ask(self, vehicle):
+        self.bus.call(topics.ARM.at(vehicle), ArmRequest(arm=True).SerializeToString(), 0, lambda *reply: self.replies.append(reply))
+
+
+def test_one_failure_is_an_event_with_its_cause_and_the_instance_goes_on_from_its_kept_state(run):
+    ran = run(lambda vehicle, t, battery: vehicle == "beta" and round(t, 3) == 1.0)
+    (event,) = ran.events
+    assert (event.severity, event.source) == (Event.ERROR, "driver")
+    assert event.text == "driver of beta has failed and was started afresh"
+    assert event.cause.startswith("ZeroDivisionError: division by zero (test_bulkhead.py:") and event.cause.endswith(" in step)")
+    assert any(event.cause in line for line in ran.warnings)
+    old, new = (made for made in Driver.made if made.vehicle == "beta")
+    assert old.times[-1] == pytest.approx(0.98) and new.times[0] == pytest.approx(1.02)
+    assert new.count == 99  # of 100 steps
+
+
+@pytest.mark.parametrize(
+    "when", [lambda t: True, lambda t: t > 1.0, lambda t: round(t, 3) in (0.5, 0.7, 0.9)], ids=("always", "later", "thrice")
+)
+def test_the_third_failure_in_half_a_minute_gives_it_up_and_the_others_send_the_same_bytes(run, when):
+    sound = run()
+    ran = run(lambda vehicle, t, battery: vehicle == "beta" and when(t))
+    assert [e.severity for e in ran.events] == [Event.ERROR, Event.ERROR, Event.CRITICAL]
+    assert ran.events[-1].text == "driver of beta has failed 3 times within 30 s and is given up: its wheels stand"
+    last = WheelCommand.FromString(ran.wheels["beta"][-1])
+    assert (last.left, last.right, last.timestamp.seconds) == (0.0, 0.0, 2)
+    assert (ran.wheels["alpha"], ran.wheels["gamma"]) == (sound.wheels["alpha"], sound.wheels["gamma"])
+
+
+def test_failures_far_apart_never_give_it_up():
+    bulkhead = Bulkhead()
+    assert not any(bulkhead.failed(20.0 * n, "x") for n in range(100))
+
+
+def test_what_made_it_fail_is_not_handed_to_it_again(run):
+    """A message that nothing at the border could know to be bad: the one before it counts again."""
+
+    def poison(ran):
+        if ran.lockstep._tick == 100:
+            ran.bus.deliver(topics.BATTERY.at("alpha"), "uvf.v1.Battery", topics.BATTERY.qos, Battery(voltage=BAD).SerializeToString(), 0)
+
+    ran = run(lambda vehicle, t, battery: battery is not None and battery.voltage == BAD, at=poison)
+    assert len(ran.events) == 1
+
+
+def test_requests_in_hand_and_to_come_are_refused_with_the_reason(run):
+    ran = run(lambda vehicle, t, battery: vehicle == "alpha" and t > 0.5, at=lambda ran: ran.ask("alpha"))
+    refused = [reason for reply, reason, _ in ran.replies if reply is None]
+    assert "driver of alpha has failed: ZeroDivisionError" in refused[0]
+    given_up = Reply.FromString(next(reply for reply, *_ in reversed(ran.replies) if reply is not None))
+    assert not given_up.accepted and "was given up: ZeroDivisionError" in given_up.reason
+
+
+@pytest.mark.parametrize("where", ["__init__", "recall", "close"])
+def test_neither_its_end_nor_its_beginning_harms_the_others(run, monkeypatch, where):
+    sound = run()
+    broken = getattr(Driver, where)
+    failed = []
+
+    def fails(self, *args, **kwargs):
+        if failed and (where == "__init__" or self.vehicle == "beta"):
+            raise OSError("no more")
+        broken(self, *args, **kwargs)
+
+    monkeypatch.setattr(Driver, where, fails)
+    ran = run(lambda vehicle, t, battery: vehicle == "beta" and t > 1.0 and not failed.append(t))
+    assert ran.events[-1].severity == Event.CRITICAL
+    assert (ran.wheels["alpha"], ran.wheels["gamma"]) == (sound.wheels["alpha"], sound.wheels["gamma"])
+
+
+def test_a_new_epoch_tries_again(run):
+    ran = run(lambda vehicle, t, battery: vehicle == "beta" and t < 1.0)
+    shell = next(s for s in ran.lockstep.shells if s.owner == "beta")
+    assert shell._bulkhead.given_up
+    shell.restart(2)
+    assert not shell._bulkhead.given_up
