@@ -53,6 +53,17 @@ LENGTHS: dict[str, int] = {
     "uvf.v1.StopCommand.releases": 100,
 }
 """Of texts, lists and maps that are not held to ``TEXT`` and ``ENTRIES``."""
+RANGES: dict[str, tuple[int, int]] = {
+    "uvf.v1.Link.port": (0, 65535),
+    "uvf.v1.OctreeMap.depth": (0, 16),
+    "uvf.v1.MissionProgress.current": (0, ENTRIES),
+    "uvf.v1.MissionProgress.total": (0, ENTRIES),
+    "uvf.v1.MissionProgress.reached": (-1, ENTRIES),
+    "uvf.v1.VehicleStatus.waypoint": (0, ENTRIES),
+    "uvf.v1.VehicleStatus.system_id": (0, 255),
+    "uvf.v1.Gnss.satellites": (0, 255),
+}
+"""Of integers that are an index, a number with few values or the length of a loop."""
 OPEN: dict[str, frozenset[str]] = {
     "foxglove.LaserScan": frozenset(("ranges", "intensities")),  # no return may be written as infinite
     "uvf.v1.GoalRequest": frozenset(("yaw",)),  # NaN = any

@@ -307,6 +307,8 @@ class Model:
         self.note(name, f"a guest: {guest.about[:LONGEST_TEXT]}", Event.NOTICE)
 
     def _is_sound(self, thing: SimObject) -> bool:
+        if not self._is_name(thing.name):
+            return False
         if why := object_fault(thing):
             self.refused.add("objects", thing.name, f"something on the bus is not shown: {why}")
         return not why

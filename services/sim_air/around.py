@@ -3,21 +3,22 @@
 from collections.abc import Callable, Mapping, Sequence
 
 from schemas.convert import array, wxyz
-from schemas.messages import NavState, SimObjects
+from schemas.messages import NavState, SimObject, SimObjects
 from services.sim_air.ground import Ground
 from services.sim_air.states import Motion
 from uvf.maths.bvh import Bvh
 from uvf.maths.raycast3 import Body
 from uvf.runtime.solid import Solid
-from uvf.runtime.spawned import solid_of, unit_wxyz
+from uvf.runtime.spawned import solid_of, sound_objects, unit_wxyz
 from uvf.runtime.surroundings import Surroundings, Whereabouts
 
 
 class Around:
     """Worked out when somebody looks, once a step."""
 
-    def __init__(self, things: Sequence[Solid], ground: Ground, vehicles: Mapping[str, Bvh], tree_of: Callable[[str], Bvh]) -> None:
-        """things: of the world; ground: they; vehicles: the shapes of all; tree_of: that of a vehicle model that is put in later."""
+    def __init__(self, things: Sequence[Solid], ground: Ground, vehicles: Mapping[str, Bvh], tree_of: Callable[[str], Bvh | None]) -> None:
+        """things: of the world; ground: they; vehicles: the shapes of all; tree_of: that of a vehicle model that is put in later;
+        None where this host has none that stands on the ground."""
         self.things = things
         self.shapes = vehicles
         self.ground = ground
@@ -26,7 +27,8 @@ class Around:
         self.still = self._surroundings.still
         self._tree_of = tree_of
         self._put_in: dict[str, tuple[str, tuple[float, ...]]] = {}
-        self._t, self._objects = 0.0, SimObjects()
+        self._t = 0.0
+        self._objects: list[SimObject] = []
         self._truth: Mapping[str, NavState] = {}
         self._aircraft: Mapping[str, Motion] = {}
         self._bodies: dict[str, Body] | None = None
@@ -39,19 +41,19 @@ class Around:
 
     def look(self, t: float, truth: Mapping[str, NavState], objects: SimObjects | None, aircraft: Mapping[str, Motion]) -> None:
         """How it stands at ``t`` [s]: ground vehicles by their newest truth, aircraft by their motion."""
-        self._t, self._truth, self._objects, self._aircraft = t, truth, objects or SimObjects(), aircraft
+        self._t, self._truth, self._objects, self._aircraft = t, truth, sound_objects(objects), aircraft
         self._bodies = None
 
     @property
     def crowded(self) -> bool:
         """Whether more than one thing may move."""
-        return self._scripted or len(self._aircraft.keys() | self._truth.keys()) + len(self._objects.objects) > 1
+        return self._scripted or len(self._aircraft.keys() | self._truth.keys()) + len(self._objects) > 1
 
     def bodies(self) -> dict[str, Body]:
         """All that moves, by name."""
         if self._bodies is None:
             self._take_in()
-            placed = {o.name: (array(o.pose.position), unit_wxyz(o.pose)) for o in self._objects.objects if not o.model}
+            placed = {o.name: (array(o.pose.position), unit_wxyz(o.pose)) for o in self._objects if not o.model}
             told = {n: Whereabouts(array(v.position), wxyz(v.orientation)) for n, v in self._truth.items() if n not in self._aircraft}
             s = self._surroundings
             self._bodies = {**s.moving(self._t), **s.objects(placed), **s.bodies(told), **s.bodies(self._aircraft)}
@@ -63,14 +65,14 @@ class Around:
 
     def _take_in(self) -> None:
         """What has come into the running simulation since, and gone."""
-        now = {o.name: (o.model or o.shape, tuple(o.size)) for o in self._objects.objects}
+        now = {o.name: (o.model or o.shape, tuple(o.size)) for o in self._objects}
         for name in [name for name, kind in self._put_in.items() if now.get(name) != kind]:
             self._surroundings.remove(name)
-        for o in self._objects.objects:
+        for o in self._objects:
             if self._put_in.get(o.name) == now[o.name]:
                 continue
-            if o.model:
-                self._surroundings.add_vehicle(o.name, self._tree_of(o.model))
-            else:
+            if not o.model:
                 self._surroundings.add_object(o.name, solid_of(o))
+            elif (tree := self._tree_of(o.model)) is not None:
+                self._surroundings.add_vehicle(o.name, tree)
         self._put_in = now

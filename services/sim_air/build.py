@@ -1,5 +1,6 @@
 """Makes the air simulator from a mission: all its fixed-wing vehicles in one service."""
 
+from contextlib import suppress
 from functools import partial
 from pathlib import Path
 from typing import NamedTuple
@@ -152,11 +153,12 @@ def _air(site: Site, member: Member, airframe: Airframe) -> AirMass:
     return AirMass(site.wind, airframe.span, site.rng(member.name, "turbulence"))
 
 
-def _shape_of(site: Site, model: str) -> Bvh:
-    """Of a ground vehicle that has been put in: the ground simulator has taken it."""
-    ground = load_vehicle(site.vehicles_folder, model).ground
-    assert ground is not None
-    return vehicle_tree(load_urdf(site.vehicles_folder / model / ground.urdf))
+def _shape_of(site: Site, model: str) -> Bvh | None:
+    """Of a ground vehicle that has been put in: the ground simulator has taken it, if it was that simulator who told of it."""
+    with suppress(BadInput):
+        ground = load_vehicle(site.vehicles_folder, model).ground
+        return vehicle_tree(load_urdf(site.vehicles_folder / model / ground.urdf)) if ground is not None else None
+    return None
 
 
 def _aircraft(site: Site, land: Land, member: Member, airframe: Airframe) -> Aircraft:

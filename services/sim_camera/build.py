@@ -1,5 +1,6 @@
 """The cameras of a mission: one instance for all of them."""
 
+from contextlib import suppress
 from functools import cache
 from pathlib import Path
 
@@ -28,8 +29,10 @@ def build(site: Site) -> list[Host]:
     things = solids(site.world)
 
     @cache
-    def look_of(model: str) -> Look:
-        return look_at(site.vehicles_folder / model, load_vehicle(site.vehicles_folder, model))
+    def look_of(model: str) -> Look | None:
+        with suppress(BadInput):
+            return look_at(site.vehicles_folder / model, load_vehicle(site.vehicles_folder, model))
+        return None
 
     def make() -> SimCamera:
         fitted = [Fitted(name, camera, site.rng(name, kind), OUTPUTS[kind]) for (name, kind), camera in cameras.items()]

@@ -12,7 +12,7 @@ from services.sim_camera.renderer import Look, Pose, Shot
 from uvf.runtime.sensor_frames import mounted
 from uvf.runtime.service import Outputs, Service, Value, each_vehicle, optional
 from uvf.runtime.solid import Solid
-from uvf.runtime.spawned import object_fault, solid_of
+from uvf.runtime.spawned import solid_of, sound_objects
 from uvf.runtime.vehicle_file import Camera
 
 INFO = {"image": "info", "chase": "chase_info", "gimbal": "gimbal_info"}
@@ -55,8 +55,8 @@ class SimCamera(Service):
         "gimbal_joints": topics.GIMBAL_JOINTS,
     }
 
-    def __init__(self, renderer: Renderer, cameras: Sequence[Fitted], look_of: Callable[[str], Look]) -> None:
-        """look_of: what a vehicle model looks like that is put in while the simulation runs."""
+    def __init__(self, renderer: Renderer, cameras: Sequence[Fitted], look_of: Callable[[str], Look | None]) -> None:
+        """look_of: what a vehicle model looks like that is put in while the simulation runs; None where this host has no such model."""
         self._renderer = renderer
         self._look_of = look_of
         self._cameras = cameras
@@ -71,8 +71,8 @@ class SimCamera(Service):
         gimbals: Mapping[str, GimbalCommand],
     ) -> Outputs:
         """objects, aircraft: what has been put in while the simulation runs."""
-        put_in = [o for told in (objects, aircraft) if told is not None for o in told.objects if not object_fault(o)]
-        self._renderer.show({o.name: self._look_of(o.model) if o.model else solid_of(o) for o in put_in})
+        looks = {o.name: self._look_of(o.model) if o.model else solid_of(o) for o in sound_objects(objects, aircraft)}
+        self._renderer.show({name: look for name, look in looks.items() if look is not None})
         poses = {name: Pose(array(state.position), wxyz(state.orientation)) for name, state in truth.items()}
         self._renderer.place(t, poses)
         sent: dict[str, dict[str, Value]] = {name: {} for name in self.outputs}

@@ -7,7 +7,7 @@ from collections import Counter
 from google.protobuf.descriptor import FieldDescriptor as F
 
 from schemas import topics
-from schemas.limits import BYTES, ENTRIES, LENGTHS, OPEN, PATTERNS, TEXT, size_of
+from schemas.limits import BYTES, ENTRIES, LENGTHS, OPEN, PATTERNS, RANGES, TEXT, size_of
 from uvf.runtime.bus import Sample
 
 STRANGER = 666  # its boot id
@@ -127,6 +127,8 @@ class Stranger:
             return self.random.random() < 0.5
         if field.type == F.TYPE_ENUM:
             return self.random.choice(field.enum_type.values).number
+        if field.full_name in RANGES:
+            return self.random.choice((*RANGES[field.full_name], 0, 1))
         return self.random.choice((0, 1, self.random.randrange(0, 100), 2**31 - 1 if self.largest > 1e6 else 7))
 
     def unsound(self, type_):
@@ -159,6 +161,8 @@ class Stranger:
             setattr(holder, field.name, self.random.choice(TEXTS))
         elif field.type == F.TYPE_ENUM:
             setattr(holder, field.name, self.random.choice((99, -1, 2**31 - 1)))
+        elif field.full_name in RANGES:
+            setattr(holder, field.name, RANGES[field.full_name][1] + 1)
         else:
             setattr(holder, field.name, 2**63 - 1)
 
@@ -186,7 +190,9 @@ def spots_of(type_, way=(), depth=0):
         if field.message_type is not None:
             if depth < 3:
                 yield from spots_of(field.message_type, (*way, field.name), depth + 1)
-        elif field.type in (*FLOATS, *LONG, F.TYPE_STRING, F.TYPE_ENUM) and not field.full_name.endswith("Engagement.id"):
+        elif (field.type in (*FLOATS, *LONG, F.TYPE_STRING, F.TYPE_ENUM) or field.full_name in RANGES) and not field.full_name.endswith(
+            "Engagement.id"
+        ):
             if field.full_name != "uvf.v1.StopCommand.id":
                 yield way, field
         elif field.label == F.LABEL_REPEATED and field.type != F.TYPE_BYTES:

@@ -9,7 +9,20 @@ from google.protobuf.descriptor import FieldDescriptor
 from schemas import limits, topics
 from schemas.convert import occupancy_grid, planar_pose
 from schemas.limits import BYTES, ENTRIES, LENGTHS, OPEN, PATTERNS
-from schemas.messages import GoalRequest, Grid, Health, Imu, LaserScan, PosesInFrame, Timestamp, Vector3
+from schemas.messages import (
+    GoalRequest,
+    Grid,
+    Health,
+    Imu,
+    LaserScan,
+    MissionProgress,
+    Pose,
+    PosesInFrame,
+    Quaternion,
+    SimObject,
+    Timestamp,
+    Vector3,
+)
 from uvf.runtime.mavlink.mission_items import ORIGIN
 from uvf.runtime.validation import IDS, error_in
 from uvf.runtime.wire import Malformed, decode
@@ -47,8 +60,21 @@ def test_a_number_that_is_none_is_found_in_every_field_but_the_open_ones(type_):
             put(message, way, value)
             assert bool(error_in(message)) == (way[-1] not in OPEN.get(holder.full_name, ())), way
         message = type_()
-        put(message, way, -123.5)
+        put(message, way, -1.0 if holder is Quaternion.DESCRIPTOR else -123.5)
         assert error_in(message) == "", way
+
+
+@pytest.mark.parametrize(("length", "sound"), [(0.0, True), (0.5, False), (0.95, True), (1.0, True), (1.05, True), (2.0, False)])
+def test_an_orientation_is_of_unit_length_or_left_out(length, sound):
+    error = error_in(SimObject(pose=Pose(orientation=Quaternion(w=0.6 * length, z=0.8 * length))))
+    assert (error == "") == sound
+    assert sound or (error.startswith("pose.orientation: (") and error.endswith("is no unit quaternion"))
+
+
+@pytest.mark.parametrize("reached", [-1, 0, ENTRIES])
+def test_an_index_is_no_more_than_a_list_can_hold(reached):
+    assert error_in(MissionProgress(reached=reached)) == ""
+    assert error_in(MissionProgress(reached=ENTRIES + 1)) == f"reached: {ENTRIES + 1} is not within -1 to {ENTRIES}"
 
 
 def fields(type_, way=()):

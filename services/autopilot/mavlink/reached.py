@@ -23,7 +23,7 @@ class ReachedItems:
         first, self._current = min(self._current, progress.reached), progress.current
         if before is None or before == now or not begun:
             return range(0)
-        return range(max(first, 0), _end(progress, items))
+        return range(max(first, 0), min(_end(progress, items), len(items)))
 
 
 def _end(progress: MissionProgress, items: Sequence[MissionItem]) -> int:

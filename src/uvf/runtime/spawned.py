@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from schemas.convert import array, wxyz
-from schemas.messages import Pose, SimObject
+from schemas.messages import Pose, SimObject, SimObjects
 from schemas.topics import SYSTEM
 from uvf.runtime.params import nearest
 from uvf.runtime.solid import Solid
@@ -53,6 +53,11 @@ def shape_fault(told: SimObject) -> str:
 def object_fault(told: SimObject) -> str:
     """Why what is told of cannot be in a simulation; empty = it can."""
     return name_fault(told.name) or pose_fault(told.pose) or ("" if told.model else shape_fault(told))
+
+
+def sound_objects(*lists: SimObjects | None) -> list[SimObject]:
+    """What can be in a simulation, of all that simulators tell of."""
+    return [one for told in lists if told is not None for one in told.objects if not object_fault(one)]
 
 
 def solid_of(told: SimObject) -> Solid:

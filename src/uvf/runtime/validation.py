@@ -14,14 +14,16 @@ from typing import Any
 from google.protobuf.descriptor import Descriptor, EnumDescriptor, FieldDescriptor
 from google.protobuf.message import Message
 
-from schemas.limits import BYTES, ENTRIES, GRID_CELL, GRID_SIDE, INTEGER, LENGTHS, NUMBER, OPEN, PATTERNS, TEXT
-from schemas.messages import Grid, Timestamp
+from schemas.limits import BYTES, ENTRIES, GRID_CELL, GRID_SIDE, INTEGER, LENGTHS, NUMBER, OPEN, PATTERNS, RANGES, TEXT
+from schemas.messages import Grid, Quaternion, Timestamp
 
 Test = Callable[[Any], bool]
 _FLOATS = (FieldDescriptor.TYPE_DOUBLE, FieldDescriptor.TYPE_FLOAT)
 _LONG = (FieldDescriptor.TYPE_INT64, FieldDescriptor.TYPE_UINT64, FieldDescriptor.TYPE_SINT64)
 _BREAKS = str.maketrans("\n\t", "  ")
 LAST_SECOND = 10**11
+UNIT_WITHIN = 0.1
+"""How far the length of a quaternion may be from 1."""
 IDS = {"uvf.v1.StopCommand.id", "uvf.v1.StopEngagement.id"}
 """Integers that nobody counts with."""
 
@@ -49,6 +51,12 @@ def _is_time(stamp: Timestamp) -> bool:
     return 0 <= stamp.seconds < LAST_SECOND and 0 <= stamp.nanos < 1_000_000_000
 
 
+def _is_rotation(q: Quaternion) -> bool:
+    """Of about unit length, or left out."""
+    length = hypot(q.w, q.x, q.y, q.z)
+    return length == 0.0 or abs(length - 1.0) < UNIT_WITHIN
+
+
 def is_text(text: str, longest: int = TEXT) -> bool:
     """Short enough and free of what a terminal, a log or a page would obey: control characters and changes of direction."""
     return len(text) <= longest and (text.isprintable() or text.translate(_BREAKS).isprintable())
@@ -59,6 +67,8 @@ def _test_of(type_: Descriptor) -> Test:
     """True for a message of this type that is within all limits, with those inside it."""
     if type_.full_name == Timestamp.DESCRIPTOR.full_name:
         return _is_time
+    if type_.full_name == Quaternion.DESCRIPTOR.full_name:
+        return _is_rotation
     tests = [test for test in (_numbers(type_), *map(_field_test, type_.fields)) if test is not None]
     if not tests:
         return _anything
@@ -115,6 +125,9 @@ def _value_test(field: FieldDescriptor) -> Test | None:
         return lambda data: len(data) in (0, size)
     if field.type == FieldDescriptor.TYPE_ENUM:
         return frozenset(_enum(field).values_by_number).__contains__
+    if field.full_name in RANGES:
+        low, high = RANGES[field.full_name]
+        return lambda number: low <= number <= high
     if field.type in _LONG and field.full_name not in IDS:
         return lambda number: -INTEGER <= number <= INTEGER
     if field.type in _FLOATS:
@@ -147,13 +160,15 @@ def _errors(message: Message, place: str) -> Iterator[str]:
 
 
 def _is_parent(value: object) -> bool:
-    return isinstance(value, Message) and not isinstance(value, Timestamp)
+    return isinstance(value, Message) and not isinstance(value, (Timestamp, Quaternion))
 
 
 def _described(field: FieldDescriptor, value: Any) -> str:
     """What is wrong with one value."""
     if isinstance(value, Timestamp):
         return f"{value.seconds} s {value.nanos} ns is no time"
+    if isinstance(value, Quaternion):
+        return f"({value.w:g}, {value.x:g}, {value.y:g}, {value.z:g}) is no unit quaternion"
     if field.type == FieldDescriptor.TYPE_ENUM:
         return f"{value} is none of {', '.join(_enum(field).values_by_name)}"
     if field.full_name in PATTERNS:
@@ -163,6 +178,9 @@ def _described(field: FieldDescriptor, value: Any) -> str:
     if isinstance(value, str):
         longest = LENGTHS.get(field.full_name, TEXT)
         return f"{len(value)} characters, {longest} at most" if len(value) > longest else "holds control characters"
+    if field.full_name in RANGES:
+        low, high = RANGES[field.full_name]
+        return f"{value} is not within {low} to {high}"
     return f"{value:g} is not finite or beyond {NUMBER:g}" if isinstance(value, float) else f"{value} is beyond {INTEGER}"
 
 
