@@ -30,7 +30,6 @@ M = TypeVar("M", bound=Message)
 Q = TypeVar("Q", bound=Message)
 R = TypeVar("R", bound=Message)
 LOOK = 0.005  # s
-STOPS_DEPTH = 64
 TOGETHER = 0.3  # s of simulation time, within which a request reaches all it is asked of
 
 
@@ -50,8 +49,7 @@ class Client:
         self._publishers: dict[str, Publisher] = {}
         self._watch(topics.CLOCK.at(topics.SYSTEM), topics.CLOCK)
         self._voice, self._stops = StopVoice("client"), StopBook()
-        for topic in (topics.STOP.by("*"), topics.STOP_STATE):
-            bus.subscribe(topic.at(topics.SYSTEM), topic.qos, self._stops.push, STOPS_DEPTH)
+        self._stops.follow(bus)
 
     def __enter__(self) -> "Client":
         return self

@@ -121,6 +121,22 @@ def test_a_flood_fills_no_memory_and_hides_nobody():
     assert book.now.engagements[-1].source == "gcs"
 
 
+def test_broken_words_that_nobody_asks_about_fill_no_memory_either():
+    book = StopBook()
+    for n in range(2 * stop_all.REFUSED_MOST):
+        book.push(sample(StopCommand(engaged=True), "gcs", seq=n)._replace(payload=b"\xff\xff"))
+    assert len(book.refused()) == stop_all.REFUSED_MOST and book.refused() == []
+
+
+def test_what_waits_for_a_step_that_does_not_come_is_bounded_and_nothing_is_lost():
+    book = StopBook(at_once=False)
+    book.push(sample(StopVoice("gcs").engage(0, "button"), "gcs", 5 * NS))
+    for n in range(2 * stop_all.WAITING_MOST):
+        book.push(sample(StopCommand(engaged=False), "planner", 5 * NS, seq=n))
+    assert len(book._waiting) == stop_all.WAITING_MOST
+    assert book.now.who == "gcs (button)"
+
+
 def test_broken_bytes_are_refused_with_a_line():
     book = StopBook()
     book.push(sample(StopCommand(engaged=True), "gcs")._replace(payload=b"\xff\xff"))

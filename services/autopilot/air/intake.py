@@ -17,6 +17,9 @@ from uvf.runtime.plan_ids import mission_id
 
 OLDEST_FIX = 1.0  # s
 OLDEST_STATE = 30.0  # s
+STATIC = (5_000.0, 120_000.0)  # Pa, 20 km up to below the Dead Sea
+DIFFERENTIAL = (-50_000.0, 50_000.0)  # Pa, of 285 m/s
+TEMPERATURE = (150.0, 350.0)  # K
 TURNED_OFF = 5.0  # m/s, of an aircraft that nobody has steered
 KINDS = {
     MissionItem.WAYPOINT: Kind.WAYPOINT,
@@ -59,9 +62,14 @@ def inertial(message: Imu, t: float) -> Inertial:
 
 
 def pressures(message: AirData, t: float) -> Pressures | None:
-    """As seen at time ``t`` [s]; None when a number is none."""
+    """As seen at time ``t`` [s]; None when no air is like that: a sensor that has failed may well say 0 Pa."""
     p = Pressures(message.static_pressure, message.differential_pressure, message.temperature, t - seconds(message.timestamp))
-    return p if all(map(math.isfinite, astuple(p))) else None
+    possible = _is_within(p.static, STATIC) and _is_within(p.differential, DIFFERENTIAL) and _is_within(p.temperature, TEMPERATURE)
+    return p if possible and math.isfinite(p.age) else None
+
+
+def _is_within(value: float, limits: tuple[float, float]) -> bool:
+    return limits[0] <= value <= limits[1]
 
 
 def fix(message: Gnss, tangent: LocalTangent, t: float) -> Fix | None:

@@ -16,7 +16,6 @@ from uvf.runtime.wire import Malformed, decode
 from uvf.runtime.zenoh_bus import ZenohBus
 
 LOOK = 0.1  # s, how often to look for the dead
-STOP_DEPTH = 64
 
 Say = Callable[[str], None]
 
@@ -47,8 +46,7 @@ class Launcher:
         self._events = self._publisher(bus, topics.SYSTEM_EVENTS)
         self._stop = self._publisher(bus, topics.STOP)
         self._processes = self._publisher(bus, topics.PROCESSES)
-        for key in (topics.STOP.by("*").at("sys"), topics.STOP_STATE.at("sys")):
-            bus.subscribe(key, topics.STOP.qos, self._stops.push, STOP_DEPTH)
+        self._stops.follow(bus)
         bus.token(f"@node/sys/{self.name}/{bus.boot:x}")
         self.tell()
         return bus

@@ -17,13 +17,15 @@ EVERY_DEPTH = 256
 AHEAD_MOST = 2 * NS
 """How far ahead of a step something may be stamped: by the latency of who sent it. What is stamped later was by another clock."""
 OWNERS_MOST = 128  # vehicles of one input
+REFUSED_MOST = 10_000
+"""Lines about refused messages that wait for the next step, which does not come while the clock stands; more are not counted."""
 NEXT_EPOCH_DEPTH = 8  # messages of the epoch to come that wait until the clock tells of it
 
 
 class Slot:
     """One topic of one owner (or of several sources) as one input sees it."""
 
-    def __init__(self, declared: Input, ageless: bool, malformed: list[str]) -> None:
+    def __init__(self, declared: Input, ageless: bool, malformed: deque[str]) -> None:
         """malformed: takes a line about each refused message."""
         self._input = declared
         self._max_age = declared.topic.max_age * NS if declared.ages and not ageless else float("inf")
@@ -110,7 +112,7 @@ class InputBox:
         self._ageless = ageless
         self.epoch = epoch
         self._slots: dict[str, Slot] = {}
-        self._malformed: list[str] = []
+        self._malformed: deque[str] = deque(maxlen=REFUSED_MOST)
         self._next: deque[Sample] = deque(maxlen=NEXT_EPOCH_DEPTH)
         """Of an epoch that the clock has not begun yet."""
         self._next_since: int | None = None
@@ -206,6 +208,6 @@ class InputBox:
 
     def malformed(self) -> list[str]:
         """Lines about refused messages since the last call."""
-        lines = self._malformed[:]
+        lines = list(self._malformed)
         self._malformed.clear()
         return lines

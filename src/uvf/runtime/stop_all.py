@@ -7,7 +7,7 @@ these came, whatever their stamps and epochs, and however often they were repeat
 
 import hashlib
 import secrets
-from collections import Counter
+from collections import Counter, deque
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
@@ -15,13 +15,17 @@ from schemas import topics
 from schemas.convert import stamp_ns
 from schemas.messages import StopCommand, StopEngagement, StopState
 from schemas.topics import OPERATORS
-from uvf.runtime.bus import Sample
+from uvf.runtime.bus import Bus, Sample
 from uvf.runtime.wire import Malformed, decode_sample
 
 ENGAGEMENTS_MOST = 64
 """Held at a time; beyond, the oldest of the source that has most is dropped: the others keep STOP ALL in force."""
+FOLLOW_DEPTH = 64  # words that wait in the subscription
 RELEASED_MOST = 512
 """Names remembered; a word that is repeated after its release has been forgotten engages again."""
+WAITING_MOST = 1024
+"""Words that wait for the next step, which does not come while the clock stands; beyond, the oldest counts at once."""
+REFUSED_MOST = 256  # lines that wait to be told
 REPEATED_MOST = 64  # releases that a sender says again with each of its words
 Name = tuple[str, int]
 
@@ -62,24 +66,31 @@ class StopBook:
     def __init__(self, at_once: bool = True) -> None:
         """at_once: words count when they arrive. Else a step reads those stamped before it, and at the step after at the latest."""
         self._at_once = at_once
-        self._waiting: list[tuple[Sample, bool]] = []
+        self._waiting: deque[tuple[Sample, bool]] = deque()
         self._engaged: dict[Name, StopEngagement] = {}
         self._released: dict[Name, None] = {}
         self._released_by = ""
-        self._refused: list[str] = []
+        self._refused: deque[str] = deque(maxlen=REFUSED_MOST)
         self._view = StopStatus()
+
+    def follow(self, bus: Bus) -> None:
+        """Hears all words from now on, and those that the book beside the router has kept."""
+        for topic in (topics.STOP.by("*"), topics.STOP_STATE):
+            bus.subscribe(topic.at(topics.SYSTEM), topic.qos, self.push, FOLLOW_DEPTH)
 
     def push(self, sample: Sample) -> None:
         """Takes a word from the bus, of a source or of the book beside the router."""
         if self._at_once:
             self._apply(sample)
-        else:
-            self._waiting.append((sample, False))
+            return
+        self._waiting.append((sample, False))
+        if len(self._waiting) > WAITING_MOST:
+            self._apply(self._waiting.popleft()[0])
 
     def take(self, t_ns: int) -> StopStatus:
         """What holds for the step at ``t_ns``. No stamp, however odd, holds a word back for more than one step."""
         if self._waiting:
-            waiting, self._waiting = self._waiting, []
+            waiting, self._waiting = self._waiting, deque()
             for sample, seen in waiting:
                 if seen or sample.stamp_ns < t_ns:
                     self._apply(sample)
@@ -93,7 +104,8 @@ class StopBook:
 
     def refused(self) -> list[str]:
         """Lines about words that did not count, since the last call."""
-        lines, self._refused = self._refused, []
+        lines = list(self._refused)
+        self._refused.clear()
         return lines
 
     def take_up(self, engagements: Iterable[StopEngagement]) -> None:
