@@ -45,7 +45,7 @@ class ScriptedVehicle(Service):
         self.position = np.array(start, dtype=float)
         self.home = self.position.copy()
         self.goal = None
-        self.status = VehicleStatus(kind=kind, mode=Mode.MODE_HOLD, home=vector(self.home), landed=False)
+        self.status = VehicleStatus(kind=kind, mode=Mode.MODE_HOLD, home=vector(self.home), landed=True)
         self.plan = Mission()
         self.progress = MissionProgress(reached=-1)
 
@@ -95,7 +95,7 @@ class ScriptedVehicle(Service):
             self.progress.state = MissionProgress.COMPLETE
 
     def _arm(self, request):
-        self.status.armed = request.arm
+        self.status.armed, self.status.landed = request.arm, not request.arm
         return Reply(accepted=True)
 
     def _set_mode(self, request):
