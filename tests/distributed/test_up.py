@@ -66,7 +66,8 @@ def test_a_killed_autopilot_takes_the_flight_up_again(system):
     status, progress = (system.client.read("milvus", topic, timeout=40.0) for topic in (topics.STATUS, topics.PROGRESS))
     assert status.armed and status.mode == 3
     assert (progress.laps, progress.current) >= (laps.laps, laps.current)
-    assert position(system, "milvus")[2] > 40
+    # Until it is back nobody holds the nose up: on a busy machine it loses tens of metres, which it has to climb again.
+    system.client.wait(lambda: position(system, "milvus")[2] > 40, 60.0, "it does not climb back")
 
 
 @pytest.mark.parametrize(
