@@ -11,7 +11,6 @@ KB, MB = 1024, 1024 * 1024
 SIZE = 64 * KB
 """Bytes of a message, unless it is named in ``SIZES``."""
 SIZES: dict[type[Message], int] = {
-    m.CameraCalibration: 64 * KB,
     m.CompressedImage: 16 * MB,
     m.Grid: 128 * MB,
     m.MapReply: 128 * MB,

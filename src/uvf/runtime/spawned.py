@@ -50,9 +50,14 @@ def shape_fault(told: SimObject) -> str:
     return "" if 0.0 <= told.mass <= HEAVIEST else f"the mass must be 0 (it stands fast) to {HEAVIEST:g} kg"
 
 
+def body_fault(told: SimObject) -> str:
+    """Why nothing like it, whatever it is called, can be in a simulation; empty = it can."""
+    return pose_fault(told.pose) or ("" if told.model else shape_fault(told))
+
+
 def object_fault(told: SimObject) -> str:
     """Why what is told of cannot be in a simulation; empty = it can."""
-    return name_fault(told.name) or pose_fault(told.pose) or ("" if told.model else shape_fault(told))
+    return name_fault(told.name) or body_fault(told)
 
 
 def sound_objects(*lists: SimObjects | None) -> list[SimObject]:
