@@ -63,6 +63,27 @@ RANGES: dict[str, tuple[int, int]] = {
     "uvf.v1.Gnss.satellites": (0, 255),
 }
 """Of integers that are an index, a number with few values or the length of a loop."""
+PLACE = 2e5  # m from the world's origin; beyond, a flat world is none, or somebody has left latitude and longitude at zero
+MOST: dict[str, float] = {
+    "uvf.v1.MissionItem.position": PLACE,
+    "uvf.v1.GoalRequest.position": PLACE,
+    "uvf.v1.OrbitRequest.centre": PLACE,
+    "uvf.v1.HomeOrder.position": PLACE,
+    "uvf.v1.LineSetpoint.origin": PLACE,
+    "uvf.v1.CircleSetpoint.centre": PLACE,
+    "uvf.v1.FenceZone.vertices": PLACE,
+    "uvf.v1.FenceZone.centre": PLACE,
+    "uvf.v1.Fence.return_point": PLACE,
+    "uvf.v1.RallyPoints.points": PLACE,
+    "uvf.v1.Imu.angular_velocity": 1e3,
+    "uvf.v1.Imu.specific_force": 1e4,
+    "uvf.v1.Imu.magnetic_field": 1.0,
+    "uvf.v1.Gnss.latitude": 1.5708,
+    "uvf.v1.Gnss.longitude": 6.2832,
+    "uvf.v1.Gnss.altitude": 1e6,
+    "uvf.v1.Gnss.velocity_enu": 1e4,
+}
+"""Of single numbers and of the lengths of vectors: what no place and no sensor can be, and no filter could be mended from."""
 OPEN: dict[str, frozenset[str]] = {
     "foxglove.LaserScan": frozenset(("ranges", "intensities")),  # no return may be written as infinite
     "uvf.v1.GoalRequest": frozenset(("yaw",)),  # NaN = any

@@ -7,7 +7,7 @@ from collections import Counter
 from google.protobuf.descriptor import FieldDescriptor as F
 
 from schemas import topics
-from schemas.limits import BYTES, ENTRIES, LENGTHS, OPEN, PATTERNS, RANGES, TEXT, size_of
+from schemas.limits import BYTES, ENTRIES, LENGTHS, MOST, OPEN, PATTERNS, RANGES, TEXT, size_of
 from uvf.runtime.bus import Sample
 
 STRANGER = 666  # its boot id
@@ -97,7 +97,7 @@ class Stranger:
         self._fill(message, depth=0)
         return message.SerializeToString()
 
-    def _fill(self, message, depth):
+    def _fill(self, message, depth, most=math.inf):
         for field in message.DESCRIPTOR.fields:
             if self.random.random() < 0.3 or field.containing_oneof is not None:
                 continue
@@ -108,17 +108,19 @@ class Stranger:
                 inner = getattr(message, field.name)
                 for one in [inner.add() for _ in range(2)] if repeated else [inner]:
                     one.SetInParent()
-                    self._fill(one, depth + 1)
+                    self._fill(one, depth + 1, MOST.get(field.full_name, math.inf) / 2)
             elif repeated:
-                getattr(message, field.name).extend([self._value(field)] * 3)
+                getattr(message, field.name).extend([self._value(field, most)] * 3)
             else:
-                setattr(message, field.name, self._value(field))
+                setattr(message, field.name, self._value(field, most))
 
-    def _value(self, field):
+    def _value(self, field, most):
         if field.full_name in PATTERNS:
             return "burger"
         if field.type in FLOATS:
-            return self.random.choice((0.0, 1.0, self.random.uniform(-1, 1), self.random.uniform(-1, 1) * self.largest))
+            largest = min(self.largest, most, MOST.get(field.full_name, math.inf))
+            one = min(1.0, largest)
+            return self.random.choice((0.0, one, self.random.uniform(-one, one), self.random.uniform(-1, 1) * largest))
         if field.type == F.TYPE_STRING:
             return self.random.choice(("", "evil", "<script>alert(1)</script>", "../../etc/passwd"))
         if field.type == F.TYPE_BYTES:

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from google.protobuf.descriptor import FieldDescriptor
 
-from schemas import limits, topics
+from schemas import limits, messages, topics
 from schemas.convert import occupancy_grid, planar_pose
-from schemas.limits import BYTES, ENTRIES, LENGTHS, OPEN, PATTERNS
+from schemas.limits import BYTES, ENTRIES, LENGTHS, MOST, OPEN, PATTERNS
 from schemas.messages import (
     GoalRequest,
     Grid,
@@ -60,7 +60,7 @@ def test_a_number_that_is_none_is_found_in_every_field_but_the_open_ones(type_):
             put(message, way, value)
             assert bool(error_in(message)) == (way[-1] not in OPEN.get(holder.full_name, ())), way
         message = type_()
-        put(message, way, -1.0 if holder is Quaternion.DESCRIPTOR else -123.5)
+        put(message, way, -1.0 if holder is Quaternion.DESCRIPTOR else -0.5)
         assert error_in(message) == "", way
 
 
@@ -75,6 +75,22 @@ def test_an_orientation_is_of_unit_length_or_left_out(length, sound):
 def test_an_index_is_no_more_than_a_list_can_hold(reached):
     assert error_in(MissionProgress(reached=reached)) == ""
     assert error_in(MissionProgress(reached=ENTRIES + 1)) == f"reached: {ENTRIES + 1} is not within -1 to {ENTRIES}"
+
+
+@pytest.mark.parametrize("name", sorted(MOST))
+def test_a_place_or_a_reading_that_nothing_can_have_is_refused(name):
+    """An aircraft at 10^11 m from home plans its way back for as long as memory lasts."""
+    type_name, _, field = name.rpartition(".")
+    type_ = getattr(messages, type_name.rpartition(".")[2])
+
+    def error_of(length):
+        vector = type_.DESCRIPTOR.fields_by_name[field].message_type is not None
+        return error_in(filled(type_, (field, "y") if vector else (field,), length))
+
+    assert error_of(-MOST[name]) == ""
+    assert error_of(1e11).startswith(field)
+    assert error_of(1e11).endswith(f"1e+11 is more than {MOST[name]:g}")
+    assert "nan is not finite" in error_of(math.nan)
 
 
 def fields(type_, way=()):

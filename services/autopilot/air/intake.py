@@ -15,7 +15,8 @@ from uvf.maths.geodesy import LocalTangent
 from uvf.maths.rotations import enu_flu_from_ned_frd, to_euler
 from uvf.runtime.plan_ids import mission_id
 
-OLDEST_FIX = 1.0  # s
+OLDEST_FIX, OLDEST_SAMPLE = 1.0, 5.0  # s
+AHEAD = 0.1  # s by which a sensor's clock may be before ours
 OLDEST_STATE = 30.0  # s
 STATIC = (5_000.0, 120_000.0)  # Pa, 20 km up to below the Dead Sea
 DIFFERENTIAL = (-50_000.0, 50_000.0)  # Pa, of 285 m/s
@@ -55,9 +56,11 @@ def frd(v: Vector3) -> tuple[float, float, float]:
     return v.x, -v.y, -v.z
 
 
-def inertial(message: Imu, t: float) -> Inertial:
-    """A sample as seen at time ``t`` [s]."""
+def inertial(message: Imu, t: float) -> Inertial | None:
+    """A sample as seen at time ``t`` [s]; None when its stamp is of no time near: one ahead would make all after it late."""
     age = t - seconds(message.timestamp)
+    if not -AHEAD <= age <= OLDEST_SAMPLE:
+        return None
     return Inertial(frd(message.angular_velocity), frd(message.specific_force), frd(message.magnetic_field), age)
 
 
@@ -75,7 +78,7 @@ def _is_within(value: float, limits: tuple[float, float]) -> bool:
 def fix(message: Gnss, tangent: LocalTangent, t: float) -> Fix | None:
     """A fix as seen at time ``t`` [s]; its stamp is the moment it is valid for. None if there is none, it is old or a number is none."""
     age = t - seconds(message.timestamp)
-    if message.fix != Gnss.FIX_3D or age > OLDEST_FIX:
+    if message.fix != Gnss.FIX_3D or not -AHEAD <= age <= OLDEST_FIX:
         return None
     east, north, _ = tangent.enu(message.latitude, message.longitude, message.altitude).tolist()
     v = message.velocity_enu

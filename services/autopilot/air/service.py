@@ -178,7 +178,7 @@ class AutopilotAir(Service):
     ) -> Outputs:
         if self._restarts:
             self._restart()
-        samples = [intake.inertial(m, t) for m in imu]
+        samples = [sample for m in imu if (sample := intake.inertial(m, t)) is not None]
         now = self._now = self._sensing.step(t, Said(samples, air_data, gnss, self._land.airborne), self.params, 1 / self.hz)
         if now is None:
             requests: dict[str, Sequence[object]] = {"arm": arm, "mode": mode, "goal": goal, "mission": mission, "current": current}

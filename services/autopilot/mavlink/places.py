@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from schemas.limits import PLACE
 from schemas.messages import Vector3
 from services.autopilot.mavlink.commands import Acknowledger, Command, Handler
 from services.autopilot.mavlink.line import Line
@@ -11,7 +12,6 @@ from uvf.runtime.mavlink import dialect as mav
 from uvf.runtime.mavlink.geo import AMSL_FRAMES, HOME_FRAMES
 
 HIGHEST = 1e5  # m
-FARTHEST = 2e5  # m from the world's origin: beyond, somebody has left latitude and longitude at zero
 
 
 @dataclass
@@ -45,7 +45,7 @@ def place_of(line: Line, frame: int, degrees: tuple[float, float], altitude: flo
     if abs(latitude) > 90 or abs(longitude) > 180:
         raise BadPlace(mav.MAV_RESULT_DENIED, "latitude or longitude is out of range")
     place = line.facts.world(latitude, longitude, 0.0)
-    if (away := math.hypot(place.x, place.y)) > FARTHEST:
+    if (away := math.hypot(place.x, place.y)) > PLACE:
         raise BadPlace(mav.MAV_RESULT_DENIED, f"that place is {away / 1e3:.0f} km away")
     place.z = float(here[2]) if math.isnan(z) else z
     return place

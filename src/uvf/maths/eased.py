@@ -16,7 +16,8 @@ from uvf.maths.curves import Triple, dubins_paths
 
 Floats = NDArray[np.float64]
 
-STEP = 1.0  # m, between samples at most
+STEP = 1.0  # m, between samples at most, unless that makes more than SAMPLES
+SAMPLES = 20_000
 ITERATIONS = 12
 CLOSE = 1e-6  # m and, times the radius, rad
 TOUCHING = 1e-3  # m
@@ -137,7 +138,7 @@ def _ahead(configuration: Triple, distance: float) -> Triple:
 
 
 def _count(length: float) -> int:
-    return max(int(length / STEP) + 2, 3)
+    return min(max(int(length / STEP) + 2, 3), SAMPLES)
 
 
 def turned_onto(start: Triple, point: tuple[float, float], radius: float, ramp: float) -> Way | None:

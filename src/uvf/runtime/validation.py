@@ -7,15 +7,15 @@ is it found out where it is bad.
 import re
 from collections.abc import Callable, Iterator
 from functools import cache
-from math import hypot
+from math import hypot, isfinite
 from operator import attrgetter
 from typing import Any
 
 from google.protobuf.descriptor import Descriptor, EnumDescriptor, FieldDescriptor
 from google.protobuf.message import Message
 
-from schemas.limits import BYTES, ENTRIES, GRID_CELL, GRID_SIDE, INTEGER, LENGTHS, NUMBER, OPEN, PATTERNS, RANGES, TEXT
-from schemas.messages import Grid, Quaternion, Timestamp
+from schemas.limits import BYTES, ENTRIES, GRID_CELL, GRID_SIDE, INTEGER, LENGTHS, MOST, NUMBER, OPEN, PATTERNS, RANGES, TEXT
+from schemas.messages import Grid, Quaternion, Timestamp, Vector3
 
 Test = Callable[[Any], bool]
 _FLOATS = (FieldDescriptor.TYPE_DOUBLE, FieldDescriptor.TYPE_FLOAT)
@@ -55,6 +55,10 @@ def _is_rotation(q: Quaternion) -> bool:
     """Of about unit length, or left out."""
     length = hypot(q.w, q.x, q.y, q.z)
     return length == 0.0 or abs(length - 1.0) < UNIT_WITHIN
+
+
+def _size(value: float | Vector3) -> float:
+    return hypot(value.x, value.y, value.z) if isinstance(value, Vector3) else abs(value)
 
 
 def is_text(text: str, longest: int = TEXT) -> bool:
@@ -102,7 +106,8 @@ def _field_test(field: FieldDescriptor) -> Test | None:
     one = _value_test(field)
     get = attrgetter(field.name)
     if not _is_repeated(field):
-        return None if one is None or field.type in _FLOATS else lambda message: one(get(message))
+        is_told = field.type in _FLOATS and field.full_name not in MOST  # by ``_numbers``
+        return None if one is None or is_told else lambda message: one(get(message))
     most = LENGTHS.get(field.full_name, ENTRIES)
     if field.type in _FLOATS and not _is_open(field):
         return lambda message: len(get(message)) <= most and hypot(*get(message)) < NUMBER
@@ -130,6 +135,9 @@ def _value_test(field: FieldDescriptor) -> Test | None:
         return lambda number: low <= number <= high
     if field.type in _LONG and field.full_name not in IDS:
         return lambda number: -INTEGER <= number <= INTEGER
+    if field.full_name in MOST:
+        most = MOST[field.full_name]
+        return lambda value: _size(value) <= most
     if field.type in _FLOATS:
         return lambda number: abs(number) < NUMBER
     if _is_map(field):
@@ -156,7 +164,8 @@ def _errors(message: Message, place: str) -> Iterator[str]:
             entries = [(f"{name}[{i}]", entry) for i, entry in enumerate(value)] if _is_repeated(field) else [(name, value)]
             for where, entry in entries:
                 if not test(entry):
-                    yield from _errors(entry, f"{where}.") if _is_parent(entry) else (f"{where}: {_described(field, entry)}",)
+                    inner = list(_errors(entry, f"{where}.")) if _is_parent(entry) else []
+                    yield from inner or (f"{where}: {_described(field, entry)}",)
 
 
 def _is_parent(value: object) -> bool:
@@ -173,6 +182,8 @@ def _described(field: FieldDescriptor, value: Any) -> str:
         return f"{value} is none of {', '.join(_enum(field).values_by_name)}"
     if field.full_name in PATTERNS:
         return f"{value[:60]!a} is no name: letters, digits, - and _"
+    if field.full_name in MOST and isfinite(_size(value)):
+        return f"{_size(value):g} is more than {MOST[field.full_name]:g}"
     if isinstance(value, bytes):
         return f"{len(value)} bytes where {BYTES[field.full_name]} are due"
     if isinstance(value, str):

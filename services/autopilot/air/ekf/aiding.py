@@ -77,9 +77,9 @@ class Aiding:
         lost = self._position.exhausted(self._apply(observations.place(off[:2], lag, sigma)), SEVERAL * 2) or lost
         deep = observations.depth(float(off[2]), lag, _without(fix.height_sigma, sheet.height_drift))
         if self._depth.exhausted(self._apply(deep), SEVERAL * 2) or lost:
-            self._begin_at(place + lag * speed, speed, fix)
+            self._begin_at(place + lag * speed, speed, fix, t)
 
-    def _begin_at(self, place: Floats, speed: Floats, fix: Fix) -> None:
+    def _begin_at(self, place: Floats, speed: Floats, fix: Fix, t: float) -> None:
         """Satellites have contradicted the state for long: it is theirs from now on."""
         x = self.filter.state.x
         x[POSITION], x[VELOCITY], x[DRIFT] = place, speed, 0.0
@@ -87,6 +87,7 @@ class Aiding:
         self.filter.forget(VELOCITY, max(fix.speed_sigma, 0.3))
         self._baro_known = False
         self.delay.clear()
+        self.delay.keep(t, x)  # the next pressure may come before the next IMU sample
 
     def height(self, pressures: Pressures, t: float, lag: float) -> None:
         altitude = atmosphere.altitude(pressures.static)

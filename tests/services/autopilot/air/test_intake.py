@@ -5,7 +5,7 @@ import math
 import pytest
 
 from schemas.convert import stamp
-from schemas.messages import Gnss, Imu, MissionItem, Vector3
+from schemas.messages import AirData, Gnss, Imu, MissionItem, Vector3
 from services.autopilot.air import intake
 from services.autopilot.air.plan import Kind
 from uvf.maths.geodesy import LocalTangent
@@ -29,6 +29,26 @@ def test_a_fix_becomes_a_place_in_the_world():
     assert (fix.north, fix.east, fix.height) == pytest.approx((-40.0, 120.0, 60.0), abs=1e-2)
     assert (fix.v_north, fix.v_east, fix.v_up) == (4, 3, 1)
     assert fix.age == pytest.approx(0.1)
+
+
+@pytest.mark.parametrize("stamped", [0.0, 8.9, 90.0])
+def test_a_sample_of_no_time_near_is_none(stamped):
+    """One that is stamped ahead made the filter take all after it as late."""
+    assert intake.inertial(Imu(timestamp=stamp(stamped)), 8.7 if stamped > 8 else 8.0) is None
+    assert intake.inertial(Imu(timestamp=stamp(8.0)), 8.01) is not None
+
+
+@pytest.mark.parametrize("stamped", [0.0, 90.0])
+def test_a_fix_of_no_time_near_is_none(stamped):
+    assert intake.fix(Gnss(timestamp=stamp(stamped), fix=Gnss.FIX_3D, latitude=0.71, longitude=0.25), TANGENT, 8.0) is None
+
+
+@pytest.mark.parametrize("reading", [(0.0, 0.0, 288.0), (101_325.0, 1e6, 288.0), (101_325.0, 0.0, 0.0), (2e6, 0.0, 288.0)])
+def test_air_that_there_is_not_is_no_reading(reading):
+    """0 Pa is infinitely high."""
+    static, differential, temperature = reading
+    message = AirData(timestamp=stamp(1.0), static_pressure=static, differential_pressure=differential, temperature=temperature)
+    assert intake.pressures(message, 1.0) is None
 
 
 def test_items_keep_their_meaning():

@@ -117,3 +117,14 @@ def test_a_receiver_that_insists_for_long_is_believed():
     assert abs(flown.errors(estimator)[6]) > 400.0
     fly(flown, 6.0, None, estimator)
     assert abs(flown.errors(estimator)[6]) < 1.0
+
+
+def test_satellites_elsewhere_and_then_no_imu_sample_in_time():
+    """Where it was is forgotten with the old state; the next pressure asked for it before the next sample had come."""
+    flown = Flown(seed=7)
+    estimator = fly(flown, 8.0)
+    delay = estimator._aiding.delay
+    estimator._aiding._begin_at(np.array((5000.0, 0.0, -60.0)), np.array((20.0, 0.0, 0.0)), flown._fix(), estimator._sampled)
+    assert len(delay._past) == 1
+    estimator.step(flown.sensed(fixed=False, samples=[]), PARAMS, DT)
+    assert estimator.started
