@@ -1,4 +1,5 @@
-"""Round trips between two processes through the router: UVF with encoding and decoding beside raw zenoh, in one run."""
+"""Round trips between two processes through the router, in one run: raw zenoh, UVF with encoding and decoding but without the checks
+at the border, and UVF as it is."""
 
 import json
 import socket
@@ -12,26 +13,28 @@ from statistics import median, quantiles
 
 import zenoh
 
-from benchmarks.bus_messages import MESSAGES
+from benchmarks.bus_messages import MESSAGES, READERS
 from uvf.runtime.zenoh_bus import ZenohBus
 
-WARM_UP = 50
-TRIPS = 400
-ROUNDS = 3
+WARM_UP = 5
+TRIPS = 50
+ROUNDS = 60
 PATIENCE = 5.0  # s
+
+KINDS = ("raw", *READERS)
 
 Trip = Callable[[], None]
 
 
 def round_trips(data: Path | None) -> dict[str, dict[str, float]]:
-    """p50 and p99 [us] and the ratio of the medians, rounds of both taking turns."""
+    """p50 and p99 [us] and ratios of the medians, rounds of all kinds taking turns; ``checks``: of UVF to itself unchecked."""
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         endpoint = f"tcp/127.0.0.1:{probe.getsockname()[1]}"
     processes = [subprocess.Popen([sys.executable, "-m", "uvf.launch.cli", "router", "--listen", endpoint])]
     try:
         with ZenohBus(endpoint) as bus:
-            processes += [subprocess.Popen([sys.executable, "-m", "benchmarks.bus_echo", kind, endpoint]) for kind in ("raw", "uvf")]
+            processes += [subprocess.Popen([sys.executable, "-m", "benchmarks.bus_echo", kind, endpoint]) for kind in KINDS]
             return _measure(endpoint, bus)
     finally:
         for process in reversed(processes):
@@ -46,8 +49,8 @@ def _measure(endpoint: str, bus: ZenohBus) -> dict[str, dict[str, float]]:
     figures = {}
     with zenoh.open(config) as session:
         for name in MESSAGES:
-            trips = {"raw": _raw_trip(session, name), "uvf": _uvf_trip(bus, name)}
-            times: dict[str, list[float]] = {"raw": [], "uvf": []}
+            trips = {"raw": _raw_trip(session, name)} | {kind: _uvf_trip(bus, kind, name) for kind in READERS}
+            times: dict[str, list[float]] = {kind: [] for kind in KINDS}
             for _ in range(ROUNDS):
                 for kind, trip in trips.items():
                     times[kind] += _time(trip)
@@ -60,7 +63,7 @@ def _figures(times: dict[str, list[float]]) -> dict[str, float]:
     for kind, taken in times.items():
         out[f"{kind} p50 us"] = median(taken) * 1e6
         out[f"{kind} p99 us"] = quantiles(taken, n=100)[-1] * 1e6
-    return out | {"ratio": out["uvf p50 us"] / out["raw p50 us"]}
+    return out | {"ratio": out["uvf p50 us"] / out["raw p50 us"], "checks": out["uvf p50 us"] / out["unchecked p50 us"]}
 
 
 def _time(trip: Trip) -> list[float]:
@@ -93,11 +96,11 @@ def _raw_trip(session: zenoh.Session, name: str) -> Trip:
     return lambda: _until(lambda: publisher.put(payload), here)
 
 
-def _uvf_trip(bus: ZenohBus, name: str) -> Trip:
+def _uvf_trip(bus: ZenohBus, kind: str, name: str) -> Trip:
     message, qos = MESSAGES[name]
-    type_, got = type(message), []
-    publisher = bus.publisher(f"uvf/echo/there/{name}", type_.DESCRIPTOR.full_name, qos)
-    bus.subscribe(f"uvf/echo/back/{name}", qos, lambda s: got.append(type_.FromString(s.payload)), depth=8, wake=True)
+    type_, read, got = type(message), READERS[kind], []
+    publisher = bus.publisher(f"uvf/{kind}/there/{name}", type_.DESCRIPTOR.full_name, qos)
+    bus.subscribe(f"uvf/{kind}/back/{name}", qos, lambda s: got.append(read(s, type_)), depth=8, wake=True)
 
     def trip() -> None:
         got.clear()

@@ -1,4 +1,4 @@
-"""The far end of the round-trip benchmark: ``python -m benchmarks.bus_echo raw|uvf ENDPOINT``; ends with its parent."""
+"""The far end of the round-trip benchmark: ``python -m benchmarks.bus_echo raw|uvf|unchecked ENDPOINT``; ends with its parent."""
 
 import json
 import os
@@ -6,10 +6,10 @@ import sys
 import time
 
 import zenoh
+from google.protobuf.message import Message
 
-from benchmarks.bus_messages import MESSAGES
-from schemas.topics import Qos
-from uvf.runtime.bus import Sample
+from benchmarks.bus_messages import MESSAGES, READERS
+from uvf.runtime.bus import Publisher, Sample
 from uvf.runtime.zenoh_bus import ZenohBus
 
 PARENT = os.getppid()
@@ -28,22 +28,25 @@ def raw(endpoint: str) -> None:
             time.sleep(0.2)
 
 
-def uvf(endpoint: str) -> None:
-    """Decodes, encodes anew and sends back, as a service does."""
+def uvf(kind: str, endpoint: str) -> None:
+    """Decodes, encodes anew and sends back, as a service does; ``unchecked``: without looking at the content."""
+    read = READERS[kind]
     with ZenohBus(endpoint) as bus:
         for name, (message, qos) in MESSAGES.items():
             type_ = type(message)
-            publisher = bus.publisher(f"uvf/echo/back/{name}", type_.DESCRIPTOR.full_name, qos)
+            publisher = bus.publisher(f"uvf/{kind}/back/{name}", type_.DESCRIPTOR.full_name, qos)
 
-            def echo(sample: Sample, type_: type = type_, publisher: object = publisher) -> None:
-                publisher.put(type_.FromString(sample.payload).SerializeToString(deterministic=True), sample.stamp_ns)  # type: ignore[attr-defined]
+            def echo(sample: Sample, type_: type[Message] = type_, publisher: Publisher = publisher) -> None:
+                publisher.put(read(sample, type_).SerializeToString(deterministic=True), sample.stamp_ns)
 
-            bus.subscribe(f"uvf/echo/there/{name}", qos, echo, depth=8, wake=True)
-        bus.publisher("uvf/echo/ready", "", Qos.STATE).put(b"", 0)
+            bus.subscribe(f"uvf/{kind}/there/{name}", qos, echo, depth=8, wake=True)
         while os.getppid() == PARENT:
             bus.wait(0.2)
             bus.poll()
 
 
 if __name__ == "__main__":
-    {"raw": raw, "uvf": uvf}[sys.argv[1]](sys.argv[2])
+    if sys.argv[1] == "raw":
+        raw(sys.argv[2])
+    else:
+        uvf(*sys.argv[1:])

@@ -3,14 +3,19 @@
 import tempfile
 import time
 from pathlib import Path
+from statistics import median
+from unittest.mock import patch
 
+from benchmarks.timing import timed
 from uvf.launch import catalogue
 from uvf.launch.run import run_lockstep
+from uvf.runtime import wire
 from uvf.runtime.lockstep import Lockstep
 from uvf.runtime.site import ROOT, load_site
 
 DEMO = ROOT / "missions" / "demo.yaml"
 SECONDS = 30.0
+ROUNDS = 5
 
 
 def demo(data: Path | None) -> dict[str, dict[str, float]]:
@@ -34,4 +39,18 @@ def each(data: Path | None) -> dict[str, dict[str, float]]:
     return figures
 
 
-CASES = {"demo": demo, "each": each}
+def border(data: Path | None) -> dict[str, dict[str, float]]:
+    """What it costs that services check all they hear: CPU time of the demo with the checks to that without, taking turns."""
+    site = load_site(DEMO)
+    kinds = [kind for kind in catalogue.needed(site) if kind.clock == "sim"]
+    taken: dict[bool, list[float]] = {True: [], False: []}
+    for _ in range(ROUNDS):
+        for checked in taken:
+            lockstep = Lockstep(catalogue.hosts(site, kinds))
+            with patch.object(wire, "error_in", wire.error_in if checked else lambda message: ""):
+                taken[checked].append(timed(lockstep, SECONDS, None)[0])
+            lockstep.close()
+    return {"demo, checks": {"ms per s": 1000 * median(taken[True]) / SECONDS, "ratio": median(taken[True]) / median(taken[False])}}
+
+
+CASES = {"border": border, "demo": demo, "each": each}

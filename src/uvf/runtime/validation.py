@@ -37,12 +37,12 @@ def error_in(message: Message) -> str:
 
 def _error_in_grid(grid: Grid) -> str:
     """Cells of one byte in whole rows, as ``occupancy_cells`` reads them."""
-    low, high = GRID_CELL
+    (low, high), columns, count = GRID_CELL, grid.column_count, len(grid.data)  # asked once: the cells are copied for it
     if not (low <= grid.cell_size.x <= high and low <= grid.cell_size.y <= high):
         return f"cell_size: cells are of {low:g} to {high:g} m"
-    if grid.column_count == 0 or not grid.data or len(grid.data) % grid.column_count:
-        return f"{len(grid.data)} cells do not make rows of {grid.column_count}"
-    if grid.column_count > GRID_SIDE or len(grid.data) // grid.column_count > GRID_SIDE:
+    if columns == 0 or count == 0 or count % columns:
+        return f"{count} cells do not make rows of {columns}"
+    if columns > GRID_SIDE or count // columns > GRID_SIDE:
         return f"more than {GRID_SIDE} cells along a side"
     return ""
 
