@@ -25,7 +25,7 @@ _sym_db = _symbol_database.Default()
 from google.protobuf import timestamp_pb2 as google_dot_protobuf_dot_timestamp__pb2
 
 
-DESCRIPTOR = _descriptor_pool.Default().AddSerializedFile(b'\n\x13uvf/v1/system.proto\x12\x06uvf.v1\x1a\x1fgoogle/protobuf/timestamp.proto\"\xd5\x01\n\x05\x45vent\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12(\n\x08severity\x18\x02 \x01(\x0e\x32\x16.uvf.v1.Event.Severity\x12\x0c\n\x04text\x18\x03 \x01(\t\x12\r\n\x05\x63\x61use\x18\x04 \x01(\t\x12\x0e\n\x06source\x18\x05 \x01(\t\"F\n\x08Severity\x12\x08\n\x04INFO\x10\x00\x12\n\n\x06NOTICE\x10\x01\x12\x0b\n\x07WARNING\x10\x02\x12\t\n\x05\x45RROR\x10\x03\x12\x0c\n\x08\x43RITICAL\x10\x04\"\xc3\x02\n\x06Health\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12\x0f\n\x07service\x18\x02 \x01(\t\x12\x0c\n\x04host\x18\x03 \x01(\t\x12\x0b\n\x03pid\x18\x04 \x01(\r\x12\r\n\x05steps\x18\x05 \x01(\x04\x12\x0f\n\x07skipped\x18\x06 \x01(\x04\x12\x0c\n\x04late\x18\x07 \x01(\x04\x12\x16\n\x0eworst_lateness\x18\x08 \x01(\x01\x12\r\n\x05stale\x18\t \x01(\x04\x12\x10\n\x08\x63pu_time\x18\n \x01(\x01\x12&\n\x04gaps\x18\x0b \x03(\x0b\x32\x18.uvf.v1.Health.GapsEntry\x12\x11\n\tmalformed\x18\x0c \x01(\x04\x12\x0f\n\x07missing\x18\r \x03(\t\x1a+\n\tGapsEntry\x12\x0b\n\x03key\x18\x01 \x01(\t\x12\r\n\x05value\x18\x02 \x01(\x04:\x02\x38\x01\";\n\x0cParamRequest\x12\x0c\n\x04name\x18\x01 \x01(\t\x12\r\n\x05value\x18\x02 \x01(\t\x12\x0e\n\x06source\x18\x03 \x01(\t\"t\n\x05Param\x12\x0c\n\x04name\x18\x01 \x01(\t\x12\r\n\x05value\x18\x02 \x01(\t\x12\x0c\n\x04unit\x18\x03 \x01(\t\x12\x0b\n\x03min\x18\x04 \x01(\x01\x12\x0b\n\x03max\x18\x05 \x01(\x01\x12\x13\n\x0b\x64\x65scription\x18\x06 \x01(\t\x12\x11\n\tread_only\x18\x07 \x01(\x08\"M\n\nParamReply\x12\x10\n\x08\x61\x63\x63\x65pted\x18\x01 \x01(\x08\x12\x0e\n\x06reason\x18\x02 \x01(\t\x12\x1d\n\x06params\x18\x03 \x03(\x0b\x32\r.uvf.v1.Param\"\xad\x01\n\x0bParamValues\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12\x0f\n\x07\x63hanges\x18\x02 \x01(\r\x12/\n\x06values\x18\x03 \x03(\x0b\x32\x1f.uvf.v1.ParamValues.ValuesEntry\x1a-\n\x0bValuesEntry\x12\x0b\n\x03key\x18\x01 \x01(\t\x12\r\n\x05value\x18\x02 \x01(\t:\x02\x38\x01\"\xb7\x01\n\x07Process\x12\x0c\n\x04name\x18\x01 \x01(\t\x12$\n\x05state\x18\x02 \x01(\x0e\x32\x15.uvf.v1.Process.State\x12\x0b\n\x03pid\x18\x03 \x01(\r\x12\x10\n\x08restarts\x18\x04 \x01(\r\x12\x0e\n\x06reason\x18\x05 \x01(\t\"I\n\x05State\x12\x0c\n\x08STARTING\x10\x00\x12\x0b\n\x07RUNNING\x10\x01\x12\x0e\n\nRESTARTING\x10\x02\x12\n\n\x06\x46\x41ILED\x10\x03\x12\t\n\x05\x45NDED\x10\x04\"^\n\tProcesses\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12\"\n\tprocesses\x18\x02 \x03(\x0b\x32\x0f.uvf.v1.Processb\x06proto3')
+DESCRIPTOR = _descriptor_pool.Default().AddSerializedFile(b'\n\x13uvf/v1/system.proto\x12\x06uvf.v1\x1a\x1fgoogle/protobuf/timestamp.proto\"\xd5\x01\n\x05\x45vent\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12(\n\x08severity\x18\x02 \x01(\x0e\x32\x16.uvf.v1.Event.Severity\x12\x0c\n\x04text\x18\x03 \x01(\t\x12\r\n\x05\x63\x61use\x18\x04 \x01(\t\x12\x0e\n\x06source\x18\x05 \x01(\t\"F\n\x08Severity\x12\x08\n\x04INFO\x10\x00\x12\n\n\x06NOTICE\x10\x01\x12\x0b\n\x07WARNING\x10\x02\x12\t\n\x05\x45RROR\x10\x03\x12\x0c\n\x08\x43RITICAL\x10\x04\"2\n\x07Refusal\x12\x0b\n\x03key\x18\x01 \x01(\t\x12\r\n\x05\x63ount\x18\x02 \x01(\x04\x12\x0b\n\x03why\x18\x03 \x01(\t\"\xe6\x02\n\x06Health\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12\x0f\n\x07service\x18\x02 \x01(\t\x12\x0c\n\x04host\x18\x03 \x01(\t\x12\x0b\n\x03pid\x18\x04 \x01(\r\x12\r\n\x05steps\x18\x05 \x01(\x04\x12\x0f\n\x07skipped\x18\x06 \x01(\x04\x12\x0c\n\x04late\x18\x07 \x01(\x04\x12\x16\n\x0eworst_lateness\x18\x08 \x01(\x01\x12\r\n\x05stale\x18\t \x01(\x04\x12\x10\n\x08\x63pu_time\x18\n \x01(\x01\x12&\n\x04gaps\x18\x0b \x03(\x0b\x32\x18.uvf.v1.Health.GapsEntry\x12\x11\n\tmalformed\x18\x0c \x01(\x04\x12\x0f\n\x07missing\x18\r \x03(\t\x12!\n\x08refusals\x18\x0e \x03(\x0b\x32\x0f.uvf.v1.Refusal\x1a+\n\tGapsEntry\x12\x0b\n\x03key\x18\x01 \x01(\t\x12\r\n\x05value\x18\x02 \x01(\x04:\x02\x38\x01\";\n\x0cParamRequest\x12\x0c\n\x04name\x18\x01 \x01(\t\x12\r\n\x05value\x18\x02 \x01(\t\x12\x0e\n\x06source\x18\x03 \x01(\t\"t\n\x05Param\x12\x0c\n\x04name\x18\x01 \x01(\t\x12\r\n\x05value\x18\x02 \x01(\t\x12\x0c\n\x04unit\x18\x03 \x01(\t\x12\x0b\n\x03min\x18\x04 \x01(\x01\x12\x0b\n\x03max\x18\x05 \x01(\x01\x12\x13\n\x0b\x64\x65scription\x18\x06 \x01(\t\x12\x11\n\tread_only\x18\x07 \x01(\x08\"M\n\nParamReply\x12\x10\n\x08\x61\x63\x63\x65pted\x18\x01 \x01(\x08\x12\x0e\n\x06reason\x18\x02 \x01(\t\x12\x1d\n\x06params\x18\x03 \x03(\x0b\x32\r.uvf.v1.Param\"\xad\x01\n\x0bParamValues\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12\x0f\n\x07\x63hanges\x18\x02 \x01(\r\x12/\n\x06values\x18\x03 \x03(\x0b\x32\x1f.uvf.v1.ParamValues.ValuesEntry\x1a-\n\x0bValuesEntry\x12\x0b\n\x03key\x18\x01 \x01(\t\x12\r\n\x05value\x18\x02 \x01(\t:\x02\x38\x01\"\xb7\x01\n\x07Process\x12\x0c\n\x04name\x18\x01 \x01(\t\x12$\n\x05state\x18\x02 \x01(\x0e\x32\x15.uvf.v1.Process.State\x12\x0b\n\x03pid\x18\x03 \x01(\r\x12\x10\n\x08restarts\x18\x04 \x01(\r\x12\x0e\n\x06reason\x18\x05 \x01(\t\"I\n\x05State\x12\x0c\n\x08STARTING\x10\x00\x12\x0b\n\x07RUNNING\x10\x01\x12\x0e\n\nRESTARTING\x10\x02\x12\n\n\x06\x46\x41ILED\x10\x03\x12\t\n\x05\x45NDED\x10\x04\"^\n\tProcesses\x12-\n\ttimestamp\x18\x01 \x01(\x0b\x32\x1a.google.protobuf.Timestamp\x12\"\n\tprocesses\x18\x02 \x03(\x0b\x32\x0f.uvf.v1.Processb\x06proto3')
 
 _globals = globals()
 _builder.BuildMessageAndEnumDescriptors(DESCRIPTOR, _globals)
@@ -40,24 +40,26 @@ if not _descriptor._USE_C_DESCRIPTORS:
   _globals['_EVENT']._serialized_end=278
   _globals['_EVENT_SEVERITY']._serialized_start=208
   _globals['_EVENT_SEVERITY']._serialized_end=278
-  _globals['_HEALTH']._serialized_start=281
-  _globals['_HEALTH']._serialized_end=604
-  _globals['_HEALTH_GAPSENTRY']._serialized_start=561
-  _globals['_HEALTH_GAPSENTRY']._serialized_end=604
-  _globals['_PARAMREQUEST']._serialized_start=606
-  _globals['_PARAMREQUEST']._serialized_end=665
-  _globals['_PARAM']._serialized_start=667
-  _globals['_PARAM']._serialized_end=783
-  _globals['_PARAMREPLY']._serialized_start=785
-  _globals['_PARAMREPLY']._serialized_end=862
-  _globals['_PARAMVALUES']._serialized_start=865
-  _globals['_PARAMVALUES']._serialized_end=1038
-  _globals['_PARAMVALUES_VALUESENTRY']._serialized_start=993
-  _globals['_PARAMVALUES_VALUESENTRY']._serialized_end=1038
-  _globals['_PROCESS']._serialized_start=1041
-  _globals['_PROCESS']._serialized_end=1224
-  _globals['_PROCESS_STATE']._serialized_start=1151
-  _globals['_PROCESS_STATE']._serialized_end=1224
-  _globals['_PROCESSES']._serialized_start=1226
-  _globals['_PROCESSES']._serialized_end=1320
+  _globals['_REFUSAL']._serialized_start=280
+  _globals['_REFUSAL']._serialized_end=330
+  _globals['_HEALTH']._serialized_start=333
+  _globals['_HEALTH']._serialized_end=691
+  _globals['_HEALTH_GAPSENTRY']._serialized_start=648
+  _globals['_HEALTH_GAPSENTRY']._serialized_end=691
+  _globals['_PARAMREQUEST']._serialized_start=693
+  _globals['_PARAMREQUEST']._serialized_end=752
+  _globals['_PARAM']._serialized_start=754
+  _globals['_PARAM']._serialized_end=870
+  _globals['_PARAMREPLY']._serialized_start=872
+  _globals['_PARAMREPLY']._serialized_end=949
+  _globals['_PARAMVALUES']._serialized_start=952
+  _globals['_PARAMVALUES']._serialized_end=1125
+  _globals['_PARAMVALUES_VALUESENTRY']._serialized_start=1080
+  _globals['_PARAMVALUES_VALUESENTRY']._serialized_end=1125
+  _globals['_PROCESS']._serialized_start=1128
+  _globals['_PROCESS']._serialized_end=1311
+  _globals['_PROCESS_STATE']._serialized_start=1238
+  _globals['_PROCESS_STATE']._serialized_end=1311
+  _globals['_PROCESSES']._serialized_start=1313
+  _globals['_PROCESSES']._serialized_end=1407
 # @@protoc_insertion_point(module_scope)

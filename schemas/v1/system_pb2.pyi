@@ -33,8 +33,18 @@ class Event(_message.Message):
     source: str
     def __init__(self, timestamp: _Optional[_Union[_timestamp_pb2.Timestamp, _Mapping]] = ..., severity: _Optional[_Union[Event.Severity, str]] = ..., text: _Optional[str] = ..., cause: _Optional[str] = ..., source: _Optional[str] = ...) -> None: ...
 
+class Refusal(_message.Message):
+    __slots__ = ("key", "count", "why")
+    KEY_FIELD_NUMBER: _ClassVar[int]
+    COUNT_FIELD_NUMBER: _ClassVar[int]
+    WHY_FIELD_NUMBER: _ClassVar[int]
+    key: str
+    count: int
+    why: str
+    def __init__(self, key: _Optional[str] = ..., count: _Optional[int] = ..., why: _Optional[str] = ...) -> None: ...
+
 class Health(_message.Message):
-    __slots__ = ("timestamp", "service", "host", "pid", "steps", "skipped", "late", "worst_lateness", "stale", "cpu_time", "gaps", "malformed", "missing")
+    __slots__ = ("timestamp", "service", "host", "pid", "steps", "skipped", "late", "worst_lateness", "stale", "cpu_time", "gaps", "malformed", "missing", "refusals")
     class GapsEntry(_message.Message):
         __slots__ = ("key", "value")
         KEY_FIELD_NUMBER: _ClassVar[int]
@@ -55,6 +65,7 @@ class Health(_message.Message):
     GAPS_FIELD_NUMBER: _ClassVar[int]
     MALFORMED_FIELD_NUMBER: _ClassVar[int]
     MISSING_FIELD_NUMBER: _ClassVar[int]
+    REFUSALS_FIELD_NUMBER: _ClassVar[int]
     timestamp: _timestamp_pb2.Timestamp
     service: str
     host: str
@@ -68,7 +79,8 @@ class Health(_message.Message):
     gaps: _containers.ScalarMap[str, int]
     malformed: int
     missing: _containers.RepeatedScalarFieldContainer[str]
-    def __init__(self, timestamp: _Optional[_Union[_timestamp_pb2.Timestamp, _Mapping]] = ..., service: _Optional[str] = ..., host: _Optional[str] = ..., pid: _Optional[int] = ..., steps: _Optional[int] = ..., skipped: _Optional[int] = ..., late: _Optional[int] = ..., worst_lateness: _Optional[float] = ..., stale: _Optional[int] = ..., cpu_time: _Optional[float] = ..., gaps: _Optional[_Mapping[str, int]] = ..., malformed: _Optional[int] = ..., missing: _Optional[_Iterable[str]] = ...) -> None: ...
+    refusals: _containers.RepeatedCompositeFieldContainer[Refusal]
+    def __init__(self, timestamp: _Optional[_Union[_timestamp_pb2.Timestamp, _Mapping]] = ..., service: _Optional[str] = ..., host: _Optional[str] = ..., pid: _Optional[int] = ..., steps: _Optional[int] = ..., skipped: _Optional[int] = ..., late: _Optional[int] = ..., worst_lateness: _Optional[float] = ..., stale: _Optional[int] = ..., cpu_time: _Optional[float] = ..., gaps: _Optional[_Mapping[str, int]] = ..., malformed: _Optional[int] = ..., missing: _Optional[_Iterable[str]] = ..., refusals: _Optional[_Iterable[_Union[Refusal, _Mapping]]] = ...) -> None: ...
 
 class ParamRequest(_message.Message):
     __slots__ = ("name", "value", "source")

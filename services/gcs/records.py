@@ -20,6 +20,7 @@ STATES = {
     Process.ENDED: ("ended", "idle"),
 }
 LATE, LATENESS = 0.005, 0.05  # share of the steps, s: beyond these a figure is marked
+REFUSALS = 8  # keys of a process that are listed
 HEADINGS = ("process", "state", "restarts", "CPU %", "late %", "worst ms", "gaps")
 HINTS = (
     "",
@@ -75,7 +76,17 @@ def processes(model: Model, t: float) -> Html:
     rows = joined(_process(name, model.processes.get(name), model.health.get(name), t) for name in names)
     loads = [v.load for v in model.health.values() if v.load is not None]
     total = html("<tr><td>together</td><td></td><td></td><td>{:.0f}</td><td colspan='3'></td></tr>", 100 * sum(loads))
-    return html("<table class='g-system'><tr>{}</tr>{}{}</table>{}", head, rows, total, refused)
+    return html("<table class='g-system'><tr>{}</tr>{}{}</table>{}{}", head, rows, total, _refusals(model), refused)
+
+
+def _refusals(model: Model) -> Html:
+    """Which messages the processes have not taken, and why; empty when they have taken all."""
+    found = [(name, refusal) for name, vitals in sorted(model.health.items()) for refusal in vitals.report.refusals[:REFUSALS]]
+    if not found:
+        return html("")
+    head = html("<tr><th>messages refused by</th><th>key</th><th>count</th><th>the first, because</th></tr>")
+    rows = [html("<tr><td>{}</td><td>{}</td><td class='g-warn'>{}</td><td>{}</td></tr>", name, r.key, r.count, r.why) for name, r in found]
+    return html("<table class='g-system g-refusals'>{}{}</table>", head, joined(rows))
 
 
 def _process(name: str, process: Process | None, vitals: Vitals | None, t: float) -> Html:

@@ -3,13 +3,29 @@
 import os
 import platform
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from heapq import nlargest
 
 from schemas import topics
 from schemas.convert import stamp_ns
 from schemas.messages import Health
+from uvf.runtime.refusals import LENGTH, together
 from uvf.runtime.shell import Shell
+from uvf.runtime.validation import is_text
 from uvf.runtime.zenoh_bus import ZenohBus
+
+GAPS_MOST = 100
+OTHERS = "others"
+
+
+def told_gaps(gaps: Mapping[str, int]) -> dict[str, int]:
+    """Messages missed by key: the largest counts, and the sum of all others; so many keys, or such, as no reader would take count too."""
+    told: dict[str, int] = {}
+    for key in nlargest(GAPS_MOST, gaps, key=lambda key: gaps[key]):
+        if len(key) <= LENGTH and is_text(key):
+            told[key] = gaps[key]
+    others = sum(gaps.values()) - sum(told.values())
+    return told | {OTHERS: others} if others else told
 
 
 class HealthReport:
@@ -46,7 +62,8 @@ class HealthReport:
             late=self._late,
             worst_lateness=self._worst,
             cpu_time=time.process_time(),
-            gaps=dict(self._bus.counter.gaps),
+            gaps=told_gaps(self._bus.counter.gaps),
+            refusals=together(s.refusals for s in self._shells),
             missing=sorted({f"{s.type.name}:{m}" for s in self._shells for m in s.counters.missing}),
         )
         self._publisher.put(message.SerializeToString(deterministic=True), now)

@@ -17,6 +17,7 @@ from uvf.runtime.clock import NS, first_step_after, step_time
 from uvf.runtime.frames import FrameBuffer
 from uvf.runtime.inbox import AHEAD_MOST, EVERY_DEPTH, InputBox
 from uvf.runtime.param_server import ParamServer
+from uvf.runtime.refusals import Refusals
 from uvf.runtime.request_desk import QUERIES_MOST, ContractError, RequestDesk
 from uvf.runtime.service import Answer, Frames, Input, Outputs, Service, StopInput
 from uvf.runtime.site import Host
@@ -25,7 +26,6 @@ from uvf.runtime.wire import Malformed, decode
 
 Warn = Callable[[str], None]
 LATEST_DEPTH = 8  # more than one, for the newest may be too new to be read yet
-TOLD_MOST = 100  # different lines about broken messages
 AFRESH = "time has started over: ask again"
 
 
@@ -60,7 +60,7 @@ class Shell:
         """The newest bytes that it has put on each key that it recalls."""
         self._desk = RequestDesk(self.type, self._put, self._refused)
         self._answers: dict[str, deque[tuple[int, Answer[Any, Any]]]] = {name: deque() for name in self.type.calls}
-        self._told: set[str] = set()
+        self.refusals = Refusals(lambda line: warn(f"{self.type.name}: {line}"))
         self._stops = StopBook(at_once=self.type.clock == "wall")
         self.service: Service
         self._boxes: dict[str, InputBox] = {}
@@ -269,9 +269,7 @@ class Shell:
     def _refused(self, line: str) -> None:
         """A broken sender is told of, but not at each of its messages: these are counted."""
         self.counters.malformed += 1
-        if line not in self._told and len(self._told) < TOLD_MOST:
-            self._told.add(line)
-            self._warn(f"{self.type.name}: {line}")
+        self.refusals.refuse(line)
 
     def _feed_frames(self, t_ns: int) -> None:
         """What is told while ``step`` is held back is taken in too."""

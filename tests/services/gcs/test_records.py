@@ -5,7 +5,7 @@ import re
 import pytest
 
 from schemas import topics
-from schemas.messages import Event, Health, Process, Processes
+from schemas.messages import Event, Health, Process, Processes, Refusal
 from services.gcs.commands import SetMode
 from tests.services.gcs.fakes import Station
 from tests.services.gcs.scripted import UAV, UGV
@@ -66,3 +66,10 @@ def test_each_event_bears_the_class_that_the_page_filters_by(station):
         station.script.say(UAV, "x", severity, t=1.0)
     station.run(0.5)
     assert re.findall(r"g-k-(\w+)", station.page.now.html["log"]) == ["warning", "notice", "routine"]
+
+
+def test_what_a_process_has_not_taken_stands_below_by_key_with_the_reason(station):
+    assert "g-refusals" not in station.page.now.html["processes"]
+    report(station, 0.5, 3.0, refusals=[Refusal(key="uvf/<b>/scan", count=12, why="9 bytes")])
+    html = station.page.now.html["processes"]
+    assert rows(html)[-1] == ["slam", "uvf/&lt;b&gt;/scan", "12", "9", "bytes"]
