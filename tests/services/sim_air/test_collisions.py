@@ -31,7 +31,7 @@ def motion(x=0.0, y=0.0, z=8.0, yaw=0.0):
 
 def told(steps, truth=None, objects=None):
     """steps: dicts of the aircraft's motions."""
-    around = Around([WALL, MAST], Ground(scene([WALL, MAST])), SHAPES, {}.__getitem__)
+    around = Around([WALL, MAST], Ground(scene([WALL, MAST])), SHAPES, {}.get)
     collisions, hits = Collisions(around), []
     for i, motions in enumerate(steps):
         around.look(i / 100, truth or {}, objects, motions)
@@ -76,6 +76,26 @@ def test_what_has_been_put_in_is_hit_too():
     pose = Pose(position=vector(np.array((0.0, -80.0, 8.0))), orientation=quaternion(IDENTITY))
     balloon = SimObjects(objects=[SimObject(name="balloon", shape="sphere", size=[1.0], pose=pose)])
     assert told([{"a": motion(x, -80.0)} for x in np.arange(-8.0, 8.0, 0.25)], objects=balloon) == [Hit("a", "balloon")]
+
+
+NOTHING = {
+    "a mesh without a file": SimObject(name="x", shape="mesh", size=[1.0, 1.0, 1.0]),
+    "no shape": SimObject(name="x"),
+    "too few measures": SimObject(name="x", shape="box", size=[1.0]),
+    "a size without end": SimObject(name="x", shape="sphere", size=[1e9]),
+    "a size below nothing": SimObject(name="x", shape="sphere", size=[-1.0]),
+    "a place without end": SimObject(name="x", shape="sphere", size=[1.0], pose=Pose(position=vector(np.array((1e9, 0.0, 0.0))))),
+    "a model that nobody has": SimObject(name="x", model="nothing"),
+    "a path for a name": SimObject(name="../x", shape="sphere", size=[1.0]),
+}
+
+
+@pytest.mark.parametrize("thing", NOTHING.values(), ids=NOTHING)
+def test_what_nothing_can_be_is_left_out_and_hides_no_other(thing):
+    pose = Pose(position=vector(np.array((0.0, -80.0, 8.0))), orientation=quaternion(IDENTITY))
+    sound = SimObject(name="balloon", shape="sphere", size=[1.0], pose=pose)
+    steps = [{"a": motion(x, -80.0)} for x in np.arange(-8.0, 8.0, 0.25)]
+    assert told(steps, objects=SimObjects(objects=[thing, sound])) == [Hit("a", "balloon")]
 
 
 def test_a_flight_into_a_wall_ends_there_and_says_what_was_hit(tmp_path):
