@@ -150,6 +150,9 @@ def test_neither_its_end_nor_its_beginning_harms_the_others(run, monkeypatch, wh
     monkeypatch.setattr(Driver, where, fails)
     ran = run(lambda vehicle, t, battery: vehicle == "beta" and t > 1.0 and not failed.append(t))
     assert ran.events[-1].severity == Event.CRITICAL
+    first, _, second = ran.events[0].cause.partition("; then, ")
+    assert first
+    assert "no more" in second
     assert (ran.wheels["alpha"], ran.wheels["gamma"]) == (sound.wheels["alpha"], sound.wheels["gamma"])
 
 

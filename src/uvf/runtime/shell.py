@@ -197,6 +197,7 @@ class Shell:
                 self._revive()
         except Exception as second:  # noqa: BLE001  # neither may its end nor its beginning harm the others
             again = not self._bulkhead.failed(t_ns / NS, cause_of(second))
+            cause = f"{cause}; then, when it was to be started afresh, {cause_of(second)}"
         self._tell_failure(t_ns, cause, again)
 
     def _revive(self) -> None:

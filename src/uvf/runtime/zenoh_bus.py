@@ -8,7 +8,7 @@ import json
 import queue
 import secrets
 import time
-from collections import defaultdict, deque
+from collections import deque
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from types import TracebackType
@@ -30,6 +30,8 @@ WAIT_BEFORE_DROP_US = 50_000
 RECALL_TIMEOUT = 1.0  # s, wall
 SAY_AGAIN = 2.0  # s, wall
 EVENT_HISTORY = 100
+SENDERS_MOST = 20_000
+"""Of latched and event messages that a subscriber to everything knows apart; those silent for longest are forgotten."""
 
 _P, _C = zenoh.Priority, zenoh.CongestionControl
 _PRIORITY = {
@@ -165,15 +167,18 @@ class ZenohBus:
 
         An advanced subscriber on all keys would do, but it drops messages of plain publishers at random.
         """
-        seen: defaultdict[tuple[str, int], set[int]] = defaultdict(set)
+        seen: dict[tuple[str, int], set[int]] = {}
 
         def once(sample: Sample) -> None:
-            numbers = seen[(sample.key, sample.boot)]
+            sender = (sample.key, sample.boot)
+            numbers = seen[sender] = seen.pop(sender, set())
+            if len(seen) > SENDERS_MOST:
+                del seen[next(iter(seen))]
             if sample.seq in numbers or (numbers and sample.seq < max(numbers) - 2 * EVENT_HISTORY):
                 return
             numbers.add(sample.seq)
             if len(numbers) > 4 * EVENT_HISTORY:
-                seen[(sample.key, sample.boot)] = {n for n in numbers if n >= sample.seq - 2 * EVENT_HISTORY}
+                seen[sender] = {n for n in numbers if n >= sample.seq - 2 * EVENT_HISTORY}
             sink(sample)
 
         kept = [topic for topic in TOPICS.values() if topic.qos in _KEPT]
