@@ -13,7 +13,7 @@ import time
 from collections import Counter
 from collections.abc import Callable, Sequence
 from types import TracebackType
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 from google.protobuf.message import Message
 
@@ -24,6 +24,7 @@ from schemas.topics import Request, Topic
 from uvf.runtime.address import router_from
 from uvf.runtime.bus import Publisher, Sample
 from uvf.runtime.stop_all import StopBook, StopVoice, told
+from uvf.runtime.wire import decode, guarded
 from uvf.runtime.zenoh_bus import ZenohBus
 
 M = TypeVar("M", bound=Message)
@@ -43,7 +44,9 @@ class Client:
 
     def __init__(self, bus: ZenohBus) -> None:
         self._bus = bus
-        self._newest: dict[str, Sample] = {}
+        self._newest: dict[str, Message] = {}
+        self.refused: Counter[str] = Counter()
+        """Messages by key that were not what the table says."""
         self._count: Counter[str] = Counter()
         self._subscribed: set[str] = set()
         self._publishers: dict[str, Publisher] = {}
@@ -62,10 +65,10 @@ class Client:
     def _watch(self, key: str, topic: Topic[Any]) -> None:
         if key not in self._subscribed:
             self._subscribed.add(key)
-            self._bus.subscribe(key, topic.qos, self._on_sample)
+            self._bus.subscribe(key, topic.qos, guarded(topic, self._on_message, lambda _: self.refused.update([key])))
 
-    def _on_sample(self, sample: Sample) -> None:
-        self._newest[sample.key] = sample
+    def _on_message(self, message: Message, sample: Sample) -> None:
+        self._newest[sample.key] = message
         self._count[sample.key] += 1
 
     @property
@@ -81,7 +84,7 @@ class Client:
     def _clock(self) -> Clock:
         self._bus.poll()
         newest = self._newest.get(topics.CLOCK.at(topics.SYSTEM))
-        clock = Clock.FromString(newest.payload) if newest else Clock()
+        clock = newest if isinstance(newest, Clock) else Clock()
         # What is sent bears the epoch: what comes of an earlier one is taken for late.
         self._bus.epoch = clock.epoch
         return clock
@@ -91,7 +94,7 @@ class Client:
         key = topic.at(owner)
         self._watch(key, topic)
         self.wait(lambda: key in self._newest, timeout, f"nothing on {key}")
-        return topic.message.FromString(self._newest[key].payload)
+        return cast(M, self._newest[key])
 
     def heard(self, owner: str, topic: Topic[Any]) -> int:
         """How many messages of a topic have come so far."""
@@ -131,7 +134,7 @@ class Client:
         return [told([one]) for one in engagements]
 
     def ask(self, owner: str, request: Request[Q, R], message: Q, timeout: float = 5.0) -> R:
-        """Sends a request and waits for its reply. Raises TimeoutError, also when nobody answers."""
+        """Sends a request and waits for its reply. Raises TimeoutError, also when nobody answers, and Malformed for what is no reply."""
         (reply,) = self.ask_together(owner, [request], message, timeout)
         if reply is None:
             raise TimeoutError(f"nobody answers {request.at(owner)}")
@@ -151,4 +154,4 @@ class Client:
             if got[key][0] is None and not got[key][1].startswith("nobody answers"):
                 raise TimeoutError(got[key][1])
         replies = [(request, got[request.at(owner)][0]) for request in requests]
-        return [None if reply is None else request.reply.FromString(reply) for request, reply in replies]
+        return [None if reply is None else decode(request.at(owner), reply, request.reply) for request, reply in replies]

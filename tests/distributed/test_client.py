@@ -1,9 +1,12 @@
 """What people's own programs say counts like what the page says."""
 
+import pytest
+
 import uvf
 from schemas import topics
 from schemas.messages import Clock
 from tests.runtime.modes import free_port
+from uvf.runtime.wire import Malformed
 from uvf.runtime.zenoh_bus import ZenohBus, open_router
 
 
@@ -24,3 +27,23 @@ def test_what_a_client_sends_bears_time_and_epoch_of_the_clock():
         client.wait(lambda: (bus.poll(), heard)[1], 20.0)
     router.close()
     assert (heard[-1].epoch, heard[-1].stamp_ns) == (3, 5_000_000_000)
+
+
+def test_what_is_no_message_never_reaches_a_program():
+    endpoint = f"tcp/127.0.0.1:{free_port()}"
+    router = open_router(endpoint)
+    with ZenohBus(endpoint, timeout=5.0) as bus, uvf.connect(endpoint) as client:
+        clock = bus.publisher(topics.CLOCK.at("sys"), "uvf.v1.Clock", topics.CLOCK.qos)
+
+        def ticks():
+            clock.put(Clock(t_ns=5_000_000_000).SerializeToString(), 0)
+            clock.put(b"\xff\xff", 0)
+            return client.time == 5.0 and client.refused["uvf/sys/time/clock"] > 3
+
+        client.wait(ticks, 20.0)
+        arm = topics.ARM.at("burger")
+        answering = bus._session.declare_queryable(arm, lambda query: query.reply(arm, b"\xff\xff"))
+        with pytest.raises(Malformed, match=r"uvf/burger/srv/arm: broken uvf\.v1\.Reply"):
+            client.ask("burger", topics.ARM, topics.ARM.message())
+        answering.undeclare()
+    router.close()

@@ -18,6 +18,8 @@ LONG = (F.TYPE_INT64, F.TYPE_UINT64)
 SOURCES = ("gcs", "client", "teleop", "mavlink", "planner", "evil", "..", "<b>")
 AHEAD = 3_000_000_000  # ns, more than anybody's latency
 FAR = 2**62
+WEIGHTS = (20, 20, 20, 1, 20, 20, 20, 20)
+"""Of the kinds of messages: the oversized ones are seldom, for each is up to a megabyte."""
 
 
 class Stranger:
@@ -29,6 +31,8 @@ class Stranger:
         self.largest = largest
         self.owners = owners
         self.sent = Counter()
+        self.newest = ""
+        """What is wrong with what was made last."""
         self.seq = 0
 
     def sample(self, topic, t_ns, epoch=0):
@@ -43,10 +47,14 @@ class Stranger:
             self.other_epoch,
             self.foreign,
         )
-        return self.random.choice(kinds)(topic, t_ns, epoch)
+        return self.random.choices(kinds, WEIGHTS)[0](topic, t_ns, epoch)
+
+    def _count(self, what):
+        self.newest = what
+        self.sent[what] += 1
 
     def _made(self, what, topic, payload, t_ns, epoch=0, owner=None, type_name=None):
-        self.sent[what] += 1
+        self._count(what)
         self.seq += 1
         owner = owner or (self.random.choice(self.owners) if topic.per_vehicle else topics.SYSTEM)
         key = topic.by(self.random.choice(SOURCES)).at(owner)
@@ -177,7 +185,7 @@ class Stranger:
             "truncated": b"\x0a\x7f",
             "oversized": bytes(size_of(request.message) + 1),
         }
-        self.sent[f"request: {kind}"] += 1
+        self._count(f"request: {kind}")
         owner = self.random.choice(self.owners) if request.per_vehicle else topics.SYSTEM
         return request.by(self.random.choice(("autopilot_ground", "planner", "evil"))).at(owner), payload or made[kind]
 
