@@ -18,6 +18,7 @@ WANTED = {
     mav.MAVLINK_MSG_ID_MISSION_ACK,
     mav.MAVLINK_MSG_ID_PARAM_REQUEST_LIST,
     mav.MAVLINK_MSG_ID_PARAM_VALUE,
+    mav.MAVLINK_MSG_ID_SYSTEM_TIME,
 }
 """Messages that are kept; the rest of the telemetry is only passed on."""
 
