@@ -35,14 +35,18 @@ def test_what_is_no_message_never_reaches_a_program():
     with ZenohBus(endpoint, timeout=5.0) as bus, uvf.connect(endpoint) as client:
         clock = bus.publisher(topics.CLOCK.at("sys"), "uvf.v1.Clock", topics.CLOCK.qos)
 
-        def ticks():
-            clock.put(Clock(t_ns=5_000_000_000).SerializeToString(), 0)
-            clock.put(b"\xff\xff", 0)
-            return client.time == 5.0 and client.refused["uvf/sys/time/clock"] > 3
+        def says(payload, heard):
+            # One at a time: of two that come together only the newest is kept.
+            clock.put(payload, 0)
+            return heard()
 
-        client.wait(ticks, 20.0)
+        sound = Clock(t_ns=5_000_000_000).SerializeToString()
+        client.wait(lambda: says(sound, lambda: client.time == 5.0), 20.0, "the clock is not heard")
+        client.wait(lambda: says(b"\xff\xff", lambda: client.time and client.refused["uvf/sys/time/clock"] > 3), 20.0, "not refused")
+        assert client.time == 5.0
         arm = topics.ARM.at("burger")
         answering = bus._session.declare_queryable(arm, lambda query: query.reply(arm, b"\xff\xff"))
+        client.wait(lambda: client._bus._session.declare_querier(arm).matching_status.matching, 20.0, "nobody is asked there")
         with pytest.raises(Malformed, match=r"uvf/burger/srv/arm: broken uvf\.v1\.Reply"):
             client.ask("burger", topics.ARM, topics.ARM.message())
         answering.undeclare()

@@ -5,6 +5,7 @@ By hand: ``python -m tests.hostile.live_storm MISSION MESSAGES``; a million of t
 
 import asyncio
 import contextlib
+import itertools
 import random
 import socket
 import sys
@@ -32,12 +33,23 @@ from uvf.runtime.zenoh_bus import ZenohBus
 
 A_BURST = 200
 ASKED = 10  # requests in a burst
+PAGE_EVERY = 20  # bursts
 WAITING_MOST = 200
 """Requests without an answer, of which there may be so many before the next ones are sent."""
 AHEAD = 60_000_000_000  # ns
 BELIEVED = (topics.CLOCK, topics.DONE, topics.STOP, topics.STOP_STATE, topics.GUEST)
 """Of which a sound message is believed, whoever sends it: docs/security.md. What is broken is refused there too."""
 TYPE_MOST = 200  # characters; of longer ones Zenoh's own client panics before it sends them
+
+
+EVERY_KEY = {*(t.key for t in topics.TOPICS.values()), *(r.key for r in topics.REQUESTS.values()), "UDP", "websocket"}
+
+
+def dealt(dice, cards):
+    """All cards in random order, again and again: none is left out for long."""
+    cards = list(cards)
+    while True:
+        yield from dice.sample(cards, len(cards))
 
 
 class Ear:
@@ -82,6 +94,9 @@ class Storm:
         self.system, self.sent, self.answers = system, Counter(), Counter()
         self.members = sorted(load_site(ROOT / "missions" / f"{mission}.yaml").members)
         self._dice = random.Random(seed)
+        self._topics = dealt(self._dice, topics.TOPICS.values())
+        self._requests = dealt(self._dice, topics.REQUESTS.values())
+        self._bursts = itertools.count()
         self._stranger = Stranger(seed, self.members)
         self._bus = ZenohBus(system.endpoint, timeout=10.0)
         self.ear = Ear(self._bus)
@@ -116,12 +131,12 @@ class Storm:
 
     def burst(self):
         for _ in range(A_BURST):
-            self._say(self._dice.choice(list(topics.TOPICS.values())))
+            self._say(next(self._topics))
         for _ in range(ASKED):
-            self._ask(self._dice.choice(list(topics.REQUESTS.values())))
+            self._ask()
         for _ in range(ASKED):
             self._datagram()
-        if self._dice.random() < 0.05:
+        if next(self._bursts) % PAGE_EVERY == 0:
             self._to_the_page()
         self._bus.poll()
         self._hear()
@@ -149,9 +164,10 @@ class Storm:
             )
             self.sent["bus", topic.key, what] += 1
 
-    def _ask(self, request):
+    def _ask(self):
         if len(self._waiting) >= WAITING_MOST:
             return
+        request = next(self._requests)
         key, payload = self._stranger.request(request)
         replies = self._session.get(key, payload=payload, attachment=Envelope(0, self.ear.clock.t_ns, STRANGER, 0).pack(), timeout=5.0)
         self._waiting.append((request, replies))
