@@ -2,8 +2,9 @@
 
 import pytest
 
+from services.slam.odometry.service import OdometryService
 from uvf.launch.recorder import attachments
-from uvf.launch.report import describe_log, replay_into
+from uvf.launch.report import describe_log, replay_into, run_and_report
 from uvf.launch.run import run_lockstep
 from uvf.runtime.params import BadInput
 from uvf.runtime.recording import Recorder, log_attachments
@@ -68,3 +69,13 @@ def test_an_empty_log_is_described_too(tmp_path, capsys):
         pass
     describe_log(tmp_path / "a.mcap")
     assert "0 messages, 0.0 s" in capsys.readouterr().out
+
+
+def test_a_mission_in_which_an_instance_has_failed_is_not_passed(tmp_path, capsys, monkeypatch):
+    def fails(self, t, **inputs):
+        raise ZeroDivisionError("as told")
+
+    monkeypatch.setattr(OdometryService, "step", fails)
+    monkeypatch.setattr(OdometryService, "stale", fails)
+    assert run_and_report("demo", 0.5, tmp_path / "log.mcap") == 1
+    assert "odometry of burger failed: 3 of its steps" in capsys.readouterr().err

@@ -1,5 +1,8 @@
 """What goes wrong in the instance of one vehicle stays there: it is made afresh, or given up and made safe; nobody else notices."""
 
+import time
+from contextlib import closing
+
 import pytest
 
 from schemas import topics
@@ -9,7 +12,9 @@ from uvf.runtime.bulkhead import Bulkhead
 from uvf.runtime.bus import LocalBus
 from uvf.runtime.lockstep import Lockstep
 from uvf.runtime.service import Service, every, optional
+from uvf.runtime.shell import Shell
 from uvf.runtime.site import Host
+from uvf.runtime.watchdog import StepHangs, Watchdog, time_limit
 
 VEHICLES = ("alpha", "beta", "gamma")
 BAD = 666.0
@@ -154,6 +159,49 @@ def test_neither_its_end_nor_its_beginning_harms_the_others(run, monkeypatch, wh
     assert first
     assert "no more" in second
     assert (ran.wheels["alpha"], ran.wheels["gamma"]) == (sound.wheels["alpha"], sound.wheels["gamma"])
+
+
+@pytest.fixture
+def watchdog(monkeypatch):
+    """Impatient: 0.1 s of processor time."""
+    monkeypatch.setattr("uvf.runtime.watchdog.SHORTEST", 0.1)
+    monkeypatch.setattr("uvf.runtime.watchdog.PERIODS", 1)
+    monkeypatch.setattr("uvf.runtime.watchdog.LOOK", 0.02)
+    with closing(Watchdog()) as made:
+        yield made
+
+
+def test_a_step_that_never_comes_back_is_ended_and_the_others_go_on(monkeypatch, watchdog):
+    def hangs(self, t, **inputs):
+        while self.vehicle == "beta":
+            pass
+        return step(self, t, **inputs)
+
+    step = Driver.step
+    monkeypatch.setattr(Driver, "step", hangs)
+    monkeypatch.setattr(Driver, "made", [])
+    bus, events = LocalBus(), []
+    bus.subscribe("uvf/*/state/events/driver", topics.EVENTS.qos, lambda s: events.append(Event.FromString(s.payload)))
+    hosts = [Host(Plant, Plant)] + [Host(Driver, lambda n=name: Driver(n), name) for name in VEHICLES]
+    shells = [Shell(host, bus, contains=True, watchdog=watchdog) for host in hosts]
+    while (shell := min(shells, key=lambda s: s.due_ns)).due_ns <= 1_000_000_000:
+        shell.advance()
+    assert [e.severity for e in events] == [Event.ERROR, Event.ERROR, Event.CRITICAL]
+    assert all("StepHangs: its step has not come back after 0.1 s of processor time" in e.cause for e in events)
+    assert {shell.owner: shell.counters.steps for shell in shells} == {"sys": 100, "alpha": 50, "beta": 3, "gamma": 50}
+
+
+def test_slow_is_not_hung(watchdog):
+    """What sleeps, or waits for a processor, uses none of its time."""
+    with watchdog.limited(0.1):
+        time.sleep(0.3)
+    with pytest.raises(StepHangs), watchdog.limited(0.1):
+        while True:
+            pass
+
+
+def test_how_long_a_step_may_take():
+    assert [time_limit(hz) for hz in (0.2, 2.0, 20.0, 50.0, 400.0)] == [6.0, 6.0, 5.0, 2.0, 2.0]
 
 
 def test_a_new_epoch_tries_again(run):

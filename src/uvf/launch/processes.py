@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Callable
+from contextlib import closing
 from typing import Any
 
 from schemas import topics
@@ -16,6 +17,7 @@ from uvf.runtime.keeper import Keeper
 from uvf.runtime.live import Live
 from uvf.runtime.params import BadInput
 from uvf.runtime.site import load_site
+from uvf.runtime.watchdog import Watchdog
 from uvf.runtime.wire import Malformed, decode, guarded
 from uvf.runtime.zenoh_bus import ZenohBus, open_router
 
@@ -59,8 +61,8 @@ def run_service(name: str, mission: str, vehicle: str | None, lockstep: bool = F
         give_way(kind.nice)
         site = load_site(settings.mission_path(mission))
         hosts = catalogue.hosts(site, [kind], vehicle)
-        with open_bus(life, lockstep) as bus:
-            live = Live(name if vehicle is None else f"{name}.{vehicle}", hosts, bus, life.warn)
+        with open_bus(life, lockstep) as bus, closing(Watchdog()) as watchdog:
+            live = Live(name if vehicle is None else f"{name}.{vehicle}", hosts, bus, life.warn, watchdog)
             spare_the_collector()
             live.run(life.stop, lambda: not life.goes_on())
 

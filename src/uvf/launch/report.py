@@ -61,6 +61,8 @@ def _print_result(result: Result, log: Path) -> None:
         console.print(table)
     typer.echo(f"simulated {result.simulated:g} s in {result.wall:.1f} s: {result.factor:.1f} x real time")
     typer.echo(f"log {log}: {result.messages} messages, hash {result.log_hash}")
+    for failure in result.failures:
+        typer.echo(failure, err=True)
     if result.recording_error:
         typer.echo(result.recording_error, err=True)
 

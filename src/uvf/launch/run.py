@@ -22,6 +22,8 @@ class Result:
     wall: float  # s, without building the services
     messages: int
     recording_error: str
+    failures: list[str]
+    """Instances that have failed: what was measured of them says nothing."""
 
     @property
     def factor(self) -> float:
@@ -30,7 +32,7 @@ class Result:
 
     @property
     def passed(self) -> bool:
-        return all(v.passed for v in self.verdicts)
+        return not self.failures and all(v.passed for v in self.verdicts)
 
 
 def run_lockstep(
@@ -54,4 +56,4 @@ def run_lockstep(
             wall = time.perf_counter() - begun
         finally:
             lockstep.close()
-    return Result(scorer.judge(), recorder.hash.hexdigest(), until, wall, recorder.written, recorder.error)
+    return Result(scorer.judge(), recorder.hash.hexdigest(), until, wall, recorder.written, recorder.error, lockstep.failures())

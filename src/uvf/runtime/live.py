@@ -10,6 +10,7 @@ from uvf.runtime.clock import NS
 from uvf.runtime.health import HealthReport
 from uvf.runtime.shell import Shell, Warn
 from uvf.runtime.site import Host
+from uvf.runtime.watchdog import Watchdog
 from uvf.runtime.wire import guarded
 from uvf.runtime.zenoh_bus import ZenohBus
 
@@ -23,11 +24,11 @@ LOCKSTEP_PATIENCE = 5.0  # s, after which the message that is waited for is name
 class Live:
     """One process: its shells, its place in the clock's barrier, its sign of life."""
 
-    def __init__(self, name: str, hosts: Sequence[Host], bus: ZenohBus, warn: Warn) -> None:
+    def __init__(self, name: str, hosts: Sequence[Host], bus: ZenohBus, warn: Warn, watchdog: Watchdog | None = None) -> None:
         self._name = name
         self._bus = bus
         self._warn = warn
-        self._shells = shells = [Shell(host, bus, warn, contains=True) for host in hosts]
+        self._shells = shells = [Shell(host, bus, warn, True, watchdog) for host in hosts]
         self._sim = [s for s in shells if s.type.clock == "sim"]
         self._wall = [s for s in shells if s.type.clock == "wall"]
         self._takes_part = bool(self._sim) or not self._wall

@@ -47,6 +47,11 @@ class Lockstep:
         self._tick_ns = step_time(self._tick, topics.CLOCK.hz)
         return watch(t)
 
+    def failures(self) -> list[str]:
+        """A line for each instance that has failed."""
+        failed = [shell for shell in self.shells if shell.counters.failures]
+        return [f"{shell.type.name} of {shell.owner} failed: {shell.counters.failures} of its steps" for shell in failed]
+
     def close(self) -> None:
         for shell in self.shells:
             shell.service.close()

@@ -2,7 +2,9 @@
 
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 
 from google.protobuf.message import Message
@@ -22,6 +24,7 @@ from uvf.runtime.request_desk import QUERIES_MOST, ContractError, RequestDesk
 from uvf.runtime.service import Answer, Frames, Input, Outputs, Service, StopInput
 from uvf.runtime.site import Host
 from uvf.runtime.stop_all import StopBook, StopStatus
+from uvf.runtime.watchdog import Watchdog, time_limit
 from uvf.runtime.wire import Malformed, decode
 
 Warn = Callable[[str], None]
@@ -43,8 +46,13 @@ class Counters:
 class Shell:
     """Runs one instance on a bus: live, in lockstep and in tests alike."""
 
-    def __init__(self, host: Host, bus: Bus, warn: Warn = lambda line: None, contains: bool = False) -> None:
-        """contains: what goes wrong in the instance of a vehicle is kept from those of the others; else it is raised."""
+    def __init__(
+        self, host: Host, bus: Bus, warn: Warn = lambda line: None, contains: bool = False, watchdog: Watchdog | None = None
+    ) -> None:
+        """contains: what goes wrong in the instance of a vehicle is kept from those of the others; else it is raised.
+
+        watchdog: ends, with ``contains``, a step that does not come back.
+        """
         self.host = host
         self.type = host.service
         self.owner = host.vehicle or SYSTEM
@@ -55,6 +63,9 @@ class Shell:
         self._bus = bus
         self._warn = warn
         self._bulkhead = Bulkhead() if contains and self.type.scope == "vehicle" and not self.type.simulator else None
+        self._limited: Callable[[], AbstractContextManager[None]] = nullcontext
+        if watchdog is not None and self._bulkhead is not None:
+            self._limited = partial(watchdog.limited, time_limit(self.type.hz))
         self._publishers: dict[str, Publisher] = {}
         self._left: dict[str, bytes] = {}
         """The newest bytes that it has put on each key that it recalls."""
@@ -240,14 +251,17 @@ class Shell:
         self.counters.missing = missing
         if missing:
             self.counters.stale += 1
-            self._publish(self.service.stale(t_ns / NS, missing), t_ns)
+            with self._limited():
+                outputs = self.service.stale(t_ns / NS, missing)
+            self._publish(outputs, t_ns)
             reason = f"{self.type.name} waits for {', '.join(missing)}"
             self._desk.refuse_due(reason, lambda stamp: self._is_due(stamp, t_ns), t_ns)
             return
         self.counters.steps += 1
         requests = self._desk.take(lambda stamp: self._is_due(stamp, t_ns))
         values = {name: self._boxes[name].value(t_ns) for name in self._valued}
-        outputs = self.service.step(t_ns / NS, **values, **stops, **self._frames, **requests, **self._take_answers(t_ns))
+        with self._limited():
+            outputs = self.service.step(t_ns / NS, **values, **stops, **self._frames, **requests, **self._take_answers(t_ns))
         self._publish(outputs, t_ns)
         self._desk.reply(outputs, t_ns)
 

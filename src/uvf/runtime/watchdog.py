@@ -1,0 +1,54 @@
+"""Ends a step that does not come back, so that the other instances of its process go on."""
+
+import signal
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from types import FrameType
+
+LOOK = 0.25  # s, wall, between two looks at a step
+PERIODS = 100
+SHORTEST, LONGEST = 2.0, 6.0  # s; the launcher ends a process that has been silent for 10 s
+
+
+class StepHangs(Exception):
+    """Raised within a step that has used more processor time than it may."""
+
+
+def time_limit(hz: float) -> float:
+    """Processor time [s] that one step of a service with ``hz`` may use: far more than any needs."""
+    return min(max(PERIODS / hz, SHORTEST), LONGEST)
+
+
+class Watchdog:
+    """Of a process whose steps run in its main thread; there is one at a time.
+
+    It counts the processor time of that thread, so a busy or a sleeping machine harms nobody. It interrupts Python code only:
+    a step that is lost within an engine or a compiled kernel, or waits for a lock, is left to the launcher, which ends the whole process.
+    """
+
+    def __init__(self) -> None:
+        """Raises ValueError in another thread than the main one."""
+        self._limit = 0.0
+        self._since = 0.0
+        signal.signal(signal.SIGALRM, self._look)
+        signal.setitimer(signal.ITIMER_REAL, LOOK, LOOK)
+
+    def close(self) -> None:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, signal.SIG_DFL)
+
+    @contextmanager
+    def limited(self, limit: float) -> Iterator[None]:
+        """Raises StepHangs in its body after ``limit`` [s] of processor time."""
+        self._since, self._limit = time.thread_time(), limit
+        try:
+            yield
+        finally:
+            self._limit = 0.0
+
+    def _look(self, number: int, frame: FrameType | None) -> None:
+        limit = self._limit
+        if limit and time.thread_time() - self._since > limit:
+            self._limit = 0.0
+            raise StepHangs(f"its step has not come back after {limit:g} s of processor time")
