@@ -23,9 +23,9 @@ from uvf.maths.geodesy import LocalTangent
 from uvf.runtime import world_file
 from uvf.runtime.fence_file import fence_message, fencing
 from uvf.runtime.params import BadInput
+from uvf.runtime.relief import relief
 from uvf.runtime.site import Host, Member, Site
 from uvf.runtime.vehicle_file import Mount
-from uvf.runtime.world_geometry import relief
 
 
 def hosts(site: Site) -> list[Host]:

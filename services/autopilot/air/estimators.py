@@ -4,7 +4,6 @@ import math
 from dataclasses import dataclass, field
 from typing import Literal, Protocol
 
-from services.autopilot.air.book_estimator import BookEstimator
 from services.autopilot.air.ekf.datasheet import Datasheet
 from services.autopilot.air.ekf.estimator import FullEstimator
 from services.autopilot.air.params import AirParams
@@ -41,5 +40,8 @@ class Estimator(Protocol):
 def estimator(kind: Literal["full", "book"], instruments: Instruments) -> Estimator:
     if kind == "full":
         return FullEstimator(instruments.earth, instruments.sheet)
+    # Its library takes more than a second to import: an autopilot that is started again in flight shall not wait for what it does not use.
+    from services.autopilot.air.book_estimator import BookEstimator
+
     north, east, _ = instruments.earth
     return BookEstimator(math.atan2(east, north))

@@ -8,9 +8,10 @@ from numpy.typing import NDArray
 from uvf.maths.footprint import Footprint, footprint
 from uvf.maths.solids import chosen, joined
 from uvf.runtime.drivable import drivable
+from uvf.runtime.relief import relief
 from uvf.runtime.scene import primitives
 from uvf.runtime.world_file import WorldFile
-from uvf.runtime.world_geometry import GRAZE, empty_plan, relief, things
+from uvf.runtime.world_geometry import GRAZE, empty_plan, things
 
 Floats = NDArray[np.float64]
 COARSE = 0.1  # m, cells in which the ground under one point is looked for

@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import trimesh
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
@@ -27,6 +26,9 @@ def handed_file(stem: str, suffix: str, content: bytes) -> Path:
 
 def mesh_file(stem: str, vertices: Floats, faces: NDArray[Any]) -> Path:
     """An STL with these vertices (n, 3) [m] and faces (m, 3)."""
+    # Takes a second to import: an autopilot that is started again in flight needs no meshes.
+    import trimesh
+
     content = trimesh.Trimesh(vertices, faces, process=False).export(file_type="stl")
     assert isinstance(content, bytes)
     return handed_file(stem, ".stl", content)

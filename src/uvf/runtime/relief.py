@@ -11,7 +11,7 @@ from PIL import Image, UnidentifiedImageError
 
 from uvf.runtime.handed_file import mesh_file
 from uvf.runtime.params import BadInput
-from uvf.runtime.world_file import Terrain
+from uvf.runtime.world_file import Terrain, WorldFile
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -67,6 +67,11 @@ def _walls(ring: Ints, foot: Ints, heights: Floats) -> Iterator[tuple[int, int, 
             yield int(below), int(below_other), int(one)
         if heights[other] > 0:
             yield int(below_other), int(other), int(one)
+
+
+def relief(world: WorldFile) -> Relief | None:
+    """The heights of a loaded world's terrain; None: it is flat. Raises BadInput."""
+    return None if world.terrain is None else relief_of(world.terrain)
 
 
 def relief_of(terrain: Terrain) -> Relief:

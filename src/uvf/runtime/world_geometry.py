@@ -12,7 +12,7 @@ from uvf.maths.footprint import Footprint, covered, footprint, segments
 from uvf.maths.rotations import from_euler, rotate
 from uvf.maths.solids import chosen
 from uvf.runtime.drivable import drivable
-from uvf.runtime.relief import Relief, relief_of, terrain_mesh
+from uvf.runtime.relief import relief, terrain_mesh
 from uvf.runtime.scene import still
 from uvf.runtime.solid import Keyframes, Solid
 from uvf.runtime.world_file import TERRAIN, Box, Script, Wall, WorldFile
@@ -97,11 +97,6 @@ def things(world: WorldFile, folder: Path = Path()) -> list[Solid]:
     for m in world.meshes:
         made.append(Solid(m.name, "mesh", m.scale, np.array(m.position), from_euler(*m.rpy), m.colour, folder / m.file))
     return made
-
-
-def relief(world: WorldFile) -> Relief | None:
-    """The terrain's heights; None: it is flat. Raises BadInput."""
-    return None if world.terrain is None else relief_of(world.terrain)
 
 
 def _script(path: Script) -> Keyframes | None:

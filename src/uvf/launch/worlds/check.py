@@ -8,12 +8,12 @@ from numpy.typing import NDArray
 from uvf.launch.worlds.report import RESOLUTION
 from uvf.maths.footprint import Footprint, footprint
 from uvf.runtime.footing import Footing
-from uvf.runtime.relief import Relief
+from uvf.runtime.relief import Relief, relief
 from uvf.runtime.scene import primitives
 from uvf.runtime.site import Site
 from uvf.runtime.solid import Solid
 from uvf.runtime.world_file import WorldFile
-from uvf.runtime.world_geometry import WALL, floor_plan, free_regions, relief, things
+from uvf.runtime.world_geometry import WALL, floor_plan, free_regions, things
 
 Floats = NDArray[np.float64]
 

@@ -14,11 +14,12 @@ from numpy.typing import NDArray
 from services.sim_camera.renderer import BulletRenderer, Pose
 from uvf.maths.footprint import SIDES, footprint
 from uvf.maths.rotations import from_matrix
+from uvf.runtime.relief import relief
 from uvf.runtime.scene import primitives
 from uvf.runtime.solid import Solid, pose_at
 from uvf.runtime.vehicle_file import Camera, Mount
 from uvf.runtime.world_file import WorldFile
-from uvf.runtime.world_geometry import FloorPlan, relief, solids, things
+from uvf.runtime.world_geometry import FloorPlan, solids, things
 
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
