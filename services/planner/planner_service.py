@@ -65,6 +65,7 @@ class PlannerService(Service):
 
     name = "planner"
     hz = 4.0
+    given_up = "the vehicle stands where it would drive by itself"
     inputs = {
         "pose": topics.POSE,
         "map": topics.MAP,

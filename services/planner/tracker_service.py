@@ -42,6 +42,7 @@ class TrackerService(Service):
 
     name = "tracker"
     hz = 20.0
+    given_up = "the vehicle stands where it would drive by itself"
     inputs = {"path": topics.PATH, "pose": every(topics.POSE), "scan": topics.SCAN}
     outputs = {"drive": topics.DRIVE.by("planner"), "events": topics.EVENTS.by("tracker")}
     params: TrackerParams

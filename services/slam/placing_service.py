@@ -34,6 +34,7 @@ class PlacingService(Service):
     """Base of the services that tell where the odometry's frame lies in the map, without jumps."""
 
     hz = 10.0
+    given_up = "the vehicle stands where it would drive by itself"
     params: PlacingParams
     purpose: ClassVar[str]
     """What scans without a place cannot be: the end of a sentence."""

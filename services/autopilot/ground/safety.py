@@ -139,10 +139,15 @@ class Safety:
             fence=self._fenced,
         )
 
-    def brakes(self, here: Place | None, linear: float, mode: int) -> bool:
-        """Whether it has to stop before the fence, or for want of sight."""
+    def brakes(self, here: Place | None, linear: float) -> bool:
+        """Whether it has to stop before the fence; it may still turn away from it."""
         self._fenced = here is not None and stops(self.fencing, here, linear, self._keep)
-        return self._fenced or (mode in BY_ITSELF and any(name in self.watch.holding for name in STANDS))
+        return self._fenced
+
+    def obstacle(self, mode: int) -> str:
+        """Why it must not move by itself in ``mode``: what it lacks for that; "" if it may."""
+        holding = [self.watch.holding[name] for name in STANDS if name in self.watch.holding] if mode in BY_ITSELF else []
+        return holding[0].begins if holding else ""
 
     def faults(self) -> list[str]:
         """Why it should not be armed."""

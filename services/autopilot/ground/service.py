@@ -330,7 +330,8 @@ class GroundAutopilot(Service):
             self._tell(t, f"mission item {reached} reached", "within its acceptance radius")
 
     def _choose(self, t: float, commands: Mapping[str, Velocity]) -> None:
-        obstacle = f"STOP ALL is engaged by {self._stop.who}" if self._stop else "" if self._armed else "disarmed"
+        lacking = self._safety.obstacle(self._mode) if self._armed else "disarmed"
+        obstacle = f"STOP ALL is engaged by {self._stop.who}" if self._stop else lacking
         before, self._choice = self._choice, choose(t, self._mode, commands, obstacle, self._choice.source)
         hand_over = f"{before.source} {self._choice.source}" if before.source and self._choice.source else ""
         if before.source != self._choice.source and not (hand_over and not self._once.is_new(t, hand_over)):
@@ -342,7 +343,7 @@ class GroundAutopilot(Service):
     def _wheels(self, t: float) -> WheelCommand:
         top_speed = self._engine.speed if self._mode == Mode.MODE_MISSION and self._engine.speed else self._body.max_linear
         wanted = within_limits(self._choice.linear, self._choice.angular, self._ramp.limits, top_speed)
-        if self._safety.brakes(self._here, wanted[0], self._mode):
+        if self._safety.brakes(self._here, wanted[0]):
             wanted = 0.0, wanted[1]
         left, right = self._drive.wheels(Twist(*self._ramp.lead(*wanted, 1.0 / self.hz)))
         return WheelCommand(timestamp=stamp(t), left=left, right=right)

@@ -31,6 +31,7 @@ class OdometryService(Service):
 
     name = "odometry"
     hz = 50.0
+    given_up = "the vehicle stands where it would drive by itself"
     inputs = {
         "wheels": topics.WHEELS,
         "imu": optional(every(topics.IMU)),
