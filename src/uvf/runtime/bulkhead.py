@@ -4,6 +4,8 @@ import traceback
 from collections import deque
 from dataclasses import dataclass, field
 
+from uvf.runtime.watchdog import StepHangs
+
 FAILURES = 3
 WINDOW = 30.0  # s: this many failures within it, and the instance is given up
 LONGEST = 300  # characters of a cause
@@ -28,5 +30,7 @@ class Bulkhead:
 def cause_of(error: Exception) -> str:
     """``ValueError: math domain error (service.py:212 in _steer)``, in one line."""
     frames = traceback.extract_tb(error.__traceback__)
+    if isinstance(error, StepHangs):
+        frames.pop()  # the watchdog's own: the one before is where the step was
     where = f" ({frames[-1].filename.rpartition('/')[2]}:{frames[-1].lineno} in {frames[-1].name})" if frames else ""
     return f"{type(error).__name__}: {' '.join(str(error).split())[:LONGEST]}{where}"
