@@ -22,7 +22,7 @@ class FailsafeParams(Params, frozen=True):
     stick_timeout: Annotated[float, _meta(0.2, 10, "s", "that a command by hand counts")] = 0.5
     stick_action: Annotated[
         Literal["wait", "hold", "return", "land"],
-        Meta(description="when nobody flies by hand any more; wait: it circles until somebody does again"),
+        Meta(description="when manual control is lost; wait: it circles until it is back"),
     ] = "hold"
     sigma_max: Annotated[float, _meta(1, 1000, "m", "uncertainty of the position from which it is not relied on")] = 50.0
     gnss_time: Annotated[float, _meta(10, 3600, "s", "circled by dead reckoning without a position until gnss_action")] = 120.0

@@ -23,7 +23,7 @@ class GroundAutopilotParams(Params, frozen=True):
     stick_timeout: Annotated[float, _meta(0.2, 10, "s", "that a command by hand counts; then it stands")] = 0.5
     stick_action: Annotated[
         Literal["wait", "hold", "return", "off"],
-        Meta(description="when nobody drives by hand any more; wait: it stands until somebody does again"),
+        Meta(description="when manual control is lost; wait: it stands until it is back"),
     ] = "wait"
     fence_action: Annotated[Choice, Meta(description="when it has stopped before the fence")] = "warn"
     max_distance: Annotated[float, _meta(0, 100_000, "m", "fence about home; 0: there is none")] = 0.0

@@ -63,7 +63,7 @@ def test_a_source_that_falls_silent_in_the_air_leaves_it_to_hold_after_half_a_se
     assert told(held["surfaces"]) == ASKED
     bench.run(cycles=4, teleop=command(last - 0.02))
     assert bench.status.mode == Mode.MODE_HOLD
-    assert bench.status.reason == "nobody flies by hand any more"
+    assert bench.status.reason == "manual control lost"
     assert told(bench.outputs[-1]["surfaces"]) != ASKED
     by_hand(bench, 10)
     assert bench.status.mode == Mode.MODE_HOLD, "who comes back has to ask for the mode"

@@ -150,7 +150,7 @@ def test_a_fence_that_warns_tells_of_the_breach_and_nobody_at_the_stick_is_told_
     assert flight.mode_at(20.0).mode == Mode.MODE_ALTITUDE
     flight.hand = None
     flight.run(21.0)
-    assert (flight.mode_at(21.0).mode, flight.mode_at(21.0).reason) == (Mode.MODE_HOLD, "nobody flies by hand any more")
+    assert (flight.mode_at(21.0).mode, flight.mode_at(21.0).reason) == (Mode.MODE_HOLD, "manual control lost")
     flight.ask(topics.SET_MODE, ModeRequest(mode=Mode.MODE_RETURN, source="test"), 21.0)
     flight.run(46.0)
     assert flight.told("inside of the fence")

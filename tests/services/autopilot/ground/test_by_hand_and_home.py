@@ -29,7 +29,7 @@ def test_without_sticks_it_stands_and_does_what_the_parameter_says(action, mode,
     bench = driven(stick_action=action).step(70, pose=(3.0, 4.0))
     assert bench.speed == pytest.approx(0.0, abs=1e-6)
     assert (bench.said["status"].mode, bench.said["status"].armed) == (mode, armed)
-    assert ("nobody drives by hand any more" in bench.events) == (action != "wait")
+    assert ("manual control lost" in bench.events) == (action != "wait")
 
 
 @pytest.mark.parametrize(("timeout", "speed"), [(0.5, 0.0), (2.0, 0.4)])

@@ -28,7 +28,7 @@ def test_sticks_that_end_are_missed_after_their_time_with_their_action(station):
     station.fly(1.6)
     assert station.mode == ALTITUDE and not station.told("nobody flies by hand", begun)
     station.until(1.5, lambda: station.mode == RETURN)
-    assert station.told("nobody flies by hand any more", begun)
+    assert station.told("manual control lost", begun)
 
 
 def test_a_mission_jumps_as_often_as_it_says_and_goes_on_where_a_lost_link_has_stopped_it(station):
@@ -66,7 +66,7 @@ def test_a_battery_is_low_critical_and_all_but_empty_at_its_thresholds(station):
     for name, words in (
         ("BAT_LOW_THR", "battery low"),
         ("BAT_CRIT_THR", "battery critical"),
-        ("BAT_EMERGEN_THR", "battery all but empty"),
+        ("BAT_EMERGEN_THR", "battery emergency"),
     ):
         station.set(name, 0.8)
         station.until(5.0, lambda words=words: station.told(words, begun))
