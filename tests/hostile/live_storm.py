@@ -234,7 +234,7 @@ class Storm:
     def nobody_has_died(self):
         self.megabytes()
         restarted = {p.name: p.reason for p in self.system.children().values() if p.restarts or p.state != Process.RUNNING}
-        assert restarted == {}
+        assert restarted == {}, self.system.said()[-3000:]
 
     def _meanwhile(self, condition):
         def storms_on():

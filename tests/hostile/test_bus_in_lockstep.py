@@ -61,7 +61,7 @@ class Run:
 
     @property
     def refused(self):
-        return sum(shell.counters.malformed for shell in self.lockstep.shells)
+        return sum(shell.refusals.count for shell in self.lockstep.shells)
 
 
 @pytest.mark.parametrize("mission", ["demo", "team"])

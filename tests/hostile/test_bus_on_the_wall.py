@@ -45,7 +45,7 @@ def test_the_page_lives(seed):
     before = len(station.page.pictures)
     station.run(0.5)
     assert len(station.page.pictures) > before
-    assert station.shell.counters.malformed > 10
+    assert station.shell.refusals.count > 10
 
 
 class Link:
@@ -86,7 +86,7 @@ def test_the_link_lives(seed):
     link = Link()
     beset(link.shell, Stranger(seed, ("plane", "rover"), LARGEST), ROUNDS, link.step)
     assert link.heartbeats >= 2 * int(ROUNDS * 3 / MavlinkService.hz)
-    assert link.shell.counters.malformed > 10
+    assert link.shell.refusals.count > 10
 
 
 @pytest.mark.timeout(10)

@@ -8,7 +8,7 @@ class Desk:
     def __init__(self) -> None:
         self.now = 0.0
         self.lines: list[str] = []
-        self.waits = Waits(self.lines.append, lambda: self.now)
+        self.waits = Waits(self.lines.append, ("planner", "slam"), lambda: self.now)
 
     def hear(self, at: float, *missing: str) -> list[str]:
         self.now = at
@@ -47,3 +47,11 @@ def test_one_process_does_not_answer_for_another() -> None:
     desk.hear(0.0, "planner:map")
     desk.waits.hear(Health(service="slam", missing=[]))
     assert len(desk.hear(PATIENCE + 0.1, "planner:map")) == 1
+
+
+def test_who_is_no_process_of_the_run_is_not_heard() -> None:
+    desk = Desk()
+    for at in (0.0, PATIENCE + 1.0):
+        desk.now = at
+        desk.waits.hear(Health(service="stranger", missing=["stranger:everything"]))
+    assert desk.lines == []

@@ -186,4 +186,4 @@ def test_a_broken_transform_is_refused_and_hides_no_other():
     put(shell, topics.TF_ODOM, odom("alpha", 1.0, 0.1), 0.1)
     put(shell, topics.TF_ODOM, DriveCommand(linear=float("nan")), 0.2)
     assert step_at(shell, 1.0).newest == {1.0: 1.0}
-    assert shell.counters.malformed == 1
+    assert shell.refusals.count == 1

@@ -3,7 +3,7 @@
 from schemas.messages import Health
 from uvf.runtime.health import told_gaps
 from uvf.runtime.refusals import KEYS_MOST, LENGTH, SHOWN, TOLD_MOST, Refusals, together
-from uvf.runtime.validation import error_in
+from uvf.runtime.validation import error_in, is_text
 
 
 def test_counted_by_key_and_told_once_for_each_reason() -> None:
@@ -29,6 +29,7 @@ def test_keys_that_nobody_should_see_leave_a_sound_message_of_bounded_size() -> 
         refusals.refuse(f"uvf/\x1b[2J\u202e{i}/scan{'x' * 5000}: \x00 {'y' * 5000}")
     assert len(list(refusals)) <= KEYS_MOST
     assert len(told) == TOLD_MOST
+    assert all(is_text(line) and len(line) < 5 * LENGTH for line in told)
     health = Health(refusals=together([refusals]))
     assert len(health.refusals) == SHOWN
     assert error_in(health) == ""

@@ -16,6 +16,7 @@ from uvf.runtime.conductor import Conductor
 from uvf.runtime.keeper import Keeper
 from uvf.runtime.live import Live
 from uvf.runtime.params import BadInput
+from uvf.runtime.refusals import Refusals
 from uvf.runtime.site import load_site
 from uvf.runtime.watchdog import Watchdog
 from uvf.runtime.wire import Malformed, decode, guarded
@@ -87,6 +88,7 @@ class ConductorLoop:
         self._conductor = conductor
         self._bus = bus
         self._life = life
+        self._refusals = Refusals(life.warn)
         self._clock = bus.publisher(topics.CLOCK.at("sys"), Clock.DESCRIPTOR.full_name, topics.CLOCK.qos)
         events = topics.SYSTEM_EVENTS.by("conductor")
         self._events = bus.publisher(events.at("sys"), Event.DESCRIPTOR.full_name, events.qos)
@@ -101,7 +103,7 @@ class ConductorLoop:
             conductor.take_up(decode("clock", left, Clock))
 
     def _guard(self, topic: topics.Topic[Any], heard: Callable[[Any, Sample], None]) -> Sink:
-        return guarded(topic, heard, self._life.warn)
+        return guarded(topic, heard, self._refusals.refuse)
 
     def _on_done(self, message: Done, sample: Sample) -> None:
         line = self._conductor.done(message, sample.boot)

@@ -12,6 +12,7 @@ from uvf.launch.launcher import LOOK, Launcher, Say, stop_flag
 from uvf.launch.output import RotatingLog
 from uvf.launch.waits import Waits
 from uvf.runtime.bus import Sample
+from uvf.runtime.refusals import Refusals
 from uvf.runtime.site import load_site
 from uvf.runtime.wire import guarded
 
@@ -60,13 +61,13 @@ class Run:
         """The router first, then everybody; the conductor lets time begin when all are there."""
         mission = self._wanted.mission
         self._start("router", "router")
-        bus = self.launcher.connect(ROUTER_PATIENCE)
-        bus.subscribe(topics.CLOCK.at("sys"), topics.CLOCK.qos, guarded(topics.CLOCK, self._on_clock, self._say))
+        bus, refuse = self.launcher.connect(ROUTER_PATIENCE), Refusals(self._say).refuse
+        bus.subscribe(topics.CLOCK.at("sys"), topics.CLOCK.qos, guarded(topics.CLOCK, self._on_clock, refuse))
         for name in ("conductor", "recorder"):
             told = topics.SYSTEM_EVENTS.by(name)
-            bus.subscribe(told.at("sys"), told.qos, guarded(told, lambda event, _: self._say(event.text), self._say), depth=16)
-        waits, signs = Waits(self._say), topics.HEALTH.by("*")
-        bus.subscribe(signs.at("sys"), signs.qos, guarded(signs, lambda health, _: waits.hear(health), self._say), depth=64)
+            bus.subscribe(told.at("sys"), told.qos, guarded(told, lambda event, _: self._say(event.text), refuse), depth=16)
+        waits, signs = Waits(self._say, services), topics.HEALTH.by("*")
+        bus.subscribe(signs.at("sys"), signs.qos, guarded(signs, lambda health, _: waits.hear(health), refuse), depth=64)
         self._start("conductor", "service", "conductor", "--mission", mission, "--rate", str(self._wanted.rate))
         for name in services:
             self._start(name, "service", name, "--mission", mission)

@@ -9,7 +9,7 @@ from heapq import nlargest
 from schemas import topics
 from schemas.convert import stamp_ns
 from schemas.messages import Health
-from uvf.runtime.refusals import LENGTH, together
+from uvf.runtime.refusals import LENGTH, Refusals, together
 from uvf.runtime.shell import Shell
 from uvf.runtime.validation import is_text
 from uvf.runtime.zenoh_bus import ZenohBus
@@ -31,8 +31,10 @@ def told_gaps(gaps: Mapping[str, int]) -> dict[str, int]:
 class HealthReport:
     """Counts how late steps begin and publishes the sums."""
 
-    def __init__(self, name: str, shells: Sequence[Shell], bus: ZenohBus) -> None:
+    def __init__(self, name: str, shells: Sequence[Shell], bus: ZenohBus, refusals: Refusals) -> None:
+        """refusals: of the process itself, beside those of its instances."""
         self._name = name
+        self._refusals = refusals
         self._shells = shells
         self._bus = bus
         self._late = 0
@@ -50,6 +52,7 @@ class HealthReport:
         if wall < self._next:
             return
         self._next = wall + 1 / topics.HEALTH.hz
+        refusals = [self._refusals, *(s.refusals for s in self._shells)]
         message = Health(
             timestamp=stamp_ns(now),
             service=self._name,
@@ -58,12 +61,12 @@ class HealthReport:
             steps=sum(s.counters.steps for s in self._shells),
             skipped=sum(s.counters.skipped for s in self._shells),
             stale=sum(s.counters.stale for s in self._shells),
-            malformed=sum(s.counters.malformed for s in self._shells),
+            malformed=sum(r.count for r in refusals),
             late=self._late,
             worst_lateness=self._worst,
             cpu_time=time.process_time(),
             gaps=told_gaps(self._bus.counter.gaps),
-            refusals=together(s.refusals for s in self._shells),
+            refusals=together(refusals),
             missing=sorted({f"{s.type.name}:{m}" for s in self._shells for m in s.counters.missing}),
         )
         self._publisher.put(message.SerializeToString(deterministic=True), now)

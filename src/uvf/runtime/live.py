@@ -8,6 +8,7 @@ from schemas import topics
 from schemas.messages import Clock, Done
 from uvf.runtime.clock import NS
 from uvf.runtime.health import HealthReport
+from uvf.runtime.refusals import Refusals
 from uvf.runtime.shell import Shell, Warn
 from uvf.runtime.site import Host
 from uvf.runtime.watchdog import Watchdog
@@ -41,10 +42,11 @@ class Live:
         self._tick = 0
         self._told_rivals: set[str] = set()
         self._done = bus.publisher(topics.DONE.by(name).at("sys"), Done.DESCRIPTOR.full_name, topics.DONE.qos)
-        self._health = HealthReport(name, shells, bus)
+        refusals = Refusals(lambda line: warn(f"{name}: {line}"))
+        self._health = HealthReport(name, shells, bus, refusals)
         self._last_heard = 0.0
         self._t_ns = 0
-        on_clock = guarded(topics.CLOCK, lambda clock, _: self._ticks.append(clock), warn)
+        on_clock = guarded(topics.CLOCK, lambda clock, _: self._ticks.append(clock), refusals.refuse)
         bus.subscribe(topics.CLOCK.at("sys"), topics.CLOCK.qos, on_clock, depth=64, wake=self._takes_part)
         for shell in shells:
             _declare_tokens(shell, bus)

@@ -15,20 +15,23 @@ SHOWN = 20
 class Refusals:
     def __init__(self, tell: Callable[[str], None]) -> None:
         """tell: takes each different line once."""
+        self.count = 0
         self._tell = tell
         self._told: set[str] = set()
         self._by_key: dict[str, Refusal] = {}
 
     def refuse(self, line: str) -> None:
-        """line: ``KEY: what is wrong``."""
+        """line: ``KEY: what is wrong``; what is told of it can be shown anywhere."""
+        self.count += 1
         key, _, why = line.partition(": ")
         key, why = _shown(key), _shown(why)
         if key in self._by_key or len(self._by_key) < KEYS_MOST:
             refusal = self._by_key.setdefault(key, Refusal(key=key, why=why))
             refusal.count += 1
-        if line not in self._told and len(self._told) < TOLD_MOST:
-            self._told.add(line)
-            self._tell(line)
+        told = f"{key}: {why}" if why else key
+        if told not in self._told and len(self._told) < TOLD_MOST:
+            self._told.add(told)
+            self._tell(told)
 
     def __iter__(self) -> Iterator[Refusal]:
         return iter(self._by_key.values())

@@ -37,7 +37,6 @@ class Counters:
     steps: int = 0
     stale: int = 0
     skipped: int = 0
-    malformed: int = 0
     failures: int = 0
     missing: tuple[str, ...] = ()
     published: dict[str, int] = field(default_factory=dict)
@@ -283,7 +282,6 @@ class Shell:
 
     def _refused(self, line: str) -> None:
         """A broken sender is told of, but not at each of its messages: these are counted."""
-        self.counters.malformed += 1
         self.refusals.refuse(line)
 
     def _feed_frames(self, t_ns: int) -> None:

@@ -83,4 +83,4 @@ def test_a_pose_that_is_none_counts_as_missing_and_is_told_of_once_by_each(pose)
     bench = Bench().run(3.0, pose=pose)
     assert all("pose" in missing for missing in bench.stale)
     assert sum("nav/pose: broken foxglove.PoseInFrame: pose." in line for line in bench.told) == 2
-    assert bench.shells[0].counters.malformed > 5
+    assert bench.shells[0].refusals.count > 5
