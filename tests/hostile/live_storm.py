@@ -122,7 +122,7 @@ class Storm:
     def megabytes(self):
         """Memory of each process, all of which are there yet."""
         gone = [name for name, process in self._family.items() if not process.is_running()]
-        assert gone == [], self.system.said()[-3000:]
+        assert gone == [], self._deaths()
         return {name: process.memory_info().rss / 1e6 for name, process in self._family.items()}
 
     @property
@@ -234,7 +234,10 @@ class Storm:
     def nobody_has_died(self):
         self.megabytes()
         restarted = {p.name: p.reason for p in self.system.children().values() if p.restarts or p.state != Process.RUNNING}
-        assert restarted == {}, self.system.said()[-3000:]
+        assert restarted == {}, self._deaths()
+
+    def _deaths(self):
+        return [line for line in self.system.said().splitlines() if "ended" in line or "given up" in line]
 
     def _meanwhile(self, condition):
         def storms_on():

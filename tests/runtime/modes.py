@@ -89,7 +89,8 @@ class Distributed:
     def turn(self):
         """Hands over what has arrived, and waits a little for more."""
         self.bus.wait(0.002)
-        self.bus.poll()
+        while self.bus.poll():
+            pass
         self._keeper.poll()
 
     def run(self, until, patience=60.0):

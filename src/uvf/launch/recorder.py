@@ -26,6 +26,7 @@ COMMON = "common"  # in vehicles/: parts that several vehicles include
 ROOM = 100_000_000  # bytes free on the disk, from which recording is taken up again
 NICE = 10
 LOOK = 0.05  # s
+LAST = 5.0  # s, for what has arrived until the end; who floods the bus does not keep the log open
 
 Tell = Callable[[str, Event.Severity], None]
 
@@ -177,17 +178,25 @@ def _record(life: Worker, bus: ZenohBus, series: LogSeries) -> None:
     bus.subscribe_all(arrived.append, DEPTH)
     bus.token(f"@node/sys/recorder/{bus.boot:x}")
     spare_the_collector()
-    flushed, stopped = time.monotonic(), False
-    while not stopped:
-        # What has arrived until the end is written too.
-        stopped = life.stop.wait(LOOK) or not life.goes_on()
-        bus.poll()
+    flushed = time.monotonic()
+
+    def write() -> bool:
+        more = bus.poll()
         for sample in arrived:
             series.write(sample)
         arrived.clear()
+        return more
+
+    while life.goes_on():
+        more = write()
         if time.monotonic() - flushed > FLUSH_PERIOD:
             series.flush()
             flushed = time.monotonic()
+        if life.stop.wait(0.0 if more else LOOK):
+            break
+    end = time.monotonic() + LAST
+    while write() and time.monotonic() < end:
+        pass
 
 
 def attachments(site: Site) -> dict[str, bytes]:

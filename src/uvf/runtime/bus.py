@@ -56,8 +56,8 @@ class Bus(Protocol):
 
     def call(self, key: str, payload: bytes, stamp_ns: int, on_reply: OnReply) -> None: ...
 
-    def poll(self) -> None:
-        """Hands over everything that has arrived."""
+    def poll(self) -> bool:
+        """Hands over what has arrived; True when there was too much of it for one call and more waits."""
 
 
 def matches(expression: str, key: str) -> bool:
@@ -98,8 +98,9 @@ class LocalBus:
             return
         server(Query(key, payload, stamp_ns, lambda reply, at: on_reply(reply, "", at), lambda why: on_reply(None, why, stamp_ns)))
 
-    def poll(self) -> None:
+    def poll(self) -> bool:
         """Everything is handed over at once when it is put."""
+        return False
 
     def deliver(self, key: str, type_name: str, qos: Qos, payload: bytes, stamp_ns: int) -> int:
         self._seq[key] += 1

@@ -8,9 +8,9 @@ import json
 import queue
 import secrets
 import time
-from collections import deque
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import lru_cache
 from types import TracebackType
 from typing import Any
 
@@ -19,6 +19,7 @@ from zenoh import ext
 
 from schemas.topics import PREFIX, TOPICS, Qos
 from uvf.runtime.address import DEFAULT_ROUTER
+from uvf.runtime.backlog import Backlog
 from uvf.runtime.bus import OnReply, Query, Sample, Sink, matches
 from uvf.runtime.envelope import Envelope, GapCounter, unpack
 from uvf.runtime.params import BadInput
@@ -30,6 +31,9 @@ WAIT_BEFORE_DROP_US = 50_000
 RECALL_TIMEOUT = 1.0  # s, wall
 SAY_AGAIN = 2.0  # s, wall
 EVENT_HISTORY = 100
+QUERIES = 256  # that may wait at a server
+AT_ONCE = 2000
+"""Messages of one subscription that ``poll`` hands over before it comes to the next: a flood keeps nobody from the rest of his work."""
 SENDERS_MOST = 20_000
 """Of latched and event messages that a subscriber to everything knows apart; those silent for longest are forgotten."""
 
@@ -95,7 +99,7 @@ class ZenohBus:
         self.counter = GapCounter()
         self._blocking = blocking
         self._woken: queue.SimpleQueue[None] = queue.SimpleQueue()
-        self._waking: list[tuple[deque[zenoh.Sample], Sink]] = []
+        self._waking: list[_Inbound] = []
         self._inbound: list[_Inbound] = []
         self._servers: list[tuple[Any, Callable[[Query], None]]] = []
         self._calls: list[tuple[Any, OnReply, int, str]] = []
@@ -136,7 +140,7 @@ class ZenohBus:
 
     def subscribe(self, key: str, qos: Qos, sink: Sink, depth: int = 1, wake: bool = False) -> None:
         """wake: ``wait`` returns when something arrives here; costs the interpreter's lock for each message."""
-        handler: Any = self._waking_handler(sink, depth) if wake else zenoh.handlers.RingChannel(depth)
+        handler: Any = self._handed_over(key, sink, depth) if wake else zenoh.handlers.RingChannel(depth)
         if qos in _KEPT:
             history = ext.HistoryConfig(max_samples=_KEPT[qos], detect_late_publishers=True)
             recovery = ext.RecoveryConfig(heartbeat=True)  # type: ignore[call-arg]
@@ -146,18 +150,18 @@ class ZenohBus:
         if wake:
             self._declared.append(made)
         else:
-            self._inbound.append(_Inbound(key, made, sink))
+            self._inbound.append(_Inbound(key, made.try_recv, sink))
 
-    def _waking_handler(self, sink: Sink, depth: int) -> Any:
+    def _handed_over(self, key: str, sink: Sink, depth: int) -> Callable[[zenoh.Sample], None]:
         """Hands a message over to ``poll`` from zenoh's own thread and wakes the loop; does nothing else there.
 
         An indirect callback (the default) proved faster than a direct one, which makes the network's thread wait for the lock.
         """
-        arrived: deque[zenoh.Sample] = deque(maxlen=depth)
-        self._waking.append((arrived, sink))
+        backlog = Backlog(depth, _size)
+        self._waking.append(_Inbound(key, backlog.take, sink))
 
         def hand_over(sample: zenoh.Sample) -> None:
-            arrived.append(sample)
+            backlog.push(sample)
             self._woken.put(None)
 
         return hand_over
@@ -183,7 +187,15 @@ class ZenohBus:
 
         kept = [topic for topic in TOPICS.values() if topic.qos in _KEPT]
         patterns = [topic.by("*").at("*") for topic in kept]
-        self.subscribe(f"{PREFIX}/**", Qos.SENSOR, lambda s: (once if any(matches(k, s.key) for k in patterns) else sink)(s), depth)
+
+        @lru_cache(maxsize=SENDERS_MOST)
+        def is_kept(key: str) -> bool:
+            return any(matches(pattern, key) for pattern in patterns)
+
+        # Not a ring channel: that one counts messages, whatever their size.
+        backlog = Backlog(depth, _size)
+        self._declared.append(self._session.declare_subscriber(f"{PREFIX}/**", backlog.push))
+        self._inbound.append(_Inbound(f"{PREFIX}/**", backlog.take, lambda s: (once if is_kept(s.key) else sink)(s)))
         for topic, pattern in zip(kept, patterns, strict=True):
             self.subscribe(pattern, topic.qos, once, EVENT_HISTORY)
 
@@ -203,7 +215,7 @@ class ZenohBus:
                 self._woken.get_nowait()
 
     def serve(self, key: str, sink: Callable[[Query], None]) -> None:
-        self._servers.append((self._session.declare_queryable(key, zenoh.handlers.FifoChannel(256), complete=True), sink))
+        self._servers.append((self._session.declare_queryable(key, zenoh.handlers.FifoChannel(QUERIES), complete=True), sink))
 
     def call(self, key: str, payload: bytes, stamp_ns: int, on_reply: OnReply) -> None:
         attachment = Envelope(0, stamp_ns, self.boot, self.epoch).pack()
@@ -224,22 +236,29 @@ class ZenohBus:
         replies = self._session.liveliness().get(f"{PREFIX}/{key}", timeout=2.0)
         return sorted(str(r.ok.key_expr).removeprefix(f"{PREFIX}/") for r in replies if r.ok)
 
-    def poll(self) -> None:
+    def poll(self) -> bool:
         for publisher in self._latched:
             publisher.say_again()
-        for arrived, sink in self._waking:
-            while arrived:
-                sink(self._sample(arrived.popleft()))
-        for inbound in self._inbound:
-            while (sample := inbound.channel.try_recv()) is not None:
-                if sample.kind == zenoh.SampleKind.PUT:
-                    taken = self._sample(sample)
-                    inbound.seen[taken.key] = max(inbound.seen.get(taken.key, 0), taken.seq)
-                    inbound.sink(taken)
+        left = [inbound for inbound in (*self._waking, *self._inbound) if not self._empty(inbound)]
         for channel, serve in self._servers:
-            while (query := channel.try_recv()) is not None:
+            for _ in range(QUERIES):
+                if (query := channel.try_recv()) is None:
+                    break
                 serve(_query(query))
         self._poll_calls()
+        return bool(left)
+
+    def _empty(self, inbound: "_Inbound") -> bool:
+        """Hands over what has arrived; False when more of it may wait."""
+        for _ in range(AT_ONCE):
+            if (sample := inbound.take()) is None:
+                return True
+            if sample.kind == zenoh.SampleKind.PUT:
+                taken = self._sample(sample)
+                if self._blocking:
+                    inbound.seen[taken.key] = max(inbound.seen.get(taken.key, 0), taken.seq)
+                inbound.sink(taken)
+        return False
 
     def _sample(self, sample: zenoh.Sample) -> Sample:
         key, type_name = str(sample.key_expr), str(sample.encoding).rpartition(";")[2]
@@ -268,12 +287,17 @@ class ZenohBus:
 
 @dataclass
 class _Inbound:
-    """A subscription; seen: the highest number received of each key."""
+    """A subscription; seen: in lockstep, the highest number received of each key."""
 
     key: str
-    channel: Any
+    take: Callable[[], Any]
+    """The next message that has arrived, or None."""
     sink: Sink
     seen: dict[str, int] = field(default_factory=dict)
+
+
+def _size(sample: zenoh.Sample) -> int:
+    return len(sample.payload)
 
 
 def _envelope(carrier: Any) -> Envelope:
