@@ -97,6 +97,8 @@ class Autopilot:
         for message in messages:
             for handler in self._handlers.get(message.get_msgId(), ()):
                 handler(message)
+        for text in self.wire.unfinished_texts():
+            self._say_text(text)
         self._watch_link()
         self._find_place()
         if self._plans_due is not None and (self._connecting.capabilities or t >= self._plans_due):
@@ -122,9 +124,10 @@ class Autopilot:
         if not self.is_lost and self.wire.t - self._heard_at > LOST_AFTER:
             self.is_lost = True
             self.say(Event.ERROR, f"link lost: no heartbeat for {LOST_AFTER:g} s")
-            self._give_up("the link was lost")
+            self.give_up("the link was lost")
 
-    def _give_up(self, reason: str) -> None:
+    def give_up(self, reason: str) -> None:
+        """Nothing that was asked is done any more."""
         self._plans_due = None
         self.commands.give_up(reason)
         self.transfers.give_up(reason)
@@ -138,15 +141,18 @@ class Autopilot:
         elif went_back:
             self._started_at = self.wire.t
             self.say(Event.WARNING, "the autopilot has started anew")
-            self._give_up("the autopilot has started anew")
+            self.give_up("the autopilot has started anew")
             self.telemetry.forget()
             self._reached = -1
             self._connect()
         self._boot_ms = message.time_boot_ms
 
     def _on_text(self, message: mav.MAVLink_statustext_message) -> None:
-        text: Text | None = self.wire.hear_text(message)
-        if text is None or not text.text:
+        for text in self.wire.hear_text(message):
+            self._say_text(text)
+
+    def _say_text(self, text: Text) -> None:
+        if not text.text:
             return
         if self._texts_left < 1.0:
             self.refusals.refuse("STATUSTEXT", f"there are more than {TEXTS_PER_SECOND:g} each second, of which the others are left out")

@@ -44,6 +44,8 @@ class Command:
     """If its turn comes later [s], it is not sent any more."""
     refused: str = ""
     """Why, once it is; its words are still waited for."""
+    overtaken: bool = False
+    """It is not repeated; its answer is waited for only because it could not be told from that to the one behind it."""
 
 
 def command(number: int, p: tuple[float, ...], done: Done, frame: int | None = None) -> Command:
@@ -72,11 +74,13 @@ class Commands:
         """Goes out at once, whatever is under way, and ends what waits: to hold, to disarm."""
         queue = self._queues.setdefault(asked.number, deque())
         under_way = [each for each in queue if each.tries]
-        overtaken = [each for each in queue if not each.tries]
+        unsent = [each for each in queue if not each.tries]
         self._queues[asked.number] = deque((*under_way, asked))
+        for each in under_way:
+            each.overtaken, each.wait = True, AGAIN_AFTER
         if under_way:
             self._wire.send(self._message(asked))  # and again when its turn comes: only then an ACK is its own
-        for each in overtaken:
+        for each in unsent:
             each.done(False, "not sent: a command to hold or to disarm came first")
         self.tick()
 
@@ -89,7 +93,7 @@ class Commands:
         if message.result == mav.MAV_RESULT_IN_PROGRESS and self._wire.t - asked.begun > LONGEST:
             self._end(asked, False, f"the autopilot says that it is in progress, for more than {LONGEST:g} s")
         elif message.result == mav.MAV_RESULT_IN_PROGRESS:
-            asked.sent_at, asked.wait = self._wire.t, IN_PROGRESS_FOR
+            asked.sent_at, asked.wait = self._wire.t, AGAIN_AFTER if asked.overtaken else IN_PROGRESS_FOR
         elif message.result == mav.MAV_RESULT_ACCEPTED:
             self._end(asked, True, "")
         else:
@@ -111,6 +115,10 @@ class Commands:
                 self._try(asked)
 
     def _try(self, asked: Command) -> None:
+        if asked.overtaken:
+            self._end(asked, False, "not sent again: a command to hold or to disarm came after it")
+            self.tick()
+            return
         if asked.tries >= TRIES:
             self._end(asked, False, f"no answer from the autopilot within {self._wire.t - asked.begun:.1f} s")
             return

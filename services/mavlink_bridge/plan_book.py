@@ -132,10 +132,17 @@ class PlanBook:
 
     def _bodies_of(self, plan: Plan, chart: Chart) -> list[Body]:
         if isinstance(plan, Mission):
+            self._check_home(any(item.HasField("position") for item in plan.items))
             return self._scribe.bodies(plan, chart, self._telemetry.home, self.home_z)
         if isinstance(plan, Fence):
             return plans.fence_bodies(plan, chart, self.home_z)
+        self._check_home(bool(plan.points))
         return plans.rally_bodies(plan, chart, self.home_z)
+
+    def _check_home(self, has_heights: bool) -> None:
+        """Raises BadItem: heights are sent as above home, and would be wrong by the home's own."""
+        if has_heights and self._telemetry.home is None:
+            raise BadItem(mav.MAV_MISSION_ERROR, "the autopilot has not told its home yet, above which heights count: try again")
 
     def tell_again(self) -> None:
         """To a bus whose time has started over."""

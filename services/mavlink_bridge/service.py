@@ -35,6 +35,7 @@ from services.mavlink_bridge.requests import Requests
 from services.mavlink_bridge.station import Station
 from services.mavlink_bridge.stopping import Stopping
 from uvf.maths.sampling import Due
+from uvf.runtime.mavlink import dialect as mav
 from uvf.runtime.service import Later, Outputs, Service, optional, stop_all
 from uvf.runtime.stop_all import StopStatus
 
@@ -80,16 +81,32 @@ class BridgedVehicle(Service):
 
     def __init__(self, vehicle: str, system: int, station: Station, origin: Origin, guest: Guest) -> None:
         """guest: how others may draw it."""
-        heard = station.autopilots[system]
         self._vehicle = vehicle
+        self._system, self._origin = system, origin
         self._station = station
-        self._autopilot = Autopilot(system, heard.component, heard.heartbeat, origin)
-        self._requests = Requests(self._autopilot)
-        self._stopping = Stopping(self._autopilot)
+        self._meet()
         self._stop = StopStatus()
         self._guest: Guest | None = guest
         self._epoch = 0
         self._status_due, self._progress_due = Due(topics.STATUS.hz), Due(topics.PROGRESS.hz)
+
+    def _meet(self) -> None:
+        """Begins with the autopilot that speaks there now."""
+        heard = self._station.autopilots[self._system]
+        self._identity = heard.identity
+        self._autopilot = Autopilot(self._system, heard.component, heard.heartbeat, self._origin)
+        self._requests = Requests(self._autopilot)
+        self._stopping = Stopping(self._autopilot)
+
+    def _meet_another(self, t: float) -> None:
+        """Nothing that was meant for the one before goes to this one: its modes and parameters have other numbers."""
+        before = self._autopilot
+        before.give_up("another autopilot speaks with its id now")
+        self._meet()
+        self._autopilot.wire.t = t
+        firmware, kind = (_enum_name(enum, number) for enum, number in zip(("MAV_AUTOPILOT", "MAV_TYPE"), self._identity[1:], strict=True))
+        words = f"system {self._system} is another autopilot now: {firmware}, {kind}, component {self._identity[0]}"
+        self._autopilot.events = [*before.events, (Event.WARNING, words)]
 
     def step(
         self,
@@ -114,8 +131,9 @@ class BridgedVehicle(Service):
         if clock is not None and clock.epoch != self._epoch:
             self._epoch = clock.epoch
             self._autopilot.plans.tell_again()
-        system = self._autopilot.wire.system
-        self._autopilot.step(t, self._station.fetch(system))
+        if self._station.autopilots[self._system].identity != self._identity:
+            self._meet_another(t)
+        self._autopilot.step(t, self._station.fetch(self._system))
         self._stop = stop
         self._stopping.heed(stop)
         self._requests.stopped = stop.who
@@ -124,7 +142,7 @@ class BridgedVehicle(Service):
         asked |= {"order": order, "cancel": cancel, "param": param}
         replies: dict[str, list[Later[Any]]] = {name: [self._requests.ask(one) for one in each] for name, each in asked.items()}
         self._requests.tick()
-        self._station.send(system, self._autopilot.wire.take_out())
+        self._station.send(self._system, self._autopilot.wire.take_out())
         return {**replies, **self._told(t, now)}
 
     def _told(self, t: float, now: float) -> dict[str, Any]:
@@ -160,3 +178,9 @@ class BridgedVehicle(Service):
         said, self._autopilot.events = self._autopilot.events, []
         events = [Event(timestamp=stamp(now), severity=severity, text=text, source=SOURCE) for severity, text in said]
         return {"events": events} if events else {}
+
+
+def _enum_name(enum: str, number: int) -> str:
+    """``ARDUPILOTMEGA``; the number where it has no name."""
+    named = mav.enums[enum].get(number)
+    return named.name.removeprefix(f"{enum}_") if named is not None else str(number)

@@ -19,6 +19,19 @@ AUTOPILOTS_MOST = 32
 RIVALS_MOST = 8
 
 
+NO_VEHICLES = {
+    mav.MAV_TYPE_GCS,
+    mav.MAV_TYPE_ANTENNA_TRACKER,
+    mav.MAV_TYPE_ONBOARD_CONTROLLER,
+    mav.MAV_TYPE_GIMBAL,
+    mav.MAV_TYPE_ADSB,
+    *range(mav.MAV_TYPE_CAMERA, mav.MAV_TYPE_SERVO + 1),
+    mav.MAV_TYPE_ODID,
+    *range(mav.MAV_TYPE_BATTERY, mav.MAV_TYPE_WINCH + 1),
+}
+"""Types of what flies or drives nothing, whatever autopilot its heartbeat names."""
+
+
 @dataclass
 class Autopilot:
     """One system at the address; its id may be anybody's again once it has been silent."""
@@ -32,6 +45,11 @@ class Autopilot:
     inbox: list[mav.MAVLink_message] = field(default_factory=list)
     rivals: set[Peer] = field(default_factory=set)
     """Other addresses that have used its id meanwhile."""
+
+    @property
+    def identity(self) -> tuple[int, int, int]:
+        """Component, firmware and type: with another one it is another autopilot, whose numbers mean something else."""
+        return self.component, self.heartbeat.autopilot, self.heartbeat.type
 
     def is_lost(self, t: float) -> bool:
         return t - self.heard_at > LOST_AFTER
@@ -83,15 +101,20 @@ class Station:
             if len(self.autopilots) >= AUTOPILOTS_MOST and system not in self.expected:
                 return self._refuse(system)
             known = self.autopilots[system] = Autopilot(system, component, peer, message, t, t)  # type: ignore[arg-type]
-        if known is None or component != known.component:
+        is_other = known is not None and component != known.component
+        replaces = is_heartbeat and is_autopilot(message) and (component == mav.MAV_COMP_ID_AUTOPILOT1 or (known and known.is_lost(t)))
+        if known is None or (is_other and not replaces):
             return []
         if peer != known.peer and not known.is_lost(t):
             first = peer not in known.rivals and len(known.rivals) < RIVALS_MOST
             known.rivals |= {peer} if first else set()
             return [f"system {system} speaks from {_text(peer)} too; only {_text(known.peer)} counts: give one another id"] if first else []
         if is_heartbeat and is_autopilot(message):
-            known.peer, known.heartbeat, known.heard_at = peer, message, t  # type: ignore[assignment]
+            before = known.identity
+            known.component, known.peer, known.heartbeat, known.heard_at = component, peer, message, t  # type: ignore[assignment]
             known.rivals.discard(peer)
+            if known.identity != before:
+                known.inbox.clear()
         if peer == known.peer:
             known.inbox.append(message)
             del known.inbox[:-INBOX_MOST]
@@ -134,7 +157,7 @@ class Station:
 
 def is_autopilot(message: Any) -> bool:
     """Whether a heartbeat is that of something that flies or drives, and not of a camera, a gimbal or a ground station."""
-    return bool(message.autopilot != mav.MAV_AUTOPILOT_INVALID and message.type != mav.MAV_TYPE_GCS)
+    return bool(message.autopilot != mav.MAV_AUTOPILOT_INVALID and message.type not in NO_VEHICLES)
 
 
 def _text(peer: Peer) -> str:

@@ -22,6 +22,18 @@ WORRYING = mav.MAV_SEVERITY_WARNING
 """A text of this severity or a graver one may explain a refusal."""
 
 
+GAP = "…".encode()
+
+
+def _joined(parts: dict[int, bytes]) -> bytes:
+    """In their order; a mark stands where one is missing."""
+    joined, due = b"", 0
+    for number in sorted(parts):
+        joined += (GAP if number > due else b"") + parts[number]
+        due = number + 1
+    return joined
+
+
 @dataclass(frozen=True)
 class Text:
     t: float
@@ -38,7 +50,8 @@ class Wire:
         self.outbox: list[mav.MAVLink_message] = []
         self.texts: list[Text] = []
         """The newest ones, oldest first."""
-        self._parts: dict[int, tuple[float, int, list[bytes]]] = {}
+        self._parts: dict[int, tuple[float, int, dict[int, bytes]]] = {}
+        """By id: when it began, its severity, its chunks by number."""
 
     def send(self, message: mav.MAVLink_message) -> None:
         self.outbox.append(message)
@@ -47,23 +60,29 @@ class Wire:
         out, self.outbox = self.outbox, []
         return out
 
-    def hear_text(self, message: mav.MAVLink_statustext_message) -> Text | None:
-        """A whole text, once its last chunk is there; of a text that lost one, the rest is said."""
+    def hear_text(self, message: mav.MAVLink_statustext_message) -> list[Text]:
+        """A whole text, once its last chunk is there; and what it has pushed out."""
         raw = message.text.encode("utf-8", "replace") if isinstance(message.text, str) else bytes(message.text)
         part = raw.split(b"\0")[0]
         if message.id == 0:
-            return self._said(message.severity, part)
-        begun, severity, parts = self._parts.get(message.id, (self.t, message.severity, []))
-        if self.t - begun > CHUNKS_WITHIN:
-            begun, parts = self.t, []
-        parts.append(part)
-        self._parts.pop(message.id, None)
+            return [self._said(message.severity, part)]
+        said = self.unfinished_texts()
+        begun, severity, parts = self._parts.pop(message.id, (self.t, message.severity, {}))
+        parts[message.chunk_seq] = part
         if len(part) == CHUNK_BYTES and len(parts) < CHUNKS_MOST:
             self._parts[message.id] = (begun, severity, parts)
             if len(self._parts) > PARTS_MOST:
-                del self._parts[next(iter(self._parts))]
-            return None
-        return self._said(severity, b"".join(parts))
+                said.append(self._broken_off(next(iter(self._parts))))
+            return said
+        return [*said, self._said(severity, _joined(parts))]
+
+    def unfinished_texts(self) -> list[Text]:
+        """Those whose end has not come in time, as far as they have: the gravest words are often the longest, on the worst links."""
+        return [self._broken_off(id) for id in [id for id, (begun, *_) in self._parts.items() if self.t - begun > CHUNKS_WITHIN]]
+
+    def _broken_off(self, id: int) -> Text:
+        _, severity, parts = self._parts.pop(id)
+        return self._said(severity, _joined(parts) + GAP)
 
     def _said(self, severity: int, raw: bytes) -> Text:
         text = Text(self.t, severity, legible(raw.decode("utf-8", "replace"), TEXT_LETTERS))

@@ -118,6 +118,7 @@ class Storm:
         for sock in self._udp:
             sock.close()
         self._bus.close()
+        sys.stderr.write("".join(f"{line}\n" for line in self._deaths()))
 
     def megabytes(self):
         """Memory of each process, all of which are there yet."""

@@ -137,12 +137,51 @@ def test_when_the_link_is_lost_everything_ends(desk):
 
 def test_a_long_text_is_put_together(desk):
     words = "Arming denied: the airspeed sensor reads 12 m/s at rest, look at the pitot tube"
-    desk.wire.hear_text(text(words[:50], id=7, seq=0))
-    assert desk.wire.texts == []
-    assert desk.wire.hear_text(text(words[50:], id=7, seq=1)).text == words
+    assert desk.wire.hear_text(text(words[:50], id=7, seq=0)) == []
+    assert [said.text for said in desk.wire.hear_text(text(words[50:], id=7, seq=1))] == [words]
 
 
 def test_a_text_whose_end_never_came_does_not_spoil_the_next(desk):
     desk.wire.hear_text(text("x" * 50, id=7, seq=0))
     desk.run(3.0)
-    assert desk.wire.hear_text(text("short", id=7, seq=0)).text == "short"
+    assert [said.text for said in desk.wire.hear_text(text("short", id=7, seq=0))] == ["x" * 50 + "…", "short"]
+
+
+def test_a_text_is_said_as_far_as_it_has_come_where_its_end_is_lost(desk):
+    desk.wire.hear_text(text("motor 1 has failed, landing at the nearest field. ", severity=0, id=7, seq=0))
+    assert desk.wire.unfinished_texts() == []
+    desk.run(3.0)
+    (said,) = desk.wire.unfinished_texts()
+    assert (said.severity, said.text) == (0, "motor 1 has failed, landing at the nearest field. …")
+    assert desk.wire.unfinished_texts() == []
+
+
+def test_a_chunk_that_is_lost_in_the_middle_leaves_a_mark(desk):
+    desk.wire.hear_text(text("a" * 50, id=7, seq=0))
+    (said,) = desk.wire.hear_text(text("end", id=7, seq=2))
+    assert said.text == "a" * 50 + "…end"
+
+
+def hold_first(desk):
+    desk.commands.ask_first(command(MODE, (1.0, 4.0, 3.0), lambda good, why: desk.ended.append((good, why))))
+    desk.sent += desk.wire.take_out()
+
+
+def test_what_was_under_way_is_never_sent_after_a_command_to_hold(desk):
+    desk.ask(MODE, (1.0, 4.0, 4.0))
+    desk.run(0.2)
+    hold_first(desk)
+    desk.run(10.0)
+    assert [m.param3 for m in desk.sent] == [4.0] + [3.0] * (1 + TRIES)
+    assert desk.ended[0] == (False, "not sent again: a command to hold or to disarm came after it")
+    assert desk.ended[1][1].startswith("no answer")
+
+
+def test_an_answer_to_what_was_under_way_is_not_taken_for_that_to_the_hold(desk):
+    desk.ask(MODE, (1.0, 4.0, 4.0))
+    hold_first(desk)
+    desk.hear(ack(MODE, ACCEPTED))
+    desk.run(0.02)
+    desk.hear(ack(MODE, DENIED))
+    desk.run(1.0)
+    assert desk.ended == [(True, ""), (False, "denied")]

@@ -110,7 +110,7 @@ def test_texts_that_never_end_take_no_room():
     for id in range(1, 1000):
         wire.hear_text(text("x" * 50, id=id))
     assert len(wire._parts) <= PARTS_MOST
-    assert max(len(said.text) for said in whole if said) <= TEXT_LETTERS
+    assert max(len(said.text) for texts in whole for said in texts) <= TEXT_LETTERS
 
 
 def test_a_list_of_modes_without_end_is_asked_for_once_a_line_and_remembered_in_part(plane):

@@ -4,14 +4,18 @@ import random
 
 import pytest
 
-from schemas.messages import Link
+from schemas.messages import Guest, Link, Mode, ModeRequest, StopEngagement
 from services.mavlink_bridge.discovery import Discovery, Names, names_from
+from services.mavlink_bridge.frame import Origin
+from services.mavlink_bridge.service import BridgedVehicle
 from services.mavlink_bridge.station import COMPONENT, LOST_AFTER, SYSTEM, Station
-from tests.services.autopilot.mavlink.rig import MemoryLink
-from tests.services.mavlink_bridge.far_end import heartbeat, text
+from tests.services.autopilot.mavlink.rig import ORIGIN, MemoryLink
+from tests.services.mavlink_bridge.far_end import ARDUPILOT, DT, PX4, ack, heartbeat, text
 from uvf.runtime.mavlink import dialect as mav
 from uvf.runtime.params import BadInput
+from uvf.runtime.stop_all import StopStatus
 
+NOBODY = StopStatus()
 HERE, THERE = ("127.0.0.1", 5001), ("127.0.0.1", 5002)
 
 
@@ -162,3 +166,85 @@ def test_a_vehicle_of_the_own_bus_is_left_alone_and_keeps_its_number_from_nobody
 def test_names_that_cannot_be_are_refused(texts, why):
     with pytest.raises(BadInput, match=why):
         names_from(texts)
+
+
+def test_a_companion_computer_that_beats_first_is_no_vehicle_and_keeps_none_away(air):
+    companion = heartbeat(mav.MAV_AUTOPILOT_GENERIC, mav.MAV_TYPE_ONBOARD_CONTROLLER)
+    air.say(companion, component=191)
+    air.say(heartbeat())
+    air.say(companion, component=191)
+    air.station.poll(0.0)
+    assert air.station.autopilots[1].component == 1
+
+
+def test_component_1_takes_the_place_of_another_and_anybody_that_of_one_who_is_silent(air):
+    air.say(heartbeat(mav.MAV_AUTOPILOT_GENERIC), component=50)
+    air.station.poll(0.0)
+    air.say(heartbeat())
+    air.say(heartbeat(), component=50)
+    air.station.poll(0.1)
+    assert air.station.autopilots[1].identity == (1, PX4, mav.MAV_TYPE_FIXED_WING)
+    air.say(heartbeat(), component=50)
+    air.station.poll(LOST_AFTER + 1.0)
+    assert air.station.autopilots[1].component == 50
+
+
+class Bridged:
+    """A bridged vehicle on a station, step by step."""
+
+    def __init__(self, air):
+        self.air, self.t, self.events = air, 0.0, []
+        air.say(heartbeat(base=129))
+        air.station.poll(0.0)
+        self.vehicle = BridgedVehicle("plane", 1, air.station, Origin(ORIGIN), Guest())
+
+    def run(self, seconds, beat=None, peer=HERE, stop=NOBODY, **asked):
+        nothing = dict.fromkeys(BridgedVehicle.requests, ())
+        for n in range(round(seconds / DT)):
+            self.t += DT
+            if beat is not None and n % 50 == 0:
+                self.air.say(beat, peer=peer)
+            self.air.station.poll(self.t)
+            told = self.vehicle.step(self.t, clock=None, stop=stop, **nothing | (asked if n == 0 else {}))
+            self.events += [event.text for event in told.get("events", ())]
+        return self
+
+    def modes(self, peer=HERE):
+        return [(m.param1, m.param2, m.param3) for m in self.air.sent(peer) if getattr(m, "command", 0) == mav.MAV_CMD_DO_SET_MODE]
+
+
+def test_another_firmware_with_the_same_id_is_never_told_the_numbers_of_the_one_before(air):
+    bridged = Bridged(air).run(2.0, heartbeat(base=129))
+    bridged.run(0.1, heartbeat(base=129), set_mode=[ModeRequest(mode=Mode.MODE_MISSION)])
+    ardu = heartbeat(ARDUPILOT, mav.MAV_TYPE_FIXED_WING, custom=10, base=129)
+    bridged.run(LOST_AFTER + 1.0).run(2.0, ardu, THERE)
+    assert "system 1 is another autopilot now: ARDUPILOTMEGA, FIXED_WING, component 1" in bridged.events
+    bridged.run(0.5, ardu, THERE, set_mode=[ModeRequest(mode=Mode.MODE_HOLD)])
+    assert bridged.modes(THERE)[0][:2] == (1.0, 12.0)  # LOITER of ArduPlane; PX4's 4 would be ACRO there
+
+
+ENGAGED = StopStatus((StopEngagement(source="gcs", id=1),))
+
+
+def test_stop_all_is_asked_for_again_until_it_holds(air):
+    bridged = Bridged(air).run(1.0, heartbeat(base=129)).run(20.0, heartbeat(base=129), stop=ENGAGED)
+    assert len(bridged.modes()) > 8
+    assert len([text for text in bridged.events if text.startswith("STOP ALL: the autopilot does not hold: no answer")]) == 1
+
+
+def test_who_arms_while_stop_all_is_engaged_is_made_to_hold(air):
+    bridged = Bridged(air).run(1.0, heartbeat(base=1)).run(5.0, heartbeat(base=1), stop=ENGAGED)
+    assert bridged.modes() == []
+    bridged.run(1.5, heartbeat(base=129), stop=ENGAGED)
+    assert bridged.modes()
+
+
+def test_who_is_taken_out_of_hold_while_stop_all_is_engaged_is_let_and_it_is_told(air):
+    hold, manual = heartbeat(base=129), heartbeat(base=129, custom=0x00010000)
+    bridged = Bridged(air).run(1.0, manual).run(0.1, manual, stop=ENGAGED)
+    air.say(ack(mav.MAV_CMD_DO_SET_MODE, mav.MAV_RESULT_ACCEPTED))
+    bridged.run(2.0, hold, stop=ENGAGED)
+    asked = len(bridged.modes())
+    bridged.run(12.0, manual, stop=ENGAGED)
+    assert len(bridged.modes()) == asked
+    assert len([text for text in bridged.events if "taken the vehicle out of hold: mode Manual" in text]) == 1
