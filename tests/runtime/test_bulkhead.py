@@ -1,5 +1,6 @@
 """What goes wrong in the instance of one vehicle stays there: it is made afresh, or given up and made safe; nobody else notices."""
 
+import signal
 import time
 from contextlib import closing
 
@@ -210,3 +211,10 @@ def test_a_new_epoch_tries_again(run):
     assert shell._bulkhead.given_up
     shell.restart(2)
     assert not shell._bulkhead.given_up
+
+
+def test_no_signal_comes_while_no_step_is_watched(watchdog):
+    """At the end of a SimpleQueue's timeout one would make CPython 3.11 wait there for ever."""
+    with watchdog.limited(1.0):
+        assert signal.getitimer(signal.ITIMER_REAL) != (0.0, 0.0)
+    assert signal.getitimer(signal.ITIMER_REAL) == (0.0, 0.0)

@@ -32,19 +32,20 @@ class Watchdog:
         self._limit = 0.0
         self._since = 0.0
         signal.signal(signal.SIGALRM, self._look)
-        signal.setitimer(signal.ITIMER_REAL, LOOK, LOOK)
 
     def close(self) -> None:
-        signal.setitimer(signal.ITIMER_REAL, 0)
         signal.signal(signal.SIGALRM, signal.SIG_DFL)
 
     @contextmanager
     def limited(self, limit: float) -> Iterator[None]:
         """Raises StepHangs in its body after ``limit`` [s] of processor time."""
         self._since, self._limit = time.thread_time(), limit
+        # Only now: a signal at the end of a SimpleQueue's timeout makes CPython 3.11 wait there for ever.
+        signal.setitimer(signal.ITIMER_REAL, LOOK, LOOK)
         try:
             yield
         finally:
+            signal.setitimer(signal.ITIMER_REAL, 0)
             self._limit = 0.0
 
     def _look(self, number: int, frame: FrameType | None) -> None:
