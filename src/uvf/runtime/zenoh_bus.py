@@ -5,8 +5,8 @@ Subscribers are ring channels emptied by ``poll``: a slow service loses its own 
 
 import contextlib
 import json
-import queue
 import secrets
+import threading
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
@@ -98,7 +98,10 @@ class ZenohBus:
         """Of the clock that this process follows; marks what it sends."""
         self.counter = GapCounter()
         self._blocking = blocking
-        self._woken: queue.SimpleQueue[None] = queue.SimpleQueue()
+        # Released by whoever wakes ``wait``. A SimpleQueue would do, but for CPython 3.11: a signal at the end of its
+        # timeout makes it wait for ever.
+        self._woken = threading.Lock()
+        self._woken.acquire()
         self._waking: list[_Inbound] = []
         self._inbound: list[_Inbound] = []
         self._servers: list[tuple[Any, Callable[[Query], None]]] = []
@@ -162,7 +165,8 @@ class ZenohBus:
 
         def hand_over(sample: zenoh.Sample) -> None:
             backlog.push(sample)
-            self._woken.put(None)
+            with contextlib.suppress(RuntimeError):  # it is awake already
+                self._woken.release()
 
         return hand_over
 
@@ -209,10 +213,7 @@ class ZenohBus:
 
     def wait(self, timeout: float) -> None:
         """Waits for a message of a waking subscription, or ``timeout`` [s]."""
-        with contextlib.suppress(queue.Empty):
-            self._woken.get(timeout=timeout)
-            while True:
-                self._woken.get_nowait()
+        self._woken.acquire(timeout=max(timeout, 0.0))
 
     def serve(self, key: str, sink: Callable[[Query], None]) -> None:
         self._servers.append((self._session.declare_queryable(key, zenoh.handlers.FifoChannel(QUERIES), complete=True), sink))
