@@ -50,9 +50,3 @@ def is_on_earth(latitude: float, longitude: float) -> bool:
 def is_sound(*told: float) -> bool:
     """Whether numbers that an autopilot tells are finite and can be true."""
     return all(abs(number) < LARGEST for number in told)
-
-
-def legible(words: str, most: int) -> str:
-    """Words of an autopilot on one line, without what would steer a terminal or turn the text round."""
-    kept = "".join(letter if letter.isprintable() else " " for letter in words[: most + 1]).strip()
-    return kept if len(kept) <= most else f"{kept[: most - 1]}…"

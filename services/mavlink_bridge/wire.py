@@ -3,8 +3,8 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from services.mavlink_bridge.limits import legible
 from uvf.runtime.mavlink import dialect as mav
+from uvf.runtime.validation import legible
 
 Done = Callable[[bool, str], None]
 """Called once with (accepted, reason)."""

@@ -8,6 +8,7 @@ from google.protobuf.descriptor import FieldDescriptor as F
 
 from schemas import topics
 from schemas.limits import BYTES, ENTRIES, LENGTHS, MOST, OPEN, PATTERNS, RANGES, TEXT, size_of
+from schemas.messages import StopCommand
 from uvf.runtime.bus import Sample
 
 STRANGER = 666  # its boot id
@@ -153,6 +154,8 @@ class Stranger:
             inner = getattr(holder, name)
             holder = inner.add() if hasattr(inner, "add") else inner
         self._spoil(holder, field)
+        if isinstance(message, StopCommand):
+            message.engaged = False  # whoever says stop is believed, however broken his words
         return message.SerializeToString()
 
     def _spoil(self, holder, field):

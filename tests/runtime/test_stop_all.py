@@ -5,13 +5,14 @@ import itertools
 import pytest
 
 from schemas import topics
-from schemas.messages import StopCommand, StopEngagement, VehicleStatus
+from schemas.messages import StopCommand, StopEngagement, StopState, VehicleStatus
 from tests.runtime.toys import Pilot
 from uvf.runtime import stop_all
 from uvf.runtime.bus import LocalBus, Sample
 from uvf.runtime.shell import Shell
 from uvf.runtime.site import Host
-from uvf.runtime.stop_all import StopBook, StopVoice, told
+from uvf.runtime.stop_all import ENGAGEMENTS_MOST, StopBook, StopVoice, told
+from uvf.runtime.validation import error_in
 
 NS = 1_000_000_000
 SOURCES = ("gcs", "client")
@@ -177,3 +178,54 @@ def test_people_are_told_who_and_why():
     named = [StopEngagement(source="gcs", reason="button"), StopEngagement(source="launcher", reason="slam died"), StopEngagement()]
     assert told(named) == "gcs (button); launcher (slam died); somebody unnamed"
     assert told([]) == ""
+
+
+def heard(*commands, source="gcs"):
+    book = StopBook()
+    for seq, command in enumerate(commands, 1):
+        book.push(sample(command, source, seq=seq))
+    return book
+
+
+@pytest.mark.parametrize("reason", ["\x1b[31mFATAL\x1b[0m", "a\rb", "\u202eback", "x" * 2001, "\u00a0"], ids=ascii)
+def test_no_reason_makes_a_stop_unheard(reason):
+    book = heard(StopCommand(engaged=True, id=3, reason=reason))
+    assert book.now and book.refused()
+    assert error_in(StopState(engagements=book.now.engagements)) == ""
+
+
+def test_no_stamp_makes_a_stop_unheard():
+    command = StopCommand(engaged=True, id=3)
+    command.timestamp.seconds = -1
+    assert heard(command).now
+
+
+def test_what_a_source_says_is_always_fit_to_be_heard():
+    """A process's last line is the launcher's reason, whatever it was."""
+    assert error_in(StopVoice("launcher").engage(-5, "slam ended: \x1b[31mFATAL\x1b[0m" + "x" * 5000)) == ""
+
+
+def test_a_released_name_that_is_used_again_is_told():
+    release = StopCommand(releases=[StopEngagement(source="gcs", id=1)])
+    book = heard(StopCommand(engaged=True, id=1), release, StopCommand(engaged=True, id=1))
+    assert not book.now
+    assert book.refused() == ["STOP ALL: engagement 1 of gcs has been released: a new one needs another id"]
+
+
+def test_a_word_that_is_only_repeated_after_its_release_is_not():
+    book = StopBook()
+    word = sample(StopCommand(engaged=True, id=1), "gcs", seq=1)
+    for each in (word, sample(StopCommand(releases=[StopEngagement(source="gcs", id=1)]), "client", seq=1), word):
+        book.push(each)
+    assert not book.now and book.refused() == []
+
+
+def test_more_sources_than_can_be_held_are_held_together_and_push_out_nobody():
+    book = StopBook()
+    book.push(sample(StopCommand(engaged=True, id=7), "launcher"))
+    for n in range(3 * ENGAGEMENTS_MOST):
+        book.push(sample(StopCommand(engaged=True, id=n + 1), f"s{n}"))
+    sources = [one.source for one in book.now.engagements]
+    assert "launcher" in sources and "others" in sources and len(sources) == ENGAGEMENTS_MOST + 1
+    book.push(sample(StopCommand(releases=[one for one in book.now.engagements if one.source.startswith("s")]), "gcs"))
+    assert [one.source for one in book.now.engagements] == ["launcher", "others"]

@@ -15,6 +15,8 @@ from services.autopilot.multiplexing import OFFBOARD, Multiplexer
 
 OLDEST = 0.5  # s
 CLOCK_TOLERANCE = 0.02  # s, one tick
+STEEPEST = 10.0  # climb over level distance, of a line; a steeper one leads nowhere
+SHORTEST = 1e-3  # level part of a line's direction
 
 
 def fresh(t: float, message: FlightSetpoint | None) -> FlightSetpoint | None:
@@ -26,7 +28,8 @@ def fresh(t: float, message: FlightSetpoint | None) -> FlightSetpoint | None:
 
 def _is_whole(m: FlightSetpoint) -> bool:
     if m.HasField("line"):
-        return math.hypot(m.line.direction.x, m.line.direction.y) > 0
+        d = m.line.direction
+        return abs(d.z) <= STEEPEST * math.hypot(d.x, d.y) and math.hypot(d.x, d.y) > SHORTEST
     if m.HasField("circle"):
         return m.circle.radius != 0
     return m.HasField("attitude") or m.HasField("course")

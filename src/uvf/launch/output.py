@@ -6,6 +6,8 @@ from pathlib import Path
 from threading import Lock, Thread
 from typing import IO
 
+from uvf.runtime.validation import legible
+
 KEPT = 10_000_000  # bytes of a log, in two files
 LONGEST_LINE = 65_536  # bytes; a longer one is handed on in pieces
 LAST_SHOWN = 200  # characters of the last line
@@ -51,7 +53,7 @@ class Output:
                 # Lost where the disk is full, but read on: a full pipe would hold the process up.
                 with contextlib.suppress(OSError):
                     write(line)
-                self.last = line.decode(errors="replace").strip()[:LAST_SHOWN] or self.last
+                self.last = legible(line.decode(errors="replace"), LAST_SHOWN) or self.last
 
     def finish(self) -> None:
         """Waits until what a dead process has printed is read; not for ever, a child of its own may hold the pipe open."""

@@ -74,7 +74,7 @@ def run_conductor(mission: str, rate: float, lockstep: bool = False, without: tu
         site = load_site(settings.mission_path(mission))
         kinds = [k for k in catalogue.needed(site) if k.clock == "sim" and k.name not in without]
         simulators = [k.name for k in kinds if k.simulator]
-        conductor = Conductor(simulators, [k.name for k in kinds if not k.simulator], rate, lockstep)
+        conductor = Conductor(simulators, [k.name for k in kinds if not k.simulator], rate, lockstep, site.members)
         with open_bus(life, lockstep) as bus:
             loop = ConductorLoop(conductor, bus, life)
             spare_the_collector()
@@ -106,6 +106,9 @@ class ConductorLoop:
         return guarded(topic, heard, self._refusals.refuse)
 
     def _on_done(self, message: Done, sample: Sample) -> None:
+        if sample.key.rpartition("/")[2] != message.participant:
+            self._refusals.refuse(f"{sample.key}: speaks for another process")
+            return
         line = self._conductor.done(message, sample.boot)
         if line:
             self._say(line, Event.WARNING)

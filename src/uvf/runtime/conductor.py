@@ -25,12 +25,15 @@ class Conductor:
     """Real time, scaled, paused, single step and lockstep, as one state machine on wall seconds.
 
     simulators hold the clock back always; all participants hold it back at the start and in lockstep.
-    tick_times: in lockstep the union of all step times, else the clock topic's own rate.
+    vehicles: of the mission; a kind may have a process for each.
     """
 
-    def __init__(self, simulators: Iterable[str], others: Iterable[str], rate: float = 1.0, lockstep: bool = False) -> None:
+    def __init__(
+        self, simulators: Iterable[str], others: Iterable[str], rate: float = 1.0, lockstep: bool = False, vehicles: Iterable[str] = ()
+    ) -> None:
         self._simulators = frozenset(simulators)
         self._kinds = frozenset((*self._simulators, *others))
+        self._known = self._kinds | {f"{kind}.{vehicle}" for kind in self._kinds for vehicle in vehicles}
         self._participants = {name: Participant() for name in self._kinds}
         self._rate = rate
         self._lockstep = lockstep
@@ -51,7 +54,7 @@ class Conductor:
     def done(self, message: Done, boot: int) -> str:
         """Takes a participant's report. Returns a line to tell when a simulator has come back and time starts over."""
         kind = message.participant.partition(".")[0]
-        if kind not in self._kinds:
+        if message.participant not in self._known:
             return ""
         self._participants.pop(kind if message.participant != kind else "", None)
         participant = self._participants.setdefault(message.participant, Participant())

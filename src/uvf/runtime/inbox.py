@@ -80,13 +80,22 @@ class Slot:
         except Malformed as error:
             self._malformed.append(str(error))
             return False
-        before = self.accepted
-        if before is not None and not self._input.every and (sample.epoch, sample.stamp_ns) < (before.epoch, before.stamp_ns):
-            return True  # overtaken: what was said later has arrived before
+        if not self._input.every and self._is_overtaken(sample):
+            return True
         self._latest, self.accepted = (sample.stamp_ns, message), sample
         if self._input.every:
             self._fresh.append(self._latest)
         return True
+
+    def _is_overtaken(self, sample: Sample) -> bool:
+        """What was said later has arrived before. Who has no epoch is of the one that holds.
+
+        On wall time nobody knows what is ahead of the clock: there a sender's stamps are compared with his own only.
+        """
+        before = self.accepted
+        if before is None or (self._ageless and sample.boot != before.boot):
+            return False
+        return (sample.epoch or before.epoch, sample.stamp_ns) < (before.epoch or sample.epoch, before.stamp_ns)
 
     def is_fresh(self, t_ns: int) -> bool:
         return self._latest is not None and t_ns - self._latest[0] <= self._max_age

@@ -1,14 +1,17 @@
 """Keeps the newest message of each kept topic and all words about STOP ALL, so that what was said outlives who said it."""
 
-from schemas.messages import StopState
+from schemas.messages import Clock, StopState
 from schemas.topics import CLOCK, STOP, STOP_STATE, SYSTEM, TOPICS
 from uvf.runtime.bus import Query, Sample
 from uvf.runtime.inbox import AHEAD_MOST
 from uvf.runtime.stop_all import StopBook
+from uvf.runtime.topic_lookup import topic_of
+from uvf.runtime.wire import Malformed, decode_sample, guarded
 from uvf.runtime.zenoh_bus import ZenohBus, kept_key
 
 DEPTH = 256
 KEYS_MOST = 4096
+FOR_EVER = 2**63  # ns
 
 
 class Keeper:
@@ -17,11 +20,14 @@ class Keeper:
     def __init__(self, bus: ZenohBus) -> None:
         self._bus = bus
         self._newest: dict[str, Sample] = {}
-        self._clock: Sample | None = None
+        self._next: dict[str, Sample] = {}
+        """Of the epoch that the clock may be about to begin."""
+        self._clock: Clock | None = None
         self._stops = StopBook()
         self._told = self._stops.now
         self._stop_state = bus.publisher(STOP_STATE.at(SYSTEM), StopState.DESCRIPTOR.full_name, STOP_STATE.qos)
-        bus.subscribe(CLOCK.at(SYSTEM), CLOCK.qos, self._on_clock, depth=1)  # the first, so that it is the first to be polled
+        on_clock = guarded(CLOCK, self._on_clock, lambda line: None)
+        bus.subscribe(CLOCK.at(SYSTEM), CLOCK.qos, on_clock, depth=8)  # the first, so that it is the first to be polled
         bus.subscribe(STOP.by("*").at(SYSTEM), STOP.qos, self._stops.push, DEPTH)
         for topic in TOPICS.values():
             if topic.kept and topic is not CLOCK:
@@ -29,25 +35,31 @@ class Keeper:
         bus.serve(kept_key("**"), self._answer)
 
     def _keep(self, sample: Sample) -> None:
-        key = kept_key(sample.key)
-        old = self._newest.get(key)
-        is_new = old is not None or len(self._newest) < KEYS_MOST
-        if is_new and not self._is_ahead(sample) and not (old is not None and _is_older(sample, old)):
-            self._newest[key] = sample
+        if not self._is_sound(sample):
+            return
+        epoch, t_ns = (self._clock.epoch, self._clock.t_ns) if self._clock is not None else (sample.epoch, FOR_EVER)
+        if sample.epoch == epoch + 1 and sample.stamp_ns <= AHEAD_MOST:
+            _put(self._next, sample)
+        elif sample.epoch <= epoch and (sample.epoch < epoch or sample.stamp_ns <= t_ns + AHEAD_MOST):
+            # Of an epoch or of a time that the clock has not come to, it would stand in the place of all that is true.
+            _put(self._newest, sample)
 
-    def _is_ahead(self, sample: Sample) -> bool:
-        """Of an epoch or of a time that the clock has not come to: it would stand in the place of all that is true."""
-        if self._clock is None:
+    def _is_sound(self, sample: Sample) -> bool:
+        """What nobody could read would be handed to the next one who starts."""
+        topic = topic_of(sample.key)
+        try:
+            return topic is not None and decode_sample(sample, topic.message) is not None
+        except Malformed:
             return False
-        epoch, t_ns = self._clock.epoch, self._clock.stamp_ns
-        return sample.epoch > epoch + 1 or (sample.epoch == epoch and sample.stamp_ns > t_ns + AHEAD_MOST)
 
-    def _on_clock(self, sample: Sample) -> None:
+    def _on_clock(self, clock: Clock, sample: Sample) -> None:
         """A new epoch forgets the old one; what the new one has already sent is kept."""
+        if self._clock is None or clock.epoch != self._clock.epoch:
+            ahead, self._next = self._next, {}
+            kept = (*self._newest.values(), *ahead.values())
+            self._newest = {kept_key(each.key): each for each in kept if each.epoch >= clock.epoch}
+        self._clock = clock
         self._newest[kept_key(sample.key)] = sample
-        if self._clock is None or sample.epoch != self._clock.epoch:
-            self._newest = {key: kept for key, kept in self._newest.items() if kept.epoch >= sample.epoch}
-        self._clock = sample
 
     def _answer(self, query: Query) -> None:
         kept = self._newest.get(query.key)
@@ -60,8 +72,15 @@ class Keeper:
         self._bus.poll()
         if self._stops.now != self._told:
             self._told = self._stops.now
-            now = self._clock.stamp_ns if self._clock is not None else 0
+            now = self._clock.t_ns if self._clock is not None else 0
             self._stop_state.put(self._stops.state(now).SerializeToString(deterministic=True), now)
+
+
+def _put(kept: dict[str, Sample], sample: Sample) -> None:
+    key = kept_key(sample.key)
+    old = kept.get(key)
+    if (old is not None or len(kept) < KEYS_MOST) and not (old is not None and _is_older(sample, old)):
+        kept[key] = sample
 
 
 def _is_older(sample: Sample, than: Sample) -> bool:

@@ -5,21 +5,26 @@ convergent and commutative replicated data types", 3.3.2), so that all who have 
 these came, whatever their stamps and epochs, and however often they were repeated.
 """
 
+import contextlib
 import hashlib
 import secrets
 from collections import Counter, deque
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
+from google.protobuf.message import DecodeError
+
 from schemas import topics
 from schemas.convert import stamp_ns
+from schemas.limits import size_of
 from schemas.messages import StopCommand, StopEngagement, StopState
 from schemas.topics import OPERATORS
 from uvf.runtime.bus import Bus, Sample
+from uvf.runtime.validation import legible
 from uvf.runtime.wire import Malformed, decode_sample
 
 ENGAGEMENTS_MOST = 64
-"""Held at a time; beyond, the oldest of the source that has most is dropped: the others keep STOP ALL in force."""
+"""Held at a time, beside one of all others."""
 FOLLOW_DEPTH = 64  # words that wait in the subscription
 RELEASED_MOST = 512
 """Names remembered; a word that is repeated after its release has been forgotten engages again."""
@@ -27,7 +32,11 @@ WAITING_MOST = 1024
 """Words that wait for the next step, which does not come while the clock stands; beyond, the oldest counts at once."""
 REFUSED_MOST = 256  # lines that wait to be told
 REPEATED_MOST = 64  # releases that a sender says again with each of its words
+SOURCE_MOST = 100  # characters
+OTHERS = "others"
 Name = tuple[str, int]
+Word = tuple[int, int]
+"""Boot and sequence number of a message."""
 
 
 @dataclass(frozen=True)
@@ -68,7 +77,9 @@ class StopBook:
         self._at_once = at_once
         self._waiting: deque[tuple[Sample, bool]] = deque()
         self._engaged: dict[Name, StopEngagement] = {}
-        self._released: dict[Name, None] = {}
+        self._released: dict[Name, Word | None] = {}
+        self._words: dict[Name, Word] = {}
+        """Which word has engaged it: who repeats that says nothing new."""
         self._released_by = ""
         self._refused: deque[str] = deque(maxlen=REFUSED_MOST)
         self._view = StopStatus()
@@ -127,7 +138,18 @@ class StopBook:
                 self._hear_command(sample, decode_sample(sample, StopCommand))
         except Malformed as error:
             self._refused.append(str(error))
+            self._hear_broken(sample)
         self._look()
+
+    def _hear_broken(self, sample: Sample) -> None:
+        """Whoever says stop is believed, also where the words for it are none, or the time: nothing else in it counts."""
+        if sample.type_name != StopCommand.DESCRIPTOR.full_name or len(sample.payload) > size_of(StopCommand):
+            return
+        with contextlib.suppress(DecodeError):
+            broken = StopCommand.FromString(sample.payload)
+            if broken.engaged:
+                words = StopCommand(engaged=True, id=broken.id, reason=legible(broken.reason))
+                self._hear_command(sample, words)
 
     def _hear_state(self, state: StopState) -> None:
         for name in state.released:
@@ -136,7 +158,7 @@ class StopBook:
             self._engage(engagement)
 
     def _hear_command(self, sample: Sample, command: StopCommand) -> None:
-        source = sample.key.rpartition("/")[2]
+        source = legible(sample.key.rpartition("/")[2], SOURCE_MOST)
         if command.releases and source not in OPERATORS:
             self._refused.append(f"{sample.key}: STOP ALL is released only by {', '.join(OPERATORS)}, not by {source}")
         elif command.releases:
@@ -147,7 +169,8 @@ class StopBook:
             self._refused.append(f"{sample.key}: a release of STOP ALL that names nothing; 'releases' says which engagements end")
         if command.engaged:
             id_ = command.id or self._own_id(sample, source)
-            self._engage(StopEngagement(source=source, id=id_, reason=command.reason, since=command.timestamp))
+            since = command.timestamp if command.HasField("timestamp") else None
+            self._engage(StopEngagement(source=source, id=id_, reason=command.reason, since=since), (sample.boot, sample.seq))
 
     def _own_id(self, sample: Sample, source: str) -> int:
         """Of an engagement without a name: of its envelope, else of its bytes, each time after a release another one."""
@@ -156,18 +179,35 @@ class StopBook:
         ids = (_digest(sample.payload + b"/%d" % n) for n in range(RELEASED_MOST + 1))
         return next(id_ for id_ in ids if (source, id_) not in self._released)
 
-    def _engage(self, engagement: StopEngagement) -> None:
+    def _engage(self, engagement: StopEngagement, word: Word | None = None) -> None:
         name = name_of(engagement)
-        if name in self._released or name in self._engaged:
+        if name in self._released:
+            if word is not None and self._released[name] not in (None, word):
+                self._refused.append(f"STOP ALL: engagement {name[1]} of {name[0]} has been released: a new one needs another id")
             return
-        self._engaged[name] = engagement
-        if len(self._engaged) > ENGAGEMENTS_MOST:
-            most = Counter(source for source, _ in self._engaged).most_common(1)[0][0]
-            del self._engaged[next(name for name in self._engaged if name[0] == most)]
+        if word is not None:
+            self._words[name] = word
+        if name not in self._engaged:
+            self._engaged[name] = engagement
+            self._keep_most(name)
+
+    def _keep_most(self, newest: Name) -> None:
+        """Of the source that has most, the oldest goes; where each has one, the newest counts under a name that all such share."""
+        if len(self._engaged) <= ENGAGEMENTS_MOST:
+            return
+        most, count = Counter(source for source, _ in self._engaged).most_common(1)[0]
+        gone = next(name for name in self._engaged if name[0] == most) if count > 1 else newest
+        self._words.pop(gone, None)
+        del self._engaged[gone]
+        if count == 1 and not any(source == OTHERS for source, _ in self._engaged):
+            id_ = _digest(repr(newest).encode())
+            reason = f"{newest[0]}, and whoever else came after {ENGAGEMENTS_MOST} sources"
+            self._engaged[OTHERS, id_] = StopEngagement(source=OTHERS, id=id_, reason=reason)
+            self._refused.append(f"STOP ALL: engaged by more than {ENGAGEMENTS_MOST} sources: those after them are held as '{OTHERS}'")
 
     def _release(self, name: Name) -> None:
         self._engaged.pop(name, None)
-        self._released[name] = None
+        self._released.setdefault(name, self._words.pop(name, None))
         while len(self._released) > RELEASED_MOST:
             del self._released[next(iter(self._released))]
 
@@ -213,5 +253,6 @@ class StopVoice:
 
     def _say(self, now_ns: int, releases: Iterable[StopEngagement] | None = None, **said: bool | int | str) -> StopCommand:
         kept = list(self._said.releases if releases is None else releases)
-        self._said = StopCommand(timestamp=stamp_ns(now_ns), source=self._source, releases=kept, **said)  # type: ignore[arg-type]
+        said |= {"reason": legible(str(said["reason"]))}
+        self._said = StopCommand(timestamp=stamp_ns(max(now_ns, 0)), source=self._source, releases=kept, **said)  # type: ignore[arg-type]
         return self._said

@@ -66,6 +66,12 @@ def is_text(text: str, longest: int = TEXT) -> bool:
     return len(text) <= longest and (text.isprintable() or text.translate(_BREAKS).isprintable())
 
 
+def legible(text: str, most: int = TEXT) -> str:
+    """Any text on one line that ``is_text``: without what would steer a terminal or turn the text round, and cut to ``most`` characters."""
+    kept = "".join(letter if letter.isprintable() else " " for letter in text[: most + 1]).strip()
+    return kept if len(kept) <= most else f"{kept[: most - 1]}…"
+
+
 @cache
 def _test_of(type_: Descriptor) -> Test:
     """True for a message of this type that is within all limits, with those inside it."""
