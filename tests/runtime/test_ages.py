@@ -4,9 +4,11 @@ import pytest
 
 from schemas import topics
 from schemas.convert import stamp
-from schemas.messages import Event, FrameTransform, Imu, Mission, SurfaceCommand, WheelCommand
+from schemas.messages import Event, FrameTransform, Imu, Mission, SurfaceCommand, VehicleStatus, WheelCommand
 from tests.runtime.modes import RUNS
 from tests.runtime.toys import Cast
+from uvf.runtime.bus import Sample
+from uvf.runtime.inbox import InputBox
 from uvf.runtime.service import Service, each_vehicle, every, optional
 
 SILENT = 0.30  # s, when the last message of each stream is sent
@@ -132,3 +134,32 @@ def test_a_required_stream_that_went_stale_holds_the_step_back_and_names_itself(
     assert max(guarded.times) <= SILENT + MAX_AGE["imu"] + 1e-9
     after = [missing for t, missing in guarded.held if t > SILENT + MAX_AGE["imu"] + 1e-9]
     assert after and set(after) == {("imu",)}
+
+
+def status(n, stamp_ns, boot, epoch=1):
+    message = VehicleStatus(waypoint=n)
+    return Sample(topics.STATUS.at("burger"), "uvf.v1.VehicleStatus", message.SerializeToString(), stamp_ns, n, boot, epoch)
+
+
+def heard(box, t_ns):
+    box.take(t_ns)
+    return box.value(t_ns).waypoint
+
+
+def test_one_stamp_from_far_ahead_does_not_deafen_who_lives_on_wall_time():
+    box = InputBox(optional(topics.STATUS), ageless=True, epoch=1)
+    box.push(status(1, 10, boot=1))
+    box.push(status(2, 2**62, boot=9))
+    box.take(0)
+    box.push(status(3, 20, boot=1))
+    assert heard(box, 0) == 3
+    box.push(status(4, 15, boot=1))
+    assert heard(box, 0) == 3, "what comes late is still overtaken"
+
+
+def test_who_has_no_epoch_is_of_the_one_that_holds():
+    box = InputBox(optional(topics.STATUS), ageless=False, epoch=1)
+    box.push(status(1, 10, boot=1))
+    assert heard(box, 20) == 1
+    box.push(status(2, 30, boot=1, epoch=0))
+    assert heard(box, 40) == 2

@@ -117,3 +117,18 @@ def test_a_reset_asked_for_starts_time_over_in_a_new_epoch():
     assert conductor.request(ClockRequest(action=ClockRequest.RESET)).accepted
     tick = run(conductor, 0.5, 0.6)[0]
     assert (tick.tick, tick.epoch) == (1, 2)
+
+
+def test_a_ghost_does_not_hold_time_whatever_it_is_called():
+    conductor = Conductor(["sim"], ["slam"], lockstep=True, vehicles=["anne"])
+    ready(conductor, "sim", "slam")
+    assert run(conductor, 0.0, 0.01)
+    for name in ("sim.ghost", "slam.typo", "nobody", "sim.anne.x", *(f"slam.x{n}" for n in range(1000))):
+        conductor.done(Done(participant=name, epoch=1), boot=9)
+    assert conductor.missing() == [] and len(conductor._participants) == 2
+
+
+def test_a_kind_may_have_a_process_for_each_vehicle_of_the_mission():
+    conductor = Conductor(["sim"], ["slam"], lockstep=True, vehicles=["anne"])
+    ready(conductor, "sim", "slam.anne")
+    assert conductor.waiting_for() == ""

@@ -10,7 +10,7 @@ from schemas import topics
 from schemas.messages import Param, ParamReply, ParamRequest
 from uvf.runtime.bus import Query
 from uvf.runtime.params import nearest
-from uvf.runtime.service import Service
+from uvf.runtime.service import Params, Service
 from uvf.runtime.wire import Malformed, decode
 
 
@@ -20,6 +20,8 @@ class ParamServer:
     def __init__(self, service: Service) -> None:
         self._service = service
         self._queue: deque[Query] = deque()
+        self.set_params: Params | None = None
+        """As they are since one was set while it runs."""
 
     def key(self, owner: str) -> str:
         return topics.PARAM.by(self._service.name).at(owner)
@@ -31,14 +33,15 @@ class ParamServer:
     def queue(self, query: Query) -> None:
         self._queue.append(query)
 
-    def answer(self, due: Callable[[int], bool]) -> Iterator[tuple[Query, ParamReply]]:
-        """The requests whose stamp is due now, each with its reply."""
+    def answer(self, due: Callable[[int], bool], refused: Callable[[str], None]) -> Iterator[tuple[Query, ParamReply]]:
+        """The requests whose stamp is due now, each with its reply. refused: takes a line about each broken one."""
         taken = [query for query in self._queue if due(query.stamp_ns)]
         self._queue = deque(query for query in self._queue if not due(query.stamp_ns))
         for query in taken:
             try:
                 yield query, self.reply(decode(query.key, query.payload, ParamRequest))
             except Malformed as error:
+                refused(str(error))
                 yield query, ParamReply(accepted=False, reason=str(error))
 
     def refuse_all(self, reason: str) -> None:
@@ -68,7 +71,11 @@ class ParamServer:
     def _set(self, name: str, value: str) -> None:
         data = msgspec.to_builtins(self._service.params)
         data[name] = msgspec.json.decode(value)
-        self._service.params = msgspec.convert(data, type(self._service.params))
+        self.take_up(msgspec.convert(data, type(self._service.params)))
+
+    def take_up(self, params: Params) -> None:
+        """Those that an instance before this one was set to."""
+        self._service.params = self.set_params = params
 
     def _describe(self, name: str) -> Param:
         hints = get_type_hints(type(self._service.params), include_extras=True)

@@ -13,7 +13,7 @@ from schemas import topics
 from schemas.convert import stamp_ns
 from schemas.messages import Event, VehicleStatus
 from schemas.topics import PARAM, SYSTEM, Qos, Request, Topic
-from uvf.runtime.bulkhead import FAILURES, WINDOW, Bulkhead, cause_of
+from uvf.runtime.bulkhead import FAILURES, WINDOW, Bulkhead
 from uvf.runtime.bus import Bus, Publisher, Query
 from uvf.runtime.clock import NS, first_step_after, step_time
 from uvf.runtime.frames import FrameBuffer
@@ -24,6 +24,7 @@ from uvf.runtime.request_desk import QUERIES_MOST, ContractError, RequestDesk
 from uvf.runtime.service import Answer, Frames, Input, Outputs, Service, StopInput
 from uvf.runtime.site import Host
 from uvf.runtime.stop_all import StopBook, StopStatus
+from uvf.runtime.validation import error_in
 from uvf.runtime.watchdog import Watchdog, time_limit
 from uvf.runtime.wire import Malformed, decode
 
@@ -87,17 +88,22 @@ class Shell:
 
     def restart(self, epoch: int) -> None:
         """Makes the service afresh because time has started over; what was asked in the old epoch is refused."""
-        self.service.close()
+        trouble = self._contain(self.service.close)
         self.epoch = epoch
         kept = [(name, sample) for name, box in self._boxes.items() for sample in box.surviving(epoch)]
         self._refuse_all(AFRESH)
         if self._bulkhead is not None:
             self._bulkhead = Bulkhead()
         self._left.clear()
-        self._make()
+        unmade = self._contain(self._make)
         self._listen()
         for name, sample in kept:
             self._boxes[name].push(sample)
+        if unmade and self._bulkhead is not None:
+            self._bulkhead.give_up(unmade)
+        if trouble or unmade:
+            self.counters.failures += 1
+            self._tell_failure(0, unmade or trouble, given_up=bool(unmade))
 
     def _refuse_all(self, reason: str) -> None:
         self._desk.refuse_all(reason)
@@ -107,6 +113,12 @@ class Shell:
 
     def recall(self, find: Callable[[str], bytes | None]) -> None:
         """Hands the service what an instance before it has left; ``find`` gives the newest bytes of a key."""
+        if trouble := self._contain(lambda: self._recall(find)):
+            self.counters.failures += 1
+            self._make()
+            self._tell_failure(self.sim_ns, f"it could not take up what was left: {trouble}", given_up=False)
+
+    def _recall(self, find: Callable[[str], bytes | None]) -> None:
         found = {name: (topic, find(topic.at(self.owner))) for name, topic in self.type.recalls.items()}
         messages: dict[str, Message] = {}
         for name, (topic, payload) in found.items():
@@ -189,42 +201,59 @@ class Shell:
             self._step_contained(t_ns)
 
     def _step_contained(self, t_ns: int) -> None:
-        """What is raised in this instance, whatever it is, ends here: the process goes on for the other vehicles."""
-        try:
-            self._step(t_ns)
-        except Exception as error:  # noqa: BLE001  # a bulkhead: nobody knows what a fault will raise
-            self._fail(t_ns, error)
+        if cause := self._contain(lambda: self._step(t_ns)):
+            self._fail(t_ns, cause)
 
-    def _fail(self, t_ns: int, error: Exception) -> None:
-        """Made afresh from the state that it has left, or given up after the third time."""
+    def _contain(self, action: Callable[[], None]) -> str:
+        """The cause why ``action`` failed, empty if it did not; raises it where nothing is kept from other instances."""
+        if self._bulkhead is not None:
+            return self._bulkhead.contain(action)
+        action()
+        return ""
+
+    def _fail(self, t_ns: int, cause: str) -> None:
+        """Made afresh from the state that it has left, or given up after the third time, or where it cannot be made."""
         assert self._bulkhead is not None
         self.counters.failures += 1
-        cause = cause_of(error)
-        try:
-            self.service.close()
-            again = not self._bulkhead.failed(t_ns / NS, cause)
-            if again:
-                self._revive()
-        except Exception as second:  # noqa: BLE001  # neither may its end nor its beginning harm the others
-            again = not self._bulkhead.failed(t_ns / NS, cause_of(second))
-            cause = f"{cause}; then, when it was to be started afresh, {cause_of(second)}"
-        self._tell_failure(t_ns, cause, again)
+        t = t_ns / NS
+        unclosed = self._contain(self._close)
+        given_up = self._bulkhead.failed(t, cause)
+        unmade = "" if given_up else self._contain(lambda: self._revive(keep_params=not self._bulkhead_repeats(t)))
+        if unmade:
+            self._bulkhead.give_up(unmade)
+        more = "".join(f"; then, when it was to be {what}, {why}" for what, why in (("ended", unclosed), ("started afresh", unmade)) if why)
+        self._tell_failure(t_ns, f"{cause}{more}", given_up or bool(unmade))
 
-    def _revive(self) -> None:
-        """A new instance with the state that the last one has left, without what has come since its last good step."""
+    def _bulkhead_repeats(self, t: float) -> bool:
+        return self._bulkhead is not None and self._bulkhead.is_repeated(t)
+
+    def _close(self) -> None:
+        with self._limited():
+            self.service.close()
+
+    def _revive(self, keep_params: bool) -> None:
+        """A new instance with the state that the last one has left, without what has come since its last good step.
+
+        keep_params: those that were set while it ran; but they may be what makes it fail.
+        """
         for box in self._boxes.values():
             box.undo()
         heard = {key: payload for box in self._boxes.values() for key, payload in box.accepted()}
-        self._make()
-        self.recall({**heard, **self._left}.get)
+        params = self._param_server.set_params if keep_params else None
+        with self._limited():
+            self._make()
+        if params is not None:
+            self._param_server.take_up(params)
+        with self._limited():
+            self.recall({**heard, **self._left}.get)
 
-    def _tell_failure(self, t_ns: int, cause: str, again: bool) -> None:
+    def _tell_failure(self, t_ns: int, cause: str, given_up: bool) -> None:
         name = f"{self.type.name} of {self.owner}"
-        given_up = f"{name} has failed {FAILURES} times within {WINDOW:g} s and is given up: {self.type.given_up}"
-        text = f"{name} has failed and was started afresh" if again else given_up
+        often = f"has failed {FAILURES} times within {WINDOW:g} s" if self._bulkhead_repeats(t_ns / NS) else "cannot be started afresh"
+        text = f"{name} {often} and is given up: {self.type.given_up}" if given_up else f"{name} has failed and was started afresh"
         self._refuse_all(f"{name} has failed: {cause}")
         self._warn(f"{text}: {cause}")
-        severity = Event.ERROR if again else Event.CRITICAL
+        severity = Event.CRITICAL if given_up else Event.ERROR
         event = Event(timestamp=stamp_ns(self._now(t_ns)), severity=severity, text=text, cause=cause, source=self.type.name)
         self._publish_one(topics.EVENTS.by(self.type.name), self.owner, event, self._now(t_ns))
 
@@ -243,7 +272,7 @@ class Shell:
             self._publish(self.type.stand_in(t_ns / NS, reason), t_ns)
 
     def _step(self, t_ns: int) -> None:
-        for query, reply in self._param_server.answer(lambda stamp: self._is_due(stamp, t_ns)):
+        for query, reply in self._param_server.answer(lambda stamp: self._is_due(stamp, t_ns), self._refused):
             self._desk.answer(query, PARAM, reply, t_ns)
         stops = self._take(t_ns)
         missing = tuple(name for name, box in self._boxes.items() if box.is_missing(t_ns))
@@ -338,6 +367,8 @@ class Shell:
         if isinstance(topic, Request):
             self._call(name, topic, owner, message, payload, stamp)
             return
+        if "/actuator/" in key and (why := error_in(message)):
+            raise ContractError(f"{key}: {why}")  # the simulator would refuse it: better the instance fails and is started afresh
         if topic.kept:
             self._left[key] = payload
         self._put(key, topic.message, topic.qos, payload, stamp)

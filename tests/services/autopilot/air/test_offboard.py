@@ -61,6 +61,10 @@ def test_what_is_no_setpoint_does_not_count():
     assert fresh(1.0, FlightSetpoint(timestamp=stamp(1.0))) is None
     assert fresh(1.0, attitude(bank=math.nan)) is None
     assert fresh(1.0, FlightSetpoint(timestamp=stamp(1.0), line=LineSetpoint())) is None
+    for x, z in ((1e-300, 1e11), (0.0, 1.0), (1.0, 11.0), (-1e-9, 0.0)):
+        steep = LineSetpoint()
+        steep.direction.x, steep.direction.z = x, z
+        assert fresh(1.0, FlightSetpoint(timestamp=stamp(1.0), line=steep)) is None
     assert fresh(1.0, FlightSetpoint(timestamp=stamp(1.0), circle=CircleSetpoint())) is None
 
 
