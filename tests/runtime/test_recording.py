@@ -222,3 +222,41 @@ def test_a_log_is_not_saved_into_itself(tmp_path):
     with pytest.raises(BadInput, match="name another file"):
         recover(tmp_path / "a.mcap", tmp_path / "same.mcap")
     assert len(list(read_log(tmp_path / "a.mcap"))) == 8
+
+
+@pytest.fixture
+def chunked(tmp_path, monkeypatch):
+    """A log of 20 chunks, and where they begin."""
+    monkeypatch.setattr("uvf.runtime.recording.CHUNK", 2000)
+    path = tmp_path / "chunked.mcap"
+    with Recorder(path) as recorder:
+        for n in range(1, 401):
+            recorder.write(Sample("uvf/v/sensor/imu", "uvf.v1.Imu", bytes((n * i) % 251 for i in range(100)), n * 10_000_000, n, 5))
+    with path.open("rb") as file:
+        return path, sorted(index.chunk_start_offset for index in make_reader(file).get_summary().chunk_indexes)
+
+
+DAMAGES = {
+    "one byte": lambda data, offsets: [(offsets[5] + 200, bytes((data[offsets[5] + 200] ^ 0xFF,)))],
+    "the first chunk": lambda data, offsets: [(offsets[0] + 200, bytes(100))],
+    "a record's head": lambda data, offsets: [(offsets[5], bytes(300))],
+    "a length": lambda data, offsets: [(offsets[5] + 1, b"\xff" * 8)],
+}
+
+
+@pytest.mark.parametrize("damage", DAMAGES)
+def test_a_damaged_chunk_costs_no_more_than_itself_and_nothing_false_is_handed_over(tmp_path, chunked, damage):
+    path, offsets = chunked
+    data = bytearray(path.read_bytes())
+    true = {sample.seq: sample.payload for sample in read_log(path)}
+    for at, new in DAMAGES[damage](data, offsets):
+        data[at : at + len(new)] = new
+    broken, told = tmp_path / "broken.mcap", []
+    broken.write_bytes(data)
+    with pytest.raises(BadInput, match="uvf log recover"):
+        list(read_log(broken))
+    count = recover(broken, tmp_path / "saved.mcap", told.append)
+    saved = {sample.seq: sample.payload for sample in read_log(tmp_path / "saved.mcap")}
+    assert len(true) - 3 * 400 // len(offsets) <= count < len(true)
+    assert saved.items() <= true.items()
+    assert told or damage in ("a record's head", "a length")

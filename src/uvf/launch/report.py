@@ -139,4 +139,4 @@ def describe_log(log: Path) -> None:
 
 def recover_log(log: Path, out: Path | None) -> None:
     target = out or log.with_name(f"{log.stem}-recovered.mcap")
-    typer.echo(f"{recover(log, target)} messages saved into {target}")
+    typer.echo(f"{recover(log, target, lambda line: typer.echo(line, err=True))} messages saved into {target}")

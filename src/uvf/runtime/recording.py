@@ -9,7 +9,7 @@ import itertools
 import struct
 import time
 from collections import Counter, defaultdict
-from collections.abc import Container, Iterable, Iterator, Mapping
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping
 from pathlib import Path
 from types import TracebackType
 from typing import IO, Any
@@ -18,6 +18,7 @@ from google.protobuf.descriptor import FileDescriptor
 from google.protobuf.descriptor_pb2 import FileDescriptorSet
 from mcap.data_stream import ReadDataStream
 from mcap.exceptions import McapError
+from mcap.opcode import Opcode
 from mcap.reader import make_reader
 from mcap.records import Attachment, Channel, Chunk, McapRecord, Message, Schema
 from mcap.stream_reader import StreamReader, breakup_chunk
@@ -37,6 +38,7 @@ BROKEN = (McapError, ZstdError, EOFError, ValueError, KeyError, struct.error, Ov
 """What the readers raise for bytes that are no log, the last two for lengths that are nonsense."""
 HELD = 16_000_000  # bytes of chunks, while a log is read in order of time
 DEPTH = 65_536  # messages that may wait for the writer
+HEAD = struct.Struct("<BQ")  # kind and length of a record
 _WALL_SOURCES = {"gcs", "mavlink", "recorder", "launcher"}
 _NO_SPACE = (errno.ENOSPC, errno.EDQUOT)
 
@@ -246,8 +248,10 @@ def _check_kind(path: Path, file: IO[bytes]) -> None:
 class _HeldChunks:
     """The messages of chunks, each in order of time, as far as they fit into HELD; the others are read again when they are needed."""
 
-    def __init__(self, file: IO[bytes], channels: Container[int]) -> None:
+    def __init__(self, file: IO[bytes], channels: Container[int], heads: Mapping[int, bytes]) -> None:
+        """heads: the first bytes that a chunk has, by its offset: with others it is none any more."""
         self._file = file
+        self._heads = heads
         self._channels = channels
         self._held: dict[int, tuple[int, list[Message]]] = {}  # offset -> size, messages; the one used last at the end
 
@@ -262,9 +266,11 @@ class _HeldChunks:
         del self._held[offset]
 
     def _read(self, offset: int) -> tuple[int, list[Message]]:
-        self._file.seek(offset + 9)  # behind the kind and length of the record
+        self._file.seek(offset)
+        if self._file.read(HEAD.size) != self._heads[offset]:
+            raise McapError(f"no chunk at {offset}")
         chunk = Chunk.read(ReadDataStream(self._file))
-        found = [r for r in breakup_chunk(chunk) if isinstance(r, Message) and r.channel_id in self._channels]
+        found = [r for r in breakup_chunk(chunk, validate_crc=True) if isinstance(r, Message) and r.channel_id in self._channels]
         return chunk.uncompressed_size, sorted(found, key=lambda m: m.log_time)
 
 
@@ -281,7 +287,8 @@ def _in_order(file: IO[bytes], topics: Container[str] | None = None) -> Iterator
         return
     channels = {n: c for n, c in summary.channels.items() if topics is None or c.topic in topics}
     wanted = [i for i in summary.chunk_indexes if not i.message_index_offsets or not channels.keys().isdisjoint(i.message_index_offsets)]
-    held = _HeldChunks(file, channels)
+    heads = {i.chunk_start_offset: HEAD.pack(Opcode.CHUNK, i.chunk_length - HEAD.size) for i in wanted}
+    held = _HeldChunks(file, channels, heads)
     ahead = [(index.message_start_time, index.chunk_start_offset, 0) for index in wanted]
     heapq.heapify(ahead)
     while ahead:
@@ -338,16 +345,21 @@ def log_attachments(path: Path) -> dict[str, bytes]:
         return {a.name: a.data for a in make_reader(file).iter_attachments()}
 
 
-def recover(source: Path, target: Path) -> int:
-    """Copies every message of the whole chunks of a cut-off log, and what is attached, into a new, complete one; returns how many.
+def recover(source: Path, target: Path, tell: Callable[[str], None] = lambda line: None) -> int:
+    """Copies every message of the whole chunks of a log, and what is attached, into a new, complete one; returns how many.
 
-    Raises BadInput when there is nothing to save, or where the new log would take the place of the old one.
+    tell: takes a line about what is damaged in the middle of it. Raises BadInput when there is nothing to save, or where the
+    new log would take the place of the old one.
     """
     if target.exists() and target.samefile(source):
         raise BadInput(f"log {target}: is the log that is to be saved; name another file")
     with _opened(source) as file:
-        attached = {r.name: r.data for r in _whole_records(file, emit_chunks=True) if isinstance(r, Attachment)}
-        samples = _samples(_whole_records(file))
+        outside = [r for r in _whole_records(file) if isinstance(r, (Attachment, Schema, Channel))]
+        attached = {r.name: r.data for r in outside if isinstance(r, Attachment)}
+        damaged: list[Chunk] = []
+        # What a damaged chunk has defined stands at the end of a log once more.
+        defined = [r for r in outside if not isinstance(r, Attachment)]
+        samples = _samples(itertools.chain(defined, _in_chunks(_whole_records(file), damaged)))
         first = next(samples, None)
         if first is None:
             raise BadInput(f"log {source}: holds no whole message that could be saved")
@@ -356,15 +368,42 @@ def recover(source: Path, target: Path) -> int:
                 out.write(sample)
     if out.error:
         raise BadInput(out.error)
+    for chunk in damaged:
+        tell(f"damaged and left out: {chunk.message_start_time / NS:.1f} to {chunk.message_end_time / NS:.1f} s")
     return out.written
 
 
-def _whole_records(file: IO[bytes], emit_chunks: bool = False) -> Iterator[McapRecord]:
-    """From the beginning of the file, as they are read; a length that is nonsense ends them."""
+def _whole_records(file: IO[bytes]) -> Iterator[McapRecord]:
+    """From the beginning of the file, as they are read, chunks as they are; behind nonsense it goes on at the next chunk of the index."""
     size = file.seek(0, io.SEEK_END)
     file.seek(0)
+    index = []
     with contextlib.suppress(*BROKEN):
-        yield from StreamReader(file, emit_chunks=emit_chunks, record_size_limit=size).records
+        summary = make_reader(file).get_summary()
+        index = sorted(i.chunk_start_offset for i in summary.chunk_indexes) if summary is not None else []
+    begin: int | None = 0
+    while begin is not None:
+        file.seek(begin)
+        with contextlib.suppress(*BROKEN):
+            yield from StreamReader(file, skip_magic=begin > 0, emit_chunks=True, record_size_limit=size).records
+            return
+        reached = file.tell()
+        begin = next((offset for offset in index if offset > max(reached, begin)), None)
+
+
+def _in_chunks(records: Iterable[McapRecord], damaged: list[Chunk]) -> Iterator[McapRecord]:
+    """What the chunks hold; of those whose bytes are no longer what was written, nothing."""
+    for record in records:
+        if not isinstance(record, Chunk):
+            yield record
+            continue
+        try:
+            inside = breakup_chunk(record, validate_crc=True)
+        except BROKEN:
+            record.data = b""  # only its times are told
+            damaged.append(record)
+            continue
+        yield from inside
 
 
 def _samples(records: Iterable[McapRecord]) -> Iterator[Sample]:
