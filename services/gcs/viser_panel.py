@@ -55,11 +55,16 @@ class ViserPanel:
 
     def show(self, panel: Panel) -> None:
         """A browser that has gone meanwhile is written to in vain, which is no fault."""
-        with self._client._websock_connection.get_message_buffer().sanctioned_dead_writes(), self._client.atomic():
-            self.vehicle = panel.vehicle
-            self._show_html(panel.html)
-            self._buttons.show(panel.buttons)
-            self._cameras.show(panel)
+        try:
+            with self._client._websock_connection.get_message_buffer().sanctioned_dead_writes(), self._client.atomic():
+                self.vehicle = panel.vehicle
+                self._show_html(panel.html)
+                self._buttons.show(panel.buttons)
+                self._cameras.show(panel)
+        except RuntimeError:
+            # viser's own thread takes away what a browser had as it goes, and refuses to write to it.
+            if not any(words._impl.removed for words in self._html.values()):
+                raise
 
     def _show_html(self, shown: Mapping[str, Html]) -> None:
         now = time.monotonic()

@@ -220,3 +220,13 @@ def test_a_page_can_say_no_more_than_it_needs_to(said):
 )
 def test_a_page_tells_the_shape_of_its_window(said, shape):
     assert shape_in(said) == shape
+
+
+def test_a_browser_that_goes_while_it_is_written_to_ends_nothing(page, browser):
+    """viser's own thread takes away what it had, and refuses to write to it."""
+    panel = page._panels[browser.page]
+    panel._html["instrument"]._impl.removed = True
+    page.show(Picture(panels={browser.page: Panel(html={"instrument": html("late")})}))
+    panel._html["instrument"]._impl.removed = False
+    page.show(Picture(panels={browser.page: Panel(html={"instrument": html("there")})}))
+    assert until(lambda: "there" in browser.html(), 10.0)
