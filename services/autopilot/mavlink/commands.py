@@ -11,9 +11,10 @@ from uvf.runtime.mavlink.bounded import make_room
 LARGEST = 1e9  # no parameter of any command means anything beyond
 NOT_GIVEN = 2**31 - 1  # x or y of a COMMAND_INT without a place
 SCALE = 1e-7  # deg per unit of x and y
-REPEATED_WITHIN = 1.0  # s: two tries of MAVSDK
+REPEATED_WITHIN = 1.0  # s, of a COMMAND_INT: two tries of MAVSDK
+CONFIRMED_WITHIN = 5.0  # s between two tries of a COMMAND_LONG: QGroundControl's are 3 s apart
 MOST_SENDERS, MOST_COMMANDS = 64, 32
-REMEMBERED_FOR = 60.0  # s: longer than anybody repeats
+REMEMBERED_FOR = 10.0  # s: longer than anybody repeats, and than a command waits for its outcome
 
 
 @dataclass(frozen=True)
@@ -52,6 +53,15 @@ class Pending:
     t: float
     """s, wall: when it came."""
     result: int | None = None
+    confirmation: int = 0
+    heard: float = -math.inf
+    """Of the newest repetition, or of the command itself: its count, and when [s, wall]."""
+
+    def __post_init__(self) -> None:
+        self.hear(self.command, self.t)
+
+    def hear(self, command: Command, t: float) -> None:
+        self.confirmation, self.heard = command.confirmation, t
 
 
 class Acknowledger:
@@ -115,7 +125,7 @@ class Commands:
         """Drops what nobody will repeat any more."""
         since = self._line.t - REMEMBERED_FOR
         for sender, mine in list(self._last.items()):
-            self._last[sender] = {number: pending for number, pending in mine.items() if pending.t > since}
+            self._last[sender] = {number: pending for number, pending in mine.items() if pending.heard > since}
             if not self._last[sender]:
                 del self._last[sender]
 
@@ -142,13 +152,22 @@ class Commands:
             handler(self._line, command, done)
 
     def _is_repetition(self, command: Command) -> bool:
-        """A sender repeats when the answer was late or lost: COMMAND_LONG counts ``confirmation`` up, COMMAND_INT cannot."""
-        last = self._last.get(command.sender, {}).get(command.number)
+        """A sender repeats when the answer was late or lost: COMMAND_LONG counts ``confirmation`` up, COMMAND_INT cannot.
+
+        A count that does not go up is another command, however high it is: taken for a repetition it would be
+        acknowledged and not be done.
+        """
+        last, t = self._last.get(command.sender, {}).get(command.number), self._line.t
         if last is None or not last.command.same_as(command):
             return False
+        if command.frame is not None:
+            repeats = t - last.t < REPEATED_WITHIN
+        else:
+            repeats = command.confirmation > last.confirmation and t - last.heard <= CONFIRMED_WITHIN
+        if last.result is None or repeats:
+            last.hear(command, t)
         if last.result is None:
             return True  # no "in progress": MAVSDK takes it for a refusal, and version 4 ends its program at the answer that follows
-        if command.confirmation > 0 or (command.frame is not None and self._line.t - last.t < REPEATED_WITHIN):
+        if repeats:
             acknowledge(self._line, command, last.result)
-            return True
-        return False
+        return repeats
