@@ -63,13 +63,13 @@ class Holder:
     def admits(self, sender: Sender) -> bool:
         holder, free = self._holder, self._line.t - self._heard > HELD_FOR
         if holder is not None and not free and sender != holder:
-            self._line.text(mav.MAV_SEVERITY_WARNING, f"{self._otherwise}: {_named(holder, sender)} steers", sender.peer)
+            self._line.text(mav.MAV_SEVERITY_WARNING, f"{self._otherwise}: {named(holder, sender)} steers", sender.peer)
             return False
         self._holder, self._heard = sender, self._line.t
         return True
 
 
-def _named(station: Sender, to: Sender) -> str:
+def named(station: Sender, to: Sender) -> str:
     """A station in words to another one, which may have the same number."""
     if station.system != to.system:
         return f"station {station.system}"

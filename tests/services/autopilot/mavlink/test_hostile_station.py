@@ -1,0 +1,81 @@
+"""A station that means harm, or is only broken, keeps nobody else from uploading, downloading and commanding."""
+
+from tests.services.autopilot.mavlink.rig import GCS, OTHER, PLANE, Rig, of, texts
+from tests.services.autopilot.mavlink.test_missions import LAT, LON, count, item, upload
+from uvf.runtime.mavlink import dialect as mav
+
+FENCE = mav.MAV_MISSION_TYPE_FENCE
+STRANGER = {"system": 200, "peer": ("203.0.113.9", 3000)}
+
+
+def acks_of(messages):
+    return [m.type for m in of(messages, "MISSION_ACK")]
+
+
+def test_who_announces_a_fence_keeps_nobody_from_uploading_a_mission():
+    rig = Rig()
+    rig.run()
+    rig.say(count(3, FENCE), **STRANGER)
+    rig.run(0.04)
+    assert upload(rig, [item(0)])[0].type == mav.MAV_MISSION_ACCEPTED
+
+
+def test_a_denied_upload_says_who_uploads():
+    rig = Rig()
+    rig.run()
+    rig.say(count(3), peer=OTHER)
+    rig.run(0.04)
+    rig.say(count(1))
+    heard = rig.run(0.04)
+    assert acks_of(heard) == [mav.MAV_MISSION_DENIED]
+    assert "Mission refused: another station 255 (at 127.0.0.1:14540) uploads" in texts(heard)
+    assert not texts(rig.heard(OTHER))
+
+
+def test_an_upload_that_is_begun_again_and_again_makes_room_after_ten_seconds():
+    rig = Rig()
+    rig.run()
+    results, told = [], []
+    for step in range(600):
+        if step % 75 == 0:
+            rig.say(count(3), **STRANGER)
+        if step % 50 == 30:
+            rig.say(count(1))
+        rig.run(0.02)
+        if of(rig.heard(GCS), "MISSION_REQUEST_INT"):
+            rig.say(item(0))
+        results += acks_of(rig.heard(GCS))
+        told += texts(rig.heard(STRANGER["peer"]))
+    assert results.count(mav.MAV_MISSION_ACCEPTED) >= 1 and results.index(mav.MAV_MISSION_ACCEPTED) <= 10
+    assert "Mission upload ended after 10 s: station 255 uploads now" in told
+
+
+def test_pauses_between_its_tries_make_no_upload_younger():
+    rig = Rig()
+    rig.run()
+    results = []
+    for second in range(12):
+        if second % 3 == 0:
+            rig.say(count(3), **STRANGER)
+        rig.say(count(1) if second == 10 else mav.MAVLink_mission_ack_message(PLANE, 1, 0, 0))
+        results += acks_of(rig.run(0.1))
+        if of(rig.heard(GCS), "MISSION_REQUEST_INT"):
+            rig.say(item(0))
+        results += acks_of(rig.run(0.9))
+    assert results == [mav.MAV_MISSION_ACCEPTED]
+
+
+def test_who_still_uploads_within_ten_seconds_is_not_disturbed():
+    rig = Rig()
+    rig.run()
+    rig.say(count(2), peer=OTHER)
+    for second in range(9):
+        rig.say(item(0), peer=OTHER) if second == 1 else rig.say(count(2), peer=OTHER)
+        rig.say(count(1))
+        rig.run(0.04)
+        assert acks_of(rig.heard(GCS)) == [mav.MAV_MISSION_DENIED]
+        rig.run(0.96)
+    for seq in range(2):
+        rig.say(item(seq, place=(LAT, LON, 90.0)), peer=OTHER)
+    rig.run()
+    assert acks_of(rig.heard(OTHER)) == [mav.MAV_MISSION_ACCEPTED]
