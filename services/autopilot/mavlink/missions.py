@@ -11,7 +11,7 @@ from services.autopilot.mavlink.old_items import as_int
 from services.autopilot.mavlink.plans import FencePlan, MissionPlan, Plan, RallyPlan
 from uvf.runtime.mavlink import dialect as mav
 from uvf.runtime.mavlink.bounded import make_room
-from uvf.runtime.mavlink.mission_items import BadItem
+from uvf.runtime.mavlink.mission_items import BadItem, Body
 
 MISSION = mav.MAV_MISSION_TYPE_MISSION
 ASK_AGAIN = 0.25  # s
@@ -40,6 +40,14 @@ class Upload:
     """Without success: kept for the time at which it began."""
 
 
+@dataclass
+class Shown:
+    """What somebody downloads is one plan, that of its MISSION_COUNT, whatever another station uploads meanwhile."""
+
+    bodies: list[Body]
+    asked_at: float
+
+
 class Missions:
     def __init__(self, line: Line) -> None:
         self._line = line
@@ -52,6 +60,8 @@ class Missions:
         """The newest of each kind of plan, until it has succeeded."""
         self._waiting: dict[tuple[Sender, int], float] = {}
         """Who has asked for a plan that is not known yet, and when [s]."""
+        self._shown: dict[tuple[Sender, int], Shown] = {}
+        """Who downloads a plan."""
         self._reporting: float | None = None
         """Since when [s] the autopilot has been heard."""
 
@@ -151,6 +161,7 @@ class Missions:
                 self._refuse(upload.sender, BadItem(result, reason or "refused"), upload.kind)
                 return
             self._uploads.pop(upload.kind, None)
+            self._shown.pop((upload.sender, upload.kind), None)
             plan.accept(made)
             self._ack(upload.sender, mav.MAV_MISSION_ACCEPTED, upload.kind, plan.id_of(made))
             if note := plan.note(upload.items):
@@ -170,6 +181,7 @@ class Missions:
         if self._reporting is None and self._line.latest.status is not None:
             self._reporting = self._line.t
         self._waiting = {who: t for who, t in self._waiting.items() if self._line.t - t < ASKED_FOR}
+        self._shown = {who: shown for who, shown in self._shown.items() if self._line.t - shown.asked_at < ASKED_FOR}
         self._count()
         for upload in self._uploads.values():
             if not upload.is_over and not upload.is_complete and self._line.t - upload.asked_at >= ASK_AGAIN - 1e-9:
@@ -198,6 +210,8 @@ class Missions:
             plan = self._plans[kind]
             if plan.is_told or self._is_settled:
                 del self._waiting[sender, kind]
+                make_room(self._shown, (sender, kind), MOST_WAITING, lambda who: self._shown[who].asked_at)
+                self._shown[sender, kind] = Shown(plan.bodies, self._line.t)
                 found = len(plan.bodies), kind, plan.id_of(plan.now)
                 self._line.send(mav.MAVLink_mission_count_message(sender.system, sender.component, *found), sender.peer)
 
@@ -209,18 +223,23 @@ class Missions:
     def on_request(self, message: mav.MAVLink_mission_request_int_message, sender: Sender) -> None:
         """MISSION_REQUEST_INT, or the older MISSION_REQUEST: the same item either way."""
         kind, seq = message.mission_type, message.seq
-        bodies = self._plans[kind].bodies if kind in self._plans else []
+        in_force = self._plans[kind].bodies if kind in self._plans else []
+        shown = self._shown.get((sender, kind))
+        if shown is not None:
+            shown.asked_at = self._line.t
+        bodies = shown.bodies if shown is not None else in_force
         if seq >= len(bodies):
             self._ack(sender, mav.MAV_MISSION_INVALID_SEQUENCE, kind)
             return
         progress = self._line.latest.progress
-        current = int(kind == MISSION and progress is not None and progress.current == seq)
+        current = int(kind == MISSION and bodies is in_force and progress is not None and progress.current == seq)
         frame, command, autocontinue, p1, p2, p3, p4, x, y, z = bodies[seq]
         head = (sender.system, sender.component, seq, frame, command, current, autocontinue)
         self._line.send(mav.MAVLink_mission_item_int_message(*head, p1, p2, p3, p4, x, y, z, kind), sender.peer)
 
     def on_ack(self, message: mav.MAVLink_mission_ack_message, sender: Sender) -> None:
         """Ends a download; anything but "accepted" ends the sender's own upload too."""
+        self._shown.pop((sender, message.mission_type), None)
         upload = self._open(message.mission_type)
         if upload is not None and not upload.is_complete and upload.sender == sender and message.type != mav.MAV_MISSION_ACCEPTED:
             upload.is_over = True
@@ -248,6 +267,7 @@ class Missions:
                 self._refuse(sender, BadItem(mav.MAV_MISSION_ERROR, reason), kind)
                 return
             plan.accept(empty)
+            self._shown.pop((sender, plan.kind), None)
             if others:
                 self._clear(others, sender, kind)
             else:

@@ -29,6 +29,7 @@ P = TypeVar("P", Mission, Fence, RallyPoints)
 class Plan(Generic[P]):
     """One of them, of one vehicle. What was just accepted serves downloads until the autopilot's own report shows up."""
 
+    kind: int
     name: str
     largest: int
     call: str
@@ -101,7 +102,7 @@ class Plan(Generic[P]):
 
 
 class MissionPlan(Plan[Mission]):
-    name, largest, call = "Mission", 500, "set_mission"
+    kind, name, largest, call = mav.MAV_MISSION_TYPE_MISSION, "Mission", 500, "set_mission"
     empty = Mission
 
     def told(self) -> Mission | None:
@@ -130,7 +131,7 @@ class MissionPlan(Plan[Mission]):
 
 
 class FencePlan(Plan[Fence]):
-    name, largest, call = "Fence", 500, "set_fence"
+    kind, name, largest, call = mav.MAV_MISSION_TYPE_FENCE, "Fence", 500, "set_fence"
     empty = Fence
 
     def told(self) -> Fence | None:
@@ -153,7 +154,7 @@ class FencePlan(Plan[Fence]):
 
 
 class RallyPlan(Plan[RallyPoints]):
-    name, largest, call = "Rally", 20, "set_rally"
+    kind, name, largest, call = mav.MAV_MISSION_TYPE_RALLY, "Rally", 20, "set_rally"
     empty = RallyPoints
 
     def told(self) -> RallyPoints | None:

@@ -79,3 +79,52 @@ def test_who_still_uploads_within_ten_seconds_is_not_disturbed():
         rig.say(item(seq, place=(LAT, LON, 90.0)), peer=OTHER)
     rig.run()
     assert acks_of(rig.heard(OTHER)) == [mav.MAV_MISSION_ACCEPTED]
+
+
+def asked_for(rig, seq, peer=OTHER):
+    rig.say(mav.MAVLink_mission_request_int_message(PLANE, 1, seq, 0), peer=peer)
+    rig.run(0.04)
+    return [round(m.z) for m in of(rig.heard(peer), "MISSION_ITEM_INT")]
+
+
+def listed(rig, peer=OTHER):
+    rig.say(mav.MAVLink_mission_request_list_message(PLANE, 1, 0), peer=peer)
+    rig.run(0.04)
+
+
+def plan_at(height):
+    return [item(seq, place=(LAT, LON, height)) for seq in range(2)]
+
+
+def test_a_download_is_of_one_plan_though_another_is_uploaded_meanwhile():
+    rig = Rig()
+    rig.run()
+    upload(rig, plan_at(11.0))
+    listed(rig)
+    first = asked_for(rig, 0)
+    upload(rig, plan_at(91.0))
+    assert first + asked_for(rig, 1) == [11, 11]
+    listed(rig)
+    assert asked_for(rig, 0) + asked_for(rig, 1) == [91, 91]
+
+
+def test_who_has_uploaded_or_acknowledged_sees_the_plan_in_force():
+    rig = Rig()
+    rig.run()
+    upload(rig, plan_at(11.0))
+    for peer in (GCS, OTHER):
+        listed(rig, peer)
+    rig.say(mav.MAVLink_mission_ack_message(PLANE, 1, mav.MAV_MISSION_ACCEPTED, 0), peer=OTHER)
+    upload(rig, plan_at(91.0))
+    assert asked_for(rig, 1, GCS) == asked_for(rig, 1, OTHER) == [91]
+
+
+def test_a_download_that_is_given_up_is_forgotten():
+    rig = Rig()
+    rig.run()
+    upload(rig, plan_at(11.0))
+    listed(rig)
+    upload(rig, plan_at(91.0))
+    assert asked_for(rig, 1) == [11]
+    rig.run(10.1)
+    assert asked_for(rig, 1) == [91]
