@@ -2,7 +2,9 @@
 
 from tests.services.autopilot.mavlink.rig import GCS, OTHER, PLANE, Rig, of, texts
 from tests.services.autopilot.mavlink.test_missions import LAT, LON, count, item, upload
+from tests.services.autopilot.mavlink.test_two_stations import BEAT
 from uvf.runtime.mavlink import dialect as mav
+from uvf.runtime.mavlink.endpoint import MOST_LEARNED, Callers
 
 FENCE = mav.MAV_MISSION_TYPE_FENCE
 STRANGER = {"system": 200, "peer": ("203.0.113.9", 3000)}
@@ -128,3 +130,37 @@ def test_a_download_that_is_given_up_is_forgotten():
     assert asked_for(rig, 1) == [11]
     rig.run(10.1)
     assert asked_for(rig, 1) == [91]
+
+
+def test_a_flood_of_callers_pushes_out_nobody_who_has_spoken_for_a_while():
+    rig, station = Rig(), ("192.0.2.1", 50_000)
+    attitudes = 0
+    for step in range(700):
+        if step % 50 == 0:
+            rig.say(BEAT, peer=station)
+        for port in range(40):
+            if step >= 300 and step % 5 == port % 5:
+                rig.say(BEAT, system=200, peer=("203.0.113.9", 3000 + port))
+        rig.run(0.02)
+        attitudes += step >= 300 and len(of(rig.heard(station), "ATTITUDE", PLANE))
+    assert attitudes >= 155, "20 a second"
+
+
+def test_when_all_have_spoken_for_long_the_newest_makes_room():
+    callers = Callers()
+    ports = [("203.0.113.9", n) for n in range(MOST_LEARNED)]
+    for second in range(10):
+        for n, port in enumerate(ports):
+            callers.keep(second + n * 1e-3, port)
+    callers.keep(10.0, GCS)
+    assert callers.peers(10.0) == [*ports[:-1], GCS]
+
+
+def test_who_was_silent_for_long_counts_as_new():
+    callers = Callers()
+    for second in range(10):
+        callers.keep(float(second), GCS)
+    callers.keep(20.0, GCS)
+    for n in range(MOST_LEARNED):
+        callers.keep(20.1, ("203.0.113.9", n))
+    assert GCS not in callers.peers(20.1)
