@@ -3,8 +3,9 @@
 import math
 
 from schemas.messages import ArmRequest, Mode, ModeRequest, SetCurrentRequest
+from services.autopilot.mavlink.asking import Done
 from services.autopilot.mavlink.commands import Acknowledger, Command, Handler
-from services.autopilot.mavlink.line import Done, Line
+from services.autopilot.mavlink.line import Line
 from services.autopilot.mavlink.telemetry import mission_current
 from uvf.runtime.mavlink import dialect as mav
 from uvf.runtime.mavlink import modes

@@ -4,8 +4,9 @@ import math
 
 from schemas.messages import AltitudeOrder, GoalRequest, Mode, OrbitRequest, OrderRequest, SpeedOrder, Vector3
 from services.autopilot.mavlink.actions import SOURCE, set_mode
+from services.autopilot.mavlink.asking import Done
 from services.autopilot.mavlink.commands import Acknowledger, Command, Handler
-from services.autopilot.mavlink.line import Done, Line
+from services.autopilot.mavlink.line import Line
 from services.autopilot.mavlink.places import BadPlace, altitude_of, frame_of, of_aircraft, place_in, place_of, refusing
 from uvf.runtime.mavlink import dialect as mav
 

@@ -1,12 +1,14 @@
-"""One vehicle's end of the link: what goes out, and what was asked of the services and is not answered yet."""
+"""One vehicle's end of the link: what goes out, and for whom it is done."""
 
 import math
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from google.protobuf.message import Message
 
+from services.autopilot.mavlink.asking import ANSWER_WITHIN, Asking, Done
 from services.autopilot.mavlink.facts import Facts, Latest
 from services.autopilot.mavlink.statustext import TextLimiter, chunks, counted_from_one
 from services.autopilot.mavlink.vibration import Vibration
@@ -15,8 +17,6 @@ from uvf.runtime.mavlink.endpoint import Peer
 from uvf.runtime.service import Answer
 
 HELD_FOR = 1.0  # s, wall: as long a station that steers may be silent before another one may
-MOST_ASKED = 64  # requests at once that nobody has answered yet
-ANSWER_WITHIN = 1.9  # s: inside MAVSDK's four tries of 0.5 s and QGroundControl's 3 s
 
 
 class Sender(NamedTuple):
@@ -31,17 +31,6 @@ class Out(NamedTuple):
     message: mav.MAVLink_message
     to: Peer | None
     """None = every peer."""
-
-
-Done = Callable[[bool, str], None]
-"""Called once with (accepted, reason)."""
-
-
-@dataclass
-class Asked:
-    request: Message
-    done: Done
-    until: float
 
 
 @dataclass
@@ -89,11 +78,11 @@ class Line:
         self.files: Mapping[str, bytes] = {}
         """What can be read over MAVLink FTP, by path."""
         self.outbox: list[Out] = []
-        self.requests: list[tuple[str, Message]] = []
-        """(name of the call, request) to be sent with this step."""
         self.commands: dict[str, Message] = {}
         """Output -> the newest command of sticks or setpoints, until the service takes it."""
-        self._asked: list[Asked] = []
+        self._speaker: Peer | None = None
+        """Whose message, or whose request's answer, is being dealt with; None for what this end does by itself."""
+        self._asking = Asking()
         self._awaited: list[Awaited] = []
         self._limiter = TextLimiter()
 
@@ -112,6 +101,25 @@ class Line:
         for chunk in chunks(severity, text, self._limiter.next_id()):
             self.send(chunk, to)
 
+    @contextmanager
+    def hearing(self, speaker: Peer | None) -> Iterator[None]:
+        """What is done meanwhile is done for a peer."""
+        before, self._speaker = self._speaker, speaker
+        try:
+            yield
+        finally:
+            self._speaker = before
+
+    def _for_speaker(self, done: Done) -> Done:
+        """What follows from an answer is still done for who has asked."""
+        speaker = self._speaker
+
+        def told(accepted: bool, reason: str) -> None:
+            with self.hearing(speaker):
+                done(accepted, reason)
+
+        return told
+
     def refusal(self, what: str) -> Done:
         """For ``ask``, where the protocol has no answer of its own: a refusal is said in words."""
 
@@ -126,26 +134,15 @@ class Line:
         if self.latest.is_paused:
             done(False, "the simulation is paused")
             return
-        if len(self._asked) >= MOST_ASKED:
-            done(False, "too much is asked at once")
-            return
-        self._asked.append(Asked(request, done, self.t + ANSWER_WITHIN))
-        self.requests.append((call, request))
+        self._asking.ask(self.t, self._speaker, call, request, self._for_speaker(done))
 
     def answered(self, answer: Answer[Any, Any]) -> None:
         """Passes an answer to whoever asked."""
-        for asked in self._asked:
-            if asked.request is answer.request:
-                self._asked.remove(asked)
-                if answer.reply is None:
-                    asked.done(False, answer.reason or "no answer")
-                else:
-                    asked.done(answer.reply.accepted, answer.reply.reason)
-                return
+        self._asking.answered(answer)
 
     def when(self, condition: Callable[[], bool], done: Done) -> None:
         """Goes on once a condition has come true, or says that it did not in time."""
-        self._awaited.append(Awaited(condition, done, self.t + ANSWER_WITHIN))
+        self._awaited.append(Awaited(condition, self._for_speaker(done), self.t + ANSWER_WITHIN))
 
     def settle(self) -> None:
         """Goes on with what has come true, and ends what nobody has answered in time."""
@@ -157,15 +154,11 @@ class Line:
                 awaited.done(False, "the autopilot did not follow")
             else:
                 self._awaited.append(awaited)
-        late = [asked for asked in self._asked if self.t >= asked.until]
-        self._asked = [asked for asked in self._asked if self.t < asked.until]
-        for asked in late:
-            asked.done(False, "the autopilot did not answer")
+        self._asking.settle(self.t)
 
     def take_out(self) -> list[Out]:
         out, self.outbox = self.outbox, []
         return out
 
     def take_requests(self) -> list[tuple[str, Message]]:
-        requests, self.requests = self.requests, []
-        return requests
+        return self._asking.take_requests()

@@ -97,7 +97,8 @@ class VehicleLink:
             self._greet(sender.peer)
         handler = self._handlers.get(message.get_msgId())
         if handler is not None:
-            handler(message, sender)
+            with self.line.hearing(sender.peer):
+                handler(message, sender)
 
     def welcome(self, peer: Peer) -> None:
         """Somebody is new there: ground stations drop texts of a vehicle whose heartbeat they have not heard yet."""

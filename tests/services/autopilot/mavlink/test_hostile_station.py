@@ -1,6 +1,6 @@
 """A station that means harm, or is only broken, keeps nobody else from uploading, downloading and commanding."""
 
-from tests.services.autopilot.mavlink.rig import GCS, OTHER, PLANE, Rig, of, texts
+from tests.services.autopilot.mavlink.rig import GCS, OTHER, PLANE, Rig, long, of, texts
 from tests.services.autopilot.mavlink.test_missions import LAT, LON, count, item, upload
 from tests.services.autopilot.mavlink.test_two_stations import BEAT
 from uvf.runtime.mavlink import dialect as mav
@@ -164,3 +164,57 @@ def test_who_was_silent_for_long_counts_as_new():
     for n in range(MOST_LEARNED):
         callers.keep(20.1, ("203.0.113.9", n))
     assert GCS not in callers.peers(20.1)
+
+
+SPEED, RETURN, ARM = 178, 20, 400
+
+
+def flood(rig, n):
+    """Changes of speed of a stranger with many numbers, none of which is a repetition."""
+    for k in range(n):
+        rig.say(long(SPEED, 0.0, 10.0 + k * 1e-3), system=3 + k % 200, peer=STRANGER["peer"])
+
+
+def test_a_strangers_flood_of_commands_is_no_reason_to_refuse_the_operators():
+    rig = Rig()
+    rig.run()
+    flood(rig, 70)
+    rig.say(long(ARM, 1.0))
+    rig.say(long(RETURN))
+    rig.run(0.02)
+    assert {"arm", "set_mode"} <= rig.outputs.keys() and len(rig.outputs["order"]["plane"]) == 8
+    rig.run(0.04)
+    assert [(m.command, m.result) for m in of(rig.heard(), "COMMAND_ACK")] == [(ARM, 0), (RETURN, 0)]
+
+
+def test_what_makes_a_vehicle_safe_passes_whatever_else_one_asks():
+    rig = Rig(answers=False)
+    rig.run()
+    for k in range(20):
+        rig.say(long(SPEED, 0.0, 10.0 + k))
+    rig.say(long(RETURN))
+    rig.say(long(ARM, 0.0))
+    rig.run(0.02)
+    assert len(rig.outputs["order"]["plane"]) == 8 and {"arm", "set_mode"} <= rig.outputs.keys()
+
+
+def test_strangers_at_many_ports_leave_room_for_who_has_asked_nothing_yet():
+    rig = Rig(answers=False)
+    rig.run()
+    for port in range(30):
+        for k in range(8):
+            rig.say(long(SPEED, 0.0, 10.0 + k), system=200, peer=("203.0.113.9", 3000 + port))
+    rig.say(long(ARM, 1.0))
+    rig.run(0.02)
+    assert "arm" in rig.outputs and len(rig.outputs["order"]["plane"]) < 100
+
+
+def test_a_file_of_parameters_sent_at_once_is_set_as_a_whole():
+    rig = Rig()
+    rig.run()
+    names = [p.name for p in rig.service._vehicles["plane"]._parameters.table if p.name.startswith("ROLL_")]
+    values = [(name, 1.0 + 1e-3 * n) for n in range(30) for name in names[:1]]
+    for name, value in values:
+        rig.say(mav.MAVLink_param_set_message(PLANE, 1, name.encode(), value, 9))
+    heard = rig.run(1.0)
+    assert len([m for m in of(heard, "PARAM_VALUE") if m.param_id == names[0]]) >= 30 and not of(heard, "PARAM_ERROR")
