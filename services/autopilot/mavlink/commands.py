@@ -72,11 +72,11 @@ class Acknowledger:
         self._pending = pending
 
     def __call__(self, result: int, why: str = "") -> None:
-        """The final answer; ``why`` is said aloud to everybody unless it was accepted."""
+        """The final answer; ``why`` is said to who has asked, unless it was accepted."""
         self._pending.result = result
         acknowledge(self._line, self._pending.command, result)
         if why and result != mav.MAV_RESULT_ACCEPTED:
-            self._line.text(mav.MAV_SEVERITY_WARNING, why)
+            self._line.text(mav.MAV_SEVERITY_WARNING, why, self._pending.command.sender.peer)
 
     def outcome(self, prefix: str) -> Callable[[bool, str], None]:
         """For ``Line.ask``: accepted, or temporarily rejected with the autopilot's reason."""

@@ -1,7 +1,7 @@
 """One vehicle's end of the link: what goes out, and for whom it is done."""
 
 import math
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any, NamedTuple
@@ -10,7 +10,7 @@ from google.protobuf.message import Message
 
 from services.autopilot.mavlink.asking import ANSWER_WITHIN, Asking, Done
 from services.autopilot.mavlink.facts import Facts, Latest
-from services.autopilot.mavlink.statustext import TextLimiter, chunks, counted_from_one
+from services.autopilot.mavlink.statustext import TextBudget, TextLimiter, chunks, counted_from_one
 from services.autopilot.mavlink.vibration import Vibration
 from uvf.runtime.mavlink import dialect as mav
 from uvf.runtime.mavlink.endpoint import Peer
@@ -27,8 +27,15 @@ class Sender(NamedTuple):
     component: int
 
 
+class Said(NamedTuple):
+    """A text, which is cut into messages for who gets it."""
+
+    severity: int
+    text: str
+
+
 class Out(NamedTuple):
-    message: mav.MAVLink_message
+    what: mav.MAVLink_message | Said
     to: Peer | None
     """None = every peer."""
 
@@ -85,6 +92,7 @@ class Line:
         self._asking = Asking()
         self._awaited: list[Awaited] = []
         self._limiter = TextLimiter()
+        self._budget = TextBudget()
 
     def send(self, message: mav.MAVLink_message, to: Peer | None = None) -> None:
         self.outbox.append(Out(message, to))
@@ -94,12 +102,10 @@ class Line:
         return number != mav.MAVLINK_MSG_ID_ADSB_VEHICLE or peer in self.alone
 
     def text(self, severity: int, text: str, to: Peer | None = None) -> None:
-        """STATUSTEXT in chunks; the same text to the same peers at most every 10 s. Items are counted as on a station's map."""
+        """STATUSTEXT; the same text to the same peers at most every 10 s. Items are counted as on a station's map."""
         text = counted_from_one(text)
-        if not self._limiter.admits(self.t, (text, to)):
-            return
-        for chunk in chunks(severity, text, self._limiter.next_id()):
-            self.send(chunk, to)
+        if self._limiter.admits(self.t, (text, to)):
+            self.outbox.append(Out(Said(severity, text), to))
 
     @contextmanager
     def hearing(self, speaker: Peer | None) -> Iterator[None]:
@@ -121,11 +127,12 @@ class Line:
         return told
 
     def refusal(self, what: str) -> Done:
-        """For ``ask``, where the protocol has no answer of its own: a refusal is said in words."""
+        """For ``ask``, where the protocol has no answer of its own: a refusal is said in words to who has asked."""
+        to = self._speaker
 
         def done(accepted: bool, reason: str) -> None:
             if not accepted:
-                self.text(mav.MAV_SEVERITY_WARNING, f"{what} refused: {reason or 'no reason given'}")
+                self.text(mav.MAV_SEVERITY_WARNING, f"{what} refused: {reason or 'no reason given'}", to)
 
         return done
 
@@ -156,9 +163,22 @@ class Line:
                 self._awaited.append(awaited)
         self._asking.settle(self.t)
 
-    def take_out(self) -> list[Out]:
+    def take_out(self, peers: Sequence[Peer]) -> list[tuple[mav.MAVLink_message, list[Peer]]]:
+        """What goes out, and to whom; ``peers`` hear what is meant for everybody."""
         out, self.outbox = self.outbox, []
-        return out
+        found: list[tuple[mav.MAVLink_message, list[Peer]]] = []
+        for what, to in out:
+            receivers = list(peers) if to is None else [to]
+            if isinstance(what, Said):
+                found += self._chunks(what, self._budget.admitted(self.t, what.severity, receivers))
+            else:
+                found.append((what, receivers))
+        for peer, count in self._budget.left_out(self.t):
+            found += self._chunks(Said(mav.MAV_SEVERITY_WARNING, f"{count} texts left out"), [peer])
+        return found
+
+    def _chunks(self, said: Said, receivers: list[Peer]) -> list[tuple[mav.MAVLink_message, list[Peer]]]:
+        return [(chunk, receivers) for chunk in chunks(said.severity, said.text, self._limiter.next_id())] if receivers else []
 
     def take_requests(self) -> list[tuple[str, Message]]:
         return self._asking.take_requests()

@@ -290,7 +290,7 @@ class Missions:
     def _refuse(self, sender: Sender, bad: BadItem, kind: int) -> None:
         self._ack(sender, bad.result, kind)
         name = self._plans[kind].name if kind in self._plans else "Plan"
-        self._line.text(mav.MAV_SEVERITY_WARNING, f"{name} refused: {bad.reason}")
+        self._line.text(mav.MAV_SEVERITY_WARNING, f"{name} refused: {bad.reason}", sender.peer)
 
     def _ack(self, to: Sender, result: int, kind: int, opaque_id: int = 0) -> None:
         self._line.send(mav.MAVLink_mission_ack_message(to.system, to.component, result, kind, opaque_id), to.peer)

@@ -7,7 +7,7 @@ and means: go there.
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -64,11 +64,19 @@ def given(mask: int, velocity: tuple[float, float, float], place: Vector3) -> Ta
     return Target(np.array((*xy, z)), np.array((*v, climb)))
 
 
+class Alone(NamedTuple):
+    """A place that has come without another one: when [s], where, and from whom."""
+
+    t: float
+    place: Vector3
+    sender: Sender
+
+
 class Setpoints:
     def __init__(self, line: Line) -> None:
         self._line = line
         self._holder = Holder(line, "Setpoints ignored")
-        self._alone: tuple[float, Vector3] | None = None
+        self._alone: Alone | None = None
         self._streamed = -math.inf
         self._anchor: tuple[Floats, Floats] | None = None
         """(velocity, place where it was asked for first)."""
@@ -82,14 +90,15 @@ class Setpoints:
 
     def tick(self) -> None:
         """Goes to the place that has come alone."""
-        if self._alone is None or self._line.t - self._alone[0] < ALONE:
+        alone, line, status = self._alone, self._line, self._line.latest.status
+        if alone is None or line.t - alone.t < ALONE:
             return
-        place, self._alone = self._alone[1], None
-        status, line = self._line.latest.status, self._line
-        if status is None or status.mode not in TO_GO[line.facts.is_ground]:
-            line.text(mav.MAV_SEVERITY_WARNING, "Go to refused: a position target needs mode Hold, or Offboard and two each second")
-            return
-        go_to(line, GoalRequest(position=place, yaw=math.nan, source=SOURCE), True, line.refusal("Go to"))
+        self._alone = None
+        with line.hearing(alone.sender.peer):
+            if status is None or status.mode not in TO_GO[line.facts.is_ground]:
+                line.refusal("Go to")(False, "a position target needs mode Hold, or Offboard and two each second")
+            else:
+                go_to(line, GoalRequest(position=alone.place, yaw=math.nan, source=SOURCE), True, line.refusal("Go to"))
 
     def _on_local(self, m: mav.MAVLink_set_position_target_local_ned_message, sender: Sender) -> None:
         velocity = (m.vx, m.vy, m.vz)
@@ -115,7 +124,7 @@ class Setpoints:
         if not self._holder.admits(sender):
             return
         if target.has_place and not target.has_velocity:
-            self._maybe_alone(target)
+            self._maybe_alone(target, sender)
         if self._line.facts.is_ground:
             self._drive_along(target, sender)
         elif (setpoint := self._setpoint(target)) is None:
@@ -124,13 +133,13 @@ class Setpoints:
             setpoint.timestamp.CopyFrom(stamp(self._line.latest.sim_time))
             self._line.commands["setpoint"] = setpoint
 
-    def _maybe_alone(self, target: Target) -> None:
+    def _maybe_alone(self, target: Target, sender: Sender) -> None:
         t, status = self._line.t, self._line.latest.status
         streams = t - self._streamed < ALONE or (status is not None and status.mode == Mode.MODE_OFFBOARD)
         self._streamed = t
         here = self._line.latest.position
         z = float(target.place[2]) if math.isfinite(target.place[2]) or here is None else float(here[2])
-        self._alone = None if streams else (t, Vector3(x=float(target.place[0]), y=float(target.place[1]), z=z))
+        self._alone = None if streams else Alone(t, Vector3(x=float(target.place[0]), y=float(target.place[1]), z=z), sender)
 
     def _setpoint(self, target: Target) -> FlightSetpoint | None:
         """Place and velocity: the line through the place; a velocity alone: from where it was asked for first; a place alone: round it."""

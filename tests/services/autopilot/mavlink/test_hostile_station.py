@@ -1,5 +1,7 @@
 """A station that means harm, or is only broken, keeps nobody else from uploading, downloading and commanding."""
 
+from schemas.convert import stamp
+from schemas.messages import Event
 from tests.services.autopilot.mavlink.rig import GCS, OTHER, PLANE, Rig, long, of, texts
 from tests.services.autopilot.mavlink.test_missions import LAT, LON, count, item, upload
 from tests.services.autopilot.mavlink.test_two_stations import BEAT
@@ -218,3 +220,55 @@ def test_a_file_of_parameters_sent_at_once_is_set_as_a_whole():
         rig.say(mav.MAVLink_param_set_message(PLANE, 1, name.encode(), value, 9))
     heard = rig.run(1.0)
     assert len([m for m in of(heard, "PARAM_VALUE") if m.param_id == names[0]]) >= 30 and not of(heard, "PARAM_ERROR")
+
+
+def test_texts_of_a_refusal_go_to_the_asker_alone():
+    rig = Rig()
+    rig.plane.refuse |= dict.fromkeys(("set_mode", "set_mission", "arm", "goal", "set_current"), "no")
+    rig.run(2.0)
+    for message in (
+        mav.MAVLink_set_mode_message(PLANE, 1, 77),
+        mav.MAVLink_set_mode_message(PLANE, 1, 84148224),
+        mav.MAVLink_mission_set_current_message(PLANE, 1, 4),
+        mav.MAVLink_set_position_target_local_ned_message(0, PLANE, 1, 1, 0b110111111000, 0, 0, -80, 0, 0, 0, 0, 0, 0, 0, 0),
+        long(ARM, 1.0),
+        long(ARM, 2.0),
+        count(501),
+        item(0, current=2),
+    ):
+        rig.say(message, **STRANGER)
+        refused = []
+        for _ in range(75):
+            rig.run(0.02)
+            refused += [text for text in texts(rig.heard(STRANGER["peer"])) if "simulated" not in text]
+            assert not texts(rig.heard(GCS)) and not texts(rig.heard(OTHER))
+        assert len(refused) == 1, message
+
+
+def refusals(rig, seconds, each_step):
+    """Texts that the asker got in a while of asking for modes that do not exist, some in each step."""
+    heard = []
+    for step in range(round(seconds / 0.02)):
+        for k in range(each_step):
+            rig.say(mav.MAVLink_set_mode_message(PLANE, 1, 1000 * step + k + 1))
+        rig.run(0.02)
+        heard += texts(rig.heard())
+    return [text for text in heard if "simulated" not in text]
+
+
+def test_a_flood_of_texts_is_left_out_and_said_in_one_line():
+    rig = Rig()
+    rig.say(BEAT)
+    rig.run(2.0)
+    flooded = refusals(rig, 1.0, 40)
+    assert 50 <= len(flooded) <= 72
+    after = refusals(rig, 4.0, 0)
+    assert after == [f"{2000 - len(flooded)} texts left out"]
+
+
+def test_what_is_critical_is_never_left_out():
+    rig = Rig()
+    rig.run(2.0)
+    refusals(rig, 1.0, 40)
+    rig.events = {"plane": [Event(severity=Event.CRITICAL, text="motor failed", timestamp=stamp(rig.t))]}
+    assert "motor failed" in texts(rig.run(0.02))
