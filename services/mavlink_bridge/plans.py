@@ -4,9 +4,9 @@ from collections.abc import Sequence
 
 from schemas.messages import Fence, Mission, MissionItem, RallyPoints, Vector3
 from services.mavlink_bridge.frame import Chart
-from services.mavlink_bridge.limits import far_off
 from uvf.runtime.mavlink import dialect as mav
 from uvf.runtime.mavlink import fence_items, rally_items
+from uvf.runtime.mavlink.limits import far_off
 from uvf.runtime.mavlink.mission_items import (
     ORIGIN,
     WITH_PLACE,

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from services.autopilot.mavlink.line import Line, Sender
 from uvf.runtime.mavlink import dialect as mav
 from uvf.runtime.mavlink.bounded import make_room
+from uvf.runtime.mavlink.names import command_name
 
 LARGEST = 1e9  # no parameter of any command means anything beyond
 NOT_GIVEN = 2**31 - 1  # x or y of a COMMAND_INT without a place
@@ -38,8 +39,9 @@ class Command:
         return cls(m.command, (m.param1, m.param2, m.param3, m.param4, x, y, m.z), m.frame, sender)
 
     @property
-    def is_sane(self) -> bool:
-        return all(math.isnan(v) or abs(v) <= LARGEST for v in self.p)
+    def absurd(self) -> int | None:
+        """The first parameter, counted from 1, that can mean nothing."""
+        return next((n for n, v in enumerate(self.p, 1) if not (math.isnan(v) or abs(v) <= LARGEST)), None)
 
     def same_as(self, other: "Command") -> bool:
         return (self.number, self.sender, repr(self.p)) == (other.number, other.sender, repr(other.p))
@@ -146,8 +148,9 @@ class Commands:
         handler = self._handlers.get(command.number)
         if handler is None:
             done(mav.MAV_RESULT_UNSUPPORTED)
-        elif not command.is_sane:
-            done(mav.MAV_RESULT_DENIED, f"Command {command.number}: a parameter is infinite or absurd")
+        elif (n := command.absurd) is not None:
+            why = f"parameter {n} is {command.p[n - 1]:.4g}: name a number within {LARGEST:g}, or NaN to leave it out"
+            done(mav.MAV_RESULT_DENIED, f"{command_name(command.number)} refused: {why}")
         else:
             handler(self._line, command, done)
 

@@ -10,6 +10,7 @@ from google.protobuf.message import Message
 
 from services.autopilot.mavlink.asking import ANSWER_WITHIN, Asking, Done
 from services.autopilot.mavlink.facts import Facts, Latest
+from services.autopilot.mavlink.refusals import plain
 from services.autopilot.mavlink.statustext import TextBudget, TextLimiter, chunks, counted_from_one
 from services.autopilot.mavlink.vibration import Vibration
 from uvf.runtime.mavlink import dialect as mav
@@ -121,8 +122,9 @@ class Line:
         speaker = self._speaker
 
         def told(accepted: bool, reason: str) -> None:
+            """In words for people: the border's are for who writes services."""
             with self.hearing(speaker):
-                done(accepted, reason)
+                done(accepted, plain(reason))
 
         return told
 

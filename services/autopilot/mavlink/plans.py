@@ -20,6 +20,7 @@ from uvf.runtime.mavlink.mission_items import (
     to_wire,
     unpacked,
 )
+from uvf.runtime.mavlink.names import command_name
 from uvf.runtime.plan_ids import fence_id, rally_id
 
 Item = mav.MAVLink_mission_item_int_message
@@ -168,7 +169,7 @@ class RallyPlan(Plan[RallyPoints]):
 
     def read(self, item: Item) -> Item:
         if item.command != mav.MAV_CMD_NAV_RALLY_POINT:
-            raise BadItem(mav.MAV_MISSION_UNSUPPORTED, f"command {item.command} is no rally point")
+            raise BadItem(mav.MAV_MISSION_UNSUPPORTED, f"{command_name(item.command)} is no rally point")
         place_of(item, self._line.facts, self.home_z)
         return item
 

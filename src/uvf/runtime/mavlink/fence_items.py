@@ -10,6 +10,7 @@ from uvf.runtime.fence_file import MOST_VERTICES, MOST_ZONES
 from uvf.runtime.mavlink import dialect as mav
 from uvf.runtime.mavlink.geo import Placed
 from uvf.runtime.mavlink.mission_items import BadItem, Body, packed, place_of, point_body, unpacked
+from uvf.runtime.mavlink.names import command_name
 
 Item = mav.MAVLink_mission_item_int_message
 
@@ -23,7 +24,7 @@ MOST_GROUP = 255
 def checked(item: Item, facts: Placed, home_z: float) -> Item:
     """The item, which by itself makes sense. Raises BadItem."""
     if item.command not in (POINT, *POLYGONS, *CIRCLES):
-        raise BadItem(mav.MAV_MISSION_UNSUPPORTED, f"command {item.command} is none of a fence")
+        raise BadItem(mav.MAV_MISSION_UNSUPPORTED, f"{command_name(item.command)} is none of a fence")
     place_of(item, facts, home_z)
     if item.command in CIRCLES and not 0 < item.param1 <= 1e6:
         raise BadItem(mav.MAV_MISSION_INVALID_PARAM1, f"radius {item.param1:g} is out of range")

@@ -8,6 +8,8 @@ from schemas.convert import array
 from schemas.messages import Mission, MissionItem, Vector3
 from uvf.runtime.mavlink import dialect as mav
 from uvf.runtime.mavlink.geo import AMSL_FRAMES, HOME_FRAMES, Placed
+from uvf.runtime.mavlink.limits import too_far, too_high, too_wide
+from uvf.runtime.mavlink.names import bad_frame, command_name
 from uvf.runtime.plan_ids import mission_id
 
 ORIGIN = struct.Struct("<BHB4fiif")
@@ -80,12 +82,12 @@ def from_wire(item: mav.MAVLink_mission_item_int_message, facts: Placed, home_z:
     if item.command in REFUSED:
         raise BadItem(mav.MAV_MISSION_UNSUPPORTED, REFUSED[item.command])
     if kind is None:
-        raise BadItem(mav.MAV_MISSION_UNSUPPORTED, f"command {item.command} is not supported")
+        raise BadItem(mav.MAV_MISSION_UNSUPPORTED, f"{command_name(item.command)} is not supported: leave it out")
     params = (item.param1, item.param2, item.param3, item.param4)
     if facts.is_ground and kind in OF_AIRCRAFT:
         raise BadItem(mav.MAV_MISSION_UNSUPPORTED, f"{MissionItem.Kind.Name(kind)} is not for a ground vehicle")
     if any(math.isinf(v) for v in (*params, item.z)):
-        raise BadItem(mav.MAV_MISSION_INVALID, "a parameter is infinite")
+        raise BadItem(mav.MAV_MISSION_INVALID, f"a parameter of {command_name(item.command)} is infinite")
     result = MissionItem(kind=kind, origin=packed(item))
     if _has_place(item, kind):
         result.position.CopyFrom(place_of(item, facts, home_z))
@@ -116,7 +118,7 @@ def unpacked(origin: bytes) -> "Body":
 def place_of(item: mav.MAVLink_mission_item_int_message, facts: Placed, home_z: float) -> Vector3:
     """home_z: height of home [m, world]. Raises BadItem."""
     if item.frame not in HOME_FRAMES + AMSL_FRAMES:
-        raise BadItem(mav.MAV_MISSION_UNSUPPORTED_FRAME, f"frame {item.frame} is not supported")
+        raise BadItem(mav.MAV_MISSION_UNSUPPORTED_FRAME, bad_frame(item.frame))
     if abs(item.x) > 900_000_000:
         raise BadItem(mav.MAV_MISSION_INVALID_PARAM5_X, "latitude is out of range")
     if abs(item.y) > 1_800_000_000:
@@ -124,7 +126,12 @@ def place_of(item: mav.MAVLink_mission_item_int_message, facts: Placed, home_z: 
     if not math.isfinite(item.z):
         raise BadItem(mav.MAV_MISSION_INVALID_PARAM7, "altitude is missing")
     base = home_z + facts.origin.altitude if item.frame in HOME_FRAMES else 0.0
-    return facts.world(item.x * 1e-7, item.y * 1e-7, base + item.z)
+    place = facts.world(item.x * 1e-7, item.y * 1e-7, base + item.z)
+    if reason := too_far(place):
+        raise BadItem(mav.MAV_MISSION_INVALID_PARAM5_X, reason)
+    if reason := too_high(place):
+        raise BadItem(mav.MAV_MISSION_INVALID_PARAM7, reason)
+    return place
 
 
 def _fill(item: MissionItem, command: int, p: tuple[float, ...]) -> None:
@@ -136,23 +143,29 @@ def _fill(item: MissionItem, command: int, p: tuple[float, ...]) -> None:
         if p[3] != 0:  # as ground stations send it who mean nothing by it; north is 360 degrees
             item.course = math.remainder(math.pi / 2 - math.radians(p[3]), math.tau)
     if command == mav.MAV_CMD_NAV_LOITER_TO_ALT:
-        item.radius, item.to_altitude = p[1], True
+        item.radius, item.to_altitude = _radius(p[1], mav.MAV_MISSION_INVALID_PARAM2), True
     if command == mav.MAV_CMD_DO_SET_CAM_TRIGG_DIST:
         item.distance = _not_negative(p[0], mav.MAV_MISSION_INVALID_PARAM1, "distance between pictures")
     if command in (mav.MAV_CMD_NAV_LOITER_UNLIM, mav.MAV_CMD_NAV_LOITER_TURNS, mav.MAV_CMD_NAV_LOITER_TIME):
-        item.radius = p[2]
+        item.radius = _radius(p[2], mav.MAV_MISSION_INVALID_PARAM3)
     if command == mav.MAV_CMD_NAV_LOITER_TURNS:
         item.turns = _not_negative(p[0], mav.MAV_MISSION_INVALID_PARAM1, "number of turns")
     if command == mav.MAV_CMD_DO_JUMP:
         item.jump_to = int(_not_negative(p[0], mav.MAV_MISSION_INVALID_PARAM1, "item to jump to"))
         item.repeat = _count(p[1])
     if command == mav.MAV_CMD_DO_CHANGE_SPEED and p[1] > 0:
-        item.speed = p[1]
+        item.speed = _not_negative(p[1], mav.MAV_MISSION_INVALID_PARAM2, "speed")
 
 
 def _not_negative(value: float, result: int, what: str) -> float:
     if not 0 <= value <= 1e6:
         raise BadItem(result, f"{what} {value:g} is out of range")
+    return value
+
+
+def _radius(value: float, result: int) -> float:
+    if reason := too_wide(value):
+        raise BadItem(result, reason)
     return value
 
 
