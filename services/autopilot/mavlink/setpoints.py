@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from schemas.convert import array, stamp, yaw_of
+from schemas.limits import PLACE
 from schemas.messages import (
     AttitudeSetpoint,
     CircleSetpoint,
@@ -29,6 +30,8 @@ from services.autopilot.mavlink.places import BadPlace, place_of
 from uvf.maths.geodesy import Floats
 from uvf.maths.rotations import to_euler
 from uvf.runtime.mavlink import dialect as mav
+from uvf.runtime.mavlink.limits import FASTEST, HIGHEST
+from uvf.runtime.mavlink.names import frame_name
 
 ALONE = 1.0  # s, wall: after which a target without another is no stream
 IGNORE_PLACE, IGNORE_Z, IGNORE_VELOCITY, IGNORE_VZ, IGNORE_RATE = 0b011, 0b100, 0b011_000, 0b100_000, 1 << 11
@@ -53,6 +56,19 @@ class Target:
     @property
     def has_velocity(self) -> bool:
         return bool(np.isfinite(self.velocity[:2]).all())
+
+    @property
+    def absurd(self) -> str:
+        """Why nobody can follow it, without figures: a stream of them is told once."""
+        if np.isinf(self.place).any() or np.isinf(self.velocity).any() or (self.has_velocity and math.isnan(self.velocity[2])):
+            return "a place or a velocity is not finite"
+        if self.has_place and math.hypot(*self.place[:2]) > PLACE:
+            return f"the place is more than {PLACE / 1e3:g} km away from the field"
+        if abs(self.place[2]) > HIGHEST:
+            return f"the place is more than {HIGHEST:g} m high"
+        if self.has_velocity and math.hypot(*self.velocity) > FASTEST:
+            return f"the velocity is beyond {FASTEST:g} m/s"
+        return ""
 
 
 def given(mask: int, velocity: tuple[float, float, float], place: Vector3) -> Target:
@@ -106,7 +122,7 @@ class Setpoints:
             rate = 0.0 if m.type_mask & IGNORE_RATE else m.yaw_rate
             self._drive(sender, m.vx if not m.type_mask & IGNORE_VELOCITY else math.nan, -rate)
         elif m.coordinate_frame != mav.MAV_FRAME_LOCAL_NED:
-            self._refuse(sender, f"frame {m.coordinate_frame} is not supported")
+            self._refuse(sender, f"{frame_name(m.coordinate_frame)} is not supported: choose LOCAL_NED")
         else:
             self._take(given(m.type_mask, velocity, Vector3(x=m.y, y=m.x, z=-m.z)), sender)
 
@@ -121,17 +137,23 @@ class Setpoints:
         self._take(given(m.type_mask, (m.vx, m.vy, m.vz), place), sender)
 
     def _take(self, target: Target, sender: Sender) -> None:
+        """What nobody can follow keeps no other program from steering."""
+        if why := target.absurd or self._lacking(target):
+            self._refuse(sender, why)
+            return
         if not self._holder.admits(sender):
             return
         if target.has_place and not target.has_velocity:
             self._maybe_alone(target, sender)
         if self._line.facts.is_ground:
             self._drive_along(target, sender)
-        elif (setpoint := self._setpoint(target)) is None:
-            self._refuse(sender, "a place or a velocity over ground that is not zero is needed")
-        else:
+        elif (setpoint := self._setpoint(target)) is not None:
             setpoint.timestamp.CopyFrom(stamp(self._line.latest.sim_time))
             self._line.commands["setpoint"] = setpoint
+
+    def _lacking(self, target: Target) -> str:
+        moves = math.hypot(*target.velocity[:2]) > 0 if target.has_velocity else target.has_place
+        return "" if moves or self._line.facts.is_ground else "a place or a velocity over ground that is not zero is needed"
 
     def _maybe_alone(self, target: Target, sender: Sender) -> None:
         t, status = self._line.t, self._line.latest.status
@@ -144,13 +166,11 @@ class Setpoints:
     def _setpoint(self, target: Target) -> FlightSetpoint | None:
         """Place and velocity: the line through the place; a velocity alone: from where it was asked for first; a place alone: round it."""
         nav = self._line.latest.nav
-        if nav is None or not (target.has_place or target.has_velocity):
+        if nav is None:
             return None
         place = np.where(np.isfinite(target.place), target.place, array(nav.position))
         if not target.has_velocity:
             return FlightSetpoint(circle=CircleSetpoint(centre=_vector(place), radius=self._line.latest.own["hold_radius"]))
-        if not math.hypot(*target.velocity[:2]) > 0:
-            return None
         if not target.has_place:
             place = np.array((*self._anchored(target.velocity, place)[:2], place[2] if math.isfinite(target.place[2]) else self._anchor_z))
         airspeed = math.hypot(target.velocity[0] - nav.wind.x, target.velocity[1] - nav.wind.y)
@@ -177,10 +197,15 @@ class Setpoints:
 
     def _drive(self, sender: Sender, linear: float, angular: float) -> None:
         status = self._line.latest.status
-        if status is None or status.mode != Mode.MODE_OFFBOARD or not self._holder.admits(sender):
+        if status is None or status.mode != Mode.MODE_OFFBOARD:
             return
         if not (math.isfinite(linear) and math.isfinite(angular)):
-            self._refuse(sender, "a velocity is needed")
+            self._refuse(sender, "a finite velocity is needed")
+            return
+        if abs(linear) > FASTEST or abs(angular) > FASTEST:
+            self._refuse(sender, f"the velocity is beyond {FASTEST:g} m/s, or the rate beyond {FASTEST:g} rad/s")
+            return
+        if not self._holder.admits(sender):
             return
         now = stamp(self._line.latest.sim_time)
         self._line.commands["drive"] = DriveCommand(timestamp=now, linear=linear, angular=angular)
@@ -198,7 +223,7 @@ class Setpoints:
             self._line.commands["setpoint"] = FlightSetpoint(timestamp=stamp(self._line.latest.sim_time), attitude=asked)
 
     def _refuse(self, sender: Sender, why: str) -> None:
-        self._line.text(mav.MAV_SEVERITY_WARNING, f"Setpoint refused: {why}", sender.peer)
+        self._line.text(mav.MAV_SEVERITY_WARNING, f"Setpoints refused: {why}", sender.peer)
 
 
 def _vector(v: Floats) -> Vector3:
