@@ -1,12 +1,9 @@
 """What fits into MAVLink's fields, what can be a place, and what of an autopilot's numbers and words the bus can carry."""
 
-import math
-
-from schemas.limits import PLACE
 from schemas.messages import Vector3
 from services.mavlink_bridge.frame import Chart
+from uvf.runtime.mavlink.limits import HIGHEST, far_off
 
-HIGHEST = 1e5  # m AMSL, either way
 LARGEST = 1e9  # of any unit: a thousand of them together are below what a reader on the bus refuses
 LARGEST_FLOAT = 3.4028234663852886e38  # of 32 bits
 WHOLE_FLOAT = 2**24  # up to here each whole number is a 32-bit float
@@ -30,16 +27,6 @@ def amsl(chart: Chart, z: float) -> float:
     if not abs(altitude) <= HIGHEST:
         raise Refused(f"an altitude of {altitude:g} m above sea level: name one within {HIGHEST:g} m")
     return altitude
-
-
-def far_off(place: Vector3) -> str:
-    """Why no autopilot is sent to a place of the world; empty if it may be."""
-    away = math.hypot(place.x, place.y)
-    if not away <= PLACE:
-        return f"that place is {away / 1e3:g} km from the world's origin: name one within {PLACE / 1e3:g} km"
-    if not abs(place.z) <= HIGHEST:
-        return f"that place is {place.z:g} m high: name one within {HIGHEST:g} m"
-    return ""
 
 
 def is_on_earth(latitude: float, longitude: float) -> bool:

@@ -4,16 +4,21 @@ from collections.abc import Sequence
 
 from schemas.messages import Fence, Mission, MissionItem, RallyPoints, Vector3
 from services.mavlink_bridge.frame import Chart
-from services.mavlink_bridge.limits import far_off
 from uvf.runtime.mavlink import dialect as mav
 from uvf.runtime.mavlink import fence_items, rally_items
+from uvf.runtime.mavlink.limits import far_off
 from uvf.runtime.mavlink.mission_items import (
     ORIGIN,
+    SAME_PLACE,
     WITH_PLACE,
     BadItem,
     Body,
+    as_item,
     check_whole,
     from_wire,
+    is_nowhere,
+    is_same_place,
+    means_the_same,
     mission_of,
     packed,
     to_wire,
@@ -22,14 +27,7 @@ from uvf.runtime.mavlink.mission_items import (
 from uvf.runtime.validation import error_in
 
 Item = mav.MAVLink_mission_item_int_message
-SAME_PLACE = 0.5  # m
 MADE_UP = mav.MAV_MISSION_INVALID
-
-
-def as_item(body: Body) -> Item:
-    """The wire item of a body, for no one in particular."""
-    frame, command, autocontinue, p1, p2, p3, p4, x, y, z = body
-    return mav.MAVLink_mission_item_int_message(0, 0, 0, frame, command, 0, autocontinue, p1, p2, p3, p4, x, y, z)
 
 
 class MissionScribe:
@@ -47,7 +45,7 @@ class MissionScribe:
         try:
             check_whole(items)
         except BadItem:  # a delay before any place
-            items = [MissionItem(kind=MissionItem.JUMP, origin=i.origin) if _is_nowhere(i) else i for i in items]
+            items = [MissionItem(kind=MissionItem.JUMP, origin=i.origin) if is_nowhere(i) else i for i in items]
         return mission_of(items)
 
     def _read(self, item: Item, chart: Chart, home_z: float) -> MissionItem:
@@ -80,7 +78,7 @@ class MissionScribe:
         """Without what it came from, where that says something else."""
         own = MissionItem()
         own.CopyFrom(item)
-        if len(item.origin) == ORIGIN.size and not _means_the_same(item, chart, home_z):
+        if len(item.origin) == ORIGIN.size and not means_the_same(item, chart, home_z):
             own.ClearField("origin")
         return own
 
@@ -89,10 +87,6 @@ class MissionScribe:
         if self.first and body[1] == mav.MAV_CMD_DO_JUMP:
             return (*body[:3], float(item.jump_to + self.first), *body[4:])
         return body
-
-
-def _is_nowhere(item: MissionItem) -> bool:
-    return item.kind in WITH_PLACE and not item.HasField("position")
 
 
 def _wrong(item: MissionItem, items: int) -> str:
@@ -114,30 +108,6 @@ def _misshapen(origins: Sequence[bytes]) -> str:
     if not lengths:
         return ""
     return f"an origin of {lengths[0]} bytes, not {ORIGIN.size}: leave origin out, or give it back as it was read"
-
-
-def _means_the_same(item: MissionItem, chart: Chart, home_z: float) -> bool:
-    """Whether the wire item is what the item is and lies where it does: with another home, or changed by somebody, it does not."""
-    wire = as_item(unpacked(item.origin))
-    try:
-        read = from_wire(wire, chart, home_z)
-    except BadItem:
-        return item.kind == MissionItem.JUMP  # one that the system has no word for
-    if item.kind == MissionItem.JUMP:
-        return read.kind == MissionItem.JUMP or _is_nowhere(read) or bool(error_in(read))
-    if read.HasField("position") and not _is_same_place(read.position, item.position):
-        return False
-    own = MissionItem()
-    own.CopyFrom(item)
-    for each in (read, own):
-        each.ClearField("position")
-        each.ClearField("origin")
-    return read == own
-
-
-def _is_same_place(one: Vector3, other: Vector3, ignore_height: bool = False) -> bool:
-    apart = abs(one.x - other.x), abs(one.y - other.y), 0.0 if ignore_height else abs(one.z - other.z)
-    return max(apart) < SAME_PLACE
 
 
 def fence_read(bodies: Sequence[Body], chart: Chart, home_z: float) -> Fence:
@@ -185,9 +155,9 @@ def _is_same_fence(one: Fence, other: Fence) -> bool:
         if (a.excludes, a.group, len(a.vertices)) != (b.excludes, b.group, len(b.vertices)) or abs(a.radius - b.radius) > SAME_PLACE:
             return False
         pairs = zip(a.vertices, b.vertices, strict=True) if a.vertices else [(a.centre, b.centre)]
-        if not all(_is_same_place(p, q, ignore_height=True) for p, q in pairs):
+        if not all(is_same_place(p, q, ignore_height=True) for p, q in pairs):
             return False
-    return _is_same_place(one.return_point, other.return_point)
+    return is_same_place(one.return_point, other.return_point)
 
 
 def rally_read(bodies: Sequence[Body], chart: Chart, home_z: float) -> RallyPoints:
@@ -209,4 +179,4 @@ def rally_bodies(rally: RallyPoints, chart: Chart, home_z: float) -> list[Body]:
 
 def _is_same_rally(one: RallyPoints, other: RallyPoints) -> bool:
     """But for rounding."""
-    return len(one.points) == len(other.points) and all(map(_is_same_place, one.points, other.points))
+    return len(one.points) == len(other.points) and all(map(is_same_place, one.points, other.points))

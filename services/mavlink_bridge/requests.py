@@ -28,9 +28,10 @@ from schemas.messages import (
 from services.mavlink_bridge.autopilot import Autopilot
 from services.mavlink_bridge.commands import ANSWER_WITHIN, NAN, Command, command
 from services.mavlink_bridge.frame import Chart
-from services.mavlink_bridge.limits import HIGHEST, Refused, amsl, where
+from services.mavlink_bridge.limits import Refused, amsl, where
 from services.mavlink_bridge.wire import Done
 from uvf.runtime.mavlink import dialect as mav
+from uvf.runtime.mavlink.limits import HIGHEST
 from uvf.runtime.service import Later
 
 FORCE = {True: 2989.0, False: 21196.0}

@@ -3,8 +3,9 @@
 import math
 
 from schemas.messages import ArmRequest, Mode, ModeRequest, SetCurrentRequest
+from services.autopilot.mavlink.asking import Done
 from services.autopilot.mavlink.commands import Acknowledger, Command, Handler
-from services.autopilot.mavlink.line import Done, Line
+from services.autopilot.mavlink.line import Line, Sender
 from services.autopilot.mavlink.telemetry import mission_current
 from uvf.runtime.mavlink import dialect as mav
 from uvf.runtime.mavlink import modes
@@ -31,11 +32,11 @@ def set_current(line: Line, index: int, done: Done) -> None:
     line.ask("set_current", SetCurrentRequest(index=index, source=SOURCE), told)
 
 
-def on_set_mode(line: Line, message: mav.MAVLink_set_mode_message) -> None:
+def on_set_mode(line: Line, message: mav.MAVLink_set_mode_message, sender: Sender) -> None:
     """SET_MODE has no answer but the next HEARTBEAT; a refusal is said in words."""
     row = modes.from_custom(message.custom_mode)
     if row is None:
-        line.text(mav.MAV_SEVERITY_WARNING, f"There is no mode {message.custom_mode:#010x}")
+        line.text(mav.MAV_SEVERITY_WARNING, modes.unknown(message.custom_mode), sender.peer)
         return
     set_mode(line, row.mode, line.refusal(f"Mode {row.name}"))
 
@@ -51,7 +52,7 @@ def _to_mode(mode: Mode) -> Handler:
 def _do_set_mode(line: Line, command: Command, ack: Acknowledger) -> None:
     row = modes.from_command(command.p[1], command.p[2])
     if row is None:
-        ack(mav.MAV_RESULT_DENIED, "There is no such mode")
+        ack(mav.MAV_RESULT_DENIED, f"There is no such mode. {modes.THERE_ARE}")
         return
     set_mode(line, row.mode, ack.outcome(f"Mode {row.name} refused"))
 

@@ -7,13 +7,15 @@ from dataclasses import dataclass
 from services.autopilot.mavlink.line import Line, Sender
 from uvf.runtime.mavlink import dialect as mav
 from uvf.runtime.mavlink.bounded import make_room
+from uvf.runtime.mavlink.names import command_name
 
 LARGEST = 1e9  # no parameter of any command means anything beyond
 NOT_GIVEN = 2**31 - 1  # x or y of a COMMAND_INT without a place
 SCALE = 1e-7  # deg per unit of x and y
-REPEATED_WITHIN = 1.0  # s: two tries of MAVSDK
+REPEATED_WITHIN = 1.0  # s, of a COMMAND_INT: two tries of MAVSDK
+CONFIRMED_WITHIN = 5.0  # s between two tries of a COMMAND_LONG: QGroundControl's are 3 s apart
 MOST_SENDERS, MOST_COMMANDS = 64, 32
-REMEMBERED_FOR = 60.0  # s: longer than anybody repeats
+REMEMBERED_FOR = 10.0  # s: longer than anybody repeats, and than a command waits for its outcome
 
 
 @dataclass(frozen=True)
@@ -37,8 +39,9 @@ class Command:
         return cls(m.command, (m.param1, m.param2, m.param3, m.param4, x, y, m.z), m.frame, sender)
 
     @property
-    def is_sane(self) -> bool:
-        return all(math.isnan(v) or abs(v) <= LARGEST for v in self.p)
+    def absurd(self) -> int | None:
+        """The first parameter, counted from 1, that can mean nothing."""
+        return next((n for n, v in enumerate(self.p, 1) if not (math.isnan(v) or abs(v) <= LARGEST)), None)
 
     def same_as(self, other: "Command") -> bool:
         return (self.number, self.sender, repr(self.p)) == (other.number, other.sender, repr(other.p))
@@ -52,6 +55,15 @@ class Pending:
     t: float
     """s, wall: when it came."""
     result: int | None = None
+    confirmation: int = 0
+    heard: float = -math.inf
+    """Of the newest repetition, or of the command itself: its count, and when [s, wall]."""
+
+    def __post_init__(self) -> None:
+        self.hear(self.command, self.t)
+
+    def hear(self, command: Command, t: float) -> None:
+        self.confirmation, self.heard = command.confirmation, t
 
 
 class Acknowledger:
@@ -62,11 +74,11 @@ class Acknowledger:
         self._pending = pending
 
     def __call__(self, result: int, why: str = "") -> None:
-        """The final answer; ``why`` is said aloud to everybody unless it was accepted."""
+        """The final answer; ``why`` is said to who has asked, unless it was accepted."""
         self._pending.result = result
         acknowledge(self._line, self._pending.command, result)
         if why and result != mav.MAV_RESULT_ACCEPTED:
-            self._line.text(mav.MAV_SEVERITY_WARNING, why)
+            self._line.text(mav.MAV_SEVERITY_WARNING, why, self._pending.command.sender.peer)
 
     def outcome(self, prefix: str) -> Callable[[bool, str], None]:
         """For ``Line.ask``: accepted, or temporarily rejected with the autopilot's reason."""
@@ -115,7 +127,7 @@ class Commands:
         """Drops what nobody will repeat any more."""
         since = self._line.t - REMEMBERED_FOR
         for sender, mine in list(self._last.items()):
-            self._last[sender] = {number: pending for number, pending in mine.items() if pending.t > since}
+            self._last[sender] = {number: pending for number, pending in mine.items() if pending.heard > since}
             if not self._last[sender]:
                 del self._last[sender]
 
@@ -136,19 +148,29 @@ class Commands:
         handler = self._handlers.get(command.number)
         if handler is None:
             done(mav.MAV_RESULT_UNSUPPORTED)
-        elif not command.is_sane:
-            done(mav.MAV_RESULT_DENIED, f"Command {command.number}: a parameter is infinite or absurd")
+        elif (n := command.absurd) is not None:
+            why = f"parameter {n} is {command.p[n - 1]:.4g}: name a number within {LARGEST:g}, or NaN to leave it out"
+            done(mav.MAV_RESULT_DENIED, f"{command_name(command.number)} refused: {why}")
         else:
             handler(self._line, command, done)
 
     def _is_repetition(self, command: Command) -> bool:
-        """A sender repeats when the answer was late or lost: COMMAND_LONG counts ``confirmation`` up, COMMAND_INT cannot."""
-        last = self._last.get(command.sender, {}).get(command.number)
+        """A sender repeats when the answer was late or lost: COMMAND_LONG counts ``confirmation`` up, COMMAND_INT cannot.
+
+        A count that does not go up is another command, however high it is: taken for a repetition it would be
+        acknowledged and not be done.
+        """
+        last, t = self._last.get(command.sender, {}).get(command.number), self._line.t
         if last is None or not last.command.same_as(command):
             return False
+        if command.frame is not None:
+            repeats = t - last.t < REPEATED_WITHIN
+        else:
+            repeats = command.confirmation > last.confirmation and t - last.heard <= CONFIRMED_WITHIN
+        if last.result is None or repeats:
+            last.hear(command, t)
         if last.result is None:
             return True  # no "in progress": MAVSDK takes it for a refusal, and version 4 ends its program at the answer that follows
-        if command.confirmation > 0 or (command.frame is not None and self._line.t - last.t < REPEATED_WITHIN):
+        if repeats:
             acknowledge(self._line, command, last.result)
-            return True
-        return False
+        return repeats

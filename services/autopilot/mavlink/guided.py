@@ -4,9 +4,10 @@ import math
 
 from schemas.messages import AltitudeOrder, GoalRequest, Mode, OrbitRequest, OrderRequest, SpeedOrder, Vector3
 from services.autopilot.mavlink.actions import SOURCE, set_mode
+from services.autopilot.mavlink.asking import Done
 from services.autopilot.mavlink.commands import Acknowledger, Command, Handler
-from services.autopilot.mavlink.line import Done, Line
-from services.autopilot.mavlink.places import BadPlace, altitude_of, frame_of, of_aircraft, place_in, place_of, refusing
+from services.autopilot.mavlink.line import Line
+from services.autopilot.mavlink.places import BadPlace, altitude_of, check_radius, frame_of, of_aircraft, place_in, place_of, refusing
 from uvf.runtime.mavlink import dialect as mav
 
 CIRCLES = (Mode.MODE_HOLD, Mode.MODE_ORBIT, Mode.MODE_RETURN)
@@ -33,6 +34,7 @@ def _reposition(line: Line, command: Command, ack: Acknowledger) -> None:
         turn = -1.0 if direction == COUNTERCLOCKWISE else 1.0
         ring = turn * (radius if radius > 0 else line.latest.own["hold_radius"] if turn < 0 else 0.0)
         place = place_in(line, command)
+        check_radius(radius)
         _check_height(line, place, height)
         speed = max(speed, 0.0) if math.isfinite(speed) else 0.0
         go_to(line, GoalRequest(position=place, yaw=math.nan, source=SOURCE, radius=ring, speed=speed), True, done)
@@ -118,6 +120,7 @@ def _orbit(line: Line, command: Command, ack: Acknowledger) -> None:
     if turns > 0 or speed < 0:
         ack(mav.MAV_RESULT_DENIED, "Orbit refused: " + ("turns are counted in missions only" if turns > 0 else "the speed is negative"))
         return
+    check_radius(radius)
     place, status = place_in(line, command), line.latest.status
     if status is not None and status.mode == Mode.MODE_ORBIT and status.HasField("circle"):
         now = status.circle

@@ -1,22 +1,23 @@
-"""One vehicle's end of the link: what goes out, and what was asked of the services and is not answered yet."""
+"""One vehicle's end of the link: what goes out, and for whom it is done."""
 
 import math
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from google.protobuf.message import Message
 
+from services.autopilot.mavlink.asking import ANSWER_WITHIN, Asking, Done
 from services.autopilot.mavlink.facts import Facts, Latest
-from services.autopilot.mavlink.statustext import TextLimiter, chunks, counted_from_one
+from services.autopilot.mavlink.refusals import plain
+from services.autopilot.mavlink.statustext import TextBudget, TextLimiter, chunks, counted_from_one
 from services.autopilot.mavlink.vibration import Vibration
 from uvf.runtime.mavlink import dialect as mav
 from uvf.runtime.mavlink.endpoint import Peer
 from uvf.runtime.service import Answer
 
 HELD_FOR = 1.0  # s, wall: as long a station that steers may be silent before another one may
-MOST_ASKED = 64  # requests at once that nobody has answered yet
-ANSWER_WITHIN = 1.9  # s: inside MAVSDK's four tries of 0.5 s and QGroundControl's 3 s
 
 
 class Sender(NamedTuple):
@@ -27,21 +28,17 @@ class Sender(NamedTuple):
     component: int
 
 
+class Said(NamedTuple):
+    """A text, which is cut into messages for who gets it."""
+
+    severity: int
+    text: str
+
+
 class Out(NamedTuple):
-    message: mav.MAVLink_message
+    what: mav.MAVLink_message | Said
     to: Peer | None
     """None = every peer."""
-
-
-Done = Callable[[bool, str], None]
-"""Called once with (accepted, reason)."""
-
-
-@dataclass
-class Asked:
-    request: Message
-    done: Done
-    until: float
 
 
 @dataclass
@@ -63,13 +60,13 @@ class Holder:
     def admits(self, sender: Sender) -> bool:
         holder, free = self._holder, self._line.t - self._heard > HELD_FOR
         if holder is not None and not free and sender != holder:
-            self._line.text(mav.MAV_SEVERITY_WARNING, f"{self._otherwise}: {_named(holder, sender)} steers", sender.peer)
+            self._line.text(mav.MAV_SEVERITY_WARNING, f"{self._otherwise}: {named(holder, sender)} steers", sender.peer)
             return False
         self._holder, self._heard = sender, self._line.t
         return True
 
 
-def _named(station: Sender, to: Sender) -> str:
+def named(station: Sender, to: Sender) -> str:
     """A station in words to another one, which may have the same number."""
     if station.system != to.system:
         return f"station {station.system}"
@@ -89,13 +86,14 @@ class Line:
         self.files: Mapping[str, bytes] = {}
         """What can be read over MAVLink FTP, by path."""
         self.outbox: list[Out] = []
-        self.requests: list[tuple[str, Message]] = []
-        """(name of the call, request) to be sent with this step."""
         self.commands: dict[str, Message] = {}
         """Output -> the newest command of sticks or setpoints, until the service takes it."""
-        self._asked: list[Asked] = []
+        self._speaker: Peer | None = None
+        """Whose message, or whose request's answer, is being dealt with; None for what this end does by itself."""
+        self._asking = Asking()
         self._awaited: list[Awaited] = []
         self._limiter = TextLimiter()
+        self._budget = TextBudget()
 
     def send(self, message: mav.MAVLink_message, to: Peer | None = None) -> None:
         self.outbox.append(Out(message, to))
@@ -105,19 +103,38 @@ class Line:
         return number != mav.MAVLINK_MSG_ID_ADSB_VEHICLE or peer in self.alone
 
     def text(self, severity: int, text: str, to: Peer | None = None) -> None:
-        """STATUSTEXT in chunks; the same text to the same peers at most every 10 s. Items are counted as on a station's map."""
+        """STATUSTEXT; the same text to the same peers at most every 10 s. Items are counted as on a station's map."""
         text = counted_from_one(text)
-        if not self._limiter.admits(self.t, (text, to)):
-            return
-        for chunk in chunks(severity, text, self._limiter.next_id()):
-            self.send(chunk, to)
+        if self._limiter.admits(self.t, (text, to)):
+            self.outbox.append(Out(Said(severity, text), to))
+
+    @contextmanager
+    def hearing(self, speaker: Peer | None) -> Iterator[None]:
+        """What is done meanwhile is done for a peer."""
+        before, self._speaker = self._speaker, speaker
+        try:
+            yield
+        finally:
+            self._speaker = before
+
+    def _for_speaker(self, done: Done) -> Done:
+        """What follows from an answer is still done for who has asked."""
+        speaker = self._speaker
+
+        def told(accepted: bool, reason: str) -> None:
+            """In words for people: the border's are for who writes services."""
+            with self.hearing(speaker):
+                done(accepted, plain(reason))
+
+        return told
 
     def refusal(self, what: str) -> Done:
-        """For ``ask``, where the protocol has no answer of its own: a refusal is said in words."""
+        """For ``ask``, where the protocol has no answer of its own: a refusal is said in words to who has asked."""
+        to = self._speaker
 
         def done(accepted: bool, reason: str) -> None:
             if not accepted:
-                self.text(mav.MAV_SEVERITY_WARNING, f"{what} refused: {reason or 'no reason given'}")
+                self.text(mav.MAV_SEVERITY_WARNING, f"{what} refused: {reason or 'no reason given'}", to)
 
         return done
 
@@ -126,26 +143,15 @@ class Line:
         if self.latest.is_paused:
             done(False, "the simulation is paused")
             return
-        if len(self._asked) >= MOST_ASKED:
-            done(False, "too much is asked at once")
-            return
-        self._asked.append(Asked(request, done, self.t + ANSWER_WITHIN))
-        self.requests.append((call, request))
+        self._asking.ask(self.t, self._speaker, call, request, self._for_speaker(done))
 
     def answered(self, answer: Answer[Any, Any]) -> None:
         """Passes an answer to whoever asked."""
-        for asked in self._asked:
-            if asked.request is answer.request:
-                self._asked.remove(asked)
-                if answer.reply is None:
-                    asked.done(False, answer.reason or "no answer")
-                else:
-                    asked.done(answer.reply.accepted, answer.reply.reason)
-                return
+        self._asking.answered(answer)
 
     def when(self, condition: Callable[[], bool], done: Done) -> None:
         """Goes on once a condition has come true, or says that it did not in time."""
-        self._awaited.append(Awaited(condition, done, self.t + ANSWER_WITHIN))
+        self._awaited.append(Awaited(condition, self._for_speaker(done), self.t + ANSWER_WITHIN))
 
     def settle(self) -> None:
         """Goes on with what has come true, and ends what nobody has answered in time."""
@@ -157,15 +163,24 @@ class Line:
                 awaited.done(False, "the autopilot did not follow")
             else:
                 self._awaited.append(awaited)
-        late = [asked for asked in self._asked if self.t >= asked.until]
-        self._asked = [asked for asked in self._asked if self.t < asked.until]
-        for asked in late:
-            asked.done(False, "the autopilot did not answer")
+        self._asking.settle(self.t)
 
-    def take_out(self) -> list[Out]:
+    def take_out(self, peers: Sequence[Peer]) -> list[tuple[mav.MAVLink_message, list[Peer]]]:
+        """What goes out, and to whom; ``peers`` hear what is meant for everybody."""
         out, self.outbox = self.outbox, []
-        return out
+        found: list[tuple[mav.MAVLink_message, list[Peer]]] = []
+        for what, to in out:
+            receivers = list(peers) if to is None else [to]
+            if isinstance(what, Said):
+                found += self._chunks(what, self._budget.admitted(self.t, what.severity, receivers))
+            else:
+                found.append((what, receivers))
+        for peer, count in self._budget.left_out(self.t):
+            found += self._chunks(Said(mav.MAV_SEVERITY_WARNING, f"{count} texts left out"), [peer])
+        return found
+
+    def _chunks(self, said: Said, receivers: list[Peer]) -> list[tuple[mav.MAVLink_message, list[Peer]]]:
+        return [(chunk, receivers) for chunk in chunks(said.severity, said.text, self._limiter.next_id())] if receivers else []
 
     def take_requests(self) -> list[tuple[str, Message]]:
-        requests, self.requests = self.requests, []
-        return requests
+        return self._asking.take_requests()

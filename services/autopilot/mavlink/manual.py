@@ -50,6 +50,18 @@ def of_channels(channels: list[int], is_ground: bool) -> Sticks | None:
     return Sticks(-pitch, roll, yaw, throttle if is_ground else (throttle + 1.0) / 2.0)
 
 
+def merged(channels: list[int], m: mav.MAVLink_rc_channels_override_message) -> list[int]:
+    """The channels with what a message says of them."""
+    new = list(channels)
+    for i in range(CHANNELS):
+        said = getattr(m, f"chan{i + 1}_raw")
+        if i < PLAIN:
+            new[i] = new[i] if said == UNCHANGED else said
+        elif said not in (0, UNCHANGED):
+            new[i] = RELEASED if said == RELEASED_HIGH else said
+    return new
+
+
 def _part(value: float) -> float:
     return min(max(value, -1.0), 1.0)
 
@@ -61,45 +73,57 @@ class ByHand:
         self._line = line
         self._holder = Holder(line, "Sticks ignored")
         self._channels = [RELEASED] * CHANNELS
+        self._channels_of: Sender | None = None
+        """Nobody inherits channels that another one has set."""
         self._heard = -math.inf
 
     def handlers(self) -> dict[int, Callable[[Any, Sender], None]]:
         return {
-            mav.MAVLINK_MSG_ID_MANUAL_CONTROL: lambda m, sender: self._take(of_manual_control(m), sender),
+            mav.MAVLINK_MSG_ID_MANUAL_CONTROL: self._on_manual_control,
             mav.MAVLINK_MSG_ID_RC_CHANNELS_OVERRIDE: self._on_override,
         }
 
     def tick(self) -> None:
         """Channels that nobody has repeated for a while are released."""
         if self._line.t - self._heard > self._line.latest.own["stick_timeout"] and any(self._channels):
-            self._channels = [RELEASED] * CHANNELS
-            self._line.latest.rc_channels = ()
+            self._forget()
+
+    def _forget(self) -> None:
+        self._channels, self._channels_of = [RELEASED] * CHANNELS, None
+        self._line.latest.rc_channels = ()
+
+    def _on_manual_control(self, m: mav.MAVLink_manual_control_message, sender: Sender) -> None:
+        self._take(of_manual_control(m), sender)
 
     def _on_override(self, m: mav.MAVLink_rc_channels_override_message, sender: Sender) -> None:
-        if not self._listens or not self._holder.admits(sender):
+        """Who releases all, or names no throttle, steers nothing, and keeps nobody else from steering."""
+        if not self._listens:
             return
-        self._heard = self._line.t
-        for i in range(CHANNELS):
-            said = getattr(m, f"chan{i + 1}_raw")
-            if i < PLAIN:
-                self._channels[i] = self._channels[i] if said == UNCHANGED else said
-            elif said not in (0, UNCHANGED):
-                self._channels[i] = RELEASED if said == RELEASED_HIGH else said
-        self._line.latest.rc_channels = tuple(self._channels)
-        self._take(of_channels(self._channels, self._line.facts.is_ground), sender)
+        is_own = sender == self._channels_of
+        channels = merged(self._channels if is_own else [RELEASED] * CHANNELS, m)
+        sticks = of_channels(channels, self._line.facts.is_ground)
+        if sticks is not None:
+            is_own = self._take(sticks, sender)
+        if is_own:
+            self._channels, self._channels_of, self._heard = channels, sender, self._line.t
+            self._line.latest.rc_channels = tuple(channels)
 
     @property
     def _listens(self) -> bool:
         status = self._line.latest.status
         return status is not None and status.mode in BY_HAND
 
-    def _take(self, sticks: Sticks | None, sender: Sender) -> None:
+    def _take(self, sticks: Sticks | None, sender: Sender) -> bool:
+        """Whether the sender steers with these."""
         if sticks is None or not self._listens or not self._holder.admits(sender):
-            return
+            return False
+        if self._channels_of not in (None, sender):
+            self._forget()
         if self._line.facts.is_ground:
             self._drive(sticks)
         else:
             self._fly(sticks)
+        return True
 
     def _drive(self, sticks: Sticks) -> None:
         """Throttle stick forward = forward; either stick right = right turn."""

@@ -4,14 +4,13 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from schemas.limits import PLACE
 from schemas.messages import Vector3
 from services.autopilot.mavlink.commands import Acknowledger, Command, Handler
 from services.autopilot.mavlink.line import Line
 from uvf.runtime.mavlink import dialect as mav
 from uvf.runtime.mavlink.geo import AMSL_FRAMES, HOME_FRAMES
-
-HIGHEST = 1e5  # m
+from uvf.runtime.mavlink.limits import HIGHEST, too_far, too_wide
+from uvf.runtime.mavlink.names import bad_frame
 
 
 @dataclass
@@ -25,9 +24,9 @@ class BadPlace(Exception):
 def altitude_of(line: Line, frame: int, altitude: float) -> float:
     """m, world z, of an altitude in one of MAVLink's frames; NaN stays. Raises BadPlace."""
     if frame not in AMSL_FRAMES + HOME_FRAMES:
-        raise BadPlace(mav.MAV_RESULT_COMMAND_UNSUPPORTED_MAV_FRAME, f"frame {frame} is not supported")
+        raise BadPlace(mav.MAV_RESULT_COMMAND_UNSUPPORTED_MAV_FRAME, bad_frame(frame))
     if abs(altitude) > HIGHEST:
-        raise BadPlace(mav.MAV_RESULT_DENIED, "altitude is out of range")
+        raise BadPlace(mav.MAV_RESULT_DENIED, f"an altitude of {altitude:.4g} m: name one within {HIGHEST:g} m")
     home = line.latest.home
     if frame in HOME_FRAMES and home is None:
         raise BadPlace(mav.MAV_RESULT_TEMPORARILY_REJECTED, "home is unknown")
@@ -45,8 +44,8 @@ def place_of(line: Line, frame: int, degrees: tuple[float, float], altitude: flo
     if abs(latitude) > 90 or abs(longitude) > 180:
         raise BadPlace(mav.MAV_RESULT_DENIED, "latitude or longitude is out of range")
     place = line.facts.world(latitude, longitude, 0.0)
-    if (away := math.hypot(place.x, place.y)) > PLACE:
-        raise BadPlace(mav.MAV_RESULT_DENIED, f"that place is {away / 1e3:.0f} km away")
+    if reason := too_far(place):
+        raise BadPlace(mav.MAV_RESULT_DENIED, reason)
     place.z = float(here[2]) if math.isnan(z) else z
     return place
 
@@ -54,6 +53,12 @@ def place_of(line: Line, frame: int, degrees: tuple[float, float], altitude: flo
 def place_in(line: Line, command: Command) -> Vector3:
     """Of parameters 5 to 7. COMMAND_LONG has altitudes above sea level. Raises BadPlace."""
     return place_of(line, frame_of(command), (command.p[4], command.p[5]), command.p[6])
+
+
+def check_radius(radius: float) -> None:
+    """NaN = left out. Raises BadPlace."""
+    if not math.isnan(radius) and (reason := too_wide(radius)):
+        raise BadPlace(mav.MAV_RESULT_DENIED, reason)
 
 
 def frame_of(command: Command) -> int:

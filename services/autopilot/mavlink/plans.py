@@ -20,6 +20,7 @@ from uvf.runtime.mavlink.mission_items import (
     to_wire,
     unpacked,
 )
+from uvf.runtime.mavlink.names import command_name
 from uvf.runtime.plan_ids import fence_id, rally_id
 
 Item = mav.MAVLink_mission_item_int_message
@@ -29,6 +30,7 @@ P = TypeVar("P", Mission, Fence, RallyPoints)
 class Plan(Generic[P]):
     """One of them, of one vehicle. What was just accepted serves downloads until the autopilot's own report shows up."""
 
+    kind: int
     name: str
     largest: int
     call: str
@@ -101,7 +103,7 @@ class Plan(Generic[P]):
 
 
 class MissionPlan(Plan[Mission]):
-    name, largest, call = "Mission", 500, "set_mission"
+    kind, name, largest, call = mav.MAV_MISSION_TYPE_MISSION, "Mission", 500, "set_mission"
     empty = Mission
 
     def told(self) -> Mission | None:
@@ -130,7 +132,7 @@ class MissionPlan(Plan[Mission]):
 
 
 class FencePlan(Plan[Fence]):
-    name, largest, call = "Fence", 500, "set_fence"
+    kind, name, largest, call = mav.MAV_MISSION_TYPE_FENCE, "Fence", 500, "set_fence"
     empty = Fence
 
     def told(self) -> Fence | None:
@@ -153,7 +155,7 @@ class FencePlan(Plan[Fence]):
 
 
 class RallyPlan(Plan[RallyPoints]):
-    name, largest, call = "Rally", 20, "set_rally"
+    kind, name, largest, call = mav.MAV_MISSION_TYPE_RALLY, "Rally", 20, "set_rally"
     empty = RallyPoints
 
     def told(self) -> RallyPoints | None:
@@ -167,7 +169,7 @@ class RallyPlan(Plan[RallyPoints]):
 
     def read(self, item: Item) -> Item:
         if item.command != mav.MAV_CMD_NAV_RALLY_POINT:
-            raise BadItem(mav.MAV_MISSION_UNSUPPORTED, f"command {item.command} is no rally point")
+            raise BadItem(mav.MAV_MISSION_UNSUPPORTED, f"{command_name(item.command)} is no rally point")
         place_of(item, self._line.facts, self.home_z)
         return item
 

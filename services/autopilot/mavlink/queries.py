@@ -91,4 +91,4 @@ def _available_modes(line: Line, command: Command, ack: Acknowledger) -> None:
 def _prearm(line: Line, command: Command, ack: Acknowledger) -> None:
     ack(mav.MAV_RESULT_ACCEPTED)
     for complaint in health(line.facts, line.latest).complaints:
-        line.text(mav.MAV_SEVERITY_WARNING, f"PreArm: {complaint}")
+        line.text(mav.MAV_SEVERITY_WARNING, f"PreArm: {complaint}", command.sender.peer)

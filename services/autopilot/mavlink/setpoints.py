@@ -7,11 +7,12 @@ and means: go there.
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from schemas.convert import array, stamp, yaw_of
+from schemas.limits import PLACE
 from schemas.messages import (
     AttitudeSetpoint,
     CircleSetpoint,
@@ -29,6 +30,8 @@ from services.autopilot.mavlink.places import BadPlace, place_of
 from uvf.maths.geodesy import Floats
 from uvf.maths.rotations import to_euler
 from uvf.runtime.mavlink import dialect as mav
+from uvf.runtime.mavlink.limits import FASTEST, HIGHEST
+from uvf.runtime.mavlink.names import frame_name
 
 ALONE = 1.0  # s, wall: after which a target without another is no stream
 IGNORE_PLACE, IGNORE_Z, IGNORE_VELOCITY, IGNORE_VZ, IGNORE_RATE = 0b011, 0b100, 0b011_000, 0b100_000, 1 << 11
@@ -54,6 +57,19 @@ class Target:
     def has_velocity(self) -> bool:
         return bool(np.isfinite(self.velocity[:2]).all())
 
+    @property
+    def absurd(self) -> str:
+        """Why nobody can follow it, without figures: a stream of them is told once."""
+        if np.isinf(self.place).any() or np.isinf(self.velocity).any() or (self.has_velocity and math.isnan(self.velocity[2])):
+            return "a place or a velocity is not finite"
+        if self.has_place and math.hypot(*self.place[:2]) > PLACE:
+            return f"the place is more than {PLACE / 1e3:g} km away from the field"
+        if abs(self.place[2]) > HIGHEST:
+            return f"the place is more than {HIGHEST:g} m high"
+        if self.has_velocity and math.hypot(*self.velocity) > FASTEST:
+            return f"the velocity is beyond {FASTEST:g} m/s"
+        return ""
+
 
 def given(mask: int, velocity: tuple[float, float, float], place: Vector3) -> Target:
     """Without what the type mask leaves out; velocity: NED [m/s]."""
@@ -64,11 +80,19 @@ def given(mask: int, velocity: tuple[float, float, float], place: Vector3) -> Ta
     return Target(np.array((*xy, z)), np.array((*v, climb)))
 
 
+class Alone(NamedTuple):
+    """A place that has come without another one: when [s], where, and from whom."""
+
+    t: float
+    place: Vector3
+    sender: Sender
+
+
 class Setpoints:
     def __init__(self, line: Line) -> None:
         self._line = line
         self._holder = Holder(line, "Setpoints ignored")
-        self._alone: tuple[float, Vector3] | None = None
+        self._alone: Alone | None = None
         self._streamed = -math.inf
         self._anchor: tuple[Floats, Floats] | None = None
         """(velocity, place where it was asked for first)."""
@@ -82,14 +106,15 @@ class Setpoints:
 
     def tick(self) -> None:
         """Goes to the place that has come alone."""
-        if self._alone is None or self._line.t - self._alone[0] < ALONE:
+        alone, line, status = self._alone, self._line, self._line.latest.status
+        if alone is None or line.t - alone.t < ALONE:
             return
-        place, self._alone = self._alone[1], None
-        status, line = self._line.latest.status, self._line
-        if status is None or status.mode not in TO_GO[line.facts.is_ground]:
-            line.text(mav.MAV_SEVERITY_WARNING, "Go to refused: a position target needs mode Hold, or Offboard and two each second")
-            return
-        go_to(line, GoalRequest(position=place, yaw=math.nan, source=SOURCE), True, line.refusal("Go to"))
+        self._alone = None
+        with line.hearing(alone.sender.peer):
+            if status is None or status.mode not in TO_GO[line.facts.is_ground]:
+                line.refusal("Go to")(False, "a position target needs mode Hold, or Offboard and two each second")
+            else:
+                go_to(line, GoalRequest(position=alone.place, yaw=math.nan, source=SOURCE), True, line.refusal("Go to"))
 
     def _on_local(self, m: mav.MAVLink_set_position_target_local_ned_message, sender: Sender) -> None:
         velocity = (m.vx, m.vy, m.vz)
@@ -97,7 +122,7 @@ class Setpoints:
             rate = 0.0 if m.type_mask & IGNORE_RATE else m.yaw_rate
             self._drive(sender, m.vx if not m.type_mask & IGNORE_VELOCITY else math.nan, -rate)
         elif m.coordinate_frame != mav.MAV_FRAME_LOCAL_NED:
-            self._refuse(sender, f"frame {m.coordinate_frame} is not supported")
+            self._refuse(sender, f"{frame_name(m.coordinate_frame)} is not supported: choose LOCAL_NED")
         else:
             self._take(given(m.type_mask, velocity, Vector3(x=m.y, y=m.x, z=-m.z)), sender)
 
@@ -112,36 +137,40 @@ class Setpoints:
         self._take(given(m.type_mask, (m.vx, m.vy, m.vz), place), sender)
 
     def _take(self, target: Target, sender: Sender) -> None:
+        """What nobody can follow keeps no other program from steering."""
+        if why := target.absurd or self._lacking(target):
+            self._refuse(sender, why)
+            return
         if not self._holder.admits(sender):
             return
         if target.has_place and not target.has_velocity:
-            self._maybe_alone(target)
+            self._maybe_alone(target, sender)
         if self._line.facts.is_ground:
             self._drive_along(target, sender)
-        elif (setpoint := self._setpoint(target)) is None:
-            self._refuse(sender, "a place or a velocity over ground that is not zero is needed")
-        else:
+        elif (setpoint := self._setpoint(target)) is not None:
             setpoint.timestamp.CopyFrom(stamp(self._line.latest.sim_time))
             self._line.commands["setpoint"] = setpoint
 
-    def _maybe_alone(self, target: Target) -> None:
+    def _lacking(self, target: Target) -> str:
+        moves = math.hypot(*target.velocity[:2]) > 0 if target.has_velocity else target.has_place
+        return "" if moves or self._line.facts.is_ground else "a place or a velocity over ground that is not zero is needed"
+
+    def _maybe_alone(self, target: Target, sender: Sender) -> None:
         t, status = self._line.t, self._line.latest.status
         streams = t - self._streamed < ALONE or (status is not None and status.mode == Mode.MODE_OFFBOARD)
         self._streamed = t
         here = self._line.latest.position
         z = float(target.place[2]) if math.isfinite(target.place[2]) or here is None else float(here[2])
-        self._alone = None if streams else (t, Vector3(x=float(target.place[0]), y=float(target.place[1]), z=z))
+        self._alone = None if streams else Alone(t, Vector3(x=float(target.place[0]), y=float(target.place[1]), z=z), sender)
 
     def _setpoint(self, target: Target) -> FlightSetpoint | None:
         """Place and velocity: the line through the place; a velocity alone: from where it was asked for first; a place alone: round it."""
         nav = self._line.latest.nav
-        if nav is None or not (target.has_place or target.has_velocity):
+        if nav is None:
             return None
         place = np.where(np.isfinite(target.place), target.place, array(nav.position))
         if not target.has_velocity:
             return FlightSetpoint(circle=CircleSetpoint(centre=_vector(place), radius=self._line.latest.own["hold_radius"]))
-        if not math.hypot(*target.velocity[:2]) > 0:
-            return None
         if not target.has_place:
             place = np.array((*self._anchored(target.velocity, place)[:2], place[2] if math.isfinite(target.place[2]) else self._anchor_z))
         airspeed = math.hypot(target.velocity[0] - nav.wind.x, target.velocity[1] - nav.wind.y)
@@ -168,10 +197,15 @@ class Setpoints:
 
     def _drive(self, sender: Sender, linear: float, angular: float) -> None:
         status = self._line.latest.status
-        if status is None or status.mode != Mode.MODE_OFFBOARD or not self._holder.admits(sender):
+        if status is None or status.mode != Mode.MODE_OFFBOARD:
             return
         if not (math.isfinite(linear) and math.isfinite(angular)):
-            self._refuse(sender, "a velocity is needed")
+            self._refuse(sender, "a finite velocity is needed")
+            return
+        if abs(linear) > FASTEST or abs(angular) > FASTEST:
+            self._refuse(sender, f"the velocity is beyond {FASTEST:g} m/s, or the rate beyond {FASTEST:g} rad/s")
+            return
+        if not self._holder.admits(sender):
             return
         now = stamp(self._line.latest.sim_time)
         self._line.commands["drive"] = DriveCommand(timestamp=now, linear=linear, angular=angular)
@@ -189,7 +223,7 @@ class Setpoints:
             self._line.commands["setpoint"] = FlightSetpoint(timestamp=stamp(self._line.latest.sim_time), attitude=asked)
 
     def _refuse(self, sender: Sender, why: str) -> None:
-        self._line.text(mav.MAV_SEVERITY_WARNING, f"Setpoint refused: {why}", sender.peer)
+        self._line.text(mav.MAV_SEVERITY_WARNING, f"Setpoints refused: {why}", sender.peer)
 
 
 def _vector(v: Floats) -> Vector3:

@@ -7,7 +7,8 @@ from typing import Any
 import msgspec
 
 from schemas.messages import ParamRequest, ParamValues
-from services.autopilot.mavlink.line import Done, Line
+from services.autopilot.mavlink.asking import Done
+from services.autopilot.mavlink.line import Line
 from services.autopilot.mavlink.parameter_store import Store, Unreadable
 from uvf.runtime.mavlink import dialect as mav
 from uvf.runtime.params import BadInput, convert

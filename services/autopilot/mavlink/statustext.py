@@ -1,16 +1,20 @@
 """STATUSTEXT: long texts in chunks, the same text not too often, severities of events."""
 
 import re
-from collections.abc import Hashable
+from collections.abc import Hashable, Sequence
+from dataclasses import dataclass
 
 from schemas.messages import Event
 from uvf.runtime.mavlink import dialect as mav
 from uvf.runtime.mavlink.bounded import make_room
+from uvf.runtime.mavlink.endpoint import Peer
 
 CHUNK_BYTES = 50
 REPEAT_AFTER = 10.0  # s
 ITEMS = re.compile(r"\bitems? \d+( and \d+)?")
 MOST_REMEMBERED = 256  # texts
+TEXTS_PER_SECOND, TEXTS_AT_ONCE = 20.0, 50.0  # for each receiver
+MOST_RECEIVERS = 128
 
 SEVERITY = {
     Event.INFO: mav.MAV_SEVERITY_INFO,
@@ -59,3 +63,53 @@ class TextLimiter:
     def next_id(self) -> int:
         self._id = self._id % 0xFFFF + 1
         return self._id
+
+
+@dataclass
+class Share:
+    """How many texts a receiver may still get, as of when [s]; how many it has not got, and since when [s]."""
+
+    left: float
+    t: float
+    left_out: int = 0
+    since: float = 0.0
+
+    def refill(self, t: float) -> None:
+        self.left = min(self.left + TEXTS_PER_SECOND * (t - self.t), TEXTS_AT_ONCE)
+        self.t = t
+
+
+class TextBudget:
+    """No receiver gets more texts than somebody can read, whoever causes them; what is critical is never left out."""
+
+    def __init__(self) -> None:
+        self._shares: dict[Peer, Share] = {}
+
+    def __len__(self) -> int:
+        return len(self._shares)
+
+    def admitted(self, t: float, severity: int, receivers: Sequence[Peer]) -> list[Peer]:
+        return [peer for peer in receivers if severity <= mav.MAV_SEVERITY_CRITICAL or self._admits(t, peer)]
+
+    def _admits(self, t: float, peer: Peer) -> bool:
+        make_room(self._shares, peer, MOST_RECEIVERS, lambda other: self._shares[other].t)
+        share = self._shares.setdefault(peer, Share(TEXTS_AT_ONCE, t))
+        share.refill(t)
+        if share.left < 1.0:
+            share.since = share.since if share.left_out else t
+            share.left_out += 1
+            return False
+        share.left -= 1.0
+        return True
+
+    def left_out(self, t: float) -> list[tuple[Peer, int]]:
+        """Who has to be told by now how many texts it has not got: once the flood is over, or while it goes on every 10 s."""
+        told = []
+        for peer, share in list(self._shares.items()):
+            share.refill(t)
+            if share.left >= TEXTS_AT_ONCE:
+                del self._shares[peer]
+            if share.left_out and (share.left >= TEXTS_AT_ONCE / 2 or t - share.since >= REPEAT_AFTER):
+                told.append((peer, share.left_out))
+                share.left_out = 0
+        return told

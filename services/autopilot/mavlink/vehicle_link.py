@@ -77,7 +77,7 @@ class VehicleLink:
             mav.MAVLINK_MSG_ID_COMMAND_CANCEL: commands.on_cancel,
             mav.MAVLINK_MSG_ID_SET_HOME_POSITION: lambda m, sender: on_set_home_position(line, m),
             mav.MAVLINK_MSG_ID_SET_GPS_GLOBAL_ORIGIN: lambda m, sender: on_set_origin(line, m, sender),
-            mav.MAVLINK_MSG_ID_SET_MODE: lambda m, sender: on_set_mode(line, m),
+            mav.MAVLINK_MSG_ID_SET_MODE: lambda m, sender: on_set_mode(line, m, sender),
             mav.MAVLINK_MSG_ID_PARAM_REQUEST_LIST: parameters.on_request_list,
             mav.MAVLINK_MSG_ID_PARAM_REQUEST_READ: parameters.on_request_read,
             mav.MAVLINK_MSG_ID_PARAM_SET: parameters.on_set,
@@ -97,7 +97,8 @@ class VehicleLink:
             self._greet(sender.peer)
         handler = self._handlers.get(message.get_msgId())
         if handler is not None:
-            handler(message, sender)
+            with self.line.hearing(sender.peer):
+                handler(message, sender)
 
     def welcome(self, peer: Peer) -> None:
         """Somebody is new there: ground stations drop texts of a vehicle whose heartbeat they have not heard yet."""
@@ -126,7 +127,7 @@ class VehicleLink:
         for event in self._news.of(line.latest, events):
             line.text(SEVERITY.get(event.severity, mav.MAV_SEVERITY_INFO), event_text(event))
         self._note_changes()
-        out = [(message, [to] if to is not None else list(peers)) for message, to in line.take_out()]
+        out = line.take_out(peers)
         for number, to in self.schedule.due(line.t, peers):
             hearing = [peer for peer in to if line.tells(number, peer)]
             out += [(message, hearing) for message in STREAMS[number].messages(line.facts, line.latest, line.t)]

@@ -14,6 +14,8 @@ Peer = tuple[str, int]
 FORGET_AFTER = 60.0  # s of silence, learned peers only
 MOST_LEARNED = 32
 ENGAGED_FOR = 2.0  # s since the last word of a transfer, or of sticks
+AT_HOME_AFTER = 5.0  # s, after which a caller outranks those that come later
+SPEAKS_WITHIN = 3.0  # s: three heartbeats
 DATAGRAM_BYTES = 65536
 DATAGRAMS_PER_CALL = 500
 
@@ -44,10 +46,21 @@ class Link(Protocol):
 
 @dataclass
 class Caller:
-    """When a peer was heard, and when it transferred something or steered [s]."""
+    """Since when a peer has spoken, when it was heard, and when it transferred something or steered [s]."""
 
+    since: float
     heard: float
     engaged: float = -math.inf
+
+    def hear(self, t: float) -> None:
+        if t - self.heard > SPEAKS_WITHIN:
+            self.since = t
+        self.heard = t
+
+    def rank(self, t: float) -> tuple[bool, bool, float]:
+        """Who has spoken for a while counts more than newcomers, however often these speak, and the longer the more."""
+        at_home = self.heard - self.since > AT_HOME_AFTER and t - self.heard <= SPEAKS_WITHIN
+        return at_home, t - self.engaged <= ENGAGED_FOR, -self.since if at_home else self.heard
 
 
 class Callers:
@@ -57,10 +70,10 @@ class Callers:
         self._heard: dict[Peer, Caller] = {}
 
     def keep(self, t: float, peer: Peer, engaged: bool = False) -> None:
-        """The one that has been idle longest makes room; one that transfers or steers after all that do not."""
-        make_room(self._heard, peer, MOST_LEARNED, lambda p: (t - self._heard[p].engaged <= ENGAGED_FOR, self._heard[p].heard))
-        caller = self._heard.setdefault(peer, Caller(t))
-        caller.heard = t
+        """The lowest in rank makes room: a newcomer, or one that has fallen silent; one that transfers or steers after its equals."""
+        make_room(self._heard, peer, MOST_LEARNED, lambda p: self._heard[p].rank(t))
+        caller = self._heard.setdefault(peer, Caller(t, t))
+        caller.hear(t)
         if engaged:
             caller.engaged = t
 

@@ -9,7 +9,8 @@ from uvf.maths.zones import Polygon
 from uvf.runtime.fence_file import MOST_VERTICES, MOST_ZONES
 from uvf.runtime.mavlink import dialect as mav
 from uvf.runtime.mavlink.geo import Placed
-from uvf.runtime.mavlink.mission_items import BadItem, Body, packed, place_of, point_body, unpacked
+from uvf.runtime.mavlink.mission_items import BadItem, Body, packed, place_of, point_body, remembered_point, unpacked
+from uvf.runtime.mavlink.names import command_name
 
 Item = mav.MAVLink_mission_item_int_message
 
@@ -23,7 +24,7 @@ MOST_GROUP = 255
 def checked(item: Item, facts: Placed, home_z: float) -> Item:
     """The item, which by itself makes sense. Raises BadItem."""
     if item.command not in (POINT, *POLYGONS, *CIRCLES):
-        raise BadItem(mav.MAV_MISSION_UNSUPPORTED, f"command {item.command} is none of a fence")
+        raise BadItem(mav.MAV_MISSION_UNSUPPORTED, f"{command_name(item.command)} is none of a fence")
     place_of(item, facts, home_z)
     if item.command in CIRCLES and not 0 < item.param1 <= 1e6:
         raise BadItem(mav.MAV_MISSION_INVALID_PARAM1, f"radius {item.param1:g} is out of range")
@@ -77,7 +78,8 @@ def _group(item: Item) -> int:
 def bodies(fence: Fence, facts: Placed, home_z: float) -> list[Body]:
     """What came over the wire, or the items of a fence that was set elsewhere."""
     if fence.origin:
-        return [unpacked(origin) for origin in fence.origin]
+        given = [unpacked(origin) for origin in fence.origin]
+        return [remembered_point(body, fence.return_point, facts, home_z) if body[1] == POINT else body for body in given]
     found: list[Body] = []
     for zone in fence.zones:
         commands, first = (POLYGONS, len(zone.vertices)) if zone.vertices else (CIRCLES, zone.radius)

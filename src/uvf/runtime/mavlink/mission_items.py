@@ -8,7 +8,10 @@ from schemas.convert import array
 from schemas.messages import Mission, MissionItem, Vector3
 from uvf.runtime.mavlink import dialect as mav
 from uvf.runtime.mavlink.geo import AMSL_FRAMES, HOME_FRAMES, Placed
+from uvf.runtime.mavlink.limits import too_far, too_high, too_wide
+from uvf.runtime.mavlink.names import bad_frame, command_name
 from uvf.runtime.plan_ids import mission_id
+from uvf.runtime.validation import error_in
 
 ORIGIN = struct.Struct("<BHB4fiif")
 """Frame, command, autocontinue, param1..4, x, y, z: kept with each item and given back unchanged."""
@@ -58,6 +61,7 @@ WITH_PLACE = frozenset({MissionItem.WAYPOINT, MissionItem.ORBIT, MissionItem.LAN
 OF_AIRCRAFT = frozenset({MissionItem.ORBIT, MissionItem.LAND, MissionItem.LAND_START, MissionItem.TAKEOFF})
 NO_CHANGE, CRUISE = -1.0, -2.0  # of DO_CHANGE_SPEED
 HERE = 1.0  # of DO_SET_HOME
+SAME_PLACE = 0.5  # m
 
 
 @dataclass
@@ -80,12 +84,12 @@ def from_wire(item: mav.MAVLink_mission_item_int_message, facts: Placed, home_z:
     if item.command in REFUSED:
         raise BadItem(mav.MAV_MISSION_UNSUPPORTED, REFUSED[item.command])
     if kind is None:
-        raise BadItem(mav.MAV_MISSION_UNSUPPORTED, f"command {item.command} is not supported")
+        raise BadItem(mav.MAV_MISSION_UNSUPPORTED, f"{command_name(item.command)} is not supported: leave it out")
     params = (item.param1, item.param2, item.param3, item.param4)
     if facts.is_ground and kind in OF_AIRCRAFT:
         raise BadItem(mav.MAV_MISSION_UNSUPPORTED, f"{MissionItem.Kind.Name(kind)} is not for a ground vehicle")
     if any(math.isinf(v) for v in (*params, item.z)):
-        raise BadItem(mav.MAV_MISSION_INVALID, "a parameter is infinite")
+        raise BadItem(mav.MAV_MISSION_INVALID, f"a parameter of {command_name(item.command)} is infinite")
     result = MissionItem(kind=kind, origin=packed(item))
     if _has_place(item, kind):
         result.position.CopyFrom(place_of(item, facts, home_z))
@@ -116,7 +120,7 @@ def unpacked(origin: bytes) -> "Body":
 def place_of(item: mav.MAVLink_mission_item_int_message, facts: Placed, home_z: float) -> Vector3:
     """home_z: height of home [m, world]. Raises BadItem."""
     if item.frame not in HOME_FRAMES + AMSL_FRAMES:
-        raise BadItem(mav.MAV_MISSION_UNSUPPORTED_FRAME, f"frame {item.frame} is not supported")
+        raise BadItem(mav.MAV_MISSION_UNSUPPORTED_FRAME, bad_frame(item.frame))
     if abs(item.x) > 900_000_000:
         raise BadItem(mav.MAV_MISSION_INVALID_PARAM5_X, "latitude is out of range")
     if abs(item.y) > 1_800_000_000:
@@ -124,7 +128,12 @@ def place_of(item: mav.MAVLink_mission_item_int_message, facts: Placed, home_z: 
     if not math.isfinite(item.z):
         raise BadItem(mav.MAV_MISSION_INVALID_PARAM7, "altitude is missing")
     base = home_z + facts.origin.altitude if item.frame in HOME_FRAMES else 0.0
-    return facts.world(item.x * 1e-7, item.y * 1e-7, base + item.z)
+    place = facts.world(item.x * 1e-7, item.y * 1e-7, base + item.z)
+    if reason := too_far(place):
+        raise BadItem(mav.MAV_MISSION_INVALID_PARAM5_X, reason)
+    if reason := too_high(place):
+        raise BadItem(mav.MAV_MISSION_INVALID_PARAM7, reason)
+    return place
 
 
 def _fill(item: MissionItem, command: int, p: tuple[float, ...]) -> None:
@@ -136,23 +145,29 @@ def _fill(item: MissionItem, command: int, p: tuple[float, ...]) -> None:
         if p[3] != 0:  # as ground stations send it who mean nothing by it; north is 360 degrees
             item.course = math.remainder(math.pi / 2 - math.radians(p[3]), math.tau)
     if command == mav.MAV_CMD_NAV_LOITER_TO_ALT:
-        item.radius, item.to_altitude = p[1], True
+        item.radius, item.to_altitude = _radius(p[1], mav.MAV_MISSION_INVALID_PARAM2), True
     if command == mav.MAV_CMD_DO_SET_CAM_TRIGG_DIST:
         item.distance = _not_negative(p[0], mav.MAV_MISSION_INVALID_PARAM1, "distance between pictures")
     if command in (mav.MAV_CMD_NAV_LOITER_UNLIM, mav.MAV_CMD_NAV_LOITER_TURNS, mav.MAV_CMD_NAV_LOITER_TIME):
-        item.radius = p[2]
+        item.radius = _radius(p[2], mav.MAV_MISSION_INVALID_PARAM3)
     if command == mav.MAV_CMD_NAV_LOITER_TURNS:
         item.turns = _not_negative(p[0], mav.MAV_MISSION_INVALID_PARAM1, "number of turns")
     if command == mav.MAV_CMD_DO_JUMP:
         item.jump_to = int(_not_negative(p[0], mav.MAV_MISSION_INVALID_PARAM1, "item to jump to"))
         item.repeat = _count(p[1])
     if command == mav.MAV_CMD_DO_CHANGE_SPEED and p[1] > 0:
-        item.speed = p[1]
+        item.speed = _not_negative(p[1], mav.MAV_MISSION_INVALID_PARAM2, "speed")
 
 
 def _not_negative(value: float, result: int, what: str) -> float:
     if not 0 <= value <= 1e6:
         raise BadItem(result, f"{what} {value:g} is out of range")
+    return value
+
+
+def _radius(value: float, result: int) -> float:
+    if reason := too_wide(value):
+        raise BadItem(result, reason)
     return value
 
 
@@ -183,13 +198,66 @@ def mission_of(items: list[MissionItem]) -> Mission:
 Body = tuple[int, int, int, float, float, float, float, int, int, float]
 
 
+def as_item(body: Body) -> mav.MAVLink_mission_item_int_message:
+    """The wire item of a body, for no one in particular."""
+    frame, command, autocontinue, p1, p2, p3, p4, x, y, z = body
+    return mav.MAVLink_mission_item_int_message(0, 0, 0, frame, command, 0, autocontinue, p1, p2, p3, p4, x, y, z)
+
+
+def is_nowhere(item: MissionItem) -> bool:
+    return item.kind in WITH_PLACE and not item.HasField("position")
+
+
+def is_same_place(one: Vector3, other: Vector3, ignore_height: bool = False) -> bool:
+    apart = abs(one.x - other.x), abs(one.y - other.y), 0.0 if ignore_height else abs(one.z - other.z)
+    return max(apart) < SAME_PLACE
+
+
+def means_the_same(item: MissionItem, facts: Placed, home_z: float) -> bool:
+    """Whether the wire item is what the item is and lies where it does: with another home, or changed by somebody, it does not."""
+    return _means(unpacked(item.origin), item, facts, home_z)
+
+
+def _means(body: Body, item: MissionItem, facts: Placed, home_z: float) -> bool:
+    try:
+        read = from_wire(as_item(body), facts, home_z)
+    except BadItem:
+        return item.kind == MissionItem.JUMP  # one that the system has no word for
+    if item.kind == MissionItem.JUMP:
+        return read.kind == MissionItem.JUMP or is_nowhere(read) or bool(error_in(read))
+    if read.HasField("position") and not is_same_place(read.position, item.position):
+        return False
+    own = MissionItem()
+    own.CopyFrom(item)
+    for each in (read, own):
+        each.ClearField("position")
+        each.ClearField("origin")
+    return read == own
+
+
+def lifted(body: Body, z: float, home_z: float) -> Body:
+    """The same wire item at a height [m, world], where its own is one above a home that has moved since."""
+    return (*body[:9], z - home_z) if body[0] in HOME_FRAMES else body
+
+
+def _remembered(item: MissionItem, facts: Placed, home_z: float) -> Body | None:
+    """What an item came from over the wire, where that says what is flown; with another home, its height over that."""
+    if len(item.origin) != ORIGIN.size:
+        return None
+    body = unpacked(item.origin)
+    if _means(body, item, facts, home_z):
+        return body
+    body = lifted(body, item.position.z, home_z)
+    return body if _means(body, item, facts, home_z) else None
+
+
 def to_wire(item: MissionItem, facts: Placed, home_z: float) -> Body:
-    """As in ``ORIGIN``: what came over the wire, or the nearest to an item of a mission file.
+    """As in ``ORIGIN``: what came over the wire, as long as it means the same, or the nearest to an item of a mission file.
 
     The latter with altitudes above home (``home_z`` [m, world]): MAVSDK takes no others.
     """
-    if len(item.origin) == ORIGIN.size:
-        return unpacked(item.origin)
+    if (remembered := _remembered(item, facts, home_z)) is not None:
+        return remembered
     nan = math.nan
     commands: dict[int, tuple[int, float, float, float, float]] = {
         MissionItem.WAYPOINT: (mav.MAV_CMD_NAV_WAYPOINT, item.hold, item.acceptance_radius, 0.0, _yaw(item)),
@@ -219,6 +287,15 @@ def to_wire(item: MissionItem, facts: Placed, home_z: float) -> Body:
 def _yaw(item: MissionItem) -> float:
     """deg clockwise from north, 0 < yaw <= 360; NaN for any."""
     return 360.0 - (math.degrees(item.course) - 90.0) % 360.0 if item.HasField("course") else math.nan
+
+
+def remembered_point(body: Body, point: Vector3, facts: Placed, home_z: float) -> Body:
+    """Of an item that came over the wire and is nothing but a place, which lies where it was when home has moved."""
+    try:
+        stays = is_same_place(place_of(as_item(body), facts, home_z), point)
+    except BadItem:
+        stays = False
+    return body if stays else lifted(body, point.z, home_z)
 
 
 def point_body(command: int, point: Vector3, facts: Placed, home_z: float) -> Body:

@@ -48,6 +48,8 @@ TABLE = (
 )
 """The same for aircraft and rovers: QGroundControl keeps one list for all PX4-like vehicles. Each refuses what it cannot do."""
 
+THERE_ARE = f"There are {', '.join(row.name for row in TABLE)}"
+
 _BY_MODE = {row.mode: row for row in TABLE}
 _BY_CUSTOM = {row.custom: row for row in TABLE}
 _BY_STANDARD = {row.standard: row for row in TABLE if row.standard != mav.MAV_STANDARD_MODE_NON_STANDARD} | {
@@ -83,6 +85,12 @@ def from_command(param2: float, param3: float) -> Row | None:
         return from_custom(int(param2))
     sub = int(param3) if math.isfinite(param3) else 0
     return from_custom(int(param2) << 16 | sub << 24) if param2 >= 0 and 0 <= sub <= 255 else None
+
+
+def unknown(custom: int) -> str:
+    """Why there is no mode of a custom_mode word, and which there are."""
+    main, sub = custom >> 16 & 0xFF, custom >> 24 & 0xFF
+    return f"There is no mode {main}.{sub} (custom_mode {custom:#x}). {THERE_ARE}"
 
 
 def available(index: int) -> mav.MAVLink_available_modes_message | None:

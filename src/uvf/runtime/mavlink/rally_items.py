@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from schemas.messages import RallyPoints
 from uvf.runtime.mavlink import dialect as mav
 from uvf.runtime.mavlink.geo import Placed
-from uvf.runtime.mavlink.mission_items import Body, packed, place_of, point_body, unpacked
+from uvf.runtime.mavlink.mission_items import Body, packed, place_of, point_body, remembered_point, unpacked
 
 
 def rally_of(items: Sequence[mav.MAVLink_mission_item_int_message], facts: Placed, home_z: float) -> RallyPoints:
@@ -15,7 +15,8 @@ def rally_of(items: Sequence[mav.MAVLink_mission_item_int_message], facts: Place
 
 
 def bodies(rally: RallyPoints, facts: Placed, home_z: float) -> list[Body]:
-    """What came over the wire, or the places above home."""
-    if rally.origin:
-        return [unpacked(origin) for origin in rally.origin]
+    """What came over the wire, as long as it lies there, or the places above home."""
+    if len(rally.origin) == len(rally.points):
+        pairs = zip(rally.origin, rally.points, strict=True)
+        return [remembered_point(unpacked(origin), point, facts, home_z) for origin, point in pairs]
     return [point_body(mav.MAV_CMD_NAV_RALLY_POINT, point, facts, home_z) for point in rally.points]

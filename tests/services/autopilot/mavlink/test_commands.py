@@ -252,3 +252,29 @@ def test_prearm_checks_name_the_reasons():
     bit = mav.MAV_SYS_STATUS_PREARM_CHECK
     status = of(rig.run(1.1), "SYS_STATUS", PLANE)[-1]
     assert status.onboard_control_sensors_enabled & bit and not status.onboard_control_sensors_health & bit
+
+
+def test_a_confirmation_that_does_not_count_up_is_a_new_command():
+    rig = Rig()
+    rig.say(long(20, confirmation=1))
+    assert acks(rig.run()) == [(20, ACCEPTED)] and rig.plane.status.mode == Mode.MODE_RETURN
+    rig.plane.status.mode = Mode.MODE_MANUAL
+    rig.say(long(20, confirmation=1))
+    assert acks(rig.run()) == [(20, ACCEPTED)] and rig.plane.status.mode == Mode.MODE_RETURN
+
+
+def test_nobody_repeats_a_command_after_many_seconds():
+    rig = Rig()
+    rig.say(long(20))
+    rig.run(5.5)
+    rig.plane.status.mode = Mode.MODE_MANUAL
+    rig.say(long(20, confirmation=1))
+    assert acks(rig.run()) == [(20, ACCEPTED)] and rig.plane.status.mode == Mode.MODE_RETURN
+
+
+def test_repetitions_three_seconds_apart_are_executed_once():
+    rig = Rig()
+    for confirmation in range(4):
+        rig.say(long(400, 1.0, confirmation=confirmation))
+        assert acks(rig.run(3.0)) == [(400, ACCEPTED)]
+    assert len(rig.plane.asked) == 1

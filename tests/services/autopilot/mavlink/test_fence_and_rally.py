@@ -113,8 +113,8 @@ def test_rally_points_reach_the_autopilot_and_those_of_elsewhere_a_ground_statio
         ([vertex(0, 0, 0, corners=NAN)], mav.MAV_MISSION_INVALID_PARAM1, "item 1: a polygon of nan corners"),
         ([vertex(0, 0, 0, group=-1.0)], mav.MAV_MISSION_INVALID_PARAM2, "item 1: group"),
         ([circle(0), circle(1, radius=-5.0)], mav.MAV_MISSION_INVALID_PARAM1, "item 2: radius -5"),
-        ([circle(0, frame=10)], mav.MAV_MISSION_UNSUPPORTED_FRAME, "item 1: frame 10"),
-        ([item(0, kind=1)], mav.MAV_MISSION_UNSUPPORTED, "item 1: command 16 is none of a fence"),
+        ([circle(0, frame=10)], mav.MAV_MISSION_UNSUPPORTED_FRAME, "item 1: frame GLOBAL_TERRAIN_ALT"),
+        ([item(0, kind=1)], mav.MAV_MISSION_UNSUPPORTED, "item 1: NAV_WAYPOINT is none of a fence"),
         (
             [item(0, command=5004, p=(9.0, 0, 0, 0), place=(2**31 - 1, LON, 0.0), kind=1)],
             mav.MAV_MISSION_INVALID_PARAM5_X,

@@ -12,6 +12,7 @@ from uvf.runtime.mavlink import dialect as mav
 
 POSITION, VELOCITY, BOTH, CLIMBING_ONLY = 0b110111111000, 0b110111000111, 0b110111000000, 0b110111000011
 LOCAL, BODY, GLOBAL, ABOVE_HOME = 1, 8, 5, 6
+NAN = math.nan
 X, Y = 407_700_000, 147_900_000  # the world's origin
 
 
@@ -102,7 +103,47 @@ def test_an_attitude_has_the_signs_of_the_autopilot():
 def test_what_cannot_be_flown_is_refused_in_words(message):
     rig = rig_in()
     assert said(rig, message) is None
-    assert any(text.startswith("Setpoint refused: ") for text in texts(rig.heard()))
+    assert any(text.startswith("Setpoints refused: ") for text in texts(rig.heard()))
+
+
+ABSURD = [
+    (local(VELOCITY, velocity=(1.0, 0.0, math.inf)), "a place or a velocity is not finite"),
+    (local(VELOCITY, velocity=(1.0, 0.0, NAN)), "a place or a velocity is not finite"),
+    (local(POSITION, (math.inf, 0.0, -90.0)), "a place or a velocity is not finite"),
+    (local(VELOCITY, velocity=(1e30, 0.0, 0.0)), "the velocity is beyond 200 m/s"),
+    (local(VELOCITY, velocity=(150.0, 150.0, 0.0)), "the velocity is beyond 200 m/s"),
+    (local(POSITION, (1e30, 0.0, -80.0)), "the place is more than 200 km away from the field"),
+    (local(POSITION, (0.0, 0.0, -1e30)), "the place is more than 100000 m high"),
+    (anywhere(POSITION, 400.0, x=0), "that place is 4144 km away from the field"),
+    (local(POSITION, frame=7), "frame LOCAL_OFFSET_NED is not supported"),
+]
+
+
+@pytest.mark.parametrize(("message", "why"), ABSURD)
+def test_a_stream_that_nobody_can_follow_is_refused_and_told_once(message, why):
+    rig, told = rig_in(), []
+    for _ in range(100):
+        assert said(rig, message) is None
+        told += texts(rig.heard())
+    (text,) = [text for text in told if "efused" in text]
+    assert text.startswith(f"Setpoints refused: {why}")
+    rig.plane.status.mode = Mode.MODE_HOLD
+    rig.run(2.0)
+    assert rig.plane.asked == [], "and no place that has come alone"
+
+
+@pytest.mark.parametrize(("message", "why"), ABSURD)
+def test_what_nobody_can_follow_keeps_no_program_from_steering(message, why):
+    rig = rig_in()
+    assert said(rig, message, system=254, peer=OTHER) is None
+    assert said(rig, attitude(0.4, 0.1, 0.7))
+
+
+@pytest.mark.parametrize("way", [{"velocity": (1e30, 0.0, 0.0)}, {"rate": 1e30}, {"velocity": (NAN, 0.0, 0.0)}])
+def test_a_rover_is_not_driven_by_what_cannot_be(way):
+    rig = rig_in()
+    assert said(rig, local(0b010111000111, frame=BODY, system=ROVER, **way), "drive") is None
+    assert any(text.startswith("Setpoints refused: ") for text in texts(rig.heard()))
 
 
 def test_setpoints_go_out_before_the_mode_is_asked_for():

@@ -95,3 +95,26 @@ def test_one_station_steers_until_it_is_silent():
     assert said(rig, channels(PLANE, 1600, 1500, 1500, 1500))
     rig.run(1.1)
     assert said(rig, stick, system=254, peer=OTHER).aileron == pytest.approx(0.9 * LIMITS.aileron.limit)
+
+
+def test_who_releases_all_channels_keeps_nobody_from_steering():
+    rig = by_hand()
+    stick = mav.MAVLink_manual_control_message(PLANE, 0, 900, 500, 0, 0)
+    for step in range(60):
+        if step % 10 == 0:
+            rig.say(channels(PLANE), system=254, peer=OTHER)
+        assert said(rig, stick) is not None
+        assert not [text for text in texts(rig.heard()) if "Sticks ignored" in text]
+
+
+@pytest.mark.parametrize("comes_with_sticks", [False, True])
+def test_nobody_inherits_the_throttle_of_who_steered_before(comes_with_sticks):
+    rig = by_hand()
+    rig.rover.set("stick_timeout", 5.0)
+    assert said(rig, channels(ROVER, 1500, 1500, 2000, 1500), "drive").linear > 0
+    rig.run(1.1)
+    if comes_with_sticks:
+        assert said(rig, mav.MAVLink_manual_control_message(ROVER, 0, 0, 0, 0, 0), "drive", system=254, peer=OTHER).linear == 0
+        rig.run(1.1)
+    first = {"system": 254, "peer": OTHER} if not comes_with_sticks else {}
+    assert said(rig, channels(ROVER, 1600, *[UNCHANGED] * 7), "drive", **first) is None

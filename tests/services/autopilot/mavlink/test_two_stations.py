@@ -6,6 +6,7 @@ import pytest
 
 from schemas.messages import Mode
 from services.autopilot.mavlink.commands import MOST_SENDERS
+from services.autopilot.mavlink.missions import MOST_WAITING
 from tests.services.autopilot.mavlink.rig import GCS, OTHER, PLANE, ROVER, Rig, long, of, texts
 from tests.services.autopilot.mavlink.test_missions import LAT, LON, count, item
 from uvf.runtime.mavlink import dialect as mav
@@ -97,7 +98,8 @@ def sizes(service, link, t):
         found["lists"] = len(vehicle._parameters._progress)
         found["rates"] = len(vehicle.schedule._own) + len(vehicle.schedule._due)
         found["texts"] = len(vehicle.line._limiter._said)
-        found["plans"] = len(vehicle._missions._waiting)
+        found["shares"] = len(vehicle.line._budget)
+        found["plans"] = len(vehicle._missions._waiting) + len(vehicle._missions._shown)
     return found
 
 
@@ -125,11 +127,13 @@ def test_thousands_of_strangers_fill_no_table_and_are_forgotten():
     assert most["links"] <= 2 + MOST_LEARNED and most["stations"] <= 64 and most["keys"] <= 64
     assert most["commands"] <= 32 * MOST_SENDERS and most["texts"] <= 256 and most["files"] <= 96
     assert most["peers"] <= 32 * (3 + MOST_LEARNED) and most["lists"] <= 2 + MOST_LEARNED and most["rates"] < 100
+    assert most["shares"] <= 128 and most["plans"] <= 2 * MOST_WAITING
     rig.link.outgoing.clear()
     for _ in range(4):
         rig.run(FORGET_AFTER / 2)
     gone = sizes(rig.service, rig.link, rig.t)
-    assert gone["links"] == 2 and gone["commands"] == gone["peers"] == gone["stations"] == gone["files"] == gone["lists"] == 0
+    assert gone["links"] == 2 and gone["commands"] == gone["peers"] == gone["stations"] == 0
+    assert gone["files"] == gone["lists"] == gone["plans"] == gone["shares"] == 0
 
 
 def test_a_station_among_strangers_is_answered_and_keeps_its_rates():
