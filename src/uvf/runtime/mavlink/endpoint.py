@@ -2,6 +2,7 @@
 
 import math
 import socket
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol
@@ -13,6 +14,7 @@ Peer = tuple[str, int]
 
 FORGET_AFTER = 60.0  # s of silence, learned peers only
 MOST_LEARNED = 32
+CROWD = 8  # callers of one host, beyond which its others count less
 ENGAGED_FOR = 2.0  # s since the last word of a transfer, or of sticks
 AT_HOME_AFTER = 5.0  # s, after which a caller outranks those that come later
 SPEAKS_WITHIN = 3.0  # s: three heartbeats
@@ -57,10 +59,10 @@ class Caller:
             self.since = t
         self.heard = t
 
-    def rank(self, t: float) -> tuple[bool, bool, float]:
+    def rank(self, t: float, is_in_crowd: bool) -> tuple[bool, bool, bool, float]:
         """Who has spoken for a while counts more than newcomers, however often these speak, and the longer the more."""
         at_home = self.heard - self.since > AT_HOME_AFTER and t - self.heard <= SPEAKS_WITHIN
-        return at_home, t - self.engaged <= ENGAGED_FOR, -self.since if at_home else self.heard
+        return at_home, not is_in_crowd, t - self.engaged <= ENGAGED_FOR, -self.since if at_home else self.heard
 
 
 class Callers:
@@ -70,8 +72,12 @@ class Callers:
         self._heard: dict[Peer, Caller] = {}
 
     def keep(self, t: float, peer: Peer, engaged: bool = False) -> None:
-        """The lowest in rank makes room: a newcomer, or one that has fallen silent; one that transfers or steers after its equals."""
-        make_room(self._heard, peer, MOST_LEARNED, lambda p: self._heard[p].rank(t))
+        """The lowest in rank makes room: a newcomer, or one that has fallen silent, first of a host with many.
+
+        One that transfers or steers goes after its equals.
+        """
+        hosts = Counter(host for host, _ in self._heard) if peer not in self._heard else Counter[str]()
+        make_room(self._heard, peer, MOST_LEARNED, lambda p: self._heard[p].rank(t, hosts[p[0]] > CROWD))
         caller = self._heard.setdefault(peer, Caller(t, t))
         caller.hear(t)
         if engaged:

@@ -148,6 +148,15 @@ def test_a_flood_of_callers_pushes_out_nobody_who_has_spoken_for_a_while():
     assert attitudes >= 155, "20 a second"
 
 
+def test_one_hosts_flood_keeps_no_newcomer_of_another_host_out():
+    callers, station = Callers(), ("192.0.2.1", 50_000)
+    for n in range(1000):
+        callers.keep(n * 2.5e-3, ("203.0.113.9", n % 40), engaged=True)
+        if n == 100:
+            callers.keep(n * 2.5e-3, station)
+    assert station in callers.peers(2.5)
+
+
 def test_when_all_have_spoken_for_long_the_newest_makes_room():
     callers = Callers()
     ports = [("203.0.113.9", n) for n in range(MOST_LEARNED)]
@@ -164,7 +173,7 @@ def test_who_was_silent_for_long_counts_as_new():
         callers.keep(float(second), GCS)
     callers.keep(20.0, GCS)
     for n in range(MOST_LEARNED):
-        callers.keep(20.1, ("203.0.113.9", n))
+        callers.keep(20.1, (f"203.0.113.{n}", 1))
     assert GCS not in callers.peers(20.1)
 
 

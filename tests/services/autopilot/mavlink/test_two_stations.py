@@ -152,8 +152,8 @@ def test_who_transfers_or_steers_is_forgotten_after_those_that_only_call():
     callers = Callers()
     callers.keep(0.0, GCS, engaged=True)
     for n in range(3 * MOST_LEARNED):
-        callers.keep(0.1, ("203.0.113.7", n))
+        callers.keep(0.1, (f"203.0.113.{n}", 7))
     assert GCS in callers.peers(0.1) and len(callers.peers(0.1)) == MOST_LEARNED
     for n in range(3 * MOST_LEARNED):
-        callers.keep(ENGAGED_FOR + 0.2, ("203.0.113.8", n))
+        callers.keep(ENGAGED_FOR + 0.2, (f"203.0.113.{n}", 8))
     assert GCS not in callers.peers(ENGAGED_FOR + 0.2)
