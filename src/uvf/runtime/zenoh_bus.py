@@ -31,6 +31,7 @@ WAIT_BEFORE_DROP_US = 50_000
 RECALL_TIMEOUT = 1.0  # s, wall
 SAY_AGAIN = 2.0  # s, wall
 EVENT_HISTORY = 100
+OVERHEAD = 500  # bytes that a message takes beside its payload, while it waits
 QUERIES = 256  # that may wait at a server
 AT_ONCE = 2000
 """Messages of one subscription that ``poll`` hands over before it comes to the next: a flood keeps nobody from the rest of his work."""
@@ -153,7 +154,7 @@ class ZenohBus:
         if wake:
             self._declared.append(made)
         else:
-            self._inbound.append(_Inbound(key, made.try_recv, sink))
+            self._inbound.append(_Inbound(key, lambda: None if (sample := made.try_recv()) is None else _arrived(sample), sink))
 
     def _handed_over(self, key: str, sink: Sink, depth: int) -> Callable[[zenoh.Sample], None]:
         """Hands a message over to ``poll`` from zenoh's own thread and wakes the loop; does nothing else there.
@@ -164,7 +165,7 @@ class ZenohBus:
         self._waking.append(_Inbound(key, backlog.take, sink))
 
         def hand_over(sample: zenoh.Sample) -> None:
-            backlog.push(sample)
+            backlog.push(_arrived(sample))
             with contextlib.suppress(RuntimeError):  # it is awake already
                 self._woken.release()
 
@@ -196,9 +197,9 @@ class ZenohBus:
         def is_kept(key: str) -> bool:
             return any(matches(pattern, key) for pattern in patterns)
 
-        # Not a ring channel: that one counts messages, whatever their size.
+        # Not a ring channel: that one counts messages, whatever their size, and holds the network's buffers as long as they wait.
         backlog = Backlog(depth, _size)
-        self._declared.append(self._session.declare_subscriber(f"{PREFIX}/**", backlog.push))
+        self._declared.append(self._session.declare_subscriber(f"{PREFIX}/**", lambda sample: backlog.push(_arrived(sample))))
         self._inbound.append(_Inbound(f"{PREFIX}/**", backlog.take, lambda s: (once if is_kept(s.key) else sink)(s)))
         for topic, pattern in zip(kept, patterns, strict=True):
             self.subscribe(pattern, topic.qos, once, EVENT_HISTORY)
@@ -254,18 +255,13 @@ class ZenohBus:
         for _ in range(AT_ONCE):
             if (sample := inbound.take()) is None:
                 return True
-            if sample.kind == zenoh.SampleKind.PUT:
-                taken = self._sample(sample)
-                if self._blocking:
-                    inbound.seen[taken.key] = max(inbound.seen.get(taken.key, 0), taken.seq)
-                inbound.sink(taken)
+            if sample is NOTHING:
+                continue
+            self.counter.count(sample.key, sample.boot, sample.seq)
+            if self._blocking:
+                inbound.seen[sample.key] = max(inbound.seen.get(sample.key, 0), sample.seq)
+            inbound.sink(sample)
         return False
-
-    def _sample(self, sample: zenoh.Sample) -> Sample:
-        key, type_name = str(sample.key_expr), str(sample.encoding).rpartition(";")[2]
-        seq, stamp_ns, boot, epoch = _envelope(sample)
-        self.counter.count(key, boot, seq)
-        return Sample(key, type_name, sample.payload.to_bytes(), max(stamp_ns, 0), seq, boot, epoch)
 
     def _poll_calls(self) -> None:
         waiting = []
@@ -291,14 +287,27 @@ class _Inbound:
     """A subscription; seen: in lockstep, the highest number received of each key."""
 
     key: str
-    take: Callable[[], Any]
+    take: Callable[[], Sample | None]
     """The next message that has arrived, or None."""
     sink: Sink
     seen: dict[str, int] = field(default_factory=dict)
 
 
-def _size(sample: zenoh.Sample) -> int:
-    return len(sample.payload)
+NOTHING = Sample("", "", b"", 0, 0, 0, 0)
+"""In place of a deletion, which nobody here speaks of."""
+
+
+def _arrived(sample: zenoh.Sample) -> Sample:
+    """A copy: what Zenoh hands over holds the whole buffer in which it came."""
+    if sample.kind != zenoh.SampleKind.PUT:
+        return NOTHING
+    key, type_name = str(sample.key_expr), str(sample.encoding).rpartition(";")[2]
+    seq, stamp_ns, boot, epoch = _envelope(sample)
+    return Sample(key, type_name, sample.payload.to_bytes(), max(stamp_ns, 0), seq, boot, epoch)
+
+
+def _size(sample: Sample) -> int:
+    return len(sample.payload) + OVERHEAD
 
 
 def _envelope(carrier: Any) -> Envelope:
