@@ -51,7 +51,10 @@ class View:
         self._map_due: dict[str, float] = {}
 
     def _learn(self) -> None:
-        """What the vehicles look like; guests come later."""
+        """What the vehicles look like; guests come later, and go."""
+        for name in self._bodies.keys() - self._model.vehicles.keys():
+            for known in (self._bodies, self._ghosts, self._moving):
+                known.pop(name, None)
         for v in [v for v in self._model.vehicles.values() if v.name not in self._bodies]:
             shape = _shape(v) if v.flies else None
             self._bodies[v.name] = _body(v, shape)
