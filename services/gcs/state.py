@@ -44,7 +44,7 @@ from uvf.runtime.mapped_floor import MappedFloor
 from uvf.runtime.mission_file import Start, Vehicle
 from uvf.runtime.params import BadInput
 from uvf.runtime.site import Member, Site
-from uvf.runtime.spawned import name_fault, object_fault
+from uvf.runtime.spawned import SPAWNED_MOST, name_fault, object_fault
 from uvf.runtime.stop_all import StopStatus, name_of, told
 from uvf.runtime.vehicle_file import load_vehicle
 
@@ -53,7 +53,6 @@ Floats = NDArray[np.float64]
 STALE_AFTER = 1.5  # s, wall clock
 LOST_AFTER = 5.0  # s
 MOST_VEHICLES = 64
-MOST_OBJECTS = 256
 LONGEST_TEXT = 500  # letters of an event or of what a guest says of itself
 SIGNS_OF_LIFE = ("nav", "pose", "odometry", "status", "nav_status", "progress")
 SHOWN_BY_THE_CLOCK = ("conductor",)
@@ -270,7 +269,7 @@ class Model:
     def hear_objects(self, lists: Sequence[SimObjects | None], truth: Mapping[str, NavState]) -> None:
         """lists: of each simulator, what has been put into it."""
         told = (thing for one in lists if one is not None for thing in one.objects)
-        self.spawned = [thing for thing in told if self._is_sound(thing)][:MOST_OBJECTS]
+        self.spawned = [thing for thing in told if self._is_sound(thing)][:SPAWNED_MOST]
         self.strangers = {name: state for name, state in truth.items() if name not in self.vehicles}
 
     def is_guest(self, name: str) -> bool:

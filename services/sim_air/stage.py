@@ -13,7 +13,7 @@ from services.sim_air.placing import fault_of, place, start_of
 from uvf.maths.bvh import Bvh
 from uvf.runtime import mission_file
 from uvf.runtime.params import BadInput, nearest
-from uvf.runtime.spawned import name_fault
+from uvf.runtime.spawned import crowd_fault, name_fault
 
 SAVED_MOST = 16
 
@@ -59,7 +59,7 @@ class Stage:
         """others: names of what the ground simulator has put in."""
         wanted = request.object
         asked = SetPoseRequest(name=wanted.name, pose=wanted.pose, speed=request.speed)
-        if fault := self._name_fault(wanted.name, others) or fault_of(asked):
+        if fault := self._name_fault(wanted.name, others) or crowd_fault(len(self._spawned) + len(others)) or fault_of(asked):
             return Reply(reason=fault)
         try:
             joining = self._join(wanted.name, wanted.model, start_of(asked))

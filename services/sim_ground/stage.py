@@ -15,7 +15,7 @@ from services.sim_ground.world import Placed
 from uvf.runtime.params import BadInput, nearest
 from uvf.runtime.robot_model import UrdfModel
 from uvf.runtime.solid import Solid
-from uvf.runtime.spawned import body_fault, name_fault, pose_fault, solid_of, unit_wxyz
+from uvf.runtime.spawned import body_fault, crowd_fault, name_fault, pose_fault, solid_of, unit_wxyz
 from uvf.runtime.surroundings import Surroundings, vehicle_tree
 
 Floats = NDArray[np.float64]
@@ -86,7 +86,7 @@ class Stage:
     def spawn(self, request: SpawnRequest, others: Collection[str]) -> Reply:
         """others: names of what the air simulator has put in."""
         wanted = request.object
-        reason = self._name_fault(wanted.name, others) or body_fault(wanted)
+        reason = self._name_fault(wanted.name, others) or crowd_fault(len(self._objects) + len(others)) or body_fault(wanted)
         if not reason:
             try:
                 reason = self._put_vehicle(wanted) if wanted.model else self._put(wanted)
