@@ -44,6 +44,8 @@ LENGTHS: dict[str, int] = {
     "foxglove.PoseInFrame.frame_id": 100,
     "foxglove.FrameTransform.parent_frame_id": 100,
     "foxglove.FrameTransform.child_frame_id": 100,
+    "uvf.v1.Fence.zones": 32,
+    "uvf.v1.FenceZone.vertices": 128,
     "uvf.v1.Param.description": 4000,
     "uvf.v1.ParamRequest.name": 100,
     "uvf.v1.SimObjects.objects": 1000,

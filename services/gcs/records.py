@@ -69,19 +69,19 @@ def _rows(lines: Sequence[Line]) -> Html:
 def processes(model: Model, t: float) -> Html:
     """One row a process: what the launchers say of it, and what it says of itself."""
     refused = html("<div class='g-warn'>⚠ not taken in from the bus: {}</div>", model.refused) if str(model.refused) else html("")
-    names = sorted(model.processes.keys() | model.health.keys())
+    names = sorted(model.processes.told.keys() | model.processes.vitals.keys())
     if not names:
         return html("<div class='g-empty'>No process has spoken yet</div>{}", refused)
     head = joined(html("<th title='{}'>{}</th>", hint, name) for name, hint in zip(HEADINGS, HINTS, strict=True))
-    rows = joined(_process(name, model.processes.get(name), model.health.get(name), t) for name in names)
-    loads = [v.load for v in model.health.values() if v.load is not None]
+    rows = joined(_process(name, model.processes.told.get(name), model.processes.vitals.get(name), t) for name in names)
+    loads = [v.load for v in model.processes.vitals.values() if v.load is not None]
     total = html("<tr><td>together</td><td></td><td></td><td>{:.0f}</td><td colspan='3'></td></tr>", 100 * sum(loads))
     return html("<table class='g-system'><tr>{}</tr>{}{}</table>{}{}", head, rows, total, _refusals(model), refused)
 
 
 def _refusals(model: Model) -> Html:
     """Which messages the processes have not taken, and why; empty when they have taken all."""
-    found = [(name, refusal) for name, vitals in sorted(model.health.items()) for refusal in vitals.report.refusals[:REFUSALS]]
+    found = [(name, refusal) for name, vitals in sorted(model.processes.vitals.items()) for refusal in vitals.report.refusals[:REFUSALS]]
     if not found:
         return html("")
     head = html("<tr><th>messages refused by</th><th>key</th><th>count</th><th>the first, because</th></tr>")

@@ -140,18 +140,18 @@ class GroundStation(Service):
             "world_from_map": world_from_map,
         }
         self._hear_system(t, clock, processes, health)
-        self._hear_others(guests, stop, (objects, aircraft), truth)
+        self._hear_others(t, guests, stop, (objects, aircraft), truth)
         return self._act(t, newest, events, (*goal, *cancel, *arm, *mode))
 
     def _hear_system(self, t: float, clock: Clock | None, processes: Sequence[Processes], health: Sequence[Health]) -> None:
         self._model.hear_clock(t, clock)
-        self._model.hear_processes(processes)
-        self._model.hear_health(t, health)
+        self._model.processes.hear(t, processes)
+        self._model.processes.hear_health(t, health)
 
     def _hear_others(
-        self, guests: Mapping[str, Guest], stop: StopStatus, things: Sequence[SimObjects | None], truth: Mapping[str, NavState]
+        self, t: float, guests: Mapping[str, Guest], stop: StopStatus, things: Sequence[SimObjects | None], truth: Mapping[str, NavState]
     ) -> None:
-        self._model.hear_guests(guests)
+        self._model.hear_guests(t, guests)
         self._model.hear_objects(things, truth)
         self._model.hear_stop(stop)
 

@@ -1,7 +1,5 @@
 """What has been put into the running simulation, drawn at its true place: shapes, and vehicles that belong to no mission."""
 
-from typing import Any
-
 from schemas.convert import array, wxyz
 from schemas.messages import SimObject
 from services.gcs.bodies import rgb, rover
@@ -16,24 +14,27 @@ from uvf.runtime.vehicle_file import load_vehicle
 
 STRANGER: Colour = (225, 225, 225)
 
+Look = tuple[str, str, tuple[float, ...], bytes]
+"""Model, shape, size, colour."""
+
 
 class Spawned:
-    """Remembers the meshes it has made, by what they look like."""
+    """Remembers the meshes it has made, by what they look like: many things of one look are made once."""
 
     def __init__(self, model: Model) -> None:
         self._model = model
-        self._made: dict[str, tuple[Any, dict[str, Node]]] = {}
+        self._made: dict[Look, dict[str, Node]] = {}
 
     def nodes(self) -> dict[str, Node]:
         """Each thing's parts, in its own frame ``/spawned/<name>``."""
-        told = self._model.spawned
-        self._made = {thing.name: self._drawn(thing) for thing in told}
-        return {f"/spawned/{name}/{part}": node for name, (_, parts) in self._made.items() for part, node in parts.items()}
-
-    def _drawn(self, thing: SimObject) -> tuple[Any, dict[str, Node]]:
-        look = (thing.model, thing.shape, tuple(thing.size), thing.color.SerializeToString(deterministic=True))
-        before = self._made.get(thing.name)
-        return before if before is not None and before[0] == look else (look, self._draw(thing))
+        before, self._made = self._made, {}
+        nodes: dict[str, Node] = {}
+        for thing in self._model.spawned:
+            look = _look(thing)
+            if look not in self._made:
+                self._made[look] = before[look] if look in before else self._draw(thing)
+            nodes |= {f"/spawned/{thing.name}/{part}": node for part, node in self._made[look].items()}
+        return nodes
 
     def _draw(self, thing: SimObject) -> dict[str, Node]:
         if not thing.model:
@@ -59,3 +60,7 @@ class Spawned:
         if truth is not None:
             return Placed(array(truth.position), wxyz(truth.orientation))
         return Placed(array(thing.pose.position), unit_wxyz(thing.pose))
+
+
+def _look(thing: SimObject) -> Look:
+    return thing.model, thing.shape, tuple(thing.size), thing.color.SerializeToString(deterministic=True)

@@ -18,7 +18,6 @@ from schemas.messages import (
     GimbalCommand,
     Grid,
     Guest,
-    Health,
     JointStates,
     LaserScan,
     Mission,
@@ -28,25 +27,24 @@ from schemas.messages import (
     Odometry,
     PoseInFrame,
     PosesInFrame,
-    Process,
-    Processes,
     SimObject,
     SimObjects,
     StopEngagement,
     VehicleStatus,
 )
 from schemas.topics import SYSTEM
+from services.gcs.guests import FORGOTTEN_AFTER, Guests
 from services.gcs.journal import Journal, Line
+from services.gcs.process_book import ProcessBook
 from services.gcs.refusals import Refusals
 from services.gcs.session import Session
 from services.gcs.tracks import Track
-from services.gcs.vitals import Vitals
 from uvf.maths.rotations import from_euler, matrix
 from uvf.runtime.mapped_floor import MappedFloor
 from uvf.runtime.mission_file import Start, Vehicle
 from uvf.runtime.params import BadInput
 from uvf.runtime.site import Member, Site
-from uvf.runtime.spawned import name_fault, object_fault
+from uvf.runtime.spawned import SPAWNED_MOST, name_fault, object_fault
 from uvf.runtime.stop_all import StopStatus, name_of, told
 from uvf.runtime.vehicle_file import load_vehicle
 
@@ -55,8 +53,6 @@ Floats = NDArray[np.float64]
 STALE_AFTER = 1.5  # s, wall clock
 LOST_AFTER = 5.0  # s
 MOST_VEHICLES = 64
-MOST_PROCESSES = 256
-MOST_OBJECTS = 256
 LONGEST_TEXT = 500  # letters of an event or of what a guest says of itself
 SIGNS_OF_LIFE = ("nav", "pose", "odometry", "status", "nav_status", "progress")
 SHOWN_BY_THE_CLOCK = ("conductor",)
@@ -184,18 +180,16 @@ class Model:
         self.layers = set(SHOWN_AT_FIRST)
         self.clock: Clock | None = None
         self.clock_at: float | None = None
-        self.processes: dict[str, Process] = {}
         self.stop = StopStatus()
         self.log = Journal()
         self._floors = {v.name: MappedFloor(site.world, v.member) for v in self.vehicles.values() if not v.flies}
-        self.health: dict[str, Vitals] = {}
         self.spawned: Sequence[SimObject] = ()
         """What has been put into the running simulation."""
         self.strangers: Mapping[str, NavState] = {}
         """True motion of the vehicles among it."""
         self.refused = Refusals(self._warn)
-        self._turned_away: dict[str, str] = {}
-        """Guests that cannot be drawn, and the model that they name."""
+        self.processes = ProcessBook(self.refused)
+        self._guests = Guests()
 
     def _add(self, name: str, member: Member) -> None:
         colour = COLOURS[len(self.vehicles) % len(COLOURS)]
@@ -237,7 +231,10 @@ class Model:
         """Takes in the newest message of one kind for each vehicle that has a new one."""
         for name, message in messages.items():
             vehicle = self.vehicles.get(name)
-            if vehicle is None or getattr(vehicle, what) is message:
+            if vehicle is None:
+                self._guests.hear(what, name, message)
+                continue
+            if getattr(vehicle, what) is message:
                 continue
             setattr(vehicle, what, message)
             vehicle.heard_at[what] = t
@@ -259,14 +256,6 @@ class Model:
             self.note("", "the simulation has started afresh")
         self.clock, self.clock_at = clock, t
 
-    def hear_processes(self, told: Sequence[Processes]) -> None:
-        """Each launcher tells of its own; together they are what runs."""
-        for process in (process for message in told for process in message.processes):
-            if process.name in self.processes or len(self.processes) < MOST_PROCESSES:
-                self.processes[process.name] = process
-            else:
-                self.refused.add("processes", process.name, f"more than {MOST_PROCESSES} processes are told of: not all are listed")
-
     def hear_stop(self, stop: StopStatus) -> None:
         """Writes down who engages STOP ALL, and who has released the last engagement."""
         before, self.stop = self.stop, stop
@@ -280,31 +269,53 @@ class Model:
     def hear_objects(self, lists: Sequence[SimObjects | None], truth: Mapping[str, NavState]) -> None:
         """lists: of each simulator, what has been put into it."""
         told = (thing for one in lists if one is not None for thing in one.objects)
-        self.spawned = [thing for thing in told if self._is_sound(thing)][:MOST_OBJECTS]
+        self.spawned = [thing for thing in told if self._is_sound(thing)][:SPAWNED_MOST]
         self.strangers = {name: state for name, state in truth.items() if name not in self.vehicles}
 
-    def hear_guests(self, guests: Mapping[str, Guest]) -> None:
-        """Vehicles that no mission names are shown like all others, once it is known what they look like."""
-        for name, guest in guests.items():
-            if name not in self.vehicles and self._turned_away.get(name) != guest.model and self._is_name(name):
-                self._meet(name, guest)
+    def is_guest(self, name: str) -> bool:
+        """No mission names it."""
+        return name not in self.site.members
 
-    def _meet(self, name: str, guest: Guest) -> None:
-        """Takes a guest in, or turns it away: its model is one of those in ``vehicles/``, never a path."""
-        if name not in self._turned_away and len(self.vehicles) + len(self._turned_away) >= MOST_VEHICLES:
+    def hear_guests(self, t: float, guests: Mapping[str, Guest]) -> None:
+        """Vehicles that no mission names are shown like all others, once it is known what they look like."""
+        strangers = [(name, guest) for name, guest in guests.items() if name not in self.vehicles]
+        lost = self._lost_guests(t) if strangers else []
+        for name, guest in strangers:
+            if not self._guests.is_away(name, guest) and self._is_name(name):
+                self._meet(t, name, guest, lost)
+
+    def _meet(self, t: float, name: str, guest: Guest, lost: list[str]) -> None:
+        """Takes a guest in, in the place of one of the lost if there is no other, or turns it away.
+
+        Its model is one of those in ``vehicles/``, never a path.
+        """
+        is_full = len(self.vehicles) >= MOST_VEHICLES
+        if is_full and not lost:
             self.refused.add("vehicles", name, f"more than {MOST_VEHICLES} vehicles are on the bus: not all are shown")
             return
         try:
             file = load_vehicle(self.site.vehicles_folder, model_name(guest.model))
         except BadInput as error:
-            if name not in self._turned_away:
+            if self._guests.turn_away(name, guest.model):
                 self._warn(f"'{name}' cannot be shown: {error}")
-            self._turned_away[name] = guest.model
             return
-        self._turned_away.pop(name, None)
+        if is_full:
+            self._forget(lost.pop())
+        self._guests.take_in(t, name, guest)
         entry = Vehicle(model=guest.model, start=Start(x=0.0, y=0.0), system_id=1)
         self._add(name, Member(name, entry, file, self.site.vehicles_folder / guest.model))
         self.note(name, f"a guest: {guest.about[:LONGEST_TEXT]}", Event.NOTICE)
+
+    def _lost_guests(self, t: float) -> list[str]:
+        """Those that may be forgotten, the longest lost last. None that a browser shows; by hand only the mission's own are driven."""
+        chosen = {session.vehicle for session in self.sessions.values()}
+        heard = {name: self.vehicles[name].heard or met for name, (met, _) in self._guests.met.items() if name not in chosen}
+        return sorted((name for name, at in heard.items() if t - at > FORGOTTEN_AFTER), key=heard.__getitem__, reverse=True)
+
+    def _forget(self, name: str) -> None:
+        gone = self.vehicles.pop(name)
+        self._guests.forget(name, {what: getattr(gone, what) for what in SIGNS_OF_LIFE})
+        self.note(name, "nothing has been heard of it for long: shown no more, to make room for another guest")
 
     def _is_sound(self, thing: SimObject) -> bool:
         if not self._is_name(thing.name):
@@ -322,13 +333,6 @@ class Model:
 
     def _warn(self, text: str) -> None:
         self.note("", text[:LONGEST_TEXT], Event.WARNING)
-
-    def hear_health(self, t: float, reports: Sequence[Health]) -> None:
-        for report in reports:
-            if report.service in self.health or len(self.health) < MOST_PROCESSES:
-                self.health.setdefault(report.service, Vitals()).hear(t, report)
-            else:
-                self.refused.add("processes", report.service, f"more than {MOST_PROCESSES} processes report: not all are listed")
 
     def hear_events(self, t: float, by_vehicle: Mapping[str, Sequence[Event]]) -> None:
         for name, events in by_vehicle.items():

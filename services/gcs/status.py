@@ -1,6 +1,7 @@
 """The bar over the scene: link and time, the states that want attention as long as they last, and notices of late."""
 
 from collections.abc import Iterator
+from typing import NamedTuple
 
 from schemas.messages import Clock, Event, NavStatus, Process, StopEngagement
 from services.gcs.commands import SOURCE
@@ -17,7 +18,14 @@ SEVERITY: dict[int, tuple[str, str]] = {
 }
 SOURCES = {SOURCE: "this page", "mavlink": "a MAVLink ground station", "launcher": "the launcher"}
 STOPS_SHOWN = 3
+ALERTS_SHOWN, ALERT_LENGTH = 5, 120  # letters
 UNWELL = {Process.RESTARTING: ("is started again", "warn"), Process.FAILED: ("has failed for good", "bad")}
+
+
+class Alert(NamedTuple):
+    style: str
+    """Class of the line: bad or warn."""
+    text: str
 
 
 def clock_text(seconds: float) -> str:
@@ -53,22 +61,43 @@ def status_bar(model: Model, chosen: VehicleModel | None, t: float) -> Html:
     return html("<div class='g-status'>{}</div>{}{}", joined(parts), states, _notices(model, t))
 
 
-def alerts(model: Model, t: float) -> Iterator[tuple[str, str]]:
-    """(class, text) of each state that wants attention now; each goes when its state goes."""
-    if model.stopped:
-        yield "bad", f"■ STOP ALL ENGAGED {_by_whom(model)}".rstrip()
+def alerts(model: Model, t: float) -> list[Alert]:
+    """Each state that wants attention now; each goes when its state goes.
+
+    Only so many are shown: first what concerns the mission and its vehicles, then guests, then processes, of each the gravest
+    first. So neither strangers nor a launcher that tells of many failures hide what a vehicle of the mission needs.
+    """
+    own: list[Alert] = []
+    guests: list[Alert] = []
     if model.clock is not None and model.clock.waiting_for:
-        yield "warn", f"⚠ time stands: waits for {model.clock.waiting_for}"
-    for name, process in sorted(model.processes.items()):
+        own.append(Alert("warn", f"⚠ time stands: waits for {model.clock.waiting_for}"))
+    for v in model.vehicles.values():
+        (guests if model.is_guest(v.name) else own).extend(_of_vehicle(model, v, t))
+    stop = [Alert("bad", f"■ STOP ALL ENGAGED {_by_whom(model)}".rstrip())] if model.stopped else []
+    found = stop + [alert for group in (own, guests, _of_processes(model)) for alert in sorted(group, key=_gravity)]
+    shown, rest = found[:ALERTS_SHOWN], sorted(found[ALERTS_SHOWN:], key=_gravity)
+    more = [Alert(rest[0].style, f"and {len(rest)} more")] if rest else []
+    return [Alert(style, text if len(text) <= ALERT_LENGTH else f"{text[: ALERT_LENGTH - 1]}…") for style, text in shown] + more
+
+
+def _gravity(alert: Alert) -> bool:
+    """Sorts what is bad before what is only a warning."""
+    return alert.style != "bad"
+
+
+def _of_vehicle(model: Model, v: VehicleModel, t: float) -> Iterator[Alert]:
+    word, style = link_of(v.heard, t)
+    if style == "bad":
+        yield Alert("bad", f"✖ {v.name}: {word}")
+    elif v.nav_status is not None and v.nav_status.state == NavStatus.BLOCKED and not model.stopped:
+        yield Alert("warn", f"⚠ {v.name} is blocked{f': {v.nav_status.reason}' if v.nav_status.reason else ''}")
+
+
+def _of_processes(model: Model) -> Iterator[Alert]:
+    for name, process in sorted(model.processes.told.items()):
         if process.state in UNWELL:
             words, style = UNWELL[process.state]
-            yield style, f"{'✖' if style == 'bad' else '⚠'} {name} {words}{f': {process.reason}' if process.reason else ''}"
-    for v in model.vehicles.values():
-        word, style = link_of(v.heard, t)
-        if style == "bad":
-            yield "bad", f"✖ {v.name}: {word}"
-        elif v.nav_status is not None and v.nav_status.state == NavStatus.BLOCKED and not model.stopped:
-            yield "warn", f"⚠ {v.name} is blocked{f': {v.nav_status.reason}' if v.nav_status.reason else ''}"
+            yield Alert(style, f"{'✖' if style == 'bad' else '⚠'} {name} {words}{f': {process.reason}' if process.reason else ''}")
 
 
 def _by_whom(model: Model) -> str:

@@ -35,11 +35,11 @@ UP = 0.02  # m above the floor, so that what lies on it is seen
 
 
 class View:
-    """Draws one model; remembers each node it has made, by what the node was made from."""
+    """Draws one model; remembers the nodes it has made, by what they were made from."""
 
     def __init__(self, model: Model) -> None:
         self._model = model
-        self._made: dict[str, tuple[Any, Node]] = {}
+        self._made: dict[str, tuple[Any, dict[str, Node]]] = {}
         self._used: set[str] = set()
         self._surroundings = scenery(model.site.world)
         self._scripted = moving(model.site.world)
@@ -51,7 +51,10 @@ class View:
         self._map_due: dict[str, float] = {}
 
     def _learn(self) -> None:
-        """What the vehicles look like; guests come later."""
+        """What the vehicles look like; guests come later, and go."""
+        for name in self._bodies.keys() - self._model.vehicles.keys():
+            for known in (self._bodies, self._ghosts, self._moving):
+                known.pop(name, None)
         for v in [v for v in self._model.vehicles.values() if v.name not in self._bodies]:
             shape = _shape(v) if v.flies else None
             self._bodies[v.name] = _body(v, shape)
@@ -111,11 +114,15 @@ class View:
 
     def _make(self, name: str, of: Any, make: Callable[[], Node]) -> dict[str, Node]:
         """The node made from ``of`` before, if it is still that; else a new one."""
+        return self._make_all(name, of, lambda: {"": make()})
+
+    def _make_all(self, name: str, of: Any, make: Callable[[], dict[str, Node]]) -> dict[str, Node]:
+        """The same of several nodes that are made at once."""
         self._used.add(name)
         before = self._made.get(name)
         if before is None or (before[0] is not of and before[0] != of):
             self._made[name] = (of, make())
-        return {"": self._made[name][1]}
+        return dict(self._made[name][1])
 
     def _map(self, v: VehicleModel, name: str, grid: Grid | None, t: float) -> dict[str, Node]:
         if grid is None or not grid.data or grid.column_count == 0:
@@ -124,7 +131,7 @@ class View:
             return {}  # nobody has said yet where this map lies
         if name in self._made and t < self._map_due.get(name, 0.0):
             self._used.add(name)
-            return {"": self._made[name][1]}
+            return self._made[name][1]
         self._map_due[name] = t + MAP_PERIOD
         return self._make(name, (grid, v.world_from_map), lambda: floor_picture(grid, v.world_from_map))
 
@@ -170,11 +177,7 @@ class View:
         fence = v.fence
         if fence is None:
             return {}
-        drawn: dict[str, Node] = {}
-        for part in (f"/{i}/{what}" for i in range(len(fence.zones)) for what in ("edge", "wall")):
-            made = self._make(f"fence {v.name}{part}", fence, lambda p=part: fence_nodes(fence, rgb_of(v.colour), v.flies)[p])  # type: ignore[misc]
-            drawn[part] = made[""]
-        return drawn
+        return self._make_all(f"fence {v.name}", fence, lambda: fence_nodes(fence, rgb_of(v.colour), v.flies))
 
     def _track(self, v: VehicleModel) -> dict[str, Node]:
         colour, up = rgb_of(v.colour), np.array((0, 0, 0.0 if v.flies else UP))

@@ -18,6 +18,7 @@ VERSION = f"viser-v{viser.__version__}"
 LARGEST = 16 * 1024  # bytes of a message
 MOST_OPEN = 64  # connections to the port, also those that have not said yet what they want
 MOST_BROWSERS = 16
+SILENT_FOR = 10.0  # s; a page tells every 2 s how wide it is, one in a hidden tab at least once a minute
 RATE, BURST = 100.0, 200.0  # messages/s of one browser: a page sends 30 at most
 FAULTS = 20  # more messages of no known form than sound ones, after which a connection is closed
 
@@ -104,7 +105,7 @@ class Door:
 
     def __init__(self) -> None:
         self.open = 0
-        self.browsers = 0
+        self._browsers: set[PageConnection] = set()
         self.refused = 0
         """Messages of no known form."""
 
@@ -119,16 +120,29 @@ class Door:
             if connection.subprotocol != VERSION:
                 await connection.close(1002, f"Version mismatch. Client: {str(connection.subprotocol)[:40]}, Server: {VERSION}")
                 return
-            if self.browsers >= MOST_BROWSERS:
+            if not self._has_room():
                 await connection.close(1013, f"{MOST_BROWSERS} browsers are connected already")
                 return
-            self.browsers += 1
+            self._browsers.add(connection)
+            waiting = asyncio.get_running_loop().call_later(SILENT_FOR, connection.end_if_mute)
             try:
                 await serve(connection)
             finally:
-                self.browsers -= 1
+                waiting.cancel()
+                self._browsers.discard(connection)
 
         return bounded
+
+    def _has_room(self) -> bool:
+        """For one more; the longest silent has to go for it, but nobody who has spoken of late."""
+        if len(self._browsers) < MOST_BROWSERS:
+            return True
+        silent = min(self._browsers, key=lambda browser: browser.spoke_at)
+        if time.monotonic() - silent.spoke_at < SILENT_FOR:
+            return False
+        self._browsers.discard(silent)
+        silent.transport.abort()  # a goodbye would wait for an answer
+        return True
 
 
 class PageConnection(ServerConnection):
@@ -139,6 +153,14 @@ class PageConnection(ServerConnection):
         self._door = door
         self._allowance, self._counted_at = BURST, time.monotonic()
         self._faults = 0
+        self._has_spoken = False
+        self.spoke_at = self._counted_at
+        """When it last said something sound, or connected [s]."""
+
+    def end_if_mute(self) -> None:
+        """For who has said nothing since it connected: a browser says at once where its camera is."""
+        if not self._has_spoken:
+            self.transport.abort()
 
     def connection_made(self, transport: Any) -> None:
         super().connection_made(transport)
@@ -156,6 +178,7 @@ class PageConnection(ServerConnection):
             await self._in_turn()
             if is_sound(raw):
                 self._faults = max(0, self._faults - 1)
+                self._has_spoken, self.spoke_at = True, time.monotonic()
                 return raw
             self._faults += 1
             self._door.refused += 1

@@ -12,8 +12,8 @@ from services.sim_air.collisions import Collisions
 from services.sim_air.placing import fault_of, place, start_of
 from uvf.maths.bvh import Bvh
 from uvf.runtime import mission_file
-from uvf.runtime.params import BadInput, nearest
-from uvf.runtime.spawned import name_fault
+from uvf.runtime.params import BadInput, listed, nearest
+from uvf.runtime.spawned import crowd_fault, name_fault
 
 SAVED_MOST = 16
 
@@ -59,7 +59,7 @@ class Stage:
         """others: names of what the ground simulator has put in."""
         wanted = request.object
         asked = SetPoseRequest(name=wanted.name, pose=wanted.pose, speed=request.speed)
-        if fault := self._name_fault(wanted.name, others) or fault_of(asked):
+        if fault := self._name_fault(wanted.name, others) or crowd_fault(len(self._spawned) + len(others)) or fault_of(asked):
             return Reply(reason=fault)
         try:
             joining = self._join(wanted.name, wanted.model, start_of(asked))
@@ -106,7 +106,7 @@ class Stage:
     def save(self, step: int, request: StateRequest) -> Reply:
         """step: number of the service's step that has been made. The aircraft go on in the state that was saved, to the last bit."""
         if request.name not in self._kept and len(self._kept) >= SAVED_MOST:
-            return Reply(reason=f"{SAVED_MOST} states are kept already: {', '.join(self._kept)}; use one of these names again")
+            return Reply(reason=f"{SAVED_MOST} states are kept already: {listed(self._kept)}; use one of these names again")
         if not request.only_ask:
             kept = KeptWorld({name: craft.keep() for name, craft in self.aircraft.items()}, dict(self._spawned), step - self.late)
             self._kept[request.name] = kept

@@ -12,10 +12,10 @@ from schemas.convert import array, quaternion, stamp, vector, yaw_of
 from schemas.messages import RemoveRequest, Reply, SetPoseRequest, SimObject, SimObjects, SpawnRequest, StateRequest
 from services.sim_ground.rig import Rig
 from services.sim_ground.world import Placed
-from uvf.runtime.params import BadInput, nearest
+from uvf.runtime.params import BadInput, listed, nearest
 from uvf.runtime.robot_model import UrdfModel
 from uvf.runtime.solid import Solid
-from uvf.runtime.spawned import body_fault, name_fault, pose_fault, solid_of, unit_wxyz
+from uvf.runtime.spawned import body_fault, crowd_fault, name_fault, pose_fault, solid_of, unit_wxyz
 from uvf.runtime.surroundings import Surroundings, vehicle_tree
 
 Floats = NDArray[np.float64]
@@ -86,7 +86,7 @@ class Stage:
     def spawn(self, request: SpawnRequest, others: Collection[str]) -> Reply:
         """others: names of what the air simulator has put in."""
         wanted = request.object
-        reason = self._name_fault(wanted.name, others) or body_fault(wanted)
+        reason = self._name_fault(wanted.name, others) or crowd_fault(len(self._objects) + len(others)) or body_fault(wanted)
         if not reason:
             try:
                 reason = self._put_vehicle(wanted) if wanted.model else self._put(wanted)
@@ -150,7 +150,7 @@ class Stage:
     def save(self, step: int, request: StateRequest) -> Reply:
         """step: number of the service's step that has been made."""
         if request.name not in self._kept and len(self._kept) >= SAVED_MOST:
-            return _reply(f"{SAVED_MOST} states are kept already: {', '.join(self._kept)}; use one of these names again")
+            return _reply(f"{SAVED_MOST} states are kept already: {listed(self._kept)}; use one of these names again")
         if request.only_ask:
             return _reply("")
         if request.name in self._kept:

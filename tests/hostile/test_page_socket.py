@@ -14,7 +14,7 @@ import msgspec
 import pytest
 import websockets
 
-from services.gcs.viser_socket import LARGEST, MOST_BROWSERS, is_sound
+from services.gcs.viser_socket import LARGEST, MOST_BROWSERS, SILENT_FOR, is_sound
 from tests.services.gcs.wire import CAMERA, Browser, connect, free_port, until
 from uvf.runtime.site import ROOT
 
@@ -240,6 +240,50 @@ def test_many_connections_leave_room_for_those_there_are(station, good):
             stack.callback(socket.create_connection(("127.0.0.1", station.port)).close)
         shown = good.html()
         assert until(lambda: good.html() != shown, 10)
+
+
+async def _holding(port, count, words, until_shut):
+    """That many connections which say their words and then no more, while ``until_shut`` runs."""
+    async with contextlib.AsyncExitStack() as stack:
+        clients = [await stack.enter_async_context(connect(port)) for _ in range(count)]
+        for client in clients:
+            for word in words:
+                await client.send(pack(word))
+        reading = [asyncio.create_task(_drain(client)) for client in clients]
+        outcome = await until_shut(reading)
+        for client in clients:
+            client.transport.abort()
+        await asyncio.gather(*reading)
+        return outcome
+
+
+async def _joins(port):
+    async with connect(port) as client:
+        with contextlib.suppress(websockets.ConnectionClosed):
+            await client.send(pack(CAMERA))
+            return bool(await asyncio.wait_for(client.recv(), 5))
+    return False
+
+
+def test_who_says_nothing_takes_no_browsers_place_for_long(station, good):
+    async def wait(reading):
+        before = await _joins(station.port)
+        await asyncio.wait(reading, timeout=SILENT_FOR + 5.0)
+        return before, all(one.done() for one in reading), await _joins(station.port)
+
+    assert asyncio.run(_holding(station.port, MOST_BROWSERS - 1, [], wait)) == (False, True, True)
+
+
+def test_who_has_fallen_silent_makes_room_for_another_and_who_speaks_does_not(station, good):
+    async def wait(reading):
+        early = await _joins(station.port)
+        for _ in range(round(SILENT_FOR) + 1):
+            await asyncio.to_thread(good.send, CAMERA)
+            await asyncio.sleep(1.0)
+        return early, await _joins(station.port), sum(one.done() for one in reading)
+
+    assert asyncio.run(_holding(station.port, MOST_BROWSERS - 1, [CAMERA], wait)) == (False, True, 1)
+    assert good.alive
 
 
 @pytest.mark.parametrize(

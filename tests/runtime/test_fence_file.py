@@ -2,14 +2,16 @@
 
 import math
 
+import numpy as np
 import pytest
 import yaml
 
-from schemas.messages import Fence, FenceZone, Vector3
-from uvf.runtime.fence_file import OPEN, FenceFile, fence_fault, fence_message, fencing
+from schemas.messages import Fence, FenceRequest, FenceZone, Vector3
+from uvf.runtime.fence_file import MOST_VERTICES, MOST_ZONES, OPEN, FenceFile, fence_fault, fence_message, fencing
 from uvf.runtime.mission_file import load_mission
 from uvf.runtime.params import BadInput
 from uvf.runtime.site import ROOT
+from uvf.runtime.validation import error_in
 
 FENCE = {
     "zones": [{"polygon": [[-500, -500], [500, -500], [500, 500], [-500, 500]]}, {"circle": [100, 0, 50], "exclude": True}],
@@ -82,3 +84,12 @@ def test_zones_of_one_group_count_together_and_those_of_a_file_each_alone(tmp_pa
 def test_a_fence_that_is_disabled_is_kept_and_keeps_nothing_out():
     fence = Fence(zones=[FenceZone(radius=10.0)], disabled=True)
     assert fence_fault(fence) == "" and fencing(fence).is_open
+
+
+def test_what_no_autopilot_could_have_is_no_message_either():
+    """Who draws or follows a fence need not look how large it is."""
+    polygon = FenceZone(vertices=[Vector3(x=math.cos(a), y=math.sin(a)) for a in np.linspace(0.0, 6.0, MOST_VERTICES)])
+    largest = Fence(zones=[polygon] * MOST_ZONES)
+    assert fence_fault(largest) == error_in(largest) == ""
+    assert "zones: 33 entries" in error_in(Fence(zones=[FenceZone(radius=1.0)] * 33))
+    assert "vertices: 129 entries" in error_in(FenceRequest(fence=Fence(zones=[FenceZone(vertices=[Vector3()] * 129)])))

@@ -5,15 +5,17 @@ from collections import deque
 import pytest
 
 from schemas import topics
+from schemas.limits import TEXT
 from schemas.messages import ArmRequest, Reply
 from uvf.runtime.bus import LocalBus
 from uvf.runtime.service import Later, Service
 from uvf.runtime.shell import Shell
 from uvf.runtime.site import Host
+from uvf.runtime.wire import decode
 
 
 class Slow(Service):
-    """Answers each request three steps after it has come, one to disarm at once."""
+    """Answers each request three steps after it has come, one to disarm at once; one with a source twice as long."""
 
     name = "slow"
     hz = 10.0
@@ -30,7 +32,9 @@ class Slow(Service):
         replies = []
         for request in arm:
             later = Later()
-            if request.arm:
+            if request.source:
+                later.give(Reply(reason=request.source * 2))
+            elif request.arm:
                 self.waiting.append((self.n + 3, later))
             else:
                 later.give(Reply(accepted=False, reason="at once"))
@@ -48,9 +52,10 @@ def shell(bus):
     return Shell(Host(Slow, Slow, "alpha"), bus)
 
 
-def ask(bus, arm):
+def ask(bus, arm, source=""):
     got = []
-    bus.call(topics.ARM.at("alpha"), ArmRequest(arm=arm).SerializeToString(), 0, lambda reply, why, at: got.append((reply, why)))
+    request = ArmRequest(arm=arm, source=source)
+    bus.call(topics.ARM.at("alpha"), request.SerializeToString(), 0, lambda reply, why, at: got.append((reply, why)))
     return got
 
 
@@ -78,3 +83,10 @@ def test_when_time_starts_over_what_is_open_is_refused(bus, shell):
     shell.advance()
     shell.restart(2)
     assert got[0][0] is None and "time has started over" in got[0][1]
+
+
+def test_a_reason_longer_than_a_message_may_hold_is_cut_and_arrives(bus, shell):
+    got = ask(bus, True, "z" * (TEXT - 10))
+    shell.advance()
+    reply = decode("reply", got[0][0], Reply)
+    assert len(reply.reason) == TEXT and reply.reason.endswith("zz…")

@@ -5,6 +5,7 @@ from typing import Annotated, Literal
 import msgspec
 import pytest
 
+from schemas.limits import TEXT
 from uvf.runtime.params import BadInput, load_yaml, nearest
 
 Positive = Annotated[float, msgspec.Meta(gt=0)]
@@ -80,3 +81,10 @@ def test_numbers_with_exponents_are_numbers(tmp_path):
 def test_the_nearest_name_is_offered_or_all_there_are():
     assert nearest("burgr", ["burger", "milvus"]) == "did you mean 'burger'?"
     assert nearest("xyz", ["burger", "milvus"]) == "there are: burger, milvus"
+
+
+def test_of_many_names_or_long_ones_so_many_are_listed_that_a_message_can_hold_them():
+    many = nearest("xyz", [f"crate{i:03}" for i in range(256)])
+    assert many.startswith("there are: crate000, crate001, ") and many.endswith(", crate009 and 246 more")
+    assert len(nearest("xyz", [f"{i}" * TEXT for i in range(10)])) < TEXT
+    assert len(nearest("a" * TEXT, ["a" * TEXT])) < TEXT

@@ -8,12 +8,14 @@ from typing import Annotated, Literal
 import msgspec
 from msgspec import Meta
 
+from schemas.limits import LENGTHS
 from schemas.messages import Fence, FenceZone, Vector3
 from uvf.maths.zones import Area, Disc, Overlap, Point, Polygon, Region
 from uvf.runtime.params import BadInput
 
 Metres = Annotated[float, Meta(ge=-1e6, le=1e6)]
-MOST_ZONES, MOST_VERTICES = 32, 128
+MOST_ZONES, MOST_VERTICES = LENGTHS["uvf.v1.Fence.zones"], LENGTHS["uvf.v1.FenceZone.vertices"]
+"""Of a file, of MAVLink's items and of the message alike."""
 ACTIONS = {"return": Fence.RETURN, "hold": Fence.HOLD, "warn": Fence.WARN, "land": Fence.LAND}
 
 

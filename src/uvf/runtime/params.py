@@ -14,6 +14,8 @@ import yaml
 T = TypeVar("T")
 Key = str | int
 
+LISTED, LONGEST_NAME = 10, 100  # names, letters
+
 
 class BadInput(Exception):
     """Something from outside (file, argument, message) is wrong; the text says what, where and how to mend it."""
@@ -88,10 +90,21 @@ def convert(data: Any, type_: type[T], file: str, keys: tuple[Key, ...] = ()) ->
 
 
 def nearest(name: str, known: Iterable[str]) -> str:
-    """``; did you mean 'x'?`` or the list of what there is."""
+    """``did you mean 'x'?`` or the list of what there is."""
     choices = sorted(known)
     close = difflib.get_close_matches(name, choices, n=1, cutoff=0.5)
-    return f"did you mean '{close[0]}'?" if close else f"there are: {', '.join(choices) or 'none'}"
+    return f"did you mean '{_short(close[0])}'?" if close else f"there are: {listed(choices) or 'none'}"
+
+
+def listed(names: Iterable[str]) -> str:
+    """``a, b and 3 more``: never so long that nobody reads it, or that no message can carry it."""
+    known = list(names)
+    more = f" and {len(known) - LISTED} more" if len(known) > LISTED else ""
+    return ", ".join(map(_short, known[:LISTED])) + more
+
+
+def _short(name: str) -> str:
+    return name if len(name) <= LONGEST_NAME else f"{name[: LONGEST_NAME - 1]}…"
 
 
 def _check(data: Any, hint: Any, place: Place) -> None:

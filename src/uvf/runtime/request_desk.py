@@ -6,6 +6,7 @@ from typing import Any
 
 from google.protobuf.message import Message
 
+from schemas.limits import TEXT
 from schemas.topics import Qos, Request
 from uvf.runtime.bus import Query
 from uvf.runtime.service import Later, Service
@@ -87,7 +88,7 @@ class RequestDesk:
             except Malformed as error:
                 self._malformed(str(error))
                 reply = request.reply(accepted=False, reason=str(error))
-                query.answer(reply.SerializeToString(deterministic=True), query.stamp_ns)
+                query.answer(_bytes_of(reply), query.stamp_ns)
         return good
 
     def reply(self, outputs: Mapping[str, Any], t_ns: int) -> None:
@@ -123,7 +124,17 @@ class RequestDesk:
                 self.answer(query, request, request.reply(accepted=False, reason=reason), t_ns)
 
     def answer(self, query: Query, request: Request[Any, Any], reply: Message, t_ns: int) -> None:
-        payload = reply.SerializeToString(deterministic=True)
+        payload = _bytes_of(reply)
         query.answer(payload, t_ns)
         self._put(f"{query.key}/request", request.message, Qos.EVENT, query.payload, t_ns)
         self._put(f"{query.key}/reply", request.reply, Qos.EVENT, payload, t_ns)
+
+
+def _bytes_of(reply: Any) -> bytes:
+    """With a reason that is short enough to be taken: of one that is too long nothing would arrive."""
+    if len(reply.reason) > TEXT:
+        whole, reply = reply, type(reply)()
+        reply.CopyFrom(whole)
+        reply.reason = f"{whole.reason[: TEXT - 1]}…"
+    payload: bytes = reply.SerializeToString(deterministic=True)
+    return payload

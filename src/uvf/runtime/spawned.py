@@ -20,6 +20,8 @@ NAME = re.compile(r"[a-z][a-z0-9_]{0,39}")
 FARTHEST = 1e5  # m
 SIZES = {"box": 3, "cylinder": 2, "sphere": 1}
 LARGEST, HEAVIEST = 100.0, 1e5  # m, kg
+SPAWNED_MOST = 256
+"""Things in both simulators together; as many as the page shows, and fewer than their message can hold."""
 
 
 def name_fault(name: str) -> str:
@@ -27,6 +29,11 @@ def name_fault(name: str) -> str:
     if not NAME.fullmatch(name) or name == SYSTEM:
         return f"{name[:60]!a} is no name: small letters, digits and _, a letter first, 40 at most"
     return ""
+
+
+def crowd_fault(there: int) -> str:
+    """Why nothing more can be put in beside so many; empty = it can."""
+    return f"{there} things are there already, {SPAWNED_MOST} at most: remove some first" if there >= SPAWNED_MOST else ""
 
 
 def pose_fault(pose: Pose) -> str:

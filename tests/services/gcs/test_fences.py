@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 from schemas import topics
+from schemas.limits import LENGTHS
 from schemas.messages import Fence, FenceZone, Vector3
+from services.gcs import view
 from services.gcs.commands import Layer
 from services.gcs.drawing import Mesh, Polyline
 from services.gcs.fences import CORNERS, KEEP_OUT, fence_nodes
@@ -87,6 +89,16 @@ def test_the_page_shows_it_hides_it_and_takes_it_away(station):
     station.script.put(UAV, topics.FENCE, Fence(), station.t)
     station.run(0.2)
     assert not shown()
+
+
+def test_all_zones_of_a_fence_are_drawn_at_once(station, monkeypatch):
+    drawn = []
+    monkeypatch.setattr(view, "fence_nodes", lambda fence, *how: drawn.append(fence) or fence_nodes(fence, *how))
+    zones = [TOWER] * LENGTHS["uvf.v1.Fence.zones"]
+    station.script.put(UAV, topics.FENCE, Fence(zones=zones), station.t)
+    station.run(0.5)
+    assert sum(name.startswith(f"/fence/{UAV}") for name in station.page.now.nodes) == 2 * len(zones)
+    assert len(drawn) == 1
 
 
 def test_a_new_fence_takes_the_place_of_the_old_one(station):

@@ -3,11 +3,13 @@
 import pytest
 
 from schemas.messages import NavState, Pose, Quaternion, SimObject, SimObjects, Vector3
+from services.gcs import spawned
 from services.gcs.state import Model
 from services.gcs.view import View
 from tests.services.gcs.scripted import UGV, demo_site
 from uvf.runtime.solid_mesh import triangles
 from uvf.runtime.spawned import GREY, solid_of
+from uvf.runtime.vehicle_file import load_vehicle
 
 
 def crate(x, name="crate"):
@@ -46,6 +48,20 @@ def test_another_thing_of_that_name_is_drawn_anew(model):
     first = view.nodes(0.0)["/spawned/crate/0"]
     hear(model, SimObject(name="crate", shape="sphere", size=[0.2], pose=crate(1.0).pose))
     assert view.nodes(0.1)["/spawned/crate/0"] is not first
+
+
+def test_many_things_of_one_look_are_made_once(model, monkeypatch):
+    """A model is loaded in tens of milliseconds: 256 of it would hold up the page for seconds."""
+    loaded = []
+    monkeypatch.setattr(spawned, "load_vehicle", lambda folder, name: loaded.append(name) or load_vehicle(folder, name))
+    view = View(model)
+    hear(model, *(SimObject(name=f"scout{i}", model="my2bot", pose=scout().pose) for i in range(20)), crate(1.0), crate(2.0, "other"))
+    first = view.nodes(0.0)
+    names = {name.split("/")[2] for name in first if name.startswith("/spawned/scout")}
+    assert loaded == ["my2bot"] and names == {f"scout{i}" for i in range(20)}
+    assert first["/spawned/crate/0"] is first["/spawned/other/0"]
+    hear(model, SimObject(name="scout7", model="my2bot", pose=scout().pose))
+    assert view.nodes(0.1)["/spawned/scout7/0"] is first["/spawned/scout7/0"] and loaded == ["my2bot"]
 
 
 def test_what_is_taken_out_is_gone(model):

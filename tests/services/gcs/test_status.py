@@ -3,9 +3,9 @@
 import pytest
 
 from schemas import topics
-from schemas.messages import Clock, Event, NavStatus, Process, Processes, StopCommand, Timestamp
+from schemas.messages import Clock, Event, Guest, NavStatus, Process, Processes, StopCommand, Timestamp, VehicleStatus
 from services.gcs.commands import StopAll
-from services.gcs.status import alerts
+from services.gcs.status import ALERT_LENGTH, ALERTS_SHOWN, alerts
 from tests.services.gcs.fakes import Station
 from tests.services.gcs.scripted import UAV, UGV
 
@@ -76,3 +76,19 @@ def test_a_stop_of_somebody_else_is_theirs_and_stands_in_the_log(station):
     assert told(station) == ["■ STOP ALL ENGAGED by the launcher (slam was given up), 00:00:01"]
     assert f"not confirmed by {UGV}, {UAV}" in station.page.now.html["stop"]
     assert "STOP ALL engaged by launcher (slam was given up)" in station.page.now.html["log"]
+
+
+def test_many_failed_processes_and_lost_guests_hide_no_vehicle_of_the_mission(station):
+    failed = [Process(name=f"a{i}", state=Process.FAILED, reason="you must land now " * 100) for i in range(200)]
+    station.model.processes.hear(station.t, [Processes(processes=failed)])
+    station.model.hear_guests(station.t, {f"ghost{i}": Guest(model="burger") for i in range(50)})
+    station.model.hear(station.t - 100.0, "status", {f"ghost{i}": VehicleStatus() for i in range(2)})
+    station.model.vehicles[UGV].nav_status = NavStatus(state=NavStatus.BLOCKED, reason="no way there " * 100)
+    shown = told(station)
+    assert shown[0].startswith(f"⚠ {UGV} is blocked: no way there") and shown[0].endswith("…")
+    assert [line.split()[1] for line in shown[1:3]] == ["ghost0:", "ghost1:"]
+    assert len(shown) == ALERTS_SHOWN + 1 and shown[-1] == "and 198 more"
+    assert max(map(len, shown)) == ALERT_LENGTH
+    assert station.page.now.html["bar"].count("g-alert") <= ALERTS_SHOWN + 1
+    station.model.vehicles[UAV].heard_at = {"status": -100.0}
+    assert told(station)[0].startswith(f"✖ {UAV}: LINK LOST"), "the gravest first"

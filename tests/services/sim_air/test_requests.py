@@ -10,6 +10,7 @@ from schemas.convert import array, planar_pose, seconds
 from schemas.messages import RemoveRequest, SetPoseRequest, SimObject, SpawnRequest, StateRequest, SurfaceCommand
 from services.sim_air.build import build
 from tests.services.asking import Asked
+from uvf.runtime import spawned
 from uvf.runtime.service import Service, every
 from uvf.runtime.site import Host, load_site
 
@@ -71,6 +72,13 @@ def run(tmp_path):
 
 def guest(name="guest", model="milvus", z=90.0, x=-300.0, speed=0.0):
     return SpawnRequest(object=SimObject(name=name, model=model, pose=planar_pose(x, 60.0, 0.0, z)), speed=speed)
+
+
+def test_more_things_than_there_may_be_are_refused_with_the_mend(run, monkeypatch):
+    monkeypatch.setattr(spawned, "SPAWNED_MOST", 1)
+    assert run.ask(topics.AIR_SPAWN, guest("a"), 0.1).accepted
+    reply = run.ask(topics.AIR_SPAWN, guest("b", x=-400.0), 0.3)
+    assert reply.reason == "1 things are there already, 1 at most: remove some first"
 
 
 def test_an_aircraft_is_put_in_flying_with_its_sensors_told_of_and_gone_again(run):

@@ -10,6 +10,7 @@ from services.sim_ground.build import build
 from tests.services.asking import Asked
 from tests.services.sim_ground.ride import Driver, site_with
 from uvf.maths.kinematics import Twist
+from uvf.runtime import spawned
 from uvf.runtime.site import Host
 
 START = (6.0, 4.4, 0.0)
@@ -83,6 +84,15 @@ def test_a_vehicle_is_put_elsewhere_and_stands(tmp_path):
     assert run.place() == pytest.approx((9.0, 4.4, 0.0), abs=2e-3)
     assert np.hypot(run.of(topics.TRUTH)[-1].velocity.x, run.of(topics.TRUTH)[-1].velocity.y) < 1e-3
     run.lockstep.close()
+
+
+def test_more_things_than_there_may_be_are_refused_with_the_mend(run, monkeypatch):
+    monkeypatch.setattr(spawned, "SPAWNED_MOST", 2)
+    assert run.ask(topics.SPAWN, crate("a"), 0.1).accepted and run.ask(topics.SPAWN, crate("b", x=8.0), 0.3).accepted
+    reply = run.ask(topics.SPAWN, crate("c", x=9.0), 0.5)
+    assert reply.reason == "2 things are there already, 2 at most: remove some first"
+    assert run.ask(topics.REMOVE, RemoveRequest(name="a"), 0.7).accepted
+    assert run.ask(topics.SPAWN, crate("c", x=9.0), 0.9).accepted
 
 
 def test_a_name_that_the_air_simulator_has_put_in_is_taken(run):
