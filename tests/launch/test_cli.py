@@ -120,6 +120,41 @@ def test_a_misspelt_name_is_answered_in_one_line_before_anything_is_loaded(argum
     assert "exit 2" in done.stdout
 
 
+LONG = "a" * 5000
+NO_NAMES = [
+    ("check",),
+    ("log", "info"),
+    ("slam",),
+    ("map", "load"),
+    ("vehicle", "check"),
+    ("world", "show"),
+]
+
+
+@pytest.mark.parametrize("command", NO_NAMES, ids=" ".join)
+def test_a_name_too_long_for_a_file_is_refused_in_one_line_that_is_not_as_long(command):
+    done = uvf(*command, LONG)
+    assert done.returncode == 2
+    assert done.stderr.endswith("aaa...: the name is too long for a file; name another\n")
+    assert len(done.stderr) < 200
+
+
+@pytest.mark.parametrize("command", [("check",), ("log", "info"), ("report",)], ids=" ".join)
+def test_a_link_that_leads_round_in_a_circle_is_said_to_be_one(command, tmp_path):
+    loop = tmp_path / "loop"
+    loop.symlink_to(loop)
+    done = uvf(*command, str(loop))
+    assert done.returncode == 2
+    assert "the link leads round in a circle" in done.stderr
+
+
+def test_what_a_file_holds_can_neither_break_the_line_nor_steer_the_terminal(tmp_path):
+    done = uvf("check", mission(tmp_path, **{"\x1b[31mred\n": 1}))
+    assert done.returncode == 2
+    assert len(done.stderr.splitlines()) == 1
+    assert "unknown key '\\x1b[31mred '" in done.stderr
+
+
 def test_run_without_lockstep_is_refused_in_one_line_that_names_both_ways():
     done = without_engines("run", "formation")
     assert "exit 2" in done.stdout
