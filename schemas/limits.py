@@ -100,7 +100,7 @@ ITEM = 32
 BYTES: dict[str, int] = {"uvf.v1.MissionItem.origin": ITEM, "uvf.v1.Fence.origin": ITEM, "uvf.v1.RallyPoints.origin": ITEM}
 """Bytes of one length, where they are not empty: an item of MAVLink's mission protocol as it came over the wire."""
 GRID_SIDE = 50_000  # cells
-GRID_CELL = (1e-3, 1e4)  # m
+GRID_CELL = (1e-3, 10.0)  # m, as of maps in files
 
 
 def size_of(type_: type[Message]) -> int:
