@@ -100,10 +100,7 @@ def save_map(grid: GridMap, path: Path, mode: str = "trinary") -> Path:
     path: of the yaml or the picture, which is a PGM unless the suffix says PNG or the mode needs one: ``scale`` keeps unknown
     cells as transparent ones. ``scale`` and ``raw`` keep each cell's value, ``trinary`` only whether it is free or occupied.
     """
-    if mode not in THRESHOLDS:
-        raise BadInput(f"mode: no '{mode}' here; {nearest(mode, THRESHOLDS)}")
-    if mode == "scale" and path.suffix == ".pgm":
-        raise BadInput(f"{path}: mode scale needs transparency, which a PGM has not; write a .png, or take mode raw")
+    check_mode(path, mode)
     if grid.cells.size == 0:
         raise BadInput(f"{path}: a map without cells cannot be written")
     suffix = path.suffix if path.suffix in PICTURES else ".png" if mode == "scale" else ".pgm"
@@ -114,6 +111,14 @@ def save_map(grid: GridMap, path: Path, mode: str = "trinary") -> Path:
     write_whole(picture, buffer.getvalue())
     write_whole(yaml, _yaml(grid, picture.name, mode).encode())
     return yaml
+
+
+def check_mode(path: Path, mode: str) -> None:
+    """Raises BadInput where ``save_map`` would for it."""
+    if mode not in THRESHOLDS:
+        raise BadInput(f"mode: no '{mode}' here; {nearest(mode, THRESHOLDS)}")
+    if mode == "scale" and path.suffix == ".pgm":
+        raise BadInput(f"{path}: mode scale needs transparency, which a PGM has not; write a .png, or take mode raw")
 
 
 def _picture(yaml: Path, image: str) -> Path:
