@@ -92,14 +92,17 @@ OPEN: dict[str, frozenset[str]] = {
     "uvf.v1.Param": frozenset(("min", "max")),  # infinite = no limit
 }
 """Numbers of any value."""
-MODEL = r"([A-Za-z0-9_][A-Za-z0-9_.-]{0,79})?"
-PATTERNS: dict[str, str] = {"uvf.v1.Guest.model": MODEL, "uvf.v1.SimObject.model": MODEL}
+VEHICLE = r"[a-z][a-z0-9_]{0,39}"
+"""Of a vehicle, and of what is put into a simulation; whole, in files as on the bus."""
+FOLDER = r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,79}"
+"""Of a model or a world; whole, in files as on the bus."""
+PATTERNS: dict[str, str] = {"uvf.v1.Guest.model": f"({FOLDER})?", "uvf.v1.SimObject.model": f"({FOLDER})?"}
 """Texts that become names of files, where they are not empty."""
 ITEM = 32
 BYTES: dict[str, int] = {"uvf.v1.MissionItem.origin": ITEM, "uvf.v1.Fence.origin": ITEM, "uvf.v1.RallyPoints.origin": ITEM}
 """Bytes of one length, where they are not empty: an item of MAVLink's mission protocol as it came over the wire."""
 GRID_SIDE = 50_000  # cells
-GRID_CELL = (1e-3, 1e4)  # m
+GRID_CELL = (1e-3, 10.0)  # m, as of maps in files
 
 
 def size_of(type_: type[Message]) -> int:

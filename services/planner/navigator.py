@@ -6,9 +6,10 @@ from math import isfinite
 import numpy as np
 from numpy.typing import NDArray
 
+from schemas.limits import LENGTHS
 from services.planner.costmap import Body, Costmap, Frame, costmap, with_way_out
 from services.planner.search import Cell, Ways, astar
-from services.planner.smoothing import smoothed
+from services.planner.smoothing import SPACING, length, smoothed
 
 Floats = NDArray[np.float64]
 Point = tuple[float, float]
@@ -17,6 +18,11 @@ WAY_OUT = 0.3  # m about the vehicle within which it may leave the room it shoul
 UNKNOWN_COST = 3.0
 """Factor on the cost of unknown ground for goals that may lie behind it."""
 
+MOST_CELLS = 16_000_000
+"""Of a map, 200 x 200 m in cells of 5 cm: a way over it takes some seconds and a gigabyte."""
+FARTHEST = (LENGTHS["foxglove.PosesInFrame.poses"] - 2) * SPACING
+"""m of way; the points of a longer one do not fit into a message."""
+TOO_LARGE = "the map is too large to plan on"
 NO_PLACE = "the goal is not a place: its coordinates must be finite"
 
 
@@ -37,6 +43,8 @@ class Navigator:
         self._bold: Costmap | None = None
         self._ways: tuple[Cell, Ways] | None = None
         self.costs: Costmap | None = None
+        self.missing = "there is no map yet"
+        """Why there are no costs, and no ways, while there are none."""
 
     def fit(self, body: Body) -> bool:
         """Plans for another body from now on; whether that changes anything."""
@@ -48,10 +56,14 @@ class Navigator:
         return True
 
     def see(self, cells: NDArray[np.int8], frame: Frame) -> None:
-        """Takes a new map; costs are worked out once for it."""
-        self._cells = cells
+        """Takes a new map; costs are worked out once for it. On one of too many cells nobody drives."""
         self._bold = None
         self._ways = None
+        if cells.size > MOST_CELLS:
+            self._cells, self.costs = None, None
+            self.missing = f"{TOO_LARGE}: {cells.size} cells, {MOST_CELLS} at most"
+            return
+        self._cells = cells
         self.costs = costmap(cells, frame, self._body)
 
     def ways(self, start: Point) -> Ways | None:
@@ -67,7 +79,7 @@ class Navigator:
         """Why nobody can drive from ``start`` to ``goal`` over known ground; "" if it can be done."""
         costs = self.costs
         if costs is None:
-            return "there is no map yet"
+            return self.missing
         if not _is_place(goal):
             return NO_PLACE
         cell = costs.cell(*goal)
@@ -82,13 +94,15 @@ class Navigator:
         ways = self.ways(start)
         if ways is None or not np.isfinite(ways.cost[cell]):
             return "no way leads to the goal"
-        return ""
+        if ways.cost[cell] * costs.resolution <= FARTHEST:  # a way costs no less than its length
+            return ""
+        return _too_far(costs.points(ways.to(cell)))
 
     def plan(self, start: Point, goal: Point, bold: bool = False) -> Plan:
         """bold: unknown ground may be crossed, and the goal may lie beyond the map: its nearest cell is taken."""
         known = self._costs(bold)
         if known is None:
-            return Plan(None, "there is no map yet")
+            return Plan(None, self.missing)
         if not _is_place(goal):
             return Plan(None, NO_PLACE)
         here = known.cell(*start)
@@ -106,7 +120,8 @@ class Navigator:
         points[0] = start
         if known.holds(known.cell(*goal)):
             points = np.vstack((points[:-1], goal)) if len(points) > 1 else np.array((start, goal))
-        return Plan(smoothed(points, known, self._body.radius))
+        too_far = _too_far(points)
+        return Plan(None, too_far) if too_far else Plan(smoothed(points, known, self._body.radius))
 
     def _costs(self, bold: bool) -> Costmap | None:
         if not bold or self.costs is None or self._cells is None:
@@ -114,6 +129,12 @@ class Navigator:
         if self._bold is None:
             self._bold = costmap(self._cells, (self.costs.resolution, self.costs.origin), self._body, UNKNOWN_COST)
         return self._bold
+
+
+def _too_far(points: Floats) -> str:
+    """Why a way is not driven for its length; "" if it is."""
+    way = length(points)
+    return f"the goal is too far to plan: {way / 1000:.1f} km of way, {FARTHEST / 1000:.1f} km at most" if way > FARTHEST else ""
 
 
 def _is_place(point: Point) -> bool:

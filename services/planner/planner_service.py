@@ -235,7 +235,7 @@ class PlannerService(Service):
     def _replan_exploring(self, t: float, here: Pose2) -> None:
         ways, costs = self._navigator.ways(here[:2]), self._navigator.costs
         if ways is None or costs is None:
-            self._target, self._plan = None, Plan(None, "the vehicle is outside its map")
+            self._target, self._plan = None, Plan(None, self._navigator.missing if costs is None else "the vehicle is outside its map")
             return
         frontier = self._explorer.choose(t, costs, ways)
         self._target = frontier or self._patrol.choose(here[:2], costs, ways)

@@ -3,6 +3,8 @@
 Eight neighbours; a step costs its length times the mean cost of both cells; corners are not cut.
 """
 
+from typing import TypeVar
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -12,6 +14,10 @@ Floats = NDArray[np.float64]
 Cells = NDArray[np.int64]
 Cell = tuple[int, int]
 
+Numbers = TypeVar("Numbers", Floats, Cells)
+
+ROOM = 4096
+"""Of a heap at first. Few cells wait at a time, but up to eight times as many as there are could."""
 DIAGONAL = float(np.sqrt(2.0))
 
 
@@ -45,6 +51,14 @@ def _pop(keys: Floats, items: Cells, size: int) -> int:
 
 
 @compiled
+def _grown(values: Numbers, size: int) -> Numbers:
+    """The same with as much room again."""
+    out = np.empty(2 * values.size, dtype=values.dtype)
+    out[:size] = values[:size]
+    return out
+
+
+@compiled
 def _octile(r: int, c: int, goal_r: int, goal_c: int) -> float:
     """Length [cells] of the shortest eight-neighbour way over free ground."""
     dr, dc = abs(r - goal_r), abs(c - goal_c)
@@ -62,8 +76,7 @@ def _expand(cost: Floats, start: tuple[int, int], goal: tuple[int, int]) -> tupl
     g = np.full((rows, columns), np.inf)
     before = np.full(rows * columns, -1, dtype=np.int64)
     done = np.zeros((rows, columns), dtype=np.bool_)
-    capacity = 8 * rows * columns + 1
-    keys, items = np.empty(capacity), np.empty(capacity, dtype=np.int64)
+    keys, items = np.empty(ROOM), np.empty(ROOM, dtype=np.int64)
     size = _push(keys, items, 0, 0.0, start[0] * columns + start[1])
     g[start] = 0.0
     while size > 0:
@@ -75,6 +88,8 @@ def _expand(cost: Floats, start: tuple[int, int], goal: tuple[int, int]) -> tupl
         done[r, c] = True
         if r == goal[0] and c == goal[1]:
             break
+        if size + 8 > keys.size:
+            keys, items = _grown(keys, size), _grown(items, size)
         for dr in range(-1, 2):
             for dc in range(-1, 2):
                 nr, nc = r + dr, c + dc

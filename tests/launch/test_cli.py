@@ -120,6 +120,83 @@ def test_a_misspelt_name_is_answered_in_one_line_before_anything_is_loaded(argum
     assert "exit 2" in done.stdout
 
 
+LONG = "a" * 5000
+NO_NAMES = [
+    ("check",),
+    ("log", "info"),
+    ("slam",),
+    ("map", "load"),
+    ("vehicle", "check"),
+    ("world", "show"),
+]
+
+
+@pytest.mark.parametrize("command", NO_NAMES, ids=" ".join)
+def test_a_name_too_long_for_a_file_is_refused_in_one_line_that_is_not_as_long(command):
+    done = uvf(*command, LONG)
+    assert done.returncode == 2
+    assert done.stderr.endswith("aaa...: the name is too long for a file; name another\n")
+    assert len(done.stderr) < 200
+
+
+@pytest.mark.parametrize("command", [("check",), ("log", "info"), ("report",)], ids=" ".join)
+def test_a_link_that_leads_round_in_a_circle_is_said_to_be_one(command, tmp_path):
+    loop = tmp_path / "loop"
+    loop.symlink_to(loop)
+    done = uvf(*command, str(loop))
+    assert done.returncode == 2
+    assert "the link leads round in a circle" in done.stderr
+
+
+def test_what_a_file_holds_can_neither_break_the_line_nor_steer_the_terminal(tmp_path):
+    done = uvf("check", mission(tmp_path, **{"\x1b[31mred\n": 1}))
+    assert done.returncode == 2
+    assert len(done.stderr.splitlines()) == 1
+    assert "unknown key '\\x1b[31mred '" in done.stderr
+
+
+NOWHERE = "tcp/127.0.0.1:9"
+USAGE = {
+    ("chek", "demo"): "no such command 'chek'; did you mean 'check'?; try 'uvf --help'",
+    ("topic", "ehco", "x"): "no such command 'ehco'; did you mean 'echo'?; try 'uvf topic --help'",
+    ("map", "load"): "missing argument 'name'; try 'uvf map load --help'",
+    ("up", "--ratee", "1"): "no such option: --ratee",
+    ("up", "--rate", "abc"): "invalid value for '--rate': ",
+    ("up", "--rate", "nan"): "invalid value for '--rate': nan: give a number from 0 to 1000; try 'uvf up --help'",
+    ("up", "--for", "-5"): "invalid value for '--for': -5: give a number at least 0.01; try 'uvf up --help'",
+    ("up", "--for", "nan"): "invalid value for '--for': nan: give a number at least 0.01",
+    ("service", "conductor", "--rate", "nan"): "invalid value for '--rate': nan",
+    ("topic", "hz", "burger/nav/pose", "--for", "-1"): "invalid value for '--for': -1",
+    ("topic", "echo", "burger/nav/pose", "-n", "-4"): "invalid value for '-n': ",
+}
+
+
+@pytest.mark.parametrize("arguments", USAGE, ids=" ".join)
+def test_what_cannot_be_meant_is_one_line_that_names_the_help(arguments):
+    done = uvf(*arguments, UVF_ROUTER=NOWHERE)
+    assert done.returncode == 2
+    assert done.stderr.startswith(f"uvf: {USAGE[arguments]}") and done.stderr.endswith(" --help'\n")
+    assert len(done.stderr.splitlines()) == 1
+
+
+def test_a_group_without_a_command_tells_what_there_is():
+    done = uvf("sim")
+    assert done.returncode == 2
+    assert "restore" in done.stdout + done.stderr and "uvf: " not in done.stderr
+
+
+def test_the_fault_itself_is_named_before_a_router_is_looked_for(tmp_path):
+    (tmp_path / "empty.mcap").touch()
+    for arguments, why in {
+        ("replay", str(tmp_path / "empty.mcap")): "is empty: nothing was recorded in it",
+        ("map", "save", "x", "--mode", "trinry"): "mode: no 'trinry' here; did you mean 'trinary'?",
+        ("router", "--listen", "rubbish"): "--listen rubbish: not an endpoint; write it as tcp/127.0.0.1:7447",
+    }.items():
+        done = uvf(*arguments, UVF_ROUTER=NOWHERE)
+        assert (done.returncode, len(done.stderr.splitlines())) == (2, 1)
+        assert why in done.stderr
+
+
 def test_run_without_lockstep_is_refused_in_one_line_that_names_both_ways():
     done = without_engines("run", "formation")
     assert "exit 2" in done.stdout

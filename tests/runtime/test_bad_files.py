@@ -17,6 +17,7 @@ SPOILS = {
     "none": None,
     "text": "x",
     "a name with /..": "../../x",
+    "a line end": "burger\n",
     "a long text": "x" * 5000,
     "a list": [1, "a", None],
     "a mapping": {"x": 1},
@@ -145,6 +146,12 @@ MISTAKES = {
     "off the floor": ({"vehicles.burger.start.x": 12.5}, "start: (12.5, 1.3) is not on the floor of house"),
     "under the ground": ({"vehicles.milvus.start.z": -1.0}, "start: z: -1 m is under the ground"),
     "no world": ({"world": "hose"}, "no world 'hose'"),
+    "a line end in a world's name": ({"world": "house\n"}, "world: Expected `str` matching regex"),
+    "a line end in a model's name": ({"vehicles.milvus.model": "milvus\n"}, "model: Expected `str` matching regex"),
+    "a line end in a vehicle's name": (
+        {"vehicles.other\n": {"model": "burger", "system_id": 9, "start": {"x": 6.0, "y": 4.4}}},
+        "vehicles: Expected `str` matching regex",
+    ),
 }
 
 

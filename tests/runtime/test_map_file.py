@@ -1,6 +1,8 @@
 """Maps of map_server: written and read back they are the same; foreign ones are read as ROS reads them; broken ones are one line."""
 
 import errno
+import os
+import tracemalloc
 from pathlib import Path
 
 import numpy as np
@@ -143,6 +145,32 @@ def test_broken_pictures_are_one_line(tmp_path, content):
     with pytest.raises(BadInput, match=r"m\.pgm: cannot be read as a picture") as refused:
         load_map(written(tmp_path, HEAD, content=content))
     assert "\n" not in str(refused.value)
+
+
+@pytest.mark.parametrize("sides", [(5001, 5000), (12_000, 12_000), (10**5, 10**5), (99_999_999, 99_999_999)])
+def test_a_picture_of_too_many_cells_is_refused_before_it_is_decoded(tmp_path, sides):
+    head = b"P5\n%d %d\n255\n" % sides
+    with pytest.raises(BadInput, match=r"m\.pgm: .* more than 25 million; cut it into parts, or make its cells larger") as refused:
+        load_map(written(tmp_path, HEAD, content=head))
+    assert "\n" not in str(refused.value)
+
+
+def test_a_picture_takes_little_more_room_than_its_cells(tmp_path):
+    cells = np.zeros((2500, 2500), dtype=np.int8)
+    cells[3, 4], cells[2000, 2400] = 100, -1
+    path = save_map(GridMap(cells, 0.05, Pose2(0.0, 0.0, 0.0)), tmp_path / "m.png", "scale")
+    tracemalloc.start()
+    again = load_map(path)
+    most = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert np.array_equal(again.cells, cells)
+    assert most < 25 * cells.size
+
+
+def test_a_pipe_is_no_picture(tmp_path):
+    os.mkfifo(tmp_path / "m.pgm")
+    with pytest.raises(BadInput, match=r"m\.pgm: cannot be read as a picture: it is no file"):
+        load_map(written(tmp_path, HEAD))
 
 
 def test_a_map_that_was_renamed_is_still_found(tmp_path):

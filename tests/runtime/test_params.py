@@ -1,5 +1,7 @@
 """Files from people: what is wrong, where, and how to mend it, in one line."""
 
+import itertools
+import time
 from typing import Annotated, Literal
 
 import msgspec
@@ -44,7 +46,9 @@ BAD = {
     "parts: [{size: [1, 1],\n size: [1, 1]}]": "f.yaml:2: not valid YAML: key 'size' is given twice",
     "name: [": "f.yaml:1: not valid YAML",
     "[" * 3000: "nested too deeply",
-    "parts: &a [*a]": "parts[0]: Expected `object`, got `array`",
+    "parts: &a [*a]": "f.yaml:1: not valid YAML: it contains itself",
+    "name: a\n? [a]\n: b": "f.yaml:2: not valid YAML: a key is a list or a mapping; write a name or a number",
+    "name: a\n? {a: 1}\n: b": "f.yaml:2: not valid YAML: a key is a list or a mapping",
     "": "f.yaml: the file is empty",
     "- name": "f.yaml: Expected `object`, got `array`",
     "name: 2020-13-45": "f.yaml: not valid YAML: month must be in 1..12",
@@ -54,6 +58,33 @@ BAD = {
     "name: \x01": "f.yaml: not valid YAML",
     "part: {weight: 1" + "0" * 400 + "}": "part: weight: Number out of range",
 }
+
+
+def ever_more(first, repeated):
+    """Lines of which each repeats the one before nine times."""
+    lines = [f"{b}: &{b} " + repeated.format(",".join([f"*{a}"] * 9)) for a, b in itertools.pairwise("abcdefgh")]
+    return "\n".join([f"a: &a {first}", *lines])
+
+
+BOMBS = {
+    "lists": ever_more("[x]", "[{}]"),
+    "a key": ever_more("[x]", "[{}]") + "\n? *h\n: 1",
+    "merged lists": ever_more("{k: 1}", "{{<<: [{}]}}"),
+    "merged twice": "\n".join(["a0: &a0 {k: 1}", *(f"a{i + 1}: &a{i + 1} {{<<: *a{i}, <<: *a{i}}}" for i in range(40))]),
+}
+
+
+@pytest.mark.parametrize("bomb", BOMBS)
+def test_a_small_file_that_stands_for_a_huge_one_is_refused_at_once(tmp_path, bomb):
+    before = time.process_time()
+    with pytest.raises(BadInput, match=r"f\.yaml:\d+: not valid YAML: more than 100000 values, counting what is repeated"):
+        load(tmp_path, BOMBS[bomb])
+    assert time.process_time() - before < 1.0
+
+
+def test_what_is_repeated_and_merged_in_measure_is_read(tmp_path):
+    text = "part: &p {weight: 2.0}\nparts: [*p, *p]\nnamed: {a: {<<: [*p, {size: [3, 4]}]}}"
+    assert load(tmp_path, text) == Whole(part=Part(weight=2.0), parts=[Part(weight=2.0)] * 2, named={"a": Part((3.0, 4.0), 2.0)})
 
 
 @pytest.mark.parametrize("text", BAD, ids=range(len(BAD)))

@@ -1,5 +1,6 @@
 """Logs hold the bytes as they travelled, open elsewhere, survive a kill and a full disk."""
 
+import os
 import random
 from pathlib import Path
 
@@ -166,6 +167,7 @@ def test_a_log_knows_when_its_recording_began(tmp_path):
     assert log_begin(tmp_path / "whole.mcap") == 0
 
 
+MAGIC = b"\x89MCAP0\r\n"
 ODD = {
     "missing": (lambda path: None, "No such file"),
     "folder": (lambda path: path.mkdir(), "is a folder; and there is no log in it"),
@@ -177,7 +179,12 @@ ODD = {
     "text": (lambda path: path.write_text("about: a mission"), "is no MCAP log"),
     "short text": (lambda path: path.write_text("x"), "is no MCAP log"),
     "only begun": (lambda path: path.write_bytes(b"\x89MCAP"), "uvf log recover"),
-    "pipe": (lambda path: path.symlink_to("/dev/null"), "is no file"),
+    "only the magic": (lambda path: path.write_bytes(MAGIC), "cut off .* 'uvf log recover .*a.mcap'"),
+    "the magic twice": (lambda path: path.write_bytes(MAGIC * 2), "cut off .* 'uvf log recover .*a.mcap'"),
+    "only a header": (lambda path: path.write_bytes(MAGIC + b"\x01" + (8).to_bytes(8, "little") + bytes(8)), "cut off .* 'uvf log recover"),
+    "device": (lambda path: path.symlink_to("/dev/null"), "is no file"),
+    "pipe": (os.mkfifo, "is no file"),
+    "link to itself": (lambda path: path.symlink_to(path), "Too many levels of symbolic links"),
 }
 
 

@@ -218,8 +218,9 @@ def test_a_map_that_is_no_rectangle_of_cells_is_refused(change, why):
     for name, value in change.items():
         setattr(grid, name, value)
     assert why in error_in(grid)
-    grid.cell_size.x = 0.0
-    assert "cells are of 0.001" in error_in(grid)
+    for side in (0.0, 10.1):
+        grid.cell_size.x = side
+        assert "cells are of 0.001 to 10 m" in error_in(grid)
 
 
 def test_the_line_names_key_and_type():

@@ -3,6 +3,7 @@
 Heavy imports happen inside the commands, so that ``uvf --help`` is quick.
 """
 
+import sys
 from pathlib import Path
 from typing import Annotated
 
@@ -10,7 +11,7 @@ import typer
 
 from uvf.launch import settings
 from uvf.launch.map_cli import map_app
-from uvf.launch.refusal import bad_input_is_one_line
+from uvf.launch.refusal import bad_input_is_one_line, usage_is_one_line, within
 from uvf.launch.sim_cli import sim_app
 from uvf.launch.slam_cli import slam
 from uvf.launch.vehicle_cli import vehicle_app
@@ -59,6 +60,7 @@ DEMO = "demo"
 AS_TODAY = "With these files instead of those attached to the log."
 RUN = "Folder of a run, or a log; by default the latest run."
 BENCHMARKS = "Groups (bus, sim, ...), each followed by the cases wanted of it."
+RATE = "Simulation seconds per second, at most 1000; 0 = as fast as it goes."
 MISSION = "Name in missions/ or path of a mission file."
 MissionArgument = Annotated[str, typer.Argument(help=MISSION, callback=known_mission)]
 MissionOption = Annotated[str, typer.Option("--mission", "-m", help=MISSION, callback=known_mission)]
@@ -78,9 +80,9 @@ def say(line: str) -> None:
 @app.command()
 def up(
     mission: MissionArgument = DEMO,
-    rate: Annotated[float, typer.Option(min=0.0, max=1000.0, help="Simulation seconds per second; 0 = as fast as it goes.")] = 1.0,
+    rate: Annotated[float, typer.Option(callback=within(0.0, 1000.0), help=RATE)] = 1.0,
     gcs: Annotated[bool, typer.Option("--gcs/--no-gcs", help="The page at http://127.0.0.1:8080.")] = True,
-    seconds: Annotated[float | None, typer.Option("--for", help="Stop so many seconds after time has begun to run.")] = None,
+    seconds: Annotated[float | None, typer.Option("--for", callback=within(0.01), help="Seconds after time began to run, to stop.")] = None,
 ) -> None:
     """Start a whole mission: every service in its own process, watched over, until Ctrl-C."""
     from uvf.launch.runs import new_run
@@ -123,7 +125,7 @@ def service(
     name: Annotated[str, typer.Argument(help="Which service, or 'conductor'.")],
     mission: MissionOption = DEMO,
     vehicle: Annotated[str | None, typer.Option(help="Only for this vehicle.")] = None,
-    rate: Annotated[float, typer.Option(help="Of the conductor.")] = 1.0,
+    rate: Annotated[float, typer.Option(callback=within(0.0, 1000.0), help="Of the conductor.")] = 1.0,
     lockstep: Annotated[bool, typer.Option("--lockstep", help="The next tick waits for everybody.")] = False,
 ) -> None:
     """Run one service in this process."""
@@ -148,9 +150,11 @@ def supervise(context: typer.Context) -> None:
 def router(listen: Annotated[str | None, typer.Option(help="Endpoint; by default UVF_ROUTER or tcp/127.0.0.1:7447.")] = None) -> None:
     """Run the Zenoh router."""
     from uvf.launch.processes import run_router
-    from uvf.runtime.address import router_from
+    from uvf.runtime.address import host_and_port, router_from
 
     with bad_input_is_one_line():
+        if listen is not None:
+            host_and_port(listen, "--listen ")
         run_router(listen or router_from())
 
 
@@ -165,7 +169,7 @@ def record(folder: Annotated[Path, typer.Argument(help="Where the log goes.")], 
 @app.command()
 def replay(
     log: LogArgument,
-    rate: Annotated[float, typer.Option(min=0.01, help="Times real time.")] = 1.0,
+    rate: Annotated[float, typer.Option(callback=within(0.01), help="Times real time.")] = 1.0,
     service: Annotated[str | None, typer.Option(help="Into this service instead, comparing what comes out.")] = None,
     vehicle: Annotated[str | None, typer.Option(help="Of this vehicle.")] = None,
     mission: Annotated[str | None, typer.Option("--mission", "-m", help=AS_TODAY, callback=known_mission)] = None,
@@ -212,7 +216,7 @@ def teleop(
 def flightgear(
     vehicle: Annotated[str, typer.Argument(help="An aircraft of the mission.")],
     to: Annotated[str, typer.Option(help="HOST:PORT where FlightGear listens.")] = "127.0.0.1:5550",
-    hz: Annotated[float, typer.Option(min=1.0, max=100.0, help="Packets a second.")] = 30.0,
+    hz: Annotated[float, typer.Option(callback=within(1.0, 100.0), help="Packets a second, 1 to 100.")] = 30.0,
     mission: MissionOption = DEMO,
 ) -> None:
     """Show an aircraft in FlightGear (native FDM packets over UDP), until Ctrl-C."""
@@ -294,7 +298,7 @@ def topic_list(live: Annotated[bool, typer.Option(help="Only what is on the bus 
 @topic_app.command("echo")
 def topic_echo(
     key: Annotated[str, typer.Argument(help="As burger/nav/pose; * stands for one part.")],
-    count: Annotated[int, typer.Option("-n", help="Stop after so many.")] = 0,
+    count: Annotated[int, typer.Option("-n", min=0, help="Stop after so many.")] = 0,
 ) -> None:
     """Print messages as they come."""
     from uvf.launch.topic_tools import echo
@@ -304,7 +308,7 @@ def topic_echo(
 
 
 @topic_app.command("hz")
-def topic_hz(key: str, seconds: Annotated[float, typer.Option("--for", help="How long to count.")] = 5.0) -> None:
+def topic_hz(key: str, seconds: Annotated[float, typer.Option("--for", callback=within(0.01), help="How long to count.")] = 5.0) -> None:
     """Measure rates, by wall and by simulation time."""
     from uvf.launch.topic_tools import rates
 
@@ -358,7 +362,8 @@ def log_recover(log: LogArgument, out: Annotated[Path | None, typer.Option(help=
 
 
 def main() -> None:
-    app(prog_name="uvf")
+    with usage_is_one_line():
+        sys.exit(app(prog_name="uvf", standalone_mode=False))
 
 
 if __name__ == "__main__":

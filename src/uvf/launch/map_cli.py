@@ -23,9 +23,10 @@ def map_save(
 ) -> None:
     """Write the map of a running vehicle as picture and yaml, as map_saver does."""
     from uvf.launch.maps.running import drawn_map, running_session
-    from uvf.runtime.map_file import map_path, save_map
+    from uvf.runtime.map_file import check_mode, map_path, save_map
 
     with bad_input_is_one_line():
+        check_mode(map_path(name), mode)
         owner, grid = drawn_map(vehicle, own_frame)
         yaml = save_map(grid, map_path(name), mode)
         typer.echo(f"uvf: map of {owner}: {yaml}")

@@ -1,11 +1,16 @@
 """How the command line answers bad input."""
 
-from collections.abc import Iterator
+import errno
+import math
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 import typer
 
 from uvf.runtime.params import BadInput
+
+_NO_NAMES = {errno.ENAMETOOLONG: "the name is too long for a file", errno.ELOOP: "the link leads round in a circle"}
+_SHOWN = 60  # characters of a name
 
 
 @contextmanager
@@ -14,5 +19,46 @@ def bad_input_is_one_line() -> Iterator[None]:
     try:
         yield
     except BadInput as error:
-        typer.echo(f"uvf: {error}", err=True)
-        raise typer.Exit(2) from error
+        raise _refused(str(error)) from error
+    except OSError as error:
+        if error.errno not in _NO_NAMES:
+            raise
+        name = str(error.filename)
+        shown = name if len(name) <= _SHOWN else f"{name[:_SHOWN]}..."
+        raise _refused(f"{shown}: {_NO_NAMES[error.errno]}; name another") from error
+
+
+@contextmanager
+def usage_is_one_line() -> Iterator[None]:
+    """The same for a missing or misspelt argument, option or command. Ends the process."""
+    try:
+        yield
+    except typer.Abort as error:
+        typer.echo("Aborted!", err=True)
+        raise SystemExit(1) from error
+    except typer.TyperException as error:
+        said = error.format_message().strip().replace(". Did you", "; did you")
+        if said:  # else it was the help, printed already
+            context = getattr(error, "ctx", None)
+            command = context.command_path if context is not None else "uvf"
+            _refused(f"{said[0].lower()}{said[1:].rstrip('.')}; try '{command} --help'")
+        raise SystemExit(2) from error
+
+
+def within(low: float, high: float = math.inf) -> Callable[[float | None], float | None]:
+    """A callback for an option that is a number, and a finite one: typer's own limits take NaN for a number that is too large."""
+    limits = f"at least {low:g}" if math.isinf(high) else f"from {low:g} to {high:g}"
+
+    def checked(value: float | None) -> float | None:
+        if value is not None and not (math.isfinite(value) and low <= value <= high):
+            raise typer.BadParameter(f"{value:g}: give a number {limits}")
+        return value
+
+    return checked
+
+
+def _refused(why: str) -> typer.Exit:
+    """Says it in one line, whatever names of files and keys hold: nothing in it is obeyed by a terminal."""
+    line = " ".join(why.split())
+    typer.echo("uvf: " + "".join(c if c.isprintable() else ascii(c)[1:-1] for c in line), err=True)
+    return typer.Exit(2)

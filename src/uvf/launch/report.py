@@ -69,6 +69,7 @@ def _print_result(result: Result, log: Path) -> None:
 
 def replay_onto_bus(log: Path, rate: float) -> int:
     """Until the end or Ctrl-C."""
+    log_begin(log)  # what is wrong with it, before a router is looked for
     stop = Event()
     signal.signal(signal.SIGINT, lambda *_: stop.set())
     with ZenohBus(router_from(), blocking=True, timeout=5.0) as bus:

@@ -3,6 +3,7 @@
 Imports nothing heavy: a misspelt name is answered before any engine is loaded.
 """
 
+import contextlib
 import difflib
 import os
 from pathlib import Path
@@ -31,6 +32,7 @@ def mission_path(name: str) -> Path:
     for path in (Path(name), ROOT / "missions" / f"{name}.yaml", ROOT / name):
         if path.is_file():
             return path
+    _look_at(Path(name))
     known = [p.stem for p in (ROOT / "missions").glob("*.yaml")]
     raise BadInput(f"no mission '{name}'; {nearest(Path(name).stem, known)}")
 
@@ -39,8 +41,15 @@ def log_path(path: Path, what: str = "log") -> Path:
     """A log, or a run's folder, that is there. Raises BadInput."""
     if path.exists():
         return path
+    _look_at(path)
     close = difflib.get_close_matches(path.name, [p.name for p in path.parent.glob("*")], n=1)
     raise BadInput(f"no {what} {path}; " + (f"did you mean '{close[0]}'?" if close else f"runs are recorded in {runs_folder()}"))
+
+
+def _look_at(path: Path) -> None:
+    """Raises OSError for a link that leads round in a circle, which is not found either."""
+    with contextlib.suppress(FileNotFoundError, NotADirectoryError):
+        path.stat()
 
 
 def benchmark_groups() -> list[str]:

@@ -2,6 +2,7 @@
 
 import ipaddress
 import os
+import re
 import secrets
 import socket
 from collections.abc import Mapping
@@ -20,12 +21,12 @@ def router_from(environment: Mapping[str, str] = os.environ) -> str:
     return endpoint
 
 
-def host_and_port(endpoint: str) -> tuple[str, int]:
-    """Of an endpoint such as ``tcp/127.0.0.1:7447``. Raises BadInput."""
-    link, _, place = endpoint.partition("/")
+def host_and_port(endpoint: str, given: str = f"{ROUTER}=") -> tuple[str, int]:
+    """Of an endpoint such as ``tcp/127.0.0.1:7447``. Raises BadInput; given: in which way it was."""
+    link, _, place = re.split("[?#]", endpoint)[0].partition("/")  # zenoh's settings of a link follow
     host, _, port = place.rpartition(":")
     if not link or not host or not port.isdecimal() or not 0 < int(port) < 65536:
-        raise BadInput(f"{ROUTER}={endpoint}: not an endpoint; write it as {DEFAULT_ROUTER}")
+        raise BadInput(f"{given}{endpoint}: not an endpoint; write it as {DEFAULT_ROUTER}")
     return host, int(port)
 
 

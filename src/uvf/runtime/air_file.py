@@ -11,7 +11,7 @@ from uvf.runtime.params import BadInput, Place
 from uvf.runtime.quantities import Name, NotNegative, PhysicsRate, Positive
 
 Deflection = Annotated[float, Meta(ge=0.01, le=1.6)]
-PropertyName = Annotated[str, Meta(pattern=r"^/?[A-Za-z_][A-Za-z0-9_./\[\]-]*$", max_length=200)]
+PropertyName = Annotated[str, Meta(pattern=r"^/?[A-Za-z_][A-Za-z0-9_./\[\]-]*\Z", max_length=200)]
 """Of a JSBSim property: fcs/aileron-cmd-norm, fcs/throttle-cmd-norm[1]."""
 Properties = str | list[str]  # not of PropertyName: constraints in such a union end some processes with a crash (msgspec issue 717)
 UNITS = ("-rad", "-deg", "-norm", "-rpm", "-rad_sec")

@@ -5,9 +5,12 @@ http://wiki.ros.org/map_server#Map_format and nav2_map_server. The picture's top
 
 import io
 import json
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import msgspec
 import numpy as np
@@ -26,6 +29,9 @@ Share = Annotated[float, Meta(ge=0, le=1)]
 YAML, PICTURES = (".yaml", ".yml"), (".pgm", ".png")
 FREE, UNKNOWN, OCCUPIED = 254, 205, 0
 """Greys of a written trinary map."""
+MOST_CELLS = 25_000_000
+"""Of a map in a file: 250 x 250 m in cells of 5 cm. What tells its walls' thickness takes 150 bytes for each."""
+BAND = 1_000_000  # cells of a picture looked at at once
 FREE_UP_TO, OCCUPIED_FROM = 25, 65  # per cent
 THRESHOLDS = {"trinary": (0.196, 0.65), "scale": (0.0, 1.0), "raw": (0.196, 0.65)}
 """(free_thresh, occupied_thresh) that the yaml is written with: grey 205 is unknown only up to 0.196."""
@@ -83,9 +89,9 @@ def load_map(path: Path) -> GridMap:
         raise BadInput(f"{path}: free_thresh: {file.free_thresh:g} is not below occupied_thresh, {file.occupied_thresh:g}")
     if len(file.origin) not in (2, 3):
         raise BadInput(f"{path}: origin: {file.origin}; write x, y [m] and yaw [rad]")
-    colours, opacity = _pixels(_picture(path, file.image))
+    cells = _meant(_pixels(_picture(path, file.image)), file)
     yaw = file.origin[2] if len(file.origin) == 3 else 0.0
-    return GridMap(np.flipud(_cells(colours, opacity, file)), file.resolution, Pose2(file.origin[0], file.origin[1], yaw))
+    return GridMap(np.flipud(cells), file.resolution, Pose2(file.origin[0], file.origin[1], yaw))
 
 
 def save_map(grid: GridMap, path: Path, mode: str = "trinary") -> Path:
@@ -94,10 +100,7 @@ def save_map(grid: GridMap, path: Path, mode: str = "trinary") -> Path:
     path: of the yaml or the picture, which is a PGM unless the suffix says PNG or the mode needs one: ``scale`` keeps unknown
     cells as transparent ones. ``scale`` and ``raw`` keep each cell's value, ``trinary`` only whether it is free or occupied.
     """
-    if mode not in THRESHOLDS:
-        raise BadInput(f"mode: no '{mode}' here; {nearest(mode, THRESHOLDS)}")
-    if mode == "scale" and path.suffix == ".pgm":
-        raise BadInput(f"{path}: mode scale needs transparency, which a PGM has not; write a .png, or take mode raw")
+    check_mode(path, mode)
     if grid.cells.size == 0:
         raise BadInput(f"{path}: a map without cells cannot be written")
     suffix = path.suffix if path.suffix in PICTURES else ".png" if mode == "scale" else ".pgm"
@@ -108,6 +111,14 @@ def save_map(grid: GridMap, path: Path, mode: str = "trinary") -> Path:
     write_whole(picture, buffer.getvalue())
     write_whole(yaml, _yaml(grid, picture.name, mode).encode())
     return yaml
+
+
+def check_mode(path: Path, mode: str) -> None:
+    """Raises BadInput where ``save_map`` would for it."""
+    if mode not in THRESHOLDS:
+        raise BadInput(f"mode: no '{mode}' here; {nearest(mode, THRESHOLDS)}")
+    if mode == "scale" and path.suffix == ".pgm":
+        raise BadInput(f"{path}: mode scale needs transparency, which a PGM has not; write a .png, or take mode raw")
 
 
 def _picture(yaml: Path, image: str) -> Path:
@@ -137,22 +148,50 @@ def _greys(cells: Cells, mode: str) -> NDArray[np.uint8]:
     return np.where(occupied, OCCUPIED, np.where(free, FREE, UNKNOWN)).astype(np.uint8)
 
 
-def _pixels(picture: Path) -> tuple[NDArray[np.float64], NDArray[np.float64] | None]:
-    """(rows, columns, 1 or 3) brightness of the colours, 0..1, and the opacity, or None where there is none."""
+def _pixels(picture: Path) -> NDArray[Any]:
+    """(rows, columns[, 3 or 4]) brightness, or colours, or those and the opacity, as they are in the picture: of 8 or of 16 bits."""
+    if picture.exists() and not picture.is_file():  # a pipe would never be opened
+        raise BadInput(f"{picture}: cannot be read as a picture: it is no file; give a PGM or PNG")
     try:
-        with Image.open(picture) as image:
-            transparent = "A" in image.getbands() or "transparency" in image.info
+        with _bomb_is_error(), Image.open(picture) as image:
+            columns, rows = image.size
+            if columns * rows > MOST_CELLS:
+                raise _too_large(picture, f"{columns} x {rows} cells are")
             if image.mode.startswith("I"):
-                return np.asarray(image, dtype=np.float64)[..., None] / 65535.0, None
-            mode = "RGBA" if transparent else "L" if image.mode in ("1", "L") else "RGB"
-            values = np.asarray(image.convert(mode), dtype=np.float64) / 255.0
+                return np.asarray(image)
+            transparent = "A" in image.getbands() or "transparency" in image.info
+            return np.asarray(image.convert("RGBA" if transparent else "L" if image.mode in ("1", "L") else "RGB"))
     except OSError as error:
         reason = error.strerror or str(error)
         raise BadInput(f"{picture}: cannot be read as a picture: {reason}; give a PGM or PNG") from error
-    except (ValueError, SyntaxError, Image.DecompressionBombError) as error:
+    except (Image.DecompressionBombWarning, Image.DecompressionBombError) as error:
+        raise _too_large(picture, "its cells are") from error
+    except (ValueError, SyntaxError) as error:
         raise BadInput(f"{picture}: cannot be read as a picture: {error}; give a PGM or PNG") from error
-    values = np.atleast_3d(values)
-    return (values[..., :3], values[..., 3]) if transparent else (values, None)
+
+
+@contextmanager
+def _bomb_is_error() -> Iterator[None]:
+    """Pillow only warns of a picture up to twice as large as it takes for safe."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", Image.DecompressionBombWarning)
+        yield
+
+
+def _too_large(picture: Path, these: str) -> BadInput:
+    mend = "cut it into parts, or make its cells larger"
+    return BadInput(f"{picture}: cannot be read as a picture of a map: {these} more than {MOST_CELLS // 10**6} million; {mend}")
+
+
+def _meant(pixels: NDArray[Any], file: MapFile) -> Cells:
+    """The cells of a picture, a few lines of it at a time: numbers to reckon with take eight times the room of those in it."""
+    cells = np.empty(pixels.shape[:2], dtype=np.int8)
+    lines = max(1, BAND // pixels.shape[1])
+    for first in range(0, len(pixels), lines):
+        values = np.atleast_3d(pixels[first : first + lines] / (255.0 if pixels.dtype == np.uint8 else 65535.0))
+        opacity = values[..., 3] if values.shape[2] == 4 else None
+        cells[first : first + lines] = _cells(values[..., :3], opacity, file)
+    return cells
 
 
 def _cells(colours: NDArray[np.float64], opacity: NDArray[np.float64] | None, file: MapFile) -> Cells:

@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 import msgspec
 from msgspec import Meta
 
+from schemas.limits import FOLDER, VEHICLE
 from schemas.topics import SYSTEM
 from uvf.runtime.faults import Fault, check_faults
 from uvf.runtime.fence_file import FenceFile, fence_message
@@ -15,8 +16,8 @@ from uvf.runtime.wind_file import Wind, check_wind
 
 NotNegative = Annotated[float, Meta(ge=0, le=1e6)]
 Metres = Annotated[float, Meta(ge=-1e6, le=1e6)]  # local coordinates stay near the origin
-VehicleName = Annotated[str, Meta(pattern="^[a-z][a-z0-9_]*$", max_length=40)]
-FolderName = Annotated[str, Meta(pattern="^[A-Za-z0-9_][A-Za-z0-9_.-]*$", max_length=80)]
+VehicleName = Annotated[str, Meta(pattern=rf"^{VEHICLE}\Z", max_length=40)]
+FolderName = Annotated[str, Meta(pattern=rf"^{FOLDER}\Z", max_length=80)]
 
 
 class Start(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

@@ -1,6 +1,7 @@
 """Typed data from YAML: unknown keys and wrong values end in one line that names the place and the mend."""
 
 import difflib
+import itertools
 import math
 import re
 from collections.abc import Callable, Iterable, Iterator
@@ -13,6 +14,8 @@ import yaml
 
 T = TypeVar("T")
 Key = str | int
+VALUES = 100_000
+"""Most of a YAML file; reading one of so many takes a minute."""
 
 LISTED, LONGEST_NAME = 10, 100  # names, letters
 
@@ -39,18 +42,44 @@ class Place(NamedTuple):
 
 
 class _Loader(yaml.SafeLoader):
-    """YAML 1.2 where 1.1 surprises: ``1e3`` is a number, and a key given twice is an error."""
+    """YAML 1.2 where 1.1 surprises: ``1e3`` is a number, and a key given twice is an error. Aliases cannot make a small file huge."""
+
+    def get_single_node(self) -> Any:
+        node = super().get_single_node()
+        if node is not None:
+            _count(node, {})
+        return node
 
     def construct_mapping(self, node: Any, deep: bool = False) -> dict[Any, Any]:
         seen = set()
         for key, _ in node.value if isinstance(node, yaml.MappingNode) else ():
-            if isinstance(key, yaml.ScalarNode) and key.value in seen and key.value != "<<":
-                raise yaml.constructor.ConstructorError(None, None, f"key '{key.value}' is given twice", key.start_mark)
-            seen.add(str(key.value))
+            if not isinstance(key, yaml.ScalarNode):
+                raise _refused("a key is a list or a mapping; write a name or a number", key)
+            if key.value in seen and key.value != "<<":
+                raise _refused(f"key '{key.value}' is given twice", key)
+            seen.add(key.value)
         return super().construct_mapping(node, deep)
 
 
-_Loader.add_implicit_resolver("tag:yaml.org,2002:float", re.compile(r"[-+]?(\d+(\.\d*)?|\.\d+)[eE][-+]?\d+$"), list("-+0123456789."))
+def _count(node: Any, counts: dict[int, int]) -> int:
+    """How many values a node stands for, what is repeated by ``*name`` counted each time; ``counts`` holds those looked at, by id."""
+    if id(node) not in counts:
+        counts[id(node)] = 0
+        entries = node.value if isinstance(node.value, list) else ()
+        inner = itertools.chain.from_iterable(entries) if isinstance(node, yaml.MappingNode) else entries
+        counts[id(node)] = 1 + sum(_count(each, counts) for each in inner)
+    if counts[id(node)] == 0:
+        raise _refused("it contains itself; write out what is meant", node)
+    if counts[id(node)] > VALUES:
+        raise _refused(f"more than {VALUES} values, counting what is repeated by *name or <<; split the file or repeat less", node)
+    return counts[id(node)]
+
+
+def _refused(why: str, node: Any) -> yaml.MarkedYAMLError:
+    return yaml.constructor.ConstructorError(None, None, why, node.start_mark)
+
+
+_Loader.add_implicit_resolver("tag:yaml.org,2002:float", re.compile(r"[-+]?(\d+(\.\d*)?|\.\d+)[eE][-+]?\d+\Z"), list("-+0123456789."))
 
 
 def load_yaml(path: Path, type_: type[T], fill: Callable[[Any, Place], Any] | None = None) -> T:

@@ -223,6 +223,8 @@ def descriptor_set(type_name: str) -> bytes:
 def _opened(path: Path) -> Iterator[IO[bytes]]:
     """Raises BadInput for what cannot be read or is no whole log."""
     try:
+        if not (path.is_file() or path.is_dir()) and path.exists():  # a pipe would never be opened
+            raise BadInput(f"log {path}: is no file")
         with path.open("rb") as file:
             _check_kind(path, file)
             yield file
@@ -230,16 +232,17 @@ def _opened(path: Path) -> Iterator[IO[bytes]]:
         inside = min(path.glob("*.mcap"), default=None)
         hint = f"name the log in it, such as {inside}" if inside else "and there is no log in it"
         raise BadInput(f"log {path}: is a folder; {hint}") from error
-    except OSError as error:
-        raise BadInput(f"log {path}: {error.strerror}") from error
-    except BROKEN as error:
+    except (OSError, *BROKEN) as error:
+        # What is too short to have an end is looked for before its beginning: an invalid argument.
+        if isinstance(error, OSError) and error.errno != errno.EINVAL:
+            raise BadInput(f"log {path}: {error.strerror}") from error
         raise BadInput(f"log {path}: still being written, cut off or broken; 'uvf log recover {path}' copies what is whole") from error
 
 
 def _check_kind(path: Path, file: IO[bytes]) -> None:
-    start = file.read(len(MCAP0_MAGIC)) if file.seekable() else b""
+    start = file.read(len(MCAP0_MAGIC))
     if not start:
-        raise BadInput(f"log {path}: is empty: nothing was recorded in it" if path.is_file() else f"log {path}: is no file")
+        raise BadInput(f"log {path}: is empty: nothing was recorded in it")
     if not MCAP0_MAGIC.startswith(start):
         raise BadInput(f"log {path}: is no MCAP log; logs of runs are runs/<time>/log-000.mcap")
     file.seek(0)

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from schemas.convert import array, wxyz
+from schemas.limits import VEHICLE
 from schemas.messages import Pose, SimObject, SimObjects
 from schemas.topics import SYSTEM
 from uvf.runtime.params import nearest
@@ -16,7 +17,7 @@ from uvf.runtime.solid import Solid
 GREY = (0.6, 0.6, 0.6)
 
 
-NAME = re.compile(r"[a-z][a-z0-9_]{0,39}")
+NAME = re.compile(VEHICLE)
 FARTHEST = 1e5  # m
 SIZES = {"box": 3, "cylinder": 2, "sphere": 1}
 LARGEST, HEAVIEST = 100.0, 1e5  # m, kg

@@ -19,7 +19,7 @@ Positive = Annotated[float, Meta(ge=1e-4, le=1e4)]
 Area = tuple[Metres, Metres, Metres, Metres]
 Angle = Annotated[float, Meta(ge=-7, le=7)]
 Angles = tuple[Angle, Angle, Angle]
-FileName = Annotated[str, Meta(pattern=r"^[A-Za-z0-9_][A-Za-z0-9_./-]*$", max_length=200)]
+FileName = Annotated[str, Meta(pattern=r"^[A-Za-z0-9_][A-Za-z0-9_./-]*\Z", max_length=200)]
 Seconds = Annotated[float, Meta(ge=0, le=1e5)]
 Script = list[tuple[Seconds, Metres, Metres, float]]
 """Keys of a motion: t [s], x, y [m], yaw [rad]; closed, for it begins anew at its end."""

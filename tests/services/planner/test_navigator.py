@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
+from schemas.limits import LENGTHS
 from services.planner.costmap import Body
-from services.planner.navigator import Navigator
+from services.planner.navigator import Navigator, Plan
 from services.planner.smoothing import length
 from tests.services.planner.plans import room
 
@@ -53,6 +54,28 @@ def test_the_path_is_not_much_longer_than_the_shortest_one():
 )
 def test_an_impossible_goal_is_refused_with_the_reason(goal, reason):
     assert navigator(house(door=False)).refusal((0.6, 0.6), goal) == reason
+
+
+def test_on_a_map_of_too_many_cells_nobody_drives_until_there_is_a_smaller_one():
+    made = navigator(house())
+    made.see(np.zeros((4001, 4000), dtype=np.int8), (0.05, (0.0, 0.0)))
+    why = "the map is too large to plan on: 16004000 cells, 16000000 at most"
+    assert made.refusal((0.6, 0.6), (3.4, 0.6)) == why
+    assert made.plan((0.6, 0.6), (3.4, 0.6)) == made.plan((0.6, 0.6), (3.4, 0.6), bold=True) == Plan(None, why)
+    assert made.ways((0.6, 0.6)) is None
+    made.see(house(), (0.05, (0.0, 0.0)))
+    assert made.refusal((0.6, 0.6), (3.4, 0.6)) == ""
+
+
+def test_a_goal_too_far_for_a_message_of_the_path_is_refused():
+    made = Navigator(BODY)
+    made.see(np.zeros((3, 1100), dtype=np.int8), (10.0, (0.0, 0.0)))
+    near, far = (9_900.0, 15.0), (10_500.0, 15.0)
+    assert made.refusal((5.0, 15.0), near) == ""
+    assert len(made.plan((5.0, 15.0), near).path) < LENGTHS["foxglove.PosesInFrame.poses"]
+    why = "the goal is too far to plan: 10.5 km of way, 10.0 km at most"
+    assert made.refusal((5.0, 15.0), far) == why
+    assert made.plan((5.0, 15.0), far) == Plan(None, why)
 
 
 def test_a_possible_goal_is_not_refused():

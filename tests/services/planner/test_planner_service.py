@@ -69,6 +69,17 @@ def asked(x, y, yaw=float("nan")):
     return GoalRequest(position=Vector3(x=position[0], y=position[1]), yaw=yaw, source="test")
 
 
+@pytest.mark.parametrize("explores", [False, True])
+def test_on_a_map_too_large_to_plan_on_the_vehicle_stands_and_says_why(explores):
+    bench = Bench(explores).step(4)
+    bench.grid = occupancy_grid(np.zeros((4001, 4000), dtype=np.int8), 0.05, 0.0, 0.0, "v/map", 1.0)
+    bench.step(goal=[asked(2.0, 2.0)])
+    reply = bench.said["goal"][0]
+    assert not reply.accepted and reply.reason.startswith("the map is too large to plan on")
+    assert not bench.said["path"].poses
+    assert explores == bench.said["nav_status"].reason.startswith("the map is too large to plan on")
+
+
 def test_a_goal_beyond_the_fence_is_refused():
     x, y = world(3.0, 2.0)
     fence = Fence(zones=[FenceZone(centre=Vector3(x=x, y=y), radius=0.5)])

@@ -1,5 +1,9 @@
 """A* and Dijkstra against scipy's Dijkstra on the same graph."""
 
+import resource
+from contextlib import contextmanager
+from pathlib import Path
+
 import numpy as np
 import pytest
 from scipy.sparse import coo_array
@@ -60,6 +64,30 @@ def test_astar_is_optimal_and_its_path_costs_what_it_says(seed):
             assert tuple(path[0]) == (0, 0)
             assert tuple(path[-1]) == goal
             assert np.abs(np.diff(path, axis=0)).max(initial=0) <= 1
+
+
+def test_ways_are_right_when_many_cells_wait_at_a_time():
+    cost = 1.0 + 1000.0 * np.random.default_rng(0).random((400, 400)) ** 8
+    np.testing.assert_allclose(Ways(cost, (200, 200)).cost, reference(cost, (200, 200)))
+
+
+@contextmanager
+def at_most(more):
+    """No more memory than this beyond what the process has."""
+    before = resource.getrlimit(resource.RLIMIT_AS)
+    has = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
+    resource.setrlimit(resource.RLIMIT_AS, (has + more, before[1]))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_AS, before)
+
+
+def test_a_search_takes_little_more_room_than_its_grid():
+    cost = np.ones((2500, 2500))
+    astar(cost[:9, :9], (0, 0), (8, 8))
+    with at_most(5 * cost.nbytes):
+        assert astar(cost, (0, 0), (2499, 2499))[1] == pytest.approx(2499 * np.sqrt(2.0))
 
 
 def test_corners_are_not_cut():
