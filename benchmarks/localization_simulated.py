@@ -23,7 +23,7 @@ from uvf.launch.run import run_lockstep
 from uvf.launch.slam_cli import DEFAULT_METHOD
 from uvf.launch.truth import true_poses
 from uvf.maths.planar_arrays import composed, interpolated, wrapped
-from uvf.runtime.recording import read_log
+from uvf.runtime.log_reading import read_log
 from uvf.runtime.site import load_site
 
 Floats = NDArray[np.float64]

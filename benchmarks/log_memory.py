@@ -20,7 +20,8 @@ from schemas.messages import Clock, Imu, NavState, Vector3
 from uvf.launch.bench import Figures
 from uvf.launch.report import describe_log
 from uvf.runtime.bus import LocalBus, Sample
-from uvf.runtime.recording import Recorder, recover
+from uvf.runtime.log_reading import recover
+from uvf.runtime.recording import Recorder
 from uvf.runtime.replay import into_service, onto_bus
 from uvf.runtime.service import Service
 from uvf.runtime.site import ROOT, Host

@@ -13,7 +13,7 @@ from schemas.convert import occupancy_cells
 from schemas.messages import Grid, OctreeMap
 from services.slam.octree.files import read_octree
 from services.slam.octree.leaves import Leaves, boxes, coarser, leaves_of
-from uvf.runtime.recording import read_log
+from uvf.runtime.log_reading import read_log
 
 Floats = NDArray[np.float64]
 

@@ -38,8 +38,9 @@ from uvf.maths.planar import Pose2
 from uvf.maths.planar_arrays import composed, interpolated, inverted, wrapped
 from uvf.maths.rotations import from_euler
 from uvf.runtime.lockstep import Lockstep
+from uvf.runtime.log_reading import read_log
 from uvf.runtime.range_sensors import LidarModel
-from uvf.runtime.recording import Recorder, read_log
+from uvf.runtime.recording import Recorder
 from uvf.runtime.scene import scene
 from uvf.runtime.service import Outputs, Service
 from uvf.runtime.site import ROOT, Host, Site, load_site

@@ -14,7 +14,7 @@ GENERATED = re.compile(r"_pb2\.py$|mavlink/dialect\.py$")
 TABLES = {"schemas/topics.py"}
 ENGINES = {
     "zenoh": ["src/uvf/runtime/zenoh_bus.py"],
-    "mcap": ["src/uvf/runtime/recording.py"],
+    "mcap": ["src/uvf/runtime/log_reading.py", "src/uvf/runtime/recording.py"],
     "pybullet": ["services/sim_camera/renderer.py", "services/sim_ground/world.py"],
     "jsbsim": ["services/sim_air/airframe.py"],
     "sdl2": ["src/uvf/launch/teleop_gamepad.py"],

@@ -13,7 +13,7 @@ from schemas import topics
 from schemas.convert import array
 from tests.distributed.system import System
 from tests.second_try import Shared
-from uvf.runtime.recording import read_log
+from uvf.runtime.log_reading import read_log
 from uvf.runtime.site import ROOT
 
 

@@ -6,7 +6,8 @@ from pathlib import Path
 from schemas.topics import IMAGE
 from uvf.launch.run import run_lockstep
 from uvf.runtime.bus import matches
-from uvf.runtime.recording import Recorder, read_log
+from uvf.runtime.log_reading import read_log
+from uvf.runtime.recording import Recorder
 from uvf.runtime.site import ROOT, load_site
 
 GOLDEN = Path(__file__).with_name("demo.mcap")

@@ -18,7 +18,8 @@ from uvf.launch.flights.report import flights
 from uvf.launch.recorder import attachments
 from uvf.runtime.bus import Sample
 from uvf.runtime.lockstep import Lockstep
-from uvf.runtime.recording import Recorder, read_log
+from uvf.runtime.log_reading import read_log
+from uvf.runtime.recording import Recorder
 from uvf.runtime.site import ROOT, load_site
 
 

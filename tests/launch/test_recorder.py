@@ -11,8 +11,8 @@ from schemas import topics
 from uvf.launch.recorder import ROOM, LogSeries, attachments
 from uvf.launch.runs import keep_quota
 from uvf.runtime.bus import LocalBus, Sample
+from uvf.runtime.log_reading import log_attachments, log_metadata, read_log, recover
 from uvf.runtime.params import BadInput
-from uvf.runtime.recording import log_attachments, log_metadata, read_log, recover
 from uvf.runtime.site import ROOT, load_site
 
 POSE, MAP, STATUS = (topic.at("v") for topic in (topics.POSE, topics.MAP, topics.STATUS))

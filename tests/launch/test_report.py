@@ -6,8 +6,9 @@ from services.slam.odometry.service import OdometryService
 from uvf.launch.recorder import attachments
 from uvf.launch.report import describe_log, replay_into, run_and_report
 from uvf.launch.run import run_lockstep
+from uvf.runtime.log_reading import log_attachments
 from uvf.runtime.params import BadInput
-from uvf.runtime.recording import Recorder, log_attachments
+from uvf.runtime.recording import Recorder
 from uvf.runtime.site import ROOT, load_site
 
 

@@ -8,7 +8,7 @@ import sys
 import pytest
 
 from uvf.launch.run import run_lockstep
-from uvf.runtime.recording import log_metadata
+from uvf.runtime.log_reading import log_metadata
 from uvf.runtime.site import ROOT, load_site
 
 DEMO = ROOT / "missions" / "demo.yaml"

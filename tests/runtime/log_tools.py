@@ -8,7 +8,7 @@ from schemas import topics
 from schemas.messages import NavState
 from uvf.launch.report import describe_log
 from uvf.runtime.bus import LocalBus
-from uvf.runtime.recording import recover
+from uvf.runtime.log_reading import recover
 from uvf.runtime.replay import into_service, onto_bus
 from uvf.runtime.service import Service
 from uvf.runtime.site import Host

@@ -8,7 +8,7 @@ from schemas.messages import Event, FrameTransform, Imu, Mission, SurfaceCommand
 from tests.runtime.modes import RUNS
 from tests.runtime.toys import Cast
 from uvf.runtime.bus import Sample
-from uvf.runtime.inbox import InputBox
+from uvf.runtime.inbox import OWNERS_MOST, InputBox
 from uvf.runtime.service import Service, each_vehicle, every, optional
 
 SILENT = 0.30  # s, when the last message of each stream is sent
@@ -163,3 +163,20 @@ def test_who_has_no_epoch_is_of_the_one_that_holds():
     assert heard(box, 20) == 1
     box.push(status(2, 30, boot=1, epoch=0))
     assert heard(box, 40) == 2
+
+
+def named(owner, stamp_ns):
+    return Sample(topics.STATUS.at(owner), "uvf.v1.VehicleStatus", VehicleStatus().SerializeToString(), stamp_ns, 1, 1, 1)
+
+
+def test_ghosts_that_have_fallen_silent_make_room_for_another_vehicle():
+    box = InputBox(each_vehicle(topics.STATUS), ageless=False, epoch=1)
+    for n in range(OWNERS_MOST):
+        box.push(named(f"ghost{n}", 10))
+    box.take(1_000_000_000)
+    box.push(named("late", 1_000_000_000))
+    assert "of more than 128 vehicles" in box.malformed()[0]
+    box.take(70_000_000_000)
+    box.push(named("late", 70_000_000_000))
+    box.take(70_100_000_000)
+    assert list(box.value(70_100_000_000)) == ["late"] and box.malformed() == []

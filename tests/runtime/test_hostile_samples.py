@@ -8,7 +8,8 @@ import pytest
 from schemas import topics
 from uvf.runtime.bus import Sample
 from uvf.runtime.log_bounds import CHANNELS_MOST, FOREIGN_MOST, PAYLOAD_MOST, STANDING_MOST
-from uvf.runtime.recording import Recorder, log_metadata, read_log, recover
+from uvf.runtime.log_reading import log_metadata, read_log, recover
+from uvf.runtime.recording import Recorder
 
 POSE = topics.POSE.at("v")
 HONEST = Sample(POSE, "foxglove.PoseInFrame", b"pose", 10, 1, 5)

@@ -12,8 +12,9 @@ from schemas import topics
 from schemas.convert import planar_pose, stamp
 from schemas.messages import DriveCommand, PoseInFrame
 from uvf.runtime.bus import Sample
+from uvf.runtime.log_reading import log_attachments, log_begin, log_metadata, read_log, recover
 from uvf.runtime.params import BadInput
-from uvf.runtime.recording import Recorder, log_attachments, log_begin, log_metadata, read_log, recover
+from uvf.runtime.recording import Recorder
 
 
 def sample(seq, key="uvf/v/nav/pose"):

@@ -8,8 +8,9 @@ from schemas import topics
 from schemas.messages import ArmRequest, Clock, ModeRequest, NavState, Odometry, PoseInFrame, Reply
 from uvf.runtime.bus import LocalBus, Sample
 from uvf.runtime.comparison import differing
+from uvf.runtime.log_reading import log_begin, read_log
 from uvf.runtime.params import BadInput
-from uvf.runtime.recording import Recorder, log_begin, read_log
+from uvf.runtime.recording import Recorder
 from uvf.runtime.replay import hand_over, into_service, logged_site, onto_bus, play
 from uvf.runtime.service import Service
 from uvf.runtime.shell import Shell

@@ -25,8 +25,8 @@ from services.slam.scan_message import Shape, beams_of, is_usable, shape_of
 from uvf.maths.planar_arrays import composed, interpolated, inverted
 from uvf.runtime.bus import Sample, matches
 from uvf.runtime.frames import FrameBuffer, FrameError
+from uvf.runtime.log_reading import log_attachments, read_log
 from uvf.runtime.params import BadInput, nearest
-from uvf.runtime.recording import log_attachments, read_log
 from uvf.runtime.replay import logged_site
 from uvf.runtime.sweeping import AT_ONCE, Sweeping
 

@@ -16,8 +16,8 @@ from uvf.launch import catalogue, settings
 from uvf.launch.run import Result, run_lockstep
 from uvf.launch.runs import new_run
 from uvf.runtime.address import router_from
+from uvf.runtime.log_reading import log_begin, log_metadata, read_log, recover
 from uvf.runtime.params import BadInput, nearest
-from uvf.runtime.recording import log_begin, log_metadata, read_log, recover
 from uvf.runtime.replay import into_service, logged_site, onto_bus
 from uvf.runtime.site import Host, Site, load_site
 from uvf.runtime.zenoh_bus import ZenohBus

@@ -17,6 +17,8 @@ EVERY_DEPTH = 256
 AHEAD_MOST = 2 * NS
 """How far ahead of a step something may be stamped: by the latency of who sent it. What is stamped later was by another clock."""
 OWNERS_MOST = 128  # vehicles of one input
+SILENT = 60 * NS
+"""After which a vehicle makes room for another where there are too many."""
 REFUSED_MOST = 10_000
 """Lines about refused messages that wait for the next step, which does not come while the clock stands; more are not counted."""
 NEXT_EPOCH_DEPTH = 8  # messages of the epoch to come that wait until the clock tells of it
@@ -33,6 +35,8 @@ class Slot:
         self._fresh: deque[tuple[int, Message]] = deque(maxlen=EVERY_DEPTH)
         self._latest: tuple[int, Message] | None = None
         self.arrived: deque[Sample] = deque(maxlen=EVERY_DEPTH)
+        self.taken_ns = 0
+        """When something was taken here last."""
         self.accepted: Sample | None = None
         self._malformed = malformed
         self._good: tuple[tuple[int, Message] | None, Sample | None] = (None, None)
@@ -46,6 +50,7 @@ class Slot:
         self._good = (self._latest, self.accepted)
         if not self.arrived:
             return
+        self.taken_ns = t_ns
         if len(self.arrived) == 1 and (self._ageless or self.arrived[0].stamp_ns < t_ns):
             self._accept(self.arrived.popleft())
             return
@@ -121,6 +126,7 @@ class InputBox:
         self._ageless = ageless
         self.epoch = epoch
         self._slots: dict[str, Slot] = {}
+        self._t_ns = 0
         self._malformed: deque[str] = deque(maxlen=REFUSED_MOST)
         self._next: deque[Sample] = deque(maxlen=NEXT_EPOCH_DEPTH)
         """Of an epoch that the clock has not begun yet."""
@@ -150,13 +156,22 @@ class InputBox:
         """Makes room for one more owner, if it is called as a vehicle may be called and there are not too many."""
         if owner not in ("", SYSTEM) and (why := name_fault(owner)):
             self._malformed.append(f"{self.declared.topic.key}: {why}")
-        elif len(self._slots) >= OWNERS_MOST:
+        elif len(self._slots) >= OWNERS_MOST and not self._forget_silent():
             self._malformed.append(f"{self.declared.topic.key}: of more than {OWNERS_MOST} vehicles")
         else:
             self._slots[owner] = Slot(self.declared, self._ageless, self._malformed)
+            self._slots[owner].taken_ns = self._t_ns
             self._slots = dict(sorted(self._slots.items()))
             return True
         return False
+
+    def _forget_silent(self) -> bool:
+        """Makes room in the place of whoever has been silent for longest, if that is long."""
+        owner = min(self._slots, key=lambda owner: self._slots[owner].taken_ns)
+        if self._slots[owner].arrived or self._t_ns - self._slots[owner].taken_ns < SILENT:
+            return False
+        del self._slots[owner]
+        return True
 
     def _hold_for_next_epoch(self, sample: Sample) -> None:
         """Only the clock begins an epoch. Its next one may be heard of late; any other is nobody's."""
@@ -189,6 +204,7 @@ class InputBox:
         return [s._replace(stamp_ns=-1) for s in sorted(old, key=lambda s: (s.epoch, s.stamp_ns))[-1:]] + new
 
     def take(self, t_ns: int) -> None:
+        self._t_ns = t_ns
         if self._next:
             self._give_up_next_epoch(t_ns)
         for slot in self._slots.values():

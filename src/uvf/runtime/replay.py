@@ -12,8 +12,8 @@ from schemas.topics import SYSTEM, Qos
 from uvf.runtime.bus import Bus, LocalBus, Publisher, Query, Sample, matches
 from uvf.runtime.clock import NS, first_step_after
 from uvf.runtime.comparison import TOLERANCE, Comparison, Difference
+from uvf.runtime.log_reading import log_attachments, log_begin, log_end, read_log
 from uvf.runtime.params import BadInput
-from uvf.runtime.recording import log_attachments, log_begin, log_end, read_log
 from uvf.runtime.shell import Shell, Warn
 from uvf.runtime.site import Host, Site, load_site
 from uvf.runtime.topic_lookup import topic_of

@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from schemas.messages import Battery, Event, Kind, Mission, MissionProgress, NavState, PosesInFrame, SurfaceCommand, VehicleStatus
 from schemas.topics import SYSTEM
 from uvf.runtime.bus import Sample
+from uvf.runtime.log_reading import log_metadata, read_log, recover
 from uvf.runtime.params import BadInput
-from uvf.runtime.recording import log_metadata, read_log, recover
 from uvf.runtime.wire import Malformed, decode_sample
 
 Floats = NDArray[np.float64]
