@@ -21,7 +21,13 @@ LISTED, LONGEST_NAME = 10, 100  # names, letters
 
 
 class BadInput(Exception):
-    """Something from outside (file, argument, message) is wrong; the text says what, where and how to mend it."""
+    """Something from outside (file, argument, message) is wrong; the text says what, where and how to mend it.
+
+    In one line: names that it quotes may hold line ends.
+    """
+
+    def __init__(self, text: str) -> None:
+        super().__init__(" ".join(text.splitlines()))
 
 
 class Place(NamedTuple):
