@@ -18,8 +18,8 @@ WAY_OUT = 0.3  # m about the vehicle within which it may leave the room it shoul
 UNKNOWN_COST = 3.0
 """Factor on the cost of unknown ground for goals that may lie behind it."""
 
-MOST_CELLS = 16_000_000
-"""Of a map, 200 x 200 m in cells of 5 cm: a way over it takes some seconds and a gigabyte."""
+MOST_CELLS = 8_000_000
+"""Of a map, 140 x 140 m in cells of 5 cm: a step that plans over it takes seconds, and one of 6 s is ended."""
 FARTHEST = (LENGTHS["foxglove.PosesInFrame.poses"] - 2) * SPACING
 """m of way; the points of a longer one do not fit into a message."""
 TOO_LARGE = "the map is too large to plan on"
