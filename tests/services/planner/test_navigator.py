@@ -5,7 +5,7 @@ import pytest
 
 from schemas.limits import LENGTHS
 from services.planner.costmap import Body
-from services.planner.navigator import Navigator, Plan
+from services.planner.navigator import MOST_CELLS, Navigator, Plan
 from services.planner.smoothing import length
 from tests.services.planner.plans import room
 
@@ -58,8 +58,8 @@ def test_an_impossible_goal_is_refused_with_the_reason(goal, reason):
 
 def test_on_a_map_of_too_many_cells_nobody_drives_until_there_is_a_smaller_one():
     made = navigator(house())
-    made.see(np.zeros((4001, 4000), dtype=np.int8), (0.05, (0.0, 0.0)))
-    why = "the map is too large to plan on: 16004000 cells, 16000000 at most"
+    made.see(np.zeros((MOST_CELLS // 2000 + 1, 2000), dtype=np.int8), (0.05, (0.0, 0.0)))
+    why = f"the map is too large to plan on: {MOST_CELLS + 2000} cells, {MOST_CELLS} at most"
     assert made.refusal((0.6, 0.6), (3.4, 0.6)) == why
     assert made.plan((0.6, 0.6), (3.4, 0.6)) == made.plan((0.6, 0.6), (3.4, 0.6), bold=True) == Plan(None, why)
     assert made.ways((0.6, 0.6)) is None
