@@ -35,7 +35,7 @@ from services.mavlink_bridge.requests import Requests
 from services.mavlink_bridge.station import Station
 from services.mavlink_bridge.stopping import Stopping
 from uvf.maths.sampling import Due
-from uvf.runtime.mavlink import dialect as mav
+from uvf.runtime.mavlink.names import enum_name
 from uvf.runtime.service import Later, Outputs, Service, optional, stop_all
 from uvf.runtime.stop_all import StopStatus
 
@@ -104,8 +104,9 @@ class BridgedVehicle(Service):
         before.give_up("another autopilot speaks with its id now")
         self._meet()
         self._autopilot.wire.t = t
-        firmware, kind = (_enum_name(enum, number) for enum, number in zip(("MAV_AUTOPILOT", "MAV_TYPE"), self._identity[1:], strict=True))
-        words = f"system {self._system} is another autopilot now: {firmware}, {kind}, component {self._identity[0]}"
+        component, autopilot, type_ = self._identity
+        firmware, kind = enum_name("MAV_AUTOPILOT", autopilot) or autopilot, enum_name("MAV_TYPE", type_) or type_
+        words = f"system {self._system} is another autopilot now: {firmware}, {kind}, component {component}"
         self._autopilot.events = [*before.events, (Event.WARNING, words)]
 
     def step(
@@ -178,9 +179,3 @@ class BridgedVehicle(Service):
         said, self._autopilot.events = self._autopilot.events, []
         events = [Event(timestamp=stamp(now), severity=severity, text=text, source=SOURCE) for severity, text in said]
         return {"events": events} if events else {}
-
-
-def _enum_name(enum: str, number: int) -> str:
-    """``ARDUPILOTMEGA``; the number where it has no name."""
-    named = mav.enums[enum].get(number)
-    return named.name.removeprefix(f"{enum}_") if named is not None else str(number)

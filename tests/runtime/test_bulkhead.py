@@ -332,3 +332,17 @@ def test_a_broken_request_for_a_parameter_is_counted():
     bus.call(topics.PARAM.by("pilot").at("alpha"), b"\xff\xff", -1, lambda *reply: None)
     shell.advance()
     assert shell.refusals.count == 1
+
+
+def test_who_cannot_be_started_afresh_is_given_up_for_that_and_not_for_the_number_of_failures(run, monkeypatch):
+    made = Driver.__init__
+
+    def breaks(self, vehicle):
+        if sum(driver.vehicle == vehicle for driver in Driver.made) == 2:
+            raise OSError("no more")
+        made(self, vehicle)
+
+    monkeypatch.setattr(Driver, "__init__", breaks)
+    ran = run(lambda vehicle, t, battery: vehicle == "beta" and round(t, 3) in (0.5, 0.7))
+    assert [e.severity for e in ran.events] == [Event.ERROR, Event.CRITICAL]
+    assert ran.events[-1].text == "driver of beta cannot be started afresh and is given up: its wheels stand"

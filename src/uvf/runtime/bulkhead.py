@@ -36,11 +36,8 @@ class Bulkhead:
         """Counts a failure at ``t`` [s]; True when that was one too many."""
         self._times.append(t)
         if len(self._times) == FAILURES and t - self._times[0] < WINDOW:
-            self.give_up(cause)
+            self.given_up = cause
         return bool(self.given_up)
-
-    def give_up(self, cause: str) -> None:
-        self.given_up = cause
 
     def is_repeated(self, t: float) -> bool:
         """Whether there was another failure within the window before the one at ``t`` [s]."""

@@ -30,6 +30,7 @@ from uvf.runtime.wire import Malformed, decode
 
 Warn = Callable[[str], None]
 LATEST_DEPTH = 8  # more than one, for the newest may be too new to be read yet
+OFTEN, UNMADE = f"has failed {FAILURES} times within {WINDOW:g} s", "cannot be started afresh"
 AFRESH = "time has started over: ask again"
 
 
@@ -88,7 +89,7 @@ class Shell:
 
     def restart(self, epoch: int) -> None:
         """Makes the service afresh because time has started over; what was asked in the old epoch is refused."""
-        trouble = self._contain(self.service.close)
+        trouble = self._contain(self._close)
         self.epoch = epoch
         kept = [(name, sample) for name, box in self._boxes.items() for sample in box.surviving(epoch)]
         self._refuse_all(AFRESH)
@@ -100,10 +101,10 @@ class Shell:
         for name, sample in kept:
             self._boxes[name].push(sample)
         if unmade and self._bulkhead is not None:
-            self._bulkhead.give_up(unmade)
+            self._bulkhead.given_up = unmade
         if trouble or unmade:
             self.counters.failures += 1
-            self._tell_failure(0, unmade or trouble, given_up=bool(unmade))
+            self._tell_failure(0, unmade or trouble, UNMADE if unmade else "")
 
     def _refuse_all(self, reason: str) -> None:
         self._desk.refuse_all(reason)
@@ -116,7 +117,7 @@ class Shell:
         if trouble := self._contain(lambda: self._recall(find)):
             self.counters.failures += 1
             self._make()
-            self._tell_failure(self.sim_ns, f"it could not take up what was left: {trouble}", given_up=False)
+            self._tell_failure(self.sim_ns, f"it could not take up what was left: {trouble}")
 
     def _recall(self, find: Callable[[str], bytes | None]) -> None:
         found = {name: (topic, find(topic.at(self.owner))) for name, topic in self.type.recalls.items()}
@@ -216,16 +217,15 @@ class Shell:
         assert self._bulkhead is not None
         self.counters.failures += 1
         t = t_ns / NS
-        unclosed = self._contain(self._close)
-        given_up = self._bulkhead.failed(t, cause)
-        unmade = "" if given_up else self._contain(lambda: self._revive(keep_params=not self._bulkhead_repeats(t)))
+        unclosed, unmade = self._contain(self._close), ""
+        given_up = OFTEN if self._bulkhead.failed(t, cause) else ""
+        if not given_up:
+            keep_params = not self._bulkhead.is_repeated(t)
+            unmade = self._contain(lambda: self._revive(keep_params))
         if unmade:
-            self._bulkhead.give_up(unmade)
+            self._bulkhead.given_up, given_up = unmade, UNMADE
         more = "".join(f"; then, when it was to be {what}, {why}" for what, why in (("ended", unclosed), ("started afresh", unmade)) if why)
-        self._tell_failure(t_ns, f"{cause}{more}", given_up or bool(unmade))
-
-    def _bulkhead_repeats(self, t: float) -> bool:
-        return self._bulkhead is not None and self._bulkhead.is_repeated(t)
+        self._tell_failure(t_ns, f"{cause}{more}", given_up)
 
     def _close(self) -> None:
         with self._limited():
@@ -247,10 +247,10 @@ class Shell:
         with self._limited():
             self.recall({**heard, **self._left}.get)
 
-    def _tell_failure(self, t_ns: int, cause: str, given_up: bool) -> None:
+    def _tell_failure(self, t_ns: int, cause: str, given_up: str = "") -> None:
+        """given_up: why, where it is."""
         name = f"{self.type.name} of {self.owner}"
-        often = f"has failed {FAILURES} times within {WINDOW:g} s" if self._bulkhead_repeats(t_ns / NS) else "cannot be started afresh"
-        text = f"{name} {often} and is given up: {self.type.given_up}" if given_up else f"{name} has failed and was started afresh"
+        text = f"{name} {given_up} and is given up: {self.type.given_up}" if given_up else f"{name} has failed and was started afresh"
         self._refuse_all(f"{name} has failed: {cause}")
         self._warn(f"{text}: {cause}")
         severity = Event.CRITICAL if given_up else Event.ERROR
