@@ -37,6 +37,8 @@ class Backlog(Generic[T]):
         return message
 
     def _pop(self) -> T | None:
+        if not self._messages:  # the usual case, for which an exception would be dear
+            return None
         try:
             return self._messages.popleft()
         except IndexError:
