@@ -14,10 +14,9 @@ def build(site: Site) -> list[Host]:
 
     def make() -> GroundStation:
         from services.gcs.cameras import cameras
-        from services.gcs.state import SHOWN_AT_FIRST
         from services.gcs.viser_page import ViserPage
 
-        page = ViserPage(address, partial(cameras, site), SHOWN_AT_FIRST)
+        page = ViserPage(address, partial(cameras, site))
         if address.token:
             sys.stderr.write(f"gcs: the page, for those who have its token: {address.url}\n")
         return GroundStation(site, page)

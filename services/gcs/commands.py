@@ -22,8 +22,9 @@ from schemas.messages import (
     Vector3,
 )
 from services.gcs.by_hand import ByHand
+from services.gcs.layers import ROOTS
 from services.gcs.session import Session
-from services.gcs.state import LAYERS, LOST_AFTER, Model, Order, VehicleModel
+from services.gcs.state import LOST_AFTER, Model, Order, VehicleModel
 from services.gcs.wording import describe, modes_of
 from uvf.runtime.service import Answer
 from uvf.runtime.stop_all import StopVoice
@@ -87,6 +88,9 @@ class StopAll:
 
 @dataclass(frozen=True)
 class Layer:
+    """A page shows part of the scene, or hides it."""
+
+    page: int
     name: str
     on: bool
 
@@ -233,11 +237,9 @@ class Commander:
         return out
 
     def _show(self, t: float, action: Shown) -> None:
-        """What a page changes of its own view (layers: of everybody's); only one that has joined is heard."""
-        session = None if isinstance(action, Layer) else self._model.sessions.get(action.page)
+        """What a page changes of its own view; only one that has joined is heard."""
+        session = self._model.sessions.get(action.page)
         match action:
-            case Layer(name, on):
-                self._layer(name, on)
             case Join(page):
                 self._model.join(page)
             case _ if session is None:
@@ -247,6 +249,8 @@ class Commander:
                 del self._model.sessions[page]
             case Select(_, name):
                 self._select(t, session, name)
+            case Layer(_, name, on) if name in ROOTS:
+                (session.layers.add if on else session.layers.discard)(name)
             case ShowCamera(_, name):
                 session.camera = name
             case Looking():
@@ -266,10 +270,6 @@ class Commander:
         if np.isfinite((asked.pan, asked.tilt)).all():
             vehicle.aim = GimbalCommand(timestamp=stamp(self._model.sim_time), pan=asked.pan, tilt=asked.tilt, mode=asked.mode)
             out.gimbal[vehicle.name] = vehicle.aim
-
-    def _layer(self, name: str, on: bool) -> None:
-        if name in LAYERS:
-            (self._model.layers.add if on else self._model.layers.discard)(name)
 
     def _stop(self, t: float, engaged: bool, out: Outbox) -> None:
         if engaged:

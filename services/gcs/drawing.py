@@ -96,6 +96,8 @@ class Panel:
     buttons: Sequence[Button] = ()
     image: bytes | None = None
     gimbal: GimbalPanel | None = None
+    hidden: frozenset[str] = frozenset()
+    """Nodes of the scene that it does not show, with all that hangs below them."""
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ from schemas.messages import ModeRequest
 from services.gcs import camera_panel, panels, records, status, wheel
 from services.gcs.commands import Arm, Cancel, Commander, SetMode, StopAll
 from services.gcs.drawing import Button, Panel, Picture
+from services.gcs.layers import hidden_roots
 from services.gcs.markup import Html, html
 from services.gcs.overview import Overview
 from services.gcs.session import Session
@@ -64,10 +65,11 @@ class Composer:
         new = not words or before != session.vehicle
         words = {**({} if new else words), **self._due(self._words(session, chosen, t), new)}
         self._own[session.page] = (session.vehicle, words)
+        hidden = hidden_roots(session.layers)
         if chosen is None:
-            return Panel(html=words)
+            return Panel(html=words, hidden=hidden)
         image, gimbal = camera_panel.picture(chosen, session, t), camera_panel.gimbal_panel(chosen, session)
-        return Panel(chosen.name, words, self._buttons(session, chosen, t), image, gimbal)
+        return Panel(chosen.name, words, self._buttons(session, chosen, t), image, gimbal, hidden)
 
     def _words(self, session: Session, v: VehicleModel | None, t: float) -> dict[str, Draw]:
         bar = self._once("bar", v, lambda: status.status_bar(self._model, v, t))

@@ -1,7 +1,9 @@
 """What one browser has chosen; another one's clicks change nothing of it."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import inf
+
+from services.gcs.layers import SHOWN_AT_FIRST
 
 
 @dataclass
@@ -12,6 +14,8 @@ class Session:
     """Which; never given to another one in the life of this ground station."""
     vehicle: str
     """The name of the one that it shows and commands."""
+    layers: set[str] = field(default_factory=lambda: set(SHOWN_AT_FIRST))
+    """What it shows of the scene."""
     camera: str = ""
     """The field of the vehicle whose picture is on show, where it has that camera."""
     looked_at: float = -inf

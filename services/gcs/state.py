@@ -1,6 +1,6 @@
 """What the ground station knows: the newest message of each kind, when it came, and what follows from them."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Set
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -35,6 +35,7 @@ from schemas.messages import (
 from schemas.topics import SYSTEM
 from services.gcs.guests import FORGOTTEN_AFTER, Guests
 from services.gcs.journal import Journal, Line
+from services.gcs.layers import SHOWN_AT_FIRST
 from services.gcs.process_book import ProcessBook
 from services.gcs.refusals import Refusals
 from services.gcs.session import Session
@@ -57,8 +58,6 @@ LONGEST_TEXT = 500  # letters of an event or of what a guest says of itself
 SIGNS_OF_LIFE = ("nav", "pose", "odometry", "status", "nav_status", "progress")
 SHOWN_BY_THE_CLOCK = ("conductor",)
 """Sources whose warnings tell of a state that the page reads from the clock: they stand in the log, not as notices."""
-LAYERS = ("Map", "Scan", "Paths", "Fences", "Tracks", "Labels", "Walls", "Team maps", "True pose")
-SHOWN_AT_FIRST = frozenset(LAYERS) - {"Team maps", "True pose"}
 COLOURS = ("#4ea1ff", "#f2913d", "#3fbf7f", "#b98cf5", "#e8c547", "#5fd4d6")
 """Vehicles' own colours, told apart by colour-blind people too; red and magenta keep their meanings."""
 
@@ -177,7 +176,6 @@ class Model:
             self._add(name, member)
         self.sessions: dict[int, Session] = {}
         """Of each browser that is connected."""
-        self.layers = set(SHOWN_AT_FIRST)
         self.clock: Clock | None = None
         self.clock_at: float | None = None
         self.stop = StopStatus()
@@ -199,6 +197,11 @@ class Model:
         """A browser has connected; it shows a ground vehicle at first, if there is one."""
         grounded = [v.name for v in self.vehicles.values() if not v.flies]
         self.sessions[page] = Session(page, next(iter(grounded or self.vehicles), ""))
+
+    @property
+    def layers(self) -> Set[str]:
+        """Those that any browser shows; while there is none, those that the first one will."""
+        return frozenset().union(*(session.layers for session in self.sessions.values())) if self.sessions else SHOWN_AT_FIRST
 
     def chosen_by(self, session: Session) -> VehicleModel | None:
         """None while no vehicle is known; then the first that comes."""

@@ -1,7 +1,7 @@
 """From what is known to what is drawn. A node stays the same object until what it shows has changed."""
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Set
 from typing import Any
 
 import numpy as np
@@ -65,11 +65,12 @@ class View:
     def nodes(self, t: float) -> dict[str, Node]:
         """Everything in the scene, by name; ``/vehicles/<v>/...`` is given in that vehicle's frame."""
         self._learn()
-        shown = {k: n for k, n in self._surroundings.items() if "Walls" in self._model.layers or not k.startswith("/world/walls")}
+        layers = self._model.layers
+        shown = {k: n for k, n in self._surroundings.items() if "Walls" in layers or not k.startswith("/world/walls/")}
         shown |= self._spawned.nodes()
         self._used = set()
         for vehicle in self._model.vehicles.values():
-            shown.update(self._of_vehicle(vehicle, t))
+            shown.update(self._of_vehicle(vehicle, layers, t))
         if len(self._made) > len(self._used):
             self._made = {name: made for name, made in self._made.items() if name in self._used}
         return shown
@@ -77,6 +78,7 @@ class View:
     def places(self) -> dict[str, Placed]:
         """Poses of the frames of vehicles and of what moves by script."""
         self._learn()
+        layers = self._model.layers
         placed = places_of(self._scripted, self._model.sim_time) | self._spawned.places()
         for v in self._model.vehicles.values():
             if v.place is not None:
@@ -85,17 +87,17 @@ class View:
                     moving = self._moving[v.name].places(v.joints)
                     placed |= {f"/vehicles/{v.name}/{part}": place for part, place in moving.items()}
                     placed[f"/height/{v.name}"] = Placed(v.place.position, LEVEL)
-            if v.true_place is not None and "True pose" in self._model.layers:
+            if v.true_place is not None and "True pose" in layers:
                 placed[f"/true/{v.name}"] = v.true_place
         return placed
 
-    def _of_vehicle(self, v: VehicleModel, t: float) -> Iterator[tuple[str, Node]]:
+    def _of_vehicle(self, v: VehicleModel, layers: Set[str], t: float) -> Iterator[tuple[str, Node]]:
         if v.place is not None:
             yield from ((f"/vehicles/{v.name}/{part}", node) for part, node in self._bodies[v.name].items())
-        if v.true_place is not None and "True pose" in self._model.layers:
+        if v.true_place is not None and "True pose" in layers:
             yield from ((f"/true/{v.name}/{part}", node) for part, node in self._ghosts[v.name].items())
         for what, (layer, draw) in self._layers(v, t).items():
-            if layer in self._model.layers:
+            if layer in layers:
                 yield from ((f"/{what}/{v.name}{suffix}", node) for suffix, node in draw().items())
 
     def _layers(self, v: VehicleModel, t: float) -> Mapping[str, tuple[str, Callable[[], dict[str, Node]]]]:

@@ -3,7 +3,7 @@
 import contextlib
 import io
 import queue
-from collections.abc import Callable, Coroutine, Mapping, Set
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -12,10 +12,9 @@ from numpy.typing import NDArray
 
 from services.gcs import panels
 from services.gcs.cameras import FOV
-from services.gcs.commands import Action, ClickGround, Join, Layer, Leave, Select
+from services.gcs.commands import Action, ClickGround, Join, Leave, Select
 from services.gcs.drawing import Camera, Picture
 from services.gcs.markup import Html, trusted
-from services.gcs.state import LAYERS
 from services.gcs.viser_buttons import ViserButtons
 from services.gcs.viser_panel import ViserPanel
 from services.gcs.viser_scene import ViserScene
@@ -30,7 +29,7 @@ FLEET_WIDTH, VEHICLE_WIDTH = 270, 350
 class ViserPage:
     """One server; every browser sees the same scene, and beside it a panel of its own. views: see ``viser_views``."""
 
-    def __init__(self, address: Address, views: Views, layers: Set[str]) -> None:
+    def __init__(self, address: Address, views: Views) -> None:
         claim(address)
         self._actions: queue.SimpleQueue[Action] = queue.SimpleQueue()
         self._server = guarded_server(address)
@@ -42,7 +41,7 @@ class ViserPage:
         self._buttons = ViserButtons(self._server.gui, self._actions.put)
         self._surroundings(next(iter(views(1.0).values())))
         self._views = ViserViews(self._server, views)
-        self._fleet_panel(layers)
+        self._fleet_panel()
         self._vehicle_panel()
         self._server.scene.on_click()(self._on_click)  # type: ignore[arg-type]
         self._server.on_client_connect(self._on_connect)
@@ -73,16 +72,12 @@ class ViserPage:
         scene.add_light_ambient("/world/ambient", intensity=0.7)
         scene.add_light_hemisphere("/world/sky", sky_color=(235, 242, 255), ground_color=(120, 110, 100), intensity=1.6)
 
-    def _fleet_panel(self, layers: Set[str]) -> None:
+    def _fleet_panel(self) -> None:
         gui = self._server.gui
         gui.main_panel.dock_left()
         gui.main_panel.set_width(FLEET_WIDTH)
         self._html["stop"] = gui.add_html("", order=1.5)
         gui.add_button_group("View", self._views.names, order=100).on_click(self._views.choose)
-        with gui.add_folder("Layers", order=200, expand_by_default=False):
-            for name in LAYERS:
-                box = gui.add_checkbox(name, initial_value=name in layers)
-                box.on_update(self._asking(lambda event, n=name: Layer(n, bool(event.target.value))))  # type: ignore[misc]
 
     def _vehicle_panel(self) -> None:
         gui = self._server.gui
@@ -106,14 +101,6 @@ class ViserPage:
         self._panels.pop(client.client_id, None)
         self._picked.pop(client.client_id, None)
         self._actions.put(Leave(client.client_id))
-
-    def _asking(self, action: Callable[[Any], Action]) -> Callable[[Any], Coroutine[Any, Any, None]]:
-        """A callback that queues an action; a coroutine, because viser runs those in the order of the clicks."""
-
-        async def asked(event: Any) -> None:
-            self._actions.put(action(event))
-
-        return asked
 
     def _on_pick(self, vehicle: str, event: Any) -> None:
         self._picked[event.client_id] = event.screen_pos

@@ -1,4 +1,4 @@
-"""What one browser alone is shown on viser, and hears from it: its vehicle's words, buttons, camera, and its own script."""
+"""What one browser alone is shown on viser, and hears from it: its vehicle's words, buttons, camera, its layers, and its own script."""
 
 import time
 from collections.abc import Callable, Mapping
@@ -12,6 +12,7 @@ from services.gcs.drawing import Panel
 from services.gcs.markup import Html
 from services.gcs.viser_buttons import ViserButtons
 from services.gcs.viser_cameras import ViserCameras
+from services.gcs.viser_layers import ViserLayers
 from services.gcs.viser_script import action_in, bar_source, padded, script, shape_in
 
 BEAT = 1.0  # s between two signs of life to the page
@@ -35,6 +36,7 @@ class ViserPanel:
         """The one on show: what is clicked is meant for it."""
         gui = client.gui
         self._buttons = ViserButtons(gui, ask)
+        self._layers = ViserLayers(client, ask)
         self._html: dict[str, Any] = {name: gui.add_html("", order=place) for name, place in IN_FLEET.items()}
         with tab:
             self._html |= {name: gui.add_html("", order=place) for name, place in IN_TAB.items()}
@@ -61,6 +63,7 @@ class ViserPanel:
                 self._show_html(panel.html)
                 self._buttons.show(panel.buttons)
                 self._cameras.show(panel)
+                self._layers.show(panel.hidden)
         except RuntimeError:
             # viser's own thread takes away what a browser had as it goes, and refuses to write to it.
             if not any(words._impl.removed for words in self._html.values()):

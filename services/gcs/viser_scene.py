@@ -8,6 +8,7 @@ import viser
 from numpy.typing import NDArray
 
 from services.gcs.drawing import FloorPicture, Mesh, Node, Points, Polyline, Text
+from services.gcs.layers import ROOTS
 from services.gcs.state import Placed
 
 Floats = NDArray[np.float64]
@@ -24,6 +25,9 @@ class ViserScene:
         self._on_pick = on_pick
         self._shown: dict[str, tuple[Node, Any]] = {}
         self._frames: dict[str, tuple[Any, Placed]] = {}
+        for root in [root for roots in ROOTS.values() for root in roots]:
+            # There before a browser comes, which hides the whole of it.
+            server.scene.add_frame(root, show_axes=False)
 
     def show(self, nodes: Mapping[str, Node], places: Mapping[str, Placed]) -> None:
         for name in [n for n in self._shown if n not in nodes]:

@@ -9,7 +9,6 @@ import pytest
 
 from services.gcs.cameras import cameras
 from services.gcs.service import GroundStation
-from services.gcs.state import Model
 from services.gcs.viser_page import ViserPage
 from tests.second_try import Shared
 from tests.services.gcs.scripted import Script, demo_site, with_eyes
@@ -36,7 +35,7 @@ class LiveStation:
     def __init__(self):
         site, self.port = with_eyes(demo_site()), free_port()
         self.script = Script()
-        self.page = ViserPage(Address(port=self.port), partial(cameras, site), Model(site).layers)
+        self.page = ViserPage(Address(port=self.port), partial(cameras, site))
         self.service = GroundStation(site, self.page)
         self.shell = Shell(Host(GroundStation, lambda: self.service), self.script.bus)
         self.moving = self.living = True

@@ -39,6 +39,26 @@ def test_each_sees_and_commands_his_own(page, other, station):
     assert asked(station, ArmRequest) == []
 
 
+VISIBLE = "(name) => window.__viserSceneTree.getState()[name]?.effectiveVisibility"
+
+
+def test_each_hides_layers_for_itself(page, other, station):
+    label = f"/label/{UGV}"
+    assert until(page, lambda: page.evaluate(VISIBLE, label) and other.evaluate(VISIBLE, label))
+    other.get_by_text("Layers", exact=True).click()
+    other.get_by_label("Labels").uncheck()
+    assert until(other, lambda: other.evaluate(VISIBLE, label) is False)
+    assert page.evaluate(VISIBLE, label) is True
+    page.get_by_text("Layers", exact=True).click()
+    assert page.get_by_label("Labels").is_checked()
+    page.get_by_label("True pose").check()
+    ghost = f"/true/{UAV}/0"
+    assert until(page, lambda: page.evaluate(VISIBLE, ghost))
+    assert other.evaluate(VISIBLE, ghost) is False
+    other.get_by_label("Labels").check()
+    assert until(other, lambda: other.evaluate(VISIBLE, label))
+
+
 def test_who_loses_the_connection_sees_the_same_vehicle_again(page, other, station):
     choose(page, UGV)
     choose(other, UAV)

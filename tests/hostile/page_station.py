@@ -9,7 +9,6 @@ from functools import partial
 
 from services.gcs.cameras import cameras
 from services.gcs.service import GroundStation
-from services.gcs.state import Model
 from services.gcs.viser_page import ViserPage
 from tests.services.gcs.scripted import Script, demo_site, with_eyes
 from uvf.runtime.address import Address
@@ -19,7 +18,7 @@ from uvf.runtime.site import Host
 
 def main(port: int) -> None:
     site, script = with_eyes(demo_site()), Script()
-    page = ViserPage(Address(port=port), partial(cameras, site), Model(site).layers)
+    page = ViserPage(Address(port=port), partial(cameras, site))
     shell = Shell(Host(GroundStation, lambda: GroundStation(site, page)), script.bus)
     begin, told = time.monotonic(), None
     while True:

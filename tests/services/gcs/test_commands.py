@@ -130,9 +130,9 @@ def test_modes_go_to_the_chosen_vehicle(station):
     assert (name, request.mode) == (UAV, Mode.MODE_RETURN)
 
 
-@pytest.mark.parametrize("action", [SetMode(UGV, "Return"), SetMode(UGV, "nonsense"), Select(ME, "nobody"), Layer("nothing", True)])
+@pytest.mark.parametrize("action", [SetMode(UGV, "Return"), SetMode(UGV, "nonsense"), Select(ME, "nobody"), Layer(ME, "nothing", True)])
 def test_what_a_page_cannot_ask_is_not_sent(station, action):
-    layers = set(station.model.layers)
+    layers = station.model.layers
     station.press(action)
     assert station.script.asked == []
     assert station.page.now.vehicle == UGV

@@ -12,7 +12,7 @@ from services.gcs import view
 from services.gcs.commands import Layer
 from services.gcs.drawing import Mesh, Polyline
 from services.gcs.fences import CORNERS, KEEP_OUT, fence_nodes
-from tests.services.gcs.fakes import Station
+from tests.services.gcs.fakes import ME, Station
 from tests.services.gcs.scripted import UAV, UGV
 
 SQUARE = FenceZone(vertices=[Vector3(x=x, y=y) for x, y in ((-300, -250), (300, -250), (300, 250), (-300, 250))])
@@ -83,9 +83,9 @@ def test_the_page_shows_it_hides_it_and_takes_it_away(station):
     assert not any(name.startswith(f"/fence/{UGV}") for name in before)
     station.run(0.5)
     assert all(shown()[name] is node for name, node in before.items()), "nothing is sent again"
-    station.press(Layer("Fences", False))
+    station.press(Layer(ME, "Fences", False))
     assert not shown()
-    station.press(Layer("Fences", True))
+    station.press(Layer(ME, "Fences", True))
     station.script.put(UAV, topics.FENCE, Fence(), station.t)
     station.run(0.2)
     assert not shown()

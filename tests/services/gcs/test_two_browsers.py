@@ -4,7 +4,8 @@ import pytest
 
 from schemas.messages import ArmRequest, GoalRequest, Mode, ModeRequest
 from services.gcs.by_hand import PATIENCE
-from services.gcs.commands import Arm, ClickGround, Join, Leave, Looking, Select, SetMode, ShowCamera, Steer, TakeWheel
+from services.gcs.commands import Arm, ClickGround, Join, Layer, Leave, Looking, Select, SetMode, ShowCamera, Steer, TakeWheel
+from services.gcs.layers import ROOTS
 from tests.services.gcs.fakes import ME, OTHER, Station
 from tests.services.gcs.scripted import UAV, UGV, demo_site, with_eyes
 
@@ -54,6 +55,27 @@ def test_a_button_pressed_as_the_vehicle_changes_means_the_one_it_was_shown_for(
     station.press(Select(ME, UAV), hold)
     assert asked(station, ModeRequest) == [UGV]
     assert not {b.key for b in station.page.seen_by(ME).buttons if UGV in b.key}
+
+
+def tracks(station):
+    return [name for name in station.page.now.nodes if name.startswith("/track/")]
+
+
+def test_each_hides_layers_for_itself_and_what_nobody_shows_is_not_drawn(station):
+    station.press(Layer(OTHER, "Tracks", False))
+    assert "/track" in station.page.seen_by(OTHER).hidden and "/track" not in station.page.seen_by(ME).hidden
+    assert tracks(station)
+    station.press(Layer(ME, "Tracks", False))
+    assert not tracks(station)
+    station.press(Leave(OTHER), Join(OTHER))
+    assert tracks(station) and "/track" in station.page.seen_by(ME).hidden and "/track" not in station.page.seen_by(OTHER).hidden
+
+
+def test_all_that_is_drawn_of_a_vehicle_but_itself_hangs_below_a_layer(station):
+    roots = [root + "/" for roots in ROOTS.values() for root in roots]
+    station.press(*(Layer(ME, name, True) for name in ROOTS))
+    outside = {name.split("/")[1] for name in station.page.now.nodes if not name.startswith(tuple(roots))}
+    assert outside == {"world", "vehicles"}
 
 
 def test_a_click_on_the_floor_sends_the_vehicle_of_him_who_clicks(station):

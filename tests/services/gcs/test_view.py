@@ -14,7 +14,7 @@ from services.gcs.commands import ClickGround, Layer
 from services.gcs.drawing import FloorPicture, Mesh, Points, Polyline, Text
 from services.gcs.state import Model
 from services.gcs.view import View, floor_picture
-from tests.services.gcs.fakes import Station
+from tests.services.gcs.fakes import ME, Station
 from tests.services.gcs.scripted import LEGS, UAV, UGV, demo_site, uav_at, ugv_at
 from uvf.runtime.world_file import Box
 
@@ -120,15 +120,15 @@ def test_a_layer_can_be_hidden_and_shown(station, layer, prefix):
         return [n for n in station.page.now.nodes if n.startswith(prefix)]
 
     before = shown()
-    station.press(Layer(layer, False))
+    station.press(Layer(ME, layer, False))
     assert before and not shown()
-    station.press(Layer(layer, True))
+    station.press(Layer(ME, layer, True))
     assert shown() == before
 
 
 def test_the_true_pose_is_a_ghost_that_must_be_asked_for(station):
     assert f"/true/{UAV}" not in station.page.now.places
-    station.press(Layer("True pose", True))
+    station.press(Layer(ME, "True pose", True))
     assert station.page.now.places[f"/true/{UAV}"].position == pytest.approx(uav_at(station.t)[0])
     assert f"/true/{UGV}" not in station.page.now.places
 

@@ -15,7 +15,7 @@ from services.gcs.cameras import cameras
 from services.gcs.commands import Join, Leave, Select, SetMode, StopAll, TakeWheel
 from services.gcs.drawing import Button, Panel, Picture, Points, Polyline
 from services.gcs.markup import html
-from services.gcs.state import Model, Placed
+from services.gcs.state import Placed
 from services.gcs.viser_page import ViserPage
 from services.gcs.viser_script import action_in, shape_in
 from tests.services.gcs.fakes import ME, Station
@@ -29,7 +29,7 @@ from uvf.runtime.params import BadInput
 def page():
     port = free_port()
     site = demo_site()
-    page = ViserPage(Address(port=port), partial(cameras, site), Model(site).layers)
+    page = ViserPage(Address(port=port), partial(cameras, site))
     page.port = port
     yield page
     page.close()
