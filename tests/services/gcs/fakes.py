@@ -24,6 +24,7 @@ class Seen:
     image: Any
     gimbal: Any
     vehicle: str
+    hidden: Any
 
 
 class FakePage:
@@ -40,7 +41,7 @@ class FakePage:
         picture = self.pictures[-1]
         own = picture.panels[page]
         html, buttons = {**picture.html, **own.html}, [*picture.buttons, *own.buttons]
-        return Seen(picture.nodes, picture.places, html, buttons, own.image, own.gimbal, own.vehicle)
+        return Seen(picture.nodes, picture.places, html, buttons, own.image, own.gimbal, own.vehicle, own.hidden)
 
     def show(self, picture):
         self.pictures.append(picture)

@@ -191,13 +191,13 @@ def test_health_and_page_are_served(page):
 
 def test_a_second_page_on_the_same_port_says_so(page):
     with pytest.raises(BadInput, match=f"{page.port}.*UVF_GCS_PORT"):
-        ViserPage(Address(port=page.port), partial(cameras, demo_site()), set())
+        ViserPage(Address(port=page.port), partial(cameras, demo_site()))
 
 
 def test_a_closed_page_frees_its_port_for_the_next():
     port, site = free_port(), demo_site()
     for _ in range(2):
-        page = ViserPage(Address(port=port), partial(cameras, site), set())
+        page = ViserPage(Address(port=port), partial(cameras, site))
         assert names(join(port))
         page.close()
 
