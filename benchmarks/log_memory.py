@@ -5,7 +5,6 @@ Each runs in a process of its own; ``growth MB`` is what its peak of resident me
 
 import json
 import random
-import re
 import subprocess
 import sys
 import tempfile
@@ -14,6 +13,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from benchmarks.memory import peak_mb
 from benchmarks.timing import stopwatch
 from schemas import topics
 from schemas.messages import Clock, Imu, NavState, Vector3
@@ -67,11 +67,6 @@ def _sample(topic: topics.Topic[Any], payload: bytes, stamp_ns: int, seq: int) -
     return Sample(topic.at("v"), topic.message.DESCRIPTOR.full_name, payload, stamp_ns, seq, 1)
 
 
-def peak_kb() -> int:
-    found = re.search(r"VmHWM:\s+(\d+)", Path("/proc/self/status").read_text())
-    return int(found[1]) if found else 0
-
-
 def measure(tool: str, _: Path | None = None) -> Figures:
     with tempfile.TemporaryDirectory() as folder:
         log = Path(folder) / "log.mcap"
@@ -84,8 +79,8 @@ def measure(tool: str, _: Path | None = None) -> Figures:
 CASES = {tool: partial(measure, tool) for tool in TOOLS}
 
 if __name__ == "__main__":
-    before, began = peak_kb(), time.perf_counter()
+    before, began = peak_mb(), time.perf_counter()
     with stopwatch() as taken:
         TOOLS[sys.argv[1]](Path(sys.argv[2]))
-    row = {"log MB": Path(sys.argv[2]).stat().st_size / 1e6, "peak MB": peak_kb() / 1e3, "growth MB": (peak_kb() - before) / 1e3}
+    row = {"log MB": Path(sys.argv[2]).stat().st_size / 1e6, "peak MB": peak_mb(), "growth MB": peak_mb() - before}
     sys.stdout.write(json.dumps(row | {"CPU s": taken[0], "wall s": taken[1]}) + "\n")

@@ -18,11 +18,11 @@ from services.mavlink_bridge.telemetry import Telemetry
 from services.mavlink_bridge.transfers import Transfers
 from services.mavlink_bridge.wire import Text, Wire
 from uvf.runtime.mavlink import dialect as mav
+from uvf.runtime.mavlink.text_bucket import TEXTS_PER_SECOND, TextBucket
 
 BOOT_BACK = 2000  # ms: a clock that goes back by more has started anew
 RESTARTS_APART = 5.0  # s: clocks that jump to and fro are none
 PLACED_APART = 1.0  # s, between two places of home for which the plans are told anew
-TEXTS_PER_SECOND, TEXTS_AT_ONCE = 20.0, 50.0
 PLANS_AFTER = 2.0  # s after the connection, at the latest: before, the autopilot may say which plans it can have
 CLOCKS = (mav.MAVLINK_MSG_ID_GLOBAL_POSITION_INT, mav.MAVLINK_MSG_ID_ATTITUDE, mav.MAVLINK_MSG_ID_ATTITUDE_QUATERNION)
 SEVERITY = {
@@ -64,7 +64,7 @@ class Autopilot:
         self._placed_at = -math.inf
         self._boot_ms = 0
         self._started_at = -math.inf
-        self._texts_left = TEXTS_AT_ONCE
+        self._texts = TextBucket(self.wire.t)
         self._handlers = self._merged()
 
     def _merged(self) -> dict[int, list[Callable[[Any], None]]]:
@@ -92,7 +92,6 @@ class Autopilot:
 
     def step(self, t: float, messages: Sequence[mav.MAVLink_message]) -> None:
         """Takes in what has come until ``t`` [s, wall], and goes on with what is under way."""
-        self._texts_left = min(self._texts_left + TEXTS_PER_SECOND * (t - self.wire.t), TEXTS_AT_ONCE)
         self.wire.t = self.telemetry.t = t
         for message in messages:
             for handler in self._handlers.get(message.get_msgId(), ()):
@@ -154,10 +153,9 @@ class Autopilot:
     def _say_text(self, text: Text) -> None:
         if not text.text:
             return
-        if self._texts_left < 1.0:
+        if not self._texts.take(self.wire.t):
             self.refusals.refuse("STATUSTEXT", f"there are more than {TEXTS_PER_SECOND:g} each second, of which the others are left out")
             return
-        self._texts_left -= 1.0
         self.say(SEVERITY.get(text.severity, Event.WARNING), text.text)
 
     def _on_reached(self, message: mav.MAVLink_mission_item_reached_message) -> None:

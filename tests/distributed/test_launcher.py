@@ -72,7 +72,7 @@ class Scene:
 
 def keep(endpoint, stop):
     with ZenohBus(endpoint, timeout=5.0) as bus:
-        keeper = Keeper(bus)
+        keeper = Keeper(bus, print)
         while not stop.wait(0.01):
             keeper.poll()
 

@@ -36,7 +36,7 @@ class InProcess:
         self._hosts = cast.processes()
         others = [name for name in self._hosts if name not in cast.simulators]
         self.conductor = Conductor(cast.simulators, others, 1.0, lockstep)
-        self._keeper = Keeper(self.bus)
+        self._keeper = Keeper(self.bus, print)
         self._clock = self.bus.publisher(topics.CLOCK.at("sys"), Clock.DESCRIPTOR.full_name, topics.CLOCK.qos)
         self._processes = {}
         self._wall = 0.0

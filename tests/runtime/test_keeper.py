@@ -23,11 +23,17 @@ def grid(frame):
 
 
 @pytest.fixture
-def buses():
+def told():
+    """What the keeper says of messages that it does not keep."""
+    return []
+
+
+@pytest.fixture
+def buses(told):
     endpoint = f"tcp/127.0.0.1:{free_port()}"
     router = open_router(endpoint)
     with ZenohBus(endpoint) as kept, ZenohBus(endpoint) as other:
-        yield endpoint, Keeper(kept), other
+        yield endpoint, Keeper(kept, told.append), other
     router.close()
 
 
@@ -115,11 +121,14 @@ def test_what_is_of_the_next_epoch_takes_the_place_of_nothing_before_the_clock_b
 
 
 @pytest.mark.parametrize(("type_name", "payload"), [("uvf.v1.Nothing", grid("x")), ("foxglove.Grid", b"\xff\xff"), ("foxglove.Grid", b"")])
-def test_what_nobody_could_read_is_not_kept(buses, type_name, payload):
+def test_what_nobody_could_read_is_not_kept_and_told_once(buses, told, type_name, payload):
     _, keeper, _ = buses
     keeper._keep(Sample(KEY, "foxglove.Grid", grid("good"), 10, 1, 7, 1))
-    keeper._keep(Sample(KEY, type_name, payload, 20, 2, 7, 1))
+    for seq in (2, 3):
+        keeper._keep(Sample(KEY, type_name, payload, 20, seq, 7, 1))
     assert keeper._newest[kept_key(KEY)].payload == grid("good")
+    (line,) = told
+    assert line.startswith(f"{KEY}: ")
 
 
 def test_no_clock_is_none_and_wipes_nothing(buses):

@@ -8,12 +8,12 @@ from schemas.messages import Event
 from uvf.runtime.mavlink import dialect as mav
 from uvf.runtime.mavlink.bounded import make_room
 from uvf.runtime.mavlink.endpoint import Peer
+from uvf.runtime.mavlink.text_bucket import TEXTS_AT_ONCE, TextBucket
 
 CHUNK_BYTES = 50
 REPEAT_AFTER = 10.0  # s
 ITEMS = re.compile(r"\bitems? \d+( and \d+)?")
 MOST_REMEMBERED = 256  # texts
-TEXTS_PER_SECOND, TEXTS_AT_ONCE = 20.0, 50.0  # for each receiver
 MOST_RECEIVERS = 128
 
 SEVERITY = {
@@ -66,17 +66,11 @@ class TextLimiter:
 
 
 @dataclass
-class Share:
-    """How many texts a receiver may still get, as of when [s]; how many it has not got, and since when [s]."""
+class Share(TextBucket):
+    """How many texts a receiver may still get; how many it has not got, and since when [s]."""
 
-    left: float
-    t: float
     left_out: int = 0
     since: float = 0.0
-
-    def refill(self, t: float) -> None:
-        self.left = min(self.left + TEXTS_PER_SECOND * (t - self.t), TEXTS_AT_ONCE)
-        self.t = t
 
 
 class TextBudget:
@@ -93,21 +87,19 @@ class TextBudget:
 
     def _admits(self, t: float, peer: Peer) -> bool:
         make_room(self._shares, peer, MOST_RECEIVERS, lambda other: self._shares[other].t)
-        share = self._shares.setdefault(peer, Share(TEXTS_AT_ONCE, t))
-        share.refill(t)
-        if share.left < 1.0:
-            share.since = share.since if share.left_out else t
-            share.left_out += 1
-            return False
-        share.left -= 1.0
-        return True
+        share = self._shares.setdefault(peer, Share(t))
+        if share.take(t):
+            return True
+        share.since = share.since if share.left_out else t
+        share.left_out += 1
+        return False
 
     def left_out(self, t: float) -> list[tuple[Peer, int]]:
         """Who has to be told by now how many texts it has not got: once the flood is over, or while it goes on every 10 s."""
         told = []
         for peer, share in list(self._shares.items()):
             share.refill(t)
-            if share.left >= TEXTS_AT_ONCE:
+            if share.is_full:
                 del self._shares[peer]
             if share.left_out and (share.left >= TEXTS_AT_ONCE / 2 or t - share.since >= REPEAT_AFTER):
                 told.append((peer, share.left_out))

@@ -34,7 +34,7 @@ def run_router(listen: str) -> None:
         session = open_router(listen)
         try:
             with ZenohBus(listen.replace("0.0.0.0", "127.0.0.1"), timeout=CONNECT_PATIENCE) as bus:
-                keeper = Keeper(bus)
+                keeper = Keeper(bus, life.warn)
                 spare_the_collector()
                 while not life.stop.wait(LOOK) and life.goes_on():
                     keeper.poll()

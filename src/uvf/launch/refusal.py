@@ -8,6 +8,7 @@ from contextlib import contextmanager
 import typer
 
 from uvf.runtime.params import BadInput
+from uvf.runtime.validation import escaped
 
 _NO_NAMES = {errno.ENAMETOOLONG: "the name is too long for a file", errno.ELOOP: "the link leads round in a circle"}
 _SHOWN = 60  # characters of a name
@@ -60,5 +61,5 @@ def within(low: float, high: float = math.inf) -> Callable[[float | None], float
 def _refused(why: str) -> typer.Exit:
     """Says it in one line, whatever names of files and keys hold: nothing in it is obeyed by a terminal."""
     line = " ".join(why.split())
-    typer.echo("uvf: " + "".join(c if c.isprintable() else ascii(c)[1:-1] for c in line), err=True)
+    typer.echo(f"uvf: {escaped(line, len(line))}", err=True)
     return typer.Exit(2)

@@ -1,9 +1,12 @@
 """Keeps the newest message of each kept topic and all words about STOP ALL, so that what was said outlives who said it."""
 
+from collections.abc import Callable
+
 from schemas.messages import Clock, StopState
 from schemas.topics import CLOCK, STOP, STOP_STATE, SYSTEM, TOPICS
 from uvf.runtime.bus import Query, Sample
 from uvf.runtime.inbox import AHEAD_MOST
+from uvf.runtime.refusals import Refusals
 from uvf.runtime.stop_all import StopBook
 from uvf.runtime.topic_lookup import topic_of
 from uvf.runtime.wire import Malformed, decode_sample, guarded
@@ -17,16 +20,18 @@ FOR_EVER = 2**63  # ns
 class Keeper:
     """Lives beside the router, which outlives the services. ``poll`` hands over and answers."""
 
-    def __init__(self, bus: ZenohBus) -> None:
+    def __init__(self, bus: ZenohBus, tell: Callable[[str], None]) -> None:
+        """tell: takes a line about each kind of message that is not kept because nobody could read it."""
         self._bus = bus
         self._newest: dict[str, Sample] = {}
         self._next: dict[str, Sample] = {}
         """Of the epoch that the clock may be about to begin."""
         self._clock: Clock | None = None
         self._stops = StopBook()
+        self._refusals = Refusals(tell)
         self._told = self._stops.now
         self._stop_state = bus.publisher(STOP_STATE.at(SYSTEM), StopState.DESCRIPTOR.full_name, STOP_STATE.qos)
-        on_clock = guarded(CLOCK, self._on_clock, lambda line: None)
+        on_clock = guarded(CLOCK, self._on_clock, self._refusals.refuse)
         bus.subscribe(CLOCK.at(SYSTEM), CLOCK.qos, on_clock, depth=8)  # the first, so that it is the first to be polled
         bus.subscribe(STOP.by("*").at(SYSTEM), STOP.qos, self._stops.push, DEPTH)
         for topic in TOPICS.values():
@@ -49,7 +54,8 @@ class Keeper:
         topic = topic_of(sample.key)
         try:
             return topic is not None and decode_sample(sample, topic.message) is not None
-        except Malformed:
+        except Malformed as error:
+            self._refusals.refuse(str(error))
             return False
 
     def _on_clock(self, clock: Clock, sample: Sample) -> None:

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterable, Iterator
 
 from schemas.messages import Refusal
-from uvf.runtime.validation import is_text
+from uvf.runtime.validation import escaped
 
 KEYS_MOST = 50
 """Keys that are counted; a stranger can make up any number of them."""
@@ -24,7 +24,7 @@ class Refusals:
         """line: ``KEY: what is wrong``; what is told of it can be shown anywhere."""
         self.count += 1
         key, _, why = line.partition(": ")
-        key, why = _shown(key), _shown(why)
+        key, why = escaped(key, LENGTH), escaped(why, LENGTH)
         if key in self._by_key or len(self._by_key) < KEYS_MOST:
             refusal = self._by_key.setdefault(key, Refusal(key=key, why=why))
             refusal.count += 1
@@ -35,11 +35,6 @@ class Refusals:
 
     def __iter__(self) -> Iterator[Refusal]:
         return iter(self._by_key.values())
-
-
-def _shown(text: str) -> str:
-    """Part of a stranger's text that may stand in a message of ours."""
-    return text[:LENGTH] if is_text(text[:LENGTH]) else ascii(text[:LENGTH])
 
 
 def together(several: Iterable[Refusals]) -> list[Refusal]:

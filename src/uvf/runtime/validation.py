@@ -72,6 +72,11 @@ def legible(text: str, most: int = TEXT) -> str:
     return kept if len(kept) <= most else f"{kept[: most - 1]}…"
 
 
+def escaped(text: str, most: int = TEXT) -> str:
+    """The beginning of any text on one line, with what would steer a terminal or turn the text round written out: ``\\x1b``."""
+    return "".join(letter if letter.isprintable() else ascii(letter)[1:-1] for letter in text[:most])
+
+
 @cache
 def _test_of(type_: Descriptor) -> Test:
     """True for a message of this type that is within all limits, with those inside it."""

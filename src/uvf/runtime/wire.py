@@ -8,7 +8,9 @@ from google.protobuf.message import DecodeError, Message
 from schemas.limits import size_of
 from schemas.topics import Topic
 from uvf.runtime.bus import Sample, Sink
-from uvf.runtime.validation import error_in
+from uvf.runtime.validation import error_in, escaped
+
+TYPE_SHOWN = 60  # letters
 
 M = TypeVar("M", bound=Message)
 
@@ -30,17 +32,11 @@ def decode(key: str, payload: bytes, type_: type[M]) -> M:
     return message
 
 
-def _shown(text: str) -> str:
-    """A stranger's text in a line of ours: short, and nothing that a terminal would obey."""
-    text = text[:60]
-    return text if text.isprintable() else ascii(text)
-
-
 def decode_sample(sample: Sample, type_: type[M]) -> M:
     """Raises Malformed, also for another type than the one that is due."""
     name = type_.DESCRIPTOR.full_name
     if sample.type_name != name:
-        raise Malformed(f"{sample.key}: {_shown(sample.type_name) or 'untyped bytes'} where {name} is due")
+        raise Malformed(f"{sample.key}: {escaped(sample.type_name, TYPE_SHOWN) or 'untyped bytes'} where {name} is due")
     return decode(sample.key, sample.payload, type_)
 
 

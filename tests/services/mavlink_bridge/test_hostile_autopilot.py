@@ -5,7 +5,7 @@ import math
 import pytest
 
 from schemas.messages import Event, MissionItem
-from services.mavlink_bridge.autopilot import RESTARTS_APART, TEXTS_AT_ONCE, TEXTS_PER_SECOND
+from services.mavlink_bridge.autopilot import RESTARTS_APART
 from services.mavlink_bridge.modes import MODES_MOST, Modes
 from services.mavlink_bridge.station import AUTOPILOTS_MOST, RIVALS_MOST
 from services.mavlink_bridge.transfers import STANDS_FOR, Transfers
@@ -15,6 +15,7 @@ from tests.services.mavlink_bridge.test_station import HERE, Air
 from tests.services.mavlink_bridge.test_vehicle import HOME, Scripted, attitude, current, home, position
 from uvf.runtime.mavlink import dialect as mav
 from uvf.runtime.mavlink.mission_items import packed, unpacked
+from uvf.runtime.mavlink.text_bucket import TEXTS_AT_ONCE, TEXTS_PER_SECOND
 from uvf.runtime.validation import error_in
 
 NOWHERE = 2_140_000_000  # 1e-7 deg
