@@ -139,6 +139,12 @@ def test_a_name_too_long_for_a_file_is_refused_in_one_line_that_is_not_as_long(c
     assert len(done.stderr) < 200
 
 
+def test_a_line_is_not_as_long_as_the_name_that_it_speaks_of():
+    done = uvf("run", "demo", "--lockstep", "--log", "a" * 5000)
+    assert done.returncode == 2 and len(done.stderr) < 300
+    assert "aaa... cannot be written" in done.stderr
+
+
 @pytest.mark.parametrize("command", [("check",), ("log", "info"), ("report",)], ids=" ".join)
 def test_a_link_that_leads_round_in_a_circle_is_said_to_be_one(command, tmp_path):
     loop = tmp_path / "loop"

@@ -11,7 +11,8 @@ from uvf.runtime.params import BadInput
 from uvf.runtime.validation import escaped
 
 _NO_NAMES = {errno.ENAMETOOLONG: "the name is too long for a file", errno.ELOOP: "the link leads round in a circle"}
-_SHOWN = 60  # characters of a name
+_WORD, _SHOWN = 300, 60
+"""Characters of a word: what is longer, as no path is, is shown by its beginning."""
 
 
 @contextmanager
@@ -24,9 +25,7 @@ def bad_input_is_one_line() -> Iterator[None]:
     except OSError as error:
         if error.errno not in _NO_NAMES:
             raise
-        name = str(error.filename)
-        shown = name if len(name) <= _SHOWN else f"{name[:_SHOWN]}..."
-        raise _refused(f"{shown}: {_NO_NAMES[error.errno]}; name another") from error
+        raise _refused(f"{_shortened(str(error.filename))}: {_NO_NAMES[error.errno]}; name another") from error
 
 
 @contextmanager
@@ -60,6 +59,10 @@ def within(low: float, high: float = math.inf) -> Callable[[float | None], float
 
 def _refused(why: str) -> typer.Exit:
     """Says it in one line, whatever names of files and keys hold: nothing in it is obeyed by a terminal."""
-    line = " ".join(why.split())
+    line = " ".join(_shortened(word) for word in why.split())
     typer.echo(f"uvf: {escaped(line, len(line))}", err=True)
     return typer.Exit(2)
+
+
+def _shortened(word: str) -> str:
+    return word if len(word) <= _WORD else f"{word[:_SHOWN]}..."
