@@ -52,7 +52,7 @@ def test_a_bad_mission_is_one_line_that_names_the_mend(tmp_path, case):
 
 def test_an_unknown_measure_is_named_before_the_run(tmp_path):
     path = mission(tmp_path, criteria=[{"vehicle": "burger", "measure": "distance_drivn", "at_least": 1.0}])
-    done = uvf("run", path, "--lockstep", "--until", "1", UVF_RUNS=str(tmp_path))
+    done = uvf("run", path, "--until", "1", UVF_RUNS=str(tmp_path))
     assert done.returncode == 2
     assert "did you mean 'distance_driven'?" in done.stderr
 
@@ -99,7 +99,6 @@ def test_help_imports_no_engine():
 
 MISSPELT = {
     ("run", "dmeo"): "no mission 'dmeo'; did you mean 'demo'?",
-    ("run", "dmeo", "--lockstep"): "no mission 'dmeo'; did you mean 'demo'?",
     ("up", "dmeo"): "no mission 'dmeo'; did you mean 'demo'?",
     ("check", "dmeo"): "no mission 'dmeo'; did you mean 'demo'?",
     ("teleop", "burger", "-m", "dmeo"): "no mission 'dmeo'; did you mean 'demo'?",
@@ -140,7 +139,7 @@ def test_a_name_too_long_for_a_file_is_refused_in_one_line_that_is_not_as_long(c
 
 
 def test_a_line_is_not_as_long_as_the_name_that_it_speaks_of():
-    done = uvf("run", "demo", "--lockstep", "--log", "a" * 5000)
+    done = uvf("run", "demo", "--log", "a" * 5000)
     assert done.returncode == 2 and len(done.stderr) < 300
     assert "aaa... cannot be written" in done.stderr
 
@@ -201,10 +200,3 @@ def test_the_fault_itself_is_named_before_a_router_is_looked_for(tmp_path):
         done = uvf(*arguments, UVF_ROUTER=NOWHERE)
         assert (done.returncode, len(done.stderr.splitlines())) == (2, 1)
         assert why in done.stderr
-
-
-def test_run_without_lockstep_is_refused_in_one_line_that_names_both_ways():
-    done = without_engines("run", "formation")
-    assert "exit 2" in done.stdout
-    assert len(done.stderr.splitlines()) == 1
-    assert "'uvf run formation --lockstep'" in done.stderr and "'uvf up formation'" in done.stderr

@@ -75,6 +75,18 @@ def test_an_epoch_counts_only_from_the_clock(shell, epoch):
     assert line == f"uvf/alpha/nav/status: of epoch {epoch}, which the clock has not begun"
 
 
+def test_what_many_vehicles_send_before_the_clock_is_heard_of_is_all_kept_and_none_of_it_refused():
+    box = InputBox(each_vehicle(topics.NAV_STATUS), ageless=True, epoch=0)
+    for owner in range(30):
+        for seq in range(1, 21):
+            payload = NavStatus(job=f"{seq}").SerializeToString()
+            box.push(Sample(topics.NAV_STATUS.at(f"v{owner}"), "uvf.v1.NavStatus", payload, seq, seq, 7, 1))
+    box.begin(1)
+    box.take(NS)
+    assert {message.job for message in box.value(NS).values()} == {"20"} and len(box.value(NS)) == 30
+    assert box.malformed() == []
+
+
 def test_a_flood_of_messages_ahead_of_the_clock_is_bounded_and_counted(shell):
     for n in range(1000):
         put(shell, topics.NAV_STATUS, NavStatus(), 0.001 * n, 2)

@@ -36,7 +36,7 @@ def on_set_mode(line: Line, message: mav.MAVLink_set_mode_message, sender: Sende
     """SET_MODE has no answer but the next HEARTBEAT; a refusal is said in words."""
     row = modes.from_custom(message.custom_mode)
     if row is None:
-        line.text(mav.MAV_SEVERITY_WARNING, modes.unknown(message.custom_mode), sender.peer)
+        line.text(mav.MAV_SEVERITY_WARNING, modes.unknown(message.custom_mode, line.facts.is_ground), sender.peer)
         return
     set_mode(line, row.mode, line.refusal(f"Mode {row.name}"))
 
@@ -52,7 +52,7 @@ def _to_mode(mode: Mode) -> Handler:
 def _do_set_mode(line: Line, command: Command, ack: Acknowledger) -> None:
     row = modes.from_command(command.p[1], command.p[2])
     if row is None:
-        ack(mav.MAV_RESULT_DENIED, f"There is no such mode. {modes.THERE_ARE}")
+        ack(mav.MAV_RESULT_DENIED, f"There is no such mode. {modes.there_are(line.facts.is_ground)}")
         return
     set_mode(line, row.mode, ack.outcome(f"Mode {row.name} refused"))
 

@@ -105,15 +105,11 @@ def up(
 @app.command()
 def run(
     mission: MissionArgument = DEMO,
-    lockstep: Annotated[bool, typer.Option("--lockstep", help="In one process, as fast as it goes.")] = False,
+    lockstep: Annotated[bool, typer.Option("--lockstep", hidden=True)] = True,  # it always is; scripts of before say so
     until: Annotated[float | None, typer.Option(help="Simulation seconds; by default the mission's duration.")] = None,
     log: Annotated[Path | None, typer.Option(help="Where to record; by default in runs/.")] = None,
 ) -> None:
-    """Run a mission in lockstep to its end and score it: exit code 0 when every criterion holds. Needs --lockstep; 'uvf up' is live."""
-    if not lockstep:
-        ways = f"'uvf run {mission} --lockstep' simulates and scores it as fast as it goes, 'uvf up {mission}' runs it in real time"
-        typer.echo(f"uvf: say which way to run it: {ways}", err=True)
-        raise typer.Exit(2)
+    """Run a mission in one process, as fast as it goes, and score it: exit code 0 when every criterion holds. 'uvf up' runs it live."""
     from uvf.launch.report import run_and_report
 
     with bad_input_is_one_line():

@@ -1,4 +1,4 @@
-"""``uvf run MISSION --lockstep``: the whole mission in one process, as fast as it goes, scored at the end."""
+"""``uvf run MISSION``: the whole mission in one process, as fast as it goes, scored at the end."""
 
 import time
 from collections.abc import Callable

@@ -1,6 +1,6 @@
 """What has arrived for one service: ordered, decoded once, aged in message time."""
 
-from collections import deque
+from collections import Counter, deque
 from collections.abc import Iterator
 from typing import Any
 
@@ -21,7 +21,8 @@ SILENT = 60 * NS
 """After which a vehicle makes room for another where there are too many."""
 REFUSED_MOST = 10_000
 """Lines about refused messages that wait for the next step, which does not come while the clock stands; more are not counted."""
-NEXT_EPOCH_DEPTH = 8  # messages of the epoch to come that wait until the clock tells of it
+NEXT_EPOCH_DEPTH = 8
+"""Messages of a key, the newest, that wait while they are of an epoch that the clock has not told of; more where each one counts."""
 
 
 class Slot:
@@ -114,7 +115,7 @@ class Slot:
         return self._latest[1] if self._latest is not None and self.is_fresh(t_ns) else None
 
 
-def _ahead(sample: Sample) -> str:
+def _of_no_epoch(sample: Sample) -> str:
     return f"{sample.key}: of epoch {sample.epoch}, which the clock has not begun"
 
 
@@ -128,16 +129,27 @@ class InputBox:
         self._slots: dict[str, Slot] = {}
         self._t_ns = 0
         self._malformed: deque[str] = deque(maxlen=REFUSED_MOST)
-        self._next: deque[Sample] = deque(maxlen=NEXT_EPOCH_DEPTH)
-        """Of an epoch that the clock has not begun yet."""
+        self._next: dict[str, deque[Sample]] = {}
+        """Of an epoch that the clock has not begun yet, by key."""
+        self._pushed_out: Counter[str] = Counter()
+        """How many of these newer ones have pushed out, by key."""
         self._next_since: int | None = None
 
     def begin(self, epoch: int) -> None:
         """The clock tells of an epoch; what was sent ahead of it counts from now on, or never."""
         self.epoch = epoch
-        ahead, self._next, self._next_since = self._next, deque(maxlen=NEXT_EPOCH_DEPTH), None
+        ahead = self._ahead()
+        self._forget_next_epoch()
         for sample in ahead:
             self.push(sample)
+
+    def _forget_next_epoch(self) -> None:
+        self._next.clear()
+        self._pushed_out.clear()
+        self._next_since = None
+
+    def _ahead(self) -> list[Sample]:
+        return [sample for samples in self._next.values() for sample in samples]
 
     def push(self, sample: Sample) -> None:
         """Takes a message of this epoch (or of none); what an old one still sends is dropped, an operator's word is not."""
@@ -176,20 +188,25 @@ class InputBox:
     def _hold_for_next_epoch(self, sample: Sample) -> None:
         """Only the clock begins an epoch. Its next one may be heard of late; any other is nobody's."""
         if self.epoch > 0 and sample.epoch > self.epoch + 1:
-            self._malformed.append(_ahead(sample))
+            self._malformed.append(_of_no_epoch(sample))
             return
-        if len(self._next) == NEXT_EPOCH_DEPTH:
-            self._malformed.append(_ahead(self._next[0]))
-        self._next.append(sample)
+        if sample.key not in self._next and len(self._next) >= OWNERS_MOST:
+            self._malformed.append(_of_no_epoch(sample))
+            return
+        depth = EVERY_DEPTH if self.declared.every else NEXT_EPOCH_DEPTH
+        held = self._next.setdefault(sample.key, deque(maxlen=depth))
+        self._pushed_out[sample.key] += len(held) == depth
+        held.append(sample)
 
     def _give_up_next_epoch(self, t_ns: int) -> None:
         """What was ahead of the clock for so long was never of its epoch."""
         if self._next_since is None:
             self._next_since = t_ns
         elif t_ns > self._next_since + AHEAD_MOST:
-            self._malformed += [_ahead(sample) for sample in self._next]
-            self._next.clear()
-            self._next_since = None
+            for key, held in self._next.items():
+                self._malformed += [_of_no_epoch(held[0])] * min(self._pushed_out[key], REFUSED_MOST)
+                self._malformed += [_of_no_epoch(sample) for sample in held]
+            self._forget_next_epoch()
 
     def surviving(self, epoch: int) -> list[Sample]:
         """What still counts when time starts over: the new epoch's own messages, and what holds across epochs.
@@ -197,7 +214,7 @@ class InputBox:
         The latter is stamped anew with the beginning of time, so that everything said later comes after it.
         """
         slots = self._slots.values()
-        new = [s for slot in slots for s in slot.arrived if s.epoch >= epoch] + [s for s in self._next if s.epoch == epoch]
+        new = [s for slot in slots for s in slot.arrived if s.epoch >= epoch] + [s for s in self._ahead() if s.epoch == epoch]
         if not self.declared.topic.across_epochs:
             return new
         old = [s for slot in slots for s in (slot.accepted, *slot.arrived) if s is not None and s.epoch < epoch]

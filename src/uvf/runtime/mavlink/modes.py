@@ -26,6 +26,8 @@ class Row:
     flags: int
     standard: int = mav.MAV_STANDARD_MODE_NON_STANDARD
     properties: int = 0
+    on_ground: bool = False
+    """Rovers have it, too."""
 
     @property
     def custom(self) -> int:
@@ -33,22 +35,20 @@ class Row:
 
 
 TABLE = (
-    Row(Mode.MODE_MANUAL, "Manual", 1, 0, _MANUAL),
+    Row(Mode.MODE_MANUAL, "Manual", 1, 0, _MANUAL, on_ground=True),
     Row(Mode.MODE_STABILIZED, "Stabilized", 7, 0, _MANUAL | _STABLE),
     Row(Mode.MODE_ALTITUDE, "Altitude", 2, 0, _MANUAL | _STABLE, mav.MAV_STANDARD_MODE_ALTITUDE_HOLD),
     Row(Mode.MODE_POSITION, "Position", 3, 0, _MANUAL | _STABLE),
     Row(Mode.MODE_TAKEOFF, "Takeoff", 4, 2, _AUTO),
-    Row(Mode.MODE_HOLD, "Hold", 4, 3, _AUTO),
-    Row(Mode.MODE_MISSION, "Mission", 4, 4, _AUTO),
-    Row(Mode.MODE_RETURN, "Return", 4, 5, _AUTO),
+    Row(Mode.MODE_HOLD, "Hold", 4, 3, _AUTO, on_ground=True),
+    Row(Mode.MODE_MISSION, "Mission", 4, 4, _AUTO, on_ground=True),
+    Row(Mode.MODE_RETURN, "Return", 4, 5, _AUTO, on_ground=True),
     Row(Mode.MODE_LAND, "Land", 4, 6, _AUTO),
     Row(Mode.MODE_ORBIT, "Orbit", 3, 1, _AUTO, properties=mav.MAV_MODE_PROPERTY_NOT_USER_SELECTABLE),
     Row(Mode.MODE_FOLLOW, "Follow", 4, 8, _AUTO),
-    Row(Mode.MODE_OFFBOARD, "Offboard", 6, 0, _AUTO, properties=mav.MAV_MODE_PROPERTY_ADVANCED),
+    Row(Mode.MODE_OFFBOARD, "Offboard", 6, 0, _AUTO, properties=mav.MAV_MODE_PROPERTY_ADVANCED, on_ground=True),
 )
 """The same for aircraft and rovers: QGroundControl keeps one list for all PX4-like vehicles. Each refuses what it cannot do."""
-
-THERE_ARE = f"There are {', '.join(row.name for row in TABLE)}"
 
 _BY_MODE = {row.mode: row for row in TABLE}
 _BY_CUSTOM = {row.custom: row for row in TABLE}
@@ -87,10 +87,15 @@ def from_command(param2: float, param3: float) -> Row | None:
     return from_custom(int(param2) << 16 | sub << 24) if param2 >= 0 and 0 <= sub <= 255 else None
 
 
-def unknown(custom: int) -> str:
+def there_are(is_ground: bool) -> str:
+    """The modes of a rover or of an aircraft, in words."""
+    return f"There are {', '.join(row.name for row in TABLE if row.on_ground or not is_ground)}"
+
+
+def unknown(custom: int, is_ground: bool) -> str:
     """Why there is no mode of a custom_mode word, and which there are."""
     main, sub = custom >> 16 & 0xFF, custom >> 24 & 0xFF
-    return f"There is no mode {main}.{sub} (custom_mode {custom:#x}). {THERE_ARE}"
+    return f"There is no mode {main}.{sub} (custom_mode {custom:#x}). {there_are(is_ground)}"
 
 
 def available(index: int) -> mav.MAVLink_available_modes_message | None:

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from services.autopilot.mavlink.refusals import plain
-from tests.services.autopilot.mavlink.rig import PLANE, Rig, acks, long, of, texts
+from tests.services.autopilot.mavlink.rig import PLANE, ROVER, Rig, acks, long, of, texts
 from tests.services.autopilot.mavlink.test_fence_and_rally import item as plan_item
 from tests.services.autopilot.mavlink.test_missions import LAT, LON, item, upload
 from uvf.runtime.mavlink import dialect as mav
@@ -88,6 +88,7 @@ def whole(number, *p, x=LAT, y=LON, z=400.0, frame=0):
         (whole(34, NAN, NAN, NAN, NAN, x=0, y=0), f"Orbit refused: {FAR}"),
         (long(192, math.inf, 1, 0), "DO_REPOSITION refused: parameter 1 is inf: name a number within 1e+09, or NaN to leave it out"),
         (long(176, 1, 77, 3), "There is no such mode. There are Manual, Stabilized, Altitude"),
+        (long(176, 1, 77, 3, system=ROVER), "There is no such mode. There are Manual, Hold, Mission, Return, Offboard"),
         (mav.MAVLink_set_mode_message(PLANE, 1, 9 << 16), "There is no mode 9.0 (custom_mode 0x90000). There are Manual"),
     ],
 )
