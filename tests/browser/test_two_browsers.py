@@ -54,7 +54,7 @@ def test_each_hides_layers_for_itself(page, other, station):
     page.get_by_label("True pose").check()
     ghost = f"/true/{UAV}/0"
     assert until(page, lambda: page.evaluate(VISIBLE, ghost))
-    assert other.evaluate(VISIBLE, ghost) is False
+    assert until(other, lambda: other.evaluate(VISIBLE, ghost) is False)
     other.get_by_label("Labels").check()
     assert until(other, lambda: other.evaluate(VISIBLE, label))
 
