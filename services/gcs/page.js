@@ -9,7 +9,8 @@
   window.__gcsJoined = performance.now();
   if (window.__gcs) return;
   window.__gcs = true;
-  let wanted = '', asked = 0;  // the vehicle shown here, asked for again after a lost connection
+  // The vehicle shown here. After a lost connection it is asked for until it is back, or another one has been chosen meanwhile.
+  let wanted = '', bridged = bridge, restoring = '', first = '', asked = 0;
   const send = text => { const m = window.__viserMutable; if (m) m.sendMessage({type: 'GuiUpdateMessage', uuid: window.__gcsBridge, updates: {value: text}}); };
   document.body.dataset.log = 'notice';
   document.addEventListener('click', e => { const filter = e.target.closest && e.target.closest('[data-log]'); if (filter && filter !== document.body) document.body.dataset.log = filter.dataset.log; });
@@ -17,7 +18,7 @@
   const press = e => {
     const card = e.target.closest && e.target.closest('[data-gcs]');
     if (!card) return;
-    if (card.dataset.gcs.startsWith('select:')) wanted = card.dataset.gcs.slice(7);
+    if (card.dataset.gcs.startsWith('select:')) { wanted = card.dataset.gcs.slice(7); restoring = ''; }
     say(card.dataset.gcs);
   };
   document.addEventListener('pointerdown', press);
@@ -40,9 +41,14 @@
     if (seen && performance.now() - looked > 1000) { looked = performance.now(); say('looks'); }
     const source = document.getElementById('gcs-bar-source');
     const now = performance.now(), shown = source && source.querySelector('.g-follow');
-    const again = wanted && now - window.__gcsJoined < 3000;
-    if (shown && !again) wanted = shown.dataset.name;
-    else if (shown && shown.dataset.name !== wanted && now - asked > 500) { asked = now; say('select:' + wanted); }
+    if (bridged !== window.__gcsBridge) { bridged = window.__gcsBridge; restoring = wanted; first = ''; }
+    if (shown && source.dataset.bridge === bridged) {  // else it is what the connection before has left
+      const name = shown.dataset.name;
+      first = first || name;
+      if (name === restoring || name !== first || now - window.__gcsJoined > 60000) restoring = '';
+      if (!restoring) wanted = name;
+      else if (now - asked > 500) { asked = now; say('select:' + restoring); }
+    }
     silent += Math.min(now - ticked, 400);  // a page that stood still itself has yet to read what came meanwhile
     ticked = now;
     if (source && source.dataset.beat !== beat) { beat = source.dataset.beat; silent = 0; if (bar.innerHTML !== source.innerHTML) bar.innerHTML = source.innerHTML; }

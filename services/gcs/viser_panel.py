@@ -44,7 +44,8 @@ class ViserPanel:
         self._html["cameras"] = self._cameras.words
         bridge = gui.add_text("page", "", visible=False)
         bridge.on_update(self._on_word)
-        client._websock_connection.queue_message(_messages.RunJavascriptMessage(source=script(bridge._impl.uuid)))
+        self._bridge = bridge._impl.uuid
+        client._websock_connection.queue_message(_messages.RunJavascriptMessage(source=script(self._bridge)))
 
     async def _on_word(self, event: Any) -> None:
         """What the page's own script says."""
@@ -78,6 +79,6 @@ class ViserPanel:
             self._sent[name] = content
             if name == "bar":
                 self._beat = now
-                self._html[name].content = bar_source(content, int(now * 1000))
+                self._html[name].content = bar_source(content, int(now * 1000), self._bridge)
             else:
                 self._html[name].content = padded(content)

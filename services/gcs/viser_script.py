@@ -21,9 +21,9 @@ def follow(on: bool) -> str:
     return f"window.__gcsFollow = {json.dumps(on)}; window.__gcsHand = false"
 
 
-def bar_source(content: Html, beat: int) -> str:
-    """The hidden element that the bar is copied from; a new ``beat`` shows that the ground station lives."""
-    return str(html("<div id='gcs-bar-source' data-beat='{}' hidden>{}</div>", beat, content))
+def bar_source(content: Html, beat: int, bridge: str) -> str:
+    """The hidden element that the bar is copied from. A new ``beat`` shows that the ground station lives; bridge: of which connection."""
+    return str(html("<div id='gcs-bar-source' data-beat='{}' data-bridge='{}' hidden>{}</div>", beat, bridge, content))
 
 
 def padded(content: Html) -> str:

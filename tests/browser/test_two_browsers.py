@@ -59,11 +59,16 @@ def test_each_hides_layers_for_itself(page, other, station):
     assert until(other, lambda: other.evaluate(VISIBLE, label))
 
 
-def test_who_loses_the_connection_sees_the_same_vehicle_again(page, other, station):
+@pytest.mark.parametrize("silent", [0, 5000], ids=["at once", "late"])
+def test_who_loses_the_connection_sees_the_same_vehicle_again(page, other, station, silent):
+    """silent [ms]: for so long the ground station shows nothing to who is connected again."""
     choose(page, UGV)
     choose(other, UAV)
     before = set(station.service._model.sessions)
+    station.living = not silent
     station.page._server._websock_server.disconnect_all_clients()
+    page.wait_for_timeout(silent)
+    station.living = True
     assert until(page, lambda: len(station.service._model.sessions) == 2 and not before & set(station.service._model.sessions))
     assert until(other, lambda: sorted(s.vehicle for s in station.service._model.sessions.values()) == sorted((UGV, UAV)))
     other.locator("#gcs-pfd").wait_for(timeout=40_000)
