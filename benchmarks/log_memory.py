@@ -5,7 +5,6 @@ Each runs in a process of its own; ``growth MB`` is what its peak of resident me
 
 import json
 import random
-import subprocess
 import sys
 import tempfile
 import time
@@ -13,7 +12,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from benchmarks.memory import peak_mb
+from benchmarks.memory import in_own_process, peak_mb
 from benchmarks.timing import stopwatch
 from schemas import topics
 from schemas.messages import Clock, Imu, NavState, Vector3
@@ -24,7 +23,7 @@ from uvf.runtime.log_reading import recover
 from uvf.runtime.recording import Recorder
 from uvf.runtime.replay import into_service, onto_bus
 from uvf.runtime.service import Service
-from uvf.runtime.site import ROOT, Host
+from uvf.runtime.site import Host
 
 PICTURE, BYTES = 1_000_000, 2_000_000_000
 SMALL = 200  # messages beside each picture
@@ -71,9 +70,7 @@ def measure(tool: str, _: Path | None = None) -> Figures:
     with tempfile.TemporaryDirectory() as folder:
         log = Path(folder) / "log.mcap"
         write_log(log)
-        command = (sys.executable, "-m", "benchmarks.log_memory", tool, str(log))
-        done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
-    return {tool: json.loads(done.stdout.splitlines()[-1])}
+        return {tool: in_own_process("benchmarks.log_memory", tool, str(log))}
 
 
 CASES = {tool: partial(measure, tool) for tool in TOOLS}

@@ -5,20 +5,18 @@ In a process of its own; ``growth MB`` is what its peak of resident memory is ab
 """
 
 import json
-import subprocess
 import sys
 from functools import partial
 from pathlib import Path
 
 import numpy as np
 
-from benchmarks.memory import peak_mb
+from benchmarks.memory import in_own_process, peak_mb
 from services.slam.evaluation.driven import Driven, Wear, drive, route
 from services.slam.evaluation.open_country import scattered
 from services.slam.methods import METHODS, make_method, method_params
 from services.slam.reading import Beams
 from uvf.launch.bench import Figures
-from uvf.runtime.site import ROOT
 
 LIDAR = Beams((0.2, 0.0), np.radians(np.arange(-180.0, 180.0, 1.0)), 0.3, 60.0)
 ROAD = np.array(((0.0, 0.0), (500.0, 0.0), (500.0, 500.0), (0.0, 500.0), (0.0, 1000.0)))  # m
@@ -47,8 +45,7 @@ def grown(name: str) -> Figures:
 
 
 def measure(name: str, _: Path | None = None) -> Figures:
-    done = subprocess.run((sys.executable, "-m", "benchmarks.slam_memory", name), cwd=ROOT, capture_output=True, text=True, check=True)
-    rows: Figures = json.loads(done.stdout.splitlines()[-1])
+    rows: Figures = in_own_process("benchmarks.slam_memory", name)
     return rows
 
 

@@ -10,7 +10,7 @@
   if (window.__gcs) return;
   window.__gcs = true;
   // The vehicle shown here. After a lost connection it is asked for until it is back, or another one has been chosen meanwhile.
-  let wanted = '', bridged = bridge, restoring = '', first = '', asked = 0;
+  let wanted = '', bridged = bridge, restoring = false, first = '', asked = 0;
   const send = text => { const m = window.__viserMutable; if (m) m.sendMessage({type: 'GuiUpdateMessage', uuid: window.__gcsBridge, updates: {value: text}}); };
   document.body.dataset.log = 'notice';
   document.addEventListener('click', e => { const filter = e.target.closest && e.target.closest('[data-log]'); if (filter && filter !== document.body) document.body.dataset.log = filter.dataset.log; });
@@ -18,7 +18,7 @@
   const press = e => {
     const card = e.target.closest && e.target.closest('[data-gcs]');
     if (!card) return;
-    if (card.dataset.gcs.startsWith('select:')) { wanted = card.dataset.gcs.slice(7); restoring = ''; }
+    if (card.dataset.gcs.startsWith('select:')) { wanted = card.dataset.gcs.slice(7); restoring = false; }
     say(card.dataset.gcs);
   };
   document.addEventListener('pointerdown', press);
@@ -41,13 +41,13 @@
     if (seen && performance.now() - looked > 1000) { looked = performance.now(); say('looks'); }
     const source = document.getElementById('gcs-bar-source');
     const now = performance.now(), shown = source && source.querySelector('.g-follow');
-    if (bridged !== window.__gcsBridge) { bridged = window.__gcsBridge; restoring = wanted; first = ''; }
+    if (bridged !== window.__gcsBridge) { bridged = window.__gcsBridge; restoring = wanted !== ''; first = ''; }
     if (shown && source.dataset.bridge === bridged) {  // else it is what the connection before has left
       const name = shown.dataset.name;
       first = first || name;
-      if (name === restoring || name !== first || now - window.__gcsJoined > 60000) restoring = '';
+      if (name === wanted || name !== first || now - window.__gcsJoined > 60000) restoring = false;
       if (!restoring) wanted = name;
-      else if (now - asked > 500) { asked = now; say('select:' + restoring); }
+      else if (now - asked > 500) { asked = now; say('select:' + wanted); }
     }
     silent += Math.min(now - ticked, 400);  // a page that stood still itself has yet to read what came meanwhile
     ticked = now;

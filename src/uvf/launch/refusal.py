@@ -11,8 +11,8 @@ from uvf.runtime.params import BadInput
 from uvf.runtime.validation import escaped
 
 _NO_NAMES = {errno.ENAMETOOLONG: "the name is too long for a file", errno.ELOOP: "the link leads round in a circle"}
-_WORD, _SHOWN = 300, 60
-"""Characters of a word: what is longer, as no path is, is shown by its beginning."""
+_WORD, _SHOWN = 255, 60
+"""Characters of a word: what is longer than a file's name can be is shown by its beginning."""
 
 
 @contextmanager
@@ -60,7 +60,7 @@ def within(low: float, high: float = math.inf) -> Callable[[float | None], float
 def _refused(why: str) -> typer.Exit:
     """Says it in one line, whatever names of files and keys hold: nothing in it is obeyed by a terminal."""
     line = " ".join(_shortened(word) for word in why.split())
-    typer.echo(f"uvf: {escaped(line, len(line))}", err=True)
+    typer.echo(f"uvf: {escaped(line)}", err=True)
     return typer.Exit(2)
 
 

@@ -187,10 +187,8 @@ class InputBox:
 
     def _hold_for_next_epoch(self, sample: Sample) -> None:
         """Only the clock begins an epoch. Its next one may be heard of late; any other is nobody's."""
-        if self.epoch > 0 and sample.epoch > self.epoch + 1:
-            self._malformed.append(_of_no_epoch(sample))
-            return
-        if sample.key not in self._next and len(self._next) >= OWNERS_MOST:
+        is_nobodys = self.epoch > 0 and sample.epoch > self.epoch + 1
+        if is_nobodys or (sample.key not in self._next and len(self._next) >= OWNERS_MOST):
             self._malformed.append(_of_no_epoch(sample))
             return
         depth = EVERY_DEPTH if self.declared.every else NEXT_EPOCH_DEPTH

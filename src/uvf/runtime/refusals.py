@@ -24,7 +24,7 @@ class Refusals:
         """line: ``KEY: what is wrong``; what is told of it can be shown anywhere."""
         self.count += 1
         key, _, why = line.partition(": ")
-        key, why = escaped(key, LENGTH)[:LENGTH], escaped(why, LENGTH)[:LENGTH]
+        key, why = (escaped(text[:LENGTH])[:LENGTH] for text in (key, why))
         if key in self._by_key or len(self._by_key) < KEYS_MOST:
             refusal = self._by_key.setdefault(key, Refusal(key=key, why=why))
             refusal.count += 1

@@ -72,9 +72,9 @@ def legible(text: str, most: int = TEXT) -> str:
     return kept if len(kept) <= most else f"{kept[: most - 1]}…"
 
 
-def escaped(text: str, most: int = TEXT) -> str:
-    """The beginning of any text on one line, with what would steer a terminal or turn the text round written out: ``\\x1b``."""
-    return "".join(letter if letter.isprintable() else ascii(letter)[1:-1] for letter in text[:most])
+def escaped(text: str) -> str:
+    """Any text on one line, with what would steer a terminal or turn the text round written out: ``\\x1b``."""
+    return "".join(letter if letter.isprintable() else ascii(letter)[1:-1] for letter in text)
 
 
 @cache

@@ -36,7 +36,7 @@ def decode_sample(sample: Sample, type_: type[M]) -> M:
     """Raises Malformed, also for another type than the one that is due."""
     name = type_.DESCRIPTOR.full_name
     if sample.type_name != name:
-        raise Malformed(f"{sample.key}: {escaped(sample.type_name, TYPE_SHOWN) or 'untyped bytes'} where {name} is due")
+        raise Malformed(f"{sample.key}: {escaped(sample.type_name[:TYPE_SHOWN]) or 'untyped bytes'} where {name} is due")
     return decode(sample.key, sample.payload, type_)
 
 

@@ -5,6 +5,7 @@ import math
 import pytest
 
 from schemas.messages import Mode
+from services.autopilot.ground.multiplexer import SOURCES
 from tests.services.autopilot.mavlink.rig import GCS, OTHER, PLANE, ROVER, Rig, acks, long, of
 from uvf.runtime.mavlink import dialect as mav
 from uvf.runtime.mavlink import modes
@@ -23,6 +24,10 @@ WORDS = {
     Mode.MODE_OFFBOARD: 393216,
     Mode.MODE_FOLLOW: 134479872,
 }
+
+
+def test_a_rover_names_the_modes_that_it_takes():
+    assert {row.mode for row in modes.TABLE if row.on_ground} == set(SOURCES)
 
 
 def test_words_are_those_of_px4():
