@@ -12,8 +12,8 @@ RUN if [ "$(dpkg --print-architecture)" != amd64 ]; then \
 COPY . .
 ENV PYTHONPATH=/uvf:/uvf/src PYTHONUNBUFFERED=1 UVF_RUNS=/runs
 # Compiles the numerical kernels into the image, so that containers start warm.
-RUN python -m uvf.launch.cli check
-ENTRYPOINT ["python", "-m", "uvf.launch.cli"]
+RUN python -m launch.cli check
+ENTRYPOINT ["python", "-m", "launch.cli"]
 CMD ["--help"]
 
 # The main loop of the supervised process touches its file each second; one that was given up no longer does.

@@ -82,7 +82,7 @@ for _ in range(3):
 
 
 def uvf(*command: str) -> str:
-    return output("docker", "exec", "uvf_ci_router_1", "python", "-m", "uvf.launch.cli", *command)
+    return output("docker", "exec", "uvf_ci_router_1", "python", "-m", "launch.cli", *command)
 
 
 def says(wanted: str, *command: str) -> Callable[[], bool]:

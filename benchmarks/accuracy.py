@@ -13,7 +13,7 @@ import numpy as np
 
 from benchmarks.accuracy_flight import Case, scored
 from benchmarks.kept import several
-from uvf.launch.bench import Figures
+from launch.commands.bench import Figures
 
 SEEDS, FEWER = range(1, 6), range(1, 4)
 SPLIT = ("xtrack", "path", "orbit", "level", "slope", "orbit alt", "V sd")

@@ -13,15 +13,15 @@ import yaml
 
 from benchmarks.accuracy_course import Course
 from benchmarks.accuracy_score import Flight, score
-from services.autopilot.air import thesis
-from services.autopilot.air.params import AirParams
+from launch import catalogue
 from services.autopilot.air.service import AutopilotAir
 from services.sim_air.service import SimAir
-from uvf.launch import catalogue
+from uvf.control import thesis
 from uvf.maths import rotations
-from uvf.runtime.lockstep import Lockstep
-from uvf.runtime.sensor_presets import PRESETS
-from uvf.runtime.site import Site, load_site
+from uvf.models.scenario import Site, load_site
+from uvf.models.vehicle.flight_params import AirParams
+from uvf.models.vehicle.sensor_presets import PRESETS
+from uvf.runtime.time.lockstep import Lockstep
 
 LONGEST = 1200.0  # s
 PLANE = "plane"

@@ -19,12 +19,12 @@ import yaml
 
 from benchmarks.timing import stopwatch, timed
 from schemas import topics
-from schemas.convert import stamp
 from schemas.messages import SurfaceCommand
 from services.sim_air.build import build
-from uvf.runtime.lockstep import Lockstep
-from uvf.runtime.service import Outputs, Service
-from uvf.runtime.site import Host, Site, load_site
+from uvf.models.scenario import Host, Site, load_site
+from uvf.runtime.contract.service import Outputs, Service
+from uvf.runtime.messages.convert import stamp
+from uvf.runtime.time.lockstep import Lockstep
 
 SECONDS = 10.0
 RUNS = 3

@@ -17,13 +17,13 @@ import numpy as np
 import yaml
 
 from benchmarks.accuracy_flight import PLANE, Case, Probe, course_site
+from launch import catalogue
+from launch.commands.bench import Figures
 from services.autopilot.air.service import AutopilotAir
-from uvf.launch import catalogue
-from uvf.launch.bench import Figures
 from uvf.maths import rotations
-from uvf.runtime.lockstep import Lockstep
-from uvf.runtime.shell import Shell
-from uvf.runtime.site import Site, load_site
+from uvf.models.scenario import Site, load_site
+from uvf.runtime.contract.service_runner import Shell
+from uvf.runtime.time.lockstep import Lockstep
 
 KINDS = ["sim_air", "autopilot"]
 WARM_UP, SECONDS = 10.0, 60.0  # s

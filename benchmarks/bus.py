@@ -14,7 +14,7 @@ from statistics import median, quantiles
 import zenoh
 
 from benchmarks.bus_messages import MESSAGES, READERS
-from uvf.runtime.zenoh_bus import ZenohBus
+from uvf.runtime.bus.zenoh_bus import ZenohBus
 
 WARM_UP = 5
 TRIPS = 50
@@ -31,7 +31,7 @@ def round_trips(data: Path | None) -> dict[str, dict[str, float]]:
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         endpoint = f"tcp/127.0.0.1:{probe.getsockname()[1]}"
-    processes = [subprocess.Popen([sys.executable, "-m", "uvf.launch.cli", "router", "--listen", endpoint])]
+    processes = [subprocess.Popen([sys.executable, "-m", "launch.cli", "router", "--listen", endpoint])]
     try:
         with ZenohBus(endpoint) as bus:
             processes += [subprocess.Popen([sys.executable, "-m", "benchmarks.bus_echo", kind, endpoint]) for kind in KINDS]

@@ -9,8 +9,8 @@ import zenoh
 from google.protobuf.message import Message
 
 from benchmarks.bus_messages import MESSAGES, READERS
-from uvf.runtime.bus import Publisher, Sample
-from uvf.runtime.zenoh_bus import ZenohBus
+from uvf.runtime.bus.interface import Publisher, Sample
+from uvf.runtime.bus.zenoh_bus import ZenohBus
 
 PARENT = os.getppid()
 

@@ -5,11 +5,11 @@ from collections.abc import Callable
 import numpy as np
 from google.protobuf.message import Message
 
-from schemas.convert import occupancy_grid, planar_pose, stamp
 from schemas.messages import LaserScan, PoseInFrame
 from schemas.topics import Qos
-from uvf.runtime.bus import Sample
-from uvf.runtime.wire import decode_sample
+from uvf.runtime.bus.interface import Sample
+from uvf.runtime.bus.wire import decode_sample
+from uvf.runtime.messages.convert import occupancy_grid, planar_pose, stamp
 
 MESSAGES = {
     "pose": (PoseInFrame(timestamp=stamp(1.5), frame_id="world", pose=planar_pose(1.0, 2.0, 0.3)), Qos.STATE),

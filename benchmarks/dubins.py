@@ -17,15 +17,15 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from services.autopilot.air.plan import Item
-from services.autopilot.air.route import Curve
+from launch import catalogue
+from launch.commands.bench import Figures
 from services.autopilot.air.service import AutopilotAir
 from services.sim_air.service import SimAir
-from uvf.launch import catalogue
-from uvf.launch.bench import Figures
-from uvf.maths.eased import Way
-from uvf.runtime.lockstep import Lockstep
-from uvf.runtime.site import ROOT, load_site
+from uvf.guidance.clothoid_dubins import Way
+from uvf.guidance.flight_plan import Item
+from uvf.guidance.route import Curve
+from uvf.models.scenario import ROOT, load_site
+from uvf.runtime.time.lockstep import Lockstep
 
 Floats = NDArray[np.float64]
 

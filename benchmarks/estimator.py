@@ -23,15 +23,15 @@ from numpy.typing import NDArray
 
 from benchmarks.accuracy_flight import Case, Probe, course_site
 from benchmarks.kept import several
-from services.autopilot.air.ekf.estimator import FullEstimator
-from services.autopilot.air.estimators import Estimator, Instruments, estimator
-from services.autopilot.air.params import AirParams
-from services.autopilot.air.sensed import Sensed
-from services.autopilot.air.state import Estimate
-from uvf.launch import catalogue
-from uvf.launch.bench import Figures
+from launch import catalogue
+from launch.commands.bench import Figures
+from uvf.estimation.ekf.estimator import FullEstimator
+from uvf.estimation.estimators import Estimator, Instruments, estimator
+from uvf.estimation.sensor_inputs import Sensed
+from uvf.estimation.state import Estimate
 from uvf.maths import rotations
-from uvf.runtime.lockstep import Lockstep
+from uvf.models.vehicle.flight_params import AirParams
+from uvf.runtime.time.lockstep import Lockstep
 
 Floats = NDArray[np.float64]
 Kind = Literal["full", "book"]

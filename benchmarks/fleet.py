@@ -17,14 +17,14 @@ import yaml
 
 from benchmarks.timing import stopwatch, timed
 from schemas import topics
-from schemas.convert import stamp
 from schemas.messages import WheelCommand
 from services.sim_ground.build import build
-from uvf.runtime.footing import Footing
-from uvf.runtime.lockstep import Lockstep
-from uvf.runtime.service import Outputs, Service
-from uvf.runtime.site import ROOT, Host, Site, load_site
-from uvf.runtime.world_file import load_world
+from uvf.models.scenario import ROOT, Host, Site, load_site
+from uvf.models.world.file import load_world
+from uvf.models.world.footing import Footing
+from uvf.runtime.contract.service import Outputs, Service
+from uvf.runtime.messages.convert import stamp
+from uvf.runtime.time.lockstep import Lockstep
 
 SECONDS = 10.0
 FLEETS = (1, 5, 10, 20)

@@ -17,13 +17,13 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from scipy.signal import lsim
 
-from services.sim_air.linear import LinearModels, held_still, state_of
-from services.sim_air.performance import climb_rate, glide_ratio, performance
-from services.sim_air.states import Start
-from services.sim_air.wiring import Controls
-from uvf.launch.vehicles.linearize import airframe_of, linear_models, write_pole_map
-from uvf.runtime.site import ROOT
-from uvf.runtime.vehicle_file import load_vehicle
+from launch.vehicles.linearize import airframe_of, linear_models, write_pole_map
+from services.sim_air.analysis.linear import LinearModels, held_still, state_of
+from services.sim_air.analysis.performance import climb_rate, glide_ratio, performance
+from services.sim_air.engine.states import Start
+from services.sim_air.engine.wiring import Controls
+from uvf.models.scenario import ROOT
+from uvf.models.vehicle.file import load_vehicle
 
 Floats = NDArray[np.float64]
 Figures = dict[str, dict[str, float]]

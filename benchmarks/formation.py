@@ -17,14 +17,14 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from uvf.launch import catalogue
-from uvf.launch.bench import Figures
-from uvf.launch.formation_scores import separation, station_errors
-from uvf.launch.scores import Scorer
-from uvf.runtime.formation_file import Follow
-from uvf.runtime.lockstep import Lockstep
-from uvf.runtime.site import ROOT, Site, load_site
-from uvf.runtime.wind_file import Turbulence, Wind
+from launch import catalogue
+from launch.commands.bench import Figures
+from launch.scoring.formation_scores import separation, station_errors
+from launch.scoring.scores import Scorer
+from uvf.models.mission.formation import Follow
+from uvf.models.scenario import ROOT, Site, load_site
+from uvf.models.world.wind import Turbulence, Wind
+from uvf.runtime.time.lockstep import Lockstep
 
 Floats = NDArray[np.float64]
 Motions = dict[str, Floats]

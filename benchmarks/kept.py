@@ -13,7 +13,7 @@ from typing import Any
 
 import typer
 
-from uvf.runtime.site import ROOT
+from uvf.models.scenario import ROOT
 
 FOLDER = ROOT / "runs" / "benchmarks"
 PARTS = ("services/autopilot", "services/sim_air", "src/uvf/maths", "src/uvf/runtime", "vehicles", "benchmarks/accuracy_*.py")

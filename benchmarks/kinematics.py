@@ -14,14 +14,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from services.autopilot.ground.drive import Limits, Ramp
 from services.sim_ground.world import BulletWorld, Placed
+from uvf.control.drive_limits import Limits, Ramp
 from uvf.maths.kinematics import DifferentialDrive, Twist, WheelSpeeds, move
-from uvf.maths.planar import Pose2
 from uvf.maths.rotations import to_euler, wrap
-from uvf.runtime.site import ROOT
-from uvf.runtime.urdf_model import engine_urdf
-from uvf.runtime.vehicle_file import GroundBody, load_vehicle
+from uvf.maths.se2 import Pose2
+from uvf.models.scenario import ROOT
+from uvf.models.urdf.model import engine_urdf
+from uvf.models.vehicle.file import GroundBody, load_vehicle
 
 PICTURE = ROOT / "docs" / "kinematics.png"
 DT = 0.01  # s, between two commands

@@ -17,17 +17,17 @@ from typing import Any
 import numpy as np
 import yaml
 
+from launch import catalogue
+from launch.commands.bench import Figures
 from schemas import topics
 from schemas.messages import ArmRequest, Event, Reply
-from services.autopilot.air.guidance import from_line
 from services.autopilot.air.service import AutopilotAir
-from services.autopilot.air.strip import Lane
 from services.sim_air.service import SimAir
-from uvf.launch import catalogue
-from uvf.launch.bench import Figures
+from uvf.guidance.runways import Lane
+from uvf.guidance.vector_field import from_line
 from uvf.maths import rotations
-from uvf.runtime.lockstep import Lockstep
-from uvf.runtime.site import Site, load_site
+from uvf.models.scenario import Site, load_site
+from uvf.runtime.time.lockstep import Lockstep
 
 FLIGHTS = 50
 WIND = 8.0  # m/s

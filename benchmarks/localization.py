@@ -23,21 +23,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.logs import has_relations, logs_below
-from services.slam.evaluation.odometry_noise import OdometryNoise, disturbed
-from services.slam.evaluation.relations import Relations, read_relations, relation_errors
-from services.slam.evaluation.variants import halves
-from services.slam.localization import known_map
-from services.slam.localization.beams import beams_of, field_of, fits_at
-from services.slam.localization.localizer import Localizer, State
-from services.slam.localization.params import FilterParams
-from services.slam.logs.laser_log import LaserLog
-from services.slam.logs.opening import open_log
-from services.slam.methods import make_method, method_params
-from services.slam.reading import Reading
-from uvf.launch.bench import Case, Figures
-from uvf.launch.slam_cli import DEFAULT_METHOD
-from uvf.maths.planar import Pose2, compose, inverse
-from uvf.maths.planar_arrays import composed, inverted, steps
+from launch.commands.bench import Case, Figures
+from launch.commands.slam import DEFAULT_METHOD
+from launch.slam.opening import open_log
+from uvf.maths.se2 import Pose2, compose, inverse
+from uvf.maths.se2_arrays import composed, inverted, steps
+from uvf.slam.evaluation.odometry_noise import OdometryNoise, disturbed
+from uvf.slam.evaluation.relations import Relations, read_relations, relation_errors
+from uvf.slam.evaluation.variants import halves
+from uvf.slam.localization import known_map
+from uvf.slam.localization.beams import beams_of, field_of, fits_at
+from uvf.slam.localization.localizer import Localizer, State
+from uvf.slam.localization.params import FilterParams
+from uvf.slam.logs.laser_log import LaserLog
+from uvf.slam.methods import make_method, method_params
+from uvf.slam.reading import Reading
 
 Floats = NDArray[np.float64]
 Drive = list[Reading]

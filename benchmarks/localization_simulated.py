@@ -12,19 +12,19 @@ import numpy as np
 import yaml
 from numpy.typing import NDArray
 
+from launch.commands.bench import Figures
+from launch.commands.slam import DEFAULT_METHOD
+from launch.run import run_lockstep
+from launch.scoring.truth import true_poses
 from schemas import topics
-from schemas.convert import seconds
 from schemas.messages import MapFix
-from services.slam.logs.mcap_log import read_mcap
-from services.slam.maps.session import NO_EDGES, Session
-from services.slam.methods import make_method, method_params
-from uvf.launch.bench import Figures
-from uvf.launch.run import run_lockstep
-from uvf.launch.slam_cli import DEFAULT_METHOD
-from uvf.launch.truth import true_poses
-from uvf.maths.planar_arrays import composed, interpolated, wrapped
-from uvf.runtime.log_reading import read_log
-from uvf.runtime.site import load_site
+from uvf.maths.se2_arrays import composed, interpolated, wrapped
+from uvf.models.scenario import load_site
+from uvf.runtime.log.laser_log import read_mcap
+from uvf.runtime.log.reading import read_log
+from uvf.runtime.messages.convert import seconds
+from uvf.slam.maps.session import NO_EDGES, Session
+from uvf.slam.methods import make_method, method_params
 
 Floats = NDArray[np.float64]
 

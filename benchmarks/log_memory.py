@@ -14,16 +14,16 @@ from typing import Any
 
 from benchmarks.memory import in_own_process, peak_mb
 from benchmarks.timing import stopwatch
+from launch.commands.bench import Figures
+from launch.commands.report import describe_log
 from schemas import topics
 from schemas.messages import Clock, Imu, NavState, Vector3
-from uvf.launch.bench import Figures
-from uvf.launch.report import describe_log
-from uvf.runtime.bus import LocalBus, Sample
-from uvf.runtime.log_reading import recover
-from uvf.runtime.recording import Recorder
-from uvf.runtime.replay import into_service, onto_bus
-from uvf.runtime.service import Service
-from uvf.runtime.site import Host
+from uvf.models.scenario import Host
+from uvf.runtime.bus.interface import LocalBus, Sample
+from uvf.runtime.contract.service import Service
+from uvf.runtime.log.reading import recover
+from uvf.runtime.log.recording import Recorder
+from uvf.runtime.log.replay import into_service, onto_bus
 
 PICTURE, BYTES = 1_000_000, 2_000_000_000
 SMALL = 200  # messages beside each picture

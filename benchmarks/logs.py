@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from services.slam.logs.opening import CARMEN_ENDINGS
-from uvf.runtime.params import BadInput
+from launch.slam.opening import CARMEN_ENDINGS
+from uvf.models.yaml_data import BadInput
 
 
 def logs_below(data: Path | None, bench: str, endings: tuple[str, ...] = CARMEN_ENDINGS) -> dict[str, Path]:

@@ -17,20 +17,20 @@ from google.protobuf.message import Message
 
 from benchmarks.timing import stopwatch
 from schemas import topics
-from schemas.convert import stamp
 from schemas.messages import Gnss, Kind, Mode, Targets, Vector3, VehicleStatus
 from services.autopilot.mavlink.build import facts_of
 from services.autopilot.mavlink.facts import Facts
 from services.autopilot.mavlink.parameter_store import FileStore
 from services.autopilot.mavlink.service import MavlinkService
-from uvf.runtime.bus import LocalBus, Publisher
-from uvf.runtime.clock import NS
-from uvf.runtime.mavlink import dialect as mav
-from uvf.runtime.mavlink.codec import Codec
-from uvf.runtime.mavlink.endpoint import UdpLink
-from uvf.runtime.service import Input
-from uvf.runtime.shell import Shell
-from uvf.runtime.site import ROOT, Host, load_site
+from uvf.mavlink import dialect as mav
+from uvf.mavlink.codec import Codec
+from uvf.mavlink.endpoint import UdpLink
+from uvf.models.scenario import ROOT, Host, load_site
+from uvf.runtime.bus.interface import LocalBus, Publisher
+from uvf.runtime.contract.service import Input
+from uvf.runtime.contract.service_runner import Shell
+from uvf.runtime.messages.convert import stamp
+from uvf.runtime.time.clock import NS
 
 SECONDS, WARM_UP = 20.0, 2.0
 DT = 0.02

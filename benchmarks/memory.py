@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from uvf.runtime.site import ROOT
+from uvf.models.scenario import ROOT
 
 
 def peak_mb() -> float:

@@ -16,21 +16,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.logs import has_relations, logs_below
-from services.slam.evaluation.relations import Relations, read_relations, relation_errors
-from services.slam.evaluation.run import Run, run_over
-from services.slam.evaluation.variants import halves
-from services.slam.logs.opening import open_log
-from services.slam.maps.session import Session
+from launch import settings
+from launch.commands.bench import Case, Figures
+from launch.commands.slam import DEFAULT_METHOD
+from launch.maps.merging import draw_team
+from launch.slam.opening import open_log
+from launch.slam.results import grid_of
 from services.slam.merging.build import warm_up
-from services.slam.merging.team import Team
-from services.slam.methods import make_method, method_params
-from uvf.launch import settings
-from uvf.launch.bench import Case, Figures
-from uvf.launch.maps.merging import draw_team
-from uvf.launch.slam.results import grid_of
-from uvf.launch.slam_cli import DEFAULT_METHOD
-from uvf.maths.planar import Pose2
-from uvf.maths.planar_arrays import composed, inverted
+from uvf.maths.se2 import Pose2
+from uvf.maths.se2_arrays import composed, inverted
+from uvf.slam.evaluation.relations import Relations, read_relations, relation_errors
+from uvf.slam.evaluation.run import Run, run_over
+from uvf.slam.evaluation.variants import halves
+from uvf.slam.maps.session import Session
+from uvf.slam.merging.team import Team
+from uvf.slam.methods import make_method, method_params
 
 Floats = NDArray[np.float64]
 

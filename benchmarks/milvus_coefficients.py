@@ -11,13 +11,13 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from services.sim_air.airframe import Airframe
-from services.sim_air.states import Held
-from services.sim_air.wiring import Controls
+from services.sim_air.engine.airframe import Airframe
+from services.sim_air.engine.states import Held
+from services.sim_air.engine.wiring import Controls
 from uvf.maths import atmosphere
 from uvf.maths.geodesy import LocalTangent
-from uvf.runtime.site import ROOT
-from uvf.runtime.vehicle_file import load_vehicle
+from uvf.models.scenario import ROOT
+from uvf.models.vehicle.file import load_vehicle
 
 Floats = NDArray[np.float64]
 

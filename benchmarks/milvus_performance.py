@@ -14,13 +14,13 @@ import numpy as np
 from scipy.optimize import brentq
 
 from benchmarks.milvus_coefficients import AREA, BODY, FOLDER, INDUCED, MASS
-from services.sim_air.airframe import Airframe
-from services.sim_air.equilibrium import Condition, find
-from services.sim_air.linear import held_still
-from services.sim_air.states import Start
+from services.sim_air.analysis.equilibrium import Condition, find
+from services.sim_air.analysis.linear import held_still
+from services.sim_air.engine.airframe import Airframe
+from services.sim_air.engine.states import Start
 from uvf.maths import atmosphere
 from uvf.maths.geodesy import LocalTangent
-from uvf.runtime.battery import lasts
+from uvf.models.vehicle.battery import lasts
 
 Figures = dict[str, dict[str, float]]
 

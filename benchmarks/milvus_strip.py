@@ -14,9 +14,9 @@ import numpy as np
 
 from benchmarks.milvus_coefficients import BODY, FOLDER, TANGENT
 from services.sim_air.actuators import Actuators
-from services.sim_air.airframe import Airframe
-from services.sim_air.states import Start
-from services.sim_air.wiring import Controls
+from services.sim_air.engine.airframe import Airframe
+from services.sim_air.engine.states import Start
+from services.sim_air.engine.wiring import Controls
 from uvf.maths import rotations
 
 ROTATION_SPEED = 17.0  # m/s, 6 % above the least speed of level flight

@@ -15,16 +15,16 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from services.slam.octree.files import read_octree, to_bt, to_ot
-from services.slam.octree.leaves import Leaves, leaves_of
-from services.slam.octree.octree import Octree
-from uvf.maths.raycast3 import Rays, Scene, cast
+from uvf.maths.raycast import Rays, Scene, cast
 from uvf.maths.rotations import from_euler, matrix
-from uvf.runtime.params import BadInput
-from uvf.runtime.scene import scene
-from uvf.runtime.site import ROOT
-from uvf.runtime.world_file import load_world
-from uvf.runtime.world_geometry import floor_plan, solids
+from uvf.models.scenario import ROOT
+from uvf.models.shapes.scene import scene
+from uvf.models.world.file import load_world
+from uvf.models.world.geometry import floor_plan, solids
+from uvf.models.yaml_data import BadInput
+from uvf.slam.octree.files import read_octree, to_bt, to_ot
+from uvf.slam.octree.leaves import Leaves, leaves_of
+from uvf.slam.octree.octree import Octree
 
 Floats = NDArray[np.float64]
 Scan = tuple[Floats, Floats]

@@ -9,11 +9,11 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from schemas import topics
-from schemas.convert import occupancy_cells
 from schemas.messages import Grid, OctreeMap
-from services.slam.octree.files import read_octree
-from services.slam.octree.leaves import Leaves, boxes, coarser, leaves_of
-from uvf.runtime.log_reading import read_log
+from uvf.runtime.log.reading import read_log
+from uvf.runtime.messages.convert import occupancy_cells
+from uvf.slam.octree.files import read_octree
+from uvf.slam.octree.leaves import Leaves, boxes, coarser, leaves_of
 
 Floats = NDArray[np.float64]
 

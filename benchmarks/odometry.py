@@ -19,14 +19,14 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from benchmarks.odometry_drive import DT, TRACK, Moment, World, drive
-from services.slam.odometry.calibration import Scales, SegmentMaker, WheelCalibration
-from services.slam.odometry.filter import DriveFilter
-from services.slam.odometry.kalman import Kind
-from services.slam.odometry.states import Noise, Step
-from uvf.launch.bench import Figures
+from launch.commands.bench import Figures
+from uvf.estimation.odometry.calibration import Scales, SegmentMaker, WheelCalibration
+from uvf.estimation.odometry.filter import DriveFilter
+from uvf.estimation.odometry.kalman import Kind
+from uvf.estimation.odometry.states import Noise, Step
 from uvf.maths.kinematics import Twist, move
-from uvf.maths.planar import IDENTITY, Pose2
 from uvf.maths.rotations import wrap
+from uvf.maths.se2 import IDENTITY, Pose2
 
 Floats = NDArray[np.float64]
 

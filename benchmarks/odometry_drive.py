@@ -7,9 +7,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from services.slam.odometry.states import Step
+from uvf.estimation.odometry.states import Step
 from uvf.maths.kinematics import Twist, move
-from uvf.maths.planar import IDENTITY, Pose2
+from uvf.maths.se2 import IDENTITY, Pose2
 
 Floats = NDArray[np.float64]
 

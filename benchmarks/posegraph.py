@@ -15,14 +15,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.posegraph_gtsam import INSTALLED, SOLVERS, factors, levenberg
-from services.slam.graph import g2o
-from services.slam.graph.descent import heading_first
-from services.slam.graph.edges import Edge
-from services.slam.graph.linear import LinearSystem
-from services.slam.graph.pose_graph import PoseGraph, warm_up
-from uvf.launch.bench import Figures
-from uvf.maths.planar import Pose2
-from uvf.runtime.params import BadInput
+from launch.commands.bench import Figures
+from uvf.maths.se2 import Pose2
+from uvf.models.yaml_data import BadInput
+from uvf.slam.graph import g2o
+from uvf.slam.graph.descent import heading_first
+from uvf.slam.graph.edges import Edge
+from uvf.slam.graph.linear import LinearSystem
+from uvf.slam.graph.pose_graph import PoseGraph, warm_up
 
 Floats = NDArray[np.float64]
 Result = TypeVar("Result")

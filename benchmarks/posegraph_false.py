@@ -11,14 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.posegraph import EXACT, files, graph_of
-from services.slam.graph import g2o
-from services.slam.graph.edges import Edge
-from services.slam.graph.pose_graph import PoseGraph, warm_up
-from services.slam.graph.robust import LIMIT
-from uvf.launch.bench import Figures
+from launch.commands.bench import Figures
 from uvf.maths.alignment import aligned
-from uvf.maths.planar import IDENTITY, Pose2, compose, inverse, transform
-from uvf.runtime.params import BadInput
+from uvf.maths.se2 import IDENTITY, Pose2, compose, inverse, transform
+from uvf.models.yaml_data import BadInput
+from uvf.slam.graph import g2o
+from uvf.slam.graph.edges import Edge
+from uvf.slam.graph.pose_graph import PoseGraph, warm_up
+from uvf.slam.graph.robust import LIMIT
 
 Floats = NDArray[np.float64]
 

@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.posegraph_false import between
-from services.slam.graph.edges import Edge
-from services.slam.graph.pose_graph import PoseGraph, warm_up
-from uvf.launch.bench import Figures
-from uvf.maths.planar import Pose2, compose
+from launch.commands.bench import Figures
+from uvf.maths.se2 import Pose2, compose
+from uvf.slam.graph.edges import Edge
+from uvf.slam.graph.pose_graph import PoseGraph, warm_up
 
 Floats = NDArray[np.float64]
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.raycast_worlds import Twin, built_worlds, fan, grazing, low_places, meshes, mixed, random_scans, world
-from uvf.maths.raycast3 import Rays, Scene, cast, warm_up
+from uvf.maths.raycast import Rays, Scene, cast, warm_up
 
 Floats = NDArray[np.float64]
 

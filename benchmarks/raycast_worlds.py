@@ -15,13 +15,13 @@ from numpy.typing import NDArray
 
 from uvf.maths import solids
 from uvf.maths.bvh import build
-from uvf.maths.raycast3 import Rays, Scene, cast
+from uvf.maths.raycast import Rays, Scene, cast
 from uvf.maths.rotations import IDENTITY, from_euler, matrix
 from uvf.maths.solids import Solids
-from uvf.runtime.site import ROOT
-from uvf.runtime.solid_mesh import load_mesh
-from uvf.runtime.world_file import load_world
-from uvf.runtime.world_geometry import solids as world_solids
+from uvf.models.scenario import ROOT
+from uvf.models.shapes.mesh import load_mesh
+from uvf.models.world.file import load_world
+from uvf.models.world.geometry import solids as world_solids
 
 Floats = NDArray[np.float64]
 

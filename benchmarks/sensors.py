@@ -11,25 +11,20 @@ import msgspec
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from services.sim_air.engine.states import Air, Motion
 from services.sim_air.sensors import Imu, Pressures
-from services.sim_air.states import Air, Motion
 from services.sim_camera.renderer import BulletRenderer, Pose
 from services.sim_ground.body import BodyState
 from services.sim_ground.encoders import ticks
 from services.sim_ground.imu import ImuModel
-from uvf.maths.allan import expected, octaves, overlapping
 from uvf.maths.bvh import build
 from uvf.maths.geodesy import GRAVITY, LocalTangent
 from uvf.maths.kinematics import WheelSpeeds
-from uvf.maths.raycast3 import Scene
+from uvf.maths.raycast import Scene
 from uvf.maths.rotations import IDENTITY
-from uvf.maths.sampling import Line
-from uvf.maths.sensing import Errors
 from uvf.maths.solids import box
-from uvf.runtime.range_sensors import LidarModel, RangeModel
-from uvf.runtime.sensor_presets import PRESETS
-from uvf.runtime.site import ROOT
-from uvf.runtime.vehicle_file import (
+from uvf.models.scenario import ROOT
+from uvf.models.vehicle.file import (
     AirDataSensor,
     Camera,
     Encoders,
@@ -43,7 +38,12 @@ from uvf.runtime.vehicle_file import (
     line_of,
     load_vehicle,
 )
-from uvf.runtime.world_file import Origin, WorldFile
+from uvf.models.vehicle.sensor_presets import PRESETS
+from uvf.models.world.file import Origin, WorldFile
+from uvf.sensors.allan import expected, octaves, overlapping
+from uvf.sensors.errors import Errors
+from uvf.sensors.range_sensors import LidarModel, RangeModel
+from uvf.sensors.sampling import Line
 
 Floats = NDArray[np.float64]
 Figures = dict[str, dict[str, float]]

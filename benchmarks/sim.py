@@ -7,11 +7,11 @@ from statistics import median
 from unittest.mock import patch
 
 from benchmarks.timing import timed
-from uvf.launch import catalogue
-from uvf.launch.run import run_lockstep
-from uvf.runtime import wire
-from uvf.runtime.lockstep import Lockstep
-from uvf.runtime.site import ROOT, load_site
+from launch import catalogue
+from launch.run import run_lockstep
+from uvf.models.scenario import ROOT, load_site
+from uvf.runtime.bus import wire
+from uvf.runtime.time.lockstep import Lockstep
 
 DEMO = ROOT / "missions" / "demo.yaml"
 SECONDS = 30.0

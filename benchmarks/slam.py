@@ -19,20 +19,20 @@ import yaml
 from numpy.typing import NDArray
 
 from benchmarks.logs import has_relations, logs_below
-from services.slam.evaluation.relations import Relations, relation_errors
-from services.slam.evaluation.run import run_over
-from services.slam.evaluation.variants import VARIANTS
-from services.slam.logs.opening import CARMEN_ENDINGS, MCAP_ENDING, open_log
-from services.slam.methods import METHODS, make_method, method_params
-from uvf.launch import settings
-from uvf.launch.bench import Case
-from uvf.launch.bench import Figures as Rows
-from uvf.launch.slam.known import Known, known_of
-from uvf.launch.slam.results import Made, write_results
-from uvf.launch.slam.scoring import POSES, Figures, figures
-from uvf.launch.slam_cli import DEFAULT_METHOD
-from uvf.runtime.params import BadInput
-from uvf.runtime.site import ROOT
+from launch import settings
+from launch.commands.bench import Case
+from launch.commands.bench import Figures as Rows
+from launch.commands.slam import DEFAULT_METHOD
+from launch.slam.known import Known, known_of
+from launch.slam.opening import CARMEN_ENDINGS, MCAP_ENDING, open_log
+from launch.slam.results import Made, write_results
+from launch.slam.scoring import POSES, Figures, figures
+from uvf.models.scenario import ROOT
+from uvf.models.yaml_data import BadInput
+from uvf.slam.evaluation.relations import Relations, relation_errors
+from uvf.slam.evaluation.run import run_over
+from uvf.slam.evaluation.variants import VARIANTS
+from uvf.slam.methods import METHODS, make_method, method_params
 
 Floats = NDArray[np.float64]
 Result = TypeVar("Result")

@@ -15,21 +15,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.slam import RESOLUTION, WARM_UP, alone
-from services.slam.evaluation.building import corridors
-from services.slam.evaluation.driven import Driven, Wear, drive, route
-from services.slam.evaluation.reference import Trajectory
-from services.slam.evaluation.run import Run, run_over
-from services.slam.maps.straightness import hit_points, straight_walls, straightness
-from services.slam.methods import make_method, method_params
-from services.slam.reading import Beams
-from uvf.launch import settings
-from uvf.launch.bench import Figures
-from uvf.launch.slam.known import Known
-from uvf.launch.slam.results import Made, write_results
-from uvf.launch.slam.scoring import figures
-from uvf.launch.slam_cli import DEFAULT_METHOD
-from uvf.maths.planar import IDENTITY
-from uvf.maths.planar_arrays import composed, inverted
+from launch import settings
+from launch.commands.bench import Figures
+from launch.commands.slam import DEFAULT_METHOD
+from launch.slam.known import Known
+from launch.slam.results import Made, write_results
+from launch.slam.scoring import figures
+from uvf.maths.se2 import IDENTITY
+from uvf.maths.se2_arrays import composed, inverted
+from uvf.slam.evaluation.building import corridors
+from uvf.slam.evaluation.driven import Driven, Wear, drive, route
+from uvf.slam.evaluation.reference import Trajectory
+from uvf.slam.evaluation.run import Run, run_over
+from uvf.slam.maps.straightness import hit_points, straight_walls, straightness
+from uvf.slam.methods import make_method, method_params
+from uvf.slam.reading import Beams
 
 Floats = NDArray[np.float64]
 

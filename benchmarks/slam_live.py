@@ -20,27 +20,27 @@ from numpy.typing import NDArray
 
 from benchmarks.slam_live_picture import Shown, draw
 from benchmarks.timing import stopwatch
+from launch import catalogue, settings
+from launch.apart import apart
+from launch.commands.bench import Figures
+from launch.scoring.truth import true_poses, within
 from schemas import topics
-from schemas.convert import seconds, yaw_of
 from schemas.messages import PoseInFrame
-from services.slam.logs.mcap_log import samples_of
-from services.slam.maps.map_server import in_world
-from services.slam.maps.quality import score
+from services.slam.map_server import in_world
 from uvf.client import Client
-from uvf.launch import catalogue, settings
-from uvf.launch.apart import apart
-from uvf.launch.bench import Figures
-from uvf.launch.truth import true_poses, within
-from uvf.maths.planar import IDENTITY
-from uvf.maths.planar_arrays import interpolated, wrapped
-from uvf.runtime.bus import LocalBus, Sample
-from uvf.runtime.grid_message import as_map
-from uvf.runtime.map_file import GridMap
-from uvf.runtime.params import BadInput
-from uvf.runtime.replay import hand_over, play
-from uvf.runtime.shell import Shell
-from uvf.runtime.site import Site, load_site
-from uvf.runtime.world_geometry import floor_plan, floor_segments, reachable_floor, section
+from uvf.maths.se2 import IDENTITY
+from uvf.maths.se2_arrays import interpolated, wrapped
+from uvf.models.scenario import Site, load_site
+from uvf.models.world.geometry import floor_plan, floor_segments, reachable_floor, section
+from uvf.models.world.map_file import GridMap
+from uvf.models.yaml_data import BadInput
+from uvf.runtime.bus.interface import LocalBus, Sample
+from uvf.runtime.contract.service_runner import Shell
+from uvf.runtime.log.laser_log import samples_of
+from uvf.runtime.log.replay import hand_over, play
+from uvf.runtime.messages.convert import seconds, yaw_of
+from uvf.runtime.messages.grids import as_map
+from uvf.slam.maps.quality import score
 
 Floats = NDArray[np.float64]
 Row = dict[str, float]

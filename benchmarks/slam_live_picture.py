@@ -8,8 +8,8 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from uvf.maths.planar import inverse, transform
-from uvf.runtime.map_file import GridMap
+from uvf.maths.se2 import inverse, transform
+from uvf.models.world.map_file import GridMap
 
 Floats = NDArray[np.float64]
 

@@ -12,11 +12,11 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.memory import in_own_process, peak_mb
-from services.slam.evaluation.driven import Driven, Wear, drive, route
-from services.slam.evaluation.open_country import scattered
-from services.slam.methods import METHODS, make_method, method_params
-from services.slam.reading import Beams
-from uvf.launch.bench import Figures
+from launch.commands.bench import Figures
+from uvf.slam.evaluation.driven import Driven, Wear, drive, route
+from uvf.slam.evaluation.open_country import scattered
+from uvf.slam.methods import METHODS, make_method, method_params
+from uvf.slam.reading import Beams
 
 LIDAR = Beams((0.2, 0.0), np.radians(np.arange(-180.0, 180.0, 1.0)), 0.3, 60.0)
 ROAD = np.array(((0.0, 0.0), (500.0, 0.0), (500.0, 500.0), (0.0, 500.0), (0.0, 1000.0)))  # m

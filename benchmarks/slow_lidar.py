@@ -18,34 +18,34 @@ import yaml
 from numpy.typing import NDArray
 
 from benchmarks.timing import stopwatch
+from launch.commands.bench import Figures
+from launch.commands.slam import DEFAULT_METHOD
+from launch.recorder import attachments
+from launch.scoring.truth import true_poses
 from schemas import topics
-from schemas.convert import seconds, stamp
 from schemas.messages import MapFix, WheelCommand
 from services.sim_ground.body import BodyState
 from services.sim_ground.build import build as simulator
 from services.slam.build import build as slam
-from services.slam.evaluation.run import run_over
-from services.slam.logs.laser_log import LaserLog
-from services.slam.logs.mcap_log import read_mcap
-from services.slam.methods import make_method, method_params
-from services.slam.reading import Reading
-from uvf.launch.bench import Figures
-from uvf.launch.recorder import attachments
-from uvf.launch.slam_cli import DEFAULT_METHOD
-from uvf.launch.truth import true_poses
 from uvf.maths.kinematics import DifferentialDrive, Twist, WheelSpeeds
-from uvf.maths.planar import Pose2
-from uvf.maths.planar_arrays import composed, interpolated, inverted, wrapped
 from uvf.maths.rotations import from_euler
-from uvf.runtime.lockstep import Lockstep
-from uvf.runtime.log_reading import read_log
-from uvf.runtime.range_sensors import LidarModel
-from uvf.runtime.recording import Recorder
-from uvf.runtime.scene import scene
-from uvf.runtime.service import Outputs, Service
-from uvf.runtime.site import ROOT, Host, Site, load_site
-from uvf.runtime.vehicle_file import Lidar
-from uvf.runtime.world_geometry import floor_segments, solids
+from uvf.maths.se2 import Pose2
+from uvf.maths.se2_arrays import composed, interpolated, inverted, wrapped
+from uvf.models.scenario import ROOT, Host, Site, load_site
+from uvf.models.shapes.scene import scene
+from uvf.models.vehicle.file import Lidar
+from uvf.models.world.geometry import floor_segments, solids
+from uvf.runtime.contract.service import Outputs, Service
+from uvf.runtime.log.laser_log import read_mcap
+from uvf.runtime.log.reading import read_log
+from uvf.runtime.log.recording import Recorder
+from uvf.runtime.messages.convert import seconds, stamp
+from uvf.runtime.time.lockstep import Lockstep
+from uvf.sensors.range_sensors import LidarModel
+from uvf.slam.evaluation.run import run_over
+from uvf.slam.logs.laser_log import LaserLog
+from uvf.slam.methods import make_method, method_params
+from uvf.slam.reading import Reading
 
 Floats = NDArray[np.float64]
 

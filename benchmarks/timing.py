@@ -5,8 +5,8 @@ from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
-from uvf.runtime.lockstep import Lockstep
-from uvf.runtime.recording import Recorder
+from uvf.runtime.log.recording import Recorder
+from uvf.runtime.time.lockstep import Lockstep
 
 WARM_UP = 0.5  # s of simulation: what is compiled is compiled
 

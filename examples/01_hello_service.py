@@ -7,11 +7,11 @@ process; the very same class runs over Zenoh in a process of its own.
 """
 
 from schemas import topics
-from schemas.convert import stamp
 from schemas.messages import DriveCommand, Event
-from uvf.runtime.lockstep import Lockstep
-from uvf.runtime.service import Outputs, Service
-from uvf.runtime.site import Host
+from uvf.models.scenario import Host
+from uvf.runtime.contract.service import Outputs, Service
+from uvf.runtime.messages.convert import stamp
+from uvf.runtime.time.lockstep import Lockstep
 
 
 class Driver(Service):

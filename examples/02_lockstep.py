@@ -8,8 +8,8 @@ Every sensor, filter, map and controller runs as it does in real time; two runs 
 import tempfile
 from pathlib import Path
 
-from uvf.launch.run import run_lockstep
-from uvf.runtime.site import ROOT, load_site
+from launch.run import run_lockstep
+from uvf.models.scenario import ROOT, load_site
 
 site = load_site(ROOT / "missions" / "demo.yaml")
 with tempfile.TemporaryDirectory() as folder:

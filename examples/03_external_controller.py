@@ -5,8 +5,8 @@
 
 import uvf
 from schemas import topics
-from schemas.convert import yaw_of
 from schemas.messages import DriveCommand, Mode, ModeRequest
+from uvf.runtime.messages.convert import yaw_of
 
 with uvf.connect() as run:
     print(run.ask("burger", topics.SET_MODE, ModeRequest(mode=Mode.MODE_OFFBOARD, source="client")))

@@ -7,15 +7,15 @@ Simulator, odometry and mapping of the demo's rover run in lockstep beside it; n
 
 import numpy as np
 
+from launch import catalogue
 from schemas import topics
-from schemas.convert import scan_points, seconds, stamp
 from schemas.messages import Event, LaserScan
-from uvf.launch import catalogue
-from uvf.maths.transforms import apply
-from uvf.runtime.frames import FrameBuffer, FrameError
-from uvf.runtime.lockstep import Lockstep
-from uvf.runtime.service import Outputs, Service, frames
-from uvf.runtime.site import ROOT, Host, load_site
+from uvf.maths.se3 import apply
+from uvf.models.scenario import ROOT, Host, load_site
+from uvf.runtime.contract.service import Outputs, Service, frames
+from uvf.runtime.messages.convert import scan_points, seconds, stamp
+from uvf.runtime.messages.frames import FrameBuffer, FrameError
+from uvf.runtime.time.lockstep import Lockstep
 
 
 class Nearest(Service):

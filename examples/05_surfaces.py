@@ -7,9 +7,9 @@ Whoever is silent for 0.5 s has lost the aircraft to its autopilot, which holds.
 
 import uvf
 from schemas import topics
-from schemas.convert import wxyz
 from schemas.messages import Mode, ModeRequest, SurfaceCommand
 from uvf.maths.rotations import enu_flu_from_ned_frd, to_euler
+from uvf.runtime.messages.convert import wxyz
 
 SECONDS = 4.0
 

@@ -10,7 +10,7 @@ from math import cos, exp, pi, sin, sqrt
 import numpy as np
 from scipy.optimize import fsolve
 
-from services.autopilot.air.design import Airframe
+from uvf.control.design.coefficients import Airframe
 from uvf.maths.state_space import StateSpace
 
 M, JX, JY, JZ, JXZ = 11.0, 0.8244, 1.135, 1.759, 0.1204

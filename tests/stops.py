@@ -1,7 +1,7 @@
 """STOP ALL as ``step`` is handed it."""
 
 from schemas.messages import StopEngagement
-from uvf.runtime.stop_all import StopStatus
+from uvf.runtime.state.stop_all import StopStatus
 
 NOBODY = StopStatus()
 ENGAGED = StopStatus((StopEngagement(source="gcs", id=1, reason="button"),))

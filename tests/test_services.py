@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from uvf.launch import catalogue
-from uvf.launch.checks import check_mission
-from uvf.runtime.site import ROOT, load_site
+from launch import catalogue
+from launch.checks import check_mission
+from uvf.models.scenario import ROOT, load_site
 
 SITE = load_site(ROOT / "missions" / "demo.yaml")
 ASKING = load_site(ROOT / "missions" / "mapping.yaml")

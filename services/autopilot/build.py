@@ -2,7 +2,7 @@
 
 from services.autopilot.air import build as air
 from services.autopilot.ground import build as ground
-from uvf.runtime.site import Host, Site
+from uvf.models.scenario import Host, Site
 
 
 def build(site: Site) -> list[Host]:

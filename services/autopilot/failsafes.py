@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from enum import IntEnum
 from typing import Generic, TypeVar
 
-from schemas.convert import stamp
 from schemas.messages import Event
+from uvf.runtime.messages.convert import stamp
 
 K = TypeVar("K")
 

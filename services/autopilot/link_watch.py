@@ -1,7 +1,7 @@
 """How long no ground station has been heard: wall time, however fast or slowly the simulation runs."""
 
-from schemas.convert import seconds
 from schemas.messages import Link
+from uvf.runtime.messages.convert import seconds
 
 
 class LinkWatch:

@@ -1,7 +1,7 @@
 """Missions as messages, the same for every kind of vehicle: from a mission file."""
 
 from schemas.messages import MissionItem, Vector3
-from uvf.runtime.mission_file import Waypoint
+from uvf.models.mission.file import Waypoint
 
 
 def item_from_file(waypoint: Waypoint) -> MissionItem:

@@ -4,9 +4,9 @@ from typing import TypeVar
 
 import msgspec
 
-from schemas.convert import stamp
 from schemas.messages import ParamValues
-from uvf.runtime.service import Params
+from uvf.runtime.contract.service import Params
+from uvf.runtime.messages.convert import stamp
 
 P = TypeVar("P", bound=Params)
 

@@ -4,8 +4,8 @@ import sys
 from functools import partial
 
 from services.gcs.service import GroundStation
-from uvf.runtime.address import address_from
-from uvf.runtime.site import Host, Site
+from uvf.models.scenario import Host, Site
+from uvf.runtime.bus.address import address_from
 
 
 def build(site: Site) -> list[Host]:
@@ -13,8 +13,8 @@ def build(site: Site) -> list[Host]:
     address = address_from()
 
     def make() -> GroundStation:
-        from services.gcs.cameras import cameras
-        from services.gcs.viser_page import ViserPage
+        from services.gcs.page.viser_page import ViserPage
+        from services.gcs.view.cameras import cameras
 
         page = ViserPage(address, partial(cameras, site))
         if address.token:

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from uvf.runtime.teleop_hand import Command, Hand
+from uvf.control.teleop_drive import Command, Hand
 
 PATIENCE = 0.5  # s a direction counts: a page repeats it every 0.1 s while it is held
 

@@ -8,7 +8,6 @@ import numpy as np
 from google.protobuf.message import Message
 from numpy.typing import NDArray
 
-from schemas.convert import stamp
 from schemas.messages import (
     ArmRequest,
     CancelRequest,
@@ -22,13 +21,14 @@ from schemas.messages import (
     Vector3,
 )
 from services.gcs.by_hand import ByHand
-from services.gcs.layers import ROOTS
-from services.gcs.session import Session
-from services.gcs.state import LOST_AFTER, Model, Order, VehicleModel
-from services.gcs.wording import describe, modes_of
-from uvf.runtime.service import Answer
-from uvf.runtime.stop_all import StopVoice
-from uvf.runtime.teleop_hand import SCALINGS, Command
+from services.gcs.state.session import Session
+from services.gcs.state.state import LOST_AFTER, Model, Order, VehicleModel
+from services.gcs.view.layers import ROOTS
+from services.gcs.view.wording import describe, modes_of
+from uvf.control.teleop_drive import SCALINGS, Command
+from uvf.runtime.contract.service import Answer
+from uvf.runtime.messages.convert import stamp
+from uvf.runtime.state.stop_all import StopVoice
 
 Floats = NDArray[np.float64]
 

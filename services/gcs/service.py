@@ -29,12 +29,12 @@ from schemas.messages import (
     VehicleStatus,
 )
 from services.gcs.commands import SOURCE, Commander
-from services.gcs.drawing import Page
-from services.gcs.page_frame import Composer
-from services.gcs.state import Model
-from uvf.runtime.service import Answer, Outputs, Service, each_vehicle, every, optional, stop_all
-from uvf.runtime.site import Site
-from uvf.runtime.stop_all import StopStatus
+from services.gcs.page.page_frame import Composer
+from services.gcs.state.state import Model
+from services.gcs.view.drawing import Page
+from uvf.models.scenario import Site
+from uvf.runtime.contract.service import Answer, Outputs, Service, each_vehicle, every, optional, stop_all
+from uvf.runtime.state.stop_all import StopStatus
 
 
 class GroundStation(Service):

@@ -17,8 +17,8 @@ from services.mavlink_bridge.status import Told, progress_of, status_of
 from services.mavlink_bridge.telemetry import Telemetry
 from services.mavlink_bridge.transfers import Transfers
 from services.mavlink_bridge.wire import Text, Wire
-from uvf.runtime.mavlink import dialect as mav
-from uvf.runtime.mavlink.text_bucket import TEXTS_PER_SECOND, TextBucket
+from uvf.mavlink import dialect as mav
+from uvf.mavlink.text_bucket import TEXTS_PER_SECOND, TextBucket
 
 BOOT_BACK = 2000  # ms: a clock that goes back by more has started anew
 RESTARTS_APART = 5.0  # s: clocks that jump to and fro are none

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from services.mavlink_bridge.station import COMPONENT, SYSTEM
 from services.mavlink_bridge.wire import TEXT_WITHIN, Done, Wire
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
 
 ANSWER_WITHIN = 4.5  # s: whoever asks over the bus hears nothing after 5
 AGAIN_AFTER = 0.8  # s; autopilots take a repetition (confirmation > 0) for the same command

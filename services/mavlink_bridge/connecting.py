@@ -7,7 +7,7 @@ from typing import Any
 from services.mavlink_bridge.commands import Commands, command
 from services.mavlink_bridge.modes import LARGEST_LIST, Modes
 from services.mavlink_bridge.wire import Wire
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
 
 RATES: dict[int, float] = {
     mav.MAVLINK_MSG_ID_ATTITUDE_QUATERNION: 25,

@@ -1,9 +1,9 @@
 """What an autopilot's ``custom_mode`` means: by its own list where it has one (AVAILABLE_MODES), else by PX4's or ArduPilot's numbers."""
 
 from schemas.messages import Mode
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
+from uvf.runtime.contract.validation import legible
 from uvf.runtime.mavlink.modes import TABLE
-from uvf.runtime.validation import legible
 
 PLANE: dict[int, tuple[str, Mode]] = {
     0: ("MANUAL", Mode.MODE_MANUAL),

@@ -10,7 +10,7 @@ from services.mavlink_bridge.frame import Chart
 from services.mavlink_bridge.telemetry import Telemetry
 from services.mavlink_bridge.transfers import Transfers
 from services.mavlink_bridge.wire import Done
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
 from uvf.runtime.mavlink.mission_items import BadItem, Body
 
 MISSION, FENCE, RALLY = mav.MAV_MISSION_TYPE_MISSION, mav.MAV_MISSION_TYPE_FENCE, mav.MAV_MISSION_TYPE_RALLY

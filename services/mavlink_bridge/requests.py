@@ -6,7 +6,6 @@ from typing import Any
 
 from google.protobuf.message import Message
 
-from schemas.convert import mode_name
 from schemas.messages import (
     ArmRequest,
     CancelRequest,
@@ -30,9 +29,10 @@ from services.mavlink_bridge.commands import ANSWER_WITHIN, NAN, Command, comman
 from services.mavlink_bridge.frame import Chart
 from services.mavlink_bridge.limits import Refused, amsl, where
 from services.mavlink_bridge.wire import Done
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
+from uvf.runtime.contract.service import Later
 from uvf.runtime.mavlink.limits import HIGHEST
-from uvf.runtime.service import Later
+from uvf.runtime.messages.convert import mode_name
 
 FORCE = {True: 2989.0, False: 21196.0}
 CHANGE_MODE = float(mav.MAV_DO_REPOSITION_FLAGS_CHANGE_MODE)

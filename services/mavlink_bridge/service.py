@@ -6,7 +6,6 @@ from typing import Any
 from google.protobuf.message import Message
 
 from schemas import topics
-from schemas.convert import stamp
 from schemas.messages import (
     ArmRequest,
     CancelRequest,
@@ -34,10 +33,11 @@ from services.mavlink_bridge.frame import Origin
 from services.mavlink_bridge.requests import Requests
 from services.mavlink_bridge.station import Station
 from services.mavlink_bridge.stopping import Stopping
-from uvf.maths.sampling import Due
-from uvf.runtime.mavlink.names import enum_name
-from uvf.runtime.service import Later, Outputs, Service, optional, stop_all
-from uvf.runtime.stop_all import StopStatus
+from uvf.mavlink.names import enum_name
+from uvf.runtime.contract.service import Later, Outputs, Service, optional, stop_all
+from uvf.runtime.messages.convert import stamp
+from uvf.runtime.state.stop_all import StopStatus
+from uvf.sensors.sampling import Due
 
 SOURCE = "mavlink_bridge"
 Asked = Sequence[Any]

@@ -4,9 +4,9 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from uvf.runtime.mavlink import dialect as mav
-from uvf.runtime.mavlink.codec import Codec
-from uvf.runtime.mavlink.endpoint import Link, Peer
+from uvf.mavlink import dialect as mav
+from uvf.mavlink.codec import Codec
+from uvf.mavlink.endpoint import Link, Peer
 
 SYSTEM, COMPONENT = 255, mav.MAV_COMP_ID_UDP_BRIDGE
 """Who the bridge is on the link: a ground station, as far as the autopilot's failsafes are concerned."""

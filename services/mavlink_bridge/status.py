@@ -9,7 +9,7 @@ from services.mavlink_bridge.limits import is_sound
 from services.mavlink_bridge.modes import Modes
 from services.mavlink_bridge.telemetry import FRESH, Telemetry
 from services.mavlink_bridge.wire import Wire
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
 
 KIND = {mav.MAV_TYPE_FIXED_WING: Kind.KIND_FIXED_WING, mav.MAV_TYPE_GROUND_ROVER: Kind.KIND_GROUND} | dict.fromkeys(
     range(mav.MAV_TYPE_VTOL_TAILSITTER_DUOROTOR, mav.MAV_TYPE_VTOL_TILTWING + 1), Kind.KIND_FIXED_WING

@@ -5,7 +5,7 @@ import math
 from schemas.messages import Event, Kind, Mode
 from services.mavlink_bridge.autopilot import Autopilot
 from services.mavlink_bridge.requests import arm, hold
-from uvf.runtime.stop_all import StopStatus
+from uvf.runtime.state.stop_all import StopStatus
 
 AGAIN_AFTER = 5.0  # s, after a refusal or no answer
 

@@ -7,14 +7,14 @@ from typing import Any
 
 import numpy as np
 
-from schemas.convert import array, quaternion
 from schemas.messages import Battery, Circle, Gnss, NavState, Vector3
 from services.mavlink_bridge.frame import Chart
 from services.mavlink_bridge.limits import is_on_earth, is_sound
 from uvf.maths.geodesy import Floats
 from uvf.maths.rotations import enu_flu_from_ned_frd, from_euler
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
 from uvf.runtime.mavlink.limits import HIGHEST
+from uvf.runtime.messages.convert import array, quaternion
 
 FRESH = 2.0  # s: what is told at least each second
 UNKNOWN_U16 = 0xFFFF

@@ -7,7 +7,7 @@ from typing import Any
 
 from services.mavlink_bridge.station import COMPONENT, SYSTEM
 from services.mavlink_bridge.wire import TEXT_WITHIN, Wire
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
 from uvf.runtime.mavlink.mission_items import ORIGIN, Body, packed, unpacked
 
 LIST_AGAIN, ITEM_AGAIN = 0.8, 0.4  # s

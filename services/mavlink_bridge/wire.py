@@ -3,8 +3,8 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from uvf.runtime.mavlink import dialect as mav
-from uvf.runtime.validation import legible
+from uvf.mavlink import dialect as mav
+from uvf.runtime.contract.validation import legible
 
 Done = Callable[[bool, str], None]
 """Called once with (accepted, reason)."""

@@ -2,16 +2,16 @@
 
 import numpy as np
 
-from services.planner.costmap import Body
-from services.planner.navigator import Navigator
 from services.planner.planner_service import PlannerParams, PlannerService
-from services.planner.safety import safe_share
 from services.planner.tracker_service import TrackerParams, TrackerService
-from uvf.maths.planar import Pose2
 from uvf.maths.rotations import from_euler
-from uvf.maths.transforms import Transform
-from uvf.runtime.params import BadInput
-from uvf.runtime.site import Host, Member, Site
+from uvf.maths.se2 import Pose2
+from uvf.maths.se3 import Transform
+from uvf.models.scenario import Host, Member, Site
+from uvf.models.yaml_data import BadInput
+from uvf.planning.collision_check import safe_share
+from uvf.planning.costmap import Body
+from uvf.planning.navigator import Navigator
 
 
 def build(site: Site) -> list[Host]:

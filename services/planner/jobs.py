@@ -3,8 +3,8 @@
 import math
 from dataclasses import dataclass
 
-from schemas.convert import mode_name
 from schemas.messages import Mission, MissionItem, MissionProgress, Mode, RallyPoints, VehicleStatus
+from uvf.runtime.messages.convert import mode_name
 
 Point = tuple[float, float]
 

@@ -8,7 +8,6 @@ from msgspec import Meta
 from numpy.typing import NDArray
 
 from schemas import topics
-from schemas.convert import occupancy_cells, planar_pose, pose2_of, seconds, stamp
 from schemas.messages import (
     CancelRequest,
     Event,
@@ -28,16 +27,17 @@ from schemas.messages import (
     Vector3,
     VehicleStatus,
 )
-from services.planner.costmap import Body
-from services.planner.exploring import Explorer, Patrol
-from services.planner.frontiers import Taste
 from services.planner.jobs import IDLE, Goal, Havens, Job, Orders, choose, home_of, mission_target, not_now
-from services.planner.navigator import Navigator, Plan
-from services.planner.smoothing import length
-from uvf.maths.planar import IDENTITY, Pose2, compose, inverse, transform
 from uvf.maths.rotations import wrap
-from uvf.runtime.fence_file import fencing
-from uvf.runtime.service import Answer, Outputs, Params, Service, optional
+from uvf.maths.se2 import IDENTITY, Pose2, compose, inverse, transform
+from uvf.models.mission.fence import fencing
+from uvf.planning.costmap import Body
+from uvf.planning.exploration import Explorer, Patrol
+from uvf.planning.frontiers import Taste
+from uvf.planning.navigator import Navigator, Plan
+from uvf.planning.smoothing import length
+from uvf.runtime.contract.service import Answer, Outputs, Params, Service, optional
+from uvf.runtime.messages.convert import occupancy_cells, planar_pose, pose2_of, seconds, stamp
 
 Floats = NDArray[np.float64]
 Point = tuple[float, float]

@@ -7,15 +7,15 @@ from msgspec import Meta
 from numpy.typing import NDArray
 
 from schemas import topics
-from schemas.convert import pose2_of, scan_rays, seconds, stamp, yaw_of
 from schemas.messages import DriveCommand, Event, LaserScan, PoseInFrame, PosesInFrame
-from services.planner.safety import safe_share
-from services.planner.tracking import Pace, Tracker
-from uvf.maths.planar import IDENTITY, Pose2, PoseHistory, inverse, transform
-from uvf.maths.transforms import Transform, from_above
-from uvf.runtime.service import Outputs, Params, Service, every
-from uvf.runtime.sweeping import AT_ONCE, Sweeping
-from uvf.runtime.vehicle_file import GroundBody
+from uvf.maths.se2 import IDENTITY, Pose2, PoseHistory, inverse, transform
+from uvf.maths.se3 import Transform, from_above
+from uvf.models.vehicle.file import GroundBody
+from uvf.planning.collision_check import safe_share
+from uvf.planning.pure_pursuit import Pace, Tracker
+from uvf.runtime.contract.service import Outputs, Params, Service, every
+from uvf.runtime.messages.convert import pose2_of, scan_rays, seconds, stamp, yaw_of
+from uvf.sensors.sweeping import AT_ONCE, Sweeping
 
 Floats = NDArray[np.float64]
 Positive = Annotated[float, Meta(gt=0)]

@@ -3,8 +3,8 @@
 import math
 from dataclasses import fields
 
-from services.sim_air.wiring import Controls
-from uvf.runtime.air_file import AirBody, Lever, Surface
+from services.sim_air.engine.wiring import Controls
+from uvf.models.vehicle.air import AirBody, Lever, Surface
 
 
 class Servo:

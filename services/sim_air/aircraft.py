@@ -11,19 +11,19 @@ import numpy as np
 from schemas import topics
 from schemas.messages import SurfaceCommand
 from services.sim_air.actuators import Actuators
-from services.sim_air.contacts import Touch
-from services.sim_air.crash import Resting, Wreck, crash_of
-from services.sim_air.engine_state import EngineState
+from services.sim_air.engine.contacts import Touch
+from services.sim_air.engine.engine_state import EngineState
+from services.sim_air.engine.states import Air, Motion, Runaway
+from services.sim_air.engine.wiring import Controls, JointAngle
+from services.sim_air.environment.crash import Resting, Wreck, crash_of
+from services.sim_air.environment.wind import CALM, AirMass, AirMotion, Flight
 from services.sim_air.rangers import Rangers
 from services.sim_air.sensors import Gnss, Imu, Pressures
-from services.sim_air.states import Air, Motion, Runaway
-from services.sim_air.wind import CALM, AirMass, AirMotion, Flight
-from services.sim_air.wiring import Controls, JointAngle
 from uvf.maths.rotations import Floats
-from uvf.maths.sampling import Due
-from uvf.runtime import mission_file
-from uvf.runtime.battery import Charge
-from uvf.runtime.vehicle_file import VehicleFile
+from uvf.models.mission import file as mission_file
+from uvf.models.vehicle.battery import Charge
+from uvf.models.vehicle.file import VehicleFile
+from uvf.sensors.sampling import Due
 
 STILL = np.zeros(3)
 

@@ -9,34 +9,34 @@ import numpy as np
 
 from services.sim_air.actuators import Actuators
 from services.sim_air.aircraft import Aircraft
-from services.sim_air.airframe import Airframe, fly_one_step
-from services.sim_air.around import Around
-from services.sim_air.beginning import as_told, begun
-from services.sim_air.crash import Resting
-from services.sim_air.ground import Ground
+from services.sim_air.engine.airframe import Airframe, fly_one_step
+from services.sim_air.engine.beginning import as_told, begun
+from services.sim_air.engine.wiring import Controls
+from services.sim_air.environment.crash import Resting
+from services.sim_air.environment.ground import Ground
+from services.sim_air.environment.surroundings import Around
+from services.sim_air.environment.wind import AirMass
 from services.sim_air.rangers import Rangers
 from services.sim_air.sensors import Gnss, Imu, Pressures
 from services.sim_air.service import SimAir
 from services.sim_air.stage import Joining, Stage
-from services.sim_air.wind import AirMass
-from services.sim_air.wiring import Controls
 from uvf.maths.bvh import Bvh
 from uvf.maths.geodesy import LocalTangent
-from uvf.maths.raycast3 import warm_up
-from uvf.runtime.air_file import AirBody
-from uvf.runtime.aircraft_shape import aircraft_shape
-from uvf.runtime.faults import Faults
-from uvf.runtime.footing import Footing
-from uvf.runtime.mission_file import Start, Vehicle
-from uvf.runtime.params import BadInput, Place
-from uvf.runtime.scene import scene
-from uvf.runtime.site import AIRCRAFT_RADIUS, Host, Member, Site
-from uvf.runtime.subprocess_jobs import Died, run_in_subprocess
-from uvf.runtime.surroundings import aircraft_tree, vehicle_tree
-from uvf.runtime.urdf_model import load_urdf
-from uvf.runtime.vehicle_file import load_vehicle
-from uvf.runtime.vehicle_layers import folders_of, holding
-from uvf.runtime.world_geometry import GRAZE, solids
+from uvf.maths.raycast import warm_up
+from uvf.models.mission.faults import Faults
+from uvf.models.mission.file import Start, Vehicle
+from uvf.models.scenario import AIRCRAFT_RADIUS, Host, Member, Site
+from uvf.models.shapes.aircraft_shape import aircraft_shape
+from uvf.models.shapes.scene import scene
+from uvf.models.shapes.surroundings import aircraft_tree, vehicle_tree
+from uvf.models.urdf.model import load_urdf
+from uvf.models.vehicle.air import AirBody
+from uvf.models.vehicle.file import load_vehicle
+from uvf.models.vehicle.layers import folders_of, holding
+from uvf.models.world.footing import Footing
+from uvf.models.world.geometry import GRAZE, solids
+from uvf.models.yaml_data import BadInput, Place
+from uvf.runtime.process.subprocess_jobs import Died, run_in_subprocess
 
 
 def build(site: Site) -> list[Host]:

@@ -2,12 +2,12 @@
 
 from collections.abc import Mapping
 
-from schemas.convert import array, yaw_of
 from schemas.messages import Reply, SetPoseRequest
 from services.sim_air.aircraft import Aircraft
-from uvf.runtime import mission_file
-from uvf.runtime.params import BadInput, nearest
-from uvf.runtime.spawned import pose_fault
+from uvf.models.mission import file as mission_file
+from uvf.models.yaml_data import BadInput, nearest
+from uvf.runtime.messages.convert import array, yaw_of
+from uvf.runtime.messages.spawned import pose_fault
 
 STEEPEST, QUICKEST, FASTEST = 1.5, 3.0, 1e3  # rad, rad/s, m/s
 

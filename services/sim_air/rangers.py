@@ -8,13 +8,13 @@ from typing import Self
 import numpy as np
 from google.protobuf.message import Message
 
-from services.sim_air.states import Motion
-from uvf.maths.raycast3 import Body, Scene
-from uvf.maths.sampling import Line
-from uvf.runtime.range_sensors import LidarModel, RangeModel
-from uvf.runtime.sensor_messages import range_message, scan_message
-from uvf.runtime.service import Value
-from uvf.runtime.vehicle_file import Lidar, RangeFinder, Sensors, Sonar, line_of
+from services.sim_air.engine.states import Motion
+from uvf.maths.raycast import Body, Scene
+from uvf.models.vehicle.file import Lidar, RangeFinder, Sensors, Sonar, line_of
+from uvf.runtime.contract.service import Value
+from uvf.runtime.messages.sensors import range_message, scan_message
+from uvf.sensors.range_sensors import LidarModel, RangeModel
+from uvf.sensors.sampling import Line
 
 Rng = Callable[[str], np.random.Generator]
 Look = Callable[[float, Motion, list[Body]], Message]

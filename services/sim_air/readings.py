@@ -1,10 +1,10 @@
 """Sensor samples as messages."""
 
-from schemas.convert import quaternion, stamp, vector
 from schemas.messages import AirData, Event, JointState, JointStates, NavState
-from services.sim_air.states import Air, Motion
-from services.sim_air.wiring import JointAngle
+from services.sim_air.engine.states import Air, Motion
+from services.sim_air.engine.wiring import JointAngle
 from uvf.maths.rotations import Floats
+from uvf.runtime.messages.convert import quaternion, stamp, vector
 
 
 def air_data(t: float, air: Air) -> AirData:

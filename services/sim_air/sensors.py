@@ -5,13 +5,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from services.sim_air.states import Air, Motion
+from services.sim_air.engine.states import Air, Motion
 from uvf.maths import rotations
 from uvf.maths.geodesy import LocalTangent
-from uvf.maths.instruments import Fix, ImuReading
-from uvf.maths.sampling import Line
-from uvf.maths.sensing import Channel, Errors
-from uvf.runtime.vehicle_file import AirDataSensor, GnssSensor, ImuSensor, line_of
+from uvf.models.vehicle.file import AirDataSensor, GnssSensor, ImuSensor, line_of
+from uvf.sensors.errors import Channel, Errors
+from uvf.sensors.instruments import Fix, ImuReading
+from uvf.sensors.sampling import Line
 
 Floats = rotations.Floats
 

@@ -4,16 +4,16 @@ from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from schemas.convert import quaternion, stamp, vector
 from schemas.messages import RemoveRequest, Reply, SetPoseRequest, SimObject, SimObjects, SpawnRequest, StateRequest
 from services.sim_air.aircraft import Aircraft, Kept
-from services.sim_air.around import Around
-from services.sim_air.collisions import Collisions
+from services.sim_air.environment.collisions import Collisions
+from services.sim_air.environment.surroundings import Around
 from services.sim_air.placing import fault_of, place, start_of
 from uvf.maths.bvh import Bvh
-from uvf.runtime import mission_file
-from uvf.runtime.params import BadInput, listed, nearest
-from uvf.runtime.spawned import crowd_fault, name_fault
+from uvf.models.mission import file as mission_file
+from uvf.models.yaml_data import BadInput, listed, nearest
+from uvf.runtime.messages.convert import quaternion, stamp, vector
+from uvf.runtime.messages.spawned import crowd_fault, name_fault
 
 SAVED_MOST = 16
 

@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 
 from services.sim_camera.optics import intrinsics
 from uvf.maths.compiled import compiled
-from uvf.runtime.vehicle_file import Camera
-from uvf.runtime.world_file import WorldFile
+from uvf.models.vehicle.file import Camera
+from uvf.models.world.file import WorldFile
 
 Floats = NDArray[np.float64]
 Picture = NDArray[np.uint8]

@@ -7,12 +7,12 @@ from pathlib import Path
 from services.sim_camera.fitted import Fitted
 from services.sim_camera.renderer import BulletRenderer, Look
 from services.sim_camera.service import SimCamera
-from uvf.runtime.aircraft_shape import aircraft_shape
-from uvf.runtime.params import BadInput, nearest
-from uvf.runtime.site import Host, Member, Site
-from uvf.runtime.urdf_model import engine_urdf
-from uvf.runtime.vehicle_file import Camera, VehicleFile, load_vehicle
-from uvf.runtime.world_geometry import solids
+from uvf.models.scenario import Host, Member, Site
+from uvf.models.shapes.aircraft_shape import aircraft_shape
+from uvf.models.urdf.model import engine_urdf
+from uvf.models.vehicle.file import Camera, VehicleFile, load_vehicle
+from uvf.models.world.geometry import solids
+from uvf.models.yaml_data import BadInput, nearest
 
 OUTPUTS = {"camera": "image", "chase": "chase", "gimbal": "gimbal"}
 """The output that each camera's pictures go out by."""

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from uvf.runtime.vehicle_file import Camera
+from uvf.models.vehicle.file import Camera
 
 Floats = NDArray[np.float64]
 

@@ -7,11 +7,11 @@ from google.protobuf.timestamp_pb2 import Timestamp
 from numpy.typing import NDArray
 from PIL import Image
 
-from schemas.convert import stamp
 from schemas.messages import CameraCalibration, CompressedImage, JointState, JointStates
 from services.sim_camera.gimbal import Joints
 from services.sim_camera.optics import intrinsics
-from uvf.runtime.vehicle_file import Camera
+from uvf.models.vehicle.file import Camera
+from uvf.runtime.messages.convert import stamp
 
 JPEG_QUALITY = 70
 MILLIMETRES = 1000.0

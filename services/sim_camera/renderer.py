@@ -11,13 +11,13 @@ from numpy.typing import NDArray
 from services.sim_camera.backdrop import Backdrop
 from services.sim_camera.optics import frustum
 from uvf.maths.rotations import IDENTITY, from_euler, matrix, multiply, rotate
-from uvf.runtime.aircraft_shape import AircraftShape
-from uvf.runtime.mesh_parts import Part, joined
-from uvf.runtime.params import BadInput
-from uvf.runtime.quiet import c_errors_discarded
-from uvf.runtime.solid import Solid, pose_at
-from uvf.runtime.vehicle_file import Camera
-from uvf.runtime.world_file import WorldFile
+from uvf.models.shapes.aircraft_shape import AircraftShape
+from uvf.models.shapes.mesh_parts import Part, joined
+from uvf.models.shapes.solid import Solid, pose_at
+from uvf.models.vehicle.file import Camera
+from uvf.models.world.file import WorldFile
+from uvf.models.yaml_data import BadInput
+from uvf.runtime.process.quiet import c_errors_discarded
 
 with c_errors_discarded():
     import pybullet

@@ -4,16 +4,16 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Protocol
 
 from schemas import topics
-from schemas.convert import array, seconds, wxyz
 from schemas.messages import GimbalCommand, NavState, SimObjects
 from services.sim_camera.fitted import Fitted, Pictures
 from services.sim_camera.picture import info_message, joints_message
 from services.sim_camera.renderer import Look, Pose, Shot
-from uvf.runtime.sensor_frames import mounted
-from uvf.runtime.service import Outputs, Service, Value, each_vehicle, optional
-from uvf.runtime.solid import Solid
-from uvf.runtime.spawned import solid_of, sound_objects
-from uvf.runtime.vehicle_file import Camera
+from uvf.models.shapes.solid import Solid
+from uvf.models.vehicle.file import Camera
+from uvf.runtime.contract.service import Outputs, Service, Value, each_vehicle, optional
+from uvf.runtime.messages.convert import array, seconds, wxyz
+from uvf.runtime.messages.sensor_frames import mounted
+from uvf.runtime.messages.spawned import solid_of, sound_objects
 
 INFO = {"image": "info", "chase": "chase_info", "gimbal": "gimbal_info"}
 """The output that tells of the camera whose pictures go out by this one."""

@@ -6,17 +6,17 @@ from services.sim_ground.rig import STEP_HZ, Rig
 from services.sim_ground.service import SimGround
 from services.sim_ground.stage import Joining, Stage
 from services.sim_ground.world import BulletWorld, Placed
-from uvf.maths.raycast3 import warm_up
-from uvf.runtime.aircraft_shape import aircraft_shape
-from uvf.runtime.faults import Faults
-from uvf.runtime.footing import COARSE, Footing
-from uvf.runtime.mission_file import Start, Vehicle
-from uvf.runtime.params import BadInput
-from uvf.runtime.site import Host, Member, Site
-from uvf.runtime.surroundings import Surroundings, aircraft_solid, own_tree, vehicle_tree
-from uvf.runtime.urdf_model import check_urdf, engine_urdf, load_urdf
-from uvf.runtime.vehicle_file import GroundBody, load_vehicle
-from uvf.runtime.world_geometry import solids
+from uvf.maths.raycast import warm_up
+from uvf.models.mission.faults import Faults
+from uvf.models.mission.file import Start, Vehicle
+from uvf.models.scenario import Host, Member, Site
+from uvf.models.shapes.aircraft_shape import aircraft_shape
+from uvf.models.shapes.surroundings import Surroundings, aircraft_solid, own_tree, vehicle_tree
+from uvf.models.urdf.model import check_urdf, engine_urdf, load_urdf
+from uvf.models.vehicle.file import GroundBody, load_vehicle
+from uvf.models.world.footing import COARSE, Footing
+from uvf.models.world.geometry import solids
+from uvf.models.yaml_data import BadInput
 
 
 def build(site: Site) -> list[Host]:

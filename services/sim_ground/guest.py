@@ -6,9 +6,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from schemas.convert import array, seconds, wxyz
 from schemas.messages import NavState
-from uvf.runtime.surroundings import Whereabouts
+from uvf.models.shapes.surroundings import Whereabouts
+from uvf.runtime.messages.convert import array, seconds, wxyz
 
 Floats = NDArray[np.float64]
 LONGEST = 0.1  # s, for which it is taken to go straight on

@@ -6,9 +6,9 @@ from numpy.typing import NDArray
 from services.sim_ground.body import BodyState
 from uvf.maths.compiled import compiled
 from uvf.maths.geodesy import GRAVITY
-from uvf.maths.instruments import ImuReading
 from uvf.maths.rotations import from_euler
-from uvf.runtime.vehicle_file import ImuSensor
+from uvf.models.vehicle.file import ImuSensor
+from uvf.sensors.instruments import ImuReading
 
 Floats = NDArray[np.float64]
 

@@ -5,7 +5,7 @@ Murray, Li & Sastry, A Mathematical Introduction to Robotic Manipulation, 4.2, w
 
 from math import exp
 
-from uvf.runtime.vehicle_file import Motor
+from uvf.models.vehicle.file import Motor
 
 
 class WheelMotor:

@@ -5,11 +5,11 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from schemas.convert import quaternion, stamp, vector
 from schemas.messages import Contact, JointState, JointStates, NavState, WheelTicks
 from services.sim_ground.body import BodyState, Touch
 from services.sim_ground.encoders import radians_per_tick, ticks
-from uvf.runtime.vehicle_file import Bumper, Encoders, GroundBody
+from uvf.models.vehicle.file import Bumper, Encoders, GroundBody
+from uvf.runtime.messages.convert import quaternion, stamp, vector
 
 Floats = NDArray[np.float64]
 

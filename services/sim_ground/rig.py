@@ -15,19 +15,19 @@ from services.sim_ground import readings
 from services.sim_ground.body import BodyState, Touch
 from services.sim_ground.imu import ImuModel
 from uvf.maths.geodesy import LocalTangent
-from uvf.maths.instruments import Receiver
 from uvf.maths.kinematics import spin_velocity
-from uvf.maths.raycast3 import Body, Scene
+from uvf.maths.raycast import Body, Scene
 from uvf.maths.rotations import rotate
-from uvf.maths.sampling import Due, Line
-from uvf.runtime.battery import Charge
-from uvf.runtime.body_track import BodyTrack
-from uvf.runtime.link_frames import Links
-from uvf.runtime.range_sensors import LidarModel, RangeModel
-from uvf.runtime.sensor_messages import battery_message, gnss_message, imu_message, range_message, scan_message
-from uvf.runtime.service import Value
-from uvf.runtime.site import Member, Site
-from uvf.runtime.vehicle_file import Encoders, GnssSensor, GroundBody, ImuSensor, Lidar, RangeFinder, Sampled, Sonar, line_of
+from uvf.models.scenario import Member, Site
+from uvf.models.vehicle.battery import Charge
+from uvf.models.vehicle.file import Encoders, GnssSensor, GroundBody, ImuSensor, Lidar, RangeFinder, Sampled, Sonar, line_of
+from uvf.runtime.contract.service import Value
+from uvf.runtime.messages.link_frames import Links
+from uvf.runtime.messages.sensors import battery_message, gnss_message, imu_message, range_message, scan_message
+from uvf.sensors.body_track import BodyTrack
+from uvf.sensors.instruments import Receiver
+from uvf.sensors.range_sensors import LidarModel, RangeModel
+from uvf.sensors.sampling import Due, Line
 
 Floats = NDArray[np.float64]
 

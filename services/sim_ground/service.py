@@ -11,12 +11,12 @@ from services.sim_ground.guest import Course, courses
 from services.sim_ground.rig import STEP_HZ, Moment
 from services.sim_ground.stage import Stage, Stageable
 from uvf.maths.kinematics import WheelSpeeds
-from uvf.maths.raycast3 import Body
-from uvf.maths.sampling import Due
-from uvf.runtime.faults import Faults
-from uvf.runtime.sensor_messages import later
-from uvf.runtime.service import Outputs, Service, Value, each_vehicle, optional
-from uvf.runtime.surroundings import Surroundings, Whereabouts
+from uvf.maths.raycast import Body
+from uvf.models.mission.faults import Faults
+from uvf.models.shapes.surroundings import Surroundings, Whereabouts
+from uvf.runtime.contract.service import Outputs, Service, Value, each_vehicle, optional
+from uvf.runtime.messages.sensors import later
+from uvf.sensors.sampling import Due
 
 
 class GroundWorld(Stageable, Protocol):

@@ -8,15 +8,15 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from schemas.convert import array, quaternion, stamp, vector, yaw_of
 from schemas.messages import RemoveRequest, Reply, SetPoseRequest, SimObject, SimObjects, SpawnRequest, StateRequest
 from services.sim_ground.rig import Rig
 from services.sim_ground.world import Placed
-from uvf.runtime.params import BadInput, listed, nearest
-from uvf.runtime.robot_model import UrdfModel
-from uvf.runtime.solid import Solid
-from uvf.runtime.spawned import body_fault, crowd_fault, name_fault, pose_fault, solid_of, unit_wxyz
-from uvf.runtime.surroundings import Surroundings, vehicle_tree
+from uvf.models.shapes.solid import Solid
+from uvf.models.shapes.surroundings import Surroundings, vehicle_tree
+from uvf.models.urdf.robot import UrdfModel
+from uvf.models.yaml_data import BadInput, listed, nearest
+from uvf.runtime.messages.convert import array, quaternion, stamp, vector, yaw_of
+from uvf.runtime.messages.spawned import body_fault, crowd_fault, name_fault, pose_fault, solid_of, unit_wxyz
 
 Floats = NDArray[np.float64]
 SAVED_MOST = 16

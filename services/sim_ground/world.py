@@ -18,11 +18,11 @@ from services.sim_ground.motor import WheelMotor
 from uvf.maths.geodesy import GRAVITY
 from uvf.maths.kinematics import WheelSpeeds
 from uvf.maths.rotations import IDENTITY, from_euler, inverse, matrix, multiply, rotate
-from uvf.runtime.params import BadInput
-from uvf.runtime.quiet import c_errors_discarded
-from uvf.runtime.solid import Keyframes, Solid, pose_at
-from uvf.runtime.vehicle_file import Friction, GroundBody
-from uvf.runtime.world_file import TERRAIN
+from uvf.models.shapes.solid import Keyframes, Solid, pose_at
+from uvf.models.vehicle.file import Friction, GroundBody
+from uvf.models.world.file import TERRAIN
+from uvf.models.yaml_data import BadInput
+from uvf.runtime.process.quiet import c_errors_discarded
 
 with c_errors_discarded():
     import pybullet

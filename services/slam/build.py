@@ -3,25 +3,25 @@
 from collections.abc import Callable
 from functools import partial
 
-from services.slam.localization import known_map
-from services.slam.localization.params import FilterParams
 from services.slam.localization_service import Beginning, LocalizationService
 from services.slam.map_serving import map_servers
 from services.slam.mapping_service import MappingParams, MappingService
-from services.slam.maps.session import Session
-from services.slam.maps.tiles import TileMap
-from services.slam.method import SlamMethod
-from services.slam.methods import METHODS, make_method
-from services.slam.odometry.params import OdometryParams
 from services.slam.odometry.service import OdometryService
-from services.slam.resumable import Resumable
 from services.slam.warming import warm_up, warm_up_localization
+from uvf.estimation.odometry.params import OdometryParams
 from uvf.maths.geodesy import LocalTangent
-from uvf.maths.planar import IDENTITY, Pose2, compose, inverse
-from uvf.runtime.mission_file import Maps
-from uvf.runtime.params import BadInput, nearest
-from uvf.runtime.site import Host, Member, Site
-from uvf.runtime.vehicle_file import Lidar
+from uvf.maths.se2 import IDENTITY, Pose2, compose, inverse
+from uvf.models.mission.file import Maps
+from uvf.models.scenario import Host, Member, Site
+from uvf.models.vehicle.file import Lidar
+from uvf.models.yaml_data import BadInput, nearest
+from uvf.slam.localization import known_map
+from uvf.slam.localization.params import FilterParams
+from uvf.slam.maps.session import Session
+from uvf.slam.maps.tiles import TileMap
+from uvf.slam.method import SlamMethod
+from uvf.slam.methods import METHODS, make_method
+from uvf.slam.resumable import Resumable
 
 
 def build(site: Site) -> list[Host]:

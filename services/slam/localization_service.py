@@ -6,20 +6,20 @@ from math import isfinite
 import numpy as np
 
 from schemas import topics
-from schemas.convert import pose2_of, pose2_of_frame, stamp
 from schemas.messages import Event, FrameTransform, Grid, LaserScan, MapFix, PlaceRequest, RelocalizeRequest, Reply
-from services.slam.localization.known_map import KnownMap, of_grid
-from services.slam.localization.localizer import HALF_SURE, Localizer, State
-from services.slam.localization.params import FilterParams
 from services.slam.placing_service import PlacingService, fix_message
-from services.slam.reading import Reading
-from uvf.maths.planar import IDENTITY, Pose2, compose, inverse
-from uvf.maths.transforms import planar
-from uvf.runtime.frames import FrameBuffer, FrameError
-from uvf.runtime.grid_message import as_map, as_message
-from uvf.runtime.params import BadInput
-from uvf.runtime.service import Outputs, frames, optional
-from uvf.runtime.vehicle_file import Lidar
+from uvf.maths.se2 import IDENTITY, Pose2, compose, inverse
+from uvf.maths.se3 import planar
+from uvf.models.vehicle.file import Lidar
+from uvf.models.yaml_data import BadInput
+from uvf.runtime.contract.service import Outputs, frames, optional
+from uvf.runtime.messages.convert import pose2_of, pose2_of_frame, stamp
+from uvf.runtime.messages.frames import FrameBuffer, FrameError
+from uvf.runtime.messages.grids import as_map, as_message
+from uvf.slam.localization.known_map import KnownMap, of_grid
+from uvf.slam.localization.localizer import HALF_SURE, Localizer, State
+from uvf.slam.localization.params import FilterParams
+from uvf.slam.reading import Reading
 
 POSITION_SIGMA, YAW_SIGMA = 0.3, 0.2  # m, rad, of a pose that is set without
 LEAST_SIGMA, MOST_SIGMA = 1e-4, 1000.0

@@ -3,14 +3,14 @@
 from collections.abc import Iterator
 from pathlib import Path
 
-from services.slam.localization.known_map import is_session, known_map
-from services.slam.maps.map_server import MapServer
-from services.slam.maps.masks import KeepOut, SpeedLimit
-from uvf.maths.planar import Pose2, compose
-from uvf.runtime.map_file import GridMap, find_map, map_path, save_map
-from uvf.runtime.mission_file import Maps
-from uvf.runtime.params import BadInput, Place
-from uvf.runtime.site import Host, Member, Site
+from services.slam.map_server import MapServer
+from uvf.maths.se2 import Pose2, compose
+from uvf.models.mission.file import Maps
+from uvf.models.scenario import Host, Member, Site
+from uvf.models.world.map_file import GridMap, find_map, map_path, save_map
+from uvf.models.yaml_data import BadInput, Place
+from uvf.slam.localization.known_map import is_session, known_map
+from uvf.slam.maps.masks import KeepOut, SpeedLimit
 
 
 def map_servers(site: Site) -> list[Host]:

@@ -9,21 +9,21 @@ from msgspec import Meta
 from numpy.typing import NDArray
 
 from schemas import topics
-from schemas.convert import occupancy_grid, pose2_of_frame, stamp
 from schemas.messages import Event, FrameTransform, Grid, LaserScan, MapFix, MapSession
-from services.slam.graph.uncertainty import turned
-from services.slam.maps.session import Session
-from services.slam.maps.tiles import TileMap
-from services.slam.method import Keyframe, SlamMethod
 from services.slam.placing_service import PlacingParams, PlacingService, Positive, fix_message
-from services.slam.reading import Reading
-from services.slam.resumable import Noting, Resumable
-from uvf.maths.planar import IDENTITY, Pose2, compose, inverse
-from uvf.maths.transforms import planar
-from uvf.runtime.frames import FrameBuffer, FrameError
-from uvf.runtime.params import BadInput
-from uvf.runtime.service import Outputs, frames
-from uvf.runtime.vehicle_file import Lidar
+from uvf.maths.se2 import IDENTITY, Pose2, compose, inverse
+from uvf.maths.se3 import planar
+from uvf.models.vehicle.file import Lidar
+from uvf.models.yaml_data import BadInput
+from uvf.runtime.contract.service import Outputs, frames
+from uvf.runtime.messages.convert import occupancy_grid, pose2_of_frame, stamp
+from uvf.runtime.messages.frames import FrameBuffer, FrameError
+from uvf.slam.graph.uncertainty import turned
+from uvf.slam.maps.session import Session
+from uvf.slam.maps.tiles import TileMap
+from uvf.slam.method import Keyframe, SlamMethod
+from uvf.slam.reading import Reading
+from uvf.slam.resumable import Noting, Resumable
 
 Floats = NDArray[np.float64]
 

@@ -6,17 +6,17 @@ import numpy as np
 from msgspec import Meta
 from numpy.typing import NDArray
 
-from schemas.convert import planar_frame, seconds, stamp
 from schemas.messages import Event, FrameTransform, LaserScan, MapFix
-from services.slam.correction import toward
-from services.slam.deskew import straightened
-from services.slam.reading import Beams, Reading
-from services.slam.scan_message import Shape, beams_of, is_usable, shape_of
-from uvf.maths.planar import IDENTITY, Pose2, compose, inverse
-from uvf.maths.transforms import planar
-from uvf.runtime.frames import FrameBuffer
-from uvf.runtime.service import Params, Service
-from uvf.runtime.vehicle_file import Lidar
+from uvf.maths.se2 import IDENTITY, Pose2, compose, inverse
+from uvf.maths.se3 import planar
+from uvf.models.vehicle.file import Lidar
+from uvf.runtime.contract.service import Params, Service
+from uvf.runtime.messages.convert import planar_frame, seconds, stamp
+from uvf.runtime.messages.frames import FrameBuffer
+from uvf.runtime.messages.scans import Shape, beams_of, is_usable, shape_of
+from uvf.slam.correction import toward
+from uvf.slam.deskew import straightened
+from uvf.slam.reading import Beams, Reading
 
 Floats = NDArray[np.float64]
 Positive = Annotated[float, Meta(gt=0)]

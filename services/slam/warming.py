@@ -2,19 +2,19 @@
 
 import numpy as np
 
-from services.slam.localization import known_map
-from services.slam.localization.localizer import Localizer
-from services.slam.localization.params import FilterParams
-from services.slam.made_corridor import there_and_back
-from services.slam.maps.shared_kernels import NO_KEY, moved_keys
-from services.slam.maps.tiles import TileMap
-from services.slam.matching.branch_and_bound import Window, search
-from services.slam.matching.cloud import cloud_of
-from services.slam.matching.likelihood import likelihood_field
-from services.slam.method import Keyframe, SlamMethod
-from services.slam.odometry.filter import DriveFilter
-from services.slam.odometry.states import Noise, Step
-from uvf.maths.planar import IDENTITY
+from uvf.estimation.odometry.filter import DriveFilter
+from uvf.estimation.odometry.states import Noise, Step
+from uvf.maths.se2 import IDENTITY
+from uvf.slam.localization import known_map
+from uvf.slam.localization.localizer import Localizer
+from uvf.slam.localization.params import FilterParams
+from uvf.slam.made_corridor import there_and_back
+from uvf.slam.maps.shared_kernels import NO_KEY, moved_keys
+from uvf.slam.maps.tiles import TileMap
+from uvf.slam.matching.branch_and_bound import Window, search
+from uvf.slam.matching.cloud import cloud_of
+from uvf.slam.matching.likelihood import likelihood_field
+from uvf.slam.method import Keyframe, SlamMethod
 
 
 def warm_up(method: SlamMethod) -> None:

@@ -18,14 +18,14 @@ from typing import Any, TypeVar, cast
 from google.protobuf.message import Message
 
 from schemas import topics
-from schemas.convert import stamp_ns
 from schemas.messages import Clock
 from schemas.topics import Request, Topic
-from uvf.runtime.address import router_from
-from uvf.runtime.bus import Publisher, Sample
-from uvf.runtime.stop_all import StopBook, StopVoice, told
-from uvf.runtime.wire import decode, guarded
-from uvf.runtime.zenoh_bus import ZenohBus
+from uvf.runtime.bus.address import router_from
+from uvf.runtime.bus.interface import Publisher, Sample
+from uvf.runtime.bus.wire import decode, guarded
+from uvf.runtime.bus.zenoh_bus import ZenohBus
+from uvf.runtime.messages.convert import stamp_ns
+from uvf.runtime.state.stop_all import StopBook, StopVoice, told
 
 M = TypeVar("M", bound=Message)
 Q = TypeVar("Q", bound=Message)

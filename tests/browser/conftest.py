@@ -7,15 +7,15 @@ from pathlib import Path
 
 import pytest
 
-from services.gcs.cameras import cameras
+from services.gcs.page.viser_page import ViserPage
 from services.gcs.service import GroundStation
-from services.gcs.viser_page import ViserPage
+from services.gcs.view.cameras import cameras
 from tests.second_try import Shared
 from tests.services.gcs.scripted import Script, demo_site, with_eyes
 from tests.services.gcs.wire import free_port
-from uvf.runtime.address import Address
-from uvf.runtime.shell import Shell
-from uvf.runtime.site import Host
+from uvf.models.scenario import Host
+from uvf.runtime.bus.address import Address
+from uvf.runtime.contract.service_runner import Shell
 
 CHROMIUM = Path("/usr/bin/chromium")
 FLAGS = [

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from schemas import topics
-from schemas.convert import array, planar_pose
 from schemas.messages import Mode, SetPoseRequest
 from tests.browser.canvas import TRACK, TRACK_BLUE, on_screen, pixels, until
 from tests.browser.conftest import opened
 from tests.distributed.system import System
 from tests.second_try import Shared
+from uvf.runtime.messages.convert import array, planar_pose
 
 pytestmark = pytest.mark.timeout(240)
 

@@ -6,17 +6,17 @@ import time
 import numpy as np
 
 from schemas import topics
-from schemas.convert import array, quaternion, stamp, vector
 from schemas.messages import Gnss, Kind, Mission, MissionItem, MissionProgress, Mode, NavState, Reply, VehicleStatus
 from services.autopilot.mavlink.service import MavlinkService
 from tests.services.autopilot.mavlink.rig import ORIGIN, PLANE_FACTS, ROVER_FACTS, shelves
 from uvf.maths.rotations import from_euler
-from uvf.runtime.bus import LocalBus
-from uvf.runtime.clock import NS
-from uvf.runtime.mavlink.endpoint import UdpLink
-from uvf.runtime.service import Service
-from uvf.runtime.shell import Shell
-from uvf.runtime.site import Host
+from uvf.mavlink.endpoint import UdpLink
+from uvf.models.scenario import Host
+from uvf.runtime.bus.interface import LocalBus
+from uvf.runtime.contract.service import Service
+from uvf.runtime.contract.service_runner import Shell
+from uvf.runtime.messages.convert import array, quaternion, stamp, vector
+from uvf.runtime.time.clock import NS
 
 SPEED = 60.0  # m/s
 

@@ -4,9 +4,9 @@ import sys
 import threading
 import time
 
+from launch.worker import worker
 from schemas import topics
-from uvf.launch.worker import worker
-from uvf.runtime.zenoh_bus import ZenohBus
+from uvf.runtime.bus.zenoh_bus import ZenohBus
 
 
 def busy(endpoint):
@@ -67,7 +67,7 @@ def waiting(endpoint):
 
 
 def unreachable(endpoint):
-    from uvf.launch.processes import open_bus
+    from launch.processes import open_bus
 
     with worker("lonely") as life:
         sys.stdout.write("ready\n")

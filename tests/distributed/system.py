@@ -12,7 +12,7 @@ import uvf
 from schemas import topics
 from schemas.messages import Process
 from tests.runtime.modes import free_port
-from uvf.runtime.site import ROOT
+from uvf.models.scenario import ROOT
 
 PATIENCE = 90.0
 
@@ -33,7 +33,7 @@ class System:
             "UVF_RUNS": str(runs),
             "UVF_STATE": str(runs / "state"),
         }
-        self._command = [sys.executable, "-m", "uvf.launch.cli", "up", mission, *([] if page else ["--no-gcs"]), *arguments]
+        self._command = [sys.executable, "-m", "launch.cli", "up", mission, *([] if page else ["--no-gcs"]), *arguments]
         self._output = runs / "up.txt"
 
     def __enter__(self):

@@ -6,8 +6,8 @@ import uvf
 from schemas import topics
 from schemas.messages import Clock
 from tests.runtime.modes import free_port
-from uvf.runtime.wire import Malformed
-from uvf.runtime.zenoh_bus import ZenohBus, open_router
+from uvf.runtime.bus.wire import Malformed
+from uvf.runtime.bus.zenoh_bus import ZenohBus, open_router
 
 
 def test_what_a_client_sends_bears_time_and_epoch_of_the_clock():

@@ -9,7 +9,7 @@ import pytest
 from tests.distributed.programs.script import Script
 from tests.distributed.programs.udp_station import UdpStation
 from tests.distributed.system import System
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
 
 STRIP = Path(__file__).parent / "programs" / "strip.yaml"
 FLIGHT_WITHIN = 300.0  # s

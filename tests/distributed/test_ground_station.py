@@ -10,12 +10,12 @@ from mavsdk.plugins.mission import Mission, MissionItem, MissionPlan
 from mavsdk.plugins.telemetry import FlightMode, Telemetry
 
 from schemas import topics
-from schemas.convert import array
 from tests.distributed.system import System
 from tests.distributed.test_mavsdk import wait
 from tests.second_try import Shared
 from uvf.maths.geodesy import LocalTangent
-from uvf.runtime.site import ROOT, load_site
+from uvf.models.scenario import ROOT, load_site
+from uvf.runtime.messages.convert import array
 
 PLANE, ROVER = 1, 2
 DEGREE = math.radians(1.0)

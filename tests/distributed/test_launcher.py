@@ -7,13 +7,13 @@ import threading
 import pytest
 
 import uvf
+from launch.launcher import Launcher
+from launch.supervisor import DEATHS
 from schemas import topics
 from schemas.messages import Clock, Event, Process
 from tests.runtime.modes import free_port
-from uvf.launch.launcher import Launcher
-from uvf.launch.supervisor import DEATHS
-from uvf.runtime.keeper import Keeper
-from uvf.runtime.zenoh_bus import ZenohBus, open_router
+from uvf.runtime.bus.zenoh_bus import ZenohBus, open_router
+from uvf.runtime.state.state_store import Keeper
 
 NAME = "launcher.recorder"
 CLOCK = Clock(tick=500, t_ns=5_000_000_000, epoch=3)

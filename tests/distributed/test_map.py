@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 
 from schemas import topics
-from schemas.convert import occupancy_cells
 from schemas.messages import MapRequest, SaveMapRequest
 from tests.distributed.system import System
-from uvf.maths.planar import Pose2
-from uvf.runtime.map_file import GridMap, find_map, save_map
-from uvf.runtime.site import ROOT
+from uvf.maths.se2 import Pose2
+from uvf.models.scenario import ROOT
+from uvf.models.world.map_file import GridMap, find_map, save_map
+from uvf.runtime.messages.convert import occupancy_cells
 
 MISSION = """
 about: One burger that drives about with a keep-out mask.
@@ -43,7 +43,7 @@ def run(tmp_path_factory):
 
 
 def uvf(run, *arguments):
-    command = [sys.executable, "-m", "uvf.launch.cli", "map", *arguments]
+    command = [sys.executable, "-m", "launch.cli", "map", *arguments]
     environment = {**run.system.environment, "PYTHONPATH": f"{ROOT}:{ROOT / 'src'}"}
     return subprocess.run(command, cwd=run.folder, env=environment, capture_output=True, text=True, check=False)
 
@@ -79,7 +79,7 @@ def test_a_program_asks_for_the_map_and_has_it_saved(run):
 
 def test_a_saved_map_is_served_for_as_long_as_wished(run):
     save_map(GridMap(KEPT_OUT, 0.1, Pose2(1.0, 2.0, 0.3)), run.folder / "known.png", "scale")
-    command = [sys.executable, "-m", "uvf.launch.cli", "map", "load", str(run.folder / "known.png"), "--vehicle", "burger"]
+    command = [sys.executable, "-m", "launch.cli", "map", "load", str(run.folder / "known.png"), "--vehicle", "burger"]
     server = subprocess.Popen(command, env={**os.environ, **run.system.environment}, stdout=subprocess.PIPE, text=True)
     try:
         known = run.client.read("burger", topics.KNOWN_MAP, 30.0)

@@ -10,15 +10,15 @@ import pytest
 
 import uvf
 from schemas import topics
-from schemas.convert import array
 from schemas.messages import Mode, ModeRequest, SetCurrentRequest
 from tests.distributed.system import PATIENCE, System
 from tests.runtime.modes import free_port
-from uvf.runtime.site import ROOT
+from uvf.models.scenario import ROOT
+from uvf.runtime.messages.convert import array
 
 MISSION = "circuit"
 METRES = 40.0  # between two looks while the machine is busy
-UVF = (sys.executable, "-m", "uvf.launch.cli")
+UVF = (sys.executable, "-m", "launch.cli")
 
 
 class OtherBus:
@@ -33,7 +33,7 @@ class OtherBus:
     def start(self, *arguments):
         with self.output.open("ab") as out:
             return subprocess.Popen(
-                [sys.executable, "-m", "uvf.launch.cli", *arguments], cwd=ROOT, env=self._environment, stdout=out, stderr=out
+                [sys.executable, "-m", "launch.cli", *arguments], cwd=ROOT, env=self._environment, stdout=out, stderr=out
             )
 
     def __enter__(self):
@@ -112,6 +112,6 @@ def obeys(here, run):
 def test_an_address_that_makes_no_sense_is_refused_in_one_line():
     for wrong, why in (("tcp:127.0.0.1:5760", "no such kind"), ("udpin:14550", "not host:port"), ("udp:127.0.0.1:99999", "not host:port")):
         done = subprocess.run(
-            [sys.executable, "-m", "uvf.launch.cli", "mavlink-bridge", wrong], cwd=ROOT, capture_output=True, text=True, check=False
+            [sys.executable, "-m", "launch.cli", "mavlink-bridge", wrong], cwd=ROOT, capture_output=True, text=True, check=False
         )
         assert done.returncode == 2 and why in done.stderr and len(done.stderr.strip().splitlines()) == 1, done.stderr

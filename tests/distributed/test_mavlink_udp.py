@@ -7,7 +7,7 @@ import time
 import pytest
 
 from services.autopilot.mavlink.build import open_link
-from uvf.runtime.mavlink.endpoint import FORGET_AFTER, MOST_LEARNED, UdpLink
+from uvf.mavlink.endpoint import FORGET_AFTER, MOST_LEARNED, UdpLink
 
 
 @pytest.fixture

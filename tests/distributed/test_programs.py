@@ -20,7 +20,7 @@ from tests.distributed.programs.udp_station import UdpStation
 from tests.distributed.system import System
 from tests.distributed.test_mavsdk import free_port
 from tests.services.autopilot.mavlink.qgroundcontrol import QGroundControl
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
 
 FIELD = Path(__file__).parent / "programs" / "field.yaml"
 VEHICLES = [1, 2, 3, 4, 5]

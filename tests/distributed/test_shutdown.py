@@ -8,8 +8,8 @@ import sys
 import pytest
 
 from tests.runtime.modes import free_port
-from uvf.runtime.site import ROOT
-from uvf.runtime.zenoh_bus import open_router
+from uvf.models.scenario import ROOT
+from uvf.runtime.bus.zenoh_bus import open_router
 
 PATIENCE = 20.0
 

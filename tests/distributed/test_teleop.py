@@ -12,8 +12,8 @@ import pytest
 from schemas import topics
 from schemas.messages import ArmRequest, DriveCommand, ModeRequest, Reply
 from tests.runtime.modes import free_port
-from uvf.runtime.site import ROOT
-from uvf.runtime.zenoh_bus import ZenohBus, open_router
+from uvf.models.scenario import ROOT
+from uvf.runtime.bus.zenoh_bus import ZenohBus, open_router
 
 PATIENCE = 90.0  # s
 IGNORING_CTRL_C = 'trap \'\' INT; exec "$0" "$@"'  # as in all that is started from the background of a shell: the harder case
@@ -34,7 +34,7 @@ class Session:
         self.ours, self.its = pty.openpty()
         self.settings = termios.tcgetattr(self.its)
         self.process = subprocess.Popen(
-            ["sh", "-c", IGNORING_CTRL_C, "setsid", "--ctty", sys.executable, "-m", "uvf.launch.cli", "teleop", "burger"],
+            ["sh", "-c", IGNORING_CTRL_C, "setsid", "--ctty", sys.executable, "-m", "launch.cli", "teleop", "burger"],
             stdin=self.its,
             stdout=self.its,
             stderr=self.its,

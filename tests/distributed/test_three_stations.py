@@ -9,7 +9,7 @@ import pytest
 
 from tests.distributed.mavlink_vehicles import LiveVehicles
 from tests.services.autopilot.mavlink.rig import PLANE, ROVER, long
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
 
 SECONDS = 5.0
 WARM_UP = 1.0

@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 
 from schemas import topics
-from schemas.convert import array
 from tests.distributed.system import System
 from tests.second_try import Shared
-from uvf.runtime.log_reading import read_log
-from uvf.runtime.site import ROOT
+from uvf.models.scenario import ROOT
+from uvf.runtime.log.reading import read_log
+from uvf.runtime.messages.convert import array
 
 
 @pytest.fixture(scope="module")
@@ -123,7 +123,7 @@ def test_stop_all_stops_the_rover_and_lets_the_aircraft_loiter_until_released(sy
 
 def test_the_tools_see_the_system(system):
     def tool(*arguments):
-        command = [system._command[0], "-m", "uvf.launch.cli", *arguments]
+        command = [system._command[0], "-m", "launch.cli", *arguments]
         return subprocess.run(command, capture_output=True, text=True, env=system.environment, timeout=90, check=True).stdout
 
     assert "mapping" in tool("node", "list")

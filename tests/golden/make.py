@@ -3,12 +3,12 @@
 import tempfile
 from pathlib import Path
 
+from launch.run import run_lockstep
 from schemas.topics import IMAGE
-from uvf.launch.run import run_lockstep
-from uvf.runtime.bus import matches
-from uvf.runtime.log_reading import read_log
-from uvf.runtime.recording import Recorder
-from uvf.runtime.site import ROOT, load_site
+from uvf.models.scenario import ROOT, load_site
+from uvf.runtime.bus.interface import matches
+from uvf.runtime.log.reading import read_log
+from uvf.runtime.log.recording import Recorder
 
 GOLDEN = Path(__file__).with_name("demo.mcap")
 SECONDS = 8.0

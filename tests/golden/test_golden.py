@@ -8,10 +8,10 @@ import dataclasses
 import msgspec
 import pytest
 
+from launch import catalogue
 from tests.golden.make import GOLDEN
-from uvf.launch import catalogue
-from uvf.runtime.replay import into_service
-from uvf.runtime.site import ROOT, load_site
+from uvf.models.scenario import ROOT, load_site
+from uvf.runtime.log.replay import into_service
 
 TOLERANCE = 1e-6  # processors round the last digits differently
 KINDS = [catalogue.kind(name) for name in ("sim_ground", "sim_air", "slam", "planner", "autopilot")]

@@ -12,12 +12,12 @@ from services.mavlink_bridge.frame import Origin
 from services.mavlink_bridge.service import BridgedVehicle
 from services.mavlink_bridge.station import COMPONENT, SYSTEM, Station
 from tests.services.autopilot.mavlink.rig import MemoryLink
-from uvf.runtime.bus import LocalBus
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
+from uvf.models.scenario import Host
+from uvf.runtime.bus.interface import LocalBus
+from uvf.runtime.bus.wire import decode_sample
+from uvf.runtime.contract.service_runner import Shell
 from uvf.runtime.mavlink.mission_items import ORIGIN
-from uvf.runtime.shell import Shell
-from uvf.runtime.site import Host
-from uvf.runtime.wire import decode_sample
 
 HERE, THERE = ("127.0.0.1", 5001), ("127.0.0.1", 5002)
 STEP = 0.1  # s

@@ -9,7 +9,7 @@ from google.protobuf.descriptor import FieldDescriptor as F
 from schemas import topics
 from schemas.limits import BYTES, ENTRIES, LENGTHS, MOST, OPEN, PATTERNS, RANGES, TEXT, size_of
 from schemas.messages import StopCommand
-from uvf.runtime.bus import Sample
+from uvf.runtime.bus.interface import Sample
 
 STRANGER = 666  # its boot id
 NUMBERS = (math.nan, math.inf, -math.inf, 1e300, -1e13)

@@ -25,11 +25,11 @@ from tests.hostile import mavlink_client
 from tests.hostile.bus_client import STRANGER, Stranger
 from tests.hostile.test_page_socket import CAMERA, nonsense, pack
 from tests.services.gcs.wire import Browser, connect
-from uvf.runtime.envelope import Envelope
-from uvf.runtime.site import ROOT, load_site
-from uvf.runtime.topic_lookup import topic_of
-from uvf.runtime.wire import Malformed, decode_sample
-from uvf.runtime.zenoh_bus import ZenohBus
+from uvf.models.scenario import ROOT, load_site
+from uvf.runtime.bus.envelope import Envelope
+from uvf.runtime.bus.wire import Malformed, decode_sample
+from uvf.runtime.bus.zenoh_bus import ZenohBus
+from uvf.runtime.contract.topic_lookup import topic_of
 
 A_BURST = 200
 ASKED = 10  # requests in a burst

@@ -15,8 +15,8 @@ from tests.services.autopilot.mavlink.airborne import Airborne
 from tests.services.autopilot.mavlink.rig import GCS, long
 from tests.services.autopilot.mavlink.station_in_flight import in_the_air
 from tests.services.autopilot.mavlink.test_two_stations import sizes
-from uvf.runtime.mavlink import dialect as mav
-from uvf.runtime.mavlink.codec import Codec
+from uvf.mavlink import dialect as mav
+from uvf.mavlink.codec import Codec
 
 OURS = 1
 ANSWERED_WITHIN = 6.0  # s, three questions of 1.9 s to the autopilot, one after the other

@@ -7,13 +7,13 @@ import sys
 import time
 from functools import partial
 
-from services.gcs.cameras import cameras
+from services.gcs.page.viser_page import ViserPage
 from services.gcs.service import GroundStation
-from services.gcs.viser_page import ViserPage
+from services.gcs.view.cameras import cameras
 from tests.services.gcs.scripted import Script, demo_site, with_eyes
-from uvf.runtime.address import Address
-from uvf.runtime.shell import Shell
-from uvf.runtime.site import Host
+from uvf.models.scenario import Host
+from uvf.runtime.bus.address import Address
+from uvf.runtime.contract.service_runner import Shell
 
 
 def main(port: int) -> None:

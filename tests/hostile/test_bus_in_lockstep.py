@@ -4,14 +4,14 @@ import os
 
 import pytest
 
+from launch import catalogue
 from schemas import topics
 from schemas.messages import VehicleStatus
 from tests.hostile.bus_client import STRANGER, Stranger
-from uvf.launch import catalogue
-from uvf.runtime.bus import LocalBus, Query
-from uvf.runtime.lockstep import Lockstep
-from uvf.runtime.site import ROOT, load_site
-from uvf.runtime.stop_all import StopVoice
+from uvf.models.scenario import ROOT, load_site
+from uvf.runtime.bus.interface import LocalBus, Query
+from uvf.runtime.state.stop_all import StopVoice
+from uvf.runtime.time.lockstep import Lockstep
 
 SECONDS = float(os.environ.get("UVF_HOSTILE_SECONDS", "4"))
 """Simulated seconds of a run; by hand some hundreds make a million messages."""

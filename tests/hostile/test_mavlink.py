@@ -11,7 +11,7 @@ from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 
 from tests.hostile.mavlink_client import KINDS, Hostile, framed, payload
-from uvf.runtime.mavlink.codec import Codec
+from uvf.mavlink.codec import Codec
 
 EXAMPLES = int(os.environ.get("UVF_HOSTILE_EXAMPLES", "40"))
 

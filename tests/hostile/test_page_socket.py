@@ -14,9 +14,9 @@ import msgspec
 import pytest
 import websockets
 
-from services.gcs.viser_socket import LARGEST, MOST_BROWSERS, SILENT_FOR, is_sound
+from services.gcs.page.viser_socket import LARGEST, MOST_BROWSERS, SILENT_FOR, is_sound
 from tests.services.gcs.wire import CAMERA, Browser, connect, free_port, until
-from uvf.runtime.site import ROOT
+from uvf.models.scenario import ROOT
 
 pytestmark = pytest.mark.timeout(120)
 

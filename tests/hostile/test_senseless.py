@@ -5,12 +5,12 @@ import traceback
 
 import pytest
 
+from launch import catalogue
 from schemas import topics
 from tests.hostile.bus_client import Stranger
-from uvf.launch import catalogue
-from uvf.runtime.bus import LocalBus
-from uvf.runtime.lockstep import Lockstep
-from uvf.runtime.site import ROOT, load_site
+from uvf.models.scenario import ROOT, load_site
+from uvf.runtime.bus.interface import LocalBus
+from uvf.runtime.time.lockstep import Lockstep
 
 SECONDS = float(os.environ.get("UVF_HOSTILE_SECONDS", "6"))
 A_TICK = 4  # messages to each instance

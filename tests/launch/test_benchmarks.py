@@ -5,7 +5,7 @@ import importlib
 import pytest
 
 from benchmarks import kept
-from uvf.runtime.site import ROOT
+from uvf.models.scenario import ROOT
 
 GROUPS = sorted(path.stem for path in (ROOT / "benchmarks").glob("*.py") if "CASES = " in path.read_text())
 

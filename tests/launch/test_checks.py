@@ -5,10 +5,10 @@ import shutil
 import pytest
 import yaml
 
-from uvf.launch import catalogue
-from uvf.launch.checks import check_params, wiring_problems
-from uvf.runtime.params import BadInput
-from uvf.runtime.site import ROOT, load_site
+from launch import catalogue
+from launch.checks import check_params, wiring_problems
+from uvf.models.scenario import ROOT, load_site
+from uvf.models.yaml_data import BadInput
 
 
 @pytest.fixture

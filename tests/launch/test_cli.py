@@ -7,14 +7,14 @@ import sys
 import pytest
 import yaml
 
-from uvf.launch import settings
-from uvf.runtime.site import ROOT
+from launch import settings
+from uvf.models.scenario import ROOT
 
 
 def uvf(*arguments, **environment):
     import os
 
-    command = [sys.executable, "-m", "uvf.launch.cli", *arguments]
+    command = [sys.executable, "-m", "launch.cli", *arguments]
     return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=60, env={**os.environ, **environment}, check=False)
 
 
@@ -86,7 +86,7 @@ def test_without_a_router_the_tools_say_so():
 
 def without_engines(*arguments):
     """What a command says; none of the engines may have been imported for it."""
-    code = f"import sys, uvf.launch.cli as c\ntry: c.app({list(arguments)!r})\nexcept SystemExit as end: print('exit', end.code)\n"
+    code = f"import sys, launch.cli as c\ntry: c.app({list(arguments)!r})\nexcept SystemExit as end: print('exit', end.code)\n"
     code += "print([m for m in ('zenoh', 'numpy', 'numba', 'pybullet', 'jsbsim', 'viser', 'trimesh') if m in sys.modules])"
     done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
     assert done.stdout.strip().endswith("[]")

@@ -6,21 +6,21 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
+from launch.cli import app
+from launch.flights.figures import deviation, figures
+from launch.flights.history import histories
+from launch.flights.report import flights
+from launch.recorder import attachments
 from schemas import topics
-from schemas.convert import stamp
 from schemas.messages import Battery, Kind, Mode, NavState, Quaternion, SurfaceCommand, Vector3, VehicleStatus
 from services.autopilot.air import build as autopilot
 from services.sim_air import build as sim_air
-from uvf.launch.cli import app
-from uvf.launch.flights.figures import deviation, figures
-from uvf.launch.flights.history import histories
-from uvf.launch.flights.report import flights
-from uvf.launch.recorder import attachments
-from uvf.runtime.bus import Sample
-from uvf.runtime.lockstep import Lockstep
-from uvf.runtime.log_reading import read_log
-from uvf.runtime.recording import Recorder
-from uvf.runtime.site import ROOT, load_site
+from uvf.models.scenario import ROOT, load_site
+from uvf.runtime.bus.interface import Sample
+from uvf.runtime.log.reading import read_log
+from uvf.runtime.log.recording import Recorder
+from uvf.runtime.messages.convert import stamp
+from uvf.runtime.time.lockstep import Lockstep
 
 
 def sample(topic, message, t):

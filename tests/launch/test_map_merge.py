@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from services.slam.maps.session import Session
-from tests.services.slam.merging.offices import anne, bert, first
-from uvf.launch.cli import app
-from uvf.runtime.map_file import load_map
+from launch.cli import app
+from tests.slam.merging.offices import anne, bert, first
+from uvf.models.world.map_file import load_map
+from uvf.slam.maps.session import Session
 
 
 @pytest.fixture

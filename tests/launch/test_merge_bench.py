@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from benchmarks import merge
-from services.slam.reading import Reading
-from tests.services.slam.merging.offices import anne, bert
-from tests.services.slam.room_log import write_room_log
-from uvf.maths.planar import IDENTITY
-from uvf.maths.planar_arrays import composed
-from uvf.runtime.params import BadInput
+from tests.slam.merging.offices import anne, bert
+from tests.slam.room_log import write_room_log
+from uvf.maths.se2 import IDENTITY
+from uvf.maths.se2_arrays import composed
+from uvf.models.yaml_data import BadInput
+from uvf.slam.reading import Reading
 
 
 @pytest.fixture(scope="module")

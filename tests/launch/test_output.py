@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-from uvf.launch.output import LONGEST_LINE, Output, RotatingLog
+from launch.output import LONGEST_LINE, Output, RotatingLog
 
 KEPT = 10_000
 

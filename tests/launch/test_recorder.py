@@ -7,13 +7,13 @@ from collections import Counter
 
 import pytest
 
+from launch.recorder import ROOM, LogSeries, attachments
+from launch.runs import keep_quota
 from schemas import topics
-from uvf.launch.recorder import ROOM, LogSeries, attachments
-from uvf.launch.runs import keep_quota
-from uvf.runtime.bus import LocalBus, Sample
-from uvf.runtime.log_reading import log_attachments, log_metadata, read_log, recover
-from uvf.runtime.params import BadInput
-from uvf.runtime.site import ROOT, load_site
+from uvf.models.scenario import ROOT, load_site
+from uvf.models.yaml_data import BadInput
+from uvf.runtime.bus.interface import LocalBus, Sample
+from uvf.runtime.log.reading import log_attachments, log_metadata, read_log, recover
 
 POSE, MAP, STATUS = (topic.at("v") for topic in (topics.POSE, topics.MAP, topics.STATUS))
 NOISE = random.Random(1).randbytes(200_000)  # does not compress

@@ -6,8 +6,8 @@ import sys
 
 import pytest
 
-from uvf.launch.runs import hold, keep_quota, new_run, prune
-from uvf.runtime.params import BadInput
+from launch.runs import hold, keep_quota, new_run, prune
+from uvf.models.yaml_data import BadInput
 
 
 @pytest.fixture
@@ -74,7 +74,7 @@ def test_a_new_run_is_held_by_its_process(tmp_path, monkeypatch):
 
 def test_the_lock_of_a_killed_process_is_no_obstacle(base):
     path = str(base / "2026-01-01_10-00-00")
-    code = f"from pathlib import Path; from uvf.launch.runs import hold; hold(Path({path!r})); print(flush=True); input()"
+    code = f"from pathlib import Path; from launch.runs import hold; hold(Path({path!r})); print(flush=True); input()"
     writer = subprocess.Popen([sys.executable, "-c", code], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
     try:
         writer.stdout.readline()

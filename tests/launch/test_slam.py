@@ -7,14 +7,14 @@ import pytest
 import yaml
 from typer.testing import CliRunner
 
-from services.slam.evaluation.reference import Trajectory, absolute_error, read_trajectory
-from services.slam.evaluation.relations import read_relations
-from services.slam.maps.session import Session
-from tests.services.slam.room_log import PERIOD, READINGS, stamps, true_way, write_room_log
-from uvf.launch.cli import app
-from uvf.maths.planar_arrays import composed, inverted
-from uvf.runtime.map_file import load_map
-from uvf.runtime.site import ROOT
+from launch.cli import app
+from tests.slam.room_log import PERIOD, READINGS, stamps, true_way, write_room_log
+from uvf.maths.se2_arrays import composed, inverted
+from uvf.models.scenario import ROOT
+from uvf.models.world.map_file import load_map
+from uvf.slam.evaluation.reference import Trajectory, absolute_error, read_trajectory
+from uvf.slam.evaluation.relations import read_relations
+from uvf.slam.maps.session import Session
 
 TRUTH = Trajectory(stamps(), true_way())
 

@@ -7,11 +7,11 @@ import pytest
 from typer.testing import CliRunner
 
 from benchmarks import slam
-from services.slam.evaluation.variants import VARIANTS
-from services.slam.methods import METHODS
-from tests.services.slam.room_log import write_room_log
-from uvf.launch.cli import app
-from uvf.runtime.params import BadInput
+from launch.cli import app
+from tests.slam.room_log import write_room_log
+from uvf.models.yaml_data import BadInput
+from uvf.slam.evaluation.variants import VARIANTS
+from uvf.slam.methods import METHODS
 
 
 @pytest.fixture(scope="module")

@@ -4,18 +4,18 @@ import numpy as np
 import pytest
 
 from benchmarks import slam_live
+from launch.apart import apart
 from schemas import topics
-from schemas.convert import occupancy_grid, planar_pose, stamp
 from schemas.messages import FrameTransform, NavState, PoseInFrame, Vector3
-from services.slam.maps.placing import centres, values_at
-from services.slam.maps.quality import as_grid
-from uvf.launch.apart import apart
-from uvf.maths.planar import Pose2, compose
-from uvf.runtime.bus import Sample
-from uvf.runtime.map_file import GridMap
-from uvf.runtime.params import BadInput
-from uvf.runtime.site import load_site
-from uvf.runtime.world_geometry import section
+from uvf.maths.se2 import Pose2, compose
+from uvf.models.scenario import load_site
+from uvf.models.world.geometry import section
+from uvf.models.world.map_file import GridMap
+from uvf.models.yaml_data import BadInput
+from uvf.runtime.bus.interface import Sample
+from uvf.runtime.messages.convert import occupancy_grid, planar_pose, stamp
+from uvf.slam.maps.placing import centres, values_at
+from uvf.slam.maps.quality import as_grid
 
 SPEED, RATE = 0.5, 0.6  # m/s, rad/s: past half a turn on the way
 WORLD_FROM_MAP = Pose2(2.2, 1.3, np.pi / 2)

@@ -3,9 +3,9 @@
 import pytest
 import yaml
 
-from uvf.launch.supervise import process_name
-from uvf.runtime.params import BadInput
-from uvf.runtime.site import ROOT
+from launch.supervise import process_name
+from uvf.models.scenario import ROOT
+from uvf.models.yaml_data import BadInput
 
 
 @pytest.mark.parametrize(

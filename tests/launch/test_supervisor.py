@@ -9,10 +9,10 @@ from pathlib import Path
 
 import pytest
 
+from launch import supervisor as module
+from launch.supervisor import DEATHS, HANGS, Child, Supervisor
 from schemas.messages import Process
 from tests.runtime.modes import free_port
-from uvf.launch import supervisor as module
-from uvf.launch.supervisor import DEATHS, HANGS, Child, Supervisor
 
 PATIENCE = 20.0
 BUSY = "while True: pass"

@@ -1,7 +1,7 @@
 """A service that waits for an input is told of in the terminal, once."""
 
+from launch.waits import PATIENCE, Waits
 from schemas.messages import Health
-from uvf.launch.waits import PATIENCE, Waits
 
 
 class Desk:

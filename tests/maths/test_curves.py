@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from uvf.launch.testing import data_folder
+from launch.commands.testing import data_folder
 from uvf.maths.curves import DubinsPath, dubins, dubins_paths
 
 angles = st.floats(-math.pi, math.pi)

@@ -6,8 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from uvf.maths.kinematics import DifferentialDrive, Twist, WheelSpeeds, move, spin_velocity, twist_between
-from uvf.maths.planar import Pose2
 from uvf.maths.rotations import wrap
+from uvf.maths.se2 import Pose2
 
 BURGER = DifferentialDrive(wheel_radius=0.033, track=0.16)
 speeds = st.floats(-20, 20)

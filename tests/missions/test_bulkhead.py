@@ -3,14 +3,14 @@
 import pytest
 import yaml
 
+from launch import catalogue
 from schemas import topics
 from schemas.messages import Event, MissionProgress, NavState, VehicleStatus
 from services.autopilot.air.service import AutopilotAir
 from services.autopilot.ground.service import GroundAutopilot
-from uvf.launch import catalogue
-from uvf.runtime.bus import LocalBus
-from uvf.runtime.lockstep import Lockstep
-from uvf.runtime.site import ROOT, load_site
+from uvf.models.scenario import ROOT, load_site
+from uvf.runtime.bus.interface import LocalBus
+from uvf.runtime.time.lockstep import Lockstep
 
 ROVERS = {
     "ann": ((2.2, 1.3), (3.4, 1.4)),

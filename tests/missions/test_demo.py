@@ -7,9 +7,9 @@ import sys
 
 import pytest
 
-from uvf.launch.run import run_lockstep
-from uvf.runtime.log_reading import log_metadata
-from uvf.runtime.site import ROOT, load_site
+from launch.run import run_lockstep
+from uvf.models.scenario import ROOT, load_site
+from uvf.runtime.log.reading import log_metadata
 
 DEMO = ROOT / "missions" / "demo.yaml"
 
@@ -32,7 +32,7 @@ def test_nothing_is_missing_in_its_log(demo):
 
 
 def test_another_process_gives_the_same_bytes_and_exits_with_0(demo, tmp_path):
-    command = [sys.executable, "-m", "uvf.launch.cli", "run", "demo", "--lockstep", "--until", "120", "--log", str(tmp_path / "log.mcap")]
+    command = [sys.executable, "-m", "launch.cli", "run", "demo", "--lockstep", "--until", "120", "--log", str(tmp_path / "log.mcap")]
     environment = {**os.environ, "PYTHONHASHSEED": "7"}
     done = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True, timeout=300, check=False)
     assert done.returncode == 0, done.stderr

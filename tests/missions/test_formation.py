@@ -2,13 +2,13 @@
 
 import pytest
 
+from launch.scoring.scores import MEASURES, Scorer
 from schemas import topics
 from schemas.messages import Mode, VehicleStatus
 from services.autopilot.air import build as autopilot
 from services.sim_air import build as sim_air
-from uvf.launch.scores import MEASURES, Scorer
-from uvf.runtime.lockstep import Lockstep
-from uvf.runtime.site import ROOT, load_site
+from uvf.models.scenario import ROOT, load_site
+from uvf.runtime.time.lockstep import Lockstep
 
 pytestmark = pytest.mark.timeout(300)
 SECONDS = 60.0

@@ -2,13 +2,13 @@
 
 import pytest
 
+from launch import catalogue
+from launch.settings import mission_path
 from schemas import topics
 from schemas.messages import Event, WheelCommand
-from uvf.launch import catalogue
-from uvf.launch.settings import mission_path
-from uvf.runtime.bus import LocalBus
-from uvf.runtime.lockstep import Lockstep
-from uvf.runtime.site import load_site
+from uvf.models.scenario import load_site
+from uvf.runtime.bus.interface import LocalBus
+from uvf.runtime.time.lockstep import Lockstep
 
 FAILS = 8.0  # s
 UNTIL = 15.0  # s

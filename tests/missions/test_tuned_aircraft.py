@@ -9,8 +9,8 @@ import yaml
 
 from benchmarks import autopilot as bench
 from benchmarks.accuracy_flight import PLANE, Probe
-from uvf.launch.vehicles.tuning import tune, write
-from uvf.runtime.site import ROOT, load_site
+from launch.vehicles.tuning import tune, write
+from uvf.models.scenario import ROOT, load_site
 
 pytestmark = pytest.mark.timeout(300)  # tune flies many steady flights
 

@@ -3,12 +3,12 @@
 from schemas import topics
 from schemas.messages import Clock, Done
 from tests.runtime.outcome import Outcome, ask
-from uvf.runtime.bus import LocalBus
-from uvf.runtime.conductor import Conductor
-from uvf.runtime.keeper import Keeper
-from uvf.runtime.live import LATE_START
-from uvf.runtime.shell import Shell
-from uvf.runtime.zenoh_bus import kept_key
+from uvf.runtime.bus.interface import LocalBus
+from uvf.runtime.bus.zenoh_bus import kept_key
+from uvf.runtime.contract.service_runner import Shell
+from uvf.runtime.state.state_store import Keeper
+from uvf.runtime.time.conductor import Conductor
+from uvf.runtime.time.live import LATE_START
 
 TICK = 0.01  # s
 BUSY = (4, 5, 6)  # of ten ticks: live, everybody but the simulators hears of these late

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import msgspec
 
-from uvf.runtime.params import BadInput
-from uvf.runtime.quiet import c_output_discarded
+from uvf.models.yaml_data import BadInput
+from uvf.runtime.process.quiet import c_output_discarded
 
 
 class Body(msgspec.Struct):

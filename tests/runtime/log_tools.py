@@ -4,14 +4,14 @@ import re
 import sys
 from pathlib import Path
 
+from launch.commands.report import describe_log
 from schemas import topics
 from schemas.messages import NavState
-from uvf.launch.report import describe_log
-from uvf.runtime.bus import LocalBus
-from uvf.runtime.log_reading import recover
-from uvf.runtime.replay import into_service, onto_bus
-from uvf.runtime.service import Service
-from uvf.runtime.site import Host
+from uvf.models.scenario import Host
+from uvf.runtime.bus.interface import LocalBus
+from uvf.runtime.contract.service import Service
+from uvf.runtime.log.reading import recover
+from uvf.runtime.log.replay import into_service, onto_bus
 
 
 class Watcher(Service):

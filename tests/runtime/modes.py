@@ -11,12 +11,12 @@ from schemas.messages import Clock, Done
 from tests.runtime.in_process import InProcess
 from tests.runtime.outcome import Outcome, ask
 from tests.runtime.toys import Toys
-from uvf.runtime.bus import LocalBus
-from uvf.runtime.conductor import Conductor
-from uvf.runtime.keeper import Keeper
-from uvf.runtime.live import Live
-from uvf.runtime.lockstep import Lockstep
-from uvf.runtime.zenoh_bus import ZenohBus, open_router
+from uvf.runtime.bus.interface import LocalBus
+from uvf.runtime.bus.zenoh_bus import ZenohBus, open_router
+from uvf.runtime.state.state_store import Keeper
+from uvf.runtime.time.conductor import Conductor
+from uvf.runtime.time.live import Live
+from uvf.runtime.time.lockstep import Lockstep
 
 SAY_AGAIN = 0.2  # s, wall: how often time that stands is told
 

@@ -1,6 +1,6 @@
 """What a run leaves behind, and how a client asks, the same in every mode."""
 
-from uvf.runtime.recording import LogHash
+from uvf.runtime.log.recording import LogHash
 
 
 class Outcome:

@@ -3,13 +3,13 @@
 import pytest
 
 from schemas import topics
-from schemas.convert import stamp
 from schemas.messages import Event, FrameTransform, Imu, Mission, SurfaceCommand, VehicleStatus, WheelCommand
 from tests.runtime.modes import RUNS
 from tests.runtime.toys import Cast
-from uvf.runtime.bus import Sample
-from uvf.runtime.inbox import OWNERS_MOST, InputBox
-from uvf.runtime.service import Service, each_vehicle, every, optional
+from uvf.runtime.bus.interface import Sample
+from uvf.runtime.contract.inbox import OWNERS_MOST, InputBox
+from uvf.runtime.contract.service import Service, each_vehicle, every, optional
+from uvf.runtime.messages.convert import stamp
 
 SILENT = 0.30  # s, when the last message of each stream is sent
 ONCE = 0.10  # s, when the latched one and the event are sent

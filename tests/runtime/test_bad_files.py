@@ -6,10 +6,10 @@ import shutil
 import pytest
 import yaml
 
-from uvf.runtime.params import BadInput
-from uvf.runtime.site import ROOT, load_site
-from uvf.runtime.vehicle_file import load_vehicle
-from uvf.runtime.world_file import load_world
+from uvf.models.scenario import ROOT, load_site
+from uvf.models.vehicle.file import load_vehicle
+from uvf.models.world.file import load_world
+from uvf.models.yaml_data import BadInput
 
 ABSENT = object()
 SPOILS = {

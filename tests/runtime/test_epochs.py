@@ -5,11 +5,11 @@ import pytest
 from schemas import topics
 from schemas.messages import ArmRequest, NavStatus
 from tests.runtime.toys import Pilot
-from uvf.runtime.bus import LocalBus, Query, Sample
-from uvf.runtime.inbox import OWNERS_MOST, InputBox
-from uvf.runtime.service import each_vehicle
-from uvf.runtime.shell import Shell
-from uvf.runtime.site import Host
+from uvf.models.scenario import Host
+from uvf.runtime.bus.interface import LocalBus, Query, Sample
+from uvf.runtime.contract.inbox import OWNERS_MOST, InputBox
+from uvf.runtime.contract.service import each_vehicle
+from uvf.runtime.contract.service_runner import Shell
 
 NS = 1_000_000_000
 

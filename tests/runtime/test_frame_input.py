@@ -3,16 +3,16 @@
 import pytest
 
 from schemas import topics
-from schemas.convert import seconds, stamp
 from schemas.messages import DriveCommand, FrameTransform, FrameTransforms, Imu, Vector3
 from tests.runtime.modes import RUNS, run_in
 from tests.runtime.toys import Cast
-from uvf.runtime.bus import LocalBus, Sample
-from uvf.runtime.frames import FrameError
-from uvf.runtime.lockstep import Lockstep
-from uvf.runtime.service import Service, every, frames
-from uvf.runtime.shell import Shell
-from uvf.runtime.site import Host
+from uvf.models.scenario import Host
+from uvf.runtime.bus.interface import LocalBus, Sample
+from uvf.runtime.contract.service import Service, every, frames
+from uvf.runtime.contract.service_runner import Shell
+from uvf.runtime.messages.convert import seconds, stamp
+from uvf.runtime.messages.frames import FrameError
+from uvf.runtime.time.lockstep import Lockstep
 
 NS = 1_000_000_000
 

@@ -6,10 +6,10 @@ import resource
 import pytest
 
 from schemas import topics
-from uvf.runtime.bus import Sample
-from uvf.runtime.log_bounds import CHANNELS_MOST, FOREIGN_MOST, PAYLOAD_MOST, STANDING_MOST
-from uvf.runtime.log_reading import log_metadata, read_log, recover
-from uvf.runtime.recording import Recorder
+from uvf.runtime.bus.interface import Sample
+from uvf.runtime.log.bounds import CHANNELS_MOST, FOREIGN_MOST, PAYLOAD_MOST, STANDING_MOST
+from uvf.runtime.log.reading import log_metadata, read_log, recover
+from uvf.runtime.log.recording import Recorder
 
 POSE = topics.POSE.at("v")
 HONEST = Sample(POSE, "foxglove.PoseInFrame", b"pose", 10, 1, 5)

@@ -7,11 +7,11 @@ import pytest
 from schemas import topics
 from schemas.limits import TEXT
 from schemas.messages import ArmRequest, Reply
-from uvf.runtime.bus import LocalBus
-from uvf.runtime.service import Later, Service
-from uvf.runtime.shell import Shell
-from uvf.runtime.site import Host
-from uvf.runtime.wire import decode
+from uvf.models.scenario import Host
+from uvf.runtime.bus.interface import LocalBus
+from uvf.runtime.bus.wire import decode
+from uvf.runtime.contract.service import Later, Service
+from uvf.runtime.contract.service_runner import Shell
 
 
 class Slow(Service):

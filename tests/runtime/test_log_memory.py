@@ -8,8 +8,8 @@ import pytest
 
 from schemas import topics
 from tests.runtime.log_tools import PROGRAMS
-from uvf.runtime.bus import Sample
-from uvf.runtime.recording import Recorder
+from uvf.runtime.bus.interface import Sample
+from uvf.runtime.log.recording import Recorder
 
 IMAGES, SIZE = 150, 1_000_000  # bytes
 GROWTH = 80_000  # kB

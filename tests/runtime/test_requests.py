@@ -5,14 +5,14 @@ import time
 import pytest
 
 from schemas import topics
-from schemas.convert import stamp
 from schemas.messages import ArmRequest, CancelRequest, GoalRequest, NavStatus, Reply, Vector3
 from tests.runtime.modes import RUNS, free_port
 from tests.runtime.toys import Cast
-from uvf.runtime import zenoh_bus
-from uvf.runtime.clock import NS, first_step_after, step_time
-from uvf.runtime.service import Service, optional
-from uvf.runtime.shell import QUERIES_MOST
+from uvf.runtime.bus import zenoh_bus
+from uvf.runtime.contract.service import Service, optional
+from uvf.runtime.contract.service_runner import QUERIES_MOST
+from uvf.runtime.messages.convert import stamp
+from uvf.runtime.time.clock import NS, first_step_after, step_time
 
 KEY = topics.GOAL.at("alpha")
 LATE = 0.25  # s, how late a live step may come on a busy machine

@@ -3,11 +3,11 @@
 import pytest
 
 from schemas import topics
-from schemas.convert import stamp
 from schemas.messages import Mission, NavStatus
 from tests.runtime.modes import RUNS
 from tests.runtime.toys import Cast
-from uvf.runtime.service import Service
+from uvf.runtime.contract.service import Service
+from uvf.runtime.messages.convert import stamp
 
 
 class World(Service):

@@ -6,7 +6,7 @@ import time
 import pytest
 
 from tests.runtime.modes import free_port
-from uvf.runtime.zenoh_bus import ZenohBus, open_router
+from uvf.runtime.bus.zenoh_bus import ZenohBus, open_router
 
 
 @pytest.fixture

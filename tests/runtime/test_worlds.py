@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from uvf.maths.rotations import to_euler
-from uvf.runtime.site import ROOT
-from uvf.runtime.world_file import load_world
-from uvf.runtime.world_geometry import floor_plan, reachable_floor, solids
+from uvf.models.scenario import ROOT
+from uvf.models.world.file import load_world
+from uvf.models.world.geometry import floor_plan, reachable_floor, solids
 
 BURGER, WIDE = 0.115, 0.35
 PLACES = {

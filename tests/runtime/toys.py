@@ -5,7 +5,6 @@ from typing import Annotated
 import msgspec
 
 from schemas import topics
-from schemas.convert import seconds, stamp
 from schemas.messages import (
     ArmRequest,
     Clock,
@@ -17,8 +16,9 @@ from schemas.messages import (
     StopCommand,
     WheelCommand,
 )
-from uvf.runtime.service import Params, Service, each_vehicle, every, of_role, optional, stop_all
-from uvf.runtime.site import Host
+from uvf.models.scenario import Host
+from uvf.runtime.contract.service import Params, Service, each_vehicle, every, of_role, optional, stop_all
+from uvf.runtime.messages.convert import seconds, stamp
 
 VEHICLES = ("alpha", "beta")
 

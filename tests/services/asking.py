@@ -2,7 +2,7 @@
 
 from collections import defaultdict
 
-from uvf.runtime.lockstep import Lockstep
+from uvf.runtime.time.lockstep import Lockstep
 
 
 class Asked:

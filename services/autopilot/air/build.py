@@ -5,27 +5,28 @@ import math
 import numpy as np
 
 from schemas.messages import MissionItem
-from services.autopilot.air import flyable, intake
-from services.autopilot.air.ekf import datasheet
-from services.autopilot.air.estimators import Instruments
-from services.autopilot.air.fence_plan import fence_fit, mission_fault
-from services.autopilot.air.leading import reserved
-from services.autopilot.air.params import AirParams
-from services.autopilot.air.route import Place
+from services.autopilot.air.config import Ship
+from services.autopilot.air.formation.leading import reserved
+from services.autopilot.air.formation.wingmen import wingman
 from services.autopilot.air.service import AutopilotAir
-from services.autopilot.air.servos import Servo, Servos
-from services.autopilot.air.ship import Ship
-from services.autopilot.air.strip import Strip
-from services.autopilot.air.wingmen import wingman
+from services.autopilot.air.status import intake
 from services.autopilot.plan import item_from_file
+from uvf.control.servos import Servo, Servos
+from uvf.estimation.ekf import datasheet
+from uvf.estimation.estimators import Instruments
+from uvf.guidance import flyable
+from uvf.guidance.fence_plan import fence_fit, mission_fault
+from uvf.guidance.route import Place
+from uvf.guidance.runways import Strip
 from uvf.maths import rotations
 from uvf.maths.geodesy import LocalTangent
-from uvf.runtime import world_file
-from uvf.runtime.fence_file import fence_message, fencing
-from uvf.runtime.params import BadInput
-from uvf.runtime.relief import relief
-from uvf.runtime.site import Host, Member, Site
-from uvf.runtime.vehicle_file import Mount
+from uvf.models.mission.fence import fence_message, fencing
+from uvf.models.scenario import Host, Member, Site
+from uvf.models.vehicle.file import Mount
+from uvf.models.vehicle.flight_params import AirParams
+from uvf.models.world import file as world_file
+from uvf.models.world.terrain import relief
+from uvf.models.yaml_data import BadInput
 
 
 def hosts(site: Site) -> list[Host]:

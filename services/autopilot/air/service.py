@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from schemas import topics
-from schemas.convert import stamp
 from schemas.messages import (
     AirData,
     ArmRequest,
@@ -34,33 +33,36 @@ from schemas.messages import (
     SurfaceCommand,
     VehicleStatus,
 )
-from services.autopilot.air import by_hand, intake, orders, reports, telling
-from services.autopilot.air.commands import Surfaces
-from services.autopilot.air.failsafes import GNSS_HOLD
-from services.autopilot.air.fence_in_force import too_small
-from services.autopilot.air.fence_plan import Remembered, place_fault
-from services.autopilot.air.flyable import advice
-from services.autopilot.air.journal import Journal
-from services.autopilot.air.landed import LandDetector
-from services.autopilot.air.leading import Steadied
-from services.autopilot.air.outside import Outside
-from services.autopilot.air.over_ground import OverGround
-from services.autopilot.air.params import FIXED, AirParams
-from services.autopilot.air.paths import Round
-from services.autopilot.air.pilot import Pilot
-from services.autopilot.air.plans import Plans
-from services.autopilot.air.prearm import Standing, faults
-from services.autopilot.air.route import Place
-from services.autopilot.air.safety import Safety, Seen
-from services.autopilot.air.sensing import Said, Sensing
-from services.autopilot.air.ship import Ship
-from services.autopilot.air.state import Estimate
-from services.autopilot.air.wishes import Flown, Senses
+from services.autopilot.air.config import Ship
+from services.autopilot.air.failsafes.fence_in_force import too_small
+from services.autopilot.air.failsafes.monitor import Safety, Seen
+from services.autopilot.air.failsafes.prearm import Standing, faults
+from services.autopilot.air.failsafes.table import GNSS_HOLD
+from services.autopilot.air.formation.leading import Steadied
+from services.autopilot.air.mission import orders
+from services.autopilot.air.mission.plans import Plans
+from services.autopilot.air.modes import manual_control
+from services.autopilot.air.modes.mode_manager import Pilot
+from services.autopilot.air.modes.outside import Outside
+from services.autopilot.air.modes.paths import Round
+from services.autopilot.air.setpoints import Flown, Senses
+from services.autopilot.air.status import intake, status_messages, telemetry
+from services.autopilot.air.status.event_log import Journal
+from services.autopilot.air.status.over_ground import OverGround
+from services.autopilot.air.status.sensing import Said, Sensing
 from services.autopilot.safe_state import coming_down
 from services.autopilot.told_params import ToldParams
+from uvf.control.commands import Surfaces
+from uvf.estimation.landed import LandDetector
+from uvf.estimation.state import Estimate
+from uvf.guidance.fence_plan import Remembered, place_fault
+from uvf.guidance.flyable import advice
+from uvf.guidance.route import Place
 from uvf.maths.geodesy import GRAVITY
-from uvf.runtime.service import Outputs, Service, every, optional, stop_all
-from uvf.runtime.stop_all import StopStatus
+from uvf.models.vehicle.flight_params import FIXED, AirParams
+from uvf.runtime.contract.service import Outputs, Service, every, optional, stop_all
+from uvf.runtime.messages.convert import stamp
+from uvf.runtime.state.stop_all import StopStatus
 
 
 class AutopilotAir(Service):
@@ -139,7 +141,7 @@ class AutopilotAir(Service):
         self._journal.note(advice(self._pilot.navigator.items, params))
         self._plans = Plans(ship.items, self._pilot, self._safety, self._journal)
         self._sensing = Sensing(ship.instruments, ship.tangent, params.estimator, self._safety.believed)
-        self._surfaces = by_hand.LET_GO
+        self._surfaces = manual_control.LET_GO
         self._steering = Outside()
         self._now: Estimate | None = None
         self._cycles = 0
@@ -224,18 +226,18 @@ class AutopilotAir(Service):
 
     def _report(self, t: float, now: Estimate, flown: Flown) -> dict[str, object]:
         """Surfaces and motion; what is told now and then, and the status also when it changes."""
-        state = reports.nav_state(t, now)
+        state = telemetry.nav_state(t, now)
         out: dict[str, object] = {
-            "surfaces": reports.surfaces(t, flown.surfaces, self._armed),
+            "surfaces": telemetry.surfaces(t, flown.surfaces, self._armed),
             "nav_state": state,
-            "pose": reports.pose(state),
-            "body_frame": reports.body_frame(state, self._ship.name),
+            "pose": telemetry.pose(state),
+            "body_frame": telemetry.body_frame(state, self._ship.name),
         }
         pilot = self._pilot
         told = (pilot.mode, pilot.reason, pilot.stopped, self._armed, self._steering.followed(pilot))
         if self._cycles % 5 == 0 or told != self._told:
             self._told = told
-            self._status = reports.status(t, self._pilot, now, flown)
+            self._status = telemetry.status(t, self._pilot, now, flown)
             self._status.battery_remaining, self._status.battery_voltage = self._safety.endurance.shown
             self._status.prearm.extend(self._faults())
             self._status.failsafes.extend(self._safety.texts)
@@ -243,15 +245,15 @@ class AutopilotAir(Service):
             self._status.breach, self._status.breaches = self._safety.breach, self._safety.breaches
             out["status"] = self._stamped_status(t)
         if self._cycles % 5 == 0:
-            out["targets"] = telling.targets(t, self._pilot, flown)
+            out["targets"] = status_messages.targets(t, self._pilot, flown)
         navigator = self._pilot.navigator
         where = (navigator.index, navigator.reached, navigator.laps, navigator.finished)
         if self._cycles % 25 == 0 or where != self._where:
             self._where = where
-            out["progress"] = reports.progress(t, self._pilot, self._plans.mission.id)
+            out["progress"] = telemetry.progress(t, self._pilot, self._plans.mission.id)
         if self._cycles % 25 == 0:
-            out["quality"] = telling.quality(t, now)
-            out["path"] = reports.path(t, self._pilot)
+            out["quality"] = status_messages.quality(t, now)
+            out["path"] = telemetry.path(t, self._pilot)
         self._cycles += 1
         return out
 
@@ -292,7 +294,7 @@ class AutopilotAir(Service):
         level = Surfaces(0.0, p.elev_zero_alpha + p.elev_per_alpha * alpha, 0.0, p.trim_throttle)
         self._status.reason = f"sensor lost: {', '.join(missing)}"
         return {
-            "surfaces": reports.surfaces(t, level, self._armed and self._land.airborne),
+            "surfaces": telemetry.surfaces(t, level, self._armed and self._land.airborne),
             "status": self._stamped_status(t),
             "events": self._journal.lost(t, missing),
         }

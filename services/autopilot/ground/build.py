@@ -5,10 +5,10 @@ from services.autopilot.ground.mission import refusal
 from services.autopilot.ground.params import GroundAutopilotParams
 from services.autopilot.ground.service import GroundAutopilot
 from services.autopilot.plan import item_from_file
-from uvf.runtime.fence_file import fence_message, fencing
-from uvf.runtime.params import BadInput
-from uvf.runtime.site import Host, Member, Site
-from uvf.runtime.sweeping import AT_ONCE
+from uvf.models.mission.fence import fence_message, fencing
+from uvf.models.scenario import Host, Member, Site
+from uvf.models.yaml_data import BadInput
+from uvf.sensors.sweeping import AT_ONCE
 
 
 def hosts(site: Site) -> list[Host]:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from schemas.messages import MissionItem, RallyPoints, Vector3
 from services.autopilot.ground.mission import DRIVABLE
-from uvf.runtime.fence_file import Fencing
+from uvf.models.mission.fence import Fencing
 
 REACTION = 0.3  # s, until the wheels follow
 MARGIN = 0.1  # m, kept from the edge beyond the vehicle's radius

@@ -4,9 +4,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from math import isfinite
 
-from schemas.convert import mode_name
 from schemas.messages import Mode
 from services.autopilot.multiplexing import OFFBOARD, Order, holder, in_turn
+from uvf.runtime.messages.convert import mode_name
 
 COMMAND_MAX_AGE = 0.5  # s
 CLOCK_TOLERANCE = 0.02  # s, one tick: a sender's clock may be that much ahead

@@ -4,7 +4,7 @@ from math import isfinite
 
 from schemas.messages import HomeOrder, OrderRequest, SpeedOrder
 from services.autopilot.ground.mission import MissionEngine, Point
-from uvf.runtime.vehicle_file import GroundBody
+from uvf.models.vehicle.file import GroundBody
 
 
 def carry_out(order: OrderRequest, engine: MissionEngine, here: Point | None, body: GroundBody) -> str:

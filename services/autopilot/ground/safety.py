@@ -12,9 +12,9 @@ from services.autopilot.ground.params import GroundAutopilotParams
 from services.autopilot.ground.sight import Sight
 from services.autopilot.link_watch import LinkWatch
 from uvf.maths.kinematics import WheelSpeeds
-from uvf.runtime.fence_file import Fencing, fence_fault, fencing, near_home
-from uvf.runtime.sweeping import Sweeping
-from uvf.runtime.vehicle_file import GroundBody
+from uvf.models.mission.fence import Fencing, fence_fault, fencing, near_home
+from uvf.models.vehicle.file import GroundBody
+from uvf.sensors.sweeping import Sweeping
 
 BY_ITSELF = (Mode.MODE_MISSION, Mode.MODE_RETURN)
 

@@ -6,7 +6,6 @@ from math import hypot, inf
 from typing import Any
 
 from schemas import topics
-from schemas.convert import mode_name, seconds, stamp, yaw_of
 from schemas.messages import (
     ArmRequest,
     Battery,
@@ -40,7 +39,6 @@ from schemas.messages import (
 from services.autopilot.failsafes import Action
 from services.autopilot.ground import fence as fences
 from services.autopilot.ground import orders
-from services.autopilot.ground.drive import Limits, Ramp, within_limits
 from services.autopilot.ground.mission import MissionEngine, Point, mission_of, refusal, vector
 from services.autopilot.ground.multiplexer import COMMAND_MAX_AGE, SOURCES, Choice, Velocity, choose
 from services.autopilot.ground.params import GroundAutopilotParams
@@ -48,11 +46,13 @@ from services.autopilot.ground.safety import Doing, Safety, Sensed, mode_of, pla
 from services.autopilot.multiplexing import Once
 from services.autopilot.safe_state import standing
 from services.autopilot.told_params import ToldParams
+from uvf.control.drive_limits import Limits, Ramp, within_limits
 from uvf.maths.kinematics import DifferentialDrive, Twist, WheelSpeeds
-from uvf.runtime.service import Outputs, Service, every, optional, stop_all
-from uvf.runtime.stop_all import StopStatus
-from uvf.runtime.sweeping import AT_ONCE, Sweeping
-from uvf.runtime.vehicle_file import GroundBody
+from uvf.models.vehicle.file import GroundBody
+from uvf.runtime.contract.service import Outputs, Service, every, optional, stop_all
+from uvf.runtime.messages.convert import mode_name, seconds, stamp, yaw_of
+from uvf.runtime.state.stop_all import StopStatus
+from uvf.sensors.sweeping import AT_ONCE, Sweeping
 
 STATUS_EVERY, PROGRESS_EVERY = 5, 25
 """Steps between two messages: 10 Hz and 2 Hz."""

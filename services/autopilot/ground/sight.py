@@ -1,8 +1,8 @@
 """How long a ground vehicle has been without what it drives by itself by: a scan that changes, a mapping that speaks."""
 
-from schemas.convert import seconds
 from schemas.messages import FrameTransform, LaserScan
-from uvf.runtime.sweeping import Sweeping
+from uvf.runtime.messages.convert import seconds
+from uvf.sensors.sweeping import Sweeping
 
 MOVED = 0.03  # m of the wheels, after which a scan that is the same to the last bit has frozen
 

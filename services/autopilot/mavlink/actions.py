@@ -7,7 +7,7 @@ from services.autopilot.mavlink.asking import Done
 from services.autopilot.mavlink.commands import Acknowledger, Command, Handler
 from services.autopilot.mavlink.line import Line, Sender
 from services.autopilot.mavlink.telemetry import mission_current
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
 from uvf.runtime.mavlink import modes
 
 SOURCE = "mavlink"

@@ -7,8 +7,8 @@ from typing import Any
 from google.protobuf.message import Message
 
 from schemas.messages import ArmRequest, Mode, ModeRequest
-from uvf.runtime.mavlink.endpoint import Peer
-from uvf.runtime.service import Answer
+from uvf.mavlink.endpoint import Peer
+from uvf.runtime.contract.service import Answer
 
 ANSWER_WITHIN = 1.9  # s: inside MAVSDK's four tries of 0.5 s and QGroundControl's 3 s
 MOST_OF_ONE = 8  # requests of a peer at once that nobody has answered yet

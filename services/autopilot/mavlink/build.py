@@ -6,7 +6,6 @@ import socket
 import time
 from collections.abc import Mapping
 
-from services.autopilot.air.params import FIXED, AirParams
 from services.autopilot.ground.params import GroundAutopilotParams
 from services.autopilot.mavlink.facts import Facts
 from services.autopilot.mavlink.key_store import KeyStore
@@ -15,12 +14,13 @@ from services.autopilot.mavlink.service import MavlinkService
 from services.autopilot.mavlink.signing import Signing
 from services.autopilot.mavlink.targets import reserved, targets_from
 from uvf.maths.geodesy import LocalTangent
-from uvf.runtime.address import peer
-from uvf.runtime.mavlink.endpoint import Peer, UdpLink
-from uvf.runtime.params import BadInput, nearest
-from uvf.runtime.service import Params
-from uvf.runtime.site import Host, Member, Site
-from uvf.runtime.state_folder import state_folder
+from uvf.mavlink.endpoint import Peer, UdpLink
+from uvf.models.scenario import Host, Member, Site
+from uvf.models.vehicle.flight_params import FIXED, AirParams
+from uvf.models.yaml_data import BadInput, nearest
+from uvf.runtime.bus.address import peer
+from uvf.runtime.contract.service import Params
+from uvf.runtime.state.state_folder import state_folder
 
 TARGETS = "UVF_MAVLINK_TARGETS"
 LISTEN = "UVF_MAVLINK_LISTEN"

@@ -5,9 +5,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from services.autopilot.mavlink.line import Line, Sender
-from uvf.runtime.mavlink import dialect as mav
-from uvf.runtime.mavlink.bounded import make_room
-from uvf.runtime.mavlink.names import command_name
+from uvf.mavlink import dialect as mav
+from uvf.mavlink.bounded import make_room
+from uvf.mavlink.names import command_name
 
 LARGEST = 1e9  # no parameter of any command means anything beyond
 NOT_GIVEN = 2**31 - 1  # x or y of a COMMAND_INT without a place

@@ -15,7 +15,7 @@ from services.autopilot.mavlink.facts import Facts
 from services.autopilot.mavlink.identity import VERSION
 from services.autopilot.mavlink.parameter_table import Parameter
 from services.autopilot.mavlink.parameter_values import crc32
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
 
 FOLDER = "/etc/extras"
 FORMAT = 1  # of both files: the only one that QGroundControl reads

@@ -1,8 +1,8 @@
 """REQUEST_DATA_STREAM of older ground stations (MAVProxy, Mission Planner): rates for groups of messages."""
 
 from services.autopilot.mavlink.streams import Schedule
-from uvf.runtime.mavlink import dialect as mav
-from uvf.runtime.mavlink.endpoint import Peer
+from uvf.mavlink import dialect as mav
+from uvf.mavlink.endpoint import Peer
 
 GROUPS: dict[int, tuple[int, ...]] = {
     mav.MAV_DATA_STREAM_RAW_SENSORS: (mav.MAVLINK_MSG_ID_HIGHRES_IMU, mav.MAVLINK_MSG_ID_SCALED_PRESSURE),

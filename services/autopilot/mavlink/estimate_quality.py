@@ -2,11 +2,11 @@
 
 import math
 
-from schemas.convert import array
 from schemas.messages import EstimateQuality
 from services.autopilot.mavlink.facts import Facts, Latest
-from uvf.runtime.mavlink import dialect as mav
-from uvf.runtime.mavlink.scaling import whole
+from uvf.mavlink import dialect as mav
+from uvf.mavlink.scaling import whole
+from uvf.runtime.messages.convert import array
 
 Message = mav.MAVLink_message | None
 HORIZONTAL = mav.ESTIMATOR_POS_HORIZ_REL | mav.ESTIMATOR_PRED_POS_HORIZ_REL | mav.ESTIMATOR_VELOCITY_HORIZ

@@ -4,9 +4,9 @@ import math
 import re
 from collections.abc import Sequence
 
-from schemas.convert import seconds
 from schemas.messages import Event
 from services.autopilot.mavlink.facts import Latest
+from uvf.runtime.messages.convert import seconds
 
 NEWS = 5.0  # s of simulation time: what happened while this link was starting again is still news
 MOST_HELD = 50

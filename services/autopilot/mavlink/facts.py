@@ -7,7 +7,6 @@ from typing import Any, Protocol, TypeVar
 import numpy as np
 from google.protobuf.timestamp_pb2 import Timestamp
 
-from schemas.convert import array, seconds
 from schemas.messages import (
     AirData,
     Battery,
@@ -30,10 +29,11 @@ from schemas.messages import (
 )
 from services.autopilot.mavlink.vibration import Vibration
 from uvf.maths.geodesy import Floats, LocalTangent
-from uvf.runtime.fence_file import fencing
+from uvf.models.mission.fence import fencing
+from uvf.models.vehicle.file import Sensors, VehicleFile
+from uvf.runtime.contract.service import Params
 from uvf.runtime.mavlink.geo import Placed
-from uvf.runtime.service import Params
-from uvf.runtime.vehicle_file import Sensors, VehicleFile
+from uvf.runtime.messages.convert import array, seconds
 
 SILENT_AFTER = 2.0  # s of simulation time
 HOME_FENCE = "max_distance", "max_height"

@@ -4,7 +4,7 @@ from schemas.messages import Fence, FenceRequest
 from services.autopilot.mavlink.actions import SOURCE
 from services.autopilot.mavlink.commands import Acknowledger, Command, Handler
 from services.autopilot.mavlink.line import Line
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
 
 
 def _enable(line: Line, command: Command, ack: Acknowledger) -> None:

@@ -10,8 +10,8 @@ from dataclasses import dataclass, field
 from services.autopilot.mavlink.file_tree import FileTree
 from services.autopilot.mavlink.line import Line, Sender
 from services.autopilot.mavlink.parameter_values import crc32
-from uvf.runtime.mavlink import dialect as mav
-from uvf.runtime.mavlink.bounded import make_room
+from uvf.mavlink import dialect as mav
+from uvf.mavlink.bounded import make_room
 
 HEADER = struct.Struct("<HBBBBBxI")  # sequence, session, opcode, size, requested opcode, burst complete, offset
 PAYLOAD_BYTES = 251

@@ -8,7 +8,7 @@ from services.autopilot.mavlink.asking import Done
 from services.autopilot.mavlink.commands import Acknowledger, Command, Handler
 from services.autopilot.mavlink.line import Line
 from services.autopilot.mavlink.places import BadPlace, altitude_of, check_radius, frame_of, of_aircraft, place_in, place_of, refusing
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
 
 CIRCLES = (Mode.MODE_HOLD, Mode.MODE_ORBIT, Mode.MODE_RETURN)
 """Modes whose circle can be flown higher or lower as it is."""

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 from schemas.messages import Gnss
 from services.autopilot.mavlink.facts import Facts, Latest
-from uvf.runtime.mavlink import dialect as mav
-from uvf.runtime.stop_all import told
+from uvf.mavlink import dialect as mav
+from uvf.runtime.state.stop_all import told
 
 _IMU = mav.MAV_SYS_STATUS_SENSOR_3D_GYRO | mav.MAV_SYS_STATUS_SENSOR_3D_ACCEL | mav.MAV_SYS_STATUS_SENSOR_3D_MAG
 _AIR_DATA = mav.MAV_SYS_STATUS_SENSOR_ABSOLUTE_PRESSURE | mav.MAV_SYS_STATUS_SENSOR_DIFFERENTIAL_PRESSURE

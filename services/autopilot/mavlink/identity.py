@@ -7,9 +7,9 @@ from importlib.metadata import version
 
 from schemas.messages import Kind
 from services.autopilot.mavlink.facts import Facts, Latest
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
+from uvf.models.scenario import ROOT
 from uvf.runtime.mavlink.modes import row_of
-from uvf.runtime.site import ROOT
 
 EMULATED_PX4 = (1, 16, 0)
 """Interface level whose behaviour is emulated; ground stations decide by it what a PX4 vehicle can do."""

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import msgspec
 
-from uvf.runtime.state_folder import write_private
+from uvf.runtime.state.state_folder import write_private
 
 KEY_BYTES = 32
 MOST_KEYS = 16

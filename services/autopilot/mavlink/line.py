@@ -13,9 +13,9 @@ from services.autopilot.mavlink.facts import Facts, Latest
 from services.autopilot.mavlink.refusals import plain
 from services.autopilot.mavlink.statustext import TextBudget, TextLimiter, chunks, counted_from_one
 from services.autopilot.mavlink.vibration import Vibration
-from uvf.runtime.mavlink import dialect as mav
-from uvf.runtime.mavlink.endpoint import Peer
-from uvf.runtime.service import Answer
+from uvf.mavlink import dialect as mav
+from uvf.mavlink.endpoint import Peer
+from uvf.runtime.contract.service import Answer
 
 HELD_FOR = 1.0  # s, wall: as long a station that steers may be silent before another one may
 

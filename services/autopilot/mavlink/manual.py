@@ -9,10 +9,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from schemas.convert import stamp
 from schemas.messages import DriveCommand, Mode, SurfaceCommand
 from services.autopilot.mavlink.line import Holder, Line, Sender
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
+from uvf.runtime.messages.convert import stamp
 
 FULL = 1000.0
 NOT_THERE = 2**15 - 1

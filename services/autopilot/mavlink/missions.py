@@ -9,8 +9,8 @@ from services.autopilot.mavlink.guided import goal_of_item
 from services.autopilot.mavlink.line import Line, Sender, named
 from services.autopilot.mavlink.old_items import as_int
 from services.autopilot.mavlink.plans import FencePlan, MissionPlan, Plan, RallyPlan
-from uvf.runtime.mavlink import dialect as mav
-from uvf.runtime.mavlink.bounded import make_room
+from uvf.mavlink import dialect as mav
+from uvf.mavlink.bounded import make_room
 from uvf.runtime.mavlink.mission_items import BadItem, Body
 
 MISSION = mav.MAV_MISSION_TYPE_MISSION

@@ -4,13 +4,13 @@ import math
 
 import numpy as np
 
-from schemas.convert import array, wxyz, yaw_of
 from schemas.messages import NavState
 from services.autopilot.mavlink.facts import Facts, Latest
 from uvf.maths.geodesy import Floats
 from uvf.maths.rotations import enu_flu_from_ned_frd, to_euler
-from uvf.runtime.mavlink import dialect as mav
-from uvf.runtime.mavlink.scaling import I16, I32, U16, heading_degrees, whole
+from uvf.mavlink import dialect as mav
+from uvf.mavlink.scaling import I16, I32, U16, heading_degrees, whole
+from uvf.runtime.messages.convert import array, wxyz, yaw_of
 
 Message = mav.MAVLink_message | None
 

@@ -5,7 +5,7 @@ from typing import Any
 
 from services.autopilot.mavlink.commands import Acknowledger, Command, Handler
 from services.autopilot.mavlink.line import Line, Sender
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
 
 NO_CONSOLE = b"There is no console here: this is UVF, not PX4.\n"
 CONSOLE_BYTES, LOG_BYTES = 70, 90

@@ -2,7 +2,7 @@
 
 import math
 
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
 
 SCALE = 1e7  # units per deg
 OUT_OF_RANGE = 2**31 - 1

@@ -19,7 +19,7 @@ from services.autopilot.mavlink.commands import Acknowledger, Command, Handler
 from services.autopilot.mavlink.line import Line, Sender
 from services.autopilot.mavlink.navigation import global_origin
 from services.autopilot.mavlink.places import BadPlace, altitude_of, frame_of, of_aircraft, place_in, place_of, refusing
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
 from uvf.runtime.mavlink.geo import HOME_FRAMES
 from uvf.runtime.mavlink.mission_items import CRUISE, NO_CHANGE
 

@@ -3,12 +3,12 @@
 import sys
 from collections.abc import Mapping
 
-from services.autopilot.air.params import FIXED, AirParams
 from services.autopilot.ground.params import GroundAutopilotParams
 from services.autopilot.mavlink.own_params import Own, own_params
 from services.autopilot.mavlink.parameter_table import FILE, Kind, Parameter, Table, parameters_with
-from uvf.runtime.params import load_yaml
-from uvf.runtime.site import ROOT
+from uvf.models.scenario import ROOT
+from uvf.models.vehicle.flight_params import FIXED, AirParams
+from uvf.models.yaml_data import load_yaml
 
 PAGE = ROOT / "docs" / "parameters.md"
 COMMAND = "python -m services.autopilot.mavlink.parameter_page"

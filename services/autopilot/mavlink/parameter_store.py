@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Protocol
 
-from uvf.runtime.state_folder import write_private
+from uvf.runtime.state.state_folder import write_private
 
 
 class Unreadable(Exception):

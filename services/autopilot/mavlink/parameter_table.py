@@ -11,8 +11,8 @@ import numpy as np
 
 from services.autopilot.mavlink.facts import Facts
 from services.autopilot.mavlink.own_params import Own, own_params
-from uvf.runtime.mavlink import dialect as mav
-from uvf.runtime.params import BadInput, load_yaml, nearest
+from uvf.mavlink import dialect as mav
+from uvf.models.yaml_data import BadInput, load_yaml, nearest
 
 FILE = Path(__file__).with_name("parameters.yaml")
 Kind = Literal["ground", "fixed_wing"]

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from services.autopilot.mavlink.parameter_table import WHOLE, Parameter
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
 
 
 class ParameterValues:

@@ -10,8 +10,8 @@ from services.autopilot.mavlink.parameter_store import Store
 from services.autopilot.mavlink.parameter_table import Parameter, parameters_of
 from services.autopilot.mavlink.parameter_values import ParameterValues, decoded, param_value, raw_of
 from services.autopilot.mavlink.settings import ParameterSettings
-from uvf.runtime.mavlink import dialect as mav
-from uvf.runtime.mavlink.endpoint import Peer
+from uvf.mavlink import dialect as mav
+from uvf.mavlink.endpoint import Peer
 
 PER_STEP = 4  # at 50 steps a second: 200 a second
 LISTS_AT_ONCE = 8  # who asks beyond waits its turn

@@ -4,8 +4,8 @@ from collections.abc import Collection
 from typing import NamedTuple
 
 from services.autopilot.mavlink.line import Sender
-from uvf.runtime.mavlink.bounded import make_room
-from uvf.runtime.mavlink.endpoint import Peer
+from uvf.mavlink.bounded import make_room
+from uvf.mavlink.endpoint import Peer
 
 CONNECTION_ENDS = 10.0  # s, wall, without a word: ten heartbeats
 MOST_BEHIND_ONE = 32  # systems and components behind one address

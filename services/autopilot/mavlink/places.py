@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from schemas.messages import Vector3
 from services.autopilot.mavlink.commands import Acknowledger, Command, Handler
 from services.autopilot.mavlink.line import Line
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
+from uvf.mavlink.names import bad_frame
 from uvf.runtime.mavlink.geo import AMSL_FRAMES, HOME_FRAMES
 from uvf.runtime.mavlink.limits import HIGHEST, too_far, too_wide
-from uvf.runtime.mavlink.names import bad_frame
 
 
 @dataclass

@@ -7,7 +7,8 @@ from google.protobuf.message import Message
 from schemas.messages import Fence, FenceRequest, Mission, MissionItem, MissionRequest, RallyPoints, RallyRequest
 from services.autopilot.mavlink.actions import SOURCE
 from services.autopilot.mavlink.line import Line
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
+from uvf.mavlink.names import command_name
 from uvf.runtime.mavlink import fence_items, rally_items
 from uvf.runtime.mavlink.mission_items import (
     BadItem,
@@ -20,8 +21,7 @@ from uvf.runtime.mavlink.mission_items import (
     to_wire,
     unpacked,
 )
-from uvf.runtime.mavlink.names import command_name
-from uvf.runtime.plan_ids import fence_id, rally_id
+from uvf.runtime.messages.plan_ids import fence_id, rally_id
 
 Item = mav.MAVLink_mission_item_int_message
 P = TypeVar("P", Mission, Fence, RallyPoints)

@@ -9,7 +9,7 @@ from services.autopilot.mavlink.line import Line
 from services.autopilot.mavlink.navigation import boot_ms
 from services.autopilot.mavlink.streams import Schedule
 from services.autopilot.mavlink.telemetry import STREAMS
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
 from uvf.runtime.mavlink import modes
 
 

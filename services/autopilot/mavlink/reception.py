@@ -8,9 +8,9 @@ from services.autopilot.mavlink.signing import Signing, Verdict
 from services.autopilot.mavlink.stations import Stations
 from services.autopilot.mavlink.targets import Reserved
 from services.autopilot.mavlink.vehicle_link import VehicleLink
-from uvf.runtime.mavlink import dialect as mav
-from uvf.runtime.mavlink.codec import AUTOPILOT
-from uvf.runtime.mavlink.endpoint import Link, Peer
+from uvf.mavlink import dialect as mav
+from uvf.mavlink.codec import AUTOPILOT
+from uvf.mavlink.endpoint import Link, Peer
 
 ENGAGING = frozenset(
     {

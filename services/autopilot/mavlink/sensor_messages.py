@@ -2,15 +2,15 @@
 
 import math
 
-from schemas.convert import array
 from schemas.messages import AirData, SurfaceCommand, WheelCommand
 from services.autopilot.mavlink.facts import Facts, Latest
 from services.autopilot.mavlink.navigation import boot_ms
 from uvf.maths import atmosphere
 from uvf.maths.geodesy import Floats
 from uvf.maths.rotations import FLU_FROM_FRD, from_euler, rotate
-from uvf.runtime.mavlink import dialect as mav
-from uvf.runtime.mavlink.scaling import I16, whole
+from uvf.mavlink import dialect as mav
+from uvf.mavlink.scaling import I16, whole
+from uvf.runtime.messages.convert import array
 
 Message = mav.MAVLink_message | None
 

@@ -6,7 +6,6 @@ from typing import Any
 from google.protobuf.message import Message
 
 from schemas import topics
-from schemas.convert import stamp
 from schemas.messages import (
     AirData,
     Battery,
@@ -34,10 +33,11 @@ from services.autopilot.mavlink.reception import Reception
 from services.autopilot.mavlink.signing import Signing
 from services.autopilot.mavlink.targets import Reserved
 from services.autopilot.mavlink.vehicle_link import VehicleLink
-from uvf.maths.sampling import Due
-from uvf.runtime.mavlink import endpoint
-from uvf.runtime.mavlink.codec import Codec
-from uvf.runtime.service import Answer, Outputs, Service, each_vehicle, every, optional
+from uvf.mavlink import endpoint
+from uvf.mavlink.codec import Codec
+from uvf.runtime.contract.service import Answer, Outputs, Service, each_vehicle, every, optional
+from uvf.runtime.messages.convert import stamp
+from uvf.sensors.sampling import Due
 
 Answers = list[Answer[Any, Any]]
 

@@ -11,7 +11,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from schemas.convert import array, stamp, yaw_of
 from schemas.limits import PLACE
 from schemas.messages import (
     AttitudeSetpoint,
@@ -29,9 +28,10 @@ from services.autopilot.mavlink.line import Holder, Line, Sender
 from services.autopilot.mavlink.places import BadPlace, place_of
 from uvf.maths.geodesy import Floats
 from uvf.maths.rotations import to_euler
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
+from uvf.mavlink.names import frame_name
 from uvf.runtime.mavlink.limits import FASTEST, HIGHEST
-from uvf.runtime.mavlink.names import frame_name
+from uvf.runtime.messages.convert import array, stamp, yaw_of
 
 ALONE = 1.0  # s, wall: after which a target without another is no stream
 IGNORE_PLACE, IGNORE_Z, IGNORE_VELOCITY, IGNORE_VZ, IGNORE_RATE = 0b011, 0b100, 0b011_000, 0b100_000, 1 << 11

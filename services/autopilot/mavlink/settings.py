@@ -10,8 +10,8 @@ from schemas.messages import ParamRequest, ParamValues
 from services.autopilot.mavlink.asking import Done
 from services.autopilot.mavlink.line import Line
 from services.autopilot.mavlink.parameter_store import Store, Unreadable
-from uvf.runtime.mavlink import dialect as mav
-from uvf.runtime.params import BadInput, convert
+from uvf.mavlink import dialect as mav
+from uvf.models.yaml_data import BadInput, convert
 
 SOURCE = "mavlink"
 ASK_AGAIN = 1.0  # s

@@ -9,10 +9,10 @@ from functools import partial
 
 from services.autopilot.mavlink.key_store import MOST_KEYS, KeyStore
 from services.autopilot.mavlink.line import Sender
-from uvf.runtime.address import is_loopback
-from uvf.runtime.mavlink import dialect as mav
-from uvf.runtime.mavlink.endpoint import Peer
-from uvf.runtime.mavlink.framing import SIGNED, Sign
+from uvf.mavlink import dialect as mav
+from uvf.mavlink.endpoint import Peer
+from uvf.mavlink.framing import SIGNED, Sign
+from uvf.runtime.bus.address import is_loopback
 
 BLOCK = mav.MAVLINK_SIGNATURE_BLOCK_LEN
 HASH_BYTES = 6

@@ -1,8 +1,8 @@
 """Which ground stations are in touch: those whose HEARTBEAT of a while ago at most has been heard."""
 
 from services.autopilot.mavlink.line import Sender
-from uvf.runtime.mavlink import dialect as mav
-from uvf.runtime.mavlink.bounded import make_room
+from uvf.mavlink import dialect as mav
+from uvf.mavlink.bounded import make_room
 
 SILENT_AFTER = 3.0  # s, wall: three heartbeats
 MOST = 64

@@ -5,10 +5,10 @@ from collections.abc import Hashable, Sequence
 from dataclasses import dataclass
 
 from schemas.messages import Event
-from uvf.runtime.mavlink import dialect as mav
-from uvf.runtime.mavlink.bounded import make_room
-from uvf.runtime.mavlink.endpoint import Peer
-from uvf.runtime.mavlink.text_bucket import TEXTS_AT_ONCE, TextBucket
+from uvf.mavlink import dialect as mav
+from uvf.mavlink.bounded import make_room
+from uvf.mavlink.endpoint import Peer
+from uvf.mavlink.text_bucket import TEXTS_AT_ONCE, TextBucket
 
 CHUNK_BYTES = 50
 REPEAT_AFTER = 10.0  # s

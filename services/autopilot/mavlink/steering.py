@@ -4,14 +4,14 @@ import math
 
 import numpy as np
 
-from schemas.convert import array, yaw_of
 from schemas.messages import Mode, NavStatus
 from services.autopilot.mavlink.facts import Facts, Latest
 from services.autopilot.mavlink.navigation import boot_ms
 from uvf.maths.geodesy import Floats
 from uvf.maths.rotations import from_euler
-from uvf.runtime.mavlink import dialect as mav
-from uvf.runtime.mavlink.scaling import I16, I32, U16, compass, whole
+from uvf.mavlink import dialect as mav
+from uvf.mavlink.scaling import I16, I32, U16, compass, whole
+from uvf.runtime.messages.convert import array, yaw_of
 
 Message = mav.MAVLink_message | None
 

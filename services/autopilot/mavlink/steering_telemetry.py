@@ -1,11 +1,11 @@
 """What is told of sticks and circles: RC_CHANNELS while channels are overridden, ORBIT_EXECUTION_STATUS while it orbits."""
 
-from schemas.convert import array
 from schemas.messages import Mode
 from services.autopilot.mavlink.facts import Facts, Latest
 from services.autopilot.mavlink.navigation import boot_ms
-from uvf.runtime.mavlink import dialect as mav
-from uvf.runtime.mavlink.scaling import I32, whole
+from uvf.mavlink import dialect as mav
+from uvf.mavlink.scaling import I32, whole
+from uvf.runtime.messages.convert import array
 
 Message = mav.MAVLink_message | None
 UNUSED, UNKNOWN_STRENGTH = 0xFFFF, 255

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 
-from uvf.runtime.mavlink.endpoint import Peer
+from uvf.mavlink.endpoint import Peer
 
 SHORTEST = 0.02  # s: one step of the service
 

@@ -7,9 +7,9 @@ import socket
 from collections.abc import Collection, Mapping, Sequence
 from typing import NamedTuple
 
-from uvf.runtime.address import peer
-from uvf.runtime.mavlink.endpoint import Peer
-from uvf.runtime.params import BadInput
+from uvf.mavlink.endpoint import Peer
+from uvf.models.yaml_data import BadInput
+from uvf.runtime.bus.address import peer
 
 Reserved = Mapping[Peer, int]
 """Ports that hear one vehicle, and are heard by it: numeric address -> system_id."""

@@ -9,16 +9,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from schemas.convert import array, wxyz
 from schemas.messages import Breach, Gnss, MissionItem, Mode
 from services.autopilot.mavlink import estimate_quality, identity, navigation, sensor_messages, steering, steering_telemetry
 from services.autopilot.mavlink.facts import Facts, Latest
 from services.autopilot.mavlink.health import health
 from services.autopilot.mavlink.traffic import traffic
-from uvf.runtime.mavlink import dialect as mav
-from uvf.runtime.mavlink.scaling import I32, U16, whole
-from uvf.runtime.mavlink.scaling import compass as compass_of
-from uvf.runtime.plan_ids import fence_id, rally_id
+from uvf.mavlink import dialect as mav
+from uvf.mavlink.scaling import I32, U16, whole
+from uvf.mavlink.scaling import compass as compass_of
+from uvf.runtime.messages.convert import array, wxyz
+from uvf.runtime.messages.plan_ids import fence_id, rally_id
 
 RANGE_ERROR = 1.0  # m, 1 sigma of the distance to one satellite
 Message = mav.MAVLink_message | None

@@ -6,10 +6,10 @@ import re
 
 import numpy as np
 
-from schemas.convert import array, yaw_of
 from services.autopilot.mavlink.facts import Facts, Latest
-from uvf.runtime.mavlink import dialect as mav
-from uvf.runtime.mavlink.scaling import I16, I32, U16, compass, heading_degrees, whole
+from uvf.mavlink import dialect as mav
+from uvf.mavlink.scaling import I16, I32, U16, compass, heading_degrees, whole
+from uvf.runtime.messages.convert import array, yaw_of
 
 CALLSIGN = 8  # characters
 STANDS = 0.2  # m/s, below which a vehicle goes where it looks

@@ -30,8 +30,8 @@ from services.autopilot.mavlink.setpoints import Setpoints
 from services.autopilot.mavlink.statustext import SEVERITY, event_text
 from services.autopilot.mavlink.streams import Schedule
 from services.autopilot.mavlink.telemetry import STREAMS
-from uvf.runtime.mavlink import dialect as mav
-from uvf.runtime.mavlink.endpoint import Peer
+from uvf.mavlink import dialect as mav
+from uvf.mavlink.endpoint import Peer
 
 FIXED = {**ACTIONS, **GUIDED, **ORDERS, **FENCE_SWITCH, **NOT_OFFERED}
 """Commands whose handlers keep nothing."""

@@ -4,9 +4,9 @@ import math
 
 import numpy as np
 
-from schemas.convert import array, seconds
 from schemas.messages import Imu
 from uvf.maths.geodesy import Floats
+from uvf.runtime.messages.convert import array, seconds
 
 FLOOR = 1 / (2 * math.pi * 5.0)  # s, time constant of 5 Hz: what is slower is motion
 MEAN = 1 / (2 * math.pi * 2.0)  # s, of 2 Hz, over which the rest is squared and averaged

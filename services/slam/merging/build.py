@@ -1,10 +1,10 @@
 """One merging for all ground vehicles of the mission that draw maps."""
 
-from services.slam.graph.method import GraphSlam
-from services.slam.made_corridor import there_and_back
 from services.slam.merging.merging_service import MergingService
-from services.slam.merging.team import Team
-from uvf.runtime.site import Host, Site
+from uvf.models.scenario import Host, Site
+from uvf.slam.graph.method import GraphSlam
+from uvf.slam.made_corridor import there_and_back
+from uvf.slam.merging.team import Team
 
 
 def build(site: Site) -> list[Host]:

@@ -5,13 +5,13 @@ from collections.abc import Iterable, Mapping
 import numpy as np
 
 from schemas import topics
-from schemas.convert import occupancy_grid, planar_frame, stamp
 from schemas.messages import Event, FrameTransform, Grid, MapSession
-from services.slam.maps.session import Session
-from services.slam.maps.tiles import TileMap
-from services.slam.merging.team import Group, Team
-from uvf.runtime.params import BadInput
-from uvf.runtime.service import Outputs, Service, each_vehicle
+from uvf.models.yaml_data import BadInput
+from uvf.runtime.contract.service import Outputs, Service, each_vehicle
+from uvf.runtime.messages.convert import occupancy_grid, planar_frame, stamp
+from uvf.slam.maps.session import Session
+from uvf.slam.maps.tiles import TileMap
+from uvf.slam.merging.team import Group, Team
 
 PLACES = 4  # that are searched for in a step
 RESOLUTION = 0.05  # m

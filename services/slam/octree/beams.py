@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, UnidentifiedImageError
 
-from schemas.convert import scan_rays
 from schemas.messages import CameraCalibration, CompressedImage, LaserScan
-from uvf.runtime.params import BadInput
+from uvf.models.yaml_data import BadInput
+from uvf.runtime.messages.convert import scan_rays
 
 Floats = NDArray[np.float64]
 

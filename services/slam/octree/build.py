@@ -4,15 +4,15 @@ from functools import partial
 
 import numpy as np
 
-from services.slam.octree.columns import columns_of
-from services.slam.octree.files import read_octree, to_bt
-from services.slam.octree.leaves import leaves_of
-from services.slam.octree.octree import Octree
 from services.slam.octree.octree_service import OctreeParams, OctreeService
-from uvf.runtime.params import BadInput
-from uvf.runtime.site import Host, Member, Site
-from uvf.runtime.state_folder import state_folder
-from uvf.runtime.whole_file import write_whole
+from uvf.models.scenario import Host, Member, Site
+from uvf.models.whole_file import write_whole
+from uvf.models.yaml_data import BadInput
+from uvf.runtime.state.state_folder import state_folder
+from uvf.slam.octree.columns import columns_of
+from uvf.slam.octree.files import read_octree, to_bt
+from uvf.slam.octree.leaves import leaves_of
+from uvf.slam.octree.octree import Octree
 
 
 def build(site: Site) -> list[Host]:

@@ -2,12 +2,12 @@
 
 import numpy as np
 
-from schemas.convert import occupancy_grid, stamp
 from schemas.messages import Grid, OctreeMap, PackedElementField
-from services.slam.octree.columns import Columns
-from services.slam.octree.files import read_octree, to_bt
-from services.slam.octree.leaves import DEPTH, coarser, leaves_of
-from services.slam.octree.octree import Octree
+from uvf.runtime.messages.convert import occupancy_grid, stamp
+from uvf.slam.octree.columns import Columns
+from uvf.slam.octree.files import read_octree, to_bt
+from uvf.slam.octree.leaves import DEPTH, coarser, leaves_of
+from uvf.slam.octree.octree import Octree
 
 FRAME = "world"
 

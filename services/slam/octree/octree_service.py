@@ -11,20 +11,20 @@ from msgspec import Meta
 from numpy.typing import NDArray
 
 from schemas import topics
-from schemas.convert import seconds, stamp
 from schemas.messages import CameraCalibration, CompressedImage, Event, LaserScan, OctreeMap, OctreeSaveRequest, Reply
 from services.slam.octree.beams import Beams, depth_beams, sweep_beams
-from services.slam.octree.columns import columns_of
-from services.slam.octree.files import to_bt
-from services.slam.octree.leaves import TooLarge, leaves_of
-from services.slam.octree.octree import Octree
 from services.slam.octree.octree_messages import FRAME, heights_message, octree_from, octree_message, slice_message
-from uvf.maths.transforms import apply
-from uvf.runtime.frames import FrameBuffer, FrameError
-from uvf.runtime.params import BadInput
-from uvf.runtime.service import Outputs, Params, Service, Value, every, frames, optional
-from uvf.runtime.sweeping import Part
-from uvf.runtime.vehicle_file import Sensors
+from uvf.maths.se3 import apply
+from uvf.models.vehicle.file import Sensors
+from uvf.models.yaml_data import BadInput
+from uvf.runtime.contract.service import Outputs, Params, Service, Value, every, frames, optional
+from uvf.runtime.messages.convert import seconds, stamp
+from uvf.runtime.messages.frames import FrameBuffer, FrameError
+from uvf.sensors.sweeping import Part
+from uvf.slam.octree.columns import columns_of
+from uvf.slam.octree.files import to_bt
+from uvf.slam.octree.leaves import TooLarge, leaves_of
+from uvf.slam.octree.octree import Octree
 
 Floats = NDArray[np.float64]
 Positive = Annotated[float, Meta(gt=0)]

@@ -3,11 +3,11 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from schemas.convert import array, seconds
 from schemas.messages import Imu, WheelTicks
-from services.slam.odometry.states import Step
+from uvf.estimation.odometry.states import Step
 from uvf.maths.rotations import from_euler, matrix
-from uvf.runtime.vehicle_file import GroundBody, Mount
+from uvf.models.vehicle.file import GroundBody, Mount
+from uvf.runtime.messages.convert import array, seconds
 
 Floats = NDArray[np.float64]
 

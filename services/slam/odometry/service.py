@@ -3,22 +3,22 @@
 from math import isfinite
 
 from schemas import topics
-from schemas.convert import planar_pose, pose2_of, pose2_of_frame, seconds, stamp
 from schemas.messages import Event, FrameTransform, Gnss, Imu, Odometry, PoseInFrame, WheelTicks
 from services.slam.odometry import telling
-from services.slam.odometry.calibration import Scales, SegmentMaker, WheelCalibration
-from services.slam.odometry.filter import DriveFilter
-from services.slam.odometry.params import OdometryParams
 from services.slam.odometry.readings import Readings
-from services.slam.odometry.slip import Episodes, MatchedMotion, Unseen
-from services.slam.odometry.states import Step
-from services.slam.odometry.world import MapPose, SatellitePose
+from uvf.estimation.odometry.calibration import Scales, SegmentMaker, WheelCalibration
+from uvf.estimation.odometry.filter import DriveFilter
+from uvf.estimation.odometry.params import OdometryParams
+from uvf.estimation.odometry.slip import Episodes, MatchedMotion, Unseen
+from uvf.estimation.odometry.states import Step
+from uvf.estimation.odometry.world import MapPose, SatellitePose
 from uvf.maths.geodesy import LocalTangent
 from uvf.maths.kinematics import Twist, move
-from uvf.maths.planar import Pose2
-from uvf.maths.sampling import Due
-from uvf.runtime.service import Outputs, Service, Value, every, optional
-from uvf.runtime.vehicle_file import VehicleFile
+from uvf.maths.se2 import Pose2
+from uvf.models.vehicle.file import VehicleFile
+from uvf.runtime.contract.service import Outputs, Service, Value, every, optional
+from uvf.runtime.messages.convert import planar_pose, pose2_of, pose2_of_frame, seconds, stamp
+from uvf.sensors.sampling import Due
 
 MAX_PREDICTION = 0.1  # s, wheel data older than this is not extrapolated further
 

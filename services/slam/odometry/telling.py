@@ -3,14 +3,14 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from schemas.convert import planar_frame, planar_pose, quaternion, stamp
 from schemas.messages import EstimateQuality, Event, FrameTransform, KeyValuePair, NavState, Odometry, Vector3
-from services.slam.odometry.calibration import Scales, WheelCalibration
-from services.slam.odometry.filter import DriveFilter
-from services.slam.odometry.slip import sigma
-from services.slam.odometry.states import HEADING, POSE, SPEED
-from uvf.maths.planar import Pose2
+from uvf.estimation.odometry.calibration import Scales, WheelCalibration
+from uvf.estimation.odometry.filter import DriveFilter
+from uvf.estimation.odometry.slip import sigma
+from uvf.estimation.odometry.states import HEADING, POSE, SPEED
 from uvf.maths.rotations import from_euler
+from uvf.maths.se2 import Pose2
+from uvf.runtime.messages.convert import planar_frame, planar_pose, quaternion, stamp
 
 Floats = NDArray[np.float64]
 

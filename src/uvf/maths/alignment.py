@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from uvf.maths.planar import Pose2
+from uvf.maths.se2 import Pose2
 
 Floats = NDArray[np.float64]
 

@@ -9,8 +9,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from uvf.maths.planar import Pose2
 from uvf.maths.rotations import wrap
+from uvf.maths.se2 import Pose2
 
 Floats = NDArray[np.float64]
 

@@ -12,7 +12,7 @@ import venv
 import zlib
 from pathlib import Path
 
-from uvf.runtime.site import ROOT
+from uvf.models.scenario import ROOT
 
 LOCKS = Path(__file__).parent
 FOLDER = ROOT / ".programs"

@@ -5,7 +5,7 @@ import socket
 import threading
 import time
 
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
 
 WANTED = {
     mav.MAVLINK_MSG_ID_HEARTBEAT,

@@ -5,7 +5,7 @@ import socket
 import time
 
 from services.autopilot.mavlink.telemetry import STREAMS
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
 
 UNREAD = {number for number, stream in STREAMS.items() if stream.hz} - {mav.MAVLINK_MSG_ID_HEARTBEAT, mav.MAVLINK_MSG_ID_HOME_POSITION}
 """Telemetry that comes by itself and that nobody here waits for."""

@@ -7,8 +7,8 @@ import numpy as np
 from services.sim_ground.world import BulletWorld, Placed
 from uvf.maths.kinematics import DifferentialDrive, Twist
 from uvf.maths.rotations import to_euler
-from uvf.runtime.urdf_model import engine_urdf
-from uvf.runtime.vehicle_file import load_vehicle
+from uvf.models.urdf.model import engine_urdf
+from uvf.models.vehicle.file import load_vehicle
 
 STEP = 0.02  # s
 

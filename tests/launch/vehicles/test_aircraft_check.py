@@ -5,8 +5,8 @@ import shutil
 
 import pytest
 
-from uvf.launch.vehicles.inspection import inspect
-from uvf.runtime.site import ROOT
+from launch.vehicles.inspection import inspect
+from uvf.models.scenario import ROOT
 
 
 def changed(tmp_path, model, *changes):

@@ -6,12 +6,12 @@ import pytest
 from PIL import Image
 from typer.testing import CliRunner
 
+from launch.commands import vehicle as vehicle_cli
+from launch.commands.vehicle import vehicle_app
+from launch.vehicles.inspection import inspect
 from tests.launch.vehicles.driving import drive
 from tests.launch.vehicles.foreign_robots import gazebo_sdf
-from uvf.launch import vehicle_cli
-from uvf.launch.vehicle_cli import vehicle_app
-from uvf.launch.vehicles.inspection import inspect
-from uvf.runtime.site import ROOT
+from uvf.models.scenario import ROOT
 
 
 @pytest.fixture

@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 import trimesh
 
+from launch.vehicles.importing import NOTES, import_vehicle
+from launch.vehicles.inspection import inspect
 from tests.launch.vehicles.driving import drive
 from tests.launch.vehicles.foreign_robots import ROBOTS
-from uvf.launch.vehicles.importing import NOTES, import_vehicle
-from uvf.launch.vehicles.inspection import inspect
-from uvf.runtime.params import BadInput
-from uvf.runtime.solid_mesh import triangles
-from uvf.runtime.urdf_model import load_urdf
-from uvf.runtime.vehicle_file import load_vehicle
+from uvf.models.shapes.mesh import triangles
+from uvf.models.urdf.model import load_urdf
+from uvf.models.vehicle.file import load_vehicle
+from uvf.models.yaml_data import BadInput
 
 XACRO = '<robot name="x" xmlns:xacro="http://www.ros.org/wiki/xacro">'
 TOLD = {

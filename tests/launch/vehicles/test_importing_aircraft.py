@@ -8,13 +8,13 @@ import jsbsim
 import numpy as np
 import pytest
 
-from services.sim_air.airframe import Airframe
-from uvf.launch.vehicles.aircraft_rules import SEA_LEVEL
-from uvf.launch.vehicles.aircraft_trial import level
-from uvf.launch.vehicles.importing import NOTES, import_vehicle
-from uvf.launch.vehicles.inspection import inspect
-from uvf.runtime.params import BadInput
-from uvf.runtime.vehicle_file import load_vehicle
+from launch.vehicles.aircraft_rules import SEA_LEVEL
+from launch.vehicles.aircraft_trial import level
+from launch.vehicles.importing import NOTES, import_vehicle
+from launch.vehicles.inspection import inspect
+from services.sim_air.engine.airframe import Airframe
+from uvf.models.vehicle.file import load_vehicle
+from uvf.models.yaml_data import BadInput
 
 SHIPPED = Path(jsbsim.get_default_root_dir()) / "aircraft"
 KINDS = {"c172x": "its autopilot and actuators with hysteresis", "T37": "two jets", "sgs126": "a glider"}

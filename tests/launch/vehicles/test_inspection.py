@@ -6,8 +6,8 @@ import shutil
 import pytest
 import yaml
 
-from uvf.launch.vehicles.inspection import inspect
-from uvf.runtime.site import ROOT
+from launch.vehicles.inspection import inspect
+from uvf.models.scenario import ROOT
 
 URDF, YAML = "burger.urdf", "vehicle.yaml"
 MOVED = '<origin xyz="0 0.08 0.033"/>'

@@ -6,7 +6,7 @@ import pytest
 from PIL import Image
 from typer.testing import CliRunner
 
-from uvf.launch.vehicle_cli import vehicle_app
+from launch.commands.vehicle import vehicle_app
 
 
 def run(*words):

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
+from launch.vehicles.inspection import inspect
 from tests.launch.vehicles.driving import drive
-from uvf.launch.vehicles.inspection import inspect
-from uvf.runtime.site import ROOT
-from uvf.runtime.vehicle_file import load_vehicle
+from uvf.models.scenario import ROOT
+from uvf.models.vehicle.file import load_vehicle
 
 VEHICLES = ROOT / "vehicles"
 NAMES = sorted(p.parent.name for p in VEHICLES.glob("*/vehicle.yaml"))

@@ -5,10 +5,10 @@ import pytest
 import yaml
 from typer.testing import CliRunner
 
-from uvf.launch.vehicle_cli import vehicle_app
-from uvf.launch.vehicles.tuning import SECONDS, tune, with_params
-from uvf.runtime.params import BadInput, Place
-from uvf.runtime.site import ROOT
+from launch.commands.vehicle import vehicle_app
+from launch.vehicles.tuning import SECONDS, tune, with_params
+from uvf.models.scenario import ROOT
+from uvf.models.yaml_data import BadInput, Place
 
 PLACE = Place("vehicle.yaml")
 FIGURES = {"roll_p": 0.05123456, "roll_time": 0.3}

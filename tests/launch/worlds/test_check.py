@@ -2,10 +2,10 @@
 
 import pytest
 
-from tests.runtime.test_world_geometry import world_of
-from uvf.launch.worlds.check import problems
-from uvf.runtime.site import ROOT
-from uvf.runtime.world_file import Box, Cylinder, Sphere, Wall, load_world
+from launch.worlds.check import problems
+from tests.models.world.test_geometry import world_of
+from uvf.models.scenario import ROOT
+from uvf.models.world.file import Box, Cylinder, Sphere, Wall, load_world
 
 HERE_AND_BACK = [(0.0, 0.5, 1.0, 0.0), (5.0, 3.5, 1.0, 0.0), (10.0, 0.5, 1.0, 0.0)]
 

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from uvf.launch.worlds.imports import Options, import_world
-from uvf.launch.worlds.map_image import greedy_rectangles
-from uvf.runtime.footing import Footing
-from uvf.runtime.params import BadInput
-from uvf.runtime.world_file import load_world
+from uvf.models.importing.map_image import greedy_rectangles
+from uvf.models.importing.worlds import Options, import_world
+from uvf.models.world.file import load_world
+from uvf.models.world.footing import Footing
+from uvf.models.yaml_data import BadInput
 
 CELLS = np.zeros((12, 20), dtype=bool)  # row 0 at the bottom
 CELLS[0] = CELLS[-1] = CELLS[:, 0] = CELLS[:, -1] = True

@@ -5,10 +5,10 @@ import pytest
 
 from services.sim_ground.world import BulletWorld, Placed
 from uvf.maths.kinematics import DifferentialDrive, Twist
-from uvf.runtime.site import ROOT
-from uvf.runtime.vehicle_file import load_vehicle
-from uvf.runtime.world_file import load_world
-from uvf.runtime.world_geometry import solids
+from uvf.models.scenario import ROOT
+from uvf.models.vehicle.file import load_vehicle
+from uvf.models.world.file import load_world
+from uvf.models.world.geometry import solids
 
 FOLDER = ROOT / "vehicles" / "burger"
 BODY = load_vehicle(ROOT / "vehicles", "burger").ground

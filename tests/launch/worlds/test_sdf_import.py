@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 import trimesh
 
-from uvf.launch.worlds.imports import Options, import_world
 from uvf.maths.rotations import from_euler, matrix
-from uvf.runtime.params import BadInput
-from uvf.runtime.world_file import load_world
-from uvf.runtime.world_geometry import solids
+from uvf.models.importing.worlds import Options, import_world
+from uvf.models.world.file import load_world
+from uvf.models.world.geometry import solids
+from uvf.models.yaml_data import BadInput
 
 BOX = "<collision name='c'><geometry><box><size>{}</size></box></geometry></collision>"
 UNIT = BOX.format("1 1 1")

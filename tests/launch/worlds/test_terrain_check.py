@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from uvf.launch.worlds.check import problems
-from uvf.launch.worlds.report import figures
-from uvf.runtime.site import ROOT
-from uvf.runtime.world_file import Box, Origin, Terrain, WorldFile, load_world
+from launch.worlds.check import problems
+from launch.worlds.report import figures
+from uvf.models.scenario import ROOT
+from uvf.models.world.file import Box, Origin, Terrain, WorldFile, load_world
 
 
 def told(tmp_path, z):

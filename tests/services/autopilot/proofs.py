@@ -2,9 +2,9 @@
 
 import functools
 
-from services.autopilot.air.failsafes import AIR_RULES
+from services.autopilot.air.failsafes.table import AIR_RULES
 from services.autopilot.ground.failsafes import GROUND_RULES
-from uvf.runtime.lockstep import Lockstep
+from uvf.runtime.time.lockstep import Lockstep
 
 RULES = {("air", rule.name): rule for rule in AIR_RULES} | {("ground", rule.name): rule for rule in GROUND_RULES}
 SHOWN = set()

@@ -1,7 +1,7 @@
 """Each vehicle of the demo gets the autopilot of its kind."""
 
 from services.autopilot.build import build
-from uvf.runtime.site import ROOT, load_site
+from uvf.models.scenario import ROOT, load_site
 
 
 def test_every_vehicle_of_the_demo_has_one_autopilot():

@@ -2,9 +2,9 @@
 
 import pytest
 
-from schemas.convert import stamp
 from schemas.messages import Link
 from services.autopilot.link_watch import LinkWatch
+from uvf.runtime.messages.convert import stamp
 
 
 def link(t, stations=1, silence=0.5, rate=1.0):

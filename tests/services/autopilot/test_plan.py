@@ -7,8 +7,8 @@ import pytest
 
 from schemas.messages import MissionItem
 from services.autopilot import plan
-from uvf.runtime.mission_file import Waypoint
-from uvf.runtime.plan_ids import mission_id
+from uvf.models.mission.file import Waypoint
+from uvf.runtime.messages.plan_ids import mission_id
 
 
 def test_a_line_of_a_mission_file_becomes_an_item():

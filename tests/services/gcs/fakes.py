@@ -6,8 +6,8 @@ from typing import Any
 from services.gcs.commands import Join
 from services.gcs.service import GroundStation
 from tests.services.gcs.scripted import Script, demo_site
-from uvf.runtime.shell import Shell
-from uvf.runtime.site import Host
+from uvf.models.scenario import Host
+from uvf.runtime.contract.service_runner import Shell
 
 ME, OTHER = 1, 2
 """Two browsers; the first one has joined from the start."""

@@ -6,7 +6,6 @@ import msgspec
 import numpy as np
 
 from schemas import topics
-from schemas.convert import occupancy_grid, planar_pose, quaternion, stamp
 from schemas.messages import (
     Clock,
     Event,
@@ -29,12 +28,13 @@ from schemas.messages import (
     VehicleStatus,
 )
 from uvf.maths.rotations import from_euler
-from uvf.runtime.bus import LocalBus
-from uvf.runtime.clock import NS
-from uvf.runtime.formation_file import Follow
-from uvf.runtime.mission_file import Job
-from uvf.runtime.site import ROOT, load_site
-from uvf.runtime.vehicle_file import load_vehicle
+from uvf.models.mission.file import Job
+from uvf.models.mission.formation import Follow
+from uvf.models.scenario import ROOT, load_site
+from uvf.models.vehicle.file import load_vehicle
+from uvf.runtime.bus.interface import LocalBus
+from uvf.runtime.messages.convert import occupancy_grid, planar_pose, quaternion, stamp
+from uvf.runtime.time.clock import NS
 
 UGV, UAV = "burger", "milvus"
 LEGS = ((200.0, -150.0), (200.0, 150.0), (-200.0, 150.0), (-200.0, -150.0))

@@ -5,10 +5,10 @@ import pytest
 from schemas.messages import CancelRequest, Mode, ModeRequest, NavStatus
 from services.gcs.by_hand import PATIENCE, ByHand
 from services.gcs.commands import Cancel, ClickGround, Join, Leave, LeaveWheel, Rescale, Select, SetMode, Steer, StopAll, TakeWheel
-from services.gcs.viser_script import action_in
+from services.gcs.page.viser_script import action_in
 from tests.services.gcs.fakes import ME, OTHER, Station
 from tests.services.gcs.scripted import UAV, UGV
-from uvf.runtime.teleop_hand import START_ANGULAR, START_LINEAR, STILL, ZEROS, Command
+from uvf.control.teleop_drive import START_ANGULAR, START_LINEAR, STILL, ZEROS, Command
 
 START = Command(START_LINEAR, START_ANGULAR)
 

@@ -8,7 +8,7 @@ from schemas.messages import ArmRequest, GoalRequest, Mode, ModeRequest
 from services.gcs.commands import ANSWER_WITHIN, CONFIRM_WITHIN, Arm, ClickGround, Layer, Select, SetMode, StopAll, describe, ground_point
 from tests.services.gcs.fakes import ME, Station
 from tests.services.gcs.scripted import UAV, UGV
-from uvf.runtime.stop_all import StopVoice
+from uvf.runtime.state.stop_all import StopVoice
 
 
 def click(x, y, vehicle=UGV):

@@ -3,7 +3,7 @@
 import random
 
 from services.mavlink_bridge.station import COMPONENT, SYSTEM
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
 
 DT = 0.02
 PX4, ARDUPILOT = mav.MAV_AUTOPILOT_PX4, mav.MAV_AUTOPILOT_ARDUPILOTMEGA

@@ -14,11 +14,11 @@ from services.mavlink_bridge.frame import Origin
 from services.mavlink_bridge.service import BridgedVehicle
 from services.mavlink_bridge.station import Station
 from tests.services.autopilot.mavlink.rig import Shelf
-from uvf.runtime.bus import LocalBus
-from uvf.runtime.lockstep import Lockstep
-from uvf.runtime.mavlink.endpoint import UdpLink
-from uvf.runtime.shell import Shell
-from uvf.runtime.site import Host
+from uvf.mavlink.endpoint import UdpLink
+from uvf.models.scenario import Host
+from uvf.runtime.bus.interface import LocalBus
+from uvf.runtime.contract.service_runner import Shell
+from uvf.runtime.time.lockstep import Lockstep
 
 NS = 1_000_000_000
 

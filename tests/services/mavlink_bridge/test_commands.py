@@ -7,7 +7,7 @@ import pytest
 from services.mavlink_bridge.commands import TRIES, Commands, command
 from services.mavlink_bridge.wire import Wire
 from tests.services.mavlink_bridge.far_end import ack, text
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
 
 ARM, MODE = mav.MAV_CMD_COMPONENT_ARM_DISARM, mav.MAV_CMD_DO_SET_MODE
 ACCEPTED, DENIED, BUSY = mav.MAV_RESULT_ACCEPTED, mav.MAV_RESULT_DENIED, mav.MAV_RESULT_IN_PROGRESS

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from schemas import topics
-from schemas.convert import array, wxyz
 from schemas.messages import (
     AltitudeOrder,
     ArmRequest,
@@ -39,9 +38,10 @@ from services.sim_ground.build import build as ground_sim
 from services.slam.build import build as slam
 from tests.services.mavlink_bridge.flown import Sides
 from uvf.maths.rotations import inverse, multiply
-from uvf.runtime.mission_file import Job
-from uvf.runtime.site import ROOT, Member, load_site
-from uvf.runtime.stop_all import StopVoice
+from uvf.models.mission.file import Job
+from uvf.models.scenario import ROOT, Member, load_site
+from uvf.runtime.messages.convert import array, wxyz
+from uvf.runtime.state.stop_all import StopVoice
 
 SPEED = 30.0  # m/s, faster than it flies
 

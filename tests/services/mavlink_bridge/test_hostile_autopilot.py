@@ -13,10 +13,10 @@ from services.mavlink_bridge.wire import PARTS_MOST, TEXT_LETTERS, TEXTS_MOST, W
 from tests.services.mavlink_bridge.far_end import US, heartbeat, item, text
 from tests.services.mavlink_bridge.test_station import HERE, Air
 from tests.services.mavlink_bridge.test_vehicle import HOME, Scripted, attitude, current, home, position
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
+from uvf.mavlink.text_bucket import TEXTS_AT_ONCE, TEXTS_PER_SECOND
+from uvf.runtime.contract.validation import error_in
 from uvf.runtime.mavlink.mission_items import packed, unpacked
-from uvf.runtime.mavlink.text_bucket import TEXTS_AT_ONCE, TEXTS_PER_SECOND
-from uvf.runtime.validation import error_in
 
 NOWHERE = 2_140_000_000  # 1e-7 deg
 HUGE = 3e38

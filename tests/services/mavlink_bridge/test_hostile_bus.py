@@ -33,7 +33,7 @@ from services.mavlink_bridge.wire import Wire
 from tests.services.mavlink_bridge.far_end import ARDUPILOT, ack, item
 from tests.services.mavlink_bridge.test_parameters import INT, Shelf
 from tests.services.mavlink_bridge.test_vehicle import Scripted, attitude, current, home, position
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
 from uvf.runtime.mavlink.mission_items import ORIGIN
 
 FAR, HIGH = Vector3(x=9e11), Vector3(z=-9e11)

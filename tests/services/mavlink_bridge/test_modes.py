@@ -4,7 +4,7 @@ import pytest
 
 from schemas.messages import Mode
 from services.mavlink_bridge.modes import Modes
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
 
 PX4, ARDUPILOT = mav.MAV_AUTOPILOT_PX4, mav.MAV_AUTOPILOT_ARDUPILOTMEGA
 PLANE, ROVER, COPTER = mav.MAV_TYPE_FIXED_WING, mav.MAV_TYPE_GROUND_ROVER, mav.MAV_TYPE_QUADROTOR

@@ -7,7 +7,7 @@ import pytest
 
 from services.mavlink_bridge.parameters import Parameters
 from services.mavlink_bridge.wire import Wire
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
 
 REAL, INT = mav.MAV_PARAM_TYPE_REAL32, mav.MAV_PARAM_TYPE_INT32
 

@@ -11,9 +11,9 @@ from services.mavlink_bridge.service import BridgedVehicle
 from services.mavlink_bridge.station import COMPONENT, LOST_AFTER, SYSTEM, Station
 from tests.services.autopilot.mavlink.rig import ORIGIN, MemoryLink
 from tests.services.mavlink_bridge.far_end import ARDUPILOT, DT, PX4, ack, heartbeat, text
-from uvf.runtime.mavlink import dialect as mav
-from uvf.runtime.params import BadInput
-from uvf.runtime.stop_all import StopStatus
+from uvf.mavlink import dialect as mav
+from uvf.models.yaml_data import BadInput
+from uvf.runtime.state.stop_all import StopStatus
 
 NOBODY = StopStatus()
 HERE, THERE = ("127.0.0.1", 5001), ("127.0.0.1", 5002)

@@ -5,7 +5,7 @@ import pytest
 from services.mavlink_bridge.transfers import Transfers
 from services.mavlink_bridge.wire import Wire
 from tests.services.mavlink_bridge.far_end import DT, PlanKeeper, item, text
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
 from uvf.runtime.mavlink.mission_items import ORIGIN, packed, unpacked
 
 OTHER_STATION = (255, 190)

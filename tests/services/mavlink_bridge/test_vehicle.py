@@ -6,7 +6,6 @@ import math
 import numpy as np
 import pytest
 
-from schemas.convert import array
 from schemas.messages import ArmRequest, Event, GoalRequest, Mission, MissionItem, MissionRequest, Mode, ModeRequest, Vector3
 from services.mavlink_bridge.autopilot import Autopilot
 from services.mavlink_bridge.frame import Origin
@@ -15,7 +14,8 @@ from services.mavlink_bridge.service import BridgedVehicle
 from tests.services.autopilot.mavlink.rig import ORIGIN
 from tests.services.mavlink_bridge.far_end import ARDUPILOT, DT, PX4, PlanKeeper, ack, heartbeat, item, text
 from uvf.maths.rotations import from_euler
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
+from uvf.runtime.messages.convert import array
 
 HOME = (407700000, 147900000, 320000)  # 1e-7 deg, mm
 ACCEPTED = mav.MAV_RESULT_ACCEPTED

@@ -6,17 +6,17 @@ import numpy as np
 import pytest
 
 from schemas import topics
-from schemas.convert import occupancy_grid, planar_pose, stamp
 from schemas.messages import Grid, LaserScan, PoseInFrame, PosesInFrame
 from services.planner.planner_service import PlannerParams, PlannerService
 from services.planner.tracker_service import TrackerParams, TrackerService
 from tests.services.autopilot.ground.test_service import BODY
 from tests.services.planner.plans import room
-from uvf.maths import transforms
-from uvf.maths.planar import IDENTITY
-from uvf.runtime.bus import LocalBus
-from uvf.runtime.shell import Shell
-from uvf.runtime.site import Host
+from uvf.maths import se3
+from uvf.maths.se2 import IDENTITY
+from uvf.models.scenario import Host
+from uvf.runtime.bus.interface import LocalBus
+from uvf.runtime.contract.service_runner import Shell
+from uvf.runtime.messages.convert import occupancy_grid, planar_pose, stamp
 
 NAN = math.nan
 POSES = {
@@ -45,7 +45,7 @@ class Bench:
         self.bus, self.told, self.t = LocalBus(), [], 0.0
         makers = {
             PlannerService: lambda: PlannerService(IDENTITY, 0.1, True, PlannerParams()),
-            TrackerService: lambda: TrackerService(BODY, transforms.IDENTITY, TrackerParams()),
+            TrackerService: lambda: TrackerService(BODY, se3.IDENTITY, TrackerParams()),
         }
         self.shells = [Shell(Host(kind, make, "v"), self.bus, self.told.append) for kind, make in makers.items()]
 

@@ -4,19 +4,19 @@ import numpy as np
 import pytest
 
 from schemas import topics
-from schemas.convert import occupancy_cells, yaw_of
 from schemas.messages import CancelRequest, GoalRequest, Mode, NavStatus, Vector3
 from services.autopilot.ground.build import hosts
 from services.planner.build import build as build_planner
 from services.sim_ground.build import build as build_simulator
 from services.slam.build import build as build_slam
 from tests.runtime.outcome import ask
-from uvf.maths.planar import inverse, transform
-from uvf.runtime.lockstep import Lockstep
-from uvf.runtime.shell import Shell
-from uvf.runtime.site import ROOT, load_site
-from uvf.runtime.stop_all import StopVoice
-from uvf.runtime.world_geometry import floor_plan, reachable_floor
+from uvf.maths.se2 import inverse, transform
+from uvf.models.scenario import ROOT, load_site
+from uvf.models.world.geometry import floor_plan, reachable_floor
+from uvf.runtime.contract.service_runner import Shell
+from uvf.runtime.messages.convert import occupancy_cells, yaw_of
+from uvf.runtime.state.stop_all import StopVoice
+from uvf.runtime.time.lockstep import Lockstep
 
 VEHICLE = "burger"
 ROUND = 60.0  # s of exploring

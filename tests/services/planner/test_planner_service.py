@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from schemas.convert import occupancy_grid, planar_pose
 from schemas.messages import (
     CancelRequest,
     Fence,
@@ -18,11 +17,12 @@ from schemas.messages import (
     Vector3,
     VehicleStatus,
 )
-from services.planner import navigator
 from services.planner.planner_service import PlannerParams, PlannerService
-from services.planner.search import Ways
 from tests.services.live_params import all_settable_are_read
 from tests.services.planner.plans import room
+from uvf.planning import navigator
+from uvf.planning.search import Ways
+from uvf.runtime.messages.convert import occupancy_grid, planar_pose
 
 READY = VehicleStatus(mode=Mode.MODE_MISSION, armed=True, command_source="planner")
 START = (10.0, 20.0, np.pi / 2)

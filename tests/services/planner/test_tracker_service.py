@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from schemas.convert import planar_pose, stamp
 from schemas.messages import (
     LaserScan,
     PoseInFrame,
@@ -13,8 +12,9 @@ from services.planner.tracker_service import TrackerParams, TrackerService
 from tests.services.autopilot.ground.test_service import BODY
 from tests.services.live_params import all_settable_are_read
 from uvf.maths.rotations import from_euler
-from uvf.maths.transforms import IDENTITY, Transform
-from uvf.runtime.sweeping import AT_ONCE, SPACING, Sweeping
+from uvf.maths.se3 import IDENTITY, Transform
+from uvf.runtime.messages.convert import planar_pose, stamp
+from uvf.sensors.sweeping import AT_ONCE, SPACING, Sweeping
 
 
 def scan(t, ahead):

@@ -7,10 +7,10 @@ import msgspec
 import pytest
 
 from services.sim_air.actuators import Actuators, Servo
-from services.sim_air.wiring import Controls
-from uvf.runtime.air_file import Lever, Surface
-from uvf.runtime.site import ROOT
-from uvf.runtime.vehicle_file import load_vehicle
+from services.sim_air.engine.wiring import Controls
+from uvf.models.scenario import ROOT
+from uvf.models.vehicle.air import Lever, Surface
+from uvf.models.vehicle.file import load_vehicle
 
 BODY = load_vehicle(Path(ROOT) / "vehicles", "milvus").air
 STOPS = (-0.4, 0.4)

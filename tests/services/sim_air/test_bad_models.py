@@ -6,12 +6,12 @@ import shutil
 import numpy as np
 import pytest
 
-from services.sim_air.airframe import Airframe
-from services.sim_air.states import Start
+from services.sim_air.engine.airframe import Airframe
+from services.sim_air.engine.states import Start
 from uvf.maths.geodesy import LocalTangent
-from uvf.runtime.params import BadInput
-from uvf.runtime.site import ROOT
-from uvf.runtime.vehicle_file import load_vehicle
+from uvf.models.scenario import ROOT
+from uvf.models.vehicle.file import load_vehicle
+from uvf.models.yaml_data import BadInput
 
 TANGENT = LocalTangent.from_degrees(40.77, 14.79, 300.0)
 LEVEL = Start(np.array((0.0, 0.0, 60.0)), 0.0, 25.0, np.zeros(3))

@@ -17,9 +17,9 @@ from benchmarks.milvus_coefficients import (
     stated_lift,
     stated_pitch,
 )
-from services.sim_air.airframe import Airframe
-from services.sim_air.states import Held, Start
-from services.sim_air.wiring import Controls
+from services.sim_air.engine.airframe import Airframe
+from services.sim_air.engine.states import Held, Start
+from services.sim_air.engine.wiring import Controls
 from uvf.maths import atmosphere
 
 SURFACES = ("left_aileron", "right_aileron", "left_flap", "right_flap", "left_rudder", "right_rudder", "elevator")

@@ -11,11 +11,11 @@ from benchmarks.milvus_coefficients import FOLDER, TANGENT
 from benchmarks.milvus_performance import ALTITUDES, SPEEDS, Running, density, level_by_hand, performance, trims
 from services.sim_air.actuators import Actuators
 from services.sim_air.aircraft import Aircraft
-from services.sim_air.airframe import Airframe
-from services.sim_air.states import Start
+from services.sim_air.engine.airframe import Airframe
+from services.sim_air.engine.states import Start
 from tests import aerosonde
-from uvf.runtime.params import BadInput
-from uvf.runtime.vehicle_file import load_vehicle
+from uvf.models.vehicle.file import load_vehicle
+from uvf.models.yaml_data import BadInput
 
 
 @pytest.fixture(scope="module")

@@ -9,16 +9,16 @@ import numpy as np
 import pytest
 
 from schemas import topics
-from schemas.convert import array, wxyz
 from schemas.messages import Event, NavState, SurfaceCommand
-from services.sim_air.airframe import Airframe
 from services.sim_air.build import build
-from services.sim_air.states import Start
+from services.sim_air.engine.airframe import Airframe
+from services.sim_air.engine.states import Start
 from uvf.maths import rotations
 from uvf.maths.geodesy import LocalTangent
-from uvf.runtime.lockstep import Lockstep
-from uvf.runtime.site import ROOT, load_site
-from uvf.runtime.vehicle_file import load_vehicle
+from uvf.models.scenario import ROOT, load_site
+from uvf.models.vehicle.file import load_vehicle
+from uvf.runtime.messages.convert import array, wxyz
+from uvf.runtime.time.lockstep import Lockstep
 
 MISSION = "about: One.\nworld: empty\nvehicles:\n  bird: {{model: {model}, system_id: 1, start: {{x: 0.0, y: 0.0, z: 80.0}}}}\n"
 SKYHAWK = """

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from schemas import topics
-from schemas.convert import array, planar_pose, wxyz
 from schemas.messages import Event, NavState, SetPoseRequest, SurfaceCommand
 from services.sim_air.build import build
 from uvf.maths import rotations
-from uvf.runtime.lockstep import Lockstep
-from uvf.runtime.site import load_site
+from uvf.models.scenario import load_site
+from uvf.runtime.messages.convert import array, planar_pose, wxyz
+from uvf.runtime.time.lockstep import Lockstep
 
 MISSION = """
 about: One.

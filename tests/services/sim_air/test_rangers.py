@@ -4,19 +4,19 @@ import msgspec
 import numpy as np
 import pytest
 
-from schemas.convert import quaternion, vector
 from schemas.messages import NavState
-from services.sim_air.around import Around
-from services.sim_air.ground import Ground
+from services.sim_air.engine.states import Motion
+from services.sim_air.environment.ground import Ground
+from services.sim_air.environment.surroundings import Around
 from services.sim_air.rangers import Rangers
-from services.sim_air.states import Motion
 from tests.services.sim_air.shapes import MILVUS_TREE
 from uvf.maths.bvh import build as tree_over
 from uvf.maths.rotations import IDENTITY, from_euler
 from uvf.maths.solids import box
-from uvf.runtime.scene import scene
-from uvf.runtime.solid import Solid
-from uvf.runtime.vehicle_file import Lidar, Mount, RangeFinder, Sensors
+from uvf.models.shapes.scene import scene
+from uvf.models.shapes.solid import Solid
+from uvf.models.vehicle.file import Lidar, Mount, RangeFinder, Sensors
+from uvf.runtime.messages.convert import quaternion, vector
 
 WALL = Solid("wall", "box", (1.0, 400.0, 50.0), np.array((100.5, 0.0, 25.0)))
 FORWARD = Lidar(Mount(), hz=10.0, beams=9, angle_min=-0.4, angle_increment=0.1, range_min=0.5, range_max=150.0)

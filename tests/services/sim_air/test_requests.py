@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from schemas import topics
-from schemas.convert import array, planar_pose, seconds
 from schemas.messages import RemoveRequest, SetPoseRequest, SimObject, SpawnRequest, StateRequest, SurfaceCommand
 from services.sim_air.build import build
 from tests.services.asking import Asked
-from uvf.runtime import spawned
-from uvf.runtime.service import Service, every
-from uvf.runtime.site import Host, load_site
+from uvf.models.scenario import Host, load_site
+from uvf.runtime.contract.service import Service, every
+from uvf.runtime.messages import spawned
+from uvf.runtime.messages.convert import array, planar_pose, seconds
 
 MISSION = """
 about: One.

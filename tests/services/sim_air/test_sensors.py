@@ -6,11 +6,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from services.sim_air.engine.states import Air, Motion
 from services.sim_air.sensors import Gnss, Imu, Pressures
-from services.sim_air.states import Air, Motion
 from uvf.maths import rotations
 from uvf.maths.geodesy import LocalTangent
-from uvf.runtime.vehicle_file import AirDataSensor, GnssSensor, ImuSensor, Mount
+from uvf.models.vehicle.file import AirDataSensor, GnssSensor, ImuSensor, Mount
 
 FIELD = np.array((2e-6, 25e-6, -39e-6))
 TANGENT = LocalTangent.from_degrees(40.77, 14.79, 300.0)

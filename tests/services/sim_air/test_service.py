@@ -9,25 +9,25 @@ import numpy as np
 import pytest
 
 from schemas import topics
-from schemas.convert import wxyz
 from schemas.messages import NavState, SurfaceCommand
 from services.sim_air.actuators import Actuators
 from services.sim_air.aircraft import Aircraft
-from services.sim_air.around import Around
 from services.sim_air.build import build
-from services.sim_air.ground import LEVEL
+from services.sim_air.engine.states import Air, Motion
+from services.sim_air.engine.wiring import Controls, JointAngle
+from services.sim_air.environment.ground import LEVEL
+from services.sim_air.environment.surroundings import Around
 from services.sim_air.sensors import Imu
 from services.sim_air.service import SimAir
 from services.sim_air.stage import Stage
-from services.sim_air.states import Air, Motion
-from services.sim_air.wiring import Controls, JointAngle
 from tests.services.sim_air.shapes import MILVUS_TREE
 from uvf.maths import rotations
 from uvf.maths.rotations import IDENTITY
-from uvf.runtime.bus import LocalBus
-from uvf.runtime.lockstep import Lockstep
-from uvf.runtime.site import ROOT, Host, load_site
-from uvf.runtime.vehicle_file import load_vehicle
+from uvf.models.scenario import ROOT, Host, load_site
+from uvf.models.vehicle.file import load_vehicle
+from uvf.runtime.bus.interface import LocalBus
+from uvf.runtime.messages.convert import wxyz
+from uvf.runtime.time.lockstep import Lockstep
 
 MILVUS = load_vehicle(Path(ROOT) / "vehicles", "milvus")
 MISSION = """

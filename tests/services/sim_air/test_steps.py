@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from benchmarks.flight import MANOEUVRES, fly
-from uvf.launch.vehicles.linearize import linear_models
-from uvf.runtime.site import ROOT
+from launch.vehicles.linearize import linear_models
+from uvf.models.scenario import ROOT
 
 WITHIN = {  # %
     "roll to aileron": 1.0,

@@ -6,20 +6,20 @@ import numpy as np
 import pytest
 
 from schemas import topics
-from schemas.convert import array
 from schemas.messages import Event, NavState
 from services.sim_air.build import build
-from services.sim_air.crash import FALLING, Resting, Wreck
-from services.sim_air.ground import LEVEL, Ground
-from services.sim_air.states import Air, Motion
+from services.sim_air.engine.states import Air, Motion
+from services.sim_air.environment.crash import FALLING, Resting, Wreck
+from services.sim_air.environment.ground import LEVEL, Ground
 from uvf.maths.bvh import build as tree_over
 from uvf.maths.geodesy import GRAVITY
 from uvf.maths.rotations import from_euler
 from uvf.maths.solids import box
-from uvf.runtime.lockstep import Lockstep
-from uvf.runtime.scene import scene
-from uvf.runtime.site import load_site
-from uvf.runtime.solid import Solid
+from uvf.models.scenario import load_site
+from uvf.models.shapes.scene import scene
+from uvf.models.shapes.solid import Solid
+from uvf.runtime.messages.convert import array
+from uvf.runtime.time.lockstep import Lockstep
 
 HULL = tree_over(box((1.6, 2.9, 0.4), np.zeros(3)))
 DT = 1 / 240

@@ -6,8 +6,8 @@ import pytest
 
 from services.sim_camera.backdrop import HAZE, SKY, Backdrop
 from services.sim_camera.optics import intrinsics, project
-from uvf.runtime.vehicle_file import Camera, Mount
-from uvf.runtime.world_file import Field, Origin, WorldFile
+from uvf.models.vehicle.file import Camera, Mount
+from uvf.models.world.file import Field, Origin, WorldFile
 
 CAMERA = Camera(mount=Mount(), hz=5.0, width=160, height=120, fov=1.2)
 EAST_OPTICAL = np.column_stack(((0.0, -1.0, 0.0), (0.0, 0.0, -1.0), (1.0, 0.0, 0.0)))

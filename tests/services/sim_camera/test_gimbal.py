@@ -11,7 +11,6 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from schemas import topics
-from schemas.convert import array, quaternion, seconds, stamp, vector, wxyz
 from schemas.messages import CompressedImage, FrameTransform, GimbalCommand, NavState
 from services.sim_camera.build import build
 from services.sim_camera.fitted import Fitted
@@ -20,9 +19,10 @@ from services.sim_camera.renderer import Pose
 from services.sim_camera.service import SimCamera
 from tests.services.sim_camera.test_service import CAMERA, GreyRenderer
 from uvf.maths.rotations import from_euler, matrix, multiply
-from uvf.runtime.params import BadInput
-from uvf.runtime.site import ROOT, load_site
-from uvf.runtime.vehicle_file import Chase, Gimbal, Mount, load_vehicle
+from uvf.models.scenario import ROOT, load_site
+from uvf.models.vehicle.file import Chase, Gimbal, Mount, load_vehicle
+from uvf.models.yaml_data import BadInput
+from uvf.runtime.messages.convert import array, quaternion, seconds, stamp, vector, wxyz
 
 NOTHING_TOLD = {"objects": None, "aircraft": None, "gimbals": {}}
 

@@ -11,14 +11,14 @@ from services.sim_camera.backdrop import SKY
 from services.sim_camera.optics import intrinsics, project
 from services.sim_camera.renderer import BulletRenderer, Pose
 from uvf.maths.rotations import from_euler, matrix
-from uvf.runtime.aircraft_shape import AircraftShape, aircraft_shape
-from uvf.runtime.mesh_parts import Part
-from uvf.runtime.site import ROOT
-from uvf.runtime.solid import Solid
-from uvf.runtime.solid_mesh import load_mesh
-from uvf.runtime.vehicle_file import Camera, Mount, load_vehicle
-from uvf.runtime.world_file import Box, Cylinder, Field, Origin, WorldFile
-from uvf.runtime.world_geometry import solids
+from uvf.models.scenario import ROOT
+from uvf.models.shapes.aircraft_shape import AircraftShape, aircraft_shape
+from uvf.models.shapes.mesh import load_mesh
+from uvf.models.shapes.mesh_parts import Part
+from uvf.models.shapes.solid import Solid
+from uvf.models.vehicle.file import Camera, Mount, load_vehicle
+from uvf.models.world.file import Box, Cylinder, Field, Origin, WorldFile
+from uvf.models.world.geometry import solids
 
 RED, BLUE = (0.9, 0.05, 0.05), (0.05, 0.05, 0.9)
 CAMERA = Camera(mount=Mount((0.1, 0.0, 0.3)), hz=5.0, width=160, height=120, fov=1.2, far=300.0)

@@ -10,17 +10,17 @@ import pytest
 from PIL import Image
 
 from schemas import topics
-from schemas.convert import seconds, stamp, vector
 from schemas.messages import CameraCalibration, CompressedImage, NavState
 from services.sim_camera.build import build
 from services.sim_camera.fitted import Fitted
 from services.sim_camera.renderer import Shot
 from services.sim_camera.service import SimCamera
-from uvf.runtime.lockstep import Lockstep
-from uvf.runtime.params import BadInput
-from uvf.runtime.service import Service
-from uvf.runtime.site import ROOT, Host, load_site
-from uvf.runtime.vehicle_file import Camera, Mount, load_vehicle
+from uvf.models.scenario import ROOT, Host, load_site
+from uvf.models.vehicle.file import Camera, Mount, load_vehicle
+from uvf.models.yaml_data import BadInput
+from uvf.runtime.contract.service import Service
+from uvf.runtime.messages.convert import seconds, stamp, vector
+from uvf.runtime.time.lockstep import Lockstep
 
 NOTHING_TOLD = {"objects": None, "aircraft": None, "gimbals": {}}
 

@@ -5,7 +5,7 @@ import numpy as np
 from services.sim_ground.body import BodyState
 from uvf.maths.bvh import build
 from uvf.maths.kinematics import WheelSpeeds
-from uvf.maths.raycast3 import Body, Scene
+from uvf.maths.raycast import Body, Scene
 from uvf.maths.rotations import from_euler
 from uvf.maths.solids import box, cylinder, joined
 

@@ -7,14 +7,14 @@ import numpy as np
 import yaml
 
 from schemas import topics
-from schemas.convert import stamp, yaw_of
 from schemas.messages import WheelCommand
 from services.sim_ground.build import build
 from uvf.maths.kinematics import DifferentialDrive, Twist
-from uvf.maths.planar import Pose2
-from uvf.runtime.lockstep import Lockstep
-from uvf.runtime.service import Service
-from uvf.runtime.site import Host, load_site
+from uvf.maths.se2 import Pose2
+from uvf.models.scenario import Host, load_site
+from uvf.runtime.contract.service import Service
+from uvf.runtime.messages.convert import stamp, yaw_of
+from uvf.runtime.time.lockstep import Lockstep
 
 BURGER = DifferentialDrive(wheel_radius=0.033, track=0.16)
 STILL = Twist(0.0, 0.0)

@@ -8,8 +8,8 @@ import yaml
 
 from services.sim_ground.build import build
 from tests.services.sim_ground.ride import site_with
-from uvf.runtime.params import BadInput
-from uvf.runtime.site import ROOT, load_site
+from uvf.models.scenario import ROOT, load_site
+from uvf.models.yaml_data import BadInput
 
 
 @pytest.fixture

@@ -3,9 +3,9 @@
 import pytest
 
 from services.sim_ground.motor import WheelMotor
-from uvf.runtime.air_file import BatteryPack
-from uvf.runtime.params import BadInput, Place
-from uvf.runtime.vehicle_file import Motor, _check_ground_battery
+from uvf.models.vehicle.air import BatteryPack
+from uvf.models.vehicle.file import Motor, _check_ground_battery
+from uvf.models.yaml_data import BadInput, Place
 
 MOTOR = WheelMotor(Motor(stall_torque=0.05, no_load_speed=30.0), 0.005)
 

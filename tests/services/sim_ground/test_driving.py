@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from schemas import topics
-from schemas.convert import array
 from tests.services.sim_ground.ride import BURGER, STILL, ride, site_with
 from uvf.maths.kinematics import Twist, WheelSpeeds, move
-from uvf.maths.planar import Pose2
 from uvf.maths.rotations import wrap
+from uvf.maths.se2 import Pose2
+from uvf.runtime.messages.convert import array
 
 HALL = (6.0, 4.4, 0.0)
 LIDAR_RADIUS = 0.055  # m; both carry it at the same height

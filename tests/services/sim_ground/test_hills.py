@@ -5,7 +5,7 @@ import numpy as np
 from schemas import topics
 from tests.services.sim_ground.ride import ride, site_with
 from uvf.maths.kinematics import Twist
-from uvf.runtime.relief import relief_of
+from uvf.models.world.terrain import relief_of
 
 UP_THE_SLOPE = (20.0, -23.5, np.pi / 2)  # towards the strip, which lies 10 m high
 

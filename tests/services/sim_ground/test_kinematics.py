@@ -5,12 +5,12 @@ import numpy as np
 import pytest
 
 from benchmarks.kinematics import drive, drives, figures, ground_vehicles
-from services.autopilot.ground.drive import Limits, Ramp
 from services.sim_ground.world import BulletWorld, Placed
+from uvf.control.drive_limits import Limits, Ramp
 from uvf.maths.kinematics import DifferentialDrive, Twist
 from uvf.maths.rotations import matrix
-from uvf.runtime.site import ROOT
-from uvf.runtime.vehicle_file import Motor, load_vehicle
+from uvf.models.scenario import ROOT
+from uvf.models.vehicle.file import Motor, load_vehicle
 
 VEHICLES = {name: (body, urdf) for name, body, urdf in ground_vehicles()}
 KINDS = ["straight 10 m", "arc 0.5 m", "arc 1 m", "arc 2 m", "spot turn", "left wheel stopped"]

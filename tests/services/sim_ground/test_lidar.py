@@ -7,13 +7,13 @@ import pytest
 
 from services.sim_ground.world import BulletWorld
 from tests.services.sim_ground.ground_scene import WALL_AHEAD, body_at, post, scene_of
-from uvf.runtime.footing import Footing
-from uvf.runtime.range_sensors import LidarModel
-from uvf.runtime.scene import scene
-from uvf.runtime.site import ROOT
-from uvf.runtime.vehicle_file import Mount, load_vehicle
-from uvf.runtime.world_file import load_world
-from uvf.runtime.world_geometry import solids
+from uvf.models.scenario import ROOT
+from uvf.models.shapes.scene import scene
+from uvf.models.vehicle.file import Mount, load_vehicle
+from uvf.models.world.file import load_world
+from uvf.models.world.footing import Footing
+from uvf.models.world.geometry import solids
+from uvf.sensors.range_sensors import LidarModel
 
 LDS = load_vehicle(ROOT / "vehicles", "burger").sensors.lidar
 QUIET = msgspec.structs.replace(LDS, noise=0.0, mount=Mount((0.0, 0.0, 0.182)))

@@ -4,15 +4,15 @@ import numpy as np
 import pytest
 
 from schemas import topics
-from schemas.convert import array, seconds
 from tests.services.sim_ground.ride import STILL, ride, site_with
 from uvf.maths.geodesy import GRAVITY
 from uvf.maths.kinematics import Twist
-from uvf.maths.raycast3 import Rays, cast
-from uvf.runtime.scene import scene
-from uvf.runtime.site import ROOT
-from uvf.runtime.world_file import load_world
-from uvf.runtime.world_geometry import solids
+from uvf.maths.raycast import Rays, cast
+from uvf.models.scenario import ROOT
+from uvf.models.shapes.scene import scene
+from uvf.models.world.file import load_world
+from uvf.models.world.geometry import solids
+from uvf.runtime.messages.convert import array, seconds
 
 START = (6.0, 4.4, 0.3)
 

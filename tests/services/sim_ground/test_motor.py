@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from services.sim_ground.motor import WheelMotor
-from uvf.runtime.vehicle_file import Motor
+from uvf.models.vehicle.file import Motor
 
 DT = 0.005
 MOTOR = Motor(stall_torque=0.4, no_load_speed=20.0, lag=0.05)

@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 
 from schemas import topics
-from schemas.convert import planar_pose, seconds, stamp
 from schemas.messages import RemoveRequest, SetPoseRequest, SimObject, SimObjects, SpawnRequest, StateRequest
 from services.sim_ground.build import build
 from tests.services.asking import Asked
 from tests.services.sim_ground.ride import Driver, site_with
 from uvf.maths.kinematics import Twist
-from uvf.runtime import spawned
-from uvf.runtime.site import Host
+from uvf.models.scenario import Host
+from uvf.runtime.messages import spawned
+from uvf.runtime.messages.convert import planar_pose, seconds, stamp
 
 START = (6.0, 4.4, 0.0)
 HEARD = (topics.IMU, topics.SCAN, topics.WHEELS, topics.TRUTH, topics.JOINTS, topics.CONTACT, topics.TF_STATIC, topics.OBJECTS)

@@ -6,15 +6,15 @@ import msgspec
 import numpy as np
 import pytest
 
-from schemas.convert import seconds
 from services.sim_ground.body import BodyState, Touch
 from services.sim_ground.rig import Moment, Rig
 from tests.services.sim_ground.ride import site_with
 from uvf.maths.geodesy import LocalTangent
 from uvf.maths.kinematics import WheelSpeeds
-from uvf.runtime.scene import scene
-from uvf.runtime.vehicle_file import Bumper, GnssSensor, Mount, RangeFinder, Sonar
-from uvf.runtime.world_geometry import solids
+from uvf.models.shapes.scene import scene
+from uvf.models.vehicle.file import Bumper, GnssSensor, Mount, RangeFinder, Sonar
+from uvf.models.world.geometry import solids
+from uvf.runtime.messages.convert import seconds
 
 PLACE = np.array((6.0, 4.4, 0.0))
 STILL = BodyState(PLACE, np.array((1.0, 0, 0, 0)), np.zeros(3), np.zeros(3), (0.0, 0.0), WheelSpeeds(0.0, 0.0))

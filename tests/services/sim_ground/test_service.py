@@ -6,7 +6,6 @@ import msgspec
 import numpy as np
 import pytest
 
-from schemas.convert import seconds, stamp
 from schemas.messages import NavState, Quaternion, Vector3, WheelCommand
 from services.sim_ground.body import BodyState, Touch
 from services.sim_ground.rig import Rig
@@ -14,9 +13,10 @@ from services.sim_ground.service import SimGround
 from services.sim_ground.stage import Stage
 from tests.services.sim_ground.ride import site_with
 from uvf.maths.kinematics import WheelSpeeds
-from uvf.runtime.surroundings import Surroundings, vehicle_tree
-from uvf.runtime.urdf_model import load_urdf
-from uvf.runtime.world_geometry import solids
+from uvf.models.shapes.surroundings import Surroundings, vehicle_tree
+from uvf.models.urdf.model import load_urdf
+from uvf.models.world.geometry import solids
+from uvf.runtime.messages.convert import seconds, stamp
 
 IDLE = {"commands": {}, "flying": None, "truth": {}, "spawn": [], "remove": [], "set_pose": [], "save": [], "restore": []}
 

@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 
 from schemas import topics
-from schemas.convert import seconds
 from services.sim_ground.rig import Moment, Rig
 from tests.services.sim_ground.ground_scene import body_at, scene_of
 from tests.services.sim_ground.ride import ride, site_with
 from tests.services.sim_ground.test_lidar import QUIET
 from uvf.maths.kinematics import Twist
-from uvf.runtime.range_sensors import LidarModel
-from uvf.runtime.vehicle_file import Mount
+from uvf.models.vehicle.file import Mount
+from uvf.runtime.messages.convert import seconds
+from uvf.sensors.range_sensors import LidarModel
 
 SLOW = msgspec.structs.replace(QUIET, sweep_time=0.2, mount=Mount((-0.05, 0.02, 0.182)))
 END = 1.0  # s, at the last beam

@@ -11,13 +11,13 @@ import pytest
 from services.sim_ground.world import BulletWorld, Placed
 from uvf.maths.kinematics import DifferentialDrive, Twist, WheelSpeeds
 from uvf.maths.rotations import from_euler, matrix, multiply, rotate, to_euler
-from uvf.runtime.footing import Footing
-from uvf.runtime.site import ROOT
-from uvf.runtime.solid import Keyframes, Solid
-from uvf.runtime.urdf_model import engine_urdf
-from uvf.runtime.vehicle_file import Friction, load_vehicle
-from uvf.runtime.world_file import load_world
-from uvf.runtime.world_geometry import solids
+from uvf.models.scenario import ROOT
+from uvf.models.shapes.solid import Keyframes, Solid
+from uvf.models.urdf.model import engine_urdf
+from uvf.models.vehicle.file import Friction, load_vehicle
+from uvf.models.world.file import load_world
+from uvf.models.world.footing import Footing
+from uvf.models.world.geometry import solids
 
 HOUSE = load_world(ROOT / "worlds", "house")
 SOLIDS = solids(HOUSE)

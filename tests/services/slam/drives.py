@@ -4,11 +4,11 @@ from math import pi
 
 import numpy as np
 
-from services.slam.reading import Beams, Reading
-from tests.services.slam.room import ANGLES, RANGE_MAX, measured
-from tests.services.slam.room_log import READINGS, stamps, true_way
-from uvf.maths.planar import IDENTITY, Pose2, compose, inverse
-from uvf.maths.planar_arrays import composed, inverted, steps, wrapped
+from tests.slam.room import ANGLES, RANGE_MAX, measured
+from tests.slam.room_log import READINGS, stamps, true_way
+from uvf.maths.se2 import IDENTITY, Pose2, compose, inverse
+from uvf.maths.se2_arrays import composed, inverted, steps, wrapped
+from uvf.slam.reading import Beams, Reading
 
 ALL_ROUND = Beams((0.0, 0.0), ANGLES, 0.0, RANGE_MAX)
 OFFSET = Pose2(0.12, -0.05, 0.7)

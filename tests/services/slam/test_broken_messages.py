@@ -5,12 +5,12 @@ import math
 import numpy as np
 import pytest
 
-from schemas.convert import occupancy_cells, planar_pose, stamp
 from schemas.messages import FrameTransform, Imu, KeyValuePair, LaserScan, Odometry, Quaternion, Vector3, WheelTicks
-from services.slam.odometry.params import OdometryParams
 from services.slam.odometry.service import OdometryService
-from tests.services.slam.room import ANGLES
 from tests.services.slam.test_services import BURGER, LIDAR, START, drive, frames_with, mapping, scan_at
+from tests.slam.room import ANGLES
+from uvf.estimation.odometry.params import OdometryParams
+from uvf.runtime.messages.convert import occupancy_cells, planar_pose, stamp
 
 
 def scan(t, ranges):
@@ -108,7 +108,7 @@ def test_an_odometry_left_by_somebody_else_is_not_taken_up_blindly(left):
 
 
 def test_a_map_that_is_too_large_is_told_of_once_and_the_pose_goes_on(monkeypatch):
-    monkeypatch.setattr("services.slam.maps.tiles.MOST_CELLS", 100)
+    monkeypatch.setattr("uvf.slam.maps.tiles.MOST_CELLS", 100)
     service, said = mapping(map_period=0.1), []
     for k in range(1, 30):
         here = (0.06 * k, 0.0, 0.0)

@@ -12,9 +12,9 @@ from services.planner.build import build as build_planner
 from services.slam import build as slam_build
 from services.slam.build import build as build_slam
 from tests.stops import NOBODY
-from uvf.runtime.mission_file import Job, Waypoint
-from uvf.runtime.params import BadInput
-from uvf.runtime.site import ROOT, load_site
+from uvf.models.mission.file import Job, Waypoint
+from uvf.models.scenario import ROOT, load_site
+from uvf.models.yaml_data import BadInput
 
 BUILDS = (build_slam, build_planner, hosts)
 

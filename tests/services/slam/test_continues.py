@@ -6,17 +6,17 @@ import msgspec
 import numpy as np
 import pytest
 
-from schemas.convert import occupancy_cells, planar_pose, stamp
 from schemas.messages import FrameTransform, LaserScan, Vector3
 from services.slam.build import build
-from services.slam.graph.method import GraphSlam
-from services.slam.maps.session import Session
-from tests.services.slam.localization.places import ROOM, ellipse, readings
-from uvf.maths.planar import Pose2, compose
-from uvf.runtime.frames import FrameBuffer
-from uvf.runtime.mission_file import Maps
-from uvf.runtime.params import BadInput
-from uvf.runtime.site import ROOT, load_site
+from tests.slam.localization.places import ROOM, ellipse, readings
+from uvf.maths.se2 import Pose2, compose
+from uvf.models.mission.file import Maps
+from uvf.models.scenario import ROOT, load_site
+from uvf.models.yaml_data import BadInput
+from uvf.runtime.messages.convert import occupancy_cells, planar_pose, stamp
+from uvf.runtime.messages.frames import FrameBuffer
+from uvf.slam.graph.method import GraphSlam
+from uvf.slam.maps.session import Session
 
 EARLIER, NOW = ellipse(40), ellipse(6, begin=2.0, end=2.5)
 """Ways in the world, which is the room's frame."""

@@ -9,8 +9,8 @@ from services.planner.build import build as build_planner
 from services.sim_camera.build import build as build_camera
 from services.sim_ground.build import build as build_simulator
 from services.slam.build import build as build_slam
-from uvf.runtime.lockstep import Lockstep
-from uvf.runtime.site import ROOT, load_site
+from uvf.models.scenario import ROOT, load_site
+from uvf.runtime.time.lockstep import Lockstep
 
 VEHICLE = "burger"
 

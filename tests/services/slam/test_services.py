@@ -5,18 +5,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from schemas.convert import occupancy_cells, planar_pose, quaternion, stamp, yaw_of
 from schemas.messages import FrameTransform, Imu, LaserScan, Quaternion, Vector3, WheelTicks
-from services.slam.graph.method import GraphParams, GraphSlam
 from services.slam.mapping_service import MappingParams, MappingService
-from services.slam.odometry.params import OdometryParams
 from services.slam.odometry.service import OdometryService
 from tests.services.live_params import all_settable_are_read
-from tests.services.slam.room import ANGLES, measured
+from tests.slam.room import ANGLES, measured
+from uvf.estimation.odometry.params import OdometryParams
 from uvf.maths.rotations import from_euler
-from uvf.runtime.frames import FrameBuffer
-from uvf.runtime.site import ROOT
-from uvf.runtime.vehicle_file import Lidar, Mount, load_vehicle
+from uvf.models.scenario import ROOT
+from uvf.models.vehicle.file import Lidar, Mount, load_vehicle
+from uvf.runtime.messages.convert import occupancy_cells, planar_pose, quaternion, stamp, yaw_of
+from uvf.runtime.messages.frames import FrameBuffer
+from uvf.slam.graph.method import GraphParams, GraphSlam
 
 BURGER = load_vehicle(Path(ROOT) / "vehicles", "burger")
 START = (2.0, 1.0, np.pi / 2)

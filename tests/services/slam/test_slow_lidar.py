@@ -5,14 +5,14 @@ import numpy as np
 import pytest
 
 from benchmarks.slow_lidar import errors
-from schemas.convert import seconds, stamp
 from schemas.messages import LaserScan
-from services.slam.graph.method import GraphParams, GraphSlam
 from services.slam.mapping_service import MappingParams, MappingService
 from tests.planar_rays import cast
-from tests.services.slam.room import ANGLES, BOXES, CIRCLES, RANGE_MAX, measured
 from tests.services.slam.test_services import BASE_FROM_LIDAR, LIDAR, START, frames_with
-from uvf.maths.planar import compose, transform
+from tests.slam.room import ANGLES, BOXES, CIRCLES, RANGE_MAX, measured
+from uvf.maths.se2 import compose, transform
+from uvf.runtime.messages.convert import seconds, stamp
+from uvf.slam.graph.method import GraphParams, GraphSlam
 
 SWEEP, END = 0.2, 0.6  # s
 SLOW = msgspec.structs.replace(LIDAR, sweep_time=SWEEP)

@@ -7,14 +7,14 @@ from multiprocessing import get_context
 import pytest
 from numba.core.dispatcher import Dispatcher
 
-from services.slam.localization import known_map
-from services.slam.localization.localizer import Localizer
-from services.slam.localization.params import FilterParams
-from services.slam.logs.opening import open_log
-from services.slam.maps.tiles import TileMap
-from services.slam.methods import METHODS, make_method, method_params
+from launch.commands.testing import data_folder
+from launch.slam.opening import open_log
 from services.slam.warming import warm_up, warm_up_localization
-from uvf.launch.testing import data_folder
+from uvf.slam.localization import known_map
+from uvf.slam.localization.localizer import Localizer
+from uvf.slam.localization.params import FilterParams
+from uvf.slam.maps.tiles import TileMap
+from uvf.slam.methods import METHODS, make_method, method_params
 
 DATA = data_folder()
 LOG = "slam/intel/intel.clf"

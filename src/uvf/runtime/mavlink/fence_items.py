@@ -3,14 +3,14 @@
 import math
 from collections.abc import Sequence
 
-from schemas.convert import array
 from schemas.messages import Fence, FenceZone
 from uvf.maths.zones import Polygon
-from uvf.runtime.fence_file import MOST_VERTICES, MOST_ZONES
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
+from uvf.mavlink.names import command_name
+from uvf.models.mission.fence import MOST_VERTICES, MOST_ZONES
 from uvf.runtime.mavlink.geo import Placed
 from uvf.runtime.mavlink.mission_items import BadItem, Body, packed, place_of, point_body, remembered_point, unpacked
-from uvf.runtime.mavlink.names import command_name
+from uvf.runtime.messages.convert import array
 
 Item = mav.MAVLink_mission_item_int_message
 

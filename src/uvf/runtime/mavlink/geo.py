@@ -4,7 +4,7 @@ import numpy as np
 
 from schemas.messages import Vector3
 from uvf.maths.geodesy import Floats, LocalTangent
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
 
 AMSL_FRAMES = (mav.MAV_FRAME_GLOBAL, mav.MAV_FRAME_GLOBAL_INT)
 HOME_FRAMES = (mav.MAV_FRAME_GLOBAL_RELATIVE_ALT, mav.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT)

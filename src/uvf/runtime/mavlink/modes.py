@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 
 from schemas.messages import Mode
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
 
 _MANUAL = mav.MAV_MODE_FLAG_MANUAL_INPUT_ENABLED
 _STABLE = mav.MAV_MODE_FLAG_STABILIZE_ENABLED

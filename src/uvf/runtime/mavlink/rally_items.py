@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from schemas.messages import RallyPoints
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
 from uvf.runtime.mavlink.geo import Placed
 from uvf.runtime.mavlink.mission_items import Body, packed, place_of, point_body, remembered_point, unpacked
 

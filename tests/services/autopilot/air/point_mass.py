@@ -3,13 +3,13 @@
 import math
 from dataclasses import dataclass
 
-from services.autopilot.air.commands import Wanted
-from services.autopilot.air.cycle import Cycle
-from services.autopilot.air.energy import EnergyLoops
-from services.autopilot.air.params import AirParams
 from tests import aerosonde
 from tests.services.autopilot.air.states import cruising
+from uvf.control.commands import Wanted
+from uvf.control.cycle import Cycle
+from uvf.control.total_energy import EnergyLoops
 from uvf.maths.atmosphere import RHO0
+from uvf.models.vehicle.flight_params import AirParams
 
 G = 9.80665
 DT = 0.02  # s

@@ -2,15 +2,15 @@
 
 import math
 
-from schemas.convert import stamp
 from schemas.messages import AirData, Gnss, Imu, MissionItem, Vector3
-from services.autopilot.air.estimators import Instruments
-from services.autopilot.air.params import AirParams
+from services.autopilot.air.config import Ship
 from services.autopilot.air.service import AutopilotAir
-from services.autopilot.air.ship import Ship
 from tests.stops import NOBODY
+from uvf.estimation.estimators import Instruments
 from uvf.maths import atmosphere
 from uvf.maths.geodesy import LocalTangent
+from uvf.models.vehicle.flight_params import AirParams
+from uvf.runtime.messages.convert import stamp
 
 TANGENT = LocalTangent.from_degrees(40.77, 14.79, 300.0)
 NOTHING_ASKED = {name: [] for name in AutopilotAir.requests}

@@ -3,10 +3,10 @@
 import math
 from dataclasses import replace
 
-from services.autopilot.air.guidance import Steering
-from services.autopilot.air.params import AirParams
-from services.autopilot.air.state import Estimate
+from uvf.estimation.state import Estimate
+from uvf.guidance.vector_field import Steering
 from uvf.maths.atmosphere import RHO0
+from uvf.models.vehicle.flight_params import AirParams
 
 PARAMS = AirParams()
 G = 9.80665

@@ -7,16 +7,16 @@ import msgspec
 import numpy as np
 import pytest
 
+from launch.scoring import touchdown
 from schemas import topics
-from schemas.convert import wxyz
 from schemas.messages import ArmRequest, GoAroundRequest, Mode, ModeRequest
 from tests.services.autopilot.air.test_flight import Flight, site
-from uvf.launch import touchdown
 from uvf.maths.rotations import to_euler
-from uvf.runtime.mission_file import Job, Start, Waypoint
-from uvf.runtime.site import ROOT, Member
-from uvf.runtime.vehicle_file import load_vehicle
-from uvf.runtime.world_file import Strip
+from uvf.models.mission.file import Job, Start, Waypoint
+from uvf.models.scenario import ROOT, Member
+from uvf.models.vehicle.file import load_vehicle
+from uvf.models.world.file import Strip
+from uvf.runtime.messages.convert import wxyz
 
 POUND = 4.4482216  # N
 ARMED, SHOT = 4.0, 6.0  # s

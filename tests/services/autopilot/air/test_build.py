@@ -6,8 +6,8 @@ import pytest
 
 from services.autopilot.air.build import hosts
 from tests.services.autopilot.air.test_flight import site
-from uvf.runtime.mission_file import Job, Waypoint
-from uvf.runtime.params import BadInput
+from uvf.models.mission.file import Job, Waypoint
+from uvf.models.yaml_data import BadInput
 
 
 @pytest.mark.parametrize(

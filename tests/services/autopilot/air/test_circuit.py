@@ -2,8 +2,8 @@
 
 import pytest
 
-from uvf.launch.run import run_lockstep
-from uvf.runtime.site import ROOT, load_site
+from launch.run import run_lockstep
+from uvf.models.scenario import ROOT, load_site
 
 CIRCUIT = ROOT / "missions" / "circuit.yaml"
 

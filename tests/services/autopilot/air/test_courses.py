@@ -5,10 +5,10 @@ import math
 import numpy as np
 import pytest
 
-from services.autopilot.air.navigator import Navigator
-from services.autopilot.air.plan import Item, Kind
-from services.autopilot.air.route import Curve, Place
 from tests.services.autopilot.air.states import PARAMS, Kinematic
+from uvf.guidance.flight_plan import Item, Kind
+from uvf.guidance.plan_follower import Navigator
+from uvf.guidance.route import Curve, Place
 
 NOWHERE = Place(0.0, 0.0, 0.0)
 COURSES = [(300, 0, 0), (500, 200, 90), (500, 250, -90), (300, -100, 200), (-100, -100, 20), (100, 100, 180), (0, 300, 45)]

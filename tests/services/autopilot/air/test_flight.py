@@ -8,18 +8,18 @@ import numpy as np
 import pytest
 
 from schemas import topics
-from schemas.convert import wxyz
 from schemas.messages import ModeRequest, Reply
 from services.autopilot.air.build import hosts
 from services.sim_air.build import build as build_sim
 from uvf.maths.rotations import to_euler
-from uvf.runtime.lockstep import Lockstep
-from uvf.runtime.mission_file import Job, MissionFile, Start, Vehicle, Waypoint
-from uvf.runtime.site import ROOT, Member, Site
-from uvf.runtime.stop_all import StopVoice
-from uvf.runtime.vehicle_file import load_vehicle
-from uvf.runtime.wind_file import Wind
-from uvf.runtime.world_file import Origin, WorldFile
+from uvf.models.mission.file import Job, MissionFile, Start, Vehicle, Waypoint
+from uvf.models.scenario import ROOT, Member, Site
+from uvf.models.vehicle.file import load_vehicle
+from uvf.models.world.file import Origin, WorldFile
+from uvf.models.world.wind import Wind
+from uvf.runtime.messages.convert import wxyz
+from uvf.runtime.state.stop_all import StopVoice
+from uvf.runtime.time.lockstep import Lockstep
 
 WIND = (1.5, 1.3, 0.0)
 CIRCUIT = [(200.0, -150.0), (200.0, 150.0), (-200.0, 150.0), (-200.0, -150.0)]

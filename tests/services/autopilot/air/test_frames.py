@@ -8,7 +8,7 @@ from services.autopilot.air.build import hosts
 from services.sim_air.build import build as build_sim
 from services.sim_camera.build import build as build_camera
 from tests.services.autopilot.air.test_flight import site
-from uvf.runtime.lockstep import Lockstep
+from uvf.runtime.time.lockstep import Lockstep
 
 
 @pytest.fixture(scope="module")

@@ -4,12 +4,12 @@ from pathlib import Path
 
 import pytest
 
-from services.autopilot.air.design import Airframe, gains
-from services.autopilot.air.params import AirParams
+from uvf.control.design.coefficients import Airframe, gains
 from uvf.maths.atmosphere import RHO0
-from uvf.runtime.params import convert
-from uvf.runtime.site import ROOT
-from uvf.runtime.vehicle_file import load_vehicle
+from uvf.models.scenario import ROOT
+from uvf.models.vehicle.file import load_vehicle
+from uvf.models.vehicle.flight_params import AirParams
+from uvf.models.yaml_data import convert
 
 MILVUS = load_vehicle(Path(ROOT) / "vehicles", "milvus")
 PARAMS = convert(MILVUS.params["autopilot_air"], AirParams, "milvus")

@@ -4,12 +4,12 @@ import math
 
 import pytest
 
-from services.autopilot.air.commands import Attitude
-from services.autopilot.air.control import Control
-from services.autopilot.air.cycle import Cycle
-from services.autopilot.air.servos import SERVOS, Servo, Servos, SurfaceTrim
 from tests.services.autopilot.air.point_mass import DT, PARAMS
 from tests.services.autopilot.air.states import cruising
+from uvf.control.commands import Attitude
+from uvf.control.cycle import Cycle
+from uvf.control.flight_control import Control
+from uvf.control.servos import SERVOS, Servo, Servos, SurfaceTrim
 
 G = 9.80665
 

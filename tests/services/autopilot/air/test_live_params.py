@@ -3,10 +3,10 @@
 import pytest
 
 from schemas.messages import Battery, Fence, FenceRequest, FenceZone, Link, Mode, ModeRequest, Vector3
+from tests.services.autopilot.air.modes.test_manual_control import by_hand
 from tests.services.autopilot.air.sensing import Bench
-from tests.services.autopilot.air.test_by_hand import by_hand
 from tests.services.live_params import all_settable_are_read
-from uvf.runtime.site import ROOT
+from uvf.models.scenario import ROOT
 
 ELSEWHERE = {
     "follow_p": "station.py",

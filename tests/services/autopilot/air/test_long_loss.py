@@ -5,13 +5,13 @@ import math
 import numpy as np
 import pytest
 
-from schemas.convert import wxyz
 from schemas.messages import Mode
-from services.autopilot.air.descent import upwind
+from services.autopilot.air.modes.descent import upwind
 from tests.services.autopilot.air.states import cruising
 from tests.services.autopilot.air.trouble import Trouble
 from tests.services.autopilot.proofs import shows
 from uvf.maths.rotations import to_euler
+from uvf.runtime.messages.convert import wxyz
 
 LOST = ("gnss", "lost", 10.0, None, 0.0)
 SOON = {"gnss_time": 20.0}

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from schemas import topics
-from schemas.convert import wxyz
 from schemas.messages import Gnss, GoalRequest, Mode, ModeRequest, Vector3
-from services.autopilot.air.failsafes import AIR_RULES
+from services.autopilot.air.failsafes.table import AIR_RULES
 from tests.services.autopilot.air.sensing import Bench, sensors
 from tests.services.autopilot.air.test_flight import Flight, distance_to_circuit
 from uvf.maths.rotations import to_euler
+from uvf.runtime.messages.convert import wxyz
 
 IN_A_TURN = 14.5  # s: the demo's aircraft is banked at its first corner
 RULES = {rule.name: rule for rule in AIR_RULES}

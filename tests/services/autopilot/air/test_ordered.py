@@ -17,16 +17,16 @@ from schemas.messages import (
     TakeoffOrder,
     Vector3,
 )
-from services.autopilot.air.modes import FlightMode
-from services.autopilot.air.orders import carry_out
-from services.autopilot.air.pace import airspeed_over_ground
-from services.autopilot.air.paths import Round
-from services.autopilot.air.pilot import Pilot
-from services.autopilot.air.plan import Item, Kind
-from services.autopilot.air.route import Circle, Place
-from services.autopilot.air.wishes import Senses
+from services.autopilot.air.mission.orders import carry_out
+from services.autopilot.air.modes.mode_manager import Pilot
+from services.autopilot.air.modes.modes import FlightMode
+from services.autopilot.air.modes.pace import airspeed_over_ground
+from services.autopilot.air.modes.paths import Round
+from services.autopilot.air.setpoints import Senses
 from tests.services.autopilot.air.sensing import WAYPOINTS, resting
 from tests.services.autopilot.air.states import PARAMS, cruising
+from uvf.guidance.flight_plan import Item, Kind
+from uvf.guidance.route import Circle, Place
 
 M = FlightMode
 FAR = [

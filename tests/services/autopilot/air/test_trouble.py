@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 from schemas import topics
-from schemas.convert import wxyz
 from schemas.messages import Fence, FenceRequest, FenceZone, GoalRequest, Mission, MissionItem, MissionRequest, Mode, ModeRequest, Vector3
 from tests.services.autopilot.air.trouble import Trouble
 from tests.services.autopilot.proofs import shows
 from uvf.maths.rotations import to_euler
-from uvf.runtime.fence_file import FenceFile, ZoneFile
+from uvf.models.mission.fence import FenceFile, ZoneFile
+from uvf.runtime.messages.convert import wxyz
 
 NEUTRAL = {"throttle": 0.78}
 BOX = [(-500.0, -500.0), (500.0, -500.0), (500.0, 500.0), (-500.0, 500.0)]

@@ -5,12 +5,12 @@ import dataclasses
 import msgspec
 
 from schemas import topics
-from schemas.convert import stamp
 from schemas.messages import Link, Mode, ModeRequest, SurfaceCommand
 from tests.services.autopilot.air.test_flight import LAPS, Flight, site
-from uvf.runtime.faults import Fault
-from uvf.runtime.fence_file import FenceFile
-from uvf.runtime.wind_file import Gust, Wind
+from uvf.models.mission.faults import Fault
+from uvf.models.mission.fence import FenceFile
+from uvf.models.world.wind import Gust, Wind
+from uvf.runtime.messages.convert import stamp
 
 
 def troubled(faults=(), fence=None, wind=(0.0, 0.0, 0.0), job=LAPS, energy=None, params=None, storm=None, altimeter=True):

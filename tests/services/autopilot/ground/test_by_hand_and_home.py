@@ -3,9 +3,9 @@
 import msgspec
 import pytest
 
-from schemas.convert import stamp
 from schemas.messages import Breach, DriveCommand, Mode, ModeRequest
 from tests.services.autopilot.ground.test_service import BODY, Bench
+from uvf.runtime.messages.convert import stamp
 
 MANUAL = [ModeRequest(mode=Mode.MODE_MANUAL)]
 

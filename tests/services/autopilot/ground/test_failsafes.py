@@ -6,7 +6,6 @@ from typing import get_args
 
 import pytest
 
-from schemas.convert import stamp
 from schemas.messages import Fence, FenceRequest, FenceZone, Link, Mission, MissionItem, MissionRequest, Mode, ModeRequest, Vector3
 from services.autopilot.failsafes import Action, Watch
 from services.autopilot.ground.failsafes import ACTIONS, GROUND_RULES, Known
@@ -14,8 +13,9 @@ from services.autopilot.ground.fence import MARGIN, Place, stops
 from services.autopilot.ground.params import Choice, GroundAutopilotParams
 from tests.services.autopilot.ground.test_service import BODY, Bench
 from uvf.maths.zones import Disc, Region
-from uvf.runtime.fence_file import Fencing
-from uvf.runtime.site import ROOT
+from uvf.models.mission.fence import Fencing
+from uvf.models.scenario import ROOT
+from uvf.runtime.messages.convert import stamp
 
 DISC = Fencing(Region((Disc((0.0, 0.0), 3.0),)), -math.inf, math.inf, Fence.HOLD)
 KEEP = (BODY.radius, BODY.max_linear_acceleration)

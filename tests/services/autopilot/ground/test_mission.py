@@ -2,9 +2,9 @@
 
 import pytest
 
-from schemas.convert import stamp
 from schemas.messages import MissionItem, MissionProgress, Vector3
 from services.autopilot.ground.mission import MissionEngine, mission_of, refusal
+from uvf.runtime.messages.convert import stamp
 
 HOME = (9.0, 9.0)
 

@@ -2,7 +2,6 @@
 
 import pytest
 
-from schemas.convert import planar_pose, stamp
 from schemas.messages import (
     ArmRequest,
     Battery,
@@ -26,8 +25,9 @@ from services.autopilot.ground.params import GroundAutopilotParams
 from services.autopilot.ground.service import GroundAutopilot
 from tests.services.live_params import all_settable_are_read
 from tests.stops import ENGAGED, RELEASED
-from uvf.runtime.stop_all import StopStatus
-from uvf.runtime.vehicle_file import GroundBody, Motor
+from uvf.models.vehicle.file import GroundBody, Motor
+from uvf.runtime.messages.convert import planar_pose, stamp
+from uvf.runtime.state.stop_all import StopStatus
 
 BODY = GroundBody(
     urdf="x.urdf",

@@ -2,10 +2,10 @@
 
 import pytest
 
-from schemas.convert import stamp
 from schemas.messages import FrameTransform, LaserScan
 from services.autopilot.ground.sight import MOVED, Sight
-from uvf.runtime.sweeping import AT_ONCE, Sweeping
+from uvf.runtime.messages.convert import stamp
+from uvf.sensors.sweeping import AT_ONCE, Sweeping
 
 
 def scan(t, ahead=1.0):

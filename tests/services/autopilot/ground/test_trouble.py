@@ -3,13 +3,13 @@
 import pytest
 
 from schemas import topics
-from schemas.convert import planar_pose, quaternion
 from schemas.messages import ArmRequest, Mode, RemoveRequest, SetPoseRequest, SimObject, SpawnRequest
 from tests.services.autopilot.ground.trip import THERE_AND_BACK, Trip
 from tests.services.autopilot.proofs import shows
 from uvf.maths.rotations import from_euler
-from uvf.runtime.air_file import BatteryPack
-from uvf.runtime.vehicle_file import Friction
+from uvf.models.vehicle.air import BatteryPack
+from uvf.models.vehicle.file import Friction
+from uvf.runtime.messages.convert import planar_pose, quaternion
 
 ON_ITS_OWN = {"job": THERE_AND_BACK}
 

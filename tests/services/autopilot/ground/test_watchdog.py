@@ -4,15 +4,15 @@ import numpy as np
 import pytest
 
 from schemas import topics
-from schemas.convert import seconds, stamp
 from schemas.messages import ArmRequest, DriveCommand, Mode, ModeRequest
 from services.autopilot.ground.build import hosts
 from services.autopilot.ground.multiplexer import COMMAND_MAX_AGE
 from services.sim_ground.build import build as build_simulator
 from tests.services.sim_ground.ride import site_with
-from uvf.runtime.lockstep import Lockstep
-from uvf.runtime.service import Service
-from uvf.runtime.site import Host
+from uvf.models.scenario import Host
+from uvf.runtime.contract.service import Service
+from uvf.runtime.messages.convert import seconds, stamp
+from uvf.runtime.time.lockstep import Lockstep
 
 SILENT_FROM = 2.0  # s
 SPEED = 0.2  # m/s

@@ -7,14 +7,14 @@ import msgspec
 import yaml
 
 from schemas import topics
-from schemas.convert import stamp
 from schemas.messages import DriveCommand, Link, Mode, ModeRequest, ParamRequest, Reply
 from services.autopilot.ground.build import hosts
 from services.planner.build import build as planner
 from services.sim_ground.build import build as simulator
 from services.slam.build import build as slam
-from uvf.runtime.lockstep import Lockstep
-from uvf.runtime.site import load_site
+from uvf.models.scenario import load_site
+from uvf.runtime.messages.convert import stamp
+from uvf.runtime.time.lockstep import Lockstep
 
 START = {"x": 5.0, "y": 4.4, "yaw": 0.0}
 THERE_AND_BACK = {"mission": [{"x": 6.2, "y": 4.4}, {"x": 5.0, "y": 4.4}, {"kind": "jump", "jump_to": 0, "repeat": -1}]}

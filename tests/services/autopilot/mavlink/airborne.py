@@ -8,11 +8,11 @@ from services.autopilot.mavlink.build import facts_of
 from services.autopilot.mavlink.service import MavlinkService
 from services.sim_air.build import build as build_sim
 from tests.services.autopilot.mavlink.rig import GCS, MemoryLink, Shelf
-from uvf.runtime.lockstep import Lockstep
-from uvf.runtime.mavlink import dialect as mav
-from uvf.runtime.mission_file import Job
-from uvf.runtime.shell import Shell
-from uvf.runtime.site import ROOT, Host, Member, load_site
+from uvf.mavlink import dialect as mav
+from uvf.models.mission.file import Job
+from uvf.models.scenario import ROOT, Host, Member, load_site
+from uvf.runtime.contract.service_runner import Shell
+from uvf.runtime.time.lockstep import Lockstep
 
 NS = 1_000_000_000
 STEP = 0.1  # s, between two looks

@@ -2,7 +2,7 @@
 
 import struct
 
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
 
 HEAD = struct.Struct("<HBBBBBBI")  # sequence, session, opcode, size, requested opcode, burst complete, padding, offset
 OPEN, TERMINATE, READ, BURST, ACK, NAK, EOF = 4, 1, 5, 15, 128, 129, 6

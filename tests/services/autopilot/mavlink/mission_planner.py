@@ -7,7 +7,7 @@ import struct
 from services.autopilot.mavlink.data_streams import GROUPS
 from tests.services.autopilot.mavlink.file_reader import HEAD
 from tests.services.autopilot.mavlink.rig import PLANE, of
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
 
 OPEN, NAK, NOT_FOUND = 4, 129, 10
 PACKED = b"@PARAM/param.pck?withdefaults=1"

@@ -8,7 +8,7 @@ import lzma
 import struct
 
 from tests.services.autopilot.mavlink.file_reader import FileReader
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
 
 PARAM_WAIT, GAP_WAIT = 5.0, 3.0  # s
 TRIES = 3

@@ -8,7 +8,7 @@ import json
 import math
 from pathlib import Path
 
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
 
 PLANS = Path(__file__).parent / "plans"
 MISSION_FRAME, RELATIVE = 2, 3

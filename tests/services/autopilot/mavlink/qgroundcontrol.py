@@ -8,7 +8,7 @@ import copy
 
 from tests.services.autopilot.mavlink.qgc_parameters import ParameterManager
 from tests.services.autopilot.mavlink.rig import GCS, long
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
 
 ACK_WAIT, MESSAGE_WAIT, PLAN_WAIT, ITEM_WAIT = 1.2, 1.0, 1.5, 0.25  # s
 TRIES = 3

@@ -4,7 +4,6 @@ import json
 
 import numpy as np
 
-from schemas.convert import quaternion, stamp
 from schemas.messages import (
     Circle,
     Clock,
@@ -21,7 +20,6 @@ from schemas.messages import (
     Vector3,
     VehicleStatus,
 )
-from services.autopilot.air.params import FIXED, AirParams
 from services.autopilot.ground.params import GroundAutopilotParams
 from services.autopilot.mavlink.facts import Facts
 from services.autopilot.mavlink.parameter_store import Unreadable
@@ -29,12 +27,14 @@ from services.autopilot.mavlink.service import MavlinkService
 from services.autopilot.told_params import ToldParams
 from uvf.maths.geodesy import LocalTangent
 from uvf.maths.rotations import from_euler
-from uvf.runtime.mavlink import dialect as mav
-from uvf.runtime.mavlink.endpoint import Callers
-from uvf.runtime.param_server import ParamServer
-from uvf.runtime.params import convert
-from uvf.runtime.service import Answer, Service
-from uvf.runtime.vehicle_file import VehicleFile
+from uvf.mavlink import dialect as mav
+from uvf.mavlink.endpoint import Callers
+from uvf.models.vehicle.file import VehicleFile
+from uvf.models.vehicle.flight_params import FIXED, AirParams
+from uvf.models.yaml_data import convert
+from uvf.runtime.contract.param_server import ParamServer
+from uvf.runtime.contract.service import Answer, Service
+from uvf.runtime.messages.convert import quaternion, stamp
 
 PLANE, ROVER = 1, 2
 GCS = ("127.0.0.1", 14550)

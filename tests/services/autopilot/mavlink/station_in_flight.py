@@ -7,8 +7,8 @@ import pytest
 from services.autopilot.mavlink.build import facts_of
 from tests.services.autopilot.mavlink.airborne import Airborne, field
 from tests.services.autopilot.mavlink.test_parameters import setting, value
-from uvf.runtime.mavlink import dialect as mav
-from uvf.runtime.site import Member
+from uvf.mavlink import dialect as mav
+from uvf.models.scenario import Member
 
 REAL = mav.MAV_PARAM_TYPE_REAL32
 ALTITUDE, HOLD, MISSION, RETURN, LAND = 0x00020000, 0x03040000, 0x04040000, 0x05040000, 0x06040000

@@ -5,7 +5,7 @@ import sys
 import time
 
 from tests.services.autopilot.mavlink.rig import GCS, OTHER, PLANE, ROVER, Rig, long
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
 
 AT_ONCE = 500  # datagrams in a step
 NOBODY = 99

@@ -5,9 +5,9 @@ import pytest
 from services.autopilot.mavlink import build as build_module
 from services.autopilot.mavlink.build import build
 from services.autopilot.mavlink.parameter_table import parameters_of
-from uvf.runtime.address import peer
-from uvf.runtime.params import BadInput
-from uvf.runtime.site import ROOT, load_site
+from uvf.models.scenario import ROOT, load_site
+from uvf.models.yaml_data import BadInput
+from uvf.runtime.bus.address import peer
 
 
 @pytest.mark.parametrize("text", ["", "14550", "host:", ":14550", "host:abc", "host:0", "host:70000"])

@@ -6,7 +6,7 @@ import pytest
 
 from schemas.messages import Clock, Mode, StopEngagement
 from tests.services.autopilot.mavlink.rig import GCS, OTHER, PLANE, ROVER, Rig, acks, long, of, texts
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
 
 NAN = math.nan
 ACCEPTED, REJECTED, DENIED, UNSUPPORTED = 0, 1, 2, 3

@@ -10,7 +10,7 @@ from services.autopilot.mavlink.component_metadata import files_of, general_of, 
 from services.autopilot.mavlink.parameter_table import parameters_of
 from services.autopilot.mavlink.parameter_values import crc32
 from tests.services.autopilot.mavlink.rig import PLANE, PLANE_FACTS, ROVER_FACTS, Rig, acks, long, of
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
 
 NUMBER = (int, float)
 VERSION = r"^\d+\.\d+\.\d+(\.\d+)?$"

@@ -10,7 +10,7 @@ from tests.services.autopilot.mavlink import qgroundcontrol as qgc
 from tests.services.autopilot.mavlink.qgc_parameters import NO_PARAMETERS, SOME_PARAMETERS
 from tests.services.autopilot.mavlink.qgroundcontrol import QGroundControl
 from tests.services.autopilot.mavlink.rig import PLANE, ROVER, Rig
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
 
 
 def connect(system=PLANE, spoil=lambda message: message):

@@ -7,7 +7,7 @@ import pytest
 
 from tests.services.autopilot.mavlink.station_in_flight import ACCEPTED, HOLD, RETURN, circling, in_the_air
 from tests.services.autopilot.mavlink.test_parameters import INT
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
 
 GEOFENCE = mav.MAV_SYS_STATUS_GEOFENCE
 

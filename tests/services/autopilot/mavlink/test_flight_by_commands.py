@@ -5,11 +5,11 @@ import math
 import numpy as np
 import pytest
 
-from services.autopilot.air.params import AirParams
 from services.autopilot.mavlink.build import facts_of
 from tests.services.autopilot.mavlink.airborne import Airborne, field
 from tests.services.autopilot.mavlink.rig import long
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
+from uvf.models.vehicle.flight_params import AirParams
 
 SEA = 300.0  # m: of the field
 ORIGIN = facts_of(field())[0].origin

@@ -9,7 +9,7 @@ from services.autopilot.mavlink.file_tree import FileTree
 from services.autopilot.mavlink.ftp import HEADER, PAYLOAD_BYTES, SESSIONS_EACH
 from services.autopilot.mavlink.parameter_values import crc32
 from tests.services.autopilot.mavlink.rig import GCS, OTHER, PLANE, Rig, of
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
 
 GENERAL, PARAMETERS = general_of(PLANE), parameters_file_of(PLANE)
 

@@ -7,7 +7,7 @@ import pytest
 from schemas.messages import MissionItem, Mode, Vector3
 from tests.services.autopilot.mavlink.rig import ORIGIN as FIELD
 from tests.services.autopilot.mavlink.rig import PLANE, ROVER, Rig, acks, long, of, texts
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
 from uvf.runtime.mavlink.mission_items import ORIGIN
 
 NAN = math.nan

@@ -1,12 +1,12 @@
 """A station that means harm, or is only broken, keeps nobody else from uploading, downloading and commanding."""
 
-from schemas.convert import stamp
 from schemas.messages import Event
 from tests.services.autopilot.mavlink.rig import GCS, OTHER, PLANE, Rig, long, of, texts
 from tests.services.autopilot.mavlink.test_missions import LAT, LON, count, item, upload
 from tests.services.autopilot.mavlink.test_two_stations import BEAT
-from uvf.runtime.mavlink import dialect as mav
-from uvf.runtime.mavlink.endpoint import MOST_LEARNED, Callers
+from uvf.mavlink import dialect as mav
+from uvf.mavlink.endpoint import MOST_LEARNED, Callers
+from uvf.runtime.messages.convert import stamp
 
 FENCE = mav.MAV_MISSION_TYPE_FENCE
 STRANGER = {"system": 200, "peer": ("203.0.113.9", 3000)}

@@ -8,7 +8,7 @@ from services.autopilot.mavlink.identity import VERSION
 from services.autopilot.mavlink.parameters import HASH
 from services.autopilot.mavlink.service import MavlinkService
 from tests.services.autopilot.mavlink.rig import PLANE, PLANE_FACTS, ROVER, ROVER_FACTS, Rig, acks, long, of, shelves, texts
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
 
 BEAT = mav.MAVLink_heartbeat_message(mav.MAV_TYPE_GCS, mav.MAV_AUTOPILOT_INVALID, 0, 0, 0, 3)
 

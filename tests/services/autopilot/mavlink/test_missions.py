@@ -7,7 +7,7 @@ import pytest
 
 from schemas.messages import Mission, MissionItem, Vector3
 from tests.services.autopilot.mavlink.rig import GCS, OTHER, PLANE, ROVER, Rig, of, texts
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
 
 LAT, LON = 407_701_234, 147_905_678
 NAN = math.nan

@@ -7,7 +7,7 @@ import pytest
 from schemas.messages import Mode
 from services.autopilot.ground.multiplexer import SOURCES
 from tests.services.autopilot.mavlink.rig import GCS, OTHER, PLANE, ROVER, Rig, acks, long, of
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
 from uvf.runtime.mavlink import modes
 
 WORDS = {

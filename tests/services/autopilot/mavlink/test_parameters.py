@@ -11,8 +11,8 @@ from services.autopilot.mavlink import parameter_page
 from services.autopilot.mavlink.parameter_table import FILE, Table, parameters_of
 from services.autopilot.mavlink.parameter_values import param_value
 from tests.services.autopilot.mavlink.rig import OTHER, PLANE, PLANE_FACTS, ROVER, ROVER_FACTS, Rig, of, texts
-from uvf.runtime.mavlink import dialect as mav
-from uvf.runtime.params import load_yaml
+from uvf.mavlink import dialect as mav
+from uvf.models.yaml_data import load_yaml
 
 MANDATORY = ("SYS_AUTOSTART", "CAL_GYRO0_ID", "CAL_ACC0_ID", "CAL_MAG0_ID", "SYS_HAS_NUM_ASPD", "COM_RC_IN_MODE")
 SUMMARY_PAGES = (

@@ -5,7 +5,7 @@ import itertools
 from services.autopilot.mavlink.line import Sender
 from services.autopilot.mavlink.peers import CONNECTION_ENDS, Peers
 from tests.services.autopilot.mavlink.rig import GCS, OTHER, PLANE, Rig, long, of, texts
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
 
 BEAT = mav.MAVLink_heartbeat_message(mav.MAV_TYPE_GCS, mav.MAV_AUTOPILOT_INVALID, 0, 0, 0, 3)
 SET_INTERVAL = mav.MAV_CMD_SET_MESSAGE_INTERVAL

@@ -9,7 +9,7 @@ from services.autopilot.mavlink.component_metadata import general_of, parameters
 from tests.services.autopilot.mavlink.qgc_parameters import FOREIGN_TEXTS, WRITE
 from tests.services.autopilot.mavlink.qgroundcontrol import QGroundControl
 from tests.services.autopilot.mavlink.rig import PLANE, ROVER, Rig
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
 
 GENERAL, PARAMETERS = general_of(PLANE), parameters_file_of(PLANE)
 

@@ -11,7 +11,7 @@ from services.autopilot.mavlink.missions import TOLD_WITHIN
 from services.autopilot.mavlink.statustext import counted_from_one
 from tests.services.autopilot.mavlink.qgroundcontrol import PAGES, PLANS, STANDARD_NAMES, QGroundControl
 from tests.services.autopilot.mavlink.rig import GCS, OTHER, PLANE, ROVER, Rig, acks, long, of, texts
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
 
 NAN = float("nan")
 LAND, MISSION = 100925440, 67371008

@@ -14,8 +14,8 @@ from services.autopilot.mavlink.orders import ORDERS
 from services.autopilot.mavlink.streams import Schedule
 from tests.services.autopilot.mavlink.rig import GCS, PLANE, ROVER, Rig, acks, long, of
 from tests.services.autopilot.mavlink.storm import KINDS, rage
-from uvf.runtime.mavlink import dialect as mav
-from uvf.runtime.mavlink.codec import Codec
+from uvf.mavlink import dialect as mav
+from uvf.mavlink.codec import Codec
 
 BEAT = mav.MAVLink_heartbeat_message(6, 8, 0, 0, 0, 3)
 

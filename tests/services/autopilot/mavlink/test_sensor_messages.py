@@ -7,14 +7,14 @@ import msgspec
 import numpy as np
 import pytest
 
-from schemas.convert import stamp
 from schemas.messages import AirData, EstimateQuality, Imu, NavStatus, SurfaceCommand, Targets, Vector3, WheelCommand
 from services.autopilot.mavlink.sensor_messages import body_frd
 from services.autopilot.mavlink.vibration import Vibration
 from tests.services.autopilot.mavlink.rig import PLANE, PLANE_FACTS, ROVER, Rig, acks, long, of
 from uvf.maths import atmosphere
 from uvf.maths.rotations import FLU_FROM_FRD, from_euler, inverse, rotate, to_euler
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
+from uvf.runtime.messages.convert import stamp
 
 LEVEL = Imu(specific_force=Vector3(x=0.1, y=0.2, z=9.81), angular_velocity=Vector3(x=0.1, y=0.2, z=0.3))
 

@@ -4,11 +4,11 @@ import math
 
 import pytest
 
-from schemas.convert import quaternion
 from schemas.messages import Mode, Vector3
 from tests.services.autopilot.mavlink.rig import OTHER, PLANE, ROVER, Rig, long, of, texts
 from uvf.maths.rotations import from_euler
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
+from uvf.runtime.messages.convert import quaternion
 
 POSITION, VELOCITY, BOTH, CLIMBING_ONLY = 0b110111111000, 0b110111000111, 0b110111000000, 0b110111000011
 LOCAL, BODY, GLOBAL, ABOVE_HOME = 1, 8, 5, 6

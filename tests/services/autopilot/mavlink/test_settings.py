@@ -8,7 +8,7 @@ import pytest
 from services.autopilot.mavlink.parameter_store import FileStore, Unreadable
 from tests.services.autopilot.mavlink.rig import _PLANE_PARAMS, PLANE, Rig, Shelf, acks, long, of, texts
 from tests.services.autopilot.mavlink.test_parameters import ask_list, setting, value
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
 
 
 def loiter(rig):

@@ -11,7 +11,7 @@ from services.autopilot.mavlink.key_store import KeyStore
 from services.autopilot.mavlink.service import MavlinkService
 from services.autopilot.mavlink.signing import BEGINNING, PER_SECOND, Signing
 from tests.services.autopilot.mavlink.rig import GCS, OTHER, PLANE, PLANE_FACTS, ROVER_FACTS, Rig, acks, long, of, shelves, texts
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
 
 KEY = hashlib.sha256(b"open sesame").digest()
 FAR = ("192.168.1.20", 14550)

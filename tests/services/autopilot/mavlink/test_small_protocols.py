@@ -6,8 +6,8 @@ from schemas.messages import Mode
 from services.autopilot.mavlink.statustext import TextLimiter, chunks
 from services.autopilot.mavlink.streams import Schedule
 from tests.services.autopilot.mavlink.rig import GCS, OTHER, PLANE, ROVER, Rig, of, texts
-from uvf.runtime.air_file import Commands
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
+from uvf.models.vehicle.air import Commands
 
 
 @pytest.mark.parametrize("n", [1, 49, 50, 51, 99, 100, 101, 240])

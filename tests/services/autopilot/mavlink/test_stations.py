@@ -2,10 +2,10 @@
 
 import pytest
 
-from schemas.convert import seconds
 from schemas.messages import Clock
 from tests.services.autopilot.mavlink.rig import OTHER, PLANE, Rig, of, texts
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
+from uvf.runtime.messages.convert import seconds
 
 
 def heartbeat(kind):

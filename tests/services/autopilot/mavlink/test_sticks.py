@@ -4,8 +4,8 @@ import pytest
 
 from schemas.messages import Mode
 from tests.services.autopilot.mavlink.rig import OTHER, PLANE, ROVER, Rig, of, texts
-from uvf.runtime.air_file import Commands
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
+from uvf.models.vehicle.air import Commands
 
 LIMITS = Commands()  # the file of the rig's aircraft names none
 UNCHANGED, RELEASED = 65535, 0

@@ -6,7 +6,7 @@ import pytest
 from tests.services.autopilot.mavlink.airborne import Airborne
 from tests.services.autopilot.mavlink.qgc_plan import items_of
 from tests.services.autopilot.mavlink.rig import long
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
 
 PLAN = items_of("survey_and_landing")
 TOUCH = -60.0, 0.0  # m, east and north, of NAV_LAND

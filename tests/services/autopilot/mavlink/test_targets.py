@@ -5,8 +5,8 @@ import pytest
 from services.autopilot.mavlink.service import MavlinkService
 from services.autopilot.mavlink.targets import Target, reserved, targets_from
 from tests.services.autopilot.mavlink.rig import GCS, OTHER, PLANE, PLANE_FACTS, ROVER, ROVER_FACTS, Rig, long, of, shelves, texts
-from uvf.runtime.mavlink import dialect as mav
-from uvf.runtime.params import BadInput
+from uvf.mavlink import dialect as mav
+from uvf.models.yaml_data import BadInput
 
 VERSION = float(mav.MAVLINK_MSG_ID_AUTOPILOT_VERSION)
 NAME = "UVF_MAVLINK_TARGETS"

@@ -5,12 +5,12 @@ import math
 
 import pytest
 
-from schemas.convert import quaternion
 from schemas.messages import Battery, Clock, Event, Mission, MissionItem, MissionProgress, Mode, Vector3
 from services.autopilot.mavlink.telemetry import charge_state
 from tests.services.autopilot.mavlink.rig import OTHER, PLANE, ROVER, Rig, long, of, texts
 from uvf.maths.rotations import from_euler
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
+from uvf.runtime.messages.convert import quaternion
 
 LIMITS = {"battery_low": 0.15, "battery_critical": 0.07, "emergency_charge": 0.05}
 

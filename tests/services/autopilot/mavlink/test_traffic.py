@@ -8,7 +8,7 @@ import pytest
 from schemas.messages import Vector3
 from services.autopilot.mavlink.traffic import address, callsign
 from tests.services.autopilot.mavlink.rig import GCS, OTHER, PLANE, PLANE_FACTS, ROVER, ROVER_FACTS, Rig, acks, long, of
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
 
 
 def alone(system):

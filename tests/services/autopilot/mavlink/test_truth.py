@@ -5,13 +5,13 @@ from dataclasses import replace
 
 import pytest
 
-from schemas.convert import quaternion
 from schemas.messages import AirData, Battery, EstimateQuality, Imu, Mode, SurfaceCommand, Targets, Vector3
 from services.autopilot.mavlink.service import MavlinkService
 from tests.services.autopilot.mavlink.rig import GCS, ORIGIN, PLANE, PLANE_FACTS, Rig, of, shelves
 from uvf.maths import atmosphere
 from uvf.maths.rotations import from_euler
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
+from uvf.runtime.messages.convert import quaternion
 
 SECONDS = 20.0
 RATES = {

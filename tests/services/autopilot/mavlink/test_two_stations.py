@@ -9,8 +9,8 @@ from services.autopilot.mavlink.commands import MOST_SENDERS
 from services.autopilot.mavlink.missions import MOST_WAITING
 from tests.services.autopilot.mavlink.rig import GCS, OTHER, PLANE, ROVER, Rig, long, of, texts
 from tests.services.autopilot.mavlink.test_missions import LAT, LON, count, item
-from uvf.runtime.mavlink import dialect as mav
-from uvf.runtime.mavlink.endpoint import ENGAGED_FOR, FORGET_AFTER, MOST_LEARNED, Callers
+from uvf.mavlink import dialect as mav
+from uvf.mavlink.endpoint import ENGAGED_FOR, FORGET_AFTER, MOST_LEARNED, Callers
 
 BEAT = mav.MAVLink_heartbeat_message(mav.MAV_TYPE_GCS, mav.MAV_AUTOPILOT_INVALID, 0, 0, 0, 3)
 OPEN = struct.Struct("<HBBBBBxI").pack(1, 0, 4, 8, 0, 0, 0) + b"/nothing"

@@ -8,7 +8,7 @@ from services.autopilot.mavlink.refusals import plain
 from tests.services.autopilot.mavlink.rig import PLANE, ROVER, Rig, acks, long, of, texts
 from tests.services.autopilot.mavlink.test_fence_and_rally import item as plan_item
 from tests.services.autopilot.mavlink.test_missions import LAT, LON, item, upload
-from uvf.runtime.mavlink import dialect as mav
+from uvf.mavlink import dialect as mav
 
 NAN = math.nan
 FENCE, RALLY = mav.MAV_MISSION_TYPE_FENCE, mav.MAV_MISSION_TYPE_RALLY

@@ -7,27 +7,27 @@ import msgspec
 import numpy as np
 import pytest
 
-from schemas.convert import occupancy_cells, planar_pose, stamp, yaw_of
 from schemas.messages import Event, FrameTransform, LaserScan, MapFix, PlaceRequest, RelocalizeRequest, Vector3
 from services.slam import localization_service
 from services.slam.build import build
-from services.slam.localization import known_map
-from services.slam.localization.localizer import HALF_SURE
-from services.slam.localization.params import FilterParams
 from services.slam.localization_service import Beginning, LocalizationService
-from services.slam.maps.session import NO_EDGES, Session
-from services.slam.method import Keyframe
 from tests.services.live_params import all_settable_are_read
-from tests.services.slam.localization.places import ROOM, ellipse, errors, map_of, readings
-from uvf.maths.planar import Pose2, compose
-from uvf.maths.planar_arrays import composed, inverted
-from uvf.runtime.frames import FrameBuffer
-from uvf.runtime.grid_message import as_message
-from uvf.runtime.map_file import save_map
-from uvf.runtime.mission_file import Maps
-from uvf.runtime.params import BadInput
-from uvf.runtime.site import ROOT, load_site
-from uvf.runtime.vehicle_file import Lidar, Mount
+from tests.slam.localization.places import ROOM, ellipse, errors, map_of, readings
+from uvf.maths.se2 import Pose2, compose
+from uvf.maths.se2_arrays import composed, inverted
+from uvf.models.mission.file import Maps
+from uvf.models.scenario import ROOT, load_site
+from uvf.models.vehicle.file import Lidar, Mount
+from uvf.models.world.map_file import save_map
+from uvf.models.yaml_data import BadInput
+from uvf.runtime.messages.convert import occupancy_cells, planar_pose, stamp, yaw_of
+from uvf.runtime.messages.frames import FrameBuffer
+from uvf.runtime.messages.grids import as_message
+from uvf.slam.localization import known_map
+from uvf.slam.localization.localizer import HALF_SURE
+from uvf.slam.localization.params import FilterParams
+from uvf.slam.maps.session import NO_EDGES, Session
+from uvf.slam.method import Keyframe
 
 LIDAR_FILE = Lidar(Mount((0.0, 0.0, 0.2)), hz=5, beams=360, angle_min=0.0, angle_increment=0.01745, range_min=0.05, range_max=3.5)
 WORLD_FROM_MAP = Pose2(2.0, 1.0, np.pi / 2)

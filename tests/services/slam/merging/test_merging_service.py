@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from schemas.convert import occupancy_cells, stamp, yaw_of
 from schemas.messages import Event, MapSession
-from services.slam.maps import tiles
 from services.slam.merging.build import build
 from services.slam.merging.merging_service import MergingService
-from tests.services.slam.merging.offices import anne, bert, first, off_by
-from uvf.maths.planar import Pose2
-from uvf.runtime.site import ROOT, load_site
+from tests.slam.merging.offices import anne, bert, first, off_by
+from uvf.maths.se2 import Pose2
+from uvf.models.scenario import ROOT, load_site
+from uvf.runtime.messages.convert import occupancy_cells, stamp, yaw_of
+from uvf.slam.maps import tiles
 
 
 def told(t, session):

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from schemas.convert import stamp
 from schemas.messages import CameraCalibration, CompressedImage, LaserScan
 from services.slam.octree.beams import depth_beams, sweep_beams
-from uvf.runtime.params import BadInput
+from uvf.models.yaml_data import BadInput
+from uvf.runtime.messages.convert import stamp
 
 WIDTH, HEIGHT, FOCAL = 40, 30, 35.0
 K = [FOCAL, 0.0, (WIDTH - 1) / 2, 0.0, FOCAL, (HEIGHT - 1) / 2, 0.0, 0.0, 1.0]

@@ -8,20 +8,20 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from schemas.convert import occupancy_cells, quaternion, stamp
+from launch import catalogue
 from schemas.messages import CameraCalibration, CompressedImage, FrameTransform, LaserScan, OctreeSaveRequest, Vector3
 from services.slam.octree import octree_service
 from services.slam.octree.build import build
-from services.slam.octree.files import read_octree
-from services.slam.octree.octree import FREE, NOT_KNOWN, OCCUPIED
 from services.slam.octree.octree_service import OctreeParams, OctreeService
 from tests.services.live_params import all_settable_are_read
-from uvf.launch import catalogue
 from uvf.maths.rotations import IDENTITY, from_euler
-from uvf.runtime.frames import FrameBuffer
-from uvf.runtime.params import BadInput
-from uvf.runtime.site import ROOT, load_site
-from uvf.runtime.vehicle_file import Camera, Lidar, Mount, Sensors
+from uvf.models.scenario import ROOT, load_site
+from uvf.models.vehicle.file import Camera, Lidar, Mount, Sensors
+from uvf.models.yaml_data import BadInput
+from uvf.runtime.messages.convert import occupancy_cells, quaternion, stamp
+from uvf.runtime.messages.frames import FrameBuffer
+from uvf.slam.octree.files import read_octree
+from uvf.slam.octree.octree import FREE, NOT_KNOWN, OCCUPIED
 
 WIDTH, HEIGHT = 32, 24
 CAMERA = Camera(mount=Mount(), hz=5.0, width=WIDTH, height=HEIGHT, fov=1.2, far=10.0, depth=True)

@@ -4,17 +4,17 @@ import msgspec
 import numpy as np
 import pytest
 
-from schemas.convert import quaternion, seconds, stamp, yaw_of
 from schemas.messages import FrameTransform, Imu, KeyValuePair, Odometry, Vector3, WheelTicks
-from services.slam.odometry.params import OdometryParams
 from services.slam.odometry.service import SCALES, OdometryService
+from tests.estimation.odometry.test_satellites import GOOD, TANGENT, fix_at
 from tests.services.live_params import all_settable_are_read
-from tests.services.slam.odometry.test_satellites import GOOD, TANGENT, fix_at
+from uvf.estimation.odometry.params import OdometryParams
 from uvf.maths.kinematics import Twist, move
-from uvf.maths.planar import IDENTITY, Pose2, compose, inverse
 from uvf.maths.rotations import from_euler
-from uvf.runtime.site import ROOT
-from uvf.runtime.vehicle_file import load_vehicle
+from uvf.maths.se2 import IDENTITY, Pose2, compose, inverse
+from uvf.models.scenario import ROOT
+from uvf.models.vehicle.file import load_vehicle
+from uvf.runtime.messages.convert import quaternion, seconds, stamp, yaw_of
 
 BURGER = load_vehicle(ROOT / "vehicles", "burger")
 HEARING = msgspec.structs.replace(BURGER, sensors=msgspec.structs.replace(BURGER.sensors, gnss=GOOD))

@@ -7,18 +7,18 @@ import numpy as np
 import pytest
 
 from schemas import topics
-from schemas.convert import seconds, yaw_of
 from schemas.messages import WheelCommand
 from services.autopilot.ground.build import hosts as autopilot
 from services.planner.build import build as planner
 from services.sim_ground.build import build as simulator
 from services.slam.build import build as slam
-from uvf.maths.planar import Pose2, compose, inverse
 from uvf.maths.rotations import wrap
-from uvf.runtime.lockstep import Lockstep
-from uvf.runtime.service import Service
-from uvf.runtime.site import ROOT, Host, load_site
-from uvf.runtime.vehicle_file import GnssSensor, Mount
+from uvf.maths.se2 import Pose2, compose, inverse
+from uvf.models.scenario import ROOT, Host, load_site
+from uvf.models.vehicle.file import GnssSensor, Mount
+from uvf.runtime.contract.service import Service
+from uvf.runtime.messages.convert import seconds, yaw_of
+from uvf.runtime.time.lockstep import Lockstep
 
 KEPT = ("ODOMETRY", "TRUTH", "EVENTS", "NAV_STATE")
 CHANGE = msgspec.structs.replace

@@ -5,13 +5,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from services.autopilot.air.ekf.alignment import attitude
-from services.autopilot.air.ekf.datasheet import Datasheet
-from services.autopilot.air.ekf.estimator import FullEstimator
-from services.autopilot.air.ekf.states import MAGNETIC
-from services.autopilot.air.params import AirParams
-from services.autopilot.air.sensed import Fix, Inertial, Pressures, Sensed
+from uvf.estimation.ekf.alignment import attitude
+from uvf.estimation.ekf.datasheet import Datasheet
+from uvf.estimation.ekf.estimator import FullEstimator
+from uvf.estimation.ekf.states import MAGNETIC
+from uvf.estimation.sensor_inputs import Fix, Inertial, Pressures, Sensed
 from uvf.maths import atmosphere
+from uvf.models.vehicle.flight_params import AirParams
 
 EARTH = (25.2e-6, 1.8e-6, 38.9e-6)  # T, NED
 G = np.array((0.0, 0.0, 9.80665))

@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from services.autopilot.air.ekf.datasheet import Datasheet
 from tests.services.autopilot.air.ekf.flying import DT, PARAMS, Flown, fly
+from uvf.estimation.ekf.datasheet import Datasheet
 
 
 def off(flown, now):

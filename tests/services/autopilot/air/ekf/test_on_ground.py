@@ -5,11 +5,11 @@ import math
 import numpy as np
 import pytest
 
-from services.autopilot.air.ekf.alignment import attitude
-from services.autopilot.air.ekf.estimator import FullEstimator
-from services.autopilot.air.mount import ImuMount
-from services.autopilot.air.sensed import Fix, Inertial, Pressures, Sensed
 from tests.services.autopilot.air.ekf.flying import DT, EARTH, PARAMS, SHEET, G
+from uvf.estimation.ekf.alignment import attitude
+from uvf.estimation.ekf.estimator import FullEstimator
+from uvf.estimation.mount import ImuMount
+from uvf.estimation.sensor_inputs import Fix, Inertial, Pressures, Sensed
 
 ROLL, PITCH, YAW = 0.02, 0.1, 2.5
 STATIC = 97_000.0

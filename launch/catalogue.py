@@ -1,0 +1,78 @@
+"""What a run consists of: one line per kind of process. A service's folder, its tests and a line here make a service."""
+
+import importlib
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Literal
+
+from uvf.models.scenario import Build, Host, Site
+from uvf.models.yaml_data import BadInput, nearest
+
+
+@dataclass(frozen=True)
+class Kind:
+    """``build``: module with ``build(site)``; ``needs``: the vehicles without which it has no work, or ``asked``: one that has parameters
+    for it, or ``team``: two that draw maps.
+
+    ``nice``: how far it gives way to those that keep time (router, conductor, simulators) when processors are few.
+    """
+
+    name: str
+    build: str
+    about: str
+    needs: Literal["ground", "fixed_wing", "any", "asked", "team"] = "any"
+    clock: Literal["sim", "wall"] = "sim"
+    simulator: bool = False
+    nice: int = 0
+
+
+KINDS = (
+    Kind("sim_ground", "services.sim_ground.build", "PyBullet world of the ground vehicles, their sensors", "ground", simulator=True),
+    Kind("sim_air", "services.sim_air.build", "JSBSim aircraft, wind, their sensors", "fixed_wing", simulator=True),
+    Kind("sim_camera", "services.sim_camera.build", "every vehicle's camera", nice=15),
+    Kind("slam", "services.slam.build", "odometry, mapping, localization", "ground", nice=3),
+    Kind("octree", "services.slam.octree.build", "3-D maps of the vehicles that ask for one", "asked", nice=12),
+    Kind("merging", "services.slam.merging.build", "one map of those who map the same place", "team", nice=12),
+    Kind("planner", "services.planner.build", "exploration, paths, tracking", "ground", nice=2),
+    Kind("autopilot", "services.autopilot.build", "command multiplexer, estimator, guidance, control, modes", nice=2),
+    Kind("mavlink", "services.autopilot.mavlink.build", "MAVLink over UDP for ground stations", clock="wall", nice=5),
+    Kind("gcs", "services.gcs.build", "the page at http://127.0.0.1:8080", clock="wall", nice=10),
+)
+INFRASTRUCTURE = ("router", "conductor", "recorder")
+
+
+def kind(name: str) -> Kind:
+    """Raises BadInput for an unknown name."""
+    found = next((k for k in KINDS if k.name == name), None)
+    if found is None:
+        raise BadInput(f"no service '{name}'; {nearest(name, [k.name for k in KINDS])}")
+    return found
+
+
+def needed(site: Site) -> list[Kind]:
+    """The kinds that have work in a mission."""
+    kinds: set[str] = {member.file.kind for member in site.members.values()}
+    asked = {name for member in site.members.values() for name in member.file.params}
+    mapping = [m for m in site.of_kind("ground") if m.entry.maps is None or m.entry.maps.localize is None]
+    kinds |= {"team"} if len(mapping) > 1 else set()
+    return [k for k in KINDS if k.needs in ("any", *kinds) or (k.needs == "asked" and k.name in asked)]
+
+
+def hosts(site: Site, kinds: Sequence[Kind], vehicle: str | None = None) -> list[Host]:
+    """The service instances of these kinds; ``vehicle`` keeps only those of one vehicle."""
+    if vehicle is not None and vehicle not in site.members:
+        raise BadInput(f"no vehicle '{vehicle}' in {site.mission_path}; {nearest(vehicle, site.members)}")
+    made: list[Host] = []
+    for each in kinds:
+        build: Build = importlib.import_module(each.build).build
+        built = [_with_roles(site, host) for host in build(site)]
+        wanted = [host for host in built if vehicle is None or host.vehicle == vehicle]
+        if built and not wanted:
+            raise BadInput(f"{each.name} has nothing of its own for '{vehicle}': it serves all vehicles together; leave --vehicle out")
+        made += wanted
+    return made
+
+
+def _with_roles(site: Site, host: Host) -> Host:
+    """The mission says which vehicle is whose leader."""
+    return replace(host, roles=site.members[host.vehicle].entry.roles) if host.vehicle else host

@@ -1,0 +1,366 @@
+"""The Unmanned Vehicle Framework: simulate, fly and drive unmanned vehicles over Zenoh and MAVLink.
+
+Heavy imports happen inside the commands, so that ``uvf --help`` is quick.
+"""
+
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from launch import settings
+from launch.commands.map import map_app
+from launch.commands.sim import sim_app
+from launch.commands.slam import slam
+from launch.commands.vehicle import vehicle_app
+from launch.commands.world import world_app
+from launch.refusal import bad_input_is_one_line, usage_is_one_line, within
+
+app = typer.Typer(no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False, help=(__doc__ or "").splitlines()[0])
+topic_app = typer.Typer(no_args_is_help=True, help="Look at messages.")
+node_app = typer.Typer(no_args_is_help=True, help="Look at running services.")
+log_app = typer.Typer(no_args_is_help=True, help="Look at recorded runs.")
+app.add_typer(topic_app, name="topic")
+app.add_typer(node_app, name="node")
+app.add_typer(log_app, name="log")
+app.add_typer(map_app, name="map")
+app.add_typer(sim_app, name="sim")
+app.add_typer(vehicle_app, name="vehicle")
+app.add_typer(world_app, name="world")
+app.command()(slam)
+
+
+def known_mission(name: str | None) -> str | None:
+    """Answers a misspelt mission before anything is imported."""
+    with bad_input_is_one_line():
+        if name:
+            settings.mission_path(name)
+    return name
+
+
+def known_log(path: Path) -> Path:
+    with bad_input_is_one_line():
+        return settings.log_path(path)
+
+
+def known_run(path: Path | None) -> Path | None:
+    with bad_input_is_one_line():
+        return path and settings.log_path(path, "run")
+
+
+def known_benchmarks(names: list[str]) -> list[str]:
+    """The first is a group; those that follow may be cases of it, which only the group knows."""
+    with bad_input_is_one_line():
+        settings.benchmark_group(names[0])
+    return names
+
+
+DEMO = "demo"
+AS_TODAY = "With these files instead of those attached to the log."
+RUN = "Folder of a run, or a log; by default the latest run."
+BENCHMARKS = "Groups (bus, sim, ...), each followed by the cases wanted of it."
+RATE = "Simulation seconds per second, at most 1000; 0 = as fast as it goes."
+MISSION = "Name in missions/ or path of a mission file."
+MissionArgument = Annotated[str, typer.Argument(help=MISSION, callback=known_mission)]
+MissionOption = Annotated[str, typer.Option("--mission", "-m", help=MISSION, callback=known_mission)]
+LogArgument = Annotated[Path, typer.Argument(help="An MCAP log.", callback=known_log)]
+
+BRIDGE_ADDRESS = """udpin:HOST:PORT: listen for autopilots that send there, as simulators do to 14550.
+
+udp:HOST:PORT: the same, as MAVProxy has it.
+
+udpout:HOST:PORT: call an autopilot that listens there."""
+
+
+def say(line: str) -> None:
+    typer.echo(f"uvf: {line}")
+
+
+@app.command()
+def up(
+    mission: MissionArgument = DEMO,
+    rate: Annotated[float, typer.Option(callback=within(0.0, 1000.0), help=RATE)] = 1.0,
+    gcs: Annotated[bool, typer.Option("--gcs/--no-gcs", help="The page at http://127.0.0.1:8080.")] = True,
+    seconds: Annotated[float | None, typer.Option("--for", callback=within(0.01), help="Seconds after time began to run, to stop.")] = None,
+) -> None:
+    """Start a whole mission: every service in its own process, watched over, until Ctrl-C."""
+    from launch.runs import new_run
+    from launch.up import Wanted
+    from launch.up import up as run_up
+    from uvf.runtime.bus.address import address_from, claim, claim_router, router_from
+
+    with bad_input_is_one_line():
+        path = settings.mission_path(mission)
+        claim_router(router_from())
+        if gcs:
+            claim(address_from())
+        folder = new_run()
+        say(f"mission {path.stem}; logs in {folder}")
+        if gcs:
+            say(f"page {address_from().url}   QGroundControl: just start it (MAVLink goes to UDP 14550)   Ctrl-C ends")
+        raise typer.Exit(run_up(Wanted(mission, rate, gcs, seconds), folder, say))
+
+
+@app.command()
+def run(
+    mission: MissionArgument = DEMO,
+    lockstep: Annotated[bool, typer.Option("--lockstep", hidden=True)] = True,  # it always is; scripts of before say so
+    until: Annotated[float | None, typer.Option(help="Simulation seconds; by default the mission's duration.")] = None,
+    log: Annotated[Path | None, typer.Option(help="Where to record; by default in runs/.")] = None,
+) -> None:
+    """Run a mission in one process, as fast as it goes, and score it: exit code 0 when every criterion holds. 'uvf up' runs it live."""
+    from launch.commands.report import run_and_report
+
+    with bad_input_is_one_line():
+        raise typer.Exit(run_and_report(mission, until, log))
+
+
+@app.command()
+def service(
+    name: Annotated[str, typer.Argument(help="Which service, or 'conductor'.")],
+    mission: MissionOption = DEMO,
+    vehicle: Annotated[str | None, typer.Option(help="Only for this vehicle.")] = None,
+    rate: Annotated[float, typer.Option(callback=within(0.0, 1000.0), help="Of the conductor.")] = 1.0,
+    lockstep: Annotated[bool, typer.Option("--lockstep", help="The next tick waits for everybody.")] = False,
+) -> None:
+    """Run one service in this process."""
+    from launch.processes import run_conductor, run_service
+
+    if name == "conductor":
+        run_conductor(mission, rate, lockstep)
+    else:
+        run_service(name, mission, vehicle, lockstep)
+
+
+@app.command(context_settings={"allow_extra_args": True, "ignore_unknown_options": True})
+def supervise(context: typer.Context) -> None:
+    """Run 'service NAME ...', 'router ...' or 'record ...', started again when it dies; for containers."""
+    from launch.supervise import supervise as run_supervised
+
+    with bad_input_is_one_line():
+        raise typer.Exit(run_supervised(context.args, say))
+
+
+@app.command()
+def router(listen: Annotated[str | None, typer.Option(help="Endpoint; by default UVF_ROUTER or tcp/127.0.0.1:7447.")] = None) -> None:
+    """Run the Zenoh router."""
+    from launch.processes import run_router
+    from uvf.runtime.bus.address import host_and_port, router_from
+
+    with bad_input_is_one_line():
+        if listen is not None:
+            host_and_port(listen, "--listen ")
+        run_router(listen or router_from())
+
+
+@app.command()
+def record(folder: Annotated[Path, typer.Argument(help="Where the log goes.")], mission: MissionOption = DEMO) -> None:
+    """Record everything on the bus into MCAP files."""
+    from launch.recorder import run_recorder
+
+    run_recorder(folder, mission)
+
+
+@app.command()
+def replay(
+    log: LogArgument,
+    rate: Annotated[float, typer.Option(callback=within(0.01), help="Times real time.")] = 1.0,
+    service: Annotated[str | None, typer.Option(help="Into this service instead, comparing what comes out.")] = None,
+    vehicle: Annotated[str | None, typer.Option(help="Of this vehicle.")] = None,
+    mission: Annotated[str | None, typer.Option("--mission", "-m", help=AS_TODAY, callback=known_mission)] = None,
+) -> None:
+    """Put a log back onto the bus, or into one service to see what comes out otherwise."""
+    from launch.commands.report import replay_into, replay_onto_bus
+
+    with bad_input_is_one_line():
+        raise typer.Exit(replay_into(log, service, vehicle, mission) if service else replay_onto_bus(log, rate))
+
+
+@app.command()
+def report(
+    run: Annotated[Path | None, typer.Argument(help=RUN, callback=known_run)] = None,
+    out: Annotated[Path | None, typer.Option(help="Folder to write into; by default report/ beside the logs.")] = None,
+) -> None:
+    """Report on the flights of a run: a page of plots for each aircraft and a table of figures."""
+    from rich.console import Console
+
+    from launch.flights.report import flights, folder_beside, table, write
+
+    with bad_input_is_one_line():
+        run = run or settings.runs_folder() / "latest"
+        aircraft = flights(run)
+        for each in aircraft:
+            Console().print(table(each))
+        for path in write(aircraft, out or folder_beside(run)):
+            say(str(path))
+
+
+@app.command()
+def teleop(
+    vehicles: Annotated[list[str] | None, typer.Argument(help="Ground vehicles, driven together, or one aircraft.")] = None,
+    mission: MissionOption = DEMO,
+) -> None:
+    """Drive ground vehicles, or fly an aircraft by its surfaces, from this terminal's keyboard or with a gamepad."""
+    from launch.teleop.command import teleop as run_teleop
+
+    with bad_input_is_one_line():
+        run_teleop(vehicles or [], mission, say)
+
+
+@app.command()
+def flightgear(
+    vehicle: Annotated[str, typer.Argument(help="An aircraft of the mission.")],
+    to: Annotated[str, typer.Option(help="HOST:PORT where FlightGear listens.")] = "127.0.0.1:5550",
+    hz: Annotated[float, typer.Option(callback=within(1.0, 100.0), help="Packets a second, 1 to 100.")] = 30.0,
+    mission: MissionOption = DEMO,
+) -> None:
+    """Show an aircraft in FlightGear (native FDM packets over UDP), until Ctrl-C."""
+    from launch.flightgear.flightgear import flightgear as run_flightgear
+
+    with bad_input_is_one_line():
+        run_flightgear(vehicle, to, hz, mission)
+
+
+@app.command("mavlink-bridge")
+def mavlink_bridge(
+    address: Annotated[str, typer.Argument(help=BRIDGE_ADDRESS)],
+    name: Annotated[list[str] | None, typer.Option(help="NAME of the first autopilot; NAME=SYSTEM for one of several, by its id.")] = None,
+    mission: Annotated[str, typer.Option("--mission", "-m", help="Whose world it is; without one the world begins at home.")] = "",
+    model: Annotated[str, typer.Option(help="In vehicles/: with whose body it is drawn.")] = "",
+) -> None:
+    """Take the autopilots at a MAVLink address (PX4, ArduPilot, ours) as vehicles on the bus, until Ctrl-C."""
+    from launch.mavlink_bridge import Wanted, bridge
+
+    with bad_input_is_one_line():
+        bridge(Wanted(address, tuple(name or ()), model, mission))
+
+
+@app.command()
+def check(mission: MissionArgument = DEMO) -> None:
+    """Check the wiring of a mission: writers, readers, types, rates, compose file."""
+    from launch.checks import check_mission
+
+    with bad_input_is_one_line():
+        problems = check_mission(mission)
+        for line in problems:
+            typer.echo(line)
+        say(f"{len(problems)} problems" if problems else "wiring is right")
+        raise typer.Exit(1 if problems else 0)
+
+
+@app.command()
+def doctor() -> None:
+    """Look at this machine: Python, wheels, ports, Zenoh, browser, disk."""
+    from launch.commands.doctor import examine
+
+    raise typer.Exit(examine(typer.echo))
+
+
+@app.command()
+def bench(
+    names: Annotated[list[str], typer.Argument(help=BENCHMARKS, callback=known_benchmarks)],
+    data: Annotated[Path | None, typer.Option(envvar="UVF_DATA", help="Folder with data sets.")] = None,
+    json: Annotated[Path | None, typer.Option(help="Write the figures there.")] = None,
+    write: Annotated[bool, typer.Option("--write", help="Renew benchmarks/results.md.")] = False,
+) -> None:
+    """Measure: one table, the same figures as JSON."""
+    from launch.commands.bench import run_groups
+
+    with bad_input_is_one_line():
+        run_groups(names, data, json, write)
+
+
+@app.command(context_settings={"allow_extra_args": True, "ignore_unknown_options": True})
+def test(context: typer.Context) -> None:
+    """Run the tests; further arguments go to pytest."""
+    from launch.commands.testing import run_tests
+
+    raise typer.Exit(run_tests(context.args))
+
+
+@topic_app.command("list")
+def topic_list(live: Annotated[bool, typer.Option(help="Only what is on the bus now.")] = False) -> None:
+    """The table of topics and requests."""
+    from launch.commands.topic import list_live, list_table
+
+    with bad_input_is_one_line():
+        if live:
+            list_live()
+        else:
+            list_table()
+
+
+@topic_app.command("echo")
+def topic_echo(
+    key: Annotated[str, typer.Argument(help="As burger/nav/pose; * stands for one part.")],
+    count: Annotated[int, typer.Option("-n", min=0, help="Stop after so many.")] = 0,
+) -> None:
+    """Print messages as they come."""
+    from launch.commands.topic import echo
+
+    with bad_input_is_one_line():
+        echo(key, count)
+
+
+@topic_app.command("hz")
+def topic_hz(key: str, seconds: Annotated[float, typer.Option("--for", callback=within(0.01), help="How long to count.")] = 5.0) -> None:
+    """Measure rates, by wall and by simulation time."""
+    from launch.commands.topic import rates
+
+    with bad_input_is_one_line():
+        rates(key, seconds)
+
+
+@topic_app.command("info")
+def topic_info(key: str) -> None:
+    """Type, rate, QoS, writers and readers of a topic."""
+    from launch.commands.topic import info
+
+    with bad_input_is_one_line():
+        info(key)
+
+
+@node_app.command("list")
+def node_list() -> None:
+    """The services that are alive."""
+    from launch.commands.node import list_nodes
+
+    with bad_input_is_one_line():
+        list_nodes()
+
+
+@node_app.command("graph")
+def node_graph() -> None:
+    """Who writes what for whom."""
+    from launch.commands.node import graph
+
+    with bad_input_is_one_line():
+        graph()
+
+
+@log_app.command("info")
+def log_info(log: LogArgument) -> None:
+    """Topics, counts, length, gaps and hash of a log."""
+    from launch.commands.report import describe_log
+
+    with bad_input_is_one_line():
+        describe_log(log)
+
+
+@log_app.command("recover")
+def log_recover(log: LogArgument, out: Annotated[Path | None, typer.Option(help="By default <log>-recovered.mcap.")] = None) -> None:
+    """Save what can be saved of a log that was cut off."""
+    from launch.commands.report import recover_log
+
+    with bad_input_is_one_line():
+        recover_log(log, out)
+
+
+def main() -> None:
+    with usage_is_one_line():
+        sys.exit(app(prog_name="uvf", standalone_mode=False))
+
+
+if __name__ == "__main__":
+    main()

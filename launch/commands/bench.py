@@ -1,0 +1,94 @@
+"""``uvf bench``: runs the cases of ``benchmarks/<group>.py``, prints a table a group, checks goals, keeps the figures."""
+
+import importlib
+import json
+import sys
+import time
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import typer
+from rich.console import Console
+from rich.table import Column, Table
+
+from launch.commands.bench_page import Facts, facts_now, notes_of, replace_section, verdicts
+from launch.settings import ROOT, benchmark_group, benchmark_groups
+from uvf.models.yaml_data import BadInput, nearest
+
+Figures = dict[str, dict[str, float]]
+Case = Callable[[Path | None], Figures]
+WIDTH = 200  # columns, of a table that goes into a file
+RESULTS = ROOT / "benchmarks" / "results.md"
+
+
+def run_groups(names: Sequence[str], data: Path | None, json_file: Path | None, write: bool) -> None:
+    """Groups, each followed by the cases wanted of it (none = all); every name is looked up before anything runs. Raises BadInput."""
+    wanted = _wanted(names)
+    chosen = {group: _chosen(group, cases, data) for group, cases in wanted.items()}
+    console = Console(width=None if sys.stdout.isatty() else WIDTH)
+    measured: Figures = {}
+    for group, cases in chosen.items():
+        before = facts_now([group, *wanted[group], *(["--data", "DIR"] if data else [])])
+        rows = _run(group, cases, data)
+        measured |= rows
+        console.print(_table(group, rows))
+        for line in verdicts(group, rows):
+            console.print(line, markup=False, highlight=False)
+        if write:
+            _write(group, rows, before)
+    if json_file:
+        json_file.write_text(json.dumps(measured, indent=1))
+
+
+def _wanted(names: Sequence[str]) -> dict[str, list[str]]:
+    groups, wanted = benchmark_groups(), dict[str, list[str]]()
+    for name in names:
+        if name in groups or not wanted:
+            wanted[benchmark_group(name)] = []
+        else:
+            wanted[next(reversed(wanted))].append(name)
+    return wanted
+
+
+def _write(group: str, rows: Figures, facts: Facts) -> None:
+    page = RESULTS.read_text(encoding="utf-8") if RESULTS.exists() else "# Results\n"
+    lines = [facts.line(), *notes_of(group), *verdicts(group, rows)]
+    RESULTS.write_text(replace_section(page, group, rows, lines), encoding="utf-8")
+
+
+def _chosen(group: str, wanted: Sequence[str], data: Path | None) -> dict[str, Case]:
+    """A name stands for the case of that name, or for all whose names begin with it and a colon. Raises BadInput."""
+    cases = cases_of(importlib.import_module(f"benchmarks.{group}"), data)
+    chosen: dict[str, Case] = {}
+    for name in wanted:
+        found = {case: cases[case] for case in cases if case == name or case.startswith(f"{name}:")}
+        if not found:
+            raise BadInput(f"no case '{name}' in {group}; {nearest(name, cases)}")
+        chosen |= found
+    return chosen or cases
+
+
+def _run(group: str, cases: Mapping[str, Case], data: Path | None) -> Figures:
+    """One plain line a step to stderr, so that a table that is piped away leaves the progress on the screen."""
+    rows: Figures = {}
+    for number, (name, case) in enumerate(cases.items(), 1):
+        typer.echo(f"uvf: {group} {name} ({number} of {len(cases)})", err=True)
+        begun = time.perf_counter()
+        rows |= case(data)
+        typer.echo(f"uvf: {group} {name} took {time.perf_counter() - begun:.1f} s", err=True)
+    return rows
+
+
+def cases_of(module: Any, data: Path | None) -> dict[str, Case]:
+    """What a group measures; CASES may be a function of the data folder, where the cases depend on it. Raises BadInput."""
+    found: dict[str, Case] = module.CASES(data) if callable(module.CASES) else module.CASES
+    return found
+
+
+def _table(group: str, figures: Figures) -> Table:
+    columns = list(dict.fromkeys(metric for row in figures.values() for metric in row))
+    table = Table(Column(group, no_wrap=True), *columns)
+    for name, row in figures.items():
+        table.add_row(name, *(f"{row[c]:.4g}" if c in row else "" for c in columns))
+    return table

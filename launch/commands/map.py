@@ -1,0 +1,99 @@
+"""``uvf map ...``: maps written to files, checked, served, merged and compared."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from launch.refusal import bad_input_is_one_line
+
+map_app = typer.Typer(no_args_is_help=True, help="Maps: save, load, merge, compare.")
+
+MapArgument = Annotated[str, typer.Argument(help="A saved map's name, or a file (.yaml, .pgm, .png).")]
+VehicleOption = Annotated[str | None, typer.Option("--vehicle", "-v", help="Whose; not needed when only one has a map.")]
+
+
+@map_app.command("save")
+def map_save(
+    name: MapArgument,
+    vehicle: VehicleOption = None,
+    mode: Annotated[str, typer.Option(help="trinary, scale (keeps each cell's value, PNG) or raw (the same, PGM).")] = "trinary",
+    own_frame: Annotated[bool, typer.Option("--own-frame", help="Origin in the vehicle's map frame instead of the world's.")] = False,
+    session: Annotated[bool, typer.Option("--session", help="Also NAME.npz: to merge, to be localized on, to go on with.")] = False,
+) -> None:
+    """Write the map of a running vehicle as picture and yaml, as map_saver does."""
+    from launch.maps.running import drawn_map, running_session
+    from uvf.models.world.map_file import check_mode, map_path, save_map
+
+    with bad_input_is_one_line():
+        check_mode(map_path(name), mode)
+        owner, grid = drawn_map(vehicle, own_frame)
+        yaml = save_map(grid, map_path(name), mode)
+        typer.echo(f"uvf: map of {owner}: {yaml}")
+        if session:
+            running_session(owner).save(yaml.with_suffix(".npz"))
+            typer.echo(f"uvf: session of {owner}, in its own map frame: {yaml.with_suffix('.npz')}")
+
+
+@map_app.command("load")
+def map_load(
+    name: MapArgument,
+    vehicle: Annotated[
+        str | None, typer.Option("--vehicle", "-v", help="Serve it to this vehicle until Ctrl-C, as map_server does.")
+    ] = None,
+) -> None:
+    """Check a map and tell what is in it; with --vehicle serve it on map/known."""
+    from launch.maps.report import figures
+    from launch.maps.running import serve
+    from uvf.models.world.map_file import find_map
+
+    with bad_input_is_one_line():
+        grid = find_map(name)
+        for line in figures(grid):
+            typer.echo(line)
+        if vehicle is not None:
+            serve(grid, vehicle, lambda: typer.echo(f"uvf: served on {vehicle}/map/known   Ctrl-C ends"))
+
+
+@map_app.command("merge")
+def map_merge(
+    sessions: Annotated[list[str], typer.Argument(help="Files (.npz) of 'uvf slam', or names given to 'uvf map save --session'.")],
+    out: Annotated[str, typer.Option(help="A saved map's name, or a file: map, session (.npz) and picture (.png) are written.")] = "merged",
+    resolution: Annotated[float, typer.Option(min=0.01, max=1.0, help="Side of the map's cells, m.")] = 0.05,
+) -> None:
+    """Put the maps of several vehicles, or of several days, together, wherever each of them began; 1 when nothing fits."""
+    from launch.maps.merging import merge_files
+
+    with bad_input_is_one_line():
+        lines, merged = merge_files(sessions, out, resolution)
+        for line in lines:
+            typer.echo(f"uvf: {line}")
+    if not merged:
+        raise typer.Exit(1)
+
+
+@map_app.command("compare")
+def map_compare(
+    a: MapArgument,
+    b: Annotated[str | None, typer.Argument(help="Another map, taken for true.")] = None,
+    world: Annotated[str | None, typer.Option(help="A world in worlds/, whose floor plan is the truth, instead of another map.")] = None,
+    shift: Annotated[tuple[float, float, float], typer.Option(help="Where the first map lies in the other's frame: x y [m] yaw [deg].")] = (
+        0.0,
+        0.0,
+        0.0,
+    ),
+    out: Annotated[Path, typer.Option(help="Picture of the differences.")] = Path("compare.png"),
+) -> None:
+    """Compare two maps, or a map with a world: figures, and a picture of the differences."""
+    from launch.maps.report import compared, scored
+    from uvf.models.world.map_file import find_map
+    from uvf.models.yaml_data import BadInput
+
+    with bad_input_is_one_line():
+        if (b is None) == (world is None):
+            raise BadInput("'uvf map compare' needs one thing to compare with: another map, or --world NAME")
+        first = find_map(a)
+        lines = compared(first, find_map(b), shift, out) if b is not None else scored(first, str(world), shift, out)
+        for line in lines:
+            typer.echo(line)
+        typer.echo(f"uvf: {out}: white and black the same, red only in {a}, blue only in {b or world}")

@@ -1,0 +1,143 @@
+"""What ``run``, ``replay`` and ``log`` print."""
+
+import math
+import signal
+from collections import Counter
+from contextlib import nullcontext
+from pathlib import Path
+from threading import Event
+
+import typer
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+from rich.table import Table
+
+from launch import catalogue, settings
+from launch.run import Result, run_lockstep
+from launch.runs import new_run
+from uvf.models.scenario import Host, Site, load_site
+from uvf.models.yaml_data import BadInput, nearest
+from uvf.runtime.bus.address import router_from
+from uvf.runtime.bus.zenoh_bus import ZenohBus
+from uvf.runtime.log.reading import log_begin, log_metadata, read_log, recover
+from uvf.runtime.log.replay import into_service, logged_site, onto_bus
+
+SHOWN = 20
+console = Console()
+
+
+def run_and_report(mission: str, until: float | None, log: Path | None) -> int:
+    """Runs in lockstep with a progress bar and prints the score; 0 when every criterion holds."""
+    site = load_site(settings.mission_path(mission))
+    until = until if until is not None else site.mission.duration
+    if not 0 < until < math.inf:
+        raise BadInput(f"--until {until}: how long to simulate, more than 0 s")
+    log = log or new_run() / "log-000.mcap"
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TextColumn("{task.completed:.0f} of {task.total:.0f} s"),
+        TimeRemainingColumn(),
+    )
+    with Progress(*columns, console=console, transient=True) as bar:
+        task = bar.add_task(site.mission_path.stem, total=until)
+
+        def watch(t: float) -> bool:
+            if round(t * 100) % 50 == 0:
+                bar.update(task, completed=t)
+            return True
+
+        result = run_lockstep(site, until, log, watch, lambda line: bar.console.print(line, markup=False))
+    _print_result(result, log)
+    return 0 if result.passed else 1
+
+
+def _print_result(result: Result, log: Path) -> None:
+    table = Table("vehicle", "measure", "value", "limit", "")
+    for verdict in result.verdicts:
+        row = (verdict.criterion.vehicle, verdict.criterion.measure, f"{verdict.value:.3g}", verdict.limits)
+        table.add_row(*row, "passed" if verdict.passed else "FAILED")
+    if result.verdicts:
+        console.print(table)
+    typer.echo(f"simulated {result.simulated:g} s in {result.wall:.1f} s: {result.factor:.1f} x real time")
+    typer.echo(f"log {log}: {result.messages} messages, hash {result.log_hash}")
+    for failure in result.failures:
+        typer.echo(failure, err=True)
+    if result.recording_error:
+        typer.echo(result.recording_error, err=True)
+
+
+def replay_onto_bus(log: Path, rate: float) -> int:
+    """Until the end or Ctrl-C."""
+    log_begin(log)  # what is wrong with it, before a router is looked for
+    stop = Event()
+    signal.signal(signal.SIGINT, lambda *_: stop.set())
+    with ZenohBus(router_from(), blocking=True, timeout=5.0) as bus:
+        count = onto_bus(log, bus, rate, lambda: not stop.is_set(), _to_stderr)
+    typer.echo(f"{count} messages replayed")
+    return 0
+
+
+def replay_into(log: Path, service: str, vehicle: str | None, mission: str | None) -> int:
+    """Prints the fields that came out otherwise; 0 when there are none."""
+    with nullcontext(load_site(settings.mission_path(mission))) if mission else logged_site(log) as site:
+        hosts = _hosts_named(service, site, vehicle)
+        if begin := log_begin(log):
+            typer.echo(
+                f"the log begins at {begin / 1e9:.1f} s: {service} begins there like one that is started again, so some differ by that"
+            )
+        count = 0
+        for difference in (line for host in hosts for line in into_service(log, host, warn=_to_stderr)):
+            count += 1
+            if count <= SHOWN:
+                typer.echo(str(difference))
+    what = ", ".join(f"{h.service.name} of {h.vehicle or 'all vehicles'}" for h in hosts)
+    typer.echo(f"{what}: {count} differences" if count else f"{what}: puts out the same")
+    return 1 if count else 0
+
+
+def _to_stderr(line: str) -> None:
+    typer.echo(line, err=True)
+
+
+def _hosts_named(name: str, site: Site, vehicle: str | None) -> list[Host]:
+    """By the name that ``uvf service`` takes (all that it runs) or that ``uvf node list`` shows (that one). Raises BadInput."""
+    if vehicle is not None and vehicle not in site.members:
+        raise BadInput(f"no vehicle '{vehicle}' in {site.mission_path.name}; {nearest(vehicle, site.members)}")
+    kinds = [k for k in catalogue.needed(site) if k.clock == "sim"]
+    if any(k.name == name for k in kinds):
+        return catalogue.hosts(site, [catalogue.kind(name)], vehicle)
+    every = catalogue.hosts(site, kinds)
+    hosts = [h for h in every if h.service.name == name and vehicle in (None, h.vehicle)]
+    if not hosts:
+        whose = f" of '{vehicle}'" if vehicle else ""
+        known = {k.name for k in kinds} | {h.service.name for h in every if vehicle in (None, h.vehicle)}
+        raise BadInput(f"no service '{name}'{whose} in {site.mission_path.name} to replay into; {nearest(name, known)}")
+    return hosts
+
+
+def describe_log(log: Path) -> None:
+    """Topics with type, count and rate."""
+    counts: Counter[str] = Counter()
+    sizes: Counter[str] = Counter()
+    types: dict[str, str] = {}
+    end_ns = 0
+    for sample in read_log(log):
+        counts[sample.key] += 1
+        sizes[sample.key] += len(sample.payload)
+        types[sample.key] = sample.type_name
+        end_ns = max(end_ns, sample.stamp_ns)
+    begin = log_begin(log) / 1e9
+    end = end_ns / 1e9
+    width = max(map(len, counts), default=0)
+    for key in sorted(counts):
+        rate = counts[key] / max(end - begin, 1e-9)
+        typer.echo(f"{key:{width}}  {types[key]:28}  {counts[key]:7} messages  {rate:6.1f} Hz  {sizes[key] / 1000:8.0f} kB")
+    typer.echo(f"{counts.total()} messages, " + (f"from {begin:.1f} s to {end:.1f} s" if begin else f"{end:.1f} s"))
+    for name, value in log_metadata(log).items():
+        typer.echo(f"{name}: {value}")
+
+
+def recover_log(log: Path, out: Path | None) -> None:
+    target = out or log.with_name(f"{log.stem}-recovered.mcap")
+    typer.echo(f"{recover(log, target, lambda line: typer.echo(line, err=True))} messages saved into {target}")

@@ -1,0 +1,119 @@
+"""``uvf world ...``: look at worlds, check them, draw them, make new ones and take them over from others."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from launch.refusal import bad_input_is_one_line
+
+world_app = typer.Typer(no_args_is_help=True, help="Worlds: list, show, check, picture, new, import.")
+
+NameArgument = Annotated[str, typer.Argument(help="A folder in worlds/.")]
+RadiusOption = Annotated[float, typer.Option(min=0.01, max=10.0, help="Of the vehicle that is to drive there [m].")]
+BURGER = 0.115  # m
+
+
+def _worlds() -> Path:
+    from uvf.models.scenario import ROOT
+
+    return ROOT / "worlds"
+
+
+@world_app.command("list")
+def world_list() -> None:
+    """The worlds there are."""
+    from launch.worlds.report import listed
+
+    for line in listed(_worlds()):
+        typer.echo(line)
+
+
+@world_app.command("show")
+def world_show(name: NameArgument) -> None:
+    """Size, place, air and things of a world."""
+    from launch.worlds.report import figures
+    from uvf.models.world.file import load_world
+
+    with bad_input_is_one_line():
+        for line in figures(load_world(_worlds(), name)):
+            typer.echo(line)
+
+
+@world_app.command("picture")
+def world_picture(
+    name: NameArgument,
+    radius: RadiusOption = BURGER,
+    out: Annotated[Path | None, typer.Option(help="By default docs/worlds/NAME.png.")] = None,
+) -> None:
+    """Draw floor plan and view side by side."""
+    from launch.worlds.picture import save_picture
+    from launch.worlds.report import RESOLUTION, largest_reachable
+    from uvf.models.world.file import load_world
+    from uvf.models.world.geometry import floor_plan
+
+    path = out or _worlds().parent / "docs" / "worlds" / f"{name}.png"
+    with bad_input_is_one_line():
+        world = load_world(_worlds(), name)
+        plan = floor_plan(world, RESOLUTION)
+        save_picture(world, plan, largest_reachable(plan, radius), path)
+    typer.echo(f"uvf: {path}")
+
+
+@world_app.command("check")
+def world_check(
+    name: NameArgument,
+    radius: RadiusOption = BURGER,
+    mission: Annotated[str | None, typer.Option("--mission", "-m", help="Also look whether its vehicles start freely.")] = None,
+) -> None:
+    """Look for things in the air or in the ground, floor out of reach, scripts through walls, blocked starts."""
+    from launch import settings
+    from launch.worlds.check import blocked_starts, problems
+    from uvf.models.scenario import load_site
+    from uvf.models.world.file import load_world
+
+    with bad_input_is_one_line():
+        found = list(problems(load_world(_worlds(), name), radius))
+        found += blocked_starts(load_site(settings.mission_path(mission))) if mission else []
+    for line in found:
+        typer.echo(line)
+    typer.echo(f"uvf: {len(found)} problems" if found else "uvf: nothing wrong")
+    raise typer.Exit(1 if found else 0)
+
+
+@world_app.command("new")
+def world_new(
+    name: Annotated[str, typer.Argument(help="Of the new folder in worlds/.")],
+    rooms: Annotated[int, typer.Option(min=1, max=40, help="How many.")] = 6,
+    seed: Annotated[int, typer.Option(min=0, help="The same seed makes the same house.")] = 1,
+    replace: Annotated[bool, typer.Option("--replace", help="Overwrite a world of that name.")] = False,
+) -> None:
+    """Make up a house with rooms, doors and furniture; every room can be reached."""
+    from uvf.models.importing.worlds import make_room, new_folder
+    from uvf.models.world.generator import generate
+    from uvf.models.world.writer import write_world
+
+    with bad_input_is_one_line():
+        folder = new_folder(_worlds(), name)
+        make_room(folder, replace)
+    path = write_world(generate(rooms, seed), folder)
+    typer.echo(f"uvf: {path}; look at it with 'uvf world picture {name}'")
+
+
+@world_app.command("import")
+def world_import(
+    file: Annotated[Path, typer.Argument(help="A Gazebo .world or .sdf, or the yaml of a map.")],
+    name: Annotated[str, typer.Option(help="Of the new folder in worlds/.")],
+    models: Annotated[list[Path] | None, typer.Option(help="Folders with Gazebo models.")] = None,
+    height: Annotated[float, typer.Option(min=0.1, max=100.0, help="Of the walls of a map [m].")] = 2.0,
+    upright: Annotated[bool, typer.Option("--upright", help="Turn meshes that say that y is up, which Gazebo does not.")] = False,
+    replace: Annotated[bool, typer.Option("--replace", help="Overwrite a world of that name.")] = False,
+) -> None:
+    """Take over a world, telling what was left out."""
+    from uvf.models.importing.worlds import Options, import_world, new_folder
+
+    with bad_input_is_one_line():
+        path, lines = import_world(file, new_folder(_worlds(), name), Options(models or (), height, replace, upright))
+    for line in lines:
+        typer.echo(line)
+    typer.echo(f"uvf: {path}; look at it with 'uvf world picture {name}' and 'uvf world check {name}'")

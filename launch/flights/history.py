@@ -1,0 +1,190 @@
+"""What a log tells of each aircraft, as arrays over time: thinned out while it is read, so that hours fit into memory."""
+
+import contextlib
+import tempfile
+from array import array
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from schemas.messages import Battery, Event, Kind, Mission, MissionProgress, NavState, PosesInFrame, SurfaceCommand, VehicleStatus
+from schemas.topics import SYSTEM
+from uvf.models.yaml_data import BadInput
+from uvf.runtime.bus.interface import Sample
+from uvf.runtime.bus.wire import Malformed, decode_sample
+from uvf.runtime.log.reading import log_metadata, read_log, recover
+
+Floats = NDArray[np.float64]
+
+PERIOD = 0.1  # s, between samples that are kept
+
+
+def _motion(m: NavState) -> tuple[float, ...]:
+    p, v, q, w = m.position, m.velocity, m.orientation, m.wind
+    return p.x, p.y, p.z, v.x, v.y, v.z, q.w, q.x, q.y, q.z, m.airspeed, w.x, w.y
+
+
+def _status(m: VehicleStatus) -> tuple[float, ...]:
+    return m.mode, m.landed, m.cross_track, m.altitude_error, m.battery_remaining
+
+
+@dataclass(frozen=True)
+class Stream:
+    """A topic of a vehicle, the numbers kept of each message, and the least time [s] between two of them."""
+
+    message: Any
+    numbers: Callable[[Any], tuple[float, ...]]
+    width: int
+    period: float = PERIOD
+
+
+STREAMS = {
+    "truth/state": Stream(NavState, _motion, 13),
+    "nav/state": Stream(NavState, _motion, 13),
+    "state/vehicle": Stream(VehicleStatus, _status, 5, 0.0),
+    # At every command: the way of the surfaces is summed up.
+    "actuator/surfaces": Stream(SurfaceCommand, lambda m: (m.aileron, m.elevator, m.rudder, m.throttle, m.flap), 5, 0.0),
+    "sensor/battery": Stream(Battery, lambda m: (m.voltage, m.current, m.remaining), 3),
+    "mission/progress": Stream(MissionProgress, lambda m: (m.reached, m.laps), 2, 0.0),
+}
+
+
+class Series:
+    """Rows of numbers over time."""
+
+    def __init__(self, width: int) -> None:
+        self.width = width
+        self._values = array("d")
+        self._next = -np.inf
+
+    def add(self, t: float, numbers: tuple[float, ...], period: float) -> None:
+        """Unless it comes within ``period`` [s] of the one before."""
+        if t >= self._next:
+            self._next = t + period - 1e-6
+            self._values.extend((t, *numbers))
+
+    @property
+    def rows(self) -> Floats:
+        """(k, 1 + width): t [s] and the numbers."""
+        return np.array(self._values).reshape(-1, 1 + self.width)
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Arrays of one length k, of an estimate or of the truth; world frame ENU, attitude as pilots give it."""
+
+    t: Floats  # (k,) s
+    position: Floats  # (k, 3) m
+    velocity: Floats  # (k, 3) m/s
+    roll: Floats  # (k,) rad, right wing down
+    pitch: Floats  # (k,) rad, nose up
+    heading: Floats  # (k,) rad from north, clockwise
+    airspeed: Floats  # (k,) m/s
+    wind: Floats  # (k, 2) m/s east and north, the way it blows to
+
+    def at(self, t: Floats) -> "Motion":
+        """Interpolated; angles along the shorter way."""
+
+        def over(values: Floats) -> Floats:
+            return np.array([np.interp(t, self.t, column) for column in values.T]).T
+
+        roll, pitch, heading = (np.interp(t, self.t, np.unwrap(angle)) for angle in (self.roll, self.pitch, self.heading))
+        airspeed = np.interp(t, self.t, self.airspeed)
+        return Motion(t, over(self.position), over(self.velocity), roll, pitch, heading, airspeed, over(self.wind))
+
+
+def motion(rows: Floats) -> Motion:
+    """Of the rows that ``_motion`` makes."""
+    w, x, y, z = rows[:, 7:11].T
+    roll = np.arctan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y))
+    pitch = -np.arcsin(np.clip(2 * (w * y - z * x), -1, 1))
+    heading = np.pi / 2 - np.arctan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
+    return Motion(rows[:, 0], rows[:, 1:4], rows[:, 4:7], roll, pitch, heading, rows[:, 11], rows[:, 12:14])
+
+
+@dataclass
+class History:
+    """All that was heard of one vehicle."""
+
+    name: str
+    series: dict[str, Series] = field(default_factory=lambda: {key: Series(s.width) for key, s in STREAMS.items()})
+    events: list[tuple[float, Event]] = field(default_factory=list)
+    plans: list[Mission] = field(default_factory=list)
+    path: PosesInFrame | None = None  # the first one that is flown
+    kind: int = Kind.KIND_UNSPECIFIED
+
+    def heard(self, name: str, sample: Sample) -> None:
+        """Raises Malformed."""
+        t = sample.stamp_ns / 1e9
+        if name in STREAMS:
+            stream = STREAMS[name]
+            message = decode_sample(sample, stream.message)
+            self.series[name].add(t, stream.numbers(message), stream.period)
+            self.kind = message.kind if name == "state/vehicle" else self.kind
+        elif name.startswith("state/events/"):
+            self.events.append((t, decode_sample(sample, Event)))
+        elif name == "mission/plan":
+            self.plans.append(decode_sample(sample, Mission))
+        elif name == "nav/path" and self.path is None:
+            path = decode_sample(sample, PosesInFrame)
+            self.path = path if path.poses else None
+
+    def rows(self, name: str) -> Floats:
+        return self.series[name].rows
+
+    @property
+    def is_aircraft(self) -> bool:
+        return self.kind == Kind.KIND_FIXED_WING or len(self.rows("actuator/surfaces")) > 0
+
+    @property
+    def truth(self) -> Motion | None:
+        """None in the log of a real flight."""
+        rows = self.rows("truth/state")
+        return motion(rows) if len(rows) > 1 else None
+
+    @property
+    def estimate(self) -> Motion | None:
+        rows = self.rows("nav/state")
+        return motion(rows) if len(rows) > 1 else None
+
+
+def logs_of(run: Path) -> list[Path]:
+    """The files of a run's folder in their order, or the one log that is named. Raises BadInput."""
+    if not run.is_dir():
+        return [run]
+    found = sorted(run.glob("log-*.mcap"), key=lambda p: (len(p.name), p.name))
+    if not found:
+        raise BadInput(f"{run}: no log-*.mcap in this folder: name the folder of a run or a log")
+    return found
+
+
+def histories(logs: list[Path]) -> dict[str, History]:
+    """By vehicle, in order of their names. A file that was cut off is read as far as it is whole. Raises BadInput."""
+    found: dict[str, History] = {}
+    for log in logs:
+        for sample in _samples(log):
+            _, owner, *name = sample.key.split("/", 2)
+            if owner == SYSTEM or not name:
+                continue
+            # What is broken or of another type was refused by every service, too.
+            with contextlib.suppress(Malformed):
+                found.setdefault(owner, History(owner)).heard(name[0], sample)
+    return dict(sorted(found.items()))
+
+
+def _samples(log: Path) -> Iterator[Sample]:
+    try:
+        log_metadata(log)
+    except BadInput as error:
+        if "cut off" not in str(error):
+            raise
+        with tempfile.TemporaryDirectory() as folder:
+            whole = Path(folder) / "log.mcap"
+            recover(log, whole)
+            yield from read_log(whole)
+        return
+    yield from read_log(log)

@@ -1,0 +1,210 @@
+"""The body of the recorder's process: the log of a run as a series of files, within the disk's space and the quota."""
+
+import re
+import shutil
+import time
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+from launch import settings
+from launch.processes import open_bus
+from launch.runs import hold, keep_quota
+from launch.worker import Worker, give_way, spare_the_collector, worker
+from schemas import topics
+from schemas.messages import Event
+from uvf.models.scenario import Site, load_site
+from uvf.models.vehicle.layers import folders_of
+from uvf.models.yaml_data import BadInput
+from uvf.runtime.bus.interface import Sample
+from uvf.runtime.bus.zenoh_bus import ZenohBus
+from uvf.runtime.log.bounds import REFUSED
+from uvf.runtime.log.recording import DEPTH, Recorder
+
+FLUSH_PERIOD = 1.0  # s
+ROTATE_BYTES = 500_000_000
+COMMON = "common"  # in vehicles/: parts that several vehicles include
+ROOM = 100_000_000  # bytes free on the disk, from which recording is taken up again
+NICE = 10
+LOOK = 0.05  # s
+LAST = 5.0  # s, for what has arrived until the end; who floods the bus does not keep the log open
+
+Tell = Callable[[str, Event.Severity], None]
+
+
+def free_space(folder: Path) -> int:
+    """Bytes; none where the folder is gone."""
+    try:
+        return shutil.disk_usage(folder).free
+    except OSError:
+        return 0
+
+
+def next_number(folder: Path) -> int:
+    """One more than that of the newest log; the numbers of removed ones are not given again."""
+    return 1 + max((int(m[1]) for p in folder.glob("log-*.mcap") if (m := re.fullmatch(r"log-(\d+)", p.stem))), default=-1)
+
+
+class LogSeries:
+    """``log-000.mcap``, ``log-001.mcap``, ...: each can be read alone; where the disk refuses, it waits and goes on.
+
+    make_room: called before each file but the first.
+    """
+
+    def __init__(
+        self,
+        folder: Path,
+        attachments: Mapping[str, bytes],
+        tell: Tell,
+        make_room: Callable[[], None] = lambda: None,
+        rotate_bytes: float = ROTATE_BYTES,
+        free: Callable[[Path], int] = free_space,
+    ) -> None:
+        """Raises BadInput where nothing can be written."""
+        self._folder = folder
+        self._attachments = attachments
+        self._tell = tell
+        self._make_room = make_room
+        self._rotate_bytes = rotate_bytes
+        self._free = free
+        self._told = False
+        self._told_refused: set[str] = set()
+        self._number = next_number(folder)
+        self._recorder = self._begin(None)
+
+    def _begin(self, before: Recorder | None) -> Recorder:
+        """The next file, with its head on the disk; if the disk refuses that, ``error`` says so and nothing is left behind."""
+        path = self._folder / f"log-{self._number:03}.mcap"
+        begun = Recorder(path, self._attachments, before)
+        begun.flush()
+        if begun.error:
+            begun.close()
+            path.unlink(missing_ok=True)
+        else:
+            self._number += 1
+        return begun
+
+    def write(self, sample: Sample) -> None:
+        self._recorder.write(sample)
+        if not self._recorder.error and self._recorder.size >= self._rotate_bytes:
+            self._recorder.close()
+            if not self._recorder.error:
+                self._begin_next()
+
+    def _begin_next(self) -> None:
+        """Called while no file is being written."""
+        self._make_room()
+        try:
+            self._recorder = self._begin(self._recorder)
+        except BadInput as error:
+            self._recorder.error = str(error)
+
+    def flush(self) -> None:
+        """Now and then: what has been written is safe, and recording is taken up again where the disk had refused."""
+        self._recorder.flush()
+        self._tell_refused()
+        if not self._recorder.error and not self._recorder.path.exists():
+            self._recorder.error = f"log {self._recorder.path}: has been removed: recording ends here"
+        if self._recorder.error:
+            self._take_up_again()
+
+    def _tell_refused(self) -> None:
+        """Each kind once; the log's metadata have the counts."""
+        for why in self._recorder.refused.keys() - self._told_refused:
+            self._told_refused.add(why)
+            self._tell(f"not recorded: messages {REFUSED[why]}; 'uvf log info' shows how many", Event.WARNING)
+
+    def _take_up_again(self) -> None:
+        if not self._told:
+            self._told = True
+            self._tell(f"{self._recorder.error}; it goes on when there is room", Event.CRITICAL)
+        self._recorder.close()
+        if self._free(self._folder) >= ROOM:
+            self._begin_next()
+        if not self._recorder.error:
+            self._told = False
+            self._tell(f"recording goes on in {self._recorder.path}", Event.INFO)
+
+    def close(self) -> None:
+        self._recorder.close()
+        if self._recorder.error and not self._told:
+            self._tell(self._recorder.error, Event.CRITICAL)
+
+
+def run_recorder(folder: Path, mission: str) -> None:
+    """Writes everything on the bus to ``folder`` until told to stop."""
+    with worker("recorder") as life:
+        give_way(NICE)
+        site = load_site(settings.mission_path(mission))
+        quota = settings.runs_quota()
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            hold(folder)
+        except OSError as error:
+            raise BadInput(f"{folder}: {error.strerror}: choose another folder") from error
+        with open_bus(life) as bus:
+            rotate_bytes = min(ROTATE_BYTES, quota / 4)
+            make_room = _room_maker(folder, quota - rotate_bytes, life)
+            series = LogSeries(folder, attachments(site), _voice(bus, life), make_room, rotate_bytes)
+            try:
+                _record(life, bus, series)
+            finally:
+                series.close()
+
+
+def _voice(bus: ZenohBus, life: Worker) -> Tell:
+    events = topics.SYSTEM_EVENTS.by("recorder")
+    publisher = bus.publisher(events.at("sys"), Event.DESCRIPTOR.full_name, events.qos)
+
+    def tell(line: str, severity: Event.Severity) -> None:
+        life.warn(line)
+        publisher.put(Event(severity=severity, text=line, source="recorder").SerializeToString(deterministic=True), 0)
+
+    return tell
+
+
+def _room_maker(folder: Path, limit: float, life: Worker) -> Callable[[], None]:
+    """limit: the quota less the file that is to be written next."""
+
+    def make_room() -> None:
+        removed = keep_quota(folder, limit)
+        if removed:
+            life.warn(f"over the quota of UVF_RUNS_QUOTA_GB: removed {', '.join(map(str, removed))}")
+
+    return make_room
+
+
+def _record(life: Worker, bus: ZenohBus, series: LogSeries) -> None:
+    arrived: list[Sample] = []
+    bus.subscribe_all(arrived.append, DEPTH)
+    bus.token(f"@node/sys/recorder/{bus.boot:x}")
+    spare_the_collector()
+    flushed = time.monotonic()
+
+    def write() -> bool:
+        more = bus.poll()
+        for sample in arrived:
+            series.write(sample)
+        arrived.clear()
+        return more
+
+    while life.goes_on():
+        more = write()
+        if time.monotonic() - flushed > FLUSH_PERIOD:
+            series.flush()
+            flushed = time.monotonic()
+        if life.stop.wait(0.0 if more else LOOK):
+            break
+    end = time.monotonic() + LAST
+    while write() and time.monotonic() < end:
+        pass
+
+
+def attachments(site: Site) -> dict[str, bytes]:
+    """The files that say what was run, mission, world and vehicles, by their places below the project's folder."""
+    files = {f"missions/{site.mission_path.name}": site.mission_path}
+    folders = {f"worlds/{site.mission.world}": site.world_folder}
+    vehicles = {folder for member in site.members.values() for folder in (*folders_of(member.folder), member.folder.parent / COMMON)}
+    folders |= {f"vehicles/{folder.name}": folder for folder in sorted(vehicles)}
+    for name, folder in folders.items():
+        files |= {f"{name}/{path.relative_to(folder)}": path for path in sorted(folder.rglob("*")) if path.is_file()}
+    return {name: path.read_bytes() for name, path in files.items()}

@@ -1,0 +1,68 @@
+"""How the command line answers bad input."""
+
+import errno
+import math
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+import typer
+
+from uvf.models.yaml_data import BadInput
+from uvf.runtime.contract.validation import escaped
+
+_NO_NAMES = {errno.ENAMETOOLONG: "the name is too long for a file", errno.ELOOP: "the link leads round in a circle"}
+_WORD, _SHOWN = 255, 60
+"""Characters of a word: what is longer than a file's name can be is shown by its beginning."""
+
+
+@contextmanager
+def bad_input_is_one_line() -> Iterator[None]:
+    """Exit code 2 and the line, instead of a traceback."""
+    try:
+        yield
+    except BadInput as error:
+        raise _refused(str(error)) from error
+    except OSError as error:
+        if error.errno not in _NO_NAMES:
+            raise
+        raise _refused(f"{_shortened(str(error.filename))}: {_NO_NAMES[error.errno]}; name another") from error
+
+
+@contextmanager
+def usage_is_one_line() -> Iterator[None]:
+    """The same for a missing or misspelt argument, option or command. Ends the process."""
+    try:
+        yield
+    except typer.Abort as error:
+        typer.echo("Aborted!", err=True)
+        raise SystemExit(1) from error
+    except typer.TyperException as error:
+        said = error.format_message().strip().replace(". Did you", "; did you")
+        if said:  # else it was the help, printed already
+            context = getattr(error, "ctx", None)
+            command = context.command_path if context is not None else "uvf"
+            _refused(f"{said[0].lower()}{said[1:].rstrip('.')}; try '{command} --help'")
+        raise SystemExit(2) from error
+
+
+def within(low: float, high: float = math.inf) -> Callable[[float | None], float | None]:
+    """A callback for an option that is a number, and a finite one: typer's own limits take NaN for a number that is too large."""
+    limits = f"at least {low:g}" if math.isinf(high) else f"from {low:g} to {high:g}"
+
+    def checked(value: float | None) -> float | None:
+        if value is not None and not (math.isfinite(value) and low <= value <= high):
+            raise typer.BadParameter(f"{value:g}: give a number {limits}")
+        return value
+
+    return checked
+
+
+def _refused(why: str) -> typer.Exit:
+    """Says it in one line, whatever names of files and keys hold: nothing in it is obeyed by a terminal."""
+    line = " ".join(_shortened(word) for word in why.split())
+    typer.echo(f"uvf: {escaped(line)}", err=True)
+    return typer.Exit(2)
+
+
+def _shortened(word: str) -> str:
+    return word if len(word) <= _WORD else f"{word[:_SHOWN]}..."

@@ -1,0 +1,59 @@
+"""``uvf run MISSION``: the whole mission in one process, as fast as it goes, scored at the end."""
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from launch import catalogue
+from launch.checks import refuse_problems
+from launch.recorder import attachments
+from launch.scoring.scores import Scorer, Verdict
+from uvf.models.scenario import Site
+from uvf.runtime.log.recording import Recorder
+from uvf.runtime.time.lockstep import Lockstep
+
+
+@dataclass(frozen=True)
+class Result:
+    verdicts: list[Verdict]
+    log_hash: str
+    simulated: float  # s
+    wall: float  # s, without building the services
+    messages: int
+    recording_error: str
+    failures: list[str]
+    """Instances that have failed: what was measured of them says nothing."""
+
+    @property
+    def factor(self) -> float:
+        """Real-time factor."""
+        return self.simulated / self.wall
+
+    @property
+    def passed(self) -> bool:
+        return not self.failures and all(v.passed for v in self.verdicts)
+
+
+def run_lockstep(
+    site: Site,
+    until: float,
+    log: Path,
+    watch: Callable[[float], bool] = lambda t: True,
+    warn: Callable[[str], None] = lambda line: None,
+) -> Result:
+    """Runs every sim-clock service of the mission up to ``until`` [s] and records it. Raises BadInput."""
+    scorer = Scorer(site)
+    hosts = catalogue.hosts(site, [k for k in catalogue.needed(site) if k.clock == "sim"])
+    refuse_problems(site, hosts)
+    with Recorder(log, attachments(site)) as recorder:
+        lockstep = Lockstep(hosts, warn=warn, contains=True)
+        try:
+            recorder.follow(lockstep.bus)
+            scorer.follow(lockstep.bus)
+            begun = time.perf_counter()
+            lockstep.run(until, watch)
+            wall = time.perf_counter() - begun
+        finally:
+            lockstep.close()
+    return Result(scorer.judge(), recorder.hash.hexdigest(), until, wall, recorder.written, recorder.error, lockstep.failures())

@@ -1,0 +1,55 @@
+"""Where and how an aircraft has touched the ground, from its true track."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uvf.models.world.file import Strip
+
+Floats = NDArray[np.float64]
+FLEW = 5.0  # m above where it comes to rest, from which on it has flown
+STANDING = 0.03  # m above where it comes to rest: the wheels carry it
+BEFORE = 0.2  # s before touching, over which the sink is taken
+AIM_SHARE, AIM_MOST = 0.25, 60.0  # of the length of a strip, m: how far behind the threshold wheels are to touch
+
+
+def touchdown(track: Floats) -> int | None:
+    """Index of the first sample (n, 4: t, x, y, z) on the ground after the flight; None unless it flew and stands at the end."""
+    if len(track) < 100 or speed_at_end(track) > 0.5:
+        return None
+    height = track[:, 3] - track[-1, 3]
+    flew = np.flatnonzero(height > FLEW)
+    if not len(flew):
+        return None
+    return int(flew[-1] + np.argmax(height[flew[-1] :] < STANDING))
+
+
+def speed_at_end(track: Floats) -> float:
+    """m/s over the last second; infinite without a track."""
+    last = track[track[:, 0] >= track[-1, 0] - 1.0] if len(track) else track
+    if len(last) < 2:
+        return math.inf
+    return float(np.linalg.norm(last[-1, 1:] - last[0, 1:]) / (last[-1, 0] - last[0, 0]))
+
+
+def sink(track: Floats) -> float:
+    """m/s at touchdown; infinite without one."""
+    at = touchdown(track)
+    if at is None:
+        return math.inf
+    before = int(np.searchsorted(track[:, 0], track[at, 0] - BEFORE))
+    return float((track[before, 3] - track[at, 3]) / (track[at, 0] - track[before, 0]))
+
+
+def error(track: Floats, strips: list[Strip]) -> float:
+    """m along the strip from where wheels are to touch, in the direction of landing; infinite without strip or landing."""
+    at = touchdown(track)
+    if at is None or not strips:
+        return math.inf
+    x, y = track[at, 1:3]
+    strip = min(strips, key=lambda s: math.hypot(s.centre[0] - x, s.centre[1] - y))
+    along = np.array((math.cos(strip.yaw), math.sin(strip.yaw)))
+    direction = math.copysign(1.0, float(along @ (track[at, 1:3] - track[max(at - 50, 0), 1:3])))
+    flown = direction * float(along @ (track[at, 1:3] - np.array(strip.centre[:2])))
+    return abs(flown + strip.length / 2 - min(AIM_SHARE * strip.length, AIM_MOST))

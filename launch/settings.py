@@ -1,0 +1,64 @@
+"""What the surroundings decide: endpoints, folders and limits, each by one environment variable with a default; and what names mean.
+
+Imports nothing heavy: a misspelt name is answered before any engine is loaded.
+"""
+
+import contextlib
+import difflib
+import os
+from pathlib import Path
+
+from uvf.models.yaml_data import BadInput, nearest
+
+ROOT = Path(__file__).resolve().parents[1]
+GIGABYTE = 1_000_000_000
+
+
+def runs_folder() -> Path:
+    return Path(os.environ.get("UVF_RUNS", str(ROOT / "runs")))
+
+
+def runs_quota() -> float:
+    """Bytes that old runs may take together. Raises BadInput."""
+    text = os.environ.get("UVF_RUNS_QUOTA_GB", "5")
+    try:
+        return float(text) * GIGABYTE
+    except ValueError as error:
+        raise BadInput(f"UVF_RUNS_QUOTA_GB={text}: not a number of gigabytes") from error
+
+
+def mission_path(name: str) -> Path:
+    """A mission by its file's path or by its name in ``missions/``. Raises BadInput."""
+    for path in (Path(name), ROOT / "missions" / f"{name}.yaml", ROOT / name):
+        if path.is_file():
+            return path
+    _look_at(Path(name))
+    known = [p.stem for p in (ROOT / "missions").glob("*.yaml")]
+    raise BadInput(f"no mission '{name}'; {nearest(Path(name).stem, known)}")
+
+
+def log_path(path: Path, what: str = "log") -> Path:
+    """A log, or a run's folder, that is there. Raises BadInput."""
+    if path.exists():
+        return path
+    _look_at(path)
+    close = difflib.get_close_matches(path.name, [p.name for p in path.parent.glob("*")], n=1)
+    raise BadInput(f"no {what} {path}; " + (f"did you mean '{close[0]}'?" if close else f"runs are recorded in {runs_folder()}"))
+
+
+def _look_at(path: Path) -> None:
+    """Raises OSError for a link that leads round in a circle, which is not found either."""
+    with contextlib.suppress(FileNotFoundError, NotADirectoryError):
+        path.stat()
+
+
+def benchmark_groups() -> list[str]:
+    return sorted(p.stem for p in (ROOT / "benchmarks").glob("*.py") if "CASES = " in p.read_text(encoding="utf-8"))
+
+
+def benchmark_group(name: str) -> str:
+    """Raises BadInput."""
+    groups = benchmark_groups()
+    if name not in groups:
+        raise BadInput(f"no benchmark group '{name}'; {nearest(name, groups)}")
+    return name

@@ -1,0 +1,64 @@
+"""The figures of a run as rows of text, the first one the heading."""
+
+from launch.slam.scoring import Figures
+
+Rows = list[tuple[str, ...]]
+
+RELATION_HEAD = ("poses", "pairs", "number", "m, Freiburg", "m, Cartographer", "deg", "p95 m", "worst m", "> 0.5 m")
+REFERENCE_HEAD = ("poses", "error", "number", "RMSE m", "mean m", "worst m", "RMSE deg")
+
+
+def run_rows(figures: Figures) -> Rows:
+    r = figures["run"]
+    return [
+        ("readings", "keyframes", "duration", "way", "wall", "CPU", "times real time"),
+        (
+            f"{r['readings']}",
+            f"{r['keyframes']}",
+            f"{r['duration_s']:.1f} s",
+            f"{r['way_m']:.1f} m",
+            f"{r['wall_s']:.2f} s",
+            f"{r['cpu_s']:.2f} s",
+            f"{r['times_real_time']:.1f}",
+        ),
+    ]
+
+
+def relation_rows(figures: Figures) -> dict[str, Rows]:
+    """For each file, by poses and group."""
+    return {name: [RELATION_HEAD, *_relation_rows(by_poses)] for name, by_poses in figures["relations"].items()}
+
+
+def _relation_rows(by_poses: Figures) -> Rows:
+    rows: Rows = []
+    for poses, groups in by_poses.items():
+        for group, f in groups.items():
+            metres, degrees = f["freiburg_m"], f["rotation_deg"]
+            means = (_spread(metres), f"{f['cartographer_m']['mean']:.4f}", _spread(degrees))
+            rows.append((poses, group, f"{f['number']}", *means, f"{metres['p95']:.3f}", f"{metres['max']:.3f}", f"{f['gross']}"))
+    return rows
+
+
+def _spread(f: dict[str, float]) -> str:
+    return f"{f['mean']:.4f} ± {f['std']:.4f}"
+
+
+def reference_rows(figures: Figures) -> dict[str, Rows]:
+    """For each file, by poses and kind of error."""
+    return {name: [REFERENCE_HEAD, *_reference_rows(by_poses)] for name, by_poses in figures["references"].items()}
+
+
+def _reference_rows(by_poses: Figures) -> Rows:
+    rows: Rows = []
+    for poses, kinds in by_poses.items():
+        for kind, f in kinds.items():
+            metres = [f"{f[key]:.3f}" for key in ("rmse_m", "mean_m", "max_m")]
+            rows.append((poses, kind, f"{f['number']}", *metres, f"{f['rotation_rmse_deg']:.2f}"))
+    return rows
+
+
+def all_tables(figures: Figures) -> dict[str, Rows]:
+    """By their headings: the run itself, each file of relations, each reference."""
+    relations = {f"errors of {name}": rows for name, rows in relation_rows(figures).items()}
+    references = {f"distance to {name}": rows for name, rows in reference_rows(figures).items()}
+    return {"run": run_rows(figures), **relations, **references}

@@ -1,0 +1,138 @@
+"""``uvf teleop``: vehicles driven or flown from the keyboard of a terminal, or with a gamepad."""
+
+import signal
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import closing, contextmanager, suppress
+from types import FrameType
+from typing import Protocol
+
+import uvf
+from launch import settings
+from launch.teleop import aircraft
+from launch.teleop.gamepad import Gamepad
+from launch.teleop.link import Link
+from launch.teleop.loop import END, Console, Padlike, Post, operate
+from launch.teleop.terminal import Terminal, TerminalClosed, key_by_key
+from uvf.client import Client
+from uvf.control.teleop_drive import STILL, Command, Hand, Pad
+from uvf.models.scenario import Site, load_site
+from uvf.models.yaml_data import BadInput, nearest
+
+GREETING = """w a s d or arrows: drive    q e z c: curves    space: stop    x or Ctrl-C: end
+r f: linear speed up, down    t g: turn rate up, down    1..9: vehicle on, off    m: take over again
+gamepad: hold the left shoulder button and use the left stick; d-pad: speeds; B: stop"""
+
+
+class Vehicles(Protocol):
+    """The way to the vehicles."""
+
+    def send(self, vehicle: str, command: Command) -> None: ...
+
+    def take_over(self, vehicle: str) -> str:
+        """Asks for mode MANUAL and arms; what was refused and why, "" if nothing."""
+
+    def state(self, vehicle: str) -> str: ...
+
+
+class Wheel:
+    """The post of whoever drives ground vehicles; left, all of them are told to stand."""
+
+    def __init__(self, hand: Hand, vehicles: Vehicles) -> None:
+        self._hand, self._vehicles = hand, vehicles
+
+    def take_over(self) -> str:
+        return "; ".join(filter(None, (self._vehicles.take_over(name) for name in self._hand.vehicles if name in self._hand.active)))
+
+    def key(self, t: float, name: str) -> None:
+        self._hand.key(t, name)
+
+    def turn(self, t: float, pad: Pad) -> None:
+        self._hand.pad(t, pad)
+        for name, command in self._hand.commands(t).items():
+            self._vehicles.send(name, command)
+
+    def line(self, t: float, pad: str) -> str:
+        return status_line(self._hand, self._vehicles, pad, t)
+
+    def leave(self) -> None:
+        for name in self._hand.vehicles:
+            self._vehicles.send(name, STILL)
+
+
+def drive(hand: Hand, vehicles: Vehicles, console: Console, pad: Padlike, clock: Callable[[], float]) -> None:
+    """Until the key x, or an exception; in every case all vehicles are told to stand."""
+    operate(Wheel(hand, vehicles), console, pad, clock)
+
+
+def status_line(hand: Hand, vehicles: Vehicles, pad: str, t: float) -> str:
+    """Vehicles with their links (those switched off in brackets), the scales, the velocity now, the gamepad."""
+    names = [f"{i} {name}" if name in hand.active else f"({i} {name})" for i, name in enumerate(hand.vehicles, 1)]
+    links = ", ".join(f"{shown} {vehicles.state(name)}" for shown, name in zip(names, hand.vehicles, strict=True))
+    scale, now = hand.scale, hand.wanted(t)
+    speeds = f"{scale.linear:.2f} m/s {scale.angular:.2f} rad/s | now {now.linear:+.2f} {now.angular:+.2f}"
+    return f"{links} | {speeds}" + (f" | {pad}" if pad else "")
+
+
+def wanted_vehicles(site: Site, names: Sequence[str]) -> tuple[list[str], Command]:
+    """The vehicles meant, and what the slowest of them can do. Raises BadInput."""
+    bodies = {m.name: m.file.ground for m in site.of_kind("ground") if m.file.ground is not None}
+    chosen = list(dict.fromkeys(names)) or list(bodies)
+    for name in chosen:
+        if name not in bodies:
+            raise BadInput(f"{site.mission_path}: no ground vehicle '{name}' there; {nearest(name, bodies)}")
+    if not names and len(chosen) != 1:
+        raise BadInput(f"{site.mission_path}: say which vehicle; {nearest('', bodies)}")
+    linear, angular = ([getattr(bodies[name], limit) for name in chosen] for limit in ("max_linear", "max_angular"))
+    return chosen, Command(min(linear), min(angular))
+
+
+@contextmanager
+def _signals_are_the_key(end: str, terminal: Terminal) -> Iterator[None]:
+    """Ctrl-C, a terminal that is closed and a polite kill end it in good order; it cannot be put to sleep with a vehicle under way.
+
+    Ctrl-C too is asked for in so many words: whoever starts a process in the background may have it ignored there.
+    """
+
+    def press(number: int, frame: FrameType | None) -> None:
+        terminal.press(end)
+
+    before = {number: signal.signal(number, press) for number in (signal.SIGINT, signal.SIGHUP, signal.SIGTERM)}
+    before[signal.SIGTSTP] = signal.signal(signal.SIGTSTP, signal.SIG_IGN)
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+def wanted_aircraft(site: Site, names: Sequence[str]) -> str:
+    """The aircraft meant, "" when it is not one. Raises BadInput for several of them."""
+    flying = [name for name in dict.fromkeys(names) if name in site.members and site.members[name].file.air is not None]
+    if flying and len(set(names)) > 1:
+        raise BadInput(f"{site.mission_path}: '{flying[0]}' flies, and one flies one aircraft at a time; name it alone")
+    return flying[0] if flying else ""
+
+
+def post_for(site: Site, names: Sequence[str]) -> tuple[str, Callable[[Client], Post]]:
+    """(words for the operator, what makes the post on a connection). Raises BadInput."""
+    name = wanted_aircraft(site, names)
+    body = site.members[name].file.air if name else None
+    if body is not None:
+        return aircraft.GREETING, lambda client: aircraft.cockpit(client, name, body)
+    chosen, most = wanted_vehicles(site, names)
+    return GREETING, lambda client: Wheel(Hand(chosen, most), Link(client))
+
+
+def teleop(names: Sequence[str], mission: str, say: Callable[[str], None]) -> None:
+    """Drives or flies until the operator ends it. Raises BadInput."""
+    greeting, post = post_for(load_site(settings.mission_path(mission)), names)
+    with (
+        uvf.connect() as client,
+        key_by_key() as terminal,
+        _signals_are_the_key(END, terminal),
+        closing(Gamepad()) as pad,
+        suppress(TerminalClosed),
+    ):
+        say(greeting)
+        operate(post(client), terminal, pad, time.monotonic)

@@ -1,0 +1,98 @@
+"""``uvf up``: every process of a mission, supervised, until Ctrl-C."""
+
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from threading import Event as Flag
+
+from launch import catalogue, settings
+from launch.launcher import LOOK, Launcher, Say, stop_flag
+from launch.output import RotatingLog
+from launch.waits import Waits
+from schemas import topics
+from schemas.messages import Clock
+from uvf.models.scenario import load_site
+from uvf.runtime.bus.interface import Sample
+from uvf.runtime.bus.wire import guarded
+from uvf.runtime.contract.refusals import Refusals
+
+ROUTER_PATIENCE = 10.0  # s
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """What ``uvf up`` was asked for."""
+
+    mission: str
+    rate: float = 1.0
+    page: bool = True
+    seconds: float | None = None
+
+
+def up(wanted: Wanted, folder: Path, say: Say) -> int:
+    """Runs until Ctrl-C, SIGTERM or the time is over; returns the exit code. Raises BadInput before anything starts."""
+    site = load_site(settings.mission_path(wanted.mission))
+    kinds = [k for k in catalogue.needed(site) if wanted.page or k.name != "gcs"]
+    stop = stop_flag()
+    run = Run(wanted, folder, say)
+    try:
+        run.start([k.name for k in kinds])
+        run.watch(stop)
+    finally:
+        say("stopping")
+        run.launcher.stop()
+        say(f"{run.simulated:.1f} s simulated; log and output in {folder}")
+    return 1 if run.launcher.failed else 0
+
+
+class Run:
+    """The processes of one run, from the first to the end."""
+
+    def __init__(self, wanted: Wanted, folder: Path, say: Say) -> None:
+        self._wanted = wanted
+        self._say = say
+        self._folder = folder
+        self.launcher = Launcher("launcher", say)
+        self._moving_since: float | None = None
+        self._begun = time.monotonic()
+        self.simulated = 0.0  # s
+
+    def start(self, services: list[str]) -> None:
+        """The router first, then everybody; the conductor lets time begin when all are there."""
+        mission = self._wanted.mission
+        self._start("router", "router")
+        bus, refuse = self.launcher.connect(ROUTER_PATIENCE), Refusals(self._say).refuse
+        bus.subscribe(topics.CLOCK.at("sys"), topics.CLOCK.qos, guarded(topics.CLOCK, self._on_clock, refuse))
+        for name in ("conductor", "recorder"):
+            told = topics.SYSTEM_EVENTS.by(name)
+            bus.subscribe(told.at("sys"), told.qos, guarded(told, lambda event, _: self._say(event.text), refuse), depth=16)
+        waits, signs = Waits(self._say, services), topics.HEALTH.by("*")
+        bus.subscribe(signs.at("sys"), signs.qos, guarded(signs, lambda health, _: waits.hear(health), refuse), depth=64)
+        self._start("conductor", "service", "conductor", "--mission", mission, "--rate", str(self._wanted.rate))
+        for name in services:
+            self._start(name, "service", name, "--mission", mission)
+        self._start("recorder", "record", str(self._folder), "--mission", mission)
+        self.launcher.tell()
+
+    def _start(self, name: str, *arguments: str) -> None:
+        self.launcher.start(name, [*arguments], RotatingLog(self._folder / f"{name}.log").write)
+
+    def _on_clock(self, clock: Clock, sample: Sample) -> None:
+        self.simulated = clock.t_ns / 1e9
+        if clock.tick and self._moving_since is None:
+            self._moving_since = time.monotonic()
+            self._say(f"time runs, {self._moving_since - self._begun:.1f} s after the start")
+
+    def watch(self, stop: Flag) -> None:
+        """Until ``stop``; starts again what dies."""
+        while not stop.wait(LOOK) and not self._over() and not self._cannot_begin():
+            self.launcher.look()
+
+    def _over(self) -> bool:
+        """Whether the seconds asked for have passed since time began to run."""
+        wanted, since = self._wanted.seconds, self._moving_since
+        return wanted is not None and since is not None and time.monotonic() - since > wanted
+
+    def _cannot_begin(self) -> bool:
+        """Whether a service has been given up that time waits for."""
+        return self.launcher.failed and self._moving_since is None

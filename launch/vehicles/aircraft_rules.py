@@ -1,0 +1,136 @@
+"""What is wrong with an aircraft: its model's files, its names, its trim, its signs, its landing gear."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import msgspec
+import numpy as np
+
+from services.sim_air.engine.airframe import Airframe
+from services.sim_air.engine.states import Runaway, Start
+from services.sim_air.engine.trim import Trim
+from uvf.maths.geodesy import LocalTangent
+from uvf.models.jsbsim.model_file import model_faults
+from uvf.models.vehicle.air import AirBody, Surface
+from uvf.models.vehicle.layers import folders_of, holding
+from uvf.models.yaml_data import BadInput, Place
+from uvf.runtime.process.subprocess_jobs import Died, run_in_subprocess
+
+SEA_LEVEL = LocalTangent.from_degrees(0.0, 0.0, 0.0)
+HEIGHT = 100.0  # m, where level flight is tried
+FALL, SECONDS, LOOK = 0.1, 2.0, 0.5  # m dropped, s simulated, s at the end in which it ought to be quiet
+QUIET = 0.3  # m/s and rad/s
+HIGHEST = 4800.0  # Hz
+ABOUT_LEVEL = Trim(alpha=0.05, roll=0.0, aileron=0.0, elevator=0.0, rudder=0.0, throttle=0.5)
+FULL = 0.5  # of a surface's limit, tried from the trim
+RIGHT_WAY = {"aileron": (3, 1, "rolls right"), "elevator": (4, -1, "pitches down"), "rudder": (5, -1, "yaws left")}
+"""For each surface the body acceleration (of u, v, w, p, q, r; FRD) that it is for, its sign and its name."""
+WEAK = 1e-3  # rad/s^2
+
+
+def aircraft_faults(folder: Path, air: AirBody) -> tuple[list[str], list[str]]:
+    """(faults, notes), a line each; also of a model at which the engine ends its process."""
+    try:
+        return run_in_subprocess(_aircraft_faults, str(folder), air)
+    except Died as error:
+        line = f"JSBSim ends the process with this model ({error}); look at what was changed last, and at its own names and tables"
+        return [f"{folder / 'vehicle.yaml'}: air: model: {line}"], []
+
+
+def _aircraft_faults(vehicle: str, air: AirBody) -> tuple[list[str], list[str]]:
+    """vehicle: path of its folder."""
+    folder = Path(vehicle)
+    models, place = holding(folders_of(folder), air.model), Place(str(folder / "vehicle.yaml"), ("air",))
+    path = models / air.model / f"{air.model}.xml"
+    try:
+        faults = list(model_faults(path)) if path.is_file() else []
+        if faults:
+            return faults, []
+        airframe = Airframe(models, air, SEA_LEVEL)
+    except BadInput as error:
+        return [str(error)], []
+    flight, notes = _flight(airframe, air, place)
+    try:
+        return [*flight, *_gear_faults(models, air, place)], notes
+    except BadInput as error:  # told already where level flight was tried
+        return flight or [str(error)], notes
+
+
+def _flight(airframe: Airframe, air: AirBody, place: Place) -> tuple[list[str], list[str]]:
+    """Of level flight at trim_speed."""
+    level = Start(np.array((0.0, 0.0, HEIGHT)), 0.0, air.trim_speed, np.zeros(3))
+    untrimmed = []
+    try:
+        trim = airframe.start(level)
+    except BadInput as error:
+        untrimmed, trim = [f"{place.at('trim_speed')}: {error}"], ABOUT_LEVEL
+        if "JSBSim refuses" in str(error):
+            return [str(error)], []
+    airframe.hold_still(True)
+    at_trim = airframe.accelerations(level, trim)
+    effects = {name: effect(airframe, level, trim, air.controls, name) - at_trim for name in RIGHT_WAY}
+    faults, notes = _idle(effects, air, place)
+    if airframe.powered and not throttle_works(airframe, level, trim):
+        faults.append(f"{place.at('controls', 'throttle')}: it changes no thrust; name the property that the model reads its throttle from")
+    return [*untrimmed, *_sign_faults(effects, place), *faults], notes
+
+
+def throttle_works(airframe: Airframe, level: Start, trim: Trim) -> bool:
+    """Of an airframe that is held still."""
+    thrusts = []
+    for throttle in (0.0, 1.0):
+        airframe.accelerations(level, replace(trim, throttle=throttle))
+        thrusts.append(airframe.propulsive_force)
+    return abs(thrusts[1] - thrusts[0]) > WEAK * max(map(abs, thrusts))
+
+
+def effect(airframe: Airframe, level: Start, trim: Trim, controls: object, name: str) -> np.ndarray:
+    """(6,) body accelerations with one surface moved."""
+    moved = {name: getattr(trim, name) + FULL * getattr(controls, name).limit}
+    return airframe.accelerations(level, replace(trim, **moved))
+
+
+def _sign_faults(effects: dict[str, np.ndarray], place: Place) -> Iterator[str]:
+    for name, effect in effects.items():
+        index, sign, does = RIGHT_WAY[name]
+        if effect[index] * sign < -WEAK:
+            yield f"{place.at('controls', name)}: a positive {name} ought to be one that {does}, and this does the opposite; turn its sign"
+
+
+def _idle(effects: dict[str, np.ndarray], air: AirBody, place: Place) -> tuple[list[str], list[str]]:
+    """(faults, notes) of surfaces that do nothing: an aircraft may have no ailerons, or no rudder, when its file names none."""
+    idle = [name for name, effect in effects.items() if abs(effect[RIGHT_WAY[name][0]]) < WEAK]
+    if "elevator" in idle or {"aileron", "rudder"} <= set(idle):
+        line = f"{place.at('controls')}: {' and '.join(idle)} move nothing; name the properties that the model reads its commands from"
+        return [line], []
+    named = [name for name in idle if getattr(air.controls, name) != Surface()]
+    return [], [f"its {name} does nothing, though vehicle.yaml has one" for name in named]
+
+
+def _gear_faults(models: Path, air: AirBody, place: Place) -> Iterator[str]:
+    if comes_to_rest(models, air, air.physics_hz):
+        return
+    where, fell = place.at("physics_hz"), f"dropped from {FALL:g} m it is not at rest on its wheels after {SECONDS:g} s"
+    rate = air.physics_hz
+    while (rate := rate * 2) <= HIGHEST:
+        if comes_to_rest(models, air, rate):
+            yield f"{where}: {fell}: at {air.physics_hz:g} Hz the landing gear is unstable; set {rate:g} Hz, or soften springs and dampers"
+            return
+    yield f"{where}: {fell}, at {HIGHEST:g} Hz neither; look at <ground_reactions>: springs, dampers, places of the wheels"
+
+
+def comes_to_rest(models: Path, air: AirBody, rate: float) -> bool:
+    """On its wheels, dropped from a small height, at ``rate`` physics steps a second; it may roll on, idling, where it has no brakes."""
+    airframe = Airframe(models, msgspec.structs.replace(air, physics_hz=rate), SEA_LEVEL)
+    airframe.drop(Start(np.zeros(3), 0.0, 0.0, np.zeros(3)), FALL)
+    worst = 0.0
+    try:
+        for i in range(round(SECONDS * rate)):
+            airframe.step()
+            if i >= (SECONDS - LOOK) * rate:
+                motion = airframe.motion()
+                worst = max(worst, abs(float(motion.velocity[2])), float(np.linalg.norm(motion.angular_velocity)))
+    except Runaway:
+        return False
+    return worst < QUIET and bool(airframe.motion().position[2] > 0)

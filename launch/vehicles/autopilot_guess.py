@@ -1,0 +1,160 @@
+"""The figures of an airframe that the air autopilot needs, from steady flights and linear models of the running model."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from launch.vehicles.aircraft_rules import HEIGHT
+from launch.vehicles.aircraft_trial import level
+from services.sim_air.analysis.equilibrium import Condition, find
+from services.sim_air.analysis.linear import LinearModels, held_still, linearize
+from services.sim_air.analysis.performance import climb_rate, performance
+from services.sim_air.engine.airframe import Airframe
+from services.sim_air.engine.states import Held, Start
+from services.sim_air.engine.trim import Trim
+from services.sim_air.engine.wiring import Controls
+from uvf.maths.geodesy import GRAVITY
+from uvf.maths.rotations import Floats
+from uvf.maths.state_space import jacobian
+from uvf.models.vehicle.air import AirBody
+from uvf.models.yaml_data import BadInput
+
+OTHERS, CLIMB = (1.15, 1.07, 0.93), 0.02  # of the trim speed, the first at which it flies; rad
+SLOWEST, FASTEST = 0.8, 1.25  # of the trim speed
+STEEPEST = 0.12  # climb and sink over the speed
+SHARE = 0.7  # of what the throttle reaches
+BANK = 0.7  # tangent of the bank of a holding circle
+RESPONSE = 3.0  # time constants of the free motion within which a commanded angle is reached
+PROPORTIONAL, INTEGRAL = {"roll": 0.29, "pitch": 1.02}, {"roll": 0.86, "pitch": 2.7}  # of the feed-forward; 1/s; as for Milvus
+SPEED = 25.0  # m/s, for which the defaults of the autopilot are
+MARGIN = 1.1  # of a speed over that at which the wing stalls
+HIGHEST_ALPHA = 0.25  # rad, where a model tells of no stall
+IDLING = (0.0, 0.15, 0.3)
+LOWERED, FLAP_STEPS = 0.1, (1e-3, 1e-3, 0.05)  # rad of flap; rad of alpha, elevator and flap
+YAW, SLIP = 3.0, 0.2  # of the aircraft's own damping; rad/s
+
+
+def autopilot_figures(airframe: Airframe, body: AirBody) -> dict[str, float]:
+    """Parameter name -> value, of an aircraft with an engine. Raises BadInput where it does not fly so."""
+    models = linearize(airframe, body.trim_speed, HEIGHT, Path(body.model))
+    rates = _rates(models, body)  # first: it tells of an aircraft that cannot bank, which would not fly a turn either
+    found = {**_balance(airframe, body.trim_speed), **rates, **_yaw(models), **_measures(body.trim_speed)}
+    found["flap_alpha"] = _within(_flap_lift(airframe, models.trim), 0.0, 1.0)
+    found |= _slowest(airframe, body, found) | {"idle_sink": _within(_idle_sink(airframe, body), 0.1, 20.0)}
+    reserve = {"climb_max": 1 - found["trim_throttle"], "sink_max": found["trim_throttle"]}
+    for name, left in reserve.items():
+        reach = SHARE * left / max(found["throttle_climb"], 1e-3)
+        found[name] = min(max(min(reach, STEEPEST * body.trim_speed), 0.5), 15.0)
+    return {name: float(f"{value:.3g}") for name, value in found.items()}
+
+
+def _balance(airframe: Airframe, speed: float) -> dict[str, float]:
+    """Lift, elevator and throttle from four steady flights: cruise, at another speed, climbing, turning."""
+    cruise, climbing = airframe.start(level(speed)), airframe.start(level(speed, CLIMB))
+    factor, other = _other(airframe, speed)
+    per_load = (cruise.alpha - other.alpha) / (GRAVITY * (1 - factor**-2)) * speed**2
+    per_alpha = (cruise.elevator - other.elevator) / (cruise.alpha - other.alpha)
+    return {
+        "trim_throttle": cruise.throttle,
+        "alpha_zero_lift": _within(cruise.alpha - per_load * GRAVITY / speed**2, -0.3, 0.3),
+        "alpha_per_load": per_load,
+        "elev_zero_alpha": _within(cruise.elevator - per_alpha * cruise.alpha, -0.5, 0.5),
+        "elev_per_alpha": _within(per_alpha, -10.0, 0.0),
+        "throttle_speed": _within((other.throttle - cruise.throttle) / ((factor - 1) * speed), 0.0, 0.2),
+        "throttle_load": _within(airframe.start(_turning(speed)).throttle - cruise.throttle, 0.0, 0.5),
+        "throttle_climb": _within((climbing.throttle - cruise.throttle) / (speed * np.sin(CLIMB)), 0.0, 0.5),
+    }
+
+
+def _other(airframe: Airframe, speed: float) -> tuple[float, Trim]:
+    """Level flight at another speed, as a factor of this one."""
+    *first, last = OTHERS
+    for factor in first:
+        try:
+            return factor, airframe.start(level(factor * speed))
+        except BadInput:
+            continue
+    return last, airframe.start(level(last * speed))
+
+
+def _idle_sink(airframe: Airframe, body: AirBody) -> float:
+    """m/s, the steepest of steady descents at cruise airspeed with little throttle: a propeller brakes most while it still turns."""
+    near = Condition(body.trim_speed, HEIGHT, climb=-0.1)
+    with held_still(airframe):
+        flown = [find(airframe, replace(near, throttle=throttle), ("airspeed", "throttle")) for throttle in IDLING]
+    return -min((climb_rate(c) for c in flown if c is not None), default=-STEEPEST * body.trim_speed)
+
+
+def _turning(speed: float) -> Start:
+    """Level, banked by 45 degrees: twice the load factor squared."""
+    return replace(level(speed), turn_rate=GRAVITY / speed)
+
+
+def _slowest(airframe: Airframe, body: AirBody, found: Mapping[str, float]) -> dict[str, float]:
+    """The largest angle of attack: what the elevator balances gliding, within a margin to the stall; and the airspeed that goes with it."""
+    with held_still(airframe):
+        can = performance(airframe, body, HEIGHT)
+    zero = found["alpha_zero_lift"]
+    alpha = _within(min(can.slowest.alpha, zero + (can.stall_alpha - zero) / MARGIN**2), 0.05, HIGHEST_ALPHA)
+    stalled = (found["alpha_per_load"] * GRAVITY / (alpha - zero)) ** 0.5
+    return {"alpha_max": alpha, "min_airspeed": max(SLOWEST * body.trim_speed, MARGIN * stalled)}
+
+
+def _yaw(models: LinearModels) -> dict[str, float]:
+    """The damper in proportion to the aircraft's own damping; the slip loop by the side force that a rudder makes in the end."""
+    side = models.lateral
+    power, damping = side.slope("r", "delta_r"), side.slope("r", "r")
+    forced = side.slope("v", "delta_r") - side.slope("v", "v") * power / side.slope("r", "v")
+    return {
+        "yaw_damping": _within(YAW * damping / power, 0.0, 1.0),
+        "slip_i": _within(SLIP / abs(forced), 0.0, 1.0),
+    }
+
+
+def _flap_lift(airframe: Airframe, trim: Condition) -> float:
+    """How far the angle of attack falls per flap that is lowered, lift and pitching moment as before; 0 without flaps."""
+
+    def left(x: Floats) -> Floats:
+        alpha, elevator, flap = x.tolist()
+        state = replace(trim, alpha=alpha).state
+        controls = Controls(trim.aileron, elevator, trim.rudder, trim.throttle, flap=flap)
+        return airframe.accelerations_held(Held(state[:3], state[3:6], state[6:9], trim.altitude), controls)[[2, 4]]
+
+    with held_still(airframe):
+        slopes = jacobian(left, np.array((trim.alpha, trim.elevator, LOWERED)), FLAP_STEPS)
+    return -float(np.linalg.solve(slopes[:, :2], -slopes[:, 2])[0])
+
+
+def _rates(models: LinearModels, body: AirBody) -> dict[str, float]:
+    """Gains of the rate loops: the feed-forward of a rate is the deflection that holds it against the damping.
+
+    That is a_phi1 / a_phi2 and a_theta1 / a_theta3 of Beard & McLain (5.26, 5.30).
+    """
+    sides = {"roll": (models.lateral, "p", "delta_a", 0.3), "pitch": (models.longitudinal, "q", "delta_e", 0.4)}
+    found = {}
+    for axis, (side, rate, surface, quickest) in sides.items():
+        damping, power = abs(side.slope(rate, rate)), abs(side.slope(rate, surface))
+        if power < 1e-6 * damping:
+            raise BadInput(f"{body.model}: nothing that the autopilot moves makes it {axis}; it turns by bank and climbs by pitch")
+        ahead = damping / power
+        found[f"{axis}_time"] = _within(RESPONSE / damping, quickest, 2.0)
+        found[f"{axis}_ff"] = _within(ahead, 0.0, 2.0)
+        found[f"{axis}_p"] = _within(PROPORTIONAL[axis] * ahead, 0.0, 2.0)
+        found[f"{axis}_i"] = _within(INTEGRAL[axis] * ahead, 0.0, 2.0)
+    return found | {"lead_time": found["roll_time"]}  # a bank that follows a ramp is late by the time constant
+
+
+def _measures(speed: float) -> dict[str, float]:
+    """What goes with the speed alone."""
+    return {
+        "trim_airspeed": speed,
+        "max_airspeed": FASTEST * speed,
+        "k_path": 0.04 * SPEED / speed,
+        "hold_radius": max(speed**2 / (GRAVITY * BANK), 20.0),
+    }
+
+
+def _within(value: float, low: float, high: float) -> float:
+    return float(min(max(value, low), high))

@@ -1,0 +1,119 @@
+"""``uvf vehicle import``: a vehicle's folder from a URDF, xacro, SDF or JSBSim model of others, with notes."""
+
+import shutil
+import tempfile
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import yaml
+
+from launch.vehicles.creation import check_new
+from launch.vehicles.importing_air import import_aircraft
+from uvf.maths.geodesy import GRAVITY
+from uvf.maths.se3 import compose
+from uvf.models.importing.drive_pair import DrivePair, find_pair
+from uvf.models.importing.jsbsim import jsbsim_model
+from uvf.models.importing.meshes import with_own_meshes
+from uvf.models.importing.rebuilt import rebuilt
+from uvf.models.importing.robot import Foreign
+from uvf.models.importing.sdf_robot import read_foreign_sdf
+from uvf.models.importing.sensors import sensors_section
+from uvf.models.importing.urdf import read_foreign_urdf
+from uvf.models.shapes.mesh import placed, reach
+from uvf.models.urdf.robot import UrdfModel
+from uvf.models.urdf.writer import urdf_text
+from uvf.models.yaml_data import BadInput
+
+NOTES = "import.txt"
+SPEED = 0.5  # m/s
+ROUND = np.column_stack([f(np.linspace(0, 2 * np.pi, 180, endpoint=False)) for f in (np.cos, np.sin, np.zeros_like)])
+
+
+def import_vehicle(source: Path, folder: Path, arguments: Mapping[str, str]) -> list[str]:
+    """Makes ``folder``; the notes, which also stand in its import.txt. Raises BadInput with what a person must do."""
+    check_new(folder)
+    if (aircraft := jsbsim_model(source)) is not None:
+        return import_aircraft(aircraft, folder)
+    with tempfile.TemporaryDirectory() as scratch:
+        made = Path(scratch) / folder.name
+        made.mkdir()
+        foreign = _read(source, arguments)
+        foreign.model = with_own_meshes(foreign, made)
+        pair = find_pair(foreign)
+        model = replace(rebuilt(foreign, pair), name=folder.name)
+        notes = _write(made, source, foreign, (pair, model))
+        folder.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copytree(made, folder)
+    return notes
+
+
+def _read(source: Path, arguments: Mapping[str, str]) -> Foreign:
+    if not source.is_file():
+        raise BadInput(f"{source}: no such file; give a .urdf, .xacro or .sdf, or the .xml of a JSBSim aircraft")
+    return read_foreign_sdf(source) if _is_sdf(source) else read_foreign_urdf(source, arguments)
+
+
+def _is_sdf(source: Path) -> bool:
+    if source.suffix in (".sdf", ".world"):
+        return True
+    return "<sdf" in source.read_text(encoding="utf-8", errors="replace")[:2000]
+
+
+def _write(folder: Path, source: Path, foreign: Foreign, made: tuple[DrivePair, UrdfModel]) -> list[str]:
+    pair, model = made
+    wheels = f"{pair.left.joint.name} (left) and {pair.right.joint.name} (right)"
+    foreign.notes.add(f"guessed: {wheels} drive; wheel radius {pair.radius:.4g} m, track {pair.track:.4g} m")
+    _compare(foreign, pair)
+    base_from_link = {name: compose(pair.base_from_root, pose) for name, pose in foreign.model.link_poses().items()}
+    data = {
+        "about": f"{foreign.model.name}, imported from {source.name}.",
+        "kind": "ground",
+        "ground": _ground(folder.name, pair, model),
+        "sensors": sensors_section(foreign, base_from_link),
+    }
+    foreign.notes.add("guessed: motors, limits of speed and acceleration; set them in vehicle.yaml")
+    used = {s.mesh for link in model.links.values() for s in (*link.visuals, *link.collisions) if s.mesh is not None}
+    for mesh in (folder / "meshes").glob("*"):
+        if mesh not in used:
+            mesh.unlink()
+    comment = f"Imported from {source.name}; {NOTES} says what was changed. base_link lies on the floor under the axle."
+    text = urdf_text(model, lambda mesh: str(mesh.relative_to(folder)), comment.replace("--", "-"))
+    (folder / f"{folder.name}.urdf").write_text(text, encoding="utf-8")
+    (folder / "vehicle.yaml").write_text(yaml.safe_dump(data, sort_keys=False, width=140), encoding="utf-8")
+    lines = foreign.notes.lines()
+    (folder / NOTES).write_text("\n".join([f"Imported from {source.name}:", *(f"- {line}" for line in lines)]) + "\n", encoding="utf-8")
+    return lines
+
+
+def _compare(foreign: Foreign, pair: DrivePair) -> None:
+    """The shapes count; a plugin that says otherwise is told of."""
+    for name, told, found in (("track", foreign.drive.track, pair.track), ("wheel radius", foreign.drive.wheel_radius, pair.radius)):
+        if told is not None and abs(told - found) > 0.03 * found:
+            foreign.notes.add(f"the plugin's {name} of {told:g} m is not that of the shapes, which counts: {found:.4g} m")
+
+
+def _ground(name: str, pair: DrivePair, model: UrdfModel) -> dict[str, Any]:
+    poses = model.link_poses()
+    solids = [placed(s, poses[n]) for n, link in model.links.items() for s in link.collisions]
+    outline = max(float(reach(s, ROUND).max()) for s in solids)
+    mass = sum(link.inertial.mass for link in model.links.values() if link.inertial is not None)
+    return {
+        "urdf": f"{name}.urdf",
+        "left_joint": "wheel_left_joint",
+        "right_joint": "wheel_right_joint",
+        "wheel_radius": round(pair.radius, 6),
+        "track": round(pair.track, 6),
+        "radius": round(outline + 0.002, 4),
+        "max_linear": SPEED,
+        "max_angular": float(f"{min(2.0, 2 * SPEED / pair.track):.3g}"),
+        "max_linear_acceleration": 0.5,
+        "max_angular_acceleration": float(f"{min(4.0, 2.0 / pair.track):.3g}"),
+        "motor": {
+            "stall_torque": float(f"{0.4 * mass * GRAVITY * pair.radius:.3g}"),
+            "no_load_speed": float(f"{3 * SPEED / pair.radius:.3g}"),
+            "lag": 0.03,
+        },
+    }

@@ -1,0 +1,94 @@
+"""``uvf vehicle import`` of a JSBSim aircraft: its files, and a vehicle.yaml of what the running model shows."""
+
+import math
+import shutil
+import tempfile
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import yaml
+
+from launch.vehicles.aircraft_rules import SEA_LEVEL
+from launch.vehicles.aircraft_trial import tried
+from launch.vehicles.autopilot_guess import autopilot_figures
+from services.sim_air.engine.airframe import Airframe
+from uvf.maths.atmosphere import RHO0
+from uvf.maths.geodesy import GRAVITY
+from uvf.models.importing.jsbsim import copy_model
+from uvf.models.importing.notes import Notes
+from uvf.models.jsbsim.model_file import weight_and_wing
+from uvf.models.vehicle.air import AirBody, Commands
+from uvf.models.yaml_data import BadInput
+from uvf.runtime.process.subprocess_jobs import Died, run_in_subprocess
+
+NOTES = "import.txt"
+LIFT = 0.5  # coefficient at which the speed is first tried
+LIGHT = 50.0  # kg, below which an aircraft has servos of models
+SERVOS = {True: (6.0, 0.05), False: (1.0, 0.05)}  # rad/s, s
+SENSORS = {
+    "imu": {
+        **{"mount": {}, "hz": 100.0, "gyro_noise": 0.0023, "gyro_bias": 0.002},
+        **{"accel_noise": 0.025, "accel_bias": 0.03, "mag_noise": 5.0e-7},
+    },
+    "gnss": {"hz": 5.0, "horizontal_noise": 0.8, "vertical_noise": 1.5, "speed_noise": 0.1, "latency": 0.1},
+    "air_data": {"hz": 50.0, "static_noise": 3.0, "differential_noise": 4.0, "static_bias": 15.0, "differential_bias": 3.0},
+}
+
+
+def import_aircraft(path: Path, folder: Path) -> list[str]:
+    """Makes ``folder`` of the model at ``path``; the notes. Raises BadInput where JSBSim refuses the model."""
+    with tempfile.TemporaryDirectory() as scratch:
+        made = Path(scratch) / folder.name
+        made.mkdir()
+        model = copy_model(path, made)
+        try:
+            data, lines = run_in_subprocess(_described, str(made), model)
+        except Died as error:
+            raise BadInput(f"{path}: JSBSim ends the process with this model ({error}); mend the model") from error
+        data["about"] = f"{path.stem}, imported from {path.name} of JSBSim"
+        (made / "vehicle.yaml").write_text(yaml.safe_dump(data, sort_keys=False, width=140), encoding="utf-8")
+        text = "\n".join([f"Imported from {path.name}:", *(f"- {line}" for line in lines)]) + "\n"
+        (made / NOTES).write_text(text, encoding="utf-8")
+        folder.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copytree(made, folder)
+    return lines
+
+
+def _described(vehicle: str, model: str) -> tuple[dict[str, Any], list[str]]:
+    """vehicle: path of its folder. What its file says, and the notes."""
+    folder, notes = Path(vehicle), Notes()
+    mass, wing = weight_and_wing(folder / model / f"{model}.xml")
+    rate, lag = SERVOS[mass < LIGHT]
+    speed = float(f"{math.sqrt(2 * mass * GRAVITY / (RHO0 * wing * LIFT)):.2g}")
+    body = tried(folder, AirBody(model=model, physics_hz=120.0, trim_speed=speed, servo_rate=rate, servo_lag=lag), notes)
+    notes.add(f"guessed: servos of {rate:g} rad/s with a lag of {lag:g} s, sensors, the sink rate that the landing gear holds")
+    data: dict[str, Any] = {"kind": "fixed_wing", "about": "", "air": _air(body), "sensors": SENSORS}
+    if figures := _autopilot(folder, body, notes):
+        data["params"] = {"autopilot_air": figures}
+    return data, notes.lines()
+
+
+def _air(body: AirBody) -> dict[str, Any]:
+    """Only what differs from the defaults."""
+    controls = {}
+    for name in body.controls.__struct_fields__:
+        own, usual = (msgspec.to_builtins(getattr(c, name)) for c in (body.controls, Commands()))
+        if different := {key: value for key, value in own.items() if value != usual[key]}:
+            controls[name] = different
+    keys = ("model", "physics_hz", "trim_speed", "servo_rate", "servo_lag")
+    return {key: getattr(body, key) for key in keys} | {"controls": controls} | ({"settings": body.settings} if body.settings else {})
+
+
+def _autopilot(folder: Path, body: AirBody, notes: Notes) -> dict[str, float]:
+    airframe = Airframe(folder, body, SEA_LEVEL)
+    if not airframe.powered:
+        notes.add("no autopilot figures: it has no engine, and glides")
+        return {}
+    try:
+        figures = autopilot_figures(airframe, body)
+    except BadInput as error:
+        notes.add(f"no autopilot figures: {str(error).rpartition('.xml: ')[2]}")
+        return {}
+    notes.add("found: the autopilot's figures of the airframe, from steady flights and linear models; guessed: its gains and limits")
+    return figures

@@ -1,0 +1,103 @@
+"""Everything that is wrong with a vehicle's folder, in one run."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, get_type_hints
+
+from launch.vehicles.aircraft_rules import aircraft_faults
+from uvf.models.urdf.model import read_urdf
+from uvf.models.urdf.robot import UrdfModel
+from uvf.models.urdf.rules import model_faults, wheel_faults
+from uvf.models.vehicle.air import AirBody
+from uvf.models.vehicle.body_rules import body_faults, body_notes
+from uvf.models.vehicle.file import GroundBody, Sensors, VehicleFile, load_vehicle
+from uvf.models.vehicle.layers import file_of, folders_of
+from uvf.models.yaml_data import BadInput, convert, nearest, read_yaml
+
+SECTIONS = {"ground": GroundBody, "air": AirBody}
+
+
+@dataclass
+class Inspection:
+    """faults: what must be mended, a line each; notes: what is worth a look; the vehicle and its body as far as they could be read."""
+
+    folder: Path
+    faults: list[str] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+    file: VehicleFile | None = None
+    model: UrdfModel | None = None
+
+
+def folder_of(name: str, vehicles: Path) -> Path:
+    """A vehicle's folder by its name in ``vehicles`` or by its path. Raises BadInput."""
+    folder = next((f for f in (vehicles / name, Path(name)) if (f / "vehicle.yaml").is_file()), None)
+    if folder is None:
+        known = [p.parent.name for p in vehicles.glob("*/vehicle.yaml")]
+        raise BadInput(f"no vehicle '{name}': no {name}/vehicle.yaml in {vehicles} nor here; {nearest(name, known)}")
+    return folder.resolve()
+
+
+def inspect(folder: Path) -> Inspection:
+    """All faults of the files, of the URDF and of the two against each other."""
+    found = Inspection(folder)
+    try:
+        found.file = load_vehicle(folder.parent, folder.name)
+    except BadInput as error:
+        found.faults.append(str(error))
+        found.faults += [line for line in _section_faults(folder) if line not in found.faults]
+    if found.file is not None and found.file.air is not None:
+        faults, found.notes = aircraft_faults(folder, found.file.air)
+        found.faults += faults
+        return found
+    urdf = _urdf(folder, found.file)
+    if urdf is not None:
+        _inspect_body(found, urdf)
+    return found
+
+
+def _section_faults(folder: Path) -> Iterator[str]:
+    """The first fault of each section, where the file as a whole is refused."""
+    path = folder / "vehicle.yaml"
+    try:
+        data = read_yaml(path)
+    except BadInput:
+        return
+    sections = [((key,), data[key], type_) for key, type_ in SECTIONS.items() if key in data] if isinstance(data, dict) else []
+    sensors = data.get("sensors") if isinstance(data, dict) else None
+    hints = get_type_hints(Sensors, include_extras=True)
+    known = {k: v for k, v in sensors.items() if k in hints} if isinstance(sensors, dict) else {}
+    for keys, value, type_ in (*sections, *((("sensors", k), v, hints[k]) for k, v in known.items())):
+        if isinstance(value, dict) and ("preset" in value or "variant_of" in data):
+            continue  # not whole without what it refers to
+        try:
+            convert(value, type_, str(path), keys)
+        except BadInput as error:
+            yield str(error)
+
+
+def _urdf(folder: Path, file: VehicleFile | None) -> Path | None:
+    """The URDF, also of a vehicle.yaml that is refused for something else."""
+    if file is not None:
+        return folder / file.ground.urdf if file.ground is not None else None
+    try:
+        data: Any = read_yaml(folder / "vehicle.yaml")
+        name = data["ground"]["urdf"]
+        return folder / file_of(folders_of(folder), str(name))
+    except (BadInput, KeyError, TypeError):
+        return None
+
+
+def _inspect_body(found: Inspection, urdf: Path) -> None:
+    try:
+        found.model = model = read_urdf(urdf)
+    except BadInput as error:
+        found.faults.append(str(error))
+        return
+    ground = found.file.ground if found.file is not None else None
+    wheels = (ground.left_joint, ground.right_joint) if ground is not None else ()
+    faults = [str(fault) for fault in (*wheel_faults(model, wheels), *model_faults(model))]
+    found.faults += [line for line in dict.fromkeys(faults) if line not in found.faults]
+    if found.file is not None and ground is not None and len(model.roots) == 1 and all(w in model.joints for w in wheels):
+        found.faults += body_faults(model, found.file, found.folder / "vehicle.yaml")
+        found.notes += body_notes(model, found.file)

@@ -1,0 +1,129 @@
+"""A picture of a world: on the left the floor plan from above, on the right how it looks."""
+
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import numpy as np
+import trimesh
+from matplotlib import patches
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from services.sim_camera.renderer import BulletRenderer, Pose
+from uvf.maths.footprint import SIDES, footprint
+from uvf.maths.rotations import from_matrix
+from uvf.models.shapes.scene import primitives
+from uvf.models.shapes.solid import Solid, pose_at
+from uvf.models.vehicle.file import Camera, Mount
+from uvf.models.world.file import WorldFile
+from uvf.models.world.geometry import FloorPlan, solids, things
+from uvf.models.world.terrain import relief
+
+Floats = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+WIDTH, HEIGHT = 1440, 1040  # pixels of the view, drawn twice as large as shown
+LENS = 0.9  # rad
+LOOK_DOWN = np.radians(42.0)
+LOOK_FROM = np.radians(-62.0)  # from the south-east
+ON_THE_FLOOR = 0.02  # m, what lies lower is not drawn into the plan
+WIDE = 3.0  # m, from which on a mesh is taken for a building
+LINES = 2.0  # m, between lines of equal height
+CUT = 1.4  # m, without terrain: higher walls and things are shown cut there, so that one looks into the rooms
+
+
+def save_picture(world: WorldFile, plan: FloorPlan, reachable: Mask, path: Path) -> None:
+    """Writes a PNG: occupied cells dark, reachable floor (rows, columns) light green, things in their colours."""
+    figure = Figure(figsize=(15, 6.5), layout="constrained")
+    left, right = figure.subplots(1, 2, width_ratios=(1.0, 1.35))
+    _draw_plan(left, world, plan, reachable)
+    right.imshow(view(world))
+    right.set_axis_off()
+    path.parent.mkdir(parents=True, exist_ok=True)
+    figure.savefig(path, dpi=80)
+
+
+def _draw_plan(axes: Axes, world: WorldFile, plan: FloorPlan, reachable: Mask) -> None:
+    rows, columns = plan.cells.shape
+    shown = np.full((rows, columns, 3), 0.8)
+    shown[reachable] = (0.86, 0.95, 0.86)
+    shown[plan.cells] = (0.25, 0.25, 0.28)
+    far = (plan.x, plan.x + columns * plan.resolution, plan.y, plan.y + rows * plan.resolution)
+    axes.imshow(shown, origin="lower", extent=far, interpolation="nearest")
+    if (land := relief(world)) is not None:
+        lines = axes.contour(land.x, land.y, land.heights, np.arange(0.0, land.heights.max(), LINES), colors="saddlebrown", linewidths=0.6)
+        axes.clabel(lines, fontsize=7)
+    for solid in things(world):
+        _draw_solid(axes, solid)
+        if solid.path is not None:
+            axes.plot(solid.path.keys[:, 1], solid.path.keys[:, 2], "--", color=(0.8, 0.1, 0.1), linewidth=0.8)
+    axes.set_xlim(far[:2])
+    axes.set_ylim(far[2:])
+    axes.set_xlabel("x [m]")
+    axes.set_ylabel("y [m]")
+    axes.set_title(f"green: reachable, dark: occupied, dashed: moved by script ({plan.resolution:g} m cells)", fontsize=9)
+
+
+def _draw_solid(axes: Axes, solid: Solid) -> None:
+    """Its shadow on the ground."""
+    shadow = footprint(primitives(solid), ON_THE_FLOOR, 1e3)
+    look: dict[str, Any] = {"facecolor": (*solid.colour, 0.75), "edgecolor": (0, 0, 0, 0.35), "linewidth": 0.3}
+    if solid.shape == "mesh":
+        look["edgecolor"] = "none"
+    for outline in shadow.outlines:
+        if len(outline) > 2:
+            axes.add_patch(patches.Polygon(outline, **look))
+    for x, y, radius in shadow.discs:
+        axes.add_patch(patches.CirclePolygon((x, y), radius, resolution=SIDES, **look))
+
+
+def view(world: WorldFile) -> NDArray[np.uint8]:
+    """(height, width, 3) RGB from the south-east and above, tall things cut, moving ones at the beginning of their scripts."""
+    camera = Camera(Mount((0.0, 0.0, 0.0)), hz=1.0, width=WIDTH, height=HEIGHT, fov=LENS, far=2000.0)
+    with TemporaryDirectory() as scratch:
+        placed = [_at_start(solid if world.terrain else _cut(solid, Path(scratch))) for solid in solids(world)]
+        renderer = BulletRenderer(world, placed, {})
+        try:
+            picture = renderer.take(camera, _standpoint(world)).picture
+        finally:
+            renderer.close()
+    halves: NDArray[np.uint8] = picture.reshape(HEIGHT // 2, 2, WIDTH // 2, 2, 3).mean(axis=(1, 3)).astype(np.uint8)
+    return halves
+
+
+def _cut(solid: Solid, scratch: Path) -> Solid:
+    """Upright boxes and wide meshes that reach above ``CUT`` end there: they may be walls."""
+    parts = primitives(solid)
+    low, high = parts.low.min(axis=0), parts.high.max(axis=0)
+    if high[2] <= CUT or low[2] >= CUT:
+        return solid
+    if solid.shape == "mesh" and (high - low)[:2].max() > WIDE:
+        below = parts.rows[parts.low[:, 2] < CUT, :9].reshape(-1, 3)
+        below[:, 2] = np.minimum(below[:, 2], CUT)
+        file = scratch / f"{len(list(scratch.iterdir()))}.stl"
+        trimesh.Trimesh(below, np.arange(len(below)).reshape(-1, 3)).export(file)
+        return Solid(solid.name, "mesh", (1.0, 1.0, 1.0), np.zeros(3), colour=solid.colour, mesh=file)
+    if solid.shape != "box" or abs(solid.orientation[1]) + abs(solid.orientation[2]) > 1e-6:
+        return solid
+    position = np.array((*solid.position[:2], (low[2] + CUT) / 2))
+    return Solid(solid.name, "box", (*solid.size[:2], float(CUT - low[2])), position, solid.orientation, solid.colour, path=solid.path)
+
+
+def _at_start(solid: Solid) -> Solid:
+    position, orientation = pose_at(solid, 0.0)
+    return Solid(solid.name, solid.shape, solid.size, position, orientation, solid.colour, solid.mesh)
+
+
+def _standpoint(world: WorldFile) -> Pose:
+    """Where the whole floor fills the view, or the whole terrain."""
+    land = relief(world)
+    x_min, y_min, x_max, y_max = world.floor if land is None else (land.x[0], land.y[0], land.x[-1], land.y[-1])
+    middle = np.array(((x_min + x_max) / 2, y_min + 0.46 * (y_max - y_min), 0.0))
+    away = np.array((np.cos(LOOK_FROM) * np.cos(LOOK_DOWN), np.sin(LOOK_FROM) * np.cos(LOOK_DOWN), np.sin(LOOK_DOWN)))
+    distance = 0.5 * float(np.hypot(x_max - x_min, y_max - y_min)) / np.tan(LENS / 2) * 1.12
+    forward = -away
+    left = np.cross((0.0, 0.0, 1.0), forward)
+    left /= np.linalg.norm(left)
+    return Pose(middle + distance * away, from_matrix(np.column_stack((forward, left, np.cross(forward, left)))))

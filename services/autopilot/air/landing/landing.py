@@ -1,0 +1,245 @@
+"""Landing: down a circle, along the glide slope into the wind, flare, decrab, roll-out; or round again.
+
+Heights are those of the wheels over the strip. The path of the flare is laid over the ground: from the slope a parabola leads to the
+sink rate of touching down right where the wheels are meant to touch, whatever the wind.
+"""
+
+import math
+from collections.abc import Callable
+from enum import Enum, auto
+
+from services.autopilot.air.setpoints import Phase, Senses, Track, Wish
+from uvf.control.cycle import clip
+from uvf.control.ground_roll import Gyros, rolling, rudder_along
+from uvf.control.total_energy import climb_at
+from uvf.estimation.state import Estimate
+from uvf.estimation.wheel_height import WheelHeight
+from uvf.guidance.approach import Approach
+from uvf.guidance.route import Circle, Place
+from uvf.guidance.runways import Lane
+from uvf.guidance.vector_field import line_aim
+from uvf.maths.geodesy import GRAVITY
+from uvf.models.vehicle.flight_params import AirParams
+
+FINAL_TIME = 25.0  # s at the lowest airspeed: the length of the final approach
+ON_CIRCLE = 5.0  # m of height, with which it may be left
+MOST_TAILWIND = 1.5  # m/s, with which it lands
+ALIGNED = 0.3  # rad, of the course on leaving the circle
+GUST_SHARE, GUST_MOST = 0.4, 0.2  # of the wind, of min_airspeed: what is added to it on the approach
+COMMITTED = 12.0  # m: below it, without satellites, it is landed by dead reckoning
+GATE = 10.0, 2.0  # m of height, between which the approach has to be a stable one
+TOO_HIGH, TOO_FAST = 3.0, 7.0  # m, m/s
+FLARE_TIME = 3.0  # s
+LEAD = 0.5  # s, by which the sink asked for is ahead of the path: the climb follows that much later
+TOUCH_SINK = 0.4  # m/s
+FLARE_P = 1.5  # 1/s, climb rate per error of height
+TOUCH_SPEED, SLOWS_BELOW = 0.96, 3.0  # of min_airspeed; m
+DECRAB_BELOW = 0.7  # m
+CRAB_LEFT = 0.1  # rad, that the wheels take
+LOW, LOW_BANK = 3.0, 0.17  # m, rad
+MOST_SINK, SINK_PER_M = 0.6, 0.4  # m/s, 1/s: to come down onto the path of the flare, by the height
+LIFTS_BELOW = 8.0  # m; from here on the flaps make lift at once
+LIFT_P, LIFT_A = 3.0, 1.0  # 1/s, per climb rate that is wanting; per lift that is not felt
+TOUCHED, STUCK = 0.12, 0.15  # m; m/s less sink than asked for
+IDLES_BELOW = 0.5  # m
+TOUCH_TIME, STUCK_TIME = 0.08, 1.0  # s
+BRAKES_AFTER, BRAKE = 0.8, 0.6  # s
+STOPPED, STANDS = 0.7, 1.5  # m/s, s
+
+
+class Stage(Enum):
+    CIRCLE = auto()
+    FINAL = auto()
+    ROLL = auto()
+    AROUND = auto()
+
+
+class Landing(Phase):
+    """On a lane, which is chosen again as long as the wind is found out on the circle. ``around`` asks for another approach."""
+
+    def __init__(
+        self,
+        now: Estimate,
+        choose: Callable[[Estimate], Lane],
+        senses: Senses,
+        params: AirParams,
+        approach: Approach | None = None,
+    ) -> None:
+        self.lane = choose(now)
+        self._approach = approach
+        self._choose = choose
+        self.why_around = ""
+        self._senses = senses
+        self._length = FINAL_TIME * params.min_airspeed if approach is None else approach.length
+        self._wheels = WheelHeight(self.lane.aim.height)
+        self._since = 0.0
+        self._gyros = Gyros(now)
+        slow = now.airspeed < 0.6 * params.min_airspeed  # started anew while it rolls out
+        self._stage = Stage.ROLL if slow else Stage.CIRCLE
+        self._circle = self._new_circle(now, params)
+        self._still = 0.0
+        self._low = False
+
+    @property
+    def circle(self) -> Circle | None:
+        return self._circle if self._stage is Stage.CIRCLE else None
+
+    @property
+    def rolls(self) -> bool:
+        """The wheels carry it: nothing but the end of the landing can follow."""
+        return self._stage is Stage.ROLL
+
+    @property
+    def committed(self) -> bool:
+        """Too near to the ground to be turned away without a position."""
+        return self._stage is Stage.ROLL or (self._stage is Stage.FINAL and self._low)
+
+    def around(self, why: str) -> None:
+        if not self.rolls:
+            self.why_around = why
+            self._to(Stage.AROUND)
+
+    def step(self, now: Estimate, params: AirParams, dt: float) -> Wish:
+        self._since += dt
+        if self._stage is Stage.CIRCLE:
+            return self._descend(now, params)
+        if self._stage is Stage.FINAL:
+            return self._final(now, params, dt)
+        return self._roll(now, dt) if self._stage is Stage.ROLL else self._go_around(now, params)
+
+    def _to(self, stage: Stage) -> None:
+        self._stage, self._since, self._still = stage, 0.0, 0.0
+
+    def _new_circle(self, now: Estimate, params: AirParams) -> Circle:
+        """Round into the beginning of the final approach: the mission's, or one beside the lane on the aircraft's side."""
+        _, right = self.lane.locate(now)
+        laid = self._approach
+        radius = laid.radius if laid is not None and laid.radius else math.copysign(params.hold_radius, right)
+        north, east = self.lane.before(self._length, radius)
+        own = self.lane.aim.height + params.gear_height + self._slope(params) * self._length
+        return Circle(Place(north, east, laid.height if laid is not None else own), radius)
+
+    def _slope(self, params: AirParams) -> float:
+        """As steep as a mission's approach has to be; one that is flatter is flown level until the slope is met."""
+        own = math.tan(params.glide_slope)
+        return own if self._approach is None else max(own, self._approach.slope)
+
+    def _path(self, distance: float, ground_speed: float, params: AirParams) -> tuple[float, float, bool]:
+        """As ``flare``, but nowhere above the height at which a mission's approach begins."""
+        height, slope, flares = flare(distance, ground_speed, self._slope(params))
+        top = math.inf if self._approach is None else self._approach.height - self.lane.aim.height - params.gear_height
+        return (height, slope, flares) if height < top else (top, 0.0, False)
+
+    def _descend(self, now: Estimate, params: AirParams) -> Wish:
+        if self.lane.tailwind(now) > MOST_TAILWIND and (other := self._choose(now)) != self.lane:
+            self.lane = other
+            self._circle = self._new_circle(now, params)
+        circle = self._circle
+        distance, right = self.lane.locate(now)
+        lead = abs(distance - self._length) < 0.4 * abs(circle.radius) and abs(right) < 0.2 * abs(circle.radius)
+        if lead and abs(self.lane.off(now.course)) < ALIGNED and abs(now.height - circle.centre.height) < ON_CIRCLE:
+            self._to(Stage.FINAL)
+        near = now.height < circle.centre.height + 2 * ON_CIRCLE and circle.is_captured(now)  # slow, it could not turn in
+        airspeed = self._airspeed(now, params) if near else params.trim_airspeed
+        return Wish(Track(circle.aim(now, params), circle.centre.height, 0.0, airspeed), params.land_flap if near else 0.0)
+
+    def _final(self, now: Estimate, params: AirParams, dt: float) -> Wish:
+        distance, right = self.lane.locate(now)
+        wheels = self._wheels
+        wheels.step(now, self._senses.clearance, distance, params, dt)
+        self._low = wheels.height < COMMITTED
+        wanted, _, flares = self._path(distance, now.ground_speed, params)
+        _, slope, _ = self._path(distance - LEAD * now.ground_speed, now.ground_speed, params)
+        fast = self._airspeed(now, params)
+        if why := self._unstable(now, wheels.height, wheels.height - wanted, right, fast):
+            self.around(why)
+        climb = -slope * now.ground_speed + (FLARE_P if flares else params.altitude_p) * (wanted - wheels.height)
+        if flares:
+            climb = max(climb, -MOST_SINK - SINK_PER_M * max(wheels.height, 0.0))
+        climb += now.climb - wheels.climb  # as the estimate has it
+        if flares and self._has_touched(now, climb, dt):
+            self._gyros = Gyros(now)
+            self._to(Stage.ROLL)
+        lift = self._lift(now, climb) if wheels.height < LIFTS_BELOW else 0.0
+        return Wish(self._down(now, params, climb, fast), params.land_flap, lift=lift, firm=True)
+
+    def _down(self, now: Estimate, params: AirParams, climb: float, airspeed: float) -> Track:
+        """Along the lane; near the ground wings about level, then the nose along the strip and the throttle closing."""
+        height = self._wheels.height
+        aim = line_aim(self.lane.along, self.lane.before(0.0), (now.north, now.east), params)
+        rudder = self._decrab(now) if height < DECRAB_BELOW else None
+        throttle = touch_throttle(now, params, climb, airspeed, height) if height < IDLES_BELOW else None
+        return Track(aim, None, climb, airspeed, LOW_BANK if height < LOW else None, throttle, rudder)
+
+    def _lift(self, now: Estimate, climb: float) -> float:
+        """m/s^2 that are wanting: by the climb, and by the lift that is felt, which tells of a gust before it has moved anything."""
+        return LIFT_P * (climb - now.climb) + LIFT_A * (GRAVITY - self._senses.heave)
+
+    def _airspeed(self, now: Estimate, params: AirParams) -> float:
+        wind = math.hypot(now.wind_north, now.wind_east)
+        return params.min_airspeed + min(GUST_SHARE * wind, GUST_MOST * params.min_airspeed)
+
+    def _unstable(self, now: Estimate, height: float, above: float, right: float, airspeed: float) -> str:
+        """Why this approach is given up; empty while it is good."""
+        distance, _ = self.lane.locate(now)
+        if -distance > self.lane.rest / 2:
+            return "half of the strip passed without touching"
+        if not GATE[1] < height < GATE[0]:
+            return ""
+        if abs(above) > TOO_HIGH:
+            return f"{abs(above):.1f} m too {'high' if above > 0 else 'low'}"
+        if abs(right) > self.lane.width / 2:
+            return f"{abs(right):.1f} m aside"
+        return f"{now.airspeed - airspeed:.1f} m/s too fast" if now.airspeed > airspeed + TOO_FAST else ""
+
+    def _decrab(self, now: Estimate) -> float:
+        """rad of rudder that turns the nose along the strip but for what the wheels take."""
+        off = self.lane.off(now.yaw)
+        return rudder_along(now, self.lane.course + clip(off, CRAB_LEFT), 0.0)
+
+    def _has_touched(self, now: Estimate, climb: float, dt: float) -> bool:
+        """Seen by the range finder; or it sinks no more although it should."""
+        seen = self._senses.clearance
+        near, limit = (seen < TOUCHED, TOUCH_TIME) if seen is not None else (now.climb > climb + STUCK, STUCK_TIME)
+        self._still = self._still + dt if near else 0.0
+        return self._still > limit
+
+    def _roll(self, now: Estimate, dt: float) -> Wish:
+        _, right = self.lane.locate(now)
+        level = self._gyros.step(now, dt)
+        stands = now.ground_speed < STOPPED or not self._senses.airborne
+        self._still = self._still + dt if stands else 0.0
+        if self._still > STANDS:
+            self.ended, self.disarms = "landed", True
+        rudder = rudder_along(level, self.lane.course, right)
+        return Wish(rolling(level, rudder, 0.0, BRAKE if self._since > BRAKES_AFTER else 0.0))
+
+    def _go_around(self, now: Estimate, params: AirParams) -> Wish:
+        circle = self._circle.centre.height
+        if now.height > circle - ON_CIRCLE:
+            self._circle = self._new_circle(now, params)
+            self._to(Stage.CIRCLE)
+        aim = line_aim(self.lane.along, self.lane.before(0.0), (now.north, now.east), params)
+        low = now.height < self.lane.aim.height + LOW
+        return Wish(Track(aim, None, climb_at(now, params), params.trim_airspeed, bank_limit=LOW_BANK if low else None, throttle=1.0))
+
+
+def flare(distance: float, ground_speed: float, slope: float) -> tuple[float, float, bool]:
+    """Height [m] and slope of the path ``distance`` [m] before the point to touch at, and whether it has left the straight one."""
+    speed = max(ground_speed, 5.0)
+    touching = min(TOUCH_SINK / speed, slope)
+    begins = FLARE_TIME * speed
+    bend = (slope - touching) / (2 * begins)
+    if distance > begins:
+        return touching * begins + bend * begins**2 + slope * (distance - begins), slope, False
+    on = max(distance, 0.0)
+    return touching * distance + bend * on**2, touching + 2 * bend * on, True
+
+
+def touch_throttle(now: Estimate, params: AirParams, climb: float, airspeed: float, height: float) -> float:
+    """From the airspeed of the approach to that of touching down, which is below the lowest one that the loops hold."""
+    touching = TOUCH_SPEED * airspeed
+    airspeed = touching + (airspeed - touching) * min(max(height / SLOWS_BELOW, 0.0), 1.0)
+    ahead = params.trim_throttle + params.throttle_speed * (airspeed - params.trim_airspeed)
+    faster = now.airspeed / GRAVITY * params.airspeed_p * (airspeed - now.airspeed)
+    return min(max(ahead + params.throttle_climb * (climb + faster), 0.0), 1.0)

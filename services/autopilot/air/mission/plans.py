@@ -1,0 +1,62 @@
+"""Mission, fence and rally points in force: replaced on request, told of when they have changed."""
+
+from google.protobuf.message import Message
+
+from schemas.messages import Fence, Mission, MissionItem, RallyPoints
+from services.autopilot.air.failsafes.monitor import Safety, Seen
+from services.autopilot.air.modes import return_points
+from services.autopilot.air.modes.mode_manager import Pilot
+from services.autopilot.air.status import intake
+from services.autopilot.air.status.event_log import Journal
+from uvf.guidance.fence_plan import mission_fault
+from uvf.guidance.flyable import advice
+from uvf.guidance.route import Place
+from uvf.models.vehicle.flight_params import AirParams
+from uvf.runtime.messages.convert import stamp
+
+
+class Plans:
+    """Requests give the reason of a refusal, empty when accepted."""
+
+    def __init__(self, items: list[MissionItem], pilot: Pilot, safety: Safety, journal: Journal) -> None:
+        self.mission = intake.with_id(items)
+        self.rally = RallyPoints()
+        self._pilot, self._safety, self._journal = pilot, safety, journal
+        self._news = {"plan", "bounds", "rally"}
+        """Outputs that are to be told."""
+
+    def set_mission(self, mission: Mission, params: AirParams) -> str:
+        try:
+            items = intake.items(mission.items)
+        except ValueError as error:
+            return str(error)
+        refusal = mission_fault(items, self._pilot.fence.fencing, params) or self._pilot.load(items, params)
+        if not refusal:
+            self.mission = intake.with_id(mission.items)
+            self._journal.note(advice(self._pilot.navigator.items, params))
+            self._news.add("plan")
+        return refusal
+
+    def set_fence(self, fence: Fence, seen: Seen | None, params: AirParams) -> str:
+        refusal = self._safety.set_fence(fence, seen, params)
+        if not refusal:
+            self._news.add("bounds")
+        return refusal
+
+    def set_rally(self, rally: RallyPoints, params: AirParams) -> str:
+        places = [intake.place(point) for point in rally.points]
+        refusal = return_points.fault(places, self._pilot.home or Place(0.0, 0.0, 0.0), self._pilot.fence.fencing, params)
+        if not refusal:
+            self.rally, self._pilot.rally = rally, tuple(places)
+            self._news.add("rally")
+        return refusal
+
+    def news(self, t: float) -> dict[str, Message]:
+        """What has changed since it was told last, by output."""
+        known: dict[str, Mission | Fence | RallyPoints] = {"plan": self.mission, "bounds": self._safety.fence, "rally": self.rally}
+        told: dict[str, Message] = {}
+        for name in sorted(self._news):
+            known[name].timestamp.CopyFrom(stamp(t))
+            told[name] = known[name]
+        self._news.clear()
+        return told

@@ -1,0 +1,95 @@
+"""Modes flown by hand: whose surface commands are passed on to the servos, and what follows when nobody sends any."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import astuple, dataclass, replace
+
+from schemas.messages import SurfaceCommand
+from services.autopilot.multiplexing import Multiplexer, in_turn
+from uvf.control.commands import Surfaces
+from uvf.control.servos import Servos
+from uvf.runtime.messages.convert import seconds
+
+SOURCES = ("teleop", "mavlink", "client")
+"""The first one whose command is fresh wins."""
+CLOCK_TOLERANCE = 0.02  # s, one tick: a sender's clock may be that much ahead
+PATIENCE = 0.5  # s that the first command is waited for once the mode is Manual
+LET_GO = Surfaces(0.0, 0.0, 0.0, 0.0, brake=1.0)
+"""On the ground, when nobody holds the stick: motor off, brakes on."""
+
+
+@dataclass(frozen=True, slots=True)
+class Sticks:
+    """-1..1: right, nose up, right; throttle 0..1."""
+
+    roll: float
+    pitch: float
+    yaw: float
+    throttle: float
+
+
+@dataclass(frozen=True, slots=True)
+class Hand:
+    """What a source asks for."""
+
+    source: str
+    surfaces: Surfaces
+
+    def sticks(self, servos: Servos) -> Sticks:
+        """Where the sticks are that ask for these surfaces."""
+        s = self.surfaces
+        roll, pitch = _part(s.aileron, servos.aileron.limit), _part(s.elevator, servos.elevator.limit)
+        yaw = _part(s.rudder, servos.rudder.limit)
+        return Sticks(roll, -pitch, -yaw, s.throttle)
+
+
+def _part(deflection: float, stop: float) -> float:
+    return min(max(deflection / stop, -1.0), 1.0)
+
+
+class Hands(Multiplexer):
+    """Of all senders, by their keys."""
+
+    def __init__(self) -> None:
+        super().__init__("commands by hand", in_turn(SOURCES))
+        self._said: dict[str, SurfaceCommand] = {}
+
+    def choose(self, t: float, said: Mapping[str, SurfaceCommand | None], longest: float) -> Hand | None:
+        """The command that counts at ``t`` [s]; None without one of the last ``longest`` [s], whose input may be stale by then.
+
+        One with a number that is not finite is none.
+        """
+        self._said |= {source: m for source, m in said.items() if m is not None}
+        fresh: dict[str, Hand] = {}
+        for source, m in self._said.items():
+            if -CLOCK_TOLERANCE <= t - seconds(m.timestamp) <= longest:
+                asked = Surfaces(m.aileron, m.elevator, m.rudder, m.throttle, m.flap, m.brake)
+                if all(map(math.isfinite, astuple(asked))):
+                    fresh[source] = Hand(source, _within(asked))
+        return fresh.get(self.pick(fresh))
+
+
+def _within(s: Surfaces) -> Surfaces:
+    """Throttle and brake within 0..1, the flap not above its wing; how far a surface goes is the servos' own limit."""
+    return replace(s, throttle=min(max(s.throttle, 0.0), 1.0), flap=max(s.flap, 0.0), brake=min(max(s.brake, 0.0), 1.0))
+
+
+class Stick:
+    """Whether somebody flies by hand."""
+
+    def __init__(self) -> None:
+        self._held = False
+        self._left = PATIENCE
+
+    def take(self) -> None:
+        """Mode Manual begins: somebody is about to speak."""
+        self._left = PATIENCE
+
+    def hold(self, hand: Hand | None, dt: float) -> None:
+        """What is asked now."""
+        self._held = hand is not None
+        self._left = 0.0 if self._held else self._left - dt
+
+    @property
+    def abandoned(self) -> bool:
+        return not self._held and self._left <= 0.0

@@ -1,0 +1,51 @@
+"""The speed that somebody asks for in flight: it holds until another one is asked for, by the mission too, or the mode changes."""
+
+import math
+
+from uvf.estimation.state import Estimate
+from uvf.models.vehicle.flight_params import AirParams
+
+
+class Pace:
+    """Nothing, an airspeed, or a speed over ground."""
+
+    def __init__(self) -> None:
+        self._speed = 0.0  # m/s
+        self._over_ground = False
+        self._given: float | None = None
+        """m/s, airspeed, of the cycle before."""
+
+    def take(self, speed: float, over_ground: bool) -> None:
+        """speed: m/s; 0 = cruise."""
+        self._speed, self._over_ground, self._given = speed, over_ground, 0.0
+
+    def begin(self, anew: bool) -> None:
+        """Another path is flown; ``anew``: in another mode."""
+        if anew:
+            self._speed, self._given = 0.0, None
+        elif self._given is not None:
+            self._given = 0.0
+
+    def of(self, now: Estimate, params: AirParams, present: float) -> float:
+        """m/s, airspeed to fly, 0 = cruise. present: the one in force, of which a change since the cycle before is a new wish."""
+        if self._given is None or (self._given and present != self._given):
+            self._speed, self._given = 0.0, None
+            return present
+        self._given = airspeed_over_ground(now, self._speed, params) if self._over_ground and self._speed else self._speed
+        return self._given
+
+    @staticmethod
+    def fault(now: Estimate, speed: float, over_ground: bool, params: AirParams) -> str:
+        """Why this speed [m/s] cannot be flown; empty if it can, over ground in one direction at least."""
+        wind = math.hypot(now.wind_north, now.wind_east) if over_ground else 0.0
+        low, high = max(params.min_airspeed - wind, 0.1), params.max_airspeed + wind
+        if speed == 0 or low <= speed <= high:
+            return ""
+        return f"{speed:g} m/s {'over ground ' if over_ground else ''}cannot be flown: {low:.3g} to {high:.3g} m/s can"
+
+
+def airspeed_over_ground(now: Estimate, speed: float, params: AirParams) -> float:
+    """m/s, airspeed that makes this speed over ground [m/s] on the course of now (the wind triangle), as far as it can be flown."""
+    along = now.wind_north * math.cos(now.course) + now.wind_east * math.sin(now.course)
+    across = now.wind_east * math.cos(now.course) - now.wind_north * math.sin(now.course)
+    return min(max(math.hypot(speed - along, across), params.min_airspeed), params.max_airspeed)

@@ -1,0 +1,102 @@
+"""Modes flown by hand: the stick as surfaces, as an attitude, as bank and climb, or those with a line over ground."""
+
+import math
+from collections.abc import Mapping
+
+from services.autopilot.air.modes.manual_control import LET_GO, Sticks
+from services.autopilot.air.modes.modes import FlightMode
+from services.autopilot.air.setpoints import Phase, Senses, Track, Wish
+from uvf.control.commands import Attitude, Surfaces, Wanted
+from uvf.control.cycle import Cycle
+from uvf.estimation.state import Estimate
+from uvf.guidance.vector_field import Point, line_aim
+from uvf.models.vehicle.flight_params import AirParams
+
+CENTRED = 0.05  # of a stick's way
+STEEPEST = 0.35  # rad, pitch beside that of level flight with the stick at its stop
+WINGS_LEVEL = 0.1  # rad: from here on a line is held over ground
+
+
+class ByHand(Phase):
+    """``step`` is called while a hand is on the stick."""
+
+    def __init__(self, senses: Senses) -> None:
+        self._senses = senses
+
+    @property
+    def _surfaces(self) -> Surfaces:
+        return self._senses.hand.surfaces if self._senses.hand is not None else LET_GO
+
+    @property
+    def _sticks(self) -> Sticks:
+        hand = self._senses.hand
+        return hand.sticks(self._senses.servos) if hand is not None else Sticks(0.0, 0.0, 0.0, 0.0)
+
+
+class Manual(ByHand):
+    """The surfaces as the hand asks."""
+
+    def step(self, now: Estimate, params: AirParams, dt: float) -> Wish:
+        return Wish(self._surfaces)
+
+
+class Stabilized(ByHand):
+    """Stick to bank and pitch; throttle, rudder, flap and brake as the hand asks. The pedals centred, the side slip is taken out."""
+
+    def step(self, now: Estimate, params: AirParams, dt: float) -> Wish:
+        sticks, surfaces = self._sticks, self._surfaces
+        level = Cycle(now, params, dt).alpha
+        rudder = surfaces.rudder if abs(sticks.yaw) > CENTRED or not self._senses.airborne else None
+        asked = Attitude(sticks.roll * params.turn_bank, level + sticks.pitch * STEEPEST, sticks.throttle, rudder)
+        return Wish(asked, surfaces.flap, surfaces.brake)
+
+
+class Altitude(ByHand):
+    """Stick to bank and climb rate, centred to the height of then; throttle from the lowest airspeed to the highest."""
+
+    def __init__(self, senses: Senses) -> None:
+        super().__init__(senses)
+        self._height: float | None = None
+
+    def step(self, now: Estimate, params: AirParams, dt: float) -> Wish:
+        height, climb = self._vertical(now, params)
+        return Wish(Wanted(self._sticks.roll * params.turn_bank, height, climb, self._airspeed(params)), self._surfaces.flap)
+
+    def _vertical(self, now: Estimate, params: AirParams) -> tuple[float | None, float]:
+        pitch = self._sticks.pitch
+        if abs(pitch) > CENTRED:
+            self._height = None
+            return None, pitch * (params.climb_max if pitch > 0 else params.sink_max)
+        if self._height is None:
+            self._height = now.height
+        return self._height, 0.0
+
+    def _airspeed(self, params: AirParams) -> float:
+        return params.min_airspeed + self._sticks.throttle * (params.max_airspeed - params.min_airspeed)
+
+
+class Position(Altitude):
+    """As Altitude; with the stick centred it holds the line over ground that it flies along once its wings are level."""
+
+    def __init__(self, senses: Senses) -> None:
+        super().__init__(senses)
+        self._line: tuple[Point, Point] | None = None
+
+    def step(self, now: Estimate, params: AirParams, dt: float) -> Wish:
+        if abs(self._sticks.roll) > CENTRED:
+            self._line = None
+        elif self._line is None and abs(now.roll) < WINGS_LEVEL:
+            self._line = ((math.cos(now.course), math.sin(now.course)), (now.north, now.east))
+        if self._line is None:
+            return super().step(now, params, dt)
+        height, climb = self._vertical(now, params)
+        aim = line_aim(*self._line, (now.north, now.east), params)
+        return Wish(Track(aim, height, climb, self._airspeed(params)), self._surfaces.flap)
+
+
+STICK_MODES: Mapping[FlightMode, type[ByHand]] = {
+    FlightMode.MANUAL: Manual,
+    FlightMode.STABILIZED: Stabilized,
+    FlightMode.ALTITUDE: Altitude,
+    FlightMode.POSITION: Position,
+}

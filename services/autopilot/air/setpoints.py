@@ -1,0 +1,92 @@
+"""What a mode wants in a cycle, at one of three levels of control, and what it knows beside the estimate."""
+
+from dataclasses import dataclass
+
+from schemas.messages import FlightSetpoint
+from services.autopilot.air.modes.manual_control import Hand
+from uvf.control.commands import Attitude, Surfaces, Wanted
+from uvf.control.servos import SERVOS, Servos
+from uvf.estimation.state import Estimate
+from uvf.guidance.route import Level
+from uvf.guidance.vector_field import Aim
+from uvf.maths.geodesy import GRAVITY
+from uvf.models.vehicle.flight_params import AirParams
+
+
+@dataclass(frozen=True, slots=True)
+class Track:
+    """To follow a path over ground."""
+
+    aim: Aim
+    height: float | None  # m; None: the climb rate is held instead
+    climb: float  # m/s, of the path
+    airspeed: float  # m/s
+    bank_limit: float | None = None  # rad; None: the vehicle's
+    throttle: float | None = None  # 0..1; None: by the airspeed
+    rudder: float | None = None  # rad, beside the yaw damper; None: the side slip is taken out
+
+
+@dataclass(frozen=True, slots=True)
+class Wish:
+    """``asked``: a path, a bank with height and airspeed, an attitude, or the surfaces themselves."""
+
+    asked: Track | Wanted | Attitude | Surfaces
+    flap: float = 0.0  # rad
+    brake: float = 0.0  # 0..1
+    lift: float = 0.0  # m/s^2, made at once by the flaps, beside what pitch makes
+    firm: bool = False
+    """Climb and pitch are held more firmly than is good for comfort: near the ground."""
+
+
+@dataclass(frozen=True, slots=True)
+class Flown:
+    """What a cycle came to."""
+
+    surfaces: Surfaces
+    aim: Aim
+    level: Level
+    attitude: Attitude | None = None
+    """That is held; None while the surfaces are moved by hand."""
+    airspeed: float | None = None
+    """m/s, that is held."""
+
+
+@dataclass(slots=True)
+class Senses:
+    """What modes know beside the estimate, renewed before each step."""
+
+    airborne: bool = True
+    armed: bool = True
+    hand: Hand | None = None
+    """What is asked by hand; None = nothing fresh."""
+    servos: Servos = SERVOS
+    clearance: float | None = None
+    """m, of the wheels over the ground, seen by a range finder."""
+    push: float = 0.0
+    """m/s^2, specific force forwards."""
+    heave: float = GRAVITY
+    """m/s^2, specific force upwards."""
+    setpoint: FlightSetpoint | None = None
+    """What mode Offboard is asked for; None = nothing fresh."""
+    setpoint_from: str = ""
+    """Whose setpoint that is."""
+    setpoints_wait: tuple[str, ...] = ()
+    """Who else sends some, which are not followed."""
+
+    def update(self, other: "Senses") -> None:
+        """Whoever holds this one sees what is known now."""
+        for name in self.__slots__:
+            setattr(self, name, getattr(other, name))
+
+
+class Phase:
+    """One mode, or one part of it."""
+
+    ended = ""
+    """Why it has come to its end; empty while it goes on."""
+    disarms = False
+    """At its end the motor has nothing more to do."""
+
+    def step(self, now: Estimate, params: AirParams, dt: float) -> Wish:
+        """One cycle of ``dt`` [s]."""
+        raise NotImplementedError

@@ -1,0 +1,64 @@
+"""Events: what changed since the last cycle, in words."""
+
+from collections.abc import Iterable
+
+from schemas.messages import Event
+from services.autopilot.air.modes.mode_manager import Pilot
+from services.autopilot.air.modes.modes import FlightMode
+from uvf.runtime.messages.convert import stamp
+
+
+class Journal:
+    """Compares each cycle with the one before; the first cycle reports the mode it starts in."""
+
+    def __init__(self) -> None:
+        self._mode: FlightMode | None = None
+        self._reason = ""
+        self._armed: bool | None = None
+        self._reached = -1
+        self._pictures = (0, 0)
+        self._notes: list[tuple[str, str]] = []
+        self._laps = 0
+        self._finished = False
+        self._lost = False
+
+    def events(self, t: float, pilot: Pilot, armed: bool) -> list[Event]:
+        navigator = pilot.navigator
+        found: list[Event] = []
+        if self._lost:
+            found.append(_event(t, Event.NOTICE, "IMU back"))
+        if (pilot.mode, pilot.reason) != (self._mode, self._reason):
+            found.append(_event(t, Event.NOTICE, f"mode {pilot.mode.value}", pilot.reason))
+        if self._armed is not None and armed != self._armed:
+            found.append(_event(t, Event.NOTICE, "armed" if armed else "disarmed"))
+        if navigator.reached != self._reached and navigator.reached >= 0:
+            found.append(_event(t, Event.INFO, f"mission item {navigator.reached} reached"))
+        if navigator.laps > self._laps:
+            found.append(_event(t, Event.INFO, f"lap {navigator.laps} closed"))
+        pictures = (navigator.camera.pictures, pilot.shutter.pictures)
+        for camera, before in zip((navigator.camera, pilot.shutter), self._pictures, strict=True):
+            if camera.pictures > before and camera.last is not None:
+                north, east = camera.last
+                found.append(_event(t, Event.INFO, f"camera trigger {sum(pictures)}", f"at x {east:.1f} m, y {north:.1f} m"))
+        found += [_event(t, Event.INFO, text, cause) for text, cause in self._notes]
+        self._pictures, self._notes = pictures, []
+        if navigator.finished and not self._finished:
+            found.append(_event(t, Event.NOTICE, "mission complete"))
+        self._mode, self._reason, self._armed, self._lost = pilot.mode, pilot.reason, armed, False
+        self._reached, self._laps, self._finished = navigator.reached, navigator.laps, navigator.finished
+        return found
+
+    def note(self, notes: Iterable[tuple[str, str]]) -> None:
+        """To be told with the next events: what and why."""
+        self._notes += notes
+
+    def lost(self, t: float, missing: tuple[str, ...]) -> list[Event]:
+        """Without the IMU; once, until it is back."""
+        if self._lost:
+            return []
+        self._lost = True
+        return [_event(t, Event.CRITICAL, "IMU lost: surfaces at trim", ", ".join(missing))]
+
+
+def _event(t: float, severity: Event.Severity, text: str, cause: str = "") -> Event:
+    return Event(timestamp=stamp(t), severity=severity, text=text, cause=cause, source="autopilot")

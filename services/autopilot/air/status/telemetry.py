@@ -1,0 +1,176 @@
+"""From the autopilot's own values (NED, FRD) to messages (ENU, FLU)."""
+
+import math
+
+import numpy as np
+
+from schemas.messages import (
+    FrameTransform,
+    Kind,
+    MissionProgress,
+    NavState,
+    Pose,
+    PoseInFrame,
+    PosesInFrame,
+    SurfaceCommand,
+    Vector3,
+    VehicleStatus,
+)
+from services.autopilot.air.modes.mode_manager import Pilot
+from services.autopilot.air.modes.modes import FlightMode
+from services.autopilot.air.setpoints import Flown
+from services.autopilot.air.status import intake
+from uvf.control.commands import Surfaces
+from uvf.estimation.state import Estimate
+from uvf.guidance.flight_plan import OFF_PATH, next_stop
+from uvf.guidance.flight_plan import Kind as ItemKind
+from uvf.guidance.plan_follower import Navigator
+from uvf.guidance.route import Circle, Place
+from uvf.maths.rotations import from_euler
+from uvf.runtime.messages.convert import quaternion, stamp
+
+MODES = {flown: mode for mode, flown in intake.MODES.items()}
+CIRCLE_POINTS = 24
+
+
+def nav_state(t: float, now: Estimate) -> NavState:
+    # ENU and FLU are each half a turn away from NED and FRD: yaw is mirrored, pitch changes sign with y and z.
+    attitude = from_euler(now.roll, -now.pitch, math.pi / 2 - now.yaw)
+    course = now.course
+    return NavState(
+        timestamp=stamp(t),
+        position=Vector3(x=now.east, y=now.north, z=now.height),
+        velocity=Vector3(x=now.ground_speed * math.sin(course), y=now.ground_speed * math.cos(course), z=now.climb),
+        orientation=quaternion(attitude),
+        angular_velocity=Vector3(x=now.p, y=-now.q, z=-now.r),
+        airspeed=now.airspeed,
+        wind=Vector3(x=now.wind_east, y=now.wind_north),
+        position_sigma=now.position_sigma,
+    )
+
+
+def pose(state: NavState) -> PoseInFrame:
+    return PoseInFrame(timestamp=state.timestamp, frame_id="world", pose=Pose(position=state.position, orientation=state.orientation))
+
+
+def body_frame(state: NavState, vehicle: str) -> FrameTransform:
+    """World from base_link."""
+    return FrameTransform(
+        timestamp=state.timestamp,
+        parent_frame_id="world",
+        child_frame_id=f"{vehicle}/base_link",
+        translation=state.position,
+        rotation=state.orientation,
+    )
+
+
+def surfaces(t: float, s: Surfaces, armed: bool) -> SurfaceCommand:
+    """Disarmed, the motor stays off."""
+    throttle = s.throttle if armed else 0.0
+    return SurfaceCommand(
+        timestamp=stamp(t), aileron=s.aileron, elevator=s.elevator, rudder=s.rudder, throttle=throttle, flap=s.flap, brake=s.brake
+    )
+
+
+def status(t: float, pilot: Pilot, now: Estimate, flown: Flown) -> VehicleStatus:
+    """All but arming, landing, battery and the system id."""
+    message = VehicleStatus(
+        timestamp=stamp(t),
+        kind=Kind.KIND_FIXED_WING,
+        mode=MODES[pilot.mode],
+        stopped=bool(pilot.stopped),
+        command_source=pilot.source,
+        reason=_reason(pilot),
+        throttle=flown.surfaces.throttle,
+        cross_track=flown.aim.error,
+        altitude_error=now.height - flown.level.height,
+        distance_to_waypoint=_distance(pilot, now),
+        waypoint=pilot.navigator.index or 0,
+    )
+    if pilot.circle is not None:
+        centre = pilot.circle.centre
+        message.circle.centre.CopyFrom(Vector3(x=centre.east, y=centre.north, z=centre.height))
+        message.circle.radius = pilot.circle.radius
+    if pilot.home is not None:
+        message.home.x, message.home.y, message.home.z = pilot.home.east, pilot.home.north, pilot.home.height
+    return message
+
+
+def _reason(pilot: Pilot) -> str:
+    """Of the mode; and who is not listened to."""
+    waits = ", ".join(pilot.senses.setpoints_wait) if pilot.mode is FlightMode.OFFBOARD else ""
+    return f"{pilot.reason}; setpoints from {pilot.source}, those of {waits} wait" if waits else pilot.reason
+
+
+def _distance(pilot: Pilot, now: Estimate) -> float:
+    """m, to the current item's place, to the centre of the circle that is held, or to the station behind a leader."""
+    if pilot.station is not None:
+        return pilot.station
+    target = pilot.navigator.target
+    place = target.place if pilot.mode is FlightMode.MISSION and target else pilot.circle.centre if pilot.circle else None
+    return math.hypot(place.north - now.north, place.east - now.east) if place else 0.0
+
+
+def progress(t: float, pilot: Pilot, mission_id: int) -> MissionProgress:
+    navigator = pilot.navigator
+    if not navigator.items:
+        state = MissionProgress.NO_MISSION
+    elif navigator.finished:
+        state = MissionProgress.COMPLETE
+    elif pilot.mode is FlightMode.MISSION:
+        state = MissionProgress.ACTIVE
+    else:
+        state = MissionProgress.NOT_STARTED if navigator.reached < 0 and navigator.index is None else MissionProgress.PAUSED
+    return MissionProgress(
+        timestamp=stamp(t),
+        state=state,
+        current=_current(navigator),
+        total=len(navigator.items),
+        reached=navigator.reached,
+        laps=navigator.laps,
+        mission_id=mission_id,
+    )
+
+
+def _current(navigator: Navigator) -> int:
+    """The last one once all are done, the first before it begins."""
+    if navigator.index is not None:
+        return navigator.index
+    return len(navigator.items) - 1 if navigator.finished else 0
+
+
+def path(t: float, pilot: Pilot) -> PosesInFrame:
+    """What is flown, for display: the items still to come up to a return to the first of them, or the circle."""
+    if pilot.mode is FlightMode.MISSION and pilot.navigator.index is not None:
+        places = _ahead(pilot)
+    elif pilot.mode is FlightMode.FOLLOW and pilot.formation is not None:
+        places = pilot.formation.ahead()
+    else:
+        places = _round(pilot.circle) if pilot.circle else []
+    return PosesInFrame(timestamp=stamp(t), frame_id="world", poses=[_pose(p) for p in places])
+
+
+def _ahead(pilot: Pilot) -> list[Place]:
+    """Each item once, then back to the first when the circuit closes."""
+    navigator = pilot.navigator
+    places = navigator.curve_ahead()
+    seen: list[int] = []
+    index = navigator.index
+    while index is not None and navigator.items[index].kind is not ItemKind.RETURN:
+        item = navigator.items[index]
+        places += [item.place] if item.flies_through or item.kind in OFF_PATH else _round(Circle(item.place, item.radius or 1.0))
+        if index in seen:
+            break
+        seen.append(index)
+        index = next_stop(navigator.items, index + 1, {}).index
+    return places
+
+
+def _round(circle: Circle) -> list[Place]:
+    angles = np.linspace(0, math.tau, CIRCLE_POINTS + 1).tolist()
+    c, r = circle.centre, abs(circle.radius)
+    return [Place(c.north + r * math.cos(a), c.east + r * math.sin(a), c.height) for a in angles]
+
+
+def _pose(place: Place) -> Pose:
+    return Pose(position=Vector3(x=place.east, y=place.north, z=place.height))

@@ -1,0 +1,133 @@
+"""Brings viser's scene to what a picture says, sending only what has changed."""
+
+from collections.abc import Callable, Coroutine, Mapping
+from typing import Any
+
+import numpy as np
+import viser
+from numpy.typing import NDArray
+
+from services.gcs.state.state import Placed
+from services.gcs.view.drawing import FloorPicture, Mesh, Node, Points, Polyline, Text
+from services.gcs.view.layers import ROOTS
+
+Floats = NDArray[np.float64]
+
+MOVED = 1e-3  # m
+TURNED = 1e-3  # quaternion components
+
+
+class ViserScene:
+    """on_pick(vehicle, event): called on viser's event loop when a vehicle's body is clicked."""
+
+    def __init__(self, server: viser.ViserServer, on_pick: Callable[[str, Any], None]) -> None:
+        self._server = server
+        self._on_pick = on_pick
+        self._shown: dict[str, tuple[Node, Any]] = {}
+        self._frames: dict[str, tuple[Any, Placed]] = {}
+        for root in [root for roots in ROOTS.values() for root in roots]:
+            # There before a browser comes, which hides the whole of it.
+            server.scene.add_frame(root, show_axes=False)
+
+    def show(self, nodes: Mapping[str, Node], places: Mapping[str, Placed]) -> None:
+        for name in [n for n in self._shown if n not in nodes]:
+            self._shown.pop(name)[1].remove()
+        for name in [n for n in reversed(self._frames) if n not in places]:  # what hangs on a frame before the frame
+            self._frames.pop(name)[0].remove()
+            self._shown = {k: v for k, v in self._shown.items() if not k.startswith(name + "/")}
+        for name, place in places.items():
+            self._place(name, place)
+        for name, node in nodes.items():
+            before = self._shown.get(name)
+            if before is None:
+                self._shown[name] = (node, self._add(name, node))
+            elif before[0] is not node:
+                self._shown[name] = (node, self._change(name, node, *before))
+
+    def _place(self, name: str, place: Placed) -> None:
+        before = self._frames.get(name)
+        if before is None:
+            handle = self._server.scene.add_frame(name, show_axes=False, wxyz=place.wxyz, position=place.position)
+            self._frames[name] = (handle, place)
+            return
+        handle, old = before
+        if place is old:
+            return
+        moved = float(np.abs(place.position - old.position).max()) > MOVED
+        turned = float(np.abs(place.wxyz - old.wxyz).max()) > TURNED
+        if moved or turned:
+            handle.position, handle.wxyz = place.position, place.wxyz
+            self._frames[name] = (handle, place)
+
+    def _add(self, name: str, node: Node) -> Any:
+        scene = self._server.scene
+        match node:
+            case Mesh():
+                return self._add_mesh(name, node)
+            case Polyline():
+                return scene.add_line_segments(name, segments(node.points), node.colour, thickness=node.width, thickness_units="screen")
+            case Points():
+                return scene.add_point_cloud(
+                    name, _f32(node.points), node.colour, point_size=node.size, point_shape="circle", precision="float32"
+                )
+            case Text():
+                return scene.add_label(name, node.text, position=node.position, anchor="bottom-center")
+            case FloorPicture():
+                return self._add_picture(name, node)
+
+    def _add_mesh(self, name: str, node: Mesh) -> Any:
+        opacity = None if node.opacity >= 1 else node.opacity
+        handle = self._server.scene.add_mesh_simple(
+            name, _f32(node.vertices), node.faces.astype(np.uint32), color=node.colour, opacity=opacity, flat_shading=True, side="double"
+        )
+        if node.selects:
+            handle.on_click(self._picking(node.selects))
+        return handle
+
+    def _picking(self, vehicle: str) -> Callable[[Any], Coroutine[Any, Any, None]]:
+        async def picked(event: Any) -> None:
+            self._on_pick(vehicle, event)
+
+        return picked
+
+    def _add_picture(self, name: str, node: FloorPicture) -> Any:
+        wxyz = (float(np.cos(node.yaw / 2)), 0.0, 0.0, float(np.sin(node.yaw / 2)))
+        empty = np.zeros((2, 2, 4), dtype=np.uint8)
+        handle = self._server.scene.add_image(
+            name, empty, node.width, node.height, format="png", cast_shadow=False, receive_shadow=False, wxyz=wxyz, position=node.centre
+        )
+        handle._data = node.png
+        return handle
+
+    def _change(self, name: str, node: Node, old: Node, handle: Any) -> Any:
+        match node, old:
+            case (Polyline(), Polyline()) if node.colour == old.colour and node.width == old.width:
+                handle.points = segments(node.points)
+            case (Points(), Points()) if node.colour == old.colour and len(node.points) == len(old.points):
+                handle.points = _f32(node.points)
+            case (Text(), Text()):
+                self._change_text(node, old, handle)
+            case (FloorPicture(), FloorPicture()) if (node.width, node.height, node.centre, node.yaw) == (
+                old.width,
+                old.height,
+                old.centre,
+                old.yaw,
+            ):
+                handle._data = node.png
+            case _:
+                return self._add(name, node)
+        return handle
+
+    def _change_text(self, node: Text, old: Text, handle: Any) -> None:
+        if node.text != old.text:
+            handle.text = node.text
+        handle.position = node.position
+
+
+def segments(points: Floats) -> NDArray[np.float32]:
+    """(n, 3) points of a poly-line -> (n - 1, 2, 3) segments."""
+    return _f32(np.stack((points[:-1], points[1:]), axis=1))
+
+
+def _f32(points: Floats) -> NDArray[np.float32]:
+    return np.ascontiguousarray(points, dtype=np.float32)

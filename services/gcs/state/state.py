@@ -1,0 +1,389 @@
+"""What the ground station knows: the newest message of each kind, when it came, and what follows from them."""
+
+from collections.abc import Mapping, Sequence, Set
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+from google.protobuf.message import Message
+from numpy.typing import NDArray
+
+from schemas.messages import (
+    Clock,
+    CompressedImage,
+    Event,
+    Fence,
+    FrameTransform,
+    GimbalCommand,
+    Grid,
+    Guest,
+    JointStates,
+    LaserScan,
+    Mission,
+    MissionProgress,
+    NavState,
+    NavStatus,
+    Odometry,
+    PoseInFrame,
+    PosesInFrame,
+    SimObject,
+    SimObjects,
+    StopEngagement,
+    VehicleStatus,
+)
+from schemas.topics import SYSTEM
+from services.gcs.state.event_log import Journal, Line
+from services.gcs.state.guests import FORGOTTEN_AFTER, Guests
+from services.gcs.state.process_book import ProcessBook
+from services.gcs.state.refusals import Refusals
+from services.gcs.state.session import Session
+from services.gcs.view.layers import SHOWN_AT_FIRST
+from services.gcs.view.tracks import Track
+from uvf.maths.rotations import from_euler, matrix
+from uvf.models.mission.file import Start, Vehicle
+from uvf.models.scenario import Member, Site
+from uvf.models.vehicle.file import load_vehicle
+from uvf.models.yaml_data import BadInput
+from uvf.runtime.messages.convert import array, scan_points, seconds, wxyz
+from uvf.runtime.messages.mapped_floor import MappedFloor
+from uvf.runtime.messages.spawned import SPAWNED_MOST, name_fault, object_fault
+from uvf.runtime.state.stop_all import StopStatus, name_of, told
+
+Floats = NDArray[np.float64]
+
+STALE_AFTER = 1.5  # s, wall clock
+LOST_AFTER = 5.0  # s
+MOST_VEHICLES = 64
+LONGEST_TEXT = 500  # letters of an event or of what a guest says of itself
+SIGNS_OF_LIFE = ("nav", "pose", "odometry", "status", "nav_status", "progress")
+SHOWN_BY_THE_CLOCK = ("conductor",)
+"""Sources whose warnings tell of a state that the page reads from the clock: they stand in the log, not as notices."""
+COLOURS = ("#4ea1ff", "#f2913d", "#3fbf7f", "#b98cf5", "#e8c547", "#5fd4d6")
+"""Vehicles' own colours, told apart by colour-blind people too; red and magenta keep their meanings."""
+
+
+class Placed(NamedTuple):
+    """A pose in the world: m, and the quaternion wxyz."""
+
+    position: Floats
+    wxyz: Floats
+
+
+@dataclass
+class Order:
+    """The last thing asked of a vehicle, and what became of it."""
+
+    text: str
+    at: float  # s, wall
+    state: str = "sent"  # sent | accepted | refused
+    reason: str = ""
+
+
+@dataclass
+class VehicleModel:
+    """One vehicle as heard over the link."""
+
+    name: str
+    member: Member
+    colour: str
+    track: Track
+    nav: NavState | None = None
+    pose: PoseInFrame | None = None
+    odometry: Odometry | None = None
+    truth: NavState | None = None
+    status: VehicleStatus | None = None
+    nav_status: NavStatus | None = None
+    path: PosesInFrame | None = None
+    mission: Mission | None = None
+    progress: MissionProgress | None = None
+    fence: Fence | None = None
+    scan: LaserScan | None = None
+    image: CompressedImage | None = None
+    chase: CompressedImage | None = None
+    gimbal: CompressedImage | None = None
+    gimbal_joints: JointStates | None = None
+    joints: JointStates | None = None
+    grid: Grid | None = None
+    team_map: Grid | None = None
+    world_from_map: FrameTransform | None = None
+    heard_at: dict[str, float] = field(default_factory=dict)
+    """Field -> when its newest message came [s, wall]."""
+    scan_points: Floats | None = None
+    """(n, 3) m, world: the newest scan as seen from where the vehicle was when it came."""
+    mapped: float | None = None
+    """0..1, the report's ``mapped_floor`` of the newest map."""
+    order: Order | None = None
+    goal_asked: tuple[float, float] | None = None
+    aim: GimbalCommand = field(default_factory=GimbalCommand)
+    """Where its gimbal was last told from here to look."""
+
+    @property
+    def flies(self) -> bool:
+        return self.member.file.kind == "fixed_wing"
+
+    @property
+    def leader(self) -> str:
+        """Whom the mission has it follow; empty for one that follows nobody."""
+        follow = self.member.entry.job.follow
+        return follow.leader if follow is not None else ""
+
+    @property
+    def stopped(self) -> bool:
+        """It says itself that it heeds STOP ALL."""
+        return self.status is not None and self.status.stopped
+
+    @property
+    def heard(self) -> float | None:
+        """When the vehicle's own running messages were last heard [s, wall]: neither latched ones nor the simulator's truth."""
+        return max((at for name, at in self.heard_at.items() if name in SIGNS_OF_LIFE), default=None)
+
+    @property
+    def place(self) -> Placed | None:
+        """Where the vehicle believes to be: the newer of its two estimates."""
+        nav_at, pose_at = self.heard_at.get("nav", -1.0), self.heard_at.get("pose", -1.0)
+        if self.nav is not None and nav_at >= pose_at - STALE_AFTER:
+            return Placed(array(self.nav.position), wxyz(self.nav.orientation))
+        if self.pose is not None:
+            return Placed(array(self.pose.pose.position), wxyz(self.pose.pose.orientation))
+        return None
+
+    @property
+    def true_place(self) -> Placed | None:
+        return None if self.truth is None else Placed(array(self.truth.position), wxyz(self.truth.orientation))
+
+    @property
+    def speed(self) -> float:
+        """m/s over the ground; forward speed of a ground vehicle, negative backwards."""
+        if self.odometry is not None and not self.flies:
+            return self.odometry.linear_velocity.x
+        return float(np.hypot(self.nav.velocity.x, self.nav.velocity.y)) if self.nav is not None else 0.0
+
+    @property
+    def turn_rate(self) -> float:
+        """rad/s, left positive."""
+        if self.odometry is not None and not self.flies:
+            return self.odometry.angular_velocity.z
+        return self.nav.angular_velocity.z if self.nav is not None else 0.0
+
+
+class Model:
+    """All vehicles of a mission, the clock, the log, and what each browser has chosen."""
+
+    def __init__(self, site: Site) -> None:
+        self.site = site
+        self.vehicles: dict[str, VehicleModel] = {}
+        for name, member in sorted(site.members.items()):
+            self._add(name, member)
+        self.sessions: dict[int, Session] = {}
+        """Of each browser that is connected."""
+        self.clock: Clock | None = None
+        self.clock_at: float | None = None
+        self.stop = StopStatus()
+        self.log = Journal()
+        self._floors = {v.name: MappedFloor(site.world, v.member) for v in self.vehicles.values() if not v.flies}
+        self.spawned: Sequence[SimObject] = ()
+        """What has been put into the running simulation."""
+        self.strangers: Mapping[str, NavState] = {}
+        """True motion of the vehicles among it."""
+        self.refused = Refusals(self._warn)
+        self.processes = ProcessBook(self.refused)
+        self._guests = Guests()
+
+    def _add(self, name: str, member: Member) -> None:
+        colour = COLOURS[len(self.vehicles) % len(COLOURS)]
+        self.vehicles[name] = VehicleModel(name, member, colour, _track(member))
+
+    def join(self, page: int) -> None:
+        """A browser has connected; it shows a ground vehicle at first, if there is one."""
+        grounded = [v.name for v in self.vehicles.values() if not v.flies]
+        self.sessions[page] = Session(page, next(iter(grounded or self.vehicles), ""))
+
+    @property
+    def layers(self) -> Set[str]:
+        """Those that any browser shows; while there is none, those that the first one will."""
+        return frozenset().union(*(session.layers for session in self.sessions.values())) if self.sessions else SHOWN_AT_FIRST
+
+    def chosen_by(self, session: Session) -> VehicleModel | None:
+        """None while no vehicle is known; then the first that comes."""
+        if session.vehicle not in self.vehicles:
+            session.vehicle = next(iter(self.vehicles), "")
+        return self.vehicles.get(session.vehicle)
+
+    @property
+    def stopped(self) -> bool:
+        """STOP ALL is engaged: by a word of anybody, or as a vehicle reports it."""
+        return bool(self.stop) or any(v.stopped for v in self.vehicles.values())
+
+    @property
+    def stops(self) -> list[StopEngagement]:
+        """Every engagement that is known here or that a vehicle reports."""
+        reported = [one for v in self.vehicles.values() if v.status is not None for one in v.status.stops]
+        return list({name_of(one): one for one in (*reported, *self.stop.engagements)}.values())
+
+    @property
+    def sim_time(self) -> float:
+        return self.clock.t_ns * 1e-9 if self.clock is not None else 0.0
+
+    def hear_newest(self, t: float, newest: Mapping[str, Mapping[str, Message]], events: Mapping[str, Sequence[Event]]) -> None:
+        """newest: by kind, then by vehicle; events: by vehicle."""
+        for what, messages in newest.items():
+            self.hear(t, what, messages)
+        self.hear_events(t, events)
+
+    def hear(self, t: float, what: str, messages: Mapping[str, Message]) -> None:
+        """Takes in the newest message of one kind for each vehicle that has a new one."""
+        for name, message in messages.items():
+            vehicle = self.vehicles.get(name)
+            if vehicle is None:
+                self._guests.hear(what, name, message)
+                continue
+            if getattr(vehicle, what) is message:
+                continue
+            setattr(vehicle, what, message)
+            vehicle.heard_at[what] = t
+            if what in ("nav", "pose") and vehicle.place is not None:
+                vehicle.track.add(vehicle.place.position)
+            elif what == "scan":
+                vehicle.scan_points = scan_in_world(vehicle)
+            elif what == "grid" and not vehicle.flies:
+                floor = self._floors.get(name)
+                vehicle.mapped = floor.share(vehicle.grid) if floor and vehicle.grid and vehicle.grid.column_count else None
+
+    def hear_clock(self, t: float, clock: Clock | None) -> None:
+        if clock is None or clock is self.clock:
+            return
+        if self.clock is not None and clock.epoch != self.clock.epoch:
+            for vehicle in self.vehicles.values():
+                vehicle.track.clear()
+                vehicle.goal_asked = None
+            self.note("", "the simulation has started afresh")
+        self.clock, self.clock_at = clock, t
+
+    def hear_stop(self, stop: StopStatus) -> None:
+        """Writes down who engages STOP ALL, and who has released the last engagement."""
+        before, self.stop = self.stop, stop
+        known = {name_of(one) for one in before.engagements}
+        for one in stop.engagements:
+            if name_of(one) not in known:
+                self.note("", f"STOP ALL engaged by {told([one])}", Event.WARNING)
+        if before and not stop:
+            self.note("", f"STOP ALL released by {stop.released_by or 'somebody unnamed'}", Event.NOTICE)
+
+    def hear_objects(self, lists: Sequence[SimObjects | None], truth: Mapping[str, NavState]) -> None:
+        """lists: of each simulator, what has been put into it."""
+        told = (thing for one in lists if one is not None for thing in one.objects)
+        self.spawned = [thing for thing in told if self._is_sound(thing)][:SPAWNED_MOST]
+        self.strangers = {name: state for name, state in truth.items() if name not in self.vehicles}
+
+    def is_guest(self, name: str) -> bool:
+        """No mission names it."""
+        return name not in self.site.members
+
+    def hear_guests(self, t: float, guests: Mapping[str, Guest]) -> None:
+        """Vehicles that no mission names are shown like all others, once it is known what they look like."""
+        strangers = [(name, guest) for name, guest in guests.items() if name not in self.vehicles]
+        lost = self._lost_guests(t) if strangers else []
+        for name, guest in strangers:
+            if not self._guests.is_away(name, guest) and self._is_name(name):
+                self._meet(t, name, guest, lost)
+
+    def _meet(self, t: float, name: str, guest: Guest, lost: list[str]) -> None:
+        """Takes a guest in, in the place of one of the lost if there is no other, or turns it away.
+
+        Its model is one of those in ``vehicles/``, never a path.
+        """
+        is_full = len(self.vehicles) >= MOST_VEHICLES
+        if is_full and not lost:
+            self.refused.add("vehicles", name, f"more than {MOST_VEHICLES} vehicles are on the bus: not all are shown")
+            return
+        try:
+            file = load_vehicle(self.site.vehicles_folder, model_name(guest.model))
+        except BadInput as error:
+            if self._guests.turn_away(name, guest.model):
+                self._warn(f"'{name}' cannot be shown: {error}")
+            return
+        if is_full:
+            self._forget(lost.pop())
+        self._guests.take_in(t, name, guest)
+        entry = Vehicle(model=guest.model, start=Start(x=0.0, y=0.0), system_id=1)
+        self._add(name, Member(name, entry, file, self.site.vehicles_folder / guest.model))
+        self.note(name, f"a guest: {guest.about[:LONGEST_TEXT]}", Event.NOTICE)
+
+    def _lost_guests(self, t: float) -> list[str]:
+        """Those that may be forgotten, the longest lost last. None that a browser shows; by hand only the mission's own are driven."""
+        chosen = {session.vehicle for session in self.sessions.values()}
+        heard = {name: self.vehicles[name].heard or met for name, (met, _) in self._guests.met.items() if name not in chosen}
+        return sorted((name for name, at in heard.items() if t - at > FORGOTTEN_AFTER), key=heard.__getitem__, reverse=True)
+
+    def _forget(self, name: str) -> None:
+        gone = self.vehicles.pop(name)
+        self._guests.forget(name, {what: getattr(gone, what) for what in SIGNS_OF_LIFE})
+        self.note(name, "nothing has been heard of it for long: shown no more, to make room for another guest")
+
+    def _is_sound(self, thing: SimObject) -> bool:
+        if not self._is_name(thing.name):
+            return False
+        if why := object_fault(thing):
+            self.refused.add("objects", thing.name, f"something on the bus is not shown: {why}")
+        return not why
+
+    def _is_name(self, name: str) -> bool:
+        """What may stand for a vehicle or an object: those of the mission, and what is spelt like them."""
+        fault = "" if name in self.vehicles else name_fault(name)
+        if fault:
+            self.refused.add("names", name, f"something on the bus is not shown: {fault}")
+        return not fault
+
+    def _warn(self, text: str) -> None:
+        self.note("", text[:LONGEST_TEXT], Event.WARNING)
+
+    def hear_events(self, t: float, by_vehicle: Mapping[str, Sequence[Event]]) -> None:
+        for name, events in by_vehicle.items():
+            if name != SYSTEM and not self._is_name(name):
+                continue
+            for event in events:
+                cause = f" ({event.cause})" if event.cause else ""
+                text = f"{event.text}{cause}"[:LONGEST_TEXT]
+                line = Line(seconds(event.timestamp), event.severity, "" if name == SYSTEM else name, text)
+                self.log.write(line)
+                if line.severity >= Event.WARNING and event.source not in SHOWN_BY_THE_CLOCK:
+                    self.log.tell(t, line)
+
+    def note(self, vehicle: str, text: str, severity: int = Event.INFO, of_operator: bool = False) -> Line:
+        """Writes the ground station's own line into the log."""
+        line = Line(self.sim_time, severity, vehicle, text, of_operator)
+        self.log.write(line)
+        return line
+
+
+def model_name(told: str) -> str:
+    """What somebody on the bus gives as the name of a folder in ``vehicles/``. Raises BadInput when it cannot be one."""
+    if fault := name_fault(told):
+        raise BadInput(f"its model: {fault}")
+    return told
+
+
+def _track(member: Member) -> Track:
+    return Track(spacing=2.0, jump=60.0) if member.file.kind == "fixed_wing" else Track(spacing=0.04, jump=0.6)
+
+
+def scan_in_world(vehicle: VehicleModel) -> Floats | None:
+    """(n, 3) m, world: the returns of the newest scan; None while the vehicle or its lidar has no place."""
+    scan, place, lidar = vehicle.scan, vehicle.place, vehicle.member.file.sensors.lidar
+    if scan is None or place is None or lidar is None or not scan.ranges:
+        return None
+    flat = scan_points(scan)
+    in_lidar = np.column_stack((flat, np.zeros(len(flat))))
+    in_body = in_lidar @ matrix(from_euler(*lidar.mount.rpy)).T + np.array(lidar.mount.xyz)
+    in_world: Floats = in_body @ matrix(place.wxyz).T + place.position
+    return in_world
+
+
+def link_of(heard: float | None, t: float) -> tuple[str, str]:
+    """(word, class) for the age of the last message: WAITING, LIVE, STALE 3 s, LINK LOST."""
+    if heard is None:
+        return "WAITING", "idle"
+    age = t - heard
+    if age < STALE_AFTER:
+        return "LIVE", "good"
+    return (f"STALE {age:.0f} s", "warn") if age < LOST_AFTER else (f"LINK LOST {age:.0f} s", "bad")

@@ -1,0 +1,123 @@
+"""The words in which the view speaks to a page: things in the scene, buttons, panels; plain data, no viser."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from services.gcs.commands import Action
+from services.gcs.state.state import Placed
+from services.gcs.view.camera_panel import GimbalPanel
+from services.gcs.view.markup import Html
+
+Floats = NDArray[np.float64]
+Colour = tuple[int, int, int]
+
+
+@dataclass(frozen=True, eq=False)
+class Mesh:
+    """vertices: (n, 3) m, parent's frame; faces: (m, 3) indices."""
+
+    vertices: Floats
+    faces: NDArray[np.int64]
+    colour: Colour
+    opacity: float = 1.0
+    selects: str = ""
+    """A click on it selects this vehicle."""
+
+
+@dataclass(frozen=True, eq=False)
+class Polyline:
+    """points: (n, 3) m, parent's frame."""
+
+    points: Floats
+    colour: Colour
+    width: float = 2.0  # px
+
+
+@dataclass(frozen=True, eq=False)
+class Points:
+    """points: (n, 3) m, parent's frame."""
+
+    points: Floats
+    colour: Colour
+    size: float  # m
+
+
+@dataclass(frozen=True, eq=False)
+class FloorPicture:
+    """A PNG lying on the ground: its sizes [m] and the place of its middle."""
+
+    png: bytes
+    width: float
+    height: float
+    centre: tuple[float, float, float]
+    yaw: float = 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Text:
+    text: str
+    position: tuple[float, float, float]
+
+
+Node = Mesh | Polyline | Points | FloorPicture | Text
+
+
+@dataclass(frozen=True)
+class Button:
+    """One command button; ``lit`` when its state is the present one."""
+
+    key: str
+    label: str
+    action: Action
+    hint: str = ""
+    lit: bool = False
+    enabled: bool = True
+    colour: str = ""
+
+
+@dataclass(frozen=True)
+class Camera:
+    """From where to where the scene is looked at [m, world]."""
+
+    position: tuple[float, float, float]
+    look_at: tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Panel:
+    """What one browser alone shows: its vehicle, and the buttons for it."""
+
+    vehicle: str = ""
+    html: Mapping[str, Html] = field(default_factory=dict)
+    buttons: Sequence[Button] = ()
+    image: bytes | None = None
+    gimbal: GimbalPanel | None = None
+    hidden: frozenset[str] = frozenset()
+    """Nodes of the scene that it does not show, with all that hangs below them."""
+
+
+@dataclass(frozen=True)
+class Picture:
+    """What all browsers show after one step, and each of its own. A node that is the same object as before has not changed."""
+
+    nodes: Mapping[str, Node] = field(default_factory=dict)
+    places: Mapping[str, Placed] = field(default_factory=dict)
+    html: Mapping[str, Html] = field(default_factory=dict)
+    buttons: Sequence[Button] = ()
+    panels: Mapping[int, Panel] = field(default_factory=dict)
+    """By page, as in ``Session.page``."""
+
+
+class Page(Protocol):
+    """Where pictures are shown and people click: viser, or a list in a test."""
+
+    def show(self, picture: Picture) -> None: ...
+
+    def actions(self) -> list[Action]:
+        """What people have asked for since the last call, oldest first."""
+
+    def close(self) -> None: ...

@@ -1,0 +1,45 @@
+"""Where the surfaces and the propeller of an aircraft are, as ``sensor/joints`` tells; a part that has hardly turned stays as it was."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from schemas.messages import JointStates
+from services.gcs.state.state import Placed
+from uvf.maths.rotations import IDENTITY, from_axis
+from uvf.models.shapes.aircraft_panels import Movable
+from uvf.models.vehicle.surface_joints import deflection
+from uvf.runtime.messages.convert import seconds
+
+SEEN = 0.01  # rad, turns smaller than that are not shown
+MOST_TURN = 0.9  # rad of the propeller between two messages: two blades that turn faster would seem to turn back
+
+
+class MovingParts:
+    """The parts of one aircraft."""
+
+    def __init__(self, movables: Sequence[Movable]) -> None:
+        self._movables = movables
+        self._angles = dict.fromkeys((m.name for m in movables), 0.0)
+        self._placed = {m.name: Placed(m.origin, IDENTITY) for m in movables}
+        self._heard: JointStates | None = None
+
+    def places(self, joints: JointStates | None) -> Mapping[str, Placed]:
+        """Name -> frame of the part in the body frame; the same objects while nothing is seen to turn."""
+        if joints is not None and joints is not self._heard:
+            angles = {joint.name: joint.position for joint in joints.joints}
+            speeds = {joint.name: joint.velocity for joint in joints.joints}
+            dt = seconds(joints.timestamp) - seconds(self._heard.timestamp) if self._heard is not None else 0.0
+            self._heard = joints
+            for movable in self._movables:
+                if movable.spins:
+                    turn = min(max(speeds.get(movable.name, 0.0) * dt, -MOST_TURN), MOST_TURN)
+                    self._show(movable, (self._angles[movable.name] + turn) % (2 * np.pi))
+                else:
+                    self._show(movable, deflection(movable.name, angles))
+        return self._placed
+
+    def _show(self, movable: Movable, angle: float) -> None:
+        if abs(angle - self._angles[movable.name]) > SEEN:
+            self._angles[movable.name] = angle
+            self._placed[movable.name] = Placed(movable.origin, from_axis(movable.axis, angle))

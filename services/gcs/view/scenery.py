@@ -1,0 +1,134 @@
+"""The world about the vehicles: ground, floor, walls, furniture; each shape is made once, also of what moves by script."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from services.gcs.state.state import Placed
+from services.gcs.view.bodies import rgb
+from services.gcs.view.drawing import Colour, Mesh, Node, Polyline
+from uvf.maths.rotations import IDENTITY, from_euler, matrix
+from uvf.models.mission.file import Waypoint
+from uvf.models.scenario import Member, Site
+from uvf.models.shapes.mesh import triangles
+from uvf.models.shapes.mesh_parts import Part, box, joined
+from uvf.models.shapes.solid import Solid, pose_at
+from uvf.models.world.file import Wall, WorldFile
+from uvf.models.world.geometry import WALL, solids
+
+Floats = NDArray[np.float64]
+
+WALL_SHOWN = 0.9  # m: walls are cut at this height so that one looks into the rooms
+FLOOR: Colour = (52, 60, 74)
+YARD: Colour = (50, 62, 74)
+YARD_WIDTH = 6.0  # m about the floor
+
+
+def scenery(world: WorldFile) -> dict[str, Node]:
+    """Node name -> what stands there."""
+    x_min, y_min, x_max, y_max = world.floor
+    floor = box(((x_min + x_max) / 2, (y_min + y_max) / 2, -0.06), (x_max - x_min, y_max - y_min, 0.1))
+    yard = box(((x_min + x_max) / 2, (y_min + y_max) / 2, -0.09), (x_max - x_min + 2 * YARD_WIDTH, y_max - y_min + 2 * YARD_WIDTH, 0.1))
+    nodes: dict[str, Node] = {
+        "/world/floor": Mesh(floor.vertices, floor.faces, FLOOR),
+        "/world/yard": Mesh(yard.vertices, yard.faces, YARD),
+    }
+    walls = [(wall.colour, part) for wall in world.walls for part in _segments(wall)]
+    nodes.update(_merged("/world/walls", walls))
+    things = [(s.colour, _placed(s)) for s in solids(world) if s.name != WALL and s.path is None]
+    nodes.update(_merged("/world/things", things))
+    nodes.update((f"{_frame(s)}/shape", merge([at_rest(s)], rgb(s.colour))) for s in moving(world))
+    return nodes
+
+
+def moving(world: WorldFile) -> list[Solid]:
+    """What goes its way by a script: people, doors."""
+    return [solid for solid in solids(world) if solid.path is not None]
+
+
+def places_of(scripted: Sequence[Solid], t: float) -> dict[str, Placed]:
+    """Node name -> where it is at simulation time ``t`` [s]; its shape is drawn in that frame."""
+    return {_frame(solid): Placed(*pose_at(solid, t)) for solid in scripted}
+
+
+def _frame(solid: Solid) -> str:
+    return f"/world/moving/{solid.name}"
+
+
+def _placed(solid: Solid) -> Part:
+    """A solid's triangles in the world."""
+    return Part(*triangles(solid))
+
+
+def at_rest(solid: Solid) -> Part:
+    """A solid's triangles in its own frame."""
+    return Part(*triangles(replace(solid, position=np.zeros(3), orientation=IDENTITY)))
+
+
+def _segments(wall: Wall) -> Iterator[Part]:
+    """Each stretch of a wall as a box, lengthened by half its thickness at both ends so that corners close."""
+    height = min(wall.height, WALL_SHOWN)
+    for a, b in zip(np.array(wall.points[:-1]), np.array(wall.points[1:]), strict=True):
+        along = b - a
+        length = float(np.hypot(*along)) + wall.thickness
+        middle = (a + b) / 2
+        part = box((0, 0, 0), (length, wall.thickness, height))
+        yield _turned(part, float(np.arctan2(along[1], along[0])), (middle[0], middle[1], height / 2))
+
+
+def _turned(part: Part, yaw: float, centre: tuple[float, float, float]) -> Part:
+    rotation = matrix(from_euler(0, 0, yaw))
+    return Part(part.vertices @ rotation.T + np.array(centre), part.faces)
+
+
+def _merged(name: str, parts: list[tuple[tuple[float, float, float], Part]]) -> dict[str, Node]:
+    """One mesh for each colour: a browser draws ten big meshes faster than a hundred small ones."""
+    by_colour: dict[tuple[float, float, float], list[Part]] = {}
+    for colour, part in parts:
+        by_colour.setdefault(colour, []).append(part)
+    return {f"{name}/{i}": merge(group, rgb(colour)) for i, (colour, group) in enumerate(sorted(by_colour.items()))}
+
+
+def merge(parts: list[Part], colour: Colour, selects: str = "") -> Mesh:
+    return Mesh(*joined(parts), colour, selects=selects)
+
+
+def coloured(parts: Sequence[Part], colour: Colour, selects: str = "") -> dict[str, Node]:
+    """The parts of a body, those of one colour in one mesh; ``colour`` for those that have none."""
+    groups: dict[Colour, list[Part]] = {}
+    for part in parts:
+        groups.setdefault(part.colour or colour, []).append(part)
+    return {str(i): merge(group, c, selects) for i, (c, group) in enumerate(groups.items())}
+
+
+def rgb_of(colour: str) -> Colour:
+    """``#4ea1ff`` -> (78, 161, 255)."""
+    return int(colour[1:3], 16), int(colour[3:5], 16), int(colour[5:7], 16)
+
+
+def circuit(items: list[Waypoint]) -> Floats:
+    """(n, 3) m, world: the mission's legs as written, closed where a jump leads back."""
+    points = [(w.x, w.y, w.z) for w in items if w.kind in ("waypoint", "orbit")]
+    if points and any(w.kind == "jump" for w in items):
+        points.append(points[0])
+    return np.array(points).reshape(-1, 3)
+
+
+def circuit_line(points: Floats, colour: Colour) -> Polyline:
+    return Polyline(points, colour, 2.0)
+
+
+def extent(site: Site) -> Floats:
+    """(2, 3) m: lowest and highest corner of the floor, the starts and the circuits."""
+    x_min, y_min, x_max, y_max = site.world.floor
+    points = [np.array(((x_min, y_min, 0.0), (x_max, y_max, 0.0)))]
+    points += [_reach(member) for member in site.members.values()]
+    everything = np.vstack(points)
+    return np.array((everything.min(axis=0), everything.max(axis=0)))
+
+
+def _reach(member: Member) -> Floats:
+    start = member.entry.start
+    return np.vstack((np.array(((start.x, start.y, start.z),)), circuit(member.entry.job.mission)))

@@ -1,0 +1,133 @@
+"""The bar over the scene: link and time, the states that want attention as long as they last, and notices of late."""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from schemas.messages import Clock, Event, NavStatus, Process, StopEngagement
+from services.gcs.commands import SOURCE
+from services.gcs.state.state import Model, VehicleModel, link_of
+from services.gcs.view.markup import Html, html, joined
+from uvf.runtime.state.stop_all import told
+
+SEVERITY: dict[int, tuple[str, str]] = {
+    Event.INFO: ("·", "info"),
+    Event.NOTICE: ("i", "notice"),
+    Event.WARNING: ("⚠", "warn"),
+    Event.ERROR: ("✖", "bad"),
+    Event.CRITICAL: ("✖", "bad"),
+}
+SOURCES = {SOURCE: "this page", "mavlink": "a MAVLink ground station", "launcher": "the launcher"}
+STOPS_SHOWN = 3
+ALERTS_SHOWN, ALERT_LENGTH = 5, 120  # letters
+UNWELL = {Process.RESTARTING: ("is started again", "warn"), Process.FAILED: ("has failed for good", "bad")}
+
+
+class Alert(NamedTuple):
+    style: str
+    """Class of the line: bad or warn."""
+    text: str
+
+
+def clock_text(seconds: float) -> str:
+    """``00:01:23`` of simulation time [s]."""
+    whole = int(seconds)
+    return f"{whole // 3600:02d}:{whole // 60 % 60:02d}:{whole % 60:02d}"
+
+
+def system_link(model: Model, t: float) -> tuple[str, str]:
+    """(word, class) for the whole link: by the clock, or by the vehicles where there is no clock."""
+    heard = [v.heard for v in model.vehicles.values() if v.heard is not None]
+    newest = model.clock_at if model.clock_at is not None else max(heard, default=None)
+    word, style = link_of(newest, t)
+    if style == "good" and model.clock is not None and model.clock.state != Clock.RUNNING:
+        return "PAUSED", "warn"
+    return word, style
+
+
+def status_bar(model: Model, chosen: VehicleModel | None, t: float) -> Html:
+    word, style = system_link(model, t)
+    rate = f"× {model.clock.rate:.2f}" if model.clock is not None and model.clock.rate > 0 else ""
+    live = sum(link_of(v.heard, t)[1] == "good" for v in model.vehicles.values())
+    parts = [
+        html("<b class='g-{}'>● {}</b>", style, word),
+        html("<span>sim <b>{}</b> <i>{}</i></span>", clock_text(model.sim_time), rate),
+        html("<span>{} of {} vehicles</span>", live, len(model.vehicles)),
+    ]
+    if chosen is not None:
+        parts.append(
+            html("<span class='g-follow' hidden data-name='{}' data-distance='{}'></span>", chosen.name, 40 if chosen.flies else 3)
+        )
+    states = joined(html("<div class='g-alert g-a-{}'>{}</div>", style, text) for style, text in alerts(model, t))
+    return html("<div class='g-status'>{}</div>{}{}", joined(parts), states, _notices(model, t))
+
+
+def alerts(model: Model, t: float) -> list[Alert]:
+    """Each state that wants attention now; each goes when its state goes.
+
+    Only so many are shown: first what concerns the mission and its vehicles, then guests, then processes, of each the gravest
+    first. So neither strangers nor a launcher that tells of many failures hide what a vehicle of the mission needs.
+    """
+    own: list[Alert] = []
+    guests: list[Alert] = []
+    if model.clock is not None and model.clock.waiting_for:
+        own.append(Alert("warn", f"⚠ time stands: waits for {model.clock.waiting_for}"))
+    for v in model.vehicles.values():
+        (guests if model.is_guest(v.name) else own).extend(_of_vehicle(model, v, t))
+    stop = [Alert("bad", f"■ STOP ALL ENGAGED {_by_whom(model)}".rstrip())] if model.stopped else []
+    found = stop + [alert for group in (own, guests, _of_processes(model)) for alert in sorted(group, key=_gravity)]
+    shown, rest = found[:ALERTS_SHOWN], sorted(found[ALERTS_SHOWN:], key=_gravity)
+    more = [Alert(rest[0].style, f"and {len(rest)} more")] if rest else []
+    return [Alert(style, text if len(text) <= ALERT_LENGTH else f"{text[: ALERT_LENGTH - 1]}…") for style, text in shown] + more
+
+
+def _gravity(alert: Alert) -> bool:
+    """Sorts what is bad before what is only a warning."""
+    return alert.style != "bad"
+
+
+def _of_vehicle(model: Model, v: VehicleModel, t: float) -> Iterator[Alert]:
+    word, style = link_of(v.heard, t)
+    if style == "bad":
+        yield Alert("bad", f"✖ {v.name}: {word}")
+    elif v.nav_status is not None and v.nav_status.state == NavStatus.BLOCKED and not model.stopped:
+        yield Alert("warn", f"⚠ {v.name} is blocked{f': {v.nav_status.reason}' if v.nav_status.reason else ''}")
+
+
+def _of_processes(model: Model) -> Iterator[Alert]:
+    for name, process in sorted(model.processes.told.items()):
+        if process.state in UNWELL:
+            words, style = UNWELL[process.state]
+            yield Alert(style, f"{'✖' if style == 'bad' else '⚠'} {name} {words}{f': {process.reason}' if process.reason else ''}")
+
+
+def _by_whom(model: Model) -> str:
+    stops = model.stops
+    if not stops:
+        return "as a vehicle reports"
+    named = [StopEngagement(source=SOURCES.get(one.source, one.source), reason=one.reason) for one in stops[:STOPS_SHOWN]]
+    words = [f"by {told([one])}, {clock_text(whole.since.seconds)}" for one, whole in zip(named, stops, strict=False)]
+    return "; ".join(words) + (f" and {len(stops) - STOPS_SHOWN} more" if len(stops) > STOPS_SHOWN else "")
+
+
+def _notices(model: Model, t: float) -> Html:
+    rows = []
+    for line, good, _ in model.log.notices(t):
+        sign, style = ("✓", "good") if good else SEVERITY.get(line.severity, SEVERITY[Event.INFO])
+        who = html("<b>{}</b> ", line.vehicle) if line.vehicle else ""
+        rows.append(
+            html("<div class='g-note'><b class='g-{}'>{}</b> {}{} <i>{}</i></div>", style, sign, who, line.text, clock_text(line.t))
+        )
+    return html("<div class='g-notices' aria-live='polite'>{}</div>", joined(rows)) if rows else html("")
+
+
+def stop_line(model: Model) -> Html:
+    """Under STOP ALL: whether it is engaged, since when and by whom, which vehicles heed it, how it ends."""
+    if not model.stopped:
+        return html("<div class='g-stopline'>STOP ALL is not engaged</div>")
+    heeding = ", ".join(v.name for v in model.vehicles.values() if v.stopped)
+    missing = ", ".join(v.name for v in model.vehicles.values() if not v.stopped)
+    lines = [html("<b>■ ENGAGED</b> {}", _by_whom(model))]
+    lines += [html("<span class='g-good'>✓ heeded by {}</span>", heeding)] if heeding else []
+    lines += [html("<span class='g-bad'>✖ not confirmed by {}</span>", missing)] if missing else []
+    lines += [html("Holds until <b>Release STOP</b>")]
+    return html("<div class='g-stopline g-engaged' role='status'>{}</div>", joined(lines, html("<br>")))

@@ -1,0 +1,79 @@
+"""The panel for driving a ground vehicle by hand. Its buttons are also the page's table of keys: ``data-keys`` are those that press one."""
+
+from schemas.messages import Mode
+from services.gcs.by_hand import ByHand
+from services.gcs.state.state import VehicleModel
+from services.gcs.view.markup import Html, html, joined
+from services.gcs.view.wording import mode_name
+from uvf.control.teleop_drive import DIRECTIONS
+
+ROWS = (("q", "w", "e"), ("a", "", "d"), ("z", "s", "c"))
+SIGNS = {"q": "↖", "w": "▲", "e": "↗", "a": "◀", "d": "▶", "z": "↙", "s": "▼", "c": "↘"}
+WORDS = {
+    "q": "forward left",
+    "w": "forward",
+    "e": "forward right",
+    "a": "turn left",
+    "d": "turn right",
+    "z": "backward, turning right",
+    "s": "backward",
+    "c": "backward, turning left",
+}
+ARROWS = {"w": "ArrowUp", "a": "ArrowLeft", "s": "ArrowDown", "d": "ArrowRight"}
+
+
+def wheel(v: VehicleModel, by_hand: ByHand, page: int) -> Html:
+    """As this page sees it: it drives the vehicle itself, another page does, or nobody."""
+    if not by_hand.can_drive(v.name):
+        return html("")
+    holder = by_hand.holder(v.name)
+    if holder == page:
+        stop = html("<button type='button' data-gcs='wheel:off'>Stop driving by hand</button>")
+        return html("<div id='gcs-wheel' data-driver='mine'><div class='g-mine'>{}{}</div></div>", stop, _pad(v, by_hand))
+    driver, who, take = ("nobody", "", "Drive by hand") if holder is None else ("theirs", "driven from another page", "Take the wheel")
+    button = html("<button type='button' data-gcs='wheel:on'>{}</button>", take)
+    return html("<div id='gcs-wheel' data-driver='{}'><div class='g-theirs'><div>{}</div>{}</div></div>", driver, who, button)
+
+
+def _pad(v: VehicleModel, by_hand: ByHand) -> Html:
+    keys = joined(_key(key) if key else html("<span></span>") for row in ROWS for key in row)
+    linear, angular = by_hand.scale(v.name)
+    scales = joined((_scale("rf", f"{linear:.2f} m/s", "speed"), _scale("tg", f"{angular:.2f} rad/s", "turn rate")))
+    return html("<div class='g-drives'>{}</div><div class='g-keys'>{}</div>{}", _state(v), keys, scales)
+
+
+def _state(v: VehicleModel) -> Html:
+    if v.status is None or v.status.mode != Mode.MODE_MANUAL:
+        mode = mode_name(v.status.mode) if v.status is not None else "unknown"
+        return html("<span class='g-warn'>⚠ {} does not obey: its mode is {}, not Manual</span>", v.name, mode)
+    return html("<b>▶ {} goes while a key or button is held</b>", v.name)
+
+
+def _key(key: str) -> Html:
+    forward, left = DIRECTIONS[key]
+    keys = f"{key} {ARROWS.get(key, '')}".strip()
+    return html(
+        "<button type='button' data-keys='{}' data-steer='{:g} {:g}' aria-label='{}'>{}</button>",
+        keys,
+        forward,
+        left,
+        WORDS[key],
+        SIGNS[key],
+    )
+
+
+def _scale(keys: str, value: str, what: str) -> Html:
+    """keys: the one that raises it and the one that lowers it."""
+    up, down = (
+        html(
+            "<button type='button' data-keys='{}' data-gcs='scale:{}' aria-label='{} {}' title='key {}'>{}</button>",
+            key,
+            key,
+            what,
+            word,
+            key,
+            sign,
+        )
+        for key, word, sign in zip(keys, ("up", "down"), "+−", strict=True)
+    )
+    return html("<div class='g-scale'><span>{}</span>{}<b>{}</b>{}</div>", what, down, value, up)

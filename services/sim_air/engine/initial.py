@@ -1,0 +1,65 @@
+"""Initial conditions: where and how a loaded model begins, and the air it begins in."""
+
+from dataclasses import replace
+from typing import Protocol
+
+import numpy as np
+
+from services.sim_air.engine.gauges import FT
+from services.sim_air.engine.states import Held, Start
+from services.sim_air.engine.trim import Attitude
+from services.sim_air.engine.wiring import Properties
+from uvf.maths.geodesy import LocalTangent
+from uvf.maths.rotations import Floats
+
+EARTH_RATE = 7.292115e-5  # rad/s
+
+
+class Engine(Properties, Protocol):
+    """A loaded model."""
+
+    def run(self) -> bool: ...
+    def run_ic(self) -> bool: ...
+    def query_property_catalog(self, check: str) -> str: ...
+    def set_trim_status(self, status: bool) -> None: ...
+
+
+def at_rest(place: Start, height: float) -> Start:
+    """height: of the centre of gravity, m."""
+    x, y, _ = place.position
+    return replace(place, position=np.array((x, y, height)), airspeed=0.0, climb=0.0, turn_rate=0.0, wind=np.zeros(3))
+
+
+def put(fdm: Engine, tangent: LocalTangent, start: Start, lies: Attitude, spin_up: float = 0.0) -> None:
+    """Over the terrain that was laid before; spin_up: s for which the body will be held still."""
+    latitude, longitude, altitude = tangent.geodetic(start.position)
+    fdm["ic/lat-geod-rad"], fdm["ic/h-sl-ft"] = latitude, altitude / FT
+    fdm["ic/long-gc-rad"] = longitude + EARTH_RATE * spin_up  # the Earth turns under a body that is held still
+    fdm["ic/phi-rad"], fdm["ic/theta-rad"], fdm["ic/psi-true-rad"] = lies.roll, lies.pitch, np.pi / 2 - start.yaw + lies.yaw
+    ground = start.velocity / FT
+    fdm["ic/ve-fps"], fdm["ic/vn-fps"], fdm["ic/vd-fps"] = ground[0], ground[1], -ground[2]
+    fdm["ic/p-rad_sec"], fdm["ic/q-rad_sec"], fdm["ic/r-rad_sec"] = lies.rates
+    fdm.run_ic()
+
+
+def lay_terrain(fdm: Engine, tangent: LocalTangent, x: float, y: float, height: float) -> None:
+    """height: m, world, of the ground below where the aircraft will be put."""
+    fdm["ic/terrain-elevation-ft"] = tangent.geodetic(np.array((x, y, height)))[2] / FT
+
+
+def put_held(fdm: Engine, tangent: LocalTangent, held: Held) -> None:
+    """Into a state in calm air."""
+    fdm["ic/lat-geod-rad"], fdm["ic/h-sl-ft"] = tangent.latitude, held.altitude / FT
+    fdm["ic/terrain-elevation-ft"] = tangent.altitude / FT
+    for name, value in zip(("phi-rad", "theta-rad", "psi-true-rad"), held.angles, strict=True):
+        fdm[f"ic/{name}"] = value
+    for name, value in zip("uvwpqr", (*held.velocity / FT, *held.rates), strict=True):
+        fdm[f"ic/{name}-{'fps' if name in 'uvw' else 'rad_sec'}"] = value
+    fdm.run_ic()
+
+
+def blow(fdm: Properties, wind: Floats) -> None:
+    """Sets the velocity of the air [m/s, world]."""
+    fdm["atmosphere/wind-east-fps"] = wind[0] / FT
+    fdm["atmosphere/wind-north-fps"] = wind[1] / FT
+    fdm["atmosphere/wind-down-fps"] = -wind[2] / FT

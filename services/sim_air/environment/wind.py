@@ -1,0 +1,75 @@
+"""The moving air about one aircraft: mean wind with shear, single gusts and turbulence."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from uvf.maths.dryden import Turbulence, strength
+from uvf.maths.rotations import Floats
+from uvf.maths.wind_profile import logarithmic, one_minus_cosine, power
+from uvf.models.world.wind import Gust, Shear, Wind
+
+CALM = np.zeros(3)
+STILL = 1.0  # m/s through the air, below which turning air is left out: the engine divides by the airspeed of the step before
+
+
+class Flight(NamedTuple):
+    """What the air needs to know of the aircraft."""
+
+    position: Floats  # (3,) m, world
+    height: float  # m above the ground
+    yaw: float  # rad, of the nose, world
+    airspeed: float  # m/s
+
+
+class AirMotion(NamedTuple):
+    """velocity: (3,) m/s, world; rates: (3,) rad/s, rotation of the air about the aircraft's forward, right and down axes."""
+
+    velocity: Floats
+    rates: Floats
+
+
+class AirMass:
+    """One aircraft's share of the weather; ``steps`` follow one another by the physics step."""
+
+    def __init__(self, wind: Wind, span: float, rng: np.random.Generator) -> None:
+        """span: of the wing, m."""
+        self._wind = wind
+        self._steady = np.array(wind.steady)
+        self._turbulence = Turbulence(span, rng) if wind.turbulence else None
+        self._entered = [0.0] * len(wind.gusts)  # m of air flown since the beginning of each gust that has a time
+        self.is_steady = not (wind.shear or wind.gusts or wind.turbulence)
+
+    def mean(self, height: float) -> Floats:
+        """(3,) m/s, world, at ``height`` [m above the ground]: without gusts."""
+        shear = self._wind.shear
+        return self._steady if shear is None else self._steady * _growth(shear, height)
+
+    def step(self, t: float, dt: float, flight: Flight) -> AirMotion:
+        """The air that the aircraft meets at ``t`` [s], ``dt`` [s] after the step before."""
+        velocity, rates = self.mean(flight.height), CALM
+        for i, gust in enumerate(self._wind.gusts):
+            velocity = velocity + self._share(i, gust, t, flight.airspeed * dt, flight) * np.array(gust.velocity)
+        if self._turbulence is not None and self._wind.turbulence is not None:
+            data = self._wind.turbulence
+            g = self._turbulence.step(flight.airspeed * dt, dt, strength(flight.height, data.at_20_feet, data.severity))
+            c, s = math.cos(flight.yaw), math.sin(flight.yaw)
+            velocity = velocity + np.array((c * g.u + s * g.v, s * g.u - c * g.v, -g.w))
+            rates = np.array((g.p, g.q, g.r)) if flight.airspeed > STILL else CALM
+        return AirMotion(velocity, rates)
+
+    def _share(self, i: int, gust: Gust, t: float, flown: float, flight: Flight) -> float:
+        if gust.place is not None:
+            away = float(np.hypot(flight.position[0] - gust.place[0], flight.position[1] - gust.place[1]))
+            return one_minus_cosine(gust.length / 2 - away, gust.length)
+        if gust.time is None or t < gust.time:
+            return 0.0
+        self._entered[i] += flown
+        return one_minus_cosine(self._entered[i], gust.length)
+
+
+def _growth(shear: Shear, height: float) -> float:
+    if shear.law == "power":
+        return power(height, shear.exponent, shear.height)
+    return logarithmic(height, shear.roughness, shear.height)

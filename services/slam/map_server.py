@@ -1,0 +1,71 @@
+"""Saved maps and masks for those who drive by them, and the map that is being drawn for those who ask."""
+
+import re
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+from schemas import topics
+from schemas.messages import FrameTransform, Grid, MapReply, MapRequest, Reply, SaveMapRequest
+from uvf.maths.se2 import compose
+from uvf.models.world.map_file import GridMap
+from uvf.models.yaml_data import BadInput, nearest
+from uvf.runtime.contract.service import Outputs, Service, optional
+from uvf.runtime.messages.convert import pose2_of_frame
+from uvf.runtime.messages.grids import as_map, as_message
+
+Save = Callable[[GridMap, str, str], Path]
+"""Writes a map under a name, in a mode of map_server. Raises BadInput."""
+NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_-]{0,79}")
+DRAWN = "grid"
+
+
+class MapServer(Service):
+    """Publishes what the mission gives a vehicle once, latched, and answers for these layers and the vehicle's own map."""
+
+    name = "map_server"
+    hz = 2.0
+    inputs = {"map": optional(topics.MAP), "placing": optional(topics.TF_WORLD)}
+    outputs = {"known": topics.KNOWN_MAP, "keepout": topics.KEEP_OUT, "speed": topics.SPEED_MAP}
+    requests = {"save": topics.SAVE_MAP, "get": topics.GET_MAP}
+
+    def __init__(self, layers: Mapping[str, GridMap], save: Save) -> None:
+        """layers: by the names of the outputs, world frame."""
+        self._layers = layers
+        self._save = save
+        self._served: dict[str, Grid] = {}
+
+    def step(
+        self, t: float, map: Grid | None, placing: FrameTransform | None, save: list[SaveMapRequest], get: list[MapRequest]
+    ) -> Outputs:
+        fresh = not self._served
+        self._served = self._served or {name: as_message(layer, "world", t) for name, layer in self._layers.items()}
+        outputs: dict[str, Grid | list[Reply] | list[MapReply]] = {**self._served} if fresh else {}
+        outputs["save"] = [self._saved(request, map, placing) for request in save]
+        outputs["get"] = [self._found(request, map) for request in get]
+        return outputs
+
+    def _saved(self, request: SaveMapRequest, map: Grid | None, placing: FrameTransform | None) -> Reply:
+        if not NAME.fullmatch(request.name):
+            return Reply(reason=f"a map cannot be called '{request.name}'; use letters, digits, - and _")
+        if map is None or placing is None:
+            return Reply(reason="there is no map yet; wait for the first scan")
+        try:
+            self._save(in_world(as_map(map), placing), request.name, request.mode or "trinary")
+        except BadInput as error:
+            return Reply(reason=str(error))
+        return Reply(accepted=True)
+
+    def _found(self, request: MapRequest, map: Grid | None) -> MapReply:
+        layer = request.layer or DRAWN
+        known = (DRAWN, *self.outputs)
+        if layer not in known:
+            return MapReply(reason=f"no layer '{layer}'; {nearest(layer, known)}")
+        grid = map if layer == DRAWN else self._served.get(layer)
+        if grid is None:
+            return MapReply(reason="there is no map yet" if layer == DRAWN else f"the mission gives no {layer} under 'maps:'")
+        return MapReply(accepted=True, grid=grid)
+
+
+def in_world(grid: GridMap, world_from_map: FrameTransform) -> GridMap:
+    """A vehicle's map where it lies in the world."""
+    return GridMap(grid.cells, grid.resolution, compose(pose2_of_frame(world_from_map), grid.origin))

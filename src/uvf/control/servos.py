@@ -1,0 +1,61 @@
+"""What the servos of an aircraft reach, and integrators that wait for them."""
+
+import math
+from dataclasses import dataclass
+
+from uvf.control.cycle import clip
+from uvf.maths.filters import Integral
+
+TRIM_SHARE = 0.45  # of a surface's way that its integrator may take
+
+
+@dataclass(frozen=True)
+class Servo:
+    """How far and how fast a surface goes, to both sides."""
+
+    limit: float  # rad
+    rate: float = math.inf  # rad/s
+
+
+@dataclass(frozen=True)
+class Servos:
+    """Of the surfaces that the loops move; the flap from 0 down to its limit."""
+
+    aileron: Servo
+    elevator: Servo
+    rudder: Servo
+    flap: Servo = Servo(0.0)
+
+
+SERVOS = Servos(Servo(0.35), Servo(0.35), Servo(0.35))
+"""Of an aircraft that says nothing."""
+
+
+class SurfaceTrim:
+    """The integrator of one surface; it waits while the surface is at a stop or the servo behind, and it would push further."""
+
+    def __init__(self, servo: Servo) -> None:
+        self._servo = servo
+        self._trim = Integral(TRIM_SHARE * servo.limit)
+        self._reached: float | None = None  # rad, where the servo is at best
+
+    @property
+    def value(self) -> float:
+        """rad."""
+        return self._trim.value
+
+    def step(self, moving: float, effect: float, rate: float, dt: float) -> float:
+        """rad, to command: ``moving`` and the trim by its ``effect``; ``rate`` [rad/s] is that of the trim if it does not wait."""
+        limit = self._servo.limit
+        if self._lacks(moving + effect * self._trim.value, dt) * effect * rate <= 0:
+            self._trim.step(rate, dt)
+        return clip(moving + effect * self._trim.value, limit)
+
+    def _lacks(self, asked: float, dt: float) -> float:
+        """rad that the surface cannot give of what is asked."""
+        target, most = clip(asked, self._servo.limit), self._servo.rate * dt
+        if self._reached is None or abs(target - self._reached) <= most:
+            self._reached = target  # not by adding the difference, whose rounding would be taken for something that is lacking
+        else:
+            self._reached += clip(target - self._reached, most)
+        return asked - self._reached

@@ -1,0 +1,153 @@
+"""The outer level of control: height or climb rate, and airspeed, to pitch and throttle, by their total energy.
+
+After A. A. Lambregts, "Vertical flight path and speed control autopilot design using total energy principles", AIAA 83-2239:
+the throttle makes total energy, climb + V V' / g (here in m/s of climb), pitch shares it out between path and speed. What the
+throttle does not explain of the power is learnt by an observer in place of an integrator: it sees the throttle that was really set,
+so nothing winds up at its stops.
+
+Pitch holds the path, for gusts would shake it through the airspeed, as long as throttle makes the energy that path and airspeed need
+together. What it cannot make is taken from the airspeed for a while, then from the path: in a long climb, or with the motor dead,
+the airspeed comes first.
+"""
+
+import math
+from dataclasses import dataclass
+
+from uvf.control.commands import Wanted
+from uvf.control.cycle import STEEPEST, Cycle, clip
+from uvf.estimation.state import Estimate
+from uvf.maths.filters import Integral
+from uvf.maths.geodesy import GRAVITY
+from uvf.models.vehicle.flight_params import AirParams
+
+CLIMB_TRIM_LIMIT = 0.15  # rad, of the integrator on pitch
+ACCELERATION_LIMIT = 2.0  # m/s^2 asked for
+TOO_SLOW = 0.95  # of the slowest airspeed asked for: no climb and full throttle
+LEAST_SLOPE = 1e-3  # s/m, of throttle per climb
+
+
+class PowerObserver:
+    """Learns the power besides that of the throttle, in m/s of climb, from the kinetic energy: a double pole."""
+
+    def __init__(self) -> None:
+        self.unexplained = 0.0
+        self._height: float | None = None  # m, of the kinetic energy
+
+    def step(self, cycle: Cycle, throttle: float) -> None:
+        """One cycle with the throttle that has been set."""
+        pole, now = cycle.params.power_pole, cycle.now
+        height = now.airspeed**2 / (2 * GRAVITY)
+        before = height if self._height is None else self._height
+        error = height - before
+        self._height = before + (made(cycle, throttle) + self.unexplained - now.climb + 2 * pole * error) * cycle.dt
+        self.unexplained += pole**2 * error * cycle.dt
+
+
+@dataclass(frozen=True, slots=True)
+class Power:
+    """What is asked for, all m/s."""
+
+    climb: float
+    faster: float  # V V' / g
+    reached: float  # the climb, as far as throttle can make both
+
+
+class EnergyLoops:
+    """Path and speed, and what they have learnt."""
+
+    def __init__(self) -> None:
+        self._trim = Integral(CLIMB_TRIM_LIMIT)
+        self._power = PowerObserver()
+        self._throttle: float | None = None
+
+    def begin(self, cycle: Cycle, wanted: Wanted, pitch: float, throttle: float) -> None:
+        """What is learnt starts so that the first step asks for this pitch [rad] and throttle, as far as limits allow."""
+        self._power, self._trim.value, self._throttle = PowerObserver(), 0.0, None
+        if wanted.throttle is None:
+            asked = self._asked(cycle, wanted)
+            level = level_throttle(cycle, self._airspeed(cycle, wanted))
+            self._power.unexplained = asked.climb + asked.faster - (throttle - level) / _slope(cycle)
+        self._trim.value = clip(pitch - self._pitch(cycle, self._asked(cycle, wanted).reached), CLIMB_TRIM_LIMIT)
+
+    def step(self, cycle: Cycle, wanted: Wanted) -> tuple[float, float]:
+        """Pitch [rad] and throttle."""
+        if self._throttle is not None:
+            self._power.step(cycle, self._throttle)
+        asked = self._asked(cycle, wanted)
+        pitch, error = self._pitch(cycle, asked.reached), (asked.reached - cycle.now.climb) / cycle.speed
+        if (error > 0 and pitch < cycle.highest_pitch) or (error < 0 and pitch > -cycle.params.pitch_limit):
+            self._trim.step(cycle.params.climb_i * error, cycle.dt)
+        level = level_throttle(cycle, self._airspeed(cycle, wanted))
+        setting = level + _slope(cycle) * (asked.climb + asked.faster - self._power.unexplained)
+        self._throttle = min(max(setting, 1 - _room(cycle)), 1.0) if wanted.throttle is None else wanted.throttle
+        return max(min(pitch, cycle.highest_pitch), -cycle.params.pitch_limit), self._throttle
+
+    def _asked(self, cycle: Cycle, wanted: Wanted) -> Power:
+        """Within what throttle can reach: full, the airspeed comes before the path; idling or given, the highest airspeed does.
+
+        With a given throttle the path is not given up for airspeed: it is closed to land, and then airspeed is what has to go.
+        """
+        params = cycle.params
+        faster = _acceleration(cycle, self._airspeed(cycle, wanted))
+        higher = 0.0 if wanted.height is None else wanted.height - cycle.now.height
+        climb = min(max(wanted.climb + params.altitude_p * higher, -params.sink_max), params.climb_max * _room(cycle))
+        most = made(cycle, 1.0) + self._power.unexplained - _acceleration(cycle, self._airspeed(cycle, wanted) - _lent(cycle, wanted))
+        least = made(cycle, wanted.throttle or 0.0) + self._power.unexplained - _acceleration(cycle, params.max_airspeed)
+        return Power(climb, faster, min(max(climb, least), most))
+
+    def _pitch(self, cycle: Cycle, climb: float) -> float:
+        """rad: path angle plus the part of the angle of attack that lies in the vertical plane."""
+        path = math.asin(clip(climb / cycle.speed, STEEPEST))
+        error = (climb - cycle.now.climb) / cycle.speed
+        return path + cycle.alpha * math.cos(cycle.now.roll) + cycle.params.climb_p * error + self._trim.value
+
+    @staticmethod
+    def _airspeed(cycle: Cycle, wanted: Wanted) -> float:
+        return min(max(wanted.airspeed, cycle.slowest), cycle.params.max_airspeed)
+
+
+def _acceleration(cycle: Cycle, airspeed: float) -> float:
+    """m/s, the power V V' / g towards this airspeed [m/s]."""
+    return cycle.speed / GRAVITY * clip(cycle.params.airspeed_p * (airspeed - cycle.now.airspeed), ACCELERATION_LIMIT)
+
+
+def _lent(cycle: Cycle, wanted: Wanted) -> float:
+    """m/s of airspeed that a climb may take beyond full throttle, for a while: at most half of what is above the slowest.
+
+    The lower it is already, the less, and none from where that airspeed is worth no more height: so a downdraught
+    is flown through on the path, while a long climb and a glide come back to the airspeed asked for.
+    """
+    spare = wanted.airspeed - cycle.slowest
+    if wanted.height is None or spare <= 0:
+        return 0.0
+    worth = (wanted.airspeed**2 - cycle.slowest**2) / (2 * GRAVITY)
+    return spare / 2 * min(max(1 - (wanted.height - cycle.now.height) / worth, 0.0), 1.0)
+
+
+def _room(cycle: Cycle) -> float:
+    """0 when it flies too slow, 1 from the slowest airspeed on that is asked for."""
+    return min(max((cycle.now.airspeed / cycle.slowest - TOO_SLOW) / (1 - TOO_SLOW), 0.0), 1.0)
+
+
+def _slope(cycle: Cycle) -> float:
+    return max(cycle.params.throttle_climb, LEAST_SLOPE)
+
+
+def level_throttle(cycle: Cycle, airspeed: float) -> float:
+    """Of level flight at this airspeed [m/s] with the load of now."""
+    params = cycle.params
+    return params.trim_throttle + params.throttle_speed * (airspeed - params.trim_airspeed) + params.throttle_load * (cycle.load**2 - 1)
+
+
+def made(cycle: Cycle, throttle: float) -> float:
+    """m/s of climb that this throttle makes beyond level flight at the airspeed of now: a straight line down to ``idle_sink``.
+
+    Below that less throttle brakes no more. Believing otherwise the observer would take an idling motor for a strong one.
+    """
+    return max((throttle - level_throttle(cycle, cycle.speed)) / _slope(cycle), -cycle.params.idle_sink)
+
+
+def climb_at(now: Estimate, params: AirParams) -> float:
+    """m/s that full throttle may be spent on: the fastest climb at cruise, none at the lowest airspeed."""
+    spare = (now.airspeed - params.min_airspeed) / (params.trim_airspeed - params.min_airspeed)
+    return params.climb_max * min(max(spare, 0.0), 1.0)

@@ -1,0 +1,54 @@
+"""Where it has been: satellite fixes and pressures are compared with the state of the moment they were taken, not of that they come."""
+
+from collections import deque
+from typing import NamedTuple
+
+import numpy as np
+
+from uvf.estimation.ekf.states import POSITION, VELOCITY, Floats
+
+KEPT = 1.5  # s, more than the oldest fix that is taken
+
+
+class _Past(NamedTuple):
+    t: float
+    motion: Floats  # (6,) velocity, position
+    corrected: Floats  # (6,) all corrections up to then
+
+
+class Delay:
+    """Velocity and position of the last moments. What has been put right since then was wrong then already."""
+
+    def __init__(self) -> None:
+        self._past: deque[_Past] = deque()
+        self._corrected: Floats = np.zeros(6)
+
+    def keep(self, t: float, x: Floats) -> None:
+        """x: (25,) states at ``t`` [s]."""
+        self._past.append(_Past(t, x[VELOCITY.start : POSITION.stop].copy(), self._corrected))
+        while t - self._past[0].t > KEPT:
+            self._past.popleft()
+
+    def correct(self, before: Floats, x: Floats) -> None:
+        """The states (25,) have been changed by a measurement, not by time."""
+        self._corrected = self._corrected + (x - before)[VELOCITY.start : POSITION.stop]
+
+    def at(self, t: float) -> tuple[Floats, Floats]:
+        """Velocity (3,) m/s and position (3,) m, NED, at ``t`` [s] as they are known now; straight lines between what is kept."""
+        later = self._past[-1]
+        for past in reversed(self._past):
+            if past.t <= t:
+                share = (t - past.t) / (later.t - past.t) if later.t > past.t else 0.0
+                motion = self._now(past) + share * (self._now(later) - self._now(past))
+                return motion[:3], motion[3:]
+            later = past
+        motion = self._now(later)
+        return motion[:3], motion[3:]
+
+    def _now(self, past: _Past) -> Floats:
+        motion: Floats = past.motion + self._corrected - past.corrected
+        return motion
+
+    def clear(self) -> None:
+        """What was there before has nothing to do with what comes."""
+        self._past.clear()

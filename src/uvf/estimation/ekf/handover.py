@@ -1,0 +1,38 @@
+"""When satellites are back the position known jumps; what guidance is told of it moves there within a few seconds."""
+
+import math
+
+import numpy as np
+
+from uvf.estimation.ekf.states import Floats
+
+LOST = 1.0  # s without a fix, from where on a jump is expected
+SOFTLY = 2.0  # s
+SETTLES = 3.0  # s
+FARTHEST = 200.0  # m; beyond, it is somewhere else
+
+
+class Handover:
+    """What is still kept back."""
+
+    def __init__(self) -> None:
+        self._back: Floats = np.zeros(3)
+        self._settling = 0.0  # s, left in which fixes still change much
+
+    @property
+    def off(self) -> float:
+        """m, horizontally."""
+        return math.hypot(self._back[0], self._back[1])
+
+    def take(self, back: Floats, unfixed: float) -> None:
+        """back: (3,) m, from the new position to the one before; unfixed: s without a fix until this one."""
+        if unfixed > LOST:
+            self._settling = SETTLES
+        if self._settling > 0.0 and math.hypot(back[0], back[1]) < FARTHEST:
+            self._back = self._back + back
+
+    def step(self, dt: float) -> Floats:
+        """(3,) m to add to the position ``dt`` [s] later."""
+        self._settling -= dt
+        self._back = self._back * math.exp(-dt / SOFTLY)
+        return self._back

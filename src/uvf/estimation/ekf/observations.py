@@ -1,0 +1,124 @@
+"""What each sensor should read of a state, how that changes with the state's errors, and how noisy it is."""
+
+import math
+
+import numpy as np
+
+from uvf.estimation.ekf.filter import Observation
+from uvf.estimation.ekf.inertial import FALL
+from uvf.estimation.ekf.states import (
+    ACCEL_BIAS,
+    BARO,
+    DOWN,
+    DRIFT,
+    GYRO_BIAS,
+    IRON,
+    PITOT,
+    SIZE,
+    TILT,
+    VELOCITY,
+    WIND,
+    Floats,
+    State,
+    cross_matrix,
+)
+
+
+def _scalar(residual: float, row: Floats, variance: float) -> Observation:
+    return Observation(np.array((residual,)), row[None, :], np.array((variance,)))
+
+
+def place(residual: Floats, lag: float, sigma: float) -> Observation:
+    """Satellite position, horizontal. residual: (2,) m, at the moment of the fix, ``lag`` [s] before the state's."""
+    h = np.zeros((2, SIZE))
+    h[0, 6] = h[1, 7] = 1.0
+    h[0, 3] = h[1, 4] = -lag
+    h[0, 22] = h[1, 23] = 1.0
+    return Observation(residual, h, np.full(2, sigma**2))
+
+
+def depth(residual: float, lag: float, sigma: float) -> Observation:
+    """Satellite position, down [m]."""
+    h = np.zeros(SIZE)
+    h[DOWN], h[5], h[DRIFT.stop - 1] = 1.0, -lag, 1.0
+    return _scalar(residual, h, sigma**2)
+
+
+def velocity(residual: Floats, state: State, acceleration: Floats, lag: float, sigma: float) -> Observation:
+    """Satellite velocity. residual: (3,) m/s; an error of tilt has meanwhile changed that of velocity."""
+    h = np.zeros((3, SIZE))
+    h[:, VELOCITY] = np.eye(3)
+    h[:, TILT] = lag * cross_matrix(acceleration - FALL)
+    h[:, ACCEL_BIAS] = lag * state.rotation
+    return Observation(residual, h, np.full(3, sigma**2))
+
+
+def height(residual: float, lag: float, sigma: float) -> Observation:
+    """Barometric altitude [m], up."""
+    h = np.zeros(SIZE)
+    h[DOWN], h[5], h[BARO] = -1.0, lag, 1.0
+    return _scalar(residual, h, sigma**2)
+
+
+def _airspeed_row(state: State) -> tuple[float, Floats]:
+    """m/s, and how it changes."""
+    through = state.through_air
+    speed = max(math.sqrt(float(through @ through)), 0.1)
+    h = np.zeros(SIZE)
+    h[VELOCITY] = through / speed
+    h[WIND] = -through[:2] / speed
+    return speed, h
+
+
+def pitot(state: State, pressure: float, density: float, variance: float) -> Observation:
+    """Differential pressure [Pa] of air of ``density`` [kg/m^3]: half rho V squared and the sensor's bias."""
+    speed, h = _airspeed_row(state)
+    h *= density * speed
+    h[PITOT] = 1.0
+    return _scalar(pressure - 0.5 * density * speed**2 - state.x[PITOT], h, variance)
+
+
+def airspeed(state: State, speed: float, sigma: float) -> Observation:
+    """True airspeed [m/s]."""
+    known, h = _airspeed_row(state)
+    return _scalar(speed - known, h, sigma**2)
+
+
+def climb(state: State, rate: float, sigma: float) -> Observation:
+    """m/s, up."""
+    h = np.zeros(SIZE)
+    h[5] = -1.0
+    return _scalar(rate + float(state.x[5]), h, sigma**2)
+
+
+def slip(state: State, aside: float, sigma: float) -> Observation:
+    """The flow along the body's right axis [m/s]: ``aside`` where the flight is coordinated."""
+    through = state.through_air
+    right = state.rotation[:, 1]
+    h = np.zeros(SIZE)
+    h[TILT] = np.cross(right, through)
+    h[VELOCITY] = right
+    h[WIND] = -right[:2]
+    return _scalar(aside - float(right @ through), h, sigma**2)
+
+
+def field(state: State, read: Floats, earth: Floats, sigma: float) -> Observation:
+    """The magnetic field (3,), FRD; ``earth``: (3,), NED; both in units of the filter."""
+    h = np.zeros((3, SIZE))
+    h[:, TILT] = state.rotation.T @ cross_matrix(earth)
+    h[:, IRON] = np.eye(3)
+    return Observation(read - state.rotation.T @ earth - state.x[IRON], h, np.full(3, sigma**2))
+
+
+def rest(state: State, sigma: float) -> Observation:
+    """It stands: no velocity."""
+    h = np.zeros((3, SIZE))
+    h[:, VELOCITY] = np.eye(3)
+    return Observation(-state.x[VELOCITY], h, np.full(3, sigma**2))
+
+
+def no_turning(state: State, rates: Floats, sigma: float) -> Observation:
+    """It does not turn: the gyroscopes (3,) [rad/s] read their bias."""
+    h = np.zeros((3, SIZE))
+    h[:, GYRO_BIAS] = np.eye(3)
+    return Observation(rates - state.x[GYRO_BIAS], h, np.full(3, sigma**2))

@@ -1,0 +1,25 @@
+"""Whether the aircraft is in the air, from what it estimates; nothing tells it that its wheels carry it."""
+
+from uvf.estimation.state import Estimate
+from uvf.models.vehicle.flight_params import AirParams
+
+LIFTS = 0.7  # of min_airspeed, through the air
+ROLLS = 3.0  # m/s over ground: an aircraft that stands in a gale does not fly
+RESTS = 2.0  # m/s over ground
+SETTLES = 1.0  # s at rest
+
+
+class LandDetector:
+    """In the air from the roll of a take-off on, on the ground once it has come to rest without the airspeed to hover in a headwind."""
+
+    def __init__(self, airborne: bool) -> None:
+        self.airborne = airborne
+        self._rested = 0.0  # s
+
+    def step(self, now: Estimate, params: AirParams, dt: float) -> None:
+        if not self.airborne:
+            self.airborne = now.airspeed > LIFTS * params.min_airspeed and now.ground_speed > ROLLS
+            return
+        rests = now.ground_speed < RESTS and abs(now.climb) < RESTS and now.airspeed < params.min_airspeed
+        self._rested = self._rested + dt if rests else 0.0
+        self.airborne = self._rested < SETTLES

@@ -1,0 +1,151 @@
+"""Wheel radii and track from matched motions: how far the wheels turned, and where the scans say that this led.
+
+Over a segment the wheels' ways add up along the headings that the odometry had (its gyroscope knows these better than the wheels):
+displacement and turn are then linear in the radii, and the turn in the inverse of the track (Antonelli, Chiaverini & Fusco, IEEE T-RO 21,
+2005). Recursive least squares about the present estimate; a segment in which the wheels slipped does not fit and is left out.
+"""
+
+from dataclasses import dataclass, field
+from math import cos, sin
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uvf.maths.rotations import wrap
+from uvf.maths.se2 import Pose2, compose, inverse
+
+Floats = NDArray[np.float64]
+
+PRIOR = 0.05  # 1 sigma of each scale before anything is known
+GATE = 16.3  # chi-square of three degrees of freedom, 99.9 %
+PLACE, TURN = 0.01, 0.005  # m and rad, 1 sigma of a matched motion's ends
+WHEEL = 0.005  # m per square root of m that a wheel rolls, 1 sigma
+LEAST_SEGMENTS = 12
+CERTAIN = (0.006, 0.006, 0.012)  # 1 sigma of radii and track
+FADING = 0.95  # of the mean misfit, per segment
+LONG, WIDE = 1.5, 2.5  # m and rad after which a segment is closed
+
+
+class Scales(NamedTuple):
+    """What the true left and right radius and the true track are, over those that the odometry reckons with."""
+
+    left: float = 1.0
+    right: float = 1.0
+    track: float = 1.0
+
+
+@dataclass
+class Segment:
+    """A motion from one match to another. rolled: m, ways of the wheels; along: (2 axes, 2 wheels) m, halves of them along the headings,
+    in the frame of the begin; length, turned and wheels: m, rad and m, sums of all ways forth and back, turns, and ways of both wheels."""
+
+    begin: Pose2
+    rolled: Floats = field(default_factory=lambda: np.zeros(2))
+    along: Floats = field(default_factory=lambda: np.zeros((2, 2)))
+    length: float = 0.0
+    turned: float = 0.0
+    wheels: float = 0.0
+
+    def roll(self, left: float, right: float, heading: float, turn: float) -> None:
+        """heading: by the odometry since the begin, at the middle of the step [rad]; turn: of the step."""
+        ways = np.array((left, right))
+        self.rolled += ways
+        self.along += np.outer((cos(heading), sin(heading)), ways / 2)
+        self.length += abs(left + right) / 2
+        self.turned += abs(turn)
+        self.wheels += abs(left) + abs(right)
+
+
+class WheelCalibration:
+    """Radii and track as ``Scales``, with their covariance."""
+
+    def __init__(self, track: float) -> None:
+        """track: m, nominal."""
+        self._track = track
+        self._x = np.ones(3)
+        self._p = np.eye(3) * PRIOR**2
+        self._misfit = 1.0
+        self.used = 0
+        self.refused = 0
+
+    @property
+    def scales(self) -> Scales:
+        return Scales(*self._x.tolist())
+
+    @property
+    def covariance(self) -> Floats:
+        """(3, 3); larger where the segments fit worse than they should. What was not moved stays as uncertain as it was."""
+        limit: Floats = np.minimum(1.0, PRIOR / np.sqrt(np.diag(self._p) * self._worse))
+        return self._p * self._worse * np.outer(limit, limit)
+
+    @property
+    def sigmas(self) -> Floats:
+        """(3,)."""
+        return np.sqrt(np.diag(self.covariance))
+
+    @property
+    def is_certain(self) -> bool:
+        return self.used >= LEAST_SEGMENTS and bool(np.all(self.sigmas < CERTAIN))
+
+    @property
+    def differs(self) -> bool:
+        """Whether any scale is surely not one."""
+        return bool(np.any(np.abs(self._x - 1.0) > 2.0 * self.sigmas))
+
+    @property
+    def _worse(self) -> float:
+        return max(self._misfit, 1.0)
+
+    def add(self, segment: Segment, end: Pose2) -> bool:
+        """end: where the scans have the base at the segment's end, in the frame of its begin; whether it was used."""
+        matched = compose(inverse(segment.begin), end)
+        left, right, track = self._x
+        turn = (segment.rolled[1] * right - segment.rolled[0] * left) / (self._track * track)
+        y = np.array((*(np.array(matched[:2]) - segment.along @ self._x[:2]), wrap(matched.yaw - turn)))
+        h = np.zeros((3, 3))
+        h[:2, :2] = segment.along
+        h[2] = np.array((-segment.rolled[0], segment.rolled[1], -turn * self._track)) / (self._track * track)
+        wheels = WHEEL**2 * segment.wheels  # m^2
+        r = np.diag((2 * PLACE**2 + wheels / 4, 2 * PLACE**2 + wheels / 4, 2 * TURN**2 + wheels / self._track**2))
+        s = h @ self._p @ h.T + r
+        misfit = float(y @ np.linalg.solve(s, y))
+        if misfit > GATE * self._worse:
+            self.refused += 1
+            return False
+        gain = self._p @ h.T @ np.linalg.inv(s)
+        rest = np.eye(3) - gain @ h
+        self._x = self._x + gain @ y
+        self._p = rest @ self._p @ rest.T + gain @ r @ gain.T
+        self._misfit = FADING * self._misfit + (1 - FADING) * misfit / 3
+        self.used += 1
+        return True
+
+
+class SegmentMaker:
+    """Cuts a drive into segments for the calibration."""
+
+    def __init__(self, calibration: WheelCalibration) -> None:
+        self._calibration = calibration
+        self._segment: Segment | None = None
+        self._heading = 0.0
+        self._last = 0.0
+
+    def roll(self, left: float, right: float, heading: float, slipping: bool) -> None:
+        """left, right: m, ways by the nominal radii; heading: of the odometry after the step [rad]; a segment with slip is thrown away."""
+        turn = wrap(heading - self._last)
+        self._last = heading
+        if slipping:
+            self._segment = None
+        elif self._segment is not None:
+            self._segment.roll(left, right, self._heading + turn / 2, turn)
+            self._heading += turn
+
+    def match(self, map_from_base: Pose2) -> None:
+        """A pose by the scans, at the end of the last step."""
+        segment = self._segment
+        if segment is not None and segment.length < LONG and segment.turned < WIDE:
+            return
+        if segment is not None:
+            self._calibration.add(segment, map_from_base)
+        self._segment, self._heading = Segment(map_from_base), 0.0

@@ -1,0 +1,111 @@
+"""Motion of a differential drive, with derivatives, for both filters.
+
+A step has two parts. First what moves the speed: the accelerometer, whose offset follows the slope that the gyroscope feels; the wheels'
+speeds then correct it. Then the pose moves by that speed and by the gyroscope's turn rate less its bias, along an arc.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uvf.estimation.odometry.states import ACCEL_OFFSET, GNSS_X, GYRO_BIAS, HEADING, LEFT, RIGHT, SPEED, Noise, Step, X, Y
+from uvf.maths.compiled import compiled
+from uvf.maths.geodesy import GRAVITY
+
+Floats = NDArray[np.float64]
+
+FOLLOWING = 2.0  # m/s per square root of s: how fast the speed changes where no accelerometer tells it
+
+Told = tuple[float, float, float, float, float, float, bool, bool]
+"""dt, left and right way, turn rate, force, track; whether there is a gyroscope and an accelerometer."""
+
+
+def told(step: Step, track: float) -> Told:
+    rate, force = step.rate, step.force
+    return step.dt, step.left, step.right, rate or 0.0, force or 0.0, track, rate is not None, force is not None
+
+
+@compiled
+def turn_rate(x: Floats, told: Told) -> float:
+    """rad/s; by the wheels where there is no gyroscope."""
+    dt, left, right, rate, _, track, gyro, _ = told
+    if gyro:
+        return float(rate - x[GYRO_BIAS])
+    return float((right * (1.0 + x[RIGHT]) - left * (1.0 + x[LEFT])) / (track * dt))
+
+
+@compiled
+def mean_speed(x: Floats, told: Told) -> float:
+    """m/s over the step whose end has the state's speed."""
+    return float(x[SPEED] - (0.5 * told[0] * (told[4] - x[ACCEL_OFFSET]) if told[7] else 0.0))
+
+
+@compiled
+def moved(x: Floats, told: Told) -> Floats:
+    """The state after the pose has moved: the arc's chord at the mean heading (as ``kinematics.move``)."""
+    dt, turn = told[0], turn_rate(x, told) * told[0]
+    chord = mean_speed(x, told) * dt * np.sinc(turn / (2 * np.pi))
+    y = x.copy()
+    y[X] += chord * np.cos(x[HEADING] + turn / 2)
+    y[Y] += chord * np.sin(x[HEADING] + turn / 2)
+    y[HEADING] += turn
+    return y
+
+
+@compiled
+def moved_jacobian(x: Floats, told: Told) -> Floats:
+    """(n, n) derivative of ``moved``."""
+    dt, left, right, _, _, track, gyro, accel = told
+    turn = turn_rate(x, told) * dt
+    arc = np.sinc(turn / (2 * np.pi))
+    chord = mean_speed(x, told) * dt * arc
+    c, s = np.cos(x[HEADING] + turn / 2), np.sin(x[HEADING] + turn / 2)
+    f = np.eye(x.shape[0])
+    f[HEADING, GYRO_BIAS] = -dt if gyro else 0.0
+    f[HEADING, LEFT], f[HEADING, RIGHT] = (0.0, 0.0) if gyro else (-left / track, right / track)
+    for i, along, across in ((X, c, -s), (Y, s, c)):
+        f[i, HEADING] = chord * across
+        f[i, SPEED] = dt * arc * along
+        f[i, ACCEL_OFFSET] = 0.5 * dt * dt * arc * along if accel else 0.0
+        for j in (GYRO_BIAS, LEFT, RIGHT):
+            f[i, j] = 0.5 * chord * across * f[HEADING, j]
+    return f
+
+
+def pose_noise(x: Floats, step: Step, noise: Noise, turn: float, track: float) -> Floats:
+    """(n, n) of the heading; without a gyroscope it is as uncertain as the wheels."""
+    q = np.zeros((len(x), len(x)))
+    q[HEADING, HEADING] = noise.turn**2 * abs(turn) + noise.gyro**2 * step.dt
+    if step.rate is None:
+        q[HEADING, HEADING] += sum(wheel_variance(x, step, noise, turn, track)) / track**2
+    return q
+
+
+def wheel_variance(x: Floats, step: Step, noise: Noise, turn: float, track: float) -> tuple[float, float]:
+    """m^2 of the ways of the left and the right wheel in a step that turns by ``turn`` [rad].
+
+    By the ways that the state expects: by those that were told, the ones that noise has made short would count more.
+    """
+    skidding = (noise.skid * turn * track / 2) ** 2 + noise.resolution**2 / 6
+    way, side = float(x[SPEED]) * step.dt, turn * track / 2
+    return noise.distance**2 * abs(way - side) + skidding, noise.distance**2 * abs(way + side) + skidding
+
+
+def driven(step: Step, size: int, slow: float) -> tuple[Floats, Floats]:
+    """(F, shift) of the first part: x becomes F x + shift. slow: what a step leaves of the satellites' slow error."""
+    f, shift = np.eye(size), np.zeros(size)
+    if step.force is not None:
+        f[SPEED, ACCEL_OFFSET] = -step.dt
+        shift[SPEED] = step.force * step.dt
+        shift[ACCEL_OFFSET] = -GRAVITY * step.pitching * step.dt
+    f[GNSS_X:, GNSS_X:] *= slow
+    return f, shift
+
+
+def drive_noise(step: Step, noise: Noise, size: int) -> Floats:
+    q = np.zeros((size, size))
+    accel = FOLLOWING if step.force is None else noise.accel
+    q[SPEED, SPEED] = accel**2 * step.dt
+    q[GYRO_BIAS, GYRO_BIAS] = noise.bias_walk**2 * step.dt
+    q[ACCEL_OFFSET, ACCEL_OFFSET] = noise.offset_walk**2 * step.dt
+    q[LEFT, LEFT], q[RIGHT, RIGHT] = noise.scale_walk**2 * abs(step.left), noise.scale_walk**2 * abs(step.right)
+    return q

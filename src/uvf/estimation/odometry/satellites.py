@@ -1,0 +1,139 @@
+"""Satellite positions into the pose in the world: lever arm, delay, gate, loss."""
+
+from dataclasses import dataclass
+from math import isfinite
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from schemas.messages import Gnss
+from uvf.estimation.odometry.filter import DriveFilter
+from uvf.estimation.odometry.kalman import Measured, misfit
+from uvf.estimation.odometry.states import GNSS_X, HEADING, POSE, SPEED
+from uvf.maths.geodesy import LocalTangent
+from uvf.maths.kinematics import twist_between
+from uvf.maths.se2 import Pose2, PoseHistory, compose, inverse, transform
+from uvf.runtime.messages.convert import seconds
+
+Floats = NDArray[np.float64]
+
+GATE = 13.8  # chi-square of two degrees of freedom, 99.9 %
+LEAST_POSITION, LEAST_SPEED = 0.05, 0.05  # m, m/s: no fix is better
+HISTORY = 100  # poses kept to look up where a fix was taken
+PATIENCE = 10.0  # s of fixes that are all refused, after which the filter doubts itself
+MOMENT = 0.04  # s, over which the motion at a fix is taken
+LOST = 2.0  # s without a fix
+ANYWHERE = 1000.0  # m, 1 sigma of a place that was wrong
+
+
+@dataclass(frozen=True)
+class Antenna:
+    """arm: m, of the receiver in the base; drift: m, 1 sigma of the slow part of its errors."""
+
+    arm: tuple[float, float]
+    drift: float
+
+
+class Satellites:
+    """Feeds a filter with fixes; the filter's pose is in the world."""
+
+    def __init__(self, tangent: LocalTangent, antenna: Antenna, heading_sigma: float) -> None:
+        """heading_sigma: rad, of the heading at the start, which a single fix does not tell."""
+        self._tangent, self._antenna, self._heading_sigma = tangent, antenna, heading_sigma
+        self._history = PoseHistory(HISTORY)
+        self._newest = -np.inf
+        self._taken = -np.inf
+        self.placed = False
+        self.ratio = 0.0
+        """Of the newest fix to its gate: above 1 it was refused."""
+
+    def is_lost(self, t: float) -> bool:
+        """No fix that fits for ``LOST`` s at ``t`` [s]."""
+        return t - self._taken > LOST
+
+    def note(self, t: float, odom_from_base: Pose2) -> None:
+        """Where the odometry has the base, for fixes that come late."""
+        self._history.add(t, odom_from_base)
+
+    def take(self, fix: Gnss, world: DriveFilter, odom_from_base: Pose2) -> bool:
+        """A fix into the filter, whose pose belongs to ``odom_from_base``; whether it was used."""
+        t = seconds(fix.timestamp)
+        told = (fix.latitude, fix.longitude, fix.altitude, fix.horizontal_accuracy)
+        known = fix.fix == Gnss.FIX_3D and all(map(isfinite, told)) and fix.horizontal_accuracy > 0.0
+        then = self._history.at(t)
+        if t <= self._newest or not known or then is None:
+            return False
+        self._newest = t
+        base_from_then = compose(inverse(odom_from_base), then)
+        place = self._tangent.enu(fix.latitude, fix.longitude, fix.altitude)[:2]
+        variance = max(fix.horizontal_accuracy**2 - self._antenna.drift**2, LEAST_POSITION**2)
+        if not self.placed:
+            self._place(place, transform(base_from_then, np.array((self._antenna.arm,)))[0], variance, world)
+        self._correct(fix, place, variance, world, base_from_then, t)
+        if self.ratio < 1.0:
+            self._taken = t
+        return self.ratio < 1.0
+
+    def _place(self, place: Floats, arm: Floats, variance: float, world: DriveFilter) -> None:
+        """Where the first fix and the start do not go together the fix counts; the heading stays that of the start."""
+        self.placed = True
+        if misfit(world.kalman, position(world.state, place, arm, variance)) > GATE:
+            world.place(Pose2(float(place[0]), float(place[1]), world.pose.yaw), (ANYWHERE, self._heading_sigma))
+
+    def _correct(self, fix: Gnss, place: Floats, variance: float, world: DriveFilter, base_from_then: Pose2, t: float) -> None:
+        arm = transform(base_from_then, np.array((self._antenna.arm,)))[0]
+        self.ratio = world.correct(position(world.state, place, arm, variance), GATE)
+        if self.ratio >= 1.0:
+            if t - self._taken > PATIENCE:
+                world.doubt_position(float(np.sqrt(self.ratio * variance)))
+                self._taken = t
+            return
+        then, now = self._motion(t), world.speeds
+        if then is not None:
+            told, changed = (fix.velocity_enu.x, fix.velocity_enu.y), Changed(base_from_then.yaw, then[0] - now[0], then[1])
+            world.correct(velocity(world.state, told, changed, self._antenna.arm, max(fix.speed_accuracy, LEAST_SPEED) ** 2), GATE)
+
+    def _motion(self, t: float) -> tuple[float, float] | None:
+        """Speed [m/s] and turn rate [rad/s] of the odometry at ``t`` [s]."""
+        before, after = self._history.at(t - MOMENT), self._history.at(t)
+        return twist_between(before, after, MOMENT) if before is not None and after is not None else None
+
+
+def position(x: Floats, place: Floats, arm: Floats, variance: float) -> Measured:
+    """place: (2,) m, world, of the antenna; arm: (2,) m, of where it was then, in the base as it is now. The slow error adds to it."""
+
+    def expected(point: Floats) -> Floats:
+        antenna: Floats = transform(Pose2(*point[POSE].tolist()), arm[None])[0] + point[GNSS_X : GNSS_X + 2]
+        return antenna
+
+    c, s = np.cos(x[HEADING]), np.sin(x[HEADING])
+    h = np.zeros((2, len(x)))
+    h[:, :2] = h[:, GNSS_X : GNSS_X + 2] = np.eye(2)
+    h[:, HEADING] = -s * arm[0] - c * arm[1], c * arm[0] - s * arm[1]
+    return Measured(place, expected, h, np.eye(2) * variance)
+
+
+class Changed(NamedTuple):
+    """What was otherwise when a fix was taken: heading and speed then less those of now, and the turn rate then."""
+
+    heading: float  # rad
+    speed: float  # m/s
+    rate: float  # rad/s
+
+
+def velocity(x: Floats, told: tuple[float, float], then: Changed, arm: tuple[float, float], variance: float) -> Measured:
+    """told: m/s, world, of the antenna at ``arm`` [m]."""
+    across, along = then.rate * arm[0], then.speed - then.rate * arm[1]
+
+    def expected(point: Floats) -> Floats:
+        c, s = np.cos(point[HEADING] + then.heading), np.sin(point[HEADING] + then.heading)
+        forward = point[SPEED] + along
+        return np.array((forward * c - across * s, forward * s + across * c))
+
+    c, s = np.cos(x[HEADING] + then.heading), np.sin(x[HEADING] + then.heading)
+    forward = x[SPEED] + along
+    h = np.zeros((2, len(x)))
+    h[:, SPEED] = c, s
+    h[:, HEADING] = -forward * s - across * c, forward * c - across * s
+    return Measured(np.array(told), expected, h, np.eye(2) * variance)

@@ -1,0 +1,32 @@
+"""How high the wheels are over a strip and how fast they sink: the estimate, corrected by a range finder that looks down."""
+
+from uvf.estimation.state import Estimate
+from uvf.models.vehicle.flight_params import AirParams
+
+BELOW, WITHIN = 20.0, 150.0  # m of height and distance: from here on the range finder sees the strip's level
+POLE = 1.5  # rad/s
+MOST_DRIFT = 0.5  # m/s
+
+
+class WheelHeight:
+    """An observer with a double pole learns by how much the estimated height is off, and how fast that changes."""
+
+    def __init__(self, ground: float) -> None:
+        """ground: m, world, of the strip."""
+        self._ground = ground
+        self._off = 0.0  # m
+        self._drift = 0.0  # m/s
+        self.height = 0.0
+        """m, of the wheels over the strip."""
+        self.climb = 0.0
+        """m/s."""
+
+    def step(self, now: Estimate, seen: float | None, distance: float, params: AirParams, dt: float) -> None:
+        """seen: m below the wheels, None without an echo; distance: m before the point to touch at."""
+        estimated = now.height - params.gear_height - self._ground
+        if seen is not None and distance < WITHIN and seen < BELOW:
+            error = seen - estimated - self._off
+            self._off += (self._drift + 2 * POLE * error) * dt
+            self._drift = min(max(self._drift + POLE**2 * error * dt, -MOST_DRIFT), MOST_DRIFT)
+        self.height = estimated + self._off
+        self.climb = now.climb + self._drift

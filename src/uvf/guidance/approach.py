@@ -1,0 +1,123 @@
+"""A final approach that a mission lays down: off a circle along its tangent, or straight on from a waypoint."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from uvf.guidance.flight_plan import Item, Kind
+from uvf.guidance.route import Place
+from uvf.guidance.vector_field import turn_radius
+from uvf.models.vehicle.flight_params import AirParams
+
+SHORTEST = 8.0  # s at the lowest airspeed
+STEEPEST = 0.16  # rad
+OF_IDLE = 0.8  # of the sink without power: what is left over is for a tailwind
+TIGHTEST_ORBIT = 0.6  # of the radius at turn_bank; smaller wishes are widened to that
+ON_THE_WAY = (Kind.WAYPOINT, Kind.ORBIT)
+
+
+@dataclass(frozen=True, slots=True)
+class Approach:
+    """To ``place``, where the wheels are to touch, by ``course`` [rad] from ``length`` [m] before it at ``height`` [m, world].
+
+    ``radius`` [m] of the circle that it leaves, positive clockwise; 0: it begins at a waypoint.
+    """
+
+    place: Place
+    course: float
+    length: float
+    height: float
+    radius: float = 0.0
+
+    @property
+    def slope(self) -> float:
+        """Tangent of the angle down."""
+        return (self.height - self.place.height) / max(self.length, 1.0)
+
+
+def orbit_radius(item: Item, params: AirParams) -> float:
+    """m, positive clockwise, of the circle that is flown for an item."""
+    wanted = item.radius or params.hold_radius
+    tightest = TIGHTEST_ORBIT * turn_radius(params.trim_airspeed, params.turn_bank)
+    return math.copysign(max(abs(wanted), tightest), wanted)
+
+
+def laid_down(items: Sequence[Item], index: int, params: AirParams) -> Approach | None:
+    """The approach of the landing at ``index``: a circle down to an altitude right before it, or a waypoint of its landing pattern.
+
+    None where the mission leaves it to the aircraft, and where no tangent leads from the circle to the place.
+    """
+    place, before = items[index].place, _before(items, index)
+    if before is None:
+        return None
+    item = items[before]
+    distance, course = _way(item.place, place)
+    if item.kind is Kind.WAYPOINT:
+        return Approach(place, course, distance, item.place.height)
+    radius = orbit_radius(item, params)
+    if distance <= abs(radius):
+        return None
+    course = math.remainder(course + math.asin(radius / distance), math.tau)
+    return Approach(place, course, math.sqrt(distance**2 - radius**2), item.place.height, radius)
+
+
+def approach_fault(items: Sequence[Item], index: int, params: AirParams) -> str:
+    """Why the approach that is laid down for the landing at ``index`` cannot be flown, and how to mend it; empty if it can."""
+    before = _before(items, index)
+    if before is None:
+        return ""
+    found = laid_down(items, index, params)
+    if found is None:
+        distance, _ = _way(items[before].place, items[index].place)
+        radius = abs(orbit_radius(items[before], params))
+        return f"lies within the circle of item {before}, which leads to it: {distance:.0f} m of {radius:.0f} m"
+    return _fault(found, before, params)
+
+
+def _way(start: Place, end: Place) -> tuple[float, float]:
+    """Distance [m] and course [rad]."""
+    north, east = end.north - start.north, end.east - start.east
+    return math.hypot(north, east), math.atan2(east, north)
+
+
+def _before(items: Sequence[Item], index: int) -> int | None:
+    """What the final approach begins at, if an item says so."""
+    for k in range(index - 1, -1, -1):
+        item = items[k]
+        if item.kind in ON_THE_WAY:
+            circle = item.kind is Kind.ORBIT and item.to_altitude
+            return k if circle or (item.flies_through and _is_of_pattern(items[:k])) else None
+        if item.kind in (Kind.LAND, Kind.TAKEOFF, Kind.RETURN, Kind.LAND_START):
+            return None
+    return None
+
+
+def _is_of_pattern(before: Sequence[Item]) -> bool:
+    """Whether a landing pattern has begun that no landing has ended yet."""
+    marks = (item.kind for item in reversed(before) if item.kind in (Kind.LAND_START, Kind.LAND))
+    return next(marks, Kind.LAND) is Kind.LAND_START
+
+
+def _fault(approach: Approach, begin: int, params: AirParams) -> str:
+    shortest = SHORTEST * params.min_airspeed
+    if approach.length < shortest:
+        return f"has a final approach of {approach.length:.0f} m from item {begin}: {math.ceil(shortest)} m at least"
+    steepest = min(math.tan(STEEPEST), OF_IDLE * params.idle_sink / params.trim_airspeed)
+    if approach.slope > max(steepest, math.tan(params.glide_slope)):
+        lower = approach.place.height + steepest * approach.length
+        angle, most = (math.degrees(math.atan(v)) for v in (approach.slope, steepest))
+        return f"is approached at {angle:.1f} degrees, {most:.1f} at most: put item {begin} at {lower:.0f} m or further away"
+    if approach.slope <= 0:
+        return f"lies no lower than item {begin}, from where it is approached"
+    return ""
+
+
+def with_courses(items: Sequence[Item]) -> list[Item]:
+    """A waypoint that a final approach begins at is passed in its direction."""
+    found = list(items)
+    for index in (i for i, item in enumerate(items) if item.kind is Kind.LAND):
+        before = _before(items, index)
+        if before is not None and items[before].kind is Kind.WAYPOINT and items[before].course is None:
+            _, course = _way(items[before].place, items[index].place)
+            found[before] = replace(items[before], course=course)
+    return found

@@ -1,0 +1,123 @@
+"""A mission as a list of items, and which item is flown next."""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from enum import Enum
+from types import MappingProxyType
+
+from uvf.guidance.route import Place
+
+
+class Kind(Enum):
+    WAYPOINT = "waypoint"
+    ORBIT = "orbit"
+    RETURN = "return"
+    JUMP = "jump"
+    SPEED = "speed"
+    TRIGGER = "trigger"
+    TRIGGER_DISTANCE = "trigger_distance"
+    TAKEOFF = "takeoff"
+    LAND = "land"
+    LAND_START = "land_start"
+    SET_HOME = "set_home"
+
+
+OFF_PATH = (Kind.RETURN, Kind.TAKEOFF, Kind.LAND)
+"""What is not flown along legs and circles."""
+
+
+@dataclass(frozen=True, slots=True)
+class Item:
+    """One line of a mission; which fields count depends on the kind (see mission.proto).
+
+    An acceptance radius limits how far from a waypoint the corner may be rounded; the waypoint counts as reached where the corner begins.
+    """
+
+    kind: Kind
+    place: Place
+    hold: float = 0.0  # s
+    radius: float = 0.0  # m, positive clockwise
+    turns: float = 0.0
+    speed: float = 0.0  # m/s; SPEED: 0 = cruise again
+    jump_to: int = 0
+    repeat: int = 0
+    course: float | None = None  # rad, over ground, from north clockwise
+    acceptance: float = math.inf  # m
+    to_altitude: bool = False
+    distance: float = 0.0  # m
+    here: bool = False
+
+    @property
+    def flies_through(self) -> bool:
+        return self.kind is Kind.WAYPOINT and self.hold == 0
+
+    def is_at(self, place: Place) -> bool:
+        """Whether nothing more than this place is asked for."""
+        away = math.hypot(self.place.north - place.north, self.place.east - place.east)
+        return self.flies_through and self.course is None and away < ONE_PLACE
+
+
+@dataclass(frozen=True, slots=True)
+class Stand:
+    """Where in a mission an aircraft is; index None: not begun."""
+
+    index: int | None
+    reached: int
+    laps: int
+    finished: bool
+
+
+DEEDS = (Kind.TRIGGER, Kind.TRIGGER_DISTANCE, Kind.SET_HOME)
+ONE_PLACE = 1.0  # m, between waypoints that are taken for one
+NO_JUMPS: Mapping[int, int] = MappingProxyType({})
+
+
+@dataclass(frozen=True, slots=True)
+class Stop:
+    """The item flown next (None: the end) and what was passed on the way to it."""
+
+    index: int | None
+    jumps: Mapping[int, int]  # jump item -> how often it has been taken
+    laps: int  # jumps taken now
+    speed: float | None  # m/s, 0 = cruise, None = unchanged
+    deeds: tuple[int, ...] = ()  # items that are carried out in passing
+
+
+def next_stop(items: Sequence[Item], index: int, jumps: Mapping[int, int]) -> Stop:
+    """From ``index`` on past speed changes, deeds, marks and jumps; jumps without anything to fly between them end the mission."""
+    taken, laps = dict(jumps), 0
+    speed: float | None = None
+    deeds: tuple[int, ...] = ()
+    for _ in range(2 * len(items) + 1):
+        if index >= len(items):
+            return Stop(None, taken, laps, speed, deeds)
+        item = items[index]
+        if item.kind is Kind.SPEED:
+            speed, index = item.speed, index + 1
+        elif item.kind in DEEDS:
+            deeds, index = (*deeds, index), index + 1
+        elif item.kind is Kind.LAND_START:
+            index += 1
+        elif item.kind is Kind.JUMP:
+            if 0 <= item.repeat <= taken.get(index, 0):
+                index += 1
+            else:
+                taken[index] = taken.get(index, 0) + 1
+                laps, index = laps + 1, item.jump_to
+        else:
+            return Stop(index, taken, laps, speed, deeds)
+    return Stop(None, taken, laps, speed, deeds)
+
+
+def following(items: Sequence[Item], stop: Stop) -> Stop:
+    """After the item of ``stop``: waypoints that are flown through at the same place are passed with it."""
+    assert stop.index is not None
+    here, found = items[stop.index], next_stop(items, stop.index + 1, stop.jumps)
+    for _ in items:
+        if found.index is None or not (here.flies_through and items[found.index].is_at(here.place)):
+            break
+        more = next_stop(items, found.index + 1, found.jumps)
+        speed = found.speed if more.speed is None else more.speed
+        found = Stop(more.index, more.jumps, found.laps + more.laps, speed, found.deeds + more.deeds)
+    return found

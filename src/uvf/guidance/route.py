@@ -1,0 +1,221 @@
+"""The pieces of a flown route: a leg, the turn onto the next, a circle."""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from uvf.estimation.state import Estimate
+from uvf.guidance.clothoid_dubins import Way
+from uvf.guidance.corners import Corner
+from uvf.guidance.vector_field import Aim, Point, line_aim, orbit_aim
+from uvf.models.vehicle.flight_params import AirParams
+
+CAPTURED = 0.3  # of the radius, from the circle: near enough to count turns
+BEHIND, AHEAD = 20.0, 40.0  # m along a curve, where the aircraft is looked for
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """m, world frame."""
+
+    north: float
+    east: float
+    height: float
+
+    @property
+    def point(self) -> Point:
+        return self.north, self.east
+
+
+@dataclass(frozen=True, slots=True)
+class Level:
+    """The height wanted [m] and the climb of the path [m/s]."""
+
+    height: float
+    climb: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Leg:
+    """From ``start`` to ``end``; the corners rounded at each, or the curve flown instead."""
+
+    start: Place
+    end: Place
+    entry: "Corner | Curve | None" = None
+    exit: "Corner | Curve | None" = None
+
+    @property
+    def length(self) -> float:
+        return math.hypot(self.end.north - self.start.north, self.end.east - self.start.east)
+
+    @property
+    def along(self) -> Point:
+        """Unit vector; north for a leg without length."""
+        length = self.length
+        if length < 1e-6:
+            return 1.0, 0.0
+        return (self.end.north - self.start.north) / length, (self.end.east - self.start.east) / length
+
+    @property
+    def course(self) -> float:
+        return math.atan2(self.along[1], self.along[0])
+
+    def progress(self, position: Point) -> float:
+        """m along the leg from its start."""
+        n, e = self.along
+        return (position[0] - self.start.north) * n + (position[1] - self.start.east) * e
+
+    def is_flown(self, position: Point) -> bool:
+        """Past the half plane where the turn begins, or through the waypoint."""
+        return self.progress(position) >= self.length - (self.exit.before if self.exit else 0.0)
+
+    def bend(self, s: float) -> float:
+        """Curvature of the route at ``s`` [m], that of the corner at the end included [1/m]."""
+        return self.exit.bend(s - self.length + self.exit.before) if self.exit is not None else 0.0
+
+    def aim(self, now: Estimate, params: AirParams) -> Aim:
+        position = (now.north, now.east)
+        aim = line_aim(self.along, self.start.point, position, params)
+        return replace(aim, curvature=self.bend(self.progress(position) + now.ground_speed * params.lead_time))
+
+    def level(self, now: Estimate) -> Level:
+        """A straight line between the heights of both ends."""
+        s = self.progress((now.north, now.east))
+        rise = (self.end.height - self.start.height) / max(self.length, 1.0)
+        return Level(self.height(s), now.ground_speed * rise if 0 < s < self.length else 0.0)
+
+    def height(self, s: float) -> float:
+        """m, of the route at ``s`` [m]."""
+        part = min(max(s / max(self.length, 1.0), 0.0), 1.0)
+        return self.start.height + part * (self.end.height - self.start.height)
+
+
+@dataclass(frozen=True, slots=True)
+class Turn:
+    """Round ``corner`` from one leg onto the next."""
+
+    corner: Corner
+    leaves: Leg
+    onto: Leg
+
+    def is_flown(self, position: Point) -> bool:
+        return self.corner.nearest(position)[0] >= self.corner.length
+
+    def aim(self, now: Estimate, params: AirParams) -> Aim:
+        corner = self.corner
+        s, aside, course = corner.nearest((now.north, now.east))
+        ahead = s + now.ground_speed * params.lead_time
+        curvature = corner.bend(ahead) if ahead <= corner.length else self.onto.bend(corner.after + ahead - corner.length)
+        return Aim(aside, course, curvature, params.k_path, params.chi_inf)
+
+    def level(self, now: Estimate) -> Level:
+        """A straight line between the heights of the two legs where it begins and ends."""
+        corner, leaves = self.corner, self.leaves
+        begin, end = leaves.height(leaves.length - corner.before), self.onto.height(corner.after)
+        part = min(max(corner.nearest((now.north, now.east))[0] / corner.length, 0.0), 1.0)
+        return Level(begin + part * (end - begin), now.ground_speed * (end - begin) / corner.length)
+
+
+@dataclass
+class Curve:
+    """A way planned beforehand, straight at both ends; it knows how far along it the aircraft is, for it may cross itself.
+
+    ``passing``: m along it where items of the mission are passed. ``heights``: m at its begin, at each of these and at its end.
+    ``before``, ``after``: m of the legs that it takes the place of. ``onto``: what follows, once that is known.
+    """
+
+    way: Way
+    passing: tuple[float, ...]
+    heights: tuple[float, ...]
+    before: float = 0.0
+    after: float = 0.0
+    onto: "Leg | Curve | Circle | None" = None
+    s: float = 0.0  # m
+    passed: int = 0  # of ``passing``
+
+    @property
+    def end(self) -> Place:
+        north, east = self.way.points[-1].tolist()
+        return Place(north, east, self.heights[-1])
+
+    @property
+    def left(self) -> float:
+        """m."""
+        return self.way.length - self.s
+
+    @property
+    def here(self) -> tuple[float, float, float]:
+        """North, east [m] and course [rad] of the way where the aircraft is."""
+        i = int(np.searchsorted(self.way.s, self.s).clip(0, len(self.way.s) - 1))
+        return *self.way.points[i].tolist(), float(self.way.course[i])
+
+    def place(self, s: float) -> Place:
+        """On the way at ``s`` [m]."""
+        north, east = (float(np.interp(s, self.way.s, column)) for column in self.way.points.T)
+        return Place(north, east, self._height(s))
+
+    @property
+    def is_straight(self) -> bool:
+        """Where the aircraft is."""
+        return abs(self.way.bend(self.s)) < 1e-9
+
+    @property
+    def ends_at_item(self) -> bool:
+        """With nothing else on the way to it."""
+        return self.passing[self.passed :] == (self.way.length,)
+
+    def follow(self, position: Point) -> None:
+        """To be told of each position."""
+        self.s = self._nearest(position)[0]
+
+    def bend(self, s: float) -> float:
+        """Curvature at ``s`` [m], beyond its end that of what follows [1/m]."""
+        beyond = s - self.way.length
+        if beyond <= 0 or self.onto is None:
+            return self.way.bend(s)
+        return 1 / self.onto.radius if isinstance(self.onto, Circle) else self.onto.bend(beyond + self.after)
+
+    def aim(self, now: Estimate, params: AirParams) -> Aim:
+        s, aside, course = self._nearest((now.north, now.east))
+        return Aim(aside, course, self.bend(s + now.ground_speed * params.lead_time), params.k_path, params.chi_inf)
+
+    def level(self, now: Estimate) -> Level:
+        """Straight lines over the length between the heights."""
+        height = self._height(self.s)
+        return Level(height, now.ground_speed * (self._height(self.s + 1.0) - height))
+
+    def _height(self, s: float) -> float:
+        return float(np.interp(s, (0.0, *self.passing, self.way.length), self.heights))
+
+    def _nearest(self, position: Point) -> tuple[float, float, float]:
+        return self.way.nearest(position, (self.s - BEHIND, self.s + AHEAD))
+
+
+@dataclass(frozen=True, slots=True)
+class Circle:
+    """``radius`` [m] positive clockwise seen from above."""
+
+    centre: Place
+    radius: float
+
+    @classmethod
+    def ahead(cls, now: Estimate, height: float, radius: float) -> "Circle":
+        """The circle that the aircraft enters by turning now."""
+        side = now.course + math.pi / 2
+        centre = Place(now.north + radius * math.cos(side), now.east + radius * math.sin(side), height)
+        return cls(centre, radius)
+
+    def aim(self, now: Estimate, params: AirParams) -> Aim:
+        return orbit_aim(self.centre.point, self.radius, (now.north, now.east), params)
+
+    def level(self, now: Estimate) -> Level:
+        return Level(self.centre.height)
+
+    def bearing(self, now: Estimate) -> float:
+        """rad, of the aircraft from the centre."""
+        return math.atan2(now.east - self.centre.east, now.north - self.centre.north)
+
+    def is_captured(self, now: Estimate) -> bool:
+        distance = math.hypot(now.north - self.centre.north, now.east - self.centre.east)
+        return abs(distance - abs(self.radius)) < CAPTURED * abs(self.radius)

@@ -1,0 +1,80 @@
+"""Vector fields about lines and circles with the curvature of the path fed forward.
+
+Beard & McLain chapter 10; plane coordinates are (north, east) [m], courses from north, clockwise [rad], lateral distances
+and curvatures positive to the right of the direction of flight.
+"""
+
+import math
+from dataclasses import dataclass
+
+from uvf.control.cycle import clip
+from uvf.estimation.state import Estimate
+from uvf.maths.filters import Integral
+from uvf.maths.geodesy import GRAVITY
+from uvf.models.vehicle.flight_params import AirParams
+
+Point = tuple[float, float]
+INTEGRATES_WITHIN = 5.0  # m
+TURN_TRIM_LIMIT = 0.05  # rad/s
+
+
+def turn_radius(speed: float, bank: float) -> float:
+    """m, of a coordinated turn with this bank [rad] at this speed [m/s] (Beard & McLain 9.3.2)."""
+    return speed**2 / (GRAVITY * math.tan(bank))
+
+
+@dataclass(frozen=True, slots=True)
+class Aim:
+    """Where a path wants the aircraft now."""
+
+    error: float  # m, the aircraft's distance to the right of the path
+    course: float  # rad, of the path there
+    curvature: float  # 1/m, of the path a lead time ahead
+    convergence: float  # 1/m, steepness of the field: course correction per distance, near the path
+    limit: float  # rad, course correction far away
+
+
+def from_line(along: Point, origin: Point, position: Point) -> tuple[float, float]:
+    """m ahead of ``origin`` in the direction ``along`` (unit, north and east), and to the right of the line."""
+    north, east = position[0] - origin[0], position[1] - origin[1]
+    return along[0] * north + along[1] * east, along[0] * east - along[1] * north
+
+
+def line_aim(along: Point, origin: Point, position: Point, params: AirParams) -> Aim:
+    """The line through ``origin`` in the direction ``along`` (unit, north and east)."""
+    _, right = from_line(along, origin, position)
+    return Aim(right, math.atan2(along[1], along[0]), 0.0, params.k_path, params.chi_inf)
+
+
+def orbit_aim(centre: Point, radius: float, position: Point, params: AirParams) -> Aim:
+    """The circle about ``centre``; ``radius`` [m] positive clockwise seen from above (10.13)."""
+    turn = math.copysign(1.0, radius)
+    north, east = position[0] - centre[0], position[1] - centre[1]
+    distance = math.hypot(north, east)
+    course = math.atan2(east, north) + turn * math.pi / 2
+    error = turn * (abs(radius) - distance)
+    near = min(abs(radius) / max(distance, 1.0), 1.0)
+    return Aim(error, course, near * turn / abs(radius), params.k_orbit / abs(radius), math.pi / 2)
+
+
+class Steering:
+    """From an aim to a bank angle."""
+
+    def __init__(self) -> None:
+        self._trim = Integral(TURN_TRIM_LIMIT)
+
+    def bank(self, aim: Aim, now: Estimate, params: AirParams, dt: float) -> float:
+        """Course rate of the path and of the field about it, plus the course error, as a coordinated turn (9.14)."""
+        speed = max(now.ground_speed, 5.0)
+        off_path = math.remainder(now.course - aim.course, math.tau)
+        slope = aim.limit * 2 / math.pi * aim.convergence
+        correction = -aim.limit * 2 / math.pi * math.atan(aim.convergence * aim.error)
+        drift = speed * math.sin(off_path)
+        field_rate = -slope / (1 + (aim.convergence * aim.error) ** 2) * drift
+        course_error = math.remainder(correction - off_path, math.tau)
+        rate = speed * aim.curvature + clip(field_rate, 0.5) + params.course_p * course_error
+        if abs(aim.error) < INTEGRATES_WITHIN:
+            self._trim.step(-params.cross_track_i * aim.error, dt)
+        rate += self._trim.value
+        crab = math.cos(math.remainder(now.course - now.yaw, math.tau))
+        return clip(math.atan(rate * speed / (GRAVITY * max(crab, 0.3))), params.bank_limit)

@@ -1,0 +1,138 @@
+"""Meshes as others write them (DAE, OBJ, STL, glTF), made one STL file in metres with z up that physics, rays and page all read."""
+
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import collada  # type: ignore[import-untyped]
+import numpy as np
+import trimesh
+from numpy.typing import NDArray
+
+from uvf.models.importing.notes import Notes
+from uvf.models.world.file import Colour
+from uvf.models.yaml_data import BadInput
+
+Floats = NDArray[np.float64]
+
+FORMATS = (".dae", ".stl", ".obj", ".glb", ".gltf", ".ply", ".off")
+HEAVY = 50_000  # triangles
+Z_FROM_Y = np.array(((1.0, 0.0, 0.0), (0.0, 0.0, -1.0), (0.0, 1.0, 0.0)))
+Z_FROM_X = np.array(((0.0, -1.0, 0.0), (0.0, 0.0, -1.0), (1.0, 0.0, 0.0)))
+UNREADABLE = (OSError, ValueError, TypeError, KeyError, AttributeError, IndexError, NotImplementedError, collada.common.DaeError)
+
+
+class Wanted(NamedTuple):
+    """Which part of a mesh file (all of it when ``submesh`` is empty), its bounding box centred or not, and how large."""
+
+    submesh: str = ""
+    centred: bool = False
+    scale: tuple[float, float, float] = (1.0, 1.0, 1.0)
+
+
+class MeshStore:
+    """Writes meshes below ``folder``/meshes, each once.
+
+    upright: whether a DAE that says another axis than z is up gets turned. Gazebo never does, and worlds made with it rely on that.
+    """
+
+    def __init__(self, folder: Path, notes: Notes, upright: bool = False) -> None:
+        self._upright = upright
+        self._folder = folder
+        self._notes = notes
+        self._written: dict[tuple[Path, Wanted], str] = {}
+        self._colours: dict[Path, Colour | None] = {}
+
+    def convert(self, source: Path, wanted: Wanted) -> str:
+        """Name in the world's folder of a copy of ``source`` as STL. Raises BadInput when it cannot be read."""
+        key = (source.resolve(), wanted)
+        if key not in self._written:
+            loaded = self._load(source, wanted)
+            loaded.apply_transform(np.diag((*wanted.scale, 1.0)))
+            self._written[key] = self.write(loaded, source.stem + (f"_{wanted.submesh}" if wanted.submesh else ""))
+        return self._written[key]
+
+    def colour(self, source: Path) -> Colour | None:
+        """Mean colour of a mesh file, None when it tells none or cannot be read."""
+        if source not in self._colours:
+            try:
+                self._colours[source] = _colour(trimesh.load_scene(source))
+            except UNREADABLE:
+                self._colours[source] = None
+        return self._colours[source]
+
+    def write(self, shape: Any, name: str) -> str:
+        """Name of the new file in the world's folder."""
+        stem = "".join(c if c.isalnum() or c in "_-" else "_" for c in name).lstrip("-") or "mesh"
+        meshes = self._folder / "meshes"
+        meshes.mkdir(parents=True, exist_ok=True)
+        taken = {p.stem for p in meshes.iterdir()}
+        free = next(n for n in (stem, *(f"{stem}_{i}" for i in range(2, len(taken) + 3))) if n not in taken)
+        shape.export(meshes / f"{free}.stl")
+        return f"meshes/{free}.stl"
+
+    def _load(self, source: Path, wanted: Wanted) -> Any:
+        if source.suffix.lower() not in FORMATS:
+            raise BadInput(f"{source}: meshes of this kind are not read; export it as STL, OBJ or DAE")
+        try:
+            scene = trimesh.load_scene(source)
+            whole = self._part(scene, wanted.submesh, source).to_mesh()
+            metres = self._metres_from_file(source)
+        except UNREADABLE as error:
+            raise BadInput(f"{source}: cannot be read as a mesh: {' '.join(str(error).split())}; export it anew") from error
+        if len(whole.faces) == 0:
+            raise BadInput(f"{source}: no triangles in it")
+        whole.apply_transform(metres)
+        if wanted.centred:
+            whole.apply_translation(-whole.bounds.mean(axis=0))
+        if len(whole.faces) > HEAVY:
+            self._notes.add(f"meshes of more than {HEAVY} triangles make everything slow; simplify them", source.name)
+        return whole
+
+    def _part(self, scene: Any, submesh: str, source: Path) -> Any:
+        """Only the geometry of that name, or whose node is called so; without one, all."""
+        if not submesh:
+            return scene
+        names = {scene.graph[node][1] for node in scene.graph.nodes_geometry if submesh in (node, scene.graph[node][1])}
+        names |= {n for n in scene.geometry if n.split(".")[0].removesuffix("-mesh").removesuffix("_001") == submesh}
+        if not names:
+            self._notes.add("submeshes not found; the whole mesh is taken", f"{submesh} of {source.name}")
+            return scene
+        part = scene.copy()
+        part.delete_geometry([n for n in scene.geometry if n not in names])
+        return part
+
+    def _metres_from_file(self, source: Path) -> Floats:
+        """(4, 4): unit and upward axis as the file states them; STL and OBJ state none and are in metres, z up."""
+        to = np.eye(4)
+        if source.suffix.lower() in (".glb", ".gltf"):
+            to[:3, :3] = Z_FROM_Y
+        if source.suffix.lower() == ".dae":
+            asset = collada.Collada(str(source), ignore=[collada.common.DaeError]).assetInfo
+            turn = {"Y_UP": Z_FROM_Y, "X_UP": Z_FROM_X}.get(asset.upaxis or "Z_UP", np.eye(3))
+            to[:3, :3] = (turn if self._upright else np.eye(3)) * (asset.unitmeter or 1.0)
+            if asset.upaxis in ("Y_UP", "X_UP") and not self._upright:
+                self._notes.add("meshes that say another axis than z is up, not turned, as in Gazebo (--upright turns them)", source.name)
+        return to
+
+
+def _colour(scene: Any) -> Colour | None:
+    """Mean over all parts by area; a picture counts with its mean."""
+    found = [(part.area, rgb) for part in scene.geometry.values() if (rgb := _rgb(part.visual)) is not None]
+    total = sum(area for area, _ in found)
+    if not total > 0:
+        return None
+    r, g, b = (float(np.clip(sum(area * rgb[k] for area, rgb in found) / total, 0.0, 1.0)) for k in range(3))
+    return r, g, b
+
+
+def _rgb(visual: Any) -> Floats | None:
+    if not visual.defined:
+        return None
+    material = getattr(visual, "material", None)
+    picture = getattr(material, "image", None) or getattr(material, "baseColorTexture", None)
+    if picture is not None:
+        pixels: Floats = np.asarray(picture.convert("RGB").resize((16, 16)), dtype=np.float64).reshape(-1, 3)
+        mean: Floats = pixels.mean(axis=0) / 255
+        return mean
+    colour = getattr(material, "main_color", None) if material is not None else visual.main_color
+    return None if colour is None else np.array(colour[:3], dtype=np.float64) / 255

@@ -1,0 +1,205 @@
+"""A foreign body as UVF wants it: base_link on the floor under the axle, wheels with plain axes, all else held fast."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uvf.maths.se3 import IDENTITY, Transform, apply, compose, inverse
+from uvf.models.importing.drive_pair import DrivePair, Wheel, shapes_below
+from uvf.models.importing.inertia_guess import mended
+from uvf.models.importing.robot import Foreign, joined, moved
+from uvf.models.shapes.mesh import placed, reach, triangles
+from uvf.models.shapes.solid import Solid
+from uvf.models.urdf.robot import Joint, Link, UrdfModel
+from uvf.models.urdf.rules import RESERVED
+
+Floats = NDArray[np.float64]
+
+BASE = "base_link"
+DOWN = np.array(((0.0, 0.0, -1.0),))
+Y = np.array((0.0, 1.0, 0.0))
+CASTORS = ("cast", "swivel", "ball", "skid", "support")
+SKID = "skid steer is not modelled: one pair drives, the other wheels became balls that slide"
+LOW = 0.004  # m above the floor, within which a shape is meant to touch it
+LIFT = 0.0005  # m
+NEAR_FLOOR = 0.35  # of the wheel's radius: what a castor's link may be off the floor
+
+
+@dataclass
+class _Parts:
+    """The model in base_link: base_from_link of every link, and what became of them."""
+
+    model: UrdfModel
+    pair: DrivePair
+    poses: dict[str, Transform]
+    links: dict[str, Link]
+    joints: dict[str, Joint]
+
+
+def rebuilt(foreign: Foreign, pair: DrivePair) -> UrdfModel:
+    """The new model; notes of what was changed go to ``foreign``."""
+    model = foreign.model
+    poses = {name: compose(pair.base_from_root, pose) for name, pose in model.link_poses().items()}
+    parts = _Parts(model, pair, poses, {}, {})
+    wheels = {w.joint.name: [n for n in model.below(w.joint.child) if n in poses] for w in (pair.left, pair.right)}
+    turning = {name for names in wheels.values() for name in names}
+    rest = [name for name in poses if name not in turning]
+    castors = _castors(parts, rest, foreign)
+    trunk = _trunk(parts, rest)
+    _add_base(parts, trunk, foreign)
+    for name in rest:
+        if name not in trunk:
+            _add_fixed(parts, name, castors, foreign)
+    for side, wheel in (("left", pair.left), ("right", pair.right)):
+        _add_wheel(parts, side, wheel, wheels[wheel.joint.name])
+    foreign.notes.add("wheels touch as balls of their radius: one contact at the middle of the tread")
+    held = [j.name for j in model.joints.values() if j.kind != "fixed" and j.child in rest and j.child not in castors]
+    if held:
+        foreign.notes.add("joints that move but drive nothing, held fast at zero", ", ".join(held))
+    _lower_feet(parts, foreign)
+    _lift_castors(parts, foreign)
+    links = {name: mended(link, name == BASE, foreign.notes) for name, link in parts.links.items()}
+    return UrdfModel(model.path, model.name, links, parts.joints)
+
+
+def _trunk(parts: _Parts, rest: list[str]) -> list[str]:
+    """The links that become base_link: the root, an own base_link, and, where these weigh nothing, what carries the wheels."""
+    trunk = [parts.model.roots[0], *([BASE] if BASE in rest else [])]
+    if all(parts.model.links[n].inertial is None for n in trunk):
+        trunk.append(parts.pair.left.joint.parent)
+    return [n for n in dict.fromkeys(trunk) if n in rest]
+
+
+def _add_base(parts: _Parts, trunk: list[str], foreign: Foreign) -> None:
+    links = [parts.model.links[n] for n in trunk]
+    masses = [moved(link.inertial, parts.poses[link.name]) for link in links if link.inertial is not None]
+    shapes = [tuple(placed(s, parts.poses[k.name]) for k in links for s in getattr(k, kind)) for kind in ("visuals", "collisions")]
+    visuals, collisions = (tuple(replace(s, name=BASE) for s in kind) for kind in shapes)
+    carries = any(link.collisions for name, link in parts.model.links.items() if name in parts.model.rigid_with(trunk[0]))
+    if not collisions and visuals and not carries:
+        foreign.notes.add("no collision shape in the file: the box about the looks is taken", ", ".join(trunk))
+        collisions = (_box_about(visuals),)
+    parts.links[BASE] = Link(BASE, joined(masses), visuals, collisions)
+    gone = [n for n in trunk if n != BASE]
+    if gone:
+        foreign.notes.add(f"links made part of {BASE}, which lies on the floor under the axle", ", ".join(gone))
+
+
+def _add_fixed(parts: _Parts, name: str, castors: dict[str, Solid], foreign: Foreign) -> None:
+    """A link as it is, held fast on base_link; of a castor the looks stay and a ball touches the floor."""
+    link, pose = parts.model.links[name], parts.poses[name]
+    new = _named(name, parts)
+    collisions = tuple(s for s in link.collisions) if name not in castors else ()
+    if name in castors:
+        ball = castors[name]
+        collisions = (replace(ball, name=new, position=apply(inverse(pose), ball.position[None])[0]),)
+    bears = any(j.parent == name for j in parts.model.joints.values())
+    if not any((link.inertial, link.visuals, collisions)) and (bears or name in RESERVED):
+        foreign.notes.add("frames without mass or shape dropped", name)
+        return
+    parts.links[new] = Link(new, link.inertial, link.visuals, collisions)
+    parts.joints[f"{new}_joint"] = Joint(f"{new}_joint", "fixed", BASE, new, pose)
+
+
+def _named(name: str, parts: _Parts) -> str:
+    clean = "".join(c if c.isalnum() or c in "_.-" else "_" for c in name).strip("_") or "link"
+    return clean if clean not in (*parts.links, *RESERVED) else f"{clean}_{len(parts.links)}"
+
+
+def _add_wheel(parts: _Parts, side: str, wheel: Wheel, names: list[str]) -> None:
+    """A link at the middle of the tread, its axes those of base_link, on a joint about y."""
+    centre = apply(parts.pair.base_from_root, wheel.centre[None])[0]
+    wheel_from_base = Transform(IDENTITY.rotation, -centre)
+    links = [parts.model.links[n] for n in names]
+    frames = {n: compose(wheel_from_base, parts.poses[n]) for n in names}
+    masses = [moved(link.inertial, frames[link.name]) for link in links if link.inertial is not None]
+    looks = [placed(s, frames[k.name]) for k in links for s in (k.visuals or k.collisions)]
+    name = f"wheel_{side}_link"
+    ball = Solid(name, "sphere", (wheel.radius,), np.zeros(3))
+    parts.links[name] = Link(name, joined(masses), tuple(replace(s, name=name) for s in looks), (ball,))
+    joint = f"wheel_{side}_joint"
+    parts.joints[joint] = Joint(joint, "continuous", BASE, name, Transform(IDENTITY.rotation, centre), Y)
+
+
+def _castors(parts: _Parts, rest: list[str], foreign: Foreign) -> dict[str, Solid]:
+    """Link -> the ball with which it touches the floor: castors by name or because they turn, and wheels that do not drive."""
+    found: dict[str, Solid] = {}
+    others = {w.joint.child for w in parts.pair.others}
+    for name in rest:
+        link, joint = parts.model.links[name], parts.model.parents.get(name)
+        called = any(word in name.lower() for word in CASTORS) or (joint is not None and any(w in joint.name.lower() for w in CASTORS))
+        moves = joint is not None and joint.kind != "fixed"
+        if name in others or called or moves:
+            ball = _ball(link, parts, name in others or called)
+            if ball is not None:
+                found[name] = ball
+    extra = [w.joint.name for w in parts.pair.others if w.joint.child in found and not _swivels(parts.model, w.joint)]
+    if len(extra) >= 2:
+        foreign.notes.add(SKID, ", ".join(extra))
+    skidding = {parts.model.joints[name].child for name in extra} if len(extra) >= 2 else set()
+    plain = [n for n in found if n not in skidding]
+    if plain:
+        foreign.notes.add("castors became balls that slide and touch the floor", ", ".join(plain))
+    return found
+
+
+def _swivels(model: UrdfModel, joint: Joint) -> bool:
+    """Whether a wheel hangs in a fork that turns too, or is called a castor."""
+    fork = model.parents.get(joint.parent)
+    called = any(word in f"{joint.name} {joint.child}".lower() for word in CASTORS)
+    return called or (fork is not None and fork.kind != "fixed")
+
+
+def _ball(link: Link, parts: _Parts, sure: bool) -> Solid | None:
+    """None for what does not come near the floor."""
+    solids = shapes_below(replace(parts.model, joints={}), link.name, parts.poses)
+    if not solids:
+        return None
+    lows = [-float(reach(s, DOWN)[0]) for s in solids]
+    low, high = min(lows), max(float(reach(s, -DOWN)[0]) for s in solids)
+    if abs(low) > (NEAR_FLOOR * parts.pair.radius if sure else LOW):
+        return None
+    radius = float(np.clip((high - low) / 2, 0.003, parts.pair.radius))
+    corners = triangles(solids[int(np.argmin(lows))])[0]
+    lowest = corners[corners[:, 2] <= corners[:, 2].min() + 1e-3]
+    x, y = (lowest.min(axis=0) + lowest.max(axis=0))[:2] / 2
+    return Solid(link.name, "sphere", (radius,), np.array((x, y, radius)), colour=(0.4, 0.4, 0.4))
+
+
+def _lower_feet(parts: _Parts, foreign: Foreign) -> None:
+    """Shapes of base_link that touch the floor become links of their own, for they slide as castors do."""
+    base = parts.links[BASE]
+    feet = [s for s in base.collisions if abs(-float(reach(s, DOWN)[0])) <= LOW]
+    if not feet or len(feet) == len(base.collisions):
+        return
+    parts.links[BASE] = replace(base, collisions=tuple(s for s in base.collisions if s not in feet))
+    for i, foot in enumerate(feet):
+        name = f"castor_{i}_link"
+        at = Transform(IDENTITY.rotation, foot.position)
+        parts.links[name] = Link(name, None, (), (replace(foot, name=name, position=np.zeros(3)),))
+        parts.joints[f"castor_{i}_joint"] = Joint(f"castor_{i}_joint", "fixed", BASE, name, at)
+    foreign.notes.add("shapes of the body that touch the floor made castors that slide", f"{len(feet)}")
+
+
+def _lift_castors(parts: _Parts, foreign: Foreign) -> None:
+    """A rigid body on castors before and behind its axle leaves its wheels next to no weight: they would slip."""
+    low: dict[str, float] = {}  # joint -> x of what touches the floor
+    for joint in (j for j in parts.joints.values() if j.kind == "fixed"):
+        for solid in (placed(s, joint.parent_from_child) for s in parts.links[joint.child].collisions):
+            if -float(reach(solid, DOWN)[0]) < LIFT:
+                low[joint.name] = float(solid.position[0])
+    if not low or min(low.values()) > -LIFT or max(low.values()) < LIFT:
+        return
+    for name in low:
+        joint = parts.joints[name]
+        at = Transform(joint.parent_from_child.rotation, joint.parent_from_child.translation + np.array((0.0, 0.0, LIFT)))
+        parts.joints[name] = replace(joint, parent_from_child=at)
+    foreign.notes.add(f"castors before and behind the axle lifted by {LIFT * 1000:g} mm, so that the wheels carry weight", ", ".join(low))
+
+
+def _box_about(solids: tuple[Solid, ...]) -> Solid:
+    corners = np.vstack([triangles(s)[0] for s in solids])
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    x, y, z = (float(v) for v in np.maximum(high - low, 1e-3))
+    return Solid(BASE, "box", (x, y, z), (low + high) / 2)

@@ -1,0 +1,96 @@
+"""A robot as somebody else described it, whatever the format: body, what drives it, what it senses."""
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uvf.maths.rotations import matrix
+from uvf.maths.se3 import IDENTITY, Transform, apply
+from uvf.models.importing.notes import Notes
+from uvf.models.urdf.robot import Inertial, UrdfModel
+
+Floats = NDArray[np.float64]
+
+UNKNOWN = "kinds of joint that are not simulated, held fast"
+
+
+@dataclass(frozen=True)
+class ForeignSensor:
+    """element: its <sensor> of SDF; None where only a link's name tells of it. link_from_sensor: where it sits."""
+
+    kind: str
+    link: str
+    element: Any = None
+    link_from_sensor: Transform = IDENTITY
+
+
+@dataclass(frozen=True)
+class Drive:
+    """What a plugin for differential drive says: the joints, and the measures [m] where it gives them."""
+
+    left: tuple[str, ...] = ()
+    right: tuple[str, ...] = ()
+    track: float | None = None
+    wheel_radius: float | None = None
+
+
+@dataclass
+class Foreign:
+    model: UrdfModel
+    drive: Drive = Drive()
+    sensors: list[ForeignSensor] = field(default_factory=list)
+    notes: Notes = field(default_factory=Notes)
+
+    def take_plugins(self, element: Any) -> None:
+        """The first drive among the plugins below an element; all else about them is dropped with a note."""
+        for plugin in element.iter("plugin"):
+            drive = drive_of(plugin)
+            if drive is not None and self.drive == Drive():
+                self.drive = drive
+                self.notes.add("plugin for differential drive: joints and measures taken, the rest dropped", plugin.get("filename") or "")
+            elif drive is None:
+                self.notes.add("plugins dropped", plugin.get("filename") or plugin.get("name") or "")
+
+
+def drive_of(plugin: Any) -> Drive | None:
+    """The figures of a plugin for differential or skid-steer drive, by the names that ROS 1, ROS 2 and Gazebo use."""
+    name = f"{plugin.get('filename', '')} {plugin.get('name', '')}".lower()
+    if not any(word in name for word in ("diff", "skid")):
+        return None
+    given = _all(plugin)
+    texts = dict(given)
+    left, right = (tuple(v for t, v in given if t in (f"{s}joint", f"{s}frontjoint", f"{s}rearjoint")) for s in ("left", "right"))
+    diameter, radius = _number(texts.get("wheeldiameter")), _number(texts.get("wheelradius"))
+    return Drive(left, right, _number(texts.get("wheelseparation")), diameter / 2 if diameter else radius)
+
+
+def _all(plugin: Any) -> list[tuple[str, str]]:
+    return [(str(t.tag).lower().replace("_", ""), (t.text or "").strip()) for t in plugin if isinstance(t.tag, str)]
+
+
+def _number(text: str | None) -> float | None:
+    try:
+        return float(text) if text else None
+    except ValueError:
+        return None
+
+
+def moved(inertial: Inertial, a_from_b: Transform) -> Inertial:
+    """The same body seen from frame a."""
+    turn = matrix(a_from_b.rotation)
+    return Inertial(inertial.mass, apply(a_from_b, inertial.com[None])[0], turn @ inertial.inertia @ turn.T)
+
+
+def joined(parts: list[Inertial]) -> Inertial | None:
+    """Bodies of one frame as one (Steiner's theorem); None of none."""
+    mass = sum(p.mass for p in parts)
+    if not parts or mass <= 0:
+        return None
+    com: Floats = sum((p.mass * p.com for p in parts), np.zeros(3)) / mass
+    inertia = np.zeros((3, 3))
+    for part in parts:
+        arm = part.com - com
+        inertia += part.inertia + part.mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
+    return Inertial(mass, com, inertia)

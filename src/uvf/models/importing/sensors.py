@@ -1,0 +1,169 @@
+"""Sensors of others as the ``sensors:`` section of a vehicle.yaml."""
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+
+from uvf.maths.rotations import to_euler
+from uvf.maths.se3 import Transform, compose
+from uvf.models.importing.robot import Foreign, ForeignSensor
+
+Section = dict[str, Any]
+
+FASTEST = 100.0  # Hz, of the simulator of the ground
+FASTEST_CAMERA = 10.0
+MOST_BEAMS = 4096
+LIDARS = ("ray", "gpu_ray", "lidar", "gpu_lidar")
+CAMERAS = ("camera", "depth", "depth_camera", "rgbd", "rgbd_camera", "wideanglecamera", "multicamera")
+NAMES = {
+    "lidar": ("laser", "lidar", "scan", "hokuyo", "rplidar", "lds", "velodyne", "sick"),
+    "imu": ("imu",),
+    "camera": ("camera", "kinect", "realsense", "astra", "zed"),
+}
+LINK_KINDS = {"lidar": "ray", "imu": "imu", "camera": "camera"}
+
+
+def sensors_section(foreign: Foreign, base_from_link: dict[str, Transform]) -> Section:
+    """What is there, what links are called after, and encoders, which every vehicle here has."""
+    section: Section = {}
+    for sensor in (*foreign.sensors, *_by_names(foreign)):
+        kind, make = _kind(sensor)
+        if make is None or sensor.link not in base_from_link:
+            foreign.notes.add("sensors of a kind that is not simulated, dropped", f"{sensor.kind} on {sensor.link}")
+        elif kind == "sonar":
+            sonars = section.setdefault("sonars", [])
+            mount = _mount(compose(base_from_link[sensor.link], sensor.link_from_sensor))
+            sonars.append({"mount": mount, **make(sensor, foreign), "frame": f"{sensor.link}_sonar_{len(sonars) + 1}"})
+        elif kind in section:
+            foreign.notes.add(f"a vehicle has one {kind}; the others dropped", sensor.link)
+        else:
+            mount = _mount(compose(base_from_link[sensor.link], sensor.link_from_sensor))
+            frame = sensor.link if _is_link_itself(sensor) else f"{sensor.link}_{kind}"
+            section[kind] = {"mount": mount, **make(sensor, foreign), "frame": frame}
+            if kind == "gnss":
+                section[kind] = {"preset": "good"}
+    foreign.notes.add("guessed: wheel encoders of 4096 ticks a turn at 50 Hz")
+    section["encoders"] = {"hz": 50.0, "ticks_per_turn": 4096}
+    return section
+
+
+def _by_names(foreign: Foreign) -> Iterator[ForeignSensor]:
+    """Links that are called after a sensor which no tag tells of."""
+    told = {_kind(sensor)[0] for sensor in foreign.sensors}
+    for kind, words in NAMES.items():
+        links = [n for n in foreign.model.links if any(w in n.lower() for w in words) and "optical" not in n.lower()]
+        if kind not in told and links:
+            link = next((n for n in links if "link" in n.lower() or "frame" in n.lower()), links[0])
+            foreign.notes.add(f"guessed: a {kind} with the figures of a common one, by the name of a link", link)
+            yield ForeignSensor(LINK_KINDS[kind], link)
+
+
+def _kind(sensor: ForeignSensor) -> tuple[str, Callable[[ForeignSensor, Foreign], Section] | None]:
+    kind = sensor.kind.lower()
+    if kind == "sonar" or (kind in LIDARS and _gives_one_range(sensor)):
+        return "sonar", _sonar
+    if kind in LIDARS:
+        return "lidar", _lidar
+    if kind in CAMERAS:
+        return "camera", _camera
+    if kind == "imu":
+        return "imu", _imu
+    if kind in ("gps", "navsat"):
+        return "gnss", lambda sensor, foreign: {}
+    return kind, None
+
+
+def _gives_one_range(sensor: ForeignSensor) -> bool:
+    """Whether a plugin makes one range of the rays: sonars and infrared, which Gazebo classic has no sensor for."""
+    plugins = sensor.element.iter("plugin") if sensor.element is not None else ()
+    return any("_range" in (p.get("filename") or "") or (p.findtext("output_type") or "").strip().endswith("Range") for p in plugins)
+
+
+def _is_link_itself(sensor: ForeignSensor) -> bool:
+    """Whether a link's frame is the sensor's: links that are called after a sensor."""
+    named = any(word in sensor.link.lower() for words in NAMES.values() for word in words)
+    return named and bool(np.linalg.norm(sensor.link_from_sensor.translation) < 1e-6)
+
+
+def _mount(base_from_sensor: Transform) -> Section:
+    xyz, rpy = base_from_sensor.translation, np.array(to_euler(base_from_sensor.rotation))
+    return {"xyz": [round(float(v), 6) + 0.0 for v in xyz], "rpy": [round(float(v), 6) + 0.0 for v in rpy]}
+
+
+def _number(sensor: ForeignSensor, way: str, default: float) -> float:
+    """The first of the places ``a|b`` in which a finite number stands."""
+    for each in way.split("|"):
+        text = sensor.element.findtext(f".//{each}") if sensor.element is not None else None
+        try:
+            value = float(text) if text else np.nan
+        except ValueError:
+            continue
+        if np.isfinite(value):
+            return value
+    return default
+
+
+def _rate(sensor: ForeignSensor, default: float, fastest: float, foreign: Foreign) -> float:
+    rate = _number(sensor, "update_rate", default) or default
+    if rate > fastest:
+        foreign.notes.add(f"rates above {fastest:g} Hz lowered to that", f"{sensor.kind} on {sensor.link}, {rate:g} Hz")
+    return min(rate, fastest)
+
+
+def _lidar(sensor: ForeignSensor, foreign: Foreign) -> Section:
+    if sensor.element is None or sensor.element.find(".//horizontal") is None:
+        return {"preset": "lds01"}
+    beams = round(_number(sensor, "horizontal/samples", 360) * _number(sensor, "horizontal/resolution", 1.0))
+    if _number(sensor, "vertical/samples", 1) > 1:
+        foreign.notes.add("a lidar of several rows becomes one of the level row", sensor.link)
+    if beams > MOST_BEAMS:
+        foreign.notes.add(f"beams lowered to {MOST_BEAMS}", sensor.link)
+    beams = min(max(beams, 1), MOST_BEAMS)
+    low, high = _number(sensor, "horizontal/min_angle", 0.0), _number(sensor, "horizontal/max_angle", 2 * np.pi)
+    sweep = min(high - low, 2 * np.pi)
+    return {
+        "hz": _rate(sensor, 5.0, FASTEST, foreign),
+        "beams": beams,
+        "angle_min": low,
+        "angle_increment": sweep / max(beams if sweep > 2 * np.pi - 0.1 / max(beams, 1) else beams - 1, 1) or 0.01,
+        "range_min": max(_number(sensor, "range/min", 0.1), 0.0),
+        "range_max": max(_number(sensor, "range/max", 10.0), 0.2),
+        "noise": abs(_number(sensor, "noise/stddev", 0.01)),
+    }
+
+
+def _sonar(sensor: ForeignSensor, foreign: Foreign) -> Section:
+    low, high = _number(sensor, "range/min|sonar/min", 0.02), _number(sensor, "range/max|sonar/max", 4.0)
+    cone = 2 * np.arctan2(_number(sensor, "sonar/radius", 0.25 * high), high)
+    fan = _number(sensor, "horizontal/max_angle", cone / 2) - _number(sensor, "horizontal/min_angle", -cone / 2)
+    return {
+        "hz": _rate(sensor, 10.0, FASTEST, foreign),
+        "fov": round(float(np.clip(fan, 0.01, 3.0)), 6),
+        "range_min": max(low, 0.0),
+        "range_max": max(high, low + 0.1),
+        "noise": abs(_number(sensor, "noise/stddev", 0.01)),
+    }
+
+
+def _imu(sensor: ForeignSensor, foreign: Foreign) -> Section:
+    return {
+        "hz": _rate(sensor, 100.0, FASTEST, foreign),
+        "gyro_noise": abs(_number(sensor, "angular_velocity/z/noise/stddev|rate/stddev", 0.002)),
+        "gyro_bias": abs(_number(sensor, "angular_velocity/z/noise/bias_mean", 0.001)),
+        "accel_noise": abs(_number(sensor, "linear_acceleration/x/noise/stddev|accel/stddev", 0.02)),
+        "accel_bias": min(abs(_number(sensor, "linear_acceleration/x/noise/bias_mean", 0.02)), 0.2),
+        "mag_noise": 5.0e-7,
+    }
+
+
+def _camera(sensor: ForeignSensor, foreign: Foreign) -> Section:
+    kind = sensor.kind.lower()
+    section = {
+        "hz": _rate(sensor, 5.0, FASTEST_CAMERA, foreign),
+        "width": int(np.clip(_number(sensor, "image/width", 320), 16, 1920)),
+        "height": int(np.clip(_number(sensor, "image/height", 240), 16, 1080)),
+        "fov": float(np.clip(_number(sensor, "horizontal_fov", 1.2), 0.1, 3.0)),
+        "far": float(np.clip(_number(sensor, "clip/far", 20.0), 1.0, 1000.0)),
+    }
+    return {**section, "depth": True} if "depth" in kind or "rgbd" in kind else section

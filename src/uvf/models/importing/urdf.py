@@ -1,0 +1,53 @@
+"""URDF and xacro of others: ROS packages, SolidWorks' exporter, Gazebo's tags."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from uvf.models.importing.notes import Notes
+from uvf.models.importing.robot import Foreign, ForeignSensor
+from uvf.models.importing.sdf_poses import FILE, transform
+from uvf.models.urdf.reader import read_model
+from uvf.models.urdf.source import read_xml
+from uvf.models.yaml_data import BadInput
+
+GIVEN = {"material", "mu1", "mu2", "mu", "kp", "kd", "selfCollide", "turnGravityOff", "gravity", "minDepth", "maxVel", "static", "fdir1"}
+
+
+def read_foreign_urdf(path: Path, arguments: Mapping[str, str]) -> Foreign:
+    """Raises BadInput where it is no URDF or xacro cannot expand it."""
+    notes = Notes()
+    robot = read_xml(path, arguments, note=notes.add)
+    if robot.tag != "robot":
+        raise BadInput(f"{path}: the outermost tag is <{robot.tag}>; a URDF begins with <robot>, an SDF ends in .sdf")
+    model = read_model(path, robot)
+    if not model.links:
+        raise BadInput(f"{path}: no links in it; when they are in a macro, import the file that calls it")
+    for fault in model.faults:
+        if "no mesh file" not in fault.text:
+            notes.add(f"faulty in the file: {fault}")
+    found = Foreign(model, notes=notes)
+    robot.set(FILE, str(path))
+    for tag in robot.findall("transmission"):
+        notes.add("transmissions dropped, UVF's motor model drives the wheels", tag.get("name", ""))
+    for tag in robot.findall("ros2_control"):
+        notes.add("ros2_control dropped, UVF's motor model drives the wheels", tag.get("name", ""))
+    for tag in robot.findall("gazebo"):
+        _take(tag, found)
+    return found
+
+
+def _take(gazebo: Any, found: Foreign) -> None:
+    """Drive and sensors of a <gazebo> tag; the rest is dropped with a note."""
+    found.take_plugins(gazebo)
+    link = gazebo.get("reference", "")
+    for sensor in gazebo.findall("sensor"):
+        try:
+            found.sensors.append(ForeignSensor(sensor.get("type", ""), link, sensor, transform(sensor.find("pose"))))
+        except BadInput as error:
+            found.notes.add(f"sensor dropped: {error}")
+    for tag in gazebo:
+        if isinstance(tag.tag, str) and tag.tag not in ("plugin", "sensor") and tag.tag not in GIVEN:
+            found.notes.add("tags of Gazebo dropped", str(tag.tag))
+        elif isinstance(tag.tag, str) and tag.tag in ("mu1", "mu2", "mu"):
+            found.notes.add("friction of single links not taken over; it stands in vehicle.yaml for the whole vehicle")

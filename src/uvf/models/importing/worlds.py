@@ -1,0 +1,73 @@
+"""Worlds of others taken over into a folder of ``worlds/``."""
+
+import re
+import shutil
+from collections.abc import Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+from uvf.models.importing.map_image import map_world
+from uvf.models.importing.notes import Notes
+from uvf.models.importing.sdf_world import SdfImport
+from uvf.models.world.file import WorldFile, load_world
+from uvf.models.world.writer import write_world
+from uvf.models.yaml_data import BadInput
+
+SDF = (".world", ".sdf")
+MAPS = (".yaml", ".yml", ".pgm", ".png")
+
+
+class Options(NamedTuple):
+    """models: folders with Gazebo models; height [m] of a map's walls; replace: overwrite a world of that name.
+
+    upright: turn meshes that say that y is up.
+    """
+
+    models: Sequence[Path] = ()
+    height: float = 2.0
+    replace: bool = False
+    upright: bool = False
+
+
+def import_world(file: Path, folder: Path, options: Options) -> tuple[Path, list[str]]:
+    """The new world.yaml, and lines about what there is in it and what was left out. Raises BadInput."""
+    make_room(folder, options.replace)
+    if not file.is_file():
+        raise BadInput(f"{file}: no such file")
+    try:
+        world, notes = _read(file, folder, options)
+        path = write_world(world, folder, [f"note: {note}" for note in notes])
+        load_world(folder.parent, folder.name)
+    except BadInput:
+        shutil.rmtree(folder, ignore_errors=True)
+        raise
+    return path, [*(f"note: {note}" for note in notes), _counts(world)]
+
+
+def new_folder(worlds: Path, name: str) -> Path:
+    """Where a world of that name lies. Raises BadInput for a name that is no plain folder's."""
+    if not re.fullmatch(r"[A-Za-z0-9_][A-Za-z0-9_-]*", name):
+        raise BadInput(f"a world cannot be called '{name}'; use letters, digits, - and _")
+    return worlds / name
+
+
+def make_room(folder: Path, replace: bool) -> None:
+    """Raises BadInput for a folder that is there, unless it may be replaced."""
+    if folder.exists() and not replace:
+        raise BadInput(f"{folder} is there already; give another --name, or --replace to overwrite it")
+    shutil.rmtree(folder, ignore_errors=True)
+
+
+def _read(file: Path, folder: Path, options: Options) -> tuple[WorldFile, list[str]]:
+    if file.suffix in MAPS:
+        notes = Notes()
+        return map_world(file, options.height, notes), notes.lines()
+    if file.suffix not in SDF:
+        raise BadInput(f"{file}: files of this kind are not taken over; give {', '.join((*SDF, *MAPS))}")
+    reading = SdfImport(file, folder, options.models, options.upright)
+    return reading.world(), reading.notes.lines()
+
+
+def _counts(world: WorldFile) -> str:
+    groups = ("boxes", "cylinders", "spheres", "meshes")
+    return "taken over: " + ", ".join(f"{len(getattr(world, group))} {group}" for group in groups)

@@ -1,0 +1,47 @@
+"""``follow:`` of a job: who follows whom where."""
+
+from collections.abc import Mapping
+from typing import Annotated
+
+import msgspec
+from msgspec import Meta
+
+from uvf.models.yaml_data import BadInput, Place, nearest
+
+Aside = Annotated[float, Meta(ge=-1000, le=1000)]
+
+
+class Follow(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A station behind a leader, for an aircraft."""
+
+    leader: str
+    behind: Annotated[float, Meta(gt=0, le=1000)]  # m of the leader's way through the air
+    right: Aside = 0.0  # m, aside of the leader's path
+    above: Aside = 0.0  # m
+
+
+def check_follow(follows: Mapping[str, Follow], vehicles: Mapping[str, object], place: Place) -> None:
+    """follows: by the follower's name. Raises BadInput."""
+    for name, follow in follows.items():
+        where = place.at(name, "job", "follow", "leader")
+        if follow.leader not in vehicles:
+            raise BadInput(f"{where}: no vehicle '{follow.leader}'; {nearest(follow.leader, set(vehicles) - {name})}")
+        if follow.leader == name:
+            raise BadInput(f"{where}: {name} cannot follow itself; name another aircraft")
+        if name in (chain := chain_of(name, follows)):
+            raise BadInput(f"{where}: {' follows '.join([name, *chain])}: a circle without a leader; let one of them fly a mission")
+
+
+def chain_of(name: str, follows: Mapping[str, Follow]) -> list[str]:
+    """The leader of ``name``, the leader's leader and so on; it ends where one comes up again."""
+    chain: list[str] = []
+    while name in follows and follows[name].leader not in chain:
+        name = follows[name].leader
+        chain.append(name)
+    return chain
+
+
+def offset_of(name: str, follows: Mapping[str, Follow]) -> tuple[float, float, float]:
+    """m behind, right of and above the first of all leaders."""
+    parts = [follows[n] for n in (name, *chain_of(name, follows)) if n in follows]
+    return sum(f.behind for f in parts), sum(f.right for f in parts), sum(f.above for f in parts)

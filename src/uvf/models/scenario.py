@@ -1,0 +1,121 @@
+"""Everything a service is built from: the mission with its world and vehicles, loaded and checked once."""
+
+import hashlib
+import itertools
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Protocol, TypeVar
+
+import numpy as np
+
+from uvf.models.mission.file import MissionFile, Vehicle, load_mission
+from uvf.models.vehicle.file import VehicleFile, load_vehicle
+from uvf.models.world.file import WorldFile, load_world
+from uvf.models.world.wind import Wind
+from uvf.models.yaml_data import BadInput, Place, convert
+from uvf.runtime.contract.service import Params, Service
+
+ROOT = Path(__file__).resolve().parents[3]
+AIRCRAFT_RADIUS = 1.5  # m, about the half span of a small one
+P = TypeVar("P", bound=Params)
+
+
+@dataclass(frozen=True)
+class Member:
+    """One vehicle of the mission: its entry there, its file and its folder."""
+
+    name: str
+    entry: Vehicle
+    file: VehicleFile
+    folder: Path
+
+    def params(self, service: str, type_: type[P]) -> P:
+        """The parameters that this vehicle's file sets for a service, the rest by default. Raises BadInput."""
+        return convert(self.file.params.get(service, {}), type_, str(self.folder / "vehicle.yaml"), ("params", service))
+
+
+@dataclass(frozen=True)
+class Site:
+    mission_path: Path
+    mission: MissionFile
+    world: WorldFile
+    world_folder: Path
+    members: dict[str, Member]
+
+    def of_kind(self, kind: str) -> Iterator[Member]:
+        return (m for m in self.members.values() if m.file.kind == kind)
+
+    @property
+    def vehicles_folder(self) -> Path:
+        """Where the models of its vehicles lie, and those that may be put in later."""
+        return next(iter(self.members.values())).folder.parent
+
+    @property
+    def wind(self) -> Wind:
+        """The mission's, or else the world's."""
+        return self.world.wind if self.mission.wind is None else self.mission.wind
+
+    def rng(self, *names: str) -> np.random.Generator:
+        """A generator of its own for each purpose: the mission's seed and the names decide, nothing else."""
+        text = "/".join((str(self.mission.seed), *names))
+        return np.random.default_rng(int.from_bytes(hashlib.sha256(text.encode()).digest()[:8], "big"))
+
+
+@dataclass(frozen=True)
+class Host:
+    """One service instance: how to make it afresh (at start and after each reset), and for which vehicle.
+
+    writes_for: the vehicles about which a service of the whole world writes.
+    """
+
+    service: type[Service]
+    make: Callable[[], Service]
+    vehicle: str | None = None
+    roles: dict[str, str] | None = None
+    writes_for: tuple[str, ...] = ()
+
+
+class Build(Protocol):
+    """``services/<name>/build.py`` holds one: which instances a process of this service hosts."""
+
+    def __call__(self, site: Site) -> list[Host]: ...
+
+
+def check_starts(site: Site) -> None:
+    """Every vehicle begins in its world and none inside another one. Raises BadInput."""
+    x_min, y_min, x_max, y_max = site.world.floor
+    place = Place(str(site.mission_path)).at("vehicles")
+    for name, member in site.members.items():
+        start, body = member.entry.start, member.file.ground
+        if body is not None and not (x_min <= start.x <= x_max and y_min <= start.y <= y_max):
+            floor = f"x {x_min:g}..{x_max:g}, y {y_min:g}..{y_max:g}"
+            raise BadInput(f"{place.at(name, 'start')}: ({start.x:g}, {start.y:g}) is not on the floor of {site.mission.world}: {floor}")
+        if start.z < 0:
+            raise BadInput(f"{place.at(name, 'start', 'z')}: {start.z:g} m is under the ground; the ground is 0")
+    for (one, a), (other, b) in itertools.combinations(site.members.items(), 2):
+        apart = math.dist(_position(a), _position(b))
+        if apart < _radius(a) + _radius(b):
+            raise BadInput(f"{place.at(other, 'start')}: {other} begins {apart:.2f} m from {one}, which is inside it; move one of them")
+
+
+def _position(member: Member) -> tuple[float, float, float]:
+    start = member.entry.start
+    return start.x, start.y, start.z if member.file.air is not None else 0.0
+
+
+def _radius(member: Member) -> float:
+    return member.file.ground.radius if member.file.ground is not None else AIRCRAFT_RADIUS
+
+
+def load_site(mission: Path, root: Path = ROOT) -> Site:
+    """Loads a mission file and all that it names. Raises BadInput."""
+    data = load_mission(mission)
+    members = {
+        name: Member(name, entry, load_vehicle(root / "vehicles", entry.model), root / "vehicles" / entry.model)
+        for name, entry in data.vehicles.items()
+    }
+    site = Site(mission, data, load_world(root / "worlds", data.world), root / "worlds" / data.world, members)
+    check_starts(site)
+    return site

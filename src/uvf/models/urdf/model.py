@@ -1,0 +1,78 @@
+"""URDF and xacro files as models, and as the plain files that engines load."""
+
+from collections.abc import Iterable
+from dataclasses import replace
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+
+from uvf.models.generated_file import handed_file
+from uvf.models.urdf.reader import read_model
+from uvf.models.urdf.robot import Inertial, Link, UrdfModel
+from uvf.models.urdf.rules import model_faults, wheel_faults
+from uvf.models.urdf.source import read_xml
+from uvf.models.urdf.writer import urdf_text
+from uvf.models.yaml_data import BadInput
+
+NO_MASS = Inertial(1e-6, np.zeros(3), np.eye(3) * 1e-9)
+"""For frames: to engines a link that gives no mass weighs 1 kg, and a root of no mass stands fixed in the world."""
+MARGIN = 1e-6
+"""Share by which the largest moment stays below the other two together, against rounding in the text."""
+
+
+def read_urdf(path: Path) -> UrdfModel:
+    """The model with all that is wrong with its elements in ``faults``. Raises BadInput where it is no URDF at all."""
+    robot = read_xml(path)
+    if robot.tag != "robot":
+        raise BadInput(f"{path}: the outermost tag is <{robot.tag}>; a URDF begins with <robot>")
+    return read_model(path, robot)
+
+
+def load_urdf(path: Path) -> UrdfModel:
+    """A sound model. Raises BadInput for the first fault."""
+    model = read_urdf(path)
+    for fault in model_faults(model):
+        raise BadInput(str(fault))
+    return model
+
+
+def check_urdf(path: Path, wheel_joints: Iterable[str]) -> UrdfModel:
+    """As ``load_urdf``, and the wheel joints are there and turn. Raises BadInput."""
+    model = read_urdf(path)
+    for fault in (*wheel_faults(model, tuple(wheel_joints)), *model_faults(model)):
+        raise BadInput(str(fault))
+    return model
+
+
+def engine_urdf(path: Path) -> Path:
+    """A plain URDF with meshes by their whole paths, in the folder for passing files, named by its content. Raises BadInput."""
+    return _written(path, *_state(path))
+
+
+def _state(path: Path) -> tuple[int, int]:
+    """What changes when somebody writes the file; included files are looked at when a process begins."""
+    try:
+        found = path.stat()
+    except OSError:
+        return 0, 0
+    return found.st_mtime_ns, found.st_size
+
+
+@lru_cache(maxsize=64)
+def _written(path: Path, _changed: int, _size: int) -> Path:
+    model = load_urdf(path)
+    links = {name: _with_mass(link) for name, link in model.links.items()}
+    text = urdf_text(replace(model, links=links), lambda mesh: str(mesh.resolve()))
+    return handed_file(path.stem, ".urdf", text.encode())
+
+
+def _with_mass(link: Link) -> Link:
+    return replace(link, inertial=_within_triangle(link.inertial) if link.inertial is not None else NO_MASS)
+
+
+def _within_triangle(inertial: Inertial) -> Inertial:
+    """Figures of a flat body that were rounded just beyond the triangle rule, brought within: Bullet takes no inertia at all instead."""
+    (a, b, c), axes = np.linalg.eigh(inertial.inertia)
+    largest = (a + b) * (1 - MARGIN)
+    return inertial if c <= largest else replace(inertial, inertia=axes @ np.diag((a, b, largest)) @ axes.T)

@@ -1,0 +1,83 @@
+"""What a model must keep to be simulated: every fault of it, not only the first."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from uvf.models.urdf.robot import Fault, Inertial, Joint, Link, UrdfModel
+from uvf.models.yaml_data import nearest
+
+TRIANGLE_SLACK = 1e-3
+"""Of the largest principal moment: rounded figures of flat or thin bodies stay within it."""
+
+
+RESERVED = ("base_footprint", "map", "odom")
+"""Frames that every vehicle has besides the URDF's links (REP-105); a root called base_footprint is that frame."""
+
+
+def model_faults(model: UrdfModel) -> Iterator[Fault]:
+    """What was found in reading, then inertia, tree and wheels."""
+    yield from model.faults
+    for link in model.links.values():
+        yield from (Fault(model.path, link.line, f"link '{link.name}': {text}") for text in _inertia_faults(model, link))
+    yield from _tree_faults(model)
+    for link in (link for name, link in model.links.items() if name in RESERVED and (name != "base_footprint" or name in model.parents)):
+        yield Fault(model.path, link.line, f"link '{link.name}': every vehicle has a frame of that name above base_link; take the link out")
+
+
+def wheel_faults(model: UrdfModel, wheel_joints: tuple[str, ...]) -> Iterator[Fault]:
+    """The joints that vehicle.yaml names are there and turn."""
+    for name in wheel_joints:
+        joint = model.joints.get(name)
+        if joint is None:
+            yield Fault(model.path, 0, f"no joint '{name}' (named in vehicle.yaml); {nearest(name, model.joints)}")
+        elif joint.kind != "continuous":
+            yield Fault(model.path, joint.line, f"joint '{name}' is '{joint.kind}', but a wheel needs type=\"continuous\"")
+
+
+def _inertia_faults(model: UrdfModel, link: Link) -> Iterator[str]:
+    """Without mass there may be frames and what only looks; whatever touches or turns has some."""
+    if link.inertial is not None:
+        yield from inertial_faults(link.inertial)
+        return
+    joint = model.parents.get(link.name)
+    moves = joint is not None and joint.kind not in ("fixed", "")
+    if link.collisions or moves or all(model.links[name].inertial is None for name in model.rigid_with(link.name)):
+        yield "give it <inertial> with <mass> and <inertia>"
+
+
+def inertial_faults(inertial: Inertial) -> Iterator[str]:
+    """A body's principal moments are above zero and none is more than the other two together (the triangle rule)."""
+    if inertial.mass <= 0 or not (np.diag(inertial.inertia) > 0).all():
+        yield "mass, ixx, iyy and izz must be numbers above zero"
+        return
+    a, b, c = np.linalg.eigvalsh(inertial.inertia)
+    if a <= 0 or a + b < c * (1 - TRIANGLE_SLACK):
+        yield f"no body has the principal moments {a:.3g}, {b:.3g}, {c:.3g} kg m^2: each is above zero and at most the other two together"
+
+
+def _tree_faults(model: UrdfModel) -> Iterator[Fault]:
+    """Every joint ties two known links, every link but one hangs on one joint, and all hang together."""
+    hung: dict[str, Joint] = {}
+    for joint in model.joints.values():
+        for end, name in (("parent", joint.parent), ("child", joint.child)):
+            if name not in model.links:
+                yield Fault(model.path, joint.line, f"joint '{joint.name}': no {end} link '{name}'; {nearest(name, model.links)}")
+        if joint.child in hung:
+            yield Fault(model.path, joint.line, f"link '{joint.child}' is the child of two joints; one is enough")
+        hung[joint.child] = joint
+    roots = sorted(set(model.links) - set(hung))
+    if len(roots) != 1:
+        yield Fault(model.path, 0, f"one link must be the root, but without a parent joint are: {', '.join(roots) or 'none'}")
+    for link, joint in hung.items():
+        if link in _above(link, hung):
+            yield Fault(model.path, joint.line, f"link '{link}' hangs on itself in a ring of joints; cut it")
+
+
+def _above(link: str, hung: dict[str, Joint]) -> Iterator[str]:
+    """The links that a link hangs on, no more than there are."""
+    for _ in hung:
+        if link not in hung:
+            return
+        link = hung[link].parent
+        yield link

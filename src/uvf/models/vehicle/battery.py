@@ -1,0 +1,58 @@
+"""A vehicle's battery: charge, voltage under load, and what its voltage leaves of the throttle."""
+
+import math
+
+import numpy as np
+
+from uvf.models.vehicle.air import BatteryPack
+
+RELAXATION = 1.0  # s, behind which the voltage follows the current
+MOST_LOST = 0.5  # of the open-circuit voltage: there a pack gives the most it can
+
+
+class Charge:
+    """Thevenin's model: the cells give the current at their open-circuit voltage, behind a resistance and a first-order lag.
+
+    The open-circuit voltage falls in a straight line with the charge. A current-limited start of the motor is not modelled; the lag
+    keeps its first milliseconds, when it still stands, from pulling the voltage down.
+    """
+
+    def __init__(self, pack: BatteryPack) -> None:
+        self._pack = pack
+        self._left = pack.energy  # J, at the open-circuit voltage
+        self._sag = 0.0  # V
+        self.current = 0.0  # A
+
+    def draw(self, motor_power: float, dt: float) -> None:
+        """``motor_power`` [W], electric, over ``dt`` [s]."""
+        self.current = (motor_power + self._pack.avionics) / self.voltage
+        self._left = max(self._left - self.open_circuit * self.current * dt, 0.0)
+        self._sag += (self._pack.resistance * self.current - self._sag) * -math.expm1(-dt / RELAXATION)
+
+    @property
+    def remaining(self) -> float:
+        """0..1."""
+        return self._left / self._pack.energy
+
+    @property
+    def open_circuit(self) -> float:
+        """V, with no load."""
+        return self._pack.empty + (self._pack.full - self._pack.empty) * self.remaining
+
+    @property
+    def voltage(self) -> float:
+        """V, at the terminals."""
+        return self.open_circuit - min(self._sag, MOST_LOST * self.open_circuit)
+
+    def throttle(self, wanted: float) -> float:
+        """What the motors get of it: their voltage is throttle times ``rated``, and at most the battery's. Empty, it stops them."""
+        if self.remaining == 0:
+            return 0.0
+        return wanted if self._pack.rated is None else min(wanted, self.voltage / self._pack.rated)
+
+
+def lasts(pack: BatteryPack, power: float) -> float:
+    """s from full to empty at a steady electric ``power`` [W], avionics included: the integral of V / (E P) over the energy."""
+    cells = np.linspace(pack.empty, pack.full, 201)  # V, E
+    terminals = cells / 2 + np.sqrt(np.maximum(cells**2 / 4 - pack.resistance * power, 0.0))
+    return float(pack.energy / power * np.mean(terminals / cells))

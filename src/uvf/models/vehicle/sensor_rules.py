@@ -1,0 +1,86 @@
+"""Where a vehicle's sensors sit: in its tree of frames, outside of its own body."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+
+from uvf.maths.rotations import from_euler, rotate
+from uvf.maths.se3 import Transform
+from uvf.models.shapes.mesh import contains, placed
+from uvf.models.urdf.robot import UrdfModel
+from uvf.models.vehicle.file import Lidar, Mount, Sensors
+from uvf.models.yaml_data import Key, Place
+
+APART = 0.03  # m, between a sensor's mount and the link of its name: the link may be the housing
+LOOKS_AT = np.linspace(0.01, 1.0, 60)  # m along a beam
+NEEDED = {"lidar": "preset: lds01, mount: {xyz: [0, 0, 0.2]}", "encoders": "hz: 50, ticks_per_turn: 4096"}
+HOUSINGS = ("lidar", "laser", "scan", "hokuyo", "lds", "rplidar", "sick", "velodyne")
+
+Poses = Mapping[str, Transform]
+
+
+def sensor_faults(model: UrdfModel, sensors: Sensors, poses: Poses, place: Place) -> Iterator[str]:
+    """Frames are named once and agree with the links of their names; scanners are not shut up in the body."""
+    seen: dict[str, str] = {}
+    for keys, sensor in mounted(sensors):
+        where = place.at(*keys, "frame")
+        if sensor.frame in seen:
+            yield f"{where}: '{sensor.frame}' is the frame of {seen[sensor.frame]} too; give each a name of its own"
+        seen[sensor.frame] = str(keys[0])
+        link = poses.get(sensor.frame)
+        apart = np.linalg.norm(link.translation - np.array(sensor.mount.xyz)) if link is not None else 0.0
+        if apart > APART:
+            yield f"{where}: link '{sensor.frame}' of the URDF is {apart:.3f} m from the mount; write mount: {{link: {sensor.frame}}}"
+    if sensors.lidar is not None:
+        for link_name in _around(model, sensors.lidar, poses):
+            yield (
+                f"{place.at('lidar', 'mount')}: the lidar is inside the collision shape of link '{link_name}' and would see nothing else; "
+                "mount it outside"
+            )
+
+
+def sensor_notes(model: UrdfModel, sensors: Sensors, poses: Poses, turning: set[str]) -> Iterator[str]:
+    """What missions miss; beams that the vehicle's own body is in the way of, as a real scanner would see it."""
+    for kind, example in NEEDED.items():
+        if getattr(sensors, kind) is None:
+            yield f"no {kind}: no mission takes it, for SLAM needs them; give it sensors: {kind}: {{{example}}}"
+    if sensors.lidar is None or next(_around(model, sensors.lidar, poses), None) is not None:
+        return
+    lidar, origin = sensors.lidar, np.array(sensors.lidar.mount.xyz)
+    solids = [placed(s, poses[n]) for n in poses if not _houses(model, n, lidar, poses) for s in model.links[n].collisions]
+    angles = lidar.angle_min + np.arange(0, lidar.beams, max(lidar.beams // 90, 1)) * lidar.angle_increment
+    blocked = 0
+    for angle in angles:
+        direction = rotate(from_euler(*lidar.mount.rpy), np.array((np.cos(angle), np.sin(angle), 0.0)))
+        points = origin + np.outer(LOOKS_AT[lidar.range_min <= LOOKS_AT], direction)
+        blocked += any(contains(solid, point) for solid in solids if solid.shape != "mesh" for point in points)
+    if blocked:
+        yield f"{100 * blocked / len(angles):.0f} % of the lidar's beams meet the vehicle's own body"
+
+
+def mounted(sensors: Sensors) -> Iterator[tuple[tuple[Key, ...], Any]]:
+    """(keys in the file, sensor) of those that sit somewhere."""
+    for kind in ("lidar", "imu", "camera", "chase", "gimbal"):
+        sensor = getattr(sensors, kind)
+        if sensor is not None:
+            yield (kind,), sensor
+    for kind in ("sonars", "rangefinders"):
+        yield from (((kind, i), sensor) for i, sensor in enumerate(getattr(sensors, kind)))
+
+
+def _around(model: UrdfModel, lidar: Lidar, poses: Poses) -> Iterator[str]:
+    """The links, other than its housing, whose collision shapes the lidar is in."""
+    origin = np.array(lidar.mount.xyz)
+    for name in poses:
+        if not _houses(model, name, lidar, poses) and any(contains(placed(s, poses[name]), origin) for s in model.links[name].collisions):
+            yield name
+
+
+def _houses(model: UrdfModel, link: str, lidar: Lidar, poses: Poses) -> bool:
+    """Whether a link is the lidar itself: named as its frame or mount, or after a scanner, and where the lidar is."""
+    mount: Mount = lidar.mount
+    if link in (lidar.frame, mount.link):
+        return True
+    near = np.linalg.norm(poses[link].translation - np.array(mount.xyz)) < 0.15
+    return bool(near and link not in model.roots and any(word in link.lower() for word in HOUSINGS))

@@ -1,0 +1,206 @@
+"""``worlds/<name>/world.yaml``: walls, obstacles, wind and where on Earth it is, as data."""
+
+import math
+from collections.abc import Sequence
+from itertools import pairwise
+from pathlib import Path
+from typing import Annotated
+
+import msgspec
+from msgspec import Meta
+
+from uvf.models.world.wind import Wind, check_wind
+from uvf.models.yaml_data import BadInput, Place, load_yaml, nearest
+
+Share = Annotated[float, Meta(ge=0, le=1)]
+Colour = tuple[Share, Share, Share]
+Metres = Annotated[float, Meta(ge=-1e5, le=1e5)]  # local coordinates stay near the origin
+Positive = Annotated[float, Meta(ge=1e-4, le=1e4)]
+Area = tuple[Metres, Metres, Metres, Metres]
+Angle = Annotated[float, Meta(ge=-7, le=7)]
+Angles = tuple[Angle, Angle, Angle]
+FileName = Annotated[str, Meta(pattern=r"^[A-Za-z0-9_][A-Za-z0-9_./-]*\Z", max_length=200)]
+Seconds = Annotated[float, Meta(ge=0, le=1e5)]
+Script = list[tuple[Seconds, Metres, Metres, float]]
+"""Keys of a motion: t [s], x, y [m], yaw [rad]; closed, for it begins anew at its end."""
+Tesla = Annotated[float, Meta(ge=-1e-3, le=1e-3)]
+TERRAIN = "terrain"  # what touches it is told so
+LARGEST_FLOOR = 1e6  # m^2; maps and scores cut it into cells
+
+
+class Origin(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Where the world frame's origin lies (WGS84)."""
+
+    latitude: Annotated[float, Meta(ge=-90, le=90)]  # deg
+    longitude: Annotated[float, Meta(ge=-180, le=180)]  # deg
+    altitude: Annotated[float, Meta(ge=-500, le=10_000)] = 0.0  # m AMSL
+
+
+class Wall(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """An upright wall along a poly-line of corner points [m, world]."""
+
+    points: Annotated[list[tuple[Metres, Metres]], Meta(min_length=2)]
+    height: Positive = 2.5  # m
+    thickness: Positive = 0.1  # m
+    colour: Colour = (0.85, 0.83, 0.78)
+
+
+class Box(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """``rpy`` leans it, for ramps; with a ``path`` it moves by script: a door."""
+
+    name: str
+    centre: tuple[Metres, Metres, Metres]  # m, world
+    size: tuple[Positive, Positive, Positive]  # m
+    rpy: Angles = (0.0, 0.0, 0.0)  # rad
+    colour: Colour = (0.55, 0.4, 0.25)
+    path: Script = []
+
+
+class Cylinder(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Stands on its lower face; ``rpy`` tilts it about that face's middle; with a ``path`` it moves by script: a person."""
+
+    name: str
+    base: tuple[Metres, Metres, Metres]  # m, world
+    radius: Positive  # m
+    height: Positive  # m
+    rpy: Angles = (0.0, 0.0, 0.0)  # rad
+    colour: Colour = (0.5, 0.5, 0.55)
+    path: Script = []
+
+
+class Sphere(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    name: str
+    centre: tuple[Metres, Metres, Metres]  # m, world
+    radius: Positive  # m
+    colour: Colour = (0.5, 0.5, 0.55)
+
+
+class Mesh(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Triangles of an STL or OBJ file in the world's folder; of a loaded world ``file`` is the whole path."""
+
+    name: str
+    file: FileName
+    position: tuple[Metres, Metres, Metres] = (0.0, 0.0, 0.0)  # m, world
+    rpy: Angles = (0.0, 0.0, 0.0)  # rad
+    scale: tuple[Positive, Positive, Positive] = (1.0, 1.0, 1.0)
+    colour: Colour = (0.6, 0.6, 0.6)
+
+
+class Field(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A level coloured patch on the ground, for eyes and cameras only: a meadow, a road, a floor."""
+
+    area: Area  # m: x_min, y_min, x_max, y_max
+    colour: Colour
+
+
+class Strip(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A level runway that aircraft take off from and land on in both directions."""
+
+    name: str
+    centre: tuple[Metres, Metres, Metres]  # m, world; z of its surface
+    yaw: Angle  # rad, from east, left positive, of one of its directions
+    length: Annotated[float, Meta(ge=20, le=1e4)]  # m
+    width: Annotated[float, Meta(ge=2, le=200)]  # m
+
+
+class Terrain(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Hills from a grey picture, 8 or 16 bit: black is the height of ``position``, white ``size[2]`` above it, north is up.
+
+    Its outermost pixels lie on the rim of ``size[0]`` x ``size[1]``. Beyond it the ground is z = 0, and it lies nowhere lower.
+    """
+
+    heights: FileName  # a PNG in the world's folder; of a loaded world the whole path
+    size: tuple[Positive, Positive, Positive]  # m: east, north, from black to white
+    position: tuple[Metres, Metres, Annotated[float, Meta(ge=0, le=1e4)]] = (0.0, 0.0, 0.0)  # m, world, of the middle
+    colour: Colour = (0.42, 0.52, 0.3)
+
+
+class WorldFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """The whole of world.yaml."""
+
+    about: str
+    origin: Origin
+    floor: Area  # m: x_min, y_min, x_max, y_max of the drivable area
+    walls: list[Wall] = []
+    boxes: list[Box] = []
+    cylinders: list[Cylinder] = []
+    spheres: list[Sphere] = []
+    meshes: list[Mesh] = []
+    terrain: Terrain | None = None
+    strips: list[Strip] = []
+    wind: Wind = Wind()
+    magnetic_field: tuple[Tesla, Tesla, Tesla] = (0.0, 22.0e-6, -42.0e-6)  # T, ENU
+    ground_colour: Colour = (0.36, 0.5, 0.24)
+    fields: list[Field] = []
+
+
+def load_world(worlds: Path, name: str) -> WorldFile:
+    """Reads ``worlds/<name>/world.yaml``. Raises BadInput."""
+    path = worlds / name / "world.yaml"
+    if not path.is_file():
+        known = [p.parent.name for p in worlds.glob("*/world.yaml")]
+        raise BadInput(f"no world '{name}' in {worlds}; {nearest(name, known)}")
+    world = load_yaml(path, WorldFile)
+    place = Place(str(path))
+    check_wind(world.wind, place.at("wind"))
+    _check_area(world.floor, place.at("floor"))
+    x_min, y_min, x_max, y_max = world.floor
+    if (x_max - x_min) * (y_max - y_min) > LARGEST_FLOOR:
+        raise BadInput(f"{place.at('floor')}: more than {LARGEST_FLOOR:g} m^2; it is only where ground vehicles drive")
+    for i, field in enumerate(world.fields):
+        _check_area(field.area, place.at("fields", i, "area"))
+    for i, wall in enumerate(world.walls):
+        if any(a == b for a, b in pairwise(wall.points)):
+            raise BadInput(f"{place.at('walls', i)}: the same point twice in a row; take one away")
+    _check_things(world, path.parent, place)
+    if world.terrain is not None:
+        _check_file(path.parent, world.terrain.heights, place.at("terrain", "heights"))
+    return _with_whole_paths(world, path.parent)
+
+
+def _with_whole_paths(world: WorldFile, folder: Path) -> WorldFile:
+    meshes = [msgspec.structs.replace(m, file=str((folder / m.file).resolve())) for m in world.meshes]
+    if world.terrain is None:
+        return msgspec.structs.replace(world, meshes=meshes)
+    terrain = msgspec.structs.replace(world.terrain, heights=str((folder / world.terrain.heights).resolve()))
+    return msgspec.structs.replace(world, meshes=meshes, terrain=terrain)
+
+
+def _check_file(folder: Path, name: str, place: Place) -> None:
+    if not (folder / name).is_file():
+        near = nearest(name, (p.relative_to(folder).as_posix() for p in folder.rglob("*") if p.is_file()))
+        raise BadInput(f"{place}: no file '{name}' in {folder}; {near}")
+
+
+def _check_area(area: tuple[float, float, float, float], place: Place) -> None:
+    x_min, y_min, x_max, y_max = area
+    if x_min >= x_max or y_min >= y_max:
+        raise BadInput(f"{place}: nothing lies in it; give x_min, y_min, x_max, y_max with each minimum below its maximum")
+
+
+def _check_things(world: WorldFile, folder: Path, place: Place) -> None:
+    """What is touched is told by its name; scripts close; meshes are there."""
+    seen = {TERRAIN} if world.terrain is not None else set()
+    groups: dict[str, Sequence[Box | Cylinder | Sphere | Mesh]] = {
+        "boxes": world.boxes,
+        "cylinders": world.cylinders,
+        "spheres": world.spheres,
+        "meshes": world.meshes,
+    }
+    for group, things in groups.items():
+        for i, thing in enumerate(things):
+            if thing.name in seen:
+                raise BadInput(f"{place.at(group, i, 'name')}: '{thing.name}' is given twice; each thing has a name of its own")
+            seen.add(thing.name)
+            if isinstance(thing, Box | Cylinder) and thing.path:
+                _check_script(thing.path, place.at(group, i, "path"))
+            if isinstance(thing, Mesh):
+                _check_file(folder, thing.file, place.at(group, i, "file"))
+
+
+def _check_script(keys: Script, place: Place) -> None:
+    times = [key[0] for key in keys]
+    if len(keys) < 2 or times[0] != 0.0 or any(a >= b for a, b in pairwise(times)):
+        raise BadInput(f"{place}: two or more keys [t, x, y, yaw] with t rising from 0 must stand there")
+    if math.dist(keys[0][1:3], keys[-1][1:3]) > 1e-6:
+        raise BadInput(f"{place}: it begins at {keys[0][1:3]} and ends at {keys[-1][1:3]}; come back to the beginning, for it goes round")

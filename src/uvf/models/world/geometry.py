@@ -1,0 +1,171 @@
+"""The plain geometry of a world: its solids, what a level lidar meets of them, the floor plan and what can be reached."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+
+from uvf.maths.footprint import Footprint, covered, footprint, segments
+from uvf.maths.rotations import from_euler, rotate
+from uvf.maths.solids import chosen
+from uvf.models.shapes.scene import still
+from uvf.models.shapes.solid import Keyframes, Solid
+from uvf.models.world.drivable import drivable
+from uvf.models.world.file import TERRAIN, Box, Script, Wall, WorldFile
+from uvf.models.world.terrain import relief, terrain_mesh
+
+Floats = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+WALL = "wall"  # every stretch of wall is called so
+GRAZE = 0.001  # m, lower than that nothing is bumped into
+BAND = 0.05  # m, steps of height in which obstacles on ramps are looked for
+
+
+@dataclass(frozen=True)
+class FloorPlan:
+    """True occupancy. cells: (rows, columns), row 0 at the lowest y; cell [0, 0] has its lower left corner at (x, y) [m]."""
+
+    cells: Mask
+    resolution: float
+    x: float
+    y: float
+
+    def cell(self, x: float, y: float) -> tuple[int, int]:
+        """(row, column) of a point [m, world]."""
+        return int(np.floor((y - self.y) / self.resolution)), int(np.floor((x - self.x) / self.resolution))
+
+    def axes(self) -> tuple[Floats, Floats]:
+        """x of the columns' and y of the rows' centres [m, world]."""
+        rows, columns = self.cells.shape
+        xs = self.x + (np.arange(columns, dtype=np.float64) + 0.5) * self.resolution
+        ys = self.y + (np.arange(rows, dtype=np.float64) + 0.5) * self.resolution
+        return xs, ys
+
+    def under(self, shadows: Footprint) -> Mask:
+        """(rows, columns): the cells that shadows cover in any part."""
+        return covered(shadows, (self.x, self.y), self.resolution, (self.cells.shape[0], self.cells.shape[1]))
+
+    def centres(self) -> tuple[Floats, Floats]:
+        """x and y [m, world] of the cells' centres, each (rows, columns)."""
+        grid_x, grid_y = np.meshgrid(*self.axes())
+        return grid_x, grid_y
+
+
+def wall_boxes(wall: Wall) -> Iterator[Box]:
+    """One box a stretch; stretches that meet at a corner overlap there, free ends (door frames) keep their length."""
+    closed = wall.points[0] == wall.points[-1]
+    last = len(wall.points) - 2
+    for i, (a, b) in enumerate(zip(wall.points, wall.points[1:], strict=False)):
+        start, end = np.array(a), np.array(b)
+        along = (end - start) / np.linalg.norm(end - start)
+        overlap = along * wall.thickness / 2
+        start = start - overlap if i > 0 or closed else start
+        end = end + overlap if i < last or closed else end
+        x, y = (start + end) / 2
+        size = (float(np.linalg.norm(end - start)), wall.thickness, wall.height)
+        yaw = float(np.arctan2(along[1], along[0]))
+        yield Box(name=WALL, centre=(float(x), float(y), wall.height / 2), size=size, rpy=(0.0, 0.0, yaw), colour=wall.colour)
+
+
+def all_boxes(world: WorldFile) -> list[Box]:
+    """The walls' boxes, then the furniture."""
+    return [box for wall in world.walls for box in wall_boxes(wall)] + world.boxes
+
+
+def solids(world: WorldFile, folder: Path = Path()) -> list[Solid]:
+    """Every solid of a world, walls first, the terrain last. The ground, z = 0, is none of them.
+
+    folder: holds the files of a world that was not loaded from a file; a loaded one knows where they are.
+    """
+    if world.terrain is None:
+        return things(world, folder)
+    land = terrain_mesh(world.terrain, folder)
+    return [*things(world, folder), Solid(TERRAIN, "mesh", (1.0, 1.0, 1.0), np.zeros(3), colour=world.terrain.colour, mesh=land)]
+
+
+def things(world: WorldFile, folder: Path = Path()) -> list[Solid]:
+    """All that stands on the ground or the terrain; folder: as for ``solids``."""
+    made = [Solid(b.name, "box", b.size, np.array(b.centre), from_euler(*b.rpy), b.colour, path=_script(b.path)) for b in all_boxes(world)]
+    for c in world.cylinders:
+        tilt = from_euler(*c.rpy)
+        middle = np.array(c.base) + rotate(tilt, np.array((0.0, 0.0, c.height / 2)))
+        made.append(Solid(c.name, "cylinder", (c.radius, c.height), middle, tilt, c.colour, path=_script(c.path)))
+    made += [Solid(s.name, "sphere", (s.radius,), np.array(s.centre), colour=s.colour) for s in world.spheres]
+    for m in world.meshes:
+        made.append(Solid(m.name, "mesh", m.scale, np.array(m.position), from_euler(*m.rpy), m.colour, folder / m.file))
+    return made
+
+
+def _script(path: Script) -> Keyframes | None:
+    return Keyframes(np.array(path)) if path else None
+
+
+def floor_plan(world: WorldFile, resolution: float, height: float = 0.2) -> FloorPlan:
+    """Which cells of the floor hold anything up to ``height`` [m] above what one drives on: what a robot that tall bumps into.
+
+    Ramps and platforms with a ramp are driven on (``drivable.py``), their steep edges are obstacles. What moves by script is left out.
+    Exact in the plane: a cell is occupied when any part of it is. Raises BadInput for a mesh that cannot be read.
+    """
+    plan = empty_plan(world, resolution)
+    parts = still(things(world))
+    ground = drivable(parts, *plan.axes(), relief(world))
+    bulk = chosen(parts, ~ground.surface)
+    cells = ground.cliffs(resolution) | plan.under(footprint(bulk, GRAZE, height)) & (ground.height <= GRAZE)
+    for low in np.unique(np.floor(ground.height[ground.height > GRAZE] / BAND) * BAND):
+        shadows = footprint(bulk, low + BAND + GRAZE, low + BAND + height)
+        if shadows.outlines or len(shadows.discs):
+            cells |= (ground.height > max(low, GRAZE)) & (ground.height <= low + BAND) & plan.under(shadows)
+    return replace(plan, cells=cells)
+
+
+def floor_segments(world: WorldFile, height: float) -> Floats:
+    """(n, 2, 2) ends [m, world] of the outlines of all that stands still at ``height`` [m]; outlines may lie over each other."""
+    return segments(footprint(still(solids(world)), height - GRAZE, height + GRAZE))
+
+
+def section(world: WorldFile, resolution: float, height: float) -> FloorPlan:
+    """Which cells hold anything that stands still at ``height`` [m]: what a level lidar there meets."""
+    plan = empty_plan(world, resolution)
+    return replace(plan, cells=plan.under(footprint(still(solids(world)), height - GRAZE, height + GRAZE)))
+
+
+def empty_plan(world: WorldFile, resolution: float) -> FloorPlan:
+    """The floor with nothing on it."""
+    x_min, y_min, x_max, y_max = world.floor
+    rows, columns = (int(np.ceil((high - low) / resolution - 1e-9)) for low, high in ((y_min, y_max), (x_min, x_max)))
+    return FloorPlan(np.zeros((rows, columns), dtype=np.bool_), resolution, x_min, y_min)
+
+
+def reachable_floor(plan: FloorPlan, x: float, y: float, radius: float) -> Mask:
+    """(rows, columns): the floor that a round robot of ``radius`` [m] starting at (x, y) can cover with its body.
+
+    Its centre may be where the nearest solid is no closer than the radius; the floor is what its disc sweeps.
+    Empty when the start is not free.
+    """
+    labels = _where_it_fits(plan, radius)
+    row, column = plan.cell(x, y)
+    if not (0 <= row < plan.cells.shape[0] and 0 <= column < plan.cells.shape[1]) or labels[row, column] == 0:
+        return np.zeros_like(plan.cells)
+    return _swept(plan, labels == labels[row, column], radius)
+
+
+def free_regions(plan: FloorPlan, radius: float) -> list[Mask]:
+    """Every floor, (rows, columns), that such a robot can cover from one start, the largest first."""
+    labels = _where_it_fits(plan, radius)
+    regions = [_swept(plan, labels == label, radius) for label in range(1, int(labels.max()) + 1)]
+    return sorted(regions, key=lambda region: -int(region.sum()))
+
+
+def _where_it_fits(plan: FloorPlan, radius: float) -> NDArray[np.int32]:
+    """Connected places of a round robot's centre, numbered from 1; 0 where it does not fit."""
+    room = ndimage.distance_transform_edt(np.pad(~plan.cells, 1))[1:-1, 1:-1] * plan.resolution
+    labels: NDArray[np.int32] = ndimage.label(room > radius)[0]
+    return labels
+
+
+def _swept(plan: FloorPlan, centres: Mask, radius: float) -> Mask:
+    swept: Mask = ndimage.distance_transform_edt(~centres) * plan.resolution <= radius
+    return swept & ~plan.cells

@@ -1,0 +1,127 @@
+"""Exploration: the frontier that is driven to now, those left alone for a while, and the patrol when all is known."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uvf.maths.grids import distance_field
+from uvf.planning.costmap import Costmap
+from uvf.planning.frontiers import Taste, frontier_mask, frontiers
+from uvf.planning.search import Ways
+
+Mask = NDArray[np.bool_]
+Point = tuple[float, float]
+
+SHUN_RADIUS = 0.5  # m
+SHUN_TIME = 30.0  # s, tripled with each further time at the same place
+STILL_THERE = 0.7  # m from the goal within which the frontier must remain
+PATROL_REST = 1.5  # m, when no place is farther from those visited, the round begins again
+
+
+@dataclass
+class Shunned:
+    point: Point
+    until: float
+    times: int
+
+
+@dataclass
+class Explorer:
+    """Chooses goals in the map frame; keeps one as long as its frontier is there."""
+
+    taste: Taste
+    goal: Point | None = None
+    explored: float = 0.0
+    """Estimate of the known part of the floor that can be reached, 0..1."""
+    _shunned: list[Shunned] = field(default_factory=list)
+
+    def choose(self, t: float, costs: Costmap, ways: Ways) -> Point | None:
+        """Where to go next [m, map], None when there is nothing left to see."""
+        mask = self._shunned_mask(t, costs)
+        found = frontiers(costs, ways.cost, mask, self.taste)
+        self.explored = self._estimate(costs, ways, sum(f.size for f in found))
+        if not found:
+            self.goal = None
+        elif self.goal is None or not self.still_worth_it(t, costs):
+            x, y = costs.points(np.array([found[0].goal]))[0]
+            self.goal = (float(x), float(y))
+        return self.goal
+
+    def still_worth_it(self, t: float, costs: Costmap) -> bool:
+        """Whether enough frontier is left about the goal."""
+        if self.goal is None:
+            return False
+        near = disc(costs, self.goal, STILL_THERE) & ~self._shunned_mask(t, costs)
+        return int((frontier_mask(costs) & near).sum()) >= self.taste.least_size
+
+    def shun_goal(self, t: float) -> None:
+        """The goal has been reached, or cannot be: what frontier is left there does not count for a while."""
+        if self.goal is None:
+            return
+        for old in self._shunned:
+            if np.hypot(old.point[0] - self.goal[0], old.point[1] - self.goal[1]) < SHUN_RADIUS:
+                old.times += 1
+                old.until = t + SHUN_TIME * 3**old.times
+                break
+        else:
+            self._shunned.append(Shunned(self.goal, t + SHUN_TIME, 0))
+        self.goal = None
+
+    def _shunned_mask(self, t: float, costs: Costmap) -> Mask:
+        mask = np.zeros(costs.cost.shape, dtype=np.bool_)
+        for place in self._shunned:
+            if place.until > t:
+                mask |= disc(costs, place.point, SHUN_RADIUS + self.taste.view)
+        return mask
+
+    def _estimate(self, costs: Costmap, ways: Ways, frontier_cells: int) -> float:
+        """Behind each frontier cell about a metre of floor is taken to be hidden."""
+        known = int(np.isfinite(ways.cost).sum())
+        return known / max(known + frontier_cells / costs.resolution, 1)
+
+
+@dataclass
+class Patrol:
+    """Goals for when everything is explored: the place farthest from those visited, round after round."""
+
+    goal: Point | None = None
+    _visited: list[Point] = field(default_factory=list)
+
+    def choose(self, here: Point, costs: Costmap, ways: Ways) -> Point | None:
+        """Where to go [m, map]; keeps a goal until ``reached`` or until no way leads there."""
+        if self.goal is not None and np.isfinite(ways.cost[costs.cell(*self.goal)]):
+            return self.goal
+        easy = np.isfinite(ways.cost) & (costs.cost >= 0.0) & (costs.cost < 1.5)
+        if not easy.any():
+            return None
+        distance = np.where(easy, self._distance([*self._visited, here], costs), -1.0)
+        if distance.max() < PATROL_REST:
+            self._visited.clear()
+            distance = np.where(easy, self._distance([here], costs), -1.0)
+        cell = np.array(np.unravel_index(int(np.argmax(distance)), distance.shape))
+        x, y = costs.points(cell[None])[0]
+        self.goal = (float(x), float(y))
+        return self.goal
+
+    def reached(self) -> None:
+        """The goal has been visited, or was given up."""
+        if self.goal is not None:
+            self._visited.append(self.goal)
+        self.goal = None
+
+    def _distance(self, points: list[Point], costs: Costmap) -> NDArray[np.float64]:
+        marks = np.zeros(costs.cost.shape, dtype=np.bool_)
+        for point in points:
+            if costs.holds(costs.cell(*point)):
+                marks[costs.cell(*point)] = True
+        return distance_field(marks) * costs.resolution
+
+
+def disc(costs: Costmap, centre: Point, radius: float) -> Mask:
+    """(rows, columns): the cells whose centres lie within ``radius`` [m] of a point."""
+    rows, columns = costs.cost.shape
+    x = costs.origin[0] + (np.arange(columns) + 0.5) * costs.resolution - centre[0]
+    y = costs.origin[1] + (np.arange(rows) + 0.5) * costs.resolution - centre[1]
+    inside: Mask = y[:, None] ** 2 + x[None, :] ** 2 <= radius * radius
+    return inside

@@ -1,0 +1,63 @@
+"""Frontiers: where known free ground meets unknown ground, and which one to drive to next (Yamauchi 1997)."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+
+from uvf.maths.grids import distance_field
+from uvf.planning.costmap import Costmap
+
+Floats = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+Cell = tuple[int, int]
+
+ALL_ROUND = np.ones((3, 3), dtype=int)
+
+
+@dataclass(frozen=True)
+class Frontier:
+    goal: Cell
+    """Where to go to look at it."""
+    size: int
+    """Cells."""
+    way: float
+    """Cost of the way there [cells]."""
+
+
+@dataclass(frozen=True)
+class Taste:
+    """What makes a frontier worth going to."""
+
+    least_size: int  # cells; smaller ones are cracks
+    view: float  # m from the frontier from which it is seen well enough
+    worth: float  # cells of way that one cell of frontier is worth
+
+
+def frontier_mask(costs: Costmap) -> Mask:
+    """(rows, columns): free cells beside unknown ones, not along obstacles."""
+    beside_unknown = ndimage.binary_dilation(costs.unknown)
+    mask: Mask = costs.free & beside_unknown & (costs.clearance > costs.resolution)
+    return mask
+
+
+def frontiers(costs: Costmap, way: Floats, shunned: Mask, taste: Taste) -> list[Frontier]:
+    """Those that can be seen from somewhere the ways lead to, best first. shunned: cells that do not count."""
+    labels, _ = ndimage.label(frontier_mask(costs) & ~shunned, structure=ALL_ROUND)
+    reachable = np.isfinite(way)
+    found = []
+    margin = int(np.ceil(taste.view / costs.resolution))
+    for label, box in enumerate(ndimage.find_objects(labels), start=1):
+        window = tuple(slice(max(s.start - margin, 0), s.stop + margin) for s in box)
+        cluster = labels[window] == label
+        size = int(cluster.sum())
+        if size < taste.least_size:
+            continue
+        near = distance_field(cluster) * costs.resolution <= taste.view
+        cost = np.where(near & reachable[window], way[window], np.inf)
+        best = np.unravel_index(int(np.argmin(cost)), cost.shape)
+        if np.isfinite(cost[best]):
+            goal = (int(best[0]) + window[0].start, int(best[1]) + window[1].start)
+            found.append(Frontier(goal, size, float(cost[best])))
+    return sorted(found, key=lambda f: (f.way - taste.worth * min(f.size, 60), f.goal))

@@ -1,0 +1,141 @@
+"""From a place to go to, to a path that leads there; and why there is none."""
+
+from dataclasses import dataclass
+from math import isfinite
+
+import numpy as np
+from numpy.typing import NDArray
+
+from schemas.limits import LENGTHS
+from uvf.planning.costmap import Body, Costmap, Frame, costmap, with_way_out
+from uvf.planning.search import Cell, Ways, astar
+from uvf.planning.smoothing import SPACING, length, smoothed
+
+Floats = NDArray[np.float64]
+Point = tuple[float, float]
+
+WAY_OUT = 0.3  # m about the vehicle within which it may leave the room it should keep from obstacles
+UNKNOWN_COST = 3.0
+"""Factor on the cost of unknown ground for goals that may lie behind it."""
+
+MOST_CELLS = 8_000_000
+"""Of a map, 140 x 140 m in cells of 5 cm: a step that plans over it takes seconds, and one of 6 s is ended."""
+FARTHEST = (LENGTHS["foxglove.PosesInFrame.poses"] - 2) * SPACING
+"""m of way; the points of a longer one do not fit into a message."""
+TOO_LARGE = "the map is too large to plan on"
+NO_PLACE = "the goal is not a place: its coordinates must be finite"
+
+
+@dataclass(frozen=True)
+class Plan:
+    """A path (n, 2) [m, map], or none and why."""
+
+    path: Floats | None
+    reason: str = ""
+
+
+class Navigator:
+    """Plans on the newest map; all points in m, map frame."""
+
+    def __init__(self, body: Body) -> None:
+        self._body = body
+        self._cells: NDArray[np.int8] | None = None
+        self._bold: Costmap | None = None
+        self._ways: tuple[Cell, Ways] | None = None
+        self.costs: Costmap | None = None
+        self.missing = "there is no map yet"
+        """Why there are no costs, and no ways, while there are none."""
+
+    def fit(self, body: Body) -> bool:
+        """Plans for another body from now on; whether that changes anything."""
+        if body == self._body:
+            return False
+        self._body = body
+        if self._cells is not None and self.costs is not None:
+            self.see(self._cells, (self.costs.resolution, self.costs.origin))
+        return True
+
+    def see(self, cells: NDArray[np.int8], frame: Frame) -> None:
+        """Takes a new map; costs are worked out once for it. On one of too many cells nobody drives."""
+        self._bold = None
+        self._ways = None
+        if cells.size > MOST_CELLS:
+            self._cells, self.costs = None, None
+            self.missing = f"{TOO_LARGE}: {cells.size} cells, {MOST_CELLS} at most"
+            return
+        self._cells = cells
+        self.costs = costmap(cells, frame, self._body)
+
+    def ways(self, start: Point) -> Ways | None:
+        """The cheapest ways from ``start`` to everywhere known, worked out once for each place; None without a map or outside it."""
+        if self.costs is None or not self.costs.holds(self.costs.cell(*start)):
+            return None
+        cell = self.costs.cell(*start)
+        if self._ways is None or self._ways[0] != cell:
+            self._ways = cell, Ways(with_way_out(self.costs, cell, WAY_OUT).cost, cell)
+        return self._ways[1]
+
+    def refusal(self, start: Point, goal: Point) -> str:
+        """Why nobody can drive from ``start`` to ``goal`` over known ground; "" if it can be done."""
+        costs = self.costs
+        if costs is None:
+            return self.missing
+        if not _is_place(goal):
+            return NO_PLACE
+        cell = costs.cell(*goal)
+        if not costs.holds(cell):
+            return "the goal lies outside the map"
+        if costs.unknown[cell]:
+            return "the goal lies on ground not seen yet"
+        if costs.clearance[cell] <= 0.0 or not costs.free[cell]:
+            return "the goal lies in an obstacle"
+        if costs.cost[cell] < 0.0:
+            return f"the goal is {costs.clearance[cell]:.2f} m from an obstacle, {self._body.radius:.2f} m are needed"
+        ways = self.ways(start)
+        if ways is None or not np.isfinite(ways.cost[cell]):
+            return "no way leads to the goal"
+        if ways.cost[cell] * costs.resolution <= FARTHEST:  # a way costs no less than its length
+            return ""
+        return _too_far(costs.points(ways.to(cell)))
+
+    def plan(self, start: Point, goal: Point, bold: bool = False) -> Plan:
+        """bold: unknown ground may be crossed, and the goal may lie beyond the map: its nearest cell is taken."""
+        known = self._costs(bold)
+        if known is None:
+            return Plan(None, self.missing)
+        if not _is_place(goal):
+            return Plan(None, NO_PLACE)
+        here = known.cell(*start)
+        if not known.holds(here):
+            return Plan(None, "the vehicle is outside its map")
+        there = known.cell(*goal)
+        if not known.holds(there) and not bold:
+            return Plan(None, "the goal lies outside the map")
+        rows, columns = known.cost.shape
+        there = (min(max(there[0], 0), rows - 1), min(max(there[1], 0), columns - 1))
+        found = astar(with_way_out(known, here, WAY_OUT).cost, here, there)
+        if found is None:
+            return Plan(None, "no way leads to the goal")
+        points = known.points(found[0])
+        points[0] = start
+        if known.holds(known.cell(*goal)):
+            points = np.vstack((points[:-1], goal)) if len(points) > 1 else np.array((start, goal))
+        too_far = _too_far(points)
+        return Plan(None, too_far) if too_far else Plan(smoothed(points, known, self._body.radius))
+
+    def _costs(self, bold: bool) -> Costmap | None:
+        if not bold or self.costs is None or self._cells is None:
+            return self.costs
+        if self._bold is None:
+            self._bold = costmap(self._cells, (self.costs.resolution, self.costs.origin), self._body, UNKNOWN_COST)
+        return self._bold
+
+
+def _too_far(points: Floats) -> str:
+    """Why a way is not driven for its length; "" if it is."""
+    way = length(points)
+    return f"the goal is too far to plan: {way / 1000:.1f} km of way, {FARTHEST / 1000:.1f} km at most" if way > FARTHEST else ""
+
+
+def _is_place(point: Point) -> bool:
+    return isfinite(point[0]) and isfinite(point[1])

@@ -1,0 +1,52 @@
+"""From a path of cells to one that a vehicle likes to follow: resampled, rounded, no nearer to obstacles than allowed."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uvf.maths.compiled import compiled
+from uvf.planning.costmap import Costmap
+
+Floats = NDArray[np.float64]
+
+SPACING = 0.1  # m between the points
+ROUNDS = 60
+FIDELITY, TENSION = 0.05, 0.45
+"""Pull to the original point, and to the middle of the neighbours, per round."""
+
+
+def resample(points: Floats, spacing: float = SPACING) -> Floats:
+    """(m, 2) points of the same polyline at even distances about ``spacing`` [m], ends kept."""
+    if len(points) < 2:
+        return points
+    lengths = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))))
+    n = max(int(np.ceil(lengths[-1] / spacing)), 1)
+    at = np.linspace(0.0, lengths[-1], n + 1)
+    return np.column_stack((np.interp(at, lengths, points[:, 0]), np.interp(at, lengths, points[:, 1])))
+
+
+@compiled
+def _relax(points: Floats, clearance: Floats, frame: tuple[float, float, float], least: float) -> Floats:
+    """Gradient smoothing (Thrun 2012): each point towards its neighbours' middle, unless that comes too near."""
+    x0, y0, resolution = frame
+    smooth = points.copy()
+    rows, columns = clearance.shape
+    for _ in range(ROUNDS):
+        for i in range(1, points.shape[0] - 1):
+            x = smooth[i, 0] + FIDELITY * (points[i, 0] - smooth[i, 0])
+            y = smooth[i, 1] + FIDELITY * (points[i, 1] - smooth[i, 1])
+            x += TENSION * (0.5 * (smooth[i - 1, 0] + smooth[i + 1, 0]) - x)
+            y += TENSION * (0.5 * (smooth[i - 1, 1] + smooth[i + 1, 1]) - y)
+            r, c = int(np.floor((y - y0) / resolution)), int(np.floor((x - x0) / resolution))
+            if 0 <= r < rows and 0 <= c < columns and clearance[r, c] >= least:
+                smooth[i, 0], smooth[i, 1] = x, y
+    return smooth
+
+
+def smoothed(points: Floats, costs: Costmap, least: float) -> Floats:
+    """(m, 2) m, map frame; least: m that must stay free around each point."""
+    return _relax(resample(points), costs.clearance, (*costs.origin, costs.resolution), least)
+
+
+def length(points: Floats) -> float:
+    """m along the polyline."""
+    return float(np.hypot(*np.diff(points, axis=0).T).sum()) if len(points) > 1 else 0.0

@@ -1,0 +1,123 @@
+"""Messages from and to numpy: vectors, quaternions (wxyz), poses, stamps, scans, grids."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from schemas.messages import FrameTransform, Grid, LaserScan, Mode, PackedElementField, Pose, Quaternion, Timestamp, Vector3
+from uvf.maths.rotations import from_euler
+from uvf.maths.se2 import Pose2
+
+Floats = NDArray[np.float64]
+
+
+def stamp(t: float) -> Timestamp:
+    """Simulation time ``t`` [s] as a message stamp, exact to the nanosecond."""
+    return stamp_ns(round(t * 1e9))
+
+
+def stamp_ns(t_ns: int) -> Timestamp:
+    return Timestamp(seconds=t_ns // 1_000_000_000, nanos=t_ns % 1_000_000_000)
+
+
+def seconds(s: Timestamp) -> float:
+    return s.seconds + s.nanos * 1e-9
+
+
+def vector(v: Floats) -> Vector3:
+    """(3,) array as a message."""
+    x, y, z = v.tolist()
+    return Vector3(x=x, y=y, z=z)
+
+
+def array(v: Vector3) -> Floats:
+    """(3,) float64."""
+    return np.array((v.x, v.y, v.z))
+
+
+def quaternion(q: Floats) -> Quaternion:
+    """(4,) wxyz as a message."""
+    w, x, y, z = q.tolist()
+    return Quaternion(w=w, x=x, y=y, z=z)
+
+
+def wxyz(q: Quaternion) -> Floats:
+    """(4,) float64, wxyz; the all-zero default of an unset field is the identity."""
+    out = np.array((q.w, q.x, q.y, q.z))
+    return out if out.any() else np.array((1.0, 0.0, 0.0, 0.0))
+
+
+def yaw_of(q: Quaternion) -> float:
+    """Heading [rad] of a body about the z axis."""
+    w, x, y, z = wxyz(q)
+    return float(np.arctan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z)))
+
+
+def planar_pose(x: float, y: float, yaw: float, z: float = 0.0) -> Pose:
+    """Pose on level ground: m, rad."""
+    return Pose(
+        position=Vector3(x=x, y=y, z=z),
+        orientation=Quaternion(w=float(np.cos(yaw / 2)), z=float(np.sin(yaw / 2))),
+    )
+
+
+def pose2_of(pose: Pose) -> Pose2:
+    """A pose seen from above."""
+    return Pose2(pose.position.x, pose.position.y, yaw_of(pose.orientation))
+
+
+def planar_frame(t: float, parent: str, child: str, parent_from_child: Pose2) -> FrameTransform:
+    """Where one frame lies in another, both by their full names."""
+    x, y, yaw = parent_from_child
+    return FrameTransform(
+        timestamp=stamp(t),
+        parent_frame_id=parent,
+        child_frame_id=child,
+        translation=Vector3(x=x, y=y),
+        rotation=quaternion(from_euler(0.0, 0.0, yaw)),
+    )
+
+
+def pose2_of_frame(transform: FrameTransform) -> Pose2:
+    """``parent_from_child`` seen from above."""
+    return Pose2(transform.translation.x, transform.translation.y, yaw_of(transform.rotation))
+
+
+def scan_rays(scan: LaserScan) -> tuple[Floats, Floats]:
+    """(n,) ranges [m], 0 where nothing came back, and (n, 2) unit directions of the beams, lidar frame."""
+    ranges = np.nan_to_num(np.asarray(scan.ranges, dtype=np.float64), nan=0.0, posinf=0.0, neginf=0.0)
+    angles = np.linspace(scan.start_angle, scan.end_angle, len(ranges))
+    return ranges, np.column_stack((np.cos(angles), np.sin(angles)))
+
+
+def scan_points(scan: LaserScan) -> Floats:
+    """(n, 2) m, lidar frame: what the beams hit; those without a return are left out."""
+    ranges, rays = scan_rays(scan)
+    points: Floats = rays[ranges > 0.0] * ranges[ranges > 0.0, None]
+    return points
+
+
+def occupancy_grid(cells: NDArray[np.int8], resolution: float, x: float, y: float, frame: str, t: float) -> Grid:
+    """(rows, columns) int8 as a message; cell [0, 0] has its lower left corner at (x, y) [m, frame]."""
+    columns = cells.shape[1]
+    grid = Grid(
+        timestamp=stamp(t),
+        frame_id=frame,
+        pose=planar_pose(x, y, 0.0),
+        column_count=columns,
+        row_stride=columns,
+        cell_stride=1,
+        fields=[PackedElementField(name="occupancy", offset=0, type=PackedElementField.INT8)],
+        data=np.ascontiguousarray(cells).tobytes(),
+    )
+    grid.cell_size.x = grid.cell_size.y = resolution
+    return grid
+
+
+def occupancy_cells(grid: Grid) -> NDArray[np.int8]:
+    """(rows, columns) int8, row 0 at the lowest y; -1 unknown, 0 free .. 100 occupied."""
+    return np.frombuffer(grid.data, dtype=np.int8).reshape(-1, grid.column_count)
+
+
+def mode_name(mode: int) -> str:
+    """``MISSION`` for ``MODE_MISSION``; the number for one that nobody knows."""
+    return Mode.Name(Mode.ValueType(mode)).removeprefix("MODE_") if mode in Mode.values() else str(mode)

@@ -1,0 +1,41 @@
+"""Where a vehicle's sensors sit, as the transforms that go out once on ``tf/static``."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from schemas.messages import FrameTransform, FrameTransforms
+from uvf.maths.rotations import from_euler
+from uvf.models.vehicle.file import Camera, Mount, Sensors
+from uvf.runtime.messages.convert import quaternion, stamp, vector
+
+Floats = NDArray[np.float64]
+
+OPTICAL = Mount(rpy=(-np.pi / 2, 0.0, -np.pi / 2))
+"""From a camera's mount (x along the view, z up) to its picture's axes (x right, y down, z along the view; REP-103)."""
+
+
+def sensor_frames(vehicle: str, sensors: Sensors, t: float) -> FrameTransforms:
+    """``base_link`` to each sensor, and for a camera (a gimbal: from itself) on to ``<camera>_optical``, the frame of its pictures."""
+    fitted = [
+        s for s in (sensors.lidar, sensors.imu, sensors.camera, sensors.chase, *sensors.sonars, *sensors.rangefinders) if s is not None
+    ]
+    transforms = [_transform(f"{vehicle}/base_link", f"{vehicle}/{s.frame}", s.mount, t) for s in fitted]
+    for camera in (c for c in (sensors.camera, sensors.chase, sensors.gimbal) if c is not None):
+        frame = f"{vehicle}/{camera.frame}"
+        transforms.append(_transform(frame, f"{frame}_optical", OPTICAL, t))
+    return FrameTransforms(transforms=transforms)
+
+
+def _transform(parent: str, child: str, mount: Mount, t: float) -> FrameTransform:
+    return _placed(parent, child, (np.array(mount.xyz), from_euler(*mount.rpy)), t)
+
+
+def _placed(parent: str, child: str, pose: tuple[Floats, Floats], t: float) -> FrameTransform:
+    return FrameTransform(
+        timestamp=stamp(t), parent_frame_id=parent, child_frame_id=child, translation=vector(pose[0]), rotation=quaternion(pose[1])
+    )
+
+
+def mounted(vehicle: str, camera: Camera, body_from_camera: Floats, t: float) -> FrameTransform:
+    """``base_link`` to a camera that moves, turned as it is at ``t`` [s]. body_from_camera: wxyz."""
+    return _placed(f"{vehicle}/base_link", f"{vehicle}/{camera.frame}", (np.array(camera.mount.xyz), body_from_camera), t)

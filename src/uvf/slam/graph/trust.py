@@ -1,0 +1,95 @@
+"""What the odometry of this vehicle is usually off by: learnt from sweeps that fit well, to be held to where they do not."""
+
+from dataclasses import dataclass, field, replace
+from math import exp, hypot, log1p, sqrt
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uvf.maths.rotations import wrap
+from uvf.maths.se2 import Pose2
+from uvf.slam.graph.motion import Motion, MotionNoise
+
+Floats = NDArray[np.float64]
+
+LEARNT = 0.02
+"""How far each step moves what is usual to its own."""
+STRAIGHT = 0.05  # rad: steps that turn by less tell how far the odometry is off when it goes straight on
+LEAST_TRUST, MOST_SIGMAS = 0.2, 3.0
+"""What a usual error is at least, and what a single one counts for at most."""
+
+PRIOR = np.diag(np.array((0.02, 0.05)) ** -2.0)
+"""(2, 2) information: rad per m and rad per rad that odometry is known to veer by, 1 sigma."""
+REMEMBERED = 10.0
+"""m (or rad) of motion after which what has been learnt of the veering counts for 1/e."""
+
+
+@dataclass
+class Veering:
+    """What the odometry's heading is off by per m driven and per rad turned; it changes slowly, with the floor and the tyres.
+
+    Weighted least squares with a zero-mean prior, in which older steps fade.
+    """
+
+    _normal: Floats = field(default_factory=PRIOR.copy)
+    _right: Floats = field(default_factory=lambda: np.zeros(2))
+
+    def straightened(self, step: Pose2) -> Pose2:
+        return Pose2(step[0], step[1], step[2] + float(_ways(step) @ np.linalg.solve(self._normal, self._right)))
+
+    def learn(self, step: Pose2, off: float, sigma: float) -> None:
+        """off: rad by which the heading came to be another one than by the step; sigma: rad, of that."""
+        ways = _ways(step)
+        fading = exp(-float(np.abs(ways).sum()) / REMEMBERED)
+        self._normal = PRIOR + fading * (self._normal - PRIOR) + np.outer(ways, ways) / sigma**2
+        self._right = fading * self._right + ways * off / sigma**2
+
+
+def _ways(step: Pose2) -> Floats:
+    """(2,) m driven and rad turned."""
+    return np.array((hypot(step[0], step[1]), step[2]))
+
+
+@dataclass
+class Trust:
+    """How far this vehicle's odometry usually is off, in sigmas of its noise: learnt from sweeps that fit well."""
+
+    position: float = 1.0
+    heading: float = 1.0
+    veering: Veering = field(default_factory=Veering)
+
+    def straightened(self, motion: Motion) -> Motion:
+        """Without what the odometry always gets wrong."""
+        return replace(motion, step=self.veering.straightened(motion.step)) if motion.told else motion
+
+    def learn(self, step: Pose2, motion: Motion, found: Pose2) -> None:
+        """step: as the odometry told it; motion: as it was taken."""
+        sigma, known = motion.sigmas[1], motion.step[2] - step[2]
+        off = wrap(found[2] - motion.guess[2]) + known
+        self.veering.learn(step, min(max(off, -MOST_SIGMAS * sigma), MOST_SIGMAS * sigma), sigma)
+        if abs(step[2]) < STRAIGHT:
+            position, heading = _off(motion, found) / np.array(motion.sigmas)
+            self.position, self.heading = _followed(self.position, position), _followed(self.heading, heading)
+
+    def information(self, motion: Motion) -> Floats:
+        """(3, 3) of (x, y, yaw): of the motion, as the odometry has been found to be; of one not told, as it is."""
+        return self._usual(motion.noise).information(motion.step) if motion.told else motion.information
+
+    def surprise(self, motion: Motion, found: Pose2) -> float:
+        """How unlikely it is that the vehicle came to be there; it grows slowly far out: wheels slip, vehicles are bumped into."""
+        return log1p(float(np.sum((_off(motion, found) / np.array(self._usual(motion.noise).sigmas(motion.step))) ** 2)))
+
+    def _usual(self, noise: MotionNoise) -> MotionNoise:
+        """What a turn adds is left as it is."""
+        (p, q, r), (s, t, u) = noise.position, noise.heading
+        return MotionNoise((self.position * p, self.position * q, r), (self.heading * s, self.heading * t, u))
+
+
+def _off(motion: Motion, found: Pose2) -> Floats:
+    """m, rad: how far from where the odometry has it."""
+    guess = motion.guess
+    return np.array((hypot(found[0] - guess[0], found[1] - guess[1]), abs(wrap(found[2] - guess[2]))))
+
+
+def _followed(usual: float, sigmas: float) -> float:
+    return max(sqrt(usual**2 + LEARNT * (min(sigmas, MOST_SIGMAS) ** 2 - usual**2)), LEAST_TRUST)

@@ -1,0 +1,96 @@
+"""Sessions in one graph: where the keyframes of each lie in the frame of the first."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uvf.maths.se2 import Pose2
+from uvf.maths.se2_arrays import composed, inverted, wrapped
+from uvf.slam.graph.edges import Edge
+from uvf.slam.graph.loops import Closure
+from uvf.slam.graph.pose_graph import PoseGraph
+from uvf.slam.graph.restored import add_edges
+from uvf.slam.maps.session import KINDS, Edges, Session
+from uvf.slam.merging.part import Part
+from uvf.slam.method import Keyframe
+
+Floats = NDArray[np.float64]
+LOOP = KINDS.index("loop")
+
+
+@dataclass(frozen=True)
+class Crossing:
+    """Keyframe i of session a and j of session b, by their names."""
+
+    a: str
+    b: str
+    closure: Closure
+
+
+@dataclass(frozen=True)
+class Joint:
+    """poses: (n, 3) by session, team_from_base; crossings: those that are believed."""
+
+    poses: dict[str, Floats]
+    crossings: list[Crossing]
+
+
+def settled(parts: Mapping[str, Part], crossings: Sequence[Crossing], starts: Mapping[str, Floats]) -> Joint:
+    """All measurements of all sessions at once, from starts (n, 3) by session; the first keyframe of the first session stays."""
+    graph, first = PoseGraph(), _firsts(parts)
+    for name in parts:
+        for pose in starts[name].tolist():
+            graph.add_pose(Pose2(*pose))
+    for name, part in parts.items():
+        add_edges(part.session.edges, graph, first[name])
+    numbers = [
+        graph.add_edge(Edge(first[c.a] + c.closure.i, first[c.b] + c.closure.j, c.closure.i_from_j, c.closure.information, robust=True))
+        for c in crossings
+    ]
+    graph.optimise()
+    believed = [c for c, number in zip(crossings, numbers, strict=True) if graph.weights[number] > 0.5]
+    poses = graph.poses.copy()
+    poses[:, 2] = wrapped(poses[:, 2])
+    return Joint({name: poses[k : k + len(parts[name])] for name, k in first.items()}, believed)
+
+
+def start_by(closure: Closure, placed_a: Floats, own_b: Floats) -> Floats:
+    """(n, 3) where the keyframes of b are, by a closure to one of a, whose own are placed already."""
+    team_from_j = composed(placed_a[closure.i], np.array(closure.i_from_j))
+    return composed(team_from_j, composed(inverted(own_b[closure.j]), own_b))
+
+
+def session_of(parts: Mapping[str, Part], joint: Joint) -> Session:
+    """All keyframes, one session after the other, and all edges."""
+    first = _firsts(parts)
+    keyframes = [
+        Keyframe(Pose2(*pose), node.reading)
+        for name, part in parts.items()
+        for pose, node in zip(joint.poses[name].tolist(), part.nodes.all, strict=True)
+    ]
+    return Session(tuple(keyframes), _edges(parts, joint.crossings, first), "graph", {})
+
+
+def _edges(parts: Mapping[str, Part], crossings: Sequence[Crossing], first: Mapping[str, int]) -> Edges:
+    own = [(part.session.edges, first[name]) for name, part in parts.items()]
+    m = len(crossings)
+    return Edges(
+        np.concatenate(
+            [
+                *(e.ends + k for e, k in own),
+                np.array([(first[c.a] + c.closure.i, first[c.b] + c.closure.j) for c in crossings]).reshape(m, 2),
+            ]
+        ).astype(np.int64),
+        np.concatenate([*(e.measured for e, _ in own), np.array([c.closure.i_from_j for c in crossings]).reshape(m, 3)]),
+        np.concatenate([*(e.information for e, _ in own), np.array([c.closure.information for c in crossings]).reshape(m, 3, 3)]),
+        np.concatenate([*(e.kinds for e, _ in own), np.full(m, LOOP, dtype=np.uint8)]),
+        np.concatenate([*(e.enabled for e, _ in own), np.ones(m, dtype=np.bool_)]),
+    )
+
+
+def _firsts(parts: Mapping[str, Part]) -> dict[str, int]:
+    """The place of each session's first keyframe among all."""
+    ends = np.cumsum([len(part) for part in parts.values()])
+    return dict(zip(parts, (ends - [len(part) for part in parts.values()]).tolist(), strict=True))

@@ -1,0 +1,49 @@
+"""What a 2-D SLAM method is fed with: a sweep of ranges and where the odometry has the vehicle at its stamp."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uvf.maths.se2 import Pose2
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Beams:
+    """Where the beams of a lidar begin and point; one object serves all sweeps of the same shape.
+
+    origin: (x, y) of the lidar in the base frame [m]; bearings: (n,) direction of each beam in the base frame [rad], in the
+    order in which they are measured: falling for a lidar that turns clockwise or hangs upside down.
+    Ranges outside [range_min, range_max] are no return; so are 0, infinite ones and NaN.
+    """
+
+    origin: tuple[float, float]
+    bearings: Floats
+    range_min: float
+    range_max: float
+    duration: float = 0.0
+    """s from the first beam to the last; 0 where all are taken at once."""
+    directions: Floats = field(init=False)
+    """(n, 2) unit vectors of the bearings."""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "directions", np.column_stack((np.cos(self.bearings), np.sin(self.bearings))))
+
+
+@dataclass(frozen=True)
+class Reading:
+    """One sweep. t: stamp of its last beam [s]; ranges: (n,) m; odom_from_base: by the odometry at ``t``."""
+
+    t: float
+    ranges: Floats
+    beams: Beams
+    odom_from_base: Pose2
+
+    @property
+    def returned(self) -> NDArray[np.bool_]:
+        """(n,) which beams came back."""
+        with np.errstate(invalid="ignore"):
+            found: NDArray[np.bool_] = (self.ranges > max(self.beams.range_min, 0.0)) & (self.ranges < self.beams.range_max)
+        return found

@@ -1,0 +1,35 @@
+"""Limits keep the curvature; the ramp keeps the accelerations."""
+
+import pytest
+
+from uvf.control.drive_limits import Limits, Ramp, within_limits
+
+LIMITS = Limits(linear=0.5, angular=2.0, linear_acceleration=0.8, angular_acceleration=4.0)
+
+
+@pytest.mark.parametrize("asked", [(2.0, 1.0), (0.3, 5.0), (-1.0, -3.0), (0.2, 0.1)])
+def test_what_is_too_fast_is_slowed_on_the_same_arc(asked):
+    linear, angular = within_limits(*asked, LIMITS, LIMITS.linear)
+    assert abs(linear) <= LIMITS.linear + 1e-12
+    assert abs(angular) <= LIMITS.angular + 1e-12
+    assert linear * asked[1] == pytest.approx(angular * asked[0])
+
+
+def test_a_mission_may_ask_for_less_but_not_for_more():
+    assert within_limits(0.5, 0.0, LIMITS, 0.2) == (0.2, 0.0)
+    assert within_limits(0.9, 0.0, LIMITS, 3.0) == (0.5, 0.0)
+
+
+def test_the_ramp_reaches_the_speed_after_the_time_it_takes():
+    ramp = Ramp(LIMITS)
+    speeds = [ramp.lead(0.4, 2.0, 0.02) for _ in range(30)]
+    assert speeds[0] == pytest.approx((0.016, 0.08))
+    assert speeds[24] == pytest.approx((0.4, 2.0))
+    assert speeds[23][0] < 0.4
+    assert speeds[29] == pytest.approx((0.4, 2.0))
+
+
+def test_the_ramp_slows_down_too():
+    ramp = Ramp(LIMITS)
+    ramp.linear = 0.4
+    assert ramp.lead(0.0, 0.0, 0.02)[0] == pytest.approx(0.384)

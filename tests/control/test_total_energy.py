@@ -1,0 +1,157 @@
+"""Energy is shared out as it should be: what throttle can reach bounds the path, airspeed comes first, nothing winds up."""
+
+import numpy as np
+import pytest
+
+from tests.services.autopilot.air.point_mass import DT, PARAMS, Point, cruise, fly
+from tests.services.autopilot.air.states import cruising
+from uvf.control.commands import Wanted
+from uvf.control.cycle import Cycle
+from uvf.control.flight_control import Control
+from uvf.control.servos import SERVOS
+from uvf.control.total_energy import EnergyLoops
+
+STEEP = 12.0  # m/s, more than the motor can do
+KEEN = {name: getattr(PARAMS, name) for name in PARAMS.__struct_fields__} | {"climb_max": STEEP, "sink_max": STEEP}
+EAGER = type(PARAMS)(**KEEN)
+
+
+def airspeeds(seen):
+    return np.array([now.airspeed for now, _, _ in seen])
+
+
+def heights(seen):
+    return np.array([now.height for now, _, _ in seen])
+
+
+def throttles(seen):
+    return np.array([throttle for _, _, throttle in seen])
+
+
+def test_a_climb_steeper_than_the_motor_can_do_keeps_the_airspeed_and_climbs_as_it_can():
+    seen = fly(Point(), cruise(height=600.0), 60.0, EAGER)
+    late = airspeeds(seen)[1000:]
+    assert throttles(seen)[1000:].min() > 0.98
+    assert late.min() > 24.0 and late.max() < 26.0
+    assert 3.0 < (heights(seen)[-1] - heights(seen)[1000]) / 40.0 < STEEP - 2.0
+
+
+def test_a_descent_steeper_than_a_glide_does_not_overspeed():
+    seen = fly(Point(height=600.0), cruise(height=100.0), 40.0, EAGER)
+    assert throttles(seen)[500:].max() < 0.5
+    assert airspeeds(seen).max() < PARAMS.max_airspeed + 0.5
+
+
+def test_with_a_dead_motor_it_glides_at_the_airspeed_asked_for():
+    seen = fly(Point(height=500.0, engine=0.0), cruise(height=500.0), 60.0)
+    assert airspeeds(seen).min() > PARAMS.min_airspeed + 1.5
+    assert airspeeds(seen)[1500:].mean() == pytest.approx(25.0, abs=0.5)
+    assert heights(seen)[-1] < 450.0
+
+
+def test_when_the_motor_is_back_it_climbs_back_and_settles_without_overshoot_of_the_throttle_trim():
+    point = Point(height=200.0, engine=0.0)
+    fly(point, cruise(height=200.0), 30.0)
+    point.engine = 1.0
+    seen = fly(point, cruise(height=200.0), 80.0)
+    assert heights(seen)[-1] == pytest.approx(200.0, abs=0.5)
+    assert heights(seen).max() < 202.0
+    assert airspeeds(seen)[-1] == pytest.approx(25.0, abs=0.2)
+
+
+def test_short_of_power_for_some_seconds_it_keeps_the_path_and_lends_it_airspeed():
+    """As in a downdraught: 5 s with a third of the thrust."""
+    point = Point()
+
+    def climbing(t):
+        point.engine = 0.33 if 10.0 < t < 15.0 else 1.0
+        return Wanted(0.0, 100.0 + 2.0 * t, 2.0, 25.0)
+
+    seen = fly(point, climbing, 60.0)
+    behind = 100.0 + 2.0 * DT * np.arange(len(seen)) - heights(seen)
+    assert throttles(seen).max() == 1.0
+    assert behind[500:].max() < 2.5
+    assert 22.0 < airspeeds(seen).min() < 24.0
+    assert airspeeds(seen)[-1] == pytest.approx(25.0, abs=0.3)
+
+
+def test_a_weaker_motor_than_the_parameters_say_leaves_no_error_behind():
+    seen = fly(Point(engine=0.9), cruise(), 60.0)
+    assert heights(seen)[-1] == pytest.approx(100.0, abs=0.1)
+    assert airspeeds(seen)[-1] == pytest.approx(25.0, abs=0.1)
+
+
+def test_with_its_throttle_given_the_climb_keeps_it_from_flying_too_fast():
+    """As on a take-off with plenty of power, from the first cycle after an attitude was held on."""
+    loops, point = EnergyLoops(), Point(speed=PARAMS.max_airspeed + 1.0)
+    climbing = Wanted(0.0, None, 2.0, 25.0, throttle=1.0)
+    loops.begin(Cycle(point.estimate(), PARAMS, DT), climbing, 0.2, 1.0)
+    seen = fly(point, lambda t: climbing, 20.0, loops=loops)
+    climbs = np.array([now.climb for now, _, _ in seen])
+    assert climbs[100:].min() > 2.0
+    assert airspeeds(seen)[500:].max() < PARAMS.max_airspeed + 0.5
+
+
+def test_a_higher_airspeed_is_reached_without_giving_up_height():
+    seen = fly(Point(), cruise(airspeed=28.0), 40.0)
+    assert airspeeds(seen)[-1] == pytest.approx(28.0, abs=0.2)
+    assert np.abs(heights(seen) - 100.0).max() < 1.0
+
+
+def test_height_and_airspeed_that_can_be_exchanged_leave_the_throttle_almost_alone():
+    """Too high and too slow by the same energy: what a classic airspeed loop answers with full throttle."""
+    loops = EnergyLoops()
+    exchange = cruising(height=103.0, airspeed=24.0)
+    _, throttle = loops.step(Cycle(exchange, PARAMS, DT), cruise()(0.0))
+    _, low = EnergyLoops().step(Cycle(cruising(height=97.0, airspeed=24.0), PARAMS, DT), cruise()(0.0))
+    assert throttle == pytest.approx(PARAMS.trim_throttle, abs=0.02)
+    assert low > PARAMS.trim_throttle + 0.08
+
+
+def test_too_slow_it_does_not_climb_and_the_throttle_is_full():
+    slow = cruising(height=50.0, airspeed=0.9 * PARAMS.min_airspeed)
+    pitch, throttle = EnergyLoops().step(Cycle(slow, PARAMS, DT), cruise()(0.0))
+    level, _ = EnergyLoops().step(Cycle(cruising(height=100.0, airspeed=0.9 * PARAMS.min_airspeed), PARAMS, DT), cruise()(0.0))
+    assert throttle == 1.0
+    assert pitch <= level
+
+
+def test_the_airspeed_asked_for_rises_with_the_load_of_a_turn():
+    def asked(roll):
+        return Cycle(cruising(roll=roll), PARAMS, DT).slowest
+
+    assert asked(0.0) == PARAMS.min_airspeed
+    assert asked(1.05) > 21.0
+
+
+def test_in_gusts_height_and_airspeed_are_held_and_the_throttle_does_not_chase_them():
+    random, ahead, below = np.random.default_rng(1), [0.0], [0.0]
+    for _ in range(6000):
+        ahead.append(ahead[-1] * (1 - 0.1 * DT) + 1.06 * np.sqrt(0.2 * DT) * random.normal())
+        below.append(below[-1] * (1 - 0.4 * DT) + 0.9 * np.sqrt(0.8 * DT) * random.normal())
+    seen = fly(Point(), cruise(bank=0.6), 120.0, gust_at=lambda k: (ahead[k], below[k]))
+    assert np.sqrt(np.mean((heights(seen)[1000:] - 100.0) ** 2)) < 0.6
+    assert airspeeds(seen)[1000:].std() < 0.55 * np.std(ahead)
+    assert np.abs(np.diff(throttles(seen))).sum() < 0.08 * np.abs(np.diff(airspeeds(seen))).sum()
+
+
+def test_a_downdraught_is_no_stall():
+    seen = fly(Point(), cruise(), 40.0, gust_at=lambda k: (0.0, -2.5 if k > 500 else 0.0))
+    assert heights(seen)[-1] == pytest.approx(100.0, abs=0.5)
+    assert heights(seen).min() > 97.0
+
+
+def test_the_law_may_change_in_flight_without_a_bump():
+    control, thesis = Control(SERVOS), type(PARAMS)(**{**KEEN, "law": "thesis"})
+    now = cruising(pitch=0.0537, lift=9.81)
+    for _ in range(100):
+        before = control.step(now, Wanted(0.0, 60.0, 0.0, 25.0), PARAMS, DT)
+    after = control.step(now, Wanted(0.0, 60.0, 0.0, 25.0), thesis, DT)
+    assert after.throttle == pytest.approx(before.throttle, abs=0.02)
+
+
+def test_after_the_throttle_was_shut_the_airspeed_does_not_sag():
+    point = Point(height=100.0, speed=31.0)
+    seen = fly(point, cruise(), 40.0)
+    assert throttles(seen).min() < 0.6
+    assert airspeeds(seen).min() > 23.5

@@ -1,0 +1,77 @@
+"""``uvf map`` on files: what it says, what it draws, what it refuses."""
+
+import numpy as np
+import pytest
+from PIL import Image
+from typer.testing import CliRunner
+
+from launch.cli import app
+from uvf.maths.se2 import IDENTITY, Pose2
+from uvf.models.world.map_file import GridMap, save_map
+
+ROOM = np.full((60, 80), -1, dtype=np.int8)
+ROOM[10:50, 10:70] = 0
+ROOM[9:51, [9, 70]] = ROOM[[9, 50], 9:71] = 100
+
+
+@pytest.fixture
+def uvf(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("UVF_STATE", str(tmp_path / "state"))
+
+    def run(*arguments):
+        result = CliRunner().invoke(app, ["map", *arguments])
+        return result.exit_code, result.output
+
+    return run
+
+
+def test_load_tells_what_is_in_a_map(uvf, tmp_path):
+    save_map(GridMap(ROOM, 0.05, Pose2(1.0, -2.0, 0.5)), tmp_path / "state" / "maps" / "room.yaml")
+    code, said = uvf("load", "room")
+    assert code == 0
+    assert "80 x 60 cells of 0.05 m: 4.00 x 3.00 m" in said
+    assert "corner at (1, -2) m, yaw 28.6479 deg" in said
+    assert "free 6.0 m^2, occupied 0.51 m^2, unknown 45.8% of the cells" in said
+    assert "0 look doubled" in said
+
+
+def test_compare_measures_a_shift_and_draws_it(uvf, tmp_path):
+    save_map(GridMap(ROOM, 0.05, IDENTITY), tmp_path / "a.yaml")
+    save_map(GridMap(ROOM, 0.05, Pose2(1.0, 0.0, 0.0)), tmp_path / "b.yaml")
+    code, said = uvf("compare", "a.yaml", "b.yaml", "--shift", "1.0", "0", "0", "--out", "same.png")
+    assert code == 0 and "walls within 0.05 m: F1 1.000" in said and "IoU of free ones 1.000" in said
+    _, said = uvf("compare", "a.yaml", "b.yaml", "--out", "off.png")
+    assert "walls within 0.10 m: F1 1.000" not in said
+    same, off = (np.asarray(Image.open(tmp_path / name)) for name in ("same.png", "off.png"))
+    assert same.shape == (60, 80, 3) and off.shape == (60, 100, 3)
+    assert (same == (0, 0, 0)).all(axis=2).sum() == (ROOM == 100).sum()
+    assert (same[..., 0] > same[..., 2]).sum() == 0
+    assert (off[..., 0] > off[..., 2]).sum() > 50 and (off[..., 2] > off[..., 0]).sum() > 50
+
+
+def test_what_cannot_be_compared_is_one_line(uvf, tmp_path):
+    save_map(GridMap(ROOM, 0.05, IDENTITY), tmp_path / "a.yaml")
+    save_map(GridMap(ROOM, 0.05, Pose2(1e5, 0.0, 0.0)), tmp_path / "far.yaml")
+    for arguments, part in (
+        (("a.yaml",), "needs one thing to compare with"),
+        (("a.yaml", "b.yaml"), "b.yaml: no such file"),
+        (("a.yaml", "far.yaml"), "the maps lie far apart"),
+        (("a.yaml", "--world", "hous"), "did you mean 'house'"),
+        (("nobody", "a.yaml"), "no map 'nobody' is saved; there are: none"),
+    ):
+        code, said = uvf("compare", *arguments)
+        assert code == 2 and part in said and said.count("\n") == 1
+
+
+@pytest.mark.parametrize("shift", [("nan", "0", "0"), ("0", "inf", "0")])
+def test_a_shift_that_is_no_number_is_one_line(uvf, tmp_path, shift):
+    save_map(GridMap(ROOM, 0.05, IDENTITY), tmp_path / "a.yaml")
+    code, said = uvf("compare", "a.yaml", "a.yaml", "--shift", *shift)
+    assert (code, said.count("\n")) == (2, 1) and "three finite numbers are needed" in said
+
+
+def test_a_map_is_measured_against_a_world(uvf, tmp_path):
+    save_map(GridMap(np.full((20, 20), -1, dtype=np.int8), 0.05, IDENTITY), tmp_path / "a.yaml")
+    code, said = uvf("compare", "a.yaml", "--world", "watkins", "--out", "a.png")
+    assert code == 0 and "100.0% of the world's free floor is unknown" in said

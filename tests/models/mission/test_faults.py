@@ -1,0 +1,83 @@
+"""A mission's list of faults spoils exactly what it names, for as long as it says."""
+
+import math
+
+import pytest
+
+from schemas.messages import AirData, Battery, Gnss, Imu, LaserScan, SurfaceCommand, Vector3
+from uvf.models.mission.faults import PARTS, Fault, Faults, check_faults
+from uvf.models.yaml_data import BadInput, Place
+from uvf.runtime.messages.convert import seconds, stamp
+
+HERE = Place("mission.yaml")
+SAID = {
+    "imu": lambda t: Imu(angular_velocity=Vector3(x=0.1 + t), specific_force=Vector3(z=9.8), magnetic_field=Vector3(x=2e-5 + t)),
+    "gnss": lambda t: Gnss(fix=Gnss.FIX_3D, latitude=0.7 + t),
+    "air_data": lambda t: AirData(static_pressure=98000.0 + t, differential_pressure=380.0 + t),
+    "battery": lambda t: Battery(remaining=0.9 - t / 100),
+    "scan": lambda t: LaserScan(ranges=[1.0 + t]),
+    "surfaces": lambda t: SurfaceCommand(aileron=0.1 + t, elevator=-0.1 - t, rudder=0.2 + t, throttle=0.5 + t),
+}
+
+
+def said(t):
+    messages = {name: make(t) for name, make in SAID.items()}
+    for message in messages.values():
+        message.timestamp.CopyFrom(stamp(t))
+    return messages
+
+
+def changed(read, t):
+    return {name for name, message in said(t).items() if read.get(name) != message}
+
+
+@pytest.mark.parametrize("part", [p for p in PARTS if PARTS[p].output in SAID])
+@pytest.mark.parametrize("kind", ["lost", "frozen"])
+def test_only_the_part_that_is_named_fails_and_only_then(part, kind):
+    faults = Faults([Fault("one", part, kind, at=2.0, until=4.0)])
+    for t in (0.0, 1.0):
+        assert changed(faults.spoil(t, "one", said(t)), t) == set()
+    for t in (2.0, 3.0):
+        assert changed(faults.spoil(t, "other", said(t)), t) == set()
+        spoilt = changed(faults.spoil(t, "one", said(t)), t)
+        assert spoilt == {PARTS[part].output}
+    assert changed(faults.spoil(4.0, "one", said(4.0)), 4.0) == set()
+
+
+def test_what_is_lost_as_a_whole_does_not_come_and_a_part_of_a_message_reads_zero():
+    assert "gnss" not in Faults([Fault("one", "gnss", "lost", at=0.0)]).spoil(0.0, "one", said(0.0))
+    air = Faults([Fault("one", "pitot", "lost", at=0.0)]).spoil(0.0, "one", said(0.0))["air_data"]
+    assert (air.differential_pressure, air.static_pressure) == (0.0, 98000.0)
+
+
+def test_a_frozen_receiver_says_the_same_with_new_stamps():
+    faults = Faults([Fault("one", "gnss", "frozen", at=2.0)])
+    faults.spoil(1.0, "one", said(1.0))
+    late = faults.spoil(5.0, "one", said(5.0))["gnss"]
+    assert late.latitude == pytest.approx(1.7)
+    assert seconds(late.timestamp) == 5.0
+
+
+def test_a_bias_is_added_in_its_unit():
+    air = Faults([Fault("one", "pitot", "bias", at=0.0, size=-50.0)]).spoil(1.0, "one", said(1.0))["air_data"]
+    assert air.differential_pressure == pytest.approx(331.0)
+    north = Faults([Fault("one", "gnss", "bias", at=0.0, size=100.0)]).spoil(1.0, "one", said(1.0))["gnss"].latitude - 1.7
+    assert north * 6.371e6 == pytest.approx(100.0)
+
+
+@pytest.mark.parametrize(
+    ("fault", "why"),
+    [
+        (Fault("two", "gnss", "lost", at=1.0), "no vehicle 'two'"),
+        (Fault("one", "gnss", "lost", at=1.0, until=1.0), "is not after at"),
+        (Fault("one", "scan", "bias", at=1.0, size=1.0), "takes no bias"),
+        (Fault("one", "pitot", "bias", at=1.0), "needs a size"),
+    ],
+)
+def test_a_list_that_makes_no_sense_is_refused(fault, why):
+    with pytest.raises(BadInput, match=why):
+        check_faults([fault], {"one": None}, HERE)
+
+
+def test_for_good_means_for_good():
+    assert Fault("one", "gnss", "lost", at=1.0).holds(math.inf)

@@ -1,0 +1,102 @@
+"""Exploration goes where something new can be seen, and leaves alone what nothing came of."""
+
+import numpy as np
+import pytest
+
+from tests.services.planner.plans import room
+from uvf.planning.costmap import Body, costmap
+from uvf.planning.exploration import SHUN_TIME, Explorer, Patrol
+from uvf.planning.frontiers import Taste, frontiers
+from uvf.planning.search import Ways
+
+BODY = Body(radius=0.1, comfort=0.2, dislike=3.0)
+TASTE = Taste(least_size=4, view=0.3, worth=0.5)
+
+
+def costs_of(cells):
+    return costmap(cells, (0.05, (0.0, 0.0)), BODY)
+
+
+def two_doors():
+    """A room of 4 x 2 m with a wide opening on the left and a narrow one on the right."""
+    cells = room(4.0, 2.0)
+    cells[10:26, :2] = 0
+    cells[10:26, 0] = -1
+    cells[15:21, -2:] = 0
+    cells[15:21, -1] = -1
+    return costs_of(cells)
+
+
+def ways_from(costs, x, y):
+    return Ways(costs.cost, costs.cell(x, y))
+
+
+def none_shunned(costs):
+    return np.zeros(costs.cost.shape, dtype=bool)
+
+
+def test_both_openings_are_frontiers_and_the_walls_are_not():
+    costs = two_doors()
+    found = frontiers(costs, ways_from(costs, 2.0, 1.0).cost, none_shunned(costs), TASTE)
+    assert len(found) == 2
+    assert {round(costs.points(np.array((f.goal,)))[0][0]) for f in found} == {0, 4}
+
+
+def test_the_nearer_frontier_comes_first():
+    costs = two_doors()
+    for x, side in ((1.0, 0), (3.2, 4)):
+        found = frontiers(costs, ways_from(costs, x, 1.0).cost, none_shunned(costs), TASTE)
+        assert round(costs.points(np.array((found[0].goal,)))[0][0]) == side
+
+
+def test_a_crack_is_no_frontier():
+    cells = room(4.0, 2.0)
+    cells[15:17, -2:] = 0
+    cells[15:17, -1] = -1
+    costs = costs_of(cells)
+    assert frontiers(costs, ways_from(costs, 2.0, 1.0).cost, none_shunned(costs), TASTE) == []
+
+
+def test_keeps_its_goal_until_nothing_new_is_left_there():
+    costs = two_doors()
+    explorer = Explorer(TASTE)
+    first = explorer.choose(0.0, costs, ways_from(costs, 1.0, 1.0))
+    assert explorer.choose(1.0, costs, ways_from(costs, 3.2, 1.0)) == first
+    seen = room(4.0, 2.0)
+    seen[15:21, -2:] = 0
+    seen[15:21, -1] = -1
+    other = costs_of(seen)
+    assert explorer.choose(2.0, other, ways_from(other, 1.0, 1.0))[0] > 3.0
+
+
+def test_a_goal_given_up_is_left_alone_for_a_while():
+    costs = two_doors()
+    explorer = Explorer(TASTE)
+    ways = ways_from(costs, 1.0, 1.0)
+    first = explorer.choose(0.0, costs, ways)
+    explorer.shun_goal(0.0)
+    second = explorer.choose(0.1, costs, ways)
+    assert second[0] > 3.0 > first[0]
+    explorer.shun_goal(0.2)
+    assert explorer.choose(0.3, costs, ways) is None
+    assert explorer.choose(SHUN_TIME + 0.1, costs, ways) == pytest.approx(first)
+
+
+def test_a_closed_room_is_explored():
+    costs = costs_of(room(2.0, 2.0))
+    explorer = Explorer(TASTE)
+    assert explorer.choose(0.0, costs, ways_from(costs, 1.0, 1.0)) is None
+    assert explorer.explored == 1.0
+
+
+def test_a_patrol_visits_all_ends_of_the_room():
+    costs = costs_of(room(6.0, 2.0))
+    patrol = Patrol()
+    here, seen = (3.0, 1.0), []
+    for _ in range(6):
+        here = patrol.choose(here, costs, ways_from(costs, *here))
+        seen.append(here)
+        patrol.reached()
+    assert min(x for x, _ in seen) < 1.0
+    assert max(x for x, _ in seen) > 5.0
+    assert all(costs.cost[costs.cell(*p)] >= 0 for p in seen)

@@ -1,0 +1,94 @@
+"""What wants attention stands over the scene as long as it lasts, and no longer."""
+
+import pytest
+
+from schemas import topics
+from schemas.messages import Clock, Event, Guest, NavStatus, Process, Processes, StopCommand, Timestamp, VehicleStatus
+from services.gcs.commands import StopAll
+from services.gcs.view.status import ALERT_LENGTH, ALERTS_SHOWN, alerts
+from tests.services.gcs.fakes import Station
+from tests.services.gcs.scripted import UAV, UGV
+
+
+@pytest.fixture
+def station():
+    station = Station()
+    station.run(1.0)
+    return station
+
+
+def told(station):
+    return [text for _, text in alerts(station.model, station.t)]
+
+
+def test_a_normal_run_wants_no_attention(station):
+    assert told(station) == []
+
+
+def test_that_time_stands_is_told_until_it_runs_again(station):
+    warning = Event(
+        text="time stands at 1.00 s: waiting for slam", severity=Event.WARNING, source="conductor", timestamp=Timestamp(seconds=1)
+    )
+    station.script.put("sys", topics.SYSTEM_EVENTS.by("conductor"), warning, 1.0)
+    station.script.put("sys", topics.CLOCK, Clock(t_ns=10**9, waiting_for="slam"), 1.0)
+    station.run(0.3, silent=True)
+    assert told(station) == ["⚠ time stands: waits for slam"]
+    station.run(0.3)
+    assert told(station) == [] and "time stands" not in station.page.now.html["bar"]
+    assert "time stands at 1.00 s" in station.page.now.html["log"]
+
+
+def test_a_process_is_told_of_until_it_runs_again(station):
+    for state, expected in (
+        (Process.RESTARTING, ["⚠ slam is started again: exit code -9"]),
+        (Process.FAILED, ["✖ slam has failed for good: exit code -9"]),
+        (Process.RUNNING, []),
+    ):
+        process = Process(name="slam", state=state, reason="exit code -9")
+        station.script.put("sys", topics.PROCESSES.by("launcher"), Processes(processes=[process]), station.t)
+        station.run(0.2)
+        assert told(station) == expected
+
+
+def test_a_blocked_vehicle_is_told_of_with_the_reason(station):
+    station.model.vehicles[UGV].nav_status = NavStatus(state=NavStatus.BLOCKED, reason="no way there")
+    assert told(station) == [f"⚠ {UGV} is blocked: no way there"]
+
+
+def test_a_lost_vehicle_is_named(station):
+    station.run(7.0, silent=True)
+    assert [text.split(":")[0] for text in told(station)] == [f"✖ {UGV}", f"✖ {UAV}"]
+
+
+def test_stop_all_says_since_when_by_whom_and_who_heeds_it(station):
+    assert "not engaged" in station.page.now.html["stop"]
+    station.press(StopAll(True), seconds=0.5)
+    stop = station.page.now.html["stop"]
+    assert "by this page (pressed on the page), 00:00:01" in stop and f"heeded by {UGV}, {UAV}" in stop and "Release STOP" in stop
+    station.press(StopAll(False), seconds=0.5)
+    assert "not engaged" in station.page.now.html["stop"]
+
+
+def test_a_stop_of_somebody_else_is_theirs_and_stands_in_the_log(station):
+    command = StopCommand(engaged=True, source="launcher", reason="slam was given up", timestamp=Timestamp(seconds=1))
+    station.script.put("sys", topics.STOP.by("launcher"), command, 1.0)
+    station.run(0.5)
+    assert told(station) == ["■ STOP ALL ENGAGED by the launcher (slam was given up), 00:00:01"]
+    assert f"not confirmed by {UGV}, {UAV}" in station.page.now.html["stop"]
+    assert "STOP ALL engaged by launcher (slam was given up)" in station.page.now.html["log"]
+
+
+def test_many_failed_processes_and_lost_guests_hide_no_vehicle_of_the_mission(station):
+    failed = [Process(name=f"a{i}", state=Process.FAILED, reason="you must land now " * 100) for i in range(200)]
+    station.model.processes.hear(station.t, [Processes(processes=failed)])
+    station.model.hear_guests(station.t, {f"ghost{i}": Guest(model="burger") for i in range(50)})
+    station.model.hear(station.t - 100.0, "status", {f"ghost{i}": VehicleStatus() for i in range(2)})
+    station.model.vehicles[UGV].nav_status = NavStatus(state=NavStatus.BLOCKED, reason="no way there " * 100)
+    shown = told(station)
+    assert shown[0].startswith(f"⚠ {UGV} is blocked: no way there") and shown[0].endswith("…")
+    assert [line.split()[1] for line in shown[1:3]] == ["ghost0:", "ghost1:"]
+    assert len(shown) == ALERTS_SHOWN + 1 and shown[-1] == "and 198 more"
+    assert max(map(len, shown)) == ALERT_LENGTH
+    assert station.page.now.html["bar"].count("g-alert") <= ALERTS_SHOWN + 1
+    station.model.vehicles[UAV].heard_at = {"status": -100.0}
+    assert told(station)[0].startswith(f"✖ {UAV}: LINK LOST"), "the gravest first"
