@@ -21,7 +21,8 @@ from benchmarks.timing import stopwatch, timed
 from schemas import topics
 from schemas.messages import SurfaceCommand
 from services.sim_air.build import build
-from uvf.models.scenario import Host, Site, load_site
+from uvf.models.scenario import Site, load_site
+from uvf.runtime.contract.instances import Host
 from uvf.runtime.contract.service import Outputs, Service
 from uvf.runtime.messages.convert import stamp
 from uvf.runtime.time.lockstep import Lockstep

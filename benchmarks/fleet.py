@@ -19,9 +19,10 @@ from benchmarks.timing import stopwatch, timed
 from schemas import topics
 from schemas.messages import WheelCommand
 from services.sim_ground.build import build
-from uvf.models.scenario import ROOT, Host, Site, load_site
+from uvf.models.scenario import ROOT, Site, load_site
 from uvf.models.world.file import load_world
 from uvf.models.world.footing import Footing
+from uvf.runtime.contract.instances import Host
 from uvf.runtime.contract.service import Outputs, Service
 from uvf.runtime.messages.convert import stamp
 from uvf.runtime.time.lockstep import Lockstep

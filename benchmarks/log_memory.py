@@ -18,8 +18,8 @@ from launch.commands.bench import Figures
 from launch.commands.report import describe_log
 from schemas import topics
 from schemas.messages import Clock, Imu, NavState, Vector3
-from uvf.models.scenario import Host
 from uvf.runtime.bus.interface import LocalBus, Sample
+from uvf.runtime.contract.instances import Host
 from uvf.runtime.contract.service import Service
 from uvf.runtime.log.reading import recover
 from uvf.runtime.log.recording import Recorder

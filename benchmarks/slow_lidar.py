@@ -31,10 +31,11 @@ from uvf.maths.kinematics import DifferentialDrive, Twist, WheelSpeeds
 from uvf.maths.rotations import from_euler
 from uvf.maths.se2 import Pose2
 from uvf.maths.se2_arrays import composed, interpolated, inverted, wrapped
-from uvf.models.scenario import ROOT, Host, Site, load_site
+from uvf.models.scenario import ROOT, Site, load_site
 from uvf.models.shapes.scene import scene
 from uvf.models.vehicle.file import Lidar
 from uvf.models.world.geometry import floor_segments, solids
+from uvf.runtime.contract.instances import Host
 from uvf.runtime.contract.service import Outputs, Service
 from uvf.runtime.log.laser_log import read_mcap
 from uvf.runtime.log.reading import read_log

@@ -8,7 +8,7 @@ process; the very same class runs over Zenoh in a process of its own.
 
 from schemas import topics
 from schemas.messages import DriveCommand, Event
-from uvf.models.scenario import Host
+from uvf.runtime.contract.instances import Host
 from uvf.runtime.contract.service import Outputs, Service
 from uvf.runtime.messages.convert import stamp
 from uvf.runtime.time.lockstep import Lockstep

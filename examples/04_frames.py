@@ -11,7 +11,8 @@ from launch import catalogue
 from schemas import topics
 from schemas.messages import Event, LaserScan
 from uvf.maths.se3 import apply
-from uvf.models.scenario import ROOT, Host, load_site
+from uvf.models.scenario import ROOT, load_site
+from uvf.runtime.contract.instances import Host
 from uvf.runtime.contract.service import Outputs, Service, frames
 from uvf.runtime.messages.convert import scan_points, seconds, stamp
 from uvf.runtime.messages.frames import FrameBuffer, FrameError

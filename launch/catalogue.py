@@ -5,8 +5,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
-from uvf.models.scenario import Build, Host, Site
+from uvf.models.scenario import Site
 from uvf.models.yaml_data import BadInput, nearest
+from uvf.runtime.contract.instances import Build, Host
 
 
 @dataclass(frozen=True)

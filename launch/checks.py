@@ -12,9 +12,10 @@ from launch import catalogue, settings
 from launch.scoring.scores import check_criteria
 from schemas import topics
 from schemas.topics import CLOCK, SYSTEM, Topic
-from uvf.models.scenario import ROOT, Host, Member, Site, load_site
+from uvf.models.scenario import ROOT, Member, Site, load_site
 from uvf.models.yaml_data import BadInput, Place, nearest
 from uvf.runtime.bus.interface import matches
+from uvf.runtime.contract.instances import Host
 
 SENSORS: dict[Topic[Any], str] = {
     topics.IMU: "imu",

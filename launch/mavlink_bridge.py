@@ -17,11 +17,12 @@ from services.mavlink_bridge.status import KIND
 from uvf.maths.geodesy import LocalTangent
 from uvf.mavlink import dialect as mav
 from uvf.mavlink.endpoint import UdpLink
-from uvf.models.scenario import ROOT, Host, Site, load_site
+from uvf.models.scenario import ROOT, Site, load_site
 from uvf.models.vehicle.file import load_vehicle
 from uvf.models.yaml_data import BadInput, nearest
 from uvf.runtime.bus.address import peer
 from uvf.runtime.bus.zenoh_bus import ZenohBus
+from uvf.runtime.contract.instances import Host
 from uvf.runtime.contract.service import Service
 from uvf.runtime.time.live import Live
 

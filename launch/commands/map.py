@@ -23,7 +23,8 @@ def map_save(
 ) -> None:
     """Write the map of a running vehicle as picture and yaml, as map_saver does."""
     from launch.maps.running import drawn_map, running_session
-    from uvf.models.world.map_file import check_mode, map_path, save_map
+    from uvf.models.world.map_file import check_mode, save_map
+    from uvf.runtime.state.saved_maps import map_path
 
     with bad_input_is_one_line():
         check_mode(map_path(name), mode)
@@ -45,7 +46,7 @@ def map_load(
     """Check a map and tell what is in it; with --vehicle serve it on map/known."""
     from launch.maps.report import figures
     from launch.maps.running import serve
-    from uvf.models.world.map_file import find_map
+    from uvf.runtime.state.saved_maps import find_map
 
     with bad_input_is_one_line():
         grid = find_map(name)
@@ -86,8 +87,8 @@ def map_compare(
 ) -> None:
     """Compare two maps, or a map with a world: figures, and a picture of the differences."""
     from launch.maps.report import compared, scored
-    from uvf.models.world.map_file import find_map
     from uvf.models.yaml_data import BadInput
+    from uvf.runtime.state.saved_maps import find_map
 
     with bad_input_is_one_line():
         if (b is None) == (world is None):

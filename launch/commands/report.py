@@ -15,10 +15,11 @@ from rich.table import Table
 from launch import catalogue, settings
 from launch.run import Result, run_lockstep
 from launch.runs import new_run
-from uvf.models.scenario import Host, Site, load_site
+from uvf.models.scenario import Site, load_site
 from uvf.models.yaml_data import BadInput, nearest
 from uvf.runtime.bus.address import router_from
 from uvf.runtime.bus.zenoh_bus import ZenohBus
+from uvf.runtime.contract.instances import Host
 from uvf.runtime.log.reading import log_begin, log_metadata, read_log, recover
 from uvf.runtime.log.replay import into_service, logged_site, onto_bus
 

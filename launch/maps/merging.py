@@ -8,8 +8,9 @@ import numpy as np
 
 from launch.slam.drawing import draw_on_map
 from launch.slam.results import grid_of
-from uvf.models.world.map_file import GridMap, map_path, save_map
+from uvf.models.world.map_file import GridMap, save_map
 from uvf.models.yaml_data import BadInput
+from uvf.runtime.state.saved_maps import map_path
 from uvf.slam.maps.session import Session
 from uvf.slam.merging.team import Group, Team
 

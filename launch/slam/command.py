@@ -17,8 +17,8 @@ from launch.slam.opening import open_log
 from launch.slam.results import Made, write_results
 from launch.slam.scoring import figures
 from launch.slam.tables import Rows, all_tables
+from uvf.models.params import Params
 from uvf.models.yaml_data import BadInput
-from uvf.runtime.contract.service import Params
 from uvf.slam.evaluation.run import Run, run_over
 from uvf.slam.logs.laser_log import LaserLog
 from uvf.slam.methods import make_method, method_params

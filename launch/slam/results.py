@@ -16,9 +16,9 @@ from launch.slam.known import Known
 from launch.slam.scoring import Figures
 from launch.slam.tables import Rows, all_tables
 from uvf.maths.se2 import Pose2
+from uvf.models.params import Params
 from uvf.models.whole_file import write_whole
 from uvf.models.world.map_file import GridMap, save_map
-from uvf.runtime.contract.service import Params
 from uvf.slam.evaluation.run import Run
 from uvf.slam.maps.tiles import TileMap
 from uvf.slam.method import Keyframe

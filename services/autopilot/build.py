@@ -2,7 +2,8 @@
 
 from services.autopilot.air import build as air
 from services.autopilot.ground import build as ground
-from uvf.models.scenario import Host, Site
+from uvf.models.scenario import Site
+from uvf.runtime.contract.instances import Host
 
 
 def build(site: Site) -> list[Host]:

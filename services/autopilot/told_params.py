@@ -5,7 +5,7 @@ from typing import TypeVar
 import msgspec
 
 from schemas.messages import ParamValues
-from uvf.runtime.contract.service import Params
+from uvf.models.params import Params
 from uvf.runtime.messages.convert import stamp
 
 P = TypeVar("P", bound=Params)

@@ -4,8 +4,9 @@ import sys
 from functools import partial
 
 from services.gcs.service import GroundStation
-from uvf.models.scenario import Host, Site
+from uvf.models.scenario import Site
 from uvf.runtime.bus.address import address_from
+from uvf.runtime.contract.instances import Host
 
 
 def build(site: Site) -> list[Host]:

@@ -7,11 +7,12 @@ from services.planner.tracker_service import TrackerParams, TrackerService
 from uvf.maths.rotations import from_euler
 from uvf.maths.se2 import Pose2
 from uvf.maths.se3 import Transform
-from uvf.models.scenario import Host, Member, Site
+from uvf.models.scenario import Member, Site
 from uvf.models.yaml_data import BadInput
 from uvf.planning.collision_check import safe_share
 from uvf.planning.costmap import Body
 from uvf.planning.navigator import Navigator
+from uvf.runtime.contract.instances import Host
 
 
 def build(site: Site) -> list[Host]:

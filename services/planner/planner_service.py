@@ -30,14 +30,15 @@ from schemas.messages import (
 from services.planner.jobs import IDLE, Goal, Havens, Job, Orders, choose, home_of, mission_target, not_now
 from uvf.maths.rotations import wrap
 from uvf.maths.se2 import IDENTITY, Pose2, compose, inverse, transform
-from uvf.models.mission.fence import fencing
+from uvf.models.params import Params
 from uvf.planning.costmap import Body
 from uvf.planning.exploration import Explorer, Patrol
 from uvf.planning.frontiers import Taste
 from uvf.planning.navigator import Navigator, Plan
 from uvf.planning.smoothing import length
-from uvf.runtime.contract.service import Answer, Outputs, Params, Service, optional
+from uvf.runtime.contract.service import Answer, Outputs, Service, optional
 from uvf.runtime.messages.convert import occupancy_cells, planar_pose, pose2_of, seconds, stamp
+from uvf.runtime.messages.fences import fencing
 
 Floats = NDArray[np.float64]
 Point = tuple[float, float]

@@ -10,10 +10,11 @@ from schemas import topics
 from schemas.messages import DriveCommand, Event, LaserScan, PoseInFrame, PosesInFrame
 from uvf.maths.se2 import IDENTITY, Pose2, PoseHistory, inverse, transform
 from uvf.maths.se3 import Transform, from_above
+from uvf.models.params import Params
 from uvf.models.vehicle.file import GroundBody
 from uvf.planning.collision_check import safe_share
 from uvf.planning.pure_pursuit import Pace, Tracker
-from uvf.runtime.contract.service import Outputs, Params, Service, every
+from uvf.runtime.contract.service import Outputs, Service, every
 from uvf.runtime.messages.convert import pose2_of, scan_rays, seconds, stamp, yaw_of
 from uvf.sensors.sweeping import AT_ONCE, Sweeping
 
@@ -91,12 +92,12 @@ class TrackerService(Service):
 
     def _look(self, scan: LaserScan) -> None:
         """Keeps the points of a new scan where they were seen, so that they stay while the vehicle moves on."""
-        taken_at = self._sweeping.end(scan)
+        taken_at = self._sweeping.end(seconds(scan.timestamp))
         if taken_at <= self._scan_time:
             return
         ranges, rays = scan_rays(scan)
         near, seen = (ranges > 0.0) & (ranges < NEAR), []
-        for at, beams in self._sweeping.parts(scan):
+        for at, beams in self._sweeping.parts(len(scan.ranges), seconds(scan.timestamp)):
             if (world_from_base := self._history.at(at)) is None:
                 return
             points = (rays[beams] * ranges[beams, None])[near[beams]]

@@ -23,9 +23,8 @@ from services.sim_air.stage import Joining, Stage
 from uvf.maths.bvh import Bvh
 from uvf.maths.geodesy import LocalTangent
 from uvf.maths.raycast import warm_up
-from uvf.models.mission.faults import Faults
 from uvf.models.mission.file import Start, Vehicle
-from uvf.models.scenario import AIRCRAFT_RADIUS, Host, Member, Site
+from uvf.models.scenario import AIRCRAFT_RADIUS, Member, Site
 from uvf.models.shapes.aircraft_shape import aircraft_shape
 from uvf.models.shapes.scene import scene
 from uvf.models.shapes.surroundings import aircraft_tree, vehicle_tree
@@ -36,6 +35,8 @@ from uvf.models.vehicle.layers import folders_of, holding
 from uvf.models.world.footing import Footing
 from uvf.models.world.geometry import GRAZE, solids
 from uvf.models.yaml_data import BadInput, Place
+from uvf.runtime.contract.instances import Host
+from uvf.runtime.messages.faults import Faults
 from uvf.runtime.process.subprocess_jobs import Died, run_in_subprocess
 
 

@@ -10,8 +10,8 @@ from schemas.messages import NavState, RemoveRequest, SetPoseRequest, SimObjects
 from services.sim_air import readings
 from services.sim_air.aircraft import Aircraft
 from services.sim_air.stage import Stage
-from uvf.models.mission.faults import Faults
 from uvf.runtime.contract.service import Outputs, Service, Value, each_vehicle, optional
+from uvf.runtime.messages.faults import Faults
 from uvf.runtime.messages.sensor_frames import sensor_frames
 from uvf.runtime.messages.sensors import battery_message, gnss_message, imu_message, later
 from uvf.sensors.sampling import Due

@@ -7,12 +7,13 @@ from pathlib import Path
 from services.sim_camera.fitted import Fitted
 from services.sim_camera.renderer import BulletRenderer, Look
 from services.sim_camera.service import SimCamera
-from uvf.models.scenario import Host, Member, Site
+from uvf.models.scenario import Member, Site
 from uvf.models.shapes.aircraft_shape import aircraft_shape
 from uvf.models.urdf.model import engine_urdf
 from uvf.models.vehicle.file import Camera, VehicleFile, load_vehicle
 from uvf.models.world.geometry import solids
 from uvf.models.yaml_data import BadInput, nearest
+from uvf.runtime.contract.instances import Host
 
 OUTPUTS = {"camera": "image", "chase": "chase", "gimbal": "gimbal"}
 """The output that each camera's pictures go out by."""

@@ -12,9 +12,11 @@ from uvf.estimation.odometry.params import OdometryParams
 from uvf.maths.geodesy import LocalTangent
 from uvf.maths.se2 import IDENTITY, Pose2, compose, inverse
 from uvf.models.mission.file import Maps
-from uvf.models.scenario import Host, Member, Site
+from uvf.models.scenario import Member, Site
 from uvf.models.vehicle.file import Lidar
 from uvf.models.yaml_data import BadInput, nearest
+from uvf.runtime.contract.instances import Host
+from uvf.runtime.state.saved_maps import known_path
 from uvf.slam.localization import known_map
 from uvf.slam.localization.params import FilterParams
 from uvf.slam.maps.session import Session
@@ -97,7 +99,7 @@ def _localization(site: Site, member: Member, lidar: Lidar, maps: Maps) -> Host:
     """In the place of mapping. Raises BadInput for a file that is no map."""
     start, params, known = _world_from_map(member), member.params("localization", FilterParams), None
     if maps.known is not None:
-        known = known_map.known_map(maps.known, site.mission_path.parent, compose(inverse(start), Pose2(*maps.known_at)))
+        known = known_map.known_map(known_path(maps.known, site.mission_path.parent), compose(inverse(start), Pose2(*maps.known_at)))
     seed = int(site.rng(member.name, "localization").integers(1 << 31))
     beginning = Beginning(known, maps.localize == "anywhere", seed)
     return Host(LocalizationService, lambda: LocalizationService(member.name, lidar, start, params, beginning), member.name)

@@ -6,9 +6,11 @@ from pathlib import Path
 from services.slam.map_server import MapServer
 from uvf.maths.se2 import Pose2, compose
 from uvf.models.mission.file import Maps
-from uvf.models.scenario import Host, Member, Site
-from uvf.models.world.map_file import GridMap, find_map, map_path, save_map
+from uvf.models.scenario import Member, Site
+from uvf.models.world.map_file import GridMap, load_map, save_map
 from uvf.models.yaml_data import BadInput, Place
+from uvf.runtime.contract.instances import Host
+from uvf.runtime.state.saved_maps import find_map, known_path, map_path
 from uvf.slam.localization.known_map import is_session, known_map
 from uvf.slam.maps.masks import KeepOut, SpeedLimit
 
@@ -32,7 +34,8 @@ def _host(member: Member, maps: Maps, folder: Path) -> Host:
 
 def _layers(maps: Maps, folder: Path, full_speed: float) -> Iterator[tuple[str, GridMap]]:
     if maps.known is not None:
-        yield "known", known_map(maps.known, folder, Pose2(*maps.known_at)).grid if is_session(maps.known) else _placed(maps, folder)
+        path = known_path(maps.known, folder)
+        yield "known", known_map(path, Pose2(*maps.known_at)).grid if is_session(path) else _placed(maps, path)
     if maps.keepout is not None:
         yield "keepout", KeepOut(find_map(maps.keepout, folder)).layer()
     if maps.speed is not None:
@@ -40,8 +43,8 @@ def _layers(maps: Maps, folder: Path, full_speed: float) -> Iterator[tuple[str, 
         yield "speed", SpeedLimit(mask, maps.speed_unit, maps.speed_base, maps.speed_multiplier).layer(full_speed)
 
 
-def _placed(maps: Maps, folder: Path) -> GridMap:
-    grid = find_map(maps.known or "", folder)
+def _placed(maps: Maps, path: Path) -> GridMap:
+    grid = load_map(path)
     return GridMap(grid.cells, grid.resolution, compose(Pose2(*maps.known_at), grid.origin))
 
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from schemas import topics
 from schemas.messages import Event, FrameTransform, Grid, LaserScan, MapFix, MapSession
-from services.slam.placing_service import PlacingParams, PlacingService, Positive, fix_message
+from services.slam.placing_service import PlacingService, fix_message
 from uvf.maths.se2 import IDENTITY, Pose2, compose, inverse
 from uvf.maths.se3 import planar
 from uvf.models.vehicle.file import Lidar
@@ -22,6 +22,7 @@ from uvf.slam.graph.uncertainty import turned
 from uvf.slam.maps.session import Session
 from uvf.slam.maps.tiles import TileMap
 from uvf.slam.method import Keyframe, SlamMethod
+from uvf.slam.placing_params import PlacingParams, Positive
 from uvf.slam.reading import Reading
 from uvf.slam.resumable import Noting, Resumable
 

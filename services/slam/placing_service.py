@@ -1,33 +1,27 @@
 """What places the sweeps of a vehicle in a map, drawn or given: from messages to readings, and back to frames."""
 
-from typing import Annotated, ClassVar
+from typing import ClassVar
 
 import numpy as np
-from msgspec import Meta
 from numpy.typing import NDArray
 
 from schemas.messages import Event, FrameTransform, LaserScan, MapFix
 from uvf.maths.se2 import IDENTITY, Pose2, compose, inverse
 from uvf.maths.se3 import planar
 from uvf.models.vehicle.file import Lidar
-from uvf.runtime.contract.service import Params, Service
+from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import planar_frame, seconds, stamp
 from uvf.runtime.messages.frames import FrameBuffer
 from uvf.runtime.messages.scans import Shape, beams_of, is_usable, shape_of
 from uvf.slam.correction import toward
 from uvf.slam.deskew import straightened
+from uvf.slam.placing_params import PlacingParams
 from uvf.slam.reading import Beams, Reading
 
 Floats = NDArray[np.float64]
-Positive = Annotated[float, Meta(gt=0)]
 
 MOST_SHAPES = 16  # of scans, that are kept; more come from a lidar whose angles are never the same
 PATIENCE = 2.0  # s without a scan that has a place, until this is told
-
-
-class PlacingParams(Params, frozen=True):
-    correction_speed: Positive = 0.1  # m/s, how fast the published correction follows the matched one
-    correction_turn: Positive = 0.1  # rad/s
 
 
 class PlacingService(Service):
@@ -65,7 +59,7 @@ class PlacingService(Service):
             limits = (self._lidar.range_min, self._lidar.range_max)
             self._beams[shape_of(scan)] = beams_of(scan, base_from_lidar, limits, self._lidar.sweeping)
         odom, base = self._frame("odom"), self._frame("base_footprint")
-        ranges = self._lidar.sweeping.ranges(scan)
+        ranges = self._lidar.sweeping.in_order(np.array(scan.ranges))
         reading = straightened(
             ranges,
             self._beams[shape_of(scan)],

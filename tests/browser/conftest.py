@@ -13,8 +13,8 @@ from services.gcs.view.cameras import cameras
 from tests.second_try import Shared
 from tests.services.gcs.scripted import Script, demo_site, with_eyes
 from tests.services.gcs.wire import free_port
-from uvf.models.scenario import Host
 from uvf.runtime.bus.address import Address
+from uvf.runtime.contract.instances import Host
 from uvf.runtime.contract.service_runner import Shell
 
 CHROMIUM = Path("/usr/bin/chromium")

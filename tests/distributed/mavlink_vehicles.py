@@ -11,8 +11,8 @@ from services.autopilot.mavlink.service import MavlinkService
 from tests.services.autopilot.mavlink.rig import ORIGIN, PLANE_FACTS, ROVER_FACTS, shelves
 from uvf.maths.rotations import from_euler
 from uvf.mavlink.endpoint import UdpLink
-from uvf.models.scenario import Host
 from uvf.runtime.bus.interface import LocalBus
+from uvf.runtime.contract.instances import Host
 from uvf.runtime.contract.service import Service
 from uvf.runtime.contract.service_runner import Shell
 from uvf.runtime.messages.convert import array, quaternion, stamp, vector

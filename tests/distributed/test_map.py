@@ -14,8 +14,9 @@ from schemas.messages import MapRequest, SaveMapRequest
 from tests.distributed.system import System
 from uvf.maths.se2 import Pose2
 from uvf.models.scenario import ROOT
-from uvf.models.world.map_file import GridMap, find_map, save_map
+from uvf.models.world.map_file import GridMap, save_map
 from uvf.runtime.messages.convert import occupancy_cells
+from uvf.runtime.state.saved_maps import find_map
 
 MISSION = """
 about: One burger that drives about with a keep-out mask.

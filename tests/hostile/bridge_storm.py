@@ -13,9 +13,9 @@ from services.mavlink_bridge.service import BridgedVehicle
 from services.mavlink_bridge.station import COMPONENT, SYSTEM, Station
 from tests.services.autopilot.mavlink.rig import MemoryLink
 from uvf.mavlink import dialect as mav
-from uvf.models.scenario import Host
 from uvf.runtime.bus.interface import LocalBus
 from uvf.runtime.bus.wire import decode_sample
+from uvf.runtime.contract.instances import Host
 from uvf.runtime.contract.service_runner import Shell
 from uvf.runtime.mavlink.mission_items import ORIGIN
 

@@ -11,8 +11,8 @@ from services.gcs.page.viser_page import ViserPage
 from services.gcs.service import GroundStation
 from services.gcs.view.cameras import cameras
 from tests.services.gcs.scripted import Script, demo_site, with_eyes
-from uvf.models.scenario import Host
 from uvf.runtime.bus.address import Address
+from uvf.runtime.contract.instances import Host
 from uvf.runtime.contract.service_runner import Shell
 
 

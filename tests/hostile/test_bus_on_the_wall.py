@@ -12,8 +12,8 @@ from tests.hostile.bus_client import Stranger
 from tests.services.autopilot.mavlink.rig import GCS, PLANE_FACTS, ROVER_FACTS, MemoryLink, shelves
 from tests.services.gcs.fakes import Station
 from uvf.mavlink import dialect as mav
-from uvf.models.scenario import Host
 from uvf.runtime.bus.interface import LocalBus
+from uvf.runtime.contract.instances import Host
 from uvf.runtime.contract.service_runner import Shell
 
 ROUNDS = int(os.environ.get("UVF_HOSTILE_EXAMPLES", "40"))

@@ -7,8 +7,8 @@ from pathlib import Path
 from launch.commands.report import describe_log
 from schemas import topics
 from schemas.messages import NavState
-from uvf.models.scenario import Host
 from uvf.runtime.bus.interface import LocalBus
+from uvf.runtime.contract.instances import Host
 from uvf.runtime.contract.service import Service
 from uvf.runtime.log.reading import recover
 from uvf.runtime.log.replay import into_service, onto_bus

@@ -5,9 +5,9 @@ import pytest
 from schemas import topics
 from schemas.messages import ArmRequest, NavStatus
 from tests.runtime.toys import Pilot
-from uvf.models.scenario import Host
 from uvf.runtime.bus.interface import LocalBus, Query, Sample
 from uvf.runtime.contract.inbox import OWNERS_MOST, InputBox
+from uvf.runtime.contract.instances import Host
 from uvf.runtime.contract.service import each_vehicle
 from uvf.runtime.contract.service_runner import Shell
 

@@ -6,8 +6,8 @@ from schemas import topics
 from schemas.messages import DriveCommand, FrameTransform, FrameTransforms, Imu, Vector3
 from tests.runtime.modes import RUNS, run_in
 from tests.runtime.toys import Cast
-from uvf.models.scenario import Host
 from uvf.runtime.bus.interface import LocalBus, Sample
+from uvf.runtime.contract.instances import Host
 from uvf.runtime.contract.service import Service, every, frames
 from uvf.runtime.contract.service_runner import Shell
 from uvf.runtime.messages.convert import seconds, stamp

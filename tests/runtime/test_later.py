@@ -7,9 +7,9 @@ import pytest
 from schemas import topics
 from schemas.limits import TEXT
 from schemas.messages import ArmRequest, Reply
-from uvf.models.scenario import Host
 from uvf.runtime.bus.interface import LocalBus
 from uvf.runtime.bus.wire import decode
+from uvf.runtime.contract.instances import Host
 from uvf.runtime.contract.service import Later, Service
 from uvf.runtime.contract.service_runner import Shell
 

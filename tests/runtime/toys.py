@@ -16,8 +16,9 @@ from schemas.messages import (
     StopCommand,
     WheelCommand,
 )
-from uvf.models.scenario import Host
-from uvf.runtime.contract.service import Params, Service, each_vehicle, every, of_role, optional, stop_all
+from uvf.models.params import Params
+from uvf.runtime.contract.instances import Host
+from uvf.runtime.contract.service import Service, each_vehicle, every, of_role, optional, stop_all
 from uvf.runtime.messages.convert import seconds, stamp
 
 VEHICLES = ("alpha", "beta")

@@ -20,13 +20,14 @@ from uvf.guidance.route import Place
 from uvf.guidance.runways import Strip
 from uvf.maths import rotations
 from uvf.maths.geodesy import LocalTangent
-from uvf.models.mission.fence import fence_message, fencing
-from uvf.models.scenario import Host, Member, Site
+from uvf.models.scenario import Member, Site
 from uvf.models.vehicle.file import Mount
 from uvf.models.vehicle.flight_params import AirParams
 from uvf.models.world import file as world_file
 from uvf.models.world.terrain import relief
 from uvf.models.yaml_data import BadInput
+from uvf.runtime.contract.instances import Host
+from uvf.runtime.messages.fences import fence_message, fencing
 
 
 def hosts(site: Site) -> list[Host]:

@@ -5,9 +5,10 @@ from services.autopilot.ground.mission import refusal
 from services.autopilot.ground.params import GroundAutopilotParams
 from services.autopilot.ground.service import GroundAutopilot
 from services.autopilot.plan import item_from_file
-from uvf.models.mission.fence import fence_message, fencing
-from uvf.models.scenario import Host, Member, Site
+from uvf.models.scenario import Member, Site
 from uvf.models.yaml_data import BadInput
+from uvf.runtime.contract.instances import Host
+from uvf.runtime.messages.fences import fence_message, fencing
 from uvf.sensors.sweeping import AT_ONCE
 
 

@@ -4,7 +4,7 @@ from typing import Annotated, Literal
 
 from msgspec import Meta
 
-from uvf.runtime.contract.service import Params
+from uvf.models.params import Params
 
 
 def _meta(low: float, high: float, unit: str, about: str) -> Meta:

@@ -12,8 +12,9 @@ from services.autopilot.ground.params import GroundAutopilotParams
 from services.autopilot.ground.sight import Sight
 from services.autopilot.link_watch import LinkWatch
 from uvf.maths.kinematics import WheelSpeeds
-from uvf.models.mission.fence import Fencing, fence_fault, fencing, near_home
+from uvf.models.mission.fence import Fencing, near_home
 from uvf.models.vehicle.file import GroundBody
+from uvf.runtime.messages.fences import fence_fault, fencing
 from uvf.sensors.sweeping import Sweeping
 
 BY_ITSELF = (Mode.MODE_MISSION, Mode.MODE_RETURN)

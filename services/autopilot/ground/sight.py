@@ -23,7 +23,7 @@ class Sight:
         if scan is not None and (self._scan is None or scan.timestamp != self._scan.timestamp):
             changed = self._scan is None or scan.ranges != self._scan.ranges
             if changed or travelled - self._travelled < MOVED:
-                self._seen = self._sweeping.end(scan)
+                self._seen = self._sweeping.end(seconds(scan.timestamp))
             if changed:
                 self._travelled = travelled
             self._scan = scan

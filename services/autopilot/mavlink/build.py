@@ -15,11 +15,12 @@ from services.autopilot.mavlink.signing import Signing
 from services.autopilot.mavlink.targets import reserved, targets_from
 from uvf.maths.geodesy import LocalTangent
 from uvf.mavlink.endpoint import Peer, UdpLink
-from uvf.models.scenario import Host, Member, Site
+from uvf.models.params import Params
+from uvf.models.scenario import Member, Site
 from uvf.models.vehicle.flight_params import FIXED, AirParams
 from uvf.models.yaml_data import BadInput, nearest
 from uvf.runtime.bus.address import peer
-from uvf.runtime.contract.service import Params
+from uvf.runtime.contract.instances import Host
 from uvf.runtime.state.state_folder import state_folder
 
 TARGETS = "UVF_MAVLINK_TARGETS"

@@ -29,11 +29,11 @@ from schemas.messages import (
 )
 from services.autopilot.mavlink.vibration import Vibration
 from uvf.maths.geodesy import Floats, LocalTangent
-from uvf.models.mission.fence import fencing
+from uvf.models.params import Params
 from uvf.models.vehicle.file import Sensors, VehicleFile
-from uvf.runtime.contract.service import Params
 from uvf.runtime.mavlink.geo import Placed
 from uvf.runtime.messages.convert import array, seconds
+from uvf.runtime.messages.fences import fencing
 
 SILENT_AFTER = 2.0  # s of simulation time
 HOME_FENCE = "max_distance", "max_height"

@@ -6,8 +6,8 @@ from typing import Annotated, Any, Literal, get_args, get_origin, get_type_hints
 
 from msgspec import Meta
 
+from uvf.models.params import Params
 from uvf.models.vehicle.failsafe_params import FailsafeParams
-from uvf.runtime.contract.service import Params
 
 READ_ONCE = "it is read only when the autopilot starts; the vehicle's file sets it"
 

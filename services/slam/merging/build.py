@@ -1,7 +1,8 @@
 """One merging for all ground vehicles of the mission that draw maps."""
 
 from services.slam.merging.merging_service import MergingService
-from uvf.models.scenario import Host, Site
+from uvf.models.scenario import Site
+from uvf.runtime.contract.instances import Host
 from uvf.slam.graph.method import GraphSlam
 from uvf.slam.made_corridor import there_and_back
 from uvf.slam.merging.team import Team

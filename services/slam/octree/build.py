@@ -5,9 +5,10 @@ from functools import partial
 import numpy as np
 
 from services.slam.octree.octree_service import OctreeParams, OctreeService
-from uvf.models.scenario import Host, Member, Site
+from uvf.models.scenario import Member, Site
 from uvf.models.whole_file import write_whole
 from uvf.models.yaml_data import BadInput
+from uvf.runtime.contract.instances import Host
 from uvf.runtime.state.state_folder import state_folder
 from uvf.slam.octree.columns import columns_of
 from uvf.slam.octree.files import read_octree, to_bt

@@ -3,7 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from schemas.messages import Imu, WheelTicks
+from schemas.messages import Gnss, Imu, WheelTicks
+from uvf.estimation.odometry.satellites import SatelliteFix
 from uvf.estimation.odometry.states import Step
 from uvf.maths.rotations import from_euler, matrix
 from uvf.models.vehicle.file import GroundBody, Mount
@@ -71,3 +72,9 @@ class Readings:
         due = [m for m in self._waiting if seconds(m.timestamp) <= now]
         self._waiting = [m for m in self._waiting if seconds(m.timestamp) > now]
         return np.array([array(m.angular_velocity) for m in due]), np.array([array(m.specific_force) for m in due])
+
+
+def satellite_fix(m: Gnss) -> SatelliteFix:
+    velocity = (m.velocity_enu.x, m.velocity_enu.y)
+    known = m.fix == Gnss.FIX_3D
+    return SatelliteFix(seconds(m.timestamp), known, m.latitude, m.longitude, m.altitude, velocity, m.horizontal_accuracy, m.speed_accuracy)

@@ -5,7 +5,7 @@ from math import isfinite
 from schemas import topics
 from schemas.messages import Event, FrameTransform, Gnss, Imu, Odometry, PoseInFrame, WheelTicks
 from services.slam.odometry import telling
-from services.slam.odometry.readings import Readings
+from services.slam.odometry.readings import Readings, satellite_fix
 from uvf.estimation.odometry.calibration import Scales, SegmentMaker, WheelCalibration
 from uvf.estimation.odometry.filter import DriveFilter
 from uvf.estimation.odometry.params import OdometryParams
@@ -87,7 +87,7 @@ class OdometryService(Service):
         if correction is not None:
             self._correct(correction)
         if self._satellites is not None:
-            self._satellites.take(gnss or [], self._filter.pose)
+            self._satellites.take([satellite_fix(m) for m in gnss or []], self._filter.pose)
         events += self._calibrate(t)
         ahead = min(t - seconds(wheels.timestamp), MAX_PREDICTION)
         return self._told(t, move(self._filter.pose, Twist(*self._filter.speeds), ahead)) | ({"events": events} if events else {})

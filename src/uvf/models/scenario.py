@@ -3,19 +3,19 @@
 import hashlib
 import itertools
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Protocol, TypeVar
+from typing import TypeVar
 
 import numpy as np
 
 from uvf.models.mission.file import MissionFile, Vehicle, load_mission
+from uvf.models.params import Params
 from uvf.models.vehicle.file import VehicleFile, load_vehicle
 from uvf.models.world.file import WorldFile, load_world
 from uvf.models.world.wind import Wind
 from uvf.models.yaml_data import BadInput, Place, convert
-from uvf.runtime.contract.service import Params, Service
 
 ROOT = Path(__file__).resolve().parents[3]
 AIRCRAFT_RADIUS = 1.5  # m, about the half span of a small one
@@ -61,26 +61,6 @@ class Site:
         """A generator of its own for each purpose: the mission's seed and the names decide, nothing else."""
         text = "/".join((str(self.mission.seed), *names))
         return np.random.default_rng(int.from_bytes(hashlib.sha256(text.encode()).digest()[:8], "big"))
-
-
-@dataclass(frozen=True)
-class Host:
-    """One service instance: how to make it afresh (at start and after each reset), and for which vehicle.
-
-    writes_for: the vehicles about which a service of the whole world writes.
-    """
-
-    service: type[Service]
-    make: Callable[[], Service]
-    vehicle: str | None = None
-    roles: dict[str, str] | None = None
-    writes_for: tuple[str, ...] = ()
-
-
-class Build(Protocol):
-    """``services/<name>/build.py`` holds one: which instances a process of this service hosts."""
-
-    def __call__(self, site: Site) -> list[Host]: ...
 
 
 def check_starts(site: Site) -> None:

@@ -6,7 +6,6 @@ from math import isfinite
 import numpy as np
 from numpy.typing import NDArray
 
-from schemas.limits import LENGTHS
 from uvf.planning.costmap import Body, Costmap, Frame, costmap, with_way_out
 from uvf.planning.search import Cell, Ways, astar
 from uvf.planning.smoothing import SPACING, length, smoothed
@@ -20,8 +19,9 @@ UNKNOWN_COST = 3.0
 
 MOST_CELLS = 8_000_000
 """Of a map, 140 x 140 m in cells of 5 cm: a step that plans over it takes seconds, and one of 6 s is ended."""
-FARTHEST = (LENGTHS["foxglove.PosesInFrame.poses"] - 2) * SPACING
-"""m of way; the points of a longer one do not fit into a message."""
+MOST_POINTS = 100_000
+"""Of a path, as many as a message of it may hold."""
+FARTHEST = (MOST_POINTS - 2) * SPACING  # m of way
 TOO_LARGE = "the map is too large to plan on"
 NO_PLACE = "the goal is not a place: its coordinates must be finite"
 

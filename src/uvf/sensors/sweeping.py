@@ -7,9 +7,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from schemas.messages import LaserScan
-from uvf.runtime.messages.convert import seconds
-
 SPACING = 0.02  # s, at most, within which the beams of a part are measured
 
 
@@ -29,18 +26,17 @@ class Sweeping(NamedTuple):
     duration: float = 0.0
     clockwise: bool = False
 
-    def ranges(self, scan: LaserScan) -> NDArray[np.float64]:
-        """(n,) m, in the order in which they are measured."""
-        ranges = np.array(scan.ranges)
+    def in_order(self, ranges: NDArray[np.float64]) -> NDArray[np.float64]:
+        """(n,) m, of a message, in the order in which they were measured."""
         return ranges[::-1].copy() if self.clockwise else ranges
 
-    def end(self, scan: LaserScan) -> float:
-        """s, when the last beam was measured."""
-        return seconds(scan.timestamp) + self.duration
+    def end(self, stamp: float) -> float:
+        """s, when the last beam of the scan stamped ``stamp`` [s] was measured."""
+        return stamp + self.duration
 
-    def parts(self, scan: LaserScan) -> list[Part]:
-        """All beams in the order of the message; a single part where all are taken at once."""
-        n, first = max(len(scan.ranges), 1), seconds(scan.timestamp)
+    def parts(self, beams: int, stamp: float) -> list[Part]:
+        """All ``beams`` of the scan stamped ``stamp`` [s] in the order of the message; a single part where all are taken at once."""
+        n, first = max(beams, 1), stamp
         count = min(n, max(ceil(self.duration / SPACING - 1e-9), 1))
         edges = [round(n * k / count) for k in range(count + 1)]
         found = []

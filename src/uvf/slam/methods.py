@@ -4,8 +4,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from uvf.models.params import Params
 from uvf.models.yaml_data import BadInput, convert, nearest
-from uvf.runtime.contract.service import Params
 from uvf.slam.graph.method import GraphParams, GraphSlam
 from uvf.slam.hector.method import HectorSlam
 from uvf.slam.hector.params import HectorParams

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from uvf.maths.rotations import wrap
 from uvf.maths.se2 import IDENTITY, Pose2, compose, inverse
-from uvf.runtime.contract.service import Params
+from uvf.models.params import Params
 from uvf.slam.incremental import IncrementalMethod
 from uvf.slam.method import Estimate, Keyframe
 from uvf.slam.reading import Reading

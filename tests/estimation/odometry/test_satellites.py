@@ -5,6 +5,7 @@ import pytest
 
 from benchmarks.odometry_drive import TRACK, World, drive
 from schemas.messages import Gnss, Vector3
+from services.slam.odometry.readings import satellite_fix
 from uvf.estimation.odometry.filter import DriveFilter
 from uvf.estimation.odometry.states import GNSS_X, Noise
 from uvf.estimation.odometry.world import SatellitePose
@@ -65,7 +66,7 @@ def driven(
         pose.note(moment.t, odometry.pose)
         if k % 10 == 0 and when(moment.t):
             waiting.append((k + delay, fix_at(moment.t, true, moment.twist, rng, off=off(moment.t), sensor=sensor)))
-        pose.take([fix for due, fix in waiting if due == k], odometry.pose)
+        pose.take([satellite_fix(fix) for due, fix in waiting if due == k], odometry.pose)
         rows.append((moment.t, true, pose.drive.pose, pose.shown(odometry.pose, odometry.pose, 0.004), pose.sigma, pose.is_known(moment.t)))
     return rows, odometry, pose
 
@@ -156,6 +157,6 @@ def test_a_fix_that_is_none_is_not_used():
         Gnss(timestamp=stamp(1e6), fix=Gnss.FIX_3D, horizontal_accuracy=1.0),
         Gnss(timestamp=stamp(39.2), fix=Gnss.FIX_3D, latitude=float("nan"), horizontal_accuracy=1.0),
     ):
-        pose.take([broken], odometry.pose)
+        pose.take([satellite_fix(broken)], odometry.pose)
     assert not pose.is_known(40.0)
     assert pose.ratio == 0.0

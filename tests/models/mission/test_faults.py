@@ -5,9 +5,10 @@ import math
 import pytest
 
 from schemas.messages import AirData, Battery, Gnss, Imu, LaserScan, SurfaceCommand, Vector3
-from uvf.models.mission.faults import PARTS, Fault, Faults, check_faults
+from uvf.models.mission.faults import Fault, check_faults
 from uvf.models.yaml_data import BadInput, Place
 from uvf.runtime.messages.convert import seconds, stamp
+from uvf.runtime.messages.faults import PARTS, Faults
 
 HERE = Place("mission.yaml")
 SAID = {

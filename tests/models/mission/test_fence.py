@@ -7,11 +7,12 @@ import pytest
 import yaml
 
 from schemas.messages import Fence, FenceRequest, FenceZone, Vector3
-from uvf.models.mission.fence import MOST_VERTICES, MOST_ZONES, OPEN, FenceFile, fence_fault, fence_message, fencing
+from uvf.models.mission.fence import MOST_VERTICES, MOST_ZONES, OPEN, FenceFile
 from uvf.models.mission.file import load_mission
 from uvf.models.scenario import ROOT
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.contract.validation import error_in
+from uvf.runtime.messages.fences import fence_fault, fence_message, fencing
 
 FENCE = {
     "zones": [{"polygon": [[-500, -500], [500, -500], [500, 500], [-500, 500]]}, {"circle": [100, 0, 50], "exclude": True}],

@@ -10,9 +10,9 @@ import pytest
 from schemas import topics
 from schemas.messages import ArmRequest, Battery, Event, Imu, NavStatus, ParamRequest, Reply, Vector3, WheelCommand
 from tests.runtime.toys import Pilot
-from uvf.models.scenario import Host
 from uvf.runtime.bus.interface import LocalBus
 from uvf.runtime.contract.bulkhead import Bulkhead
+from uvf.runtime.contract.instances import Host
 from uvf.runtime.contract.service import Service, every, optional
 from uvf.runtime.contract.service_runner import Shell
 from uvf.runtime.contract.validation import error_in

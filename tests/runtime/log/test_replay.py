@@ -6,9 +6,10 @@ import pytest
 
 from schemas import topics
 from schemas.messages import ArmRequest, Clock, ModeRequest, NavState, Odometry, PoseInFrame, Reply
-from uvf.models.scenario import ROOT, Host
+from uvf.models.scenario import ROOT
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.bus.interface import LocalBus, Sample
+from uvf.runtime.contract.instances import Host
 from uvf.runtime.contract.service import Service
 from uvf.runtime.contract.service_runner import Shell
 from uvf.runtime.log.comparison import differing

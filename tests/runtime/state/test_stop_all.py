@@ -7,8 +7,8 @@ import pytest
 from schemas import topics
 from schemas.messages import StopCommand, StopEngagement, StopState, VehicleStatus
 from tests.runtime.toys import Pilot
-from uvf.models.scenario import Host
 from uvf.runtime.bus.interface import LocalBus, Sample
+from uvf.runtime.contract.instances import Host
 from uvf.runtime.contract.service_runner import Shell
 from uvf.runtime.contract.validation import error_in
 from uvf.runtime.state import stop_all

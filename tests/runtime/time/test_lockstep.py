@@ -2,7 +2,7 @@
 
 from schemas import topics
 from schemas.messages import ArmRequest, DriveCommand, Reply, WheelCommand
-from uvf.models.scenario import Host
+from uvf.runtime.contract.instances import Host
 from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import stamp
 from uvf.runtime.time.lockstep import Lockstep

@@ -6,7 +6,7 @@ from typing import Any
 from services.gcs.commands import Join
 from services.gcs.service import GroundStation
 from tests.services.gcs.scripted import Script, demo_site
-from uvf.models.scenario import Host
+from uvf.runtime.contract.instances import Host
 from uvf.runtime.contract.service_runner import Shell
 
 ME, OTHER = 1, 2

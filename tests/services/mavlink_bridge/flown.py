@@ -15,8 +15,8 @@ from services.mavlink_bridge.service import BridgedVehicle
 from services.mavlink_bridge.station import Station
 from tests.services.autopilot.mavlink.rig import Shelf
 from uvf.mavlink.endpoint import UdpLink
-from uvf.models.scenario import Host
 from uvf.runtime.bus.interface import LocalBus
+from uvf.runtime.contract.instances import Host
 from uvf.runtime.contract.service_runner import Shell
 from uvf.runtime.time.lockstep import Lockstep
 

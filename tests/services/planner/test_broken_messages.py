@@ -13,8 +13,8 @@ from tests.services.autopilot.ground.test_service import BODY
 from tests.services.planner.plans import room
 from uvf.maths import se3
 from uvf.maths.se2 import IDENTITY
-from uvf.models.scenario import Host
 from uvf.runtime.bus.interface import LocalBus
+from uvf.runtime.contract.instances import Host
 from uvf.runtime.contract.service_runner import Shell
 from uvf.runtime.messages.convert import occupancy_grid, planar_pose, stamp
 

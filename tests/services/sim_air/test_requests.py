@@ -9,7 +9,8 @@ from schemas import topics
 from schemas.messages import RemoveRequest, SetPoseRequest, SimObject, SpawnRequest, StateRequest, SurfaceCommand
 from services.sim_air.build import build
 from tests.services.asking import Asked
-from uvf.models.scenario import Host, load_site
+from uvf.models.scenario import load_site
+from uvf.runtime.contract.instances import Host
 from uvf.runtime.contract.service import Service, every
 from uvf.runtime.messages import spawned
 from uvf.runtime.messages.convert import array, planar_pose, seconds

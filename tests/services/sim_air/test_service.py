@@ -23,9 +23,10 @@ from services.sim_air.stage import Stage
 from tests.services.sim_air.shapes import MILVUS_TREE
 from uvf.maths import rotations
 from uvf.maths.rotations import IDENTITY
-from uvf.models.scenario import ROOT, Host, load_site
+from uvf.models.scenario import ROOT, load_site
 from uvf.models.vehicle.file import load_vehicle
 from uvf.runtime.bus.interface import LocalBus
+from uvf.runtime.contract.instances import Host
 from uvf.runtime.messages.convert import wxyz
 from uvf.runtime.time.lockstep import Lockstep
 

@@ -15,9 +15,10 @@ from services.sim_camera.build import build
 from services.sim_camera.fitted import Fitted
 from services.sim_camera.renderer import Shot
 from services.sim_camera.service import SimCamera
-from uvf.models.scenario import ROOT, Host, load_site
+from uvf.models.scenario import ROOT, load_site
 from uvf.models.vehicle.file import Camera, Mount, load_vehicle
 from uvf.models.yaml_data import BadInput
+from uvf.runtime.contract.instances import Host
 from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import seconds, stamp, vector
 from uvf.runtime.time.lockstep import Lockstep

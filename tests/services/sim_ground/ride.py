@@ -11,7 +11,8 @@ from schemas.messages import WheelCommand
 from services.sim_ground.build import build
 from uvf.maths.kinematics import DifferentialDrive, Twist
 from uvf.maths.se2 import Pose2
-from uvf.models.scenario import Host, load_site
+from uvf.models.scenario import load_site
+from uvf.runtime.contract.instances import Host
 from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import stamp, yaw_of
 from uvf.runtime.time.lockstep import Lockstep

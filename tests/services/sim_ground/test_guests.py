@@ -13,9 +13,10 @@ from services.sim_ground.world import BulletWorld, Placed
 from tests.services.sim_ground.ride import Driver
 from uvf.maths.kinematics import Twist
 from uvf.maths.rotations import IDENTITY
-from uvf.models.scenario import ROOT, Host, load_site
+from uvf.models.scenario import ROOT, load_site
 from uvf.models.shapes.solid import Solid
 from uvf.models.vehicle.file import load_vehicle
+from uvf.runtime.contract.instances import Host
 from uvf.runtime.time.lockstep import Lockstep
 
 BODY = load_vehicle(ROOT / "vehicles", "burger").ground

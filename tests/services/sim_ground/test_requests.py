@@ -9,7 +9,7 @@ from services.sim_ground.build import build
 from tests.services.asking import Asked
 from tests.services.sim_ground.ride import Driver, site_with
 from uvf.maths.kinematics import Twist
-from uvf.models.scenario import Host
+from uvf.runtime.contract.instances import Host
 from uvf.runtime.messages import spawned
 from uvf.runtime.messages.convert import planar_pose, seconds, stamp
 

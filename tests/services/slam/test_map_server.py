@@ -11,10 +11,11 @@ from services.slam.map_serving import map_servers
 from uvf.maths.rotations import from_euler
 from uvf.maths.se2 import IDENTITY, Pose2
 from uvf.models.scenario import ROOT, load_site
-from uvf.models.world.map_file import GridMap, find_map, save_map
+from uvf.models.world.map_file import GridMap, save_map
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.messages.convert import occupancy_cells, quaternion, yaw_of
 from uvf.runtime.messages.grids import as_map, as_message
+from uvf.runtime.state.saved_maps import find_map
 
 CELLS = np.array([[0, 100, -1], [0, 0, 50]], dtype=np.int8)
 DRAWN = as_message(GridMap(CELLS, 0.05, Pose2(1.0, 0.0, 0.0)), "v/map", 3.0)

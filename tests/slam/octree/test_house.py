@@ -12,9 +12,10 @@ from services.sim_camera.build import build as build_cameras
 from services.slam.octree.build import build as build_octree
 from uvf.maths.raycast import Rays, cast
 from uvf.maths.rotations import from_euler, matrix, rotate
-from uvf.models.scenario import ROOT, Host, load_site
+from uvf.models.scenario import ROOT, load_site
 from uvf.models.shapes.scene import scene
 from uvf.models.world.geometry import solids
+from uvf.runtime.contract.instances import Host
 from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import quaternion, stamp, vector
 from uvf.runtime.messages.sensor_frames import sensor_frames

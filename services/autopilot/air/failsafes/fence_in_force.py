@@ -5,8 +5,9 @@ from dataclasses import replace
 from schemas.messages import Fence
 from uvf.guidance.fence_plan import tightest
 from uvf.guidance.route import Place
-from uvf.models.mission.fence import ACTIONS, Fencing, fencing, near_home
+from uvf.models.mission.fence import ACTIONS, FenceAction, Fencing, near_home
 from uvf.models.vehicle.flight_params import AirParams
+from uvf.runtime.messages.fences import fencing
 
 HEIGHT_NEEDED = 3  # fence_height, between floor and ceiling
 
@@ -39,7 +40,7 @@ def in_force(fence: Fence, home: Place | None, params: AirParams) -> Fencing:
     found = near_home(plan, (home.east, home.north), params.max_distance)
     if params.max_height:
         found = replace(found, ceiling=min(found.ceiling, home.height + params.max_height))
-    return replace(found, action=Fence.WARN) if too_small(params) else found
+    return replace(found, action=FenceAction.WARN) if too_small(params) else found
 
 
 def too_small(params: AirParams) -> str:

@@ -22,12 +22,13 @@ from uvf.estimation.sensor_inputs import Pressures
 from uvf.estimation.state import Estimate
 from uvf.guidance.fence_plan import fence_fit, mission_fault, tightest
 from uvf.guidance.route import Circle, Place
-from uvf.models.mission.fence import fence_fault, fencing
+from uvf.models.mission.fence import FenceAction
 from uvf.models.vehicle.flight_params import AirParams
+from uvf.runtime.messages.fences import fence_fault, fencing
 
 RANK = {FlightMode.HOLD: Action.HOLD, FlightMode.RETURN: Action.RETURN, FlightMode.LAND: Action.LAND}
 FENCED = "fence", "breach"  # rows whose action is the fence's
-FENCE_ACTIONS = {Fence.RETURN: Action.RETURN, Fence.HOLD: Action.HOLD, Fence.WARN: Action.WARN, Fence.LAND: Action.LAND}
+FENCE_ACTIONS = {action: Action[action.name] for action in FenceAction}
 
 
 @dataclass(slots=True)

@@ -7,9 +7,10 @@ from services.autopilot.air.formation.follower import Formation
 from services.autopilot.air.formation.wingman import AutopilotWingman
 from uvf.guidance.formation_slot import Station
 from uvf.models.mission.formation import Follow, chain_of, offset_of
-from uvf.models.scenario import Host, Site
+from uvf.models.scenario import Site
 from uvf.models.vehicle.flight_params import AirParams
 from uvf.models.yaml_data import BadInput, Place
+from uvf.runtime.contract.instances import Host
 
 NEAREST = 1.0  # s behind a leader: what lies ahead of the follower has to be known
 

@@ -6,7 +6,7 @@ from msgspec import Meta
 
 from uvf.estimation.odometry.calibration import Scales
 from uvf.estimation.odometry.states import Noise
-from uvf.runtime.contract.service import Params
+from uvf.models.params import Params
 
 Positive = Annotated[float, Meta(gt=0)]
 Part = Annotated[float, Meta(gt=0, le=0.3)]

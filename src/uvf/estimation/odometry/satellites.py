@@ -7,14 +7,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from schemas.messages import Gnss
 from uvf.estimation.odometry.filter import DriveFilter
 from uvf.estimation.odometry.kalman import Measured, misfit
 from uvf.estimation.odometry.states import GNSS_X, HEADING, POSE, SPEED
 from uvf.maths.geodesy import LocalTangent
 from uvf.maths.kinematics import twist_between
 from uvf.maths.se2 import Pose2, PoseHistory, compose, inverse, transform
-from uvf.runtime.messages.convert import seconds
 
 Floats = NDArray[np.float64]
 
@@ -25,6 +23,19 @@ PATIENCE = 10.0  # s of fixes that are all refused, after which the filter doubt
 MOMENT = 0.04  # s, over which the motion at a fix is taken
 LOST = 2.0  # s without a fix
 ANYWHERE = 1000.0  # m, 1 sigma of a place that was wrong
+
+
+class SatelliteFix(NamedTuple):
+    """What a receiver says, valid for ``t``; ``known`` is False without a position in three dimensions."""
+
+    t: float  # s
+    known: bool
+    latitude: float  # rad
+    longitude: float  # rad
+    altitude: float  # m AMSL
+    velocity: tuple[float, float]  # m/s, east and north
+    horizontal_accuracy: float  # m, 1 sigma
+    speed_accuracy: float  # m/s, 1 sigma
 
 
 @dataclass(frozen=True)
@@ -56,11 +67,11 @@ class Satellites:
         """Where the odometry has the base, for fixes that come late."""
         self._history.add(t, odom_from_base)
 
-    def take(self, fix: Gnss, world: DriveFilter, odom_from_base: Pose2) -> bool:
+    def take(self, fix: SatelliteFix, world: DriveFilter, odom_from_base: Pose2) -> bool:
         """A fix into the filter, whose pose belongs to ``odom_from_base``; whether it was used."""
-        t = seconds(fix.timestamp)
+        t = fix.t
         told = (fix.latitude, fix.longitude, fix.altitude, fix.horizontal_accuracy)
-        known = fix.fix == Gnss.FIX_3D and all(map(isfinite, told)) and fix.horizontal_accuracy > 0.0
+        known = fix.known and all(map(isfinite, told)) and fix.horizontal_accuracy > 0.0
         then = self._history.at(t)
         if t <= self._newest or not known or then is None:
             return False
@@ -81,7 +92,7 @@ class Satellites:
         if misfit(world.kalman, position(world.state, place, arm, variance)) > GATE:
             world.place(Pose2(float(place[0]), float(place[1]), world.pose.yaw), (ANYWHERE, self._heading_sigma))
 
-    def _correct(self, fix: Gnss, place: Floats, variance: float, world: DriveFilter, base_from_then: Pose2, t: float) -> None:
+    def _correct(self, fix: SatelliteFix, place: Floats, variance: float, world: DriveFilter, base_from_then: Pose2, t: float) -> None:
         arm = transform(base_from_then, np.array((self._antenna.arm,)))[0]
         self.ratio = world.correct(position(world.state, place, arm, variance), GATE)
         if self.ratio >= 1.0:
@@ -91,7 +102,7 @@ class Satellites:
             return
         then, now = self._motion(t), world.speeds
         if then is not None:
-            told, changed = (fix.velocity_enu.x, fix.velocity_enu.y), Changed(base_from_then.yaw, then[0] - now[0], then[1])
+            told, changed = fix.velocity, Changed(base_from_then.yaw, then[0] - now[0], then[1])
             world.correct(velocity(world.state, told, changed, self._antenna.arm, max(fix.speed_accuracy, LEAST_SPEED) ** 2), GATE)
 
     def _motion(self, t: float) -> tuple[float, float] | None:

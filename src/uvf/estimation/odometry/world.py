@@ -3,10 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from schemas.messages import Gnss
 from uvf.estimation.odometry.filter import DriveFilter
 from uvf.estimation.odometry.kalman import Measured
-from uvf.estimation.odometry.satellites import Antenna, Satellites
+from uvf.estimation.odometry.satellites import Antenna, SatelliteFix, Satellites
 from uvf.estimation.odometry.slip import sigma
 from uvf.estimation.odometry.states import HEADING, POSE
 from uvf.maths.geodesy import LocalTangent
@@ -71,7 +70,7 @@ class SatellitePose:
         """Where the odometry came to in the filter's last step."""
         self._satellites.note(t, odom_from_base)
 
-    def take(self, fixes: list[Gnss], odom_from_base: Pose2) -> None:
+    def take(self, fixes: list[SatelliteFix], odom_from_base: Pose2) -> None:
         for fix in fixes:
             first = not self._satellites.placed
             if self._satellites.take(fix, self.drive, odom_from_base) and first:

@@ -1,23 +1,18 @@
-"""Faults of sensors and servos as a mission file lists them: what is lost, frozen or off, from when to when.
-
-They are put into the messages at the simulator's border, so that every reader meets them as it would meet the real ones.
-"""
+"""Faults of sensors and servos as a mission file lists them: what is lost, frozen or off, from when to when."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 import msgspec
-from google.protobuf.message import Message
 from msgspec import Meta
 
 from uvf.models.yaml_data import BadInput, Place
-from uvf.runtime.contract.service import Value
 
-EARTH_RADIUS = 6.371e6  # m
 Part = Literal[
     "imu", "compass", "gnss", "air_data", "pitot", "static", "battery", "scan", "wheels", "aileron", "elevator", "rudder", "throttle"
 ]
+WITHOUT_VALUE = ("scan", "wheels")
+"""Parts of which no single value can be off."""
 Size = Annotated[float, Meta(ge=-1e6, le=1e6)]
 Moment = Annotated[float, Meta(ge=0, le=1e6)]
 
@@ -36,33 +31,6 @@ class Fault(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         return self.at <= t and (self.until is None or t < self.until)
 
 
-@dataclass(frozen=True)
-class Where:
-    """Fields of a message; the first one takes a bias, times ``scale``, if there is one. whole: the message is about this alone."""
-
-    output: str
-    fields: tuple[str, ...] = ()
-    scale: float = 1.0
-    whole: bool = False
-
-
-AIR = ("static_pressure", "differential_pressure")
-FIELD = ("magnetic_field.x", "magnetic_field.y", "magnetic_field.z")
-INERTIAL = ("angular_velocity.x", "angular_velocity.y", "angular_velocity.z", "specific_force.x", "specific_force.y", "specific_force.z")
-PARTS: dict[str, Where] = {
-    "imu": Where("imu", (*INERTIAL, *FIELD), whole=True),
-    "compass": Where("imu", FIELD),
-    "gnss": Where("gnss", ("latitude",), 1 / EARTH_RADIUS, whole=True),
-    "air_data": Where("air_data", AIR, whole=True),
-    "static": Where("air_data", AIR[:1]),
-    "pitot": Where("air_data", AIR[1:]),
-    "battery": Where("battery", ("remaining",), whole=True),
-    "scan": Where("scan", whole=True),
-    "wheels": Where("wheels", whole=True),
-    **{name: Where("surfaces", (name,)) for name in ("aileron", "elevator", "rudder", "throttle")},
-}
-
-
 def check_faults(faults: Sequence[Fault], vehicles: Mapping[str, object], place: Place) -> None:
     """Raises BadInput."""
     for i, fault in enumerate(faults):
@@ -70,68 +38,7 @@ def check_faults(faults: Sequence[Fault], vehicles: Mapping[str, object], place:
             raise BadInput(f"{place.at(i, 'vehicle')}: no vehicle '{fault.vehicle}'; there are: {', '.join(sorted(vehicles))}")
         if fault.until is not None and fault.until <= fault.at:
             raise BadInput(f"{place.at(i, 'until')}: {fault.until:g} s is not after at, {fault.at:g} s")
-        if fault.kind == "bias" and not PARTS[fault.part].fields:
+        if fault.kind == "bias" and fault.part in WITHOUT_VALUE:
             raise BadInput(f"{place.at(i, 'kind')}: {fault.part} takes no bias; it may be lost or frozen")
         if fault.kind == "bias" and fault.size == 0:
             raise BadInput(f"{place.at(i)}: a bias needs a size")
-
-
-@dataclass
-class Faults:
-    """Those of a run, with what a frozen part was like."""
-
-    faults: Sequence[Fault] = ()
-    _kept: dict[int, Any] = field(default_factory=dict)
-
-    def spoil(self, t: float, vehicle: str, read: dict[str, Value]) -> dict[str, Value]:
-        """What arrives of a vehicle's messages at ``t`` [s], by output. The messages may be changed."""
-        for number, fault in enumerate(self.faults):
-            where = PARTS[fault.part]
-            message = read.get(where.output)
-            if fault.vehicle != vehicle or not isinstance(message, Message):
-                continue
-            if not fault.holds(t):
-                self._keep(number, fault, message)
-            elif fault.kind == "lost" and where.whole:
-                read = {name: value for name, value in read.items() if name != where.output}
-            else:
-                self._change(number, fault, message)
-        return read
-
-    def _keep(self, number: int, fault: Fault, message: Message) -> None:
-        if fault.kind == "frozen":
-            kept = self._kept[number] = type(message)()
-            kept.CopyFrom(message)
-
-    def _change(self, number: int, fault: Fault, message: Any) -> None:
-        where = PARTS[fault.part]
-        if fault.kind == "bias":
-            _set(message, where.fields[0], _get(message, where.fields[0]) + fault.size * where.scale)
-        elif fault.kind == "lost":
-            for name in where.fields:
-                _set(message, name, 0.0)
-        elif number not in self._kept:
-            self._kept[number] = type(message)()
-            self._kept[number].CopyFrom(message)
-        elif where.whole:
-            stamp = type(message.timestamp)()
-            stamp.CopyFrom(message.timestamp)
-            message.CopyFrom(self._kept[number])
-            message.timestamp.CopyFrom(stamp)
-        else:
-            for name in where.fields:
-                _set(message, name, _get(self._kept[number], name))
-
-
-def _get(message: Any, name: str) -> float:
-    for part in name.split("."):
-        message = getattr(message, part)
-    value: float = message
-    return value
-
-
-def _set(message: Any, name: str, value: float) -> None:
-    *parts, last = name.split(".")
-    for part in parts:
-        message = getattr(message, part)
-    setattr(message, last, value)

@@ -6,11 +6,10 @@ from typing import Annotated, Literal
 import msgspec
 from msgspec import Meta
 
-from schemas.limits import FOLDER, VEHICLE
-from schemas.topics import SYSTEM
 from uvf.models.mission.faults import Fault, check_faults
-from uvf.models.mission.fence import FenceFile, fence_message
+from uvf.models.mission.fence import FenceFile, zones_of
 from uvf.models.mission.formation import Follow, check_follow
+from uvf.models.names import FOLDER, SYSTEM, VEHICLE
 from uvf.models.world.wind import Wind, check_wind
 from uvf.models.yaml_data import BadInput, Place, load_yaml, nearest
 
@@ -144,7 +143,7 @@ def _check_vehicles(vehicles: dict[str, Vehicle], place: Place) -> None:
         for role, other in vehicle.roles.items():
             if other not in vehicles:
                 raise BadInput(f"{place.at(name, 'roles', role)}: no vehicle '{other}'; {nearest(other, vehicles)}")
-        fence_message(vehicle.fence, place.at(name, "fence"))
+        zones_of(vehicle.fence, place.at(name, "fence"))
         _check_jumps(vehicle.job.mission, place.at(name, "job", "mission"))
 
 

@@ -21,7 +21,6 @@ from PIL import Image
 from uvf.maths.se2 import Pose2
 from uvf.models.whole_file import write_whole
 from uvf.models.yaml_data import BadInput, load_yaml, nearest
-from uvf.runtime.state.state_folder import state_folder
 
 Cells = NDArray[np.int8]
 Mode = Literal["trinary", "scale", "raw"]
@@ -59,21 +58,6 @@ class GridMap:
     cells: Cells
     resolution: float
     origin: Pose2
-
-
-def map_path(name: str, folder: Path = Path()) -> Path:
-    """Of a plain name the yaml among the saved maps, else a file, from ``folder`` on."""
-    if Path(name).suffix or "/" in name:
-        return folder / name
-    return state_folder() / "maps" / f"{name}{YAML[0]}"
-
-
-def find_map(name: str, folder: Path = Path()) -> GridMap:
-    """A saved map by its name, or a file, from ``folder`` on. Raises BadInput."""
-    path = map_path(name, folder)
-    if path.stem == name and not path.is_file():
-        raise BadInput(f"no map '{name}' is saved; {nearest(name, [p.stem for p in path.parent.glob('*' + YAML[0])])}")
-    return load_map(path)
 
 
 def load_map(path: Path) -> GridMap:

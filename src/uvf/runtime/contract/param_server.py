@@ -8,10 +8,11 @@ import msgspec
 
 from schemas import topics
 from schemas.messages import Param, ParamReply, ParamRequest
+from uvf.models.params import Params
 from uvf.models.yaml_data import nearest
 from uvf.runtime.bus.interface import Query
 from uvf.runtime.bus.wire import Malformed, decode
-from uvf.runtime.contract.service import Params, Service
+from uvf.runtime.contract.service import Service
 
 
 class ParamServer:

@@ -4,11 +4,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Generic, Literal, TypeVar
 
-import msgspec
 from google.protobuf.message import Message
 
 from schemas import topics
 from schemas.topics import Request, Topic
+from uvf.models.params import Params
 
 Q = TypeVar("Q", bound=Message)
 R = TypeVar("R", bound=Message)
@@ -90,10 +90,6 @@ def each_vehicle(topic: "Topic[Any] | Input") -> Input:
 def of_role(role: str, topic: "Topic[Any] | Input") -> Input:
     """The topic of the vehicle that the mission binds to ``role`` (``leader: milvus1``)."""
     return replace(_as_input(topic), role=role)
-
-
-class Params(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """Base of parameter sets; limits and units by ``Annotated[float, msgspec.Meta(ge=..., le=..., ...)]``."""
 
 
 @dataclass(frozen=True)

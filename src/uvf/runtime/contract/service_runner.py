@@ -12,11 +12,11 @@ from google.protobuf.message import Message
 from schemas import topics
 from schemas.messages import Event, VehicleStatus
 from schemas.topics import PARAM, SYSTEM, Qos, Request, Topic
-from uvf.models.scenario import Host
 from uvf.runtime.bus.interface import Bus, Publisher, Query
 from uvf.runtime.bus.wire import Malformed, decode
 from uvf.runtime.contract.bulkhead import FAILURES, WINDOW, Bulkhead
 from uvf.runtime.contract.inbox import AHEAD_MOST, EVERY_DEPTH, InputBox
+from uvf.runtime.contract.instances import Host
 from uvf.runtime.contract.param_server import ParamServer
 from uvf.runtime.contract.refusals import Refusals
 from uvf.runtime.contract.request_desk import QUERIES_MOST, ContractError, RequestDesk

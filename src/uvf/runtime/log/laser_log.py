@@ -119,7 +119,7 @@ def _assembled(path: Path, name: str, heard: _Heard) -> LaserLog:
     track[:, 3] = np.unwrap(track[:, 3])
     beams = _beams(path, name, scans, (heard.frames, sweeping))
     readings = [
-        straightened(sweeping.ranges(scan), shape, t, lambda times: interpolated(track, times))
+        straightened(sweeping.in_order(np.array(scan.ranges)), shape, t, lambda times: interpolated(track, times))
         for t, scan, shape in zip(first.tolist(), scans, beams, strict=True)
     ]
     counts = (

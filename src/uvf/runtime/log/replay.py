@@ -9,9 +9,10 @@ from collections.abc import Callable, Container, Iterable, Iterator
 from pathlib import Path
 
 from schemas.topics import SYSTEM, Qos
-from uvf.models.scenario import Host, Site, load_site
+from uvf.models.scenario import Site, load_site
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.bus.interface import Bus, LocalBus, Publisher, Query, Sample, matches
+from uvf.runtime.contract.instances import Host
 from uvf.runtime.contract.service_runner import Shell, Warn
 from uvf.runtime.contract.topic_lookup import topic_of
 from uvf.runtime.log.comparison import TOLERANCE, Comparison, Difference

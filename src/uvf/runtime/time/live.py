@@ -6,9 +6,9 @@ from threading import Event
 
 from schemas import topics
 from schemas.messages import Clock, Done
-from uvf.models.scenario import Host
 from uvf.runtime.bus.wire import guarded
 from uvf.runtime.bus.zenoh_bus import ZenohBus
+from uvf.runtime.contract.instances import Host
 from uvf.runtime.contract.refusals import Refusals
 from uvf.runtime.contract.service_runner import Shell, Warn
 from uvf.runtime.process.health import HealthReport

@@ -4,8 +4,8 @@ from collections.abc import Callable, Sequence
 
 from schemas import topics
 from schemas.messages import Clock
-from uvf.models.scenario import Host
 from uvf.runtime.bus.interface import LocalBus
+from uvf.runtime.contract.instances import Host
 from uvf.runtime.contract.service_runner import Shell, Warn
 from uvf.runtime.time.clock import NS, step_time
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uvf.maths.se2 import IDENTITY, Pose2, compose, inverse
-from uvf.runtime.contract.service import Params
+from uvf.models.params import Params
 from uvf.slam.graph.closing import TIED, Closing
 from uvf.slam.graph.drift import Ways
 from uvf.slam.graph.edges import Edge

@@ -4,7 +4,7 @@ from typing import Annotated
 
 from msgspec import Meta
 
-from uvf.runtime.contract.service import Params
+from uvf.models.params import Params
 
 
 class HectorParams(Params, frozen=True):

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from uvf.maths.grids import distance_field
 from uvf.maths.se2 import IDENTITY, Pose2, compose, transform
-from uvf.models.world.map_file import GridMap, find_map, map_path
+from uvf.models.world.map_file import GridMap, load_map
 from uvf.models.yaml_data import BadInput
 from uvf.slam.localization import surfaces
 from uvf.slam.localization.surfaces import FREE, OCCUPIED
@@ -82,15 +82,14 @@ def of_keyframes(keyframes: Sequence[Keyframe], source: str = "map") -> KnownMap
     return _known(grid, surfaces.of_keyframes(keyframes, grid), source)
 
 
-def is_session(name: str) -> bool:
-    return Path(name).suffix == SESSION
+def is_session(path: Path) -> bool:
+    return path.suffix == SESSION
 
 
-def known_map(name: str, folder: Path, map_from_file: Pose2) -> KnownMap:
-    """A session's file, a map's file (both from ``folder`` on), or a saved map by its name. Raises BadInput."""
-    path = map_path(name, folder)
-    if not is_session(name):
-        return of_grid(find_map(name, folder), map_from_file, str(path))
+def known_map(path: Path, map_from_file: Pose2) -> KnownMap:
+    """A session's file or a map's. Raises BadInput."""
+    if not is_session(path):
+        return of_grid(load_map(path), map_from_file, str(path))
     keyframes = Session.load(path).keyframes
     return of_keyframes([Keyframe(compose(map_from_file, k.map_from_base), k.reading) for k in keyframes], str(path))
 

@@ -4,7 +4,7 @@ from typing import Annotated
 
 from msgspec import Meta
 
-from services.slam.placing_service import PlacingParams
+from uvf.slam.placing_params import PlacingParams
 
 Variance = Annotated[float, Meta(ge=0, le=10)]
 

@@ -4,7 +4,7 @@ from typing import Annotated
 
 from msgspec import Meta
 
-from uvf.runtime.contract.service import Params
+from uvf.models.params import Params
 
 Share = Annotated[float, Meta(ge=0.0, le=1.0)]
 Noise = Annotated[float, Meta(ge=0.0, le=2.0)]

@@ -9,7 +9,7 @@ from services.autopilot.ground.build import hosts
 from services.autopilot.ground.multiplexer import COMMAND_MAX_AGE
 from services.sim_ground.build import build as build_simulator
 from tests.services.sim_ground.ride import site_with
-from uvf.models.scenario import Host
+from uvf.runtime.contract.instances import Host
 from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import seconds, stamp
 from uvf.runtime.time.lockstep import Lockstep

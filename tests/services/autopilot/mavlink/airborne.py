@@ -10,7 +10,8 @@ from services.sim_air.build import build as build_sim
 from tests.services.autopilot.mavlink.rig import GCS, MemoryLink, Shelf
 from uvf.mavlink import dialect as mav
 from uvf.models.mission.file import Job
-from uvf.models.scenario import ROOT, Host, Member, load_site
+from uvf.models.scenario import ROOT, Member, load_site
+from uvf.runtime.contract.instances import Host
 from uvf.runtime.contract.service_runner import Shell
 from uvf.runtime.time.lockstep import Lockstep
 

@@ -11,8 +11,8 @@ from services.autopilot.air.service import AutopilotAir
 from services.autopilot.air.setpoints import Senses
 from tests.services.autopilot.air.sensing import Bench, autopilot, sensors
 from tests.services.autopilot.air.states import PARAMS, cruising
-from uvf.models.scenario import Host
 from uvf.runtime.bus.interface import LocalBus
+from uvf.runtime.contract.instances import Host
 from uvf.runtime.contract.service_runner import Shell
 from uvf.runtime.messages.convert import stamp
 

@@ -1,0 +1,28 @@
+"""Instances of services: how each is made, and for whom."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol
+
+from uvf.models.scenario import Site
+from uvf.runtime.contract.service import Service
+
+
+@dataclass(frozen=True)
+class Host:
+    """One service instance: how to make it afresh (at start and after each reset), and for which vehicle.
+
+    writes_for: the vehicles about which a service of the whole world writes.
+    """
+
+    service: type[Service]
+    make: Callable[[], Service]
+    vehicle: str | None = None
+    roles: dict[str, str] | None = None
+    writes_for: tuple[str, ...] = ()
+
+
+class Build(Protocol):
+    """``services/<name>/build.py`` holds one: which instances a process of this service hosts."""
+
+    def __call__(self, site: Site) -> list[Host]: ...
