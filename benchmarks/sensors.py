@@ -24,24 +24,13 @@ from uvf.maths.raycast import Scene
 from uvf.maths.rotations import IDENTITY
 from uvf.maths.solids import box
 from uvf.models.scenario import ROOT
-from uvf.models.vehicle.file import (
-    AirDataSensor,
-    Camera,
-    Encoders,
-    GnssSensor,
-    ImuSensor,
-    Lidar,
-    Mount,
-    RangeFinder,
-    Sensors,
-    Sonar,
-    line_of,
-    load_vehicle,
-)
+from uvf.models.vehicle.file import load_vehicle
 from uvf.models.vehicle.sensor_presets import PRESETS
+from uvf.models.vehicle.sensors import AirDataSensor, Camera, Encoders, GnssSensor, ImuSensor, Lidar, Mount, RangeFinder, Sensors, Sonar
 from uvf.models.world.file import Origin, WorldFile
 from uvf.sensors.allan import expected, octaves, overlapping
 from uvf.sensors.errors import Errors
+from uvf.sensors.fitted import accelerometer_errors, gyro_errors, line_of, receiver
 from uvf.sensors.range_sensors import LidarModel, RangeModel
 from uvf.sensors.sampling import Line
 
@@ -142,12 +131,12 @@ def _satellite() -> Figures:
 
 
 def _fixes(gnss: GnssSensor, count: int) -> list:  # type: ignore[type-arg]
-    receiver = gnss.receiver(TANGENT, _rng())
-    return [receiver.read(n / gnss.hz, np.zeros(3), np.zeros(3)) for n in range(1, count + 1)]
+    made = receiver(gnss, TANGENT, _rng())
+    return [made.read(n / gnss.hz, np.zeros(3), np.zeros(3)) for n in range(1, count + 1)]
 
 
 def _east(gnss: GnssSensor, rng: np.random.Generator, t: float = 1.0) -> float:
-    fix = gnss.receiver(TANGENT, rng).read(t, np.zeros(3), np.zeros(3))
+    fix = receiver(gnss, TANGENT, rng).read(t, np.zeros(3), np.zeros(3))
     return float(TANGENT.enu(fix.latitude, fix.longitude, fix.altitude)[0])
 
 
@@ -238,7 +227,7 @@ def _hour() -> list[tuple[str, Errors, Floats]]:
     model = ImuModel(imu, FIELD, _rng())
     read = [model.read(n / imu.hz, STILL) for n in range(1, round(HOURS * 3600 * imu.hz) + 1)]
     rates, forces = np.array([r.angular_velocity for r in read]), np.array([r.specific_force for r in read])
-    return [("gyro", imu.gyro, rates), ("accel", imu.accel, forces)]
+    return [("gyro", gyro_errors(imu), rates), ("accel", accelerometer_errors(imu), forces)]
 
 
 def plot(path: Path) -> None:

@@ -33,7 +33,7 @@ from uvf.maths.se2 import Pose2
 from uvf.maths.se2_arrays import composed, interpolated, inverted, wrapped
 from uvf.models.scenario import ROOT, Site, load_site
 from uvf.models.shapes.scene import scene
-from uvf.models.vehicle.file import Lidar
+from uvf.models.vehicle.sensors import Lidar
 from uvf.models.world.geometry import floor_segments, solids
 from uvf.runtime.contract.instances import Host
 from uvf.runtime.contract.service import Outputs, Service

@@ -11,8 +11,9 @@ from uvf.models.urdf.robot import UrdfModel
 from uvf.models.urdf.rules import model_faults, wheel_faults
 from uvf.models.vehicle.air import AirBody
 from uvf.models.vehicle.body_rules import body_faults, body_notes
-from uvf.models.vehicle.file import GroundBody, Sensors, VehicleFile, load_vehicle
+from uvf.models.vehicle.file import GroundBody, VehicleFile, load_vehicle
 from uvf.models.vehicle.layers import file_of, folders_of
+from uvf.models.vehicle.sensors import Sensors
 from uvf.models.yaml_data import BadInput, convert, nearest, read_yaml
 
 SECTIONS = {"ground": GroundBody, "air": AirBody}

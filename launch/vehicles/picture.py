@@ -14,7 +14,8 @@ from uvf.maths.rotations import from_matrix
 from uvf.models.shapes.aircraft_shape import AircraftShape
 from uvf.models.shapes.mesh import placed, triangles
 from uvf.models.urdf.model import load_urdf
-from uvf.models.vehicle.file import Camera, Mount, VehicleFile
+from uvf.models.vehicle.file import VehicleFile
+from uvf.models.vehicle.sensors import Camera, Mount
 from uvf.models.world.file import Origin, WorldFile
 from uvf.models.yaml_data import BadInput
 

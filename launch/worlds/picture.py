@@ -16,7 +16,7 @@ from uvf.maths.footprint import SIDES, footprint
 from uvf.maths.rotations import from_matrix
 from uvf.models.shapes.scene import primitives
 from uvf.models.shapes.solid import Solid, pose_at
-from uvf.models.vehicle.file import Camera, Mount
+from uvf.models.vehicle.sensors import Camera, Mount
 from uvf.models.world.file import WorldFile
 from uvf.models.world.geometry import FloorPlan, solids, things
 from uvf.models.world.terrain import relief

@@ -13,6 +13,7 @@ from uvf.planning.collision_check import safe_share
 from uvf.planning.costmap import Body
 from uvf.planning.navigator import Navigator
 from uvf.runtime.contract.instances import Host
+from uvf.sensors.fitted import sweeping_of
 
 
 def build(site: Site) -> list[Host]:
@@ -33,7 +34,7 @@ def _hosts(member: Member) -> list[Host]:
     tracker = member.params("tracker", TrackerParams)
     return [
         Host(PlannerService, lambda: PlannerService(world_from_map, body.radius, member.entry.job.explore, planner), member.name),
-        Host(TrackerService, lambda: TrackerService(body, base_from_lidar, tracker, lidar.sweeping), member.name),
+        Host(TrackerService, lambda: TrackerService(body, base_from_lidar, tracker, sweeping_of(lidar)), member.name),
     ]
 
 

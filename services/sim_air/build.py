@@ -27,7 +27,6 @@ from uvf.models.mission.file import Start, Vehicle
 from uvf.models.scenario import AIRCRAFT_RADIUS, Member, Site
 from uvf.models.shapes.aircraft_shape import aircraft_shape
 from uvf.models.shapes.scene import scene
-from uvf.models.shapes.surroundings import aircraft_tree, vehicle_tree
 from uvf.models.urdf.model import load_urdf
 from uvf.models.vehicle.air import AirBody
 from uvf.models.vehicle.file import load_vehicle
@@ -38,6 +37,7 @@ from uvf.models.yaml_data import BadInput, Place
 from uvf.runtime.contract.instances import Host
 from uvf.runtime.messages.faults import Faults
 from uvf.runtime.process.subprocess_jobs import Died, run_in_subprocess
+from uvf.sensors.surroundings import aircraft_tree, vehicle_tree
 
 
 def build(site: Site) -> list[Host]:

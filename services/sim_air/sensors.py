@@ -8,8 +8,9 @@ import numpy as np
 from services.sim_air.engine.states import Air, Motion
 from uvf.maths import rotations
 from uvf.maths.geodesy import LocalTangent
-from uvf.models.vehicle.file import AirDataSensor, GnssSensor, ImuSensor, line_of
+from uvf.models.vehicle.sensors import AirDataSensor, GnssSensor, ImuSensor
 from uvf.sensors.errors import Channel, Errors
+from uvf.sensors.fitted import inertial_unit, line_of, receiver
 from uvf.sensors.instruments import Fix, ImuReading
 from uvf.sensors.sampling import Line
 
@@ -23,7 +24,7 @@ class Imu:
         """``field`` is the magnetic field, (3,) T, ENU."""
         self.frame = data.frame
         self._line: Line[ImuReading] = line_of(data, rng.spawn(1)[0])
-        self._unit = data.unit(rng)
+        self._unit = inertial_unit(data, rng)
         self._arm = np.array(data.mount.xyz)
         self._is_off_centre = bool(self._arm.any())
         self._sensor_from_body = rotations.matrix(rotations.from_euler(*data.mount.rpy)).T
@@ -48,7 +49,7 @@ class Gnss:
     def __init__(self, data: GnssSensor, tangent: LocalTangent, rng: np.random.Generator) -> None:
         self.data = data
         self._line: Line[Fix] = line_of(data, rng.spawn(1)[0])
-        self._receiver = data.receiver(tangent, rng)
+        self._receiver = receiver(data, tangent, rng)
 
     def read(self, t: float, motion: Motion) -> Fix | None:
         """The fix that arrives at ``t`` [s], if any."""

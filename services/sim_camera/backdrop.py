@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from services.sim_camera.optics import intrinsics
 from uvf.maths.compiled import compiled
-from uvf.models.vehicle.file import Camera
+from uvf.models.vehicle.sensors import Camera
 from uvf.models.world.file import WorldFile
 
 Floats = NDArray[np.float64]

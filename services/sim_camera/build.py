@@ -10,7 +10,8 @@ from services.sim_camera.service import SimCamera
 from uvf.models.scenario import Member, Site
 from uvf.models.shapes.aircraft_shape import aircraft_shape
 from uvf.models.urdf.model import engine_urdf
-from uvf.models.vehicle.file import Camera, VehicleFile, load_vehicle
+from uvf.models.vehicle.file import VehicleFile, load_vehicle
+from uvf.models.vehicle.sensors import Camera
 from uvf.models.world.geometry import solids
 from uvf.models.yaml_data import BadInput, nearest
 from uvf.runtime.contract.instances import Host

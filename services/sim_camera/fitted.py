@@ -12,7 +12,8 @@ from services.sim_camera.gimbal import Aim
 from services.sim_camera.picture import depth_message, image_message
 from services.sim_camera.renderer import Pose, Shot
 from uvf.maths.rotations import multiply, rotate
-from uvf.models.vehicle.file import Camera, Gimbal, Mount, line_of
+from uvf.models.vehicle.sensors import Camera, Gimbal, Mount
+from uvf.sensors.fitted import line_of
 from uvf.sensors.sampling import Line
 
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from schemas.messages import GimbalCommand
 from uvf.maths.rotations import from_axis, from_euler, inverse, matrix, multiply, to_euler, wrap
-from uvf.models.vehicle.file import Gimbal
+from uvf.models.vehicle.sensors import Gimbal
 
 Floats = NDArray[np.float64]
 

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from uvf.models.vehicle.file import Camera
+from uvf.models.vehicle.sensors import Camera
 
 Floats = NDArray[np.float64]
 

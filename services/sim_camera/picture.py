@@ -10,7 +10,7 @@ from PIL import Image
 from schemas.messages import CameraCalibration, CompressedImage, JointState, JointStates
 from services.sim_camera.gimbal import Joints
 from services.sim_camera.optics import intrinsics
-from uvf.models.vehicle.file import Camera
+from uvf.models.vehicle.sensors import Camera
 from uvf.runtime.messages.convert import stamp
 
 JPEG_QUALITY = 70

@@ -14,7 +14,7 @@ from uvf.maths.rotations import IDENTITY, from_euler, matrix, multiply, rotate
 from uvf.models.shapes.aircraft_shape import AircraftShape
 from uvf.models.shapes.mesh_parts import Part, joined
 from uvf.models.shapes.solid import Solid, pose_at
-from uvf.models.vehicle.file import Camera
+from uvf.models.vehicle.sensors import Camera
 from uvf.models.world.file import WorldFile
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.process.quiet import c_errors_discarded

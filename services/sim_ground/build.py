@@ -10,7 +10,6 @@ from uvf.maths.raycast import warm_up
 from uvf.models.mission.file import Start, Vehicle
 from uvf.models.scenario import Member, Site
 from uvf.models.shapes.aircraft_shape import aircraft_shape
-from uvf.models.shapes.surroundings import Surroundings, aircraft_solid, own_tree, vehicle_tree
 from uvf.models.urdf.model import check_urdf, engine_urdf, load_urdf
 from uvf.models.vehicle.file import GroundBody, load_vehicle
 from uvf.models.world.footing import COARSE, Footing
@@ -18,6 +17,7 @@ from uvf.models.world.geometry import solids
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.contract.instances import Host
 from uvf.runtime.messages.faults import Faults
+from uvf.sensors.surroundings import Surroundings, aircraft_solid, own_tree, vehicle_tree
 
 
 def build(site: Site) -> list[Host]:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from uvf.models.vehicle.file import Encoders
+from uvf.models.vehicle.sensors import Encoders
 
 
 def radians_per_tick(encoders: Encoders) -> float:

@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from schemas.messages import NavState
-from uvf.models.shapes.surroundings import Whereabouts
 from uvf.runtime.messages.convert import array, seconds, wxyz
+from uvf.sensors.surroundings import Whereabouts
 
 Floats = NDArray[np.float64]
 LONGEST = 0.1  # s, for which it is taken to go straight on

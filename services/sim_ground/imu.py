@@ -7,7 +7,8 @@ from services.sim_ground.body import BodyState
 from uvf.maths.compiled import compiled
 from uvf.maths.geodesy import GRAVITY
 from uvf.maths.rotations import from_euler
-from uvf.models.vehicle.file import ImuSensor
+from uvf.models.vehicle.sensors import ImuSensor
+from uvf.sensors.fitted import inertial_unit
 from uvf.sensors.instruments import ImuReading
 
 Floats = NDArray[np.float64]
@@ -43,7 +44,7 @@ class ImuModel:
         self._field = magnetic_field
         self._body_from_sensor = from_euler(*imu.mount.rpy)
         self._arm = np.array(imu.mount.xyz)
-        self._unit = imu.unit(rng)
+        self._unit = inertial_unit(imu, rng)
         self._velocity = np.zeros(3)
 
     def read(self, t: float, body: BodyState) -> ImuReading:

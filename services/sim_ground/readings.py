@@ -8,7 +8,8 @@ from numpy.typing import NDArray
 from schemas.messages import Contact, JointState, JointStates, NavState, WheelTicks
 from services.sim_ground.body import BodyState, Touch
 from services.sim_ground.encoders import radians_per_tick, ticks
-from uvf.models.vehicle.file import Bumper, Encoders, GroundBody
+from uvf.models.vehicle.file import GroundBody
+from uvf.models.vehicle.sensors import Bumper, Encoders
 from uvf.runtime.messages.convert import quaternion, stamp, vector
 
 Floats = NDArray[np.float64]

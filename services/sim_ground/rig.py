@@ -20,11 +20,13 @@ from uvf.maths.raycast import Body, Scene
 from uvf.maths.rotations import rotate
 from uvf.models.scenario import Member, Site
 from uvf.models.vehicle.battery import Charge
-from uvf.models.vehicle.file import Encoders, GnssSensor, GroundBody, ImuSensor, Lidar, RangeFinder, Sampled, Sonar, line_of
+from uvf.models.vehicle.file import GroundBody
+from uvf.models.vehicle.sensors import Encoders, GnssSensor, ImuSensor, Lidar, RangeFinder, Sampled, Sonar
 from uvf.runtime.contract.service import Value
 from uvf.runtime.messages.link_frames import Links
 from uvf.runtime.messages.sensors import battery_message, gnss_message, imu_message, range_message, scan_message
 from uvf.sensors.body_track import BodyTrack
+from uvf.sensors.fitted import line_of, receiver
 from uvf.sensors.instruments import Receiver
 from uvf.sensors.range_sensors import LidarModel, RangeModel
 from uvf.sensors.sampling import Due, Line
@@ -167,7 +169,7 @@ class Rig:
     def _gnss(self, gnss: GnssSensor) -> Read:
         origin = self._site.world.origin
         tangent = LocalTangent.from_degrees(origin.latitude, origin.longitude, origin.altitude)
-        return partial(_read_gnss, gnss, gnss.receiver(tangent, self._rng("gnss")))
+        return partial(_read_gnss, gnss, receiver(gnss, tangent, self._rng("gnss")))
 
     def _ranger(self, kind: str, sensor: Sonar | RangeFinder) -> Fitted:
         model = RangeModel(sensor, self._scene, self._rng(kind, sensor.frame))

@@ -12,11 +12,11 @@ from schemas.messages import RemoveRequest, Reply, SetPoseRequest, SimObject, Si
 from services.sim_ground.rig import Rig
 from services.sim_ground.world import Placed
 from uvf.models.shapes.solid import Solid
-from uvf.models.shapes.surroundings import Surroundings, vehicle_tree
 from uvf.models.urdf.robot import UrdfModel
 from uvf.models.yaml_data import BadInput, listed, nearest
 from uvf.runtime.messages.convert import array, quaternion, stamp, vector, yaw_of
 from uvf.runtime.messages.spawned import body_fault, crowd_fault, name_fault, pose_fault, solid_of, unit_wxyz
+from uvf.sensors.surroundings import Surroundings, vehicle_tree
 
 Floats = NDArray[np.float64]
 SAVED_MOST = 16

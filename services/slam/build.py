@@ -13,7 +13,7 @@ from uvf.maths.geodesy import LocalTangent
 from uvf.maths.se2 import IDENTITY, Pose2, compose, inverse
 from uvf.models.mission.file import Maps
 from uvf.models.scenario import Member, Site
-from uvf.models.vehicle.file import Lidar
+from uvf.models.vehicle.sensors import Lidar
 from uvf.models.yaml_data import BadInput, nearest
 from uvf.runtime.contract.instances import Host
 from uvf.runtime.state.saved_maps import known_path

@@ -10,7 +10,7 @@ from schemas.messages import Event, FrameTransform, Grid, LaserScan, MapFix, Pla
 from services.slam.placing_service import PlacingService, fix_message
 from uvf.maths.se2 import IDENTITY, Pose2, compose, inverse
 from uvf.maths.se3 import planar
-from uvf.models.vehicle.file import Lidar
+from uvf.models.vehicle.sensors import Lidar
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.contract.service import Outputs, frames, optional
 from uvf.runtime.messages.convert import pose2_of, pose2_of_frame, stamp

@@ -13,7 +13,7 @@ from schemas.messages import Event, FrameTransform, Grid, LaserScan, MapFix, Map
 from services.slam.placing_service import PlacingService, fix_message
 from uvf.maths.se2 import IDENTITY, Pose2, compose, inverse
 from uvf.maths.se3 import planar
-from uvf.models.vehicle.file import Lidar
+from uvf.models.vehicle.sensors import Lidar
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.contract.service import Outputs, frames
 from uvf.runtime.messages.convert import occupancy_grid, pose2_of_frame, stamp

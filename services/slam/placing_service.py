@@ -8,11 +8,12 @@ from numpy.typing import NDArray
 from schemas.messages import Event, FrameTransform, LaserScan, MapFix
 from uvf.maths.se2 import IDENTITY, Pose2, compose, inverse
 from uvf.maths.se3 import planar
-from uvf.models.vehicle.file import Lidar
+from uvf.models.vehicle.sensors import Lidar
 from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import planar_frame, seconds, stamp
 from uvf.runtime.messages.frames import FrameBuffer
 from uvf.runtime.messages.scans import Shape, beams_of, is_usable, shape_of
+from uvf.sensors.fitted import sweeping_of
 from uvf.slam.correction import toward
 from uvf.slam.deskew import straightened
 from uvf.slam.placing_params import PlacingParams
@@ -35,7 +36,7 @@ class PlacingService(Service):
 
     def __init__(self, vehicle: str, lidar: Lidar, world_from_map: Pose2) -> None:
         self._vehicle = vehicle
-        self._lidar = lidar
+        self._lidar, self._sweeping = lidar, sweeping_of(lidar)
         self._world_from_map = world_from_map
         self._beams: dict[Shape, Beams] = {}
         self._map_from_odom = self._published = self._odom_from_base = IDENTITY
@@ -57,9 +58,9 @@ class PlacingService(Service):
                 self._beams.clear()
             base_from_lidar = frames.lookup(self._frame("base_footprint"), scan.frame_id)
             limits = (self._lidar.range_min, self._lidar.range_max)
-            self._beams[shape_of(scan)] = beams_of(scan, base_from_lidar, limits, self._lidar.sweeping)
+            self._beams[shape_of(scan)] = beams_of(scan, base_from_lidar, limits, self._sweeping)
         odom, base = self._frame("odom"), self._frame("base_footprint")
-        ranges = self._lidar.sweeping.in_order(np.array(scan.ranges))
+        ranges = self._sweeping.in_order(np.array(scan.ranges))
         reading = straightened(
             ranges,
             self._beams[shape_of(scan)],

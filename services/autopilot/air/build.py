@@ -21,8 +21,8 @@ from uvf.guidance.runways import Strip
 from uvf.maths import rotations
 from uvf.maths.geodesy import LocalTangent
 from uvf.models.scenario import Member, Site
-from uvf.models.vehicle.file import Mount
 from uvf.models.vehicle.flight_params import AirParams
+from uvf.models.vehicle.sensors import Mount
 from uvf.models.world import file as world_file
 from uvf.models.world.terrain import relief
 from uvf.models.yaml_data import BadInput

@@ -9,6 +9,7 @@ from uvf.models.scenario import Member, Site
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.contract.instances import Host
 from uvf.runtime.messages.fences import fence_message, fencing
+from uvf.sensors.fitted import sweeping_of
 from uvf.sensors.sweeping import AT_ONCE
 
 
@@ -30,7 +31,7 @@ def _host(member: Member, site: Site) -> Host:
         raise BadInput(f"{site.mission_path}: {member.name}: fence: {outside}")
     imu, lidar = member.file.sensors.imu, member.file.sensors.lidar
     imu_rpy = imu.mount.rpy if imu is not None else (0.0, 0.0, 0.0)
-    sweeping = lidar.sweeping if lidar is not None else AT_ONCE
+    sweeping = sweeping_of(lidar) if lidar is not None else AT_ONCE
     begins = job.explore or bool(items)
     params = member.params("autopilot_ground", GroundAutopilotParams)
 

@@ -30,7 +30,8 @@ from schemas.messages import (
 from services.autopilot.mavlink.vibration import Vibration
 from uvf.maths.geodesy import Floats, LocalTangent
 from uvf.models.params import Params
-from uvf.models.vehicle.file import Sensors, VehicleFile
+from uvf.models.vehicle.file import VehicleFile
+from uvf.models.vehicle.sensors import Sensors
 from uvf.runtime.mavlink.geo import Placed
 from uvf.runtime.messages.convert import array, seconds
 from uvf.runtime.messages.fences import fencing

@@ -8,9 +8,9 @@ from services.sim_air.environment.ground import Ground
 from uvf.maths.bvh import Bvh
 from uvf.maths.raycast import Body
 from uvf.models.shapes.solid import Solid
-from uvf.models.shapes.surroundings import Surroundings, Whereabouts
 from uvf.runtime.messages.convert import array, wxyz
 from uvf.runtime.messages.spawned import solid_of, sound_objects, unit_wxyz
+from uvf.sensors.surroundings import Surroundings, Whereabouts
 
 
 class Around:

@@ -16,11 +16,12 @@ from services.slam.octree.beams import Beams, depth_beams, sweep_beams
 from services.slam.octree.octree_messages import FRAME, heights_message, octree_from, octree_message, slice_message
 from uvf.maths.se3 import apply
 from uvf.models.params import Params
-from uvf.models.vehicle.file import Sensors
+from uvf.models.vehicle.sensors import Sensors
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.contract.service import Outputs, Service, Value, every, frames, optional
 from uvf.runtime.messages.convert import seconds, stamp
 from uvf.runtime.messages.frames import FrameBuffer, FrameError
+from uvf.sensors.fitted import sweeping_of
 from uvf.sensors.sweeping import Part
 from uvf.slam.octree.columns import columns_of
 from uvf.slam.octree.files import to_bt
@@ -140,7 +141,7 @@ class OctreeService(Service):
         if (lidar := self._sensors.lidar) is not None:
             for sweep in scan:
                 beams = sweep_beams(sweep, min(self.params.lidar_reach, lidar.range_max))
-                self._waiting.append(Taken(lidar.sweeping.parts(len(sweep.ranges), seconds(sweep.timestamp)), sweep.frame_id, beams))
+                self._waiting.append(Taken(sweeping_of(lidar).parts(len(sweep.ranges), seconds(sweep.timestamp)), sweep.frame_id, beams))
         return events
 
     def _place(self, t: float, frames: FrameBuffer) -> list[Event]:

@@ -7,7 +7,8 @@ from schemas.messages import Gnss, Imu, WheelTicks
 from uvf.estimation.odometry.satellites import SatelliteFix
 from uvf.estimation.odometry.states import Step
 from uvf.maths.rotations import from_euler, matrix
-from uvf.models.vehicle.file import GroundBody, Mount
+from uvf.models.vehicle.file import GroundBody
+from uvf.models.vehicle.sensors import Mount
 from uvf.runtime.messages.convert import array, seconds
 
 Floats = NDArray[np.float64]

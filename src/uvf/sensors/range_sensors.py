@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from uvf.maths.raycast import Body, Rays, Scene, cast
 from uvf.maths.rotations import from_euler, matrices, matrix
-from uvf.models.vehicle.file import Lidar, Mount, RangeFinder, Sonar
+from uvf.models.vehicle.sensors import Lidar, Mount, RangeFinder, Sonar
 from uvf.sensors.body_track import BodyTrack, Placed
 from uvf.sensors.errors import Channel, Errors
 

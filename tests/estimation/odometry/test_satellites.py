@@ -12,7 +12,7 @@ from uvf.estimation.odometry.world import SatellitePose
 from uvf.maths.geodesy import LocalTangent
 from uvf.maths.rotations import wrap
 from uvf.maths.se2 import Pose2, compose, transform
-from uvf.models.vehicle.file import GnssSensor, Mount
+from uvf.models.vehicle.sensors import GnssSensor, Mount
 from uvf.runtime.messages.convert import stamp
 
 TANGENT = LocalTangent.from_degrees(49.0, 8.4, 120.0)

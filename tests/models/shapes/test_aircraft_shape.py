@@ -15,8 +15,9 @@ from uvf.models.jsbsim.sizes import sizes_of
 from uvf.models.scenario import ROOT
 from uvf.models.shapes.aircraft_plan import planned
 from uvf.models.shapes.aircraft_shape import aircraft_shape
-from uvf.models.vehicle.file import Sensors, VehicleFile, load_vehicle
+from uvf.models.vehicle.file import VehicleFile, load_vehicle
 from uvf.models.vehicle.looks import Looks, Tail, Wing
+from uvf.models.vehicle.sensors import Sensors
 from uvf.models.yaml_data import BadInput
 
 NAMES = sorted(path.parent.name for path in (ROOT / "vehicles").glob("*/vehicle.yaml"))

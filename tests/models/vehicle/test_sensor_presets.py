@@ -9,6 +9,7 @@ import yaml
 from uvf.models.scenario import ROOT
 from uvf.models.vehicle.file import load_vehicle
 from uvf.models.yaml_data import BadInput
+from uvf.sensors.fitted import sweeping_of
 
 
 @pytest.fixture
@@ -84,8 +85,8 @@ SLOW = {"preset": "lds01", "mount": {}, "sweep_time": 0.2}
 
 def test_a_lidar_may_take_its_time(sensors_of):
     lidar = sensors_of(lidar={**SLOW, "clockwise": True}).lidar
-    assert (lidar.sweep_time, lidar.clockwise, lidar.sweeping) == (0.2, True, (0.2, True))
-    assert sensors_of(lidar={"preset": "lds01", "mount": {}}).lidar.sweeping == (0.0, False)
+    assert (lidar.sweep_time, lidar.clockwise, sweeping_of(lidar)) == (0.2, True, (0.2, True))
+    assert sweeping_of(sensors_of(lidar={"preset": "lds01", "mount": {}}).lidar) == (0.0, False)
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 from schemas.messages import JointState, JointStates
 from uvf.maths.se3 import apply
 from uvf.models.scenario import ROOT
-from uvf.models.vehicle.file import ImuSensor, Mount, Sensors
+from uvf.models.vehicle.sensors import ImuSensor, Mount, Sensors
 from uvf.runtime.messages.convert import array, stamp
 from uvf.runtime.messages.frames import FrameBuffer
 from uvf.runtime.messages.link_frames import Links

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from uvf.maths.rotations import rotate
-from uvf.models.vehicle.file import Camera, ImuSensor, Mount, Sensors
+from uvf.models.vehicle.sensors import Camera, ImuSensor, Mount, Sensors
 from uvf.runtime.messages.convert import array, wxyz
 from uvf.runtime.messages.sensor_frames import sensor_frames
 

@@ -2,7 +2,7 @@
 
 from uvf.models.scenario import ROOT
 from uvf.models.shapes.aircraft_shape import aircraft_shape
-from uvf.models.shapes.surroundings import aircraft_tree
 from uvf.models.vehicle.file import load_vehicle
+from uvf.sensors.surroundings import aircraft_tree
 
 MILVUS_TREE = aircraft_tree(aircraft_shape(ROOT / "vehicles" / "milvus", load_vehicle(ROOT / "vehicles", "milvus")))

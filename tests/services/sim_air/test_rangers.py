@@ -15,7 +15,7 @@ from uvf.maths.rotations import IDENTITY, from_euler
 from uvf.maths.solids import box
 from uvf.models.shapes.scene import scene
 from uvf.models.shapes.solid import Solid
-from uvf.models.vehicle.file import Lidar, Mount, RangeFinder, Sensors
+from uvf.models.vehicle.sensors import Lidar, Mount, RangeFinder, Sensors
 from uvf.runtime.messages.convert import quaternion, vector
 
 WALL = Solid("wall", "box", (1.0, 400.0, 50.0), np.array((100.5, 0.0, 25.0)))

@@ -10,7 +10,7 @@ from services.sim_air.engine.states import Air, Motion
 from services.sim_air.sensors import Gnss, Imu, Pressures
 from uvf.maths import rotations
 from uvf.maths.geodesy import LocalTangent
-from uvf.models.vehicle.file import AirDataSensor, GnssSensor, ImuSensor, Mount
+from uvf.models.vehicle.sensors import AirDataSensor, GnssSensor, ImuSensor, Mount
 
 FIELD = np.array((2e-6, 25e-6, -39e-6))
 TANGENT = LocalTangent.from_degrees(40.77, 14.79, 300.0)

@@ -6,7 +6,7 @@ import pytest
 
 from services.sim_camera.backdrop import HAZE, SKY, Backdrop
 from services.sim_camera.optics import intrinsics, project
-from uvf.models.vehicle.file import Camera, Mount
+from uvf.models.vehicle.sensors import Camera, Mount
 from uvf.models.world.file import Field, Origin, WorldFile
 
 CAMERA = Camera(mount=Mount(), hz=5.0, width=160, height=120, fov=1.2)

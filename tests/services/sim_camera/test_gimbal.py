@@ -20,7 +20,8 @@ from services.sim_camera.service import SimCamera
 from tests.services.sim_camera.test_service import CAMERA, GreyRenderer
 from uvf.maths.rotations import from_euler, matrix, multiply
 from uvf.models.scenario import ROOT, load_site
-from uvf.models.vehicle.file import Chase, Gimbal, Mount, load_vehicle
+from uvf.models.vehicle.file import load_vehicle
+from uvf.models.vehicle.sensors import Chase, Gimbal, Mount
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.messages.convert import array, quaternion, seconds, stamp, vector, wxyz
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from services.sim_camera.optics import frustum, intrinsics, project
-from uvf.models.vehicle.file import Camera, Mount
+from uvf.models.vehicle.sensors import Camera, Mount
 
 CAMERA = Camera(mount=Mount(), hz=5.0, width=160, height=120, fov=1.2)
 

@@ -16,7 +16,8 @@ from uvf.models.shapes.aircraft_shape import AircraftShape, aircraft_shape
 from uvf.models.shapes.mesh import load_mesh
 from uvf.models.shapes.mesh_parts import Part
 from uvf.models.shapes.solid import Solid
-from uvf.models.vehicle.file import Camera, Mount, load_vehicle
+from uvf.models.vehicle.file import load_vehicle
+from uvf.models.vehicle.sensors import Camera, Mount
 from uvf.models.world.file import Box, Cylinder, Field, Origin, WorldFile
 from uvf.models.world.geometry import solids
 

@@ -16,7 +16,8 @@ from services.sim_camera.fitted import Fitted
 from services.sim_camera.renderer import Shot
 from services.sim_camera.service import SimCamera
 from uvf.models.scenario import ROOT, load_site
-from uvf.models.vehicle.file import Camera, Mount, load_vehicle
+from uvf.models.vehicle.file import load_vehicle
+from uvf.models.vehicle.sensors import Camera, Mount
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.contract.instances import Host
 from uvf.runtime.contract.service import Service

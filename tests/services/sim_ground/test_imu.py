@@ -9,7 +9,7 @@ from services.sim_ground.imu import ImuModel
 from uvf.maths.geodesy import GRAVITY
 from uvf.maths.kinematics import WheelSpeeds
 from uvf.maths.rotations import from_euler
-from uvf.models.vehicle.file import Encoders, ImuSensor, Mount
+from uvf.models.vehicle.sensors import Encoders, ImuSensor, Mount
 
 NORTH_FIELD = np.array((0.0, 25e-6, -39e-6))
 DT = 0.01

@@ -9,7 +9,8 @@ from services.sim_ground.world import BulletWorld
 from tests.services.sim_ground.ground_scene import WALL_AHEAD, body_at, post, scene_of
 from uvf.models.scenario import ROOT
 from uvf.models.shapes.scene import scene
-from uvf.models.vehicle.file import Mount, load_vehicle
+from uvf.models.vehicle.file import load_vehicle
+from uvf.models.vehicle.sensors import Mount
 from uvf.models.world.file import load_world
 from uvf.models.world.footing import Footing
 from uvf.models.world.geometry import solids

@@ -12,7 +12,7 @@ from tests.services.sim_ground.ride import site_with
 from uvf.maths.geodesy import LocalTangent
 from uvf.maths.kinematics import WheelSpeeds
 from uvf.models.shapes.scene import scene
-from uvf.models.vehicle.file import Bumper, GnssSensor, Mount, RangeFinder, Sonar
+from uvf.models.vehicle.sensors import Bumper, GnssSensor, Mount, RangeFinder, Sonar
 from uvf.models.world.geometry import solids
 from uvf.runtime.messages.convert import seconds
 

@@ -13,10 +13,10 @@ from services.sim_ground.service import SimGround
 from services.sim_ground.stage import Stage
 from tests.services.sim_ground.ride import site_with
 from uvf.maths.kinematics import WheelSpeeds
-from uvf.models.shapes.surroundings import Surroundings, vehicle_tree
 from uvf.models.urdf.model import load_urdf
 from uvf.models.world.geometry import solids
 from uvf.runtime.messages.convert import seconds, stamp
+from uvf.sensors.surroundings import Surroundings, vehicle_tree
 
 IDLE = {"commands": {}, "flying": None, "truth": {}, "spawn": [], "remove": [], "set_pose": [], "save": [], "restore": []}
 

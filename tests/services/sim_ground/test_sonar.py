@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from tests.services.sim_ground.ground_scene import WALL_AHEAD, body_at, post
-from uvf.models.vehicle.file import Mount, Sonar
+from uvf.models.vehicle.sensors import Mount, Sonar
 from uvf.sensors.range_sensors import RangeModel
 
 SONAR = Sonar(mount=Mount((0.1, 0.0, 0.1)), hz=10.0, fov=0.5, range_min=0.05, range_max=4.0)

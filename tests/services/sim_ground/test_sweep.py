@@ -13,7 +13,7 @@ from tests.services.sim_ground.ground_scene import body_at, scene_of
 from tests.services.sim_ground.ride import ride, site_with
 from tests.services.sim_ground.test_lidar import QUIET
 from uvf.maths.kinematics import Twist
-from uvf.models.vehicle.file import Mount
+from uvf.models.vehicle.sensors import Mount
 from uvf.runtime.messages.convert import seconds
 from uvf.sensors.range_sensors import LidarModel
 

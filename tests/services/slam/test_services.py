@@ -13,7 +13,8 @@ from tests.slam.room import ANGLES, measured
 from uvf.estimation.odometry.params import OdometryParams
 from uvf.maths.rotations import from_euler
 from uvf.models.scenario import ROOT
-from uvf.models.vehicle.file import Lidar, Mount, load_vehicle
+from uvf.models.vehicle.file import load_vehicle
+from uvf.models.vehicle.sensors import Lidar, Mount
 from uvf.runtime.messages.convert import occupancy_cells, planar_pose, quaternion, stamp, yaw_of
 from uvf.runtime.messages.frames import FrameBuffer
 from uvf.slam.graph.method import GraphParams, GraphSlam

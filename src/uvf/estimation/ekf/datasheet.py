@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 
 from uvf.estimation.ekf.states import MAGNETIC
-from uvf.models.vehicle.file import Sensors
+from uvf.models.vehicle.sensors import Sensors
 
 PA_PER_M = 11.7  # near the ground
 

@@ -25,7 +25,7 @@ from uvf.estimation.odometry.states import (
 )
 from uvf.maths.rotations import wrap
 from uvf.maths.se2 import Pose2
-from uvf.models.vehicle.file import GnssSensor
+from uvf.models.vehicle.sensors import GnssSensor
 
 Floats = NDArray[np.float64]
 

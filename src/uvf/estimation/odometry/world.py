@@ -11,7 +11,7 @@ from uvf.estimation.odometry.states import HEADING, POSE
 from uvf.maths.geodesy import LocalTangent
 from uvf.maths.rotations import wrap
 from uvf.maths.se2 import IDENTITY, Pose2, compose, interpolate, inverse
-from uvf.models.vehicle.file import GnssSensor
+from uvf.models.vehicle.sensors import GnssSensor
 
 Floats = NDArray[np.float64]
 

@@ -8,8 +8,8 @@ import numpy as np
 from uvf.models.jsbsim.sizes import Hull, Sizes, Thruster
 from uvf.models.shapes.aircraft_panels import Movable
 from uvf.models.shapes.mesh_parts import Colour, Part, box, lathe, rod
-from uvf.models.vehicle.file import Sensors
 from uvf.models.vehicle.looks import Looks
+from uvf.models.vehicle.sensors import Sensors
 
 PLATE: Colour = (58, 64, 76)
 GLASS: Colour = (40, 60, 90)

@@ -9,7 +9,7 @@ from uvf.maths.rotations import from_euler, rotate
 from uvf.maths.se3 import Transform
 from uvf.models.shapes.mesh import contains, placed
 from uvf.models.urdf.robot import UrdfModel
-from uvf.models.vehicle.file import Lidar, Mount, Sensors
+from uvf.models.vehicle.sensors import Lidar, Mount, Sensors
 from uvf.models.yaml_data import Key, Place
 
 APART = 0.03  # m, between a sensor's mount and the link of its name: the link may be the housing

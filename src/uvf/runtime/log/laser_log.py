@@ -23,6 +23,7 @@ from uvf.runtime.log.replay import logged_site
 from uvf.runtime.messages.convert import pose2_of, seconds
 from uvf.runtime.messages.frames import FrameBuffer, FrameError
 from uvf.runtime.messages.scans import Shape, beams_of, is_usable, shape_of
+from uvf.sensors.fitted import sweeping_of
 from uvf.sensors.sweeping import AT_ONCE, Sweeping
 from uvf.slam.deskew import straightened
 from uvf.slam.logs.laser_log import LaserLog, OdometryTrack
@@ -139,7 +140,7 @@ def _sweeping(path: Path, name: str) -> tuple[Sweeping, tuple[str, ...]]:
     try:
         with logged_site(log) as site:
             lidar = site.members[name].file.sensors.lidar if name in site.members else None
-            return (lidar.sweeping if lidar is not None else AT_ONCE), ()
+            return (sweeping_of(lidar) if lidar is not None else AT_ONCE), ()
     except BadInput:
         return AT_ONCE, (f"log {path}: the files of the run in it cannot be read: all beams of a scan are taken to be of its stamp",)
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from schemas.messages import FrameTransform, FrameTransforms, JointStates
 from uvf.models.urdf.model import read_urdf
 from uvf.models.urdf.robot import Joint, UrdfModel
-from uvf.models.vehicle.file import Sensors
+from uvf.models.vehicle.sensors import Sensors
 from uvf.runtime.messages.convert import quaternion, seconds, stamp, vector
 from uvf.runtime.messages.sensor_frames import sensor_frames
 

@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from schemas.messages import FrameTransform, FrameTransforms
 from uvf.maths.rotations import from_euler
-from uvf.models.vehicle.file import Camera, Mount, Sensors
+from uvf.models.vehicle.sensors import Camera, Mount, Sensors
 from uvf.runtime.messages.convert import quaternion, stamp, vector
 
 Floats = NDArray[np.float64]

@@ -11,7 +11,7 @@ from schemas.messages import Clock, Event, FrameTransform, LaserScan, NavState, 
 from services.gcs.state.state import LOST_AFTER, STALE_AFTER, Model, link_of
 from tests.services.gcs.fakes import Station
 from tests.services.gcs.scripted import UAV, UGV, demo_site, uav_at, ugv_at
-from uvf.models.vehicle.file import Mount
+from uvf.models.vehicle.sensors import Mount
 from uvf.runtime.messages.convert import planar_pose, stamp
 
 

@@ -17,7 +17,7 @@ from uvf.maths.se2 import Pose2, compose
 from uvf.maths.se2_arrays import composed, inverted
 from uvf.models.mission.file import Maps
 from uvf.models.scenario import ROOT, load_site
-from uvf.models.vehicle.file import Lidar, Mount
+from uvf.models.vehicle.sensors import Lidar, Mount
 from uvf.models.world.map_file import save_map
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.messages.convert import occupancy_cells, planar_pose, stamp, yaw_of

@@ -16,7 +16,7 @@ from services.slam.octree.octree_service import OctreeParams, OctreeService
 from tests.services.live_params import all_settable_are_read
 from uvf.maths.rotations import IDENTITY, from_euler
 from uvf.models.scenario import ROOT, load_site
-from uvf.models.vehicle.file import Camera, Lidar, Mount, Sensors
+from uvf.models.vehicle.sensors import Camera, Lidar, Mount, Sensors
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.messages.convert import occupancy_cells, quaternion, stamp
 from uvf.runtime.messages.frames import FrameBuffer

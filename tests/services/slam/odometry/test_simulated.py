@@ -15,7 +15,7 @@ from services.slam.build import build as slam
 from uvf.maths.rotations import wrap
 from uvf.maths.se2 import Pose2, compose, inverse
 from uvf.models.scenario import ROOT, load_site
-from uvf.models.vehicle.file import GnssSensor, Mount
+from uvf.models.vehicle.sensors import GnssSensor, Mount
 from uvf.runtime.contract.instances import Host
 from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import seconds, yaw_of

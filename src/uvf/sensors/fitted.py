@@ -1,0 +1,61 @@
+"""Instruments as a vehicle's file describes them: their errors, their rates, and how their readings come to their readers."""
+
+from typing import Any
+
+import numpy as np
+
+from uvf.maths.geodesy import LocalTangent
+from uvf.models.vehicle.sensors import GnssSensor, ImuSensor, Lidar, Sampled
+from uvf.sensors.errors import Errors
+from uvf.sensors.instruments import InertialUnit, Receiver
+from uvf.sensors.sampling import Dropout, Line
+from uvf.sensors.sweeping import Sweeping
+
+
+def gyro_errors(imu: ImuSensor) -> Errors:
+    """rad/s."""
+    return Errors(
+        noise=imu.gyro_noise,
+        bias=imu.gyro_bias,
+        scale=imu.gyro_scale,
+        drift=imu.gyro_instability,
+        drift_time=imu.instability_time,
+        random_walk=imu.gyro_random_walk,
+        limit=imu.gyro_range,
+        resolution=imu.gyro_resolution,
+    )
+
+
+def accelerometer_errors(imu: ImuSensor) -> Errors:
+    """m/s^2."""
+    return Errors(
+        noise=imu.accel_noise,
+        bias=imu.accel_bias,
+        scale=imu.accel_scale,
+        drift=imu.accel_instability,
+        drift_time=imu.instability_time,
+        random_walk=imu.accel_random_walk,
+        limit=imu.accel_range,
+        resolution=imu.accel_resolution,
+    )
+
+
+def inertial_unit(imu: ImuSensor, rng: np.random.Generator) -> InertialUnit:
+    magnetometer = Errors(noise=imu.mag_noise, bias=imu.mag_bias)  # T
+    return InertialUnit(gyro_errors(imu), accelerometer_errors(imu), magnetometer, imu.mag_hz or imu.hz, rng)
+
+
+def receiver(gnss: GnssSensor, tangent: LocalTangent, rng: np.random.Generator) -> Receiver:
+    """tangent: the plane of the world's origin."""
+    noise = np.array((gnss.horizontal_noise, gnss.horizontal_noise, gnss.vertical_noise))
+    drift = np.array((gnss.horizontal_drift, gnss.horizontal_drift, gnss.vertical_drift))
+    return Receiver(Errors(noise=noise, drift=drift, drift_time=gnss.drift_time), Errors(noise=gnss.speed_noise), tangent, rng)
+
+
+def sweeping_of(lidar: Lidar) -> Sweeping:
+    return Sweeping(lidar.sweep_time, lidar.clockwise)
+
+
+def line_of(sensor: Sampled, rng: np.random.Generator) -> Line[Any]:
+    """The way of a sensor's readings to their readers."""
+    return Line(sensor.hz, sensor.latency, Dropout(sensor.dropout, sensor.burst, rng) if sensor.dropout else None)
