@@ -23,8 +23,9 @@ from schemas.messages import SurfaceCommand
 from services.sim_air.build import build
 from uvf.models.scenario import Site, load_site
 from uvf.runtime.contract.instances import Host
-from uvf.runtime.contract.service import Outputs, Service
+from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import stamp
+from uvf.runtime.messages.outputs import Outputs
 from uvf.runtime.time.lockstep import Lockstep
 
 SECONDS = 10.0

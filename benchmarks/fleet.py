@@ -23,8 +23,9 @@ from uvf.models.scenario import ROOT, Site, load_site
 from uvf.models.world.file import load_world
 from uvf.models.world.footing import Footing
 from uvf.runtime.contract.instances import Host
-from uvf.runtime.contract.service import Outputs, Service
+from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import stamp
+from uvf.runtime.messages.outputs import Outputs
 from uvf.runtime.time.lockstep import Lockstep
 
 SECONDS = 10.0

@@ -19,8 +19,8 @@ from benchmarks.timing import stopwatch
 from schemas import topics
 from schemas.messages import Gnss, Kind, Mode, Targets, Vector3, VehicleStatus
 from services.autopilot.mavlink.build import facts_of
-from services.autopilot.mavlink.facts import Facts
-from services.autopilot.mavlink.parameter_store import FileStore
+from services.autopilot.mavlink.connection.facts import Facts
+from services.autopilot.mavlink.parameters.parameter_store import FileStore
 from services.autopilot.mavlink.service import MavlinkService
 from uvf.mavlink import dialect as mav
 from uvf.mavlink.codec import Codec
@@ -31,7 +31,7 @@ from uvf.runtime.contract.instances import Host
 from uvf.runtime.contract.service import Input
 from uvf.runtime.contract.service_runner import Shell
 from uvf.runtime.messages.convert import stamp
-from uvf.runtime.time.clock import NS
+from uvf.runtime.messages.step_times import NS
 
 SECONDS, WARM_UP = 20.0, 2.0
 DT = 0.02

@@ -18,11 +18,11 @@ from benchmarks.posegraph_gtsam import INSTALLED, SOLVERS, factors, levenberg
 from launch.commands.bench import Figures
 from uvf.maths.se2 import Pose2
 from uvf.models.yaml_data import BadInput
-from uvf.slam.graph import g2o
-from uvf.slam.graph.descent import heading_first
-from uvf.slam.graph.edges import Edge
-from uvf.slam.graph.linear import LinearSystem
-from uvf.slam.graph.pose_graph import PoseGraph, warm_up
+from uvf.slam.pose_graph import g2o
+from uvf.slam.pose_graph.descent import heading_first
+from uvf.slam.pose_graph.edges import Edge
+from uvf.slam.pose_graph.linear import LinearSystem
+from uvf.slam.pose_graph.pose_graph import PoseGraph, warm_up
 
 Floats = NDArray[np.float64]
 Result = TypeVar("Result")

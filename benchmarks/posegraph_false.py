@@ -15,10 +15,10 @@ from launch.commands.bench import Figures
 from uvf.maths.alignment import aligned
 from uvf.maths.se2 import IDENTITY, Pose2, compose, inverse, transform
 from uvf.models.yaml_data import BadInput
-from uvf.slam.graph import g2o
-from uvf.slam.graph.edges import Edge
-from uvf.slam.graph.pose_graph import PoseGraph, warm_up
-from uvf.slam.graph.robust import LIMIT
+from uvf.slam.pose_graph import g2o
+from uvf.slam.pose_graph.edges import Edge
+from uvf.slam.pose_graph.pose_graph import PoseGraph, warm_up
+from uvf.slam.pose_graph.robust import LIMIT
 
 Floats = NDArray[np.float64]
 

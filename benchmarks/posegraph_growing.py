@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from benchmarks.posegraph_false import between
 from launch.commands.bench import Figures
 from uvf.maths.se2 import Pose2, compose
-from uvf.slam.graph.edges import Edge
-from uvf.slam.graph.pose_graph import PoseGraph, warm_up
+from uvf.slam.pose_graph.edges import Edge
+from uvf.slam.pose_graph.pose_graph import PoseGraph, warm_up
 
 Floats = NDArray[np.float64]
 

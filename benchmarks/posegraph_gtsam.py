@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from uvf.slam.graph.edges import Edge
-from uvf.slam.graph.g2o import turned
+from uvf.slam.pose_graph.edges import Edge
+from uvf.slam.pose_graph.g2o import turned
 
 try:
     import gtsam

@@ -36,11 +36,12 @@ from uvf.models.shapes.scene import scene
 from uvf.models.vehicle.sensors import Lidar
 from uvf.models.world.geometry import floor_segments, solids
 from uvf.runtime.contract.instances import Host
-from uvf.runtime.contract.service import Outputs, Service
+from uvf.runtime.contract.service import Service
 from uvf.runtime.log.laser_log import read_mcap
 from uvf.runtime.log.reading import read_log
 from uvf.runtime.log.recording import Recorder
 from uvf.runtime.messages.convert import seconds, stamp
+from uvf.runtime.messages.outputs import Outputs
 from uvf.runtime.time.lockstep import Lockstep
 from uvf.sensors.range_sensors import LidarModel
 from uvf.slam.evaluation.run import run_over

@@ -9,8 +9,9 @@ process; the very same class runs over Zenoh in a process of its own.
 from schemas import topics
 from schemas.messages import DriveCommand, Event
 from uvf.runtime.contract.instances import Host
-from uvf.runtime.contract.service import Outputs, Service
+from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import stamp
+from uvf.runtime.messages.outputs import Outputs
 from uvf.runtime.time.lockstep import Lockstep
 
 

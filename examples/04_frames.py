@@ -13,9 +13,10 @@ from schemas.messages import Event, LaserScan
 from uvf.maths.se3 import apply
 from uvf.models.scenario import ROOT, load_site
 from uvf.runtime.contract.instances import Host
-from uvf.runtime.contract.service import Outputs, Service, frames
+from uvf.runtime.contract.service import Service, frames
 from uvf.runtime.messages.convert import scan_points, seconds, stamp
 from uvf.runtime.messages.frames import FrameBuffer, FrameError
+from uvf.runtime.messages.outputs import Outputs
 from uvf.runtime.time.lockstep import Lockstep
 
 

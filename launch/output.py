@@ -6,7 +6,7 @@ from pathlib import Path
 from threading import Lock, Thread
 from typing import IO
 
-from uvf.runtime.contract.validation import legible
+from uvf.runtime.messages.validation import legible
 
 KEPT = 10_000_000  # bytes of a log, in two files
 LONGEST_LINE = 65_536  # bytes; a longer one is handed on in pieces

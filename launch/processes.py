@@ -15,10 +15,10 @@ from uvf.runtime.bus.address import router_from
 from uvf.runtime.bus.interface import Query, Sample, Sink
 from uvf.runtime.bus.wire import Malformed, decode, guarded
 from uvf.runtime.bus.zenoh_bus import ZenohBus, open_router
-from uvf.runtime.contract.refusals import Refusals
+from uvf.runtime.log.state_store import Keeper
 from uvf.runtime.messages.convert import stamp_ns
+from uvf.runtime.messages.refusals import Refusals
 from uvf.runtime.process.watchdog import Watchdog
-from uvf.runtime.state.state_store import Keeper
 from uvf.runtime.time.conductor import Conductor
 from uvf.runtime.time.live import Live
 

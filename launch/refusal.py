@@ -8,7 +8,7 @@ from contextlib import contextmanager
 import typer
 
 from uvf.models.yaml_data import BadInput
-from uvf.runtime.contract.validation import escaped
+from uvf.runtime.messages.validation import escaped
 
 _NO_NAMES = {errno.ENAMETOOLONG: "the name is too long for a file", errno.ELOOP: "the link leads round in a circle"}
 _WORD, _SHOWN = 255, 60

@@ -14,7 +14,7 @@ from schemas.messages import Clock
 from uvf.models.scenario import load_site
 from uvf.runtime.bus.interface import Sample
 from uvf.runtime.bus.wire import guarded
-from uvf.runtime.contract.refusals import Refusals
+from uvf.runtime.messages.refusals import Refusals
 
 ROUTER_PATIENCE = 10.0  # s
 

@@ -13,7 +13,7 @@ from uvf.models.yaml_data import BadInput, nearest
 from uvf.runtime.bus.address import router_from
 from uvf.runtime.bus.interface import Sample, matches
 from uvf.runtime.bus.zenoh_bus import ZenohBus
-from uvf.runtime.contract.topic_lookup import topic_of
+from uvf.runtime.messages.topic_lookup import topic_of
 
 LOOK = 0.02  # s
 LIVE_SECONDS = 2.0

@@ -89,8 +89,8 @@ def world_new(
     replace: Annotated[bool, typer.Option("--replace", help="Overwrite a world of that name.")] = False,
 ) -> None:
     """Make up a house with rooms, doors and furniture; every room can be reached."""
+    from launch.worlds.generator import generate
     from uvf.models.importing.worlds import make_room, new_folder
-    from uvf.models.world.generator import generate
     from uvf.models.world.writer import write_world
 
     with bad_input_is_one_line():

@@ -6,11 +6,11 @@ from pathlib import Path
 from typing import Any, get_type_hints
 
 from launch.vehicles.aircraft_rules import aircraft_faults
+from uvf.models.checks.body_rules import body_faults, body_notes
 from uvf.models.urdf.model import read_urdf
 from uvf.models.urdf.robot import UrdfModel
 from uvf.models.urdf.rules import model_faults, wheel_faults
 from uvf.models.vehicle.air import AirBody
-from uvf.models.vehicle.body_rules import body_faults, body_notes
 from uvf.models.vehicle.file import GroundBody, VehicleFile, load_vehicle
 from uvf.models.vehicle.layers import file_of, folders_of
 from uvf.models.vehicle.sensors import Sensors

@@ -7,9 +7,9 @@ from rich.table import Table
 from rich.tree import Tree
 
 from uvf.maths.se3 import Transform
+from uvf.models.checks.sensor_rules import mounted
 from uvf.models.urdf.robot import UrdfModel
 from uvf.models.vehicle.file import GroundBody, VehicleFile, load_vehicle
-from uvf.models.vehicle.sensor_rules import mounted
 from uvf.models.yaml_data import BadInput
 
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from services.sim_camera.build import look_at
 from services.sim_camera.renderer import BulletRenderer, Look, Pose
 from uvf.maths.rotations import from_matrix
-from uvf.models.shapes.aircraft_shape import AircraftShape
+from uvf.models.aircraft.shape import AircraftShape
 from uvf.models.shapes.mesh import placed, triangles
 from uvf.models.urdf.model import load_urdf
 from uvf.models.vehicle.file import VehicleFile

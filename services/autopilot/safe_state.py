@@ -1,8 +1,8 @@
 """What is sent to a vehicle's actuators when its autopilot has failed too often to be tried again."""
 
 from schemas.messages import Kind, Mode, SurfaceCommand, VehicleStatus, WheelCommand
-from uvf.runtime.contract.service import Outputs
 from uvf.runtime.messages.convert import stamp
+from uvf.runtime.messages.outputs import Outputs
 
 SPIRAL = 0.1  # rad of rudder: with the motor off it comes down in a wide turn instead of gliding out of sight
 

@@ -21,10 +21,10 @@ from schemas.messages import (
     Vector3,
 )
 from services.gcs.by_hand import ByHand
+from services.gcs.state.layers import ROOTS
 from services.gcs.state.session import Session
 from services.gcs.state.state import LOST_AFTER, Model, Order, VehicleModel
-from services.gcs.view.layers import ROOTS
-from services.gcs.view.wording import describe, modes_of
+from services.gcs.state.wording import describe, modes_of
 from uvf.control.teleop_drive import SCALINGS, Command
 from uvf.runtime.contract.service import Answer
 from uvf.runtime.messages.convert import stamp

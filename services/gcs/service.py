@@ -33,7 +33,8 @@ from services.gcs.page.page_frame import Composer
 from services.gcs.state.state import Model
 from services.gcs.view.drawing import Page
 from uvf.models.scenario import Site
-from uvf.runtime.contract.service import Answer, Outputs, Service, each_vehicle, every, optional, stop_all
+from uvf.runtime.contract.service import Answer, Service, each_vehicle, every, optional, stop_all
+from uvf.runtime.messages.outputs import Outputs
 from uvf.runtime.state.stop_all import StopStatus
 
 

@@ -7,7 +7,8 @@ from schemas.messages import Link
 from schemas.topics import SYSTEM
 from services.mavlink_bridge.station import Station
 from uvf.models.yaml_data import BadInput
-from uvf.runtime.contract.service import Outputs, Service, each_vehicle
+from uvf.runtime.contract.service import Service, each_vehicle
+from uvf.runtime.messages.outputs import Outputs
 
 PATIENCE = 5.0  # s, after which it is said that nobody is there
 HESITATION = 1.2  # s, after which this bus has told whether the new one is its own

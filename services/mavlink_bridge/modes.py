@@ -2,8 +2,8 @@
 
 from schemas.messages import Mode
 from uvf.mavlink import dialect as mav
-from uvf.runtime.contract.validation import legible
 from uvf.runtime.mavlink.modes import TABLE
+from uvf.runtime.messages.validation import legible
 
 PLANE: dict[int, tuple[str, Mode]] = {
     0: ("MANUAL", Mode.MODE_MANUAL),

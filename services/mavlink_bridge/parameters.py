@@ -11,7 +11,7 @@ from schemas.messages import Param, ParamReply
 from services.mavlink_bridge.limits import LARGEST_FLOAT, WHOLE_FLOAT, Refused
 from services.mavlink_bridge.wire import TEXT_WITHIN, Wire
 from uvf.mavlink import dialect as mav
-from uvf.runtime.contract.validation import legible
+from uvf.runtime.messages.validation import legible
 
 AGAIN_AFTER, TRIES = 0.7, 5  # s
 NAME_BYTES = 16

@@ -5,7 +5,6 @@ from collections.abc import Sequence
 from schemas.messages import Fence, Mission, MissionItem, RallyPoints, Vector3
 from services.mavlink_bridge.frame import Chart
 from uvf.mavlink import dialect as mav
-from uvf.runtime.contract.validation import error_in
 from uvf.runtime.mavlink import fence_items, rally_items
 from uvf.runtime.mavlink.limits import far_off
 from uvf.runtime.mavlink.mission_items import (
@@ -25,6 +24,7 @@ from uvf.runtime.mavlink.mission_items import (
     to_wire,
     unpacked,
 )
+from uvf.runtime.messages.validation import error_in
 
 Item = mav.MAVLink_mission_item_int_message
 MADE_UP = mav.MAV_MISSION_INVALID

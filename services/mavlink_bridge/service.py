@@ -34,8 +34,9 @@ from services.mavlink_bridge.requests import Requests
 from services.mavlink_bridge.station import Station
 from services.mavlink_bridge.stopping import Stopping
 from uvf.mavlink.names import enum_name
-from uvf.runtime.contract.service import Later, Outputs, Service, optional, stop_all
+from uvf.runtime.contract.service import Later, Service, optional, stop_all
 from uvf.runtime.messages.convert import stamp
+from uvf.runtime.messages.outputs import Outputs
 from uvf.runtime.state.stop_all import StopStatus
 from uvf.sensors.sampling import Due
 

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from uvf.mavlink import dialect as mav
-from uvf.runtime.contract.validation import legible
+from uvf.runtime.messages.validation import legible
 
 Done = Callable[[bool, str], None]
 """Called once with (accepted, reason)."""

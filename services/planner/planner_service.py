@@ -36,9 +36,10 @@ from uvf.planning.exploration import Explorer, Patrol
 from uvf.planning.frontiers import Taste
 from uvf.planning.navigator import Navigator, Plan
 from uvf.planning.smoothing import length
-from uvf.runtime.contract.service import Answer, Outputs, Service, optional
+from uvf.runtime.contract.service import Answer, Service, optional
 from uvf.runtime.messages.convert import occupancy_cells, planar_pose, pose2_of, seconds, stamp
 from uvf.runtime.messages.fences import fencing
+from uvf.runtime.messages.outputs import Outputs
 
 Floats = NDArray[np.float64]
 Point = tuple[float, float]

@@ -14,8 +14,9 @@ from uvf.models.params import Params
 from uvf.models.vehicle.file import GroundBody
 from uvf.planning.collision_check import safe_share
 from uvf.planning.pure_pursuit import Pace, Tracker
-from uvf.runtime.contract.service import Outputs, Service, every
+from uvf.runtime.contract.service import Service, every
 from uvf.runtime.messages.convert import pose2_of, scan_rays, seconds, stamp, yaw_of
+from uvf.runtime.messages.outputs import Outputs
 from uvf.sensors.sweeping import AT_ONCE, Sweeping
 
 Floats = NDArray[np.float64]

@@ -11,11 +11,11 @@ import numpy as np
 from schemas import topics
 from schemas.messages import SurfaceCommand
 from services.sim_air.actuators import Actuators
+from services.sim_air.contact.crash import Resting, Wreck, crash_of
 from services.sim_air.engine.contacts import Touch
 from services.sim_air.engine.engine_state import EngineState
 from services.sim_air.engine.states import Air, Motion, Runaway
 from services.sim_air.engine.wiring import Controls, JointAngle
-from services.sim_air.environment.crash import Resting, Wreck, crash_of
 from services.sim_air.environment.wind import CALM, AirMass, AirMotion, Flight
 from services.sim_air.rangers import Rangers
 from services.sim_air.sensors import Gnss, Imu, Pressures

@@ -9,12 +9,12 @@ import numpy as np
 
 from services.sim_air.actuators import Actuators
 from services.sim_air.aircraft import Aircraft
+from services.sim_air.contact.crash import Resting
+from services.sim_air.contact.surroundings import Around
 from services.sim_air.engine.airframe import Airframe, fly_one_step
 from services.sim_air.engine.beginning import as_told, begun
 from services.sim_air.engine.wiring import Controls
-from services.sim_air.environment.crash import Resting
 from services.sim_air.environment.ground import Ground
-from services.sim_air.environment.surroundings import Around
 from services.sim_air.environment.wind import AirMass
 from services.sim_air.rangers import Rangers
 from services.sim_air.sensors import Gnss, Imu, Pressures
@@ -23,9 +23,9 @@ from services.sim_air.stage import Joining, Stage
 from uvf.maths.bvh import Bvh
 from uvf.maths.geodesy import LocalTangent
 from uvf.maths.raycast import warm_up
+from uvf.models.aircraft.shape import aircraft_shape
 from uvf.models.mission.file import Start, Vehicle
 from uvf.models.scenario import AIRCRAFT_RADIUS, Member, Site
-from uvf.models.shapes.aircraft_shape import aircraft_shape
 from uvf.models.shapes.scene import scene
 from uvf.models.urdf.model import load_urdf
 from uvf.models.vehicle.air import AirBody

@@ -11,7 +11,7 @@ from google.protobuf.message import Message
 from services.sim_air.engine.states import Motion
 from uvf.maths.raycast import Body, Scene
 from uvf.models.vehicle.sensors import Lidar, RangeFinder, Sensors, Sonar
-from uvf.runtime.contract.service import Value
+from uvf.runtime.messages.outputs import Value
 from uvf.runtime.messages.sensors import range_message, scan_message
 from uvf.sensors.fitted import line_of
 from uvf.sensors.range_sensors import LidarModel, RangeModel

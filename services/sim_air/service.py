@@ -10,8 +10,9 @@ from schemas.messages import NavState, RemoveRequest, SetPoseRequest, SimObjects
 from services.sim_air import readings
 from services.sim_air.aircraft import Aircraft
 from services.sim_air.stage import Stage
-from uvf.runtime.contract.service import Outputs, Service, Value, each_vehicle, optional
+from uvf.runtime.contract.service import Service, each_vehicle, optional
 from uvf.runtime.messages.faults import Faults
+from uvf.runtime.messages.outputs import Outputs, Value
 from uvf.runtime.messages.sensor_frames import sensor_frames
 from uvf.runtime.messages.sensors import battery_message, gnss_message, imu_message, later
 from uvf.sensors.sampling import Due

@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 from schemas.messages import RemoveRequest, Reply, SetPoseRequest, SimObject, SimObjects, SpawnRequest, StateRequest
 from services.sim_air.aircraft import Aircraft, Kept
-from services.sim_air.environment.collisions import Collisions
-from services.sim_air.environment.surroundings import Around
+from services.sim_air.contact.collisions import Collisions
+from services.sim_air.contact.surroundings import Around
 from services.sim_air.placing import fault_of, place, start_of
 from uvf.maths.bvh import Bvh
 from uvf.models.mission import file as mission_file

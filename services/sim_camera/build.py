@@ -7,8 +7,8 @@ from pathlib import Path
 from services.sim_camera.fitted import Fitted
 from services.sim_camera.renderer import BulletRenderer, Look
 from services.sim_camera.service import SimCamera
+from uvf.models.aircraft.shape import aircraft_shape
 from uvf.models.scenario import Member, Site
-from uvf.models.shapes.aircraft_shape import aircraft_shape
 from uvf.models.urdf.model import engine_urdf
 from uvf.models.vehicle.file import VehicleFile, load_vehicle
 from uvf.models.vehicle.sensors import Camera

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from services.sim_camera.backdrop import Backdrop
 from services.sim_camera.optics import frustum
 from uvf.maths.rotations import IDENTITY, from_euler, matrix, multiply, rotate
-from uvf.models.shapes.aircraft_shape import AircraftShape
+from uvf.models.aircraft.shape import AircraftShape
 from uvf.models.shapes.mesh_parts import Part, joined
 from uvf.models.shapes.solid import Solid, pose_at
 from uvf.models.vehicle.sensors import Camera

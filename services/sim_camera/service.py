@@ -10,8 +10,9 @@ from services.sim_camera.picture import info_message, joints_message
 from services.sim_camera.renderer import Look, Pose, Shot
 from uvf.models.shapes.solid import Solid
 from uvf.models.vehicle.sensors import Camera
-from uvf.runtime.contract.service import Outputs, Service, Value, each_vehicle, optional
+from uvf.runtime.contract.service import Service, each_vehicle, optional
 from uvf.runtime.messages.convert import array, seconds, wxyz
+from uvf.runtime.messages.outputs import Outputs, Value
 from uvf.runtime.messages.sensor_frames import mounted
 from uvf.runtime.messages.spawned import solid_of, sound_objects
 

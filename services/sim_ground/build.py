@@ -7,9 +7,9 @@ from services.sim_ground.service import SimGround
 from services.sim_ground.stage import Joining, Stage
 from services.sim_ground.world import BulletWorld, Placed
 from uvf.maths.raycast import warm_up
+from uvf.models.aircraft.shape import aircraft_shape
 from uvf.models.mission.file import Start, Vehicle
 from uvf.models.scenario import Member, Site
-from uvf.models.shapes.aircraft_shape import aircraft_shape
 from uvf.models.urdf.model import check_urdf, engine_urdf, load_urdf
 from uvf.models.vehicle.file import GroundBody, load_vehicle
 from uvf.models.world.footing import COARSE, Footing

@@ -12,8 +12,9 @@ from services.sim_ground.rig import STEP_HZ, Moment
 from services.sim_ground.stage import Stage, Stageable
 from uvf.maths.kinematics import WheelSpeeds
 from uvf.maths.raycast import Body
-from uvf.runtime.contract.service import Outputs, Service, Value, each_vehicle, optional
+from uvf.runtime.contract.service import Service, each_vehicle, optional
 from uvf.runtime.messages.faults import Faults
+from uvf.runtime.messages.outputs import Outputs, Value
 from uvf.runtime.messages.sensors import later
 from uvf.sensors.sampling import Due
 from uvf.sensors.surroundings import Surroundings, Whereabouts

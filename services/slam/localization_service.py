@@ -12,10 +12,11 @@ from uvf.maths.se2 import IDENTITY, Pose2, compose, inverse
 from uvf.maths.se3 import planar
 from uvf.models.vehicle.sensors import Lidar
 from uvf.models.yaml_data import BadInput
-from uvf.runtime.contract.service import Outputs, frames, optional
+from uvf.runtime.contract.service import frames, optional
 from uvf.runtime.messages.convert import pose2_of, pose2_of_frame, stamp
 from uvf.runtime.messages.frames import FrameBuffer, FrameError
 from uvf.runtime.messages.grids import as_map, as_message
+from uvf.runtime.messages.outputs import Outputs
 from uvf.slam.localization.known_map import KnownMap, of_grid
 from uvf.slam.localization.localizer import HALF_SURE, Localizer, State
 from uvf.slam.localization.params import FilterParams

@@ -9,9 +9,10 @@ from schemas.messages import FrameTransform, Grid, MapReply, MapRequest, Reply, 
 from uvf.maths.se2 import compose
 from uvf.models.world.map_file import GridMap
 from uvf.models.yaml_data import BadInput, nearest
-from uvf.runtime.contract.service import Outputs, Service, optional
+from uvf.runtime.contract.service import Service, optional
 from uvf.runtime.messages.convert import pose2_of_frame
 from uvf.runtime.messages.grids import as_map, as_message
+from uvf.runtime.messages.outputs import Outputs
 
 Save = Callable[[GridMap, str, str], Path]
 """Writes a map under a name, in a mode of map_server. Raises BadInput."""

@@ -15,14 +15,15 @@ from uvf.maths.se2 import IDENTITY, Pose2, compose, inverse
 from uvf.maths.se3 import planar
 from uvf.models.vehicle.sensors import Lidar
 from uvf.models.yaml_data import BadInput
-from uvf.runtime.contract.service import Outputs, frames
+from uvf.runtime.contract.service import frames
 from uvf.runtime.messages.convert import occupancy_grid, pose2_of_frame, stamp
 from uvf.runtime.messages.frames import FrameBuffer, FrameError
-from uvf.slam.graph.uncertainty import turned
+from uvf.runtime.messages.outputs import Outputs
 from uvf.slam.maps.session import Session
 from uvf.slam.maps.tiles import TileMap
 from uvf.slam.method import Keyframe, SlamMethod
 from uvf.slam.placing_params import PlacingParams, Positive
+from uvf.slam.pose_graph.uncertainty import turned
 from uvf.slam.reading import Reading
 from uvf.slam.resumable import Noting, Resumable
 

@@ -16,7 +16,7 @@ from uvf.runtime.contract.instances import Host
 from uvf.runtime.contract.service import Service
 from uvf.runtime.contract.service_runner import Shell
 from uvf.runtime.messages.convert import array, quaternion, stamp, vector
-from uvf.runtime.time.clock import NS
+from uvf.runtime.messages.step_times import NS
 
 SPEED = 60.0  # m/s
 

@@ -13,7 +13,7 @@ from schemas import topics
 from schemas.messages import Clock, Event, Process
 from tests.runtime.modes import free_port
 from uvf.runtime.bus.zenoh_bus import ZenohBus, open_router
-from uvf.runtime.state.state_store import Keeper
+from uvf.runtime.log.state_store import Keeper
 
 NAME = "launcher.recorder"
 CLOCK = Clock(tick=500, t_ns=5_000_000_000, epoch=3)

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from schemas.messages import NavState, Vector3
-from services.autopilot.air.formation.follower import Formation, Trailing
-from services.autopilot.air.modes.mode_manager import Pilot
-from services.autopilot.air.modes.modes import FlightMode
+from services.autopilot.air.mode_manager import Pilot
+from services.autopilot.air.mode_table import FlightMode
+from services.autopilot.air.modes.follower import Formation, Trailing
 from tests.services.autopilot.air.states import PARAMS, Kinematic, cruising
 from uvf.control.commands import Wanted
 from uvf.guidance.formation_slot import Boom, Station, StationKeeping, _slowest

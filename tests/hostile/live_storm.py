@@ -29,7 +29,7 @@ from uvf.models.scenario import ROOT, load_site
 from uvf.runtime.bus.envelope import Envelope
 from uvf.runtime.bus.wire import Malformed, decode_sample
 from uvf.runtime.bus.zenoh_bus import ZenohBus
-from uvf.runtime.contract.topic_lookup import topic_of
+from uvf.runtime.messages.topic_lookup import topic_of
 
 A_BURST = 200
 ASKED = 10  # requests in a burst

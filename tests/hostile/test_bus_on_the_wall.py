@@ -6,7 +6,7 @@ import pytest
 
 from schemas import topics
 from schemas.messages import MissionItem, MissionProgress
-from services.autopilot.mavlink.reached import ReachedItems
+from services.autopilot.mavlink.missions.reached import ReachedItems
 from services.autopilot.mavlink.service import MavlinkService
 from tests.hostile.bus_client import Stranger
 from tests.services.autopilot.mavlink.rig import GCS, PLANE_FACTS, ROVER_FACTS, MemoryLink, shelves

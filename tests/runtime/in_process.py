@@ -6,7 +6,7 @@ from tests.runtime.outcome import Outcome, ask
 from uvf.runtime.bus.interface import LocalBus
 from uvf.runtime.bus.zenoh_bus import kept_key
 from uvf.runtime.contract.service_runner import Shell
-from uvf.runtime.state.state_store import Keeper
+from uvf.runtime.log.state_store import Keeper
 from uvf.runtime.time.conductor import Conductor
 from uvf.runtime.time.live import LATE_START
 

@@ -13,7 +13,7 @@ from tests.runtime.outcome import Outcome, ask
 from tests.runtime.toys import Toys
 from uvf.runtime.bus.interface import LocalBus
 from uvf.runtime.bus.zenoh_bus import ZenohBus, open_router
-from uvf.runtime.state.state_store import Keeper
+from uvf.runtime.log.state_store import Keeper
 from uvf.runtime.time.conductor import Conductor
 from uvf.runtime.time.live import Live
 from uvf.runtime.time.lockstep import Lockstep

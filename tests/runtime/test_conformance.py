@@ -11,7 +11,7 @@ import pytest
 from schemas import topics
 from schemas.messages import ClockRequest, ParamReply, ParamRequest, WheelCommand
 from tests.runtime.modes import MODES, RUNS, Distributed, run_in
-from uvf.runtime.time.clock import step_time
+from uvf.runtime.messages.step_times import step_time
 
 UNTIL = 2.3
 

@@ -12,7 +12,7 @@ from uvf.runtime.bus import zenoh_bus
 from uvf.runtime.contract.service import Service, optional
 from uvf.runtime.contract.service_runner import QUERIES_MOST
 from uvf.runtime.messages.convert import stamp
-from uvf.runtime.time.clock import NS, first_step_after, step_time
+from uvf.runtime.messages.step_times import NS, first_step_after, step_time
 
 KEY = topics.GOAL.at("alpha")
 LATE = 0.25  # s, how late a live step may come on a busy machine

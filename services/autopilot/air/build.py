@@ -6,10 +6,10 @@ import numpy as np
 
 from schemas.messages import MissionItem
 from services.autopilot.air.config import Ship
-from services.autopilot.air.formation.leading import reserved
 from services.autopilot.air.formation.wingmen import wingman
+from services.autopilot.air.inputs import intake
+from services.autopilot.air.modes.leading import reserved
 from services.autopilot.air.service import AutopilotAir
-from services.autopilot.air.status import intake
 from services.autopilot.plan import item_from_file
 from uvf.control.servos import Servo, Servos
 from uvf.estimation.ekf import datasheet

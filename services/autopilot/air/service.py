@@ -33,35 +33,36 @@ from schemas.messages import (
     SurfaceCommand,
     VehicleStatus,
 )
+from services.autopilot.air import manual_control
 from services.autopilot.air.config import Ship
-from services.autopilot.air.failsafes.fence_in_force import too_small
 from services.autopilot.air.failsafes.monitor import Safety, Seen
 from services.autopilot.air.failsafes.prearm import Standing, faults
 from services.autopilot.air.failsafes.table import GNSS_HOLD
-from services.autopilot.air.formation.leading import Steadied
+from services.autopilot.air.fence.fence_in_force import too_small
+from services.autopilot.air.inputs import intake
+from services.autopilot.air.inputs.external_control import Outside
+from services.autopilot.air.inputs.over_ground import OverGround
+from services.autopilot.air.inputs.sensing import Said, Sensing
 from services.autopilot.air.mission import orders
 from services.autopilot.air.mission.plans import Plans
-from services.autopilot.air.modes import manual_control
-from services.autopilot.air.modes.mode_manager import Pilot
-from services.autopilot.air.modes.outside import Outside
+from services.autopilot.air.mode_manager import Pilot
+from services.autopilot.air.modes.leading import Steadied
 from services.autopilot.air.modes.paths import Round
 from services.autopilot.air.setpoints import Flown, Senses
-from services.autopilot.air.status import intake, status_messages, telemetry
+from services.autopilot.air.status import status_messages, telemetry
 from services.autopilot.air.status.event_log import Journal
-from services.autopilot.air.status.over_ground import OverGround
-from services.autopilot.air.status.sensing import Said, Sensing
 from services.autopilot.safe_state import coming_down
 from services.autopilot.told_params import ToldParams
-from uvf.control.commands import Surfaces
+from uvf.control.flight_control import level_trim
 from uvf.estimation.landed import LandDetector
 from uvf.estimation.state import Estimate
 from uvf.guidance.fence_plan import Remembered, place_fault
 from uvf.guidance.flyable import advice
 from uvf.guidance.route import Place
-from uvf.maths.geodesy import GRAVITY
 from uvf.models.vehicle.flight_params import FIXED, AirParams
-from uvf.runtime.contract.service import Outputs, Service, every, optional, stop_all
+from uvf.runtime.contract.service import Service, every, optional, stop_all
 from uvf.runtime.messages.convert import stamp
+from uvf.runtime.messages.outputs import Outputs
 from uvf.runtime.state.stop_all import StopStatus
 
 
@@ -289,12 +290,9 @@ class AutopilotAir(Service):
         """Without the IMU nothing can be steered: surfaces at trim until it is back; before the first cycle the servos hold."""
         if not self._cycles:
             return self._news(t)
-        p = self.params
-        alpha = p.alpha_zero_lift + p.alpha_per_load * GRAVITY / p.trim_airspeed**2
-        level = Surfaces(0.0, p.elev_zero_alpha + p.elev_per_alpha * alpha, 0.0, p.trim_throttle)
         self._status.reason = f"sensor lost: {', '.join(missing)}"
         return {
-            "surfaces": telemetry.surfaces(t, level, self._armed and self._land.airborne),
+            "surfaces": telemetry.surfaces(t, level_trim(self.params), self._armed and self._land.airborne),
             "status": self._stamped_status(t),
             "events": self._journal.lost(t, missing),
         }

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from schemas.messages import FlightSetpoint
-from services.autopilot.air.modes.manual_control import Hand
+from services.autopilot.air.manual_control import Hand
 from uvf.control.commands import Attitude, Surfaces, Wanted
 from uvf.control.servos import SERVOS, Servos
 from uvf.estimation.state import Estimate

@@ -96,6 +96,11 @@ class MissionEngine:
         item = self.mission.items[self.current]
         return self.home if item.kind == MissionItem.RETURN else (item.position.x, item.position.y)
 
+    def distance_left(self, position: Point | None) -> float:
+        """m to the target; 0 where there is none, or nobody knows from where."""
+        target = self.target
+        return hypot(position[0] - target[0], position[1] - target[1]) if position and target else 0.0
+
     def advance(self, t: float, position: Point | None, active: bool) -> int | None:
         """One cycle at ``t`` [s] and ``position`` [m, world]; the index of an item just completed, or None."""
         target = self.target

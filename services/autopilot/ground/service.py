@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
-from math import hypot, inf
+from math import inf
 from typing import Any
 
 from schemas import topics
@@ -49,8 +49,9 @@ from services.autopilot.told_params import ToldParams
 from uvf.control.drive_limits import Limits, Ramp, within_limits
 from uvf.maths.kinematics import DifferentialDrive, Twist, WheelSpeeds
 from uvf.models.vehicle.file import GroundBody
-from uvf.runtime.contract.service import Outputs, Service, every, optional, stop_all
+from uvf.runtime.contract.service import Service, every, optional, stop_all
 from uvf.runtime.messages.convert import mode_name, seconds, stamp, yaw_of
+from uvf.runtime.messages.outputs import Outputs
 from uvf.runtime.state.stop_all import StopStatus
 from uvf.sensors.sweeping import AT_ONCE, Sweeping
 
@@ -371,8 +372,7 @@ class GroundAutopilot(Service):
         return reports
 
     def _status(self, t: float, position: Point | None) -> VehicleStatus:
-        target, battery = self._engine.target, self._safety.battery
-        left = hypot(position[0] - target[0], position[1] - target[1]) if position and target else 0.0
+        battery = self._safety.battery
         return VehicleStatus(
             timestamp=stamp(t),
             kind=Kind.KIND_GROUND,
@@ -388,7 +388,7 @@ class GroundAutopilot(Service):
             battery_voltage=battery.voltage if battery is not None else 0.0,
             prearm=self._safety.faults(),
             waypoint=self._engine.current,
-            distance_to_waypoint=left,
+            distance_to_waypoint=self._engine.distance_left(position),
             home=vector(self._engine.home),
             system_id=self._system_id,
             breach=Breach.BREACH_EDGE if self._safety.is_outside else Breach.BREACH_NONE,

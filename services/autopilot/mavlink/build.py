@@ -7,12 +7,12 @@ import time
 from collections.abc import Mapping
 
 from services.autopilot.ground.params import GroundAutopilotParams
-from services.autopilot.mavlink.facts import Facts
-from services.autopilot.mavlink.key_store import KeyStore
-from services.autopilot.mavlink.parameter_store import FileStore
+from services.autopilot.mavlink.connection.facts import Facts
+from services.autopilot.mavlink.connection.key_store import KeyStore
+from services.autopilot.mavlink.connection.signing import Signing
+from services.autopilot.mavlink.connection.targets import reserved, targets_from
+from services.autopilot.mavlink.parameters.parameter_store import FileStore
 from services.autopilot.mavlink.service import MavlinkService
-from services.autopilot.mavlink.signing import Signing
-from services.autopilot.mavlink.targets import reserved, targets_from
 from uvf.maths.geodesy import LocalTangent
 from uvf.mavlink.endpoint import Peer, UdpLink
 from uvf.models.params import Params

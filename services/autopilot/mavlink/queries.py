@@ -2,13 +2,13 @@
 
 import math
 
-from services.autopilot.mavlink.commands import Acknowledger, Command, Handler
-from services.autopilot.mavlink.component_metadata import component_metadata
-from services.autopilot.mavlink.health import health
-from services.autopilot.mavlink.line import Line
-from services.autopilot.mavlink.navigation import boot_ms
-from services.autopilot.mavlink.streams import Schedule
-from services.autopilot.mavlink.telemetry import STREAMS
+from services.autopilot.mavlink.commands.commands import Acknowledger, Command, Handler
+from services.autopilot.mavlink.connection.line import Line
+from services.autopilot.mavlink.parameters.component_metadata import component_metadata
+from services.autopilot.mavlink.telemetry.health import health
+from services.autopilot.mavlink.telemetry.navigation import boot_ms
+from services.autopilot.mavlink.telemetry.streams import Schedule
+from services.autopilot.mavlink.telemetry.telemetry import STREAMS
 from uvf.mavlink import dialect as mav
 from uvf.runtime.mavlink import modes
 

@@ -2,11 +2,11 @@
 
 from collections.abc import Sequence
 
-from services.autopilot.mavlink.line import Sender
-from services.autopilot.mavlink.peers import Peers
-from services.autopilot.mavlink.signing import Signing, Verdict
-from services.autopilot.mavlink.stations import Stations
-from services.autopilot.mavlink.targets import Reserved
+from services.autopilot.mavlink.connection.line import Sender
+from services.autopilot.mavlink.connection.peers import Peers
+from services.autopilot.mavlink.connection.signing import Signing, Verdict
+from services.autopilot.mavlink.connection.stations import Stations
+from services.autopilot.mavlink.connection.targets import Reserved
 from services.autopilot.mavlink.vehicle_link import VehicleLink
 from uvf.mavlink import dialect as mav
 from uvf.mavlink.codec import AUTOPILOT

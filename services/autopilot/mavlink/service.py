@@ -27,16 +27,17 @@ from schemas.messages import (
     VehicleStatus,
     WheelCommand,
 )
-from services.autopilot.mavlink.facts import Facts
-from services.autopilot.mavlink.parameter_store import Store
+from services.autopilot.mavlink.connection.facts import Facts
+from services.autopilot.mavlink.connection.signing import Signing
+from services.autopilot.mavlink.connection.targets import Reserved
+from services.autopilot.mavlink.parameters.parameter_store import Store
 from services.autopilot.mavlink.reception import Reception
-from services.autopilot.mavlink.signing import Signing
-from services.autopilot.mavlink.targets import Reserved
 from services.autopilot.mavlink.vehicle_link import VehicleLink
 from uvf.mavlink import endpoint
 from uvf.mavlink.codec import Codec
-from uvf.runtime.contract.service import Answer, Outputs, Service, each_vehicle, every, optional
+from uvf.runtime.contract.service import Answer, Service, each_vehicle, every, optional
 from uvf.runtime.messages.convert import stamp
+from uvf.runtime.messages.outputs import Outputs
 from uvf.sensors.sampling import Due
 
 Answers = list[Answer[Any, Any]]

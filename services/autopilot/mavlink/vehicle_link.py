@@ -5,31 +5,31 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from schemas.messages import Event
-from services.autopilot.mavlink.actions import ACTIONS, on_set_mode
-from services.autopilot.mavlink.commands import Commands
-from services.autopilot.mavlink.component_metadata import files_of
-from services.autopilot.mavlink.data_streams import set_rates
-from services.autopilot.mavlink.events import News
-from services.autopilot.mavlink.facts import Facts
-from services.autopilot.mavlink.fence_switch import FENCE_SWITCH
-from services.autopilot.mavlink.ftp import FileServer
-from services.autopilot.mavlink.guided import GUIDED
-from services.autopilot.mavlink.health import health
-from services.autopilot.mavlink.identity import greeting
-from services.autopilot.mavlink.line import Line, Sender
-from services.autopilot.mavlink.manual import ByHand
-from services.autopilot.mavlink.missions import Missions
-from services.autopilot.mavlink.not_offered import NOT_OFFERED
-from services.autopilot.mavlink.not_offered import handlers as not_offered
-from services.autopilot.mavlink.orders import ORDERS, on_set_home_position, on_set_origin
-from services.autopilot.mavlink.parameter_store import Store
-from services.autopilot.mavlink.parameters import Parameters
+from services.autopilot.mavlink.commands.actions import ACTIONS, on_set_mode
+from services.autopilot.mavlink.commands.commands import Commands
+from services.autopilot.mavlink.commands.fence_switch import FENCE_SWITCH
+from services.autopilot.mavlink.commands.guided import GUIDED
+from services.autopilot.mavlink.commands.manual import ByHand
+from services.autopilot.mavlink.commands.not_offered import NOT_OFFERED
+from services.autopilot.mavlink.commands.not_offered import handlers as not_offered
+from services.autopilot.mavlink.commands.orders import ORDERS, on_set_home_position, on_set_origin
+from services.autopilot.mavlink.commands.setpoints import Setpoints
+from services.autopilot.mavlink.connection.facts import Facts
+from services.autopilot.mavlink.connection.line import Line, Sender
+from services.autopilot.mavlink.connection.statustext import SEVERITY, event_text
+from services.autopilot.mavlink.missions.missions import Missions
+from services.autopilot.mavlink.missions.reached import ReachedItems
+from services.autopilot.mavlink.parameters.component_metadata import files_of
+from services.autopilot.mavlink.parameters.ftp import FileServer
+from services.autopilot.mavlink.parameters.parameter_store import Store
+from services.autopilot.mavlink.parameters.parameters import Parameters
 from services.autopilot.mavlink.queries import Queries
-from services.autopilot.mavlink.reached import ReachedItems
-from services.autopilot.mavlink.setpoints import Setpoints
-from services.autopilot.mavlink.statustext import SEVERITY, event_text
-from services.autopilot.mavlink.streams import Schedule
-from services.autopilot.mavlink.telemetry import STREAMS
+from services.autopilot.mavlink.telemetry.data_streams import set_rates
+from services.autopilot.mavlink.telemetry.events import News
+from services.autopilot.mavlink.telemetry.health import health
+from services.autopilot.mavlink.telemetry.identity import greeting
+from services.autopilot.mavlink.telemetry.streams import Schedule
+from services.autopilot.mavlink.telemetry.telemetry import STREAMS
 from uvf.mavlink import dialect as mav
 from uvf.mavlink.endpoint import Peer
 

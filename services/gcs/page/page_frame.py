@@ -5,15 +5,15 @@ from typing import Any
 
 from schemas.messages import ModeRequest
 from services.gcs.commands import Arm, Cancel, Commander, SetMode, StopAll
+from services.gcs.state.layers import hidden_roots
 from services.gcs.state.session import Session
 from services.gcs.state.state import Model, VehicleModel
+from services.gcs.state.wording import describe, modes_of
 from services.gcs.view import camera_panel, panels, records, status, teleoperation
 from services.gcs.view.drawing import Button, Panel, Picture
-from services.gcs.view.layers import hidden_roots
 from services.gcs.view.markup import Html, html
 from services.gcs.view.overview import Overview
 from services.gcs.view.view import View
-from services.gcs.view.wording import describe, modes_of
 
 FAST = ("stop", "bar", "orders", "wheel", "instrument")
 EVERY = 2

@@ -7,7 +7,7 @@ import viser
 from viser import _messages
 
 from services.gcs.commands import Action, Layer
-from services.gcs.view.layers import ROOTS, SHOWN_AT_FIRST
+from services.gcs.state.layers import ROOTS, SHOWN_AT_FIRST
 
 
 class ViserLayers:

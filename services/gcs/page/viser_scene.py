@@ -7,9 +7,9 @@ import numpy as np
 import viser
 from numpy.typing import NDArray
 
+from services.gcs.state.layers import ROOTS
 from services.gcs.state.state import Placed
 from services.gcs.view.drawing import FloorPicture, Mesh, Node, Points, Polyline, Text
-from services.gcs.view.layers import ROOTS
 
 Floats = NDArray[np.float64]
 

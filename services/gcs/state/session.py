@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 from math import inf
 
-from services.gcs.view.layers import SHOWN_AT_FIRST
+from services.gcs.state.layers import SHOWN_AT_FIRST
 
 
 @dataclass

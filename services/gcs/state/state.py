@@ -34,11 +34,11 @@ from schemas.messages import (
 from schemas.topics import SYSTEM
 from services.gcs.state.event_log import Journal, Line
 from services.gcs.state.guests import FORGOTTEN_AFTER, Guests
+from services.gcs.state.layers import SHOWN_AT_FIRST
 from services.gcs.state.process_book import ProcessBook
 from services.gcs.state.refusals import Refusals
 from services.gcs.state.session import Session
-from services.gcs.view.layers import SHOWN_AT_FIRST
-from services.gcs.view.tracks import Track
+from services.gcs.state.tracks import Track
 from uvf.maths.rotations import from_euler, matrix
 from uvf.models.mission.file import Start, Vehicle
 from uvf.models.scenario import Member, Site

@@ -7,7 +7,7 @@ import numpy as np
 from schemas.messages import JointStates
 from services.gcs.state.state import Placed
 from uvf.maths.rotations import IDENTITY, from_axis
-from uvf.models.shapes.aircraft_panels import Movable
+from uvf.models.aircraft.panels import Movable
 from uvf.models.vehicle.surface_joints import deflection
 from uvf.runtime.messages.convert import seconds
 

@@ -3,10 +3,10 @@
 from collections.abc import Sequence
 
 from schemas.messages import Event, Process
+from services.gcs.state.enum_names import enum_name
 from services.gcs.state.event_log import Journal, Line
 from services.gcs.state.state import Model
 from services.gcs.state.vitals import Vitals
-from services.gcs.view.enum_names import enum_name
 from services.gcs.view.markup import Html, html, joined
 from services.gcs.view.status import SEVERITY, clock_text
 

@@ -5,7 +5,7 @@ from services.gcs.state.state import Model, Placed, model_name
 from services.gcs.view.bodies import rgb, rover
 from services.gcs.view.drawing import Colour, Node
 from services.gcs.view.scenery import at_rest, coloured, merge
-from uvf.models.shapes.aircraft_shape import aircraft_shape
+from uvf.models.aircraft.shape import aircraft_shape
 from uvf.models.shapes.mesh_parts import Part
 from uvf.models.vehicle.file import load_vehicle
 from uvf.models.yaml_data import BadInput

@@ -3,8 +3,8 @@
 from schemas.messages import Mode
 from services.gcs.by_hand import ByHand
 from services.gcs.state.state import VehicleModel
+from services.gcs.state.wording import mode_name
 from services.gcs.view.markup import Html, html, joined
-from services.gcs.view.wording import mode_name
 from uvf.control.teleop_drive import DIRECTIONS
 
 ROWS = (("q", "w", "e"), ("a", "", "d"), ("z", "s", "c"))

@@ -8,16 +8,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from schemas.messages import FrameTransform, Grid, NavStatus
-from services.gcs.page.map_image import known_part, occupancy_png
 from services.gcs.state.state import Model, Placed, VehicleModel
 from services.gcs.view import bodies
 from services.gcs.view.drawing import Colour, FloorPicture, Node, Points, Polyline, Text
 from services.gcs.view.fences import fence_nodes
+from services.gcs.view.map_image import known_part, occupancy_png
 from services.gcs.view.moving_parts import MovingParts
 from services.gcs.view.scenery import circuit_line, coloured, moving, places_of, rgb_of, scenery
 from services.gcs.view.spawned import Spawned
 from uvf.maths.rotations import multiply, rotate, to_euler
-from uvf.models.shapes.aircraft_shape import AircraftShape, aircraft_shape
+from uvf.models.aircraft.shape import AircraftShape, aircraft_shape
 from uvf.models.shapes.mesh_parts import Part
 from uvf.runtime.messages.convert import array, occupancy_cells, wxyz
 

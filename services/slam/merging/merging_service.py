@@ -7,8 +7,9 @@ import numpy as np
 from schemas import topics
 from schemas.messages import Event, FrameTransform, Grid, MapSession
 from uvf.models.yaml_data import BadInput
-from uvf.runtime.contract.service import Outputs, Service, each_vehicle
+from uvf.runtime.contract.service import Service, each_vehicle
 from uvf.runtime.messages.convert import occupancy_grid, planar_frame, stamp
+from uvf.runtime.messages.outputs import Outputs
 from uvf.slam.maps.session import Session
 from uvf.slam.maps.tiles import TileMap
 from uvf.slam.merging.team import Group, Team

@@ -18,9 +18,10 @@ from uvf.maths.se3 import apply
 from uvf.models.params import Params
 from uvf.models.vehicle.sensors import Sensors
 from uvf.models.yaml_data import BadInput
-from uvf.runtime.contract.service import Outputs, Service, Value, every, frames, optional
+from uvf.runtime.contract.service import Service, every, frames, optional
 from uvf.runtime.messages.convert import seconds, stamp
 from uvf.runtime.messages.frames import FrameBuffer, FrameError
+from uvf.runtime.messages.outputs import Outputs, Value
 from uvf.sensors.fitted import sweeping_of
 from uvf.sensors.sweeping import Part
 from uvf.slam.octree.columns import columns_of

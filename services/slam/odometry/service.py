@@ -16,8 +16,9 @@ from uvf.maths.geodesy import LocalTangent
 from uvf.maths.kinematics import Twist, move
 from uvf.maths.se2 import Pose2
 from uvf.models.vehicle.file import VehicleFile
-from uvf.runtime.contract.service import Outputs, Service, Value, every, optional
+from uvf.runtime.contract.service import Service, every, optional
 from uvf.runtime.messages.convert import planar_pose, pose2_of, pose2_of_frame, seconds, stamp
+from uvf.runtime.messages.outputs import Outputs, Value
 from uvf.sensors.sampling import Due
 
 MAX_PREDICTION = 0.1  # s, wheel data older than this is not extrapolated further

@@ -12,6 +12,7 @@ from uvf.control.servos import Servos
 from uvf.control.thesis import ThesisAttitude, ThesisPath
 from uvf.control.total_energy import EnergyLoops
 from uvf.estimation.state import Estimate
+from uvf.maths.geodesy import GRAVITY
 from uvf.models.vehicle.flight_params import AirParams
 
 
@@ -53,3 +54,9 @@ class Control:
         """Holds an attitude with a given throttle: the lower level alone."""
         self._held, self._flown = wanted, ""
         return self._inner[params.law].step(Cycle(now, params, dt), wanted)
+
+
+def level_trim(params: AirParams) -> Surfaces:
+    """Surfaces and throttle of straight level flight at cruise, for an aircraft that senses nothing (Beard & McLain, section 5.3)."""
+    alpha = params.alpha_zero_lift + params.alpha_per_load * GRAVITY / params.trim_airspeed**2
+    return Surfaces(0.0, params.elev_zero_alpha + params.elev_per_alpha * alpha, 0.0, params.trim_throttle)

@@ -12,8 +12,8 @@ from uvf.maths.raycast import Body, Scene
 from uvf.maths.rotations import IDENTITY
 from uvf.maths.se3 import Transform, compose
 from uvf.maths.solids import joined, mesh
+from uvf.models.aircraft.shape import AircraftShape
 from uvf.models.generated_file import mesh_file
-from uvf.models.shapes.aircraft_shape import AircraftShape
 from uvf.models.shapes.mesh_parts import joined as joined_parts
 from uvf.models.shapes.scene import primitives, scene
 from uvf.models.shapes.solid import Solid, pose_at

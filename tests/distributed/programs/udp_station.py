@@ -4,7 +4,7 @@ import select
 import socket
 import time
 
-from services.autopilot.mavlink.telemetry import STREAMS
+from services.autopilot.mavlink.telemetry.telemetry import STREAMS
 from uvf.mavlink import dialect as mav
 
 UNREAD = {number for number, stream in STREAMS.items() if stream.hz} - {mav.MAVLINK_MSG_ID_HEARTBEAT, mav.MAVLINK_MSG_ID_HOME_POSITION}

@@ -15,8 +15,8 @@ from uvf.runtime.contract.bulkhead import Bulkhead
 from uvf.runtime.contract.instances import Host
 from uvf.runtime.contract.service import Service, every, optional
 from uvf.runtime.contract.service_runner import Shell
-from uvf.runtime.contract.validation import error_in
 from uvf.runtime.messages.convert import stamp
+from uvf.runtime.messages.validation import error_in
 from uvf.runtime.process.watchdog import StepHangs, Watchdog, time_limit
 from uvf.runtime.time.lockstep import Lockstep
 

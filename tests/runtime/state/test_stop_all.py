@@ -10,7 +10,7 @@ from tests.runtime.toys import Pilot
 from uvf.runtime.bus.interface import LocalBus, Sample
 from uvf.runtime.contract.instances import Host
 from uvf.runtime.contract.service_runner import Shell
-from uvf.runtime.contract.validation import error_in
+from uvf.runtime.messages.validation import error_in
 from uvf.runtime.state import stop_all
 from uvf.runtime.state.stop_all import ENGAGEMENTS_MOST, StopBook, StopVoice, told
 

@@ -34,7 +34,7 @@ from uvf.models.scenario import ROOT, load_site
 from uvf.models.vehicle.file import load_vehicle
 from uvf.runtime.bus.interface import LocalBus
 from uvf.runtime.messages.convert import occupancy_grid, planar_pose, quaternion, stamp
-from uvf.runtime.time.clock import NS
+from uvf.runtime.messages.step_times import NS
 
 UGV, UAV = "burger", "milvus"
 LEGS = ((200.0, -150.0), (200.0, 150.0), (-200.0, 150.0), (-200.0, -150.0))

@@ -15,8 +15,8 @@ from tests.services.mavlink_bridge.test_station import HERE, Air
 from tests.services.mavlink_bridge.test_vehicle import HOME, Scripted, attitude, current, home, position
 from uvf.mavlink import dialect as mav
 from uvf.mavlink.text_bucket import TEXTS_AT_ONCE, TEXTS_PER_SECOND
-from uvf.runtime.contract.validation import error_in
 from uvf.runtime.mavlink.mission_items import packed, unpacked
+from uvf.runtime.messages.validation import error_in
 
 NOWHERE = 2_140_000_000  # 1e-7 deg
 HUGE = 3e38

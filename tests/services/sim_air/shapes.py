@@ -1,7 +1,7 @@
 """The shape of an aircraft for tests that need any."""
 
+from uvf.models.aircraft.shape import aircraft_shape
 from uvf.models.scenario import ROOT
-from uvf.models.shapes.aircraft_shape import aircraft_shape
 from uvf.models.vehicle.file import load_vehicle
 from uvf.sensors.surroundings import aircraft_tree
 

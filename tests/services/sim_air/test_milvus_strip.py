@@ -15,10 +15,10 @@ from benchmarks.milvus_strip import (
     stopped,
     take_off,
 )
+from services.sim_air.contact.crash import crash_of
 from services.sim_air.engine.states import Start
 from services.sim_air.engine.trim import Attitude
 from services.sim_air.engine.wiring import Controls
-from services.sim_air.environment.crash import crash_of
 
 G = 9.80665
 UP = np.array((0.0, 0.0, 0.1))

@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 
 from schemas.messages import NavState
+from services.sim_air.contact.surroundings import Around
 from services.sim_air.engine.states import Motion
 from services.sim_air.environment.ground import Ground
-from services.sim_air.environment.surroundings import Around
 from services.sim_air.rangers import Rangers
 from tests.services.sim_air.shapes import MILVUS_TREE
 from uvf.maths.bvh import build as tree_over

@@ -13,10 +13,10 @@ from schemas.messages import NavState, SurfaceCommand
 from services.sim_air.actuators import Actuators
 from services.sim_air.aircraft import Aircraft
 from services.sim_air.build import build
+from services.sim_air.contact.surroundings import Around
 from services.sim_air.engine.states import Air, Motion
 from services.sim_air.engine.wiring import Controls, JointAngle
 from services.sim_air.environment.ground import LEVEL
-from services.sim_air.environment.surroundings import Around
 from services.sim_air.sensors import Imu
 from services.sim_air.service import SimAir
 from services.sim_air.stage import Stage

@@ -8,8 +8,8 @@ import pytest
 from schemas import topics
 from schemas.messages import Event, NavState
 from services.sim_air.build import build
+from services.sim_air.contact.crash import FALLING, Resting, Wreck
 from services.sim_air.engine.states import Air, Motion
-from services.sim_air.environment.crash import FALLING, Resting, Wreck
 from services.sim_air.environment.ground import LEVEL, Ground
 from uvf.maths.bvh import build as tree_over
 from uvf.maths.geodesy import GRAVITY

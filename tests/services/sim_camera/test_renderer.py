@@ -11,8 +11,8 @@ from services.sim_camera.backdrop import SKY
 from services.sim_camera.optics import intrinsics, project
 from services.sim_camera.renderer import BulletRenderer, Pose
 from uvf.maths.rotations import from_euler, matrix
+from uvf.models.aircraft.shape import AircraftShape, aircraft_shape
 from uvf.models.scenario import ROOT
-from uvf.models.shapes.aircraft_shape import AircraftShape, aircraft_shape
 from uvf.models.shapes.mesh import load_mesh
 from uvf.models.shapes.mesh_parts import Part
 from uvf.models.shapes.solid import Solid

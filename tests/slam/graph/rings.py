@@ -3,8 +3,8 @@
 import numpy as np
 
 from uvf.maths.se2 import IDENTITY, Pose2, compose, inverse
-from uvf.slam.graph.edges import Edge
-from uvf.slam.graph.pose_graph import PoseGraph
+from uvf.slam.pose_graph.edges import Edge
+from uvf.slam.pose_graph.pose_graph import PoseGraph
 
 INFORMATION = np.diag((2500.0, 2500.0, 10000.0))  # 0.02 m, 0.01 rad
 

@@ -5,10 +5,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from uvf.slam.graph.cholesky import factorise, solve
-from uvf.slam.graph.fronts import plan, structure
-from uvf.slam.graph.linearise import Normal
-from uvf.slam.graph.selected import diagonal_of_inverse
+from uvf.slam.pose_graph.cholesky import factorise, solve
+from uvf.slam.pose_graph.fronts import plan, structure
+from uvf.slam.pose_graph.linearise import Normal
+from uvf.slam.pose_graph.selected import diagonal_of_inverse
 
 PAIRS = st.lists(st.tuples(st.integers(0, 19), st.integers(0, 19)).filter(lambda p: p[0] != p[1]), max_size=60)
 

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from launch.commands.testing import data_folder
-from uvf.slam.graph import g2o
-from uvf.slam.graph.descent import heading_first
-from uvf.slam.graph.linear import LinearSystem
-from uvf.slam.graph.pose_graph import PoseGraph
+from uvf.slam.pose_graph import g2o
+from uvf.slam.pose_graph.descent import heading_first
+from uvf.slam.pose_graph.linear import LinearSystem
+from uvf.slam.pose_graph.pose_graph import PoseGraph
 
 DATA = data_folder()
 

@@ -5,11 +5,11 @@ from dataclasses import dataclass, field
 
 from schemas.messages import Battery, Breach, Event, Fence, Link
 from services.autopilot.air.failsafes.endurance import Endurance
-from services.autopilot.air.failsafes.fence_guard import circle_within
-from services.autopilot.air.failsafes.fence_in_force import FenceInForce, in_force
 from services.autopilot.air.failsafes.table import AIR_RULES, Known
-from services.autopilot.air.modes.mode_manager import Pilot
-from services.autopilot.air.modes.modes import FlightMode
+from services.autopilot.air.fence.fence_guard import circle_within
+from services.autopilot.air.fence.fence_in_force import FenceInForce, in_force
+from services.autopilot.air.mode_manager import Pilot
+from services.autopilot.air.mode_table import FlightMode
 from services.autopilot.air.modes.paths import Round
 from services.autopilot.air.modes.return_points import is_within
 from services.autopilot.failsafes import Action, Order, Watch

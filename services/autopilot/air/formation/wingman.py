@@ -6,10 +6,11 @@ from typing import Any
 from schemas import topics
 from schemas.messages import NavState
 from services.autopilot.air.config import Ship
-from services.autopilot.air.formation.follower import Formation
+from services.autopilot.air.modes.follower import Formation
 from services.autopilot.air.service import AutopilotAir
 from uvf.models.vehicle.flight_params import AirParams
-from uvf.runtime.contract.service import Outputs, each_vehicle
+from uvf.runtime.contract.service import each_vehicle
+from uvf.runtime.messages.outputs import Outputs
 
 
 class AutopilotWingman(AutopilotAir):

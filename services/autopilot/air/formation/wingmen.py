@@ -3,8 +3,8 @@
 import math
 
 from services.autopilot.air.config import Ship
-from services.autopilot.air.formation.follower import Formation
 from services.autopilot.air.formation.wingman import AutopilotWingman
+from services.autopilot.air.modes.follower import Formation
 from uvf.guidance.formation_slot import Station
 from uvf.models.mission.formation import Follow, chain_of, offset_of
 from uvf.models.scenario import Site

@@ -4,8 +4,8 @@ import math
 from dataclasses import replace
 
 from schemas.messages import AltitudeOrder, HomeOrder, OrderRequest, PictureOrder, SpeedOrder, TakeoffOrder
-from services.autopilot.air.modes.mode_manager import Pilot
-from services.autopilot.air.modes.modes import FlightMode
+from services.autopilot.air.mode_manager import Pilot
+from services.autopilot.air.mode_table import FlightMode
 from uvf.estimation.state import Estimate
 from uvf.guidance.fence_plan import place_fault
 from uvf.guidance.flight_plan import Item, Kind

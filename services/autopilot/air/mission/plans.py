@@ -4,9 +4,9 @@ from google.protobuf.message import Message
 
 from schemas.messages import Fence, Mission, MissionItem, RallyPoints
 from services.autopilot.air.failsafes.monitor import Safety, Seen
+from services.autopilot.air.inputs import intake
+from services.autopilot.air.mode_manager import Pilot
 from services.autopilot.air.modes import return_points
-from services.autopilot.air.modes.mode_manager import Pilot
-from services.autopilot.air.status import intake
 from services.autopilot.air.status.event_log import Journal
 from uvf.guidance.fence_plan import mission_fault
 from uvf.guidance.flyable import advice

@@ -3,8 +3,8 @@
 import math
 from collections.abc import Mapping
 
-from services.autopilot.air.modes.manual_control import LET_GO, Sticks
-from services.autopilot.air.modes.modes import FlightMode
+from services.autopilot.air.manual_control import LET_GO, Sticks
+from services.autopilot.air.mode_table import FlightMode
 from services.autopilot.air.setpoints import Phase, Senses, Track, Wish
 from uvf.control.commands import Attitude, Surfaces, Wanted
 from uvf.control.cycle import Cycle

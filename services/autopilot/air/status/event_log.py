@@ -3,8 +3,8 @@
 from collections.abc import Iterable
 
 from schemas.messages import Event
-from services.autopilot.air.modes.mode_manager import Pilot
-from services.autopilot.air.modes.modes import FlightMode
+from services.autopilot.air.mode_manager import Pilot
+from services.autopilot.air.mode_table import FlightMode
 from uvf.runtime.messages.convert import stamp
 
 

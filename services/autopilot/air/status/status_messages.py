@@ -1,8 +1,8 @@
 """What ground stations want to know beside the state: what is steered at, and how good the estimate is."""
 
 from schemas.messages import EstimateQuality, Targets, Vector3
-from services.autopilot.air.modes.mode_manager import Pilot
-from services.autopilot.air.modes.modes import FlightMode
+from services.autopilot.air.mode_manager import Pilot
+from services.autopilot.air.mode_table import FlightMode
 from services.autopilot.air.setpoints import Flown
 from uvf.estimation.state import Estimate
 from uvf.guidance.flight_plan import OFF_PATH

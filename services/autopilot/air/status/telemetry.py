@@ -16,10 +16,10 @@ from schemas.messages import (
     Vector3,
     VehicleStatus,
 )
-from services.autopilot.air.modes.mode_manager import Pilot
-from services.autopilot.air.modes.modes import FlightMode
+from services.autopilot.air.inputs import intake
+from services.autopilot.air.mode_manager import Pilot
+from services.autopilot.air.mode_table import FlightMode
 from services.autopilot.air.setpoints import Flown
-from services.autopilot.air.status import intake
 from uvf.control.commands import Surfaces
 from uvf.estimation.state import Estimate
 from uvf.guidance.flight_plan import OFF_PATH, next_stop

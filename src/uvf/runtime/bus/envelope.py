@@ -4,7 +4,7 @@ import struct
 from collections import defaultdict
 from typing import NamedTuple
 
-from uvf.runtime.contract.topic_lookup import KEY_MOST
+from uvf.runtime.messages.topic_lookup import KEY_MOST
 
 _FORMAT = struct.Struct("<QqQI")
 WRAP = 2**32

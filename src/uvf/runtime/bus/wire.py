@@ -8,7 +8,7 @@ from google.protobuf.message import DecodeError, Message
 from schemas.limits import size_of
 from schemas.topics import Topic
 from uvf.runtime.bus.interface import Sample, Sink
-from uvf.runtime.contract.validation import error_in, escaped
+from uvf.runtime.messages.validation import error_in, escaped
 
 TYPE_SHOWN = 60  # letters
 

@@ -5,7 +5,7 @@ from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from uvf.runtime.contract.validation import legible
+from uvf.runtime.messages.validation import legible
 from uvf.runtime.process.watchdog import StepHangs
 
 FAILURES = 3

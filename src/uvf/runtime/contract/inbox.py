@@ -11,7 +11,7 @@ from uvf.runtime.bus.interface import Sample
 from uvf.runtime.bus.wire import Malformed, decode_sample
 from uvf.runtime.contract.service import Input
 from uvf.runtime.messages.spawned import name_fault
-from uvf.runtime.time.clock import NS
+from uvf.runtime.messages.step_times import NS
 
 EVERY_DEPTH = 256
 AHEAD_MOST = 2 * NS

@@ -1,6 +1,6 @@
 """The contract of a service: what it reads and writes as data, and one pure function of time."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Generic, Literal, TypeVar
 
@@ -9,13 +9,10 @@ from google.protobuf.message import Message
 from schemas import topics
 from schemas.topics import Request, Topic
 from uvf.models.params import Params
+from uvf.runtime.messages.outputs import Outputs
 
 Q = TypeVar("Q", bound=Message)
 R = TypeVar("R", bound=Message)
-
-Value = Message | Sequence[Message]
-Outputs = Mapping[str, Value | Mapping[str, Value]]
-"""Declared name -> a message, a list of them, or a dict of either by vehicle (services of the whole world)."""
 
 
 @dataclass(frozen=True)

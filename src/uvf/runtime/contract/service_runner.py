@@ -18,15 +18,16 @@ from uvf.runtime.contract.bulkhead import FAILURES, WINDOW, Bulkhead
 from uvf.runtime.contract.inbox import AHEAD_MOST, EVERY_DEPTH, InputBox
 from uvf.runtime.contract.instances import Host
 from uvf.runtime.contract.param_server import ParamServer
-from uvf.runtime.contract.refusals import Refusals
 from uvf.runtime.contract.request_desk import QUERIES_MOST, ContractError, RequestDesk
-from uvf.runtime.contract.service import Answer, Frames, Input, Outputs, Service, StopInput
-from uvf.runtime.contract.validation import error_in
+from uvf.runtime.contract.service import Answer, Frames, Input, Service, StopInput
 from uvf.runtime.messages.convert import stamp_ns
 from uvf.runtime.messages.frames import FrameBuffer
+from uvf.runtime.messages.outputs import Outputs
+from uvf.runtime.messages.refusals import Refusals
+from uvf.runtime.messages.step_times import NS, first_step_after, step_time
+from uvf.runtime.messages.validation import error_in
 from uvf.runtime.process.watchdog import Watchdog, time_limit
 from uvf.runtime.state.stop_all import StopBook, StopStatus
-from uvf.runtime.time.clock import NS, first_step_after, step_time
 
 Warn = Callable[[str], None]
 LATEST_DEPTH = 8  # more than one, for the newest may be too new to be read yet

@@ -5,7 +5,7 @@ from collections.abc import Iterable
 
 from schemas.topics import CLOCK, PREFIX, SYSTEM
 from uvf.runtime.bus.interface import Sample
-from uvf.runtime.contract.topic_lookup import KEY_MOST, is_of_table, topic_of
+from uvf.runtime.messages.topic_lookup import KEY_MOST, is_of_table, topic_of
 
 TYPE_MOST = 256  # characters of a type's name
 PAYLOAD_MOST = 32_000_000  # bytes; a picture of the largest cameras, uncompressed

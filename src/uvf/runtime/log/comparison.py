@@ -11,8 +11,8 @@ from typing import Any, TypeGuard
 from google.protobuf.message import DecodeError, Message
 
 from uvf.runtime.bus.interface import Sample
-from uvf.runtime.contract.topic_lookup import topic_of
-from uvf.runtime.time.clock import NS
+from uvf.runtime.messages.step_times import NS
+from uvf.runtime.messages.topic_lookup import topic_of
 
 TOLERANCE = 1e-9
 FLOAT = re.compile(r"-?\d+\.\d+(e-?\d+)?|-?\d+e-?\d+")

@@ -23,7 +23,7 @@ from schemas.topics import CLOCK, SYSTEM
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.bus.interface import Sample
 from uvf.runtime.log.recording import Recorder
-from uvf.runtime.time.clock import NS
+from uvf.runtime.messages.step_times import NS
 
 BROKEN = (McapError, ZstdError, EOFError, ValueError, KeyError, struct.error, OverflowError, MemoryError)
 """What the readers raise for bytes that are no log, the last two for lengths that are nonsense."""

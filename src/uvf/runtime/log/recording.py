@@ -19,8 +19,8 @@ from schemas.topics import PREFIX, Qos
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.bus.envelope import WRAP, GapCounter
 from uvf.runtime.bus.interface import Bus, Sample
-from uvf.runtime.contract.topic_lookup import MESSAGES, topic_of
 from uvf.runtime.log.bounds import Admission, Standing
+from uvf.runtime.messages.topic_lookup import MESSAGES, topic_of
 
 CHUNK = 1_000_000  # bytes
 DEPTH = 65_536  # messages that may wait for the writer

@@ -14,10 +14,10 @@ from uvf.models.yaml_data import BadInput
 from uvf.runtime.bus.interface import Bus, LocalBus, Publisher, Query, Sample, matches
 from uvf.runtime.contract.instances import Host
 from uvf.runtime.contract.service_runner import Shell, Warn
-from uvf.runtime.contract.topic_lookup import topic_of
 from uvf.runtime.log.comparison import TOLERANCE, Comparison, Difference
 from uvf.runtime.log.reading import log_attachments, log_begin, log_end, read_log
-from uvf.runtime.time.clock import NS, first_step_after
+from uvf.runtime.messages.step_times import NS, first_step_after
+from uvf.runtime.messages.topic_lookup import topic_of
 
 PAUSE_MOST = 3600 * NS
 """Simulation time in which nothing at all is recorded."""

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 from schemas.messages import Mission, MissionItem, Vector3
 from uvf.mavlink import dialect as mav
 from uvf.mavlink.names import bad_frame, command_name
-from uvf.runtime.contract.validation import error_in
 from uvf.runtime.mavlink.geo import AMSL_FRAMES, HOME_FRAMES, Placed
 from uvf.runtime.mavlink.limits import too_far, too_high, too_wide
 from uvf.runtime.messages.convert import array
 from uvf.runtime.messages.plan_ids import mission_id
+from uvf.runtime.messages.validation import error_in
 
 ORIGIN = struct.Struct("<BHB4fiif")
 """Frame, command, autocontinue, param1..4, x, y, z: kept with each item and given back unchanged."""

@@ -7,7 +7,7 @@ from typing import Any
 from google.protobuf.message import Message
 
 from uvf.models.mission.faults import Fault
-from uvf.runtime.contract.service import Value
+from uvf.runtime.messages.outputs import Value
 
 EARTH_RADIUS = 6.371e6  # m
 

@@ -16,7 +16,7 @@ from schemas.messages import FrameTransform, FrameTransforms
 from uvf.maths.se3 import IDENTITY, Transform, compose, interpolate, inverse
 from uvf.models.yaml_data import nearest
 from uvf.runtime.messages.convert import array, wxyz
-from uvf.runtime.time.clock import NS
+from uvf.runtime.messages.step_times import NS
 
 HISTORY = 10.0  # s
 

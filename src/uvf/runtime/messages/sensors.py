@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 from schemas.messages import Battery, FrameTransforms, Gnss, Imu, LaserScan, Range
 from uvf.models.vehicle.battery import Charge
 from uvf.models.vehicle.sensors import GnssSensor, Lidar, RangeFinder, Sonar
-from uvf.runtime.contract.service import Value
 from uvf.runtime.messages.convert import seconds, stamp, vector
+from uvf.runtime.messages.outputs import Value
 from uvf.sensors.instruments import Fix, ImuReading
 
 SATELLITES = 14  # seen under an open sky

@@ -20,8 +20,8 @@ from schemas.messages import StopCommand, StopEngagement, StopState
 from schemas.topics import OPERATORS
 from uvf.runtime.bus.interface import Bus, Sample
 from uvf.runtime.bus.wire import Malformed, decode_sample
-from uvf.runtime.contract.validation import legible
 from uvf.runtime.messages.convert import stamp_ns
+from uvf.runtime.messages.validation import legible
 
 ENGAGEMENTS_MOST = 64
 """Held at a time, beside one of all others."""

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 from schemas import topics
 from schemas.messages import Clock, ClockRequest, Done, Reply
-from uvf.runtime.time.clock import NS, step_time
+from uvf.runtime.messages.step_times import NS, step_time
 
 LONGEST_LOOK = 0.01  # s, wall: how soon a request is seen
 MAX_BEHIND = 0.25  # s, wall: what a slow simulator costs beyond this is not caught up, the rate drops instead

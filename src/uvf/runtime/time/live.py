@@ -9,11 +9,11 @@ from schemas.messages import Clock, Done
 from uvf.runtime.bus.wire import guarded
 from uvf.runtime.bus.zenoh_bus import ZenohBus
 from uvf.runtime.contract.instances import Host
-from uvf.runtime.contract.refusals import Refusals
 from uvf.runtime.contract.service_runner import Shell, Warn
-from uvf.runtime.process.health import HealthReport
+from uvf.runtime.messages.refusals import Refusals
+from uvf.runtime.messages.step_times import NS
 from uvf.runtime.process.watchdog import Watchdog
-from uvf.runtime.time.clock import NS
+from uvf.runtime.time.health import HealthReport
 
 IDLE = 0.05  # s, the longest wait: how fast a process sees that it shall stop
 READY_PERIOD = 0.2  # s, how often a process says where it stands while no clock is heard

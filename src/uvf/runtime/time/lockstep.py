@@ -7,7 +7,7 @@ from schemas.messages import Clock
 from uvf.runtime.bus.interface import LocalBus
 from uvf.runtime.contract.instances import Host
 from uvf.runtime.contract.service_runner import Shell, Warn
-from uvf.runtime.time.clock import NS, step_time
+from uvf.runtime.messages.step_times import NS, step_time
 
 
 class Lockstep:

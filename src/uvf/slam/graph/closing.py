@@ -8,10 +8,10 @@ from numpy.typing import NDArray
 from uvf.maths.rotations import wrap
 from uvf.maths.se2 import Pose2, compose, inverse
 from uvf.slam.graph.drift import Ways
-from uvf.slam.graph.edges import Edge
 from uvf.slam.graph.loops import Closure, LoopSearch
 from uvf.slam.graph.nodes import Nodes
-from uvf.slam.graph.pose_graph import PoseGraph
+from uvf.slam.pose_graph.edges import Edge
+from uvf.slam.pose_graph.pose_graph import PoseGraph
 
 Floats = NDArray[np.float64]
 

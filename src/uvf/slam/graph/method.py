@@ -11,20 +11,20 @@ from uvf.maths.se2 import IDENTITY, Pose2, compose, inverse
 from uvf.models.params import Params
 from uvf.slam.graph.closing import TIED, Closing
 from uvf.slam.graph.drift import Ways
-from uvf.slam.graph.edges import Edge
 from uvf.slam.graph.loops import LoopSearch
 from uvf.slam.graph.motion import UNKNOWN, Motion
 from uvf.slam.graph.nodes import Node, Nodes
-from uvf.slam.graph.pose_graph import PoseGraph
 from uvf.slam.graph.restored import LOOP, add_edges, add_keyframes
 from uvf.slam.graph.tracker import LocalMap, Tracker
-from uvf.slam.graph.uncertainty import followed, turned
 from uvf.slam.logs.leaps import step_between
 from uvf.slam.maps.session import KINDS, Edges, Session
 from uvf.slam.matching.cloud import cloud_of
 from uvf.slam.matching.imls import Match
 from uvf.slam.matching.point_map import point_map
 from uvf.slam.method import Estimate, Keyframe
+from uvf.slam.pose_graph.edges import Edge
+from uvf.slam.pose_graph.pose_graph import PoseGraph
+from uvf.slam.pose_graph.uncertainty import followed, turned
 from uvf.slam.reading import Reading
 
 Floats = NDArray[np.float64]

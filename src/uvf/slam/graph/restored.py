@@ -3,11 +3,11 @@
 from math import hypot
 
 from uvf.maths.se2 import IDENTITY, Pose2, compose, inverse
-from uvf.slam.graph.edges import Edge
 from uvf.slam.graph.nodes import Node, Nodes
-from uvf.slam.graph.pose_graph import PoseGraph
 from uvf.slam.maps.session import KINDS, Edges, Session
 from uvf.slam.matching.cloud import cloud_of
+from uvf.slam.pose_graph.edges import Edge
+from uvf.slam.pose_graph.pose_graph import PoseGraph
 
 LOOP = KINDS.index("loop")
 

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from uvf.maths.rotations import wrap
 from uvf.maths.se2 import compose
 from uvf.slam.graph.loops import Closure
-from uvf.slam.graph.uncertainty import followed
 from uvf.slam.merging.part import Part
+from uvf.slam.pose_graph.uncertainty import followed
 
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]

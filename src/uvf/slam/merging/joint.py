@@ -8,13 +8,13 @@ from numpy.typing import NDArray
 
 from uvf.maths.se2 import Pose2
 from uvf.maths.se2_arrays import composed, inverted, wrapped
-from uvf.slam.graph.edges import Edge
 from uvf.slam.graph.loops import Closure
-from uvf.slam.graph.pose_graph import PoseGraph
 from uvf.slam.graph.restored import add_edges
 from uvf.slam.maps.session import KINDS, Edges, Session
 from uvf.slam.merging.part import Part
 from uvf.slam.method import Keyframe
+from uvf.slam.pose_graph.edges import Edge
+from uvf.slam.pose_graph.pose_graph import PoseGraph
 
 Floats = NDArray[np.float64]
 LOOP = KINDS.index("loop")

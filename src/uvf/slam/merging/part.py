@@ -9,11 +9,11 @@ from uvf.maths.se2 import Pose2, transform
 from uvf.maths.se2_arrays import wrapped
 from uvf.models.yaml_data import BadInput
 from uvf.slam.graph.nodes import Nodes
-from uvf.slam.graph.pose_graph import PoseGraph
 from uvf.slam.graph.restored import add_edges, add_keyframes
 from uvf.slam.maps.session import NO_EDGES, Edges, Session
 from uvf.slam.matching.likelihood import LikelihoodField, likelihood_field
 from uvf.slam.merging.headings import facing
+from uvf.slam.pose_graph.pose_graph import PoseGraph
 
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]

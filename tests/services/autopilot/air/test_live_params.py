@@ -3,8 +3,8 @@
 import pytest
 
 from schemas.messages import Battery, Fence, FenceRequest, FenceZone, Link, Mode, ModeRequest, Vector3
-from tests.services.autopilot.air.modes.test_manual_control import by_hand
 from tests.services.autopilot.air.sensing import Bench
+from tests.services.autopilot.air.test_manual_control import by_hand
 from tests.services.live_params import all_settable_are_read
 from uvf.models.scenario import ROOT
 

@@ -18,8 +18,8 @@ from schemas.messages import (
     Vector3,
 )
 from services.autopilot.air.mission.orders import carry_out
-from services.autopilot.air.modes.mode_manager import Pilot
-from services.autopilot.air.modes.modes import FlightMode
+from services.autopilot.air.mode_manager import Pilot
+from services.autopilot.air.mode_table import FlightMode
 from services.autopilot.air.modes.pace import airspeed_over_ground
 from services.autopilot.air.modes.paths import Round
 from services.autopilot.air.setpoints import Senses

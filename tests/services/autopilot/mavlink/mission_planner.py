@@ -4,7 +4,7 @@
 
 import struct
 
-from services.autopilot.mavlink.data_streams import GROUPS
+from services.autopilot.mavlink.telemetry.data_streams import GROUPS
 from tests.services.autopilot.mavlink.file_reader import HEAD
 from tests.services.autopilot.mavlink.rig import PLANE, of
 from uvf.mavlink import dialect as mav

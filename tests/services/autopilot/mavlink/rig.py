@@ -21,8 +21,8 @@ from schemas.messages import (
     VehicleStatus,
 )
 from services.autopilot.ground.params import GroundAutopilotParams
-from services.autopilot.mavlink.facts import Facts
-from services.autopilot.mavlink.parameter_store import Unreadable
+from services.autopilot.mavlink.connection.facts import Facts
+from services.autopilot.mavlink.parameters.parameter_store import Unreadable
 from services.autopilot.mavlink.service import MavlinkService
 from services.autopilot.told_params import ToldParams
 from uvf.maths.geodesy import LocalTangent

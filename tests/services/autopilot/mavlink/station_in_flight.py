@@ -6,7 +6,7 @@ import pytest
 
 from services.autopilot.mavlink.build import facts_of
 from tests.services.autopilot.mavlink.airborne import Airborne, field
-from tests.services.autopilot.mavlink.test_parameters import setting, value
+from tests.services.autopilot.mavlink.parameters.test_parameters import setting, value
 from uvf.mavlink import dialect as mav
 from uvf.models.scenario import Member
 

@@ -4,7 +4,7 @@ import pytest
 
 from services.autopilot.mavlink import build as build_module
 from services.autopilot.mavlink.build import build
-from services.autopilot.mavlink.parameter_table import parameters_of
+from services.autopilot.mavlink.parameters.parameter_table import parameters_of
 from uvf.models.scenario import ROOT, load_site
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.bus.address import peer

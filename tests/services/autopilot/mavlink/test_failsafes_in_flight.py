@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from tests.services.autopilot.mavlink.parameters.test_parameters import INT
 from tests.services.autopilot.mavlink.rig import long
 from tests.services.autopilot.mavlink.station_in_flight import ACCEPTED, ALTITUDE, HOLD, LAND, MISSION, RETURN, circling, in_the_air
-from tests.services.autopilot.mavlink.test_parameters import INT
 from uvf.models.mission.faults import Fault
 
 LEFT = -0.5  # of the charge: what the gauge tells too little

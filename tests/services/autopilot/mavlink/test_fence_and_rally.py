@@ -6,9 +6,9 @@ import pytest
 
 from schemas.messages import Breach, Fence, FenceZone, RallyPoints, Vector3
 from tests.services.autopilot.mavlink import qgroundcontrol as qgc
+from tests.services.autopilot.mavlink.missions.test_missions import LAT, LON, NAN, content, count, download, item, upload
 from tests.services.autopilot.mavlink.qgroundcontrol import QGroundControl
 from tests.services.autopilot.mavlink.rig import PLANE, ROVER, Rig, acks, long, of, texts
-from tests.services.autopilot.mavlink.test_missions import LAT, LON, NAN, content, count, download, item, upload
 from uvf.mavlink import dialect as mav
 from uvf.runtime.messages.fences import fencing
 

@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
+from tests.services.autopilot.mavlink.parameters.test_parameters import INT
 from tests.services.autopilot.mavlink.station_in_flight import ACCEPTED, HOLD, RETURN, circling, in_the_air
-from tests.services.autopilot.mavlink.test_parameters import INT
 from uvf.mavlink import dialect as mav
 
 GEOFENCE = mav.MAV_SYS_STATUS_GEOFENCE

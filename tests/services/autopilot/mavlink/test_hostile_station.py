@@ -1,8 +1,8 @@
 """A station that means harm, or is only broken, keeps nobody else from uploading, downloading and commanding."""
 
 from schemas.messages import Event
+from tests.services.autopilot.mavlink.missions.test_missions import LAT, LON, count, item, upload
 from tests.services.autopilot.mavlink.rig import GCS, OTHER, PLANE, Rig, long, of, texts
-from tests.services.autopilot.mavlink.test_missions import LAT, LON, count, item, upload
 from tests.services.autopilot.mavlink.test_two_stations import BEAT
 from uvf.mavlink import dialect as mav
 from uvf.mavlink.endpoint import MOST_LEARNED, Callers

@@ -3,9 +3,9 @@
 import pytest
 
 from schemas.messages import Vector3
+from tests.services.autopilot.mavlink.missions.test_missions import LAT, LON, NAN, PLAN, content, download, item, upload
 from tests.services.autopilot.mavlink.rig import Rig
 from tests.services.autopilot.mavlink.test_fence_and_rally import item as plan_item
-from tests.services.autopilot.mavlink.test_missions import LAT, LON, NAN, PLAN, content, download, item, upload
 from uvf.mavlink import dialect as mav
 
 ABOVE_HOME, AMSL = 3, 0

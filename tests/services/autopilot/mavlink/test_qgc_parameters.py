@@ -5,7 +5,7 @@ import lzma
 
 import pytest
 
-from services.autopilot.mavlink.component_metadata import general_of, parameters_file_of
+from services.autopilot.mavlink.parameters.component_metadata import general_of, parameters_file_of
 from tests.services.autopilot.mavlink.qgc_parameters import FOREIGN_TEXTS, WRITE
 from tests.services.autopilot.mavlink.qgroundcontrol import QGroundControl
 from tests.services.autopilot.mavlink.rig import PLANE, ROVER, Rig

@@ -5,10 +5,10 @@ import copy
 import pytest
 
 from schemas.messages import Event, Mission, Mode
-from services.autopilot.mavlink.events import NEWS, News
-from services.autopilot.mavlink.facts import Latest
-from services.autopilot.mavlink.missions import TOLD_WITHIN
-from services.autopilot.mavlink.statustext import counted_from_one
+from services.autopilot.mavlink.connection.facts import Latest
+from services.autopilot.mavlink.connection.statustext import counted_from_one
+from services.autopilot.mavlink.missions.missions import TOLD_WITHIN
+from services.autopilot.mavlink.telemetry.events import NEWS, News
 from tests.services.autopilot.mavlink.qgroundcontrol import PAGES, PLANS, STANDARD_NAMES, QGroundControl
 from tests.services.autopilot.mavlink.rig import GCS, OTHER, PLANE, ROVER, Rig, acks, long, of, texts
 from uvf.mavlink import dialect as mav

@@ -8,10 +8,10 @@ from collections import Counter
 import pytest
 
 from schemas.messages import Clock, Mode
-from services.autopilot.mavlink.actions import ACTIONS
-from services.autopilot.mavlink.guided import GUIDED
-from services.autopilot.mavlink.orders import ORDERS
-from services.autopilot.mavlink.streams import Schedule
+from services.autopilot.mavlink.commands.actions import ACTIONS
+from services.autopilot.mavlink.commands.guided import GUIDED
+from services.autopilot.mavlink.commands.orders import ORDERS
+from services.autopilot.mavlink.telemetry.streams import Schedule
 from tests.services.autopilot.mavlink.rig import GCS, PLANE, ROVER, Rig, acks, long, of
 from tests.services.autopilot.mavlink.storm import KINDS, rage
 from uvf.mavlink import dialect as mav

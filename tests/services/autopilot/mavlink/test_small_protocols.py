@@ -3,8 +3,8 @@
 import pytest
 
 from schemas.messages import Mode
-from services.autopilot.mavlink.statustext import TextLimiter, chunks
-from services.autopilot.mavlink.streams import Schedule
+from services.autopilot.mavlink.connection.statustext import TextLimiter, chunks
+from services.autopilot.mavlink.telemetry.streams import Schedule
 from tests.services.autopilot.mavlink.rig import GCS, OTHER, PLANE, ROVER, Rig, of, texts
 from uvf.mavlink import dialect as mav
 from uvf.models.vehicle.air import Commands

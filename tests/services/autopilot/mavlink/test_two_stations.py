@@ -5,10 +5,10 @@ import struct
 import pytest
 
 from schemas.messages import Mode
-from services.autopilot.mavlink.commands import MOST_SENDERS
-from services.autopilot.mavlink.missions import MOST_WAITING
+from services.autopilot.mavlink.commands.commands import MOST_SENDERS
+from services.autopilot.mavlink.missions.missions import MOST_WAITING
+from tests.services.autopilot.mavlink.missions.test_missions import LAT, LON, count, item
 from tests.services.autopilot.mavlink.rig import GCS, OTHER, PLANE, ROVER, Rig, long, of, texts
-from tests.services.autopilot.mavlink.test_missions import LAT, LON, count, item
 from uvf.mavlink import dialect as mav
 from uvf.mavlink.endpoint import ENGAGED_FOR, FORGET_AFTER, MOST_LEARNED, Callers
 

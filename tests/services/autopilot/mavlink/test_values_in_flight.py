@@ -4,10 +4,10 @@ import msgspec
 import numpy as np
 import pytest
 
-from services.autopilot.mavlink.parameter_table import parameters_of
+from services.autopilot.mavlink.parameters.parameter_table import parameters_of
+from tests.services.autopilot.mavlink.parameters.test_parameters import INT
 from tests.services.autopilot.mavlink.rig import long
 from tests.services.autopilot.mavlink.station_in_flight import HOLD, LAND, RETURN, circling, in_the_air
-from tests.services.autopilot.mavlink.test_parameters import INT
 
 pytestmark = pytest.mark.timeout(900)
 

@@ -4,10 +4,10 @@ import math
 
 import pytest
 
-from services.autopilot.mavlink.refusals import plain
+from services.autopilot.mavlink.connection.refusals import plain
+from tests.services.autopilot.mavlink.missions.test_missions import LAT, LON, item, upload
 from tests.services.autopilot.mavlink.rig import PLANE, ROVER, Rig, acks, long, of, texts
 from tests.services.autopilot.mavlink.test_fence_and_rally import item as plan_item
-from tests.services.autopilot.mavlink.test_missions import LAT, LON, item, upload
 from uvf.mavlink import dialect as mav
 
 NAN = math.nan

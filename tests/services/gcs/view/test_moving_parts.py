@@ -9,8 +9,8 @@ from schemas.messages import JointState, JointStates
 from services.gcs.view.moving_parts import MOST_TURN, SEEN, MovingParts
 from tests.services.gcs.fakes import Station
 from tests.services.gcs.scripted import UAV
+from uvf.models.aircraft.shape import aircraft_shape
 from uvf.models.scenario import ROOT
-from uvf.models.shapes.aircraft_shape import aircraft_shape
 from uvf.models.vehicle.file import load_vehicle
 from uvf.models.vehicle.surface_joints import deflection
 from uvf.runtime.messages.convert import stamp

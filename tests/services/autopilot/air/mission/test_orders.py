@@ -4,11 +4,11 @@ import pytest
 
 from schemas.messages import Battery
 from services.autopilot.air.failsafes.monitor import Safety, Seen
-from services.autopilot.air.mission.mission_flight import MissionFlight
-from services.autopilot.air.modes.mode_manager import Pilot
-from services.autopilot.air.modes.modes import FlightMode
+from services.autopilot.air.mode_manager import Pilot
+from services.autopilot.air.mode_table import FlightMode
+from services.autopilot.air.modes.mission_flight import MissionFlight
 from services.autopilot.air.setpoints import Senses
-from tests.services.autopilot.air.landing.test_landing import on_final
+from tests.services.autopilot.air.modes.test_landing import on_final
 from tests.services.autopilot.air.states import PARAMS, cruising
 from uvf.control.servos import SERVOS
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from services.autopilot.air.modes.manual_control import Hand
+from services.autopilot.air.manual_control import Hand
 from services.autopilot.air.modes.stick_modes import STEEPEST, Altitude, Manual, Position, Stabilized
 from services.autopilot.air.setpoints import Senses, Track
 from tests.services.autopilot.air.states import PARAMS, cruising

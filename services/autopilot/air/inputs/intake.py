@@ -1,0 +1,161 @@
+"""From messages (ENU, FLU) to the autopilot's own values (NED, FRD)."""
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import astuple
+
+from schemas.messages import AirData, Gnss, Imu, Mission, MissionItem, MissionProgress, Mode, NavState, OrbitRequest, Vector3
+from services.autopilot.air.mode_table import FlightMode
+from uvf.estimation.sensor_inputs import Fix, Inertial, Pressures
+from uvf.guidance.approach import with_courses
+from uvf.guidance.flight_plan import Item, Kind, Stand
+from uvf.guidance.route import Circle, Place
+from uvf.maths.geodesy import LocalTangent
+from uvf.maths.rotations import enu_flu_from_ned_frd, to_euler
+from uvf.runtime.messages.convert import seconds, wxyz
+from uvf.runtime.messages.plan_ids import mission_id
+
+OLDEST_FIX, OLDEST_SAMPLE = 1.0, 5.0  # s
+AHEAD = 0.1  # s by which a sensor's clock may be before ours
+OLDEST_STATE = 30.0  # s
+STATIC = (5_000.0, 120_000.0)  # Pa, 20 km up to below the Dead Sea
+DIFFERENTIAL = (-50_000.0, 50_000.0)  # Pa, of 285 m/s
+TEMPERATURE = (150.0, 350.0)  # K
+TURNED_OFF = 5.0  # m/s, of an aircraft that nobody has steered
+KINDS = {
+    MissionItem.WAYPOINT: Kind.WAYPOINT,
+    MissionItem.ORBIT: Kind.ORBIT,
+    MissionItem.RETURN: Kind.RETURN,
+    MissionItem.JUMP: Kind.JUMP,
+    MissionItem.SPEED: Kind.SPEED,
+    MissionItem.TRIGGER: Kind.TRIGGER,
+    MissionItem.TRIGGER_DISTANCE: Kind.TRIGGER_DISTANCE,
+    MissionItem.TAKEOFF: Kind.TAKEOFF,
+    MissionItem.LAND: Kind.LAND,
+    MissionItem.LAND_START: Kind.LAND_START,
+    MissionItem.SET_HOME: Kind.SET_HOME,
+}
+MODES = {
+    Mode.MODE_HOLD: FlightMode.HOLD,
+    Mode.MODE_MISSION: FlightMode.MISSION,
+    Mode.MODE_RETURN: FlightMode.RETURN,
+    Mode.MODE_MANUAL: FlightMode.MANUAL,
+    Mode.MODE_STABILIZED: FlightMode.STABILIZED,
+    Mode.MODE_ALTITUDE: FlightMode.ALTITUDE,
+    Mode.MODE_POSITION: FlightMode.POSITION,
+    Mode.MODE_TAKEOFF: FlightMode.TAKEOFF,
+    Mode.MODE_LAND: FlightMode.LAND,
+    Mode.MODE_FOLLOW: FlightMode.FOLLOW,
+    Mode.MODE_ORBIT: FlightMode.ORBIT,
+    Mode.MODE_OFFBOARD: FlightMode.OFFBOARD,
+}
+
+
+def frd(v: Vector3) -> tuple[float, float, float]:
+    """FLU into FRD."""
+    return v.x, -v.y, -v.z
+
+
+def inertial(message: Imu, t: float) -> Inertial | None:
+    """A sample as seen at time ``t`` [s]; None when its stamp is of no time near: one ahead would make all after it late."""
+    age = t - seconds(message.timestamp)
+    if not -AHEAD <= age <= OLDEST_SAMPLE:
+        return None
+    return Inertial(frd(message.angular_velocity), frd(message.specific_force), frd(message.magnetic_field), age)
+
+
+def pressures(message: AirData, t: float) -> Pressures | None:
+    """As seen at time ``t`` [s]; None when no air is like that: a sensor that has failed may well say 0 Pa."""
+    p = Pressures(message.static_pressure, message.differential_pressure, message.temperature, t - seconds(message.timestamp))
+    possible = _is_within(p.static, STATIC) and _is_within(p.differential, DIFFERENTIAL) and _is_within(p.temperature, TEMPERATURE)
+    return p if possible and math.isfinite(p.age) else None
+
+
+def _is_within(value: float, limits: tuple[float, float]) -> bool:
+    return limits[0] <= value <= limits[1]
+
+
+def fix(message: Gnss, tangent: LocalTangent, t: float) -> Fix | None:
+    """A fix as seen at time ``t`` [s]; its stamp is the moment it is valid for. None if there is none, it is old or a number is none."""
+    age = t - seconds(message.timestamp)
+    if message.fix != Gnss.FIX_3D or not -AHEAD <= age <= OLDEST_FIX:
+        return None
+    east, north, _ = tangent.enu(message.latitude, message.longitude, message.altitude).tolist()
+    v = message.velocity_enu
+    found = Fix(
+        north=north,
+        east=east,
+        height=message.altitude - tangent.altitude,
+        v_north=v.y,
+        v_east=v.x,
+        v_up=v.z,
+        age=age,
+        position_sigma=message.horizontal_accuracy,
+        height_sigma=message.vertical_accuracy,
+        speed_sigma=message.speed_accuracy,
+    )
+    return found if all(map(math.isfinite, astuple(found))) else None
+
+
+def left_fix(state: NavState, t: float) -> Fix | None:
+    """The state that another instance has left, flown straight on to ``t`` [s]; None if that is long ago."""
+    p, v, age = state.position, state.velocity, t - seconds(state.timestamp)
+    if age > OLDEST_STATE:
+        return None
+    sigma = state.position_sigma + age * TURNED_OFF
+    return Fix(p.y + age * v.y, p.x + age * v.x, p.z, v.y, v.x, 0.0, 0.0, sigma, sigma, TURNED_OFF)
+
+
+def place(v: Vector3) -> Place:
+    return Place(v.y, v.x, v.z)
+
+
+def circle(request: OrbitRequest) -> Circle:
+    """A radius of 0 is left to the pilot."""
+    return Circle(place(request.centre), request.radius)
+
+
+def attitude(state: NavState) -> tuple[float, float, float]:
+    """Roll, pitch and yaw [rad], FRD against NED."""
+    return to_euler(enu_flu_from_ned_frd(wxyz(state.orientation)))
+
+
+def stand(progress: MissionProgress | None) -> Stand:
+    """Where in the mission another instance has been."""
+    if progress is None or progress.state in (MissionProgress.NO_MISSION, MissionProgress.NOT_STARTED):
+        return Stand(None, -1, 0, False)
+    return Stand(progress.current, progress.reached, progress.laps, progress.state == MissionProgress.COMPLETE)
+
+
+def items(messages: Iterable[MissionItem]) -> list[Item]:
+    """Raises ValueError for a kind that cannot be flown yet and for a number that is none."""
+    return with_courses([_item(i, m) for i, m in enumerate(messages)])
+
+
+def _item(index: int, m: MissionItem) -> Item:
+    if m.kind not in KINDS:
+        name = MissionItem.Kind.Name(m.kind) if m.kind in MissionItem.Kind.values() else f"kind {m.kind}"
+        raise ValueError(f"item {index}: {name} is not flown by this autopilot; {', '.join(k.value for k in Kind)} are")
+    p = m.position
+    if not all(map(math.isfinite, (p.x, p.y, p.z, m.acceptance_radius, m.hold, m.radius, m.turns, m.speed, m.course, m.distance))):
+        raise ValueError(f"item {index} holds a number that is not finite")
+    return Item(
+        KINDS[m.kind],
+        place(m.position),
+        m.hold,
+        m.radius,
+        m.turns,
+        m.speed,
+        m.jump_to,
+        m.repeat,
+        course=math.pi / 2 - m.course if m.HasField("course") else None,
+        acceptance=m.acceptance_radius or math.inf,
+        to_altitude=m.to_altitude,
+        distance=m.distance,
+        here=not m.HasField("position"),
+    )
+
+
+def with_id(messages: Sequence[MissionItem]) -> Mission:
+    """The items unchanged, ``origin`` included."""
+    return Mission(items=messages, id=mission_id(messages))

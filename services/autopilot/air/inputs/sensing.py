@@ -1,0 +1,99 @@
+"""From what the instruments say to an estimate: each fix once, none of a receiver that has frozen, pressures as far as believed."""
+
+import math
+from collections.abc import Callable
+from typing import Literal, NamedTuple
+
+from schemas.messages import AirData, Gnss, NavState
+from services.autopilot.air.inputs import intake
+from uvf.estimation.air_data_check import Flying, Frozen
+from uvf.estimation.estimators import Instruments, estimator
+from uvf.estimation.mount import ImuMount
+from uvf.estimation.sensor_inputs import Fix, Inertial, Pressures, Sensed
+from uvf.estimation.state import Estimate
+from uvf.maths.geodesy import LocalTangent
+from uvf.models.vehicle.flight_params import AirParams
+
+SAME_FIXES = 4  # that are the same to the last bit: the receiver has frozen
+FIRST_FIX = 1.0  # s, waited for after a restart
+
+Believe = Callable[[tuple[object, Pressures] | None, Flying | None, AirParams, float], Pressures | None]
+"""The pressures (with their stamp) as far as they can be believed in this flight, given the cycle's dt [s]."""
+
+
+class Said(NamedTuple):
+    """In one cycle."""
+
+    imu: list[Inertial]
+    air_data: AirData | None
+    gnss: Gnss | None
+    airborne: bool
+
+
+class Sensing:
+    """``felt``: by the IMU in this cycle, in the body's axes; ``accuracy``: m, of the last fix; ``field``: T, of the magnetic field."""
+
+    def __init__(self, instruments: Instruments, tangent: LocalTangent, kind: Literal["full", "book"], believe: Believe) -> None:
+        """kind: of the estimator."""
+        self.felt: list[Inertial] = []
+        self.accuracy = 0.0
+        self.field = 0.0
+        self._estimator = estimator(kind, instruments)
+        self._mount = ImuMount(instruments.imu_xyz, instruments.imu_rpy)
+        self._period = 1 / instruments.sheet.imu_hz
+        self._tangent = tangent
+        self._believe = believe
+        self._fix_stamp = 0
+        self._same_fix = Frozen()
+        self._left: NavState | None = None
+        self._waited = 0.0  # s, for the first fix
+        self._estimated = 0.0  # s
+        self._now: Estimate | None = None
+
+    @property
+    def unfixed(self) -> float:
+        """s since the last fix."""
+        return self._estimator.unfixed
+
+    def begin_from(self, left: NavState) -> None:
+        """What the instance before has estimated last."""
+        self._left = left
+        self._estimator.begin_at(*intake.attitude(left))
+
+    def step(self, t: float, said: Said, params: AirParams, dt: float) -> Estimate | None:
+        """dt: s, the cycle. None until the first fix."""
+        fix = self._new_fix(t, said) if said.gnss is not None else None
+        if fix is None and not self._estimator.started:
+            fix = self._left_fix(t, dt)
+            if fix is None:
+                return None
+        samples = self.felt = [self._mount.at_centre(sample, self._period) for sample in said.imu]
+        passed = t - self._estimated if self._estimator.started else dt
+        self._estimated = t
+        flying = Flying(self._now, self.unfixed, said.airborne) if self._now is not None else None
+        pressures = self._believe(_stamped(said.air_data, t), flying, params, dt)
+        self.field = math.hypot(*samples[-1].field) if samples else self.field
+        self._now = self._estimator.step(Sensed(samples, pressures, fix), params, passed)
+        return self._now
+
+    def _left_fix(self, t: float, dt: float) -> Fix | None:
+        """After a restart without GNSS: where the instance before has been, once a fix has been waited for."""
+        self._waited += dt
+        return intake.left_fix(self._left, t) if self._left is not None and self._waited > FIRST_FIX else None
+
+    def _new_fix(self, t: float, said: Said) -> Fix | None:
+        gnss = said.gnss
+        assert gnss is not None
+        stamp_ns = gnss.timestamp.ToNanoseconds()
+        is_new, self._fix_stamp = stamp_ns != self._fix_stamp, stamp_ns
+        if not is_new:
+            return None
+        self.accuracy = gnss.horizontal_accuracy
+        frozen = self._same_fix.same((gnss.latitude, gnss.longitude, gnss.altitude), SAME_FIXES)
+        return intake.fix(gnss, self._tangent, t) if not (frozen and said.airborne) else None
+
+
+def _stamped(air_data: AirData | None, t: float) -> tuple[object, Pressures] | None:
+    if air_data is None or (read := intake.pressures(air_data, t)) is None:
+        return None
+    return air_data.timestamp.ToNanoseconds(), read

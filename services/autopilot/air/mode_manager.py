@@ -1,0 +1,398 @@
+"""Which mode is flown: requests, what they are refused for, and what follows when a mode ends or loses what it needs."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import astuple, replace
+
+from services.autopilot.air.fence.fence_guard import FenceGuard
+from services.autopilot.air.flight_controller import Helm
+from services.autopilot.air.manual_control import LET_GO, Stick
+from services.autopilot.air.mode_table import TABLE, FlightMode, Need, Situation, refusal
+from services.autopilot.air.modes.descent import Descent
+from services.autopilot.air.modes.field import Field
+from services.autopilot.air.modes.follower import Formation, Trailing
+from services.autopilot.air.modes.landing import Landing
+from services.autopilot.air.modes.leading import Steadied
+from services.autopilot.air.modes.mission_flight import MissionFlight
+from services.autopilot.air.modes.offboard import OLDEST, Offboard
+from services.autopilot.air.modes.pace import Pace
+from services.autopilot.air.modes.paths import OWN, Circling, Following, Round
+from services.autopilot.air.modes.return_mode import Homeward
+from services.autopilot.air.modes.return_points import haven, lowest_over
+from services.autopilot.air.modes.stick_modes import STICK_MODES
+from services.autopilot.air.modes.takeoff import TakeOff
+from services.autopilot.air.setpoints import Flown, Phase, Senses, Track, Wish
+from uvf.control.commands import Wanted
+from uvf.control.servos import SERVOS, Servos
+from uvf.estimation.state import Estimate
+from uvf.guidance.camera_trigger import Camera
+from uvf.guidance.flight_plan import Item, Stand
+from uvf.guidance.flyable import fault
+from uvf.guidance.plan_follower import Navigator
+from uvf.guidance.route import Circle, Level, Place
+from uvf.guidance.runways import Strip
+from uvf.guidance.vector_field import Aim
+from uvf.models.vehicle.flight_params import AirParams
+
+BACK = "GNSS back: holds until a mode is asked for"
+ROLLS_OUT = "the aircraft is rolling out after its landing"
+
+
+class Pilot:
+    """Flies one mode of the table. Requests give the reason of a refusal, empty when accepted."""
+
+    def __init__(self, items: Sequence[Item], ground: float = 0.0, strips: Sequence[Strip] = (), servos: Servos = SERVOS) -> None:
+        """ground: height [m] of home, which lies on the ground below the start."""
+        self._ground = ground
+        self._field = Field(strips)
+        self.disarms = False
+        """The motor has nothing more to do: whoever arms takes notice and resets this."""
+        self.navigator = Navigator(items)
+        self.mode = FlightMode.MISSION if items else FlightMode.HOLD
+        self.reason = "start"
+        self.stopped = ""
+        self._blind = False
+        self.home: Place | None = None
+        self.rally: tuple[Place, ...] = ()
+        """Where Return may lead beside home."""
+        self.senses = Senses()
+        self.formation: Formation | None = None
+        self.leads: Steadied | None = None
+        """Of an aircraft that others follow."""
+        self.pace = Pace()
+        self.shutter = Camera()
+        """Triggered by orders; the mission's is the navigator's."""
+        self._climb_to: float | None = None  # m, world; of a take-off that was asked for with a height
+        self._stick = Stick()
+        self._servos = servos
+        self.fence = FenceGuard()
+        self._helm = Helm(self._servos, self.fence)
+        self._phase: Phase | None = None
+        self._level = Level(math.nan)
+        self._fresh = True
+
+    def step(self, now: Estimate, params: AirParams, dt: float) -> Flown:
+        if self._fresh:
+            self._begin(now)
+        self._look(now, params)
+        if self._stands:
+            self._helm = Helm(self._servos, self.fence)
+            return Flown(LET_GO, self._straight_on(now, params), self._level)
+        phase = self._phase = self._phase or self._begun(now, params)
+        self._set_pace(now, params)
+        self.shutter.step((now.north, now.east))
+        return self._flown(phase.step(now, params, dt), now, params, dt)
+
+    def hear(self, senses: Senses, dt: float) -> None:
+        """Before each step."""
+        self.senses.update(senses)
+        self._stick.hold(senses.hand, dt)
+
+    @property
+    def source(self) -> str:
+        """Whose commands reach the surfaces, or whose setpoints are followed."""
+        if TABLE[self.mode].by_hand and self.senses.hand is not None:
+            return self.senses.hand.source
+        return (self.mode is FlightMode.OFFBOARD and self.senses.setpoint_from) or "autopilot"
+
+    def _set_pace(self, now: Estimate, params: AirParams) -> None:
+        part = self._part
+        if isinstance(part, Following):
+            self.navigator.speed = self.pace.of(now, params, self.navigator.speed)
+        elif isinstance(part, Circling):
+            part.airspeed = self.pace.of(now, params, part.airspeed)
+
+    @property
+    def circling(self) -> Circling | None:
+        return self._phase if isinstance(self._phase, Circling) else None
+
+    @property
+    def circle(self) -> Circle | None:
+        return self._phase.circle if isinstance(self._phase, Circling | Landing | Descent) else None
+
+    @property
+    def landing(self) -> Landing | None:
+        """The landing that is being flown."""
+        return self._part if isinstance(self._part, Landing) else None
+
+    @property
+    def _part(self) -> Phase | None:
+        return self._phase.part if isinstance(self._phase, MissionFlight) else self._phase
+
+    @property
+    def is_blind(self) -> bool:
+        """Modes that need a position are not flown."""
+        return self._blind
+
+    @property
+    def is_by_hand(self) -> bool:
+        return TABLE[self.mode].by_hand and self.senses.hand is not None
+
+    @property
+    def is_let_go(self) -> bool:
+        """In a mode that is flown by hand nobody does any more."""
+        return TABLE[self.mode].by_hand and self._stick.abandoned
+
+    @property
+    def goes_down(self) -> bool:
+        """It lands, with a position or without one."""
+        return self.landing is not None or isinstance(self._phase, Descent)
+
+    def is_committed(self, now: Estimate) -> bool:
+        """So near to the ground that no other mode should follow: at the begin of a take-off, on the last metres of a landing."""
+        return self._settles or (isinstance(self._part, TakeOff) and self._part.is_low(now))
+
+    @property
+    def _settles(self) -> bool:
+        return self.landing is not None and self.landing.committed
+
+    @property
+    def station(self) -> float | None:
+        """m, of the aircraft from its station behind a leader."""
+        return self._phase.distance if isinstance(self._phase, Trailing) else None
+
+    def join(self, formation: Formation) -> None:
+        """Before the first step: follows from the start on."""
+        self.formation, self.mode = formation, FlightMode.FOLLOW
+
+    @property
+    def _situation(self) -> Situation:
+        led = self.formation is not None and self.formation.is_led
+        return Situation(
+            self.senses.airborne, not self._blind, bool(self.navigator.items), self.senses.setpoint is not None, self.stopped, led
+        )
+
+    @property
+    def _stands(self) -> bool:
+        """On the ground with nothing to do: surfaces neutral, motor off, brakes on."""
+        moves = TABLE[self.mode].on_ground and (self.senses.hand is not None if TABLE[self.mode].by_hand else self.senses.armed)
+        return not self.senses.airborne and not moves and not self._rolls_out
+
+    def _look(self, now: Estimate, params: AirParams) -> None:
+        """Whether this mode goes on."""
+        if self.mode is FlightMode.MISSION:
+            self._phase = self._phase or self._begun(now, params)
+        if isinstance(self._phase, TakeOff) and self._climb_to is None and self.home is not None:
+            self._phase.height = self.home.height + params.takeoff_alt
+        if isinstance(self._phase, MissionFlight):
+            self._phase.look(now, params)
+        self._move_home(now)
+        if self.landing is not None and self.landing.why_around:
+            self.reason, self.landing.why_around = f"go-around: {self.landing.why_around}", ""
+        if self._phase is not None and self._phase.ended:
+            self._end(self._phase)
+        if TABLE[self.mode].by_hand:
+            self._look_at_stick()
+        if self.formation is not None:
+            self._look_at_leader(self.formation)
+        if Need.SETPOINT in TABLE[self.mode].keeps and self.senses.setpoint is None:
+            self._change(TABLE[self.mode].without, f"no setpoint for {OLDEST:g} s")
+
+    def _look_at_leader(self, formation: Formation) -> None:
+        """Without a leader it holds; once the leader is back it follows again, unless it has been told something else."""
+        if self.mode is FlightMode.FOLLOW and formation.is_lost:
+            self._change(FlightMode.HOLD, formation.lost_reason)
+        elif self.mode is FlightMode.HOLD and self.reason == formation.lost_reason:
+            self.change_mode(FlightMode.FOLLOW, "autopilot", formation.reason)
+        if self.mode is FlightMode.FOLLOW and formation.is_led:
+            self.reason = formation.reason
+
+    def _look_at_stick(self) -> None:
+        """Before the first command and after the last one the autopilot circles; the failsafe ``sticks`` may order more."""
+        if isinstance(self._phase, Circling) == (self.senses.hand is not None):
+            self._phase = None
+
+    def _begun(self, now: Estimate, params: AirParams) -> Phase:
+        """The present mode from its beginning."""
+        assert self.home is not None
+        if self.mode is FlightMode.MISSION:
+            return MissionFlight(self.navigator, self._field, self.home, self.senses)
+        if self.mode is FlightMode.TAKEOFF:
+            usual = self.home.height + params.takeoff_alt
+            return self._field.take_off(now, usual if self._climb_to is None else self._climb_to, self.senses)
+        if self.mode is FlightMode.LAND:
+            return self._field.landing(now, self.home, self.senses, params)
+        if self.mode is FlightMode.FOLLOW and self.formation is not None:
+            return Trailing(self.formation)
+        if self.mode is FlightMode.OFFBOARD:
+            return Offboard(self.senses)
+        if TABLE[self.mode].by_hand and self.senses.hand is not None:
+            return STICK_MODES[self.mode](self.senses)
+        if self.mode is FlightMode.RETURN and (to := self.haven(now, params)) is not None:
+            return Homeward(to, lowest_over(to, self.rally), self.home.height, self._level.height)
+        return Circling(Circle.ahead(now, max(self._level.height, params.min_altitude), params.hold_radius), OWN)
+
+    def _flown(self, wish: Wish, now: Estimate, params: AirParams, dt: float) -> Flown:
+        if self.leads is not None and isinstance(self._part, Circling | Following):
+            wish = self.leads.step(wish, now, params, dt)
+        asked = wish.asked
+        aim = asked.aim if isinstance(asked, Track) else self._straight_on(now, params)
+        height = asked.height if isinstance(asked, Track | Wanted) else None
+        self._level = Level(now.height if height is None else height, asked.climb if isinstance(asked, Track | Wanted) else 0.0)
+        return Flown(self._helm.step(now, wish, params, dt), aim, self._level, self._helm.attitude, self._helm.airspeed)
+
+    @staticmethod
+    def _straight_on(now: Estimate, params: AirParams) -> Aim:
+        return Aim(0.0, now.course, 0.0, params.k_path, params.chi_inf)
+
+    def _begin(self, now: Estimate) -> None:
+        self._fresh = False
+        self.home = self.home or Place(now.north, now.east, self._ground)
+        self._level = Level(now.height)
+        if self.mode is FlightMode.MISSION:
+            self.navigator.resume()
+
+    def take_up(self, mode: FlightMode, home: Place, stand: Stand) -> None:
+        """Before the first step: goes on for an instance that has died."""
+        self.mode, self.home, self.reason = mode, home, "started again"
+        self.navigator.take_up(stand.index, stand.reached, stand.laps, stand.finished)
+
+    def _end(self, phase: Phase) -> None:
+        """What the table says follows."""
+        becomes = phase.becomes if isinstance(phase, MissionFlight) else None
+        self.disarms = self.disarms or phase.disarms
+        self._change(becomes or TABLE[self.mode].done or FlightMode.HOLD, phase.ended)
+
+    def haven(self, now: Estimate, params: AirParams) -> Place | None:
+        """Where Return would lead now."""
+        return haven(now, self.home, self.rally, self.fence.fencing, params) if self.home is not None else None
+
+    @property
+    def blocked(self) -> str:
+        """Why it cannot be sent anywhere; empty if it can."""
+        return refusal(FlightMode.ORBIT, self._situation)
+
+    @property
+    def _rolls_out(self) -> bool:
+        descends = isinstance(self._phase, Descent) and self._phase.rolls
+        return descends or (self.landing is not None and self.landing.rolls)
+
+    def _change(self, mode: FlightMode, reason: str) -> None:
+        self.pace.begin(anew=mode is not self.mode)
+        self.mode, self.reason, self._phase, self._climb_to = mode, reason, None, None
+        self._stick.take()
+
+    def _refused(self, mode: FlightMode) -> str:
+        return refusal(mode, self._situation) or (ROLLS_OUT if self._rolls_out else "")
+
+    def change_mode(self, mode: FlightMode, source: str, reason: str = "") -> str:
+        """reason: what the status tells; by default who asked."""
+        if why := self._refused(mode):
+            return why
+        if mode is FlightMode.MISSION and not self._fresh:
+            self._restart()
+        self._change(mode, reason or f"asked by {source}")
+        return ""
+
+    def _restart(self) -> None:
+        """Goes on where the mission was left; from its beginning when it was complete."""
+        if self.navigator.finished:
+            self.navigator = Navigator(self.navigator.items)
+        self.navigator.resume()
+
+    def take_off(self, height: float, source: str) -> str:
+        """Mode Takeoff up to ``height`` [m, world]."""
+        if not (why := self.change_mode(FlightMode.TAKEOFF, source)):
+            self._climb_to = height
+        return why
+
+    def settle(self, home: Place) -> None:
+        """Home is there from now on; on its way to the old one it turns to the new one."""
+        self.home = home
+        if self.mode is FlightMode.RETURN:
+            self._phase = None
+
+    def _move_home(self, now: Estimate) -> None:
+        """As items of the mission say that have been passed; "here" is on the ground that home had before."""
+        for item in self.navigator.homes:
+            self.settle(Place(now.north, now.east, self.home.height if self.home else self._ground) if item.here else item.place)
+        self.navigator.homes.clear()
+
+    def go_to(self, place: Place, source: str, params: AirParams, how: Round = OWN) -> str:
+        """Flies there and holds over it; too low a height means the present one."""
+        if self.blocked:
+            return self.blocked
+        if not all(map(math.isfinite, astuple(place))):
+            return "the goal is no place: its coordinates are not finite"
+        if why := how.fault(params):
+            return why
+        height = place.height if place.height >= params.min_altitude else self._level.height
+        self._change(FlightMode.HOLD, f"goal of {source}")
+        self._phase = Circling(Circle(Place(place.north, place.east, height), how.radius or params.hold_radius), how)
+        if how.airspeed:
+            self.pace.begin(anew=True)
+        return ""
+
+    def descend(self, now: Estimate, reason: str, params: AirParams) -> None:
+        """Mode Land without a position: down where it is."""
+        if self._rolls_out or isinstance(self._phase, Descent):
+            return
+        circle = self.circle or Circle.ahead(now, now.height, params.hold_radius)
+        self._change(FlightMode.LAND, reason)
+        self._phase = Descent(circle, self.home.height if self.home is not None else self._ground, self.senses)
+
+    def orbit(self, circle: Circle, airspeed: float, source: str, params: AirParams) -> str:
+        """Mode Orbit; a radius or airspeed of 0 is the vehicle's own."""
+        if why := self._refused(FlightMode.ORBIT):
+            return why
+        if not all(map(math.isfinite, astuple(circle.centre))):
+            return "the circle is none: its numbers are not finite"
+        how = Round(circle.radius, airspeed)
+        if why := how.fault(params):
+            return why
+        height = circle.centre.height if circle.centre.height >= params.min_altitude else self._level.height
+        self._change(FlightMode.ORBIT, f"asked by {source}")
+        place = replace(circle.centre, height=height)
+        self._phase = Circling(Circle(place, circle.radius or params.hold_radius), how)
+        return ""
+
+    def go_around(self, source: str) -> str:
+        if self.landing is None:
+            return "there is no approach to be given up"
+        if self.landing.rolls:
+            return ROLLS_OUT
+        self.landing.around(f"asked by {source}")
+        return ""
+
+    def load(self, items: Sequence[Item], params: AirParams) -> str:
+        """Replaces the mission; while one is flown the new one is begun at once."""
+        if why := fault(items, params):
+            return why
+        self.navigator = Navigator(items)
+        if self.mode is FlightMode.MISSION:
+            self._phase = None
+            if not items:
+                self._change(FlightMode.HOLD, "the mission was cleared")
+            elif not self._fresh:
+                self.navigator.resume()
+        return ""
+
+    def set_current(self, index: int) -> str:
+        if index >= len(self.navigator.items):
+            return f"there is no item {index}: the mission has {len(self.navigator.items)}"
+        self.navigator.jump_to(index)
+        return ""
+
+    def stop(self, source: str) -> None:
+        """STOP ALL: an airborne aircraft holds until it is released (an empty source)."""
+        if source and not self.stopped and not self._rolls_out:
+            self._change(FlightMode.HOLD, f"stopped by {source}")
+        elif self.stopped and not source:
+            self.reason = "stop released"
+        self.stopped = source
+
+    def fly_blind(self, blind: bool) -> None:
+        """Without GNSS for long it holds where it reckons to be, and goes on holding when GNSS is back, until told.
+
+        On the last metres of a landing it goes on by dead reckoning: to turn away there is worse.
+        """
+        row, was, self._blind = TABLE[self.mode], self._blind, blind
+        needs, holds = Need.POSITION in row.keeps, self.mode is FlightMode.HOLD
+        if self.stopped or self._rolls_out or self._settles or not (needs or holds):
+            return
+        if blind and not isinstance(self._phase, Descent) and (needs or not was):
+            self._change(row.without, "GNSS lost: holds by dead reckoning" if row.without is FlightMode.HOLD else "GNSS lost")
+        elif was and not blind and isinstance(self._phase, Descent):
+            self._change(FlightMode.HOLD, BACK)
+        elif was and not blind:
+            self.reason = BACK

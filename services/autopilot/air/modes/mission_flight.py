@@ -1,0 +1,69 @@
+"""Mode Mission: take-off, legs and circles, landing, one item after the other."""
+
+from services.autopilot.air.mode_table import FlightMode
+from services.autopilot.air.modes.field import Field
+from services.autopilot.air.modes.paths import Following
+from services.autopilot.air.setpoints import Phase, Senses, Wish
+from uvf.estimation.state import Estimate
+from uvf.guidance.flight_plan import OFF_PATH, Kind
+from uvf.guidance.plan_follower import Navigator
+from uvf.guidance.route import Place
+from uvf.models.vehicle.flight_params import AirParams
+
+
+class MissionFlight(Phase):
+    """From the ground a take-off comes first, whether the mission has one or not."""
+
+    def __init__(self, navigator: Navigator, field: Field, home: Place, senses: Senses) -> None:
+        self.becomes: FlightMode | None = None
+        self.part: Phase | None = None
+        self._navigator, self._field, self._home, self._senses = navigator, field, home, senses
+        self._starts = not senses.airborne
+        self._index: int | None = None
+
+    def step(self, now: Estimate, params: AirParams, dt: float) -> Wish:
+        """``look`` comes first."""
+        assert self.part is not None
+        return self.part.step(now, params, dt)
+
+    def look(self, now: Estimate, params: AirParams) -> None:
+        """Which part is flown; ``ended`` when there is none left."""
+        if self.part is not None and self.part.ended:
+            self._leave(self.part, now, params)
+        elif (self._kind in OFF_PATH) if isinstance(self.part, Following) else self._navigator.index != self._index:
+            self.part = None
+        if self.ended:
+            return
+        if self._navigator.returns_home:
+            self.ended, self.becomes = "mission: return", FlightMode.RETURN
+        elif self._navigator.finished:
+            self.ended = "mission complete"
+        else:
+            self.part, self._index = self.part or self._begun(now, params), self._navigator.index
+
+    def _leave(self, part: Phase, now: Estimate, params: AirParams) -> None:
+        self.part = None
+        if part.disarms and self._kind is not Kind.LAND:
+            self.ended, self.disarms = part.ended, True  # a take-off that was rejected
+            return
+        self._starts = False
+        if self._kind in (Kind.TAKEOFF, Kind.LAND):
+            self._navigator.pass_item()
+        if part.disarms:
+            self.ended, self.disarms = "mission complete" if self._navigator.finished else part.ended, True
+
+    @property
+    def _kind(self) -> Kind | None:
+        target = self._navigator.target
+        return target.kind if target is not None else None
+
+    def _begun(self, now: Estimate, params: AirParams) -> Phase:
+        target = self._navigator.target
+        lowest = self._home.height + params.takeoff_alt
+        if target is not None and target.kind is Kind.TAKEOFF:
+            return self._field.take_off(now, target.place.height or lowest, self._senses)
+        if self._starts:
+            return self._field.take_off(now, lowest, self._senses)
+        if target is not None and target.kind is Kind.LAND:
+            return self._field.landing_at(now, target.place, self._senses, params, self._navigator.approach(params))
+        return Following(self._navigator)

@@ -1,0 +1,109 @@
+"""What the sensors read and the actuators are told, as MAVLink has it: FRD, hPa, gauss, microseconds of pulse."""
+
+import math
+
+from schemas.messages import AirData, SurfaceCommand, WheelCommand
+from services.autopilot.mavlink.connection.facts import Facts, Latest
+from services.autopilot.mavlink.telemetry.navigation import boot_ms
+from uvf.maths import atmosphere
+from uvf.maths.geodesy import Floats
+from uvf.maths.rotations import FLU_FROM_FRD, from_euler, rotate
+from uvf.mavlink import dialect as mav
+from uvf.mavlink.scaling import I16, whole
+from uvf.runtime.messages.convert import array
+
+Message = mav.MAVLink_message | None
+
+ZERO_CELSIUS = 273.15  # K
+GAUSS = 1e-4  # T
+HECTOPASCAL = 100.0  # Pa
+CENTRE, HALF = 1500.0, 500.0  # us of a servo's pulse
+UNUSED = 0
+FRD: Floats = FLU_FROM_FRD.diagonal()  # signs of a vector's components, whatever they are
+
+_INERTIAL = sum(1 << bit for bit in range(6))
+_MAGNETIC = mav.HIGHRES_IMU_UPDATED_XMAG | mav.HIGHRES_IMU_UPDATED_YMAG | mav.HIGHRES_IMU_UPDATED_ZMAG
+_PRESSURES = (
+    mav.HIGHRES_IMU_UPDATED_ABS_PRESSURE
+    | mav.HIGHRES_IMU_UPDATED_DIFF_PRESSURE
+    | mav.HIGHRES_IMU_UPDATED_PRESSURE_ALT
+    | mav.HIGHRES_IMU_UPDATED_TEMPERATURE
+)
+
+
+def body_frd(facts: Facts, sensed: Floats) -> Floats:
+    """(3,) of the IMU's axes (FLU, mounted as the vehicle's file says) in the body's (FRD)."""
+    imu = facts.sensors.imu
+    if imu is not None and any(imu.mount.rpy):
+        sensed = rotate(from_euler(*imu.mount.rpy), sensed)
+    return sensed * FRD
+
+
+def highres_imu(facts: Facts, latest: Latest, t: float) -> Message:
+    """``fields_updated`` names what is there: a vehicle without air data or magnetometer has no numbers for them."""
+    imu, air = latest.fresh(latest.imu), latest.fresh(latest.air_data)
+    if imu is None:
+        return None
+    mx, my, mz = body_frd(facts, array(imu.magnetic_field)) / GAUSS
+    ax, ay, az = body_frd(facts, array(imu.specific_force))
+    p, q, r = body_frd(facts, array(imu.angular_velocity))
+    static, differential, height, celsius = _air(air) if air is not None else (0.0, 0.0, 0.0, 0.0)
+    flags = _INERTIAL | (_MAGNETIC if mx or my or mz else 0) | (_PRESSURES if air is not None else 0)
+    usec = whole(t * 1e6, (0, 2**63))
+    return mav.MAVLink_highres_imu_message(usec, ax, ay, az, p, q, r, mx, my, mz, static, differential, height, celsius, flags)
+
+
+def _air(air: AirData) -> tuple[float, float, float, float]:
+    """Pressures [hPa], their altitude in the standard atmosphere [m], temperature [deg C]."""
+    height = atmosphere.altitude(air.static_pressure) if air.static_pressure > 0 else math.nan
+    return air.static_pressure / HECTOPASCAL, air.differential_pressure / HECTOPASCAL, height, air.temperature - ZERO_CELSIUS
+
+
+def scaled_pressure(facts: Facts, latest: Latest, t: float) -> Message:
+    air = latest.fresh(latest.air_data)
+    if air is None:
+        return None
+    static, differential, _, celsius = _air(air)
+    return mav.MAVLink_scaled_pressure_message(boot_ms(t), static, differential, whole(celsius * 100, I16))
+
+
+def vibration(facts: Facts, latest: Latest, t: float) -> Message:
+    """Of aircraft: the shaking of the specific force, sensor axes; see ``vibration.py``."""
+    if facts.is_ground or latest.fresh(latest.imu) is None:
+        return None
+    x, y, z = latest.vibration.level.tolist()
+    return mav.MAVLink_vibration_message(whole(t * 1e6, (0, 2**63)), x, y, z, latest.vibration.clipped, 0, 0)
+
+
+def servo_output(facts: Facts, latest: Latest, t: float) -> Message:
+    """Outputs 1 to 6: aileron, elevator, throttle, rudder, flap, brake; of a ground vehicle 1 and 2: left and right wheel."""
+    pulses: list[int] = []
+    if (surfaces := latest.fresh(latest.surface_command)) is not None:
+        pulses = _surfaces(facts, surfaces)
+    elif (wheels := latest.fresh(latest.wheel_command)) is not None:
+        pulses = _wheels(facts, wheels)
+    if not pulses:
+        return None
+    return mav.MAVLink_servo_output_raw_message(round(t * 1e6) % 2**32, 0, *pulses, *(UNUSED,) * (8 - len(pulses)))
+
+
+def _surfaces(facts: Facts, asked: SurfaceCommand) -> list[int]:
+    if facts.file.air is None:
+        return []
+    limits = facts.file.air.controls
+    around = {name: getattr(asked, name) / getattr(limits, name).limit for name in ("aileron", "elevator", "rudder")}
+    up = {"throttle": asked.throttle, "flap": asked.flap / limits.flap.limit, "brake": asked.brake}
+    parts = {**around, **{name: 2 * part - 1 for name, part in up.items()}}
+    return [_pulse(parts[name]) for name in ("aileron", "elevator", "throttle", "rudder", "flap", "brake")]
+
+
+def _wheels(facts: Facts, asked: WheelCommand) -> list[int]:
+    if facts.file.ground is None:
+        return []
+    fastest = facts.file.ground.max_linear / facts.file.ground.wheel_radius
+    return [_pulse(asked.left / fastest), _pulse(asked.right / fastest)]
+
+
+def _pulse(part: float) -> int:
+    """us; part: -1..1."""
+    return whole(CENTRE + HALF * part, (1000, 2000), round(CENTRE))

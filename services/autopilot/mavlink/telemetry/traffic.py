@@ -1,0 +1,66 @@
+"""The other vehicles of the mission, as traffic that an ADS-B receiver would see."""
+
+import hashlib
+import math
+import re
+
+import numpy as np
+
+from services.autopilot.mavlink.connection.facts import Facts, Latest
+from uvf.mavlink import dialect as mav
+from uvf.mavlink.scaling import I16, I32, U16, compass, heading_degrees, whole
+from uvf.runtime.messages.convert import array, yaw_of
+
+CALLSIGN = 8  # characters
+STANDS = 0.2  # m/s, below which a vehicle goes where it looks
+FLAGS = (
+    mav.ADSB_FLAGS_VALID_COORDS
+    | mav.ADSB_FLAGS_VALID_ALTITUDE
+    | mav.ADSB_FLAGS_VALID_HEADING
+    | mav.ADSB_FLAGS_VALID_VELOCITY
+    | mav.ADSB_FLAGS_VERTICAL_VELOCITY_VALID
+    | mav.ADSB_FLAGS_VALID_CALLSIGN
+    | mav.ADSB_FLAGS_SIMULATED
+)
+
+
+def traffic(facts: Facts, latest: Latest, t: float) -> list[mav.MAVLink_message]:
+    """Where each of the others believes to be; one that has fallen silent is no longer seen."""
+    return [one for other, known in latest.others if (one := seen(other, known)) is not None]
+
+
+def seen(facts: Facts, latest: Latest) -> mav.MAVLink_adsb_vehicle_message | None:
+    nav = latest.nav
+    if nav is None or latest.is_silent or not np.isfinite([*array(nav.position), *array(nav.velocity)]).all():
+        return None
+    latitude, longitude, amsl = facts.geodetic(array(nav.position))
+    v = array(nav.velocity)
+    speed = math.hypot(v[0], v[1])
+    course = compass(v) if speed > STANDS else heading_degrees(yaw_of(nav.orientation))
+    return mav.MAVLink_adsb_vehicle_message(
+        address(facts),
+        whole(latitude * 1e7, I32),
+        whole(longitude * 1e7, I32),
+        mav.ADSB_ALTITUDE_TYPE_GEOMETRIC,
+        whole(amsl * 1e3, I32),
+        whole(course * 100, U16) % 36000,
+        whole(speed * 100, U16),
+        whole(v[2] * 100, I16),
+        callsign(facts).encode(),
+        mav.ADSB_EMITTER_TYPE_SERVICE_SURFACE if facts.is_ground else mav.ADSB_EMITTER_TYPE_UAV,
+        0,
+        FLAGS,
+        0,
+    )
+
+
+def address(facts: Facts) -> int:
+    """24 bits, one a vehicle: its system id in the last byte keeps those of a mission apart."""
+    return int.from_bytes(hashlib.sha256(facts.name.encode()).digest()[:2], "big") << 8 | facts.system_id
+
+
+def callsign(facts: Facts) -> str:
+    """Letters and digits of the name; of a long one the beginning and the system id."""
+    name = re.sub("[^A-Z0-9]", "", facts.name.upper())
+    number = str(facts.system_id)
+    return name if len(name) <= CALLSIGN else name[: CALLSIGN - len(number)] + number

@@ -1,0 +1,164 @@
+"""Landing: where, along which path, and what makes it be given up."""
+
+import math
+
+import numpy as np
+import pytest
+
+from services.autopilot.air.modes.landing import TOUCH_SINK, Landing, flare
+from services.autopilot.air.setpoints import Senses
+from tests.services.autopilot.air.states import PARAMS, cruising
+from uvf.control.commands import Surfaces
+from uvf.guidance.route import Place
+from uvf.guidance.runways import Strip, lane_for
+
+STRIP = Strip(Place(0.0, 0.0, 5.0), math.pi / 2, 300.0, 12.0)  # east and west
+SLOPE = math.tan(PARAMS.glide_slope)
+EAST = STRIP.lane(math.pi / 2)
+
+
+@pytest.mark.parametrize(("wind_east", "course"), [(-8.0, math.pi / 2), (8.0, -math.pi / 2)])
+def test_it_lands_against_the_wind(wind_east, course):
+    lane = lane_for(Place(0.0, 0.0, 0.0), [STRIP], cruising(wind_east=wind_east, wind_north=2.0))
+    assert math.cos(lane.course - course) == pytest.approx(1.0)
+
+
+def test_in_calm_air_it_lands_straight_in():
+    assert lane_for(Place(0.0, 0.0, 0.0), [STRIP], cruising(east=900.0)).course == pytest.approx(-math.pi / 2)
+
+
+def test_the_nearest_strip_is_taken_and_without_any_the_place_itself():
+    other = Strip(Place(2000.0, 0.0, 0.0), 0.0, 200.0, 10.0)
+    assert lane_for(Place(1900.0, 0.0, 0.0), [STRIP, other], cruising()).width == 10.0
+    assert lane_for(Place(70.0, 30.0, 2.0), [], cruising()).aim == Place(70.0, 30.0, 2.0)
+
+
+def test_the_wheels_are_to_touch_a_quarter_or_sixty_metres_behind_the_threshold():
+    assert EAST.aim.east == pytest.approx(-150.0 + 60.0)
+    assert EAST.rest == pytest.approx(240.0)
+    assert Strip(Place(0.0, 0.0, 0.0), 0.0, 100.0, 8.0).lane(0.0).aim.north == pytest.approx(-25.0)
+
+
+@pytest.mark.parametrize("wind", [-2.0, 0.0, 8.0])
+def test_the_flare_ends_on_the_ground_where_it_is_meant_to_whatever_the_wind(wind):
+    speed = 19.0 - wind
+    height, slope, flares = flare(0.0, speed, SLOPE)
+    assert (height, flares) == (0.0, True)
+    assert slope * speed == pytest.approx(TOUCH_SINK)
+
+
+def test_the_flare_has_no_step_and_no_kink():
+    distances = np.linspace(-20.0, 200.0, 2201)
+    heights, slopes = np.array([flare(float(d), 19.0, SLOPE)[:2] for d in distances]).T
+    assert np.abs(np.diff(heights)).max() < 0.1 * SLOPE * 1.01
+    assert np.abs(np.gradient(heights, distances)[1:-1] - slopes[1:-1]).max() < 2e-4
+    assert (np.diff(slopes) > -1e-9).all()
+
+
+def on_final(distance, height, right=0.0, airspeed=19.0, clearance=None, **now):
+    """Eastwards, ``distance`` [m] before the point to touch at, the wheels ``height`` [m] over the strip."""
+    senses = Senses(clearance=clearance)
+    state = {
+        "course": math.pi / 2,
+        "yaw": math.pi / 2,
+        "airspeed": airspeed,
+        "ground_speed": airspeed,
+        "north": -right,
+        "east": EAST.aim.east - distance,
+        "height": height + 5.0 + PARAMS.gear_height,
+        **now,
+    }
+    landing = Landing(cruising(**state), lambda now: EAST, senses, PARAMS)
+    start = 25.0 * PARAMS.min_airspeed
+    joining = {**state, "east": EAST.aim.east - start, "north": 0.0, "height": 5.0 + PARAMS.gear_height + SLOPE * start}
+    landing.step(cruising(**joining), PARAMS, 0.02)
+    return landing, cruising(**state)
+
+
+def test_it_leaves_the_circle_onto_the_final_approach_only_aligned_and_low_enough():
+    landing, _ = on_final(300.0, 24.0)
+    assert landing.circle is None
+    high, _ = on_final(300.0, 24.0, course=0.5)
+    assert high.circle is not None
+
+
+def test_it_follows_the_slope():
+    landing, now = on_final(200.0, flare(200.0, 19.0, SLOPE)[0])
+    track = landing.step(now, PARAMS, 0.02).asked
+    assert track.climb == pytest.approx(-SLOPE * 19.0, abs=0.05)
+    assert track.airspeed == PARAMS.min_airspeed
+
+
+def test_a_range_finder_corrects_the_height():
+    landing, now = on_final(100.0, flare(100.0, 19.0, SLOPE)[0], clearance=flare(100.0, 19.0, SLOPE)[0] + 1.0)
+    for _ in range(300):
+        track = landing.step(now, PARAMS, 0.02).asked
+    assert track.climb == pytest.approx(-SLOPE * 19.0 - PARAMS.altitude_p, abs=0.02)
+
+
+def test_in_wind_it_approaches_a_little_faster():
+    landing, now = on_final(200.0, 16.0, wind_east=-8.0)
+    assert PARAMS.min_airspeed < landing.step(now, PARAMS, 0.02).asked.airspeed <= 1.2 * PARAMS.min_airspeed
+
+
+@pytest.mark.parametrize(
+    ("changed", "why"),
+    [
+        ({"height": 9.0}, "too high"),
+        ({"distance": 120.0, "height": 2.2}, "too low"),
+        ({"right": 7.0}, "aside"),
+        ({"airspeed": 27.0}, "too fast"),
+    ],
+)
+def test_an_approach_that_is_not_stable_is_given_up_for_another(changed, why):
+    landing, now = on_final(**{"distance": 80.0, "height": flare(80.0, 19.0, SLOPE)[0], **changed})
+    landing.step(now, PARAMS, 0.02)
+    assert why in landing.why_around
+    climbing = landing.step(now, PARAMS, 0.02)
+    assert (climbing.asked.throttle, climbing.flap) == (1.0, 0.0)
+
+
+def test_half_of_the_strip_without_touching_is_enough():
+    landing, now = on_final(-125.0, 0.8)
+    landing.step(now, PARAMS, 0.02)
+    assert "half of the strip" in landing.why_around
+
+
+def test_after_a_climb_it_approaches_again():
+    landing, now = on_final(200.0, 16.0)
+    landing.around("asked by test")
+    landing.step(now, PARAMS, 0.02)
+    assert landing.circle is None
+    landing.step(cruising(east=300.0, height=60.0), PARAMS, 0.02)
+    assert landing.circle is not None
+
+
+def test_wheels_down_the_motor_is_off_and_at_rest_it_is_done():
+    landing, now = on_final(2.0, 0.05, clearance=0.05)
+    for _ in range(10):
+        landing.step(now, PARAMS, 0.02)
+    assert landing.rolls
+    rolling = landing.step(now, PARAMS, 0.02).asked
+    assert isinstance(rolling, Surfaces)
+    assert rolling.throttle == 0.0
+    for _ in range(50):
+        braking = landing.step(now, PARAMS, 0.02).asked
+    assert braking.brake > 0
+    for _ in range(100):
+        landing.step(cruising(ground_speed=0.2, airspeed=3.0, yaw=math.pi / 2), PARAMS, 0.02)
+    assert (landing.ended, landing.disarms) == ("landed", True)
+
+
+def test_without_a_range_finder_it_feels_that_it_sinks_no_more():
+    landing, now = on_final(-5.0, -0.2, climb=0.0)
+    for _ in range(60):
+        landing.step(now, PARAMS, 0.02)
+    assert landing.rolls
+
+
+def test_while_it_rolls_it_does_not_go_around():
+    landing, now = on_final(2.0, 0.05, clearance=0.05)
+    for _ in range(10):
+        landing.step(now, PARAMS, 0.02)
+    landing.around("asked by test")
+    assert landing.rolls

@@ -1,0 +1,161 @@
+"""The table of modes: every refusal, every loss and every end, as the documentation tells them."""
+
+import itertools
+
+import pytest
+
+from services.autopilot.air.manual_control import Hand
+from services.autopilot.air.mode_manager import Pilot
+from services.autopilot.air.mode_table import TABLE, FlightMode, Need, Situation, lost, refusal
+from services.autopilot.air.setpoints import Senses
+from tests.services.autopilot.air.states import PARAMS, cruising
+from uvf.control.commands import Surfaces
+from uvf.guidance.flight_plan import Item, Kind
+from uvf.guidance.route import Circle, Place
+from uvf.models.scenario import ROOT
+
+M = FlightMode
+SITUATIONS = [
+    Situation(airborne, known, mission, setpoint, stopped, led)
+    for airborne, known, mission, setpoint, led in itertools.product((False, True), repeat=5)
+    for stopped in ("", "gcs")
+]
+MET = {
+    Need.RELEASED: lambda s: not s.stopped,
+    Need.POSITION: lambda s: s.position_known,
+    Need.AIRBORNE: lambda s: s.airborne,
+    Need.GROUND: lambda s: not s.airborne,
+    Need.MISSION: lambda s: s.has_mission,
+    Need.SETPOINT: lambda s: s.setpoint,
+    Need.LEADER: lambda s: s.led,
+}
+FAR = [Item(Kind.WAYPOINT, Place(900.0, 0.0, 70.0)), Item(Kind.WAYPOINT, Place(900.0, 900.0, 70.0))]
+
+
+def test_every_mode_is_in_the_table():
+    assert set(TABLE) == set(FlightMode)
+
+
+@pytest.mark.parametrize("mode", FlightMode)
+def test_a_mode_is_refused_exactly_when_a_need_is_not_met_and_names_the_first(mode):
+    for situation in SITUATIONS:
+        missing = [need for need in TABLE[mode].needs if not MET[need](situation)]
+        told = refusal(mode, situation)
+        assert told == (missing[0].value.format(stopped=situation.stopped) if missing else ""), situation
+
+
+@pytest.mark.parametrize("mode", FlightMode)
+def test_what_a_mode_lives_on_is_looked_at(mode):
+    for situation in SITUATIONS:
+        assert lost(mode, situation) == next((n for n in TABLE[mode].keeps if not MET[n](situation)), None)
+
+
+def flying(items=FAR, airborne=True, armed=True, **now):
+    pilot = Pilot(items)
+    pilot.hear(Senses(airborne=airborne, armed=armed), 0.02)
+    pilot.step(cruising(**now), PARAMS, 0.02)
+    return pilot
+
+
+STANDING = {"airspeed": 0.5, "ground_speed": 0.1, "height": 0.4}
+
+
+@pytest.mark.parametrize("mode", [m for m in FlightMode if Need.AIRBORNE in TABLE[m].needs])
+def test_on_the_ground_a_mode_of_the_air_is_refused_and_nothing_changes(mode):
+    pilot = flying([], airborne=False, **STANDING)
+    assert "on the ground" in pilot.change_mode(mode, "test")
+    assert pilot.mode is M.HOLD
+
+
+def test_in_the_air_a_take_off_is_refused():
+    assert "flying" in flying().change_mode(M.TAKEOFF, "test")
+
+
+@pytest.mark.parametrize("mode", [m for m in FlightMode if m is not M.HOLD])
+def test_while_it_is_stopped_only_hold_is_taken(mode):
+    pilot = flying()
+    pilot.stop("gcs")
+    assert "stopped by gcs" in pilot.change_mode(mode, "test")
+    assert pilot.change_mode(M.HOLD, "test") == ""
+
+
+def test_a_mode_may_be_changed_to_with_a_reason_of_its_own():
+    pilot = flying()
+    assert pilot.change_mode(M.RETURN, "failsafe", "battery low") == ""
+    assert (pilot.mode, pilot.reason) == (M.RETURN, "battery low")
+
+
+def holding_the_stick(pilot):
+    hand = Hand("teleop", Surfaces(0.0, 0.0, 0.0, 0.5))
+    pilot.hear(Senses(hand=hand), 0.02)
+    pilot.step(cruising(), PARAMS, 0.02)
+
+
+@pytest.mark.parametrize("mode", [m for m in FlightMode if Need.POSITION in TABLE[m].keeps])
+def test_without_satellites_a_mode_over_ground_falls_where_the_table_says(mode):
+    pilot = flying()
+    pilot.mode = mode
+    holding_the_stick(pilot)
+    pilot.fly_blind(True)
+    assert pilot.mode is TABLE[mode].without
+    assert "GNSS lost" in pilot.reason
+
+
+@pytest.mark.parametrize("mode", [M.MANUAL, M.STABILIZED, M.ALTITUDE, M.TAKEOFF])
+def test_modes_through_the_air_need_no_satellites(mode):
+    pilot = flying()
+    pilot.mode = mode
+    pilot.fly_blind(True)
+    assert pilot.mode is mode
+
+
+@pytest.mark.parametrize("mode", [m for m in FlightMode if TABLE[m].by_hand])
+def test_a_stick_that_is_let_go_is_told_and_meanwhile_it_circles(mode):
+    pilot = flying()
+    assert pilot.change_mode(mode, "test") == ""
+    holding_the_stick(pilot)
+    for _ in range(30):
+        pilot.hear(Senses(), 0.02)
+        pilot.step(cruising(), PARAMS, 0.02)
+    assert pilot.is_let_go and pilot.mode is mode and pilot.circle is not None
+    holding_the_stick(pilot)
+    pilot.step(cruising(), PARAMS, 0.02)
+    assert not pilot.is_let_go and pilot.circle is None
+
+
+@pytest.mark.parametrize("mode", [m for m in FlightMode if not TABLE[m].on_ground])
+def test_on_the_ground_such_a_mode_keeps_motor_off_and_brakes_on(mode):
+    pilot = flying([], airborne=False, **STANDING)
+    pilot.mode = mode
+    surfaces = pilot.step(cruising(**STANDING), PARAMS, 0.02).surfaces
+    assert (surfaces.throttle, surfaces.brake) == (0.0, 1.0)
+
+
+def test_an_orbit_is_flown_as_asked():
+    pilot = flying()
+    assert pilot.orbit(Circle(Place(200.0, 100.0, 80.0), -120.0), 22.0, "test", PARAMS) == ""
+    pilot.step(cruising(), PARAMS, 0.02)
+    assert (pilot.mode, pilot.circle) == (M.ORBIT, Circle(Place(200.0, 100.0, 80.0), -120.0))
+
+
+@pytest.mark.parametrize(
+    ("radius", "airspeed", "why"),
+    [(10.0, 0.0, "too tight"), (100.0, 60.0, "cannot be flown"), (float("nan"), 0.0, "not finite")],
+)
+def test_an_orbit_that_cannot_be_flown_is_refused(radius, airspeed, why):
+    pilot = flying()
+    assert why in pilot.orbit(Circle(Place(0.0, 0.0, 80.0), radius), airspeed, "test", PARAMS)
+    assert pilot.mode is M.MISSION
+
+
+def test_without_an_approach_there_is_nothing_to_go_around_from():
+    assert "no approach" in flying().go_around("test")
+
+
+def test_the_documentation_holds_the_table():
+    text = (ROOT / "docs" / "autopilot.md").read_text()
+    for mode, row in TABLE.items():
+        needs = ", ".join(need.name.lower() for need in row.needs) or "-"
+        without = row.without.value if row.keeps or row.by_hand else "-"
+        done = row.done.value if row.done else "-"
+        assert f"| {mode.value} | {needs} | {without} | {done} |" in text
