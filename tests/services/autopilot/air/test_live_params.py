@@ -9,17 +9,17 @@ from tests.services.live_params import all_settable_are_read
 from uvf.models.scenario import ROOT
 
 ELSEWHERE = {
-    "follow_p": "station.py",
-    "follow_i": "station.py",
-    "follow_sep": "separation.py",
-    "takeoff_pitch": "takeoff.py",
-    "launch_push": "takeoff.py",
-    "land_flap": "landing.py",
-    "descend_alt": "homeward.py",
-    "gnss_action": "failsafes.py",
-    "link_action": "failsafes.py",
-    "attitude_action": "failsafes.py",
-    "wind_action": "failsafes.py",
+    "follow_p": "src/uvf/guidance/formation_slot.py",
+    "follow_i": "src/uvf/guidance/formation_slot.py",
+    "follow_sep": "src/uvf/guidance/separation.py",
+    "takeoff_pitch": "services/autopilot/air/modes/takeoff.py",
+    "launch_push": "services/autopilot/air/modes/takeoff.py",
+    "land_flap": "services/autopilot/air/modes/landing.py",
+    "descend_alt": "services/autopilot/air/modes/return_mode.py",
+    "gnss_action": "services/autopilot/air/failsafes/table.py",
+    "link_action": "services/autopilot/air/failsafes/table.py",
+    "attitude_action": "services/autopilot/air/failsafes/table.py",
+    "wind_action": "services/autopilot/air/failsafes/table.py",
 }
 """Of states that this flight does not come to: the module that is handed the parameters of each cycle and reads it."""
 
@@ -43,5 +43,5 @@ def test_each_is_read_in_flight():
 
 @pytest.mark.parametrize(("name", "module"), ELSEWHERE.items())
 def test_the_others_are_read_of_what_each_cycle_is_handed(name, module):
-    text = (ROOT / "services" / "autopilot" / "air" / module).read_text()
+    text = (ROOT / module).read_text()
     assert f"params.{name}" in text or f'_chosen("{name}")' in text
