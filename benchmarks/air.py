@@ -22,10 +22,10 @@ from schemas import topics
 from schemas.messages import SurfaceCommand
 from services.sim_air.build import build
 from uvf.models.scenario import Site, load_site
+from uvf.runtime.contract.declaration import Writes, topic
 from uvf.runtime.contract.instances import Host
 from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import stamp
-from uvf.runtime.messages.outputs import Outputs
 from uvf.runtime.time.lockstep import Lockstep
 
 SECONDS = 10.0
@@ -41,10 +41,12 @@ class Steady(Service):
 
     name = "steady"
     hz = 50.0
-    outputs = {"surfaces": topics.SURFACE_COMMAND}
 
-    def step(self, t: float) -> Outputs:
-        return {"surfaces": SurfaceCommand(timestamp=stamp(t), aileron=0.006, elevator=-0.135, rudder=-0.001, throttle=0.78)}
+    class Outputs(Writes):
+        surfaces: SurfaceCommand | None = topic(topics.SURFACE_COMMAND)
+
+    def step(self, t: float, now) -> Outputs:
+        return self.Outputs(surfaces=SurfaceCommand(timestamp=stamp(t), aileron=0.006, elevator=-0.135, rudder=-0.001, throttle=0.78))
 
 
 def fleet(count: int, folder: Path, wind: dict[str, Any]) -> Site:

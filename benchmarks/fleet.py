@@ -19,13 +19,14 @@ from benchmarks.timing import stopwatch, timed
 from schemas import topics
 from schemas.messages import WheelCommand
 from services.sim_ground.build import build
+from tests.runtime.stepping import stepped
 from uvf.models.scenario import ROOT, Site, load_site
 from uvf.models.world.file import load_world
 from uvf.models.world.footing import Footing
+from uvf.runtime.contract.declaration import Writes, topic
 from uvf.runtime.contract.instances import Host
 from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import stamp
-from uvf.runtime.messages.outputs import Outputs
 from uvf.runtime.time.lockstep import Lockstep
 
 SECONDS = 10.0
@@ -39,10 +40,12 @@ class Circling(Service):
 
     name = "circling"
     hz = 50.0
-    outputs = {"wheels": topics.WHEEL_COMMAND}
 
-    def step(self, t: float) -> Outputs:
-        return {"wheels": WheelCommand(timestamp=stamp(t), left=0.6, right=5.4)}
+    class Outputs(Writes):
+        wheels: WheelCommand | None = topic(topics.WHEEL_COMMAND)
+
+    def step(self, t: float, now) -> Outputs:
+        return self.Outputs(wheels=WheelCommand(timestamp=stamp(t), left=0.6, right=5.4))
 
 
 def fleet(count: int, folder: Path) -> Site:
@@ -80,7 +83,7 @@ def engine(site: Site) -> list[float]:
     world = service._world  # type: ignore[attr-defined]
     commands = {name: WheelCommand(left=0.6, right=5.4) for name in site.members}
     for n in range(1, 51):
-        service.step(n / 100, commands=commands, truth={}, flying=None, spawn=[], remove=[], set_pose=[], save=[], restore=[])
+        stepped(service, n / 100, commands=commands, truth={}, flying=None, spawn=[], remove=[], set_pose=[], save=[], restore=[])
     with stopwatch() as taken:
         for _ in range(round(SECONDS * world.rate)):
             pybullet.stepSimulation(physicsClientId=world._client)

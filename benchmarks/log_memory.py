@@ -17,8 +17,9 @@ from benchmarks.timing import stopwatch
 from launch.commands.bench import Figures
 from launch.commands.report import describe_log
 from schemas import topics
-from schemas.messages import Clock, Imu, NavState, Vector3
+from schemas.messages import Clock, CompressedImage, Imu, NavState, Vector3
 from uvf.runtime.bus.interface import LocalBus, Sample
+from uvf.runtime.contract.declaration import Reads, Writes, topic
 from uvf.runtime.contract.instances import Host
 from uvf.runtime.contract.service import Service
 from uvf.runtime.log.reading import recover
@@ -35,11 +36,16 @@ class Watcher(Service):
 
     name = "watcher"
     hz = 10.0
-    inputs = {"image": topics.IMAGE, "imu": topics.IMU}
-    outputs = {"state": topics.NAV_STATE}
 
-    def step(self, t: float, image: Any, imu: Any) -> Any:
-        return {"state": NavState()}
+    class Inputs(Reads):
+        image: CompressedImage = topic(topics.IMAGE)
+        imu: Imu = topic(topics.IMU)
+
+    class Outputs(Writes):
+        state: NavState | None = topic(topics.NAV_STATE)
+
+    def step(self, t: float, now: Inputs) -> Outputs:
+        return self.Outputs(state=NavState())
 
 
 TOOLS = {

@@ -27,8 +27,8 @@ from uvf.mavlink.codec import Codec
 from uvf.mavlink.endpoint import UdpLink
 from uvf.models.scenario import ROOT, load_site
 from uvf.runtime.bus.interface import LocalBus, Publisher
+from uvf.runtime.contract.declaration import Input
 from uvf.runtime.contract.instances import Host
-from uvf.runtime.contract.service import Input
 from uvf.runtime.contract.service_runner import Shell
 from uvf.runtime.messages.convert import stamp
 from uvf.runtime.messages.step_times import NS

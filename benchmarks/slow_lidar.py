@@ -35,13 +35,13 @@ from uvf.models.scenario import ROOT, Site, load_site
 from uvf.models.shapes.scene import scene
 from uvf.models.vehicle.sensors import Lidar
 from uvf.models.world.geometry import floor_segments, solids
+from uvf.runtime.contract.declaration import Reads, Writes, topic
 from uvf.runtime.contract.instances import Host
 from uvf.runtime.contract.service import Service
 from uvf.runtime.log.laser_log import read_mcap
 from uvf.runtime.log.reading import read_log
 from uvf.runtime.log.recording import Recorder
 from uvf.runtime.messages.convert import seconds, stamp
-from uvf.runtime.messages.outputs import Outputs
 from uvf.runtime.time.lockstep import Lockstep
 from uvf.sensors.range_sensors import LidarModel
 from uvf.slam.evaluation.run import run_over
@@ -63,16 +63,19 @@ ROW_POINTS = 20_000  # at most, of which distances are worked out
 class Eights(Service):
     """Stands for a second, then a loop to the left, one to the right, and so on."""
 
-    name, hz, outputs = "driver", 50.0, {"wheels": topics.WHEEL_COMMAND}
+    name, hz = "driver", 50.0
+
+    class Outputs(Writes):
+        wheels: WheelCommand = topic(topics.WHEEL_COMMAND)
 
     def __init__(self, drive: DifferentialDrive, pace: Twist) -> None:
         self._drive = drive
         self._pace = pace
 
-    def step(self, t: float) -> Outputs:
+    def step(self, t: float, now: Reads) -> Outputs:
         side = 1.0 if (t - 1.0) * self._pace.angular // (2 * np.pi) % 2 == 0 else -1.0
         left, right = self._drive.wheels(Twist(self._pace.linear, side * self._pace.angular) if t > 1.0 else Twist(0.0, 0.0))
-        return {"wheels": WheelCommand(timestamp=stamp(t), left=left, right=right)}
+        return self.Outputs(wheels=WheelCommand(timestamp=stamp(t), left=left, right=right))
 
 
 def slow_site(folder: Path, clockwise: bool = False) -> Site:

@@ -36,10 +36,10 @@ from uvf.planning.exploration import Explorer, Patrol
 from uvf.planning.frontiers import Taste
 from uvf.planning.navigator import Navigator, Plan
 from uvf.planning.smoothing import length
-from uvf.runtime.contract.service import Answer, Service, optional
+from uvf.runtime.contract.declaration import Reads, Writes, answers, call, optional, replies, request, topic
+from uvf.runtime.contract.service import Answer, Service
 from uvf.runtime.messages.convert import occupancy_cells, planar_pose, pose2_of, seconds, stamp
 from uvf.runtime.messages.fences import fencing
-from uvf.runtime.messages.outputs import Outputs
 
 Floats = NDArray[np.float64]
 Point = tuple[float, float]
@@ -68,19 +68,30 @@ class PlannerService(Service):
     name = "planner"
     hz = 4.0
     given_up = "the vehicle stands where it would drive by itself"
-    inputs = {
-        "pose": topics.POSE,
-        "map": topics.MAP,
-        "status": optional(topics.STATUS),
-        "mission": optional(topics.MISSION),
-        "progress": optional(topics.PROGRESS),
-        "bounds": optional(topics.FENCE),
-        "rally": optional(topics.RALLY),
-    }
-    outputs = {"path": topics.PATH, "nav_status": topics.NAV_STATUS, "events": topics.EVENTS.by("planner")}
-    requests = {"goal": topics.GOAL, "cancel": topics.CANCEL}
-    calls = {"set_mode": topics.SET_MODE}
-    recalls = {"nav_status": topics.NAV_STATUS}
+
+    class Inputs(Reads):
+        pose: PoseInFrame = topic(topics.POSE)
+        map: Grid = topic(topics.MAP)
+        status: VehicleStatus | None = optional(topics.STATUS)
+        mission: Mission | None = optional(topics.MISSION)
+        progress: MissionProgress | None = optional(topics.PROGRESS)
+        bounds: Fence | None = optional(topics.FENCE)
+        rally: RallyPoints | None = optional(topics.RALLY)
+        goal: list[GoalRequest] = request(topics.GOAL)
+        cancel: list[CancelRequest] = request(topics.CANCEL)
+        set_mode: list[Answer[ModeRequest, Reply]] = answers(topics.SET_MODE)
+
+    class Outputs(Writes):
+        path: PosesInFrame | None = topic(topics.PATH)
+        nav_status: NavStatus | None = topic(topics.NAV_STATUS)
+        events: list[Event] | None = topic(topics.EVENTS.by("planner"))
+        goal: list[Reply] = replies(topics.GOAL)
+        cancel: list[Reply] = replies(topics.CANCEL)
+        set_mode: list[ModeRequest] = call(topics.SET_MODE)
+
+    class Recalls(Reads):
+        nav_status: NavStatus | None = topic(topics.NAV_STATUS)
+
     params: PlannerParams
 
     def __init__(self, world_from_map: Pose2, radius: float, explores: bool, params: PlannerParams) -> None:
@@ -110,52 +121,50 @@ class PlannerService(Service):
         self._events: list[Event] = []
         self._bounds: Fence | None = None
 
-    def step(
-        self,
-        t: float,
-        pose: PoseInFrame,
-        map: Grid,
-        status: VehicleStatus | None,
-        mission: Mission | None,
-        progress: MissionProgress | None,
-        bounds: Fence | None,
-        rally: RallyPoints | None,
-        goal: list[GoalRequest],
-        cancel: list[CancelRequest],
-        set_mode: list[Answer[ModeRequest, Reply]],
-    ) -> Outputs:
-        here = compose(self._map_from_world, pose2_of(pose.pose))
+    def step(self, t: float, now: Inputs) -> Outputs:
+        here = compose(self._map_from_world, pose2_of(now.pose.pose))
         self._explorer.taste = self._taste
-        self._bounds = bounds
-        changed = self._navigator.fit(self._body) | self._take_map(map)
-        replies: dict[str, list[Reply]] = {"goal": self._ask_all(t, here, goal, status)}
-        home = home_of(status) or self._world_from_map[:2]
-        haven = self._havens.step(status, (pose.pose.position.x, pose.pose.position.y), home, rally)
-        job = choose(status, self._goal, mission_target(mission, progress, home), Orders(haven, self._explores))
+        self._bounds = now.bounds
+        changed = self._navigator.fit(self._body) | self._take_map(now.map)
+        goal_replies = self._ask_all(t, here, now.goal, now.status)
+        home = home_of(now.status) or self._world_from_map[:2]
+        haven = self._havens.step(now.status, (now.pose.pose.position.x, now.pose.pose.position.y), home, now.rally)
+        job = choose(now.status, self._goal, mission_target(now.mission, now.progress, home), Orders(haven, self._explores))
         if job != self._job:
             self._begin(t, job)
             changed = True
-        replies["cancel"] = [self._cancel(t, request) for request in cancel]
+        cancel_replies = [self._cancel(t, request) for request in now.cancel]
         failed = self._plan.path is None and t - self._planned_at >= REPLAN_PERIOD
         if self._ended_at is None and (changed or failed):
             self._replan(t, here)
-        self._watch(t, here, status)
+        self._watch(t, here, now.status)
         events, self._events = self._events, []
         asks, self._asks = self._asks, []
-        return {"path": self._path(t), "nav_status": self._nav_status(t, here), "events": events, "set_mode": asks, **replies}
+        return self.Outputs(
+            path=self._path(t),
+            nav_status=self._nav_status(t, here),
+            events=events,
+            set_mode=asks,
+            goal=goal_replies,
+            cancel=cancel_replies,
+        )
 
-    def recall(self, nav_status: NavStatus | None = None) -> None:
+    def recall(self, left: Recalls) -> None:
         """A person's goal that was being driven to is still wanted; its heading is not told."""
-        if nav_status is not None and nav_status.job == "goal" and nav_status.state not in (NavStatus.REACHED, NavStatus.CANCELLED):
-            self._goal = Goal((nav_status.goal.x, nav_status.goal.y))
+        if (
+            left.nav_status is not None
+            and left.nav_status.job == "goal"
+            and left.nav_status.state not in (NavStatus.REACHED, NavStatus.CANCELLED)
+        ):
+            self._goal = Goal((left.nav_status.goal.x, left.nav_status.goal.y))
 
     def stale(self, t: float, missing: tuple[str, ...]) -> Outputs:
         """Without a fresh pose or a map there is no path: the tracker stands still."""
         reason = f"waiting for {', '.join(missing)}"
-        return {
-            "path": PosesInFrame(timestamp=stamp(t), frame_id="world"),
-            "nav_status": NavStatus(timestamp=stamp(t), state=NavStatus.IDLE, job=self._job.name, reason=reason),
-        }
+        return self.Outputs(
+            path=PosesInFrame(timestamp=stamp(t), frame_id="world"),
+            nav_status=NavStatus(timestamp=stamp(t), state=NavStatus.IDLE, job=self._job.name, reason=reason),
+        )
 
     @property
     def _body(self) -> Body:

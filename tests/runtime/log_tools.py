@@ -6,8 +6,9 @@ from pathlib import Path
 
 from launch.commands.report import describe_log
 from schemas import topics
-from schemas.messages import NavState
+from schemas.messages import CompressedImage, NavState
 from uvf.runtime.bus.interface import LocalBus
+from uvf.runtime.contract.declaration import Reads, Writes, topic
 from uvf.runtime.contract.instances import Host
 from uvf.runtime.contract.service import Service
 from uvf.runtime.log.reading import recover
@@ -19,14 +20,18 @@ class Watcher(Service):
 
     name = "watcher"
     hz = 10.0
-    inputs = {"image": topics.IMAGE}
-    outputs = {"state": topics.NAV_STATE}
 
-    def step(self, t, image):
-        return {"state": NavState()}
+    class Inputs(Reads):
+        image: CompressedImage = topic(topics.IMAGE)
+
+    class Outputs(Writes):
+        state: NavState | None = topic(topics.NAV_STATE)
+
+    def step(self, t: float, now: Inputs) -> Outputs:
+        return self.Outputs(state=NavState())
 
     def stale(self, t, missing):
-        return {}
+        return self.Outputs()
 
 
 PROGRAMS = {

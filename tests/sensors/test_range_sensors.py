@@ -10,8 +10,7 @@ from uvf.maths.bvh import build
 from uvf.maths.raycast import Body, Scene
 from uvf.maths.rotations import from_euler
 from uvf.maths.solids import box
-from uvf.models.vehicle.file import _check_rangers
-from uvf.models.vehicle.sensors import Mount, RangeFinder
+from uvf.models.vehicle.sensors import Mount, RangeFinder, _check_rangers
 from uvf.models.yaml_data import BadInput, Place
 from uvf.sensors.range_sensors import RangeModel
 

@@ -7,9 +7,9 @@ import numpy as np
 from schemas import topics
 from schemas.messages import Event, FrameTransform, Grid, MapSession
 from uvf.models.yaml_data import BadInput
-from uvf.runtime.contract.service import Service, each_vehicle
+from uvf.runtime.contract.declaration import Reads, Writes, each_vehicle, topic
+from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import occupancy_grid, planar_frame, stamp
-from uvf.runtime.messages.outputs import Outputs
 from uvf.slam.maps.session import Session
 from uvf.slam.maps.tiles import TileMap
 from uvf.slam.merging.team import Group, Team
@@ -27,8 +27,14 @@ class MergingService(Service):
     name = "merging"
     hz = 0.5
     scope = "world"
-    inputs = {"session": each_vehicle(topics.MAP_SESSION)}
-    outputs = {"map": topics.TEAM_MAP, "place": topics.TEAM_PLACE, "events": topics.EVENTS.by("merging")}
+
+    class Inputs(Reads):
+        session: dict[str, MapSession] = each_vehicle(topics.MAP_SESSION)
+
+    class Outputs(Writes):
+        map: dict[str, Grid] | None = topic(topics.TEAM_MAP)
+        place: dict[str, FrameTransform] | None = topic(topics.TEAM_PLACE)
+        events: dict[str, list[Event]] | None = topic(topics.EVENTS.by("merging"))
 
     def __init__(self) -> None:
         self._team = Team()
@@ -36,8 +42,8 @@ class MergingService(Service):
         self._told: dict[str, Group] = {}
         self._maps: dict[str, TileMap] = {}
 
-    def step(self, t: float, session: Mapping[str, MapSession]) -> Outputs:
-        events = self._take(t, session)
+    def step(self, t: float, now: Inputs) -> Outputs:
+        events = self._take(t, now.session)
         self._team.work(PLACES)
         teams = {group.names[0]: group for group in self._team.groups if len(group.names) > 1}
         news = [group for first, group in teams.items() if self._told.get(first) is not group]
@@ -54,7 +60,7 @@ class MergingService(Service):
         maps |= {first: _nothing(t, first) for first in ended if self._maps.pop(first, None)}
         places |= {name: self._place(t, name, name) for name in sorted(alone)}
         self._told = teams
-        return {"map": maps, "place": places, "events": {name: told for name, told in events.items() if told}}
+        return self.Outputs(map=maps, place=places, events={name: told for name, told in events.items() if told})
 
     def _take(self, t: float, sessions: Mapping[str, MapSession]) -> dict[str, list[Event]]:
         """The session that has waited longest, if any is new."""

@@ -9,8 +9,9 @@ from schemas.messages import ArmRequest, Clock, ModeRequest, NavState, Odometry,
 from uvf.models.scenario import ROOT
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.bus.interface import LocalBus, Sample
+from uvf.runtime.contract.declaration import Reads, Writes, answers, call, replies, request, topic
 from uvf.runtime.contract.instances import Host
-from uvf.runtime.contract.service import Service
+from uvf.runtime.contract.service import Answer, Service
 from uvf.runtime.contract.service_runner import Shell
 from uvf.runtime.log.comparison import differing
 from uvf.runtime.log.reading import log_begin, read_log
@@ -25,21 +26,27 @@ class Adder(Service):
 
     name = "adder"
     hz = 10.0
-    inputs = {"pose": topics.POSE}
-    outputs = {"state": topics.NAV_STATE}
-    recalls = {"state": topics.NAV_STATE}
+
+    class Inputs(Reads):
+        pose: PoseInFrame = topic(topics.POSE)
+
+    class Outputs(Writes):
+        state: NavState | None = topic(topics.NAV_STATE)
+
+    class Recalls(Reads):
+        state: None = topic(topics.NAV_STATE)
 
     def __init__(self, gain=1.0):
         self.gain, self.total = gain, 0.0
 
-    def recall(self, state=None):
-        self.total = state.position.x
+    def recall(self, left: Recalls) -> None:
+        self.total = left.state.position.x
 
-    def step(self, t, pose):
-        self.total += self.gain * pose.pose.position.x
+    def step(self, t: float, now: Inputs) -> Outputs:
+        self.total += self.gain * now.pose.pose.position.x
         message = NavState()
         message.position.x = self.total
-        return {"state": message}
+        return self.Outputs(state=message)
 
 
 @dataclass
@@ -97,25 +104,31 @@ class Caller(Service):
     name = "caller"
     hz = 10.0
     latency = 0.5
-    inputs = {"clock": topics.CLOCK}
-    outputs = {"state": topics.NAV_STATE}
-    requests = {"mode": topics.SET_MODE}
-    calls = {"arm": topics.ARM}
+
+    class Inputs(Reads):
+        clock: Clock = topic(topics.CLOCK)
+        mode: list[ModeRequest] = request(topics.SET_MODE)
+        arm: list[Answer[ArmRequest, Reply]] = answers(topics.ARM)
+
+    class Outputs(Writes):
+        state: NavState | None = topic(topics.NAV_STATE)
+        mode: list[Reply] = replies(topics.SET_MODE)
+        arm: list[ArmRequest] = call(topics.ARM)
 
     def __init__(self, say=lambda n: True, addend=0.0):
         self.say, self.addend = say, addend
         self.n, self.answers = 0, []
 
     def stale(self, t, missing):
-        return {}
+        return self.Outputs()
 
-    def step(self, t, clock, mode, arm):
+    def step(self, t: float, now: Inputs) -> Outputs:
         self.n += 1
-        self.answers += [a.reply.reason if a.reply is not None else a.reason for a in arm]
+        self.answers += [a.reply.reason if a.reply is not None else a.reason for a in now.arm]
         message = NavState()
-        message.position.x, message.position.y = self.n + self.addend, len(mode)
-        replies = [Reply(reason=f"{self.n}") for _ in mode]
-        return {"state": [message] if self.say(self.n) else [], "mode": replies, "arm": [ArmRequest()] if self.n % 10 == 0 else []}
+        message.position.x, message.position.y = self.n + self.addend, len(now.mode)
+        replies = [Reply(reason=f"{self.n}") for _ in now.mode]
+        return self.Outputs(state=[message] if self.say(self.n) else [], mode=replies, arm=[ArmRequest()] if self.n % 10 == 0 else [])
 
 
 class Arming(Service):
@@ -123,14 +136,19 @@ class Arming(Service):
 
     name = "arming"
     hz = 5.0
-    requests = {"arm": topics.ARM}
+
+    class Inputs(Reads):
+        arm: list[ArmRequest] = request(topics.ARM)
+
+    class Outputs(Writes):
+        arm: list[Reply] = replies(topics.ARM)
 
     def __init__(self):
         self.n = 0
 
-    def step(self, t, arm):
-        self.n += len(arm)
-        return {"arm": [Reply(reason=f"answer {self.n}") for _ in arm]}
+    def step(self, t: float, now: Inputs) -> Outputs:
+        self.n += len(now.arm)
+        return self.Outputs(arm=[Reply(reason=f"answer {self.n}") for _ in now.arm])
 
 
 def recorded(path, seconds, ask_at=()):

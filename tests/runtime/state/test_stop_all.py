@@ -8,6 +8,7 @@ from schemas import topics
 from schemas.messages import StopCommand, StopEngagement, StopState, VehicleStatus
 from tests.runtime.toys import Pilot
 from uvf.runtime.bus.interface import LocalBus, Sample
+from uvf.runtime.contract.declaration import Reads, topic
 from uvf.runtime.contract.instances import Host
 from uvf.runtime.contract.service_runner import Shell
 from uvf.runtime.messages.validation import error_in
@@ -168,9 +169,10 @@ def test_it_outlives_a_new_epoch_and_a_new_process():
 
 
 class Recalling(Pilot):
-    recalls = {"status": topics.STATUS}
+    class Recalls(Reads):
+        status: None = topic(topics.STATUS)
 
-    def recall(self, status=None):
+    def recall(self, left: Recalls) -> None:
         pass
 
 

@@ -18,6 +18,7 @@ from schemas.messages import (
     VehicleStatus,
 )
 from services.planner.planner_service import PlannerParams, PlannerService
+from tests.runtime.stepping import recall, stale, stepped
 from tests.services.live_params import all_settable_are_read
 from tests.services.planner.plans import room
 from uvf.planning import navigator
@@ -49,8 +50,8 @@ class Bench:
         for _ in range(n):
             self.t += 0.25
             pose = PoseInFrame(pose=planar_pose(*world(*self.here), self.yaw))
-            told = (status, mission, progress, bounds, rally)
-            self.said = self.service.step(self.t, pose, self.grid, *told, list(goal), list(cancel), [])
+            told = {"status": status, "mission": mission, "progress": progress, "bounds": bounds, "rally": rally}
+            self.said = stepped(self.service, self.t, pose=pose, map=self.grid, goal=list(goal), cancel=list(cancel), **told)
             self.events += [e.text for e in self.said["events"]]
             self.asked += self.said["set_mode"]
         return self
@@ -290,7 +291,7 @@ def test_an_obstacle_that_appears_in_the_map_is_gone_round():
 def test_started_again_it_still_drives_to_the_persons_goal():
     old = Bench().step(goal=[asked(3.0, 2.0)]).step()
     new = Bench()
-    new.service.recall(nav_status=old.said["nav_status"])
+    recall(new.service, nav_status=old.said["nav_status"])
     end = new.step().said["path"].poses[-1].position
     assert (end.x, end.y) == pytest.approx(world(3.0, 2.0))
 
@@ -298,12 +299,12 @@ def test_started_again_it_still_drives_to_the_persons_goal():
 def test_started_again_a_cancelled_goal_stays_cancelled():
     old = Bench().step(goal=[asked(3.0, 2.0)]).step().step(cancel=[CANCEL])
     new = Bench()
-    new.service.recall(nav_status=old.said["nav_status"])
+    recall(new.service, nav_status=old.said["nav_status"])
     assert new.step().said["nav_status"].job == "idle"
 
 
 def test_without_pose_or_map_there_is_no_path():
-    outputs = Bench().service.stale(1.0, ("pose", "map"))
+    outputs = stale(Bench().service, 1.0, ("pose", "map"))
     assert len(outputs["path"].poses) == 0
     assert outputs["nav_status"].reason == "waiting for pose, map"
 

@@ -20,6 +20,7 @@ from services.sim_air.environment.ground import LEVEL
 from services.sim_air.sensors import Imu
 from services.sim_air.service import SimAir
 from services.sim_air.stage import Stage
+from tests.runtime.stepping import stepped
 from tests.services.sim_air.shapes import MILVUS_TREE
 from uvf.maths import rotations
 from uvf.maths.rotations import IDENTITY
@@ -102,7 +103,7 @@ def run_two(tmp_path, until=3.0):
 def test_physics_keeps_up_with_the_clock():
     body, service = glider()
     for k in range(1, 101):
-        service.step(k / 100, surfaces={}, truth={}, objects=None, **NOTHING_ASKED)
+        stepped(service, k / 100, surfaces={}, truth={}, objects=None, **NOTHING_ASKED)
     assert body.steps == MILVUS.air.physics_hz
 
 
@@ -153,11 +154,13 @@ def test_an_aircraft_whose_autopilot_dies_while_it_rolls_stops_rolling_and_flies
 @pytest.mark.parametrize("value", [math.nan, math.inf])
 def test_a_command_that_is_not_finite_is_no_command(name, value):
     body, service = glider()
-    service.step(0.01, surfaces={"g": SurfaceCommand(aileron=0.1, elevator=-0.2, throttle=0.9)}, truth={}, objects=None, **NOTHING_ASKED)
+    stepped(
+        service, 0.01, surfaces={"g": SurfaceCommand(aileron=0.1, elevator=-0.2, throttle=0.9)}, truth={}, objects=None, **NOTHING_ASKED
+    )
     for k in range(2, 101):
         bad = SurfaceCommand(aileron=-0.3, elevator=0.3, throttle=0.1)
         setattr(bad, name, value)
-        service.step(k / 100, surfaces={"g": bad}, truth={}, objects=None, **NOTHING_ASKED)
+        stepped(service, k / 100, surfaces={"g": bad}, truth={}, objects=None, **NOTHING_ASKED)
     assert body.commands[-1].aileron == pytest.approx(0.1, abs=1e-6)
     assert body.commands[-1].elevator == pytest.approx(-0.2, abs=1e-6)
     assert body.commands[-1].throttle == pytest.approx(0.9)
@@ -165,14 +168,14 @@ def test_a_command_that_is_not_finite_is_no_command(name, value):
 
 def test_before_the_first_command_the_surfaces_stay_trimmed():
     body, service = glider()
-    service.step(0.01, surfaces={}, truth={}, objects=None, **NOTHING_ASKED)
+    stepped(service, 0.01, surfaces={}, truth={}, objects=None, **NOTHING_ASKED)
     assert body.commands[-1].elevator == pytest.approx(-0.14)
 
 
 def test_joints_show_where_the_body_has_its_surfaces():
     _, service = glider()
     for k in range(1, 6):
-        out = service.step(k / 100, surfaces={}, truth={}, objects=None, **NOTHING_ASKED)
+        out = stepped(service, k / 100, surfaces={}, truth={}, objects=None, **NOTHING_ASKED)
     named = {j.name: j for j in out["joints"]["g"].joints}
     assert named["elevator"].position == pytest.approx(-0.14)
     assert named["propeller"].velocity == 500.0
@@ -180,7 +183,7 @@ def test_joints_show_where_the_body_has_its_surfaces():
 
 def test_a_sensor_that_is_not_fitted_sends_nothing():
     _, service = glider()
-    out = service.step(0.01, surfaces={}, truth={}, objects=None, **NOTHING_ASKED)
+    out = stepped(service, 0.01, surfaces={}, truth={}, objects=None, **NOTHING_ASKED)
     assert "imu" not in out
     assert "gnss" not in out
 
@@ -212,7 +215,7 @@ def test_the_imus_frame_is_that_of_the_vehicle_file():
     _, service = glider()
     (craft,) = service._stage.aircraft.values()
     craft.imu = Imu(msgspec.structs.replace(MILVUS.sensors.imu, frame="nose_imu"), np.zeros(3), np.random.default_rng(1))
-    assert service.step(0.01, surfaces={}, truth={}, objects=None, **NOTHING_ASKED)["imu"]["g"].frame_id == "g/nose_imu"
+    assert stepped(service, 0.01, surfaces={}, truth={}, objects=None, **NOTHING_ASKED)["imu"]["g"].frame_id == "g/nose_imu"
 
 
 def test_each_sensor_sends_at_its_own_rate_for_every_aircraft(tmp_path):

@@ -11,6 +11,7 @@ from services.autopilot.ground.service import GroundAutopilot
 from services.planner.build import build as build_planner
 from services.slam import build as slam_build
 from services.slam.build import build as build_slam
+from tests.runtime.stepping import stepped
 from tests.stops import NOBODY
 from uvf.models.mission.file import Job, Waypoint
 from uvf.models.scenario import ROOT, load_site
@@ -90,5 +91,5 @@ def test_a_vehicle_with_a_job_begins_armed_and_one_without_does_not(site):
     )
     asked = {"imu": [], "stop": NOBODY, **{request: [] for request in GroundAutopilot.requests}}
     for job, armed, mode in (({"explore": True}, True, Mode.MODE_MISSION), ({}, False, Mode.MODE_HOLD)):
-        status = hosts(with_job(site, **job))[0].make().step(0.02, **nothing, **asked)["status"]
+        status = stepped(hosts(with_job(site, **job))[0].make(), 0.02, **nothing, **asked)["status"]
         assert (status.armed, status.mode) == (armed, mode)

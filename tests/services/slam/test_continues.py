@@ -8,6 +8,7 @@ import pytest
 
 from schemas.messages import FrameTransform, LaserScan, Vector3
 from services.slam.build import build
+from tests.runtime.stepping import stepped
 from tests.slam.localization.places import ROOM, ellipse, readings
 from uvf.maths.se2 import Pose2, compose
 from uvf.models.mission.file import Maps
@@ -50,7 +51,7 @@ def drive(mapping, way):
     for reading in readings(ROOM, way, seed=5):
         frames.add(frame(reading.t, "odom", "base_footprint", reading.odom_from_base))
         scan = LaserScan(timestamp=stamp(reading.t), frame_id="burger/lidar", end_angle=np.radians(359), ranges=reading.ranges)
-        said.append(mapping.step(reading.t, scan, frames))
+        said.append(stepped(mapping, reading.t, scan=scan, frames=frames))
     return said
 
 

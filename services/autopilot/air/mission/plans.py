@@ -1,10 +1,9 @@
 """Mission, fence and rally points in force: replaced on request, told of when they have changed."""
 
-from google.protobuf.message import Message
-
 from schemas.messages import Fence, Mission, MissionItem, RallyPoints
 from services.autopilot.air.failsafes.monitor import Safety, Seen
 from services.autopilot.air.inputs import intake
+from services.autopilot.air.interface import Outputs
 from services.autopilot.air.mode_manager import Pilot
 from services.autopilot.air.modes import return_points
 from services.autopilot.air.status.event_log import Journal
@@ -51,12 +50,15 @@ class Plans:
             self._news.add("rally")
         return refusal
 
-    def news(self, t: float) -> dict[str, Message]:
-        """What has changed since it was told last, by output."""
-        known: dict[str, Mission | Fence | RallyPoints] = {"plan": self.mission, "bounds": self._safety.fence, "rally": self.rally}
-        told: dict[str, Message] = {}
-        for name in sorted(self._news):
-            known[name].timestamp.CopyFrom(stamp(t))
-            told[name] = known[name]
-        self._news.clear()
-        return told
+    def tell(self, t: float, out: Outputs) -> None:
+        """What has changed since it was told last."""
+        news, self._news = self._news, set()
+        if "plan" in news:
+            self.mission.timestamp.CopyFrom(stamp(t))
+            out.plan = self.mission
+        if "bounds" in news:
+            self._safety.fence.timestamp.CopyFrom(stamp(t))
+            out.bounds = self._safety.fence
+        if "rally" in news:
+            self.rally.timestamp.CopyFrom(stamp(t))
+            out.rally = self.rally

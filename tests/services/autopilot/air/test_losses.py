@@ -8,6 +8,7 @@ import pytest
 from schemas import topics
 from schemas.messages import Gnss, GoalRequest, Mode, ModeRequest, Vector3
 from services.autopilot.air.failsafes.table import AIR_RULES
+from tests.runtime.stepping import recall
 from tests.services.autopilot.air.sensing import Bench, sensors
 from tests.services.autopilot.air.test_flight import Flight, distance_to_circuit
 from uvf.maths.rotations import to_euler
@@ -182,7 +183,7 @@ def test_pressures_that_are_not_finite_are_none(field):
 def test_an_autopilot_started_again_without_gnss_reckons_on_from_what_was_left():
     bench, heir = Bench(), Bench()
     left = bench.run(cycles=100)["nav_state"]
-    heir.service.recall(status=bench.status, nav_state=left)
+    recall(heir.service, status=bench.status, nav_state=left)
     heir.n = 150
     states = [heir.run(gnss=None).get("nav_state") for _ in range(400)]
     assert states[10] is None  # GNSS might be there in a moment
@@ -193,6 +194,6 @@ def test_an_autopilot_started_again_without_gnss_reckons_on_from_what_was_left()
 def test_what_was_left_long_ago_is_not_reckoned_on_from():
     bench, heir = Bench(), Bench()
     left = bench.run(cycles=10)["nav_state"]
-    heir.service.recall(status=bench.status, nav_state=left)
+    recall(heir.service, status=bench.status, nav_state=left)
     heir.n = 3000
     assert "surfaces" not in heir.run(cycles=100, gnss=None)

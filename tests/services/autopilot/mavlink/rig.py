@@ -25,6 +25,7 @@ from services.autopilot.mavlink.connection.facts import Facts
 from services.autopilot.mavlink.parameters.parameter_store import Unreadable
 from services.autopilot.mavlink.service import MavlinkService
 from services.autopilot.told_params import ToldParams
+from tests.runtime.stepping import stepped
 from uvf.maths.geodesy import LocalTangent
 from uvf.maths.rotations import from_euler
 from uvf.mavlink import dialect as mav
@@ -275,7 +276,8 @@ class Rig:
                 told.timestamp.CopyFrom(sim)
         answers, self._waiting = self._waiting, {call: [] for call in self.CALLS}
         events, self.events = self.events, {}
-        self.outputs = self.service.step(
+        self.outputs = stepped(
+            self.service,
             self.t,
             nav={n: v.nav for n, v in live.items()},
             status={n: v.status for n, v in live.items()},

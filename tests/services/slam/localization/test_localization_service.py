@@ -1,6 +1,5 @@
 """The localization service step by step, on messages, and how a mission asks for it."""
 
-import inspect
 from dataclasses import replace
 
 import msgspec
@@ -11,6 +10,7 @@ from schemas.messages import Event, FrameTransform, LaserScan, MapFix, PlaceRequ
 from services.slam import localization_service
 from services.slam.build import build
 from services.slam.localization_service import Beginning, LocalizationService
+from tests.runtime.stepping import recall, stepped
 from tests.services.live_params import all_settable_are_read
 from tests.slam.localization.places import ROOM, ellipse, errors, map_of, readings
 from uvf.maths.se2 import Pose2, compose
@@ -58,7 +58,7 @@ def drive(localization, drive, known=None, asked=None):
         frames.add(frame(reading.t, "odom", "base_footprint", reading.odom_from_base))
         scan = LaserScan(timestamp=stamp(reading.t), frame_id="v/lidar", start_angle=0.0, end_angle=np.radians(359), ranges=reading.ranges)
         requests = {"pose": [], "relocalize": []} | (asked or {}).get(k, {})
-        said.append(localization.step(reading.t, scan, frames, known, **requests))
+        said.append(stepped(localization, reading.t, scan=scan, frames=frames, known=known, **requests))
     return said
 
 
@@ -127,7 +127,7 @@ def test_a_pose_can_be_set_and_the_vehicle_be_looked_for(room):
 def test_one_started_again_while_the_vehicle_was_looked_for_goes_on_looking(room, off, quality):
     way = ellipse(80, end=3.8 * np.pi)
     localization = service(moved(room, way)[0], anywhere=True)
-    localization.recall(correction=frame(0.0, "map", "odom", off), fix=MapFix(quality=quality))
+    recall(localization, correction=frame(0.0, "map", "odom", off), fix=MapFix(quality=quality))
     said = drive(localization, readings(ROOM, way))
     assert said[0]["fix"].quality <= HALF_SURE
     assert [e.text for out in said for e in out["events"]] == ["the vehicle is localized"]
@@ -138,7 +138,7 @@ def test_one_started_again_while_the_vehicle_was_looked_for_goes_on_looking(room
 def test_one_started_again_while_the_vehicle_was_tracked_goes_on_tracking(room):
     way = ellipse(20)
     localization = service(moved(room, way)[0], anywhere=True)
-    localization.recall(correction=frame(0.0, "map", "odom", (0.0, 0.0, 0.0)), fix=MapFix(quality=0.9))
+    recall(localization, correction=frame(0.0, "map", "odom", (0.0, 0.0, 0.0)), fix=MapFix(quality=0.9))
     said = drive(localization, readings(ROOM, way))
     assert said[1]["fix"].quality > HALF_SURE and not [e for out in said for e in out["events"]]
 
@@ -185,11 +185,6 @@ def test_parameters_count_while_running(room):
     localization = service(moved(room, way)[0])
     with all_settable_are_read(localization):
         drive(localization, readings(ROOM, way))
-
-
-def test_step_takes_what_is_declared():
-    declared = {*LocalizationService.inputs, *LocalizationService.requests}
-    assert set(inspect.signature(LocalizationService.step).parameters) == {"self", "t", *declared}
 
 
 def site_with(tmp_path, maps):

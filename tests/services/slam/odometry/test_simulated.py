@@ -16,6 +16,7 @@ from uvf.maths.rotations import wrap
 from uvf.maths.se2 import Pose2, compose, inverse
 from uvf.models.scenario import ROOT, load_site
 from uvf.models.vehicle.sensors import GnssSensor, Mount
+from uvf.runtime.contract.declaration import Writes, topic
 from uvf.runtime.contract.instances import Host
 from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import seconds, yaw_of
@@ -62,11 +63,14 @@ def wheels_only(turning):
     """Commands of both wheels [rad/s] after a second of standing."""
 
     class Driver(Service):
-        name, hz, outputs = "driver", 50.0, {"wheels": topics.WHEEL_COMMAND}
+        name, hz = "driver", 50.0
 
-        def step(self, t):
+        class Outputs(Writes):
+            wheels: WheelCommand = topic(topics.WHEEL_COMMAND)
+
+        def step(self, t, now):
             left, right = turning(t) if t > 1.0 else (0.0, 0.0)
-            return {"wheels": WheelCommand(left=left, right=right)}
+            return self.Outputs(wheels=WheelCommand(left=left, right=right))
 
     return Host(Driver, Driver, "burger")
 

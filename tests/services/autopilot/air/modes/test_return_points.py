@@ -6,6 +6,7 @@ import pytest
 
 from schemas.messages import Breach, Fence, FenceRequest, FenceZone, Mode, ModeRequest, RallyPoints, RallyRequest, Vector3
 from services.autopilot.air.modes import return_points
+from tests.runtime.stepping import recall
 from tests.services.autopilot.air.sensing import Bench
 from tests.services.autopilot.air.states import PARAMS, cruising
 from uvf.guidance.route import Place
@@ -60,7 +61,7 @@ def test_the_autopilot_returns_to_a_rally_point_tells_of_it_and_takes_it_up_agai
     centre = bench.service._pilot.circle.centre
     assert (centre.east, centre.north, centre.height) == (300.0, 200.0, 150.0)
     again = Bench()
-    again.service.recall(rally=out["rally"])
+    recall(again.service, rally=out["rally"])
     assert again.service._pilot.rally == (Place(200.0, 300.0, 150.0),)
 
 
