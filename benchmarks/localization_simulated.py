@@ -19,7 +19,7 @@ from launch.scoring.truth import true_poses
 from schemas import topics
 from schemas.messages import MapFix
 from uvf.maths.se2_arrays import composed, interpolated, wrapped
-from uvf.models.scenario import load_site
+from uvf.models.scenario import load_scenario
 from uvf.runtime.log.laser_log import read_mcap
 from uvf.runtime.log.reading import read_log
 from uvf.runtime.messages.convert import seconds
@@ -46,7 +46,7 @@ def drive(folder: Path, name: str, content: dict[str, object], duration: float) 
     path = folder / f"{name}.yaml"
     path.write_text(yaml.safe_dump(content))
     log = folder / f"{name}.mcap"
-    run_lockstep(load_site(path), duration, log)
+    run_lockstep(load_scenario(path), duration, log)
     return log
 
 

@@ -20,7 +20,7 @@ from schemas import topics
 from schemas.messages import Clock, CompressedImage, Imu, NavState, Vector3
 from uvf.runtime.bus.interface import LocalBus, Sample
 from uvf.runtime.contract.declaration import Reads, Writes, topic
-from uvf.runtime.contract.instances import Host
+from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.contract.service import Service
 from uvf.runtime.log.reading import recover
 from uvf.runtime.log.recording import Recorder
@@ -51,7 +51,7 @@ class Watcher(Service):
 TOOLS = {
     "recover": lambda log: recover(log, log.with_suffix(".saved")),
     "replay onto a bus": lambda log: onto_bus(log, LocalBus(), rate=1e9),
-    "replay into a service": lambda log: sum(1 for _ in into_service(log, Host(Watcher, Watcher, "v"))),
+    "replay into a service": lambda log: sum(1 for _ in into_service(log, ServiceInstance(Watcher, Watcher, "v"))),
     "info": describe_log,
 }
 

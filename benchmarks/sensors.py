@@ -32,7 +32,7 @@ from uvf.sensors.allan import expected, octaves, overlapping
 from uvf.sensors.errors import Errors
 from uvf.sensors.fitted import accelerometer_errors, gyro_errors, line_of, receiver
 from uvf.sensors.range_sensors import LidarModel, RangeModel
-from uvf.sensors.sampling import Line
+from uvf.sensors.sampling import DelayLine
 
 Floats = NDArray[np.float64]
 Figures = dict[str, dict[str, float]]
@@ -200,7 +200,7 @@ def _depth() -> Figures:
 def _delivery() -> Figures:
     """Share of readings lost, and how late the others are [s]."""
     sensor = GnssSensor(10.0, dropout=0.02, burst=5, latency=0.12)
-    line: Line[float] = line_of(sensor, _rng())
+    line: DelayLine[float] = line_of(sensor, _rng())
     came = [t - taken for t in (n / 100 for n in range(1, 1_000_001)) if (taken := line.step(t, lambda t=t: t)) is not None]  # type: ignore[misc]
     lost, stated = 1 - (len(came) + 1) / 100_000, 0.1 / (0.1 + 0.98)
     return {

@@ -9,7 +9,7 @@ process; the very same class runs over Zenoh in a process of its own.
 from schemas import topics
 from schemas.messages import DriveCommand, Event
 from uvf.runtime.contract.declaration import Reads, Writes, topic
-from uvf.runtime.contract.instances import Host
+from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import stamp
 from uvf.runtime.time.lockstep import Lockstep
@@ -46,6 +46,6 @@ class Watch(Service):
         return self.Outputs(events=Event(timestamp=stamp(t), text=f"fast: {now.drive.linear:.2f} m/s", source="watch"))
 
 
-lockstep = Lockstep([Host(Driver, Driver, "rover"), Host(Watch, Watch, "rover")])
+lockstep = Lockstep([ServiceInstance(Driver, Driver, "rover"), ServiceInstance(Watch, Watch, "rover")])
 lockstep.bus.subscribe("uvf/rover/state/**", topics.Qos.EVENT, lambda s: print(Event.FromString(s.payload).text))
 lockstep.run(until=3.0)

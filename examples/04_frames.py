@@ -11,9 +11,9 @@ from launch import catalogue
 from schemas import topics
 from schemas.messages import Event, LaserScan
 from uvf.maths.se3 import apply
-from uvf.models.scenario import ROOT, load_site
+from uvf.models.scenario import ROOT, load_scenario
 from uvf.runtime.contract.declaration import Reads, Writes, frames, topic
-from uvf.runtime.contract.instances import Host
+from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import scan_points, seconds, stamp
 from uvf.runtime.messages.frames import FrameBuffer, FrameError
@@ -44,9 +44,9 @@ class Nearest(Service):
         return self.Outputs(events=Event(timestamp=stamp(t), text=f"nearest thing at ({x:.2f}, {y:.2f}, {z:.2f}) m", source="nearest"))
 
 
-site = load_site(ROOT / "missions" / "demo.yaml")
+site = load_scenario(ROOT / "missions" / "demo.yaml")
 hosts = catalogue.hosts(site, [catalogue.kind("sim_ground"), catalogue.kind("slam")])
-lockstep = Lockstep([*hosts, Host(Nearest, Nearest, "burger")])
+lockstep = Lockstep([*hosts, ServiceInstance(Nearest, Nearest, "burger")])
 events = topics.EVENTS.by("nearest")
 lockstep.bus.subscribe(events.at("burger"), events.qos, lambda s: print(Event.FromString(s.payload).text))
 lockstep.run(until=4.0)

@@ -11,7 +11,7 @@ from launch.output import RotatingLog
 from launch.waits import Waits
 from schemas import topics
 from schemas.messages import Clock
-from uvf.models.scenario import load_site
+from uvf.models.scenario import load_scenario
 from uvf.runtime.bus.interface import Sample
 from uvf.runtime.bus.wire import guarded
 from uvf.runtime.messages.refusals import Refusals
@@ -31,7 +31,7 @@ class Wanted:
 
 def up(wanted: Wanted, folder: Path, say: Say) -> int:
     """Runs until Ctrl-C, SIGTERM or the time is over; returns the exit code. Raises BadInput before anything starts."""
-    site = load_site(settings.mission_path(wanted.mission))
+    site = load_scenario(settings.mission_path(wanted.mission))
     kinds = [k for k in catalogue.needed(site) if wanted.page or k.name != "gcs"]
     stop = stop_flag()
     run = Run(wanted, folder, say)

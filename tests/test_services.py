@@ -8,15 +8,15 @@ import pytest
 
 from launch import catalogue
 from launch.checks import check_mission
-from uvf.models.scenario import ROOT, load_site
+from uvf.models.scenario import ROOT, load_scenario
 from uvf.runtime.contract.declaration import Called, Frames, Served, StopInput, declared_in
 from uvf.runtime.contract.service import Answer
 from uvf.runtime.messages.frames import FrameBuffer
 from uvf.runtime.state.stop_all import StopStatus
 
-SITE = load_site(ROOT / "missions" / "demo.yaml")
-ASKING = load_site(ROOT / "missions" / "mapping.yaml")
-TEAM = load_site(ROOT / "missions" / "team.yaml")
+SITE = load_scenario(ROOT / "missions" / "demo.yaml")
+ASKING = load_scenario(ROOT / "missions" / "mapping.yaml")
+TEAM = load_scenario(ROOT / "missions" / "team.yaml")
 SITES = {"asked": ASKING, "team": TEAM}
 HOSTS = {kind.name: catalogue.hosts(SITES.get(kind.needs, SITE), [kind]) for kind in catalogue.KINDS}
 SERVICES = sorted({host.service for hosts in HOSTS.values() for host in hosts}, key=lambda s: s.name)

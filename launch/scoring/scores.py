@@ -15,7 +15,7 @@ from schemas import topics
 from schemas.messages import Contact, Grid, Mission, MissionItem, MissionProgress, NavState, PoseInFrame
 from uvf.maths.rotations import wrap
 from uvf.models.mission.file import Criterion
-from uvf.models.scenario import Site
+from uvf.models.scenario import Scenario
 from uvf.models.yaml_data import BadInput, nearest
 from uvf.runtime.bus.interface import Bus, Sample
 from uvf.runtime.messages.convert import array
@@ -31,7 +31,7 @@ class Track:
     """What was heard of one vehicle."""
 
     name: str
-    site: Site
+    site: Scenario
     truth: list[tuple[float, float, float, float, float]] = field(default_factory=list)  # t, x, y, z, airspeed
     pose: list[tuple[float, float, float]] = field(default_factory=list)  # t, x, y
     progress: list[tuple[float, int, int]] = field(default_factory=list)  # t, reached, laps
@@ -77,7 +77,7 @@ class Track:
         return np.array(self.truth).reshape(-1, 5)
 
 
-def check_criteria(site: Site) -> None:
+def check_criteria(site: Scenario) -> None:
     """Raises BadInput for a measure that there is not."""
     for criterion in site.mission.criteria:
         if criterion.measure not in MEASURES:
@@ -87,7 +87,7 @@ def check_criteria(site: Site) -> None:
 class Scorer:
     """Listens to a run on any bus (or is fed from a log) and judges it at the end."""
 
-    def __init__(self, site: Site) -> None:
+    def __init__(self, site: Scenario) -> None:
         self._site = site
         check_criteria(site)
         self._tracks: dict[str, Track] = {}

@@ -7,8 +7,8 @@ from launch.teleop.link import SOURCE, Link
 from schemas import topics
 from schemas.messages import Mode, SurfaceCommand
 from uvf.client import Client
-from uvf.control.teleop_drive import Pad
-from uvf.control.teleop_flight import PARKED, Limits, Setting, Stick
+from uvf.control.teleop_drive import GamepadState
+from uvf.control.teleop_flight import PARKED, FlightTeleop, SurfaceLimits, SurfaceSetting
 from uvf.maths.rotations import enu_flu_from_ned_frd, to_euler
 from uvf.models.vehicle.air import AirBody
 from uvf.runtime.messages.convert import wxyz
@@ -29,7 +29,7 @@ class Flight(NamedTuple):
     by_hand: bool
     """It is in mode Manual."""
     landed: bool
-    surfaces: Setting
+    surfaces: SurfaceSetting
     airspeed: float = 0.0  # m/s
     height: float = 0.0  # m above the world's origin
     attitude: tuple[float, float, float] = (0.0, 0.0, 0.0)  # rad: roll right, pitch up, heading from north
@@ -38,7 +38,7 @@ class Flight(NamedTuple):
 class Aircraft(Protocol):
     """The way to one aircraft."""
 
-    def send(self, setting: Setting) -> None: ...
+    def send(self, setting: SurfaceSetting) -> None: ...
 
     def take_over(self) -> str: ...
 
@@ -55,7 +55,7 @@ class AirLink:
         self._client, self._name = client, name
         self._link = Link(client)
 
-    def send(self, setting: Setting) -> None:
+    def send(self, setting: SurfaceSetting) -> None:
         self._client.send(self._name, topics.SURFACES.by(SOURCE), SurfaceCommand(**setting._asdict()))
 
     def take_over(self) -> str:
@@ -75,7 +75,7 @@ class AirLink:
         return Flight(
             by_hand=status.mode == Mode.MODE_MANUAL,
             landed=status.landed,
-            surfaces=Setting(*(getattr(told, field) for field in Setting._fields)),
+            surfaces=SurfaceSetting(*(getattr(told, field) for field in SurfaceSetting._fields)),
             airspeed=nav.airspeed,
             height=nav.position.z,
             attitude=to_euler(enu_flu_from_ned_frd(wxyz(nav.orientation))),
@@ -85,7 +85,7 @@ class AirLink:
 class Cockpit:
     """The post of one aircraft's pilot. Its commands go out all the time, so that a pilot who falls silent is noticed."""
 
-    def __init__(self, stick: Stick, aircraft: Aircraft) -> None:
+    def __init__(self, stick: FlightTeleop, aircraft: Aircraft) -> None:
         self._stick, self._aircraft = stick, aircraft
         self._ours = False
         """The stick is where the surfaces are."""
@@ -102,7 +102,7 @@ class Cockpit:
     def key(self, t: float, name: str) -> None:
         self._stick.key(name)
 
-    def turn(self, t: float, pad: Pad) -> None:
+    def turn(self, t: float, pad: GamepadState) -> None:
         self._stick.pad(t, pad)
         flight = self._aircraft.flight()
         if flight is not None and self._ours:
@@ -130,8 +130,8 @@ class Cockpit:
 
 def cockpit(client: Client, name: str, body: AirBody) -> Cockpit:
     controls = body.controls
-    limits = Limits(controls.aileron.limit, controls.elevator.limit, controls.rudder.limit, controls.flap.limit)
-    return Cockpit(Stick(limits), AirLink(client, name))
+    limits = SurfaceLimits(controls.aileron.limit, controls.elevator.limit, controls.rudder.limit, controls.flap.limit)
+    return Cockpit(FlightTeleop(limits), AirLink(client, name))
 
 
 def _straight(flight: Flight) -> bool:

@@ -25,7 +25,7 @@ from services.gcs.state.layers import ROOTS
 from services.gcs.state.session import Session
 from services.gcs.state.state import LOST_AFTER, Model, Order, VehicleModel
 from services.gcs.state.wording import describe, modes_of
-from uvf.control.teleop_drive import SCALINGS, Command
+from uvf.control.teleop_drive import SCALINGS, TeleopCommand
 from uvf.runtime.contract.service import Answer
 from uvf.runtime.messages.convert import stamp
 from uvf.runtime.state.stop_all import StopVoice
@@ -195,7 +195,7 @@ class Commander:
         self._mode_before: dict[str, int] = {}
         self._back: dict[str, int] = {}
         bodies = {v.name: v.member.file.ground for v in model.vehicles.values()}
-        self.by_hand = ByHand({n: Command(b.max_linear, b.max_angular) for n, b in bodies.items() if b is not None})
+        self.by_hand = ByHand({n: TeleopCommand(b.max_linear, b.max_angular) for n, b in bodies.items() if b is not None})
 
     def waits_for_confirmation(self, session: Session, vehicle: str, arm: bool, t: float) -> bool:
         asked = session.to_confirm

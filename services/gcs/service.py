@@ -40,7 +40,7 @@ from services.gcs.commands import SOURCE, Commander
 from services.gcs.page.page_frame import Composer
 from services.gcs.state.state import Model
 from services.gcs.view.drawing import Page
-from uvf.models.scenario import Site
+from uvf.models.scenario import Scenario
 from uvf.runtime.contract.declaration import Reads, Writes, answers, call, each_vehicle, every, optional, stop_all, topic
 from uvf.runtime.contract.service import Answer, Service
 from uvf.runtime.state.stop_all import StopStatus
@@ -119,7 +119,7 @@ class GroundStation(Service):
         arm: list[ArmRequest] = call(topics.ARM)
         mode: list[ModeRequest] = call(topics.SET_MODE)
 
-    def __init__(self, site: Site, page: Page) -> None:
+    def __init__(self, site: Scenario, page: Page) -> None:
         self._page = page
         self._model = Model(site)
         self._commander = Commander(self._model)

@@ -31,10 +31,10 @@ from services.planner.jobs import IDLE, Goal, Havens, Job, Orders, choose, home_
 from uvf.maths.rotations import wrap
 from uvf.maths.se2 import IDENTITY, Pose2, compose, inverse, transform
 from uvf.models.params import Params
-from uvf.planning.costmap import Body
+from uvf.planning.costmap import Footprint
 from uvf.planning.exploration import Explorer, Patrol
-from uvf.planning.frontiers import Taste
-from uvf.planning.navigator import Navigator, Plan
+from uvf.planning.frontiers import FrontierWeights
+from uvf.planning.navigator import GlobalPlanner, PlannedPath
 from uvf.planning.smoothing import length
 from uvf.runtime.contract.declaration import Reads, Writes, answers, call, optional, replies, request, topic
 from uvf.runtime.contract.service import Answer, Service
@@ -101,14 +101,14 @@ class PlannerService(Service):
         self._explores = explores
         self._havens = Havens()
         self._radius = radius
-        self._navigator = Navigator(self._body)
+        self._navigator = GlobalPlanner(self._body)
         self._explorer = Explorer(self._taste)
         self._patrol = Patrol()
         self._map_stamp = -1.0
         self._job: Job = IDLE
         self._goal: Goal | None = None
         self._target: Point | None = None
-        self._plan = Plan(None)
+        self._plan = PlannedPath(None)
         self._planned_at = -np.inf
         self._ended_at: float | None = None
         """When a person's goal was reached or cancelled, as ``_ending`` says."""
@@ -167,12 +167,12 @@ class PlannerService(Service):
         )
 
     @property
-    def _body(self) -> Body:
-        return Body(self._radius + self.params.margin, self.params.comfort, self.params.dislike)
+    def _body(self) -> Footprint:
+        return Footprint(self._radius + self.params.margin, self.params.comfort, self.params.dislike)
 
     @property
-    def _taste(self) -> Taste:
-        return Taste(self.params.least_frontier, FRONTIER_VIEW, self.params.frontier_worth)
+    def _taste(self) -> FrontierWeights:
+        return FrontierWeights(self.params.least_frontier, FRONTIER_VIEW, self.params.frontier_worth)
 
     def _take_map(self, grid: Grid) -> bool:
         taken_at = seconds(grid.timestamp)
@@ -222,7 +222,7 @@ class PlannerService(Service):
     def _end(self, t: float, ending: NavStatus.State, reason: str) -> None:
         """A person's goal has come to its end; without a path the vehicle stands."""
         self._ended_at, self._ending = t, ending
-        self._plan = Plan(None, reason)
+        self._plan = PlannedPath(None, reason)
 
     def _begin(self, t: float, job: Job) -> None:
         if job.name != self._job.name:
@@ -236,7 +236,7 @@ class PlannerService(Service):
     def _replan(self, t: float, here: Pose2) -> None:
         self._planned_at = t
         if self._job == IDLE:
-            self._target, self._plan = None, Plan(None, "no job")
+            self._target, self._plan = None, PlannedPath(None, "no job")
         elif self._job.target is not None:
             self._target = self._in_map(self._job.target)
             self._plan = self._navigator.plan(here[:2], self._target, self._job.bold)
@@ -246,11 +246,14 @@ class PlannerService(Service):
     def _replan_exploring(self, t: float, here: Pose2) -> None:
         ways, costs = self._navigator.ways(here[:2]), self._navigator.costs
         if ways is None or costs is None:
-            self._target, self._plan = None, Plan(None, self._navigator.missing if costs is None else "the vehicle is outside its map")
+            self._target, self._plan = (
+                None,
+                PlannedPath(None, self._navigator.missing if costs is None else "the vehicle is outside its map"),
+            )
             return
         frontier = self._explorer.choose(t, costs, ways)
         self._target = frontier or self._patrol.choose(here[:2], costs, ways)
-        self._plan = self._navigator.plan(here[:2], self._target) if self._target else Plan(None, "everything is explored")
+        self._plan = self._navigator.plan(here[:2], self._target) if self._target else PlannedPath(None, "everything is explored")
         if self._target is not None and self._plan.path is None:
             self._done_with_target(t)
 
@@ -307,7 +310,7 @@ class PlannerService(Service):
         else:
             self._done_with_target(t)
             self._planned_at = -np.inf
-            self._plan = Plan(None, reason)
+            self._plan = PlannedPath(None, reason)
 
     def _try_again(self, t: float, reason: str) -> None:
         """Neither a mission nor the way home may be left out; after some tries a person has to decide."""

@@ -13,7 +13,7 @@ from uvf.maths.se3 import Transform, from_above
 from uvf.models.params import Params
 from uvf.models.vehicle.file import GroundBody
 from uvf.planning.collision_check import safe_share
-from uvf.planning.pure_pursuit import Pace, Tracker
+from uvf.planning.pure_pursuit import PathTracker, SpeedLimits
 from uvf.runtime.contract.declaration import Reads, Writes, every, topic
 from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import pose2_of, scan_rays, seconds, stamp, yaw_of
@@ -62,7 +62,7 @@ class TrackerService(Service):
         self._body = body
         self._base_from_lidar = base_from_lidar
         self._sweeping = sweeping
-        self._tracker = Tracker(self._pace)
+        self._tracker = PathTracker(self._pace)
         self._history = PoseHistory(HISTORY)
         self._pose: Pose2 = IDENTITY
         self._scan_time = -np.inf
@@ -95,9 +95,9 @@ class TrackerService(Service):
         return self._body.radius + self.params.margin
 
     @property
-    def _pace(self) -> Pace:
+    def _pace(self) -> SpeedLimits:
         speeds = min(self.params.speed, self._body.max_linear), min(self.params.turn_speed, self._body.max_angular)
-        return Pace(*speeds, self.params.deceleration, self.params.goal_tolerance)
+        return SpeedLimits(*speeds, self.params.deceleration, self.params.goal_tolerance)
 
     def _look(self, scan: LaserScan) -> None:
         """Keeps the points of a new scan where they were seen, so that they stay while the vehicle moves on."""

@@ -12,7 +12,7 @@ from uvf.models.vehicle.sensors import AirDataSensor, GnssSensor, ImuSensor
 from uvf.sensors.errors import Channel, Errors
 from uvf.sensors.fitted import inertial_unit, line_of, receiver
 from uvf.sensors.instruments import Fix, ImuReading
-from uvf.sensors.sampling import Line
+from uvf.sensors.sampling import DelayLine
 
 Floats = rotations.Floats
 
@@ -23,7 +23,7 @@ class Imu:
     def __init__(self, data: ImuSensor, field: Floats, rng: np.random.Generator) -> None:
         """``field`` is the magnetic field, (3,) T, ENU."""
         self.frame = data.frame
-        self._line: Line[ImuReading] = line_of(data, rng.spawn(1)[0])
+        self._line: DelayLine[ImuReading] = line_of(data, rng.spawn(1)[0])
         self._unit = inertial_unit(data, rng)
         self._arm = np.array(data.mount.xyz)
         self._is_off_centre = bool(self._arm.any())
@@ -48,7 +48,7 @@ class Gnss:
 
     def __init__(self, data: GnssSensor, tangent: LocalTangent, rng: np.random.Generator) -> None:
         self.data = data
-        self._line: Line[Fix] = line_of(data, rng.spawn(1)[0])
+        self._line: DelayLine[Fix] = line_of(data, rng.spawn(1)[0])
         self._receiver = receiver(data, tangent, rng)
 
     def read(self, t: float, motion: Motion) -> Fix | None:
@@ -67,7 +67,7 @@ class Pressures:
     """Static and pitot pressure with constant biases and white noise."""
 
     def __init__(self, data: AirDataSensor, rng: np.random.Generator) -> None:
-        self._line: Line[AirSample] = line_of(data, rng.spawn(1)[0])
+        self._line: DelayLine[AirSample] = line_of(data, rng.spawn(1)[0])
         bias = np.array((data.static_bias, data.differential_bias))
         self._channel = Channel(Errors(noise=np.array((data.static_noise, data.differential_noise)), bias=bias), 2, rng)
 

@@ -9,18 +9,18 @@ from services.sim_ground.world import BulletWorld, Placed
 from uvf.maths.raycast import warm_up
 from uvf.models.aircraft.shape import aircraft_shape
 from uvf.models.mission.file import Start, Vehicle
-from uvf.models.scenario import Member, Site
+from uvf.models.scenario import MissionVehicle, Scenario
 from uvf.models.urdf.model import check_urdf, engine_urdf, load_urdf
 from uvf.models.vehicle.file import GroundBody, load_vehicle
 from uvf.models.world.footing import COARSE, Footing
 from uvf.models.world.geometry import solids
 from uvf.models.yaml_data import BadInput
-from uvf.runtime.contract.instances import Host
+from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.messages.faults import Faults
 from uvf.sensors.surroundings import Surroundings, aircraft_solid, own_tree, vehicle_tree
 
 
-def build(site: Site) -> list[Host]:
+def build(site: Scenario) -> list[ServiceInstance]:
     """Nothing when the mission has no ground vehicle. Raises BadInput."""
     bodies = {m.name: m.file.ground for m in site.of_kind("ground") if m.file.ground is not None}
     if not bodies:
@@ -28,10 +28,10 @@ def build(site: Site) -> list[Host]:
     footing = Footing(site.world)
     grounds = {name: _checked(site, site.members[name], footing) for name in bodies}
     warm_up()
-    return [Host(SimGround, lambda: _make(site, bodies, grounds), writes_for=tuple(bodies))]
+    return [ServiceInstance(SimGround, lambda: _make(site, bodies, grounds), writes_for=tuple(bodies))]
 
 
-def _make(site: Site, bodies: dict[str, GroundBody], grounds: dict[str, float]) -> SimGround:
+def _make(site: Scenario, bodies: dict[str, GroundBody], grounds: dict[str, float]) -> SimGround:
     """grounds: z [m] of what each vehicle stands on at its start."""
     members = {name: site.members[name] for name in bodies}
     placed = {n: Placed(bodies[n], engine_urdf(m.folder / bodies[n].urdf), _start(m), grounds[n]) for n, m in members.items()}
@@ -48,23 +48,23 @@ def _make(site: Site, bodies: dict[str, GroundBody], grounds: dict[str, float]) 
     return SimGround(world, surroundings, stage, tuple(flying), Faults(site.mission.faults))
 
 
-def _join(site: Site, surroundings: Surroundings, name: str, model: str, start: tuple[float, float, float], z: float) -> Joining:
+def _join(site: Scenario, surroundings: Surroundings, name: str, model: str, start: tuple[float, float, float], z: float) -> Joining:
     """A vehicle that nobody steers but by its actuator topic, made ready while the simulation runs. Raises BadInput."""
     file, (x, y, yaw) = load_vehicle(site.vehicles_folder, model), start
     if file.ground is None:
         raise BadInput(f"'{model}' is no ground vehicle; this is the ground simulator")
-    member = Member(name, Vehicle(model=model, start=Start(x=x, y=y, yaw=yaw), system_id=1), file, site.vehicles_folder / model)
+    member = MissionVehicle(name, Vehicle(model=model, start=Start(x=x, y=y, yaw=yaw), system_id=1), file, site.vehicles_folder / model)
     urdf = member.folder / file.ground.urdf
     check_urdf(urdf, (file.ground.left_joint, file.ground.right_joint))
     _check_rates(member, file.ground)
     return Joining(Placed(file.ground, engine_urdf(urdf), start, z), Rig(site, member, file.ground, surroundings.still), load_urdf(urdf))
 
 
-def _start(member: Member) -> tuple[float, float, float]:
+def _start(member: MissionVehicle) -> tuple[float, float, float]:
     return member.entry.start.x, member.entry.start.y, member.entry.start.yaw
 
 
-def _checked(site: Site, member: Member, footing: Footing) -> float:
+def _checked(site: Scenario, member: MissionVehicle, footing: Footing) -> float:
     """z [m] of the ground at the start; of a slope, so much above that no wheel begins in it. Raises for what would fail in the engine."""
     body = member.file.ground
     assert body is not None
@@ -80,7 +80,7 @@ def _checked(site: Site, member: Member, footing: Footing) -> float:
     return height + slope * (body.radius + COARSE)
 
 
-def _check_rates(member: Member, body: GroundBody) -> None:
+def _check_rates(member: MissionVehicle, body: GroundBody) -> None:
     place = member.folder / "vehicle.yaml"
     if body.physics_hz % STEP_HZ:
         raise BadInput(f"{place}: ground: physics_hz is {body.physics_hz:g}; make it a multiple of {STEP_HZ:g}")

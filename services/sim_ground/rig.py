@@ -16,9 +16,9 @@ from services.sim_ground.body import BodyState, Touch
 from services.sim_ground.imu import ImuModel
 from uvf.maths.geodesy import LocalTangent
 from uvf.maths.kinematics import spin_velocity
-from uvf.maths.raycast import Body, Scene
+from uvf.maths.raycast import MovingBody, Scene
 from uvf.maths.rotations import rotate
-from uvf.models.scenario import Member, Site
+from uvf.models.scenario import MissionVehicle, Scenario
 from uvf.models.vehicle.battery import Charge
 from uvf.models.vehicle.file import GroundBody
 from uvf.models.vehicle.sensors import Encoders, GnssSensor, ImuSensor, Lidar, RangeFinder, Sampled, Sonar
@@ -29,7 +29,7 @@ from uvf.sensors.body_track import BodyTrack
 from uvf.sensors.fitted import line_of, receiver
 from uvf.sensors.instruments import Receiver
 from uvf.sensors.range_sensors import LidarModel, RangeModel
-from uvf.sensors.sampling import Due, Line
+from uvf.sensors.sampling import DelayLine, Due
 
 Floats = NDArray[np.float64]
 
@@ -40,7 +40,7 @@ class Moment(NamedTuple):
     """What there is to measure: the body, what moves about it (worked out when a ray is cast), and all that it touches."""
 
     body: BodyState
-    others: Callable[[], list[Body]] = list
+    others: Callable[[], list[MovingBody]] = list
     touches: Sequence[Touch] = ()
     motor_energy: float = 0.0  # J that the motors have drawn since the moment before
 
@@ -52,7 +52,7 @@ class Fitted(NamedTuple):
     """A sensor: how it reads the moment, and how its readings get out."""
 
     read: Read
-    line: Line[Message]
+    line: DelayLine[Message]
 
     def step(self, t: float, moment: Moment) -> Message | None:
         """The reading that arrives at the step at ``t`` [s], if any."""
@@ -62,7 +62,7 @@ class Fitted(NamedTuple):
 class Rig:
     """Built once a vehicle; each sensor draws from generators of its own, so that none disturbs another."""
 
-    def __init__(self, site: Site, member: Member, ground: GroundBody, scene: Scene) -> None:
+    def __init__(self, site: Scenario, member: MissionVehicle, ground: GroundBody, scene: Scene) -> None:
         """scene: what stands in the world."""
         self._links = Links(member.folder / ground.urdf, (ground.left_joint, ground.right_joint))
         self.ground = ground

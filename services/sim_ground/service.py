@@ -29,7 +29,7 @@ from services.sim_ground.guest import Course, courses
 from services.sim_ground.rig import STEP_HZ, Moment
 from services.sim_ground.stage import Stage, Stageable
 from uvf.maths.kinematics import WheelSpeeds
-from uvf.maths.raycast import Body
+from uvf.maths.raycast import MovingBody
 from uvf.runtime.contract.declaration import Reads, Writes, each_vehicle, optional, replies, request, topic
 from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.faults import Faults
@@ -149,7 +149,7 @@ class SimGround(Service):
     def _flying(self, t: float) -> dict[str, Whereabouts]:
         return {name: course.at(t) for name, course in self._guests.items()}
 
-    def _moving(self, t: float) -> list[Body]:
+    def _moving(self, t: float) -> list[MovingBody]:
         return [*self._surroundings.moving(t).values(), *self._surroundings.objects(self._world.poses()).values()]
 
     def _sensors_time(self, t: float) -> float:
@@ -178,7 +178,7 @@ class SimGround(Service):
         self._world.close()
 
 
-def _others(name: str, bodies: Callable[[], tuple[list[Body], dict[str, Body]]]) -> list[Body]:
+def _others(name: str, bodies: Callable[[], tuple[list[MovingBody], dict[str, MovingBody]]]) -> list[MovingBody]:
     """What moves about a vehicle: solids by script, what has been put in, and the other vehicles."""
     moving, vehicles = bodies()
     return moving + [body for other, body in vehicles.items() if other != name]

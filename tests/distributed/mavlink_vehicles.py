@@ -28,9 +28,9 @@ from uvf.maths.rotations import from_euler
 from uvf.mavlink.endpoint import UdpLink
 from uvf.runtime.bus.interface import LocalBus
 from uvf.runtime.contract.declaration import Reads, Writes, replies, request, topic
-from uvf.runtime.contract.instances import Host
+from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.contract.service import Service
-from uvf.runtime.contract.service_runner import Shell
+from uvf.runtime.contract.service_runner import ServiceRunner
 from uvf.runtime.messages.convert import array, quaternion, stamp, vector
 from uvf.runtime.messages.step_times import NS
 
@@ -155,9 +155,9 @@ class LiveVehicles:
         bus = LocalBus()
         service = MavlinkService([PLANE_FACTS, ROVER_FACTS], self.link, shelves())
         self._shells = [
-            Shell(Host(ScriptedVehicle, lambda: self.plane, "plane"), bus),
-            Shell(Host(ScriptedVehicle, lambda: self.rover, "rover"), bus),
-            Shell(Host(MavlinkService, lambda: service), bus),
+            ServiceRunner(ServiceInstance(ScriptedVehicle, lambda: self.plane, "plane"), bus),
+            ServiceRunner(ServiceInstance(ScriptedVehicle, lambda: self.rover, "rover"), bus),
+            ServiceRunner(ServiceInstance(MavlinkService, lambda: service), bus),
         ]
         self._stop = threading.Event()
         self._thread = threading.Thread(target=self._run, name="vehicles")

@@ -10,12 +10,12 @@ import pytest
 
 from launch import catalogue
 from tests.golden.make import GOLDEN
-from uvf.models.scenario import ROOT, load_site
+from uvf.models.scenario import ROOT, load_scenario
 from uvf.runtime.log.replay import into_service
 
 TOLERANCE = 1e-6  # processors round the last digits differently
 KINDS = [catalogue.kind(name) for name in ("sim_ground", "sim_air", "slam", "planner", "autopilot")]
-HOSTS = {h.service.name: h for h in catalogue.hosts(load_site(ROOT / "missions" / "demo.yaml"), KINDS)}
+HOSTS = {h.service.name: h for h in catalogue.hosts(load_scenario(ROOT / "missions" / "demo.yaml"), KINDS)}
 
 
 @pytest.mark.parametrize("name", HOSTS)

@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 
 from tests.services.planner.plans import room
-from uvf.planning.costmap import Body, costmap
+from uvf.planning.costmap import Footprint, costmap
 from uvf.planning.exploration import SHUN_TIME, Explorer, Patrol
-from uvf.planning.frontiers import Taste, frontiers
-from uvf.planning.search import Ways
+from uvf.planning.frontiers import FrontierWeights, frontiers
+from uvf.planning.search import CostToGo
 
-BODY = Body(radius=0.1, comfort=0.2, dislike=3.0)
-TASTE = Taste(least_size=4, view=0.3, worth=0.5)
+BODY = Footprint(radius=0.1, comfort=0.2, dislike=3.0)
+TASTE = FrontierWeights(least_size=4, view=0.3, worth=0.5)
 
 
 def costs_of(cells):
@@ -28,7 +28,7 @@ def two_doors():
 
 
 def ways_from(costs, x, y):
-    return Ways(costs.cost, costs.cell(x, y))
+    return CostToGo(costs.cost, costs.cell(x, y))
 
 
 def none_shunned(costs):

@@ -9,7 +9,7 @@ from schemas import topics
 from schemas.messages import CompressedImage, NavState
 from uvf.runtime.bus.interface import LocalBus
 from uvf.runtime.contract.declaration import Reads, Writes, topic
-from uvf.runtime.contract.instances import Host
+from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.contract.service import Service
 from uvf.runtime.log.reading import recover
 from uvf.runtime.log.replay import into_service, onto_bus
@@ -37,7 +37,7 @@ class Watcher(Service):
 PROGRAMS = {
     "recover": lambda log: recover(log, log.with_suffix(".saved.mcap")),
     "onto_bus": lambda log: onto_bus(log, LocalBus(), rate=1e9),
-    "into_service": lambda log: sum(1 for _ in into_service(log, Host(Watcher, Watcher, "v"))),
+    "into_service": lambda log: sum(1 for _ in into_service(log, ServiceInstance(Watcher, Watcher, "v"))),
     "describe": describe_log,
 }
 

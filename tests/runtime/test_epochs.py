@@ -8,15 +8,15 @@ from tests.runtime.toys import Pilot
 from uvf.runtime.bus.interface import LocalBus, Query, Sample
 from uvf.runtime.contract.declaration import Input
 from uvf.runtime.contract.inbox import OWNERS_MOST, InputBox
-from uvf.runtime.contract.instances import Host
-from uvf.runtime.contract.service_runner import Shell
+from uvf.runtime.contract.instances import ServiceInstance
+from uvf.runtime.contract.service_runner import ServiceRunner
 
 NS = 1_000_000_000
 
 
 @pytest.fixture
 def shell():
-    made = Shell(Host(Pilot, Pilot, "alpha"), LocalBus())
+    made = ServiceRunner(ServiceInstance(Pilot, Pilot, "alpha"), LocalBus())
     made.join(1)
     return made
 

@@ -8,9 +8,9 @@ from tests.runtime.modes import RUNS, run_in
 from tests.runtime.toys import Cast
 from uvf.runtime.bus.interface import LocalBus, Sample
 from uvf.runtime.contract.declaration import Reads, Writes, every, frames, topic
-from uvf.runtime.contract.instances import Host
+from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.contract.service import Service
-from uvf.runtime.contract.service_runner import Shell
+from uvf.runtime.contract.service_runner import ServiceRunner
 from uvf.runtime.messages.convert import seconds, stamp
 from uvf.runtime.messages.frames import FrameBuffer, FrameError
 from uvf.runtime.time.lockstep import Lockstep
@@ -97,7 +97,7 @@ def odom(owner, x, t):
 
 
 def shell_of(service, vehicle="alpha"):
-    shell = Shell(Host(service, service, vehicle), LocalBus())
+    shell = ServiceRunner(ServiceInstance(service, service, vehicle), LocalBus())
     shell.join(1)
     return shell
 
@@ -118,7 +118,7 @@ def step_at(shell, t):
 
 def test_a_step_sees_what_is_stamped_before_it_and_nothing_else():
     seeker = Seeker()
-    lockstep = Lockstep([Host(Seeker, lambda: seeker, "alpha"), Host(Mover, Mover, "alpha")])
+    lockstep = Lockstep([ServiceInstance(Seeker, lambda: seeker, "alpha"), ServiceInstance(Mover, Mover, "alpha")])
     lockstep.run(1.0)
     assert seeker.newest == pytest.approx({t / 10: t / 10 - 0.02 for t in range(1, 11)})
     assert seeker.refused[0.3].endswith("is not known at 0.300 s: that is 0.020 s after the newest (0.280 s)")
@@ -128,7 +128,7 @@ def test_a_step_sees_what_is_stamped_before_it_and_nothing_else():
 def test_the_order_of_services_and_of_arrival_changes_nothing():
     def run(turn):
         seeker = Seeker()
-        hosts = [Host(Seeker, lambda: seeker, "alpha"), Host(Mover, Mover, "alpha")]
+        hosts = [ServiceInstance(Seeker, lambda: seeker, "alpha"), ServiceInstance(Mover, Mover, "alpha")]
         Lockstep(hosts[::turn]).run(1.0)
         return seeker.newest, seeker.refused
 

@@ -10,9 +10,9 @@ from schemas.messages import ArmRequest, Reply
 from uvf.runtime.bus.interface import LocalBus
 from uvf.runtime.bus.wire import decode
 from uvf.runtime.contract.declaration import Reads, Writes, replies, request
-from uvf.runtime.contract.instances import Host
+from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.contract.service import Later, Service
-from uvf.runtime.contract.service_runner import Shell
+from uvf.runtime.contract.service_runner import ServiceRunner
 
 
 class Slow(Service):
@@ -55,7 +55,7 @@ def bus():
 
 @pytest.fixture
 def shell(bus):
-    return Shell(Host(Slow, Slow, "alpha"), bus)
+    return ServiceRunner(ServiceInstance(Slow, Slow, "alpha"), bus)
 
 
 def ask(bus, arm, source=""):

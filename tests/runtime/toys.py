@@ -31,7 +31,7 @@ from uvf.runtime.contract.declaration import (
     stop_all,
     topic,
 )
-from uvf.runtime.contract.instances import Host
+from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.contract.service import Answer, Service
 from uvf.runtime.messages.convert import seconds, stamp
 from uvf.runtime.state.stop_all import StopStatus
@@ -201,9 +201,9 @@ class Cast:
             self.made.setdefault(f"{service.name}.{vehicle}" if vehicle else service.name, []).append(instance)
             return instance
 
-        return Host(service, build, vehicle, roles)
+        return ServiceInstance(service, build, vehicle, roles)
 
-    def processes(self) -> dict[str, list[Host]]:
+    def processes(self) -> dict[str, list[ServiceInstance]]:
         """Process name -> its hosts."""
         raise NotImplementedError
 
@@ -228,5 +228,5 @@ class Toys(Cast):
             "thinker": [self.host(Thinker, "alpha"), self.host(Follower, "beta", roles={"leader": "alpha"})],
         }
 
-    def watcher(self) -> Host:
+    def watcher(self) -> ServiceInstance:
         return self.host(Watcher)

@@ -13,29 +13,29 @@ from schemas.messages import (
     VehicleStatus,
 )
 from services.autopilot.air import interface, manual_control
-from services.autopilot.air.config import Ship
-from services.autopilot.air.failsafes.monitor import Safety, Seen
-from services.autopilot.air.failsafes.prearm import Standing, faults
+from services.autopilot.air.config import AutopilotConfig
+from services.autopilot.air.failsafes.monitor import FailsafeMonitor, VehicleCondition
+from services.autopilot.air.failsafes.prearm import PrearmInputs, faults
 from services.autopilot.air.failsafes.table import GNSS_HOLD
 from services.autopilot.air.fence.fence_in_force import too_small
 from services.autopilot.air.inputs import intake
-from services.autopilot.air.inputs.external_control import Outside
-from services.autopilot.air.inputs.over_ground import OverGround
-from services.autopilot.air.inputs.sensing import Said, Sensing
+from services.autopilot.air.inputs.external_control import ExternalControl
+from services.autopilot.air.inputs.over_ground import GroundProximity
+from services.autopilot.air.inputs.sensing import SensorInputs, StateEstimation
 from services.autopilot.air.mission import orders
-from services.autopilot.air.mission.plans import Plans
-from services.autopilot.air.mode_manager import Pilot
-from services.autopilot.air.modes.leading import Steadied
-from services.autopilot.air.modes.paths import Round
-from services.autopilot.air.setpoints import Flown, Senses
+from services.autopilot.air.mission.plans import ActivePlans
+from services.autopilot.air.mode_manager import ModeManager
+from services.autopilot.air.modes.leading import LeaderSpeedFilter
+from services.autopilot.air.modes.paths import LoiterOptions
+from services.autopilot.air.setpoints import ControlOutput, FlightContext
 from services.autopilot.air.status import status_messages, telemetry
-from services.autopilot.air.status.event_log import Journal
+from services.autopilot.air.status.event_log import EventLog
 from services.autopilot.safe_state import coming_down
 from services.autopilot.told_params import ToldParams
 from uvf.control.flight_control import level_trim
 from uvf.estimation.landed import LandDetector
 from uvf.estimation.state import Estimate
-from uvf.guidance.fence_plan import Remembered, place_fault
+from uvf.guidance.fence_plan import CachedFenceCheck, place_fault
 from uvf.guidance.flyable import advice
 from uvf.guidance.route import Place
 from uvf.models.vehicle.flight_params import FIXED, AirParams
@@ -57,24 +57,24 @@ class AutopilotAir(Service):
     fixed_params = FIXED
     params: AirParams
 
-    def __init__(self, ship: Ship, params: AirParams) -> None:
+    def __init__(self, ship: AutopilotConfig, params: AirParams) -> None:
         self.params = params
         self._ship = ship
         self._restarts = False
         self._told_params = ToldParams()
         self._armed = ship.starts_in_air or ship.starts_armed
-        self._pilot = Pilot(intake.items(ship.items), ship.ground, ship.strips, ship.servos)
-        self._pilot.leads = Steadied() if ship.leads else None
-        self._over_ground = OverGround(ship.altimeter)
-        self._within = Remembered()
-        self._safety = Safety(self._pilot, ship.servos)
+        self._pilot = ModeManager(intake.items(ship.items), ship.ground, ship.strips, ship.servos)
+        self._pilot.leads = LeaderSpeedFilter() if ship.leads else None
+        self._over_ground = GroundProximity(ship.altimeter)
+        self._within = CachedFenceCheck()
+        self._safety = FailsafeMonitor(self._pilot, ship.servos)
         self._safety.set_fence(ship.fence, None, params)
-        self._journal = Journal()
+        self._journal = EventLog()
         self._journal.note(advice(self._pilot.navigator.items, params))
-        self._plans = Plans(ship.items, self._pilot, self._safety, self._journal)
-        self._sensing = Sensing(ship.instruments, ship.tangent, params.estimator, self._safety.believed)
+        self._plans = ActivePlans(ship.items, self._pilot, self._safety, self._journal)
+        self._sensing = StateEstimation(ship.instruments, ship.tangent, params.estimator, self._safety.believed)
         self._surfaces = manual_control.LET_GO
-        self._steering = Outside()
+        self._steering = ExternalControl()
         self._now: Estimate | None = None
         self._cycles = 0
         self._told: tuple[object, ...] = ()
@@ -87,7 +87,7 @@ class AutopilotAir(Service):
         if self._restarts:
             self._restart()
         samples = [sample for m in now.imu if (sample := intake.inertial(m, t)) is not None]
-        estimate = self._sensing.step(t, Said(samples, now.air_data, now.gnss, self._land.airborne), self.params, 1 / self.hz)
+        estimate = self._sensing.step(t, SensorInputs(samples, now.air_data, now.gnss, self._land.airborne), self.params, 1 / self.hz)
         self._now = estimate
         if estimate is None:
             return self._without_fix(t, now)
@@ -130,10 +130,10 @@ class AutopilotAir(Service):
         out.set_rally = [_reply(self._plans.set_rally(r.rally, self.params)) for r in now.set_rally]
         return out
 
-    def _fly(self, t: float, now: Estimate) -> Flown:
+    def _fly(self, t: float, now: Estimate) -> ControlOutput:
         clearance = self._over_ground.clearance(t, now, self.params.gear_height)
         felt = self._over_ground
-        senses = Senses(self._land.airborne, self._armed, None, self._ship.servos, clearance, felt.push, felt.heave)
+        senses = FlightContext(self._land.airborne, self._armed, None, self._ship.servos, clearance, felt.push, felt.heave)
         self._pilot.hear(self._steering.tell(senses), 1 / self.hz)
         flown = self._pilot.step(now, self._safety.demands(self.params), 1 / self.hz)
         self._surfaces = flown.surfaces
@@ -142,7 +142,7 @@ class AutopilotAir(Service):
             self._pilot.disarms = self._armed = False
         return flown
 
-    def _report(self, t: float, now: Estimate, flown: Flown, out: interface.Outputs) -> None:
+    def _report(self, t: float, now: Estimate, flown: ControlOutput, out: interface.Outputs) -> None:
         """Surfaces and motion; what is told now and then, and the status also when it changes."""
         state = telemetry.nav_state(t, now)
         out.surfaces, out.nav_state = telemetry.surfaces(t, flown.surfaces, self._armed), state
@@ -205,8 +205,8 @@ class AutopilotAir(Service):
     given_up = "its motor is off and it comes down in a turn"
     stand_in = staticmethod(coming_down)
 
-    def _seen(self, now: Estimate) -> Seen:
-        return Seen(now, self._sensing.unfixed, self._land.airborne, self._surfaces)
+    def _seen(self, now: Estimate) -> VehicleCondition:
+        return VehicleCondition(now, self._sensing.unfixed, self._land.airborne, self._surfaces)
 
     def _faults(self) -> list[str]:
         """Why it should not be armed; nothing of it counts in the air."""
@@ -216,7 +216,7 @@ class AutopilotAir(Service):
             return []
         safety, pilot, now = self._safety, self._pilot, self._now
         fence = pilot.fence.fencing
-        standing = Standing(
+        standing = PrearmInputs(
             now,
             self.params,
             unfixed=self._sensing.unfixed,
@@ -257,7 +257,7 @@ class AutopilotAir(Service):
         return _reply(refusal)
 
     def _go_to(self, request: GoalRequest) -> Reply:
-        place, how = intake.place(request.position), Round(request.radius, request.speed)
+        place, how = intake.place(request.position), LoiterOptions(request.radius, request.speed)
         refusal = self._outside(place, how.radius) or self._pilot.go_to(place, request.source, self.params, how)
         if not refusal:
             self._safety.watch.overrule()

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 
 from schemas.messages import Event
-from services.autopilot.failsafes import Action, Rule
+from services.autopilot.failsafes import FailsafeAction, FailsafeRule
 from services.autopilot.ground.params import GroundAutopilotParams
 
 POSE_LOST = 1.0  # s
@@ -11,11 +11,17 @@ OFFBOARD_SILENT = 0.5  # s
 TIPPED = 0.5  # s
 CALMER = 0.8  # of tilt_max
 RECHARGED = 0.03  # of charge, beyond a limit
-ACTIONS = {"wait": Action.WARN, "warn": Action.WARN, "hold": Action.HOLD, "return": Action.RETURN, "off": Action.OFF}
+ACTIONS = {
+    "wait": FailsafeAction.WARN,
+    "warn": FailsafeAction.WARN,
+    "hold": FailsafeAction.HOLD,
+    "return": FailsafeAction.RETURN,
+    "off": FailsafeAction.OFF,
+}
 
 
 @dataclass(frozen=True, slots=True)
-class Known:
+class GroundFailsafeInputs:
     """What the rules look at."""
 
     params: GroundAutopilotParams = field(default_factory=GroundAutopilotParams)
@@ -39,8 +45,8 @@ class Known:
     """It has been stopped before the fence."""
 
 
-GROUND_RULES: tuple[Rule[Known], ...] = (
-    Rule(
+GROUND_RULES: tuple[FailsafeRule[GroundFailsafeInputs], ...] = (
+    FailsafeRule(
         "link",
         wrong=lambda k: k.moves and k.silence > k.params.link_timeout,
         mended=lambda k: k.silence <= k.params.link_timeout,
@@ -50,7 +56,7 @@ GROUND_RULES: tuple[Rule[Known], ...] = (
         action=lambda k: ACTIONS[k.params.link_action],
         parameters=("link_timeout", "link_action"),
     ),
-    Rule(
+    FailsafeRule(
         "sticks",
         wrong=lambda k: k.moves and k.let_go and k.params.stick_action != "wait",
         mended=lambda k: not k.let_go,
@@ -60,7 +66,7 @@ GROUND_RULES: tuple[Rule[Known], ...] = (
         action=lambda k: ACTIONS[k.params.stick_action],
         parameters=("stick_timeout", "stick_action"),
     ),
-    Rule(
+    FailsafeRule(
         "pose",
         wrong=lambda k: k.moves and k.unplaced > POSE_LOST,
         mended=lambda k: k.unplaced == 0.0,
@@ -70,7 +76,7 @@ GROUND_RULES: tuple[Rule[Known], ...] = (
         clears=1.0,
         severity=Event.CRITICAL,
     ),
-    Rule(
+    FailsafeRule(
         "scan",
         wrong=lambda k: k.moves and k.by_itself and k.unseen > k.params.scan_timeout,
         mended=lambda k: k.unseen <= k.params.scan_timeout,
@@ -80,7 +86,7 @@ GROUND_RULES: tuple[Rule[Known], ...] = (
         severity=Event.CRITICAL,
         parameters=("scan_timeout",),
     ),
-    Rule(
+    FailsafeRule(
         "map",
         wrong=lambda k: k.moves and k.by_itself and k.unmapped > k.params.map_timeout,
         mended=lambda k: k.unmapped <= k.params.map_timeout,
@@ -90,16 +96,16 @@ GROUND_RULES: tuple[Rule[Known], ...] = (
         severity=Event.CRITICAL,
         parameters=("map_timeout",),
     ),
-    Rule(
+    FailsafeRule(
         "offboard",
         wrong=lambda k: k.moves and k.unsteered > OFFBOARD_SILENT,
         mended=lambda k: k.unsteered == 0.0,
         begins="no setpoint from outside",
         ends="setpoints no longer missed",
         figures=lambda k: f"silent for {k.unsteered:.1f} s",
-        action=lambda k: Action.HOLD,
+        action=lambda k: FailsafeAction.HOLD,
     ),
-    Rule(
+    FailsafeRule(
         "fence",
         wrong=lambda k: k.fence,
         mended=lambda k: not k.fence,
@@ -110,30 +116,30 @@ GROUND_RULES: tuple[Rule[Known], ...] = (
         parameters=("max_distance", "fence_action"),
         clears=1.0,
     ),
-    Rule(
+    FailsafeRule(
         "stuck",
         wrong=lambda k: k.moves and k.stuck_for > k.params.stuck_time,
         mended=lambda k: k.stuck_for == 0.0,
         begins="stuck",
         ends="no longer stuck, or to try again",
         figures=lambda k: f"{k.stuck} for {k.stuck_for:.0f} s",
-        action=lambda k: Action.WARN if k.by_hand else Action.STAND,
+        action=lambda k: FailsafeAction.WARN if k.by_hand else FailsafeAction.STAND,
         parameters=("stuck_time",),
     ),
-    Rule(
+    FailsafeRule(
         "tipped",
         wrong=lambda k: k.tilt > k.params.tilt_max,
         mended=lambda k: k.tilt < CALMER * k.params.tilt_max,
         begins="tipped: motors off",
         ends="upright again",
         figures=lambda k: f"{k.tilt:.1f} rad from upright",
-        action=lambda k: Action.OFF,
+        action=lambda k: FailsafeAction.OFF,
         after=lambda k: TIPPED,
         clears=1.0,
         severity=Event.CRITICAL,
         parameters=("tilt_max",),
     ),
-    Rule(
+    FailsafeRule(
         "battery_low",
         wrong=lambda k: k.charge < k.params.battery_low,
         mended=lambda k: k.charge > k.params.battery_low + RECHARGED,
@@ -145,7 +151,7 @@ GROUND_RULES: tuple[Rule[Known], ...] = (
         clears=3.0,
         parameters=("battery_low", "low_action"),
     ),
-    Rule(
+    FailsafeRule(
         "battery_critical",
         wrong=lambda k: k.charge < k.params.battery_critical,
         mended=lambda k: k.charge > k.params.battery_critical + RECHARGED,
@@ -158,7 +164,7 @@ GROUND_RULES: tuple[Rule[Known], ...] = (
         severity=Event.CRITICAL,
         parameters=("battery_critical", "critical_action"),
     ),
-    Rule(
+    FailsafeRule(
         "battery_emergency",
         wrong=lambda k: k.charge < k.params.emergency_charge,
         mended=lambda k: k.charge > k.params.emergency_charge + RECHARGED,

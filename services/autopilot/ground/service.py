@@ -22,17 +22,17 @@ from schemas.messages import (
     VehicleStatus,
     WheelCommand,
 )
-from services.autopilot.failsafes import Action
+from services.autopilot.failsafes import FailsafeAction
 from services.autopilot.ground import fence as fences
 from services.autopilot.ground import interface, orders
 from services.autopilot.ground.mission import MissionEngine, Point, mission_of, refusal, vector
-from services.autopilot.ground.multiplexer import COMMAND_MAX_AGE, SOURCES, Choice, Velocity, choose
+from services.autopilot.ground.multiplexer import COMMAND_MAX_AGE, SOURCES, ActiveCommand, VelocityCommand, choose
 from services.autopilot.ground.params import GroundAutopilotParams
-from services.autopilot.ground.safety import Doing, Safety, Sensed, mode_of, place
+from services.autopilot.ground.safety import GroundActivity, GroundFailsafeMonitor, GroundSensorInputs, mode_of, place
 from services.autopilot.multiplexing import Once
 from services.autopilot.safe_state import standing
 from services.autopilot.told_params import ToldParams
-from uvf.control.drive_limits import Limits, Ramp, within_limits
+from uvf.control.drive_limits import DriveLimits, VelocityRamp, within_limits
 from uvf.maths.kinematics import DifferentialDrive, Twist, WheelSpeeds
 from uvf.models.vehicle.file import GroundBody
 from uvf.runtime.contract.service import Service
@@ -82,25 +82,27 @@ class GroundAutopilot(Service):
         self._made_with = (body, home, system_id, imu_rpy, sweeping)
         self._system_id = system_id
         self._drive = DifferentialDrive(body.wheel_radius, body.track)
-        self._ramp = Ramp(Limits(body.max_linear, body.max_angular, body.max_linear_acceleration, body.max_angular_acceleration))
+        self._ramp = VelocityRamp(
+            DriveLimits(body.max_linear, body.max_angular, body.max_linear_acceleration, body.max_angular_acceleration)
+        )
         begins, items = job
         self._armed = begins
         self._mode: int = Mode.MODE_MISSION if begins else Mode.MODE_HOLD
         self._stop = StopStatus()
-        self._choice = Choice("", "starting")
+        self._choice = ActiveCommand("", "starting")
         self._refused_at = -inf
         self._once = Once()
-        self._heard: dict[str, Velocity] = {}
+        self._heard: dict[str, VelocityCommand] = {}
         self._engine = MissionEngine(home, params.acceptance_radius)
         self._engine.load(mission_of(items, stamp(0.0)))
         self._mission_is_new = True
-        self._safety = Safety(body, fence or Fence(), imu_rpy, sweeping)
+        self._safety = GroundFailsafeMonitor(body, fence or Fence(), imu_rpy, sweeping)
         self._fence_is_new = True
         self._told_params = ToldParams()
         self._restarts = False
         self._rally = RallyPoints()
         self._rally_is_new = True
-        self._here: fences.Place | None = None
+        self._here: fences.GroundPose | None = None
         self._steps = 0
         self._told: tuple[object, ...] = ()
         self._events: list[Event] = []
@@ -108,7 +110,7 @@ class GroundAutopilot(Service):
     def step(self, t: float, now: interface.Inputs) -> interface.Outputs:
         self._heed_stop(t, now.stop)
         self._here = place(now.pose, yaw_of(now.pose.pose.orientation)) if now.pose is not None else None
-        self._watch(t, Sensed(self._here, now.link, now.imu, now.ticks, now.scan, now.correction, now.battery))
+        self._watch(t, GroundSensorInputs(self._here, now.link, now.imu, now.ticks, now.scan, now.correction, now.battery))
         out = self.Outputs()
         out.arm = [self._arm(t, r) for r in now.arm]
         out.set_mode = [self._set_mode(t, r) for r in now.set_mode]
@@ -122,7 +124,7 @@ class GroundAutopilot(Service):
         self._follow_mission(t, position)
         lasts = self.params.stick_timeout if self._mode == Mode.MODE_MANUAL else COMMAND_MAX_AGE
         # An input is gone once it is stale; how long a command counts is the parameter's to say.
-        self._heard |= {k: Velocity(seconds(c.timestamp), c.linear, c.angular) for k, c in commands.items() if c is not None}
+        self._heard |= {k: VelocityCommand(seconds(c.timestamp), c.linear, c.angular) for k, c in commands.items() if c is not None}
         self._choose(t, {k: replace(c, lasts=lasts) for k, c in self._heard.items()})
         out.wheels = self._wheels(t)
         self._report(t, position, out)
@@ -148,11 +150,11 @@ class GroundAutopilot(Service):
     given_up = "its wheels stand"
     stand_in = staticmethod(standing)
 
-    def _watch(self, t: float, sensed: Sensed) -> None:
+    def _watch(self, t: float, sensed: GroundSensorInputs) -> None:
         """What the failsafes order, whatever the mode."""
         rims = self._drive.wheels(Twist(self._ramp.linear, self._ramp.angular))
         asked = WheelSpeeds(rims.left * self._body.wheel_radius, rims.right * self._body.wheel_radius)
-        doing = Doing(self._mode, self._armed and not self._stop, bool(self._choice.source), asked)
+        doing = GroundActivity(self._mode, self._armed and not self._stop, bool(self._choice.source), asked)
         self._safety.keep_near(self._engine.home, self.params.max_distance)
         events, order = self._safety.step(t, sensed, doing, self.params, 1.0 / self.hz)
         self._events += events
@@ -161,7 +163,7 @@ class GroundAutopilot(Service):
         if (mode := mode_of(order.action)) != self._mode:
             self._mode = mode
             self._tell(t, f"mode {mode_name(mode)}", order.rule.begins, Event.WARNING)
-        if order.action is Action.OFF and self._armed:
+        if order.action is FailsafeAction.OFF and self._armed:
             self._armed = False
             self._tell(t, "disarmed", order.rule.begins, Event.WARNING)
 
@@ -249,7 +251,7 @@ class GroundAutopilot(Service):
         if reached is not None:
             self._tell(t, f"mission item {reached} reached", "within its acceptance radius")
 
-    def _choose(self, t: float, commands: Mapping[str, Velocity]) -> None:
+    def _choose(self, t: float, commands: Mapping[str, VelocityCommand]) -> None:
         lacking = self._safety.obstacle(self._mode) if self._armed else "disarmed"
         obstacle = f"STOP ALL is engaged by {self._stop.who}" if self._stop else lacking
         before, self._choice = self._choice, choose(t, self._mode, commands, obstacle, self._choice.source)

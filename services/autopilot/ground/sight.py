@@ -7,7 +7,7 @@ from uvf.sensors.sweeping import Sweeping
 MOVED = 0.03  # m of the wheels, after which a scan that is the same to the last bit has frozen
 
 
-class Sight:
+class SensorWatch:
     """``unseen`` and ``unmapped``: s; 0 as long as there never was any. A scan is as old as its last beam."""
 
     def __init__(self, sweeping: Sweeping) -> None:

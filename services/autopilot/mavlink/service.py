@@ -42,7 +42,7 @@ from schemas.messages import (
     VehicleStatus,
     WheelCommand,
 )
-from services.autopilot.mavlink.connection.facts import Facts
+from services.autopilot.mavlink.connection.facts import VehicleInfo
 from services.autopilot.mavlink.connection.signing import Signing
 from services.autopilot.mavlink.connection.targets import Reserved
 from services.autopilot.mavlink.parameters.parameter_store import Store
@@ -139,7 +139,7 @@ class MavlinkService(Service):
 
     def __init__(
         self,
-        facts: Sequence[Facts],
+        facts: Sequence[VehicleInfo],
         link: endpoint.Link,
         stores: Mapping[str, Store],
         signing: Signing | None = None,

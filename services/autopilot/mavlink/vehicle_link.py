@@ -14,8 +14,8 @@ from services.autopilot.mavlink.commands.not_offered import NOT_OFFERED
 from services.autopilot.mavlink.commands.not_offered import handlers as not_offered
 from services.autopilot.mavlink.commands.orders import ORDERS, on_set_home_position, on_set_origin
 from services.autopilot.mavlink.commands.setpoints import Setpoints
-from services.autopilot.mavlink.connection.facts import Facts
-from services.autopilot.mavlink.connection.line import Line, Sender
+from services.autopilot.mavlink.connection.facts import VehicleInfo
+from services.autopilot.mavlink.connection.line import Sender, VehicleConnection
 from services.autopilot.mavlink.connection.statustext import SEVERITY, event_text
 from services.autopilot.mavlink.missions.missions import Missions
 from services.autopilot.mavlink.missions.reached import ReachedItems
@@ -47,8 +47,8 @@ ON_CHANGE = (
 
 
 class VehicleLink:
-    def __init__(self, facts: Facts, store: Store) -> None:
-        self.line = Line(facts)
+    def __init__(self, facts: VehicleInfo, store: Store) -> None:
+        self.line = VehicleConnection(facts)
         self.schedule = Schedule({number: stream.hz for number, stream in STREAMS.items()})
         self._parameters = Parameters(self.line, store)
         self.line.files = files_of(facts, self._parameters.table)

@@ -41,7 +41,7 @@ from services.gcs.state.session import Session
 from services.gcs.state.tracks import Track
 from uvf.maths.rotations import from_euler, matrix
 from uvf.models.mission.file import Start, Vehicle
-from uvf.models.scenario import Member, Site
+from uvf.models.scenario import MissionVehicle, Scenario
 from uvf.models.vehicle.file import load_vehicle
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.messages.convert import array, scan_points, seconds, wxyz
@@ -84,7 +84,7 @@ class VehicleModel:
     """One vehicle as heard over the link."""
 
     name: str
-    member: Member
+    member: MissionVehicle
     colour: str
     track: Track
     nav: NavState | None = None
@@ -169,7 +169,7 @@ class VehicleModel:
 class Model:
     """All vehicles of a mission, the clock, the log, and what each browser has chosen."""
 
-    def __init__(self, site: Site) -> None:
+    def __init__(self, site: Scenario) -> None:
         self.site = site
         self.vehicles: dict[str, VehicleModel] = {}
         for name, member in sorted(site.members.items()):
@@ -189,7 +189,7 @@ class Model:
         self.processes = ProcessBook(self.refused)
         self._guests = Guests()
 
-    def _add(self, name: str, member: Member) -> None:
+    def _add(self, name: str, member: MissionVehicle) -> None:
         colour = COLOURS[len(self.vehicles) % len(COLOURS)]
         self.vehicles[name] = VehicleModel(name, member, colour, _track(member))
 
@@ -306,7 +306,7 @@ class Model:
             self._forget(lost.pop())
         self._guests.take_in(t, name, guest)
         entry = Vehicle(model=guest.model, start=Start(x=0.0, y=0.0), system_id=1)
-        self._add(name, Member(name, entry, file, self.site.vehicles_folder / guest.model))
+        self._add(name, MissionVehicle(name, entry, file, self.site.vehicles_folder / guest.model))
         self.note(name, f"a guest: {guest.about[:LONGEST_TEXT]}", Event.NOTICE)
 
     def _lost_guests(self, t: float) -> list[str]:
@@ -363,7 +363,7 @@ def model_name(told: str) -> str:
     return told
 
 
-def _track(member: Member) -> Track:
+def _track(member: MissionVehicle) -> Track:
     return Track(spacing=2.0, jump=60.0) if member.file.kind == "fixed_wing" else Track(spacing=0.04, jump=0.6)
 
 

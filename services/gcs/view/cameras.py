@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from services.gcs.view.drawing import Camera
 from services.gcs.view.scenery import extent
-from uvf.models.scenario import Site
+from uvf.models.scenario import Scenario
 
 Floats = NDArray[np.float64]
 
@@ -56,7 +56,7 @@ def _camera(position: Floats, sight: Floats, distance: float) -> Camera:
     return Camera((x, y, z), (u, v, w))
 
 
-def cameras(site: Site, aspect: float = ASPECT) -> dict[str, Camera]:
+def cameras(site: Scenario, aspect: float = ASPECT) -> dict[str, Camera]:
     """Named views for a window of ``aspect`` (width by height).
 
     The first is how the page opens: the floor before the sky, if something flies there.

@@ -11,7 +11,7 @@ from services.gcs.view.bodies import rgb
 from services.gcs.view.drawing import Colour, Mesh, Node, Polyline
 from uvf.maths.rotations import IDENTITY, from_euler, matrix
 from uvf.models.mission.file import Waypoint
-from uvf.models.scenario import Member, Site
+from uvf.models.scenario import MissionVehicle, Scenario
 from uvf.models.shapes.mesh import triangles
 from uvf.models.shapes.mesh_parts import Part, box, joined
 from uvf.models.shapes.solid import Solid, pose_at
@@ -120,7 +120,7 @@ def circuit_line(points: Floats, colour: Colour) -> Polyline:
     return Polyline(points, colour, 2.0)
 
 
-def extent(site: Site) -> Floats:
+def extent(site: Scenario) -> Floats:
     """(2, 3) m: lowest and highest corner of the floor, the starts and the circuits."""
     x_min, y_min, x_max, y_max = site.world.floor
     points = [np.array(((x_min, y_min, 0.0), (x_max, y_max, 0.0)))]
@@ -129,6 +129,6 @@ def extent(site: Site) -> Floats:
     return np.array((everything.min(axis=0), everything.max(axis=0)))
 
 
-def _reach(member: Member) -> Floats:
+def _reach(member: MissionVehicle) -> Floats:
     start = member.entry.start
     return np.vstack((np.array(((start.x, start.y, start.z),)), circuit(member.entry.job.mission)))

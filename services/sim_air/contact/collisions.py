@@ -8,7 +8,7 @@ import numpy as np
 from services.sim_air.contact.surroundings import Around
 from services.sim_air.engine.states import Motion
 from uvf.maths.bvh import Bvh, build
-from uvf.maths.raycast import Body, Rays, Scene, cast
+from uvf.maths.raycast import MovingBody, Rays, Scene, cast
 from uvf.maths.rotations import Floats, matrix
 from uvf.maths.solids import joined
 from uvf.models.shapes.scene import primitives
@@ -78,7 +78,7 @@ class Collisions:
         self._touching, self._before = set(pairs), motions
         return new
 
-    def _near(self, motions: Mapping[str, Motion], moving: Mapping[str, Body]) -> dict[str, list[str]]:
+    def _near(self, motions: Mapping[str, Motion], moving: Mapping[str, MovingBody]) -> dict[str, list[str]]:
         """What is within MARGIN of each aircraft's bounding sphere, itself left out; all pairs at once, since this is done every step."""
         if not moving:
             return {}
@@ -90,7 +90,7 @@ class Collisions:
         close = (away**2).sum(axis=2) < (reach[:, None] + radii) ** 2
         return {name: [names[k] for k in np.flatnonzero(row) if names[k] != name] for name, row in zip(motions, close, strict=True)}
 
-    def _hits(self, name: str, motion: Motion, near: Mapping[str, Body]) -> list[Hit]:
+    def _hits(self, name: str, motion: Motion, near: Mapping[str, MovingBody]) -> list[Hit]:
         feelers = self._feelers[name]
         low = motion.position[2] - feelers.radius - MARGIN < self._highest
         if not low and not near:
@@ -106,7 +106,7 @@ class Collisions:
         return next(thing.name for thing in still if _meets(Scene(build(primitives(thing))), [], rays, above))
 
 
-def _meets(scene: Scene, bodies: list[Body], rays: Rays, above: float = -np.inf) -> bool:
+def _meets(scene: Scene, bodies: list[MovingBody], rays: Rays, above: float = -np.inf) -> bool:
     """Whether any line is met by something between its ends and ``above`` this height [m, world]."""
     shares = cast(scene, bodies, rays, 1.0)
     met = np.isfinite(shares)

@@ -6,7 +6,7 @@ from schemas.messages import NavState, SimObject, SimObjects
 from services.sim_air.engine.states import Motion
 from services.sim_air.environment.ground import Ground
 from uvf.maths.bvh import Bvh
-from uvf.maths.raycast import Body
+from uvf.maths.raycast import MovingBody
 from uvf.models.shapes.solid import Solid
 from uvf.runtime.messages.convert import array, wxyz
 from uvf.runtime.messages.spawned import solid_of, sound_objects, unit_wxyz
@@ -31,7 +31,7 @@ class Around:
         self._objects: list[SimObject] = []
         self._truth: Mapping[str, NavState] = {}
         self._aircraft: Mapping[str, Motion] = {}
-        self._bodies: dict[str, Body] | None = None
+        self._bodies: dict[str, MovingBody] | None = None
 
     def add_aircraft(self, name: str, shape: Bvh) -> None:
         self._surroundings.add_vehicle(name, shape)
@@ -49,7 +49,7 @@ class Around:
         """Whether more than one thing may move."""
         return self._scripted or len(self._aircraft.keys() | self._truth.keys()) + len(self._objects) > 1
 
-    def bodies(self) -> dict[str, Body]:
+    def bodies(self) -> dict[str, MovingBody]:
         """All that moves, by name."""
         if self._bodies is None:
             self._take_in()
@@ -59,7 +59,7 @@ class Around:
             self._bodies = {**s.moving(self._t), **s.objects(placed), **s.bodies(told), **s.bodies(self._aircraft)}
         return self._bodies
 
-    def others(self, name: str) -> list[Body]:
+    def others(self, name: str) -> list[MovingBody]:
         """What moves about one aircraft."""
         return [body for other, body in self.bodies().items() if other != name]
 

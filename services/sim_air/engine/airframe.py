@@ -26,7 +26,7 @@ from uvf.maths.rotations import Floats
 from uvf.models.jsbsim.model_file import check_model
 from uvf.models.jsbsim.model_parts import Unmade, properties_read
 from uvf.models.vehicle.air import AirBody
-from uvf.models.yaml_data import BadInput, Place
+from uvf.models.yaml_data import BadInput, FileLocation
 from uvf.runtime.process.quiet import c_output_discarded
 
 os.environ.setdefault("JSBSIM_DEBUG", "0")  # read when the engine is made: without it a banner goes to the output
@@ -55,7 +55,7 @@ class Airframe:
         """The engine anew: it keeps from one beginning to the next what was true before, and a number that is none for ever."""
         self._fdm = _load(self._folder, self._path, self._body)
         known = list(dict.fromkeys([*_catalogue(self._fdm), *_made_by_settings(self._fdm, self._body)]))
-        self._wiring = Wiring(self._fdm, known, self._body, Place(str(self._folder / "vehicle.yaml"), ("air",)))
+        self._wiring = Wiring(self._fdm, known, self._body, FileLocation(str(self._folder / "vehicle.yaml"), ("air",)))
         self._contacts = Contacts(self._fdm, known, self._path)
         self._reach = float(np.linalg.norm(self._contacts.points(), axis=1).max(initial=0.0))
         self._gauges = Gauges(self._fdm, known, self._tangent)

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from uvf.maths.raycast import Body, Rays, Scene, cast
+from uvf.maths.raycast import MovingBody, Rays, Scene, cast
 from uvf.maths.rotations import from_euler, matrices, matrix
 from uvf.models.vehicle.sensors import Lidar, Mount, RangeFinder, Sonar
 from uvf.sensors.body_track import BodyTrack, Placed
@@ -24,13 +24,13 @@ class Fan:
         self._directions = level @ matrix(from_euler(*mount.rpy)).T
         self._origin = np.array(mount.xyz)
 
-    def cast(self, scene: Scene, others: Sequence[Body], body: Placed, reach: float) -> Floats:
+    def cast(self, scene: Scene, others: Sequence[MovingBody], body: Placed, reach: float) -> Floats:
         """(n,) m to what each ray meets first, inf where that is nothing within ``reach`` [m]; the own body is not met."""
         world_from_body = matrix(body.world_from_body)
         rays = Rays(body.position + world_from_body @ self._origin, self._directions @ world_from_body.T)
         return cast(scene, others, rays, reach)
 
-    def cast_on_the_move(self, scene: Scene, others: Sequence[Body], poses: tuple[Floats, Floats], reach: float) -> Floats:
+    def cast_on_the_move(self, scene: Scene, others: Sequence[MovingBody], poses: tuple[Floats, Floats], reach: float) -> Floats:
         """The same with a pose of the body for each ray: positions (n, 3), attitudes (n, 4)."""
         positions, attitudes = poses
         world_from_body = matrices(attitudes)
@@ -54,11 +54,11 @@ class LidarModel:
         self.track = BodyTrack(lidar.sweep_time)
         """Of the body; who calls ``sweep`` keeps it."""
 
-    def scan(self, body: Placed, others: Sequence[Body]) -> Floats:
+    def scan(self, body: Placed, others: Sequence[MovingBody]) -> Floats:
         """(beams,) ranges [m], counter-clockwise from ``angle_min``, 0 = no return. others: what moves about the body."""
         return self._measured(self._fan.cast(self._scene, others, body, self._reach))
 
-    def sweep(self, t: float, others: Sequence[Body]) -> Floats:
+    def sweep(self, t: float, others: Sequence[MovingBody]) -> Floats:
         """The same of a sweep that ends at ``t`` [s], each beam from where the body was. others: where they are at its end."""
         poses = self.track.at(t + self._moments)
         return self._measured(self._fan.cast_on_the_move(self._scene, others, poses, self._reach))
@@ -79,7 +79,7 @@ class RangeModel:
         self._fan = Fan(sensor.mount, _angles(sensor))
         self._reach = sensor.range_max + 10.0 * sensor.noise
 
-    def range(self, body: Placed, others: Sequence[Body]) -> float:
+    def range(self, body: Placed, others: Sequence[MovingBody]) -> float:
         """m, 0 = no return. body: the vehicle's own; others: what moves about it."""
         sensor = self._sensor
         true = self._fan.cast(self._scene, others, body, self._reach).min()

@@ -3,7 +3,7 @@
 from schemas import topics
 from schemas.messages import ArmRequest, DriveCommand, Reply, WheelCommand
 from uvf.runtime.contract.declaration import Reads, Writes, answers, call, replies, request, topic
-from uvf.runtime.contract.instances import Host
+from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.contract.service import Answer, Service
 from uvf.runtime.messages.convert import stamp
 from uvf.runtime.time.lockstep import Lockstep
@@ -55,7 +55,7 @@ class Sink(Service):
 
 def run(until):
     source, sink = Source(), Sink()
-    lockstep = Lockstep([Host(Source, lambda: source, "v"), Host(Sink, lambda: sink, "v")])
+    lockstep = Lockstep([ServiceInstance(Source, lambda: source, "v"), ServiceInstance(Sink, lambda: sink, "v")])
     lockstep.run(until)
     return source, sink
 

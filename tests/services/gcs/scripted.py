@@ -30,7 +30,7 @@ from schemas.messages import (
 from uvf.maths.rotations import from_euler
 from uvf.models.mission.file import Job
 from uvf.models.mission.formation import Follow
-from uvf.models.scenario import ROOT, load_site
+from uvf.models.scenario import ROOT, load_scenario
 from uvf.models.vehicle.file import load_vehicle
 from uvf.runtime.bus.interface import LocalBus
 from uvf.runtime.messages.convert import occupancy_grid, planar_pose, quaternion, stamp
@@ -41,7 +41,7 @@ LEGS = ((200.0, -150.0), (200.0, 150.0), (-200.0, 150.0), (-200.0, -150.0))
 
 
 def demo_site():
-    return load_site(Path(ROOT / "missions/demo.yaml"))
+    return load_scenario(Path(ROOT / "missions/demo.yaml"))
 
 
 def with_eyes(site, of="milvus_survey"):

@@ -8,9 +8,9 @@ from services.gcs.commands import Cancel, ClickGround, Join, Leave, LeaveWheel, 
 from services.gcs.page.viser_script import action_in
 from tests.services.gcs.fakes import ME, OTHER, Station
 from tests.services.gcs.scripted import UAV, UGV
-from uvf.control.teleop_drive import START_ANGULAR, START_LINEAR, STILL, ZEROS, Command
+from uvf.control.teleop_drive import START_ANGULAR, START_LINEAR, STILL, ZEROS, TeleopCommand
 
-START = Command(START_LINEAR, START_ANGULAR)
+START = TeleopCommand(START_LINEAR, START_ANGULAR)
 
 
 @pytest.fixture

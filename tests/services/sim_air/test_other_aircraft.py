@@ -15,7 +15,7 @@ from services.sim_air.engine.airframe import Airframe
 from services.sim_air.engine.states import Start
 from uvf.maths import rotations
 from uvf.maths.geodesy import LocalTangent
-from uvf.models.scenario import ROOT, load_site
+from uvf.models.scenario import ROOT, load_scenario
 from uvf.models.vehicle.file import load_vehicle
 from uvf.runtime.messages.convert import array, wxyz
 from uvf.runtime.time.lockstep import Lockstep
@@ -46,7 +46,7 @@ class Flight:
     def __init__(self, root, model, pilot=None):
         (root / "one.yaml").write_text(MISSION.format(model=model))
         self.truth, self.events, self.pilot = [], [], pilot
-        self.lockstep = Lockstep(build(load_site(root / "one.yaml", root)))
+        self.lockstep = Lockstep(build(load_scenario(root / "one.yaml", root)))
         bus, said = self.lockstep.bus, topics.EVENTS.by("sim_air")
         bus.subscribe(topics.TRUTH.at("bird"), topics.TRUTH.qos, lambda s: self.truth.append(NavState.FromString(s.payload)))
         bus.subscribe(said.at("bird"), said.qos, lambda s: self.events.append(Event.FromString(s.payload)))

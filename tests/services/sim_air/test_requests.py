@@ -9,9 +9,9 @@ from schemas import topics
 from schemas.messages import NavState, RemoveRequest, SetPoseRequest, SimObject, SpawnRequest, StateRequest, SurfaceCommand
 from services.sim_air.build import build
 from tests.services.asking import Asked
-from uvf.models.scenario import load_site
+from uvf.models.scenario import load_scenario
 from uvf.runtime.contract.declaration import Reads, Writes, every, topic
-from uvf.runtime.contract.instances import Host
+from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.contract.service import Service
 from uvf.runtime.messages import spawned
 from uvf.runtime.messages.convert import array, planar_pose, seconds
@@ -62,8 +62,8 @@ class Run(Asked):
     def __init__(self, folder, script=None, model="milvus_survey", mission=MISSION):
         path = folder / "one.yaml"
         path.write_text(mission.format(model=model))
-        pilot = [Host(Pilot, lambda: Pilot(script), "bird")] if script else []
-        super().__init__(build(load_site(path)) + pilot, "bird", HEARD)
+        pilot = [ServiceInstance(Pilot, lambda: Pilot(script), "bird")] if script else []
+        super().__init__(build(load_scenario(path)) + pilot, "bird", HEARD)
 
     def place(self, owner=""):
         return array(self.of(topics.TRUTH, owner)[-1].position)

@@ -24,10 +24,10 @@ from tests.runtime.stepping import stepped
 from tests.services.sim_air.shapes import MILVUS_TREE
 from uvf.maths import rotations
 from uvf.maths.rotations import IDENTITY
-from uvf.models.scenario import ROOT, load_site
+from uvf.models.scenario import ROOT, load_scenario
 from uvf.models.vehicle.file import load_vehicle
 from uvf.runtime.bus.interface import LocalBus
-from uvf.runtime.contract.instances import Host
+from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.messages.convert import wxyz
 from uvf.runtime.time.lockstep import Lockstep
 
@@ -94,7 +94,7 @@ def run_two(tmp_path, until=3.0):
     bus = LocalBus()
     bus.subscribe("uvf/*/*/*", topics.IMU.qos, lambda s: seen.append((s.stamp_ns, s.key, s.payload)))
     bus.subscribe("uvf/*/*/*/*", topics.IMU.qos, lambda s: seen.append((s.stamp_ns, s.key, s.payload)))
-    lockstep = Lockstep(build(load_site(path)), bus)
+    lockstep = Lockstep(build(load_scenario(path)), bus)
     lockstep.run(until)
     lockstep.close()
     return [s for s in seen if "/sys/" not in s[1]]
@@ -114,7 +114,7 @@ def after_one_command(command, until):
     """What the body is commanded at each physics step when ``command`` comes once, at the start, and then nothing."""
     body = Glider()
     service = simulator(Aircraft("g", MILVUS, body, Actuators(TRIMMED, MILVUS.air), TRIMMED))
-    lockstep = Lockstep([Host(SimAir, lambda: service)])
+    lockstep = Lockstep([ServiceInstance(SimAir, lambda: service)])
     commands = lockstep.bus.publisher(topics.SURFACE_COMMAND.at("g"), SurfaceCommand.DESCRIPTOR.full_name, topics.SURFACE_COMMAND.qos)
     commands.put(command.SerializeToString(), 0)
     lockstep.run(until)
@@ -138,7 +138,7 @@ def test_a_motor_that_was_off_does_not_start_when_commands_end():
 def test_an_aircraft_whose_autopilot_dies_while_it_rolls_stops_rolling_and_flies_on(tmp_path):
     path = tmp_path / "two.yaml"
     path.write_text(MISSION)
-    lockstep, truth = Lockstep(build(load_site(path))), []
+    lockstep, truth = Lockstep(build(load_scenario(path))), []
     lockstep.bus.subscribe(topics.TRUTH.at("first"), topics.TRUTH.qos, lambda s: truth.append(NavState.FromString(s.payload)))
     commands = lockstep.bus.publisher(topics.SURFACE_COMMAND.at("first"), SurfaceCommand.DESCRIPTOR.full_name, topics.SURFACE_COMMAND.qos)
     commands.put(SurfaceCommand(aileron=0.1, elevator=-0.14, throttle=0.78).SerializeToString(), 0)
@@ -194,7 +194,7 @@ def house_readings(tmp_path, topic):
 
 
 def test_the_magnetic_field_is_that_of_the_world(tmp_path):
-    field = load_site(ROOT / "missions" / "demo.yaml").world.magnetic_field
+    field = load_scenario(ROOT / "missions" / "demo.yaml").world.magnetic_field
     read = house_readings(tmp_path, topics.IMU)[0].magnetic_field
     assert math.hypot(read.x, read.y, read.z) == pytest.approx(np.linalg.norm(field), rel=0.05)
     assert read.x == pytest.approx(field[0], abs=6e-6)  # it flies east, a little nose up

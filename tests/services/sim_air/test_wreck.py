@@ -15,7 +15,7 @@ from uvf.maths.bvh import build as tree_over
 from uvf.maths.geodesy import GRAVITY
 from uvf.maths.rotations import from_euler
 from uvf.maths.solids import box
-from uvf.models.scenario import load_site
+from uvf.models.scenario import load_scenario
 from uvf.models.shapes.scene import scene
 from uvf.models.shapes.solid import Solid
 from uvf.runtime.messages.convert import array
@@ -74,7 +74,7 @@ def test_two_aircraft_that_meet_in_the_air_fall_to_the_ground(tmp_path):
         "  one: {model: milvus, system_id: 1, start: {x: -60.0, y: 0.0, z: 60.0, speed: 25.0}}\n"
         "  two: {model: milvus, system_id: 2, start: {x: 60.0, y: 0.3, z: 60.0, yaw: 3.14159, speed: 25.0}}\n"
     )
-    lockstep, events, truth = Lockstep(build(load_site(path))), [], {}
+    lockstep, events, truth = Lockstep(build(load_scenario(path))), [], {}
     for name in ("one", "two"):
         said = topics.EVENTS.by("sim_air")
         lockstep.bus.subscribe(said.at(name), said.qos, lambda s: events.append(Event.FromString(s.payload)))

@@ -20,7 +20,7 @@ from services.sim_camera.service import SimCamera
 from tests.runtime.stepping import stepped
 from tests.services.sim_camera.test_service import CAMERA, GreyRenderer
 from uvf.maths.rotations import from_euler, matrix, multiply
-from uvf.models.scenario import ROOT, load_site
+from uvf.models.scenario import ROOT, load_scenario
 from uvf.models.vehicle.file import load_vehicle
 from uvf.models.vehicle.sensors import Chase, Gimbal, Mount
 from uvf.models.yaml_data import BadInput
@@ -166,7 +166,7 @@ vehicles:
 def test_the_chase_camera_sees_its_own_aircraft(tmp_path):
     path = tmp_path / "look.yaml"
     path.write_text(MISSION)
-    (host,) = build(load_site(path))
+    (host,) = build(load_scenario(path))
     service = host.make()
     truth = NavState(timestamp=stamp(0.38), position=vector(np.array((-60.0, 0.0, 40.0))))
     truth.orientation.w = 1.0
@@ -186,7 +186,7 @@ def _pose(truth):
 def test_depth_is_of_the_first_camera_only(tmp_path):
     path = tmp_path / "look.yaml"
     path.write_text(MISSION)
-    site = load_site(path)
+    site = load_scenario(path)
     member = site.members["survey"]
     deep = msgspec.structs.replace(member.file.sensors, gimbal=msgspec.structs.replace(GIMBAL, depth=True))
     object.__setattr__(member, "file", msgspec.structs.replace(member.file, sensors=deep))

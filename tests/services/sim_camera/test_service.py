@@ -16,12 +16,12 @@ from services.sim_camera.fitted import Fitted
 from services.sim_camera.renderer import Shot
 from services.sim_camera.service import SimCamera
 from tests.runtime.stepping import stepped
-from uvf.models.scenario import ROOT, load_site
+from uvf.models.scenario import ROOT, load_scenario
 from uvf.models.vehicle.file import load_vehicle
 from uvf.models.vehicle.sensors import Camera, Mount
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.contract.declaration import Writes, topic
-from uvf.runtime.contract.instances import Host
+from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import seconds, stamp, vector
 from uvf.runtime.time.lockstep import Lockstep
@@ -152,7 +152,7 @@ class Walker(Service):
 
 def film(until):
     """(images, infos) of the burger's camera in the demo's world, drawn for real."""
-    lockstep = Lockstep([*build(load_site(ROOT / "missions/demo.yaml")), Host(Walker, Walker, "burger")])
+    lockstep = Lockstep([*build(load_scenario(ROOT / "missions/demo.yaml")), ServiceInstance(Walker, Walker, "burger")])
     images, infos = [], []
     lockstep.bus.subscribe(topics.IMAGE.at("burger"), topics.IMAGE.qos, lambda s: images.append(CompressedImage.FromString(s.payload)))
     lockstep.bus.subscribe(
@@ -174,7 +174,7 @@ def test_a_walk_through_the_house_is_filmed_the_same_twice():
 
 def spoilt(vehicle, **parts):
     """The demo with other data in a vehicle's file."""
-    site = load_site(ROOT / "missions/demo.yaml")
+    site = load_scenario(ROOT / "missions/demo.yaml")
     member = site.members[vehicle]
     site.members[vehicle] = replace(member, file=msgspec.structs.replace(member.file, **parts))
     return site
@@ -194,5 +194,5 @@ def test_a_missing_mesh_is_named():
 
 
 def test_without_cameras_there_is_no_service():
-    site = load_site(ROOT / "missions/demo.yaml")
+    site = load_scenario(ROOT / "missions/demo.yaml")
     assert build(replace(site, members={})) == []

@@ -11,9 +11,9 @@ from schemas.messages import WheelCommand
 from services.sim_ground.build import build
 from uvf.maths.kinematics import DifferentialDrive, Twist
 from uvf.maths.se2 import Pose2
-from uvf.models.scenario import load_site
+from uvf.models.scenario import load_scenario
 from uvf.runtime.contract.declaration import Writes, topic
-from uvf.runtime.contract.instances import Host
+from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import stamp, yaw_of
 from uvf.runtime.time.lockstep import Lockstep
@@ -50,7 +50,7 @@ def site_with(folder, starts, seed=1, world="house"):
     }
     path = folder / "ride.yaml"
     path.write_text(yaml.safe_dump({"about": "test", "world": world, "seed": seed, "vehicles": vehicles}))
-    return load_site(path)
+    return load_scenario(path)
 
 
 @dataclass
@@ -78,7 +78,7 @@ WRITTEN = (topics.IMU, topics.SCAN, topics.WHEELS, topics.CONTACT, topics.JOINTS
 
 def ride(site, until, scripts):
     """scripts: vehicle -> function of t [s] giving a Twist or None."""
-    drivers = [Host(Driver, lambda s=script: Driver(s), name) for name, script in scripts.items()]
+    drivers = [ServiceInstance(Driver, lambda s=script: Driver(s), name) for name, script in scripts.items()]
     lockstep = Lockstep(build(site) + drivers)
     record = Record()
 

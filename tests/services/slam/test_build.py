@@ -14,7 +14,7 @@ from services.slam.build import build as build_slam
 from tests.runtime.stepping import stepped
 from tests.stops import NOBODY
 from uvf.models.mission.file import Job, Waypoint
-from uvf.models.scenario import ROOT, load_site
+from uvf.models.scenario import ROOT, load_scenario
 from uvf.models.yaml_data import BadInput
 
 BUILDS = (build_slam, build_planner, hosts)
@@ -22,7 +22,7 @@ BUILDS = (build_slam, build_planner, hosts)
 
 @pytest.fixture
 def site():
-    return load_site(ROOT / "missions" / "demo.yaml")
+    return load_scenario(ROOT / "missions" / "demo.yaml")
 
 
 def with_burger(site, **changes):

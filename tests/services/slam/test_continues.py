@@ -12,7 +12,7 @@ from tests.runtime.stepping import stepped
 from tests.slam.localization.places import ROOM, ellipse, readings
 from uvf.maths.se2 import Pose2, compose
 from uvf.models.mission.file import Maps
-from uvf.models.scenario import ROOT, load_site
+from uvf.models.scenario import ROOT, load_scenario
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.messages.convert import occupancy_cells, planar_pose, stamp
 from uvf.runtime.messages.frames import FrameBuffer
@@ -32,7 +32,7 @@ def session():
 
 
 def site_with(tmp_path, maps):
-    site = load_site(ROOT / "missions" / "demo.yaml")
+    site = load_scenario(ROOT / "missions" / "demo.yaml")
     burger = site.members["burger"]
     start = msgspec.structs.replace(burger.entry.start, x=float(NOW[0, 0]), y=float(NOW[0, 1]), yaw=float(NOW[0, 2]))
     changed = replace(burger, entry=msgspec.structs.replace(burger.entry, start=start, maps=maps))

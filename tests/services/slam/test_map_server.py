@@ -11,7 +11,7 @@ from services.slam.map_serving import map_servers
 from tests.runtime.stepping import stepped
 from uvf.maths.rotations import from_euler
 from uvf.maths.se2 import IDENTITY, Pose2
-from uvf.models.scenario import ROOT, load_site
+from uvf.models.scenario import ROOT, load_scenario
 from uvf.models.world.map_file import GridMap, save_map
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.messages.convert import occupancy_cells, quaternion, yaw_of
@@ -88,7 +88,7 @@ def mission(tmp_path, burger="", milvus=""):
         "    model: milvus\n", f"    model: milvus\n{milvus}"
     )
     (tmp_path / "m.yaml").write_text(text)
-    return load_site(tmp_path / "m.yaml")
+    return load_scenario(tmp_path / "m.yaml")
 
 
 def test_a_mission_gives_files_beside_it_and_saved_maps_by_name(tmp_path, monkeypatch):

@@ -5,19 +5,19 @@ from dataclasses import dataclass, field
 
 from schemas.messages import Battery, Breach, Event, Fence, Link
 from services.autopilot.air.failsafes.endurance import Endurance
-from services.autopilot.air.failsafes.table import AIR_RULES, Known
+from services.autopilot.air.failsafes.table import AIR_RULES, FailsafeInputs
 from services.autopilot.air.fence.fence_guard import circle_within
 from services.autopilot.air.fence.fence_in_force import FenceInForce, in_force
-from services.autopilot.air.mode_manager import Pilot
+from services.autopilot.air.mode_manager import ModeManager
 from services.autopilot.air.mode_table import FlightMode
-from services.autopilot.air.modes.paths import Round
+from services.autopilot.air.modes.paths import LoiterOptions
 from services.autopilot.air.modes.return_points import is_within
-from services.autopilot.failsafes import Action, Order, Watch
+from services.autopilot.failsafes import FailsafeAction, FailsafeOrder, FailsafeWatch
 from services.autopilot.link_watch import LinkWatch
 from uvf.control.commands import Surfaces
 from uvf.control.saturation import Saturation, eased
 from uvf.control.servos import Servos
-from uvf.estimation.air_data_check import AirDataCheck, Flying
+from uvf.estimation.air_data_check import AirDataCheck, FlightState
 from uvf.estimation.sensor_inputs import Pressures
 from uvf.estimation.state import Estimate
 from uvf.guidance.fence_plan import fence_fit, mission_fault, tightest
@@ -26,13 +26,13 @@ from uvf.models.mission.fence import FenceAction
 from uvf.models.vehicle.flight_params import AirParams
 from uvf.runtime.messages.fences import fence_fault, fencing
 
-RANK = {FlightMode.HOLD: Action.HOLD, FlightMode.RETURN: Action.RETURN, FlightMode.LAND: Action.LAND}
+RANK = {FlightMode.HOLD: FailsafeAction.HOLD, FlightMode.RETURN: FailsafeAction.RETURN, FlightMode.LAND: FailsafeAction.LAND}
 FENCED = "fence", "breach"  # rows whose action is the fence's
-FENCE_ACTIONS = {action: Action[action.name] for action in FenceAction}
+FENCE_ACTIONS = {action: FailsafeAction[action.name] for action in FenceAction}
 
 
 @dataclass(slots=True)
-class Seen:
+class VehicleCondition:
     """Of one cycle."""
 
     now: Estimate
@@ -41,11 +41,11 @@ class Seen:
     surfaces: Surfaces = field(default_factory=lambda: Surfaces(0.0, 0.0, 0.0, 0.0))
 
 
-class Safety:
+class FailsafeMonitor:
     """One aircraft's failsafes, with the pilot whom they order about."""
 
-    def __init__(self, pilot: Pilot, servos: Servos) -> None:
-        self.watch = Watch(AIR_RULES)
+    def __init__(self, pilot: ModeManager, servos: Servos) -> None:
+        self.watch = FailsafeWatch(AIR_RULES)
         self.endurance = Endurance()
         self.fence = Fence()
         """As it was set."""
@@ -65,7 +65,7 @@ class Safety:
         self.endurance.take(t, battery)
         self._link.step(t, link)
 
-    def believed(self, read: tuple[object, Pressures] | None, flying: Flying | None, params: AirParams, dt: float) -> Pressures | None:
+    def believed(self, read: tuple[object, Pressures] | None, flying: FlightState | None, params: AirParams, dt: float) -> Pressures | None:
         """The pressures (with their stamp) as far as they can be believed."""
         pressures = self._air_data.step(read, flying, params, dt)
         self.has_air_data = pressures is not None
@@ -90,7 +90,7 @@ class Safety:
         """What may be asked of the aircraft now."""
         return eased(params) if "saturation" in self.watch.holding else params
 
-    def step(self, t: float, seen: Seen, params: AirParams, dt: float) -> list[Event]:
+    def step(self, t: float, seen: VehicleCondition, params: AirParams, dt: float) -> list[Event]:
         """Before the pilot's step; ``seen.surfaces`` are those of the cycle before."""
         self._saturation.step(seen.surfaces, dt)
         if not self._pilot.is_blind:
@@ -112,11 +112,11 @@ class Safety:
             self._obey(order, seen.now, params)
         return [change.event(t) for change in changes]
 
-    def _known(self, seen: Seen, params: AirParams) -> Known:
+    def _known(self, seen: VehicleCondition, params: AirParams) -> FailsafeInputs:
         self._pilot.fence.grounds = not seen.airborne or self._pilot.goes_down
         now, outlook = seen.now, self._pilot.fence.look(seen.now, self.demands(params))
         stop, stopped_for = self._saturation.worst
-        return Known(
+        return FailsafeInputs(
             params=params,
             airborne=seen.airborne,
             silence=self._link.silence,
@@ -138,16 +138,16 @@ class Safety:
             wind=math.hypot(now.wind_north, now.wind_east),
         )
 
-    def _obey(self, order: Order[Known], now: Estimate, params: AirParams) -> None:
+    def _obey(self, order: FailsafeOrder[FailsafeInputs], now: Estimate, params: AirParams) -> None:
         """The mode ordered, or the next best; one that goes as far already stays."""
         pilot, reason = self._pilot, order.rule.begins
         outside = order.rule.name in FENCED and order.action and self._circles_outside(params)
-        if RANK.get(pilot.mode, Action.WARN) >= order.action and not outside:
+        if RANK.get(pilot.mode, FailsafeAction.WARN) >= order.action and not outside:
             return
-        if pilot.is_blind and order.action is Action.LAND:
+        if pilot.is_blind and order.action is FailsafeAction.LAND:
             pilot.descend(now, reason, params)
             return
-        if order.rule.name in FENCED and order.action is Action.RETURN and self._return_point(reason, params):
+        if order.rule.name in FENCED and order.action is FailsafeAction.RETURN and self._return_point(reason, params):
             return
         wanted = [mode for mode, rank in RANK.items() if rank <= order.action and self._may(mode, now, params)]
         for mode in sorted(wanted, key=lambda m: -RANK[m]):
@@ -182,7 +182,7 @@ class Safety:
         here = Place(now.north, now.east, now.height)
         for radius in (0.0, tightest(params)):
             circle = circle_within(fence, here, radius or params.hold_radius, params)
-            if circle is not None and not self._pilot.go_to(circle.centre, "the failsafe", params, Round(radius)):
+            if circle is not None and not self._pilot.go_to(circle.centre, "the failsafe", params, LoiterOptions(radius)):
                 self._pilot.reason = reason
                 return True
         return False
@@ -192,7 +192,7 @@ class Safety:
         if found is not self._pilot.fence.fencing:
             self._pilot.fence.take(found)
 
-    def set_fence(self, fence: Fence, seen: Seen | None, params: AirParams) -> str:
+    def set_fence(self, fence: Fence, seen: VehicleCondition | None, params: AirParams) -> str:
         """Why it is refused; empty if it is in force from now on."""
         new = fencing(fence)
         here = Place(seen.now.north, seen.now.east, seen.now.height) if seen is not None else None

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from math import inf
 
 from schemas.messages import Event
-from services.autopilot.failsafes import ACTIONS, Action, Rule
+from services.autopilot.failsafes import ACTIONS, FailsafeAction, FailsafeRule
 from uvf.models.vehicle.flight_params import AirParams
 
 GNSS_LOST = 2.0  # s without a fix
@@ -16,7 +16,7 @@ RECHARGED = 0.03  # of charge, beyond a limit
 
 
 @dataclass(frozen=True, slots=True)
-class Known:
+class FailsafeInputs:
     """What the rules look at."""
 
     params: AirParams
@@ -32,7 +32,7 @@ class Known:
     spare: float = inf  # of charge, when home is reached
     fence: float = inf  # m, left of what is kept from the fence; negative: it has to turn away now
     breached: bool = False  # the fence
-    fence_action: Action = Action.WARN
+    fence_action: FailsafeAction = FailsafeAction.WARN
     stop: str = ""  # surface at its stop
     stopped_for: float = 0.0  # s
     roll: float = 0.0  # rad
@@ -40,16 +40,16 @@ class Known:
     wind: float = 0.0  # m/s
 
 
-def _tilt(k: Known) -> float:
+def _tilt(k: FailsafeInputs) -> float:
     return max(abs(k.roll), abs(k.pitch) / PITCH_SHARE)
 
 
-def _chosen(name: str) -> Callable[[Known], Action]:
+def _chosen(name: str) -> Callable[[FailsafeInputs], FailsafeAction]:
     return lambda k: ACTIONS[getattr(k.params, name)]
 
 
-AIR_RULES: tuple[Rule[Known], ...] = (
-    Rule(
+AIR_RULES: tuple[FailsafeRule[FailsafeInputs], ...] = (
+    FailsafeRule(
         "link",
         wrong=lambda k: k.airborne and k.silence > k.params.link_timeout,
         mended=lambda k: k.silence <= k.params.link_timeout,
@@ -59,7 +59,7 @@ AIR_RULES: tuple[Rule[Known], ...] = (
         action=_chosen("link_action"),
         parameters=("link_timeout", "link_action"),
     ),
-    Rule(
+    FailsafeRule(
         "sticks",
         wrong=lambda k: k.airborne and k.let_go,
         mended=lambda k: not k.let_go,
@@ -69,7 +69,7 @@ AIR_RULES: tuple[Rule[Known], ...] = (
         action=_chosen("stick_action"),
         parameters=("stick_timeout", "stick_action"),
     ),
-    Rule(
+    FailsafeRule(
         "gnss",
         wrong=lambda k: k.unfixed > GNSS_LOST,
         mended=lambda k: k.unfixed <= GNSS_LOST,
@@ -79,20 +79,20 @@ AIR_RULES: tuple[Rule[Known], ...] = (
         severity=Event.CRITICAL,
         does="flies on by dead reckoning; after 5 s Hold, and modes that need a position are refused until it is back",
     ),
-    Rule(
+    FailsafeRule(
         "estimator",
         wrong=lambda k: k.sigma > k.params.sigma_max,
         mended=lambda k: k.sigma < CALMER * k.params.sigma_max,
         begins="position is not relied on",
         ends="position is relied on again",
         figures=lambda k: f"known to {k.sigma:.0f} m only",
-        action=lambda k: Action.HOLD,
+        action=lambda k: FailsafeAction.HOLD,
         after=lambda k: 1.0,
         clears=1.0,
         severity=Event.CRITICAL,
         parameters=("sigma_max",),
     ),
-    Rule(
+    FailsafeRule(
         "position",
         wrong=lambda k: k.airborne and k.lost_for > k.params.gnss_time,
         mended=lambda k: k.lost_for == 0.0,
@@ -104,7 +104,7 @@ AIR_RULES: tuple[Rule[Known], ...] = (
         parameters=("gnss_time", "gnss_action"),
         does="comes down where it is, into the wind; Hold as soon as the position is back",
     ),
-    Rule(
+    FailsafeRule(
         "air_data",
         wrong=lambda k: not k.has_air_data,
         mended=lambda k: k.has_air_data,
@@ -114,7 +114,7 @@ AIR_RULES: tuple[Rule[Known], ...] = (
         severity=Event.CRITICAL,
         does="airspeed from ground speed less wind, height from GNSS",
     ),
-    Rule(
+    FailsafeRule(
         "airspeed",
         wrong=lambda k: k.pitot_gap != 0.0,
         mended=lambda k: k.pitot_gap == 0.0,
@@ -125,7 +125,7 @@ AIR_RULES: tuple[Rule[Known], ...] = (
         parameters=("airspeed_gap",),
         does="airspeed from ground speed less the wind of before, until the sensor agrees with it for 5 s",
     ),
-    Rule(
+    FailsafeRule(
         "battery_low",
         wrong=lambda k: k.charge < k.params.battery_low or k.spare < k.params.battery_critical,
         mended=lambda k: k.charge > k.params.battery_low + RECHARGED and k.spare > k.params.battery_critical + RECHARGED,
@@ -137,7 +137,7 @@ AIR_RULES: tuple[Rule[Known], ...] = (
         clears=3.0,
         parameters=("battery_low", "battery_critical", "low_action"),
     ),
-    Rule(
+    FailsafeRule(
         "battery_critical",
         wrong=lambda k: k.charge < k.params.battery_critical,
         mended=lambda k: k.charge > k.params.battery_critical + RECHARGED,
@@ -150,7 +150,7 @@ AIR_RULES: tuple[Rule[Known], ...] = (
         severity=Event.CRITICAL,
         parameters=("battery_critical", "critical_action"),
     ),
-    Rule(
+    FailsafeRule(
         "battery_emergency",
         wrong=lambda k: k.charge < k.params.emergency_charge,
         mended=lambda k: k.charge > k.params.emergency_charge + RECHARGED,
@@ -163,7 +163,7 @@ AIR_RULES: tuple[Rule[Known], ...] = (
         severity=Event.CRITICAL,
         parameters=("emergency_charge", "emergency_action"),
     ),
-    Rule(
+    FailsafeRule(
         "fence",
         wrong=lambda k: k.airborne and k.fence < 0,
         mended=lambda k: k.fence > 0,
@@ -175,7 +175,7 @@ AIR_RULES: tuple[Rule[Known], ...] = (
         parameters=("max_distance", "max_height", "fence_margin", "fence_height", "fence_action"),
         does="it is turned round in time, whatever the mode",
     ),
-    Rule(
+    FailsafeRule(
         "breach",
         wrong=lambda k: k.airborne and k.breached,
         mended=lambda k: not k.breached,
@@ -188,7 +188,7 @@ AIR_RULES: tuple[Rule[Known], ...] = (
         parameters=("fence_action",),
         does="it is turned back in",
     ),
-    Rule(
+    FailsafeRule(
         "saturation",
         wrong=lambda k: k.stopped_for > k.params.saturation_time,
         mended=lambda k: k.stopped_for == 0.0,
@@ -199,7 +199,7 @@ AIR_RULES: tuple[Rule[Known], ...] = (
         parameters=("saturation_time",),
         does="half the bank and half the climb",
     ),
-    Rule(
+    FailsafeRule(
         "attitude",
         wrong=lambda k: k.airborne and _tilt(k) > k.params.attitude_max,
         mended=lambda k: _tilt(k) < CALMER * k.params.attitude_max,
@@ -212,7 +212,7 @@ AIR_RULES: tuple[Rule[Known], ...] = (
         severity=Event.CRITICAL,
         parameters=("attitude_max", "attitude_action"),
     ),
-    Rule(
+    FailsafeRule(
         "wind",
         wrong=lambda k: k.airborne and k.wind > k.params.wind_max * k.params.trim_airspeed,
         mended=lambda k: k.wind < CALMER * k.params.wind_max * k.params.trim_airspeed,

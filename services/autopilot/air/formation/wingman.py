@@ -3,8 +3,8 @@
 from schemas import topics
 from schemas.messages import NavState
 from services.autopilot.air import interface
-from services.autopilot.air.config import Ship
-from services.autopilot.air.modes.follower import Formation
+from services.autopilot.air.config import AutopilotConfig
+from services.autopilot.air.modes.follower import FormationLink
 from services.autopilot.air.service import AutopilotAir
 from uvf.models.vehicle.flight_params import AirParams
 from uvf.runtime.contract.declaration import each_vehicle
@@ -16,7 +16,7 @@ class AutopilotWingman(AutopilotAir):
     class Inputs(interface.Inputs):
         others: dict[str, NavState] = each_vehicle(topics.NAV_STATE)
 
-    def __init__(self, ship: Ship, params: AirParams, formation: Formation) -> None:
+    def __init__(self, ship: AutopilotConfig, params: AirParams, formation: FormationLink) -> None:
         super().__init__(ship, params)
         self._formation = formation
         self._pilot.join(formation)

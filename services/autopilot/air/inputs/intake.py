@@ -8,7 +8,7 @@ from schemas.messages import AirData, Gnss, Imu, Mission, MissionItem, MissionPr
 from services.autopilot.air.mode_table import FlightMode
 from uvf.estimation.sensor_inputs import Fix, Inertial, Pressures
 from uvf.guidance.approach import with_courses
-from uvf.guidance.flight_plan import Item, Kind, Stand
+from uvf.guidance.flight_plan import ItemKind, PlanItem, PlanProgress
 from uvf.guidance.route import Circle, Place
 from uvf.maths.geodesy import LocalTangent
 from uvf.maths.rotations import enu_flu_from_ned_frd, to_euler
@@ -23,17 +23,17 @@ DIFFERENTIAL = (-50_000.0, 50_000.0)  # Pa, of 285 m/s
 TEMPERATURE = (150.0, 350.0)  # K
 TURNED_OFF = 5.0  # m/s, of an aircraft that nobody has steered
 KINDS = {
-    MissionItem.WAYPOINT: Kind.WAYPOINT,
-    MissionItem.ORBIT: Kind.ORBIT,
-    MissionItem.RETURN: Kind.RETURN,
-    MissionItem.JUMP: Kind.JUMP,
-    MissionItem.SPEED: Kind.SPEED,
-    MissionItem.TRIGGER: Kind.TRIGGER,
-    MissionItem.TRIGGER_DISTANCE: Kind.TRIGGER_DISTANCE,
-    MissionItem.TAKEOFF: Kind.TAKEOFF,
-    MissionItem.LAND: Kind.LAND,
-    MissionItem.LAND_START: Kind.LAND_START,
-    MissionItem.SET_HOME: Kind.SET_HOME,
+    MissionItem.WAYPOINT: ItemKind.WAYPOINT,
+    MissionItem.ORBIT: ItemKind.ORBIT,
+    MissionItem.RETURN: ItemKind.RETURN,
+    MissionItem.JUMP: ItemKind.JUMP,
+    MissionItem.SPEED: ItemKind.SPEED,
+    MissionItem.TRIGGER: ItemKind.TRIGGER,
+    MissionItem.TRIGGER_DISTANCE: ItemKind.TRIGGER_DISTANCE,
+    MissionItem.TAKEOFF: ItemKind.TAKEOFF,
+    MissionItem.LAND: ItemKind.LAND,
+    MissionItem.LAND_START: ItemKind.LAND_START,
+    MissionItem.SET_HOME: ItemKind.SET_HOME,
 }
 MODES = {
     Mode.MODE_HOLD: FlightMode.HOLD,
@@ -120,26 +120,26 @@ def attitude(state: NavState) -> tuple[float, float, float]:
     return to_euler(enu_flu_from_ned_frd(wxyz(state.orientation)))
 
 
-def stand(progress: MissionProgress | None) -> Stand:
+def stand(progress: MissionProgress | None) -> PlanProgress:
     """Where in the mission another instance has been."""
     if progress is None or progress.state in (MissionProgress.NO_MISSION, MissionProgress.NOT_STARTED):
-        return Stand(None, -1, 0, False)
-    return Stand(progress.current, progress.reached, progress.laps, progress.state == MissionProgress.COMPLETE)
+        return PlanProgress(None, -1, 0, False)
+    return PlanProgress(progress.current, progress.reached, progress.laps, progress.state == MissionProgress.COMPLETE)
 
 
-def items(messages: Iterable[MissionItem]) -> list[Item]:
+def items(messages: Iterable[MissionItem]) -> list[PlanItem]:
     """Raises ValueError for a kind that cannot be flown yet and for a number that is none."""
     return with_courses([_item(i, m) for i, m in enumerate(messages)])
 
 
-def _item(index: int, m: MissionItem) -> Item:
+def _item(index: int, m: MissionItem) -> PlanItem:
     if m.kind not in KINDS:
         name = MissionItem.Kind.Name(m.kind) if m.kind in MissionItem.Kind.values() else f"kind {m.kind}"
-        raise ValueError(f"item {index}: {name} is not flown by this autopilot; {', '.join(k.value for k in Kind)} are")
+        raise ValueError(f"item {index}: {name} is not flown by this autopilot; {', '.join(k.value for k in ItemKind)} are")
     p = m.position
     if not all(map(math.isfinite, (p.x, p.y, p.z, m.acceptance_radius, m.hold, m.radius, m.turns, m.speed, m.course, m.distance))):
         raise ValueError(f"item {index} holds a number that is not finite")
-    return Item(
+    return PlanItem(
         KINDS[m.kind],
         place(m.position),
         m.hold,

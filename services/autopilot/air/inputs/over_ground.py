@@ -15,7 +15,7 @@ STEEPEST = 0.7  # rad of bank or pitch, beyond which the beam says nothing of th
 PUSH_TIME, HEAVE_TIME = 0.05, 0.03  # s
 
 
-class OverGround:
+class GroundProximity:
     """Holds on to the newest reading. ``frame``: of the range finder that looks down, empty without one."""
 
     def __init__(self, frame: str) -> None:

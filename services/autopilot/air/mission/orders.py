@@ -4,11 +4,11 @@ import math
 from dataclasses import replace
 
 from schemas.messages import AltitudeOrder, HomeOrder, OrderRequest, PictureOrder, SpeedOrder, TakeoffOrder
-from services.autopilot.air.mode_manager import Pilot
+from services.autopilot.air.mode_manager import ModeManager
 from services.autopilot.air.mode_table import FlightMode
 from uvf.estimation.state import Estimate
 from uvf.guidance.fence_plan import place_fault
-from uvf.guidance.flight_plan import Item, Kind
+from uvf.guidance.flight_plan import ItemKind, PlanItem
 from uvf.guidance.route import Place
 from uvf.models.vehicle.flight_params import AirParams
 
@@ -17,7 +17,7 @@ PACED = (FlightMode.MISSION, FlightMode.HOLD, FlightMode.ORBIT, FlightMode.RETUR
 """Modes whose speed is free."""
 
 
-def carry_out(order: OrderRequest, pilot: Pilot, now: Estimate, params: AirParams) -> str:
+def carry_out(order: OrderRequest, pilot: ModeManager, now: Estimate, params: AirParams) -> str:
     """Why it is refused; empty if it is done. Restarting is the service's own."""
     kind = order.WhichOneof("kind")
     if kind == "takeoff":
@@ -31,7 +31,7 @@ def carry_out(order: OrderRequest, pilot: Pilot, now: Estimate, params: AirParam
     return _picture(order.picture, pilot, now) if kind == "picture" else "there is nothing in this order"
 
 
-def _take_off(order: TakeoffOrder, source: str, pilot: Pilot) -> str:
+def _take_off(order: TakeoffOrder, source: str, pilot: ModeManager) -> str:
     if pilot.home is None or not math.isfinite(order.altitude):
         return "the altitude is none" if pilot.home is not None else "home is unknown"
     if order.altitude < pilot.home.height + LOWEST_TAKEOFF:
@@ -39,7 +39,7 @@ def _take_off(order: TakeoffOrder, source: str, pilot: Pilot) -> str:
     return pilot.take_off(order.altitude, source)
 
 
-def _speed(order: SpeedOrder, pilot: Pilot, now: Estimate, params: AirParams) -> str:
+def _speed(order: SpeedOrder, pilot: ModeManager, now: Estimate, params: AirParams) -> str:
     if pilot.blocked:
         return pilot.blocked
     if pilot.mode not in PACED or pilot.goes_down:
@@ -52,7 +52,7 @@ def _speed(order: SpeedOrder, pilot: Pilot, now: Estimate, params: AirParams) ->
     return ""
 
 
-def _altitude(order: AltitudeOrder, pilot: Pilot, params: AirParams) -> str:
+def _altitude(order: AltitudeOrder, pilot: ModeManager, params: AirParams) -> str:
     if pilot.blocked:
         return pilot.blocked
     circling = pilot.circling
@@ -68,7 +68,7 @@ def _altitude(order: AltitudeOrder, pilot: Pilot, params: AirParams) -> str:
     return ""
 
 
-def _home(order: HomeOrder, pilot: Pilot, now: Estimate) -> str:
+def _home(order: HomeOrder, pilot: ModeManager, now: Estimate) -> str:
     if pilot.home is None:
         return "home is unknown"
     if not order.HasField("position") and pilot.is_blind:
@@ -81,11 +81,11 @@ def _home(order: HomeOrder, pilot: Pilot, now: Estimate) -> str:
     return ""
 
 
-def _picture(order: PictureOrder, pilot: Pilot, now: Estimate) -> str:
+def _picture(order: PictureOrder, pilot: ModeManager, now: Estimate) -> str:
     if not order.HasField("distance"):
-        pilot.shutter.obey(Item(Kind.TRIGGER, Place(now.north, now.east, now.height)))
+        pilot.shutter.obey(PlanItem(ItemKind.TRIGGER, Place(now.north, now.east, now.height)))
         return ""
     if not 0 <= order.distance < math.inf:
         return "the distance between pictures is none"
-    pilot.shutter.obey(Item(Kind.TRIGGER_DISTANCE, Place(now.north, now.east, now.height), distance=order.distance))
+    pilot.shutter.obey(PlanItem(ItemKind.TRIGGER_DISTANCE, Place(now.north, now.east, now.height), distance=order.distance))
     return ""

@@ -1,12 +1,12 @@
 """Mission, fence and rally points in force: replaced on request, told of when they have changed."""
 
 from schemas.messages import Fence, Mission, MissionItem, RallyPoints
-from services.autopilot.air.failsafes.monitor import Safety, Seen
+from services.autopilot.air.failsafes.monitor import FailsafeMonitor, VehicleCondition
 from services.autopilot.air.inputs import intake
 from services.autopilot.air.interface import Outputs
-from services.autopilot.air.mode_manager import Pilot
+from services.autopilot.air.mode_manager import ModeManager
 from services.autopilot.air.modes import return_points
-from services.autopilot.air.status.event_log import Journal
+from services.autopilot.air.status.event_log import EventLog
 from uvf.guidance.fence_plan import mission_fault
 from uvf.guidance.flyable import advice
 from uvf.guidance.route import Place
@@ -14,10 +14,10 @@ from uvf.models.vehicle.flight_params import AirParams
 from uvf.runtime.messages.convert import stamp
 
 
-class Plans:
+class ActivePlans:
     """Requests give the reason of a refusal, empty when accepted."""
 
-    def __init__(self, items: list[MissionItem], pilot: Pilot, safety: Safety, journal: Journal) -> None:
+    def __init__(self, items: list[MissionItem], pilot: ModeManager, safety: FailsafeMonitor, journal: EventLog) -> None:
         self.mission = intake.with_id(items)
         self.rally = RallyPoints()
         self._pilot, self._safety, self._journal = pilot, safety, journal
@@ -36,7 +36,7 @@ class Plans:
             self._news.add("plan")
         return refusal
 
-    def set_fence(self, fence: Fence, seen: Seen | None, params: AirParams) -> str:
+    def set_fence(self, fence: Fence, seen: VehicleCondition | None, params: AirParams) -> str:
         refusal = self._safety.set_fence(fence, seen, params)
         if not refusal:
             self._news.add("bounds")

@@ -3,12 +3,12 @@
 from collections.abc import Iterable
 
 from schemas.messages import Event
-from services.autopilot.air.mode_manager import Pilot
+from services.autopilot.air.mode_manager import ModeManager
 from services.autopilot.air.mode_table import FlightMode
 from uvf.runtime.messages.convert import stamp
 
 
-class Journal:
+class EventLog:
     """Compares each cycle with the one before; the first cycle reports the mode it starts in."""
 
     def __init__(self) -> None:
@@ -22,7 +22,7 @@ class Journal:
         self._finished = False
         self._lost = False
 
-    def events(self, t: float, pilot: Pilot, armed: bool) -> list[Event]:
+    def events(self, t: float, pilot: ModeManager, armed: bool) -> list[Event]:
         navigator = pilot.navigator
         found: list[Event] = []
         if self._lost:

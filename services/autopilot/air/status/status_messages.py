@@ -1,15 +1,15 @@
 """What ground stations want to know beside the state: what is steered at, and how good the estimate is."""
 
 from schemas.messages import EstimateQuality, Targets, Vector3
-from services.autopilot.air.mode_manager import Pilot
+from services.autopilot.air.mode_manager import ModeManager
 from services.autopilot.air.mode_table import FlightMode
-from services.autopilot.air.setpoints import Flown
+from services.autopilot.air.setpoints import ControlOutput
 from uvf.estimation.state import Estimate
 from uvf.guidance.flight_plan import OFF_PATH
 from uvf.runtime.messages.convert import stamp
 
 
-def targets(t: float, pilot: Pilot, flown: Flown) -> Targets:
+def targets(t: float, pilot: ModeManager, flown: ControlOutput) -> Targets:
     """Nothing that is not held now: by hand no place, with the surfaces in hand no attitude either."""
     message = Targets(timestamp=stamp(t), airspeed=flown.airspeed)
     if flown.airspeed is not None:

@@ -17,14 +17,14 @@ from schemas.messages import (
     VehicleStatus,
 )
 from services.autopilot.air.inputs import intake
-from services.autopilot.air.mode_manager import Pilot
+from services.autopilot.air.mode_manager import ModeManager
 from services.autopilot.air.mode_table import FlightMode
-from services.autopilot.air.setpoints import Flown
+from services.autopilot.air.setpoints import ControlOutput
 from uvf.control.commands import Surfaces
 from uvf.estimation.state import Estimate
 from uvf.guidance.flight_plan import OFF_PATH, next_stop
-from uvf.guidance.flight_plan import Kind as ItemKind
-from uvf.guidance.plan_follower import Navigator
+from uvf.guidance.flight_plan import ItemKind as ItemKind
+from uvf.guidance.plan_follower import PlanFollower
 from uvf.guidance.route import Circle, Place
 from uvf.maths.rotations import from_euler
 from uvf.runtime.messages.convert import quaternion, stamp
@@ -72,7 +72,7 @@ def surfaces(t: float, s: Surfaces, armed: bool) -> SurfaceCommand:
     )
 
 
-def status(t: float, pilot: Pilot, now: Estimate, flown: Flown) -> VehicleStatus:
+def status(t: float, pilot: ModeManager, now: Estimate, flown: ControlOutput) -> VehicleStatus:
     """All but arming, landing, battery and the system id."""
     message = VehicleStatus(
         timestamp=stamp(t),
@@ -96,13 +96,13 @@ def status(t: float, pilot: Pilot, now: Estimate, flown: Flown) -> VehicleStatus
     return message
 
 
-def _reason(pilot: Pilot) -> str:
+def _reason(pilot: ModeManager) -> str:
     """Of the mode; and who is not listened to."""
     waits = ", ".join(pilot.senses.setpoints_wait) if pilot.mode is FlightMode.OFFBOARD else ""
     return f"{pilot.reason}; setpoints from {pilot.source}, those of {waits} wait" if waits else pilot.reason
 
 
-def _distance(pilot: Pilot, now: Estimate) -> float:
+def _distance(pilot: ModeManager, now: Estimate) -> float:
     """m, to the current item's place, to the centre of the circle that is held, or to the station behind a leader."""
     if pilot.station is not None:
         return pilot.station
@@ -111,7 +111,7 @@ def _distance(pilot: Pilot, now: Estimate) -> float:
     return math.hypot(place.north - now.north, place.east - now.east) if place else 0.0
 
 
-def progress(t: float, pilot: Pilot, mission_id: int) -> MissionProgress:
+def progress(t: float, pilot: ModeManager, mission_id: int) -> MissionProgress:
     navigator = pilot.navigator
     if not navigator.items:
         state = MissionProgress.NO_MISSION
@@ -132,14 +132,14 @@ def progress(t: float, pilot: Pilot, mission_id: int) -> MissionProgress:
     )
 
 
-def _current(navigator: Navigator) -> int:
+def _current(navigator: PlanFollower) -> int:
     """The last one once all are done, the first before it begins."""
     if navigator.index is not None:
         return navigator.index
     return len(navigator.items) - 1 if navigator.finished else 0
 
 
-def path(t: float, pilot: Pilot) -> PosesInFrame:
+def path(t: float, pilot: ModeManager) -> PosesInFrame:
     """What is flown, for display: the items still to come up to a return to the first of them, or the circle."""
     if pilot.mode is FlightMode.MISSION and pilot.navigator.index is not None:
         places = _ahead(pilot)
@@ -150,7 +150,7 @@ def path(t: float, pilot: Pilot) -> PosesInFrame:
     return PosesInFrame(timestamp=stamp(t), frame_id="world", poses=[_pose(p) for p in places])
 
 
-def _ahead(pilot: Pilot) -> list[Place]:
+def _ahead(pilot: ModeManager) -> list[Place]:
     """Each item once, then back to the first when the circuit closes."""
     navigator = pilot.navigator
     places = navigator.curve_ahead()

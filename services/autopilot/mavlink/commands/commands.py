@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from services.autopilot.mavlink.connection.line import Line, Sender
+from services.autopilot.mavlink.connection.line import Sender, VehicleConnection
 from uvf.mavlink import dialect as mav
 from uvf.mavlink.bounded import make_room
 from uvf.mavlink.names import command_name
@@ -69,7 +69,7 @@ class Pending:
 class Acknowledger:
     """Answers one command once."""
 
-    def __init__(self, line: Line, pending: Pending) -> None:
+    def __init__(self, line: VehicleConnection, pending: Pending) -> None:
         self._line = line
         self._pending = pending
 
@@ -92,18 +92,18 @@ class Acknowledger:
         return done
 
 
-def acknowledge(line: Line, command: Command, result: int) -> None:
+def acknowledge(line: VehicleConnection, command: Command, result: int) -> None:
     to = command.sender
     line.send(mav.MAVLink_command_ack_message(command.number, result, 0, 0, to.system, to.component), to.peer)
 
 
-Handler = Callable[[Line, Command, Acknowledger], None]
+Handler = Callable[[VehicleConnection, Command, Acknowledger], None]
 
 
 class Commands:
     """handlers: by MAV_CMD; whatever is not in it is UNSUPPORTED."""
 
-    def __init__(self, line: Line, handlers: dict[int, Handler]) -> None:
+    def __init__(self, line: VehicleConnection, handlers: dict[int, Handler]) -> None:
         self._line = line
         self._handlers = handlers
         self._last: dict[Sender, dict[int, Pending]] = {}

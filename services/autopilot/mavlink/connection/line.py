@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 from google.protobuf.message import Message
 
 from services.autopilot.mavlink.connection.asking import ANSWER_WITHIN, Asking, Done
-from services.autopilot.mavlink.connection.facts import Facts, Latest
+from services.autopilot.mavlink.connection.facts import VehicleInfo, VehicleState
 from services.autopilot.mavlink.connection.refusals import plain
 from services.autopilot.mavlink.connection.statustext import TextBudget, TextLimiter, chunks, counted_from_one
 from services.autopilot.mavlink.connection.vibration import Vibration
@@ -51,7 +51,7 @@ class Awaited:
 class Holder:
     """Only one station steers: the first one, until it has been silent for a while."""
 
-    def __init__(self, line: "Line", otherwise: str) -> None:
+    def __init__(self, line: "VehicleConnection", otherwise: str) -> None:
         """otherwise: what another one is told."""
         self._line, self._otherwise = line, otherwise
         self._holder: Sender | None = None
@@ -73,13 +73,13 @@ def named(station: Sender, to: Sender) -> str:
     return f"another station {station.system} (at {station.peer[0]}:{station.peer[1]})"
 
 
-class Line:
+class VehicleConnection:
     """What the protocols of one vehicle share; ``t`` [s, wall] is set before each step's work."""
 
-    def __init__(self, facts: Facts) -> None:
+    def __init__(self, facts: VehicleInfo) -> None:
         self.facts = facts
         imu = facts.sensors.imu
-        self.latest = Latest(vibration=Vibration(imu.accel_range if imu is not None else math.inf))
+        self.latest = VehicleState(vibration=Vibration(imu.accel_range if imu is not None else math.inf))
         self.t = 0.0
         self.alone: Collection[Peer] = ()
         """Who hears this vehicle and no other."""

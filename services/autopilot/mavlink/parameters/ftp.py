@@ -7,7 +7,7 @@ import struct
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
-from services.autopilot.mavlink.connection.line import Line, Sender
+from services.autopilot.mavlink.connection.line import Sender, VehicleConnection
 from services.autopilot.mavlink.parameters.file_tree import FileTree
 from services.autopilot.mavlink.parameters.parameter_values import crc32
 from uvf.mavlink import dialect as mav
@@ -97,7 +97,7 @@ class Refused(Exception):
 
 
 class FileServer:
-    def __init__(self, line: Line, files: Mapping[str, bytes]) -> None:
+    def __init__(self, line: VehicleConnection, files: Mapping[str, bytes]) -> None:
         self._line = line
         self._tree = FileTree(files)
         self._sessions: dict[int, Session] = {}

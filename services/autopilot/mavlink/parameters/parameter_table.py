@@ -9,7 +9,7 @@ from typing import Any, Literal
 import msgspec
 import numpy as np
 
-from services.autopilot.mavlink.connection.facts import Facts
+from services.autopilot.mavlink.connection.facts import VehicleInfo
 from services.autopilot.mavlink.parameters.own_params import Own, own_params
 from uvf.mavlink import dialect as mav
 from uvf.models.yaml_data import BadInput, load_yaml, nearest
@@ -89,12 +89,12 @@ class Parameter:
         return {self.own: float(min(max(number, self.low), self.high))}
 
 
-def parameters_of(facts: Facts) -> list[Parameter]:
+def parameters_of(facts: VehicleInfo) -> list[Parameter]:
     """In order of name, numbered from 0. Raises BadInput when the file names what the autopilot has not."""
     return parameters_with(own_params(facts.params, facts.fixed_params), facts.file.kind, {"system_id": facts.system_id, **_battery(facts)})
 
 
-def _battery(facts: Facts) -> dict[str, float]:
+def _battery(facts: VehicleInfo) -> dict[str, float]:
     """Of the vehicle's file; without a battery nothing."""
     body = facts.file.ground or facts.file.air
     pack = body.battery if body is not None else None

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from schemas.messages import Breach, Gnss, MissionItem, Mode
-from services.autopilot.mavlink.connection.facts import Facts, Latest
+from services.autopilot.mavlink.connection.facts import VehicleInfo, VehicleState
 from services.autopilot.mavlink.telemetry import estimate_quality, identity, navigation, sensor_messages, steering, steering_telemetry
 from services.autopilot.mavlink.telemetry.health import health
 from services.autopilot.mavlink.telemetry.traffic import traffic
@@ -22,7 +22,7 @@ from uvf.runtime.messages.plan_ids import fence_id, rally_id
 
 RANGE_ERROR = 1.0  # m, 1 sigma of the distance to one satellite
 Message = mav.MAVLink_message | None
-Build = Callable[[Facts, Latest, float], Message | list[mav.MAVLink_message]]
+Build = Callable[[VehicleInfo, VehicleState, float], Message | list[mav.MAVLink_message]]
 
 
 @dataclass(frozen=True)
@@ -32,13 +32,13 @@ class Stream:
     build: Build
     hz: float
 
-    def messages(self, facts: Facts, latest: Latest, t: float) -> list[mav.MAVLink_message]:
+    def messages(self, facts: VehicleInfo, latest: VehicleState, t: float) -> list[mav.MAVLink_message]:
         """What there is to say at ``t`` [s]: none, one, or several."""
         told = self.build(facts, latest, t)
         return told if isinstance(told, list) else [told] if told is not None else []
 
 
-def _sys_status(facts: Facts, latest: Latest, t: float) -> Message:
+def _sys_status(facts: VehicleInfo, latest: VehicleState, t: float) -> Message:
     bits = health(facts, latest)
     battery = latest.battery
     volts = whole(battery.voltage * 1e3, U16, 0xFFFF) if battery else 0xFFFF
@@ -47,7 +47,7 @@ def _sys_status(facts: Facts, latest: Latest, t: float) -> Message:
     return mav.MAVLink_sys_status_message(bits.present, bits.present, bits.healthy, 0, volts, amperes, left, 0, 0, 0, 0, 0, 0)
 
 
-def _battery_status(facts: Facts, latest: Latest, t: float) -> Message:
+def _battery_status(facts: VehicleInfo, latest: VehicleState, t: float) -> Message:
     battery = latest.battery
     if battery is None:
         return None
@@ -77,7 +77,7 @@ def charge_state(remaining: float, own: Mapping[str, float]) -> int:
     return int(mav.MAV_BATTERY_CHARGE_STATE_LOW if remaining < own["battery_low"] else mav.MAV_BATTERY_CHARGE_STATE_OK)
 
 
-def _gps_raw(facts: Facts, latest: Latest, t: float) -> Message:
+def _gps_raw(facts: VehicleInfo, latest: VehicleState, t: float) -> Message:
     """Only vehicles with a receiver have one to report; one that has fallen silent has no fix.
 
     Dilutions of precision follow from the accuracy: without them QGroundControl shows no count of satellites either.
@@ -108,7 +108,7 @@ def _dilution(accuracy: float) -> int:
     return whole(accuracy / RANGE_ERROR * 100, (0, 0xFFFE), 0xFFFF)
 
 
-def _home_position(facts: Facts, latest: Latest, t: float) -> Message:
+def _home_position(facts: VehicleInfo, latest: VehicleState, t: float) -> Message:
     home = latest.home
     if home is None or not np.isfinite(home).all():
         return None
@@ -125,7 +125,7 @@ def _home_position(facts: Facts, latest: Latest, t: float) -> Message:
     )
 
 
-def landed_state(facts: Facts, latest: Latest) -> int:
+def landed_state(facts: VehicleInfo, latest: VehicleState) -> int:
     """MAV_LANDED_STATE. An armed rover counts as in the air, as PX4's does: else no ground station lets it be guided."""
     status = latest.status
     if status is None:
@@ -138,7 +138,7 @@ def landed_state(facts: Facts, latest: Latest) -> int:
     return int(special.get(status.mode, _of_item(latest) if status.mode == Mode.MODE_MISSION else mav.MAV_LANDED_STATE_IN_AIR))
 
 
-def _of_item(latest: Latest) -> int:
+def _of_item(latest: VehicleState) -> int:
     """A mission takes off and lands by its items; ground stations offer to abort a landing while they see one."""
     status, mission = latest.status, latest.mission
     if status is None or mission is None or status.waypoint >= len(mission.items):
@@ -147,11 +147,11 @@ def _of_item(latest: Latest) -> int:
     return int(special.get(mission.items[status.waypoint].kind, mav.MAV_LANDED_STATE_IN_AIR))
 
 
-def _extended_sys_state(facts: Facts, latest: Latest, t: float) -> Message:
+def _extended_sys_state(facts: VehicleInfo, latest: VehicleState, t: float) -> Message:
     return mav.MAVLink_extended_sys_state_message(mav.MAV_VTOL_STATE_UNDEFINED, landed_state(facts, latest))
 
 
-def mission_current(latest: Latest, seq: int | None = None) -> mav.MAVLink_mission_current_message:
+def mission_current(latest: VehicleState, seq: int | None = None) -> mav.MAVLink_mission_current_message:
     """``seq``: an item just set, ahead of the autopilot's next report."""
     progress = latest.progress
     ids = fence_id(latest.fence), rally_id(latest.rally)
@@ -163,7 +163,7 @@ def mission_current(latest: Latest, seq: int | None = None) -> mav.MAVLink_missi
     return mav.MAVLink_mission_current_message(item, min(progress.total, 0xFFFE), state, 1 if flying else 2, progress.mission_id, *ids)
 
 
-def _fence_status(facts: Facts, latest: Latest, t: float) -> Message:
+def _fence_status(facts: VehicleInfo, latest: VehicleState, t: float) -> Message:
     """Only while there is a fence. Breach has the numbers of FENCE_BREACH."""
     status = latest.status
     if status is None or not latest.is_fenced:
@@ -174,7 +174,7 @@ def _fence_status(facts: Facts, latest: Latest, t: float) -> Message:
     return mav.MAVLink_fence_status_message(breached, min(status.breaches, 0xFFFF), status.breach, time, mav.FENCE_MITIGATE_UNKNOWN)
 
 
-def _quaternion(facts: Facts, latest: Latest, t: float) -> Message:
+def _quaternion(facts: VehicleInfo, latest: VehicleState, t: float) -> Message:
     if latest.nav is None:
         return None
     w, x, y, z = navigation.ned_from_frd(wxyz(latest.nav.orientation))

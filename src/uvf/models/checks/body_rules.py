@@ -14,7 +14,7 @@ from uvf.models.shapes.mesh import placed, reach, triangles
 from uvf.models.shapes.solid import Solid
 from uvf.models.urdf.robot import UrdfModel
 from uvf.models.vehicle.file import GroundBody, VehicleFile
-from uvf.models.yaml_data import BadInput, Place
+from uvf.models.yaml_data import BadInput, FileLocation
 
 Floats = NDArray[np.float64]
 
@@ -55,7 +55,7 @@ class Body:
 def body_faults(model: UrdfModel, file: VehicleFile, yaml: Path) -> list[str]:
     """Wheels, outline, balance and sensors, a line each; nothing of what hangs on a mesh that cannot be read."""
     assert file.ground is not None
-    body, ground = Body(model, file.ground), Place(str(yaml), ("ground",))
+    body, ground = Body(model, file.ground), FileLocation(str(yaml), ("ground",))
     try:
         return [
             *_base_faults(body),
@@ -63,7 +63,7 @@ def body_faults(model: UrdfModel, file: VehicleFile, yaml: Path) -> list[str]:
             *_axle_faults(body, ground),
             *_outline_faults(body, ground),
             *_balance_faults(body),
-            *sensor_faults(model, file.sensors, body.poses, Place(str(yaml), ("sensors",))),
+            *sensor_faults(model, file.sensors, body.poses, FileLocation(str(yaml), ("sensors",))),
         ]
     except BadInput as error:
         return [] if any("mesh" in fault.text for fault in model.faults) else [str(error)]
@@ -97,7 +97,7 @@ def _base_faults(body: Body) -> Iterator[str]:
             yield f"{_at(body.model, line)}: link '{solid.name}' reaches {-low * 1000:.0f} mm below the floor; lift its collision"
 
 
-def _wheel_faults(body: Body, side: str, ground: Place) -> Iterator[str]:
+def _wheel_faults(body: Body, side: str, ground: FileLocation) -> Iterator[str]:
     joint = body.joints[side]
     where, what = _at(body.model, joint.line), f"{side} wheel '{joint.name}'"
     solids = body.collisions(body.wheels[side])
@@ -119,7 +119,7 @@ def _wheel_faults(body: Body, side: str, ground: Place) -> Iterator[str]:
         yield f"{ground.at('wheel_radius')}: {body.ground.wheel_radius:g} m, but the {what} of the URDF has a radius of {radius:.4g} m"
 
 
-def _axle_faults(body: Body, ground: Place) -> Iterator[str]:
+def _axle_faults(body: Body, ground: FileLocation) -> Iterator[str]:
     if len(body.joints) < 2:
         return
     centres = {side: body.poses[joint.child].translation for side, joint in body.joints.items()}
@@ -142,7 +142,7 @@ def _axle_faults(body: Body, ground: Place) -> Iterator[str]:
         )
 
 
-def _outline_faults(body: Body, ground: Place) -> Iterator[str]:
+def _outline_faults(body: Body, ground: FileLocation) -> Iterator[str]:
     """The circle that planning and collision checks take for the vehicle holds all of it."""
     solids = body.collisions([*body.rest, *body.turning])
     if solids:

@@ -7,7 +7,7 @@ import msgspec
 from msgspec import Meta
 
 from uvf.maths.dryden import W20
-from uvf.models.yaml_data import BadInput, Place
+from uvf.models.yaml_data import BadInput, FileLocation
 
 WindSpeed = Annotated[float, Meta(ge=-100, le=100)]
 Velocity = tuple[WindSpeed, WindSpeed, WindSpeed]
@@ -57,7 +57,7 @@ class Wind(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     turbulence: Turbulence | None = None
 
 
-def check_wind(wind: Wind, place: Place) -> None:
+def check_wind(wind: Wind, place: FileLocation) -> None:
     """Raises BadInput."""
     shear = wind.shear
     if shear is not None and shear.law == "logarithmic" and shear.height <= math.e * shear.roughness:

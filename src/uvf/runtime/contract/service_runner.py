@@ -17,7 +17,7 @@ from uvf.runtime.bus.wire import Malformed, decode
 from uvf.runtime.contract.bulkhead import FAILURES, WINDOW, Bulkhead
 from uvf.runtime.contract.declaration import Called, Frames, Input, StopInput, Writes, declared_in
 from uvf.runtime.contract.inbox import AHEAD_MOST, EVERY_DEPTH, InputBox
-from uvf.runtime.contract.instances import Host
+from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.contract.param_server import ParamServer
 from uvf.runtime.contract.request_desk import QUERIES_MOST, ContractError, RequestDesk
 from uvf.runtime.contract.service import Answer, Service
@@ -46,11 +46,11 @@ class Counters:
     published: dict[str, int] = field(default_factory=dict)
 
 
-class Shell:
+class ServiceRunner:
     """Runs one instance on a bus: live, in lockstep and in tests alike."""
 
     def __init__(
-        self, host: Host, bus: Bus, warn: Warn = lambda line: None, contains: bool = False, watchdog: Watchdog | None = None
+        self, host: ServiceInstance, bus: Bus, warn: Warn = lambda line: None, contains: bool = False, watchdog: Watchdog | None = None
     ) -> None:
         """contains: what goes wrong in the instance of a vehicle is kept from those of the others; else it is raised.
 

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from uvf.maths.rotations import wrap
 from uvf.maths.se2 import Pose2, compose, inverse
-from uvf.slam.graph.drift import Ways
+from uvf.slam.graph.drift import PathLengths
 from uvf.slam.graph.loops import Closure, LoopSearch
 from uvf.slam.graph.nodes import Nodes
 from uvf.slam.pose_graph.edges import Edge
@@ -35,7 +35,7 @@ class Closing:
 
     graph: PoseGraph
     nodes: Nodes
-    ways: Ways
+    ways: PathLengths
     search: LoopSearch
     waiting: list[Closure] = field(default_factory=list)
     settled_at: float = 0.0

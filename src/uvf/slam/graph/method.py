@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from uvf.maths.se2 import IDENTITY, Pose2, compose, inverse
 from uvf.models.params import Params
 from uvf.slam.graph.closing import TIED, Closing
-from uvf.slam.graph.drift import Ways
+from uvf.slam.graph.drift import PathLengths
 from uvf.slam.graph.loops import LoopSearch
 from uvf.slam.graph.motion import UNKNOWN, Motion
 from uvf.slam.graph.nodes import Node, Nodes
@@ -61,7 +61,7 @@ class GraphSlam:
     params: GraphParams = field(default_factory=GraphParams)
 
     def __post_init__(self) -> None:
-        self.graph, self.nodes, self.ways = PoseGraph(), Nodes(), Ways()
+        self.graph, self.nodes, self.ways = PoseGraph(), Nodes(), PathLengths()
         self.tracker = Tracker()
         self.closing = Closing(self.graph, self.nodes, self.ways, LoopSearch(self.nodes))
         self._local = LocalMap(point_map([]))

@@ -3,7 +3,7 @@
 import math
 
 from schemas.messages import AirData, Gnss, Imu, MissionItem, Vector3
-from services.autopilot.air.config import Ship
+from services.autopilot.air.config import AutopilotConfig
 from services.autopilot.air.service import AutopilotAir
 from tests.runtime.stepping import stepped
 from tests.stops import NOBODY
@@ -52,7 +52,7 @@ def sensors(t, speed=25.0):
 
 
 def autopilot(items=WAYPOINTS):
-    return AutopilotAir(Ship("milvus", 7, TANGENT, Instruments(), list(items), starts_in_air=True), AirParams())
+    return AutopilotAir(AutopilotConfig("milvus", 7, TANGENT, Instruments(), list(items), starts_in_air=True), AirParams())
 
 
 class Bench:

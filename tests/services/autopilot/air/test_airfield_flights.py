@@ -13,7 +13,7 @@ from schemas.messages import ArmRequest, GoAroundRequest, Mode, ModeRequest
 from tests.services.autopilot.air.test_flight import Flight, site
 from uvf.maths.rotations import to_euler
 from uvf.models.mission.file import Job, Start, Waypoint
-from uvf.models.scenario import ROOT, Member
+from uvf.models.scenario import ROOT, MissionVehicle
 from uvf.models.vehicle.file import load_vehicle
 from uvf.models.world.file import Strip
 from uvf.runtime.messages.convert import wxyz
@@ -36,7 +36,7 @@ def on_site(start, job, folder=None, **params):
     entry = msgspec.structs.replace(made.members["milvus"].entry, model=folder.name, start=start)
     file = load_vehicle(folder.parent, folder.name)
     file = msgspec.structs.replace(file, params={"autopilot_air": {**file.params["autopilot_air"], **params}})
-    member = Member("milvus", entry, file, folder)
+    member = MissionVehicle("milvus", entry, file, folder)
     mission = msgspec.structs.replace(made.mission, vehicles={"milvus": entry})
     world = msgspec.structs.replace(made.world, strips=[STRIP])
     return dataclasses.replace(made, mission=mission, world=world, members={"milvus": member})

@@ -13,7 +13,7 @@ from services.autopilot.air.build import hosts
 from services.sim_air.build import build as build_sim
 from uvf.maths.rotations import to_euler
 from uvf.models.mission.file import Job, MissionFile, Start, Vehicle, Waypoint
-from uvf.models.scenario import ROOT, Member, Site
+from uvf.models.scenario import ROOT, MissionVehicle, Scenario
 from uvf.models.vehicle.file import load_vehicle
 from uvf.models.world.file import Origin, WorldFile
 from uvf.models.world.wind import Wind
@@ -29,10 +29,10 @@ LAPS = Job(mission=[*(Waypoint(x=x, y=y, z=60.0) for x, y in CIRCUIT), Waypoint(
 def site(job=LAPS, seed=1, wind=WIND):
     entry = Vehicle("milvus", Start(-200.0, -150.0, 60.0, 0.0, 25.0), 1, job)
     folder = ROOT / "vehicles" / "milvus"
-    member = Member("milvus", entry, load_vehicle(ROOT / "vehicles", "milvus"), folder)
+    member = MissionVehicle("milvus", entry, load_vehicle(ROOT / "vehicles", "milvus"), folder)
     mission = MissionFile("a flight", "field", {"milvus": entry}, seed=seed)
     world = WorldFile("a field", Origin(40.77, 14.79, 300.0), (0.0, 0.0, 1.0, 1.0), wind=Wind(wind))
-    return Site(ROOT / "missions" / "none.yaml", mission, world, ROOT / "worlds", {"milvus": member})
+    return Scenario(ROOT / "missions" / "none.yaml", mission, world, ROOT / "worlds", {"milvus": member})
 
 
 class Flight:

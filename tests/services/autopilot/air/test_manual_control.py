@@ -5,7 +5,7 @@ import math
 import pytest
 
 from schemas.messages import ArmRequest, Mode, ModeRequest, SurfaceCommand
-from services.autopilot.air.manual_control import SOURCES, Hands
+from services.autopilot.air.manual_control import SOURCES, ManualSources
 from tests.services.autopilot.air.sensing import Bench, resting
 from tests.stops import ENGAGED
 from uvf.runtime.messages.convert import stamp
@@ -27,7 +27,7 @@ def by_hand(bench, cycles, source="teleop", speed=25.0, **asked):
 
 
 def choose(t, commands, longest):
-    return Hands().choose(t, commands, longest)
+    return ManualSources().choose(t, commands, longest)
 
 
 def told(surfaces):

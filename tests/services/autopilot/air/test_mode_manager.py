@@ -2,17 +2,17 @@
 
 import pytest
 
-from services.autopilot.air.mode_manager import Pilot
+from services.autopilot.air.mode_manager import ModeManager
 from services.autopilot.air.mode_table import FlightMode
 from tests.services.autopilot.air.states import PARAMS, cruising
-from uvf.guidance.flight_plan import Item, Kind
+from uvf.guidance.flight_plan import ItemKind, PlanItem
 from uvf.guidance.route import Place
 
-FAR = [Item(Kind.WAYPOINT, Place(900.0, 0.0, 70.0)), Item(Kind.WAYPOINT, Place(900.0, 900.0, 70.0))]
+FAR = [PlanItem(ItemKind.WAYPOINT, Place(900.0, 0.0, 70.0)), PlanItem(ItemKind.WAYPOINT, Place(900.0, 900.0, 70.0))]
 
 
 def flying(items=FAR, **now):
-    pilot = Pilot(items)
+    pilot = ModeManager(items)
     pilot.step(cruising(**now), PARAMS, 0.02)
     return pilot
 
@@ -36,7 +36,7 @@ def test_return_circles_home_at_a_safe_height():
 
 
 def test_the_height_of_return_counts_from_home():
-    pilot = Pilot(FAR, 120.0)
+    pilot = ModeManager(FAR, 120.0)
     pilot.step(cruising(height=150.0), PARAMS, 0.02)
     pilot.change_mode(FlightMode.RETURN, "test")
     pilot.step(cruising(north=500.0, height=150.0), PARAMS, 0.02)
@@ -118,7 +118,7 @@ def test_a_completed_mission_begins_anew_when_asked_for():
 
 
 def test_a_return_item_ends_in_return():
-    pilot = flying([Item(Kind.RETURN, Place(0.0, 0.0, 0.0))])
+    pilot = flying([PlanItem(ItemKind.RETURN, Place(0.0, 0.0, 0.0))])
     assert pilot.mode is FlightMode.RETURN
 
 
@@ -132,7 +132,7 @@ def test_a_new_mission_is_flown_at_once_and_no_mission_holds():
 
 def test_a_mission_that_cannot_be_flown_is_refused_and_the_old_one_kept():
     pilot = flying()
-    assert "jumps to 9" in pilot.load([Item(Kind.JUMP, Place(0, 0, 0), jump_to=9)], PARAMS)
+    assert "jumps to 9" in pilot.load([PlanItem(ItemKind.JUMP, Place(0, 0, 0), jump_to=9)], PARAMS)
     assert len(pilot.navigator.items) == 2
 
 

@@ -4,13 +4,13 @@ import itertools
 
 import pytest
 
-from services.autopilot.air.manual_control import Hand
-from services.autopilot.air.mode_manager import Pilot
+from services.autopilot.air.manual_control import ManualCommand
+from services.autopilot.air.mode_manager import ModeManager
 from services.autopilot.air.mode_table import TABLE, FlightMode, Need, Situation, lost, refusal
-from services.autopilot.air.setpoints import Senses
+from services.autopilot.air.setpoints import FlightContext
 from tests.services.autopilot.air.states import PARAMS, cruising
 from uvf.control.commands import Surfaces
-from uvf.guidance.flight_plan import Item, Kind
+from uvf.guidance.flight_plan import ItemKind, PlanItem
 from uvf.guidance.route import Circle, Place
 from uvf.models.scenario import ROOT
 
@@ -29,7 +29,7 @@ MET = {
     Need.SETPOINT: lambda s: s.setpoint,
     Need.LEADER: lambda s: s.led,
 }
-FAR = [Item(Kind.WAYPOINT, Place(900.0, 0.0, 70.0)), Item(Kind.WAYPOINT, Place(900.0, 900.0, 70.0))]
+FAR = [PlanItem(ItemKind.WAYPOINT, Place(900.0, 0.0, 70.0)), PlanItem(ItemKind.WAYPOINT, Place(900.0, 900.0, 70.0))]
 
 
 def test_every_mode_is_in_the_table():
@@ -51,8 +51,8 @@ def test_what_a_mode_lives_on_is_looked_at(mode):
 
 
 def flying(items=FAR, airborne=True, armed=True, **now):
-    pilot = Pilot(items)
-    pilot.hear(Senses(airborne=airborne, armed=armed), 0.02)
+    pilot = ModeManager(items)
+    pilot.hear(FlightContext(airborne=airborne, armed=armed), 0.02)
     pilot.step(cruising(**now), PARAMS, 0.02)
     return pilot
 
@@ -86,8 +86,8 @@ def test_a_mode_may_be_changed_to_with_a_reason_of_its_own():
 
 
 def holding_the_stick(pilot):
-    hand = Hand("teleop", Surfaces(0.0, 0.0, 0.0, 0.5))
-    pilot.hear(Senses(hand=hand), 0.02)
+    hand = ManualCommand("teleop", Surfaces(0.0, 0.0, 0.0, 0.5))
+    pilot.hear(FlightContext(hand=hand), 0.02)
     pilot.step(cruising(), PARAMS, 0.02)
 
 
@@ -115,7 +115,7 @@ def test_a_stick_that_is_let_go_is_told_and_meanwhile_it_circles(mode):
     assert pilot.change_mode(mode, "test") == ""
     holding_the_stick(pilot)
     for _ in range(30):
-        pilot.hear(Senses(), 0.02)
+        pilot.hear(FlightContext(), 0.02)
         pilot.step(cruising(), PARAMS, 0.02)
     assert pilot.is_let_go and pilot.mode is mode and pilot.circle is not None
     holding_the_stick(pilot)

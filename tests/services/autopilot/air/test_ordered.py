@@ -18,27 +18,27 @@ from schemas.messages import (
     Vector3,
 )
 from services.autopilot.air.mission.orders import carry_out
-from services.autopilot.air.mode_manager import Pilot
+from services.autopilot.air.mode_manager import ModeManager
 from services.autopilot.air.mode_table import FlightMode
 from services.autopilot.air.modes.pace import airspeed_over_ground
-from services.autopilot.air.modes.paths import Round
-from services.autopilot.air.setpoints import Senses
+from services.autopilot.air.modes.paths import LoiterOptions
+from services.autopilot.air.setpoints import FlightContext
 from tests.services.autopilot.air.sensing import WAYPOINTS, resting
 from tests.services.autopilot.air.states import PARAMS, cruising
-from uvf.guidance.flight_plan import Item, Kind
+from uvf.guidance.flight_plan import ItemKind, PlanItem
 from uvf.guidance.route import Circle, Place
 
 M = FlightMode
 FAR = [
-    Item(Kind.WAYPOINT, Place(900.0, 0.0, 70.0)),
-    Item(Kind.SPEED, Place(0.0, 0.0, 0.0), speed=21.0),
-    Item(Kind.WAYPOINT, Place(900.0, 900.0, 70.0)),
+    PlanItem(ItemKind.WAYPOINT, Place(900.0, 0.0, 70.0)),
+    PlanItem(ItemKind.SPEED, Place(0.0, 0.0, 0.0), speed=21.0),
+    PlanItem(ItemKind.WAYPOINT, Place(900.0, 900.0, 70.0)),
 ]
 CRUISE = PARAMS.trim_airspeed
 
 
 def flying(items=(), **now):
-    pilot = Pilot(items)
+    pilot = ModeManager(items)
     pilot.step(cruising(**now), PARAMS, 0.02)
     return pilot
 
@@ -72,7 +72,7 @@ def test_a_goal_in_the_same_mode_keeps_the_speed_and_one_with_a_speed_of_its_own
     asked(pilot, speed=SpeedOrder(speed=29.0))
     pilot.go_to(Place(0.0, 300.0, 80.0), "test", PARAMS)
     assert speed_of(pilot) == 29.0
-    pilot.go_to(Place(0.0, 300.0, 80.0), "test", PARAMS, Round(-120.0, 22.0))
+    pilot.go_to(Place(0.0, 300.0, 80.0), "test", PARAMS, LoiterOptions(-120.0, 22.0))
     assert (speed_of(pilot), pilot.circle.radius) == (22.0, -120.0)
 
 
@@ -128,8 +128,8 @@ def test_a_height_that_is_none_or_too_low_is_refused(altitude):
 
 
 def standing(ground=0.0):
-    pilot = Pilot((), ground)
-    pilot.hear(Senses(airborne=False, armed=False), 0.02)
+    pilot = ModeManager((), ground)
+    pilot.hear(FlightContext(airborne=False, armed=False), 0.02)
     pilot.step(cruising(height=ground, airspeed=0.0, ground_speed=0.0), PARAMS, 0.02)
     return pilot
 
@@ -137,7 +137,7 @@ def standing(ground=0.0):
 def test_a_take_off_ends_at_the_height_that_was_asked_for():
     pilot = standing(ground=12.0)
     assert asked(pilot, takeoff=TakeoffOrder(altitude=100.0)) == ""
-    pilot.hear(Senses(airborne=True), 0.02)
+    pilot.hear(FlightContext(airborne=True), 0.02)
     pilot.step(cruising(height=99.0), PARAMS, 0.02)
     assert pilot.mode is M.TAKEOFF
     pilot.step(cruising(height=100.5), PARAMS, 0.02)
@@ -156,7 +156,7 @@ def test_the_next_take_off_goes_to_its_usual_height_again():
     asked(pilot, takeoff=TakeoffOrder(altitude=400.0))
     pilot.change_mode(M.HOLD, "test")
     pilot.change_mode(M.TAKEOFF, "test")
-    pilot.hear(Senses(airborne=True), 0.02)
+    pilot.hear(FlightContext(airborne=True), 0.02)
     for _ in range(2):
         pilot.step(cruising(height=PARAMS.takeoff_alt + 1.0), PARAMS, 0.02)
     assert pilot.mode is M.HOLD

@@ -10,7 +10,7 @@ from services.autopilot.ground.multiplexer import COMMAND_MAX_AGE
 from services.sim_ground.build import build as build_simulator
 from tests.services.sim_ground.ride import site_with
 from uvf.runtime.contract.declaration import Reads, Writes, answers, call, topic
-from uvf.runtime.contract.instances import Host
+from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.contract.service import Answer, Service
 from uvf.runtime.messages.convert import seconds, stamp
 from uvf.runtime.time.lockstep import Lockstep
@@ -70,7 +70,7 @@ class Page(Service):
 def ride(folder, *drivers):
     """(times [s], speeds [m/s], turn rates [rad/s]) of the truth, and the status messages."""
     site = site_with(folder, {"burger": START})
-    commanders = [Host(service, service, "burger") for service in drivers]
+    commanders = [ServiceInstance(service, service, "burger") for service in drivers]
     run = Lockstep([*build_simulator(site), *hosts(site), *commanders])
     truth, status = [], []
     for of, kept in ((topics.TRUTH, truth), (topics.STATUS, status)):

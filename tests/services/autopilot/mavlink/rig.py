@@ -21,7 +21,7 @@ from schemas.messages import (
     VehicleStatus,
 )
 from services.autopilot.ground.params import GroundAutopilotParams
-from services.autopilot.mavlink.connection.facts import Facts
+from services.autopilot.mavlink.connection.facts import VehicleInfo
 from services.autopilot.mavlink.parameters.parameter_store import Unreadable
 from services.autopilot.mavlink.service import MavlinkService
 from services.autopilot.told_params import ToldParams
@@ -80,8 +80,8 @@ _ROVER_FILE = {
     },
 }
 _PLANE_PARAMS = AirParams(trim_airspeed=25.0, hold_radius=90.0, return_altitude=40.0)
-PLANE_FACTS = Facts("plane", PLANE, convert(_PLANE_FILE, VehicleFile, "test"), ORIGIN, _PLANE_PARAMS, FIXED)
-ROVER_FACTS = Facts("rover", ROVER, convert(_ROVER_FILE, VehicleFile, "test"), ORIGIN, GroundAutopilotParams())
+PLANE_FACTS = VehicleInfo("plane", PLANE, convert(_PLANE_FILE, VehicleFile, "test"), ORIGIN, _PLANE_PARAMS, FIXED)
+ROVER_FACTS = VehicleInfo("rover", ROVER, convert(_ROVER_FILE, VehicleFile, "test"), ORIGIN, GroundAutopilotParams())
 
 
 class Shelf:

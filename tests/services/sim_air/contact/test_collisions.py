@@ -14,7 +14,7 @@ from tests.services.sim_air.shapes import MILVUS_TREE
 from uvf.maths.bvh import build as tree_over
 from uvf.maths.rotations import IDENTITY, from_euler
 from uvf.maths.solids import box
-from uvf.models.scenario import load_site
+from uvf.models.scenario import load_scenario
 from uvf.models.shapes.scene import scene
 from uvf.models.shapes.solid import Solid
 from uvf.runtime.messages.convert import quaternion, vector
@@ -104,7 +104,7 @@ def test_a_flight_into_a_wall_ends_there_and_says_what_was_hit(tmp_path):
         "about: Too low.\nworld: house\nvehicles:\n"
         "  milvus: {model: milvus, system_id: 1, start: {x: -40.0, y: 4.0, z: 2.0, speed: 25.0}}\n"
     )
-    lockstep, events, truth = Lockstep(build(load_site(path))), [], []
+    lockstep, events, truth = Lockstep(build(load_scenario(path))), [], []
     lockstep.bus.subscribe(
         topics.EVENTS.by("sim_air").at("milvus"), topics.EVENTS.qos, lambda s: events.append(Event.FromString(s.payload))
     )

@@ -18,7 +18,7 @@ from services.sim_air.engine.states import Air, Motion, Runaway, Start
 from services.sim_air.engine.wiring import Controls, JointAngle
 from uvf.maths import rotations
 from uvf.maths.geodesy import LocalTangent
-from uvf.models.scenario import ROOT, load_site
+from uvf.models.scenario import ROOT, load_scenario
 from uvf.models.vehicle.file import load_vehicle
 from uvf.runtime.messages.convert import array
 from uvf.runtime.time.lockstep import Lockstep
@@ -106,7 +106,7 @@ def flown(tmp_path, start, command, until, model="milvus"):
     """(truth, events) of one aircraft with one command held."""
     path = tmp_path / "one.yaml"
     path.write_text(f"about: One.\nworld: empty\nvehicles:\n  bird: {{model: {model}, system_id: 1, start: {start}}}\n")
-    lockstep, truth, events = Lockstep(build(load_site(path))), [], []
+    lockstep, truth, events = Lockstep(build(load_scenario(path))), [], []
     lockstep.bus.subscribe(topics.TRUTH.at("bird"), topics.TRUTH.qos, lambda s: truth.append(NavState.FromString(s.payload)))
     said = topics.EVENTS.by("sim_air")
     lockstep.bus.subscribe(said.at("bird"), said.qos, lambda s: events.append(Event.FromString(s.payload)))

@@ -8,11 +8,11 @@ from services.sim_air.engine.wiring import Controls, Wiring
 from uvf.models.scenario import ROOT
 from uvf.models.vehicle.air import AirBody, Commands, JointReading, Lever, Surface, check_air
 from uvf.models.vehicle.file import load_vehicle
-from uvf.models.yaml_data import BadInput, Place
+from uvf.models.yaml_data import BadInput, FileLocation
 
 MILVUS = load_vehicle(ROOT / "vehicles", "milvus").air
 STANDARD = ("fcs/aileron-cmd-norm", "fcs/elevator-cmd-norm", "fcs/rudder-cmd-norm", "fcs/flap-cmd-norm", "fcs/throttle-cmd-norm")
-HERE = Place("vehicle.yaml", ("air",))
+HERE = FileLocation("vehicle.yaml", ("air",))
 
 
 def body(**changes):

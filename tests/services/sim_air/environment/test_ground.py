@@ -12,7 +12,7 @@ from services.sim_air.engine.states import Start
 from services.sim_air.engine.wiring import Controls
 from services.sim_air.environment.ground import LEVEL, Ground
 from uvf.maths.geodesy import LocalTangent
-from uvf.models.scenario import ROOT, load_site
+from uvf.models.scenario import ROOT, load_scenario
 from uvf.models.shapes.scene import scene
 from uvf.models.shapes.solid import Solid
 from uvf.models.world.file import load_world
@@ -47,7 +47,7 @@ def standing(ground, x, y):
 def flown(tmp_path, start, seconds):
     path = tmp_path / "hills.yaml"
     path.write_text(MISSION.replace("START", start))
-    lockstep, events, truth = Lockstep(build(load_site(path))), [], []
+    lockstep, events, truth = Lockstep(build(load_scenario(path))), [], []
     bus, said = lockstep.bus, topics.EVENTS.by("sim_air")
     bus.subscribe(said.at("bird"), said.qos, lambda s: events.append(Event.FromString(s.payload)))
     bus.subscribe(topics.TRUTH.at("bird"), topics.TRUTH.qos, lambda s: truth.append(NavState.FromString(s.payload)))

@@ -8,7 +8,7 @@ from schemas.messages import NavState
 from services.sim_air.build import build
 from services.sim_air.environment.wind import AirMass, Flight
 from uvf.maths.dryden import strength
-from uvf.models.scenario import load_site
+from uvf.models.scenario import load_scenario
 from uvf.models.world.wind import Gust, Shear, Turbulence, Wind
 from uvf.runtime.time.lockstep import Lockstep
 
@@ -95,7 +95,7 @@ vehicles:
 def flown(tmp_path, seed):
     path = tmp_path / f"{seed}.yaml"
     path.write_text(MISSION.format(seed=seed))
-    lockstep, truth = Lockstep(build(load_site(path))), {"first": [], "second": []}
+    lockstep, truth = Lockstep(build(load_scenario(path))), {"first": [], "second": []}
     for name, heard in truth.items():
         lockstep.bus.subscribe(topics.TRUTH.at(name), topics.TRUTH.qos, lambda s, heard=heard: heard.append(NavState.FromString(s.payload)))
     lockstep.run(3.0)

@@ -16,7 +16,7 @@ from tests.slam.localization.places import ROOM, ellipse, errors, map_of, readin
 from uvf.maths.se2 import Pose2, compose
 from uvf.maths.se2_arrays import composed, inverted
 from uvf.models.mission.file import Maps
-from uvf.models.scenario import ROOT, load_site
+from uvf.models.scenario import ROOT, load_scenario
 from uvf.models.vehicle.sensors import Lidar, Mount
 from uvf.models.world.map_file import save_map
 from uvf.models.yaml_data import BadInput
@@ -188,7 +188,7 @@ def test_parameters_count_while_running(room):
 
 
 def site_with(tmp_path, maps):
-    site = load_site(ROOT / "missions" / "demo.yaml")
+    site = load_scenario(ROOT / "missions" / "demo.yaml")
     burger = site.members["burger"]
     changed = replace(burger, entry=msgspec.structs.replace(burger.entry, maps=maps))
     return replace(site, mission_path=tmp_path / "mission.yaml", members={"burger": changed})

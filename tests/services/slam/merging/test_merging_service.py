@@ -9,7 +9,7 @@ from services.slam.merging.merging_service import MergingService
 from tests.runtime.stepping import stepped
 from tests.slam.merging.offices import anne, bert, first, off_by
 from uvf.maths.se2 import Pose2
-from uvf.models.scenario import ROOT, load_site
+from uvf.models.scenario import ROOT, load_scenario
 from uvf.runtime.messages.convert import occupancy_cells, stamp, yaw_of
 from uvf.slam.maps import tiles
 
@@ -102,5 +102,5 @@ def test_a_session_that_is_none_is_told_of_and_the_others_go_on():
 
 
 def test_it_is_made_where_two_vehicles_draw_maps():
-    assert [host.writes_for for host in build(load_site(ROOT / "missions" / "team.yaml"))] == [("anne", "bert")]
-    assert build(load_site(ROOT / "missions" / "demo.yaml")) == []
+    assert [host.writes_for for host in build(load_scenario(ROOT / "missions" / "team.yaml"))] == [("anne", "bert")]
+    assert build(load_scenario(ROOT / "missions" / "demo.yaml")) == []

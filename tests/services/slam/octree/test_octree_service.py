@@ -16,7 +16,7 @@ from services.slam.octree.octree_service import OctreeParams, OctreeService
 from tests.runtime.stepping import recall, stepped
 from tests.services.live_params import all_settable_are_read
 from uvf.maths.rotations import IDENTITY, from_euler
-from uvf.models.scenario import ROOT, load_site
+from uvf.models.scenario import ROOT, load_scenario
 from uvf.models.vehicle.sensors import Camera, Lidar, Mount, Sensors
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.messages.convert import occupancy_cells, quaternion, stamp
@@ -242,14 +242,14 @@ def test_parameters_count_while_running():
 
 
 def with_sensors(**changes):
-    site = load_site(ROOT / "missions" / "mapping.yaml")
+    site = load_scenario(ROOT / "missions" / "mapping.yaml")
     member = site.members["burger"]
     sensors = msgspec.structs.replace(member.file.sensors, **changes)
     return replace(site, members={"burger": replace(member, file=msgspec.structs.replace(member.file, sensors=sensors))})
 
 
 def test_only_who_asks_for_a_map_gets_one():
-    demo, mapping = (load_site(ROOT / "missions" / f"{name}.yaml") for name in ("demo", "mapping"))
+    demo, mapping = (load_scenario(ROOT / "missions" / f"{name}.yaml") for name in ("demo", "mapping"))
     assert build(demo) == [] and "octree" not in {kind.name for kind in catalogue.needed(demo)}
     assert {host.vehicle for host in build(mapping)} == {"burger", "milvus"} and "octree" in {
         kind.name for kind in catalogue.needed(mapping)
