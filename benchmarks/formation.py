@@ -23,7 +23,7 @@ from launch.scoring.formation_scores import separation, station_errors
 from launch.scoring.scores import Scorer
 from uvf.models.mission.formation import Follow
 from uvf.models.scenario import ROOT, Scenario, load_scenario
-from uvf.models.world.wind import Turbulence, Wind
+from uvf.models.world.wind import TurbulenceFile, Wind
 from uvf.runtime.time.lockstep import Lockstep
 
 Floats = NDArray[np.float64]
@@ -31,7 +31,7 @@ Motions = dict[str, Floats]
 """By aircraft, (n, 5) true t, x, y, z and airspeed."""
 
 MISSION = ROOT / "missions" / "formation.yaml"
-WINDS = {"light": None, "moderate": Wind((-6.2, 5.0, 0.0), turbulence=Turbulence("moderate"))}
+WINDS = {"light": None, "moderate": Wind((-6.2, 5.0, 0.0), turbulence=TurbulenceFile("moderate"))}
 """None: the mission's own."""
 SHOWN = 260.0  # s, of tracks on the map
 SAMPLES = 0.2  # s

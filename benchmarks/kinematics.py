@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from services.sim_ground.world import BulletWorld, Placed
+from services.sim_ground.world import BodyPlacement, BulletWorld
 from uvf.control.drive_limits import DriveLimits, VelocityRamp
 from uvf.maths.kinematics import DifferentialDrive, Twist, WheelSpeeds, move
 from uvf.maths.rotations import to_euler, wrap
@@ -66,7 +66,7 @@ def drives(body: GroundBody) -> Iterator[Drive]:
 
 
 def drive(body: GroundBody, urdf: Path, wanted: Drive) -> Driven:
-    world = BulletWorld([], {"one": Placed(body, engine_urdf(urdf), (0.0, 0.0, 0.0))})
+    world = BulletWorld([], {"one": BodyPlacement(body, engine_urdf(urdf), (0.0, 0.0, 0.0))})
     wheels, ramp = DifferentialDrive(body.wheel_radius, body.track), VelocityRamp(_limits(body, wanted.twist))
     first = _pose(world)
     driven = Driven([first], [first], [first])

@@ -23,7 +23,7 @@ from uvf.models.scenario import load_scenario
 from uvf.runtime.log.laser_log import read_mcap
 from uvf.runtime.log.reading import read_log
 from uvf.runtime.messages.convert import seconds
-from uvf.slam.maps.session import NO_EDGES, Session
+from uvf.slam.maps.session import NO_EDGES, MappingSession
 from uvf.slam.methods import make_method, method_params
 
 Floats = NDArray[np.float64]
@@ -57,7 +57,7 @@ def mapped(log: Path, folder: Path) -> tuple[float, float, float]:
     for reading in readings:
         method.add(reading)
     method.finish()
-    Session(tuple(method.keyframes()), NO_EDGES, DEFAULT_METHOD, {}).save(folder / "known.npz")
+    MappingSession(tuple(method.keyframes()), NO_EDGES, DEFAULT_METHOD, {}).save(folder / "known.npz")
     x, y, yaw = interpolated(true_poses(read_log(log), VEHICLE), np.array(readings.stamps[:1]))[0].tolist()
     return x, y, yaw
 

@@ -10,7 +10,7 @@ from launch.processes import open_bus
 from launch.worker import worker
 from schemas.messages import Guest
 from services.mavlink_bridge.discovery import Discovery, Names, names_from
-from services.mavlink_bridge.frame import Origin
+from services.mavlink_bridge.frame import BridgeOrigin
 from services.mavlink_bridge.service import BridgedVehicle
 from services.mavlink_bridge.station import Station
 from services.mavlink_bridge.status import KIND
@@ -33,7 +33,7 @@ VEHICLES = ROOT / "vehicles"
 
 
 @dataclass(frozen=True)
-class Wanted:
+class BridgeOptions:
     """What ``uvf mavlink-bridge`` was asked for. names: ``NAME`` or ``NAME=SYSTEM``; mission: whose world it is, if anybody's."""
 
     address: str
@@ -58,7 +58,7 @@ def open_address(text: str) -> UdpLink:
         raise BadInput(f"'{text}': {error.strerror or error}: {mend}") from error
 
 
-def bridge(wanted: Wanted) -> None:
+def bridge(wanted: BridgeOptions) -> None:
     """Until told to stop. Raises BadInput before anything is opened."""
     names = names_from(wanted.names)
     if wanted.model:
@@ -84,17 +84,19 @@ def is_taken(bus: ZenohBus, name: str) -> bool:
     return bool(bus.tokens(f"@node/{name}/**"))
 
 
-def _origin(site: Scenario | None) -> Origin:
+def _origin(site: Scenario | None) -> BridgeOrigin:
     if site is None:
-        return Origin()
+        return BridgeOrigin()
     origin = site.world.origin
-    return Origin(LocalTangent.from_degrees(origin.latitude, origin.longitude, origin.altitude))
+    return BridgeOrigin(LocalTangent.from_degrees(origin.latitude, origin.longitude, origin.altitude))
 
 
 class Bridge:
     """The process: one reader of the address, one service for each autopilot there."""
 
-    def __init__(self, wanted: Wanted, names: Names, bus: ZenohBus, station: Station, origin: Origin, warn: Callable[[str], None]) -> None:
+    def __init__(
+        self, wanted: BridgeOptions, names: Names, bus: ZenohBus, station: Station, origin: BridgeOrigin, warn: Callable[[str], None]
+    ) -> None:
         self._wanted, self._bus, self._station, self._origin, self._warn = wanted, bus, station, origin, warn
         host = ServiceInstance(Discovery, lambda: Discovery(station, names, self._found, self._say))
         self.live = Live(f"mavlink_bridge_{names.free}", [host], bus, warn)

@@ -3,7 +3,7 @@
 from math import degrees
 from typing import NamedTuple, Protocol
 
-from launch.teleop.link import SOURCE, Link
+from launch.teleop.link import SOURCE, TeleopLink
 from schemas import topics
 from schemas.messages import Mode, SurfaceCommand
 from uvf.client import Client
@@ -23,7 +23,7 @@ TURNING = "taken over in a turn: n trims the elevator once it flies level"
 TOLD = (topics.STATUS, topics.NAV_STATE, topics.SURFACE_COMMAND)
 
 
-class Flight(NamedTuple):
+class FlownState(NamedTuple):
     """What is known of the aircraft."""
 
     by_hand: bool
@@ -35,7 +35,7 @@ class Flight(NamedTuple):
     attitude: tuple[float, float, float] = (0.0, 0.0, 0.0)  # rad: roll right, pitch up, heading from north
 
 
-class Aircraft(Protocol):
+class AircraftPost(Protocol):
     """The way to one aircraft."""
 
     def send(self, setting: SurfaceSetting) -> None: ...
@@ -44,7 +44,7 @@ class Aircraft(Protocol):
 
     def state(self) -> str: ...
 
-    def flight(self, patience: float = 0.0) -> Flight | None:
+    def flight(self, patience: float = 0.0) -> FlownState | None:
         """None when not all of it has been heard within ``patience`` [s]."""
 
 
@@ -53,7 +53,7 @@ class AirLink:
 
     def __init__(self, client: Client, name: str) -> None:
         self._client, self._name = client, name
-        self._link = Link(client)
+        self._link = TeleopLink(client)
 
     def send(self, setting: SurfaceSetting) -> None:
         self._client.send(self._name, topics.SURFACES.by(SOURCE), SurfaceCommand(**setting._asdict()))
@@ -64,7 +64,7 @@ class AirLink:
     def state(self) -> str:
         return self._link.state(self._name)
 
-    def flight(self, patience: float = 0.0) -> Flight | None:
+    def flight(self, patience: float = 0.0) -> FlownState | None:
         client, name = self._client, self._name
         try:
             client.wait(lambda: min(client.heard(name, topic) for topic in TOLD) > 0, patience)
@@ -72,7 +72,7 @@ class AirLink:
             return None
         status, nav = client.read(name, topics.STATUS), client.read(name, topics.NAV_STATE)
         told = client.read(name, topics.SURFACE_COMMAND)
-        return Flight(
+        return FlownState(
             by_hand=status.mode == Mode.MODE_MANUAL,
             landed=status.landed,
             surfaces=SurfaceSetting(*(getattr(told, field) for field in SurfaceSetting._fields)),
@@ -85,7 +85,7 @@ class AirLink:
 class Cockpit:
     """The post of one aircraft's pilot. Its commands go out all the time, so that a pilot who falls silent is noticed."""
 
-    def __init__(self, stick: FlightTeleop, aircraft: Aircraft) -> None:
+    def __init__(self, stick: FlightTeleop, aircraft: AircraftPost) -> None:
         self._stick, self._aircraft = stick, aircraft
         self._ours = False
         """The stick is where the surfaces are."""
@@ -119,7 +119,7 @@ class Cockpit:
     def leave(self) -> None:
         """Silence: in the air the autopilot holds, on the ground the motor stops and the brakes are on."""
 
-    def _follow(self, flight: Flight) -> None:
+    def _follow(self, flight: FlownState) -> None:
         """While somebody else flies, the stick goes along; an aircraft on the ground is taken over from the autopilot parked."""
         if not flight.by_hand:
             self._stick.follow(PARKED if flight.landed else flight.surfaces, _straight(flight))
@@ -134,11 +134,11 @@ def cockpit(client: Client, name: str, body: AirBody) -> Cockpit:
     return Cockpit(FlightTeleop(limits), AirLink(client, name))
 
 
-def _straight(flight: Flight) -> bool:
+def _straight(flight: FlownState) -> bool:
     return abs(flight.attitude[0]) < BANKED
 
 
-def _instruments(flight: Flight) -> str:
+def _instruments(flight: FlownState) -> str:
     roll, pitch, heading = (degrees(angle) for angle in flight.attitude)
     return f"{flight.airspeed:.1f} m/s {flight.height:.0f} m roll {roll:+.0f} pitch {pitch:+.0f} hdg {heading % 360:03.0f}"
 

@@ -11,7 +11,7 @@ import uvf
 from launch import settings
 from launch.teleop import aircraft
 from launch.teleop.gamepad import Gamepad
-from launch.teleop.link import Link
+from launch.teleop.link import TeleopLink
 from launch.teleop.loop import END, Console, Padlike, Post, operate
 from launch.teleop.terminal import Terminal, TerminalClosed, key_by_key
 from uvf.client import Client
@@ -35,7 +35,7 @@ class Vehicles(Protocol):
     def state(self, vehicle: str) -> str: ...
 
 
-class Wheel:
+class WheelPost:
     """The post of whoever drives ground vehicles; left, all of them are told to stand."""
 
     def __init__(self, hand: DriveTeleop, vehicles: Vehicles) -> None:
@@ -62,7 +62,7 @@ class Wheel:
 
 def drive(hand: DriveTeleop, vehicles: Vehicles, console: Console, pad: Padlike, clock: Callable[[], float]) -> None:
     """Until the key x, or an exception; in every case all vehicles are told to stand."""
-    operate(Wheel(hand, vehicles), console, pad, clock)
+    operate(WheelPost(hand, vehicles), console, pad, clock)
 
 
 def status_line(hand: DriveTeleop, vehicles: Vehicles, pad: str, t: float) -> str:
@@ -121,7 +121,7 @@ def post_for(site: Scenario, names: Sequence[str]) -> tuple[str, Callable[[Clien
     if body is not None:
         return aircraft.GREETING, lambda client: aircraft.cockpit(client, name, body)
     chosen, most = wanted_vehicles(site, names)
-    return GREETING, lambda client: Wheel(DriveTeleop(chosen, most), Link(client))
+    return GREETING, lambda client: WheelPost(DriveTeleop(chosen, most), TeleopLink(client))
 
 
 def teleop(names: Sequence[str], mission: str, say: Callable[[str], None]) -> None:

@@ -13,7 +13,7 @@ LOST_AFTER = 1.5  # s without a status
 ANSWER_WITHIN = 1.0  # s
 
 
-class Link:
+class TeleopLink:
     """Vehicles over the bus."""
 
     def __init__(self, client: Client) -> None:

@@ -8,7 +8,7 @@ import msgspec
 import numpy as np
 
 from services.sim_air.engine.airframe import Airframe
-from services.sim_air.engine.states import Runaway, Start
+from services.sim_air.engine.states import InitialState, Runaway
 from services.sim_air.engine.trim import Trim
 from uvf.maths.geodesy import LocalTangent
 from uvf.models.jsbsim.model_file import model_faults
@@ -59,7 +59,7 @@ def _aircraft_faults(vehicle: str, air: AirBody) -> tuple[list[str], list[str]]:
 
 def _flight(airframe: Airframe, air: AirBody, place: FileLocation) -> tuple[list[str], list[str]]:
     """Of level flight at trim_speed."""
-    level = Start(np.array((0.0, 0.0, HEIGHT)), 0.0, air.trim_speed, np.zeros(3))
+    level = InitialState(np.array((0.0, 0.0, HEIGHT)), 0.0, air.trim_speed, np.zeros(3))
     untrimmed = []
     try:
         trim = airframe.start(level)
@@ -76,7 +76,7 @@ def _flight(airframe: Airframe, air: AirBody, place: FileLocation) -> tuple[list
     return [*untrimmed, *_sign_faults(effects, place), *faults], notes
 
 
-def throttle_works(airframe: Airframe, level: Start, trim: Trim) -> bool:
+def throttle_works(airframe: Airframe, level: InitialState, trim: Trim) -> bool:
     """Of an airframe that is held still."""
     thrusts = []
     for throttle in (0.0, 1.0):
@@ -85,7 +85,7 @@ def throttle_works(airframe: Airframe, level: Start, trim: Trim) -> bool:
     return abs(thrusts[1] - thrusts[0]) > WEAK * max(map(abs, thrusts))
 
 
-def effect(airframe: Airframe, level: Start, trim: Trim, controls: object, name: str) -> np.ndarray:
+def effect(airframe: Airframe, level: InitialState, trim: Trim, controls: object, name: str) -> np.ndarray:
     """(6,) body accelerations with one surface moved."""
     moved = {name: getattr(trim, name) + FULL * getattr(controls, name).limit}
     return airframe.accelerations(level, replace(trim, **moved))
@@ -123,7 +123,7 @@ def _gear_faults(models: Path, air: AirBody, place: FileLocation) -> Iterator[st
 def comes_to_rest(models: Path, air: AirBody, rate: float) -> bool:
     """On its wheels, dropped from a small height, at ``rate`` physics steps a second; it may roll on, idling, where it has no brakes."""
     airframe = Airframe(models, msgspec.structs.replace(air, physics_hz=rate), SEA_LEVEL)
-    airframe.drop(Start(np.zeros(3), 0.0, 0.0, np.zeros(3)), FALL)
+    airframe.drop(InitialState(np.zeros(3), 0.0, 0.0, np.zeros(3)), FALL)
     worst = 0.0
     try:
         for i in range(round(SECONDS * rate)):

@@ -7,7 +7,7 @@ from uvf.control.teleop_drive import DriveTeleop, TeleopCommand
 PATIENCE = 0.5  # s a direction counts: a page repeats it every 0.1 s while it is held
 
 
-class ByHand:
+class ManualDriving:
     """A vehicle has one holder, and a page holds one vehicle. Times [s] come from one clock that never goes back."""
 
     def __init__(self, most: Mapping[str, TeleopCommand]) -> None:

@@ -38,7 +38,7 @@ from schemas.messages import (
     VehicleStatus,
 )
 from services.mavlink_bridge.autopilot import Autopilot
-from services.mavlink_bridge.frame import Origin
+from services.mavlink_bridge.frame import BridgeOrigin
 from services.mavlink_bridge.requests import Requests
 from services.mavlink_bridge.station import Station
 from services.mavlink_bridge.stopping import Stopping
@@ -102,7 +102,7 @@ class BridgedVehicle(Service):
         cancel: list[Reply] = replies(topics.CANCEL)
         param: list[ParamReply] = replies(topics.PARAM.by("autopilot"))
 
-    def __init__(self, vehicle: str, system: int, station: Station, origin: Origin, guest: Guest) -> None:
+    def __init__(self, vehicle: str, system: int, station: Station, origin: BridgeOrigin, guest: Guest) -> None:
         """guest: how others may draw it."""
         self._vehicle = vehicle
         self._system, self._origin = system, origin

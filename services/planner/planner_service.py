@@ -31,7 +31,7 @@ from services.planner.jobs import IDLE, Goal, Havens, Job, Orders, choose, home_
 from uvf.maths.rotations import wrap
 from uvf.maths.se2 import IDENTITY, Pose2, compose, inverse, transform
 from uvf.models.params import Params
-from uvf.planning.costmap import Footprint
+from uvf.planning.costmap import RobotFootprint
 from uvf.planning.exploration import Explorer, Patrol
 from uvf.planning.frontiers import FrontierWeights
 from uvf.planning.navigator import GlobalPlanner, PlannedPath
@@ -167,8 +167,8 @@ class PlannerService(Service):
         )
 
     @property
-    def _body(self) -> Footprint:
-        return Footprint(self._radius + self.params.margin, self.params.comfort, self.params.dislike)
+    def _body(self) -> RobotFootprint:
+        return RobotFootprint(self._radius + self.params.margin, self.params.comfort, self.params.dislike)
 
     @property
     def _taste(self) -> FrontierWeights:

@@ -14,17 +14,17 @@ from services.sim_air.contact.surroundings import Around
 from services.sim_air.engine.airframe import Airframe, fly_one_step
 from services.sim_air.engine.beginning import as_told, begun
 from services.sim_air.engine.wiring import Controls
-from services.sim_air.environment.ground import Ground
+from services.sim_air.environment.ground import GroundSurface
 from services.sim_air.environment.wind import AirMass
 from services.sim_air.rangers import Rangers
-from services.sim_air.sensors import Gnss, Imu, Pressures
+from services.sim_air.sensors import Gnss, Imu, PressureSensors
 from services.sim_air.service import SimAir
-from services.sim_air.stage import Joining, Stage
+from services.sim_air.stage import AirStage, JoiningAircraft
 from uvf.maths.bvh import Bvh
 from uvf.maths.geodesy import LocalTangent
 from uvf.maths.raycast import warm_up
 from uvf.models.aircraft.shape import aircraft_shape
-from uvf.models.mission.file import Start, Vehicle
+from uvf.models.mission.file import StartPose, Vehicle
 from uvf.models.scenario import AIRCRAFT_RADIUS, MissionVehicle, Scenario
 from uvf.models.shapes.scene import scene
 from uvf.models.urdf.model import load_urdf
@@ -45,7 +45,7 @@ def build(site: Scenario) -> list[ServiceInstance]:
     if not any(site.of_kind("fixed_wing")):
         return []
     warm_up()
-    land = Land(Footing(site.world), Ground(scene(solids(site.world))))
+    land = Land(Footing(site.world), GroundSurface(scene(solids(site.world))))
     for member in site.of_kind("fixed_wing"):
         _check(site, member, land)
     return [ServiceInstance(SimAir, lambda: _make(site, land), writes_for=tuple(m.name for m in site.of_kind("fixed_wing")))]
@@ -55,14 +55,14 @@ class Land(NamedTuple):
     """What there is to begin on and to begin beside."""
 
     footing: Footing
-    ground: Ground
+    ground: GroundSurface
 
-    def check_room(self, who: str, start: Start) -> None:
+    def check_room(self, who: str, start: StartPose) -> None:
         """Raises BadInput with too little room beside an aircraft at its start; what it stands on is none of it."""
         if (room := self._room(start)) < AIRCRAFT_RADIUS:
             raise BadInput(f"{who}: {room:.2f} m from a wall or another solid at {start.z:g} m; move it or begin higher")
 
-    def _room(self, start: Start) -> float:
+    def _room(self, start: StartPose) -> float:
         """m."""
         height = self.ground.top(start.x, start.y)
         low, high = max(start.z - AIRCRAFT_RADIUS, GRAZE), start.z + AIRCRAFT_RADIUS
@@ -115,10 +115,10 @@ def _make(site: Scenario, land: Land) -> SimAir:
     around = Around(things, land.ground, on_wheels | {name: one.shape for name, one in joining.items()}, partial(_shape_of, site))
     aircraft = {name: one.aircraft for name, one in joining.items()}
     taken = (*site.members, *(thing.name for thing in things), "floor")
-    return SimAir(Stage(aircraft, around, taken, partial(_join, site, land)), Faults(site.mission.faults))
+    return SimAir(AirStage(aircraft, around, taken, partial(_join, site, land)), Faults(site.mission.faults))
 
 
-def _join(site: Scenario, land: Land, name: str, model: str, start: Start) -> Joining:
+def _join(site: Scenario, land: Land, name: str, model: str, start: StartPose) -> JoiningAircraft:
     """An aircraft that nobody steers but by its actuator topic, made ready while the simulation runs. Raises BadInput."""
     file, folder = load_vehicle(site.vehicles_folder, model), site.vehicles_folder / model
     if file.air is None:
@@ -130,21 +130,21 @@ def _join(site: Scenario, land: Land, name: str, model: str, start: Start) -> Jo
     return _joining(site, land, member, airframe)
 
 
-def _joining(site: Scenario, land: Land, member: MissionVehicle, airframe: Airframe) -> Joining:
+def _joining(site: Scenario, land: Land, member: MissionVehicle, airframe: Airframe) -> JoiningAircraft:
     """An aircraft and its shape, which is also how it lies as a wreck. Raises BadInput."""
     aircraft, shape = _aircraft(site, land, member, airframe), aircraft_tree(aircraft_shape(member.folder, member.file))
     aircraft.rests = Resting(land.ground, shape)
-    return Joining(aircraft, shape)
+    return JoiningAircraft(aircraft, shape)
 
 
-def _begin(site: Scenario, land: Land, member: MissionVehicle, start: Start) -> tuple[Airframe, Controls, Controls]:
+def _begin(site: Scenario, land: Land, member: MissionVehicle, start: StartPose) -> tuple[Airframe, Controls, Controls]:
     """An airframe of its own for a new beginning. Raises BadInput."""
     land.check_room(f"'{member.name}'", start)
     airframe = Airframe(_model_folder(member), _body(member), _tangent(site))
     return airframe, *_begun(land, member, airframe, start, _air(site, member, airframe))
 
 
-def _begun(land: Land, member: MissionVehicle, airframe: Airframe, start: Start, air: AirMass) -> tuple[Controls, Controls]:
+def _begun(land: Land, member: MissionVehicle, airframe: Airframe, start: StartPose, air: AirMass) -> tuple[Controls, Controls]:
     """Its controls at its beginning over the land, and those of level flight. Raises BadInput."""
     airframe.over(land.ground)
     return begun(airframe, as_told(start, _body(member), air, land.ground.top(start.x, start.y)))
@@ -176,6 +176,6 @@ def _aircraft(site: Scenario, land: Land, member: MissionVehicle, airframe: Airf
     if fitted.gnss is not None:
         aircraft.gnss = Gnss(fitted.gnss, tangent, site.rng(member.name, "gnss"))
     if fitted.air_data is not None:
-        aircraft.pressures = Pressures(fitted.air_data, site.rng(member.name, "air_data"))
+        aircraft.pressures = PressureSensors(fitted.air_data, site.rng(member.name, "air_data"))
     aircraft.rangers = Rangers(member.name, fitted, land.ground.scene, partial(site.rng, member.name))
     return aircraft

@@ -5,13 +5,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from services.sim_air.engine.states import Air, Motion
+from services.sim_air.engine.states import Air, AircraftMotion
 from uvf.maths import rotations
 from uvf.maths.geodesy import LocalTangent
 from uvf.models.vehicle.sensors import AirDataSensor, GnssSensor, ImuSensor
 from uvf.sensors.errors import Channel, Errors
 from uvf.sensors.fitted import inertial_unit, line_of, receiver
-from uvf.sensors.instruments import Fix, ImuReading
+from uvf.sensors.instruments import ImuReading, ReceiverFix
 from uvf.sensors.sampling import DelayLine
 
 Floats = rotations.Floats
@@ -30,11 +30,11 @@ class Imu:
         self._sensor_from_body = rotations.matrix(rotations.from_euler(*data.mount.rpy)).T
         self._field_enu = field
 
-    def read(self, t: float, motion: Motion) -> ImuReading | None:
+    def read(self, t: float, motion: AircraftMotion) -> ImuReading | None:
         """The reading that arrives at ``t`` [s], if any."""
         return self._line.step(t, lambda: self._take(t, motion))
 
-    def _take(self, t: float, motion: Motion) -> ImuReading:
+    def _take(self, t: float, motion: AircraftMotion) -> ImuReading:
         field_body = rotations.matrix(motion.world_from_body).T @ self._field_enu
         turning = motion.angular_velocity
         force = motion.specific_force
@@ -48,10 +48,10 @@ class Gnss:
 
     def __init__(self, data: GnssSensor, tangent: LocalTangent, rng: np.random.Generator) -> None:
         self.data = data
-        self._line: DelayLine[Fix] = line_of(data, rng.spawn(1)[0])
+        self._line: DelayLine[ReceiverFix] = line_of(data, rng.spawn(1)[0])
         self._receiver = receiver(data, tangent, rng)
 
-    def read(self, t: float, motion: Motion) -> Fix | None:
+    def read(self, t: float, motion: AircraftMotion) -> ReceiverFix | None:
         """The fix that arrives at ``t`` [s], if any."""
         return self._line.step(t, lambda: self._receiver.read(t, motion.position, motion.velocity))
 
@@ -63,7 +63,7 @@ class AirSample(NamedTuple):
     air: Air
 
 
-class Pressures:
+class PressureSensors:
     """Static and pitot pressure with constant biases and white noise."""
 
     def __init__(self, data: AirDataSensor, rng: np.random.Generator) -> None:

@@ -27,7 +27,7 @@ from schemas.messages import (
 )
 from services.sim_air import readings
 from services.sim_air.aircraft import Aircraft
-from services.sim_air.stage import Stage
+from services.sim_air.stage import AirStage
 from uvf.runtime.contract.declaration import Reads, Writes, each_vehicle, optional, replies, request, topic
 from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.faults import Faults
@@ -74,7 +74,7 @@ class SimAir(Service):
         save: list[Reply] = replies(topics.AIR_SAVE)
         restore: list[Reply] = replies(topics.AIR_RESTORE)
 
-    def __init__(self, stage: Stage, faults: Faults | None = None) -> None:
+    def __init__(self, stage: AirStage, faults: Faults | None = None) -> None:
         self._stage = stage
         self._faults = faults or Faults()
         self._spawned_due = Due(topics.AIR_OBJECTS.hz)

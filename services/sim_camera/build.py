@@ -4,7 +4,7 @@ from contextlib import suppress
 from functools import cache
 from pathlib import Path
 
-from services.sim_camera.fitted import Fitted
+from services.sim_camera.fitted import FittedCamera
 from services.sim_camera.renderer import BulletRenderer, Look
 from services.sim_camera.service import SimCamera
 from uvf.models.aircraft.shape import aircraft_shape
@@ -37,7 +37,7 @@ def build(site: Scenario) -> list[ServiceInstance]:
         return None
 
     def make() -> SimCamera:
-        fitted = [Fitted(name, camera, site.rng(name, kind), OUTPUTS[kind]) for (name, kind), camera in cameras.items()]
+        fitted = [FittedCamera(name, camera, site.rng(name, kind), OUTPUTS[kind]) for (name, kind), camera in cameras.items()]
         return SimCamera(BulletRenderer(site.world, things, looks), fitted, look_of)
 
     return [ServiceInstance(SimCamera, make, writes_for=tuple(dict.fromkeys(name for name, _ in cameras)))]

@@ -22,7 +22,7 @@ class Pictures(NamedTuple):
     depth: CompressedImage | None
 
 
-class Fitted:
+class FittedCamera:
     def __init__(self, vehicle: str, camera: Camera, rng: np.random.Generator, output: str = "image") -> None:
         """output: the name under which its pictures go out."""
         delivery, self._rng = rng.spawn(2)

@@ -5,7 +5,7 @@ from typing import Protocol
 
 from schemas import topics
 from schemas.messages import CameraCalibration, CompressedImage, FrameTransform, GimbalCommand, JointStates, NavState, SimObjects
-from services.sim_camera.fitted import Fitted, Pictures
+from services.sim_camera.fitted import FittedCamera, Pictures
 from services.sim_camera.picture import info_message, joints_message
 from services.sim_camera.renderer import Look, Pose, Shot
 from uvf.models.shapes.solid import Solid
@@ -56,7 +56,7 @@ class SimCamera(Service):
         gimbal_frame: dict[str, FrameTransform] | None = topic(topics.TF_GIMBAL)
         gimbal_joints: dict[str, JointStates] | None = topic(topics.GIMBAL_JOINTS)
 
-    def __init__(self, renderer: Renderer, cameras: Sequence[Fitted], look_of: Callable[[str], Look | None]) -> None:
+    def __init__(self, renderer: Renderer, cameras: Sequence[FittedCamera], look_of: Callable[[str], Look | None]) -> None:
         """look_of: what a vehicle model looks like that is put in while the simulation runs; None where this host has no such model."""
         self._renderer = renderer
         self._look_of = look_of
@@ -88,7 +88,7 @@ class SimCamera(Service):
                 out.add(INFO[fitted.output], fitted.vehicle, info_message(t, fitted.frame, fitted.camera))
         return out
 
-    def _take(self, t: float, fitted: Fitted, truth: Mapping[str, NavState], poses: Mapping[str, Pose]) -> Pictures | None:
+    def _take(self, t: float, fitted: FittedCamera, truth: Mapping[str, NavState], poses: Mapping[str, Pose]) -> Pictures | None:
         name = fitted.vehicle
         if name not in poses:
             return None

@@ -4,11 +4,11 @@ from functools import partial
 
 from services.sim_ground.rig import STEP_HZ, Rig
 from services.sim_ground.service import SimGround
-from services.sim_ground.stage import Joining, Stage
-from services.sim_ground.world import BulletWorld, Placed
+from services.sim_ground.stage import GroundStage, JoiningVehicle
+from services.sim_ground.world import BodyPlacement, BulletWorld
 from uvf.maths.raycast import warm_up
 from uvf.models.aircraft.shape import aircraft_shape
-from uvf.models.mission.file import Start, Vehicle
+from uvf.models.mission.file import StartPose, Vehicle
 from uvf.models.scenario import MissionVehicle, Scenario
 from uvf.models.urdf.model import check_urdf, engine_urdf, load_urdf
 from uvf.models.vehicle.file import GroundBody, load_vehicle
@@ -34,7 +34,7 @@ def build(site: Scenario) -> list[ServiceInstance]:
 def _make(site: Scenario, bodies: dict[str, GroundBody], grounds: dict[str, float]) -> SimGround:
     """grounds: z [m] of what each vehicle stands on at its start."""
     members = {name: site.members[name] for name in bodies}
-    placed = {n: Placed(bodies[n], engine_urdf(m.folder / bodies[n].urdf), _start(m), grounds[n]) for n, m in members.items()}
+    placed = {n: BodyPlacement(bodies[n], engine_urdf(m.folder / bodies[n].urdf), _start(m), grounds[n]) for n, m in members.items()}
     things = solids(site.world)
     on_wheels = {name: vehicle_tree(load_urdf(m.folder / bodies[name].urdf)) for name, m in members.items()}
     flying = {m.name: aircraft_solid(m.name, aircraft_shape(m.folder, m.file)) for m in site.of_kind("fixed_wing")}
@@ -44,20 +44,22 @@ def _make(site: Scenario, bodies: dict[str, GroundBody], grounds: dict[str, floa
     for name, solid in flying.items():
         world.let_in(name, solid)
     taken = (*site.members, *(thing.name for thing in things), "floor")
-    stage = Stage(world, rigs, surroundings, taken, partial(_join, site, surroundings))
+    stage = GroundStage(world, rigs, surroundings, taken, partial(_join, site, surroundings))
     return SimGround(world, surroundings, stage, tuple(flying), Faults(site.mission.faults))
 
 
-def _join(site: Scenario, surroundings: Surroundings, name: str, model: str, start: tuple[float, float, float], z: float) -> Joining:
+def _join(site: Scenario, surroundings: Surroundings, name: str, model: str, start: tuple[float, float, float], z: float) -> JoiningVehicle:
     """A vehicle that nobody steers but by its actuator topic, made ready while the simulation runs. Raises BadInput."""
     file, (x, y, yaw) = load_vehicle(site.vehicles_folder, model), start
     if file.ground is None:
         raise BadInput(f"'{model}' is no ground vehicle; this is the ground simulator")
-    member = MissionVehicle(name, Vehicle(model=model, start=Start(x=x, y=y, yaw=yaw), system_id=1), file, site.vehicles_folder / model)
+    member = MissionVehicle(name, Vehicle(model=model, start=StartPose(x=x, y=y, yaw=yaw), system_id=1), file, site.vehicles_folder / model)
     urdf = member.folder / file.ground.urdf
     check_urdf(urdf, (file.ground.left_joint, file.ground.right_joint))
     _check_rates(member, file.ground)
-    return Joining(Placed(file.ground, engine_urdf(urdf), start, z), Rig(site, member, file.ground, surroundings.still), load_urdf(urdf))
+    return JoiningVehicle(
+        BodyPlacement(file.ground, engine_urdf(urdf), start, z), Rig(site, member, file.ground, surroundings.still), load_urdf(urdf)
+    )
 
 
 def _start(member: MissionVehicle) -> tuple[float, float, float]:

@@ -48,7 +48,7 @@ class Moment(NamedTuple):
 Read = Callable[[float, Moment], Message]
 
 
-class Fitted(NamedTuple):
+class FittedSensor(NamedTuple):
     """A sensor: how it reads the moment, and how its readings get out."""
 
     read: Read
@@ -85,7 +85,7 @@ class Rig:
         sonars, finders = member.file.sensors.sonars, member.file.sensors.rangefinders
         self._rangers = {"sonar": [self._ranger("sonar", s) for s in sonars], "range": [self._ranger("range", f) for f in finders]}
 
-    def _fit(self) -> Iterator[tuple[str, Fitted]]:
+    def _fit(self) -> Iterator[tuple[str, FittedSensor]]:
         """What there is one of, by output name."""
         sensors = self._member.file.sensors
         if sensors.imu is not None:
@@ -148,8 +148,8 @@ class Rig:
     def _rng(self, *names: str) -> np.random.Generator:
         return self._site.rng(self._member.name, *names)
 
-    def _with_line(self, read: Read, sensor: Sampled, *names: str) -> Fitted:
-        return Fitted(read, line_of(sensor, self._rng(*names, "dropout")))
+    def _with_line(self, read: Read, sensor: Sampled, *names: str) -> FittedSensor:
+        return FittedSensor(read, line_of(sensor, self._rng(*names, "dropout")))
 
     def _frame(self, frame: str) -> str:
         return f"{self._member.name}/{frame}"
@@ -171,7 +171,7 @@ class Rig:
         tangent = LocalTangent.from_degrees(origin.latitude, origin.longitude, origin.altitude)
         return partial(_read_gnss, gnss, receiver(gnss, tangent, self._rng("gnss")))
 
-    def _ranger(self, kind: str, sensor: Sonar | RangeFinder) -> Fitted:
+    def _ranger(self, kind: str, sensor: Sonar | RangeFinder) -> FittedSensor:
         model = RangeModel(sensor, self._scene, self._rng(kind, sensor.frame))
         return self._with_line(partial(_read_range, self._frame(sensor.frame), sensor, model), sensor, kind, sensor.frame)
 

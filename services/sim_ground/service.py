@@ -27,7 +27,7 @@ from schemas.messages import (
 from services.sim_ground.body import BodyState, Touch
 from services.sim_ground.guest import Course, courses
 from services.sim_ground.rig import STEP_HZ, Moment
-from services.sim_ground.stage import Stage, Stageable
+from services.sim_ground.stage import GroundStage, Stageable
 from uvf.maths.kinematics import WheelSpeeds
 from uvf.maths.raycast import MovingBody
 from uvf.runtime.contract.declaration import Reads, Writes, each_vehicle, optional, replies, request, topic
@@ -99,7 +99,12 @@ class SimGround(Service):
         restore: list[Reply] = replies(topics.RESTORE)
 
     def __init__(
-        self, world: GroundWorld, surroundings: Surroundings, stage: Stage, aircraft: Collection[str] = (), faults: Faults | None = None
+        self,
+        world: GroundWorld,
+        surroundings: Surroundings,
+        stage: GroundStage,
+        aircraft: Collection[str] = (),
+        faults: Faults | None = None,
     ) -> None:
         """aircraft: names of those that another simulator moves among these vehicles."""
         self._faults = faults or Faults()

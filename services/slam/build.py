@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from functools import partial
 
-from services.slam.localization_service import Beginning, LocalizationService
+from services.slam.localization_service import LocalizationService, LocalizationStart
 from services.slam.map_serving import map_servers
 from services.slam.mapping_service import MappingParams, MappingService
 from services.slam.odometry.service import OdometryService
@@ -19,7 +19,7 @@ from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.state.saved_maps import known_path
 from uvf.slam.localization import known_map
 from uvf.slam.localization.params import FilterParams
-from uvf.slam.maps.session import Session
+from uvf.slam.maps.session import MappingSession
 from uvf.slam.maps.tiles import TileMap
 from uvf.slam.method import SlamMethod
 from uvf.slam.methods import METHODS, make_method
@@ -63,12 +63,12 @@ def _hosts(site: Scenario, member: MissionVehicle, warm: set[str]) -> list[Servi
     return [_odometry(site, member), ServiceInstance(MappingService, make, member.name)]
 
 
-def _left(site: Scenario, member: MissionVehicle, mapping: MappingParams, name: str) -> Session:
+def _left(site: Scenario, member: MissionVehicle, mapping: MappingParams, name: str) -> MappingSession:
     """The session that a mapping goes on with, in the vehicle's map frame. Raises BadInput where it cannot."""
     assert member.entry.maps is not None
     path, method = site.mission_path.parent / name, _method(member, mapping)()
     map_from_file = compose(inverse(_world_from_map(member)), Pose2(*member.entry.maps.known_at))
-    session = Session.load(path).moved(map_from_file)
+    session = MappingSession.load(path).moved(map_from_file)
     if not isinstance(method, Resumable):
         raise BadInput(f"{member.name}: maps: continues: method {mapping.method} cannot go on with a session; graph does")
     if not session.keyframes:
@@ -101,7 +101,7 @@ def _localization(site: Scenario, member: MissionVehicle, lidar: Lidar, maps: Ma
     if maps.known is not None:
         known = known_map.known_map(known_path(maps.known, site.mission_path.parent), compose(inverse(start), Pose2(*maps.known_at)))
     seed = int(site.rng(member.name, "localization").integers(1 << 31))
-    beginning = Beginning(known, maps.localize == "anywhere", seed)
+    beginning = LocalizationStart(known, maps.localize == "anywhere", seed)
     return ServiceInstance(LocalizationService, lambda: LocalizationService(member.name, lidar, start, params, beginning), member.name)
 
 

@@ -17,7 +17,7 @@ from uvf.runtime.messages.convert import pose2_of, pose2_of_frame, stamp
 from uvf.runtime.messages.frames import FrameBuffer, FrameError
 from uvf.runtime.messages.grids import as_map, as_message
 from uvf.slam.localization.known_map import KnownMap, of_grid
-from uvf.slam.localization.localizer import HALF_SURE, Localizer, State
+from uvf.slam.localization.localizer import HALF_SURE, Localizer, LocalizerState
 from uvf.slam.localization.params import FilterParams
 from uvf.slam.reading import Reading
 
@@ -27,7 +27,7 @@ LEAST_SIGMA, MOST_SIGMA = 1e-4, 1000.0
 
 
 @dataclass(frozen=True)
-class Beginning:
+class LocalizationStart:
     """known: the map, in the map frame; None: it comes on map/known. anywhere: nothing is known of where the vehicle is."""
 
     known: KnownMap | None
@@ -64,7 +64,7 @@ class LocalizationService(PlacingService):
     params: FilterParams
     fixed_params = frozenset({"least_particles", "most_particles"})
 
-    def __init__(self, vehicle: str, lidar: Lidar, world_from_map: Pose2, params: FilterParams, beginning: Beginning) -> None:
+    def __init__(self, vehicle: str, lidar: Lidar, world_from_map: Pose2, params: FilterParams, beginning: LocalizationStart) -> None:
         super().__init__(vehicle, lidar, world_from_map)
         self.params = params
         self._beginning = beginning
@@ -135,15 +135,15 @@ class LocalizationService(PlacingService):
         before, jumps = localizer.state, localizer.is_fresh
         estimate = localizer.add(reading)
         self._map_from_odom = compose(estimate.map_from_base, inverse(reading.odom_from_base))
-        if jumps or (before is not State.TRACKING and localizer.state is State.TRACKING):
+        if jumps or (before is not LocalizerState.TRACKING and localizer.state is LocalizerState.TRACKING):
             self._published = self._map_from_odom
         fix = fix_message(reading.t, estimate.map_from_base, estimate.covariance, estimate.quality)
         return fix, self._changed(t, before, localizer)
 
-    def _changed(self, t: float, before: State, localizer: Localizer) -> list[Event]:
+    def _changed(self, t: float, before: LocalizerState, localizer: Localizer) -> list[Event]:
         if localizer.state is before:
             return []
-        if localizer.state is State.TRACKING:
+        if localizer.state is LocalizerState.TRACKING:
             x, y, yaw = compose(self._world_from_map, localizer.pose)
             where = f"at ({x:.2f}, {y:.2f}), {np.degrees(yaw):.0f} deg in the world"
             return [self._event(t, Event.INFO, "the vehicle is localized", where)]

@@ -18,7 +18,7 @@ from uvf.models.yaml_data import BadInput
 from uvf.runtime.contract.declaration import Reads, Writes, frames, topic
 from uvf.runtime.messages.convert import occupancy_grid, pose2_of_frame, stamp
 from uvf.runtime.messages.frames import FrameBuffer, FrameError
-from uvf.slam.maps.session import Session
+from uvf.slam.maps.session import MappingSession
 from uvf.slam.maps.tiles import TileMap
 from uvf.slam.method import Keyframe, SlamMethod
 from uvf.slam.placing_params import PlacingParams, Positive
@@ -64,7 +64,13 @@ class MappingService(PlacingService):
     fixed_params = frozenset({"resolution", "method"})
 
     def __init__(
-        self, vehicle: str, lidar: Lidar, world_from_map: Pose2, params: MappingParams, method: SlamMethod, left: Session | None = None
+        self,
+        vehicle: str,
+        lidar: Lidar,
+        world_from_map: Pose2,
+        params: MappingParams,
+        method: SlamMethod,
+        left: MappingSession | None = None,
     ) -> None:
         """left: a session to go on with, in the vehicle's map frame."""
         self.params = params
@@ -108,7 +114,7 @@ class MappingService(PlacingService):
         self._begun_elsewhere = True
         if left.session is not None and isinstance(self._method, Resumable):
             with suppress(BadInput):
-                self._left = Session.decoded(left.session.data, "on the bus")
+                self._left = MappingSession.decoded(left.session.data, "on the bus")
 
     def _look(self, t: float, reading: Reading) -> tuple[MapFix, list[Event]]:
         guess = compose(self._map_from_odom, reading.odom_from_base)

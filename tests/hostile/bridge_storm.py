@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from schemas import topics
 from schemas.messages import Guest
 from services.mavlink_bridge.discovery import Discovery, Names
-from services.mavlink_bridge.frame import Origin
+from services.mavlink_bridge.frame import BridgeOrigin
 from services.mavlink_bridge.service import BridgedVehicle
 from services.mavlink_bridge.station import COMPONENT, SYSTEM, Station
 from tests.services.autopilot.mavlink.rig import MemoryLink
@@ -152,7 +152,7 @@ class Besieged:
     def __init__(self, is_ardupilot=False):
         self.link, self.bus, self.t = MemoryLink(), LocalBus(), 0.0
         self.link.listening = []
-        self.station, self.origin = Station(self.link), Origin()
+        self.station, self.origin = Station(self.link), BridgeOrigin()
         self.said, self.replies, self.asked = [], [], 0
         self.heard, self.vehicles = {}, []
         self.beat = mav.MAVLink_heartbeat_message(1, 3, 129, 10, 4, 3) if is_ardupilot else BEAT

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 from tests.services.planner.plans import room
-from uvf.planning.costmap import Footprint, costmap
+from uvf.planning.costmap import RobotFootprint, costmap
 from uvf.planning.exploration import SHUN_TIME, Explorer, Patrol
 from uvf.planning.frontiers import FrontierWeights, frontiers
 from uvf.planning.search import CostToGo
 
-BODY = Footprint(radius=0.1, comfort=0.2, dislike=3.0)
+BODY = RobotFootprint(radius=0.1, comfort=0.2, dislike=3.0)
 TASTE = FrontierWeights(least_size=4, view=0.3, worth=0.5)
 
 

@@ -5,11 +5,11 @@ import pytest
 
 from schemas.limits import LENGTHS
 from tests.services.planner.plans import room
-from uvf.planning.costmap import Footprint
+from uvf.planning.costmap import RobotFootprint
 from uvf.planning.navigator import MOST_CELLS, GlobalPlanner, PlannedPath
 from uvf.planning.smoothing import length
 
-BODY = Footprint(radius=0.15, comfort=0.35, dislike=5.0)
+BODY = RobotFootprint(radius=0.15, comfort=0.35, dislike=5.0)
 
 
 def house(door=True):

@@ -140,7 +140,7 @@ class MavlinkService(Service):
     def __init__(
         self,
         facts: Sequence[VehicleInfo],
-        link: endpoint.Link,
+        link: endpoint.DatagramLink,
         stores: Mapping[str, Store],
         signing: Signing | None = None,
         reserved: Reserved | None = None,

@@ -3,8 +3,8 @@
 from collections.abc import Callable, Mapping, Sequence
 
 from schemas.messages import NavState, SimObject, SimObjects
-from services.sim_air.engine.states import Motion
-from services.sim_air.environment.ground import Ground
+from services.sim_air.engine.states import AircraftMotion
+from services.sim_air.environment.ground import GroundSurface
 from uvf.maths.bvh import Bvh
 from uvf.maths.raycast import MovingBody
 from uvf.models.shapes.solid import Solid
@@ -16,7 +16,9 @@ from uvf.sensors.surroundings import Surroundings, Whereabouts
 class Around:
     """Worked out when somebody looks, once a step."""
 
-    def __init__(self, things: Sequence[Solid], ground: Ground, vehicles: Mapping[str, Bvh], tree_of: Callable[[str], Bvh | None]) -> None:
+    def __init__(
+        self, things: Sequence[Solid], ground: GroundSurface, vehicles: Mapping[str, Bvh], tree_of: Callable[[str], Bvh | None]
+    ) -> None:
         """things: of the world; ground: they; vehicles: the shapes of all; tree_of: that of a vehicle model that is put in later;
         None where this host has none that stands on the ground."""
         self.things = things
@@ -30,7 +32,7 @@ class Around:
         self._t = 0.0
         self._objects: list[SimObject] = []
         self._truth: Mapping[str, NavState] = {}
-        self._aircraft: Mapping[str, Motion] = {}
+        self._aircraft: Mapping[str, AircraftMotion] = {}
         self._bodies: dict[str, MovingBody] | None = None
 
     def add_aircraft(self, name: str, shape: Bvh) -> None:
@@ -39,7 +41,7 @@ class Around:
     def remove_aircraft(self, name: str) -> None:
         self._surroundings.remove(name)
 
-    def look(self, t: float, truth: Mapping[str, NavState], objects: SimObjects | None, aircraft: Mapping[str, Motion]) -> None:
+    def look(self, t: float, truth: Mapping[str, NavState], objects: SimObjects | None, aircraft: Mapping[str, AircraftMotion]) -> None:
         """How it stands at ``t`` [s]: ground vehicles by their newest truth, aircraft by their motion."""
         self._t, self._truth, self._objects, self._aircraft = t, truth, sound_objects(objects), aircraft
         self._bodies = None

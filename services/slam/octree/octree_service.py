@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from schemas import topics
 from schemas.messages import CameraCalibration, CompressedImage, Event, Grid, LaserScan, OctreeMap, OctreeSaveRequest, Reply
-from services.slam.octree.beams import Beams, depth_beams, sweep_beams
+from services.slam.octree.beams import RayBundle, depth_beams, sweep_beams
 from services.slam.octree.octree_messages import FRAME, heights_message, octree_from, octree_message, slice_message
 from uvf.maths.se3 import apply
 from uvf.models.params import Params
@@ -23,7 +23,7 @@ from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import seconds, stamp
 from uvf.runtime.messages.frames import FrameBuffer, FrameError
 from uvf.sensors.fitted import sweeping_of
-from uvf.sensors.sweeping import Part
+from uvf.sensors.sweeping import SweepSegment
 from uvf.slam.octree.columns import columns_of
 from uvf.slam.octree.files import to_bt
 from uvf.slam.octree.leaves import TooLarge, leaves_of
@@ -53,9 +53,9 @@ class OctreeParams(Params, frozen=True):
 class Taken(NamedTuple):
     """A picture or a sweep that waits for its place. parts: its beams by when they were measured."""
 
-    parts: list[Part]
+    parts: list[SweepSegment]
     frame: str
-    beams: Beams
+    beams: RayBundle
 
     def placed(self, frames: FrameBuffer) -> tuple[Floats, Floats]:
         """(3,), (n, 3) m, world: where it was taken from, a sweep from where its middle was, and the beams' ends. Raises FrameError."""
@@ -135,7 +135,7 @@ class OctreeService(Service):
                 except BadInput as error:
                     events += self._tell(t, "a depth picture is left out", str(error))
                 else:
-                    self._waiting.append(Taken([Part(seconds(picture.timestamp), slice(None))], picture.frame_id, beams))
+                    self._waiting.append(Taken([SweepSegment(seconds(picture.timestamp), slice(None))], picture.frame_id, beams))
         if (lidar := self._sensors.lidar) is not None:
             for sweep in scan:
                 beams = sweep_beams(sweep, min(self.params.lidar_reach, lidar.range_max))

@@ -2,8 +2,8 @@
 
 import math
 
-from uvf.estimation.attitude import Attitude
-from uvf.estimation.sensor_inputs import Fix, Inertial, Pressures, Sensed, Triple
+from uvf.estimation.attitude import AttitudeFilter
+from uvf.estimation.sensor_inputs import GnssFix, InertialSample, Pressures, Sensed, Triple
 from uvf.estimation.state import Estimate
 from uvf.estimation.track_filter import CHI, PSI, WE, WN, E, N, TrackFilter, V
 from uvf.estimation.vertical import Vertical
@@ -34,7 +34,7 @@ class BookEstimator:
         self._gyros = [LowPass(GYRO_TIME) for _ in range(3)]
         self._static, self._differential = LowPass(PRESSURE_TIME), LowPass(PRESSURE_TIME)
         self._side = LowPass(FORCE_TIME)
-        self._attitude = Attitude()
+        self._attitude = AttitudeFilter()
         self._yaw: float | None = None  # rad, left by another estimator
         self._track: TrackFilter | None = None
         self._vertical: Vertical | None = None
@@ -83,7 +83,7 @@ class BookEstimator:
             track.correct_triangle(self._horizontal_airspeed())
         return self._estimate(track, vertical)
 
-    def _correct(self, track: TrackFilter, vertical: Vertical, fix: Fix) -> None:
+    def _correct(self, track: TrackFilter, vertical: Vertical, fix: GnssFix) -> None:
         here = (fix.north, fix.east, fix.v_north, fix.v_east)
         track.correct_fix(here, fix.age, (fix.position_sigma, fix.speed_sigma))
         height = fix.height + fix.v_up * fix.age
@@ -97,7 +97,7 @@ class BookEstimator:
     def _height_known(self) -> bool:
         return self._baro is not None or self.unfixed < RECKONING_AFTER
 
-    def _start(self, samples: list[Inertial], fix: Fix) -> tuple[TrackFilter, Vertical]:
+    def _start(self, samples: list[InertialSample], fix: GnssFix) -> tuple[TrackFilter, Vertical]:
         self._track = TrackFilter(fix.north, fix.east, fix.v_north, fix.v_east)
         self._vertical = Vertical(fix.height, fix.v_up)
         if self._yaw is not None:
@@ -129,7 +129,7 @@ class BookEstimator:
         eas2 = max(self._airspeed, 5.0) ** 2 * self.density / atmosphere.RHO0
         return params.alpha_zero_lift + params.alpha_per_load * self._lift / eas2
 
-    def _take_inertial(self, sample: Inertial, params: AirParams, dt: float) -> float:
+    def _take_inertial(self, sample: InertialSample, params: AirParams, dt: float) -> float:
         """Attitude over one sample; returns the upward acceleration [m/s^2]."""
         p, q, r = sample.rates
         fx, fy, fz = sample.force
@@ -145,7 +145,7 @@ class BookEstimator:
         sr, cr, sp, cp = math.sin(attitude.roll), math.cos(attitude.roll), math.sin(attitude.pitch), math.cos(attitude.pitch)
         return fx * sp - (fy * sr + fz * cr) * cp - GRAVITY
 
-    def _step_track(self, track: TrackFilter, samples: list[Inertial], params: AirParams, dt: float) -> None:
+    def _step_track(self, track: TrackFilter, samples: list[InertialSample], params: AirParams, dt: float) -> None:
         attitude = self._attitude
         q, r = (self._gyros[i].value or 0.0 for i in (1, 2))
         before, self._aside = self._aside, self._azimuth_of(self._alpha(params))

@@ -22,7 +22,7 @@ Frame = tuple[float, tuple[float, float]]
 
 
 @dataclass(frozen=True)
-class Footprint:
+class RobotFootprint:
     """How much room a vehicle needs and likes."""
 
     radius: float  # m, to the nearest obstacle: nearer is impassable
@@ -60,7 +60,7 @@ class Costmap:
         return out
 
 
-def costmap(cells: NDArray[np.int8], frame: Frame, body: Footprint, unknown_cost: float = IMPASSABLE) -> Costmap:
+def costmap(cells: NDArray[np.int8], frame: Frame, body: RobotFootprint, unknown_cost: float = IMPASSABLE) -> Costmap:
     """cells: (rows, columns) -1 unknown, 0..100 per cent; unknown_cost: factor on the cost of unknown ground."""
     resolution, origin = frame
     occupied, unknown = cells >= OCCUPIED, cells < 0

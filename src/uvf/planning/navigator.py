@@ -6,7 +6,7 @@ from math import isfinite
 import numpy as np
 from numpy.typing import NDArray
 
-from uvf.planning.costmap import Costmap, Footprint, Frame, costmap, with_way_out
+from uvf.planning.costmap import Costmap, Frame, RobotFootprint, costmap, with_way_out
 from uvf.planning.search import Cell, CostToGo, astar
 from uvf.planning.smoothing import SPACING, length, smoothed
 
@@ -37,7 +37,7 @@ class PlannedPath:
 class GlobalPlanner:
     """Plans on the newest map; all points in m, map frame."""
 
-    def __init__(self, body: Footprint) -> None:
+    def __init__(self, body: RobotFootprint) -> None:
         self._body = body
         self._cells: NDArray[np.int8] | None = None
         self._bold: Costmap | None = None
@@ -46,7 +46,7 @@ class GlobalPlanner:
         self.missing = "there is no map yet"
         """Why there are no costs, and no ways, while there are none."""
 
-    def fit(self, body: Footprint) -> bool:
+    def fit(self, body: RobotFootprint) -> bool:
         """Plans for another body from now on; whether that changes anything."""
         if body == self._body:
             return False

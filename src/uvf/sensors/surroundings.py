@@ -18,7 +18,7 @@ from uvf.models.shapes.mesh_parts import joined as joined_parts
 from uvf.models.shapes.scene import primitives, scene
 from uvf.models.shapes.solid import Solid, pose_at
 from uvf.models.urdf.robot import UrdfModel
-from uvf.sensors.body_track import Placed
+from uvf.sensors.body_track import PosedBody
 
 Floats = NDArray[np.float64]
 
@@ -58,7 +58,7 @@ class Surroundings:
         """What has been put in, at these poses."""
         return {name: MovingBody(self._objects[name], *pose) for name, pose in poses.items()}
 
-    def bodies(self, states: Mapping[str, Placed]) -> dict[str, MovingBody]:
+    def bodies(self, states: Mapping[str, PosedBody]) -> dict[str, MovingBody]:
         """The vehicles of which it is known where they are."""
         known = ((name, tree, states[name]) for name, tree in self._vehicles.items() if name in states)
         return {name: MovingBody(tree, state.position, state.world_from_body) for name, tree, state in known}

@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import pytest
 
-from launch.teleop.aircraft import AirLink, Cockpit, Flight, cockpit
+from launch.teleop.aircraft import AirLink, Cockpit, FlownState, cockpit
 from launch.teleop.command import post_for, wanted_aircraft
 from launch.teleop.loop import operate
 from schemas import topics
@@ -41,7 +41,7 @@ class Plane:
 
     def flight(self, patience=0.0):
         surfaces = self.sent[-1][1] if self.by_hand and self.sent else self.held
-        return Flight(self.by_hand, self.landed, surfaces, 24.96, 60.4, (self.roll, -0.05, -math.pi / 2)) if self.heard else None
+        return FlownState(self.by_hand, self.landed, surfaces, 24.96, 60.4, (self.roll, -0.05, -math.pi / 2)) if self.heard else None
 
 
 def fly(script, **how):

@@ -28,7 +28,7 @@ from schemas.messages import (
     VehicleStatus,
 )
 from uvf.maths.rotations import from_euler
-from uvf.models.mission.file import Job
+from uvf.models.mission.file import JobFile
 from uvf.models.mission.formation import Follow
 from uvf.models.scenario import ROOT, load_scenario
 from uvf.models.vehicle.file import load_vehicle
@@ -54,7 +54,7 @@ def with_eyes(site, of="milvus_survey"):
 
 def with_leader(site, leader="milvus1"):
     """The same site, its aircraft with a place behind a leader instead of a mission."""
-    entry = msgspec.structs.replace(site.members[UAV].entry, job=Job(follow=Follow(leader, behind=40.0)))
+    entry = msgspec.structs.replace(site.members[UAV].entry, job=JobFile(follow=Follow(leader, behind=40.0)))
     object.__setattr__(site.members[UAV], "entry", entry)
     return site
 

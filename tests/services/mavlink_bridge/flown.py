@@ -10,7 +10,7 @@ from schemas.messages import Guest
 from services.autopilot.mavlink.build import facts_of
 from services.autopilot.mavlink.service import MavlinkService
 from services.mavlink_bridge.discovery import Discovery, names_from
-from services.mavlink_bridge.frame import Origin
+from services.mavlink_bridge.frame import BridgeOrigin
 from services.mavlink_bridge.service import BridgedVehicle
 from services.mavlink_bridge.station import Station
 from tests.services.autopilot.mavlink.rig import Shelf
@@ -37,7 +37,7 @@ class Sides(contextlib.AbstractContextManager):
         self._far = ServiceRunner(ServiceInstance(MavlinkService, lambda: service, writes_for=tuple(site.members)), self.run_far.bus)
         self.bus = LocalBus()
         self.station = Station(near)
-        self.origin = Origin(origin)
+        self.origin = BridgeOrigin(origin)
         self.said = []
         discovery = Discovery(self.station, names_from([name]), self._found, self.said.append)
         self._near = [ServiceRunner(ServiceInstance(Discovery, lambda: discovery), self.bus)]

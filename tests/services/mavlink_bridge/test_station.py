@@ -6,7 +6,7 @@ import pytest
 
 from schemas.messages import Guest, Link, Mode, ModeRequest, StopEngagement
 from services.mavlink_bridge.discovery import Discovery, Names, names_from
-from services.mavlink_bridge.frame import Origin
+from services.mavlink_bridge.frame import BridgeOrigin
 from services.mavlink_bridge.service import BridgedVehicle
 from services.mavlink_bridge.station import COMPONENT, LOST_AFTER, SYSTEM, Station
 from tests.runtime.stepping import stepped
@@ -197,7 +197,7 @@ class Bridged:
         self.air, self.t, self.events = air, 0.0, []
         air.say(heartbeat(base=129))
         air.station.poll(0.0)
-        self.vehicle = BridgedVehicle("plane", 1, air.station, Origin(ORIGIN), Guest())
+        self.vehicle = BridgedVehicle("plane", 1, air.station, BridgeOrigin(ORIGIN), Guest())
 
     def run(self, seconds, beat=None, peer=HERE, stop=NOBODY, **asked):
         nothing = dict.fromkeys(BridgedVehicle.requests, ())

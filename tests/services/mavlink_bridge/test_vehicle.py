@@ -7,7 +7,7 @@ import pytest
 
 from schemas.messages import ArmRequest, Event, GoalRequest, Mission, MissionItem, MissionRequest, Mode, ModeRequest, Vector3
 from services.mavlink_bridge.autopilot import Autopilot
-from services.mavlink_bridge.frame import Origin
+from services.mavlink_bridge.frame import BridgeOrigin
 from services.mavlink_bridge.requests import Requests
 from tests.services.autopilot.mavlink.rig import ORIGIN
 from tests.services.mavlink_bridge.far_end import ARDUPILOT, DT, PX4, PlanKeeper, ack, heartbeat, item, text
@@ -47,7 +47,7 @@ class Scripted:
         self.results = {}
         self.beats, self.t, self.next_beat = True, 0.0, 0.0
         self.sent, self.said, self.telling = [], [], {}
-        self.vehicle = Autopilot(1, 1, self.beat(), Origin(origin))
+        self.vehicle = Autopilot(1, 1, self.beat(), BridgeOrigin(origin))
         self.requests = Requests(self.vehicle)
 
     def run(self, seconds, *messages):

@@ -12,7 +12,7 @@ from schemas import topics
 from schemas.messages import Event, NavState, SurfaceCommand
 from services.sim_air.build import build
 from services.sim_air.engine.airframe import Airframe
-from services.sim_air.engine.states import Start
+from services.sim_air.engine.states import InitialState
 from uvf.maths import rotations
 from uvf.maths.geodesy import LocalTangent
 from uvf.models.scenario import ROOT, load_scenario
@@ -82,7 +82,7 @@ def test_it_flies_a_minute_with_its_surfaces_held_at_the_trim(tmp_path, model, s
 def test_a_light_aircraft_stands_still_in_a_wind(tmp_path):
     file = load_vehicle(ROOT / "vehicles", "stick25")
     airframe = Airframe(ROOT / "vehicles" / "stick25", file.air, LocalTangent.from_degrees(40.77, 14.79, 300.0))
-    airframe.stand(Start(np.zeros(3), 0.0, 0.0, np.array((-5.0, 2.0, 0.0))))
+    airframe.stand(InitialState(np.zeros(3), 0.0, 0.0, np.array((-5.0, 2.0, 0.0))))
     before = airframe.motion()
     for _ in range(800):
         airframe.step()

@@ -14,12 +14,12 @@ from services.sim_air.actuators import Actuators
 from services.sim_air.aircraft import Aircraft
 from services.sim_air.build import build
 from services.sim_air.contact.surroundings import Around
-from services.sim_air.engine.states import Air, Motion
+from services.sim_air.engine.states import Air, AircraftMotion
 from services.sim_air.engine.wiring import Controls, JointAngle
 from services.sim_air.environment.ground import LEVEL
 from services.sim_air.sensors import Imu
 from services.sim_air.service import SimAir
-from services.sim_air.stage import Stage
+from services.sim_air.stage import AirStage
 from tests.runtime.stepping import stepped
 from tests.services.sim_air.shapes import MILVUS_TREE
 from uvf.maths import rotations
@@ -56,7 +56,7 @@ class Glider:
         self.steps += 1
 
     def motion(self):
-        return Motion(np.zeros(3), np.zeros(3), IDENTITY, np.zeros(3), np.array((0.0, 0.0, 9.8)), 25.0)
+        return AircraftMotion(np.zeros(3), np.zeros(3), IDENTITY, np.zeros(3), np.array((0.0, 0.0, 9.8)), 25.0)
 
     def air(self):
         return Air(97_000.0, 370.0, 285.0)
@@ -84,7 +84,7 @@ def glider():
 
 
 def simulator(craft):
-    return SimAir(Stage({"g": craft}, Around([], LEVEL, {"g": MILVUS_TREE}, {}.__getitem__), (), None))
+    return SimAir(AirStage({"g": craft}, Around([], LEVEL, {"g": MILVUS_TREE}, {}.__getitem__), (), None))
 
 
 def run_two(tmp_path, until=3.0):

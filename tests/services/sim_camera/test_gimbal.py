@@ -13,7 +13,7 @@ from scipy.spatial.transform import Rotation
 from schemas import topics
 from schemas.messages import CompressedImage, FrameTransform, GimbalCommand, NavState
 from services.sim_camera.build import build
-from services.sim_camera.fitted import Fitted
+from services.sim_camera.fitted import FittedCamera
 from services.sim_camera.gimbal import Aim, joints_of
 from services.sim_camera.renderer import Pose
 from services.sim_camera.service import SimCamera
@@ -126,7 +126,7 @@ def test_joints_are_the_euler_angles_of_the_order_z_x_y(pan, roll, tilt):
 def test_what_is_rendered_is_what_the_frame_and_the_joints_tell():
     renderer = Watching()
     camera = msgspec.structs.replace(GIMBAL, mount=Mount(xyz=(0.4, 0.0, -0.1), rpy=(0.0, 0.5, 0.2)))
-    service = SimCamera(renderer, [Fitted("v", camera, np.random.default_rng(1), "gimbal")], lambda model: Path())
+    service = SimCamera(renderer, [FittedCamera("v", camera, np.random.default_rng(1), "gimbal")], lambda model: Path())
     truth = {"v": NavState(timestamp=stamp(0.18), position=vector(np.array((1.0, 2.0, 3.0))), orientation=quaternion(BANKED))}
     ask = {"v": GimbalCommand(pan=0.4, tilt=0.2)}
     sent = [stepped(service, n / 5, truth=truth, **{**NOTHING_TOLD, "gimbals": ask}) for n in range(1, 6)][-1]
@@ -146,7 +146,7 @@ def test_what_is_rendered_is_what_the_frame_and_the_joints_tell():
 def test_each_camera_of_a_vehicle_has_its_own_topic():
     chase = Chase(mount=Mount(xyz=(-6.0, 0.0, 2.0)), hz=5.0, width=16, height=16, fov=1.2)
     cameras = {"image": CAMERA, "chase": chase, "gimbal": GIMBAL}
-    fitted = [Fitted("v", camera, np.random.default_rng(1), output) for output, camera in cameras.items()]
+    fitted = [FittedCamera("v", camera, np.random.default_rng(1), output) for output, camera in cameras.items()]
     sent = stepped(SimCamera(GreyRenderer(), fitted, lambda model: Path()), 0.2, truth={"v": LEVEL_TRUTH}, **NOTHING_TOLD)
     frames = {output: sent[output]["v"].frame_id for output in cameras}
     assert frames == {"image": "v/camera_optical", "chase": "v/chase_optical", "gimbal": "v/gimbal_optical"}

@@ -12,7 +12,7 @@ from PIL import Image
 from schemas import topics
 from schemas.messages import CameraCalibration, CompressedImage, NavState
 from services.sim_camera.build import build
-from services.sim_camera.fitted import Fitted
+from services.sim_camera.fitted import FittedCamera
 from services.sim_camera.renderer import Shot
 from services.sim_camera.service import SimCamera
 from tests.runtime.stepping import stepped
@@ -53,7 +53,7 @@ class GreyRenderer:
 
 
 def service(renderer=None, **cameras):
-    fitted = [Fitted(name, camera, np.random.default_rng(1)) for name, camera in cameras.items()]
+    fitted = [FittedCamera(name, camera, np.random.default_rng(1)) for name, camera in cameras.items()]
     return SimCamera(renderer or GreyRenderer(), fitted, lambda model: Path())
 
 

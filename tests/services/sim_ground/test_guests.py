@@ -9,7 +9,7 @@ from schemas.messages import Contact, LaserScan, NavState
 from services.sim_air.build import build as build_air
 from services.sim_ground.build import build
 from services.sim_ground.guest import Course
-from services.sim_ground.world import BulletWorld, Placed
+from services.sim_ground.world import BodyPlacement, BulletWorld
 from tests.services.sim_ground.ride import Driver
 from uvf.maths.kinematics import Twist
 from uvf.maths.rotations import IDENTITY
@@ -20,7 +20,7 @@ from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.time.lockstep import Lockstep
 
 BODY = load_vehicle(ROOT / "vehicles", "burger").ground
-PLACED = Placed(BODY, ROOT / "vehicles" / "burger" / BODY.urdf, (0.0, 0.0, 0.0))
+PLACED = BodyPlacement(BODY, ROOT / "vehicles" / "burger" / BODY.urdf, (0.0, 0.0, 0.0))
 
 
 def driven_towards_milvus(tmp_path, script, until):

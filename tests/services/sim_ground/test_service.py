@@ -10,7 +10,7 @@ from schemas.messages import NavState, Quaternion, Vector3, WheelCommand
 from services.sim_ground.body import BodyState, Touch
 from services.sim_ground.rig import Rig
 from services.sim_ground.service import SimGround
-from services.sim_ground.stage import Stage
+from services.sim_ground.stage import GroundStage
 from tests.runtime.stepping import stepped
 from tests.services.sim_ground.ride import site_with
 from uvf.maths.kinematics import WheelSpeeds
@@ -65,7 +65,7 @@ def service_in(site, world, aircraft=()):
     models = {name: load_urdf(member.folder / member.file.ground.urdf) for name, member in site.members.items()}
     surroundings = Surroundings(solids(site.world), {name: vehicle_tree(model) for name, model in models.items()})
     rigs = {name: Rig(site, member, member.file.ground, surroundings.still) for name, member in site.members.items()}
-    stage = Stage(world, rigs, surroundings, tuple(rigs), join=None)
+    stage = GroundStage(world, rigs, surroundings, tuple(rigs), join=None)
     return SimGround(world, surroundings, stage, aircraft)
 
 

@@ -13,7 +13,7 @@ from services.slam import build as slam_build
 from services.slam.build import build as build_slam
 from tests.runtime.stepping import stepped
 from tests.stops import NOBODY
-from uvf.models.mission.file import Job, Waypoint
+from uvf.models.mission.file import JobFile, Waypoint
 from uvf.models.scenario import ROOT, load_scenario
 from uvf.models.yaml_data import BadInput
 
@@ -30,7 +30,7 @@ def with_burger(site, **changes):
 
 
 def with_job(site, **job):
-    return with_burger(site, entry=msgspec.structs.replace(site.members["burger"].entry, job=Job(**job)))
+    return with_burger(site, entry=msgspec.structs.replace(site.members["burger"].entry, job=JobFile(**job)))
 
 
 def test_only_ground_vehicles_get_them(site):

@@ -17,7 +17,7 @@ from uvf.models.yaml_data import BadInput
 from uvf.runtime.messages.convert import occupancy_cells, planar_pose, stamp
 from uvf.runtime.messages.frames import FrameBuffer
 from uvf.slam.graph.method import GraphSlam
-from uvf.slam.maps.session import Session
+from uvf.slam.maps.session import MappingSession
 
 EARLIER, NOW = ellipse(40), ellipse(6, begin=2.0, end=2.5)
 """Ways in the world, which is the room's frame."""
@@ -67,7 +67,7 @@ def test_the_earlier_map_is_there_at_once_and_grows_on(session, tmp_path):
         assert np.hypot(place.x - true[0], place.y - true[1]) < 0.05
     cells = occupancy_cells(said[0]["map"])
     assert np.count_nonzero((cells >= 0) & (cells < 25)) * 0.05**2 > 15.0
-    assert len(Session.decoded(said[0]["session"].data, "").keyframes) >= len(session.keyframes)
+    assert len(MappingSession.decoded(said[0]["session"].data, "").keyframes) >= len(session.keyframes)
 
 
 def test_what_cannot_be_gone_on_with_is_one_line(session, tmp_path):

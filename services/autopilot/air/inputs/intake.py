@@ -6,7 +6,7 @@ from dataclasses import astuple
 
 from schemas.messages import AirData, Gnss, Imu, Mission, MissionItem, MissionProgress, Mode, NavState, OrbitRequest, Vector3
 from services.autopilot.air.mode_table import FlightMode
-from uvf.estimation.sensor_inputs import Fix, Inertial, Pressures
+from uvf.estimation.sensor_inputs import GnssFix, InertialSample, Pressures
 from uvf.guidance.approach import with_courses
 from uvf.guidance.flight_plan import ItemKind, PlanItem, PlanProgress
 from uvf.guidance.route import Circle, Place
@@ -56,12 +56,12 @@ def frd(v: Vector3) -> tuple[float, float, float]:
     return v.x, -v.y, -v.z
 
 
-def inertial(message: Imu, t: float) -> Inertial | None:
+def inertial(message: Imu, t: float) -> InertialSample | None:
     """A sample as seen at time ``t`` [s]; None when its stamp is of no time near: one ahead would make all after it late."""
     age = t - seconds(message.timestamp)
     if not -AHEAD <= age <= OLDEST_SAMPLE:
         return None
-    return Inertial(frd(message.angular_velocity), frd(message.specific_force), frd(message.magnetic_field), age)
+    return InertialSample(frd(message.angular_velocity), frd(message.specific_force), frd(message.magnetic_field), age)
 
 
 def pressures(message: AirData, t: float) -> Pressures | None:
@@ -75,14 +75,14 @@ def _is_within(value: float, limits: tuple[float, float]) -> bool:
     return limits[0] <= value <= limits[1]
 
 
-def fix(message: Gnss, tangent: LocalTangent, t: float) -> Fix | None:
+def fix(message: Gnss, tangent: LocalTangent, t: float) -> GnssFix | None:
     """A fix as seen at time ``t`` [s]; its stamp is the moment it is valid for. None if there is none, it is old or a number is none."""
     age = t - seconds(message.timestamp)
     if message.fix != Gnss.FIX_3D or not -AHEAD <= age <= OLDEST_FIX:
         return None
     east, north, _ = tangent.enu(message.latitude, message.longitude, message.altitude).tolist()
     v = message.velocity_enu
-    found = Fix(
+    found = GnssFix(
         north=north,
         east=east,
         height=message.altitude - tangent.altitude,
@@ -97,13 +97,13 @@ def fix(message: Gnss, tangent: LocalTangent, t: float) -> Fix | None:
     return found if all(map(math.isfinite, astuple(found))) else None
 
 
-def left_fix(state: NavState, t: float) -> Fix | None:
+def left_fix(state: NavState, t: float) -> GnssFix | None:
     """The state that another instance has left, flown straight on to ``t`` [s]; None if that is long ago."""
     p, v, age = state.position, state.velocity, t - seconds(state.timestamp)
     if age > OLDEST_STATE:
         return None
     sigma = state.position_sigma + age * TURNED_OFF
-    return Fix(p.y + age * v.y, p.x + age * v.x, p.z, v.y, v.x, 0.0, 0.0, sigma, sigma, TURNED_OFF)
+    return GnssFix(p.y + age * v.y, p.x + age * v.x, p.z, v.y, v.x, 0.0, 0.0, sigma, sigma, TURNED_OFF)
 
 
 def place(v: Vector3) -> Place:

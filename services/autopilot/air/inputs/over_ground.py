@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 
 from schemas.messages import Range
-from uvf.estimation.sensor_inputs import Inertial
+from uvf.estimation.sensor_inputs import InertialSample
 from uvf.estimation.state import Estimate
 from uvf.maths.filters import LowPass
 from uvf.maths.geodesy import GRAVITY
@@ -28,7 +28,7 @@ class GroundProximity:
         self.heave = GRAVITY
         """m/s^2, specific force upwards."""
 
-    def hear(self, ranges: Sequence[Range], samples: Sequence[Inertial], dt: float) -> None:
+    def hear(self, ranges: Sequence[Range], samples: Sequence[InertialSample], dt: float) -> None:
         for reading in ranges:
             if reading.frame_id == self._frame:
                 self._reading = reading

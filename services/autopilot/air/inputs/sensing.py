@@ -9,7 +9,7 @@ from services.autopilot.air.inputs import intake
 from uvf.estimation.air_data_check import FlightState, Frozen
 from uvf.estimation.estimators import Instruments, estimator
 from uvf.estimation.mount import ImuMount
-from uvf.estimation.sensor_inputs import Fix, Inertial, Pressures, Sensed
+from uvf.estimation.sensor_inputs import GnssFix, InertialSample, Pressures, Sensed
 from uvf.estimation.state import Estimate
 from uvf.maths.geodesy import LocalTangent
 from uvf.models.vehicle.flight_params import AirParams
@@ -24,7 +24,7 @@ Believe = Callable[[tuple[object, Pressures] | None, FlightState | None, AirPara
 class SensorInputs(NamedTuple):
     """In one cycle."""
 
-    imu: list[Inertial]
+    imu: list[InertialSample]
     air_data: AirData | None
     gnss: Gnss | None
     airborne: bool
@@ -35,7 +35,7 @@ class StateEstimation:
 
     def __init__(self, instruments: Instruments, tangent: LocalTangent, kind: Literal["full", "book"], believe: Believe) -> None:
         """kind: of the estimator."""
-        self.felt: list[Inertial] = []
+        self.felt: list[InertialSample] = []
         self.accuracy = 0.0
         self.field = 0.0
         self._estimator = estimator(kind, instruments)
@@ -76,12 +76,12 @@ class StateEstimation:
         self._now = self._estimator.step(Sensed(samples, pressures, fix), params, passed)
         return self._now
 
-    def _left_fix(self, t: float, dt: float) -> Fix | None:
+    def _left_fix(self, t: float, dt: float) -> GnssFix | None:
         """After a restart without GNSS: where the instance before has been, once a fix has been waited for."""
         self._waited += dt
         return intake.left_fix(self._left, t) if self._left is not None and self._waited > FIRST_FIX else None
 
-    def _new_fix(self, t: float, said: SensorInputs) -> Fix | None:
+    def _new_fix(self, t: float, said: SensorInputs) -> GnssFix | None:
         gnss = said.gnss
         assert gnss is not None
         stamp_ns = gnss.timestamp.ToNanoseconds()

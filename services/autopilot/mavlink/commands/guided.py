@@ -4,7 +4,7 @@ import math
 
 from schemas.messages import AltitudeOrder, GoalRequest, Mode, OrbitRequest, OrderRequest, SpeedOrder, Vector3
 from services.autopilot.mavlink.commands.actions import SOURCE, set_mode
-from services.autopilot.mavlink.commands.commands import Acknowledger, Command, Handler
+from services.autopilot.mavlink.commands.commands import Acknowledger, Handler, ReceivedCommand
 from services.autopilot.mavlink.commands.places import (
     BadPlace,
     altitude_of,
@@ -24,7 +24,7 @@ CIRCLES = (Mode.MODE_HOLD, Mode.MODE_ORBIT, Mode.MODE_RETURN)
 COUNTERCLOCKWISE = 1.0  # exactly: MAVSDK has a yaw in radians in this parameter
 
 
-def _reposition(line: VehicleConnection, command: Command, ack: Acknowledger) -> None:
+def _reposition(line: VehicleConnection, command: ReceivedCommand, ack: Acknowledger) -> None:
     """All of the place left out = hold here; only an altitude = fly higher or lower; a part left out = as now."""
     speed, _, radius, direction, latitude, longitude, height = command.p
     done = ack.outcome("Go to refused")
@@ -49,7 +49,7 @@ def _reposition(line: VehicleConnection, command: Command, ack: Acknowledger) ->
         go_to(line, GoalRequest(position=place, yaw=math.nan, source=SOURCE, radius=ring, speed=speed), True, done)
 
 
-def _may_change(command: Command) -> bool:
+def _may_change(command: ReceivedCommand) -> bool:
     flags = command.p[1]
     return math.isfinite(flags) and bool(int(flags) & mav.MAV_DO_REPOSITION_FLAGS_CHANGE_MODE)
 
@@ -88,7 +88,7 @@ def _drive(line: VehicleConnection, place: Vector3, speed: float, ack: Acknowled
     go_to(line, GoalRequest(position=place, yaw=math.nan, source=SOURCE), True, on_its_way)
 
 
-def _only_higher(line: VehicleConnection, command: Command, ack: Acknowledger) -> None:
+def _only_higher(line: VehicleConnection, command: ReceivedCommand, ack: Acknowledger) -> None:
     """A circle keeps its place. From another mode it holds first. To a rover it means "stay here": so QGroundControl pauses it."""
     if line.facts.is_ground:
         set_mode(line, Mode.MODE_HOLD, ack.outcome("Hold refused"))
@@ -113,7 +113,7 @@ def _circles(line: VehicleConnection) -> bool:
     return status is not None and status.mode in CIRCLES and status.HasField("circle")
 
 
-def _change_altitude(line: VehicleConnection, command: Command, ack: Acknowledger) -> None:
+def _change_altitude(line: VehicleConnection, command: ReceivedCommand, ack: Acknowledger) -> None:
     """Parameter 2 is the frame of parameter 1; it changes no mode."""
     altitude, frame = command.p[0], command.p[1]
     if not math.isfinite(altitude):
@@ -123,7 +123,7 @@ def _change_altitude(line: VehicleConnection, command: Command, ack: Acknowledge
     line.ask("order", OrderRequest(altitude=AltitudeOrder(altitude=z), source=SOURCE), ack.outcome("Change of altitude refused"))
 
 
-def _orbit(line: VehicleConnection, command: Command, ack: Acknowledger) -> None:
+def _orbit(line: VehicleConnection, command: ReceivedCommand, ack: Acknowledger) -> None:
     """Left out: the vehicle's own radius and speed, the circle of now if it orbits, else here. For ever: a number of turns is refused."""
     radius, speed, _, turns, latitude, longitude, height = command.p
     if turns > 0 or speed < 0:

@@ -66,7 +66,7 @@ def _part(value: float) -> float:
     return min(max(value, -1.0), 1.0)
 
 
-class ByHand:
+class ManualControl:
     """What the newest sticks mean goes into ``line.commands``."""
 
     def __init__(self, line: VehicleConnection) -> None:

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from typing import Any
 
-from services.autopilot.mavlink.commands.commands import Acknowledger, Command, Handler
+from services.autopilot.mavlink.commands.commands import Acknowledger, Handler, ReceivedCommand
 from services.autopilot.mavlink.connection.line import Sender, VehicleConnection
 from uvf.mavlink import dialect as mav
 
@@ -47,7 +47,7 @@ def handlers(line: VehicleConnection) -> dict[int, Callable[[Any, Sender], None]
     }
 
 
-def _calibration(line: VehicleConnection, command: Command, ack: Acknowledger) -> None:
+def _calibration(line: VehicleConnection, command: ReceivedCommand, ack: Acknowledger) -> None:
     ack(mav.MAV_RESULT_UNSUPPORTED, "Calibration refused: simulated sensors need none")
 
 

@@ -28,7 +28,7 @@ class Sender(NamedTuple):
     component: int
 
 
-class Said(NamedTuple):
+class SpokenText(NamedTuple):
     """A text, which is cut into messages for who gets it."""
 
     severity: int
@@ -36,7 +36,7 @@ class Said(NamedTuple):
 
 
 class Out(NamedTuple):
-    what: mav.MAVLink_message | Said
+    what: mav.MAVLink_message | SpokenText
     to: Peer | None
     """None = every peer."""
 
@@ -106,7 +106,7 @@ class VehicleConnection:
         """STATUSTEXT; the same text to the same peers at most every 10 s. Items are counted as on a station's map."""
         text = counted_from_one(text)
         if self._limiter.admits(self.t, (text, to)):
-            self.outbox.append(Out(Said(severity, text), to))
+            self.outbox.append(Out(SpokenText(severity, text), to))
 
     @contextmanager
     def hearing(self, speaker: Peer | None) -> Iterator[None]:
@@ -171,15 +171,15 @@ class VehicleConnection:
         found: list[tuple[mav.MAVLink_message, list[Peer]]] = []
         for what, to in out:
             receivers = list(peers) if to is None else [to]
-            if isinstance(what, Said):
+            if isinstance(what, SpokenText):
                 found += self._chunks(what, self._budget.admitted(self.t, what.severity, receivers))
             else:
                 found.append((what, receivers))
         for peer, count in self._budget.left_out(self.t):
-            found += self._chunks(Said(mav.MAV_SEVERITY_WARNING, f"{count} texts left out"), [peer])
+            found += self._chunks(SpokenText(mav.MAV_SEVERITY_WARNING, f"{count} texts left out"), [peer])
         return found
 
-    def _chunks(self, said: Said, receivers: list[Peer]) -> list[tuple[mav.MAVLink_message, list[Peer]]]:
+    def _chunks(self, said: SpokenText, receivers: list[Peer]) -> list[tuple[mav.MAVLink_message, list[Peer]]]:
         return [(chunk, receivers) for chunk in chunks(said.severity, said.text, self._limiter.next_id())] if receivers else []
 
     def take_requests(self) -> list[tuple[str, Message]]:

@@ -28,7 +28,7 @@ class Case(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     sets: dict[str, str] = {}
 
 
-class Row(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class ParameterRow(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """As the head of ``parameters.yaml`` explains."""
 
     type: Literal["int", "real"]
@@ -44,7 +44,7 @@ class Row(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class Table(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    parameters: dict[str, Row]
+    parameters: dict[str, ParameterRow]
 
 
 @dataclass(frozen=True)
@@ -117,14 +117,14 @@ def _table() -> Table:
     return load_yaml(FILE, Table)
 
 
-def _of_kind(row: Row, kind: Kind, given: Mapping[str, float]) -> Row:
+def _of_kind(row: ParameterRow, kind: Kind, given: Mapping[str, float]) -> ParameterRow:
     """With the value of this vehicle."""
     if isinstance(row.value, str):
         return msgspec.structs.replace(row, value=float(given.get(row.value, 0.0)))
     return msgspec.structs.replace(row, value=row.ground) if kind == "ground" and row.ground is not None else row
 
 
-def _standard(name: str, row: Row, own: Mapping[str, Own], kind: Kind) -> Parameter:
+def _standard(name: str, row: ParameterRow, own: Mapping[str, Own], kind: Kind) -> Parameter:
     named = {row.own} if row.own else {key for case in row.cases.values() for key in case.sets}
     for key in named - own.keys() if not row.fixed else ():
         raise BadInput(f"{FILE.name}: {name}: '{key}' is no parameter of a {kind} autopilot; {nearest(key, own)}")

@@ -9,7 +9,7 @@ import msgspec
 from schemas.messages import ParamRequest, ParamValues
 from services.autopilot.mavlink.connection.asking import Done
 from services.autopilot.mavlink.connection.line import VehicleConnection
-from services.autopilot.mavlink.parameters.parameter_store import Store, Unreadable
+from services.autopilot.mavlink.parameters.parameter_store import Store, UnreadableStore
 from uvf.mavlink import dialect as mav
 from uvf.models.yaml_data import BadInput, convert
 
@@ -137,7 +137,7 @@ class ParameterSettings:
         """Those that are remembered and still make sense."""
         try:
             found = self._store.load()
-        except Unreadable as error:
+        except UnreadableStore as error:
             self.note = f"Parameters: {error}; those of the vehicle's file count"
             return {}
         good = {name: value for name, value in found.items() if self._is_good(name, value)}

@@ -14,7 +14,7 @@ TOLD_OTHERWISE = re.compile(r"mission item \d+ reached|camera trigger \d+")
 """MISSION_ITEM_REACHED tells of the one, a survey has hundreds of the other."""
 
 
-class News:
+class EventNews:
     """The bus hands old events to whoever comes later: a link that starts again is no reason to say them once more."""
 
     def __init__(self) -> None:

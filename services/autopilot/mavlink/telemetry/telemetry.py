@@ -26,7 +26,7 @@ Build = Callable[[VehicleInfo, VehicleState, float], Message | list[mav.MAVLink_
 
 
 @dataclass(frozen=True)
-class Stream:
+class TelemetryStream:
     """hz: default rate [1/s, wall]; 0 = only when asked for."""
 
     build: Build
@@ -182,36 +182,36 @@ def _quaternion(facts: VehicleInfo, latest: VehicleState, t: float) -> Message:
     return mav.MAVLink_attitude_quaternion_message(navigation.boot_ms(t), w, x, y, z, roll, pitch, yaw)
 
 
-STREAMS: dict[int, Stream] = {
-    mav.MAVLINK_MSG_ID_HEARTBEAT: Stream(lambda f, n, t: identity.heartbeat(f, n), 1),
-    mav.MAVLINK_MSG_ID_SYS_STATUS: Stream(_sys_status, 1),
-    mav.MAVLINK_MSG_ID_SYSTEM_TIME: Stream(navigation.system_time, 1),
-    mav.MAVLINK_MSG_ID_GPS_RAW_INT: Stream(_gps_raw, 5),
-    mav.MAVLINK_MSG_ID_ATTITUDE: Stream(navigation.attitude, 20),
-    mav.MAVLINK_MSG_ID_ATTITUDE_QUATERNION: Stream(_quaternion, 20),
-    mav.MAVLINK_MSG_ID_LOCAL_POSITION_NED: Stream(navigation.local_position, 5),
-    mav.MAVLINK_MSG_ID_GLOBAL_POSITION_INT: Stream(navigation.global_position, 10),
-    mav.MAVLINK_MSG_ID_FENCE_STATUS: Stream(_fence_status, 1),
-    mav.MAVLINK_MSG_ID_MISSION_CURRENT: Stream(lambda f, n, t: mission_current(n) if n.progress is not None else None, 1),
-    mav.MAVLINK_MSG_ID_NAV_CONTROLLER_OUTPUT: Stream(steering.controller_output, 3),
-    mav.MAVLINK_MSG_ID_VFR_HUD: Stream(navigation.hud, 10),
-    mav.MAVLINK_MSG_ID_ALTITUDE: Stream(navigation.altitude, 5),
-    mav.MAVLINK_MSG_ID_BATTERY_STATUS: Stream(_battery_status, 1),
-    mav.MAVLINK_MSG_ID_ESTIMATOR_STATUS: Stream(estimate_quality.estimator_status, 1),
-    mav.MAVLINK_MSG_ID_WIND_COV: Stream(estimate_quality.wind, 1),
-    mav.MAVLINK_MSG_ID_SERVO_OUTPUT_RAW: Stream(sensor_messages.servo_output, 4),
-    mav.MAVLINK_MSG_ID_HIGHRES_IMU: Stream(sensor_messages.highres_imu, 5),
-    mav.MAVLINK_MSG_ID_SCALED_PRESSURE: Stream(sensor_messages.scaled_pressure, 1),
-    mav.MAVLINK_MSG_ID_VIBRATION: Stream(sensor_messages.vibration, 1),
-    mav.MAVLINK_MSG_ID_ATTITUDE_TARGET: Stream(steering.attitude_target, 5),
-    mav.MAVLINK_MSG_ID_POSITION_TARGET_GLOBAL_INT: Stream(steering.position_target, 2),
-    mav.MAVLINK_MSG_ID_ADSB_VEHICLE: Stream(traffic, 1),
-    mav.MAVLINK_MSG_ID_HOME_POSITION: Stream(_home_position, 0.5),
-    mav.MAVLINK_MSG_ID_EXTENDED_SYS_STATE: Stream(_extended_sys_state, 1),
-    mav.MAVLINK_MSG_ID_CURRENT_MODE: Stream(lambda f, n, t: identity.current_mode(n), 0.5),
-    mav.MAVLINK_MSG_ID_ORBIT_EXECUTION_STATUS: Stream(steering_telemetry.orbit_status, 2),
-    mav.MAVLINK_MSG_ID_RC_CHANNELS: Stream(steering_telemetry.rc_channels, 2),
-    mav.MAVLINK_MSG_ID_GPS_GLOBAL_ORIGIN: Stream(navigation.global_origin, 0),
-    mav.MAVLINK_MSG_ID_AUTOPILOT_VERSION: Stream(lambda f, n, t: identity.autopilot_version(f), 0),
-    mav.MAVLINK_MSG_ID_PROTOCOL_VERSION: Stream(lambda f, n, t: identity.protocol_version(), 0),
+STREAMS: dict[int, TelemetryStream] = {
+    mav.MAVLINK_MSG_ID_HEARTBEAT: TelemetryStream(lambda f, n, t: identity.heartbeat(f, n), 1),
+    mav.MAVLINK_MSG_ID_SYS_STATUS: TelemetryStream(_sys_status, 1),
+    mav.MAVLINK_MSG_ID_SYSTEM_TIME: TelemetryStream(navigation.system_time, 1),
+    mav.MAVLINK_MSG_ID_GPS_RAW_INT: TelemetryStream(_gps_raw, 5),
+    mav.MAVLINK_MSG_ID_ATTITUDE: TelemetryStream(navigation.attitude, 20),
+    mav.MAVLINK_MSG_ID_ATTITUDE_QUATERNION: TelemetryStream(_quaternion, 20),
+    mav.MAVLINK_MSG_ID_LOCAL_POSITION_NED: TelemetryStream(navigation.local_position, 5),
+    mav.MAVLINK_MSG_ID_GLOBAL_POSITION_INT: TelemetryStream(navigation.global_position, 10),
+    mav.MAVLINK_MSG_ID_FENCE_STATUS: TelemetryStream(_fence_status, 1),
+    mav.MAVLINK_MSG_ID_MISSION_CURRENT: TelemetryStream(lambda f, n, t: mission_current(n) if n.progress is not None else None, 1),
+    mav.MAVLINK_MSG_ID_NAV_CONTROLLER_OUTPUT: TelemetryStream(steering.controller_output, 3),
+    mav.MAVLINK_MSG_ID_VFR_HUD: TelemetryStream(navigation.hud, 10),
+    mav.MAVLINK_MSG_ID_ALTITUDE: TelemetryStream(navigation.altitude, 5),
+    mav.MAVLINK_MSG_ID_BATTERY_STATUS: TelemetryStream(_battery_status, 1),
+    mav.MAVLINK_MSG_ID_ESTIMATOR_STATUS: TelemetryStream(estimate_quality.estimator_status, 1),
+    mav.MAVLINK_MSG_ID_WIND_COV: TelemetryStream(estimate_quality.wind, 1),
+    mav.MAVLINK_MSG_ID_SERVO_OUTPUT_RAW: TelemetryStream(sensor_messages.servo_output, 4),
+    mav.MAVLINK_MSG_ID_HIGHRES_IMU: TelemetryStream(sensor_messages.highres_imu, 5),
+    mav.MAVLINK_MSG_ID_SCALED_PRESSURE: TelemetryStream(sensor_messages.scaled_pressure, 1),
+    mav.MAVLINK_MSG_ID_VIBRATION: TelemetryStream(sensor_messages.vibration, 1),
+    mav.MAVLINK_MSG_ID_ATTITUDE_TARGET: TelemetryStream(steering.attitude_target, 5),
+    mav.MAVLINK_MSG_ID_POSITION_TARGET_GLOBAL_INT: TelemetryStream(steering.position_target, 2),
+    mav.MAVLINK_MSG_ID_ADSB_VEHICLE: TelemetryStream(traffic, 1),
+    mav.MAVLINK_MSG_ID_HOME_POSITION: TelemetryStream(_home_position, 0.5),
+    mav.MAVLINK_MSG_ID_EXTENDED_SYS_STATE: TelemetryStream(_extended_sys_state, 1),
+    mav.MAVLINK_MSG_ID_CURRENT_MODE: TelemetryStream(lambda f, n, t: identity.current_mode(n), 0.5),
+    mav.MAVLINK_MSG_ID_ORBIT_EXECUTION_STATUS: TelemetryStream(steering_telemetry.orbit_status, 2),
+    mav.MAVLINK_MSG_ID_RC_CHANNELS: TelemetryStream(steering_telemetry.rc_channels, 2),
+    mav.MAVLINK_MSG_ID_GPS_GLOBAL_ORIGIN: TelemetryStream(navigation.global_origin, 0),
+    mav.MAVLINK_MSG_ID_AUTOPILOT_VERSION: TelemetryStream(lambda f, n, t: identity.autopilot_version(f), 0),
+    mav.MAVLINK_MSG_ID_PROTOCOL_VERSION: TelemetryStream(lambda f, n, t: identity.protocol_version(), 0),
 }

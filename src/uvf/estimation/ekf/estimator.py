@@ -26,11 +26,11 @@ from uvf.estimation.ekf.states import (
     VELOCITY,
     WIND,
     YAW,
-    Attitude,
+    FilterState,
     Floats,
-    State,
+    NominalAttitude,
 )
-from uvf.estimation.sensor_inputs import Fix, Inertial, Sensed, Triple
+from uvf.estimation.sensor_inputs import GnssFix, InertialSample, Sensed, Triple
 from uvf.estimation.state import Estimate
 from uvf.maths.filters import LowPass
 from uvf.maths.geodesy import GRAVITY
@@ -112,10 +112,10 @@ class FullEstimator:
 
     # beginning
 
-    def _start(self, samples: list[Inertial], fix: Fix, params: AirParams) -> Aiding:
-        first = samples[-1] if samples else Inertial((0.0, 0.0, 0.0), (0.0, 0.0, -float(FALL[2])), (0.0, 0.0, 0.0))
+    def _start(self, samples: list[InertialSample], fix: GnssFix, params: AirParams) -> Aiding:
+        first = samples[-1] if samples else InertialSample((0.0, 0.0, 0.0), (0.0, 0.0, -float(FALL[2])), (0.0, 0.0, 0.0))
         lies, tilt, yaw = self._first_attitude(first, fix)
-        state, sheet = State(lies), self._sheet
+        state, sheet = FilterState(lies), self._sheet
         state.x[POSITION] = fix.north + fix.age * fix.v_north, fix.east + fix.age * fix.v_east, -fix.height - fix.age * fix.v_up
         state.x[VELOCITY] = fix.v_north, fix.v_east, -fix.v_up
         sigma = np.zeros(SIZE)
@@ -131,7 +131,7 @@ class FullEstimator:
         aiding.delay.keep(self._sampled, state.x)
         return aiding
 
-    def _first_attitude(self, sample: Inertial, fix: Fix) -> tuple[Attitude, float, float]:
+    def _first_attitude(self, sample: InertialSample, fix: GnssFix) -> tuple[NominalAttitude, float, float]:
         """And the sigmas of tilt and yaw [rad]."""
         speed = math.hypot(fix.v_north, fix.v_east)
         if self._left is not None:
@@ -146,7 +146,7 @@ class FullEstimator:
 
     # each cycle
 
-    def _feel(self, aiding: Aiding, samples: list[Inertial]) -> None:
+    def _feel(self, aiding: Aiding, samples: list[InertialSample]) -> None:
         """The IMU's samples since the last cycle."""
         if not samples:
             return
@@ -227,7 +227,7 @@ class FullEstimator:
     def _through_air(aiding: Aiding) -> float:
         return float(np.linalg.norm(aiding.filter.state.through_air))
 
-    def _take_fix(self, aiding: Aiding, fix: Fix, unfixed: float) -> None:
+    def _take_fix(self, aiding: Aiding, fix: GnssFix, unfixed: float) -> None:
         x = aiding.filter.state.x
         before = x[POSITION].copy()
         aiding.fix(fix, self._acceleration, self._sampled, max(fix.age - (self._t - self._sampled), 0.0))

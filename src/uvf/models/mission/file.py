@@ -19,7 +19,7 @@ VehicleName = Annotated[str, Meta(pattern=rf"^{VEHICLE}\Z", max_length=40)]
 FolderName = Annotated[str, Meta(pattern=rf"^{FOLDER}\Z", max_length=80)]
 
 
-class Start(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class StartPose(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Where and how fast a vehicle begins, world frame (ENU)."""
 
     x: Metres
@@ -53,7 +53,7 @@ class Waypoint(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     distance: NotNegative = 0.0  # m
 
 
-class Job(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class JobFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """What a vehicle does with nobody touching anything; empty = hold."""
 
     explore: bool = False
@@ -84,9 +84,9 @@ class Maps(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 class Vehicle(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     model: FolderName
-    start: Start
+    start: StartPose
     system_id: Annotated[int, Meta(ge=1, le=244)]
-    job: Job = Job()
+    job: JobFile = JobFile()
     roles: dict[str, str] = {}
     fence: FenceFile = FenceFile()
     maps: Maps | None = None  # of a ground vehicle: it serves these, and its own

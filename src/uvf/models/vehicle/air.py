@@ -43,7 +43,7 @@ class Lever(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     lag: NotNegative = 0.0  # s
 
 
-class Commands(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class CommandProperties(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """What each field of a SurfaceCommand is written to."""
 
     aileron: Surface = Surface()
@@ -107,7 +107,7 @@ class AirBody(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     trim_speed: Positive  # m/s
     servo_rate: Positive  # rad/s
     servo_lag: NotNegative  # s
-    controls: Commands = Commands()
+    controls: CommandProperties = CommandProperties()
     joints: dict[Name, JointReading] = {}
     settings: dict[PropertyName, float] = {}
     max_sink: Positive = 3.05  # m/s at which the landing gear still holds; 10 ft/s, the most that 14 CFR 23.473 asks for

@@ -36,7 +36,7 @@ class Gust(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     place: tuple[Metres, Metres] | None = None  # m, world
 
 
-class Turbulence(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class TurbulenceFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Dryden's form after MIL-F-8785C, see ``uvf.maths.dryden``."""
 
     severity: Literal["light", "moderate", "severe"] = "light"
@@ -54,7 +54,7 @@ class Wind(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     steady: Velocity = (0.0, 0.0, 0.0)
     shear: Shear | None = None
     gusts: list[Gust] = []
-    turbulence: Turbulence | None = None
+    turbulence: TurbulenceFile | None = None
 
 
 def check_wind(wind: Wind, place: FileLocation) -> None:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from uvf.maths.se2 import Pose2
 from uvf.maths.se2_arrays import composed, inverted
-from uvf.slam.evaluation.odometry_noise import OdometryNoise, disturbed, exaggerated
+from uvf.slam.evaluation.odometry_noise import EstimatedNoise, disturbed, exaggerated
 from uvf.slam.evaluation.relations import Relations, index_of
 from uvf.slam.logs.laser_log import LaserLog, OdometryTrack
 from uvf.slam.reading import Beams, Reading
@@ -44,7 +44,7 @@ def mirrored(log: LaserLog, relations: Relations, best: Floats) -> Known:
 
 def noisier(log: LaserLog, relations: Relations, best: Floats) -> Known:
     """The odometry's noise doubled: a random walk of as much again is added."""
-    noise = OdometryNoise.of(log.odom_from_base, best).times(np.sqrt(3.0))
+    noise = EstimatedNoise.of(log.odom_from_base, best).times(np.sqrt(3.0))
     return replace(disturbed(log, noise, SEED), name=f"{log.name} noisier"), relations
 
 

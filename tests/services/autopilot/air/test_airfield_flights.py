@@ -12,7 +12,7 @@ from schemas import topics
 from schemas.messages import ArmRequest, GoAroundRequest, Mode, ModeRequest
 from tests.services.autopilot.air.test_flight import Flight, site
 from uvf.maths.rotations import to_euler
-from uvf.models.mission.file import Job, Start, Waypoint
+from uvf.models.mission.file import JobFile, StartPose, Waypoint
 from uvf.models.scenario import ROOT, MissionVehicle
 from uvf.models.vehicle.file import load_vehicle
 from uvf.models.world.file import Strip
@@ -78,8 +78,8 @@ THROWS = {"catapult": Throw("milvus", CATAPULT, 275.0, 6.9), "arm": Throw("stick
 def thrown(request, tmp_path_factory):
     throw = THROWS[request.param]
     folder = pushed(tmp_path_factory.mktemp("thrown"), throw.model, throw.along)
-    job = Job(mission=[Waypoint(kind="takeoff", z=30.0), Waypoint(x=600.0, z=40.0)])
-    flight = Flight(on_site(Start(throw.start, 0.0), job, folder, launch_push=15.0))
+    job = JobFile(mission=[Waypoint(kind="takeoff", z=30.0), Waypoint(x=600.0, z=40.0)])
+    flight = Flight(on_site(StartPose(throw.start, 0.0), job, folder, launch_push=15.0))
     flight.gone = throw.gone
 
     def watch(t):
@@ -110,7 +110,7 @@ def test_thrown_it_starts_its_motor_and_climbs_away_without_touching_again(throw
 @pytest.fixture(scope="module")
 def landed():
     """Returns from 500 m away; told to land it is told to go around at 12 m, and lands."""
-    flight = Flight(on_site(Start(200.0, 150.0, 60.0, 3.1, 25.0), Job(mission=[Waypoint(kind="return")])))
+    flight = Flight(on_site(StartPose(200.0, 150.0, 60.0, 3.1, 25.0), JobFile(mission=[Waypoint(kind="return")])))
     flight.given_up = None
 
     def watch(t):
@@ -151,7 +151,7 @@ def test_it_lands_on_the_strip_afterwards_and_is_disarmed(landed):
 def swept_aside(tmp_path_factory):
     """On its approach a gust from the left, felt below 11 m, carries it beside the strip."""
     folder = pushed(tmp_path_factory.mktemp("gust"), "milvus", GUST)
-    flight = Flight(on_site(Start(200.0, 150.0, 60.0, 3.1, 25.0), Job(mission=[Waypoint(kind="land")]), folder))
+    flight = Flight(on_site(StartPose(200.0, 150.0, 60.0, 3.1, 25.0), JobFile(mission=[Waypoint(kind="land")]), folder))
     flight.gusts = []
 
     def watch(t):

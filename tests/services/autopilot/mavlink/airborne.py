@@ -9,7 +9,7 @@ from services.autopilot.mavlink.service import MavlinkService
 from services.sim_air.build import build as build_sim
 from tests.services.autopilot.mavlink.rig import GCS, MemoryLink, Shelf
 from uvf.mavlink import dialect as mav
-from uvf.models.mission.file import Job
+from uvf.models.mission.file import JobFile
 from uvf.models.scenario import ROOT, MissionVehicle, load_scenario
 from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.contract.service_runner import ServiceRunner
@@ -23,7 +23,7 @@ def field(job=None):
     """Milvus on the strip of the airfield, without a job."""
     site = load_scenario(ROOT / "missions" / "circuit.yaml")
     member = site.members["milvus"]
-    entry = msgspec.structs.replace(member.entry, job=job or Job())
+    entry = msgspec.structs.replace(member.entry, job=job or JobFile())
     site.members["milvus"] = MissionVehicle(member.name, entry, member.file, member.folder)
     return site
 

@@ -22,7 +22,7 @@ from schemas.messages import (
 )
 from services.autopilot.ground.params import GroundAutopilotParams
 from services.autopilot.mavlink.connection.facts import VehicleInfo
-from services.autopilot.mavlink.parameters.parameter_store import Unreadable
+from services.autopilot.mavlink.parameters.parameter_store import UnreadableStore
 from services.autopilot.mavlink.service import MavlinkService
 from services.autopilot.told_params import ToldParams
 from tests.runtime.stepping import stepped
@@ -92,7 +92,7 @@ class Shelf:
         self.trouble = None
 
     def load(self):
-        if isinstance(self.trouble, Unreadable):
+        if isinstance(self.trouble, UnreadableStore):
             raise self.trouble
         return dict(self.settings)
 

@@ -9,7 +9,7 @@ import pytest
 from schemas.messages import Event, FrameTransform, LaserScan, MapFix, PlaceRequest, RelocalizeRequest, Vector3
 from services.slam import localization_service
 from services.slam.build import build
-from services.slam.localization_service import Beginning, LocalizationService
+from services.slam.localization_service import LocalizationService, LocalizationStart
 from tests.runtime.stepping import recall, stepped
 from tests.services.live_params import all_settable_are_read
 from tests.slam.localization.places import ROOM, ellipse, errors, map_of, readings
@@ -26,7 +26,7 @@ from uvf.runtime.messages.grids import as_message
 from uvf.slam.localization import known_map
 from uvf.slam.localization.localizer import HALF_SURE
 from uvf.slam.localization.params import FilterParams
-from uvf.slam.maps.session import NO_EDGES, Session
+from uvf.slam.maps.session import NO_EDGES, MappingSession
 from uvf.slam.method import Keyframe
 
 LIDAR_FILE = Lidar(Mount((0.0, 0.0, 0.2)), hz=5, beams=360, angle_min=0.0, angle_increment=0.01745, range_min=0.05, range_max=3.5)
@@ -47,7 +47,7 @@ def frame(t, parent, child, pose):
 
 
 def service(known, anywhere=False):
-    return LocalizationService("v", LIDAR_FILE, WORLD_FROM_MAP, FilterParams(), Beginning(known, anywhere, 3))
+    return LocalizationService("v", LIDAR_FILE, WORLD_FROM_MAP, FilterParams(), LocalizationStart(known, anywhere, 3))
 
 
 def drive(localization, drive, known=None, asked=None):
@@ -197,7 +197,7 @@ def site_with(tmp_path, maps):
 @pytest.mark.parametrize("kind", ["session", "picture"])
 def test_a_mission_names_the_map_and_gets_localization_in_the_place_of_mapping(room, tmp_path, kind):
     if kind == "session":
-        Session(tuple(moved(room, ellipse(40))[1]), NO_EDGES, "graph", {}).save(tmp_path / "room.npz")
+        MappingSession(tuple(moved(room, ellipse(40))[1]), NO_EDGES, "graph", {}).save(tmp_path / "room.npz")
     else:
         save_map(room.grid, tmp_path / "room.yaml")
     name = "room.npz" if kind == "session" else "room.yaml"
