@@ -72,10 +72,10 @@ def runs(tmp_path_factory):
 
 
 def failing(step, system):
-    def fails(self, t, **inputs):
+    def fails(self, t, now):
         if getattr(self, "_system_id", None) == system or getattr(getattr(self, "_ship", None), "system_id", None) == system:
             raise ZeroDivisionError("as told")
-        return step(self, t, **inputs)
+        return step(self, t, now)
 
     return fails
 

@@ -73,7 +73,7 @@ def test_an_empty_log_is_described_too(tmp_path, capsys):
 
 
 def test_a_mission_in_which_an_instance_has_failed_is_not_passed(tmp_path, capsys, monkeypatch):
-    def fails(self, t, **inputs):
+    def fails(self, t, given):
         raise ZeroDivisionError("as told")
 
     monkeypatch.setattr(OdometryService, "step", fails)

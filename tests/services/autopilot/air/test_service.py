@@ -33,7 +33,7 @@ def test_each_report_has_its_own_rate():
         "nav_state": 100,
         "pose": 100,
         "body_frame": 100,
-        "events": 100,
+        "events": 1,
         "status": 20,
         "targets": 20,
         "quality": 4,

@@ -172,7 +172,7 @@ class Vehicle:
         self.tell()
 
     def tell(self):
-        self.params = self._told.news(0.0, self.autopilot.params).get("params", self.params)
+        self.params = self._told.news(0.0, self.autopilot.params) or self.params
 
     def set(self, name, value):
         """By the page, or anybody else."""
