@@ -35,20 +35,20 @@ ACTIONS = {
 
 @dataclass(frozen=True)
 class FailsafeRule(Generic[K]):
-    """One line of a table of failsafes. Between ``wrong`` and ``mended`` there may be a gap: then it stays as it is."""
+    """One line of a table of failsafes. Between ``trigger`` and ``clear`` there may be a gap: then it stays as it is."""
 
     name: str
-    wrong: Callable[[K], bool]
-    mended: Callable[[K], bool]
-    begins: str
+    trigger: Callable[[K], bool]
+    clear: Callable[[K], bool]
+    raised_text: str
     """What is said when it begins, and when it ends."""
-    ends: str
-    figures: Callable[[K], str]
+    cleared_text: str
+    detail: Callable[[K], str]
     """The numbers of the case, for the event's cause."""
     action: Callable[[K], FailsafeAction] = lambda known: FailsafeAction.WARN
     after: Callable[[K], float] = lambda known: 0.0
     """s that it has to be wrong without a break."""
-    clears: float = 0.0
+    clear_delay: float = 0.0
     """s that it has to be mended without a break."""
     severity: Event.Severity = Event.WARNING
     parameters: tuple[str, ...] = ()
@@ -67,7 +67,7 @@ class RuleChange(Generic[K]):
     def event(self, t: float) -> Event:
         """What is said of it at ``t`` [s]; the figures are those of a beginning."""
         severity = self.rule.severity if self.began else Event.NOTICE
-        text = self.rule.begins if self.began else self.rule.ends
+        text = self.rule.raised_text if self.began else self.rule.cleared_text
         return Event(timestamp=stamp(t), severity=severity, text=text, cause=self.cause if self.began else "", source="autopilot")
 
 
@@ -114,9 +114,9 @@ class FailsafeWatch(Generic[K]):
 
     def _look(self, rule: FailsafeRule[K], known: K, dt: float) -> RuleChange[K] | None:
         holds = rule.name in self.holding
-        turns = rule.mended(known) if holds else rule.wrong(known)
+        turns = rule.clear(known) if holds else rule.trigger(known)
         self._time[rule.name] = self._time.get(rule.name, 0.0) + dt if turns else 0.0
-        if not turns or self._time[rule.name] < (rule.clears if holds else rule.after(known)):
+        if not turns or self._time[rule.name] < (rule.clear_delay if holds else rule.after(known)):
             return None
         self._time[rule.name] = 0.0
         if holds:
@@ -124,4 +124,4 @@ class FailsafeWatch(Generic[K]):
             self._overruled.discard(rule.name)
         else:
             self.holding[rule.name] = rule
-        return RuleChange(rule, not holds, rule.figures(known))
+        return RuleChange(rule, not holds, rule.detail(known))

@@ -95,8 +95,8 @@ class AutopilotAir(Service):
             self._land.step(estimate, self.params, 1 / self.hz)
         self._safety.hear(t, now.link, now.battery)
         warnings = self._safety.step(t, self._seen(estimate), self.params, 1 / self.hz)
-        self._pilot.fly_blind(self._sensing.unfixed > GNSS_HOLD or self._safety.blind)
-        self._heed(now.stop)
+        self._pilot.fly_blind(self._sensing.gnss_age > GNSS_HOLD or self._safety.blind)
+        self._handle_stop_all(now.stop)
         out = self._answer(now, estimate)
         hands = {"teleop": now.teleop, "mavlink": now.mavlink, "client": now.client}
         setpoints = {"offboard": now.setpoint_offboard, "client": now.setpoint_client, "mavlink": now.setpoint_mavlink}
@@ -133,7 +133,9 @@ class AutopilotAir(Service):
     def _fly(self, t: float, now: Estimate) -> ControlOutput:
         clearance = self._over_ground.clearance(t, now, self.params.gear_height)
         felt = self._over_ground
-        senses = FlightContext(self._land.airborne, self._armed, None, self._ship.servos, clearance, felt.push, felt.heave)
+        senses = FlightContext(
+            self._land.airborne, self._armed, None, self._ship.servos, clearance, felt.specific_force_x, felt.specific_force_up
+        )
         self._pilot.hear(self._steering.tell(senses), 1 / self.hz)
         flown = self._pilot.step(now, self._safety.demands(self.params), 1 / self.hz)
         self._surfaces = flown.surfaces
@@ -206,7 +208,7 @@ class AutopilotAir(Service):
     stand_in = staticmethod(coming_down)
 
     def _seen(self, now: Estimate) -> VehicleCondition:
-        return VehicleCondition(now, self._sensing.unfixed, self._land.airborne, self._surfaces)
+        return VehicleCondition(now, self._sensing.gnss_age, self._land.airborne, self._surfaces)
 
     def _faults(self) -> list[str]:
         """Why it should not be armed; nothing of it counts in the air."""
@@ -219,7 +221,7 @@ class AutopilotAir(Service):
         standing = PrearmInputs(
             now,
             self.params,
-            unfixed=self._sensing.unfixed,
+            gnss_age=self._sensing.gnss_age,
             accuracy=self._sensing.accuracy,
             charge=safety.endurance.charge,
             has_air_data=safety.has_air_data,
@@ -229,7 +231,7 @@ class AutopilotAir(Service):
         )
         return faults(standing)
 
-    def _heed(self, stop: StopStatus) -> None:
+    def _handle_stop_all(self, stop: StopStatus) -> None:
         """STOP ALL: in the air it holds, at rest it is disarmed."""
         self._stop = stop
         self._pilot.stop(stop.who)

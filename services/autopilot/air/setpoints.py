@@ -62,9 +62,9 @@ class FlightContext:
     servos: Servos = SERVOS
     clearance: float | None = None
     """m, of the wheels over the ground, seen by a range finder."""
-    push: float = 0.0
+    specific_force_x: float = 0.0
     """m/s^2, specific force forwards."""
-    heave: float = GRAVITY
+    specific_force_up: float = GRAVITY
     """m/s^2, specific force upwards."""
     setpoint: FlightSetpoint | None = None
     """What mode Offboard is asked for; None = nothing fresh."""

@@ -129,10 +129,10 @@ class GroundFailsafeMonitor:
             by_hand=doing.mode == Mode.MODE_MANUAL,
             silence=self._link.silence,
             let_go=self._let_go,
-            unplaced=self._times["unplaced"],
-            unsteered=self._times["unsteered"],
+            pose_age=self._times["unplaced"],
+            setpoint_age=self._times["unsteered"],
             unseen=self._sight.unseen,
-            unmapped=self._sight.unmapped,
+            map_age=self._sight.map_age,
             stuck_for=self._grip.stuck_for,
             stuck=self._grip.how,
             tilt=self._tilt.angle,
@@ -148,11 +148,11 @@ class GroundFailsafeMonitor:
     def obstacle(self, mode: int) -> str:
         """Why it must not move by itself in ``mode``: what it lacks for that; "" if it may."""
         holding = [self.watch.holding[name] for name in STANDS if name in self.watch.holding] if mode in BY_ITSELF else []
-        return holding[0].begins if holding else ""
+        return holding[0].raised_text if holding else ""
 
     def faults(self) -> list[str]:
         """Why it should not be armed."""
-        return [rule.begins for rule in self.watch.holding.values() if rule.name in ("tipped", "battery_critical")]
+        return [rule.raised_text for rule in self.watch.holding.values() if rule.name in ("tipped", "battery_critical")]
 
 
 def mode_of(action: FailsafeAction) -> int:

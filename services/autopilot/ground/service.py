@@ -85,9 +85,9 @@ class GroundAutopilot(Service):
         self._ramp = VelocityRamp(
             DriveLimits(body.max_linear, body.max_angular, body.max_linear_acceleration, body.max_angular_acceleration)
         )
-        begins, items = job
-        self._armed = begins
-        self._mode: int = Mode.MODE_MISSION if begins else Mode.MODE_HOLD
+        raised_text, items = job
+        self._armed = raised_text
+        self._mode: int = Mode.MODE_MISSION if raised_text else Mode.MODE_HOLD
         self._stop = StopStatus()
         self._choice = ActiveCommand("", "starting")
         self._refused_at = -inf
@@ -108,7 +108,7 @@ class GroundAutopilot(Service):
         self._events: list[Event] = []
 
     def step(self, t: float, now: interface.Inputs) -> interface.Outputs:
-        self._heed_stop(t, now.stop)
+        self._handle_stop_all(t, now.stop)
         self._here = place(now.pose, yaw_of(now.pose.pose.orientation)) if now.pose is not None else None
         self._watch(t, GroundSensorInputs(self._here, now.link, now.imu, now.ticks, now.scan, now.correction, now.battery))
         out = self.Outputs()
@@ -162,10 +162,10 @@ class GroundAutopilot(Service):
             return
         if (mode := mode_of(order.action)) != self._mode:
             self._mode = mode
-            self._tell(t, f"mode {mode_name(mode)}", order.rule.begins, Event.WARNING)
+            self._tell(t, f"mode {mode_name(mode)}", order.rule.raised_text, Event.WARNING)
         if order.action is FailsafeAction.OFF and self._armed:
             self._armed = False
-            self._tell(t, "disarmed", order.rule.begins, Event.WARNING)
+            self._tell(t, "disarmed", order.rule.raised_text, Event.WARNING)
 
     def _set_fence(self, t: float, request: FenceRequest) -> Reply:
         reason = self._safety.set_fence(request.fence, self._here)
@@ -181,7 +181,7 @@ class GroundAutopilot(Service):
             self._rally, self._rally_is_new = rally, True
         return Reply(accepted=not reason, reason=reason)
 
-    def _heed_stop(self, t: float, stop: StopStatus) -> None:
+    def _handle_stop_all(self, t: float, stop: StopStatus) -> None:
         before, self._stop = self._stop, stop
         if stop and stop.who != before.who:
             self._tell(t, "STOP ALL: standing until it is released", f"engaged by {stop.who}", Event.WARNING)
@@ -313,7 +313,7 @@ class GroundAutopilot(Service):
             system_id=self._system_id,
             breach=Breach.BREACH_EDGE if self._safety.is_outside else Breach.BREACH_NONE,
             breaches=self._safety.breaches,
-            failsafes=[rule.begins for rule in self._safety.watch.holding.values()],
+            failsafes=[rule.raised_text for rule in self._safety.watch.holding.values()],
         )
 
     def _tell(self, t: float, text: str, cause: str, severity: Event.Severity = Event.NOTICE) -> None:

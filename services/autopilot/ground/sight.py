@@ -8,11 +8,11 @@ MOVED = 0.03  # m of the wheels, after which a scan that is the same to the last
 
 
 class SensorWatch:
-    """``unseen`` and ``unmapped``: s; 0 as long as there never was any. A scan is as old as its last beam."""
+    """``unseen`` and ``map_age``: s; 0 as long as there never was any. A scan is as old as its last beam."""
 
     def __init__(self, sweeping: Sweeping) -> None:
         self._sweeping = sweeping
-        self.unseen = self.unmapped = 0.0
+        self.unseen = self.map_age = 0.0
         self._seen: float | None = None
         self._mapped: float | None = None
         self._scan: LaserScan | None = None
@@ -30,4 +30,4 @@ class SensorWatch:
         if correction is not None:
             self._mapped = seconds(correction.timestamp)
         self.unseen = t - self._seen if self._seen is not None else 0.0
-        self.unmapped = t - self._mapped if self._mapped is not None else 0.0
+        self.map_age = t - self._mapped if self._mapped is not None else 0.0

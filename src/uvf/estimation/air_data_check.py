@@ -42,7 +42,7 @@ class FlightState:
     """The last estimate, and how far it can be relied on."""
 
     now: Estimate
-    unfixed: float  # s
+    gnss_age: float  # s
     airborne: bool
 
 
@@ -80,7 +80,7 @@ class AirDataCheck:
     def _checked(self, pressures: Pressures, flying: FlightState, params: AirParams, dt: float) -> Pressures:
         now = flying.now
         density = atmosphere.density(pressures.static, pressures.temperature)
-        if flying.unfixed > UNFIXED:
+        if flying.gnss_age > UNFIXED:
             expected = params.trim_airspeed
         else:
             expected = self._expected(now, dt)

@@ -41,7 +41,7 @@ class BookEstimator:
         self.density = atmosphere.RHO0
         self._airspeed = 0.0
         self._baro: float | None = None
-        self.unfixed = 0.0
+        self.gnss_age = 0.0
         """s since the last fix."""
         self._lift = GRAVITY  # m/s^2
         self._age = 0.0  # s, of the newest IMU sample
@@ -62,7 +62,7 @@ class BookEstimator:
         """One cycle of ``dt`` [s]."""
         dt = min(dt, LONGEST)
         samples, fix = sensed.samples, sensed.fix
-        self.unfixed = 0.0 if fix is not None else self.unfixed + dt
+        self.gnss_age = 0.0 if fix is not None else self.gnss_age + dt
         self._take_pressures(sensed.pressures, params, dt)
         track, vertical = self._track, self._vertical
         if track is None or vertical is None:
@@ -77,9 +77,9 @@ class BookEstimator:
             self._correct(track, vertical, fix)
         if not self._height_known:
             vertical.rest()
-        if self.unfixed > RECKONING_AFTER:
-            track.reckon(self.unfixed, dt)
-        if self.unfixed > RECKONING_AFTER or (fix is not None and self._baro is not None):
+        if self.gnss_age > RECKONING_AFTER:
+            track.reckon(self.gnss_age, dt)
+        if self.gnss_age > RECKONING_AFTER or (fix is not None and self._baro is not None):
             track.correct_triangle(self._horizontal_airspeed())
         return self._estimate(track, vertical)
 
@@ -95,7 +95,7 @@ class BookEstimator:
 
     @property
     def _height_known(self) -> bool:
-        return self._baro is not None or self.unfixed < RECKONING_AFTER
+        return self._baro is not None or self.gnss_age < RECKONING_AFTER
 
     def _start(self, samples: list[InertialSample], fix: GnssFix) -> tuple[TrackFilter, Vertical]:
         self._track = TrackFilter(fix.north, fix.east, fix.v_north, fix.v_east)
@@ -193,12 +193,12 @@ class BookEstimator:
             height_known=self._height_known,
             height_sigma=self._height_sigma(),
             airspeed_known=self._pitot or self._height_known,
-            position_known=self.unfixed < RECKONING_AFTER,
+            position_known=self.gnss_age < RECKONING_AFTER,
         )
 
     def _height_sigma(self) -> float:
         """m; the complementary filter has no covariance, so this is that of the fixes, growing without any."""
-        return self._fix_height_sigma + (0.0 if self._height_known else CLIMB_SIGMA * self.unfixed)
+        return self._fix_height_sigma + (0.0 if self._height_known else CLIMB_SIGMA * self.gnss_age)
 
 
 def _heading(field: Triple, roll: float, pitch: float) -> float:

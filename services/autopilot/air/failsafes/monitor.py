@@ -36,7 +36,7 @@ class VehicleCondition:
     """Of one cycle."""
 
     now: Estimate
-    unfixed: float  # s
+    gnss_age: float  # s
     airborne: bool
     surfaces: Surfaces = field(default_factory=lambda: Surfaces(0.0, 0.0, 0.0, 0.0))
 
@@ -84,7 +84,7 @@ class FailsafeMonitor:
     @property
     def texts(self) -> list[str]:
         """What is wrong now."""
-        return [rule.begins for rule in self.watch.holding.values()]
+        return [rule.raised_text for rule in self.watch.holding.values()]
 
     def demands(self, params: AirParams) -> AirParams:
         """What may be asked of the aircraft now."""
@@ -121,7 +121,7 @@ class FailsafeMonitor:
             airborne=seen.airborne,
             silence=self._link.silence,
             let_go=self._pilot.is_let_go,
-            unfixed=seen.unfixed,
+            gnss_age=seen.gnss_age,
             sigma=now.position_sigma,
             lost_for=self._lost_for,
             has_air_data=self.has_air_data,
@@ -140,7 +140,7 @@ class FailsafeMonitor:
 
     def _obey(self, order: FailsafeOrder[FailsafeInputs], now: Estimate, params: AirParams) -> None:
         """The mode ordered, or the next best; one that goes as far already stays."""
-        pilot, reason = self._pilot, order.rule.begins
+        pilot, reason = self._pilot, order.rule.raised_text
         outside = order.rule.name in FENCED and order.action and self._circles_outside(params)
         if RANK.get(pilot.mode, FailsafeAction.WARN) >= order.action and not outside:
             return

@@ -23,7 +23,7 @@ class PrearmInputs:
 
     now: Estimate
     params: AirParams
-    unfixed: float = 0.0  # s since the last fix
+    gnss_age: float = 0.0  # s since the last fix
     accuracy: float = 0.0  # m, of the fixes
     charge: float = 1.0  # 0..1
     has_air_data: bool = True
@@ -44,7 +44,7 @@ def _estimator(s: PrearmInputs) -> str:
 
 
 def _gnss(s: PrearmInputs) -> str:
-    if s.unfixed > STALE_FIX:
+    if s.gnss_age > STALE_FIX:
         return "no satellite fix"
     return f"satellite fixes are good to {s.accuracy:.0f} m only" if s.accuracy > ACCURACY else ""
 

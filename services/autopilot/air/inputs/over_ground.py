@@ -23,9 +23,9 @@ class GroundProximity:
         self._reading: Range | None = None
         self._push = LowPass(PUSH_TIME)
         self._heave = LowPass(HEAVE_TIME)
-        self.push = 0.0
+        self.specific_force_x = 0.0
         """m/s^2, specific force forwards."""
-        self.heave = GRAVITY
+        self.specific_force_up = GRAVITY
         """m/s^2, specific force upwards."""
 
     def hear(self, ranges: Sequence[Range], samples: Sequence[InertialSample], dt: float) -> None:
@@ -33,8 +33,8 @@ class GroundProximity:
             if reading.frame_id == self._frame:
                 self._reading = reading
         for sample in samples:
-            self.push = self._push.step(sample.force[0], dt / len(samples))
-            self.heave = self._heave.step(-sample.force[2], dt / len(samples))
+            self.specific_force_x = self._push.step(sample.force[0], dt / len(samples))
+            self.specific_force_up = self._heave.step(-sample.force[2], dt / len(samples))
 
     def clearance(self, t: float, now: Estimate, gear_height: float) -> float | None:
         """m, of the wheels over the ground below at ``t`` [s]; None without a fresh echo or when the beam looks aside."""

@@ -51,9 +51,9 @@ class StateEstimation:
         self._now: Estimate | None = None
 
     @property
-    def unfixed(self) -> float:
+    def gnss_age(self) -> float:
         """s since the last fix."""
-        return self._estimator.unfixed
+        return self._estimator.gnss_age
 
     def begin_from(self, left: NavState) -> None:
         """What the instance before has estimated last."""
@@ -70,7 +70,7 @@ class StateEstimation:
         samples = self.felt = [self._mount.at_centre(sample, self._period) for sample in said.imu]
         passed = t - self._estimated if self._estimator.started else dt
         self._estimated = t
-        flying = FlightState(self._now, self.unfixed, said.airborne) if self._now is not None else None
+        flying = FlightState(self._now, self.gnss_age, said.airborne) if self._now is not None else None
         pressures = self._believe(_stamped(said.air_data, t), flying, params, dt)
         self.field = math.hypot(*samples[-1].field) if samples else self.field
         self._now = self._estimator.step(Sensed(samples, pressures, fix), params, passed)

@@ -173,7 +173,7 @@ class LandingMode(FlightPhase):
 
     def _lift(self, now: Estimate, climb: float) -> float:
         """m/s^2 that are wanting: by the climb, and by the lift that is felt, which tells of a gust before it has moved anything."""
-        return LIFT_P * (climb - now.climb) + LIFT_A * (GRAVITY - self._senses.heave)
+        return LIFT_P * (climb - now.climb) + LIFT_A * (GRAVITY - self._senses.specific_force_up)
 
     def _airspeed(self, now: Estimate, params: AirParams) -> float:
         wind = math.hypot(now.wind_north, now.wind_east)

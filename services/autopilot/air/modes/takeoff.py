@@ -71,7 +71,7 @@ class TakeoffMode(FlightPhase):
         if params.launch_push == 0:
             self._to(TakeoffStage.ROLL)
             return Setpoint(READY)
-        self._pushed = self._pushed + dt if self._senses.push > params.launch_push else 0.0
+        self._pushed = self._pushed + dt if self._senses.specific_force_x > params.launch_push else 0.0
         if self._pushed >= THROWN:
             self._to(TakeoffStage.CLIMB)
         return Setpoint(READY)

@@ -72,7 +72,7 @@ class FullEstimator:
         self._speed = 0.0  # m/s over ground, of the newest fix
         self._acceleration: Floats = np.zeros(3)  # m/s^2, NED
         self._height = 0.0  # m, the last one known
-        self.unfixed = 0.0
+        self.gnss_age = 0.0
         """s since the last fix."""
 
     def begin_at(self, roll: float, pitch: float, yaw: float) -> None:
@@ -96,8 +96,8 @@ class FullEstimator:
     def step(self, sensed: Sensed, params: AirParams, dt: float) -> Estimate:
         """One cycle, ``dt`` [s] after the one before."""
         self._t += dt
-        fix, unfixed = sensed.fix, self.unfixed + dt
-        self.unfixed = 0.0 if fix is not None else unfixed
+        fix, gnss_age = sensed.fix, self.gnss_age + dt
+        self.gnss_age = 0.0 if fix is not None else gnss_age
         self._air.take(sensed.pressures, self._t, dt)
         aiding = self._aiding
         if aiding is None:
@@ -107,7 +107,7 @@ class FullEstimator:
         self._correct(aiding, sensed, params, dt)
         if fix is not None:
             self._speed = math.hypot(fix.v_north, fix.v_east)
-            self._take_fix(aiding, fix, unfixed)
+            self._take_fix(aiding, fix, gnss_age)
         return self._estimate(aiding, params, dt)
 
     # beginning
@@ -176,7 +176,7 @@ class FullEstimator:
     def _fastest(self, aiding: Aiding) -> float:
         """m/s: of the state, of the newest fix if that is not long ago."""
         known = float(np.linalg.norm(aiding.filter.state.x[VELOCITY]))
-        return max(known, self._speed) if self.unfixed < RECKONING_AFTER else known
+        return max(known, self._speed) if self.gnss_age < RECKONING_AFTER else known
 
     def _gain(self, aiding: Aiding, dt: float) -> Floats:
         """(25,) variance of ``dt`` [s]."""
@@ -213,7 +213,7 @@ class FullEstimator:
                 aiding.airspeed(pressures, air.density, dt)
         if flies:
             aiding.slip(t)
-            if pressures is None and self.unfixed > RECKONING_AFTER:
+            if pressures is None and self.gnss_age > RECKONING_AFTER:
                 aiding.suppose(params.trim_airspeed, t)
 
     def _flies(self, aiding: Aiding, params: AirParams) -> bool:
@@ -227,11 +227,11 @@ class FullEstimator:
     def _through_air(aiding: Aiding) -> float:
         return float(np.linalg.norm(aiding.filter.state.through_air))
 
-    def _take_fix(self, aiding: Aiding, fix: GnssFix, unfixed: float) -> None:
+    def _take_fix(self, aiding: Aiding, fix: GnssFix, gnss_age: float) -> None:
         x = aiding.filter.state.x
         before = x[POSITION].copy()
         aiding.fix(fix, self._acceleration, self._sampled, max(fix.age - (self._t - self._sampled), 0.0))
-        self._handover.take(before - x[POSITION], unfixed)
+        self._handover.take(before - x[POSITION], gnss_age)
 
     # handing over
 
@@ -244,7 +244,7 @@ class FullEstimator:
         bias = x[GYRO_BIAS].tolist()
         p, q, r = ((g.value or 0.0) - b for g, b in zip(self._gyros, bias, strict=True))
         roll, pitch, yaw = self._ahead(aiding, (p, q, r), age)
-        is_fixed = self.unfixed < RECKONING_AFTER
+        is_fixed = self.gnss_age < RECKONING_AFTER
         height_known = is_fixed or self._air.pressures is not None
         if height_known:
             self._height = -down
@@ -282,7 +282,7 @@ class FullEstimator:
     def _airspeed(self, aiding: Aiding, params: AirParams) -> float:
         if self._air.pressures is not None:
             return self._air.airspeed(float(aiding.filter.state.x[PITOT]))
-        return self._through_air(aiding) if self.unfixed < RECKONING_AFTER else params.trim_airspeed
+        return self._through_air(aiding) if self.gnss_age < RECKONING_AFTER else params.trim_airspeed
 
     @staticmethod
     def _ahead(aiding: Aiding, rates: tuple[float, float, float], age: float) -> tuple[float, float, float]:

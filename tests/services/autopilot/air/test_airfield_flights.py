@@ -51,7 +51,7 @@ def pushed(tmp, model, along):
     return folder
 
 
-def push(flight, newtons):
+def specific_force_x(flight, newtons):
     craft(flight).body._fdm["external_reactions/push/magnitude"] = newtons / POUND
 
 
@@ -85,7 +85,7 @@ def thrown(request, tmp_path_factory):
     def watch(t):
         if t == pytest.approx(ARMED):
             flight.ask(topics.ARM, ArmRequest(arm=True, source="test"), t)
-        push(flight, throw.newtons if SHOT < t < throw.gone else 0.0)
+        specific_force_x(flight, throw.newtons if SHOT < t < throw.gone else 0.0)
         return True
 
     flight.lockstep.run(24.0, watch)
@@ -158,7 +158,7 @@ def swept_aside(tmp_path_factory):
         low = t > 5.0 and flight.truth[-1][1].position.z < GUSTY
         if low and (not flight.gusts or t < flight.gusts[0] + 3.0):
             flight.gusts.append(t)
-        push(flight, 80.0 if flight.gusts and flight.gusts[-1] == t else 0.0)
+        specific_force_x(flight, 80.0 if flight.gusts and flight.gusts[-1] == t else 0.0)
         return t < 20.0 or flight.status[-1][1].armed
 
     flight.lockstep.run(300.0, watch)

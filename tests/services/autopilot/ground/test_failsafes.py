@@ -107,7 +107,7 @@ def test_the_documented_table_is_that_of_the_code():
     rows = [line.strip("|").split("|") for line in text.splitlines() if line.startswith("| `")]
     assert [row[0].strip(" `") for row in rows] == [rule.name for rule in GROUND_RULES]
     assert [re.findall(r"`(\w+)`", row[2]) for row in rows] == [list(rule.parameters) for rule in GROUND_RULES]
-    assert all(rule.begins.split(":")[0] in row[4] for rule, row in zip(GROUND_RULES, rows, strict=True))
+    assert all(rule.raised_text.split(":")[0] in row[4] for rule, row in zip(GROUND_RULES, rows, strict=True))
 
 
 CAUSES = {

@@ -16,7 +16,7 @@ def scan(t, ahead=1.0):
 def test_a_scan_is_as_old_as_its_last_beam(sweeping, unseen):
     sight = SensorWatch(sweeping)
     sight.step(3.0, None, None, 0.0)
-    assert (sight.unseen, sight.unmapped) == (0.0, 0.0)
+    assert (sight.unseen, sight.map_age) == (0.0, 0.0)
     sight.step(3.3, scan(3.0), None, 0.0)
     assert sight.unseen == pytest.approx(unseen)
 
@@ -36,4 +36,4 @@ def test_a_mapping_that_falls_silent_is_told_apart():
     sight = SensorWatch(AT_ONCE)
     sight.step(1.0, scan(1.0), FrameTransform(timestamp=stamp(1.0)), 0.0)
     sight.step(2.0, scan(2.0), None, 0.0)
-    assert (sight.unseen, sight.unmapped) == (0.0, pytest.approx(1.0))
+    assert (sight.unseen, sight.map_age) == (0.0, pytest.approx(1.0))

@@ -67,7 +67,7 @@ def test_it_begins_on_its_cause_after_its_time_and_ends_after_the_cause(name):
     assert run(watch, max(after - 0.1, 0.0), **CAUSES[name])[0] == []
     assert run(watch, 0.2, **CAUSES[name])[0] == [(name, True)]
     assert run(watch, 20.0, **CAUSES[name])[0] == []
-    assert run(watch, max(rule.clears - 0.1, 0.0))[0] == []
+    assert run(watch, max(rule.clear_delay - 0.1, 0.0))[0] == []
     assert run(watch, 0.2)[0] == [(name, False)]
 
 
@@ -79,12 +79,12 @@ def test_between_the_limits_nothing_changes(name):
     assert run(watch, 60.0, **IN_BETWEEN[name])[0] == []
 
 
-@pytest.mark.parametrize("name", [n for n in RULES if RULES[n].clears])
+@pytest.mark.parametrize("name", [n for n in RULES if RULES[n].clear_delay])
 def test_a_cause_that_comes_and_goes_does_not_flap(name):
     watch = FailsafeWatch([RULES[name]])
     run(watch, 60.0, **CAUSES[name])
     for _ in range(10):
-        assert run(watch, RULES[name].clears / 2)[0] == []
+        assert run(watch, RULES[name].clear_delay / 2)[0] == []
         assert run(watch, 0.1, **CAUSES[name])[0] == []
 
 
@@ -109,7 +109,7 @@ def test_the_way_home_counts_before_the_battery_is_low():
     seen, (order,) = run(watch, 10.0, charge=0.4, spare=0.05)
     assert seen == [("battery_low", True)]
     assert order.action is FailsafeAction.RETURN
-    assert "5 % at home" in order.rule.figures(known(charge=0.4, spare=0.05))
+    assert "5 % at home" in order.rule.detail(known(charge=0.4, spare=0.05))
 
 
 def test_an_order_is_given_once_and_a_greater_one_goes_beyond_it():
@@ -145,11 +145,11 @@ def test_the_documented_table_is_that_of_the_code():
     assert [name for name in shown if name in RULES] == list(RULES)
     for name, rule in RULES.items():
         assert re.findall(r"`(\w+)`", shown[name][2]) == list(rule.parameters), name
-        assert rule.begins.split(":")[0] in shown[name][4], name
+        assert rule.raised_text.split(":")[0] in shown[name][4], name
 
 
 @pytest.mark.parametrize("rule", AIR_RULES, ids=lambda rule: rule.name)
 def test_the_end_of_a_failsafe_quotes_no_figure_of_its_beginning_and_no_text_reads_as_an_order(rule):
     assert RuleChange(rule, True, "aileron for 3 s").event(0.0).cause == "aileron for 3 s"
     assert RuleChange(rule, False, "aileron for 0 s").event(0.0).cause == ""
-    assert "less bank" not in rule.begins
+    assert "less bank" not in rule.raised_text
