@@ -109,7 +109,7 @@ def world_import(
     upright: Annotated[bool, typer.Option("--upright", help="Turn meshes that say that y is up, which Gazebo does not.")] = False,
     replace: Annotated[bool, typer.Option("--replace", help="Overwrite a world of that name.")] = False,
 ) -> None:
-    """Take over a world, telling what was left out."""
+    """Import a Gazebo world or a map, with a note of what was left out."""
     from uvf.models.importing.worlds import Options, import_world, new_folder
 
     with bad_input_is_one_line():

@@ -12,7 +12,7 @@ K = TypeVar("K")
 
 
 class FailsafeAction(IntEnum):
-    """The later ones come before the earlier ones."""
+    """Ordered by increasing priority."""
 
     WARN = 0
     HOLD = 1

@@ -26,7 +26,7 @@ class Job:
     yaw: float | None = None
 
     @property
-    def bold(self) -> bool:
+    def allow_unknown(self) -> bool:
         """Whether unknown ground may be crossed: the mission's author and the way home know more than the map."""
         return self.name in ("mission", "return")
 

@@ -52,14 +52,14 @@ TRIES = 3  # at a place of the mission or the way home, before the vehicle holds
 
 class PlannerParams(Params, frozen=True):
     margin: Positive = 0.03  # m kept from obstacles beyond the vehicle's radius
-    comfort: Positive = 0.35  # m from obstacles at which a way is no dearer
-    dislike: Annotated[float, Meta(ge=1)] = 6.0  # cost of a way right along an obstacle
+    inflation_radius: Positive = 0.35  # m from obstacles at which a way is no dearer
+    cost_scaling_factor: Annotated[float, Meta(ge=1)] = 6.0  # cost of a way right along an obstacle
     goal_tolerance: Positive = 0.12  # m
     look_tolerance: Positive = 0.3  # m, for frontiers, which only have to be seen
     wait_at_goal: Annotated[float, Meta(ge=0)] = 5.0  # s after a person's goal is reached or cancelled, before the job goes on
     patience: Positive = 8.0  # s without getting anywhere, before the goal is given up
-    least_frontier: Annotated[int, Meta(ge=1)] = 6  # cells
-    frontier_worth: Annotated[float, Meta(ge=0)] = 0.5  # cells of way
+    min_frontier_size: Annotated[int, Meta(ge=1)] = 6  # cells
+    frontier_gain: Annotated[float, Meta(ge=0)] = 0.5  # cells of way
 
 
 class PlannerService(Service):
@@ -168,11 +168,11 @@ class PlannerService(Service):
 
     @property
     def _body(self) -> RobotFootprint:
-        return RobotFootprint(self._radius + self.params.margin, self.params.comfort, self.params.dislike)
+        return RobotFootprint(self._radius + self.params.margin, self.params.inflation_radius, self.params.cost_scaling_factor)
 
     @property
     def _taste(self) -> FrontierWeights:
-        return FrontierWeights(self.params.least_frontier, FRONTIER_VIEW, self.params.frontier_worth)
+        return FrontierWeights(self.params.min_frontier_size, FRONTIER_VIEW, self.params.frontier_gain)
 
     def _take_map(self, grid: Grid) -> bool:
         taken_at = seconds(grid.timestamp)
@@ -239,7 +239,7 @@ class PlannerService(Service):
             self._target, self._plan = None, PlannedPath(None, "no job")
         elif self._job.target is not None:
             self._target = self._in_map(self._job.target)
-            self._plan = self._navigator.plan(here[:2], self._target, self._job.bold)
+            self._plan = self._navigator.plan(here[:2], self._target, self._job.allow_unknown)
         else:
             self._replan_exploring(t, here)
 
@@ -259,7 +259,7 @@ class PlannerService(Service):
 
     def _done_with_target(self, t: float) -> None:
         """Another frontier or place of the patrol is to be chosen."""
-        self._explorer.shun_goal(t)
+        self._explorer.blacklist_goal(t)
         self._patrol.reached()
 
     def _watch(self, t: float, here: Pose2, status: VehicleStatus | None) -> None:
@@ -301,7 +301,7 @@ class PlannerService(Service):
 
     def _give_up(self, t: float, reason: str) -> None:
         self._progress_at = t
-        if self._job.bold:
+        if self._job.allow_unknown:
             self._try_again(t, reason)
             return
         self._tell(t, f"{self._job.name}: goal given up", reason, Event.WARNING)

@@ -9,7 +9,7 @@ from uvf.planning.costmap import RobotFootprint
 from uvf.planning.navigator import MOST_CELLS, GlobalPlanner, PlannedPath
 from uvf.planning.smoothing import length
 
-BODY = RobotFootprint(radius=0.15, comfort=0.35, dislike=5.0)
+BODY = RobotFootprint(radius=0.15, inflation_radius=0.35, cost_scaling_factor=5.0)
 
 
 def house(door=True):
@@ -61,7 +61,7 @@ def test_on_a_map_of_too_many_cells_nobody_drives_until_there_is_a_smaller_one()
     made.see(np.zeros((MOST_CELLS // 2000 + 1, 2000), dtype=np.int8), (0.05, (0.0, 0.0)))
     why = f"the map is too large to plan on: {MOST_CELLS + 2000} cells, {MOST_CELLS} at most"
     assert made.refusal((0.6, 0.6), (3.4, 0.6)) == why
-    assert made.plan((0.6, 0.6), (3.4, 0.6)) == made.plan((0.6, 0.6), (3.4, 0.6), bold=True) == PlannedPath(None, why)
+    assert made.plan((0.6, 0.6), (3.4, 0.6)) == made.plan((0.6, 0.6), (3.4, 0.6), allow_unknown=True) == PlannedPath(None, why)
     assert made.ways((0.6, 0.6)) is None
     made.see(house(), (0.05, (0.0, 0.0)))
     assert made.refusal((0.6, 0.6), (3.4, 0.6)) == ""
@@ -93,13 +93,13 @@ def test_only_a_bold_plan_crosses_unknown_ground():
     cells[:, 30:50] = -1
     made = navigator(cells)
     assert made.plan((0.6, 1.0), (3.4, 1.0)).path is None
-    assert made.plan((0.6, 1.0), (3.4, 1.0), bold=True).path is not None
+    assert made.plan((0.6, 1.0), (3.4, 1.0), allow_unknown=True).path is not None
 
 
 def test_a_bold_plan_goes_as_near_as_the_map_reaches():
     cells = np.full((40, 40), -1, dtype=np.int8)
     cells[10:30, 10:30] = 0
-    path = navigator(cells).plan((1.0, 1.0), (9.0, 1.0), bold=True).path
+    path = navigator(cells).plan((1.0, 1.0), (9.0, 1.0), allow_unknown=True).path
     assert path[-1] == pytest.approx((1.975, 1.025), abs=0.03)
 
 

@@ -140,7 +140,7 @@ def _job(v: VehicleModel) -> list[tuple[str, str]]:
         return []
     state = enum_name(NavStatus.State, v.nav_status.state)
     why = f": {v.nav_status.reason}" if v.nav_status.reason else ""
-    return [("planner", f"{state}{why}"), ("explored, as it guesses", f"{100 * v.nav_status.explored:.0f} %")]
+    return [("planner", f"{state}{why}"), ("explored (estimate)", f"{100 * v.nav_status.explored:.0f} %")]
 
 
 def orders(v: VehicleModel) -> Html:

@@ -1,4 +1,4 @@
-"""The thesis' control as a preset to compare with: its loops, gains and names (``law: thesis``).
+"""The control laws of the thesis (see the bibliography) as a preset to compare with: its loops, gains and names (``law: thesis``).
 
 Successive loop closure as in ROSplane and Beard & McLain chapter 6: PD on roll and pitch, PI on altitude and airspeed, PI on the
 side slip, and phases by altitude. Its surfaces go from -1 to 1, here from stop to stop; its positive elevator pitches up. Trim is the

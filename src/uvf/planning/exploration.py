@@ -55,7 +55,7 @@ class Explorer:
         near = disc(costs, self.goal, STILL_THERE) & ~self._shunned_mask(t, costs)
         return int((frontier_mask(costs) & near).sum()) >= self.taste.least_size
 
-    def shun_goal(self, t: float) -> None:
+    def blacklist_goal(self, t: float) -> None:
         """The goal has been reached, or cannot be: what frontier is left there does not count for a while."""
         if self.goal is None:
             return

@@ -40,7 +40,7 @@ class GlobalPlanner:
     def __init__(self, body: RobotFootprint) -> None:
         self._body = body
         self._cells: NDArray[np.int8] | None = None
-        self._bold: Costmap | None = None
+        self._unknown_costmap: Costmap | None = None
         self._ways: tuple[Cell, CostToGo] | None = None
         self.costs: Costmap | None = None
         self.missing = "there is no map yet"
@@ -57,7 +57,7 @@ class GlobalPlanner:
 
     def see(self, cells: NDArray[np.int8], frame: Frame) -> None:
         """Takes a new map; costs are worked out once for it. On one of too many cells nobody drives."""
-        self._bold = None
+        self._unknown_costmap = None
         self._ways = None
         if cells.size > MOST_CELLS:
             self._cells, self.costs = None, None
@@ -98,9 +98,9 @@ class GlobalPlanner:
             return ""
         return _too_far(costs.points(ways.to(cell)))
 
-    def plan(self, start: Point, goal: Point, bold: bool = False) -> PlannedPath:
+    def plan(self, start: Point, goal: Point, allow_unknown: bool = False) -> PlannedPath:
         """bold: unknown ground may be crossed, and the goal may lie beyond the map: its nearest cell is taken."""
-        known = self._costs(bold)
+        known = self._costs(allow_unknown)
         if known is None:
             return PlannedPath(None, self.missing)
         if not _is_place(goal):
@@ -109,7 +109,7 @@ class GlobalPlanner:
         if not known.holds(here):
             return PlannedPath(None, "the vehicle is outside its map")
         there = known.cell(*goal)
-        if not known.holds(there) and not bold:
+        if not known.holds(there) and not allow_unknown:
             return PlannedPath(None, "the goal lies outside the map")
         rows, columns = known.cost.shape
         there = (min(max(there[0], 0), rows - 1), min(max(there[1], 0), columns - 1))
@@ -123,12 +123,12 @@ class GlobalPlanner:
         too_far = _too_far(points)
         return PlannedPath(None, too_far) if too_far else PlannedPath(smoothed(points, known, self._body.radius))
 
-    def _costs(self, bold: bool) -> Costmap | None:
-        if not bold or self.costs is None or self._cells is None:
+    def _costs(self, allow_unknown: bool) -> Costmap | None:
+        if not allow_unknown or self.costs is None or self._cells is None:
             return self.costs
-        if self._bold is None:
-            self._bold = costmap(self._cells, (self.costs.resolution, self.costs.origin), self._body, UNKNOWN_COST)
-        return self._bold
+        if self._unknown_costmap is None:
+            self._unknown_costmap = costmap(self._cells, (self.costs.resolution, self.costs.origin), self._body, UNKNOWN_COST)
+        return self._unknown_costmap
 
 
 def _too_far(points: Floats) -> str:

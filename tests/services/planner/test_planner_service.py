@@ -317,7 +317,7 @@ def test_every_parameter_of_the_planner_is_read_while_running():
         bench.step(40)
 
 
-@pytest.mark.parametrize("change", [{"comfort": 0.9, "dislike": 50.0}, {"margin": 0.4}])
+@pytest.mark.parametrize("change", [{"inflation_radius": 0.9, "cost_scaling_factor": 50.0}, {"margin": 0.4}])
 def test_the_path_keeps_farther_from_walls_when_that_is_set_while_driving(change):
     bench = Bench()
     cells = room(4.0, 3.0)
@@ -331,6 +331,6 @@ def test_the_path_keeps_farther_from_walls_when_that_is_set_while_driving(change
 
 def test_a_comfort_below_the_radius_does_not_spoil_the_costs():
     bench = Bench().step(goal=[asked(3.0, 2.0)]).step()
-    bench.service.params = PlannerParams(comfort=0.13)
+    bench.service.params = PlannerParams(inflation_radius=0.13)
     assert bench.step(2).state == NavStatus.DRIVING
     assert np.isfinite(bench.service._navigator.costs.cost).all()
