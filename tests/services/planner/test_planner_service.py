@@ -202,7 +202,7 @@ def test_a_flood_of_goals_costs_one_search_and_the_last_good_one_counts():
     flood = [asked(0.5 + 0.01 * i, 1.5) for i in range(255)] + [asked(0.07, 1.0)]
     searches = []
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(navigator, "Ways", lambda cost, cell: searches.append(cell) or CostToGo(cost, cell))
+        patch.setattr(navigator, "CostToGo", lambda cost, cell: searches.append(cell) or CostToGo(cost, cell))
         bench.step(goal=flood)
     replies = bench.said["goal"]
     assert [r.accepted for r in replies] == [True] * 255 + [False]
