@@ -15,7 +15,7 @@ from services.autopilot.air.modes.landing import LandingMode
 from services.autopilot.air.modes.leading import LeaderSpeedFilter
 from services.autopilot.air.modes.mission_flight import MissionMode
 from services.autopilot.air.modes.offboard import OLDEST, OffboardMode
-from services.autopilot.air.modes.pace import SpeedOverride
+from services.autopilot.air.modes.speed_override import SpeedOverride
 from services.autopilot.air.modes.paths import OWN, LoiterOptions, OrbitMode, PathMode
 from services.autopilot.air.modes.return_mode import ReturnMode
 from services.autopilot.air.modes.return_points import haven, lowest_over
