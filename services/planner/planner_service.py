@@ -27,7 +27,7 @@ from schemas.messages import (
     Vector3,
     VehicleStatus,
 )
-from services.planner.jobs import IDLE, Goal, Havens, Job, Orders, choose, home_of, mission_target, not_now
+from services.planner.jobs import IDLE, Goal, Job, Orders, ReturnPoints, choose, home_of, mission_target, not_now
 from uvf.maths.rotations import wrap
 from uvf.maths.se2 import IDENTITY, Pose2, compose, inverse, transform
 from uvf.models.params import Params
@@ -99,7 +99,7 @@ class PlannerService(Service):
         self._world_from_map = world_from_map
         self._map_from_world = inverse(world_from_map)
         self._explores = explores
-        self._havens = Havens()
+        self._return_points = ReturnPoints()
         self._radius = radius
         self._navigator = GlobalPlanner(self._body)
         self._explorer = Explorer(self._taste)
@@ -128,8 +128,8 @@ class PlannerService(Service):
         changed = self._navigator.fit(self._body) | self._take_map(now.map)
         goal_replies = self._ask_all(t, here, now.goal, now.status)
         home = home_of(now.status) or self._world_from_map[:2]
-        haven = self._havens.step(now.status, (now.pose.pose.position.x, now.pose.pose.position.y), home, now.rally)
-        job = choose(now.status, self._goal, mission_target(now.mission, now.progress, home), Orders(haven, self._explores))
+        return_point = self._return_points.step(now.status, (now.pose.pose.position.x, now.pose.pose.position.y), home, now.rally)
+        job = choose(now.status, self._goal, mission_target(now.mission, now.progress, home), Orders(return_point, self._explores))
         if job != self._job:
             self._begin(t, job)
             changed = True

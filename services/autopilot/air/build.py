@@ -46,7 +46,7 @@ def _host(site: Scenario, member: MissionVehicle) -> ServiceInstance:
         raise BadInput(f"{site.mission_path}: {member.name}: job: mission: {why}")
     start, land = member.entry.start, relief(site.world)
     ground = 0.0 if land is None else float(land.at(np.array(start.x), np.array(start.y))[0])
-    ship = AutopilotConfig(
+    config = AutopilotConfig(
         member.name,
         member.entry.system_id,
         tangent,
@@ -61,11 +61,11 @@ def _host(site: Scenario, member: MissionVehicle) -> ServiceInstance:
         leads=leads,
         fence=fence_message(member.entry.fence, f"{site.mission_path}: {member.name}: fence"),
     )
-    if why := _fence_fault(ship, Place(start.y, start.x, start.z), params):
+    if why := _fence_fault(config, Place(start.y, start.x, start.z), params):
         raise BadInput(f"{site.mission_path}: {member.name}: fence: {why}")
     if member.entry.job.follow is not None:
-        return wingman(site, ship, params)
-    return ServiceInstance(AutopilotAir, lambda: AutopilotAir(ship, params), member.name)
+        return wingman(site, config, params)
+    return ServiceInstance(AutopilotAir, lambda: AutopilotAir(config, params), member.name)
 
 
 def _instruments(site: Scenario, member: MissionVehicle) -> Instruments:
@@ -95,11 +95,11 @@ def _altimeter(member: MissionVehicle) -> str:
     return ""
 
 
-def _fence_fault(ship: AutopilotConfig, here: Place, params: AirParams) -> str:
+def _fence_fault(config: AutopilotConfig, here: Place, params: AirParams) -> str:
     """Why this aircraft cannot keep its fence; empty if it can."""
-    fence = fencing(ship.fence)
-    fault = fence_fit(fence, here, ship.starts_in_air, params)
-    return fault or mission_fault(intake.items(ship.items), fence, params)
+    fence = fencing(config.fence)
+    fault = fence_fit(fence, here, config.starts_in_air, params)
+    return fault or mission_fault(intake.items(config.items), fence, params)
 
 
 def _fault(items: list[MissionItem], params: AirParams) -> str:

@@ -14,7 +14,7 @@ SOURCES = ("teleop", "mavlink", "client")
 """The first one whose command is fresh wins."""
 CLOCK_TOLERANCE = 0.02  # s, one tick: a sender's clock may be that much ahead
 PATIENCE = 0.5  # s that the first command is waited for once the mode is Manual
-LET_GO = Surfaces(0.0, 0.0, 0.0, 0.0, brake=1.0)
+STICK_RELEASED = Surfaces(0.0, 0.0, 0.0, 0.0, brake=1.0)
 """On the ground, when nobody holds the stick: motor off, brakes on."""
 
 

@@ -6,7 +6,7 @@ from dataclasses import astuple, replace
 
 from services.autopilot.air.fence.fence_guard import FenceGuard
 from services.autopilot.air.flight_controller import FlightController
-from services.autopilot.air.manual_control import LET_GO, ManualControlState
+from services.autopilot.air.manual_control import STICK_RELEASED, ManualControlState
 from services.autopilot.air.mode_table import TABLE, FlightMode, Need, Situation, refusal
 from services.autopilot.air.modes.descent import DescendMode
 from services.autopilot.air.modes.field import Airfield
@@ -15,10 +15,10 @@ from services.autopilot.air.modes.landing import LandingMode
 from services.autopilot.air.modes.leading import LeaderSpeedFilter
 from services.autopilot.air.modes.mission_flight import MissionMode
 from services.autopilot.air.modes.offboard import OLDEST, OffboardMode
-from services.autopilot.air.modes.speed_override import SpeedOverride
 from services.autopilot.air.modes.paths import OWN, LoiterOptions, OrbitMode, PathMode
 from services.autopilot.air.modes.return_mode import ReturnMode
-from services.autopilot.air.modes.return_points import haven, lowest_over
+from services.autopilot.air.modes.return_points import lowest_over, return_point
+from services.autopilot.air.modes.speed_override import SpeedOverride
 from services.autopilot.air.modes.stick_modes import STICK_MODES
 from services.autopilot.air.modes.takeoff import TakeoffMode
 from services.autopilot.air.setpoints import ControlOutput, FlightContext, FlightPhase, PathSetpoint, Setpoint
@@ -57,18 +57,18 @@ class ModeManager:
         self.home: Place | None = None
         self.rally: tuple[Place, ...] = ()
         """Where Return may lead beside home."""
-        self.senses = FlightContext()
+        self.context = FlightContext()
         self.formation: FormationLink | None = None
         self.leads: LeaderSpeedFilter | None = None
         """Of an aircraft that others follow."""
-        self.pace = SpeedOverride()
+        self.speed_override = SpeedOverride()
         self.shutter = CameraTrigger()
         """Triggered by orders; the mission's is the navigator's."""
         self._climb_to: float | None = None  # m, world; of a take-off that was asked for with a height
         self._stick = ManualControlState()
         self._servos = servos
         self.fence = FenceGuard()
-        self._helm = FlightController(self._servos, self.fence)
+        self._flight_controller = FlightController(self._servos, self.fence)
         self._phase: FlightPhase | None = None
         self._level = AltitudeProfile(math.nan)
         self._fresh = True
@@ -78,31 +78,31 @@ class ModeManager:
             self._begin(now)
         self._look(now, params)
         if self._stands:
-            self._helm = FlightController(self._servos, self.fence)
-            return ControlOutput(LET_GO, self._straight_on(now, params), self._level)
+            self._flight_controller = FlightController(self._servos, self.fence)
+            return ControlOutput(STICK_RELEASED, self._straight_on(now, params), self._level)
         phase = self._phase = self._phase or self._begun(now, params)
-        self._set_pace(now, params)
+        self._set_speed(now, params)
         self.shutter.step((now.north, now.east))
         return self._flown(phase.step(now, params, dt), now, params, dt)
 
-    def hear(self, senses: FlightContext, dt: float) -> None:
+    def hear(self, context: FlightContext, dt: float) -> None:
         """Before each step."""
-        self.senses.update(senses)
-        self._stick.hold(senses.hand, dt)
+        self.context.update(context)
+        self._stick.hold(context.hand, dt)
 
     @property
     def source(self) -> str:
         """Whose commands reach the surfaces, or whose setpoints are followed."""
-        if TABLE[self.mode].by_hand and self.senses.hand is not None:
-            return self.senses.hand.source
-        return (self.mode is FlightMode.OFFBOARD and self.senses.setpoint_from) or "autopilot"
+        if TABLE[self.mode].is_manual and self.context.hand is not None:
+            return self.context.hand.source
+        return (self.mode is FlightMode.OFFBOARD and self.context.setpoint_from) or "autopilot"
 
-    def _set_pace(self, now: Estimate, params: AirParams) -> None:
+    def _set_speed(self, now: Estimate, params: AirParams) -> None:
         part = self._part
         if isinstance(part, PathMode):
-            self.navigator.speed = self.pace.of(now, params, self.navigator.speed)
+            self.navigator.speed = self.speed_override.of(now, params, self.navigator.speed)
         elif isinstance(part, OrbitMode):
-            part.airspeed = self.pace.of(now, params, part.airspeed)
+            part.airspeed = self.speed_override.of(now, params, part.airspeed)
 
     @property
     def circling(self) -> OrbitMode | None:
@@ -127,13 +127,13 @@ class ModeManager:
         return self._blind
 
     @property
-    def is_by_hand(self) -> bool:
-        return TABLE[self.mode].by_hand and self.senses.hand is not None
+    def is_manual(self) -> bool:
+        return TABLE[self.mode].is_manual and self.context.hand is not None
 
     @property
-    def is_let_go(self) -> bool:
+    def is_manual_control_lost(self) -> bool:
         """In a mode that is flown by hand nobody does any more."""
-        return TABLE[self.mode].by_hand and self._stick.abandoned
+        return TABLE[self.mode].is_manual and self._stick.abandoned
 
     @property
     def goes_down(self) -> bool:
@@ -161,14 +161,14 @@ class ModeManager:
     def _situation(self) -> Situation:
         led = self.formation is not None and self.formation.is_led
         return Situation(
-            self.senses.airborne, not self._blind, bool(self.navigator.items), self.senses.setpoint is not None, self.stopped, led
+            self.context.airborne, not self._blind, bool(self.navigator.items), self.context.setpoint is not None, self.stopped, led
         )
 
     @property
     def _stands(self) -> bool:
         """On the ground with nothing to do: surfaces neutral, motor off, brakes on."""
-        moves = TABLE[self.mode].on_ground and (self.senses.hand is not None if TABLE[self.mode].by_hand else self.senses.armed)
-        return not self.senses.airborne and not moves and not self._rolls_out
+        moves = TABLE[self.mode].on_ground and (self.context.hand is not None if TABLE[self.mode].is_manual else self.context.armed)
+        return not self.context.airborne and not moves and not self._rolls_out
 
     def _look(self, now: Estimate, params: AirParams) -> None:
         """Whether this mode goes on."""
@@ -183,11 +183,11 @@ class ModeManager:
             self.reason, self.landing.why_around = f"go-around: {self.landing.why_around}", ""
         if self._phase is not None and self._phase.ended:
             self._end(self._phase)
-        if TABLE[self.mode].by_hand:
+        if TABLE[self.mode].is_manual:
             self._look_at_stick()
         if self.formation is not None:
             self._look_at_leader(self.formation)
-        if Need.SETPOINT in TABLE[self.mode].keeps and self.senses.setpoint is None:
+        if Need.SETPOINT in TABLE[self.mode].keeps and self.context.setpoint is None:
             self._change(TABLE[self.mode].without, f"no setpoint for {OLDEST:g} s")
 
     def _look_at_leader(self, formation: FormationLink) -> None:
@@ -201,26 +201,26 @@ class ModeManager:
 
     def _look_at_stick(self) -> None:
         """Before the first command and after the last one the autopilot circles; the failsafe ``sticks`` may order more."""
-        if isinstance(self._phase, OrbitMode) == (self.senses.hand is not None):
+        if isinstance(self._phase, OrbitMode) == (self.context.hand is not None):
             self._phase = None
 
     def _begun(self, now: Estimate, params: AirParams) -> FlightPhase:
         """The present mode from its beginning."""
         assert self.home is not None
         if self.mode is FlightMode.MISSION:
-            return MissionMode(self.navigator, self._field, self.home, self.senses)
+            return MissionMode(self.navigator, self._field, self.home, self.context)
         if self.mode is FlightMode.TAKEOFF:
             usual = self.home.height + params.takeoff_alt
-            return self._field.take_off(now, usual if self._climb_to is None else self._climb_to, self.senses)
+            return self._field.take_off(now, usual if self._climb_to is None else self._climb_to, self.context)
         if self.mode is FlightMode.LAND:
-            return self._field.landing(now, self.home, self.senses, params)
+            return self._field.landing(now, self.home, self.context, params)
         if self.mode is FlightMode.FOLLOW and self.formation is not None:
             return FollowMode(self.formation)
         if self.mode is FlightMode.OFFBOARD:
-            return OffboardMode(self.senses)
-        if TABLE[self.mode].by_hand and self.senses.hand is not None:
-            return STICK_MODES[self.mode](self.senses)
-        if self.mode is FlightMode.RETURN and (to := self.haven(now, params)) is not None:
+            return OffboardMode(self.context)
+        if TABLE[self.mode].is_manual and self.context.hand is not None:
+            return STICK_MODES[self.mode](self.context)
+        if self.mode is FlightMode.RETURN and (to := self.return_point(now, params)) is not None:
             return ReturnMode(to, lowest_over(to, self.rally), self.home.height, self._level.height)
         return OrbitMode(Circle.ahead(now, max(self._level.height, params.min_altitude), params.hold_radius), OWN)
 
@@ -233,7 +233,13 @@ class ModeManager:
         self._level = AltitudeProfile(
             now.height if height is None else height, asked.climb if isinstance(asked, PathSetpoint | AltitudeAirspeedSetpoint) else 0.0
         )
-        return ControlOutput(self._helm.step(now, wish, params, dt), aim, self._level, self._helm.attitude, self._helm.airspeed)
+        return ControlOutput(
+            self._flight_controller.step(now, wish, params, dt),
+            aim,
+            self._level,
+            self._flight_controller.attitude,
+            self._flight_controller.airspeed,
+        )
 
     @staticmethod
     def _straight_on(now: Estimate, params: AirParams) -> PathReference:
@@ -257,9 +263,9 @@ class ModeManager:
         self.disarms = self.disarms or phase.disarms
         self._change(becomes or TABLE[self.mode].done or FlightMode.HOLD, phase.ended)
 
-    def haven(self, now: Estimate, params: AirParams) -> Place | None:
+    def return_point(self, now: Estimate, params: AirParams) -> Place | None:
         """Where Return would lead now."""
-        return haven(now, self.home, self.rally, self.fence.fencing, params) if self.home is not None else None
+        return return_point(now, self.home, self.rally, self.fence.fencing, params) if self.home is not None else None
 
     @property
     def blocked(self) -> str:
@@ -272,7 +278,7 @@ class ModeManager:
         return descends or (self.landing is not None and self.landing.rolls)
 
     def _change(self, mode: FlightMode, reason: str) -> None:
-        self.pace.begin(anew=mode is not self.mode)
+        self.speed_override.begin(anew=mode is not self.mode)
         self.mode, self.reason, self._phase, self._climb_to = mode, reason, None, None
         self._stick.take()
 
@@ -324,7 +330,7 @@ class ModeManager:
         self._change(FlightMode.HOLD, f"goal of {source}")
         self._phase = OrbitMode(Circle(Place(place.north, place.east, height), how.radius or params.hold_radius), how)
         if how.airspeed:
-            self.pace.begin(anew=True)
+            self.speed_override.begin(anew=True)
         return ""
 
     def descend(self, now: Estimate, reason: str, params: AirParams) -> None:
@@ -333,7 +339,7 @@ class ModeManager:
             return
         circle = self.circle or Circle.ahead(now, now.height, params.hold_radius)
         self._change(FlightMode.LAND, reason)
-        self._phase = DescendMode(circle, self.home.height if self.home is not None else self._ground, self.senses)
+        self._phase = DescendMode(circle, self.home.height if self.home is not None else self._ground, self.context)
 
     def orbit(self, circle: Circle, airspeed: float, source: str, params: AirParams) -> str:
         """Mode Orbit; a radius or airspeed of 0 is the vehicle's own."""

@@ -68,7 +68,7 @@ class ModeRule:
     """What follows when one of ``keeps`` is lost."""
     done: FlightMode | None = None
     """What follows when it has come to its end; None: it has none."""
-    by_hand: bool = False
+    is_manual: bool = False
     """It is steered by a stick; when nobody holds that the aircraft circles, and a failsafe follows."""
     on_ground: bool = False
     """It moves an aircraft that stands; in all other modes that keeps its brakes on and its motor off."""
@@ -79,10 +79,10 @@ _HERE = (Need.POSITION,)
 _M = FlightMode
 
 TABLE: Mapping[FlightMode, ModeRule] = {
-    _M.MANUAL: ModeRule((Need.RELEASED,), by_hand=True, on_ground=True),
-    _M.STABILIZED: ModeRule((Need.RELEASED,), by_hand=True, on_ground=True),
-    _M.ALTITUDE: ModeRule((Need.RELEASED, Need.AIRBORNE), by_hand=True),
-    _M.POSITION: ModeRule(_FLYING, _HERE, without=_M.ALTITUDE, by_hand=True),
+    _M.MANUAL: ModeRule((Need.RELEASED,), is_manual=True, on_ground=True),
+    _M.STABILIZED: ModeRule((Need.RELEASED,), is_manual=True, on_ground=True),
+    _M.ALTITUDE: ModeRule((Need.RELEASED, Need.AIRBORNE), is_manual=True),
+    _M.POSITION: ModeRule(_FLYING, _HERE, without=_M.ALTITUDE, is_manual=True),
     _M.TAKEOFF: ModeRule((Need.RELEASED, Need.GROUND, Need.POSITION), done=_M.HOLD, on_ground=True),
     _M.MISSION: ModeRule((Need.RELEASED, Need.POSITION, Need.MISSION), _HERE, done=_M.HOLD, on_ground=True),
     _M.HOLD: ModeRule(),

@@ -57,29 +57,29 @@ class AutopilotAir(Service):
     fixed_params = FIXED
     params: AirParams
 
-    def __init__(self, ship: AutopilotConfig, params: AirParams) -> None:
+    def __init__(self, config: AutopilotConfig, params: AirParams) -> None:
         self.params = params
-        self._ship = ship
+        self._config = config
         self._restarts = False
         self._told_params = ToldParams()
-        self._armed = ship.starts_in_air or ship.starts_armed
-        self._pilot = ModeManager(intake.items(ship.items), ship.ground, ship.strips, ship.servos)
-        self._pilot.leads = LeaderSpeedFilter() if ship.leads else None
-        self._over_ground = GroundProximity(ship.altimeter)
+        self._armed = config.starts_in_air or config.starts_armed
+        self._mode_manager = ModeManager(intake.items(config.items), config.ground, config.strips, config.servos)
+        self._mode_manager.leads = LeaderSpeedFilter() if config.leads else None
+        self._over_ground = GroundProximity(config.altimeter)
         self._within = CachedFenceCheck()
-        self._safety = FailsafeMonitor(self._pilot, ship.servos)
-        self._safety.set_fence(ship.fence, None, params)
+        self._safety = FailsafeMonitor(self._mode_manager, config.servos)
+        self._safety.set_fence(config.fence, None, params)
         self._journal = EventLog()
-        self._journal.note(advice(self._pilot.navigator.items, params))
-        self._plans = ActivePlans(ship.items, self._pilot, self._safety, self._journal)
-        self._sensing = StateEstimation(ship.instruments, ship.tangent, params.estimator, self._safety.believed)
-        self._surfaces = manual_control.LET_GO
+        self._journal.note(advice(self._mode_manager.navigator.items, params))
+        self._plans = ActivePlans(config.items, self._mode_manager, self._safety, self._journal)
+        self._sensing = StateEstimation(config.instruments, config.tangent, params.estimator, self._safety.believed)
+        self._surfaces = manual_control.STICK_RELEASED
         self._steering = ExternalControl()
         self._now: Estimate | None = None
         self._cycles = 0
         self._told: tuple[object, ...] = ()
         self._where: tuple[object, ...] = ()
-        self._land = LandDetector(ship.starts_in_air)
+        self._land = LandDetector(config.starts_in_air)
         self._status = VehicleStatus()
         self._stop = StopStatus()
 
@@ -95,7 +95,7 @@ class AutopilotAir(Service):
             self._land.step(estimate, self.params, 1 / self.hz)
         self._safety.hear(t, now.link, now.battery)
         warnings = self._safety.step(t, self._seen(estimate), self.params, 1 / self.hz)
-        self._pilot.fly_blind(self._sensing.gnss_age > GNSS_HOLD or self._safety.blind)
+        self._mode_manager.fly_blind(self._sensing.gnss_age > GNSS_HOLD or self._safety.blind)
         self._handle_stop_all(now.stop)
         out = self._answer(now, estimate)
         hands = {"teleop": now.teleop, "mavlink": now.mavlink, "client": now.client}
@@ -103,7 +103,7 @@ class AutopilotAir(Service):
         self._steering.hear(t, hands, setpoints, self.params.stick_timeout)
         self._over_ground.hear(now.range, self._sensing.felt, 1 / self.hz)
         self._report(t, estimate, self._fly(t, estimate), out)
-        out.events = warnings + self._journal.events(t, self._pilot, self._armed)
+        out.events = warnings + self._journal.events(t, self._mode_manager, self._armed)
         self._tell_news(t, out)
         return out
 
@@ -122,9 +122,9 @@ class AutopilotAir(Service):
         out.mode = [self._set_mode(r) for r in now.mode]
         out.goal = [self._go_to(r) for r in now.goal]
         out.mission = [_reply(self._plans.set_mission(r.mission, self.params)) for r in now.mission]
-        out.current = [_reply(self._pilot.set_current(r.index)) for r in now.current]
+        out.current = [_reply(self._mode_manager.set_current(r.index)) for r in now.current]
         out.orbit = [_reply(self._orbit(r)) for r in now.orbit]
-        out.go_around = [_reply(self._pilot.go_around(r.source)) for r in now.go_around]
+        out.go_around = [_reply(self._mode_manager.go_around(r.source)) for r in now.go_around]
         out.order = [_reply(self._carry_out(r, estimate)) for r in now.order]
         out.fence = [_reply(self._plans.set_fence(r.fence, self._seen(estimate), self.params)) for r in now.fence]
         out.set_rally = [_reply(self._plans.set_rally(r.rally, self.params)) for r in now.set_rally]
@@ -133,27 +133,27 @@ class AutopilotAir(Service):
     def _fly(self, t: float, now: Estimate) -> ControlOutput:
         clearance = self._over_ground.clearance(t, now, self.params.gear_height)
         felt = self._over_ground
-        senses = FlightContext(
-            self._land.airborne, self._armed, None, self._ship.servos, clearance, felt.specific_force_x, felt.specific_force_up
+        context = FlightContext(
+            self._land.airborne, self._armed, None, self._config.servos, clearance, felt.specific_force_x, felt.specific_force_up
         )
-        self._pilot.hear(self._steering.tell(senses), 1 / self.hz)
-        flown = self._pilot.step(now, self._safety.demands(self.params), 1 / self.hz)
+        self._mode_manager.hear(self._steering.tell(context), 1 / self.hz)
+        flown = self._mode_manager.step(now, self._safety.demands(self.params), 1 / self.hz)
         self._surfaces = flown.surfaces
-        self._journal.note(self._steering.news(t, self._pilot))
-        if self._pilot.disarms:
-            self._pilot.disarms = self._armed = False
+        self._journal.note(self._steering.news(t, self._mode_manager))
+        if self._mode_manager.disarms:
+            self._mode_manager.disarms = self._armed = False
         return flown
 
     def _report(self, t: float, now: Estimate, flown: ControlOutput, out: interface.Outputs) -> None:
         """Surfaces and motion; what is told now and then, and the status also when it changes."""
         state = telemetry.nav_state(t, now)
         out.surfaces, out.nav_state = telemetry.surfaces(t, flown.surfaces, self._armed), state
-        out.pose, out.body_frame = telemetry.pose(state), telemetry.body_frame(state, self._ship.name)
-        pilot = self._pilot
-        told = (pilot.mode, pilot.reason, pilot.stopped, self._armed, self._steering.followed(pilot))
+        out.pose, out.body_frame = telemetry.pose(state), telemetry.body_frame(state, self._config.name)
+        mode_manager = self._mode_manager
+        told = (mode_manager.mode, mode_manager.reason, mode_manager.stopped, self._armed, self._steering.followed(mode_manager))
         if self._cycles % 5 == 0 or told != self._told:
             self._told = told
-            self._status = telemetry.status(t, self._pilot, now, flown)
+            self._status = telemetry.status(t, self._mode_manager, now, flown)
             self._status.battery_remaining, self._status.battery_voltage = self._safety.endurance.shown
             self._status.prearm.extend(self._faults())
             self._status.failsafes.extend(self._safety.texts)
@@ -161,15 +161,15 @@ class AutopilotAir(Service):
             self._status.breach, self._status.breaches = self._safety.breach, self._safety.breaches
             out.status = self._stamped_status(t)
         if self._cycles % 5 == 0:
-            out.targets = status_messages.targets(t, self._pilot, flown)
-        navigator = self._pilot.navigator
+            out.targets = status_messages.targets(t, self._mode_manager, flown)
+        navigator = self._mode_manager.navigator
         where = (navigator.index, navigator.reached, navigator.laps, navigator.finished)
         if self._cycles % 25 == 0 or where != self._where:
             self._where = where
-            out.progress = telemetry.progress(t, self._pilot, self._plans.mission.id)
+            out.progress = telemetry.progress(t, self._mode_manager, self._plans.mission.id)
         if self._cycles % 25 == 0:
             out.quality = status_messages.quality(t, now)
-            out.path = telemetry.path(t, self._pilot)
+            out.path = telemetry.path(t, self._mode_manager)
         self._cycles += 1
 
     def recall(self, left: interface.Recalls) -> None:
@@ -186,8 +186,8 @@ class AutopilotAir(Service):
             self._armed = left.status.armed
             self._land = LandDetector(not left.status.landed)
             self._stop = StopStatus(tuple(left.status.stops))
-            self._pilot.stopped = self._stop.who
-            self._pilot.take_up(intake.MODES[left.status.mode], intake.place(left.status.home), intake.stand(left.progress))
+            self._mode_manager.stopped = self._stop.who
+            self._mode_manager.take_up(intake.MODES[left.status.mode], intake.place(left.status.home), intake.stand(left.progress))
         if left.nav_state is not None:
             self._sensing.begin_from(left.nav_state)
 
@@ -216,8 +216,8 @@ class AutopilotAir(Service):
             return ["there is no satellite fix yet"]
         if self._land.airborne:
             return []
-        safety, pilot, now = self._safety, self._pilot, self._now
-        fence = pilot.fence.fencing
+        safety, mode_manager, now = self._safety, self._mode_manager, self._now
+        fence = mode_manager.fence.fencing
         standing = PrearmInputs(
             now,
             self.params,
@@ -227,20 +227,20 @@ class AutopilotAir(Service):
             has_air_data=safety.has_air_data,
             field=self._sensing.field,
             fence_fault="it stands outside" if fence.region.at((now.east, now.north)) < 0 else too_small(self.params),
-            mission_fault=self._within.mission_fault(pilot.navigator.items, fence, self.params),
+            mission_fault=self._within.mission_fault(mode_manager.navigator.items, fence, self.params),
         )
         return faults(standing)
 
     def _handle_stop_all(self, stop: StopStatus) -> None:
         """STOP ALL: in the air it holds, at rest it is disarmed."""
         self._stop = stop
-        self._pilot.stop(stop.who)
-        if self._pilot.stopped and not self._land.airborne:
+        self._mode_manager.stop(stop.who)
+        if self._mode_manager.stopped and not self._land.airborne:
             self._armed = False
 
     def _arm(self, request: ArmRequest) -> Reply:
-        if request.arm and self._pilot.stopped and not self._land.airborne:
-            return _reply(self._pilot.blocked)
+        if request.arm and self._mode_manager.stopped and not self._land.airborne:
+            return _reply(self._mode_manager.blocked)
         if request.arm and not request.force and not self._armed and (why := self._faults()):
             return _reply("; ".join(why))
         if not request.arm and self._land.airborne and not request.force:
@@ -253,14 +253,14 @@ class AutopilotAir(Service):
             wanted = ", ".join(m.value for m in intake.MODES.values())
             known = Mode.Name(request.mode) if request.mode in Mode.values() else f"mode {request.mode}"
             return _reply(f"{known} is not flown by this autopilot; {wanted} are")
-        refusal = self._pilot.change_mode(intake.MODES[request.mode], request.source)
+        refusal = self._mode_manager.change_mode(intake.MODES[request.mode], request.source)
         if not refusal:
             self._safety.watch.overrule()
         return _reply(refusal)
 
     def _go_to(self, request: GoalRequest) -> Reply:
         place, how = intake.place(request.position), LoiterOptions(request.radius, request.speed)
-        refusal = self._outside(place, how.radius) or self._pilot.go_to(place, request.source, self.params, how)
+        refusal = self._outside(place, how.radius) or self._mode_manager.go_to(place, request.source, self.params, how)
         if not refusal:
             self._safety.watch.overrule()
         return _reply(refusal)
@@ -268,17 +268,17 @@ class AutopilotAir(Service):
     def _orbit(self, request: OrbitRequest) -> str:
         circle = intake.circle(request)
         refusal = self._outside(circle.centre, circle.radius)
-        return refusal or self._pilot.orbit(circle, request.speed, request.source, self.params)
+        return refusal or self._mode_manager.orbit(circle, request.speed, request.source, self.params)
 
     def _outside(self, place: Place, radius: float) -> str:
         """Why this circle does not lie within the fence; empty if it does."""
-        fence = self._pilot.fence.fencing
+        fence = self._mode_manager.fence.fencing
         return "" if fence.is_open else place_fault(place, fence, self.params, abs(radius) or self.params.hold_radius)
 
     def _carry_out(self, order: OrderRequest, now: Estimate) -> str:
         if order.WhichOneof("kind") != "restart":
-            return orders.carry_out(order, self._pilot, now, self.params)
-        if self._armed or self._land.airborne or self._pilot.formation is not None:
+            return orders.carry_out(order, self._mode_manager, now, self.params)
+        if self._armed or self._land.airborne or self._mode_manager.formation is not None:
             return "it is armed, flies, or follows a leader: land and disarm it first"
         self._restarts = True
         return ""
@@ -286,8 +286,8 @@ class AutopilotAir(Service):
     def _restart(self) -> None:
         """As after power has been off, with mission, fence and rally points of now."""
         plans = self._plans
-        ship = replace(self._ship, starts_in_air=False, starts_armed=False, items=list(plans.mission.items), fence=self._safety.fence)
-        vars(self).update(vars(AutopilotAir(ship, self.params)))
+        config = replace(self._config, starts_in_air=False, starts_armed=False, items=list(plans.mission.items), fence=self._safety.fence)
+        vars(self).update(vars(AutopilotAir(config, self.params)))
         self._plans.set_rally(plans.rally, self.params)
 
     def _tell_news(self, t: float, out: interface.Outputs) -> None:
@@ -298,7 +298,7 @@ class AutopilotAir(Service):
     def _stamped_status(self, t: float) -> VehicleStatus:
         status = self._status
         status.timestamp.CopyFrom(stamp(t))
-        status.armed, status.landed, status.system_id = self._armed, not self._land.airborne, self._ship.system_id
+        status.armed, status.landed, status.system_id = self._armed, not self._land.airborne, self._config.system_id
         return status
 
 

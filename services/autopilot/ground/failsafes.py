@@ -31,7 +31,7 @@ class GroundFailsafeInputs:
     """In Mission or Return: by map and scan."""
     by_hand: bool = False
     silence: float = 0.0  # s since a ground station was heard; 0 while none ever was
-    let_go: bool = False
+    stick_released: bool = False
     """It has been driven by hand, and is not any more."""
     pose_age: float = 0.0  # s without a pose, in a mode that needs one
     setpoint_age: float = 0.0  # s without a command, in Offboard
@@ -58,8 +58,8 @@ GROUND_RULES: tuple[FailsafeRule[GroundFailsafeInputs], ...] = (
     ),
     FailsafeRule(
         "sticks",
-        trigger=lambda k: k.moves and k.let_go and k.params.stick_action != "wait",
-        clear=lambda k: not k.let_go,
+        trigger=lambda k: k.moves and k.stick_released and k.params.stick_action != "wait",
+        clear=lambda k: not k.stick_released,
         raised_text="manual control lost",
         cleared_text="manual control back, or another mode",
         detail=lambda k: f"no command for {k.params.stick_timeout:g} s",

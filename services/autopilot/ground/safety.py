@@ -60,7 +60,7 @@ class GroundFailsafeMonitor:
         """As told last."""
         self._keep = body.radius, body.max_linear_acceleration
         self._link = LinkWatch()
-        self._times = {"unplaced": 0.0, "unsteered": 0.0}
+        self._times = {"pose_age": 0.0, "setpoint_age": 0.0}
         self._wheels = WheelSpeedometer(body.wheel_radius)
         self._grip, self._tilt, self._sight = StuckDetector(self._wheels), TiltEstimate(imu_rpy), SensorWatch(sweeping)
         self._fenced = self._driven = False
@@ -109,8 +109,8 @@ class GroundFailsafeMonitor:
         if sensed.battery is not None and sensed.battery.remaining >= 0:
             self.battery = sensed.battery
         lacks = {
-            "unplaced": doing.mode in BY_ITSELF and sensed.here is None,
-            "unsteered": doing.mode == Mode.MODE_OFFBOARD and not doing.is_steered,
+            "pose_age": doing.mode in BY_ITSELF and sensed.here is None,
+            "setpoint_age": doing.mode == Mode.MODE_OFFBOARD and not doing.is_steered,
         }
         self._driven = doing.mode == Mode.MODE_MANUAL and (doing.is_steered or self._driven)
         self._let_go = self._driven and not doing.is_steered
@@ -128,9 +128,9 @@ class GroundFailsafeMonitor:
             by_itself=doing.mode in BY_ITSELF,
             by_hand=doing.mode == Mode.MODE_MANUAL,
             silence=self._link.silence,
-            let_go=self._let_go,
-            pose_age=self._times["unplaced"],
-            setpoint_age=self._times["unsteered"],
+            stick_released=self._let_go,
+            pose_age=self._times["pose_age"],
+            setpoint_age=self._times["setpoint_age"],
             unseen=self._sight.unseen,
             map_age=self._sight.map_age,
             stuck_for=self._grip.stuck_for,

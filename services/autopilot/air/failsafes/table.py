@@ -22,7 +22,7 @@ class FailsafeInputs:
     params: AirParams
     airborne: bool = True
     silence: float = 0.0  # s since a ground station was heard; 0 while none ever was
-    let_go: bool = False  # a mode is flown by hand, and by nobody any more
+    stick_released: bool = False  # a mode is flown by hand, and by nobody any more
     gnss_age: float = 0.0  # s since the last fix
     sigma: float = 0.0  # m
     lost_for: float = 0.0  # s without a position that modes rely on, while nobody flies by hand
@@ -61,8 +61,8 @@ AIR_RULES: tuple[FailsafeRule[FailsafeInputs], ...] = (
     ),
     FailsafeRule(
         "sticks",
-        trigger=lambda k: k.airborne and k.let_go,
-        clear=lambda k: not k.let_go,
+        trigger=lambda k: k.airborne and k.stick_released,
+        clear=lambda k: not k.stick_released,
         raised_text="manual control lost",
         cleared_text="manual control back, or another mode",
         detail=lambda k: f"no command for {k.params.stick_timeout:g} s",

@@ -16,10 +16,10 @@ class AutopilotWingman(AutopilotAir):
     class Inputs(interface.Inputs):
         others: dict[str, NavState] = each_vehicle(topics.NAV_STATE)
 
-    def __init__(self, ship: AutopilotConfig, params: AirParams, formation: FormationLink) -> None:
-        super().__init__(ship, params)
+    def __init__(self, config: AutopilotConfig, params: AirParams, formation: FormationLink) -> None:
+        super().__init__(config, params)
         self._formation = formation
-        self._pilot.join(formation)
+        self._mode_manager.join(formation)
 
     def step(self, t: float, now: interface.Inputs) -> interface.Outputs:
         assert isinstance(now, self.Inputs)

@@ -15,14 +15,14 @@ from uvf.runtime.contract.instances import ServiceInstance
 NEAREST = 1.0  # s behind a leader: what lies ahead of the follower has to be known
 
 
-def wingman(site: Scenario, ship: AutopilotConfig, params: AirParams) -> ServiceInstance:
+def wingman(site: Scenario, config: AutopilotConfig, params: AirParams) -> ServiceInstance:
     """Of an aircraft that follows. Raises BadInput for a station that cannot be kept."""
-    follow = site.members[ship.name].entry.job.follow
+    follow = site.members[config.name].entry.job.follow
     assert follow is not None
-    _check(site, ship.name, follow, params)
+    _check(site, config.name, follow, params)
     station = FormationSlot(follow.behind, follow.right, follow.above)
     return ServiceInstance(
-        AutopilotWingman, lambda: AutopilotWingman(ship, params, FormationLink(ship.name, follow.leader, station)), ship.name
+        AutopilotWingman, lambda: AutopilotWingman(config, params, FormationLink(config.name, follow.leader, station)), config.name
     )
 
 

@@ -26,18 +26,18 @@ class ExternalControl:
         self._hand = self._hands.choose(t, hands, stick_timeout)
         self._setpoint = self._setpoints.choose(t, setpoints)
 
-    def tell(self, senses: FlightContext) -> FlightContext:
+    def tell(self, context: FlightContext) -> FlightContext:
         """The same, with what is asked now."""
-        senses.hand, senses.setpoint = self._hand, self._setpoint
-        senses.setpoint_from, senses.setpoints_wait = self._setpoints.holder, self._setpoints.waiting
-        return senses
+        context.hand, context.setpoint = self._hand, self._setpoint
+        context.setpoint_from, context.setpoints_wait = self._setpoints.holder, self._setpoints.waiting
+        return context
 
-    def followed(self, pilot: ModeManager) -> str:
+    def followed(self, mode_manager: ModeManager) -> str:
         """Whose setpoints are flown; "" in other modes than Offboard."""
-        return self._setpoints.holder if pilot.mode is FlightMode.OFFBOARD else ""
+        return self._setpoints.holder if mode_manager.mode is FlightMode.OFFBOARD else ""
 
-    def news(self, t: float, pilot: ModeManager) -> list[tuple[str, str]]:
+    def news(self, t: float, mode_manager: ModeManager) -> list[tuple[str, str]]:
         """Hand-overs, in the modes in which they matter: what and why."""
-        if pilot.mode is FlightMode.OFFBOARD:
+        if mode_manager.mode is FlightMode.OFFBOARD:
             return self._setpoints.news(t)
-        return self._hands.news(t) if pilot.is_by_hand else []
+        return self._hands.news(t) if mode_manager.is_manual else []

@@ -17,10 +17,10 @@ from uvf.runtime.messages.convert import stamp
 class ActivePlans:
     """Requests give the reason of a refusal, empty when accepted."""
 
-    def __init__(self, items: list[MissionItem], pilot: ModeManager, safety: FailsafeMonitor, journal: EventLog) -> None:
+    def __init__(self, items: list[MissionItem], mode_manager: ModeManager, safety: FailsafeMonitor, journal: EventLog) -> None:
         self.mission = intake.with_id(items)
         self.rally = RallyPoints()
-        self._pilot, self._safety, self._journal = pilot, safety, journal
+        self._mode_manager, self._safety, self._journal = mode_manager, safety, journal
         self._news = {"plan", "bounds", "rally"}
         """Outputs that are to be told."""
 
@@ -29,10 +29,10 @@ class ActivePlans:
             items = intake.items(mission.items)
         except ValueError as error:
             return str(error)
-        refusal = mission_fault(items, self._pilot.fence.fencing, params) or self._pilot.load(items, params)
+        refusal = mission_fault(items, self._mode_manager.fence.fencing, params) or self._mode_manager.load(items, params)
         if not refusal:
             self.mission = intake.with_id(mission.items)
-            self._journal.note(advice(self._pilot.navigator.items, params))
+            self._journal.note(advice(self._mode_manager.navigator.items, params))
             self._news.add("plan")
         return refusal
 
@@ -44,9 +44,9 @@ class ActivePlans:
 
     def set_rally(self, rally: RallyPoints, params: AirParams) -> str:
         places = [intake.place(point) for point in rally.points]
-        refusal = return_points.fault(places, self._pilot.home or Place(0.0, 0.0, 0.0), self._pilot.fence.fencing, params)
+        refusal = return_points.fault(places, self._mode_manager.home or Place(0.0, 0.0, 0.0), self._mode_manager.fence.fencing, params)
         if not refusal:
-            self.rally, self._pilot.rally = rally, tuple(places)
+            self.rally, self._mode_manager.rally = rally, tuple(places)
             self._news.add("rally")
         return refusal
 

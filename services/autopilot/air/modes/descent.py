@@ -34,10 +34,10 @@ class DescendStage(Enum):
 class DescendMode(FlightPhase):
     """By attitude, airspeed, pressure and compass; the place counts only as far as it is reckoned."""
 
-    def __init__(self, circle: Circle, ground: float, senses: FlightContext) -> None:
+    def __init__(self, circle: Circle, ground: float, context: FlightContext) -> None:
         """ground: m, world, supposed while no range finder sees it."""
         self.circle = circle
-        self._ground, self._senses = ground, senses
+        self._ground, self._senses = ground, context
         self._stage = DescendStage.CIRCLE
         self._heading = 0.0
         self._gyros: Gyros | None = None

@@ -22,29 +22,29 @@ class Airfield:
     def __init__(self, strips: Sequence[LandingStrip]) -> None:
         self._strips = tuple(strips)
 
-    def take_off(self, now: Estimate, height: float, senses: FlightContext) -> TakeoffMode:
+    def take_off(self, now: Estimate, height: float, context: FlightContext) -> TakeoffMode:
         """height: m, world, at which it is done. On a strip there is the room that lies ahead on it."""
         on = next((s for s in self._strips if _distance(s, now.north, now.east) < s.length / 2), None)
         if on is None:
-            return TakeoffMode(now, height, senses)
+            return TakeoffMode(now, height, context)
         lane = on.lane(now.yaw)
         distance, _ = lane.locate(now)
-        return TakeoffMode(now, height, senses, lane.rest + distance)
+        return TakeoffMode(now, height, context, lane.rest + distance)
 
-    def landing(self, now: Estimate, home: Place, senses: FlightContext, params: AirParams) -> LandingMode:
+    def landing(self, now: Estimate, home: Place, context: FlightContext, params: AirParams) -> LandingMode:
         """On the nearest strip, without any at home."""
         place = Place(now.north, now.east, home.height) if self._strips else home
-        return LandingMode(now, partial(lane_for, place, self._strips), senses, params)
+        return LandingMode(now, partial(lane_for, place, self._strips), context, params)
 
     def landing_at(
-        self, now: Estimate, place: Place, senses: FlightContext, params: AirParams, approach: Approach | None = None
+        self, now: Estimate, place: Place, context: FlightContext, params: AirParams, approach: Approach | None = None
     ) -> LandingMode:
         """On the strip there, or on the place itself; by the approach that a mission lays down, whatever the wind."""
         if approach is not None:
             lane = lane_by(place, approach.course, self._strips)
-            return LandingMode(now, lambda _: lane, senses, params, approach)
+            return LandingMode(now, lambda _: lane, context, params, approach)
         near = [s for s in self._strips if _distance(s, place.north, place.east) < s.length / 2 + NEAR]
-        return LandingMode(now, partial(lane_for, place, near), senses, params)
+        return LandingMode(now, partial(lane_for, place, near), context, params)
 
 
 def _distance(strip: LandingStrip, north: float, east: float) -> float:

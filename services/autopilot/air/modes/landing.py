@@ -61,7 +61,7 @@ class LandingMode(FlightPhase):
         self,
         now: Estimate,
         choose: Callable[[Estimate], Runway],
-        senses: FlightContext,
+        context: FlightContext,
         params: AirParams,
         approach: Approach | None = None,
     ) -> None:
@@ -69,7 +69,7 @@ class LandingMode(FlightPhase):
         self._approach = approach
         self._choose = choose
         self.why_around = ""
-        self._senses = senses
+        self._senses = context
         self._length = FINAL_TIME * params.min_airspeed if approach is None else approach.length
         self._wheels = WheelHeight(self.lane.aim.height)
         self._since = 0.0

@@ -14,11 +14,11 @@ from uvf.models.vehicle.flight_params import AirParams
 class MissionMode(FlightPhase):
     """From the ground a take-off comes first, whether the mission has one or not."""
 
-    def __init__(self, navigator: PlanFollower, field: Airfield, home: Place, senses: FlightContext) -> None:
+    def __init__(self, navigator: PlanFollower, field: Airfield, home: Place, context: FlightContext) -> None:
         self.becomes: FlightMode | None = None
         self.part: FlightPhase | None = None
-        self._navigator, self._field, self._home, self._senses = navigator, field, home, senses
-        self._starts = not senses.airborne
+        self._navigator, self._field, self._home, self._senses = navigator, field, home, context
+        self._starts = not context.airborne
         self._index: int | None = None
 
     def step(self, now: Estimate, params: AirParams, dt: float) -> Setpoint:

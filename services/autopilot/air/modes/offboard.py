@@ -57,8 +57,8 @@ class SetpointSources(Multiplexer):
 class OffboardMode(FlightPhase):
     """``step`` is called while there is a setpoint."""
 
-    def __init__(self, senses: FlightContext) -> None:
-        self._senses = senses
+    def __init__(self, context: FlightContext) -> None:
+        self._senses = context
 
     def step(self, now: Estimate, params: AirParams, dt: float) -> Setpoint:
         message = self._senses.setpoint

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Mapping
 
-from services.autopilot.air.manual_control import LET_GO, StickDeflections
+from services.autopilot.air.manual_control import STICK_RELEASED, StickDeflections
 from services.autopilot.air.mode_table import FlightMode
 from services.autopilot.air.setpoints import FlightContext, FlightPhase, PathSetpoint, Setpoint
 from uvf.control.commands import AltitudeAirspeedSetpoint, AttitudeSetpoint, Surfaces
@@ -20,12 +20,12 @@ WINGS_LEVEL = 0.1  # rad: from here on a line is held over ground
 class StickMode(FlightPhase):
     """``step`` is called while a hand is on the stick."""
 
-    def __init__(self, senses: FlightContext) -> None:
-        self._senses = senses
+    def __init__(self, context: FlightContext) -> None:
+        self._senses = context
 
     @property
     def _surfaces(self) -> Surfaces:
-        return self._senses.hand.surfaces if self._senses.hand is not None else LET_GO
+        return self._senses.hand.surfaces if self._senses.hand is not None else STICK_RELEASED
 
     @property
     def _sticks(self) -> StickDeflections:
@@ -54,8 +54,8 @@ class StabilizedMode(StickMode):
 class AltitudeMode(StickMode):
     """Stick to bank and climb rate, centred to the height of then; throttle from the lowest airspeed to the highest."""
 
-    def __init__(self, senses: FlightContext) -> None:
-        super().__init__(senses)
+    def __init__(self, context: FlightContext) -> None:
+        super().__init__(context)
         self._height: float | None = None
 
     def step(self, now: Estimate, params: AirParams, dt: float) -> Setpoint:
@@ -80,8 +80,8 @@ class AltitudeMode(StickMode):
 class PositionMode(AltitudeMode):
     """As Altitude; with the stick centred it holds the line over ground that it flies along once its wings are level."""
 
-    def __init__(self, senses: FlightContext) -> None:
-        super().__init__(senses)
+    def __init__(self, context: FlightContext) -> None:
+        super().__init__(context)
         self._line: tuple[Point, Point] | None = None
 
     def step(self, now: Estimate, params: AirParams, dt: float) -> Setpoint:

@@ -35,15 +35,15 @@ class TakeoffStage(Enum):
 class TakeoffMode(FlightPhase):
     """In the direction in which the aircraft stands. ``room`` [m]: how far it may roll, half of it before it has the speed to fly."""
 
-    def __init__(self, now: Estimate, height: float, senses: FlightContext, room: float = math.inf) -> None:
+    def __init__(self, now: Estimate, height: float, context: FlightContext, room: float = math.inf) -> None:
         """height: m, world, at which it is done."""
         self.height = height
-        self._senses, self._room = senses, room
+        self._senses, self._room = context, room
         self._ground = now.height
-        self._course = now.yaw if not senses.airborne else now.course
+        self._course = now.yaw if not context.airborne else now.course
         self._origin: Point = (now.north, now.east)
         self._gyros = Gyros(now)
-        self._stage = TakeoffStage.CLIMB if senses.airborne else TakeoffStage.READY
+        self._stage = TakeoffStage.CLIMB if context.airborne else TakeoffStage.READY
         self._since = 0.0
         self._pushed = 0.0
         self._why = ""

@@ -17,10 +17,10 @@ SLOW = cruising(airspeed=19.0, ground_speed=19.0)
 
 def settled(params=LIFTING, flap=0.3, lift=0.0):
     """Surfaces and helm after the flaps have come down, with the last step asking for ``lift``."""
-    helm = FlightController(SERVOS)
+    flight_controller = FlightController(SERVOS)
     for _ in range(200):
-        helm.step(SLOW, Setpoint(LEVEL, flap), params, 0.02)
-    return helm.step(SLOW, Setpoint(LEVEL, flap, lift=lift), params, 0.02)
+        flight_controller.step(SLOW, Setpoint(LEVEL, flap), params, 0.02)
+    return flight_controller.step(SLOW, Setpoint(LEVEL, flap, lift=lift), params, 0.02)
 
 
 def test_lift_that_is_wanting_moves_the_flaps_at_once_by_what_they_make():

@@ -112,11 +112,11 @@ def test_the_documented_table_is_that_of_the_code():
 
 CAUSES = {
     "link": {"silence": 6.0},
-    "sticks": {"let_go": True, "params": GroundAutopilotParams(stick_action="hold")},
-    "pose": {"unplaced": 1.5},
+    "sticks": {"stick_released": True, "params": GroundAutopilotParams(stick_action="hold")},
+    "pose": {"pose_age": 1.5},
     "scan": {"unseen": 2.0},
-    "map": {"unmapped": 6.0},
-    "offboard": {"unsteered": 1.0},
+    "map": {"map_age": 6.0},
+    "offboard": {"setpoint_age": 1.0},
     "fence": {"fence": True},
     "stuck": {"stuck_for": 5.0, "stuck": "wheels are held fast"},
     "tipped": {"tilt": 0.8},

@@ -15,8 +15,8 @@ PARAMS = AirParams()
 DT = 0.02
 CAUSES = {
     "link": {"silence": 6.0},
-    "sticks": {"let_go": True},
-    "gnss": {"unfixed": 3.0},
+    "sticks": {"stick_released": True},
+    "gnss": {"gnss_age": 3.0},
     "estimator": {"sigma": 60.0},
     "position": {"lost_for": 130.0},
     "air_data": {"has_air_data": False},
@@ -99,7 +99,7 @@ def test_the_parameter_decides_what_is_done(name, parameter, choice):
 
 
 def test_nobody_at_the_stick_is_told_when_it_shall_only_be_waited_for():
-    waiting = FailsafeInputs(msgspec.structs.replace(PARAMS, stick_action="wait"), let_go=True)
+    waiting = FailsafeInputs(msgspec.structs.replace(PARAMS, stick_action="wait"), stick_released=True)
     assert RULES["sticks"].action(waiting) is FailsafeAction.WARN
 
 

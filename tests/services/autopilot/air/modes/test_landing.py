@@ -57,7 +57,7 @@ def test_the_flare_has_no_step_and_no_kink():
 
 def on_final(distance, height, right=0.0, airspeed=19.0, clearance=None, **now):
     """Eastwards, ``distance`` [m] before the point to touch at, the wheels ``height`` [m] over the strip."""
-    senses = FlightContext(clearance=clearance)
+    context = FlightContext(clearance=clearance)
     state = {
         "course": math.pi / 2,
         "yaw": math.pi / 2,
@@ -68,7 +68,7 @@ def on_final(distance, height, right=0.0, airspeed=19.0, clearance=None, **now):
         "height": height + 5.0 + PARAMS.gear_height,
         **now,
     }
-    landing = LandingMode(cruising(**state), lambda now: EAST, senses, PARAMS)
+    landing = LandingMode(cruising(**state), lambda now: EAST, context, PARAMS)
     start = 25.0 * PARAMS.min_airspeed
     joining = {**state, "east": EAST.aim.east - start, "north": 0.0, "height": 5.0 + PARAMS.gear_height + SLOPE * start}
     landing.step(cruising(**joining), PARAMS, 0.02)

@@ -59,5 +59,9 @@ def test_its_turns_leave_bank_to_a_follower_at_its_highest_airspeed():
 
 def test_only_whoever_is_followed_leaves_a_reserve():
     services = {host.vehicle: host.make() for host in hosts(load_scenario(ROOT / "missions" / "formation.yaml"))}
-    assert {name: s._pilot.leads is not None for name, s in services.items()} == {"milvus1": True, "milvus2": False, "milvus3": False}
+    assert {name: s._mode_manager.leads is not None for name, s in services.items()} == {
+        "milvus1": True,
+        "milvus2": False,
+        "milvus3": False,
+    }
     assert services["milvus1"].params.turn_bank < services["milvus2"].params.turn_bank

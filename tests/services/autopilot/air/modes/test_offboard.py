@@ -101,7 +101,7 @@ class Senders:
 
     @property
     def bank(self):
-        return self.bench.service._pilot.senses.setpoint.attitude.bank
+        return self.bench.service._mode_manager.context.setpoint.attitude.bank
 
     @property
     def texts(self):
@@ -188,7 +188,7 @@ class OnBus:
             for source, bank, ahead in said:
                 self._put(topics.SETPOINT.by(source), attitude(t - 0.01 + ahead, bank), t - 0.01)
             self.shell.advance()
-            setpoint = self.shell.service._pilot.senses.setpoint
+            setpoint = self.shell.service._mode_manager.context.setpoint
             self.banks.append(setpoint.attitude.bank if setpoint is not None else None)
 
     def ask_offboard(self):

@@ -19,13 +19,13 @@ def stick(roll=0.0, pitch=0.0, yaw=0.0, throttle=0.5):
     return FlightContext(hand=ManualCommand("teleop", surfaces), servos=SERVOS)
 
 
-def asked(mode, senses, now=NOW):
-    return mode(senses).step(now, PARAMS, 0.02)
+def asked(mode, context, now=NOW):
+    return mode(context).step(now, PARAMS, 0.02)
 
 
 def test_manual_passes_the_surfaces_on():
-    senses = stick(0.3, 0.2, -0.1)
-    assert asked(ManualMode, senses).asked == senses.hand.surfaces
+    context = stick(0.3, 0.2, -0.1)
+    assert asked(ManualMode, context).asked == context.hand.surfaces
 
 
 @pytest.mark.parametrize("part", [-1.0, -0.4, 0.0, 0.7, 1.0])
@@ -55,17 +55,17 @@ def test_altitude_turns_the_stick_into_climb_and_the_throttle_into_airspeed():
 
 
 def test_altitude_holds_the_height_at_which_the_stick_was_centred():
-    senses = stick(pitch=0.8)
-    mode = AltitudeMode(senses)
+    context = stick(pitch=0.8)
+    mode = AltitudeMode(context)
     mode.step(cruising(height=60.0), PARAMS, 0.02)
-    senses.update(stick())
+    context.update(stick())
     mode.step(cruising(height=72.0), PARAMS, 0.02)
     assert mode.step(cruising(height=75.0), PARAMS, 0.02).asked.height == 72.0
 
 
 def test_position_holds_the_line_over_ground_along_which_the_stick_was_centred():
-    senses = stick()
-    mode = PositionMode(senses)
+    context = stick()
+    mode = PositionMode(context)
     mode.step(cruising(course=0.0, east=5.0), PARAMS, 0.02)
     later = mode.step(cruising(course=0.1, north=100.0, east=9.0), PARAMS, 0.02).asked
     assert isinstance(later, PathSetpoint)
@@ -73,11 +73,11 @@ def test_position_holds_the_line_over_ground_along_which_the_stick_was_centred()
 
 
 def test_position_leaves_the_line_when_the_stick_is_moved_and_waits_for_level_wings():
-    senses = stick()
-    mode = PositionMode(senses)
+    context = stick()
+    mode = PositionMode(context)
     mode.step(NOW, PARAMS, 0.02)
-    senses.update(stick(roll=0.5))
+    context.update(stick(roll=0.5))
     assert mode.step(NOW, PARAMS, 0.02).asked.bank == pytest.approx(0.5 * PARAMS.turn_bank)
-    senses.update(stick())
+    context.update(stick())
     assert isinstance(mode.step(cruising(roll=0.4), PARAMS, 0.02).asked, AltitudeAirspeedSetpoint)
     assert isinstance(mode.step(cruising(roll=0.02), PARAMS, 0.02).asked, PathSetpoint)

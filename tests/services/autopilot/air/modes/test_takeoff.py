@@ -92,18 +92,18 @@ def test_once_it_can_fly_it_is_not_given_up():
 
 
 def test_before_a_throw_the_motor_is_off_and_a_short_knock_does_not_start_it():
-    senses = FlightContext(airborne=False)
-    phase = TakeoffMode(cruising(**STANDING), 40.0, senses)
+    context = FlightContext(airborne=False)
+    phase = TakeoffMode(cruising(**STANDING), 40.0, context)
     assert after(phase, 2.0, THROWN).asked.throttle == 0.0
-    senses.specific_force_x = 30.0
+    context.specific_force_x = 30.0
     after(phase, 0.06, THROWN)
-    senses.specific_force_x = 0.0
+    context.specific_force_x = 0.0
     assert after(phase, 1.0, THROWN).asked.throttle == 0.0
 
 
 def test_a_throw_starts_the_motor_with_level_wings_and_the_nose_up():
-    senses = FlightContext(airborne=False, specific_force_x=30.0)
-    phase = TakeoffMode(cruising(**STANDING), 40.0, senses)
+    context = FlightContext(airborne=False, specific_force_x=30.0)
+    phase = TakeoffMode(cruising(**STANDING), 40.0, context)
     after(phase, 0.12, THROWN, airspeed=9.0)
     wish = after(phase, 0.1, THROWN, airspeed=12.0, ground_speed=12.0).asked
     assert isinstance(wish, AttitudeSetpoint)
