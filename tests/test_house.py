@@ -14,7 +14,7 @@ GENERATED = re.compile(r"_pb2\.py$|mavlink/dialect\.py$")
 TABLES = {"schemas/topics.py"}
 ENGINES = {
     "zenoh": ["src/uvf/runtime/bus/zenoh_bus.py"],
-    "mcap": ["src/uvf/runtime/log/reading.py", "src/uvf/runtime/log/recording.py"],
+    "mcap": [f"src/uvf/runtime/log/{name}.py" for name in ("reading", "recording", "recovery")],
     "pybullet": ["services/sim_camera/renderer.py", "services/sim_ground/world.py"],
     "jsbsim": ["services/sim_air/engine/airframe.py"],
     "pymavlink": ["src/uvf/mavlink/generate.py"],

@@ -10,7 +10,7 @@ from schemas.messages import NavState
 from uvf.runtime.bus.interface import LocalBus
 from uvf.runtime.contract.instances import Host
 from uvf.runtime.contract.service import Service
-from uvf.runtime.log.reading import recover
+from uvf.runtime.log.recovery import recover
 from uvf.runtime.log.replay import into_service, onto_bus
 
 
