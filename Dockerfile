@@ -11,6 +11,8 @@ RUN if [ "$(dpkg --print-architecture)" != amd64 ]; then \
 
 COPY . .
 ENV PYTHONPATH=/uvf:/uvf/src PYTHONUNBUFFERED=1 UVF_RUNS=/runs
+# Generates the MAVLink dialect into the image: its containers may be read-only.
+RUN python -c "from uvf.mavlink import dialect"
 # Compiles the numerical kernels into the image, so that containers start warm.
 RUN python -m launch.cli check
 ENTRYPOINT ["python", "-m", "launch.cli"]

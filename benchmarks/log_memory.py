@@ -22,8 +22,8 @@ from uvf.runtime.bus.interface import LocalBus, Sample
 from uvf.runtime.contract.declaration import Reads, Writes, topic
 from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.contract.service import Service
-from uvf.runtime.log.reading import recover
 from uvf.runtime.log.recording import Recorder
+from uvf.runtime.log.recovery import recover
 from uvf.runtime.log.replay import into_service, onto_bus
 
 PICTURE, BYTES = 1_000_000, 2_000_000_000

@@ -20,9 +20,9 @@ from numpy.typing import NDArray
 
 from benchmarks.odometry_drive import DT, TRACK, Moment, World, drive
 from launch.commands.bench import Figures
+from uvf.estimation.kalman import Kind
 from uvf.estimation.odometry.calibration import Scales, SegmentMaker, WheelCalibration
 from uvf.estimation.odometry.filter import DriveFilter
-from uvf.estimation.odometry.kalman import Kind
 from uvf.estimation.odometry.states import Noise, Step
 from uvf.maths.kinematics import Twist, move
 from uvf.maths.rotations import wrap

@@ -1,9 +1,12 @@
 """What a child process prints: read as it comes and handed on, to a log file that never grows beyond its share."""
 
 import contextlib
+import sys
 from collections.abc import Callable
+from logging import LogRecord, makeLogRecord
+from logging.handlers import RotatingFileHandler
 from pathlib import Path
-from threading import Lock, Thread
+from threading import Thread
 from typing import IO
 
 from uvf.runtime.messages.validation import legible
@@ -16,27 +19,26 @@ READ_PATIENCE = 1.0  # s
 Write = Callable[[bytes], object]
 
 
-class RotatingLog:
+class RotatingLog(RotatingFileHandler):
     """``x.log``; once it holds half of ``kept`` bytes it becomes ``x.log.1``, and the one that was so called goes.
 
     Only the launcher writes to it, whole lines in order, so that none is lost or torn between the two.
     """
 
+    terminator = ""  # lines bring their own
+
     def __init__(self, path: Path, kept: int = KEPT) -> None:
-        self._path = path
-        self._half = kept // 2
-        self._lock = Lock()
-        self._file = path.open("ab", buffering=0)
+        # Latin-1 keeps every byte as it is, and the handler, which counts characters, then counts bytes.
+        super().__init__(path, maxBytes=kept // 2, backupCount=1, encoding="latin-1")
 
     def write(self, line: bytes) -> None:
         """Raises OSError where the disk is full."""
-        with self._lock:
-            size = self._file.tell()
-            if size and size + len(line) > self._half:
-                self._file.close()
-                self._path.replace(self._path.with_name(f"{self._path.name}.1"))
-                self._file = self._path.open("ab", buffering=0)
-            self._file.write(line)
+        self.handle(makeLogRecord({"msg": line.decode("latin-1")}))
+
+    def handleError(self, record: LogRecord) -> None:
+        """Who writes decides what is done about it; a handler would print it among the launcher's own lines."""
+        if (error := sys.exception()) is not None:
+            raise error
 
 
 class Output:

@@ -20,7 +20,8 @@ from uvf.models.yaml_data import BadInput, nearest
 from uvf.runtime.bus.address import router_from
 from uvf.runtime.bus.zenoh_bus import ZenohBus
 from uvf.runtime.contract.instances import ServiceInstance
-from uvf.runtime.log.reading import log_begin, log_metadata, read_log, recover
+from uvf.runtime.log.reading import log_begin, log_metadata, read_log
+from uvf.runtime.log.recovery import recover
 from uvf.runtime.log.replay import into_service, logged_site, onto_bus
 
 SHOWN = 20

@@ -16,7 +16,8 @@ from schemas.topics import SYSTEM
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.bus.interface import Sample
 from uvf.runtime.bus.wire import Malformed, decode_sample
-from uvf.runtime.log.reading import log_metadata, read_log, recover
+from uvf.runtime.log.reading import log_metadata, read_log
+from uvf.runtime.log.recovery import recover
 
 Floats = NDArray[np.float64]
 

@@ -38,6 +38,42 @@ def test_nothing_is_lost_between_a_process_and_its_rotating_log(tmp_path):
     assert (tmp_path / "x.log.1").exists()
 
 
+def test_every_byte_is_kept_and_counted_as_it_is(tmp_path):
+    """Also what is no text, two bytes a letter, or looks like a place for an argument."""
+    log = RotatingLog(tmp_path / "x.log", KEPT)
+    line = bytes(n for n in range(256) if n not in b"\r\n") + "%s %d é".encode() + b"\r\n"
+    for _ in range(100):
+        log.write(line)
+        assert (tmp_path / "x.log").stat().st_size <= KEPT / 2
+    kept = b"".join(path.read_bytes() for path in (tmp_path / "x.log.1", tmp_path / "x.log"))
+    assert kept == line * (len(kept) // len(line))
+
+
+def test_a_log_on_a_full_disk_says_so_and_goes_on_when_there_is_room_again(tmp_path):
+    """A process that may write files of no more than 4 kB, and later of any size."""
+    script = f"""
+import resource
+from pathlib import Path
+from launch.output import RotatingLog
+unlimited = resource.getrlimit(resource.RLIMIT_FSIZE)
+log = RotatingLog(Path({str(tmp_path / "x.log")!r}), {KEPT})
+refused = 0
+for n in range(3000):
+    resource.setrlimit(resource.RLIMIT_FSIZE, (4000, unlimited[1]) if n < 1000 else unlimited)
+    try:
+        log.write(b"line %06d\\n" % n)
+    except OSError:
+        refused += 1
+print(refused)
+"""
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    assert done.stderr == ""
+    assert 600 < int(done.stdout) < 1000 - 4000 / 12 + 2
+    kept = lines(tmp_path / "x.log.1", tmp_path / "x.log")
+    assert kept == [b"line %06d" % n for n in range(3000 - len(kept), 3000)]
+    assert len(kept) > 0.45 * KEPT / 12
+
+
 def test_a_run_that_is_started_again_goes_on_in_its_log(tmp_path):
     RotatingLog(tmp_path / "x.log").write(b"one\n")
     RotatingLog(tmp_path / "x.log").write(b"two\n")

@@ -13,7 +13,8 @@ from schemas import topics
 from uvf.models.scenario import ROOT, load_scenario
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.bus.interface import LocalBus, Sample
-from uvf.runtime.log.reading import log_attachments, log_metadata, read_log, recover
+from uvf.runtime.log.reading import log_attachments, log_metadata, read_log
+from uvf.runtime.log.recovery import recover
 
 POSE, MAP, STATUS = (topic.at("v") for topic in (topics.POSE, topics.MAP, topics.STATUS))
 NOISE = random.Random(1).randbytes(200_000)  # does not compress

@@ -11,7 +11,7 @@ from uvf.runtime.bus.interface import LocalBus
 from uvf.runtime.contract.declaration import Reads, Writes, topic
 from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.contract.service import Service
-from uvf.runtime.log.reading import recover
+from uvf.runtime.log.recovery import recover
 from uvf.runtime.log.replay import into_service, onto_bus
 
 

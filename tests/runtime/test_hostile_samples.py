@@ -8,8 +8,9 @@ import pytest
 from schemas import topics
 from uvf.runtime.bus.interface import Sample
 from uvf.runtime.log.bounds import CHANNELS_MOST, FOREIGN_MOST, PAYLOAD_MOST, STANDING_MOST
-from uvf.runtime.log.reading import log_metadata, read_log, recover
+from uvf.runtime.log.reading import log_metadata, read_log
 from uvf.runtime.log.recording import Recorder
+from uvf.runtime.log.recovery import recover
 
 POSE = topics.POSE.at("v")
 HONEST = Sample(POSE, "foxglove.PoseInFrame", b"pose", 10, 1, 5)

@@ -8,9 +8,9 @@ the flight through the air, which the triangle needs; in a bank the nose points 
 import math
 
 import numpy as np
-from filterpy.kalman import ExtendedKalmanFilter
 from numpy.typing import NDArray
 
+from uvf.estimation.kalman import Ekf, Measured
 from uvf.maths.geodesy import GRAVITY
 
 Floats = NDArray[np.float64]
@@ -26,16 +26,14 @@ class TrackFilter:
     """The filter, started by the first fix."""
 
     def __init__(self, north: float, east: float, v_north: float, v_east: float) -> None:
-        self._ekf = ExtendedKalmanFilter(dim_x=7, dim_z=4)
         course = math.atan2(v_east, v_north)
-        self._ekf.x = np.array((north, east, math.hypot(v_north, v_east), course, 0.0, 0.0, course))
-        self._ekf.P = np.diag((4.0, 4.0, 1.0, 0.01, 25.0, 25.0, 0.1))
+        x = np.array((north, east, math.hypot(v_north, v_east), course, 0.0, 0.0, course))
+        self._ekf = Ekf(x, np.diag((4.0, 4.0, 1.0, 0.01, 25.0, 25.0, 0.1)))
         self._course_rate = 0.0
 
     @property
     def x(self) -> Floats:
-        x: Floats = self._ekf.x
-        return x
+        return self._ekf.x
 
     @property
     def position_sigma(self) -> float:
@@ -59,10 +57,10 @@ class TrackFilter:
         f[CHI, V], f[CHI, CHI], f[CHI, PSI] = -dt * chi_rate / v, 1 - dt * slope, dt * slope
         self._course_rate = chi_rate
         mid = chi + 0.5 * dt * chi_rate
-        self._ekf.x = np.array(
+        then = np.array(
             (n + dt * v * math.cos(mid), e + dt * v * math.sin(mid), v + dt * v_rate, chi + dt * chi_rate, wn, we, psi + dt * yaw_rate)
         )
-        self._ekf.P = f @ self._ekf.P @ f.T + PROCESS * dt
+        self._ekf.move(lambda _: then, f, PROCESS * dt)
 
     def reckon(self, gnss_age: float, dt: float) -> None:
         """Errors of wind and compass last: ``gnss_age`` [s] after the last fix sigma grows with time, not with its root."""
@@ -98,4 +96,4 @@ class TrackFilter:
     def _update(self, z: Floats, h: Floats, expected: Floats, r: Floats) -> None:
         if len(z) == 4:
             z[CHI] = expected[CHI] + math.remainder(z[CHI] - expected[CHI], math.tau)
-        self._ekf.update(z, lambda _: h, lambda _: expected, R=r)
+        self._ekf.take(Measured(z, lambda _: expected, h, r))

@@ -12,8 +12,9 @@ from schemas import topics
 from schemas.messages import DriveCommand, PoseInFrame
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.bus.interface import Sample
-from uvf.runtime.log.reading import log_attachments, log_begin, log_metadata, read_log, recover
+from uvf.runtime.log.reading import log_attachments, log_begin, log_metadata, read_log
 from uvf.runtime.log.recording import Recorder
+from uvf.runtime.log.recovery import recover
 from uvf.runtime.messages.convert import planar_pose, stamp
 
 

@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from uvf.estimation.kalman import Ekf, Measured, misfit
 from uvf.maths.rotations import wrap
 from uvf.maths.se2 import Pose2, compose, inverse
 
@@ -63,21 +64,20 @@ class WheelCalibration:
     def __init__(self, track: float) -> None:
         """track: m, nominal."""
         self._track = track
-        self._x = np.ones(3)
-        self._p = np.eye(3) * PRIOR**2
+        self._kalman = Ekf(np.ones(3), np.eye(3) * PRIOR**2)
         self._misfit = 1.0
         self.used = 0
         self.refused = 0
 
     @property
     def scales(self) -> Scales:
-        return Scales(*self._x.tolist())
+        return Scales(*self._kalman.x.tolist())
 
     @property
     def covariance(self) -> Floats:
         """(3, 3); larger where the segments fit worse than they should. What was not moved stays as uncertain as it was."""
-        limit: Floats = np.minimum(1.0, PRIOR / np.sqrt(np.diag(self._p) * self._worse))
-        return self._p * self._worse * np.outer(limit, limit)
+        limit: Floats = np.minimum(1.0, PRIOR / np.sqrt(np.diag(self._kalman.P) * self._worse))
+        return self._kalman.P * self._worse * np.outer(limit, limit)
 
     @property
     def sigmas(self) -> Floats:
@@ -91,7 +91,7 @@ class WheelCalibration:
     @property
     def differs(self) -> bool:
         """Whether any scale is surely not one."""
-        return bool(np.any(np.abs(self._x - 1.0) > 2.0 * self.sigmas))
+        return bool(np.any(np.abs(self._kalman.x - 1.0) > 2.0 * self.sigmas))
 
     @property
     def _worse(self) -> float:
@@ -100,24 +100,21 @@ class WheelCalibration:
     def add(self, segment: Segment, end: Pose2) -> bool:
         """end: where the scans have the base at the segment's end, in the frame of its begin; whether it was used."""
         matched = compose(inverse(segment.begin), end)
-        left, right, track = self._x
+        left, right, track = self._kalman.x
         turn = (segment.rolled[1] * right - segment.rolled[0] * left) / (self._track * track)
-        y = np.array((*(np.array(matched[:2]) - segment.along @ self._x[:2]), wrap(matched.yaw - turn)))
+        y = np.array((*(np.array(matched[:2]) - segment.along @ self._kalman.x[:2]), wrap(matched.yaw - turn)))
         h = np.zeros((3, 3))
         h[:2, :2] = segment.along
         h[2] = np.array((-segment.rolled[0], segment.rolled[1], -turn * self._track)) / (self._track * track)
         wheels = WHEEL**2 * segment.wheels  # m^2
         r = np.diag((2 * PLACE**2 + wheels / 4, 2 * PLACE**2 + wheels / 4, 2 * TURN**2 + wheels / self._track**2))
-        s = h @ self._p @ h.T + r
-        misfit = float(y @ np.linalg.solve(s, y))
-        if misfit > GATE * self._worse:
+        measured = Measured(y, lambda x: np.zeros(3), h, r)
+        squared = misfit(self._kalman, measured)
+        if squared > GATE * self._worse:
             self.refused += 1
             return False
-        gain = self._p @ h.T @ np.linalg.inv(s)
-        rest = np.eye(3) - gain @ h
-        self._x = self._x + gain @ y
-        self._p = rest @ self._p @ rest.T + gain @ r @ gain.T
-        self._misfit = FADING * self._misfit + (1 - FADING) * misfit / 3
+        self._kalman.take(measured)
+        self._misfit = FADING * self._misfit + (1 - FADING) * squared / 3
         self.used += 1
         return True
 

@@ -7,8 +7,8 @@ never jumps: the frame ``odom``), and where there are satellites one that they d
 import numpy as np
 from numpy.typing import NDArray
 
+from uvf.estimation.kalman import FILTERS, Kalman, Kind, Measured, correct, misfit, move_linearly
 from uvf.estimation.odometry import model
-from uvf.estimation.odometry.kalman import FILTERS, Kalman, Kind, Measured, correct, misfit
 from uvf.estimation.odometry.slip import WheelWatch, wheel_cause
 from uvf.estimation.odometry.states import (
     ACCEL_OFFSET,
@@ -79,7 +79,7 @@ class DriveFilter:
     @property
     def turn_rate_variance(self) -> float:
         """(rad/s)^2."""
-        return float(self.kalman.p[GYRO_BIAS, GYRO_BIAS]) + self.noise.gyro**2 / WHEEL_PERIOD
+        return float(self.kalman.P[GYRO_BIAS, GYRO_BIAS]) + self.noise.gyro**2 / WHEEL_PERIOD
 
     @property
     def speeds(self) -> tuple[float, float]:
@@ -94,7 +94,7 @@ class DriveFilter:
     @property
     def covariance(self) -> Floats:
         """(n, n)."""
-        return self.kalman.p
+        return self.kalman.P
 
     @property
     def slip_ratio(self) -> float:
@@ -104,18 +104,18 @@ class DriveFilter:
     def resume(self, pose: Pose2, covariance: Floats, bias: float) -> None:
         """Goes on from where a filter before this one has come to. covariance: (3, 3) of the pose."""
         self.kalman.x[POSE] = pose
-        self.kalman.p[POSE, POSE] = covariance
+        self.kalman.P[POSE, POSE] = covariance
         self.kalman.x[GYRO_BIAS] = bias
 
     def place(self, pose: Pose2, sigmas: tuple[float, float]) -> None:
         """Begins at a pose with 1 sigma of position [m] and heading [rad]."""
         self.kalman.x[POSE] = pose
-        self.kalman.p[POSE, :] = self.kalman.p[:, POSE] = 0.0
-        self.kalman.p[POSE, POSE] = np.diag((sigmas[0] ** 2, sigmas[0] ** 2, sigmas[1] ** 2))
+        self.kalman.P[POSE, :] = self.kalman.P[:, POSE] = 0.0
+        self.kalman.P[POSE, POSE] = np.diag((sigmas[0] ** 2, sigmas[0] ** 2, sigmas[1] ** 2))
 
     def doubt_position(self, sigma: float) -> None:
         """The position is as uncertain as ``sigma`` [m] on top: measurements have said for long that it is wrong."""
-        self.kalman.p[[0, 1], [0, 1]] += sigma**2
+        self.kalman.P[[0, 1], [0, 1]] += sigma**2
 
     def believe_radii(self) -> None:
         """The wheels' ways are told by other radii from now on, which hold as well as those before did at the start."""
@@ -150,8 +150,8 @@ class DriveFilter:
 
     def _forget_speed(self) -> None:
         """After a gap: what the wheels have told is its mean speed, not that of its end."""
-        self.kalman.p[SPEED, :] = self.kalman.p[:, SPEED] = 0.0
-        self.kalman.p[SPEED, SPEED] = START_SPEED**2
+        self.kalman.P[SPEED, :] = self.kalman.P[:, SPEED] = 0.0
+        self.kalman.P[SPEED, SPEED] = START_SPEED**2
 
     def _drive(self, step: Step) -> None:
         kalman, gnss = self.kalman, self._gnss
@@ -164,8 +164,7 @@ class DriveFilter:
             q[SPEED, SPEED] += float(kalman.x[SPEED]) ** 2 * step.dt
         if gnss is not None:
             q[GNSS_X:, GNSS_X:] = np.eye(2) * gnss.horizontal_drift**2 * (1.0 - kept * kept)
-        kalman.x = f @ kalman.x + shift
-        kalman.p = f @ kalman.p @ f.T + q
+        move_linearly(kalman, f, shift, q)
 
     def _rests(self, step: Step) -> bool:
         """Whether it stands; if so the speed is zero and the gyroscope tells its bias."""
@@ -220,7 +219,7 @@ class DriveFilter:
 
     def _innovation(self, measured: Measured) -> tuple[float, float]:
         h = measured.jacobian[0]
-        return float(measured.z[0] - h @ self.kalman.x), float(h @ self.kalman.p @ h + measured.noise[0, 0])
+        return float(measured.z[0] - h @ self.kalman.x), float(h @ self.kalman.P @ h + measured.noise[0, 0])
 
 
 def _linear(z: float, size: int, parts: dict[int, float], variance: float) -> Measured:

@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from uvf.estimation.kalman import Measured, misfit
 from uvf.estimation.odometry.filter import DriveFilter
-from uvf.estimation.odometry.kalman import Measured, misfit
 from uvf.estimation.odometry.states import GNSS_X, HEADING, POSE, SPEED
 from uvf.maths.geodesy import LocalTangent
 from uvf.maths.kinematics import twist_between

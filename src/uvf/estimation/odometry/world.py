@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from uvf.estimation.kalman import Measured
 from uvf.estimation.odometry.filter import DriveFilter
-from uvf.estimation.odometry.kalman import Measured
 from uvf.estimation.odometry.satellites import Antenna, SatelliteFix, Satellites
 from uvf.estimation.odometry.slip import sigma
 from uvf.estimation.odometry.states import HEADING, POSE

@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 from uvf.maths.rotations import from_euler, matrix
 from uvf.maths.se3 import Transform
 from uvf.models.shapes.solid import Colour, Solid
+from uvf.models.urdf.marked import LINE
+from uvf.models.urdf.packages import find_mesh
 from uvf.models.urdf.robot import JOINT_KINDS, Inertial, Joint, Link, ModelFault, UrdfModel
-from uvf.models.urdf.source import LINE, find_mesh
 from uvf.models.yaml_data import nearest
 
 Floats = NDArray[np.float64]
@@ -21,7 +22,7 @@ SHAPES = ("box", "capsule", "cylinder", "mesh", "sphere")
 
 
 def read_model(path: Path, robot: Any) -> UrdfModel:
-    """robot: the root element as ``urdf_source.read_xml`` gives it; path: where it came from, for meshes and messages."""
+    """robot: the root element as ``source.read_xml`` gives it; path: where it came from, for meshes and messages."""
     return _Reader(path).model(robot)
 
 

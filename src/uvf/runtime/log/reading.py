@@ -1,12 +1,10 @@
-"""MCAP logs read again: in order of time within bounded memory, checked, and what is whole of a damaged one."""
+"""MCAP logs read again: in order of time, within bounded memory, checked."""
 
 import contextlib
 import errno
 import heapq
-import io
-import itertools
 import struct
-from collections.abc import Callable, Container, Iterable, Iterator, Mapping
+from collections.abc import Container, Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import IO
 
@@ -14,15 +12,14 @@ from mcap.data_stream import ReadDataStream
 from mcap.exceptions import McapError
 from mcap.opcode import Opcode
 from mcap.reader import make_reader
-from mcap.records import Attachment, Channel, Chunk, McapRecord, Message, Schema
-from mcap.stream_reader import StreamReader, breakup_chunk
+from mcap.records import Channel, Chunk, Message, Schema
+from mcap.stream_reader import breakup_chunk
 from mcap.writer import MCAP0_MAGIC
 from zstandard import ZstdError
 
 from schemas.topics import CLOCK, SYSTEM
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.bus.interface import Sample
-from uvf.runtime.log.recording import Recorder
 from uvf.runtime.messages.step_times import NS
 
 BROKEN = (McapError, ZstdError, EOFError, ValueError, KeyError, struct.error, OverflowError, MemoryError)
@@ -32,7 +29,7 @@ HEAD = struct.Struct("<BQ")  # kind and length of a record
 
 
 @contextlib.contextmanager
-def _opened(path: Path) -> Iterator[IO[bytes]]:
+def opened_log(path: Path) -> Iterator[IO[bytes]]:
     """Raises BadInput for what cannot be read or is no whole log."""
     try:
         if not (path.is_file() or path.is_dir()) and path.exists():  # a pipe would never be opened
@@ -123,7 +120,7 @@ def _in_order(file: IO[bytes], topics: Container[str] | None = None) -> Iterator
 def read_log(path: Path, keys: Iterable[str] | None = None) -> Iterator[Sample]:
     """The messages of a log, of all keys or of these, in order of time. Raises BadInput for a file that is not a whole log."""
     topics = None if keys is None else {f"/{key}" for key in keys}
-    with _opened(path) as file:
+    with opened_log(path) as file:
         for schema, channel, message in _in_order(file, topics):
             name = schema.name if schema else ""
             yield Sample(channel.topic[1:], name, message.data, message.log_time, message.sequence, 0)
@@ -143,93 +140,18 @@ def log_end(path: Path) -> int | None:
 
     What is stamped later is of services whose outputs come late.
     """
-    with _opened(path) as file:
+    with opened_log(path) as file:
         ticks = make_reader(file).iter_messages([f"/{CLOCK.at(SYSTEM)}"], reverse=True)
         return next((tick.log_time for *_, tick in ticks), None)
 
 
 def log_metadata(path: Path) -> dict[str, str]:
     """What the recorder noted at the end: message count, completeness, hash, gaps. Raises BadInput."""
-    with _opened(path) as file:
+    with opened_log(path) as file:
         return next((dict(m.metadata) for m in make_reader(file).iter_metadata() if m.name == "uvf"), {})
 
 
 def log_attachments(path: Path) -> dict[str, bytes]:
     """The files that say what was run, by name. Raises BadInput."""
-    with _opened(path) as file:
+    with opened_log(path) as file:
         return {a.name: a.data for a in make_reader(file).iter_attachments()}
-
-
-def recover(source: Path, target: Path, tell: Callable[[str], None] = lambda line: None) -> int:
-    """Copies every message of the whole chunks of a log, and what is attached, into a new, complete one; returns how many.
-
-    tell: takes a line about what is damaged in the middle of it. Raises BadInput when there is nothing to save, or where the
-    new log would take the place of the old one.
-    """
-    if target.exists() and target.samefile(source):
-        raise BadInput(f"log {target}: is the log that is to be saved; name another file")
-    with _opened(source) as file:
-        outside = [r for r in _whole_records(file) if isinstance(r, (Attachment, Schema, Channel))]
-        attached = {r.name: r.data for r in outside if isinstance(r, Attachment)}
-        damaged: list[Chunk] = []
-        # What a damaged chunk has defined stands at the end of a log once more.
-        defined = [r for r in outside if not isinstance(r, Attachment)]
-        samples = _samples(itertools.chain(defined, _in_chunks(_whole_records(file), damaged)))
-        first = next(samples, None)
-        if first is None:
-            raise BadInput(f"log {source}: holds no whole message that could be saved")
-        with Recorder(target, attached) as out:
-            for sample in itertools.chain((first,), samples):
-                out.write(sample)
-    if out.error:
-        raise BadInput(out.error)
-    for chunk in damaged:
-        tell(f"damaged and left out: {chunk.message_start_time / NS:.1f} to {chunk.message_end_time / NS:.1f} s")
-    return out.written
-
-
-def _whole_records(file: IO[bytes]) -> Iterator[McapRecord]:
-    """From the beginning of the file, as they are read, chunks as they are; behind nonsense it goes on at the next chunk of the index."""
-    size = file.seek(0, io.SEEK_END)
-    file.seek(0)
-    index = []
-    with contextlib.suppress(*BROKEN):
-        summary = make_reader(file).get_summary()
-        index = sorted(i.chunk_start_offset for i in summary.chunk_indexes) if summary is not None else []
-    begin: int | None = 0
-    while begin is not None:
-        file.seek(begin)
-        with contextlib.suppress(*BROKEN):
-            yield from StreamReader(file, skip_magic=begin > 0, emit_chunks=True, record_size_limit=size).records
-            return
-        reached = file.tell()
-        begin = next((offset for offset in index if offset > max(reached, begin)), None)
-
-
-def _in_chunks(records: Iterable[McapRecord], damaged: list[Chunk]) -> Iterator[McapRecord]:
-    """What the chunks hold; of those whose bytes are no longer what was written, nothing."""
-    for record in records:
-        if not isinstance(record, Chunk):
-            yield record
-            continue
-        try:
-            inside = breakup_chunk(record, validate_crc=True)
-        except BROKEN:
-            record.data = b""  # only its times are told
-            damaged.append(record)
-            continue
-        yield from inside
-
-
-def _samples(records: Iterable[McapRecord]) -> Iterator[Sample]:
-    schemas: dict[int, Schema] = {}
-    channels: dict[int, Channel] = {}
-    for record in records:
-        if isinstance(record, Schema):
-            schemas[record.id] = record
-        elif isinstance(record, Channel):
-            channels[record.id] = record
-        elif isinstance(record, Message) and record.channel_id in channels:
-            channel = channels[record.channel_id]
-            name = schemas[channel.schema_id].name if channel.schema_id in schemas else ""
-            yield Sample(channel.topic[1:], name, record.data, record.log_time, record.sequence, 0)

@@ -1,0 +1,35 @@
+"""One XML file as it is written, and with the lines of its tags kept for after an expansion."""
+
+from pathlib import Path
+from typing import Any
+
+from lxml import etree
+
+from uvf.models.yaml_data import BadInput
+
+LINE = "uvf_line"
+XACRO_SPACES = ("http://www.ros.org/wiki/xacro", "http://ros.org/wiki/xacro", "http://wiki.ros.org/xacro")
+MARKED = ("link", "joint", "material")
+
+
+def parsed(path: Path) -> Any:
+    """The root element. Raises BadInput."""
+    try:
+        return etree.fromstring(path.read_bytes())
+    except etree.XMLSyntaxError as error:
+        reason = str(error.msg).split(", line ")[0]
+        raise BadInput(f"{path}:{error.lineno or 1}: not valid XML: {one_line(reason)}; mend the tag there") from error
+    except (OSError, ValueError) as error:
+        raise BadInput(f"{path}: cannot be read: {error}") from error
+
+
+def marked(path: Path, shown: Path) -> Any:
+    """The root element, each link and joint with "shown:line" as an attribute, which expansion keeps. Raises BadInput."""
+    root = parsed(path)
+    for tag in root.iter(*MARKED):
+        tag.set(LINE, f"{shown}:{tag.sourceline}")
+    return root
+
+
+def one_line(text: object) -> str:
+    return " ".join(str(text).split())

@@ -1,0 +1,50 @@
+"""Files of ROS packages without a ROS installation: looked for about the file that names them."""
+
+import contextlib
+from collections.abc import Iterable
+from pathlib import Path
+
+PARENTS_SEARCHED = 6
+
+
+def package_folder(path: Path, package: str) -> Path | None:
+    """The folder of a ROS package: one of that name among the file's parents or in one of them, or whose package.xml names it."""
+    for parent in _near(path):
+        for folder in (parent, parent / package):
+            if folder.name == package and folder.is_dir():
+                return folder
+        manifest = parent / "package.xml"
+        if manifest.is_file() and f"<name>{package}</name>" in manifest.read_text(encoding="utf-8", errors="replace"):
+            return parent
+    return None
+
+
+def find_mesh(path: Path, name: str) -> Path | None:
+    """The file that a mesh's name stands for: package://, model://, file:// or a path beside the URDF; else one of the same
+    name below the folders about it."""
+    scheme, _, rest = name.rpartition("://")
+    if scheme in ("", "file"):
+        tries: Iterable[Path] = [path.parent / rest, Path(rest)]
+    else:
+        package, _, inside = rest.partition("/")
+        folder = package_folder(path, package)
+        tries = [*([folder / inside] if folder else []), *(parent / inside for parent in _near(path))]
+    found = next((p for p in tries if is_file(p)), None)
+    return found or _beside(path, Path(rest).name)
+
+
+def is_file(path: Path) -> bool:
+    """False also for a name that the system cannot take."""
+    with contextlib.suppress(OSError, ValueError):
+        return path.is_file()
+    return False
+
+
+def _near(path: Path) -> list[Path]:
+    return list(path.resolve().parents)[:PARENTS_SEARCHED]
+
+
+def _beside(path: Path, name: str) -> Path | None:
+    """In a folder of meshes next to the URDF or to its folder."""
+    folders = [parent / "meshes" for parent in path.resolve().parents[:2]]
+    return next((p for folder in folders if folder.is_dir() for p in sorted(folder.rglob(name)) if p.is_file()), None)
