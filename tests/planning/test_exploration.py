@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tests.services.planner.plans import room
-from uvf.planning.costmap import RobotFootprint, costmap
+from uvf.planning.costmap import RobotFootprint, make_costmap
 from uvf.planning.exploration import SHUN_TIME, Explorer, Patrol
 from uvf.planning.frontiers import FrontierWeights, frontiers
 from uvf.planning.search import CostToGo
@@ -14,7 +14,7 @@ TASTE = FrontierWeights(least_size=4, view=0.3, worth=0.5)
 
 
 def costs_of(cells):
-    return costmap(cells, (0.05, (0.0, 0.0)), BODY)
+    return make_costmap(cells, (0.05, (0.0, 0.0)), BODY)
 
 
 def two_doors():

@@ -7,7 +7,7 @@ from uvf.lazy import lazily
 if TYPE_CHECKING:
     from uvf.planning.costmap import Costmap as Costmap
     from uvf.planning.costmap import RobotFootprint as RobotFootprint
-    from uvf.planning.costmap import costmap as costmap
+    from uvf.planning.costmap import make_costmap as make_costmap
     from uvf.planning.exploration import Explorer as Explorer
     from uvf.planning.navigator import GlobalPlanner as GlobalPlanner
     from uvf.planning.pure_pursuit import PathTracker as PathTracker
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 OFFERED = {
     "astar": "uvf.planning.search:astar",
     "CostToGo": "uvf.planning.search:CostToGo",
-    "costmap": "uvf.planning.costmap:costmap",
+    "make_costmap": "uvf.planning.costmap:make_costmap",
     "Costmap": "uvf.planning.costmap:Costmap",
     "RobotFootprint": "uvf.planning.costmap:RobotFootprint",
     "GlobalPlanner": "uvf.planning.navigator:GlobalPlanner",

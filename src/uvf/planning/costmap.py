@@ -60,7 +60,7 @@ class Costmap:
         return out
 
 
-def costmap(cells: NDArray[np.int8], frame: Frame, body: RobotFootprint, unknown_cost: float = IMPASSABLE) -> Costmap:
+def make_costmap(cells: NDArray[np.int8], frame: Frame, body: RobotFootprint, unknown_cost: float = IMPASSABLE) -> Costmap:
     """cells: (rows, columns) -1 unknown, 0..100 per cent; unknown_cost: factor on the cost of unknown ground."""
     resolution, origin = frame
     occupied, unknown = cells >= OCCUPIED, cells < 0

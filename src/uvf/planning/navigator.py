@@ -6,7 +6,7 @@ from math import isfinite
 import numpy as np
 from numpy.typing import NDArray
 
-from uvf.planning.costmap import Costmap, Frame, RobotFootprint, costmap, with_way_out
+from uvf.planning.costmap import Costmap, Frame, RobotFootprint, make_costmap, with_way_out
 from uvf.planning.search import Cell, CostToGo, astar
 from uvf.planning.smoothing import SPACING, length, smoothed
 
@@ -64,7 +64,7 @@ class GlobalPlanner:
             self.missing = f"{TOO_LARGE}: {cells.size} cells, {MOST_CELLS} at most"
             return
         self._cells = cells
-        self.costs = costmap(cells, frame, self._body)
+        self.costs = make_costmap(cells, frame, self._body)
 
     def ways(self, start: Point) -> CostToGo | None:
         """The cheapest ways from ``start`` to everywhere known, worked out once for each place; None without a map or outside it."""
@@ -127,7 +127,7 @@ class GlobalPlanner:
         if not allow_unknown or self.costs is None or self._cells is None:
             return self.costs
         if self._unknown_costmap is None:
-            self._unknown_costmap = costmap(self._cells, (self.costs.resolution, self.costs.origin), self._body, UNKNOWN_COST)
+            self._unknown_costmap = make_costmap(self._cells, (self.costs.resolution, self.costs.origin), self._body, UNKNOWN_COST)
         return self._unknown_costmap
 
 
