@@ -18,7 +18,7 @@ from services.autopilot.air.service import AutopilotAir
 from services.sim_air.service import SimAir
 from uvf.control import thesis
 from uvf.maths import rotations
-from uvf.models.scenario import Site, load_site
+from uvf.models.scenario import Scenario, load_scenario
 from uvf.models.vehicle.flight_params import AirParams
 from uvf.models.vehicle.sensor_presets import PRESETS
 from uvf.runtime.time.lockstep import Lockstep
@@ -41,20 +41,20 @@ class Case:
         return wind | ({"turbulence": {"severity": self.severity}} if self.severity else {})
 
 
-def course_site(model: str, case: Case, preset: str, folder: Path) -> tuple[Site, Course]:
+def course_site(model: str, case: Case, preset: str, folder: Path) -> tuple[Scenario, Course]:
     """A mission over the course with the sensors of this preset; those that have none of that name are the vehicle's own."""
     probe = {"model": model, "system_id": 1, "start": {"x": 0.0, "y": 0.0, "z": 100.0}}
     mission: dict[str, Any] = {"about": "accuracy", "world": "empty", "seed": case.seed, "wind": case.wind(), "vehicles": {PLANE: probe}}
     path = folder / "accuracy.yaml"
     path.write_text(yaml.safe_dump(mission))
-    params = load_site(path).members[PLANE].params("autopilot_air", AirParams)
+    params = load_scenario(path).members[PLANE].params("autopilot_air", AirParams)
     course = Course(params.trim_airspeed)
     probe |= course.mission()
     path.write_text(yaml.safe_dump(mission))
-    return _with_sensors(load_site(path), preset), course
+    return _with_sensors(load_scenario(path), preset), course
 
 
-def _with_sensors(site: Site, preset: str) -> Site:
+def _with_sensors(site: Scenario, preset: str) -> Scenario:
     member = site.members[PLANE]
     sensors = member.file.sensors
     for kind, presets in PRESETS.items():

@@ -21,11 +21,11 @@ from benchmarks.timing import stopwatch, timed
 from schemas import topics
 from schemas.messages import SurfaceCommand
 from services.sim_air.build import build
-from uvf.models.scenario import Site, load_site
-from uvf.runtime.contract.instances import Host
+from uvf.models.scenario import Scenario, load_scenario
+from uvf.runtime.contract.declaration import Writes, topic
+from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import stamp
-from uvf.runtime.messages.outputs import Outputs
 from uvf.runtime.time.lockstep import Lockstep
 
 SECONDS = 10.0
@@ -41,13 +41,15 @@ class Steady(Service):
 
     name = "steady"
     hz = 50.0
-    outputs = {"surfaces": topics.SURFACE_COMMAND}
 
-    def step(self, t: float) -> Outputs:
-        return {"surfaces": SurfaceCommand(timestamp=stamp(t), aileron=0.006, elevator=-0.135, rudder=-0.001, throttle=0.78)}
+    class Outputs(Writes):
+        surfaces: SurfaceCommand | None = topic(topics.SURFACE_COMMAND)
+
+    def step(self, t: float, now) -> Outputs:
+        return self.Outputs(surfaces=SurfaceCommand(timestamp=stamp(t), aileron=0.006, elevator=-0.135, rudder=-0.001, throttle=0.78))
 
 
-def fleet(count: int, folder: Path, wind: dict[str, Any]) -> Site:
+def fleet(count: int, folder: Path, wind: dict[str, Any]) -> Scenario:
     """So many aircraft one above the other."""
     starts = [{"x": 0.0, "y": 0.0, "z": 400.0 + SPACING * i, "yaw": 0.0, "speed": 25.0} for i in range(count)]
     vehicles = {f"plane{i:02}": {"model": "milvus", "system_id": i, "start": start} for i, start in enumerate(starts, 1)}
@@ -55,7 +57,7 @@ def fleet(count: int, folder: Path, wind: dict[str, Any]) -> Site:
     path.write_text(
         yaml.safe_dump({"about": "benchmark", "world": "empty", "seed": 1, "vehicles": vehicles, **({"wind": wind} if wind else {})})
     )
-    site = load_site(path)
+    site = load_scenario(path)
     members = {}
     for name, member in site.members.items():
         assert member.file.air is not None
@@ -64,9 +66,9 @@ def fleet(count: int, folder: Path, wind: dict[str, Any]) -> Site:
     return replace(site, members=members)
 
 
-def simulator(site: Site, log: Path | None = None) -> list[float]:
+def simulator(site: Scenario, log: Path | None = None) -> list[float]:
     """CPU and wall seconds of the run, without building."""
-    drivers = [Host(Steady, Steady, name) for name in site.members]
+    drivers = [ServiceInstance(Steady, Steady, name) for name in site.members]
     lockstep = Lockstep(build(site) + drivers)
     try:
         taken = timed(lockstep, SECONDS, log)
@@ -77,7 +79,7 @@ def simulator(site: Site, log: Path | None = None) -> list[float]:
         lockstep.close()
 
 
-def engine(site: Site) -> list[float]:
+def engine(site: Scenario) -> list[float]:
     """JSBSim's steps alone."""
     (host,) = build(site)
     service = host.make()

@@ -21,8 +21,8 @@ from launch import catalogue
 from launch.commands.bench import Figures
 from services.autopilot.air.service import AutopilotAir
 from uvf.maths import rotations
-from uvf.models.scenario import Site, load_site
-from uvf.runtime.contract.service_runner import Shell
+from uvf.models.scenario import Scenario, load_scenario
+from uvf.runtime.contract.service_runner import ServiceRunner
 from uvf.runtime.time.lockstep import Lockstep
 
 KINDS = ["sim_air", "autopilot"]
@@ -33,14 +33,14 @@ STRAIGHT: dict[str, Any] = {"x": 5000.0, "y": 0.0, "z": 150.0}
 CIRCLE: dict[str, Any] = {"kind": "orbit", "x": 300.0, "y": 100.0, "z": 150.0, "radius": 100.0}
 
 
-def lockstep_of(site: Site) -> Lockstep:
+def lockstep_of(site: Scenario) -> Lockstep:
     return Lockstep(catalogue.hosts(site, [catalogue.kind(name) for name in KINDS]))
 
 
 class Stopwatch:
     """Stands in for a shell's ``advance``; ``taken``: CPU seconds of each step."""
 
-    def __init__(self, shell: Shell) -> None:
+    def __init__(self, shell: ServiceRunner) -> None:
         self._advance = shell.advance
         self.taken: list[float] = []
         shell.advance = self  # type: ignore[method-assign, assignment]
@@ -80,7 +80,7 @@ def slip(item: dict[str, Any], rigged: float, has_loop: bool) -> float:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "slip.yaml"
         path.write_text(yaml.safe_dump({"about": "slip", "world": "empty", "seed": 1, "vehicles": {PLANE: vehicle}}))
-        site = load_site(path)
+        site = load_scenario(path)
     member = site.members[PLANE]
     assert member.file.air is not None
     offsets = {f"fcs/{side}-rudder-offset-rad": rigged for side in ("left", "right")}

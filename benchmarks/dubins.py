@@ -21,10 +21,10 @@ from launch import catalogue
 from launch.commands.bench import Figures
 from services.autopilot.air.service import AutopilotAir
 from services.sim_air.service import SimAir
-from uvf.guidance.clothoid_dubins import Way
-from uvf.guidance.flight_plan import Item
+from uvf.guidance.clothoid_dubins import SampledPath
+from uvf.guidance.flight_plan import PlanItem
 from uvf.guidance.route import Curve
-from uvf.models.scenario import ROOT, load_site
+from uvf.models.scenario import ROOT, load_scenario
 from uvf.runtime.time.lockstep import Lockstep
 
 Floats = NDArray[np.float64]
@@ -40,7 +40,7 @@ class Flown:
     """One curve: the way planned, and (k, 6) t [s], north, east [m], m along it and beside it of the true aircraft, and of its estimate."""
 
     item: int
-    way: Way
+    way: SampledPath
     rows: Floats
 
 
@@ -68,15 +68,15 @@ class Probe:
         return not navigator.finished
 
     @property
-    def items(self) -> tuple[Item, ...]:
+    def items(self) -> tuple[PlanItem, ...]:
         return self._autopilot._pilot.navigator.items
 
     def flown(self) -> list[Flown]:
         return [Flown(item, curve.way, np.array(rows)) for item, curve, rows in self._curves]
 
 
-def fly() -> tuple[list[Flown], tuple[Item, ...]]:
-    site = load_site(MISSION)
+def fly() -> tuple[list[Flown], tuple[PlanItem, ...]]:
+    site = load_scenario(MISSION)
     lockstep = Lockstep(catalogue.hosts(site, [catalogue.kind("sim_air"), catalogue.kind("autopilot")]))
     with closing(lockstep):
         probe = Probe(lockstep)
@@ -116,7 +116,7 @@ def figures(flown: list[Flown]) -> Figures:
     return table
 
 
-def draw(flown: list[Flown], items: tuple[Item, ...], path: Path) -> None:
+def draw(flown: list[Flown], items: tuple[PlanItem, ...], path: Path) -> None:
     figure = Figure(figsize=(13.0, 7.5), layout="constrained")
     above, beside = figure.subplots(1, 2, width_ratios=(2, 1))
     _map(above, flown, items)
@@ -129,7 +129,7 @@ def draw(flown: list[Flown], items: tuple[Item, ...], path: Path) -> None:
     figure.savefig(path, dpi=80)
 
 
-def _map(axes: Axes, flown: list[Flown], items: tuple[Item, ...]) -> None:
+def _map(axes: Axes, flown: list[Flown], items: tuple[PlanItem, ...]) -> None:
     for f in flown:
         axes.plot(f.way.points[:, 1], f.way.points[:, 0], "C1", linewidth=4, alpha=0.5, label="planned" if f is flown[0] else None)
         axes.plot(f.rows[:, 2], f.rows[:, 1], "k", linewidth=0.9, label="flown (truth)" if f is flown[0] else None)

@@ -67,8 +67,8 @@ class Tap:
         self.given: tuple[Sensed, float] | None = None
 
     @property
-    def unfixed(self) -> float:
-        return self._inner.unfixed
+    def gnss_age(self) -> float:
+        return self._inner.gnss_age
 
     @property
     def started(self) -> bool:

@@ -19,13 +19,14 @@ from benchmarks.timing import stopwatch, timed
 from schemas import topics
 from schemas.messages import WheelCommand
 from services.sim_ground.build import build
-from uvf.models.scenario import ROOT, Site, load_site
+from tests.runtime.stepping import stepped
+from uvf.models.scenario import ROOT, Scenario, load_scenario
 from uvf.models.world.file import load_world
 from uvf.models.world.footing import Footing
-from uvf.runtime.contract.instances import Host
+from uvf.runtime.contract.declaration import Writes, topic
+from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import stamp
-from uvf.runtime.messages.outputs import Outputs
 from uvf.runtime.time.lockstep import Lockstep
 
 SECONDS = 10.0
@@ -39,13 +40,15 @@ class Circling(Service):
 
     name = "circling"
     hz = 50.0
-    outputs = {"wheels": topics.WHEEL_COMMAND}
 
-    def step(self, t: float) -> Outputs:
-        return {"wheels": WheelCommand(timestamp=stamp(t), left=0.6, right=5.4)}
+    class Outputs(Writes):
+        wheels: WheelCommand | None = topic(topics.WHEEL_COMMAND)
+
+    def step(self, t: float, now) -> Outputs:
+        return self.Outputs(wheels=WheelCommand(timestamp=stamp(t), left=0.6, right=5.4))
 
 
-def fleet(count: int, folder: Path) -> Site:
+def fleet(count: int, folder: Path) -> Scenario:
     """So many burgers where there is room for them."""
     footing = Footing(load_world(ROOT / "worlds", "house"))
     grid = itertools.product(range(1, 10), range(1, 14))
@@ -54,7 +57,7 @@ def fleet(count: int, folder: Path) -> Site:
     vehicles = {f"rover{i:02}": {"model": "burger", "system_id": i, "start": start} for i, start in enumerate(starts, 1)}
     path = folder / "fleet.yaml"
     path.write_text(yaml.safe_dump({"about": "benchmark", "world": "house", "seed": 1, "vehicles": vehicles}))
-    site = load_site(path)
+    site = load_scenario(path)
     members = {}
     for name, member in site.members.items():
         imu = msgspec.structs.replace(member.file.sensors.imu, hz=IMU_HZ)
@@ -63,9 +66,9 @@ def fleet(count: int, folder: Path) -> Site:
     return replace(site, members=members)
 
 
-def simulator(site: Site, log: Path | None = None) -> list[float]:
+def simulator(site: Scenario, log: Path | None = None) -> list[float]:
     """CPU and wall seconds of the run, without building."""
-    drivers = [Host(Circling, Circling, name) for name in site.members]
+    drivers = [ServiceInstance(Circling, Circling, name) for name in site.members]
     lockstep = Lockstep(build(site) + drivers)
     try:
         return timed(lockstep, SECONDS, log)
@@ -73,14 +76,14 @@ def simulator(site: Site, log: Path | None = None) -> list[float]:
         lockstep.close()
 
 
-def engine(site: Site) -> list[float]:
+def engine(site: Scenario) -> list[float]:
     """PyBullet's steps alone, the wheels turning."""
     (host,) = build(site)
     service = host.make()
     world = service._world  # type: ignore[attr-defined]
     commands = {name: WheelCommand(left=0.6, right=5.4) for name in site.members}
     for n in range(1, 51):
-        service.step(n / 100, commands=commands, truth={}, flying=None, spawn=[], remove=[], set_pose=[], save=[], restore=[])
+        stepped(service, n / 100, commands=commands, truth={}, flying=None, spawn=[], remove=[], set_pose=[], save=[], restore=[])
     with stopwatch() as taken:
         for _ in range(round(SECONDS * world.rate)):
             pybullet.stepSimulation(physicsClientId=world._client)

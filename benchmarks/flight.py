@@ -20,7 +20,7 @@ from scipy.signal import lsim
 from launch.vehicles.linearize import airframe_of, linear_models, write_pole_map
 from services.sim_air.analysis.linear import LinearModels, held_still, state_of
 from services.sim_air.analysis.performance import climb_rate, glide_ratio, performance
-from services.sim_air.engine.states import Start
+from services.sim_air.engine.states import InitialState
 from services.sim_air.engine.wiring import Controls
 from uvf.models.scenario import ROOT
 from uvf.models.vehicle.file import load_vehicle
@@ -82,7 +82,7 @@ class Response:
 def fly(vehicle: str, models: LinearModels, manoeuvre: Manoeuvre) -> Response:
     """The same inputs for the aircraft and for its models."""
     airframe = airframe_of(ROOT / "vehicles" / vehicle)
-    trim = airframe.start(Start(np.array((0.0, 0.0, models.trim.altitude)), np.pi / 2, models.trim.airspeed, np.zeros(3)))
+    trim = airframe.start(InitialState(np.array((0.0, 0.0, models.trim.altitude)), np.pi / 2, models.trim.airspeed, np.zeros(3)))
     body = load_vehicle(ROOT / "vehicles", vehicle).air
     assert body is not None
     dt = 1 / body.physics_hz

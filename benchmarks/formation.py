@@ -22,8 +22,8 @@ from launch.commands.bench import Figures
 from launch.scoring.formation_scores import separation, station_errors
 from launch.scoring.scores import Scorer
 from uvf.models.mission.formation import Follow
-from uvf.models.scenario import ROOT, Site, load_site
-from uvf.models.world.wind import Turbulence, Wind
+from uvf.models.scenario import ROOT, Scenario, load_scenario
+from uvf.models.world.wind import TurbulenceFile, Wind
 from uvf.runtime.time.lockstep import Lockstep
 
 Floats = NDArray[np.float64]
@@ -31,18 +31,18 @@ Motions = dict[str, Floats]
 """By aircraft, (n, 5) true t, x, y, z and airspeed."""
 
 MISSION = ROOT / "missions" / "formation.yaml"
-WINDS = {"light": None, "moderate": Wind((-6.2, 5.0, 0.0), turbulence=Turbulence("moderate"))}
+WINDS = {"light": None, "moderate": Wind((-6.2, 5.0, 0.0), turbulence=TurbulenceFile("moderate"))}
 """None: the mission's own."""
 SHOWN = 260.0  # s, of tracks on the map
 SAMPLES = 0.2  # s
 
 
-def site_in(case: str) -> Site:
-    site, wind = load_site(MISSION), WINDS[case]
+def site_in(case: str) -> Scenario:
+    site, wind = load_scenario(MISSION), WINDS[case]
     return site if wind is None else replace(site, mission=msgspec.structs.replace(site.mission, wind=wind))
 
 
-def fly(site: Site, seconds: float) -> Motions:
+def fly(site: Scenario, seconds: float) -> Motions:
     lockstep, scorer = Lockstep(catalogue.hosts(site, [catalogue.kind("sim_air"), catalogue.kind("autopilot")])), Scorer(site)
     scorer.follow(lockstep.bus)
     with closing(lockstep):
@@ -50,16 +50,16 @@ def fly(site: Site, seconds: float) -> Motions:
     return scorer.motions()
 
 
-def follows(site: Site) -> dict[str, Follow]:
+def follows(site: Scenario) -> dict[str, Follow]:
     return {name: m.entry.job.follow for name, m in site.members.items() if m.entry.job.follow is not None}
 
 
-def errors(site: Site, flown: Motions) -> dict[str, Floats]:
+def errors(site: Scenario, flown: Motions) -> dict[str, Floats]:
     """By follower, (k, 4) t [s] and m late, right and above."""
     return {name: station_errors(flown[name], flown[follow.leader], follow) for name, follow in follows(site).items()}
 
 
-def figures(site: Site, flown: Motions, case: str) -> Figures:
+def figures(site: Scenario, flown: Motions, case: str) -> Figures:
     table: Figures = {}
     for name, rows in errors(site, flown).items():
         late, aside, above = np.sqrt(np.mean(rows[:, 1:] ** 2, axis=0))
@@ -70,7 +70,7 @@ def figures(site: Site, flown: Motions, case: str) -> Figures:
     return table
 
 
-def draw(site: Site, cases: dict[str, Motions], path: Path) -> None:
+def draw(site: Scenario, cases: dict[str, Motions], path: Path) -> None:
     """The map of the first case; the distances from the stations of all, and between the aircraft."""
     figure = Figure(figsize=(15.0, 8.0), layout="constrained")
     grid = figure.add_gridspec(3, 1 + len(cases))
@@ -116,9 +116,9 @@ def case(name: str) -> Callable[[Path | None], Figures]:
 CASES = {name: case(name) for name in WINDS}
 
 if __name__ == "__main__":
-    SECONDS = float(sys.argv[2]) if len(sys.argv) > 2 else load_site(MISSION).mission.duration
+    SECONDS = float(sys.argv[2]) if len(sys.argv) > 2 else load_scenario(MISSION).mission.duration
     FLOWN = {name: fly(site_in(name), SECONDS) for name in WINDS}
-    draw(load_site(MISSION), FLOWN, Path(sys.argv[1]) / "formation.png")
+    draw(load_scenario(MISSION), FLOWN, Path(sys.argv[1]) / "formation.png")
     for CASE, MOTIONS in FLOWN.items():
-        for NAME, ROW in figures(load_site(MISSION), MOTIONS, CASE).items():
+        for NAME, ROW in figures(load_scenario(MISSION), MOTIONS, CASE).items():
             sys.stdout.write(f"{NAME:20} {'  '.join(f'{metric} {value:.2f}' for metric, value in ROW.items())}\n")

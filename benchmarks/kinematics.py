@@ -14,8 +14,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from services.sim_ground.world import BulletWorld, Placed
-from uvf.control.drive_limits import Limits, Ramp
+from services.sim_ground.world import BodyPlacement, BulletWorld
+from uvf.control.drive_limits import DriveLimits, VelocityRamp
 from uvf.maths.kinematics import DifferentialDrive, Twist, WheelSpeeds, move
 from uvf.maths.rotations import to_euler, wrap
 from uvf.maths.se2 import Pose2
@@ -66,8 +66,8 @@ def drives(body: GroundBody) -> Iterator[Drive]:
 
 
 def drive(body: GroundBody, urdf: Path, wanted: Drive) -> Driven:
-    world = BulletWorld([], {"one": Placed(body, engine_urdf(urdf), (0.0, 0.0, 0.0))})
-    wheels, ramp = DifferentialDrive(body.wheel_radius, body.track), Ramp(_limits(body, wanted.twist))
+    world = BulletWorld([], {"one": BodyPlacement(body, engine_urdf(urdf), (0.0, 0.0, 0.0))})
+    wheels, ramp = DifferentialDrive(body.wheel_radius, body.track), VelocityRamp(_limits(body, wanted.twist))
     first = _pose(world)
     driven = Driven([first], [first], [first])
     before = world.state("one").wheel_angles
@@ -85,13 +85,13 @@ def drive(body: GroundBody, urdf: Path, wanted: Drive) -> Driven:
     return driven
 
 
-def _limits(body: GroundBody, twist: Twist) -> Limits:
+def _limits(body: GroundBody, twist: Twist) -> DriveLimits:
     """The vehicle's, lowered so that speed and turn are reached together and the curvature stays."""
     linear, angular = body.max_linear_acceleration, body.max_angular_acceleration
     if twist.linear and twist.angular:
         rise = max(twist.linear / linear, twist.angular / angular)  # s
         linear, angular = twist.linear / rise, twist.angular / rise
-    return Limits(body.max_linear, body.max_angular, linear, angular)
+    return DriveLimits(body.max_linear, body.max_angular, linear, angular)
 
 
 def _pose(world: BulletWorld) -> Pose2:

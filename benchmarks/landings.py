@@ -23,10 +23,10 @@ from schemas import topics
 from schemas.messages import ArmRequest, Event, Reply
 from services.autopilot.air.service import AutopilotAir
 from services.sim_air.service import SimAir
-from uvf.guidance.runways import Lane
+from uvf.guidance.runways import Runway
 from uvf.guidance.vector_field import from_line
 from uvf.maths import rotations
-from uvf.models.scenario import Site, load_site
+from uvf.models.scenario import Scenario, load_scenario
 from uvf.runtime.time.lockstep import Lockstep
 
 FLIGHTS = 50
@@ -87,7 +87,7 @@ def wind_of(seed: int, crosswind: float = CROSSWIND) -> tuple[float, float]:
             return float(WIND * np.cos(angle)), float(WIND * np.sin(angle))
 
 
-def flight_site(seed: int, wind: tuple[float, float], model: str, folder: Path) -> Site:
+def flight_site(seed: int, wind: tuple[float, float], model: str, folder: Path) -> Scenario:
     """It stands on the strip, with its nose into the wind."""
     side = -1.0 if wind[0] > 0 else 1.0
     start = {"x": -140.0 * side, "y": 0.0, "z": 0.0, "yaw": 0.0 if side > 0 else np.pi}
@@ -98,7 +98,7 @@ def flight_site(seed: int, wind: tuple[float, float], model: str, folder: Path) 
     vehicles = {PLANE: {"model": model, "system_id": 1, "start": start, "job": job}}
     path = folder / "landing.yaml"
     path.write_text(yaml.safe_dump({"about": "landing", "world": "airfield", "seed": seed, "wind": air, "vehicles": vehicles}))
-    return load_site(path)
+    return load_scenario(path)
 
 
 class Watch:
@@ -110,7 +110,7 @@ class Watch:
         (self.autopilot,) = (s for s in services if isinstance(s, AutopilotAir))
         self.craft = sim._stage.aircraft[PLANE]
         self.rows: list[Row] = []
-        self.lane: Lane | None = None
+        self.lane: Runway | None = None
         self.events: list[Event] = []
         self._bus = lockstep.bus
         self._stands = float(self.craft.motion.position[2])
@@ -194,7 +194,7 @@ def score(seed: int, wind: tuple[float, float], watch: Watch, crash: str) -> Lan
     )
 
 
-def _on(lane: Lane, row: Row) -> tuple[float, float]:
+def _on(lane: Runway, row: Row) -> tuple[float, float]:
     """m beyond the point to touch at, and to the right of the middle."""
     return from_line(lane.along, (lane.aim.north, lane.aim.east), (row.position[1], row.position[0]))
 

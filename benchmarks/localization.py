@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.logs import has_relations, logs_below
-from benchmarks.slam_evaluation.odometry_noise import OdometryNoise, disturbed
+from benchmarks.slam_evaluation.odometry_noise import EstimatedNoise, disturbed
 from benchmarks.slam_evaluation.variants import halves
 from launch.commands.bench import Case, Figures
 from launch.commands.slam import DEFAULT_METHOD
@@ -33,7 +33,7 @@ from uvf.maths.se2_arrays import composed, inverted, steps
 from uvf.slam.evaluation.relations import Relations, read_relations, relation_errors
 from uvf.slam.localization import known_map
 from uvf.slam.localization.beams import beams_of, field_of, fits_at
-from uvf.slam.localization.localizer import Localizer, State
+from uvf.slam.localization.localizer import Localizer, LocalizerState
 from uvf.slam.localization.params import FilterParams
 from uvf.slam.logs.laser_log import LaserLog
 from uvf.slam.methods import make_method, method_params
@@ -102,12 +102,12 @@ def _prepared(log: LaserLog, relations: Relations, part: float) -> Prepared:
         [fits_at(pose[None], beams_of(r, PARAMS.beams), field_of(known)).fits[0] for pose, r in zip(reference, second, strict=True)]
     )
     ends = np.concatenate(((0.0,), np.cumsum(np.hypot(*steps(second.odom_from_base)[:, :2].T))))
-    lost = any(state is State.LOST for _, state, _ in told)
+    lost = any(state is LocalizerState.LOST for _, state, _ in told)
     return Prepared(part, second, relations, known, reference, fits, ends, lost)
 
 
 def worse_odometry(log: LaserLog, reference: Floats, seed: int) -> LaserLog:
-    noise = OdometryNoise.of(log.odom_from_base, reference).times(np.sqrt(1.5**2 - 1.0))
+    noise = EstimatedNoise.of(log.odom_from_base, reference).times(np.sqrt(1.5**2 - 1.0))
     noisy = disturbed(log, noise, seed)
     moved = steps(noisy.odom_from_base)
     moved[:, 2] += BIAS * np.hypot(moved[:, 0], moved[:, 1])
@@ -132,7 +132,7 @@ def unchanged(log: LaserLog, reference: Floats, seed: int) -> LaserLog:
     return log
 
 
-def timed(localizer: Localizer, readings: Iterable[Reading]) -> Iterator[tuple[Pose2, State, float]]:
+def timed(localizer: Localizer, readings: Iterable[Reading]) -> Iterator[tuple[Pose2, LocalizerState, float]]:
     """(map_from_base, state, CPU time [ms]) of each sweep."""
     for reading in readings:
         begun = time.thread_time()
@@ -157,7 +157,7 @@ def tracked(path: Path, spoil: Callable[[LaserLog, Floats, int], LaserLog], seed
         "known m": float(of_known.freiburg_translation.mean()),
         "known deg": float(np.degrees(of_known.rotation.mean())),
         "known pairs": float(len(of_known.rotation)),
-        "LOST %": 100.0 * float(np.mean([state is State.LOST for _, state, _ in told])),
+        "LOST %": 100.0 * float(np.mean([state is LocalizerState.LOST for _, state, _ in told])),
         "ms median": float(np.median(spent)),
         "ms mean": float(np.mean(spent)),
     }
@@ -181,7 +181,7 @@ def found(path: Path, carried: bool, seed: int) -> dict[str, float]:
     off = composed(inverted(p.reference[begin:][: len(told)]), np.array([pose for pose, _, _ in told]))
     wrong = (np.hypot(off[:, 0], off[:, 1]) > NEAR) | (np.abs(off[:, 2]) > NEAR_TURN)
     wrong &= p.fits[begin:][: len(told)] > KNOWN
-    tracking = np.array([state is State.TRACKING for _, state, _ in told])
+    tracking = np.array([state is LocalizerState.TRACKING for _, state, _ in told])
     looked_for = np.flatnonzero(~tracking)
     noticed = int(looked_for[0]) if len(looked_for) else len(told)
     after = float(way[np.flatnonzero(wrong)[-1]]) if wrong.any() else 0.0

@@ -19,11 +19,11 @@ from launch.scoring.truth import true_poses
 from schemas import topics
 from schemas.messages import MapFix
 from uvf.maths.se2_arrays import composed, interpolated, wrapped
-from uvf.models.scenario import load_site
+from uvf.models.scenario import load_scenario
 from uvf.runtime.log.laser_log import read_mcap
 from uvf.runtime.log.reading import read_log
 from uvf.runtime.messages.convert import seconds
-from uvf.slam.maps.session import NO_EDGES, Session
+from uvf.slam.maps.session import NO_EDGES, MappingSession
 from uvf.slam.methods import make_method, method_params
 
 Floats = NDArray[np.float64]
@@ -46,7 +46,7 @@ def drive(folder: Path, name: str, content: dict[str, object], duration: float) 
     path = folder / f"{name}.yaml"
     path.write_text(yaml.safe_dump(content))
     log = folder / f"{name}.mcap"
-    run_lockstep(load_site(path), duration, log)
+    run_lockstep(load_scenario(path), duration, log)
     return log
 
 
@@ -57,7 +57,7 @@ def mapped(log: Path, folder: Path) -> tuple[float, float, float]:
     for reading in readings:
         method.add(reading)
     method.finish()
-    Session(tuple(method.keyframes()), NO_EDGES, DEFAULT_METHOD, {}).save(folder / "known.npz")
+    MappingSession(tuple(method.keyframes()), NO_EDGES, DEFAULT_METHOD, {}).save(folder / "known.npz")
     x, y, yaw = interpolated(true_poses(read_log(log), VEHICLE), np.array(readings.stamps[:1]))[0].tolist()
     return x, y, yaw
 

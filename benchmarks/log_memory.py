@@ -17,9 +17,10 @@ from benchmarks.timing import stopwatch
 from launch.commands.bench import Figures
 from launch.commands.report import describe_log
 from schemas import topics
-from schemas.messages import Clock, Imu, NavState, Vector3
+from schemas.messages import Clock, CompressedImage, Imu, NavState, Vector3
 from uvf.runtime.bus.interface import LocalBus, Sample
-from uvf.runtime.contract.instances import Host
+from uvf.runtime.contract.declaration import Reads, Writes, topic
+from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.contract.service import Service
 from uvf.runtime.log.recording import Recorder
 from uvf.runtime.log.recovery import recover
@@ -35,17 +36,22 @@ class Watcher(Service):
 
     name = "watcher"
     hz = 10.0
-    inputs = {"image": topics.IMAGE, "imu": topics.IMU}
-    outputs = {"state": topics.NAV_STATE}
 
-    def step(self, t: float, image: Any, imu: Any) -> Any:
-        return {"state": NavState()}
+    class Inputs(Reads):
+        image: CompressedImage = topic(topics.IMAGE)
+        imu: Imu = topic(topics.IMU)
+
+    class Outputs(Writes):
+        state: NavState | None = topic(topics.NAV_STATE)
+
+    def step(self, t: float, now: Inputs) -> Outputs:
+        return self.Outputs(state=NavState())
 
 
 TOOLS = {
     "recover": lambda log: recover(log, log.with_suffix(".saved")),
     "replay onto a bus": lambda log: onto_bus(log, LocalBus(), rate=1e9),
-    "replay into a service": lambda log: sum(1 for _ in into_service(log, Host(Watcher, Watcher, "v"))),
+    "replay into a service": lambda log: sum(1 for _ in into_service(log, ServiceInstance(Watcher, Watcher, "v"))),
     "info": describe_log,
 }
 

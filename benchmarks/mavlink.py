@@ -19,17 +19,17 @@ from benchmarks.timing import stopwatch
 from schemas import topics
 from schemas.messages import Gnss, Kind, Mode, Targets, Vector3, VehicleStatus
 from services.autopilot.mavlink.build import facts_of
-from services.autopilot.mavlink.connection.facts import Facts
+from services.autopilot.mavlink.connection.facts import VehicleInfo
 from services.autopilot.mavlink.parameters.parameter_store import FileStore
 from services.autopilot.mavlink.service import MavlinkService
 from uvf.mavlink import dialect as mav
 from uvf.mavlink.codec import Codec
 from uvf.mavlink.endpoint import UdpLink
-from uvf.models.scenario import ROOT, load_site
+from uvf.models.scenario import ROOT, load_scenario
 from uvf.runtime.bus.interface import LocalBus, Publisher
-from uvf.runtime.contract.instances import Host
-from uvf.runtime.contract.service import Input
-from uvf.runtime.contract.service_runner import Shell
+from uvf.runtime.contract.declaration import Input
+from uvf.runtime.contract.instances import ServiceInstance
+from uvf.runtime.contract.service_runner import ServiceRunner
 from uvf.runtime.messages.convert import stamp
 from uvf.runtime.messages.step_times import NS
 
@@ -44,9 +44,9 @@ FILLED: dict[str, Message] = {
 }
 
 
-def five() -> list[Facts]:
+def five() -> list[VehicleInfo]:
     """Three aircraft and two rovers after the vehicles of the demo."""
-    demo = {facts.file.kind: facts for facts in facts_of(load_site(ROOT / "missions" / "demo.yaml"))}
+    demo = {facts.file.kind: facts for facts in facts_of(load_scenario(ROOT / "missions" / "demo.yaml"))}
     kinds = ("fixed_wing",) * 3 + ("ground",) * 2
     return [replace(demo[kind], name=f"vehicle{n}", system_id=n) for n, kind in enumerate(kinds, 1)]
 
@@ -54,7 +54,7 @@ def five() -> list[Facts]:
 class World:
     """Publishes what the service reads of its vehicles, each topic at its rate."""
 
-    def __init__(self, bus: LocalBus, fleet: Sequence[Facts]) -> None:
+    def __init__(self, bus: LocalBus, fleet: Sequence[VehicleInfo]) -> None:
         read = {name: declared for name, declared in MavlinkService.inputs.items() if isinstance(declared, Input)}
         self._senders: list[tuple[float, Publisher, Message]] = []
         for name, declared in read.items():
@@ -103,7 +103,7 @@ def load(data: Path | None) -> dict[str, dict[str, float]]:
     link = UdpLink([station.sock.getsockname() for station in stations])
     nowhere = FileStore(Path(tempfile.gettempdir()) / "uvf-no-settings.json")  # nothing is set, so it is never written
     stores = {facts.name: nowhere for facts in fleet}
-    shell = Shell(Host(MavlinkService, lambda: MavlinkService(fleet, link, stores)), bus)
+    shell = ServiceRunner(ServiceInstance(MavlinkService, lambda: MavlinkService(fleet, link, stores)), bus)
     world, cpu = World(bus, fleet), 0.0
     for n in range(1, round((WARM_UP + SECONDS) / DT) + 1):
         if n == round(WARM_UP / DT):

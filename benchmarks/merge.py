@@ -27,8 +27,8 @@ from services.slam.merging.build import warm_up
 from uvf.maths.se2 import Pose2
 from uvf.maths.se2_arrays import composed, inverted
 from uvf.slam.evaluation.relations import Relations, read_relations, relation_errors
-from uvf.slam.evaluation.run import Run, run_over
-from uvf.slam.maps.session import Session
+from uvf.slam.evaluation.run import LogRun, run_over
+from uvf.slam.maps.session import MappingSession
 from uvf.slam.merging.team import Team
 from uvf.slam.methods import make_method, method_params
 
@@ -52,7 +52,7 @@ class Merged:
         return {"joined": float(len(self.team.groups) == 1), "CPU s": round(self.cpu, 2), "wall s": round(self.wall, 2)}
 
 
-def merged(sessions: dict[str, Session]) -> Merged:
+def merged(sessions: dict[str, MappingSession]) -> Merged:
     warm_up()
     wall, cpu, team = time.perf_counter(), time.process_time(), Team()
     for name, session in sessions.items():
@@ -62,28 +62,28 @@ def merged(sessions: dict[str, Session]) -> Merged:
 
 
 @cache
-def unbroken(path: Path) -> Run:
+def unbroken(path: Path) -> LogRun:
     return run_over(open_log(path), make_method(DEFAULT_METHOD, method_params(DEFAULT_METHOD, {}, "defaults")))
 
 
 @cache
-def parts(path: Path, share: float, both: bool) -> list[Run]:
+def parts(path: Path, share: float, both: bool) -> list[LogRun]:
     """Of the log up to a share of its readings, and of the rest if it is wanted."""
     logs = halves(open_log(path), NOTHING, share)[: 2 if both else 1]
     return [run_over(log, make_method(DEFAULT_METHOD, method_params(DEFAULT_METHOD, {}, "defaults"))) for log in logs]
 
 
-def session_of(run: Run) -> Session:
+def session_of(run: LogRun) -> MappingSession:
     assert run.session is not None
     return run.session
 
 
-def laid_anywhere(session: Session, seed: int) -> Session:
+def laid_anywhere(session: MappingSession, seed: int) -> MappingSession:
     x, y, yaw = np.random.default_rng(seed).uniform(-1.0, 1.0, 3).tolist()
     return session.moved(Pose2(x * ANYWHERE, y * ANYWHERE, yaw * np.pi))
 
 
-def team_from_readings(run: Run, placed: Floats) -> Floats:
+def team_from_readings(run: LogRun, placed: Floats) -> Floats:
     """(readings, 3): each with the keyframe before it. placed: (keyframes, 3) team_from_base."""
     own = np.array([k.map_from_base for k in run.keyframes])
     stamps = np.array([k.reading.t for k in run.keyframes])

@@ -17,7 +17,7 @@ from benchmarks.milvus_coefficients import AREA, BODY, FOLDER, INDUCED, MASS
 from services.sim_air.analysis.equilibrium import Condition, find
 from services.sim_air.analysis.linear import held_still
 from services.sim_air.engine.airframe import Airframe
-from services.sim_air.engine.states import Start
+from services.sim_air.engine.states import InitialState
 from uvf.maths import atmosphere
 from uvf.maths.geodesy import LocalTangent
 from uvf.models.vehicle.battery import lasts
@@ -156,7 +156,7 @@ def trims(_: Path | None) -> Figures:
     running, rows = Running(), {}
     for altitude in ALTITUDES:
         for speed in SPEEDS:
-            trim = running.airframe.start(Start(np.array((0.0, 0.0, altitude)), 0.0, speed, np.zeros(3)))
+            trim = running.airframe.start(InitialState(np.array((0.0, 0.0, altitude)), 0.0, speed, np.zeros(3)))
             hand = ByHand(speed, density(altitude))
             rows[f"{speed:g} m/s, {altitude:g} m"] = {
                 "residual": trim.residual,

@@ -15,7 +15,7 @@ import numpy as np
 from benchmarks.milvus_coefficients import BODY, FOLDER, TANGENT
 from services.sim_air.actuators import Actuators
 from services.sim_air.engine.airframe import Airframe
-from services.sim_air.engine.states import Start
+from services.sim_air.engine.states import InitialState
 from services.sim_air.engine.wiring import Controls
 from uvf.maths import rotations
 
@@ -63,14 +63,14 @@ class Strip:
         self._standing_height = 0.0
 
     def stand(self) -> None:
-        self.airframe.stand(Start(np.zeros(3), 0.0, 0.0, CALM))
+        self.airframe.stand(InitialState(np.zeros(3), 0.0, 0.0, CALM))
         self._standing_height = float(self.airframe.motion().position[2])
 
     def approach(self, along: float, height: float) -> None:
         """Trimmed on the path of APPROACH; the flaps come out as the pilot takes over."""
         self.stand()
         speed, path, _ = APPROACH
-        trim = self.airframe.start(Start(np.array((along, 0.0, height + self._standing_height)), 0.0, speed, CALM, climb=path))
+        trim = self.airframe.start(InitialState(np.array((along, 0.0, height + self._standing_height)), 0.0, speed, CALM, climb=path))
         assert BODY is not None
         self._actuators = Actuators(trim.controls, BODY)
 

@@ -11,8 +11,8 @@ import msgspec
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from services.sim_air.engine.states import Air, Motion
-from services.sim_air.sensors import Imu, Pressures
+from services.sim_air.engine.states import Air, AircraftMotion
+from services.sim_air.sensors import Imu, PressureSensors
 from services.sim_camera.renderer import BulletRenderer, Pose
 from services.sim_ground.body import BodyState
 from services.sim_ground.encoders import ticks
@@ -32,7 +32,7 @@ from uvf.sensors.allan import expected, octaves, overlapping
 from uvf.sensors.errors import Errors
 from uvf.sensors.fitted import accelerometer_errors, gyro_errors, line_of, receiver
 from uvf.sensors.range_sensors import LidarModel, RangeModel
-from uvf.sensors.sampling import Line
+from uvf.sensors.sampling import DelayLine
 
 Floats = NDArray[np.float64]
 Figures = dict[str, dict[str, float]]
@@ -145,7 +145,7 @@ def _in_flight() -> Figures:
     fitted, book = _sensors("milvus").imu, msgspec.convert({"mount": {}, **PRESETS["imu"]["book"]}, ImuSensor)
     assert fitted is not None
     rates, force = np.array((0.1, -0.2, 0.3)), np.array((1.0, -2.0, 11.0))
-    turning = Motion(np.zeros(3), np.zeros(3), IDENTITY, rates, force, 25.0)
+    turning = AircraftMotion(np.zeros(3), np.zeros(3), IDENTITY, rates, force, 25.0)
     figures: Figures = {}
     for name, imu in (("milvus", fitted), ("book", book)):
         model = Imu(msgspec.structs.replace(imu, gyro_bias=0.0, accel_bias=0.0), FIELD, _rng())
@@ -162,7 +162,7 @@ def _pressures() -> Figures:
     air = Air(97_000.0, 370.0, 285.0)
     figures: Figures = {}
     for name, sensor in (("milvus", fitted), ("book", book)):
-        model = Pressures(msgspec.structs.replace(sensor, static_bias=0.0, differential_bias=0.0), _rng())
+        model = PressureSensors(msgspec.structs.replace(sensor, static_bias=0.0, differential_bias=0.0), _rng())
         read = [s.air for n in range(1, 20_001) if (s := model.read(n / sensor.hz, lambda: air))]
         static, differential = np.array([(a.static_pressure, a.differential_pressure) for a in read]).T
         figures[f"{name} static pressure"] = _row((static - air.static_pressure)[:, None], sensor.static_noise)
@@ -172,7 +172,7 @@ def _pressures() -> Figures:
 
 
 def _first_pressure(sensor: AirDataSensor, rng: np.random.Generator) -> float:
-    model = Pressures(msgspec.structs.replace(sensor, static_noise=0.0), rng)
+    model = PressureSensors(msgspec.structs.replace(sensor, static_noise=0.0), rng)
     sample = model.read(1 / sensor.hz, lambda: Air(97_000.0, 370.0, 285.0))
     assert sample is not None
     return sample.air.static_pressure
@@ -200,7 +200,7 @@ def _depth() -> Figures:
 def _delivery() -> Figures:
     """Share of readings lost, and how late the others are [s]."""
     sensor = GnssSensor(10.0, dropout=0.02, burst=5, latency=0.12)
-    line: Line[float] = line_of(sensor, _rng())
+    line: DelayLine[float] = line_of(sensor, _rng())
     came = [t - taken for t in (n / 100 for n in range(1, 1_000_001)) if (taken := line.step(t, lambda t=t: t)) is not None]  # type: ignore[misc]
     lost, stated = 1 - (len(came) + 1) / 100_000, 0.1 / (0.1 + 0.98)
     return {

@@ -9,7 +9,7 @@ from unittest.mock import patch
 from benchmarks.timing import timed
 from launch import catalogue
 from launch.run import run_lockstep
-from uvf.models.scenario import ROOT, load_site
+from uvf.models.scenario import ROOT, load_scenario
 from uvf.runtime.bus import wire
 from uvf.runtime.time.lockstep import Lockstep
 
@@ -21,13 +21,13 @@ ROUNDS = 5
 def demo(data: Path | None) -> dict[str, dict[str, float]]:
     """Everything of the demo with its log: physics at the vehicles' own steps, cameras, lidar, SLAM, planner, autopilots."""
     with tempfile.TemporaryDirectory() as folder:
-        result = run_lockstep(load_site(DEMO), SECONDS, Path(folder, "log.mcap"))
+        result = run_lockstep(load_scenario(DEMO), SECONDS, Path(folder, "log.mcap"))
     return {"demo": {"real-time factor": result.factor, "ms per s": 1000 / result.factor, "messages per s": result.messages / SECONDS}}
 
 
 def each(data: Path | None) -> dict[str, dict[str, float]]:
     """One kind of service at a time; those that need others' messages stay idle and are left out."""
-    site, figures = load_site(DEMO), {}
+    site, figures = load_scenario(DEMO), {}
     for kind in catalogue.KINDS:
         if kind.simulator:
             lockstep = Lockstep(catalogue.hosts(site, [kind]))
@@ -41,7 +41,7 @@ def each(data: Path | None) -> dict[str, dict[str, float]]:
 
 def border(data: Path | None) -> dict[str, dict[str, float]]:
     """What it costs that services check all they hear: CPU time of the demo with the checks to that without, taking turns."""
-    site = load_site(DEMO)
+    site = load_scenario(DEMO)
     kinds = [kind for kind in catalogue.needed(site) if kind.clock == "sim"]
     taken: dict[bool, list[float]] = {True: [], False: []}
     for _ in range(ROUNDS):

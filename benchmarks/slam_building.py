@@ -27,7 +27,7 @@ from launch.slam.scoring import figures
 from uvf.maths.se2 import IDENTITY
 from uvf.maths.se2_arrays import composed, inverted
 from uvf.slam.evaluation.reference import Trajectory
-from uvf.slam.evaluation.run import Run, run_over
+from uvf.slam.evaluation.run import LogRun, run_over
 from uvf.slam.methods import make_method, method_params
 from uvf.slam.reading import Beams
 
@@ -68,7 +68,7 @@ def measured(method: str, name: str) -> dict[str, float]:
     return row | _shape(run, walls) if row["final max m"] < LIES_ON_IT else row
 
 
-def _errors(run: Run, driven: Driven) -> dict[str, float]:
+def _errors(run: LogRun, driven: Driven) -> dict[str, float]:
     way = float(np.hypot(*np.diff(driven.map_from_base[:, :2], axis=0).T).sum())
     row = {"driven m": way}
     for when, poses in (("final", run.final), ("online", run.online)):
@@ -80,7 +80,7 @@ def _errors(run: Run, driven: Driven) -> dict[str, float]:
     return row
 
 
-def _shape(run: Run, walls: Floats) -> dict[str, float]:
+def _shape(run: LogRun, walls: Floats) -> dict[str, float]:
     lengths = np.hypot(walls[:, 2] - walls[:, 0], walls[:, 3] - walls[:, 1])
     found = straightness(hit_points(run.keyframes, IDENTITY), straight_walls(walls[lengths > NICHE].reshape(-1, 2, 2)))
     return {"walls": found.walls, "bend": float(np.degrees(found.bend)), "scale %": 100.0 * found.scale}

@@ -30,12 +30,12 @@ from services.slam.map_server import in_world
 from uvf.client import Client
 from uvf.maths.se2 import IDENTITY
 from uvf.maths.se2_arrays import interpolated, wrapped
-from uvf.models.scenario import Site, load_site
+from uvf.models.scenario import Scenario, load_scenario
 from uvf.models.world.geometry import floor_plan, floor_segments, reachable_floor, section
 from uvf.models.world.map_file import GridMap
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.bus.interface import LocalBus, Sample
-from uvf.runtime.contract.service_runner import Shell
+from uvf.runtime.contract.service_runner import ServiceRunner
 from uvf.runtime.log.laser_log import samples_of
 from uvf.runtime.log.replay import hand_over, play
 from uvf.runtime.messages.convert import seconds, yaw_of
@@ -64,7 +64,7 @@ PATIENCE = 4.0  # times as long as a run should take
 def live(world: str, data: Path | None) -> Figures:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        site = load_site(mission(world, folder))
+        site = load_scenario(mission(world, folder))
         with apart(site.mission_path, folder) as client:
             costs = driven(client, DURATIONS[world])
         run = Run(list(samples_of((folder / "latest").resolve())))
@@ -131,7 +131,7 @@ class Run:
             "driven m": float(np.hypot(*np.diff(self.truth[:, 1:3], axis=0).T).sum()),
         }
 
-    def of_map(self, site: Site) -> Row:
+    def of_map(self, site: Scenario) -> Row:
         start, member = site.members[VEHICLE].entry.start, site.members[VEHICLE]
         radius = member.file.ground.radius if member.file.ground else 0.0
         floor = reachable_floor(floor_plan(site.world, PLAN_CELL), start.x, start.y, radius)
@@ -145,12 +145,12 @@ class Run:
             "floor %": 100.0 * (1.0 - seen.unknown),
         }
 
-    def steps(self, site: Site) -> Row:
+    def steps(self, site: Scenario) -> Row:
         """CPU of the services' steps alone."""
         end, row = max(s.stamp_ns for s in self._samples), {}
         for host in catalogue.hosts(site, [catalogue.kind(SLAM)]):
             bus = LocalBus()
-            shell = Shell(host, bus)
+            shell = ServiceRunner(host, bus)
             read = {declared.topic.at(owner) for _, declared, owner in shell.reads()}
             feed = [s for s in self._samples if s.key in read]
             with stopwatch() as taken:
@@ -160,7 +160,7 @@ class Run:
         return row
 
 
-def lidar_height(site: Site) -> float:
+def lidar_height(site: Scenario) -> float:
     """m above the floor."""
     lidar = site.members[VEHICLE].file.sensors.lidar
     return lidar.mount.xyz[2] if lidar is not None else 0.0

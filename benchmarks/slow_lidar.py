@@ -31,17 +31,17 @@ from uvf.maths.kinematics import DifferentialDrive, Twist, WheelSpeeds
 from uvf.maths.rotations import from_euler
 from uvf.maths.se2 import Pose2
 from uvf.maths.se2_arrays import composed, interpolated, inverted, wrapped
-from uvf.models.scenario import ROOT, Site, load_site
+from uvf.models.scenario import ROOT, Scenario, load_scenario
 from uvf.models.shapes.scene import scene
 from uvf.models.vehicle.sensors import Lidar
 from uvf.models.world.geometry import floor_segments, solids
-from uvf.runtime.contract.instances import Host
+from uvf.runtime.contract.declaration import Reads, Writes, topic
+from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.contract.service import Service
 from uvf.runtime.log.laser_log import read_mcap
 from uvf.runtime.log.reading import read_log
 from uvf.runtime.log.recording import Recorder
 from uvf.runtime.messages.convert import seconds, stamp
-from uvf.runtime.messages.outputs import Outputs
 from uvf.runtime.time.lockstep import Lockstep
 from uvf.sensors.range_sensors import LidarModel
 from uvf.slam.evaluation.run import run_over
@@ -63,19 +63,22 @@ ROW_POINTS = 20_000  # at most, of which distances are worked out
 class Eights(Service):
     """Stands for a second, then a loop to the left, one to the right, and so on."""
 
-    name, hz, outputs = "driver", 50.0, {"wheels": topics.WHEEL_COMMAND}
+    name, hz = "driver", 50.0
+
+    class Outputs(Writes):
+        wheels: WheelCommand = topic(topics.WHEEL_COMMAND)
 
     def __init__(self, drive: DifferentialDrive, pace: Twist) -> None:
         self._drive = drive
         self._pace = pace
 
-    def step(self, t: float) -> Outputs:
+    def step(self, t: float, now: Reads) -> Outputs:
         side = 1.0 if (t - 1.0) * self._pace.angular // (2 * np.pi) % 2 == 0 else -1.0
         left, right = self._drive.wheels(Twist(self._pace.linear, side * self._pace.angular) if t > 1.0 else Twist(0.0, 0.0))
-        return {"wheels": WheelCommand(timestamp=stamp(t), left=left, right=right)}
+        return self.Outputs(wheels=WheelCommand(timestamp=stamp(t), left=left, right=right))
 
 
-def slow_site(folder: Path, clockwise: bool = False) -> Site:
+def slow_site(folder: Path, clockwise: bool = False) -> Scenario:
     """The burger, whose lidar takes its time, in the house; its files are below ``folder``."""
     for name in ("missions", "vehicles/slow"):
         (folder / name).mkdir(parents=True)
@@ -87,14 +90,14 @@ def slow_site(folder: Path, clockwise: bool = False) -> Site:
     entry = {"model": "slow", "system_id": 1, "start": START}
     mission = {"about": "Eights.", "world": WORLD, "seed": 1, "vehicles": {VEHICLE: entry}}
     (folder / "missions/slow.yaml").write_text(yaml.safe_dump(mission))
-    return load_site(folder / "missions/slow.yaml", folder)
+    return load_scenario(folder / "missions/slow.yaml", folder)
 
 
-def driven(site: Site, pace: Twist, duration: float, log: Path) -> None:
+def driven(site: Scenario, pace: Twist, duration: float, log: Path) -> None:
     ground = site.members[VEHICLE].file.ground
     assert ground is not None
     drive = DifferentialDrive(ground.wheel_radius, ground.track)
-    lockstep = Lockstep([*simulator(site), *slam(site), Host(Eights, lambda: Eights(drive, pace), VEHICLE)])
+    lockstep = Lockstep([*simulator(site), *slam(site), ServiceInstance(Eights, lambda: Eights(drive, pace), VEHICLE)])
     with Recorder(log, attachments(site)) as recorder:
         recorder.follow(lockstep.bus)
         lockstep.run(duration)
@@ -152,11 +155,11 @@ def _to_segments(points: Floats, walls: Floats) -> Floats:
     return nearest
 
 
-def truth_of(log: Path, site: Site) -> Truth:
+def truth_of(log: Path, site: Scenario) -> Truth:
     return Truth(true_poses(read_log(log), VEHICLE), floor_segments(site.world, lidar_of(site).mount.xyz[2]))
 
 
-def lidar_of(site: Site) -> Lidar:
+def lidar_of(site: Scenario) -> Lidar:
     lidar = site.members[VEHICLE].file.sensors.lidar
     assert lidar is not None
     return lidar

@@ -8,10 +8,10 @@ process; the very same class runs over Zenoh in a process of its own.
 
 from schemas import topics
 from schemas.messages import DriveCommand, Event
-from uvf.runtime.contract.instances import Host
+from uvf.runtime.contract.declaration import Reads, Writes, topic
+from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import stamp
-from uvf.runtime.messages.outputs import Outputs
 from uvf.runtime.time.lockstep import Lockstep
 
 
@@ -20,10 +20,12 @@ class Driver(Service):
 
     name = "driver"
     hz = 10.0
-    outputs = {"drive": topics.DRIVE.by("client")}
 
-    def step(self, t: float) -> Outputs:
-        return {"drive": DriveCommand(timestamp=stamp(t), linear=0.1 * t)}
+    class Outputs(Writes):
+        drive: DriveCommand | None = topic(topics.DRIVE.by("client"))
+
+    def step(self, t: float, now) -> Outputs:
+        return self.Outputs(drive=DriveCommand(timestamp=stamp(t), linear=0.1 * t))
 
 
 class Watch(Service):
@@ -31,15 +33,19 @@ class Watch(Service):
 
     name = "watch"
     hz = 5.0
-    inputs = {"drive": topics.DRIVE.by("client")}
-    outputs = {"events": topics.EVENTS.by("watch")}
 
-    def step(self, t: float, drive: DriveCommand) -> Outputs:
-        if drive.linear <= 0.2:
-            return {}
-        return {"events": Event(timestamp=stamp(t), text=f"fast: {drive.linear:.2f} m/s", source="watch")}
+    class Inputs(Reads):
+        drive: DriveCommand = topic(topics.DRIVE.by("client"))
+
+    class Outputs(Writes):
+        events: list[Event] | None = topic(topics.EVENTS.by("watch"))
+
+    def step(self, t: float, now: Inputs) -> Outputs:
+        if now.drive.linear <= 0.2:
+            return self.Outputs()
+        return self.Outputs(events=Event(timestamp=stamp(t), text=f"fast: {now.drive.linear:.2f} m/s", source="watch"))
 
 
-lockstep = Lockstep([Host(Driver, Driver, "rover"), Host(Watch, Watch, "rover")])
+lockstep = Lockstep([ServiceInstance(Driver, Driver, "rover"), ServiceInstance(Watch, Watch, "rover")])
 lockstep.bus.subscribe("uvf/rover/state/**", topics.Qos.EVENT, lambda s: print(Event.FromString(s.payload).text))
 lockstep.run(until=3.0)

@@ -9,9 +9,9 @@ import tempfile
 from pathlib import Path
 
 from launch.run import run_lockstep
-from uvf.models.scenario import ROOT, load_site
+from uvf.models.scenario import ROOT, load_scenario
 
-site = load_site(ROOT / "missions" / "demo.yaml")
+site = load_scenario(ROOT / "missions" / "demo.yaml")
 with tempfile.TemporaryDirectory() as folder:
     result = run_lockstep(site, until=10.0, log=Path(folder, "log.mcap"))
 

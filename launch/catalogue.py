@@ -5,9 +5,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
-from uvf.models.scenario import Site
+from uvf.models.scenario import Scenario
 from uvf.models.yaml_data import BadInput, nearest
-from uvf.runtime.contract.instances import Build, Host
+from uvf.runtime.contract.instances import Build, ServiceInstance
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ def kind(name: str) -> Kind:
     return found
 
 
-def needed(site: Site) -> list[Kind]:
+def needed(site: Scenario) -> list[Kind]:
     """The kinds that have work in a mission."""
     kinds: set[str] = {member.file.kind for member in site.members.values()}
     asked = {name for member in site.members.values() for name in member.file.params}
@@ -59,11 +59,11 @@ def needed(site: Site) -> list[Kind]:
     return [k for k in KINDS if k.needs in ("any", *kinds) or (k.needs == "asked" and k.name in asked)]
 
 
-def hosts(site: Site, kinds: Sequence[Kind], vehicle: str | None = None) -> list[Host]:
+def hosts(site: Scenario, kinds: Sequence[Kind], vehicle: str | None = None) -> list[ServiceInstance]:
     """The service instances of these kinds; ``vehicle`` keeps only those of one vehicle."""
     if vehicle is not None and vehicle not in site.members:
         raise BadInput(f"no vehicle '{vehicle}' in {site.mission_path}; {nearest(vehicle, site.members)}")
-    made: list[Host] = []
+    made: list[ServiceInstance] = []
     for each in kinds:
         build: Build = importlib.import_module(each.build).build
         built = [_with_roles(site, host) for host in build(site)]
@@ -74,6 +74,6 @@ def hosts(site: Site, kinds: Sequence[Kind], vehicle: str | None = None) -> list
     return made
 
 
-def _with_roles(site: Site, host: Host) -> Host:
+def _with_roles(site: Scenario, host: ServiceInstance) -> ServiceInstance:
     """The mission says which vehicle is whose leader."""
     return replace(host, roles=site.members[host.vehicle].entry.roles) if host.vehicle else host

@@ -12,10 +12,10 @@ from launch import catalogue, settings
 from launch.scoring.scores import check_criteria
 from schemas import topics
 from schemas.topics import CLOCK, SYSTEM, Topic
-from uvf.models.scenario import ROOT, Member, Site, load_site
-from uvf.models.yaml_data import BadInput, Place, nearest
+from uvf.models.scenario import ROOT, MissionVehicle, Scenario, load_scenario
+from uvf.models.yaml_data import BadInput, FileLocation, nearest
 from uvf.runtime.bus.interface import matches
-from uvf.runtime.contract.instances import Host
+from uvf.runtime.contract.instances import ServiceInstance
 
 SENSORS: dict[Topic[Any], str] = {
     topics.IMU: "imu",
@@ -36,31 +36,31 @@ SENSORS: dict[Topic[Any], str] = {
 
 def check_mission(mission: str) -> list[str]:
     """The problems found, a line each. Raises BadInput for a file that is wrong in itself."""
-    site = load_site(settings.mission_path(mission))
+    site = load_scenario(settings.mission_path(mission))
     check_criteria(site)
     hosts = catalogue.hosts(site, catalogue.needed(site))
     check_params(site, hosts)
     return [*wiring_problems(site, hosts), *compose_problems(ROOT / "docker-compose.yml")]
 
 
-def refuse_problems(site: Site, hosts: Sequence[Host]) -> None:
+def refuse_problems(site: Scenario, hosts: Sequence[ServiceInstance]) -> None:
     """Raises BadInput for the first thing for which a run would wait in vain."""
     check_params(site, hosts)
     for line in wiring_problems(site, hosts):
         raise BadInput(f"{site.mission_path}: {line}")
 
 
-def check_params(site: Site, hosts: Sequence[Host]) -> None:
+def check_params(site: Scenario, hosts: Sequence[ServiceInstance]) -> None:
     """Every group of parameters in a vehicle's file is that of a service it has. Raises BadInput."""
     for member in site.members.values():
         services = {host.service.name for host in hosts if host.vehicle == member.name}
         for name in member.file.params:
             if name not in services:
-                place = Place(str(member.folder / "vehicle.yaml"), ("params", name))
+                place = FileLocation(str(member.folder / "vehicle.yaml"), ("params", name))
                 raise BadInput(f"{place}: {member.name} has no service '{name}'; {nearest(name, services)}")
 
 
-def wiring_problems(site: Site, hosts: Sequence[Host]) -> Iterator[str]:
+def wiring_problems(site: Scenario, hosts: Sequence[ServiceInstance]) -> Iterator[str]:
     """One writer per key, every required input fed, every sensor simulated, steps on the clock's ticks."""
     yield from _writers(hosts)
     yield from _inputs(site, hosts)
@@ -68,13 +68,13 @@ def wiring_problems(site: Site, hosts: Sequence[Host]) -> Iterator[str]:
     yield from _rates(hosts)
 
 
-def _owners(host: Host, topic: Topic[Any]) -> Sequence[str]:
+def _owners(host: ServiceInstance, topic: Topic[Any]) -> Sequence[str]:
     if not topic.per_vehicle:
         return (SYSTEM,)
     return (host.vehicle,) if host.vehicle else host.writes_for
 
 
-def _writers(hosts: Sequence[Host]) -> Iterator[str]:
+def _writers(hosts: Sequence[ServiceInstance]) -> Iterator[str]:
     """One writer per key."""
     writers: defaultdict[str, list[str]] = defaultdict(list)
     for host in hosts:
@@ -86,7 +86,7 @@ def _writers(hosts: Sequence[Host]) -> Iterator[str]:
             yield f"{key}: written by {' and '.join(sorted(names))}; one topic has one writer"
 
 
-def _inputs(site: Site, hosts: Sequence[Host]) -> Iterator[str]:
+def _inputs(site: Scenario, hosts: Sequence[ServiceInstance]) -> Iterator[str]:
     """Every required input has a writer, and the vehicle the sensor that it comes from."""
     outputs = [(topic, owner) for host in hosts for topic in host.service.outputs.values() for owner in _owners(host, topic)]
     written = {topic.at(owner) for topic, owner in outputs if owner not in site.members or _has(site.members[owner], topic)}
@@ -100,27 +100,27 @@ def _inputs(site: Site, hosts: Sequence[Host]) -> Iterator[str]:
                 yield f"{host.service.name}: input '{name}' ({key}) is written by nobody{_mend(site, declared.topic, source)}"
 
 
-def _has(member: Member, topic: Topic[Any]) -> bool:
+def _has(member: MissionVehicle, topic: Topic[Any]) -> bool:
     return topic not in SENSORS or bool(getattr(member.file.sensors, SENSORS[topic]))
 
 
-def _mend(site: Site, topic: Topic[Any], vehicle: str) -> str:
+def _mend(site: Scenario, topic: Topic[Any], vehicle: str) -> str:
     if topic not in SENSORS or vehicle not in site.members:
         return ""
     return f"; give {vehicle} a sensor '{SENSORS[topic]}' in {site.members[vehicle].folder / 'vehicle.yaml'}"
 
 
-def _unread_sensors(site: Site, hosts: Sequence[Host]) -> Iterator[str]:
+def _unread_sensors(site: Scenario, hosts: Sequence[ServiceInstance]) -> Iterator[str]:
     """A sensor in a vehicle's file that no simulator knows would be missed only in the run."""
     given = {(owner, topic) for host in hosts for topic in host.service.outputs.values() for owner in _owners(host, topic)}
     for member in site.members.values():
         for topic, sensor in SENSORS.items():
             if getattr(member.file.sensors, sensor) and (member.name, topic) not in given:
-                place = Place(str(member.folder / "vehicle.yaml"), ("sensors", sensor))
+                place = FileLocation(str(member.folder / "vehicle.yaml"), ("sensors", sensor))
                 yield f"{place}: no simulator gives {topic.at(member.name)} for a vehicle of kind {member.file.kind}; take it out"
 
 
-def _rates(hosts: Sequence[Host]) -> Iterator[str]:
+def _rates(hosts: Sequence[ServiceInstance]) -> Iterator[str]:
     """Steps fall on the clock's ticks, so that lockstep over the bus is the same as in one process."""
     for service in {h.service for h in hosts if h.service.clock == "sim"}:
         if Fraction(CLOCK.hz) % Fraction(service.hz).limit_denominator(1000) != 0:

@@ -86,7 +86,7 @@ def up(
 ) -> None:
     """Start a whole mission: every service in its own process, watched over, until Ctrl-C."""
     from launch.runs import new_run
-    from launch.up import Wanted
+    from launch.up import StartOptions
     from launch.up import up as run_up
     from uvf.runtime.bus.address import address_from, claim, claim_router, router_from
 
@@ -99,7 +99,7 @@ def up(
         say(f"mission {path.stem}; logs in {folder}")
         if gcs:
             say(f"page {address_from().url}   QGroundControl: just start it (MAVLink goes to UDP 14550)   Ctrl-C ends")
-        raise typer.Exit(run_up(Wanted(mission, rate, gcs, seconds), folder, say))
+        raise typer.Exit(run_up(StartOptions(mission, rate, gcs, seconds), folder, say))
 
 
 @app.command()
@@ -121,7 +121,7 @@ def service(
     name: Annotated[str, typer.Argument(help="Which service, or 'conductor'.")],
     mission: MissionOption = DEMO,
     vehicle: Annotated[str | None, typer.Option(help="Only for this vehicle.")] = None,
-    rate: Annotated[float, typer.Option(callback=within(0.0, 1000.0), help="Of the conductor.")] = 1.0,
+    rate: Annotated[float, typer.Option(callback=within(0.0, 1000.0), help="Real-time factor.")] = 1.0,
     lockstep: Annotated[bool, typer.Option("--lockstep", help="The next tick waits for everybody.")] = False,
 ) -> None:
     """Run one service in this process."""
@@ -227,13 +227,13 @@ def mavlink_bridge(
     address: Annotated[str, typer.Argument(help=BRIDGE_ADDRESS)],
     name: Annotated[list[str] | None, typer.Option(help="NAME of the first autopilot; NAME=SYSTEM for one of several, by its id.")] = None,
     mission: Annotated[str, typer.Option("--mission", "-m", help="Whose world it is; without one the world begins at home.")] = "",
-    model: Annotated[str, typer.Option(help="In vehicles/: with whose body it is drawn.")] = "",
+    model: Annotated[str, typer.Option(help="Vehicle model used for display, a folder of vehicles/.")] = "",
 ) -> None:
     """Take the autopilots at a MAVLink address (PX4, ArduPilot, ours) as vehicles on the bus, until Ctrl-C."""
-    from launch.mavlink_bridge import Wanted, bridge
+    from launch.mavlink_bridge import BridgeOptions, bridge
 
     with bad_input_is_one_line():
-        bridge(Wanted(address, tuple(name or ()), model, mission))
+        bridge(BridgeOptions(address, tuple(name or ()), model, mission))
 
 
 @app.command()

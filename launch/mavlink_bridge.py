@@ -10,19 +10,19 @@ from launch.processes import open_bus
 from launch.worker import worker
 from schemas.messages import Guest
 from services.mavlink_bridge.discovery import Discovery, Names, names_from
-from services.mavlink_bridge.frame import Origin
+from services.mavlink_bridge.frame import BridgeOrigin
 from services.mavlink_bridge.service import BridgedVehicle
 from services.mavlink_bridge.station import Station
 from services.mavlink_bridge.status import KIND
 from uvf.maths.geodesy import LocalTangent
 from uvf.mavlink import dialect as mav
 from uvf.mavlink.endpoint import UdpLink
-from uvf.models.scenario import ROOT, Site, load_site
+from uvf.models.scenario import ROOT, Scenario, load_scenario
 from uvf.models.vehicle.file import load_vehicle
 from uvf.models.yaml_data import BadInput, nearest
 from uvf.runtime.bus.address import peer
 from uvf.runtime.bus.zenoh_bus import ZenohBus
-from uvf.runtime.contract.instances import Host
+from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.contract.service import Service
 from uvf.runtime.time.live import Live
 
@@ -33,7 +33,7 @@ VEHICLES = ROOT / "vehicles"
 
 
 @dataclass(frozen=True)
-class Wanted:
+class BridgeOptions:
     """What ``uvf mavlink-bridge`` was asked for. names: ``NAME`` or ``NAME=SYSTEM``; mission: whose world it is, if anybody's."""
 
     address: str
@@ -58,12 +58,12 @@ def open_address(text: str) -> UdpLink:
         raise BadInput(f"'{text}': {error.strerror or error}: {mend}") from error
 
 
-def bridge(wanted: Wanted) -> None:
+def bridge(wanted: BridgeOptions) -> None:
     """Until told to stop. Raises BadInput before anything is opened."""
     names = names_from(wanted.names)
     if wanted.model:
         load_vehicle(VEHICLES, wanted.model)
-    site = load_site(settings.mission_path(wanted.mission)) if wanted.mission else None
+    site = load_scenario(settings.mission_path(wanted.mission)) if wanted.mission else None
     for name in names.asked_for:
         if site is not None and name in site.members:
             raise BadInput(f"--name {name}: {site.mission_path} has a vehicle of this name; choose another")
@@ -84,19 +84,21 @@ def is_taken(bus: ZenohBus, name: str) -> bool:
     return bool(bus.tokens(f"@node/{name}/**"))
 
 
-def _origin(site: Site | None) -> Origin:
+def _origin(site: Scenario | None) -> BridgeOrigin:
     if site is None:
-        return Origin()
+        return BridgeOrigin()
     origin = site.world.origin
-    return Origin(LocalTangent.from_degrees(origin.latitude, origin.longitude, origin.altitude))
+    return BridgeOrigin(LocalTangent.from_degrees(origin.latitude, origin.longitude, origin.altitude))
 
 
 class Bridge:
     """The process: one reader of the address, one service for each autopilot there."""
 
-    def __init__(self, wanted: Wanted, names: Names, bus: ZenohBus, station: Station, origin: Origin, warn: Callable[[str], None]) -> None:
+    def __init__(
+        self, wanted: BridgeOptions, names: Names, bus: ZenohBus, station: Station, origin: BridgeOrigin, warn: Callable[[str], None]
+    ) -> None:
         self._wanted, self._bus, self._station, self._origin, self._warn = wanted, bus, station, origin, warn
-        host = Host(Discovery, lambda: Discovery(station, names, self._found, self._say))
+        host = ServiceInstance(Discovery, lambda: Discovery(station, names, self._found, self._say))
         self.live = Live(f"mavlink_bridge_{names.free}", [host], bus, warn)
         self._say(f"listening for autopilots as {names.free}")
 
@@ -114,7 +116,7 @@ class Bridge:
         def make() -> Service:
             return BridgedVehicle(name, system, self._station, self._origin, guest)
 
-        self.live.join(Host(BridgedVehicle, make, name))
+        self.live.join(ServiceInstance(BridgedVehicle, make, name))
         self._say(f"{what} is {name}")
 
 

@@ -9,13 +9,13 @@ from launch import catalogue, settings
 from launch.worker import Worker, give_way, spare_the_collector, worker
 from schemas import topics
 from schemas.messages import Clock, ClockRequest, Done, Event, Reply
-from uvf.models.scenario import load_site
+from uvf.models.scenario import load_scenario
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.bus.address import router_from
 from uvf.runtime.bus.interface import Query, Sample, Sink
 from uvf.runtime.bus.wire import Malformed, decode, guarded
 from uvf.runtime.bus.zenoh_bus import ZenohBus, open_router
-from uvf.runtime.log.state_store import Keeper
+from uvf.runtime.log.state_store import StateStore
 from uvf.runtime.messages.convert import stamp_ns
 from uvf.runtime.messages.refusals import Refusals
 from uvf.runtime.process.watchdog import Watchdog
@@ -34,7 +34,7 @@ def run_router(listen: str) -> None:
         session = open_router(listen)
         try:
             with ZenohBus(listen.replace("0.0.0.0", "127.0.0.1"), timeout=CONNECT_PATIENCE) as bus:
-                keeper = Keeper(bus, life.warn)
+                keeper = StateStore(bus, life.warn)
                 spare_the_collector()
                 while not life.stop.wait(LOOK) and life.goes_on():
                     keeper.poll()
@@ -60,7 +60,7 @@ def run_service(name: str, mission: str, vehicle: str | None, lockstep: bool = F
     with worker(name) as life:
         kind = catalogue.kind(name)
         give_way(kind.nice)
-        site = load_site(settings.mission_path(mission))
+        site = load_scenario(settings.mission_path(mission))
         hosts = catalogue.hosts(site, [kind], vehicle)
         with open_bus(life, lockstep) as bus, closing(Watchdog()) as watchdog:
             live = Live(name if vehicle is None else f"{name}.{vehicle}", hosts, bus, life.warn, watchdog)
@@ -71,7 +71,7 @@ def run_service(name: str, mission: str, vehicle: str | None, lockstep: bool = F
 def run_conductor(mission: str, rate: float, lockstep: bool = False, without: tuple[str, ...] = ()) -> None:
     """Publishes the clock for a mission's participants."""
     with worker("conductor") as life:
-        site = load_site(settings.mission_path(mission))
+        site = load_scenario(settings.mission_path(mission))
         kinds = [k for k in catalogue.needed(site) if k.clock == "sim" and k.name not in without]
         simulators = [k.name for k in kinds if k.simulator]
         conductor = Conductor(simulators, [k.name for k in kinds if not k.simulator], rate, lockstep, site.members)

@@ -12,7 +12,7 @@ from launch.runs import hold, keep_quota
 from launch.worker import Worker, give_way, spare_the_collector, worker
 from schemas import topics
 from schemas.messages import Event
-from uvf.models.scenario import Site, load_site
+from uvf.models.scenario import Scenario, load_scenario
 from uvf.models.vehicle.layers import folders_of
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.bus.interface import Sample
@@ -134,7 +134,7 @@ def run_recorder(folder: Path, mission: str) -> None:
     """Writes everything on the bus to ``folder`` until told to stop."""
     with worker("recorder") as life:
         give_way(NICE)
-        site = load_site(settings.mission_path(mission))
+        site = load_scenario(settings.mission_path(mission))
         quota = settings.runs_quota()
         try:
             folder.mkdir(parents=True, exist_ok=True)
@@ -199,7 +199,7 @@ def _record(life: Worker, bus: ZenohBus, series: LogSeries) -> None:
         pass
 
 
-def attachments(site: Site) -> dict[str, bytes]:
+def attachments(site: Scenario) -> dict[str, bytes]:
     """The files that say what was run, mission, world and vehicles, by their places below the project's folder."""
     files = {f"missions/{site.mission_path.name}": site.mission_path}
     folders = {f"worlds/{site.mission.world}": site.world_folder}

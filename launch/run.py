@@ -9,7 +9,7 @@ from launch import catalogue
 from launch.checks import refuse_problems
 from launch.recorder import attachments
 from launch.scoring.scores import Scorer, Verdict
-from uvf.models.scenario import Site
+from uvf.models.scenario import Scenario
 from uvf.runtime.log.recording import Recorder
 from uvf.runtime.time.lockstep import Lockstep
 
@@ -36,7 +36,7 @@ class Result:
 
 
 def run_lockstep(
-    site: Site,
+    site: Scenario,
     until: float,
     log: Path,
     watch: Callable[[float], bool] = lambda t: True,

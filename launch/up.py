@@ -11,7 +11,7 @@ from launch.output import RotatingLog
 from launch.waits import Waits
 from schemas import topics
 from schemas.messages import Clock
-from uvf.models.scenario import load_site
+from uvf.models.scenario import load_scenario
 from uvf.runtime.bus.interface import Sample
 from uvf.runtime.bus.wire import guarded
 from uvf.runtime.messages.refusals import Refusals
@@ -20,7 +20,7 @@ ROUTER_PATIENCE = 10.0  # s
 
 
 @dataclass(frozen=True)
-class Wanted:
+class StartOptions:
     """What ``uvf up`` was asked for."""
 
     mission: str
@@ -29,12 +29,12 @@ class Wanted:
     seconds: float | None = None
 
 
-def up(wanted: Wanted, folder: Path, say: Say) -> int:
+def up(wanted: StartOptions, folder: Path, say: Say) -> int:
     """Runs until Ctrl-C, SIGTERM or the time is over; returns the exit code. Raises BadInput before anything starts."""
-    site = load_site(settings.mission_path(wanted.mission))
+    site = load_scenario(settings.mission_path(wanted.mission))
     kinds = [k for k in catalogue.needed(site) if wanted.page or k.name != "gcs"]
     stop = stop_flag()
-    run = Run(wanted, folder, say)
+    run = RunningMission(wanted, folder, say)
     try:
         run.start([k.name for k in kinds])
         run.watch(stop)
@@ -45,10 +45,10 @@ def up(wanted: Wanted, folder: Path, say: Say) -> int:
     return 1 if run.launcher.failed else 0
 
 
-class Run:
+class RunningMission:
     """The processes of one run, from the first to the end."""
 
-    def __init__(self, wanted: Wanted, folder: Path, say: Say) -> None:
+    def __init__(self, wanted: StartOptions, folder: Path, say: Say) -> None:
         self._wanted = wanted
         self._say = say
         self._folder = folder

@@ -10,7 +10,7 @@ from math import cos, exp, pi, sin, sqrt
 import numpy as np
 from scipy.optimize import fsolve
 
-from uvf.control.design.coefficients import Airframe
+from uvf.control.design.coefficients import AirframeCoefficients
 from uvf.maths.state_space import StateSpace
 
 M, JX, JY, JZ, JXZ = 11.0, 0.8244, 1.135, 1.759, 0.1204
@@ -28,7 +28,7 @@ CT = (0.09357, -0.06044, -0.1079)
 CQ = (0.005230, 0.004970, -0.01664)
 STALL_ALPHA, BLEND = 0.47, 50.0
 
-DESIGN = Airframe(
+DESIGN = AirframeCoefficients(
     mass=M,
     wing_area=S,
     chord=C,

@@ -25,7 +25,7 @@ OUTLIER = 3.0
 
 
 @dataclass(frozen=True)
-class OdometryNoise:
+class EstimatedNoise:
     """1 sigma. along: m per m^1/2 driven, in the direction of travel; turning: rad per rad^1/2 turned; veering: rad per m^1/2 driven.
 
     The figures here are those of a usual small indoor vehicle.
@@ -35,11 +35,11 @@ class OdometryNoise:
     turning: float = 0.05
     veering: float = 0.03
 
-    def times(self, factor: float) -> "OdometryNoise":
-        return OdometryNoise(factor * self.along, factor * self.turning, factor * self.veering)
+    def times(self, factor: float) -> "EstimatedNoise":
+        return EstimatedNoise(factor * self.along, factor * self.turning, factor * self.veering)
 
     @classmethod
-    def of(cls, odom_from_base: Floats, map_from_base: Floats) -> "OdometryNoise":
+    def of(cls, odom_from_base: Floats, map_from_base: Floats) -> "EstimatedNoise":
         """Of odometry (n, 3), told from better poses (n, 3) of the same readings; the usual figures where the way is too short."""
         driven, turned = _ways(odom_from_base)
         marks = np.unique(np.searchsorted(way := driven + LEVER * turned, np.arange(0.0, way[-1], STRETCH)))
@@ -76,7 +76,7 @@ def _ways(poses: Floats) -> tuple[Floats, Floats]:
     return driven, np.concatenate(((0.0,), np.cumsum(np.abs(moved[:, 2]))))
 
 
-def disturbed(log: LaserLog, noise: OdometryNoise, seed: int) -> LaserLog:
+def disturbed(log: LaserLog, noise: EstimatedNoise, seed: int) -> LaserLog:
     """The log with a random walk added to its odometry."""
     return _with_odometry(log, _walked(log.odom_from_base, noise, np.random.default_rng(seed)))
 
@@ -104,7 +104,7 @@ def _track(times: Floats, poses: Floats) -> Floats:
     return np.column_stack((times, poses[:, :2], np.unwrap(poses[:, 2])))
 
 
-def _walked(poses: Floats, noise: OdometryNoise, rng: np.random.Generator) -> Floats:
+def _walked(poses: Floats, noise: EstimatedNoise, rng: np.random.Generator) -> Floats:
     moved = steps(poses)
     driven, turned = np.hypot(moved[:, 0], moved[:, 1]), np.abs(moved[:, 2])
     along = rng.normal(size=len(moved)) * noise.along * np.sqrt(driven)

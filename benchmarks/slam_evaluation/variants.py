@@ -10,7 +10,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from benchmarks.slam_evaluation.odometry_noise import OdometryNoise, disturbed, exaggerated
+from benchmarks.slam_evaluation.odometry_noise import EstimatedNoise, disturbed, exaggerated
 from uvf.maths.se2 import Pose2
 from uvf.maths.se2_arrays import composed, inverted
 from uvf.slam.evaluation.relations import Relations, index_of
@@ -44,7 +44,7 @@ def mirrored(log: LaserLog, relations: Relations, best: Floats) -> Known:
 
 def noisier(log: LaserLog, relations: Relations, best: Floats) -> Known:
     """The odometry's noise doubled: a random walk of as much again is added."""
-    noise = OdometryNoise.of(log.odom_from_base, best).times(np.sqrt(3.0))
+    noise = EstimatedNoise.of(log.odom_from_base, best).times(np.sqrt(3.0))
     return replace(disturbed(log, noise, SEED), name=f"{log.name} noisier"), relations
 
 

@@ -18,7 +18,7 @@ Rows = Mapping[str, Mapping[str, float]]
 GOALS = ROOT / "benchmarks" / "goals.yaml"
 
 
-class Goal(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class BenchmarkGoal(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """What a column shall be in some rows; source: the page that states it."""
 
     rows: list[str]
@@ -31,7 +31,7 @@ class Goal(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 class Stated(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """What is known of a group beforehand. notes: where rows come from that the command does not measure."""
 
-    goals: list[Goal] = []
+    goals: list[BenchmarkGoal] = []
     notes: list[str] = []
 
 
@@ -97,12 +97,12 @@ def verdicts(group: str, rows: Rows) -> list[str]:
     return lines
 
 
-def _limits(goal: Goal) -> str:
+def _limits(goal: BenchmarkGoal) -> str:
     limits = (("at least", goal.at_least), ("at most", goal.at_most))
     return " and ".join(f"{word} {limit:g}" for word, limit in limits if limit is not None)
 
 
-def _verdict(goal: Goal, value: float) -> str:
+def _verdict(goal: BenchmarkGoal, value: float) -> str:
     met = (goal.at_least is None or value >= goal.at_least) and (goal.at_most is None or value <= goal.at_most)
     return "met" if met else "not met"
 

@@ -10,7 +10,7 @@ from launch.refusal import bad_input_is_one_line
 map_app = typer.Typer(no_args_is_help=True, help="Maps: save, load, merge, compare.")
 
 MapArgument = Annotated[str, typer.Argument(help="A saved map's name, or a file (.yaml, .pgm, .png).")]
-VehicleOption = Annotated[str | None, typer.Option("--vehicle", "-v", help="Whose; not needed when only one has a map.")]
+VehicleOption = Annotated[str | None, typer.Option("--vehicle", "-v", help="Vehicle (optional if only one publishes a map).")]
 
 
 @map_app.command("save")
@@ -76,7 +76,7 @@ def map_merge(
 @map_app.command("compare")
 def map_compare(
     a: MapArgument,
-    b: Annotated[str | None, typer.Argument(help="Another map, taken for true.")] = None,
+    b: Annotated[str | None, typer.Argument(help="Reference map.")] = None,
     world: Annotated[str | None, typer.Option(help="A world in worlds/, whose floor plan is the truth, instead of another map.")] = None,
     shift: Annotated[tuple[float, float, float], typer.Option(help="Where the first map lies in the other's frame: x y [m] yaw [deg].")] = (
         0.0,

@@ -15,11 +15,11 @@ from rich.table import Table
 from launch import catalogue, settings
 from launch.run import Result, run_lockstep
 from launch.runs import new_run
-from uvf.models.scenario import Site, load_site
+from uvf.models.scenario import Scenario, load_scenario
 from uvf.models.yaml_data import BadInput, nearest
 from uvf.runtime.bus.address import router_from
 from uvf.runtime.bus.zenoh_bus import ZenohBus
-from uvf.runtime.contract.instances import Host
+from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.log.reading import log_begin, log_metadata, read_log
 from uvf.runtime.log.recovery import recover
 from uvf.runtime.log.replay import into_service, logged_site, onto_bus
@@ -30,7 +30,7 @@ console = Console()
 
 def run_and_report(mission: str, until: float | None, log: Path | None) -> int:
     """Runs in lockstep with a progress bar and prints the score; 0 when every criterion holds."""
-    site = load_site(settings.mission_path(mission))
+    site = load_scenario(settings.mission_path(mission))
     until = until if until is not None else site.mission.duration
     if not 0 < until < math.inf:
         raise BadInput(f"--until {until}: how long to simulate, more than 0 s")
@@ -82,7 +82,7 @@ def replay_onto_bus(log: Path, rate: float) -> int:
 
 def replay_into(log: Path, service: str, vehicle: str | None, mission: str | None) -> int:
     """Prints the fields that came out otherwise; 0 when there are none."""
-    with nullcontext(load_site(settings.mission_path(mission))) if mission else logged_site(log) as site:
+    with nullcontext(load_scenario(settings.mission_path(mission))) if mission else logged_site(log) as site:
         hosts = _hosts_named(service, site, vehicle)
         if begin := log_begin(log):
             typer.echo(
@@ -102,7 +102,7 @@ def _to_stderr(line: str) -> None:
     typer.echo(line, err=True)
 
 
-def _hosts_named(name: str, site: Site, vehicle: str | None) -> list[Host]:
+def _hosts_named(name: str, site: Scenario, vehicle: str | None) -> list[ServiceInstance]:
     """By the name that ``uvf service`` takes (all that it runs) or that ``uvf node list`` shows (that one). Raises BadInput."""
     if vehicle is not None and vehicle not in site.members:
         raise BadInput(f"no vehicle '{vehicle}' in {site.mission_path.name}; {nearest(vehicle, site.members)}")

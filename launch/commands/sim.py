@@ -66,7 +66,7 @@ def _run() -> Iterator[Any]:
         with connect() as run:
             yield run
     except TimeoutError as error:
-        later = "; while time stands it is done, and answered, at the next step" if "no answer" in str(error) else ""
+        later = "; while the clock is paused it is done, and answered, at the next step" if "no answer" in str(error) else ""
         typer.echo(f"uvf: {error}{later}", err=True)
         raise typer.Exit(2) from error
     except BadInput as error:
@@ -86,7 +86,7 @@ def spawn(
     mass: Annotated[float, typer.Option(help="kg; 0 = it stands fast.")] = 0.0,
     speed: Annotated[float, typer.Option(help="m/s through the air, of an aircraft; by default its trim speed.")] = 0.0,
 ) -> None:
-    """Put a shape or a vehicle in; an aircraft stands without --z, and flies level with it."""
+    """Add a shape or a vehicle; an aircraft stands without --z, and flies level with it."""
     from schemas import topics
     from schemas.messages import SimObject, SpawnRequest
     from uvf.runtime.messages.convert import planar_pose
@@ -155,7 +155,7 @@ def fly(
 
 @sim_app.command()
 def save(name: State) -> None:
-    """Keep the state of the world, on the ground and in the air."""
+    """Save the state of the simulation, on the ground and in the air."""
     from schemas import topics
     from schemas.messages import StateRequest
 
@@ -164,7 +164,7 @@ def save(name: State) -> None:
 
 @sim_app.command()
 def restore(name: State) -> None:
-    """Go back to a state that was kept; time goes on."""
+    """Restore a saved state; the clock runs on."""
     from schemas import topics
     from schemas.messages import StateRequest
 
@@ -180,23 +180,23 @@ def _clock(action: str) -> None:
 
 @sim_app.command()
 def reset() -> None:
-    """Everything begins again at time 0, in a new epoch."""
+    """Restart the simulation at time 0, in a new epoch."""
     _clock("RESET")
 
 
 @sim_app.command()
 def pause() -> None:
-    """Time stands."""
+    """Pause the simulation clock."""
     _clock("PAUSE")
 
 
 @sim_app.command()
 def resume() -> None:
-    """Time goes on."""
+    """Resume the simulation clock."""
     _clock("RESUME")
 
 
 @sim_app.command()
 def step() -> None:
-    """One tick of 10 ms while time stands."""
+    """Advance a paused clock by one tick (10 ms)."""
     _clock("STEP")

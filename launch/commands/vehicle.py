@@ -1,4 +1,4 @@
-"""``uvf vehicle``: what vehicles there are, what is wrong with them, what they look like; new ones, and those of others."""
+"""``uvf vehicle``: what vehicles there are, what is wrong with them, what they look like; new ones, and third-party models."""
 
 from pathlib import Path
 from typing import Annotated
@@ -8,7 +8,7 @@ import typer
 from launch.refusal import bad_input_is_one_line
 from uvf.models.yaml_data import BadInput
 
-vehicle_app = typer.Typer(no_args_is_help=True, help="Look at vehicles, check them, make new ones, take over those of others.")
+vehicle_app = typer.Typer(no_args_is_help=True, help="Look at vehicles, check them, make new ones, import third-party models.")
 
 NameArgument = Annotated[str, typer.Argument(help="Name in vehicles/ or path of a vehicle's folder.")]
 NewName = Annotated[str, typer.Option("--name", help="Of the new folder in vehicles/.")]
@@ -156,7 +156,7 @@ def import_(
     into: IntoOption = None,
     arg: Annotated[list[str] | None, typer.Option(help="Of the xacro, as name:=value.")] = None,
 ) -> None:
-    """Take over a robot or an aircraft of others: a folder in vehicles/, and a note of what was dropped or guessed. Checks it at once."""
+    """Import a third-party robot or aircraft: a folder in vehicles/, and a note of what was dropped or guessed. Checks it at once."""
     from launch.vehicles.checking import check_all
     from launch.vehicles.importing import import_vehicle
 

@@ -69,12 +69,12 @@ def world_check(
     """Look for things in the air or in the ground, floor out of reach, scripts through walls, blocked starts."""
     from launch import settings
     from launch.worlds.check import blocked_starts, problems
-    from uvf.models.scenario import load_site
+    from uvf.models.scenario import load_scenario
     from uvf.models.world.file import load_world
 
     with bad_input_is_one_line():
         found = list(problems(load_world(_worlds(), name), radius))
-        found += blocked_starts(load_site(settings.mission_path(mission))) if mission else []
+        found += blocked_starts(load_scenario(settings.mission_path(mission))) if mission else []
     for line in found:
         typer.echo(line)
     typer.echo(f"uvf: {len(found)} problems" if found else "uvf: nothing wrong")
@@ -109,7 +109,7 @@ def world_import(
     upright: Annotated[bool, typer.Option("--upright", help="Turn meshes that say that y is up, which Gazebo does not.")] = False,
     replace: Annotated[bool, typer.Option("--replace", help="Overwrite a world of that name.")] = False,
 ) -> None:
-    """Take over a world, telling what was left out."""
+    """Import a Gazebo world or a map, with a note of what was left out."""
     from uvf.models.importing.worlds import Options, import_world, new_folder
 
     with bad_input_is_one_line():

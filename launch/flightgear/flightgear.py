@@ -18,7 +18,7 @@ from schemas.topics import Topic
 from uvf.client import Client
 from uvf.maths.geodesy import GRAVITY, LocalTangent
 from uvf.maths.rotations import enu_flu_from_ned_frd, inverse, rotate, to_euler
-from uvf.models.scenario import Site, load_site
+from uvf.models.scenario import Scenario, load_scenario
 from uvf.models.vehicle.air import AirBody
 from uvf.models.vehicle.surface_joints import deflection
 from uvf.models.yaml_data import BadInput, nearest
@@ -64,7 +64,7 @@ class Feed:
         )
 
 
-def feed_of(site: Site, vehicle: str) -> Feed:
+def feed_of(site: Scenario, vehicle: str) -> Feed:
     """Raises BadInput."""
     bodies = {m.name: m.file.air for m in site.members.values() if m.file.air is not None}
     body = bodies.get(vehicle)
@@ -89,7 +89,7 @@ def show(client: Client, vehicle: str, feed: Feed, send: Callable[[bytes], objec
 def flightgear(vehicle: str, to: str, hz: float, mission: str) -> None:
     """Sends until Ctrl-C, from a port that nobody can send to. Raises BadInput."""
     place = peer(to, "--to", DEFAULT_TO)
-    feed = feed_of(load_site(settings.mission_path(mission)), vehicle)
+    feed = feed_of(load_scenario(settings.mission_path(mission)), vehicle)
     with uvf.connect() as client, socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as link, suppress(KeyboardInterrupt):
         try:
             link.connect(place)

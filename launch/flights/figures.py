@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from launch.flights.history import History, Motion
+from launch.flights.history import FlownMotion, History
 from schemas.messages import Event, Mode
 
 Floats = NDArray[np.float64]
@@ -27,7 +27,7 @@ class Figure:
 
 
 @dataclass(frozen=True)
-class Deviation:
+class TrackingError:
     """Of the path, arrays of one length k."""
 
     t: Floats  # s
@@ -38,7 +38,7 @@ class Deviation:
     on_path: NDArray[np.bool_]  # in mode Mission, and near it
 
 
-def deviation(history: History) -> Deviation | None:
+def deviation(history: History) -> TrackingError | None:
     """None without a status or an estimate. The truth's is the autopilot's own, and the error of its estimate across its course."""
     rows, estimate, truth = history.rows("state/vehicle"), history.estimate, history.truth
     if len(rows) < 2 or estimate is None:
@@ -51,7 +51,7 @@ def deviation(history: History) -> Deviation | None:
         speed = np.maximum(np.hypot(now.velocity[:, 0], now.velocity[:, 1]), 1e-3)
         true_across = across + (off[:, 0] * now.velocity[:, 1] - off[:, 1] * now.velocity[:, 0]) / speed
     on_path = (rows[:, 1] == Mode.MODE_MISSION) & (rows[:, 2] == 0) & (np.abs(across) < NEAR)
-    return Deviation(t, across, rows[:, 4], now.position[:, 2] - rows[:, 4], true_across, on_path)
+    return TrackingError(t, across, rows[:, 4], now.position[:, 2] - rows[:, 4], true_across, on_path)
 
 
 def energy(history: History) -> Floats:
@@ -78,7 +78,7 @@ def figures(history: History) -> list[Figure]:
     return [*found, *_happenings(history)]
 
 
-def _way(flown: Motion, history: History) -> Iterator[Figure]:
+def _way(flown: FlownMotion, history: History) -> Iterator[Figure]:
     airborne = _airborne(flown, history)
     pace = np.hypot(flown.velocity[:, 0], flown.velocity[:, 1])
     yield Figure("logged", f"{flown.t[0]:.1f} to {flown.t[-1]:.1f} s")
@@ -93,7 +93,7 @@ def _way(flown: Motion, history: History) -> Iterator[Figure]:
     yield Figure("largest bank, pitch", f"{_most(flown.roll[airborne]):.0f}, {_most(flown.pitch[airborne]):.0f} deg")
 
 
-def _airborne(flown: Motion, history: History) -> NDArray[np.bool_]:
+def _airborne(flown: FlownMotion, history: History) -> NDArray[np.bool_]:
     rows = history.rows("state/vehicle")
     if not len(rows):
         return flown.airspeed > AIRBORNE
@@ -112,7 +112,7 @@ def _path(history: History) -> Iterator[Figure]:
     yield Figure("height off the wanted", _spread(off.height[on]))
 
 
-def _energy(history: History, flown: Motion) -> Iterator[Figure]:
+def _energy(history: History, flown: FlownMotion) -> Iterator[Figure]:
     rows, used = history.rows("sensor/battery"), energy(history)
     if len(rows) < 2:
         return
@@ -133,7 +133,7 @@ def _surfaces(history: History) -> Iterator[Figure]:
     yield Figure("way of aileron, elevator, rudder", f"{way[0]:.1f}, {way[1]:.1f}, {way[2]:.1f} deg/s")
 
 
-def _estimation(estimate: Motion, truth: Motion) -> Iterator[Figure]:
+def _estimation(estimate: FlownMotion, truth: FlownMotion) -> Iterator[Figure]:
     settled = estimate.t >= estimate.t[0] + SETTLED
     if not settled.any():
         return

@@ -34,7 +34,7 @@ def _status(m: VehicleStatus) -> tuple[float, ...]:
 
 
 @dataclass(frozen=True)
-class Stream:
+class RecordedStream:
     """A topic of a vehicle, the numbers kept of each message, and the least time [s] between two of them."""
 
     message: Any
@@ -44,13 +44,13 @@ class Stream:
 
 
 STREAMS = {
-    "truth/state": Stream(NavState, _motion, 13),
-    "nav/state": Stream(NavState, _motion, 13),
-    "state/vehicle": Stream(VehicleStatus, _status, 5, 0.0),
+    "truth/state": RecordedStream(NavState, _motion, 13),
+    "nav/state": RecordedStream(NavState, _motion, 13),
+    "state/vehicle": RecordedStream(VehicleStatus, _status, 5, 0.0),
     # At every command: the way of the surfaces is summed up.
-    "actuator/surfaces": Stream(SurfaceCommand, lambda m: (m.aileron, m.elevator, m.rudder, m.throttle, m.flap), 5, 0.0),
-    "sensor/battery": Stream(Battery, lambda m: (m.voltage, m.current, m.remaining), 3),
-    "mission/progress": Stream(MissionProgress, lambda m: (m.reached, m.laps), 2, 0.0),
+    "actuator/surfaces": RecordedStream(SurfaceCommand, lambda m: (m.aileron, m.elevator, m.rudder, m.throttle, m.flap), 5, 0.0),
+    "sensor/battery": RecordedStream(Battery, lambda m: (m.voltage, m.current, m.remaining), 3),
+    "mission/progress": RecordedStream(MissionProgress, lambda m: (m.reached, m.laps), 2, 0.0),
 }
 
 
@@ -75,7 +75,7 @@ class Series:
 
 
 @dataclass(frozen=True)
-class Motion:
+class FlownMotion:
     """Arrays of one length k, of an estimate or of the truth; world frame ENU, attitude as pilots give it."""
 
     t: Floats  # (k,) s
@@ -87,7 +87,7 @@ class Motion:
     airspeed: Floats  # (k,) m/s
     wind: Floats  # (k, 2) m/s east and north, the way it blows to
 
-    def at(self, t: Floats) -> "Motion":
+    def at(self, t: Floats) -> "FlownMotion":
         """Interpolated; angles along the shorter way."""
 
         def over(values: Floats) -> Floats:
@@ -95,16 +95,16 @@ class Motion:
 
         roll, pitch, heading = (np.interp(t, self.t, np.unwrap(angle)) for angle in (self.roll, self.pitch, self.heading))
         airspeed = np.interp(t, self.t, self.airspeed)
-        return Motion(t, over(self.position), over(self.velocity), roll, pitch, heading, airspeed, over(self.wind))
+        return FlownMotion(t, over(self.position), over(self.velocity), roll, pitch, heading, airspeed, over(self.wind))
 
 
-def motion(rows: Floats) -> Motion:
+def motion(rows: Floats) -> FlownMotion:
     """Of the rows that ``_motion`` makes."""
     w, x, y, z = rows[:, 7:11].T
     roll = np.arctan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y))
     pitch = -np.arcsin(np.clip(2 * (w * y - z * x), -1, 1))
     heading = np.pi / 2 - np.arctan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
-    return Motion(rows[:, 0], rows[:, 1:4], rows[:, 4:7], roll, pitch, heading, rows[:, 11], rows[:, 12:14])
+    return FlownMotion(rows[:, 0], rows[:, 1:4], rows[:, 4:7], roll, pitch, heading, rows[:, 11], rows[:, 12:14])
 
 
 @dataclass
@@ -142,13 +142,13 @@ class History:
         return self.kind == Kind.KIND_FIXED_WING or len(self.rows("actuator/surfaces")) > 0
 
     @property
-    def truth(self) -> Motion | None:
+    def truth(self) -> FlownMotion | None:
         """None in the log of a real flight."""
         rows = self.rows("truth/state")
         return motion(rows) if len(rows) > 1 else None
 
     @property
-    def estimate(self) -> Motion | None:
+    def estimate(self) -> FlownMotion | None:
         rows = self.rows("nav/state")
         return motion(rows) if len(rows) > 1 else None
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from launch.flights.figures import NEAR, WATT_HOUR, deviation, energy, figures
-from launch.flights.history import History, Motion
+from launch.flights.history import FlownMotion, History
 from schemas.messages import Event, MissionItem
 from uvf.runtime.messages.convert import mode_name
 
@@ -62,7 +62,7 @@ def _finish(axes: Any, title: str, columns: int = 3) -> None:
             axes.set_ylim(low, high + 0.2 * (high - low))  # room for the legend
 
 
-def _both(history: History) -> Iterator[tuple[Motion, str, str]]:
+def _both(history: History) -> Iterator[tuple[FlownMotion, str, str]]:
     """Truth below, estimate above."""
     if (truth := history.truth) is not None:
         yield truth, "truth", TRUTH

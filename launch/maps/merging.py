@@ -11,8 +11,8 @@ from launch.slam.results import grid_of
 from uvf.models.world.map_file import GridMap, save_map
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.state.saved_maps import map_path
-from uvf.slam.maps.session import Session
-from uvf.slam.merging.team import Group, Team
+from uvf.slam.maps.session import MappingSession
+from uvf.slam.merging.team import MapGroup, Team
 
 SUFFIX = ".npz"
 COLOURS = matplotlib.colormaps["tab10"].colors  # type: ignore[attr-defined]
@@ -28,7 +28,7 @@ def merge_files(names: list[str], out: str, resolution: float) -> tuple[list[str
         raise BadInput(f"session {twice}: given twice")
     team = Team()
     for name, path in zip(names, paths, strict=True):
-        team.follow(name, Session.load(path))
+        team.follow(name, MappingSession.load(path))
     team.finish()
     group = max(team.groups, key=lambda group: len(group.names))
     lines = [_line(team, group, name) for name in names]
@@ -42,7 +42,7 @@ def _session_path(name: str) -> Path:
     return path if path == Path(name) else path.with_suffix(SUFFIX)
 
 
-def _line(team: Team, group: Group, name: str) -> str:
+def _line(team: Team, group: MapGroup, name: str) -> str:
     own = team.group_of(name)
     if len(own.names) == 1:
         return f"{name}: fits nowhere"
@@ -56,7 +56,7 @@ def _line(team: Team, group: Group, name: str) -> str:
     return f"{name}: {where}; {closures} closures, {group.quality:.0%} of what was seen twice is the same"
 
 
-def _write(team: Team, group: Group, out: str, resolution: float) -> str:
+def _write(team: Team, group: MapGroup, out: str, resolution: float) -> str:
     """Map, session and picture. Raises BadInput."""
     session = team.session_of(group)
     path = map_path(out)
@@ -68,7 +68,7 @@ def _write(team: Team, group: Group, out: str, resolution: float) -> str:
     return ", ".join(str(yaml.with_suffix(suffix)) for suffix in (".yaml", SUFFIX, ".png"))
 
 
-def draw_team(group: Group, grid: GridMap, target: Path) -> None:
+def draw_team(group: MapGroup, grid: GridMap, target: Path) -> None:
     """The map with the way of each session in its colour. Writes a PNG."""
 
     def ways(axes: Any) -> None:

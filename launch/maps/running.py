@@ -11,7 +11,7 @@ from uvf.models.yaml_data import BadInput, nearest
 from uvf.runtime.bus.address import router_from
 from uvf.runtime.bus.zenoh_bus import ZenohBus
 from uvf.runtime.messages.grids import as_map, as_message
-from uvf.slam.maps.session import Session
+from uvf.slam.maps.session import MappingSession
 
 PATIENCE = 5.0  # s
 
@@ -27,12 +27,12 @@ def drawn_map(vehicle: str | None, own_frame: bool) -> tuple[str, GridMap]:
             raise BadInput(f"{error}: {owner} has not drawn a map yet") from error
 
 
-def running_session(vehicle: str | None) -> Session:
+def running_session(vehicle: str | None) -> MappingSession:
     """Of the vehicle's mapping, as it was published last. Raises BadInput."""
     owner = _chosen(vehicle, _writers())
     with uvf.client.connect() as run:
         try:
-            return Session.decoded(run.read(owner, topics.MAP_SESSION, PATIENCE).data, f"of {owner}")
+            return MappingSession.decoded(run.read(owner, topics.MAP_SESSION, PATIENCE).data, f"of {owner}")
         except TimeoutError as error:
             raise BadInput(f"{error}: {owner} has no session yet, or maps by a method that has none") from error
 

@@ -15,7 +15,7 @@ from schemas import topics
 from schemas.messages import Contact, Grid, Mission, MissionItem, MissionProgress, NavState, PoseInFrame
 from uvf.maths.rotations import wrap
 from uvf.models.mission.file import Criterion
-from uvf.models.scenario import Site
+from uvf.models.scenario import Scenario
 from uvf.models.yaml_data import BadInput, nearest
 from uvf.runtime.bus.interface import Bus, Sample
 from uvf.runtime.messages.convert import array
@@ -27,11 +27,11 @@ PASSED = 3.0  # s, within which of being told so a waypoint is passed
 
 
 @dataclass
-class Track:
+class RecordedTrack:
     """What was heard of one vehicle."""
 
     name: str
-    site: Site
+    site: Scenario
     truth: list[tuple[float, float, float, float, float]] = field(default_factory=list)  # t, x, y, z, airspeed
     pose: list[tuple[float, float, float]] = field(default_factory=list)  # t, x, y
     progress: list[tuple[float, int, int]] = field(default_factory=list)  # t, reached, laps
@@ -40,7 +40,7 @@ class Track:
     felt: bool = False
     grid: Grid | None = None
     mission: Mission | None = None
-    team: "dict[str, Track]" = field(default_factory=dict)  # all of the run, this one included
+    team: "dict[str, RecordedTrack]" = field(default_factory=dict)  # all of the run, this one included
 
     def heard(self, sample: Sample) -> None:
         t = sample.stamp_ns / 1e9
@@ -77,7 +77,7 @@ class Track:
         return np.array(self.truth).reshape(-1, 5)
 
 
-def check_criteria(site: Site) -> None:
+def check_criteria(site: Scenario) -> None:
     """Raises BadInput for a measure that there is not."""
     for criterion in site.mission.criteria:
         if criterion.measure not in MEASURES:
@@ -87,11 +87,11 @@ def check_criteria(site: Site) -> None:
 class Scorer:
     """Listens to a run on any bus (or is fed from a log) and judges it at the end."""
 
-    def __init__(self, site: Site) -> None:
+    def __init__(self, site: Scenario) -> None:
         self._site = site
         check_criteria(site)
-        self._tracks: dict[str, Track] = {}
-        self._tracks.update({name: Track(name, site, team=self._tracks) for name in site.members})
+        self._tracks: dict[str, RecordedTrack] = {}
+        self._tracks.update({name: RecordedTrack(name, site, team=self._tracks) for name in site.members})
 
     def follow(self, bus: Bus) -> None:
         """Subscribes to what the measures need."""
@@ -129,18 +129,18 @@ class Verdict:
         return " and ".join(text for text in (f">= {low:g}" if low is not None else "", f"<= {high:g}" if high is not None else "") if text)
 
 
-def distance_driven(track: Track) -> float:
+def distance_driven(track: RecordedTrack) -> float:
     """True way over the ground [m]."""
     p = track.positions()
     return float(np.linalg.norm(np.diff(p[:, 1:3], axis=0), axis=1).sum()) if len(p) > 1 else 0.0
 
 
-def contacts(track: Track) -> float:
+def contacts(track: RecordedTrack) -> float:
     """How often it began to touch something; infinite when the bumper was never heard."""
     return float(track.contacts) if track.felt else float("inf")
 
 
-def pose_error(track: Track) -> float:
+def pose_error(track: RecordedTrack) -> float:
     """Distance [m] between the last estimated pose and the truth at that time; infinite without a pose."""
     p = track.positions()
     if not track.pose or not len(p):
@@ -149,25 +149,25 @@ def pose_error(track: Track) -> float:
     return float(np.hypot(np.interp(t, p[:, 0], p[:, 1]) - x, np.interp(t, p[:, 0], p[:, 2]) - y))
 
 
-def mapped_floor(track: Track) -> float:
+def mapped_floor(track: RecordedTrack) -> float:
     """Share of the floor reachable from the start that the vehicle's own map knows as free."""
     if track.grid is None:
         return 0.0
     return MappedFloor(track.site.world, track.site.members[track.name]).share(track.grid)
 
 
-def circuits(track: Track) -> float:
+def circuits(track: RecordedTrack) -> float:
     """Rounds of the mission completed."""
     return float(max((laps for _, _, laps in track.progress), default=0))
 
 
-def legs(track: Track) -> float:
+def legs(track: RecordedTrack) -> float:
     """Mission items reached, counted in every round."""
     reached = [r for _, r, _ in track.progress]
     return float(sum(1 for a, b in pairwise(reached) if b != a and b >= 0))
 
 
-def path_error(track: Track) -> float:
+def path_error(track: RecordedTrack) -> float:
     """Largest horizontal distance [m] from the nearest leg, from the first item reached on; infinite without one."""
     p, corners = _scored(track), _corners(track)
     if not len(p) or len(corners) < 2:
@@ -176,7 +176,7 @@ def path_error(track: Track) -> float:
     return float(np.min([_distance(p[:, 1:3], a[:2], b[:2]) for a, b in pairwise(closed)], axis=0).max())
 
 
-def altitude_error(track: Track) -> float:
+def altitude_error(track: RecordedTrack) -> float:
     """Largest deviation [m] from the altitude of the nearest leg, from the first item reached on."""
     p, corners = _scored(track), _corners(track)
     if not len(p) or len(corners) < 2:
@@ -188,19 +188,19 @@ def altitude_error(track: Track) -> float:
     return float(np.abs(p[:, 3] - altitudes[nearest_leg, np.arange(len(p))]).max())
 
 
-def waypoint_error(track: Track) -> float:
+def waypoint_error(track: RecordedTrack) -> float:
     """Largest distance [m] in space by which a waypoint was missed; infinite when one was not reached, or there is none."""
     return max((float(np.linalg.norm(p[0, 1:4] - array(item.position))) for item, p in _passes(track)), default=float("inf"))
 
 
-def course_error(track: Track) -> float:
+def course_error(track: RecordedTrack) -> float:
     """Largest deviation [rad] over ground from the course that a waypoint asks for; infinite as ``waypoint_error``."""
     asked = [(item, p) for item, p in _passes(track) if item.HasField("course")]
     flown = [np.arctan2(*(p[1] - p[0])[[2, 1]]) if len(p) > 1 else np.inf for _, p in asked]
     return max((abs(float(wrap(c - item.course))) for (item, _), c in zip(asked, flown, strict=True)), default=float("inf"))
 
 
-def _passes(track: Track) -> list[tuple[MissionItem, Floats]]:
+def _passes(track: RecordedTrack) -> list[tuple[MissionItem, Floats]]:
     """Each waypoint with the samples (t, x, y, z) from where it was passed nearest, in the order of the mission."""
     p, found = track.positions(), []
     reached = {r: t for t, r, _ in reversed(track.progress)}
@@ -213,37 +213,37 @@ def _passes(track: Track) -> list[tuple[MissionItem, Floats]]:
     return found
 
 
-def separation(track: Track) -> float:
+def separation(track: RecordedTrack) -> float:
     """Least distance [m] from the other aircraft; 0 when nothing was heard of it."""
     others = [other.motion() for name, other in track.team.items() if name != track.name and other.flies and other.truth]
     return formation_scores.separation(track.motion(), others) if track.truth else 0.0
 
 
-def spacing_error(track: Track) -> float:
+def spacing_error(track: RecordedTrack) -> float:
     """RMS [m] along the leader's track, of a follower from its station; infinite for one that follows nobody."""
     errors = _station_errors(track)
     return float(np.sqrt(np.mean(errors[:, 1] ** 2))) if len(errors) else float("inf")
 
 
-def station_error(track: Track) -> float:
+def station_error(track: RecordedTrack) -> float:
     """RMS [m] of the distance of a follower from its station; infinite for one that follows nobody."""
     errors = _station_errors(track)
     return float(np.sqrt(np.mean((errors[:, 1:] ** 2).sum(axis=1)))) if len(errors) else float("inf")
 
 
-def _station_errors(track: Track) -> Floats:
+def _station_errors(track: RecordedTrack) -> Floats:
     follow = track.site.members[track.name].entry.job.follow
     if follow is None or not track.truth or not track.team[follow.leader].truth:
         return np.zeros((0, 4))
     return formation_scores.station_errors(track.motion(), track.team[follow.leader].motion(), follow)
 
 
-def _corners(track: Track) -> Floats:
+def _corners(track: RecordedTrack) -> Floats:
     items = track.mission.items if track.mission else ()
     return np.array([array(i.position) for i in items if i.kind == MissionItem.WAYPOINT]).reshape(-1, 3)
 
 
-def _scored(track: Track) -> Floats:
+def _scored(track: RecordedTrack) -> Floats:
     begun = next((t for t, reached, _ in track.progress if reached >= 0), np.inf)
     p = track.positions()
     return p[p[:, 0] >= begun]
@@ -266,17 +266,17 @@ def _altitude(p: Floats, a: Floats, b: Floats) -> Floats:
     return altitude
 
 
-def touchdown_sink(track: Track) -> float:
+def touchdown_sink(track: RecordedTrack) -> float:
     """Sink [m/s] with which the aircraft has touched the ground for good; infinite unless it stands at the end."""
     return touchdown.sink(track.positions())
 
 
-def touchdown_error(track: Track) -> float:
+def touchdown_error(track: RecordedTrack) -> float:
     """Distance [m] along the strip from where its wheels were to touch; infinite without a landing on a strip."""
     return touchdown.error(track.positions(), track.site.world.strips)
 
 
-def speed_at_end(track: Track) -> float:
+def speed_at_end(track: RecordedTrack) -> float:
     """True speed [m/s] over the last second."""
     return touchdown.speed_at_end(track.positions())
 
@@ -284,4 +284,4 @@ def speed_at_end(track: Track) -> float:
 _MEASURES = (distance_driven, contacts, pose_error, mapped_floor, circuits, legs, path_error, altitude_error, waypoint_error, course_error)
 _OF_LANDINGS = (touchdown_sink, touchdown_error, speed_at_end)
 _OF_FORMATIONS = (separation, spacing_error, station_error)
-MEASURES: dict[str, Callable[[Track], float]] = {f.__name__: f for f in (*_MEASURES, *_OF_FORMATIONS, *_OF_LANDINGS)}
+MEASURES: dict[str, Callable[[RecordedTrack], float]] = {f.__name__: f for f in (*_MEASURES, *_OF_FORMATIONS, *_OF_LANDINGS)}

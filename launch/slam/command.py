@@ -19,7 +19,7 @@ from launch.slam.scoring import figures
 from launch.slam.tables import Rows, all_tables
 from uvf.models.params import Params
 from uvf.models.yaml_data import BadInput
-from uvf.slam.evaluation.run import Run, run_over
+from uvf.slam.evaluation.run import LogRun, run_over
 from uvf.slam.logs.laser_log import LaserLog
 from uvf.slam.methods import make_method, method_params
 from uvf.slam.resumable import Noting
@@ -82,7 +82,7 @@ def _values(words: tuple[str, ...]) -> dict[str, Any]:
     return values
 
 
-def _watched(log: LaserLog, name: str, params: Params) -> Run:
+def _watched(log: LaserLog, name: str, params: Params) -> LogRun:
     columns = (
         TextColumn("{task.description}"),
         BarColumn(),

@@ -15,7 +15,7 @@ from uvf.maths.se2_arrays import composed
 from uvf.models.world.map_file import GridMap
 from uvf.slam.evaluation.reference import Trajectory, deviations, paired
 from uvf.slam.evaluation.relations import GROSS, relation_errors
-from uvf.slam.evaluation.run import Run
+from uvf.slam.evaluation.run import LogRun
 
 Floats = NDArray[np.float64]
 
@@ -29,7 +29,7 @@ FRINGE, MARGIN = 0.002, 2.0
 """Share of the known cells at each side that may lie outside of the picture (single far beams), and m about the rest."""
 
 
-def draw_map(grid: GridMap, run: Run, title: str, target: Path) -> None:
+def draw_map(grid: GridMap, run: LogRun, title: str, target: Path) -> None:
     """The map as large as it may be, with the final trajectory coloured by time. Writes a PNG."""
     draw_on_map(grid, lambda axes: _show_way(axes, run), title, target)
 
@@ -47,7 +47,7 @@ def draw_on_map(grid: GridMap, draw: Callable[[Any], None], title: str, target: 
     sheet.savefig(target, dpi=INK)
 
 
-def draw_page(grid: GridMap, run: Run, known: Known, title: str, target: Path) -> None:
+def draw_page(grid: GridMap, run: LogRun, known: Known, title: str, target: Path) -> None:
     """Map, trajectory against odometry and references, errors of the relations, quality over time. Writes a PNG."""
     sheet = matplotlib.figure.Figure(figsize=(15.0, 15.0), layout="constrained")
     sheet.suptitle(title, fontsize=14, fontweight="bold")
@@ -81,14 +81,14 @@ def _show_map(axes: Any, grid: GridMap) -> None:
             limit(corner + low * grid.resolution - MARGIN, corner + high * grid.resolution + MARGIN)
 
 
-def _show_way(axes: Any, run: Run) -> None:
+def _show_way(axes: Any, run: LogRun) -> None:
     xy = run.final[:, :2]
     lines = LineCollection(list(np.stack((xy[:-1], xy[1:]), axis=1)), cmap="plasma", array=np.arange(len(xy) - 1), linewidths=0.7)
     axes.add_collection(lines)
     axes.plot(*xy[0], "o", color=TRAJECTORY, ms=5)
 
 
-def _trajectories(axes: Any, run: Run, known: Known) -> None:
+def _trajectories(axes: Any, run: LogRun, known: Known) -> None:
     axes.plot(*run.log.odom_from_base[:, :2].T, color=ODOMETRY, lw=0.8, label="odometry")
     axes.plot(*run.final[:, :2].T, color=TRAJECTORY, lw=1.0, label="final")
     for name, reference in known.references.items():
@@ -100,7 +100,7 @@ def _trajectories(axes: Any, run: Run, known: Known) -> None:
     _titled(axes, "trajectory", "x [m]", "y [m]")
 
 
-def _histogram(axes: Any, run: Run, known: Known, turning: bool) -> None:
+def _histogram(axes: Any, run: LogRun, known: Known, turning: bool) -> None:
     """Of the final poses' errors, near and far relations apart, on a logarithmic scale."""
     what, unit = ("rotation", "deg") if turning else ("translation, Freiburg formula", "m")
     _titled(axes, f"errors of the relations: {what}", unit, "relations")
@@ -122,7 +122,7 @@ def _histogram(axes: Any, run: Run, known: Known, turning: bool) -> None:
     axes.legend(fontsize=8)
 
 
-def _distances(axes: Any, run: Run, known: Known, turning: bool) -> None:
+def _distances(axes: Any, run: LogRun, known: Known, turning: bool) -> None:
     """Of the final poses from the references, by the number of the pose."""
     _titled(axes, f"distance to the reference: {'rotation' if turning else 'translation'}", "pose", "deg" if turning else "m")
     for name, reference in known.references.items():
@@ -132,7 +132,7 @@ def _distances(axes: Any, run: Run, known: Known, turning: bool) -> None:
     axes.legend(fontsize=8)
 
 
-def _quality(axes: Any, run: Run) -> None:
+def _quality(axes: Any, run: LogRun) -> None:
     t = np.array([r.t for r in run.log]) - run.log.readings[0].t
     axes.plot(t, run.quality, color=TRAJECTORY, lw=0.5)
     axes.set_ylim(-0.02, 1.02)

@@ -19,7 +19,7 @@ from uvf.maths.se2 import Pose2
 from uvf.models.params import Params
 from uvf.models.whole_file import write_whole
 from uvf.models.world.map_file import GridMap, save_map
-from uvf.slam.evaluation.run import Run
+from uvf.slam.evaluation.run import LogRun
 from uvf.slam.maps.tiles import TileMap
 from uvf.slam.method import Keyframe
 
@@ -43,7 +43,7 @@ class Made:
     resolution: float
 
 
-def write_results(run: Run, known: Known, made: Made, figures: Figures, folder: Path) -> None:
+def write_results(run: LogRun, known: Known, made: Made, figures: Figures, folder: Path) -> None:
     """Raises BadInput."""
     grid = grid_of(run.keyframes, made.resolution)
     write_whole(folder / "trajectory.txt", _trajectory(run, run.final))
@@ -60,12 +60,12 @@ def write_results(run: Run, known: Known, made: Made, figures: Figures, folder: 
     write_whole(folder / "report.md", _report(run, title, figures, effective).encode())
 
 
-def _trajectory(run: Run, poses: Floats) -> bytes:
+def _trajectory(run: LogRun, poses: Floats) -> bytes:
     lines = [f"{stamp:.6f} {x:.6f} {y:.6f} {yaw:.7f}" for stamp, (x, y, yaw) in zip(run.log.stamps.tolist(), poses.tolist(), strict=True)]
     return "\n".join(("# stamp x y yaw: map_from_base, s, m, rad", *lines, "")).encode()
 
 
-def _report(run: Run, title: str, figures: Figures, effective: dict[str, Any]) -> str:
+def _report(run: LogRun, title: str, figures: Figures, effective: dict[str, Any]) -> str:
     parts = [f"# {title}", *(f"- {note}" for note in run.log.notes)]
     for heading, rows in all_tables(figures).items():
         parts += [f"## {heading.capitalize()}", _markdown(rows)]

@@ -5,9 +5,9 @@ from typing import Any
 import numpy as np
 
 from launch.slam.known import Known
-from uvf.slam.evaluation.reference import Deviation, Trajectory, absolute_error, relative_error
+from uvf.slam.evaluation.reference import Trajectory, TrajectoryError, absolute_error, relative_error
 from uvf.slam.evaluation.relations import RelationScore, Statistics, relation_errors, relation_scores
-from uvf.slam.evaluation.run import Run
+from uvf.slam.evaluation.run import LogRun
 
 SHORT, LONG = 1.0, 10.0
 """m of way over which relative errors are told."""
@@ -15,7 +15,7 @@ POSES = ("online", "final")
 Figures = dict[str, Any]
 
 
-def figures(run: Run, known: Known) -> Figures:
+def figures(run: LogRun, known: Known) -> Figures:
     """``run``: size and times; ``relations`` and ``references``: by file, for online and final poses."""
     poses = {"online": run.online, "final": run.final}
     return {
@@ -31,7 +31,7 @@ def figures(run: Run, known: Known) -> Figures:
     }
 
 
-def _of_run(run: Run) -> dict[str, float]:
+def _of_run(run: LogRun) -> dict[str, float]:
     final = run.final
     return {
         "readings": len(run.log),
@@ -73,5 +73,5 @@ def _against(estimate: Trajectory, reference: Trajectory) -> Figures:
     return {name: _deviation(d) for name, d in found.items() if d.number}
 
 
-def _deviation(d: Deviation) -> dict[str, float]:
+def _deviation(d: TrajectoryError) -> dict[str, float]:
     return {"number": d.number, "rmse_m": d.rmse, "mean_m": d.mean, "max_m": d.max, "rotation_rmse_deg": d.rotation_rmse}

@@ -3,12 +3,12 @@
 from math import degrees
 from typing import NamedTuple, Protocol
 
-from launch.teleop.link import SOURCE, Link
+from launch.teleop.link import SOURCE, TeleopLink
 from schemas import topics
 from schemas.messages import Mode, SurfaceCommand
 from uvf.client import Client
-from uvf.control.teleop_drive import Pad
-from uvf.control.teleop_flight import PARKED, Limits, Setting, Stick
+from uvf.control.teleop_drive import GamepadState
+from uvf.control.teleop_flight import PARKED, FlightTeleop, SurfaceLimits, SurfaceSetting
 from uvf.maths.rotations import enu_flu_from_ned_frd, to_euler
 from uvf.models.vehicle.air import AirBody
 from uvf.runtime.messages.convert import wxyz
@@ -23,28 +23,28 @@ TURNING = "taken over in a turn: n trims the elevator once it flies level"
 TOLD = (topics.STATUS, topics.NAV_STATE, topics.SURFACE_COMMAND)
 
 
-class Flight(NamedTuple):
+class FlownState(NamedTuple):
     """What is known of the aircraft."""
 
     by_hand: bool
     """It is in mode Manual."""
     landed: bool
-    surfaces: Setting
+    surfaces: SurfaceSetting
     airspeed: float = 0.0  # m/s
     height: float = 0.0  # m above the world's origin
     attitude: tuple[float, float, float] = (0.0, 0.0, 0.0)  # rad: roll right, pitch up, heading from north
 
 
-class Aircraft(Protocol):
+class AircraftPost(Protocol):
     """The way to one aircraft."""
 
-    def send(self, setting: Setting) -> None: ...
+    def send(self, setting: SurfaceSetting) -> None: ...
 
     def take_over(self) -> str: ...
 
     def state(self) -> str: ...
 
-    def flight(self, patience: float = 0.0) -> Flight | None:
+    def flight(self, patience: float = 0.0) -> FlownState | None:
         """None when not all of it has been heard within ``patience`` [s]."""
 
 
@@ -53,9 +53,9 @@ class AirLink:
 
     def __init__(self, client: Client, name: str) -> None:
         self._client, self._name = client, name
-        self._link = Link(client)
+        self._link = TeleopLink(client)
 
-    def send(self, setting: Setting) -> None:
+    def send(self, setting: SurfaceSetting) -> None:
         self._client.send(self._name, topics.SURFACES.by(SOURCE), SurfaceCommand(**setting._asdict()))
 
     def take_over(self) -> str:
@@ -64,7 +64,7 @@ class AirLink:
     def state(self) -> str:
         return self._link.state(self._name)
 
-    def flight(self, patience: float = 0.0) -> Flight | None:
+    def flight(self, patience: float = 0.0) -> FlownState | None:
         client, name = self._client, self._name
         try:
             client.wait(lambda: min(client.heard(name, topic) for topic in TOLD) > 0, patience)
@@ -72,10 +72,10 @@ class AirLink:
             return None
         status, nav = client.read(name, topics.STATUS), client.read(name, topics.NAV_STATE)
         told = client.read(name, topics.SURFACE_COMMAND)
-        return Flight(
+        return FlownState(
             by_hand=status.mode == Mode.MODE_MANUAL,
             landed=status.landed,
-            surfaces=Setting(*(getattr(told, field) for field in Setting._fields)),
+            surfaces=SurfaceSetting(*(getattr(told, field) for field in SurfaceSetting._fields)),
             airspeed=nav.airspeed,
             height=nav.position.z,
             attitude=to_euler(enu_flu_from_ned_frd(wxyz(nav.orientation))),
@@ -85,7 +85,7 @@ class AirLink:
 class Cockpit:
     """The post of one aircraft's pilot. Its commands go out all the time, so that a pilot who falls silent is noticed."""
 
-    def __init__(self, stick: Stick, aircraft: Aircraft) -> None:
+    def __init__(self, stick: FlightTeleop, aircraft: AircraftPost) -> None:
         self._stick, self._aircraft = stick, aircraft
         self._ours = False
         """The stick is where the surfaces are."""
@@ -102,7 +102,7 @@ class Cockpit:
     def key(self, t: float, name: str) -> None:
         self._stick.key(name)
 
-    def turn(self, t: float, pad: Pad) -> None:
+    def turn(self, t: float, pad: GamepadState) -> None:
         self._stick.pad(t, pad)
         flight = self._aircraft.flight()
         if flight is not None and self._ours:
@@ -119,7 +119,7 @@ class Cockpit:
     def leave(self) -> None:
         """Silence: in the air the autopilot holds, on the ground the motor stops and the brakes are on."""
 
-    def _follow(self, flight: Flight) -> None:
+    def _follow(self, flight: FlownState) -> None:
         """While somebody else flies, the stick goes along; an aircraft on the ground is taken over from the autopilot parked."""
         if not flight.by_hand:
             self._stick.follow(PARKED if flight.landed else flight.surfaces, _straight(flight))
@@ -130,15 +130,15 @@ class Cockpit:
 
 def cockpit(client: Client, name: str, body: AirBody) -> Cockpit:
     controls = body.controls
-    limits = Limits(controls.aileron.limit, controls.elevator.limit, controls.rudder.limit, controls.flap.limit)
-    return Cockpit(Stick(limits), AirLink(client, name))
+    limits = SurfaceLimits(controls.aileron.limit, controls.elevator.limit, controls.rudder.limit, controls.flap.limit)
+    return Cockpit(FlightTeleop(limits), AirLink(client, name))
 
 
-def _straight(flight: Flight) -> bool:
+def _straight(flight: FlownState) -> bool:
     return abs(flight.attitude[0]) < BANKED
 
 
-def _instruments(flight: Flight) -> str:
+def _instruments(flight: FlownState) -> str:
     roll, pitch, heading = (degrees(angle) for angle in flight.attitude)
     return f"{flight.airspeed:.1f} m/s {flight.height:.0f} m roll {roll:+.0f} pitch {pitch:+.0f} hdg {heading % 360:03.0f}"
 

@@ -11,12 +11,12 @@ import uvf
 from launch import settings
 from launch.teleop import aircraft
 from launch.teleop.gamepad import Gamepad
-from launch.teleop.link import Link
+from launch.teleop.link import TeleopLink
 from launch.teleop.loop import END, Console, Padlike, Post, operate
 from launch.teleop.terminal import Terminal, TerminalClosed, key_by_key
 from uvf.client import Client
-from uvf.control.teleop_drive import STILL, Command, Hand, Pad
-from uvf.models.scenario import Site, load_site
+from uvf.control.teleop_drive import STILL, DriveTeleop, GamepadState, TeleopCommand
+from uvf.models.scenario import Scenario, load_scenario
 from uvf.models.yaml_data import BadInput, nearest
 
 GREETING = """w a s d or arrows: drive    q e z c: curves    space: stop    x or Ctrl-C: end
@@ -27,7 +27,7 @@ gamepad: hold the left shoulder button and use the left stick; d-pad: speeds; B:
 class Vehicles(Protocol):
     """The way to the vehicles."""
 
-    def send(self, vehicle: str, command: Command) -> None: ...
+    def send(self, vehicle: str, command: TeleopCommand) -> None: ...
 
     def take_over(self, vehicle: str) -> str:
         """Asks for mode MANUAL and arms; what was refused and why, "" if nothing."""
@@ -35,10 +35,10 @@ class Vehicles(Protocol):
     def state(self, vehicle: str) -> str: ...
 
 
-class Wheel:
+class WheelPost:
     """The post of whoever drives ground vehicles; left, all of them are told to stand."""
 
-    def __init__(self, hand: Hand, vehicles: Vehicles) -> None:
+    def __init__(self, hand: DriveTeleop, vehicles: Vehicles) -> None:
         self._hand, self._vehicles = hand, vehicles
 
     def take_over(self) -> str:
@@ -47,7 +47,7 @@ class Wheel:
     def key(self, t: float, name: str) -> None:
         self._hand.key(t, name)
 
-    def turn(self, t: float, pad: Pad) -> None:
+    def turn(self, t: float, pad: GamepadState) -> None:
         self._hand.pad(t, pad)
         for name, command in self._hand.commands(t).items():
             self._vehicles.send(name, command)
@@ -60,12 +60,12 @@ class Wheel:
             self._vehicles.send(name, STILL)
 
 
-def drive(hand: Hand, vehicles: Vehicles, console: Console, pad: Padlike, clock: Callable[[], float]) -> None:
+def drive(hand: DriveTeleop, vehicles: Vehicles, console: Console, pad: Padlike, clock: Callable[[], float]) -> None:
     """Until the key x, or an exception; in every case all vehicles are told to stand."""
-    operate(Wheel(hand, vehicles), console, pad, clock)
+    operate(WheelPost(hand, vehicles), console, pad, clock)
 
 
-def status_line(hand: Hand, vehicles: Vehicles, pad: str, t: float) -> str:
+def status_line(hand: DriveTeleop, vehicles: Vehicles, pad: str, t: float) -> str:
     """Vehicles with their links (those switched off in brackets), the scales, the velocity now, the gamepad."""
     names = [f"{i} {name}" if name in hand.active else f"({i} {name})" for i, name in enumerate(hand.vehicles, 1)]
     links = ", ".join(f"{shown} {vehicles.state(name)}" for shown, name in zip(names, hand.vehicles, strict=True))
@@ -74,7 +74,7 @@ def status_line(hand: Hand, vehicles: Vehicles, pad: str, t: float) -> str:
     return f"{links} | {speeds}" + (f" | {pad}" if pad else "")
 
 
-def wanted_vehicles(site: Site, names: Sequence[str]) -> tuple[list[str], Command]:
+def wanted_vehicles(site: Scenario, names: Sequence[str]) -> tuple[list[str], TeleopCommand]:
     """The vehicles meant, and what the slowest of them can do. Raises BadInput."""
     bodies = {m.name: m.file.ground for m in site.of_kind("ground") if m.file.ground is not None}
     chosen = list(dict.fromkeys(names)) or list(bodies)
@@ -84,7 +84,7 @@ def wanted_vehicles(site: Site, names: Sequence[str]) -> tuple[list[str], Comman
     if not names and len(chosen) != 1:
         raise BadInput(f"{site.mission_path}: say which vehicle; {nearest('', bodies)}")
     linear, angular = ([getattr(bodies[name], limit) for name in chosen] for limit in ("max_linear", "max_angular"))
-    return chosen, Command(min(linear), min(angular))
+    return chosen, TeleopCommand(min(linear), min(angular))
 
 
 @contextmanager
@@ -106,7 +106,7 @@ def _signals_are_the_key(end: str, terminal: Terminal) -> Iterator[None]:
             signal.signal(number, handler)
 
 
-def wanted_aircraft(site: Site, names: Sequence[str]) -> str:
+def wanted_aircraft(site: Scenario, names: Sequence[str]) -> str:
     """The aircraft meant, "" when it is not one. Raises BadInput for several of them."""
     flying = [name for name in dict.fromkeys(names) if name in site.members and site.members[name].file.air is not None]
     if flying and len(set(names)) > 1:
@@ -114,19 +114,19 @@ def wanted_aircraft(site: Site, names: Sequence[str]) -> str:
     return flying[0] if flying else ""
 
 
-def post_for(site: Site, names: Sequence[str]) -> tuple[str, Callable[[Client], Post]]:
+def post_for(site: Scenario, names: Sequence[str]) -> tuple[str, Callable[[Client], Post]]:
     """(words for the operator, what makes the post on a connection). Raises BadInput."""
     name = wanted_aircraft(site, names)
     body = site.members[name].file.air if name else None
     if body is not None:
         return aircraft.GREETING, lambda client: aircraft.cockpit(client, name, body)
     chosen, most = wanted_vehicles(site, names)
-    return GREETING, lambda client: Wheel(Hand(chosen, most), Link(client))
+    return GREETING, lambda client: WheelPost(DriveTeleop(chosen, most), TeleopLink(client))
 
 
 def teleop(names: Sequence[str], mission: str, say: Callable[[str], None]) -> None:
     """Drives or flies until the operator ends it. Raises BadInput."""
-    greeting, post = post_for(load_site(settings.mission_path(mission)), names)
+    greeting, post = post_for(load_scenario(settings.mission_path(mission)), names)
     with (
         uvf.connect() as client,
         key_by_key() as terminal,

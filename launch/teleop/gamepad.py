@@ -6,7 +6,7 @@ Its table of gamepads gives the same names to the sticks and buttons of all of t
 import os
 from typing import Any
 
-from uvf.control.teleop_drive import Pad
+from uvf.control.teleop_drive import GamepadState
 
 STICK_FULL = 32767.0
 
@@ -29,7 +29,7 @@ class Gamepad:
         """As its maker calls it; "" while there is none."""
         return self._sdl.SDL_GameControllerName(self._pad).decode("utf-8", "replace") if self._pad else ""
 
-    def read(self) -> Pad:
+    def read(self) -> GamepadState:
         """Its state now; all zero, the dead-man not held, while there is none."""
         sdl = self._sdl
         sdl.SDL_GameControllerUpdate()
@@ -39,8 +39,8 @@ class Gamepad:
         if not self._pad:
             self._pad = self._first()
         if not self._pad:
-            return Pad()
-        return Pad(
+            return GamepadState()
+        return GamepadState(
             forward=-self._axis(sdl.SDL_CONTROLLER_AXIS_LEFTY),
             left=-self._axis(sdl.SDL_CONTROLLER_AXIS_LEFTX),
             dead_man=self._pressed(sdl.SDL_CONTROLLER_BUTTON_LEFTSHOULDER),

@@ -5,7 +5,7 @@ import time
 from schemas import topics
 from schemas.messages import ArmRequest, DriveCommand, Mode, ModeRequest
 from uvf.client import Client
-from uvf.control.teleop_drive import Command
+from uvf.control.teleop_drive import TeleopCommand
 from uvf.runtime.state.stop_all import told
 
 SOURCE = "teleop"
@@ -13,7 +13,7 @@ LOST_AFTER = 1.5  # s without a status
 ANSWER_WITHIN = 1.0  # s
 
 
-class Link:
+class TeleopLink:
     """Vehicles over the bus."""
 
     def __init__(self, client: Client) -> None:
@@ -21,7 +21,7 @@ class Link:
         self._count: dict[str, int] = {}
         self._heard_at: dict[str, float] = {}
 
-    def send(self, vehicle: str, command: Command) -> None:
+    def send(self, vehicle: str, command: TeleopCommand) -> None:
         self._client.send(vehicle, topics.DRIVE.by(SOURCE), DriveCommand(linear=command.linear, angular=command.angular))
 
     def take_over(self, vehicle: str) -> str:

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from typing import Protocol
 
 from schemas import topics
-from uvf.control.teleop_drive import Pad
+from uvf.control.teleop_drive import GamepadState
 
 PERIOD = 1 / topics.DRIVE.hz  # s between commands
 END = "x"  # the key
@@ -21,7 +21,7 @@ class Padlike(Protocol):
     @property
     def name(self) -> str: ...
 
-    def read(self) -> Pad: ...
+    def read(self) -> GamepadState: ...
 
 
 class Post(Protocol):
@@ -32,7 +32,7 @@ class Post(Protocol):
 
     def key(self, t: float, name: str) -> None: ...
 
-    def turn(self, t: float, pad: Pad) -> None:
+    def turn(self, t: float, pad: GamepadState) -> None:
         """Takes the gamepad as it is now, and sends the commands that are due."""
 
     def line(self, t: float, pad: str) -> str:

@@ -8,13 +8,13 @@ import msgspec
 import numpy as np
 
 from services.sim_air.engine.airframe import Airframe
-from services.sim_air.engine.states import Runaway, Start
+from services.sim_air.engine.states import InitialState, Runaway
 from services.sim_air.engine.trim import Trim
 from uvf.maths.geodesy import LocalTangent
 from uvf.models.jsbsim.model_file import model_faults
 from uvf.models.vehicle.air import AirBody, Surface
 from uvf.models.vehicle.layers import folders_of, holding
-from uvf.models.yaml_data import BadInput, Place
+from uvf.models.yaml_data import BadInput, FileLocation
 from uvf.runtime.process.subprocess_jobs import Died, run_in_subprocess
 
 SEA_LEVEL = LocalTangent.from_degrees(0.0, 0.0, 0.0)
@@ -41,7 +41,7 @@ def aircraft_faults(folder: Path, air: AirBody) -> tuple[list[str], list[str]]:
 def _aircraft_faults(vehicle: str, air: AirBody) -> tuple[list[str], list[str]]:
     """vehicle: path of its folder."""
     folder = Path(vehicle)
-    models, place = holding(folders_of(folder), air.model), Place(str(folder / "vehicle.yaml"), ("air",))
+    models, place = holding(folders_of(folder), air.model), FileLocation(str(folder / "vehicle.yaml"), ("air",))
     path = models / air.model / f"{air.model}.xml"
     try:
         faults = list(model_faults(path)) if path.is_file() else []
@@ -57,9 +57,9 @@ def _aircraft_faults(vehicle: str, air: AirBody) -> tuple[list[str], list[str]]:
         return flight or [str(error)], notes
 
 
-def _flight(airframe: Airframe, air: AirBody, place: Place) -> tuple[list[str], list[str]]:
+def _flight(airframe: Airframe, air: AirBody, place: FileLocation) -> tuple[list[str], list[str]]:
     """Of level flight at trim_speed."""
-    level = Start(np.array((0.0, 0.0, HEIGHT)), 0.0, air.trim_speed, np.zeros(3))
+    level = InitialState(np.array((0.0, 0.0, HEIGHT)), 0.0, air.trim_speed, np.zeros(3))
     untrimmed = []
     try:
         trim = airframe.start(level)
@@ -76,7 +76,7 @@ def _flight(airframe: Airframe, air: AirBody, place: Place) -> tuple[list[str], 
     return [*untrimmed, *_sign_faults(effects, place), *faults], notes
 
 
-def throttle_works(airframe: Airframe, level: Start, trim: Trim) -> bool:
+def throttle_works(airframe: Airframe, level: InitialState, trim: Trim) -> bool:
     """Of an airframe that is held still."""
     thrusts = []
     for throttle in (0.0, 1.0):
@@ -85,20 +85,20 @@ def throttle_works(airframe: Airframe, level: Start, trim: Trim) -> bool:
     return abs(thrusts[1] - thrusts[0]) > WEAK * max(map(abs, thrusts))
 
 
-def effect(airframe: Airframe, level: Start, trim: Trim, controls: object, name: str) -> np.ndarray:
+def effect(airframe: Airframe, level: InitialState, trim: Trim, controls: object, name: str) -> np.ndarray:
     """(6,) body accelerations with one surface moved."""
     moved = {name: getattr(trim, name) + FULL * getattr(controls, name).limit}
     return airframe.accelerations(level, replace(trim, **moved))
 
 
-def _sign_faults(effects: dict[str, np.ndarray], place: Place) -> Iterator[str]:
+def _sign_faults(effects: dict[str, np.ndarray], place: FileLocation) -> Iterator[str]:
     for name, effect in effects.items():
         index, sign, does = RIGHT_WAY[name]
         if effect[index] * sign < -WEAK:
             yield f"{place.at('controls', name)}: a positive {name} ought to be one that {does}, and this does the opposite; turn its sign"
 
 
-def _idle(effects: dict[str, np.ndarray], air: AirBody, place: Place) -> tuple[list[str], list[str]]:
+def _idle(effects: dict[str, np.ndarray], air: AirBody, place: FileLocation) -> tuple[list[str], list[str]]:
     """(faults, notes) of surfaces that do nothing: an aircraft may have no ailerons, or no rudder, when its file names none."""
     idle = [name for name, effect in effects.items() if abs(effect[RIGHT_WAY[name][0]]) < WEAK]
     if "elevator" in idle or {"aileron", "rudder"} <= set(idle):
@@ -108,7 +108,7 @@ def _idle(effects: dict[str, np.ndarray], air: AirBody, place: Place) -> tuple[l
     return [], [f"its {name} does nothing, though vehicle.yaml has one" for name in named]
 
 
-def _gear_faults(models: Path, air: AirBody, place: Place) -> Iterator[str]:
+def _gear_faults(models: Path, air: AirBody, place: FileLocation) -> Iterator[str]:
     if comes_to_rest(models, air, air.physics_hz):
         return
     where, fell = place.at("physics_hz"), f"dropped from {FALL:g} m it is not at rest on its wheels after {SECONDS:g} s"
@@ -123,7 +123,7 @@ def _gear_faults(models: Path, air: AirBody, place: Place) -> Iterator[str]:
 def comes_to_rest(models: Path, air: AirBody, rate: float) -> bool:
     """On its wheels, dropped from a small height, at ``rate`` physics steps a second; it may roll on, idling, where it has no brakes."""
     airframe = Airframe(models, msgspec.structs.replace(air, physics_hz=rate), SEA_LEVEL)
-    airframe.drop(Start(np.zeros(3), 0.0, 0.0, np.zeros(3)), FALL)
+    airframe.drop(InitialState(np.zeros(3), 0.0, 0.0, np.zeros(3)), FALL)
     worst = 0.0
     try:
         for i in range(round(SECONDS * rate)):

@@ -9,7 +9,7 @@ import numpy as np
 
 from launch.vehicles.aircraft_rules import ABOUT_LEVEL, HEIGHT, RIGHT_WAY, SEA_LEVEL, comes_to_rest, effect, throttle_works
 from services.sim_air.engine.airframe import Airframe
-from services.sim_air.engine.states import Start
+from services.sim_air.engine.states import InitialState
 from services.sim_air.engine.trim import Trim
 from services.sim_air.engine.wiring import Controls
 from uvf.models.importing.notes import Notes
@@ -34,8 +34,8 @@ def tried(folder: Path, body: AirBody, notes: Notes) -> AirBody:
     return _with_speed(Airframe(folder, body, SEA_LEVEL), body, notes)
 
 
-def level(speed: float, climb: float = 0.0) -> Start:
-    return Start(np.array((0.0, 0.0, HEIGHT)), 0.0, speed, np.zeros(3), climb)
+def level(speed: float, climb: float = 0.0) -> InitialState:
+    return InitialState(np.array((0.0, 0.0, HEIGHT)), 0.0, speed, np.zeros(3), climb)
 
 
 def _with_settings(folder: Path, body: AirBody, notes: Notes) -> AirBody:

@@ -12,7 +12,7 @@ from services.sim_air.analysis.equilibrium import Condition, find
 from services.sim_air.analysis.linear import LinearModels, held_still, linearize
 from services.sim_air.analysis.performance import climb_rate, performance
 from services.sim_air.engine.airframe import Airframe
-from services.sim_air.engine.states import Held, Start
+from services.sim_air.engine.states import Held, InitialState
 from services.sim_air.engine.trim import Trim
 from services.sim_air.engine.wiring import Controls
 from uvf.maths.geodesy import GRAVITY
@@ -87,7 +87,7 @@ def _idle_sink(airframe: Airframe, body: AirBody) -> float:
     return -min((climb_rate(c) for c in flown if c is not None), default=-STEEPEST * body.trim_speed)
 
 
-def _turning(speed: float) -> Start:
+def _turning(speed: float) -> InitialState:
     """Level, banked by 45 degrees: twice the load factor squared."""
     return replace(level(speed), turn_rate=GRAVITY / speed)
 

@@ -18,7 +18,7 @@ from uvf.maths.geodesy import GRAVITY
 from uvf.models.importing.jsbsim import copy_model
 from uvf.models.importing.notes import Notes
 from uvf.models.jsbsim.model_file import weight_and_wing
-from uvf.models.vehicle.air import AirBody, Commands
+from uvf.models.vehicle.air import AirBody, CommandProperties
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.process.subprocess_jobs import Died, run_in_subprocess
 
@@ -73,7 +73,7 @@ def _air(body: AirBody) -> dict[str, Any]:
     """Only what differs from the defaults."""
     controls = {}
     for name in body.controls.__struct_fields__:
-        own, usual = (msgspec.to_builtins(getattr(c, name)) for c in (body.controls, Commands()))
+        own, usual = (msgspec.to_builtins(getattr(c, name)) for c in (body.controls, CommandProperties()))
         if different := {key: value for key, value in own.items() if value != usual[key]}:
             controls[name] = different
     keys = ("model", "physics_hz", "trim_speed", "servo_rate", "servo_lag")

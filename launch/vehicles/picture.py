@@ -28,7 +28,7 @@ UP = np.array((0.0, 0.0, 1.0))
 
 
 @dataclass(frozen=True)
-class View:
+class PictureView:
     """title; to_eye: (3,) from the vehicle's middle; away: in sizes of the vehicle; axes: which of x, y go right and up."""
 
     title: str
@@ -38,9 +38,9 @@ class View:
 
 
 VIEWS = (
-    View("from the front left", (1.0, 0.8, 0.7), 6.0),
-    View("from above", (0.0, 0.0, 1.0), FAR_OFF, ("x", "y")),
-    View("from the right", (0.0, -1.0, 0.0), FAR_OFF, ("x", "z")),
+    PictureView("from the front left", (1.0, 0.8, 0.7), 6.0),
+    PictureView("from above", (0.0, 0.0, 1.0), FAR_OFF, ("x", "y")),
+    PictureView("from the right", (0.0, -1.0, 0.0), FAR_OFF, ("x", "z")),
 )
 
 
@@ -81,7 +81,7 @@ def _extent(look: Look, folder: Path, file: VehicleFile) -> tuple[Floats, float]
     return np.array((0.0, 0.0, top / 2)), max(file.ground.radius, 0.6 * top)
 
 
-def _seen(renderer: BulletRenderer, view: View, middle: Floats, size: float) -> Any:
+def _seen(renderer: BulletRenderer, view: PictureView, middle: Floats, size: float) -> Any:
     """(PIXELS, PIXELS, 3) RGB; what lies in the plane of the middle spans 2.4 sizes."""
     to_eye = np.array(view.to_eye) / np.linalg.norm(view.to_eye)
     away = view.away * size
@@ -94,7 +94,7 @@ def _seen(renderer: BulletRenderer, view: View, middle: Floats, size: float) -> 
     return renderer.take(camera, Pose(middle + away * to_eye, turned)).picture
 
 
-def _draw(axes: Any, view: View, picture: Any, shown: tuple[Floats, float]) -> None:
+def _draw(axes: Any, view: PictureView, picture: Any, shown: tuple[Floats, float]) -> None:
     middle, size = shown
     axes.set_title(view.title, fontsize=9)
     if view.axes is None:

@@ -16,7 +16,7 @@ from launch.vehicles.loops import OMEGA, Loop, loops
 from services.sim_air.analysis.linear import linearize
 from uvf.models.vehicle.file import load_vehicle
 from uvf.models.vehicle.flight_params import AirParams
-from uvf.models.yaml_data import BadInput, Place, convert
+from uvf.models.yaml_data import BadInput, FileLocation, convert
 
 SERVICE = "autopilot_air"
 USED = ("altitude_p", "climb_p", "climb_i", "airspeed_p", "power_pole")
@@ -79,13 +79,13 @@ def draw(tuning: Tuning, path: Path) -> None:
 def write(tuning: Tuning) -> Path:
     """Puts the figures into the vehicle.yaml, which keeps its other lines. Raises BadInput."""
     path = tuning.folder / "vehicle.yaml"
-    text = with_params(path.read_text(encoding="utf-8"), tuning.figures, Place(str(path)))
+    text = with_params(path.read_text(encoding="utf-8"), tuning.figures, FileLocation(str(path)))
     path.write_text(text, encoding="utf-8")
     load_vehicle(tuning.folder.parent, tuning.folder.name)
     return path
 
 
-def with_params(text: str, figures: Mapping[str, float], place: Place) -> str:
+def with_params(text: str, figures: Mapping[str, float], place: FileLocation) -> str:
     """The text of a vehicle.yaml with these parameters of the autopilot in place of those of the same name. Raises BadInput."""
     lines = text.rstrip("\n").splitlines()
     begin = next((i for i, line in enumerate(lines) if re.fullmatch(rf"  {SERVICE}:\s*(#.*)?", line)), None)
@@ -103,7 +103,7 @@ def with_params(text: str, figures: Mapping[str, float], place: Place) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _new_block(lines: list[str], place: Place) -> int:
+def _new_block(lines: list[str], place: FileLocation) -> int:
     """Adds the autopilot's block; its line. Raises BadInput."""
     params = next((i for i, line in enumerate(lines) if re.match(r"params:", line)), None)
     if params is None:

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from launch.worlds.report import RESOLUTION
 from uvf.maths.footprint import Footprint, footprint
-from uvf.models.scenario import Site
+from uvf.models.scenario import Scenario
 from uvf.models.shapes.scene import primitives
 from uvf.models.shapes.solid import Solid
 from uvf.models.world.file import WorldFile
@@ -33,7 +33,7 @@ def problems(world: WorldFile, radius: float) -> Iterator[str]:
     yield from _crossings(standing)
 
 
-def blocked_starts(site: Site) -> Iterator[str]:
+def blocked_starts(site: Scenario) -> Iterator[str]:
     """Ground vehicles of a mission that begin in or too close to something."""
     footing = Footing(site.world)
     for name, member in site.members.items():

@@ -2,9 +2,9 @@
 
 from services.autopilot.air import build as air
 from services.autopilot.ground import build as ground
-from uvf.models.scenario import Site
-from uvf.runtime.contract.instances import Host
+from uvf.models.scenario import Scenario
+from uvf.runtime.contract.instances import ServiceInstance
 
 
-def build(site: Site) -> list[Host]:
+def build(site: Scenario) -> list[ServiceInstance]:
     return [*air.hosts(site), *ground.hosts(site)]

@@ -11,8 +11,8 @@ from uvf.runtime.messages.convert import stamp
 K = TypeVar("K")
 
 
-class Action(IntEnum):
-    """The later ones come before the earlier ones."""
+class FailsafeAction(IntEnum):
+    """Ordered by increasing priority."""
 
     WARN = 0
     HOLD = 1
@@ -24,25 +24,31 @@ class Action(IntEnum):
     """The same, disarmed."""
 
 
-ACTIONS = {"wait": Action.WARN, "warn": Action.WARN, "hold": Action.HOLD, "return": Action.RETURN, "land": Action.LAND}
+ACTIONS = {
+    "wait": FailsafeAction.WARN,
+    "warn": FailsafeAction.WARN,
+    "hold": FailsafeAction.HOLD,
+    "return": FailsafeAction.RETURN,
+    "land": FailsafeAction.LAND,
+}
 
 
 @dataclass(frozen=True)
-class Rule(Generic[K]):
-    """One line of a table of failsafes. Between ``wrong`` and ``mended`` there may be a gap: then it stays as it is."""
+class FailsafeRule(Generic[K]):
+    """One line of a table of failsafes. Between ``trigger`` and ``clear`` there may be a gap: then it stays as it is."""
 
     name: str
-    wrong: Callable[[K], bool]
-    mended: Callable[[K], bool]
-    begins: str
+    trigger: Callable[[K], bool]
+    clear: Callable[[K], bool]
+    raised_text: str
     """What is said when it begins, and when it ends."""
-    ends: str
-    figures: Callable[[K], str]
+    cleared_text: str
+    detail: Callable[[K], str]
     """The numbers of the case, for the event's cause."""
-    action: Callable[[K], Action] = lambda known: Action.WARN
+    action: Callable[[K], FailsafeAction] = lambda known: FailsafeAction.WARN
     after: Callable[[K], float] = lambda known: 0.0
     """s that it has to be wrong without a break."""
-    clears: float = 0.0
+    clear_delay: float = 0.0
     """s that it has to be mended without a break."""
     severity: Event.Severity = Event.WARNING
     parameters: tuple[str, ...] = ()
@@ -51,66 +57,66 @@ class Rule(Generic[K]):
 
 
 @dataclass(frozen=True)
-class Change(Generic[K]):
+class RuleChange(Generic[K]):
     """A rule that has begun or ended in this cycle."""
 
-    rule: Rule[K]
+    rule: FailsafeRule[K]
     began: bool
     cause: str
 
     def event(self, t: float) -> Event:
         """What is said of it at ``t`` [s]; the figures are those of a beginning."""
         severity = self.rule.severity if self.began else Event.NOTICE
-        text = self.rule.begins if self.began else self.rule.ends
+        text = self.rule.raised_text if self.began else self.rule.cleared_text
         return Event(timestamp=stamp(t), severity=severity, text=text, cause=self.cause if self.began else "", source="autopilot")
 
 
 @dataclass(frozen=True)
-class Order(Generic[K]):
+class FailsafeOrder(Generic[K]):
     """What is to be done now, and why."""
 
-    action: Action
-    rule: Rule[K]
+    action: FailsafeAction
+    rule: FailsafeRule[K]
 
 
-class Watch(Generic[K]):
+class FailsafeWatch(Generic[K]):
     """Which rules hold. An order is given once, when a rule begins; what somebody asks for afterwards is theirs to ask for."""
 
-    def __init__(self, rules: Sequence[Rule[K]]) -> None:
+    def __init__(self, rules: Sequence[FailsafeRule[K]]) -> None:
         self._rules = tuple(rules)
         self._time: dict[str, float] = {}
         """s that a rule that does not hold has been wrong, or one that holds mended."""
-        self.holding: dict[str, Rule[K]] = {}
-        self._in_charge = Action.WARN
+        self.holding: dict[str, FailsafeRule[K]] = {}
+        self._in_charge = FailsafeAction.WARN
         self._overruled: set[str] = set()
 
     def overrule(self) -> None:
         """Somebody has asked for a mode: of what holds already nothing is ordered any more."""
-        self._in_charge = Action.WARN
+        self._in_charge = FailsafeAction.WARN
         self._overruled = set(self.holding)
 
-    def in_force(self, known: K) -> Order[K] | None:
+    def in_force(self, known: K) -> FailsafeOrder[K] | None:
         """What has been ordered last by a rule that still holds, unless somebody has overruled it."""
-        held = [Order(rule.action(known), rule) for name, rule in self.holding.items() if name not in self._overruled]
+        held = [FailsafeOrder(rule.action(known), rule) for name, rule in self.holding.items() if name not in self._overruled]
         return max((order for order in held if order.action), key=lambda o: o.action, default=None)
 
-    def step(self, known: K, dt: float) -> tuple[list[Change[K]], Order[K] | None]:
+    def step(self, known: K, dt: float) -> tuple[list[RuleChange[K]], FailsafeOrder[K] | None]:
         """The changes of this cycle of ``dt`` [s], and the order that follows, if it goes beyond what is in force."""
         changes = [change for rule in self._rules if (change := self._look(rule, known, dt)) is not None]
         if not any(rule.action(known) for rule in self.holding.values()):
-            self._in_charge = Action.WARN
-        begun = [Order(change.rule.action(known), change.rule) for change in changes if change.began]
+            self._in_charge = FailsafeAction.WARN
+        begun = [FailsafeOrder(change.rule.action(known), change.rule) for change in changes if change.began]
         order = max(begun, key=lambda o: o.action, default=None)
         if order is None or order.action <= self._in_charge:
             return changes, None
         self._in_charge = order.action
         return changes, order
 
-    def _look(self, rule: Rule[K], known: K, dt: float) -> Change[K] | None:
+    def _look(self, rule: FailsafeRule[K], known: K, dt: float) -> RuleChange[K] | None:
         holds = rule.name in self.holding
-        turns = rule.mended(known) if holds else rule.wrong(known)
+        turns = rule.clear(known) if holds else rule.trigger(known)
         self._time[rule.name] = self._time.get(rule.name, 0.0) + dt if turns else 0.0
-        if not turns or self._time[rule.name] < (rule.clears if holds else rule.after(known)):
+        if not turns or self._time[rule.name] < (rule.clear_delay if holds else rule.after(known)):
             return None
         self._time[rule.name] = 0.0
         if holds:
@@ -118,4 +124,4 @@ class Watch(Generic[K]):
             self._overruled.discard(rule.name)
         else:
             self.holding[rule.name] = rule
-        return Change(rule, not holds, rule.figures(known))
+        return RuleChange(rule, not holds, rule.detail(known))

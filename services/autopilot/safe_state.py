@@ -2,17 +2,17 @@
 
 from schemas.messages import Kind, Mode, SurfaceCommand, VehicleStatus, WheelCommand
 from uvf.runtime.messages.convert import stamp
-from uvf.runtime.messages.outputs import Outputs
+from uvf.runtime.messages.outputs import OutputMessages
 
 SPIRAL = 0.1  # rad of rudder: with the motor off it comes down in a wide turn instead of gliding out of sight
 
 
-def standing(t: float, reason: str) -> Outputs:
+def standing(t: float, reason: str) -> OutputMessages:
     """A ground vehicle's wheels stand."""
     return {"wheels": WheelCommand(timestamp=stamp(t)), "status": _status(t, Kind.KIND_GROUND, reason)}
 
 
-def coming_down(t: float, reason: str) -> Outputs:
+def coming_down(t: float, reason: str) -> OutputMessages:
     """Nothing is left that could fly it: motor off and a little rudder, as a radio without signal does; on the ground it brakes."""
     down = SurfaceCommand(timestamp=stamp(t), rudder=SPIRAL, brake=1.0)
     return {"surfaces": down, "status": _status(t, Kind.KIND_FIXED_WING, reason)}

@@ -18,14 +18,14 @@ class ToldParams:
         self._told: Params | None = None
         self._changes = -1
 
-    def news(self, t: float, params: Params) -> dict[str, ParamValues]:
-        """Empty while nothing has changed."""
+    def news(self, t: float, params: Params) -> ParamValues | None:
+        """None while nothing has changed."""
         if params is self._told:
-            return {}
+            return None
         self._told = params
         self._changes += 1
         values = {name: msgspec.json.encode(getattr(params, name)).decode() for name in params.__struct_fields__}
-        return {"params": ParamValues(timestamp=stamp(t), changes=self._changes, values=values)}
+        return ParamValues(timestamp=stamp(t), changes=self._changes, values=values)
 
     def taken_up(self, said: ParamValues, params: P) -> P:
         """What an instance that has died had: with its values, and counting on from its changes."""

@@ -4,12 +4,12 @@ import sys
 from functools import partial
 
 from services.gcs.service import GroundStation
-from uvf.models.scenario import Site
+from uvf.models.scenario import Scenario
 from uvf.runtime.bus.address import address_from
-from uvf.runtime.contract.instances import Host
+from uvf.runtime.contract.instances import ServiceInstance
 
 
-def build(site: Site) -> list[Host]:
+def build(site: Scenario) -> list[ServiceInstance]:
     """One service; its page's address is UVF_GCS_HOST:UVF_GCS_PORT. Raises BadInput."""
     address = address_from()
 
@@ -22,4 +22,4 @@ def build(site: Site) -> list[Host]:
             sys.stderr.write(f"gcs: the page, for those who have its token: {address.url}\n")
         return GroundStation(site, page)
 
-    return [Host(GroundStation, make, writes_for=tuple(site.members))]
+    return [ServiceInstance(GroundStation, make, writes_for=tuple(site.members))]

@@ -2,23 +2,23 @@
 
 from collections.abc import Mapping
 
-from uvf.control.teleop_drive import Command, Hand
+from uvf.control.teleop_drive import DriveTeleop, TeleopCommand
 
 PATIENCE = 0.5  # s a direction counts: a page repeats it every 0.1 s while it is held
 
 
-class ByHand:
+class ManualDriving:
     """A vehicle has one holder, and a page holds one vehicle. Times [s] come from one clock that never goes back."""
 
-    def __init__(self, most: Mapping[str, Command]) -> None:
+    def __init__(self, most: Mapping[str, TeleopCommand]) -> None:
         """most: of each vehicle that can be driven, what it can do."""
-        self._hands = {name: Hand((name,), limits) for name, limits in most.items()}
+        self._hands = {name: DriveTeleop((name,), limits) for name, limits in most.items()}
         self._holders: dict[str, int] = {}
 
     def can_drive(self, vehicle: str) -> bool:
         return vehicle in self._hands
 
-    def scale(self, vehicle: str) -> Command:
+    def scale(self, vehicle: str) -> TeleopCommand:
         """Speeds at which a held direction drives."""
         return self._hands[vehicle].scale
 
@@ -66,6 +66,6 @@ class ByHand:
         if hand is not None:
             hand.key(t, key)
 
-    def commands(self, t: float) -> dict[str, Command]:
+    def commands(self, t: float) -> dict[str, TeleopCommand]:
         """What is to be sent now; nothing to a vehicle that has been told long enough to stand."""
         return {name: command for hand in self._hands.values() for name, command in hand.commands(t).items()}

@@ -20,12 +20,12 @@ from schemas.messages import (
     StopCommand,
     Vector3,
 )
-from services.gcs.by_hand import ByHand
+from services.gcs.by_hand import ManualDriving
 from services.gcs.state.layers import ROOTS
-from services.gcs.state.session import Session
+from services.gcs.state.session import BrowserSession
 from services.gcs.state.state import LOST_AFTER, Model, Order, VehicleModel
 from services.gcs.state.wording import describe, modes_of
-from uvf.control.teleop_drive import SCALINGS, Command
+from uvf.control.teleop_drive import SCALINGS, TeleopCommand
 from uvf.runtime.contract.service import Answer
 from uvf.runtime.messages.convert import stamp
 from uvf.runtime.state.stop_all import StopVoice
@@ -195,9 +195,9 @@ class Commander:
         self._mode_before: dict[str, int] = {}
         self._back: dict[str, int] = {}
         bodies = {v.name: v.member.file.ground for v in model.vehicles.values()}
-        self.by_hand = ByHand({n: Command(b.max_linear, b.max_angular) for n, b in bodies.items() if b is not None})
+        self.by_hand = ManualDriving({n: TeleopCommand(b.max_linear, b.max_angular) for n, b in bodies.items() if b is not None})
 
-    def waits_for_confirmation(self, session: Session, vehicle: str, arm: bool, t: float) -> bool:
+    def waits_for_confirmation(self, session: BrowserSession, vehicle: str, arm: bool, t: float) -> bool:
         asked = session.to_confirm
         return asked is not None and asked[:2] == (vehicle, arm) and t - asked[2] <= CONFIRM_WITHIN
 
@@ -256,7 +256,7 @@ class Commander:
             case Looking():
                 session.looked_at = t
 
-    def _select(self, t: float, session: Session, name: str) -> None:
+    def _select(self, t: float, session: BrowserSession, name: str) -> None:
         if name in self._model.vehicles:
             if name != self.by_hand.held_by(session.page):
                 self.by_hand.let_go(t, session.page)

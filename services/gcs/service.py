@@ -7,11 +7,16 @@ from google.protobuf.message import Message
 
 from schemas import topics
 from schemas.messages import (
+    ArmRequest,
+    CancelRequest,
     Clock,
     CompressedImage,
+    DriveCommand,
     Event,
     Fence,
     FrameTransform,
+    GimbalCommand,
+    GoalRequest,
     Grid,
     Guest,
     Health,
@@ -19,23 +24,49 @@ from schemas.messages import (
     LaserScan,
     Mission,
     MissionProgress,
+    ModeRequest,
     NavState,
     NavStatus,
     Odometry,
     PoseInFrame,
     PosesInFrame,
     Processes,
+    Reply,
     SimObjects,
+    StopCommand,
     VehicleStatus,
 )
 from services.gcs.commands import SOURCE, Commander
 from services.gcs.page.page_frame import Composer
 from services.gcs.state.state import Model
 from services.gcs.view.drawing import Page
-from uvf.models.scenario import Site
-from uvf.runtime.contract.service import Answer, Service, each_vehicle, every, optional, stop_all
-from uvf.runtime.messages.outputs import Outputs
+from uvf.models.scenario import Scenario
+from uvf.runtime.contract.declaration import Reads, Writes, answers, call, each_vehicle, every, optional, stop_all, topic
+from uvf.runtime.contract.service import Answer, Service
 from uvf.runtime.state.stop_all import StopStatus
+
+NEWEST = (
+    "nav",
+    "pose",
+    "odometry",
+    "truth",
+    "status",
+    "nav_status",
+    "path",
+    "mission",
+    "progress",
+    "fence",
+    "scan",
+    "image",
+    "chase",
+    "gimbal",
+    "gimbal_joints",
+    "joints",
+    "grid",
+    "team_map",
+    "world_from_map",
+)
+"""Inputs by vehicle that are kept under their names as the newest of their kind."""
 
 
 class GroundStation(Service):
@@ -45,104 +76,61 @@ class GroundStation(Service):
     hz = 20.0
     scope = "world"
     clock = "wall"
-    inputs = {
-        "clock": optional(topics.CLOCK),
-        "processes": optional(every(topics.PROCESSES.by("*"))),
-        "objects": optional(topics.OBJECTS),
-        "aircraft": optional(topics.AIR_OBJECTS),
-        "health": optional(every(topics.HEALTH.by("*"))),
-        "stop": stop_all(),
-        "guests": each_vehicle(topics.GUEST),
-        "nav": each_vehicle(topics.NAV_STATE),
-        "pose": each_vehicle(topics.POSE),
-        "odometry": each_vehicle(topics.ODOMETRY),
-        "truth": each_vehicle(topics.TRUTH),
-        "status": each_vehicle(topics.STATUS),
-        "nav_status": each_vehicle(topics.NAV_STATUS),
-        "path": each_vehicle(topics.PATH),
-        "mission": each_vehicle(topics.MISSION),
-        "progress": each_vehicle(topics.PROGRESS),
-        "fence": each_vehicle(topics.FENCE),
-        "scan": each_vehicle(topics.SCAN),
-        "image": each_vehicle(topics.IMAGE),
-        "chase": each_vehicle(topics.VIEW.by("chase")),
-        "gimbal_view": each_vehicle(topics.VIEW.by("gimbal")),
-        "gimbal_joints": each_vehicle(topics.GIMBAL_JOINTS),
-        "joints": each_vehicle(topics.JOINTS),
-        "grid": each_vehicle(topics.MAP),
-        "team_map": each_vehicle(topics.TEAM_MAP),
-        "world_from_map": each_vehicle(topics.TF_WORLD),
-        "events": each_vehicle(every(topics.EVENTS.by("*"))),
-    }
-    outputs = {"stop": topics.STOP.by(SOURCE), "drive": topics.DRIVE.by(SOURCE), "gimbal": topics.GIMBAL.by(SOURCE)}
-    calls = {"goal": topics.GOAL, "cancel": topics.CANCEL, "arm": topics.ARM, "mode": topics.SET_MODE}
 
-    def __init__(self, site: Site, page: Page) -> None:
+    class Inputs(Reads):
+        clock: Clock | None = optional(topics.CLOCK)
+        processes: list[Processes] = optional(every(topics.PROCESSES.by("*")))
+        objects: SimObjects | None = optional(topics.OBJECTS)
+        aircraft: SimObjects | None = optional(topics.AIR_OBJECTS)
+        health: list[Health] = optional(every(topics.HEALTH.by("*")))
+        stop: StopStatus = stop_all()
+        guests: dict[str, Guest] = each_vehicle(topics.GUEST)
+        nav: dict[str, NavState] = each_vehicle(topics.NAV_STATE)
+        pose: dict[str, PoseInFrame] = each_vehicle(topics.POSE)
+        odometry: dict[str, Odometry] = each_vehicle(topics.ODOMETRY)
+        truth: dict[str, NavState] = each_vehicle(topics.TRUTH)
+        status: dict[str, VehicleStatus] = each_vehicle(topics.STATUS)
+        nav_status: dict[str, NavStatus] = each_vehicle(topics.NAV_STATUS)
+        path: dict[str, PosesInFrame] = each_vehicle(topics.PATH)
+        mission: dict[str, Mission] = each_vehicle(topics.MISSION)
+        progress: dict[str, MissionProgress] = each_vehicle(topics.PROGRESS)
+        fence: dict[str, Fence] = each_vehicle(topics.FENCE)
+        scan: dict[str, LaserScan] = each_vehicle(topics.SCAN)
+        image: dict[str, CompressedImage] = each_vehicle(topics.IMAGE)
+        chase: dict[str, CompressedImage] = each_vehicle(topics.VIEW.by("chase"))
+        gimbal: dict[str, CompressedImage] = each_vehicle(topics.VIEW.by("gimbal"))
+        gimbal_joints: dict[str, JointStates] = each_vehicle(topics.GIMBAL_JOINTS)
+        joints: dict[str, JointStates] = each_vehicle(topics.JOINTS)
+        grid: dict[str, Grid] = each_vehicle(topics.MAP)
+        team_map: dict[str, Grid] = each_vehicle(topics.TEAM_MAP)
+        world_from_map: dict[str, FrameTransform] = each_vehicle(topics.TF_WORLD)
+        events: dict[str, list[Event]] = each_vehicle(every(topics.EVENTS.by("*")))
+        goal: list[Answer[GoalRequest, Reply]] = answers(topics.GOAL)
+        cancel: list[Answer[CancelRequest, Reply]] = answers(topics.CANCEL)
+        arm: list[Answer[ArmRequest, Reply]] = answers(topics.ARM)
+        mode: list[Answer[ModeRequest, Reply]] = answers(topics.SET_MODE)
+
+    class Outputs(Writes):
+        stop: StopCommand | None = topic(topics.STOP.by(SOURCE))
+        drive: dict[str, DriveCommand] | None = topic(topics.DRIVE.by(SOURCE))
+        gimbal: dict[str, GimbalCommand] | None = topic(topics.GIMBAL.by(SOURCE))
+        goal: list[GoalRequest] = call(topics.GOAL)
+        cancel: list[CancelRequest] = call(topics.CANCEL)
+        arm: list[ArmRequest] = call(topics.ARM)
+        mode: list[ModeRequest] = call(topics.SET_MODE)
+
+    def __init__(self, site: Scenario, page: Page) -> None:
         self._page = page
         self._model = Model(site)
         self._commander = Commander(self._model)
         self._composer = Composer(self._model, self._commander)
 
-    def step(
-        self,
-        t: float,
-        clock: Clock | None,
-        processes: Sequence[Processes],
-        objects: SimObjects | None,
-        aircraft: SimObjects | None,
-        health: Sequence[Health],
-        stop: StopStatus,
-        events: Mapping[str, Sequence[Event]],
-        goal: Sequence[Answer[Any, Any]],
-        cancel: Sequence[Answer[Any, Any]],
-        arm: Sequence[Answer[Any, Any]],
-        mode: Sequence[Answer[Any, Any]],
-        guests: Mapping[str, Guest],
-        nav: Mapping[str, NavState],
-        pose: Mapping[str, PoseInFrame],
-        odometry: Mapping[str, Odometry],
-        truth: Mapping[str, NavState],
-        status: Mapping[str, VehicleStatus],
-        nav_status: Mapping[str, NavStatus],
-        path: Mapping[str, PosesInFrame],
-        mission: Mapping[str, Mission],
-        progress: Mapping[str, MissionProgress],
-        fence: Mapping[str, Fence],
-        scan: Mapping[str, LaserScan],
-        image: Mapping[str, CompressedImage],
-        chase: Mapping[str, CompressedImage],
-        gimbal_view: Mapping[str, CompressedImage],
-        gimbal_joints: Mapping[str, JointStates],
-        joints: Mapping[str, JointStates],
-        grid: Mapping[str, Grid],
-        team_map: Mapping[str, Grid],
-        world_from_map: Mapping[str, FrameTransform],
-    ) -> Outputs:
+    def step(self, t: float, now: Inputs) -> Outputs:
         """One refresh of the page at ``t`` [s, wall]."""
-        newest: Mapping[str, Mapping[str, Message]] = {
-            "nav": nav,
-            "pose": pose,
-            "odometry": odometry,
-            "truth": truth,
-            "status": status,
-            "nav_status": nav_status,
-            "path": path,
-            "mission": mission,
-            "progress": progress,
-            "fence": fence,
-            "scan": scan,
-            "image": image,
-            "chase": chase,
-            "gimbal": gimbal_view,
-            "gimbal_joints": gimbal_joints,
-            "joints": joints,
-            "grid": grid,
-            "team_map": team_map,
-            "world_from_map": world_from_map,
-        }
-        self._hear_system(t, clock, processes, health)
-        self._hear_others(t, guests, stop, (objects, aircraft), truth)
-        return self._act(t, newest, events, (*goal, *cancel, *arm, *mode))
+        newest: Mapping[str, Mapping[str, Message]] = {name: getattr(now, name) for name in NEWEST}
+        self._hear_system(t, now.clock, now.processes, now.health)
+        self._hear_others(t, now.guests, now.stop, (now.objects, now.aircraft), now.truth)
+        return self._act(t, newest, now.events, (*now.goal, *now.cancel, *now.arm, *now.mode))
 
     def _hear_system(self, t: float, clock: Clock | None, processes: Sequence[Processes], health: Sequence[Health]) -> None:
         self._model.hear_clock(t, clock)
@@ -165,7 +153,7 @@ class GroundStation(Service):
         out = self._commander.act(t, self._page.actions())
         self._commander.expire(t)
         self._page.show(self._composer.picture(t))
-        return {name: getattr(out, name) for name in (*self.outputs, *self.calls)}
+        return self.Outputs(**{name: getattr(out, name) for name in (*self.outputs, *self.calls)})
 
     def close(self) -> None:
         self._page.close()

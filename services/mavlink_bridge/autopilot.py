@@ -5,18 +5,18 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from schemas.messages import Event, MissionProgress, VehicleStatus
-from services.mavlink_bridge.commands import Commands
+from services.mavlink_bridge.commands import CommandSender
 from services.mavlink_bridge.connecting import Connecting
-from services.mavlink_bridge.frame import Chart, Origin
+from services.mavlink_bridge.frame import BridgeOrigin, Chart
 from services.mavlink_bridge.modes import Modes
-from services.mavlink_bridge.parameters import Parameters
+from services.mavlink_bridge.parameters import ParameterClient
 from services.mavlink_bridge.plan_book import PlanBook
-from services.mavlink_bridge.refusals import Refusals
+from services.mavlink_bridge.refusals import LinkRefusals
 from services.mavlink_bridge.station import LOST_AFTER
 from services.mavlink_bridge.status import Told, progress_of, status_of
 from services.mavlink_bridge.telemetry import Telemetry
 from services.mavlink_bridge.transfers import Transfers
-from services.mavlink_bridge.wire import Text, Wire
+from services.mavlink_bridge.wire import StatusText, Wire
 from uvf.mavlink import dialect as mav
 from uvf.mavlink.text_bucket import TEXTS_PER_SECOND, TextBucket
 
@@ -38,13 +38,13 @@ SEVERITY = {
 
 
 class Autopilot:
-    def __init__(self, system: int, component: int, heartbeat: mav.MAVLink_heartbeat_message, origin: Origin) -> None:
+    def __init__(self, system: int, component: int, heartbeat: mav.MAVLink_heartbeat_message, origin: BridgeOrigin) -> None:
         self.wire = Wire(system, component)
-        self.commands = Commands(self.wire)
+        self.commands = CommandSender(self.wire)
         self.transfers = Transfers(self.wire)
-        self.parameters = Parameters(self.wire)
+        self.parameters = ParameterClient(self.wire)
         self.events: list[tuple[Event.Severity, str]] = []
-        self.refusals = Refusals(self.say)
+        self.refusals = LinkRefusals(self.say)
         self.telemetry = Telemetry(self.refusals.refuse)
         self.is_ardupilot = heartbeat.autopilot == mav.MAV_AUTOPILOT_ARDUPILOTMEGA
         self.parameters.bytewise = not self.is_ardupilot
@@ -150,7 +150,7 @@ class Autopilot:
         for text in self.wire.hear_text(message):
             self._say_text(text)
 
-    def _say_text(self, text: Text) -> None:
+    def _say_text(self, text: StatusText) -> None:
         if not text.text:
             return
         if not self._texts.take(self.wire.t):

@@ -29,7 +29,7 @@ NAN = math.nan
 
 
 @dataclass
-class Command:
+class PendingCommand:
     """p: parameters 1 to 7, NaN = left out. frame: of a COMMAND_INT, whose parameters 5 and 6 are deg; None = COMMAND_LONG."""
 
     number: int
@@ -48,19 +48,19 @@ class Command:
     """It is not repeated; its answer is waited for only because it could not be told from that to the one behind it."""
 
 
-def command(number: int, p: tuple[float, ...], done: Done, frame: int | None = None) -> Command:
+def command(number: int, p: tuple[float, ...], done: Done, frame: int | None = None) -> PendingCommand:
     """Parameters that are left out at the end are NaN."""
-    return Command(number, (*p, *(NAN,) * (7 - len(p))), done, frame)
+    return PendingCommand(number, (*p, *(NAN,) * (7 - len(p))), done, frame)
 
 
-class Commands:
+class CommandSender:
     """One at a time of each number, for an ACK names nothing else; the others wait for their turn."""
 
     def __init__(self, wire: Wire) -> None:
         self._wire = wire
-        self._queues: dict[int, deque[Command]] = {}
+        self._queues: dict[int, deque[PendingCommand]] = {}
 
-    def ask(self, asked: Command, patience: float = ANSWER_WITHIN) -> None:
+    def ask(self, asked: PendingCommand, patience: float = ANSWER_WITHIN) -> None:
         """patience: how long it may wait for its turn [s]; a vehicle does not obey what was given up long ago."""
         queue = self._queues.setdefault(asked.number, deque())
         if len(queue) >= WAITING_MOST:
@@ -70,7 +70,7 @@ class Commands:
         queue.append(asked)
         self.tick()
 
-    def ask_first(self, asked: Command) -> None:
+    def ask_first(self, asked: PendingCommand) -> None:
         """Goes out at once, whatever is under way, and ends what waits: to hold, to disarm."""
         queue = self._queues.setdefault(asked.number, deque())
         under_way = [each for each in queue if each.tries]
@@ -114,7 +114,7 @@ class Commands:
             elif silent >= asked.wait:
                 self._try(asked)
 
-    def _try(self, asked: Command) -> None:
+    def _try(self, asked: PendingCommand) -> None:
         if asked.overtaken:
             self._end(asked, False, "not sent again: a command to hold or to disarm came after it")
             self.tick()
@@ -131,7 +131,7 @@ class Commands:
         asked.tries += 1
         asked.sent_at, asked.wait = self._wire.t, AGAIN_AFTER
 
-    def _message(self, asked: Command) -> mav.MAVLink_message:
+    def _message(self, asked: PendingCommand) -> mav.MAVLink_message:
         system, component = self._wire.system, self._wire.component
         if asked.frame is None:
             return mav.MAVLink_command_long_message(system, component, asked.number, asked.tries, *asked.p)
@@ -139,7 +139,7 @@ class Commands:
         p1, p2, p3, p4 = asked.p[:4]
         return mav.MAVLink_command_int_message(system, component, asked.frame, asked.number, 0, 0, p1, p2, p3, p4, x, y, asked.p[6])
 
-    def _end(self, asked: Command, accepted: bool, reason: str) -> None:
+    def _end(self, asked: PendingCommand, accepted: bool, reason: str) -> None:
         self._queues[asked.number].popleft()
         asked.done(accepted, reason)
 

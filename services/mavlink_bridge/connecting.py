@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-from services.mavlink_bridge.commands import Commands, command
+from services.mavlink_bridge.commands import CommandSender, command
 from services.mavlink_bridge.modes import LARGEST_LIST, Modes
 from services.mavlink_bridge.wire import Wire
 from uvf.mavlink import dialect as mav
@@ -31,7 +31,7 @@ INSTEAD = {mav.MAVLINK_MSG_ID_ATTITUDE_QUATERNION: mav.MAVLINK_MSG_ID_ATTITUDE}
 
 
 class Connecting:
-    def __init__(self, wire: Wire, commands: Commands, modes: Modes) -> None:
+    def __init__(self, wire: Wire, commands: CommandSender, modes: Modes) -> None:
         self._wire, self._commands, self._modes = wire, commands, modes
         self.capabilities = 0
         """MAV_PROTOCOL_CAPABILITY, 0 until they are told."""

@@ -7,8 +7,8 @@ from schemas.messages import Link
 from schemas.topics import SYSTEM
 from services.mavlink_bridge.station import Station
 from uvf.models.yaml_data import BadInput
-from uvf.runtime.contract.service import Service, each_vehicle
-from uvf.runtime.messages.outputs import Outputs
+from uvf.runtime.contract.declaration import Reads, Writes, each_vehicle
+from uvf.runtime.contract.service import Service
 
 PATIENCE = 5.0  # s, after which it is said that nobody is there
 HESITATION = 1.2  # s, after which this bus has told whether the new one is its own
@@ -74,7 +74,9 @@ class Discovery(Service):
     hz = 50.0
     scope = "world"
     clock = "wall"
-    inputs = {"links": each_vehicle(topics.LINK)}
+
+    class Inputs(Reads):
+        links: dict[str, Link] = each_vehicle(topics.LINK)
 
     def __init__(self, station: Station, names: Names, found: Found, say: Say) -> None:
         self._station, self._names, self._found, self._say = station, names, found, say
@@ -82,9 +84,9 @@ class Discovery(Service):
         self._known: set[int] = set()
         self._is_patient = True
 
-    def step(self, t: float, links: Mapping[str, Link]) -> Outputs:
+    def step(self, t: float, now: Inputs) -> Writes:
         """``t`` [s]: wall time since the start. A vehicle of this bus that speaks to the address, too, is none more."""
-        own = {link.port for link in links.values()}
+        own = {link.port for link in now.links.values()}
         for line in self._station.poll(t, own):
             self._say(line)
         new = {system: one for system, one in self._station.autopilots.items() if system not in self._known}
@@ -97,7 +99,7 @@ class Discovery(Service):
         if self._is_patient and not self._known and t > PATIENCE:
             self._is_patient = False
             self._say(f"no autopilot heard for {PATIENCE:g} s; listening on")
-        return {}
+        return self.Outputs()
 
     def close(self) -> None:
         self._station.close()

@@ -3,10 +3,10 @@
 from dataclasses import dataclass
 
 from uvf.maths.geodesy import LocalTangent
-from uvf.runtime.mavlink.geo import Placed
+from uvf.runtime.mavlink.geo import GeoPosition
 
 
-class Origin:
+class BridgeOrigin:
     """One for all vehicles of an address."""
 
     def __init__(self, tangent: LocalTangent | None = None) -> None:
@@ -21,7 +21,7 @@ class Origin:
 
 
 @dataclass(frozen=True)
-class Chart(Placed):
+class Chart(GeoPosition):
     """A vehicle of a kind in such a world."""
 
     origin: LocalTangent

@@ -9,14 +9,14 @@ LARGEST_FLOAT = 3.4028234663852886e38  # of 32 bits
 WHOLE_FLOAT = 2**24  # up to here each whole number is a 32-bit float
 
 
-class Refused(Exception):
+class OutOfLimits(Exception):
     """What was asked cannot go to the autopilot; the text says why, and how to mend it."""
 
 
 def where(chart: Chart, place: Vector3) -> tuple[float, float, float]:
     """(latitude, longitude [deg], altitude [m AMSL]) of a place that an autopilot may be sent to. Raises Refused."""
     if reason := far_off(place):
-        raise Refused(reason)
+        raise OutOfLimits(reason)
     latitude, longitude, _ = chart.geodetic((place.x, place.y, place.z))  # type: ignore[arg-type]
     return latitude, longitude, amsl(chart, place.z)
 
@@ -25,7 +25,7 @@ def amsl(chart: Chart, z: float) -> float:
     """m AMSL of a height in the world. Raises Refused."""
     altitude = z + chart.origin.altitude
     if not abs(altitude) <= HIGHEST:
-        raise Refused(f"an altitude of {altitude:g} m above sea level: name one within {HIGHEST:g} m")
+        raise OutOfLimits(f"an altitude of {altitude:g} m above sea level: name one within {HIGHEST:g} m")
     return altitude
 
 

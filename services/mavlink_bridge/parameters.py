@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from schemas.messages import Param, ParamReply
-from services.mavlink_bridge.limits import LARGEST_FLOAT, WHOLE_FLOAT, Refused
+from services.mavlink_bridge.limits import LARGEST_FLOAT, WHOLE_FLOAT, OutOfLimits
 from services.mavlink_bridge.wire import TEXT_WITHIN, Wire
 from uvf.mavlink import dialect as mav
 from uvf.runtime.messages.validation import legible
@@ -48,7 +48,7 @@ Value = int | float
 
 
 @dataclass
-class Wanted:
+class RequestedParameter:
     name: str
     value: Value | None
     """To be set; None = only read."""
@@ -60,13 +60,13 @@ class Wanted:
     why: str = ""
 
 
-class Parameters:
+class ParameterClient:
     """bytewise: whether integers travel as their bytes (PX4), or as the float next to them (ArduPilot)."""
 
     def __init__(self, wire: Wire) -> None:
         self._wire = wire
         self.bytewise = True
-        self._wanted: list[Wanted] = []
+        self._wanted: list[RequestedParameter] = []
 
     def handlers(self) -> dict[int, Callable[[Any], None]]:
         return {mav.MAVLINK_MSG_ID_PARAM_VALUE: self._on_value, mav.MAVLINK_MSG_ID_PARAM_ERROR: self._on_error}
@@ -77,11 +77,11 @@ class Parameters:
             wanted = _number(name, value) if value else None
             _check_name(name)
             if len(self._wanted) >= WAITING_MOST:
-                raise Refused(f"{WAITING_MOST} parameters are being asked for already: ask again later, and less often")
-        except Refused as refused:
+                raise OutOfLimits(f"{WAITING_MOST} parameters are being asked for already: ask again later, and less often")
+        except OutOfLimits as refused:
             done(ParamReply(accepted=False, reason=str(refused)))
             return
-        self._wanted.append(Wanted(name, wanted, done))
+        self._wanted.append(RequestedParameter(name, wanted, done))
         self.tick()
 
     def tick(self) -> None:
@@ -91,7 +91,7 @@ class Parameters:
             elif not wanted.why and self._wire.t - wanted.sent_at > AGAIN_AFTER:
                 self._try(wanted)
 
-    def _try(self, wanted: Wanted) -> None:
+    def _try(self, wanted: RequestedParameter) -> None:
         if wanted.tries >= TRIES:
             self._end(wanted, ParamReply(accepted=False, reason=f"{wanted.name}: no answer; the autopilot may have none of this name"))
             return
@@ -109,13 +109,13 @@ class Parameters:
             try:
                 value = self._decoded(message.param_value, message.param_type)
                 self._check(wanted.value, message.param_type)
-            except Refused as refused:
+            except OutOfLimits as refused:
                 self._end(wanted, ParamReply(accepted=False, reason=f"{name}: {refused}"))
             else:
                 self._compare(wanted, message.param_type, value)
         self.tick()
 
-    def _compare(self, wanted: Wanted, kind: int, value: Value) -> None:
+    def _compare(self, wanted: RequestedParameter, kind: int, value: Value) -> None:
         """What the autopilot has now, with what it shall have."""
         known, wanted.kind = wanted.kind is not None, kind
         if wanted.value is None or (known and _same(value, wanted.value)):
@@ -137,11 +137,11 @@ class Parameters:
             return
         low, high = LIMITS[kind]
         if not low <= value <= high:
-            raise Refused(f"{value:g} is not within {low:g} and {high:g}, all that a parameter of its type can be")
+            raise OutOfLimits(f"{value:g} is not within {low:g} and {high:g}, all that a parameter of its type can be")
         if kind in INTEGER and value != int(value):
-            raise Refused(f"{value:g} is no whole number")
+            raise OutOfLimits(f"{value:g} is no whole number")
         if kind in INTEGER and not self.bytewise and abs(value) > WHOLE_FLOAT and struct.unpack("<f", struct.pack("<f", value))[0] != value:
-            raise Refused(f"{value:.0f} cannot be told to this autopilot, which takes whole numbers as 32-bit floats")
+            raise OutOfLimits(f"{value:.0f} cannot be told to this autopilot, which takes whole numbers as 32-bit floats")
 
     def _coded(self, value: Value, kind: int) -> float:
         """Of a value that has been checked."""
@@ -153,16 +153,16 @@ class Parameters:
     def _decoded(self, value: float, kind: int) -> Value:
         """What the autopilot means. Raises Refused when that is no number."""
         if kind not in LIMITS:
-            raise Refused(f"the autopilot tells it as one of type {kind}, which the bridge does not know")
+            raise OutOfLimits(f"the autopilot tells it as one of type {kind}, which the bridge does not know")
         if kind in INTEGER and self.bytewise:
             whole: int = struct.unpack(INTEGER[kind], struct.pack("<f", value))[0]
             return whole
         low, high = LIMITS[kind]
         if not low <= value <= high:
-            raise Refused(f"the autopilot tells {value:g}, which is no number of its type")
+            raise OutOfLimits(f"the autopilot tells {value:g}, which is no number of its type")
         return round(value) if kind in INTEGER else value
 
-    def _end(self, wanted: Wanted, reply: ParamReply) -> None:
+    def _end(self, wanted: RequestedParameter, reply: ParamReply) -> None:
         self._wanted.remove(wanted)
         wanted.done(reply)
 
@@ -180,14 +180,14 @@ def _number(name: str, text: str) -> Value:
         except ValueError:
             value = None
     if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
-        raise Refused(f"{legible(name, NAME_BYTES)}: {legible(text, NUMBER_LETTERS)} is no number")
+        raise OutOfLimits(f"{legible(name, NAME_BYTES)}: {legible(text, NUMBER_LETTERS)} is no number")
     return value
 
 
 def _check_name(name: str) -> None:
     """Raises Refused."""
     if not name or len(name) > NAME_BYTES or not (name.isascii() and name.isprintable()):
-        raise Refused("name one parameter of the autopilot, of at most 16 letters")
+        raise OutOfLimits("name one parameter of the autopilot, of at most 16 letters")
 
 
 def _name(raw: str | bytes) -> str:

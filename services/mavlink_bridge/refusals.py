@@ -9,7 +9,7 @@ KINDS_MOST = 50
 MEND = "the bridge goes on without it; look at what the autopilot sends"
 
 
-class Refusals:
+class LinkRefusals:
     def __init__(self, say: Callable[[Event.Severity, str], None]) -> None:
         self.counts: Counter[str] = Counter()
         """By what is refused: messages, or parts of them."""

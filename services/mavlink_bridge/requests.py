@@ -25,9 +25,9 @@ from schemas.messages import (
     SetCurrentRequest,
 )
 from services.mavlink_bridge.autopilot import Autopilot
-from services.mavlink_bridge.commands import ANSWER_WITHIN, NAN, Command, command
+from services.mavlink_bridge.commands import ANSWER_WITHIN, NAN, PendingCommand, command
 from services.mavlink_bridge.frame import Chart
-from services.mavlink_bridge.limits import Refused, amsl, where
+from services.mavlink_bridge.limits import OutOfLimits, amsl, where
 from services.mavlink_bridge.wire import Done
 from uvf.mavlink import dialect as mav
 from uvf.runtime.contract.service import Later
@@ -69,7 +69,7 @@ class Requests:
         else:
             try:
                 HANDLERS[type(request)](self._autopilot, request, done)
-            except Refused as refused:
+            except OutOfLimits as refused:
                 done(False, str(refused))
         self._open.append((self._autopilot.wire.t + ANSWER_WITHIN, later, kind))
         return later
@@ -102,7 +102,7 @@ def arm(autopilot: Autopilot, armed: bool, force: bool, done: Done) -> None:
     _send(autopilot, command(mav.MAV_CMD_COMPONENT_ARM_DISARM, p, done), not armed)
 
 
-def _send(autopilot: Autopilot, asked: Command, first: bool) -> None:
+def _send(autopilot: Autopilot, asked: PendingCommand, first: bool) -> None:
     if first:
         autopilot.commands.ask_first(asked)
     else:
@@ -115,7 +115,7 @@ def _arm(autopilot: Autopilot, request: ArmRequest, done: Done) -> None:
 
 def _mode(autopilot: Autopilot, request: ModeRequest, done: Done) -> None:
     if request.mode not in Mode.values():
-        raise Refused(f"there is no mode {request.mode}: name one of {', '.join(map(mode_name, Mode.values()[1:]))}")
+        raise OutOfLimits(f"there is no mode {request.mode}: name one of {', '.join(map(mode_name, Mode.values()[1:]))}")
     set_mode(autopilot, request.mode, done)
 
 
@@ -127,7 +127,9 @@ def _current(autopilot: Autopilot, request: SetCurrentRequest, done: Done) -> No
     mission = autopilot.plans.mission
     last = len(mission.items) - 1 if mission is not None else LAST_ITEM - autopilot.first
     if request.index > last:
-        raise Refused(f"there is no mission item {request.index}: " + (f"the last one is {last}" if last >= 0 else "there is no mission"))
+        raise OutOfLimits(
+            f"there is no mission item {request.index}: " + (f"the last one is {last}" if last >= 0 else "there is no mission")
+        )
     seq = float(request.index + autopilot.first)
     autopilot.commands.ask(command(mav.MAV_CMD_DO_SET_MISSION_CURRENT, (seq, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), done))
 
@@ -167,7 +169,7 @@ def _flyable(speed: float) -> float:
 def _within(what: str, value: float, low: float, high: float, unit: str) -> float:
     """Raises Refused."""
     if not low <= value <= high:
-        raise Refused(f"{what} of {value:g} {unit}: name one from {low:g} to {high:g} {unit}")
+        raise OutOfLimits(f"{what} of {value:g} {unit}: name one from {low:g} to {high:g} {unit}")
     return value
 
 

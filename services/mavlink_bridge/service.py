@@ -8,35 +8,44 @@ from google.protobuf.message import Message
 from schemas import topics
 from schemas.messages import (
     ArmRequest,
+    Battery,
     CancelRequest,
     Clock,
     Event,
+    Fence,
     FenceRequest,
     FrameTransform,
+    Gnss,
     GoalRequest,
     GoAroundRequest,
     Guest,
+    Mission,
+    MissionProgress,
     MissionRequest,
     ModeRequest,
     NavState,
     OrbitRequest,
     OrderRequest,
+    ParamReply,
     ParamRequest,
     Pose,
     PoseInFrame,
+    RallyPoints,
     RallyRequest,
+    Reply,
     SetCurrentRequest,
     Vector3,
+    VehicleStatus,
 )
 from services.mavlink_bridge.autopilot import Autopilot
-from services.mavlink_bridge.frame import Origin
+from services.mavlink_bridge.frame import BridgeOrigin
 from services.mavlink_bridge.requests import Requests
 from services.mavlink_bridge.station import Station
 from services.mavlink_bridge.stopping import Stopping
 from uvf.mavlink.names import enum_name
-from uvf.runtime.contract.service import Later, Service, optional, stop_all
+from uvf.runtime.contract.declaration import Reads, Writes, optional, replies, request, stop_all, topic
+from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import stamp
-from uvf.runtime.messages.outputs import Outputs
 from uvf.runtime.state.stop_all import StopStatus
 from uvf.sensors.sampling import Due
 
@@ -50,37 +59,50 @@ class BridgedVehicle(Service):
     name = "mavlink_bridge"
     hz = 50.0
     clock = "wall"
-    inputs = {"clock": optional(topics.CLOCK), "stop": stop_all()}
-    outputs = {
-        "nav_state": topics.NAV_STATE,
-        "pose": topics.POSE,
-        "body_frame": topics.TF_BODY,
-        "status": topics.STATUS,
-        "gnss": topics.GNSS,
-        "battery": topics.BATTERY,
-        "mission": topics.MISSION,
-        "fence": topics.FENCE,
-        "rally": topics.RALLY,
-        "progress": topics.PROGRESS,
-        "events": topics.EVENTS.by(SOURCE),
-        "guest": topics.GUEST,
-    }
-    requests = {
-        "arm": topics.ARM,
-        "set_mode": topics.SET_MODE,
-        "set_mission": topics.SET_MISSION,
-        "set_current": topics.SET_CURRENT,
-        "set_fence": topics.SET_FENCE,
-        "set_rally": topics.SET_RALLY,
-        "goal": topics.GOAL,
-        "orbit": topics.ORBIT,
-        "go_around": topics.GO_AROUND,
-        "order": topics.ORDER,
-        "cancel": topics.CANCEL,
-        "param": topics.PARAM.by("autopilot"),
-    }
 
-    def __init__(self, vehicle: str, system: int, station: Station, origin: Origin, guest: Guest) -> None:
+    class Inputs(Reads):
+        clock: Clock | None = optional(topics.CLOCK)
+        stop: StopStatus = stop_all()
+        arm: list[ArmRequest] = request(topics.ARM)
+        set_mode: list[ModeRequest] = request(topics.SET_MODE)
+        set_mission: list[MissionRequest] = request(topics.SET_MISSION)
+        set_current: list[SetCurrentRequest] = request(topics.SET_CURRENT)
+        set_fence: list[FenceRequest] = request(topics.SET_FENCE)
+        set_rally: list[RallyRequest] = request(topics.SET_RALLY)
+        goal: list[GoalRequest] = request(topics.GOAL)
+        orbit: list[OrbitRequest] = request(topics.ORBIT)
+        go_around: list[GoAroundRequest] = request(topics.GO_AROUND)
+        order: list[OrderRequest] = request(topics.ORDER)
+        cancel: list[CancelRequest] = request(topics.CANCEL)
+        param: list[ParamRequest] = request(topics.PARAM.by("autopilot"))
+
+    class Outputs(Writes):
+        nav_state: NavState | None = topic(topics.NAV_STATE)
+        pose: PoseInFrame | None = topic(topics.POSE)
+        body_frame: FrameTransform | None = topic(topics.TF_BODY)
+        status: VehicleStatus | None = topic(topics.STATUS)
+        gnss: Gnss | None = topic(topics.GNSS)
+        battery: Battery | None = topic(topics.BATTERY)
+        mission: Mission | None = topic(topics.MISSION)
+        fence: Fence | None = topic(topics.FENCE)
+        rally: RallyPoints | None = topic(topics.RALLY)
+        progress: MissionProgress | None = topic(topics.PROGRESS)
+        events: list[Event] | None = topic(topics.EVENTS.by(SOURCE))
+        guest: Guest | None = topic(topics.GUEST)
+        arm: list[Reply] = replies(topics.ARM)
+        set_mode: list[Reply] = replies(topics.SET_MODE)
+        set_mission: list[Reply] = replies(topics.SET_MISSION)
+        set_current: list[Reply] = replies(topics.SET_CURRENT)
+        set_fence: list[Reply] = replies(topics.SET_FENCE)
+        set_rally: list[Reply] = replies(topics.SET_RALLY)
+        goal: list[Reply] = replies(topics.GOAL)
+        orbit: list[Reply] = replies(topics.ORBIT)
+        go_around: list[Reply] = replies(topics.GO_AROUND)
+        order: list[Reply] = replies(topics.ORDER)
+        cancel: list[Reply] = replies(topics.CANCEL)
+        param: list[ParamReply] = replies(topics.PARAM.by("autopilot"))
+
+    def __init__(self, vehicle: str, system: int, station: Station, origin: BridgeOrigin, guest: Guest) -> None:
         """guest: how others may draw it."""
         self._vehicle = vehicle
         self._system, self._origin = system, origin
@@ -110,42 +132,25 @@ class BridgedVehicle(Service):
         words = f"system {self._system} is another autopilot now: {firmware}, {kind}, component {component}"
         self._autopilot.events = [*before.events, (Event.WARNING, words)]
 
-    def step(
-        self,
-        t: float,
-        clock: Clock | None,
-        stop: StopStatus,
-        arm: Sequence[ArmRequest],
-        set_mode: Sequence[ModeRequest],
-        set_mission: Sequence[MissionRequest],
-        set_current: Sequence[SetCurrentRequest],
-        set_fence: Sequence[FenceRequest],
-        set_rally: Sequence[RallyRequest],
-        goal: Sequence[GoalRequest],
-        orbit: Sequence[OrbitRequest],
-        go_around: Sequence[GoAroundRequest],
-        order: Sequence[OrderRequest],
-        cancel: Sequence[CancelRequest],
-        param: Sequence[ParamRequest],
-    ) -> Outputs:
+    def step(self, t: float, now: Inputs) -> Outputs:
         """``t`` [s]: wall time since the start."""
-        now = clock.t_ns * 1e-9 if clock is not None else t
-        if clock is not None and clock.epoch != self._epoch:
-            self._epoch = clock.epoch
+        sim_time = now.clock.t_ns * 1e-9 if now.clock is not None else t
+        if now.clock is not None and now.clock.epoch != self._epoch:
+            self._epoch = now.clock.epoch
             self._autopilot.plans.tell_again()
         if self._station.autopilots[self._system].identity != self._identity:
             self._meet_another(t)
         self._autopilot.step(t, self._station.fetch(self._system))
-        self._stop = stop
-        self._stopping.heed(stop)
-        self._requests.stopped = stop.who
-        asked: dict[str, Asked] = {"arm": arm, "set_mode": set_mode, "set_mission": set_mission, "set_current": set_current}
-        asked |= {"set_fence": set_fence, "set_rally": set_rally, "goal": goal, "orbit": orbit, "go_around": go_around}
-        asked |= {"order": order, "cancel": cancel, "param": param}
-        replies: dict[str, list[Later[Any]]] = {name: [self._requests.ask(one) for one in each] for name, each in asked.items()}
+        self._stop = now.stop
+        self._stopping.heed(now.stop)
+        self._requests.stopped = now.stop.who
+        replies = {name: [self._requests.ask(one) for one in getattr(now, name)] for name in self.requests}
         self._requests.tick()
         self._station.send(self._system, self._autopilot.wire.take_out())
-        return {**replies, **self._told(t, now)}
+        out = self.Outputs()
+        out.update(replies)
+        out.update(self._told(t, sim_time))
+        return out
 
     def _told(self, t: float, now: float) -> dict[str, Any]:
         """What there is to say, each stamped with ``now`` [s]."""

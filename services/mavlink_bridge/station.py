@@ -6,7 +6,7 @@ from typing import Any
 
 from uvf.mavlink import dialect as mav
 from uvf.mavlink.codec import Codec
-from uvf.mavlink.endpoint import Link, Peer
+from uvf.mavlink.endpoint import DatagramLink, Peer
 
 SYSTEM, COMPONENT = 255, mav.MAV_COMP_ID_UDP_BRIDGE
 """Who the bridge is on the link: a ground station, as far as the autopilot's failsafes are concerned."""
@@ -33,7 +33,7 @@ NO_VEHICLES = {
 
 
 @dataclass
-class Autopilot:
+class HeardAutopilot:
     """One system at the address; its id may be anybody's again once it has been silent."""
 
     system: int
@@ -58,8 +58,8 @@ class Autopilot:
 class Station:
     """Shared by all vehicles at one address."""
 
-    def __init__(self, link: Link) -> None:
-        self.autopilots: dict[int, Autopilot] = {}
+    def __init__(self, link: DatagramLink) -> None:
+        self.autopilots: dict[int, HeardAutopilot] = {}
         """By system id."""
         self.expected: frozenset[int] = frozenset()
         """Ids that are taken however many others there are."""
@@ -100,7 +100,7 @@ class Station:
         if is_heartbeat and known is None and is_autopilot(message) and system not in (0, SYSTEM):
             if len(self.autopilots) >= AUTOPILOTS_MOST and system not in self.expected:
                 return self._refuse(system)
-            known = self.autopilots[system] = Autopilot(system, component, peer, message, t, t)  # type: ignore[arg-type]
+            known = self.autopilots[system] = HeardAutopilot(system, component, peer, message, t, t)  # type: ignore[arg-type]
         is_other = known is not None and component != known.component
         replaces = is_heartbeat and is_autopilot(message) and (component == mav.MAV_COMP_ID_AUTOPILOT1 or (known and known.is_lost(t)))
         if known is None or (is_other and not replaces):

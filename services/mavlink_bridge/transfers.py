@@ -45,7 +45,7 @@ class Download:
 
 
 @dataclass
-class Upload:
+class UploadTransfer:
     kind: int
     items: Sequence[Body]
     done: Callable[[bool, str, int], None]
@@ -69,7 +69,7 @@ class Transfers:
 
     def __init__(self, wire: Wire) -> None:
         self._wire = wire
-        self._queue: deque[Download | Upload] = deque()
+        self._queue: deque[Download | UploadTransfer] = deque()
 
     def handlers(self) -> dict[int, Callable[[Any], None]]:
         return {
@@ -91,7 +91,7 @@ class Transfers:
         elif len(self._queue) >= WAITING_MOST:
             done(False, f"{WAITING_MOST} plans are being read or written already: ask again later, and less often", 0)
         else:
-            self._queue.append(Upload(kind, items, done, self._wire.t))
+            self._queue.append(UploadTransfer(kind, items, done, self._wire.t))
             self.tick()
 
     def give_up(self, reason: str) -> None:
@@ -148,7 +148,7 @@ class Transfers:
         job.done(job.items, "", job.opaque_id)
         self.tick()
 
-    def _push(self, job: Upload) -> None:
+    def _push(self, job: UploadTransfer) -> None:
         now = self._wire.t
         if job.refused:
             words = self._wire.worry_since(job.begun)
@@ -163,7 +163,7 @@ class Transfers:
         elif now - job.got_on_at > STANDS_FOR:
             self._fail(job, f"for {STANDS_FOR:g} s the autopilot has asked for no item after item {job.farthest}")
 
-    def _announce(self, job: Upload) -> None:
+    def _announce(self, job: UploadTransfer) -> None:
         """The count, or that there shall be no plan; again until the autopilot answers."""
         if job.tries and self._wire.t - job.sent_at < LIST_AGAIN - 1e-9:
             return
@@ -182,7 +182,7 @@ class Transfers:
 
     def _on_request(self, message: mav.MAVLink_mission_request_int_message) -> None:
         """Any item, in any order and as often as it is wanted."""
-        job = self._current(Upload, message)
+        job = self._current(UploadTransfer, message)
         if job is None or job.refused or message.seq >= len(job.items):
             return
         job.asked_at = self._wire.t
@@ -199,7 +199,7 @@ class Transfers:
         if reading is not None and message.type != mav.MAV_MISSION_ACCEPTED:
             self._fail(reading, RESULTS.get(message.type, f"result {message.type}"))
             return
-        job = self._current(Upload, message)
+        job = self._current(UploadTransfer, message)
         if job is None or job.refused:
             return
         if message.type != mav.MAV_MISSION_ACCEPTED:
@@ -211,7 +211,7 @@ class Transfers:
             job.done(True, "", message.opaque_id)
             self.tick()
 
-    def _look_what_became(self, job: Upload) -> None:
+    def _look_what_became(self, job: UploadTransfer) -> None:
         """The last word was lost, perhaps: what the autopilot has now says it."""
 
         def seen(items: list[Body] | None, reason: str, opaque_id: int) -> None:
@@ -230,12 +230,12 @@ class Transfers:
     def _ack(self, kind: int, result: int) -> None:
         self._wire.send(mav.MAVLink_mission_ack_message(self._wire.system, self._wire.component, result, kind, 0))
 
-    def _fail(self, job: Download | Upload, reason: str) -> None:
+    def _fail(self, job: Download | UploadTransfer, reason: str) -> None:
         self._queue.popleft()
         self._tell(job, reason)
         self.tick()
 
-    def _tell(self, job: Download | Upload, reason: str) -> None:
+    def _tell(self, job: Download | UploadTransfer, reason: str) -> None:
         if isinstance(job, Download):
             job.done(None, reason, 0)
         else:

@@ -35,7 +35,7 @@ def _joined(parts: dict[int, bytes]) -> bytes:
 
 
 @dataclass(frozen=True)
-class Text:
+class StatusText:
     t: float
     severity: int
     text: str
@@ -48,7 +48,7 @@ class Wire:
         self.t = 0.0
         self.system, self.component = system, component
         self.outbox: list[mav.MAVLink_message] = []
-        self.texts: list[Text] = []
+        self.texts: list[StatusText] = []
         """The newest ones, oldest first."""
         self._parts: dict[int, tuple[float, int, dict[int, bytes]]] = {}
         """By id: when it began, its severity, its chunks by number."""
@@ -60,7 +60,7 @@ class Wire:
         out, self.outbox = self.outbox, []
         return out
 
-    def hear_text(self, message: mav.MAVLink_statustext_message) -> list[Text]:
+    def hear_text(self, message: mav.MAVLink_statustext_message) -> list[StatusText]:
         """A whole text, once its last chunk is there; and what it has pushed out."""
         raw = message.text.encode("utf-8", "replace") if isinstance(message.text, str) else bytes(message.text)
         part = raw.split(b"\0")[0]
@@ -76,16 +76,16 @@ class Wire:
             return said
         return [*said, self._said(severity, _joined(parts))]
 
-    def unfinished_texts(self) -> list[Text]:
+    def unfinished_texts(self) -> list[StatusText]:
         """Those whose end has not come in time, as far as they have: the gravest words are often the longest, on the worst links."""
         return [self._broken_off(id) for id in [id for id, (begun, *_) in self._parts.items() if self.t - begun > CHUNKS_WITHIN]]
 
-    def _broken_off(self, id: int) -> Text:
+    def _broken_off(self, id: int) -> StatusText:
         _, severity, parts = self._parts.pop(id)
         return self._said(severity, _joined(parts) + GAP)
 
-    def _said(self, severity: int, raw: bytes) -> Text:
-        text = Text(self.t, severity, legible(raw.decode("utf-8", "replace"), TEXT_LETTERS))
+    def _said(self, severity: int, raw: bytes) -> StatusText:
+        text = StatusText(self.t, severity, legible(raw.decode("utf-8", "replace"), TEXT_LETTERS))
         self.texts = [old for old in self.texts[-TEXTS_MOST + 1 :] if self.t - old.t < TEXT_KEPT] + [text]
         return text
 

@@ -7,16 +7,16 @@ from services.planner.tracker_service import TrackerParams, TrackerService
 from uvf.maths.rotations import from_euler
 from uvf.maths.se2 import Pose2
 from uvf.maths.se3 import Transform
-from uvf.models.scenario import Member, Site
+from uvf.models.scenario import MissionVehicle, Scenario
 from uvf.models.yaml_data import BadInput
 from uvf.planning.collision_check import safe_share
-from uvf.planning.costmap import Body
-from uvf.planning.navigator import Navigator
-from uvf.runtime.contract.instances import Host
+from uvf.planning.costmap import RobotFootprint
+from uvf.planning.navigator import GlobalPlanner
+from uvf.runtime.contract.instances import ServiceInstance
 from uvf.sensors.fitted import sweeping_of
 
 
-def build(site: Site) -> list[Host]:
+def build(site: Scenario) -> list[ServiceInstance]:
     """Raises BadInput for a vehicle without lidar."""
     members = list(site.of_kind("ground"))
     if members:
@@ -24,7 +24,7 @@ def build(site: Site) -> list[Host]:
     return [host for member in members for host in _hosts(member)]
 
 
-def _hosts(member: Member) -> list[Host]:
+def _hosts(member: MissionVehicle) -> list[ServiceInstance]:
     start, body, lidar = member.entry.start, member.file.ground, member.file.sensors.lidar
     if body is None or lidar is None:
         raise BadInput(f"{member.folder / 'vehicle.yaml'}: the planner needs 'ground:' and sensors: lidar")
@@ -33,14 +33,16 @@ def _hosts(member: Member) -> list[Host]:
     planner = member.params("planner", PlannerParams)
     tracker = member.params("tracker", TrackerParams)
     return [
-        Host(PlannerService, lambda: PlannerService(world_from_map, body.radius, member.entry.job.explore, planner), member.name),
-        Host(TrackerService, lambda: TrackerService(body, base_from_lidar, tracker, sweeping_of(lidar)), member.name),
+        ServiceInstance(
+            PlannerService, lambda: PlannerService(world_from_map, body.radius, member.entry.job.explore, planner), member.name
+        ),
+        ServiceInstance(TrackerService, lambda: TrackerService(body, base_from_lidar, tracker, sweeping_of(lidar)), member.name),
     ]
 
 
 def _warm_up() -> None:
     """Compiles the kernels, or loads them from their cache, before the first step."""
-    navigator = Navigator(Body(0.1, 0.3, 2.0))
+    navigator = GlobalPlanner(RobotFootprint(0.1, 0.3, 2.0))
     navigator.see(np.zeros((20, 20), dtype=np.int8), (0.05, (0.0, 0.0)))
     navigator.plan((0.2, 0.2), (0.8, 0.8))
     navigator.refusal((0.2, 0.2), (0.8, 0.8))

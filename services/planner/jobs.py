@@ -26,7 +26,7 @@ class Job:
     yaw: float | None = None
 
     @property
-    def bold(self) -> bool:
+    def allow_unknown(self) -> bool:
         """Whether unknown ground may be crossed: the mission's author and the way home know more than the map."""
         return self.name in ("mission", "return")
 
@@ -35,7 +35,7 @@ class Job:
 class Orders:
     """haven: where the way back leads [m, world]; explores: what it does when nothing else is to be done."""
 
-    haven: Point
+    return_point: Point
     explores: bool
 
 
@@ -53,7 +53,7 @@ def mission_target(mission: Mission | None, progress: MissionProgress | None, ho
     return home if item.kind == MissionItem.RETURN else (item.position.x, item.position.y)
 
 
-class Havens:
+class ReturnPoints:
     """Where mode Return leads: the nearest of home and rally points when it begins; it does not change on the way."""
 
     def __init__(self) -> None:
@@ -70,7 +70,7 @@ class Havens:
 def choose(status: VehicleStatus | None, goal: Goal | None, target: Point | None, orders: Orders) -> Job:
     """target: of the mission's current item, if there is one."""
     if status is not None and status.mode == Mode.MODE_RETURN:
-        return Job("return", orders.haven)
+        return Job("return", orders.return_point)
     if goal is not None:
         return Job("goal", goal.point, goal.yaw)
     if target is not None:

@@ -27,19 +27,19 @@ from schemas.messages import (
     Vector3,
     VehicleStatus,
 )
-from services.planner.jobs import IDLE, Goal, Havens, Job, Orders, choose, home_of, mission_target, not_now
+from services.planner.jobs import IDLE, Goal, Job, Orders, ReturnPoints, choose, home_of, mission_target, not_now
 from uvf.maths.rotations import wrap
 from uvf.maths.se2 import IDENTITY, Pose2, compose, inverse, transform
 from uvf.models.params import Params
-from uvf.planning.costmap import Body
+from uvf.planning.costmap import RobotFootprint
 from uvf.planning.exploration import Explorer, Patrol
-from uvf.planning.frontiers import Taste
-from uvf.planning.navigator import Navigator, Plan
+from uvf.planning.frontiers import FrontierWeights
+from uvf.planning.navigator import GlobalPlanner, PlannedPath
 from uvf.planning.smoothing import length
-from uvf.runtime.contract.service import Answer, Service, optional
+from uvf.runtime.contract.declaration import Reads, Writes, answers, call, optional, replies, request, topic
+from uvf.runtime.contract.service import Answer, Service
 from uvf.runtime.messages.convert import occupancy_cells, planar_pose, pose2_of, seconds, stamp
 from uvf.runtime.messages.fences import fencing
-from uvf.runtime.messages.outputs import Outputs
 
 Floats = NDArray[np.float64]
 Point = tuple[float, float]
@@ -52,14 +52,14 @@ TRIES = 3  # at a place of the mission or the way home, before the vehicle holds
 
 class PlannerParams(Params, frozen=True):
     margin: Positive = 0.03  # m kept from obstacles beyond the vehicle's radius
-    comfort: Positive = 0.35  # m from obstacles at which a way is no dearer
-    dislike: Annotated[float, Meta(ge=1)] = 6.0  # cost of a way right along an obstacle
+    inflation_radius: Positive = 0.35  # m from obstacles at which a way is no dearer
+    cost_scaling_factor: Annotated[float, Meta(ge=1)] = 6.0  # cost of a way right along an obstacle
     goal_tolerance: Positive = 0.12  # m
     look_tolerance: Positive = 0.3  # m, for frontiers, which only have to be seen
     wait_at_goal: Annotated[float, Meta(ge=0)] = 5.0  # s after a person's goal is reached or cancelled, before the job goes on
     patience: Positive = 8.0  # s without getting anywhere, before the goal is given up
-    least_frontier: Annotated[int, Meta(ge=1)] = 6  # cells
-    frontier_worth: Annotated[float, Meta(ge=0)] = 0.5  # cells of way
+    min_frontier_size: Annotated[int, Meta(ge=1)] = 6  # cells
+    frontier_gain: Annotated[float, Meta(ge=0)] = 0.5  # cells of way
 
 
 class PlannerService(Service):
@@ -68,19 +68,30 @@ class PlannerService(Service):
     name = "planner"
     hz = 4.0
     given_up = "the vehicle stands where it would drive by itself"
-    inputs = {
-        "pose": topics.POSE,
-        "map": topics.MAP,
-        "status": optional(topics.STATUS),
-        "mission": optional(topics.MISSION),
-        "progress": optional(topics.PROGRESS),
-        "bounds": optional(topics.FENCE),
-        "rally": optional(topics.RALLY),
-    }
-    outputs = {"path": topics.PATH, "nav_status": topics.NAV_STATUS, "events": topics.EVENTS.by("planner")}
-    requests = {"goal": topics.GOAL, "cancel": topics.CANCEL}
-    calls = {"set_mode": topics.SET_MODE}
-    recalls = {"nav_status": topics.NAV_STATUS}
+
+    class Inputs(Reads):
+        pose: PoseInFrame = topic(topics.POSE)
+        map: Grid = topic(topics.MAP)
+        status: VehicleStatus | None = optional(topics.STATUS)
+        mission: Mission | None = optional(topics.MISSION)
+        progress: MissionProgress | None = optional(topics.PROGRESS)
+        bounds: Fence | None = optional(topics.FENCE)
+        rally: RallyPoints | None = optional(topics.RALLY)
+        goal: list[GoalRequest] = request(topics.GOAL)
+        cancel: list[CancelRequest] = request(topics.CANCEL)
+        set_mode: list[Answer[ModeRequest, Reply]] = answers(topics.SET_MODE)
+
+    class Outputs(Writes):
+        path: PosesInFrame | None = topic(topics.PATH)
+        nav_status: NavStatus | None = topic(topics.NAV_STATUS)
+        events: list[Event] | None = topic(topics.EVENTS.by("planner"))
+        goal: list[Reply] = replies(topics.GOAL)
+        cancel: list[Reply] = replies(topics.CANCEL)
+        set_mode: list[ModeRequest] = call(topics.SET_MODE)
+
+    class Recalls(Reads):
+        nav_status: NavStatus | None = topic(topics.NAV_STATUS)
+
     params: PlannerParams
 
     def __init__(self, world_from_map: Pose2, radius: float, explores: bool, params: PlannerParams) -> None:
@@ -88,16 +99,16 @@ class PlannerService(Service):
         self._world_from_map = world_from_map
         self._map_from_world = inverse(world_from_map)
         self._explores = explores
-        self._havens = Havens()
+        self._return_points = ReturnPoints()
         self._radius = radius
-        self._navigator = Navigator(self._body)
+        self._navigator = GlobalPlanner(self._body)
         self._explorer = Explorer(self._taste)
         self._patrol = Patrol()
         self._map_stamp = -1.0
         self._job: Job = IDLE
         self._goal: Goal | None = None
         self._target: Point | None = None
-        self._plan = Plan(None)
+        self._plan = PlannedPath(None)
         self._planned_at = -np.inf
         self._ended_at: float | None = None
         """When a person's goal was reached or cancelled, as ``_ending`` says."""
@@ -110,60 +121,58 @@ class PlannerService(Service):
         self._events: list[Event] = []
         self._bounds: Fence | None = None
 
-    def step(
-        self,
-        t: float,
-        pose: PoseInFrame,
-        map: Grid,
-        status: VehicleStatus | None,
-        mission: Mission | None,
-        progress: MissionProgress | None,
-        bounds: Fence | None,
-        rally: RallyPoints | None,
-        goal: list[GoalRequest],
-        cancel: list[CancelRequest],
-        set_mode: list[Answer[ModeRequest, Reply]],
-    ) -> Outputs:
-        here = compose(self._map_from_world, pose2_of(pose.pose))
+    def step(self, t: float, now: Inputs) -> Outputs:
+        here = compose(self._map_from_world, pose2_of(now.pose.pose))
         self._explorer.taste = self._taste
-        self._bounds = bounds
-        changed = self._navigator.fit(self._body) | self._take_map(map)
-        replies: dict[str, list[Reply]] = {"goal": self._ask_all(t, here, goal, status)}
-        home = home_of(status) or self._world_from_map[:2]
-        haven = self._havens.step(status, (pose.pose.position.x, pose.pose.position.y), home, rally)
-        job = choose(status, self._goal, mission_target(mission, progress, home), Orders(haven, self._explores))
+        self._bounds = now.bounds
+        changed = self._navigator.fit(self._body) | self._take_map(now.map)
+        goal_replies = self._ask_all(t, here, now.goal, now.status)
+        home = home_of(now.status) or self._world_from_map[:2]
+        return_point = self._return_points.step(now.status, (now.pose.pose.position.x, now.pose.pose.position.y), home, now.rally)
+        job = choose(now.status, self._goal, mission_target(now.mission, now.progress, home), Orders(return_point, self._explores))
         if job != self._job:
             self._begin(t, job)
             changed = True
-        replies["cancel"] = [self._cancel(t, request) for request in cancel]
+        cancel_replies = [self._cancel(t, request) for request in now.cancel]
         failed = self._plan.path is None and t - self._planned_at >= REPLAN_PERIOD
         if self._ended_at is None and (changed or failed):
             self._replan(t, here)
-        self._watch(t, here, status)
+        self._watch(t, here, now.status)
         events, self._events = self._events, []
         asks, self._asks = self._asks, []
-        return {"path": self._path(t), "nav_status": self._nav_status(t, here), "events": events, "set_mode": asks, **replies}
+        return self.Outputs(
+            path=self._path(t),
+            nav_status=self._nav_status(t, here),
+            events=events,
+            set_mode=asks,
+            goal=goal_replies,
+            cancel=cancel_replies,
+        )
 
-    def recall(self, nav_status: NavStatus | None = None) -> None:
+    def recall(self, left: Recalls) -> None:
         """A person's goal that was being driven to is still wanted; its heading is not told."""
-        if nav_status is not None and nav_status.job == "goal" and nav_status.state not in (NavStatus.REACHED, NavStatus.CANCELLED):
-            self._goal = Goal((nav_status.goal.x, nav_status.goal.y))
+        if (
+            left.nav_status is not None
+            and left.nav_status.job == "goal"
+            and left.nav_status.state not in (NavStatus.REACHED, NavStatus.CANCELLED)
+        ):
+            self._goal = Goal((left.nav_status.goal.x, left.nav_status.goal.y))
 
     def stale(self, t: float, missing: tuple[str, ...]) -> Outputs:
         """Without a fresh pose or a map there is no path: the tracker stands still."""
         reason = f"waiting for {', '.join(missing)}"
-        return {
-            "path": PosesInFrame(timestamp=stamp(t), frame_id="world"),
-            "nav_status": NavStatus(timestamp=stamp(t), state=NavStatus.IDLE, job=self._job.name, reason=reason),
-        }
+        return self.Outputs(
+            path=PosesInFrame(timestamp=stamp(t), frame_id="world"),
+            nav_status=NavStatus(timestamp=stamp(t), state=NavStatus.IDLE, job=self._job.name, reason=reason),
+        )
 
     @property
-    def _body(self) -> Body:
-        return Body(self._radius + self.params.margin, self.params.comfort, self.params.dislike)
+    def _body(self) -> RobotFootprint:
+        return RobotFootprint(self._radius + self.params.margin, self.params.inflation_radius, self.params.cost_scaling_factor)
 
     @property
-    def _taste(self) -> Taste:
-        return Taste(self.params.least_frontier, FRONTIER_VIEW, self.params.frontier_worth)
+    def _taste(self) -> FrontierWeights:
+        return FrontierWeights(self.params.min_frontier_size, FRONTIER_VIEW, self.params.frontier_gain)
 
     def _take_map(self, grid: Grid) -> bool:
         taken_at = seconds(grid.timestamp)
@@ -213,7 +222,7 @@ class PlannerService(Service):
     def _end(self, t: float, ending: NavStatus.State, reason: str) -> None:
         """A person's goal has come to its end; without a path the vehicle stands."""
         self._ended_at, self._ending = t, ending
-        self._plan = Plan(None, reason)
+        self._plan = PlannedPath(None, reason)
 
     def _begin(self, t: float, job: Job) -> None:
         if job.name != self._job.name:
@@ -227,27 +236,30 @@ class PlannerService(Service):
     def _replan(self, t: float, here: Pose2) -> None:
         self._planned_at = t
         if self._job == IDLE:
-            self._target, self._plan = None, Plan(None, "no job")
+            self._target, self._plan = None, PlannedPath(None, "no job")
         elif self._job.target is not None:
             self._target = self._in_map(self._job.target)
-            self._plan = self._navigator.plan(here[:2], self._target, self._job.bold)
+            self._plan = self._navigator.plan(here[:2], self._target, self._job.allow_unknown)
         else:
             self._replan_exploring(t, here)
 
     def _replan_exploring(self, t: float, here: Pose2) -> None:
         ways, costs = self._navigator.ways(here[:2]), self._navigator.costs
         if ways is None or costs is None:
-            self._target, self._plan = None, Plan(None, self._navigator.missing if costs is None else "the vehicle is outside its map")
+            self._target, self._plan = (
+                None,
+                PlannedPath(None, self._navigator.missing if costs is None else "the vehicle is outside its map"),
+            )
             return
         frontier = self._explorer.choose(t, costs, ways)
         self._target = frontier or self._patrol.choose(here[:2], costs, ways)
-        self._plan = self._navigator.plan(here[:2], self._target) if self._target else Plan(None, "everything is explored")
+        self._plan = self._navigator.plan(here[:2], self._target) if self._target else PlannedPath(None, "everything is explored")
         if self._target is not None and self._plan.path is None:
             self._done_with_target(t)
 
     def _done_with_target(self, t: float) -> None:
         """Another frontier or place of the patrol is to be chosen."""
-        self._explorer.shun_goal(t)
+        self._explorer.blacklist_goal(t)
         self._patrol.reached()
 
     def _watch(self, t: float, here: Pose2, status: VehicleStatus | None) -> None:
@@ -289,7 +301,7 @@ class PlannerService(Service):
 
     def _give_up(self, t: float, reason: str) -> None:
         self._progress_at = t
-        if self._job.bold:
+        if self._job.allow_unknown:
             self._try_again(t, reason)
             return
         self._tell(t, f"{self._job.name}: goal given up", reason, Event.WARNING)
@@ -298,7 +310,7 @@ class PlannerService(Service):
         else:
             self._done_with_target(t)
             self._planned_at = -np.inf
-            self._plan = Plan(None, reason)
+            self._plan = PlannedPath(None, reason)
 
     def _try_again(self, t: float, reason: str) -> None:
         """Neither a mission nor the way home may be left out; after some tries a person has to decide."""

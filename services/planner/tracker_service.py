@@ -13,10 +13,10 @@ from uvf.maths.se3 import Transform, from_above
 from uvf.models.params import Params
 from uvf.models.vehicle.file import GroundBody
 from uvf.planning.collision_check import safe_share
-from uvf.planning.pure_pursuit import Pace, Tracker
-from uvf.runtime.contract.service import Service, every
+from uvf.planning.pure_pursuit import PathTracker, SpeedLimits
+from uvf.runtime.contract.declaration import Reads, Writes, every, topic
+from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import pose2_of, scan_rays, seconds, stamp, yaw_of
-from uvf.runtime.messages.outputs import Outputs
 from uvf.sensors.sweeping import AT_ONCE, Sweeping
 
 Floats = NDArray[np.float64]
@@ -45,8 +45,16 @@ class TrackerService(Service):
     name = "tracker"
     hz = 20.0
     given_up = "the vehicle stands where it would drive by itself"
-    inputs = {"path": topics.PATH, "pose": every(topics.POSE), "scan": topics.SCAN}
-    outputs = {"drive": topics.DRIVE.by("planner"), "events": topics.EVENTS.by("tracker")}
+
+    class Inputs(Reads):
+        path: PosesInFrame = topic(topics.PATH)
+        pose: list[PoseInFrame] = every(topics.POSE)
+        scan: LaserScan = topic(topics.SCAN)
+
+    class Outputs(Writes):
+        drive: DriveCommand | None = topic(topics.DRIVE.by("planner"))
+        events: list[Event] | None = topic(topics.EVENTS.by("tracker"))
+
     params: TrackerParams
 
     def __init__(self, body: GroundBody, base_from_lidar: Transform, params: TrackerParams, sweeping: Sweeping = AT_ONCE) -> None:
@@ -54,7 +62,7 @@ class TrackerService(Service):
         self._body = body
         self._base_from_lidar = base_from_lidar
         self._sweeping = sweeping
-        self._tracker = Tracker(self._pace)
+        self._tracker = PathTracker(self._pace)
         self._history = PoseHistory(HISTORY)
         self._pose: Pose2 = IDENTITY
         self._scan_time = -np.inf
@@ -63,23 +71,23 @@ class TrackerService(Service):
         self._blocked_since: float | None = None
         self._told_at = -np.inf
 
-    def step(self, t: float, path: PosesInFrame, pose: list[PoseInFrame], scan: LaserScan) -> Outputs:
-        for message in pose:
+    def step(self, t: float, now: Inputs) -> Outputs:
+        for message in now.pose:
             self._pose = pose2_of(message.pose)
             self._history.add(seconds(message.timestamp), self._pose)
-        self._look(scan)
+        self._look(now.scan)
         self._tracker.pace = self._pace
         if t - self._scan_time > SCAN_MAX_AGE:
             return self.stale(t, ("scan",))
         around = transform(inverse(self._pose), self._seen)
         room = float(np.hypot(*around.T).min(initial=np.inf)) - self._keep
-        wanted = self._tracker.follow(self._pose, _points(path), _final_heading(path), room)
+        wanted = self._tracker.follow(self._pose, _points(now.path), _final_heading(now.path), room)
         velocity, events = self._made_safe(t, wanted, around)
-        return {"drive": DriveCommand(timestamp=stamp(t), linear=velocity[0], angular=velocity[1]), "events": events}
+        return self.Outputs(drive=DriveCommand(timestamp=stamp(t), linear=velocity[0], angular=velocity[1]), events=events)
 
     def stale(self, t: float, missing: tuple[str, ...]) -> Outputs:
         """Without path, pose or sight the vehicle stands."""
-        return {"drive": DriveCommand(timestamp=stamp(t))}
+        return self.Outputs(drive=DriveCommand(timestamp=stamp(t)))
 
     @property
     def _keep(self) -> float:
@@ -87,9 +95,9 @@ class TrackerService(Service):
         return self._body.radius + self.params.margin
 
     @property
-    def _pace(self) -> Pace:
+    def _pace(self) -> SpeedLimits:
         speeds = min(self.params.speed, self._body.max_linear), min(self.params.turn_speed, self._body.max_angular)
-        return Pace(*speeds, self.params.deceleration, self.params.goal_tolerance)
+        return SpeedLimits(*speeds, self.params.deceleration, self.params.goal_tolerance)
 
     def _look(self, scan: LaserScan) -> None:
         """Keeps the points of a new scan where they were seen, so that they stay while the vehicle moves on."""

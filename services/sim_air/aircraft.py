@@ -12,13 +12,13 @@ from schemas import topics
 from schemas.messages import SurfaceCommand
 from services.sim_air.actuators import Actuators
 from services.sim_air.contact.crash import Resting, Wreck, crash_of
-from services.sim_air.engine.contacts import Touch
+from services.sim_air.engine.contacts import GroundTouch
 from services.sim_air.engine.engine_state import EngineState
-from services.sim_air.engine.states import Air, Motion, Runaway
+from services.sim_air.engine.states import Air, AircraftMotion, Runaway
 from services.sim_air.engine.wiring import Controls, JointAngle
-from services.sim_air.environment.wind import CALM, AirMass, AirMotion, Flight
+from services.sim_air.environment.wind import CALM, AirMass, AirMotion, AirRelativeState
 from services.sim_air.rangers import Rangers
-from services.sim_air.sensors import Gnss, Imu, Pressures
+from services.sim_air.sensors import Gnss, Imu, PressureSensors
 from uvf.maths.rotations import Floats
 from uvf.models.mission import file as mission_file
 from uvf.models.vehicle.battery import Charge
@@ -28,32 +28,32 @@ from uvf.sensors.sampling import Due
 STILL = np.zeros(3)
 
 
-class Body(Protocol):
+class AircraftBody(Protocol):
     """What flies: ``airframe.Airframe`` or a test's own. ``step`` may raise Runaway."""
 
     def command(self, controls: Controls) -> None: ...
     def step(self) -> None: ...
-    def motion(self) -> Motion: ...
+    def motion(self) -> AircraftMotion: ...
     def air(self) -> Air: ...
     def set_wind(self, air: AirMotion) -> None: ...
-    def flight(self) -> Flight: ...
+    def flight(self) -> AirRelativeState: ...
     def joints(self) -> list[JointAngle]: ...
-    def touches(self) -> list[Touch]: ...
+    def touches(self) -> list[GroundTouch]: ...
     def save(self) -> EngineState: ...
-    def restored(self, state: EngineState) -> "Body": ...
+    def restored(self, state: EngineState) -> "AircraftBody": ...
 
     @property
     def motor_power(self) -> float: ...
 
 
-Begin = Callable[[mission_file.Start], tuple[Body, Controls, Controls]]
+Begin = Callable[[mission_file.StartPose], tuple[AircraftBody, Controls, Controls]]
 """A new body of an aircraft, its controls there and those of level flight. Raises BadInput."""
 
 
 class Aircraft:
     """Absent sensors are not fitted. ``trim``: the controls of level flight, when nobody steers."""
 
-    def __init__(self, name: str, file: VehicleFile, body: Body, actuators: Actuators, trim: Controls) -> None:
+    def __init__(self, name: str, file: VehicleFile, body: AircraftBody, actuators: Actuators, trim: Controls) -> None:
         assert file.air is not None
         self.name = name
         self.file = file
@@ -69,7 +69,7 @@ class Aircraft:
         """Why it lies where it lies, until it is told."""
         self.imu: Imu | None = None
         self.gnss: Gnss | None = None
-        self.pressures: Pressures | None = None
+        self.pressures: PressureSensors | None = None
         self.rangers: Rangers | None = None
         self.air_mass: AirMass | None = None
         self.wind = CALM
@@ -83,7 +83,7 @@ class Aircraft:
         """How it lies when it is a wreck; without it that stays in the air."""
         self._max_sink = file.air.max_sink
 
-    def begin_anew(self, start: mission_file.Start) -> None:
+    def begin_anew(self, start: mission_file.StartPose) -> None:
         """Elsewhere, whole again; sensors and battery go on. Raises BadInput, and is then as it was."""
         assert self.file.air is not None and self.begin is not None
         body, now, level = self.begin(start)
@@ -96,9 +96,9 @@ class Aircraft:
         """It begins at ``t`` [s]."""
         self.physics_steps = round(t / self.dt)
 
-    def keep(self) -> "Kept":
+    def keep(self) -> "SavedAircraft":
         """A wreck's body does nothing any more, and its numbers may be none: it is left as it is."""
-        return Kept(copy.deepcopy(self), None if self.wreck else self.body.save())
+        return SavedAircraft(copy.deepcopy(self), None if self.wreck else self.body.save())
 
     def __deepcopy__(self, memo: dict[int, object]) -> Self:
         """One that goes on from here by itself but for the body, which ``Kept.again`` makes anew."""
@@ -150,7 +150,7 @@ class Aircraft:
             if reason := crash_of(touches, motion, self._max_sink):
                 self.end(reason, motion)
 
-    def end(self, reason: str, motion: Motion, velocity: Floats = STILL) -> None:
+    def end(self, reason: str, motion: AircraftMotion, velocity: Floats = STILL) -> None:
         """Motor off; it falls from where it is with what is left of its ``velocity`` (3,) m/s, world."""
         self.ended = reason
         self.wreck = Wreck(replace(motion, velocity=velocity), self.body.air(), self.body.joints(), self.rests)
@@ -167,7 +167,7 @@ class Aircraft:
 
 
 @dataclass(frozen=True)
-class Kept:
+class SavedAircraft:
     """An aircraft as it was, and its engine's state."""
 
     aircraft: Aircraft

@@ -14,18 +14,18 @@ from services.sim_air.contact.surroundings import Around
 from services.sim_air.engine.airframe import Airframe, fly_one_step
 from services.sim_air.engine.beginning import as_told, begun
 from services.sim_air.engine.wiring import Controls
-from services.sim_air.environment.ground import Ground
+from services.sim_air.environment.ground import GroundSurface
 from services.sim_air.environment.wind import AirMass
 from services.sim_air.rangers import Rangers
-from services.sim_air.sensors import Gnss, Imu, Pressures
+from services.sim_air.sensors import Gnss, Imu, PressureSensors
 from services.sim_air.service import SimAir
-from services.sim_air.stage import Joining, Stage
+from services.sim_air.stage import AirStage, JoiningAircraft
 from uvf.maths.bvh import Bvh
 from uvf.maths.geodesy import LocalTangent
 from uvf.maths.raycast import warm_up
 from uvf.models.aircraft.shape import aircraft_shape
-from uvf.models.mission.file import Start, Vehicle
-from uvf.models.scenario import AIRCRAFT_RADIUS, Member, Site
+from uvf.models.mission.file import StartPose, Vehicle
+from uvf.models.scenario import AIRCRAFT_RADIUS, MissionVehicle, Scenario
 from uvf.models.shapes.scene import scene
 from uvf.models.urdf.model import load_urdf
 from uvf.models.vehicle.air import AirBody
@@ -33,56 +33,56 @@ from uvf.models.vehicle.file import load_vehicle
 from uvf.models.vehicle.layers import folders_of, holding
 from uvf.models.world.footing import Footing
 from uvf.models.world.geometry import GRAZE, solids
-from uvf.models.yaml_data import BadInput, Place
-from uvf.runtime.contract.instances import Host
+from uvf.models.yaml_data import BadInput, FileLocation
+from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.messages.faults import Faults
 from uvf.runtime.process.subprocess_jobs import Died, run_in_subprocess
 from uvf.sensors.surroundings import aircraft_tree, vehicle_tree
 
 
-def build(site: Site) -> list[Host]:
+def build(site: Scenario) -> list[ServiceInstance]:
     """Nothing when the mission has no aircraft. Raises BadInput."""
     if not any(site.of_kind("fixed_wing")):
         return []
     warm_up()
-    land = Land(Footing(site.world), Ground(scene(solids(site.world))))
+    land = Land(Footing(site.world), GroundSurface(scene(solids(site.world))))
     for member in site.of_kind("fixed_wing"):
         _check(site, member, land)
-    return [Host(SimAir, lambda: _make(site, land), writes_for=tuple(m.name for m in site.of_kind("fixed_wing")))]
+    return [ServiceInstance(SimAir, lambda: _make(site, land), writes_for=tuple(m.name for m in site.of_kind("fixed_wing")))]
 
 
 class Land(NamedTuple):
     """What there is to begin on and to begin beside."""
 
     footing: Footing
-    ground: Ground
+    ground: GroundSurface
 
-    def check_room(self, who: str, start: Start) -> None:
+    def check_room(self, who: str, start: StartPose) -> None:
         """Raises BadInput with too little room beside an aircraft at its start; what it stands on is none of it."""
         if (room := self._room(start)) < AIRCRAFT_RADIUS:
             raise BadInput(f"{who}: {room:.2f} m from a wall or another solid at {start.z:g} m; move it or begin higher")
 
-    def _room(self, start: Start) -> float:
+    def _room(self, start: StartPose) -> float:
         """m."""
         height = self.ground.top(start.x, start.y)
         low, high = max(start.z - AIRCRAFT_RADIUS, GRAZE), start.z + AIRCRAFT_RADIUS
         return self.footing.room(start.x, start.y, (height + low, height + high))
 
 
-def _check(site: Site, member: Member, land: Land) -> None:
+def _check(site: Scenario, member: MissionVehicle, land: Land) -> None:
     """What would otherwise fail only when time runs, or not be noticed at all."""
     _check_rates(member)
-    land.check_room(str(Place(str(site.mission_path)).at("vehicles", member.name, "start")), member.entry.start)
+    land.check_room(str(FileLocation(str(site.mission_path)).at("vehicles", member.name, "start")), member.entry.start)
     origin = site.world.origin
     try:
         run_in_subprocess(fly_one_step, str(_model_folder(member)), _body(member), (origin.latitude, origin.longitude, origin.altitude))
     except Died as error:
-        where = Place(str(member.folder / "vehicle.yaml"))
+        where = FileLocation(str(member.folder / "vehicle.yaml"))
         raise BadInput(f"{where.at('air', 'model')}: JSBSim ends the process with this model ({error}); 'uvf vehicle check' it") from error
 
 
-def _check_rates(member: Member) -> None:
-    place = Place(str(member.folder / "vehicle.yaml"))
+def _check_rates(member: MissionVehicle) -> None:
+    place = FileLocation(str(member.folder / "vehicle.yaml"))
     sensors = member.file.sensors
     single = {(kind,): getattr(sensors, kind) for kind in ("imu", "gnss", "air_data", "lidar")}
     several = {(kind, i): sensor for kind in ("sonars", "rangefinders") for i, sensor in enumerate(getattr(sensors, kind))}
@@ -91,23 +91,23 @@ def _check_rates(member: Member) -> None:
             raise BadInput(f"{place.at('sensors', *keys, 'hz')}: {sensor.hz:g} Hz; the simulator gives {SimAir.hz:g} Hz at most")
 
 
-def _body(member: Member) -> AirBody:
+def _body(member: MissionVehicle) -> AirBody:
     body = member.file.air
     assert body is not None
     return body
 
 
-def _model_folder(member: Member) -> Path:
+def _model_folder(member: MissionVehicle) -> Path:
     """A variant flies the model of the vehicle it is made of unless it has one itself."""
     return holding(folders_of(member.folder), _body(member).model)
 
 
-def _tangent(site: Site) -> LocalTangent:
+def _tangent(site: Scenario) -> LocalTangent:
     origin = site.world.origin
     return LocalTangent.from_degrees(origin.latitude, origin.longitude, origin.altitude)
 
 
-def _make(site: Site, land: Land) -> SimAir:
+def _make(site: Scenario, land: Land) -> SimAir:
     things, members = solids(site.world), list(site.of_kind("fixed_wing"))
     flying = [Airframe(_model_folder(m), _body(m), _tangent(site)) for m in members]
     on_wheels = {m.name: vehicle_tree(load_urdf(m.folder / m.file.ground.urdf)) for m in site.of_kind("ground") if m.file.ground}
@@ -115,46 +115,46 @@ def _make(site: Site, land: Land) -> SimAir:
     around = Around(things, land.ground, on_wheels | {name: one.shape for name, one in joining.items()}, partial(_shape_of, site))
     aircraft = {name: one.aircraft for name, one in joining.items()}
     taken = (*site.members, *(thing.name for thing in things), "floor")
-    return SimAir(Stage(aircraft, around, taken, partial(_join, site, land)), Faults(site.mission.faults))
+    return SimAir(AirStage(aircraft, around, taken, partial(_join, site, land)), Faults(site.mission.faults))
 
 
-def _join(site: Site, land: Land, name: str, model: str, start: Start) -> Joining:
+def _join(site: Scenario, land: Land, name: str, model: str, start: StartPose) -> JoiningAircraft:
     """An aircraft that nobody steers but by its actuator topic, made ready while the simulation runs. Raises BadInput."""
     file, folder = load_vehicle(site.vehicles_folder, model), site.vehicles_folder / model
     if file.air is None:
         raise BadInput(f"'{model}' is no aircraft; this is the air simulator")
-    member = Member(name, Vehicle(model=model, start=start, system_id=1), file, folder)
+    member = MissionVehicle(name, Vehicle(model=model, start=start, system_id=1), file, folder)
     _check_rates(member)
     land.check_room(f"'{name}'", start)
     airframe = Airframe(_model_folder(member), file.air, _tangent(site))
     return _joining(site, land, member, airframe)
 
 
-def _joining(site: Site, land: Land, member: Member, airframe: Airframe) -> Joining:
+def _joining(site: Scenario, land: Land, member: MissionVehicle, airframe: Airframe) -> JoiningAircraft:
     """An aircraft and its shape, which is also how it lies as a wreck. Raises BadInput."""
     aircraft, shape = _aircraft(site, land, member, airframe), aircraft_tree(aircraft_shape(member.folder, member.file))
     aircraft.rests = Resting(land.ground, shape)
-    return Joining(aircraft, shape)
+    return JoiningAircraft(aircraft, shape)
 
 
-def _begin(site: Site, land: Land, member: Member, start: Start) -> tuple[Airframe, Controls, Controls]:
+def _begin(site: Scenario, land: Land, member: MissionVehicle, start: StartPose) -> tuple[Airframe, Controls, Controls]:
     """An airframe of its own for a new beginning. Raises BadInput."""
     land.check_room(f"'{member.name}'", start)
     airframe = Airframe(_model_folder(member), _body(member), _tangent(site))
     return airframe, *_begun(land, member, airframe, start, _air(site, member, airframe))
 
 
-def _begun(land: Land, member: Member, airframe: Airframe, start: Start, air: AirMass) -> tuple[Controls, Controls]:
+def _begun(land: Land, member: MissionVehicle, airframe: Airframe, start: StartPose, air: AirMass) -> tuple[Controls, Controls]:
     """Its controls at its beginning over the land, and those of level flight. Raises BadInput."""
     airframe.over(land.ground)
     return begun(airframe, as_told(start, _body(member), air, land.ground.top(start.x, start.y)))
 
 
-def _air(site: Site, member: Member, airframe: Airframe) -> AirMass:
+def _air(site: Scenario, member: MissionVehicle, airframe: Airframe) -> AirMass:
     return AirMass(site.wind, airframe.span, site.rng(member.name, "turbulence"))
 
 
-def _shape_of(site: Site, model: str) -> Bvh | None:
+def _shape_of(site: Scenario, model: str) -> Bvh | None:
     """Of a ground vehicle that has been put in: the ground simulator has taken it, if it was that simulator who told of it."""
     with suppress(BadInput):
         ground = load_vehicle(site.vehicles_folder, model).ground
@@ -162,7 +162,7 @@ def _shape_of(site: Site, model: str) -> Bvh | None:
     return None
 
 
-def _aircraft(site: Site, land: Land, member: Member, airframe: Airframe) -> Aircraft:
+def _aircraft(site: Scenario, land: Land, member: MissionVehicle, airframe: Airframe) -> Aircraft:
     """One aircraft as it starts. Raises BadInput."""
     body, tangent, begin = _body(member), _tangent(site), member.entry.start
     air = _air(site, member, airframe)
@@ -176,6 +176,6 @@ def _aircraft(site: Site, land: Land, member: Member, airframe: Airframe) -> Air
     if fitted.gnss is not None:
         aircraft.gnss = Gnss(fitted.gnss, tangent, site.rng(member.name, "gnss"))
     if fitted.air_data is not None:
-        aircraft.pressures = Pressures(fitted.air_data, site.rng(member.name, "air_data"))
+        aircraft.pressures = PressureSensors(fitted.air_data, site.rng(member.name, "air_data"))
     aircraft.rangers = Rangers(member.name, fitted, land.ground.scene, partial(site.rng, member.name))
     return aircraft

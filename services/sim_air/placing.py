@@ -25,10 +25,10 @@ def place(aircraft: Mapping[str, Aircraft], request: SetPoseRequest) -> Reply:
     return Reply(accepted=True)
 
 
-def start_of(request: SetPoseRequest) -> mission_file.Start:
+def start_of(request: SetPoseRequest) -> mission_file.StartPose:
     x, y, z = array(request.pose.position).tolist()
     yaw, climb, turn_rate = yaw_of(request.pose.orientation), request.climb, request.turn_rate
-    return mission_file.Start(x=x, y=y, z=z, yaw=yaw, speed=request.speed, climb=climb, turn_rate=turn_rate)
+    return mission_file.StartPose(x=x, y=y, z=z, yaw=yaw, speed=request.speed, climb=climb, turn_rate=turn_rate)
 
 
 def fault_of(request: SetPoseRequest) -> str:

@@ -8,18 +8,18 @@ from typing import Self
 import numpy as np
 from google.protobuf.message import Message
 
-from services.sim_air.engine.states import Motion
-from uvf.maths.raycast import Body, Scene
+from services.sim_air.engine.states import AircraftMotion
+from uvf.maths.raycast import MovingBody, Scene
 from uvf.models.vehicle.sensors import Lidar, RangeFinder, Sensors, Sonar
 from uvf.runtime.messages.outputs import Value
 from uvf.runtime.messages.sensors import range_message, scan_message
 from uvf.sensors.fitted import line_of
 from uvf.sensors.range_sensors import LidarModel, RangeModel
-from uvf.sensors.sampling import Line
+from uvf.sensors.sampling import DelayLine
 
 Rng = Callable[[str], np.random.Generator]
-Look = Callable[[float, Motion, list[Body]], Message]
-Fitted = tuple[str, Line[Message], Look]
+Look = Callable[[float, AircraftMotion, list[MovingBody]], Message]
+Fitted = tuple[str, DelayLine[Message], Look]
 """Output name, the readings' way out, and how one is taken."""
 
 
@@ -52,7 +52,7 @@ class Rangers:
         look = partial(_range, f"{self._vehicle}/{sensor.frame}", sensor, model)
         return output, line_of(sensor, self._rng(f"{output}/{sensor.frame}/dropout")), look
 
-    def read(self, t: float, motion: Motion, others: Callable[[], list[Body]]) -> dict[str, Value]:
+    def read(self, t: float, motion: AircraftMotion, others: Callable[[], list[MovingBody]]) -> dict[str, Value]:
         """What arrives at ``t`` [s], by output name; ``others``, what moves about the aircraft, is asked when a ray is cast."""
         found: dict[str, list[Message]] = {}
         for output, line, look in self._fitted:
@@ -61,9 +61,11 @@ class Rangers:
         return {output: messages[0] if output == "scan" else messages for output, messages in found.items()}
 
 
-def _scan(frame: str, lidar: Lidar, model: LidarModel, t: float, motion: Motion, others: list[Body]) -> Message:
+def _scan(frame: str, lidar: Lidar, model: LidarModel, t: float, motion: AircraftMotion, others: list[MovingBody]) -> Message:
     return scan_message(t, frame, lidar, model.scan(motion, others))
 
 
-def _range(frame: str, sensor: Sonar | RangeFinder, model: RangeModel, t: float, motion: Motion, others: list[Body]) -> Message:
+def _range(
+    frame: str, sensor: Sonar | RangeFinder, model: RangeModel, t: float, motion: AircraftMotion, others: list[MovingBody]
+) -> Message:
     return range_message(t, frame, sensor, model.range(motion, others))

@@ -1,7 +1,7 @@
 """Sensor samples as messages."""
 
 from schemas.messages import AirData, Event, JointState, JointStates, NavState
-from services.sim_air.engine.states import Air, Motion
+from services.sim_air.engine.states import Air, AircraftMotion
 from services.sim_air.engine.wiring import JointAngle
 from uvf.maths.rotations import Floats
 from uvf.runtime.messages.convert import quaternion, stamp, vector
@@ -26,7 +26,7 @@ def crashed(t: float, reason: str) -> Event:
     return Event(timestamp=stamp(t), severity=Event.CRITICAL, text="crashed", cause=reason, source="sim_air")
 
 
-def nav_state(t: float, motion: Motion, wind: Floats) -> NavState:
+def nav_state(t: float, motion: AircraftMotion, wind: Floats) -> NavState:
     return NavState(
         timestamp=stamp(t),
         position=vector(motion.position),

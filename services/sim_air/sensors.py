@@ -5,14 +5,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from services.sim_air.engine.states import Air, Motion
+from services.sim_air.engine.states import Air, AircraftMotion
 from uvf.maths import rotations
 from uvf.maths.geodesy import LocalTangent
 from uvf.models.vehicle.sensors import AirDataSensor, GnssSensor, ImuSensor
 from uvf.sensors.errors import Channel, Errors
 from uvf.sensors.fitted import inertial_unit, line_of, receiver
-from uvf.sensors.instruments import Fix, ImuReading
-from uvf.sensors.sampling import Line
+from uvf.sensors.instruments import ImuReading, ReceiverFix
+from uvf.sensors.sampling import DelayLine
 
 Floats = rotations.Floats
 
@@ -23,18 +23,18 @@ class Imu:
     def __init__(self, data: ImuSensor, field: Floats, rng: np.random.Generator) -> None:
         """``field`` is the magnetic field, (3,) T, ENU."""
         self.frame = data.frame
-        self._line: Line[ImuReading] = line_of(data, rng.spawn(1)[0])
+        self._line: DelayLine[ImuReading] = line_of(data, rng.spawn(1)[0])
         self._unit = inertial_unit(data, rng)
         self._arm = np.array(data.mount.xyz)
         self._is_off_centre = bool(self._arm.any())
         self._sensor_from_body = rotations.matrix(rotations.from_euler(*data.mount.rpy)).T
         self._field_enu = field
 
-    def read(self, t: float, motion: Motion) -> ImuReading | None:
+    def read(self, t: float, motion: AircraftMotion) -> ImuReading | None:
         """The reading that arrives at ``t`` [s], if any."""
         return self._line.step(t, lambda: self._take(t, motion))
 
-    def _take(self, t: float, motion: Motion) -> ImuReading:
+    def _take(self, t: float, motion: AircraftMotion) -> ImuReading:
         field_body = rotations.matrix(motion.world_from_body).T @ self._field_enu
         turning = motion.angular_velocity
         force = motion.specific_force
@@ -48,10 +48,10 @@ class Gnss:
 
     def __init__(self, data: GnssSensor, tangent: LocalTangent, rng: np.random.Generator) -> None:
         self.data = data
-        self._line: Line[Fix] = line_of(data, rng.spawn(1)[0])
+        self._line: DelayLine[ReceiverFix] = line_of(data, rng.spawn(1)[0])
         self._receiver = receiver(data, tangent, rng)
 
-    def read(self, t: float, motion: Motion) -> Fix | None:
+    def read(self, t: float, motion: AircraftMotion) -> ReceiverFix | None:
         """The fix that arrives at ``t`` [s], if any."""
         return self._line.step(t, lambda: self._receiver.read(t, motion.position, motion.velocity))
 
@@ -63,11 +63,11 @@ class AirSample(NamedTuple):
     air: Air
 
 
-class Pressures:
+class PressureSensors:
     """Static and pitot pressure with constant biases and white noise."""
 
     def __init__(self, data: AirDataSensor, rng: np.random.Generator) -> None:
-        self._line: Line[AirSample] = line_of(data, rng.spawn(1)[0])
+        self._line: DelayLine[AirSample] = line_of(data, rng.spawn(1)[0])
         bias = np.array((data.static_bias, data.differential_bias))
         self._channel = Channel(Errors(noise=np.array((data.static_noise, data.differential_noise)), bias=bias), 2, rng)
 

@@ -6,13 +6,32 @@ from functools import partial
 import numpy as np
 
 from schemas import topics
-from schemas.messages import NavState, RemoveRequest, SetPoseRequest, SimObjects, SpawnRequest, StateRequest, SurfaceCommand
+from schemas.messages import (
+    AirData,
+    Battery,
+    Event,
+    FrameTransforms,
+    Gnss,
+    Imu,
+    JointStates,
+    LaserScan,
+    NavState,
+    Range,
+    RemoveRequest,
+    Reply,
+    SetPoseRequest,
+    SimObjects,
+    SpawnRequest,
+    StateRequest,
+    SurfaceCommand,
+)
 from services.sim_air import readings
 from services.sim_air.aircraft import Aircraft
-from services.sim_air.stage import Stage
-from uvf.runtime.contract.service import Service, each_vehicle, optional
+from services.sim_air.stage import AirStage
+from uvf.runtime.contract.declaration import Reads, Writes, each_vehicle, optional, replies, request, topic
+from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.faults import Faults
-from uvf.runtime.messages.outputs import Outputs, Value
+from uvf.runtime.messages.outputs import Value
 from uvf.runtime.messages.sensor_frames import sensor_frames
 from uvf.runtime.messages.sensors import battery_message, gnss_message, imu_message, later
 from uvf.sensors.sampling import Due
@@ -25,83 +44,74 @@ class SimAir(Service):
     hz = 100.0
     scope = "world"
     simulator = True
-    inputs = {
-        "surfaces": each_vehicle(optional(topics.SURFACE_COMMAND)),
-        "truth": each_vehicle(optional(topics.TRUTH)),
-        "objects": optional(topics.OBJECTS),
-    }
-    outputs = {
-        "imu": topics.IMU,
-        "gnss": topics.GNSS,
-        "air_data": topics.AIR_DATA,
-        "scan": topics.SCAN,
-        "sonar": topics.SONAR,
-        "range": topics.RANGE,
-        "battery": topics.BATTERY,
-        "joints": topics.JOINTS,
-        "truth": topics.TRUTH,
-        "tf_static": topics.TF_STATIC,
-        "events": topics.EVENTS.by("sim_air"),
-        "spawned": topics.AIR_OBJECTS,
-    }
-    requests = {
-        "spawn": topics.AIR_SPAWN,
-        "remove": topics.AIR_REMOVE,
-        "set_pose": topics.AIR_POSE,
-        "save": topics.AIR_SAVE,
-        "restore": topics.AIR_RESTORE,
-    }
 
-    def __init__(self, stage: Stage, faults: Faults | None = None) -> None:
+    class Inputs(Reads):
+        surfaces: dict[str, SurfaceCommand] = each_vehicle(optional(topics.SURFACE_COMMAND))
+        truth: dict[str, NavState] = each_vehicle(optional(topics.TRUTH))
+        objects: SimObjects | None = optional(topics.OBJECTS)
+        spawn: list[SpawnRequest] = request(topics.AIR_SPAWN)
+        remove: list[RemoveRequest] = request(topics.AIR_REMOVE)
+        set_pose: list[SetPoseRequest] = request(topics.AIR_POSE)
+        save: list[StateRequest] = request(topics.AIR_SAVE)
+        restore: list[StateRequest] = request(topics.AIR_RESTORE)
+
+    class Outputs(Writes):
+        imu: dict[str, Imu] | None = topic(topics.IMU)
+        gnss: dict[str, Gnss] | None = topic(topics.GNSS)
+        air_data: dict[str, AirData] | None = topic(topics.AIR_DATA)
+        scan: dict[str, LaserScan] | None = topic(topics.SCAN)
+        sonar: dict[str, Range] | None = topic(topics.SONAR)
+        range: dict[str, Range] | None = topic(topics.RANGE)
+        battery: dict[str, Battery] | None = topic(topics.BATTERY)
+        joints: dict[str, JointStates] | None = topic(topics.JOINTS)
+        truth: dict[str, NavState] | None = topic(topics.TRUTH)
+        tf_static: dict[str, FrameTransforms] | None = topic(topics.TF_STATIC)
+        events: dict[str, list[Event]] | None = topic(topics.EVENTS.by("sim_air"))
+        spawned: SimObjects | None = topic(topics.AIR_OBJECTS)
+        spawn: list[Reply] = replies(topics.AIR_SPAWN)
+        remove: list[Reply] = replies(topics.AIR_REMOVE)
+        set_pose: list[Reply] = replies(topics.AIR_POSE)
+        save: list[Reply] = replies(topics.AIR_SAVE)
+        restore: list[Reply] = replies(topics.AIR_RESTORE)
+
+    def __init__(self, stage: AirStage, faults: Faults | None = None) -> None:
         self._stage = stage
         self._faults = faults or Faults()
         self._spawned_due = Due(topics.AIR_OBJECTS.hz)
         self._had_spawned = False
 
-    def step(
-        self,
-        t: float,
-        surfaces: Mapping[str, SurfaceCommand],
-        truth: Mapping[str, NavState],
-        objects: SimObjects | None,
-        spawn: list[SpawnRequest],
-        remove: list[RemoveRequest],
-        set_pose: list[SetPoseRequest],
-        save: list[StateRequest],
-        restore: list[StateRequest],
-    ) -> Outputs:
+    def step(self, t: float, now: Inputs) -> Outputs:
         """What is asked for holds from this step's end. truth: of the ground vehicles; the aircraft's own is known better here."""
         stage, n = self._stage, round(t * self.hz)
         flown = self._flown(t)
         for craft in stage.aircraft.values():
-            if craft.name in surfaces:
-                self._faults.spoil(t, craft.name, {"surfaces": surfaces[craft.name]})
-                craft.take(surfaces[craft.name])
+            if craft.name in now.surfaces:
+                self._faults.spoil(t, craft.name, {"surfaces": now.surfaces[craft.name]})
+                craft.take(now.surfaces[craft.name])
             else:
                 craft.let_go()
             craft.fly_to(flown)
-        self._collide(t, truth, objects)
-        read, grounded = self._read_all(t), [o.name for o in objects.objects] if objects else []
-        replies = {
-            "spawn": [stage.spawn(flown, r, grounded) for r in spawn],
-            "remove": [stage.remove(r) for r in remove],
-            "set_pose": [stage.set_pose(r) for r in set_pose],
-            "save": [stage.save(n, r) for r in save],
-            "restore": [stage.restore(n, r) for r in restore],
-        }
-        return {**read, **self._spawned(t), **replies}
+        self._collide(t, now.truth, now.objects)
+        out, grounded = self._read_all(t), [o.name for o in now.objects.objects] if now.objects else []
+        out.spawn = [stage.spawn(flown, r, grounded) for r in now.spawn]
+        out.remove = [stage.remove(r) for r in now.remove]
+        out.set_pose = [stage.set_pose(r) for r in now.set_pose]
+        out.save = [stage.save(n, r) for r in now.save]
+        out.restore = [stage.restore(n, r) for r in now.restore]
+        out.spawned = self._spawned(t)
+        return out
 
     def _flown(self, t: float) -> float:
         """s; the clock, unless a state was restored: then the aircraft's time, that of the state and what has passed since."""
         return (round(t * self.hz) - self._stage.late) / self.hz if self._stage.late else t
 
-    def _spawned(self, t: float) -> dict[str, Value]:
+    def _spawned(self, t: float) -> SimObjects | None:
         """Told while there are any, and once when the last one has gone."""
         if not self._spawned_due.at(t):
-            return {}
+            return None
         told = self._stage.objects(t)
         had, self._had_spawned = self._had_spawned, bool(told.objects)
-        return {"spawned": told} if told.objects or had else {}
+        return told if told.objects or had else None
 
     def _collide(self, t: float, truth: Mapping[str, NavState], objects: SimObjects | None) -> None:
         """Whoever hits something falls from there; it is told once, of the first of a pair."""
@@ -117,17 +127,17 @@ class SimAir(Service):
                 speed = np.linalg.norm(craft.motion.velocity)
                 craft.end("" if i else f"{craft.name} hit {met} at {speed:.1f} m/s", craft.motion, velocity)
 
-    def _read_all(self, t: float) -> dict[str, dict[str, Value]]:
+    def _read_all(self, t: float) -> Outputs:
         """What the sensors give, by output and aircraft, stamped by the clock."""
         stage, late = self._stage, self._stage.late / self.hz
-        read: dict[str, dict[str, Value]] = {}
+        out = self.Outputs()
         for craft in stage.aircraft.values():
             for name, said in self._faults.spoil(t, craft.name, self._read(self._flown(t), craft)).items():
-                read.setdefault(name, {})[craft.name] = later(said, late) if late else said
+                out.add(name, craft.name, later(said, late) if late else said)
             if craft.name not in stage.told:
-                read.setdefault("tf_static", {})[craft.name] = sensor_frames(craft.name, craft.file.sensors, t)
+                out.add("tf_static", craft.name, sensor_frames(craft.name, craft.file.sensors, t))
                 stage.told.add(craft.name)
-        return read
+        return out
 
     def _read(self, t: float, craft: Aircraft) -> dict[str, Value]:
         """What this aircraft's sensors give at ``t``."""

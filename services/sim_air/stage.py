@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from schemas.messages import RemoveRequest, Reply, SetPoseRequest, SimObject, SimObjects, SpawnRequest, StateRequest
-from services.sim_air.aircraft import Aircraft, Kept
+from services.sim_air.aircraft import Aircraft, SavedAircraft
 from services.sim_air.contact.collisions import Collisions
 from services.sim_air.contact.surroundings import Around
 from services.sim_air.placing import fault_of, place, start_of
@@ -18,14 +18,14 @@ from uvf.runtime.messages.spawned import crowd_fault, name_fault
 SAVED_MOST = 16
 
 
-class Joining(NamedTuple):
+class JoiningAircraft(NamedTuple):
     """An aircraft that is made ready to be put in, and its shape."""
 
     aircraft: Aircraft
     shape: Bvh
 
 
-Join = Callable[[str, str, mission_file.Start], Joining]
+Join = Callable[[str, str, mission_file.StartPose], JoiningAircraft]
 """From a new name, a folder in vehicles/ and where it begins. Raises BadInput."""
 
 
@@ -33,12 +33,12 @@ Join = Callable[[str, str, mission_file.Start], Joining]
 class KeptWorld:
     """A state under a name: all aircraft, what had been put in with its shape, and the step at which it was."""
 
-    aircraft: dict[str, Kept]
+    aircraft: dict[str, SavedAircraft]
     spawned: dict[str, tuple[SimObject, Bvh]]
     step: int
 
 
-class Stage:
+class AirStage:
     """Requests are answered in the order spawn, remove, set pose, save, restore, each in the order asked."""
 
     def __init__(self, aircraft: Mapping[str, Aircraft], around: Around, taken: tuple[str, ...], join: Join) -> None:

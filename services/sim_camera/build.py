@@ -4,23 +4,23 @@ from contextlib import suppress
 from functools import cache
 from pathlib import Path
 
-from services.sim_camera.fitted import Fitted
+from services.sim_camera.fitted import FittedCamera
 from services.sim_camera.renderer import BulletRenderer, Look
 from services.sim_camera.service import SimCamera
 from uvf.models.aircraft.shape import aircraft_shape
-from uvf.models.scenario import Member, Site
+from uvf.models.scenario import MissionVehicle, Scenario
 from uvf.models.urdf.model import engine_urdf
 from uvf.models.vehicle.file import VehicleFile, load_vehicle
 from uvf.models.vehicle.sensors import Camera
 from uvf.models.world.geometry import solids
 from uvf.models.yaml_data import BadInput, nearest
-from uvf.runtime.contract.instances import Host
+from uvf.runtime.contract.instances import ServiceInstance
 
 OUTPUTS = {"camera": "image", "chase": "chase", "gimbal": "gimbal"}
 """The output that each camera's pictures go out by."""
 
 
-def build(site: Site) -> list[Host]:
+def build(site: Scenario) -> list[ServiceInstance]:
     """Nothing when no vehicle has a camera. Raises BadInput."""
     cameras = {(m.name, kind): camera for m in site.members.values() for kind, camera in _cameras(m).items()}
     for (name, kind), camera in cameras.items():
@@ -37,18 +37,18 @@ def build(site: Site) -> list[Host]:
         return None
 
     def make() -> SimCamera:
-        fitted = [Fitted(name, camera, site.rng(name, kind), OUTPUTS[kind]) for (name, kind), camera in cameras.items()]
+        fitted = [FittedCamera(name, camera, site.rng(name, kind), OUTPUTS[kind]) for (name, kind), camera in cameras.items()]
         return SimCamera(BulletRenderer(site.world, things, looks), fitted, look_of)
 
-    return [Host(SimCamera, make, writes_for=tuple(dict.fromkeys(name for name, _ in cameras)))]
+    return [ServiceInstance(SimCamera, make, writes_for=tuple(dict.fromkeys(name for name, _ in cameras)))]
 
 
-def _cameras(member: Member) -> dict[str, Camera]:
+def _cameras(member: MissionVehicle) -> dict[str, Camera]:
     """By what they are called in the vehicle's file."""
     return {kind: camera for kind in OUTPUTS if (camera := getattr(member.file.sensors, kind)) is not None}
 
 
-def _check(member: Member, kind: str, camera: Camera) -> None:
+def _check(member: MissionVehicle, kind: str, camera: Camera) -> None:
     place = f"{member.folder / 'vehicle.yaml'}: sensors: {kind}"
     if camera.depth and kind != "camera":
         raise BadInput(f"{place}: depth: only 'camera' sends depth; take it out")

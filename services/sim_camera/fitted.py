@@ -14,7 +14,7 @@ from services.sim_camera.renderer import Pose, Shot
 from uvf.maths.rotations import multiply, rotate
 from uvf.models.vehicle.sensors import Camera, Gimbal, Mount
 from uvf.sensors.fitted import line_of
-from uvf.sensors.sampling import Line
+from uvf.sensors.sampling import DelayLine
 
 
 class Pictures(NamedTuple):
@@ -22,7 +22,7 @@ class Pictures(NamedTuple):
     depth: CompressedImage | None
 
 
-class Fitted:
+class FittedCamera:
     def __init__(self, vehicle: str, camera: Camera, rng: np.random.Generator, output: str = "image") -> None:
         """output: the name under which its pictures go out."""
         delivery, self._rng = rng.spawn(2)
@@ -32,7 +32,7 @@ class Fitted:
         self.camera = camera
         self.frame = f"{vehicle}/{camera.frame}_optical"
         """Of the pictures: x right, y down, z along the view."""
-        self._line: Line[Pictures] = line_of(camera, delivery)
+        self._line: DelayLine[Pictures] = line_of(camera, delivery)
 
     def looking(self, body: Pose) -> tuple[Camera, Pose]:
         """The camera as the renderer takes it, when its vehicle is there; of a gimbal its own pose, turned as it is now."""

@@ -12,7 +12,7 @@ from services.sim_camera.backdrop import Backdrop
 from services.sim_camera.optics import frustum
 from uvf.maths.rotations import IDENTITY, from_euler, matrix, multiply, rotate
 from uvf.models.aircraft.shape import AircraftShape
-from uvf.models.shapes.mesh_parts import Part, joined
+from uvf.models.shapes.mesh_parts import MeshPart, joined
 from uvf.models.shapes.solid import Solid, pose_at
 from uvf.models.vehicle.sensors import Camera
 from uvf.models.world.file import WorldFile
@@ -152,7 +152,7 @@ def linear_depth(buffer: Floats, far: float) -> Floats:
 
 def _aircraft(shape: AircraftShape, client: int) -> int:
     """All of it at rest, one body a colour, held together by joints that do not move; out of sight until it is placed."""
-    by_colour: dict[tuple[float, ...], list[Part]] = {}
+    by_colour: dict[tuple[float, ...], list[MeshPart]] = {}
     for part in shape.at_rest:
         colour = shape.colour if part.colour is None else tuple(c / 255 for c in part.colour)
         by_colour.setdefault(colour, []).append(part)

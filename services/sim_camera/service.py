@@ -4,15 +4,15 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Protocol
 
 from schemas import topics
-from schemas.messages import GimbalCommand, NavState, SimObjects
-from services.sim_camera.fitted import Fitted, Pictures
+from schemas.messages import CameraCalibration, CompressedImage, FrameTransform, GimbalCommand, JointStates, NavState, SimObjects
+from services.sim_camera.fitted import FittedCamera, Pictures
 from services.sim_camera.picture import info_message, joints_message
 from services.sim_camera.renderer import Look, Pose, Shot
 from uvf.models.shapes.solid import Solid
 from uvf.models.vehicle.sensors import Camera
-from uvf.runtime.contract.service import Service, each_vehicle, optional
+from uvf.runtime.contract.declaration import Reads, Writes, each_vehicle, optional, topic
+from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import array, seconds, wxyz
-from uvf.runtime.messages.outputs import Outputs, Value
 from uvf.runtime.messages.sensor_frames import mounted
 from uvf.runtime.messages.spawned import solid_of, sound_objects
 
@@ -38,64 +38,57 @@ class SimCamera(Service):
     name = "sim_camera"
     hz = 5.0
     scope = "world"
-    inputs = {
-        "truth": each_vehicle(optional(topics.TRUTH)),
-        "objects": optional(topics.OBJECTS),
-        "aircraft": optional(topics.AIR_OBJECTS),
-        "gimbals": each_vehicle(optional(topics.GIMBAL.by("*"))),
-    }
-    outputs = {
-        "image": topics.IMAGE,
-        "depth": topics.DEPTH,
-        "info": topics.CAMERA_INFO,
-        "chase": topics.VIEW.by("chase"),
-        "chase_info": topics.VIEW_INFO.by("chase"),
-        "gimbal": topics.VIEW.by("gimbal"),
-        "gimbal_info": topics.VIEW_INFO.by("gimbal"),
-        "gimbal_frame": topics.TF_GIMBAL,
-        "gimbal_joints": topics.GIMBAL_JOINTS,
-    }
 
-    def __init__(self, renderer: Renderer, cameras: Sequence[Fitted], look_of: Callable[[str], Look | None]) -> None:
+    class Inputs(Reads):
+        truth: dict[str, NavState] = each_vehicle(optional(topics.TRUTH))
+        objects: SimObjects | None = optional(topics.OBJECTS)
+        aircraft: SimObjects | None = optional(topics.AIR_OBJECTS)
+        gimbals: dict[str, GimbalCommand] = each_vehicle(optional(topics.GIMBAL.by("*")))
+
+    class Outputs(Writes):
+        image: dict[str, CompressedImage] | None = topic(topics.IMAGE)
+        depth: dict[str, CompressedImage] | None = topic(topics.DEPTH)
+        info: dict[str, CameraCalibration] | None = topic(topics.CAMERA_INFO)
+        chase: dict[str, CompressedImage] | None = topic(topics.VIEW.by("chase"))
+        chase_info: dict[str, CameraCalibration] | None = topic(topics.VIEW_INFO.by("chase"))
+        gimbal: dict[str, CompressedImage] | None = topic(topics.VIEW.by("gimbal"))
+        gimbal_info: dict[str, CameraCalibration] | None = topic(topics.VIEW_INFO.by("gimbal"))
+        gimbal_frame: dict[str, FrameTransform] | None = topic(topics.TF_GIMBAL)
+        gimbal_joints: dict[str, JointStates] | None = topic(topics.GIMBAL_JOINTS)
+
+    def __init__(self, renderer: Renderer, cameras: Sequence[FittedCamera], look_of: Callable[[str], Look | None]) -> None:
         """look_of: what a vehicle model looks like that is put in while the simulation runs; None where this host has no such model."""
         self._renderer = renderer
         self._look_of = look_of
         self._cameras = cameras
         self._told = False
 
-    def step(
-        self,
-        t: float,
-        truth: dict[str, NavState],
-        objects: SimObjects | None,
-        aircraft: SimObjects | None,
-        gimbals: Mapping[str, GimbalCommand],
-    ) -> Outputs:
+    def step(self, t: float, now: Inputs) -> Outputs:
         """objects, aircraft: what has been put in while the simulation runs."""
-        looks = {o.name: self._look_of(o.model) if o.model else solid_of(o) for o in sound_objects(objects, aircraft)}
+        looks = {o.name: self._look_of(o.model) if o.model else solid_of(o) for o in sound_objects(now.objects, now.aircraft)}
         self._renderer.show({name: look for name, look in looks.items() if look is not None})
-        poses = {name: Pose(array(state.position), wxyz(state.orientation)) for name, state in truth.items()}
+        poses = {name: Pose(array(state.position), wxyz(state.orientation)) for name, state in now.truth.items()}
         self._renderer.place(t, poses)
-        sent: dict[str, dict[str, Value]] = {name: {} for name in self.outputs}
+        out = self.Outputs()
         for fitted in self._cameras:
             if fitted.aim is not None and (name := fitted.vehicle) in poses:
-                if name in gimbals:
-                    fitted.aim.tell(gimbals[name])
+                if name in now.gimbals:
+                    fitted.aim.tell(now.gimbals[name])
                 fitted.aim.turn(poses[name].world_from_body, 1 / self.hz)
-                taken = truth[name].timestamp
-                sent["gimbal_frame"][name] = mounted(name, fitted.camera, fitted.aim.body_from_camera, seconds(taken))
-                sent["gimbal_joints"][name] = joints_message(taken, fitted.aim.joints)
-            if (arrived := self._take(t, fitted, truth, poses)) is not None:
-                sent[fitted.output][fitted.vehicle] = arrived.image
+                taken = now.truth[name].timestamp
+                out.add("gimbal_frame", name, mounted(name, fitted.camera, fitted.aim.body_from_camera, seconds(taken)))
+                out.add("gimbal_joints", name, joints_message(taken, fitted.aim.joints))
+            if (arrived := self._take(t, fitted, now.truth, poses)) is not None:
+                out.add(fitted.output, fitted.vehicle, arrived.image)
                 if arrived.depth is not None:
-                    sent["depth"][fitted.vehicle] = arrived.depth
+                    out.add("depth", fitted.vehicle, arrived.depth)
         if not self._told:  # once, at the first step; that is not always step 1, for a process may join a running clock
             self._told = True
             for fitted in self._cameras:
-                sent[INFO[fitted.output]][fitted.vehicle] = info_message(t, fitted.frame, fitted.camera)
-        return sent
+                out.add(INFO[fitted.output], fitted.vehicle, info_message(t, fitted.frame, fitted.camera))
+        return out
 
-    def _take(self, t: float, fitted: Fitted, truth: Mapping[str, NavState], poses: Mapping[str, Pose]) -> Pictures | None:
+    def _take(self, t: float, fitted: FittedCamera, truth: Mapping[str, NavState], poses: Mapping[str, Pose]) -> Pictures | None:
         name = fitted.vehicle
         if name not in poses:
             return None

@@ -4,23 +4,23 @@ from functools import partial
 
 from services.sim_ground.rig import STEP_HZ, Rig
 from services.sim_ground.service import SimGround
-from services.sim_ground.stage import Joining, Stage
-from services.sim_ground.world import BulletWorld, Placed
+from services.sim_ground.stage import GroundStage, JoiningVehicle
+from services.sim_ground.world import BodyPlacement, BulletWorld
 from uvf.maths.raycast import warm_up
 from uvf.models.aircraft.shape import aircraft_shape
-from uvf.models.mission.file import Start, Vehicle
-from uvf.models.scenario import Member, Site
+from uvf.models.mission.file import StartPose, Vehicle
+from uvf.models.scenario import MissionVehicle, Scenario
 from uvf.models.urdf.model import check_urdf, engine_urdf, load_urdf
 from uvf.models.vehicle.file import GroundBody, load_vehicle
 from uvf.models.world.footing import COARSE, Footing
 from uvf.models.world.geometry import solids
 from uvf.models.yaml_data import BadInput
-from uvf.runtime.contract.instances import Host
+from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.messages.faults import Faults
 from uvf.sensors.surroundings import Surroundings, aircraft_solid, own_tree, vehicle_tree
 
 
-def build(site: Site) -> list[Host]:
+def build(site: Scenario) -> list[ServiceInstance]:
     """Nothing when the mission has no ground vehicle. Raises BadInput."""
     bodies = {m.name: m.file.ground for m in site.of_kind("ground") if m.file.ground is not None}
     if not bodies:
@@ -28,13 +28,13 @@ def build(site: Site) -> list[Host]:
     footing = Footing(site.world)
     grounds = {name: _checked(site, site.members[name], footing) for name in bodies}
     warm_up()
-    return [Host(SimGround, lambda: _make(site, bodies, grounds), writes_for=tuple(bodies))]
+    return [ServiceInstance(SimGround, lambda: _make(site, bodies, grounds), writes_for=tuple(bodies))]
 
 
-def _make(site: Site, bodies: dict[str, GroundBody], grounds: dict[str, float]) -> SimGround:
+def _make(site: Scenario, bodies: dict[str, GroundBody], grounds: dict[str, float]) -> SimGround:
     """grounds: z [m] of what each vehicle stands on at its start."""
     members = {name: site.members[name] for name in bodies}
-    placed = {n: Placed(bodies[n], engine_urdf(m.folder / bodies[n].urdf), _start(m), grounds[n]) for n, m in members.items()}
+    placed = {n: BodyPlacement(bodies[n], engine_urdf(m.folder / bodies[n].urdf), _start(m), grounds[n]) for n, m in members.items()}
     things = solids(site.world)
     on_wheels = {name: vehicle_tree(load_urdf(m.folder / bodies[name].urdf)) for name, m in members.items()}
     flying = {m.name: aircraft_solid(m.name, aircraft_shape(m.folder, m.file)) for m in site.of_kind("fixed_wing")}
@@ -44,27 +44,29 @@ def _make(site: Site, bodies: dict[str, GroundBody], grounds: dict[str, float]) 
     for name, solid in flying.items():
         world.let_in(name, solid)
     taken = (*site.members, *(thing.name for thing in things), "floor")
-    stage = Stage(world, rigs, surroundings, taken, partial(_join, site, surroundings))
+    stage = GroundStage(world, rigs, surroundings, taken, partial(_join, site, surroundings))
     return SimGround(world, surroundings, stage, tuple(flying), Faults(site.mission.faults))
 
 
-def _join(site: Site, surroundings: Surroundings, name: str, model: str, start: tuple[float, float, float], z: float) -> Joining:
+def _join(site: Scenario, surroundings: Surroundings, name: str, model: str, start: tuple[float, float, float], z: float) -> JoiningVehicle:
     """A vehicle that nobody steers but by its actuator topic, made ready while the simulation runs. Raises BadInput."""
     file, (x, y, yaw) = load_vehicle(site.vehicles_folder, model), start
     if file.ground is None:
         raise BadInput(f"'{model}' is no ground vehicle; this is the ground simulator")
-    member = Member(name, Vehicle(model=model, start=Start(x=x, y=y, yaw=yaw), system_id=1), file, site.vehicles_folder / model)
+    member = MissionVehicle(name, Vehicle(model=model, start=StartPose(x=x, y=y, yaw=yaw), system_id=1), file, site.vehicles_folder / model)
     urdf = member.folder / file.ground.urdf
     check_urdf(urdf, (file.ground.left_joint, file.ground.right_joint))
     _check_rates(member, file.ground)
-    return Joining(Placed(file.ground, engine_urdf(urdf), start, z), Rig(site, member, file.ground, surroundings.still), load_urdf(urdf))
+    return JoiningVehicle(
+        BodyPlacement(file.ground, engine_urdf(urdf), start, z), Rig(site, member, file.ground, surroundings.still), load_urdf(urdf)
+    )
 
 
-def _start(member: Member) -> tuple[float, float, float]:
+def _start(member: MissionVehicle) -> tuple[float, float, float]:
     return member.entry.start.x, member.entry.start.y, member.entry.start.yaw
 
 
-def _checked(site: Site, member: Member, footing: Footing) -> float:
+def _checked(site: Scenario, member: MissionVehicle, footing: Footing) -> float:
     """z [m] of the ground at the start; of a slope, so much above that no wheel begins in it. Raises for what would fail in the engine."""
     body = member.file.ground
     assert body is not None
@@ -80,7 +82,7 @@ def _checked(site: Site, member: Member, footing: Footing) -> float:
     return height + slope * (body.radius + COARSE)
 
 
-def _check_rates(member: Member, body: GroundBody) -> None:
+def _check_rates(member: MissionVehicle, body: GroundBody) -> None:
     place = member.folder / "vehicle.yaml"
     if body.physics_hz % STEP_HZ:
         raise BadInput(f"{place}: ground: physics_hz is {body.physics_hz:g}; make it a multiple of {STEP_HZ:g}")

@@ -16,9 +16,9 @@ from services.sim_ground.body import BodyState, Touch
 from services.sim_ground.imu import ImuModel
 from uvf.maths.geodesy import LocalTangent
 from uvf.maths.kinematics import spin_velocity
-from uvf.maths.raycast import Body, Scene
+from uvf.maths.raycast import MovingBody, Scene
 from uvf.maths.rotations import rotate
-from uvf.models.scenario import Member, Site
+from uvf.models.scenario import MissionVehicle, Scenario
 from uvf.models.vehicle.battery import Charge
 from uvf.models.vehicle.file import GroundBody
 from uvf.models.vehicle.sensors import Encoders, GnssSensor, ImuSensor, Lidar, RangeFinder, Sampled, Sonar
@@ -29,7 +29,7 @@ from uvf.sensors.body_track import BodyTrack
 from uvf.sensors.fitted import line_of, receiver
 from uvf.sensors.instruments import Receiver
 from uvf.sensors.range_sensors import LidarModel, RangeModel
-from uvf.sensors.sampling import Due, Line
+from uvf.sensors.sampling import DelayLine, Due
 
 Floats = NDArray[np.float64]
 
@@ -40,7 +40,7 @@ class Moment(NamedTuple):
     """What there is to measure: the body, what moves about it (worked out when a ray is cast), and all that it touches."""
 
     body: BodyState
-    others: Callable[[], list[Body]] = list
+    others: Callable[[], list[MovingBody]] = list
     touches: Sequence[Touch] = ()
     motor_energy: float = 0.0  # J that the motors have drawn since the moment before
 
@@ -48,11 +48,11 @@ class Moment(NamedTuple):
 Read = Callable[[float, Moment], Message]
 
 
-class Fitted(NamedTuple):
+class FittedSensor(NamedTuple):
     """A sensor: how it reads the moment, and how its readings get out."""
 
     read: Read
-    line: Line[Message]
+    line: DelayLine[Message]
 
     def step(self, t: float, moment: Moment) -> Message | None:
         """The reading that arrives at the step at ``t`` [s], if any."""
@@ -62,7 +62,7 @@ class Fitted(NamedTuple):
 class Rig:
     """Built once a vehicle; each sensor draws from generators of its own, so that none disturbs another."""
 
-    def __init__(self, site: Site, member: Member, ground: GroundBody, scene: Scene) -> None:
+    def __init__(self, site: Scenario, member: MissionVehicle, ground: GroundBody, scene: Scene) -> None:
         """scene: what stands in the world."""
         self._links = Links(member.folder / ground.urdf, (ground.left_joint, ground.right_joint))
         self.ground = ground
@@ -85,7 +85,7 @@ class Rig:
         sonars, finders = member.file.sensors.sonars, member.file.sensors.rangefinders
         self._rangers = {"sonar": [self._ranger("sonar", s) for s in sonars], "range": [self._ranger("range", f) for f in finders]}
 
-    def _fit(self) -> Iterator[tuple[str, Fitted]]:
+    def _fit(self) -> Iterator[tuple[str, FittedSensor]]:
         """What there is one of, by output name."""
         sensors = self._member.file.sensors
         if sensors.imu is not None:
@@ -148,8 +148,8 @@ class Rig:
     def _rng(self, *names: str) -> np.random.Generator:
         return self._site.rng(self._member.name, *names)
 
-    def _with_line(self, read: Read, sensor: Sampled, *names: str) -> Fitted:
-        return Fitted(read, line_of(sensor, self._rng(*names, "dropout")))
+    def _with_line(self, read: Read, sensor: Sampled, *names: str) -> FittedSensor:
+        return FittedSensor(read, line_of(sensor, self._rng(*names, "dropout")))
 
     def _frame(self, frame: str) -> str:
         return f"{self._member.name}/{frame}"
@@ -171,7 +171,7 @@ class Rig:
         tangent = LocalTangent.from_degrees(origin.latitude, origin.longitude, origin.altitude)
         return partial(_read_gnss, gnss, receiver(gnss, tangent, self._rng("gnss")))
 
-    def _ranger(self, kind: str, sensor: Sonar | RangeFinder) -> Fitted:
+    def _ranger(self, kind: str, sensor: Sonar | RangeFinder) -> FittedSensor:
         model = RangeModel(sensor, self._scene, self._rng(kind, sensor.frame))
         return self._with_line(partial(_read_range, self._frame(sensor.frame), sensor, model), sensor, kind, sensor.frame)
 

@@ -5,16 +5,34 @@ from functools import cache, partial
 from typing import Protocol
 
 from schemas import topics
-from schemas.messages import NavState, RemoveRequest, SetPoseRequest, SimObjects, SpawnRequest, StateRequest, WheelCommand
+from schemas.messages import (
+    Battery,
+    Contact,
+    FrameTransforms,
+    Gnss,
+    Imu,
+    JointStates,
+    LaserScan,
+    NavState,
+    Range,
+    RemoveRequest,
+    Reply,
+    SetPoseRequest,
+    SimObjects,
+    SpawnRequest,
+    StateRequest,
+    WheelCommand,
+    WheelTicks,
+)
 from services.sim_ground.body import BodyState, Touch
 from services.sim_ground.guest import Course, courses
 from services.sim_ground.rig import STEP_HZ, Moment
-from services.sim_ground.stage import Stage, Stageable
+from services.sim_ground.stage import GroundStage, Stageable
 from uvf.maths.kinematics import WheelSpeeds
-from uvf.maths.raycast import Body
-from uvf.runtime.contract.service import Service, each_vehicle, optional
+from uvf.maths.raycast import MovingBody
+from uvf.runtime.contract.declaration import Reads, Writes, each_vehicle, optional, replies, request, topic
+from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.faults import Faults
-from uvf.runtime.messages.outputs import Outputs, Value
 from uvf.runtime.messages.sensors import later
 from uvf.sensors.sampling import Due
 from uvf.sensors.surroundings import Surroundings, Whereabouts
@@ -49,36 +67,44 @@ class SimGround(Service):
     hz = STEP_HZ
     scope = "world"
     simulator = True
-    inputs = {
-        "commands": each_vehicle(optional(topics.WHEEL_COMMAND)),
-        "truth": each_vehicle(optional(topics.TRUTH)),
-        "flying": optional(topics.AIR_OBJECTS),
-    }
-    outputs = {
-        "imu": topics.IMU,
-        "scan": topics.SCAN,
-        "wheels": topics.WHEELS,
-        "gnss": topics.GNSS,
-        "sonar": topics.SONAR,
-        "range": topics.RANGE,
-        "contact": topics.CONTACT,
-        "battery": topics.BATTERY,
-        "joints": topics.JOINTS,
-        "joint_frames": topics.TF_JOINTS,
-        "frames": topics.TF_STATIC,
-        "truth": topics.TRUTH,
-        "objects": topics.OBJECTS,
-    }
-    requests = {
-        "spawn": topics.SPAWN,
-        "remove": topics.REMOVE,
-        "set_pose": topics.SET_POSE,
-        "save": topics.SAVE,
-        "restore": topics.RESTORE,
-    }
+
+    class Inputs(Reads):
+        commands: dict[str, WheelCommand] = each_vehicle(optional(topics.WHEEL_COMMAND))
+        truth: dict[str, NavState] = each_vehicle(optional(topics.TRUTH))
+        flying: SimObjects | None = optional(topics.AIR_OBJECTS)
+        spawn: list[SpawnRequest] = request(topics.SPAWN)
+        remove: list[RemoveRequest] = request(topics.REMOVE)
+        set_pose: list[SetPoseRequest] = request(topics.SET_POSE)
+        save: list[StateRequest] = request(topics.SAVE)
+        restore: list[StateRequest] = request(topics.RESTORE)
+
+    class Outputs(Writes):
+        imu: dict[str, Imu] | None = topic(topics.IMU)
+        scan: dict[str, LaserScan] | None = topic(topics.SCAN)
+        wheels: dict[str, WheelTicks] | None = topic(topics.WHEELS)
+        gnss: dict[str, Gnss] | None = topic(topics.GNSS)
+        sonar: dict[str, Range] | None = topic(topics.SONAR)
+        range: dict[str, Range] | None = topic(topics.RANGE)
+        contact: dict[str, Contact] | None = topic(topics.CONTACT)
+        battery: dict[str, Battery] | None = topic(topics.BATTERY)
+        joints: dict[str, JointStates] | None = topic(topics.JOINTS)
+        joint_frames: dict[str, FrameTransforms] | None = topic(topics.TF_JOINTS)
+        frames: dict[str, FrameTransforms] | None = topic(topics.TF_STATIC)
+        truth: dict[str, NavState] | None = topic(topics.TRUTH)
+        objects: SimObjects | None = topic(topics.OBJECTS)
+        spawn: list[Reply] = replies(topics.SPAWN)
+        remove: list[Reply] = replies(topics.REMOVE)
+        set_pose: list[Reply] = replies(topics.SET_POSE)
+        save: list[Reply] = replies(topics.SAVE)
+        restore: list[Reply] = replies(topics.RESTORE)
 
     def __init__(
-        self, world: GroundWorld, surroundings: Surroundings, stage: Stage, aircraft: Collection[str] = (), faults: Faults | None = None
+        self,
+        world: GroundWorld,
+        surroundings: Surroundings,
+        stage: GroundStage,
+        aircraft: Collection[str] = (),
+        faults: Faults | None = None,
     ) -> None:
         """aircraft: names of those that another simulator moves among these vehicles."""
         self._faults = faults or Faults()
@@ -90,48 +116,37 @@ class SimGround(Service):
         self._objects_due = Due(topics.OBJECTS.hz)
         self._had_objects = False
 
-    def step(
-        self,
-        t: float,
-        commands: dict[str, WheelCommand],
-        truth: Mapping[str, NavState],
-        flying: SimObjects | None,
-        spawn: list[SpawnRequest],
-        remove: list[RemoveRequest],
-        set_pose: list[SetPoseRequest],
-        save: list[StateRequest],
-        restore: list[StateRequest],
-    ) -> Outputs:
+    def step(self, t: float, now: Inputs) -> Outputs:
         """What is asked for holds from this step's end. truth: of the aircraft; flying: those of them that have been put in."""
-        self._guests = courses(truth, self._aircraft)
+        self._guests = courses(now.truth, self._aircraft)
         self._world.guide(self._guests)
-        self._advance(t, {name: WheelSpeeds(c.left, c.right) for name, c in commands.items() if not self._is_flat(name)})
-        read, n, stage = self._read(t), round(t * self.hz), self._stage
-        replies = {
-            "spawn": [stage.spawn(r, [o.name for o in flying.objects] if flying else []) for r in spawn],
-            "remove": [stage.remove(r) for r in remove],
-            "set_pose": [stage.set_pose(r) for r in set_pose],
-            "save": [stage.save(n, r) for r in save],
-            "restore": [stage.restore(n, r) for r in restore],
-        }
-        return {**read, **self._objects(t), **replies}
+        self._advance(t, {name: WheelSpeeds(c.left, c.right) for name, c in now.commands.items() if not self._is_flat(name)})
+        out, n, stage = self._read(t), round(t * self.hz), self._stage
+        flying = [o.name for o in now.flying.objects] if now.flying else []
+        out.spawn = [stage.spawn(r, flying) for r in now.spawn]
+        out.remove = [stage.remove(r) for r in now.remove]
+        out.set_pose = [stage.set_pose(r) for r in now.set_pose]
+        out.save = [stage.save(n, r) for r in now.save]
+        out.restore = [stage.restore(n, r) for r in now.restore]
+        out.objects = self._objects(t)
+        return out
 
-    def _read(self, t: float) -> dict[str, dict[str, Value]]:
+    def _read(self, t: float) -> Outputs:
         """What the sensors say, and the frames of those that have not been told of: at the first step and later."""
         rigs, late = self._stage.rigs, self._stage.late / self.hz
         at = self._sensors_time(t)
         states = {name: self._world.state(name) for name in rigs}
         bodies = cache(lambda: (self._moving(t), self._surroundings.bodies({**states, **self._flying(t)})))
-        outputs: dict[str, dict[str, Value]] = {}
+        out = self.Outputs()
         for name, rig in rigs.items():
             drawn = self._world.motor_energy(name) if rig.charge is not None else 0.0
             moment = Moment(states[name], partial(_others, name, bodies), self._world.touches(name), drawn)
             for output, said in self._faults.spoil(t, name, dict(rig.read(at, moment))).items():
-                outputs.setdefault(output, {})[name] = later(said, late) if late else said
+                out.add(output, name, later(said, late) if late else said)
         if new := [name for name in rigs if name not in self._stage.told]:
-            outputs["frames"] = {name: rigs[name].frames(t) for name in new}
+            out.frames = {name: rigs[name].frames(t) for name in new}
             self._stage.told.update(new)
-        return outputs
+        return out
 
     def _is_flat(self, name: str) -> bool:
         return name in self._stage.rigs and self._stage.rigs[name].is_flat
@@ -139,7 +154,7 @@ class SimGround(Service):
     def _flying(self, t: float) -> dict[str, Whereabouts]:
         return {name: course.at(t) for name, course in self._guests.items()}
 
-    def _moving(self, t: float) -> list[Body]:
+    def _moving(self, t: float) -> list[MovingBody]:
         return [*self._surroundings.moving(t).values(), *self._surroundings.objects(self._world.poses()).values()]
 
     def _sensors_time(self, t: float) -> float:
@@ -156,19 +171,19 @@ class SimGround(Service):
             for name in quick if left else ():
                 self._stage.rigs[name].glance(self._sensors_time(t) - left * part, self._world.state(name))
 
-    def _objects(self, t: float) -> dict[str, Value]:
+    def _objects(self, t: float) -> SimObjects | None:
         """Told while there are any, and once when the last one has gone."""
         if not self._objects_due.at(t):
-            return {}
+            return None
         told = self._stage.objects(t)
         had, self._had_objects = self._had_objects, bool(told.objects)
-        return {"objects": told} if told.objects or had else {}
+        return told if told.objects or had else None
 
     def close(self) -> None:
         self._world.close()
 
 
-def _others(name: str, bodies: Callable[[], tuple[list[Body], dict[str, Body]]]) -> list[Body]:
+def _others(name: str, bodies: Callable[[], tuple[list[MovingBody], dict[str, MovingBody]]]) -> list[MovingBody]:
     """What moves about a vehicle: solids by script, what has been put in, and the other vehicles."""
     moving, vehicles = bodies()
     return moving + [body for other, body in vehicles.items() if other != name]

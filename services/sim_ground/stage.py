@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from schemas.messages import RemoveRequest, Reply, SetPoseRequest, SimObject, SimObjects, SpawnRequest, StateRequest
 from services.sim_ground.rig import Rig
-from services.sim_ground.world import Placed
+from services.sim_ground.world import BodyPlacement
 from uvf.models.shapes.solid import Solid
 from uvf.models.urdf.robot import UrdfModel
 from uvf.models.yaml_data import BadInput, listed, nearest
@@ -27,7 +27,7 @@ class Stageable(Protocol):
 
     def put(self, name: str, solid: Solid, mass: float) -> str: ...
 
-    def put_vehicle(self, name: str, vehicle: Placed) -> str: ...
+    def put_vehicle(self, name: str, vehicle: BodyPlacement) -> str: ...
 
     def remove(self, name: str) -> None: ...
 
@@ -42,20 +42,20 @@ class Stageable(Protocol):
     def forget(self, saved: Any) -> None: ...
 
 
-class Joining(NamedTuple):
+class JoiningVehicle(NamedTuple):
     """A vehicle that is made ready to be put in."""
 
-    placed: Placed
+    placed: BodyPlacement
     rig: Rig
     model: UrdfModel
 
 
-Join = Callable[[str, str, tuple[float, float, float], float], Joining]
+Join = Callable[[str, str, tuple[float, float, float], float], JoiningVehicle]
 """From a new name, a folder in vehicles/, a start x, y [m], yaw [rad], and z [m] of what it stands on. Raises BadInput."""
 
 
 @dataclass(frozen=True)
-class Kept:
+class SavedState:
     """A state under a name: the engine's, the sensors', the step at which it was, and what had been put in, by name and number."""
 
     world: Any
@@ -64,7 +64,7 @@ class Kept:
     objects: dict[str, int]
 
 
-class Stage:
+class GroundStage:
     """Requests are answered in the order spawn, remove, set pose, save, restore, each in the order asked."""
 
     def __init__(self, world: Stageable, rigs: Mapping[str, Rig], surroundings: Surroundings, taken: tuple[str, ...], join: Join) -> None:
@@ -81,7 +81,7 @@ class Stage:
         self._objects: dict[str, SimObject] = {}
         self._numbers: dict[str, int] = {}
         self._spawned = 0
-        self._kept: dict[str, Kept] = {}
+        self._kept: dict[str, SavedState] = {}
 
     def spawn(self, request: SpawnRequest, others: Collection[str]) -> Reply:
         """others: names of what the air simulator has put in."""
@@ -155,7 +155,7 @@ class Stage:
             return _reply("")
         if request.name in self._kept:
             self._world.forget(self._kept[request.name].world)
-        self._kept[request.name] = Kept(self._world.save(), copy.deepcopy(self.rigs), step - self.late, dict(self._numbers))
+        self._kept[request.name] = SavedState(self._world.save(), copy.deepcopy(self.rigs), step - self.late, dict(self._numbers))
         return _reply("")
 
     def restore(self, step: int, request: StateRequest) -> Reply:

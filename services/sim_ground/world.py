@@ -40,7 +40,7 @@ SETTLING = 0.3  # s of physics before the start: the wheels sink into their cont
 
 
 @dataclass(frozen=True)
-class Placed:
+class BodyPlacement:
     """A vehicle to put into the world: its file's data, its URDF, its start (x, y [m], yaw [rad], world) and z [m] of what it stands on."""
 
     body: GroundBody
@@ -71,7 +71,7 @@ class Saved:
 class BulletWorld:
     """One physics client of its own. The floor is z = 0; base_link is the point on the floor under the axle's middle."""
 
-    def __init__(self, solids: Sequence[Solid], vehicles: Mapping[str, Placed]) -> None:
+    def __init__(self, solids: Sequence[Solid], vehicles: Mapping[str, BodyPlacement]) -> None:
         self._client: int = pybullet.connect(pybullet.DIRECT)
         self.rate = max((v.body.physics_hz for v in vehicles.values()), default=200.0)
         self._names: dict[int, str] = {}
@@ -100,7 +100,7 @@ class BulletWorld:
         self._names[index] = name
         return index
 
-    def _load(self, name: str, vehicle: Placed) -> _Loaded:
+    def _load(self, name: str, vehicle: BodyPlacement) -> _Loaded:
         try:
             index = pybullet.loadURDF(str(vehicle.urdf), flags=pybullet.URDF_USE_INERTIA_FROM_FILE, physicsClientId=self._client)
         except pybullet.error as error:
@@ -133,7 +133,7 @@ class BulletWorld:
         infos = [pybullet.getJointInfo(index, j, physicsClientId=self._client) for j in range(count)]
         return {info[1].decode(): j for j, info in enumerate(infos)}
 
-    def _place(self, index: int, vehicle: Placed, com_in_base: tuple[Floats, Floats]) -> None:
+    def _place(self, index: int, vehicle: BodyPlacement, com_in_base: tuple[Floats, Floats]) -> None:
         x, y, yaw = vehicle.start
         world_from_base = from_euler(0.0, 0.0, yaw)
         position = np.array((x, y, vehicle.z)) + rotate(world_from_base, com_in_base[0])
@@ -235,7 +235,7 @@ class BulletWorld:
         self._objects[name] = self._add(name, _collision_shape(solid, self._client), solid.position, solid.orientation, mass)
         return self._unless_free(name)
 
-    def put_vehicle(self, name: str, vehicle: Placed) -> str:
+    def put_vehicle(self, name: str, vehicle: BodyPlacement) -> str:
         """As ``put``. Raises BadInput for a URDF that the engine cannot load."""
         self._vehicles[name] = self._load(name, vehicle)
         return self._unless_free(name)

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from functools import partial
 
-from services.slam.localization_service import Beginning, LocalizationService
+from services.slam.localization_service import LocalizationService, LocalizationStart
 from services.slam.map_serving import map_servers
 from services.slam.mapping_service import MappingParams, MappingService
 from services.slam.odometry.service import OdometryService
@@ -12,28 +12,28 @@ from uvf.estimation.odometry.params import OdometryParams
 from uvf.maths.geodesy import LocalTangent
 from uvf.maths.se2 import IDENTITY, Pose2, compose, inverse
 from uvf.models.mission.file import Maps
-from uvf.models.scenario import Member, Site
+from uvf.models.scenario import MissionVehicle, Scenario
 from uvf.models.vehicle.sensors import Lidar
 from uvf.models.yaml_data import BadInput, nearest
-from uvf.runtime.contract.instances import Host
+from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.state.saved_maps import known_path
 from uvf.slam.localization import known_map
 from uvf.slam.localization.params import FilterParams
-from uvf.slam.maps.session import Session
+from uvf.slam.maps.session import MappingSession
 from uvf.slam.maps.tiles import TileMap
 from uvf.slam.method import SlamMethod
 from uvf.slam.methods import METHODS, make_method
 from uvf.slam.resumable import Resumable
 
 
-def build(site: Site) -> list[Host]:
+def build(site: Scenario) -> list[ServiceInstance]:
     """Raises BadInput for a vehicle without lidar or wheel encoders, and for files that are no maps."""
     warm: set[str] = set()
     hosts = [host for member in site.of_kind("ground") for host in _hosts(site, member, warm)]
     return hosts + map_servers(site)
 
 
-def _hosts(site: Site, member: Member, warm: set[str]) -> list[Host]:
+def _hosts(site: Scenario, member: MissionVehicle, warm: set[str]) -> list[ServiceInstance]:
     """warm: names of what has been compiled: methods, and localization."""
     sensors = member.file.sensors
     lidar = sensors.lidar
@@ -60,15 +60,15 @@ def _hosts(site: Site, member: Member, warm: set[str]) -> list[Host]:
     def make() -> MappingService:
         return MappingService(member.name, lidar, world_from_map, mapping, method(), left)
 
-    return [_odometry(site, member), Host(MappingService, make, member.name)]
+    return [_odometry(site, member), ServiceInstance(MappingService, make, member.name)]
 
 
-def _left(site: Site, member: Member, mapping: MappingParams, name: str) -> Session:
+def _left(site: Scenario, member: MissionVehicle, mapping: MappingParams, name: str) -> MappingSession:
     """The session that a mapping goes on with, in the vehicle's map frame. Raises BadInput where it cannot."""
     assert member.entry.maps is not None
     path, method = site.mission_path.parent / name, _method(member, mapping)()
     map_from_file = compose(inverse(_world_from_map(member)), Pose2(*member.entry.maps.known_at))
-    session = Session.load(path).moved(map_from_file)
+    session = MappingSession.load(path).moved(map_from_file)
     if not isinstance(method, Resumable):
         raise BadInput(f"{member.name}: maps: continues: method {mapping.method} cannot go on with a session; graph does")
     if not session.keyframes:
@@ -83,29 +83,29 @@ def _left(site: Site, member: Member, mapping: MappingParams, name: str) -> Sess
     return session
 
 
-def _world_from_map(member: Member) -> Pose2:
+def _world_from_map(member: MissionVehicle) -> Pose2:
     start = member.entry.start
     return Pose2(start.x, start.y, start.yaw)
 
 
-def _odometry(site: Site, member: Member) -> Host:
+def _odometry(site: Scenario, member: MissionVehicle) -> ServiceInstance:
     params, origin = member.params("odometry", OdometryParams), site.world.origin
     tangent = LocalTangent.from_degrees(origin.latitude, origin.longitude, origin.altitude)
     start = _world_from_map(member)
-    return Host(OdometryService, lambda: OdometryService(member.name, member.file, start, params, tangent), member.name)
+    return ServiceInstance(OdometryService, lambda: OdometryService(member.name, member.file, start, params, tangent), member.name)
 
 
-def _localization(site: Site, member: Member, lidar: Lidar, maps: Maps) -> Host:
+def _localization(site: Scenario, member: MissionVehicle, lidar: Lidar, maps: Maps) -> ServiceInstance:
     """In the place of mapping. Raises BadInput for a file that is no map."""
     start, params, known = _world_from_map(member), member.params("localization", FilterParams), None
     if maps.known is not None:
         known = known_map.known_map(known_path(maps.known, site.mission_path.parent), compose(inverse(start), Pose2(*maps.known_at)))
     seed = int(site.rng(member.name, "localization").integers(1 << 31))
-    beginning = Beginning(known, maps.localize == "anywhere", seed)
-    return Host(LocalizationService, lambda: LocalizationService(member.name, lidar, start, params, beginning), member.name)
+    beginning = LocalizationStart(known, maps.localize == "anywhere", seed)
+    return ServiceInstance(LocalizationService, lambda: LocalizationService(member.name, lidar, start, params, beginning), member.name)
 
 
-def _method(member: Member, mapping: MappingParams) -> Callable[[], SlamMethod]:
+def _method(member: MissionVehicle, mapping: MappingParams) -> Callable[[], SlamMethod]:
     """Makes it by the name that the vehicle's file gives, with the parameters of that name. Raises BadInput."""
     path = str(member.folder / "vehicle.yaml")
     if mapping.method not in METHODS:

@@ -12,13 +12,12 @@ from uvf.maths.se2 import IDENTITY, Pose2, compose, inverse
 from uvf.maths.se3 import planar
 from uvf.models.vehicle.sensors import Lidar
 from uvf.models.yaml_data import BadInput
-from uvf.runtime.contract.service import frames, optional
+from uvf.runtime.contract.declaration import Reads, Writes, frames, optional, replies, request, topic
 from uvf.runtime.messages.convert import pose2_of, pose2_of_frame, stamp
 from uvf.runtime.messages.frames import FrameBuffer, FrameError
 from uvf.runtime.messages.grids import as_map, as_message
-from uvf.runtime.messages.outputs import Outputs
 from uvf.slam.localization.known_map import KnownMap, of_grid
-from uvf.slam.localization.localizer import HALF_SURE, Localizer, State
+from uvf.slam.localization.localizer import HALF_SURE, Localizer, LocalizerState
 from uvf.slam.localization.params import FilterParams
 from uvf.slam.reading import Reading
 
@@ -28,7 +27,7 @@ LEAST_SIGMA, MOST_SIGMA = 1e-4, 1000.0
 
 
 @dataclass(frozen=True)
-class Beginning:
+class LocalizationStart:
     """known: the map, in the map frame; None: it comes on map/known. anywhere: nothing is known of where the vehicle is."""
 
     known: KnownMap | None
@@ -41,20 +40,31 @@ class LocalizationService(PlacingService):
 
     name = "localization"
     purpose = "placed in the map"
-    inputs = {"scan": topics.SCAN, "frames": frames(), "known": optional(topics.KNOWN_MAP)}
-    outputs = {
-        "correction": topics.TF_MAP,
-        "placing": topics.TF_WORLD,
-        "map": topics.MAP,
-        "fix": topics.MAP_FIX,
-        "events": topics.EVENTS.by("localization"),
-    }
-    requests = {"pose": topics.PLACE, "relocalize": topics.RELOCALIZE}
-    recalls = {"correction": topics.TF_MAP, "fix": topics.MAP_FIX}
+
+    class Inputs(Reads):
+        scan: LaserScan = topic(topics.SCAN)
+        frames: FrameBuffer = frames()
+        known: Grid | None = optional(topics.KNOWN_MAP)
+        pose: list[PlaceRequest] = request(topics.PLACE)
+        relocalize: list[RelocalizeRequest] = request(topics.RELOCALIZE)
+
+    class Outputs(Writes):
+        correction: FrameTransform | None = topic(topics.TF_MAP)
+        placing: FrameTransform | None = topic(topics.TF_WORLD)
+        map: Grid | None = topic(topics.MAP)
+        fix: MapFix | None = topic(topics.MAP_FIX)
+        events: list[Event] | None = topic(topics.EVENTS.by("localization"))
+        pose: list[Reply] = replies(topics.PLACE)
+        relocalize: list[Reply] = replies(topics.RELOCALIZE)
+
+    class Recalls(Reads):
+        correction: FrameTransform | None = topic(topics.TF_MAP)
+        fix: MapFix | None = topic(topics.MAP_FIX)
+
     params: FilterParams
     fixed_params = frozenset({"least_particles", "most_particles"})
 
-    def __init__(self, vehicle: str, lidar: Lidar, world_from_map: Pose2, params: FilterParams, beginning: Beginning) -> None:
+    def __init__(self, vehicle: str, lidar: Lidar, world_from_map: Pose2, params: FilterParams, beginning: LocalizationStart) -> None:
         super().__init__(vehicle, lidar, world_from_map)
         self.params = params
         self._beginning = beginning
@@ -65,42 +75,37 @@ class LocalizationService(PlacingService):
         self._map_told = False
         self._refused: Grid | None = None
 
-    def step(
-        self,
-        t: float,
-        scan: LaserScan,
-        frames: FrameBuffer,
-        known: Grid | None,
-        pose: list[PlaceRequest],
-        relocalize: list[RelocalizeRequest],
-    ) -> Outputs:
-        events = self._take_map(t, known)
-        outputs: dict[str, FrameTransform | Grid | MapFix | list[Event] | list[Reply]] = {
-            "pose": [self._placed(request) for request in pose],
-            "relocalize": [self._looked_for() for _ in relocalize],
-        }
+    def step(self, t: float, now: Inputs) -> Outputs:
+        events = self._take_map(t, now.known)
+        out = self.Outputs(
+            pose=[self._placed(request) for request in now.pose],
+            relocalize=[self._looked_for() for _ in now.relocalize],
+            events=events,
+        )
         try:
-            self._odom_from_base = planar(frames.lookup(self._frame("odom"), self._frame("base_footprint")))
-            if self._localizer is not None and (reading := self._reading(scan, frames)) is not None:
-                outputs["fix"], told = self._look(t, self._localizer, reading)
+            self._odom_from_base = planar(now.frames.lookup(self._frame("odom"), self._frame("base_footprint")))
+            if self._localizer is not None and (reading := self._reading(now.scan, now.frames)) is not None:
+                out.fix, told = self._look(t, self._localizer, reading)
                 events += told
             self._placeless_since = None if self._localizer is not None else self._placeless_since
         except FrameError as error:
-            return outputs | {"events": events + self._wait(t, str(error))}
+            events += self._wait(t, str(error))
+            return out
         if self._localizer is None:
-            return outputs | {"events": events + self._wait(t, "there is no map on map/known, and the mission gives none under 'maps:'")}
-        outputs["correction"] = self._correction(t)
+            events += self._wait(t, "there is no map on map/known, and the mission gives none under 'maps:'")
+            return out
+        out.correction = self._correction(t)
         if not self._map_told:
             self._map_told = True
-            outputs["placing"] = self._transform(t, "world", "map", self._world_from_map)
-            outputs["map"] = as_message(self._localizer.known.grid, self._frame("map"), t)
-        return outputs | {"events": events}
+            out.placing = self._transform(t, "world", "map", self._world_from_map)
+            out.map = as_message(self._localizer.known.grid, self._frame("map"), t)
+        return out
 
-    def recall(self, correction: FrameTransform | None = None, fix: MapFix | None = None) -> None:
+    def recall(self, left: Recalls) -> None:
         """Goes on where the vehicle was last believed to be, as surely as it was believed."""
-        if correction is not None:
-            self._published = self._map_from_odom = self._start = pose2_of_frame(correction)
-            self._is_doubtful = fix is not None and not fix.quality > HALF_SURE
+        if left.correction is not None:
+            self._published = self._map_from_odom = self._start = pose2_of_frame(left.correction)
+            self._is_doubtful = left.fix is not None and not left.fix.quality > HALF_SURE
 
     def _take_map(self, t: float, known: Grid | None) -> list[Event]:
         """The one of the mission, or the first on map/known that can be used; one that cannot is told of once."""
@@ -130,15 +135,15 @@ class LocalizationService(PlacingService):
         before, jumps = localizer.state, localizer.is_fresh
         estimate = localizer.add(reading)
         self._map_from_odom = compose(estimate.map_from_base, inverse(reading.odom_from_base))
-        if jumps or (before is not State.TRACKING and localizer.state is State.TRACKING):
+        if jumps or (before is not LocalizerState.TRACKING and localizer.state is LocalizerState.TRACKING):
             self._published = self._map_from_odom
         fix = fix_message(reading.t, estimate.map_from_base, estimate.covariance, estimate.quality)
         return fix, self._changed(t, before, localizer)
 
-    def _changed(self, t: float, before: State, localizer: Localizer) -> list[Event]:
+    def _changed(self, t: float, before: LocalizerState, localizer: Localizer) -> list[Event]:
         if localizer.state is before:
             return []
-        if localizer.state is State.TRACKING:
+        if localizer.state is LocalizerState.TRACKING:
             x, y, yaw = compose(self._world_from_map, localizer.pose)
             where = f"at ({x:.2f}, {y:.2f}), {np.degrees(yaw):.0f} deg in the world"
             return [self._event(t, Event.INFO, "the vehicle is localized", where)]

@@ -9,10 +9,10 @@ from schemas.messages import FrameTransform, Grid, MapReply, MapRequest, Reply, 
 from uvf.maths.se2 import compose
 from uvf.models.world.map_file import GridMap
 from uvf.models.yaml_data import BadInput, nearest
-from uvf.runtime.contract.service import Service, optional
+from uvf.runtime.contract.declaration import Reads, Writes, optional, replies, request, topic
+from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import pose2_of_frame
 from uvf.runtime.messages.grids import as_map, as_message
-from uvf.runtime.messages.outputs import Outputs
 
 Save = Callable[[GridMap, str, str], Path]
 """Writes a map under a name, in a mode of map_server. Raises BadInput."""
@@ -25,9 +25,19 @@ class MapServer(Service):
 
     name = "map_server"
     hz = 2.0
-    inputs = {"map": optional(topics.MAP), "placing": optional(topics.TF_WORLD)}
-    outputs = {"known": topics.KNOWN_MAP, "keepout": topics.KEEP_OUT, "speed": topics.SPEED_MAP}
-    requests = {"save": topics.SAVE_MAP, "get": topics.GET_MAP}
+
+    class Inputs(Reads):
+        map: Grid | None = optional(topics.MAP)
+        placing: FrameTransform | None = optional(topics.TF_WORLD)
+        save: list[SaveMapRequest] = request(topics.SAVE_MAP)
+        get: list[MapRequest] = request(topics.GET_MAP)
+
+    class Outputs(Writes):
+        known: Grid | None = topic(topics.KNOWN_MAP)
+        keepout: Grid | None = topic(topics.KEEP_OUT)
+        speed: Grid | None = topic(topics.SPEED_MAP)
+        save: list[Reply] = replies(topics.SAVE_MAP)
+        get: list[MapReply] = replies(topics.GET_MAP)
 
     def __init__(self, layers: Mapping[str, GridMap], save: Save) -> None:
         """layers: by the names of the outputs, world frame."""
@@ -35,15 +45,15 @@ class MapServer(Service):
         self._save = save
         self._served: dict[str, Grid] = {}
 
-    def step(
-        self, t: float, map: Grid | None, placing: FrameTransform | None, save: list[SaveMapRequest], get: list[MapRequest]
-    ) -> Outputs:
+    def step(self, t: float, now: Inputs) -> Outputs:
         fresh = not self._served
         self._served = self._served or {name: as_message(layer, "world", t) for name, layer in self._layers.items()}
-        outputs: dict[str, Grid | list[Reply] | list[MapReply]] = {**self._served} if fresh else {}
-        outputs["save"] = [self._saved(request, map, placing) for request in save]
-        outputs["get"] = [self._found(request, map) for request in get]
-        return outputs
+        layers = self._served if fresh else {}
+        return self.Outputs(
+            **layers,
+            save=[self._saved(request, now.map, now.placing) for request in now.save],
+            get=[self._found(request, now.map) for request in now.get],
+        )
 
     def _saved(self, request: SaveMapRequest, map: Grid | None, placing: FrameTransform | None) -> Reply:
         if not NAME.fullmatch(request.name):

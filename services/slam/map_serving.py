@@ -6,18 +6,18 @@ from pathlib import Path
 from services.slam.map_server import MapServer
 from uvf.maths.se2 import Pose2, compose
 from uvf.models.mission.file import Maps
-from uvf.models.scenario import Member, Site
+from uvf.models.scenario import MissionVehicle, Scenario
 from uvf.models.world.map_file import GridMap, load_map, save_map
-from uvf.models.yaml_data import BadInput, Place
-from uvf.runtime.contract.instances import Host
+from uvf.models.yaml_data import BadInput, FileLocation
+from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.state.saved_maps import find_map, known_path, map_path
 from uvf.slam.localization.known_map import is_session, known_map
 from uvf.slam.maps.masks import KeepOut, SpeedLimit
 
 
-def map_servers(site: Site) -> list[Host]:
+def map_servers(site: Scenario) -> list[ServiceInstance]:
     """One for each ground vehicle with ``maps:``. Raises BadInput: a file that is no map, or maps for an aircraft."""
-    place = Place(str(site.mission_path)).at("vehicles")
+    place = FileLocation(str(site.mission_path)).at("vehicles")
     for member in site.of_kind("fixed_wing"):
         if member.entry.maps is not None:
             raise BadInput(f"{place.at(member.name, 'maps')}: an aircraft does not drive by maps; leave it out")
@@ -26,10 +26,10 @@ def map_servers(site: Site) -> list[Host]:
     ]
 
 
-def _host(member: Member, maps: Maps, folder: Path) -> Host:
+def _host(member: MissionVehicle, maps: Maps, folder: Path) -> ServiceInstance:
     assert member.file.ground is not None
     layers = dict(_layers(maps, folder, member.file.ground.max_linear))
-    return Host(MapServer, lambda: MapServer(layers, _save), member.name)
+    return ServiceInstance(MapServer, lambda: MapServer(layers, _save), member.name)
 
 
 def _layers(maps: Maps, folder: Path, full_speed: float) -> Iterator[tuple[str, GridMap]]:

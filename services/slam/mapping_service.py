@@ -15,11 +15,10 @@ from uvf.maths.se2 import IDENTITY, Pose2, compose, inverse
 from uvf.maths.se3 import planar
 from uvf.models.vehicle.sensors import Lidar
 from uvf.models.yaml_data import BadInput
-from uvf.runtime.contract.service import frames
+from uvf.runtime.contract.declaration import Reads, Writes, frames, topic
 from uvf.runtime.messages.convert import occupancy_grid, pose2_of_frame, stamp
 from uvf.runtime.messages.frames import FrameBuffer, FrameError
-from uvf.runtime.messages.outputs import Outputs
-from uvf.slam.maps.session import Session
+from uvf.slam.maps.session import MappingSession
 from uvf.slam.maps.tiles import TileMap
 from uvf.slam.method import Keyframe, SlamMethod
 from uvf.slam.placing_params import PlacingParams, Positive
@@ -44,21 +43,34 @@ class MappingService(PlacingService):
 
     name = "mapping"
     purpose = "mapped"
-    inputs = {"scan": topics.SCAN, "frames": frames()}
-    outputs = {
-        "correction": topics.TF_MAP,
-        "placing": topics.TF_WORLD,
-        "map": topics.MAP,
-        "fix": topics.MAP_FIX,
-        "session": topics.MAP_SESSION,
-        "events": topics.EVENTS.by("mapping"),
-    }
-    recalls = {"session": topics.MAP_SESSION, "correction": topics.TF_MAP}
+
+    class Inputs(Reads):
+        scan: LaserScan = topic(topics.SCAN)
+        frames: FrameBuffer = frames()
+
+    class Outputs(Writes):
+        correction: FrameTransform | None = topic(topics.TF_MAP)
+        placing: FrameTransform | None = topic(topics.TF_WORLD)
+        map: Grid | None = topic(topics.MAP)
+        fix: MapFix | None = topic(topics.MAP_FIX)
+        session: MapSession | None = topic(topics.MAP_SESSION)
+        events: list[Event] | None = topic(topics.EVENTS.by("mapping"))
+
+    class Recalls(Reads):
+        session: MapSession | None = topic(topics.MAP_SESSION)
+        correction: FrameTransform | None = topic(topics.TF_MAP)
+
     params: MappingParams
     fixed_params = frozenset({"resolution", "method"})
 
     def __init__(
-        self, vehicle: str, lidar: Lidar, world_from_map: Pose2, params: MappingParams, method: SlamMethod, left: Session | None = None
+        self,
+        vehicle: str,
+        lidar: Lidar,
+        world_from_map: Pose2,
+        params: MappingParams,
+        method: SlamMethod,
+        left: MappingSession | None = None,
     ) -> None:
         """left: a session to go on with, in the vehicle's map frame."""
         self.params = params
@@ -73,35 +85,36 @@ class MappingService(PlacingService):
         self._drawn = self._kept = self._noted = 0
         self._undrawn = False
 
-    def step(self, t: float, scan: LaserScan, frames: FrameBuffer) -> Outputs:
-        outputs: dict[str, FrameTransform | Grid | MapFix | MapSession | list[Event]] = {}
+    def step(self, t: float, now: Inputs) -> Outputs:
+        out = self.Outputs()
         events: list[Event] = []
         try:
-            self._odom_from_base = planar(frames.lookup(self._frame("odom"), self._frame("base_footprint")))
-            if (reading := self._reading(scan, frames)) is not None:
-                outputs["fix"], events = self._look(t, reading)
+            self._odom_from_base = planar(now.frames.lookup(self._frame("odom"), self._frame("base_footprint")))
+            if (reading := self._reading(now.scan, now.frames)) is not None:
+                out.fix, events = self._look(t, reading)
             self._placeless_since = None
         except FrameError as error:
-            return {"events": self._wait(t, str(error))}
-        outputs["correction"] = self._correction(t)
+            return self.Outputs(events=self._wait(t, str(error)))
+        out.correction = self._correction(t)
         if not self._placed:
-            outputs["placing"] = self._transform(t, "world", "map", self._world_from_map)
+            out.placing = self._transform(t, "world", "map", self._world_from_map)
             self._placed = True
         try:
-            outputs |= self._grid(t)
+            out.map = self._grid(t)
         except BadInput as error:
             events += self._cannot_draw(t, str(error))
-        return outputs | self._session(t) | {"events": events + self._notes(t)}
+        out.session, out.events = self._session(t), events + self._notes(t)
+        return out
 
-    def recall(self, session: MapSession | None = None, correction: FrameTransform | None = None) -> None:
+    def recall(self, left: Recalls) -> None:
         """Goes on where the vehicle has been, with the session published last if the method can; else a new map grows there."""
-        if correction is None:
+        if left.correction is None:
             return
-        self._published = self._map_from_odom = pose2_of_frame(correction)
+        self._published = self._map_from_odom = pose2_of_frame(left.correction)
         self._begun_elsewhere = True
-        if session is not None and isinstance(self._method, Resumable):
+        if left.session is not None and isinstance(self._method, Resumable):
             with suppress(BadInput):
-                self._left = Session.decoded(session.data, "on the bus")
+                self._left = MappingSession.decoded(left.session.data, "on the bus")
 
     def _look(self, t: float, reading: Reading) -> tuple[MapFix, list[Event]]:
         guess = compose(self._map_from_odom, reading.odom_from_base)
@@ -133,15 +146,15 @@ class MappingService(PlacingService):
         for keyframe in self._method.keyframes():
             yield Keyframe(compose(self._map_from_first, keyframe.map_from_base), keyframe.reading)
 
-    def _grid(self, t: float) -> dict[str, Grid]:
+    def _grid(self, t: float) -> Grid | None:
         """Now and then, when there is a keyframe more."""
         count = self._method.keyframe_count()
         if count == self._drawn or t - self._map_time < self.params.map_period - 1e-9:
-            return {}
+            return None
         self._map_time, self._drawn = t, count
         self._map.follow(self._keyframes_in_map())
         cells, (x, y) = self._map.cells()
-        return {"map": occupancy_grid(cells, self._map.resolution, float(x), float(y), f"{self._vehicle}/map", t)}
+        return occupancy_grid(cells, self._map.resolution, float(x), float(y), f"{self._vehicle}/map", t)
 
     def _cannot_draw(self, t: float, cause: str) -> list[Event]:
         """Told once; poses and session go on."""
@@ -156,12 +169,12 @@ class MappingService(PlacingService):
         self._noted += len(new)
         return [Event(timestamp=stamp(t), severity=Event.WARNING, text="mapping is limited", cause=note, source="mapping") for note in new]
 
-    def _session(self, t: float) -> dict[str, MapSession]:
+    def _session(self, t: float) -> MapSession | None:
         """The same of what another could go on with."""
         count = self._method.keyframe_count()
         if count == self._kept or t - self._session_time < self.params.session_period - 1e-9:
-            return {}
+            return None
         if not isinstance(self._method, Resumable):
-            return {}
+            return None
         self._session_time, self._kept = t, count
-        return {"session": MapSession(timestamp=stamp(t), data=self._method.session().encoded("on the bus"))}
+        return MapSession(timestamp=stamp(t), data=self._method.session().encoded("on the bus"))

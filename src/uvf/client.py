@@ -58,7 +58,7 @@ class Client:
         return self
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
-        # Closing drops what still waits to be sent, as the last word to a vehicle to stand: a question to the router goes behind it.
+        # Closing drops what still waits to be sent, as the last word to a vehicle to stand: a round trip to the router flushes them first.
         self._bus.tokens("@node/nobody")
         self._bus.close()
 

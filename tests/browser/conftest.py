@@ -14,8 +14,8 @@ from tests.second_try import Shared
 from tests.services.gcs.scripted import Script, demo_site, with_eyes
 from tests.services.gcs.wire import free_port
 from uvf.runtime.bus.address import Address
-from uvf.runtime.contract.instances import Host
-from uvf.runtime.contract.service_runner import Shell
+from uvf.runtime.contract.instances import ServiceInstance
+from uvf.runtime.contract.service_runner import ServiceRunner
 
 CHROMIUM = Path("/usr/bin/chromium")
 FLAGS = [
@@ -37,7 +37,7 @@ class LiveStation:
         self.script = Script()
         self.page = ViserPage(Address(port=self.port), partial(cameras, site))
         self.service = GroundStation(site, self.page)
-        self.shell = Shell(Host(GroundStation, lambda: self.service), self.script.bus)
+        self.shell = ServiceRunner(ServiceInstance(GroundStation, lambda: self.service), self.script.bus)
         self.moving = self.living = True
         self.t = 0.0
         self._end = threading.Event()

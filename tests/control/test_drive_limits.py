@@ -2,9 +2,9 @@
 
 import pytest
 
-from uvf.control.drive_limits import Limits, Ramp, within_limits
+from uvf.control.drive_limits import DriveLimits, VelocityRamp, within_limits
 
-LIMITS = Limits(linear=0.5, angular=2.0, linear_acceleration=0.8, angular_acceleration=4.0)
+LIMITS = DriveLimits(linear=0.5, angular=2.0, linear_acceleration=0.8, angular_acceleration=4.0)
 
 
 @pytest.mark.parametrize("asked", [(2.0, 1.0), (0.3, 5.0), (-1.0, -3.0), (0.2, 0.1)])
@@ -21,7 +21,7 @@ def test_a_mission_may_ask_for_less_but_not_for_more():
 
 
 def test_the_ramp_reaches_the_speed_after_the_time_it_takes():
-    ramp = Ramp(LIMITS)
+    ramp = VelocityRamp(LIMITS)
     speeds = [ramp.lead(0.4, 2.0, 0.02) for _ in range(30)]
     assert speeds[0] == pytest.approx((0.016, 0.08))
     assert speeds[24] == pytest.approx((0.4, 2.0))
@@ -30,6 +30,6 @@ def test_the_ramp_reaches_the_speed_after_the_time_it_takes():
 
 
 def test_the_ramp_slows_down_too():
-    ramp = Ramp(LIMITS)
+    ramp = VelocityRamp(LIMITS)
     ramp.linear = 0.4
     assert ramp.lead(0.0, 0.0, 0.02)[0] == pytest.approx(0.384)

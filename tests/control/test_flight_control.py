@@ -5,19 +5,19 @@ import math
 import pytest
 
 from tests.services.autopilot.air.states import PARAMS, cruising
-from uvf.control.commands import Attitude, Wanted
-from uvf.control.flight_control import Control
+from uvf.control.commands import AltitudeAirspeedSetpoint, AttitudeSetpoint
+from uvf.control.flight_control import FlightControl
 from uvf.control.servos import SERVOS
 
-LEVEL = Wanted(bank=0.0, height=60.0, climb=0.0, airspeed=25.0)
+LEVEL = AltitudeAirspeedSetpoint(bank=0.0, height=60.0, climb=0.0, airspeed=25.0)
 
 
 def once(now, wanted=LEVEL, control=None):
-    return (control or Control(SERVOS)).step(now, wanted, PARAMS, 0.02)
+    return (control or FlightControl(SERVOS)).step(now, wanted, PARAMS, 0.02)
 
 
 def test_a_bank_to_the_right_takes_positive_aileron():
-    assert once(cruising(), Wanted(0.5, 60.0, 0.0, 25.0)).aileron > 0.02
+    assert once(cruising(), AltitudeAirspeedSetpoint(0.5, 60.0, 0.0, 25.0)).aileron > 0.02
 
 
 def test_rolling_too_fast_is_damped():
@@ -25,8 +25,8 @@ def test_rolling_too_fast_is_damped():
 
 
 def test_a_bank_beyond_the_limit_is_not_asked_for():
-    at_limit = Wanted(PARAMS.bank_limit, 60.0, 0.0, 25.0)
-    assert once(cruising(), Wanted(3.0, 60.0, 0.0, 25.0)) == once(cruising(), at_limit)
+    at_limit = AltitudeAirspeedSetpoint(PARAMS.bank_limit, 60.0, 0.0, 25.0)
+    assert once(cruising(), AltitudeAirspeedSetpoint(3.0, 60.0, 0.0, 25.0)) == once(cruising(), at_limit)
 
 
 def test_too_low_takes_elevator_up_and_throttle():
@@ -47,12 +47,12 @@ def test_a_turn_takes_elevator_up_and_throttle_for_its_load():
 
 def test_too_slow_takes_throttle_and_the_speed_asked_for_has_limits():
     assert once(cruising(airspeed=22.0)).throttle > once(cruising()).throttle
-    slowest, below = Wanted(0.0, 60.0, 0.0, PARAMS.min_airspeed), Wanted(0.0, 60.0, 0.0, 3.0)
+    slowest, below = AltitudeAirspeedSetpoint(0.0, 60.0, 0.0, PARAMS.min_airspeed), AltitudeAirspeedSetpoint(0.0, 60.0, 0.0, 3.0)
     assert once(cruising(), below).throttle == once(cruising(), slowest).throttle
 
 
 def test_surfaces_move_less_the_faster_the_air():
-    bank = Wanted(0.2, 60.0, 0.0, 25.0)
+    bank = AltitudeAirspeedSetpoint(0.2, 60.0, 0.0, 25.0)
     assert 0 < once(cruising(airspeed=32.0), bank).aileron < once(cruising(airspeed=20.0), bank).aileron
 
 
@@ -63,41 +63,42 @@ def test_yaw_is_damped_only_beyond_the_turn():
 
 
 def test_slip_to_the_right_is_steered_out_by_the_rudder():
-    control = Control(SERVOS)
+    control = FlightControl(SERVOS)
     for _ in range(100):
         surfaces = once(cruising(side_force=-1.0), control=control)  # wind from the right pushes left
     assert surfaces.rudder < -0.01
 
 
 def test_surfaces_stay_within_their_stops():
-    surfaces = once(cruising(airspeed=12.0, p=-3.0, q=-2.0, r=3.0), Wanted(1.0, 500.0, 5.0, 30.0))
+    surfaces = once(cruising(airspeed=12.0, p=-3.0, q=-2.0, r=3.0), AltitudeAirspeedSetpoint(1.0, 500.0, 5.0, 30.0))
     assert max(abs(surfaces.aileron), abs(surfaces.elevator), abs(surfaces.rudder)) <= SERVOS.aileron.limit
     assert 0 <= surfaces.throttle <= 1
 
 
 def test_without_a_height_the_climb_rate_is_held():
-    climbing = Wanted(0.0, None, 2.0, 25.0)
+    climbing = AltitudeAirspeedSetpoint(0.0, None, 2.0, 25.0)
     assert once(cruising(height=10.0), climbing) == once(cruising(height=900.0), climbing)
     assert once(cruising(climb=3.0), climbing).elevator > once(cruising(climb=1.0), climbing).elevator
 
 
 def test_an_attitude_is_held_with_the_throttle_that_is_given():
-    surfaces = Control(SERVOS).hold(cruising(), Attitude(0.3, 0.2, 0.4), PARAMS, 0.02)
+    surfaces = FlightControl(SERVOS).hold(cruising(), AttitudeSetpoint(0.3, 0.2, 0.4), PARAMS, 0.02)
     assert surfaces.throttle == 0.4
     assert surfaces.aileron > 0.02
-    assert surfaces.elevator < Control(SERVOS).hold(cruising(), Attitude(0.3, 0.0, 0.4), PARAMS, 0.02).elevator
+    assert surfaces.elevator < FlightControl(SERVOS).hold(cruising(), AttitudeSetpoint(0.3, 0.0, 0.4), PARAMS, 0.02).elevator
 
 
 def test_a_rudder_that_is_given_takes_the_place_of_the_slip_loop_beside_the_damper():
     still, given = (
-        Control(SERVOS).hold(cruising(r=0.2, side_force=-2.0), Attitude(0.0, 0.05, 0.4, rudder), PARAMS, 0.02) for rudder in (0.0, 0.1)
+        FlightControl(SERVOS).hold(cruising(r=0.2, side_force=-2.0), AttitudeSetpoint(0.0, 0.05, 0.4, rudder), PARAMS, 0.02)
+        for rudder in (0.0, 0.1)
     )
     assert given.rudder == pytest.approx(still.rudder + 0.1)
 
 
 def test_from_an_attitude_to_a_height_pitch_and_throttle_go_on_from_where_they_were():
-    control, now = Control(SERVOS), cruising(pitch=0.09, height=59.0)
-    held = control.hold(now, Attitude(0.0, 0.09, 0.71), PARAMS, 0.02)
+    control, now = FlightControl(SERVOS), cruising(pitch=0.09, height=59.0)
+    held = control.hold(now, AttitudeSetpoint(0.0, 0.09, 0.71), PARAMS, 0.02)
     taken = control.step(now, LEVEL, PARAMS, 0.02)
     assert taken.throttle == pytest.approx(held.throttle, abs=0.002)
     assert taken.elevator == pytest.approx(held.elevator, abs=0.002)

@@ -4,13 +4,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from uvf.control.teleop_drive import STILL, Command, Hand, Pad
+from uvf.control.teleop_drive import STILL, DriveTeleop, GamepadState, TeleopCommand
 
-MOST = Command(0.8, 2.0)
+MOST = TeleopCommand(0.8, 2.0)
 
 
 def hand_of(*vehicles, most=MOST):
-    return Hand(vehicles or ("one",), most)
+    return DriveTeleop(vehicles or ("one",), most)
 
 
 def sent(hand, times):
@@ -30,7 +30,7 @@ def test_one_press_drives_half_a_second_then_stands_half_a_second_then_is_silent
     hand = hand_of()
     hand.key(0.0, "w")
     out = sent(hand, every(0.05, 3.0))
-    assert max(t for t, command in out if command == Command(0.5, 0.0)) == pytest.approx(0.45)
+    assert max(t for t, command in out if command == TeleopCommand(0.5, 0.0)) == pytest.approx(0.45)
     zeros = [t for t, command in out if command == STILL]
     assert (min(zeros), max(zeros)) == pytest.approx((0.5, 0.9))
 
@@ -54,7 +54,7 @@ def test_a_keyboard_that_repeats_late_makes_a_short_stop_and_goes_on():
     hand.key(0.0, "w")
     assert hand.wanted(0.55) == STILL
     hand.key(0.66, "w")
-    assert hand.wanted(0.7) == Command(0.5, 0.0)
+    assert hand.wanted(0.7) == TeleopCommand(0.5, 0.0)
 
 
 @pytest.mark.parametrize(
@@ -89,7 +89,7 @@ def test_space_stops_at_once_and_says_so_also_while_nothing_moves():
 
 def test_the_scales_begin_at_a_half_or_what_the_slowest_can_do():
     assert hand_of().scale == (0.5, 0.5)
-    assert hand_of(most=Command(0.2, 0.3)).scale == (0.2, 0.3)
+    assert hand_of(most=TeleopCommand(0.2, 0.3)).scale == (0.2, 0.3)
 
 
 def test_the_scales_change_while_driving():
@@ -138,45 +138,45 @@ def test_several_vehicles_get_the_same_and_one_that_is_switched_off_stands():
 
 def test_a_stick_drives_only_while_the_dead_man_is_held():
     hand = hand_of()
-    hand.pad(0.0, Pad(forward=1.0))
+    hand.pad(0.0, GamepadState(forward=1.0))
     assert hand.commands(0.0) == {}
-    hand.pad(0.1, Pad(forward=1.0, left=-1.0, dead_man=True))
+    hand.pad(0.1, GamepadState(forward=1.0, left=-1.0, dead_man=True))
     assert hand.commands(0.1) == {"one": (0.5, -0.5)}
-    hand.pad(0.15, Pad(forward=1.0, left=-1.0))
+    hand.pad(0.15, GamepadState(forward=1.0, left=-1.0))
     assert hand.commands(0.15) == {"one": STILL}
 
 
 def test_a_gamepad_that_is_unplugged_stops_it():
     hand = hand_of()
-    hand.pad(0.0, Pad(forward=1.0, dead_man=True))
-    hand.pad(0.05, Pad())
+    hand.pad(0.0, GamepadState(forward=1.0, dead_man=True))
+    hand.pad(0.05, GamepadState())
     assert hand.commands(0.05) == {"one": STILL}
 
 
 def test_a_held_dead_man_with_the_stick_at_rest_keeps_the_vehicle():
     hand = hand_of()
     for t in every(0.05, 3.0):
-        hand.pad(t, Pad(forward=0.05, dead_man=True))
+        hand.pad(t, GamepadState(forward=0.05, dead_man=True))
         assert hand.commands(t) == {"one": STILL}
 
 
 @pytest.mark.parametrize(("way", "part"), [(0.0, 0.0), (0.09, 0.0), (-0.1, 0.0), (0.55, 0.5), (1.0, 1.0), (-1.0, -1.0)])
 def test_the_stick_has_a_dead_zone_and_rises_evenly_beyond_it(way, part):
     hand = hand_of()
-    hand.pad(0.0, Pad(forward=way, dead_man=True))
+    hand.pad(0.0, GamepadState(forward=way, dead_man=True))
     assert hand.wanted(0.0).linear == pytest.approx(0.5 * part)
 
 
 def test_the_button_stops_though_the_dead_man_is_held():
     hand = hand_of()
-    hand.pad(0.0, Pad(forward=1.0, dead_man=True))
-    hand.pad(0.05, Pad(forward=1.0, dead_man=True, stop=True))
+    hand.pad(0.0, GamepadState(forward=1.0, dead_man=True))
+    hand.pad(0.05, GamepadState(forward=1.0, dead_man=True, stop=True))
     assert hand.commands(0.05) == {"one": STILL}
 
 
 def test_one_press_of_the_d_pad_is_one_step():
     hand = hand_of()
     for t in (0.0, 0.05, 0.1):
-        hand.pad(t, Pad(linear_step=1, angular_step=-1))
-    hand.pad(0.15, Pad())
+        hand.pad(t, GamepadState(linear_step=1, angular_step=-1))
+    hand.pad(0.15, GamepadState())
     assert hand.scale == pytest.approx((0.55, 0.5 / 1.1))

@@ -5,21 +5,21 @@ import pytest
 
 from tests.services.autopilot.air.point_mass import DT, PARAMS, Point, cruise, fly
 from tests.services.autopilot.air.states import cruising
-from uvf.control.commands import Attitude, Wanted
+from uvf.control.commands import AltitudeAirspeedSetpoint, AttitudeSetpoint
 from uvf.control.cycle import Cycle
-from uvf.control.flight_control import Control
-from uvf.control.servos import Servo, Servos
+from uvf.control.flight_control import FlightControl
+from uvf.control.servos import ServoLimits, Servos
 from uvf.control.thesis import GAINS, ThesisPath, preset
 from uvf.models.vehicle.flight_params import AirParams
 
-SERVOS = Servos(Servo(0.44), Servo(0.52), Servo(0.3))
+SERVOS = Servos(ServoLimits(0.44), ServoLimits(0.52), ServoLimits(0.3))
 THESIS = msgspec.structs.replace(PARAMS, **preset(25.0))
 
 
 def test_its_gains_are_of_surfaces_that_go_from_stop_to_stop():
-    surfaces = Control(SERVOS).hold(cruising(p=0.1), Attitude(0.2, 0.05, 0.5), THESIS, DT)
+    surfaces = FlightControl(SERVOS).hold(cruising(p=0.1), AttitudeSetpoint(0.2, 0.05, 0.5), THESIS, DT)
     assert surfaces.aileron == pytest.approx(0.44 * (1.17 * 0.2 - 0.13 * 0.1))
-    up, level = (Control(SERVOS).hold(cruising(), Attitude(0.0, pitch, 0.5), THESIS, DT).elevator for pitch in (0.15, 0.05))
+    up, level = (FlightControl(SERVOS).hold(cruising(), AttitudeSetpoint(0.0, pitch, 0.5), THESIS, DT).elevator for pitch in (0.15, 0.05))
     assert up - level == pytest.approx(-0.52 * 1.0 * 0.1)
 
 
@@ -30,7 +30,7 @@ def test_its_preset_is_made_of_parameters_within_their_limits_and_banks_as_its_c
 
 def test_far_below_it_climbs_with_full_throttle_and_far_above_it_glides():
     for height, throttle in ((140.0, 1.0), (60.0, 0.0)):
-        asked = ThesisPath().step(Cycle(cruising(height=100.0), THESIS, DT), Wanted(0.0, height, 0.0, 25.0))
+        asked = ThesisPath().step(Cycle(cruising(height=100.0), THESIS, DT), AltitudeAirspeedSetpoint(0.0, height, 0.0, 25.0))
         assert asked[1] == throttle
 
 

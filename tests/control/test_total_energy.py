@@ -5,9 +5,9 @@ import pytest
 
 from tests.services.autopilot.air.point_mass import DT, PARAMS, Point, cruise, fly
 from tests.services.autopilot.air.states import cruising
-from uvf.control.commands import Wanted
+from uvf.control.commands import AltitudeAirspeedSetpoint
 from uvf.control.cycle import Cycle
-from uvf.control.flight_control import Control
+from uvf.control.flight_control import FlightControl
 from uvf.control.servos import SERVOS
 from uvf.control.total_energy import EnergyLoops
 
@@ -65,7 +65,7 @@ def test_short_of_power_for_some_seconds_it_keeps_the_path_and_lends_it_airspeed
 
     def climbing(t):
         point.engine = 0.33 if 10.0 < t < 15.0 else 1.0
-        return Wanted(0.0, 100.0 + 2.0 * t, 2.0, 25.0)
+        return AltitudeAirspeedSetpoint(0.0, 100.0 + 2.0 * t, 2.0, 25.0)
 
     seen = fly(point, climbing, 60.0)
     behind = 100.0 + 2.0 * DT * np.arange(len(seen)) - heights(seen)
@@ -84,7 +84,7 @@ def test_a_weaker_motor_than_the_parameters_say_leaves_no_error_behind():
 def test_with_its_throttle_given_the_climb_keeps_it_from_flying_too_fast():
     """As on a take-off with plenty of power, from the first cycle after an attitude was held on."""
     loops, point = EnergyLoops(), Point(speed=PARAMS.max_airspeed + 1.0)
-    climbing = Wanted(0.0, None, 2.0, 25.0, throttle=1.0)
+    climbing = AltitudeAirspeedSetpoint(0.0, None, 2.0, 25.0, throttle=1.0)
     loops.begin(Cycle(point.estimate(), PARAMS, DT), climbing, 0.2, 1.0)
     seen = fly(point, lambda t: climbing, 20.0, loops=loops)
     climbs = np.array([now.climb for now, _, _ in seen])
@@ -142,11 +142,11 @@ def test_a_downdraught_is_no_stall():
 
 
 def test_the_law_may_change_in_flight_without_a_bump():
-    control, thesis = Control(SERVOS), type(PARAMS)(**{**KEEN, "law": "thesis"})
+    control, thesis = FlightControl(SERVOS), type(PARAMS)(**{**KEEN, "law": "thesis"})
     now = cruising(pitch=0.0537, lift=9.81)
     for _ in range(100):
-        before = control.step(now, Wanted(0.0, 60.0, 0.0, 25.0), PARAMS, DT)
-    after = control.step(now, Wanted(0.0, 60.0, 0.0, 25.0), thesis, DT)
+        before = control.step(now, AltitudeAirspeedSetpoint(0.0, 60.0, 0.0, 25.0), PARAMS, DT)
+    after = control.step(now, AltitudeAirspeedSetpoint(0.0, 60.0, 0.0, 25.0), thesis, DT)
     assert after.throttle == pytest.approx(before.throttle, abs=0.02)
 
 

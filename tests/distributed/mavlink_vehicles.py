@@ -6,15 +6,31 @@ import time
 import numpy as np
 
 from schemas import topics
-from schemas.messages import Gnss, Kind, Mission, MissionItem, MissionProgress, Mode, NavState, Reply, VehicleStatus
+from schemas.messages import (
+    ArmRequest,
+    Gnss,
+    GoalRequest,
+    Kind,
+    Mission,
+    MissionItem,
+    MissionProgress,
+    MissionRequest,
+    Mode,
+    ModeRequest,
+    NavState,
+    Reply,
+    SetCurrentRequest,
+    VehicleStatus,
+)
 from services.autopilot.mavlink.service import MavlinkService
 from tests.services.autopilot.mavlink.rig import ORIGIN, PLANE_FACTS, ROVER_FACTS, shelves
 from uvf.maths.rotations import from_euler
 from uvf.mavlink.endpoint import UdpLink
 from uvf.runtime.bus.interface import LocalBus
-from uvf.runtime.contract.instances import Host
+from uvf.runtime.contract.declaration import Reads, Writes, replies, request, topic
+from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.contract.service import Service
-from uvf.runtime.contract.service_runner import Shell
+from uvf.runtime.contract.service_runner import ServiceRunner
 from uvf.runtime.messages.convert import array, quaternion, stamp, vector
 from uvf.runtime.messages.step_times import NS
 
@@ -26,20 +42,25 @@ class ScriptedVehicle(Service):
 
     name = "scripted"
     hz = 50.0
-    outputs = {
-        "nav": topics.NAV_STATE,
-        "status": topics.STATUS,
-        "mission": topics.MISSION,
-        "progress": topics.PROGRESS,
-        "gnss": topics.GNSS,
-    }
-    requests = {
-        "arm": topics.ARM,
-        "set_mode": topics.SET_MODE,
-        "set_mission": topics.SET_MISSION,
-        "set_current": topics.SET_CURRENT,
-        "goal": topics.GOAL,
-    }
+
+    class Inputs(Reads):
+        arm: list[ArmRequest] = request(topics.ARM)
+        set_mode: list[ModeRequest] = request(topics.SET_MODE)
+        set_mission: list[MissionRequest] = request(topics.SET_MISSION)
+        set_current: list[SetCurrentRequest] = request(topics.SET_CURRENT)
+        goal: list[GoalRequest] = request(topics.GOAL)
+
+    class Outputs(Writes):
+        nav: NavState | None = topic(topics.NAV_STATE)
+        status: VehicleStatus | None = topic(topics.STATUS)
+        mission: Mission | None = topic(topics.MISSION)
+        progress: MissionProgress | None = topic(topics.PROGRESS)
+        gnss: Gnss | None = topic(topics.GNSS)
+        arm: list[Reply] = replies(topics.ARM)
+        set_mode: list[Reply] = replies(topics.SET_MODE)
+        set_mission: list[Reply] = replies(topics.SET_MISSION)
+        set_current: list[Reply] = replies(topics.SET_CURRENT)
+        goal: list[Reply] = replies(topics.GOAL)
 
     def __init__(self, kind, start):
         self.position = np.array(start, dtype=float)
@@ -49,23 +70,22 @@ class ScriptedVehicle(Service):
         self.plan = Mission()
         self.progress = MissionProgress(reached=-1)
 
-    def step(self, t, arm, set_mode, set_mission, set_current, goal):
-        replies = {
-            "arm": [self._arm(r) for r in arm],
-            "set_mode": [self._set_mode(r) for r in set_mode],
-            "set_mission": [self._set_mission(r) for r in set_mission],
-            "set_current": [self._set_current(r) for r in set_current],
-            "goal": [self._goal(r) for r in goal],
-        }
-        velocity = self._move(1.0 / self.hz)
-        now = stamp(t)
-        nav = NavState(
-            timestamp=now, position=vector(self.position), velocity=vector(velocity), orientation=quaternion(from_euler(0, 0, 0))
+    def step(self, t: float, now: Inputs) -> Outputs:
+        out = self.Outputs(
+            arm=[self._arm(r) for r in now.arm],
+            set_mode=[self._set_mode(r) for r in now.set_mode],
+            set_mission=[self._set_mission(r) for r in now.set_mission],
+            set_current=[self._set_current(r) for r in now.set_current],
+            goal=[self._goal(r) for r in now.goal],
         )
+        velocity = self._move(1.0 / self.hz)
+        at = stamp(t)
+        nav = NavState(timestamp=at, position=vector(self.position), velocity=vector(velocity), orientation=quaternion(from_euler(0, 0, 0)))
         latitude, longitude, altitude = ORIGIN.geodetic(self.position)
-        fix = Gnss(timestamp=now, fix=Gnss.FIX_3D, latitude=latitude, longitude=longitude, altitude=altitude, satellites=12)
-        self.status.timestamp.CopyFrom(now)
-        return {"nav": nav, "status": self.status, "mission": self.plan, "progress": self.progress, "gnss": fix, **replies}
+        fix = Gnss(timestamp=at, fix=Gnss.FIX_3D, latitude=latitude, longitude=longitude, altitude=altitude, satellites=12)
+        self.status.timestamp.CopyFrom(at)
+        out.update({"nav": nav, "status": self.status, "mission": self.plan, "progress": self.progress, "gnss": fix})
+        return out
 
     def _move(self, dt):
         target = self._target()
@@ -135,9 +155,9 @@ class LiveVehicles:
         bus = LocalBus()
         service = MavlinkService([PLANE_FACTS, ROVER_FACTS], self.link, shelves())
         self._shells = [
-            Shell(Host(ScriptedVehicle, lambda: self.plane, "plane"), bus),
-            Shell(Host(ScriptedVehicle, lambda: self.rover, "rover"), bus),
-            Shell(Host(MavlinkService, lambda: service), bus),
+            ServiceRunner(ServiceInstance(ScriptedVehicle, lambda: self.plane, "plane"), bus),
+            ServiceRunner(ServiceInstance(ScriptedVehicle, lambda: self.rover, "rover"), bus),
+            ServiceRunner(ServiceInstance(MavlinkService, lambda: service), bus),
         ]
         self._stop = threading.Event()
         self._thread = threading.Thread(target=self._run, name="vehicles")

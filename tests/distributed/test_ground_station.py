@@ -14,7 +14,7 @@ from tests.distributed.system import System
 from tests.distributed.test_mavsdk import wait
 from tests.second_try import Shared
 from uvf.maths.geodesy import LocalTangent
-from uvf.models.scenario import ROOT, load_site
+from uvf.models.scenario import ROOT, load_scenario
 from uvf.runtime.messages.convert import array
 
 PLANE, ROVER = 1, 2
@@ -54,7 +54,7 @@ def vehicles(stage):
 
 @pytest.fixture(scope="module")
 def tangent():
-    origin = load_site(ROOT / "missions" / "demo.yaml").world.origin
+    origin = load_scenario(ROOT / "missions" / "demo.yaml").world.origin
     return LocalTangent.from_degrees(origin.latitude, origin.longitude, origin.altitude)
 
 

@@ -13,7 +13,7 @@ from schemas import topics
 from schemas.messages import Clock, Event, Process
 from tests.runtime.modes import free_port
 from uvf.runtime.bus.zenoh_bus import ZenohBus, open_router
-from uvf.runtime.log.state_store import Keeper
+from uvf.runtime.log.state_store import StateStore
 
 NAME = "launcher.recorder"
 CLOCK = Clock(tick=500, t_ns=5_000_000_000, epoch=3)
@@ -72,7 +72,7 @@ class Scene:
 
 def keep(endpoint, stop):
     with ZenohBus(endpoint, timeout=5.0) as bus:
-        keeper = Keeper(bus, print)
+        keeper = StateStore(bus, print)
         while not stop.wait(0.01):
             keeper.poll()
 

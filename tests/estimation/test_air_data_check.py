@@ -5,7 +5,7 @@ import math
 import pytest
 
 from tests.services.autopilot.air.states import PARAMS, G, cruising
-from uvf.estimation.air_data_check import AGREES, AirDataCheck, Flying, lift_airspeed
+from uvf.estimation.air_data_check import AGREES, AirDataCheck, FlightState, lift_airspeed
 from uvf.estimation.sensor_inputs import Pressures
 from uvf.maths.atmosphere import RHO0
 
@@ -40,7 +40,7 @@ def judged(true, reads, ground):
             t += 1
             static = STATIC + 0.1 * (t % 7)
             said = Pressures(static, 0.5 * RHO0 * read**2 + 1e-6 * t, 288.15)
-            check.step((t, said), Flying(flying_at(airspeed, ground_speed=over_ground), 0.0, True), PARAMS, DT)
+            check.step((t, said), FlightState(flying_at(airspeed, ground_speed=over_ground), 0.0, True), PARAMS, DT)
     return check.gap
 
 

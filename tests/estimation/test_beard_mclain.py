@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from uvf.estimation.beard_mclain import BookEstimator
-from uvf.estimation.sensor_inputs import Fix, Inertial, Pressures, Sensed
+from uvf.estimation.sensor_inputs import GnssFix, InertialSample, Pressures, Sensed
 from uvf.maths import atmosphere
 from uvf.models.vehicle.flight_params import AirParams
 
@@ -50,7 +50,7 @@ class Turn:
         body = self.body_from_ned(self.yaw(t))
         turning = body @ (0.0, 0.0, self.rate)
         force = np.cross(turning, SPEED * np.array((math.cos(self.alpha), 0.0, math.sin(self.alpha)))) - body @ (0.0, 0.0, G)
-        return Inertial(tuple(turning), tuple(force), tuple(body @ self.field))
+        return InertialSample(tuple(turning), tuple(force), tuple(body @ self.field))
 
     def _on_circle(self, azimuth):
         return SPEED / self.rate * math.sin(azimuth), SPEED / self.rate * (1 - math.cos(azimuth))
@@ -59,7 +59,7 @@ class Turn:
         azimuth = self.rate * t
         through = np.array(self._on_circle(azimuth) if self.rate else (SPEED * t, 0.0))
         north, east = through + np.array(WIND) * t
-        return Fix(north, east, 60.0, SPEED * math.cos(azimuth) + WIND[0], SPEED * math.sin(azimuth) + WIND[1], 0.0, 0.0, 0.8, 1.5, 0.1)
+        return GnssFix(north, east, 60.0, SPEED * math.cos(azimuth) + WIND[0], SPEED * math.sin(azimuth) + WIND[1], 0.0, 0.0, 0.8, 1.5, 0.1)
 
 
 @functools.cache

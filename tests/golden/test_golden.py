@@ -10,12 +10,12 @@ import pytest
 
 from launch import catalogue
 from tests.golden.make import GOLDEN
-from uvf.models.scenario import ROOT, load_site
+from uvf.models.scenario import ROOT, load_scenario
 from uvf.runtime.log.replay import into_service
 
 TOLERANCE = 1e-6  # processors round the last digits differently
 KINDS = [catalogue.kind(name) for name in ("sim_ground", "sim_air", "slam", "planner", "autopilot")]
-HOSTS = {h.service.name: h for h in catalogue.hosts(load_site(ROOT / "missions" / "demo.yaml"), KINDS)}
+HOSTS = {h.service.name: h for h in catalogue.hosts(load_scenario(ROOT / "missions" / "demo.yaml"), KINDS)}
 
 
 @pytest.mark.parametrize("name", HOSTS)
@@ -29,7 +29,7 @@ def test_a_service_that_falls_silent_is_noticed(name):
 
     def mute():
         service = host.make()
-        service.step = lambda t, **inputs: {name: [] for name in host.service.requests}
+        service.step = lambda t, now: service.Outputs()
         return service
 
     assert any(d.now == "missing" for d in into_service(GOLDEN, dataclasses.replace(host, make=mute), TOLERANCE))

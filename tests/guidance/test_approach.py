@@ -6,24 +6,24 @@ from dataclasses import replace
 import pytest
 
 from uvf.guidance.approach import laid_down, with_courses
-from uvf.guidance.flight_plan import Item, Kind
+from uvf.guidance.flight_plan import ItemKind, PlanItem
 from uvf.guidance.flyable import fault
 from uvf.guidance.route import Place
-from uvf.guidance.runways import Strip, lane_by
+from uvf.guidance.runways import LandingStrip, lane_by
 from uvf.models.vehicle.flight_params import AirParams
 
 PARAMS = AirParams()
 TOUCH = Place(0.0, 0.0, 0.0)
-MARK = Item(Kind.LAND_START, TOUCH)
-LAND = Item(Kind.LAND, TOUCH)
+MARK = PlanItem(ItemKind.LAND_START, TOUCH)
+LAND = PlanItem(ItemKind.LAND, TOUCH)
 
 
 def circle(north, east, height=40.0, radius=80.0):
-    return Item(Kind.ORBIT, Place(north, east, height), radius=radius, to_altitude=True)
+    return PlanItem(ItemKind.ORBIT, Place(north, east, height), radius=radius, to_altitude=True)
 
 
 def waypoint(north, east, height=40.0, **kw):
-    return Item(Kind.WAYPOINT, Place(north, east, height), **kw)
+    return PlanItem(ItemKind.WAYPOINT, Place(north, east, height), **kw)
 
 
 @pytest.mark.parametrize("radius", [80.0, -80.0])
@@ -46,7 +46,7 @@ def test_from_a_waypoint_of_the_pattern_it_leads_straight_on():
 
 
 def test_what_lies_between_does_not_matter():
-    items = [MARK, circle(0.0, -400.0), Item(Kind.TRIGGER_DISTANCE, TOUCH), Item(Kind.SPEED, TOUCH, speed=20.0), LAND]
+    items = [MARK, circle(0.0, -400.0), PlanItem(ItemKind.TRIGGER_DISTANCE, TOUCH), PlanItem(ItemKind.SPEED, TOUCH, speed=20.0), LAND]
     assert laid_down(items, 4, PARAMS) == laid_down([circle(0.0, -400.0), LAND], 1, PARAMS)
 
 
@@ -58,7 +58,7 @@ def test_what_lies_between_does_not_matter():
         [MARK, waypoint(0.0, -400.0), LAND, waypoint(0.0, -400.0)],  # that of another landing
         [MARK, waypoint(0.0, -400.0, hold=5.0)],
         [replace(circle(0.0, -400.0), to_altitude=False, turns=2.0)],
-        [circle(0.0, -400.0), Item(Kind.TAKEOFF, TOUCH)],
+        [circle(0.0, -400.0), PlanItem(ItemKind.TAKEOFF, TOUCH)],
     ],
 )
 def test_otherwise_the_landing_is_the_aircraft_s_own(before):
@@ -98,7 +98,7 @@ def test_the_remedy_of_a_steep_approach_works():
 
 
 def test_the_lane_ends_where_the_strip_ends_if_it_leads_along_it():
-    strip = Strip(Place(0.0, 0.0, 2.0), math.pi / 2, 300.0, 12.0)
+    strip = LandingStrip(Place(0.0, 0.0, 2.0), math.pi / 2, 300.0, 12.0)
     there = Place(1.0, -100.0, 0.0)
     assert lane_by(there, math.pi / 2 + 0.05, [strip]).rest == pytest.approx(250.0)
     back = lane_by(there, -math.pi / 2, [strip])

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from uvf.guidance.corners import MOST_OUTSIDE, ROLL_IN, STEP, Flying, plan
+from uvf.guidance.corners import MOST_OUTSIDE, ROLL_IN, STEP, CornerLimits, plan
 from uvf.maths.geodesy import GRAVITY
 
 SPEED, BANK = 25.0, 0.8
@@ -17,7 +17,7 @@ degrees_either_way = st.builds(lambda size, side: side * size, st.floats(5.0, 14
 
 
 def corner(degrees, wind=(0.0, 0.0), room=(1000.0, 1000.0)):
-    return plan((30.0, -20.0), (0.4, 0.4 + math.radians(degrees)), Flying(SPEED, wind, BANK), room)
+    return plan((30.0, -20.0), (0.4, 0.4 + math.radians(degrees)), CornerLimits(SPEED, wind, BANK), room)
 
 
 def air_velocity(planned, wind):

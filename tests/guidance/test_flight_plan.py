@@ -2,18 +2,18 @@
 
 import pytest
 
-from uvf.guidance.flight_plan import NO_JUMPS, Item, Kind, following, next_stop
+from uvf.guidance.flight_plan import NO_JUMPS, ItemKind, PlanItem, following, next_stop
 from uvf.guidance.route import Place
 
 HERE = Place(0.0, 0.0, 60.0)
 
 
 def waypoint():
-    return Item(Kind.WAYPOINT, HERE)
+    return PlanItem(ItemKind.WAYPOINT, HERE)
 
 
 def jump(to, repeat):
-    return Item(Kind.JUMP, HERE, jump_to=to, repeat=repeat)
+    return PlanItem(ItemKind.JUMP, HERE, jump_to=to, repeat=repeat)
 
 
 def visited(items, most=20):
@@ -56,7 +56,7 @@ def test_looking_ahead_changes_nothing():
 
 
 def test_a_speed_is_passed_and_kept():
-    stop = next_stop([Item(Kind.SPEED, HERE, speed=22.0), waypoint()], 0, NO_JUMPS)
+    stop = next_stop([PlanItem(ItemKind.SPEED, HERE, speed=22.0), waypoint()], 0, NO_JUMPS)
     assert (stop.index, stop.speed) == (1, 22.0)
 
 
@@ -65,8 +65,8 @@ def test_jumps_with_nothing_between_them_end_the_mission():
 
 
 def test_waypoints_at_one_place_are_passed_together():
-    far = Item(Kind.WAYPOINT, Place(500.0, 0.0, 60.0))
-    items = [waypoint(), Item(Kind.SPEED, HERE, speed=21.0), waypoint(), far, jump(0, 1)]
+    far = PlanItem(ItemKind.WAYPOINT, Place(500.0, 0.0, 60.0))
+    items = [waypoint(), PlanItem(ItemKind.SPEED, HERE, speed=21.0), waypoint(), far, jump(0, 1)]
     stop = following(items, next_stop(items, 0, NO_JUMPS))
     assert (stop.index, stop.speed) == (3, 21.0)
     closed = [waypoint(), far, waypoint(), jump(0, -1)]
@@ -75,22 +75,22 @@ def test_waypoints_at_one_place_are_passed_together():
 
 
 def test_a_course_is_asked_for_even_at_the_place_just_passed():
-    items = [waypoint(), Item(Kind.WAYPOINT, HERE, course=1.0)]
+    items = [waypoint(), PlanItem(ItemKind.WAYPOINT, HERE, course=1.0)]
     assert following(items, next_stop(items, 0, NO_JUMPS)).index == 1
 
 
 def test_triggers_are_passed_and_kept():
-    items = [waypoint(), Item(Kind.TRIGGER, HERE), Item(Kind.TRIGGER_DISTANCE, HERE, distance=20.0), waypoint()]
+    items = [waypoint(), PlanItem(ItemKind.TRIGGER, HERE), PlanItem(ItemKind.TRIGGER_DISTANCE, HERE, distance=20.0), waypoint()]
     stop = next_stop(items, 1, NO_JUMPS)
     assert (stop.index, stop.deeds) == (3, (1, 2))
 
 
 def test_home_is_set_and_marks_are_passed_on_the_way():
-    items = [waypoint(), Item(Kind.SET_HOME, HERE, here=True), Item(Kind.LAND_START, HERE), waypoint()]
+    items = [waypoint(), PlanItem(ItemKind.SET_HOME, HERE, here=True), PlanItem(ItemKind.LAND_START, HERE), waypoint()]
     stop = next_stop(items, 1, NO_JUMPS)
     assert (stop.index, stop.deeds) == (3, (1,))
 
 
 def test_a_speed_of_0_is_cruise_again_and_none_is_unchanged():
-    items = [Item(Kind.SPEED, HERE, speed=22.0), Item(Kind.SPEED, HERE), waypoint(), waypoint()]
+    items = [PlanItem(ItemKind.SPEED, HERE, speed=22.0), PlanItem(ItemKind.SPEED, HERE), waypoint(), waypoint()]
     assert [next_stop(items, k, NO_JUMPS).speed for k in (0, 1, 2)] == [0.0, 0.0, None]

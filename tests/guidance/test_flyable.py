@@ -6,7 +6,7 @@ import re
 import pytest
 
 from tests.services.autopilot.air.states import PARAMS
-from uvf.guidance.flight_plan import Item, Kind
+from uvf.guidance.flight_plan import ItemKind, PlanItem
 from uvf.guidance.flyable import advice, fault
 from uvf.guidance.route import Place
 
@@ -14,23 +14,26 @@ HERE = Place(0.0, 0.0, 60.0)
 
 
 def waypoint(north=0.0, east=0.0, **more):
-    return Item(Kind.WAYPOINT, Place(north, east, 60.0), **more)
+    return PlanItem(ItemKind.WAYPOINT, Place(north, east, 60.0), **more)
 
 
 def speed(value):
-    return Item(Kind.SPEED, HERE, speed=value)
+    return PlanItem(ItemKind.SPEED, HERE, speed=value)
 
 
 @pytest.mark.parametrize(
     ("items", "why"),
     [
-        ([waypoint(), Item(Kind.JUMP, HERE, jump_to=7)], "item 1 jumps to 7, but there are 2 items"),
+        ([waypoint(), PlanItem(ItemKind.JUMP, HERE, jump_to=7)], "item 1 jumps to 7, but there are 2 items"),
         ([speed(5.0)], "item 0 sets a speed of 5 m/s; this aircraft flies 19 to 32 m/s"),
         ([waypoint(), speed(40.0)], "item 1 sets a speed of 40 m/s"),
         ([waypoint(hold=10.0, course=1.0)], "item 0 has a hold time and a course"),
-        ([Item(Kind.ORBIT, HERE, radius=-30.0)], "item 0 is a circle of 30 m, too tight at 25 m/s: give at least 37 m or at most 22.6 m/s"),
-        ([Item(Kind.ORBIT, HERE, radius=5.0)], r"item 0 is a circle of 5 m, .* at least 37 m \(0 = the aircraft's own\)"),
-        ([speed(30.0), Item(Kind.ORBIT, HERE, radius=45.0)], "item 1 is a circle of 45 m, too tight at 30 m/s"),
+        (
+            [PlanItem(ItemKind.ORBIT, HERE, radius=-30.0)],
+            "item 0 is a circle of 30 m, too tight at 25 m/s: give at least 37 m or at most 22.6 m/s",
+        ),
+        ([PlanItem(ItemKind.ORBIT, HERE, radius=5.0)], r"item 0 is a circle of 5 m, .* at least 37 m \(0 = the aircraft's own\)"),
+        ([speed(30.0), PlanItem(ItemKind.ORBIT, HERE, radius=45.0)], "item 1 is a circle of 45 m, too tight at 30 m/s"),
         ([waypoint(hold=5.0, radius=20.0)], "item 0 is a circle of 20 m"),
     ],
 )
@@ -41,12 +44,12 @@ def test_a_fault_is_named_with_its_item_and_what_mends_it(items, why):
 @pytest.mark.parametrize(
     "items",
     [
-        [waypoint(), Item(Kind.JUMP, HERE, jump_to=0, repeat=-1)],
+        [waypoint(), PlanItem(ItemKind.JUMP, HERE, jump_to=0, repeat=-1)],
         [waypoint(0.0), waypoint(40.0), waypoint(40.0, 40.0), waypoint(0.0, 40.0)],
         [waypoint(0.0), waypoint(400.0), waypoint(10.0)],
         [waypoint(course=0.0), waypoint(20.0, course=math.pi)],
-        [speed(21.0), Item(Kind.ORBIT, HERE, radius=30.0)],
-        [Item(Kind.ORBIT, HERE)],
+        [speed(21.0), PlanItem(ItemKind.ORBIT, HERE, radius=30.0)],
+        [PlanItem(ItemKind.ORBIT, HERE)],
     ],
 )
 def test_what_can_be_flown_with_a_longer_way_round_is_not_refused(items):

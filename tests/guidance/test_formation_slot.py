@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from schemas.messages import NavState, Vector3
-from services.autopilot.air.mode_manager import Pilot
+from services.autopilot.air.mode_manager import ModeManager
 from services.autopilot.air.mode_table import FlightMode
-from services.autopilot.air.modes.follower import Formation, Trailing
+from services.autopilot.air.modes.follower import FollowMode, FormationLink
 from tests.services.autopilot.air.states import PARAMS, Kinematic, cruising
-from uvf.control.commands import Wanted
-from uvf.guidance.formation_slot import Boom, Station, StationKeeping, _slowest
-from uvf.guidance.leader_track import Report, Spot, Trail
+from uvf.control.commands import AltitudeAirspeedSetpoint
+from uvf.guidance.formation_slot import FormationSlot, LateralOffset, SlotKeeping, _slowest
+from uvf.guidance.leader_track import LeaderReport, LeaderTrack, TrackPoint
 from uvf.runtime.messages.convert import stamp
 
 DT = 0.02
@@ -27,7 +27,7 @@ class Pair:
         """rate: rad/s, of the leader's heading; late: m, of the follower at the beginning."""
         self.wind, self.rate, self.t = wind, rate, 0.0
         self.leader, self.heading = np.zeros(2), 0.0
-        self.trail, self.keeping = Trail(), StationKeeping(station)
+        self.trail, self.keeping = LeaderTrack(), SlotKeeping(station)
         self.follower = Kinematic(-station.behind * (25 + wind[0]) / 25 - late, station.right, wind=wind)
         self.airspeed = self.pace = 25.0
         self.seen = []
@@ -44,7 +44,7 @@ class Pair:
 
     def _lead(self):
         v = 25.0 * np.array((math.cos(self.heading), math.sin(self.heading))) + self.wind
-        self.trail.add(Report(self.t, *self.leader, 60.0, *v, 0.0, self.pace))
+        self.trail.add(LeaderReport(self.t, *self.leader, 60.0, *v, 0.0, self.pace))
         self.leader, self.heading, self.t = self.leader + v * DT, self.heading + self.rate * DT, self.t + DT
 
     def _estimate(self):
@@ -75,14 +75,14 @@ class Pair:
 
 
 def test_a_late_follower_catches_up_and_stays():
-    pair = Pair(Station(40.0), late=60.0).fly(40.0)
+    pair = Pair(FormationSlot(40.0), late=60.0).fly(40.0)
     assert np.abs(pair.since(30.0)[:, 1]).max() < 0.5
     assert pair.apart == pytest.approx(40.0, abs=1.0)
 
 
 @pytest.mark.parametrize("wind", [(10.0, 0.0), (-10.0, 0.0), (0.0, 10.0), (6.0, -6.0)])
 def test_corners_in_wind_are_flown_after_the_leader_at_its_airspeed(wind):
-    pair = Pair(Station(40.0), wind=wind).fly(15.0)
+    pair = Pair(FormationSlot(40.0), wind=wind).fly(15.0)
     for rate in (0.4, -0.4, 0.3):
         pair.fly(4.0, rate).fly(10.0, 0.0)
     settled = pair.since(15.0)
@@ -93,19 +93,19 @@ def test_corners_in_wind_are_flown_after_the_leader_at_its_airspeed(wind):
 
 @pytest.mark.parametrize("right", [15.0, -15.0])
 def test_on_a_circle_the_wing_flies_another_radius_at_another_speed(right):
-    pair = Pair(Station(40.0, right), rate=0.2).fly(60.0)
+    pair = Pair(FormationSlot(40.0, right), rate=0.2).fly(60.0)
     settled = pair.since(50.0)
     assert np.abs(settled[:, 1:3]).max() < 1.0
     assert settled[:, 3].mean() == pytest.approx(25.0 - 0.2 * right, abs=0.3)
 
 
 def test_an_offset_swings_round_no_faster_than_airspeed_allows_and_arrives():
-    boom, arm, rate = Boom(20.0), 20.0, 0.5
+    boom, arm, rate = LateralOffset(20.0), 20.0, 0.5
     spare = 0.5 * min(PARAMS.max_airspeed - PARAMS.trim_airspeed, PARAMS.trim_airspeed - PARAMS.min_airspeed)
     offsets, speeds = [], []
     for i in range(1500):
         course = min(i * DT * rate, math.pi / 2)
-        offset, moves = boom.step(Spot(i * DT, 0, 0, 0, course, 25.0, 0, rate / 25 if course < math.pi / 2 else 0.0), PARAMS, DT)
+        offset, moves = boom.step(TrackPoint(i * DT, 0, 0, 0, course, 25.0, 0, rate / 25 if course < math.pi / 2 else 0.0), PARAMS, DT)
         offsets.append(offset)
         speeds.append(math.hypot(*moves))
     assert offsets[0] == pytest.approx((0.0, arm), abs=0.1)
@@ -115,7 +115,7 @@ def test_an_offset_swings_round_no_faster_than_airspeed_allows_and_arrives():
 
 
 def test_in_a_turn_it_flies_no_slower_than_the_wing_carries_it():
-    trails = [Pair(Station(40.0), rate=rate).fly(10.0).trail for rate in (0.0, 0.5)]
+    trails = [Pair(FormationSlot(40.0), rate=rate).fly(10.0).trail for rate in (0.0, 0.5)]
     slow = cruising(airspeed=20.0, ground_speed=20.0)
     straight, turning = (_slowest(trail, trail.at(6.0), slow, PARAMS) for trail in trails)
     assert straight == PARAMS.min_airspeed
@@ -126,7 +126,7 @@ def test_in_a_turn_it_flies_no_slower_than_the_wing_carries_it():
 
 def test_a_station_that_moves_with_the_pace_is_kept():
     """A leader in gusts: the time that its followers stay behind changes by and by."""
-    pair = Pair(Station(80.0)).fly(30.0)
+    pair = Pair(FormationSlot(80.0)).fly(30.0)
     pair.pace = 28.0
     settled = pair.fly(15.0).since(33.0)
     assert np.abs(settled[:, 1]).max() < 0.5
@@ -142,8 +142,8 @@ class Follower:
     """A pilot that follows 'ahead', and is told of it."""
 
     def __init__(self):
-        self.formation = Formation("me", "ahead", Station(40.0))
-        self.pilot = Pilot([])
+        self.formation = FormationLink("me", "ahead", FormationSlot(40.0))
+        self.pilot = ModeManager([])
         self.pilot.join(self.formation)
         self.t = 0.0
 
@@ -166,7 +166,7 @@ def test_it_follows_from_the_start_and_tells_whom():
 def test_until_the_leader_is_heard_it_flies_straight_on_then_holds():
     follower = Follower().fly(4.0, heard=False)
     assert follower.pilot.mode is FlightMode.FOLLOW
-    assert isinstance(Trailing(follower.formation).step(follower.now, PARAMS, DT).asked, Wanted)
+    assert isinstance(FollowMode(follower.formation).step(follower.now, PARAMS, DT).asked, AltitudeAirspeedSetpoint)
     assert follower.fly(2.0, heard=False).pilot.mode is FlightMode.HOLD
 
 
@@ -193,7 +193,7 @@ def test_who_has_told_it_something_else_is_obeyed():
 
 
 def test_without_a_leader_following_is_refused():
-    alone = Pilot([])
+    alone = ModeManager([])
     alone.step(cruising(), PARAMS, DT)
     assert "no leader" in alone.change_mode(FlightMode.FOLLOW, "test")
 

@@ -5,18 +5,18 @@ import math
 import numpy as np
 import pytest
 
-from uvf.guidance.leader_track import KEPT, Report, Trail
+from uvf.guidance.leader_track import KEPT, LeaderReport, LeaderTrack
 
 SPEED, RADIUS = 25.0, 100.0
 
 
 def told(t, north, east, course, height=100.0, climb=0.0, speed=SPEED, airspeed=SPEED):
-    return Report(t, north, east, height, speed * math.cos(course), speed * math.sin(course), climb, airspeed)
+    return LeaderReport(t, north, east, height, speed * math.cos(course), speed * math.sin(course), climb, airspeed)
 
 
 def straight(seconds=20.0, airspeed=SPEED):
     """North, heard 50 times a second."""
-    trail = Trail()
+    trail = LeaderTrack()
     for i in range(round(seconds * 50) + 1):
         trail.add(told(i / 50, SPEED * i / 50, 0.0, 0.0, airspeed=airspeed))
     return trail
@@ -24,7 +24,7 @@ def straight(seconds=20.0, airspeed=SPEED):
 
 def circling(seconds=20.0):
     """Clockwise about the origin, begun in the north, climbing at 1 m/s."""
-    trail = Trail()
+    trail = LeaderTrack()
     for i in range(round(seconds * 50) + 1):
         angle = SPEED / RADIUS * i / 50
         place = RADIUS * math.cos(angle), RADIUS * math.sin(angle)
@@ -90,7 +90,7 @@ def test_broken_and_old_reports_tell_nothing(bad):
 
 def gusty(seconds):
     """North, through gusts of 5 s."""
-    trail, air = Trail(), SPEED + 2 * np.sin(2 * math.pi * np.arange(round(seconds * 50) + 1) / 250)
+    trail, air = LeaderTrack(), SPEED + 2 * np.sin(2 * math.pi * np.arange(round(seconds * 50) + 1) / 250)
     for i, airspeed in enumerate(air):
         trail.add(told(i / 50, SPEED * i / 50, 0.0, 0.0, airspeed=airspeed))
     return trail, air

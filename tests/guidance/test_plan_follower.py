@@ -6,22 +6,22 @@ import math
 import pytest
 
 from tests.services.autopilot.air.states import PARAMS, Kinematic
-from uvf.guidance.flight_plan import Item, Kind
-from uvf.guidance.plan_follower import Navigator
+from uvf.guidance.flight_plan import ItemKind, PlanItem
+from uvf.guidance.plan_follower import PlanFollower
 from uvf.guidance.route import Place
 
 SQUARE = [(500.0, 0.0), (500.0, 500.0), (0.0, 500.0), (0.0, 0.0)]
 
 
 def waypoint(north, east, **more):
-    return Item(Kind.WAYPOINT, Place(north, east, 60.0), **more)
+    return PlanItem(ItemKind.WAYPOINT, Place(north, east, 60.0), **more)
 
 
-CIRCUIT = [*(waypoint(*p) for p in SQUARE), Item(Kind.JUMP, Place(0, 0, 0), jump_to=0, repeat=-1)]
+CIRCUIT = [*(waypoint(*p) for p in SQUARE), PlanItem(ItemKind.JUMP, Place(0, 0, 0), jump_to=0, repeat=-1)]
 
 
 def fly(items, seconds, **kwargs):
-    navigator = Navigator(items)
+    navigator = PlanFollower(items)
     navigator.resume()
     flyer = Kinematic(**kwargs)
     log = []
@@ -68,7 +68,7 @@ def test_the_last_waypoint_finishes_the_mission():
 
 @pytest.mark.parametrize("radius", [100.0, -100.0])
 def test_an_orbit_turns_as_often_and_the_way_it_is_told(radius):
-    navigator, log = fly([Item(Kind.ORBIT, Place(300.0, 0.0, 60.0), radius=radius, turns=2.0), waypoint(0.0, 0.0)], 90.0)
+    navigator, log = fly([PlanItem(ItemKind.ORBIT, Place(300.0, 0.0, 60.0), radius=radius, turns=2.0), waypoint(0.0, 0.0)], 90.0)
     on_orbit = [now for index, now in log if index == 0]
     bearings = [math.atan2(n.east, n.north - 300.0) for n in on_orbit]
     turned = sum(math.remainder(b - a, math.tau) for a, b in itertools.pairwise(bearings))
@@ -79,7 +79,7 @@ def test_an_orbit_turns_as_often_and_the_way_it_is_told(radius):
 @pytest.mark.parametrize("wind", [(0.0, 0.0), (-6.0, 4.0)])
 @pytest.mark.parametrize("radius", [100.0, -100.0])
 def test_a_circle_after_a_leg_is_touched_and_then_kept(wind, radius):
-    _, log = fly([waypoint(400.0, 0.0), Item(Kind.ORBIT, Place(300.0, 500.0, 60.0), radius=radius)], 60.0, wind=wind)
+    _, log = fly([waypoint(400.0, 0.0), PlanItem(ItemKind.ORBIT, Place(300.0, 500.0, 60.0), radius=radius)], 60.0, wind=wind)
     outside = [math.hypot(now.north - 300.0, now.east - 500.0) - abs(radius) for index, now in log if index == 1]
     first = next(k for k, away in enumerate(outside) if away < 2.0)
     assert max(abs(away) for away in outside[first:]) < 3.0
@@ -87,7 +87,7 @@ def test_a_circle_after_a_leg_is_touched_and_then_kept(wind, radius):
 
 
 def test_an_orbit_without_turns_never_ends():
-    navigator, _ = fly([Item(Kind.ORBIT, Place(300.0, 0.0, 60.0), radius=90.0), waypoint(0.0, 0.0)], 200.0)
+    navigator, _ = fly([PlanItem(ItemKind.ORBIT, Place(300.0, 0.0, 60.0), radius=90.0), waypoint(0.0, 0.0)], 200.0)
     assert navigator.index == 0
 
 
@@ -99,13 +99,13 @@ def test_a_hold_time_is_circled_away():
 
 
 def test_a_tiny_orbit_is_widened_to_what_can_be_flown():
-    _, log = fly([Item(Kind.ORBIT, Place(300.0, 0.0, 60.0), radius=5.0)], 60.0)
+    _, log = fly([PlanItem(ItemKind.ORBIT, Place(300.0, 0.0, 60.0), radius=5.0)], 60.0)
     radius = math.hypot(log[-1][1].north - 300.0, log[-1][1].east)
     assert 30.0 < radius < 60.0
 
 
 def test_a_chosen_item_is_flown_to_from_where_the_aircraft_is():
-    navigator = Navigator(CIRCUIT)
+    navigator = PlanFollower(CIRCUIT)
     navigator.jump_to(2)
     assert navigator.index == 2
     aim, _ = navigator.step(Kinematic(north=250.0, east=250.0).estimate(), PARAMS, 0.02)
@@ -113,5 +113,5 @@ def test_a_chosen_item_is_flown_to_from_where_the_aircraft_is():
 
 
 def test_a_speed_item_is_kept_for_the_legs_after_it():
-    navigator, _ = fly([Item(Kind.SPEED, Place(0, 0, 0), speed=21.0), waypoint(500.0, 0.0)], 1.0)
+    navigator, _ = fly([PlanItem(ItemKind.SPEED, Place(0, 0, 0), speed=21.0), waypoint(500.0, 0.0)], 1.0)
     assert navigator.speed == 21.0

@@ -5,14 +5,14 @@ import math
 import pytest
 
 from tests.services.autopilot.air.states import PARAMS, Kinematic, cruising
-from uvf.guidance.corners import Flying, plan
+from uvf.guidance.corners import CornerLimits, plan
 from uvf.guidance.route import Circle, Leg, Place, Turn
 
 A, B, C = Place(0.0, 0.0, 60.0), Place(500.0, 0.0, 80.0), Place(500.0, 500.0, 80.0)
 
 
 def cornered(wind=(0.0, 0.0)):
-    corner = plan(B.point, (0.0, math.pi / 2), Flying(25.0, wind, 0.75), (250.0, 250.0))
+    corner = plan(B.point, (0.0, math.pi / 2), CornerLimits(25.0, wind, 0.75), (250.0, 250.0))
     return corner, Leg(A, B, None, corner), Leg(B, C, corner, None)
 
 

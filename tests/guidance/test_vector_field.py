@@ -5,7 +5,7 @@ import math
 import pytest
 
 from tests.services.autopilot.air.states import PARAMS, Kinematic, cruising
-from uvf.guidance.vector_field import Steering, line_aim, orbit_aim
+from uvf.guidance.vector_field import LateralGuidance, line_aim, orbit_aim
 
 NORTH = (1.0, 0.0)
 
@@ -30,18 +30,18 @@ def test_a_clockwise_orbit_heads_east_at_its_north():
 
 
 def test_right_of_the_line_it_banks_left():
-    assert Steering().bank(line(cruising(east=10.0)), cruising(east=10.0), PARAMS, 0.02) < -0.05
+    assert LateralGuidance().bank(line(cruising(east=10.0)), cruising(east=10.0), PARAMS, 0.02) < -0.05
 
 
 def test_on_an_orbit_it_banks_for_the_turn():
     now = cruising(north=0.0, east=-100.0)
-    bank = Steering().bank(orbit_aim((0.0, 0.0), 100.0, (0.0, -100.0), PARAMS), now, PARAMS, 0.02)
+    bank = LateralGuidance().bank(orbit_aim((0.0, 0.0), 100.0, (0.0, -100.0), PARAMS), now, PARAMS, 0.02)
     assert bank == pytest.approx(math.atan(25.0**2 / (9.80665 * 100.0)), abs=1e-3)
 
 
 def test_the_bank_has_a_limit():
     now = cruising(east=500.0, course=math.pi / 2)
-    assert abs(Steering().bank(line(now), now, PARAMS, 0.02)) <= PARAMS.bank_limit
+    assert abs(LateralGuidance().bank(line(now), now, PARAMS, 0.02)) <= PARAMS.bank_limit
 
 
 @pytest.mark.parametrize("wind", [(0.0, 0.0), (0.0, 8.0), (-8.0, 0.0)])

@@ -8,15 +8,15 @@ from hypothesis import strategies as st
 from schemas import topics
 from schemas.messages import Guest
 from services.mavlink_bridge.discovery import Discovery, Names
-from services.mavlink_bridge.frame import Origin
+from services.mavlink_bridge.frame import BridgeOrigin
 from services.mavlink_bridge.service import BridgedVehicle
 from services.mavlink_bridge.station import COMPONENT, SYSTEM, Station
 from tests.services.autopilot.mavlink.rig import MemoryLink
 from uvf.mavlink import dialect as mav
 from uvf.runtime.bus.interface import LocalBus
 from uvf.runtime.bus.wire import decode_sample
-from uvf.runtime.contract.instances import Host
-from uvf.runtime.contract.service_runner import Shell
+from uvf.runtime.contract.instances import ServiceInstance
+from uvf.runtime.contract.service_runner import ServiceRunner
 from uvf.runtime.mavlink.mission_items import ORIGIN
 
 HERE, THERE = ("127.0.0.1", 5001), ("127.0.0.1", 5002)
@@ -152,14 +152,14 @@ class Besieged:
     def __init__(self, is_ardupilot=False):
         self.link, self.bus, self.t = MemoryLink(), LocalBus(), 0.0
         self.link.listening = []
-        self.station, self.origin = Station(self.link), Origin()
+        self.station, self.origin = Station(self.link), BridgeOrigin()
         self.said, self.replies, self.asked = [], [], 0
         self.heard, self.vehicles = {}, []
         self.beat = mav.MAVLink_heartbeat_message(1, 3, 129, 10, 4, 3) if is_ardupilot else BEAT
         for topic in BridgedVehicle.outputs.values():
             self.bus.subscribe(topic.at("*"), topic.qos, lambda sample, topic=topic: self._read(topic, sample))
         discovery = Discovery(self.station, Names("mav", {}), self._found, self.said.append)
-        self.shells = [Shell(Host(Discovery, lambda: discovery), self.bus, self.said.append)]
+        self.shells = [ServiceRunner(ServiceInstance(Discovery, lambda: discovery), self.bus, self.said.append)]
         self.run(3.0)
 
     def _read(self, topic, sample):
@@ -171,7 +171,7 @@ class Besieged:
             self.vehicles.append(BridgedVehicle(name, system, self.station, self.origin, Guest(model="x")))
             return self.vehicles[-1]
 
-        self.shells.append(Shell(Host(BridgedVehicle, make, name), self.bus, self.said.append))
+        self.shells.append(ServiceRunner(ServiceInstance(BridgedVehicle, make, name), self.bus, self.said.append))
 
     def run(self, seconds, liar=None):
         """liar: answers for the autopilot, which otherwise says nothing but how it is."""

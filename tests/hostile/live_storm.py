@@ -25,7 +25,7 @@ from tests.hostile import mavlink_client
 from tests.hostile.bus_client import STRANGER, Stranger
 from tests.hostile.test_page_socket import CAMERA, nonsense, pack
 from tests.services.gcs.wire import Browser, connect
-from uvf.models.scenario import ROOT, load_site
+from uvf.models.scenario import ROOT, load_scenario
 from uvf.runtime.bus.envelope import Envelope
 from uvf.runtime.bus.wire import Malformed, decode_sample
 from uvf.runtime.bus.zenoh_bus import ZenohBus
@@ -92,7 +92,7 @@ class Storm:
 
     def __init__(self, system, mission, seed):
         self.system, self.sent, self.answers = system, Counter(), Counter()
-        self.members = sorted(load_site(ROOT / "missions" / f"{mission}.yaml").members)
+        self.members = sorted(load_scenario(ROOT / "missions" / f"{mission}.yaml").members)
         self._dice = random.Random(seed)
         self._topics = dealt(self._dice, topics.TOPICS.values())
         self._requests = dealt(self._dice, topics.REQUESTS.values())

@@ -12,14 +12,14 @@ from services.gcs.service import GroundStation
 from services.gcs.view.cameras import cameras
 from tests.services.gcs.scripted import Script, demo_site, with_eyes
 from uvf.runtime.bus.address import Address
-from uvf.runtime.contract.instances import Host
-from uvf.runtime.contract.service_runner import Shell
+from uvf.runtime.contract.instances import ServiceInstance
+from uvf.runtime.contract.service_runner import ServiceRunner
 
 
 def main(port: int) -> None:
     site, script = with_eyes(demo_site()), Script()
     page = ViserPage(Address(port=port), partial(cameras, site))
-    shell = Shell(Host(GroundStation, lambda: GroundStation(site, page)), script.bus)
+    shell = ServiceRunner(ServiceInstance(GroundStation, lambda: GroundStation(site, page)), script.bus)
     begin, told = time.monotonic(), None
     while True:
         script.publish(time.monotonic() - begin)

@@ -8,7 +8,7 @@ from launch import catalogue
 from schemas import topics
 from schemas.messages import VehicleStatus
 from tests.hostile.bus_client import STRANGER, Stranger
-from uvf.models.scenario import ROOT, load_site
+from uvf.models.scenario import ROOT, load_scenario
 from uvf.runtime.bus.interface import LocalBus, Query
 from uvf.runtime.state.stop_all import StopVoice
 from uvf.runtime.time.lockstep import Lockstep
@@ -23,7 +23,7 @@ class Run:
     """A mission in lockstep, with a stranger if there is a seed."""
 
     def __init__(self, mission, seed=None, until=SECONDS):
-        site = load_site(ROOT / "missions" / f"{mission}.yaml")
+        site = load_scenario(ROOT / "missions" / f"{mission}.yaml")
         kinds = [kind for kind in catalogue.needed(site) if kind.clock == "sim" and kind.name != "sim_camera"]
         self.bus, self.warnings, self.replies = LocalBus(), [], []
         self.actuators = {}

@@ -13,8 +13,8 @@ from tests.services.autopilot.mavlink.rig import GCS, PLANE_FACTS, ROVER_FACTS, 
 from tests.services.gcs.fakes import Station
 from uvf.mavlink import dialect as mav
 from uvf.runtime.bus.interface import LocalBus
-from uvf.runtime.contract.instances import Host
-from uvf.runtime.contract.service_runner import Shell
+from uvf.runtime.contract.instances import ServiceInstance
+from uvf.runtime.contract.service_runner import ServiceRunner
 
 ROUNDS = int(os.environ.get("UVF_HOSTILE_EXAMPLES", "40"))
 A_ROUND = 25
@@ -53,7 +53,7 @@ class Link:
 
     def __init__(self):
         self.link = MemoryLink()
-        self.shell = Shell(Host(MavlinkService, self._made), LocalBus())
+        self.shell = ServiceRunner(ServiceInstance(MavlinkService, self._made), LocalBus())
         self.heartbeats = 0
         self._station = mav.MAVLink(None, 255, 190)
 

@@ -8,7 +8,7 @@ import pytest
 from launch import catalogue
 from schemas import topics
 from tests.hostile.bus_client import Stranger
-from uvf.models.scenario import ROOT, load_site
+from uvf.models.scenario import ROOT, load_scenario
 from uvf.runtime.bus.interface import LocalBus
 from uvf.runtime.time.lockstep import Lockstep
 
@@ -23,7 +23,7 @@ class Beset:
     """A mission in lockstep in which everybody hears senseless things about everything that it reads."""
 
     def __init__(self, mission, seed):
-        site = load_site(ROOT / "missions" / f"{mission}.yaml")
+        site = load_scenario(ROOT / "missions" / f"{mission}.yaml")
         kinds = [kind for kind in catalogue.needed(site) if kind.clock == "sim" and kind.name != "sim_camera"]
         self.lockstep = Lockstep(catalogue.hosts(site, kinds), LocalBus())
         self.stranger = Stranger(seed, sorted(site.members), LARGEST)

@@ -7,7 +7,7 @@ import yaml
 
 from launch import catalogue
 from launch.checks import check_params, wiring_problems
-from uvf.models.scenario import ROOT, load_site
+from uvf.models.scenario import ROOT, load_scenario
 from uvf.models.yaml_data import BadInput
 
 
@@ -26,7 +26,7 @@ def edit(root, vehicle, change):
 
 
 def problems(root):
-    site = load_site(root / "missions" / "demo.yaml", root)
+    site = load_scenario(root / "missions" / "demo.yaml", root)
     hosts = catalogue.hosts(site, [k for k in catalogue.needed(site) if k.clock == "sim"])
     check_params(site, hosts)
     return list(wiring_problems(site, hosts))

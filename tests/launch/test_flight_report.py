@@ -15,7 +15,7 @@ from schemas import topics
 from schemas.messages import Battery, Kind, Mode, NavState, Quaternion, SurfaceCommand, Vector3, VehicleStatus
 from services.autopilot.air import build as autopilot
 from services.sim_air import build as sim_air
-from uvf.models.scenario import ROOT, load_site
+from uvf.models.scenario import ROOT, load_scenario
 from uvf.runtime.bus.interface import Sample
 from uvf.runtime.log.reading import read_log
 from uvf.runtime.log.recording import Recorder
@@ -124,7 +124,7 @@ def reported(run):
 
 
 def test_a_recorded_run_of_the_demo_is_reported_on(tmp_path):
-    site = load_site(ROOT / "missions" / "demo.yaml")
+    site = load_scenario(ROOT / "missions" / "demo.yaml")
     lockstep = Lockstep([*sim_air.build(site), *autopilot.hosts(site)])
     with Recorder(tmp_path / "log-000.mcap", attachments(site)) as recorder:
         recorder.follow(lockstep.bus)

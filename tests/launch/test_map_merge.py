@@ -7,7 +7,7 @@ from typer.testing import CliRunner
 from launch.cli import app
 from tests.slam.merging.offices import anne, bert, first
 from uvf.models.world.map_file import load_map
-from uvf.slam.maps.session import Session
+from uvf.slam.maps.session import MappingSession
 
 
 @pytest.fixture
@@ -32,7 +32,7 @@ def test_sessions_that_fit_are_one_map_and_one_session(merge, tmp_path):
     numbers = [float(word.strip("(),")) for word in told.split(" at ")[1].split()[:4] if word.strip("(),").lstrip("-")[0].isdigit()]
     assert numbers == pytest.approx((x, y, np.degrees(yaw)), abs=0.5)
     assert "anne.npz: the frame of the others" in said and "stranger.npz: fits nowhere" in said
-    assert len(Session.load(tmp_path / "team.npz").keyframes) == len(anne().session.keyframes) + len(bert().session.keyframes)
+    assert len(MappingSession.load(tmp_path / "team.npz").keyframes) == len(anne().session.keyframes) + len(bert().session.keyframes)
     grid = load_map(tmp_path / "team.yaml")
     assert (grid.cells == 0).sum() * grid.resolution**2 > 80.0
     assert (tmp_path / "team.png").stat().st_size > 1000

@@ -10,7 +10,7 @@ import pytest
 from launch.recorder import ROOM, LogSeries, attachments
 from launch.runs import keep_quota
 from schemas import topics
-from uvf.models.scenario import ROOT, load_site
+from uvf.models.scenario import ROOT, load_scenario
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.bus.interface import LocalBus, Sample
 from uvf.runtime.log.reading import log_attachments, log_metadata, read_log
@@ -236,6 +236,6 @@ def test_a_folder_that_cannot_be_written_is_told_at_the_start(tmp_path, tell):
 
 
 def test_mission_world_and_vehicles_are_attached_by_their_places():
-    attached = attachments(load_site(ROOT / "missions" / "demo.yaml"))
+    attached = attachments(load_scenario(ROOT / "missions" / "demo.yaml"))
     for name in ("missions/demo.yaml", "worlds/house/world.yaml", "vehicles/burger/burger.urdf", "vehicles/milvus/engine/milvus_motor.xml"):
         assert attached[name] == (ROOT / name).read_bytes()

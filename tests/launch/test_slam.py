@@ -14,7 +14,7 @@ from uvf.models.scenario import ROOT
 from uvf.models.world.map_file import load_map
 from uvf.slam.evaluation.reference import Trajectory, absolute_error, read_trajectory
 from uvf.slam.evaluation.relations import read_relations
-from uvf.slam.maps.session import Session
+from uvf.slam.maps.session import MappingSession
 
 TRUTH = Trajectory(stamps(), true_way())
 
@@ -48,7 +48,7 @@ def test_the_trajectory_is_that_of_the_room(done):
 
 
 def test_the_session_is_that_of_the_map(done):
-    session = Session.load(done[1] / "session.npz")
+    session = MappingSession.load(done[1] / "session.npz")
     assert session.method == "graph"
     assert len(session.keyframes) == json.loads((done[1] / "figures.json").read_text())["run"]["keyframes"]
 

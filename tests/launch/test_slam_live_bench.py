@@ -8,7 +8,7 @@ from launch.apart import apart
 from schemas import topics
 from schemas.messages import FrameTransform, NavState, PoseInFrame, Vector3
 from uvf.maths.se2 import Pose2, compose
-from uvf.models.scenario import load_site
+from uvf.models.scenario import load_scenario
 from uvf.models.world.geometry import section
 from uvf.models.world.map_file import GridMap
 from uvf.models.yaml_data import BadInput
@@ -77,7 +77,7 @@ def test_a_log_without_poses_or_map_is_one_line():
 
 @pytest.fixture(scope="module")
 def site(tmp_path_factory):
-    return load_site(slam_live.mission("house", tmp_path_factory.mktemp("mission")))
+    return load_scenario(slam_live.mission("house", tmp_path_factory.mktemp("mission")))
 
 
 @pytest.fixture(scope="module")

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from tests import planar_rays as raycast
 from tests.maths.scenes import random_directions, random_parts, torus, turn
 from uvf.maths.bvh import build
-from uvf.maths.raycast import Body, Rays, Scene, cast, warm_up
+from uvf.maths.raycast import MovingBody, Rays, Scene, cast, warm_up
 from uvf.maths.rotations import IDENTITY, from_euler, matrix
 from uvf.maths.solids import BOX, CYLINDER, SPHERE, box, cylinder, joined, mesh, sphere
 
@@ -143,7 +143,7 @@ def test_moving_and_turning_scene_and_rays_together_changes_nothing(seed):
     r = matrix(turned)
     before = scan(parts, rays)
     after = cast(
-        Scene(NOTHING), [Body(build(joined(parts)), shift, turned)], Rays(rays.origins @ r.T + shift, rays.directions @ r.T), 100.0
+        Scene(NOTHING), [MovingBody(build(joined(parts)), shift, turned)], Rays(rays.origins @ r.T + shift, rays.directions @ r.T), 100.0
     )
     assert_same_but_for_grazes(before, after)
 
@@ -155,7 +155,7 @@ def test_parts_moved_one_by_one_are_the_body_moved_as_a_whole(seed):
     shift, turned, size = rng.uniform(-3, 3, 3), turn(rng), rng.uniform(0.3, 2, 3)
     vertices, faces = torus()
     rays = random_rays(rng)
-    whole = [Body(build(joined([box(size, (0, 0, 0)), mesh(vertices, faces)])), shift, turned)]
+    whole = [MovingBody(build(joined([box(size, (0, 0, 0)), mesh(vertices, faces)])), shift, turned)]
     single = [box(size, shift, turned), mesh(vertices, faces, shift, turned)]
     assert_same_but_for_grazes(cast(Scene(NOTHING), whole, rays, 100.0), scan(single, rays))
 
@@ -188,7 +188,7 @@ def test_the_tree_gives_what_all_primitives_give_bit_for_bit(seed, each, along_a
 
 def test_a_sensor_does_not_see_the_body_that_it_leaves_out():
     chassis = build(box((0.4, 0.3, 0.2), (0, 0, 0.1)))
-    bodies = {"one": Body(chassis, np.zeros(3)), "other": Body(chassis, np.array((2.0, 0, 0)), from_euler(0, 0, np.pi / 2))}
+    bodies = {"one": MovingBody(chassis, np.zeros(3)), "other": MovingBody(chassis, np.array((2.0, 0, 0)), from_euler(0, 0, np.pi / 2))}
     rays = Rays(np.array((0, 0, 0.1)), np.array([EAST]))
     others = [body for name, body in bodies.items() if name != "one"]
     assert cast(Scene(NOTHING), others, rays, 10.0)[0] == pytest.approx(1.85)
@@ -198,7 +198,7 @@ def test_a_sensor_does_not_see_the_body_that_it_leaves_out():
 def test_the_nearest_of_scene_ground_and_bodies_counts():
     scene = Scene(build(box((1, 1, 1), (5, 0, 0.5))), 0.0)
     down_ahead = Rays(np.array((0.0, 0, 1)), np.array([(0, 0, -1.0), (np.sqrt(0.5), 0, -np.sqrt(0.5)), (1, 0, -1e-3)]))
-    low = Body(build(sphere(0.25, (0, 0, 0))), np.array((0, 0, 0.25)))
+    low = MovingBody(build(sphere(0.25, (0, 0, 0))), np.array((0, 0, 0.25)))
     assert cast(scene, [low], down_ahead, 20.0) == pytest.approx([0.5, np.sqrt(2), 4.5], rel=1e-3)
 
 
@@ -224,8 +224,8 @@ def test_after_the_warm_up_nothing_is_left_to_compile():
     before = [len(kernel.signatures) for kernel in (_cast_tree, _cast_ground)]
     rng = np.random.default_rng(9)
     tree = build(joined(random_parts(rng)))
-    cast(Scene(tree, 0.0), [Body(tree, rng.uniform(-1, 1, 3), turn(rng))], random_rays(rng), 30.0)
-    cast(Scene(NOTHING, 0), [Body(tree, (1, 2, 3), IDENTITY)], Rays(np.zeros(3), np.eye(3)), 30)
+    cast(Scene(tree, 0.0), [MovingBody(tree, rng.uniform(-1, 1, 3), turn(rng))], random_rays(rng), 30.0)
+    cast(Scene(NOTHING, 0), [MovingBody(tree, (1, 2, 3), IDENTITY)], Rays(np.zeros(3), np.eye(3)), 30)
     strided, frozen = np.eye(4)[:3, 3], read_only(np.eye(3).T)
-    cast(Scene(NOTHING), [Body(tree, strided)], Rays(frozen[0], frozen.T[::-1]), 30.0)
+    cast(Scene(NOTHING), [MovingBody(tree, strided)], Rays(frozen[0], frozen.T[::-1]), 30.0)
     assert [len(kernel.signatures) for kernel in (_cast_tree, _cast_ground)] == before

@@ -8,7 +8,7 @@ from schemas import topics
 from schemas.messages import Event, MissionProgress, NavState, VehicleStatus
 from services.autopilot.air.service import AutopilotAir
 from services.autopilot.ground.service import GroundAutopilot
-from uvf.models.scenario import ROOT, load_site
+from uvf.models.scenario import ROOT, load_scenario
 from uvf.runtime.bus.interface import LocalBus
 from uvf.runtime.time.lockstep import Lockstep
 
@@ -42,7 +42,7 @@ def mission(folder):
 
 class Run:
     def __init__(self, path):
-        site = load_site(path, ROOT)
+        site = load_scenario(path, ROOT)
         self.bus, self.actuators, self.newest, self.events, self.height = LocalBus(), {}, {}, [], []
         for topic in (topics.WHEEL_COMMAND, topics.SURFACE_COMMAND):
             self.bus.subscribe(topic.at("*"), topic.qos, lambda s: self.actuators.setdefault(s.key.split("/")[1], []).append(s.payload))
@@ -72,10 +72,10 @@ def runs(tmp_path_factory):
 
 
 def failing(step, system):
-    def fails(self, t, **inputs):
+    def fails(self, t, now):
         if getattr(self, "_system_id", None) == system or getattr(getattr(self, "_ship", None), "system_id", None) == system:
             raise ZeroDivisionError("as told")
-        return step(self, t, **inputs)
+        return step(self, t, now)
 
     return fails
 

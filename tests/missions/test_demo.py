@@ -8,7 +8,7 @@ import sys
 import pytest
 
 from launch.run import run_lockstep
-from uvf.models.scenario import ROOT, load_site
+from uvf.models.scenario import ROOT, load_scenario
 from uvf.runtime.log.reading import log_metadata
 
 DEMO = ROOT / "missions" / "demo.yaml"
@@ -17,7 +17,7 @@ DEMO = ROOT / "missions" / "demo.yaml"
 @pytest.fixture(scope="module")
 def demo(tmp_path_factory):
     log = tmp_path_factory.mktemp("demo") / "log.mcap"
-    return run_lockstep(load_site(DEMO), 120.0, log), log
+    return run_lockstep(load_scenario(DEMO), 120.0, log), log
 
 
 def test_every_criterion_holds(demo):

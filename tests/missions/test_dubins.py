@@ -3,13 +3,13 @@
 import pytest
 
 from launch.run import run_lockstep
-from uvf.models.scenario import ROOT, load_site
+from uvf.models.scenario import ROOT, load_scenario
 
 
 @pytest.fixture(scope="module")
 def flown(tmp_path_factory):
     log = tmp_path_factory.mktemp("dubins") / "log.mcap"
-    return run_lockstep(load_site(ROOT / "missions" / "dubins.yaml"), 260.0, log)
+    return run_lockstep(load_scenario(ROOT / "missions" / "dubins.yaml"), 260.0, log)
 
 
 def test_every_place_is_passed_in_its_direction(flown):

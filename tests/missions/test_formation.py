@@ -7,7 +7,7 @@ from schemas import topics
 from schemas.messages import Mode, VehicleStatus
 from services.autopilot.air import build as autopilot
 from services.sim_air import build as sim_air
-from uvf.models.scenario import ROOT, load_site
+from uvf.models.scenario import ROOT, load_scenario
 from uvf.runtime.time.lockstep import Lockstep
 
 pytestmark = pytest.mark.timeout(300)
@@ -17,7 +17,7 @@ FOLLOWERS = ("milvus2", "milvus3")
 
 @pytest.fixture(scope="module")
 def flown():
-    site = load_site(ROOT / "missions" / "formation.yaml")
+    site = load_scenario(ROOT / "missions" / "formation.yaml")
     lockstep, scorer, modes = Lockstep([*sim_air.build(site), *autopilot.hosts(site)]), Scorer(site), {}
     scorer.follow(lockstep.bus)
 

@@ -6,7 +6,7 @@ from launch import catalogue
 from launch.settings import mission_path
 from schemas import topics
 from schemas.messages import Event, WheelCommand
-from uvf.models.scenario import load_site
+from uvf.models.scenario import load_scenario
 from uvf.runtime.bus.interface import LocalBus
 from uvf.runtime.time.lockstep import Lockstep
 
@@ -17,7 +17,7 @@ SERVICES = ("odometry", "mapping", "planner", "tracker")
 
 class Run:
     def __init__(self, name, monkeypatch):
-        site = load_site(mission_path("demo"))
+        site = load_scenario(mission_path("demo"))
         kinds = [catalogue.kind(kind) for kind in ("sim_ground", "slam", "planner", "autopilot")]
         self.bus, self.wheels, self.events = LocalBus(), [], []
         self.bus.subscribe(
@@ -38,10 +38,10 @@ def taken(sample, type_):
 
 
 def fails(sound):
-    def step(self, t, *args, **inputs):
+    def step(self, t, given):
         if t > FAILS:
             raise ZeroDivisionError("as told")
-        return sound(self, t, *args, **inputs)
+        return sound(self, t, given)
 
     return step
 

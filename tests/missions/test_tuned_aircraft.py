@@ -10,7 +10,7 @@ import yaml
 from benchmarks import autopilot as bench
 from benchmarks.accuracy_flight import PLANE, Probe
 from launch.vehicles.tuning import tune, write
-from uvf.models.scenario import ROOT, load_site
+from uvf.models.scenario import ROOT, load_scenario
 
 pytestmark = pytest.mark.timeout(300)  # tune flies many steady flights
 
@@ -43,7 +43,7 @@ def mission_of(model, speed, folder):
 def flown(request, tmp_path_factory):
     root = tmp_path_factory.mktemp(request.param)
     speed = tune_speed(tuned_by_files_alone(request.param, root))
-    lockstep = bench.lockstep_of(load_site(mission_of(request.param, speed, root), root))
+    lockstep = bench.lockstep_of(load_scenario(mission_of(request.param, speed, root), root))
     with closing(lockstep):
         probe = Probe(lockstep)
         lockstep.run(120.0, probe)

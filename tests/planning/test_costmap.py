@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from tests.services.planner.plans import drawn, room
-from uvf.planning.costmap import IMPASSABLE, Body, costmap, with_way_out
+from uvf.planning.costmap import IMPASSABLE, RobotFootprint, costmap, with_way_out
 from uvf.planning.smoothing import length, resample, smoothed
 
-BODY = Body(radius=0.15, comfort=0.35, dislike=5.0)
+BODY = RobotFootprint(radius=0.15, inflation_radius=0.35, cost_scaling_factor=5.0)
 
 
 def test_no_cell_nearer_than_the_radius_is_passable():

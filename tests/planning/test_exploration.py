@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 
 from tests.services.planner.plans import room
-from uvf.planning.costmap import Body, costmap
+from uvf.planning.costmap import RobotFootprint, costmap
 from uvf.planning.exploration import SHUN_TIME, Explorer, Patrol
-from uvf.planning.frontiers import Taste, frontiers
-from uvf.planning.search import Ways
+from uvf.planning.frontiers import FrontierWeights, frontiers
+from uvf.planning.search import CostToGo
 
-BODY = Body(radius=0.1, comfort=0.2, dislike=3.0)
-TASTE = Taste(least_size=4, view=0.3, worth=0.5)
+BODY = RobotFootprint(radius=0.1, inflation_radius=0.2, cost_scaling_factor=3.0)
+TASTE = FrontierWeights(least_size=4, view=0.3, worth=0.5)
 
 
 def costs_of(cells):
@@ -28,7 +28,7 @@ def two_doors():
 
 
 def ways_from(costs, x, y):
-    return Ways(costs.cost, costs.cell(x, y))
+    return CostToGo(costs.cost, costs.cell(x, y))
 
 
 def none_shunned(costs):
@@ -74,10 +74,10 @@ def test_a_goal_given_up_is_left_alone_for_a_while():
     explorer = Explorer(TASTE)
     ways = ways_from(costs, 1.0, 1.0)
     first = explorer.choose(0.0, costs, ways)
-    explorer.shun_goal(0.0)
+    explorer.blacklist_goal(0.0)
     second = explorer.choose(0.1, costs, ways)
     assert second[0] > 3.0 > first[0]
-    explorer.shun_goal(0.2)
+    explorer.blacklist_goal(0.2)
     assert explorer.choose(0.3, costs, ways) is None
     assert explorer.choose(SHUN_TIME + 0.1, costs, ways) == pytest.approx(first)
 

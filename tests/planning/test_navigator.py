@@ -5,11 +5,11 @@ import pytest
 
 from schemas.limits import LENGTHS
 from tests.services.planner.plans import room
-from uvf.planning.costmap import Body
-from uvf.planning.navigator import MOST_CELLS, Navigator, Plan
+from uvf.planning.costmap import RobotFootprint
+from uvf.planning.navigator import MOST_CELLS, GlobalPlanner, PlannedPath
 from uvf.planning.smoothing import length
 
-BODY = Body(radius=0.15, comfort=0.35, dislike=5.0)
+BODY = RobotFootprint(radius=0.15, inflation_radius=0.35, cost_scaling_factor=5.0)
 
 
 def house(door=True):
@@ -22,7 +22,7 @@ def house(door=True):
 
 
 def navigator(cells):
-    made = Navigator(BODY)
+    made = GlobalPlanner(BODY)
     made.see(cells, (0.05, (0.0, 0.0)))
     return made
 
@@ -61,21 +61,21 @@ def test_on_a_map_of_too_many_cells_nobody_drives_until_there_is_a_smaller_one()
     made.see(np.zeros((MOST_CELLS // 2000 + 1, 2000), dtype=np.int8), (0.05, (0.0, 0.0)))
     why = f"the map is too large to plan on: {MOST_CELLS + 2000} cells, {MOST_CELLS} at most"
     assert made.refusal((0.6, 0.6), (3.4, 0.6)) == why
-    assert made.plan((0.6, 0.6), (3.4, 0.6)) == made.plan((0.6, 0.6), (3.4, 0.6), bold=True) == Plan(None, why)
+    assert made.plan((0.6, 0.6), (3.4, 0.6)) == made.plan((0.6, 0.6), (3.4, 0.6), allow_unknown=True) == PlannedPath(None, why)
     assert made.ways((0.6, 0.6)) is None
     made.see(house(), (0.05, (0.0, 0.0)))
     assert made.refusal((0.6, 0.6), (3.4, 0.6)) == ""
 
 
 def test_a_goal_too_far_for_a_message_of_the_path_is_refused():
-    made = Navigator(BODY)
+    made = GlobalPlanner(BODY)
     made.see(np.zeros((3, 1100), dtype=np.int8), (10.0, (0.0, 0.0)))
     near, far = (9_900.0, 15.0), (10_500.0, 15.0)
     assert made.refusal((5.0, 15.0), near) == ""
     assert len(made.plan((5.0, 15.0), near).path) < LENGTHS["foxglove.PosesInFrame.poses"]
     why = "the goal is too far to plan: 10.5 km of way, 10.0 km at most"
     assert made.refusal((5.0, 15.0), far) == why
-    assert made.plan((5.0, 15.0), far) == Plan(None, why)
+    assert made.plan((5.0, 15.0), far) == PlannedPath(None, why)
 
 
 def test_a_possible_goal_is_not_refused():
@@ -83,7 +83,7 @@ def test_a_possible_goal_is_not_refused():
 
 
 def test_nothing_is_planned_without_a_map():
-    made = Navigator(BODY)
+    made = GlobalPlanner(BODY)
     assert made.plan((0.0, 0.0), (1.0, 1.0)).reason == "there is no map yet"
     assert made.refusal((0.0, 0.0), (1.0, 1.0)) == "there is no map yet"
 
@@ -93,13 +93,13 @@ def test_only_a_bold_plan_crosses_unknown_ground():
     cells[:, 30:50] = -1
     made = navigator(cells)
     assert made.plan((0.6, 1.0), (3.4, 1.0)).path is None
-    assert made.plan((0.6, 1.0), (3.4, 1.0), bold=True).path is not None
+    assert made.plan((0.6, 1.0), (3.4, 1.0), allow_unknown=True).path is not None
 
 
 def test_a_bold_plan_goes_as_near_as_the_map_reaches():
     cells = np.full((40, 40), -1, dtype=np.int8)
     cells[10:30, 10:30] = 0
-    path = navigator(cells).plan((1.0, 1.0), (9.0, 1.0), bold=True).path
+    path = navigator(cells).plan((1.0, 1.0), (9.0, 1.0), allow_unknown=True).path
     assert path[-1] == pytest.approx((1.975, 1.025), abs=0.03)
 
 

@@ -7,16 +7,16 @@ from uvf.maths.kinematics import Twist, move
 from uvf.maths.rotations import wrap
 from uvf.maths.se2 import Pose2
 from uvf.planning.collision_check import clearance_along, safe_share
-from uvf.planning.pure_pursuit import Pace, Tracker
+from uvf.planning.pure_pursuit import PathTracker, SpeedLimits
 
-PACE = Pace(linear=0.45, angular=1.5, deceleration=0.5, tolerance=0.06)
+PACE = SpeedLimits(linear=0.45, angular=1.5, deceleration=0.5, tolerance=0.06)
 BRAKE = (0.3, 0.5)
 KEEP = 0.15
 
 
 def follow(path, start, seconds, final_heading=None, room=np.inf):
     """(n, 3) poses and (n, 2) commands at 20 Hz."""
-    tracker, pose = Tracker(PACE), Pose2(*start)
+    tracker, pose = PathTracker(PACE), Pose2(*start)
     poses, commands = [pose], []
     for _ in range(round(seconds * 20)):
         command = tracker.follow(pose, path, final_heading, room)
@@ -85,7 +85,7 @@ def test_never_faster_than_its_pace():
 
 
 def test_an_empty_path_means_stand():
-    assert Tracker(PACE).follow((1.0, 2.0, 3.0), np.zeros((0, 2)), None, np.inf) == (0.0, 0.0)
+    assert PathTracker(PACE).follow((1.0, 2.0, 3.0), np.zeros((0, 2)), None, np.inf) == (0.0, 0.0)
 
 
 def test_the_clearance_along_an_arc_equals_that_of_its_poses():

@@ -9,7 +9,7 @@ import pytest
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
 
-from uvf.planning.search import Ways, astar
+from uvf.planning.search import CostToGo, astar
 
 
 def reference(cost, start):
@@ -46,7 +46,7 @@ def cost_along(cost, path):
 @pytest.mark.parametrize("seed", range(8))
 def test_ways_cost_what_dijkstra_says(seed):
     cost = random_costs(seed)
-    np.testing.assert_allclose(Ways(cost, (0, 0)).cost, reference(cost, (0, 0)))
+    np.testing.assert_allclose(CostToGo(cost, (0, 0)).cost, reference(cost, (0, 0)))
 
 
 @pytest.mark.parametrize("seed", range(8))
@@ -68,7 +68,7 @@ def test_astar_is_optimal_and_its_path_costs_what_it_says(seed):
 
 def test_ways_are_right_when_many_cells_wait_at_a_time():
     cost = 1.0 + 1000.0 * np.random.default_rng(0).random((400, 400)) ** 8
-    np.testing.assert_allclose(Ways(cost, (200, 200)).cost, reference(cost, (200, 200)))
+    np.testing.assert_allclose(CostToGo(cost, (200, 200)).cost, reference(cost, (200, 200)))
 
 
 @contextmanager
@@ -101,7 +101,7 @@ def test_an_impassable_goal_has_no_way():
 
 def test_the_way_to_a_cell_is_the_cheapest_one():
     cost = random_costs(3)
-    ways = Ways(cost, (0, 0))
+    ways = CostToGo(cost, (0, 0))
     reachable = np.argwhere(np.isfinite(ways.cost))
     goal = tuple(int(i) for i in reachable[-1])
     assert cost_along(cost, ways.to(goal)) == pytest.approx(ways.cost[goal])

@@ -5,8 +5,8 @@ from schemas.messages import Clock, Done
 from tests.runtime.outcome import Outcome, ask
 from uvf.runtime.bus.interface import LocalBus
 from uvf.runtime.bus.zenoh_bus import kept_key
-from uvf.runtime.contract.service_runner import Shell
-from uvf.runtime.log.state_store import Keeper
+from uvf.runtime.contract.service_runner import ServiceRunner
+from uvf.runtime.log.state_store import StateStore
 from uvf.runtime.time.conductor import Conductor
 from uvf.runtime.time.live import LATE_START
 
@@ -17,7 +17,7 @@ BUSY = (4, 5, 6)  # of ten ticks: live, everybody but the simulators hears of th
 class Process:
     def __init__(self, name, hosts, run):
         self.name = name
-        self.shells = [Shell(host, run.bus) for host in hosts]
+        self.shells = [ServiceRunner(host, run.bus) for host in hosts]
         self.epoch = 0
         self.boot = run.boots
         self.given_up = 0
@@ -36,7 +36,7 @@ class InProcess:
         self._hosts = cast.processes()
         others = [name for name in self._hosts if name not in cast.simulators]
         self.conductor = Conductor(cast.simulators, others, 1.0, lockstep)
-        self._keeper = Keeper(self.bus, print)
+        self._keeper = StateStore(self.bus, print)
         self._clock = self.bus.publisher(topics.CLOCK.at("sys"), Clock.DESCRIPTOR.full_name, topics.CLOCK.qos)
         self._processes = {}
         self._wall = 0.0

@@ -6,9 +6,10 @@ from pathlib import Path
 
 from launch.commands.report import describe_log
 from schemas import topics
-from schemas.messages import NavState
+from schemas.messages import CompressedImage, NavState
 from uvf.runtime.bus.interface import LocalBus
-from uvf.runtime.contract.instances import Host
+from uvf.runtime.contract.declaration import Reads, Writes, topic
+from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.contract.service import Service
 from uvf.runtime.log.recovery import recover
 from uvf.runtime.log.replay import into_service, onto_bus
@@ -19,20 +20,24 @@ class Watcher(Service):
 
     name = "watcher"
     hz = 10.0
-    inputs = {"image": topics.IMAGE}
-    outputs = {"state": topics.NAV_STATE}
 
-    def step(self, t, image):
-        return {"state": NavState()}
+    class Inputs(Reads):
+        image: CompressedImage = topic(topics.IMAGE)
+
+    class Outputs(Writes):
+        state: NavState | None = topic(topics.NAV_STATE)
+
+    def step(self, t: float, now: Inputs) -> Outputs:
+        return self.Outputs(state=NavState())
 
     def stale(self, t, missing):
-        return {}
+        return self.Outputs()
 
 
 PROGRAMS = {
     "recover": lambda log: recover(log, log.with_suffix(".saved.mcap")),
     "onto_bus": lambda log: onto_bus(log, LocalBus(), rate=1e9),
-    "into_service": lambda log: sum(1 for _ in into_service(log, Host(Watcher, Watcher, "v"))),
+    "into_service": lambda log: sum(1 for _ in into_service(log, ServiceInstance(Watcher, Watcher, "v"))),
     "describe": describe_log,
 }
 

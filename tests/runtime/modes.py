@@ -13,7 +13,7 @@ from tests.runtime.outcome import Outcome, ask
 from tests.runtime.toys import Toys
 from uvf.runtime.bus.interface import LocalBus
 from uvf.runtime.bus.zenoh_bus import ZenohBus, open_router
-from uvf.runtime.log.state_store import Keeper
+from uvf.runtime.log.state_store import StateStore
 from uvf.runtime.time.conductor import Conductor
 from uvf.runtime.time.live import Live
 from uvf.runtime.time.lockstep import Lockstep
@@ -60,7 +60,7 @@ class Distributed:
     def __enter__(self):
         self._router = open_router(self.endpoint)
         self.bus = ZenohBus(self.endpoint, blocking=self.lockstep)
-        self._keeper = Keeper(ZenohBus(self.endpoint), print)
+        self._keeper = StateStore(ZenohBus(self.endpoint), print)
         self.bus.subscribe_all(self.samples.append, depth=100_000)
         self.bus.subscribe(topics.DONE.by("*").at("sys"), topics.DONE.qos, self._on_done, depth=1000, wake=True)
         self._clock = self.bus.publisher(topics.CLOCK.at("sys"), Clock.DESCRIPTOR.full_name, topics.CLOCK.qos)

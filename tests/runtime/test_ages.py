@@ -7,8 +7,9 @@ from schemas.messages import Event, FrameTransform, Imu, Mission, SurfaceCommand
 from tests.runtime.modes import RUNS
 from tests.runtime.toys import Cast
 from uvf.runtime.bus.interface import Sample
+from uvf.runtime.contract.declaration import Input, Reads, Writes, each_vehicle, every, optional, topic
 from uvf.runtime.contract.inbox import OWNERS_MOST, InputBox
-from uvf.runtime.contract.service import Service, each_vehicle, every, optional
+from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import stamp
 
 SILENT = 0.30  # s, when the last message of each stream is sent
@@ -24,23 +25,24 @@ class Beacon(Service):
     name = "beacon"
     hz = 100.0
     simulator = True
-    outputs = {
-        "imu": topics.IMU,
-        "map_frame": topics.TF_MAP,
-        "wheels": topics.WHEEL_COMMAND,
-        "surfaces": topics.SURFACE_COMMAND,
-        "plan": topics.MISSION,
-        "event": topics.EVENTS.by("beacon"),
-    }
 
-    def step(self, t):
+    class Outputs(Writes):
+        imu: Imu | None = topic(topics.IMU)
+        map_frame: FrameTransform | None = topic(topics.TF_MAP)
+        wheels: WheelCommand | None = topic(topics.WHEEL_COMMAND)
+        surfaces: SurfaceCommand | None = topic(topics.SURFACE_COMMAND)
+        plan: Mission | None = topic(topics.MISSION)
+        event: Event | None = topic(topics.EVENTS.by("beacon"))
+
+    def step(self, t: float, now) -> Outputs:
         if t > SILENT:
-            return {}
-        now = stamp(t)
-        streams = {"imu": Imu(timestamp=now), "map_frame": FrameTransform(timestamp=now)}
-        actuators = {"wheels": WheelCommand(timestamp=now), "surfaces": SurfaceCommand(timestamp=now)}
-        once = {"plan": Mission(timestamp=now, id=7), "event": Event(timestamp=now, text="once")} if t == ONCE else {}
-        return {**streams, **actuators, **once}
+            return self.Outputs()
+        at = stamp(t)
+        out = self.Outputs(imu=Imu(timestamp=at), map_frame=FrameTransform(timestamp=at))
+        out.wheels, out.surfaces = WheelCommand(timestamp=at), SurfaceCommand(timestamp=at)
+        if t == ONCE:
+            out.plan, out.event = Mission(timestamp=at, id=7), Event(timestamp=at, text="once")
+        return out
 
 
 class Judge(Service):
@@ -48,26 +50,26 @@ class Judge(Service):
 
     name = "judge"
     hz = 100.0
-    inputs = {
-        "imu": optional(topics.IMU),
-        "map_frame": optional(topics.TF_MAP),
-        "wheels": each_vehicle(topics.WHEEL_COMMAND),
-        "surfaces": optional(topics.SURFACE_COMMAND),
-        "plan": optional(topics.MISSION),
-        "event": optional(topics.EVENTS.by("beacon")),
-        "heard": optional(every(topics.EVENTS.by("beacon"))),
-    }
+
+    class Inputs(Reads):
+        imu: Imu | None = optional(topics.IMU)
+        map_frame: FrameTransform | None = optional(topics.TF_MAP)
+        wheels: dict[str, WheelCommand] = each_vehicle(topics.WHEEL_COMMAND)
+        surfaces: SurfaceCommand | None = optional(topics.SURFACE_COMMAND)
+        plan: Mission | None = optional(topics.MISSION)
+        event: Event | None = optional(topics.EVENTS.by("beacon"))
+        heard: list[Event] = optional(every(topics.EVENTS.by("beacon")))
 
     def __init__(self):
         self.times = []
         self.seen = {name: [] for name in self.inputs}
 
-    def step(self, t, **inputs):
+    def step(self, t: float, now: Inputs):
         self.times.append(t)
-        for name, value in inputs.items():
-            if value:
+        for name in self.inputs:
+            if getattr(now, name):
                 self.seen[name].append(t)
-        return {}
+        return self.Outputs()
 
 
 class Guarded(Service):
@@ -75,19 +77,22 @@ class Guarded(Service):
 
     name = "guarded"
     hz = 100.0
-    inputs = {"imu": topics.IMU, "plan": topics.MISSION}
+
+    class Inputs(Reads):
+        imu: Imu = topic(topics.IMU)
+        plan: Mission = topic(topics.MISSION)
 
     def __init__(self):
         self.times = []
         self.held = []
 
-    def step(self, t, imu, plan):
+    def step(self, t: float, now: Inputs):
         self.times.append(t)
-        return {}
+        return self.Outputs()
 
     def stale(self, t, missing):
         self.held.append((t, missing))
-        return {}
+        return self.Outputs()
 
 
 class Ages(Cast):
@@ -147,7 +152,7 @@ def heard(box, t_ns):
 
 
 def test_one_stamp_from_far_ahead_does_not_deafen_who_lives_on_wall_time():
-    box = InputBox(optional(topics.STATUS), ageless=True, epoch=1)
+    box = InputBox(Input(topics.STATUS, required=False), ageless=True, epoch=1)
     box.push(status(1, 10, boot=1))
     box.push(status(2, 2**62, boot=9))
     box.take(0)
@@ -158,7 +163,7 @@ def test_one_stamp_from_far_ahead_does_not_deafen_who_lives_on_wall_time():
 
 
 def test_who_has_no_epoch_is_of_the_one_that_holds():
-    box = InputBox(optional(topics.STATUS), ageless=False, epoch=1)
+    box = InputBox(Input(topics.STATUS, required=False), ageless=False, epoch=1)
     box.push(status(1, 10, boot=1))
     assert heard(box, 20) == 1
     box.push(status(2, 30, boot=1, epoch=0))
@@ -170,7 +175,7 @@ def named(owner, stamp_ns):
 
 
 def test_ghosts_that_have_fallen_silent_make_room_for_another_vehicle():
-    box = InputBox(each_vehicle(topics.STATUS), ageless=False, epoch=1)
+    box = InputBox(Input(topics.STATUS, each_vehicle=True, required=False), ageless=False, epoch=1)
     for n in range(OWNERS_MOST):
         box.push(named(f"ghost{n}", 10))
     box.take(1_000_000_000)

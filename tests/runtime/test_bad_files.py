@@ -6,7 +6,7 @@ import shutil
 import pytest
 import yaml
 
-from uvf.models.scenario import ROOT, load_site
+from uvf.models.scenario import ROOT, load_scenario
 from uvf.models.vehicle.file import load_vehicle
 from uvf.models.world.file import load_world
 from uvf.models.yaml_data import BadInput
@@ -89,7 +89,7 @@ def root(tmp_path_factory):
 def load(root, name="mission"):
     """One file; a mission with all that it names."""
     if name == "mission":
-        load_site(root / FILES["mission"], root)
+        load_scenario(root / FILES["mission"], root)
     elif name == "world":
         load_world(root / "worlds", "house")
     else:
@@ -164,7 +164,7 @@ def test_a_mission_that_cannot_be_is_refused_with_file_line_and_mend(root, case)
     path = root / "missions" / "mistake.yaml"
     path.write_text(yaml.safe_dump(data))
     with pytest.raises(BadInput) as caught:
-        load_site(path, root)
+        load_scenario(path, root)
     assert why in str(caught.value)
 
 

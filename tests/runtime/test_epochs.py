@@ -6,17 +6,17 @@ from schemas import topics
 from schemas.messages import ArmRequest, NavStatus
 from tests.runtime.toys import Pilot
 from uvf.runtime.bus.interface import LocalBus, Query, Sample
+from uvf.runtime.contract.declaration import Input
 from uvf.runtime.contract.inbox import OWNERS_MOST, InputBox
-from uvf.runtime.contract.instances import Host
-from uvf.runtime.contract.service import each_vehicle
-from uvf.runtime.contract.service_runner import Shell
+from uvf.runtime.contract.instances import ServiceInstance
+from uvf.runtime.contract.service_runner import ServiceRunner
 
 NS = 1_000_000_000
 
 
 @pytest.fixture
 def shell():
-    made = Shell(Host(Pilot, Pilot, "alpha"), LocalBus())
+    made = ServiceRunner(ServiceInstance(Pilot, Pilot, "alpha"), LocalBus())
     made.join(1)
     return made
 
@@ -76,7 +76,7 @@ def test_an_epoch_counts_only_from_the_clock(shell, epoch):
 
 
 def test_what_many_vehicles_send_before_the_clock_is_heard_of_is_all_kept_and_none_of_it_refused():
-    box = InputBox(each_vehicle(topics.NAV_STATUS), ageless=True, epoch=0)
+    box = InputBox(Input(topics.NAV_STATUS, each_vehicle=True, required=False), ageless=True, epoch=0)
     for owner in range(30):
         for seq in range(1, 21):
             payload = NavStatus(job=f"{seq}").SerializeToString()
@@ -106,7 +106,7 @@ def test_what_is_stamped_far_ahead_is_refused_and_hides_nothing(shell):
 
 
 def test_a_flood_of_vehicles_is_bounded_and_strange_names_are_refused():
-    box = InputBox(each_vehicle(topics.NAV_STATUS), ageless=True, epoch=0)
+    box = InputBox(Input(topics.NAV_STATUS, each_vehicle=True, required=False), ageless=True, epoch=0)
     for owner in (*(f"v{n}" for n in range(1000)), "<img src=x>", "..", "Sys", "A" * 1000):
         box.push(Sample(topics.NAV_STATUS.at(owner), "uvf.v1.NavStatus", b"", 1, 1, 7, 0))
     box.take(NS)

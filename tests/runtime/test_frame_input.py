@@ -7,11 +7,12 @@ from schemas.messages import DriveCommand, FrameTransform, FrameTransforms, Imu,
 from tests.runtime.modes import RUNS, run_in
 from tests.runtime.toys import Cast
 from uvf.runtime.bus.interface import LocalBus, Sample
-from uvf.runtime.contract.instances import Host
-from uvf.runtime.contract.service import Service, every, frames
-from uvf.runtime.contract.service_runner import Shell
+from uvf.runtime.contract.declaration import Reads, Writes, every, frames, topic
+from uvf.runtime.contract.instances import ServiceInstance
+from uvf.runtime.contract.service import Service
+from uvf.runtime.contract.service_runner import ServiceRunner
 from uvf.runtime.messages.convert import seconds, stamp
-from uvf.runtime.messages.frames import FrameError
+from uvf.runtime.messages.frames import FrameBuffer, FrameError
 from uvf.runtime.time.lockstep import Lockstep
 
 NS = 1_000_000_000
@@ -22,36 +23,44 @@ class Seeker(Service):
 
     name = "seeker"
     hz = 10.0
-    inputs = {"frames": frames()}
+
+    class Inputs(Reads):
+        frames: FrameBuffer = frames()
+
     asked = ("alpha/odom", "alpha/base_footprint")
 
     def __init__(self):
         self.newest, self.refused, self.known = {}, {}, set()
 
-    def step(self, t, frames):
-        self.known = frames.frames
+    def step(self, t: float, now: Inputs):
+        self.known = now.frames.frames
         try:
-            self.newest[t] = round(float(frames.lookup(*self.asked).translation[0]), 6)
-            frames.lookup(*self.asked, t)
+            self.newest[t] = round(float(now.frames.lookup(*self.asked).translation[0]), 6)
+            now.frames.lookup(*self.asked, t)
         except FrameError as error:
             self.refused[t] = str(error)
-        return {}
+        return self.Outputs()
 
 
 class Teamed(Seeker):
     name = "teamed"
     scope = "world"
-    inputs = {"frames": frames(team=True)}
+
+    class Inputs(Reads):
+        frames: FrameBuffer = frames(team=True)
 
 
 class Waiting(Seeker):
     """Is held back until there is an IMU."""
 
     name = "waiting"
-    inputs = {"frames": frames(), "imu": every(topics.IMU)}
 
-    def step(self, t, frames, imu):
-        return super().step(t, frames)
+    class Inputs(Reads):
+        frames: FrameBuffer = frames()
+        imu: list[Imu] = every(topics.IMU)
+
+    def step(self, t: float, now: Inputs):
+        return super().step(t, now)
 
 
 class Mover(Service):
@@ -60,11 +69,14 @@ class Mover(Service):
     name = "mover"
     hz = 50.0
     simulator = True
-    outputs = {"moving": topics.TF_ODOM, "placed": topics.TF_STATIC}
 
-    def step(self, t):
+    class Outputs(Writes):
+        moving: FrameTransform | None = topic(topics.TF_ODOM)
+        placed: FrameTransforms | None = topic(topics.TF_STATIC)
+
+    def step(self, t: float, now) -> Outputs:
         lidar = FrameTransforms(transforms=[edge("alpha/base_footprint", "alpha/lidar", 0.5, t)])
-        return {"moving": edge("alpha/odom", "alpha/base_footprint", t, t)} | ({"placed": lidar} if t < 0.03 else {})
+        return self.Outputs(moving=edge("alpha/odom", "alpha/base_footprint", t, t), placed=lidar if t < 0.03 else None)
 
 
 class Scene(Cast):
@@ -85,7 +97,7 @@ def odom(owner, x, t):
 
 
 def shell_of(service, vehicle="alpha"):
-    shell = Shell(Host(service, service, vehicle), LocalBus())
+    shell = ServiceRunner(ServiceInstance(service, service, vehicle), LocalBus())
     shell.join(1)
     return shell
 
@@ -106,7 +118,7 @@ def step_at(shell, t):
 
 def test_a_step_sees_what_is_stamped_before_it_and_nothing_else():
     seeker = Seeker()
-    lockstep = Lockstep([Host(Seeker, lambda: seeker, "alpha"), Host(Mover, Mover, "alpha")])
+    lockstep = Lockstep([ServiceInstance(Seeker, lambda: seeker, "alpha"), ServiceInstance(Mover, Mover, "alpha")])
     lockstep.run(1.0)
     assert seeker.newest == pytest.approx({t / 10: t / 10 - 0.02 for t in range(1, 11)})
     assert seeker.refused[0.3].endswith("is not known at 0.300 s: that is 0.020 s after the newest (0.280 s)")
@@ -116,7 +128,7 @@ def test_a_step_sees_what_is_stamped_before_it_and_nothing_else():
 def test_the_order_of_services_and_of_arrival_changes_nothing():
     def run(turn):
         seeker = Seeker()
-        hosts = [Host(Seeker, lambda: seeker, "alpha"), Host(Mover, Mover, "alpha")]
+        hosts = [ServiceInstance(Seeker, lambda: seeker, "alpha"), ServiceInstance(Mover, Mover, "alpha")]
         Lockstep(hosts[::turn]).run(1.0)
         return seeker.newest, seeker.refused
 

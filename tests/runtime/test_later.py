@@ -9,9 +9,10 @@ from schemas.limits import TEXT
 from schemas.messages import ArmRequest, Reply
 from uvf.runtime.bus.interface import LocalBus
 from uvf.runtime.bus.wire import decode
-from uvf.runtime.contract.instances import Host
+from uvf.runtime.contract.declaration import Reads, Writes, replies, request
+from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.contract.service import Later, Service
-from uvf.runtime.contract.service_runner import Shell
+from uvf.runtime.contract.service_runner import ServiceRunner
 
 
 class Slow(Service):
@@ -19,27 +20,32 @@ class Slow(Service):
 
     name = "slow"
     hz = 10.0
-    requests = {"arm": topics.ARM}
+
+    class Inputs(Reads):
+        arm: list[ArmRequest] = request(topics.ARM)
+
+    class Outputs(Writes):
+        arm: list[Reply] = replies(topics.ARM)
 
     def __init__(self):
         self.waiting = deque()
         self.n = 0
 
-    def step(self, t, arm):
+    def step(self, t: float, now: Inputs) -> Outputs:
         self.n += 1
         while self.waiting and self.waiting[0][0] <= self.n:
             self.waiting.popleft()[1].give(Reply(accepted=True, reason=f"step {self.n}"))
         replies = []
-        for request in arm:
+        for asked in now.arm:
             later = Later()
-            if request.source:
-                later.give(Reply(reason=request.source * 2))
-            elif request.arm:
+            if asked.source:
+                later.give(Reply(reason=asked.source * 2))
+            elif asked.arm:
                 self.waiting.append((self.n + 3, later))
             else:
                 later.give(Reply(accepted=False, reason="at once"))
             replies.append(later)
-        return {"arm": replies}
+        return self.Outputs(arm=replies)
 
 
 @pytest.fixture
@@ -49,7 +55,7 @@ def bus():
 
 @pytest.fixture
 def shell(bus):
-    return Shell(Host(Slow, Slow, "alpha"), bus)
+    return ServiceRunner(ServiceInstance(Slow, Slow, "alpha"), bus)
 
 
 def ask(bus, arm, source=""):

@@ -9,7 +9,8 @@ from schemas.messages import ArmRequest, CancelRequest, GoalRequest, NavStatus, 
 from tests.runtime.modes import RUNS, free_port
 from tests.runtime.toys import Cast
 from uvf.runtime.bus import zenoh_bus
-from uvf.runtime.contract.service import Service, optional
+from uvf.runtime.contract.declaration import Reads, Writes, answers, call, optional, replies, request, topic
+from uvf.runtime.contract.service import Answer, Service
 from uvf.runtime.contract.service_runner import QUERIES_MOST
 from uvf.runtime.messages.convert import stamp
 from uvf.runtime.messages.step_times import NS, first_step_after, step_time
@@ -27,8 +28,8 @@ class Ground(Service):
     scope = "world"
     simulator = True
 
-    def step(self, t):
-        return {}
+    def step(self, t, now):
+        return self.Outputs()
 
 
 class Porter(Service):
@@ -36,8 +37,15 @@ class Porter(Service):
 
     name = "porter"
     hz = 10.0
-    outputs = {"status": topics.NAV_STATUS}
-    requests = {"goal": topics.GOAL, "cancel": topics.CANCEL}
+
+    class Inputs(Reads):
+        goal: list[GoalRequest] = request(topics.GOAL)
+        cancel: list[CancelRequest] = request(topics.CANCEL)
+
+    class Outputs(Writes):
+        status: NavStatus | None = topic(topics.NAV_STATUS)
+        goal: list[Reply] = replies(topics.GOAL)
+        cancel: list[Reply] = replies(topics.CANCEL)
 
     def __init__(self):
         self.times = []
@@ -45,17 +53,17 @@ class Porter(Service):
         self.left = 0
         self.state = NavStatus.IDLE
 
-    def step(self, t, goal, cancel):
+    def step(self, t: float, now: Inputs) -> Outputs:
         self.times.append(t)
-        replies = [self._take(t, request) for request in goal]
-        stopped = [Reply(accepted=self.left > 0) for _ in cancel]
-        if cancel:
+        replies = [self._take(t, request) for request in now.goal]
+        stopped = [Reply(accepted=self.left > 0) for _ in now.cancel]
+        if now.cancel:
             self.left, self.state = 0, NavStatus.CANCELLED
         elif self.left > 0:
             self.left -= 1
             self.state = NavStatus.DRIVING if self.left else NavStatus.REACHED
         status = NavStatus(timestamp=stamp(t), state=self.state, distance_left=self.left)
-        return {"status": status, "goal": replies, "cancel": stopped}
+        return self.Outputs(status=status, goal=replies, cancel=stopped)
 
     def _take(self, t, request):
         self.asked.append((t, request.source))
@@ -68,8 +76,18 @@ class Guest(Service):
 
     name = "guest"
     hz = 50.0
-    inputs = {"status": optional(topics.NAV_STATUS)}
-    calls = {"goal": topics.GOAL, "cancel": topics.CANCEL, "arm": topics.ARM}
+
+    class Inputs(Reads):
+        status: NavStatus | None = optional(topics.NAV_STATUS)
+        goal: list[Answer[GoalRequest, Reply]] = answers(topics.GOAL)
+        cancel: list[Answer[CancelRequest, Reply]] = answers(topics.CANCEL)
+        arm: list[Answer[ArmRequest, Reply]] = answers(topics.ARM)
+
+    class Outputs(Writes):
+        goal: list[GoalRequest] = call(topics.GOAL)
+        cancel: list[CancelRequest] = call(topics.CANCEL)
+        arm: list[ArmRequest] = call(topics.ARM)
+
     PLAN = {
         0.26: ("goal", [GoalRequest(position=Vector3(x=20 + i), source=f"goal {i}") for i in range(3)]),
         0.30: ("arm", [ArmRequest(arm=True)]),
@@ -83,14 +101,16 @@ class Guest(Service):
         self.answers = []
         self.states = []
 
-    def step(self, t, status, goal, cancel, arm):
-        self.answers += [(t, answer) for answer in (*goal, *cancel, *arm)]
-        if status is not None and (status.state, status.distance_left) != (self.states or [None])[-1]:
-            self.states.append((status.state, status.distance_left))
-        now = [at for at in self.due if at <= t + 1e-9]
-        asks = [self.due.pop(at) for at in now[:1]]
+    def step(self, t: float, now: Inputs) -> Outputs:
+        self.answers += [(t, answer) for answer in (*now.goal, *now.cancel, *now.arm)]
+        if now.status is not None and (now.status.state, now.status.distance_left) != (self.states or [None])[-1]:
+            self.states.append((now.status.state, now.status.distance_left))
+        due = [at for at in self.due if at <= t + 1e-9]
+        asks = [self.due.pop(at) for at in due[:1]]
         self.sent |= {message.source: t for _, messages in asks for message in messages}
-        return dict(asks)
+        out = self.Outputs()
+        out.update(dict(asks))
+        return out
 
 
 class Errands(Cast):

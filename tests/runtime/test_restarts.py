@@ -6,6 +6,7 @@ from schemas import topics
 from schemas.messages import Mission, NavStatus
 from tests.runtime.modes import RUNS
 from tests.runtime.toys import Cast
+from uvf.runtime.contract.declaration import Reads, Writes, topic
 from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import stamp
 
@@ -21,9 +22,9 @@ class World(Service):
     def __init__(self):
         self.times = []
 
-    def step(self, t):
+    def step(self, t, now):
         self.times.append(t)
-        return {}
+        return self.Outputs()
 
 
 class Scribe(Service):
@@ -31,8 +32,14 @@ class Scribe(Service):
 
     name = "scribe"
     hz = 20.0
-    outputs = {"state": topics.NAV_STATUS, "plan": topics.MISSION}
-    recalls = {"state": topics.NAV_STATUS, "plan": topics.MISSION}
+
+    class Outputs(Writes):
+        state: NavStatus | None = topic(topics.NAV_STATUS)
+        plan: Mission | None = topic(topics.MISSION)
+
+    class Recalls(Reads):
+        state: NavStatus | None = topic(topics.NAV_STATUS)
+        plan: Mission | None = topic(topics.MISSION)
 
     def __init__(self):
         self.count = 0
@@ -40,18 +47,18 @@ class Scribe(Service):
         self.plan = None
         self.recalled = None
 
-    def step(self, t):
+    def step(self, t: float, now) -> Outputs:
         self.times.append(t)
         self.count += 1
-        out = {"state": NavStatus(timestamp=stamp(t), distance_left=self.count)}
+        out = self.Outputs(state=NavStatus(timestamp=stamp(t), distance_left=self.count))
         if self.plan is None:
-            self.plan = out["plan"] = Mission(timestamp=stamp(t), id=7)
+            self.plan = out.plan = Mission(timestamp=stamp(t), id=7)
         return out
 
-    def recall(self, state=None, plan=None):
-        self.recalled = (state, plan)
-        self.count = round(state.distance_left) if state is not None else 0
-        self.plan = plan
+    def recall(self, left: Recalls) -> None:
+        self.recalled = (left.state, left.plan)
+        self.count = round(left.state.distance_left) if left.state is not None else 0
+        self.plan = left.plan
 
 
 class Archive(Cast):

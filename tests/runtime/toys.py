@@ -17,9 +17,24 @@ from schemas.messages import (
     WheelCommand,
 )
 from uvf.models.params import Params
-from uvf.runtime.contract.instances import Host
-from uvf.runtime.contract.service import Service, each_vehicle, every, of_role, optional, stop_all
+from uvf.runtime.contract.declaration import (
+    Reads,
+    Writes,
+    answers,
+    call,
+    each_vehicle,
+    every,
+    of_role,
+    optional,
+    replies,
+    request,
+    stop_all,
+    topic,
+)
+from uvf.runtime.contract.instances import ServiceInstance
+from uvf.runtime.contract.service import Answer, Service
 from uvf.runtime.messages.convert import seconds, stamp
+from uvf.runtime.state.stop_all import StopStatus
 
 VEHICLES = ("alpha", "beta")
 
@@ -31,17 +46,21 @@ class Plant(Service):
     hz = 100.0
     scope = "world"
     simulator = True
-    inputs = {"wheels": each_vehicle(topics.WHEEL_COMMAND)}
-    outputs = {"imu": topics.IMU}
+
+    class Inputs(Reads):
+        wheels: dict[str, WheelCommand] = each_vehicle(topics.WHEEL_COMMAND)
+
+    class Outputs(Writes):
+        imu: dict[str, Imu] | None = topic(topics.IMU)
 
     def __init__(self, rng):
         self._rng = rng
         self.state = dict.fromkeys(VEHICLES, 0.0)
         self.times = []
 
-    def step(self, t, wheels):
+    def step(self, t: float, now: Inputs) -> Outputs:
         self.times.append(t)
-        for name, command in wheels.items():
+        for name, command in now.wheels.items():
             self.state[name] += command.left * 0.01
         out = {}
         for name in VEHICLES:
@@ -49,7 +68,7 @@ class Plant(Service):
             imu.specific_force.x = self.state[name] + self._rng.normal(0, 0.01)
             imu.angular_velocity.x = t
             out[name] = [imu]
-        return {"imu": out}
+        return self.Outputs(imu=out)
 
 
 class PilotParams(Params):
@@ -61,9 +80,17 @@ class Pilot(Service):
 
     name = "pilot"
     hz = 50.0
-    inputs = {"imu": every(topics.IMU), "goal": optional(topics.NAV_STATUS), "stop": stop_all()}
-    outputs = {"wheels": topics.WHEEL_COMMAND, "events": topics.EVENTS.by("pilot")}
-    requests = {"arm": topics.ARM}
+
+    class Inputs(Reads):
+        imu: list[Imu] = every(topics.IMU)
+        goal: NavStatus | None = optional(topics.NAV_STATUS)
+        stop: StopStatus = stop_all()
+        arm: list[ArmRequest] = request(topics.ARM)
+
+    class Outputs(Writes):
+        wheels: WheelCommand | None = topic(topics.WHEEL_COMMAND)
+        events: list[Event] | None = topic(topics.EVENTS.by("pilot"))
+        arm: list[Reply] = replies(topics.ARM)
 
     def __init__(self):
         self.params = PilotParams()
@@ -73,20 +100,20 @@ class Pilot(Service):
         self.missing = []
         self.stops = 0
 
-    def step(self, t, imu, goal, stop, arm):
+    def step(self, t: float, now: Inputs) -> Outputs:
         self.times.append(t)
-        self.imu_times += [(t, i.angular_velocity.x) for i in imu]
-        self.stops += bool(stop)
-        if goal is not None:
-            self.goal_stamps.append((t, seconds(goal.timestamp)))
-        force = imu[-1].specific_force.x if imu else 0.0
-        events = [Event(timestamp=stamp(t), text="armed", source="pilot") for _ in arm]
-        replies = [Reply(accepted=a.arm, reason="" if a.arm else "only arming") for a in arm]
-        return {"wheels": WheelCommand(timestamp=stamp(t), left=1 - self.params.gain * force), "events": events, "arm": replies}
+        self.imu_times += [(t, i.angular_velocity.x) for i in now.imu]
+        self.stops += bool(now.stop)
+        if now.goal is not None:
+            self.goal_stamps.append((t, seconds(now.goal.timestamp)))
+        force = now.imu[-1].specific_force.x if now.imu else 0.0
+        events = [Event(timestamp=stamp(t), text="armed", source="pilot") for _ in now.arm]
+        replies = [Reply(accepted=a.arm, reason="" if a.arm else "only arming") for a in now.arm]
+        return self.Outputs(wheels=WheelCommand(timestamp=stamp(t), left=1 - self.params.gain * force), events=events, arm=replies)
 
     def stale(self, t, missing):
         self.missing.append((t, missing))
-        return {"wheels": WheelCommand(timestamp=stamp(t))}
+        return self.Outputs(wheels=WheelCommand(timestamp=stamp(t)))
 
 
 class Thinker(Service):
@@ -95,15 +122,20 @@ class Thinker(Service):
     name = "thinker"
     hz = 1.0
     latency = 0.5
-    outputs = {"goal": topics.NAV_STATUS}
-    calls = {"arm": topics.ARM}
+
+    class Inputs(Reads):
+        arm: list[Answer[ArmRequest, Reply]] = answers(topics.ARM)
+
+    class Outputs(Writes):
+        goal: NavStatus | None = topic(topics.NAV_STATUS)
+        arm: list[ArmRequest] = call(topics.ARM)
 
     def __init__(self):
         self.answers = []
 
-    def step(self, t, arm):
-        self.answers += [(t, a.reply.accepted) for a in arm if a.reply]
-        return {"goal": NavStatus(timestamp=stamp(t)), "arm": [ArmRequest(arm=True)]}
+    def step(self, t: float, now: Inputs) -> Outputs:
+        self.answers += [(t, a.reply.accepted) for a in now.arm if a.reply]
+        return self.Outputs(goal=NavStatus(timestamp=stamp(t)), arm=[ArmRequest(arm=True)])
 
 
 class Follower(Service):
@@ -111,16 +143,20 @@ class Follower(Service):
 
     name = "follower"
     hz = 10.0
-    inputs = {"leader": of_role("leader", topics.WHEEL_COMMAND)}
-    outputs = {"drive": topics.DRIVE.by("follower")}
+
+    class Inputs(Reads):
+        leader: WheelCommand = of_role("leader", topics.WHEEL_COMMAND)
+
+    class Outputs(Writes):
+        drive: DriveCommand | None = topic(topics.DRIVE.by("follower"))
 
     def __init__(self):
         self.seen = []
 
-    def step(self, t, leader):
-        self.seen.append((t, seconds(leader.timestamp)))
-        leader.left = 1e9  # a message of its own: nobody else may see this
-        return {"drive": DriveCommand(timestamp=stamp(t), linear=1.0)}
+    def step(self, t: float, now: Inputs) -> Outputs:
+        self.seen.append((t, seconds(now.leader.timestamp)))
+        now.leader.left = 1e9  # a message of its own: nobody else may see this
+        return self.Outputs(drive=DriveCommand(timestamp=stamp(t), linear=1.0))
 
 
 class Watcher(Service):
@@ -130,20 +166,25 @@ class Watcher(Service):
     hz = 50.0
     scope = "world"
     clock = "wall"
-    inputs = {"clock": optional(topics.CLOCK), "wheels": each_vehicle(topics.WHEEL_COMMAND)}
-    outputs = {"stop": topics.STOP.by("watcher")}
+
+    class Inputs(Reads):
+        clock: Clock | None = optional(topics.CLOCK)
+        wheels: dict[str, WheelCommand] = each_vehicle(topics.WHEEL_COMMAND)
+
+    class Outputs(Writes):
+        stop: StopCommand | None = topic(topics.STOP.by("watcher"))
 
     def __init__(self):
         self.clocks: list[Clock] = []
         self.steps = 0
         self.vehicles = set()
 
-    def step(self, t, clock, wheels):
+    def step(self, t: float, now: Inputs) -> Outputs:
         self.steps += 1
-        self.vehicles |= set(wheels)
-        if clock is not None:
-            self.clocks.append(clock)
-        return {"stop": StopCommand(engaged=False)} if self.steps == 1 else {}
+        self.vehicles |= set(now.wheels)
+        if now.clock is not None:
+            self.clocks.append(now.clock)
+        return self.Outputs(stop=StopCommand(engaged=False) if self.steps == 1 else None)
 
 
 class Cast:
@@ -160,9 +201,9 @@ class Cast:
             self.made.setdefault(f"{service.name}.{vehicle}" if vehicle else service.name, []).append(instance)
             return instance
 
-        return Host(service, build, vehicle, roles)
+        return ServiceInstance(service, build, vehicle, roles)
 
-    def processes(self) -> dict[str, list[Host]]:
+    def processes(self) -> dict[str, list[ServiceInstance]]:
         """Process name -> its hosts."""
         raise NotImplementedError
 
@@ -187,5 +228,5 @@ class Toys(Cast):
             "thinker": [self.host(Thinker, "alpha"), self.host(Follower, "beta", roles={"leader": "alpha"})],
         }
 
-    def watcher(self) -> Host:
+    def watcher(self) -> ServiceInstance:
         return self.host(Watcher)

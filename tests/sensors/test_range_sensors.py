@@ -7,12 +7,11 @@ import numpy as np
 import pytest
 
 from uvf.maths.bvh import build
-from uvf.maths.raycast import Body, Scene
+from uvf.maths.raycast import MovingBody, Scene
 from uvf.maths.rotations import from_euler
 from uvf.maths.solids import box
-from uvf.models.vehicle.file import _check_rangers
-from uvf.models.vehicle.sensors import Mount, RangeFinder
-from uvf.models.yaml_data import BadInput, Place
+from uvf.models.vehicle.sensors import Mount, RangeFinder, _check_rangers
+from uvf.models.yaml_data import BadInput, FileLocation
 from uvf.sensors.range_sensors import RangeModel
 
 ROOF = Scene(build(box((10.0, 10.0, 4.0), (0.0, 0.0, 2.0))), 0.0)  # its top at 4 m
@@ -44,7 +43,7 @@ def test_out_of_reach_there_is_no_return():
 
 
 def test_another_vehicle_is_met_where_it_is():
-    van = Body(build(box((2.0, 2.0, 2.0), (0.0, 0.0, 0.0))), np.array((20.0, 0.0, 1.0)))
+    van = MovingBody(build(box((2.0, 2.0, 2.0), (0.0, 0.0, 0.0))), np.array((20.0, 0.0, 1.0)))
     assert measured(x=20.5, z=50.0, others=[van]) == pytest.approx(48.0)
     assert measured(x=23.0, z=50.0, others=[van]) == pytest.approx(50.0)
 
@@ -57,4 +56,4 @@ def test_its_noise_has_the_stated_sigma():
 
 def test_two_of_one_frame_are_refused():
     with pytest.raises(BadInput, match="second range finder"):
-        _check_rangers("range finder", [DOWN, DOWN], Place("vehicle.yaml"))
+        _check_rangers("range finder", [DOWN, DOWN], FileLocation("vehicle.yaml"))

@@ -5,7 +5,7 @@ from itertools import groupby
 import numpy as np
 import pytest
 
-from uvf.sensors.sampling import Dropout, Due, Line
+from uvf.sensors.sampling import DelayLine, Dropout, Due
 
 STEPS = 100.0
 
@@ -41,14 +41,14 @@ def test_a_skipped_step_delays_a_reading_but_does_not_lose_it():
 
 
 def test_without_latency_a_reading_arrives_at_once():
-    assert arrivals(Line(10.0), 1.0) == [(k / 10, k / 10) for k in range(1, 11)]
+    assert arrivals(DelayLine(10.0), 1.0) == [(k / 10, k / 10) for k in range(1, 11)]
 
 
 @pytest.mark.parametrize(("latency", "late"), [(0.01, 1), (0.035, 4), (0.25, 25)])
 def test_readings_arrive_in_order_at_the_first_step_after_their_latency(latency, late):
-    came = arrivals(Line(40.0, latency), 5.0)
+    came = arrivals(DelayLine(40.0, latency), 5.0)
     assert [round((arrival - taken) * STEPS) for arrival, taken in came] == [late] * len(came)
-    assert [taken for _, taken in came] == [taken for _, taken in arrivals(Line(40.0), 5.0)][: len(came)]
+    assert [taken for _, taken in came] == [taken for _, taken in arrivals(DelayLine(40.0), 5.0)][: len(came)]
 
 
 @pytest.mark.parametrize(("probability", "burst"), [(0.1, 1), (0.05, 4), (0.5, 3), (1.0, 1), (0.0, 5)])
@@ -67,7 +67,7 @@ def test_bursts_last_as_told():
 
 def test_what_is_lost_does_not_change_what_arrives():
     def noisy(dropout):
-        line, rng = Line(50.0, 0.02, dropout), np.random.default_rng(1)
+        line, rng = DelayLine(50.0, 0.02, dropout), np.random.default_rng(1)
         return [r for t in times(4.0) if (r := line.step(t, lambda t=t: (t, rng.standard_normal()))) is not None]
 
     whole, some = noisy(None), noisy(Dropout(0.3, 2, np.random.default_rng(2)))

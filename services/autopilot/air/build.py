@@ -5,37 +5,37 @@ import math
 import numpy as np
 
 from schemas.messages import MissionItem
-from services.autopilot.air.config import Ship
+from services.autopilot.air.config import AutopilotConfig
 from services.autopilot.air.formation.wingmen import wingman
 from services.autopilot.air.inputs import intake
 from services.autopilot.air.modes.leading import reserved
 from services.autopilot.air.service import AutopilotAir
 from services.autopilot.plan import item_from_file
-from uvf.control.servos import Servo, Servos
+from uvf.control.servos import ServoLimits, Servos
 from uvf.estimation.ekf import datasheet
 from uvf.estimation.estimators import Instruments
 from uvf.guidance import flyable
 from uvf.guidance.fence_plan import fence_fit, mission_fault
 from uvf.guidance.route import Place
-from uvf.guidance.runways import Strip
+from uvf.guidance.runways import LandingStrip
 from uvf.maths import rotations
 from uvf.maths.geodesy import LocalTangent
-from uvf.models.scenario import Member, Site
+from uvf.models.scenario import MissionVehicle, Scenario
 from uvf.models.vehicle.flight_params import AirParams
 from uvf.models.vehicle.sensors import Mount
 from uvf.models.world import file as world_file
 from uvf.models.world.terrain import relief
 from uvf.models.yaml_data import BadInput
-from uvf.runtime.contract.instances import Host
+from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.messages.fences import fence_message, fencing
 
 
-def hosts(site: Site) -> list[Host]:
+def hosts(site: Scenario) -> list[ServiceInstance]:
     """Raises BadInput when a job's mission is not one for an aircraft."""
     return [_host(site, member) for member in site.of_kind("fixed_wing")]
 
 
-def _host(site: Site, member: Member) -> Host:
+def _host(site: Scenario, member: MissionVehicle) -> ServiceInstance:
     origin = site.world.origin
     tangent = LocalTangent.from_degrees(origin.latitude, origin.longitude, origin.altitude)
     items = [item_from_file(w) for w in member.entry.job.mission]
@@ -46,7 +46,7 @@ def _host(site: Site, member: Member) -> Host:
         raise BadInput(f"{site.mission_path}: {member.name}: job: mission: {why}")
     start, land = member.entry.start, relief(site.world)
     ground = 0.0 if land is None else float(land.at(np.array(start.x), np.array(start.y))[0])
-    ship = Ship(
+    config = AutopilotConfig(
         member.name,
         member.entry.system_id,
         tangent,
@@ -61,33 +61,33 @@ def _host(site: Site, member: Member) -> Host:
         leads=leads,
         fence=fence_message(member.entry.fence, f"{site.mission_path}: {member.name}: fence"),
     )
-    if why := _fence_fault(ship, Place(start.y, start.x, start.z), params):
+    if why := _fence_fault(config, Place(start.y, start.x, start.z), params):
         raise BadInput(f"{site.mission_path}: {member.name}: fence: {why}")
     if member.entry.job.follow is not None:
-        return wingman(site, ship, params)
-    return Host(AutopilotAir, lambda: AutopilotAir(ship, params), member.name)
+        return wingman(site, config, params)
+    return ServiceInstance(AutopilotAir, lambda: AutopilotAir(config, params), member.name)
 
 
-def _instruments(site: Site, member: Member) -> Instruments:
+def _instruments(site: Scenario, member: MissionVehicle) -> Instruments:
     east, north, up = site.world.magnetic_field
     sensors = member.file.sensors
     mount = sensors.imu.mount if sensors.imu is not None else Mount()
     return Instruments((north, east, -up), datasheet.read(sensors), mount.xyz, mount.rpy)
 
 
-def _servos(member: Member) -> Servos:
+def _servos(member: MissionVehicle) -> Servos:
     body = member.file.air
     assert body is not None
     moved = (body.controls.aileron, body.controls.elevator, body.controls.rudder, body.controls.flap)
-    return Servos(*(Servo(surface.limit, surface.rate or body.servo_rate) for surface in moved))
+    return Servos(*(ServoLimits(surface.limit, surface.rate or body.servo_rate) for surface in moved))
 
 
-def _strip(strip: world_file.Strip) -> Strip:
+def _strip(strip: world_file.Strip) -> LandingStrip:
     x, y, z = strip.centre
-    return Strip(Place(y, x, z), math.pi / 2 - strip.yaw, strip.length, strip.width)
+    return LandingStrip(Place(y, x, z), math.pi / 2 - strip.yaw, strip.length, strip.width)
 
 
-def _altimeter(member: Member) -> str:
+def _altimeter(member: MissionVehicle) -> str:
     """The first range finder that looks down within 20 degrees."""
     for finder in member.file.sensors.rangefinders:
         if rotations.rotate(rotations.from_euler(*finder.mount.rpy), np.array((1.0, 0.0, 0.0)))[2] < -math.cos(math.radians(20.0)):
@@ -95,11 +95,11 @@ def _altimeter(member: Member) -> str:
     return ""
 
 
-def _fence_fault(ship: Ship, here: Place, params: AirParams) -> str:
+def _fence_fault(config: AutopilotConfig, here: Place, params: AirParams) -> str:
     """Why this aircraft cannot keep its fence; empty if it can."""
-    fence = fencing(ship.fence)
-    fault = fence_fit(fence, here, ship.starts_in_air, params)
-    return fault or mission_fault(intake.items(ship.items), fence, params)
+    fence = fencing(config.fence)
+    fault = fence_fit(fence, here, config.starts_in_air, params)
+    return fault or mission_fault(intake.items(config.items), fence, params)
 
 
 def _fault(items: list[MissionItem], params: AirParams) -> str:

@@ -5,12 +5,12 @@ from dataclasses import dataclass, field
 from schemas.messages import Fence, MissionItem
 from uvf.control.servos import SERVOS, Servos
 from uvf.estimation.estimators import Instruments
-from uvf.guidance.runways import Strip
+from uvf.guidance.runways import LandingStrip
 from uvf.maths.geodesy import LocalTangent
 
 
 @dataclass(frozen=True)
-class Ship:
+class AutopilotConfig:
     """What the autopilot is told of its vehicle at the start."""
 
     name: str
@@ -21,7 +21,7 @@ class Ship:
     starts_in_air: bool
     ground: float = 0.0  # m, world: height of the ground below the start
     servos: Servos = SERVOS
-    strips: tuple[Strip, ...] = ()
+    strips: tuple[LandingStrip, ...] = ()
     altimeter: str = ""
     """Frame of the range finder that looks down."""
     starts_armed: bool = False

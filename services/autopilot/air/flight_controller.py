@@ -5,34 +5,34 @@ from dataclasses import replace
 import msgspec
 
 from services.autopilot.air.fence.fence_guard import FenceGuard, kept
-from services.autopilot.air.setpoints import Track, Wish
-from uvf.control.commands import Attitude, Surfaces, Wanted
+from services.autopilot.air.setpoints import PathSetpoint, Setpoint
+from uvf.control.commands import AltitudeAirspeedSetpoint, AttitudeSetpoint, Surfaces
 from uvf.control.cycle import Cycle, clip
-from uvf.control.flight_control import Control
+from uvf.control.flight_control import FlightControl
 from uvf.control.servos import Servos
 from uvf.estimation.state import Estimate
-from uvf.guidance.vector_field import Steering
+from uvf.guidance.vector_field import LateralGuidance
 from uvf.models.vehicle.flight_params import AirParams
 
 FLAP_RATE = 0.1  # rad/s, slow enough for the loops to follow
 FIRM_CLIMB, FIRM_PITCH = 3.0, 0.7  # times climb_p and pitch_time
 
 
-class Helm:
+class FlightController:
     """Holds on to its integrators from mode to mode."""
 
     def __init__(self, servos: Servos, fence: FenceGuard | None = None) -> None:
         self._fence = fence or FenceGuard()
         self._servos = servos
-        self._control = Control(servos)
-        self._steering = Steering()
+        self._control = FlightControl(servos)
+        self._steering = LateralGuidance()
         self._flap = 0.0
-        self.attitude: Attitude | None = None
+        self.attitude: AttitudeSetpoint | None = None
         """That is held; None while the surfaces are moved by hand."""
         self.airspeed: float | None = None
         """m/s, that is held; None while an attitude or surfaces are asked for."""
 
-    def step(self, now: Estimate, wish: Wish, params: AirParams, dt: float) -> Surfaces:
+    def step(self, now: Estimate, wish: Setpoint, params: AirParams, dt: float) -> Surfaces:
         asked = wish.asked
         self.attitude = self.airspeed = None
         if isinstance(asked, Surfaces):
@@ -46,7 +46,7 @@ class Helm:
             params = msgspec.structs.replace(params, alpha_zero_lift=params.alpha_zero_lift - params.flap_alpha * self._flap)
         surfaces = self._fly(now, asked, params, dt)
         self.attitude = self._control.held
-        self.airspeed = None if isinstance(asked, Attitude) else asked.airspeed
+        self.airspeed = None if isinstance(asked, AttitudeSetpoint) else asked.airspeed
         return replace(surfaces, flap=flap, brake=wish.brake)
 
     def _lifting(self, lift: float, cycle: Cycle) -> float:
@@ -57,13 +57,15 @@ class Helm:
         moved = lift * params.alpha_per_load / (params.flap_alpha * cycle.eas**2)
         return min(max(self._flap + moved, 0.0), max(self._servos.flap.limit, self._flap))
 
-    def _fly(self, now: Estimate, asked: Track | Wanted | Attitude, params: AirParams, dt: float) -> Surfaces:
-        if isinstance(asked, Attitude):
+    def _fly(
+        self, now: Estimate, asked: PathSetpoint | AltitudeAirspeedSetpoint | AttitudeSetpoint, params: AirParams, dt: float
+    ) -> Surfaces:
+        if isinstance(asked, AttitudeSetpoint):
             return self._control.hold(now, asked, params, dt)
-        if isinstance(asked, Track):
+        if isinstance(asked, PathSetpoint):
             bank = self._steering.bank(asked.aim, now, params, dt)
             bank = bank if asked.bank_limit is None else clip(bank, asked.bank_limit)
-            asked = Wanted(bank, asked.height, asked.climb, asked.airspeed, asked.throttle, asked.rudder)
+            asked = AltitudeAirspeedSetpoint(bank, asked.height, asked.climb, asked.airspeed, asked.throttle, asked.rudder)
         asked = kept(asked, self._fence, now, params)
         if asked.height is not None and not now.height_known:
             asked = replace(asked, height=now.height)

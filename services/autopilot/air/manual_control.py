@@ -14,12 +14,12 @@ SOURCES = ("teleop", "mavlink", "client")
 """The first one whose command is fresh wins."""
 CLOCK_TOLERANCE = 0.02  # s, one tick: a sender's clock may be that much ahead
 PATIENCE = 0.5  # s that the first command is waited for once the mode is Manual
-LET_GO = Surfaces(0.0, 0.0, 0.0, 0.0, brake=1.0)
+STICK_RELEASED = Surfaces(0.0, 0.0, 0.0, 0.0, brake=1.0)
 """On the ground, when nobody holds the stick: motor off, brakes on."""
 
 
 @dataclass(frozen=True, slots=True)
-class Sticks:
+class StickDeflections:
     """-1..1: right, nose up, right; throttle 0..1."""
 
     roll: float
@@ -29,43 +29,43 @@ class Sticks:
 
 
 @dataclass(frozen=True, slots=True)
-class Hand:
+class ManualCommand:
     """What a source asks for."""
 
     source: str
     surfaces: Surfaces
 
-    def sticks(self, servos: Servos) -> Sticks:
+    def sticks(self, servos: Servos) -> StickDeflections:
         """Where the sticks are that ask for these surfaces."""
         s = self.surfaces
         roll, pitch = _part(s.aileron, servos.aileron.limit), _part(s.elevator, servos.elevator.limit)
         yaw = _part(s.rudder, servos.rudder.limit)
-        return Sticks(roll, -pitch, -yaw, s.throttle)
+        return StickDeflections(roll, -pitch, -yaw, s.throttle)
 
 
 def _part(deflection: float, stop: float) -> float:
     return min(max(deflection / stop, -1.0), 1.0)
 
 
-class Hands(Multiplexer):
+class ManualSources(Multiplexer):
     """Of all senders, by their keys."""
 
     def __init__(self) -> None:
         super().__init__("commands by hand", in_turn(SOURCES))
         self._said: dict[str, SurfaceCommand] = {}
 
-    def choose(self, t: float, said: Mapping[str, SurfaceCommand | None], longest: float) -> Hand | None:
+    def choose(self, t: float, said: Mapping[str, SurfaceCommand | None], longest: float) -> ManualCommand | None:
         """The command that counts at ``t`` [s]; None without one of the last ``longest`` [s], whose input may be stale by then.
 
         One with a number that is not finite is none.
         """
         self._said |= {source: m for source, m in said.items() if m is not None}
-        fresh: dict[str, Hand] = {}
+        fresh: dict[str, ManualCommand] = {}
         for source, m in self._said.items():
             if -CLOCK_TOLERANCE <= t - seconds(m.timestamp) <= longest:
                 asked = Surfaces(m.aileron, m.elevator, m.rudder, m.throttle, m.flap, m.brake)
                 if all(map(math.isfinite, astuple(asked))):
-                    fresh[source] = Hand(source, _within(asked))
+                    fresh[source] = ManualCommand(source, _within(asked))
         return fresh.get(self.pick(fresh))
 
 
@@ -74,7 +74,7 @@ def _within(s: Surfaces) -> Surfaces:
     return replace(s, throttle=min(max(s.throttle, 0.0), 1.0), flap=max(s.flap, 0.0), brake=min(max(s.brake, 0.0), 1.0))
 
 
-class Stick:
+class ManualControlState:
     """Whether somebody flies by hand."""
 
     def __init__(self) -> None:
@@ -85,7 +85,7 @@ class Stick:
         """Mode Manual begins: somebody is about to speak."""
         self._left = PATIENCE
 
-    def hold(self, hand: Hand | None, dt: float) -> None:
+    def hold(self, hand: ManualCommand | None, dt: float) -> None:
         """What is asked now."""
         self._held = hand is not None
         self._left = 0.0 if self._held else self._left - dt

@@ -5,49 +5,51 @@ from collections.abc import Sequence
 from dataclasses import astuple, replace
 
 from services.autopilot.air.fence.fence_guard import FenceGuard
-from services.autopilot.air.flight_controller import Helm
-from services.autopilot.air.manual_control import LET_GO, Stick
+from services.autopilot.air.flight_controller import FlightController
+from services.autopilot.air.manual_control import STICK_RELEASED, ManualControlState
 from services.autopilot.air.mode_table import TABLE, FlightMode, Need, Situation, refusal
-from services.autopilot.air.modes.descent import Descent
-from services.autopilot.air.modes.field import Field
-from services.autopilot.air.modes.follower import Formation, Trailing
-from services.autopilot.air.modes.landing import Landing
-from services.autopilot.air.modes.leading import Steadied
-from services.autopilot.air.modes.mission_flight import MissionFlight
-from services.autopilot.air.modes.offboard import OLDEST, Offboard
-from services.autopilot.air.modes.pace import Pace
-from services.autopilot.air.modes.paths import OWN, Circling, Following, Round
-from services.autopilot.air.modes.return_mode import Homeward
-from services.autopilot.air.modes.return_points import haven, lowest_over
+from services.autopilot.air.modes.descent import DescendMode
+from services.autopilot.air.modes.field import Airfield
+from services.autopilot.air.modes.follower import FollowMode, FormationLink
+from services.autopilot.air.modes.landing import LandingMode
+from services.autopilot.air.modes.leading import LeaderSpeedFilter
+from services.autopilot.air.modes.mission_flight import MissionMode
+from services.autopilot.air.modes.offboard import OLDEST, OffboardMode
+from services.autopilot.air.modes.paths import OWN, LoiterOptions, OrbitMode, PathMode
+from services.autopilot.air.modes.return_mode import ReturnMode
+from services.autopilot.air.modes.return_points import lowest_over, return_point
+from services.autopilot.air.modes.speed_override import SpeedOverride
 from services.autopilot.air.modes.stick_modes import STICK_MODES
-from services.autopilot.air.modes.takeoff import TakeOff
-from services.autopilot.air.setpoints import Flown, Phase, Senses, Track, Wish
-from uvf.control.commands import Wanted
+from services.autopilot.air.modes.takeoff import TakeoffMode
+from services.autopilot.air.setpoints import ControlOutput, FlightContext, FlightPhase, PathSetpoint, Setpoint
+from uvf.control.commands import AltitudeAirspeedSetpoint
 from uvf.control.servos import SERVOS, Servos
 from uvf.estimation.state import Estimate
-from uvf.guidance.camera_trigger import Camera
-from uvf.guidance.flight_plan import Item, Stand
+from uvf.guidance.camera_trigger import CameraTrigger
+from uvf.guidance.flight_plan import PlanItem, PlanProgress
 from uvf.guidance.flyable import fault
-from uvf.guidance.plan_follower import Navigator
-from uvf.guidance.route import Circle, Level, Place
-from uvf.guidance.runways import Strip
-from uvf.guidance.vector_field import Aim
+from uvf.guidance.plan_follower import PlanFollower
+from uvf.guidance.route import AltitudeProfile, Circle, Place
+from uvf.guidance.runways import LandingStrip
+from uvf.guidance.vector_field import PathReference
 from uvf.models.vehicle.flight_params import AirParams
 
 BACK = "GNSS back: holds until a mode is asked for"
 ROLLS_OUT = "the aircraft is rolling out after its landing"
 
 
-class Pilot:
+class ModeManager:
     """Flies one mode of the table. Requests give the reason of a refusal, empty when accepted."""
 
-    def __init__(self, items: Sequence[Item], ground: float = 0.0, strips: Sequence[Strip] = (), servos: Servos = SERVOS) -> None:
+    def __init__(
+        self, items: Sequence[PlanItem], ground: float = 0.0, strips: Sequence[LandingStrip] = (), servos: Servos = SERVOS
+    ) -> None:
         """ground: height [m] of home, which lies on the ground below the start."""
         self._ground = ground
-        self._field = Field(strips)
+        self._field = Airfield(strips)
         self.disarms = False
         """The motor has nothing more to do: whoever arms takes notice and resets this."""
-        self.navigator = Navigator(items)
+        self.navigator = PlanFollower(items)
         self.mode = FlightMode.MISSION if items else FlightMode.HOLD
         self.reason = "start"
         self.stopped = ""
@@ -55,69 +57,69 @@ class Pilot:
         self.home: Place | None = None
         self.rally: tuple[Place, ...] = ()
         """Where Return may lead beside home."""
-        self.senses = Senses()
-        self.formation: Formation | None = None
-        self.leads: Steadied | None = None
+        self.context = FlightContext()
+        self.formation: FormationLink | None = None
+        self.leads: LeaderSpeedFilter | None = None
         """Of an aircraft that others follow."""
-        self.pace = Pace()
-        self.shutter = Camera()
+        self.speed_override = SpeedOverride()
+        self.shutter = CameraTrigger()
         """Triggered by orders; the mission's is the navigator's."""
         self._climb_to: float | None = None  # m, world; of a take-off that was asked for with a height
-        self._stick = Stick()
+        self._stick = ManualControlState()
         self._servos = servos
         self.fence = FenceGuard()
-        self._helm = Helm(self._servos, self.fence)
-        self._phase: Phase | None = None
-        self._level = Level(math.nan)
+        self._flight_controller = FlightController(self._servos, self.fence)
+        self._phase: FlightPhase | None = None
+        self._level = AltitudeProfile(math.nan)
         self._fresh = True
 
-    def step(self, now: Estimate, params: AirParams, dt: float) -> Flown:
+    def step(self, now: Estimate, params: AirParams, dt: float) -> ControlOutput:
         if self._fresh:
             self._begin(now)
         self._look(now, params)
         if self._stands:
-            self._helm = Helm(self._servos, self.fence)
-            return Flown(LET_GO, self._straight_on(now, params), self._level)
+            self._flight_controller = FlightController(self._servos, self.fence)
+            return ControlOutput(STICK_RELEASED, self._straight_on(now, params), self._level)
         phase = self._phase = self._phase or self._begun(now, params)
-        self._set_pace(now, params)
+        self._set_speed(now, params)
         self.shutter.step((now.north, now.east))
         return self._flown(phase.step(now, params, dt), now, params, dt)
 
-    def hear(self, senses: Senses, dt: float) -> None:
+    def hear(self, context: FlightContext, dt: float) -> None:
         """Before each step."""
-        self.senses.update(senses)
-        self._stick.hold(senses.hand, dt)
+        self.context.update(context)
+        self._stick.hold(context.hand, dt)
 
     @property
     def source(self) -> str:
         """Whose commands reach the surfaces, or whose setpoints are followed."""
-        if TABLE[self.mode].by_hand and self.senses.hand is not None:
-            return self.senses.hand.source
-        return (self.mode is FlightMode.OFFBOARD and self.senses.setpoint_from) or "autopilot"
+        if TABLE[self.mode].is_manual and self.context.hand is not None:
+            return self.context.hand.source
+        return (self.mode is FlightMode.OFFBOARD and self.context.setpoint_from) or "autopilot"
 
-    def _set_pace(self, now: Estimate, params: AirParams) -> None:
+    def _set_speed(self, now: Estimate, params: AirParams) -> None:
         part = self._part
-        if isinstance(part, Following):
-            self.navigator.speed = self.pace.of(now, params, self.navigator.speed)
-        elif isinstance(part, Circling):
-            part.airspeed = self.pace.of(now, params, part.airspeed)
+        if isinstance(part, PathMode):
+            self.navigator.speed = self.speed_override.of(now, params, self.navigator.speed)
+        elif isinstance(part, OrbitMode):
+            part.airspeed = self.speed_override.of(now, params, part.airspeed)
 
     @property
-    def circling(self) -> Circling | None:
-        return self._phase if isinstance(self._phase, Circling) else None
+    def circling(self) -> OrbitMode | None:
+        return self._phase if isinstance(self._phase, OrbitMode) else None
 
     @property
     def circle(self) -> Circle | None:
-        return self._phase.circle if isinstance(self._phase, Circling | Landing | Descent) else None
+        return self._phase.circle if isinstance(self._phase, OrbitMode | LandingMode | DescendMode) else None
 
     @property
-    def landing(self) -> Landing | None:
+    def landing(self) -> LandingMode | None:
         """The landing that is being flown."""
-        return self._part if isinstance(self._part, Landing) else None
+        return self._part if isinstance(self._part, LandingMode) else None
 
     @property
-    def _part(self) -> Phase | None:
-        return self._phase.part if isinstance(self._phase, MissionFlight) else self._phase
+    def _part(self) -> FlightPhase | None:
+        return self._phase.part if isinstance(self._phase, MissionMode) else self._phase
 
     @property
     def is_blind(self) -> bool:
@@ -125,22 +127,22 @@ class Pilot:
         return self._blind
 
     @property
-    def is_by_hand(self) -> bool:
-        return TABLE[self.mode].by_hand and self.senses.hand is not None
+    def is_manual(self) -> bool:
+        return TABLE[self.mode].is_manual and self.context.hand is not None
 
     @property
-    def is_let_go(self) -> bool:
+    def is_manual_control_lost(self) -> bool:
         """In a mode that is flown by hand nobody does any more."""
-        return TABLE[self.mode].by_hand and self._stick.abandoned
+        return TABLE[self.mode].is_manual and self._stick.abandoned
 
     @property
     def goes_down(self) -> bool:
         """It lands, with a position or without one."""
-        return self.landing is not None or isinstance(self._phase, Descent)
+        return self.landing is not None or isinstance(self._phase, DescendMode)
 
     def is_committed(self, now: Estimate) -> bool:
         """So near to the ground that no other mode should follow: at the begin of a take-off, on the last metres of a landing."""
-        return self._settles or (isinstance(self._part, TakeOff) and self._part.is_low(now))
+        return self._settles or (isinstance(self._part, TakeoffMode) and self._part.is_low(now))
 
     @property
     def _settles(self) -> bool:
@@ -149,9 +151,9 @@ class Pilot:
     @property
     def station(self) -> float | None:
         """m, of the aircraft from its station behind a leader."""
-        return self._phase.distance if isinstance(self._phase, Trailing) else None
+        return self._phase.distance if isinstance(self._phase, FollowMode) else None
 
-    def join(self, formation: Formation) -> None:
+    def join(self, formation: FormationLink) -> None:
         """Before the first step: follows from the start on."""
         self.formation, self.mode = formation, FlightMode.FOLLOW
 
@@ -159,36 +161,36 @@ class Pilot:
     def _situation(self) -> Situation:
         led = self.formation is not None and self.formation.is_led
         return Situation(
-            self.senses.airborne, not self._blind, bool(self.navigator.items), self.senses.setpoint is not None, self.stopped, led
+            self.context.airborne, not self._blind, bool(self.navigator.items), self.context.setpoint is not None, self.stopped, led
         )
 
     @property
     def _stands(self) -> bool:
         """On the ground with nothing to do: surfaces neutral, motor off, brakes on."""
-        moves = TABLE[self.mode].on_ground and (self.senses.hand is not None if TABLE[self.mode].by_hand else self.senses.armed)
-        return not self.senses.airborne and not moves and not self._rolls_out
+        moves = TABLE[self.mode].on_ground and (self.context.hand is not None if TABLE[self.mode].is_manual else self.context.armed)
+        return not self.context.airborne and not moves and not self._rolls_out
 
     def _look(self, now: Estimate, params: AirParams) -> None:
         """Whether this mode goes on."""
         if self.mode is FlightMode.MISSION:
             self._phase = self._phase or self._begun(now, params)
-        if isinstance(self._phase, TakeOff) and self._climb_to is None and self.home is not None:
+        if isinstance(self._phase, TakeoffMode) and self._climb_to is None and self.home is not None:
             self._phase.height = self.home.height + params.takeoff_alt
-        if isinstance(self._phase, MissionFlight):
+        if isinstance(self._phase, MissionMode):
             self._phase.look(now, params)
         self._move_home(now)
         if self.landing is not None and self.landing.why_around:
             self.reason, self.landing.why_around = f"go-around: {self.landing.why_around}", ""
         if self._phase is not None and self._phase.ended:
             self._end(self._phase)
-        if TABLE[self.mode].by_hand:
+        if TABLE[self.mode].is_manual:
             self._look_at_stick()
         if self.formation is not None:
             self._look_at_leader(self.formation)
-        if Need.SETPOINT in TABLE[self.mode].keeps and self.senses.setpoint is None:
+        if Need.SETPOINT in TABLE[self.mode].keeps and self.context.setpoint is None:
             self._change(TABLE[self.mode].without, f"no setpoint for {OLDEST:g} s")
 
-    def _look_at_leader(self, formation: Formation) -> None:
+    def _look_at_leader(self, formation: FormationLink) -> None:
         """Without a leader it holds; once the leader is back it follows again, unless it has been told something else."""
         if self.mode is FlightMode.FOLLOW and formation.is_lost:
             self._change(FlightMode.HOLD, formation.lost_reason)
@@ -199,63 +201,71 @@ class Pilot:
 
     def _look_at_stick(self) -> None:
         """Before the first command and after the last one the autopilot circles; the failsafe ``sticks`` may order more."""
-        if isinstance(self._phase, Circling) == (self.senses.hand is not None):
+        if isinstance(self._phase, OrbitMode) == (self.context.hand is not None):
             self._phase = None
 
-    def _begun(self, now: Estimate, params: AirParams) -> Phase:
+    def _begun(self, now: Estimate, params: AirParams) -> FlightPhase:
         """The present mode from its beginning."""
         assert self.home is not None
         if self.mode is FlightMode.MISSION:
-            return MissionFlight(self.navigator, self._field, self.home, self.senses)
+            return MissionMode(self.navigator, self._field, self.home, self.context)
         if self.mode is FlightMode.TAKEOFF:
             usual = self.home.height + params.takeoff_alt
-            return self._field.take_off(now, usual if self._climb_to is None else self._climb_to, self.senses)
+            return self._field.take_off(now, usual if self._climb_to is None else self._climb_to, self.context)
         if self.mode is FlightMode.LAND:
-            return self._field.landing(now, self.home, self.senses, params)
+            return self._field.landing(now, self.home, self.context, params)
         if self.mode is FlightMode.FOLLOW and self.formation is not None:
-            return Trailing(self.formation)
+            return FollowMode(self.formation)
         if self.mode is FlightMode.OFFBOARD:
-            return Offboard(self.senses)
-        if TABLE[self.mode].by_hand and self.senses.hand is not None:
-            return STICK_MODES[self.mode](self.senses)
-        if self.mode is FlightMode.RETURN and (to := self.haven(now, params)) is not None:
-            return Homeward(to, lowest_over(to, self.rally), self.home.height, self._level.height)
-        return Circling(Circle.ahead(now, max(self._level.height, params.min_altitude), params.hold_radius), OWN)
+            return OffboardMode(self.context)
+        if TABLE[self.mode].is_manual and self.context.hand is not None:
+            return STICK_MODES[self.mode](self.context)
+        if self.mode is FlightMode.RETURN and (to := self.return_point(now, params)) is not None:
+            return ReturnMode(to, lowest_over(to, self.rally), self.home.height, self._level.height)
+        return OrbitMode(Circle.ahead(now, max(self._level.height, params.min_altitude), params.hold_radius), OWN)
 
-    def _flown(self, wish: Wish, now: Estimate, params: AirParams, dt: float) -> Flown:
-        if self.leads is not None and isinstance(self._part, Circling | Following):
+    def _flown(self, wish: Setpoint, now: Estimate, params: AirParams, dt: float) -> ControlOutput:
+        if self.leads is not None and isinstance(self._part, OrbitMode | PathMode):
             wish = self.leads.step(wish, now, params, dt)
         asked = wish.asked
-        aim = asked.aim if isinstance(asked, Track) else self._straight_on(now, params)
-        height = asked.height if isinstance(asked, Track | Wanted) else None
-        self._level = Level(now.height if height is None else height, asked.climb if isinstance(asked, Track | Wanted) else 0.0)
-        return Flown(self._helm.step(now, wish, params, dt), aim, self._level, self._helm.attitude, self._helm.airspeed)
+        aim = asked.aim if isinstance(asked, PathSetpoint) else self._straight_on(now, params)
+        height = asked.height if isinstance(asked, PathSetpoint | AltitudeAirspeedSetpoint) else None
+        self._level = AltitudeProfile(
+            now.height if height is None else height, asked.climb if isinstance(asked, PathSetpoint | AltitudeAirspeedSetpoint) else 0.0
+        )
+        return ControlOutput(
+            self._flight_controller.step(now, wish, params, dt),
+            aim,
+            self._level,
+            self._flight_controller.attitude,
+            self._flight_controller.airspeed,
+        )
 
     @staticmethod
-    def _straight_on(now: Estimate, params: AirParams) -> Aim:
-        return Aim(0.0, now.course, 0.0, params.k_path, params.chi_inf)
+    def _straight_on(now: Estimate, params: AirParams) -> PathReference:
+        return PathReference(0.0, now.course, 0.0, params.k_path, params.chi_inf)
 
     def _begin(self, now: Estimate) -> None:
         self._fresh = False
         self.home = self.home or Place(now.north, now.east, self._ground)
-        self._level = Level(now.height)
+        self._level = AltitudeProfile(now.height)
         if self.mode is FlightMode.MISSION:
             self.navigator.resume()
 
-    def take_up(self, mode: FlightMode, home: Place, stand: Stand) -> None:
+    def take_up(self, mode: FlightMode, home: Place, stand: PlanProgress) -> None:
         """Before the first step: goes on for an instance that has died."""
         self.mode, self.home, self.reason = mode, home, "started again"
         self.navigator.take_up(stand.index, stand.reached, stand.laps, stand.finished)
 
-    def _end(self, phase: Phase) -> None:
+    def _end(self, phase: FlightPhase) -> None:
         """What the table says follows."""
-        becomes = phase.becomes if isinstance(phase, MissionFlight) else None
+        becomes = phase.becomes if isinstance(phase, MissionMode) else None
         self.disarms = self.disarms or phase.disarms
         self._change(becomes or TABLE[self.mode].done or FlightMode.HOLD, phase.ended)
 
-    def haven(self, now: Estimate, params: AirParams) -> Place | None:
+    def return_point(self, now: Estimate, params: AirParams) -> Place | None:
         """Where Return would lead now."""
-        return haven(now, self.home, self.rally, self.fence.fencing, params) if self.home is not None else None
+        return return_point(now, self.home, self.rally, self.fence.fencing, params) if self.home is not None else None
 
     @property
     def blocked(self) -> str:
@@ -264,11 +274,11 @@ class Pilot:
 
     @property
     def _rolls_out(self) -> bool:
-        descends = isinstance(self._phase, Descent) and self._phase.rolls
+        descends = isinstance(self._phase, DescendMode) and self._phase.rolls
         return descends or (self.landing is not None and self.landing.rolls)
 
     def _change(self, mode: FlightMode, reason: str) -> None:
-        self.pace.begin(anew=mode is not self.mode)
+        self.speed_override.begin(anew=mode is not self.mode)
         self.mode, self.reason, self._phase, self._climb_to = mode, reason, None, None
         self._stick.take()
 
@@ -287,7 +297,7 @@ class Pilot:
     def _restart(self) -> None:
         """Goes on where the mission was left; from its beginning when it was complete."""
         if self.navigator.finished:
-            self.navigator = Navigator(self.navigator.items)
+            self.navigator = PlanFollower(self.navigator.items)
         self.navigator.resume()
 
     def take_off(self, height: float, source: str) -> str:
@@ -308,7 +318,7 @@ class Pilot:
             self.settle(Place(now.north, now.east, self.home.height if self.home else self._ground) if item.here else item.place)
         self.navigator.homes.clear()
 
-    def go_to(self, place: Place, source: str, params: AirParams, how: Round = OWN) -> str:
+    def go_to(self, place: Place, source: str, params: AirParams, how: LoiterOptions = OWN) -> str:
         """Flies there and holds over it; too low a height means the present one."""
         if self.blocked:
             return self.blocked
@@ -318,18 +328,18 @@ class Pilot:
             return why
         height = place.height if place.height >= params.min_altitude else self._level.height
         self._change(FlightMode.HOLD, f"goal of {source}")
-        self._phase = Circling(Circle(Place(place.north, place.east, height), how.radius or params.hold_radius), how)
+        self._phase = OrbitMode(Circle(Place(place.north, place.east, height), how.radius or params.hold_radius), how)
         if how.airspeed:
-            self.pace.begin(anew=True)
+            self.speed_override.begin(anew=True)
         return ""
 
     def descend(self, now: Estimate, reason: str, params: AirParams) -> None:
         """Mode Land without a position: down where it is."""
-        if self._rolls_out or isinstance(self._phase, Descent):
+        if self._rolls_out or isinstance(self._phase, DescendMode):
             return
         circle = self.circle or Circle.ahead(now, now.height, params.hold_radius)
         self._change(FlightMode.LAND, reason)
-        self._phase = Descent(circle, self.home.height if self.home is not None else self._ground, self.senses)
+        self._phase = DescendMode(circle, self.home.height if self.home is not None else self._ground, self.context)
 
     def orbit(self, circle: Circle, airspeed: float, source: str, params: AirParams) -> str:
         """Mode Orbit; a radius or airspeed of 0 is the vehicle's own."""
@@ -337,13 +347,13 @@ class Pilot:
             return why
         if not all(map(math.isfinite, astuple(circle.centre))):
             return "the circle is none: its numbers are not finite"
-        how = Round(circle.radius, airspeed)
+        how = LoiterOptions(circle.radius, airspeed)
         if why := how.fault(params):
             return why
         height = circle.centre.height if circle.centre.height >= params.min_altitude else self._level.height
         self._change(FlightMode.ORBIT, f"asked by {source}")
         place = replace(circle.centre, height=height)
-        self._phase = Circling(Circle(place, circle.radius or params.hold_radius), how)
+        self._phase = OrbitMode(Circle(place, circle.radius or params.hold_radius), how)
         return ""
 
     def go_around(self, source: str) -> str:
@@ -354,11 +364,11 @@ class Pilot:
         self.landing.around(f"asked by {source}")
         return ""
 
-    def load(self, items: Sequence[Item], params: AirParams) -> str:
+    def load(self, items: Sequence[PlanItem], params: AirParams) -> str:
         """Replaces the mission; while one is flown the new one is begun at once."""
         if why := fault(items, params):
             return why
-        self.navigator = Navigator(items)
+        self.navigator = PlanFollower(items)
         if self.mode is FlightMode.MISSION:
             self._phase = None
             if not items:
@@ -390,9 +400,9 @@ class Pilot:
         needs, holds = Need.POSITION in row.keeps, self.mode is FlightMode.HOLD
         if self.stopped or self._rolls_out or self._settles or not (needs or holds):
             return
-        if blind and not isinstance(self._phase, Descent) and (needs or not was):
+        if blind and not isinstance(self._phase, DescendMode) and (needs or not was):
             self._change(row.without, "GNSS lost: holds by dead reckoning" if row.without is FlightMode.HOLD else "GNSS lost")
-        elif was and not blind and isinstance(self._phase, Descent):
+        elif was and not blind and isinstance(self._phase, DescendMode):
             self._change(FlightMode.HOLD, BACK)
         elif was and not blind:
             self.reason = BACK

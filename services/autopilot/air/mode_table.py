@@ -59,7 +59,7 @@ class Need(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class ModeRule:
     """needs: to be asked for, in the order in which refusals are told; keeps: those whose loss ends it."""
 
     needs: tuple[Need, ...] = ()
@@ -68,7 +68,7 @@ class Row:
     """What follows when one of ``keeps`` is lost."""
     done: FlightMode | None = None
     """What follows when it has come to its end; None: it has none."""
-    by_hand: bool = False
+    is_manual: bool = False
     """It is steered by a stick; when nobody holds that the aircraft circles, and a failsafe follows."""
     on_ground: bool = False
     """It moves an aircraft that stands; in all other modes that keeps its brakes on and its motor off."""
@@ -78,19 +78,19 @@ _FLYING = (Need.RELEASED, Need.AIRBORNE, Need.POSITION)
 _HERE = (Need.POSITION,)
 _M = FlightMode
 
-TABLE: Mapping[FlightMode, Row] = {
-    _M.MANUAL: Row((Need.RELEASED,), by_hand=True, on_ground=True),
-    _M.STABILIZED: Row((Need.RELEASED,), by_hand=True, on_ground=True),
-    _M.ALTITUDE: Row((Need.RELEASED, Need.AIRBORNE), by_hand=True),
-    _M.POSITION: Row(_FLYING, _HERE, without=_M.ALTITUDE, by_hand=True),
-    _M.TAKEOFF: Row((Need.RELEASED, Need.GROUND, Need.POSITION), done=_M.HOLD, on_ground=True),
-    _M.MISSION: Row((Need.RELEASED, Need.POSITION, Need.MISSION), _HERE, done=_M.HOLD, on_ground=True),
-    _M.HOLD: Row(),
-    _M.ORBIT: Row(_FLYING, _HERE),
-    _M.RETURN: Row(_FLYING, _HERE, done=_M.LAND),
-    _M.LAND: Row(_FLYING, _HERE, done=_M.HOLD),
-    _M.OFFBOARD: Row((Need.RELEASED, Need.AIRBORNE, Need.SETPOINT), (Need.SETPOINT,)),
-    _M.FOLLOW: Row((*_FLYING, Need.LEADER), (Need.POSITION, Need.LEADER)),
+TABLE: Mapping[FlightMode, ModeRule] = {
+    _M.MANUAL: ModeRule((Need.RELEASED,), is_manual=True, on_ground=True),
+    _M.STABILIZED: ModeRule((Need.RELEASED,), is_manual=True, on_ground=True),
+    _M.ALTITUDE: ModeRule((Need.RELEASED, Need.AIRBORNE), is_manual=True),
+    _M.POSITION: ModeRule(_FLYING, _HERE, without=_M.ALTITUDE, is_manual=True),
+    _M.TAKEOFF: ModeRule((Need.RELEASED, Need.GROUND, Need.POSITION), done=_M.HOLD, on_ground=True),
+    _M.MISSION: ModeRule((Need.RELEASED, Need.POSITION, Need.MISSION), _HERE, done=_M.HOLD, on_ground=True),
+    _M.HOLD: ModeRule(),
+    _M.ORBIT: ModeRule(_FLYING, _HERE),
+    _M.RETURN: ModeRule(_FLYING, _HERE, done=_M.LAND),
+    _M.LAND: ModeRule(_FLYING, _HERE, done=_M.HOLD),
+    _M.OFFBOARD: ModeRule((Need.RELEASED, Need.AIRBORNE, Need.SETPOINT), (Need.SETPOINT,)),
+    _M.FOLLOW: ModeRule((*_FLYING, Need.LEADER), (Need.POSITION, Need.LEADER)),
 }
 
 

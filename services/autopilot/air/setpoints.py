@@ -3,21 +3,21 @@
 from dataclasses import dataclass
 
 from schemas.messages import FlightSetpoint
-from services.autopilot.air.manual_control import Hand
-from uvf.control.commands import Attitude, Surfaces, Wanted
+from services.autopilot.air.manual_control import ManualCommand
+from uvf.control.commands import AltitudeAirspeedSetpoint, AttitudeSetpoint, Surfaces
 from uvf.control.servos import SERVOS, Servos
 from uvf.estimation.state import Estimate
-from uvf.guidance.route import Level
-from uvf.guidance.vector_field import Aim
+from uvf.guidance.route import AltitudeProfile
+from uvf.guidance.vector_field import PathReference
 from uvf.maths.geodesy import GRAVITY
 from uvf.models.vehicle.flight_params import AirParams
 
 
 @dataclass(frozen=True, slots=True)
-class Track:
+class PathSetpoint:
     """To follow a path over ground."""
 
-    aim: Aim
+    aim: PathReference
     height: float | None  # m; None: the climb rate is held instead
     climb: float  # m/s, of the path
     airspeed: float  # m/s
@@ -27,10 +27,10 @@ class Track:
 
 
 @dataclass(frozen=True, slots=True)
-class Wish:
+class Setpoint:
     """``asked``: a path, a bank with height and airspeed, an attitude, or the surfaces themselves."""
 
-    asked: Track | Wanted | Attitude | Surfaces
+    asked: PathSetpoint | AltitudeAirspeedSetpoint | AttitudeSetpoint | Surfaces
     flap: float = 0.0  # rad
     brake: float = 0.0  # 0..1
     lift: float = 0.0  # m/s^2, made at once by the flaps, beside what pitch makes
@@ -39,32 +39,32 @@ class Wish:
 
 
 @dataclass(frozen=True, slots=True)
-class Flown:
+class ControlOutput:
     """What a cycle came to."""
 
     surfaces: Surfaces
-    aim: Aim
-    level: Level
-    attitude: Attitude | None = None
+    aim: PathReference
+    level: AltitudeProfile
+    attitude: AttitudeSetpoint | None = None
     """That is held; None while the surfaces are moved by hand."""
     airspeed: float | None = None
     """m/s, that is held."""
 
 
 @dataclass(slots=True)
-class Senses:
+class FlightContext:
     """What modes know beside the estimate, renewed before each step."""
 
     airborne: bool = True
     armed: bool = True
-    hand: Hand | None = None
+    hand: ManualCommand | None = None
     """What is asked by hand; None = nothing fresh."""
     servos: Servos = SERVOS
     clearance: float | None = None
     """m, of the wheels over the ground, seen by a range finder."""
-    push: float = 0.0
+    specific_force_x: float = 0.0
     """m/s^2, specific force forwards."""
-    heave: float = GRAVITY
+    specific_force_up: float = GRAVITY
     """m/s^2, specific force upwards."""
     setpoint: FlightSetpoint | None = None
     """What mode Offboard is asked for; None = nothing fresh."""
@@ -73,13 +73,13 @@ class Senses:
     setpoints_wait: tuple[str, ...] = ()
     """Who else sends some, which are not followed."""
 
-    def update(self, other: "Senses") -> None:
+    def update(self, other: "FlightContext") -> None:
         """Whoever holds this one sees what is known now."""
         for name in self.__slots__:
             setattr(self, name, getattr(other, name))
 
 
-class Phase:
+class FlightPhase:
     """One mode, or one part of it."""
 
     ended = ""
@@ -87,6 +87,6 @@ class Phase:
     disarms = False
     """At its end the motor has nothing more to do."""
 
-    def step(self, now: Estimate, params: AirParams, dt: float) -> Wish:
+    def step(self, now: Estimate, params: AirParams, dt: float) -> Setpoint:
         """One cycle of ``dt`` [s]."""
         raise NotImplementedError

@@ -5,20 +5,20 @@ from services.autopilot.ground.mission import refusal
 from services.autopilot.ground.params import GroundAutopilotParams
 from services.autopilot.ground.service import GroundAutopilot
 from services.autopilot.plan import item_from_file
-from uvf.models.scenario import Member, Site
+from uvf.models.scenario import MissionVehicle, Scenario
 from uvf.models.yaml_data import BadInput
-from uvf.runtime.contract.instances import Host
+from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.messages.fences import fence_message, fencing
 from uvf.sensors.fitted import sweeping_of
 from uvf.sensors.sweeping import AT_ONCE
 
 
-def hosts(site: Site) -> list[Host]:
+def hosts(site: Scenario) -> list[ServiceInstance]:
     """Raises BadInput when a job's mission is not one for a ground vehicle."""
     return [_host(member, site) for member in site.of_kind("ground")]
 
 
-def _host(member: Member, site: Site) -> Host:
+def _host(member: MissionVehicle, site: Scenario) -> ServiceInstance:
     start, body, job = member.entry.start, member.file.ground, member.entry.job
     if body is None:
         raise BadInput(f"{member.folder / 'vehicle.yaml'}: there is no 'ground:' section")
@@ -38,4 +38,4 @@ def _host(member: Member, site: Site) -> Host:
     def make() -> GroundAutopilot:
         return GroundAutopilot(body, (start.x, start.y), (begins, items), member.entry.system_id, params, fence, imu_rpy, sweeping)
 
-    return Host(GroundAutopilot, make, member.name)
+    return ServiceInstance(GroundAutopilot, make, member.name)

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 
 from schemas.messages import Event
-from services.autopilot.failsafes import Action, Rule
+from services.autopilot.failsafes import FailsafeAction, FailsafeRule
 from services.autopilot.ground.params import GroundAutopilotParams
 
 POSE_LOST = 1.0  # s
@@ -11,11 +11,17 @@ OFFBOARD_SILENT = 0.5  # s
 TIPPED = 0.5  # s
 CALMER = 0.8  # of tilt_max
 RECHARGED = 0.03  # of charge, beyond a limit
-ACTIONS = {"wait": Action.WARN, "warn": Action.WARN, "hold": Action.HOLD, "return": Action.RETURN, "off": Action.OFF}
+ACTIONS = {
+    "wait": FailsafeAction.WARN,
+    "warn": FailsafeAction.WARN,
+    "hold": FailsafeAction.HOLD,
+    "return": FailsafeAction.RETURN,
+    "off": FailsafeAction.OFF,
+}
 
 
 @dataclass(frozen=True, slots=True)
-class Known:
+class GroundFailsafeInputs:
     """What the rules look at."""
 
     params: GroundAutopilotParams = field(default_factory=GroundAutopilotParams)
@@ -25,12 +31,12 @@ class Known:
     """In Mission or Return: by map and scan."""
     by_hand: bool = False
     silence: float = 0.0  # s since a ground station was heard; 0 while none ever was
-    let_go: bool = False
+    stick_released: bool = False
     """It has been driven by hand, and is not any more."""
-    unplaced: float = 0.0  # s without a pose, in a mode that needs one
-    unsteered: float = 0.0  # s without a command, in Offboard
+    pose_age: float = 0.0  # s without a pose, in a mode that needs one
+    setpoint_age: float = 0.0  # s without a command, in Offboard
     unseen: float = 0.0  # s without a new scan
-    unmapped: float = 0.0  # s without a word of the mapping
+    map_age: float = 0.0  # s without a word of the mapping
     stuck_for: float = 0.0  # s
     stuck: str = ""  # how
     tilt: float = 0.0  # rad
@@ -39,135 +45,135 @@ class Known:
     """It has been stopped before the fence."""
 
 
-GROUND_RULES: tuple[Rule[Known], ...] = (
-    Rule(
+GROUND_RULES: tuple[FailsafeRule[GroundFailsafeInputs], ...] = (
+    FailsafeRule(
         "link",
-        wrong=lambda k: k.moves and k.silence > k.params.link_timeout,
-        mended=lambda k: k.silence <= k.params.link_timeout,
-        begins="ground station lost",
-        ends="ground station back",
-        figures=lambda k: f"silent for {k.silence:.0f} s",
+        trigger=lambda k: k.moves and k.silence > k.params.link_timeout,
+        clear=lambda k: k.silence <= k.params.link_timeout,
+        raised_text="ground station lost",
+        cleared_text="ground station back",
+        detail=lambda k: f"silent for {k.silence:.0f} s",
         action=lambda k: ACTIONS[k.params.link_action],
         parameters=("link_timeout", "link_action"),
     ),
-    Rule(
+    FailsafeRule(
         "sticks",
-        wrong=lambda k: k.moves and k.let_go and k.params.stick_action != "wait",
-        mended=lambda k: not k.let_go,
-        begins="manual control lost",
-        ends="manual control back, or another mode",
-        figures=lambda k: f"no command for {k.params.stick_timeout:g} s",
+        trigger=lambda k: k.moves and k.stick_released and k.params.stick_action != "wait",
+        clear=lambda k: not k.stick_released,
+        raised_text="manual control lost",
+        cleared_text="manual control back, or another mode",
+        detail=lambda k: f"no command for {k.params.stick_timeout:g} s",
         action=lambda k: ACTIONS[k.params.stick_action],
         parameters=("stick_timeout", "stick_action"),
     ),
-    Rule(
+    FailsafeRule(
         "pose",
-        wrong=lambda k: k.moves and k.unplaced > POSE_LOST,
-        mended=lambda k: k.unplaced == 0.0,
-        begins="position lost: stands",
-        ends="position back",
-        figures=lambda k: f"no pose for {k.unplaced:.1f} s",
-        clears=1.0,
+        trigger=lambda k: k.moves and k.pose_age > POSE_LOST,
+        clear=lambda k: k.pose_age == 0.0,
+        raised_text="position lost: stands",
+        cleared_text="position back",
+        detail=lambda k: f"no pose for {k.pose_age:.1f} s",
+        clear_delay=1.0,
         severity=Event.CRITICAL,
     ),
-    Rule(
+    FailsafeRule(
         "scan",
-        wrong=lambda k: k.moves and k.by_itself and k.unseen > k.params.scan_timeout,
-        mended=lambda k: k.unseen <= k.params.scan_timeout,
-        begins="lidar silent or frozen: stands",
-        ends="lidar back",
-        figures=lambda k: f"no new scan for {k.unseen:.1f} s",
+        trigger=lambda k: k.moves and k.by_itself and k.unseen > k.params.scan_timeout,
+        clear=lambda k: k.unseen <= k.params.scan_timeout,
+        raised_text="lidar silent or frozen: stands",
+        cleared_text="lidar back",
+        detail=lambda k: f"no new scan for {k.unseen:.1f} s",
         severity=Event.CRITICAL,
         parameters=("scan_timeout",),
     ),
-    Rule(
+    FailsafeRule(
         "map",
-        wrong=lambda k: k.moves and k.by_itself and k.unmapped > k.params.map_timeout,
-        mended=lambda k: k.unmapped <= k.params.map_timeout,
-        begins="map no longer kept: stands",
-        ends="map kept again",
-        figures=lambda k: f"mapping silent for {k.unmapped:.0f} s",
+        trigger=lambda k: k.moves and k.by_itself and k.map_age > k.params.map_timeout,
+        clear=lambda k: k.map_age <= k.params.map_timeout,
+        raised_text="map no longer kept: stands",
+        cleared_text="map kept again",
+        detail=lambda k: f"mapping silent for {k.map_age:.0f} s",
         severity=Event.CRITICAL,
         parameters=("map_timeout",),
     ),
-    Rule(
+    FailsafeRule(
         "offboard",
-        wrong=lambda k: k.moves and k.unsteered > OFFBOARD_SILENT,
-        mended=lambda k: k.unsteered == 0.0,
-        begins="no setpoint from outside",
-        ends="setpoints no longer missed",
-        figures=lambda k: f"silent for {k.unsteered:.1f} s",
-        action=lambda k: Action.HOLD,
+        trigger=lambda k: k.moves and k.setpoint_age > OFFBOARD_SILENT,
+        clear=lambda k: k.setpoint_age == 0.0,
+        raised_text="no setpoint from outside",
+        cleared_text="setpoints no longer missed",
+        detail=lambda k: f"silent for {k.setpoint_age:.1f} s",
+        action=lambda k: FailsafeAction.HOLD,
     ),
-    Rule(
+    FailsafeRule(
         "fence",
-        wrong=lambda k: k.fence,
-        mended=lambda k: not k.fence,
-        begins="fence ahead: stopped",
-        ends="clear of the fence",
-        figures=lambda k: "it may drive where that leads away",
+        trigger=lambda k: k.fence,
+        clear=lambda k: not k.fence,
+        raised_text="fence ahead: stopped",
+        cleared_text="clear of the fence",
+        detail=lambda k: "it may drive where that leads away",
         action=lambda k: ACTIONS[k.params.fence_action],
         parameters=("max_distance", "fence_action"),
-        clears=1.0,
+        clear_delay=1.0,
     ),
-    Rule(
+    FailsafeRule(
         "stuck",
-        wrong=lambda k: k.moves and k.stuck_for > k.params.stuck_time,
-        mended=lambda k: k.stuck_for == 0.0,
-        begins="stuck",
-        ends="no longer stuck, or to try again",
-        figures=lambda k: f"{k.stuck} for {k.stuck_for:.0f} s",
-        action=lambda k: Action.WARN if k.by_hand else Action.STAND,
+        trigger=lambda k: k.moves and k.stuck_for > k.params.stuck_time,
+        clear=lambda k: k.stuck_for == 0.0,
+        raised_text="stuck",
+        cleared_text="no longer stuck, or to try again",
+        detail=lambda k: f"{k.stuck} for {k.stuck_for:.0f} s",
+        action=lambda k: FailsafeAction.WARN if k.by_hand else FailsafeAction.STAND,
         parameters=("stuck_time",),
     ),
-    Rule(
+    FailsafeRule(
         "tipped",
-        wrong=lambda k: k.tilt > k.params.tilt_max,
-        mended=lambda k: k.tilt < CALMER * k.params.tilt_max,
-        begins="tipped: motors off",
-        ends="upright again",
-        figures=lambda k: f"{k.tilt:.1f} rad from upright",
-        action=lambda k: Action.OFF,
+        trigger=lambda k: k.tilt > k.params.tilt_max,
+        clear=lambda k: k.tilt < CALMER * k.params.tilt_max,
+        raised_text="tipped: motors off",
+        cleared_text="upright again",
+        detail=lambda k: f"{k.tilt:.1f} rad from upright",
+        action=lambda k: FailsafeAction.OFF,
         after=lambda k: TIPPED,
-        clears=1.0,
+        clear_delay=1.0,
         severity=Event.CRITICAL,
         parameters=("tilt_max",),
     ),
-    Rule(
+    FailsafeRule(
         "battery_low",
-        wrong=lambda k: k.charge < k.params.battery_low,
-        mended=lambda k: k.charge > k.params.battery_low + RECHARGED,
-        begins="battery low",
-        ends="battery no longer low",
-        figures=lambda k: f"{100 * k.charge:.0f} % left",
+        trigger=lambda k: k.charge < k.params.battery_low,
+        clear=lambda k: k.charge > k.params.battery_low + RECHARGED,
+        raised_text="battery low",
+        cleared_text="battery no longer low",
+        detail=lambda k: f"{100 * k.charge:.0f} % left",
         action=lambda k: ACTIONS[k.params.low_action],
         after=lambda k: 3.0,
-        clears=3.0,
+        clear_delay=3.0,
         parameters=("battery_low", "low_action"),
     ),
-    Rule(
+    FailsafeRule(
         "battery_critical",
-        wrong=lambda k: k.charge < k.params.battery_critical,
-        mended=lambda k: k.charge > k.params.battery_critical + RECHARGED,
-        begins="battery critical",
-        ends="battery no longer critical",
-        figures=lambda k: f"{100 * k.charge:.0f} % left",
+        trigger=lambda k: k.charge < k.params.battery_critical,
+        clear=lambda k: k.charge > k.params.battery_critical + RECHARGED,
+        raised_text="battery critical",
+        cleared_text="battery no longer critical",
+        detail=lambda k: f"{100 * k.charge:.0f} % left",
         action=lambda k: ACTIONS[k.params.critical_action],
         after=lambda k: 3.0,
-        clears=3.0,
+        clear_delay=3.0,
         severity=Event.CRITICAL,
         parameters=("battery_critical", "critical_action"),
     ),
-    Rule(
+    FailsafeRule(
         "battery_emergency",
-        wrong=lambda k: k.charge < k.params.emergency_charge,
-        mended=lambda k: k.charge > k.params.emergency_charge + RECHARGED,
-        begins="battery emergency",
-        ends="battery emergency over",
-        figures=lambda k: f"{100 * k.charge:.0f} % left",
+        trigger=lambda k: k.charge < k.params.emergency_charge,
+        clear=lambda k: k.charge > k.params.emergency_charge + RECHARGED,
+        raised_text="battery emergency",
+        cleared_text="battery emergency over",
+        detail=lambda k: f"{100 * k.charge:.0f} % left",
         action=lambda k: ACTIONS[k.params.emergency_action],
         after=lambda k: 3.0,
-        clears=3.0,
+        clear_delay=3.0,
         severity=Event.CRITICAL,
         parameters=("emergency_charge", "emergency_action"),
     ),

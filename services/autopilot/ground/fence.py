@@ -13,7 +13,7 @@ NEARER = 1e-3  # m, that counts as coming nearer
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class GroundPose:
     """m, rad, world frame."""
 
     x: float
@@ -21,7 +21,7 @@ class Place:
     yaw: float
 
 
-def stops(fencing: Fencing, here: Place, linear: float, keep: tuple[float, float]) -> bool:
+def stops(fencing: Fencing, here: GroundPose, linear: float, keep: tuple[float, float]) -> bool:
     """Whether driving on at ``linear`` [m/s] would end nearer to the edge than allowed. keep: (radius [m], deceleration [m/s^2])."""
     if linear == 0.0 or not fencing.steers:
         return False

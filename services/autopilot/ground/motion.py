@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from schemas.messages import Imu, WheelTicks
-from services.autopilot.ground.fence import Place
+from services.autopilot.ground.fence import GroundPose
 from uvf.maths.filters import LowPass
 from uvf.maths.kinematics import WheelSpeeds
 from uvf.maths.rotations import from_euler, matrix
@@ -20,7 +20,7 @@ TILT_TIME = 0.3  # s
 JUMP = 0.5  # m, of a pose that was set anew
 
 
-class Wheels:
+class WheelSpeedometer:
     """Speeds by the ticks [m/s]."""
 
     def __init__(self, radius: float) -> None:
@@ -52,23 +52,23 @@ class Wheels:
         return ((self.left.value or 0.0) + (self.right.value or 0.0)) / 2
 
 
-class Grip:
+class StuckDetector:
     """``stuck_for``: s that wheels have been held fast, or have turned while the vehicle stayed; it stands still while nothing is asked."""
 
-    def __init__(self, wheels: Wheels) -> None:
+    def __init__(self, wheels: WheelSpeedometer) -> None:
         self.stuck_for = 0.0
         self.how = ""
         self._wheels = wheels
         self._ahead = LowPass(POSE_LAG)
         self._rolls = LowPass(POSE_LAG)
-        self._here: Place | None = None
+        self._here: GroundPose | None = None
         self._well = 0.0
 
     def forget(self) -> None:
         """Somebody has it try again."""
         self.stuck_for = self._well = 0.0
 
-    def step(self, asked: WheelSpeeds, here: Place | None, dt: float) -> None:
+    def step(self, asked: WheelSpeeds, here: GroundPose | None, dt: float) -> None:
         """asked: m/s at the rims."""
         slips = self._slips(here, dt)
         wheels = self._wheels
@@ -83,7 +83,7 @@ class Grip:
         elif self._well >= WELL:
             self.stuck_for = 0.0
 
-    def _slips(self, here: Place | None, dt: float) -> bool:
+    def _slips(self, here: GroundPose | None, dt: float) -> bool:
         """Whether the pose does not come along with the wheels."""
         before, self._here = self._here, here
         if here is None or before is None:
@@ -96,7 +96,7 @@ class Grip:
         return abs(rolls) >= ASKED and (rolls - (self._ahead.value or 0.0)) * math.copysign(1.0, rolls) > SLIP * abs(rolls)
 
 
-class Tilt:
+class TiltEstimate:
     """The angle [rad] between the body's upward axis and what the accelerometer feels as up."""
 
     def __init__(self, imu_rpy: tuple[float, float, float]) -> None:

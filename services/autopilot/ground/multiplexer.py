@@ -24,7 +24,7 @@ RANKS: Mapping[int, Order] = {mode: in_turn(sources) for mode, sources in SOURCE
 
 
 @dataclass(frozen=True)
-class Velocity:
+class VelocityCommand:
     """A command as it came. t: when it was sent [s]; linear m/s, angular rad/s; lasts: how long it counts [s]."""
 
     t: float
@@ -42,7 +42,7 @@ class Velocity:
 
 
 @dataclass(frozen=True)
-class Choice:
+class ActiveCommand:
     """What is let through: the source ("" = nobody, stand still), why, and the velocity.
 
     refused: commands that were fresh and admitted but no numbers, "" if there are none.
@@ -55,18 +55,18 @@ class Choice:
     refused: str = ""
 
 
-def choose(t: float, mode: int, commands: Mapping[str, Velocity], obstacle: str, held: str = "") -> Choice:
+def choose(t: float, mode: int, commands: Mapping[str, VelocityCommand], obstacle: str, held: str = "") -> ActiveCommand:
     """The command that counts at ``t`` [s]. obstacle: why nothing may move (STOP ALL, disarmed), "" if it may; held: whose did before."""
     if obstacle:
-        return Choice("", obstacle)
+        return ActiveCommand("", obstacle)
     admitted = SOURCES[mode]
     if not admitted:
-        return Choice("", f"mode {mode_name(mode)}")
+        return ActiveCommand("", f"mode {mode_name(mode)}")
     fresh = {source: commands[source] for source in admitted if source in commands and commands[source].is_fresh(t)}
     refused = ", ".join(f"{source} ({c.linear:g} m/s, {c.angular:g} rad/s)" for source, c in fresh.items() if not c.is_finite)
     source = holder([source for source, command in fresh.items() if command.is_finite], RANKS[mode], held)
     if source:
-        return Choice(source, f"mode {mode_name(mode)}: {source}", fresh[source].linear, fresh[source].angular, refused)
+        return ActiveCommand(source, f"mode {mode_name(mode)}: {source}", fresh[source].linear, fresh[source].angular, refused)
     if refused:
-        return Choice("", f"mode {mode_name(mode)}: not a velocity: {refused}", refused=refused)
-    return Choice("", f"mode {mode_name(mode)}: no fresh command from {', '.join(admitted)}")
+        return ActiveCommand("", f"mode {mode_name(mode)}: not a velocity: {refused}", refused=refused)
+    return ActiveCommand("", f"mode {mode_name(mode)}: no fresh command from {', '.join(admitted)}")

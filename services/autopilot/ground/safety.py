@@ -3,13 +3,13 @@
 from dataclasses import dataclass, field
 
 from schemas.messages import Battery, Event, Fence, FrameTransform, Imu, LaserScan, Link, Mode, PoseInFrame, WheelTicks
-from services.autopilot.failsafes import Action, Order, Watch
-from services.autopilot.ground.failsafes import GROUND_RULES, STANDS, Known
-from services.autopilot.ground.fence import Place, stops
+from services.autopilot.failsafes import FailsafeAction, FailsafeOrder, FailsafeWatch
+from services.autopilot.ground.failsafes import GROUND_RULES, STANDS, GroundFailsafeInputs
+from services.autopilot.ground.fence import GroundPose, stops
 from services.autopilot.ground.mission import Point
-from services.autopilot.ground.motion import Grip, Tilt, Wheels
+from services.autopilot.ground.motion import StuckDetector, TiltEstimate, WheelSpeedometer
 from services.autopilot.ground.params import GroundAutopilotParams
-from services.autopilot.ground.sight import Sight
+from services.autopilot.ground.sight import SensorWatch
 from services.autopilot.link_watch import LinkWatch
 from uvf.maths.kinematics import WheelSpeeds
 from uvf.models.mission.fence import Fencing, near_home
@@ -21,10 +21,10 @@ BY_ITSELF = (Mode.MODE_MISSION, Mode.MODE_RETURN)
 
 
 @dataclass(slots=True)
-class Sensed:
+class GroundSensorInputs:
     """What has come in a cycle; None: nothing fresh."""
 
-    here: Place | None = None
+    here: GroundPose | None = None
     link: Link | None = None
     imu: list[Imu] = field(default_factory=list)
     wheels: WheelTicks | None = None
@@ -34,7 +34,7 @@ class Sensed:
 
 
 @dataclass(frozen=True, slots=True)
-class Doing:
+class GroundActivity:
     """What the vehicle is about."""
 
     mode: int
@@ -46,11 +46,11 @@ class Doing:
     """m/s at the rims, of the cycle before."""
 
 
-class Safety:
+class GroundFailsafeMonitor:
     """``step`` once a cycle, then ``brakes`` for the velocity that was chosen."""
 
     def __init__(self, body: GroundBody, fence: Fence, imu_rpy: tuple[float, float, float], sweeping: Sweeping) -> None:
-        self.watch = Watch(GROUND_RULES)
+        self.watch = FailsafeWatch(GROUND_RULES)
         self.fence = fence
         self._plan: Fencing = fencing(fence)
         self._about: tuple[Point, float] = (0.0, 0.0), 0.0
@@ -60,16 +60,16 @@ class Safety:
         """As told last."""
         self._keep = body.radius, body.max_linear_acceleration
         self._link = LinkWatch()
-        self._times = {"unplaced": 0.0, "unsteered": 0.0}
-        self._wheels = Wheels(body.wheel_radius)
-        self._grip, self._tilt, self._sight = Grip(self._wheels), Tilt(imu_rpy), Sight(sweeping)
+        self._times = {"pose_age": 0.0, "setpoint_age": 0.0}
+        self._wheels = WheelSpeedometer(body.wheel_radius)
+        self._grip, self._tilt, self._sight = StuckDetector(self._wheels), TiltEstimate(imu_rpy), SensorWatch(sweeping)
         self._fenced = self._driven = False
         self.is_outside = False
         """Of its fence."""
         self.breaches = 0
         """How often it has been."""
 
-    def set_fence(self, fence: Fence, here: Place | None) -> str:
+    def set_fence(self, fence: Fence, here: GroundPose | None) -> str:
         """Why it is refused; empty if it is in force from now on."""
         why = fence_fault(fence)
         if not why and here is not None and (room := fencing(fence).region.at((here.x, here.y))) < 0:
@@ -94,8 +94,8 @@ class Safety:
         self._grip.forget()
 
     def step(
-        self, t: float, sensed: Sensed, doing: Doing, params: GroundAutopilotParams, dt: float
-    ) -> tuple[list[Event], Order[Known] | None]:
+        self, t: float, sensed: GroundSensorInputs, doing: GroundActivity, params: GroundAutopilotParams, dt: float
+    ) -> tuple[list[Event], FailsafeOrder[GroundFailsafeInputs] | None]:
         """What has begun and ended, and what is to be done."""
         self._hear(t, sensed, doing, dt)
         if sensed.here is not None:
@@ -104,13 +104,13 @@ class Safety:
         changes, order = self.watch.step(self._known(t, doing, params), dt)
         return [change.event(t) for change in changes], order
 
-    def _hear(self, t: float, sensed: Sensed, doing: Doing, dt: float) -> None:
+    def _hear(self, t: float, sensed: GroundSensorInputs, doing: GroundActivity, dt: float) -> None:
         self._link.step(t, sensed.link)
         if sensed.battery is not None and sensed.battery.remaining >= 0:
             self.battery = sensed.battery
         lacks = {
-            "unplaced": doing.mode in BY_ITSELF and sensed.here is None,
-            "unsteered": doing.mode == Mode.MODE_OFFBOARD and not doing.is_steered,
+            "pose_age": doing.mode in BY_ITSELF and sensed.here is None,
+            "setpoint_age": doing.mode == Mode.MODE_OFFBOARD and not doing.is_steered,
         }
         self._driven = doing.mode == Mode.MODE_MANUAL and (doing.is_steered or self._driven)
         self._let_go = self._driven and not doing.is_steered
@@ -121,18 +121,18 @@ class Safety:
         self._tilt.step(sensed.imu, dt)
         self._sight.step(t, sensed.scan, sensed.correction, self._wheels.travelled)
 
-    def _known(self, t: float, doing: Doing, params: GroundAutopilotParams) -> Known:
-        return Known(
+    def _known(self, t: float, doing: GroundActivity, params: GroundAutopilotParams) -> GroundFailsafeInputs:
+        return GroundFailsafeInputs(
             params=params,
             moves=doing.free and doing.mode != Mode.MODE_HOLD,
             by_itself=doing.mode in BY_ITSELF,
             by_hand=doing.mode == Mode.MODE_MANUAL,
             silence=self._link.silence,
-            let_go=self._let_go,
-            unplaced=self._times["unplaced"],
-            unsteered=self._times["unsteered"],
+            stick_released=self._let_go,
+            pose_age=self._times["pose_age"],
+            setpoint_age=self._times["setpoint_age"],
             unseen=self._sight.unseen,
-            unmapped=self._sight.unmapped,
+            map_age=self._sight.map_age,
             stuck_for=self._grip.stuck_for,
             stuck=self._grip.how,
             tilt=self._tilt.angle,
@@ -140,7 +140,7 @@ class Safety:
             fence=self._fenced,
         )
 
-    def brakes(self, here: Place | None, linear: float) -> bool:
+    def brakes(self, here: GroundPose | None, linear: float) -> bool:
         """Whether it has to stop before the fence; it may still turn away from it."""
         self._fenced = here is not None and stops(self.fencing, here, linear, self._keep)
         return self._fenced
@@ -148,17 +148,17 @@ class Safety:
     def obstacle(self, mode: int) -> str:
         """Why it must not move by itself in ``mode``: what it lacks for that; "" if it may."""
         holding = [self.watch.holding[name] for name in STANDS if name in self.watch.holding] if mode in BY_ITSELF else []
-        return holding[0].begins if holding else ""
+        return holding[0].raised_text if holding else ""
 
     def faults(self) -> list[str]:
         """Why it should not be armed."""
-        return [rule.begins for rule in self.watch.holding.values() if rule.name in ("tipped", "battery_critical")]
+        return [rule.raised_text for rule in self.watch.holding.values() if rule.name in ("tipped", "battery_critical")]
 
 
-def mode_of(action: Action) -> int:
+def mode_of(action: FailsafeAction) -> int:
     """The mode that carries it out."""
-    return Mode.MODE_RETURN if action is Action.RETURN else Mode.MODE_HOLD
+    return Mode.MODE_RETURN if action is FailsafeAction.RETURN else Mode.MODE_HOLD
 
 
-def place(pose: PoseInFrame, yaw: float) -> Place:
-    return Place(pose.pose.position.x, pose.pose.position.y, yaw)
+def place(pose: PoseInFrame, yaw: float) -> GroundPose:
+    return GroundPose(pose.pose.position.x, pose.pose.position.y, yaw)

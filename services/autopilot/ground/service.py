@@ -3,55 +3,40 @@
 from collections.abc import Mapping
 from dataclasses import replace
 from math import inf
-from typing import Any
 
-from schemas import topics
 from schemas.messages import (
     ArmRequest,
-    Battery,
     Breach,
-    DriveCommand,
     Event,
     Fence,
     FenceRequest,
-    FrameTransform,
-    Imu,
     Kind,
-    LaserScan,
-    Link,
-    Mission,
     MissionItem,
-    MissionProgress,
     MissionRequest,
     Mode,
     ModeRequest,
     OrderRequest,
-    ParamValues,
-    PoseInFrame,
     RallyPoints,
-    RallyRequest,
     Reply,
     SetCurrentRequest,
     VehicleStatus,
     WheelCommand,
-    WheelTicks,
 )
-from services.autopilot.failsafes import Action
+from services.autopilot.failsafes import FailsafeAction
 from services.autopilot.ground import fence as fences
-from services.autopilot.ground import orders
+from services.autopilot.ground import interface, orders
 from services.autopilot.ground.mission import MissionEngine, Point, mission_of, refusal, vector
-from services.autopilot.ground.multiplexer import COMMAND_MAX_AGE, SOURCES, Choice, Velocity, choose
+from services.autopilot.ground.multiplexer import COMMAND_MAX_AGE, SOURCES, ActiveCommand, VelocityCommand, choose
 from services.autopilot.ground.params import GroundAutopilotParams
-from services.autopilot.ground.safety import Doing, Safety, Sensed, mode_of, place
+from services.autopilot.ground.safety import GroundActivity, GroundFailsafeMonitor, GroundSensorInputs, mode_of, place
 from services.autopilot.multiplexing import Once
 from services.autopilot.safe_state import standing
 from services.autopilot.told_params import ToldParams
-from uvf.control.drive_limits import Limits, Ramp, within_limits
+from uvf.control.drive_limits import DriveLimits, VelocityRamp, within_limits
 from uvf.maths.kinematics import DifferentialDrive, Twist, WheelSpeeds
 from uvf.models.vehicle.file import GroundBody
-from uvf.runtime.contract.service import Service, every, optional, stop_all
+from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import mode_name, seconds, stamp, yaw_of
-from uvf.runtime.messages.outputs import Outputs
 from uvf.runtime.state.stop_all import StopStatus
 from uvf.sensors.sweeping import AT_ONCE, Sweeping
 
@@ -61,54 +46,20 @@ UNKNOWN_BATTERY = -1.0
 REFUSALS_EVERY = 10.0  # s between two events about commands that are no numbers
 
 
+SENDERS = ("teleop", "mavlink", "gcs", "client", "offboard", "planner")
+"""Inputs of commands, by who sends them."""
+
+
 class GroundAutopilot(Service):
     """The only writer of a ground vehicle's ``actuator/wheels``. With a job it begins armed, in mode MISSION."""
 
     name = "autopilot_ground"
     hz = 50.0
-    inputs = {
-        "teleop": optional(topics.DRIVE.by("teleop")),
-        "mavlink": optional(topics.DRIVE.by("mavlink")),
-        "gcs": optional(topics.DRIVE.by("gcs")),
-        "client": optional(topics.DRIVE.by("client")),
-        "offboard": optional(topics.DRIVE.by("offboard")),
-        "planner": optional(topics.DRIVE.by("planner")),
-        "stop": stop_all(),
-        "pose": optional(topics.POSE),
-        "link": optional(topics.LINK),
-        "imu": optional(every(topics.IMU)),
-        "ticks": optional(topics.WHEELS),
-        "scan": optional(topics.SCAN),
-        "correction": optional(topics.TF_MAP),
-        "battery": optional(topics.BATTERY),
-    }
-    outputs = {
-        "wheels": topics.WHEEL_COMMAND,
-        "status": topics.STATUS,
-        "mission": topics.MISSION,
-        "bounds": topics.FENCE,
-        "rally": topics.RALLY,
-        "progress": topics.PROGRESS,
-        "events": topics.EVENTS.by("autopilot"),
-        "params": topics.PARAMS.by("autopilot_ground"),
-    }
-    requests = {
-        "arm": topics.ARM,
-        "set_mode": topics.SET_MODE,
-        "set_mission": topics.SET_MISSION,
-        "set_current": topics.SET_CURRENT,
-        "set_fence": topics.SET_FENCE,
-        "order": topics.ORDER,
-        "set_rally": topics.SET_RALLY,
-    }
-    recalls = {
-        "status": topics.STATUS,
-        "mission": topics.MISSION,
-        "progress": topics.PROGRESS,
-        "bounds": topics.FENCE,
-        "rally": topics.RALLY,
-        "params": topics.PARAMS.by("autopilot_ground"),
-    }
+
+    Inputs = interface.Inputs
+    Outputs = interface.Outputs
+    Recalls = interface.Recalls
+
     params: GroundAutopilotParams
 
     def __init__(
@@ -131,109 +82,79 @@ class GroundAutopilot(Service):
         self._made_with = (body, home, system_id, imu_rpy, sweeping)
         self._system_id = system_id
         self._drive = DifferentialDrive(body.wheel_radius, body.track)
-        self._ramp = Ramp(Limits(body.max_linear, body.max_angular, body.max_linear_acceleration, body.max_angular_acceleration))
-        begins, items = job
-        self._armed = begins
-        self._mode: int = Mode.MODE_MISSION if begins else Mode.MODE_HOLD
+        self._ramp = VelocityRamp(
+            DriveLimits(body.max_linear, body.max_angular, body.max_linear_acceleration, body.max_angular_acceleration)
+        )
+        raised_text, items = job
+        self._armed = raised_text
+        self._mode: int = Mode.MODE_MISSION if raised_text else Mode.MODE_HOLD
         self._stop = StopStatus()
-        self._choice = Choice("", "starting")
+        self._choice = ActiveCommand("", "starting")
         self._refused_at = -inf
         self._once = Once()
-        self._heard: dict[str, Velocity] = {}
+        self._heard: dict[str, VelocityCommand] = {}
         self._engine = MissionEngine(home, params.acceptance_radius)
         self._engine.load(mission_of(items, stamp(0.0)))
         self._mission_is_new = True
-        self._safety = Safety(body, fence or Fence(), imu_rpy, sweeping)
+        self._safety = GroundFailsafeMonitor(body, fence or Fence(), imu_rpy, sweeping)
         self._fence_is_new = True
         self._told_params = ToldParams()
         self._restarts = False
         self._rally = RallyPoints()
         self._rally_is_new = True
-        self._here: fences.Place | None = None
+        self._here: fences.GroundPose | None = None
         self._steps = 0
         self._told: tuple[object, ...] = ()
         self._events: list[Event] = []
 
-    def step(
-        self,
-        t: float,
-        teleop: DriveCommand | None,
-        mavlink: DriveCommand | None,
-        gcs: DriveCommand | None,
-        client: DriveCommand | None,
-        offboard: DriveCommand | None,
-        planner: DriveCommand | None,
-        stop: StopStatus,
-        pose: PoseInFrame | None,
-        link: Link | None,
-        imu: list[Imu],
-        ticks: WheelTicks | None,
-        scan: LaserScan | None,
-        correction: FrameTransform | None,
-        battery: Battery | None,
-        arm: list[ArmRequest],
-        set_mode: list[ModeRequest],
-        set_mission: list[MissionRequest],
-        set_current: list[SetCurrentRequest],
-        set_fence: list[FenceRequest],
-        order: list[OrderRequest],
-        set_rally: list[RallyRequest],
-    ) -> Outputs:
-        self._heed_stop(t, stop)
-        self._here = place(pose, yaw_of(pose.pose.orientation)) if pose is not None else None
-        self._watch(t, Sensed(self._here, link, imu, ticks, scan, correction, battery))
-        replies = {
-            "arm": [self._arm(t, r) for r in arm],
-            "set_mode": [self._set_mode(t, r) for r in set_mode],
-            "set_mission": [self._set_mission(t, r) for r in set_mission],
-            "set_current": [self._set_current(t, r) for r in set_current],
-            "set_fence": [self._set_fence(t, r) for r in set_fence],
-            "order": [self._carry_out(t, r) for r in order],
-            "set_rally": [self._set_rally(r.rally) for r in set_rally],
-        }
-        commands = {"teleop": teleop, "mavlink": mavlink, "gcs": gcs, "client": client, "offboard": offboard, "planner": planner}
-        position = (pose.pose.position.x, pose.pose.position.y) if pose is not None else None
+    def step(self, t: float, now: interface.Inputs) -> interface.Outputs:
+        self._handle_stop_all(t, now.stop)
+        self._here = place(now.pose, yaw_of(now.pose.pose.orientation)) if now.pose is not None else None
+        self._watch(t, GroundSensorInputs(self._here, now.link, now.imu, now.ticks, now.scan, now.correction, now.battery))
+        out = self.Outputs()
+        out.arm = [self._arm(t, r) for r in now.arm]
+        out.set_mode = [self._set_mode(t, r) for r in now.set_mode]
+        out.set_mission = [self._set_mission(t, r) for r in now.set_mission]
+        out.set_current = [self._set_current(t, r) for r in now.set_current]
+        out.set_fence = [self._set_fence(t, r) for r in now.set_fence]
+        out.order = [self._carry_out(t, r) for r in now.order]
+        out.set_rally = [self._set_rally(r.rally) for r in now.set_rally]
+        commands = {name: getattr(now, name) for name in SENDERS}
+        position = (now.pose.pose.position.x, now.pose.pose.position.y) if now.pose is not None else None
         self._follow_mission(t, position)
         lasts = self.params.stick_timeout if self._mode == Mode.MODE_MANUAL else COMMAND_MAX_AGE
         # An input is gone once it is stale; how long a command counts is the parameter's to say.
-        self._heard |= {k: Velocity(seconds(c.timestamp), c.linear, c.angular) for k, c in commands.items() if c is not None}
+        self._heard |= {k: VelocityCommand(seconds(c.timestamp), c.linear, c.angular) for k, c in commands.items() if c is not None}
         self._choose(t, {k: replace(c, lasts=lasts) for k, c in self._heard.items()})
-        out = {"wheels": self._wheels(t), **replies, **self._reports(t, position)}
+        out.wheels = self._wheels(t)
+        self._report(t, position, out)
         if self._restarts:
             self._restart()
         return out
 
-    def recall(
-        self,
-        status: VehicleStatus | None = None,
-        mission: Mission | None = None,
-        progress: MissionProgress | None = None,
-        bounds: Fence | None = None,
-        params: ParamValues | None = None,
-        rally: RallyPoints | None = None,
-    ) -> None:
+    def recall(self, left: interface.Recalls) -> None:
         """Goes on in the mode, armed or not, stopped or not, at the mission's item and with the parameters of the instance before."""
-        if params is not None:
-            self.params = self._told_params.taken_up(params, self.params)
-        if status is not None and status.mode in SOURCES:
-            self._mode, self._armed = status.mode, status.armed
-        if status is not None:
-            self._stop = StopStatus(tuple(status.stops))
-        if bounds is not None:
-            self._safety.set_fence(bounds, None)
-        if rally is not None:
-            self._set_rally(rally)
-        if mission is not None and progress is not None:
-            self._engine.resume(mission, progress)
+        if left.params is not None:
+            self.params = self._told_params.taken_up(left.params, self.params)
+        if left.status is not None and left.status.mode in SOURCES:
+            self._mode, self._armed = left.status.mode, left.status.armed
+        if left.status is not None:
+            self._stop = StopStatus(tuple(left.status.stops))
+        if left.bounds is not None:
+            self._safety.set_fence(left.bounds, None)
+        if left.rally is not None:
+            self._set_rally(left.rally)
+        if left.mission is not None and left.progress is not None:
+            self._engine.resume(left.mission, left.progress)
 
     given_up = "its wheels stand"
     stand_in = staticmethod(standing)
 
-    def _watch(self, t: float, sensed: Sensed) -> None:
+    def _watch(self, t: float, sensed: GroundSensorInputs) -> None:
         """What the failsafes order, whatever the mode."""
         rims = self._drive.wheels(Twist(self._ramp.linear, self._ramp.angular))
         asked = WheelSpeeds(rims.left * self._body.wheel_radius, rims.right * self._body.wheel_radius)
-        doing = Doing(self._mode, self._armed and not self._stop, bool(self._choice.source), asked)
+        doing = GroundActivity(self._mode, self._armed and not self._stop, bool(self._choice.source), asked)
         self._safety.keep_near(self._engine.home, self.params.max_distance)
         events, order = self._safety.step(t, sensed, doing, self.params, 1.0 / self.hz)
         self._events += events
@@ -241,10 +162,10 @@ class GroundAutopilot(Service):
             return
         if (mode := mode_of(order.action)) != self._mode:
             self._mode = mode
-            self._tell(t, f"mode {mode_name(mode)}", order.rule.begins, Event.WARNING)
-        if order.action is Action.OFF and self._armed:
+            self._tell(t, f"mode {mode_name(mode)}", order.rule.raised_text, Event.WARNING)
+        if order.action is FailsafeAction.OFF and self._armed:
             self._armed = False
-            self._tell(t, "disarmed", order.rule.begins, Event.WARNING)
+            self._tell(t, "disarmed", order.rule.raised_text, Event.WARNING)
 
     def _set_fence(self, t: float, request: FenceRequest) -> Reply:
         reason = self._safety.set_fence(request.fence, self._here)
@@ -260,7 +181,7 @@ class GroundAutopilot(Service):
             self._rally, self._rally_is_new = rally, True
         return Reply(accepted=not reason, reason=reason)
 
-    def _heed_stop(self, t: float, stop: StopStatus) -> None:
+    def _handle_stop_all(self, t: float, stop: StopStatus) -> None:
         before, self._stop = self._stop, stop
         if stop and stop.who != before.who:
             self._tell(t, "STOP ALL: standing until it is released", f"engaged by {stop.who}", Event.WARNING)
@@ -330,7 +251,7 @@ class GroundAutopilot(Service):
         if reached is not None:
             self._tell(t, f"mission item {reached} reached", "within its acceptance radius")
 
-    def _choose(self, t: float, commands: Mapping[str, Velocity]) -> None:
+    def _choose(self, t: float, commands: Mapping[str, VelocityCommand]) -> None:
         lacking = self._safety.obstacle(self._mode) if self._armed else "disarmed"
         obstacle = f"STOP ALL is engaged by {self._stop.who}" if self._stop else lacking
         before, self._choice = self._choice, choose(t, self._mode, commands, obstacle, self._choice.source)
@@ -349,27 +270,26 @@ class GroundAutopilot(Service):
         left, right = self._drive.wheels(Twist(*self._ramp.lead(*wanted, 1.0 / self.hz)))
         return WheelCommand(timestamp=stamp(t), left=left, right=right)
 
-    def _reports(self, t: float, position: Point | None) -> dict[str, Any]:
+    def _report(self, t: float, position: Point | None, out: interface.Outputs) -> None:
         self._steps += 1
-        reports: dict[str, Any] = {"events": self._events, **self._told_params.news(t, self.params)}
-        self._events = []
+        out.params = self._told_params.news(t, self.params)
+        out.events, self._events = self._events, []
         told = (self._mode, self._armed, self._stop.who)
         if self._steps % STATUS_EVERY == 1 or told != self._told:
             self._told = told
-            reports["status"] = self._status(t, position)
+            out.status = self._status(t, position)
         if self._steps % PROGRESS_EVERY == 1:
-            reports["progress"] = self._engine.progress(stamp(t))
+            out.progress = self._engine.progress(stamp(t))
         if self._mission_is_new:
-            reports["mission"] = self._engine.mission
+            out.mission = self._engine.mission
             self._mission_is_new = False
         if self._fence_is_new:
-            reports["bounds"] = self._safety.fence
+            out.bounds = self._safety.fence
             self._fence_is_new = False
         if self._rally_is_new:
             self._rally.timestamp.CopyFrom(stamp(t))
-            reports["rally"] = self._rally
+            out.rally = self._rally
             self._rally_is_new = False
-        return reports
 
     def _status(self, t: float, position: Point | None) -> VehicleStatus:
         battery = self._safety.battery
@@ -393,7 +313,7 @@ class GroundAutopilot(Service):
             system_id=self._system_id,
             breach=Breach.BREACH_EDGE if self._safety.is_outside else Breach.BREACH_NONE,
             breaches=self._safety.breaches,
-            failsafes=[rule.begins for rule in self._safety.watch.holding.values()],
+            failsafes=[rule.raised_text for rule in self._safety.watch.holding.values()],
         )
 
     def _tell(self, t: float, text: str, cause: str, severity: Event.Severity = Event.NOTICE) -> None:

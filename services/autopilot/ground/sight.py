@@ -7,12 +7,12 @@ from uvf.sensors.sweeping import Sweeping
 MOVED = 0.03  # m of the wheels, after which a scan that is the same to the last bit has frozen
 
 
-class Sight:
-    """``unseen`` and ``unmapped``: s; 0 as long as there never was any. A scan is as old as its last beam."""
+class SensorWatch:
+    """``unseen`` and ``map_age``: s; 0 as long as there never was any. A scan is as old as its last beam."""
 
     def __init__(self, sweeping: Sweeping) -> None:
         self._sweeping = sweeping
-        self.unseen = self.unmapped = 0.0
+        self.unseen = self.map_age = 0.0
         self._seen: float | None = None
         self._mapped: float | None = None
         self._scan: LaserScan | None = None
@@ -30,4 +30,4 @@ class Sight:
         if correction is not None:
             self._mapped = seconds(correction.timestamp)
         self.unseen = t - self._seen if self._seen is not None else 0.0
-        self.unmapped = t - self._mapped if self._mapped is not None else 0.0
+        self.map_age = t - self._mapped if self._mapped is not None else 0.0

@@ -7,7 +7,7 @@ import time
 from collections.abc import Mapping
 
 from services.autopilot.ground.params import GroundAutopilotParams
-from services.autopilot.mavlink.connection.facts import Facts
+from services.autopilot.mavlink.connection.facts import VehicleInfo
 from services.autopilot.mavlink.connection.key_store import KeyStore
 from services.autopilot.mavlink.connection.signing import Signing
 from services.autopilot.mavlink.connection.targets import reserved, targets_from
@@ -16,11 +16,11 @@ from services.autopilot.mavlink.service import MavlinkService
 from uvf.maths.geodesy import LocalTangent
 from uvf.mavlink.endpoint import Peer, UdpLink
 from uvf.models.params import Params
-from uvf.models.scenario import Member, Site
+from uvf.models.scenario import MissionVehicle, Scenario
 from uvf.models.vehicle.flight_params import FIXED, AirParams
 from uvf.models.yaml_data import BadInput, nearest
 from uvf.runtime.bus.address import peer
-from uvf.runtime.contract.instances import Host
+from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.state.state_folder import state_folder
 
 TARGETS = "UVF_MAVLINK_TARGETS"
@@ -38,7 +38,7 @@ EXAMPLE = "127.0.0.1:14550"
 log = logging.getLogger(__name__)
 
 
-def build(site: Site) -> list[Host]:
+def build(site: Scenario) -> list[ServiceInstance]:
     """Raises BadInput when an address in the environment is none or names a vehicle that there is not, or a choice is none of those."""
     targets = targets_from(os.environ.get(TARGETS, DEFAULT_TARGETS), TARGETS, [m.entry.system_id for m in site.members.values()])
     where = os.environ.get(LISTEN, DEFAULT_LISTEN)
@@ -53,7 +53,7 @@ def build(site: Site) -> list[Host]:
         link = open_link([target.peer for target in targets], listen)
         return MavlinkService(facts_of(site, generic, started), link, stores, open_keys(started, required), reserved(targets))
 
-    return [Host(MavlinkService, make, writes_for=tuple(site.members))]
+    return [ServiceInstance(MavlinkService, make, writes_for=tuple(site.members))]
 
 
 def chosen(name: str, choices: Mapping[str, bool], default: str, environment: Mapping[str, str]) -> bool:
@@ -64,11 +64,11 @@ def chosen(name: str, choices: Mapping[str, bool], default: str, environment: Ma
     return choices[text]
 
 
-def facts_of(site: Site, generic: bool = False, started: float = 0.0) -> list[Facts]:
+def facts_of(site: Scenario, generic: bool = False, started: float = 0.0) -> list[VehicleInfo]:
     origin = site.world.origin
     tangent = LocalTangent.from_degrees(origin.latitude, origin.longitude, origin.altitude)
     own = {m.name: own_of(m) for m in site.members.values()}
-    return [Facts(m.name, m.entry.system_id, m.file, tangent, *own[m.name], generic, started) for m in site.members.values()]
+    return [VehicleInfo(m.name, m.entry.system_id, m.file, tangent, *own[m.name], generic, started) for m in site.members.values()]
 
 
 def open_keys(started: float, required: bool) -> Signing:
@@ -82,14 +82,14 @@ def open_keys(started: float, required: bool) -> Signing:
         return Signing(KeyStore(path), started, required)
 
 
-def own_of(member: Member) -> tuple[Params, frozenset[str]]:
+def own_of(member: MissionVehicle) -> tuple[Params, frozenset[str]]:
     """The autopilot's parameters as its file sets them, and those that it reads only when it starts."""
     if member.file.kind == "ground":
         return member.params(GROUND, GroundAutopilotParams), frozenset()
     return member.params(AIR, AirParams), FIXED
 
 
-def store_of(site: Site, vehicle: str) -> FileStore:
+def store_of(site: Scenario, vehicle: str) -> FileStore:
     """Of one vehicle of one mission: another mission's begins with its own file."""
     return FileStore(state_folder() / "parameters" / site.mission_path.stem / f"{vehicle}.json")
 

@@ -2,8 +2,8 @@
 
 import math
 
-from services.autopilot.mavlink.commands.commands import Acknowledger, Command, Handler
-from services.autopilot.mavlink.connection.line import Line
+from services.autopilot.mavlink.commands.commands import Acknowledger, Handler, ReceivedCommand
+from services.autopilot.mavlink.connection.line import VehicleConnection
 from services.autopilot.mavlink.parameters.component_metadata import component_metadata
 from services.autopilot.mavlink.telemetry.health import health
 from services.autopilot.mavlink.telemetry.navigation import boot_ms
@@ -30,7 +30,7 @@ class Queries:
             mav.MAV_CMD_RUN_PREARM_CHECKS: _prearm,
         }
 
-    def _request_message(self, line: Line, command: Command, ack: Acknowledger) -> None:
+    def _request_message(self, line: VehicleConnection, command: ReceivedCommand, ack: Acknowledger) -> None:
         number = _number(command.p[0])
         if number == mav.MAVLINK_MSG_ID_AVAILABLE_MODES:
             _available_modes(line, command, ack)
@@ -40,12 +40,12 @@ class Queries:
         else:
             _answer(line, command, ack, number)
 
-    def _set_interval(self, line: Line, command: Command, ack: Acknowledger) -> None:
+    def _set_interval(self, line: VehicleConnection, command: ReceivedCommand, ack: Acknowledger) -> None:
         interval = command.p[1]
         known = math.isfinite(interval) and self._schedule.set_interval(_number(command.p[0]), command.sender.peer, interval)
         ack(mav.MAV_RESULT_ACCEPTED if known else mav.MAV_RESULT_UNSUPPORTED)
 
-    def _get_interval(self, line: Line, command: Command, ack: Acknowledger) -> None:
+    def _get_interval(self, line: VehicleConnection, command: ReceivedCommand, ack: Acknowledger) -> None:
         number = _number(command.p[0])
         if number not in STREAMS:
             ack(mav.MAV_RESULT_UNSUPPORTED)
@@ -59,7 +59,7 @@ def _number(value: float) -> int:
     return int(value) if math.isfinite(value) else -1
 
 
-def _answer(line: Line, command: Command, ack: Acknowledger, number: int) -> None:
+def _answer(line: VehicleConnection, command: ReceivedCommand, ack: Acknowledger, number: int) -> None:
     stream = STREAMS.get(number)
     if stream is None:
         ack(mav.MAV_RESULT_UNSUPPORTED)
@@ -74,7 +74,7 @@ def _fixed(number: int) -> Handler:
     return lambda line, command, ack: _answer(line, command, ack, number)
 
 
-def _available_modes(line: Line, command: Command, ack: Acknowledger) -> None:
+def _available_modes(line: VehicleConnection, command: ReceivedCommand, ack: Acknowledger) -> None:
     """Parameter 2: which one, from 1; 0 or not given = all."""
     wanted = command.p[1]
     index = _number(wanted) if math.isfinite(wanted) else 0
@@ -88,7 +88,7 @@ def _available_modes(line: Line, command: Command, ack: Acknowledger) -> None:
         line.send(message, command.sender.peer)
 
 
-def _prearm(line: Line, command: Command, ack: Acknowledger) -> None:
+def _prearm(line: VehicleConnection, command: ReceivedCommand, ack: Acknowledger) -> None:
     ack(mav.MAV_RESULT_ACCEPTED)
     for complaint in health(line.facts, line.latest).complaints:
         line.text(mav.MAV_SEVERITY_WARNING, f"PreArm: {complaint}", command.sender.peer)

@@ -4,13 +4,13 @@ from collections.abc import Sequence
 
 from services.autopilot.mavlink.connection.line import Sender
 from services.autopilot.mavlink.connection.peers import Peers
-from services.autopilot.mavlink.connection.signing import Signing, Verdict
+from services.autopilot.mavlink.connection.signing import SignatureVerdict, Signing
 from services.autopilot.mavlink.connection.stations import Stations
 from services.autopilot.mavlink.connection.targets import Reserved
 from services.autopilot.mavlink.vehicle_link import VehicleLink
 from uvf.mavlink import dialect as mav
 from uvf.mavlink.codec import AUTOPILOT
-from uvf.mavlink.endpoint import Link, Peer
+from uvf.mavlink.endpoint import DatagramLink, Peer
 
 ENGAGING = frozenset(
     {
@@ -30,7 +30,7 @@ ENGAGING = frozenset(
 
 
 class Reception:
-    def __init__(self, vehicles: Sequence[VehicleLink], link: Link, signing: Signing, reserved: Reserved) -> None:
+    def __init__(self, vehicles: Sequence[VehicleLink], link: DatagramLink, signing: Signing, reserved: Reserved) -> None:
         self.stations = Stations()
         self._vehicles = vehicles
         self._own_ids = {vehicle.line.facts.system_id for vehicle in vehicles}
@@ -48,7 +48,7 @@ class Reception:
         self._link.keep(t, peer, message.get_msgId() in ENGAGING)
         self._welcome(t, sender)
         verdict = self._signing.check(t, message, sender)
-        if verdict in (Verdict.SIGNED, Verdict.UNSIGNED):
+        if verdict in (SignatureVerdict.SIGNED, SignatureVerdict.UNSIGNED):
             self.stations.hear(t, message, sender)
         self._pass_on(t, message, sender, verdict)
 
@@ -71,15 +71,15 @@ class Reception:
         self._peers.forget(t, known)
         self._signing.forget_all_but(known)
 
-    def _pass_on(self, t: float, message: mav.MAVLink_message, sender: Sender, verdict: Verdict) -> None:
+    def _pass_on(self, t: float, message: mav.MAVLink_message, sender: Sender, verdict: SignatureVerdict) -> None:
         addressed = self._addressed(message, sender.peer)
         if isinstance(message, mav.MAVLink_setup_signing_message):
             self._set_up(message, sender, verdict, addressed)
             return
         for vehicle in addressed:
-            if verdict is Verdict.REFUSED:
+            if verdict is SignatureVerdict.REFUSED:
                 vehicle.line.text(mav.MAV_SEVERITY_WARNING, self._signing.why_refused(sender.peer), sender.peer)
-            elif verdict is not Verdict.REPLAYED:
+            elif verdict is not SignatureVerdict.REPLAYED:
                 vehicle.hear(message, sender)
 
     def _at(self, peer: Peer) -> list[VehicleLink]:
@@ -95,7 +95,7 @@ class Reception:
         return [vehicle for vehicle in self._at(peer) if target in (0, vehicle.line.facts.system_id)]
 
     def _set_up(
-        self, message: mav.MAVLink_setup_signing_message, sender: Sender, verdict: Verdict, addressed: Sequence[VehicleLink]
+        self, message: mav.MAVLink_setup_signing_message, sender: Sender, verdict: SignatureVerdict, addressed: Sequence[VehicleLink]
     ) -> None:
         """The link is one for all vehicles; the one that is asked answers."""
         if not addressed:

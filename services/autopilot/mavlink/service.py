@@ -8,26 +8,41 @@ from google.protobuf.message import Message
 from schemas import topics
 from schemas.messages import (
     AirData,
+    ArmRequest,
     Battery,
     Clock,
+    DriveCommand,
     EstimateQuality,
     Event,
     Fence,
+    FenceRequest,
+    FlightSetpoint,
     Gnss,
+    GoalRequest,
+    GoAroundRequest,
     Imu,
     Link,
     Mission,
     MissionProgress,
+    MissionRequest,
+    ModeRequest,
     NavState,
     NavStatus,
+    OrbitRequest,
+    OrderRequest,
+    ParamReply,
+    ParamRequest,
     ParamValues,
     RallyPoints,
+    RallyRequest,
+    Reply,
+    SetCurrentRequest,
     SurfaceCommand,
     Targets,
     VehicleStatus,
     WheelCommand,
 )
-from services.autopilot.mavlink.connection.facts import Facts
+from services.autopilot.mavlink.connection.facts import VehicleInfo
 from services.autopilot.mavlink.connection.signing import Signing
 from services.autopilot.mavlink.connection.targets import Reserved
 from services.autopilot.mavlink.parameters.parameter_store import Store
@@ -35,12 +50,33 @@ from services.autopilot.mavlink.reception import Reception
 from services.autopilot.mavlink.vehicle_link import VehicleLink
 from uvf.mavlink import endpoint
 from uvf.mavlink.codec import Codec
-from uvf.runtime.contract.service import Answer, Service, each_vehicle, every, optional
+from uvf.runtime.contract.declaration import Reads, Writes, answers, call, each_vehicle, every, optional, topic
+from uvf.runtime.contract.service import Answer, Service
 from uvf.runtime.messages.convert import stamp
-from uvf.runtime.messages.outputs import Outputs
 from uvf.sensors.sampling import Due
 
 Answers = list[Answer[Any, Any]]
+
+
+NEWS = (
+    "nav",
+    "status",
+    "gnss",
+    "battery",
+    "imu",
+    "air_data",
+    "surface_command",
+    "wheel_command",
+    "targets",
+    "quality",
+    "planning",
+    "params",
+    "mission",
+    "progress",
+    "fence",
+    "rally",
+)
+"""Inputs by vehicle that are kept under their names as the newest of their kind."""
 
 
 class MavlinkService(Service):
@@ -50,51 +86,61 @@ class MavlinkService(Service):
     hz = 50.0
     scope = "world"
     clock = "wall"
-    inputs = {
-        "nav": each_vehicle(topics.NAV_STATE),
-        "status": each_vehicle(topics.STATUS),
-        "mission": each_vehicle(topics.MISSION),
-        "progress": each_vehicle(topics.PROGRESS),
-        "fence": each_vehicle(topics.FENCE),
-        "rally": each_vehicle(topics.RALLY),
-        "gnss": each_vehicle(topics.GNSS),
-        "battery": each_vehicle(topics.BATTERY),
-        "imu": each_vehicle(topics.IMU),
-        "air_data": each_vehicle(topics.AIR_DATA),
-        "surface_command": each_vehicle(topics.SURFACE_COMMAND),
-        "wheel_command": each_vehicle(topics.WHEEL_COMMAND),
-        "targets": each_vehicle(topics.TARGETS),
-        "quality": each_vehicle(topics.QUALITY),
-        "planning": each_vehicle(topics.NAV_STATUS),
-        "events": each_vehicle(every(topics.EVENTS.by("*"))),
-        "params": each_vehicle(topics.PARAMS.by("*")),
-        "clock": optional(topics.CLOCK),
-    }
-    outputs = {
-        "drive": topics.DRIVE.by("mavlink"),
-        "surfaces": topics.SURFACES.by("mavlink"),
-        "setpoint": topics.SETPOINT.by("mavlink"),
-        "link": topics.LINK,
-    }
-    calls = {
-        "arm": topics.ARM,
-        "set_mode": topics.SET_MODE,
-        "set_mission": topics.SET_MISSION,
-        "set_current": topics.SET_CURRENT,
-        "set_fence": topics.SET_FENCE,
-        "set_rally": topics.SET_RALLY,
-        "goal": topics.GOAL,
-        "orbit": topics.ORBIT,
-        "go_around": topics.GO_AROUND,
-        "order": topics.ORDER,
-        "air_param": topics.PARAM.by("autopilot_air"),
-        "ground_param": topics.PARAM.by("autopilot_ground"),
-    }
+
+    class Inputs(Reads):
+        nav: dict[str, NavState] = each_vehicle(topics.NAV_STATE)
+        status: dict[str, VehicleStatus] = each_vehicle(topics.STATUS)
+        mission: dict[str, Mission] = each_vehicle(topics.MISSION)
+        progress: dict[str, MissionProgress] = each_vehicle(topics.PROGRESS)
+        fence: dict[str, Fence] = each_vehicle(topics.FENCE)
+        rally: dict[str, RallyPoints] = each_vehicle(topics.RALLY)
+        gnss: dict[str, Gnss] = each_vehicle(topics.GNSS)
+        battery: dict[str, Battery] = each_vehicle(topics.BATTERY)
+        imu: dict[str, Imu] = each_vehicle(topics.IMU)
+        air_data: dict[str, AirData] = each_vehicle(topics.AIR_DATA)
+        surface_command: dict[str, SurfaceCommand] = each_vehicle(topics.SURFACE_COMMAND)
+        wheel_command: dict[str, WheelCommand] = each_vehicle(topics.WHEEL_COMMAND)
+        targets: dict[str, Targets] = each_vehicle(topics.TARGETS)
+        quality: dict[str, EstimateQuality] = each_vehicle(topics.QUALITY)
+        planning: dict[str, NavStatus] = each_vehicle(topics.NAV_STATUS)
+        events: dict[str, list[Event]] = each_vehicle(every(topics.EVENTS.by("*")))
+        params: dict[str, ParamValues] = each_vehicle(topics.PARAMS.by("*"))
+        clock: Clock | None = optional(topics.CLOCK)
+        arm: list[Answer[ArmRequest, Reply]] = answers(topics.ARM)
+        set_mode: list[Answer[ModeRequest, Reply]] = answers(topics.SET_MODE)
+        set_mission: list[Answer[MissionRequest, Reply]] = answers(topics.SET_MISSION)
+        set_current: list[Answer[SetCurrentRequest, Reply]] = answers(topics.SET_CURRENT)
+        set_fence: list[Answer[FenceRequest, Reply]] = answers(topics.SET_FENCE)
+        set_rally: list[Answer[RallyRequest, Reply]] = answers(topics.SET_RALLY)
+        goal: list[Answer[GoalRequest, Reply]] = answers(topics.GOAL)
+        orbit: list[Answer[OrbitRequest, Reply]] = answers(topics.ORBIT)
+        go_around: list[Answer[GoAroundRequest, Reply]] = answers(topics.GO_AROUND)
+        order: list[Answer[OrderRequest, Reply]] = answers(topics.ORDER)
+        air_param: list[Answer[ParamRequest, ParamReply]] = answers(topics.PARAM.by("autopilot_air"))
+        ground_param: list[Answer[ParamRequest, ParamReply]] = answers(topics.PARAM.by("autopilot_ground"))
+
+    class Outputs(Writes):
+        drive: dict[str, DriveCommand] | None = topic(topics.DRIVE.by("mavlink"))
+        surfaces: dict[str, SurfaceCommand] | None = topic(topics.SURFACES.by("mavlink"))
+        setpoint: dict[str, FlightSetpoint] | None = topic(topics.SETPOINT.by("mavlink"))
+        link: dict[str, Link] | None = topic(topics.LINK)
+        arm: list[ArmRequest] = call(topics.ARM)
+        set_mode: list[ModeRequest] = call(topics.SET_MODE)
+        set_mission: list[MissionRequest] = call(topics.SET_MISSION)
+        set_current: list[SetCurrentRequest] = call(topics.SET_CURRENT)
+        set_fence: list[FenceRequest] = call(topics.SET_FENCE)
+        set_rally: list[RallyRequest] = call(topics.SET_RALLY)
+        goal: list[GoalRequest] = call(topics.GOAL)
+        orbit: list[OrbitRequest] = call(topics.ORBIT)
+        go_around: list[GoAroundRequest] = call(topics.GO_AROUND)
+        order: list[OrderRequest] = call(topics.ORDER)
+        air_param: list[ParamRequest] = call(topics.PARAM.by("autopilot_air"))
+        ground_param: list[ParamRequest] = call(topics.PARAM.by("autopilot_ground"))
 
     def __init__(
         self,
-        facts: Sequence[Facts],
-        link: endpoint.Link,
+        facts: Sequence[VehicleInfo],
+        link: endpoint.DatagramLink,
         stores: Mapping[str, Store],
         signing: Signing | None = None,
         reserved: Reserved | None = None,
@@ -111,65 +157,19 @@ class MavlinkService(Service):
             vehicle.line.latest.others = [(v.line.facts, v.line.latest) for other, v in self._vehicles.items() if other != name]
         self._link_due = Due(topics.LINK.hz)
 
-    def step(
-        self,
-        t: float,
-        nav: dict[str, NavState],
-        status: dict[str, VehicleStatus],
-        mission: dict[str, Mission],
-        progress: dict[str, MissionProgress],
-        fence: dict[str, Fence],
-        rally: dict[str, RallyPoints],
-        gnss: dict[str, Gnss],
-        battery: dict[str, Battery],
-        imu: dict[str, Imu],
-        air_data: dict[str, AirData],
-        surface_command: dict[str, SurfaceCommand],
-        wheel_command: dict[str, WheelCommand],
-        targets: dict[str, Targets],
-        quality: dict[str, EstimateQuality],
-        planning: dict[str, NavStatus],
-        events: dict[str, list[Event]],
-        params: dict[str, ParamValues],
-        clock: Clock | None,
-        arm: Answers,
-        set_mode: Answers,
-        set_mission: Answers,
-        set_current: Answers,
-        set_fence: Answers,
-        set_rally: Answers,
-        goal: Answers,
-        orbit: Answers,
-        go_around: Answers,
-        order: Answers,
-        air_param: Answers,
-        ground_param: Answers,
-    ) -> Outputs:
+    def step(self, t: float, now: Inputs) -> Outputs:
         """``t`` [s]: wall time since the start; answers end the commands that wait for them."""
-        news: dict[str, Mapping[str, Message]] = {
-            "nav": nav,
-            "status": status,
-            "gnss": gnss,
-            "battery": battery,
-            "imu": imu,
-            "air_data": air_data,
-            "surface_command": surface_command,
-            "wheel_command": wheel_command,
-            "targets": targets,
-            "quality": quality,
-            "planning": planning,
-            "params": params,
-        }
-        news |= {"mission": mission, "progress": progress, "fence": fence, "rally": rally}
-        self._update(t, news, clock)
-        plans = (*set_mission, *set_current, *set_fence, *set_rally)
-        for answer in (*arm, *set_mode, *plans, *goal, *orbit, *go_around, *order, *air_param, *ground_param):
-            self._vehicles[answer.vehicle].line.answered(answer)
+        self._update(t, {name: getattr(now, name) for name in NEWS}, now.clock)
+        for called in self.calls:
+            for answer in getattr(now, called):
+                self._vehicles[answer.vehicle].line.answered(answer)
         for datagram, peer in self._link.receive(t):
             for message in self.codec.parse(datagram):
                 self._reception.take(t, message, peer)
-        self._speak(t, events)
-        return {**self._outputs(), **self._links(t)}
+        self._speak(t, now.events)
+        out = self._outputs()
+        out.link = self._links(t)
+        return out
 
     def close(self) -> None:
         self._link.close()
@@ -195,7 +195,7 @@ class MavlinkService(Service):
                 for packet, peer in self.codec.packets(system_id, message, [(p, self._signing.signer(t, p)) for p in to]):
                     self._link.send(packet, peer)
 
-    def _links(self, t: float) -> Outputs:
+    def _links(self, t: float) -> dict[str, Link]:
         """Told of every vehicle alike: a station hears them all."""
         if not self._link_due.at(t):
             return {}
@@ -206,14 +206,17 @@ class MavlinkService(Service):
             latest = vehicle.line.latest
             rate = latest.clock.rate if latest.clock is not None else 1.0
             links[name] = Link(timestamp=stamp(latest.sim_time), stations=count, silence=silence, rate=rate, port=self._link.port)
-        return {"link": links}
+        return links
 
     def _outputs(self) -> Outputs:
-        outputs: dict[str, dict[str, Any]] = {}
+        out = self.Outputs()
         for name, vehicle in self._vehicles.items():
-            for call, request in vehicle.line.take_requests():
-                outputs.setdefault(call, {}).setdefault(name, []).append(request)
+            asked: dict[str, list[Message]] = {}
+            for service, message in vehicle.line.take_requests():
+                asked.setdefault(service, []).append(message)
+            for called, messages in asked.items():
+                out.add(called, name, messages)
             for output, command in vehicle.line.commands.items():
-                outputs.setdefault(output, {})[name] = command
+                out.add(output, name, command)
             vehicle.line.commands.clear()
-        return outputs
+        return out

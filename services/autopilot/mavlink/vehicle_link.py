@@ -6,26 +6,26 @@ from typing import Any
 
 from schemas.messages import Event
 from services.autopilot.mavlink.commands.actions import ACTIONS, on_set_mode
-from services.autopilot.mavlink.commands.commands import Commands
+from services.autopilot.mavlink.commands.commands import CommandServer
 from services.autopilot.mavlink.commands.fence_switch import FENCE_SWITCH
 from services.autopilot.mavlink.commands.guided import GUIDED
-from services.autopilot.mavlink.commands.manual import ByHand
+from services.autopilot.mavlink.commands.manual import ManualControl
 from services.autopilot.mavlink.commands.not_offered import NOT_OFFERED
 from services.autopilot.mavlink.commands.not_offered import handlers as not_offered
 from services.autopilot.mavlink.commands.orders import ORDERS, on_set_home_position, on_set_origin
 from services.autopilot.mavlink.commands.setpoints import Setpoints
-from services.autopilot.mavlink.connection.facts import Facts
-from services.autopilot.mavlink.connection.line import Line, Sender
+from services.autopilot.mavlink.connection.facts import VehicleInfo
+from services.autopilot.mavlink.connection.line import Sender, VehicleConnection
 from services.autopilot.mavlink.connection.statustext import SEVERITY, event_text
 from services.autopilot.mavlink.missions.missions import Missions
 from services.autopilot.mavlink.missions.reached import ReachedItems
 from services.autopilot.mavlink.parameters.component_metadata import files_of
 from services.autopilot.mavlink.parameters.ftp import FileServer
 from services.autopilot.mavlink.parameters.parameter_store import Store
-from services.autopilot.mavlink.parameters.parameters import Parameters
+from services.autopilot.mavlink.parameters.parameters import ParameterServer
 from services.autopilot.mavlink.queries import Queries
 from services.autopilot.mavlink.telemetry.data_streams import set_rates
-from services.autopilot.mavlink.telemetry.events import News
+from services.autopilot.mavlink.telemetry.events import EventNews
 from services.autopilot.mavlink.telemetry.health import health
 from services.autopilot.mavlink.telemetry.identity import greeting
 from services.autopilot.mavlink.telemetry.streams import Schedule
@@ -47,24 +47,24 @@ ON_CHANGE = (
 
 
 class VehicleLink:
-    def __init__(self, facts: Facts, store: Store) -> None:
-        self.line = Line(facts)
+    def __init__(self, facts: VehicleInfo, store: Store) -> None:
+        self.line = VehicleConnection(facts)
         self.schedule = Schedule({number: stream.hz for number, stream in STREAMS.items()})
-        self._parameters = Parameters(self.line, store)
+        self._parameters = ParameterServer(self.line, store)
         self.line.files = files_of(facts, self._parameters.table)
         self._ftp = FileServer(self.line, self.line.files)
         self._missions = Missions(self.line)
-        self._by_hand = ByHand(self.line)
+        self._by_hand = ManualControl(self.line)
         self._setpoints = Setpoints(self.line)
         queries = Queries(self.schedule).handlers()
-        self._commands = Commands(self.line, {**FIXED, **queries, **self._parameters.commands()})
+        self._commands = CommandServer(self.line, {**FIXED, **queries, **self._parameters.commands()})
         self._handlers = self._all_handlers()
         self._state: tuple[object, ...] = ()
         self._item: tuple[object, ...] = ()
         self._home: tuple[float, ...] = ()
         self._reached = ReachedItems()
         self._complaints: tuple[str, ...] = ()
-        self._news = News()
+        self._news = EventNews()
         self._to_greet: dict[Peer, float] = {}
         """Who is new, and when [s] it has heard a heartbeat at the latest."""
 

@@ -6,14 +6,14 @@ from typing import Any
 from schemas.messages import ModeRequest
 from services.gcs.commands import Arm, Cancel, Commander, SetMode, StopAll
 from services.gcs.state.layers import hidden_roots
-from services.gcs.state.session import Session
+from services.gcs.state.session import BrowserSession
 from services.gcs.state.state import Model, VehicleModel
 from services.gcs.state.wording import describe, modes_of
 from services.gcs.view import camera_panel, panels, records, status, teleoperation
-from services.gcs.view.drawing import Button, Panel, Picture
+from services.gcs.view.drawing import Button, PagePanel, Picture
 from services.gcs.view.markup import Html, html
 from services.gcs.view.overview import Overview
-from services.gcs.view.view import View
+from services.gcs.view.view import SceneView
 
 FAST = ("stop", "bar", "orders", "wheel", "instrument")
 EVERY = 2
@@ -28,7 +28,7 @@ class Composer:
     def __init__(self, model: Model, commander: Commander) -> None:
         self._model = model
         self._commander = commander
-        self._view = View(model)
+        self._view = SceneView(model)
         self._overview = Overview(model)
         self._html: dict[str, Html] = {}
         self._own: dict[int, tuple[str, dict[str, Html]]] = {}
@@ -58,7 +58,7 @@ class Composer:
             "processes": lambda: records.processes(self._model, t),
         }
 
-    def _panel(self, session: Session, t: float) -> Panel:
+    def _panel(self, session: BrowserSession, t: float) -> PagePanel:
         """Drawn as a whole when another vehicle comes on show: never the words about one under the name of another."""
         chosen = self._model.chosen_by(session)
         before, words = self._own.get(session.page, ("", {}))
@@ -67,11 +67,11 @@ class Composer:
         self._own[session.page] = (session.vehicle, words)
         hidden = hidden_roots(session.layers)
         if chosen is None:
-            return Panel(html=words, hidden=hidden)
+            return PagePanel(html=words, hidden=hidden)
         image, gimbal = camera_panel.picture(chosen, session, t), camera_panel.gimbal_panel(chosen, session)
-        return Panel(chosen.name, words, self._buttons(session, chosen, t), image, gimbal, hidden)
+        return PagePanel(chosen.name, words, self._buttons(session, chosen, t), image, gimbal, hidden)
 
-    def _words(self, session: Session, v: VehicleModel | None, t: float) -> dict[str, Draw]:
+    def _words(self, session: BrowserSession, v: VehicleModel | None, t: float) -> dict[str, Draw]:
         bar = self._once("bar", v, lambda: status.status_bar(self._model, v, t))
         overview = self._once("overview", v, lambda: self._overview.svg(v))
         if v is None:
@@ -112,7 +112,7 @@ class Composer:
             ),
         ]
 
-    def _buttons(self, session: Session, v: VehicleModel, t: float) -> list[Button]:
+    def _buttons(self, session: BrowserSession, v: VehicleModel, t: float) -> list[Button]:
         """The commands that make sense for the vehicle that a browser shows; a button is of one vehicle for all its life."""
         mode = v.status.mode if v.status is not None else None
         shown = [

@@ -8,7 +8,7 @@ import numpy as np
 
 from services.gcs.commands import Action, AimGimbal
 from services.gcs.view.camera_panel import MODES, GimbalPanel
-from services.gcs.view.drawing import Panel
+from services.gcs.view.drawing import PagePanel
 
 FULL_TURN = 180.0  # deg
 ROUNDED = radians(0.5)  # the sliders' ends are whole degrees
@@ -45,7 +45,7 @@ class ViserCameras:
         if abs(pan) <= panel.pan_max + ROUNDED and panel.tilts[0] - ROUNDED <= tilt <= panel.tilts[1] + ROUNDED:
             self._ask(AimGimbal(panel.vehicle, pan, tilt, mode))
 
-    def show(self, shown: Panel) -> None:
+    def show(self, shown: PagePanel) -> None:
         self._show_controls(shown.gimbal)
         there = bool(shown.html.get("cameras"))
         if self._folder.visible != there:

@@ -19,7 +19,7 @@ from services.gcs.page.viser_server import guarded_server
 from services.gcs.page.viser_views import Views, ViserViews
 from services.gcs.view import panels
 from services.gcs.view.cameras import FOV
-from services.gcs.view.drawing import Camera, Picture
+from services.gcs.view.drawing import CameraView, Picture
 from services.gcs.view.markup import Html, trusted
 from uvf.runtime.bus.address import Address, claim
 
@@ -47,7 +47,7 @@ class ViserPage:
         self._server.on_client_connect(self._on_connect)
         self._server.on_client_disconnect(self._on_disconnect)
 
-    def _surroundings(self, camera: Camera) -> None:
+    def _surroundings(self, camera: CameraView) -> None:
         gui, scene = self._server.gui, self._server.scene
         gui.configure_theme(dark_mode=True, show_logo=False, show_share_button=False, brand_color=(46, 120, 200))
         gui.set_panel_label("Fleet")

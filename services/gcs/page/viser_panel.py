@@ -12,7 +12,7 @@ from services.gcs.page.viser_buttons import ViserButtons
 from services.gcs.page.viser_cameras import ViserCameras
 from services.gcs.page.viser_layers import ViserLayers
 from services.gcs.page.viser_script import action_in, bar_source, padded, script, shape_in
-from services.gcs.view.drawing import Panel
+from services.gcs.view.drawing import PagePanel
 from services.gcs.view.markup import Html
 
 BEAT = 1.0  # s between two signs of life to the page
@@ -56,7 +56,7 @@ class ViserPanel:
         elif shape is not None:
             self._reshape(self._client, *shape)
 
-    def show(self, panel: Panel) -> None:
+    def show(self, panel: PagePanel) -> None:
         """A browser that has gone meanwhile is written to in vain, which is no fault."""
         try:
             with self._client._websock_connection.get_message_buffer().sanctioned_dead_writes(), self._client.atomic():

@@ -8,8 +8,8 @@ import viser
 from numpy.typing import NDArray
 
 from services.gcs.state.layers import ROOTS
-from services.gcs.state.state import Placed
-from services.gcs.view.drawing import FloorPicture, Mesh, Node, Points, Polyline, Text
+from services.gcs.state.state import DisplayPose
+from services.gcs.view.drawing import FloorPicture, MeshNode, Node, Points, Polyline, TextNode
 
 Floats = NDArray[np.float64]
 
@@ -24,12 +24,12 @@ class ViserScene:
         self._server = server
         self._on_pick = on_pick
         self._shown: dict[str, tuple[Node, Any]] = {}
-        self._frames: dict[str, tuple[Any, Placed]] = {}
+        self._frames: dict[str, tuple[Any, DisplayPose]] = {}
         for root in [root for roots in ROOTS.values() for root in roots]:
             # There before a browser comes, which hides the whole of it.
             server.scene.add_frame(root, show_axes=False)
 
-    def show(self, nodes: Mapping[str, Node], places: Mapping[str, Placed]) -> None:
+    def show(self, nodes: Mapping[str, Node], places: Mapping[str, DisplayPose]) -> None:
         for name in [n for n in self._shown if n not in nodes]:
             self._shown.pop(name)[1].remove()
         for name in [n for n in reversed(self._frames) if n not in places]:  # what hangs on a frame before the frame
@@ -44,7 +44,7 @@ class ViserScene:
             elif before[0] is not node:
                 self._shown[name] = (node, self._change(name, node, *before))
 
-    def _place(self, name: str, place: Placed) -> None:
+    def _place(self, name: str, place: DisplayPose) -> None:
         before = self._frames.get(name)
         if before is None:
             handle = self._server.scene.add_frame(name, show_axes=False, wxyz=place.wxyz, position=place.position)
@@ -62,7 +62,7 @@ class ViserScene:
     def _add(self, name: str, node: Node) -> Any:
         scene = self._server.scene
         match node:
-            case Mesh():
+            case MeshNode():
                 return self._add_mesh(name, node)
             case Polyline():
                 return scene.add_line_segments(name, segments(node.points), node.colour, thickness=node.width, thickness_units="screen")
@@ -70,12 +70,12 @@ class ViserScene:
                 return scene.add_point_cloud(
                     name, _f32(node.points), node.colour, point_size=node.size, point_shape="circle", precision="float32"
                 )
-            case Text():
+            case TextNode():
                 return scene.add_label(name, node.text, position=node.position, anchor="bottom-center")
             case FloorPicture():
                 return self._add_picture(name, node)
 
-    def _add_mesh(self, name: str, node: Mesh) -> Any:
+    def _add_mesh(self, name: str, node: MeshNode) -> Any:
         opacity = None if node.opacity >= 1 else node.opacity
         handle = self._server.scene.add_mesh_simple(
             name, _f32(node.vertices), node.faces.astype(np.uint32), color=node.colour, opacity=opacity, flat_shading=True, side="double"
@@ -105,7 +105,7 @@ class ViserScene:
                 handle.points = segments(node.points)
             case (Points(), Points()) if node.colour == old.colour and len(node.points) == len(old.points):
                 handle.points = _f32(node.points)
-            case (Text(), Text()):
+            case (TextNode(), TextNode()):
                 self._change_text(node, old, handle)
             case (FloorPicture(), FloorPicture()) if (node.width, node.height, node.centre, node.yaw) == (
                 old.width,
@@ -118,7 +118,7 @@ class ViserScene:
                 return self._add(name, node)
         return handle
 
-    def _change_text(self, node: Text, old: Text, handle: Any) -> None:
+    def _change_text(self, node: TextNode, old: TextNode, handle: Any) -> None:
         if node.text != old.text:
             handle.text = node.text
         handle.position = node.position

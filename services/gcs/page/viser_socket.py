@@ -31,7 +31,7 @@ Quaternion = tuple[float, float, float, float]
 Screen = tuple[float, float]
 
 
-class Camera(msgspec.Struct, tag="ViewerCameraMessage", forbid_unknown_fields=True):
+class CameraMessage(msgspec.Struct, tag="ViewerCameraMessage", forbid_unknown_fields=True):
     """As ``viser._messages.ViewerCameraMessage``; the names below likewise."""
 
     wxyz: Quaternion
@@ -74,7 +74,7 @@ class NodeClick(msgspec.Struct, tag="SceneNodeClickMessage", forbid_unknown_fiel
     owner: Word = ""
 
 
-DECODER: msgspec.msgpack.Decoder[Any] = msgspec.msgpack.Decoder(Camera | Update | Click | NodeClick)
+DECODER: msgspec.msgpack.Decoder[Any] = msgspec.msgpack.Decoder(CameraMessage | Update | Click | NodeClick)
 
 
 def is_sound(raw: object) -> bool:

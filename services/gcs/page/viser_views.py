@@ -8,9 +8,9 @@ import viser
 from viser import _messages
 
 from services.gcs.page.viser_script import follow
-from services.gcs.view.drawing import Camera
+from services.gcs.view.drawing import CameraView
 
-Views = Callable[[float], Mapping[str, Camera]]
+Views = Callable[[float], Mapping[str, CameraView]]
 """Width by height of a window -> its named views, the opening one first."""
 FOLLOW = "Follow"
 NEAR = 0.2  # m

@@ -13,7 +13,7 @@ WARNED_FOR = 12.0  # s, wall
 ALARMED_FOR = 30.0  # s, wall
 
 
-class Line(NamedTuple):
+class EventLine(NamedTuple):
     """One line of the event log."""
 
     t: float  # s, simulation time
@@ -34,24 +34,24 @@ class Line(NamedTuple):
 
 
 class Notice(NamedTuple):
-    line: Line
+    line: EventLine
     good: bool
     until: float  # s, wall
 
 
-class Journal:
+class EventHistory:
     """The newest lines of each class in rings of their own, so that many of one push out none of another."""
 
     def __init__(self) -> None:
-        self._kept: dict[str, deque[tuple[int, Line]]] = {}
+        self._kept: dict[str, deque[tuple[int, EventLine]]] = {}
         self._notices: deque[Notice] = deque(maxlen=NOTICES)
         self.count = 0
 
-    def write(self, line: Line) -> None:
+    def write(self, line: EventLine) -> None:
         self._kept.setdefault(line.kind, deque(maxlen=KEPT)).append((self.count, line))
         self.count += 1
 
-    def tell(self, t: float, line: Line, good: bool = False) -> None:
+    def tell(self, t: float, line: EventLine, good: bool = False) -> None:
         """Also shows it on the page, from ``t`` [s, wall] on, the longer the worse it is."""
         time = TOLD_FOR if good else WARNED_FOR if line.severity <= Event.WARNING else ALARMED_FOR
         self._notices.append(Notice(line, good, t + time))
@@ -60,6 +60,6 @@ class Journal:
         """Those to be shown at ``t`` [s, wall], newest first."""
         return [notice for notice in reversed(self._notices) if notice.until > t]
 
-    def __iter__(self) -> Iterator[Line]:
+    def __iter__(self) -> Iterator[EventLine]:
         """Oldest first."""
         return (line for _, line in sorted(pair for kept in self._kept.values() for pair in kept))

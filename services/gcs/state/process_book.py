@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from schemas.messages import Health, Process, Processes
-from services.gcs.state.refusals import Refusals
+from services.gcs.state.refusals import PageRefusals
 from services.gcs.state.vitals import Vitals
 
 MOST_PROCESSES = 256
@@ -13,7 +13,7 @@ FORGOTTEN_AFTER = 60.0  # s, wall
 class ProcessBook:
     """Of so many names; for a new one the longest silent makes room, once nobody has said a word of it for long."""
 
-    def __init__(self, refused: Refusals) -> None:
+    def __init__(self, refused: PageRefusals) -> None:
         self.told: dict[str, Process] = {}
         """As the launchers tell, who say so only when something changes: what has failed stays failed."""
         self.vitals: dict[str, Vitals] = {}

@@ -6,7 +6,7 @@ MOST_COUNTED = 1000
 LENGTH = 64  # letters by which two of them are told apart
 
 
-class Refusals:
+class PageRefusals:
     """tell: takes a line for the log."""
 
     def __init__(self, tell: Callable[[str], None]) -> None:

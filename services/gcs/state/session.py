@@ -7,7 +7,7 @@ from services.gcs.state.layers import SHOWN_AT_FIRST
 
 
 @dataclass
-class Session:
+class BrowserSession:
     """One connection of one browser; it ends with the connection."""
 
     page: int

@@ -32,16 +32,16 @@ from schemas.messages import (
     VehicleStatus,
 )
 from schemas.topics import SYSTEM
-from services.gcs.state.event_log import Journal, Line
+from services.gcs.state.event_log import EventHistory, EventLine
 from services.gcs.state.guests import FORGOTTEN_AFTER, Guests
 from services.gcs.state.layers import SHOWN_AT_FIRST
 from services.gcs.state.process_book import ProcessBook
-from services.gcs.state.refusals import Refusals
-from services.gcs.state.session import Session
-from services.gcs.state.tracks import Track
+from services.gcs.state.refusals import PageRefusals
+from services.gcs.state.session import BrowserSession
+from services.gcs.state.tracks import VehicleTrack
 from uvf.maths.rotations import from_euler, matrix
-from uvf.models.mission.file import Start, Vehicle
-from uvf.models.scenario import Member, Site
+from uvf.models.mission.file import StartPose, Vehicle
+from uvf.models.scenario import MissionVehicle, Scenario
 from uvf.models.vehicle.file import load_vehicle
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.messages.convert import array, scan_points, seconds, wxyz
@@ -62,7 +62,7 @@ COLOURS = ("#4ea1ff", "#f2913d", "#3fbf7f", "#b98cf5", "#e8c547", "#5fd4d6")
 """Vehicles' own colours, told apart by colour-blind people too; red and magenta keep their meanings."""
 
 
-class Placed(NamedTuple):
+class DisplayPose(NamedTuple):
     """A pose in the world: m, and the quaternion wxyz."""
 
     position: Floats
@@ -84,9 +84,9 @@ class VehicleModel:
     """One vehicle as heard over the link."""
 
     name: str
-    member: Member
+    member: MissionVehicle
     colour: str
-    track: Track
+    track: VehicleTrack
     nav: NavState | None = None
     pose: PoseInFrame | None = None
     odometry: Odometry | None = None
@@ -138,18 +138,18 @@ class VehicleModel:
         return max((at for name, at in self.heard_at.items() if name in SIGNS_OF_LIFE), default=None)
 
     @property
-    def place(self) -> Placed | None:
+    def place(self) -> DisplayPose | None:
         """Where the vehicle believes to be: the newer of its two estimates."""
         nav_at, pose_at = self.heard_at.get("nav", -1.0), self.heard_at.get("pose", -1.0)
         if self.nav is not None and nav_at >= pose_at - STALE_AFTER:
-            return Placed(array(self.nav.position), wxyz(self.nav.orientation))
+            return DisplayPose(array(self.nav.position), wxyz(self.nav.orientation))
         if self.pose is not None:
-            return Placed(array(self.pose.pose.position), wxyz(self.pose.pose.orientation))
+            return DisplayPose(array(self.pose.pose.position), wxyz(self.pose.pose.orientation))
         return None
 
     @property
-    def true_place(self) -> Placed | None:
-        return None if self.truth is None else Placed(array(self.truth.position), wxyz(self.truth.orientation))
+    def true_place(self) -> DisplayPose | None:
+        return None if self.truth is None else DisplayPose(array(self.truth.position), wxyz(self.truth.orientation))
 
     @property
     def speed(self) -> float:
@@ -169,41 +169,41 @@ class VehicleModel:
 class Model:
     """All vehicles of a mission, the clock, the log, and what each browser has chosen."""
 
-    def __init__(self, site: Site) -> None:
+    def __init__(self, site: Scenario) -> None:
         self.site = site
         self.vehicles: dict[str, VehicleModel] = {}
         for name, member in sorted(site.members.items()):
             self._add(name, member)
-        self.sessions: dict[int, Session] = {}
+        self.sessions: dict[int, BrowserSession] = {}
         """Of each browser that is connected."""
         self.clock: Clock | None = None
         self.clock_at: float | None = None
         self.stop = StopStatus()
-        self.log = Journal()
+        self.log = EventHistory()
         self._floors = {v.name: MappedFloor(site.world, v.member) for v in self.vehicles.values() if not v.flies}
         self.spawned: Sequence[SimObject] = ()
         """What has been put into the running simulation."""
         self.strangers: Mapping[str, NavState] = {}
         """True motion of the vehicles among it."""
-        self.refused = Refusals(self._warn)
+        self.refused = PageRefusals(self._warn)
         self.processes = ProcessBook(self.refused)
         self._guests = Guests()
 
-    def _add(self, name: str, member: Member) -> None:
+    def _add(self, name: str, member: MissionVehicle) -> None:
         colour = COLOURS[len(self.vehicles) % len(COLOURS)]
         self.vehicles[name] = VehicleModel(name, member, colour, _track(member))
 
     def join(self, page: int) -> None:
         """A browser has connected; it shows a ground vehicle at first, if there is one."""
         grounded = [v.name for v in self.vehicles.values() if not v.flies]
-        self.sessions[page] = Session(page, next(iter(grounded or self.vehicles), ""))
+        self.sessions[page] = BrowserSession(page, next(iter(grounded or self.vehicles), ""))
 
     @property
     def layers(self) -> Set[str]:
         """Those that any browser shows; while there is none, those that the first one will."""
         return frozenset().union(*(session.layers for session in self.sessions.values())) if self.sessions else SHOWN_AT_FIRST
 
-    def chosen_by(self, session: Session) -> VehicleModel | None:
+    def chosen_by(self, session: BrowserSession) -> VehicleModel | None:
         """None while no vehicle is known; then the first that comes."""
         if session.vehicle not in self.vehicles:
             session.vehicle = next(iter(self.vehicles), "")
@@ -305,8 +305,8 @@ class Model:
         if is_full:
             self._forget(lost.pop())
         self._guests.take_in(t, name, guest)
-        entry = Vehicle(model=guest.model, start=Start(x=0.0, y=0.0), system_id=1)
-        self._add(name, Member(name, entry, file, self.site.vehicles_folder / guest.model))
+        entry = Vehicle(model=guest.model, start=StartPose(x=0.0, y=0.0), system_id=1)
+        self._add(name, MissionVehicle(name, entry, file, self.site.vehicles_folder / guest.model))
         self.note(name, f"a guest: {guest.about[:LONGEST_TEXT]}", Event.NOTICE)
 
     def _lost_guests(self, t: float) -> list[str]:
@@ -344,14 +344,14 @@ class Model:
             for event in events:
                 cause = f" ({event.cause})" if event.cause else ""
                 text = f"{event.text}{cause}"[:LONGEST_TEXT]
-                line = Line(seconds(event.timestamp), event.severity, "" if name == SYSTEM else name, text)
+                line = EventLine(seconds(event.timestamp), event.severity, "" if name == SYSTEM else name, text)
                 self.log.write(line)
                 if line.severity >= Event.WARNING and event.source not in SHOWN_BY_THE_CLOCK:
                     self.log.tell(t, line)
 
-    def note(self, vehicle: str, text: str, severity: int = Event.INFO, of_operator: bool = False) -> Line:
+    def note(self, vehicle: str, text: str, severity: int = Event.INFO, of_operator: bool = False) -> EventLine:
         """Writes the ground station's own line into the log."""
-        line = Line(self.sim_time, severity, vehicle, text, of_operator)
+        line = EventLine(self.sim_time, severity, vehicle, text, of_operator)
         self.log.write(line)
         return line
 
@@ -363,8 +363,8 @@ def model_name(told: str) -> str:
     return told
 
 
-def _track(member: Member) -> Track:
-    return Track(spacing=2.0, jump=60.0) if member.file.kind == "fixed_wing" else Track(spacing=0.04, jump=0.6)
+def _track(member: MissionVehicle) -> VehicleTrack:
+    return VehicleTrack(spacing=2.0, jump=60.0) if member.file.kind == "fixed_wing" else VehicleTrack(spacing=0.04, jump=0.6)
 
 
 def scan_in_world(vehicle: VehicleModel) -> Floats | None:

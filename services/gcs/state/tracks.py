@@ -11,7 +11,7 @@ CHUNK = 250  # points
 MAX_CHUNKS = 200
 
 
-class Track:
+class VehicleTrack:
     """Points at least ``spacing`` [m] apart; a step longer than ``jump`` [m] (a reset, a relocation) breaks the line."""
 
     def __init__(self, spacing: float, jump: float) -> None:

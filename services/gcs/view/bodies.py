@@ -5,16 +5,16 @@ from pathlib import Path
 import numpy as np
 
 from uvf.models.shapes.mesh import placed, triangles
-from uvf.models.shapes.mesh_parts import Colour, Part, plate
+from uvf.models.shapes.mesh_parts import Colour, MeshPart, plate
 from uvf.models.urdf.model import load_urdf
 
 
-def rover(urdf: Path) -> list[Part]:
+def rover(urdf: Path) -> list[MeshPart]:
     """What the URDF shows, wheels at rest, and above it a small arrow forward in the vehicle's own colour. Raises BadInput."""
     model = load_urdf(urdf)
     poses = model.link_poses()
     shown = [placed(solid, poses[link.name]) for link in model.links.values() for solid in link.visuals or link.collisions]
-    parts = [Part(*triangles(solid), rgb(solid.colour)) for solid in shown]
+    parts = [MeshPart(*triangles(solid), rgb(solid.colour)) for solid in shown]
     points = np.vstack([part.vertices for part in parts])
     (x, y, _), top = (points.max(axis=0) + points.min(axis=0)) / 2, float(points[:, 2].max())
     size = 0.25 * float(np.ptp(points[:, :2], axis=0).min())

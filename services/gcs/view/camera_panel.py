@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from math import degrees
 
 from schemas.messages import GimbalCommand
-from services.gcs.state.session import Session
+from services.gcs.state.session import BrowserSession
 from services.gcs.state.state import STALE_AFTER, VehicleModel
 from services.gcs.view.markup import Html, html, joined
 
@@ -35,17 +35,17 @@ def cameras_of(v: VehicleModel) -> list[str]:
     return [name for name, kind in SHOWN.items() if getattr(sensors, kind) is not None]
 
 
-def shown_camera(v: VehicleModel, session: Session) -> str:
+def shown_camera(v: VehicleModel, session: BrowserSession) -> str:
     """Field of the camera that is on show; empty when there is none."""
     there = cameras_of(v)
     return session.camera if session.camera in there else next(iter(there), "")
 
 
-def is_watched(session: Session, t: float) -> bool:
+def is_watched(session: BrowserSession, t: float) -> bool:
     return t - session.looked_at <= SEEN_FOR
 
 
-def picture(v: VehicleModel, session: Session, t: float) -> bytes | None:
+def picture(v: VehicleModel, session: BrowserSession, t: float) -> bytes | None:
     """JPEG of the camera on show; None when there is none, or nobody to see it."""
     name = shown_camera(v, session)
     if not name or not is_watched(session, t):
@@ -54,7 +54,7 @@ def picture(v: VehicleModel, session: Session, t: float) -> bytes | None:
     return None if image is None else image.data
 
 
-def gimbal_panel(v: VehicleModel, session: Session) -> GimbalPanel | None:
+def gimbal_panel(v: VehicleModel, session: BrowserSession) -> GimbalPanel | None:
     """Only while the gimbal's picture is on show."""
     if shown_camera(v, session) != "gimbal" or (gimbal := v.member.file.sensors.gimbal) is None:
         return None
@@ -62,7 +62,7 @@ def gimbal_panel(v: VehicleModel, session: Session) -> GimbalPanel | None:
     return GimbalPanel(v.name, gimbal.pan_max, (gimbal.tilt_min, gimbal.tilt_max), v.aim.pan, v.aim.tilt, mode)
 
 
-def panel(v: VehicleModel, session: Session, t: float) -> Html:
+def panel(v: VehicleModel, session: BrowserSession, t: float) -> Html:
     """The row of cameras, and below it the age of the picture; empty when the vehicle has none."""
     shown = shown_camera(v, session)
     if not shown:

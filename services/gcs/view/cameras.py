@@ -3,9 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from services.gcs.view.drawing import Camera
+from services.gcs.view.drawing import CameraView
 from services.gcs.view.scenery import extent
-from uvf.models.scenario import Site
+from uvf.models.scenario import Scenario
 
 Floats = NDArray[np.float64]
 
@@ -29,7 +29,7 @@ def _axes(sight: Floats) -> tuple[Floats, Floats]:
     return right, np.cross(right, sight).astype(np.float64)
 
 
-def fit(points: Floats, sight: Floats, aspect: float) -> Camera:
+def fit(points: Floats, sight: Floats, aspect: float) -> CameraView:
     """The nearest camera along ``sight`` that sees all points. points: (n, 3) m, world; aspect: width by height."""
     middle = (points.min(axis=0) + points.max(axis=0)) / 2
     right, up = _axes(sight)
@@ -39,7 +39,7 @@ def fit(points: Floats, sight: Floats, aspect: float) -> Camera:
     return _camera(middle - distance * sight, sight, distance)
 
 
-def tilted_up(camera: Camera, points: Floats) -> Camera:
+def tilted_up(camera: CameraView, points: Floats) -> CameraView:
     """The same camera turned up until the points lie at the window's lower edge: room for the sky above them."""
     position, look_at = np.array(camera.position), np.array(camera.look_at)
     distance = float(np.linalg.norm(look_at - position))
@@ -50,13 +50,13 @@ def tilted_up(camera: Camera, points: Floats) -> Camera:
     return _camera(position, np.cos(turn) * sight + np.sin(turn) * up, distance)
 
 
-def _camera(position: Floats, sight: Floats, distance: float) -> Camera:
+def _camera(position: Floats, sight: Floats, distance: float) -> CameraView:
     x, y, z = (float(c) for c in position)
     u, v, w = (float(c) for c in position + distance * sight)
-    return Camera((x, y, z), (u, v, w))
+    return CameraView((x, y, z), (u, v, w))
 
 
-def cameras(site: Site, aspect: float = ASPECT) -> dict[str, Camera]:
+def cameras(site: Scenario, aspect: float = ASPECT) -> dict[str, CameraView]:
     """Named views for a window of ``aspect`` (width by height).
 
     The first is how the page opens: the floor before the sky, if something flies there.

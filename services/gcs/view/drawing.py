@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from services.gcs.commands import Action
-from services.gcs.state.state import Placed
+from services.gcs.state.state import DisplayPose
 from services.gcs.view.camera_panel import GimbalPanel
 from services.gcs.view.markup import Html
 
@@ -17,7 +17,7 @@ Colour = tuple[int, int, int]
 
 
 @dataclass(frozen=True, eq=False)
-class Mesh:
+class MeshNode:
     """vertices: (n, 3) m, parent's frame; faces: (m, 3) indices."""
 
     vertices: Floats
@@ -58,12 +58,12 @@ class FloorPicture:
 
 
 @dataclass(frozen=True, eq=False)
-class Text:
+class TextNode:
     text: str
     position: tuple[float, float, float]
 
 
-Node = Mesh | Polyline | Points | FloorPicture | Text
+Node = MeshNode | Polyline | Points | FloorPicture | TextNode
 
 
 @dataclass(frozen=True)
@@ -80,7 +80,7 @@ class Button:
 
 
 @dataclass(frozen=True)
-class Camera:
+class CameraView:
     """From where to where the scene is looked at [m, world]."""
 
     position: tuple[float, float, float]
@@ -88,7 +88,7 @@ class Camera:
 
 
 @dataclass(frozen=True)
-class Panel:
+class PagePanel:
     """What one browser alone shows: its vehicle, and the buttons for it."""
 
     vehicle: str = ""
@@ -105,10 +105,10 @@ class Picture:
     """What all browsers show after one step, and each of its own. A node that is the same object as before has not changed."""
 
     nodes: Mapping[str, Node] = field(default_factory=dict)
-    places: Mapping[str, Placed] = field(default_factory=dict)
+    places: Mapping[str, DisplayPose] = field(default_factory=dict)
     html: Mapping[str, Html] = field(default_factory=dict)
     buttons: Sequence[Button] = ()
-    panels: Mapping[int, Panel] = field(default_factory=dict)
+    panels: Mapping[int, PagePanel] = field(default_factory=dict)
     """By page, as in ``Session.page``."""
 
 

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from schemas.messages import Fence, FenceZone
-from services.gcs.view.drawing import Colour, Mesh, Node, Polyline
+from services.gcs.view.drawing import Colour, MeshNode, Node, Polyline
 
 Floats = NDArray[np.float64]
 
@@ -25,7 +25,7 @@ def fence_nodes(fence: Fence, colour: Colour, flies: bool) -> dict[str, Node]:
         low, high = _heights(fence) if flies else ON_GROUND
         closed = not flies or fence.HasField("ceiling")
         nodes[f"/{i}/edge"] = Polyline(_stroke(ring, posts, (low, high), (zone.excludes, closed)), shade, 2.5)
-        nodes[f"/{i}/wall"] = Mesh(*_wall(ring, low, high), shade, opacity)
+        nodes[f"/{i}/wall"] = MeshNode(*_wall(ring, low, high), shade, opacity)
     return nodes
 
 

@@ -13,7 +13,7 @@ FONT = "font-family='ui-sans-serif,system-ui,DejaVu Sans,sans-serif' font-varian
 
 
 @dataclass(frozen=True)
-class Flight:
+class FlightInstruments:
     """What a pilot reads. Nose up and right wing down are positive; heading from north, clockwise [rad, m, m/s]."""
 
     roll: float
@@ -28,7 +28,7 @@ class Flight:
 
 
 @dataclass(frozen=True)
-class Drive:
+class DriveInstruments:
     """What a driver reads [rad, m/s, rad/s, m]; heading from north, clockwise; limits are the vehicle's own."""
 
     heading: float
@@ -41,7 +41,7 @@ class Drive:
     armed: bool
 
 
-def primary_flight_display(f: Flight) -> Html:
+def primary_flight_display(f: FlightInstruments) -> Html:
     roll, pitch, heading = degrees(f.roll), degrees(f.pitch), degrees(f.heading) % 360
     label = f"roll {roll:.0f} deg, pitch {pitch:.0f} deg, heading {heading:03.0f}, {f.airspeed:.1f} m/s, {f.altitude:.0f} m"
     return trusted(
@@ -127,7 +127,7 @@ def _heading_strip(heading: float) -> str:
     return f"<rect x='68' y='222' width='204' height='28' fill='#0b1524' opacity='.6'/>{''.join(marks)}{window}{value}"
 
 
-def _corners(f: Flight) -> str:
+def _corners(f: FlightInstruments) -> str:
     armed = (GREEN, "ARMED") if f.armed else (AMBER, "DISARMED")
     small = "font-size='10' opacity='.95'"
     return (
@@ -140,7 +140,7 @@ def _corners(f: Flight) -> str:
     )
 
 
-def drive_panel(d: Drive) -> Html:
+def drive_panel(d: DriveInstruments) -> Html:
     heading = degrees(d.heading) % 360
     label = f"heading {heading:03.0f}, {d.speed:.2f} m/s, turning {degrees(d.turn_rate):.0f} deg/s"
     armed = (GREEN, "ARMED") if d.armed else (AMBER, "DISARMED")

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from schemas.messages import JointStates
-from services.gcs.state.state import Placed
+from services.gcs.state.state import DisplayPose
 from uvf.maths.rotations import IDENTITY, from_axis
 from uvf.models.aircraft.panels import Movable
 from uvf.models.vehicle.surface_joints import deflection
@@ -21,10 +21,10 @@ class MovingParts:
     def __init__(self, movables: Sequence[Movable]) -> None:
         self._movables = movables
         self._angles = dict.fromkeys((m.name for m in movables), 0.0)
-        self._placed = {m.name: Placed(m.origin, IDENTITY) for m in movables}
+        self._placed = {m.name: DisplayPose(m.origin, IDENTITY) for m in movables}
         self._heard: JointStates | None = None
 
-    def places(self, joints: JointStates | None) -> Mapping[str, Placed]:
+    def places(self, joints: JointStates | None) -> Mapping[str, DisplayPose]:
         """Name -> frame of the part in the body frame; the same objects while nothing is seen to turn."""
         if joints is not None and joints is not self._heard:
             angles = {joint.name: joint.position for joint in joints.joints}
@@ -42,4 +42,4 @@ class MovingParts:
     def _show(self, movable: Movable, angle: float) -> None:
         if abs(angle - self._angles[movable.name]) > SEEN:
             self._angles[movable.name] = angle
-            self._placed[movable.name] = Placed(movable.origin, from_axis(movable.axis, angle))
+            self._placed[movable.name] = DisplayPose(movable.origin, from_axis(movable.axis, angle))

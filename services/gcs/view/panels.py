@@ -8,7 +8,7 @@ from schemas.messages import MissionProgress, Mode, NavStatus
 from services.gcs.state.enum_names import enum_name
 from services.gcs.state.state import Model, VehicleModel, link_of
 from services.gcs.state.wording import mode_name
-from services.gcs.view.instruments import Drive, Flight, drive_panel, primary_flight_display
+from services.gcs.view.instruments import DriveInstruments, FlightInstruments, drive_panel, primary_flight_display
 from services.gcs.view.markup import Html, html, joined
 from uvf.maths.rotations import to_euler
 from uvf.runtime.messages.convert import wxyz
@@ -84,13 +84,13 @@ def instrument(v: VehicleModel) -> Html:
     heading = pi / 2 - yaw
     if ground is not None:
         left = v.nav_status.distance_left if v.nav_status is not None and v.nav_status.state == NavStatus.DRIVING else None
-        return drive_panel(Drive(heading, v.speed, v.turn_rate, ground.max_linear, ground.max_angular, left, mode, armed))
+        return drive_panel(DriveInstruments(heading, v.speed, v.turn_rate, ground.max_linear, ground.max_angular, left, mode, armed))
     nav = v.nav
     if nav is None:
         return html("<div class='g-empty'>No estimate of the motion yet</div>")
     roll, pitch, yaw = to_euler(wxyz(nav.orientation))
     speed = hypot(nav.velocity.x, nav.velocity.y)
-    flight = Flight(roll, -pitch, pi / 2 - yaw, nav.airspeed, nav.position.z, nav.velocity.z, speed, mode, armed)
+    flight = FlightInstruments(roll, -pitch, pi / 2 - yaw, nav.airspeed, nav.position.z, nav.velocity.z, speed, mode, armed)
     return primary_flight_display(flight)
 
 
@@ -140,7 +140,7 @@ def _job(v: VehicleModel) -> list[tuple[str, str]]:
         return []
     state = enum_name(NavStatus.State, v.nav_status.state)
     why = f": {v.nav_status.reason}" if v.nav_status.reason else ""
-    return [("planner", f"{state}{why}"), ("explored, as it guesses", f"{100 * v.nav_status.explored:.0f} %")]
+    return [("planner", f"{state}{why}"), ("explored (estimate)", f"{100 * v.nav_status.explored:.0f} %")]
 
 
 def orders(v: VehicleModel) -> Html:

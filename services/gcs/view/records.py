@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from schemas.messages import Event, Process
 from services.gcs.state.enum_names import enum_name
-from services.gcs.state.event_log import Journal, Line
+from services.gcs.state.event_log import EventHistory, EventLine
 from services.gcs.state.state import Model
 from services.gcs.state.vitals import Vitals
 from services.gcs.view.markup import Html, html, joined
@@ -33,7 +33,7 @@ HINTS = (
 )
 
 
-def event_log(journal: Journal) -> Html:
+def event_log(journal: EventHistory) -> Html:
     """What the operator has done stays on top; below, everything, filtered by the page itself (``data-log``)."""
     lines = list(journal)
     if not lines:
@@ -52,7 +52,7 @@ def event_log(journal: Journal) -> Html:
     )
 
 
-def _rows(lines: Sequence[Line]) -> Html:
+def _rows(lines: Sequence[EventLine]) -> Html:
     """Newest first; of those that a filter would leave, enough whatever the filter."""
     rows, shown = [], dict.fromkeys(("operator", *FILTERS), 0)
     for line in reversed(lines):

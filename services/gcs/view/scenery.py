@@ -6,14 +6,14 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from services.gcs.state.state import Placed
+from services.gcs.state.state import DisplayPose
 from services.gcs.view.bodies import rgb
-from services.gcs.view.drawing import Colour, Mesh, Node, Polyline
+from services.gcs.view.drawing import Colour, MeshNode, Node, Polyline
 from uvf.maths.rotations import IDENTITY, from_euler, matrix
 from uvf.models.mission.file import Waypoint
-from uvf.models.scenario import Member, Site
+from uvf.models.scenario import MissionVehicle, Scenario
 from uvf.models.shapes.mesh import triangles
-from uvf.models.shapes.mesh_parts import Part, box, joined
+from uvf.models.shapes.mesh_parts import MeshPart, box, joined
 from uvf.models.shapes.solid import Solid, pose_at
 from uvf.models.world.file import Wall, WorldFile
 from uvf.models.world.geometry import WALL, solids
@@ -32,8 +32,8 @@ def scenery(world: WorldFile) -> dict[str, Node]:
     floor = box(((x_min + x_max) / 2, (y_min + y_max) / 2, -0.06), (x_max - x_min, y_max - y_min, 0.1))
     yard = box(((x_min + x_max) / 2, (y_min + y_max) / 2, -0.09), (x_max - x_min + 2 * YARD_WIDTH, y_max - y_min + 2 * YARD_WIDTH, 0.1))
     nodes: dict[str, Node] = {
-        "/world/floor": Mesh(floor.vertices, floor.faces, FLOOR),
-        "/world/yard": Mesh(yard.vertices, yard.faces, YARD),
+        "/world/floor": MeshNode(floor.vertices, floor.faces, FLOOR),
+        "/world/yard": MeshNode(yard.vertices, yard.faces, YARD),
     }
     walls = [(wall.colour, part) for wall in world.walls for part in _segments(wall)]
     nodes.update(_merged("/world/walls", walls))
@@ -48,26 +48,26 @@ def moving(world: WorldFile) -> list[Solid]:
     return [solid for solid in solids(world) if solid.path is not None]
 
 
-def places_of(scripted: Sequence[Solid], t: float) -> dict[str, Placed]:
+def places_of(scripted: Sequence[Solid], t: float) -> dict[str, DisplayPose]:
     """Node name -> where it is at simulation time ``t`` [s]; its shape is drawn in that frame."""
-    return {_frame(solid): Placed(*pose_at(solid, t)) for solid in scripted}
+    return {_frame(solid): DisplayPose(*pose_at(solid, t)) for solid in scripted}
 
 
 def _frame(solid: Solid) -> str:
     return f"/world/moving/{solid.name}"
 
 
-def _placed(solid: Solid) -> Part:
+def _placed(solid: Solid) -> MeshPart:
     """A solid's triangles in the world."""
-    return Part(*triangles(solid))
+    return MeshPart(*triangles(solid))
 
 
-def at_rest(solid: Solid) -> Part:
+def at_rest(solid: Solid) -> MeshPart:
     """A solid's triangles in its own frame."""
-    return Part(*triangles(replace(solid, position=np.zeros(3), orientation=IDENTITY)))
+    return MeshPart(*triangles(replace(solid, position=np.zeros(3), orientation=IDENTITY)))
 
 
-def _segments(wall: Wall) -> Iterator[Part]:
+def _segments(wall: Wall) -> Iterator[MeshPart]:
     """Each stretch of a wall as a box, lengthened by half its thickness at both ends so that corners close."""
     height = min(wall.height, WALL_SHOWN)
     for a, b in zip(np.array(wall.points[:-1]), np.array(wall.points[1:]), strict=True):
@@ -78,26 +78,26 @@ def _segments(wall: Wall) -> Iterator[Part]:
         yield _turned(part, float(np.arctan2(along[1], along[0])), (middle[0], middle[1], height / 2))
 
 
-def _turned(part: Part, yaw: float, centre: tuple[float, float, float]) -> Part:
+def _turned(part: MeshPart, yaw: float, centre: tuple[float, float, float]) -> MeshPart:
     rotation = matrix(from_euler(0, 0, yaw))
-    return Part(part.vertices @ rotation.T + np.array(centre), part.faces)
+    return MeshPart(part.vertices @ rotation.T + np.array(centre), part.faces)
 
 
-def _merged(name: str, parts: list[tuple[tuple[float, float, float], Part]]) -> dict[str, Node]:
+def _merged(name: str, parts: list[tuple[tuple[float, float, float], MeshPart]]) -> dict[str, Node]:
     """One mesh for each colour: a browser draws ten big meshes faster than a hundred small ones."""
-    by_colour: dict[tuple[float, float, float], list[Part]] = {}
+    by_colour: dict[tuple[float, float, float], list[MeshPart]] = {}
     for colour, part in parts:
         by_colour.setdefault(colour, []).append(part)
     return {f"{name}/{i}": merge(group, rgb(colour)) for i, (colour, group) in enumerate(sorted(by_colour.items()))}
 
 
-def merge(parts: list[Part], colour: Colour, selects: str = "") -> Mesh:
-    return Mesh(*joined(parts), colour, selects=selects)
+def merge(parts: list[MeshPart], colour: Colour, selects: str = "") -> MeshNode:
+    return MeshNode(*joined(parts), colour, selects=selects)
 
 
-def coloured(parts: Sequence[Part], colour: Colour, selects: str = "") -> dict[str, Node]:
+def coloured(parts: Sequence[MeshPart], colour: Colour, selects: str = "") -> dict[str, Node]:
     """The parts of a body, those of one colour in one mesh; ``colour`` for those that have none."""
-    groups: dict[Colour, list[Part]] = {}
+    groups: dict[Colour, list[MeshPart]] = {}
     for part in parts:
         groups.setdefault(part.colour or colour, []).append(part)
     return {str(i): merge(group, c, selects) for i, (c, group) in enumerate(groups.items())}
@@ -120,7 +120,7 @@ def circuit_line(points: Floats, colour: Colour) -> Polyline:
     return Polyline(points, colour, 2.0)
 
 
-def extent(site: Site) -> Floats:
+def extent(site: Scenario) -> Floats:
     """(2, 3) m: lowest and highest corner of the floor, the starts and the circuits."""
     x_min, y_min, x_max, y_max = site.world.floor
     points = [np.array(((x_min, y_min, 0.0), (x_max, y_max, 0.0)))]
@@ -129,6 +129,6 @@ def extent(site: Site) -> Floats:
     return np.array((everything.min(axis=0), everything.max(axis=0)))
 
 
-def _reach(member: Member) -> Floats:
+def _reach(member: MissionVehicle) -> Floats:
     start = member.entry.start
     return np.vstack((np.array(((start.x, start.y, start.z),)), circuit(member.entry.job.mission)))

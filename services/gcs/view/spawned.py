@@ -1,12 +1,12 @@
 """What has been put into the running simulation, drawn at its true place: shapes, and vehicles that belong to no mission."""
 
 from schemas.messages import SimObject
-from services.gcs.state.state import Model, Placed, model_name
+from services.gcs.state.state import DisplayPose, Model, model_name
 from services.gcs.view.bodies import rgb, rover
 from services.gcs.view.drawing import Colour, Node
 from services.gcs.view.scenery import at_rest, coloured, merge
 from uvf.models.aircraft.shape import aircraft_shape
-from uvf.models.shapes.mesh_parts import Part
+from uvf.models.shapes.mesh_parts import MeshPart
 from uvf.models.vehicle.file import load_vehicle
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.messages.convert import array, wxyz
@@ -46,20 +46,20 @@ class Spawned:
             self._model.note("", f"'{thing.name}' cannot be drawn: {error}")
             return {}
 
-    def _parts(self, model: str) -> list[Part]:
+    def _parts(self, model: str) -> list[MeshPart]:
         folder = self._model.site.vehicles_folder
         file = load_vehicle(folder, model_name(model))
         return rover(folder / model / file.ground.urdf) if file.ground is not None else aircraft_shape(folder / model, file).at_rest
 
-    def places(self) -> dict[str, Placed]:
+    def places(self) -> dict[str, DisplayPose]:
         """Frames: of a vehicle as its truth tells, of the rest as the list does."""
         return {f"/spawned/{thing.name}": self._place(thing) for thing in self._model.spawned}
 
-    def _place(self, thing: SimObject) -> Placed:
+    def _place(self, thing: SimObject) -> DisplayPose:
         truth = self._model.strangers.get(thing.name)
         if truth is not None:
-            return Placed(array(truth.position), wxyz(truth.orientation))
-        return Placed(array(thing.pose.position), unit_wxyz(thing.pose))
+            return DisplayPose(array(truth.position), wxyz(truth.orientation))
+        return DisplayPose(array(thing.pose.position), unit_wxyz(thing.pose))
 
 
 def _look(thing: SimObject) -> Look:

@@ -1,7 +1,7 @@
 """The panel for driving a ground vehicle by hand. Its buttons are also the page's table of keys: ``data-keys`` are those that press one."""
 
 from schemas.messages import Mode
-from services.gcs.by_hand import ByHand
+from services.gcs.by_hand import ManualDriving
 from services.gcs.state.state import VehicleModel
 from services.gcs.state.wording import mode_name
 from services.gcs.view.markup import Html, html, joined
@@ -22,7 +22,7 @@ WORDS = {
 ARROWS = {"w": "ArrowUp", "a": "ArrowLeft", "s": "ArrowDown", "d": "ArrowRight"}
 
 
-def wheel(v: VehicleModel, by_hand: ByHand, page: int) -> Html:
+def wheel(v: VehicleModel, by_hand: ManualDriving, page: int) -> Html:
     """As this page sees it: it drives the vehicle itself, another page does, or nobody."""
     if not by_hand.can_drive(v.name):
         return html("")
@@ -35,7 +35,7 @@ def wheel(v: VehicleModel, by_hand: ByHand, page: int) -> Html:
     return html("<div id='gcs-wheel' data-driver='{}'><div class='g-theirs'><div>{}</div>{}</div></div>", driver, who, button)
 
 
-def _pad(v: VehicleModel, by_hand: ByHand) -> Html:
+def _pad(v: VehicleModel, by_hand: ManualDriving) -> Html:
     keys = joined(_key(key) if key else html("<span></span>") for row in ROWS for key in row)
     linear, angular = by_hand.scale(v.name)
     scales = joined((_scale("rf", f"{linear:.2f} m/s", "speed"), _scale("tg", f"{angular:.2f} rad/s", "turn rate")))

@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from schemas.messages import FrameTransform, Grid, NavStatus
-from services.gcs.state.state import Model, Placed, VehicleModel
+from services.gcs.state.state import DisplayPose, Model, VehicleModel
 from services.gcs.view import bodies
-from services.gcs.view.drawing import Colour, FloorPicture, Node, Points, Polyline, Text
+from services.gcs.view.drawing import Colour, FloorPicture, Node, Points, Polyline, TextNode
 from services.gcs.view.fences import fence_nodes
 from services.gcs.view.map_image import known_part, occupancy_png
 from services.gcs.view.moving_parts import MovingParts
@@ -18,7 +18,7 @@ from services.gcs.view.scenery import circuit_line, coloured, moving, places_of,
 from services.gcs.view.spawned import Spawned
 from uvf.maths.rotations import multiply, rotate, to_euler
 from uvf.models.aircraft.shape import AircraftShape, aircraft_shape
-from uvf.models.shapes.mesh_parts import Part
+from uvf.models.shapes.mesh_parts import MeshPart
 from uvf.runtime.messages.convert import array, occupancy_cells, wxyz
 
 Floats = NDArray[np.float64]
@@ -34,7 +34,7 @@ LEVEL = np.array((1.0, 0.0, 0.0, 0.0))
 UP = 0.02  # m above the floor, so that what lies on it is seen
 
 
-class View:
+class SceneView:
     """Draws one model; remembers the nodes it has made, by what they were made from."""
 
     def __init__(self, model: Model) -> None:
@@ -75,7 +75,7 @@ class View:
             self._made = {name: made for name, made in self._made.items() if name in self._used}
         return shown
 
-    def places(self) -> dict[str, Placed]:
+    def places(self) -> dict[str, DisplayPose]:
         """Poses of the frames of vehicles and of what moves by script."""
         self._learn()
         layers = self._model.layers
@@ -86,7 +86,7 @@ class View:
                 if v.flies:
                     moving = self._moving[v.name].places(v.joints)
                     placed |= {f"/vehicles/{v.name}/{part}": place for part, place in moving.items()}
-                    placed[f"/height/{v.name}"] = Placed(v.place.position, LEVEL)
+                    placed[f"/height/{v.name}"] = DisplayPose(v.place.position, LEVEL)
             if v.true_place is not None and "True pose" in layers:
                 placed[f"/true/{v.name}"] = v.true_place
         return placed
@@ -171,7 +171,7 @@ class View:
         line = self._make(f"mission {v.name}", mission, lambda: circuit_line(points, ROUTE))
         for i, point in enumerate(_distinct(points)):
             x, y, z = (float(c) for c in point)
-            number = self._make(f"mission {v.name} {i}", (x, y, z), lambda at=(x, y, z), n=i + 1: Text(f"{n}", at))  # type: ignore[misc]
+            number = self._make(f"mission {v.name} {i}", (x, y, z), lambda at=(x, y, z), n=i + 1: TextNode(f"{n}", at))  # type: ignore[misc]
             line[f"/{i}"] = number[""]
         return line
 
@@ -197,8 +197,8 @@ class View:
             return {}
         x, y, z = (round(float(c), 2) for c in v.place.position)
         if not v.flies:
-            return self._make(f"label {v.name}", (x, y, z), lambda: Text(v.name, (x, y, z + 0.45)))
-        return self._make(f"label {v.name}", (x, y, z), lambda: Text(f"{v.name}  {z:.0f} m", (x, y, z + 2.5)))
+            return self._make(f"label {v.name}", (x, y, z), lambda: TextNode(v.name, (x, y, z + 0.45)))
+        return self._make(f"label {v.name}", (x, y, z), lambda: TextNode(f"{v.name}  {z:.0f} m", (x, y, z + 2.5)))
 
     def _height(self, v: VehicleModel) -> dict[str, Node]:
         """A line from an aircraft down to the ground, so that its place can be read.
@@ -231,7 +231,7 @@ def _body(v: VehicleModel, shape: AircraftShape | None) -> dict[str, Node]:
     return found
 
 
-def _parts(v: VehicleModel, shape: AircraftShape | None) -> list[Part]:
+def _parts(v: VehicleModel, shape: AircraftShape | None) -> list[MeshPart]:
     """All of it, at rest."""
     if shape is not None:
         return shape.at_rest

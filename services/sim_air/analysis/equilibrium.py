@@ -21,7 +21,7 @@ TOLERANCE = 1e-4  # m/s^2 and rad/s^2
 UNKNOWN = ("airspeed", "alpha", "climb", "roll", "aileron", "elevator", "rudder", "throttle")
 
 
-class Body(Protocol):
+class FlightModel(Protocol):
     """What is held in a state: ``airframe.Airframe`` or a test's own."""
 
     def accelerations_held(self, held: Held, controls: Controls) -> Floats: ...
@@ -59,7 +59,7 @@ class Condition:
         return np.array((self.aileron, self.elevator, self.rudder, self.throttle))
 
 
-def derivatives(body: Body, state: Floats, inputs: Floats) -> Floats:
+def derivatives(body: FlightModel, state: Floats, inputs: Floats) -> Floats:
     """(10,) d/dt of the state: the body's own accelerations and the kinematics (equations 3.14 to 3.16 of the book)."""
     velocity, rates, (phi, theta, _) = state[:3], state[3:6], state[6:9]
     accelerations = body.accelerations_held(Held(velocity, rates, state[6:9], float(state[9])), Controls(*inputs.tolist()))
@@ -70,7 +70,7 @@ def derivatives(body: Body, state: Floats, inputs: Floats) -> Floats:
     return np.array((*accelerations, *turning, up))
 
 
-def level(body: Body, airspeed: float, altitude: float) -> Condition | None:
+def level(body: FlightModel, airspeed: float, altitude: float) -> Condition | None:
     """Level flight by the simulator's own trim, of a glider its glide; with side slip where a surface is missing; None: there is none."""
 
     def flown(trim: Trim) -> Condition:
@@ -81,7 +81,7 @@ def level(body: Body, airspeed: float, altitude: float) -> Condition | None:
     return flown(trim) if trim.converged else None
 
 
-def find(body: Body, given: Condition, fixed: tuple[str, str]) -> Condition | None:
+def find(body: FlightModel, given: Condition, fixed: tuple[str, str]) -> Condition | None:
     """The six other figures of UNKNOWN for which nothing accelerates, beginning at ``given``; None when there are none."""
     free = [name for name in UNKNOWN if name not in fixed]
 

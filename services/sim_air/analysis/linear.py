@@ -9,7 +9,7 @@ import numpy as np
 
 from services.sim_air.analysis.equilibrium import INPUTS, STATES, Condition, derivatives, level
 from services.sim_air.engine.airframe import Airframe
-from services.sim_air.engine.states import Motion
+from services.sim_air.engine.states import AircraftMotion
 from uvf.control.design.design_models import DesignModels, design_models
 from uvf.maths import rotations
 from uvf.maths.eigenmodes import Mode, lateral_modes, longitudinal_modes
@@ -75,7 +75,7 @@ def about(airframe: Airframe, trim: Condition) -> LinearModels:
     return LinearModels(trim, residual, StateSpace(a, b, STATES, INPUTS))
 
 
-def state_of(motion: Motion, altitude: float) -> Floats:
+def state_of(motion: AircraftMotion, altitude: float) -> Floats:
     """(10,) in the order of STATES, of what flies over an origin at ``altitude`` [m AMSL]; the way through calm air."""
     roll, pitch, yaw = rotations.to_euler(motion.world_from_body)
     flip = np.array((1.0, -1.0, -1.0))

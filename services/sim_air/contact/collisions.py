@@ -6,9 +6,9 @@ from typing import NamedTuple
 import numpy as np
 
 from services.sim_air.contact.surroundings import Around
-from services.sim_air.engine.states import Motion
+from services.sim_air.engine.states import AircraftMotion
 from uvf.maths.bvh import Bvh, build
-from uvf.maths.raycast import Body, Rays, Scene, cast
+from uvf.maths.raycast import MovingBody, Rays, Scene, cast
 from uvf.maths.rotations import Floats, matrix
 from uvf.maths.solids import joined
 from uvf.models.shapes.scene import primitives
@@ -31,7 +31,7 @@ class Feelers:
         self._ends: Floats = np.concatenate((np.diag(low), np.diag(high)))
         self.radius = float(np.linalg.norm(np.maximum(-low, high)))
 
-    def feel(self, before: Motion, motion: Motion) -> Rays:
+    def feel(self, before: AircraftMotion, motion: AircraftMotion) -> Rays:
         """Directions are as long as the lines. What did not move is felt by the lines through it only."""
         was, now = self._at(before), self._at(motion)
         starts, ends = now[:3], now[3:]
@@ -39,7 +39,7 @@ class Feelers:
             starts, ends = np.concatenate((starts, was)), np.concatenate((ends, now))
         return Rays(starts, ends - starts)
 
-    def _at(self, motion: Motion) -> Floats:
+    def _at(self, motion: AircraftMotion) -> Floats:
         ends: Floats = motion.position + self._ends @ matrix(motion.world_from_body).T
         return ends
 
@@ -50,7 +50,7 @@ class Collisions:
     def __init__(self, around: Around) -> None:
         self._around = around
         self._feelers = {name: Feelers(shape) for name, shape in around.shapes.items()}
-        self._before: Mapping[str, Motion] = {}
+        self._before: Mapping[str, AircraftMotion] = {}
         self._touching: set[frozenset[str]] = set()
         bounds = around.still.tree.bounds
         self._highest = float(bounds[0, 5]) if len(bounds) else -np.inf
@@ -67,7 +67,7 @@ class Collisions:
         self._before = {other: motion for other, motion in self._before.items() if other != name}
         self._touching = {pair for pair in self._touching if name not in pair}
 
-    def step(self, motions: Mapping[str, Motion]) -> list[Hit]:
+    def step(self, motions: Mapping[str, AircraftMotion]) -> list[Hit]:
         """What has begun to touch."""
         moving = self._around.bodies() if self._around.crowded else {}
         near = self._near(motions, moving)
@@ -78,7 +78,7 @@ class Collisions:
         self._touching, self._before = set(pairs), motions
         return new
 
-    def _near(self, motions: Mapping[str, Motion], moving: Mapping[str, Body]) -> dict[str, list[str]]:
+    def _near(self, motions: Mapping[str, AircraftMotion], moving: Mapping[str, MovingBody]) -> dict[str, list[str]]:
         """What is within MARGIN of each aircraft's bounding sphere, itself left out; all pairs at once, since this is done every step."""
         if not moving:
             return {}
@@ -90,7 +90,7 @@ class Collisions:
         close = (away**2).sum(axis=2) < (reach[:, None] + radii) ** 2
         return {name: [names[k] for k in np.flatnonzero(row) if names[k] != name] for name, row in zip(motions, close, strict=True)}
 
-    def _hits(self, name: str, motion: Motion, near: Mapping[str, Body]) -> list[Hit]:
+    def _hits(self, name: str, motion: AircraftMotion, near: Mapping[str, MovingBody]) -> list[Hit]:
         feelers = self._feelers[name]
         low = motion.position[2] - feelers.radius - MARGIN < self._highest
         if not low and not near:
@@ -106,7 +106,7 @@ class Collisions:
         return next(thing.name for thing in still if _meets(Scene(build(primitives(thing))), [], rays, above))
 
 
-def _meets(scene: Scene, bodies: list[Body], rays: Rays, above: float = -np.inf) -> bool:
+def _meets(scene: Scene, bodies: list[MovingBody], rays: Rays, above: float = -np.inf) -> bool:
     """Whether any line is met by something between its ends and ``above`` this height [m, world]."""
     shares = cast(scene, bodies, rays, 1.0)
     met = np.isfinite(shares)

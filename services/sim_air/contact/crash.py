@@ -7,10 +7,10 @@ from typing import Self
 
 import numpy as np
 
-from services.sim_air.engine.contacts import Touch
-from services.sim_air.engine.states import Air, Motion
+from services.sim_air.engine.contacts import GroundTouch
+from services.sim_air.engine.states import Air, AircraftMotion
 from services.sim_air.engine.wiring import JointAngle
-from services.sim_air.environment.ground import Ground
+from services.sim_air.environment.ground import GroundSurface
 from uvf.maths import rotations
 from uvf.maths.bvh import Bvh
 from uvf.maths.geodesy import GRAVITY
@@ -25,7 +25,7 @@ SCRAPE = 1.0  # m/s over the ground, below which a part of the structure may res
 STEEPEST = math.radians(45.0)  # of the wings or the nose while a wheel is on the ground
 
 
-def crash_of(touches: list[Touch], motion: Motion, max_sink: float) -> str:
+def crash_of(touches: list[GroundTouch], motion: AircraftMotion, max_sink: float) -> str:
     """What touched the ground and how fast, when that was more than a landing; empty = no crash.
 
     A part of the structure moving over the ground, a wheel sinking faster than ``max_sink`` [m/s], or wheels on the ground in an
@@ -48,7 +48,7 @@ def crash_of(touches: list[Touch], motion: Motion, max_sink: float) -> str:
 class Resting:
     """Where a wreck comes to lie: a corner of the box about it on the ground."""
 
-    def __init__(self, ground: Ground, shape: Bvh) -> None:
+    def __init__(self, ground: GroundSurface, shape: Bvh) -> None:
         self._ground = ground
         low, high = shape.bounds[0, :3], shape.bounds[0, 3:]
         self._corners = np.array([np.where(side, high, low) for side in itertools.product((False, True), repeat=3)])
@@ -65,7 +65,7 @@ class Resting:
 class Wreck:
     """What is left, motor off: it falls tumbling, with drag, until it lies."""
 
-    def __init__(self, motion: Motion, air: Air, joints: list[JointAngle], rests: Resting | None = None) -> None:
+    def __init__(self, motion: AircraftMotion, air: Air, joints: list[JointAngle], rests: Resting | None = None) -> None:
         """rests: without one it stays where it is."""
         self._rests = rests
         self._ground_level = air.static_pressure + DENSITY * GRAVITY * float(motion.position[2])

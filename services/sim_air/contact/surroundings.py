@@ -3,10 +3,10 @@
 from collections.abc import Callable, Mapping, Sequence
 
 from schemas.messages import NavState, SimObject, SimObjects
-from services.sim_air.engine.states import Motion
-from services.sim_air.environment.ground import Ground
+from services.sim_air.engine.states import AircraftMotion
+from services.sim_air.environment.ground import GroundSurface
 from uvf.maths.bvh import Bvh
-from uvf.maths.raycast import Body
+from uvf.maths.raycast import MovingBody
 from uvf.models.shapes.solid import Solid
 from uvf.runtime.messages.convert import array, wxyz
 from uvf.runtime.messages.spawned import solid_of, sound_objects, unit_wxyz
@@ -16,7 +16,9 @@ from uvf.sensors.surroundings import Surroundings, Whereabouts
 class Around:
     """Worked out when somebody looks, once a step."""
 
-    def __init__(self, things: Sequence[Solid], ground: Ground, vehicles: Mapping[str, Bvh], tree_of: Callable[[str], Bvh | None]) -> None:
+    def __init__(
+        self, things: Sequence[Solid], ground: GroundSurface, vehicles: Mapping[str, Bvh], tree_of: Callable[[str], Bvh | None]
+    ) -> None:
         """things: of the world; ground: they; vehicles: the shapes of all; tree_of: that of a vehicle model that is put in later;
         None where this host has none that stands on the ground."""
         self.things = things
@@ -30,8 +32,8 @@ class Around:
         self._t = 0.0
         self._objects: list[SimObject] = []
         self._truth: Mapping[str, NavState] = {}
-        self._aircraft: Mapping[str, Motion] = {}
-        self._bodies: dict[str, Body] | None = None
+        self._aircraft: Mapping[str, AircraftMotion] = {}
+        self._bodies: dict[str, MovingBody] | None = None
 
     def add_aircraft(self, name: str, shape: Bvh) -> None:
         self._surroundings.add_vehicle(name, shape)
@@ -39,7 +41,7 @@ class Around:
     def remove_aircraft(self, name: str) -> None:
         self._surroundings.remove(name)
 
-    def look(self, t: float, truth: Mapping[str, NavState], objects: SimObjects | None, aircraft: Mapping[str, Motion]) -> None:
+    def look(self, t: float, truth: Mapping[str, NavState], objects: SimObjects | None, aircraft: Mapping[str, AircraftMotion]) -> None:
         """How it stands at ``t`` [s]: ground vehicles by their newest truth, aircraft by their motion."""
         self._t, self._truth, self._objects, self._aircraft = t, truth, sound_objects(objects), aircraft
         self._bodies = None
@@ -49,7 +51,7 @@ class Around:
         """Whether more than one thing may move."""
         return self._scripted or len(self._aircraft.keys() | self._truth.keys()) + len(self._objects) > 1
 
-    def bodies(self) -> dict[str, Body]:
+    def bodies(self) -> dict[str, MovingBody]:
         """All that moves, by name."""
         if self._bodies is None:
             self._take_in()
@@ -59,7 +61,7 @@ class Around:
             self._bodies = {**s.moving(self._t), **s.objects(placed), **s.bodies(told), **s.bodies(self._aircraft)}
         return self._bodies
 
-    def others(self, name: str) -> list[Body]:
+    def others(self, name: str) -> list[MovingBody]:
         """What moves about one aircraft."""
         return [body for other, body in self.bodies().items() if other != name]
 

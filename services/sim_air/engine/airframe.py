@@ -9,24 +9,24 @@ from typing import Self
 
 import numpy as np
 
-from services.sim_air.engine.contacts import Contacts, Touch
+from services.sim_air.engine.contacts import Contacts, GroundTouch
 from services.sim_air.engine.engine_state import CYCLES, HELD, EngineState
 from services.sim_air.engine.gauges import FT, Gauges
 from services.sim_air.engine.gust_rates import GUST_RATES, with_gust_rates
 from services.sim_air.engine.initial import at_rest, blow, lay_terrain, put, put_held
 from services.sim_air.engine.spin_up import Hold, SpinUp
-from services.sim_air.engine.states import Air, Held, Motion, Runaway, Start
-from services.sim_air.engine.trim import Attitude, FlightPath, Trim, attitude, solve
+from services.sim_air.engine.states import Air, AircraftMotion, Held, InitialState, Runaway
+from services.sim_air.engine.trim import FlightPath, Trim, TrimAttitude, attitude, solve
 from services.sim_air.engine.wiring import Controls, JointAngle, Wiring
-from services.sim_air.environment.ground import LEVEL, Ground
-from services.sim_air.environment.wind import AirMotion, Flight
+from services.sim_air.environment.ground import LEVEL, GroundSurface
+from services.sim_air.environment.wind import AirMotion, AirRelativeState
 from uvf.maths import rotations
 from uvf.maths.geodesy import LocalTangent
 from uvf.maths.rotations import Floats
 from uvf.models.jsbsim.model_file import check_model
 from uvf.models.jsbsim.model_parts import Unmade, properties_read
 from uvf.models.vehicle.air import AirBody
-from uvf.models.yaml_data import BadInput, Place
+from uvf.models.yaml_data import BadInput, FileLocation
 from uvf.runtime.process.quiet import c_output_discarded
 
 os.environ.setdefault("JSBSIM_DEBUG", "0")  # read when the engine is made: without it a banner goes to the output
@@ -55,7 +55,7 @@ class Airframe:
         """The engine anew: it keeps from one beginning to the next what was true before, and a number that is none for ever."""
         self._fdm = _load(self._folder, self._path, self._body)
         known = list(dict.fromkeys([*_catalogue(self._fdm), *_made_by_settings(self._fdm, self._body)]))
-        self._wiring = Wiring(self._fdm, known, self._body, Place(str(self._folder / "vehicle.yaml"), ("air",)))
+        self._wiring = Wiring(self._fdm, known, self._body, FileLocation(str(self._folder / "vehicle.yaml"), ("air",)))
         self._contacts = Contacts(self._fdm, known, self._path)
         self._reach = float(np.linalg.norm(self._contacts.points(), axis=1).max(initial=0.0))
         self._gauges = Gauges(self._fdm, known, self._tangent)
@@ -82,11 +82,11 @@ class Airframe:
         twin._fdm.set_sim_time(state.time)
         return twin
 
-    def over(self, ground: Ground) -> None:
+    def over(self, ground: GroundSurface) -> None:
         """The ground that it will stand on and fly over, from its next beginning on."""
         self._ground = ground
 
-    def start(self, start: Start) -> Trim:
+    def start(self, start: InitialState) -> Trim:
         """Puts the aircraft into trimmed flight. Raises BadInput when it cannot fly so."""
         self._load()
         try:
@@ -103,7 +103,7 @@ class Airframe:
                 raise BadInput(f"{self._path}: at {start.airspeed} m/s it needs {needed:.2f} rad of {name}; the limit is {limit:g} rad")
         return trim
 
-    def stand(self, place: Start) -> None:
+    def stand(self, place: InitialState) -> None:
         """Puts the aircraft on its wheels, at rest, brakes on, motor off. Raises BadInput when it does not come to rest on them."""
         self.drop(place, 0.0)
         try:
@@ -114,9 +114,9 @@ class Airframe:
             raise BadInput(f"{self._path}: it does not come to rest on its wheels in {SETTLE:g} s; look at <ground_reactions>, physics_hz")
         motion = self.motion()
         roll, pitch, _ = rotations.to_euler(motion.world_from_body)
-        self._wait_in_the_wind(at_rest(place, float(motion.position[2])), Attitude(roll, -pitch, 0.0, (0.0, 0.0, 0.0)), place.wind)
+        self._wait_in_the_wind(at_rest(place, float(motion.position[2])), TrimAttitude(roll, -pitch, 0.0, (0.0, 0.0, 0.0)), place.wind)
 
-    def _wait_in_the_wind(self, start: Start, lies: Attitude, wind: Floats) -> None:
+    def _wait_in_the_wind(self, start: InitialState, lies: TrimAttitude, wind: Floats) -> None:
         """Functions of a model read ``aero/ci2vel`` of the step before; after a calm one that is the chord over no airspeed."""
         steps = 2
         self.hold_still(True)
@@ -126,12 +126,12 @@ class Airframe:
             self._fdm.run()
         self.hold_still(False)
 
-    def drop(self, place: Start, height: float) -> None:
+    def drop(self, place: InitialState, height: float) -> None:
         """Puts the aircraft level and at rest with its wheels ``height`` [m] above the ground, brakes on, motor off, in calm air."""
         self._load()
         lowest = -float(self._contacts.points()[:, 2].min(initial=0.0))
         ground = self._ground.under(place.position)
-        self._place(at_rest(place, ground + lowest + height), Attitude(0.0, 0.0, 0.0, (0.0, 0.0, 0.0)))
+        self._place(at_rest(place, ground + lowest + height), TrimAttitude(0.0, 0.0, 0.0, (0.0, 0.0, 0.0)))
         self.command(Controls(brake=1.0))
 
     def _settled(self) -> bool:
@@ -146,11 +146,11 @@ class Airframe:
                 return bool(motion.position[2] > self._ground.under(motion.position))
         return False
 
-    def touches(self) -> list[Touch]:
+    def touches(self) -> list[GroundTouch]:
         """What is on the ground."""
         return self._contacts.touches() if self._gauges.height() < self._reach + TOUCHING else []
 
-    def _trim(self, start: Start) -> Trim:
+    def _trim(self, start: InitialState) -> Trim:
         self.hold_still(True)
         calm = replace(start, wind=np.zeros(3))  # a turn through moving air is steady in the air only
         trim = solve(lambda guess: self.accelerations(calm, guess), start.path.bank, self.powered)
@@ -162,7 +162,7 @@ class Airframe:
         """Stops the motion of the body while the engine turns on, or lets it go."""
         self._hold.still(still)
 
-    def accelerations(self, start: Start, trim: Trim) -> Floats:
+    def accelerations(self, start: InitialState, trim: Trim) -> Floats:
         """(6,) body accelerations [m/s^2, rad/s^2] once the propeller turns steadily, the body held in this state."""
         flown = replace(start, climb=start.climb - trim.glide)
         return self._steady(partial(self._place, flown, attitude(start.path, trim)), trim.controls)
@@ -184,7 +184,7 @@ class Airframe:
         self._spin_up.settle(self._fdm, self._gauges, begin)
         return self._gauges.accelerations()
 
-    def _place(self, start: Start, lies: Attitude, spin_up: float = 0.0) -> None:
+    def _place(self, start: InitialState, lies: TrimAttitude, spin_up: float = 0.0) -> None:
         """spin_up: s for which the body is held still."""
         x, y, _ = start.position
         lay_terrain(self._fdm, self._tangent, x, y, self._ground.under(start.position))
@@ -214,7 +214,7 @@ class Airframe:
         for name, rate in zip(GUST_RATES, air.rates, strict=True):
             self._fdm[name] = rate
 
-    def flight(self) -> Flight:
+    def flight(self) -> AirRelativeState:
         """What the wind depends on."""
         return self._gauges.flight()
 
@@ -239,7 +239,7 @@ class Airframe:
         height = position[2] - self._ground.under(position)
         self._fdm["position/terrain-elevation-asl-ft"] = self._fdm["position/geod-alt-ft"] - height / FT
 
-    def motion(self) -> Motion:
+    def motion(self) -> AircraftMotion:
         return self._gauges.motion()
 
     def air(self) -> Air:

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from services.sim_air.engine.airframe import Airframe
-from services.sim_air.engine.states import Start
+from services.sim_air.engine.states import InitialState
 from services.sim_air.engine.wiring import Controls
 from services.sim_air.environment.wind import AirMass
 from uvf.models.mission import file as mission_file
@@ -16,22 +16,22 @@ CLEAR = 100.0  # m above the ground, where the trim of an aircraft that stands i
 
 
 @dataclass(frozen=True)
-class Beginning:
+class FlightStart:
     """flight: what to fly, or only where to stand; trim_speed: m/s."""
 
-    flight: Start
+    flight: InitialState
     standing: bool
     trim_speed: float
 
 
-def as_told(begin: mission_file.Start, body: AirBody, air: AirMass, ground: float) -> Beginning:
+def as_told(begin: mission_file.StartPose, body: AirBody, air: AirMass, ground: float) -> FlightStart:
     """From a mission's start: no height above the ``ground`` [m, world] means standing, no speed the trim speed."""
     position, standing = np.array((begin.x, begin.y, ground + begin.z)), begin.on_ground or begin.z == 0
-    flight = Start(position, begin.yaw, begin.speed or body.trim_speed, air.mean(begin.z), begin.climb, begin.turn_rate)
-    return Beginning(flight, standing, body.trim_speed)
+    flight = InitialState(position, begin.yaw, begin.speed or body.trim_speed, air.mean(begin.z), begin.climb, begin.turn_rate)
+    return FlightStart(flight, standing, body.trim_speed)
 
 
-def begun(airframe: Airframe, begin: Beginning) -> tuple[Controls, Controls]:
+def begun(airframe: Airframe, begin: FlightStart) -> tuple[Controls, Controls]:
     """Puts it there; its controls then, and those of level flight for when nobody steers. Raises BadInput."""
     if begin.standing:
         level = _level(airframe, begin)
@@ -44,7 +44,7 @@ def begun(airframe: Airframe, begin: Beginning) -> tuple[Controls, Controls]:
     return airframe.start(begin.flight).controls, level
 
 
-def _level(airframe: Airframe, begin: Beginning) -> Controls:
+def _level(airframe: Airframe, begin: FlightStart) -> Controls:
     """Of an aircraft that stands, and may not be able to fly: a glider."""
     above = begin.flight.position + np.array((0.0, 0.0, CLEAR))
     try:

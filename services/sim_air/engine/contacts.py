@@ -15,7 +15,7 @@ INCH = 0.0254  # m
 FT = 0.3048  # m
 
 
-class Touch(NamedTuple):
+class GroundTouch(NamedTuple):
     """A point on the ground; speed: m/s, down into it."""
 
     name: str
@@ -36,11 +36,11 @@ class Contacts:
         cg = self._place("inertia/cg-{}-in")
         return np.array([(self._place(node + "/{}-position") - cg) * (-1, -1, 1) for node in self._nodes]).reshape(-1, 3) * INCH
 
-    def touches(self) -> list[Touch]:
+    def touches(self) -> list[GroundTouch]:
         now = []
         for node, name in zip(self._nodes, self._names, strict=True):
             if self._properties[f"{node}/WOW"]:
-                now.append(Touch(name, node.startswith("gear"), self._properties[f"{node}/compression-velocity-fps"] * FT))
+                now.append(GroundTouch(name, node.startswith("gear"), self._properties[f"{node}/compression-velocity-fps"] * FT))
         return now
 
     def _place(self, name: str) -> Floats:

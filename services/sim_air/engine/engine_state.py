@@ -62,7 +62,7 @@ class EngineState:
     def settle(self, fdm: Engine, command: Callable[[Controls], None], turns: int) -> None:
         """Of a body held still: the properties that can be written, and then what takes time."""
         self.write(fdm)
-        drive = Drive(fdm, command, self)
+        drive = EngineDrive(fdm, command, self)
         for left in range(turns, 0, -1):
             if left == 2:
                 self.write(fdm)  # again: what has moved meanwhile
@@ -73,7 +73,7 @@ def _writable(fdm: Engine) -> list[str]:
     return [line.split(" ")[0] for line in fdm.query_property_catalog("").splitlines() if "(RW)" in line]
 
 
-class Drive:
+class EngineDrive:
     """Brings the propellers of a held body to a speed, a turn of three cycles at a time, two of them at the commands that hold.
 
     Over a turn the speed's distance from the target goes as e' = a e + b u + c with the throttle u of its first cycle; a, b, c are

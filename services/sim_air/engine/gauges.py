@@ -6,9 +6,9 @@ from collections.abc import Collection
 
 import numpy as np
 
-from services.sim_air.engine.states import Air, Motion
+from services.sim_air.engine.states import Air, AircraftMotion
 from services.sim_air.engine.wiring import Properties
-from services.sim_air.environment.wind import Flight
+from services.sim_air.environment.wind import AirRelativeState
 from uvf.maths import rotations
 from uvf.maths.geodesy import LocalTangent
 from uvf.maths.rotations import Floats
@@ -45,7 +45,7 @@ class Gauges:
         self.powered = any(name.startswith("propulsion/engine") for name in known)
         self._powers = [name for name in known if POWER.fullmatch(name)]
 
-    def motion(self) -> Motion:
+    def motion(self) -> AircraftMotion:
         p = self._properties
         velocity = np.array((p["velocities/v-east-fps"] * FT, p["velocities/v-north-fps"] * FT, p["velocities/v-down-fps"] * -FT))
         # ENU and FLU are each half a turn away from NED and FRD: yaw is mirrored, pitch changes sign with y and z.
@@ -55,7 +55,7 @@ class Gauges:
             (p["accelerations/Nx"] * G, p["accelerations/Ny"] * -G, p["accelerations/Nz"] * G)
         )  # at the centre of gravity, z up
         spin = np.array((p["accelerations/pdot-rad_sec2"], -p["accelerations/qdot-rad_sec2"], -p["accelerations/rdot-rad_sec2"]))
-        return Motion(self.position(), velocity, attitude, rates, force, p["velocities/vt-fps"] * FT, spin)
+        return AircraftMotion(self.position(), velocity, attitude, rates, force, p["velocities/vt-fps"] * FT, spin)
 
     def position(self) -> Floats:
         """(3,) m, world."""
@@ -68,10 +68,10 @@ class Gauges:
         """m above the ground."""
         return self._properties["position/h-agl-ft"] * FT
 
-    def flight(self) -> Flight:
+    def flight(self) -> AirRelativeState:
         """What the wind depends on."""
         p = self._properties
-        return Flight(self.position(), self.height(), np.pi / 2 - p["attitude/psi-rad"], p["velocities/vt-fps"] * FT)
+        return AirRelativeState(self.position(), self.height(), np.pi / 2 - p["attitude/psi-rad"], p["velocities/vt-fps"] * FT)
 
     def air(self) -> Air:
         p = self._properties

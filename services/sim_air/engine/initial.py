@@ -6,8 +6,8 @@ from typing import Protocol
 import numpy as np
 
 from services.sim_air.engine.gauges import FT
-from services.sim_air.engine.states import Held, Start
-from services.sim_air.engine.trim import Attitude
+from services.sim_air.engine.states import Held, InitialState
+from services.sim_air.engine.trim import TrimAttitude
 from services.sim_air.engine.wiring import Properties
 from uvf.maths.geodesy import LocalTangent
 from uvf.maths.rotations import Floats
@@ -24,13 +24,13 @@ class Engine(Properties, Protocol):
     def set_trim_status(self, status: bool) -> None: ...
 
 
-def at_rest(place: Start, height: float) -> Start:
+def at_rest(place: InitialState, height: float) -> InitialState:
     """height: of the centre of gravity, m."""
     x, y, _ = place.position
     return replace(place, position=np.array((x, y, height)), airspeed=0.0, climb=0.0, turn_rate=0.0, wind=np.zeros(3))
 
 
-def put(fdm: Engine, tangent: LocalTangent, start: Start, lies: Attitude, spin_up: float = 0.0) -> None:
+def put(fdm: Engine, tangent: LocalTangent, start: InitialState, lies: TrimAttitude, spin_up: float = 0.0) -> None:
     """Over the terrain that was laid before; spin_up: s for which the body will be held still."""
     latitude, longitude, altitude = tangent.geodetic(start.position)
     fdm["ic/lat-geod-rad"], fdm["ic/h-sl-ft"] = latitude, altitude / FT

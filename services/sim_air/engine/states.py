@@ -13,7 +13,7 @@ class Runaway(Exception):
 
 
 @dataclass(frozen=True)
-class Motion:
+class AircraftMotion:
     """What is true now. World frame ENU, body frame FLU."""
 
     position: Floats  # (3,) m
@@ -35,7 +35,7 @@ class Air:
 
 
 @dataclass(frozen=True)
-class Start:
+class InitialState:
     """Steady flight at ``airspeed`` [m/s] from ``position`` [m, world] towards ``yaw`` [rad, world] in a steady ``wind`` [m/s, world].
 
     climb: rad, up from the horizon, through the air; turn_rate: rad/s, to the left.

@@ -70,7 +70,7 @@ class FlightPath:
 
 
 @dataclass(frozen=True)
-class Attitude:
+class TrimAttitude:
     """Angles [rad] from axes of which x is the course over the air and z down, and the rates [rad/s] of the body, FRD."""
 
     roll: float
@@ -79,16 +79,16 @@ class Attitude:
     rates: tuple[float, float, float]
 
 
-def attitude(path: FlightPath, trim: Trim) -> Attitude:
+def attitude(path: FlightPath, trim: Trim) -> TrimAttitude:
     """How the body lies on the path. Straight, the nose is on the course; in a turn there is no side slip."""
     climb = path.climb - trim.glide
     if path.turn == 0:
-        return Attitude(trim.roll, trim.alpha + climb, -trim.slip, (0.0, 0.0, 0.0))
+        return TrimAttitude(trim.roll, trim.alpha + climb, -trim.slip, (0.0, 0.0, 0.0))
     pitch = _pitch(climb, trim.alpha, trim.roll)
     forward = np.array((np.cos(trim.alpha), 0.0, np.sin(trim.alpha)))
     north, east, _ = rotations.matrix(rotations.from_euler(trim.roll, pitch, 0.0)) @ forward
     rates = path.turn * np.array((-np.sin(pitch), np.sin(trim.roll) * np.cos(pitch), np.cos(trim.roll) * np.cos(pitch)))
-    return Attitude(trim.roll, pitch, -float(np.arctan2(east, north)) - trim.slip, tuple(rates.tolist()))
+    return TrimAttitude(trim.roll, pitch, -float(np.arctan2(east, north)) - trim.slip, tuple(rates.tolist()))
 
 
 def _pitch(climb: float, alpha: float, roll: float) -> float:

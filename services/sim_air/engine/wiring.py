@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 
 from uvf.models.vehicle.air import STANDARD_JOINTS, AirBody, JointReading, Surface, unnumbered
-from uvf.models.yaml_data import BadInput, Place, nearest
+from uvf.models.yaml_data import BadInput, FileLocation, nearest
 
 THROTTLE = re.compile(r"fcs/throttle-cmd-norm(\[\d+\])?")
 MIXTURE = re.compile(r"fcs/(mixture|advance)-cmd-norm(\[\d+\])?")
@@ -48,7 +48,7 @@ class Properties(Protocol):
 class Wiring:
     """The controls of one aircraft."""
 
-    def __init__(self, properties: Properties, known: Collection[str], body: AirBody, place: Place) -> None:
+    def __init__(self, properties: Properties, known: Collection[str], body: AirBody, place: FileLocation) -> None:
         """known: the names the model has; place: of ``air:`` in the vehicle's file. Raises BadInput for what the model has not."""
         self._properties = properties
         self._known = known
@@ -73,7 +73,7 @@ class Wiring:
     def joints(self) -> list[JointAngle]:
         return [read() for read in self._joints]
 
-    def _command(self, name: str, body: AirBody, place: Place) -> list[tuple[str, str, float]]:
+    def _command(self, name: str, body: AirBody, place: FileLocation) -> list[tuple[str, str, float]]:
         """(command, property, factor) of one command; standard names that the model has not are left out."""
         control = getattr(body.controls, name)
         scale = control.sign / control.limit if isinstance(control, Surface) else 1.0
@@ -85,13 +85,13 @@ class Wiring:
             targets = [target for target in body.controls.properties(name) if target in self._known]
         return [(name, target, scale) for target in targets]
 
-    def _there(self, name: str, place: Place) -> str:
+    def _there(self, name: str, place: FileLocation) -> str:
         plain = name.replace("[0]", "")
         if plain not in self._known:
             raise BadInput(f"{place}: the model has no property '{name}'; {_near(plain, self._known)}")
         return plain
 
-    def _readers(self, body: AirBody, place: Place) -> list[Callable[[], JointAngle]]:
+    def _readers(self, body: AirBody, place: FileLocation) -> list[Callable[[], JointAngle]]:
         told = {name: joint for name, joint in STANDARD_JOINTS.items() if (joint.position or joint.speed) in self._known}
         for name, joint in body.joints.items():
             self._there(joint.position or joint.speed or "", place.at(name, "speed" if joint.position is None else "position"))

@@ -13,7 +13,7 @@ HIGHEST = 1e5  # m
 DOWN = np.array(((0.0, 0.0, -1.0),))
 
 
-class Ground:
+class GroundSurface:
     """Looked at along the vertical, so that an aircraft stands in a hangar as well as on its roof."""
 
     def __init__(self, scene: Scene) -> None:
@@ -38,5 +38,5 @@ class Ground:
         return float(z - cast(self.scene, [], Rays(np.array((x, y, z)), DOWN), np.inf)[0])
 
 
-LEVEL = Ground(Scene(build(joined([])), 0.0))
+LEVEL = GroundSurface(Scene(build(joined([])), 0.0))
 """z = 0 everywhere."""

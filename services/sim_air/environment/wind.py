@@ -14,7 +14,7 @@ CALM = np.zeros(3)
 STILL = 1.0  # m/s through the air, below which turning air is left out: the engine divides by the airspeed of the step before
 
 
-class Flight(NamedTuple):
+class AirRelativeState(NamedTuple):
     """What the air needs to know of the aircraft."""
 
     position: Floats  # (3,) m, world
@@ -46,7 +46,7 @@ class AirMass:
         shear = self._wind.shear
         return self._steady if shear is None else self._steady * _growth(shear, height)
 
-    def step(self, t: float, dt: float, flight: Flight) -> AirMotion:
+    def step(self, t: float, dt: float, flight: AirRelativeState) -> AirMotion:
         """The air that the aircraft meets at ``t`` [s], ``dt`` [s] after the step before."""
         velocity, rates = self.mean(flight.height), CALM
         for i, gust in enumerate(self._wind.gusts):
@@ -59,7 +59,7 @@ class AirMass:
             rates = np.array((g.p, g.q, g.r)) if flight.airspeed > STILL else CALM
         return AirMotion(velocity, rates)
 
-    def _share(self, i: int, gust: Gust, t: float, flown: float, flight: Flight) -> float:
+    def _share(self, i: int, gust: Gust, t: float, flown: float, flight: AirRelativeState) -> float:
         if gust.place is not None:
             away = float(np.hypot(flight.position[0] - gust.place[0], flight.position[1] - gust.place[1]))
             return one_minus_cosine(gust.length / 2 - away, gust.length)

@@ -1,20 +1,20 @@
 """One merging for all ground vehicles of the mission that draw maps."""
 
 from services.slam.merging.merging_service import MergingService
-from uvf.models.scenario import Site
-from uvf.runtime.contract.instances import Host
+from uvf.models.scenario import Scenario
+from uvf.runtime.contract.instances import ServiceInstance
 from uvf.slam.graph.method import GraphSlam
 from uvf.slam.made_corridor import there_and_back
 from uvf.slam.merging.team import Team
 
 
-def build(site: Site) -> list[Host]:
+def build(site: Scenario) -> list[ServiceInstance]:
     """None where fewer than two of them do."""
     names = tuple(m.name for m in site.of_kind("ground") if m.entry.maps is None or m.entry.maps.localize is None)
     if len(names) < 2:
         return []
     warm_up()
-    return [Host(MergingService, MergingService, writes_for=names)]
+    return [ServiceInstance(MergingService, MergingService, writes_for=names)]
 
 
 def warm_up() -> None:

@@ -7,12 +7,12 @@ import numpy as np
 from schemas import topics
 from schemas.messages import Event, FrameTransform, Grid, MapSession
 from uvf.models.yaml_data import BadInput
-from uvf.runtime.contract.service import Service, each_vehicle
+from uvf.runtime.contract.declaration import Reads, Writes, each_vehicle, topic
+from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import occupancy_grid, planar_frame, stamp
-from uvf.runtime.messages.outputs import Outputs
-from uvf.slam.maps.session import Session
+from uvf.slam.maps.session import MappingSession
 from uvf.slam.maps.tiles import TileMap
-from uvf.slam.merging.team import Group, Team
+from uvf.slam.merging.team import MapGroup, Team
 
 PLACES = 4  # that are searched for in a step
 RESOLUTION = 0.05  # m
@@ -27,17 +27,23 @@ class MergingService(Service):
     name = "merging"
     hz = 0.5
     scope = "world"
-    inputs = {"session": each_vehicle(topics.MAP_SESSION)}
-    outputs = {"map": topics.TEAM_MAP, "place": topics.TEAM_PLACE, "events": topics.EVENTS.by("merging")}
+
+    class Inputs(Reads):
+        session: dict[str, MapSession] = each_vehicle(topics.MAP_SESSION)
+
+    class Outputs(Writes):
+        map: dict[str, Grid] | None = topic(topics.TEAM_MAP)
+        place: dict[str, FrameTransform] | None = topic(topics.TEAM_PLACE)
+        events: dict[str, list[Event]] | None = topic(topics.EVENTS.by("merging"))
 
     def __init__(self) -> None:
         self._team = Team()
         self._taken: dict[str, MapSession] = {}
-        self._told: dict[str, Group] = {}
+        self._told: dict[str, MapGroup] = {}
         self._maps: dict[str, TileMap] = {}
 
-    def step(self, t: float, session: Mapping[str, MapSession]) -> Outputs:
-        events = self._take(t, session)
+    def step(self, t: float, now: Inputs) -> Outputs:
+        events = self._take(t, now.session)
         self._team.work(PLACES)
         teams = {group.names[0]: group for group in self._team.groups if len(group.names) > 1}
         news = [group for first, group in teams.items() if self._told.get(first) is not group]
@@ -54,7 +60,7 @@ class MergingService(Service):
         maps |= {first: _nothing(t, first) for first in ended if self._maps.pop(first, None)}
         places |= {name: self._place(t, name, name) for name in sorted(alone)}
         self._told = teams
-        return {"map": maps, "place": places, "events": {name: told for name, told in events.items() if told}}
+        return self.Outputs(map=maps, place=places, events={name: told for name, told in events.items() if told})
 
     def _take(self, t: float, sessions: Mapping[str, MapSession]) -> dict[str, list[Event]]:
         """The session that has waited longest, if any is new."""
@@ -64,12 +70,12 @@ class MergingService(Service):
         name = min(new, key=lambda name: (name in self._taken, sessions[name].timestamp.ToNanoseconds(), name))
         self._taken[name] = sessions[name]
         try:
-            self._team.follow(name, Session.decoded(sessions[name].data, f"of {name}"))
+            self._team.follow(name, MappingSession.decoded(sessions[name].data, f"of {name}"))
         except BadInput as error:
             return {name: [_event(t, Event.WARNING, "the map cannot be put together with those of others", str(error))]}
         return {}
 
-    def _map(self, t: float, group: Group) -> dict[str, Grid]:
+    def _map(self, t: float, group: MapGroup) -> dict[str, Grid]:
         """Of all keyframes, by its first vehicle; nothing where it would be as it was. Raises BadInput where it is too large."""
         first = group.names[0]
         tiles = self._maps.setdefault(first, TileMap(RESOLUTION))
@@ -78,7 +84,7 @@ class MergingService(Service):
         cells, (x, y) = tiles.cells()
         return {first: occupancy_grid(cells, RESOLUTION, x, y, f"{first}/map", t)}
 
-    def _joined(self, t: float, group: Group) -> list[Event]:
+    def _joined(self, t: float, group: MapGroup) -> list[Event]:
         """Told where vehicles have come to it."""
         before = self._told.get(group.names[0])
         if before is not None and set(group.names) <= set(before.names):
@@ -90,7 +96,7 @@ class MergingService(Service):
         return planar_frame(t, f"{first}/map", f"{name}/map", self._team.team_from_map(name))
 
 
-def _names(groups: Iterable[Group]) -> set[str]:
+def _names(groups: Iterable[MapGroup]) -> set[str]:
     return {name for group in groups for name in group.names}
 
 

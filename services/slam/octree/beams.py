@@ -19,14 +19,14 @@ BEYOND = 2.0
 """A beam without a return is taken to end at so many times the reach: it is free as far as there, and has met nothing."""
 
 
-class Beams(NamedTuple):
+class RayBundle(NamedTuple):
     """ends: (n, 3) m in the sensor's frame; reach: m, what ended farther away has met nothing."""
 
     ends: Floats
     reach: float
 
 
-def depth_beams(picture: CompressedImage, info: CameraCalibration, reach: float) -> Beams:
+def depth_beams(picture: CompressedImage, info: CameraCalibration, reach: float) -> RayBundle:
     """Of a depth picture (16-bit PNG: mm along the view, 0 = nothing there), in the optical frame (x right, y down, z along the view).
 
     reach: m, not more than the camera sees. Raises BadInput.
@@ -36,14 +36,14 @@ def depth_beams(picture: CompressedImage, info: CameraCalibration, reach: float)
     ends = rays * depths[:, None]
     nothing = depths == 0.0
     ends[nothing] = rays[nothing] * (BEYOND * reach)
-    return Beams(ends, reach)
+    return RayBundle(ends, reach)
 
 
-def sweep_beams(scan: LaserScan, reach: float) -> Beams:
+def sweep_beams(scan: LaserScan, reach: float) -> RayBundle:
     """Of a 2-D lidar, in its own frame; reach: m, not more than the lidar's own."""
     ranges, rays = scan_rays(scan)
     lengths = np.where((ranges > 0.0) & (ranges <= reach), ranges, BEYOND * reach)
-    return Beams(np.column_stack((rays * lengths[:, None], np.zeros(len(rays)))), reach)
+    return RayBundle(np.column_stack((rays * lengths[:, None], np.zeros(len(rays)))), reach)
 
 
 def _depths(picture: CompressedImage, shape: tuple[int, int]) -> NDArray[np.uint16]:

@@ -5,10 +5,10 @@ from functools import partial
 import numpy as np
 
 from services.slam.octree.octree_service import OctreeParams, OctreeService
-from uvf.models.scenario import Member, Site
+from uvf.models.scenario import MissionVehicle, Scenario
 from uvf.models.whole_file import write_whole
 from uvf.models.yaml_data import BadInput
-from uvf.runtime.contract.instances import Host
+from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.state.state_folder import state_folder
 from uvf.slam.octree.columns import columns_of
 from uvf.slam.octree.files import read_octree, to_bt
@@ -16,7 +16,7 @@ from uvf.slam.octree.leaves import leaves_of
 from uvf.slam.octree.octree import Octree
 
 
-def build(site: Site) -> list[Host]:
+def build(site: Scenario) -> list[ServiceInstance]:
     """Raises BadInput for a vehicle that asks for a map and sees nothing of the world."""
     members = [member for member in site.members.values() if OctreeService.name in member.file.params]
     if members:
@@ -24,13 +24,13 @@ def build(site: Site) -> list[Host]:
     return [_host(member) for member in members]
 
 
-def _host(member: Member) -> Host:
+def _host(member: MissionVehicle) -> ServiceInstance:
     sensors = member.file.sensors
     if sensors.lidar is None and (sensors.camera is None or not sensors.camera.depth):
         path = member.folder / "vehicle.yaml"
         raise BadInput(f"{path}: params: octree: no sensor to map with; fit a lidar, or a camera with 'depth: true'")
     params = member.params(OctreeService.name, OctreeParams)
-    return Host(OctreeService, lambda: OctreeService(sensors, partial(_keep, member.name), params), member.name)
+    return ServiceInstance(OctreeService, lambda: OctreeService(sensors, partial(_keep, member.name), params), member.name)
 
 
 def _keep(vehicle: str, name: str, content: bytes) -> str:

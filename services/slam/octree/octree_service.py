@@ -11,19 +11,19 @@ from msgspec import Meta
 from numpy.typing import NDArray
 
 from schemas import topics
-from schemas.messages import CameraCalibration, CompressedImage, Event, LaserScan, OctreeMap, OctreeSaveRequest, Reply
-from services.slam.octree.beams import Beams, depth_beams, sweep_beams
+from schemas.messages import CameraCalibration, CompressedImage, Event, Grid, LaserScan, OctreeMap, OctreeSaveRequest, Reply
+from services.slam.octree.beams import RayBundle, depth_beams, sweep_beams
 from services.slam.octree.octree_messages import FRAME, heights_message, octree_from, octree_message, slice_message
 from uvf.maths.se3 import apply
 from uvf.models.params import Params
 from uvf.models.vehicle.sensors import Sensors
 from uvf.models.yaml_data import BadInput
-from uvf.runtime.contract.service import Service, every, frames, optional
+from uvf.runtime.contract.declaration import Reads, Writes, every, frames, optional, replies, request, topic
+from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import seconds, stamp
 from uvf.runtime.messages.frames import FrameBuffer, FrameError
-from uvf.runtime.messages.outputs import Outputs, Value
 from uvf.sensors.fitted import sweeping_of
-from uvf.sensors.sweeping import Part
+from uvf.sensors.sweeping import SweepSegment
 from uvf.slam.octree.columns import columns_of
 from uvf.slam.octree.files import to_bt
 from uvf.slam.octree.leaves import TooLarge, leaves_of
@@ -53,9 +53,9 @@ class OctreeParams(Params, frozen=True):
 class Taken(NamedTuple):
     """A picture or a sweep that waits for its place. parts: its beams by when they were measured."""
 
-    parts: list[Part]
+    parts: list[SweepSegment]
     frame: str
-    beams: Beams
+    beams: RayBundle
 
     def placed(self, frames: FrameBuffer) -> tuple[Floats, Floats]:
         """(3,), (n, 3) m, world: where it was taken from, a sweep from where its middle was, and the beams' ends. Raises FrameError."""
@@ -69,20 +69,24 @@ class OctreeService(Service):
 
     name = "octree"
     hz = 2.0
-    inputs = {
-        "depth": optional(every(topics.DEPTH)),
-        "info": optional(topics.CAMERA_INFO),
-        "scan": optional(every(topics.SCAN)),
-        "frames": frames(),
-    }
-    outputs = {
-        "map": topics.OCTREE,
-        "slice": topics.SLICE,
-        "heights": topics.HEIGHTS,
-        "events": topics.EVENTS.by("octree"),
-    }
-    requests = {"save": topics.SAVE_OCTREE}
-    recalls = {"map": topics.OCTREE}
+
+    class Inputs(Reads):
+        depth: list[CompressedImage] = optional(every(topics.DEPTH))
+        info: CameraCalibration | None = optional(topics.CAMERA_INFO)
+        scan: list[LaserScan] = optional(every(topics.SCAN))
+        frames: FrameBuffer = frames()
+        save: list[OctreeSaveRequest] = request(topics.SAVE_OCTREE)
+
+    class Outputs(Writes):
+        map: OctreeMap | None = topic(topics.OCTREE)
+        slice: Grid | None = topic(topics.SLICE)
+        heights: Grid | None = topic(topics.HEIGHTS)
+        events: list[Event] | None = topic(topics.EVENTS.by("octree"))
+        save: list[Reply] = replies(topics.SAVE_OCTREE)
+
+    class Recalls(Reads):
+        map: OctreeMap | None = topic(topics.OCTREE)
+
     params: OctreeParams
     fixed_params = frozenset({"resolution"})
 
@@ -98,34 +102,27 @@ class OctreeService(Service):
         self._published_at = float("-inf")
         self._placed_at = 0.0
 
-    def step(
-        self,
-        t: float,
-        depth: list[CompressedImage],
-        info: CameraCalibration | None,
-        scan: list[LaserScan],
-        frames: FrameBuffer,
-        save: list[OctreeSaveRequest],
-    ) -> Outputs:
-        events = [*self._take(t, depth, info, scan), *self._place(t, frames)]
-        maps: dict[str, Value] = {}
+    def step(self, t: float, now: Inputs) -> Outputs:
+        events = [*self._take(t, now.depth, now.info, now.scan), *self._place(t, now.frames)]
+        out = self.Outputs(events=events)
         if self._changed and t - self._published_at >= self.params.map_period - 1e-9:
             self._changed, self._published_at = False, t
             if self.params.slice_low > self.params.slice_high:
                 events += self._tell(t, "the slice of the map is empty", "'slice_low' lies above 'slice_high'")
             try:
-                maps = self._maps(t)
+                self._draw(t, out)
             except TooLarge as error:
                 events += self._tell(t, "the map is not published", f"{error}; set a larger 'resolution'")
-        replies = [self._saved(request) for request in save]
+        replies = [self._saved(request) for request in now.save]
         events += [self._event(t, Event.INFO, f"map written to {place}") for _, place in replies if place]
-        return {**maps, "events": events, "save": [reply for reply, _ in replies]}
+        out.save = [reply for reply, _ in replies]
+        return out
 
-    def recall(self, map: OctreeMap | None = None) -> None:
+    def recall(self, left: Recalls) -> None:
         """Goes on with the last map published, as sure as clamping allows of what it says."""
-        if map is not None and map.resolution == self.params.resolution:
+        if left.map is not None and left.map.resolution == self.params.resolution:
             with suppress(BadInput):  # it begins anew, as it would without a map
-                self._octree = octree_from(map)
+                self._octree = octree_from(left.map)
                 self._changed = True
 
     def _take(self, t: float, depth: list[CompressedImage], info: CameraCalibration | None, scan: list[LaserScan]) -> list[Event]:
@@ -138,7 +135,7 @@ class OctreeService(Service):
                 except BadInput as error:
                     events += self._tell(t, "a depth picture is left out", str(error))
                 else:
-                    self._waiting.append(Taken([Part(seconds(picture.timestamp), slice(None))], picture.frame_id, beams))
+                    self._waiting.append(Taken([SweepSegment(seconds(picture.timestamp), slice(None))], picture.frame_id, beams))
         if (lidar := self._sensors.lidar) is not None:
             for sweep in scan:
                 beams = sweep_beams(sweep, min(self.params.lidar_reach, lidar.range_max))
@@ -167,13 +164,12 @@ class OctreeService(Service):
         self._waiting = deque(still, maxlen=WAITING_MOST)
         return self._tell(t, "pictures or sweeps cannot be mapped", reason) if reason and t - self._placed_at >= PATIENCE else []
 
-    def _maps(self, t: float) -> dict[str, Value]:
+    def _draw(self, t: float, out: Outputs) -> None:
         """Raises TooLarge."""
-        maps: dict[str, Value] = {"map": octree_message(self._octree, MESSAGE_MOST, t)}
+        out.map = octree_message(self._octree, MESSAGE_MOST, t)
         columns = columns_of(self._octree, self.params.slice_low, self.params.slice_high, COLUMNS_MOST)
         if columns is not None:
-            maps |= {"slice": slice_message(columns, t), "heights": heights_message(columns, t)}
-        return maps
+            out.slice, out.heights = slice_message(columns, t), heights_message(columns, t)
 
     def _saved(self, request: OctreeSaveRequest) -> tuple[Reply, str]:
         """The answer, and where the file is."""

@@ -3,7 +3,7 @@
 from math import isfinite
 
 from schemas import topics
-from schemas.messages import Event, FrameTransform, Gnss, Imu, Odometry, PoseInFrame, WheelTicks
+from schemas.messages import EstimateQuality, Event, FrameTransform, Gnss, Imu, NavState, Odometry, PoseInFrame, WheelTicks
 from services.slam.odometry import telling
 from services.slam.odometry.readings import Readings, satellite_fix
 from uvf.estimation.odometry.calibration import Scales, SegmentMaker, WheelCalibration
@@ -16,9 +16,9 @@ from uvf.maths.geodesy import LocalTangent
 from uvf.maths.kinematics import Twist, move
 from uvf.maths.se2 import Pose2
 from uvf.models.vehicle.file import VehicleFile
-from uvf.runtime.contract.service import Service, every, optional
+from uvf.runtime.contract.declaration import Reads, Writes, every, optional, topic
+from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import planar_pose, pose2_of, pose2_of_frame, seconds, stamp
-from uvf.runtime.messages.outputs import Outputs, Value
 from uvf.sensors.sampling import Due
 
 MAX_PREDICTION = 0.1  # s, wheel data older than this is not extrapolated further
@@ -33,21 +33,25 @@ class OdometryService(Service):
     name = "odometry"
     hz = 50.0
     given_up = "the vehicle stands where it would drive by itself"
-    inputs = {
-        "wheels": topics.WHEELS,
-        "imu": optional(every(topics.IMU)),
-        "correction": optional(topics.TF_MAP),
-        "gnss": optional(every(topics.GNSS)),
-    }
-    outputs = {
-        "odometry": topics.ODOMETRY,
-        "moving": topics.TF_ODOM,
-        "pose": topics.POSE,
-        "nav_state": topics.NAV_STATE,
-        "quality": topics.QUALITY,
-        "events": topics.EVENTS.by("odometry"),
-    }
-    recalls = {"odometry": topics.ODOMETRY, "correction": topics.TF_MAP}
+
+    class Inputs(Reads):
+        wheels: WheelTicks = topic(topics.WHEELS)
+        imu: list[Imu] = optional(every(topics.IMU))
+        correction: FrameTransform | None = optional(topics.TF_MAP)
+        gnss: list[Gnss] | None = optional(every(topics.GNSS))
+
+    class Outputs(Writes):
+        odometry: Odometry | None = topic(topics.ODOMETRY)
+        moving: FrameTransform | None = topic(topics.TF_ODOM)
+        pose: PoseInFrame | None = topic(topics.POSE)
+        nav_state: NavState | None = topic(topics.NAV_STATE)
+        quality: EstimateQuality | None = topic(topics.QUALITY)
+        events: list[Event] | None = topic(topics.EVENTS.by("odometry"))
+
+    class Recalls(Reads):
+        odometry: Odometry | None = topic(topics.ODOMETRY)
+        correction: FrameTransform | None = topic(topics.TF_MAP)
+
     params: OdometryParams
     fixed_params = frozenset({"filter", "bias_start", "scale_start", "position_start", "heading_start"})
 
@@ -75,30 +79,30 @@ class OdometryService(Service):
         self._driven = 0.0
         self._quality_due = Due(topics.QUALITY.hz)
 
-    def step(
-        self, t: float, wheels: WheelTicks, imu: list[Imu], correction: FrameTransform | None, gnss: list[Gnss] | None = None
-    ) -> Outputs:
+    def step(self, t: float, now: Inputs) -> Outputs:
         self._set_up()
         events: list[Event] = []
-        if (step := self._readings.take(wheels, imu)) is not None:
-            self._move(seconds(wheels.timestamp), step)
+        if (step := self._readings.take(now.wheels, now.imu)) is not None:
+            self._move(seconds(now.wheels.timestamp), step)
             cause = self._filter.doubt or (self._unseen.cause if self._unseen is not None else None)
             if (episode := self._episodes.step(cause, step.dt)) is not None:
                 events.append(telling.slipping(t, episode.cause))
-        if correction is not None:
-            self._correct(correction)
+        if now.correction is not None:
+            self._correct(now.correction)
         if self._satellites is not None:
-            self._satellites.take([satellite_fix(m) for m in gnss or []], self._filter.pose)
+            self._satellites.take([satellite_fix(m) for m in now.gnss or []], self._filter.pose)
         events += self._calibrate(t)
-        ahead = min(t - seconds(wheels.timestamp), MAX_PREDICTION)
-        return self._told(t, move(self._filter.pose, Twist(*self._filter.speeds), ahead)) | ({"events": events} if events else {})
+        ahead = min(t - seconds(now.wheels.timestamp), MAX_PREDICTION)
+        out = self._told(t, move(self._filter.pose, Twist(*self._filter.speeds), ahead))
+        out.events = events
+        return out
 
-    def recall(self, odometry: Odometry | None = None, correction: FrameTransform | None = None) -> None:
+    def recall(self, left: Recalls) -> None:
         """Goes on at the last pose told; what was driven since then is in the ticks counted since then."""
-        if odometry is not None:
-            self._resume(odometry)
-        if correction is not None:
-            self._correct(correction)
+        if left.odometry is not None:
+            self._resume(left.odometry)
+        if left.correction is not None:
+            self._correct(left.correction)
 
     def _resume(self, odometry: Odometry) -> None:
         """Nothing from a message that somebody else has left: it lacks the ticks."""
@@ -178,7 +182,7 @@ class OdometryService(Service):
             self._applied = Scales(*(a * b for a, b in zip(self._applied, self._calibration.scales, strict=True)))
         return [event]
 
-    def _told(self, t: float, odom_from_base: Pose2) -> dict[str, Value]:
+    def _told(self, t: float, odom_from_base: Pose2) -> Outputs:
         drive, last = self._filter, self._readings.last or WheelTicks()
         left_over = {LEFT: str(last.left), RIGHT: str(last.right), BIAS: repr(drive.bias)}
         if self._applied != Scales():
@@ -188,12 +192,10 @@ class OdometryService(Service):
         if self._satellites is not None:
             pose = self._satellites.shown(drive.pose, odom_from_base, self.params.correction_speed / self.hz)
             sigma, known, ratio = self._satellites.sigma, self._satellites.is_known(t), self._satellites.ratio
-        told: dict[str, Value] = {
-            "odometry": telling.odometry(t, self._vehicle, odom_from_base, drive, left_over),
-            "moving": telling.moving(t, self._vehicle, odom_from_base),
-            "pose": PoseInFrame(timestamp=stamp(t), frame_id="world", pose=planar_pose(*pose)),
-            "nav_state": telling.nav_state(t, pose, drive.speeds, sigma),
-        }
-        if self._quality_due.at(t):
-            told["quality"] = telling.quality(t, sigma, drive, (known, ratio))
-        return told
+        return self.Outputs(
+            odometry=telling.odometry(t, self._vehicle, odom_from_base, drive, left_over),
+            moving=telling.moving(t, self._vehicle, odom_from_base),
+            pose=PoseInFrame(timestamp=stamp(t), frame_id="world", pose=planar_pose(*pose)),
+            nav_state=telling.nav_state(t, pose, drive.speeds, sigma),
+            quality=telling.quality(t, sigma, drive, (known, ratio)) if self._quality_due.at(t) else None,
+        )

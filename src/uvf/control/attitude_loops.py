@@ -6,7 +6,7 @@ Surface gains hold at the trim airspeed and are scaled with dynamic pressure.
 
 import math
 
-from uvf.control.commands import Attitude, Surfaces
+from uvf.control.commands import AttitudeSetpoint, Surfaces
 from uvf.control.cycle import FULL_BANK, Cycle, clip
 from uvf.control.servos import Servos, SurfaceTrim
 from uvf.maths.geodesy import GRAVITY
@@ -24,7 +24,7 @@ class AttitudeLoops:
         self._pitch = SurfaceTrim(servos.elevator)
         self._slip = SurfaceTrim(servos.rudder)
 
-    def step(self, cycle: Cycle, wanted: Attitude) -> Surfaces:
+    def step(self, cycle: Cycle, wanted: AttitudeSetpoint) -> Surfaces:
         aileron = self._aileron(cycle, clip(wanted.bank, cycle.bank_limit))
         elevator = self._elevator(cycle, max(min(wanted.pitch, cycle.highest_pitch), -cycle.params.pitch_limit))
         return Surfaces(aileron, elevator, self._rudder(cycle, wanted.rudder), min(max(wanted.throttle, 0.0), 1.0))

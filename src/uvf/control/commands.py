@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True)
-class Wanted:
+class AltitudeAirspeedSetpoint:
     """What guidance asks for."""
 
     bank: float  # rad
@@ -16,7 +16,7 @@ class Wanted:
 
 
 @dataclass(frozen=True, slots=True)
-class Attitude:
+class AttitudeSetpoint:
     """What the attitude loops are asked for; the throttle is passed on."""
 
     bank: float  # rad

@@ -4,14 +4,14 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
-class Limits:
+class DriveLimits:
     linear: float  # m/s
     angular: float  # rad/s
     linear_acceleration: float  # m/s^2
     angular_acceleration: float  # rad/s^2
 
 
-def within_limits(linear: float, angular: float, limits: Limits, top_speed: float) -> tuple[float, float]:
+def within_limits(linear: float, angular: float, limits: DriveLimits, top_speed: float) -> tuple[float, float]:
     """(m/s, rad/s) scaled together, so that the curvature that was asked for stays."""
     fastest = min(limits.linear, top_speed)
     excess = max(abs(linear) / fastest, abs(angular) / limits.angular, 1.0)
@@ -23,10 +23,10 @@ def approach(current: float, wanted: float, most: float) -> float:
     return current + min(max(wanted - current, -most), most)
 
 
-class Ramp:
+class VelocityRamp:
     """The velocity given now, led towards the one asked for within the accelerations."""
 
-    def __init__(self, limits: Limits) -> None:
+    def __init__(self, limits: DriveLimits) -> None:
         self.limits = limits
         self.linear = 0.0  # m/s
         self.angular = 0.0  # rad/s

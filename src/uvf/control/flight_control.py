@@ -6,7 +6,7 @@ Either level may be asked. Changing from the lower to the upper, or from law to 
 from typing import Protocol
 
 from uvf.control.attitude_loops import AttitudeLoops
-from uvf.control.commands import Attitude, Surfaces, Wanted
+from uvf.control.commands import AltitudeAirspeedSetpoint, AttitudeSetpoint, Surfaces
 from uvf.control.cycle import Cycle
 from uvf.control.servos import Servos
 from uvf.control.thesis import ThesisAttitude, ThesisPath
@@ -16,41 +16,41 @@ from uvf.maths.geodesy import GRAVITY
 from uvf.models.vehicle.flight_params import AirParams
 
 
-class Inner(Protocol):
-    def step(self, cycle: Cycle, wanted: Attitude) -> Surfaces: ...
+class AttitudeLaw(Protocol):
+    def step(self, cycle: Cycle, wanted: AttitudeSetpoint) -> Surfaces: ...
 
 
-class Outer(Protocol):
-    def begin(self, cycle: Cycle, wanted: Wanted, pitch: float, throttle: float) -> None: ...
+class PathLaw(Protocol):
+    def begin(self, cycle: Cycle, wanted: AltitudeAirspeedSetpoint, pitch: float, throttle: float) -> None: ...
 
-    def step(self, cycle: Cycle, wanted: Wanted) -> tuple[float, float]: ...
+    def step(self, cycle: Cycle, wanted: AltitudeAirspeedSetpoint) -> tuple[float, float]: ...
 
 
-class Control:
+class FlightControl:
     """Both levels of the law that is chosen, and what they have learnt."""
 
     def __init__(self, servos: Servos) -> None:
-        self._inner: dict[str, Inner] = {"energy": AttitudeLoops(servos), "thesis": ThesisAttitude(servos)}
-        self._outer: dict[str, Outer] = {"energy": EnergyLoops(), "thesis": ThesisPath()}
+        self._inner: dict[str, AttitudeLaw] = {"energy": AttitudeLoops(servos), "thesis": ThesisAttitude(servos)}
+        self._outer: dict[str, PathLaw] = {"energy": EnergyLoops(), "thesis": ThesisPath()}
         self._flown = ""  # the law of the upper level in the last cycle; none when an attitude was held
-        self._held: Attitude | None = None
+        self._held: AttitudeSetpoint | None = None
 
     @property
-    def held(self) -> Attitude | None:
+    def held(self) -> AttitudeSetpoint | None:
         """What the lower level was asked for in the last cycle."""
         return self._held
 
-    def step(self, now: Estimate, wanted: Wanted, params: AirParams, dt: float) -> Surfaces:
+    def step(self, now: Estimate, wanted: AltitudeAirspeedSetpoint, params: AirParams, dt: float) -> Surfaces:
         """Holds a height or a climb rate, and an airspeed."""
         cycle, outer = Cycle(now, params, dt), self._outer[params.law]
         if self._held is not None and self._flown != params.law:
             outer.begin(cycle, wanted, self._held.pitch, self._held.throttle)
         self._flown = params.law
         pitch, throttle = outer.step(cycle, wanted)
-        self._held = Attitude(wanted.bank, pitch, throttle, wanted.rudder)
+        self._held = AttitudeSetpoint(wanted.bank, pitch, throttle, wanted.rudder)
         return self._inner[params.law].step(cycle, self._held)
 
-    def hold(self, now: Estimate, wanted: Attitude, params: AirParams, dt: float) -> Surfaces:
+    def hold(self, now: Estimate, wanted: AttitudeSetpoint, params: AirParams, dt: float) -> Surfaces:
         """Holds an attitude with a given throttle: the lower level alone."""
         self._held, self._flown = wanted, ""
         return self._inner[params.law].step(Cycle(now, params, dt), wanted)

@@ -3,7 +3,7 @@
 import math
 from dataclasses import replace
 
-from uvf.control.commands import Attitude, Surfaces
+from uvf.control.commands import AttitudeSetpoint, Surfaces
 from uvf.estimation.state import Estimate
 
 STEER_SPEED = 10.0  # m/s for which the gains hold: a fast wheel turns the nose more
@@ -29,7 +29,7 @@ class Gyros:
         return replace(now, roll=self._roll, pitch=self._pitch, yaw=self._yaw)
 
 
-def held(now: Estimate, by_gyros: Estimate, wanted: Attitude) -> Attitude:
+def held(now: Estimate, by_gyros: Estimate, wanted: AttitudeSetpoint) -> AttitudeSetpoint:
     """The attitude wanted by the gyroscopes, as what to ask of loops that look at the estimate ``now``."""
     return replace(wanted, bank=wanted.bank + now.roll - by_gyros.roll, pitch=wanted.pitch + now.pitch - by_gyros.pitch)
 

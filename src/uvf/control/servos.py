@@ -10,7 +10,7 @@ TRIM_SHARE = 0.45  # of a surface's way that its integrator may take
 
 
 @dataclass(frozen=True)
-class Servo:
+class ServoLimits:
     """How far and how fast a surface goes, to both sides."""
 
     limit: float  # rad
@@ -21,20 +21,20 @@ class Servo:
 class Servos:
     """Of the surfaces that the loops move; the flap from 0 down to its limit."""
 
-    aileron: Servo
-    elevator: Servo
-    rudder: Servo
-    flap: Servo = Servo(0.0)
+    aileron: ServoLimits
+    elevator: ServoLimits
+    rudder: ServoLimits
+    flap: ServoLimits = ServoLimits(0.0)
 
 
-SERVOS = Servos(Servo(0.35), Servo(0.35), Servo(0.35))
+SERVOS = Servos(ServoLimits(0.35), ServoLimits(0.35), ServoLimits(0.35))
 """Of an aircraft that says nothing."""
 
 
 class SurfaceTrim:
     """The integrator of one surface; it waits while the surface is at a stop or the servo behind, and it would push further."""
 
-    def __init__(self, servo: Servo) -> None:
+    def __init__(self, servo: ServoLimits) -> None:
         self._servo = servo
         self._trim = Integral(TRIM_SHARE * servo.limit)
         self._reached: float | None = None  # rad, where the servo is at best

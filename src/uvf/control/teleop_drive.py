@@ -31,7 +31,7 @@ SCALINGS = {"r": (STEP, 1.0), "f": (1 / STEP, 1.0), "t": (1.0, STEP), "g": (1.0,
 """Key -> factors of the linear and the angular scale."""
 
 
-class Pad(NamedTuple):
+class GamepadState(NamedTuple):
     """A gamepad's state. forward, left: -1..1 of the left stick; steps: -1, 0 or 1, counted when they change."""
 
     forward: float = 0.0
@@ -45,27 +45,27 @@ class Pad(NamedTuple):
     """Of the right stick, with which only aircraft are flown."""
 
 
-class Command(NamedTuple):
+class TeleopCommand(NamedTuple):
     linear: float  # m/s
     angular: float  # rad/s
 
 
-STILL = Command(0.0, 0.0)
+STILL = TeleopCommand(0.0, 0.0)
 
 
-class Hand:
+class DriveTeleop:
     """One operator at several vehicles. Times [s] come from one clock that never goes back."""
 
-    def __init__(self, vehicles: Sequence[str], most: Command) -> None:
+    def __init__(self, vehicles: Sequence[str], most: TeleopCommand) -> None:
         """most: what the slowest of the vehicles can do."""
         self.vehicles = tuple(vehicles)
         self.active = set(vehicles)
-        self.scale = Command(min(START_LINEAR, most.linear), min(START_ANGULAR, most.angular))
+        self.scale = TeleopCommand(min(START_LINEAR, most.linear), min(START_ANGULAR, most.angular))
         self._most = most
         self._direction = (0.0, 0.0)
         self._pressed_at = -inf
         self._until = -inf
-        self._pad = Pad()
+        self._pad = GamepadState()
         self._silent_from = dict.fromkeys(vehicles, -inf)
 
     def key(self, t: float, name: str) -> None:
@@ -79,7 +79,7 @@ class Hand:
         elif name.isdecimal() and 1 <= int(name) <= len(self.vehicles):
             self.active ^= {self.vehicles[int(name) - 1]}
 
-    def pad(self, t: float, pad: Pad) -> None:
+    def pad(self, t: float, pad: GamepadState) -> None:
         """The gamepad as it is now; it drives while its dead-man button is held, and stops when that is let go."""
         before, self._pad = self._pad, pad
         self._rescale(
@@ -101,14 +101,14 @@ class Hand:
         self._until = -inf
         self._keep(t)
 
-    def wanted(self, t: float) -> Command:
+    def wanted(self, t: float) -> TeleopCommand:
         """What the active vehicles shall do."""
         if t >= self._until:
             return STILL
         forward, left = self._direction
-        return Command(forward * self.scale.linear, left * self.scale.angular)
+        return TeleopCommand(forward * self.scale.linear, left * self.scale.angular)
 
-    def commands(self, t: float) -> dict[str, Command]:
+    def commands(self, t: float) -> dict[str, TeleopCommand]:
         """What is to be sent now; nothing to a vehicle that has been told long enough to stand."""
         wanted = self.wanted(t)
         found = {name: wanted if name in self.active else STILL for name in self.vehicles}
@@ -126,7 +126,7 @@ class Hand:
 
     def _rescale(self, linear: float, angular: float) -> None:
         scale, most = self.scale, self._most
-        self.scale = Command(_within(scale.linear * linear, most.linear), _within(scale.angular * angular, most.angular))
+        self.scale = TeleopCommand(_within(scale.linear * linear, most.linear), _within(scale.angular * angular, most.angular))
 
 
 def _within(scale: float, most: float) -> float:

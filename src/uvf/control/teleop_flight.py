@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from uvf.control.teleop_drive import Pad, beyond_dead_zone
+from uvf.control.teleop_drive import GamepadState, beyond_dead_zone
 
 STEP = 0.05  # of a surface's way, the flaps' or the throttle's, for each press
 THROTTLE_RATE = 0.5  # 1/s, with the right stick fully forward
@@ -27,7 +27,7 @@ KEYS = {
 """Key -> what a press moves, and which way: up is the stick pushed forward, nose down; q is the left pedal."""
 
 
-class Limits(NamedTuple):
+class SurfaceLimits(NamedTuple):
     """rad, either way; the flap's from 0."""
 
     aileron: float
@@ -36,7 +36,7 @@ class Limits(NamedTuple):
     flap: float
 
 
-class Setting(NamedTuple):
+class SurfaceSetting(NamedTuple):
     """rad with the signs of SurfaceCommand, throttle and brake 0..1."""
 
     aileron: float = 0.0
@@ -47,21 +47,21 @@ class Setting(NamedTuple):
     brake: float = 0.0
 
 
-PARKED = Setting(brake=1.0)
+PARKED = SurfaceSetting(brake=1.0)
 
 
-class Stick:
+class FlightTeleop:
     """One operator at one aircraft. Times [s] come from one clock that never goes back."""
 
-    def __init__(self, limits: Limits) -> None:
+    def __init__(self, limits: SurfaceLimits) -> None:
         self.setting = PARKED
         self.neutral = 0.0  # rad, the elevator's place when nobody moves it
         self._followed = False
         self._limits = limits
-        self._pad = Pad()
+        self._pad = GamepadState()
         self._read_at = 0.0
 
-    def follow(self, setting: Setting, straight: bool = True) -> None:
+    def follow(self, setting: SurfaceSetting, straight: bool = True) -> None:
         """Somebody else flies: goes on from where the surfaces are, once it is our turn.
 
         In a turn the elevator is that of a slower straight flight: once there is a neutral place, a turn does not move it.
@@ -86,7 +86,7 @@ class Stick:
         """Aileron and rudder to zero, the elevator to its neutral place."""
         self.setting = self.setting._replace(aileron=0.0, elevator=self.neutral, rudder=0.0)
 
-    def pad(self, t: float, pad: Pad) -> None:
+    def pad(self, t: float, pad: GamepadState) -> None:
         """The gamepad as it is now; its sticks count while its dead-man button is held, then the surfaces are centred."""
         before, self._pad = self._pad, pad
         dt, self._read_at = min(t - self._read_at, LONGEST_TURN), t
@@ -101,7 +101,7 @@ class Stick:
         elif before.dead_man:
             self.centre()
 
-    def _sticks(self, pad: Pad, dt: float) -> None:
+    def _sticks(self, pad: GamepadState, dt: float) -> None:
         limits = self._limits
         self.setting = self.setting._replace(
             aileron=-beyond_dead_zone(pad.left) * limits.aileron,

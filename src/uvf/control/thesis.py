@@ -1,4 +1,4 @@
-"""The thesis' control as a preset to compare with: its loops, gains and names (``law: thesis``).
+"""The control laws of the thesis (see the bibliography) as a preset to compare with: its loops, gains and names (``law: thesis``).
 
 Successive loop closure as in ROSplane and Beard & McLain chapter 6: PD on roll and pitch, PI on altitude and airspeed, PI on the
 side slip, and phases by altitude. Its surfaces go from -1 to 1, here from stop to stop; its positive elevator pitches up. Trim is the
@@ -7,7 +7,7 @@ aircraft's own. Its angle of side slip, which no sensor tells, is taken from the
 
 from dataclasses import dataclass
 
-from uvf.control.commands import Attitude, Surfaces, Wanted
+from uvf.control.commands import AltitudeAirspeedSetpoint, AttitudeSetpoint, Surfaces
 from uvf.control.cycle import Cycle, clip
 from uvf.control.servos import Servos
 from uvf.maths.geodesy import GRAVITY
@@ -49,7 +49,7 @@ def preset(trim_airspeed: float) -> dict[str, float | str]:
     return {"law": "thesis", "course_p": GAINS.course_kp * GRAVITY / trim_airspeed, **follower}
 
 
-class Proportional:
+class PiController:
     """PI that does not wind up: its integral gives way to the limits of what it sets."""
 
     def __init__(self, kp: float, ki: float) -> None:
@@ -72,9 +72,9 @@ class ThesisAttitude:
 
     def __init__(self, servos: Servos) -> None:
         self._servos = servos
-        self._slip = Proportional(GAINS.beta_kp, GAINS.beta_ki)
+        self._slip = PiController(GAINS.beta_kp, GAINS.beta_ki)
 
-    def step(self, cycle: Cycle, wanted: Attitude) -> Surfaces:
+    def step(self, cycle: Cycle, wanted: AttitudeSetpoint) -> Surfaces:
         now, params, servos = cycle.now, cycle.params, self._servos
         bank = clip(wanted.bank, params.bank_limit)
         roll = clip(GAINS.roll_kp * (bank - now.roll) + GAINS.roll_kd * now.p, 1.0)
@@ -91,17 +91,17 @@ class ThesisPath:
     """Altitude and airspeed by the phase of flight."""
 
     def __init__(self) -> None:
-        self._altitude = Proportional(GAINS.alt_kp, GAINS.alt_ki)
-        self._airspeed = Proportional(GAINS.as_thr_kp, GAINS.as_thr_ki)
+        self._altitude = PiController(GAINS.alt_kp, GAINS.alt_ki)
+        self._airspeed = PiController(GAINS.as_thr_kp, GAINS.as_thr_ki)
         self._before: float | None = None  # m/s
 
-    def begin(self, cycle: Cycle, wanted: Wanted, pitch: float, throttle: float) -> None:
+    def begin(self, cycle: Cycle, wanted: AltitudeAirspeedSetpoint, pitch: float, throttle: float) -> None:
         """The integrals start so that the first step asks for this pitch [rad] and throttle."""
         higher, faster = self._errors(cycle, wanted)
         self._altitude.integral = (pitch - _cruise_alpha(cycle) - GAINS.alt_kp * higher) / GAINS.alt_ki
         self._airspeed.integral = (throttle - cycle.params.trim_throttle - GAINS.as_thr_kp * faster) / GAINS.as_thr_ki
 
-    def step(self, cycle: Cycle, wanted: Wanted) -> tuple[float, float]:
+    def step(self, cycle: Cycle, wanted: AltitudeAirspeedSetpoint) -> tuple[float, float]:
         """Pitch [rad] and throttle."""
         higher, faster = self._errors(cycle, wanted)
         gained = 0.0 if self._before is None else (cycle.now.airspeed - self._before) / cycle.dt
@@ -114,7 +114,7 @@ class ThesisPath:
         return clip(pitch, PITCH_LIMIT), throttle if wanted.throttle is None else wanted.throttle
 
     @staticmethod
-    def _errors(cycle: Cycle, wanted: Wanted) -> tuple[float, float]:
+    def _errors(cycle: Cycle, wanted: AltitudeAirspeedSetpoint) -> tuple[float, float]:
         """m of height and m/s of airspeed that are wanting."""
         higher = wanted.climb * LEAD if wanted.height is None else wanted.height - cycle.now.height
         return higher, min(max(wanted.airspeed, cycle.params.min_airspeed), cycle.params.max_airspeed) - cycle.now.airspeed

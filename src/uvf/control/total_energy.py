@@ -13,7 +13,7 @@ the airspeed comes first.
 import math
 from dataclasses import dataclass
 
-from uvf.control.commands import Wanted
+from uvf.control.commands import AltitudeAirspeedSetpoint
 from uvf.control.cycle import STEEPEST, Cycle, clip
 from uvf.estimation.state import Estimate
 from uvf.maths.filters import Integral
@@ -60,7 +60,7 @@ class EnergyLoops:
         self._power = PowerObserver()
         self._throttle: float | None = None
 
-    def begin(self, cycle: Cycle, wanted: Wanted, pitch: float, throttle: float) -> None:
+    def begin(self, cycle: Cycle, wanted: AltitudeAirspeedSetpoint, pitch: float, throttle: float) -> None:
         """What is learnt starts so that the first step asks for this pitch [rad] and throttle, as far as limits allow."""
         self._power, self._trim.value, self._throttle = PowerObserver(), 0.0, None
         if wanted.throttle is None:
@@ -69,7 +69,7 @@ class EnergyLoops:
             self._power.unexplained = asked.climb + asked.faster - (throttle - level) / _slope(cycle)
         self._trim.value = clip(pitch - self._pitch(cycle, self._asked(cycle, wanted).reached), CLIMB_TRIM_LIMIT)
 
-    def step(self, cycle: Cycle, wanted: Wanted) -> tuple[float, float]:
+    def step(self, cycle: Cycle, wanted: AltitudeAirspeedSetpoint) -> tuple[float, float]:
         """Pitch [rad] and throttle."""
         if self._throttle is not None:
             self._power.step(cycle, self._throttle)
@@ -82,7 +82,7 @@ class EnergyLoops:
         self._throttle = min(max(setting, 1 - _room(cycle)), 1.0) if wanted.throttle is None else wanted.throttle
         return max(min(pitch, cycle.highest_pitch), -cycle.params.pitch_limit), self._throttle
 
-    def _asked(self, cycle: Cycle, wanted: Wanted) -> Power:
+    def _asked(self, cycle: Cycle, wanted: AltitudeAirspeedSetpoint) -> Power:
         """Within what throttle can reach: full, the airspeed comes before the path; idling or given, the highest airspeed does.
 
         With a given throttle the path is not given up for airspeed: it is closed to land, and then airspeed is what has to go.
@@ -102,7 +102,7 @@ class EnergyLoops:
         return path + cycle.alpha * math.cos(cycle.now.roll) + cycle.params.climb_p * error + self._trim.value
 
     @staticmethod
-    def _airspeed(cycle: Cycle, wanted: Wanted) -> float:
+    def _airspeed(cycle: Cycle, wanted: AltitudeAirspeedSetpoint) -> float:
         return min(max(wanted.airspeed, cycle.slowest), cycle.params.max_airspeed)
 
 
@@ -111,7 +111,7 @@ def _acceleration(cycle: Cycle, airspeed: float) -> float:
     return cycle.speed / GRAVITY * clip(cycle.params.airspeed_p * (airspeed - cycle.now.airspeed), ACCELERATION_LIMIT)
 
 
-def _lent(cycle: Cycle, wanted: Wanted) -> float:
+def _lent(cycle: Cycle, wanted: AltitudeAirspeedSetpoint) -> float:
     """m/s of airspeed that a climb may take beyond full throttle, for a while: at most half of what is above the slowest.
 
     The lower it is already, the less, and none from where that airspeed is worth no more height: so a downdraught

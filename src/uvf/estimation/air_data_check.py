@@ -38,11 +38,11 @@ class Frozen:
 
 
 @dataclass(frozen=True, slots=True)
-class Flying:
+class FlightState:
     """The last estimate, and how far it can be relied on."""
 
     now: Estimate
-    unfixed: float  # s
+    gnss_age: float  # s
     airborne: bool
 
 
@@ -61,7 +61,7 @@ class AirDataCheck:
         self._agreed = 0.0  # s
         self._watched = False
 
-    def step(self, read: tuple[object, Pressures] | None, flying: Flying | None, params: AirParams, dt: float) -> Pressures | None:
+    def step(self, read: tuple[object, Pressures] | None, flying: FlightState | None, params: AirParams, dt: float) -> Pressures | None:
         """``read``: stamp and pressures. None: neither height nor airspeed can be taken from them."""
         if read is None or flying is None or not flying.airborne:
             self._forget()
@@ -77,10 +77,10 @@ class AirDataCheck:
     def _forget(self) -> None:
         self.gap, self._agreed, self._watched, self._wind = 0.0, 0.0, False, None
 
-    def _checked(self, pressures: Pressures, flying: Flying, params: AirParams, dt: float) -> Pressures:
+    def _checked(self, pressures: Pressures, flying: FlightState, params: AirParams, dt: float) -> Pressures:
         now = flying.now
         density = atmosphere.density(pressures.static, pressures.temperature)
-        if flying.unfixed > UNFIXED:
+        if flying.gnss_age > UNFIXED:
             expected = params.trim_airspeed
         else:
             expected = self._expected(now, dt)

@@ -14,7 +14,7 @@ BIAS_STEP = 2e-4  # rad: larger corrections come of a wrong start or an accelera
 
 
 @dataclass(slots=True)
-class Attitude:
+class AttitudeFilter:
     """rad; covariance rad^2; bias rad/s of the roll and pitch gyroscopes."""
 
     roll: float = 0.0

@@ -2,8 +2,8 @@
 
 import math
 
-from uvf.estimation.attitude import Attitude
-from uvf.estimation.sensor_inputs import Fix, Inertial, Pressures, Sensed, Triple
+from uvf.estimation.attitude import AttitudeFilter
+from uvf.estimation.sensor_inputs import GnssFix, InertialSample, Pressures, Sensed, Triple
 from uvf.estimation.state import Estimate
 from uvf.estimation.track_filter import CHI, PSI, WE, WN, E, N, TrackFilter, V
 from uvf.estimation.vertical import Vertical
@@ -34,14 +34,14 @@ class BookEstimator:
         self._gyros = [LowPass(GYRO_TIME) for _ in range(3)]
         self._static, self._differential = LowPass(PRESSURE_TIME), LowPass(PRESSURE_TIME)
         self._side = LowPass(FORCE_TIME)
-        self._attitude = Attitude()
+        self._attitude = AttitudeFilter()
         self._yaw: float | None = None  # rad, left by another estimator
         self._track: TrackFilter | None = None
         self._vertical: Vertical | None = None
         self.density = atmosphere.RHO0
         self._airspeed = 0.0
         self._baro: float | None = None
-        self.unfixed = 0.0
+        self.gnss_age = 0.0
         """s since the last fix."""
         self._lift = GRAVITY  # m/s^2
         self._age = 0.0  # s, of the newest IMU sample
@@ -62,7 +62,7 @@ class BookEstimator:
         """One cycle of ``dt`` [s]."""
         dt = min(dt, LONGEST)
         samples, fix = sensed.samples, sensed.fix
-        self.unfixed = 0.0 if fix is not None else self.unfixed + dt
+        self.gnss_age = 0.0 if fix is not None else self.gnss_age + dt
         self._take_pressures(sensed.pressures, params, dt)
         track, vertical = self._track, self._vertical
         if track is None or vertical is None:
@@ -77,13 +77,13 @@ class BookEstimator:
             self._correct(track, vertical, fix)
         if not self._height_known:
             vertical.rest()
-        if self.unfixed > RECKONING_AFTER:
-            track.reckon(self.unfixed, dt)
-        if self.unfixed > RECKONING_AFTER or (fix is not None and self._baro is not None):
+        if self.gnss_age > RECKONING_AFTER:
+            track.reckon(self.gnss_age, dt)
+        if self.gnss_age > RECKONING_AFTER or (fix is not None and self._baro is not None):
             track.correct_triangle(self._horizontal_airspeed())
         return self._estimate(track, vertical)
 
-    def _correct(self, track: TrackFilter, vertical: Vertical, fix: Fix) -> None:
+    def _correct(self, track: TrackFilter, vertical: Vertical, fix: GnssFix) -> None:
         here = (fix.north, fix.east, fix.v_north, fix.v_east)
         track.correct_fix(here, fix.age, (fix.position_sigma, fix.speed_sigma))
         height = fix.height + fix.v_up * fix.age
@@ -95,9 +95,9 @@ class BookEstimator:
 
     @property
     def _height_known(self) -> bool:
-        return self._baro is not None or self.unfixed < RECKONING_AFTER
+        return self._baro is not None or self.gnss_age < RECKONING_AFTER
 
-    def _start(self, samples: list[Inertial], fix: Fix) -> tuple[TrackFilter, Vertical]:
+    def _start(self, samples: list[InertialSample], fix: GnssFix) -> tuple[TrackFilter, Vertical]:
         self._track = TrackFilter(fix.north, fix.east, fix.v_north, fix.v_east)
         self._vertical = Vertical(fix.height, fix.v_up)
         if self._yaw is not None:
@@ -129,7 +129,7 @@ class BookEstimator:
         eas2 = max(self._airspeed, 5.0) ** 2 * self.density / atmosphere.RHO0
         return params.alpha_zero_lift + params.alpha_per_load * self._lift / eas2
 
-    def _take_inertial(self, sample: Inertial, params: AirParams, dt: float) -> float:
+    def _take_inertial(self, sample: InertialSample, params: AirParams, dt: float) -> float:
         """Attitude over one sample; returns the upward acceleration [m/s^2]."""
         p, q, r = sample.rates
         fx, fy, fz = sample.force
@@ -145,7 +145,7 @@ class BookEstimator:
         sr, cr, sp, cp = math.sin(attitude.roll), math.cos(attitude.roll), math.sin(attitude.pitch), math.cos(attitude.pitch)
         return fx * sp - (fy * sr + fz * cr) * cp - GRAVITY
 
-    def _step_track(self, track: TrackFilter, samples: list[Inertial], params: AirParams, dt: float) -> None:
+    def _step_track(self, track: TrackFilter, samples: list[InertialSample], params: AirParams, dt: float) -> None:
         attitude = self._attitude
         q, r = (self._gyros[i].value or 0.0 for i in (1, 2))
         before, self._aside = self._aside, self._azimuth_of(self._alpha(params))
@@ -193,12 +193,12 @@ class BookEstimator:
             height_known=self._height_known,
             height_sigma=self._height_sigma(),
             airspeed_known=self._pitot or self._height_known,
-            position_known=self.unfixed < RECKONING_AFTER,
+            position_known=self.gnss_age < RECKONING_AFTER,
         )
 
     def _height_sigma(self) -> float:
         """m; the complementary filter has no covariance, so this is that of the fixes, growing without any."""
-        return self._fix_height_sigma + (0.0 if self._height_known else CLIMB_SIGMA * self.unfixed)
+        return self._fix_height_sigma + (0.0 if self._height_known else CLIMB_SIGMA * self.gnss_age)
 
 
 def _heading(field: Triple, roll: float, pitch: float) -> float:

@@ -24,7 +24,7 @@ class Instruments:
 class Estimator(Protocol):
     """From sensors to the state, cycle by cycle, once there is a fix."""
 
-    unfixed: float
+    gnss_age: float
     """s since the last fix."""
 
     @property

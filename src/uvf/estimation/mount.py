@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from uvf.estimation.sensor_inputs import Inertial, Triple
+from uvf.estimation.sensor_inputs import InertialSample, Triple
 from uvf.maths.rotations import FLU_FROM_FRD, Floats, from_euler, matrix
 
 DERIVATIVE_TIME = 0.03  # s, over which the turn rates are differentiated
@@ -19,7 +19,7 @@ class ImuMount:
         self._arm: Floats | None = FLU_FROM_FRD @ np.array(xyz) if any(xyz) else None
         self._slow: Floats | None = None
 
-    def at_centre(self, sample: Inertial, dt: float) -> Inertial:
+    def at_centre(self, sample: InertialSample, dt: float) -> InertialSample:
         """The sample ``dt`` [s] after the one before, in the body's axes; a = a_sensor - w' x r - w x (w x r)."""
         if self._body_from_sensor is not None:
             rates, force, field = (_triple(self._body_from_sensor @ v) for v in (sample.rates, sample.force, sample.field))

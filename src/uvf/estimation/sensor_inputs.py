@@ -6,7 +6,7 @@ Triple = tuple[float, float, float]
 
 
 @dataclass(frozen=True, slots=True)
-class Inertial:
+class InertialSample:
     """One IMU sample, FRD: rad/s, m/s^2, T."""
 
     rates: Triple
@@ -16,7 +16,7 @@ class Inertial:
 
 
 @dataclass(frozen=True, slots=True)
-class Fix:
+class GnssFix:
     """A satellite fix in the world frame, valid ``age`` [s] ago."""
 
     north: float  # m
@@ -43,6 +43,6 @@ class Pressures:
 class Sensed:
     """What a cycle has: the IMU samples since the last, the newest pressures and a new fix, if any."""
 
-    samples: list[Inertial]
+    samples: list[InertialSample]
     pressures: Pressures | None
-    fix: Fix | None
+    fix: GnssFix | None

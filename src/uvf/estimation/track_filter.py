@@ -62,9 +62,9 @@ class TrackFilter:
         )
         self._ekf.move(lambda _: then, f, PROCESS * dt)
 
-    def reckon(self, unfixed: float, dt: float) -> None:
-        """Errors of wind and compass last: ``unfixed`` [s] after the last fix sigma grows with time, not with its root."""
-        self._ekf.P[:2, :2] += np.eye(2) * 2 * RECKONING_SIGMA**2 * unfixed * dt
+    def reckon(self, gnss_age: float, dt: float) -> None:
+        """Errors of wind and compass last: ``gnss_age`` [s] after the last fix sigma grows with time, not with its root."""
+        self._ekf.P[:2, :2] += np.eye(2) * 2 * RECKONING_SIGMA**2 * gnss_age * dt
 
     def correct_fix(self, fix: tuple[float, float, float, float], age: float, sigma: tuple[float, float]) -> None:
         """(north, east [m], v_north, v_east [m/s]) that was valid ``age`` [s] ago; 1 sigma of position and speed."""

@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from uvf.guidance.flight_plan import Item, Kind
+from uvf.guidance.flight_plan import ItemKind, PlanItem
 from uvf.guidance.route import Place
 from uvf.guidance.vector_field import turn_radius
 from uvf.models.vehicle.flight_params import AirParams
@@ -13,7 +13,7 @@ SHORTEST = 8.0  # s at the lowest airspeed
 STEEPEST = 0.16  # rad
 OF_IDLE = 0.8  # of the sink without power: what is left over is for a tailwind
 TIGHTEST_ORBIT = 0.6  # of the radius at turn_bank; smaller wishes are widened to that
-ON_THE_WAY = (Kind.WAYPOINT, Kind.ORBIT)
+ON_THE_WAY = (ItemKind.WAYPOINT, ItemKind.ORBIT)
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,14 +35,14 @@ class Approach:
         return (self.height - self.place.height) / max(self.length, 1.0)
 
 
-def orbit_radius(item: Item, params: AirParams) -> float:
+def orbit_radius(item: PlanItem, params: AirParams) -> float:
     """m, positive clockwise, of the circle that is flown for an item."""
     wanted = item.radius or params.hold_radius
     tightest = TIGHTEST_ORBIT * turn_radius(params.trim_airspeed, params.turn_bank)
     return math.copysign(max(abs(wanted), tightest), wanted)
 
 
-def laid_down(items: Sequence[Item], index: int, params: AirParams) -> Approach | None:
+def laid_down(items: Sequence[PlanItem], index: int, params: AirParams) -> Approach | None:
     """The approach of the landing at ``index``: a circle down to an altitude right before it, or a waypoint of its landing pattern.
 
     None where the mission leaves it to the aircraft, and where no tangent leads from the circle to the place.
@@ -52,7 +52,7 @@ def laid_down(items: Sequence[Item], index: int, params: AirParams) -> Approach 
         return None
     item = items[before]
     distance, course = _way(item.place, place)
-    if item.kind is Kind.WAYPOINT:
+    if item.kind is ItemKind.WAYPOINT:
         return Approach(place, course, distance, item.place.height)
     radius = orbit_radius(item, params)
     if distance <= abs(radius):
@@ -61,7 +61,7 @@ def laid_down(items: Sequence[Item], index: int, params: AirParams) -> Approach 
     return Approach(place, course, math.sqrt(distance**2 - radius**2), item.place.height, radius)
 
 
-def approach_fault(items: Sequence[Item], index: int, params: AirParams) -> str:
+def approach_fault(items: Sequence[PlanItem], index: int, params: AirParams) -> str:
     """Why the approach that is laid down for the landing at ``index`` cannot be flown, and how to mend it; empty if it can."""
     before = _before(items, index)
     if before is None:
@@ -80,22 +80,22 @@ def _way(start: Place, end: Place) -> tuple[float, float]:
     return math.hypot(north, east), math.atan2(east, north)
 
 
-def _before(items: Sequence[Item], index: int) -> int | None:
+def _before(items: Sequence[PlanItem], index: int) -> int | None:
     """What the final approach begins at, if an item says so."""
     for k in range(index - 1, -1, -1):
         item = items[k]
         if item.kind in ON_THE_WAY:
-            circle = item.kind is Kind.ORBIT and item.to_altitude
+            circle = item.kind is ItemKind.ORBIT and item.to_altitude
             return k if circle or (item.flies_through and _is_of_pattern(items[:k])) else None
-        if item.kind in (Kind.LAND, Kind.TAKEOFF, Kind.RETURN, Kind.LAND_START):
+        if item.kind in (ItemKind.LAND, ItemKind.TAKEOFF, ItemKind.RETURN, ItemKind.LAND_START):
             return None
     return None
 
 
-def _is_of_pattern(before: Sequence[Item]) -> bool:
+def _is_of_pattern(before: Sequence[PlanItem]) -> bool:
     """Whether a landing pattern has begun that no landing has ended yet."""
-    marks = (item.kind for item in reversed(before) if item.kind in (Kind.LAND_START, Kind.LAND))
-    return next(marks, Kind.LAND) is Kind.LAND_START
+    marks = (item.kind for item in reversed(before) if item.kind in (ItemKind.LAND_START, ItemKind.LAND))
+    return next(marks, ItemKind.LAND) is ItemKind.LAND_START
 
 
 def _fault(approach: Approach, begin: int, params: AirParams) -> str:
@@ -112,12 +112,12 @@ def _fault(approach: Approach, begin: int, params: AirParams) -> str:
     return ""
 
 
-def with_courses(items: Sequence[Item]) -> list[Item]:
+def with_courses(items: Sequence[PlanItem]) -> list[PlanItem]:
     """A waypoint that a final approach begins at is passed in its direction."""
     found = list(items)
-    for index in (i for i, item in enumerate(items) if item.kind is Kind.LAND):
+    for index in (i for i, item in enumerate(items) if item.kind is ItemKind.LAND):
         before = _before(items, index)
-        if before is not None and items[before].kind is Kind.WAYPOINT and items[before].course is None:
+        if before is not None and items[before].kind is ItemKind.WAYPOINT and items[before].course is None:
             _, course = _way(items[before].place, items[index].place)
             found[before] = replace(items[before], course=course)
     return found

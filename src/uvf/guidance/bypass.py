@@ -13,8 +13,8 @@ from math import atan2, cos, pi, sin
 import numpy as np
 from numpy.typing import NDArray
 
-from uvf.guidance.clothoid_dubins import Way, eased
-from uvf.guidance.corners import Flying
+from uvf.guidance.clothoid_dubins import SampledPath, eased
+from uvf.guidance.corners import CornerLimits
 from uvf.guidance.vector_field import Point
 from uvf.maths.curves import Triple, dubins
 
@@ -33,13 +33,13 @@ LENGTH = 0.1  # m of straying that a metre of way is worth
 class Bypass:
     """``passing``: m along the way where it is nearest to each waypoint; ``before``, ``after``: m of the legs."""
 
-    way: Way
+    way: SampledPath
     passing: tuple[float, ...]
     before: float
     after: float
 
 
-def plan(places: Sequence[Point], acceptances: Sequence[float], room: Point, flying: Flying) -> Bypass:
+def plan(places: Sequence[Point], acceptances: Sequence[float], room: Point, flying: CornerLimits) -> Bypass:
     """Past all but the first and last of ``places`` (north, east [m]), with ``room`` [m] on the first and last leg.
 
     ``acceptances``: m from each waypoint passed that are near enough.
@@ -86,6 +86,6 @@ def _straying(points: Floats, wanted: Floats, corners: Floats, acceptances: Floa
     return float(away + MISSING * missed.max() + NOT_ACCEPTED * beyond)
 
 
-def _passing(way: Way, waypoints: Floats) -> tuple[float, ...]:
+def _passing(way: SampledPath, waypoints: Floats) -> tuple[float, ...]:
     nearest = np.linalg.norm(way.points[:, None] - waypoints, axis=2).argmin(axis=0)
     return tuple(np.maximum.accumulate(way.s[nearest]).tolist())

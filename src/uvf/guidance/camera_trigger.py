@@ -2,11 +2,11 @@
 
 import math
 
-from uvf.guidance.flight_plan import Item, Kind
+from uvf.guidance.flight_plan import ItemKind, PlanItem
 from uvf.guidance.vector_field import Point
 
 
-class Camera:
+class CameraTrigger:
     """Counts the pictures asked for; ``last`` is the place of the latest, north and east [m]."""
 
     def __init__(self) -> None:
@@ -15,10 +15,10 @@ class Camera:
         self._distance = 0.0  # m, 0 = only when told
         self._due = False
 
-    def obey(self, item: Item) -> None:
+    def obey(self, item: PlanItem) -> None:
         """An item of the mission that triggers; the picture is taken with the next step."""
         self._due = True
-        if item.kind is Kind.TRIGGER_DISTANCE:
+        if item.kind is ItemKind.TRIGGER_DISTANCE:
             self._distance = item.distance
             self._due = item.distance > 0
 

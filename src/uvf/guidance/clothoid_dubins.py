@@ -25,7 +25,7 @@ NUDGE = 1e-3  # m, for derivatives
 
 
 @dataclass(frozen=True)
-class Way:
+class SampledPath:
     """Samples of a way; (k,) each. Curvatures are positive from x towards y."""
 
     points: Floats  # (k, 2) m
@@ -63,7 +63,7 @@ class Way:
         return float(np.interp(s, self.s, self.curvature, left=0.0, right=0.0))
 
 
-def eased(start: Triple, end: Triple, radius: float, ramp: float) -> Way:
+def eased(start: Triple, end: Triple, radius: float, ramp: float) -> SampledPath:
     """The shortest word from ``start`` to ``end`` with ramps of ``ramp`` [m] from one curvature to the next.
 
     Where no word can be corrected (none has been seen), the plain path. Raises ValueError for a radius that is not positive.
@@ -77,7 +77,7 @@ def eased(start: Triple, end: Triple, radius: float, ramp: float) -> Way:
     shortest = min(dubins_paths(start, end, radius), key=lambda path: path.length)
     s = np.linspace(0.0, shortest.length, _count(shortest.length))
     x, y, course = shortest.at(s).T
-    return Way(np.column_stack((x, y)), course, shortest.curvature(s))
+    return SampledPath(np.column_stack((x, y)), course, shortest.curvature(s))
 
 
 @dataclass(frozen=True)
@@ -87,7 +87,7 @@ class _Word:
     turns: tuple[int, int, int]
     ramp: float
 
-    def way(self, lengths: Floats) -> Way:
+    def way(self, lengths: Floats) -> SampledPath:
         total = float(lengths.sum()) + self.ramp
         s = np.linspace(0.0, total, _count(total))
         begins = np.concatenate(((0.0,), np.cumsum(lengths)))
@@ -102,7 +102,7 @@ class _Word:
             np.concatenate(((p,), p + np.cumsum(s[1] / 6 * (f(course[:-1]) + 4 * f(half) + f(course[1:])))))
             for p, f in zip(self.start[:2], (np.cos, np.sin), strict=True)
         ]
-        return Way(np.column_stack(points), course, curvature)
+        return SampledPath(np.column_stack(points), course, curvature)
 
     def miss(self, lengths: Floats, end: Triple) -> Floats:
         """(3,) m: ahead, beside and, times the radius, course of the end against the one wanted."""
@@ -141,7 +141,7 @@ def _count(length: float) -> int:
     return min(max(int(length / STEP) + 2, 3), SAMPLES)
 
 
-def turned_onto(start: Triple, point: tuple[float, float], radius: float, ramp: float) -> Way | None:
+def turned_onto(start: Triple, point: tuple[float, float], radius: float, ramp: float) -> SampledPath | None:
     """From ``start`` one turn, the shorter, until straight on leads through ``point``; None where that is not found.
 
     A point within the turning circle to one side is reached by the turn to the other.
@@ -150,7 +150,7 @@ def turned_onto(start: Triple, point: tuple[float, float], radius: float, ramp: 
     return min(ways, key=lambda way: way.length, default=None)
 
 
-def turned_onto_circle(start: Triple, circle: Triple, radius: float, ramp: float) -> Way | None:
+def turned_onto_circle(start: Triple, circle: Triple, radius: float, ramp: float) -> SampledPath | None:
     """From ``start`` one turn, then straight on up to where ``circle`` is touched in its sense; None from within it.
 
     circle: x, y of the centre [m], its radius [m], positive from x towards y.
@@ -159,7 +159,7 @@ def turned_onto_circle(start: Triple, circle: Triple, radius: float, ramp: float
     return min(ways, key=lambda way: way.length, default=None)
 
 
-def _turn_and_tangent(word: _Word, circle: Triple) -> Way | None:
+def _turn_and_tangent(word: _Word, circle: Triple) -> SampledPath | None:
     """The turn decides the tangent and the tangent the turn: found by repetition."""
     touching = _tangent((word.start[0], word.start[1]), circle)
     for _ in range(ITERATIONS):
@@ -183,17 +183,17 @@ def _tangent(point: tuple[float, float], circle: Triple) -> tuple[float, float] 
     return point[0] + length * cos(course), point[1] + length * sin(course)
 
 
-def _straight_on(way: Way, point: tuple[float, float]) -> Way:
+def _straight_on(way: SampledPath, point: tuple[float, float]) -> SampledPath:
     """The way with a straight piece up to ``point``, which lies ahead of its end."""
     last = way.points[-1]
     count = _count(hypot(point[0] - last[0], point[1] - last[1]))
     parts = np.linspace(0.0, 1.0, count)[1:, None]
     points = last + parts * (np.asarray(point) - last)
     courses = np.concatenate((way.course, np.full(count - 1, way.course[-1])))
-    return Way(np.concatenate((way.points, points)), courses, np.concatenate((way.curvature, np.zeros(count - 1))))
+    return SampledPath(np.concatenate((way.points, points)), courses, np.concatenate((way.curvature, np.zeros(count - 1))))
 
 
-def _one_turn(word: _Word, point: tuple[float, float]) -> Way | None:
+def _one_turn(word: _Word, point: tuple[float, float]) -> SampledPath | None:
     """The secant method on the length of the turn, from where the circle's tangent leads through the point."""
     side, radius = word.turns[0], word.radius
     x, y, course = _ahead(word.start, word.ramp / 2)

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from uvf.guidance.clothoid_dubins import Way
+from uvf.guidance.clothoid_dubins import SampledPath
 from uvf.guidance.vector_field import Point, turn_radius
 from uvf.maths.geodesy import GRAVITY
 
@@ -30,7 +30,7 @@ HALVINGS = 8
 
 
 @dataclass(frozen=True, slots=True)
-class Flying:
+class CornerLimits:
     """How corners are flown."""
 
     airspeed: float  # m/s
@@ -53,7 +53,7 @@ class Flying:
 
 
 @dataclass(frozen=True)
-class Corner(Way):
+class Corner(SampledPath):
     """Samples of the way, evenly in time. ``before``, ``after``: m of the two legs that it takes the place of."""
 
     before: float
@@ -64,7 +64,7 @@ class Corner(Way):
         return float(np.hypot(*(self.points - waypoint).T).min())
 
 
-def plan(waypoint: Point, courses: tuple[float, float], flying: Flying, room: Point) -> Corner | None:
+def plan(waypoint: Point, courses: tuple[float, float], flying: CornerLimits, room: Point) -> Corner | None:
     """The corner at ``waypoint`` between two ``courses`` [rad] with ``room`` [m] on the two legs; None where it cannot be rounded."""
     change = math.remainder(courses[1] - courses[0], math.tau)
     if not STRAIGHT < abs(change) < SHARPEST:
@@ -73,11 +73,11 @@ def plan(waypoint: Point, courses: tuple[float, float], flying: Flying, room: Po
     if None in headings:
         return None
     turn = _same_way(math.remainder(headings[1] - headings[0], math.tau), change)  # type: ignore[operator]
-    made = Planner(waypoint, courses, flying, headings[0], turn).balanced(room[1])  # type: ignore[arg-type]
+    made = CornerPlanner(waypoint, courses, flying, headings[0], turn).balanced(room[1])  # type: ignore[arg-type]
     return made if made.before <= room[0] and made.after <= room[1] else None
 
 
-def _heading(course: float, flying: Flying) -> float | None:
+def _heading(course: float, flying: CornerLimits) -> float | None:
     """rad, through the air, that leads along ``course`` over ground; None when the wind is too strong."""
     north, east = flying.wind
     aside = (east * math.cos(course) - north * math.sin(course)) / flying.airspeed
@@ -90,12 +90,12 @@ def _same_way(turn: float, change: float) -> float:
 
 
 @dataclass(frozen=True)
-class Planner:
+class CornerPlanner:
     """Corners of one waypoint; they differ in how far they go beyond the new heading."""
 
     waypoint: Point
     courses: tuple[float, float]
-    flying: Flying
+    flying: CornerLimits
     heading: float  # rad, at the beginning
     turn: float  # rad, of the heading, to the right
 

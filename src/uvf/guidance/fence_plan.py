@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from uvf.guidance.flight_plan import Item, Kind
+from uvf.guidance.flight_plan import ItemKind, PlanItem
 from uvf.guidance.route import Place
 from uvf.guidance.vector_field import turn_radius
 from uvf.maths.zones import Point
@@ -13,14 +13,14 @@ PATH_ROOM = 4.0  # m beyond fence_margin: an aircraft is not on its path to the 
 WIDER = 1.2  # than the tightest circle, in wind
 
 
-class Remembered:
+class CachedFenceCheck:
     """``mission_fault``, worked out once per mission, fence and parameters: they are asked for many times a second."""
 
     def __init__(self) -> None:
         self._of: tuple[object, ...] = ()
         self._fault = ""
 
-    def mission_fault(self, items: Sequence[Item], fencing: Fencing, params: AirParams) -> str:
+    def mission_fault(self, items: Sequence[PlanItem], fencing: Fencing, params: AirParams) -> str:
         """Which item leaves the fence; empty if none does."""
         of = items, fencing, params
         if len(self._of) != len(of) or any(one is not other for one, other in zip(self._of, of, strict=True)):
@@ -28,14 +28,14 @@ class Remembered:
         return self._fault
 
 
-def mission_fault(items: Sequence[Item], fencing: Fencing, params: AirParams) -> str:
+def mission_fault(items: Sequence[PlanItem], fencing: Fencing, params: AirParams) -> str:
     """Which item leaves the fence; empty if none does. Jumps are taken as read: their items are looked at where they stand."""
     if fencing.is_open:
         return ""
     before: Point | None = None
     for i, item in enumerate(items):
-        if item.kind not in (Kind.WAYPOINT, Kind.ORBIT):
-            before = None if item.kind in (Kind.JUMP, Kind.RETURN) else before
+        if item.kind not in (ItemKind.WAYPOINT, ItemKind.ORBIT):
+            before = None if item.kind in (ItemKind.JUMP, ItemKind.RETURN) else before
             continue
         if why := place_fault(item.place, fencing, params, 0.0 if item.flies_through else abs(item.radius or params.hold_radius)):
             return f"item {i}: {why}"

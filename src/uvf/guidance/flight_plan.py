@@ -9,7 +9,7 @@ from types import MappingProxyType
 from uvf.guidance.route import Place
 
 
-class Kind(Enum):
+class ItemKind(Enum):
     WAYPOINT = "waypoint"
     ORBIT = "orbit"
     RETURN = "return"
@@ -23,18 +23,18 @@ class Kind(Enum):
     SET_HOME = "set_home"
 
 
-OFF_PATH = (Kind.RETURN, Kind.TAKEOFF, Kind.LAND)
+OFF_PATH = (ItemKind.RETURN, ItemKind.TAKEOFF, ItemKind.LAND)
 """What is not flown along legs and circles."""
 
 
 @dataclass(frozen=True, slots=True)
-class Item:
+class PlanItem:
     """One line of a mission; which fields count depends on the kind (see mission.proto).
 
     An acceptance radius limits how far from a waypoint the corner may be rounded; the waypoint counts as reached where the corner begins.
     """
 
-    kind: Kind
+    kind: ItemKind
     place: Place
     hold: float = 0.0  # s
     radius: float = 0.0  # m, positive clockwise
@@ -50,7 +50,7 @@ class Item:
 
     @property
     def flies_through(self) -> bool:
-        return self.kind is Kind.WAYPOINT and self.hold == 0
+        return self.kind is ItemKind.WAYPOINT and self.hold == 0
 
     def is_at(self, place: Place) -> bool:
         """Whether nothing more than this place is asked for."""
@@ -59,7 +59,7 @@ class Item:
 
 
 @dataclass(frozen=True, slots=True)
-class Stand:
+class PlanProgress:
     """Where in a mission an aircraft is; index None: not begun."""
 
     index: int | None
@@ -68,13 +68,13 @@ class Stand:
     finished: bool
 
 
-DEEDS = (Kind.TRIGGER, Kind.TRIGGER_DISTANCE, Kind.SET_HOME)
+DEEDS = (ItemKind.TRIGGER, ItemKind.TRIGGER_DISTANCE, ItemKind.SET_HOME)
 ONE_PLACE = 1.0  # m, between waypoints that are taken for one
 NO_JUMPS: Mapping[int, int] = MappingProxyType({})
 
 
 @dataclass(frozen=True, slots=True)
-class Stop:
+class NextItem:
     """The item flown next (None: the end) and what was passed on the way to it."""
 
     index: int | None
@@ -84,33 +84,33 @@ class Stop:
     deeds: tuple[int, ...] = ()  # items that are carried out in passing
 
 
-def next_stop(items: Sequence[Item], index: int, jumps: Mapping[int, int]) -> Stop:
+def next_stop(items: Sequence[PlanItem], index: int, jumps: Mapping[int, int]) -> NextItem:
     """From ``index`` on past speed changes, deeds, marks and jumps; jumps without anything to fly between them end the mission."""
     taken, laps = dict(jumps), 0
     speed: float | None = None
     deeds: tuple[int, ...] = ()
     for _ in range(2 * len(items) + 1):
         if index >= len(items):
-            return Stop(None, taken, laps, speed, deeds)
+            return NextItem(None, taken, laps, speed, deeds)
         item = items[index]
-        if item.kind is Kind.SPEED:
+        if item.kind is ItemKind.SPEED:
             speed, index = item.speed, index + 1
         elif item.kind in DEEDS:
             deeds, index = (*deeds, index), index + 1
-        elif item.kind is Kind.LAND_START:
+        elif item.kind is ItemKind.LAND_START:
             index += 1
-        elif item.kind is Kind.JUMP:
+        elif item.kind is ItemKind.JUMP:
             if 0 <= item.repeat <= taken.get(index, 0):
                 index += 1
             else:
                 taken[index] = taken.get(index, 0) + 1
                 laps, index = laps + 1, item.jump_to
         else:
-            return Stop(index, taken, laps, speed, deeds)
-    return Stop(None, taken, laps, speed, deeds)
+            return NextItem(index, taken, laps, speed, deeds)
+    return NextItem(None, taken, laps, speed, deeds)
 
 
-def following(items: Sequence[Item], stop: Stop) -> Stop:
+def following(items: Sequence[PlanItem], stop: NextItem) -> NextItem:
     """After the item of ``stop``: waypoints that are flown through at the same place are passed with it."""
     assert stop.index is not None
     here, found = items[stop.index], next_stop(items, stop.index + 1, stop.jumps)
@@ -119,5 +119,5 @@ def following(items: Sequence[Item], stop: Stop) -> Stop:
             break
         more = next_stop(items, found.index + 1, found.jumps)
         speed = found.speed if more.speed is None else more.speed
-        found = Stop(more.index, more.jumps, found.laps + more.laps, speed, found.deeds + more.deeds)
+        found = NextItem(more.index, more.jumps, found.laps + more.laps, speed, found.deeds + more.deeds)
     return found

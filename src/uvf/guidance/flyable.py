@@ -10,51 +10,51 @@ from collections.abc import Iterator, Sequence
 
 from uvf.guidance import corners
 from uvf.guidance.approach import approach_fault
-from uvf.guidance.flight_plan import NO_JUMPS, Item, Kind, Stop, following
+from uvf.guidance.flight_plan import NO_JUMPS, ItemKind, NextItem, PlanItem, following
 from uvf.guidance.route import Curve, Leg
-from uvf.guidance.route_planning import Planner
+from uvf.guidance.route_planning import RoutePlanner
 from uvf.guidance.vector_field import turn_radius
 from uvf.maths.geodesy import GRAVITY
 from uvf.models.vehicle.flight_params import AirParams
 
 
-def fault(items: Sequence[Item], params: AirParams) -> str:
+def fault(items: Sequence[PlanItem], params: AirParams) -> str:
     """Why a mission cannot be flown: which item, what, and how to mend it; empty if it can."""
     speeds = _speeds(items, params)
     faults = (_fault(item, len(items), speeds[i], params) or _landing_fault(items, i, params) for i, item in enumerate(items))
     return next((f"item {i} {why}" for i, why in enumerate(faults) if why), "")
 
 
-def _fault(item: Item, count: int, speed: float, params: AirParams) -> str:
-    if item.kind is Kind.JUMP and item.jump_to >= count:
+def _fault(item: PlanItem, count: int, speed: float, params: AirParams) -> str:
+    if item.kind is ItemKind.JUMP and item.jump_to >= count:
         return f"jumps to {item.jump_to}, but there are {count} items"
-    if item.kind is Kind.SPEED and item.speed != 0 and not params.min_airspeed <= item.speed <= params.max_airspeed:
+    if item.kind is ItemKind.SPEED and item.speed != 0 and not params.min_airspeed <= item.speed <= params.max_airspeed:
         return f"sets a speed of {item.speed:g} m/s; this aircraft flies {params.min_airspeed:g} to {params.max_airspeed:g} m/s"
-    if item.kind is Kind.WAYPOINT and item.hold > 0 and item.course is not None:
+    if item.kind is ItemKind.WAYPOINT and item.hold > 0 and item.course is not None:
         return "has a hold time and a course: it is circled, in every direction; leave one of both out"
     tightest = turn_radius(speed, params.bank_limit)
-    if (item.kind is Kind.ORBIT or item.hold > 0) and 0 < abs(item.radius) < tightest:
+    if (item.kind is ItemKind.ORBIT or item.hold > 0) and 0 < abs(item.radius) < tightest:
         most = math.sqrt(abs(item.radius) * GRAVITY * math.tan(params.bank_limit))
         mend = f"or at most {most:.1f} m/s" if most >= params.min_airspeed else "(0 = the aircraft's own)"
         return f"is a circle of {abs(item.radius):g} m, too tight at {speed:g} m/s: give at least {math.ceil(tightest)} m {mend}"
     return ""
 
 
-def _landing_fault(items: Sequence[Item], index: int, params: AirParams) -> str:
-    return approach_fault(items, index, params) if items[index].kind is Kind.LAND else ""
+def _landing_fault(items: Sequence[PlanItem], index: int, params: AirParams) -> str:
+    return approach_fault(items, index, params) if items[index].kind is ItemKind.LAND else ""
 
 
-def _speeds(items: Sequence[Item], params: AirParams) -> list[float]:
+def _speeds(items: Sequence[PlanItem], params: AirParams) -> list[float]:
     """m/s through the air at each item, as far as it stands before it."""
     cruise = params.trim_airspeed
-    sets = ((item.speed or cruise) if item.kind is Kind.SPEED else None for item in items)
+    sets = ((item.speed or cruise) if item.kind is ItemKind.SPEED else None for item in items)
     told = itertools.accumulate(sets, lambda v, told: v if told is None else told, initial=cruise)
     return [speed for _, speed in zip(items, told, strict=False)]
 
 
-def advice(items: Sequence[Item], params: AirParams) -> Iterator[tuple[str, str]]:
+def advice(items: Sequence[PlanItem], params: AirParams) -> Iterator[tuple[str, str]]:
     """What and why for each waypoint that is not rounded by a corner of its own, in calm air."""
-    speeds, stops = _speeds(items, params), [Stop(i, NO_JUMPS, 0, None) for i in range(len(items))]
+    speeds, stops = _speeds(items, params), [NextItem(i, NO_JUMPS, 0, None) for i in range(len(items))]
     for stop in stops:
         assert stop.index is not None
         item = items[stop.index]
@@ -62,7 +62,7 @@ def advice(items: Sequence[Item], params: AirParams) -> Iterator[tuple[str, str]
         if onward.index is None or not items[onward.index].flies_through or item.course is not None:
             continue
         leg = Leg(item.place, items[onward.index].place)
-        planner = Planner(items, params, (0.0, 0.0), speeds[onward.index])
+        planner = RoutePlanner(items, params, (0.0, 0.0), speeds[onward.index])
         exit_ = None if items[onward.index].course is not None else planner.with_exit(leg, onward).exit
         then = following(items, onward)
         if isinstance(exit_, Curve) and then.index is not None and items[then.index].course is None:
@@ -72,7 +72,7 @@ def advice(items: Sequence[Item], params: AirParams) -> Iterator[tuple[str, str]
             )
 
 
-def _why(leg: Leg, then: Item, planner: Planner, item: Item) -> str:
+def _why(leg: Leg, then: PlanItem, planner: RoutePlanner, item: PlanItem) -> str:
     onto = Leg(leg.end, then.place)
     corner = corners.plan(leg.end.point, (leg.course, onto.course), planner.flying, (math.inf, math.inf))
     turn = f"a corner of {abs(math.degrees(math.remainder(onto.course - leg.course, math.tau))):.0f} degrees"

@@ -5,8 +5,8 @@ from dataclasses import dataclass, replace
 
 from uvf.control.cycle import Cycle, clip
 from uvf.estimation.state import Estimate
-from uvf.guidance.leader_track import Spot, Trail
-from uvf.guidance.vector_field import Aim, Point
+from uvf.guidance.leader_track import LeaderTrack, TrackPoint
+from uvf.guidance.vector_field import PathReference, Point
 from uvf.maths.filters import Integral
 from uvf.maths.geodesy import GRAVITY
 from uvf.models.vehicle.flight_params import AirParams
@@ -24,7 +24,7 @@ SIDE_SHARE = 0.5  # of the speeds that there are to spare, for an offset to swin
 
 
 @dataclass(frozen=True, slots=True)
-class Station:
+class FormationSlot:
     """Where a follower is to be."""
 
     behind: float  # m, of the leader's way through the air
@@ -33,10 +33,10 @@ class Station:
 
 
 @dataclass(frozen=True, slots=True)
-class Steered:
+class SlotSetpoint:
     """What is asked for, and how far the aircraft is from its station."""
 
-    aim: Aim
+    aim: PathReference
     height: float  # m
     climb: float  # m/s
     airspeed: float  # m/s
@@ -44,7 +44,7 @@ class Steered:
     distance: float  # m, from the station
 
 
-class Boom:
+class LateralOffset:
     """The offset aside of the trail, swung round in corners no faster than airspeed can change.
 
     An offset that turned with the leader would want the wings of a formation to fly a corner at quite another speed. Where the
@@ -56,7 +56,7 @@ class Boom:
         self._direction: float | None = None  # rad, of the course that the offset is at right angles to
         self._rate = 0.0  # rad/s
 
-    def step(self, spot: Spot, params: AirParams, dt: float) -> tuple[Point, Point]:
+    def step(self, spot: TrackPoint, params: AirParams, dt: float) -> tuple[Point, Point]:
         """Offset [m] and how it changes [m/s], north and east."""
         if self._direction is None or not self._right:
             self._direction, self._rate = spot.course, 0.0
@@ -65,7 +65,7 @@ class Boom:
         c, s, r = math.cos(self._direction), math.sin(self._direction), self._right
         return (-s * r, c * r), (-c * r * self._rate, -s * r * self._rate)
 
-    def _swing(self, spot: Spot, params: AirParams, dt: float) -> None:
+    def _swing(self, spot: TrackPoint, params: AirParams, dt: float) -> None:
         assert self._direction is not None
         arm = abs(self._right)
         spare = min(params.max_airspeed - params.trim_airspeed, params.trim_airspeed - params.min_airspeed)
@@ -77,7 +77,7 @@ class Boom:
         self._direction += self._rate * dt
 
 
-def _slowest(trail: Trail, spot: Spot, now: Estimate, params: AirParams) -> float:
+def _slowest(trail: LeaderTrack, spot: TrackPoint, now: Estimate, params: AirParams) -> float:
     """m/s through the air, with which the wing carries the turns of the trail from ``spot`` on, at the bank that they need this fast."""
     sharpest = max(abs(trail.at(spot.t + ahead).curvature) for ahead in SEEN_AHEAD)
     bank = min(math.atan(sharpest * now.ground_speed**2 / GRAVITY), params.bank_limit)
@@ -92,17 +92,17 @@ def _airspeed(wanted: Point, now: Estimate) -> float:
     return math.hypot(wanted[0] - now.wind_north, wanted[1] - now.wind_east) + gust + haste
 
 
-class StationKeeping:
+class SlotKeeping:
     """Follows the trail by its cross-track distance and curvature, and its station on it by airspeed."""
 
-    def __init__(self, station: Station) -> None:
+    def __init__(self, station: FormationSlot) -> None:
         self.station = station
-        self._boom = Boom(station.right)
+        self._boom = LateralOffset(station.right)
         self._trim = Integral(TRIM_LIMIT)
         self._offset: Point = (0.0, 0.0)
-        self._spot: Spot | None = None
+        self._spot: TrackPoint | None = None
 
-    def step(self, trail: Trail, t: float, now: Estimate, params: AirParams, dt: float) -> Steered:
+    def step(self, trail: LeaderTrack, t: float, now: Estimate, params: AirParams, dt: float) -> SlotSetpoint:
         """At ``t`` [s], behind a leader who has been heard."""
         spot = self._spot = self._find(trail, now)
         self._offset, moves = self._boom.step(spot, params, dt)
@@ -115,9 +115,9 @@ class StationKeeping:
         airspeed = min(max(airspeed, _slowest(trail, spot, now, params)), params.max_airspeed)
         height = spot.height + self.station.above
         aim = self._aim(trail, spot, (along, aside), now, params)
-        return Steered(aim, height, spot.climb, airspeed, late, math.hypot(late, aim.error, height - now.height))
+        return SlotSetpoint(aim, height, spot.climb, airspeed, late, math.hypot(late, aim.error, height - now.height))
 
-    def _find(self, trail: Trail, now: Estimate) -> Spot:
+    def _find(self, trail: LeaderTrack, now: Estimate) -> TrackPoint:
         """The spot that the aircraft is beside, less its offset."""
         here = (now.north - self._offset[0], now.east - self._offset[1])
         before = self._spot
@@ -131,11 +131,11 @@ class StationKeeping:
             self._trim.step(params.follow_i * late, dt)
         return clip(params.follow_p * late, CATCHING_UP) + self._trim.value
 
-    def _aim(self, trail: Trail, spot: Spot, moves: Point, now: Estimate, params: AirParams) -> Aim:
+    def _aim(self, trail: LeaderTrack, spot: TrackPoint, moves: Point, now: Estimate, params: AirParams) -> PathReference:
         here = (now.north - self._offset[0] - spot.north, now.east - self._offset[1] - spot.east)
         error = here[1] * math.cos(spot.course) - here[0] * math.sin(spot.course)
         speed = max(now.ground_speed, 5.0)
         # The offset moves with the aircraft: what is left of its speed follows the trail.
         share = (speed - moves[0]) / speed
         bend = trail.at(spot.t + params.lead_time).curvature
-        return Aim(error, spot.course + math.asin(clip(moves[1] / speed, 0.5)), bend * share, params.k_path, params.chi_inf)
+        return PathReference(error, spot.course + math.asin(clip(moves[1] / speed, 0.5)), bend * share, params.k_path, params.chi_inf)

@@ -25,7 +25,7 @@ SLOWEST = 1.0  # m/s
 
 
 @dataclass(frozen=True, slots=True)
-class Report:
+class LeaderReport:
     """What an aircraft tells of itself."""
 
     t: float  # s, that it is valid for
@@ -39,7 +39,7 @@ class Report:
 
 
 @dataclass(frozen=True, slots=True)
-class Spot:
+class TrackPoint:
     """A place on the trail and how the leader flew there."""
 
     t: float  # s, when the leader was there
@@ -52,18 +52,18 @@ class Spot:
     curvature: float  # 1/m, to the right
 
 
-class Trail:
+class LeaderTrack:
     """Spots of the last ``KEPT`` seconds; before the oldest and beyond the newest it goes straight on."""
 
     def __init__(self) -> None:
-        self.newest: Report | None = None
+        self.newest: LeaderReport | None = None
         self._flown = 0.0  # m, of air
         self._paced = 0.0, 0.0
         self._t: list[float] = []
         self._rows: list[tuple[float, ...]] = []  # t, north, east, height, course (unwrapped), speed, air flown
         self._table: Floats = np.zeros((0, 7))
 
-    def add(self, report: Report) -> None:
+    def add(self, report: LeaderReport) -> None:
         """A newer report; one that is no newer than the last, or holds a number that is none, tells nothing."""
         last = self.newest
         if not all(map(math.isfinite, astuple(report))) or (last is not None and report.t <= last.t):
@@ -75,7 +75,7 @@ class Trail:
         if not self._t or report.t >= self._t[-1] + STEP - 1e-6:
             self._append(report)
 
-    def _append(self, report: Report) -> None:
+    def _append(self, report: LeaderReport) -> None:
         course = math.atan2(report.v_east, report.v_north)
         if self._rows:
             before = self._rows[-1][4]
@@ -87,7 +87,7 @@ class Trail:
         del self._t[:outlived], self._rows[:outlived]
         self._table = np.array(self._rows)
 
-    def _mean(self, newest: Report) -> tuple[float, float]:
+    def _mean(self, newest: LeaderReport) -> tuple[float, float]:
         """Mean airspeed [m/s] up to now, and how it changes [m/s^2]."""
         k = max(bisect_right(self._t, newest.t - PACE_OVER) - 1, 0)
         if len(self._t) < 2 or newest.t - self._t[k] < STEP:
@@ -107,7 +107,7 @@ class Trail:
         """m/s^2, how the pace changes."""
         return self._paced[1]
 
-    def at(self, t: float) -> Spot:
+    def at(self, t: float) -> TrackPoint:
         """Where the leader was at ``t`` [s]."""
         table = self._table
         i = min(max(bisect_right(self._t, t) - 1, 0), len(table) - 1)
@@ -118,13 +118,13 @@ class Trail:
         _, north, east, _, course, speed, _ = (row + part * (table[i + 1] - row)).tolist()
         (height, climb, bend), after = self._smooth(i), self._smooth(i + 1)
         height, climb, bend = (a + part * (b - a) for a, b in zip((height, climb, bend), after, strict=True))
-        return Spot(t, north, east, height, course, speed, climb, bend)
+        return TrackPoint(t, north, east, height, course, speed, climb, bend)
 
-    def _beyond(self, i: int, dt: float) -> Spot:
+    def _beyond(self, i: int, dt: float) -> TrackPoint:
         """``dt`` [s] straight on from a row at one of the ends."""
         t, north, east, height, course, speed, _ = self._rows[i]
         ground = dt * speed
-        return Spot(t + dt, north + ground * math.cos(course), east + ground * math.sin(course), height, course, speed, 0.0, 0.0)
+        return TrackPoint(t + dt, north + ground * math.cos(course), east + ground * math.sin(course), height, course, speed, 0.0, 0.0)
 
     def _smooth(self, i: int) -> tuple[float, float, float]:
         """Height [m], climb [m/s] and curvature [1/m] about row ``i``."""
@@ -138,7 +138,7 @@ class Trail:
         times = self._table[i - wide : i + wide + 1, 0] - self._table[i, 0]
         return float(heights.mean()), float(times @ heights / (times @ times)), bend
 
-    def nearest(self, position: Point, about: float | None = None) -> Spot:
+    def nearest(self, position: Point, about: float | None = None) -> TrackPoint:
         """The spot nearest to ``position`` [m]; only within ``SPAN`` of the one flown over at ``about`` [s], where that is given."""
         low, high = 0, len(self._t)
         if about is not None:

@@ -5,12 +5,12 @@ from collections.abc import Sequence
 
 from uvf.estimation.state import Estimate
 from uvf.guidance.approach import Approach, laid_down
-from uvf.guidance.camera_trigger import Camera
+from uvf.guidance.camera_trigger import CameraTrigger
 from uvf.guidance.corners import Corner
-from uvf.guidance.flight_plan import NO_JUMPS, OFF_PATH, Item, Kind, Stop, following, next_stop
-from uvf.guidance.route import Circle, Curve, Leg, Level, Place, Turn
-from uvf.guidance.route_planning import Planner
-from uvf.guidance.vector_field import Aim
+from uvf.guidance.flight_plan import NO_JUMPS, OFF_PATH, ItemKind, NextItem, PlanItem, following, next_stop
+from uvf.guidance.route import AltitudeProfile, Circle, Curve, Leg, Place, Turn
+from uvf.guidance.route_planning import RoutePlanner
+from uvf.guidance.vector_field import PathReference
 from uvf.models.vehicle.flight_params import AirParams
 
 Piece = Leg | Turn | Curve | Circle
@@ -22,10 +22,10 @@ ANOTHER_WIND = 1.0  # m/s, of change, for which curves are planned anew
 LEVELLED = 2.0  # m, from the altitude that a circle is to reach
 
 
-class Navigator:
+class PlanFollower:
     """``index`` is the item flown towards, None before the start and after the end."""
 
-    def __init__(self, items: Sequence[Item]) -> None:
+    def __init__(self, items: Sequence[PlanItem]) -> None:
         self.items = tuple(items)
         self.index: int | None = None
         self.reached = -1
@@ -36,8 +36,8 @@ class Navigator:
         self._piece: Piece | None = None
         self._planned = 0.0  # s ago
         self._wind = 0.0, 0.0  # m/s, of the latest plan
-        self.camera = Camera()
-        self.homes: list[Item] = []
+        self.camera = CameraTrigger()
+        self.homes: list[PlanItem] = []
         """Passed, and not yet carried out: that is the pilot's."""
         self._bearing: float | None = None
         self._turned = 0.0  # rad, on the circle
@@ -61,7 +61,7 @@ class Navigator:
 
     def _speed_at(self, index: int) -> float:
         """m/s, that the items before this one ask for; 0 = cruise."""
-        return next((item.speed for item in reversed(self.items[:index]) if item.kind is Kind.SPEED), 0.0)
+        return next((item.speed for item in reversed(self.items[:index]) if item.kind is ItemKind.SPEED), 0.0)
 
     def pass_item(self) -> None:
         """The current item, which is none of legs and circles, is done."""
@@ -78,17 +78,17 @@ class Navigator:
 
     @property
     def returns_home(self) -> bool:
-        return self.index is not None and self.items[self.index].kind is Kind.RETURN
+        return self.index is not None and self.items[self.index].kind is ItemKind.RETURN
 
     @property
     def _off_path(self) -> bool:
         return self.index is not None and self.items[self.index].kind in OFF_PATH
 
     @property
-    def target(self) -> Item | None:
+    def target(self) -> PlanItem | None:
         return self.items[self.index] if self.index is not None else None
 
-    def step(self, now: Estimate, params: AirParams, dt: float) -> tuple[Aim, Level]:
+    def step(self, now: Estimate, params: AirParams, dt: float) -> tuple[PathReference, AltitudeProfile]:
         """Aim and height towards the current item; call it only while there is one that is flown along a path."""
         if self._piece is None:
             self._piece = self._from_here(now, params)
@@ -112,15 +112,15 @@ class Navigator:
         course = now.course if target is not None and (target.course is not None or not target.flies_through) else None
         return self._planner(now, params).towards(self._stop, Place(now.north, now.east, now.height), course)
 
-    def _planner(self, now: Estimate, params: AirParams, speed: float | None = None) -> Planner:
+    def _planner(self, now: Estimate, params: AirParams, speed: float | None = None) -> RoutePlanner:
         """speed: m/s, 0 = cruise, None = that of now."""
         self._wind = now.wind_north, now.wind_east
-        return Planner(self.items, params, self._wind, (self.speed if speed is None else speed) or params.trim_airspeed)
+        return RoutePlanner(self.items, params, self._wind, (self.speed if speed is None else speed) or params.trim_airspeed)
 
     @property
-    def _stop(self) -> Stop:
+    def _stop(self) -> NextItem:
         """Where it flies to now."""
-        return Stop(self.index, self._jumps, 0, None)
+        return NextItem(self.index, self._jumps, 0, None)
 
     def _replan(self, now: Estimate, params: AirParams, dt: float) -> None:
         """What comes at the end of this piece, for the wind as it is known now."""
@@ -199,12 +199,12 @@ class Navigator:
         onto = self._planner(now, params).towards(self._stop, piece.end, None, piece.exit)
         self._piece = Turn(piece.exit, piece, onto) if isinstance(piece.exit, Corner) and isinstance(onto, Leg) else onto
 
-    def _take(self, stop: Stop) -> None:
+    def _take(self, stop: NextItem) -> None:
         self.index, self._jumps = stop.index, stop.jumps
         self.speed = self.speed if stop.speed is None else stop.speed
         self._bearing, self._turned, self._held = None, 0.0, 0.0
         for item in (self.items[k] for k in stop.deeds):
-            if item.kind is Kind.SET_HOME:
+            if item.kind is ItemKind.SET_HOME:
                 self.homes.append(item)
             else:
                 self.camera.obey(item)
@@ -222,6 +222,6 @@ class Navigator:
         self._bearing = bearing
         if item.to_altitude:
             return abs(now.height - item.place.height) < LEVELLED
-        if item.kind is Kind.ORBIT:
+        if item.kind is ItemKind.ORBIT:
             return item.turns > 0 and self._turned >= math.tau * item.turns
         return self._held >= item.hold

@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from uvf.estimation.state import Estimate
-from uvf.guidance.clothoid_dubins import Way
+from uvf.guidance.clothoid_dubins import SampledPath
 from uvf.guidance.corners import Corner
-from uvf.guidance.vector_field import Aim, Point, line_aim, orbit_aim
+from uvf.guidance.vector_field import PathReference, Point, line_aim, orbit_aim
 from uvf.models.vehicle.flight_params import AirParams
 
 CAPTURED = 0.3  # of the radius, from the circle: near enough to count turns
@@ -29,7 +29,7 @@ class Place:
 
 
 @dataclass(frozen=True, slots=True)
-class Level:
+class AltitudeProfile:
     """The height wanted [m] and the climb of the path [m/s]."""
 
     height: float
@@ -74,16 +74,16 @@ class Leg:
         """Curvature of the route at ``s`` [m], that of the corner at the end included [1/m]."""
         return self.exit.bend(s - self.length + self.exit.before) if self.exit is not None else 0.0
 
-    def aim(self, now: Estimate, params: AirParams) -> Aim:
+    def aim(self, now: Estimate, params: AirParams) -> PathReference:
         position = (now.north, now.east)
         aim = line_aim(self.along, self.start.point, position, params)
         return replace(aim, curvature=self.bend(self.progress(position) + now.ground_speed * params.lead_time))
 
-    def level(self, now: Estimate) -> Level:
+    def level(self, now: Estimate) -> AltitudeProfile:
         """A straight line between the heights of both ends."""
         s = self.progress((now.north, now.east))
         rise = (self.end.height - self.start.height) / max(self.length, 1.0)
-        return Level(self.height(s), now.ground_speed * rise if 0 < s < self.length else 0.0)
+        return AltitudeProfile(self.height(s), now.ground_speed * rise if 0 < s < self.length else 0.0)
 
     def height(self, s: float) -> float:
         """m, of the route at ``s`` [m]."""
@@ -102,19 +102,19 @@ class Turn:
     def is_flown(self, position: Point) -> bool:
         return self.corner.nearest(position)[0] >= self.corner.length
 
-    def aim(self, now: Estimate, params: AirParams) -> Aim:
+    def aim(self, now: Estimate, params: AirParams) -> PathReference:
         corner = self.corner
         s, aside, course = corner.nearest((now.north, now.east))
         ahead = s + now.ground_speed * params.lead_time
         curvature = corner.bend(ahead) if ahead <= corner.length else self.onto.bend(corner.after + ahead - corner.length)
-        return Aim(aside, course, curvature, params.k_path, params.chi_inf)
+        return PathReference(aside, course, curvature, params.k_path, params.chi_inf)
 
-    def level(self, now: Estimate) -> Level:
+    def level(self, now: Estimate) -> AltitudeProfile:
         """A straight line between the heights of the two legs where it begins and ends."""
         corner, leaves = self.corner, self.leaves
         begin, end = leaves.height(leaves.length - corner.before), self.onto.height(corner.after)
         part = min(max(corner.nearest((now.north, now.east))[0] / corner.length, 0.0), 1.0)
-        return Level(begin + part * (end - begin), now.ground_speed * (end - begin) / corner.length)
+        return AltitudeProfile(begin + part * (end - begin), now.ground_speed * (end - begin) / corner.length)
 
 
 @dataclass
@@ -125,7 +125,7 @@ class Curve:
     ``before``, ``after``: m of the legs that it takes the place of. ``onto``: what follows, once that is known.
     """
 
-    way: Way
+    way: SampledPath
     passing: tuple[float, ...]
     heights: tuple[float, ...]
     before: float = 0.0
@@ -176,14 +176,14 @@ class Curve:
             return self.way.bend(s)
         return 1 / self.onto.radius if isinstance(self.onto, Circle) else self.onto.bend(beyond + self.after)
 
-    def aim(self, now: Estimate, params: AirParams) -> Aim:
+    def aim(self, now: Estimate, params: AirParams) -> PathReference:
         s, aside, course = self._nearest((now.north, now.east))
-        return Aim(aside, course, self.bend(s + now.ground_speed * params.lead_time), params.k_path, params.chi_inf)
+        return PathReference(aside, course, self.bend(s + now.ground_speed * params.lead_time), params.k_path, params.chi_inf)
 
-    def level(self, now: Estimate) -> Level:
+    def level(self, now: Estimate) -> AltitudeProfile:
         """Straight lines over the length between the heights."""
         height = self._height(self.s)
-        return Level(height, now.ground_speed * (self._height(self.s + 1.0) - height))
+        return AltitudeProfile(height, now.ground_speed * (self._height(self.s + 1.0) - height))
 
     def _height(self, s: float) -> float:
         return float(np.interp(s, (0.0, *self.passing, self.way.length), self.heights))
@@ -206,11 +206,11 @@ class Circle:
         centre = Place(now.north + radius * math.cos(side), now.east + radius * math.sin(side), height)
         return cls(centre, radius)
 
-    def aim(self, now: Estimate, params: AirParams) -> Aim:
+    def aim(self, now: Estimate, params: AirParams) -> PathReference:
         return orbit_aim(self.centre.point, self.radius, (now.north, now.east), params)
 
-    def level(self, now: Estimate) -> Level:
-        return Level(self.centre.height)
+    def level(self, now: Estimate) -> AltitudeProfile:
+        return AltitudeProfile(self.centre.height)
 
     def bearing(self, now: Estimate) -> float:
         """rad, of the aircraft from the centre."""

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from uvf.guidance import bypass, corners
 from uvf.guidance.approach import orbit_radius
 from uvf.guidance.clothoid_dubins import eased, turned_onto, turned_onto_circle
-from uvf.guidance.flight_plan import OFF_PATH, Item, Stop, following
+from uvf.guidance.flight_plan import OFF_PATH, NextItem, PlanItem, following
 from uvf.guidance.route import Circle, Curve, Leg, Place
 from uvf.guidance.vector_field import Point
 from uvf.models.vehicle.flight_params import AirParams
@@ -24,19 +24,19 @@ Bend = corners.Corner | Curve
 
 
 @dataclass(frozen=True)
-class Planner:
+class RoutePlanner:
     """Plans for one speed through the air in one wind."""
 
-    items: Sequence[Item]
+    items: Sequence[PlanItem]
     params: AirParams
     wind: Point  # m/s north and east, the way it blows to
     speed: float  # m/s
 
     @property
-    def flying(self) -> corners.Flying:
-        return corners.Flying(self.speed, self.wind, self.params.turn_bank)
+    def flying(self) -> corners.CornerLimits:
+        return corners.CornerLimits(self.speed, self.wind, self.params.turn_bank)
 
-    def towards(self, stop: Stop, start: Place, course: float | None = None, entry: Bend | None = None) -> Leg | Curve | Circle:
+    def towards(self, stop: NextItem, start: Place, course: float | None = None, entry: Bend | None = None) -> Leg | Curve | Circle:
         """The piece from ``start`` to the item of ``stop``; with a ``course`` [rad] it begins in that direction."""
         item = self._item(stop)
         if not item.flies_through:
@@ -48,7 +48,7 @@ class Planner:
             return self._joining(start, course, stop) or self.with_exit(leg, stop)
         return self.with_exit(leg, stop)
 
-    def with_exit(self, leg: Leg, stop: Stop) -> Leg:
+    def with_exit(self, leg: Leg, stop: NextItem) -> Leg:
         """The leg to the item of ``stop`` with what is flown at its end, if something is."""
         onward = self._after(stop)
         if onward is None:
@@ -62,7 +62,7 @@ class Planner:
             return replace(leg, exit=None)
         return replace(leg, exit=self._corner(leg, onto, stop, onward) or self._bypass(leg, stop))
 
-    def _circle_ahead(self, leg: Leg, stop: Stop) -> Curve | None:
+    def _circle_ahead(self, leg: Leg, stop: NextItem) -> Curve | None:
         """From the end of a leg onto the circle that follows it, if one does."""
         then = following(self.items, stop)
         if then.index is None or self._item(then).kind in OFF_PATH:
@@ -70,32 +70,32 @@ class Planner:
         curve = self._onto_circle(leg.end, leg.course, self._item(then))
         return replace(curve, passing=(0.0,), heights=(curve.heights[0], *curve.heights)) if curve is not None else None
 
-    def _onto_circle(self, start: Place, course: float, item: Item) -> Curve | None:
+    def _onto_circle(self, start: Place, course: float, item: PlanItem) -> Curve | None:
         """By a turn and straight on; None where it begins within the circle."""
         circle = self._circle(item)
         flying, ring = self.flying, (*circle.centre.point, circle.radius)
         way = turned_onto_circle((*start.point, course), ring, flying.radius, flying.ramp)
         return Curve(way, (), (start.height, item.place.height), onto=circle) if way is not None else None
 
-    def _circle(self, item: Item) -> Circle:
+    def _circle(self, item: PlanItem) -> Circle:
         return Circle(item.place, orbit_radius(item, self.params))
 
-    def _item(self, stop: Stop) -> Item:
+    def _item(self, stop: NextItem) -> PlanItem:
         assert stop.index is not None
         return self.items[stop.index]
 
-    def _after(self, stop: Stop) -> Stop | None:
+    def _after(self, stop: NextItem) -> NextItem | None:
         """The next one that is flown through, if the next one is."""
         then = following(self.items, stop)
         return then if then.index is not None and self._item(then).flies_through else None
 
-    def _between(self, start: Place, course: float, item: Item) -> Curve:
+    def _between(self, start: Place, course: float, item: PlanItem) -> Curve:
         """The Dubins path to an item with a course."""
         assert item.course is not None
         way = eased((*start.point, course), (*item.place.point, item.course), self.flying.radius, self.flying.ramp)
         return Curve(way, (way.length,), (start.height, item.place.height, item.place.height))
 
-    def _joining(self, start: Place, course: float, stop: Stop) -> Curve | None:
+    def _joining(self, start: Place, course: float, stop: NextItem) -> Curve | None:
         """From a course onto the leg to an item without one."""
         item = self._item(stop)
         way = turned_onto((*start.point, course), item.place.point, self.flying.radius, self.flying.ramp)
@@ -107,7 +107,7 @@ class Planner:
         onto = self.with_exit(Leg(Place(north, east, height), item.place), stop)
         return Curve(way, (), (start.height, height), onto=onto)
 
-    def _corner(self, leg: Leg, onto: Leg, stop: Stop, onward: Stop) -> corners.Corner | None:
+    def _corner(self, leg: Leg, onto: Leg, stop: NextItem, onward: NextItem) -> corners.Corner | None:
         """Round the waypoint between two legs; None where there is no room for it, or for the next one after it."""
         before, room = leg.length - _taken(leg), LEAVING * onto.length
         corner = self._rounded(leg, onto, (before, room))
@@ -128,7 +128,7 @@ class Planner:
         corner = self._rounded(leg, onto, (math.inf, LEAVING * onto.length))
         return corner.before if corner is not None else 0.0
 
-    def _bypass(self, leg: Leg, stop: Stop) -> Curve:
+    def _bypass(self, leg: Leg, stop: NextItem) -> Curve:
         """From this leg onto the first one after it that is long enough."""
         places, acceptances, out, last = [leg.end], [self._item(stop).acceptance], None, stop
         while out is None or (len(places) < MOST_PASSED and self._is_short(out, last)):
@@ -145,13 +145,13 @@ class Planner:
         curve = Curve(found.way, found.passing, heights, found.before, found.after)
         return replace(curve, onto=replace(out, entry=curve)) if straight_on else curve
 
-    def _left(self, leg: Leg, stop: Stop) -> float:
+    def _left(self, leg: Leg, stop: NextItem) -> float:
         """m of the leg to the item of ``stop`` that the corner at its end leaves."""
         onward = self._after(stop)
         needed = 0.0 if onward is None else self._needed(leg, Leg(leg.end, self._item(onward).place))
         return max(LEAVING * leg.length, leg.length - needed)
 
-    def _is_short(self, leg: Leg, stop: Stop) -> bool:
+    def _is_short(self, leg: Leg, stop: NextItem) -> bool:
         """Whether a leg that is joined by a curve is too short for the corner at its end."""
         onward = self._after(stop)
         if onward is None or self._item(stop).course is not None or self._item(onward).course is not None:

@@ -14,7 +14,7 @@ MEADOW = 400.0, 30.0  # m, length and width of what is supposed to be free about
 
 
 @dataclass(frozen=True, slots=True)
-class Strip:
+class LandingStrip:
     """``middle`` lies on the ground; ``course`` [rad] is that of one of its directions; length and width in m."""
 
     middle: Place
@@ -22,17 +22,17 @@ class Strip:
     length: float
     width: float
 
-    def lane(self, course: float) -> "Lane":
+    def lane(self, course: float) -> "Runway":
         """The direction nearer to this course [rad]."""
         turned = self.course if math.cos(course - self.course) >= 0 else self.course + math.pi
         back = self.length / 2 - min(AIM_SHARE * self.length, AIM_MOST)
         n, e, up = self.middle.north, self.middle.east, self.middle.height
         aim = Place(n - back * math.cos(turned), e - back * math.sin(turned), up)
-        return Lane(aim, math.remainder(turned, math.tau), self.length / 2 + back, self.width)
+        return Runway(aim, math.remainder(turned, math.tau), self.length / 2 + back, self.width)
 
 
 @dataclass(frozen=True, slots=True)
-class Lane:
+class Runway:
     """One direction of a strip from the point where the wheels are to touch; ``rest`` [m] of it lies behind that."""
 
     aim: Place
@@ -64,19 +64,19 @@ class Lane:
         return math.remainder(angle - self.course, math.tau)
 
 
-def lane_for(place: Place, strips: Sequence[Strip], now: Estimate) -> Lane:
+def lane_for(place: Place, strips: Sequence[LandingStrip], now: Estimate) -> Runway:
     """The strip nearest to ``place``, against the wind; without any the place itself, from where the aircraft is when it is calm."""
     if math.hypot(now.wind_north, now.wind_east) > 1.0:
         upwind = math.atan2(-now.wind_east, -now.wind_north)
     else:
         upwind = math.atan2(place.east - now.east, place.north - now.north)
     if not strips:
-        return Lane(place, upwind, MEADOW[0] / 2, MEADOW[1])
+        return Runway(place, upwind, MEADOW[0] / 2, MEADOW[1])
     nearest = min(strips, key=lambda s: math.hypot(s.middle.north - place.north, s.middle.east - place.east))
     return nearest.lane(upwind)
 
 
-def lane_by(place: Place, course: float, strips: Sequence[Strip]) -> Lane:
+def lane_by(place: Place, course: float, strips: Sequence[LandingStrip]) -> Runway:
     """To touch right at ``place`` by ``course`` [rad]; with the room that is left of the strip there, if it lies on one and along it."""
     for strip in strips:
         axis = math.cos(strip.course), math.sin(strip.course)
@@ -85,5 +85,5 @@ def lane_by(place: Place, course: float, strips: Sequence[Strip]) -> Lane:
         on = abs(ahead) < strip.length / 2 and abs(right) < strip.width / 2
         if on and abs(math.sin(course - strip.course)) < math.sin(ALONG):
             touch = Place(place.north, place.east, strip.middle.height)
-            return Lane(touch, course, strip.length / 2 - way * ahead, strip.width)
-    return Lane(place, course, MEADOW[0] / 2, MEADOW[1])
+            return Runway(touch, course, strip.length / 2 - way * ahead, strip.width)
+    return Runway(place, course, MEADOW[0] / 2, MEADOW[1])

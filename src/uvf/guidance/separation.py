@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from uvf.estimation.state import Estimate
-from uvf.guidance.leader_track import Report
+from uvf.guidance.leader_track import LeaderReport
 from uvf.models.vehicle.flight_params import AirParams
 
 OLDEST = 1.0  # s, of a report that still counts
@@ -23,14 +23,14 @@ class Threat:
     is_ahead: bool
 
 
-def threat(t: float, now: Estimate, others: Mapping[str, Report], least: float) -> Threat | None:
+def threat(t: float, now: Estimate, others: Mapping[str, LeaderReport], least: float) -> Threat | None:
     """The one that comes nearest, if nearer than ``least`` [m]."""
     found = [_meeting(t, now, other, report) for other, report in sorted(others.items()) if abs(t - report.t) <= OLDEST]
     near = [meeting for meeting in found if meeting.distance < least]
     return min(near, key=lambda meeting: meeting.distance, default=None)
 
 
-def _meeting(t: float, now: Estimate, other: str, report: Report) -> Threat:
+def _meeting(t: float, now: Estimate, other: str, report: LeaderReport) -> Threat:
     age = t - report.t
     v_north, v_east = now.ground_speed * math.cos(now.course), now.ground_speed * math.sin(now.course)
     off = (

@@ -24,7 +24,7 @@ def turn_radius(speed: float, bank: float) -> float:
 
 
 @dataclass(frozen=True, slots=True)
-class Aim:
+class PathReference:
     """Where a path wants the aircraft now."""
 
     error: float  # m, the aircraft's distance to the right of the path
@@ -40,13 +40,13 @@ def from_line(along: Point, origin: Point, position: Point) -> tuple[float, floa
     return along[0] * north + along[1] * east, along[0] * east - along[1] * north
 
 
-def line_aim(along: Point, origin: Point, position: Point, params: AirParams) -> Aim:
+def line_aim(along: Point, origin: Point, position: Point, params: AirParams) -> PathReference:
     """The line through ``origin`` in the direction ``along`` (unit, north and east)."""
     _, right = from_line(along, origin, position)
-    return Aim(right, math.atan2(along[1], along[0]), 0.0, params.k_path, params.chi_inf)
+    return PathReference(right, math.atan2(along[1], along[0]), 0.0, params.k_path, params.chi_inf)
 
 
-def orbit_aim(centre: Point, radius: float, position: Point, params: AirParams) -> Aim:
+def orbit_aim(centre: Point, radius: float, position: Point, params: AirParams) -> PathReference:
     """The circle about ``centre``; ``radius`` [m] positive clockwise seen from above (10.13)."""
     turn = math.copysign(1.0, radius)
     north, east = position[0] - centre[0], position[1] - centre[1]
@@ -54,16 +54,16 @@ def orbit_aim(centre: Point, radius: float, position: Point, params: AirParams) 
     course = math.atan2(east, north) + turn * math.pi / 2
     error = turn * (abs(radius) - distance)
     near = min(abs(radius) / max(distance, 1.0), 1.0)
-    return Aim(error, course, near * turn / abs(radius), params.k_orbit / abs(radius), math.pi / 2)
+    return PathReference(error, course, near * turn / abs(radius), params.k_orbit / abs(radius), math.pi / 2)
 
 
-class Steering:
+class LateralGuidance:
     """From an aim to a bank angle."""
 
     def __init__(self) -> None:
         self._trim = Integral(TURN_TRIM_LIMIT)
 
-    def bank(self, aim: Aim, now: Estimate, params: AirParams, dt: float) -> float:
+    def bank(self, aim: PathReference, now: Estimate, params: AirParams, dt: float) -> float:
         """Course rate of the path and of the field about it, plus the course error, as a coordinated turn (9.14)."""
         speed = max(now.ground_speed, 5.0)
         off_path = math.remainder(now.course - aim.course, math.tau)

@@ -85,7 +85,7 @@ def _lateral(omega: Floats, sigma: float, tau: float) -> Floats:
     return sigma**2 * tau / np.pi * (1 + 3 * squared) / (1 + squared) ** 2
 
 
-class Gusts(NamedTuple):
+class GustVelocities(NamedTuple):
     """m/s and rad/s."""
 
     u: float
@@ -113,7 +113,7 @@ class Turbulence:
         self._v, self._w = _Lateral(float(start[2]), float(start[3])), _Lateral(float(start[4]), float(start[5]))
         self._yaw, self._pitch = _Gradient(), _Gradient()
 
-    def step(self, flown: float, dt: float, air: Strength) -> Gusts:
+    def step(self, flown: float, dt: float, air: Strength) -> GustVelocities:
         """The gusts ``flown`` [m] of air and ``dt`` [s] later."""
         n = self._draw()
         speed = max(flown / dt, 1e-3)
@@ -124,7 +124,7 @@ class Turbulence:
         p = roll_sigma(air, self._span) * self._p
         q = -self._pitch.step(w, dt, 4 * self._span / (math.pi * speed)) / speed
         r = self._yaw.step(v, dt, 3 * self._span / (math.pi * speed)) / speed
-        return Gusts(air.sigma_u * self._u, v, w, p, q, r)
+        return GustVelocities(air.sigma_u * self._u, v, w, p, q, r)
 
     def _draw(self) -> list[float]:
         if not self._noise:

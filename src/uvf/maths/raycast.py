@@ -36,7 +36,7 @@ class Scene(NamedTuple):
     ground: float | None = None
 
 
-class Body(NamedTuple):
+class MovingBody(NamedTuple):
     """What moves: solids in the body's own frame (built once), and its pose now: position (3,) [m], quaternion wxyz (4,)."""
 
     tree: Bvh
@@ -51,7 +51,7 @@ class Rays(NamedTuple):
     directions: Floats
 
 
-def cast(scene: Scene, bodies: Sequence[Body], rays: Rays, max_range: float) -> Floats:
+def cast(scene: Scene, bodies: Sequence[MovingBody], rays: Rays, max_range: float) -> Floats:
     """(n,) distances [m] to the first surface met within ``max_range`` [m], inf where there is none.
 
     A sensor leaves its own body out by not listing it. Directions that are not of unit length give distances, and take
@@ -77,7 +77,7 @@ def warm_up() -> None:
     """Loads or compiles every kernel: call it once at start, before time counts."""
     parts = [box((1, 1, 1), (3, 0, 0)), cylinder(0.5, 1.0, (0, 3, 0)), sphere(0.5, (0, 0, 3)), mesh(np.eye(3), ((0, 1, 2),))]
     tree = build(joined(parts))
-    cast(Scene(tree, -1.0), [Body(tree, np.ones(3))], Rays(np.zeros(3), np.eye(3)), 10.0)
+    cast(Scene(tree, -1.0), [MovingBody(tree, np.ones(3))], Rays(np.zeros(3), np.eye(3)), 10.0)
 
 
 @compiled

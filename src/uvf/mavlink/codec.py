@@ -13,7 +13,7 @@ AUTOPILOT = mav.MAV_COMP_ID_AUTOPILOT1
 
 
 @dataclass
-class Counts:
+class LinkCounts:
     received: int = 0
     broken: int = 0
     """Bytes that are no packet, or one with a wrong checksum or flags."""
@@ -29,7 +29,7 @@ class Codec:
     def __init__(self, component: int = AUTOPILOT) -> None:
         """component: that its systems speak as."""
         self._component = component
-        self.counts = Counts()
+        self.counts = LinkCounts()
         self._mav = mav.MAVLink(None)
         self._mav.robust_parsing = True
         self._seq: defaultdict[tuple[int, Peer], int] = defaultdict(int)

@@ -22,7 +22,7 @@ DATAGRAM_BYTES = 65536
 DATAGRAMS_PER_CALL = 500
 
 
-class Link(Protocol):
+class DatagramLink(Protocol):
     """Datagrams from and to peers."""
 
     @property

@@ -13,7 +13,7 @@ Sign = Callable[[bytes], bytes]
 """The signature block of a packet that is whole but for it."""
 
 
-class Body(NamedTuple):
+class MessageBody(NamedTuple):
     """payload: without its trailing zeros; extra: of the message's definition, part of the checksum."""
 
     number: int
@@ -21,15 +21,15 @@ class Body(NamedTuple):
     payload: bytes
 
 
-def body(message: mav.MAVLink_message) -> Body:
+def body(message: mav.MAVLink_message) -> MessageBody:
     """Raises struct.error or OverflowError when a number does not fit its field."""
     # The dialect's own frames are for one link with one key: only its payload is taken.
     message._pack = lambda framer, extra, payload, **_: payload  # type: ignore[method-assign]
     payload: bytes = message.pack(None)  # type: ignore[arg-type]
-    return Body(message.get_msgId(), message.crc_extra, payload.rstrip(b"\0") or payload[:1])
+    return MessageBody(message.get_msgId(), message.crc_extra, payload.rstrip(b"\0") or payload[:1])
 
 
-def frame(what: Body, seq: int, source: tuple[int, int], sign: Sign | None = None) -> bytes:
+def frame(what: MessageBody, seq: int, source: tuple[int, int], sign: Sign | None = None) -> bytes:
     """One packet from ``source`` (system, component); ``sign`` gives it a signature."""
     flags = SIGNED if sign is not None else 0
     low, high = what.number & 0xFFFF, what.number >> 16

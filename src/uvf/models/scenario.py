@@ -15,7 +15,7 @@ from uvf.models.params import Params
 from uvf.models.vehicle.file import VehicleFile, load_vehicle
 from uvf.models.world.file import WorldFile, load_world
 from uvf.models.world.wind import Wind
-from uvf.models.yaml_data import BadInput, Place, convert
+from uvf.models.yaml_data import BadInput, FileLocation, convert
 
 ROOT = Path(__file__).resolve().parents[3]
 AIRCRAFT_RADIUS = 1.5  # m, about the half span of a small one
@@ -23,7 +23,7 @@ P = TypeVar("P", bound=Params)
 
 
 @dataclass(frozen=True)
-class Member:
+class MissionVehicle:
     """One vehicle of the mission: its entry there, its file and its folder."""
 
     name: str
@@ -37,14 +37,14 @@ class Member:
 
 
 @dataclass(frozen=True)
-class Site:
+class Scenario:
     mission_path: Path
     mission: MissionFile
     world: WorldFile
     world_folder: Path
-    members: dict[str, Member]
+    members: dict[str, MissionVehicle]
 
-    def of_kind(self, kind: str) -> Iterator[Member]:
+    def of_kind(self, kind: str) -> Iterator[MissionVehicle]:
         return (m for m in self.members.values() if m.file.kind == kind)
 
     @property
@@ -63,10 +63,10 @@ class Site:
         return np.random.default_rng(int.from_bytes(hashlib.sha256(text.encode()).digest()[:8], "big"))
 
 
-def check_starts(site: Site) -> None:
+def check_starts(site: Scenario) -> None:
     """Every vehicle begins in its world and none inside another one. Raises BadInput."""
     x_min, y_min, x_max, y_max = site.world.floor
-    place = Place(str(site.mission_path)).at("vehicles")
+    place = FileLocation(str(site.mission_path)).at("vehicles")
     for name, member in site.members.items():
         start, body = member.entry.start, member.file.ground
         if body is not None and not (x_min <= start.x <= x_max and y_min <= start.y <= y_max):
@@ -80,22 +80,22 @@ def check_starts(site: Site) -> None:
             raise BadInput(f"{place.at(other, 'start')}: {other} begins {apart:.2f} m from {one}, which is inside it; move one of them")
 
 
-def _position(member: Member) -> tuple[float, float, float]:
+def _position(member: MissionVehicle) -> tuple[float, float, float]:
     start = member.entry.start
     return start.x, start.y, start.z if member.file.air is not None else 0.0
 
 
-def _radius(member: Member) -> float:
+def _radius(member: MissionVehicle) -> float:
     return member.file.ground.radius if member.file.ground is not None else AIRCRAFT_RADIUS
 
 
-def load_site(mission: Path, root: Path = ROOT) -> Site:
+def load_scenario(mission: Path, root: Path = ROOT) -> Scenario:
     """Loads a mission file and all that it names. Raises BadInput."""
     data = load_mission(mission)
     members = {
-        name: Member(name, entry, load_vehicle(root / "vehicles", entry.model), root / "vehicles" / entry.model)
+        name: MissionVehicle(name, entry, load_vehicle(root / "vehicles", entry.model), root / "vehicles" / entry.model)
         for name, entry in data.vehicles.items()
     }
-    site = Site(mission, data, load_world(root / "worlds", data.world), root / "worlds" / data.world, members)
+    site = Scenario(mission, data, load_world(root / "worlds", data.world), root / "worlds" / data.world, members)
     check_starts(site)
     return site

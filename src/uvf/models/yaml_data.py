@@ -12,6 +12,8 @@ from typing import Annotated, Any, Literal, NamedTuple, TypeVar, Union, get_args
 import msgspec
 import yaml
 
+from uvf.models.renamed import RENAMED
+
 T = TypeVar("T")
 Key = str | int
 VALUES = 100_000
@@ -30,14 +32,14 @@ class BadInput(Exception):
         super().__init__(" ".join(text.splitlines()))
 
 
-class Place(NamedTuple):
+class FileLocation(NamedTuple):
     """A spot in a file of data. As text: ``file:line: vehicles: burger: job: mission[4]``."""
 
     file: str
     keys: tuple[Key, ...] = ()
 
-    def at(self, *keys: Key) -> "Place":
-        return Place(self.file, (*self.keys, *keys))
+    def at(self, *keys: Key) -> "FileLocation":
+        return FileLocation(self.file, (*self.keys, *keys))
 
     def __str__(self) -> str:
         line = _line(self.file, self.keys)
@@ -88,11 +90,11 @@ def _refused(why: str, node: Any) -> yaml.MarkedYAMLError:
 _Loader.add_implicit_resolver("tag:yaml.org,2002:float", re.compile(r"[-+]?(\d+(\.\d*)?|\.\d+)[eE][-+]?\d+\Z"), list("-+0123456789."))
 
 
-def load_yaml(path: Path, type_: type[T], fill: Callable[[Any, Place], Any] | None = None) -> T:
+def load_yaml(path: Path, type_: type[T], fill: Callable[[Any, FileLocation], Any] | None = None) -> T:
     """Reads a YAML file into a msgspec Struct; ``fill`` puts in beforehand what the file only refers to. Raises BadInput."""
     data = read_yaml(path)
     try:
-        return convert(fill(data, Place(str(path))) if fill else data, type_, str(path))
+        return convert(fill(data, FileLocation(str(path))) if fill else data, type_, str(path))
     except RecursionError as error:
         raise BadInput(f"{path}: nested too deeply") from error
 
@@ -120,13 +122,15 @@ def read_yaml(path: Path) -> Any:
 
 def convert(data: Any, type_: type[T], file: str, keys: tuple[Key, ...] = ()) -> T:
     """Plain data, which came from ``keys`` of ``file``, into ``type_``. Raises BadInput."""
-    _check(data, type_, Place(file, keys))
+    _check(data, type_, FileLocation(file, keys))
     return msgspec.convert(data, type_)
 
 
 def nearest(name: str, known: Iterable[str]) -> str:
     """``did you mean 'x'?`` or the list of what there is."""
     choices = sorted(known)
+    if RENAMED.get(name) in choices:
+        return f"it is called '{RENAMED[name]}' now"
     close = difflib.get_close_matches(name, choices, n=1, cutoff=0.5)
     return f"did you mean '{_short(close[0])}'?" if close else f"there are: {listed(choices) or 'none'}"
 
@@ -142,7 +146,7 @@ def _short(name: str) -> str:
     return name if len(name) <= LONGEST_NAME else f"{name[: LONGEST_NAME - 1]}…"
 
 
-def _check(data: Any, hint: Any, place: Place) -> None:
+def _check(data: Any, hint: Any, place: FileLocation) -> None:
     """Inner parts first, so that what is refused is named where it stands; no number is not finite."""
     for key, value, inner in _parts(data, hint, place):
         _check(value, inner, place.at(key))
@@ -156,7 +160,7 @@ def _check(data: Any, hint: Any, place: Place) -> None:
         raise BadInput(f"{place}: {str(error).partition(' - at `$')[0]}") from error
 
 
-def _parts(data: Any, hint: Any, place: Place) -> Iterator[tuple[Any, Any, Any]]:
+def _parts(data: Any, hint: Any, place: FileLocation) -> Iterator[tuple[Any, Any, Any]]:
     """(key, value, type) of what ``data`` consists of, as far as it has the shape of its type."""
     origin = get_origin(hint)
     if origin is Annotated:

@@ -22,12 +22,12 @@ Frame = tuple[float, tuple[float, float]]
 
 
 @dataclass(frozen=True)
-class Body:
+class RobotFootprint:
     """How much room a vehicle needs and likes."""
 
     radius: float  # m, to the nearest obstacle: nearer is impassable
-    comfort: float  # m, nearer costs more
-    dislike: float  # factor on the cost of a way right at ``radius``, above 1
+    inflation_radius: float  # m, nearer costs more
+    cost_scaling_factor: float  # factor on the cost of a way right at ``radius``, above 1
 
 
 @dataclass(frozen=True)
@@ -60,14 +60,14 @@ class Costmap:
         return out
 
 
-def costmap(cells: NDArray[np.int8], frame: Frame, body: Body, unknown_cost: float = IMPASSABLE) -> Costmap:
+def costmap(cells: NDArray[np.int8], frame: Frame, body: RobotFootprint, unknown_cost: float = IMPASSABLE) -> Costmap:
     """cells: (rows, columns) -1 unknown, 0..100 per cent; unknown_cost: factor on the cost of unknown ground."""
     resolution, origin = frame
     occupied, unknown = cells >= OCCUPIED, cells < 0
     free = ~unknown & (cells <= FREE)
     clearance = (distance_field(occupied) - 0.5) * resolution
-    nearness = np.clip((body.comfort - clearance) / max(body.comfort - body.radius, resolution), 0.0, 1.0)
-    cost = 1.0 + (body.dislike - 1.0) * nearness**2
+    nearness = np.clip((body.inflation_radius - clearance) / max(body.inflation_radius - body.radius, resolution), 0.0, 1.0)
+    cost = 1.0 + (body.cost_scaling_factor - 1.0) * nearness**2
     cost[unknown] *= unknown_cost
     cost[(clearance < body.radius) | ~(free | unknown)] = IMPASSABLE
     cost[cost < 0.0] = IMPASSABLE

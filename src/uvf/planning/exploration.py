@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 
 from uvf.maths.grids import distance_field
 from uvf.planning.costmap import Costmap
-from uvf.planning.frontiers import Taste, frontier_mask, frontiers
-from uvf.planning.search import Ways
+from uvf.planning.frontiers import FrontierWeights, frontier_mask, frontiers
+from uvf.planning.search import CostToGo
 
 Mask = NDArray[np.bool_]
 Point = tuple[float, float]
@@ -30,13 +30,13 @@ class Shunned:
 class Explorer:
     """Chooses goals in the map frame; keeps one as long as its frontier is there."""
 
-    taste: Taste
+    taste: FrontierWeights
     goal: Point | None = None
     explored: float = 0.0
     """Estimate of the known part of the floor that can be reached, 0..1."""
     _shunned: list[Shunned] = field(default_factory=list)
 
-    def choose(self, t: float, costs: Costmap, ways: Ways) -> Point | None:
+    def choose(self, t: float, costs: Costmap, ways: CostToGo) -> Point | None:
         """Where to go next [m, map], None when there is nothing left to see."""
         mask = self._shunned_mask(t, costs)
         found = frontiers(costs, ways.cost, mask, self.taste)
@@ -55,7 +55,7 @@ class Explorer:
         near = disc(costs, self.goal, STILL_THERE) & ~self._shunned_mask(t, costs)
         return int((frontier_mask(costs) & near).sum()) >= self.taste.least_size
 
-    def shun_goal(self, t: float) -> None:
+    def blacklist_goal(self, t: float) -> None:
         """The goal has been reached, or cannot be: what frontier is left there does not count for a while."""
         if self.goal is None:
             return
@@ -75,7 +75,7 @@ class Explorer:
                 mask |= disc(costs, place.point, SHUN_RADIUS + self.taste.view)
         return mask
 
-    def _estimate(self, costs: Costmap, ways: Ways, frontier_cells: int) -> float:
+    def _estimate(self, costs: Costmap, ways: CostToGo, frontier_cells: int) -> float:
         """Behind each frontier cell about a metre of floor is taken to be hidden."""
         known = int(np.isfinite(ways.cost).sum())
         return known / max(known + frontier_cells / costs.resolution, 1)
@@ -88,7 +88,7 @@ class Patrol:
     goal: Point | None = None
     _visited: list[Point] = field(default_factory=list)
 
-    def choose(self, here: Point, costs: Costmap, ways: Ways) -> Point | None:
+    def choose(self, here: Point, costs: Costmap, ways: CostToGo) -> Point | None:
         """Where to go [m, map]; keeps a goal until ``reached`` or until no way leads there."""
         if self.goal is not None and np.isfinite(ways.cost[costs.cell(*self.goal)]):
             return self.goal

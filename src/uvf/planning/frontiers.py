@@ -27,7 +27,7 @@ class Frontier:
 
 
 @dataclass(frozen=True)
-class Taste:
+class FrontierWeights:
     """What makes a frontier worth going to."""
 
     least_size: int  # cells; smaller ones are cracks
@@ -42,7 +42,7 @@ def frontier_mask(costs: Costmap) -> Mask:
     return mask
 
 
-def frontiers(costs: Costmap, way: Floats, shunned: Mask, taste: Taste) -> list[Frontier]:
+def frontiers(costs: Costmap, way: Floats, shunned: Mask, taste: FrontierWeights) -> list[Frontier]:
     """Those that can be seen from somewhere the ways lead to, best first. shunned: cells that do not count."""
     labels, _ = ndimage.label(frontier_mask(costs) & ~shunned, structure=ALL_ROUND)
     reachable = np.isfinite(way)

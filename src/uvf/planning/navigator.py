@@ -6,8 +6,8 @@ from math import isfinite
 import numpy as np
 from numpy.typing import NDArray
 
-from uvf.planning.costmap import Body, Costmap, Frame, costmap, with_way_out
-from uvf.planning.search import Cell, Ways, astar
+from uvf.planning.costmap import Costmap, Frame, RobotFootprint, costmap, with_way_out
+from uvf.planning.search import Cell, CostToGo, astar
 from uvf.planning.smoothing import SPACING, length, smoothed
 
 Floats = NDArray[np.float64]
@@ -27,26 +27,26 @@ NO_PLACE = "the goal is not a place: its coordinates must be finite"
 
 
 @dataclass(frozen=True)
-class Plan:
+class PlannedPath:
     """A path (n, 2) [m, map], or none and why."""
 
     path: Floats | None
     reason: str = ""
 
 
-class Navigator:
+class GlobalPlanner:
     """Plans on the newest map; all points in m, map frame."""
 
-    def __init__(self, body: Body) -> None:
+    def __init__(self, body: RobotFootprint) -> None:
         self._body = body
         self._cells: NDArray[np.int8] | None = None
-        self._bold: Costmap | None = None
-        self._ways: tuple[Cell, Ways] | None = None
+        self._unknown_costmap: Costmap | None = None
+        self._ways: tuple[Cell, CostToGo] | None = None
         self.costs: Costmap | None = None
         self.missing = "there is no map yet"
         """Why there are no costs, and no ways, while there are none."""
 
-    def fit(self, body: Body) -> bool:
+    def fit(self, body: RobotFootprint) -> bool:
         """Plans for another body from now on; whether that changes anything."""
         if body == self._body:
             return False
@@ -57,7 +57,7 @@ class Navigator:
 
     def see(self, cells: NDArray[np.int8], frame: Frame) -> None:
         """Takes a new map; costs are worked out once for it. On one of too many cells nobody drives."""
-        self._bold = None
+        self._unknown_costmap = None
         self._ways = None
         if cells.size > MOST_CELLS:
             self._cells, self.costs = None, None
@@ -66,13 +66,13 @@ class Navigator:
         self._cells = cells
         self.costs = costmap(cells, frame, self._body)
 
-    def ways(self, start: Point) -> Ways | None:
+    def ways(self, start: Point) -> CostToGo | None:
         """The cheapest ways from ``start`` to everywhere known, worked out once for each place; None without a map or outside it."""
         if self.costs is None or not self.costs.holds(self.costs.cell(*start)):
             return None
         cell = self.costs.cell(*start)
         if self._ways is None or self._ways[0] != cell:
-            self._ways = cell, Ways(with_way_out(self.costs, cell, WAY_OUT).cost, cell)
+            self._ways = cell, CostToGo(with_way_out(self.costs, cell, WAY_OUT).cost, cell)
         return self._ways[1]
 
     def refusal(self, start: Point, goal: Point) -> str:
@@ -98,37 +98,37 @@ class Navigator:
             return ""
         return _too_far(costs.points(ways.to(cell)))
 
-    def plan(self, start: Point, goal: Point, bold: bool = False) -> Plan:
+    def plan(self, start: Point, goal: Point, allow_unknown: bool = False) -> PlannedPath:
         """bold: unknown ground may be crossed, and the goal may lie beyond the map: its nearest cell is taken."""
-        known = self._costs(bold)
+        known = self._costs(allow_unknown)
         if known is None:
-            return Plan(None, self.missing)
+            return PlannedPath(None, self.missing)
         if not _is_place(goal):
-            return Plan(None, NO_PLACE)
+            return PlannedPath(None, NO_PLACE)
         here = known.cell(*start)
         if not known.holds(here):
-            return Plan(None, "the vehicle is outside its map")
+            return PlannedPath(None, "the vehicle is outside its map")
         there = known.cell(*goal)
-        if not known.holds(there) and not bold:
-            return Plan(None, "the goal lies outside the map")
+        if not known.holds(there) and not allow_unknown:
+            return PlannedPath(None, "the goal lies outside the map")
         rows, columns = known.cost.shape
         there = (min(max(there[0], 0), rows - 1), min(max(there[1], 0), columns - 1))
         found = astar(with_way_out(known, here, WAY_OUT).cost, here, there)
         if found is None:
-            return Plan(None, "no way leads to the goal")
+            return PlannedPath(None, "no way leads to the goal")
         points = known.points(found[0])
         points[0] = start
         if known.holds(known.cell(*goal)):
             points = np.vstack((points[:-1], goal)) if len(points) > 1 else np.array((start, goal))
         too_far = _too_far(points)
-        return Plan(None, too_far) if too_far else Plan(smoothed(points, known, self._body.radius))
+        return PlannedPath(None, too_far) if too_far else PlannedPath(smoothed(points, known, self._body.radius))
 
-    def _costs(self, bold: bool) -> Costmap | None:
-        if not bold or self.costs is None or self._cells is None:
+    def _costs(self, allow_unknown: bool) -> Costmap | None:
+        if not allow_unknown or self.costs is None or self._cells is None:
             return self.costs
-        if self._bold is None:
-            self._bold = costmap(self._cells, (self.costs.resolution, self.costs.origin), self._body, UNKNOWN_COST)
-        return self._bold
+        if self._unknown_costmap is None:
+            self._unknown_costmap = costmap(self._cells, (self.costs.resolution, self.costs.origin), self._body, UNKNOWN_COST)
+        return self._unknown_costmap
 
 
 def _too_far(points: Floats) -> str:

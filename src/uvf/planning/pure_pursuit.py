@@ -20,7 +20,7 @@ TURN_GAIN = 3.0  # 1/s
 
 
 @dataclass(frozen=True)
-class Pace:
+class SpeedLimits:
     """How fast the vehicle is driven."""
 
     linear: float  # m/s
@@ -29,10 +29,10 @@ class Pace:
     tolerance: float  # m, distance at which the end is reached
 
 
-class Tracker:
+class PathTracker:
     """Pure pursuit (Coulter 1992) with the speed regulated by curvature and the way left (Macenski 2023)."""
 
-    def __init__(self, pace: Pace) -> None:
+    def __init__(self, pace: SpeedLimits) -> None:
         self.pace = pace
         self._turning = False
         self._speed = 0.0

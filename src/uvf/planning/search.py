@@ -124,7 +124,7 @@ def _trace(before: Cells, columns: int, goal: tuple[int, int]) -> Cells:
     return path
 
 
-class Ways:
+class CostToGo:
     """The cheapest ways from one cell to all others of a cost grid (negative = impassable)."""
 
     def __init__(self, cost: Floats, start: Cell) -> None:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 
 
-class Placed(Protocol):
+class PosedBody(Protocol):
     """A body's pose in the world: position (3,) m, world_from_body wxyz."""
 
     @property
@@ -26,7 +26,7 @@ class BodyTrack:
         self._span = span
         self._poses: deque[tuple[float, Floats, Floats]] = deque()
 
-    def add(self, t: float, body: Placed) -> None:
+    def add(self, t: float, body: PosedBody) -> None:
         """Each step, by rising ``t`` [s]."""
         self._poses.append((t, body.position, body.world_from_body))
         while len(self._poses) > 1 and self._poses[1][0] <= t - self._span:

@@ -8,7 +8,7 @@ from uvf.maths.geodesy import LocalTangent
 from uvf.models.vehicle.sensors import GnssSensor, ImuSensor, Lidar, Sampled
 from uvf.sensors.errors import Errors
 from uvf.sensors.instruments import InertialUnit, Receiver
-from uvf.sensors.sampling import Dropout, Line
+from uvf.sensors.sampling import DelayLine, Dropout
 from uvf.sensors.sweeping import Sweeping
 
 
@@ -56,6 +56,6 @@ def sweeping_of(lidar: Lidar) -> Sweeping:
     return Sweeping(lidar.sweep_time, lidar.clockwise)
 
 
-def line_of(sensor: Sampled, rng: np.random.Generator) -> Line[Any]:
+def line_of(sensor: Sampled, rng: np.random.Generator) -> DelayLine[Any]:
     """The way of a sensor's readings to their readers."""
-    return Line(sensor.hz, sensor.latency, Dropout(sensor.dropout, sensor.burst, rng) if sensor.dropout else None)
+    return DelayLine(sensor.hz, sensor.latency, Dropout(sensor.dropout, sensor.burst, rng) if sensor.dropout else None)

@@ -39,7 +39,7 @@ class InertialUnit:
         return ImuReading(t, self._gyro.read(angular_velocity, dt), self._accel.read(specific_force, dt), self._field)
 
 
-class Fix(NamedTuple):
+class ReceiverFix(NamedTuple):
     """Valid for ``t`` [s]: rad, rad, m AMSL; (3,) m/s ENU."""
 
     t: float
@@ -58,8 +58,8 @@ class Receiver:
         self._tangent = tangent
         self._t = 0.0
 
-    def read(self, t: float, position: Floats, velocity: Floats) -> Fix:
+    def read(self, t: float, position: Floats, velocity: Floats) -> ReceiverFix:
         """From the truth, (3,) m and m/s, ENU."""
         dt, self._t = t - self._t, t
         measured = self._position.read(position, dt)
-        return Fix(t, *self._tangent.geodetic(measured), self._velocity.read(velocity, dt))
+        return ReceiverFix(t, *self._tangent.geodetic(measured), self._velocity.read(velocity, dt))

@@ -5,10 +5,10 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from uvf.maths.raycast import Body, Rays, Scene, cast
+from uvf.maths.raycast import MovingBody, Rays, Scene, cast
 from uvf.maths.rotations import from_euler, matrices, matrix
 from uvf.models.vehicle.sensors import Lidar, Mount, RangeFinder, Sonar
-from uvf.sensors.body_track import BodyTrack, Placed
+from uvf.sensors.body_track import BodyTrack, PosedBody
 from uvf.sensors.errors import Channel, Errors
 
 Floats = NDArray[np.float64]
@@ -16,7 +16,7 @@ Floats = NDArray[np.float64]
 SPACING = np.radians(1.5)  # at most, between a sonar's rays: a leg of 3 cm is met within 1.1 m
 
 
-class Fan:
+class RayFan:
     """Rays at angles about a mount's z axis, from its x axis, counter-clockwise. angles: (n,) rad."""
 
     def __init__(self, mount: Mount, angles: Floats) -> None:
@@ -24,13 +24,13 @@ class Fan:
         self._directions = level @ matrix(from_euler(*mount.rpy)).T
         self._origin = np.array(mount.xyz)
 
-    def cast(self, scene: Scene, others: Sequence[Body], body: Placed, reach: float) -> Floats:
+    def cast(self, scene: Scene, others: Sequence[MovingBody], body: PosedBody, reach: float) -> Floats:
         """(n,) m to what each ray meets first, inf where that is nothing within ``reach`` [m]; the own body is not met."""
         world_from_body = matrix(body.world_from_body)
         rays = Rays(body.position + world_from_body @ self._origin, self._directions @ world_from_body.T)
         return cast(scene, others, rays, reach)
 
-    def cast_on_the_move(self, scene: Scene, others: Sequence[Body], poses: tuple[Floats, Floats], reach: float) -> Floats:
+    def cast_on_the_move(self, scene: Scene, others: Sequence[MovingBody], poses: tuple[Floats, Floats], reach: float) -> Floats:
         """The same with a pose of the body for each ray: positions (n, 3), attitudes (n, 4)."""
         positions, attitudes = poses
         world_from_body = matrices(attitudes)
@@ -46,7 +46,7 @@ class LidarModel:
         self._scene = scene
         self._rng = rng
         self._bias = float(rng.spawn(1)[0].normal(0.0, lidar.bias))
-        self._fan = Fan(lidar.mount, lidar.angle_min + lidar.angle_increment * np.arange(lidar.beams, dtype=np.float64))
+        self._fan = RayFan(lidar.mount, lidar.angle_min + lidar.angle_increment * np.arange(lidar.beams, dtype=np.float64))
         self._reach = lidar.range_max + abs(self._bias) + 10.0 * lidar.noise  # what noise may bring within range is cast too
         moments = np.linspace(-lidar.sweep_time, 0.0, lidar.beams)
         self._moments = moments[::-1] if lidar.clockwise else moments
@@ -54,11 +54,11 @@ class LidarModel:
         self.track = BodyTrack(lidar.sweep_time)
         """Of the body; who calls ``sweep`` keeps it."""
 
-    def scan(self, body: Placed, others: Sequence[Body]) -> Floats:
+    def scan(self, body: PosedBody, others: Sequence[MovingBody]) -> Floats:
         """(beams,) ranges [m], counter-clockwise from ``angle_min``, 0 = no return. others: what moves about the body."""
         return self._measured(self._fan.cast(self._scene, others, body, self._reach))
 
-    def sweep(self, t: float, others: Sequence[Body]) -> Floats:
+    def sweep(self, t: float, others: Sequence[MovingBody]) -> Floats:
         """The same of a sweep that ends at ``t`` [s], each beam from where the body was. others: where they are at its end."""
         poses = self.track.at(t + self._moments)
         return self._measured(self._fan.cast_on_the_move(self._scene, others, poses, self._reach))
@@ -76,10 +76,10 @@ class RangeModel:
         self._sensor = sensor
         self._scene = scene
         self._errors = Channel(Errors(noise=sensor.noise), 1, rng)
-        self._fan = Fan(sensor.mount, _angles(sensor))
+        self._fan = RayFan(sensor.mount, _angles(sensor))
         self._reach = sensor.range_max + 10.0 * sensor.noise
 
-    def range(self, body: Placed, others: Sequence[Body]) -> float:
+    def range(self, body: PosedBody, others: Sequence[MovingBody]) -> float:
         """m, 0 = no return. body: the vehicle's own; others: what moves about it."""
         sensor = self._sensor
         true = self._fan.cast(self._scene, others, body, self._reach).min()

@@ -53,7 +53,7 @@ class Dropout:
         return True
 
 
-class Line(Generic[T]):
+class DelayLine(Generic[T]):
     """A sensor's way to its readers: takes readings when they are due, loses some, hands over the rest late and in order."""
 
     def __init__(self, hz: float, latency: float = 0.0, dropout: Dropout | None = None) -> None:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uvf.maths.bvh import Bvh, build
-from uvf.maths.raycast import Body, Scene
+from uvf.maths.raycast import MovingBody, Scene
 from uvf.maths.rotations import IDENTITY
 from uvf.maths.se3 import Transform, compose
 from uvf.maths.solids import joined, mesh
@@ -18,7 +18,7 @@ from uvf.models.shapes.mesh_parts import joined as joined_parts
 from uvf.models.shapes.scene import primitives, scene
 from uvf.models.shapes.solid import Solid, pose_at
 from uvf.models.urdf.robot import UrdfModel
-from uvf.sensors.body_track import Placed
+from uvf.sensors.body_track import PosedBody
 
 Floats = NDArray[np.float64]
 
@@ -40,9 +40,9 @@ class Surroundings:
         self._objects: dict[str, Bvh] = {}
         self._vehicles = dict(vehicles)
 
-    def moving(self, t: float) -> dict[str, Body]:
+    def moving(self, t: float) -> dict[str, MovingBody]:
         """What moves by script, as it stands at simulation time ``t`` [s]."""
-        return {solid.name: Body(tree, *pose_at(solid, t)) for solid, tree in self._scripted}
+        return {solid.name: MovingBody(tree, *pose_at(solid, t)) for solid, tree in self._scripted}
 
     def add_vehicle(self, name: str, tree: Bvh) -> None:
         self._vehicles[name] = tree
@@ -54,14 +54,14 @@ class Surroundings:
         self._vehicles.pop(name, None)
         self._objects.pop(name, None)
 
-    def objects(self, poses: Mapping[str, tuple[Floats, Floats]]) -> dict[str, Body]:
+    def objects(self, poses: Mapping[str, tuple[Floats, Floats]]) -> dict[str, MovingBody]:
         """What has been put in, at these poses."""
-        return {name: Body(self._objects[name], *pose) for name, pose in poses.items()}
+        return {name: MovingBody(self._objects[name], *pose) for name, pose in poses.items()}
 
-    def bodies(self, states: Mapping[str, Placed]) -> dict[str, Body]:
+    def bodies(self, states: Mapping[str, PosedBody]) -> dict[str, MovingBody]:
         """The vehicles of which it is known where they are."""
         known = ((name, tree, states[name]) for name, tree in self._vehicles.items() if name in states)
-        return {name: Body(tree, state.position, state.world_from_body) for name, tree, state in known}
+        return {name: MovingBody(tree, state.position, state.world_from_body) for name, tree, state in known}
 
 
 def own_tree(solid: Solid) -> Bvh:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 SPACING = 0.02  # s, at most, within which the beams of a part are measured
 
 
-class Part(NamedTuple):
+class SweepSegment(NamedTuple):
     """Neighbouring beams of a message, ``ranges[beams]``, and the middle of the time in which they were measured [s]."""
 
     at: float
@@ -34,7 +34,7 @@ class Sweeping(NamedTuple):
         """s, when the last beam of the scan stamped ``stamp`` [s] was measured."""
         return stamp + self.duration
 
-    def parts(self, beams: int, stamp: float) -> list[Part]:
+    def parts(self, beams: int, stamp: float) -> list[SweepSegment]:
         """All ``beams`` of the scan stamped ``stamp`` [s] in the order of the message; a single part where all are taken at once."""
         n, first = max(beams, 1), stamp
         count = min(n, max(ceil(self.duration / SPACING - 1e-9), 1))
@@ -42,7 +42,7 @@ class Sweeping(NamedTuple):
         found = []
         for begin, end in pairwise(edges):
             share = (begin + end - 1) / 2 / max(n - 1, 1)
-            found.append(Part(first + self.duration * (1.0 - share if self.clockwise else share), slice(begin, end)))
+            found.append(SweepSegment(first + self.duration * (1.0 - share if self.clockwise else share), slice(begin, end)))
         return found
 
 

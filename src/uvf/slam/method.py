@@ -14,7 +14,7 @@ Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Estimate:
+class SlamEstimate:
     """Where the vehicle is by what is known now.
 
     covariance: (3, 3) of (x, y, yaw) in the map frame [m, rad]; quality: 0 (the sweep fits nothing) to 1 (all of it fits).
@@ -39,7 +39,7 @@ class SlamMethod(Protocol):
     Nothing in a reading may end it: what cannot be used is left out, and the odometry carries on.
     """
 
-    def add(self, reading: Reading) -> Estimate:
+    def add(self, reading: Reading) -> SlamEstimate:
         """Takes in one reading and says where the vehicle is."""
 
     def trajectory(self) -> Floats:

@@ -9,7 +9,7 @@ from uvf.maths.rotations import wrap
 from uvf.maths.se2 import IDENTITY, Pose2, compose, inverse
 from uvf.models.params import Params
 from uvf.slam.incremental import IncrementalMethod
-from uvf.slam.method import Estimate, Keyframe
+from uvf.slam.method import Keyframe, SlamEstimate
 from uvf.slam.reading import Reading
 
 Floats = NDArray[np.float64]
@@ -32,7 +32,7 @@ class OdometryMethod(IncrementalMethod):
         self._base_from_odom: Pose2 = IDENTITY
         self._driven = self._turned = 0.0
 
-    def add(self, reading: Reading) -> Estimate:
+    def add(self, reading: Reading) -> SlamEstimate:
         if not self._poses:
             self._base_from_odom = inverse(reading.odom_from_base)
         pose = compose(self._base_from_odom, reading.odom_from_base)
@@ -43,7 +43,7 @@ class OdometryMethod(IncrementalMethod):
         self._poses.append(pose)
         if self._has_moved(SPACING, TURN):
             self._keyframes.append(Keyframe(pose, reading))
-        return Estimate(pose, self._covariance(), 0.0)
+        return SlamEstimate(pose, self._covariance(), 0.0)
 
     def _covariance(self) -> Floats:
         along, heading = DRIFT[0] ** 2 * self._driven, DRIFT[1] ** 2 * self._driven + DRIFT[2] ** 2 * self._turned

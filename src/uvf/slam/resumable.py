@@ -3,7 +3,7 @@
 from typing import Protocol, runtime_checkable
 
 from uvf.maths.se2 import Pose2
-from uvf.slam.maps.session import Session
+from uvf.slam.maps.session import MappingSession
 from uvf.slam.method import SlamMethod
 
 
@@ -11,10 +11,10 @@ from uvf.slam.method import SlamMethod
 class Resumable(SlamMethod, Protocol):
     """A method whose work another instance can go on with."""
 
-    def session(self) -> Session:
+    def session(self) -> MappingSession:
         """All of it."""
 
-    def resume(self, session: Session, map_from_base: Pose2) -> None:
+    def resume(self, session: MappingSession, map_from_base: Pose2) -> None:
         """Before the first reading; map_from_base: where the vehicle is now."""
 
 

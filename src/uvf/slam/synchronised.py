@@ -10,7 +10,7 @@ from uvf.estimation.odometry.time_skew import Skew, TimeSkew
 from uvf.maths.rotations import wrap
 from uvf.maths.se2 import Pose2
 from uvf.slam.logs.laser_log import OdometryTrack
-from uvf.slam.method import Estimate, Keyframe, SlamMethod
+from uvf.slam.method import Keyframe, SlamEstimate, SlamMethod
 from uvf.slam.reading import Reading
 
 Floats = NDArray[np.float64]
@@ -50,7 +50,7 @@ class Synchronised:
     def skew(self) -> Skew:
         return self._skew.estimate()
 
-    def add(self, reading: Reading) -> Estimate:
+    def add(self, reading: Reading) -> SlamEstimate:
         end = int(np.searchsorted(self._t, reading.t, side="right"))
         for t, (_, _, heading) in zip(self._t[self._fed : end].tolist(), self._poses[self._fed : end].tolist(), strict=True):
             self._skew.add_odometry(t, heading)
@@ -79,7 +79,7 @@ class Synchronised:
         x, y, yaw = (float(np.interp(taken, self._t, column)) for column in self._poses.T)
         return Reading(reading.t, reading.ranges, reading.beams, Pose2(x, y, yaw))
 
-    def _learn(self, reading: Reading, estimate: Estimate) -> None:
+    def _learn(self, reading: Reading, estimate: SlamEstimate) -> None:
         """From the turn since the last sweep, if both have fitted."""
         last, self._last = self._last, None
         if estimate.quality < FITS:

@@ -6,14 +6,14 @@ import pytest
 from uvf.estimation.ekf import observations
 from uvf.estimation.ekf.alignment import attitude
 from uvf.estimation.ekf.inertial import Mechanisation, transition
-from uvf.estimation.ekf.states import SIZE, TILT, State, turned
+from uvf.estimation.ekf.states import SIZE, TILT, FilterState, turned
 
 STEP = 1e-5
 
 
 def a_state(seed=3):
     rng = np.random.default_rng(seed)
-    state = State(attitude(0.5, -0.2, 2.0))
+    state = FilterState(attitude(0.5, -0.2, 2.0))
     state.x[3:] = rng.standard_normal(SIZE - 3)
     state.x[3:6] = 20.0, -12.0, 1.5
     return state

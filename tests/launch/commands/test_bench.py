@@ -6,7 +6,7 @@ import types
 import pytest
 
 from launch.commands import bench, bench_page
-from launch.commands.bench_page import Goal, facts_now, replace_section, verdicts
+from launch.commands.bench_page import BenchmarkGoal, facts_now, replace_section, verdicts
 from uvf.models.scenario import ROOT
 from uvf.models.yaml_data import BadInput
 
@@ -59,7 +59,7 @@ def test_a_renewed_section_leaves_the_others_as_they_were():
 
 
 def test_goals_are_met_or_not_met(monkeypatch):
-    goal = Goal(["x", "y", "gone"], "m", "docs/x.md", at_most=2.0, at_least=0.5)
+    goal = BenchmarkGoal(["x", "y", "gone"], "m", "docs/x.md", at_most=2.0, at_least=0.5)
     monkeypatch.setattr(bench_page, "_stated", lambda group: bench_page.Stated([goal]))
     met, missed = verdicts("any", {"x": {"m": 2.0}, "y": {"m": 0.4}})
     assert met == "Goal of docs/x.md: x, m at least 0.5 and at most 2: 2, met"

@@ -6,7 +6,7 @@ from launch.commands.report import describe_log, replay_into, run_and_report
 from launch.recorder import attachments
 from launch.run import run_lockstep
 from services.slam.odometry.service import OdometryService
-from uvf.models.scenario import ROOT, load_site
+from uvf.models.scenario import ROOT, load_scenario
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.log.reading import log_attachments
 from uvf.runtime.log.recording import Recorder
@@ -15,7 +15,7 @@ from uvf.runtime.log.recording import Recorder
 @pytest.fixture(scope="module")
 def log(tmp_path_factory):
     path = tmp_path_factory.mktemp("run") / "log-000.mcap"
-    run_lockstep(load_site(ROOT / "missions" / "demo.yaml"), 1.0, path)
+    run_lockstep(load_scenario(ROOT / "missions" / "demo.yaml"), 1.0, path)
     return path
 
 
@@ -54,7 +54,7 @@ def test_a_log_without_its_mission_names_the_flag(tmp_path):
 
 
 def test_a_run_attaches_what_was_run(log):
-    assert log_attachments(log) == attachments(load_site(ROOT / "missions" / "demo.yaml"))
+    assert log_attachments(log) == attachments(load_scenario(ROOT / "missions" / "demo.yaml"))
 
 
 def test_a_log_is_described_by_topic(log, capsys):
@@ -73,7 +73,7 @@ def test_an_empty_log_is_described_too(tmp_path, capsys):
 
 
 def test_a_mission_in_which_an_instance_has_failed_is_not_passed(tmp_path, capsys, monkeypatch):
-    def fails(self, t, **inputs):
+    def fails(self, t, given):
         raise ZeroDivisionError("as told")
 
     monkeypatch.setattr(OdometryService, "step", fails)

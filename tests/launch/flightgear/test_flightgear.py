@@ -13,11 +13,11 @@ from launch.flightgear.flightgear import feed_of, flightgear, show
 from schemas import topics
 from schemas.messages import Imu, JointState, JointStates, NavState
 from uvf.maths.rotations import from_euler
-from uvf.models.scenario import ROOT, load_site
+from uvf.models.scenario import ROOT, load_scenario
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.messages.convert import quaternion, vector
 
-SITE = load_site(ROOT / "missions" / "demo.yaml")
+SITE = load_scenario(ROOT / "missions" / "demo.yaml")
 LIMITS = SITE.members["milvus"].file.air.controls
 FT, KNOT = 0.3048, 0.514444
 

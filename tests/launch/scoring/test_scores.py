@@ -7,11 +7,11 @@ from launch.scoring.scores import MEASURES, Scorer, Verdict
 from schemas import topics
 from schemas.messages import Contact, Mission, MissionItem, MissionProgress, NavState, PoseInFrame, Vector3
 from uvf.models.mission.file import Criterion
-from uvf.models.scenario import ROOT, load_site
+from uvf.models.scenario import ROOT, load_scenario
 from uvf.runtime.bus.interface import Sample
 from uvf.runtime.messages.convert import occupancy_grid, planar_pose, stamp
 
-SITE = load_site(ROOT / "missions" / "demo.yaml")
+SITE = load_scenario(ROOT / "missions" / "demo.yaml")
 SQUARE = [(0, 0), (100, 0), (100, 100), (0, 100)]
 
 

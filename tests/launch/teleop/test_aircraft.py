@@ -6,18 +6,18 @@ from itertools import pairwise
 
 import pytest
 
-from launch.teleop.aircraft import AirLink, Cockpit, Flight, cockpit
+from launch.teleop.aircraft import AirLink, Cockpit, FlownState, cockpit
 from launch.teleop.command import post_for, wanted_aircraft
 from launch.teleop.loop import operate
 from schemas import topics
 from schemas.messages import NavState, SurfaceCommand, VehicleStatus
 from tests.launch.teleop.test_command import Clock, Console
-from tests.launch.teleop.test_command import Stick as Nothing
-from uvf.control.teleop_flight import PARKED, Limits, Setting, Stick
-from uvf.models.scenario import ROOT, load_site
+from tests.launch.teleop.test_command import FlightTeleop as Nothing
+from uvf.control.teleop_flight import PARKED, FlightTeleop, SurfaceLimits, SurfaceSetting
+from uvf.models.scenario import ROOT, load_scenario
 from uvf.models.yaml_data import BadInput
 
-LEVEL = Setting(elevator=-0.1, throttle=0.6)
+LEVEL = SurfaceSetting(elevator=-0.1, throttle=0.6)
 
 
 class Plane:
@@ -41,13 +41,13 @@ class Plane:
 
     def flight(self, patience=0.0):
         surfaces = self.sent[-1][1] if self.by_hand and self.sent else self.held
-        return Flight(self.by_hand, self.landed, surfaces, 24.96, 60.4, (self.roll, -0.05, -math.pi / 2)) if self.heard else None
+        return FlownState(self.by_hand, self.landed, surfaces, 24.96, 60.4, (self.roll, -0.05, -math.pi / 2)) if self.heard else None
 
 
 def fly(script, **how):
     clock = Clock()
     plane, console = Plane(clock, **how), Console(clock, script)
-    operate(Cockpit(Stick(Limits(0.4, 0.5, 0.3, 0.6)), plane), console, Nothing(clock), clock)
+    operate(Cockpit(FlightTeleop(SurfaceLimits(0.4, 0.5, 0.3, 0.6)), plane), console, Nothing(clock), clock)
     return plane, console
 
 
@@ -77,7 +77,7 @@ def test_keys_move_the_surfaces_from_there():
 def test_while_somebody_else_flies_it_goes_along_and_m_takes_over_again():
     clock = Clock()
     plane = Plane(clock)
-    post = Cockpit(Stick(Limits(0.4, 0.5, 0.3, 0.6)), plane)
+    post = Cockpit(FlightTeleop(SurfaceLimits(0.4, 0.5, 0.3, 0.6)), plane)
     post.take_over()
     post.key(0.1, "d")
     plane.by_hand = False  # STOP ALL, or another mode asked for
@@ -94,7 +94,7 @@ def test_left_it_falls_silent_so_that_the_autopilot_takes_over(end):
     script = [(1.0, "d"), (2.0, end)]
     clock = Clock()
     plane = Plane(clock)
-    post = Cockpit(Stick(Limits(0.4, 0.5, 0.3, 0.6)), plane)
+    post = Cockpit(FlightTeleop(SurfaceLimits(0.4, 0.5, 0.3, 0.6)), plane)
     with suppress(KeyboardInterrupt):
         operate(post, Console(clock, script), Nothing(clock), clock)
     assert plane.sent[-1][0] <= 2.0
@@ -117,14 +117,14 @@ def test_from_another_hand_it_is_taken_over_where_that_one_had_it():
     clock = Clock()
     plane = Plane(clock)
     plane.by_hand = True
-    Cockpit(Stick(Limits(0.4, 0.5, 0.3, 0.6)), plane).take_over()
+    Cockpit(FlightTeleop(SurfaceLimits(0.4, 0.5, 0.3, 0.6)), plane).take_over()
     assert plane.sent[-1][1] == LEVEL
 
 
 def test_taken_over_in_a_steep_turn_the_elevator_springs_back_to_where_straight_flight_had_it():
     clock = Clock()
     plane = Plane(clock)
-    post = Cockpit(Stick(Limits(0.4, 0.5, 0.3, 0.6)), plane)
+    post = Cockpit(FlightTeleop(SurfaceLimits(0.4, 0.5, 0.3, 0.6)), plane)
     post.take_over()
     plane.by_hand = False
     post.turn(0.1, Nothing(clock).read())
@@ -160,12 +160,12 @@ def test_all_that_is_known_of_an_aircraft_is_listened_for_at_once():
     link = AirLink(Heard(), "milvus")
     assert link.flight() is None
     flight = link.flight()
-    assert (flight.landed, flight.airspeed, flight.surfaces) == (True, 3.0, Setting(flap=0.1))
+    assert (flight.landed, flight.airspeed, flight.surfaces) == (True, 3.0, SurfaceSetting(flap=0.1))
 
 
 @pytest.fixture(scope="module")
 def site():
-    return load_site(ROOT / "missions" / "demo.yaml")
+    return load_scenario(ROOT / "missions" / "demo.yaml")
 
 
 def test_the_limits_are_those_of_the_vehicles_file(site):

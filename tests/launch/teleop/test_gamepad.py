@@ -5,7 +5,7 @@ import ctypes
 import pytest
 
 from launch.teleop.gamepad import Gamepad, _load
-from uvf.control.teleop_drive import Pad
+from uvf.control.teleop_drive import GamepadState
 
 sdl2 = _load()
 
@@ -27,7 +27,7 @@ def plugged(gamepad):
 
 
 def test_without_one_nothing_is_pressed(gamepad):
-    assert (gamepad.name, gamepad.read()) == ("", Pad())
+    assert (gamepad.name, gamepad.read()) == ("", GamepadState())
 
 
 def test_one_that_is_plugged_in_later_is_found_and_one_that_is_pulled_out_lets_go(gamepad, plugged):
@@ -35,7 +35,7 @@ def test_one_that_is_plugged_in_later_is_found_and_one_that_is_pulled_out_lets_g
     sdl2.SDL_JoystickSetVirtualButton(plugged, sdl2.SDL_CONTROLLER_BUTTON_LEFTSHOULDER, 1)
     assert gamepad.read().dead_man
     sdl2.SDL_JoystickDetachVirtual(0)
-    assert (gamepad.read(), gamepad.name) == (Pad(), "")
+    assert (gamepad.read(), gamepad.name) == (GamepadState(), "")
 
 
 @pytest.mark.parametrize(
@@ -51,7 +51,7 @@ def test_one_that_is_plugged_in_later_is_found_and_one_that_is_pulled_out_lets_g
 )
 def test_the_sticks(gamepad, plugged, axis, value, seen):
     sdl2.SDL_JoystickSetVirtualAxis(plugged, axis, ctypes.c_int16(value))
-    assert gamepad.read() == pytest.approx(Pad()._replace(**seen), abs=1e-3)
+    assert gamepad.read() == pytest.approx(GamepadState()._replace(**seen), abs=1e-3)
 
 
 @pytest.mark.parametrize(
@@ -68,4 +68,4 @@ def test_the_sticks(gamepad, plugged, axis, value, seen):
 )
 def test_the_buttons(gamepad, plugged, button, seen):
     sdl2.SDL_JoystickSetVirtualButton(plugged, getattr(sdl2, f"SDL_CONTROLLER_BUTTON_{button}"), 1)
-    assert gamepad.read() == Pad()._replace(**seen)
+    assert gamepad.read() == GamepadState()._replace(**seen)

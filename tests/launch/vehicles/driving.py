@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from services.sim_ground.world import BulletWorld, Placed
+from services.sim_ground.world import BodyPlacement, BulletWorld
 from uvf.maths.kinematics import DifferentialDrive, Twist
 from uvf.maths.rotations import to_euler
 from uvf.models.urdf.model import engine_urdf
@@ -25,7 +25,7 @@ def drive(folder, twist, duration):
     """From a stand, at the accelerations the file allows, and to a stand again."""
     ground = load_vehicle(folder.parent, folder.name).ground
     kinematics = DifferentialDrive(ground.wheel_radius, ground.track)
-    world = BulletWorld([], {"it": Placed(ground, engine_urdf(folder / ground.urdf), (0.0, 0.0, 0.0))})
+    world = BulletWorld([], {"it": BodyPlacement(ground, engine_urdf(folder / ground.urdf), (0.0, 0.0, 0.0))})
     most = np.array((ground.max_linear_acceleration, ground.max_angular_acceleration)) * STEP
     command, expected, turned, last, tilt = np.zeros(2), np.zeros(3), 0.0, 0.0, 0.0
     try:

@@ -8,9 +8,9 @@ from typer.testing import CliRunner
 from launch.commands.vehicle import vehicle_app
 from launch.vehicles.tuning import SECONDS, tune, with_params
 from uvf.models.scenario import ROOT
-from uvf.models.yaml_data import BadInput, Place
+from uvf.models.yaml_data import BadInput, FileLocation
 
-PLACE = Place("vehicle.yaml")
+PLACE = FileLocation("vehicle.yaml")
 FIGURES = {"roll_p": 0.05123456, "roll_time": 0.3}
 
 

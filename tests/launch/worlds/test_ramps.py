@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from services.sim_ground.world import BulletWorld, Placed
+from services.sim_ground.world import BodyPlacement, BulletWorld
 from uvf.maths.kinematics import DifferentialDrive, Twist
 from uvf.models.scenario import ROOT
 from uvf.models.vehicle.file import load_vehicle
@@ -22,7 +22,7 @@ RAMPS = {
 
 def driven(name, start, seconds):
     """Where the burger is after driving straight on at 0.2 m/s."""
-    world = BulletWorld(solids(load_world(ROOT / "worlds", name)), {"burger": Placed(BODY, FOLDER / BODY.urdf, start)})
+    world = BulletWorld(solids(load_world(ROOT / "worlds", name)), {"burger": BodyPlacement(BODY, FOLDER / BODY.urdf, start)})
     world.advance({"burger": DifferentialDrive(BODY.wheel_radius, BODY.track).wheels(Twist(0.2, 0.0))}, seconds)
     position = world.state("burger").position
     world.close()

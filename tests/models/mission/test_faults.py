@@ -6,11 +6,11 @@ import pytest
 
 from schemas.messages import AirData, Battery, Gnss, Imu, LaserScan, SurfaceCommand, Vector3
 from uvf.models.mission.faults import Fault, check_faults
-from uvf.models.yaml_data import BadInput, Place
+from uvf.models.yaml_data import BadInput, FileLocation
 from uvf.runtime.messages.convert import seconds, stamp
 from uvf.runtime.messages.faults import PARTS, Faults
 
-HERE = Place("mission.yaml")
+HERE = FileLocation("mission.yaml")
 SAID = {
     "imu": lambda t: Imu(angular_velocity=Vector3(x=0.1 + t), specific_force=Vector3(z=9.8), magnetic_field=Vector3(x=2e-5 + t)),
     "gnss": lambda t: Gnss(fix=Gnss.FIX_3D, latitude=0.7 + t),

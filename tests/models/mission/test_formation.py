@@ -7,7 +7,7 @@ from services.autopilot.air import build as air
 from services.autopilot.air.formation.wingman import AutopilotWingman
 from uvf.models.mission.file import load_mission
 from uvf.models.mission.formation import Follow, offset_of
-from uvf.models.scenario import ROOT, load_site
+from uvf.models.scenario import ROOT, load_scenario
 from uvf.models.yaml_data import BadInput
 
 
@@ -26,7 +26,7 @@ def write(folder, follows, **vehicle):
 
 def test_a_formation_is_made_of_followers(tmp_path):
     follows = {"b": {"leader": "a", "behind": 40.0, "right": 15.0, "above": 5.0}, "c": {"leader": "b", "behind": 40.0}}
-    site = load_site(write(tmp_path, follows), ROOT)
+    site = load_scenario(write(tmp_path, follows), ROOT)
     kinds = {host.vehicle: host.service for host in air.hosts(site)}
     assert [name for name, kind in kinds.items() if kind is AutopilotWingman] == ["b", "c"]
     assert offset_of("c", {n: m.entry.job.follow for n, m in site.members.items() if m.entry.job.follow}) == (80.0, 15.0, 5.0)
@@ -66,7 +66,7 @@ def test_a_follower_has_no_mission_of_its_own(tmp_path):
     ],
 )
 def test_a_station_that_cannot_be_kept_is_refused(tmp_path, follows, said):
-    site = load_site(write(tmp_path, follows), ROOT)
+    site = load_scenario(write(tmp_path, follows), ROOT)
     with pytest.raises(BadInput) as refused:
         air.hosts(site)
     assert said in str(refused.value)

@@ -7,7 +7,7 @@ import pytest
 import yaml
 
 from launch.recorder import attachments
-from uvf.models.scenario import ROOT, load_site
+from uvf.models.scenario import ROOT, load_scenario
 from uvf.models.vehicle.file import load_vehicle
 from uvf.models.yaml_data import BadInput
 
@@ -69,5 +69,5 @@ def test_a_log_holds_the_vehicle_that_a_variant_is_made_of(vehicles):
     mission.parent.mkdir()
     entry = {"model": "other", "system_id": 1, "start": {"x": 6.0, "y": 4.4, "yaw": 0.0}}
     mission.write_text(yaml.safe_dump({"about": "x", "world": "house", "vehicles": {"one": entry}}))
-    files = attachments(load_site(mission, vehicles.parent))
+    files = attachments(load_scenario(mission, vehicles.parent))
     assert {"vehicles/other/vehicle.yaml", "vehicles/burger/vehicle.yaml", "vehicles/burger/burger.urdf"} <= set(files)

@@ -3,7 +3,7 @@
 import pytest
 
 from uvf.models.mission.file import load_mission
-from uvf.models.scenario import ROOT, load_site
+from uvf.models.scenario import ROOT, load_scenario
 from uvf.models.yaml_data import BadInput
 
 MISSION = """
@@ -30,7 +30,7 @@ def mission(tmp_path, wind):
 
 
 def test_a_missions_wind_stands_for_that_of_its_world(tmp_path):
-    wind = load_site(mission(tmp_path, WHOLE)).wind
+    wind = load_scenario(mission(tmp_path, WHOLE)).wind
     assert wind.steady == (6.0, -2.0, 0.0)
     assert wind.shear.law == "logarithmic"
     assert (wind.gusts[0].time, wind.gusts[1].place) == (20.0, (300.0, 40.0))
@@ -38,9 +38,9 @@ def test_a_missions_wind_stands_for_that_of_its_world(tmp_path):
 
 
 def test_without_one_the_worlds_wind_blows_as_before(tmp_path):
-    site = load_site(mission(tmp_path, ""))
+    site = load_scenario(mission(tmp_path, ""))
     assert site.wind.steady == (1.5, 1.3, 0.0)
-    assert load_site(ROOT / "missions" / "demo.yaml").wind == site.world.wind
+    assert load_scenario(ROOT / "missions" / "demo.yaml").wind == site.world.wind
 
 
 def test_a_severity_alone_has_the_standards_wind_at_20_feet(tmp_path):

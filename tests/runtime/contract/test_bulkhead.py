@@ -12,9 +12,10 @@ from schemas.messages import ArmRequest, Battery, Event, Imu, NavStatus, ParamRe
 from tests.runtime.toys import Pilot
 from uvf.runtime.bus.interface import LocalBus
 from uvf.runtime.contract.bulkhead import Bulkhead
-from uvf.runtime.contract.instances import Host
-from uvf.runtime.contract.service import Service, every, optional
-from uvf.runtime.contract.service_runner import Shell
+from uvf.runtime.contract.declaration import Reads, Writes, every, optional, replies, request, topic
+from uvf.runtime.contract.instances import ServiceInstance
+from uvf.runtime.contract.service import Service
+from uvf.runtime.contract.service_runner import ServiceRunner
 from uvf.runtime.messages.convert import stamp
 from uvf.runtime.messages.validation import error_in
 from uvf.runtime.process.watchdog import StepHangs, Watchdog, time_limit
@@ -31,10 +32,12 @@ class Plant(Service):
     hz = 100.0
     scope = "world"
     simulator = True
-    outputs = {"imu": topics.IMU}
 
-    def step(self, t):
-        return {"imu": {name: Imu(timestamp=stamp(t), specific_force=Vector3(x=t)) for name in VEHICLES}}
+    class Outputs(Writes):
+        imu: dict[str, Imu] | None = topic(topics.IMU)
+
+    def step(self, t: float, now) -> Outputs:
+        return self.Outputs(imu={name: Imu(timestamp=stamp(t), specific_force=Vector3(x=t)) for name in VEHICLES})
 
 
 class Driver(Service):
@@ -42,10 +45,20 @@ class Driver(Service):
 
     name = "driver"
     hz = 50.0
-    inputs = {"imu": every(topics.IMU), "battery": optional(topics.BATTERY)}
-    outputs = {"wheels": topics.WHEEL_COMMAND, "kept": topics.NAV_STATUS}
-    requests = {"arm": topics.ARM}
-    recalls = {"kept": topics.NAV_STATUS}
+
+    class Inputs(Reads):
+        imu: list[Imu] = every(topics.IMU)
+        battery: Battery | None = optional(topics.BATTERY)
+        arm: list[ArmRequest] = request(topics.ARM)
+
+    class Outputs(Writes):
+        wheels: WheelCommand | None = topic(topics.WHEEL_COMMAND)
+        kept: NavStatus | None = topic(topics.NAV_STATUS)
+        arm: list[Reply] = replies(topics.ARM)
+
+    class Recalls(Reads):
+        kept: None = topic(topics.NAV_STATUS)
+
     given_up = "its wheels stand"
     fails = staticmethod(lambda vehicle, t, battery: False)
     made = []
@@ -54,16 +67,16 @@ class Driver(Service):
         self.vehicle, self.count, self.times = vehicle, 0, []
         type(self).made.append(self)
 
-    def step(self, t, imu, battery, arm):
-        if type(self).fails(self.vehicle, t, battery):
+    def step(self, t: float, now: Inputs) -> Outputs:
+        if type(self).fails(self.vehicle, t, now.battery):
             raise ZeroDivisionError("division by\nzero")
         self.count += 1
         self.times.append(t)
-        wheels = WheelCommand(timestamp=stamp(t), left=sum(i.specific_force.x for i in imu), right=self.count)
-        return {"wheels": wheels, "kept": NavStatus(distance_left=self.count), "arm": [Reply(accepted=True) for _ in arm]}
+        wheels = WheelCommand(timestamp=stamp(t), left=sum(i.specific_force.x for i in now.imu), right=self.count)
+        return self.Outputs(wheels=wheels, kept=NavStatus(distance_left=self.count), arm=[Reply(accepted=True) for _ in now.arm])
 
-    def recall(self, kept=None):
-        self.count = round(kept.distance_left)
+    def recall(self, left: Recalls) -> None:
+        self.count = round(left.kept.distance_left)
 
     @staticmethod
     def stand_in(t, reason):
@@ -88,7 +101,7 @@ class Run:
         for name in VEHICLES:
             self.bus.subscribe(topics.WHEEL_COMMAND.at(name), topics.WHEEL_COMMAND.qos, lambda s, n=name: self.wheels[n].append(s.payload))
         self.bus.subscribe("uvf/*/state/events/driver", topics.EVENTS.qos, lambda s: self.events.append(Event.FromString(s.payload)))
-        hosts = [Host(Plant, Plant)] + [Host(Driver, lambda n=name: Driver(n), name) for name in VEHICLES]
+        hosts = [ServiceInstance(Plant, Plant)] + [ServiceInstance(Driver, lambda n=name: Driver(n), name) for name in VEHICLES]
         self.lockstep = Lockstep(hosts, self.bus, self.warnings.append, contains=True)
         self.lockstep.run(until, lambda t: at(self) or True)
 
@@ -174,18 +187,18 @@ def watchdog(monkeypatch):
 
 
 def test_a_step_that_never_comes_back_is_ended_and_the_others_go_on(monkeypatch, watchdog):
-    def hangs(self, t, **inputs):
+    def hangs(self, t, now):
         while self.vehicle == "beta":
             pass
-        return step(self, t, **inputs)
+        return step(self, t, now)
 
     step = Driver.step
     monkeypatch.setattr(Driver, "step", hangs)
     monkeypatch.setattr(Driver, "made", [])
     bus, events = LocalBus(), []
     bus.subscribe("uvf/*/state/events/driver", topics.EVENTS.qos, lambda s: events.append(Event.FromString(s.payload)))
-    hosts = [Host(Plant, Plant)] + [Host(Driver, lambda n=name: Driver(n), name) for name in VEHICLES]
-    shells = [Shell(host, bus, contains=True, watchdog=watchdog) for host in hosts]
+    hosts = [ServiceInstance(Plant, Plant)] + [ServiceInstance(Driver, lambda n=name: Driver(n), name) for name in VEHICLES]
+    shells = [ServiceRunner(host, bus, contains=True, watchdog=watchdog) for host in hosts]
     while (shell := min(shells, key=lambda s: s.due_ns)).due_ns <= 1_000_000_000:
         shell.advance()
     assert [e.severity for e in events] == [Event.ERROR, Event.ERROR, Event.CRITICAL]
@@ -261,7 +274,7 @@ def test_who_cannot_take_up_what_was_left_begins_without_it(monkeypatch):
     monkeypatch.setattr(Driver, "recall", fails)
     bus, events = LocalBus(), []
     bus.subscribe("uvf/*/state/events/driver", topics.EVENTS.qos, lambda s: events.append(Event.FromString(s.payload)))
-    shell = Shell(Host(Driver, lambda: Driver("beta"), "beta"), bus, contains=True)
+    shell = ServiceRunner(ServiceInstance(Driver, lambda: Driver("beta"), "beta"), bus, contains=True)
     shell.recall(lambda key: NavStatus(distance_left=7.0).SerializeToString())
     assert shell.service.count == 0
     assert "it could not take up what was left: OSError: no more" in events[0].cause
@@ -271,7 +284,7 @@ def test_an_end_that_fails_when_time_starts_over_harms_nobody(monkeypatch):
     def fails(self):
         raise OSError("no more")
 
-    shell = Shell(Host(Driver, lambda: Driver("beta"), "beta"), LocalBus(), contains=True)
+    shell = ServiceRunner(ServiceInstance(Driver, lambda: Driver("beta"), "beta"), LocalBus(), contains=True)
     first = shell.service
     monkeypatch.setattr(Driver, "close", fails)
     shell.restart(2)
@@ -288,7 +301,7 @@ def test_what_catches_all_errors_or_hangs_at_its_end_does_not_escape_the_watchdo
             except Exception:  # noqa: BLE001  # as somebody's service may
                 continue
 
-    shell = Shell(Host(Driver, lambda: Driver("beta"), "beta"), LocalBus(), contains=True, watchdog=watchdog)
+    shell = ServiceRunner(ServiceInstance(Driver, lambda: Driver("beta"), "beta"), LocalBus(), contains=True, watchdog=watchdog)
     monkeypatch.setattr(Driver, "stale", lambda self, t, missing: 1 / 0)
     monkeypatch.setattr(Driver, {"close": "close", "step": "stale"}[where], hangs)
     shell.advance()
@@ -298,10 +311,10 @@ def test_what_catches_all_errors_or_hangs_at_its_end_does_not_escape_the_watchdo
 def test_what_leaves_the_actuators_without_a_number_is_a_failure_of_its_sender(run, monkeypatch):
     step = Driver.step
 
-    def lost(self, t, **inputs):
-        out = step(self, t, **inputs)
+    def lost(self, t, now):
+        out = step(self, t, now)
         if self.vehicle == "beta" and round(t, 3) == 1.0:
-            out["wheels"].left = math.nan
+            out.wheels.left = math.nan
         return out
 
     monkeypatch.setattr(Driver, "step", lost)
@@ -312,7 +325,7 @@ def test_what_leaves_the_actuators_without_a_number_is_a_failure_of_its_sender(r
 
 def test_what_was_set_while_it_ran_outlives_one_failure_and_not_two(monkeypatch):
     bus, shell = LocalBus(), None
-    shell = Shell(Host(Pilot, Pilot, "alpha"), bus, contains=True)
+    shell = ServiceRunner(ServiceInstance(Pilot, Pilot, "alpha"), bus, contains=True)
     request = ParamRequest(name="gain", value="7.5").SerializeToString()
     bus.call(topics.PARAM.by("pilot").at("alpha"), request, -1, lambda *reply: None)
     shell.advance()
@@ -328,7 +341,7 @@ def test_what_was_set_while_it_ran_outlives_one_failure_and_not_two(monkeypatch)
 
 def test_a_broken_request_for_a_parameter_is_counted():
     bus = LocalBus()
-    shell = Shell(Host(Pilot, Pilot, "alpha"), bus)
+    shell = ServiceRunner(ServiceInstance(Pilot, Pilot, "alpha"), bus)
     bus.call(topics.PARAM.by("pilot").at("alpha"), b"\xff\xff", -1, lambda *reply: None)
     shell.advance()
     assert shell.refusals.count == 1

@@ -9,9 +9,10 @@ from schemas.messages import ArmRequest, Clock, ModeRequest, NavState, Odometry,
 from uvf.models.scenario import ROOT
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.bus.interface import LocalBus, Sample
-from uvf.runtime.contract.instances import Host
-from uvf.runtime.contract.service import Service
-from uvf.runtime.contract.service_runner import Shell
+from uvf.runtime.contract.declaration import Reads, Writes, answers, call, replies, request, topic
+from uvf.runtime.contract.instances import ServiceInstance
+from uvf.runtime.contract.service import Answer, Service
+from uvf.runtime.contract.service_runner import ServiceRunner
 from uvf.runtime.log.comparison import differing
 from uvf.runtime.log.reading import log_begin, read_log
 from uvf.runtime.log.recording import Recorder
@@ -25,21 +26,27 @@ class Adder(Service):
 
     name = "adder"
     hz = 10.0
-    inputs = {"pose": topics.POSE}
-    outputs = {"state": topics.NAV_STATE}
-    recalls = {"state": topics.NAV_STATE}
+
+    class Inputs(Reads):
+        pose: PoseInFrame = topic(topics.POSE)
+
+    class Outputs(Writes):
+        state: NavState | None = topic(topics.NAV_STATE)
+
+    class Recalls(Reads):
+        state: None = topic(topics.NAV_STATE)
 
     def __init__(self, gain=1.0):
         self.gain, self.total = gain, 0.0
 
-    def recall(self, state=None):
-        self.total = state.position.x
+    def recall(self, left: Recalls) -> None:
+        self.total = left.state.position.x
 
-    def step(self, t, pose):
-        self.total += self.gain * pose.pose.position.x
+    def step(self, t: float, now: Inputs) -> Outputs:
+        self.total += self.gain * now.pose.pose.position.x
         message = NavState()
         message.position.x = self.total
-        return {"state": message}
+        return self.Outputs(state=message)
 
 
 @dataclass
@@ -54,7 +61,7 @@ class Log:
 def log(tmp_path):
     from uvf.runtime.time.lockstep import Lockstep
 
-    lockstep = Lockstep([Host(Adder, Adder, "v")])
+    lockstep = Lockstep([ServiceInstance(Adder, Adder, "v")])
     poses = lockstep.bus.publisher(topics.POSE.at("v"), PoseInFrame.DESCRIPTOR.full_name, topics.POSE.qos)
 
     def feed(t):
@@ -77,16 +84,16 @@ def log(tmp_path):
 
 
 def test_the_first_file_gives_the_same(log):
-    assert [str(d) for d in into_service(log.first, Host(Adder, Adder, "v"))] == []
+    assert [str(d) for d in into_service(log.first, ServiceInstance(Adder, Adder, "v"))] == []
 
 
 def test_a_later_file_alone_gives_the_same_too(log):
     assert log_begin(log.second) > 1.5 * NS
-    assert [str(d) for d in into_service(log.second, Host(Adder, Adder, "v"))] == []
+    assert [str(d) for d in into_service(log.second, ServiceInstance(Adder, Adder, "v"))] == []
 
 
 def test_in_a_later_file_a_change_is_noticed_as_well(log):
-    changed = list(into_service(log.second, Host(Adder, lambda: Adder(1.5), "v")))
+    changed = list(into_service(log.second, ServiceInstance(Adder, lambda: Adder(1.5), "v")))
     assert {d.field for d in changed} == {"position.x"}
     assert len(changed) > 15
 
@@ -97,25 +104,31 @@ class Caller(Service):
     name = "caller"
     hz = 10.0
     latency = 0.5
-    inputs = {"clock": topics.CLOCK}
-    outputs = {"state": topics.NAV_STATE}
-    requests = {"mode": topics.SET_MODE}
-    calls = {"arm": topics.ARM}
+
+    class Inputs(Reads):
+        clock: Clock = topic(topics.CLOCK)
+        mode: list[ModeRequest] = request(topics.SET_MODE)
+        arm: list[Answer[ArmRequest, Reply]] = answers(topics.ARM)
+
+    class Outputs(Writes):
+        state: NavState | None = topic(topics.NAV_STATE)
+        mode: list[Reply] = replies(topics.SET_MODE)
+        arm: list[ArmRequest] = call(topics.ARM)
 
     def __init__(self, say=lambda n: True, addend=0.0):
         self.say, self.addend = say, addend
         self.n, self.answers = 0, []
 
     def stale(self, t, missing):
-        return {}
+        return self.Outputs()
 
-    def step(self, t, clock, mode, arm):
+    def step(self, t: float, now: Inputs) -> Outputs:
         self.n += 1
-        self.answers += [a.reply.reason if a.reply is not None else a.reason for a in arm]
+        self.answers += [a.reply.reason if a.reply is not None else a.reason for a in now.arm]
         message = NavState()
-        message.position.x, message.position.y = self.n + self.addend, len(mode)
-        replies = [Reply(reason=f"{self.n}") for _ in mode]
-        return {"state": [message] if self.say(self.n) else [], "mode": replies, "arm": [ArmRequest()] if self.n % 10 == 0 else []}
+        message.position.x, message.position.y = self.n + self.addend, len(now.mode)
+        replies = [Reply(reason=f"{self.n}") for _ in now.mode]
+        return self.Outputs(state=[message] if self.say(self.n) else [], mode=replies, arm=[ArmRequest()] if self.n % 10 == 0 else [])
 
 
 class Arming(Service):
@@ -123,21 +136,26 @@ class Arming(Service):
 
     name = "arming"
     hz = 5.0
-    requests = {"arm": topics.ARM}
+
+    class Inputs(Reads):
+        arm: list[ArmRequest] = request(topics.ARM)
+
+    class Outputs(Writes):
+        arm: list[Reply] = replies(topics.ARM)
 
     def __init__(self):
         self.n = 0
 
-    def step(self, t, arm):
-        self.n += len(arm)
-        return {"arm": [Reply(reason=f"answer {self.n}") for _ in arm]}
+    def step(self, t: float, now: Inputs) -> Outputs:
+        self.n += len(now.arm)
+        return self.Outputs(arm=[Reply(reason=f"answer {self.n}") for _ in now.arm])
 
 
 def recorded(path, seconds, ask_at=()):
     """A log of Caller and Arming; when Caller is asked for a mode [s]."""
     from uvf.runtime.time.lockstep import Lockstep
 
-    lockstep = Lockstep([Host(Caller, Caller, "v"), Host(Arming, Arming, "v")])
+    lockstep = Lockstep([ServiceInstance(Caller, Caller, "v"), ServiceInstance(Arming, Arming, "v")])
 
     def ask(t):
         if any(abs(t - at) < 1e-6 for at in ask_at):
@@ -158,7 +176,7 @@ def test_requests_and_answers_come_to_a_service_as_they_did(tmp_path):
         made.append(Caller())
         return made[-1]
 
-    assert [str(d) for d in into_service(log, Host(Caller, make, "v"))] == []
+    assert [str(d) for d in into_service(log, ServiceInstance(Caller, make, "v"))] == []
     assert made[-1].answers == ["answer 1", "answer 2", "answer 3", "answer 4"]
 
 
@@ -169,7 +187,12 @@ def compared_as_a_whole(log, make):
     for key in keys:
         bus.subscribe(key, topics.Qos.STATE, made.append)
     samples = list(read_log(log))
-    for _ in play(Shell(Host(Caller, make, "v"), bus), samples, lambda s: hand_over(bus, s) if s.key not in keys[::2] else None, 4 * NS):
+    for _ in play(
+        ServiceRunner(ServiceInstance(Caller, make, "v"), bus),
+        samples,
+        lambda s: hand_over(bus, s) if s.key not in keys[::2] else None,
+        4 * NS,
+    ):
         pass
     logged, now = ({(s.key, s.stamp_ns): s for s in side if s.key in keys} for side in (samples, made))
     for which, old in logged.items():
@@ -196,7 +219,7 @@ def test_differences_come_in_the_order_of_the_log_and_what_it_does_not_hold_at_t
             if sample.key not in (topics.NAV_STATE.at("v"), f"{topics.SET_MODE.at('v')}/reply") or sample.seq % 4:
                 thinned.write(sample)
     found = []
-    for d in into_service(tmp_path / "b.mcap", Host(Caller, make, "v")):
+    for d in into_service(tmp_path / "b.mcap", ServiceInstance(Caller, make, "v")):
         kind = "missing" if d.now == "missing" else "surplus" if d.logged == "missing" else "changed"
         if (d.key, d.stamp_ns, kind) not in found[-1:]:
             found.append((d.key, d.stamp_ns, kind))
@@ -217,7 +240,7 @@ def test_what_is_stamped_long_after_all_others_is_left_out_and_told(tmp_path):
     log = recorded(tmp_path / "a.mcap", 2.0)
     far = with_a_strangers(log, tmp_path / "far.mcap", key="uvf/v/stranger", stamp_ns=2**62)
     told, bus = [], LocalBus()
-    assert [str(d) for d in into_service(far, Host(Caller, Caller, "v"), warn=told.append)] == []
+    assert [str(d) for d in into_service(far, ServiceInstance(Caller, Caller, "v"), warn=told.append)] == []
     assert onto_bus(far, bus, rate=1e6, warn=told.append) == len(list(read_log(log)))
     assert len(told) == 2
     assert "1 messages are stamped more than 3600 s after all others and are left out" in told[0]
@@ -229,7 +252,7 @@ def test_broken_bytes_on_the_key_of_a_service_are_a_difference(tmp_path):
         for sample in read_log(log):
             broken = sample.key == topics.NAV_STATE.at("v") and sample.seq == 5
             recorder.write(sample._replace(payload=b"\xff") if broken else sample)
-    assert [d.logged for d in into_service(tmp_path / "b.mcap", Host(Caller, Caller, "v"))] == ["broken bytes"]
+    assert [d.logged for d in into_service(tmp_path / "b.mcap", ServiceInstance(Caller, Caller, "v"))] == ["broken bytes"]
 
 
 def test_what_stands_at_the_head_is_said_at_once_and_the_rest_at_its_pace(tmp_path):

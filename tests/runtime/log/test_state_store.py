@@ -9,7 +9,7 @@ from schemas.messages import Clock, Grid
 from tests.runtime.modes import free_port
 from uvf.runtime.bus.interface import Sample
 from uvf.runtime.bus.zenoh_bus import ZenohBus, kept_key, open_router
-from uvf.runtime.log.state_store import Keeper
+from uvf.runtime.log.state_store import StateStore
 from uvf.runtime.state.stop_all import StopBook, StopVoice
 
 KEY = topics.MAP.at("alpha")
@@ -33,7 +33,7 @@ def buses(told):
     endpoint = f"tcp/127.0.0.1:{free_port()}"
     router = open_router(endpoint)
     with ZenohBus(endpoint) as kept, ZenohBus(endpoint) as other:
-        yield endpoint, Keeper(kept, told.append), other
+        yield endpoint, StateStore(kept, told.append), other
     router.close()
 
 

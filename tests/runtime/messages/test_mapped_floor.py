@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from uvf.models.scenario import ROOT, load_site
+from uvf.models.scenario import ROOT, load_scenario
 from uvf.models.world.geometry import floor_plan, reachable_floor
 from uvf.runtime.messages.convert import occupancy_grid
 from uvf.runtime.messages.mapped_floor import MappedFloor
@@ -13,7 +13,7 @@ from uvf.runtime.messages.mapped_floor import MappedFloor
 
 @pytest.fixture(scope="module")
 def site():
-    return load_site(Path(ROOT / "missions/demo.yaml"))
+    return load_scenario(Path(ROOT / "missions/demo.yaml"))
 
 
 def test_a_map_that_is_free_west_of_a_line_counts_the_reachable_floor_there(site):

@@ -8,8 +8,9 @@ from schemas import topics
 from schemas.messages import StopCommand, StopEngagement, StopState, VehicleStatus
 from tests.runtime.toys import Pilot
 from uvf.runtime.bus.interface import LocalBus, Sample
-from uvf.runtime.contract.instances import Host
-from uvf.runtime.contract.service_runner import Shell
+from uvf.runtime.contract.declaration import Reads, topic
+from uvf.runtime.contract.instances import ServiceInstance
+from uvf.runtime.contract.service_runner import ServiceRunner
 from uvf.runtime.messages.validation import error_in
 from uvf.runtime.state import stop_all
 from uvf.runtime.state.stop_all import ENGAGEMENTS_MOST, StopBook, StopVoice, told
@@ -148,7 +149,7 @@ def test_broken_bytes_are_refused_with_a_line():
 @pytest.mark.parametrize("stamp", (0, 5 * NS, 2**62), ids=("old", "now", "future"))
 @pytest.mark.parametrize("epoch", (0, 1, 2, 99))
 def test_a_service_hears_it_within_one_step_more(stamp, epoch):
-    shell = Shell(Host(Pilot, Pilot, "alpha"), LocalBus())
+    shell = ServiceRunner(ServiceInstance(Pilot, Pilot, "alpha"), LocalBus())
     shell.join(1)
     shell._stops.push(sample(StopVoice("gcs").engage(0, ""), "gcs", stamp, epoch))
     heard = [bool(shell._take(5 * NS + n)["stop"]) for n in range(2)]
@@ -157,20 +158,21 @@ def test_a_service_hears_it_within_one_step_more(stamp, epoch):
 
 
 def test_it_outlives_a_new_epoch_and_a_new_process():
-    shell = Shell(Host(Pilot, Pilot, "alpha"), LocalBus())
+    shell = ServiceRunner(ServiceInstance(Pilot, Pilot, "alpha"), LocalBus())
     shell._stops.push(sample(StopVoice("gcs").engage(0, "button"), "gcs"))
     stops = shell._take(NS)["stop"]
     shell.restart(2)
     assert shell._take(NS)["stop"] == stops
-    again = Shell(Host(Recalling, Recalling, "alpha"), LocalBus())
+    again = ServiceRunner(ServiceInstance(Recalling, Recalling, "alpha"), LocalBus())
     again.recall(lambda key: VehicleStatus(stopped=True, stops=stops.engagements).SerializeToString())
     assert again._take(NS)["stop"].who == "gcs (button)"
 
 
 class Recalling(Pilot):
-    recalls = {"status": topics.STATUS}
+    class Recalls(Reads):
+        status: None = topic(topics.STATUS)
 
-    def recall(self, status=None):
+    def recall(self, left: Recalls) -> None:
         pass
 
 

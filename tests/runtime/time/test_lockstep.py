@@ -2,8 +2,9 @@
 
 from schemas import topics
 from schemas.messages import ArmRequest, DriveCommand, Reply, WheelCommand
-from uvf.runtime.contract.instances import Host
-from uvf.runtime.contract.service import Service
+from uvf.runtime.contract.declaration import Reads, Writes, answers, call, replies, request, topic
+from uvf.runtime.contract.instances import ServiceInstance
+from uvf.runtime.contract.service import Answer, Service
 from uvf.runtime.messages.convert import stamp
 from uvf.runtime.time.lockstep import Lockstep
 
@@ -11,40 +12,50 @@ from uvf.runtime.time.lockstep import Lockstep
 class Source(Service):
     name = "source"
     hz = 10.0
-    outputs = {"drive": topics.DRIVE.by("test")}
-    calls = {"arm": topics.ARM}
+
+    class Inputs(Reads):
+        arm: list[Answer[ArmRequest, Reply]] = answers(topics.ARM)
+
+    class Outputs(Writes):
+        drive: DriveCommand | None = topic(topics.DRIVE.by("test"))
+        arm: list[ArmRequest] = call(topics.ARM)
 
     def __init__(self):
         self.answers = []
 
-    def step(self, t, arm):
-        self.answers += [(round(t, 3), a.reply.reason) for a in arm]
-        return {"drive": DriveCommand(timestamp=stamp(t), linear=t), "arm": [ArmRequest(arm=True)] if t < 0.15 else []}
+    def step(self, t: float, now: Inputs) -> Outputs:
+        self.answers += [(round(t, 3), a.reply.reason) for a in now.arm]
+        return self.Outputs(drive=DriveCommand(timestamp=stamp(t), linear=t), arm=[ArmRequest(arm=True)] if t < 0.15 else [])
 
 
 class Sink(Service):
     name = "sink"
     hz = 20.0
-    inputs = {"drive": topics.DRIVE.by("test")}
-    outputs = {"wheels": topics.WHEEL_COMMAND}
-    requests = {"arm": topics.ARM}
+
+    class Inputs(Reads):
+        drive: DriveCommand = topic(topics.DRIVE.by("test"))
+        arm: list[ArmRequest] = request(topics.ARM)
+
+    class Outputs(Writes):
+        wheels: WheelCommand | None = topic(topics.WHEEL_COMMAND)
+        arm: list[Reply] = replies(topics.ARM)
 
     def __init__(self):
         self.seen = []
         self.held = []
 
-    def step(self, t, drive, arm):
-        self.seen.append((round(t, 3), drive.linear))
-        return {"wheels": WheelCommand(left=drive.linear), "arm": [Reply(accepted=True, reason="here") for _ in arm]}
+    def step(self, t: float, now: Inputs) -> Outputs:
+        self.seen.append((round(t, 3), now.drive.linear))
+        return self.Outputs(wheels=WheelCommand(left=now.drive.linear), arm=[Reply(accepted=True, reason="here") for _ in now.arm])
 
     def stale(self, t, missing):
         self.held.append((round(t, 3), missing))
-        return {}
+        return self.Outputs()
 
 
 def run(until):
     source, sink = Source(), Sink()
-    lockstep = Lockstep([Host(Source, lambda: source, "v"), Host(Sink, lambda: sink, "v")])
+    lockstep = Lockstep([ServiceInstance(Source, lambda: source, "v"), ServiceInstance(Sink, lambda: sink, "v")])
     lockstep.run(until)
     return source, sink
 

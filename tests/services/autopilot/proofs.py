@@ -22,8 +22,8 @@ def shows(kind, *rows):
             assert isinstance(trip.lockstep, Lockstep), "simulated, not told"
             for row in rows:
                 rule = RULES[kind, row]
-                began = [t for t, m in trip.events if m.text == rule.begins]
-                ended = [t for t, m in trip.events if m.text == rule.ends]
+                began = [t for t, m in trip.events if m.text == rule.raised_text]
+                ended = [t for t, m in trip.events if m.text == rule.cleared_text]
                 assert began and ended and ended[-1] > began[0], f"{row}: began {began}, ended {ended}"
 
         return run

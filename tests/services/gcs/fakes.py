@@ -6,8 +6,8 @@ from typing import Any
 from services.gcs.commands import Join
 from services.gcs.service import GroundStation
 from tests.services.gcs.scripted import Script, demo_site
-from uvf.runtime.contract.instances import Host
-from uvf.runtime.contract.service_runner import Shell
+from uvf.runtime.contract.instances import ServiceInstance
+from uvf.runtime.contract.service_runner import ServiceRunner
 
 ME, OTHER = 1, 2
 """Two browsers; the first one has joined from the start."""
@@ -62,7 +62,7 @@ class Station:
         self.page = FakePage()
         self.site = site or demo_site()
         self.service = GroundStation(self.site, self.page)
-        self.shell = Shell(Host(GroundStation, lambda: self.service), self.script.bus)
+        self.shell = ServiceRunner(ServiceInstance(GroundStation, lambda: self.service), self.script.bus)
         self.t = 0.0
 
     @property

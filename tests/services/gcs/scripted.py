@@ -28,9 +28,9 @@ from schemas.messages import (
     VehicleStatus,
 )
 from uvf.maths.rotations import from_euler
-from uvf.models.mission.file import Job
+from uvf.models.mission.file import JobFile
 from uvf.models.mission.formation import Follow
-from uvf.models.scenario import ROOT, load_site
+from uvf.models.scenario import ROOT, load_scenario
 from uvf.models.vehicle.file import load_vehicle
 from uvf.runtime.bus.interface import LocalBus
 from uvf.runtime.messages.convert import occupancy_grid, planar_pose, quaternion, stamp
@@ -41,7 +41,7 @@ LEGS = ((200.0, -150.0), (200.0, 150.0), (-200.0, 150.0), (-200.0, -150.0))
 
 
 def demo_site():
-    return load_site(Path(ROOT / "missions/demo.yaml"))
+    return load_scenario(Path(ROOT / "missions/demo.yaml"))
 
 
 def with_eyes(site, of="milvus_survey"):
@@ -54,7 +54,7 @@ def with_eyes(site, of="milvus_survey"):
 
 def with_leader(site, leader="milvus1"):
     """The same site, its aircraft with a place behind a leader instead of a mission."""
-    entry = msgspec.structs.replace(site.members[UAV].entry, job=Job(follow=Follow(leader, behind=40.0)))
+    entry = msgspec.structs.replace(site.members[UAV].entry, job=JobFile(follow=Follow(leader, behind=40.0)))
     object.__setattr__(site.members[UAV], "entry", entry)
     return site
 

@@ -3,14 +3,14 @@
 import pytest
 
 from schemas.messages import CancelRequest, Mode, ModeRequest, NavStatus
-from services.gcs.by_hand import PATIENCE, ByHand
+from services.gcs.by_hand import PATIENCE, ManualDriving
 from services.gcs.commands import Cancel, ClickGround, Join, Leave, LeaveWheel, Rescale, Select, SetMode, Steer, StopAll, TakeWheel
 from services.gcs.page.viser_script import action_in
 from tests.services.gcs.fakes import ME, OTHER, Station
 from tests.services.gcs.scripted import UAV, UGV
-from uvf.control.teleop_drive import START_ANGULAR, START_LINEAR, STILL, ZEROS, Command
+from uvf.control.teleop_drive import START_ANGULAR, START_LINEAR, STILL, ZEROS, TeleopCommand
 
-START = Command(START_LINEAR, START_ANGULAR)
+START = TeleopCommand(START_LINEAR, START_ANGULAR)
 
 
 @pytest.fixture
@@ -101,7 +101,7 @@ def test_the_panel_says_when_the_vehicle_does_not_obey(driven):
 
 
 def test_commands_of_nobody_are_none():
-    assert ByHand({"one": STILL}).commands(0.0) == {}
+    assert ManualDriving({"one": STILL}).commands(0.0) == {}
 
 
 @pytest.mark.parametrize(

@@ -10,14 +10,14 @@ from schemas.messages import Guest
 from services.autopilot.mavlink.build import facts_of
 from services.autopilot.mavlink.service import MavlinkService
 from services.mavlink_bridge.discovery import Discovery, names_from
-from services.mavlink_bridge.frame import Origin
+from services.mavlink_bridge.frame import BridgeOrigin
 from services.mavlink_bridge.service import BridgedVehicle
 from services.mavlink_bridge.station import Station
 from tests.services.autopilot.mavlink.rig import Shelf
 from uvf.mavlink.endpoint import UdpLink
 from uvf.runtime.bus.interface import LocalBus
-from uvf.runtime.contract.instances import Host
-from uvf.runtime.contract.service_runner import Shell
+from uvf.runtime.contract.instances import ServiceInstance
+from uvf.runtime.contract.service_runner import ServiceRunner
 from uvf.runtime.time.lockstep import Lockstep
 
 NS = 1_000_000_000
@@ -34,13 +34,13 @@ class Sides(contextlib.AbstractContextManager):
         self._far_link = UdpLink([near.addresses[1]])
         self.run_far = Lockstep(hosts)
         service = MavlinkService(facts_of(site), self._far_link, {n: Shelf() for n in site.members})
-        self._far = Shell(Host(MavlinkService, lambda: service, writes_for=tuple(site.members)), self.run_far.bus)
+        self._far = ServiceRunner(ServiceInstance(MavlinkService, lambda: service, writes_for=tuple(site.members)), self.run_far.bus)
         self.bus = LocalBus()
         self.station = Station(near)
-        self.origin = Origin(origin)
+        self.origin = BridgeOrigin(origin)
         self.said = []
         discovery = Discovery(self.station, names_from([name]), self._found, self.said.append)
-        self._near = [Shell(Host(Discovery, lambda: discovery), self.bus)]
+        self._near = [ServiceRunner(ServiceInstance(Discovery, lambda: discovery), self.bus)]
         self._seen = {}
         self.events = []
         self.truth = None
@@ -59,7 +59,7 @@ class Sides(contextlib.AbstractContextManager):
 
     def _found(self, name, system):
         make = lambda: BridgedVehicle(name, system, self.station, self.origin, Guest(model="x"))  # noqa: E731
-        shell = Shell(Host(BridgedVehicle, make, name), self.bus)
+        shell = ServiceRunner(ServiceInstance(BridgedVehicle, make, name), self.bus)
         shell.skip_to(round(self.t * NS), count=False)
         self._near.append(shell)
 

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from services.mavlink_bridge.commands import TRIES, Commands, command
+from services.mavlink_bridge.commands import TRIES, CommandSender, command
 from services.mavlink_bridge.wire import Wire
 from tests.services.mavlink_bridge.far_end import ack, text
 from uvf.mavlink import dialect as mav
@@ -16,7 +16,7 @@ ACCEPTED, DENIED, BUSY = mav.MAV_RESULT_ACCEPTED, mav.MAV_RESULT_DENIED, mav.MAV
 class Desk:
     def __init__(self):
         self.wire = Wire(1, 1)
-        self.commands = Commands(self.wire)
+        self.commands = CommandSender(self.wire)
         self.sent, self.ended = [], []
 
     def ask(self, number=ARM, p=(1.0,), frame=None):

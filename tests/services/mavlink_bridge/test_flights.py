@@ -38,8 +38,8 @@ from services.sim_ground.build import build as ground_sim
 from services.slam.build import build as slam
 from tests.services.mavlink_bridge.flown import Sides
 from uvf.maths.rotations import inverse, multiply
-from uvf.models.mission.file import Job
-from uvf.models.scenario import ROOT, Member, load_site
+from uvf.models.mission.file import JobFile
+from uvf.models.scenario import ROOT, MissionVehicle, load_scenario
 from uvf.runtime.messages.convert import array, wxyz
 from uvf.runtime.state.stop_all import StopVoice
 
@@ -48,11 +48,11 @@ SPEED = 30.0  # m/s, faster than it flies
 
 def alone(name):
     """One vehicle of the demo, without a job."""
-    site = load_site(ROOT / "missions" / "demo.yaml")
+    site = load_scenario(ROOT / "missions" / "demo.yaml")
     member = site.members[name]
-    entry = msgspec.structs.replace(member.entry, job=Job())
+    entry = msgspec.structs.replace(member.entry, job=JobFile())
     site.members.clear()
-    site.members[name] = Member(name, entry, member.file, member.folder)
+    site.members[name] = MissionVehicle(name, entry, member.file, member.folder)
     return site
 
 

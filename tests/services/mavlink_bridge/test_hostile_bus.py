@@ -26,7 +26,7 @@ from schemas.messages import (
     TakeoffOrder,
     Vector3,
 )
-from services.mavlink_bridge.commands import ANSWER_WITHIN, WAITING_MOST, Commands, command
+from services.mavlink_bridge.commands import ANSWER_WITHIN, WAITING_MOST, CommandSender, command
 from services.mavlink_bridge.parameters import WAITING_MOST as PARAMETERS_MOST
 from services.mavlink_bridge.transfers import LARGEST
 from services.mavlink_bridge.wire import Wire
@@ -188,7 +188,7 @@ def test_what_is_read_is_always_json_that_others_read(plane):
 
 def test_a_flood_of_requests_is_refused_and_not_obeyed_minutes_later():
     wire, ended = Wire(1, 1), []
-    commands = Commands(wire)
+    commands = CommandSender(wire)
     for n in range(10 * WAITING_MOST):
         commands.ask(command(176, (1.0, float(n)), lambda good, why: ended.append((good, why))))
     assert len(ended) == 9 * WAITING_MOST and "ask again later, and less often" in ended[0][1]
@@ -230,7 +230,7 @@ def test_floods_of_parameters_and_plans_are_refused_in_a_line():
 
 def test_in_progress_for_ever_ends():
     wire, ended = Wire(1, 1), []
-    commands = Commands(wire)
+    commands = CommandSender(wire)
     commands.ask(command(400, (1.0,), lambda good, why: ended.append(why)))
     while wire.t < 70.0 and not ended:
         wire.t += 1.0
@@ -240,7 +240,7 @@ def test_in_progress_for_ever_ends():
 
 def test_who_hears_of_an_end_may_ask_for_something_else():
     wire, ended = Wire(1, 1), []
-    commands = Commands(wire)
+    commands = CommandSender(wire)
     commands.ask(command(511, (1.0,), lambda good, why: commands.ask(command(512, (1.0,), lambda good, why: ended.append(why)))))
     commands.ask(command(400, (1.0,), lambda good, why: ended.append(why)))
     while wire.t < 20.0:

@@ -5,7 +5,7 @@ import struct
 
 import pytest
 
-from services.mavlink_bridge.parameters import Parameters
+from services.mavlink_bridge.parameters import ParameterClient
 from services.mavlink_bridge.wire import Wire
 from uvf.mavlink import dialect as mav
 
@@ -17,7 +17,7 @@ class Shelf:
 
     def __init__(self, bytewise=True):
         self.wire = Wire(1, 1)
-        self.parameters = Parameters(self.wire)
+        self.parameters = ParameterClient(self.wire)
         self.parameters.bytewise = bytewise
         self.values = {"RTL_ALT": (60.0, REAL), "NAV_DLL_ACT": (2, INT)}
         self.fixed, self.silent, self.errors = set(), False, False

@@ -6,9 +6,10 @@ import pytest
 
 from schemas.messages import Guest, Link, Mode, ModeRequest, StopEngagement
 from services.mavlink_bridge.discovery import Discovery, Names, names_from
-from services.mavlink_bridge.frame import Origin
+from services.mavlink_bridge.frame import BridgeOrigin
 from services.mavlink_bridge.service import BridgedVehicle
 from services.mavlink_bridge.station import COMPONENT, LOST_AFTER, SYSTEM, Station
+from tests.runtime.stepping import stepped
 from tests.services.autopilot.mavlink.rig import ORIGIN, MemoryLink
 from tests.services.mavlink_bridge.far_end import ARDUPILOT, DT, PX4, ack, heartbeat, text
 from uvf.mavlink import dialect as mav
@@ -126,13 +127,13 @@ def test_nobody_who_reads_costs_no_memory(air):
 def test_each_new_system_is_found_once_under_its_name_and_silence_is_told_of(air):
     found, said = [], []
     discovery = Discovery(air.station, Names("plane2", {7: "rover2"}), lambda name, system: found.append((name, system)), said.append)
-    discovery.step(5.5, {})
+    stepped(discovery, 5.5, links={})
     assert said == ["no autopilot heard for 5 s; listening on"]
     for t, system in enumerate((3, 7, 4, 3), 6):
         air.say(heartbeat(), system)
-        discovery.step(float(t), {})
+        stepped(discovery, float(t), links={})
     assert found == [("plane2", 3), ("rover2", 7)]
-    discovery.step(12.0, {})
+    stepped(discovery, 12.0, links={})
     assert found[2:] == [("plane2_4", 4)]
 
 
@@ -141,12 +142,12 @@ def test_a_vehicle_of_the_own_bus_is_left_alone_and_keeps_its_number_from_nobody
     discovery = Discovery(air.station, Names("plane2", {}), lambda *who: found.append(who), lambda line: None)
     for t in range(30):
         air.say(heartbeat())
-        discovery.step(t * 0.1, {"milvus": Link(port=HERE[1])} if t > 5 else {})
+        stepped(discovery, t * 0.1, links={"milvus": Link(port=HERE[1])} if t > 5 else {})
     assert found == [] and air.station.autopilots == {}
     for t in range(30, 50):
         air.say(heartbeat())
         air.say(heartbeat(), peer=THERE)
-        discovery.step(t * 0.1, {"milvus": Link(port=HERE[1])})
+        stepped(discovery, t * 0.1, links={"milvus": Link(port=HERE[1])})
     assert found == [("plane2", 1)] and air.station.autopilots[1].peer == THERE
 
 
@@ -196,7 +197,7 @@ class Bridged:
         self.air, self.t, self.events = air, 0.0, []
         air.say(heartbeat(base=129))
         air.station.poll(0.0)
-        self.vehicle = BridgedVehicle("plane", 1, air.station, Origin(ORIGIN), Guest())
+        self.vehicle = BridgedVehicle("plane", 1, air.station, BridgeOrigin(ORIGIN), Guest())
 
     def run(self, seconds, beat=None, peer=HERE, stop=NOBODY, **asked):
         nothing = dict.fromkeys(BridgedVehicle.requests, ())
@@ -205,7 +206,7 @@ class Bridged:
             if beat is not None and n % 50 == 0:
                 self.air.say(beat, peer=peer)
             self.air.station.poll(self.t)
-            told = self.vehicle.step(self.t, clock=None, stop=stop, **nothing | (asked if n == 0 else {}))
+            told = stepped(self.vehicle, self.t, clock=None, stop=stop, **nothing | (asked if n == 0 else {}))
             self.events += [event.text for event in told.get("events", ())]
         return self
 

@@ -14,8 +14,8 @@ from tests.services.planner.plans import room
 from uvf.maths import se3
 from uvf.maths.se2 import IDENTITY
 from uvf.runtime.bus.interface import LocalBus
-from uvf.runtime.contract.instances import Host
-from uvf.runtime.contract.service_runner import Shell
+from uvf.runtime.contract.instances import ServiceInstance
+from uvf.runtime.contract.service_runner import ServiceRunner
 from uvf.runtime.messages.convert import occupancy_grid, planar_pose, stamp
 
 NAN = math.nan
@@ -47,7 +47,7 @@ class Bench:
             PlannerService: lambda: PlannerService(IDENTITY, 0.1, True, PlannerParams()),
             TrackerService: lambda: TrackerService(BODY, se3.IDENTITY, TrackerParams()),
         }
-        self.shells = [Shell(Host(kind, make, "v"), self.bus, self.told.append) for kind, make in makers.items()]
+        self.shells = [ServiceRunner(ServiceInstance(kind, make, "v"), self.bus, self.told.append) for kind, make in makers.items()]
 
     def put(self, topic, message):
         message.timestamp.CopyFrom(stamp(self.t))

@@ -11,9 +11,9 @@ from services.sim_ground.build import build as build_simulator
 from services.slam.build import build as build_slam
 from tests.runtime.outcome import ask
 from uvf.maths.se2 import inverse, transform
-from uvf.models.scenario import ROOT, load_site
+from uvf.models.scenario import ROOT, load_scenario
 from uvf.models.world.geometry import floor_plan, reachable_floor
-from uvf.runtime.contract.service_runner import Shell
+from uvf.runtime.contract.service_runner import ServiceRunner
 from uvf.runtime.messages.convert import occupancy_cells, yaw_of
 from uvf.runtime.state.stop_all import StopVoice
 from uvf.runtime.time.lockstep import Lockstep
@@ -64,7 +64,7 @@ class House:
 
 @pytest.fixture(scope="module")
 def explored():
-    house = House(load_site(ROOT / "missions" / "demo.yaml"))
+    house = House(load_scenario(ROOT / "missions" / "demo.yaml"))
     house.run.run(ROUND)
     yield house
     house.run.close()
@@ -150,7 +150,7 @@ def test_a_cancelled_goal_stops_the_vehicle_and_exploring_goes_on_later(explored
 
 def test_slam_that_is_started_again_finds_the_vehicle_in_its_old_map():
     """Both slam services die on the way and are back two seconds later; the vehicle stands meanwhile."""
-    house = House(load_site(ROOT / "missions" / "demo.yaml"))
+    house = House(load_scenario(ROOT / "missions" / "demo.yaml"))
     newest = {}
     for topic in (topics.ODOMETRY, topics.TF_MAP, topics.MAP_SESSION):
         house.bus.subscribe(topic.at(VEHICLE), topic.qos, lambda sample: newest.update({sample.key: sample.payload}))
@@ -158,7 +158,7 @@ def test_slam_that_is_started_again_finds_the_vehicle_in_its_old_map():
     before = house.places()[-1]
     for i, shell in enumerate(house.run.shells):
         if shell.type.name in ("odometry", "mapping"):
-            house.run.shells[i] = again = Shell(shell.host, house.bus)  # which hears what is latched, as a new process does
+            house.run.shells[i] = again = ServiceRunner(shell.host, house.bus)  # which hears what is latched, as a new process does
             again.recall(newest.get)
             again.skip_to(round(14.0e9))
     house.run.run(13.99)
@@ -193,7 +193,7 @@ def mission_site(tmp_path, items=ROUNDS):
         "    start: {x: 2.2, y: 1.3, yaw: 0.5}\n"
         f"    job: {{mission: {items}}}\n"
     )
-    return load_site(path)
+    return load_scenario(path)
 
 
 def test_a_mission_leads_through_rooms_not_seen_yet_and_home(tmp_path):

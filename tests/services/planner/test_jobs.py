@@ -3,7 +3,7 @@
 import pytest
 
 from schemas.messages import Mission, MissionItem, MissionProgress, Mode, RallyPoints, Vector3, VehicleStatus
-from services.planner.jobs import EXPLORE, IDLE, Goal, Havens, Orders, choose, mission_target, not_now
+from services.planner.jobs import EXPLORE, IDLE, Goal, Orders, ReturnPoints, choose, mission_target, not_now
 
 HOME = (1.0, 2.0)
 READY = VehicleStatus(mode=Mode.MODE_MISSION, armed=True)
@@ -45,10 +45,10 @@ def test_a_goal_waits_for_a_vehicle_that_may_drive():
 
 
 def test_the_way_back_leads_to_what_is_nearest_when_it_begins_and_does_not_change_on_the_way():
-    returning, havens = VehicleStatus(mode=Mode.MODE_RETURN), Havens()
+    returning, return_points = VehicleStatus(mode=Mode.MODE_RETURN), ReturnPoints()
     rally = RallyPoints(points=[Vector3(x=10.0), Vector3(y=10.0)])
-    assert havens.step(READY, (9.0, 0.0), HOME, rally) == (10.0, 0.0)
-    assert havens.step(returning, (9.0, 0.0), HOME, rally) == (10.0, 0.0)
-    assert havens.step(returning, (0.0, 9.0), HOME, rally) == (10.0, 0.0)
-    assert havens.step(READY, (0.0, 9.0), HOME, rally) == (0.0, 10.0)
-    assert havens.step(returning, (0.0, 9.0), HOME, None) == HOME  # taken away on the way
+    assert return_points.step(READY, (9.0, 0.0), HOME, rally) == (10.0, 0.0)
+    assert return_points.step(returning, (9.0, 0.0), HOME, rally) == (10.0, 0.0)
+    assert return_points.step(returning, (0.0, 9.0), HOME, rally) == (10.0, 0.0)
+    assert return_points.step(READY, (0.0, 9.0), HOME, rally) == (0.0, 10.0)
+    assert return_points.step(returning, (0.0, 9.0), HOME, None) == HOME  # taken away on the way

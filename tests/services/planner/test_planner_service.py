@@ -18,10 +18,11 @@ from schemas.messages import (
     VehicleStatus,
 )
 from services.planner.planner_service import PlannerParams, PlannerService
+from tests.runtime.stepping import recall, stale, stepped
 from tests.services.live_params import all_settable_are_read
 from tests.services.planner.plans import room
 from uvf.planning import navigator
-from uvf.planning.search import Ways
+from uvf.planning.search import CostToGo
 from uvf.runtime.messages.convert import occupancy_grid, planar_pose
 
 READY = VehicleStatus(mode=Mode.MODE_MISSION, armed=True, command_source="planner")
@@ -49,8 +50,8 @@ class Bench:
         for _ in range(n):
             self.t += 0.25
             pose = PoseInFrame(pose=planar_pose(*world(*self.here), self.yaw))
-            told = (status, mission, progress, bounds, rally)
-            self.said = self.service.step(self.t, pose, self.grid, *told, list(goal), list(cancel), [])
+            told = {"status": status, "mission": mission, "progress": progress, "bounds": bounds, "rally": rally}
+            self.said = stepped(self.service, self.t, pose=pose, map=self.grid, goal=list(goal), cancel=list(cancel), **told)
             self.events += [e.text for e in self.said["events"]]
             self.asked += self.said["set_mode"]
         return self
@@ -201,7 +202,7 @@ def test_a_flood_of_goals_costs_one_search_and_the_last_good_one_counts():
     flood = [asked(0.5 + 0.01 * i, 1.5) for i in range(255)] + [asked(0.07, 1.0)]
     searches = []
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(navigator, "Ways", lambda cost, cell: searches.append(cell) or Ways(cost, cell))
+        patch.setattr(navigator, "CostToGo", lambda cost, cell: searches.append(cell) or CostToGo(cost, cell))
         bench.step(goal=flood)
     replies = bench.said["goal"]
     assert [r.accepted for r in replies] == [True] * 255 + [False]
@@ -290,7 +291,7 @@ def test_an_obstacle_that_appears_in_the_map_is_gone_round():
 def test_started_again_it_still_drives_to_the_persons_goal():
     old = Bench().step(goal=[asked(3.0, 2.0)]).step()
     new = Bench()
-    new.service.recall(nav_status=old.said["nav_status"])
+    recall(new.service, nav_status=old.said["nav_status"])
     end = new.step().said["path"].poses[-1].position
     assert (end.x, end.y) == pytest.approx(world(3.0, 2.0))
 
@@ -298,12 +299,12 @@ def test_started_again_it_still_drives_to_the_persons_goal():
 def test_started_again_a_cancelled_goal_stays_cancelled():
     old = Bench().step(goal=[asked(3.0, 2.0)]).step().step(cancel=[CANCEL])
     new = Bench()
-    new.service.recall(nav_status=old.said["nav_status"])
+    recall(new.service, nav_status=old.said["nav_status"])
     assert new.step().said["nav_status"].job == "idle"
 
 
 def test_without_pose_or_map_there_is_no_path():
-    outputs = Bench().service.stale(1.0, ("pose", "map"))
+    outputs = stale(Bench().service, 1.0, ("pose", "map"))
     assert len(outputs["path"].poses) == 0
     assert outputs["nav_status"].reason == "waiting for pose, map"
 
@@ -316,7 +317,7 @@ def test_every_parameter_of_the_planner_is_read_while_running():
         bench.step(40)
 
 
-@pytest.mark.parametrize("change", [{"comfort": 0.9, "dislike": 50.0}, {"margin": 0.4}])
+@pytest.mark.parametrize("change", [{"inflation_radius": 0.9, "cost_scaling_factor": 50.0}, {"margin": 0.4}])
 def test_the_path_keeps_farther_from_walls_when_that_is_set_while_driving(change):
     bench = Bench()
     cells = room(4.0, 3.0)
@@ -330,6 +331,6 @@ def test_the_path_keeps_farther_from_walls_when_that_is_set_while_driving(change
 
 def test_a_comfort_below_the_radius_does_not_spoil_the_costs():
     bench = Bench().step(goal=[asked(3.0, 2.0)]).step()
-    bench.service.params = PlannerParams(comfort=0.13)
+    bench.service.params = PlannerParams(inflation_radius=0.13)
     assert bench.step(2).state == NavStatus.DRIVING
     assert np.isfinite(bench.service._navigator.costs.cost).all()

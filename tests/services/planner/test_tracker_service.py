@@ -9,6 +9,7 @@ from schemas.messages import (
     PosesInFrame,
 )
 from services.planner.tracker_service import TrackerParams, TrackerService
+from tests.runtime.stepping import stale, stepped
 from tests.services.autopilot.ground.test_service import BODY
 from tests.services.live_params import all_settable_are_read
 from uvf.maths.rotations import from_euler
@@ -39,7 +40,7 @@ class TrackerBench:
             self.t += 0.05
             poses = [PoseInFrame(timestamp=stamp(self.t - s), pose=planar_pose(0.0, 0.0, 0.0)) for s in (0.04, 0.02)]
             seen_at = 0.0 if blind else self.t - 0.03
-            out = self.service.step(self.t, path, poses, scan(seen_at, ahead))
+            out = stepped(self.service, self.t, path=path, pose=poses, scan=scan(seen_at, ahead))
             self.commands.append((out["drive"].linear, out["drive"].angular))
             self.events += [e.text for e in out.get("events", [])]
         return self
@@ -63,7 +64,7 @@ def test_what_a_scanner_sees_that_hangs_upside_down_is_on_the_side_where_it_is()
 
     def speed(side):
         path = PosesInFrame(poses=[planar_pose(0.1 * i, side * 0.1 * i, 0.0) for i in range(11)])
-        return TrackerService(BODY, hanging, TrackerParams()).step(1.0, path, poses, beside)["drive"].linear
+        return stepped(TrackerService(BODY, hanging, TrackerParams()), 1.0, path=path, pose=poses, scan=beside)["drive"].linear
 
     assert speed(-1.0) > 1.2 * speed(1.0)
 
@@ -87,7 +88,7 @@ def poses_until(end):
 def post_seen(sweeping, clockwise, end=1.02):
     """Bearings [rad] in the world at which it is taken to stand."""
     service = TrackerService(BODY, IDENTITY, TrackerParams(), sweeping)
-    service.step(1.02, PosesInFrame(), poses_until(end), swept_post(clockwise))
+    stepped(service, 1.02, path=PosesInFrame(), pose=poses_until(end), scan=swept_post(clockwise))
     return np.arctan2(service._seen[:, 1], service._seen[:, 0])
 
 
@@ -108,8 +109,8 @@ def test_a_slow_scan_is_as_old_as_its_last_beam():
     path = PosesInFrame(poses=[planar_pose(0.1 * i, 0.0, 0.0) for i in range(31)])
     service = TrackerService(BODY, IDENTITY, TrackerParams(), Sweeping(0.5))
     poses = [PoseInFrame(timestamp=stamp(0.02 * k), pose=planar_pose(0.0, 0.0, 0.0)) for k in range(100)]
-    assert service.step(2.0, path, poses, wall)["drive"].linear > 0.1
-    assert service.step(2.2, path, [], wall)["drive"].linear == 0.0
+    assert stepped(service, 2.0, path=path, pose=poses, scan=wall)["drive"].linear > 0.1
+    assert stepped(service, 2.2, path=path, pose=[], scan=wall)["drive"].linear == 0.0
 
 
 def test_backs_off_when_it_stays_blocked():
@@ -133,7 +134,7 @@ def test_blind_it_does_not_move():
 
 
 def test_stale_inputs_mean_stop():
-    drive = TrackerBench().service.stale(3.0, ("pose",))["drive"]
+    drive = stale(TrackerBench().service, 3.0, ("pose",))["drive"]
     assert (drive.linear, drive.angular) == (0.0, 0.0)
 
 

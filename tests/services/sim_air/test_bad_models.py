@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 
 from services.sim_air.engine.airframe import Airframe
-from services.sim_air.engine.states import Start
+from services.sim_air.engine.states import InitialState
 from uvf.maths.geodesy import LocalTangent
 from uvf.models.scenario import ROOT
 from uvf.models.vehicle.file import load_vehicle
 from uvf.models.yaml_data import BadInput
 
 TANGENT = LocalTangent.from_degrees(40.77, 14.79, 300.0)
-LEVEL = Start(np.array((0.0, 0.0, 60.0)), 0.0, 25.0, np.zeros(3))
+LEVEL = InitialState(np.array((0.0, 0.0, 60.0)), 0.0, 25.0, np.zeros(3))
 
 
 def without(section):

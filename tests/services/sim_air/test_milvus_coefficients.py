@@ -18,7 +18,7 @@ from benchmarks.milvus_coefficients import (
     stated_pitch,
 )
 from services.sim_air.engine.airframe import Airframe
-from services.sim_air.engine.states import Held, Start
+from services.sim_air.engine.states import Held, InitialState
 from services.sim_air.engine.wiring import Controls
 from uvf.maths import atmosphere
 
@@ -61,7 +61,7 @@ def test_flaps_lift_nothing_once_the_flow_has_left_the_wing(held):
 
 def joints_after(controls):
     airframe = Airframe(FOLDER, BODY, TANGENT)
-    airframe.stand(Start(np.zeros(3), 0.0, 0.0, np.zeros(3)))
+    airframe.stand(InitialState(np.zeros(3), 0.0, 0.0, np.zeros(3)))
     airframe.command(controls)
     airframe.step()
     return {joint.name: joint.position for joint in airframe.joints()}

@@ -12,7 +12,7 @@ from benchmarks.milvus_performance import ALTITUDES, SPEEDS, Running, density, l
 from services.sim_air.actuators import Actuators
 from services.sim_air.aircraft import Aircraft
 from services.sim_air.engine.airframe import Airframe
-from services.sim_air.engine.states import Start
+from services.sim_air.engine.states import InitialState
 from tests import aerosonde
 from uvf.models.vehicle.file import load_vehicle
 from uvf.models.yaml_data import BadInput
@@ -58,7 +58,7 @@ def flying_on(battery):
     pack = msgspec.structs.replace(file.air.battery, **battery)
     file = msgspec.structs.replace(file, air=msgspec.structs.replace(file.air, battery=pack))
     airframe = Airframe(FOLDER, file.air, TANGENT)
-    trim = airframe.start(Start(np.array((0.0, 0.0, 100.0)), 0.0, 25.0, np.zeros(3)))
+    trim = airframe.start(InitialState(np.array((0.0, 0.0, 100.0)), 0.0, 25.0, np.zeros(3)))
     return Aircraft("milvus", file, airframe, Actuators(trim.controls, file.air), trim.controls)
 
 

@@ -16,13 +16,13 @@ from benchmarks.milvus_strip import (
     take_off,
 )
 from services.sim_air.contact.crash import crash_of
-from services.sim_air.engine.states import Start
-from services.sim_air.engine.trim import Attitude
+from services.sim_air.engine.states import InitialState
+from services.sim_air.engine.trim import TrimAttitude
 from services.sim_air.engine.wiring import Controls
 
 G = 9.80665
 UP = np.array((0.0, 0.0, 0.1))
-FLAT = Attitude(0.0, 0.06, 0.0, (0.0, 0.0, 0.0))
+FLAT = TrimAttitude(0.0, 0.06, 0.0, (0.0, 0.0, 0.0))
 WHEELS = ("nose_wheel", "left_wheel", "right_wheel")
 
 
@@ -100,7 +100,7 @@ def test_a_wheel_does_not_shake_itself_up_at_this_physics_rate():
     """Dropped from 10 cm it comes to rest within two seconds."""
     strip = standing()
     at_rest = strip.airframe.motion().position
-    strip.airframe._place(Start(at_rest + UP, 0.0, 0.0, CALM), FLAT)
+    strip.airframe._place(InitialState(at_rest + UP, 0.0, 0.0, CALM), FLAT)
     strip.airframe.command(Controls())
     heights = [strip.airframe.motion().position[2] - at_rest[2] for _ in range(500) if strip.airframe.step() is None]
     assert min(heights) > -0.05

@@ -12,10 +12,10 @@ from schemas import topics
 from schemas.messages import Event, NavState, SurfaceCommand
 from services.sim_air.build import build
 from services.sim_air.engine.airframe import Airframe
-from services.sim_air.engine.states import Start
+from services.sim_air.engine.states import InitialState
 from uvf.maths import rotations
 from uvf.maths.geodesy import LocalTangent
-from uvf.models.scenario import ROOT, load_site
+from uvf.models.scenario import ROOT, load_scenario
 from uvf.models.vehicle.file import load_vehicle
 from uvf.runtime.messages.convert import array, wxyz
 from uvf.runtime.time.lockstep import Lockstep
@@ -46,7 +46,7 @@ class Flight:
     def __init__(self, root, model, pilot=None):
         (root / "one.yaml").write_text(MISSION.format(model=model))
         self.truth, self.events, self.pilot = [], [], pilot
-        self.lockstep = Lockstep(build(load_site(root / "one.yaml", root)))
+        self.lockstep = Lockstep(build(load_scenario(root / "one.yaml", root)))
         bus, said = self.lockstep.bus, topics.EVENTS.by("sim_air")
         bus.subscribe(topics.TRUTH.at("bird"), topics.TRUTH.qos, lambda s: self.truth.append(NavState.FromString(s.payload)))
         bus.subscribe(said.at("bird"), said.qos, lambda s: self.events.append(Event.FromString(s.payload)))
@@ -82,7 +82,7 @@ def test_it_flies_a_minute_with_its_surfaces_held_at_the_trim(tmp_path, model, s
 def test_a_light_aircraft_stands_still_in_a_wind(tmp_path):
     file = load_vehicle(ROOT / "vehicles", "stick25")
     airframe = Airframe(ROOT / "vehicles" / "stick25", file.air, LocalTangent.from_degrees(40.77, 14.79, 300.0))
-    airframe.stand(Start(np.zeros(3), 0.0, 0.0, np.array((-5.0, 2.0, 0.0))))
+    airframe.stand(InitialState(np.zeros(3), 0.0, 0.0, np.array((-5.0, 2.0, 0.0))))
     before = airframe.motion()
     for _ in range(800):
         airframe.step()

@@ -9,7 +9,7 @@ from schemas import topics
 from schemas.messages import Event, NavState, SetPoseRequest, SurfaceCommand
 from services.sim_air.build import build
 from uvf.maths import rotations
-from uvf.models.scenario import load_site
+from uvf.models.scenario import load_scenario
 from uvf.runtime.messages.convert import array, planar_pose, wxyz
 from uvf.runtime.time.lockstep import Lockstep
 
@@ -28,7 +28,7 @@ class Run:
     def __init__(self, folder):
         path = folder / "one.yaml"
         path.write_text(MISSION)
-        self.lockstep, self.truth, self.events = Lockstep(build(load_site(path))), [], []
+        self.lockstep, self.truth, self.events = Lockstep(build(load_scenario(path))), [], []
         bus, said = self.lockstep.bus, topics.EVENTS.by("sim_air")
         bus.subscribe(topics.TRUTH.at("bird"), topics.TRUTH.qos, lambda s: self.truth.append(NavState.FromString(s.payload)))
         bus.subscribe(said.at("bird"), said.qos, lambda s: self.events.append(Event.FromString(s.payload)))

@@ -6,8 +6,8 @@ import pytest
 
 from schemas.messages import NavState
 from services.sim_air.contact.surroundings import Around
-from services.sim_air.engine.states import Motion
-from services.sim_air.environment.ground import Ground
+from services.sim_air.engine.states import AircraftMotion
+from services.sim_air.environment.ground import GroundSurface
 from services.sim_air.rangers import Rangers
 from tests.services.sim_air.shapes import MILVUS_TREE
 from uvf.maths.bvh import build as tree_over
@@ -25,12 +25,12 @@ AWAY = np.array((-500.0, 0.0, 40.0))
 
 
 def motion(position, roll=0.0):
-    return Motion(np.array(position), np.zeros(3), from_euler(roll, 0.0, 0.0), np.zeros(3), np.zeros(3), 25.0)
+    return AircraftMotion(np.array(position), np.zeros(3), from_euler(roll, 0.0, 0.0), np.zeros(3), np.zeros(3), 25.0)
 
 
 def read(at=(0.0, 0.0, 40.0), other=AWAY, van=(-500.0, 0.0, 0.0), t=0.1, roll=0.0):
     shapes = {"a": MILVUS_TREE, "b": MILVUS_TREE, "van": tree_over(box((4.0, 2.0, 2.0), (0.0, 0.0, 1.0)))}
-    around = Around([WALL], Ground(scene([WALL])), shapes, {}.__getitem__)
+    around = Around([WALL], GroundSurface(scene([WALL])), shapes, {}.__getitem__)
     sensors = Sensors(lidar=FORWARD, rangefinders=[msgspec.structs.replace(DOWN, latency=0.0)])
     rangers = Rangers("a", sensors, around.still, lambda name: np.random.default_rng(1))
     truth = {"van": NavState(position=vector(np.array(van)), orientation=quaternion(IDENTITY))}

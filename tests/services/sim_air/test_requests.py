@@ -6,12 +6,13 @@ import numpy as np
 import pytest
 
 from schemas import topics
-from schemas.messages import RemoveRequest, SetPoseRequest, SimObject, SpawnRequest, StateRequest, SurfaceCommand
+from schemas.messages import NavState, RemoveRequest, SetPoseRequest, SimObject, SpawnRequest, StateRequest, SurfaceCommand
 from services.sim_air.build import build
 from tests.services.asking import Asked
-from uvf.models.scenario import load_site
-from uvf.runtime.contract.instances import Host
-from uvf.runtime.contract.service import Service, every
+from uvf.models.scenario import load_scenario
+from uvf.runtime.contract.declaration import Reads, Writes, every, topic
+from uvf.runtime.contract.instances import ServiceInstance
+from uvf.runtime.contract.service import Service
 from uvf.runtime.messages import spawned
 from uvf.runtime.messages.convert import array, planar_pose, seconds
 
@@ -41,14 +42,18 @@ class Pilot(Service):
 
     name = "pilot"
     hz = 50.0
-    inputs = {"truth": every(topics.TRUTH)}
-    outputs = {"surfaces": topics.SURFACE_COMMAND}
+
+    class Inputs(Reads):
+        truth: list[NavState] = every(topics.TRUTH)
+
+    class Outputs(Writes):
+        surfaces: SurfaceCommand | None = topic(topics.SURFACE_COMMAND)
 
     def __init__(self, script):
         self._script = script
 
-    def step(self, t, truth):
-        return {"surfaces": SurfaceCommand(aileron=self._script(t), elevator=-0.14, throttle=0.75)}
+    def step(self, t: float, now: Inputs) -> Outputs:
+        return self.Outputs(surfaces=SurfaceCommand(aileron=self._script(t), elevator=-0.14, throttle=0.75))
 
 
 class Run(Asked):
@@ -57,8 +62,8 @@ class Run(Asked):
     def __init__(self, folder, script=None, model="milvus_survey", mission=MISSION):
         path = folder / "one.yaml"
         path.write_text(mission.format(model=model))
-        pilot = [Host(Pilot, lambda: Pilot(script), "bird")] if script else []
-        super().__init__(build(load_site(path)) + pilot, "bird", HEARD)
+        pilot = [ServiceInstance(Pilot, lambda: Pilot(script), "bird")] if script else []
+        super().__init__(build(load_scenario(path)) + pilot, "bird", HEARD)
 
     def place(self, owner=""):
         return array(self.of(topics.TRUTH, owner)[-1].position)

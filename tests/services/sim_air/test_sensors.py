@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from services.sim_air.engine.states import Air, Motion
-from services.sim_air.sensors import Gnss, Imu, Pressures
+from services.sim_air.engine.states import Air, AircraftMotion
+from services.sim_air.sensors import Gnss, Imu, PressureSensors
 from uvf.maths import rotations
 from uvf.maths.geodesy import LocalTangent
 from uvf.models.vehicle.sensors import AirDataSensor, GnssSensor, ImuSensor, Mount
@@ -17,7 +17,7 @@ TANGENT = LocalTangent.from_degrees(40.77, 14.79, 300.0)
 
 
 def moving(x=0.0, attitude=rotations.IDENTITY):
-    return Motion(
+    return AircraftMotion(
         np.array((x, 0.0, 50.0)), np.array((25.0, 0.0, 0.0)), attitude, np.array((0.1, 0.2, 0.3)), np.array((0.0, 0.0, 9.81)), 25.0
     )
 
@@ -76,7 +76,7 @@ def test_fixes_scatter_as_told():
 
 
 def test_pressures_scatter_about_a_constant_bias():
-    pressures = Pressures(AirDataSensor(50.0, static_noise=3.0, differential_noise=4.0, static_bias=20.0), rng())
+    pressures = PressureSensors(AirDataSensor(50.0, static_noise=3.0, differential_noise=4.0, static_bias=20.0), rng())
     read = [pressures.read(k / 50, lambda: Air(97_000.0, 370.0, 285.0)).air for k in range(1, 2001)]
     static = np.array([r.static_pressure for r in read])
     assert static.std() == pytest.approx(3.0, rel=0.1)
@@ -86,7 +86,7 @@ def test_pressures_scatter_about_a_constant_bias():
 
 def test_late_readings_keep_the_moment_they_are_valid_for():
     imu = Imu(ImuSensor(Mount(), 100.0, latency=0.02), FIELD, rng())
-    pressures = Pressures(AirDataSensor(50.0, latency=0.03), rng())
+    pressures = PressureSensors(AirDataSensor(50.0, latency=0.03), rng())
     steps = [k / 100 for k in range(1, 21)]
     felt = [(t, reading.t) for t in steps if (reading := imu.read(t, moving()))]
     heard = [(t, sample.t) for t in steps if (sample := pressures.read(t, lambda: Air(97_000.0, 370.0, 285.0)))]

@@ -14,19 +14,20 @@ from services.sim_air.actuators import Actuators
 from services.sim_air.aircraft import Aircraft
 from services.sim_air.build import build
 from services.sim_air.contact.surroundings import Around
-from services.sim_air.engine.states import Air, Motion
+from services.sim_air.engine.states import Air, AircraftMotion
 from services.sim_air.engine.wiring import Controls, JointAngle
 from services.sim_air.environment.ground import LEVEL
 from services.sim_air.sensors import Imu
 from services.sim_air.service import SimAir
-from services.sim_air.stage import Stage
+from services.sim_air.stage import AirStage
+from tests.runtime.stepping import stepped
 from tests.services.sim_air.shapes import MILVUS_TREE
 from uvf.maths import rotations
 from uvf.maths.rotations import IDENTITY
-from uvf.models.scenario import ROOT, load_site
+from uvf.models.scenario import ROOT, load_scenario
 from uvf.models.vehicle.file import load_vehicle
 from uvf.runtime.bus.interface import LocalBus
-from uvf.runtime.contract.instances import Host
+from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.messages.convert import wxyz
 from uvf.runtime.time.lockstep import Lockstep
 
@@ -55,7 +56,7 @@ class Glider:
         self.steps += 1
 
     def motion(self):
-        return Motion(np.zeros(3), np.zeros(3), IDENTITY, np.zeros(3), np.array((0.0, 0.0, 9.8)), 25.0)
+        return AircraftMotion(np.zeros(3), np.zeros(3), IDENTITY, np.zeros(3), np.array((0.0, 0.0, 9.8)), 25.0)
 
     def air(self):
         return Air(97_000.0, 370.0, 285.0)
@@ -83,7 +84,7 @@ def glider():
 
 
 def simulator(craft):
-    return SimAir(Stage({"g": craft}, Around([], LEVEL, {"g": MILVUS_TREE}, {}.__getitem__), (), None))
+    return SimAir(AirStage({"g": craft}, Around([], LEVEL, {"g": MILVUS_TREE}, {}.__getitem__), (), None))
 
 
 def run_two(tmp_path, until=3.0):
@@ -93,7 +94,7 @@ def run_two(tmp_path, until=3.0):
     bus = LocalBus()
     bus.subscribe("uvf/*/*/*", topics.IMU.qos, lambda s: seen.append((s.stamp_ns, s.key, s.payload)))
     bus.subscribe("uvf/*/*/*/*", topics.IMU.qos, lambda s: seen.append((s.stamp_ns, s.key, s.payload)))
-    lockstep = Lockstep(build(load_site(path)), bus)
+    lockstep = Lockstep(build(load_scenario(path)), bus)
     lockstep.run(until)
     lockstep.close()
     return [s for s in seen if "/sys/" not in s[1]]
@@ -102,7 +103,7 @@ def run_two(tmp_path, until=3.0):
 def test_physics_keeps_up_with_the_clock():
     body, service = glider()
     for k in range(1, 101):
-        service.step(k / 100, surfaces={}, truth={}, objects=None, **NOTHING_ASKED)
+        stepped(service, k / 100, surfaces={}, truth={}, objects=None, **NOTHING_ASKED)
     assert body.steps == MILVUS.air.physics_hz
 
 
@@ -113,7 +114,7 @@ def after_one_command(command, until):
     """What the body is commanded at each physics step when ``command`` comes once, at the start, and then nothing."""
     body = Glider()
     service = simulator(Aircraft("g", MILVUS, body, Actuators(TRIMMED, MILVUS.air), TRIMMED))
-    lockstep = Lockstep([Host(SimAir, lambda: service)])
+    lockstep = Lockstep([ServiceInstance(SimAir, lambda: service)])
     commands = lockstep.bus.publisher(topics.SURFACE_COMMAND.at("g"), SurfaceCommand.DESCRIPTOR.full_name, topics.SURFACE_COMMAND.qos)
     commands.put(command.SerializeToString(), 0)
     lockstep.run(until)
@@ -137,7 +138,7 @@ def test_a_motor_that_was_off_does_not_start_when_commands_end():
 def test_an_aircraft_whose_autopilot_dies_while_it_rolls_stops_rolling_and_flies_on(tmp_path):
     path = tmp_path / "two.yaml"
     path.write_text(MISSION)
-    lockstep, truth = Lockstep(build(load_site(path))), []
+    lockstep, truth = Lockstep(build(load_scenario(path))), []
     lockstep.bus.subscribe(topics.TRUTH.at("first"), topics.TRUTH.qos, lambda s: truth.append(NavState.FromString(s.payload)))
     commands = lockstep.bus.publisher(topics.SURFACE_COMMAND.at("first"), SurfaceCommand.DESCRIPTOR.full_name, topics.SURFACE_COMMAND.qos)
     commands.put(SurfaceCommand(aileron=0.1, elevator=-0.14, throttle=0.78).SerializeToString(), 0)
@@ -153,11 +154,13 @@ def test_an_aircraft_whose_autopilot_dies_while_it_rolls_stops_rolling_and_flies
 @pytest.mark.parametrize("value", [math.nan, math.inf])
 def test_a_command_that_is_not_finite_is_no_command(name, value):
     body, service = glider()
-    service.step(0.01, surfaces={"g": SurfaceCommand(aileron=0.1, elevator=-0.2, throttle=0.9)}, truth={}, objects=None, **NOTHING_ASKED)
+    stepped(
+        service, 0.01, surfaces={"g": SurfaceCommand(aileron=0.1, elevator=-0.2, throttle=0.9)}, truth={}, objects=None, **NOTHING_ASKED
+    )
     for k in range(2, 101):
         bad = SurfaceCommand(aileron=-0.3, elevator=0.3, throttle=0.1)
         setattr(bad, name, value)
-        service.step(k / 100, surfaces={"g": bad}, truth={}, objects=None, **NOTHING_ASKED)
+        stepped(service, k / 100, surfaces={"g": bad}, truth={}, objects=None, **NOTHING_ASKED)
     assert body.commands[-1].aileron == pytest.approx(0.1, abs=1e-6)
     assert body.commands[-1].elevator == pytest.approx(-0.2, abs=1e-6)
     assert body.commands[-1].throttle == pytest.approx(0.9)
@@ -165,14 +168,14 @@ def test_a_command_that_is_not_finite_is_no_command(name, value):
 
 def test_before_the_first_command_the_surfaces_stay_trimmed():
     body, service = glider()
-    service.step(0.01, surfaces={}, truth={}, objects=None, **NOTHING_ASKED)
+    stepped(service, 0.01, surfaces={}, truth={}, objects=None, **NOTHING_ASKED)
     assert body.commands[-1].elevator == pytest.approx(-0.14)
 
 
 def test_joints_show_where_the_body_has_its_surfaces():
     _, service = glider()
     for k in range(1, 6):
-        out = service.step(k / 100, surfaces={}, truth={}, objects=None, **NOTHING_ASKED)
+        out = stepped(service, k / 100, surfaces={}, truth={}, objects=None, **NOTHING_ASKED)
     named = {j.name: j for j in out["joints"]["g"].joints}
     assert named["elevator"].position == pytest.approx(-0.14)
     assert named["propeller"].velocity == 500.0
@@ -180,7 +183,7 @@ def test_joints_show_where_the_body_has_its_surfaces():
 
 def test_a_sensor_that_is_not_fitted_sends_nothing():
     _, service = glider()
-    out = service.step(0.01, surfaces={}, truth={}, objects=None, **NOTHING_ASKED)
+    out = stepped(service, 0.01, surfaces={}, truth={}, objects=None, **NOTHING_ASKED)
     assert "imu" not in out
     assert "gnss" not in out
 
@@ -191,7 +194,7 @@ def house_readings(tmp_path, topic):
 
 
 def test_the_magnetic_field_is_that_of_the_world(tmp_path):
-    field = load_site(ROOT / "missions" / "demo.yaml").world.magnetic_field
+    field = load_scenario(ROOT / "missions" / "demo.yaml").world.magnetic_field
     read = house_readings(tmp_path, topics.IMU)[0].magnetic_field
     assert math.hypot(read.x, read.y, read.z) == pytest.approx(np.linalg.norm(field), rel=0.05)
     assert read.x == pytest.approx(field[0], abs=6e-6)  # it flies east, a little nose up
@@ -212,7 +215,7 @@ def test_the_imus_frame_is_that_of_the_vehicle_file():
     _, service = glider()
     (craft,) = service._stage.aircraft.values()
     craft.imu = Imu(msgspec.structs.replace(MILVUS.sensors.imu, frame="nose_imu"), np.zeros(3), np.random.default_rng(1))
-    assert service.step(0.01, surfaces={}, truth={}, objects=None, **NOTHING_ASKED)["imu"]["g"].frame_id == "g/nose_imu"
+    assert stepped(service, 0.01, surfaces={}, truth={}, objects=None, **NOTHING_ASKED)["imu"]["g"].frame_id == "g/nose_imu"
 
 
 def test_each_sensor_sends_at_its_own_rate_for_every_aircraft(tmp_path):

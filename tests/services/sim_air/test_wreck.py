@@ -9,13 +9,13 @@ from schemas import topics
 from schemas.messages import Event, NavState
 from services.sim_air.build import build
 from services.sim_air.contact.crash import FALLING, Resting, Wreck
-from services.sim_air.engine.states import Air, Motion
-from services.sim_air.environment.ground import LEVEL, Ground
+from services.sim_air.engine.states import Air, AircraftMotion
+from services.sim_air.environment.ground import LEVEL, GroundSurface
 from uvf.maths.bvh import build as tree_over
 from uvf.maths.geodesy import GRAVITY
 from uvf.maths.rotations import from_euler
 from uvf.maths.solids import box
-from uvf.models.scenario import load_site
+from uvf.models.scenario import load_scenario
 from uvf.models.shapes.scene import scene
 from uvf.models.shapes.solid import Solid
 from uvf.runtime.messages.convert import array
@@ -26,7 +26,9 @@ DT = 1 / 240
 
 
 def wreck(height, velocity=(0.0, 0.0, 0.0), ground=LEVEL, turning=(0.0, 0.0, 0.0)):
-    motion = Motion(np.array((0.0, 0.0, height)), np.array(velocity), from_euler(0.0, 0.0, 0.0), np.array(turning), np.zeros(3), 25.0)
+    motion = AircraftMotion(
+        np.array((0.0, 0.0, height)), np.array(velocity), from_euler(0.0, 0.0, 0.0), np.array(turning), np.zeros(3), 25.0
+    )
     return Wreck(motion, Air(100_000.0, 400.0, 288.0), [], Resting(ground, HULL))
 
 
@@ -57,7 +59,7 @@ def test_drag_takes_its_way_forward():
 
 
 def test_it_lies_on_the_lowest_corner_of_what_it_was_whatever_lies_below():
-    roof = Ground(scene([Solid("roof", "box", (20.0, 20.0, 3.0), np.array((0.0, 0.0, 1.5)))]))
+    roof = GroundSurface(scene([Solid("roof", "box", (20.0, 20.0, 3.0), np.array((0.0, 0.0, 1.5)))]))
     for ground, height in ((LEVEL, 0.0), (roof, 3.0)):
         one = fallen(wreck(30.0, ground=ground, turning=(0.3, 0.5, 0.1)), 10.0)
         assert Resting(ground, HULL).above(one.motion.position, one.motion.world_from_body) == pytest.approx(0.0, abs=1e-9)
@@ -74,7 +76,7 @@ def test_two_aircraft_that_meet_in_the_air_fall_to_the_ground(tmp_path):
         "  one: {model: milvus, system_id: 1, start: {x: -60.0, y: 0.0, z: 60.0, speed: 25.0}}\n"
         "  two: {model: milvus, system_id: 2, start: {x: 60.0, y: 0.3, z: 60.0, yaw: 3.14159, speed: 25.0}}\n"
     )
-    lockstep, events, truth = Lockstep(build(load_site(path))), [], {}
+    lockstep, events, truth = Lockstep(build(load_scenario(path))), [], {}
     for name in ("one", "two"):
         said = topics.EVENTS.by("sim_air")
         lockstep.bus.subscribe(said.at(name), said.qos, lambda s: events.append(Event.FromString(s.payload)))

@@ -13,13 +13,14 @@ from scipy.spatial.transform import Rotation
 from schemas import topics
 from schemas.messages import CompressedImage, FrameTransform, GimbalCommand, NavState
 from services.sim_camera.build import build
-from services.sim_camera.fitted import Fitted
+from services.sim_camera.fitted import FittedCamera
 from services.sim_camera.gimbal import Aim, joints_of
 from services.sim_camera.renderer import Pose
 from services.sim_camera.service import SimCamera
+from tests.runtime.stepping import stepped
 from tests.services.sim_camera.test_service import CAMERA, GreyRenderer
 from uvf.maths.rotations import from_euler, matrix, multiply
-from uvf.models.scenario import ROOT, load_site
+from uvf.models.scenario import ROOT, load_scenario
 from uvf.models.vehicle.file import load_vehicle
 from uvf.models.vehicle.sensors import Chase, Gimbal, Mount
 from uvf.models.yaml_data import BadInput
@@ -125,10 +126,10 @@ def test_joints_are_the_euler_angles_of_the_order_z_x_y(pan, roll, tilt):
 def test_what_is_rendered_is_what_the_frame_and_the_joints_tell():
     renderer = Watching()
     camera = msgspec.structs.replace(GIMBAL, mount=Mount(xyz=(0.4, 0.0, -0.1), rpy=(0.0, 0.5, 0.2)))
-    service = SimCamera(renderer, [Fitted("v", camera, np.random.default_rng(1), "gimbal")], lambda model: Path())
+    service = SimCamera(renderer, [FittedCamera("v", camera, np.random.default_rng(1), "gimbal")], lambda model: Path())
     truth = {"v": NavState(timestamp=stamp(0.18), position=vector(np.array((1.0, 2.0, 3.0))), orientation=quaternion(BANKED))}
     ask = {"v": GimbalCommand(pan=0.4, tilt=0.2)}
-    sent = [service.step(n / 5, truth=truth, **{**NOTHING_TOLD, "gimbals": ask}) for n in range(1, 6)][-1]
+    sent = [stepped(service, n / 5, truth=truth, **{**NOTHING_TOLD, "gimbals": ask}) for n in range(1, 6)][-1]
     frame: FrameTransform = sent["gimbal_frame"]["v"]
     assert (frame.parent_frame_id, frame.child_frame_id) == ("v/base_link", "v/gimbal")
     assert sent["gimbal"]["v"].frame_id == "v/gimbal_optical"
@@ -145,8 +146,8 @@ def test_what_is_rendered_is_what_the_frame_and_the_joints_tell():
 def test_each_camera_of_a_vehicle_has_its_own_topic():
     chase = Chase(mount=Mount(xyz=(-6.0, 0.0, 2.0)), hz=5.0, width=16, height=16, fov=1.2)
     cameras = {"image": CAMERA, "chase": chase, "gimbal": GIMBAL}
-    fitted = [Fitted("v", camera, np.random.default_rng(1), output) for output, camera in cameras.items()]
-    sent = SimCamera(GreyRenderer(), fitted, lambda model: Path()).step(0.2, truth={"v": LEVEL_TRUTH}, **NOTHING_TOLD)
+    fitted = [FittedCamera("v", camera, np.random.default_rng(1), output) for output, camera in cameras.items()]
+    sent = stepped(SimCamera(GreyRenderer(), fitted, lambda model: Path()), 0.2, truth={"v": LEVEL_TRUTH}, **NOTHING_TOLD)
     frames = {output: sent[output]["v"].frame_id for output in cameras}
     assert frames == {"image": "v/camera_optical", "chase": "v/chase_optical", "gimbal": "v/gimbal_optical"}
     assert {sent[info]["v"].width for info in ("info", "chase_info", "gimbal_info")} == {32, 16}
@@ -165,12 +166,12 @@ vehicles:
 def test_the_chase_camera_sees_its_own_aircraft(tmp_path):
     path = tmp_path / "look.yaml"
     path.write_text(MISSION)
-    (host,) = build(load_site(path))
+    (host,) = build(load_scenario(path))
     service = host.make()
     truth = NavState(timestamp=stamp(0.38), position=vector(np.array((-60.0, 0.0, 40.0))))
     truth.orientation.w = 1.0
     chase = next(fitted for fitted in service._cameras if fitted.output == "chase")
-    alone = [service.step(t, truth={"survey": truth}, **NOTHING_TOLD)["chase"].get("survey") for t in (0.2, 0.4)][-1]
+    alone = [stepped(service, t, truth={"survey": truth}, **NOTHING_TOLD)["chase"].get("survey") for t in (0.2, 0.4)][-1]
     assert isinstance(alone, CompressedImage)
     seen = service._renderer.take(*chase.looking(_pose(truth))).picture[60:130, 60:180]
     service.close()
@@ -185,7 +186,7 @@ def _pose(truth):
 def test_depth_is_of_the_first_camera_only(tmp_path):
     path = tmp_path / "look.yaml"
     path.write_text(MISSION)
-    site = load_site(path)
+    site = load_scenario(path)
     member = site.members["survey"]
     deep = msgspec.structs.replace(member.file.sensors, gimbal=msgspec.structs.replace(GIMBAL, depth=True))
     object.__setattr__(member, "file", msgspec.structs.replace(member.file, sensors=deep))

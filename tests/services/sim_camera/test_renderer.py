@@ -14,7 +14,7 @@ from uvf.maths.rotations import from_euler, matrix
 from uvf.models.aircraft.shape import AircraftShape, aircraft_shape
 from uvf.models.scenario import ROOT
 from uvf.models.shapes.mesh import load_mesh
-from uvf.models.shapes.mesh_parts import Part
+from uvf.models.shapes.mesh_parts import MeshPart
 from uvf.models.shapes.solid import Solid
 from uvf.models.vehicle.file import load_vehicle
 from uvf.models.vehicle.sensors import Camera, Mount
@@ -135,7 +135,7 @@ def test_a_mesh_is_drawn(tmp_path):
     mesh.write_text("v 0 -1 0\nv 0 1 0\nv 0 0 1\nv 0.1 0 0\nf 1 2 3\nf 1 3 2\nf 1 4 3\nf 2 3 4\nf 1 2 4\n")
     pose = {"other": Pose(np.array((6.0, 0.0, 0.0)), from_euler(0.0, 0.0, 0.0))}
     assert (
-        picture(EMPTY, vehicles={"other": AircraftShape([Part(*load_mesh(mesh))], [], (0.9, 0.9, 0.9))}, poses=pose) != picture(EMPTY)
+        picture(EMPTY, vehicles={"other": AircraftShape([MeshPart(*load_mesh(mesh))], [], (0.9, 0.9, 0.9))}, poses=pose) != picture(EMPTY)
     ).any()
 
 

@@ -5,7 +5,7 @@ import numpy as np
 from services.sim_ground.body import BodyState
 from uvf.maths.bvh import build
 from uvf.maths.kinematics import WheelSpeeds
-from uvf.maths.raycast import Body, Scene
+from uvf.maths.raycast import MovingBody, Scene
 from uvf.maths.rotations import from_euler
 from uvf.maths.solids import box, cylinder, joined
 
@@ -24,4 +24,4 @@ WALL_AHEAD = scene_of(((2.5, 0.0, 1.0), (1.0, 20.0, 2.0)))
 
 
 def post(x, y, radius):
-    return Body(build(cylinder(radius, 2.0, (0.0, 0.0, 0.0))), np.array((x, y, 1.0)))
+    return MovingBody(build(cylinder(radius, 2.0, (0.0, 0.0, 0.0))), np.array((x, y, 1.0)))

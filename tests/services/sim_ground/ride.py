@@ -11,8 +11,9 @@ from schemas.messages import WheelCommand
 from services.sim_ground.build import build
 from uvf.maths.kinematics import DifferentialDrive, Twist
 from uvf.maths.se2 import Pose2
-from uvf.models.scenario import load_site
-from uvf.runtime.contract.instances import Host
+from uvf.models.scenario import load_scenario
+from uvf.runtime.contract.declaration import Writes, topic
+from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import stamp, yaw_of
 from uvf.runtime.time.lockstep import Lockstep
@@ -26,17 +27,19 @@ class Driver(Service):
 
     name = "driver"
     hz = 50.0
-    outputs = {"wheels": topics.WHEEL_COMMAND}
+
+    class Outputs(Writes):
+        wheels: WheelCommand | None = topic(topics.WHEEL_COMMAND)
 
     def __init__(self, script):
         self.script = script
 
-    def step(self, t):
+    def step(self, t: float, now) -> Outputs:
         twist = self.script(t)
         if twist is None:
-            return {}
+            return self.Outputs()
         left, right = BURGER.wheels(twist)
-        return {"wheels": WheelCommand(timestamp=stamp(t), left=left, right=right)}
+        return self.Outputs(wheels=WheelCommand(timestamp=stamp(t), left=left, right=right))
 
 
 def site_with(folder, starts, seed=1, world="house"):
@@ -47,7 +50,7 @@ def site_with(folder, starts, seed=1, world="house"):
     }
     path = folder / "ride.yaml"
     path.write_text(yaml.safe_dump({"about": "test", "world": world, "seed": seed, "vehicles": vehicles}))
-    return load_site(path)
+    return load_scenario(path)
 
 
 @dataclass
@@ -75,7 +78,7 @@ WRITTEN = (topics.IMU, topics.SCAN, topics.WHEELS, topics.CONTACT, topics.JOINTS
 
 def ride(site, until, scripts):
     """scripts: vehicle -> function of t [s] giving a Twist or None."""
-    drivers = [Host(Driver, lambda s=script: Driver(s), name) for name, script in scripts.items()]
+    drivers = [ServiceInstance(Driver, lambda s=script: Driver(s), name) for name, script in scripts.items()]
     lockstep = Lockstep(build(site) + drivers)
     record = Record()
 
@@ -83,8 +86,8 @@ def ride(site, until, scripts):
         record.messages[sample.key].append(topic.message.FromString(sample.payload))
         record.data.append((sample.key, sample.stamp_ns, sample.payload))
 
-    for topic in WRITTEN:
-        lockstep.bus.subscribe(topic.at("*"), topic.qos, lambda sample, which=topic: keep(which, sample))
+    for of in WRITTEN:
+        lockstep.bus.subscribe(of.at("*"), of.qos, lambda sample, which=of: keep(which, sample))
     lockstep.run(until)
     lockstep.close()
     return record

@@ -8,7 +8,7 @@ import yaml
 
 from services.sim_ground.build import build
 from tests.services.sim_ground.ride import site_with
-from uvf.models.scenario import ROOT, load_site
+from uvf.models.scenario import ROOT, load_scenario
 from uvf.models.yaml_data import BadInput
 
 
@@ -23,7 +23,7 @@ def root(tmp_path):
 def refusal(root, start=(6.0, 4.4, 0.0)):
     mission = site_with(root, {"burger": start}).mission_path
     with pytest.raises(BadInput) as caught:
-        build(load_site(mission, root))
+        build(load_scenario(mission, root))
     assert "\n" not in str(caught.value)
     return str(caught.value)
 

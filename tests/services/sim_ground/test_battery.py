@@ -5,7 +5,7 @@ import pytest
 from services.sim_ground.motor import WheelMotor
 from uvf.models.vehicle.air import BatteryPack
 from uvf.models.vehicle.file import Motor, _check_ground_battery
-from uvf.models.yaml_data import BadInput, Place
+from uvf.models.yaml_data import BadInput, FileLocation
 
 MOTOR = WheelMotor(Motor(stall_torque=0.05, no_load_speed=30.0), 0.005)
 
@@ -30,4 +30,4 @@ def test_braking_gives_nothing_back():
 def test_what_only_an_aircraft_has_and_what_cannot_be_is_refused(wrong, says):
     pack = BatteryPack(**{"energy": 100.0, "full": 12.6, "empty": 9.6, **wrong})
     with pytest.raises(BadInput, match=says):
-        _check_ground_battery(pack, Place("vehicle.yaml"))
+        _check_ground_battery(pack, FileLocation("vehicle.yaml"))

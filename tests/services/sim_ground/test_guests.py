@@ -9,18 +9,18 @@ from schemas.messages import Contact, LaserScan, NavState
 from services.sim_air.build import build as build_air
 from services.sim_ground.build import build
 from services.sim_ground.guest import Course
-from services.sim_ground.world import BulletWorld, Placed
+from services.sim_ground.world import BodyPlacement, BulletWorld
 from tests.services.sim_ground.ride import Driver
 from uvf.maths.kinematics import Twist
 from uvf.maths.rotations import IDENTITY
-from uvf.models.scenario import ROOT, load_site
+from uvf.models.scenario import ROOT, load_scenario
 from uvf.models.shapes.solid import Solid
 from uvf.models.vehicle.file import load_vehicle
-from uvf.runtime.contract.instances import Host
+from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.time.lockstep import Lockstep
 
 BODY = load_vehicle(ROOT / "vehicles", "burger").ground
-PLACED = Placed(BODY, ROOT / "vehicles" / "burger" / BODY.urdf, (0.0, 0.0, 0.0))
+PLACED = BodyPlacement(BODY, ROOT / "vehicles" / "burger" / BODY.urdf, (0.0, 0.0, 0.0))
 
 
 def driven_towards_milvus(tmp_path, script, until):
@@ -31,8 +31,8 @@ def driven_towards_milvus(tmp_path, script, until):
     }
     path = tmp_path / "meet.yaml"
     path.write_text(yaml.safe_dump({"about": "test", "world": "empty", "vehicles": vehicles}))
-    site = load_site(path)
-    lockstep = Lockstep([*build(site), *build_air(site), Host(Driver, lambda: Driver(script), "burger")])
+    site = load_scenario(path)
+    lockstep = Lockstep([*build(site), *build_air(site), ServiceInstance(Driver, lambda: Driver(script), "burger")])
     kept = {}
     for topic, kind in ((topics.SCAN, LaserScan), (topics.CONTACT, Contact), (topics.TRUTH, NavState)):
         told = kept.setdefault(topic.key, [])

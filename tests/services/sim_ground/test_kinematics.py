@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from benchmarks.kinematics import drive, drives, figures, ground_vehicles
-from services.sim_ground.world import BulletWorld, Placed
-from uvf.control.drive_limits import Limits, Ramp
+from services.sim_ground.world import BodyPlacement, BulletWorld
+from uvf.control.drive_limits import DriveLimits, VelocityRamp
 from uvf.maths.kinematics import DifferentialDrive, Twist
 from uvf.maths.rotations import matrix
 from uvf.models.scenario import ROOT
@@ -31,9 +31,9 @@ def lowest_up(shaped):
     """Cosine of the greatest tilt of a burger with motors ten times as strong that is told 0.8 m/s ahead, then back."""
     body = load_vehicle(ROOT / "vehicles", "burger").ground
     strong = msgspec.structs.replace(body, motor=Motor(stall_torque=0.5, no_load_speed=30.0, lag=0.02))
-    placed = Placed(strong, ROOT / "vehicles" / "burger" / body.urdf, (0.0, 0.0, 0.0))
+    placed = BodyPlacement(strong, ROOT / "vehicles" / "burger" / body.urdf, (0.0, 0.0, 0.0))
     world, wheels = BulletWorld([], {"burger": placed}), DifferentialDrive(body.wheel_radius, body.track)
-    ramp = Ramp(Limits(body.max_linear, body.max_angular, body.max_linear_acceleration, body.max_angular_acceleration))
+    ramp = VelocityRamp(DriveLimits(body.max_linear, body.max_angular, body.max_linear_acceleration, body.max_angular_acceleration))
     up = 1.0
     for n in range(400):
         wanted = Twist(0.8 if n < 200 else -0.8, 0.0)

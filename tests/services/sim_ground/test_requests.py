@@ -9,7 +9,7 @@ from services.sim_ground.build import build
 from tests.services.asking import Asked
 from tests.services.sim_ground.ride import Driver, site_with
 from uvf.maths.kinematics import Twist
-from uvf.runtime.contract.instances import Host
+from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.messages import spawned
 from uvf.runtime.messages.convert import planar_pose, seconds, stamp
 
@@ -21,7 +21,7 @@ class Run(Asked):
     """A burger in the hall that can be asked things between two moments."""
 
     def __init__(self, folder, script=lambda t: None, drivers=("burger",), world="house", start=START):
-        hosts = [Host(Driver, lambda: Driver(script), name) for name in drivers]
+        hosts = [ServiceInstance(Driver, lambda: Driver(script), name) for name in drivers]
         super().__init__(build(site_with(folder, {"burger": start}, world=world)) + hosts, "burger", HEARD)
 
     def place(self, owner=""):

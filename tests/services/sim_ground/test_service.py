@@ -10,7 +10,8 @@ from schemas.messages import NavState, Quaternion, Vector3, WheelCommand
 from services.sim_ground.body import BodyState, Touch
 from services.sim_ground.rig import Rig
 from services.sim_ground.service import SimGround
-from services.sim_ground.stage import Stage
+from services.sim_ground.stage import GroundStage
+from tests.runtime.stepping import stepped
 from tests.services.sim_ground.ride import site_with
 from uvf.maths.kinematics import WheelSpeeds
 from uvf.models.urdf.model import load_urdf
@@ -64,31 +65,31 @@ def service_in(site, world, aircraft=()):
     models = {name: load_urdf(member.folder / member.file.ground.urdf) for name, member in site.members.items()}
     surroundings = Surroundings(solids(site.world), {name: vehicle_tree(model) for name, model in models.items()})
     rigs = {name: Rig(site, member, member.file.ground, surroundings.still) for name, member in site.members.items()}
-    stage = Stage(world, rigs, surroundings, tuple(rigs), join=None)
+    stage = GroundStage(world, rigs, surroundings, tuple(rigs), join=None)
     return SimGround(world, surroundings, stage, aircraft)
 
 
 def test_each_command_goes_to_its_vehicle_for_one_period(site):
     world = StandingWorld({"one": (6.0, 4.4), "two": (7.0, 4.4)})
-    service_in(site, world).step(0.01, **{**IDLE, "commands": {"two": WheelCommand(left=1.0, right=2.0)}})
+    stepped(service_in(site, world), 0.01, **{**IDLE, "commands": {"two": WheelCommand(left=1.0, right=2.0)}})
     assert world.told == [({"two": (1.0, 2.0)}, 0.01, 0.0)]
 
 
 def test_frames_are_told_at_the_first_step_only(site):
     service = service_in(site, StandingWorld({"one": (6.0, 4.4), "two": (7.0, 4.4)}))
-    assert set(service.step(0.01, **IDLE)["frames"]) == {"one", "two"}
-    assert "frames" not in service.step(0.02, **IDLE)
+    assert set(stepped(service, 0.01, **IDLE)["frames"]) == {"one", "two"}
+    assert "frames" not in stepped(service, 0.02, **IDLE)
 
 
 def test_the_neighbour_is_in_the_scan(site):
     service = service_in(site, StandingWorld({"one": (6.0, 4.4), "two": (7.0, 4.4)}))
-    scan = service.step(0.2, **IDLE)["scan"]["one"]
+    scan = stepped(service, 0.2, **IDLE)["scan"]["one"]
     assert scan.ranges[0] == pytest.approx(1.0 + 0.032 - 0.115, abs=0.04)
 
 
 def test_what_is_touched_is_named(site):
     service = service_in(site, StandingWorld({"one": (6.0, 4.4), "two": (7.0, 4.4)}, touches=[Touch("sofa", 0.1)]))
-    contact = service.step(0.05, **IDLE)["contact"]["two"]
+    contact = stepped(service, 0.05, **IDLE)["contact"]["two"]
     assert contact.touching
     assert contact.other == "sofa"
 
@@ -99,13 +100,13 @@ def test_a_short_touch_between_two_messages_is_told_once(site):
     told = []
     for n in range(1, 16):
         world.seen = [Touch("sofa", 0.1)] if n == 7 else []
-        told += [outputs["one"].touching for outputs in [service.step(n / 100, **IDLE).get("contact")] if outputs]
+        told += [outputs["one"].touching for outputs in [stepped(service, n / 100, **IDLE).get("contact")] if outputs]
     assert told == [False, True, False]
 
 
 def test_a_simulator_that_joins_late_still_tells_its_frames(site):
     service = service_in(site, StandingWorld({"one": (6.0, 4.4), "two": (7.0, 4.4)}))
-    assert set(service.step(50.0, **IDLE)["frames"]) == {"one", "two"}
+    assert set(stepped(service, 50.0, **IDLE)["frames"]) == {"one", "two"}
 
 
 def test_an_imu_at_200_hz_is_read_after_each_step_of_the_physics(site):
@@ -116,7 +117,7 @@ def test_an_imu_at_200_hz_is_read_after_each_step_of_the_physics(site):
     world = StandingWorld({"one": (6.0, 4.4), "two": (7.0, 4.4)})
     service = service_in(site, world)
     for n in range(1, 4):
-        said = service.step(n / 100, **IDLE)["imu"]
+        said = stepped(service, n / 100, **IDLE)["imu"]
         assert [round(seconds(m.timestamp), 6) for m in said["one"]] == [round(n / 100 - 0.005, 6), n / 100]
         assert round(seconds(said["two"].timestamp), 6) == n / 100
     assert [(duration, round(since, 6)) for _, duration, since in world.told[-2:]] == [(0.005, 0.02), (0.005, 0.025)]
@@ -131,7 +132,7 @@ def test_an_imu_between_one_and_two_readings_a_step_tells_each_at_the_next_step(
     service = service_in(site, StandingWorld({"one": (6.0, 4.4), "two": (7.0, 4.4)}))
     ages = []
     for n in range(1, 51):
-        said = service.step(n / 100, **IDLE).get("imu", {}).get("one", [])
+        said = stepped(service, n / 100, **IDLE).get("imu", {}).get("one", [])
         ages += [n / 100 - seconds(m.timestamp) for m in (said if isinstance(said, list) else [said])]
     assert len(ages) == 60
     assert max(ages) < 0.0051
@@ -146,7 +147,7 @@ def test_closing_gives_the_engine_back(site):
 def test_the_physics_hears_of_aircraft_and_of_nobody_else(site):
     world = StandingWorld({"one": (6.0, 4.4), "two": (7.0, 4.4)})
     told = NavState(timestamp=stamp(0.49), position=Vector3(x=1.0, z=2.0), velocity=Vector3(x=20.0), orientation=Quaternion(w=1.0))
-    service_in(site, world, ("bird",)).step(0.5, **{**IDLE, "truth": {"bird": told, "one": told}})
+    stepped(service_in(site, world, ("bird",)), 0.5, **{**IDLE, "truth": {"bird": told, "one": told}})
     assert list(world.guests) == ["bird"]
     assert world.guests["bird"].at(0.5).position == pytest.approx((1.2, 0.0, 2.0))
     assert world.guests["bird"].at(9.0).position == pytest.approx((3.0, 0.0, 2.0))

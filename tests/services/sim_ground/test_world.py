@@ -8,7 +8,7 @@ import numpy as np
 import pybullet
 import pytest
 
-from services.sim_ground.world import BulletWorld, Placed
+from services.sim_ground.world import BodyPlacement, BulletWorld
 from uvf.maths.kinematics import DifferentialDrive, Twist, WheelSpeeds
 from uvf.maths.rotations import from_euler, matrix, multiply, rotate, to_euler
 from uvf.models.scenario import ROOT
@@ -22,7 +22,7 @@ from uvf.models.world.geometry import solids
 HOUSE = load_world(ROOT / "worlds", "house")
 SOLIDS = solids(HOUSE)
 BODY = load_vehicle(ROOT / "vehicles", "burger").ground
-BURGER = Placed(BODY, ROOT / "vehicles" / "burger" / BODY.urdf, (6.0, 4.4, 0.7))
+BURGER = BodyPlacement(BODY, ROOT / "vehicles" / "burger" / BODY.urdf, (6.0, 4.4, 0.7))
 DRIVE = DifferentialDrive(BODY.wheel_radius, BODY.track)
 
 

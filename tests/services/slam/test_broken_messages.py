@@ -7,6 +7,7 @@ import pytest
 
 from schemas.messages import FrameTransform, Imu, KeyValuePair, LaserScan, Odometry, Quaternion, Vector3, WheelTicks
 from services.slam.odometry.service import OdometryService
+from tests.runtime.stepping import recall, stepped
 from tests.services.slam.test_services import BURGER, LIDAR, START, drive, frames_with, mapping, scan_at
 from tests.slam.room import ANGLES
 from uvf.estimation.odometry.params import OdometryParams
@@ -24,7 +25,7 @@ def mapped(*scans):
     for k, ranges in enumerate(scans, 1):
         t = 0.2 * k
         frames = frames_with(dict.fromkeys((t - 0.05, t), (0.01 * k, 0.0, 0.0)))
-        grid = service.step(t + 0.01, scan(t, ranges), frames).get("map", grid)
+        grid = stepped(service, t + 0.01, scan=scan(t, ranges), frames=frames).get("map", grid)
     return grid, service
 
 
@@ -44,8 +45,8 @@ def test_a_scan_whose_directions_are_no_numbers_is_left_out():
     service = mapping()
     pointless = scan(0.2, good())
     pointless.end_angle = math.nan
-    service.step(0.21, pointless, frames_with(dict.fromkeys((0.15, 0.2), (0.0, 0.0, 0.0))))
-    out = service.step(0.41, scan(0.4, good()), frames_with(dict.fromkeys((0.35, 0.4), (0.0, 0.0, 0.0))))
+    stepped(service, 0.21, scan=pointless, frames=frames_with(dict.fromkeys((0.15, 0.2), (0.0, 0.0, 0.0))))
+    out = stepped(service, 0.41, scan=scan(0.4, good()), frames=frames_with(dict.fromkeys((0.35, 0.4), (0.0, 0.0, 0.0))))
     assert (occupancy_cells(out["map"]) > 60).any()
 
 
@@ -59,8 +60,14 @@ def test_counters_that_jump_move_nothing(jump):
     service = OdometryService("v", BURGER, START, OdometryParams())
     before = drive(service, 20)["odometry"].pose.position.x
     wheels = WheelTicks(timestamp=stamp(0.4), left=jump, right=jump, radians_per_tick=0.001)
-    service.step(0.42, wheels, [], None)
-    after = service.step(0.44, WheelTicks(timestamp=stamp(0.42), left=jump + 4, right=jump + 4, radians_per_tick=0.001), [], None)
+    stepped(service, 0.42, wheels=wheels, imu=[], correction=None)
+    after = stepped(
+        service,
+        0.44,
+        wheels=WheelTicks(timestamp=stamp(0.42), left=jump + 4, right=jump + 4, radians_per_tick=0.001),
+        imu=[],
+        correction=None,
+    )
     assert after["odometry"].pose.position.x == pytest.approx(before, abs=0.02)
 
 
@@ -68,7 +75,7 @@ def test_counters_that_jump_move_nothing(jump):
 def test_ticks_of_no_size_move_nothing(size):
     service = OdometryService("v", BURGER, START, OdometryParams())
     drive(service, 5)
-    out = service.step(0.12, WheelTicks(timestamp=stamp(0.1), left=24, right=24, radians_per_tick=size), [], None)
+    out = stepped(service, 0.12, wheels=WheelTicks(timestamp=stamp(0.1), left=24, right=24, radians_per_tick=size), imu=[], correction=None)
     assert abs(out["odometry"].pose.position.x) < 0.05
 
 
@@ -80,7 +87,9 @@ def test_an_inertial_unit_gone_mad_leaves_finite_numbers(mad, axis, of):
     drive(service, 5)
     imu = Imu(timestamp=stamp(0.1), specific_force=Vector3(z=9.81))
     setattr(getattr(imu, of), axis, mad)
-    out = service.step(0.12, WheelTicks(timestamp=stamp(0.1), left=24, right=24, radians_per_tick=0.001), [imu], None)
+    out = stepped(
+        service, 0.12, wheels=WheelTicks(timestamp=stamp(0.1), left=24, right=24, radians_per_tick=0.001), imu=[imu], correction=None
+    )
     assert_finite(out)
 
 
@@ -103,7 +112,7 @@ def test_a_correction_without_orientation_is_none_of_the_heading():
 @pytest.mark.parametrize("left", [{}, {"left_ticks": "x"}, {"left_ticks": "1", "right_ticks": "2", "gyro_bias": "nan"}])
 def test_an_odometry_left_by_somebody_else_is_not_taken_up_blindly(left):
     service = OdometryService("v", BURGER, START, OdometryParams())
-    service.recall(odometry=Odometry(pose=planar_pose(1.0, 2.0, 0.0), metadata=[KeyValuePair(key=k, value=v) for k, v in left.items()]))
+    recall(service, odometry=Odometry(pose=planar_pose(1.0, 2.0, 0.0), metadata=[KeyValuePair(key=k, value=v) for k, v in left.items()]))
     assert math.isfinite(drive(service, 5)["odometry"].pose.position.x)
 
 
@@ -113,7 +122,7 @@ def test_a_map_that_is_too_large_is_told_of_once_and_the_pose_goes_on(monkeypatc
     for k in range(1, 30):
         here = (0.06 * k, 0.0, 0.0)
         frames = frames_with(dict.fromkeys((0.2 * k - 0.05, 0.2 * k), here))
-        said.append(service.step(0.2 * k + 0.01, scan_at(0.2 * k, here), frames))
+        said.append(stepped(service, 0.2 * k + 0.01, scan=scan_at(0.2 * k, here), frames=frames))
     told = [event for out in said for event in out["events"]]
     assert [event.text for event in told] == ["the map cannot be drawn"]
     assert "look for a jump in the odometry" in told[0].cause

@@ -11,9 +11,10 @@ from services.autopilot.ground.service import GroundAutopilot
 from services.planner.build import build as build_planner
 from services.slam import build as slam_build
 from services.slam.build import build as build_slam
+from tests.runtime.stepping import stepped
 from tests.stops import NOBODY
-from uvf.models.mission.file import Job, Waypoint
-from uvf.models.scenario import ROOT, load_site
+from uvf.models.mission.file import JobFile, Waypoint
+from uvf.models.scenario import ROOT, load_scenario
 from uvf.models.yaml_data import BadInput
 
 BUILDS = (build_slam, build_planner, hosts)
@@ -21,7 +22,7 @@ BUILDS = (build_slam, build_planner, hosts)
 
 @pytest.fixture
 def site():
-    return load_site(ROOT / "missions" / "demo.yaml")
+    return load_scenario(ROOT / "missions" / "demo.yaml")
 
 
 def with_burger(site, **changes):
@@ -29,7 +30,7 @@ def with_burger(site, **changes):
 
 
 def with_job(site, **job):
-    return with_burger(site, entry=msgspec.structs.replace(site.members["burger"].entry, job=Job(**job)))
+    return with_burger(site, entry=msgspec.structs.replace(site.members["burger"].entry, job=JobFile(**job)))
 
 
 def test_only_ground_vehicles_get_them(site):
@@ -90,5 +91,5 @@ def test_a_vehicle_with_a_job_begins_armed_and_one_without_does_not(site):
     )
     asked = {"imu": [], "stop": NOBODY, **{request: [] for request in GroundAutopilot.requests}}
     for job, armed, mode in (({"explore": True}, True, Mode.MODE_MISSION), ({}, False, Mode.MODE_HOLD)):
-        status = hosts(with_job(site, **job))[0].make().step(0.02, **nothing, **asked)["status"]
+        status = stepped(hosts(with_job(site, **job))[0].make(), 0.02, **nothing, **asked)["status"]
         assert (status.armed, status.mode) == (armed, mode)

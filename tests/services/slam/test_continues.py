@@ -8,15 +8,16 @@ import pytest
 
 from schemas.messages import FrameTransform, LaserScan, Vector3
 from services.slam.build import build
+from tests.runtime.stepping import stepped
 from tests.slam.localization.places import ROOM, ellipse, readings
 from uvf.maths.se2 import Pose2, compose
 from uvf.models.mission.file import Maps
-from uvf.models.scenario import ROOT, load_site
+from uvf.models.scenario import ROOT, load_scenario
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.messages.convert import occupancy_cells, planar_pose, stamp
 from uvf.runtime.messages.frames import FrameBuffer
 from uvf.slam.graph.method import GraphSlam
-from uvf.slam.maps.session import Session
+from uvf.slam.maps.session import MappingSession
 
 EARLIER, NOW = ellipse(40), ellipse(6, begin=2.0, end=2.5)
 """Ways in the world, which is the room's frame."""
@@ -31,7 +32,7 @@ def session():
 
 
 def site_with(tmp_path, maps):
-    site = load_site(ROOT / "missions" / "demo.yaml")
+    site = load_scenario(ROOT / "missions" / "demo.yaml")
     burger = site.members["burger"]
     start = msgspec.structs.replace(burger.entry.start, x=float(NOW[0, 0]), y=float(NOW[0, 1]), yaw=float(NOW[0, 2]))
     changed = replace(burger, entry=msgspec.structs.replace(burger.entry, start=start, maps=maps))
@@ -50,7 +51,7 @@ def drive(mapping, way):
     for reading in readings(ROOM, way, seed=5):
         frames.add(frame(reading.t, "odom", "base_footprint", reading.odom_from_base))
         scan = LaserScan(timestamp=stamp(reading.t), frame_id="burger/lidar", end_angle=np.radians(359), ranges=reading.ranges)
-        said.append(mapping.step(reading.t, scan, frames))
+        said.append(stepped(mapping, reading.t, scan=scan, frames=frames))
     return said
 
 
@@ -66,7 +67,7 @@ def test_the_earlier_map_is_there_at_once_and_grows_on(session, tmp_path):
         assert np.hypot(place.x - true[0], place.y - true[1]) < 0.05
     cells = occupancy_cells(said[0]["map"])
     assert np.count_nonzero((cells >= 0) & (cells < 25)) * 0.05**2 > 15.0
-    assert len(Session.decoded(said[0]["session"].data, "").keyframes) >= len(session.keyframes)
+    assert len(MappingSession.decoded(said[0]["session"].data, "").keyframes) >= len(session.keyframes)
 
 
 def test_what_cannot_be_gone_on_with_is_one_line(session, tmp_path):

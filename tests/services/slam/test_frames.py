@@ -9,7 +9,7 @@ from services.planner.build import build as build_planner
 from services.sim_camera.build import build as build_camera
 from services.sim_ground.build import build as build_simulator
 from services.slam.build import build as build_slam
-from uvf.models.scenario import ROOT, load_site
+from uvf.models.scenario import ROOT, load_scenario
 from uvf.runtime.time.lockstep import Lockstep
 
 VEHICLE = "burger"
@@ -18,7 +18,7 @@ VEHICLE = "burger"
 @pytest.fixture(scope="module")
 def said():
     """The first messages of every topic of the demo's ground vehicle, topic name -> message."""
-    site = load_site(ROOT / "missions" / "demo.yaml")
+    site = load_scenario(ROOT / "missions" / "demo.yaml")
     run = Lockstep([host for build in (build_simulator, build_camera, build_slam, build_planner, hosts) for host in build(site)])
     found = {}
 

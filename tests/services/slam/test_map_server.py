@@ -8,9 +8,10 @@ import pytest
 from schemas.messages import FrameTransform, MapRequest, SaveMapRequest, Vector3
 from services.slam.map_server import MapServer
 from services.slam.map_serving import map_servers
+from tests.runtime.stepping import stepped
 from uvf.maths.rotations import from_euler
 from uvf.maths.se2 import IDENTITY, Pose2
-from uvf.models.scenario import ROOT, load_site
+from uvf.models.scenario import ROOT, load_scenario
 from uvf.models.world.map_file import GridMap, save_map
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.messages.convert import occupancy_cells, quaternion, yaw_of
@@ -32,27 +33,27 @@ def server(layers=None, saved=None):
     return MapServer(layers or {}, save)
 
 
-def step(service, t=1.0, map=DRAWN, placing=PLACING, save=(), get=()):
-    return service.step(t, map, placing, list(save), list(get))
+def asked(service, t=1.0, map=DRAWN, placing=PLACING, save=(), get=()):
+    return stepped(service, t, map=map, placing=placing, save=list(save), get=list(get))
 
 
 def test_layers_are_published_once_where_they_lie():
     keepout = GridMap(np.where(CELLS == 100, 100, 0).astype(np.int8), 0.1, Pose2(3.0, 4.0, 0.5))
     service = server({"keepout": keepout})
-    outputs = step(service, map=None, placing=None)
-    assert set(outputs) == {"keepout", "save", "get"}
+    outputs = asked(service, map=None, placing=None)
+    assert set(outputs) == {"keepout"}
     message = outputs["keepout"]
     assert (message.frame_id, message.cell_size.x, message.pose.position.x) == ("world", 0.1, 3.0)
     assert yaw_of(message.pose.orientation) == pytest.approx(0.5)
     assert np.array_equal(occupancy_cells(message), keepout.cells)
-    assert set(step(service, 1.5)) == {"save", "get"}
-    (reply,) = step(service, 2.0, get=[MapRequest(layer="keepout")])["get"]
+    assert asked(service, 1.5) == {}
+    (reply,) = asked(service, 2.0, get=[MapRequest(layer="keepout")])["get"]
     assert reply.accepted and reply.grid == message
 
 
 def test_the_drawn_map_is_handed_out_and_saved_in_the_world_frame():
     saved = {}
-    outputs = step(server(saved=saved), save=[SaveMapRequest(name="house", mode="raw")], get=[MapRequest()])
+    outputs = asked(server(saved=saved), save=[SaveMapRequest(name="house", mode="raw")], get=[MapRequest()])
     assert outputs["get"][0].grid == DRAWN and outputs["save"][0].accepted
     grid, mode = saved["house"]
     assert mode == "raw" and np.array_equal(grid.cells, CELLS)
@@ -72,12 +73,12 @@ def test_the_drawn_map_is_handed_out_and_saved_in_the_world_frame():
 )
 def test_what_cannot_be_done_is_answered(request_, part):
     kind = "get" if isinstance(request_, MapRequest) else "save"
-    (reply,) = step(server(saved={}), map=None, **{kind: [request_]})[kind]
+    (reply,) = asked(server(saved={}), map=None, **{kind: [request_]})[kind]
     assert not reply.accepted and part in reply.reason
 
 
 def test_what_cannot_be_written_is_answered():
-    (reply,) = step(server(), save=[SaveMapRequest(name="a")])["save"]
+    (reply,) = asked(server(), save=[SaveMapRequest(name="a")])["save"]
     assert (reply.accepted, reply.reason) == (False, "no room")
 
 
@@ -87,7 +88,7 @@ def mission(tmp_path, burger="", milvus=""):
         "    model: milvus\n", f"    model: milvus\n{milvus}"
     )
     (tmp_path / "m.yaml").write_text(text)
-    return load_site(tmp_path / "m.yaml")
+    return load_scenario(tmp_path / "m.yaml")
 
 
 def test_a_mission_gives_files_beside_it_and_saved_maps_by_name(tmp_path, monkeypatch):
@@ -98,11 +99,11 @@ def test_a_mission_gives_files_beside_it_and_saved_maps_by_name(tmp_path, monkey
     site = mission(tmp_path, "    maps: {known: house, keepout: state/maps/house.yaml, speed: slow.yaml}\n")
     (host,) = map_servers(site)
     assert host.vehicle == "burger"
-    outputs = host.make().step(0.0, None, None, [], [])
+    outputs = stepped(host.make(), 0.0)
     assert np.array_equal(as_map(outputs["known"]).cells, CELLS)
     assert occupancy_cells(outputs["keepout"]).tolist() == [[0, 100, 0], [0, 0, 0]]
     assert occupancy_cells(outputs["speed"]).tolist() == [[50, 50], [50, 50]]
-    step(host.make(), save=[SaveMapRequest(name="again")])
+    asked(host.make(), save=[SaveMapRequest(name="again")])
     assert find_map("again").origin == pytest.approx((2.0, 2.0, np.pi / 2))
 
 
@@ -124,5 +125,5 @@ def test_without_maps_nobody_serves(tmp_path):
 def test_a_grid_that_is_no_map_is_told():
     broken = as_message(GridMap(CELLS, 0.05, IDENTITY), "v/map", 0.0)
     broken.data = broken.data[:-1]
-    (reply,) = step(server(saved={}), map=broken, save=[SaveMapRequest(name="a")])["save"]
+    (reply,) = asked(server(saved={}), map=broken, save=[SaveMapRequest(name="a")])["save"]
     assert "is no map of whole rows" in reply.reason

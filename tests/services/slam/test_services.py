@@ -8,6 +8,7 @@ import pytest
 from schemas.messages import FrameTransform, Imu, LaserScan, Quaternion, Vector3, WheelTicks
 from services.slam.mapping_service import MappingParams, MappingService
 from services.slam.odometry.service import OdometryService
+from tests.runtime.stepping import stepped
 from tests.services.live_params import all_settable_are_read
 from tests.slam.room import ANGLES, measured
 from uvf.estimation.odometry.params import OdometryParams
@@ -35,7 +36,7 @@ def drive(service, steps, turn_rate=0.0, ticks=4, correction=None):
         left, right = round((ticks - aside) * k), round((ticks + aside) * k)
         wheels = WheelTicks(timestamp=stamp(t - 0.02), left=left, right=right, radians_per_tick=RADIANS_PER_TICK)
         imu = [Imu(timestamp=stamp(t - 0.02 - s), angular_velocity=Vector3(z=turn_rate)) for s in (0.01, 0.0)]
-        outputs = service.step(t, wheels, imu, correction)
+        outputs = stepped(service, t, wheels=wheels, imu=imu, correction=correction)
     return outputs
 
 
@@ -87,8 +88,8 @@ def test_a_wheel_message_seen_twice_moves_nothing():
     service = odometry_service()
     drive(service, 50, turn_rate=0.3)
     again = WheelTicks(timestamp=stamp(0.98), left=200, right=200, radians_per_tick=RADIANS_PER_TICK)
-    first = service.step(1.02, again, [], None)["odometry"].pose.position.x
-    later = service.step(3.0, again, [], None)["odometry"].pose.position.x
+    first = stepped(service, 1.02, wheels=again, imu=[], correction=None)["odometry"].pose.position.x
+    later = stepped(service, 3.0, wheels=again, imu=[], correction=None)["odometry"].pose.position.x
     assert later - first < speed_of(4) * 0.1
 
 
@@ -136,7 +137,7 @@ def map_for(seconds, pose_at, odometry_of):
         t = 0.1 * k
         frames = frames_with({t - s: odometry_of(pose_at(t - s)) for s in (0.2, 0.1, 0.0) if t - s > -1e-9})
         taken_at = 0.2 * (k // 2)
-        said.append((t, service.step(t, scan_at(taken_at, pose_at(taken_at)), frames)))
+        said.append((t, stepped(service, t, scan=scan_at(taken_at, pose_at(taken_at)), frames=frames)))
     return said
 
 
@@ -197,14 +198,14 @@ def test_the_map_shows_the_room_where_it_is(drifting_run):
 def test_a_scanner_that_hangs_upside_down_draws_no_mirror_image():
     pose = (-1.0, 0.2, 0.3)
     upright, hanging = (mapping() for _ in range(2))
-    expected = upright.step(0.1, scan_at(0.1, pose), frames_with({0.1: pose}))["map"]
+    expected = stepped(upright, 0.1, scan=scan_at(0.1, pose), frames=frames_with({0.1: pose}))["map"]
     seen = scan_at(0.1, pose)
     mirrored = LaserScan(timestamp=seen.timestamp, frame_id=seen.frame_id, start_angle=-seen.end_angle, ranges=seen.ranges[::-1])
     frames = frames_with({0.1: pose})
     mount = frame_at(0.0, "base_footprint", "lidar", BASE_FROM_LIDAR)
     mount.rotation.CopyFrom(quaternion(from_euler(np.pi, 0.0, 0.0)))
     frames.add(mount, is_static=True)
-    drawn, meant = occupancy_cells(hanging.step(0.1, mirrored, frames)["map"]), occupancy_cells(expected)
+    drawn, meant = occupancy_cells(stepped(hanging, 0.1, scan=mirrored, frames=frames)["map"]), occupancy_cells(expected)
     assert drawn.shape == meant.shape and np.mean(drawn != meant) < 0.01
 
 
@@ -218,15 +219,15 @@ def test_the_map_is_placed_in_the_world_once(drifting_run):
 def test_a_scan_waits_until_it_is_known_where_the_vehicle_was():
     service = mapping()
     scan = scan_at(0.2, (0.0, 0.2, 0.0))
-    assert service.step(0.2, scan, frames_with({0.18: (0.0, 0.0, 0.0)})) == {"events": []}
-    assert "map" in service.step(0.3, scan, frames_with({0.18: (0.0, 0.0, 0.0), 0.28: (0.0, 0.0, 0.0)}))
+    assert stepped(service, 0.2, scan=scan, frames=frames_with({0.18: (0.0, 0.0, 0.0)})) == {}
+    assert "map" in stepped(service, 0.3, scan=scan, frames=frames_with({0.18: (0.0, 0.0, 0.0), 0.28: (0.0, 0.0, 0.0)}))
 
 
 def test_scans_without_a_place_are_told_of_once_with_the_reason():
     service = mapping()
     frames = FrameBuffer()
     frames.add(frame_at(0.1, "odom", "base_footprint", (0.0, 0.0, 0.0)))
-    events = [e for k in range(1, 80) for e in service.step(0.1 * k, scan_at(0.1, (0.0, 0.2, 0.0)), frames)["events"]]
+    events = [e for k in range(1, 80) for e in stepped(service, 0.1 * k, scan=scan_at(0.1, (0.0, 0.2, 0.0)), frames=frames)["events"]]
     assert [(e.text, e.cause) for e in events] == [("scans cannot be mapped", "no frame 'v/lidar'; there are: v/base_footprint, v/odom")]
 
 
@@ -237,7 +238,7 @@ def test_parameters_of_the_mapping_count_while_running():
     def step(k):
         t = 0.2 * k
         pose = (0.05 * k - 1.0, 0.2, 0.0)
-        return service.step(t, scan_at(t, pose), frames_with({t: (0.05 * k, 0.0, 0.0)}))
+        return stepped(service, t, scan=scan_at(t, pose), frames=frames_with({t: (0.05 * k, 0.0, 0.0)}))
 
     with all_settable_are_read(service):
         for k in range(1, 11):

@@ -8,6 +8,7 @@ from benchmarks.slow_lidar import errors
 from schemas.messages import LaserScan
 from services.slam.mapping_service import MappingParams, MappingService
 from tests.planar_rays import cast
+from tests.runtime.stepping import stepped
 from tests.services.slam.test_services import BASE_FROM_LIDAR, LIDAR, START, frames_with
 from tests.slam.room import ANGLES, BOXES, CIRCLES, RANGE_MAX, measured
 from uvf.maths.se2 import compose, transform
@@ -71,33 +72,33 @@ def off_the_surfaces(reading):
 @pytest.mark.parametrize("lidar", [SLOW, RIGHT_ABOUT], ids=["left about", "right about"])
 def test_a_sweep_is_set_straight_by_the_frames_at_its_beams_moments(lidar):
     mapping, method = service(lidar)
-    out = mapping.step(END + 0.1, scan_of(lidar), frames_until(END))
+    out = stepped(mapping, END + 0.1, scan=scan_of(lidar), frames=frames_until(END))
     (reading,) = method.fed
     assert reading.t == pytest.approx(END) and seconds(out["fix"].timestamp) == pytest.approx(END)
     assert off_the_surfaces(reading) < 0.05  # edges, which hide something else from there
 
     plain, kept = service(msgspec.structs.replace(lidar, sweep_time=0.0))
-    plain.step(END + 0.1, scan_of(lidar), frames_until(END))
+    stepped(plain, END + 0.1, scan=scan_of(lidar), frames=frames_until(END))
     assert off_the_surfaces(kept.fed[0]) > 0.3
 
 
 def test_a_sweep_waits_for_the_frames_of_its_last_beam():
     mapping, method = service(SLOW)
     scan = scan_of(SLOW)
-    assert mapping.step(END, scan, frames_until(END - 0.02)) == {"events": []}
+    assert stepped(mapping, END, scan=scan, frames=frames_until(END - 0.02)) == {}
     assert method.fed == []
-    assert "map" in mapping.step(END + 0.1, scan, frames_until(END + 0.02))
-    mapping.step(END + 0.2, scan, frames_until(END + 0.1))
+    assert "map" in stepped(mapping, END + 0.1, scan=scan, frames=frames_until(END + 0.02))
+    stepped(mapping, END + 0.2, scan=scan, frames=frames_until(END + 0.1))
     assert len(method.fed) == 1
 
 
 def test_a_sweep_that_began_before_the_first_frames_is_left_out_and_the_next_one_counts():
     mapping, method = service(SLOW)
     frames = frames_with({t: pose_at(t) for t in (0.5, 0.56, END, 0.7, 0.8)})
-    assert mapping.step(END + 0.1, scan_of(SLOW), frames) == {"events": []}
+    assert stepped(mapping, END + 0.1, scan=scan_of(SLOW), frames=frames) == {}
     standing = measured(pose_at(END), base_from_lidar=BASE_FROM_LIDAR).tolist()
     following = LaserScan(timestamp=stamp(END), frame_id="v/lidar", start_angle=ANGLES[0], end_angle=ANGLES[-1], ranges=standing)
-    assert "map" in mapping.step(END + 0.3, following, frames)
+    assert "map" in stepped(mapping, END + 0.3, scan=following, frames=frames)
     assert [r.t for r in method.fed] == pytest.approx([END + SWEEP])
 
 

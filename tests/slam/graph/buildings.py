@@ -7,7 +7,7 @@ import numpy as np
 from benchmarks.slam_evaluation.building import corridors
 from benchmarks.slam_evaluation.driven import Driven, Wear, drive, route
 from uvf.maths.se2_arrays import composed, inverted
-from uvf.slam.evaluation.run import Run, run_over
+from uvf.slam.evaluation.run import LogRun, run_over
 from uvf.slam.graph.method import GraphSlam
 from uvf.slam.reading import Beams
 
@@ -46,7 +46,7 @@ class Mapped:
     """online, final: (n, 3) how far each pose is off, seen from the true one [m, m, rad]."""
 
     slam: GraphSlam
-    run: Run
+    run: LogRun
     online: np.ndarray
     final: np.ndarray
 

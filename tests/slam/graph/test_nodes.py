@@ -6,14 +6,14 @@ import numpy as np
 
 from tests.slam.matching.walls import ROOM, seen
 from uvf.maths.se2 import Pose2, compose
-from uvf.slam.graph.nodes import HALF, Node, Nodes
+from uvf.slam.graph.nodes import HALF, KeyframeNodes, Node
 from uvf.slam.matching.cloud import cloud_of
 
 WAY = [Pose2(0.1 * i, 0.02 * i, 0.01 * i) for i in range(2 * HALF + 6)]
 
 
 def keyframes(change=lambda i, reading: reading):
-    nodes = Nodes()
+    nodes = KeyframeNodes()
     for i, pose in enumerate(WAY):
         reading = change(i, seen(ROOM, pose))
         nodes.add(Node(reading, cloud_of(reading), 0.1 * i, 0.01 * i), pose)

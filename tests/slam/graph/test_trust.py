@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from uvf.maths.se2 import IDENTITY, Pose2, compose
-from uvf.slam.graph.motion import UNKNOWN, Motion, MotionNoise
+from uvf.slam.graph.motion import UNKNOWN, MotionNoise, OdometryMotion
 from uvf.slam.graph.trust import LEAST_TRUST, MOST_SIGMAS, Trust
 
 NOISE = MotionNoise()
@@ -16,14 +16,14 @@ def taught(trust: Trust, steps: int, veers: float, step: Pose2 = STEP, noise: fl
     rng = np.random.default_rng(1)
     for _ in range(steps):
         missed = veers * (np.hypot(step[0], step[1]) + abs(step[2])) + noise * rng.normal()
-        trust.learn(step, trust.straightened(Motion(IDENTITY, step, NOISE)), Pose2(step[0], step[1], step[2] + missed))
+        trust.learn(step, trust.straightened(OdometryMotion(IDENTITY, step, NOISE)), Pose2(step[0], step[1], step[2] + missed))
     return trust
 
 
 @pytest.mark.parametrize("veers", [-0.015, 0.01, 0.03])
 def test_an_odometry_that_always_veers_is_set_straight(veers):
     trust = taught(Trust(), 300, veers, noise=0.002)
-    step = trust.straightened(Motion(IDENTITY, STEP, NOISE)).step
+    step = trust.straightened(OdometryMotion(IDENTITY, STEP, NOISE)).step
     assert step.yaw == pytest.approx(veers * 0.1, rel=0.3)
     assert (step.x, step.y) == (STEP.x, STEP.y)
 
@@ -40,28 +40,28 @@ def test_another_floor_is_learnt_anew():
 
 
 def test_one_match_that_is_far_off_teaches_little():
-    trust, motion = taught(Trust(), 100, 0.0), Motion(IDENTITY, STEP, NOISE)
+    trust, motion = taught(Trust(), 100, 0.0), OdometryMotion(IDENTITY, STEP, NOISE)
     trust.learn(STEP, motion, Pose2(0.1, 0.0, 2.0))
     assert abs(trust.veering.straightened(STEP).yaw) < 0.1 * motion.sigmas[1]
     assert trust.heading < 1.0
 
 
 def test_a_good_odometry_is_held_to_more_firmly_but_not_in_turns():
-    trust, motion = taught(Trust(), 500, 0.0), Motion(IDENTITY, STEP, NOISE)
+    trust, motion = taught(Trust(), 500, 0.0), OdometryMotion(IDENTITY, STEP, NOISE)
     assert trust.position == trust.heading == LEAST_TRUST
     np.testing.assert_allclose(trust.information(motion), motion.information / LEAST_TRUST**2)
-    turn = Motion(IDENTITY, Pose2(0.0, 0.0, 2.0), NOISE)
+    turn = OdometryMotion(IDENTITY, Pose2(0.0, 0.0, 2.0), NOISE)
     assert trust.information(turn)[2, 2] < 1.1 * turn.information[2, 2]
 
 
 def test_a_bad_one_less_firmly():
     trust = Trust()
     for side in (0.2, -0.2) * 200:
-        trust.learn(STEP, Motion(IDENTITY, STEP, NOISE), Pose2(0.1, side, 0.0))
+        trust.learn(STEP, OdometryMotion(IDENTITY, STEP, NOISE), Pose2(0.1, side, 0.0))
     assert trust.position == pytest.approx(MOST_SIGMAS, rel=0.05)
 
 
-@pytest.mark.parametrize("motion", [Motion(IDENTITY, STEP, UNKNOWN), Motion(IDENTITY, STEP, NOISE, disputed=True)])
+@pytest.mark.parametrize("motion", [OdometryMotion(IDENTITY, STEP, UNKNOWN), OdometryMotion(IDENTITY, STEP, NOISE, disputed=True)])
 def test_what_the_odometry_has_not_told_stays_as_it_is(motion):
     trust = taught(Trust(), 300, 0.02)
     assert trust.straightened(motion) is motion
@@ -69,7 +69,7 @@ def test_what_the_odometry_has_not_told_stays_as_it_is(motion):
 
 
 def test_surprise_grows_with_the_way_to_where_the_odometry_has_it():
-    trust, motion = Trust(), Motion(Pose2(1.0, 2.0, 0.5), STEP, NOISE)
+    trust, motion = Trust(), OdometryMotion(Pose2(1.0, 2.0, 0.5), STEP, NOISE)
     beside = [trust.surprise(motion, compose(motion.guess, Pose2(0.0, y, y / 2))) for y in (0.0, 0.02, 0.2, 2.0)]
     assert beside[0] == 0.0
     assert all(np.diff(beside) > 0.5)

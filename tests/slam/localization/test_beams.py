@@ -6,7 +6,7 @@ import pytest
 from uvf.maths.se2 import Pose2
 from uvf.models.world.map_file import GridMap
 from uvf.slam.localization import known_map
-from uvf.slam.localization.beams import Beams, field_of, fits_at
+from uvf.slam.localization.beams import BeamLikelihood, field_of, fits_at
 
 CELL, SIZE = 0.05, 120
 """A room of 4 m by 4 m about the middle of a map of 6 m by 6 m."""
@@ -22,7 +22,7 @@ def field():
 
 def told(field, end):
     """(on walls, against) of one beam from the middle of the room."""
-    found = fits_at(np.zeros((1, 3)), Beams(np.array((end,)), (0.0, 0.0)), field)
+    found = fits_at(np.zeros((1, 3)), BeamLikelihood(np.array((end,)), (0.0, 0.0)), field)
     return found.fits[0], found.against[0]
 
 
@@ -42,7 +42,7 @@ def test_a_beam_through_a_wall_contradicts_wherever_it_ends(field):
 
 
 def test_where_the_map_knows_nothing_a_beam_tells_nothing(field):
-    found = fits_at(np.array(((2.6, 0.0, 0.0),)), Beams(np.array(((0.3, 0.0),)), (0.0, 0.0)), field)
+    found = fits_at(np.array(((2.6, 0.0, 0.0),)), BeamLikelihood(np.array(((0.3, 0.0),)), (0.0, 0.0)), field)
     assert found.fits[0] == found.against[0] == 0.0
 
 

@@ -10,7 +10,7 @@ from tests.slam.localization.places import ROOM, SYMMETRIC, ellipse, errors, map
 from uvf.maths.se2 import IDENTITY, Pose2, compose
 from uvf.models.world.map_file import GridMap
 from uvf.slam.localization import known_map
-from uvf.slam.localization.localizer import Localizer, State
+from uvf.slam.localization.localizer import Localizer, LocalizerState
 from uvf.slam.localization.params import FilterParams
 from uvf.slam.localization.particle_filter import IN_GROUP, MOST_GROUPS
 from uvf.slam.localization.whole_map import MOST_KEPT, Lately
@@ -68,7 +68,7 @@ def test_what_has_been_moved_does_not_confuse(room):
     localizer = Localizer(room, PARAMS, 3, pose(way[0]))
     metres, radians = rmse(run(localizer, readings(changed, way))[5:], way[5:])
     assert metres < 0.03 and np.degrees(radians) < 0.7
-    assert localizer.state is State.TRACKING
+    assert localizer.state is LocalizerState.TRACKING
 
 
 def test_it_is_found_from_nothing(room):
@@ -76,7 +76,7 @@ def test_it_is_found_from_nothing(room):
     localizer = Localizer(room, PARAMS, 1)
     estimates = run(localizer, readings(ROOM, way))
     metres, _ = errors([e.map_from_base for e in estimates], way)
-    assert localizer.state is State.TRACKING
+    assert localizer.state is LocalizerState.TRACKING
     assert metres[-20:].max() < 0.05
     assert estimates[0].quality < 0.6 < estimates[-1].quality
 
@@ -95,7 +95,7 @@ def test_two_places_that_look_alike_stay_two_hypotheses_until_motion_decides():
     mirrored = [compose(Pose2(0.0, 0.0, np.pi), pose(p)) for p in way]
     localizer = Localizer(twins, PARAMS, 5)
     run(localizer, readings(SYMMETRIC, way))
-    assert localizer.state is State.SEARCHING
+    assert localizer.state is LocalizerState.SEARCHING
     heavy = [h for h in localizer.hypotheses if h.weight > 0.02]
     wanted = (pose(way[-1]), mirrored[-1])
     assert len(heavy) == 2
@@ -108,7 +108,7 @@ def test_an_object_that_only_one_end_has_decides_between_them():
     way = ellipse(120, end=4.5 * np.pi)
     localizer = Localizer(map_of(place), PARAMS, 6)
     metres, _ = errors([e.map_from_base for e in run(localizer, readings(place, way))], way)
-    assert localizer.state is State.TRACKING and metres[-10:].max() < 0.05
+    assert localizer.state is LocalizerState.TRACKING and metres[-10:].max() < 0.05
 
 
 def carried_away(first, second):
@@ -126,10 +126,10 @@ def test_being_carried_away_is_noticed_and_mended(room):
         estimate = localizer.add(reading)
         states.append(localizer.state)
         metres.append(errors([estimate.map_from_base], true[None])[0][0])
-        if states[-1] is State.LOST:
+        if states[-1] is LocalizerState.LOST:
             assert estimate.quality < 0.6
-    assert State.LOST in states[40:] and State.LOST not in states[:40]
-    assert states[-1] is State.TRACKING and max(metres[-20:]) < 0.05
+    assert LocalizerState.LOST in states[40:] and LocalizerState.LOST not in states[:40]
+    assert states[-1] is LocalizerState.TRACKING and max(metres[-20:]) < 0.05
 
 
 def test_a_pose_that_is_set_counts(room):
@@ -139,7 +139,7 @@ def test_a_pose_that_is_set_counts(room):
     run(localizer, drive[:2])
     localizer.set_pose(pose(way[2]))
     estimates = run(localizer, drive[2:])
-    assert localizer.state is State.TRACKING and rmse(estimates, way[2:])[0] < 0.03
+    assert localizer.state is LocalizerState.TRACKING and rmse(estimates, way[2:])[0] < 0.03
 
 
 def test_a_sweep_without_a_return_changes_nothing(room):

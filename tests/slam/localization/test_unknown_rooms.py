@@ -7,7 +7,7 @@ from tests.planar_rays import rectangles
 from tests.slam.localization.places import errors, map_of, readings
 from tests.slam.room import CIRCLES, FURNITURE
 from uvf.maths.se2 import Pose2, compose
-from uvf.slam.localization.localizer import Localizer, State
+from uvf.slam.localization.localizer import Localizer, LocalizerState
 from uvf.slam.localization.params import FilterParams
 
 WALLS = ((3.0, -2.0, 6.0, 0.05, 0.0), (3.0, 2.0, 6.0, 0.05, 0.0), (-3.0, 0.0, 0.05, 2.0, 0.0), (9.0, 0.0, 0.05, 2.0, 0.0))
@@ -47,7 +47,7 @@ def test_a_room_that_the_map_does_not_know_is_no_kidnapping(left_room):
     metres, _ = errors(estimates, way)
     unknown = way[:, 0] > 4.0
     assert np.hypot(*np.diff(way[unknown, :2], axis=0).T).sum() > 6.0
-    assert State.LOST not in states
+    assert LocalizerState.LOST not in states
     assert metres[unknown].max() < 0.3 and metres[-10:].max() < 0.05
 
 
@@ -61,6 +61,6 @@ def test_who_is_carried_from_there_into_the_known_room_is_found_again(left_room)
     for reading in drive:
         estimates.append(localizer.add(reading).map_from_base)
         states.append(localizer.state)
-    assert State.LOST in states[len(first) :] and State.LOST not in states[: len(first)]
-    assert states[-1] is State.TRACKING
+    assert LocalizerState.LOST in states[len(first) :] and LocalizerState.LOST not in states[: len(first)]
+    assert states[-1] is LocalizerState.TRACKING
     assert errors(estimates[-10:], second[-10:])[0].max() < 0.05

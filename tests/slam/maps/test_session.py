@@ -13,7 +13,7 @@ import pytest
 
 from uvf.maths.se2 import Pose2
 from uvf.models.yaml_data import BadInput
-from uvf.slam.maps.session import KINDS, NO_EDGES, Edges, Session
+from uvf.slam.maps.session import KINDS, NO_EDGES, Edges, MappingSession
 from uvf.slam.maps.tiles import TileMap
 from uvf.slam.method import Keyframe
 from uvf.slam.reading import Beams, Reading
@@ -35,13 +35,13 @@ def session(n=7):
     information = np.repeat(np.diag((100.0, 100.0, 400.0))[None], n - 1, axis=0)
     kinds = np.full(n - 1, KINDS.index("odometry"), np.uint8)
     edges = Edges(ends, rng.normal(size=(n - 1, 3)), information, kinds, np.arange(n - 1) != 2)
-    return Session(tuple(keyframes), edges, "graph", {"loop_radius": 15.0, "names": ["a"]})
+    return MappingSession(tuple(keyframes), edges, "graph", {"loop_radius": 15.0, "names": ["a"]})
 
 
 def test_what_is_saved_is_loaded(tmp_path):
     before = session()
     before.save(tmp_path / "house.session")
-    after = Session.load(tmp_path / "house.session")
+    after = MappingSession.load(tmp_path / "house.session")
     assert (after.method, after.parameters) == (before.method, before.parameters)
     for name in ("ends", "measured", "information", "kinds", "enabled"):
         assert np.array_equal(getattr(after.edges, name), getattr(before.edges, name))
@@ -57,7 +57,7 @@ def test_what_is_saved_is_loaded(tmp_path):
 def test_the_map_of_a_loaded_session_is_the_map_of_the_saved_one(tmp_path):
     maps = []
     session().save(tmp_path / "s")
-    for each in (session(), Session.load(tmp_path / "s")):
+    for each in (session(), MappingSession.load(tmp_path / "s")):
         maps.append(TileMap())
         maps[-1].follow(each.keyframes)
     assert np.array_equal(maps[0].cells()[0], maps[1].cells()[0])
@@ -65,8 +65,8 @@ def test_the_map_of_a_loaded_session_is_the_map_of_the_saved_one(tmp_path):
 
 
 def test_a_session_that_has_seen_nothing_yet_is_one(tmp_path):
-    Session((), NO_EDGES, "hector", {}).save(tmp_path / "s")
-    assert Session.load(tmp_path / "s").keyframes == ()
+    MappingSession((), NO_EDGES, "hector", {}).save(tmp_path / "s")
+    assert MappingSession.load(tmp_path / "s").keyframes == ()
 
 
 def stored(tmp_path, **changes):
@@ -114,7 +114,7 @@ def with_value(place, value):
 )
 def test_what_does_not_fit_together_is_one_line(tmp_path, changes, part):
     with pytest.raises(BadInput, match=part) as refused:
-        Session.load(stored(tmp_path, **changes))
+        MappingSession.load(stored(tmp_path, **changes))
     assert "\n" not in str(refused.value)
     assert str(refused.value).startswith(f"session {tmp_path / 's'}: ")
 
@@ -123,7 +123,7 @@ def test_what_does_not_fit_together_is_one_line(tmp_path, changes, part):
 def test_what_is_no_session_is_one_line(tmp_path, content):
     (tmp_path / "s").write_bytes(content)
     with pytest.raises(BadInput, match="not a session of uvf slam") as refused:
-        Session.load(tmp_path / "s")
+        MappingSession.load(tmp_path / "s")
     assert "\n" not in str(refused.value)
 
 
@@ -133,12 +133,12 @@ def test_a_file_cut_or_damaged_anywhere_is_refused(tmp_path):
     for cut in range(0, len(whole), 331):
         (tmp_path / "s").write_bytes(whole[:cut])
         with pytest.raises(BadInput, match="session"):
-            Session.load(tmp_path / "s")
+            MappingSession.load(tmp_path / "s")
     with zipfile.ZipFile(io.BytesIO(whole)) as archive:
         start = archive.getinfo("ranges.npy").header_offset + 200
     (tmp_path / "s").write_bytes(whole[:start] + bytes(b ^ 255 for b in whole[start : start + 8]) + whole[start + 8 :])
     with pytest.raises(BadInput, match="damaged"):
-        Session.load(tmp_path / "s")
+        MappingSession.load(tmp_path / "s")
 
 
 def test_a_file_with_any_bytes_changed_is_loaded_or_refused(tmp_path):
@@ -150,12 +150,12 @@ def test_a_file_with_any_bytes_changed_is_loaded_or_refused(tmp_path):
         changed[rng.integers(0, len(whole), 3)] = rng.integers(0, 256, 3)
         (tmp_path / "s").write_bytes(changed.tobytes())
         with contextlib.suppress(BadInput):
-            assert len(Session.load(tmp_path / "s").keyframes) == 7
+            assert len(MappingSession.load(tmp_path / "s").keyframes) == 7
 
 
 def test_a_missing_file_is_told(tmp_path):
     with pytest.raises(BadInput, match="no such file"):
-        Session.load(tmp_path / "s")
+        MappingSession.load(tmp_path / "s")
 
 
 def test_what_could_not_be_loaded_is_not_saved(tmp_path):
@@ -163,7 +163,7 @@ def test_what_could_not_be_loaded_is_not_saved(tmp_path):
     wrong = replace(session(), edges=replace(session().edges, ends=np.full((6, 2), 7)))
     with pytest.raises(BadInput, match="ends: no number 7"):
         wrong.save(tmp_path / "s")
-    assert len(Session.load(tmp_path / "s").keyframes) == 7
+    assert len(MappingSession.load(tmp_path / "s").keyframes) == 7
 
 
 def test_a_full_disk_leaves_the_old_session(tmp_path, monkeypatch):
@@ -175,5 +175,5 @@ def test_a_full_disk_leaves_the_old_session(tmp_path, monkeypatch):
     monkeypatch.setattr(Path, "write_bytes", full)
     with pytest.raises(BadInput, match=r"cannot be written: No space left on device$"):
         session(3).save(tmp_path / "s")
-    assert len(Session.load(tmp_path / "s").keyframes) == 7
+    assert len(MappingSession.load(tmp_path / "s").keyframes) == 7
     assert [p.name for p in tmp_path.iterdir()] == ["s"]

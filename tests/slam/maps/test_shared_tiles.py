@@ -7,11 +7,11 @@ import numpy as np
 from tests.services.slam.drives import drive
 from uvf.maths.se2 import IDENTITY, Pose2
 from uvf.slam.maps.shared_kernels import slot_of
-from uvf.slam.maps.shared_tiles import Evidence, SharedTiles
+from uvf.slam.maps.shared_tiles import SharedEvidence, SharedTiles
 from uvf.slam.maps.tile_kernels import TILE
 from uvf.slam.reading import Beams
 
-EVIDENCE = Evidence(17, -8, -60, 70)
+EVIDENCE = SharedEvidence(17, -8, -60, 70)
 READING = drive(1)[0]
 MEMORY = 20e6
 

@@ -10,7 +10,7 @@ from benchmarks.slam_evaluation.driven import Wear, drive, route
 from uvf.maths.se2 import Pose2, compose, inverse
 from uvf.slam.evaluation.run import run_over
 from uvf.slam.graph.method import GraphSlam
-from uvf.slam.maps.session import Session
+from uvf.slam.maps.session import MappingSession
 from uvf.slam.reading import Beams
 
 HALF_ROUND = Beams((0.0, 0.0), np.radians(np.linspace(-90.0, 90.0, 181)), 0.1, 30.0)
@@ -24,7 +24,7 @@ BERT = ((MIDDLE, HEIGHT), (MIDDLE, 0.0), (WIDTH, 0.0), (WIDTH, 8.0))
 class Mapped:
     """building_from_map: the truth."""
 
-    session: Session
+    session: MappingSession
     building_from_map: Pose2
 
     def map_from(self, other):
@@ -54,7 +54,7 @@ def first(session, n):
     e = session.edges
     kept = e.ends.max(axis=1) < n
     edges = type(e)(e.ends[kept], e.measured[kept], e.information[kept], e.kinds[kept], e.enabled[kept])
-    return Session(session.keyframes[:n], edges, session.method, session.parameters)
+    return MappingSession(session.keyframes[:n], edges, session.method, session.parameters)
 
 
 def off_by(found, true):

@@ -10,13 +10,13 @@ from uvf.slam.merging.confirmation import confirmed_part
 from uvf.slam.merging.consistency import agreement, largest_clique
 from uvf.slam.merging.crossing import the_other_way_round
 from uvf.slam.merging.headings import FACES, facing, likely
-from uvf.slam.merging.part import Part
+from uvf.slam.merging.part import VehicleMap
 
 INFORMATION = np.diag((2500.0, 2500.0, 40000.0))
 
 
 def part_of(session):
-    part = Part("anne")
+    part = VehicleMap("anne")
     part.follow(session)
     return part
 

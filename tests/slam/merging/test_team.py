@@ -9,8 +9,8 @@ from tests.slam.merging.offices import BERT, anne, bert, first, mapped, off_by
 from uvf.maths.se2 import IDENTITY, Pose2
 from uvf.maths.se2_arrays import composed
 from uvf.models.yaml_data import BadInput
-from uvf.slam.maps.session import NO_EDGES, Session
-from uvf.slam.merging.part import Part
+from uvf.slam.maps.session import NO_EDGES, MappingSession
+from uvf.slam.merging.part import VehicleMap
 from uvf.slam.merging.team import Team
 from uvf.slam.method import Keyframe
 from uvf.slam.reading import Beams, Reading
@@ -39,7 +39,7 @@ def test_two_robots_that_have_driven_along_the_same_corridors_are_joined(joined)
 
 def test_the_merged_session_holds_every_keyframe_where_it_was_taken(joined, tmp_path):
     joined.session_of(joined.groups[0]).save(tmp_path / "team.npz")
-    merged, parts = Session.load(tmp_path / "team.npz"), (anne().session, bert().session)
+    merged, parts = MappingSession.load(tmp_path / "team.npz"), (anne().session, bert().session)
     assert len(merged.keyframes) == sum(len(part.keyframes) for part in parts)
     assert len(merged.edges.kinds) == sum(len(part.edges.kinds) for part in parts) + len(joined.groups[0].joint.crossings)
     own = np.array([k.map_from_base for k in parts[1].keyframes])
@@ -130,8 +130,8 @@ def test_keyframes_beside_the_field_make_no_floor_far_from_them():
     """One wall, seen from so far away that the vehicle is not near any of it."""
     lidar = Beams((0.0, 0.0), np.radians(np.linspace(-10.0, 10.0, 41)), 0.1, 30.0)
     reading = Reading(0.0, 20.0 / np.cos(lidar.bearings), lidar, IDENTITY)
-    part = Part("anne")
-    part.follow(Session((Keyframe(IDENTITY, reading),), NO_EDGES, "graph", {}))
+    part = VehicleMap("anne")
+    part.follow(MappingSession((Keyframe(IDENTITY, reading),), NO_EDGES, "graph", {}))
     assert not part.near.any()
 
 

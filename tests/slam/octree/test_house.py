@@ -7,15 +7,16 @@ import pytest
 
 from launch import catalogue
 from schemas import topics
-from schemas.messages import FrameTransform, NavState, OctreeMap
+from schemas.messages import FrameTransform, FrameTransforms, NavState, OctreeMap
 from services.sim_camera.build import build as build_cameras
 from services.slam.octree.build import build as build_octree
 from uvf.maths.raycast import Rays, cast
 from uvf.maths.rotations import from_euler, matrix, rotate
-from uvf.models.scenario import ROOT, load_site
+from uvf.models.scenario import ROOT, load_scenario
 from uvf.models.shapes.scene import scene
 from uvf.models.world.geometry import solids
-from uvf.runtime.contract.instances import Host
+from uvf.runtime.contract.declaration import Writes, topic
+from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import quaternion, stamp, vector
 from uvf.runtime.messages.sensor_frames import sensor_frames
@@ -24,7 +25,7 @@ from uvf.slam.octree.files import read_octree
 from uvf.slam.octree.leaves import boxes, leaves_of
 from uvf.slam.octree.octree import FREE, OCCUPIED
 
-SITE = load_site(ROOT / "missions" / "mapping.yaml")
+SITE = load_scenario(ROOT / "missions" / "mapping.yaml")
 SENSORS = SITE.members["burger"].file.sensors
 CELL = 0.05
 REACH = 5.0  # m
@@ -41,16 +42,19 @@ class Turner(Service):
 
     name = "turner"
     hz = 50.0
-    outputs = {"truth": topics.TRUTH, "body": topics.TF_BODY, "sensors": topics.TF_STATIC}
 
-    def step(self, t):
+    class Outputs(Writes):
+        truth: NavState | None = topic(topics.TRUTH)
+        body: FrameTransform | None = topic(topics.TF_BODY)
+        sensors: FrameTransforms | None = topic(topics.TF_STATIC)
+
+    def step(self, t: float, now) -> Outputs:
         position, turn = pose_at(t)
         state = NavState(timestamp=stamp(t), position=vector(position), orientation=quaternion(turn))
         body = FrameTransform(timestamp=stamp(t), parent_frame_id="world", child_frame_id="burger/base_link")
         body.translation.CopyFrom(vector(position))
         body.rotation.CopyFrom(quaternion(turn))
-        told = {"truth": state, "body": body}
-        return told | {"sensors": sensor_frames("burger", SENSORS, t)} if t <= 0.02 else told
+        return self.Outputs(truth=state, body=body, sensors=sensor_frames("burger", SENSORS, t) if t <= 0.02 else None)
 
 
 def last_map(lockstep, until):
@@ -65,7 +69,7 @@ def last_map(lockstep, until):
 @pytest.fixture(scope="module")
 def mapped():
     octree = [host for host in build_octree(SITE) if host.vehicle == "burger"]
-    return last_map(Lockstep([*build_cameras(SITE), *octree, Host(Turner, Turner, "burger")]), SECONDS + 3.0)
+    return last_map(Lockstep([*build_cameras(SITE), *octree, ServiceInstance(Turner, Turner, "burger")]), SECONDS + 3.0)
 
 
 def surface_distance(solid, points):

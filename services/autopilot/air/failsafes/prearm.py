@@ -18,12 +18,12 @@ EARTH_FIELD = (15e-6, 75e-6)  # T
 
 
 @dataclass(frozen=True, slots=True)
-class Standing:
+class PrearmInputs:
     """An aircraft on the ground."""
 
     now: Estimate
     params: AirParams
-    unfixed: float = 0.0  # s since the last fix
+    gnss_age: float = 0.0  # s since the last fix
     accuracy: float = 0.0  # m, of the fixes
     charge: float = 1.0  # 0..1
     has_air_data: bool = True
@@ -32,10 +32,10 @@ class Standing:
     mission_fault: str = ""
 
 
-Check = Callable[[Standing], str]
+Check = Callable[[PrearmInputs], str]
 
 
-def _estimator(s: Standing) -> str:
+def _estimator(s: PrearmInputs) -> str:
     now = s.now
     if now.position_sigma > POSITION:
         return f"position is known to {now.position_sigma:.0f} m only, {POSITION:g} m are needed: wait"
@@ -43,31 +43,31 @@ def _estimator(s: Standing) -> str:
     return f"heading is known to {now.yaw_sigma:.1f} rad only: wait" if unsure else ""
 
 
-def _gnss(s: Standing) -> str:
-    if s.unfixed > STALE_FIX:
+def _gnss(s: PrearmInputs) -> str:
+    if s.gnss_age > STALE_FIX:
         return "no satellite fix"
     return f"satellite fixes are good to {s.accuracy:.0f} m only" if s.accuracy > ACCURACY else ""
 
 
-def _battery(s: Standing) -> str:
+def _battery(s: PrearmInputs) -> str:
     return f"battery low: {100 * s.charge:.0f} %, {100 * s.params.battery_low:.0f} % are needed" if s.charge < s.params.battery_low else ""
 
 
-def _air_data(s: Standing) -> str:
+def _air_data(s: PrearmInputs) -> str:
     if not s.has_air_data:
         return "no air data"
     fast = s.now.airspeed > NO_WIND * s.params.min_airspeed
     return f"airspeed reads {s.now.airspeed:.0f} m/s at rest: look at the pitot tube" if fast else ""
 
 
-def _compass(s: Standing) -> str:
+def _compass(s: PrearmInputs) -> str:
     low, high = EARTH_FIELD
     if s.field and not low < s.field < high:
         return f"magnetic field of {s.field * 1e6:.0f} uT is not the earth's: move away from iron and magnets"
     return "compass contradicts the other sensors" if s.now.ratios.field > 1 else ""
 
 
-def _at_rest(s: Standing) -> str:
+def _at_rest(s: PrearmInputs) -> str:
     if s.now.ground_speed > STILL:
         return f"it moves at {s.now.ground_speed:.1f} m/s over ground"
     tilt = max(abs(s.now.roll), abs(s.now.pitch))
@@ -86,6 +86,6 @@ CHECKS: tuple[tuple[str, Check], ...] = (
 )
 
 
-def faults(standing: Standing) -> list[str]:
+def faults(standing: PrearmInputs) -> list[str]:
     """Why it should not be armed, in the order of ``CHECKS``."""
     return [why for _, check in CHECKS if (why := check(standing))]

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from schemas.messages import Breach
-from uvf.control.commands import Wanted
+from uvf.control.commands import AltitudeAirspeedSetpoint
 from uvf.estimation.state import Estimate
 from uvf.guidance.route import Circle, Place
 from uvf.guidance.vector_field import turn_radius
@@ -165,7 +165,7 @@ def clamped(height: float, fencing: Fencing, params: AirParams) -> float:
     return 0.5 * (low + high) if low > high else min(max(height, low), high)
 
 
-def kept(wanted: Wanted, guard: FenceGuard, now: Estimate, params: AirParams) -> Wanted:
+def kept(wanted: AltitudeAirspeedSetpoint, guard: FenceGuard, now: Estimate, params: AirParams) -> AltitudeAirspeedSetpoint:
     """What was asked for, within the fence."""
     height = guard.level(wanted.height, now, params)
     climb = wanted.climb if height == wanted.height else 0.0

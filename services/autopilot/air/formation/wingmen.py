@@ -2,31 +2,33 @@
 
 import math
 
-from services.autopilot.air.config import Ship
+from services.autopilot.air.config import AutopilotConfig
 from services.autopilot.air.formation.wingman import AutopilotWingman
-from services.autopilot.air.modes.follower import Formation
-from uvf.guidance.formation_slot import Station
+from services.autopilot.air.modes.follower import FormationLink
+from uvf.guidance.formation_slot import FormationSlot
 from uvf.models.mission.formation import Follow, chain_of, offset_of
-from uvf.models.scenario import Site
+from uvf.models.scenario import Scenario
 from uvf.models.vehicle.flight_params import AirParams
-from uvf.models.yaml_data import BadInput, Place
-from uvf.runtime.contract.instances import Host
+from uvf.models.yaml_data import BadInput, FileLocation
+from uvf.runtime.contract.instances import ServiceInstance
 
 NEAREST = 1.0  # s behind a leader: what lies ahead of the follower has to be known
 
 
-def wingman(site: Site, ship: Ship, params: AirParams) -> Host:
+def wingman(site: Scenario, config: AutopilotConfig, params: AirParams) -> ServiceInstance:
     """Of an aircraft that follows. Raises BadInput for a station that cannot be kept."""
-    follow = site.members[ship.name].entry.job.follow
+    follow = site.members[config.name].entry.job.follow
     assert follow is not None
-    _check(site, ship.name, follow, params)
-    station = Station(follow.behind, follow.right, follow.above)
-    return Host(AutopilotWingman, lambda: AutopilotWingman(ship, params, Formation(ship.name, follow.leader, station)), ship.name)
+    _check(site, config.name, follow, params)
+    station = FormationSlot(follow.behind, follow.right, follow.above)
+    return ServiceInstance(
+        AutopilotWingman, lambda: AutopilotWingman(config, params, FormationLink(config.name, follow.leader, station)), config.name
+    )
 
 
-def _check(site: Site, name: str, follow: Follow, params: AirParams) -> None:
+def _check(site: Scenario, name: str, follow: Follow, params: AirParams) -> None:
     """Raises BadInput for one that cannot be kept or is too near to another one."""
-    place = Place(str(site.mission_path)).at("vehicles", name, "job", "follow")
+    place = FileLocation(str(site.mission_path)).at("vehicles", name, "job", "follow")
     if site.members[follow.leader].file.kind != "fixed_wing":
         raise BadInput(f"{place.at('leader')}: {follow.leader} is no aircraft; only aircraft are followed")
     if follow.behind < NEAREST * params.trim_airspeed:

@@ -3,22 +3,22 @@
 from collections.abc import Mapping
 
 from schemas.messages import FlightSetpoint, SurfaceCommand
-from services.autopilot.air.manual_control import Hand, Hands
-from services.autopilot.air.mode_manager import Pilot
+from services.autopilot.air.manual_control import ManualCommand, ManualSources
+from services.autopilot.air.mode_manager import ModeManager
 from services.autopilot.air.mode_table import FlightMode
-from services.autopilot.air.modes.offboard import Setpoints
-from services.autopilot.air.setpoints import Senses
+from services.autopilot.air.modes.offboard import SetpointSources
+from services.autopilot.air.setpoints import FlightContext
 
 Surfaces = Mapping[str, SurfaceCommand | None]
 Wanted = Mapping[str, FlightSetpoint | None]
 
 
-class Outside:
+class ExternalControl:
     """What is asked by hand and by setpoints, and who is listened to."""
 
     def __init__(self) -> None:
-        self._hands, self._setpoints = Hands(), Setpoints()
-        self._hand: Hand | None = None
+        self._hands, self._setpoints = ManualSources(), SetpointSources()
+        self._hand: ManualCommand | None = None
         self._setpoint: FlightSetpoint | None = None
 
     def hear(self, t: float, hands: Surfaces, setpoints: Wanted, stick_timeout: float) -> None:
@@ -26,18 +26,18 @@ class Outside:
         self._hand = self._hands.choose(t, hands, stick_timeout)
         self._setpoint = self._setpoints.choose(t, setpoints)
 
-    def tell(self, senses: Senses) -> Senses:
+    def tell(self, context: FlightContext) -> FlightContext:
         """The same, with what is asked now."""
-        senses.hand, senses.setpoint = self._hand, self._setpoint
-        senses.setpoint_from, senses.setpoints_wait = self._setpoints.holder, self._setpoints.waiting
-        return senses
+        context.hand, context.setpoint = self._hand, self._setpoint
+        context.setpoint_from, context.setpoints_wait = self._setpoints.holder, self._setpoints.waiting
+        return context
 
-    def followed(self, pilot: Pilot) -> str:
+    def followed(self, mode_manager: ModeManager) -> str:
         """Whose setpoints are flown; "" in other modes than Offboard."""
-        return self._setpoints.holder if pilot.mode is FlightMode.OFFBOARD else ""
+        return self._setpoints.holder if mode_manager.mode is FlightMode.OFFBOARD else ""
 
-    def news(self, t: float, pilot: Pilot) -> list[tuple[str, str]]:
+    def news(self, t: float, mode_manager: ModeManager) -> list[tuple[str, str]]:
         """Hand-overs, in the modes in which they matter: what and why."""
-        if pilot.mode is FlightMode.OFFBOARD:
+        if mode_manager.mode is FlightMode.OFFBOARD:
             return self._setpoints.news(t)
-        return self._hands.news(t) if pilot.is_by_hand else []
+        return self._hands.news(t) if mode_manager.is_manual else []

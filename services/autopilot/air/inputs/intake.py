@@ -6,9 +6,9 @@ from dataclasses import astuple
 
 from schemas.messages import AirData, Gnss, Imu, Mission, MissionItem, MissionProgress, Mode, NavState, OrbitRequest, Vector3
 from services.autopilot.air.mode_table import FlightMode
-from uvf.estimation.sensor_inputs import Fix, Inertial, Pressures
+from uvf.estimation.sensor_inputs import GnssFix, InertialSample, Pressures
 from uvf.guidance.approach import with_courses
-from uvf.guidance.flight_plan import Item, Kind, Stand
+from uvf.guidance.flight_plan import ItemKind, PlanItem, PlanProgress
 from uvf.guidance.route import Circle, Place
 from uvf.maths.geodesy import LocalTangent
 from uvf.maths.rotations import enu_flu_from_ned_frd, to_euler
@@ -23,17 +23,17 @@ DIFFERENTIAL = (-50_000.0, 50_000.0)  # Pa, of 285 m/s
 TEMPERATURE = (150.0, 350.0)  # K
 TURNED_OFF = 5.0  # m/s, of an aircraft that nobody has steered
 KINDS = {
-    MissionItem.WAYPOINT: Kind.WAYPOINT,
-    MissionItem.ORBIT: Kind.ORBIT,
-    MissionItem.RETURN: Kind.RETURN,
-    MissionItem.JUMP: Kind.JUMP,
-    MissionItem.SPEED: Kind.SPEED,
-    MissionItem.TRIGGER: Kind.TRIGGER,
-    MissionItem.TRIGGER_DISTANCE: Kind.TRIGGER_DISTANCE,
-    MissionItem.TAKEOFF: Kind.TAKEOFF,
-    MissionItem.LAND: Kind.LAND,
-    MissionItem.LAND_START: Kind.LAND_START,
-    MissionItem.SET_HOME: Kind.SET_HOME,
+    MissionItem.WAYPOINT: ItemKind.WAYPOINT,
+    MissionItem.ORBIT: ItemKind.ORBIT,
+    MissionItem.RETURN: ItemKind.RETURN,
+    MissionItem.JUMP: ItemKind.JUMP,
+    MissionItem.SPEED: ItemKind.SPEED,
+    MissionItem.TRIGGER: ItemKind.TRIGGER,
+    MissionItem.TRIGGER_DISTANCE: ItemKind.TRIGGER_DISTANCE,
+    MissionItem.TAKEOFF: ItemKind.TAKEOFF,
+    MissionItem.LAND: ItemKind.LAND,
+    MissionItem.LAND_START: ItemKind.LAND_START,
+    MissionItem.SET_HOME: ItemKind.SET_HOME,
 }
 MODES = {
     Mode.MODE_HOLD: FlightMode.HOLD,
@@ -56,12 +56,12 @@ def frd(v: Vector3) -> tuple[float, float, float]:
     return v.x, -v.y, -v.z
 
 
-def inertial(message: Imu, t: float) -> Inertial | None:
+def inertial(message: Imu, t: float) -> InertialSample | None:
     """A sample as seen at time ``t`` [s]; None when its stamp is of no time near: one ahead would make all after it late."""
     age = t - seconds(message.timestamp)
     if not -AHEAD <= age <= OLDEST_SAMPLE:
         return None
-    return Inertial(frd(message.angular_velocity), frd(message.specific_force), frd(message.magnetic_field), age)
+    return InertialSample(frd(message.angular_velocity), frd(message.specific_force), frd(message.magnetic_field), age)
 
 
 def pressures(message: AirData, t: float) -> Pressures | None:
@@ -75,14 +75,14 @@ def _is_within(value: float, limits: tuple[float, float]) -> bool:
     return limits[0] <= value <= limits[1]
 
 
-def fix(message: Gnss, tangent: LocalTangent, t: float) -> Fix | None:
+def fix(message: Gnss, tangent: LocalTangent, t: float) -> GnssFix | None:
     """A fix as seen at time ``t`` [s]; its stamp is the moment it is valid for. None if there is none, it is old or a number is none."""
     age = t - seconds(message.timestamp)
     if message.fix != Gnss.FIX_3D or not -AHEAD <= age <= OLDEST_FIX:
         return None
     east, north, _ = tangent.enu(message.latitude, message.longitude, message.altitude).tolist()
     v = message.velocity_enu
-    found = Fix(
+    found = GnssFix(
         north=north,
         east=east,
         height=message.altitude - tangent.altitude,
@@ -97,13 +97,13 @@ def fix(message: Gnss, tangent: LocalTangent, t: float) -> Fix | None:
     return found if all(map(math.isfinite, astuple(found))) else None
 
 
-def left_fix(state: NavState, t: float) -> Fix | None:
+def left_fix(state: NavState, t: float) -> GnssFix | None:
     """The state that another instance has left, flown straight on to ``t`` [s]; None if that is long ago."""
     p, v, age = state.position, state.velocity, t - seconds(state.timestamp)
     if age > OLDEST_STATE:
         return None
     sigma = state.position_sigma + age * TURNED_OFF
-    return Fix(p.y + age * v.y, p.x + age * v.x, p.z, v.y, v.x, 0.0, 0.0, sigma, sigma, TURNED_OFF)
+    return GnssFix(p.y + age * v.y, p.x + age * v.x, p.z, v.y, v.x, 0.0, 0.0, sigma, sigma, TURNED_OFF)
 
 
 def place(v: Vector3) -> Place:
@@ -120,26 +120,26 @@ def attitude(state: NavState) -> tuple[float, float, float]:
     return to_euler(enu_flu_from_ned_frd(wxyz(state.orientation)))
 
 
-def stand(progress: MissionProgress | None) -> Stand:
+def stand(progress: MissionProgress | None) -> PlanProgress:
     """Where in the mission another instance has been."""
     if progress is None or progress.state in (MissionProgress.NO_MISSION, MissionProgress.NOT_STARTED):
-        return Stand(None, -1, 0, False)
-    return Stand(progress.current, progress.reached, progress.laps, progress.state == MissionProgress.COMPLETE)
+        return PlanProgress(None, -1, 0, False)
+    return PlanProgress(progress.current, progress.reached, progress.laps, progress.state == MissionProgress.COMPLETE)
 
 
-def items(messages: Iterable[MissionItem]) -> list[Item]:
+def items(messages: Iterable[MissionItem]) -> list[PlanItem]:
     """Raises ValueError for a kind that cannot be flown yet and for a number that is none."""
     return with_courses([_item(i, m) for i, m in enumerate(messages)])
 
 
-def _item(index: int, m: MissionItem) -> Item:
+def _item(index: int, m: MissionItem) -> PlanItem:
     if m.kind not in KINDS:
         name = MissionItem.Kind.Name(m.kind) if m.kind in MissionItem.Kind.values() else f"kind {m.kind}"
-        raise ValueError(f"item {index}: {name} is not flown by this autopilot; {', '.join(k.value for k in Kind)} are")
+        raise ValueError(f"item {index}: {name} is not flown by this autopilot; {', '.join(k.value for k in ItemKind)} are")
     p = m.position
     if not all(map(math.isfinite, (p.x, p.y, p.z, m.acceptance_radius, m.hold, m.radius, m.turns, m.speed, m.course, m.distance))):
         raise ValueError(f"item {index} holds a number that is not finite")
-    return Item(
+    return PlanItem(
         KINDS[m.kind],
         place(m.position),
         m.hold,

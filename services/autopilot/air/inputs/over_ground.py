@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 
 from schemas.messages import Range
-from uvf.estimation.sensor_inputs import Inertial
+from uvf.estimation.sensor_inputs import InertialSample
 from uvf.estimation.state import Estimate
 from uvf.maths.filters import LowPass
 from uvf.maths.geodesy import GRAVITY
@@ -15,7 +15,7 @@ STEEPEST = 0.7  # rad of bank or pitch, beyond which the beam says nothing of th
 PUSH_TIME, HEAVE_TIME = 0.05, 0.03  # s
 
 
-class OverGround:
+class GroundProximity:
     """Holds on to the newest reading. ``frame``: of the range finder that looks down, empty without one."""
 
     def __init__(self, frame: str) -> None:
@@ -23,18 +23,18 @@ class OverGround:
         self._reading: Range | None = None
         self._push = LowPass(PUSH_TIME)
         self._heave = LowPass(HEAVE_TIME)
-        self.push = 0.0
+        self.specific_force_x = 0.0
         """m/s^2, specific force forwards."""
-        self.heave = GRAVITY
+        self.specific_force_up = GRAVITY
         """m/s^2, specific force upwards."""
 
-    def hear(self, ranges: Sequence[Range], samples: Sequence[Inertial], dt: float) -> None:
+    def hear(self, ranges: Sequence[Range], samples: Sequence[InertialSample], dt: float) -> None:
         for reading in ranges:
             if reading.frame_id == self._frame:
                 self._reading = reading
         for sample in samples:
-            self.push = self._push.step(sample.force[0], dt / len(samples))
-            self.heave = self._heave.step(-sample.force[2], dt / len(samples))
+            self.specific_force_x = self._push.step(sample.force[0], dt / len(samples))
+            self.specific_force_up = self._heave.step(-sample.force[2], dt / len(samples))
 
     def clearance(self, t: float, now: Estimate, gear_height: float) -> float | None:
         """m, of the wheels over the ground below at ``t`` [s]; None without a fresh echo or when the beam looks aside."""

@@ -6,10 +6,10 @@ from typing import Literal, NamedTuple
 
 from schemas.messages import AirData, Gnss, NavState
 from services.autopilot.air.inputs import intake
-from uvf.estimation.air_data_check import Flying, Frozen
+from uvf.estimation.air_data_check import FlightState, Frozen
 from uvf.estimation.estimators import Instruments, estimator
 from uvf.estimation.mount import ImuMount
-from uvf.estimation.sensor_inputs import Fix, Inertial, Pressures, Sensed
+from uvf.estimation.sensor_inputs import GnssFix, InertialSample, Pressures, Sensed
 from uvf.estimation.state import Estimate
 from uvf.maths.geodesy import LocalTangent
 from uvf.models.vehicle.flight_params import AirParams
@@ -17,25 +17,25 @@ from uvf.models.vehicle.flight_params import AirParams
 SAME_FIXES = 4  # that are the same to the last bit: the receiver has frozen
 FIRST_FIX = 1.0  # s, waited for after a restart
 
-Believe = Callable[[tuple[object, Pressures] | None, Flying | None, AirParams, float], Pressures | None]
+Believe = Callable[[tuple[object, Pressures] | None, FlightState | None, AirParams, float], Pressures | None]
 """The pressures (with their stamp) as far as they can be believed in this flight, given the cycle's dt [s]."""
 
 
-class Said(NamedTuple):
+class SensorInputs(NamedTuple):
     """In one cycle."""
 
-    imu: list[Inertial]
+    imu: list[InertialSample]
     air_data: AirData | None
     gnss: Gnss | None
     airborne: bool
 
 
-class Sensing:
+class StateEstimation:
     """``felt``: by the IMU in this cycle, in the body's axes; ``accuracy``: m, of the last fix; ``field``: T, of the magnetic field."""
 
     def __init__(self, instruments: Instruments, tangent: LocalTangent, kind: Literal["full", "book"], believe: Believe) -> None:
         """kind: of the estimator."""
-        self.felt: list[Inertial] = []
+        self.felt: list[InertialSample] = []
         self.accuracy = 0.0
         self.field = 0.0
         self._estimator = estimator(kind, instruments)
@@ -51,16 +51,16 @@ class Sensing:
         self._now: Estimate | None = None
 
     @property
-    def unfixed(self) -> float:
+    def gnss_age(self) -> float:
         """s since the last fix."""
-        return self._estimator.unfixed
+        return self._estimator.gnss_age
 
     def begin_from(self, left: NavState) -> None:
         """What the instance before has estimated last."""
         self._left = left
         self._estimator.begin_at(*intake.attitude(left))
 
-    def step(self, t: float, said: Said, params: AirParams, dt: float) -> Estimate | None:
+    def step(self, t: float, said: SensorInputs, params: AirParams, dt: float) -> Estimate | None:
         """dt: s, the cycle. None until the first fix."""
         fix = self._new_fix(t, said) if said.gnss is not None else None
         if fix is None and not self._estimator.started:
@@ -70,18 +70,18 @@ class Sensing:
         samples = self.felt = [self._mount.at_centre(sample, self._period) for sample in said.imu]
         passed = t - self._estimated if self._estimator.started else dt
         self._estimated = t
-        flying = Flying(self._now, self.unfixed, said.airborne) if self._now is not None else None
+        flying = FlightState(self._now, self.gnss_age, said.airborne) if self._now is not None else None
         pressures = self._believe(_stamped(said.air_data, t), flying, params, dt)
         self.field = math.hypot(*samples[-1].field) if samples else self.field
         self._now = self._estimator.step(Sensed(samples, pressures, fix), params, passed)
         return self._now
 
-    def _left_fix(self, t: float, dt: float) -> Fix | None:
+    def _left_fix(self, t: float, dt: float) -> GnssFix | None:
         """After a restart without GNSS: where the instance before has been, once a fix has been waited for."""
         self._waited += dt
         return intake.left_fix(self._left, t) if self._left is not None and self._waited > FIRST_FIX else None
 
-    def _new_fix(self, t: float, said: Said) -> Fix | None:
+    def _new_fix(self, t: float, said: SensorInputs) -> GnssFix | None:
         gnss = said.gnss
         assert gnss is not None
         stamp_ns = gnss.timestamp.ToNanoseconds()

@@ -4,11 +4,11 @@ import math
 from dataclasses import replace
 
 from schemas.messages import AltitudeOrder, HomeOrder, OrderRequest, PictureOrder, SpeedOrder, TakeoffOrder
-from services.autopilot.air.mode_manager import Pilot
+from services.autopilot.air.mode_manager import ModeManager
 from services.autopilot.air.mode_table import FlightMode
 from uvf.estimation.state import Estimate
 from uvf.guidance.fence_plan import place_fault
-from uvf.guidance.flight_plan import Item, Kind
+from uvf.guidance.flight_plan import ItemKind, PlanItem
 from uvf.guidance.route import Place
 from uvf.models.vehicle.flight_params import AirParams
 
@@ -17,75 +17,75 @@ PACED = (FlightMode.MISSION, FlightMode.HOLD, FlightMode.ORBIT, FlightMode.RETUR
 """Modes whose speed is free."""
 
 
-def carry_out(order: OrderRequest, pilot: Pilot, now: Estimate, params: AirParams) -> str:
+def carry_out(order: OrderRequest, mode_manager: ModeManager, now: Estimate, params: AirParams) -> str:
     """Why it is refused; empty if it is done. Restarting is the service's own."""
     kind = order.WhichOneof("kind")
     if kind == "takeoff":
-        return _take_off(order.takeoff, order.source, pilot)
+        return _take_off(order.takeoff, order.source, mode_manager)
     if kind == "speed":
-        return _speed(order.speed, pilot, now, params)
+        return _speed(order.speed, mode_manager, now, params)
     if kind == "altitude":
-        return _altitude(order.altitude, pilot, params)
+        return _altitude(order.altitude, mode_manager, params)
     if kind == "home":
-        return _home(order.home, pilot, now)
-    return _picture(order.picture, pilot, now) if kind == "picture" else "there is nothing in this order"
+        return _home(order.home, mode_manager, now)
+    return _picture(order.picture, mode_manager, now) if kind == "picture" else "there is nothing in this order"
 
 
-def _take_off(order: TakeoffOrder, source: str, pilot: Pilot) -> str:
-    if pilot.home is None or not math.isfinite(order.altitude):
-        return "the altitude is none" if pilot.home is not None else "home is unknown"
-    if order.altitude < pilot.home.height + LOWEST_TAKEOFF:
-        return f"{order.altitude - pilot.home.height:.1f} m above home is too low: {LOWEST_TAKEOFF:g} m at least"
-    return pilot.take_off(order.altitude, source)
+def _take_off(order: TakeoffOrder, source: str, mode_manager: ModeManager) -> str:
+    if mode_manager.home is None or not math.isfinite(order.altitude):
+        return "the altitude is none" if mode_manager.home is not None else "home is unknown"
+    if order.altitude < mode_manager.home.height + LOWEST_TAKEOFF:
+        return f"{order.altitude - mode_manager.home.height:.1f} m above home is too low: {LOWEST_TAKEOFF:g} m at least"
+    return mode_manager.take_off(order.altitude, source)
 
 
-def _speed(order: SpeedOrder, pilot: Pilot, now: Estimate, params: AirParams) -> str:
-    if pilot.blocked:
-        return pilot.blocked
-    if pilot.mode not in PACED or pilot.goes_down:
+def _speed(order: SpeedOrder, mode_manager: ModeManager, now: Estimate, params: AirParams) -> str:
+    if mode_manager.blocked:
+        return mode_manager.blocked
+    if mode_manager.mode not in PACED or mode_manager.goes_down:
         return f"the speed is not free now: it is in {', '.join(mode.value for mode in PACED)}, but for take-off and landing"
     if not math.isfinite(order.speed) or order.speed < 0:
         return "the speed is none"
-    if why := pilot.pace.fault(now, order.speed, order.over_ground, params):
+    if why := mode_manager.speed_override.fault(now, order.speed, order.over_ground, params):
         return why
-    pilot.pace.take(order.speed, order.over_ground)
+    mode_manager.speed_override.take(order.speed, order.over_ground)
     return ""
 
 
-def _altitude(order: AltitudeOrder, pilot: Pilot, params: AirParams) -> str:
-    if pilot.blocked:
-        return pilot.blocked
-    circling = pilot.circling
+def _altitude(order: AltitudeOrder, mode_manager: ModeManager, params: AirParams) -> str:
+    if mode_manager.blocked:
+        return mode_manager.blocked
+    circling = mode_manager.circling
     if circling is None:
-        return f"in mode {pilot.mode.value} the height is not free: it is in Hold, Orbit and Return"
+        return f"in mode {mode_manager.mode.value} the height is not free: it is in Hold, Orbit and Return"
     if not order.altitude >= params.min_altitude or math.isinf(order.altitude):
         return f"{order.altitude:g} m is too low: {params.min_altitude:g} m at least"
     place = replace(circling.circle.centre, height=order.altitude)
-    fence = pilot.fence.fencing
+    fence = mode_manager.fence.fencing
     if not fence.is_open and (why := place_fault(place, fence, params, abs(circling.circle.radius))):
         return why
     circling.circle = replace(circling.circle, centre=place)
     return ""
 
 
-def _home(order: HomeOrder, pilot: Pilot, now: Estimate) -> str:
-    if pilot.home is None:
+def _home(order: HomeOrder, mode_manager: ModeManager, now: Estimate) -> str:
+    if mode_manager.home is None:
         return "home is unknown"
-    if not order.HasField("position") and pilot.is_blind:
+    if not order.HasField("position") and mode_manager.is_blind:
         return "GNSS is lost: wait until it is back"
     at = order.position
-    place = Place(at.y, at.x, at.z) if order.HasField("position") else Place(now.north, now.east, pilot.home.height)
+    place = Place(at.y, at.x, at.z) if order.HasField("position") else Place(now.north, now.east, mode_manager.home.height)
     if not all(map(math.isfinite, (place.north, place.east, place.height))):
         return "home is no place: its coordinates are not finite"
-    pilot.settle(place)
+    mode_manager.settle(place)
     return ""
 
 
-def _picture(order: PictureOrder, pilot: Pilot, now: Estimate) -> str:
+def _picture(order: PictureOrder, mode_manager: ModeManager, now: Estimate) -> str:
     if not order.HasField("distance"):
-        pilot.shutter.obey(Item(Kind.TRIGGER, Place(now.north, now.east, now.height)))
+        mode_manager.shutter.obey(PlanItem(ItemKind.TRIGGER, Place(now.north, now.east, now.height)))
         return ""
     if not 0 <= order.distance < math.inf:
         return "the distance between pictures is none"
-    pilot.shutter.obey(Item(Kind.TRIGGER_DISTANCE, Place(now.north, now.east, now.height), distance=order.distance))
+    mode_manager.shutter.obey(PlanItem(ItemKind.TRIGGER_DISTANCE, Place(now.north, now.east, now.height), distance=order.distance))
     return ""

@@ -1,13 +1,12 @@
 """Mission, fence and rally points in force: replaced on request, told of when they have changed."""
 
-from google.protobuf.message import Message
-
 from schemas.messages import Fence, Mission, MissionItem, RallyPoints
-from services.autopilot.air.failsafes.monitor import Safety, Seen
+from services.autopilot.air.failsafes.monitor import FailsafeMonitor, VehicleCondition
 from services.autopilot.air.inputs import intake
-from services.autopilot.air.mode_manager import Pilot
+from services.autopilot.air.interface import Outputs
+from services.autopilot.air.mode_manager import ModeManager
 from services.autopilot.air.modes import return_points
-from services.autopilot.air.status.event_log import Journal
+from services.autopilot.air.status.event_log import EventLog
 from uvf.guidance.fence_plan import mission_fault
 from uvf.guidance.flyable import advice
 from uvf.guidance.route import Place
@@ -15,13 +14,13 @@ from uvf.models.vehicle.flight_params import AirParams
 from uvf.runtime.messages.convert import stamp
 
 
-class Plans:
+class ActivePlans:
     """Requests give the reason of a refusal, empty when accepted."""
 
-    def __init__(self, items: list[MissionItem], pilot: Pilot, safety: Safety, journal: Journal) -> None:
+    def __init__(self, items: list[MissionItem], mode_manager: ModeManager, safety: FailsafeMonitor, journal: EventLog) -> None:
         self.mission = intake.with_id(items)
         self.rally = RallyPoints()
-        self._pilot, self._safety, self._journal = pilot, safety, journal
+        self._mode_manager, self._safety, self._journal = mode_manager, safety, journal
         self._news = {"plan", "bounds", "rally"}
         """Outputs that are to be told."""
 
@@ -30,14 +29,14 @@ class Plans:
             items = intake.items(mission.items)
         except ValueError as error:
             return str(error)
-        refusal = mission_fault(items, self._pilot.fence.fencing, params) or self._pilot.load(items, params)
+        refusal = mission_fault(items, self._mode_manager.fence.fencing, params) or self._mode_manager.load(items, params)
         if not refusal:
             self.mission = intake.with_id(mission.items)
-            self._journal.note(advice(self._pilot.navigator.items, params))
+            self._journal.note(advice(self._mode_manager.navigator.items, params))
             self._news.add("plan")
         return refusal
 
-    def set_fence(self, fence: Fence, seen: Seen | None, params: AirParams) -> str:
+    def set_fence(self, fence: Fence, seen: VehicleCondition | None, params: AirParams) -> str:
         refusal = self._safety.set_fence(fence, seen, params)
         if not refusal:
             self._news.add("bounds")
@@ -45,18 +44,21 @@ class Plans:
 
     def set_rally(self, rally: RallyPoints, params: AirParams) -> str:
         places = [intake.place(point) for point in rally.points]
-        refusal = return_points.fault(places, self._pilot.home or Place(0.0, 0.0, 0.0), self._pilot.fence.fencing, params)
+        refusal = return_points.fault(places, self._mode_manager.home or Place(0.0, 0.0, 0.0), self._mode_manager.fence.fencing, params)
         if not refusal:
-            self.rally, self._pilot.rally = rally, tuple(places)
+            self.rally, self._mode_manager.rally = rally, tuple(places)
             self._news.add("rally")
         return refusal
 
-    def news(self, t: float) -> dict[str, Message]:
-        """What has changed since it was told last, by output."""
-        known: dict[str, Mission | Fence | RallyPoints] = {"plan": self.mission, "bounds": self._safety.fence, "rally": self.rally}
-        told: dict[str, Message] = {}
-        for name in sorted(self._news):
-            known[name].timestamp.CopyFrom(stamp(t))
-            told[name] = known[name]
-        self._news.clear()
-        return told
+    def tell(self, t: float, out: Outputs) -> None:
+        """What has changed since it was told last."""
+        news, self._news = self._news, set()
+        if "plan" in news:
+            self.mission.timestamp.CopyFrom(stamp(t))
+            out.plan = self.mission
+        if "bounds" in news:
+            self._safety.fence.timestamp.CopyFrom(stamp(t))
+            out.bounds = self._safety.fence
+        if "rally" in news:
+            self.rally.timestamp.CopyFrom(stamp(t))
+            out.rally = self.rally

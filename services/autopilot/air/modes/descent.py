@@ -7,8 +7,8 @@ with the wings level, slow; by the range finder a flare. Without one it sinks ge
 import math
 from enum import Enum, auto
 
-from services.autopilot.air.setpoints import Phase, Senses, Track, Wish
-from uvf.control.commands import Wanted
+from services.autopilot.air.setpoints import FlightContext, FlightPhase, PathSetpoint, Setpoint
+from uvf.control.commands import AltitudeAirspeedSetpoint
 from uvf.control.cycle import clip
 from uvf.control.ground_roll import Gyros, rolling, rudder_along
 from uvf.estimation.state import Estimate
@@ -25,20 +25,20 @@ BRAKES_AFTER, BRAKE = 0.8, 0.6  # s
 STANDS, LONGEST = 1.5, 20.0  # s at rest, s of rolling
 
 
-class Stage(Enum):
+class DescendStage(Enum):
     CIRCLE = auto()
     UPWIND = auto()
     ROLL = auto()
 
 
-class Descent(Phase):
+class DescendMode(FlightPhase):
     """By attitude, airspeed, pressure and compass; the place counts only as far as it is reckoned."""
 
-    def __init__(self, circle: Circle, ground: float, senses: Senses) -> None:
+    def __init__(self, circle: Circle, ground: float, context: FlightContext) -> None:
         """ground: m, world, supposed while no range finder sees it."""
         self.circle = circle
-        self._ground, self._senses = ground, senses
-        self._stage = Stage.CIRCLE
+        self._ground, self._senses = ground, context
+        self._stage = DescendStage.CIRCLE
         self._heading = 0.0
         self._gyros: Gyros | None = None
         self._felt = self._since = 0.0  # s
@@ -46,17 +46,17 @@ class Descent(Phase):
     @property
     def rolls(self) -> bool:
         """The wheels carry it: nothing but the end can follow."""
-        return self._stage is Stage.ROLL
+        return self._stage is DescendStage.ROLL
 
-    def step(self, now: Estimate, params: AirParams, dt: float) -> Wish:
+    def step(self, now: Estimate, params: AirParams, dt: float) -> Setpoint:
         self._since += dt
-        if self._stage is Stage.ROLL:
+        if self._stage is DescendStage.ROLL:
             return self._roll(now, dt)
         height = self._height(now, params)
-        if self._stage is Stage.CIRCLE and height < TURNS_BELOW:
-            self._stage, self._heading = Stage.UPWIND, upwind(now)
-        if self._stage is Stage.CIRCLE:
-            return Wish(Track(self.circle.aim(now, params), None, -SINK, params.trim_airspeed))
+        if self._stage is DescendStage.CIRCLE and height < TURNS_BELOW:
+            self._stage, self._heading = DescendStage.UPWIND, upwind(now)
+        if self._stage is DescendStage.CIRCLE:
+            return Setpoint(PathSetpoint(self.circle.aim(now, params), None, -SINK, params.trim_airspeed))
         return self._upwind(now, params, height, dt)
 
     def _height(self, now: Estimate, params: AirParams) -> float:
@@ -64,14 +64,14 @@ class Descent(Phase):
         seen = self._senses.clearance
         return seen if seen is not None else now.height - params.gear_height - self._ground
 
-    def _upwind(self, now: Estimate, params: AirParams, height: float, dt: float) -> Wish:
+    def _upwind(self, now: Estimate, params: AirParams, height: float, dt: float) -> Setpoint:
         sink = self._sink(height)
         if self._has_touched(now, height, sink, dt):
-            self._stage, self._since, self._felt, self._gyros = Stage.ROLL, 0.0, 0.0, Gyros(now)
+            self._stage, self._since, self._felt, self._gyros = DescendStage.ROLL, 0.0, 0.0, Gyros(now)
         off = math.remainder(self._heading - now.yaw, math.tau)
         bank = clip(off, LEVEL if height < LEVEL_BELOW else TURN)
         throttle = 0.0 if self._senses.clearance is not None and height < 0.5 else None
-        return Wish(Wanted(bank, None, -sink, params.min_airspeed, throttle), params.land_flap, firm=True)
+        return Setpoint(AltitudeAirspeedSetpoint(bank, None, -sink, params.min_airspeed, throttle), params.land_flap, firm=True)
 
     def _sink(self, height: float) -> float:
         """m/s."""
@@ -85,14 +85,14 @@ class Descent(Phase):
         self._felt = self._felt + dt if near else 0.0
         return self._felt > limit
 
-    def _roll(self, now: Estimate, dt: float) -> Wish:
+    def _roll(self, now: Estimate, dt: float) -> Setpoint:
         """Straight on with brakes; the speed over ground is only reckoned, so at last it is taken to stand."""
         assert self._gyros is not None
         level = self._gyros.step(now, dt)
         self._felt = self._felt + dt if not self._senses.airborne else 0.0
         if self._felt > STANDS or self._since > LONGEST:
             self.ended, self.disarms = "down", True
-        return Wish(rolling(level, rudder_along(level, self._heading, 0.0), 0.0, BRAKE if self._since > BRAKES_AFTER else 0.0))
+        return Setpoint(rolling(level, rudder_along(level, self._heading, 0.0), 0.0, BRAKE if self._since > BRAKES_AFTER else 0.0))
 
 
 def upwind(now: Estimate) -> float:

@@ -3,11 +3,11 @@
 from collections.abc import Mapping
 
 from schemas.messages import NavState
-from services.autopilot.air.setpoints import Phase, Track, Wish
-from uvf.control.commands import Wanted
+from services.autopilot.air.setpoints import FlightPhase, PathSetpoint, Setpoint
+from uvf.control.commands import AltitudeAirspeedSetpoint
 from uvf.estimation.state import Estimate
-from uvf.guidance.formation_slot import Station, StationKeeping
-from uvf.guidance.leader_track import Report, Trail
+from uvf.guidance.formation_slot import FormationSlot, SlotKeeping
+from uvf.guidance.leader_track import LeaderReport, LeaderTrack
 from uvf.guidance.route import Place
 from uvf.guidance.separation import Threat, evasion, threat
 from uvf.models.vehicle.flight_params import AirParams
@@ -19,21 +19,21 @@ UNSURE = 10.0  # m, of an aircraft's position: one that does not know where it i
 DRAWN = 12  # places of the trail, for display
 
 
-def report(message: NavState) -> Report:
+def report(message: NavState) -> LeaderReport:
     """From ENU."""
     p, v = message.position, message.velocity
-    return Report(seconds(message.timestamp), p.y, p.x, p.z, v.y, v.x, v.z, message.airspeed)
+    return LeaderReport(seconds(message.timestamp), p.y, p.x, p.z, v.y, v.x, v.z, message.airspeed)
 
 
-class Formation:
+class FormationLink:
     """Who follows whom where; told before each step what the others say."""
 
-    def __init__(self, name: str, leader: str, station: Station) -> None:
+    def __init__(self, name: str, leader: str, station: FormationSlot) -> None:
         self.name = name
         self.leader = leader
         self.station = station
-        self.trail = Trail()
-        self.others: dict[str, Report] = {}
+        self.trail = LeaderTrack()
+        self.others: dict[str, LeaderReport] = {}
         self.t = 0.0  # s, now
         self.threat: Threat | None = None
         self._begun: float | None = None  # s
@@ -47,7 +47,7 @@ class Formation:
         if self.leader in sure:
             heard = self.others[self.leader]
             if self.trail.newest is not None and heard.t - self.trail.newest.t > LOST:
-                self.trail = Trail()
+                self.trail = LeaderTrack()
             self.trail.add(heard)
 
     @property
@@ -80,25 +80,25 @@ class Formation:
         return [Place(spot.north, spot.east, spot.height) for spot in spots]
 
 
-class Trailing(Phase):
+class FollowMode(FlightPhase):
     """At the station behind the leader; straight on and level until the leader is heard."""
 
-    def __init__(self, formation: Formation) -> None:
+    def __init__(self, formation: FormationLink) -> None:
         self._formation = formation
-        self._keeping = StationKeeping(formation.station)
+        self._keeping = SlotKeeping(formation.station)
         self._height: float | None = None
         self.distance = 0.0
         """m, from the station."""
 
-    def step(self, now: Estimate, params: AirParams, dt: float) -> Wish:
+    def step(self, now: Estimate, params: AirParams, dt: float) -> Setpoint:
         formation = self._formation
         if formation.trail.newest is None:
             self._height = now.height if self._height is None else self._height
-            return Wish(Wanted(0.0, self._height, 0.0, params.trim_airspeed))
+            return Setpoint(AltitudeAirspeedSetpoint(0.0, self._height, 0.0, params.trim_airspeed))
         steered = self._keeping.step(formation.trail, formation.t, now, params, dt)
         self.distance = steered.distance
         formation.threat = threat(formation.t, now, formation.others, params.follow_sep)
         if formation.threat is None:
-            return Wish(Track(steered.aim, steered.height, steered.climb, steered.airspeed))
+            return Setpoint(PathSetpoint(steered.aim, steered.height, steered.climb, steered.airspeed))
         height, airspeed = evasion(formation.threat, formation.name, (steered.height, steered.airspeed), params)
-        return Wish(Track(steered.aim, height, 0.0, airspeed))
+        return Setpoint(PathSetpoint(steered.aim, height, 0.0, airspeed))

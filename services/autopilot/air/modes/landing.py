@@ -8,7 +8,7 @@ import math
 from collections.abc import Callable
 from enum import Enum, auto
 
-from services.autopilot.air.setpoints import Phase, Senses, Track, Wish
+from services.autopilot.air.setpoints import FlightContext, FlightPhase, PathSetpoint, Setpoint
 from uvf.control.cycle import clip
 from uvf.control.ground_roll import Gyros, rolling, rudder_along
 from uvf.control.total_energy import climb_at
@@ -16,7 +16,7 @@ from uvf.estimation.state import Estimate
 from uvf.estimation.wheel_height import WheelHeight
 from uvf.guidance.approach import Approach
 from uvf.guidance.route import Circle, Place
-from uvf.guidance.runways import Lane
+from uvf.guidance.runways import Runway
 from uvf.guidance.vector_field import line_aim
 from uvf.maths.geodesy import GRAVITY
 from uvf.models.vehicle.flight_params import AirParams
@@ -47,21 +47,21 @@ BRAKES_AFTER, BRAKE = 0.8, 0.6  # s
 STOPPED, STANDS = 0.7, 1.5  # m/s, s
 
 
-class Stage(Enum):
+class LandingStage(Enum):
     CIRCLE = auto()
     FINAL = auto()
     ROLL = auto()
     AROUND = auto()
 
 
-class Landing(Phase):
+class LandingMode(FlightPhase):
     """On a lane, which is chosen again as long as the wind is found out on the circle. ``around`` asks for another approach."""
 
     def __init__(
         self,
         now: Estimate,
-        choose: Callable[[Estimate], Lane],
-        senses: Senses,
+        choose: Callable[[Estimate], Runway],
+        context: FlightContext,
         params: AirParams,
         approach: Approach | None = None,
     ) -> None:
@@ -69,45 +69,45 @@ class Landing(Phase):
         self._approach = approach
         self._choose = choose
         self.why_around = ""
-        self._senses = senses
+        self._senses = context
         self._length = FINAL_TIME * params.min_airspeed if approach is None else approach.length
         self._wheels = WheelHeight(self.lane.aim.height)
         self._since = 0.0
         self._gyros = Gyros(now)
         slow = now.airspeed < 0.6 * params.min_airspeed  # started anew while it rolls out
-        self._stage = Stage.ROLL if slow else Stage.CIRCLE
+        self._stage = LandingStage.ROLL if slow else LandingStage.CIRCLE
         self._circle = self._new_circle(now, params)
         self._still = 0.0
         self._low = False
 
     @property
     def circle(self) -> Circle | None:
-        return self._circle if self._stage is Stage.CIRCLE else None
+        return self._circle if self._stage is LandingStage.CIRCLE else None
 
     @property
     def rolls(self) -> bool:
         """The wheels carry it: nothing but the end of the landing can follow."""
-        return self._stage is Stage.ROLL
+        return self._stage is LandingStage.ROLL
 
     @property
     def committed(self) -> bool:
         """Too near to the ground to be turned away without a position."""
-        return self._stage is Stage.ROLL or (self._stage is Stage.FINAL and self._low)
+        return self._stage is LandingStage.ROLL or (self._stage is LandingStage.FINAL and self._low)
 
     def around(self, why: str) -> None:
         if not self.rolls:
             self.why_around = why
-            self._to(Stage.AROUND)
+            self._to(LandingStage.AROUND)
 
-    def step(self, now: Estimate, params: AirParams, dt: float) -> Wish:
+    def step(self, now: Estimate, params: AirParams, dt: float) -> Setpoint:
         self._since += dt
-        if self._stage is Stage.CIRCLE:
+        if self._stage is LandingStage.CIRCLE:
             return self._descend(now, params)
-        if self._stage is Stage.FINAL:
+        if self._stage is LandingStage.FINAL:
             return self._final(now, params, dt)
-        return self._roll(now, dt) if self._stage is Stage.ROLL else self._go_around(now, params)
+        return self._roll(now, dt) if self._stage is LandingStage.ROLL else self._go_around(now, params)
 
-    def _to(self, stage: Stage) -> None:
+    def _to(self, stage: LandingStage) -> None:
         self._stage, self._since, self._still = stage, 0.0, 0.0
 
     def _new_circle(self, now: Estimate, params: AirParams) -> Circle:
@@ -130,7 +130,7 @@ class Landing(Phase):
         top = math.inf if self._approach is None else self._approach.height - self.lane.aim.height - params.gear_height
         return (height, slope, flares) if height < top else (top, 0.0, False)
 
-    def _descend(self, now: Estimate, params: AirParams) -> Wish:
+    def _descend(self, now: Estimate, params: AirParams) -> Setpoint:
         if self.lane.tailwind(now) > MOST_TAILWIND and (other := self._choose(now)) != self.lane:
             self.lane = other
             self._circle = self._new_circle(now, params)
@@ -138,12 +138,12 @@ class Landing(Phase):
         distance, right = self.lane.locate(now)
         lead = abs(distance - self._length) < 0.4 * abs(circle.radius) and abs(right) < 0.2 * abs(circle.radius)
         if lead and abs(self.lane.off(now.course)) < ALIGNED and abs(now.height - circle.centre.height) < ON_CIRCLE:
-            self._to(Stage.FINAL)
+            self._to(LandingStage.FINAL)
         near = now.height < circle.centre.height + 2 * ON_CIRCLE and circle.is_captured(now)  # slow, it could not turn in
         airspeed = self._airspeed(now, params) if near else params.trim_airspeed
-        return Wish(Track(circle.aim(now, params), circle.centre.height, 0.0, airspeed), params.land_flap if near else 0.0)
+        return Setpoint(PathSetpoint(circle.aim(now, params), circle.centre.height, 0.0, airspeed), params.land_flap if near else 0.0)
 
-    def _final(self, now: Estimate, params: AirParams, dt: float) -> Wish:
+    def _final(self, now: Estimate, params: AirParams, dt: float) -> Setpoint:
         distance, right = self.lane.locate(now)
         wheels = self._wheels
         wheels.step(now, self._senses.clearance, distance, params, dt)
@@ -159,21 +159,21 @@ class Landing(Phase):
         climb += now.climb - wheels.climb  # as the estimate has it
         if flares and self._has_touched(now, climb, dt):
             self._gyros = Gyros(now)
-            self._to(Stage.ROLL)
+            self._to(LandingStage.ROLL)
         lift = self._lift(now, climb) if wheels.height < LIFTS_BELOW else 0.0
-        return Wish(self._down(now, params, climb, fast), params.land_flap, lift=lift, firm=True)
+        return Setpoint(self._down(now, params, climb, fast), params.land_flap, lift=lift, firm=True)
 
-    def _down(self, now: Estimate, params: AirParams, climb: float, airspeed: float) -> Track:
+    def _down(self, now: Estimate, params: AirParams, climb: float, airspeed: float) -> PathSetpoint:
         """Along the lane; near the ground wings about level, then the nose along the strip and the throttle closing."""
         height = self._wheels.height
         aim = line_aim(self.lane.along, self.lane.before(0.0), (now.north, now.east), params)
         rudder = self._decrab(now) if height < DECRAB_BELOW else None
         throttle = touch_throttle(now, params, climb, airspeed, height) if height < IDLES_BELOW else None
-        return Track(aim, None, climb, airspeed, LOW_BANK if height < LOW else None, throttle, rudder)
+        return PathSetpoint(aim, None, climb, airspeed, LOW_BANK if height < LOW else None, throttle, rudder)
 
     def _lift(self, now: Estimate, climb: float) -> float:
         """m/s^2 that are wanting: by the climb, and by the lift that is felt, which tells of a gust before it has moved anything."""
-        return LIFT_P * (climb - now.climb) + LIFT_A * (GRAVITY - self._senses.heave)
+        return LIFT_P * (climb - now.climb) + LIFT_A * (GRAVITY - self._senses.specific_force_up)
 
     def _airspeed(self, now: Estimate, params: AirParams) -> float:
         wind = math.hypot(now.wind_north, now.wind_east)
@@ -204,7 +204,7 @@ class Landing(Phase):
         self._still = self._still + dt if near else 0.0
         return self._still > limit
 
-    def _roll(self, now: Estimate, dt: float) -> Wish:
+    def _roll(self, now: Estimate, dt: float) -> Setpoint:
         _, right = self.lane.locate(now)
         level = self._gyros.step(now, dt)
         stands = now.ground_speed < STOPPED or not self._senses.airborne
@@ -212,16 +212,18 @@ class Landing(Phase):
         if self._still > STANDS:
             self.ended, self.disarms = "landed", True
         rudder = rudder_along(level, self.lane.course, right)
-        return Wish(rolling(level, rudder, 0.0, BRAKE if self._since > BRAKES_AFTER else 0.0))
+        return Setpoint(rolling(level, rudder, 0.0, BRAKE if self._since > BRAKES_AFTER else 0.0))
 
-    def _go_around(self, now: Estimate, params: AirParams) -> Wish:
+    def _go_around(self, now: Estimate, params: AirParams) -> Setpoint:
         circle = self._circle.centre.height
         if now.height > circle - ON_CIRCLE:
             self._circle = self._new_circle(now, params)
-            self._to(Stage.CIRCLE)
+            self._to(LandingStage.CIRCLE)
         aim = line_aim(self.lane.along, self.lane.before(0.0), (now.north, now.east), params)
         low = now.height < self.lane.aim.height + LOW
-        return Wish(Track(aim, None, climb_at(now, params), params.trim_airspeed, bank_limit=LOW_BANK if low else None, throttle=1.0))
+        return Setpoint(
+            PathSetpoint(aim, None, climb_at(now, params), params.trim_airspeed, bank_limit=LOW_BANK if low else None, throttle=1.0)
+        )
 
 
 def flare(distance: float, ground_speed: float, slope: float) -> tuple[float, float, bool]:

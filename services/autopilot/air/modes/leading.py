@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import msgspec
 
-from services.autopilot.air.setpoints import Track, Wish
+from services.autopilot.air.setpoints import PathSetpoint, Setpoint
 from uvf.estimation.state import Estimate
 from uvf.models.vehicle.flight_params import AirParams
 
@@ -19,7 +19,7 @@ def reserved(params: AirParams) -> AirParams:
     return msgspec.structs.replace(params, turn_bank=min(params.turn_bank, math.atan(steepest)))
 
 
-class Steadied:
+class LeaderSpeedFilter:
     """The speed held is the one through the mean wind; gusts pass.
 
     A leader that answered each gust would change its speed over ground, and its followers, who meet gusts of their own, would have to
@@ -30,11 +30,11 @@ class Steadied:
         self._north = self._east = 0.0  # m/s, mean wind
         self._known = 0.0  # s
 
-    def step(self, wish: Wish, now: Estimate, params: AirParams, dt: float) -> Wish:
+    def step(self, wish: Setpoint, now: Estimate, params: AirParams, dt: float) -> Setpoint:
         """The wish with the airspeed of now that the speed asked for means."""
         self._average(now, dt)
         asked = wish.asked
-        if not isinstance(asked, Track) or asked.throttle is not None:
+        if not isinstance(asked, PathSetpoint) or asked.throttle is not None:
             return wish
         v_north, v_east = now.ground_speed * math.cos(now.course), now.ground_speed * math.sin(now.course)
         gust = now.airspeed - math.hypot(v_north - self._north, v_east - self._east)

@@ -4,12 +4,12 @@ import math
 from collections.abc import Iterator, Mapping
 
 from schemas.messages import FlightSetpoint
-from services.autopilot.air.setpoints import Phase, Senses, Track, Wish
+from services.autopilot.air.setpoints import FlightContext, FlightPhase, PathSetpoint, Setpoint
 from services.autopilot.multiplexing import OFFBOARD, Multiplexer
-from uvf.control.commands import Attitude
+from uvf.control.commands import AttitudeSetpoint
 from uvf.control.cycle import clip
 from uvf.estimation.state import Estimate
-from uvf.guidance.vector_field import Aim, line_aim, orbit_aim
+from uvf.guidance.vector_field import PathReference, line_aim, orbit_aim
 from uvf.models.vehicle.flight_params import AirParams
 from uvf.runtime.messages.convert import seconds
 
@@ -42,7 +42,7 @@ def _numbers(m: FlightSetpoint) -> Iterator[float]:
         yield from (v.x, v.y, v.z)
 
 
-class Setpoints(Multiplexer):
+class SetpointSources(Multiplexer):
     """Of all senders, by their keys."""
 
     def __init__(self) -> None:
@@ -54,27 +54,27 @@ class Setpoints(Multiplexer):
         return counted.get(self.pick(counted))
 
 
-class Offboard(Phase):
+class OffboardMode(FlightPhase):
     """``step`` is called while there is a setpoint."""
 
-    def __init__(self, senses: Senses) -> None:
-        self._senses = senses
+    def __init__(self, context: FlightContext) -> None:
+        self._senses = context
 
-    def step(self, now: Estimate, params: AirParams, dt: float) -> Wish:
+    def step(self, now: Estimate, params: AirParams, dt: float) -> Setpoint:
         message = self._senses.setpoint
         assert message is not None, "the table ends this mode without a setpoint"
         if message.HasField("attitude"):
             a = message.attitude
             pitch, throttle = clip(a.pitch, params.pitch_limit), min(max(a.throttle, 0.0), 1.0)
-            return Wish(Attitude(clip(a.bank, params.bank_limit), pitch, throttle))
+            return Setpoint(AttitudeSetpoint(clip(a.bank, params.bank_limit), pitch, throttle))
         if message.HasField("course"):
             c = message.course
-            aim = Aim(0.0, c.course, 0.0, params.k_path, params.chi_inf)
-            return Wish(Track(aim, c.altitude, 0.0, c.airspeed or params.trim_airspeed))
+            aim = PathReference(0.0, c.course, 0.0, params.k_path, params.chi_inf)
+            return Setpoint(PathSetpoint(aim, c.altitude, 0.0, c.airspeed or params.trim_airspeed))
         return _line(message, now, params) if message.HasField("line") else _circle(message, now, params)
 
 
-def _line(message: FlightSetpoint, now: Estimate, params: AirParams) -> Wish:
+def _line(message: FlightSetpoint, now: Estimate, params: AirParams) -> Setpoint:
     line = message.line
     origin, d = line.origin, line.direction
     level = math.hypot(d.x, d.y)
@@ -82,10 +82,10 @@ def _line(message: FlightSetpoint, now: Estimate, params: AirParams) -> Wish:
     aim = line_aim(along, (origin.y, origin.x), (now.north, now.east), params)
     flown = (now.north - origin.y) * along[0] + (now.east - origin.x) * along[1]
     slope = d.z / level
-    return Wish(Track(aim, origin.z + slope * flown, slope * now.ground_speed, line.airspeed or params.trim_airspeed))
+    return Setpoint(PathSetpoint(aim, origin.z + slope * flown, slope * now.ground_speed, line.airspeed or params.trim_airspeed))
 
 
-def _circle(message: FlightSetpoint, now: Estimate, params: AirParams) -> Wish:
+def _circle(message: FlightSetpoint, now: Estimate, params: AirParams) -> Setpoint:
     circle = message.circle
     aim = orbit_aim((circle.centre.y, circle.centre.x), circle.radius, (now.north, now.east), params)
-    return Wish(Track(aim, circle.centre.z, 0.0, circle.airspeed or params.trim_airspeed))
+    return Setpoint(PathSetpoint(aim, circle.centre.z, 0.0, circle.airspeed or params.trim_airspeed))

@@ -3,16 +3,16 @@
 import math
 from dataclasses import dataclass, replace
 
-from services.autopilot.air.setpoints import Phase, Track, Wish
+from services.autopilot.air.setpoints import FlightPhase, PathSetpoint, Setpoint
 from uvf.estimation.state import Estimate
-from uvf.guidance.plan_follower import Navigator
+from uvf.guidance.plan_follower import PlanFollower
 from uvf.guidance.route import Circle
 from uvf.guidance.vector_field import turn_radius
 from uvf.models.vehicle.flight_params import AirParams
 
 
 @dataclass(frozen=True, slots=True)
-class Round:
+class LoiterOptions:
     """How a place is circled: radius [m], positive clockwise, and airspeed [m/s]; 0 = the vehicle's own."""
 
     radius: float = 0.0
@@ -30,30 +30,30 @@ class Round:
         return ""
 
 
-OWN = Round()
+OWN = LoiterOptions()
 
 
-class Circling(Phase):
+class OrbitMode(FlightPhase):
     """Round a circle at its height, for ever."""
 
-    def __init__(self, circle: Circle, how: Round) -> None:
+    def __init__(self, circle: Circle, how: LoiterOptions) -> None:
         """Without a radius in ``how`` that of the circle follows ``hold_radius``."""
         self.circle = circle
         self.airspeed = how.airspeed
         self._sized = how.radius != 0.0
 
-    def step(self, now: Estimate, params: AirParams, dt: float) -> Wish:
+    def step(self, now: Estimate, params: AirParams, dt: float) -> Setpoint:
         if not self._sized and self.circle.radius != params.hold_radius:
             self.circle = replace(self.circle, radius=params.hold_radius)
-        return Wish(Track(self.circle.aim(now, params), self.circle.centre.height, 0.0, self.airspeed or params.trim_airspeed))
+        return Setpoint(PathSetpoint(self.circle.aim(now, params), self.circle.centre.height, 0.0, self.airspeed or params.trim_airspeed))
 
 
-class Following(Phase):
+class PathMode(FlightPhase):
     """The legs and circles of a mission, up to its end or to an item that is not one of them."""
 
-    def __init__(self, navigator: Navigator) -> None:
+    def __init__(self, navigator: PlanFollower) -> None:
         self._navigator = navigator
 
-    def step(self, now: Estimate, params: AirParams, dt: float) -> Wish:
+    def step(self, now: Estimate, params: AirParams, dt: float) -> Setpoint:
         aim, level = self._navigator.step(now, params, dt)
-        return Wish(Track(aim, level.height, level.climb, self._navigator.speed or params.trim_airspeed))
+        return Setpoint(PathSetpoint(aim, level.height, level.climb, self._navigator.speed or params.trim_airspeed))

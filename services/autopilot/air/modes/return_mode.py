@@ -5,8 +5,8 @@ Without ``descend_alt`` it stays at the height at which it came; without ``land_
 
 from dataclasses import replace
 
-from services.autopilot.air.modes.paths import OWN, Circling
-from services.autopilot.air.setpoints import Wish
+from services.autopilot.air.modes.paths import OWN, OrbitMode
+from services.autopilot.air.setpoints import Setpoint
 from uvf.estimation.state import Estimate
 from uvf.guidance.route import Circle, Place
 from uvf.models.vehicle.flight_params import AirParams
@@ -14,7 +14,7 @@ from uvf.models.vehicle.flight_params import AirParams
 AT_HEIGHT = 5.0  # m
 
 
-class Homeward(Circling):
+class ReturnMode(OrbitMode):
     """Its height follows the parameters until somebody asks for another one."""
 
     def __init__(self, to: Place, lowest: float, home: float, height: float) -> None:
@@ -25,7 +25,7 @@ class Homeward(Circling):
         self._arrived = False
         self._waited = 0.0  # s
 
-    def step(self, now: Estimate, params: AirParams, dt: float) -> Wish:
+    def step(self, now: Estimate, params: AirParams, dt: float) -> Setpoint:
         if self.circle.centre.height == self._given:
             self._given = self._height(params)
             self.circle = replace(self.circle, centre=replace(self.circle.centre, height=self._given))

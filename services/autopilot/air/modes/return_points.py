@@ -10,7 +10,7 @@ from uvf.models.mission.fence import Fencing
 from uvf.models.vehicle.flight_params import AirParams
 
 
-def haven(now: Estimate, home: Place, rally: Sequence[Place], fencing: Fencing, params: AirParams) -> Place:
+def return_point(now: Estimate, home: Place, rally: Sequence[Place], fencing: Fencing, params: AirParams) -> Place:
     """The place to circle over, no lower than ``return_altitude`` above home; home without any that lies within the fence."""
     places = [_over(place, home, params) for place in (home, *rally)]
     kept = [place for place in places if is_within(Circle(place, params.hold_radius), fencing, params)]

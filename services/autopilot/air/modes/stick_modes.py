@@ -3,10 +3,10 @@
 import math
 from collections.abc import Mapping
 
-from services.autopilot.air.manual_control import LET_GO, Sticks
+from services.autopilot.air.manual_control import STICK_RELEASED, StickDeflections
 from services.autopilot.air.mode_table import FlightMode
-from services.autopilot.air.setpoints import Phase, Senses, Track, Wish
-from uvf.control.commands import Attitude, Surfaces, Wanted
+from services.autopilot.air.setpoints import FlightContext, FlightPhase, PathSetpoint, Setpoint
+from uvf.control.commands import AltitudeAirspeedSetpoint, AttitudeSetpoint, Surfaces
 from uvf.control.cycle import Cycle
 from uvf.estimation.state import Estimate
 from uvf.guidance.vector_field import Point, line_aim
@@ -17,50 +17,52 @@ STEEPEST = 0.35  # rad, pitch beside that of level flight with the stick at its 
 WINGS_LEVEL = 0.1  # rad: from here on a line is held over ground
 
 
-class ByHand(Phase):
+class StickMode(FlightPhase):
     """``step`` is called while a hand is on the stick."""
 
-    def __init__(self, senses: Senses) -> None:
-        self._senses = senses
+    def __init__(self, context: FlightContext) -> None:
+        self._senses = context
 
     @property
     def _surfaces(self) -> Surfaces:
-        return self._senses.hand.surfaces if self._senses.hand is not None else LET_GO
+        return self._senses.hand.surfaces if self._senses.hand is not None else STICK_RELEASED
 
     @property
-    def _sticks(self) -> Sticks:
+    def _sticks(self) -> StickDeflections:
         hand = self._senses.hand
-        return hand.sticks(self._senses.servos) if hand is not None else Sticks(0.0, 0.0, 0.0, 0.0)
+        return hand.sticks(self._senses.servos) if hand is not None else StickDeflections(0.0, 0.0, 0.0, 0.0)
 
 
-class Manual(ByHand):
+class ManualMode(StickMode):
     """The surfaces as the hand asks."""
 
-    def step(self, now: Estimate, params: AirParams, dt: float) -> Wish:
-        return Wish(self._surfaces)
+    def step(self, now: Estimate, params: AirParams, dt: float) -> Setpoint:
+        return Setpoint(self._surfaces)
 
 
-class Stabilized(ByHand):
+class StabilizedMode(StickMode):
     """Stick to bank and pitch; throttle, rudder, flap and brake as the hand asks. The pedals centred, the side slip is taken out."""
 
-    def step(self, now: Estimate, params: AirParams, dt: float) -> Wish:
+    def step(self, now: Estimate, params: AirParams, dt: float) -> Setpoint:
         sticks, surfaces = self._sticks, self._surfaces
         level = Cycle(now, params, dt).alpha
         rudder = surfaces.rudder if abs(sticks.yaw) > CENTRED or not self._senses.airborne else None
-        asked = Attitude(sticks.roll * params.turn_bank, level + sticks.pitch * STEEPEST, sticks.throttle, rudder)
-        return Wish(asked, surfaces.flap, surfaces.brake)
+        asked = AttitudeSetpoint(sticks.roll * params.turn_bank, level + sticks.pitch * STEEPEST, sticks.throttle, rudder)
+        return Setpoint(asked, surfaces.flap, surfaces.brake)
 
 
-class Altitude(ByHand):
+class AltitudeMode(StickMode):
     """Stick to bank and climb rate, centred to the height of then; throttle from the lowest airspeed to the highest."""
 
-    def __init__(self, senses: Senses) -> None:
-        super().__init__(senses)
+    def __init__(self, context: FlightContext) -> None:
+        super().__init__(context)
         self._height: float | None = None
 
-    def step(self, now: Estimate, params: AirParams, dt: float) -> Wish:
+    def step(self, now: Estimate, params: AirParams, dt: float) -> Setpoint:
         height, climb = self._vertical(now, params)
-        return Wish(Wanted(self._sticks.roll * params.turn_bank, height, climb, self._airspeed(params)), self._surfaces.flap)
+        return Setpoint(
+            AltitudeAirspeedSetpoint(self._sticks.roll * params.turn_bank, height, climb, self._airspeed(params)), self._surfaces.flap
+        )
 
     def _vertical(self, now: Estimate, params: AirParams) -> tuple[float | None, float]:
         pitch = self._sticks.pitch
@@ -75,14 +77,14 @@ class Altitude(ByHand):
         return params.min_airspeed + self._sticks.throttle * (params.max_airspeed - params.min_airspeed)
 
 
-class Position(Altitude):
+class PositionMode(AltitudeMode):
     """As Altitude; with the stick centred it holds the line over ground that it flies along once its wings are level."""
 
-    def __init__(self, senses: Senses) -> None:
-        super().__init__(senses)
+    def __init__(self, context: FlightContext) -> None:
+        super().__init__(context)
         self._line: tuple[Point, Point] | None = None
 
-    def step(self, now: Estimate, params: AirParams, dt: float) -> Wish:
+    def step(self, now: Estimate, params: AirParams, dt: float) -> Setpoint:
         if abs(self._sticks.roll) > CENTRED:
             self._line = None
         elif self._line is None and abs(now.roll) < WINGS_LEVEL:
@@ -91,12 +93,12 @@ class Position(Altitude):
             return super().step(now, params, dt)
         height, climb = self._vertical(now, params)
         aim = line_aim(*self._line, (now.north, now.east), params)
-        return Wish(Track(aim, height, climb, self._airspeed(params)), self._surfaces.flap)
+        return Setpoint(PathSetpoint(aim, height, climb, self._airspeed(params)), self._surfaces.flap)
 
 
-STICK_MODES: Mapping[FlightMode, type[ByHand]] = {
-    FlightMode.MANUAL: Manual,
-    FlightMode.STABILIZED: Stabilized,
-    FlightMode.ALTITUDE: Altitude,
-    FlightMode.POSITION: Position,
+STICK_MODES: Mapping[FlightMode, type[StickMode]] = {
+    FlightMode.MANUAL: ManualMode,
+    FlightMode.STABILIZED: StabilizedMode,
+    FlightMode.ALTITUDE: AltitudeMode,
+    FlightMode.POSITION: PositionMode,
 }

@@ -3,8 +3,8 @@
 import math
 from enum import Enum, auto
 
-from services.autopilot.air.setpoints import Phase, Senses, Track, Wish
-from uvf.control.commands import Attitude, Surfaces
+from services.autopilot.air.setpoints import FlightContext, FlightPhase, PathSetpoint, Setpoint
+from uvf.control.commands import AttitudeSetpoint, Surfaces
 from uvf.control.ground_roll import Gyros, held, rolling, rudder_along
 from uvf.control.total_energy import climb_at
 from uvf.estimation.state import Estimate
@@ -25,68 +25,68 @@ THROWN = 0.1  # s, that a push lasts at least
 READY = Surfaces(0.0, 0.0, 0.0, 0.0)
 
 
-class Stage(Enum):
+class TakeoffStage(Enum):
     READY = auto()
     ROLL = auto()
     CLIMB = auto()
     REJECTED = auto()
 
 
-class TakeOff(Phase):
+class TakeoffMode(FlightPhase):
     """In the direction in which the aircraft stands. ``room`` [m]: how far it may roll, half of it before it has the speed to fly."""
 
-    def __init__(self, now: Estimate, height: float, senses: Senses, room: float = math.inf) -> None:
+    def __init__(self, now: Estimate, height: float, context: FlightContext, room: float = math.inf) -> None:
         """height: m, world, at which it is done."""
         self.height = height
-        self._senses, self._room = senses, room
+        self._senses, self._room = context, room
         self._ground = now.height
-        self._course = now.yaw if not senses.airborne else now.course
+        self._course = now.yaw if not context.airborne else now.course
         self._origin: Point = (now.north, now.east)
         self._gyros = Gyros(now)
-        self._stage = Stage.CLIMB if senses.airborne else Stage.READY
+        self._stage = TakeoffStage.CLIMB if context.airborne else TakeoffStage.READY
         self._since = 0.0
         self._pushed = 0.0
         self._why = ""
 
     def is_low(self, now: Estimate) -> bool:
         """On its wheels, or so low that the wings have to stay level: no other mode can follow."""
-        return self._stage is not Stage.CLIMB or self._rise(now) < STRAIGHT
+        return self._stage is not TakeoffStage.CLIMB or self._rise(now) < STRAIGHT
 
-    def step(self, now: Estimate, params: AirParams, dt: float) -> Wish:
+    def step(self, now: Estimate, params: AirParams, dt: float) -> Setpoint:
         self._since += dt
         level = self._gyros.step(now, dt)
-        if self._stage is Stage.READY:
+        if self._stage is TakeoffStage.READY:
             return self._ready(now, params, dt)
-        if self._stage is Stage.ROLL:
+        if self._stage is TakeoffStage.ROLL:
             return self._roll(now, level, params)
-        return self._reject(now, level) if self._stage is Stage.REJECTED else self._climb(now, level, params)
+        return self._reject(now, level) if self._stage is TakeoffStage.REJECTED else self._climb(now, level, params)
 
-    def _to(self, stage: Stage) -> None:
+    def _to(self, stage: TakeoffStage) -> None:
         self._stage, self._since = stage, 0.0
 
-    def _ready(self, now: Estimate, params: AirParams, dt: float) -> Wish:
+    def _ready(self, now: Estimate, params: AirParams, dt: float) -> Setpoint:
         """Armed: it rolls, or waits with the motor off for the push of a catapult or an arm."""
         self._course, self._origin = now.yaw, (now.north, now.east)
         self._ground, self._gyros = now.height, Gyros(now)
         if params.launch_push == 0:
-            self._to(Stage.ROLL)
-            return Wish(READY)
-        self._pushed = self._pushed + dt if self._senses.push > params.launch_push else 0.0
+            self._to(TakeoffStage.ROLL)
+            return Setpoint(READY)
+        self._pushed = self._pushed + dt if self._senses.specific_force_x > params.launch_push else 0.0
         if self._pushed >= THROWN:
-            self._to(Stage.CLIMB)
-        return Wish(READY)
+            self._to(TakeoffStage.CLIMB)
+        return Setpoint(READY)
 
-    def _roll(self, now: Estimate, level: Estimate, params: AirParams) -> Wish:
+    def _roll(self, now: Estimate, level: Estimate, params: AirParams) -> Setpoint:
         right = self._right(now)
         self._why = self._fault(level, params, right)
         if self._why:
-            self._to(Stage.REJECTED)
+            self._to(TakeoffStage.REJECTED)
         if self._rise(now) > LIFTED:
-            self._to(Stage.CLIMB)
+            self._to(TakeoffStage.CLIMB)
         rudder, throttle = rudder_along(level, self._course, right), min(self._since / OPENING, 1.0)
         if now.airspeed < ROTATION * params.min_airspeed:
-            return Wish(rolling(level, rudder, throttle))
-        return Wish(held(now, level, Attitude(0.0, params.takeoff_pitch, throttle, rudder)))
+            return Setpoint(rolling(level, rudder, throttle))
+        return Setpoint(held(now, level, AttitudeSetpoint(0.0, params.takeoff_pitch, throttle, rudder)))
 
     def _fault(self, now: Estimate, params: AirParams, right: float) -> str:
         """Why this is no take-off; empty while it is one. Once it could fly, it does."""
@@ -99,20 +99,20 @@ class TakeOff(Phase):
             return "it left the line of the strip"
         return "too slow after half of the strip" if run > self._room / 2 else ""
 
-    def _reject(self, now: Estimate, level: Estimate) -> Wish:
+    def _reject(self, now: Estimate, level: Estimate) -> Setpoint:
         if now.ground_speed < STOPPED:
             self.ended, self.disarms = f"take-off rejected: {self._why}", True
         right = self._right(now)
-        return Wish(rolling(level, rudder_along(level, self._course, right), 0.0, BRAKE))
+        return Setpoint(rolling(level, rudder_along(level, self._course, right), 0.0, BRAKE))
 
-    def _climb(self, now: Estimate, level: Estimate, params: AirParams) -> Wish:
+    def _climb(self, now: Estimate, level: Estimate, params: AirParams) -> Setpoint:
         if now.height >= self.height:
             self.ended = "take-off complete"
         if self._rise(now) < STRAIGHT or now.airspeed < ROTATION * params.min_airspeed:
             spare = (now.airspeed - params.min_airspeed) / params.min_airspeed
-            return Wish(held(now, level, Attitude(0.0, params.takeoff_pitch * min(max(0.75 + 2.5 * spare, 0.3), 1.0), 1.0)))
+            return Setpoint(held(now, level, AttitudeSetpoint(0.0, params.takeoff_pitch * min(max(0.75 + 2.5 * spare, 0.3), 1.0), 1.0)))
         aim = line_aim(self._along, self._origin, (now.north, now.east), params)
-        return Wish(Track(aim, None, climb_at(now, params), params.trim_airspeed, bank_limit=BANKED, throttle=1.0))
+        return Setpoint(PathSetpoint(aim, None, climb_at(now, params), params.trim_airspeed, bank_limit=BANKED, throttle=1.0))
 
     @property
     def _along(self) -> Point:

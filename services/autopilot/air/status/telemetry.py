@@ -17,14 +17,14 @@ from schemas.messages import (
     VehicleStatus,
 )
 from services.autopilot.air.inputs import intake
-from services.autopilot.air.mode_manager import Pilot
+from services.autopilot.air.mode_manager import ModeManager
 from services.autopilot.air.mode_table import FlightMode
-from services.autopilot.air.setpoints import Flown
+from services.autopilot.air.setpoints import ControlOutput
 from uvf.control.commands import Surfaces
 from uvf.estimation.state import Estimate
 from uvf.guidance.flight_plan import OFF_PATH, next_stop
-from uvf.guidance.flight_plan import Kind as ItemKind
-from uvf.guidance.plan_follower import Navigator
+from uvf.guidance.flight_plan import ItemKind as ItemKind
+from uvf.guidance.plan_follower import PlanFollower
 from uvf.guidance.route import Circle, Place
 from uvf.maths.rotations import from_euler
 from uvf.runtime.messages.convert import quaternion, stamp
@@ -72,52 +72,54 @@ def surfaces(t: float, s: Surfaces, armed: bool) -> SurfaceCommand:
     )
 
 
-def status(t: float, pilot: Pilot, now: Estimate, flown: Flown) -> VehicleStatus:
+def status(t: float, mode_manager: ModeManager, now: Estimate, flown: ControlOutput) -> VehicleStatus:
     """All but arming, landing, battery and the system id."""
     message = VehicleStatus(
         timestamp=stamp(t),
         kind=Kind.KIND_FIXED_WING,
-        mode=MODES[pilot.mode],
-        stopped=bool(pilot.stopped),
-        command_source=pilot.source,
-        reason=_reason(pilot),
+        mode=MODES[mode_manager.mode],
+        stopped=bool(mode_manager.stopped),
+        command_source=mode_manager.source,
+        reason=_reason(mode_manager),
         throttle=flown.surfaces.throttle,
         cross_track=flown.aim.error,
         altitude_error=now.height - flown.level.height,
-        distance_to_waypoint=_distance(pilot, now),
-        waypoint=pilot.navigator.index or 0,
+        distance_to_waypoint=_distance(mode_manager, now),
+        waypoint=mode_manager.navigator.index or 0,
     )
-    if pilot.circle is not None:
-        centre = pilot.circle.centre
+    if mode_manager.circle is not None:
+        centre = mode_manager.circle.centre
         message.circle.centre.CopyFrom(Vector3(x=centre.east, y=centre.north, z=centre.height))
-        message.circle.radius = pilot.circle.radius
-    if pilot.home is not None:
-        message.home.x, message.home.y, message.home.z = pilot.home.east, pilot.home.north, pilot.home.height
+        message.circle.radius = mode_manager.circle.radius
+    if mode_manager.home is not None:
+        message.home.x, message.home.y, message.home.z = mode_manager.home.east, mode_manager.home.north, mode_manager.home.height
     return message
 
 
-def _reason(pilot: Pilot) -> str:
+def _reason(mode_manager: ModeManager) -> str:
     """Of the mode; and who is not listened to."""
-    waits = ", ".join(pilot.senses.setpoints_wait) if pilot.mode is FlightMode.OFFBOARD else ""
-    return f"{pilot.reason}; setpoints from {pilot.source}, those of {waits} wait" if waits else pilot.reason
+    waits = ", ".join(mode_manager.context.setpoints_wait) if mode_manager.mode is FlightMode.OFFBOARD else ""
+    return f"{mode_manager.reason}; setpoints from {mode_manager.source}, those of {waits} wait" if waits else mode_manager.reason
 
 
-def _distance(pilot: Pilot, now: Estimate) -> float:
+def _distance(mode_manager: ModeManager, now: Estimate) -> float:
     """m, to the current item's place, to the centre of the circle that is held, or to the station behind a leader."""
-    if pilot.station is not None:
-        return pilot.station
-    target = pilot.navigator.target
-    place = target.place if pilot.mode is FlightMode.MISSION and target else pilot.circle.centre if pilot.circle else None
+    if mode_manager.station is not None:
+        return mode_manager.station
+    target = mode_manager.navigator.target
+    place = (
+        target.place if mode_manager.mode is FlightMode.MISSION and target else mode_manager.circle.centre if mode_manager.circle else None
+    )
     return math.hypot(place.north - now.north, place.east - now.east) if place else 0.0
 
 
-def progress(t: float, pilot: Pilot, mission_id: int) -> MissionProgress:
-    navigator = pilot.navigator
+def progress(t: float, mode_manager: ModeManager, mission_id: int) -> MissionProgress:
+    navigator = mode_manager.navigator
     if not navigator.items:
         state = MissionProgress.NO_MISSION
     elif navigator.finished:
         state = MissionProgress.COMPLETE
-    elif pilot.mode is FlightMode.MISSION:
+    elif mode_manager.mode is FlightMode.MISSION:
         state = MissionProgress.ACTIVE
     else:
         state = MissionProgress.NOT_STARTED if navigator.reached < 0 and navigator.index is None else MissionProgress.PAUSED
@@ -132,27 +134,27 @@ def progress(t: float, pilot: Pilot, mission_id: int) -> MissionProgress:
     )
 
 
-def _current(navigator: Navigator) -> int:
+def _current(navigator: PlanFollower) -> int:
     """The last one once all are done, the first before it begins."""
     if navigator.index is not None:
         return navigator.index
     return len(navigator.items) - 1 if navigator.finished else 0
 
 
-def path(t: float, pilot: Pilot) -> PosesInFrame:
+def path(t: float, mode_manager: ModeManager) -> PosesInFrame:
     """What is flown, for display: the items still to come up to a return to the first of them, or the circle."""
-    if pilot.mode is FlightMode.MISSION and pilot.navigator.index is not None:
-        places = _ahead(pilot)
-    elif pilot.mode is FlightMode.FOLLOW and pilot.formation is not None:
-        places = pilot.formation.ahead()
+    if mode_manager.mode is FlightMode.MISSION and mode_manager.navigator.index is not None:
+        places = _ahead(mode_manager)
+    elif mode_manager.mode is FlightMode.FOLLOW and mode_manager.formation is not None:
+        places = mode_manager.formation.ahead()
     else:
-        places = _round(pilot.circle) if pilot.circle else []
+        places = _round(mode_manager.circle) if mode_manager.circle else []
     return PosesInFrame(timestamp=stamp(t), frame_id="world", poses=[_pose(p) for p in places])
 
 
-def _ahead(pilot: Pilot) -> list[Place]:
+def _ahead(mode_manager: ModeManager) -> list[Place]:
     """Each item once, then back to the first when the circuit closes."""
-    navigator = pilot.navigator
+    navigator = mode_manager.navigator
     places = navigator.curve_ahead()
     seen: list[int] = []
     index = navigator.index

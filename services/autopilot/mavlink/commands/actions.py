@@ -3,9 +3,9 @@
 import math
 
 from schemas.messages import ArmRequest, Mode, ModeRequest, SetCurrentRequest
-from services.autopilot.mavlink.commands.commands import Acknowledger, Command, Handler
+from services.autopilot.mavlink.commands.commands import Acknowledger, Handler, ReceivedCommand
 from services.autopilot.mavlink.connection.asking import Done
-from services.autopilot.mavlink.connection.line import Line, Sender
+from services.autopilot.mavlink.connection.line import Sender, VehicleConnection
 from services.autopilot.mavlink.telemetry.telemetry import mission_current
 from uvf.mavlink import dialect as mav
 from uvf.runtime.mavlink import modes
@@ -15,13 +15,13 @@ FORCE = (2989.0, 21196.0)  # magic numbers of param 2: force arm, force disarm
 LAST_ITEM = 0xFFFE
 
 
-def set_mode(line: Line, mode: Mode, done: Done) -> None:
+def set_mode(line: VehicleConnection, mode: Mode, done: Done) -> None:
     row = modes.row_of(mode)
     line.latest.intended_custom_mode = row.custom if row else 0
     line.ask("set_mode", ModeRequest(mode=mode, source=SOURCE), done)
 
 
-def set_current(line: Line, index: int, done: Done) -> None:
+def set_current(line: VehicleConnection, index: int, done: Done) -> None:
     """Jumps to a mission item, and says so at once: clients repeat the wish until they see it."""
 
     def told(accepted: bool, reason: str) -> None:
@@ -32,7 +32,7 @@ def set_current(line: Line, index: int, done: Done) -> None:
     line.ask("set_current", SetCurrentRequest(index=index, source=SOURCE), told)
 
 
-def on_set_mode(line: Line, message: mav.MAVLink_set_mode_message, sender: Sender) -> None:
+def on_set_mode(line: VehicleConnection, message: mav.MAVLink_set_mode_message, sender: Sender) -> None:
     """SET_MODE has no answer but the next HEARTBEAT; a refusal is said in words."""
     row = modes.from_custom(message.custom_mode)
     if row is None:
@@ -42,14 +42,14 @@ def on_set_mode(line: Line, message: mav.MAVLink_set_mode_message, sender: Sende
 
 
 def _to_mode(mode: Mode) -> Handler:
-    def handler(line: Line, command: Command, ack: Acknowledger) -> None:
+    def handler(line: VehicleConnection, command: ReceivedCommand, ack: Acknowledger) -> None:
         row = modes.row_of(mode)
         set_mode(line, mode, ack.outcome(f"{row.name if row else mode} refused"))
 
     return handler
 
 
-def _do_set_mode(line: Line, command: Command, ack: Acknowledger) -> None:
+def _do_set_mode(line: VehicleConnection, command: ReceivedCommand, ack: Acknowledger) -> None:
     row = modes.from_command(command.p[1], command.p[2])
     if row is None:
         ack(mav.MAV_RESULT_DENIED, f"There is no such mode. {modes.there_are(line.facts.is_ground)}")
@@ -57,7 +57,7 @@ def _do_set_mode(line: Line, command: Command, ack: Acknowledger) -> None:
     set_mode(line, row.mode, ack.outcome(f"Mode {row.name} refused"))
 
 
-def _arm(line: Line, command: Command, ack: Acknowledger) -> None:
+def _arm(line: VehicleConnection, command: ReceivedCommand, ack: Acknowledger) -> None:
     wanted = command.p[0]
     if wanted not in (0.0, 1.0):
         ack(mav.MAV_RESULT_DENIED, "Arming: parameter 1 is 1 to arm or 0 to disarm")
@@ -66,7 +66,7 @@ def _arm(line: Line, command: Command, ack: Acknowledger) -> None:
     line.ask("arm", request, ack.outcome("Arming denied" if request.arm else "Disarming denied"))
 
 
-def _do_set_standard_mode(line: Line, command: Command, ack: Acknowledger) -> None:
+def _do_set_standard_mode(line: VehicleConnection, command: ReceivedCommand, ack: Acknowledger) -> None:
     wanted = command.p[0]
     row = modes.from_standard(int(wanted)) if math.isfinite(wanted) else None
     if row is None:
@@ -75,7 +75,7 @@ def _do_set_standard_mode(line: Line, command: Command, ack: Acknowledger) -> No
     set_mode(line, row.mode, ack.outcome(f"Mode {row.name} refused"))
 
 
-def _pause_continue(line: Line, command: Command, ack: Acknowledger) -> None:
+def _pause_continue(line: VehicleConnection, command: ReceivedCommand, ack: Acknowledger) -> None:
     if command.p[0] not in (0.0, 1.0):
         ack(mav.MAV_RESULT_DENIED, "Pause: parameter 1 is 0 to pause or 1 to continue")
         return
@@ -83,14 +83,14 @@ def _pause_continue(line: Line, command: Command, ack: Acknowledger) -> None:
     set_mode(line, mode, ack.outcome("Continue refused" if command.p[0] else "Pause refused"))
 
 
-def _set_mission_current(line: Line, command: Command, ack: Acknowledger) -> None:
+def _set_mission_current(line: VehicleConnection, command: ReceivedCommand, ack: Acknowledger) -> None:
     if not 0 <= command.p[0] <= LAST_ITEM:
         ack(mav.MAV_RESULT_DENIED, "Set waypoint: an item number is needed")
         return
     set_current(line, int(command.p[0]), ack.outcome("Set waypoint refused"))
 
 
-def _mission_start(line: Line, command: Command, ack: Acknowledger) -> None:
+def _mission_start(line: VehicleConnection, command: ReceivedCommand, ack: Acknowledger) -> None:
     """From item ``p1`` if that is given; the last item (``p2``) is always the mission's own."""
     first = command.p[0]
 

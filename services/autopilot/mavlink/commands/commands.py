@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from services.autopilot.mavlink.connection.line import Line, Sender
+from services.autopilot.mavlink.connection.line import Sender, VehicleConnection
 from uvf.mavlink import dialect as mav
 from uvf.mavlink.bounded import make_room
 from uvf.mavlink.names import command_name
@@ -19,7 +19,7 @@ REMEMBERED_FOR = 10.0  # s: longer than anybody repeats, and than a command wait
 
 
 @dataclass(frozen=True)
-class Command:
+class ReceivedCommand:
     """p: seven parameters, NaN = not given; p[4] and p[5] in degrees; frame: None for a COMMAND_LONG."""
 
     number: int
@@ -29,12 +29,12 @@ class Command:
     confirmation: int = 0
 
     @classmethod
-    def from_long(cls, m: mav.MAVLink_command_long_message, sender: Sender) -> "Command":
+    def from_long(cls, m: mav.MAVLink_command_long_message, sender: Sender) -> "ReceivedCommand":
         p = (m.param1, m.param2, m.param3, m.param4, m.param5, m.param6, m.param7)
         return cls(m.command, p, None, sender, m.confirmation)
 
     @classmethod
-    def from_int(cls, m: mav.MAVLink_command_int_message, sender: Sender) -> "Command":
+    def from_int(cls, m: mav.MAVLink_command_int_message, sender: Sender) -> "ReceivedCommand":
         x, y = (math.nan if v == NOT_GIVEN else v * SCALE for v in (m.x, m.y))
         return cls(m.command, (m.param1, m.param2, m.param3, m.param4, x, y, m.z), m.frame, sender)
 
@@ -43,7 +43,7 @@ class Command:
         """The first parameter, counted from 1, that can mean nothing."""
         return next((n for n, v in enumerate(self.p, 1) if not (math.isnan(v) or abs(v) <= LARGEST)), None)
 
-    def same_as(self, other: "Command") -> bool:
+    def same_as(self, other: "ReceivedCommand") -> bool:
         return (self.number, self.sender, repr(self.p)) == (other.number, other.sender, repr(other.p))
 
 
@@ -51,7 +51,7 @@ class Command:
 class Pending:
     """A command and its outcome, so that a repetition is answered and not executed again."""
 
-    command: Command
+    command: ReceivedCommand
     t: float
     """s, wall: when it came."""
     result: int | None = None
@@ -62,14 +62,14 @@ class Pending:
     def __post_init__(self) -> None:
         self.hear(self.command, self.t)
 
-    def hear(self, command: Command, t: float) -> None:
+    def hear(self, command: ReceivedCommand, t: float) -> None:
         self.confirmation, self.heard = command.confirmation, t
 
 
 class Acknowledger:
     """Answers one command once."""
 
-    def __init__(self, line: Line, pending: Pending) -> None:
+    def __init__(self, line: VehicleConnection, pending: Pending) -> None:
         self._line = line
         self._pending = pending
 
@@ -92,28 +92,28 @@ class Acknowledger:
         return done
 
 
-def acknowledge(line: Line, command: Command, result: int) -> None:
+def acknowledge(line: VehicleConnection, command: ReceivedCommand, result: int) -> None:
     to = command.sender
     line.send(mav.MAVLink_command_ack_message(command.number, result, 0, 0, to.system, to.component), to.peer)
 
 
-Handler = Callable[[Line, Command, Acknowledger], None]
+Handler = Callable[[VehicleConnection, ReceivedCommand, Acknowledger], None]
 
 
-class Commands:
+class CommandServer:
     """handlers: by MAV_CMD; whatever is not in it is UNSUPPORTED."""
 
-    def __init__(self, line: Line, handlers: dict[int, Handler]) -> None:
+    def __init__(self, line: VehicleConnection, handlers: dict[int, Handler]) -> None:
         self._line = line
         self._handlers = handlers
         self._last: dict[Sender, dict[int, Pending]] = {}
         """The newest of each command, by number, of each sender."""
 
     def on_long(self, message: mav.MAVLink_command_long_message, sender: Sender) -> None:
-        self._execute(Command.from_long(message, sender))
+        self._execute(ReceivedCommand.from_long(message, sender))
 
     def on_int(self, message: mav.MAVLink_command_int_message, sender: Sender) -> None:
-        self._execute(Command.from_int(message, sender))
+        self._execute(ReceivedCommand.from_int(message, sender))
 
     def on_cancel(self, message: mav.MAVLink_command_cancel_message, sender: Sender) -> None:
         """What was asked of the autopilot cannot be called back: a command that waits gets its own answer, which is the only one."""
@@ -139,7 +139,7 @@ class Commands:
         make_room(mine, number, MOST_COMMANDS, lambda other: (mine[other].result is None, mine[other].t))
         mine[number] = pending
 
-    def _execute(self, command: Command) -> None:
+    def _execute(self, command: ReceivedCommand) -> None:
         if self._is_repetition(command):
             return
         pending = Pending(command, self._line.t)
@@ -154,7 +154,7 @@ class Commands:
         else:
             handler(self._line, command, done)
 
-    def _is_repetition(self, command: Command) -> bool:
+    def _is_repetition(self, command: ReceivedCommand) -> bool:
         """A sender repeats when the answer was late or lost: COMMAND_LONG counts ``confirmation`` up, COMMAND_INT cannot.
 
         A count that does not go up is another command, however high it is: taken for a repetition it would be

@@ -2,12 +2,12 @@
 
 from schemas.messages import Fence, FenceRequest
 from services.autopilot.mavlink.commands.actions import SOURCE
-from services.autopilot.mavlink.commands.commands import Acknowledger, Command, Handler
-from services.autopilot.mavlink.connection.line import Line
+from services.autopilot.mavlink.commands.commands import Acknowledger, Handler, ReceivedCommand
+from services.autopilot.mavlink.connection.line import VehicleConnection
 from uvf.mavlink import dialect as mav
 
 
-def _enable(line: Line, command: Command, ack: Acknowledger) -> None:
+def _enable(line: VehicleConnection, command: ReceivedCommand, ack: Acknowledger) -> None:
     """The floor alone (2) is no switch of its own: it counts only above it, and not while it lands."""
     if command.p[0] not in (0.0, 1.0):
         ack(mav.MAV_RESULT_DENIED, "Fence: parameter 1 is 1 to enable or 0 to disable")

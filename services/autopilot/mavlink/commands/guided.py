@@ -4,7 +4,7 @@ import math
 
 from schemas.messages import AltitudeOrder, GoalRequest, Mode, OrbitRequest, OrderRequest, SpeedOrder, Vector3
 from services.autopilot.mavlink.commands.actions import SOURCE, set_mode
-from services.autopilot.mavlink.commands.commands import Acknowledger, Command, Handler
+from services.autopilot.mavlink.commands.commands import Acknowledger, Handler, ReceivedCommand
 from services.autopilot.mavlink.commands.places import (
     BadPlace,
     altitude_of,
@@ -16,7 +16,7 @@ from services.autopilot.mavlink.commands.places import (
     refusing,
 )
 from services.autopilot.mavlink.connection.asking import Done
-from services.autopilot.mavlink.connection.line import Line
+from services.autopilot.mavlink.connection.line import VehicleConnection
 from uvf.mavlink import dialect as mav
 
 CIRCLES = (Mode.MODE_HOLD, Mode.MODE_ORBIT, Mode.MODE_RETURN)
@@ -24,7 +24,7 @@ CIRCLES = (Mode.MODE_HOLD, Mode.MODE_ORBIT, Mode.MODE_RETURN)
 COUNTERCLOCKWISE = 1.0  # exactly: MAVSDK has a yaw in radians in this parameter
 
 
-def _reposition(line: Line, command: Command, ack: Acknowledger) -> None:
+def _reposition(line: VehicleConnection, command: ReceivedCommand, ack: Acknowledger) -> None:
     """All of the place left out = hold here; only an altitude = fly higher or lower; a part left out = as now."""
     speed, _, radius, direction, latitude, longitude, height = command.p
     done = ack.outcome("Go to refused")
@@ -49,30 +49,30 @@ def _reposition(line: Line, command: Command, ack: Acknowledger) -> None:
         go_to(line, GoalRequest(position=place, yaw=math.nan, source=SOURCE, radius=ring, speed=speed), True, done)
 
 
-def _may_change(command: Command) -> bool:
+def _may_change(command: ReceivedCommand) -> bool:
     flags = command.p[1]
     return math.isfinite(flags) and bool(int(flags) & mav.MAV_DO_REPOSITION_FLAGS_CHANGE_MODE)
 
 
-def _is_guided(line: Line) -> bool:
+def _is_guided(line: VehicleConnection) -> bool:
     """Whether the vehicle can be sent somewhere without another mode."""
     status = line.latest.status
     return status is not None and status.mode == (Mode.MODE_MISSION if line.facts.is_ground else Mode.MODE_HOLD)
 
 
-def _mode_name(line: Line) -> str:
+def _mode_name(line: VehicleConnection) -> str:
     status = line.latest.status
     return Mode.Name(status.mode).removeprefix("MODE_").capitalize() if status is not None else "unknown"
 
 
-def _check_height(line: Line, place: Vector3, asked: float) -> None:
+def _check_height(line: VehicleConnection, place: Vector3, asked: float) -> None:
     """Lower than it goes, the autopilot would stay at its height: no answer to somebody who has named one."""
     lowest = line.latest.own.get("min_altitude", -math.inf)
     if not math.isnan(asked) and place.z < lowest:
         raise BadPlace(mav.MAV_RESULT_DENIED, f"too low: {lowest + line.facts.origin.altitude:.0f} m above sea level at least")
 
 
-def _drive(line: Line, place: Vector3, speed: float, ack: Acknowledger) -> None:
+def _drive(line: VehicleConnection, place: Vector3, speed: float, ack: Acknowledger) -> None:
     """A rover's speed is set once it is on its way."""
     body, done = line.facts.file.ground, ack.outcome("Go to refused")
     if body is not None and speed > body.max_linear:
@@ -88,7 +88,7 @@ def _drive(line: Line, place: Vector3, speed: float, ack: Acknowledger) -> None:
     go_to(line, GoalRequest(position=place, yaw=math.nan, source=SOURCE), True, on_its_way)
 
 
-def _only_higher(line: Line, command: Command, ack: Acknowledger) -> None:
+def _only_higher(line: VehicleConnection, command: ReceivedCommand, ack: Acknowledger) -> None:
     """A circle keeps its place. From another mode it holds first. To a rover it means "stay here": so QGroundControl pauses it."""
     if line.facts.is_ground:
         set_mode(line, Mode.MODE_HOLD, ack.outcome("Hold refused"))
@@ -108,12 +108,12 @@ def _only_higher(line: Line, command: Command, ack: Acknowledger) -> None:
         set_mode(line, Mode.MODE_HOLD, lambda accepted, why: line.when(lambda: _circles(line), circles) if accepted else done(False, why))
 
 
-def _circles(line: Line) -> bool:
+def _circles(line: VehicleConnection) -> bool:
     status = line.latest.status
     return status is not None and status.mode in CIRCLES and status.HasField("circle")
 
 
-def _change_altitude(line: Line, command: Command, ack: Acknowledger) -> None:
+def _change_altitude(line: VehicleConnection, command: ReceivedCommand, ack: Acknowledger) -> None:
     """Parameter 2 is the frame of parameter 1; it changes no mode."""
     altitude, frame = command.p[0], command.p[1]
     if not math.isfinite(altitude):
@@ -123,7 +123,7 @@ def _change_altitude(line: Line, command: Command, ack: Acknowledger) -> None:
     line.ask("order", OrderRequest(altitude=AltitudeOrder(altitude=z), source=SOURCE), ack.outcome("Change of altitude refused"))
 
 
-def _orbit(line: Line, command: Command, ack: Acknowledger) -> None:
+def _orbit(line: VehicleConnection, command: ReceivedCommand, ack: Acknowledger) -> None:
     """Left out: the vehicle's own radius and speed, the circle of now if it orbits, else here. For ever: a number of turns is refused."""
     radius, speed, _, turns, latitude, longitude, height = command.p
     if turns > 0 or speed < 0:
@@ -142,7 +142,7 @@ def _orbit(line: Line, command: Command, ack: Acknowledger) -> None:
     line.ask("orbit", OrbitRequest(centre=place, radius=ring, speed=pace, source=SOURCE), ack.outcome("Orbit refused"))
 
 
-def go_to(line: Line, goal: GoalRequest, may_change_mode: bool, done: Done) -> None:
+def go_to(line: VehicleConnection, goal: GoalRequest, may_change_mode: bool, done: Done) -> None:
     """A rover's planner drives in mode Mission only: changed to first, if that may be, and back if there is no way."""
     before = line.latest.status.mode if line.latest.status is not None else Mode.MODE_MISSION
 
@@ -172,7 +172,7 @@ def go_to(line: Line, goal: GoalRequest, may_change_mode: bool, done: Done) -> N
         line.ask("goal", goal, done)
 
 
-def goal_of_item(line: Line, item: mav.MAVLink_mission_item_int_message, done: Done) -> None:
+def goal_of_item(line: VehicleConnection, item: mav.MAVLink_mission_item_int_message, done: Done) -> None:
     """A "guided" item (current = 2) of Mission Planner and MAVProxy: go there."""
     try:
         place = place_of(line, item.frame, (item.x * 1e-7, item.y * 1e-7), math.nan if line.facts.is_ground else item.z)

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from schemas.messages import DriveCommand, Mode, SurfaceCommand
-from services.autopilot.mavlink.connection.line import Holder, Line, Sender
+from services.autopilot.mavlink.connection.line import Holder, Sender, VehicleConnection
 from uvf.mavlink import dialect as mav
 from uvf.runtime.messages.convert import stamp
 
@@ -66,10 +66,10 @@ def _part(value: float) -> float:
     return min(max(value, -1.0), 1.0)
 
 
-class ByHand:
+class ManualControl:
     """What the newest sticks mean goes into ``line.commands``."""
 
-    def __init__(self, line: Line) -> None:
+    def __init__(self, line: VehicleConnection) -> None:
         self._line = line
         self._holder = Holder(line, "Sticks ignored")
         self._channels = [RELEASED] * CHANNELS

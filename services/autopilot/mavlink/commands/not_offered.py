@@ -3,15 +3,15 @@
 from collections.abc import Callable
 from typing import Any
 
-from services.autopilot.mavlink.commands.commands import Acknowledger, Command, Handler
-from services.autopilot.mavlink.connection.line import Line, Sender
+from services.autopilot.mavlink.commands.commands import Acknowledger, Handler, ReceivedCommand
+from services.autopilot.mavlink.connection.line import Sender, VehicleConnection
 from uvf.mavlink import dialect as mav
 
 NO_CONSOLE = b"There is no console here: this is UVF, not PX4.\n"
 CONSOLE_BYTES, LOG_BYTES = 70, 90
 
 
-def handlers(line: Line) -> dict[int, Callable[[Any, Sender], None]]:
+def handlers(line: VehicleConnection) -> dict[int, Callable[[Any, Sender], None]]:
     def on_log_list(m: mav.MAVLink_log_request_list_message, sender: Sender) -> None:
         line.send(mav.MAVLink_log_entry_message(0, 0, 0, 0, 0), sender.peer)
 
@@ -47,7 +47,7 @@ def handlers(line: Line) -> dict[int, Callable[[Any, Sender], None]]:
     }
 
 
-def _calibration(line: Line, command: Command, ack: Acknowledger) -> None:
+def _calibration(line: VehicleConnection, command: ReceivedCommand, ack: Acknowledger) -> None:
     ack(mav.MAV_RESULT_UNSUPPORTED, "Calibration refused: simulated sensors need none")
 
 

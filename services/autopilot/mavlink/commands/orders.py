@@ -15,9 +15,9 @@ from schemas.messages import (
     TakeoffOrder,
 )
 from services.autopilot.mavlink.commands.actions import SOURCE, set_current, set_mode
-from services.autopilot.mavlink.commands.commands import Acknowledger, Command, Handler
+from services.autopilot.mavlink.commands.commands import Acknowledger, Handler, ReceivedCommand
 from services.autopilot.mavlink.commands.places import BadPlace, altitude_of, frame_of, of_aircraft, place_in, place_of, refusing
-from services.autopilot.mavlink.connection.line import Line, Sender
+from services.autopilot.mavlink.connection.line import Sender, VehicleConnection
 from services.autopilot.mavlink.telemetry.navigation import global_origin
 from uvf.mavlink import dialect as mav
 from uvf.runtime.mavlink.geo import HOME_FRAMES
@@ -28,7 +28,7 @@ SPEED_TYPES = {mav.SPEED_TYPE_AIRSPEED: False, mav.SPEED_TYPE_GROUNDSPEED: True}
 RESTART = 1.0
 
 
-def _takeoff(line: Line, command: Command, ack: Acknowledger) -> None:
+def _takeoff(line: VehicleConnection, command: ReceivedCommand, ack: Acknowledger) -> None:
     """Without an altitude to the autopilot's own height."""
     altitude, frame = command.p[6], _frame_of_takeoff(line, command)
     if math.isnan(altitude):
@@ -47,13 +47,13 @@ def _takeoff(line: Line, command: Command, ack: Acknowledger) -> None:
         line.ask("order", OrderRequest(takeoff=TakeoffOrder(altitude=z), source=SOURCE), ack.outcome("Takeoff refused"))
 
 
-def _frame_of_takeoff(line: Line, command: Command) -> int:
+def _frame_of_takeoff(line: VehicleConnection, command: ReceivedCommand) -> int:
     """Of a COMMAND_LONG: PX4 takes its altitude from the sea; MAVSDK and MAVProxy give any other autopilot one above home."""
     generic = line.facts.generic and command.frame is None
     return int(mav.MAV_FRAME_GLOBAL_RELATIVE_ALT) if generic else frame_of(command)
 
 
-def _change_speed(line: Line, command: Command, ack: Acknowledger) -> None:
+def _change_speed(line: VehicleConnection, command: ReceivedCommand, ack: Acknowledger) -> None:
     """Over ground for rovers whatever the type; -1 = no change, -2 = cruise."""
     kind, speed = command.p[0], command.p[1]
     over_ground = SPEED_TYPES.get(int(kind)) if math.isfinite(kind) else False
@@ -68,12 +68,12 @@ def _change_speed(line: Line, command: Command, ack: Acknowledger) -> None:
         line.ask("order", OrderRequest(speed=order, source=SOURCE), ack.outcome("Change of speed refused"))
 
 
-def _go_around(line: Line, command: Command, ack: Acknowledger) -> None:
+def _go_around(line: VehicleConnection, command: ReceivedCommand, ack: Acknowledger) -> None:
     """It climbs to the height of its approach circle; an altitude in parameter 1 does not count, as in PX4."""
     line.ask("go_around", GoAroundRequest(source=SOURCE), ack.outcome("Go-around refused"))
 
 
-def _land_start(line: Line, command: Command, ack: Acknowledger) -> None:
+def _land_start(line: VehicleConnection, command: ReceivedCommand, ack: Acknowledger) -> None:
     """Goes on with the mission where its landing begins: at DO_LAND_START, or else at the item that lands."""
     index = landing_begins(line.latest.mission.items if line.latest.mission is not None else ())
     if index is None:
@@ -95,7 +95,7 @@ def landing_begins(plan: Sequence[MissionItem]) -> int | None:
     return next((kinds.index(kind) for kind in (MissionItem.LAND_START, MissionItem.LAND) if kind in kinds), None)
 
 
-def _set_home(line: Line, command: Command, ack: Acknowledger) -> None:
+def _set_home(line: VehicleConnection, command: ReceivedCommand, ack: Acknowledger) -> None:
     """Parameter 1 = 1: here. Without an altitude at the height of the home before."""
     done = ack.outcome("New home refused")
     if command.p[0] == 1.0:
@@ -110,7 +110,7 @@ def _set_home(line: Line, command: Command, ack: Acknowledger) -> None:
     line.ask("order", OrderRequest(home=HomeOrder(position=place), source=SOURCE), done)
 
 
-def on_set_home_position(line: Line, m: mav.MAVLink_set_home_position_message) -> None:
+def on_set_home_position(line: VehicleConnection, m: mav.MAVLink_set_home_position_message) -> None:
     """Has no answer but the next HOME_POSITION; a refusal is said in words."""
     done = line.refusal("New home")
     try:
@@ -121,14 +121,14 @@ def on_set_home_position(line: Line, m: mav.MAVLink_set_home_position_message) -
     line.ask("order", OrderRequest(home=HomeOrder(position=place), source=SOURCE), done)
 
 
-def on_set_origin(line: Line, m: mav.MAVLink_set_gps_global_origin_message, sender: Sender) -> None:
+def on_set_origin(line: VehicleConnection, m: mav.MAVLink_set_gps_global_origin_message, sender: Sender) -> None:
     """The origin is the world's; it is told instead."""
     line.text(mav.MAV_SEVERITY_WARNING, "The origin is that of the world file and stays", sender.peer)
     if (origin := global_origin(line.facts, line.latest, line.t)) is not None:
         line.send(origin, sender.peer)
 
 
-def _picture(line: Line, command: Command, ack: Acknowledger) -> None:
+def _picture(line: VehicleConnection, command: ReceivedCommand, ack: Acknowledger) -> None:
     """DO_DIGICAM_CONTROL: parameter 5 = shoot. IMAGE_START_CAPTURE: parameter 3 = how many; one is possible."""
     wanted = command.p[4] if command.number == mav.MAV_CMD_DO_DIGICAM_CONTROL else command.p[2]
     if not _has_camera(line):
@@ -139,7 +139,7 @@ def _picture(line: Line, command: Command, ack: Acknowledger) -> None:
         line.ask("order", OrderRequest(picture=PictureOrder(), source=SOURCE), ack.outcome("Picture refused"))
 
 
-def _pictures(line: Line, command: Command, ack: Acknowledger) -> None:
+def _pictures(line: VehicleConnection, command: ReceivedCommand, ack: Acknowledger) -> None:
     """Parameter 1: m between pictures, 0 = no more."""
     distance = command.p[0]
     if not _has_camera(line):
@@ -150,12 +150,12 @@ def _pictures(line: Line, command: Command, ack: Acknowledger) -> None:
         line.ask("order", OrderRequest(picture=PictureOrder(distance=distance), source=SOURCE), ack.outcome("Pictures refused"))
 
 
-def _has_camera(line: Line) -> bool:
+def _has_camera(line: VehicleConnection) -> bool:
     sensors = line.facts.sensors
     return not line.facts.is_ground and (sensors.camera is not None or sensors.gimbal is not None)
 
 
-def _reboot(line: Line, command: Command, ack: Acknowledger) -> None:
+def _reboot(line: VehicleConnection, command: ReceivedCommand, ack: Acknowledger) -> None:
     """The autopilot begins anew; the aircraft stays where it is, and so do the link and its clock."""
     if command.p[0] != RESTART:
         ack(mav.MAV_RESULT_UNSUPPORTED, "Reboot refused: parameter 1 = 1 starts the autopilot anew; nothing else can be switched off here")
@@ -163,7 +163,7 @@ def _reboot(line: Line, command: Command, ack: Acknowledger) -> None:
     line.ask("order", OrderRequest(restart=RestartOrder(), source=SOURCE), ack.outcome("Reboot refused"))
 
 
-def _terminate(line: Line, command: Command, ack: Acknowledger) -> None:
+def _terminate(line: VehicleConnection, command: ReceivedCommand, ack: Acknowledger) -> None:
     ack(mav.MAV_RESULT_UNSUPPORTED, "Flight termination is not built in: disarming by force stops the motor, and the aircraft glides")
 
 

@@ -5,8 +5,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from schemas.messages import Vector3
-from services.autopilot.mavlink.commands.commands import Acknowledger, Command, Handler
-from services.autopilot.mavlink.connection.line import Line
+from services.autopilot.mavlink.commands.commands import Acknowledger, Handler, ReceivedCommand
+from services.autopilot.mavlink.connection.line import VehicleConnection
 from uvf.mavlink import dialect as mav
 from uvf.mavlink.names import bad_frame
 from uvf.runtime.mavlink.geo import AMSL_FRAMES, HOME_FRAMES
@@ -21,7 +21,7 @@ class BadPlace(Exception):
     reason: str
 
 
-def altitude_of(line: Line, frame: int, altitude: float) -> float:
+def altitude_of(line: VehicleConnection, frame: int, altitude: float) -> float:
     """m, world z, of an altitude in one of MAVLink's frames; NaN stays. Raises BadPlace."""
     if frame not in AMSL_FRAMES + HOME_FRAMES:
         raise BadPlace(mav.MAV_RESULT_COMMAND_UNSUPPORTED_MAV_FRAME, bad_frame(frame))
@@ -33,7 +33,7 @@ def altitude_of(line: Line, frame: int, altitude: float) -> float:
     return altitude - line.facts.origin.altitude if frame in AMSL_FRAMES or home is None else altitude + float(home[2])
 
 
-def place_of(line: Line, frame: int, degrees: tuple[float, float], altitude: float) -> Vector3:
+def place_of(line: VehicleConnection, frame: int, degrees: tuple[float, float], altitude: float) -> Vector3:
     """World position of latitude and longitude [deg] and altitude [m]; what is NaN is as now. Raises BadPlace."""
     here = line.latest.position
     if here is None:
@@ -50,7 +50,7 @@ def place_of(line: Line, frame: int, degrees: tuple[float, float], altitude: flo
     return place
 
 
-def place_in(line: Line, command: Command) -> Vector3:
+def place_in(line: VehicleConnection, command: ReceivedCommand) -> Vector3:
     """Of parameters 5 to 7. COMMAND_LONG has altitudes above sea level. Raises BadPlace."""
     return place_of(line, frame_of(command), (command.p[4], command.p[5]), command.p[6])
 
@@ -61,14 +61,14 @@ def check_radius(radius: float) -> None:
         raise BadPlace(mav.MAV_RESULT_DENIED, reason)
 
 
-def frame_of(command: Command) -> int:
+def frame_of(command: ReceivedCommand) -> int:
     return int(mav.MAV_FRAME_GLOBAL) if command.frame is None else command.frame
 
 
-def refusing(what: str, handler: Callable[[Line, Command, Acknowledger], None]) -> Handler:
+def refusing(what: str, handler: Callable[[VehicleConnection, ReceivedCommand, Acknowledger], None]) -> Handler:
     """A handler whose BadPlace becomes the answer."""
 
-    def handle(line: Line, command: Command, ack: Acknowledger) -> None:
+    def handle(line: VehicleConnection, command: ReceivedCommand, ack: Acknowledger) -> None:
         try:
             handler(line, command, ack)
         except BadPlace as bad:
@@ -80,7 +80,7 @@ def refusing(what: str, handler: Callable[[Line, Command, Acknowledger], None]) 
 def of_aircraft(what: str, handler: Handler) -> Handler:
     """What a ground vehicle has not."""
 
-    def handle(line: Line, command: Command, ack: Acknowledger) -> None:
+    def handle(line: VehicleConnection, command: ReceivedCommand, ack: Acknowledger) -> None:
         if line.facts.is_ground:
             ack(mav.MAV_RESULT_UNSUPPORTED, f"{what} refused: a ground vehicle has none")
         else:

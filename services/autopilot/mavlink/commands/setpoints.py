@@ -25,7 +25,7 @@ from schemas.messages import (
 from services.autopilot.mavlink.commands.actions import SOURCE
 from services.autopilot.mavlink.commands.guided import go_to
 from services.autopilot.mavlink.commands.places import BadPlace, place_of
-from services.autopilot.mavlink.connection.line import Holder, Line, Sender
+from services.autopilot.mavlink.connection.line import Holder, Sender, VehicleConnection
 from uvf.maths.geodesy import Floats
 from uvf.maths.rotations import to_euler
 from uvf.mavlink import dialect as mav
@@ -89,7 +89,7 @@ class Alone(NamedTuple):
 
 
 class Setpoints:
-    def __init__(self, line: Line) -> None:
+    def __init__(self, line: VehicleConnection) -> None:
         self._line = line
         self._holder = Holder(line, "Setpoints ignored")
         self._alone: Alone | None = None

@@ -32,7 +32,7 @@ from uvf.maths.geodesy import Floats, LocalTangent
 from uvf.models.params import Params
 from uvf.models.vehicle.file import VehicleFile
 from uvf.models.vehicle.sensors import Sensors
-from uvf.runtime.mavlink.geo import Placed
+from uvf.runtime.mavlink.geo import GeoPosition
 from uvf.runtime.messages.convert import array, seconds
 from uvf.runtime.messages.fences import fencing
 
@@ -50,7 +50,7 @@ S = TypeVar("S", bound=Stamped)
 
 
 @dataclass(frozen=True)
-class Facts(Placed):
+class VehicleInfo(GeoPosition):
     """origin: of the world frame; its altitude counts as above mean sea level.
 
     params: the autopilot's, as the vehicle's file sets them; fixed_params: those that it reads only when it starts.
@@ -81,7 +81,7 @@ class Facts(Placed):
 
 
 @dataclass
-class Latest:
+class VehicleState:
     """None until the first one has arrived."""
 
     nav: NavState | None = None
@@ -103,7 +103,7 @@ class Latest:
     quality: EstimateQuality | None = None
     planning: NavStatus | None = None
     vibration: Vibration = field(default_factory=Vibration)
-    others: Sequence[tuple[Facts, "Latest"]] = ()
+    others: Sequence[tuple[VehicleInfo, "VehicleState"]] = ()
     """The other vehicles of the mission."""
     rc_channels: tuple[int, ...] = ()
     """us, of each channel that a ground station overrides; 0 = released. Empty: none is."""

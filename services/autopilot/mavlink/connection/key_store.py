@@ -11,7 +11,7 @@ KEY_BYTES = 32
 MOST_KEYS = 16
 
 
-class Kept(msgspec.Struct, forbid_unknown_fields=True):
+class StoredKeys(msgspec.Struct, forbid_unknown_fields=True):
     """keys: in hexadecimal, the newest first; newest: timestamp of a signature, never to be gone below."""
 
     keys: list[str] = []
@@ -29,7 +29,7 @@ class KeyStore:
         if self.path is None or not self.path.exists():
             return [], 0
         try:
-            kept = msgspec.json.decode(self.path.read_bytes(), type=Kept)
+            kept = msgspec.json.decode(self.path.read_bytes(), type=StoredKeys)
             keys = [bytes.fromhex(text) for text in kept.keys]
         except (msgspec.DecodeError, ValueError, OSError):
             keys = [b""]
@@ -40,4 +40,4 @@ class KeyStore:
     def save(self, keys: list[bytes], newest: int) -> None:
         """Raises OSError."""
         if self.path is not None:
-            write_private(self.path, msgspec.json.encode(Kept([key.hex() for key in keys[:MOST_KEYS]], newest)))
+            write_private(self.path, msgspec.json.encode(StoredKeys([key.hex() for key in keys[:MOST_KEYS]], newest)))

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 from google.protobuf.message import Message
 
 from services.autopilot.mavlink.connection.asking import ANSWER_WITHIN, Asking, Done
-from services.autopilot.mavlink.connection.facts import Facts, Latest
+from services.autopilot.mavlink.connection.facts import VehicleInfo, VehicleState
 from services.autopilot.mavlink.connection.refusals import plain
 from services.autopilot.mavlink.connection.statustext import TextBudget, TextLimiter, chunks, counted_from_one
 from services.autopilot.mavlink.connection.vibration import Vibration
@@ -28,7 +28,7 @@ class Sender(NamedTuple):
     component: int
 
 
-class Said(NamedTuple):
+class SpokenText(NamedTuple):
     """A text, which is cut into messages for who gets it."""
 
     severity: int
@@ -36,7 +36,7 @@ class Said(NamedTuple):
 
 
 class Out(NamedTuple):
-    what: mav.MAVLink_message | Said
+    what: mav.MAVLink_message | SpokenText
     to: Peer | None
     """None = every peer."""
 
@@ -51,7 +51,7 @@ class Awaited:
 class Holder:
     """Only one station steers: the first one, until it has been silent for a while."""
 
-    def __init__(self, line: "Line", otherwise: str) -> None:
+    def __init__(self, line: "VehicleConnection", otherwise: str) -> None:
         """otherwise: what another one is told."""
         self._line, self._otherwise = line, otherwise
         self._holder: Sender | None = None
@@ -73,13 +73,13 @@ def named(station: Sender, to: Sender) -> str:
     return f"another station {station.system} (at {station.peer[0]}:{station.peer[1]})"
 
 
-class Line:
+class VehicleConnection:
     """What the protocols of one vehicle share; ``t`` [s, wall] is set before each step's work."""
 
-    def __init__(self, facts: Facts) -> None:
+    def __init__(self, facts: VehicleInfo) -> None:
         self.facts = facts
         imu = facts.sensors.imu
-        self.latest = Latest(vibration=Vibration(imu.accel_range if imu is not None else math.inf))
+        self.latest = VehicleState(vibration=Vibration(imu.accel_range if imu is not None else math.inf))
         self.t = 0.0
         self.alone: Collection[Peer] = ()
         """Who hears this vehicle and no other."""
@@ -106,7 +106,7 @@ class Line:
         """STATUSTEXT; the same text to the same peers at most every 10 s. Items are counted as on a station's map."""
         text = counted_from_one(text)
         if self._limiter.admits(self.t, (text, to)):
-            self.outbox.append(Out(Said(severity, text), to))
+            self.outbox.append(Out(SpokenText(severity, text), to))
 
     @contextmanager
     def hearing(self, speaker: Peer | None) -> Iterator[None]:
@@ -171,15 +171,15 @@ class Line:
         found: list[tuple[mav.MAVLink_message, list[Peer]]] = []
         for what, to in out:
             receivers = list(peers) if to is None else [to]
-            if isinstance(what, Said):
+            if isinstance(what, SpokenText):
                 found += self._chunks(what, self._budget.admitted(self.t, what.severity, receivers))
             else:
                 found.append((what, receivers))
         for peer, count in self._budget.left_out(self.t):
-            found += self._chunks(Said(mav.MAV_SEVERITY_WARNING, f"{count} texts left out"), [peer])
+            found += self._chunks(SpokenText(mav.MAV_SEVERITY_WARNING, f"{count} texts left out"), [peer])
         return found
 
-    def _chunks(self, said: Said, receivers: list[Peer]) -> list[tuple[mav.MAVLink_message, list[Peer]]]:
+    def _chunks(self, said: SpokenText, receivers: list[Peer]) -> list[tuple[mav.MAVLink_message, list[Peer]]]:
         return [(chunk, receivers) for chunk in chunks(said.severity, said.text, self._limiter.next_id())] if receivers else []
 
     def take_requests(self) -> list[tuple[str, Message]]:

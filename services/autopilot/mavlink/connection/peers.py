@@ -11,7 +11,7 @@ CONNECTION_ENDS = 10.0  # s, wall, without a word: ten heartbeats
 MOST_BEHIND_ONE = 32  # systems and components behind one address
 
 
-class News(NamedTuple):
+class PeerNews(NamedTuple):
     """connection: nobody was there at this peer; system: this one was not."""
 
     connection: bool
@@ -28,13 +28,13 @@ class Peers:
     def __len__(self) -> int:
         return sum(map(len, self._heard.values()))
 
-    def hear(self, t: float, sender: Sender) -> News:
+    def hear(self, t: float, sender: Sender) -> PeerNews:
         """One message at ``t`` [s, wall]: is its peer, or its system, newly there?"""
         there, who = self._heard.setdefault(sender.peer, {}), (sender.system, sender.component)
         before = self.systems(t, sender.peer)
         make_room(there, who, MOST_BEHIND_ONE, lambda other: there[other])
         there[who] = t
-        return News(connection=not before, system=sender.system not in before)
+        return PeerNews(connection=not before, system=sender.system not in before)
 
     def systems(self, t: float, peer: Peer) -> set[int]:
         """Those who have spoken through a peer lately."""

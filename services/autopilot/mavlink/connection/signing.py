@@ -28,7 +28,7 @@ NOT_SIGNED = "Unsigned message refused: this link is signed"
 NOT_SIGNED_ELSEWHERE = "Unsigned message refused: signing is required from other machines"
 
 
-class Verdict(Enum):
+class SignatureVerdict(Enum):
     """SIGNED: by a key of ours, and new; UNSIGNED: may be heard all the same; REFUSED: neither."""
 
     SIGNED = "signed"
@@ -38,7 +38,7 @@ class Verdict(Enum):
 
 
 @dataclass
-class Counts:
+class SignatureCounts:
     good: int = 0
     replayed: int = 0
     refused: int = 0
@@ -52,7 +52,7 @@ class Signing:
     """
 
     def __init__(self, store: KeyStore | None = None, started: float = BEGINNING, required: bool = False) -> None:
-        self.counts = Counts()
+        self.counts = SignatureCounts()
         self._store = store or KeyStore()
         self._started = started
         self._required = required
@@ -63,25 +63,25 @@ class Signing:
         self._streams: dict[tuple[bytes, int, int, int], int] = {}
         """(key, link id, system, component) -> newest timestamp: a packet counts once, whatever address repeats it."""
 
-    def check(self, t: float, message: mav.MAVLink_message, sender: Sender) -> Verdict:
+    def check(self, t: float, message: mav.MAVLink_message, sender: Sender) -> SignatureVerdict:
         """Whether one message may be heard. A peer that signs with a key of ours is signed to from then on."""
         verdict = self._look(t, bytes(message.get_msgbuf()), sender)
-        if verdict is Verdict.UNSIGNED and self._has_to_sign(sender.peer) and message.get_msgId() not in ALWAYS_HEARD:
-            verdict = Verdict.REFUSED
-        self.counts.good += verdict is Verdict.SIGNED
-        self.counts.replayed += verdict is Verdict.REPLAYED
-        self.counts.refused += verdict is Verdict.REFUSED
+        if verdict is SignatureVerdict.UNSIGNED and self._has_to_sign(sender.peer) and message.get_msgId() not in ALWAYS_HEARD:
+            verdict = SignatureVerdict.REFUSED
+        self.counts.good += verdict is SignatureVerdict.SIGNED
+        self.counts.replayed += verdict is SignatureVerdict.REPLAYED
+        self.counts.refused += verdict is SignatureVerdict.REFUSED
         return verdict
 
     def why_refused(self, peer: Peer) -> str:
         return NOT_SIGNED if peer in self._by_peer else NOT_SIGNED_ELSEWHERE
 
-    def setup(self, message: mav.MAVLink_setup_signing_message, sender: Sender, verdict: Verdict, armed: bool) -> str:
+    def setup(self, message: mav.MAVLink_setup_signing_message, sender: Sender, verdict: SignatureVerdict, armed: bool) -> str:
         """SETUP_SIGNING, addressed to a vehicle that is ``armed`` or not; returns what is said of it, nothing to a repetition."""
         key = bytes(message.secret_key)
-        if verdict is not Verdict.SIGNED and not is_loopback(sender.peer[0]):
+        if verdict is not SignatureVerdict.SIGNED and not is_loopback(sender.peer[0]):
             return "Signing refused: it is set up from this machine, or over a link that is signed"
-        if verdict is Verdict.REPLAYED:
+        if verdict is SignatureVerdict.REPLAYED:
             return "Signing refused: the message has been heard before"
         if self._by_peer.get(sender.peer, NO_KEY) == key:
             return ""
@@ -129,18 +129,18 @@ class Signing:
     def _has_to_sign(self, peer: Peer) -> bool:
         return peer in self._by_peer or (self._required and not is_loopback(peer[0]))
 
-    def _look(self, t: float, packet: bytes, sender: Sender) -> Verdict:
+    def _look(self, t: float, packet: bytes, sender: Sender) -> SignatureVerdict:
         """A signature by a key that is not ours says nothing, and counts as none."""
         if packet[0] != mav.PROTOCOL_MARKER_V2 or not packet[2] & SIGNED:
-            return Verdict.UNSIGNED
+            return SignatureVerdict.UNSIGNED
         first = self._by_peer.get(sender.peer, b"")
         key = next((k for k in sorted(self._keys, key=lambda k: k != first) if _matches(k, packet)), None)
         if key is None:
-            return Verdict.UNSIGNED
+            return SignatureVerdict.UNSIGNED
         if not self._is_new(t, key, packet, sender):
-            return Verdict.REPLAYED
+            return SignatureVerdict.REPLAYED
         self._by_peer[sender.peer] = key
-        return Verdict.SIGNED
+        return SignatureVerdict.SIGNED
 
     def _is_new(self, t: float, key: bytes, packet: bytes, sender: Sender) -> bool:
         """Later than all before of its stream; the first of one at most a minute behind us."""

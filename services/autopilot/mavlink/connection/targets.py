@@ -15,30 +15,30 @@ Reserved = Mapping[Peer, int]
 """Ports that hear one vehicle, and are heard by it: numeric address -> system_id."""
 
 
-class Target(NamedTuple):
+class MavlinkTarget(NamedTuple):
     """system_id: of the one vehicle that this port is for, or None."""
 
     peer: Peer
     system_id: int | None = None
 
 
-def targets_from(text: str, name: str, system_ids: Collection[int]) -> list[Target]:
+def targets_from(text: str, name: str, system_ids: Collection[int]) -> list[MavlinkTarget]:
     """``host:port`` or ``host:port/system_id``, with commas between. name: of the variable. Raises BadInput."""
     return [_target(part.strip(), name, system_ids) for part in text.split(",") if part.strip()]
 
 
-def _target(text: str, name: str, system_ids: Collection[int]) -> Target:
+def _target(text: str, name: str, system_ids: Collection[int]) -> MavlinkTarget:
     place, slash, number = text.partition("/")
     where = peer(place, name, "127.0.0.1:14550")
     if not slash:
-        return Target(where)
+        return MavlinkTarget(where)
     if not number.isdecimal() or int(number) not in system_ids:
         there = ", ".join(map(str, sorted(system_ids)))
         raise BadInput(f"{name}: '{text}': no vehicle has system_id '{number}'; the mission has {there}")
-    return Target(where, int(number))
+    return MavlinkTarget(where, int(number))
 
 
-def reserved(targets: Sequence[Target]) -> Reserved:
+def reserved(targets: Sequence[MavlinkTarget]) -> Reserved:
     """Names that nobody knows are left out."""
     found = {}
     for (host, port), system_id in targets:

@@ -6,7 +6,7 @@ from typing import Any
 
 from services.autopilot.mavlink.commands.actions import set_current
 from services.autopilot.mavlink.commands.guided import goal_of_item
-from services.autopilot.mavlink.connection.line import Line, Sender, named
+from services.autopilot.mavlink.connection.line import Sender, VehicleConnection, named
 from services.autopilot.mavlink.missions.old_items import as_int
 from services.autopilot.mavlink.missions.plans import FencePlan, MissionPlan, Plan, RallyPlan
 from uvf.mavlink import dialect as mav
@@ -49,7 +49,7 @@ class Shown:
 
 
 class Missions:
-    def __init__(self, line: Line) -> None:
+    def __init__(self, line: VehicleConnection) -> None:
         self._line = line
         self._plans: dict[int, Plan[Any]] = {
             MISSION: MissionPlan(line),

@@ -6,7 +6,7 @@ from google.protobuf.message import Message
 
 from schemas.messages import Fence, FenceRequest, Mission, MissionItem, MissionRequest, RallyPoints, RallyRequest
 from services.autopilot.mavlink.commands.actions import SOURCE
-from services.autopilot.mavlink.connection.line import Line
+from services.autopilot.mavlink.connection.line import VehicleConnection
 from uvf.mavlink import dialect as mav
 from uvf.mavlink.names import command_name
 from uvf.runtime.mavlink import fence_items, rally_items
@@ -36,7 +36,7 @@ class Plan(Generic[P]):
     call: str
     empty: type[P]
 
-    def __init__(self, line: Line) -> None:
+    def __init__(self, line: VehicleConnection) -> None:
         self._line = line
         self._accepted: tuple[int, P] | None = None
         """(id of what was published before, what has been accepted)."""

@@ -11,7 +11,7 @@ from typing import Any
 
 import msgspec
 
-from services.autopilot.mavlink.connection.facts import Facts
+from services.autopilot.mavlink.connection.facts import VehicleInfo
 from services.autopilot.mavlink.parameters.parameter_table import Parameter
 from services.autopilot.mavlink.parameters.parameter_values import crc32
 from services.autopilot.mavlink.telemetry.identity import VERSION
@@ -31,7 +31,7 @@ def parameters_file_of(system_id: int) -> str:
     return f"{FOLDER}/parameters_{system_id}.json.xz"
 
 
-def files_of(facts: Facts, table: Sequence[Parameter]) -> dict[str, bytes]:
+def files_of(facts: VehicleInfo, table: Sequence[Parameter]) -> dict[str, bytes]:
     """Path -> content; the same for the same vehicle."""
     own = msgspec.to_builtins(facts.params)
     told = {"version": FORMAT, "parameters": [described(p, own) for p in table]}
@@ -72,7 +72,7 @@ def described(p: Parameter, own: Mapping[str, Any]) -> dict[str, Any]:
     return entry
 
 
-def component_metadata(facts: Facts, files: Mapping[str, bytes], boot_ms: int) -> mav.MAVLink_component_metadata_message:
+def component_metadata(facts: VehicleInfo, files: Mapping[str, bytes], boot_ms: int) -> mav.MAVLink_component_metadata_message:
     general = general_of(facts.system_id)
     return mav.MAVLink_component_metadata_message(boot_ms, crc32(files[general]), f"mftp://{general}".encode())
 

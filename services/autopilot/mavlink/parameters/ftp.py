@@ -7,7 +7,7 @@ import struct
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
-from services.autopilot.mavlink.connection.line import Line, Sender
+from services.autopilot.mavlink.connection.line import Sender, VehicleConnection
 from services.autopilot.mavlink.parameters.file_tree import FileTree
 from services.autopilot.mavlink.parameters.parameter_values import crc32
 from uvf.mavlink import dialect as mav
@@ -27,7 +27,7 @@ _WRITING = range(mav.MAV_FTP_OPCODE_CREATEFILE, mav.MAV_FTP_OPCODE_RENAME + 1)
 
 
 @dataclass(frozen=True)
-class Asked:
+class FtpRequest:
     """One request."""
 
     seq: int
@@ -38,7 +38,7 @@ class Asked:
     data: bytes
 
     @classmethod
-    def read(cls, payload: bytes) -> "Asked":
+    def read(cls, payload: bytes) -> "FtpRequest":
         seq, session, opcode, size, _, _, offset = HEADER.unpack_from(payload)
         return cls(seq, session, opcode, size, offset, payload[HEADER.size : HEADER.size + min(size, DATA_BYTES)])
 
@@ -48,7 +48,7 @@ class Asked:
 
 
 @dataclass(frozen=True)
-class Said:
+class FtpReply:
     """One answer, without its sequence number."""
 
     session: int
@@ -59,7 +59,7 @@ class Said:
 
 
 @dataclass
-class Session:
+class FtpSession:
     """A file that one peer reads, perhaps has begun to read."""
 
     owner: Sender
@@ -72,7 +72,7 @@ class Session:
 class Burst:
     """What is still to be sent of a file."""
 
-    asked: Asked
+    asked: FtpRequest
     content: bytes
     offset: int
     seq: int
@@ -82,13 +82,13 @@ class Burst:
 class Talk:
     """With one peer: its last request and what was answered, for when the answer is lost."""
 
-    asked: Asked
+    asked: FtpRequest
     t: float
     reply: mav.MAVLink_message | None = None
     burst: Burst | None = field(default=None)
 
 
-class Refused(Exception):
+class FtpRefusal(Exception):
     """With the MAV_FTP_ERR to be answered."""
 
     def __init__(self, error: int) -> None:
@@ -97,13 +97,13 @@ class Refused(Exception):
 
 
 class FileServer:
-    def __init__(self, line: Line, files: Mapping[str, bytes]) -> None:
+    def __init__(self, line: VehicleConnection, files: Mapping[str, bytes]) -> None:
         self._line = line
         self._tree = FileTree(files)
-        self._sessions: dict[int, Session] = {}
+        self._sessions: dict[int, FtpSession] = {}
         self._talks: dict[Sender, Talk] = {}
         self._next = 0
-        self._does: dict[int, Callable[[Asked, Sender], Said]] = {
+        self._does: dict[int, Callable[[FtpRequest, Sender], FtpReply]] = {
             mav.MAV_FTP_OPCODE_TERMINATESESSION: self._terminate,
             mav.MAV_FTP_OPCODE_RESETSESSION: self._reset,
             mav.MAV_FTP_OPCODE_LISTDIRECTORY: self._list,
@@ -115,7 +115,7 @@ class FileServer:
 
     def on_ftp(self, message: mav.MAVLink_file_transfer_protocol_message, sender: Sender) -> None:
         """Every request is answered at once; one that is repeated gets the same answer again."""
-        asked = Asked.read(bytes(message.payload))
+        asked = FtpRequest.read(bytes(message.payload))
         if asked.opcode >= ACK:
             return  # an answer, of somebody else
         talk = self._talks.get(sender)
@@ -127,16 +127,16 @@ class FileServer:
         talk = self._talks[sender] = Talk(asked, self._line.t)
         try:
             said = self._answer(asked, sender)
-        except Refused as refused:
-            said = Said(asked.session, NAK, bytes((refused.error,)))
+        except FtpRefusal as refused:
+            said = FtpReply(asked.session, NAK, bytes((refused.error,)))
         if talk.burst is None:
             talk.reply = self._send(said, asked, (asked.seq + 1) & 0xFFFF, sender)
 
-    def _answer(self, asked: Asked, sender: Sender) -> Said:
+    def _answer(self, asked: FtpRequest, sender: Sender) -> FtpReply:
         if asked.opcode in _WRITING:
-            raise Refused(mav.MAV_FTP_ERR_FILEPROTECTED)
+            raise FtpRefusal(mav.MAV_FTP_ERR_FILEPROTECTED)
         if asked.opcode not in self._does:
-            raise Refused(mav.MAV_FTP_ERR_UNKNOWNCOMMAND)
+            raise FtpRefusal(mav.MAV_FTP_ERR_UNKNOWNCOMMAND)
         return self._does[asked.opcode](asked, sender)
 
     def tick(self) -> None:
@@ -157,82 +157,82 @@ class FileServer:
         data = burst.content[burst.offset : burst.offset + (burst.asked.size or DATA_BYTES)]
         last = burst.offset + len(data) >= len(burst.content)
         burst.seq = (burst.seq + 1) & 0xFFFF
-        self._send(Said(burst.asked.session, ACK, data, burst.offset, last), burst.asked, burst.seq, sender)
+        self._send(FtpReply(burst.asked.session, ACK, data, burst.offset, last), burst.asked, burst.seq, sender)
         burst.offset += len(data)
         if last:
             talk.burst = None
 
-    def _send(self, said: Said, asked: Asked, seq: int, to: Sender) -> mav.MAVLink_message:
+    def _send(self, said: FtpReply, asked: FtpRequest, seq: int, to: Sender) -> mav.MAVLink_message:
         head = HEADER.pack(seq, said.session, said.opcode, len(said.data), asked.opcode, said.complete, said.offset)
         payload = (head + said.data).ljust(PAYLOAD_BYTES, b"\0")
         message = mav.MAVLink_file_transfer_protocol_message(0, to.system, to.component, payload)
         self._line.send(message, to.peer)
         return message
 
-    def _session(self, asked: Asked, sender: Sender) -> Session:
+    def _session(self, asked: FtpRequest, sender: Sender) -> FtpSession:
         session = self._sessions.get(asked.session)
         if session is None or session.owner != sender:
-            raise Refused(mav.MAV_FTP_ERR_INVALIDSESSION)
+            raise FtpRefusal(mav.MAV_FTP_ERR_INVALIDSESSION)
         session.t, session.is_read = self._line.t, True
         if asked.offset >= len(session.content):
-            raise Refused(mav.MAV_FTP_ERR_EOF)
+            raise FtpRefusal(mav.MAV_FTP_ERR_EOF)
         return session
 
-    def _terminate(self, asked: Asked, sender: Sender) -> Said:
+    def _terminate(self, asked: FtpRequest, sender: Sender) -> FtpReply:
         """Also of a session that has ended already: then the answer was lost."""
         session = self._sessions.get(asked.session)
         if session is not None and session.owner == sender:
             del self._sessions[asked.session]
-        return Said(asked.session, ACK)
+        return FtpReply(asked.session, ACK)
 
-    def _reset(self, asked: Asked, sender: Sender) -> Said:
+    def _reset(self, asked: FtpRequest, sender: Sender) -> FtpReply:
         """All of this peer's; others go on."""
         self._sessions = {number: s for number, s in self._sessions.items() if s.owner != sender}
-        return Said(asked.session, ACK)
+        return FtpReply(asked.session, ACK)
 
-    def _list(self, asked: Asked, sender: Sender) -> Said:
+    def _list(self, asked: FtpRequest, sender: Sender) -> FtpReply:
         entries = self._tree.entries(asked.path)
         if entries is None:
-            raise Refused(mav.MAV_FTP_ERR_FILENOTFOUND)
+            raise FtpRefusal(mav.MAV_FTP_ERR_FILENOTFOUND)
         if asked.offset >= len(entries):
-            raise Refused(mav.MAV_FTP_ERR_EOF)
+            raise FtpRefusal(mav.MAV_FTP_ERR_EOF)
         data = b""
         for entry in entries[asked.offset :]:
             if len(data) + len(entry) > DATA_BYTES:
                 break
             data += entry
-        return Said(asked.session, ACK, data, asked.offset)
+        return FtpReply(asked.session, ACK, data, asked.offset)
 
-    def _open(self, asked: Asked, sender: Sender) -> Said:
+    def _open(self, asked: FtpRequest, sender: Sender) -> FtpReply:
         content = self._content(asked)
         if sum(session.owner == sender for session in self._sessions.values()) >= SESSIONS_EACH:
-            raise Refused(mav.MAV_FTP_ERR_NOSESSIONSAVAILABLE)
+            raise FtpRefusal(mav.MAV_FTP_ERR_NOSESSIONSAVAILABLE)
         make_room(self._sessions, -1, SESSIONS_MOST, lambda number: (self._sessions[number].is_read, self._sessions[number].t))
         while self._next in self._sessions:
             self._next = (self._next + 1) % 256
         number, self._next = self._next, (self._next + 1) % 256
-        self._sessions[number] = Session(sender, content, self._line.t)
-        return Said(number, ACK, struct.pack("<I", len(content)))
+        self._sessions[number] = FtpSession(sender, content, self._line.t)
+        return FtpReply(number, ACK, struct.pack("<I", len(content)))
 
-    def _read(self, asked: Asked, sender: Sender) -> Said:
+    def _read(self, asked: FtpRequest, sender: Sender) -> FtpReply:
         content = self._session(asked, sender).content
         if not 0 < asked.size <= DATA_BYTES:
-            raise Refused(mav.MAV_FTP_ERR_INVALIDDATASIZE)
-        return Said(asked.session, ACK, content[asked.offset : asked.offset + asked.size], asked.offset)
+            raise FtpRefusal(mav.MAV_FTP_ERR_INVALIDDATASIZE)
+        return FtpReply(asked.session, ACK, content[asked.offset : asked.offset + asked.size], asked.offset)
 
-    def _crc(self, asked: Asked, sender: Sender) -> Said:
-        return Said(asked.session, ACK, struct.pack("<I", crc32(self._content(asked))))
+    def _crc(self, asked: FtpRequest, sender: Sender) -> FtpReply:
+        return FtpReply(asked.session, ACK, struct.pack("<I", crc32(self._content(asked))))
 
-    def _burst(self, asked: Asked, sender: Sender) -> Said:
+    def _burst(self, asked: FtpRequest, sender: Sender) -> FtpReply:
         """Sent by ``tick``; the last packet says that the burst is complete, and what is asked beyond it is the end of the file."""
         content = self._session(asked, sender).content
         if asked.size > DATA_BYTES:
-            raise Refused(mav.MAV_FTP_ERR_INVALIDDATASIZE)
+            raise FtpRefusal(mav.MAV_FTP_ERR_INVALIDDATASIZE)
         self._talks[sender].burst = Burst(asked, content, asked.offset, asked.seq)
-        return Said(asked.session, ACK)
+        return FtpReply(asked.session, ACK)
 
-    def _content(self, asked: Asked) -> bytes:
+    def _content(self, asked: FtpRequest) -> bytes:
         content = self._tree.content(asked.path)
         if content is None:
-            raise Refused(mav.MAV_FTP_ERR_FILENOTFOUND)
+            raise FtpRefusal(mav.MAV_FTP_ERR_FILENOTFOUND)
         return content

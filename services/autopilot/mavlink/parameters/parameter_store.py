@@ -8,7 +8,7 @@ from typing import Any, Protocol
 from uvf.runtime.state.state_folder import write_private
 
 
-class Unreadable(Exception):
+class UnreadableStore(Exception):
     """A file of settings that is none; the text says what is wrong with it."""
 
 
@@ -30,11 +30,11 @@ class FileStore:
         except FileNotFoundError:
             return {}
         except OSError as error:
-            raise Unreadable(f"{self._path.name}: {error.strerror}") from error
+            raise UnreadableStore(f"{self._path.name}: {error.strerror}") from error
         except (ValueError, RecursionError) as error:
-            raise Unreadable(f"{self._path.name} is broken") from error
+            raise UnreadableStore(f"{self._path.name} is broken") from error
         if not isinstance(found, dict):
-            raise Unreadable(f"{self._path.name} holds no settings")
+            raise UnreadableStore(f"{self._path.name} holds no settings")
         return found
 
     def save(self, settings: Mapping[str, Any]) -> None:

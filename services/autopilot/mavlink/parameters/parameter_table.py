@@ -9,7 +9,7 @@ from typing import Any, Literal
 import msgspec
 import numpy as np
 
-from services.autopilot.mavlink.connection.facts import Facts
+from services.autopilot.mavlink.connection.facts import VehicleInfo
 from services.autopilot.mavlink.parameters.own_params import Own, own_params
 from uvf.mavlink import dialect as mav
 from uvf.models.yaml_data import BadInput, load_yaml, nearest
@@ -28,7 +28,7 @@ class Case(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     sets: dict[str, str] = {}
 
 
-class Row(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class ParameterRow(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """As the head of ``parameters.yaml`` explains."""
 
     type: Literal["int", "real"]
@@ -44,7 +44,7 @@ class Row(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class Table(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    parameters: dict[str, Row]
+    parameters: dict[str, ParameterRow]
 
 
 @dataclass(frozen=True)
@@ -89,12 +89,12 @@ class Parameter:
         return {self.own: float(min(max(number, self.low), self.high))}
 
 
-def parameters_of(facts: Facts) -> list[Parameter]:
+def parameters_of(facts: VehicleInfo) -> list[Parameter]:
     """In order of name, numbered from 0. Raises BadInput when the file names what the autopilot has not."""
     return parameters_with(own_params(facts.params, facts.fixed_params), facts.file.kind, {"system_id": facts.system_id, **_battery(facts)})
 
 
-def _battery(facts: Facts) -> dict[str, float]:
+def _battery(facts: VehicleInfo) -> dict[str, float]:
     """Of the vehicle's file; without a battery nothing."""
     body = facts.file.ground or facts.file.air
     pack = body.battery if body is not None else None
@@ -117,14 +117,14 @@ def _table() -> Table:
     return load_yaml(FILE, Table)
 
 
-def _of_kind(row: Row, kind: Kind, given: Mapping[str, float]) -> Row:
+def _of_kind(row: ParameterRow, kind: Kind, given: Mapping[str, float]) -> ParameterRow:
     """With the value of this vehicle."""
     if isinstance(row.value, str):
         return msgspec.structs.replace(row, value=float(given.get(row.value, 0.0)))
     return msgspec.structs.replace(row, value=row.ground) if kind == "ground" and row.ground is not None else row
 
 
-def _standard(name: str, row: Row, own: Mapping[str, Own], kind: Kind) -> Parameter:
+def _standard(name: str, row: ParameterRow, own: Mapping[str, Own], kind: Kind) -> Parameter:
     named = {row.own} if row.own else {key for case in row.cases.values() for key in case.sets}
     for key in named - own.keys() if not row.fixed else ():
         raise BadInput(f"{FILE.name}: {name}: '{key}' is no parameter of a {kind} autopilot; {nearest(key, own)}")

@@ -4,8 +4,8 @@ import math
 from collections.abc import Collection
 from itertools import islice
 
-from services.autopilot.mavlink.commands.commands import Acknowledger, Command, Handler
-from services.autopilot.mavlink.connection.line import Line, Sender
+from services.autopilot.mavlink.commands.commands import Acknowledger, Handler, ReceivedCommand
+from services.autopilot.mavlink.connection.line import Sender, VehicleConnection
 from services.autopilot.mavlink.parameters.parameter_store import Store
 from services.autopilot.mavlink.parameters.parameter_table import Parameter, parameters_of
 from services.autopilot.mavlink.parameters.parameter_values import ParameterValues, decoded, param_value, raw_of
@@ -20,8 +20,8 @@ HASH_INDEX = 0xFFFF  # outside the list
 LOAD, SAVE, RESET = 0.0, 1.0, 2.0  # of MAV_CMD_PREFLIGHT_STORAGE
 
 
-class Parameters:
-    def __init__(self, line: Line, store: Store) -> None:
+class ParameterServer:
+    def __init__(self, line: VehicleConnection, store: Store) -> None:
         self._line = line
         self._settings = ParameterSettings(line, store)
         self.table = parameters_of(line.facts)
@@ -102,7 +102,7 @@ class Parameters:
             if start + PER_STEP >= len(self.table):
                 del self._progress[peer]
 
-    def _storage(self, line: Line, command: Command, ack: Acknowledger) -> None:
+    def _storage(self, line: VehicleConnection, command: ReceivedCommand, ack: Acknowledger) -> None:
         """Parameter 1: 0 read again what is remembered, 1 remember (which is done at each change anyway), 2 back to the vehicle's file."""
         what = command.p[0]
         if what not in (LOAD, SAVE, RESET):

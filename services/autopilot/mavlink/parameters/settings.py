@@ -8,8 +8,8 @@ import msgspec
 
 from schemas.messages import ParamRequest, ParamValues
 from services.autopilot.mavlink.connection.asking import Done
-from services.autopilot.mavlink.connection.line import Line
-from services.autopilot.mavlink.parameters.parameter_store import Store, Unreadable
+from services.autopilot.mavlink.connection.line import VehicleConnection
+from services.autopilot.mavlink.parameters.parameter_store import Store, UnreadableStore
 from uvf.mavlink import dialect as mav
 from uvf.models.yaml_data import BadInput, convert
 
@@ -21,7 +21,7 @@ Settings = dict[str, Any]
 class ParameterSettings:
     """The autopilot's own parameters by name, as this end knows them."""
 
-    def __init__(self, line: Line, store: Store) -> None:
+    def __init__(self, line: VehicleConnection, store: Store) -> None:
         self._line = line
         self._store = store
         self._file: Settings = msgspec.to_builtins(line.facts.params)
@@ -137,7 +137,7 @@ class ParameterSettings:
         """Those that are remembered and still make sense."""
         try:
             found = self._store.load()
-        except Unreadable as error:
+        except UnreadableStore as error:
             self.note = f"Parameters: {error}; those of the vehicle's file count"
             return {}
         good = {name: value for name, value in found.items() if self._is_good(name, value)}

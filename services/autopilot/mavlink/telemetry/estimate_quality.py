@@ -3,7 +3,7 @@
 import math
 
 from schemas.messages import EstimateQuality
-from services.autopilot.mavlink.connection.facts import Facts, Latest
+from services.autopilot.mavlink.connection.facts import VehicleInfo, VehicleState
 from uvf.mavlink import dialect as mav
 from uvf.mavlink.scaling import whole
 from uvf.runtime.messages.convert import array
@@ -14,7 +14,7 @@ ABSOLUTE = mav.ESTIMATOR_POS_HORIZ_ABS | mav.ESTIMATOR_PRED_POS_HORIZ_ABS
 VERTICAL = mav.ESTIMATOR_VELOCITY_VERT | mav.ESTIMATOR_POS_VERT_ABS
 
 
-def estimator_status(facts: Facts, latest: Latest, t: float) -> Message:
+def estimator_status(facts: VehicleInfo, latest: VehicleState, t: float) -> Message:
     """Ratios as PX4 has them: innovation over its gate, above 1 refused; NaN where nothing is compared or nobody tells."""
     if latest.nav is None:
         return None
@@ -27,7 +27,7 @@ def estimator_status(facts: Facts, latest: Latest, t: float) -> Message:
     return mav.MAVLink_estimator_status_message(usec, flags, velocity, place, height, field, math.nan, airspeed, sigma, height_sigma)
 
 
-def _flags(facts: Facts, told: EstimateQuality | None) -> int:
+def _flags(facts: VehicleInfo, told: EstimateQuality | None) -> int:
     """Without a word on its quality the estimate of a ground vehicle is that of its map."""
     flags = mav.ESTIMATOR_ATTITUDE | HORIZONTAL
     flags |= ABSOLUTE if told is None or told.position_known else 0
@@ -44,7 +44,7 @@ def _ratios(told: EstimateQuality | None) -> tuple[float, ...]:
     return tuple(math.sqrt(s) if s >= 0 else math.nan for s in squares)
 
 
-def wind(facts: Facts, latest: Latest, t: float) -> Message:
+def wind(facts: VehicleInfo, latest: VehicleState, t: float) -> Message:
     """Velocity of the air in NED; aircraft only. No vertical wind is estimated."""
     if latest.nav is None or facts.is_ground:
         return None

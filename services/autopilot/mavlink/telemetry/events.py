@@ -5,7 +5,7 @@ import re
 from collections.abc import Sequence
 
 from schemas.messages import Event
-from services.autopilot.mavlink.connection.facts import Latest
+from services.autopilot.mavlink.connection.facts import VehicleState
 from uvf.runtime.messages.convert import seconds
 
 NEWS = 5.0  # s of simulation time: what happened while this link was starting again is still news
@@ -14,7 +14,7 @@ TOLD_OTHERWISE = re.compile(r"mission item \d+ reached|camera trigger \d+")
 """MISSION_ITEM_REACHED tells of the one, a survey has hundreds of the other."""
 
 
-class News:
+class EventNews:
     """The bus hands old events to whoever comes later: a link that starts again is no reason to say them once more."""
 
     def __init__(self) -> None:
@@ -22,7 +22,7 @@ class News:
         """Older ones [s, simulation] are no news; None until the time is known."""
         self._held: list[Event] = []
 
-    def of(self, latest: Latest, events: Sequence[Event]) -> list[Event]:
+    def of(self, latest: VehicleState, events: Sequence[Event]) -> list[Event]:
         """What is to be said of these, and of those that came before the time was known."""
         events = [*self._held, *events][-MOST_HELD:]
         if latest.clock is None and latest.nav is None and latest.status is None:

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from schemas.messages import Gnss
-from services.autopilot.mavlink.connection.facts import Facts, Latest
+from services.autopilot.mavlink.connection.facts import VehicleInfo, VehicleState
 from uvf.mavlink import dialect as mav
 from uvf.runtime.state.stop_all import told
 
@@ -28,7 +28,7 @@ class Health:
     complaints: tuple[str, ...]
 
 
-def health(facts: Facts, latest: Latest) -> Health:
+def health(facts: VehicleInfo, latest: VehicleState) -> Health:
     """Present: what the vehicle file fits. Healthy: what has shown itself in the newest messages."""
     present = mav.MAV_SYS_STATUS_PREARM_CHECK | _CONTROL | (0 if facts.is_ground else _FLIGHT_CONTROL)
     present |= _IMU if facts.sensors.imu else 0
@@ -48,7 +48,7 @@ def health(facts: Facts, latest: Latest) -> Health:
     return Health(present, healthy, complaints)
 
 
-def _knows_where_it_is(facts: Facts, latest: Latest) -> bool:
+def _knows_where_it_is(facts: VehicleInfo, latest: VehicleState) -> bool:
     """What ground stations take the GPS bit for. A vehicle without a receiver knows it from its map, which lies in the world.
 
     Without the bit MAVSDK's ``health_all_ok``, for which every script waits, is never true; GPS_RAW_INT is not sent for it.
@@ -56,12 +56,12 @@ def _knows_where_it_is(facts: Facts, latest: Latest) -> bool:
     return facts.sensors.gnss is None or _has_fix(latest)
 
 
-def _has_fix(latest: Latest) -> bool:
+def _has_fix(latest: VehicleState) -> bool:
     gnss = latest.fresh(latest.gnss)
     return gnss is not None and gnss.fix >= Gnss.FIX_3D
 
 
-def _complaints(facts: Facts, latest: Latest) -> tuple[str, ...]:
+def _complaints(facts: VehicleInfo, latest: VehicleState) -> tuple[str, ...]:
     said = []
     if latest.nav is None:
         said.append("no position estimate yet")

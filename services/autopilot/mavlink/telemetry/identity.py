@@ -6,7 +6,7 @@ import tomllib
 from importlib.metadata import version
 
 from schemas.messages import Kind
-from services.autopilot.mavlink.connection.facts import Facts, Latest
+from services.autopilot.mavlink.connection.facts import VehicleInfo, VehicleState
 from uvf.mavlink import dialect as mav
 from uvf.models.scenario import ROOT
 from uvf.runtime.mavlink.modes import row_of
@@ -43,12 +43,12 @@ VENDOR = 0x5556
 PRODUCT = {Kind.KIND_FIXED_WING: 1, Kind.KIND_GROUND: 2}
 
 
-def greeting(facts: Facts) -> str:
+def greeting(facts: VehicleInfo) -> str:
     interface = "generic MAVLink" if facts.generic else "PX4-compatible MAVLink, not PX4"
     return f"UVF {'.'.join(map(str, VERSION))} simulated autopilot ({interface})"
 
 
-def heartbeat(facts: Facts, latest: Latest) -> mav.MAVLink_heartbeat_message:
+def heartbeat(facts: VehicleInfo, latest: VehicleState) -> mav.MAVLink_heartbeat_message:
     """The HIL flag is always set: it is the truth, and it keeps sensor calibration pages away."""
     flags = mav.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED | mav.MAV_MODE_FLAG_HIL_ENABLED
     status = latest.status
@@ -61,7 +61,7 @@ def heartbeat(facts: Facts, latest: Latest) -> mav.MAVLink_heartbeat_message:
     return mav.MAVLink_heartbeat_message(TYPE[facts.kind], autopilot, flags, custom, _system_status(latest), 3)
 
 
-def _system_status(latest: Latest) -> int:
+def _system_status(latest: VehicleState) -> int:
     if latest.status is None:
         return int(mav.MAV_STATE_BOOT)
     if latest.is_silent or latest.status.stopped or latest.is_gliding:
@@ -69,7 +69,7 @@ def _system_status(latest: Latest) -> int:
     return int(mav.MAV_STATE_ACTIVE if latest.status.armed else mav.MAV_STATE_STANDBY)
 
 
-def autopilot_version(facts: Facts) -> mav.MAVLink_autopilot_version_message:
+def autopilot_version(facts: VehicleInfo) -> mav.MAVLink_autopilot_version_message:
     """Version type DEV (0): an official one is compared with the newest PX4. Own version in the custom bytes, reversed."""
     major, minor, patch = VERSION if facts.generic else EMULATED_PX4
     own = VERSION[0] << 24 | VERSION[1] << 16 | VERSION[2] << 8
@@ -97,6 +97,6 @@ def protocol_version() -> mav.MAVLink_protocol_version_message:
     return mav.MAVLink_protocol_version_message(200, 100, 200, tuple(XML_COMMIT), (0,) * 8)
 
 
-def current_mode(latest: Latest) -> mav.MAVLink_current_mode_message | None:
+def current_mode(latest: VehicleState) -> mav.MAVLink_current_mode_message | None:
     row = row_of(latest.status.mode) if latest.status is not None else None
     return mav.MAVLink_current_mode_message(row.standard, row.custom, latest.intended_custom_mode) if row else None

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from schemas.messages import NavState
-from services.autopilot.mavlink.connection.facts import Facts, Latest
+from services.autopilot.mavlink.connection.facts import VehicleInfo, VehicleState
 from uvf.maths.geodesy import Floats
 from uvf.maths.rotations import enu_flu_from_ned_frd, to_euler
 from uvf.mavlink import dialect as mav
@@ -20,7 +20,7 @@ def boot_ms(t: float) -> int:
     return whole(t * 1e3, (0, 2**32 - 1))
 
 
-def system_time(facts: Facts, latest: Latest, t: float) -> Message:
+def system_time(facts: VehicleInfo, latest: VehicleState, t: float) -> Message:
     """Wall time, as of all that goes over the link."""
     unix = whole((facts.started + t) * 1e6, (0, 2**63)) if facts.started else 0
     return mav.MAVLink_system_time_message(unix, boot_ms(t))
@@ -36,14 +36,14 @@ def frd_rates(nav: NavState) -> tuple[float, float, float]:
     return nav.angular_velocity.x, -nav.angular_velocity.y, -nav.angular_velocity.z
 
 
-def attitude(facts: Facts, latest: Latest, t: float) -> Message:
+def attitude(facts: VehicleInfo, latest: VehicleState, t: float) -> Message:
     if latest.nav is None:
         return None
     roll, pitch, yaw = to_euler(ned_from_frd(wxyz(latest.nav.orientation)))
     return mav.MAVLink_attitude_message(boot_ms(t), roll, pitch, yaw, *frd_rates(latest.nav))
 
 
-def local_position(facts: Facts, latest: Latest, t: float) -> Message:
+def local_position(facts: VehicleInfo, latest: VehicleState, t: float) -> Message:
     """In the world's frame, turned to NED."""
     if latest.nav is None:
         return None
@@ -51,14 +51,14 @@ def local_position(facts: Facts, latest: Latest, t: float) -> Message:
     return mav.MAVLink_local_position_ned_message(boot_ms(t), p.y, p.x, -p.z, v.y, v.x, -v.z)
 
 
-def relative_altitude(latest: Latest) -> float:
+def relative_altitude(latest: VehicleState) -> float:
     """[m] above home; above the world's origin while home is unknown."""
     assert latest.nav is not None
     home = latest.home
     return latest.nav.position.z - (float(home[2]) if home is not None else 0.0)
 
 
-def global_position(facts: Facts, latest: Latest, t: float) -> Message:
+def global_position(facts: VehicleInfo, latest: VehicleState, t: float) -> Message:
     nav = latest.nav
     if nav is None or not np.isfinite(array(nav.position)).all():
         return None
@@ -77,7 +77,7 @@ def global_position(facts: Facts, latest: Latest, t: float) -> Message:
     )
 
 
-def altitude(facts: Facts, latest: Latest, t: float) -> Message:
+def altitude(facts: VehicleInfo, latest: VehicleState, t: float) -> Message:
     """Monotonic: the estimate itself, for there is no other clock of height."""
     if latest.nav is None:
         return None
@@ -87,7 +87,7 @@ def altitude(facts: Facts, latest: Latest, t: float) -> Message:
     return mav.MAVLink_altitude_message(whole(t * 1e6, (0, 2**63)), amsl, amsl, z, relative_altitude(latest), nan, nan)
 
 
-def hud(facts: Facts, latest: Latest, t: float) -> Message:
+def hud(facts: VehicleInfo, latest: VehicleState, t: float) -> Message:
     nav = latest.nav
     if nav is None:
         return None
@@ -98,6 +98,6 @@ def hud(facts: Facts, latest: Latest, t: float) -> Message:
     return mav.MAVLink_vfr_hud_message(nav.airspeed, ground_speed, heading, throttle, amsl, nav.velocity.z)
 
 
-def global_origin(facts: Facts, latest: Latest, t: float) -> Message:
+def global_origin(facts: VehicleInfo, latest: VehicleState, t: float) -> Message:
     latitude, longitude, amsl = facts.geodetic(np.zeros(3))
     return mav.MAVLink_gps_global_origin_message(whole(latitude * 1e7, I32), whole(longitude * 1e7, I32), whole(amsl * 1e3, I32))

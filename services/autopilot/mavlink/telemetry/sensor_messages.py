@@ -3,7 +3,7 @@
 import math
 
 from schemas.messages import AirData, SurfaceCommand, WheelCommand
-from services.autopilot.mavlink.connection.facts import Facts, Latest
+from services.autopilot.mavlink.connection.facts import VehicleInfo, VehicleState
 from services.autopilot.mavlink.telemetry.navigation import boot_ms
 from uvf.maths import atmosphere
 from uvf.maths.geodesy import Floats
@@ -31,7 +31,7 @@ _PRESSURES = (
 )
 
 
-def body_frd(facts: Facts, sensed: Floats) -> Floats:
+def body_frd(facts: VehicleInfo, sensed: Floats) -> Floats:
     """(3,) of the IMU's axes (FLU, mounted as the vehicle's file says) in the body's (FRD)."""
     imu = facts.sensors.imu
     if imu is not None and any(imu.mount.rpy):
@@ -39,7 +39,7 @@ def body_frd(facts: Facts, sensed: Floats) -> Floats:
     return sensed * FRD
 
 
-def highres_imu(facts: Facts, latest: Latest, t: float) -> Message:
+def highres_imu(facts: VehicleInfo, latest: VehicleState, t: float) -> Message:
     """``fields_updated`` names what is there: a vehicle without air data or magnetometer has no numbers for them."""
     imu, air = latest.fresh(latest.imu), latest.fresh(latest.air_data)
     if imu is None:
@@ -59,7 +59,7 @@ def _air(air: AirData) -> tuple[float, float, float, float]:
     return air.static_pressure / HECTOPASCAL, air.differential_pressure / HECTOPASCAL, height, air.temperature - ZERO_CELSIUS
 
 
-def scaled_pressure(facts: Facts, latest: Latest, t: float) -> Message:
+def scaled_pressure(facts: VehicleInfo, latest: VehicleState, t: float) -> Message:
     air = latest.fresh(latest.air_data)
     if air is None:
         return None
@@ -67,7 +67,7 @@ def scaled_pressure(facts: Facts, latest: Latest, t: float) -> Message:
     return mav.MAVLink_scaled_pressure_message(boot_ms(t), static, differential, whole(celsius * 100, I16))
 
 
-def vibration(facts: Facts, latest: Latest, t: float) -> Message:
+def vibration(facts: VehicleInfo, latest: VehicleState, t: float) -> Message:
     """Of aircraft: the shaking of the specific force, sensor axes; see ``vibration.py``."""
     if facts.is_ground or latest.fresh(latest.imu) is None:
         return None
@@ -75,7 +75,7 @@ def vibration(facts: Facts, latest: Latest, t: float) -> Message:
     return mav.MAVLink_vibration_message(whole(t * 1e6, (0, 2**63)), x, y, z, latest.vibration.clipped, 0, 0)
 
 
-def servo_output(facts: Facts, latest: Latest, t: float) -> Message:
+def servo_output(facts: VehicleInfo, latest: VehicleState, t: float) -> Message:
     """Outputs 1 to 6: aileron, elevator, throttle, rudder, flap, brake; of a ground vehicle 1 and 2: left and right wheel."""
     pulses: list[int] = []
     if (surfaces := latest.fresh(latest.surface_command)) is not None:
@@ -87,7 +87,7 @@ def servo_output(facts: Facts, latest: Latest, t: float) -> Message:
     return mav.MAVLink_servo_output_raw_message(round(t * 1e6) % 2**32, 0, *pulses, *(UNUSED,) * (8 - len(pulses)))
 
 
-def _surfaces(facts: Facts, asked: SurfaceCommand) -> list[int]:
+def _surfaces(facts: VehicleInfo, asked: SurfaceCommand) -> list[int]:
     if facts.file.air is None:
         return []
     limits = facts.file.air.controls
@@ -97,7 +97,7 @@ def _surfaces(facts: Facts, asked: SurfaceCommand) -> list[int]:
     return [_pulse(parts[name]) for name in ("aileron", "elevator", "throttle", "rudder", "flap", "brake")]
 
 
-def _wheels(facts: Facts, asked: WheelCommand) -> list[int]:
+def _wheels(facts: VehicleInfo, asked: WheelCommand) -> list[int]:
     if facts.file.ground is None:
         return []
     fastest = facts.file.ground.max_linear / facts.file.ground.wheel_radius

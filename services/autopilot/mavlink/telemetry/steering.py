@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from schemas.messages import Mode, NavStatus
-from services.autopilot.mavlink.connection.facts import Facts, Latest
+from services.autopilot.mavlink.connection.facts import VehicleInfo, VehicleState
 from services.autopilot.mavlink.telemetry.navigation import boot_ms
 from uvf.maths.geodesy import Floats
 from uvf.maths.rotations import from_euler
@@ -24,7 +24,7 @@ _NO_RATES = (
 UNDER_WAY = (NavStatus.PLANNING, NavStatus.DRIVING, NavStatus.RECOVERING)
 
 
-def place(latest: Latest) -> Floats | None:
+def place(latest: VehicleState) -> Floats | None:
     """(3,) m, world: what the autopilot, or the planner of a ground vehicle, goes to; else the mission's item; None: nowhere."""
     targets, planning = latest.fresh(latest.targets), latest.fresh(latest.planning)
     if targets is not None:
@@ -37,7 +37,7 @@ def place(latest: Latest) -> Floats | None:
     return array(mission.items[status.waypoint].position)
 
 
-def position_target(facts: Facts, latest: Latest, t: float) -> Message:
+def position_target(facts: VehicleInfo, latest: VehicleState, t: float) -> Message:
     """The place, at the height that is held now where that is another."""
     to, targets = place(latest), latest.fresh(latest.targets)
     if to is None or not np.isfinite(to).all():
@@ -49,7 +49,7 @@ def position_target(facts: Facts, latest: Latest, t: float) -> Message:
     return mav.MAVLink_position_target_global_int_message(boot_ms(t), mav.MAV_FRAME_GLOBAL_INT, _ONLY_PLACE, *where, *(0.0,) * 8)
 
 
-def attitude_target(facts: Facts, latest: Latest, t: float) -> Message:
+def attitude_target(facts: VehicleInfo, latest: VehicleState, t: float) -> Message:
     """Bank and pitch that are held, with the heading of now, which is not."""
     targets, nav, status = latest.fresh(latest.targets), latest.nav, latest.status
     if targets is None or nav is None or status is None or not targets.HasField("bank"):
@@ -58,7 +58,7 @@ def attitude_target(facts: Facts, latest: Latest, t: float) -> Message:
     return mav.MAVLink_attitude_target_message(boot_ms(t), _NO_RATES, q.tolist(), 0.0, 0.0, 0.0, status.throttle)
 
 
-def controller_output(facts: Facts, latest: Latest, t: float) -> Message:
+def controller_output(facts: VehicleInfo, latest: VehicleState, t: float) -> Message:
     """Bearing and distance of the place, errors of height and airspeed (too low and too slow is positive), attitude that is held."""
     status, nav, to = latest.status, latest.nav, place(latest)
     if status is None or nav is None or to is None:

@@ -1,7 +1,7 @@
 """What is told of sticks and circles: RC_CHANNELS while channels are overridden, ORBIT_EXECUTION_STATUS while it orbits."""
 
 from schemas.messages import Mode
-from services.autopilot.mavlink.connection.facts import Facts, Latest
+from services.autopilot.mavlink.connection.facts import VehicleInfo, VehicleState
 from services.autopilot.mavlink.telemetry.navigation import boot_ms
 from uvf.mavlink import dialect as mav
 from uvf.mavlink.scaling import I32, whole
@@ -11,7 +11,7 @@ Message = mav.MAVLink_message | None
 UNUSED, UNKNOWN_STRENGTH = 0xFFFF, 255
 
 
-def rc_channels(facts: Facts, latest: Latest, t: float) -> Message:
+def rc_channels(facts: VehicleInfo, latest: VehicleState, t: float) -> Message:
     """us; channels that are released are not there."""
     if not latest.rc_channels:
         return None
@@ -21,7 +21,7 @@ def rc_channels(facts: Facts, latest: Latest, t: float) -> Message:
     return mav.MAVLink_rc_channels_message(*fields)
 
 
-def orbit_status(facts: Facts, latest: Latest, t: float) -> Message:
+def orbit_status(facts: VehicleInfo, latest: VehicleState, t: float) -> Message:
     """Radius positive clockwise, altitude above mean sea level."""
     status = latest.status
     if status is None or status.mode != Mode.MODE_ORBIT or not status.HasField("circle"):

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from schemas.messages import Breach, Gnss, MissionItem, Mode
-from services.autopilot.mavlink.connection.facts import Facts, Latest
+from services.autopilot.mavlink.connection.facts import VehicleInfo, VehicleState
 from services.autopilot.mavlink.telemetry import estimate_quality, identity, navigation, sensor_messages, steering, steering_telemetry
 from services.autopilot.mavlink.telemetry.health import health
 from services.autopilot.mavlink.telemetry.traffic import traffic
@@ -22,23 +22,23 @@ from uvf.runtime.messages.plan_ids import fence_id, rally_id
 
 RANGE_ERROR = 1.0  # m, 1 sigma of the distance to one satellite
 Message = mav.MAVLink_message | None
-Build = Callable[[Facts, Latest, float], Message | list[mav.MAVLink_message]]
+Build = Callable[[VehicleInfo, VehicleState, float], Message | list[mav.MAVLink_message]]
 
 
 @dataclass(frozen=True)
-class Stream:
+class TelemetryStream:
     """hz: default rate [1/s, wall]; 0 = only when asked for."""
 
     build: Build
     hz: float
 
-    def messages(self, facts: Facts, latest: Latest, t: float) -> list[mav.MAVLink_message]:
+    def messages(self, facts: VehicleInfo, latest: VehicleState, t: float) -> list[mav.MAVLink_message]:
         """What there is to say at ``t`` [s]: none, one, or several."""
         told = self.build(facts, latest, t)
         return told if isinstance(told, list) else [told] if told is not None else []
 
 
-def _sys_status(facts: Facts, latest: Latest, t: float) -> Message:
+def _sys_status(facts: VehicleInfo, latest: VehicleState, t: float) -> Message:
     bits = health(facts, latest)
     battery = latest.battery
     volts = whole(battery.voltage * 1e3, U16, 0xFFFF) if battery else 0xFFFF
@@ -47,7 +47,7 @@ def _sys_status(facts: Facts, latest: Latest, t: float) -> Message:
     return mav.MAVLink_sys_status_message(bits.present, bits.present, bits.healthy, 0, volts, amperes, left, 0, 0, 0, 0, 0, 0)
 
 
-def _battery_status(facts: Facts, latest: Latest, t: float) -> Message:
+def _battery_status(facts: VehicleInfo, latest: VehicleState, t: float) -> Message:
     battery = latest.battery
     if battery is None:
         return None
@@ -77,7 +77,7 @@ def charge_state(remaining: float, own: Mapping[str, float]) -> int:
     return int(mav.MAV_BATTERY_CHARGE_STATE_LOW if remaining < own["battery_low"] else mav.MAV_BATTERY_CHARGE_STATE_OK)
 
 
-def _gps_raw(facts: Facts, latest: Latest, t: float) -> Message:
+def _gps_raw(facts: VehicleInfo, latest: VehicleState, t: float) -> Message:
     """Only vehicles with a receiver have one to report; one that has fallen silent has no fix.
 
     Dilutions of precision follow from the accuracy: without them QGroundControl shows no count of satellites either.
@@ -108,7 +108,7 @@ def _dilution(accuracy: float) -> int:
     return whole(accuracy / RANGE_ERROR * 100, (0, 0xFFFE), 0xFFFF)
 
 
-def _home_position(facts: Facts, latest: Latest, t: float) -> Message:
+def _home_position(facts: VehicleInfo, latest: VehicleState, t: float) -> Message:
     home = latest.home
     if home is None or not np.isfinite(home).all():
         return None
@@ -125,7 +125,7 @@ def _home_position(facts: Facts, latest: Latest, t: float) -> Message:
     )
 
 
-def landed_state(facts: Facts, latest: Latest) -> int:
+def landed_state(facts: VehicleInfo, latest: VehicleState) -> int:
     """MAV_LANDED_STATE. An armed rover counts as in the air, as PX4's does: else no ground station lets it be guided."""
     status = latest.status
     if status is None:
@@ -138,7 +138,7 @@ def landed_state(facts: Facts, latest: Latest) -> int:
     return int(special.get(status.mode, _of_item(latest) if status.mode == Mode.MODE_MISSION else mav.MAV_LANDED_STATE_IN_AIR))
 
 
-def _of_item(latest: Latest) -> int:
+def _of_item(latest: VehicleState) -> int:
     """A mission takes off and lands by its items; ground stations offer to abort a landing while they see one."""
     status, mission = latest.status, latest.mission
     if status is None or mission is None or status.waypoint >= len(mission.items):
@@ -147,11 +147,11 @@ def _of_item(latest: Latest) -> int:
     return int(special.get(mission.items[status.waypoint].kind, mav.MAV_LANDED_STATE_IN_AIR))
 
 
-def _extended_sys_state(facts: Facts, latest: Latest, t: float) -> Message:
+def _extended_sys_state(facts: VehicleInfo, latest: VehicleState, t: float) -> Message:
     return mav.MAVLink_extended_sys_state_message(mav.MAV_VTOL_STATE_UNDEFINED, landed_state(facts, latest))
 
 
-def mission_current(latest: Latest, seq: int | None = None) -> mav.MAVLink_mission_current_message:
+def mission_current(latest: VehicleState, seq: int | None = None) -> mav.MAVLink_mission_current_message:
     """``seq``: an item just set, ahead of the autopilot's next report."""
     progress = latest.progress
     ids = fence_id(latest.fence), rally_id(latest.rally)
@@ -163,7 +163,7 @@ def mission_current(latest: Latest, seq: int | None = None) -> mav.MAVLink_missi
     return mav.MAVLink_mission_current_message(item, min(progress.total, 0xFFFE), state, 1 if flying else 2, progress.mission_id, *ids)
 
 
-def _fence_status(facts: Facts, latest: Latest, t: float) -> Message:
+def _fence_status(facts: VehicleInfo, latest: VehicleState, t: float) -> Message:
     """Only while there is a fence. Breach has the numbers of FENCE_BREACH."""
     status = latest.status
     if status is None or not latest.is_fenced:
@@ -174,7 +174,7 @@ def _fence_status(facts: Facts, latest: Latest, t: float) -> Message:
     return mav.MAVLink_fence_status_message(breached, min(status.breaches, 0xFFFF), status.breach, time, mav.FENCE_MITIGATE_UNKNOWN)
 
 
-def _quaternion(facts: Facts, latest: Latest, t: float) -> Message:
+def _quaternion(facts: VehicleInfo, latest: VehicleState, t: float) -> Message:
     if latest.nav is None:
         return None
     w, x, y, z = navigation.ned_from_frd(wxyz(latest.nav.orientation))
@@ -182,36 +182,36 @@ def _quaternion(facts: Facts, latest: Latest, t: float) -> Message:
     return mav.MAVLink_attitude_quaternion_message(navigation.boot_ms(t), w, x, y, z, roll, pitch, yaw)
 
 
-STREAMS: dict[int, Stream] = {
-    mav.MAVLINK_MSG_ID_HEARTBEAT: Stream(lambda f, n, t: identity.heartbeat(f, n), 1),
-    mav.MAVLINK_MSG_ID_SYS_STATUS: Stream(_sys_status, 1),
-    mav.MAVLINK_MSG_ID_SYSTEM_TIME: Stream(navigation.system_time, 1),
-    mav.MAVLINK_MSG_ID_GPS_RAW_INT: Stream(_gps_raw, 5),
-    mav.MAVLINK_MSG_ID_ATTITUDE: Stream(navigation.attitude, 20),
-    mav.MAVLINK_MSG_ID_ATTITUDE_QUATERNION: Stream(_quaternion, 20),
-    mav.MAVLINK_MSG_ID_LOCAL_POSITION_NED: Stream(navigation.local_position, 5),
-    mav.MAVLINK_MSG_ID_GLOBAL_POSITION_INT: Stream(navigation.global_position, 10),
-    mav.MAVLINK_MSG_ID_FENCE_STATUS: Stream(_fence_status, 1),
-    mav.MAVLINK_MSG_ID_MISSION_CURRENT: Stream(lambda f, n, t: mission_current(n) if n.progress is not None else None, 1),
-    mav.MAVLINK_MSG_ID_NAV_CONTROLLER_OUTPUT: Stream(steering.controller_output, 3),
-    mav.MAVLINK_MSG_ID_VFR_HUD: Stream(navigation.hud, 10),
-    mav.MAVLINK_MSG_ID_ALTITUDE: Stream(navigation.altitude, 5),
-    mav.MAVLINK_MSG_ID_BATTERY_STATUS: Stream(_battery_status, 1),
-    mav.MAVLINK_MSG_ID_ESTIMATOR_STATUS: Stream(estimate_quality.estimator_status, 1),
-    mav.MAVLINK_MSG_ID_WIND_COV: Stream(estimate_quality.wind, 1),
-    mav.MAVLINK_MSG_ID_SERVO_OUTPUT_RAW: Stream(sensor_messages.servo_output, 4),
-    mav.MAVLINK_MSG_ID_HIGHRES_IMU: Stream(sensor_messages.highres_imu, 5),
-    mav.MAVLINK_MSG_ID_SCALED_PRESSURE: Stream(sensor_messages.scaled_pressure, 1),
-    mav.MAVLINK_MSG_ID_VIBRATION: Stream(sensor_messages.vibration, 1),
-    mav.MAVLINK_MSG_ID_ATTITUDE_TARGET: Stream(steering.attitude_target, 5),
-    mav.MAVLINK_MSG_ID_POSITION_TARGET_GLOBAL_INT: Stream(steering.position_target, 2),
-    mav.MAVLINK_MSG_ID_ADSB_VEHICLE: Stream(traffic, 1),
-    mav.MAVLINK_MSG_ID_HOME_POSITION: Stream(_home_position, 0.5),
-    mav.MAVLINK_MSG_ID_EXTENDED_SYS_STATE: Stream(_extended_sys_state, 1),
-    mav.MAVLINK_MSG_ID_CURRENT_MODE: Stream(lambda f, n, t: identity.current_mode(n), 0.5),
-    mav.MAVLINK_MSG_ID_ORBIT_EXECUTION_STATUS: Stream(steering_telemetry.orbit_status, 2),
-    mav.MAVLINK_MSG_ID_RC_CHANNELS: Stream(steering_telemetry.rc_channels, 2),
-    mav.MAVLINK_MSG_ID_GPS_GLOBAL_ORIGIN: Stream(navigation.global_origin, 0),
-    mav.MAVLINK_MSG_ID_AUTOPILOT_VERSION: Stream(lambda f, n, t: identity.autopilot_version(f), 0),
-    mav.MAVLINK_MSG_ID_PROTOCOL_VERSION: Stream(lambda f, n, t: identity.protocol_version(), 0),
+STREAMS: dict[int, TelemetryStream] = {
+    mav.MAVLINK_MSG_ID_HEARTBEAT: TelemetryStream(lambda f, n, t: identity.heartbeat(f, n), 1),
+    mav.MAVLINK_MSG_ID_SYS_STATUS: TelemetryStream(_sys_status, 1),
+    mav.MAVLINK_MSG_ID_SYSTEM_TIME: TelemetryStream(navigation.system_time, 1),
+    mav.MAVLINK_MSG_ID_GPS_RAW_INT: TelemetryStream(_gps_raw, 5),
+    mav.MAVLINK_MSG_ID_ATTITUDE: TelemetryStream(navigation.attitude, 20),
+    mav.MAVLINK_MSG_ID_ATTITUDE_QUATERNION: TelemetryStream(_quaternion, 20),
+    mav.MAVLINK_MSG_ID_LOCAL_POSITION_NED: TelemetryStream(navigation.local_position, 5),
+    mav.MAVLINK_MSG_ID_GLOBAL_POSITION_INT: TelemetryStream(navigation.global_position, 10),
+    mav.MAVLINK_MSG_ID_FENCE_STATUS: TelemetryStream(_fence_status, 1),
+    mav.MAVLINK_MSG_ID_MISSION_CURRENT: TelemetryStream(lambda f, n, t: mission_current(n) if n.progress is not None else None, 1),
+    mav.MAVLINK_MSG_ID_NAV_CONTROLLER_OUTPUT: TelemetryStream(steering.controller_output, 3),
+    mav.MAVLINK_MSG_ID_VFR_HUD: TelemetryStream(navigation.hud, 10),
+    mav.MAVLINK_MSG_ID_ALTITUDE: TelemetryStream(navigation.altitude, 5),
+    mav.MAVLINK_MSG_ID_BATTERY_STATUS: TelemetryStream(_battery_status, 1),
+    mav.MAVLINK_MSG_ID_ESTIMATOR_STATUS: TelemetryStream(estimate_quality.estimator_status, 1),
+    mav.MAVLINK_MSG_ID_WIND_COV: TelemetryStream(estimate_quality.wind, 1),
+    mav.MAVLINK_MSG_ID_SERVO_OUTPUT_RAW: TelemetryStream(sensor_messages.servo_output, 4),
+    mav.MAVLINK_MSG_ID_HIGHRES_IMU: TelemetryStream(sensor_messages.highres_imu, 5),
+    mav.MAVLINK_MSG_ID_SCALED_PRESSURE: TelemetryStream(sensor_messages.scaled_pressure, 1),
+    mav.MAVLINK_MSG_ID_VIBRATION: TelemetryStream(sensor_messages.vibration, 1),
+    mav.MAVLINK_MSG_ID_ATTITUDE_TARGET: TelemetryStream(steering.attitude_target, 5),
+    mav.MAVLINK_MSG_ID_POSITION_TARGET_GLOBAL_INT: TelemetryStream(steering.position_target, 2),
+    mav.MAVLINK_MSG_ID_ADSB_VEHICLE: TelemetryStream(traffic, 1),
+    mav.MAVLINK_MSG_ID_HOME_POSITION: TelemetryStream(_home_position, 0.5),
+    mav.MAVLINK_MSG_ID_EXTENDED_SYS_STATE: TelemetryStream(_extended_sys_state, 1),
+    mav.MAVLINK_MSG_ID_CURRENT_MODE: TelemetryStream(lambda f, n, t: identity.current_mode(n), 0.5),
+    mav.MAVLINK_MSG_ID_ORBIT_EXECUTION_STATUS: TelemetryStream(steering_telemetry.orbit_status, 2),
+    mav.MAVLINK_MSG_ID_RC_CHANNELS: TelemetryStream(steering_telemetry.rc_channels, 2),
+    mav.MAVLINK_MSG_ID_GPS_GLOBAL_ORIGIN: TelemetryStream(navigation.global_origin, 0),
+    mav.MAVLINK_MSG_ID_AUTOPILOT_VERSION: TelemetryStream(lambda f, n, t: identity.autopilot_version(f), 0),
+    mav.MAVLINK_MSG_ID_PROTOCOL_VERSION: TelemetryStream(lambda f, n, t: identity.protocol_version(), 0),
 }

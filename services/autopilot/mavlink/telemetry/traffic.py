@@ -6,7 +6,7 @@ import re
 
 import numpy as np
 
-from services.autopilot.mavlink.connection.facts import Facts, Latest
+from services.autopilot.mavlink.connection.facts import VehicleInfo, VehicleState
 from uvf.mavlink import dialect as mav
 from uvf.mavlink.scaling import I16, I32, U16, compass, heading_degrees, whole
 from uvf.runtime.messages.convert import array, yaw_of
@@ -24,12 +24,12 @@ FLAGS = (
 )
 
 
-def traffic(facts: Facts, latest: Latest, t: float) -> list[mav.MAVLink_message]:
+def traffic(facts: VehicleInfo, latest: VehicleState, t: float) -> list[mav.MAVLink_message]:
     """Where each of the others believes to be; one that has fallen silent is no longer seen."""
     return [one for other, known in latest.others if (one := seen(other, known)) is not None]
 
 
-def seen(facts: Facts, latest: Latest) -> mav.MAVLink_adsb_vehicle_message | None:
+def seen(facts: VehicleInfo, latest: VehicleState) -> mav.MAVLink_adsb_vehicle_message | None:
     nav = latest.nav
     if nav is None or latest.is_silent or not np.isfinite([*array(nav.position), *array(nav.velocity)]).all():
         return None
@@ -54,12 +54,12 @@ def seen(facts: Facts, latest: Latest) -> mav.MAVLink_adsb_vehicle_message | Non
     )
 
 
-def address(facts: Facts) -> int:
+def address(facts: VehicleInfo) -> int:
     """24 bits, one a vehicle: its system id in the last byte keeps those of a mission apart."""
     return int.from_bytes(hashlib.sha256(facts.name.encode()).digest()[:2], "big") << 8 | facts.system_id
 
 
-def callsign(facts: Facts) -> str:
+def callsign(facts: VehicleInfo) -> str:
     """Letters and digits of the name; of a long one the beginning and the system id."""
     name = re.sub("[^A-Z0-9]", "", facts.name.upper())
     number = str(facts.system_id)

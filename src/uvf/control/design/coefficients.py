@@ -9,7 +9,7 @@ from uvf.maths.atmosphere import RHO0
 
 
 @dataclass(frozen=True)
-class Airframe:
+class AirframeCoefficients:
     """Mass, geometry, and derivatives of the coefficients per rad; rates are made dimensionless with c / 2V or b / 2V."""
 
     mass: float  # kg
@@ -29,7 +29,7 @@ class Airframe:
     pitch_flap: float = 0.0
 
 
-def gains(frame: Airframe, airspeed: float) -> dict[str, float]:
+def gains(frame: AirframeCoefficients, airspeed: float) -> dict[str, float]:
     """Parameter name -> value at ``airspeed`` [m/s].
 
     The elevator that balances alpha solves C_m = 0, and its lift counts as lift of the wing; the feed-forward of a rate is

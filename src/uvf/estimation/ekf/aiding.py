@@ -10,7 +10,7 @@ from uvf.estimation.ekf.datasheet import Datasheet
 from uvf.estimation.ekf.delay import Delay
 from uvf.estimation.ekf.filter import Filter, Observation
 from uvf.estimation.ekf.gates import Every, Gate
-from uvf.estimation.ekf.gusts import Gusts
+from uvf.estimation.ekf.gusts import GustEstimate
 from uvf.estimation.ekf.states import (
     BARO,
     DRIFT,
@@ -23,7 +23,7 @@ from uvf.estimation.ekf.states import (
     YAW,
     Floats,
 )
-from uvf.estimation.sensor_inputs import Fix, Inertial, Pressures
+from uvf.estimation.sensor_inputs import GnssFix, InertialSample, Pressures
 from uvf.estimation.state import Ratios
 from uvf.maths import atmosphere
 
@@ -50,7 +50,7 @@ class Aiding:
         self._sheet = sheet
         self._earth = earth
         self.delay = Delay()
-        self.gusts = Gusts()
+        self.gusts = GustEstimate()
         self._position, self._velocity = Gate(3.0), Gate(3.0)
         self._depth, self._height = Gate(3.0), Gate(5.0)
         self._airspeed, self._slip, self._field = Gate(10.0), Gate(10.0), Gate(10.0)
@@ -64,7 +64,7 @@ class Aiding:
         height = max(self._depth.ratio, self._height.ratio)
         return Ratios(self._position.ratio, self._velocity.ratio, height, self._airspeed.ratio, self._slip.ratio, self._field.ratio)
 
-    def fix(self, fix: Fix, acceleration: Floats, t: float, lag: float) -> None:
+    def fix(self, fix: GnssFix, acceleration: Floats, t: float, lag: float) -> None:
         """A satellite fix, valid ``lag`` [s] before ``t``; acceleration: (3,) m/s^2, NED."""
         sheet, state = self._sheet, self.filter.state
         v, p = self.delay.at(t - lag)
@@ -79,7 +79,7 @@ class Aiding:
         if self._depth.exhausted(self._apply(deep), SEVERAL * 2) or lost:
             self._begin_at(place + lag * speed, speed, fix, t)
 
-    def _begin_at(self, place: Floats, speed: Floats, fix: Fix, t: float) -> None:
+    def _begin_at(self, place: Floats, speed: Floats, fix: GnssFix, t: float) -> None:
         """Satellites have contradicted the state for long: it is theirs from now on."""
         x = self.filter.state.x
         x[POSITION], x[VELOCITY], x[DRIFT] = place, speed, 0.0
@@ -133,7 +133,7 @@ class Aiding:
     def _lose_wind(self) -> None:
         self._wind_met = False
 
-    def field(self, sample: Inertial, t: float) -> None:
+    def field(self, sample: InertialSample, t: float) -> None:
         """A magnetometer that is slower than the gyroscopes repeats itself: the same reading counts once a second."""
         if not (any(sample.field) and self._earth.any()) or not self._field_due.due(t):
             return

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from uvf.estimation.ekf.states import Attitude, Floats
+from uvf.estimation.ekf.states import Floats, NominalAttitude
 
 
 def levelled(force: Floats) -> tuple[float, float]:
@@ -20,11 +20,11 @@ def heading(field: Floats, earth: Floats, roll: float, pitch: float) -> float:
     return math.atan2(z * sr - y * cr, x * cp + (y * sr + z * cr) * sp) + math.atan2(earth[1], earth[0])
 
 
-def attitude(roll: float, pitch: float, yaw: float) -> Attitude:
+def attitude(roll: float, pitch: float, yaw: float) -> NominalAttitude:
     """Yaw about down, then pitch, then roll."""
-    about_z = Attitude(math.cos(yaw / 2), 0.0, 0.0, math.sin(yaw / 2))
-    about_y = Attitude(math.cos(pitch / 2), 0.0, math.sin(pitch / 2), 0.0)
-    return about_z.times(about_y).times(Attitude(math.cos(roll / 2), math.sin(roll / 2), 0.0, 0.0))
+    about_z = NominalAttitude(math.cos(yaw / 2), 0.0, 0.0, math.sin(yaw / 2))
+    about_y = NominalAttitude(math.cos(pitch / 2), 0.0, math.sin(pitch / 2), 0.0)
+    return about_z.times(about_y).times(NominalAttitude(math.cos(roll / 2), math.sin(roll / 2), 0.0, 0.0))
 
 
 def points(earth: Floats) -> bool:

@@ -26,11 +26,11 @@ from uvf.estimation.ekf.states import (
     VELOCITY,
     WIND,
     YAW,
-    Attitude,
+    FilterState,
     Floats,
-    State,
+    NominalAttitude,
 )
-from uvf.estimation.sensor_inputs import Fix, Inertial, Sensed, Triple
+from uvf.estimation.sensor_inputs import GnssFix, InertialSample, Sensed, Triple
 from uvf.estimation.state import Estimate
 from uvf.maths.filters import LowPass
 from uvf.maths.geodesy import GRAVITY
@@ -72,7 +72,7 @@ class FullEstimator:
         self._speed = 0.0  # m/s over ground, of the newest fix
         self._acceleration: Floats = np.zeros(3)  # m/s^2, NED
         self._height = 0.0  # m, the last one known
-        self.unfixed = 0.0
+        self.gnss_age = 0.0
         """s since the last fix."""
 
     def begin_at(self, roll: float, pitch: float, yaw: float) -> None:
@@ -96,8 +96,8 @@ class FullEstimator:
     def step(self, sensed: Sensed, params: AirParams, dt: float) -> Estimate:
         """One cycle, ``dt`` [s] after the one before."""
         self._t += dt
-        fix, unfixed = sensed.fix, self.unfixed + dt
-        self.unfixed = 0.0 if fix is not None else unfixed
+        fix, gnss_age = sensed.fix, self.gnss_age + dt
+        self.gnss_age = 0.0 if fix is not None else gnss_age
         self._air.take(sensed.pressures, self._t, dt)
         aiding = self._aiding
         if aiding is None:
@@ -107,15 +107,15 @@ class FullEstimator:
         self._correct(aiding, sensed, params, dt)
         if fix is not None:
             self._speed = math.hypot(fix.v_north, fix.v_east)
-            self._take_fix(aiding, fix, unfixed)
+            self._take_fix(aiding, fix, gnss_age)
         return self._estimate(aiding, params, dt)
 
     # beginning
 
-    def _start(self, samples: list[Inertial], fix: Fix, params: AirParams) -> Aiding:
-        first = samples[-1] if samples else Inertial((0.0, 0.0, 0.0), (0.0, 0.0, -float(FALL[2])), (0.0, 0.0, 0.0))
+    def _start(self, samples: list[InertialSample], fix: GnssFix, params: AirParams) -> Aiding:
+        first = samples[-1] if samples else InertialSample((0.0, 0.0, 0.0), (0.0, 0.0, -float(FALL[2])), (0.0, 0.0, 0.0))
         lies, tilt, yaw = self._first_attitude(first, fix)
-        state, sheet = State(lies), self._sheet
+        state, sheet = FilterState(lies), self._sheet
         state.x[POSITION] = fix.north + fix.age * fix.v_north, fix.east + fix.age * fix.v_east, -fix.height - fix.age * fix.v_up
         state.x[VELOCITY] = fix.v_north, fix.v_east, -fix.v_up
         sigma = np.zeros(SIZE)
@@ -131,7 +131,7 @@ class FullEstimator:
         aiding.delay.keep(self._sampled, state.x)
         return aiding
 
-    def _first_attitude(self, sample: Inertial, fix: Fix) -> tuple[Attitude, float, float]:
+    def _first_attitude(self, sample: InertialSample, fix: GnssFix) -> tuple[NominalAttitude, float, float]:
         """And the sigmas of tilt and yaw [rad]."""
         speed = math.hypot(fix.v_north, fix.v_east)
         if self._left is not None:
@@ -146,7 +146,7 @@ class FullEstimator:
 
     # each cycle
 
-    def _feel(self, aiding: Aiding, samples: list[Inertial]) -> None:
+    def _feel(self, aiding: Aiding, samples: list[InertialSample]) -> None:
         """The IMU's samples since the last cycle."""
         if not samples:
             return
@@ -176,7 +176,7 @@ class FullEstimator:
     def _fastest(self, aiding: Aiding) -> float:
         """m/s: of the state, of the newest fix if that is not long ago."""
         known = float(np.linalg.norm(aiding.filter.state.x[VELOCITY]))
-        return max(known, self._speed) if self.unfixed < RECKONING_AFTER else known
+        return max(known, self._speed) if self.gnss_age < RECKONING_AFTER else known
 
     def _gain(self, aiding: Aiding, dt: float) -> Floats:
         """(25,) variance of ``dt`` [s]."""
@@ -213,7 +213,7 @@ class FullEstimator:
                 aiding.airspeed(pressures, air.density, dt)
         if flies:
             aiding.slip(t)
-            if pressures is None and self.unfixed > RECKONING_AFTER:
+            if pressures is None and self.gnss_age > RECKONING_AFTER:
                 aiding.suppose(params.trim_airspeed, t)
 
     def _flies(self, aiding: Aiding, params: AirParams) -> bool:
@@ -227,11 +227,11 @@ class FullEstimator:
     def _through_air(aiding: Aiding) -> float:
         return float(np.linalg.norm(aiding.filter.state.through_air))
 
-    def _take_fix(self, aiding: Aiding, fix: Fix, unfixed: float) -> None:
+    def _take_fix(self, aiding: Aiding, fix: GnssFix, gnss_age: float) -> None:
         x = aiding.filter.state.x
         before = x[POSITION].copy()
         aiding.fix(fix, self._acceleration, self._sampled, max(fix.age - (self._t - self._sampled), 0.0))
-        self._handover.take(before - x[POSITION], unfixed)
+        self._handover.take(before - x[POSITION], gnss_age)
 
     # handing over
 
@@ -244,7 +244,7 @@ class FullEstimator:
         bias = x[GYRO_BIAS].tolist()
         p, q, r = ((g.value or 0.0) - b for g, b in zip(self._gyros, bias, strict=True))
         roll, pitch, yaw = self._ahead(aiding, (p, q, r), age)
-        is_fixed = self.unfixed < RECKONING_AFTER
+        is_fixed = self.gnss_age < RECKONING_AFTER
         height_known = is_fixed or self._air.pressures is not None
         if height_known:
             self._height = -down
@@ -282,7 +282,7 @@ class FullEstimator:
     def _airspeed(self, aiding: Aiding, params: AirParams) -> float:
         if self._air.pressures is not None:
             return self._air.airspeed(float(aiding.filter.state.x[PITOT]))
-        return self._through_air(aiding) if self.unfixed < RECKONING_AFTER else params.trim_airspeed
+        return self._through_air(aiding) if self.gnss_age < RECKONING_AFTER else params.trim_airspeed
 
     @staticmethod
     def _ahead(aiding: Aiding, rates: tuple[float, float, float], age: float) -> tuple[float, float, float]:

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from uvf.estimation.ekf.states import PITOT, SIZE, Floats, State
+from uvf.estimation.ekf.states import PITOT, SIZE, FilterState, Floats
 
 GATE = 5.0  # sigmas
 CONSIDERED = PITOT
@@ -24,7 +24,7 @@ class Observation:
 class Filter:
     """State and covariance (25, 25) together."""
 
-    def __init__(self, state: State, sigma: Floats) -> None:
+    def __init__(self, state: FilterState, sigma: Floats) -> None:
         """sigma: (25,)."""
         self.state = state
         self.p: Floats = np.diag(sigma**2)

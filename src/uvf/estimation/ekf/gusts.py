@@ -11,7 +11,7 @@ WINDOW = 1.0  # s
 FIRST, LEAST = 0.3, 0.05  # m/s/sqrt(s)
 
 
-class Gusts:
+class GustEstimate:
     """walk: m/s/sqrt(s), of the wind's components."""
 
     def __init__(self) -> None:

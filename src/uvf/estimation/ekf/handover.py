@@ -24,9 +24,9 @@ class Handover:
         """m, horizontally."""
         return math.hypot(self._back[0], self._back[1])
 
-    def take(self, back: Floats, unfixed: float) -> None:
+    def take(self, back: Floats, gnss_age: float) -> None:
         """back: (3,) m, from the new position to the one before; unfixed: s without a fix until this one."""
-        if unfixed > LOST:
+        if gnss_age > LOST:
             self._settling = SETTLES
         if self._settling > 0.0 and math.hypot(back[0], back[1]) < FARTHEST:
             self._back = self._back + back

@@ -16,8 +16,8 @@ from uvf.estimation.ekf.states import (
     SIZE,
     TILT,
     VELOCITY,
+    FilterState,
     Floats,
-    State,
     cross_matrix,
     turned,
 )
@@ -38,7 +38,7 @@ class Mechanisation:
     force: Floats
     missed: Floats = field(default_factory=lambda: np.zeros(SIZE))
 
-    def step(self, state: State, rates: Floats, force: Floats, dt: float) -> Floats:
+    def step(self, state: FilterState, rates: Floats, force: Floats, dt: float) -> Floats:
         """Moves the state on by ``dt`` [s] to the new readings; returns the mean acceleration (3,) m/s^2, NED, gravity included."""
         x = state.x
         turn = (0.5 * dt) * (self.rates + rates) - dt * x[GYRO_BIAS]
@@ -61,7 +61,7 @@ class Mechanisation:
         return missed
 
 
-def transition(state: State, acceleration: Floats, drift_time: float, dt: float) -> Floats:
+def transition(state: FilterState, acceleration: Floats, drift_time: float, dt: float) -> Floats:
     """(25, 25): errors after ``dt`` [s] from those before; acceleration: (3,) m/s^2, NED, of the motion;
     drift_time: s, of the satellites' drift."""
     f = np.eye(SIZE)

@@ -18,8 +18,8 @@ from uvf.estimation.ekf.states import (
     TILT,
     VELOCITY,
     WIND,
+    FilterState,
     Floats,
-    State,
     cross_matrix,
 )
 
@@ -44,7 +44,7 @@ def depth(residual: float, lag: float, sigma: float) -> Observation:
     return _scalar(residual, h, sigma**2)
 
 
-def velocity(residual: Floats, state: State, acceleration: Floats, lag: float, sigma: float) -> Observation:
+def velocity(residual: Floats, state: FilterState, acceleration: Floats, lag: float, sigma: float) -> Observation:
     """Satellite velocity. residual: (3,) m/s; an error of tilt has meanwhile changed that of velocity."""
     h = np.zeros((3, SIZE))
     h[:, VELOCITY] = np.eye(3)
@@ -60,7 +60,7 @@ def height(residual: float, lag: float, sigma: float) -> Observation:
     return _scalar(residual, h, sigma**2)
 
 
-def _airspeed_row(state: State) -> tuple[float, Floats]:
+def _airspeed_row(state: FilterState) -> tuple[float, Floats]:
     """m/s, and how it changes."""
     through = state.through_air
     speed = max(math.sqrt(float(through @ through)), 0.1)
@@ -70,7 +70,7 @@ def _airspeed_row(state: State) -> tuple[float, Floats]:
     return speed, h
 
 
-def pitot(state: State, pressure: float, density: float, variance: float) -> Observation:
+def pitot(state: FilterState, pressure: float, density: float, variance: float) -> Observation:
     """Differential pressure [Pa] of air of ``density`` [kg/m^3]: half rho V squared and the sensor's bias."""
     speed, h = _airspeed_row(state)
     h *= density * speed
@@ -78,20 +78,20 @@ def pitot(state: State, pressure: float, density: float, variance: float) -> Obs
     return _scalar(pressure - 0.5 * density * speed**2 - state.x[PITOT], h, variance)
 
 
-def airspeed(state: State, speed: float, sigma: float) -> Observation:
+def airspeed(state: FilterState, speed: float, sigma: float) -> Observation:
     """True airspeed [m/s]."""
     known, h = _airspeed_row(state)
     return _scalar(speed - known, h, sigma**2)
 
 
-def climb(state: State, rate: float, sigma: float) -> Observation:
+def climb(state: FilterState, rate: float, sigma: float) -> Observation:
     """m/s, up."""
     h = np.zeros(SIZE)
     h[5] = -1.0
     return _scalar(rate + float(state.x[5]), h, sigma**2)
 
 
-def slip(state: State, aside: float, sigma: float) -> Observation:
+def slip(state: FilterState, aside: float, sigma: float) -> Observation:
     """The flow along the body's right axis [m/s]: ``aside`` where the flight is coordinated."""
     through = state.through_air
     right = state.rotation[:, 1]
@@ -102,7 +102,7 @@ def slip(state: State, aside: float, sigma: float) -> Observation:
     return _scalar(aside - float(right @ through), h, sigma**2)
 
 
-def field(state: State, read: Floats, earth: Floats, sigma: float) -> Observation:
+def field(state: FilterState, read: Floats, earth: Floats, sigma: float) -> Observation:
     """The magnetic field (3,), FRD; ``earth``: (3,), NED; both in units of the filter."""
     h = np.zeros((3, SIZE))
     h[:, TILT] = state.rotation.T @ cross_matrix(earth)
@@ -110,14 +110,14 @@ def field(state: State, read: Floats, earth: Floats, sigma: float) -> Observatio
     return Observation(read - state.rotation.T @ earth - state.x[IRON], h, np.full(3, sigma**2))
 
 
-def rest(state: State, sigma: float) -> Observation:
+def rest(state: FilterState, sigma: float) -> Observation:
     """It stands: no velocity."""
     h = np.zeros((3, SIZE))
     h[:, VELOCITY] = np.eye(3)
     return Observation(-state.x[VELOCITY], h, np.full(3, sigma**2))
 
 
-def no_turning(state: State, rates: Floats, sigma: float) -> Observation:
+def no_turning(state: FilterState, rates: Floats, sigma: float) -> Observation:
     """It does not turn: the gyroscopes (3,) [rad/s] read their bias."""
     h = np.zeros((3, SIZE))
     h[:, GYRO_BIAS] = np.eye(3)

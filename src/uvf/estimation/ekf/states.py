@@ -30,7 +30,7 @@ MAGNETIC = 1e-6
 """T in a unit of the filter's magnetic states: in tesla their variances would be near the rounding of the others."""
 
 
-class Attitude(NamedTuple):
+class NominalAttitude(NamedTuple):
     """Unit quaternion ned_from_frd (Hamilton)."""
 
     w: float
@@ -38,14 +38,14 @@ class Attitude(NamedTuple):
     y: float
     z: float
 
-    def times(self, o: "Attitude") -> "Attitude":
+    def times(self, o: "NominalAttitude") -> "NominalAttitude":
         """a_from_b times b_from_c, of unit length again."""
         w = self.w * o.w - self.x * o.x - self.y * o.y - self.z * o.z
         x = self.w * o.x + self.x * o.w + self.y * o.z - self.z * o.y
         y = self.w * o.y - self.x * o.z + self.y * o.w + self.z * o.x
         z = self.w * o.z + self.x * o.y - self.y * o.x + self.z * o.w
         n = 1 / math.sqrt(w * w + x * x + y * y + z * z)
-        return Attitude(w * n, x * n, y * n, z * n)
+        return NominalAttitude(w * n, x * n, y * n, z * n)
 
     def matrix(self) -> Floats:
         """(3, 3)."""
@@ -65,12 +65,12 @@ class Attitude(NamedTuple):
         return math.atan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y)), pitch, math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
 
 
-def turned(vector: Floats) -> Attitude:
+def turned(vector: Floats) -> NominalAttitude:
     """The quaternion of a rotation vector (3,) [rad]."""
     x, y, z = vector.tolist()
     angle = math.sqrt(x * x + y * y + z * z)
     k = 0.5 - angle * angle / 48 if angle < 1e-3 else math.sin(angle / 2) / angle
-    return Attitude(math.cos(angle / 2), k * x, k * y, k * z)
+    return NominalAttitude(math.cos(angle / 2), k * x, k * y, k * z)
 
 
 def cross_matrix(v: Floats) -> Floats:
@@ -79,14 +79,14 @@ def cross_matrix(v: Floats) -> Floats:
     return np.array(((0.0, -z, y), (z, 0.0, -x), (-y, x, 0.0)))
 
 
-class State:
+class FilterState:
     """The best guess. ``x``: (25,) by the slices above, but for the attitude, which is ``attitude`` and ``rotation``."""
 
-    def __init__(self, attitude: Attitude) -> None:
+    def __init__(self, attitude: NominalAttitude) -> None:
         self.x: Floats = np.zeros(SIZE)
         self.turn_to(attitude)
 
-    def turn_to(self, attitude: Attitude) -> None:
+    def turn_to(self, attitude: NominalAttitude) -> None:
         self.attitude = attitude
         self.rotation = attitude.matrix()
         """(3, 3) ned_from_frd."""
@@ -96,8 +96,8 @@ class State:
         self.x[3:] += error[3:]
         self.turn_to(turned(error[TILT]).times(self.attitude))
 
-    def copy(self) -> "State":
-        twin = State(self.attitude)
+    def copy(self) -> "FilterState":
+        twin = FilterState(self.attitude)
         twin.x = self.x.copy()
         return twin
 

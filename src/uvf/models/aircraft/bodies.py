@@ -7,7 +7,7 @@ import numpy as np
 
 from uvf.models.aircraft.panels import Movable
 from uvf.models.jsbsim.sizes import Hull, Sizes, Thruster
-from uvf.models.shapes.mesh_parts import Colour, Part, box, lathe, rod
+from uvf.models.shapes.mesh_parts import Colour, MeshPart, box, lathe, rod
 from uvf.models.vehicle.looks import Looks
 from uvf.models.vehicle.sensors import Sensors
 
@@ -26,7 +26,7 @@ BALL, BALL_ABOVE = 0.05, 0.065  # m, radius of a gimbal's housing, and how far i
 BOOMS = ("twin_boom", "inverted_v")
 
 
-def fuselage_parts(looks: Looks, sizes: Sizes) -> list[Part]:
+def fuselage_parts(looks: Looks, sizes: Sizes) -> list[MeshPart]:
     """Body, canopy, booms, and the housings of engines that are not in it."""
     body, wing, tail = looks.fuselage, looks.wing, looks.tail
     on_booms = tail.kind in BOOMS
@@ -41,11 +41,11 @@ def fuselage_parts(looks: Looks, sizes: Sizes) -> list[Part]:
 
 def _turned(
     stations: Sequence[tuple[float, float]], length: float, radius: float, tail: Sequence[float], colour: Colour | None = None
-) -> Part:
+) -> MeshPart:
     return lathe(0, [(place * length, share * radius) for place, share in stations], tail, colour)
 
 
-def _housing(thruster: Thruster, width: float) -> Part:
+def _housing(thruster: Thruster, width: float) -> MeshPart:
     """Behind a propeller, about a jet."""
     x, y, z = thruster.place
     radius, length = (0.22 * thruster.radius, 1.4 * thruster.radius) if thruster.radius else (0.2 * width, 0.9 * width)
@@ -53,7 +53,7 @@ def _housing(thruster: Thruster, width: float) -> Part:
     return lathe(0, stations, (x, y, z), PLATE)
 
 
-def undercarriage(sizes: Sizes, width: float, above: float) -> list[Part]:
+def undercarriage(sizes: Sizes, width: float, above: float) -> list[MeshPart]:
     """A wheel and a leg at each contact; above: the height at which legs are fixed [m]."""
     parts = []
     for x, y, z in sizes.wheels:
@@ -82,11 +82,14 @@ def gondola(sizes: Sizes, hull: Hull) -> Gondola:
     )
 
 
-def airship(sizes: Sizes, hull: Hull, car: Gondola) -> list[Part]:
+def airship(sizes: Sizes, hull: Hull, car: Gondola) -> list[MeshPart]:
     """An ellipsoid, the gondola, engines on rods."""
     places = np.linspace(-1.0, 1.0, 17) * 0.99
     envelope = lathe(0, [(float(x * hull.radii[0]), float(np.sqrt(1 - x * x))) for x in places], (0.0, 0.0, 0.0))
-    parts = [Part(envelope.vertices * (1.0, hull.radii[1], hull.radii[2]) + hull.middle, envelope.faces), box(car.centre, car.size, PLATE)]
+    parts = [
+        MeshPart(envelope.vertices * (1.0, hull.radii[1], hull.radii[2]) + hull.middle, envelope.faces),
+        box(car.centre, car.size, PLATE),
+    ]
     for thruster in sizes.thrusters:
         parts += [rod(car.centre, thruster.place, 0.02 * hull.radii[1], PLATE), _housing(thruster, car.size[1])]
     return parts
@@ -100,7 +103,7 @@ def propeller(name: str, thruster: Thruster) -> Movable:
     return Movable(name, thruster.place, np.array((1.0, 0.0, 0.0)), [*blades, hub], spins=True)
 
 
-def payload(sensors: Sensors) -> list[Part]:
+def payload(sensors: Sensors) -> list[MeshPart]:
     """The housings of gimbal and lidar, where they are mounted."""
     parts = []
     if sensors.gimbal is not None:
@@ -110,6 +113,6 @@ def payload(sensors: Sensors) -> list[Part]:
     return parts
 
 
-def _ball(x: float, y: float, z: float) -> Part:
+def _ball(x: float, y: float, z: float) -> MeshPart:
     ring = [(BALL * float(np.sin(a)), BALL * float(np.cos(a))) for a in np.linspace(-1.45, 1.45, 9)]
     return lathe(2, ring, (x, y, z + BALL_ABOVE), GLASS)

@@ -8,7 +8,7 @@ import msgspec
 import numpy as np
 
 from uvf.models.jsbsim.sizes import Hull
-from uvf.models.shapes.mesh_parts import Colour, Floats, Part, Point, plate
+from uvf.models.shapes.mesh_parts import Colour, Floats, MeshPart, Point, plate
 from uvf.models.vehicle.looks import Looks, Tail
 
 WING_HINGE, TAIL_HINGE = 0.75, 0.65  # of the chord, where surfaces begin
@@ -32,11 +32,11 @@ class Movable:
     name: str
     origin: Floats
     axis: Floats
-    parts: list[Part]
+    parts: list[MeshPart]
     spins: bool = False
 
 
-class Surface(NamedTuple):
+class PanelSurface(NamedTuple):
     """From ``start`` to ``end`` of the way from root to tip; a positive angle moves its trailing edge that ``way``."""
 
     name: str
@@ -53,10 +53,10 @@ class Panel:
     tip: Point
     root_chord: float
     tip_chord: float
-    surfaces: Sequence[Surface]
+    surfaces: Sequence[PanelSurface]
     hinge: float = TAIL_HINGE
 
-    def fixed(self) -> list[Part]:
+    def fixed(self) -> list[MeshPart]:
         """What does not move: all before the hinge line, and behind it what lies between the surfaces."""
         edges = [0.0, *(edge for surface in self.surfaces for edge in (surface.start, surface.end)), 1.0]
         behind = [(a, b) for a, b in zip(edges[::2], edges[1::2], strict=True) if b - a > GAP]
@@ -78,7 +78,7 @@ class Panel:
         x, y, z = (a + along * (b - a) for a, b in zip(self.root, self.tip, strict=True))
         return x - chord * (self.root_chord + along * (self.tip_chord - self.root_chord)), y, z
 
-    def _hinged(self, surface: Surface) -> Movable:
+    def _hinged(self, surface: PanelSurface) -> Movable:
         outline = self._strip((surface.start, surface.end), (self.hinge + GAP, 1.0))
         origin = np.array(outline[0])
         axis = np.subtract(outline[1], outline[0])
@@ -96,7 +96,7 @@ def wing_panels(looks: Looks) -> list[Panel]:
             (wing.x - wing.sweep, side * half, wing.z + wing.rise),
             wing.root,
             wing.tip,
-            (Surface(f"{name}_flap", 0.11, 0.5, DOWN), Surface(f"{name}_aileron", 0.54, 0.98, DOWN)),
+            (PanelSurface(f"{name}_flap", 0.11, 0.5, DOWN), PanelSurface(f"{name}_aileron", 0.54, 0.98, DOWN)),
             WING_HINGE,
         )
         for name, side in SIDES
@@ -112,18 +112,18 @@ def tail_panels(looks: Looks) -> list[Panel]:
         return [_panel(tail, (0.0, side * inner, 0.0), (side * (outer - inner), tail.fin), _mixed(name)) for name, side in SIDES]
     half = booms if tail.kind == "twin_boom" else tail.span / 2
     at = (-0.3 * tail.chord, 0.0, tail.fin) if tail.kind == "t" else (0.0, 0.0, 0.0)
-    plane = [_panel(tail, at, (side * half, 0.0), [Surface(f"{name}_elevator", 0.08, 0.96, DOWN)]) for name, side in SIDES]
+    plane = [_panel(tail, at, (side * half, 0.0), [PanelSurface(f"{name}_elevator", 0.08, 0.96, DOWN)]) for name, side in SIDES]
     if tail.kind != "twin_boom":
         tail = msgspec.structs.replace(tail, chord=FIN_CHORD * tail.chord)
     fins = {"left_rudder": booms, "right_rudder": -booms} if tail.kind == "twin_boom" else {"rudder": 0.0}
-    return plane + [_panel(tail, (0.0, y, 0.0), (0.0, tail.fin), [Surface(name, 0.08, 0.96, LEFT)]) for name, y in fins.items()]
+    return plane + [_panel(tail, (0.0, y, 0.0), (0.0, tail.fin), [PanelSurface(name, 0.08, 0.96, LEFT)]) for name, y in fins.items()]
 
 
-def _mixed(name: str) -> list[Surface]:
-    return [Surface(f"{name}_elevator", 0.04, 0.5, DOWN), Surface(f"{name}_rudder", 0.54, 0.96, LEFT)]
+def _mixed(name: str) -> list[PanelSurface]:
+    return [PanelSurface(f"{name}_elevator", 0.04, 0.5, DOWN), PanelSurface(f"{name}_rudder", 0.54, 0.96, LEFT)]
 
 
-def _panel(tail: Tail, at: Point, reach: tuple[float, float], surfaces: Sequence[Surface]) -> Panel:
+def _panel(tail: Tail, at: Point, reach: tuple[float, float], surfaces: Sequence[PanelSurface]) -> Panel:
     """at: from the tail's place; reach: to the side and up, of the tip from the root [m]."""
     root = (tail.x + at[0], at[1], tail.z + at[2])
     tip = (root[0] - 0.24 * tail.chord, root[1] + reach[0], root[2] + reach[1])
@@ -146,7 +146,7 @@ def hull_fins(hull: Hull) -> list[Panel]:
             (back, hull.middle[1] + 1.36 * y, hull.middle[2] + 1.36 * z),
             0.34 * x,
             0.22 * x,
-            [Surface(name, 0.45, 0.96, way)],
+            [PanelSurface(name, 0.45, 0.96, way)],
         )
         for name, (y, z, way) in ways.items()
     ]

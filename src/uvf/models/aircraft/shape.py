@@ -14,7 +14,7 @@ from uvf.models.aircraft.dimensions import planned
 from uvf.models.aircraft.panels import Movable, Panel, hull_fins, tail_panels, wing_panels
 from uvf.models.jsbsim.sizes import Hull, Sizes, sizes_of
 from uvf.models.shapes.mesh import load_mesh
-from uvf.models.shapes.mesh_parts import Floats, Part
+from uvf.models.shapes.mesh_parts import Floats, MeshPart
 from uvf.models.vehicle.air import STANDARD_JOINTS, AirBody
 from uvf.models.vehicle.file import VehicleFile
 from uvf.models.vehicle.layers import folders_of, holding
@@ -24,18 +24,18 @@ from uvf.models.vehicle.layers import folders_of, holding
 class AircraftShape:
     """Origin at the centre of gravity, FLU, m; ``colour``: of the parts that have none of their own, 0..1."""
 
-    fixed: list[Part]
+    fixed: list[MeshPart]
     movables: list[Movable]
     colour: tuple[float, float, float]
-    undercarriage: list[Part] = field(default_factory=list)
+    undercarriage: list[MeshPart] = field(default_factory=list)
 
     @property
-    def at_rest(self) -> list[Part]:
+    def at_rest(self) -> list[MeshPart]:
         """All of it, nothing deflected."""
         return self.airborne + self.undercarriage
 
     @property
-    def airborne(self) -> list[Part]:
+    def airborne(self) -> list[MeshPart]:
         """What may touch nothing: all but wheels and legs."""
         return self.fixed + [moved(part, m.origin) for m in self.movables for part in m.parts]
 
@@ -51,11 +51,11 @@ class AircraftShape:
         return replace(self, fixed=_scaled(self.fixed, scale), movables=movables, undercarriage=legs)
 
 
-def moved(part: Part, way: Floats) -> Part:
+def moved(part: MeshPart, way: Floats) -> MeshPart:
     return replace(part, vertices=part.vertices + way)
 
 
-def _scaled(parts: Sequence[Part], scale: float) -> list[Part]:
+def _scaled(parts: Sequence[MeshPart], scale: float) -> list[MeshPart]:
     return [replace(part, vertices=part.vertices * scale) for part in parts]
 
 
@@ -64,7 +64,7 @@ def aircraft_shape(folder: Path, file: VehicleFile) -> AircraftShape:
     air = file.air
     assert air is not None
     if air.mesh is not None:
-        return AircraftShape([Part(*load_mesh(folder / air.mesh))], [], air.looks.colour)
+        return AircraftShape([MeshPart(*load_mesh(folder / air.mesh))], [], air.looks.colour)
     models = holding(folders_of(folder), air.model)
     sizes = sizes_of(models / air.model / f"{air.model}.xml")
     hull = sizes.hull
@@ -84,7 +84,7 @@ def _airship(air: AirBody, sizes: Sizes, hull: Hull) -> AircraftShape:
     return replace(shape, undercarriage=undercarriage(sizes, car.size[1], car.centre[2]))
 
 
-def _assembled(air: AirBody, sizes: Sizes, body: Sequence[Part], panels: Sequence[Panel]) -> AircraftShape:
+def _assembled(air: AirBody, sizes: Sizes, body: Sequence[MeshPart], panels: Sequence[Panel]) -> AircraftShape:
     fixed = [*body, *(part for panel in panels for part in panel.fixed())]
     turning = [propeller(_joint(air, i), thruster) for i, thruster in enumerate(sizes.thrusters) if thruster.radius]
     return AircraftShape(fixed, [*(m for panel in panels for m in panel.movables()), *turning], air.looks.colour)

@@ -14,7 +14,7 @@ from uvf.models.shapes.mesh import placed, reach, triangles
 from uvf.models.shapes.solid import Solid
 from uvf.models.urdf.robot import UrdfModel
 from uvf.models.vehicle.file import GroundBody, VehicleFile
-from uvf.models.yaml_data import BadInput, Place
+from uvf.models.yaml_data import BadInput, FileLocation
 
 Floats = NDArray[np.float64]
 
@@ -31,7 +31,7 @@ ROUND = np.column_stack(
 )
 
 
-class Body:
+class CheckedBody:
     """The model's collision shapes where they are in base_link at rest."""
 
     def __init__(self, model: UrdfModel, ground: GroundBody) -> None:
@@ -55,7 +55,7 @@ class Body:
 def body_faults(model: UrdfModel, file: VehicleFile, yaml: Path) -> list[str]:
     """Wheels, outline, balance and sensors, a line each; nothing of what hangs on a mesh that cannot be read."""
     assert file.ground is not None
-    body, ground = Body(model, file.ground), Place(str(yaml), ("ground",))
+    body, ground = CheckedBody(model, file.ground), FileLocation(str(yaml), ("ground",))
     try:
         return [
             *_base_faults(body),
@@ -63,7 +63,7 @@ def body_faults(model: UrdfModel, file: VehicleFile, yaml: Path) -> list[str]:
             *_axle_faults(body, ground),
             *_outline_faults(body, ground),
             *_balance_faults(body),
-            *sensor_faults(model, file.sensors, body.poses, Place(str(yaml), ("sensors",))),
+            *sensor_faults(model, file.sensors, body.poses, FileLocation(str(yaml), ("sensors",))),
         ]
     except BadInput as error:
         return [] if any("mesh" in fault.text for fault in model.faults) else [str(error)]
@@ -72,7 +72,7 @@ def body_faults(model: UrdfModel, file: VehicleFile, yaml: Path) -> list[str]:
 def body_notes(model: UrdfModel, file: VehicleFile) -> list[str]:
     """What may be meant so."""
     assert file.ground is not None
-    body = Body(model, file.ground)
+    body = CheckedBody(model, file.ground)
     try:
         return [*_margin_notes(body), *_castor_notes(body), *sensor_notes(model, file.sensors, body.poses, body.turning)]
     except BadInput:
@@ -83,7 +83,7 @@ def _at(model: UrdfModel, line: int) -> str:
     return f"{model.path}:{line}" if line else str(model.path)
 
 
-def _base_faults(body: Body) -> Iterator[str]:
+def _base_faults(body: CheckedBody) -> Iterator[str]:
     base = body.poses.get("base_link")
     if base is not None and (np.linalg.norm(base.translation) > 1e-6 or abs(base.rotation[0]) < 1 - 1e-9):
         line = body.model.links["base_link"].line
@@ -97,7 +97,7 @@ def _base_faults(body: Body) -> Iterator[str]:
             yield f"{_at(body.model, line)}: link '{solid.name}' reaches {-low * 1000:.0f} mm below the floor; lift its collision"
 
 
-def _wheel_faults(body: Body, side: str, ground: Place) -> Iterator[str]:
+def _wheel_faults(body: CheckedBody, side: str, ground: FileLocation) -> Iterator[str]:
     joint = body.joints[side]
     where, what = _at(body.model, joint.line), f"{side} wheel '{joint.name}'"
     solids = body.collisions(body.wheels[side])
@@ -119,7 +119,7 @@ def _wheel_faults(body: Body, side: str, ground: Place) -> Iterator[str]:
         yield f"{ground.at('wheel_radius')}: {body.ground.wheel_radius:g} m, but the {what} of the URDF has a radius of {radius:.4g} m"
 
 
-def _axle_faults(body: Body, ground: Place) -> Iterator[str]:
+def _axle_faults(body: CheckedBody, ground: FileLocation) -> Iterator[str]:
     if len(body.joints) < 2:
         return
     centres = {side: body.poses[joint.child].translation for side, joint in body.joints.items()}
@@ -142,7 +142,7 @@ def _axle_faults(body: Body, ground: Place) -> Iterator[str]:
         )
 
 
-def _outline_faults(body: Body, ground: Place) -> Iterator[str]:
+def _outline_faults(body: CheckedBody, ground: FileLocation) -> Iterator[str]:
     """The circle that planning and collision checks take for the vehicle holds all of it."""
     solids = body.collisions([*body.rest, *body.turning])
     if solids:
@@ -151,7 +151,7 @@ def _outline_faults(body: Body, ground: Place) -> Iterator[str]:
             yield f"{ground.at('radius')}: {body.ground.radius:g} m, but the body reaches {farthest:.3f} m from base_link; enlarge it"
 
 
-def _balance_faults(body: Body) -> Iterator[str]:
+def _balance_faults(body: CheckedBody) -> Iterator[str]:
     supports, com = _supports(body), _centre_of_mass(body)
     if com is None or not supports:
         return
@@ -166,21 +166,21 @@ def _balance_faults(body: Body) -> Iterator[str]:
         )
 
 
-def _margin_notes(body: Body) -> Iterator[str]:
+def _margin_notes(body: CheckedBody) -> Iterator[str]:
     supports, com = _supports(body), _centre_of_mass(body)
     margin = _margin(supports, com[:2]) if supports and com is not None else None
     if margin is not None and 0 <= margin < LOW_MARGIN * body.ground.track:
         yield f"the centre of mass is only {margin * 1000:.0f} mm inside of the supports: it may tip when it accelerates"
 
 
-def _castor_notes(body: Body) -> Iterator[str]:
+def _castor_notes(body: CheckedBody) -> Iterator[str]:
     low = [s for s in body.collisions(body.rest) if -float(reach(s, DOWN)[0]) < LEVEL]
     along = [float(corners[np.argmin(corners[:, 2]), 0]) for corners in (triangles(s)[0] for s in low)]
     if along and min(along) < -LEVEL and max(along) > LEVEL:
         yield "castors before and behind the axle, as low as the wheels, take their weight off them: they slip; lift the castors by 0.5 mm"
 
 
-def _supports(body: Body) -> list[Floats]:
+def _supports(body: CheckedBody) -> list[Floats]:
     """(2,) m: the wheels, wherever they are, and what else touches the floor; of a shape's underside its corners."""
     points: list[Floats] = [body.poses[joint.child].translation[:2] for joint in body.joints.values()]
     for solid in body.collisions(body.rest):
@@ -191,7 +191,7 @@ def _supports(body: Body) -> list[Floats]:
     return points
 
 
-def _centre_of_mass(body: Body) -> Floats | None:
+def _centre_of_mass(body: CheckedBody) -> Floats | None:
     """(3,) m in base_link, of all links."""
     found = [(link.inertial, body.poses[name]) for name, link in body.model.links.items() if name in body.poses]
     masses = [(inertial.mass, apply(pose, inertial.com[None])[0]) for inertial, pose in found if inertial is not None]

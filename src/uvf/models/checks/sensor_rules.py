@@ -10,7 +10,7 @@ from uvf.maths.se3 import Transform
 from uvf.models.shapes.mesh import contains, placed
 from uvf.models.urdf.robot import UrdfModel
 from uvf.models.vehicle.sensors import Lidar, Mount, Sensors
-from uvf.models.yaml_data import Key, Place
+from uvf.models.yaml_data import FileLocation, Key
 
 APART = 0.03  # m, between a sensor's mount and the link of its name: the link may be the housing
 LOOKS_AT = np.linspace(0.01, 1.0, 60)  # m along a beam
@@ -20,7 +20,7 @@ HOUSINGS = ("lidar", "laser", "scan", "hokuyo", "lds", "rplidar", "sick", "velod
 Poses = Mapping[str, Transform]
 
 
-def sensor_faults(model: UrdfModel, sensors: Sensors, poses: Poses, place: Place) -> Iterator[str]:
+def sensor_faults(model: UrdfModel, sensors: Sensors, poses: Poses, place: FileLocation) -> Iterator[str]:
     """Frames are named once and agree with the links of their names; scanners are not shut up in the body."""
     seen: dict[str, str] = {}
     for keys, sensor in mounted(sensors):

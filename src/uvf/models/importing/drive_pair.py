@@ -34,7 +34,7 @@ RIGHT = re.compile(
 
 
 @dataclass(frozen=True)
-class Wheel:
+class WheelGuess:
     """In the root's frame: centre (3,) m on the axis at the middle of the tread, axis (3,), radius and width [m]."""
 
     joint: Joint
@@ -48,9 +48,9 @@ class Wheel:
 class DrivePair:
     """left, right as the vehicle drives; base_from_root: to the floor under the axle's middle, x forward, z up."""
 
-    left: Wheel
-    right: Wheel
-    others: tuple[Wheel, ...]
+    left: WheelGuess
+    right: WheelGuess
+    others: tuple[WheelGuess, ...]
     base_from_root: Transform
 
     @property
@@ -83,7 +83,7 @@ def _may_turn(joint: Joint) -> bool:
     return joint.kind == "continuous" or (joint.kind == "revolute" and (wide or bool(DRIVEN.search(joint.name))))
 
 
-def _wheel(model: UrdfModel, joint: Joint) -> Wheel | None:
+def _wheel(model: UrdfModel, joint: Joint) -> WheelGuess | None:
     """None where nothing round hangs on the joint."""
     poses = model.link_poses()
     if joint.child not in poses:
@@ -100,7 +100,7 @@ def _wheel(model: UrdfModel, joint: Joint) -> Wheel | None:
     radius = float(np.median(spans))
     if radius <= 0 or spans.max() > 1.25 * radius or spans.min() < 0.75 * radius:
         return None
-    return Wheel(joint, pose.translation + offset * axis, axis, float(spans.max()), float(ends.sum()))
+    return WheelGuess(joint, pose.translation + offset * axis, axis, float(spans.max()), float(ends.sum()))
 
 
 def shapes_below(model: UrdfModel, link: str, poses: dict[str, Transform]) -> list[Solid]:
@@ -119,7 +119,7 @@ def _across(axis: Floats) -> Floats:
     return directions
 
 
-def _opposite(a: Wheel, b: Wheel) -> bool:
+def _opposite(a: WheelGuess, b: WheelGuess) -> bool:
     """On one axis, of one size, apart."""
     apart = a.centre - b.centre
     distance = float(np.linalg.norm(apart))
@@ -128,7 +128,7 @@ def _opposite(a: Wheel, b: Wheel) -> bool:
     return bool(abs(apart @ a.axis) / distance > PARALLEL)
 
 
-def _score(pair: tuple[Wheel, Wheel], foreign: Foreign, middle: Floats) -> tuple[float, ...]:
+def _score(pair: tuple[WheelGuess, WheelGuess], foreign: Foreign, middle: Floats) -> tuple[float, ...]:
     names = [w.joint.name + " " + w.joint.child for w in pair]
     told = {*foreign.drive.left, *foreign.drive.right}
     score = 10.0 * all(w.joint.name in told for w in pair)
@@ -139,7 +139,7 @@ def _score(pair: tuple[Wheel, Wheel], foreign: Foreign, middle: Floats) -> tuple
     return score, round(pair[0].radius, 3), -round(float(np.linalg.norm(between - middle)), 3)
 
 
-def _oriented(pair: tuple[Wheel, Wheel], others: tuple[Wheel, ...], foreign: Foreign) -> DrivePair:
+def _oriented(pair: tuple[WheelGuess, WheelGuess], others: tuple[WheelGuess, ...], foreign: Foreign) -> DrivePair:
     a, b = pair
     lateral = (a.centre - b.centre) / np.linalg.norm(a.centre - b.centre)
     up = _up(foreign, lateral, a)
@@ -157,7 +157,7 @@ def _oriented(pair: tuple[Wheel, Wheel], others: tuple[Wheel, ...], foreign: For
     return DrivePair(left, right, others, inverse(root_from_base))
 
 
-def _up(foreign: Foreign, lateral: Floats, wheel: Wheel) -> Floats:
+def _up(foreign: Foreign, lateral: Floats, wheel: WheelGuess) -> Floats:
     """z unless the axle is upright then; else the direction in which the wheels are lowest."""
     best = np.array((0.0, 0.0, 1.0))
     if abs(lateral[2]) >= 0.3:
@@ -176,7 +176,7 @@ def _six() -> Iterator[Floats]:
         yield from sign * np.eye(3)[::-1]
 
 
-def _left_is_first(pair: tuple[Wheel, Wheel], foreign: Foreign, up: Floats) -> bool:
+def _left_is_first(pair: tuple[WheelGuess, WheelGuess], foreign: Foreign, up: Floats) -> bool:
     """x forward counts (REP-103); where x is no way to drive, names or the plugin say what is left."""
     a, b = pair
     forward = np.cross((a.centre - b.centre) / np.linalg.norm(a.centre - b.centre), up)
@@ -191,7 +191,7 @@ def _left_is_first(pair: tuple[Wheel, Wheel], foreign: Foreign, up: Floats) -> b
     return by_names
 
 
-def _by_names(a: Wheel, b: Wheel, foreign: Foreign) -> bool | None:
+def _by_names(a: WheelGuess, b: WheelGuess, foreign: Foreign) -> bool | None:
     """Whether the first is called left; None = not told."""
     for wheel, if_left in ((a, True), (b, False)):
         if wheel.joint.name in foreign.drive.left:

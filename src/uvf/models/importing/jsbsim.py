@@ -4,7 +4,7 @@ import re
 import shutil
 from pathlib import Path
 
-from uvf.models.jsbsim.model_parts import Part, parts, read
+from uvf.models.jsbsim.model_parts import ModelPart, parts, read
 from uvf.models.yaml_data import BadInput
 
 UNFIT = re.compile(r"[^A-Za-z0-9_.-]")
@@ -35,7 +35,7 @@ def copy_model(path: Path, folder: Path) -> str:
     return name
 
 
-def _place(part: Part, model: str) -> Path:
+def _place(part: ModelPart, model: str) -> Path:
     """Where JSBSim finds it again."""
     name = f"{part.name.removesuffix('.xml')}.xml"
     return Path(PLACES.get(part.kind, model)) / name

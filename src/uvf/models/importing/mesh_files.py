@@ -21,7 +21,7 @@ Z_FROM_X = np.array(((0.0, -1.0, 0.0), (0.0, 0.0, -1.0), (1.0, 0.0, 0.0)))
 UNREADABLE = (OSError, ValueError, TypeError, KeyError, AttributeError, IndexError, NotImplementedError, collada.common.DaeError)
 
 
-class Wanted(NamedTuple):
+class RequestedMesh(NamedTuple):
     """Which part of a mesh file (all of it when ``submesh`` is empty), its bounding box centred or not, and how large."""
 
     submesh: str = ""
@@ -39,10 +39,10 @@ class MeshStore:
         self._upright = upright
         self._folder = folder
         self._notes = notes
-        self._written: dict[tuple[Path, Wanted], str] = {}
+        self._written: dict[tuple[Path, RequestedMesh], str] = {}
         self._colours: dict[Path, Colour | None] = {}
 
-    def convert(self, source: Path, wanted: Wanted) -> str:
+    def convert(self, source: Path, wanted: RequestedMesh) -> str:
         """Name in the world's folder of a copy of ``source`` as STL. Raises BadInput when it cannot be read."""
         key = (source.resolve(), wanted)
         if key not in self._written:
@@ -70,7 +70,7 @@ class MeshStore:
         shape.export(meshes / f"{free}.stl")
         return f"meshes/{free}.stl"
 
-    def _load(self, source: Path, wanted: Wanted) -> Any:
+    def _load(self, source: Path, wanted: RequestedMesh) -> Any:
         if source.suffix.lower() not in FORMATS:
             raise BadInput(f"{source}: meshes of this kind are not read; export it as STL, OBJ or DAE")
         try:

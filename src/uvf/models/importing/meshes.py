@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import trimesh
 
-from uvf.models.importing.mesh_files import MeshStore, Wanted
+from uvf.models.importing.mesh_files import MeshStore, RequestedMesh
 from uvf.models.importing.robot import Foreign
 from uvf.models.shapes.mesh import load_mesh
 from uvf.models.shapes.solid import Solid
@@ -46,7 +46,7 @@ def _too_big(tools: Tools) -> Iterator[Scale]:
         for solid in (*link.visuals, *link.collisions):
             if solid.shape == "mesh" and solid.mesh is not None and solid.mesh.is_file():
                 with contextlib.suppress(BadInput):
-                    vertices, _ = load_mesh(tools.folder / tools.store.convert(solid.mesh, Wanted(scale=_scale(solid))))
+                    vertices, _ = load_mesh(tools.folder / tools.store.convert(solid.mesh, RequestedMesh(scale=_scale(solid))))
                     if np.ptp(vertices, axis=0).max() > BIG:
                         yield _unsigned(_scale(solid))
 
@@ -75,7 +75,7 @@ def _solid(solid: Solid, hull: bool, tools: Tools) -> Iterator[Solid]:
         notes.add("meshes that are missing", _uri(solid.mesh))
         return
     try:
-        file = tools.folder / store.convert(solid.mesh, Wanted(scale=_scale(solid)))
+        file = tools.folder / store.convert(solid.mesh, RequestedMesh(scale=_scale(solid)))
         load_mesh(file)
     except BadInput as error:
         notes.add("meshes that cannot be read", str(error))

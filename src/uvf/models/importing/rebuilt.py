@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uvf.maths.se3 import IDENTITY, Transform, apply, compose, inverse
-from uvf.models.importing.drive_pair import DrivePair, Wheel, shapes_below
+from uvf.models.importing.drive_pair import DrivePair, WheelGuess, shapes_below
 from uvf.models.importing.inertia_guess import mended
 from uvf.models.importing.robot import Foreign, joined, moved
 from uvf.models.shapes.mesh import placed, reach, triangles
@@ -107,7 +107,7 @@ def _named(name: str, parts: _Parts) -> str:
     return clean if clean not in (*parts.links, *RESERVED) else f"{clean}_{len(parts.links)}"
 
 
-def _add_wheel(parts: _Parts, side: str, wheel: Wheel, names: list[str]) -> None:
+def _add_wheel(parts: _Parts, side: str, wheel: WheelGuess, names: list[str]) -> None:
     """A link at the middle of the tread, its axes those of base_link, on a joint about y."""
     centre = apply(parts.pair.base_from_root, wheel.centre[None])[0]
     wheel_from_base = Transform(IDENTITY.rotation, -centre)

@@ -27,7 +27,7 @@ class ForeignSensor:
 
 
 @dataclass(frozen=True)
-class Drive:
+class ImportedDrive:
     """What a plugin for differential drive says: the joints, and the measures [m] where it gives them."""
 
     left: tuple[str, ...] = ()
@@ -39,7 +39,7 @@ class Drive:
 @dataclass
 class Foreign:
     model: UrdfModel
-    drive: Drive = Drive()
+    drive: ImportedDrive = ImportedDrive()
     sensors: list[ForeignSensor] = field(default_factory=list)
     notes: Notes = field(default_factory=Notes)
 
@@ -47,14 +47,14 @@ class Foreign:
         """The first drive among the plugins below an element; all else about them is dropped with a note."""
         for plugin in element.iter("plugin"):
             drive = drive_of(plugin)
-            if drive is not None and self.drive == Drive():
+            if drive is not None and self.drive == ImportedDrive():
                 self.drive = drive
                 self.notes.add("plugin for differential drive: joints and measures taken, the rest dropped", plugin.get("filename") or "")
             elif drive is None:
                 self.notes.add("plugins dropped", plugin.get("filename") or plugin.get("name") or "")
 
 
-def drive_of(plugin: Any) -> Drive | None:
+def drive_of(plugin: Any) -> ImportedDrive | None:
     """The figures of a plugin for differential or skid-steer drive, by the names that ROS 1, ROS 2 and Gazebo use."""
     name = f"{plugin.get('filename', '')} {plugin.get('name', '')}".lower()
     if not any(word in name for word in ("diff", "skid")):
@@ -63,7 +63,7 @@ def drive_of(plugin: Any) -> Drive | None:
     texts = dict(given)
     left, right = (tuple(v for t, v in given if t in (f"{s}joint", f"{s}frontjoint", f"{s}rearjoint")) for s in ("left", "right"))
     diameter, radius = _number(texts.get("wheeldiameter")), _number(texts.get("wheelradius"))
-    return Drive(left, right, _number(texts.get("wheelseparation")), diameter / 2 if diameter else radius)
+    return ImportedDrive(left, right, _number(texts.get("wheelseparation")), diameter / 2 if diameter else radius)
 
 
 def _all(plugin: Any) -> list[tuple[str, str]]:

@@ -27,7 +27,7 @@ PALE: Colour = (0.5, 0.5, 0.48)
 BARE = WorldFile(about="", origin=Origin(0.0, 0.0), floor=(-10.0, -10.0, 10.0, 10.0))
 
 
-class Ground:
+class SdfGround:
     """Finds what one drives on; ``folder`` holds the meshes."""
 
     def __init__(self, folder: Path, notes: Notes) -> None:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from uvf.maths.rotations import matrix, rotate, to_euler
 from uvf.maths.se3 import IDENTITY, Transform, compose
-from uvf.models.importing.mesh_files import MeshStore, Wanted
+from uvf.models.importing.mesh_files import MeshStore, RequestedMesh
 from uvf.models.importing.notes import Notes
 from uvf.models.importing.polygons import extruded
 from uvf.models.importing.sdf_poses import numbers, place_of
@@ -115,7 +115,7 @@ class Shapes:
         submesh = mesh.find("submesh")
         centred = submesh is not None and (submesh.findtext("center") or "").strip().lower() in ("true", "1")
         part = (submesh.findtext("name") or "").strip() if submesh is not None else ""
-        file = self._store.convert(source, Wanted(part, centred, _point(scale)))
+        file = self._store.convert(source, RequestedMesh(part, centred, _point(scale)))
         return [Mesh(who.name, file, _point(pose.translation), _angles(pose), colour=who.colour or self._store.colour(source) or GREY)]
 
     def mesh_colour(self, mesh: Any) -> Colour | None:

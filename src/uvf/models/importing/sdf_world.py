@@ -12,7 +12,7 @@ from uvf.maths.se3 import IDENTITY, Transform, compose
 from uvf.models.importing.mesh_files import MeshStore
 from uvf.models.importing.notes import Notes
 from uvf.models.importing.sdf_colours import visual_colour
-from uvf.models.importing.sdf_ground import Ground
+from uvf.models.importing.sdf_ground import SdfGround
 from uvf.models.importing.sdf_models import Models, read_sdf
 from uvf.models.importing.sdf_poses import Scope, numbers, relative_to, transform
 from uvf.models.importing.sdf_shapes import Named, Shapes, Thing, is_level
@@ -81,7 +81,7 @@ class SdfImport:
         ]
         first = element.find("model")
         about = f"Imported from {self._path.name}: {element.get('name') or ('' if first is None else first.get('name'))}."
-        return Ground(self._folder, self.notes).levelled(self._settings(element, about), things, self._planes)
+        return SdfGround(self._folder, self.notes).levelled(self._settings(element, about), things, self._planes)
 
     def _placed(self, model: Any, around: Scope, owner: tuple[str, Transform]) -> _Placed:
         """A model of ``around`` where it was when saved, else where the file puts it; owner: its path with ``::`` and world_from_owner."""

@@ -28,7 +28,7 @@ class Unmade(BadInput):
         self.name = name
 
 
-class Part(NamedTuple):
+class ModelPart(NamedTuple):
     """A file that ``by`` refers to in a tag of this ``kind``; found: None when it is nowhere; folders: where it may lie, best first."""
 
     kind: str
@@ -38,15 +38,15 @@ class Part(NamedTuple):
     folders: tuple[Path, ...]
 
 
-def parts(path: Path) -> list[Part]:
+def parts(path: Path) -> list[ModelPart]:
     """Everything that the model at ``path`` refers to, and what that refers to. Raises BadInput for what is no XML."""
-    gathered: list[Part] = []
+    gathered: list[ModelPart] = []
     waiting, seen = [path], {path}
     while waiting:
         by = waiting.pop(0)
         for tag in read(by).iter():
             if (name := tag.get("file")) and (folders := _folders(tag.tag, path)):
-                gathered.append(part := Part(tag.tag, name, by, _find(name, folders), folders))
+                gathered.append(part := ModelPart(tag.tag, name, by, _find(name, folders), folders))
                 if part.found is not None and part.found not in seen:
                     seen.add(part.found)
                     waiting.append(part.found)

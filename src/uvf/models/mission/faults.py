@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 import msgspec
 from msgspec import Meta
 
-from uvf.models.yaml_data import BadInput, Place
+from uvf.models.yaml_data import BadInput, FileLocation
 
 Part = Literal[
     "imu", "compass", "gnss", "air_data", "pitot", "static", "battery", "scan", "wheels", "aileron", "elevator", "rudder", "throttle"
@@ -31,7 +31,7 @@ class Fault(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         return self.at <= t and (self.until is None or t < self.until)
 
 
-def check_faults(faults: Sequence[Fault], vehicles: Mapping[str, object], place: Place) -> None:
+def check_faults(faults: Sequence[Fault], vehicles: Mapping[str, object], place: FileLocation) -> None:
     """Raises BadInput."""
     for i, fault in enumerate(faults):
         if fault.vehicle not in vehicles:

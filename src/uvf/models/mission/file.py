@@ -11,7 +11,7 @@ from uvf.models.mission.fence import FenceFile, zones_of
 from uvf.models.mission.formation import Follow, check_follow
 from uvf.models.names import FOLDER, SYSTEM, VEHICLE
 from uvf.models.world.wind import Wind, check_wind
-from uvf.models.yaml_data import BadInput, Place, load_yaml, nearest
+from uvf.models.yaml_data import BadInput, FileLocation, load_yaml, nearest
 
 NotNegative = Annotated[float, Meta(ge=0, le=1e6)]
 Metres = Annotated[float, Meta(ge=-1e6, le=1e6)]  # local coordinates stay near the origin
@@ -19,7 +19,7 @@ VehicleName = Annotated[str, Meta(pattern=rf"^{VEHICLE}\Z", max_length=40)]
 FolderName = Annotated[str, Meta(pattern=rf"^{FOLDER}\Z", max_length=80)]
 
 
-class Start(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class StartPose(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Where and how fast a vehicle begins, world frame (ENU)."""
 
     x: Metres
@@ -53,7 +53,7 @@ class Waypoint(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     distance: NotNegative = 0.0  # m
 
 
-class Job(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class JobFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """What a vehicle does with nobody touching anything; empty = hold."""
 
     explore: bool = False
@@ -84,9 +84,9 @@ class Maps(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 class Vehicle(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     model: FolderName
-    start: Start
+    start: StartPose
     system_id: Annotated[int, Meta(ge=1, le=244)]
-    job: Job = Job()
+    job: JobFile = JobFile()
     roles: dict[str, str] = {}
     fence: FenceFile = FenceFile()
     maps: Maps | None = None  # of a ground vehicle: it serves these, and its own
@@ -120,7 +120,7 @@ def load_mission(path: Path) -> MissionFile:
         known = [p.stem for p in path.parent.glob("*.yaml")] if path.parent.is_dir() else []
         raise BadInput(f"no mission '{path}'; {nearest(path.stem, known)}")
     mission = load_yaml(path, MissionFile)
-    file = Place(str(path))
+    file = FileLocation(str(path))
     _check_vehicles(mission.vehicles, file.at("vehicles"))
     _check_follow(mission.vehicles, file.at("vehicles"))
     if mission.wind is not None:
@@ -131,7 +131,7 @@ def load_mission(path: Path) -> MissionFile:
     return mission
 
 
-def _check_vehicles(vehicles: dict[str, Vehicle], place: Place) -> None:
+def _check_vehicles(vehicles: dict[str, Vehicle], place: FileLocation) -> None:
     ids: dict[int, str] = {}
     for name, vehicle in vehicles.items():
         if name == SYSTEM:
@@ -147,20 +147,20 @@ def _check_vehicles(vehicles: dict[str, Vehicle], place: Place) -> None:
         _check_jumps(vehicle.job.mission, place.at(name, "job", "mission"))
 
 
-def _check_follow(vehicles: dict[str, Vehicle], place: Place) -> None:
+def _check_follow(vehicles: dict[str, Vehicle], place: FileLocation) -> None:
     for name, vehicle in vehicles.items():
         if vehicle.job.follow is not None and (vehicle.job.mission or vehicle.job.explore):
             raise BadInput(f"{place.at(name, 'job', 'follow')}: {name} has a mission of its own besides; leave one of them out")
     check_follow({name: v.job.follow for name, v in vehicles.items() if v.job.follow is not None}, vehicles, place)
 
 
-def _check_jumps(items: list[Waypoint], place: Place) -> None:
+def _check_jumps(items: list[Waypoint], place: FileLocation) -> None:
     for i, item in enumerate(items):
         if item.kind == "jump" and item.jump_to >= len(items):
             raise BadInput(f"{place.at(i)}: jumps to {item.jump_to}, but the last item is {len(items) - 1} (the first is 0)")
 
 
-def _check_criterion(criterion: Criterion, vehicles: dict[str, Vehicle], place: Place) -> None:
+def _check_criterion(criterion: Criterion, vehicles: dict[str, Vehicle], place: FileLocation) -> None:
     if criterion.vehicle not in vehicles:
         raise BadInput(f"{place}: no vehicle '{criterion.vehicle}'; {nearest(criterion.vehicle, vehicles)}")
     low, high = criterion.at_least, criterion.at_most

@@ -6,7 +6,7 @@ from typing import Annotated
 import msgspec
 from msgspec import Meta
 
-from uvf.models.yaml_data import BadInput, Place, nearest
+from uvf.models.yaml_data import BadInput, FileLocation, nearest
 
 Aside = Annotated[float, Meta(ge=-1000, le=1000)]
 
@@ -20,7 +20,7 @@ class Follow(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     above: Aside = 0.0  # m
 
 
-def check_follow(follows: Mapping[str, Follow], vehicles: Mapping[str, object], place: Place) -> None:
+def check_follow(follows: Mapping[str, Follow], vehicles: Mapping[str, object], place: FileLocation) -> None:
     """follows: by the follower's name. Raises BadInput."""
     for name, follow in follows.items():
         where = place.at(name, "job", "follow", "leader")

@@ -15,7 +15,7 @@ Place = Sequence[float] | Floats
 
 
 @dataclass(frozen=True)
-class Part:
+class MeshPart:
     """vertices: (n, 3) m, body frame (FLU); faces: (m, 3), counter-clockwise from outside; colour None = the vehicle's own."""
 
     vertices: Floats
@@ -23,14 +23,14 @@ class Part:
     colour: Colour | None = None
 
 
-def box(centre: Place, size: Sequence[float], colour: Colour | None = None) -> Part:
+def box(centre: Place, size: Sequence[float], colour: Colour | None = None) -> MeshPart:
     corners = np.array([(x, y, z) for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
     sides = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
     faces = [face for a, b, c, d in sides for face in ((a, b, c), (a, c, d))]
     return _outward(corners * np.asarray(size) + np.asarray(centre), faces, colour)
 
 
-def lathe(axis: int, stations: Sequence[tuple[float, float]], centre: Place, colour: Colour | None = None) -> Part:
+def lathe(axis: int, stations: Sequence[tuple[float, float]], centre: Place, colour: Colour | None = None) -> MeshPart:
     """A solid of revolution about x, y or z (axis 0, 1, 2). stations: (place on the axis, radius) in rising order [m]."""
     n, a = 24, np.linspace(0, 2 * np.pi, 24, endpoint=False)
     rings = []
@@ -42,7 +42,7 @@ def lathe(axis: int, stations: Sequence[tuple[float, float]], centre: Place, col
     return _tube(rings, np.asarray(centre), colour)
 
 
-def rod(start: Place, end: Place, radius: float, colour: Colour | None = None) -> Part:
+def rod(start: Place, end: Place, radius: float, colour: Colour | None = None) -> MeshPart:
     """A straight one of six sides [m]."""
     a, b = np.asarray(start, dtype=np.float64), np.asarray(end, dtype=np.float64)
     along = (b - a) / max(float(np.linalg.norm(b - a)), 1e-9)
@@ -53,7 +53,7 @@ def rod(start: Place, end: Place, radius: float, colour: Colour | None = None) -
     return _tube([a + ring, b + ring], np.zeros(3), colour)
 
 
-def plate(outline: Sequence[Point], thickness: float, colour: Colour | None = None) -> Part:
+def plate(outline: Sequence[Point], thickness: float, colour: Colour | None = None) -> MeshPart:
     """A flat convex slab about its outline, as thick on both sides [m]."""
     points = np.array(outline)
     normal = np.cross(points[1] - points[0], points[-1] - points[0])
@@ -64,7 +64,7 @@ def plate(outline: Sequence[Point], thickness: float, colour: Colour | None = No
     return _outward(np.vstack((points + across, points - across)), sides + caps, colour)
 
 
-def _tube(rings: Sequence[Floats], centre: Floats, colour: Colour | None) -> Part:
+def _tube(rings: Sequence[Floats], centre: Floats, colour: Colour | None) -> MeshPart:
     """Closed at both ends."""
     n, last = len(rings[0]), len(rings) * len(rings[0])
     vertices = np.vstack((*rings, rings[0].mean(axis=0), rings[-1].mean(axis=0))) + centre
@@ -78,14 +78,14 @@ def _tube(rings: Sequence[Floats], centre: Floats, colour: Colour | None) -> Par
     return _outward(vertices, faces, colour)
 
 
-def _outward(vertices: Floats, faces: Sequence[tuple[int, int, int]], colour: Colour | None) -> Part:
+def _outward(vertices: Floats, faces: Sequence[tuple[int, int, int]], colour: Colour | None) -> MeshPart:
     """Turns all faces over where the volume that they enclose is negative."""
     wound = np.array(faces)
     a, b, c = (vertices[wound[:, k]] for k in range(3))
-    return Part(vertices, wound if (np.cross(a, b) * c).sum() >= 0 else wound[:, ::-1].copy(), colour)
+    return MeshPart(vertices, wound if (np.cross(a, b) * c).sum() >= 0 else wound[:, ::-1].copy(), colour)
 
 
-def joined(parts: Sequence[Part]) -> tuple[Floats, NDArray[Any]]:
+def joined(parts: Sequence[MeshPart]) -> tuple[Floats, NDArray[Any]]:
     """All vertices (n, 3) m and faces (m, 3) as one mesh."""
     offsets = np.cumsum([0, *(len(part.vertices) for part in parts[:-1])])
     return np.vstack([p.vertices for p in parts]), np.vstack([p.faces + o for p, o in zip(parts, offsets, strict=True)])

@@ -13,7 +13,7 @@ from uvf.maths.se3 import Transform
 from uvf.models.shapes.solid import Colour, Solid
 from uvf.models.urdf.marked import LINE
 from uvf.models.urdf.packages import find_mesh
-from uvf.models.urdf.robot import JOINT_KINDS, Fault, Inertial, Joint, Link, UrdfModel
+from uvf.models.urdf.robot import JOINT_KINDS, Inertial, Joint, Link, ModelFault, UrdfModel
 from uvf.models.yaml_data import nearest
 
 Floats = NDArray[np.float64]
@@ -29,7 +29,7 @@ def read_model(path: Path, robot: Any) -> UrdfModel:
 class _Reader:
     def __init__(self, path: Path) -> None:
         self._path = path
-        self._faults: list[Fault] = []
+        self._faults: list[ModelFault] = []
         self._colours: dict[str, Colour] = {}
 
     def model(self, robot: Any) -> UrdfModel:
@@ -45,7 +45,7 @@ class _Reader:
 
     def _fault(self, tag: Any, text: str) -> None:
         path, line = _place(tag)
-        self._faults.append(Fault(Path(path) if path else self._path, line, text))
+        self._faults.append(ModelFault(Path(path) if path else self._path, line, text))
 
     def _doubled(self, kind: str, tags: list[Any]) -> None:
         seen: set[str] = set()

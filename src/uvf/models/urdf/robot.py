@@ -17,7 +17,7 @@ JOINT_KINDS = ("continuous", "fixed", "floating", "planar", "prismatic", "revolu
 
 
 @dataclass(frozen=True)
-class Fault:
+class ModelFault:
     """What is wrong with a file; line 0 = unknown."""
 
     path: Path
@@ -90,7 +90,7 @@ class UrdfModel:
     name: str
     links: dict[str, Link]
     joints: dict[str, Joint]
-    faults: tuple[Fault, ...] = ()
+    faults: tuple[ModelFault, ...] = ()
 
     @property
     def parents(self) -> dict[str, Joint]:

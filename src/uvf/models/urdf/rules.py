@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from uvf.models.urdf.robot import Fault, Inertial, Joint, Link, UrdfModel
+from uvf.models.urdf.robot import Inertial, Joint, Link, ModelFault, UrdfModel
 from uvf.models.yaml_data import nearest
 
 TRIANGLE_SLACK = 1e-3
@@ -15,24 +15,26 @@ RESERVED = ("base_footprint", "map", "odom")
 """Frames that every vehicle has besides the URDF's links (REP-105); a root called base_footprint is that frame."""
 
 
-def model_faults(model: UrdfModel) -> Iterator[Fault]:
+def model_faults(model: UrdfModel) -> Iterator[ModelFault]:
     """What was found in reading, then inertia, tree and wheels."""
     yield from model.faults
     for link in model.links.values():
-        yield from (Fault(model.path, link.line, f"link '{link.name}': {text}") for text in _inertia_faults(model, link))
+        yield from (ModelFault(model.path, link.line, f"link '{link.name}': {text}") for text in _inertia_faults(model, link))
     yield from _tree_faults(model)
     for link in (link for name, link in model.links.items() if name in RESERVED and (name != "base_footprint" or name in model.parents)):
-        yield Fault(model.path, link.line, f"link '{link.name}': every vehicle has a frame of that name above base_link; take the link out")
+        yield ModelFault(
+            model.path, link.line, f"link '{link.name}': every vehicle has a frame of that name above base_link; take the link out"
+        )
 
 
-def wheel_faults(model: UrdfModel, wheel_joints: tuple[str, ...]) -> Iterator[Fault]:
+def wheel_faults(model: UrdfModel, wheel_joints: tuple[str, ...]) -> Iterator[ModelFault]:
     """The joints that vehicle.yaml names are there and turn."""
     for name in wheel_joints:
         joint = model.joints.get(name)
         if joint is None:
-            yield Fault(model.path, 0, f"no joint '{name}' (named in vehicle.yaml); {nearest(name, model.joints)}")
+            yield ModelFault(model.path, 0, f"no joint '{name}' (named in vehicle.yaml); {nearest(name, model.joints)}")
         elif joint.kind != "continuous":
-            yield Fault(model.path, joint.line, f"joint '{name}' is '{joint.kind}', but a wheel needs type=\"continuous\"")
+            yield ModelFault(model.path, joint.line, f"joint '{name}' is '{joint.kind}', but a wheel needs type=\"continuous\"")
 
 
 def _inertia_faults(model: UrdfModel, link: Link) -> Iterator[str]:
@@ -56,22 +58,22 @@ def inertial_faults(inertial: Inertial) -> Iterator[str]:
         yield f"no body has the principal moments {a:.3g}, {b:.3g}, {c:.3g} kg m^2: each is above zero and at most the other two together"
 
 
-def _tree_faults(model: UrdfModel) -> Iterator[Fault]:
+def _tree_faults(model: UrdfModel) -> Iterator[ModelFault]:
     """Every joint ties two known links, every link but one hangs on one joint, and all hang together."""
     hung: dict[str, Joint] = {}
     for joint in model.joints.values():
         for end, name in (("parent", joint.parent), ("child", joint.child)):
             if name not in model.links:
-                yield Fault(model.path, joint.line, f"joint '{joint.name}': no {end} link '{name}'; {nearest(name, model.links)}")
+                yield ModelFault(model.path, joint.line, f"joint '{joint.name}': no {end} link '{name}'; {nearest(name, model.links)}")
         if joint.child in hung:
-            yield Fault(model.path, joint.line, f"link '{joint.child}' is the child of two joints; one is enough")
+            yield ModelFault(model.path, joint.line, f"link '{joint.child}' is the child of two joints; one is enough")
         hung[joint.child] = joint
     roots = sorted(set(model.links) - set(hung))
     if len(roots) != 1:
-        yield Fault(model.path, 0, f"one link must be the root, but without a parent joint are: {', '.join(roots) or 'none'}")
+        yield ModelFault(model.path, 0, f"one link must be the root, but without a parent joint are: {', '.join(roots) or 'none'}")
     for link, joint in hung.items():
         if link in _above(link, hung):
-            yield Fault(model.path, joint.line, f"link '{link}' hangs on itself in a ring of joints; cut it")
+            yield ModelFault(model.path, joint.line, f"link '{link}' hangs on itself in a ring of joints; cut it")
 
 
 def _above(link: str, hung: dict[str, Joint]) -> Iterator[str]:

@@ -8,7 +8,7 @@ from msgspec import Meta
 
 from uvf.models.quantities import Name, NotNegative, PhysicsRate, Positive
 from uvf.models.vehicle.looks import Looks
-from uvf.models.yaml_data import BadInput, Place
+from uvf.models.yaml_data import BadInput, FileLocation
 
 Deflection = Annotated[float, Meta(ge=0.01, le=1.6)]
 PropertyName = Annotated[str, Meta(pattern=r"^/?[A-Za-z_][A-Za-z0-9_./\[\]-]*\Z", max_length=200)]
@@ -43,7 +43,7 @@ class Lever(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     lag: NotNegative = 0.0  # s
 
 
-class Commands(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class CommandProperties(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """What each field of a SurfaceCommand is written to."""
 
     aileron: Surface = Surface()
@@ -107,7 +107,7 @@ class AirBody(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     trim_speed: Positive  # m/s
     servo_rate: Positive  # rad/s
     servo_lag: NotNegative  # s
-    controls: Commands = Commands()
+    controls: CommandProperties = CommandProperties()
     joints: dict[Name, JointReading] = {}
     settings: dict[PropertyName, float] = {}
     max_sink: Positive = 3.05  # m/s at which the landing gear still holds; 10 ft/s, the most that 14 CFR 23.473 asks for
@@ -121,7 +121,7 @@ def unnumbered(name: str) -> str:
     return re.sub(r"\[\d+\]$", "", name)
 
 
-def check_battery(pack: BatteryPack, place: Place) -> None:
+def check_battery(pack: BatteryPack, place: FileLocation) -> None:
     """Raises BadInput."""
     if pack.empty >= pack.full:
         raise BadInput(f"{place}: empty at {pack.empty:g} V, full at {pack.full:g} V; exchange them")
@@ -129,7 +129,7 @@ def check_battery(pack: BatteryPack, place: Place) -> None:
         raise BadInput(f"{place.at('rated')}: {pack.rated:g} V, but full it has {pack.full:g} V; give it more cells")
 
 
-def check_air(air: AirBody, place: Place) -> None:
+def check_air(air: AirBody, place: FileLocation) -> None:
     """What the types do not say. Raises BadInput."""
     if air.battery is not None:
         check_battery(air.battery, place.at("battery"))

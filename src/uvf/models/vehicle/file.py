@@ -9,7 +9,7 @@ from uvf.models.quantities import Name, NotNegative, PhysicsRate, Positive
 from uvf.models.vehicle.air import AirBody, BatteryPack, check_air, check_battery
 from uvf.models.vehicle.layers import file_of, fill_vehicle, folders_of
 from uvf.models.vehicle.sensors import Sensors, check_sensors, check_sensors_of_aircraft
-from uvf.models.yaml_data import BadInput, Place, load_yaml, nearest
+from uvf.models.yaml_data import BadInput, FileLocation, load_yaml, nearest
 
 
 class Motor(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -69,7 +69,7 @@ def load_vehicle(vehicles: Path, name: str) -> VehicleFile:
         known = [p.parent.name for p in vehicles.glob("*/vehicle.yaml")]
         raise BadInput(f"no vehicle '{name}' in {vehicles}; {nearest(name, known)}")
     vehicle = load_yaml(folder / "vehicle.yaml", VehicleFile, fill_vehicle)
-    place = Place(str(folder / "vehicle.yaml"))
+    place = FileLocation(str(folder / "vehicle.yaml"))
     section = "ground" if vehicle.kind == "ground" else "air"
     if getattr(vehicle, section) is None:
         raise BadInput(f"{place.at('kind')}: kind is '{vehicle.kind}' but there is no '{section}:' section")
@@ -85,7 +85,7 @@ def load_vehicle(vehicles: Path, name: str) -> VehicleFile:
     return vehicle if vehicle.variant_of is None else _with_files(vehicle, folders_of(folder))
 
 
-def _check_ground_battery(pack: BatteryPack, place: Place) -> None:
+def _check_ground_battery(pack: BatteryPack, place: FileLocation) -> None:
     """What the wheels' motors draw follows from their torque and speed."""
     check_battery(pack, place)
     for name in ("power", "rated"):

@@ -10,13 +10,13 @@ from uvf.maths.rotations import from_euler, to_euler
 from uvf.maths.se3 import Transform, compose
 from uvf.models.urdf.model import load_urdf
 from uvf.models.vehicle.sensor_presets import fill_presets
-from uvf.models.yaml_data import BadInput, Place, nearest, read_yaml
+from uvf.models.yaml_data import BadInput, FileLocation, nearest, read_yaml
 
 VARIANT = "variant_of"
 ZERO = (0.0, 0.0, 0.0)
 
 
-def fill_vehicle(data: Any, place: Place) -> Any:
+def fill_vehicle(data: Any, place: FileLocation) -> Any:
     """The plain data of a vehicle.yaml, whole. Raises BadInput for what it refers to and is not there."""
     if not isinstance(data, dict):
         return data  # what is wrong with it is found when it is converted
@@ -30,7 +30,7 @@ def folders_of(folder: Path) -> list[Path]:
     """A vehicle's folder, then that of the vehicle it is a variant of, and so on. Raises BadInput."""
     folders = [folder]
     while (name := _base_of(folders[-1])) is not None:
-        place = Place(str(folders[-1] / "vehicle.yaml")).at(VARIANT)
+        place = FileLocation(str(folders[-1] / "vehicle.yaml")).at(VARIANT)
         base = folder.parent / name
         if not (base / "vehicle.yaml").is_file():
             known = [p.parent.name for p in folder.parent.glob("*/vehicle.yaml")]
@@ -69,7 +69,7 @@ def file_of(folders: list[Path], name: str) -> str:
     return name if found == folders[0] else f"../{found.name}/{name}"
 
 
-def _fill_links(data: dict[str, Any], folders: list[Path], place: Place) -> dict[str, Any]:
+def _fill_links(data: dict[str, Any], folders: list[Path], place: FileLocation) -> dict[str, Any]:
     """``mount: {link: base_scan}`` becomes the pose of that link in the URDF; xyz and rpy beside it count from there."""
     sensors, ground = data.get("sensors"), data.get("ground")
     if not isinstance(sensors, dict) or not isinstance(ground, dict) or not isinstance(ground.get("urdf"), str):
@@ -84,7 +84,7 @@ def _fill_links(data: dict[str, Any], folders: list[Path], place: Place) -> dict
     return {**data, "sensors": filled}
 
 
-def _filled(sensor: Any, urdf: Path, place: Place) -> Any:
+def _filled(sensor: Any, urdf: Path, place: FileLocation) -> Any:
     mount = sensor.get("mount") if isinstance(sensor, dict) else None
     if not isinstance(mount, dict) or not isinstance(mount.get("link"), str):
         return sensor

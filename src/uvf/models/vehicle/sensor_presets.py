@@ -3,7 +3,7 @@
 import math
 from typing import Any
 
-from uvf.models.yaml_data import BadInput, Place, nearest
+from uvf.models.yaml_data import BadInput, FileLocation, nearest
 
 _HOKUYO = {"hz": 40.0, "beams": 1081, "angle_min": -0.75 * math.pi, "angle_increment": math.pi / 720}  # 270 deg in steps of 0.25 deg
 
@@ -42,7 +42,7 @@ PRESETS: dict[str, dict[str, dict[str, float]]] = {
 }
 
 
-def fill_presets(data: Any, place: Place) -> Any:
+def fill_presets(data: Any, place: FileLocation) -> Any:
     """The plain data of a vehicle.yaml with its presets' values put in. Raises BadInput for a preset that there is not."""
     sensors = data.get("sensors") if isinstance(data, dict) else None
     if not isinstance(sensors, dict):
@@ -53,7 +53,7 @@ def fill_presets(data: Any, place: Place) -> Any:
     return {**data, "sensors": {**sensors, **filled}}
 
 
-def _filled(sensor: Any, known: dict[str, dict[str, float]], place: Place) -> Any:
+def _filled(sensor: Any, known: dict[str, dict[str, float]], place: FileLocation) -> Any:
     if not isinstance(sensor, dict) or "preset" not in sensor:
         return sensor
     name = str(sensor["preset"])

@@ -8,7 +8,7 @@ import msgspec
 from msgspec import Meta
 
 from uvf.models.quantities import Name, NotNegative, Positive
-from uvf.models.yaml_data import BadInput, Place
+from uvf.models.yaml_data import BadInput, FileLocation
 
 Offset = Annotated[float, Meta(ge=-100, le=100)]
 Triple = tuple[Offset, Offset, Offset]
@@ -198,7 +198,7 @@ class Sensors(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 Sampled = Lidar | ImuSensor | Encoders | GnssSensor | AirDataSensor | Sonar | RangeFinder | Camera
 
 
-def check_sensors(sensors: Sensors, place: Place) -> None:
+def check_sensors(sensors: Sensors, place: FileLocation) -> None:
     """Raises BadInput for what cannot be meant."""
     _check_lidar(sensors.lidar, place.at("lidar"))
     _check_rangers("sonar", sensors.sonars, place.at("sonars"))
@@ -206,7 +206,7 @@ def check_sensors(sensors: Sensors, place: Place) -> None:
     _check_bumpers(sensors.bumpers, place.at("bumpers"))
 
 
-def check_sensors_of_aircraft(sensors: Sensors, place: Place) -> None:
+def check_sensors_of_aircraft(sensors: Sensors, place: FileLocation) -> None:
     """What only ground vehicles have would be silent."""
     for kind in ("encoders", "bumpers"):
         if getattr(sensors, kind):
@@ -221,7 +221,7 @@ def check_sensors_of_aircraft(sensors: Sensors, place: Place) -> None:
             raise BadInput(f"{place.at(kind, 'mount', 'link')}: an aircraft's model has no links; give xyz and rpy")
 
 
-def _check_lidar(lidar: Lidar | None, place: Place) -> None:
+def _check_lidar(lidar: Lidar | None, place: FileLocation) -> None:
     if lidar is None:
         return
     if lidar.range_min >= lidar.range_max:
@@ -234,7 +234,7 @@ def _check_lidar(lidar: Lidar | None, place: Place) -> None:
         raise BadInput(f"{place.at('sweep_time')}: {lidar.sweep_time:g} s is longer than from scan to scan, {period:g} s; lower it")
 
 
-def _check_rangers(kind: str, sonars: Sequence[Sonar | RangeFinder], place: Place) -> None:
+def _check_rangers(kind: str, sonars: Sequence[Sonar | RangeFinder], place: FileLocation) -> None:
     for i, sonar in enumerate(sonars):
         if sonar.range_min >= sonar.range_max:
             raise BadInput(f"{place.at(i, 'range_min')}: {sonar.range_min:g} m is not below range_max, {sonar.range_max:g} m")
@@ -242,7 +242,7 @@ def _check_rangers(kind: str, sonars: Sequence[Sonar | RangeFinder], place: Plac
             raise BadInput(f"{place.at(i)}: a second {kind} with frame '{sonar.frame}'; give each a frame of its own")
 
 
-def _check_bumpers(bumpers: list[Bumper], place: Place) -> None:
+def _check_bumpers(bumpers: list[Bumper], place: FileLocation) -> None:
     for i, bumper in enumerate(bumpers):
         if bumper.angle_min >= bumper.angle_max:
             raise BadInput(f"{place.at(i, 'angle_min')}: {bumper.angle_min:g} rad is not below angle_max, {bumper.angle_max:g} rad")

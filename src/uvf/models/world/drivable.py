@@ -24,7 +24,7 @@ LEDGE = 0.01  # m, a threshold that small wheels get over
 SIDES = 32  # of a disc
 
 
-class Ground(NamedTuple):
+class DrivableGround(NamedTuple):
     """What is drivable, cell by cell: height (rows, columns) [m], slope (rows, columns) as a gradient.
 
     surface: (n,) which primitives are driven on instead of bumped into.
@@ -57,10 +57,10 @@ class _Face(NamedTuple):
     slope: float
 
 
-def drivable(solids: Solids, xs: Floats, ys: Floats, relief: Relief | None = None) -> Ground:
+def drivable(solids: Solids, xs: Floats, ys: Floats, relief: Relief | None = None) -> DrivableGround:
     """The ground over the cells with centres at ``xs`` (columns,) and ``ys`` (rows,) [m]. relief: without one the floor is z = 0."""
     height, slope = (np.zeros((len(ys), len(xs))) for _ in range(2)) if relief is None else relief.at(*np.meshgrid(xs, ys))
-    ground = Ground(height, slope, np.zeros(len(solids.kinds), dtype=np.bool_))
+    ground = DrivableGround(height, slope, np.zeros(len(solids.kinds), dtype=np.bool_))
     rastered = [(owner, corners, _raster(owner, corners, xs, ys)) for owner, corners in _upward(solids)]
     pending = [face for _, _, face in rastered if face is not None]
     pending.sort(key=lambda face: float(face.heights.min()))
@@ -139,7 +139,7 @@ def _within(outline: Floats, x: Floats, y: Floats) -> Mask:
     return inside
 
 
-def _joins(face: _Face, ground: Ground, resolution: float) -> bool:
+def _joins(face: _Face, ground: DrivableGround, resolution: float) -> bool:
     """Whether one can drive onto the face from what is drivable, there or in a neighbouring cell."""
     if face.heights.min() > ground.height.max() + LEDGE + resolution:
         return False
@@ -152,7 +152,7 @@ def _joins(face: _Face, ground: Ground, resolution: float) -> bool:
     return False
 
 
-def _lies_on(middle: Floats, ground: Ground, axes: tuple[Floats, Floats]) -> bool:
+def _lies_on(middle: Floats, ground: DrivableGround, axes: tuple[Floats, Floats]) -> bool:
     """Whether a face too small to hold a cell's centre is part of the ground: a finely meshed ramp is one of many such."""
     xs, ys = axes
     x, y, z = middle
@@ -163,7 +163,7 @@ def _lies_on(middle: Floats, ground: Ground, axes: tuple[Floats, Floats]) -> boo
     return bool(abs(ground.height[r, c] - z) <= LEDGE + resolution * ground.slope[r, c])
 
 
-def _lay(face: _Face, ground: Ground) -> None:
+def _lay(face: _Face, ground: DrivableGround) -> None:
     higher = face.heights > ground.height[face.rows, face.columns]
     r, c = face.rows[higher], face.columns[higher]
     ground.height[r, c] = face.heights[higher]

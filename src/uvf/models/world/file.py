@@ -10,7 +10,7 @@ import msgspec
 from msgspec import Meta
 
 from uvf.models.world.wind import Wind, check_wind
-from uvf.models.yaml_data import BadInput, Place, load_yaml, nearest
+from uvf.models.yaml_data import BadInput, FileLocation, load_yaml, nearest
 
 Share = Annotated[float, Meta(ge=0, le=1)]
 Colour = tuple[Share, Share, Share]
@@ -141,7 +141,7 @@ def load_world(worlds: Path, name: str) -> WorldFile:
         known = [p.parent.name for p in worlds.glob("*/world.yaml")]
         raise BadInput(f"no world '{name}' in {worlds}; {nearest(name, known)}")
     world = load_yaml(path, WorldFile)
-    place = Place(str(path))
+    place = FileLocation(str(path))
     check_wind(world.wind, place.at("wind"))
     _check_area(world.floor, place.at("floor"))
     x_min, y_min, x_max, y_max = world.floor
@@ -166,19 +166,19 @@ def _with_whole_paths(world: WorldFile, folder: Path) -> WorldFile:
     return msgspec.structs.replace(world, meshes=meshes, terrain=terrain)
 
 
-def _check_file(folder: Path, name: str, place: Place) -> None:
+def _check_file(folder: Path, name: str, place: FileLocation) -> None:
     if not (folder / name).is_file():
         near = nearest(name, (p.relative_to(folder).as_posix() for p in folder.rglob("*") if p.is_file()))
         raise BadInput(f"{place}: no file '{name}' in {folder}; {near}")
 
 
-def _check_area(area: tuple[float, float, float, float], place: Place) -> None:
+def _check_area(area: tuple[float, float, float, float], place: FileLocation) -> None:
     x_min, y_min, x_max, y_max = area
     if x_min >= x_max or y_min >= y_max:
         raise BadInput(f"{place}: nothing lies in it; give x_min, y_min, x_max, y_max with each minimum below its maximum")
 
 
-def _check_things(world: WorldFile, folder: Path, place: Place) -> None:
+def _check_things(world: WorldFile, folder: Path, place: FileLocation) -> None:
     """What is touched is told by its name; scripts close; meshes are there."""
     seen = {TERRAIN} if world.terrain is not None else set()
     groups: dict[str, Sequence[Box | Cylinder | Sphere | Mesh]] = {
@@ -198,7 +198,7 @@ def _check_things(world: WorldFile, folder: Path, place: Place) -> None:
                 _check_file(folder, thing.file, place.at(group, i, "file"))
 
 
-def _check_script(keys: Script, place: Place) -> None:
+def _check_script(keys: Script, place: FileLocation) -> None:
     times = [key[0] for key in keys]
     if len(keys) < 2 or times[0] != 0.0 or any(a >= b for a, b in pairwise(times)):
         raise BadInput(f"{place}: two or more keys [t, x, y, yaw] with t rising from 0 must stand there")

@@ -17,7 +17,7 @@ Floats = NDArray[np.float64]
 COARSE = 0.1  # m, cells in which the ground under one point is looked for
 
 
-class Standing(NamedTuple):
+class GroundContact(NamedTuple):
     """room: [m] to the nearest thing; height [m] and slope, as a gradient, of what one stands on: floor, ramp, platform, terrain."""
 
     room: float
@@ -35,10 +35,10 @@ class Footing:
         self._ground = drivable(every, *self._plan.axes(), self._relief)
         self._bulk = chosen(every, ~self._ground.surface)
 
-    def at(self, x: float, y: float, height: float = 0.2) -> Standing:
+    def at(self, x: float, y: float, height: float = 0.2) -> GroundContact:
         """Of a ground vehicle so many metres tall."""
         floor, slope = self._floor(x, y)
-        return Standing(self.room(x, y, (floor + GRAZE, floor + height)), floor, slope)
+        return GroundContact(self.room(x, y, (floor + GRAZE, floor + height)), floor, slope)
 
     def room(self, x: float, y: float, heights: tuple[float, float]) -> float:
         """Distance [m] from a point to the nearest thing between two heights [m, world]; 0 inside one, inf when there is none."""

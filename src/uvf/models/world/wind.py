@@ -7,7 +7,7 @@ import msgspec
 from msgspec import Meta
 
 from uvf.maths.dryden import W20
-from uvf.models.yaml_data import BadInput, Place
+from uvf.models.yaml_data import BadInput, FileLocation
 
 WindSpeed = Annotated[float, Meta(ge=-100, le=100)]
 Velocity = tuple[WindSpeed, WindSpeed, WindSpeed]
@@ -36,7 +36,7 @@ class Gust(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     place: tuple[Metres, Metres] | None = None  # m, world
 
 
-class Turbulence(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class TurbulenceFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Dryden's form after MIL-F-8785C, see ``uvf.maths.dryden``."""
 
     severity: Literal["light", "moderate", "severe"] = "light"
@@ -54,10 +54,10 @@ class Wind(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     steady: Velocity = (0.0, 0.0, 0.0)
     shear: Shear | None = None
     gusts: list[Gust] = []
-    turbulence: Turbulence | None = None
+    turbulence: TurbulenceFile | None = None
 
 
-def check_wind(wind: Wind, place: Place) -> None:
+def check_wind(wind: Wind, place: FileLocation) -> None:
     """Raises BadInput."""
     shear = wind.shear
     if shear is not None and shear.law == "logarithmic" and shear.height <= math.e * shear.roughness:

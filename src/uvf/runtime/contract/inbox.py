@@ -9,7 +9,7 @@ from google.protobuf.message import Message
 from schemas.topics import SYSTEM
 from uvf.runtime.bus.interface import Sample
 from uvf.runtime.bus.wire import Malformed, decode_sample
-from uvf.runtime.contract.service import Input
+from uvf.runtime.contract.declaration import Input
 from uvf.runtime.messages.spawned import name_fault
 from uvf.runtime.messages.step_times import NS
 

@@ -4,12 +4,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
-from uvf.models.scenario import Site
+from uvf.models.scenario import Scenario
 from uvf.runtime.contract.service import Service
 
 
 @dataclass(frozen=True)
-class Host:
+class ServiceInstance:
     """One service instance: how to make it afresh (at start and after each reset), and for which vehicle.
 
     writes_for: the vehicles about which a service of the whole world writes.
@@ -25,4 +25,4 @@ class Host:
 class Build(Protocol):
     """``services/<name>/build.py`` holds one: which instances a process of this service hosts."""
 
-    def __call__(self, site: Site) -> list[Host]: ...
+    def __call__(self, site: Scenario) -> list[ServiceInstance]: ...

@@ -15,14 +15,15 @@ from schemas.topics import PARAM, SYSTEM, Qos, Request, Topic
 from uvf.runtime.bus.interface import Bus, Publisher, Query
 from uvf.runtime.bus.wire import Malformed, decode
 from uvf.runtime.contract.bulkhead import FAILURES, WINDOW, Bulkhead
+from uvf.runtime.contract.declaration import Called, Frames, Input, StopInput, Writes, declared_in
 from uvf.runtime.contract.inbox import AHEAD_MOST, EVERY_DEPTH, InputBox
-from uvf.runtime.contract.instances import Host
+from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.contract.param_server import ParamServer
 from uvf.runtime.contract.request_desk import QUERIES_MOST, ContractError, RequestDesk
-from uvf.runtime.contract.service import Answer, Frames, Input, Service, StopInput
+from uvf.runtime.contract.service import Answer, Service
 from uvf.runtime.messages.convert import stamp_ns
 from uvf.runtime.messages.frames import FrameBuffer
-from uvf.runtime.messages.outputs import Outputs
+from uvf.runtime.messages.outputs import OutputMessages
 from uvf.runtime.messages.refusals import Refusals
 from uvf.runtime.messages.step_times import NS, first_step_after, step_time
 from uvf.runtime.messages.validation import error_in
@@ -45,11 +46,11 @@ class Counters:
     published: dict[str, int] = field(default_factory=dict)
 
 
-class Shell:
+class ServiceRunner:
     """Runs one instance on a bus: live, in lockstep and in tests alike."""
 
     def __init__(
-        self, host: Host, bus: Bus, warn: Warn = lambda line: None, contains: bool = False, watchdog: Watchdog | None = None
+        self, host: ServiceInstance, bus: Bus, warn: Warn = lambda line: None, contains: bool = False, watchdog: Watchdog | None = None
     ) -> None:
         """contains: what goes wrong in the instance of a vehicle is kept from those of the others; else it is raised.
 
@@ -73,6 +74,7 @@ class Shell:
         """The newest bytes that it has put on each key that it recalls."""
         self._desk = RequestDesk(self.type, self._put, self._refused)
         self._answers: dict[str, deque[tuple[int, Answer[Any, Any]]]] = {name: deque() for name in self.type.calls}
+        self._answered = [name for name, how in declared_in(self.type.Inputs).items() if isinstance(how, Called)]
         self.refusals = Refusals(lambda line: warn(f"{self.type.name}: {line}"))
         self._stops = StopBook(at_once=self.type.clock == "wall")
         self.service: Service
@@ -132,7 +134,7 @@ class Shell:
             if isinstance(message, VehicleStatus):
                 self._stops.take_up(message.stops)
         if messages:
-            self.service.recall(**messages)
+            self.service.recall(self.type.Recalls(**messages))
 
     def _make(self) -> None:
         self.service = self.host.make()
@@ -281,7 +283,7 @@ class Shell:
         if missing:
             self.counters.stale += 1
             with self._limited():
-                outputs = self.service.stale(t_ns / NS, missing)
+                outputs = self._said(self.service.stale(t_ns / NS, missing))
             self._publish(outputs, t_ns)
             reason = f"{self.type.name} waits for {', '.join(missing)}"
             self._desk.refuse_due(reason, lambda stamp: self._is_due(stamp, t_ns), t_ns)
@@ -290,9 +292,15 @@ class Shell:
         requests = self._desk.take(lambda stamp: self._is_due(stamp, t_ns))
         values = {name: self._boxes[name].value(t_ns) for name in self._valued}
         with self._limited():
-            outputs = self.service.step(t_ns / NS, **values, **stops, **self._frames, **requests, **self._take_answers(t_ns))
+            now = self.type.Inputs(**values, **stops, **self._frames, **requests, **self._take_answers(t_ns))
+            outputs = self._said(self.service.step(t_ns / NS, now))
         self._publish(outputs, t_ns)
         self._desk.reply(outputs, t_ns)
+
+    def _said(self, outputs: Writes) -> OutputMessages:
+        if not isinstance(outputs, self.type.Outputs):
+            raise ContractError(f"{self.type.name}: step returned a {type(outputs).__name__}, not its Outputs")
+        return dict(outputs.said())
 
     def _take(self, t_ns: int) -> dict[str, StopStatus]:
         """Makes readable what this step may read; returns the inputs that are STOP ALL."""
@@ -332,15 +340,13 @@ class Shell:
 
     def _take_answers(self, t_ns: int) -> dict[str, list[Answer[Any, Any]]]:
         taken: dict[str, list[Answer[Any, Any]]] = {}
-        for name, waiting in self._answers.items():
-            if not waiting:
-                taken[name] = []
-                continue
+        for name in self._answered:
+            waiting = self._answers[name]
             taken[name] = [answer for stamp, answer in waiting if self._is_readable(stamp, t_ns)]
             self._answers[name] = deque(x for x in waiting if not self._is_readable(x[0], t_ns))
         return taken
 
-    def _publish(self, outputs: Outputs, t_ns: int) -> None:
+    def _publish(self, outputs: OutputMessages, t_ns: int) -> None:
         stamp = self._now(t_ns) + round(self.type.latency * NS)
         for name, value in outputs.items():
             if name in self.type.requests:

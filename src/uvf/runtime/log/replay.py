@@ -9,11 +9,11 @@ from collections.abc import Callable, Container, Iterable, Iterator
 from pathlib import Path
 
 from schemas.topics import SYSTEM, Qos
-from uvf.models.scenario import Site, load_site
+from uvf.models.scenario import Scenario, load_scenario
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.bus.interface import Bus, LocalBus, Publisher, Query, Sample, matches
-from uvf.runtime.contract.instances import Host
-from uvf.runtime.contract.service_runner import Shell, Warn
+from uvf.runtime.contract.instances import ServiceInstance
+from uvf.runtime.contract.service_runner import ServiceRunner, Warn
 from uvf.runtime.log.comparison import TOLERANCE, Comparison, Difference
 from uvf.runtime.log.reading import log_attachments, log_begin, log_end, read_log
 from uvf.runtime.messages.step_times import NS, first_step_after
@@ -24,7 +24,7 @@ PAUSE_MOST = 3600 * NS
 
 
 @contextlib.contextmanager
-def logged_site(log: Path) -> Iterator[Site]:
+def logged_site(log: Path) -> Iterator[Scenario]:
     """The mission that a log was recorded of, with its world and vehicles as they were then. Raises BadInput."""
     files = log_attachments(log)
     mission = next((name for name in files if name.startswith("missions/")), None)
@@ -38,7 +38,7 @@ def logged_site(log: Path) -> Iterator[Site]:
                 path.parent.mkdir(parents=True, exist_ok=True)
                 path.write_bytes(data)
         try:
-            site = load_site(root / mission, root)
+            site = load_scenario(root / mission, root)
         except BadInput as error:
             why = str(error).replace(f"{folder}/", "")
             raise BadInput(f"log {log}: the mission in it is of another version ({why}); name one with --mission") from error
@@ -79,7 +79,7 @@ def onto_bus(log: Path, bus: Bus, rate: float = 1.0, go_on: Callable[[], bool] =
     return count
 
 
-def into_service(log: Path, host: Host, tolerance: float = TOLERANCE, warn: Warn = lambda line: None) -> Iterator[Difference]:
+def into_service(log: Path, host: ServiceInstance, tolerance: float = TOLERANCE, warn: Warn = lambda line: None) -> Iterator[Difference]:
     """Feeds inputs, requests and answers of a log to one service and yields each field that it puts out otherwise.
 
     The log is read while the service runs, and held nowhere. Raises BadInput.
@@ -97,7 +97,7 @@ def into_service(log: Path, host: Host, tolerance: float = TOLERANCE, warn: Warn
         bus.subscribe(key, Qos.STATE, comparison.add_made)
     for key in asked:
         bus.serve(key, _answers(log, key))
-    shell = Shell(host, bus)
+    shell = ServiceRunner(host, bus)
     if begin:
         _take_up(shell, log, begin)
 
@@ -117,7 +117,7 @@ def into_service(log: Path, host: Host, tolerance: float = TOLERANCE, warn: Warn
     yield from comparison.rest()
 
 
-def _take_up(shell: Shell, log: Path, begin: int) -> None:
+def _take_up(shell: ServiceRunner, log: Path, begin: int) -> None:
     """In a log that begins within a run, the service begins like one that is started again there."""
 
     def newest(key: str) -> bytes | None:
@@ -146,7 +146,7 @@ def _answers(log: Path, key: str) -> Callable[[Query], None]:
     return answer
 
 
-def play(shell: Shell, samples: Iterable[Sample], take: Callable[[Sample], None], end_ns: int | None = None) -> Iterator[None]:
+def play(shell: ServiceRunner, samples: Iterable[Sample], take: Callable[[Sample], None], end_ns: int | None = None) -> Iterator[None]:
     """Steps a service up to ``end_ns``, or to the last of ``samples``, which come by stamp; yields after each step.
 
     take: called with each sample before the first step that may read it. A recorded request carries the stamp of the step that

@@ -17,7 +17,7 @@ KEYS_MOST = 4096
 FOR_EVER = 2**63  # ns
 
 
-class Keeper:
+class StateStore:
     """Lives beside the router, which outlives the services. ``poll`` hands over and answers."""
 
     def __init__(self, bus: ZenohBus, tell: Callable[[str], None]) -> None:

@@ -8,7 +8,7 @@ from uvf.maths.zones import Polygon
 from uvf.mavlink import dialect as mav
 from uvf.mavlink.names import command_name
 from uvf.models.mission.fence import MOST_VERTICES, MOST_ZONES
-from uvf.runtime.mavlink.geo import Placed
+from uvf.runtime.mavlink.geo import GeoPosition
 from uvf.runtime.mavlink.mission_items import BadItem, Body, packed, place_of, point_body, remembered_point, unpacked
 from uvf.runtime.messages.convert import array
 
@@ -21,7 +21,7 @@ CIRCLES = {mav.MAV_CMD_NAV_FENCE_CIRCLE_INCLUSION: False, mav.MAV_CMD_NAV_FENCE_
 MOST_GROUP = 255
 
 
-def checked(item: Item, facts: Placed, home_z: float) -> Item:
+def checked(item: Item, facts: GeoPosition, home_z: float) -> Item:
     """The item, which by itself makes sense. Raises BadItem."""
     if item.command not in (POINT, *POLYGONS, *CIRCLES):
         raise BadItem(mav.MAV_MISSION_UNSUPPORTED, f"{command_name(item.command)} is none of a fence")
@@ -35,7 +35,7 @@ def checked(item: Item, facts: Placed, home_z: float) -> Item:
     return item
 
 
-def fence_of(items: Sequence[Item], base: Fence, facts: Placed, home_z: float) -> Fence:
+def fence_of(items: Sequence[Item], base: Fence, facts: GeoPosition, home_z: float) -> Fence:
     """With floor, ceiling and action of ``base``, which are no items. Raises BadItem, which names the item."""
     fence = Fence(action=base.action, origin=[packed(item) for item in items])
     for limit in ("floor", "ceiling"):
@@ -57,7 +57,7 @@ def fence_of(items: Sequence[Item], base: Fence, facts: Placed, home_z: float) -
     return fence
 
 
-def _polygon(at: int, corners: Sequence[Item], facts: Placed, home_z: float) -> FenceZone:
+def _polygon(at: int, corners: Sequence[Item], facts: GeoPosition, home_z: float) -> FenceZone:
     """The polygon that begins with item ``at``."""
     first = corners[0]
     same = [(c.command, c.param1, _group(c)) == (first.command, first.param1, _group(first)) for c in corners]
@@ -75,7 +75,7 @@ def _group(item: Item) -> int:
     return 0 if math.isnan(item.param2) else int(item.param2)
 
 
-def bodies(fence: Fence, facts: Placed, home_z: float) -> list[Body]:
+def bodies(fence: Fence, facts: GeoPosition, home_z: float) -> list[Body]:
     """What came over the wire, or the items of a fence that was set elsewhere."""
     if fence.origin:
         given = [unpacked(origin) for origin in fence.origin]

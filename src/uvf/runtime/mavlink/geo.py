@@ -10,7 +10,7 @@ AMSL_FRAMES = (mav.MAV_FRAME_GLOBAL, mav.MAV_FRAME_GLOBAL_INT)
 HOME_FRAMES = (mav.MAV_FRAME_GLOBAL_RELATIVE_ALT, mav.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT)
 
 
-class Placed:
+class GeoPosition:
     """A vehicle whose world has an ``origin``, the altitude of which counts as above mean sea level."""
 
     origin: LocalTangent

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from schemas.messages import Mission, MissionItem, Vector3
 from uvf.mavlink import dialect as mav
 from uvf.mavlink.names import bad_frame, command_name
-from uvf.runtime.mavlink.geo import AMSL_FRAMES, HOME_FRAMES, Placed
+from uvf.runtime.mavlink.geo import AMSL_FRAMES, HOME_FRAMES, GeoPosition
 from uvf.runtime.mavlink.limits import too_far, too_high, too_wide
 from uvf.runtime.messages.convert import array
 from uvf.runtime.messages.plan_ids import mission_id
@@ -72,13 +72,13 @@ class BadItem(Exception):
     reason: str
 
 
-def is_skipped(command: int, pictures: float, facts: Placed) -> bool:
+def is_skipped(command: int, pictures: float, facts: GeoPosition) -> bool:
     """Whether such an item is carried, but nothing is done for it. pictures: its param3."""
     series = command == mav.MAV_CMD_IMAGE_START_CAPTURE and pictures != 1
     return command in SKIPPED or series or (facts.is_ground and command in TRIGGERS)
 
 
-def from_wire(item: mav.MAVLink_mission_item_int_message, facts: Placed, home_z: float) -> MissionItem:
+def from_wire(item: mav.MAVLink_mission_item_int_message, facts: GeoPosition, home_z: float) -> MissionItem:
     """home_z: height of home [m, world]. Raises BadItem."""
     kind = KIND.get(item.command)
     if item.command in REFUSED:
@@ -117,7 +117,7 @@ def unpacked(origin: bytes) -> "Body":
     return frame, command, autocontinue, p1, p2, p3, p4, x, y, z
 
 
-def place_of(item: mav.MAVLink_mission_item_int_message, facts: Placed, home_z: float) -> Vector3:
+def place_of(item: mav.MAVLink_mission_item_int_message, facts: GeoPosition, home_z: float) -> Vector3:
     """home_z: height of home [m, world]. Raises BadItem."""
     if item.frame not in HOME_FRAMES + AMSL_FRAMES:
         raise BadItem(mav.MAV_MISSION_UNSUPPORTED_FRAME, bad_frame(item.frame))
@@ -213,12 +213,12 @@ def is_same_place(one: Vector3, other: Vector3, ignore_height: bool = False) -> 
     return max(apart) < SAME_PLACE
 
 
-def means_the_same(item: MissionItem, facts: Placed, home_z: float) -> bool:
+def means_the_same(item: MissionItem, facts: GeoPosition, home_z: float) -> bool:
     """Whether the wire item is what the item is and lies where it does: with another home, or changed by somebody, it does not."""
     return _means(unpacked(item.origin), item, facts, home_z)
 
 
-def _means(body: Body, item: MissionItem, facts: Placed, home_z: float) -> bool:
+def _means(body: Body, item: MissionItem, facts: GeoPosition, home_z: float) -> bool:
     try:
         read = from_wire(as_item(body), facts, home_z)
     except BadItem:
@@ -240,7 +240,7 @@ def lifted(body: Body, z: float, home_z: float) -> Body:
     return (*body[:9], z - home_z) if body[0] in HOME_FRAMES else body
 
 
-def _remembered(item: MissionItem, facts: Placed, home_z: float) -> Body | None:
+def _remembered(item: MissionItem, facts: GeoPosition, home_z: float) -> Body | None:
     """What an item came from over the wire, where that says what is flown; with another home, its height over that."""
     if len(item.origin) != ORIGIN.size:
         return None
@@ -251,7 +251,7 @@ def _remembered(item: MissionItem, facts: Placed, home_z: float) -> Body | None:
     return body if _means(body, item, facts, home_z) else None
 
 
-def to_wire(item: MissionItem, facts: Placed, home_z: float) -> Body:
+def to_wire(item: MissionItem, facts: GeoPosition, home_z: float) -> Body:
     """As in ``ORIGIN``: what came over the wire, as long as it means the same, or the nearest to an item of a mission file.
 
     The latter with altitudes above home (``home_z`` [m, world]): MAVSDK takes no others.
@@ -289,7 +289,7 @@ def _yaw(item: MissionItem) -> float:
     return 360.0 - (math.degrees(item.course) - 90.0) % 360.0 if item.HasField("course") else math.nan
 
 
-def remembered_point(body: Body, point: Vector3, facts: Placed, home_z: float) -> Body:
+def remembered_point(body: Body, point: Vector3, facts: GeoPosition, home_z: float) -> Body:
     """Of an item that came over the wire and is nothing but a place, which lies where it was when home has moved."""
     try:
         stays = is_same_place(place_of(as_item(body), facts, home_z), point)
@@ -298,7 +298,7 @@ def remembered_point(body: Body, point: Vector3, facts: Placed, home_z: float) -
     return body if stays else lifted(body, point.z, home_z)
 
 
-def point_body(command: int, point: Vector3, facts: Placed, home_z: float) -> Body:
+def point_body(command: int, point: Vector3, facts: GeoPosition, home_z: float) -> Body:
     """Of an item that is nothing but a place (rally point, return point), above home."""
     latitude, longitude, _ = facts.geodetic(array(point))
     where = round(latitude * 1e7), round(longitude * 1e7), point.z - home_z

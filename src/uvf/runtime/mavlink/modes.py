@@ -12,7 +12,7 @@ _AUTO = mav.MAV_MODE_FLAG_AUTO_ENABLED | mav.MAV_MODE_FLAG_GUIDED_ENABLED | _STA
 
 
 @dataclass(frozen=True)
-class Row:
+class ModeRow:
     """One mode on the wire; ``standard`` only where every ground station's name for that number is ours.
 
     The numbers from 5 on were moved in 2024: 6, 7, 8 are Mission, Land, Takeoff now, and were Safe Recovery, Mission, Land. A station
@@ -35,18 +35,18 @@ class Row:
 
 
 TABLE = (
-    Row(Mode.MODE_MANUAL, "Manual", 1, 0, _MANUAL, on_ground=True),
-    Row(Mode.MODE_STABILIZED, "Stabilized", 7, 0, _MANUAL | _STABLE),
-    Row(Mode.MODE_ALTITUDE, "Altitude", 2, 0, _MANUAL | _STABLE, mav.MAV_STANDARD_MODE_ALTITUDE_HOLD),
-    Row(Mode.MODE_POSITION, "Position", 3, 0, _MANUAL | _STABLE),
-    Row(Mode.MODE_TAKEOFF, "Takeoff", 4, 2, _AUTO),
-    Row(Mode.MODE_HOLD, "Hold", 4, 3, _AUTO, on_ground=True),
-    Row(Mode.MODE_MISSION, "Mission", 4, 4, _AUTO, on_ground=True),
-    Row(Mode.MODE_RETURN, "Return", 4, 5, _AUTO, on_ground=True),
-    Row(Mode.MODE_LAND, "Land", 4, 6, _AUTO),
-    Row(Mode.MODE_ORBIT, "Orbit", 3, 1, _AUTO, properties=mav.MAV_MODE_PROPERTY_NOT_USER_SELECTABLE),
-    Row(Mode.MODE_FOLLOW, "Follow", 4, 8, _AUTO),
-    Row(Mode.MODE_OFFBOARD, "Offboard", 6, 0, _AUTO, properties=mav.MAV_MODE_PROPERTY_ADVANCED, on_ground=True),
+    ModeRow(Mode.MODE_MANUAL, "Manual", 1, 0, _MANUAL, on_ground=True),
+    ModeRow(Mode.MODE_STABILIZED, "Stabilized", 7, 0, _MANUAL | _STABLE),
+    ModeRow(Mode.MODE_ALTITUDE, "Altitude", 2, 0, _MANUAL | _STABLE, mav.MAV_STANDARD_MODE_ALTITUDE_HOLD),
+    ModeRow(Mode.MODE_POSITION, "Position", 3, 0, _MANUAL | _STABLE),
+    ModeRow(Mode.MODE_TAKEOFF, "Takeoff", 4, 2, _AUTO),
+    ModeRow(Mode.MODE_HOLD, "Hold", 4, 3, _AUTO, on_ground=True),
+    ModeRow(Mode.MODE_MISSION, "Mission", 4, 4, _AUTO, on_ground=True),
+    ModeRow(Mode.MODE_RETURN, "Return", 4, 5, _AUTO, on_ground=True),
+    ModeRow(Mode.MODE_LAND, "Land", 4, 6, _AUTO),
+    ModeRow(Mode.MODE_ORBIT, "Orbit", 3, 1, _AUTO, properties=mav.MAV_MODE_PROPERTY_NOT_USER_SELECTABLE),
+    ModeRow(Mode.MODE_FOLLOW, "Follow", 4, 8, _AUTO),
+    ModeRow(Mode.MODE_OFFBOARD, "Offboard", 6, 0, _AUTO, properties=mav.MAV_MODE_PROPERTY_ADVANCED, on_ground=True),
 )
 """The same for aircraft and rovers: QGroundControl keeps one list for all PX4-like vehicles. Each refuses what it cannot do."""
 
@@ -63,21 +63,21 @@ _BY_STANDARD = {row.standard: row for row in TABLE if row.standard != mav.MAV_ST
 """Asked for by these numbers; told as non-standard where some ground station's name for them is another than ours."""
 
 
-def row_of(mode: Mode) -> Row | None:
+def row_of(mode: Mode) -> ModeRow | None:
     return _BY_MODE.get(mode)
 
 
-def from_custom(custom: int) -> Row | None:
+def from_custom(custom: int) -> ModeRow | None:
     """The mode of a custom_mode word, or None when there is no such mode."""
     return _BY_CUSTOM.get(custom)
 
 
-def from_standard(standard: int) -> Row | None:
+def from_standard(standard: int) -> ModeRow | None:
     """The mode of a MAV_STANDARD_MODE, or None."""
     return _BY_STANDARD.get(standard)
 
 
-def from_command(param2: float, param3: float) -> Row | None:
+def from_command(param2: float, param3: float) -> ModeRow | None:
     """DO_SET_MODE: main and sub mode (MAVSDK; sub may be NaN), or the whole word in param2 (Mission Planner)."""
     if not math.isfinite(param2):
         return None

@@ -4,17 +4,17 @@ from collections.abc import Sequence
 
 from schemas.messages import RallyPoints
 from uvf.mavlink import dialect as mav
-from uvf.runtime.mavlink.geo import Placed
+from uvf.runtime.mavlink.geo import GeoPosition
 from uvf.runtime.mavlink.mission_items import Body, packed, place_of, point_body, remembered_point, unpacked
 
 
-def rally_of(items: Sequence[mav.MAVLink_mission_item_int_message], facts: Placed, home_z: float) -> RallyPoints:
+def rally_of(items: Sequence[mav.MAVLink_mission_item_int_message], facts: GeoPosition, home_z: float) -> RallyPoints:
     """home_z: height of home [m, world]. Raises BadItem."""
     points = [place_of(item, facts, home_z) for item in items]
     return RallyPoints(points=points, origin=[packed(item) for item in items])
 
 
-def bodies(rally: RallyPoints, facts: Placed, home_z: float) -> list[Body]:
+def bodies(rally: RallyPoints, facts: GeoPosition, home_z: float) -> list[Body]:
     """What came over the wire, as long as it lies there, or the places above home."""
     if len(rally.origin) == len(rally.points):
         pairs = zip(rally.origin, rally.points, strict=True)

@@ -25,7 +25,7 @@ class FrameError(LookupError):
     """A transform that is not known; one line says which and why."""
 
 
-class Edge:
+class FrameEdge:
     """``parent_from_child`` by time [ns]; a static one has a single sample that holds at all times."""
 
     def __init__(self, parent: str, is_static: bool) -> None:
@@ -72,7 +72,7 @@ class FrameBuffer:
     def __init__(self, history: float = HISTORY) -> None:
         """history: how far back [s] from the newest sample each edge is kept."""
         self._history_ns = round(history * NS)
-        self._edges: dict[str, Edge] = {}
+        self._edges: dict[str, FrameEdge] = {}
         self._parents: set[str] = set()
         """Every frame that has been named as a parent."""
 
@@ -94,7 +94,7 @@ class FrameBuffer:
         child, parent = message.child_frame_id, message.parent_frame_id
         edge = self._edges.get(child)
         if edge is None or (edge.parent, edge.is_static) != (parent, is_static):
-            edge = self._edges[child] = Edge(parent, is_static)
+            edge = self._edges[child] = FrameEdge(parent, is_static)
             self._parents.add(parent)
         t_ns = message.timestamp.seconds * NS + message.timestamp.nanos
         edge.add(t_ns, Transform(rotation / np.linalg.norm(rotation), translation), self._history_ns)

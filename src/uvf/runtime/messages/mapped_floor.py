@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from schemas.messages import Grid
-from uvf.models.scenario import Member
+from uvf.models.scenario import MissionVehicle
 from uvf.models.world.file import WorldFile
 from uvf.models.world.geometry import floor_plan, reachable_floor
 from uvf.runtime.messages.convert import occupancy_cells
@@ -16,7 +16,7 @@ FREE_BELOW = 50  # occupancy of 0..100
 class MappedFloor:
     """The floor of ``world`` that one ground vehicle can reach from its start, as the world file has it."""
 
-    def __init__(self, world: WorldFile, member: Member) -> None:
+    def __init__(self, world: WorldFile, member: MissionVehicle) -> None:
         self._start = member.entry.start
         plan = floor_plan(world, RESOLUTION)
         x, y = plan.centres()

@@ -10,7 +10,7 @@ from uvf.models.vehicle.battery import Charge
 from uvf.models.vehicle.sensors import GnssSensor, Lidar, RangeFinder, Sonar
 from uvf.runtime.messages.convert import seconds, stamp, vector
 from uvf.runtime.messages.outputs import Value
-from uvf.sensors.instruments import Fix, ImuReading
+from uvf.sensors.instruments import ImuReading, ReceiverFix
 
 SATELLITES = 14  # seen under an open sky
 
@@ -25,7 +25,7 @@ def imu_message(frame: str, reading: ImuReading) -> Imu:
     )
 
 
-def gnss_message(gnss: GnssSensor, fix: Fix) -> Gnss:
+def gnss_message(gnss: GnssSensor, fix: ReceiverFix) -> Gnss:
     """Its timestamp is the moment the fix is valid for."""
     horizontal, vertical = gnss.accuracy
     return Gnss(

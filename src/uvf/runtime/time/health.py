@@ -9,7 +9,7 @@ from heapq import nlargest
 from schemas import topics
 from schemas.messages import Health
 from uvf.runtime.bus.zenoh_bus import ZenohBus
-from uvf.runtime.contract.service_runner import Shell
+from uvf.runtime.contract.service_runner import ServiceRunner
 from uvf.runtime.messages.convert import stamp_ns
 from uvf.runtime.messages.refusals import LENGTH, Refusals, together
 from uvf.runtime.messages.validation import is_text
@@ -31,7 +31,7 @@ def told_gaps(gaps: Mapping[str, int]) -> dict[str, int]:
 class HealthReport:
     """Counts how late steps begin and publishes the sums."""
 
-    def __init__(self, name: str, shells: Sequence[Shell], bus: ZenohBus, refusals: Refusals) -> None:
+    def __init__(self, name: str, shells: Sequence[ServiceRunner], bus: ZenohBus, refusals: Refusals) -> None:
         """refusals: of the process itself, beside those of its instances."""
         self._name = name
         self._refusals = refusals
@@ -42,7 +42,7 @@ class HealthReport:
         self._next = 0.0
         self._publisher = bus.publisher(topics.HEALTH.by(name).at("sys"), Health.DESCRIPTOR.full_name, topics.HEALTH.qos)
 
-    def begun(self, shell: Shell, lateness: float) -> None:
+    def begun(self, shell: ServiceRunner, lateness: float) -> None:
         """A step begins ``lateness`` [s, wall] after it was due: by more than one period counts as late."""
         self._worst = max(self._worst, lateness)
         self._late += lateness > 1 / shell.type.hz

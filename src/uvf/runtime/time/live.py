@@ -8,8 +8,8 @@ from schemas import topics
 from schemas.messages import Clock, Done
 from uvf.runtime.bus.wire import guarded
 from uvf.runtime.bus.zenoh_bus import ZenohBus
-from uvf.runtime.contract.instances import Host
-from uvf.runtime.contract.service_runner import Shell, Warn
+from uvf.runtime.contract.instances import ServiceInstance
+from uvf.runtime.contract.service_runner import ServiceRunner, Warn
 from uvf.runtime.messages.refusals import Refusals
 from uvf.runtime.messages.step_times import NS
 from uvf.runtime.process.watchdog import Watchdog
@@ -25,11 +25,11 @@ LOCKSTEP_PATIENCE = 5.0  # s, after which the message that is waited for is name
 class Live:
     """One process: its shells, its place in the clock's barrier, its sign of life."""
 
-    def __init__(self, name: str, hosts: Sequence[Host], bus: ZenohBus, warn: Warn, watchdog: Watchdog | None = None) -> None:
+    def __init__(self, name: str, hosts: Sequence[ServiceInstance], bus: ZenohBus, warn: Warn, watchdog: Watchdog | None = None) -> None:
         self._name = name
         self._bus = bus
         self._warn = warn
-        self._shells = shells = [Shell(host, bus, warn, True, watchdog) for host in hosts]
+        self._shells = shells = [ServiceRunner(host, bus, warn, True, watchdog) for host in hosts]
         self._sim = [s for s in shells if s.type.clock == "sim"]
         self._wall = [s for s in shells if s.type.clock == "wall"]
         self._takes_part = bool(self._sim) or not self._wall
@@ -51,9 +51,9 @@ class Live:
         for shell in shells:
             _declare_tokens(shell, bus)
 
-    def join(self, host: Host) -> None:
+    def join(self, host: ServiceInstance) -> None:
         """One more instance on wall time, from now on."""
-        shell = Shell(host, self._bus, self._warn, contains=True)
+        shell = ServiceRunner(host, self._bus, self._warn, contains=True)
         shell.join(self._epoch)
         shell.sim_ns = self._t_ns
         self._wall.append(shell)
@@ -149,7 +149,7 @@ class Live:
         if self._takes_part and (self._simulator or clock.lockstep):
             self._report(published)
 
-    def _lateness(self, clock: Clock, shell: Shell) -> float:
+    def _lateness(self, clock: Clock, shell: ServiceRunner) -> float:
         """How long ago [s, wall] the step about to begin was due; the conductor's clock is this host's too."""
         if clock.lockstep or clock.due_wall == 0 or clock.rate_wanted == 0:
             return 0.0
@@ -167,7 +167,7 @@ class Live:
                 shell.advance()
 
 
-def _declare_tokens(shell: Shell, bus: ZenohBus) -> None:
+def _declare_tokens(shell: ServiceRunner, bus: ZenohBus) -> None:
     """The instance and each of its endpoints, for the graph of the running system."""
     bus.token(f"@node/{shell.owner}/{shell.type.name}/{bus.boot:x}")
     everyone = "*" if shell.type.scope == "world" else shell.owner

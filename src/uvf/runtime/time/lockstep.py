@@ -5,8 +5,8 @@ from collections.abc import Callable, Sequence
 from schemas import topics
 from schemas.messages import Clock
 from uvf.runtime.bus.interface import LocalBus
-from uvf.runtime.contract.instances import Host
-from uvf.runtime.contract.service_runner import Shell, Warn
+from uvf.runtime.contract.instances import ServiceInstance
+from uvf.runtime.contract.service_runner import ServiceRunner, Warn
 from uvf.runtime.messages.step_times import NS, step_time
 
 
@@ -16,10 +16,12 @@ class Lockstep:
     Steps due at the same time may run in any order: what one puts out at t is read only by steps later than t.
     """
 
-    def __init__(self, hosts: Sequence[Host], bus: LocalBus | None = None, warn: Warn = lambda line: None, contains: bool = False) -> None:
-        """contains: as of ``Shell``; without it a test sees what is raised."""
+    def __init__(
+        self, hosts: Sequence[ServiceInstance], bus: LocalBus | None = None, warn: Warn = lambda line: None, contains: bool = False
+    ) -> None:
+        """contains: as of ``ServiceRunner``; without it a test sees what is raised."""
         self.bus = bus or LocalBus()
-        self.shells = [Shell(host, self.bus, warn, contains) for host in hosts if host.service.clock == "sim"]
+        self.shells = [ServiceRunner(host, self.bus, warn, contains) for host in hosts if host.service.clock == "sim"]
         self._clock = self.bus.publisher(topics.CLOCK.at("sys"), Clock.DESCRIPTOR.full_name, topics.CLOCK.qos)
         self._tick = 1
         self._tick_ns = step_time(self._tick, topics.CLOCK.hz)

@@ -67,7 +67,7 @@ def paired(estimate: Trajectory, reference: Trajectory) -> tuple[Floats, Floats]
     return estimate.world_from_base[found], reference.world_from_base[nearest[found]]
 
 
-class Deviation(NamedTuple):
+class TrajectoryError(NamedTuple):
     """m and degrees."""
 
     number: int
@@ -77,7 +77,7 @@ class Deviation(NamedTuple):
     rotation_rmse: float
 
     @classmethod
-    def of(cls, error: Floats) -> "Deviation":
+    def of(cls, error: Floats) -> "TrajectoryError":
         """error: (n, 3) poses that ought to be zero; NaN where there are none."""
         if not len(error):
             return cls(0, *[float("nan")] * 4)
@@ -97,12 +97,12 @@ def deviations(estimate: Trajectory, reference: Trajectory) -> Floats:
     return np.column_stack((laid[:, :2] - theirs[:, :2], wrapped(laid[:, 2] - theirs[:, 2])))
 
 
-def absolute_error(estimate: Trajectory, reference: Trajectory) -> Deviation:
+def absolute_error(estimate: Trajectory, reference: Trajectory) -> TrajectoryError:
     """ATE: how far the poses are apart after alignment. Raises BadInput."""
-    return Deviation.of(deviations(estimate, reference))
+    return TrajectoryError.of(deviations(estimate, reference))
 
 
-def relative_error(estimate: Trajectory, reference: Trajectory, distance: float) -> Deviation:
+def relative_error(estimate: Trajectory, reference: Trajectory, distance: float) -> TrajectoryError:
     """RPE: the error of the motion from every pose to the first one that is ``distance`` [m] of way further on. Raises BadInput."""
     ours, theirs = _enough(paired(estimate, reference))
     way = np.concatenate(((0.0,), np.cumsum(np.hypot(*np.diff(theirs[:, :2], axis=0).T))))
@@ -110,7 +110,7 @@ def relative_error(estimate: Trajectory, reference: Trajectory, distance: float)
     starts = np.flatnonzero(ends < len(way))
     ends = ends[starts]
     moved, known = (composed(inverted(poses[starts]), poses[ends]) for poses in (ours, theirs))
-    return Deviation.of(composed(inverted(known), moved))
+    return TrajectoryError.of(composed(inverted(known), moved))
 
 
 def _enough(pairs: tuple[Floats, Floats]) -> tuple[Floats, Floats]:

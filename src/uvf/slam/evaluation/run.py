@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uvf.slam.logs.laser_log import LaserLog, OdometryTrack
-from uvf.slam.maps.session import Session
+from uvf.slam.maps.session import MappingSession
 from uvf.slam.method import Keyframe, SlamMethod
 from uvf.slam.resumable import Resumable
 from uvf.slam.synchronised import Synchronised
@@ -17,7 +17,7 @@ Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Run:
+class LogRun:
     """Poses (readings, 3) are map_from_base [m, m, rad]."""
 
     log: LaserLog
@@ -30,7 +30,7 @@ class Run:
     quality: Floats
     """(readings,) 0..1, of the online poses."""
     keyframes: tuple[Keyframe, ...]
-    session: Session | None
+    session: MappingSession | None
     """Of a method that has one."""
     skew: float
     """s, where the odometry of a sweep's stamp is found beside its own; 0 when none has been taken off."""
@@ -44,7 +44,7 @@ class Run:
         return self.log.duration / self.wall
 
 
-def run_over(log: LaserLog, method: SlamMethod, watch: Callable[[int], None] = lambda done: None) -> Run:
+def run_over(log: LaserLog, method: SlamMethod, watch: Callable[[int], None] = lambda done: None) -> LogRun:
     """The skew of the odometry's stamps is learnt and taken off on the way. watch: is told the number of readings done, after each."""
     estimates = []
     fed = Synchronised(method, _track(log))
@@ -54,7 +54,7 @@ def run_over(log: LaserLog, method: SlamMethod, watch: Callable[[int], None] = l
         watch(done)
     fed.finish()
     wall, cpu = time.perf_counter() - wall, time.process_time() - cpu
-    return Run(
+    return LogRun(
         log,
         np.array([e.map_from_base for e in estimates]),
         method.trajectory(),

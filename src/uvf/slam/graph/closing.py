@@ -7,9 +7,9 @@ from numpy.typing import NDArray
 
 from uvf.maths.rotations import wrap
 from uvf.maths.se2 import Pose2, compose, inverse
-from uvf.slam.graph.drift import Ways
+from uvf.slam.graph.drift import PathLengths
 from uvf.slam.graph.loops import Closure, LoopSearch
-from uvf.slam.graph.nodes import Nodes
+from uvf.slam.graph.nodes import KeyframeNodes
 from uvf.slam.pose_graph.edges import Edge
 from uvf.slam.pose_graph.pose_graph import PoseGraph
 
@@ -34,8 +34,8 @@ class Closing:
     """Adds what it believes to the graph; keeps the nodes' poses as the graph has them."""
 
     graph: PoseGraph
-    nodes: Nodes
-    ways: Ways
+    nodes: KeyframeNodes
+    ways: PathLengths
     search: LoopSearch
     waiting: list[Closure] = field(default_factory=list)
     settled_at: float = 0.0

@@ -29,7 +29,7 @@ class Drift:
         return np.minimum(self.heading_start + self.heading * way, self.heading_most)
 
 
-class Ways:
+class PathLengths:
     """Shortest ways between keyframes along the edges of the graph [m]."""
 
     def __init__(self) -> None:

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uvf.maths.se2 import Pose2, compose, inverse
-from uvf.slam.graph.nodes import Node, Nodes, Submap
+from uvf.slam.graph.nodes import KeyframeNodes, Node, Submap
 from uvf.slam.matching.imls import Match, match
 from uvf.slam.matching.visibility import AGREES, THROUGH, verdicts
 
@@ -18,7 +18,7 @@ FLOOR = np.diag((0.01, 0.01, 0.003)) ** 2
 """Covariance that no match is better than: objects move, floors tilt the lidar [m^2, rad^2]."""
 
 
-def fitted(node: Node, submap: Submap, nodes: Nodes, guess: Pose2) -> Match | None:
+def fitted(node: Node, submap: Submap, nodes: KeyframeNodes, guess: Pose2) -> Match | None:
     """Where near ``guess`` (anchor_from_node) a keyframe fits into a submap of ``nodes``; None where it does not."""
     found = match(guess, node.cloud, submap.surfaces, NO_PRIOR)
     if found.share < LEAST_SHARE or found.rms > MOST_RMS:
@@ -27,7 +27,7 @@ def fitted(node: Node, submap: Submap, nodes: Nodes, guess: Pose2) -> Match | No
     return None if through > MOST_THROUGH * (agree + through) else found
 
 
-def looks(node: Node, submap: Submap, nodes: Nodes, anchor_from_node: Pose2) -> tuple[int, int]:
+def looks(node: Node, submap: Submap, nodes: KeyframeNodes, anchor_from_node: Pose2) -> tuple[int, int]:
     """Surface points that the keyframe and three of the submap's see of each other's, and those they look through."""
     agree = through = 0
     for m in (submap.members[0], submap.anchor, submap.members[-1]):

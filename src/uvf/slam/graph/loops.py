@@ -9,7 +9,7 @@ from uvf.maths.rotations import wrap
 from uvf.maths.se2 import Pose2, compose
 from uvf.slam.graph.drift import Drift
 from uvf.slam.graph.fitting import fitted, information_of
-from uvf.slam.graph.nodes import Nodes, Submap
+from uvf.slam.graph.nodes import KeyframeNodes, Submap
 from uvf.slam.matching.branch_and_bound import Window, search
 
 Floats = NDArray[np.float64]
@@ -42,7 +42,7 @@ class Closure:
 class LoopSearch:
     """Finds closures; decides nothing of what becomes of them."""
 
-    nodes: Nodes
+    nodes: KeyframeNodes
     drift: Drift = field(default_factory=Drift)
 
     def near(self, k: int, ways: Floats) -> list[Closure]:

@@ -10,18 +10,18 @@ from numpy.typing import NDArray
 from uvf.maths.se2 import IDENTITY, Pose2, compose, inverse
 from uvf.models.params import Params
 from uvf.slam.graph.closing import TIED, Closing
-from uvf.slam.graph.drift import Ways
+from uvf.slam.graph.drift import PathLengths
 from uvf.slam.graph.loops import LoopSearch
-from uvf.slam.graph.motion import UNKNOWN, Motion
-from uvf.slam.graph.nodes import Node, Nodes
+from uvf.slam.graph.motion import UNKNOWN, OdometryMotion
+from uvf.slam.graph.nodes import KeyframeNodes, Node
 from uvf.slam.graph.restored import LOOP, add_edges, add_keyframes
 from uvf.slam.graph.tracker import LocalMap, Tracker
 from uvf.slam.logs.leaps import step_between
-from uvf.slam.maps.session import KINDS, Edges, Session
+from uvf.slam.maps.session import KINDS, Edges, MappingSession
 from uvf.slam.matching.cloud import cloud_of
 from uvf.slam.matching.imls import Match
 from uvf.slam.matching.point_map import point_map
-from uvf.slam.method import Estimate, Keyframe
+from uvf.slam.method import Keyframe, SlamEstimate
 from uvf.slam.pose_graph.edges import Edge
 from uvf.slam.pose_graph.pose_graph import PoseGraph
 from uvf.slam.pose_graph.uncertainty import followed, turned
@@ -61,7 +61,7 @@ class GraphSlam:
     params: GraphParams = field(default_factory=GraphParams)
 
     def __post_init__(self) -> None:
-        self.graph, self.nodes, self.ways = PoseGraph(), Nodes(), Ways()
+        self.graph, self.nodes, self.ways = PoseGraph(), KeyframeNodes(), PathLengths()
         self.tracker = Tracker()
         self.closing = Closing(self.graph, self.nodes, self.ways, LoopSearch(self.nodes))
         self._local = LocalMap(point_map([]))
@@ -75,21 +75,21 @@ class GraphSlam:
         self.quality = 1.0
         self._node_covariance = self._covariance = np.zeros((3, 3))
 
-    def add(self, reading: Reading) -> Estimate:
+    def add(self, reading: Reading) -> SlamEstimate:
         step = self._step(reading)
         if len(self.nodes) == 0:
             self._matched = reading
             self._add_node(Node(reading, cloud_of(reading), 0.0, 0.0))
             return self._place(1.0)
         if step is None:
-            return self._track(reading, Motion(self._pose, IDENTITY, UNKNOWN))
+            return self._track(reading, OdometryMotion(self._pose, IDENTITY, UNKNOWN))
         stood = hypot(step[0], step[1]) < STOOD and abs(step[2]) < STOOD
         if stood and not (self._matched is None or _changed(self._matched, reading)):
             self._pose = compose(self._pose, step)
             return self._place(self.quality)
-        return self._track(reading, Motion(self._pose, step, self.tracker.noise, stood))
+        return self._track(reading, OdometryMotion(self._pose, step, self.tracker.noise, stood))
 
-    def _track(self, reading: Reading, motion: Motion) -> Estimate:
+    def _track(self, reading: Reading, motion: OdometryMotion) -> SlamEstimate:
         cloud, self._matched = cloud_of(reading), reading
         tracked = self.tracker.track(self._local, motion, cloud)
         found, self._pose = tracked.match, tracked.match.map_from_base
@@ -107,14 +107,14 @@ class GraphSlam:
     def trajectory(self) -> Floats:
         return np.array([compose(self.nodes.poses[p.node], p.node_from_base) for p in self._placed]).reshape(-1, 3)
 
-    def session(self) -> Session:
+    def session(self) -> MappingSession:
         """All of it, so that another can ``resume``."""
         rows = self.graph.edges.rows
         kinds = np.where(rows.robust, KINDS.index("loop"), KINDS.index("match")).astype(np.uint8)
         edges = Edges(rows.ends.copy(), rows.measured.copy(), rows.information.copy(), kinds, rows.enabled.copy())
-        return Session(tuple(self.keyframes()), edges, "graph", {})
+        return MappingSession(tuple(self.keyframes()), edges, "graph", {})
 
-    def resume(self, session: Session, map_from_base: Pose2) -> None:
+    def resume(self, session: MappingSession, map_from_base: Pose2) -> None:
         """Goes on with a session before the first reading; the vehicle stands near map_from_base, wherever the session has ended."""
         way, turn = add_keyframes(session, self.nodes)
         for pose in self.nodes.poses:
@@ -157,10 +157,10 @@ class GraphSlam:
         """Of the base since the keyframe that it has last been near."""
         return compose(inverse(self.nodes.poses[self._near]), self._pose)
 
-    def _place(self, quality: float) -> Estimate:
+    def _place(self, quality: float) -> SlamEstimate:
         self.quality = quality
         self._placed.append(_Placed(self._near, self._moved()))
-        return Estimate(self._pose, self._covariance, quality)
+        return SlamEstimate(self._pose, self._covariance, quality)
 
     def _keep(self, node: Node, moved: Pose2, covariance: Floats) -> None:
         before = self._near

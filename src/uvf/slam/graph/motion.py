@@ -34,7 +34,7 @@ UNKNOWN = MotionNoise((0.25, 0.1, 0.03), (0.25, 0.02, 0.15))
 
 
 @dataclass(frozen=True)
-class Motion:
+class OdometryMotion:
     """From where the vehicle was (map_from_base), by the odometry; disputed: something tells that this is wrong."""
 
     before: Pose2

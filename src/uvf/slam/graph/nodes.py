@@ -56,7 +56,7 @@ class Submap:
         return likelihood_field(self.surfaces.points, RESOLUTION, SIGMA, DEPTH)
 
 
-class Nodes:
+class KeyframeNodes:
     """All keyframes with their poses as known now (map_from_node), and the submaps made of them."""
 
     def __init__(self) -> None:

@@ -3,8 +3,8 @@
 from math import hypot
 
 from uvf.maths.se2 import IDENTITY, Pose2, compose, inverse
-from uvf.slam.graph.nodes import Node, Nodes
-from uvf.slam.maps.session import KINDS, Edges, Session
+from uvf.slam.graph.nodes import KeyframeNodes, Node
+from uvf.slam.maps.session import KINDS, Edges, MappingSession
 from uvf.slam.matching.cloud import cloud_of
 from uvf.slam.pose_graph.edges import Edge
 from uvf.slam.pose_graph.pose_graph import PoseGraph
@@ -12,7 +12,7 @@ from uvf.slam.pose_graph.pose_graph import PoseGraph
 LOOP = KINDS.index("loop")
 
 
-def add_keyframes(session: Session, nodes: Nodes) -> tuple[float, float]:
+def add_keyframes(session: MappingSession, nodes: KeyframeNodes) -> tuple[float, float]:
     """Those that the nodes do not have yet, and all of them to where they are; m and rad of the way to the last one."""
     known = len(nodes)
     nodes.poses[:] = [keyframe.map_from_base for keyframe in session.keyframes[:known]]

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from uvf.maths.rotations import wrap
 from uvf.maths.se2 import IDENTITY, Pose2
-from uvf.slam.graph.motion import UNKNOWN, Motion, MotionNoise
+from uvf.slam.graph.motion import UNKNOWN, MotionNoise, OdometryMotion
 from uvf.slam.graph.trust import LEARNT, Trust
 from uvf.slam.matching.branch_and_bound import Window, search
 from uvf.slam.matching.cloud import Cloud
@@ -72,7 +72,7 @@ class Tracker:
     share: float = USUAL_SHARE
     rms: float = USUAL_RMS
 
-    def track(self, local: LocalMap, motion: Motion, cloud: Cloud) -> Tracked:
+    def track(self, local: LocalMap, motion: OdometryMotion, cloud: Cloud) -> Tracked:
         """The pose (map_from_base) of a sweep.
 
         A step after which the sweep fits badly is none of the vehicle's if it fits well near where that was before.
@@ -80,7 +80,7 @@ class Tracker:
         step, motion = motion.step, self.trust.straightened(motion)
         found = self._found(local, motion, cloud)
         if motion.disputed or (motion.told and self._doubts(found)):
-            other = self._found(local, Motion(motion.before, IDENTITY, UNKNOWN), cloud)
+            other = self._found(local, OdometryMotion(motion.before, IDENTITY, UNKNOWN), cloud)
             wins = _is_better(other, found) if motion.disputed else self._wins(motion, other, found)
             if wins and not self._doubts(other):
                 found = other
@@ -91,13 +91,13 @@ class Tracker:
             return Tracked(Match(motion.guess, np.zeros((3, 3)), 0.0, found.rms), True)
         return Tracked(found, doubted)
 
-    def _learn(self, step: Pose2, motion: Motion, found: Match) -> None:
+    def _learn(self, step: Pose2, motion: OdometryMotion, found: Match) -> None:
         self.share += LEARNT * (found.share - self.share)
         self.rms += LEARNT * (found.rms - self.rms)
         if motion.told and _plain(found):
             self.trust.learn(step, motion, found.map_from_base)
 
-    def _found(self, local: LocalMap, motion: Motion, cloud: Cloud) -> Match:
+    def _found(self, local: LocalMap, motion: OdometryMotion, cloud: Cloud) -> Match:
         found = match(motion.guess, cloud, local.surfaces, motion.information)
         if motion.told and not _plain(found):
             found = match(motion.guess, cloud, local.surfaces, self.trust.information(motion))
@@ -108,7 +108,7 @@ class Tracker:
     def _doubts(self, found: Match) -> bool:
         return found.share < WELL * self.share or found.rms > LOOSE * self.rms
 
-    def _searched(self, local: LocalMap, motion: Motion, cloud: Cloud, doubted: Match) -> Match:
+    def _searched(self, local: LocalMap, motion: OdometryMotion, cloud: Cloud, doubted: Match) -> Match:
         self.searched += 1
         points = cloud.points[:: max(1, len(cloud.points) // SEARCHED)]
         if len(local.surfaces.points) == 0:
@@ -121,7 +121,7 @@ class Tracker:
         other = match(place.pose, cloud, local.surfaces, 0.1 * motion.information)
         return other if self._wins(motion, other, doubted) else doubted
 
-    def _wins(self, motion: Motion, other: Match, found: Match) -> bool:
+    def _wins(self, motion: OdometryMotion, other: Match, found: Match) -> bool:
         """Whether the other one fits better by more than where it lies surprises."""
         surprise = self.trust.surprise(motion, other.map_from_base)
         if surprise > INCREDIBLE and other.share < FIRM:
@@ -130,7 +130,7 @@ class Tracker:
         return _is_better(other, found, PER_SURPRISE * more)
 
 
-def _strays(motion: Motion, cloud: Cloud) -> bool:
+def _strays(motion: OdometryMotion, cloud: Cloud) -> bool:
     """Whether the step is too unsure for the surface nearest to a point to be its own."""
     position, heading = motion.sigmas
     return position + heading * _usual_range(cloud.points) > FARTHEST

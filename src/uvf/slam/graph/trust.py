@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from uvf.maths.rotations import wrap
 from uvf.maths.se2 import Pose2
-from uvf.slam.graph.motion import Motion, MotionNoise
+from uvf.slam.graph.motion import MotionNoise, OdometryMotion
 
 Floats = NDArray[np.float64]
 
@@ -58,11 +58,11 @@ class Trust:
     heading: float = 1.0
     veering: Veering = field(default_factory=Veering)
 
-    def straightened(self, motion: Motion) -> Motion:
+    def straightened(self, motion: OdometryMotion) -> OdometryMotion:
         """Without what the odometry always gets wrong."""
         return replace(motion, step=self.veering.straightened(motion.step)) if motion.told else motion
 
-    def learn(self, step: Pose2, motion: Motion, found: Pose2) -> None:
+    def learn(self, step: Pose2, motion: OdometryMotion, found: Pose2) -> None:
         """step: as the odometry told it; motion: as it was taken."""
         sigma, known = motion.sigmas[1], motion.step[2] - step[2]
         off = wrap(found[2] - motion.guess[2]) + known
@@ -71,11 +71,11 @@ class Trust:
             position, heading = _off(motion, found) / np.array(motion.sigmas)
             self.position, self.heading = _followed(self.position, position), _followed(self.heading, heading)
 
-    def information(self, motion: Motion) -> Floats:
+    def information(self, motion: OdometryMotion) -> Floats:
         """(3, 3) of (x, y, yaw): of the motion, as the odometry has been found to be; of one not told, as it is."""
         return self._usual(motion.noise).information(motion.step) if motion.told else motion.information
 
-    def surprise(self, motion: Motion, found: Pose2) -> float:
+    def surprise(self, motion: OdometryMotion, found: Pose2) -> float:
         """How unlikely it is that the vehicle came to be there; it grows slowly far out: wheels slip, vehicles are bumped into."""
         return log1p(float(np.sum((_off(motion, found) / np.array(self._usual(motion.noise).sigmas(motion.step))) ** 2)))
 
@@ -85,7 +85,7 @@ class Trust:
         return MotionNoise((self.position * p, self.position * q, r), (self.heading * s, self.heading * t, u))
 
 
-def _off(motion: Motion, found: Pose2) -> Floats:
+def _off(motion: OdometryMotion, found: Pose2) -> Floats:
     """m, rad: how far from where the odometry has it."""
     guess = motion.guess
     return np.array((hypot(found[0] - guess[0], found[1] - guess[1]), abs(wrap(found[2] - guess[2]))))

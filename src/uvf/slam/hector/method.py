@@ -16,9 +16,9 @@ from uvf.slam.hector.gradient import UNIT, climb, normal_equations
 from uvf.slam.hector.params import HectorParams
 from uvf.slam.incremental import IncrementalMethod
 from uvf.slam.logs.leaps import step_between
-from uvf.slam.maps.shared_tiles import Evidence, SharedTiles
+from uvf.slam.maps.shared_tiles import SharedEvidence, SharedTiles
 from uvf.slam.matching.points import points_of
-from uvf.slam.method import Estimate, Keyframe
+from uvf.slam.method import Keyframe, SlamEstimate
 from uvf.slam.reading import Reading
 
 Floats = NDArray[np.float64]
@@ -56,15 +56,15 @@ class HectorSlam(IncrementalMethod):
         p = self.params
         self.levels = [SharedTiles(1, np.int16, p.map_resolution * 2**level, MEMORY) for level in range(p.map_multi_res_levels)]
         bound = round(BOUND / UNIT)
-        self._evidence = Evidence(_units(p.update_factor_occupied), _units(p.update_factor_free), -bound, bound)
+        self._evidence = SharedEvidence(_units(p.update_factor_occupied), _units(p.update_factor_free), -bound, bound)
         self._last: Reading | None = None
 
-    def add(self, reading: Reading) -> Estimate:
+    def add(self, reading: Reading) -> SlamEstimate:
         last, self._last = self._last, reading
         if last is None:
             self._poses.append(IDENTITY)
             self._insert(reading)
-            return Estimate(IDENTITY, np.zeros((3, 3)), 1.0)
+            return SlamEstimate(IDENTITY, np.zeros((3, 3)), 1.0)
         guess = self._poses[-1]
         if self.params.use_odometry:
             guess = compose(guess, step_between(last, reading) or IDENTITY)
@@ -74,7 +74,7 @@ class HectorSlam(IncrementalMethod):
             self._insert(reading)
         return estimate
 
-    def _best(self, guess: Pose2, reading: Reading) -> Estimate:
+    def _best(self, guess: Pose2, reading: Reading) -> SlamEstimate:
         """Of several starts: a lidar that is slow, or turned quickly, is farther away than a hill is wide."""
         found = self._matched(guess, reading)
         if self.params.use_odometry:
@@ -86,20 +86,20 @@ class HectorSlam(IncrementalMethod):
         turned = max((self._matched(compose(guess, Pose2(0.0, 0.0, turn)), reading) for turn in TURNS), key=_quality)
         return turned if turned.quality > found.quality + BETTER else found
 
-    def _matched(self, guess: Pose2, reading: Reading) -> Estimate:
+    def _matched(self, guess: Pose2, reading: Reading) -> SlamEstimate:
         """From the coarsest map, which sees far, to the finest, which sees sharply."""
         points = self._points(reading)
         if len(points) < LEAST_POINTS:
-            return Estimate(guess, NOTHING, 0.0)
+            return SlamEstimate(guess, NOTHING, 0.0)
         pose, begin = np.array(guess), np.array(guess)
         for level in reversed(self.levels):
             pose = climb(pose, points, level.grid(0), FINEST_ROUNDS if level is self.levels[0] else ROUNDS, (begin, HOLD))
         h, _, occupancy = normal_equations(pose, points, self.levels[0].grid(0))
         if not np.isfinite(pose).all() or occupancy < LEAST:
-            return Estimate(guess, NOTHING, 0.0)
+            return SlamEstimate(guess, NOTHING, 0.0)
         found = Pose2(float(pose[0]), float(pose[1]), wrap(float(pose[2])))
         information: Floats = h / SIGMA**2 + np.linalg.inv(NOTHING)
-        return Estimate(found, np.linalg.inv(information).astype(np.float64), float(occupancy))
+        return SlamEstimate(found, np.linalg.inv(information).astype(np.float64), float(occupancy))
 
     def _rolled_on(self) -> Pose2:
         """Where the vehicle is if it goes on as it went."""
@@ -120,7 +120,7 @@ class HectorSlam(IncrementalMethod):
         self._keyframes.append(Keyframe(self._poses[-1], reading))
 
 
-def _quality(estimate: Estimate) -> float:
+def _quality(estimate: SlamEstimate) -> float:
     return estimate.quality
 
 

@@ -31,7 +31,7 @@ STRIDE = 0.9  # of the distance to the nearest wall that a beam can be followed 
 
 
 @dataclass(frozen=True)
-class Beams:
+class BeamLikelihood:
     """ends: (n, 2) m, where beams came back from; origin: (x, y) m of the lidar; base frame."""
 
     ends: Floats
@@ -48,11 +48,13 @@ class Scores:
     against: Floats
 
 
-def beams_of(reading: Reading, most: int) -> Beams:
+def beams_of(reading: Reading, most: int) -> BeamLikelihood:
     """At most so many, evenly taken; what gave no return tells nothing: black things and glass give none either."""
     returned = np.flatnonzero(reading.returned)
     taken = returned[:: max(1, -(-len(returned) // most))]
-    return Beams(reading.beams.directions[taken] * reading.ranges[taken, None] + np.array(reading.beams.origin), reading.beams.origin)
+    return BeamLikelihood(
+        reading.beams.directions[taken] * reading.ranges[taken, None] + np.array(reading.beams.origin), reading.beams.origin
+    )
 
 
 def field_of(known: KnownMap) -> Field:
@@ -135,18 +137,18 @@ def _scores(poses: Floats, beams: tuple[Floats, tuple[float, float]], field: Fie
     return out
 
 
-def ways(poses: Floats, beams: Beams, field: Field) -> Mask:
+def ways(poses: Floats, beams: BeamLikelihood, field: Field) -> Mask:
     """(poses, beams) whether each beam has gone through a wall, seen from poses (n, 3)."""
     return _ways(poses, (beams.ends, beams.origin), field)
 
 
-def scores(poses: Floats, beams: Beams, field: Field, blocked: Mask, of: Ints) -> Scores:
+def scores(poses: Floats, beams: BeamLikelihood, field: Field, blocked: Mask, of: Ints) -> Scores:
     """Of a sweep at poses (n, 3). blocked: as of ``ways`` of some of the places; of: (n,) which of them is a pose's, -1 for none."""
     logs, fits, against = _scores(poses, (beams.ends, beams.origin), field, (blocked, of))
     n = max(len(beams.ends), 1)
     return Scores(logs * min(1.0, INDEPENDENT / n), fits / n, against / n)
 
 
-def fits_at(poses: Floats, beams: Beams, field: Field) -> Scores:
+def fits_at(poses: Floats, beams: BeamLikelihood, field: Field) -> Scores:
     """The same with all beams looked along from each pose."""
     return scores(poses, beams, field, np.zeros((0, len(beams.ends)), dtype=np.bool_), np.full(len(poses), -1))

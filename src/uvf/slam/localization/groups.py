@@ -17,7 +17,7 @@ NONE, DROPPED = -1, -2
 
 
 @dataclass(frozen=True)
-class Group:
+class ParticleGroup:
     """members: indices of its particles; weight: their sum; mean (x, y, yaw) and covariance (3, 3) [m, rad]."""
 
     members: NDArray[np.int64]
@@ -26,7 +26,7 @@ class Group:
     covariance: Floats
 
 
-def groups_of(poses: Floats, weights: Floats, most: int) -> tuple[list[Group], NDArray[np.int64]]:
+def groups_of(poses: Floats, weights: Floats, most: int) -> tuple[list[ParticleGroup], NDArray[np.int64]]:
     """(at most so many groups, the heaviest first; indices of the particles in none of them): leader clustering."""
     labels, count = _led(poses, weights, most)
     found = [_group(poses, weights, np.flatnonzero(labels == k)) for k in range(count)]
@@ -58,9 +58,9 @@ def _led(poses: Floats, weights: Floats, most: int) -> tuple[NDArray[np.int64], 
     return labels, count
 
 
-def _group(poses: Floats, weights: Floats, members: NDArray[np.int64]) -> Group:
+def _group(poses: Floats, weights: Floats, members: NDArray[np.int64]) -> ParticleGroup:
     total, mean, covariance = _moments(poses[members], weights[members])
-    return Group(members, total, Pose2(float(mean[0]), float(mean[1]), wrap(float(mean[2]))), covariance)
+    return ParticleGroup(members, total, Pose2(float(mean[0]), float(mean[1]), wrap(float(mean[2]))), covariance)
 
 
 @compiled

@@ -15,7 +15,7 @@ from uvf.models.yaml_data import BadInput
 from uvf.slam.localization import surfaces
 from uvf.slam.localization.surfaces import FREE, OCCUPIED
 from uvf.slam.maps.placing import cells_of, centres, values_at
-from uvf.slam.maps.session import Session
+from uvf.slam.maps.session import MappingSession
 from uvf.slam.maps.tiles import TileMap
 from uvf.slam.matching.cloud import Cloud
 from uvf.slam.matching.likelihood import LikelihoodField, likelihood_field
@@ -90,7 +90,7 @@ def known_map(path: Path, map_from_file: Pose2) -> KnownMap:
     """A session's file or a map's. Raises BadInput."""
     if not is_session(path):
         return of_grid(load_map(path), map_from_file, str(path))
-    keyframes = Session.load(path).keyframes
+    keyframes = MappingSession.load(path).keyframes
     return of_keyframes([Keyframe(compose(map_from_file, k.map_from_base), k.reading) for k in keyframes], str(path))
 
 

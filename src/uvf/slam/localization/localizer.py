@@ -14,14 +14,14 @@ from uvf.slam.localization.groups import near
 from uvf.slam.localization.known_map import KnownMap
 from uvf.slam.localization.motion import OdometryNoise
 from uvf.slam.localization.params import FilterParams
-from uvf.slam.localization.particle_filter import Hypothesis, ParticleFilter, Prediction, Sweep
-from uvf.slam.localization.proposals import Proposal
+from uvf.slam.localization.particle_filter import FilterSweep, Hypothesis, ParticleFilter, Prediction
+from uvf.slam.localization.proposals import PoseProposal
 from uvf.slam.localization.recent import Moved, RecentSweeps
 from uvf.slam.localization.whole_map import Lately, whole_map
 from uvf.slam.logs.leaps import step_between
 from uvf.slam.matching.cloud import cloud_of
 from uvf.slam.matching.imls import match
-from uvf.slam.method import Estimate
+from uvf.slam.method import SlamEstimate
 from uvf.slam.reading import Reading
 
 Floats = NDArray[np.float64]
@@ -51,7 +51,7 @@ OWN_PART = 0.3  # weight of the heaviest hypothesis beside the last pose that a 
 PUT_IN = 0.4  # weight of what a search has found while it is not known where the vehicle is
 
 
-class State(Enum):
+class LocalizerState(Enum):
     TRACKING = "tracking"
     SEARCHING = "searching"
     LOST = "lost"
@@ -73,19 +73,19 @@ class Localizer:
 
     def set_pose(self, pose: Pose2, covariance: Floats = START) -> None:
         """The vehicle is at ``pose`` (map_from_base), with a covariance (3, 3) of (x, y, yaw)."""
-        self.state = State.TRACKING
+        self.state = LocalizerState.TRACKING
         self.filter.begin_at(pose, covariance)
         self._begin(pose)
 
     def doubt(self, pose: Pose2) -> None:
         """The vehicle may be at ``pose`` (map_from_base), or anywhere."""
-        self.state = State.LOST
+        self.state = LocalizerState.LOST
         self.filter.begin_at(pose, REMEMBERED)
         self._begin(pose)
 
     def relocalize(self) -> None:
         """Nothing is known of where the vehicle is."""
-        self.state = State.SEARCHING
+        self.state = LocalizerState.SEARCHING
         self.filter.begin_anywhere()
         self._begin(self.pose)
 
@@ -100,45 +100,45 @@ class Localizer:
         self.hypotheses = []
         self.fit.forget_newest()
 
-    def add(self, reading: Reading) -> Estimate:
+    def add(self, reading: Reading) -> SlamEstimate:
         told = self._step(reading)
         news = 1.0 if self.is_fresh else min(1.0, hypot(told.x, told.y) / NEWS_WAY + abs(told.yaw) / NEWS_TURN)
-        sweep = Sweep(cloud_of(reading), beams_of(reading, self.params.beams), news)
+        sweep = FilterSweep(cloud_of(reading), beams_of(reading, self.params.beams), news)
         moved, prediction = self._moved(sweep, told)
         self._lately.add(self._recent.pose, sweep.cloud.points)
         if news > 0.0:
             self.is_fresh = False
-            if self.state is not State.TRACKING and self._lately.way - self._searched_at >= SEARCH_WAY:
+            if self.state is not LocalizerState.TRACKING and self._lately.way - self._searched_at >= SEARCH_WAY:
                 self._search()
                 prediction = None
             self.hypotheses = self.filter.correct(prediction or self._predicted(moved.step, self._noise(moved), sweep), sweep)
             self._decide(moved, news)
-        return Estimate(self.pose, self._covariance(), self.quality)
+        return SlamEstimate(self.pose, self._covariance(), self.quality)
 
-    def _moved(self, sweep: Sweep, told: Pose2) -> tuple[Moved, Prediction | None]:
+    def _moved(self, sweep: FilterSweep, told: Pose2) -> tuple[Moved, Prediction | None]:
         """The step; and where it leads, if the map has told it: a tracked vehicle whose sweep fits well needs no other sweeps.
 
         told: by the odometry.
         """
         if not self.is_fresh and hypot(told.x, told.y) < STOOD and abs(told.yaw) < STOOD:
             return Moved(IDENTITY, True, 1.0), None
-        if self.state is State.TRACKING and not self.is_fresh:
+        if self.state is LocalizerState.TRACKING and not self.is_fresh:
             prediction = self._predicted(told, self._odometry_noise(), sweep)
             own = prediction.only
             if own is not None and own.match is not None and self._usual.add(own.match) and self._follows(own, told):
                 return self._recent.follow(sweep.cloud, compose(inverse(self.pose), own.pose)), prediction
         return self._recent.add(sweep.cloud, told), None
 
-    def _follows(self, own: Proposal, step: Pose2) -> bool:
+    def _follows(self, own: PoseProposal, step: Pose2) -> bool:
         """Whether a match is where a step leads."""
         return near(own.pose, compose(self.pose, step), *LEAPS)
 
-    def _predicted(self, step: Pose2, noise: OdometryNoise, sweep: Sweep) -> Prediction:
+    def _predicted(self, step: Pose2, noise: OdometryNoise, sweep: FilterSweep) -> Prediction:
         """Where a step leads. A tracked vehicle's match that leaps counts only where it is better than one that does not (many a
         corridor looks the same a little further on), and no less than half as good as usual (few walls fit in many places)."""
         prediction = self.filter.predict(step, noise, sweep)
         own = prediction.proposals[0]
-        if self.state is not State.TRACKING or own.match is None or self._follows(own, step):
+        if self.state is not LocalizerState.TRACKING or own.match is None or self._follows(own, step):
             return prediction
         other = match(compose(self.pose, step), sweep.cloud, self.known.surfaces, STEP.information(step))
         if worth(other) >= worth(own.match) - BETTER:
@@ -158,13 +158,13 @@ class Localizer:
         own = self._own
         if own is None:
             return 0.0
-        sure = own.weight * (1.0 if self.state is State.TRACKING else HALF_SURE)
+        sure = own.weight * (1.0 if self.state is LocalizerState.TRACKING else HALF_SURE)
         return float(np.clip(sure * self.fit.share, 0.0, 1.0))
 
     @property
     def _own(self) -> Hypothesis | None:
         """The hypothesis that is told: the one that goes on from the last pose; while it is looked for from nothing, the best one."""
-        if not self.hypotheses or self.state is State.SEARCHING:
+        if not self.hypotheses or self.state is LocalizerState.SEARCHING:
             return next(iter(self.hypotheses), None)
         beside = [h for h in self.hypotheses if near(h.pose, self.pose)]
         heavy = [h for h in beside if h.weight > OWN_PART * beside[0].weight]
@@ -182,7 +182,7 @@ class Localizer:
     def _decide(self, moved: Moved, news: float) -> None:
         self.pose = compose(self.pose, moved.step)
         own = self._own
-        if own is None and self.state is State.TRACKING:
+        if own is None and self.state is LocalizerState.TRACKING:
             own = self.hypotheses[0]
         if moved.fits < BROKEN:
             self._broken_at = self._lately.way
@@ -191,8 +191,8 @@ class Localizer:
         if own is not None:
             if own.matched:
                 self.pose = own.pose
-            self.fit.add(own.fit, news, self.state is State.TRACKING)
-        if self.state is State.TRACKING:
+            self.fit.add(own.fit, news, self.state is LocalizerState.TRACKING)
+        if self.state is LocalizerState.TRACKING:
             self._notice()
         else:
             self._find(self.hypotheses[0])
@@ -204,7 +204,7 @@ class Localizer:
         elif self._sure_since is None:
             self._sure_since = self._lately.way
         elif self._lately.way - self._sure_since >= SURE_WAY and not self._has_rival(best):
-            self.state = State.TRACKING
+            self.state = LocalizerState.TRACKING
             self.pose = best.pose
             self.fit.begin(best.fit)
             self._agreed_at = self._lately.way
@@ -220,7 +220,7 @@ class Localizer:
         at_once = way - self._broken_at < BROKEN_WAY and self.fit.contradicts(MANY_AGAINST)
         unsupported = way - self._torn_at < BROKEN_WAY and self.fit.shows_nothing
         if at_once or unsupported or way - self._agreed_at > AGAINST_WAY:
-            self.state = State.LOST
+            self.state = LocalizerState.LOST
             self._lately.forget()
             self._searched_at, self._sure_since = -np.inf, None
 
@@ -229,7 +229,7 @@ class Localizer:
         self._searched_at = self._lately.way
         found = [f.pose for f in whole_map(self.known, self._lately.points(), MOST_PLACES)]
         self.filter.put_in([p for p in found if not any(near(p, h.pose) for h in self.hypotheses)], FOUND, PUT_IN)
-        if self.state is State.LOST and self._own is None:
+        if self.state is LocalizerState.LOST and self._own is None:
             self.filter.put_in([self.pose], REMEMBERED, PUT_IN)
 
     def _has_rival(self, own: Hypothesis) -> bool:

@@ -11,14 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uvf.maths.se2 import IDENTITY, Pose2
-from uvf.slam.localization.beams import Beams, field_of, fits_at, scores, ways
+from uvf.slam.localization.beams import BeamLikelihood, field_of, fits_at, scores, ways
 from uvf.slam.localization.fit import Fit
 from uvf.slam.localization.gaussian import drawn
-from uvf.slam.localization.groups import LEAST_WEIGHT, Group, groups_of
+from uvf.slam.localization.groups import LEAST_WEIGHT, ParticleGroup, groups_of
 from uvf.slam.localization.kld import bins_of, enough
 from uvf.slam.localization.known_map import KnownMap
 from uvf.slam.localization.motion import OdometryNoise, sample_motion
-from uvf.slam.localization.proposals import FITS, Proposal, proposal
+from uvf.slam.localization.proposals import FITS, PoseProposal, proposal
 from uvf.slam.matching.cloud import Cloud
 from uvf.slam.matching.imls import Match
 
@@ -43,11 +43,11 @@ class Hypothesis:
 
 
 @dataclass(frozen=True)
-class Sweep:
+class FilterSweep:
     """What was measured: cloud for matching, beams for weighing, both in the base frame. news: 0..1, how far it tells something new."""
 
     cloud: Cloud
-    beams: Beams
+    beams: BeamLikelihood
     news: float
 
 
@@ -55,10 +55,10 @@ class Prediction(NamedTuple):
     """poses: (n, 3) of all particles after the motion; proposals: of their groups, the heaviest first, and of those in none."""
 
     poses: Floats
-    proposals: list[Proposal]
+    proposals: list[PoseProposal]
 
     @property
-    def only(self) -> Proposal | None:
+    def only(self) -> PoseProposal | None:
         """Of the one place that the particles stand for; None while there are several."""
         return self.proposals[0] if len(self.proposals) == 1 and self.proposals[0].near else None
 
@@ -108,24 +108,24 @@ class ParticleFilter:
         self.poses = np.concatenate((self.poses, *fresh))
         self.weights = np.concatenate((self.weights * (1.0 - part), np.full(n, part / n)))
 
-    def predict(self, step: Pose2, noise: OdometryNoise, sweep: Sweep) -> Prediction:
+    def predict(self, step: Pose2, noise: OdometryNoise, sweep: FilterSweep) -> Prediction:
         """Where one motion leads, and what a sweep fits there. Nothing is changed yet."""
         moved = sample_motion(self.poses, step, noise, self._rng)
         groups, loose = groups_of(moved, self.weights, MOST_GROUPS)
         proposals = [self._agreeing(proposal(self.known, group, sweep.cloud), sweep.beams) for group in groups]
         rest = float(self.weights[loose].sum())
         if rest > LEAST_WEIGHT:
-            proposals.append(Proposal(Group(loose, rest, IDENTITY, np.eye(3)), None, near=False))
+            proposals.append(PoseProposal(ParticleGroup(loose, rest, IDENTITY, np.eye(3)), None, near=False))
         return Prediction(moved, proposals)
 
-    def _agreeing(self, found: Proposal, beams: Beams) -> Proposal:
+    def _agreeing(self, found: PoseProposal, beams: BeamLikelihood) -> PoseProposal:
         """Without its match where the rest of the sweep contradicts it."""
         if found.match is None or found.match.share >= FITS:
             return found
         at = fits_at(np.array([found.pose]), beams, self._field)
         return found if at.fits[0] > at.against[0] else replace(found, match=None)
 
-    def correct(self, prediction: Prediction, sweep: Sweep) -> list[Hypothesis]:
+    def correct(self, prediction: Prediction, sweep: FilterSweep) -> list[Hypothesis]:
         """One motion and one sweep; the hypotheses, the heaviest first."""
         proposals = prediction.proposals
         places = np.array([p.pose for p in proposals])
@@ -139,7 +139,7 @@ class ParticleFilter:
         ]
         return sorted(hypotheses, key=lambda h: -h.weight)
 
-    def _drawn(self, proposals: list[Proposal], moved: Floats) -> _Drawn:
+    def _drawn(self, proposals: list[PoseProposal], moved: Floats) -> _Drawn:
         """New particles around what has been matched, until there are enough for the bins they are in; the others go on, those that
         are put in on top of the most that there may be."""
         before = (moved, self.weights)
@@ -160,7 +160,7 @@ class ParticleFilter:
             wanted = int(np.clip(enough(bins_of(np.concatenate([d.poses for d in found]))), *self.limits))
         return _Drawn(*(np.concatenate(column) for column in zip(*kept, *found, strict=True)))
 
-    def _weigh(self, proposals: list[Proposal], fresh: _Drawn, sweep: Sweep, blocked: Mask) -> Floats:
+    def _weigh(self, proposals: list[PoseProposal], fresh: _Drawn, sweep: FilterSweep, blocked: Mask) -> Floats:
         """Puts the new particles in force; the weight of each proposal's.
 
         blocked: where beams go through walls, seen from the places of the proposals: particles about a match see them so, too.

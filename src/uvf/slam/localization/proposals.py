@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from uvf.maths.se2 import Pose2
 from uvf.slam.localization.gaussian import drawn, inverse, log_density
-from uvf.slam.localization.groups import Group
+from uvf.slam.localization.groups import ParticleGroup
 from uvf.slam.localization.known_map import KnownMap
 from uvf.slam.matching.branch_and_bound import Window, search
 from uvf.slam.matching.cloud import Cloud
@@ -38,10 +38,10 @@ WIDER = 4.0  # factor of the match's covariance, whose Gaussian has to cover the
 
 
 @dataclass(frozen=True)
-class Proposal:
+class PoseProposal:
     """group: after the motion; match: None where the sweep fits nowhere near; near: whether its particles stand for one place."""
 
-    group: Group
+    group: ParticleGroup
     match: Match | None
     near: bool = True
 
@@ -88,10 +88,10 @@ def resampled(members: NDArray[np.int64], weights: Floats, n: int, rng: np.rando
     return found
 
 
-def proposal(known: KnownMap, group: Group, cloud: Cloud) -> Proposal:
+def proposal(known: KnownMap, group: ParticleGroup, cloud: Cloud) -> PoseProposal:
     """The sweep matched to the map from where the group is; looked for around it where that fits badly."""
     if len(cloud.points) == 0:
-        return Proposal(group, None)
+        return PoseProposal(group, None)
     spread = group.covariance + LEAST_SPREAD
     prior = inverse(spread)
     found = match(group.mean, cloud, known.surfaces, prior)
@@ -102,7 +102,7 @@ def proposal(known: KnownMap, group: Group, cloud: Cloud) -> Proposal:
         other = match(place, cloud, known.surfaces, 0.1 * prior) if place else found
         found = other if other.share > found.share + BETTER else found
     least = HELD_SHARE if held else LEAST_SHARE
-    return Proposal(group, found if found.share >= least and found.rms <= MOST_RMS else None)
+    return PoseProposal(group, found if found.share >= least and found.rms <= MOST_RMS else None)
 
 
 def _window(spread: Floats) -> tuple[float, float]:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from math import hypot
 
 from uvf.maths.se2 import IDENTITY, Pose2, compose, inverse
-from uvf.slam.graph.motion import Motion
+from uvf.slam.graph.motion import OdometryMotion
 from uvf.slam.graph.tracker import LocalMap, Tracker
 from uvf.slam.matching.cloud import Cloud
 from uvf.slam.matching.point_map import point_map
@@ -41,7 +41,7 @@ class RecentSweeps:
             return Moved(step, False, 1.0)
         usual = self._tracker.share
         self._local = self._local or LocalMap(point_map([c.moved(pose) for pose, c in self._kept]))
-        tracked = self._tracker.track(self._local, Motion(before, step, self._tracker.noise), cloud)
+        tracked = self._tracker.track(self._local, OdometryMotion(before, step, self._tracker.noise), cloud)
         lost = tracked.match.share == 0.0
         self.pose = tracked.match.map_from_base
         if lost:

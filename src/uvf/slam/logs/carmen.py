@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from uvf.maths.se2 import Pose2
 from uvf.maths.se2_arrays import composed, inverted
 from uvf.models.yaml_data import BadInput
-from uvf.slam.logs.carmen_lines import Fan, Lines, Sweep, read_lines
+from uvf.slam.logs.carmen_lines import LaserFan, LaserRecord, Lines, read_lines
 from uvf.slam.logs.laser_log import LaserLog, OdometryTrack
 from uvf.slam.logs.leaps import without_leaps
 from uvf.slam.logs.no_return import farthest_return
@@ -135,7 +135,7 @@ def _notes_on_beams(lines: Lines, readings: Sequence[Reading]) -> list[str]:
     return notes
 
 
-def _beams(path: Path, sweeps: Sequence[Sweep], params: dict[str, str]) -> list[Beams]:
+def _beams(path: Path, sweeps: Sequence[LaserRecord], params: dict[str, str]) -> list[Beams]:
     """For each sweep; equal ones are one object."""
     range_max = _number(params, "robot_front_laser_max", 0.0)
     farthest = min(farthest_return([s.ranges for s in sweeps]), range_max if range_max > 0.0 else np.inf)
@@ -143,7 +143,7 @@ def _beams(path: Path, sweeps: Sequence[Sweep], params: dict[str, str]) -> list[
     x, y, yaw = base_from_laser
     if not (max(abs(x), abs(y)) < LARGEST_ROBOT and abs(yaw) <= 2 * pi):
         raise BadInput(f"log {path}: the laser is said to sit at ({x:g}, {y:g}) m, {yaw:g} rad; mend PARAM robot_frontlaser_...offset")
-    known: dict[tuple[int, Fan | None], Beams] = {}
+    known: dict[tuple[int, LaserFan | None], Beams] = {}
     for sweep in sweeps:
         key = (len(sweep.ranges), sweep.fan)
         if key not in known:
@@ -154,13 +154,13 @@ def _beams(path: Path, sweeps: Sequence[Sweep], params: dict[str, str]) -> list[
     return [known[len(sweep.ranges), sweep.fan] for sweep in sweeps]
 
 
-def _half_circle(n: int, params: dict[str, str]) -> Fan:
+def _half_circle(n: int, params: dict[str, str]) -> LaserFan:
     """The fan of a FLASER line: by the parameters where they fit, else that of a usual lidar with ``n`` beams, else 180 deg.
 
     An even number of beams ends a step before the end of the view; an odd one reaches it.
     """
     view, step = _fan_of_params(n, params) or ((view := VIEWS.get(n, 180.0)), view / (n - n % 2))
-    return Fan(-radians(view) / 2, radians(step), np.inf)
+    return LaserFan(-radians(view) / 2, radians(step), np.inf)
 
 
 def _fan_of_params(n: int, params: dict[str, str]) -> tuple[float, float] | None:
@@ -170,7 +170,7 @@ def _fan_of_params(n: int, params: dict[str, str]) -> tuple[float, float] | None
     return (view, step) if step > 0.0 and abs(view / step - n) <= 1.01 else None
 
 
-def _mount(sweeps: Sequence[Sweep], params: dict[str, str]) -> tuple[float, float, float]:
+def _mount(sweeps: Sequence[LaserRecord], params: dict[str, str]) -> tuple[float, float, float]:
     """base_from_laser (x, y, yaw): between the two poses of ROBOTLASER1 lines if that stays the same, else by the PARAM lines."""
     pairs = [(s.odom_from_base, s.odom_from_laser) for s in sweeps if s.odom_from_laser is not None]
     if pairs:

@@ -22,11 +22,11 @@ NOWHERE = 1e9
 """m: no place on Earth is so far from another one."""
 
 
-class Unreadable(ValueError):
+class UnreadableLine(ValueError):
     """Why a line cannot be used."""
 
 
-class Fan(NamedTuple):
+class LaserFan(NamedTuple):
     """Directions as a ROBOTLASER line has them: bearing of the first beam and step [rad], largest range [m]."""
 
     start: float
@@ -34,21 +34,21 @@ class Fan(NamedTuple):
     range_max: float
 
 
-class Sweep(NamedTuple):
+class LaserRecord(NamedTuple):
     """A FLASER or ROBOTLASER line; only the latter says how its beams lie and where the laser was."""
 
     stamp: float
     ranges: Floats
     odom_from_base: Triple
     odom_from_laser: Triple | None = None
-    fan: Fan | None = None
+    fan: LaserFan | None = None
 
 
 @dataclass
 class Lines:
     """What a file holds, in its order."""
 
-    sweeps: list[Sweep] = field(default_factory=list)
+    sweeps: list[LaserRecord] = field(default_factory=list)
     odometry: list[tuple[float, float, float, float]] = field(default_factory=list)
     """stamp, x, y, yaw."""
     params: dict[str, str] = field(default_factory=dict)
@@ -66,7 +66,7 @@ def read_lines(text: Iterable[str]) -> Lines:
             try:
                 _take(line, lines)
             except (ValueError, DeprecationWarning) as error:
-                reason = str(error) if isinstance(error, Unreadable) else "words where numbers belong"
+                reason = str(error) if isinstance(error, UnreadableLine) else "words where numbers belong"
                 lines.faults.setdefault(reason, []).append(number)
     return lines
 
@@ -80,7 +80,7 @@ def _take(line: str, lines: Lines) -> None:
     elif kind == "ODOM":
         numbers, stamp = _numbers_and_stamp(rest)
         if len(numbers) < 3:
-            raise Unreadable("odometry cut short")
+            raise UnreadableLine("odometry cut short")
         lines.odometry.append((stamp, *_triple(numbers[:3])))
     elif kind == "PARAM":
         words = rest.split()
@@ -92,23 +92,23 @@ def _numbers_and_stamp(rest: str) -> tuple[Floats, float]:
     """The numbers before the stamp, and the ipc stamp [s]."""
     words = rest.rsplit(None, STAMP)
     if len(words) <= STAMP:
-        raise Unreadable("cut short")
+        raise UnreadableLine("cut short")
     stamp = float(words[1])
     if not isfinite(stamp):
-        raise Unreadable("stamp is no number")
+        raise UnreadableLine("stamp is no number")
     return np.fromstring(words[0], sep=" "), stamp
 
 
-def _flaser(rest: str) -> Sweep:
+def _flaser(rest: str) -> LaserRecord:
     """num_readings, ranges, laser x y theta, robot x y theta."""
     numbers, stamp = _numbers_and_stamp(rest)
     n = _count(numbers, 0)
     if len(numbers) != 1 + n + 6:
-        raise Unreadable("not as many ranges as the line says")
-    return Sweep(stamp, numbers[1 : 1 + n], _triple(numbers[n + 4 : n + 7]))
+        raise UnreadableLine("not as many ranges as the line says")
+    return LaserRecord(stamp, numbers[1 : 1 + n], _triple(numbers[n + 4 : n + 7]))
 
 
-def _robotlaser(rest: str) -> Sweep:
+def _robotlaser(rest: str) -> LaserRecord:
     """type, start, field of view, resolution, max range, accuracy, remission mode, num_readings, ranges, [num_remissions,
     remissions,] laser x y theta, robot x y theta, tv, rv, forward and side safety distance[, turn axis]."""
     numbers, stamp = _numbers_and_stamp(rest)
@@ -117,25 +117,25 @@ def _robotlaser(rest: str) -> Sweep:
     if len(tail) > 10 and 0 <= tail[0] <= len(tail) and len(tail) in (1 + tail[0] + 10, 1 + tail[0] + 11):
         tail = tail[1 + int(tail[0]) :]
     if len(tail) not in (10, 11):
-        raise Unreadable("not as many ranges as the line says")
+        raise UnreadableLine("not as many ranges as the line says")
     start, view, step = _triple(numbers[1:4])
     range_max = float(numbers[4])
     step = step if step > 0.0 else view / (n - 1)
     if not step > 0.0:
-        raise Unreadable("beams that all point the same way")
-    return Sweep(stamp, numbers[8 : 8 + n], _triple(tail[3:6]), _triple(tail[:3]), Fan(start, step, range_max))
+        raise UnreadableLine("beams that all point the same way")
+    return LaserRecord(stamp, numbers[8 : 8 + n], _triple(tail[3:6]), _triple(tail[:3]), LaserFan(start, step, range_max))
 
 
 def _count(numbers: Floats, place: int) -> int:
     """The number of readings, which stands at ``place``."""
     count = numbers[place] if len(numbers) > place else np.nan
     if not FEWEST_BEAMS <= count <= len(numbers):
-        raise Unreadable("not as many ranges as the line says")
+        raise UnreadableLine("not as many ranges as the line says")
     return int(count)
 
 
 def _triple(numbers: Floats) -> Triple:
     x, y, yaw = numbers.tolist()
     if not all(isfinite(v) and abs(v) < NOWHERE for v in (x, y, yaw)):
-        raise Unreadable("a pose or a direction that cannot be")
+        raise UnreadableLine("a pose or a direction that cannot be")
     return x, y, yaw

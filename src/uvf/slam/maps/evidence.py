@@ -16,7 +16,7 @@ RECENT = 16
 _PER_CENT = np.rint(100.0 / (1.0 + np.exp(-UNIT * np.arange(LOWEST, HIGHEST + 1)))).astype(np.int8)
 
 
-class Evidence:
+class CellEvidence:
     """Tiles are known by a number each, epochs by theirs, which grow with time."""
 
     def __init__(self) -> None:

@@ -60,7 +60,7 @@ NO_EDGES = Edges(np.zeros((0, 2), np.int64), np.zeros((0, 3)), np.zeros((0, 3, 3
 
 
 @dataclass(frozen=True)
-class Session:
+class MappingSession:
     """keyframes in the order in which they were taken; method and parameters: what has made them, for the record."""
 
     keyframes: tuple[Keyframe, ...]
@@ -68,7 +68,7 @@ class Session:
     method: str
     parameters: dict[str, Any]
 
-    def moved(self, a_from_map: Pose2) -> "Session":
+    def moved(self, a_from_map: Pose2) -> "MappingSession":
         """The same in frame a."""
         return replace(self, keyframes=tuple(Keyframe(compose(a_from_map, k.map_from_base), k.reading) for k in self.keyframes))
 
@@ -86,7 +86,7 @@ class Session:
         return buffer.getvalue()
 
     @classmethod
-    def load(cls, path: Path) -> "Session":
+    def load(cls, path: Path) -> "MappingSession":
         """Raises BadInput: no such file, not a session, of a later version, damaged, or numbers that make no sense."""
         try:
             data = path.read_bytes()
@@ -97,7 +97,7 @@ class Session:
         return cls.decoded(data, str(path))
 
     @classmethod
-    def decoded(cls, data: bytes, name: str) -> "Session":
+    def decoded(cls, data: bytes, name: str) -> "MappingSession":
         """Of what ``encoded`` has made; raises as ``load`` does."""
         header, arrays = _read(io.BytesIO(data), name)
         _check(arrays, name)
@@ -105,7 +105,7 @@ class Session:
         return cls(tuple(_keyframes(arrays)), edges, str(header.get("method", "")), dict(header.get("parameters", {})))
 
 
-def _arrays(session: Session) -> Arrays:
+def _arrays(session: MappingSession) -> Arrays:
     readings = [keyframe.reading for keyframe in session.keyframes]
     lidars, lidar_of = _numbered(reading.beams for reading in readings)
     arrays = {

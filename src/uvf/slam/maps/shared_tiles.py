@@ -23,7 +23,7 @@ LARGEST = 64_000_000
 
 
 @dataclass(frozen=True)
-class Evidence:
+class SharedEvidence:
     """What a beam does to the log-odds of a cell that it ends in or goes through, and their bounds; whole numbers of any unit."""
 
     hit: int
@@ -49,7 +49,7 @@ class SharedTiles(TilePool):
         super().__init__(maps, TileKind(TILE, 1, number), cell, most)
         self._window = np.zeros(0, dtype=np.int8)
 
-    def draw(self, k: int, reading: Reading, map_from_base: Pose2, evidence: Evidence, reach: float = LONGEST) -> Stroke | None:
+    def draw(self, k: int, reading: Reading, map_from_base: Pose2, evidence: SharedEvidence, reach: float = LONGEST) -> Stroke | None:
         """Draws a reading into map k, and returns what was drawn; None where nothing can be.
 
         reach: m; beams that say they are longer are no return.

@@ -17,7 +17,7 @@ from uvf.maths.grids import distance_field
 from uvf.maths.rotations import wrap
 from uvf.maths.se2 import Pose2
 from uvf.models.yaml_data import BadInput
-from uvf.slam.maps.evidence import Evidence
+from uvf.slam.maps.evidence import CellEvidence
 from uvf.slam.maps.tile_kernels import TILE, beam_ends, sketch, touched_tiles
 from uvf.slam.method import Keyframe
 from uvf.slam.reading import Reading
@@ -60,7 +60,7 @@ class TileMap:
         self._drawn: dict[int, _Drawn] = {}
         self._count = 0
         self._members: Counter[int] = Counter()
-        self._evidence = Evidence()
+        self._evidence = CellEvidence()
         self._outdated = False
         self._window = np.zeros(0, dtype=np.int8)
         self._folded: dict[int, Cells] = {}
@@ -162,7 +162,7 @@ class TileMap:
     def _fold(self) -> None:
         """Brings up to date what the touched tiles show; all of it when something has moved that had been settled."""
         if self._outdated:
-            self._evidence, self._outdated = Evidence(), False
+            self._evidence, self._outdated = CellEvidence(), False
             self._folded.clear()
             self._dirty.clear()
             for drawn in self._drawn.values():

@@ -11,7 +11,7 @@ from uvf.maths.compiled import compiled
 from uvf.maths.se2 import Pose2, compose, inverse
 from uvf.slam.matching.imls import offsets
 from uvf.slam.matching.visibility import Rays
-from uvf.slam.merging.part import Part
+from uvf.slam.merging.part import VehicleMap
 
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -33,7 +33,7 @@ def confirmed_part(told: Floats, confirmed: Floats) -> float:
     return float(np.linalg.eigvalsh(whiten.T @ confirmed @ whiten)[0])
 
 
-def of_place(a: Part, i: int, b: Part, j: int, i_from_j: Pose2) -> tuple[Floats, Floats]:
+def of_place(a: VehicleMap, i: int, b: VehicleMap, j: int, i_from_j: Pose2) -> tuple[Floats, Floats]:
     """(told, confirmed), each (2, 2) in the frame of i: of keyframes around j where those around i have looked, and the other way round."""
     one, back = _told(a, i, b, j, i_from_j), _told(b, j, a, i, inverse(i_from_j))
     c, s = np.cos(i_from_j.yaw), np.sin(i_from_j.yaw)
@@ -41,7 +41,7 @@ def of_place(a: Part, i: int, b: Part, j: int, i_from_j: Pose2) -> tuple[Floats,
     return one[0] + turn @ back[0] @ turn.T, one[1] + turn @ back[1] @ turn.T
 
 
-def _told(a: Part, i: int, b: Part, j: int, i_from_j: Pose2) -> tuple[Floats, Floats]:
+def _told(a: VehicleMap, i: int, b: VehicleMap, j: int, i_from_j: Pose2) -> tuple[Floats, Floats]:
     submap, others = a.nodes.submap(i), b.nodes.submap(j)
     told, same = np.zeros((2, 2)), np.zeros((2, 2))
     looking = [(a.nodes.all[m].rays, inverse(submap.anchor_from_member[m - submap.members[0]])) for m in submap.members[::2]]

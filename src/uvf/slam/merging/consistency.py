@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from uvf.maths.rotations import wrap
 from uvf.maths.se2 import compose
 from uvf.slam.graph.loops import Closure
-from uvf.slam.merging.part import Part
+from uvf.slam.merging.part import VehicleMap
 from uvf.slam.pose_graph.uncertainty import followed
 
 Floats = NDArray[np.float64]
@@ -23,7 +23,7 @@ CONSISTENT = 11.3
 """chi square, 3 degrees of freedom, 99 %."""
 
 
-def chi_square(p: Closure, q: Closure, a: Part, b: Part) -> float:
+def chi_square(p: Closure, q: Closure, a: VehicleMap, b: VehicleMap) -> float:
     """Of the difference between two ways from p.i in a to q.j in b: by closure p and along b, and along a and by closure q."""
     along_b, along_a = b.nodes.between(p.j, q.j), a.nodes.between(p.i, q.i)
     first, second = compose(p.i_from_j, along_b), compose(along_a, q.i_from_j)
@@ -34,7 +34,7 @@ def chi_square(p: Closure, q: Closure, a: Part, b: Part) -> float:
     return float(off @ np.linalg.solve(covariance, off))
 
 
-def agreement(closures: Sequence[Closure], a: Part, b: Part) -> Mask:
+def agreement(closures: Sequence[Closure], a: VehicleMap, b: VehicleMap) -> Mask:
     """(n, n) which closures agree; none with another of the same keyframe, which is in one place only."""
     n = len(closures)
     agree = np.zeros((n, n), dtype=np.bool_)

@@ -8,14 +8,14 @@ from uvf.slam.graph.loops import Closure
 from uvf.slam.matching.everywhere import Floor, all_turns, everywhere
 from uvf.slam.merging.confirmation import confirmed_part, of_place
 from uvf.slam.merging.headings import facing, likely
-from uvf.slam.merging.part import SIGMA, Part
+from uvf.slam.merging.part import SIGMA, VehicleMap
 
 LEAST_SCORE, RIVAL, MOST_PLACES = 0.6, 0.85, 4
 CONFIRMED = 0.75
 """Part of what either tells of the place that the other must confirm: ``confirmation``."""
 
 
-def searched(a: Part, b: Part, j: int) -> list[Closure]:
+def searched(a: VehicleMap, b: VehicleMap, j: int) -> list[Closure]:
     """Places of session a in which what b has seen around its keyframe j fits: several where they look alike."""
     points = b.query(j)
     turns = likely(all_turns(points, SIGMA), a.facing, facing(b.nodes.submap(j).surfaces.table[1]))
@@ -24,7 +24,7 @@ def searched(a: Part, b: Part, j: int) -> list[Closure]:
     return [closure for closure in found if closure is not None]
 
 
-def fit(a: Part, b: Part, j: int, a_from_j: Pose2) -> Closure | None:
+def fit(a: VehicleMap, b: VehicleMap, j: int, a_from_j: Pose2) -> Closure | None:
     """Keyframe j of b in the submap of a nearest to where it is believed to be in the map of a; None where it does not fit.
 
     The score is the part of it that is confirmed.
@@ -41,7 +41,7 @@ def fit(a: Part, b: Part, j: int, a_from_j: Pose2) -> Closure | None:
     return Closure(i, j, found.map_from_base, information_of(found), confirmed) if confirmed > CONFIRMED else None
 
 
-def _seen_around(a: Part, i: int, b: Part, j: int, i_from_j: Pose2) -> tuple[int, int]:
+def _seen_around(a: VehicleMap, i: int, b: VehicleMap, j: int, i_from_j: Pose2) -> tuple[int, int]:
     """Surface points that the keyframes around i and those before and after j see of each other's, and those they look through."""
     agree = through = 0
     others, submap = b.nodes.submap(j), a.nodes.submap(i)

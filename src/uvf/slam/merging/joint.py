@@ -10,8 +10,8 @@ from uvf.maths.se2 import Pose2
 from uvf.maths.se2_arrays import composed, inverted, wrapped
 from uvf.slam.graph.loops import Closure
 from uvf.slam.graph.restored import add_edges
-from uvf.slam.maps.session import KINDS, Edges, Session
-from uvf.slam.merging.part import Part
+from uvf.slam.maps.session import KINDS, Edges, MappingSession
+from uvf.slam.merging.part import VehicleMap
 from uvf.slam.method import Keyframe
 from uvf.slam.pose_graph.edges import Edge
 from uvf.slam.pose_graph.pose_graph import PoseGraph
@@ -30,14 +30,14 @@ class Crossing:
 
 
 @dataclass(frozen=True)
-class Joint:
+class JointGraph:
     """poses: (n, 3) by session, team_from_base; crossings: those that are believed."""
 
     poses: dict[str, Floats]
     crossings: list[Crossing]
 
 
-def settled(parts: Mapping[str, Part], crossings: Sequence[Crossing], starts: Mapping[str, Floats]) -> Joint:
+def settled(parts: Mapping[str, VehicleMap], crossings: Sequence[Crossing], starts: Mapping[str, Floats]) -> JointGraph:
     """All measurements of all sessions at once, from starts (n, 3) by session; the first keyframe of the first session stays."""
     graph, first = PoseGraph(), _firsts(parts)
     for name in parts:
@@ -53,7 +53,7 @@ def settled(parts: Mapping[str, Part], crossings: Sequence[Crossing], starts: Ma
     believed = [c for c, number in zip(crossings, numbers, strict=True) if graph.weights[number] > 0.5]
     poses = graph.poses.copy()
     poses[:, 2] = wrapped(poses[:, 2])
-    return Joint({name: poses[k : k + len(parts[name])] for name, k in first.items()}, believed)
+    return JointGraph({name: poses[k : k + len(parts[name])] for name, k in first.items()}, believed)
 
 
 def start_by(closure: Closure, placed_a: Floats, own_b: Floats) -> Floats:
@@ -62,7 +62,7 @@ def start_by(closure: Closure, placed_a: Floats, own_b: Floats) -> Floats:
     return composed(team_from_j, composed(inverted(own_b[closure.j]), own_b))
 
 
-def session_of(parts: Mapping[str, Part], joint: Joint) -> Session:
+def session_of(parts: Mapping[str, VehicleMap], joint: JointGraph) -> MappingSession:
     """All keyframes, one session after the other, and all edges."""
     first = _firsts(parts)
     keyframes = [
@@ -70,10 +70,10 @@ def session_of(parts: Mapping[str, Part], joint: Joint) -> Session:
         for name, part in parts.items()
         for pose, node in zip(joint.poses[name].tolist(), part.nodes.all, strict=True)
     ]
-    return Session(tuple(keyframes), _edges(parts, joint.crossings, first), "graph", {})
+    return MappingSession(tuple(keyframes), _edges(parts, joint.crossings, first), "graph", {})
 
 
-def _edges(parts: Mapping[str, Part], crossings: Sequence[Crossing], first: Mapping[str, int]) -> Edges:
+def _edges(parts: Mapping[str, VehicleMap], crossings: Sequence[Crossing], first: Mapping[str, int]) -> Edges:
     own = [(part.session.edges, first[name]) for name, part in parts.items()]
     m = len(crossings)
     return Edges(
@@ -90,7 +90,7 @@ def _edges(parts: Mapping[str, Part], crossings: Sequence[Crossing], first: Mapp
     )
 
 
-def _firsts(parts: Mapping[str, Part]) -> dict[str, int]:
+def _firsts(parts: Mapping[str, VehicleMap]) -> dict[str, int]:
     """The place of each session's first keyframe among all."""
     ends = np.cumsum([len(part) for part in parts.values()])
     return dict(zip(parts, (ends - [len(part) for part in parts.values()]).tolist(), strict=True))

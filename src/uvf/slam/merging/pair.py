@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from uvf.slam.graph.loops import Closure
 from uvf.slam.merging.consistency import agreement, largest_clique
 from uvf.slam.merging.crossing import searched, the_other_way_round
-from uvf.slam.merging.part import Part
+from uvf.slam.merging.part import VehicleMap
 
 Floats = NDArray[np.float64]
 
@@ -29,8 +29,8 @@ KEPT = 60  # closures that wait for others to agree with them
 class Pair:
     """closures: keyframe i of a, j of b, right ones and wrong ones."""
 
-    a: Part
-    b: Part
+    a: VehicleMap
+    b: VehicleMap
     closures: list[Closure] = field(default_factory=list)
     asked: int = 0
     _waiting: deque[tuple[bool, int]] = field(default_factory=deque)

@@ -8,9 +8,9 @@ from scipy.sparse.csgraph import connected_components
 from uvf.maths.se2 import Pose2, transform
 from uvf.maths.se2_arrays import wrapped
 from uvf.models.yaml_data import BadInput
-from uvf.slam.graph.nodes import Nodes
+from uvf.slam.graph.nodes import KeyframeNodes
 from uvf.slam.graph.restored import add_edges, add_keyframes
-from uvf.slam.maps.session import NO_EDGES, Edges, Session
+from uvf.slam.maps.session import NO_EDGES, Edges, MappingSession
 from uvf.slam.matching.likelihood import LikelihoodField, likelihood_field
 from uvf.slam.merging.headings import facing
 from uvf.slam.pose_graph.pose_graph import PoseGraph
@@ -32,7 +32,7 @@ LEG = np.diag((0.03, 0.03, 0.01)) ** 2
 """Covariance that no way within a session is better known than: maps are bent a little where no measurement tells [m^2, rad^2]."""
 
 
-class Part:
+class VehicleMap:
     """All in the map frame of the session. name: for messages.
 
     places: keyframes from which all that was seen was seen, no two of them near each other.
@@ -40,8 +40,8 @@ class Part:
 
     def __init__(self, name: str) -> None:
         self.name = name
-        self.nodes, self.graph = Nodes(), PoseGraph()
-        self.session = Session((), NO_EDGES, "", {})
+        self.nodes, self.graph = KeyframeNodes(), PoseGraph()
+        self.session = MappingSession((), NO_EDGES, "", {})
         self.places: list[int] = []
         self._field: LikelihoodField | None = None
         self._near: Mask | None = None
@@ -51,7 +51,7 @@ class Part:
     def __len__(self) -> int:
         return len(self.nodes)
 
-    def follow(self, session: Session) -> bool:
+    def follow(self, session: MappingSession) -> bool:
         """Takes in what the session is now; False, and nothing done, where that does not go on from what it was before.
 
         Raises BadInput for edges that make no graph or leave keyframes untied, and where it is too large to be searched in.
@@ -74,7 +74,7 @@ class Part:
         self._choose(len(before))
         return True
 
-    def _check(self, session: Session) -> None:
+    def _check(self, session: MappingSession) -> None:
         if len(session.keyframes) < 2:
             return
         across, along = np.ptp([keyframe.map_from_base[:2] for keyframe in session.keyframes], axis=0).tolist()

@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 from uvf.maths.alignment import aligned
 from uvf.maths.se2 import IDENTITY, Pose2
 from uvf.maths.se2_arrays import composed, inverted
-from uvf.slam.maps.session import Session
-from uvf.slam.merging.joint import Crossing, Joint, session_of, settled, start_by
+from uvf.slam.maps.session import MappingSession
+from uvf.slam.merging.joint import Crossing, JointGraph, session_of, settled, start_by
 from uvf.slam.merging.pair import Pair
-from uvf.slam.merging.part import Part
+from uvf.slam.merging.part import VehicleMap
 from uvf.slam.merging.ties import Ties, agreement, ties
 
 Floats = NDArray[np.float64]
@@ -24,10 +24,10 @@ AT_ONCE = 8  # places that are searched for before it is seen whether these are 
 
 
 @dataclass(frozen=True)
-class Group:
+class MapGroup:
     """Sessions in one frame, the map of the first. common: by two of them, places where they must have seen the same."""
 
-    joint: Joint
+    joint: JointGraph
     common: Mapping[tuple[str, str], Ties] = field(default_factory=dict)
 
     @property
@@ -44,16 +44,16 @@ class Team:
     """Fed with sessions by name, as often as they grow; works when told to."""
 
     def __init__(self) -> None:
-        self.parts: dict[str, Part] = {}
-        self.groups: list[Group] = []
+        self.parts: dict[str, VehicleMap] = {}
+        self.groups: list[MapGroup] = []
         self._pairs: dict[tuple[str, str], Pair] = {}
         self._refused: dict[tuple[str, str], int] = {}
 
-    def follow(self, name: str, session: Session) -> None:
+    def follow(self, name: str, session: MappingSession) -> None:
         """A session that does not go on from what it was is taken for a new one. Raises BadInput."""
         part = self.parts.get(name)
         if part is None or not part.follow(session):
-            part = Part(name)
+            part = VehicleMap(name)
             part.follow(session)
             self._forget(name)
             self.parts[name] = part
@@ -78,7 +78,7 @@ class Team:
         while any(pair.waiting for (a, b), pair in self._pairs.items() if self.group_of(a) is not self.group_of(b)):
             self.work(AT_ONCE)
 
-    def group_of(self, name: str) -> Group:
+    def group_of(self, name: str) -> MapGroup:
         return next(group for group in self.groups if name in group.names)
 
     def team_from_map(self, name: str) -> Pose2:
@@ -87,10 +87,10 @@ class Team:
             return IDENTITY
         return aligned(self.group_of(name).joint.poses[name][:, :2], self.parts[name].poses[:, :2])
 
-    def session_of(self, group: Group) -> Session:
+    def session_of(self, group: MapGroup) -> MappingSession:
         return session_of(self._members(group), group.joint)
 
-    def _members(self, *groups: Group) -> dict[str, Part]:
+    def _members(self, *groups: MapGroup) -> dict[str, VehicleMap]:
         return {name: self.parts[name] for group in groups for name in group.names}
 
     def _forget(self, name: str) -> None:
@@ -106,7 +106,7 @@ class Team:
             first = self.parts[names[0]]
             self.groups.append(_left(group, names, first.poses[0]) if len(names) > 1 else _alone(names[0], first))
 
-    def _grow(self, group: Group) -> bool:
+    def _grow(self, group: MapGroup) -> bool:
         """Brings a group up to what its sessions are now."""
         parts = [self.parts[n] for n in group.names]
         if all(len(poses) == len(part) for poses, part in zip(group.joint.poses.values(), parts, strict=True)):
@@ -114,12 +114,12 @@ class Team:
         self.groups[self.groups.index(group)] = self._grown(group) if len(group.names) > 1 else _alone(group.names[0], *parts)
         return True
 
-    def _grown(self, group: Group) -> Group:
+    def _grown(self, group: MapGroup) -> MapGroup:
         before = group.joint.poses
         poses = {n: _extended(before[n], self.parts[n].poses) for n in group.names}
         new = {(a, b): ties(self.parts, poses, a, b, len(before[b])) for a, b in permutations(group.names, 2)}
         joint = settled(self._members(group), [*group.joint.crossings, *_crossings(new)], poses)
-        return Group(joint, {two: group.common[two] + more for two, more in new.items()})
+        return MapGroup(joint, {two: group.common[two] + more for two, more in new.items()})
 
     def _try(self, a: str, b: str, pair: Pair) -> bool:
         """Joins the groups of two sessions if these have met."""
@@ -135,7 +135,7 @@ class Team:
         self.groups[self.groups.index(one)] = joined
         return True
 
-    def _joined(self, one: Group, other: Group, crossings: list[Crossing]) -> Group | None:
+    def _joined(self, one: MapGroup, other: MapGroup, crossings: list[Crossing]) -> MapGroup | None:
         """Both groups in the frame of the first, tied wherever they have been near each other; None if too little of that fits."""
         poses, best = one.joint.poses, max(crossings, key=lambda c: c.closure.score)
         moved = start_by(best.closure, poses[best.a], other.joint.poses[best.b])
@@ -148,20 +148,20 @@ class Team:
         if agreement(found.values()) < AGREEMENT or len(_crossings(found)) < len(crossings):
             return None
         joint = settled(members, [*known, *_crossings(found)], joint.poses)
-        return Group(joint, {**one.common, **other.common, **found})
+        return MapGroup(joint, {**one.common, **other.common, **found})
 
 
-def _alone(name: str, part: Part) -> Group:
-    return Group(Joint({name: part.poses}, []))
+def _alone(name: str, part: VehicleMap) -> MapGroup:
+    return MapGroup(JointGraph({name: part.poses}, []))
 
 
-def _left(group: Group, names: list[str], map_from_first: Floats) -> Group:
+def _left(group: MapGroup, names: list[str], map_from_first: Floats) -> MapGroup:
     """Those of a group, in the map frame of the first of them. map_from_first: (3,) where its first keyframe is in that."""
     joint = group.joint
     first_from_team = composed(map_from_first, inverted(joint.poses[names[0]][0]))
     poses = {n: composed(first_from_team, joint.poses[n]) for n in names}
     common = {pair: found for pair, found in group.common.items() if set(pair) <= set(names)}
-    return Group(Joint(poses, [c for c in joint.crossings if {c.a, c.b} <= set(names)]), common)
+    return MapGroup(JointGraph(poses, [c for c in joint.crossings if {c.a, c.b} <= set(names)]), common)
 
 
 def _crossings(found: Mapping[tuple[str, str], Ties]) -> list[Crossing]:

@@ -10,7 +10,7 @@ from uvf.maths.se2 import Pose2, compose, inverse
 from uvf.maths.se2_arrays import wrapped
 from uvf.slam.merging.crossing import fit
 from uvf.slam.merging.joint import Crossing
-from uvf.slam.merging.part import Part
+from uvf.slam.merging.part import VehicleMap
 
 Floats = NDArray[np.float64]
 
@@ -37,7 +37,7 @@ def agreement(found: Iterable[Ties]) -> float:
     return sum(c.closure.score for of_two in every for c in of_two.crossings) / looked if looked else 1.0
 
 
-def ties(parts: Mapping[str, Part], poses: Mapping[str, Floats], a: str, b: str, since: int = 0) -> Ties:
+def ties(parts: Mapping[str, VehicleMap], poses: Mapping[str, Floats], a: str, b: str, since: int = 0) -> Ties:
     """Of keyframes of b, from ``since`` on, in submaps of a. poses: (n, 3) by session, team_from_base."""
     found, looked = [], 0
     for j in range(since, len(parts[b]), SPACING):

@@ -29,7 +29,7 @@ HEADER_END = re.compile(rb"^data[ \t\r]*\n", re.MULTILINE)
 NODE = np.dtype([("value", "<f4"), ("children", "u1")])
 
 
-class Nodes(NamedTuple):
+class FileNodes(NamedTuple):
     """The whole tree, from the root down, each node before its children. value: (n,) log-odds, of an inner node its children's highest;
     children: (n,) one bit each; pairs: (n,) two bits each, as in .bt.
     """
@@ -41,7 +41,7 @@ class Nodes(NamedTuple):
 
 def to_ot(leaves: Leaves, resolution: float) -> bytes:
     """The file's content."""
-    nodes = Nodes(*_nodes(*leaves))
+    nodes = FileNodes(*_nodes(*leaves))
     packed = np.empty(len(nodes.value), dtype=NODE)
     packed["value"], packed["children"] = nodes.value, nodes.children
     return _header(FULL, len(packed), resolution) + packed.tobytes()
@@ -49,7 +49,7 @@ def to_ot(leaves: Leaves, resolution: float) -> bytes:
 
 def to_bt(leaves: Leaves, resolution: float) -> bytes:
     """The file's content; how sure a cell is is lost."""
-    nodes = Nodes(*_nodes(*likeliest(leaves, LOWEST, HIGHEST)))
+    nodes = FileNodes(*_nodes(*likeliest(leaves, LOWEST, HIGHEST)))
     inner = nodes.pairs[nodes.children > 0]
     return _header(BINARY, len(nodes.value), resolution) + inner.astype("<u2").tobytes()
 
@@ -116,7 +116,7 @@ def _shared(a: int, b: int) -> int:
 
 @compiled
 def _nodes(codes: Ints, depths: Bytes, values: Singles) -> tuple[Singles, Bytes, Pairs]:
-    """All nodes above and at the leaves, see ``Nodes``; the codes rise."""
+    """All nodes above and at the leaves, see ``FileNodes``; the codes rise."""
     count = 0
     for i in range(codes.shape[0]):
         count += int(depths[i]) - (_shared(codes[i], codes[i - 1]) if i else -1)

@@ -15,10 +15,10 @@ from numpy.typing import NDArray
 from uvf.maths.se2 import IDENTITY, Pose2, compose, inverse
 from uvf.maths.se2_arrays import composed, wrapped
 from uvf.slam.logs.leaps import step_between
-from uvf.slam.maps.shared_tiles import Evidence, SharedTiles
+from uvf.slam.maps.shared_tiles import SharedEvidence, SharedTiles
 from uvf.slam.maps.tile_pool import TilePool
 from uvf.slam.matching.points import points_of
-from uvf.slam.method import Estimate, Keyframe
+from uvf.slam.method import Keyframe, SlamEstimate
 from uvf.slam.rbpf.fit import Gaussian, Sweep
 from uvf.slam.rbpf.motion import MotionModel
 from uvf.slam.rbpf.params import RbpfParams
@@ -29,7 +29,7 @@ from uvf.slam.reading import Reading
 
 Floats = NDArray[np.float64]
 
-EVIDENCE = Evidence(hit=17, miss=-8, lowest=-60, highest=70)
+EVIDENCE = SharedEvidence(hit=17, miss=-8, lowest=-60, highest=70)
 """In units of 0.05 (Thrun et al. 2005, table 9.2)."""
 POINTS = 180  # of a sweep that are matched, at most
 MEGABYTE = 1_000_000
@@ -60,7 +60,7 @@ class RbpfSlam:
         self._noise = np.zeros((3, 3))
         self._quality = 1.0
 
-    def add(self, reading: Reading) -> Estimate:
+    def add(self, reading: Reading) -> SlamEstimate:
         sweep = (points_of(reading, self._reach, POINTS), reading.beams.origin)
         last, self._last = self._last, reading
         if last is None:
@@ -111,9 +111,9 @@ class RbpfSlam:
         self._readings.append(reading)
         self._driven = self._tracked = IDENTITY
 
-    def _place(self) -> Estimate:
+    def _place(self) -> SlamEstimate:
         self._placed.append((self.particles.steps - 1, self._tracked))
-        return Estimate(compose(self._pose(self.particles.best), self._tracked), self.particles.spread() + self._noise, self._quality)
+        return SlamEstimate(compose(self._pose(self.particles.best), self._tracked), self.particles.spread() + self._noise, self._quality)
 
     def _track(self, sweep: Sweep) -> None:
         """Between updates: where the best particle's map has the sweep."""

@@ -24,7 +24,7 @@ FLOOR = (1e-3, 1e-3, 1e-3)
 
 
 @dataclass(frozen=True)
-class Proposal:
+class ProposalDistribution:
     """mean (3,) and covariance (3, 3) of (x, y, yaw) [m, rad]; log_weight: ln of eta, by which the particle's weight grows."""
 
     mean: Floats
@@ -60,7 +60,7 @@ def weighed(offsets: Floats, normals: Floats, matched: Floats, prior: Gaussian, 
     return matched + mean, covariance, most + np.log(total / k)
 
 
-def proposal(matched: Floats, h: Floats, prior: Gaussian, target: Target, rng: np.random.Generator) -> Proposal:
+def proposal(matched: Floats, h: Floats, prior: Gaussian, target: Target, rng: np.random.Generator) -> ProposalDistribution:
     """About a matched pose (3,), where the points of the sweep have the normal matrix ``h``. prior: the motion model."""
     _, _, sigma, worth = target
     spread = WIDER**2 * np.linalg.inv(worth * h / sigma**2 + prior[1])
@@ -68,4 +68,4 @@ def proposal(matched: Floats, h: Floats, prior: Gaussian, target: Target, rng: n
     root = np.linalg.cholesky(spread)
     mean, covariance, log_weight = weighed(normals @ root.T, normals, matched, prior, target)
     log_density = float(np.log(np.diag(root)).sum() - 0.5 * np.linalg.slogdet(np.linalg.inv(prior[1]))[1])
-    return Proposal(mean, covariance + np.diag(FLOOR) ** 2, log_weight + log_density)
+    return ProposalDistribution(mean, covariance + np.diag(FLOOR) ** 2, log_weight + log_density)

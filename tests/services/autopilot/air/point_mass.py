@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from tests import aerosonde
 from tests.services.autopilot.air.states import cruising
-from uvf.control.commands import Wanted
+from uvf.control.commands import AltitudeAirspeedSetpoint
 from uvf.control.cycle import Cycle
 from uvf.control.total_energy import EnergyLoops
 from uvf.maths.atmosphere import RHO0
@@ -71,4 +71,4 @@ def fly(point, wanted_at, seconds, params=PARAMS, gust_at=lambda k: (0.0, 0.0), 
 
 
 def cruise(bank=0.0, height=100.0, airspeed=25.0):
-    return lambda t: Wanted(bank, height, 0.0, airspeed)
+    return lambda t: AltitudeAirspeedSetpoint(bank, height, 0.0, airspeed)

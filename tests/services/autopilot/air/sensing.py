@@ -3,8 +3,9 @@
 import math
 
 from schemas.messages import AirData, Gnss, Imu, MissionItem, Vector3
-from services.autopilot.air.config import Ship
+from services.autopilot.air.config import AutopilotConfig
 from services.autopilot.air.service import AutopilotAir
+from tests.runtime.stepping import stepped
 from tests.stops import NOBODY
 from uvf.estimation.estimators import Instruments
 from uvf.maths import atmosphere
@@ -51,7 +52,7 @@ def sensors(t, speed=25.0):
 
 
 def autopilot(items=WAYPOINTS):
-    return AutopilotAir(Ship("milvus", 7, TANGENT, Instruments(), list(items), starts_in_air=True), AirParams())
+    return AutopilotAir(AutopilotConfig("milvus", 7, TANGENT, Instruments(), list(items), starts_in_air=True), AirParams())
 
 
 class Bench:
@@ -66,7 +67,7 @@ class Bench:
         for _ in range(cycles):
             self.n += 1
             t = self.n / self.service.hz
-            self.outputs.append(self.service.step(t, **{**NOTHING_ASKED, **sensors(t - 0.01, speed), **asked}))
+            self.outputs.append(stepped(self.service, t, **{**NOTHING_ASKED, **sensors(t - 0.01, speed), **asked}))
         return self.outputs[-1]
 
     @property

@@ -4,7 +4,7 @@ import math
 from dataclasses import replace
 
 from uvf.estimation.state import Estimate
-from uvf.guidance.vector_field import Steering
+from uvf.guidance.vector_field import LateralGuidance
 from uvf.maths.atmosphere import RHO0
 from uvf.models.vehicle.flight_params import AirParams
 
@@ -49,7 +49,7 @@ class Kinematic:
         self.wind = wind
         self.roll = 0.0
         self.params = params
-        self.steering = Steering()
+        self.steering = LateralGuidance()
 
     def estimate(self):
         vn = 25.0 * math.cos(self.heading) + self.wind[0]

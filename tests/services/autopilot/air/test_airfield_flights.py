@@ -12,8 +12,8 @@ from schemas import topics
 from schemas.messages import ArmRequest, GoAroundRequest, Mode, ModeRequest
 from tests.services.autopilot.air.test_flight import Flight, site
 from uvf.maths.rotations import to_euler
-from uvf.models.mission.file import Job, Start, Waypoint
-from uvf.models.scenario import ROOT, Member
+from uvf.models.mission.file import JobFile, StartPose, Waypoint
+from uvf.models.scenario import ROOT, MissionVehicle
 from uvf.models.vehicle.file import load_vehicle
 from uvf.models.world.file import Strip
 from uvf.runtime.messages.convert import wxyz
@@ -36,7 +36,7 @@ def on_site(start, job, folder=None, **params):
     entry = msgspec.structs.replace(made.members["milvus"].entry, model=folder.name, start=start)
     file = load_vehicle(folder.parent, folder.name)
     file = msgspec.structs.replace(file, params={"autopilot_air": {**file.params["autopilot_air"], **params}})
-    member = Member("milvus", entry, file, folder)
+    member = MissionVehicle("milvus", entry, file, folder)
     mission = msgspec.structs.replace(made.mission, vehicles={"milvus": entry})
     world = msgspec.structs.replace(made.world, strips=[STRIP])
     return dataclasses.replace(made, mission=mission, world=world, members={"milvus": member})
@@ -51,7 +51,7 @@ def pushed(tmp, model, along):
     return folder
 
 
-def push(flight, newtons):
+def specific_force_x(flight, newtons):
     craft(flight).body._fdm["external_reactions/push/magnitude"] = newtons / POUND
 
 
@@ -78,14 +78,14 @@ THROWS = {"catapult": Throw("milvus", CATAPULT, 275.0, 6.9), "arm": Throw("stick
 def thrown(request, tmp_path_factory):
     throw = THROWS[request.param]
     folder = pushed(tmp_path_factory.mktemp("thrown"), throw.model, throw.along)
-    job = Job(mission=[Waypoint(kind="takeoff", z=30.0), Waypoint(x=600.0, z=40.0)])
-    flight = Flight(on_site(Start(throw.start, 0.0), job, folder, launch_push=15.0))
+    job = JobFile(mission=[Waypoint(kind="takeoff", z=30.0), Waypoint(x=600.0, z=40.0)])
+    flight = Flight(on_site(StartPose(throw.start, 0.0), job, folder, launch_push=15.0))
     flight.gone = throw.gone
 
     def watch(t):
         if t == pytest.approx(ARMED):
             flight.ask(topics.ARM, ArmRequest(arm=True, source="test"), t)
-        push(flight, throw.newtons if SHOT < t < throw.gone else 0.0)
+        specific_force_x(flight, throw.newtons if SHOT < t < throw.gone else 0.0)
         return True
 
     flight.lockstep.run(24.0, watch)
@@ -110,7 +110,7 @@ def test_thrown_it_starts_its_motor_and_climbs_away_without_touching_again(throw
 @pytest.fixture(scope="module")
 def landed():
     """Returns from 500 m away; told to land it is told to go around at 12 m, and lands."""
-    flight = Flight(on_site(Start(200.0, 150.0, 60.0, 3.1, 25.0), Job(mission=[Waypoint(kind="return")])))
+    flight = Flight(on_site(StartPose(200.0, 150.0, 60.0, 3.1, 25.0), JobFile(mission=[Waypoint(kind="return")])))
     flight.given_up = None
 
     def watch(t):
@@ -151,14 +151,14 @@ def test_it_lands_on_the_strip_afterwards_and_is_disarmed(landed):
 def swept_aside(tmp_path_factory):
     """On its approach a gust from the left, felt below 11 m, carries it beside the strip."""
     folder = pushed(tmp_path_factory.mktemp("gust"), "milvus", GUST)
-    flight = Flight(on_site(Start(200.0, 150.0, 60.0, 3.1, 25.0), Job(mission=[Waypoint(kind="land")]), folder))
+    flight = Flight(on_site(StartPose(200.0, 150.0, 60.0, 3.1, 25.0), JobFile(mission=[Waypoint(kind="land")]), folder))
     flight.gusts = []
 
     def watch(t):
         low = t > 5.0 and flight.truth[-1][1].position.z < GUSTY
         if low and (not flight.gusts or t < flight.gusts[0] + 3.0):
             flight.gusts.append(t)
-        push(flight, 80.0 if flight.gusts and flight.gusts[-1] == t else 0.0)
+        specific_force_x(flight, 80.0 if flight.gusts and flight.gusts[-1] == t else 0.0)
         return t < 20.0 or flight.status[-1][1].armed
 
     flight.lockstep.run(300.0, watch)

@@ -6,7 +6,7 @@ import pytest
 
 from services.autopilot.air.build import hosts
 from tests.services.autopilot.air.test_flight import site
-from uvf.models.mission.file import Job, Waypoint
+from uvf.models.mission.file import JobFile, Waypoint
 from uvf.models.yaml_data import BadInput
 
 
@@ -20,4 +20,4 @@ from uvf.models.yaml_data import BadInput
 )
 def test_a_mission_that_cannot_be_flown_is_refused_with_its_file_and_vehicle(waypoint, why):
     with pytest.raises(BadInput, match=f"none.yaml: milvus: job: mission: {why}"):
-        hosts(site(job=Job(mission=[waypoint])))
+        hosts(site(job=JobFile(mission=[waypoint])))

@@ -3,14 +3,14 @@
 import pytest
 
 from launch.run import run_lockstep
-from uvf.models.scenario import ROOT, load_site
+from uvf.models.scenario import ROOT, load_scenario
 
 CIRCUIT = ROOT / "missions" / "circuit.yaml"
 
 
 @pytest.fixture(scope="module")
 def circuit(tmp_path_factory):
-    return run_lockstep(load_site(CIRCUIT), 180.0, tmp_path_factory.mktemp("circuit") / "log.mcap")
+    return run_lockstep(load_scenario(CIRCUIT), 180.0, tmp_path_factory.mktemp("circuit") / "log.mcap")
 
 
 def test_every_criterion_of_the_circuit_holds(circuit):

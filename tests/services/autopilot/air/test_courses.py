@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from tests.services.autopilot.air.states import PARAMS, Kinematic
-from uvf.guidance.flight_plan import Item, Kind
-from uvf.guidance.plan_follower import Navigator
+from uvf.guidance.flight_plan import ItemKind, PlanItem
+from uvf.guidance.plan_follower import PlanFollower
 from uvf.guidance.route import Curve, Place
 
 NOWHERE = Place(0.0, 0.0, 0.0)
@@ -15,14 +15,14 @@ COURSES = [(300, 0, 0), (500, 200, 90), (500, 250, -90), (300, -100, 200), (-100
 
 
 def waypoint(north, east, degrees=None, height=60.0, **more):
-    return Item(Kind.WAYPOINT, Place(north, east, height), course=None if degrees is None else math.radians(degrees), **more)
+    return PlanItem(ItemKind.WAYPOINT, Place(north, east, height), course=None if degrees is None else math.radians(degrees), **more)
 
 
 class Flight:
     """Flies a list of items to their end; (k, 4) north, east, course, height wanted and the pieces, distances and times of it."""
 
     def __init__(self, items, seconds=200.0, wind=(0.0, 0.0), start=0, **kinematic):
-        self.navigator = Navigator(items)
+        self.navigator = PlanFollower(items)
         self.navigator.jump_to(start)
         self.rows, self.errors, self.pieces, self.reached = [], [], [], []
         self._last = None
@@ -58,7 +58,7 @@ def test_every_course_is_flown_at_its_place_without_overshoot(wind):
 
 
 def test_what_is_left_of_a_path_can_be_drawn():
-    navigator = Navigator([waypoint(200, 0, 0), waypoint(500, 300, 90, height=100.0)])
+    navigator = PlanFollower([waypoint(200, 0, 0), waypoint(500, 300, 90, height=100.0)])
     navigator.resume()
     navigator.step(Kinematic().estimate(), PARAMS, 0.02)
     ahead = navigator.curve_ahead()
@@ -137,8 +137,8 @@ def test_waypoints_at_one_place_are_one():
 
 
 def test_the_speed_of_an_item_holds_for_one_that_is_chosen_after_it():
-    items = [waypoint(400, 0), Item(Kind.SPEED, NOWHERE, speed=21.0), waypoint(800, 0), waypoint(800, 400)]
-    navigator = Navigator(items)
+    items = [waypoint(400, 0), PlanItem(ItemKind.SPEED, NOWHERE, speed=21.0), waypoint(800, 0), waypoint(800, 400)]
+    navigator = PlanFollower(items)
     navigator.jump_to(3)
     assert navigator.speed == 21.0
     navigator.jump_to(0)
@@ -146,23 +146,23 @@ def test_the_speed_of_an_item_holds_for_one_that_is_chosen_after_it():
 
 
 def test_a_circle_to_an_altitude_is_left_there_and_not_before():
-    items = [Item(Kind.ORBIT, Place(300.0, 0.0, 62.5), radius=90.0, to_altitude=True), waypoint(900, 0)]
-    low = Navigator(items)
+    items = [PlanItem(ItemKind.ORBIT, Place(300.0, 0.0, 62.5), radius=90.0, to_altitude=True), waypoint(900, 0)]
+    low = PlanFollower(items)
     low.resume()
     Kinematic().follow(lambda now: low.step(now, PARAMS, 0.02)[0], 60.0)
     assert low.index == 0
-    high = [Item(Kind.ORBIT, Place(300.0, 0.0, 61.5), radius=90.0, to_altitude=True), waypoint(900, 0)]
+    high = [PlanItem(ItemKind.ORBIT, Place(300.0, 0.0, 61.5), radius=90.0, to_altitude=True), waypoint(900, 0)]
     assert Flight(high, 60.0).navigator.finished
 
 
 def test_pictures_are_taken_each_distance_between_the_items_that_say_so():
     items = [
         waypoint(200, 0),
-        Item(Kind.TRIGGER_DISTANCE, NOWHERE, distance=50.0),
+        PlanItem(ItemKind.TRIGGER_DISTANCE, NOWHERE, distance=50.0),
         waypoint(700, 0),
-        Item(Kind.TRIGGER_DISTANCE, NOWHERE, distance=0.0),
+        PlanItem(ItemKind.TRIGGER_DISTANCE, NOWHERE, distance=0.0),
         waypoint(900, 0),
-        Item(Kind.TRIGGER, NOWHERE),
+        PlanItem(ItemKind.TRIGGER, NOWHERE),
         waypoint(1000, 0),
     ]
     flight = Flight(items)
@@ -171,7 +171,7 @@ def test_pictures_are_taken_each_distance_between_the_items_that_say_so():
 
 
 def test_after_the_mission_no_more_pictures_are_taken():
-    navigator = Flight([Item(Kind.TRIGGER_DISTANCE, NOWHERE, distance=50.0), waypoint(200, 0)]).navigator
+    navigator = Flight([PlanItem(ItemKind.TRIGGER_DISTANCE, NOWHERE, distance=50.0), waypoint(200, 0)]).navigator
     before = navigator.camera.pictures
     navigator.camera.step((5000.0, 0.0))
     assert navigator.camera.pictures == before > 0

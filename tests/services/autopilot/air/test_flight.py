@@ -12,8 +12,8 @@ from schemas.messages import ModeRequest, Reply
 from services.autopilot.air.build import hosts
 from services.sim_air.build import build as build_sim
 from uvf.maths.rotations import to_euler
-from uvf.models.mission.file import Job, MissionFile, Start, Vehicle, Waypoint
-from uvf.models.scenario import ROOT, Member, Site
+from uvf.models.mission.file import JobFile, MissionFile, StartPose, Vehicle, Waypoint
+from uvf.models.scenario import ROOT, MissionVehicle, Scenario
 from uvf.models.vehicle.file import load_vehicle
 from uvf.models.world.file import Origin, WorldFile
 from uvf.models.world.wind import Wind
@@ -23,16 +23,16 @@ from uvf.runtime.time.lockstep import Lockstep
 
 WIND = (1.5, 1.3, 0.0)
 CIRCUIT = [(200.0, -150.0), (200.0, 150.0), (-200.0, 150.0), (-200.0, -150.0)]
-LAPS = Job(mission=[*(Waypoint(x=x, y=y, z=60.0) for x, y in CIRCUIT), Waypoint(kind="jump", repeat=-1)])
+LAPS = JobFile(mission=[*(Waypoint(x=x, y=y, z=60.0) for x, y in CIRCUIT), Waypoint(kind="jump", repeat=-1)])
 
 
 def site(job=LAPS, seed=1, wind=WIND):
-    entry = Vehicle("milvus", Start(-200.0, -150.0, 60.0, 0.0, 25.0), 1, job)
+    entry = Vehicle("milvus", StartPose(-200.0, -150.0, 60.0, 0.0, 25.0), 1, job)
     folder = ROOT / "vehicles" / "milvus"
-    member = Member("milvus", entry, load_vehicle(ROOT / "vehicles", "milvus"), folder)
+    member = MissionVehicle("milvus", entry, load_vehicle(ROOT / "vehicles", "milvus"), folder)
     mission = MissionFile("a flight", "field", {"milvus": entry}, seed=seed)
     world = WorldFile("a field", Origin(40.77, 14.79, 300.0), (0.0, 0.0, 1.0, 1.0), wind=Wind(wind))
-    return Site(ROOT / "missions" / "none.yaml", mission, world, ROOT / "worlds", {"milvus": member})
+    return Scenario(ROOT / "missions" / "none.yaml", mission, world, ROOT / "worlds", {"milvus": member})
 
 
 class Flight:
@@ -130,7 +130,7 @@ def test_other_noise_and_more_wind_change_little(seed):
 
 
 def test_hold_is_a_circle_in_the_wind():
-    flight = Flight(site(job=Job()))
+    flight = Flight(site(job=JobFile()))
     flight.lockstep.run(70.0)
     held = flight.positions(after=20.0)
     centre = (held.max(axis=0) + held.min(axis=0))[:2] / 2
@@ -169,7 +169,7 @@ def test_return_flies_home_and_circles_there():
 
 
 def test_a_climbing_leg_is_followed_in_height():
-    job = Job(mission=[Waypoint(x=600.0, y=-150.0, z=110.0), Waypoint(x=1500.0, y=-150.0, z=60.0)])
+    job = JobFile(mission=[Waypoint(x=600.0, y=-150.0, z=110.0), Waypoint(x=1500.0, y=-150.0, z=60.0)])
     flight = Flight(site(job=job))
     flight.lockstep.run(60.0)
     track = flight.positions(after=5.0, until=28.0)

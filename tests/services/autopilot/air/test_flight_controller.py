@@ -3,24 +3,24 @@
 import msgspec
 import pytest
 
-from services.autopilot.air.flight_controller import Helm
-from services.autopilot.air.setpoints import Wish
+from services.autopilot.air.flight_controller import FlightController
+from services.autopilot.air.setpoints import Setpoint
 from tests.services.autopilot.air.states import PARAMS, cruising
-from uvf.control.commands import Wanted
-from uvf.control.servos import Servo, Servos
+from uvf.control.commands import AltitudeAirspeedSetpoint
+from uvf.control.servos import ServoLimits, Servos
 
-SERVOS = Servos(Servo(0.4), Servo(0.4), Servo(0.4), Servo(0.6))
+SERVOS = Servos(ServoLimits(0.4), ServoLimits(0.4), ServoLimits(0.4), ServoLimits(0.6))
 LIFTING = msgspec.structs.replace(PARAMS, flap_alpha=0.18)
-LEVEL = Wanted(0.0, None, 0.0, 19.0)
+LEVEL = AltitudeAirspeedSetpoint(0.0, None, 0.0, 19.0)
 SLOW = cruising(airspeed=19.0, ground_speed=19.0)
 
 
 def settled(params=LIFTING, flap=0.3, lift=0.0):
     """Surfaces and helm after the flaps have come down, with the last step asking for ``lift``."""
-    helm = Helm(SERVOS)
+    flight_controller = FlightController(SERVOS)
     for _ in range(200):
-        helm.step(SLOW, Wish(LEVEL, flap), params, 0.02)
-    return helm.step(SLOW, Wish(LEVEL, flap, lift=lift), params, 0.02)
+        flight_controller.step(SLOW, Setpoint(LEVEL, flap), params, 0.02)
+    return flight_controller.step(SLOW, Setpoint(LEVEL, flap, lift=lift), params, 0.02)
 
 
 def test_lift_that_is_wanting_moves_the_flaps_at_once_by_what_they_make():

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from uvf.control.design.coefficients import Airframe, gains
+from uvf.control.design.coefficients import AirframeCoefficients, gains
 from uvf.maths.atmosphere import RHO0
 from uvf.models.scenario import ROOT
 from uvf.models.vehicle.file import load_vehicle
@@ -13,7 +13,7 @@ from uvf.models.yaml_data import convert
 
 MILVUS = load_vehicle(Path(ROOT) / "vehicles", "milvus")
 PARAMS = convert(MILVUS.params["autopilot_air"], AirParams, "milvus")
-AEROSONDE = Airframe(
+AEROSONDE = AirframeCoefficients(
     mass=11.0,
     wing_area=0.55,
     chord=0.18994,

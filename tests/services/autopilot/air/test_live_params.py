@@ -4,7 +4,7 @@ import pytest
 
 from schemas.messages import Battery, Fence, FenceRequest, FenceZone, Link, Mode, ModeRequest, Vector3
 from tests.services.autopilot.air.sensing import Bench
-from tests.services.autopilot.air.test_manual_control import by_hand
+from tests.services.autopilot.air.test_manual_control import is_manual
 from tests.services.live_params import all_settable_are_read
 from uvf.models.scenario import ROOT
 
@@ -34,7 +34,7 @@ def test_each_is_read_in_flight():
     with all_settable_are_read(bench.service, ELSEWHERE):
         bench.run(60, link=Link(stations=1), battery=Battery(remaining=0.01))
         for wanted in ("HOLD", "RETURN", "MISSION", "LAND", "ALTITUDE", "STABILIZED"):
-            by_hand(bench, 10, mode=mode(wanted))
+            is_manual(bench, 10, mode=mode(wanted))
         bench.run(60)
         zone = FenceZone(centre=Vector3(x=500.0), radius=900.0)
         bench.run(fence=[FenceRequest(fence=Fence(zones=[zone], ceiling=200.0, floor=-50.0))])

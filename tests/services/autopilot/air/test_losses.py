@@ -8,6 +8,7 @@ import pytest
 from schemas import topics
 from schemas.messages import Gnss, GoalRequest, Mode, ModeRequest, Vector3
 from services.autopilot.air.failsafes.table import AIR_RULES
+from tests.runtime.stepping import recall
 from tests.services.autopilot.air.sensing import Bench, sensors
 from tests.services.autopilot.air.test_flight import Flight, distance_to_circuit
 from uvf.maths.rotations import to_euler
@@ -15,7 +16,7 @@ from uvf.runtime.messages.convert import wxyz
 
 IN_A_TURN = 14.5  # s: the demo's aircraft is banked at its first corner
 RULES = {rule.name: rule for rule in AIR_RULES}
-DEAD_RECKONING, BACK = RULES["gnss"].begins, RULES["gnss"].ends
+DEAD_RECKONING, BACK = RULES["gnss"].raised_text, RULES["gnss"].cleared_text
 
 
 class Losing(Flight):
@@ -114,7 +115,7 @@ def test_without_air_data_the_mission_goes_on():
     assert max(map(distance_to_circuit, flight.positions())) < 15.0
     assert np.abs(flight.positions()[:, 2] - 60.0).max() < 6.0
     assert max(abs(m.airspeed - 25.0) for _, m in flight.truth) < 3.0
-    assert RULES["air_data"].begins in [text for _, text in flight.texts]
+    assert RULES["air_data"].raised_text in [text for _, text in flight.texts]
 
 
 def test_with_the_imu_alone_it_stays_upright():
@@ -176,13 +177,13 @@ def test_pressures_that_are_not_finite_are_none(field):
     setattr(bad, field, math.nan)
     state = bench.run(cycles=10, air_data=bad)["nav_state"]
     assert math.isfinite(state.airspeed) and math.isfinite(state.position.z)
-    assert RULES["air_data"].begins in bench.texts
+    assert RULES["air_data"].raised_text in bench.texts
 
 
 def test_an_autopilot_started_again_without_gnss_reckons_on_from_what_was_left():
     bench, heir = Bench(), Bench()
     left = bench.run(cycles=100)["nav_state"]
-    heir.service.recall(status=bench.status, nav_state=left)
+    recall(heir.service, status=bench.status, nav_state=left)
     heir.n = 150
     states = [heir.run(gnss=None).get("nav_state") for _ in range(400)]
     assert states[10] is None  # GNSS might be there in a moment
@@ -193,6 +194,6 @@ def test_an_autopilot_started_again_without_gnss_reckons_on_from_what_was_left()
 def test_what_was_left_long_ago_is_not_reckoned_on_from():
     bench, heir = Bench(), Bench()
     left = bench.run(cycles=10)["nav_state"]
-    heir.service.recall(status=bench.status, nav_state=left)
+    recall(heir.service, status=bench.status, nav_state=left)
     heir.n = 3000
     assert "surfaces" not in heir.run(cycles=100, gnss=None)

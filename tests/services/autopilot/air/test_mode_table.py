@@ -4,13 +4,13 @@ import itertools
 
 import pytest
 
-from services.autopilot.air.manual_control import Hand
-from services.autopilot.air.mode_manager import Pilot
+from services.autopilot.air.manual_control import ManualCommand
+from services.autopilot.air.mode_manager import ModeManager
 from services.autopilot.air.mode_table import TABLE, FlightMode, Need, Situation, lost, refusal
-from services.autopilot.air.setpoints import Senses
+from services.autopilot.air.setpoints import FlightContext
 from tests.services.autopilot.air.states import PARAMS, cruising
 from uvf.control.commands import Surfaces
-from uvf.guidance.flight_plan import Item, Kind
+from uvf.guidance.flight_plan import ItemKind, PlanItem
 from uvf.guidance.route import Circle, Place
 from uvf.models.scenario import ROOT
 
@@ -29,7 +29,7 @@ MET = {
     Need.SETPOINT: lambda s: s.setpoint,
     Need.LEADER: lambda s: s.led,
 }
-FAR = [Item(Kind.WAYPOINT, Place(900.0, 0.0, 70.0)), Item(Kind.WAYPOINT, Place(900.0, 900.0, 70.0))]
+FAR = [PlanItem(ItemKind.WAYPOINT, Place(900.0, 0.0, 70.0)), PlanItem(ItemKind.WAYPOINT, Place(900.0, 900.0, 70.0))]
 
 
 def test_every_mode_is_in_the_table():
@@ -51,10 +51,10 @@ def test_what_a_mode_lives_on_is_looked_at(mode):
 
 
 def flying(items=FAR, airborne=True, armed=True, **now):
-    pilot = Pilot(items)
-    pilot.hear(Senses(airborne=airborne, armed=armed), 0.02)
-    pilot.step(cruising(**now), PARAMS, 0.02)
-    return pilot
+    mode_manager = ModeManager(items)
+    mode_manager.hear(FlightContext(airborne=airborne, armed=armed), 0.02)
+    mode_manager.step(cruising(**now), PARAMS, 0.02)
+    return mode_manager
 
 
 STANDING = {"airspeed": 0.5, "ground_speed": 0.1, "height": 0.4}
@@ -62,9 +62,9 @@ STANDING = {"airspeed": 0.5, "ground_speed": 0.1, "height": 0.4}
 
 @pytest.mark.parametrize("mode", [m for m in FlightMode if Need.AIRBORNE in TABLE[m].needs])
 def test_on_the_ground_a_mode_of_the_air_is_refused_and_nothing_changes(mode):
-    pilot = flying([], airborne=False, **STANDING)
-    assert "on the ground" in pilot.change_mode(mode, "test")
-    assert pilot.mode is M.HOLD
+    mode_manager = flying([], airborne=False, **STANDING)
+    assert "on the ground" in mode_manager.change_mode(mode, "test")
+    assert mode_manager.mode is M.HOLD
 
 
 def test_in_the_air_a_take_off_is_refused():
@@ -73,69 +73,69 @@ def test_in_the_air_a_take_off_is_refused():
 
 @pytest.mark.parametrize("mode", [m for m in FlightMode if m is not M.HOLD])
 def test_while_it_is_stopped_only_hold_is_taken(mode):
-    pilot = flying()
-    pilot.stop("gcs")
-    assert "stopped by gcs" in pilot.change_mode(mode, "test")
-    assert pilot.change_mode(M.HOLD, "test") == ""
+    mode_manager = flying()
+    mode_manager.stop("gcs")
+    assert "stopped by gcs" in mode_manager.change_mode(mode, "test")
+    assert mode_manager.change_mode(M.HOLD, "test") == ""
 
 
 def test_a_mode_may_be_changed_to_with_a_reason_of_its_own():
-    pilot = flying()
-    assert pilot.change_mode(M.RETURN, "failsafe", "battery low") == ""
-    assert (pilot.mode, pilot.reason) == (M.RETURN, "battery low")
+    mode_manager = flying()
+    assert mode_manager.change_mode(M.RETURN, "failsafe", "battery low") == ""
+    assert (mode_manager.mode, mode_manager.reason) == (M.RETURN, "battery low")
 
 
-def holding_the_stick(pilot):
-    hand = Hand("teleop", Surfaces(0.0, 0.0, 0.0, 0.5))
-    pilot.hear(Senses(hand=hand), 0.02)
-    pilot.step(cruising(), PARAMS, 0.02)
+def holding_the_stick(mode_manager):
+    hand = ManualCommand("teleop", Surfaces(0.0, 0.0, 0.0, 0.5))
+    mode_manager.hear(FlightContext(hand=hand), 0.02)
+    mode_manager.step(cruising(), PARAMS, 0.02)
 
 
 @pytest.mark.parametrize("mode", [m for m in FlightMode if Need.POSITION in TABLE[m].keeps])
 def test_without_satellites_a_mode_over_ground_falls_where_the_table_says(mode):
-    pilot = flying()
-    pilot.mode = mode
-    holding_the_stick(pilot)
-    pilot.fly_blind(True)
-    assert pilot.mode is TABLE[mode].without
-    assert "GNSS lost" in pilot.reason
+    mode_manager = flying()
+    mode_manager.mode = mode
+    holding_the_stick(mode_manager)
+    mode_manager.fly_blind(True)
+    assert mode_manager.mode is TABLE[mode].without
+    assert "GNSS lost" in mode_manager.reason
 
 
 @pytest.mark.parametrize("mode", [M.MANUAL, M.STABILIZED, M.ALTITUDE, M.TAKEOFF])
 def test_modes_through_the_air_need_no_satellites(mode):
-    pilot = flying()
-    pilot.mode = mode
-    pilot.fly_blind(True)
-    assert pilot.mode is mode
+    mode_manager = flying()
+    mode_manager.mode = mode
+    mode_manager.fly_blind(True)
+    assert mode_manager.mode is mode
 
 
-@pytest.mark.parametrize("mode", [m for m in FlightMode if TABLE[m].by_hand])
+@pytest.mark.parametrize("mode", [m for m in FlightMode if TABLE[m].is_manual])
 def test_a_stick_that_is_let_go_is_told_and_meanwhile_it_circles(mode):
-    pilot = flying()
-    assert pilot.change_mode(mode, "test") == ""
-    holding_the_stick(pilot)
+    mode_manager = flying()
+    assert mode_manager.change_mode(mode, "test") == ""
+    holding_the_stick(mode_manager)
     for _ in range(30):
-        pilot.hear(Senses(), 0.02)
-        pilot.step(cruising(), PARAMS, 0.02)
-    assert pilot.is_let_go and pilot.mode is mode and pilot.circle is not None
-    holding_the_stick(pilot)
-    pilot.step(cruising(), PARAMS, 0.02)
-    assert not pilot.is_let_go and pilot.circle is None
+        mode_manager.hear(FlightContext(), 0.02)
+        mode_manager.step(cruising(), PARAMS, 0.02)
+    assert mode_manager.is_manual_control_lost and mode_manager.mode is mode and mode_manager.circle is not None
+    holding_the_stick(mode_manager)
+    mode_manager.step(cruising(), PARAMS, 0.02)
+    assert not mode_manager.is_manual_control_lost and mode_manager.circle is None
 
 
 @pytest.mark.parametrize("mode", [m for m in FlightMode if not TABLE[m].on_ground])
 def test_on_the_ground_such_a_mode_keeps_motor_off_and_brakes_on(mode):
-    pilot = flying([], airborne=False, **STANDING)
-    pilot.mode = mode
-    surfaces = pilot.step(cruising(**STANDING), PARAMS, 0.02).surfaces
+    mode_manager = flying([], airborne=False, **STANDING)
+    mode_manager.mode = mode
+    surfaces = mode_manager.step(cruising(**STANDING), PARAMS, 0.02).surfaces
     assert (surfaces.throttle, surfaces.brake) == (0.0, 1.0)
 
 
 def test_an_orbit_is_flown_as_asked():
-    pilot = flying()
-    assert pilot.orbit(Circle(Place(200.0, 100.0, 80.0), -120.0), 22.0, "test", PARAMS) == ""
-    pilot.step(cruising(), PARAMS, 0.02)
-    assert (pilot.mode, pilot.circle) == (M.ORBIT, Circle(Place(200.0, 100.0, 80.0), -120.0))
+    mode_manager = flying()
+    assert mode_manager.orbit(Circle(Place(200.0, 100.0, 80.0), -120.0), 22.0, "test", PARAMS) == ""
+    mode_manager.step(cruising(), PARAMS, 0.02)
+    assert (mode_manager.mode, mode_manager.circle) == (M.ORBIT, Circle(Place(200.0, 100.0, 80.0), -120.0))
 
 
 @pytest.mark.parametrize(
@@ -143,9 +143,9 @@ def test_an_orbit_is_flown_as_asked():
     [(10.0, 0.0, "too tight"), (100.0, 60.0, "cannot be flown"), (float("nan"), 0.0, "not finite")],
 )
 def test_an_orbit_that_cannot_be_flown_is_refused(radius, airspeed, why):
-    pilot = flying()
-    assert why in pilot.orbit(Circle(Place(0.0, 0.0, 80.0), radius), airspeed, "test", PARAMS)
-    assert pilot.mode is M.MISSION
+    mode_manager = flying()
+    assert why in mode_manager.orbit(Circle(Place(0.0, 0.0, 80.0), radius), airspeed, "test", PARAMS)
+    assert mode_manager.mode is M.MISSION
 
 
 def test_without_an_approach_there_is_nothing_to_go_around_from():
@@ -156,6 +156,6 @@ def test_the_documentation_holds_the_table():
     text = (ROOT / "docs" / "autopilot.md").read_text()
     for mode, row in TABLE.items():
         needs = ", ".join(need.name.lower() for need in row.needs) or "-"
-        without = row.without.value if row.keeps or row.by_hand else "-"
+        without = row.without.value if row.keeps or row.is_manual else "-"
         done = row.done.value if row.done else "-"
         assert f"| {mode.value} | {needs} | {without} | {done} |" in text

@@ -7,9 +7,9 @@ from typing import get_args
 import pytest
 
 from schemas.messages import Fence, FenceRequest, FenceZone, Link, Mission, MissionItem, MissionRequest, Mode, ModeRequest, Vector3
-from services.autopilot.failsafes import Action, Watch
-from services.autopilot.ground.failsafes import ACTIONS, GROUND_RULES, Known
-from services.autopilot.ground.fence import MARGIN, Place, stops
+from services.autopilot.failsafes import FailsafeAction, FailsafeWatch
+from services.autopilot.ground.failsafes import ACTIONS, GROUND_RULES, GroundFailsafeInputs
+from services.autopilot.ground.fence import MARGIN, GroundPose, stops
 from services.autopilot.ground.params import Choice, GroundAutopilotParams
 from tests.services.autopilot.ground.test_service import BODY, Bench
 from uvf.maths.zones import Disc, Region
@@ -55,10 +55,10 @@ def test_it_stops_before_the_fence_in_every_mode_and_may_turn_back(mode, source)
 
 
 def test_only_what_leads_nearer_is_stopped():
-    edge = Place(2.95, 0.0, 0.0)
+    edge = GroundPose(2.95, 0.0, 0.0)
     assert stops(DISC, edge, 0.2, KEEP) and not stops(DISC, edge, -0.2, KEEP)
-    assert not stops(DISC, Place(0.0, 0.0, 0.0), 0.5, KEEP)
-    assert not stops(DISC, Place(2.95, 0.0, math.pi), 0.2, KEEP)
+    assert not stops(DISC, GroundPose(0.0, 0.0, 0.0), 0.5, KEEP)
+    assert not stops(DISC, GroundPose(2.95, 0.0, math.pi), 0.2, KEEP)
 
 
 def test_missions_and_fences_that_do_not_go_together_are_refused():
@@ -107,16 +107,16 @@ def test_the_documented_table_is_that_of_the_code():
     rows = [line.strip("|").split("|") for line in text.splitlines() if line.startswith("| `")]
     assert [row[0].strip(" `") for row in rows] == [rule.name for rule in GROUND_RULES]
     assert [re.findall(r"`(\w+)`", row[2]) for row in rows] == [list(rule.parameters) for rule in GROUND_RULES]
-    assert all(rule.begins.split(":")[0] in row[4] for rule, row in zip(GROUND_RULES, rows, strict=True))
+    assert all(rule.raised_text.split(":")[0] in row[4] for rule, row in zip(GROUND_RULES, rows, strict=True))
 
 
 CAUSES = {
     "link": {"silence": 6.0},
-    "sticks": {"let_go": True, "params": GroundAutopilotParams(stick_action="hold")},
-    "pose": {"unplaced": 1.5},
+    "sticks": {"stick_released": True, "params": GroundAutopilotParams(stick_action="hold")},
+    "pose": {"pose_age": 1.5},
     "scan": {"unseen": 2.0},
-    "map": {"unmapped": 6.0},
-    "offboard": {"unsteered": 1.0},
+    "map": {"map_age": 6.0},
+    "offboard": {"setpoint_age": 1.0},
     "fence": {"fence": True},
     "stuck": {"stuck_for": 5.0, "stuck": "wheels are held fast"},
     "tipped": {"tilt": 0.8},
@@ -129,7 +129,7 @@ CAUSES = {
 def after(seconds, watch, **changes):
     seen, orders = [], []
     for _ in range(round(seconds / 0.02)):
-        changed, order = watch.step(Known(**changes), 0.02)
+        changed, order = watch.step(GroundFailsafeInputs(**changes), 0.02)
         seen += [(c.rule.name, c.began) for c in changed]
         orders += [order.action] if order else []
     return seen, orders
@@ -137,28 +137,28 @@ def after(seconds, watch, **changes):
 
 @pytest.mark.parametrize("rule", GROUND_RULES, ids=lambda rule: rule.name)
 def test_each_rule_begins_once_on_its_cause_and_ends_with_it(rule):
-    watch = Watch([rule])
+    watch = FailsafeWatch([rule])
     assert after(10.0, watch)[0] == []
     assert after(10.0, watch, **CAUSES[rule.name])[0] == [(rule.name, True)]
     assert after(10.0, watch)[0] == [(rule.name, False)]
 
 
 def test_who_is_stuck_on_the_way_home_stands_and_who_is_stuck_by_hand_is_told_only():
-    watch = Watch(GROUND_RULES)
-    assert after(5.0, watch, charge=0.15)[1] == [Action.RETURN]
-    assert after(1.0, watch, charge=0.15, stuck_for=5.0)[1] == [Action.STAND]
-    assert after(1.0, Watch(GROUND_RULES), by_hand=True, stuck_for=5.0) == ([("stuck", True)], [])
+    watch = FailsafeWatch(GROUND_RULES)
+    assert after(5.0, watch, charge=0.15)[1] == [FailsafeAction.RETURN]
+    assert after(1.0, watch, charge=0.15, stuck_for=5.0)[1] == [FailsafeAction.STAND]
+    assert after(1.0, FailsafeWatch(GROUND_RULES), by_hand=True, stuck_for=5.0) == ([("stuck", True)], [])
 
 
 def test_what_is_ordered_stays_in_force_until_its_cause_ends_or_somebody_overrules_it():
-    watch = Watch(GROUND_RULES)
+    watch = FailsafeWatch(GROUND_RULES)
     after(5.0, watch, charge=0.15)
-    assert watch.in_force(Known()).rule.name == "battery_low"
+    assert watch.in_force(GroundFailsafeInputs()).rule.name == "battery_low"
     watch.overrule()
-    assert watch.in_force(Known()) is None
+    assert watch.in_force(GroundFailsafeInputs()) is None
     after(5.0, watch)
     after(5.0, watch, charge=0.15)
-    assert watch.in_force(Known()).rule.name == "battery_low"
+    assert watch.in_force(GroundFailsafeInputs()).rule.name == "battery_low"
 
 
 def test_every_choice_of_an_action_is_known():

@@ -5,9 +5,11 @@ from math import inf, nan
 import pytest
 
 from schemas.messages import Mode
-from services.autopilot.ground.multiplexer import CLOCK_TOLERANCE, COMMAND_MAX_AGE, SOURCES, Velocity, choose
+from services.autopilot.ground.multiplexer import CLOCK_TOLERANCE, COMMAND_MAX_AGE, SOURCES, VelocityCommand, choose
 
-ALL = {name: Velocity(10.0, 0.1 * (i + 1), 0.0) for i, name in enumerate(("planner", "offboard", "client", "gcs", "mavlink", "teleop"))}
+ALL = {
+    name: VelocityCommand(10.0, 0.1 * (i + 1), 0.0) for i, name in enumerate(("planner", "offboard", "client", "gcs", "mavlink", "teleop"))
+}
 
 
 @pytest.mark.parametrize(
@@ -31,7 +33,7 @@ def test_in_manual_mode_the_first_fresh_source_of_the_order_wins():
     commands = dict(ALL)
     for source in order:
         assert choose(10.0, Mode.MODE_MANUAL, commands, "").source == source
-        commands[source] = Velocity(10.0 - COMMAND_MAX_AGE - 0.01, 1.0, 0.0)
+        commands[source] = VelocityCommand(10.0 - COMMAND_MAX_AGE - 0.01, 1.0, 0.0)
     assert choose(10.0, Mode.MODE_MANUAL, commands, "").source == ""
 
 
@@ -47,27 +49,27 @@ def test_an_obstacle_beats_every_command():
 
 
 def test_a_command_from_the_future_does_not_count():
-    ahead = {"planner": Velocity(1000.0, 0.3, 0.0)}
+    ahead = {"planner": VelocityCommand(1000.0, 0.3, 0.0)}
     assert choose(10.0, Mode.MODE_MISSION, ahead, "").source == ""
-    a_tick_ahead = {"planner": Velocity(10.0 + CLOCK_TOLERANCE / 2, 0.3, 0.0)}
+    a_tick_ahead = {"planner": VelocityCommand(10.0 + CLOCK_TOLERANCE / 2, 0.3, 0.0)}
     assert choose(10.0, Mode.MODE_MISSION, a_tick_ahead, "").source == "planner"
 
 
 @pytest.mark.parametrize("command", [(nan, 0.0), (0.0, nan), (inf, 0.0), (0.0, -inf)])
 def test_a_command_that_is_no_number_is_refused_with_the_reason(command):
-    choice = choose(10.0, Mode.MODE_MISSION, {"planner": Velocity(10.0, *command)}, "")
+    choice = choose(10.0, Mode.MODE_MISSION, {"planner": VelocityCommand(10.0, *command)}, "")
     assert (choice.source, choice.linear, choice.angular) == ("", 0.0, 0.0)
     assert "not a velocity: planner" in choice.reason
 
 
 def test_behind_a_refused_command_the_next_source_counts():
-    choice = choose(10.0, Mode.MODE_MANUAL, {"teleop": Velocity(10.0, nan, 0.0), "client": Velocity(10.0, 0.2, 0.1)}, "")
+    choice = choose(10.0, Mode.MODE_MANUAL, {"teleop": VelocityCommand(10.0, nan, 0.0), "client": VelocityCommand(10.0, 0.2, 0.1)}, "")
     assert (choice.source, choice.linear, choice.angular) == ("client", 0.2, 0.1)
     assert choice.refused == "teleop (nan m/s, 0 rad/s)"
 
 
 def test_in_offboard_equals_do_not_alternate_and_a_program_on_board_comes_first():
-    client, mavlink, board = Velocity(10.0, 0.1, 0.0), Velocity(10.0, 0.2, 0.0), Velocity(10.0, 0.3, 0.0)
+    client, mavlink, board = VelocityCommand(10.0, 0.1, 0.0), VelocityCommand(10.0, 0.2, 0.0), VelocityCommand(10.0, 0.3, 0.0)
     both = {"client": client, "mavlink": mavlink}
     for held in both:
         assert choose(10.0, Mode.MODE_OFFBOARD, both, "", held).source == held

@@ -23,6 +23,7 @@ from schemas.messages import (
 from services.autopilot.ground.multiplexer import SOURCES
 from services.autopilot.ground.params import GroundAutopilotParams
 from services.autopilot.ground.service import GroundAutopilot
+from tests.runtime.stepping import recall, stepped
 from tests.services.live_params import all_settable_are_read
 from tests.stops import ENGAGED, RELEASED
 from uvf.models.vehicle.file import GroundBody, Motor
@@ -65,7 +66,7 @@ class Bench:
                 values[source] = DriveCommand(timestamp=stamp(self.t - 0.02), linear=linear)
             if pose is not None:
                 values["pose"] = PoseInFrame(pose=planar_pose(*pose, 0.0))
-            out = self.service.step(self.t, **values)
+            out = stepped(self.service, self.t, **values)
             self.said.update(out)
             self.events += [e.text for e in out["events"]]
         return self
@@ -206,7 +207,7 @@ def test_jumps_to_an_item_on_request():
 def test_started_again_it_goes_on_as_it_was():
     old = Bench(items=WAYPOINTS).step(30, pose=(0.9, 0.0)).step(set_mode=[ModeRequest(mode=Mode.MODE_MANUAL)]).step(30)
     new = Bench(begins=False)
-    new.service.recall(status=old.said["status"], mission=old.said["mission"], progress=old.said["progress"])
+    recall(new.service, status=old.said["status"], mission=old.said["mission"], progress=old.said["progress"])
     new.step(1)
     assert (new.said["status"].mode, new.said["status"].armed) == (Mode.MODE_MANUAL, True)
     assert (new.said["progress"].current, new.said["progress"].total) == (1, 2)
@@ -215,7 +216,7 @@ def test_started_again_it_goes_on_as_it_was():
 def test_stop_all_stays_through_a_restart_until_it_is_released():
     old = Bench().step(30, linear=0.4, stop=ENGAGED)
     new = Bench()
-    new.service.recall(status=old.said["status"])
+    recall(new.service, status=old.said["status"])
     new.step(40, linear=0.4, stop=ENGAGED)
     assert (new.speed, new.said["status"].stopped, list(new.said["status"].stops)) == (0.0, True, list(ENGAGED.engagements))
     assert new.step(40, linear=0.4, stop=RELEASED).speed == pytest.approx(0.4)
@@ -224,7 +225,7 @@ def test_stop_all_stays_through_a_restart_until_it_is_released():
 def test_a_release_that_was_missed_during_a_restart_counts():
     old = Bench().step(30, stop=ENGAGED)
     new = Bench()
-    new.service.recall(status=old.said["status"])
+    recall(new.service, status=old.said["status"])
     assert new.step(40, linear=0.4, stop=RELEASED).speed == pytest.approx(0.4)
 
 

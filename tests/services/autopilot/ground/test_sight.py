@@ -3,7 +3,7 @@
 import pytest
 
 from schemas.messages import FrameTransform, LaserScan
-from services.autopilot.ground.sight import MOVED, Sight
+from services.autopilot.ground.sight import MOVED, SensorWatch
 from uvf.runtime.messages.convert import stamp
 from uvf.sensors.sweeping import AT_ONCE, Sweeping
 
@@ -14,15 +14,15 @@ def scan(t, ahead=1.0):
 
 @pytest.mark.parametrize(("sweeping", "unseen"), [(AT_ONCE, 0.3), (Sweeping(0.2), 0.1)])
 def test_a_scan_is_as_old_as_its_last_beam(sweeping, unseen):
-    sight = Sight(sweeping)
+    sight = SensorWatch(sweeping)
     sight.step(3.0, None, None, 0.0)
-    assert (sight.unseen, sight.unmapped) == (0.0, 0.0)
+    assert (sight.unseen, sight.map_age) == (0.0, 0.0)
     sight.step(3.3, scan(3.0), None, 0.0)
     assert sight.unseen == pytest.approx(unseen)
 
 
 def test_a_scan_that_stays_the_same_while_the_wheels_turn_is_not_seen():
-    sight = Sight(AT_ONCE)
+    sight = SensorWatch(AT_ONCE)
     sight.step(1.0, scan(1.0), None, 0.0)
     sight.step(2.0, scan(2.0), None, 0.5 * MOVED)
     assert sight.unseen == 0.0
@@ -33,7 +33,7 @@ def test_a_scan_that_stays_the_same_while_the_wheels_turn_is_not_seen():
 
 
 def test_a_mapping_that_falls_silent_is_told_apart():
-    sight = Sight(AT_ONCE)
+    sight = SensorWatch(AT_ONCE)
     sight.step(1.0, scan(1.0), FrameTransform(timestamp=stamp(1.0)), 0.0)
     sight.step(2.0, scan(2.0), None, 0.0)
-    assert (sight.unseen, sight.unmapped) == (0.0, pytest.approx(1.0))
+    assert (sight.unseen, sight.map_age) == (0.0, pytest.approx(1.0))

@@ -4,13 +4,14 @@ import numpy as np
 import pytest
 
 from schemas import topics
-from schemas.messages import ArmRequest, DriveCommand, Mode, ModeRequest
+from schemas.messages import ArmRequest, DriveCommand, Mode, ModeRequest, Reply
 from services.autopilot.ground.build import hosts
 from services.autopilot.ground.multiplexer import COMMAND_MAX_AGE
 from services.sim_ground.build import build as build_simulator
 from tests.services.sim_ground.ride import site_with
-from uvf.runtime.contract.instances import Host
-from uvf.runtime.contract.service import Service
+from uvf.runtime.contract.declaration import Reads, Writes, answers, call, topic
+from uvf.runtime.contract.instances import ServiceInstance
+from uvf.runtime.contract.service import Answer, Service
 from uvf.runtime.messages.convert import seconds, stamp
 from uvf.runtime.time.lockstep import Lockstep
 
@@ -26,13 +27,21 @@ class Operator(Service):
     name = "operator"
     mode = Mode.MODE_MANUAL
     hz = 20.0
-    outputs = {"drive": topics.DRIVE.by("teleop")}
-    calls = {"mode": topics.SET_MODE, "arm": topics.ARM}
 
-    def step(self, t, mode, arm):
-        asks = {"mode": [ModeRequest(mode=self.mode)], "arm": [ArmRequest(arm=True)]} if t < 0.06 else {}
-        drive = {"drive": DriveCommand(timestamp=stamp(t), linear=SPEED)} if t <= SILENT_FROM else {}
-        return asks | drive
+    class Inputs(Reads):
+        mode: list[Answer[ModeRequest, Reply]] = answers(topics.SET_MODE)
+        arm: list[Answer[ArmRequest, Reply]] = answers(topics.ARM)
+
+    class Outputs(Writes):
+        drive: DriveCommand | None = topic(topics.DRIVE.by("teleop"))
+        mode: list[ModeRequest] = call(topics.SET_MODE)
+        arm: list[ArmRequest] = call(topics.ARM)
+
+    def step(self, t: float, now: Inputs) -> Outputs:
+        out = self.Outputs(drive=DriveCommand(timestamp=stamp(t), linear=SPEED) if t <= SILENT_FROM else None)
+        if t < 0.06:
+            out.mode, out.arm = [ModeRequest(mode=self.mode)], [ArmRequest(arm=True)]
+        return out
 
 
 class Program(Operator):
@@ -40,7 +49,9 @@ class Program(Operator):
 
     name = "program"
     mode = Mode.MODE_OFFBOARD
-    outputs = {"drive": topics.DRIVE.by("offboard")}
+
+    class Outputs(Operator.Outputs):
+        drive: DriveCommand | None = topic(topics.DRIVE.by("offboard"))
 
 
 class Page(Service):
@@ -48,20 +59,22 @@ class Page(Service):
 
     name = "page"
     hz = 20.0
-    outputs = {"drive": topics.DRIVE.by("gcs")}
 
-    def step(self, t):
-        return {"drive": DriveCommand(timestamp=stamp(t), angular=0.5)}
+    class Outputs(Writes):
+        drive: DriveCommand | None = topic(topics.DRIVE.by("gcs"))
+
+    def step(self, t: float, now) -> Outputs:
+        return self.Outputs(drive=DriveCommand(timestamp=stamp(t), angular=0.5))
 
 
 def ride(folder, *drivers):
     """(times [s], speeds [m/s], turn rates [rad/s]) of the truth, and the status messages."""
     site = site_with(folder, {"burger": START})
-    commanders = [Host(service, service, "burger") for service in drivers]
+    commanders = [ServiceInstance(service, service, "burger") for service in drivers]
     run = Lockstep([*build_simulator(site), *hosts(site), *commanders])
     truth, status = [], []
-    for topic, kept in ((topics.TRUTH, truth), (topics.STATUS, status)):
-        run.bus.subscribe(topic.at("burger"), topic.qos, lambda s, k=kept, m=topic.message: k.append(m.FromString(s.payload)))
+    for of, kept in ((topics.TRUTH, truth), (topics.STATUS, status)):
+        run.bus.subscribe(of.at("burger"), of.qos, lambda s, k=kept, m=of.message: k.append(m.FromString(s.payload)))
     run.run(4.0)
     run.close()
     rows = [(seconds(m.timestamp), np.hypot(m.velocity.x, m.velocity.y), m.angular_velocity.z) for m in truth]

@@ -12,7 +12,7 @@ from services.autopilot.ground.build import hosts
 from services.planner.build import build as planner
 from services.sim_ground.build import build as simulator
 from services.slam.build import build as slam
-from uvf.models.scenario import load_site
+from uvf.models.scenario import load_scenario
 from uvf.runtime.messages.convert import stamp
 from uvf.runtime.time.lockstep import Lockstep
 
@@ -26,7 +26,7 @@ def site(folder, faults, entry, ground):
     vehicle = {"model": "burger", "system_id": 1, "start": START, **entry}
     listed = [dict(zip(("part", "kind", "at", "until", "size"), fault, strict=False), vehicle="burger") for fault in faults]
     path.write_text(yaml.safe_dump({"about": "test", "world": "house", "seed": 1, "vehicles": {"burger": vehicle}, "faults": listed}))
-    made = load_site(path)
+    made = load_scenario(path)
     member = made.members["burger"]
     body = msgspec.structs.replace(member.file.ground, **ground)
     member = dataclasses.replace(member, file=msgspec.structs.replace(member.file, ground=body))

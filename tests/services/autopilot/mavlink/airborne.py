@@ -9,10 +9,10 @@ from services.autopilot.mavlink.service import MavlinkService
 from services.sim_air.build import build as build_sim
 from tests.services.autopilot.mavlink.rig import GCS, MemoryLink, Shelf
 from uvf.mavlink import dialect as mav
-from uvf.models.mission.file import Job
-from uvf.models.scenario import ROOT, Member, load_site
-from uvf.runtime.contract.instances import Host
-from uvf.runtime.contract.service_runner import Shell
+from uvf.models.mission.file import JobFile
+from uvf.models.scenario import ROOT, MissionVehicle, load_scenario
+from uvf.runtime.contract.instances import ServiceInstance
+from uvf.runtime.contract.service_runner import ServiceRunner
 from uvf.runtime.time.lockstep import Lockstep
 
 NS = 1_000_000_000
@@ -21,10 +21,10 @@ STEP = 0.1  # s, between two looks
 
 def field(job=None):
     """Milvus on the strip of the airfield, without a job."""
-    site = load_site(ROOT / "missions" / "circuit.yaml")
+    site = load_scenario(ROOT / "missions" / "circuit.yaml")
     member = site.members["milvus"]
-    entry = msgspec.structs.replace(member.entry, job=job or Job())
-    site.members["milvus"] = Member(member.name, entry, member.file, member.folder)
+    entry = msgspec.structs.replace(member.entry, job=job or JobFile())
+    site.members["milvus"] = MissionVehicle(member.name, entry, member.file, member.folder)
     return site
 
 
@@ -37,7 +37,7 @@ class Airborne:
         self.run = Lockstep([*build_sim(site), *hosts(site)])
         service = MavlinkService(facts_of(site), self.link, {name: Shelf() for name in site.members})
         self.service = service
-        self._shell = Shell(Host(MavlinkService, lambda: service, writes_for=tuple(site.members)), self.run.bus)
+        self._shell = ServiceRunner(ServiceInstance(MavlinkService, lambda: service, writes_for=tuple(site.members)), self.run.bus)
         self.heard = []
         """(t, message) to the ground station."""
         self.truth = []

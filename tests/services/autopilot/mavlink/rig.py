@@ -21,10 +21,11 @@ from schemas.messages import (
     VehicleStatus,
 )
 from services.autopilot.ground.params import GroundAutopilotParams
-from services.autopilot.mavlink.connection.facts import Facts
-from services.autopilot.mavlink.parameters.parameter_store import Unreadable
+from services.autopilot.mavlink.connection.facts import VehicleInfo
+from services.autopilot.mavlink.parameters.parameter_store import UnreadableStore
 from services.autopilot.mavlink.service import MavlinkService
 from services.autopilot.told_params import ToldParams
+from tests.runtime.stepping import stepped
 from uvf.maths.geodesy import LocalTangent
 from uvf.maths.rotations import from_euler
 from uvf.mavlink import dialect as mav
@@ -79,8 +80,8 @@ _ROVER_FILE = {
     },
 }
 _PLANE_PARAMS = AirParams(trim_airspeed=25.0, hold_radius=90.0, return_altitude=40.0)
-PLANE_FACTS = Facts("plane", PLANE, convert(_PLANE_FILE, VehicleFile, "test"), ORIGIN, _PLANE_PARAMS, FIXED)
-ROVER_FACTS = Facts("rover", ROVER, convert(_ROVER_FILE, VehicleFile, "test"), ORIGIN, GroundAutopilotParams())
+PLANE_FACTS = VehicleInfo("plane", PLANE, convert(_PLANE_FILE, VehicleFile, "test"), ORIGIN, _PLANE_PARAMS, FIXED)
+ROVER_FACTS = VehicleInfo("rover", ROVER, convert(_ROVER_FILE, VehicleFile, "test"), ORIGIN, GroundAutopilotParams())
 
 
 class Shelf:
@@ -91,7 +92,7 @@ class Shelf:
         self.trouble = None
 
     def load(self):
-        if isinstance(self.trouble, Unreadable):
+        if isinstance(self.trouble, UnreadableStore):
             raise self.trouble
         return dict(self.settings)
 
@@ -171,7 +172,7 @@ class Vehicle:
         self.tell()
 
     def tell(self):
-        self.params = self._told.news(0.0, self.autopilot.params).get("params", self.params)
+        self.params = self._told.news(0.0, self.autopilot.params) or self.params
 
     def set(self, name, value):
         """By the page, or anybody else."""
@@ -275,7 +276,8 @@ class Rig:
                 told.timestamp.CopyFrom(sim)
         answers, self._waiting = self._waiting, {call: [] for call in self.CALLS}
         events, self.events = self.events, {}
-        self.outputs = self.service.step(
+        self.outputs = stepped(
+            self.service,
             self.t,
             nav={n: v.nav for n, v in live.items()},
             status={n: v.status for n, v in live.items()},

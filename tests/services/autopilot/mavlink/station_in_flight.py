@@ -8,7 +8,7 @@ from services.autopilot.mavlink.build import facts_of
 from tests.services.autopilot.mavlink.airborne import Airborne, field
 from tests.services.autopilot.mavlink.parameters.test_parameters import setting, value
 from uvf.mavlink import dialect as mav
-from uvf.models.scenario import Member
+from uvf.models.scenario import MissionVehicle
 
 REAL = mav.MAV_PARAM_TYPE_REAL32
 ALTITUDE, HOLD, MISSION, RETURN, LAND = 0x00020000, 0x03040000, 0x04040000, 0x05040000, 0x06040000
@@ -21,7 +21,7 @@ def in_the_air(*faults):
     member = site.members["milvus"]
     start = msgspec.structs.replace(member.entry.start, x=0.0, y=0.0, z=80.0, speed=25.0)
     entry = msgspec.structs.replace(member.entry, start=start)
-    site.members["milvus"] = Member(member.name, entry, member.file, member.folder)
+    site.members["milvus"] = MissionVehicle(member.name, entry, member.file, member.folder)
     site.mission.faults.extend(faults)
     return site
 

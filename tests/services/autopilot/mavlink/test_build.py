@@ -5,7 +5,7 @@ import pytest
 from services.autopilot.mavlink import build as build_module
 from services.autopilot.mavlink.build import build
 from services.autopilot.mavlink.parameters.parameter_table import parameters_of
-from uvf.models.scenario import ROOT, load_site
+from uvf.models.scenario import ROOT, load_scenario
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.bus.address import peer
 
@@ -21,7 +21,7 @@ def test_addresses():
 
 
 def test_parameters_get_the_numbers_of_the_vehicles_own_files():
-    site = load_site(ROOT / "missions" / "demo.yaml")
+    site = load_scenario(ROOT / "missions" / "demo.yaml")
     for facts in build_module.facts_of(site):
         values = {p.name for p in parameters_of(facts)}
         assert ("NAV_LOITER_RAD" in values) == (facts.file.kind == "fixed_wing")
@@ -39,7 +39,7 @@ def opened(monkeypatch):
 def test_one_process_speaks_for_all_vehicles_of_the_mission(opened, monkeypatch):
     monkeypatch.delenv("UVF_MAVLINK_TARGETS", raising=False)
     monkeypatch.delenv("UVF_MAVLINK_LISTEN", raising=False)
-    site = load_site(ROOT / "missions" / "demo.yaml")
+    site = load_scenario(ROOT / "missions" / "demo.yaml")
     (host,) = build(site)
     host.make()
     assert opened == [([("127.0.0.1", 14550), ("127.0.0.1", 14540)], ("127.0.0.1", 14580))]
@@ -50,7 +50,7 @@ def test_one_process_speaks_for_all_vehicles_of_the_mission(opened, monkeypatch)
 def test_the_environment_chooses_other_addresses(opened, monkeypatch):
     monkeypatch.setenv("UVF_MAVLINK_TARGETS", "gcs.local:14550,10.0.0.2:9")
     monkeypatch.setenv("UVF_MAVLINK_LISTEN", "")
-    (host,) = build(load_site(ROOT / "missions" / "demo.yaml"))
+    (host,) = build(load_scenario(ROOT / "missions" / "demo.yaml"))
     host.make()
     assert opened == [([("gcs.local", 14550), ("10.0.0.2", 9)], None)]
 
@@ -59,11 +59,11 @@ def test_the_environment_chooses_other_addresses(opened, monkeypatch):
 def test_an_identity_that_there_is_not_is_named_with_its_place(text, monkeypatch):
     monkeypatch.setenv("UVF_MAVLINK_IDENTITY", text)
     with pytest.raises(BadInput, match="UVF_MAVLINK_IDENTITY"):
-        build(load_site(ROOT / "missions" / "demo.yaml"))
+        build(load_scenario(ROOT / "missions" / "demo.yaml"))
 
 
 def test_the_environment_chooses_identity_and_whether_signing_is_required(opened, monkeypatch, tmp_path):
-    site = load_site(ROOT / "missions" / "demo.yaml")
+    site = load_scenario(ROOT / "missions" / "demo.yaml")
     monkeypatch.setenv("UVF_STATE", str(tmp_path))
     made = []
     monkeypatch.setattr(build_module, "MavlinkService", lambda *arguments: made.append(arguments))

@@ -5,10 +5,10 @@ import copy
 import pytest
 
 from schemas.messages import Event, Mission, Mode
-from services.autopilot.mavlink.connection.facts import Latest
+from services.autopilot.mavlink.connection.facts import VehicleState
 from services.autopilot.mavlink.connection.statustext import counted_from_one
 from services.autopilot.mavlink.missions.missions import TOLD_WITHIN
-from services.autopilot.mavlink.telemetry.events import NEWS, News
+from services.autopilot.mavlink.telemetry.events import NEWS, EventNews
 from tests.services.autopilot.mavlink.qgroundcontrol import PAGES, PLANS, STANDARD_NAMES, QGroundControl
 from tests.services.autopilot.mavlink.rig import GCS, OTHER, PLANE, ROVER, Rig, acks, long, of, texts
 from uvf.mavlink import dialect as mav
@@ -143,7 +143,7 @@ def test_a_link_that_starts_again_says_no_old_event_once_more():
 
 
 def test_events_that_come_before_the_time_is_known_wait_and_a_new_simulation_is_news():
-    news, latest = News(), Latest()
+    news, latest = EventNews(), VehicleState()
     assert news.of(latest, [event(0.5), event(99.0)]) == []
     latest.clock = Rig().clock
     latest.clock.t_ns = 100 * 10**9
@@ -153,7 +153,7 @@ def test_events_that_come_before_the_time_is_known_wait_and_a_new_simulation_is_
 
 
 def test_items_reached_are_no_texts_beside_their_message():
-    assert News().of(Latest(clock=Rig().clock), [event(0.0, "mission item 3 reached"), event(0.0, "camera trigger 7")]) == []
+    assert EventNews().of(VehicleState(clock=Rig().clock), [event(0.0, "mission item 3 reached"), event(0.0, "camera trigger 7")]) == []
 
 
 def test_items_are_counted_as_on_the_map():

@@ -7,7 +7,7 @@ from services.autopilot.mavlink.connection.statustext import TextLimiter, chunks
 from services.autopilot.mavlink.telemetry.streams import Schedule
 from tests.services.autopilot.mavlink.rig import GCS, OTHER, PLANE, ROVER, Rig, of, texts
 from uvf.mavlink import dialect as mav
-from uvf.models.vehicle.air import Commands
+from uvf.models.vehicle.air import CommandProperties
 
 
 @pytest.mark.parametrize("n", [1, 49, 50, 51, 99, 100, 101, 240])
@@ -87,7 +87,7 @@ def test_sticks_move_the_surfaces_of_an_aircraft_in_manual_mode_within_its_limit
     rig.say(sticks(PLANE, x=500, y=1000, z=700, r=-32768))
     rig.run(0.02)
     (command,) = rig.outputs["surfaces"].values()
-    limits = Commands()  # the file of the rig's aircraft names none
+    limits = CommandProperties()  # the file of the rig's aircraft names none
     assert command.elevator == 0.5 * limits.elevator.limit  # stick forward: trailing edge down, the nose goes down
     assert command.aileron == limits.aileron.limit  # right: rolls right
     assert command.rudder == limits.rudder.limit  # left: yaws left

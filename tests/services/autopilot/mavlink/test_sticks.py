@@ -5,9 +5,9 @@ import pytest
 from schemas.messages import Mode
 from tests.services.autopilot.mavlink.rig import OTHER, PLANE, ROVER, Rig, of, texts
 from uvf.mavlink import dialect as mav
-from uvf.models.vehicle.air import Commands
+from uvf.models.vehicle.air import CommandProperties
 
-LIMITS = Commands()  # the file of the rig's aircraft names none
+LIMITS = CommandProperties()  # the file of the rig's aircraft names none
 UNCHANGED, RELEASED = 65535, 0
 
 

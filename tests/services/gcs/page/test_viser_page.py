@@ -14,9 +14,9 @@ import websockets
 from services.gcs.commands import Join, Leave, Select, SetMode, StopAll, TakeWheel
 from services.gcs.page.viser_page import ViserPage
 from services.gcs.page.viser_script import action_in, shape_in
-from services.gcs.state.state import Placed
+from services.gcs.state.state import DisplayPose
 from services.gcs.view.cameras import cameras
-from services.gcs.view.drawing import Button, Panel, Picture, Points, Polyline
+from services.gcs.view.drawing import Button, PagePanel, Picture, Points, Polyline
 from services.gcs.view.markup import html
 from tests.services.gcs.fakes import ME, Station
 from tests.services.gcs.scripted import UAV, demo_site
@@ -73,7 +73,9 @@ def test_a_browser_gets_its_own_panel_and_its_own_script(page, browser):
 
 
 def test_another_browser_gets_none_of_it(page, browser):
-    page.show(Picture(panels={browser.page: Panel("burger", {"facts": html("mine")}, [Button("b", "Hold", SetMode("burger", "Hold"))])}))
+    page.show(
+        Picture(panels={browser.page: PagePanel("burger", {"facts": html("mine")}, [Button("b", "Hold", SetMode("burger", "Hold"))])})
+    )
     assert until(lambda: "mine" in browser.html() and browser.labels() == {"Hold"})
     assert "mine" not in str(join(page.port)) and "Hold" not in str(join(page.port))
 
@@ -81,13 +83,13 @@ def test_another_browser_gets_none_of_it(page, browser):
 def test_who_goes_is_told_of_and_forgotten(page):
     browser = Browser(page.port)
     (joined,) = wait_for_actions(page)
-    page.show(Picture(panels={joined.page: Panel("burger")}))
+    page.show(Picture(panels={joined.page: PagePanel("burger")}))
     assert isinstance(joined, Join) and joined.page in page._panels
     browser.close()
     assert wait_for_actions(page) == [Leave(joined.page)]
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        page.show(Picture(panels={joined.page: Panel("burger")}))
+        page.show(Picture(panels={joined.page: PagePanel("burger")}))
     assert not page._panels
 
 
@@ -106,7 +108,7 @@ def test_only_changes_are_sent(page):
 
 def test_what_is_no_longer_shown_goes_away(page):
     line = Polyline(np.zeros((3, 3)), (1, 2, 3))
-    place = Placed(np.zeros(3), np.array((1.0, 0, 0, 0)))
+    place = DisplayPose(np.zeros(3), np.array((1.0, 0, 0, 0)))
     page.show(Picture({"/track/x": line, "/vehicles/x/0": line}, {"/vehicles/x": place}))
     assert {"/track/x", "/vehicles/x/0"} <= names(join(page.port))
     page.show(Picture())
@@ -151,7 +153,7 @@ def test_a_greyed_out_button_asks_for_nothing_whoever_presses_it(page, browser):
 
 
 def test_what_a_browser_says_counts_for_itself_and_for_what_it_is_shown(page, browser):
-    page.show(Picture(panels={browser.page: Panel("burger")}))
+    page.show(Picture(panels={browser.page: PagePanel("burger")}))
     assert until(lambda: browser.scripts)
     browser.say("wheel:on")
     assert wait_for_actions(page) == [TakeWheel(browser.page, "burger")]
@@ -226,7 +228,7 @@ def test_a_browser_that_goes_while_it_is_written_to_ends_nothing(page, browser):
     """viser's own thread takes away what it had, and refuses to write to it."""
     panel = page._panels[browser.page]
     panel._html["instrument"]._impl.removed = True
-    page.show(Picture(panels={browser.page: Panel(html={"instrument": html("late")})}))
+    page.show(Picture(panels={browser.page: PagePanel(html={"instrument": html("late")})}))
     panel._html["instrument"]._impl.removed = False
-    page.show(Picture(panels={browser.page: Panel(html={"instrument": html("there")})}))
+    page.show(Picture(panels={browser.page: PagePanel(html={"instrument": html("there")})}))
     assert until(lambda: "there" in browser.html(), 10.0)

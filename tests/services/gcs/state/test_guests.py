@@ -19,7 +19,7 @@ from schemas.messages import (
 from services.gcs.state.guests import FORGOTTEN_AFTER
 from services.gcs.state.process_book import MOST_PROCESSES
 from services.gcs.state.state import MOST_VEHICLES, Model
-from services.gcs.view.view import View
+from services.gcs.view.view import SceneView
 from tests.services.gcs.scripted import UAV, UGV, demo_site
 from uvf.runtime.contract.inbox import OWNERS_MOST
 
@@ -31,7 +31,7 @@ def model():
 
 @pytest.mark.parametrize(("body", "kind"), [("milvus", Kind.KIND_FIXED_WING), ("burger", Kind.KIND_GROUND)])
 def test_a_guest_is_drawn_where_it_says_and_can_be_chosen(model, body, kind):
-    view = View(model)
+    view = SceneView(model)
     nav = NavState(position=Vector3(x=7.0, z=20.0), orientation=Quaternion(w=1))
     model.hear(0.0, "nav", {"plane2": nav})
     assert "plane2" not in model.vehicles, "nobody knows what it looks like"
@@ -63,7 +63,7 @@ def test_a_model_is_the_name_of_a_folder_in_vehicles_and_never_a_path(model, bod
     model.hear_guests(0.0, {"plane2": Guest(model=body)})
     assert "plane2" not in model.vehicles
     model.hear_objects((SimObjects(objects=[SimObject(name="scout", model=body, shape="box", size=[1, 1, 1])]), None), {})
-    drawn = View(model).nodes(0.0)
+    drawn = SceneView(model).nodes(0.0)
     assert not body or not any(name.startswith("/spawned") for name in drawn)
 
 
@@ -112,7 +112,7 @@ def come(model, t, *names):
 
 
 def test_a_guest_that_is_lost_for_long_makes_room_for_another(haunted):
-    view = View(haunted)
+    view = SceneView(haunted)
     view.nodes(0.0)
     come(haunted, FORGOTTEN_AFTER - 1.0, "plane9")
     assert "plane9" not in haunted.vehicles

@@ -10,7 +10,7 @@ from schemas.limits import LENGTHS
 from schemas.messages import Fence, FenceZone, Vector3
 from services.gcs.commands import Layer
 from services.gcs.view import view
-from services.gcs.view.drawing import Mesh, Polyline
+from services.gcs.view.drawing import MeshNode, Polyline
 from services.gcs.view.fences import CORNERS, KEEP_OUT, fence_nodes
 from tests.services.gcs.fakes import ME, Station
 from tests.services.gcs.scripted import UAV, UGV
@@ -105,4 +105,4 @@ def test_a_new_fence_takes_the_place_of_the_old_one(station):
     station.script.put(UAV, topics.FENCE, Fence(zones=[TOWER]), station.t)
     station.run(0.2)
     node = station.page.now.nodes[f"/fence/{UAV}/0/wall"]
-    assert isinstance(node, Mesh) and node.colour == KEEP_OUT
+    assert isinstance(node, MeshNode) and node.colour == KEEP_OUT

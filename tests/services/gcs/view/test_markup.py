@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from services import gcs
-from services.gcs.view.instruments import Drive, Flight
+from services.gcs.view.instruments import DriveInstruments, FlightInstruments
 from services.gcs.view.markup import Html, html, joined, trusted
 
 EVIL = "<img src=x onerror='alert(\"1\")'>&"
@@ -54,7 +54,7 @@ def test_no_other_file_makes_markup_by_hand(source):
     assert [n.lineno for n in calls if n.func.id == "Html" and source.stem != "markup"] == []
 
 
-@pytest.mark.parametrize("read", [Flight, Drive])
+@pytest.mark.parametrize("read", [FlightInstruments, DriveInstruments])
 def test_an_instrument_is_drawn_by_hand_for_nothing_but_numbers_and_markup_goes_into_it(read):
     assert set(get_type_hints(read).values()) <= {float, float | None, bool, Html}
 

@@ -5,7 +5,7 @@ import pytest
 from schemas.messages import NavState, Pose, Quaternion, SimObject, SimObjects, Vector3
 from services.gcs.state.state import Model
 from services.gcs.view import spawned
-from services.gcs.view.view import View
+from services.gcs.view.view import SceneView
 from tests.services.gcs.scripted import UGV, demo_site
 from uvf.models.shapes.mesh import triangles
 from uvf.models.vehicle.file import load_vehicle
@@ -33,7 +33,7 @@ def hear(model, *things, **truth):
 
 
 def test_a_crate_is_drawn_once_and_moves_with_what_is_told(model):
-    view = View(model)
+    view = SceneView(model)
     hear(model, crate(1.0))
     first = view.nodes(0.0)["/spawned/crate/0"]
     assert first.vertices.max(axis=0) == pytest.approx((0.2, 0.2, 0.3))
@@ -43,7 +43,7 @@ def test_a_crate_is_drawn_once_and_moves_with_what_is_told(model):
 
 
 def test_another_thing_of_that_name_is_drawn_anew(model):
-    view = View(model)
+    view = SceneView(model)
     hear(model, crate(1.0))
     first = view.nodes(0.0)["/spawned/crate/0"]
     hear(model, SimObject(name="crate", shape="sphere", size=[0.2], pose=crate(1.0).pose))
@@ -54,7 +54,7 @@ def test_many_things_of_one_look_are_made_once(model, monkeypatch):
     """A model is loaded in tens of milliseconds: 256 of it would hold up the page for seconds."""
     loaded = []
     monkeypatch.setattr(spawned, "load_vehicle", lambda folder, name: loaded.append(name) or load_vehicle(folder, name))
-    view = View(model)
+    view = SceneView(model)
     hear(model, *(SimObject(name=f"scout{i}", model="my2bot", pose=scout().pose) for i in range(20)), crate(1.0), crate(2.0, "other"))
     first = view.nodes(0.0)
     names = {name.split("/")[2] for name in first if name.startswith("/spawned/scout")}
@@ -65,7 +65,7 @@ def test_many_things_of_one_look_are_made_once(model, monkeypatch):
 
 
 def test_what_is_taken_out_is_gone(model):
-    view = View(model)
+    view = SceneView(model)
     hear(model, crate(1.0))
     view.nodes(0.0)
     hear(model)
@@ -73,7 +73,7 @@ def test_what_is_taken_out_is_gone(model):
 
 
 def test_a_vehicle_is_where_its_truth_says(model):
-    view = View(model)
+    view = SceneView(model)
     hear(model, scout())
     assert view.places()["/spawned/scout"].position[0] == 2.0
     hear(model, scout(), scout=3.5, **{UGV: 1.0})
@@ -83,7 +83,7 @@ def test_a_vehicle_is_where_its_truth_says(model):
 
 
 def test_a_model_this_host_does_not_have_is_told_of_and_nothing_breaks(model):
-    view = View(model)
+    view = SceneView(model)
     hear(model, SimObject(name="alien", model="saucer", pose=crate(0.0).pose), crate(1.0))
     nodes = view.nodes(0.0)
     assert "/spawned/crate/0" in nodes
@@ -99,7 +99,7 @@ def test_a_solid_without_a_colour_is_grey_and_its_attitude_of_length_one():
 
 
 def test_an_aircraft_put_into_the_air_is_drawn_where_it_flies(model):
-    view = View(model)
+    view = SceneView(model)
     kite = SimObject(name="kite", model="stick25", pose=Pose(position=Vector3(x=2, z=50), orientation=Quaternion(w=1)))
     truth = {"kite": NavState(position=Vector3(x=30, z=55), orientation=Quaternion(w=1))}
     model.hear_objects((SimObjects(objects=[crate(1.0)]), SimObjects(objects=[kite])), truth)

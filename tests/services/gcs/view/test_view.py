@@ -11,8 +11,8 @@ from PIL import Image
 from schemas.messages import Clock, FrameTransform, Quaternion, Vector3
 from services.gcs.commands import ClickGround, Layer
 from services.gcs.state.state import Model
-from services.gcs.view.drawing import FloorPicture, Mesh, Points, Polyline, Text
-from services.gcs.view.view import View, floor_picture
+from services.gcs.view.drawing import FloorPicture, MeshNode, Points, Polyline, TextNode
+from services.gcs.view.view import SceneView, floor_picture
 from tests.services.gcs.fakes import ME, Station
 from tests.services.gcs.scripted import LEGS, UAV, UGV, demo_site, uav_at, ugv_at
 from uvf.models.world.file import Box
@@ -38,14 +38,14 @@ def test_both_vehicles_stand_where_they_are(station):
     places = station.page.now.places
     assert places[f"/vehicles/{UGV}"].position[:2] == pytest.approx(ugv_at(2.0)[:2])
     assert places[f"/vehicles/{UAV}"].position == pytest.approx(uav_at(2.0)[0])
-    assert isinstance(station.page.now.nodes[f"/vehicles/{UGV}/0"], Mesh)
+    assert isinstance(station.page.now.nodes[f"/vehicles/{UGV}/0"], MeshNode)
 
 
 def test_what_moves_by_script_stands_where_it_is_at_simulation_time():
     site = demo_site()
     door = Box("door", centre=(1.0, 2.0, 1.0), size=(0.9, 0.05, 2.0), path=[(0.0, 1.0, 2.0, 0.0), (10.0, 2.0, 2.0, 0.0)])
     model = Model(dataclasses.replace(site, world=msgspec.structs.replace(site.world, boxes=[*site.world.boxes, door])))
-    view = View(model)
+    view = SceneView(model)
     model.hear_clock(0.0, Clock(t_ns=2_500_000_000))
     assert view.places()["/world/moving/door"].position == pytest.approx((1.25, 2.0, 1.0))
     assert view.nodes(0.0)["/world/moving/door/shape"] is view.nodes(1.0)["/world/moving/door/shape"]
@@ -98,7 +98,7 @@ def test_a_mission_is_a_closed_line_with_numbers(station):
 
 def test_an_aircraft_is_labelled_with_its_height(station):
     label = station.page.now.nodes[f"/label/{UAV}"]
-    assert isinstance(label, Text)
+    assert isinstance(label, TextNode)
     assert label.text == f"{UAV}  {uav_at(2.0)[0][2]:.0f} m"
     frame = station.page.now.places[f"/height/{UAV}"]
     top, foot = frame.position + station.page.now.nodes[f"/height/{UAV}/line"].points[::-1]
@@ -110,7 +110,7 @@ def test_an_aircraft_is_labelled_with_its_height(station):
 
 def test_no_node_that_has_a_place_of_its_own_is_the_parent_of_another(station):
     nodes = station.page.now.nodes
-    placed = [name for name, node in nodes.items() if isinstance(node, Text | FloorPicture)]
+    placed = [name for name, node in nodes.items() if isinstance(node, TextNode | FloorPicture)]
     assert [child for child in nodes for parent in placed if child.startswith(parent + "/")] == []
 
 

@@ -8,7 +8,7 @@ import pytest
 
 from services.sim_air.analysis.linear import linearize, state_of
 from services.sim_air.engine.airframe import Airframe
-from services.sim_air.engine.states import Start
+from services.sim_air.engine.states import InitialState
 from tests import aerosonde
 from uvf.control.design.design_models import design_models
 from uvf.maths import atmosphere
@@ -80,7 +80,7 @@ def test_the_sides_taken_apart_have_the_modes_of_the_whole(both):
 def test_linearizing_leaves_the_aircraft_able_to_fly():
     airframe = aircraft()
     linearize(airframe, 25.0, 100.0, FOLDER)
-    airframe.start(Start(np.array((0.0, 0.0, 100.0)), np.pi / 2, 25.0, np.zeros(3)))
+    airframe.start(InitialState(np.array((0.0, 0.0, 100.0)), np.pi / 2, 25.0, np.zeros(3)))
     before = state_of(airframe.motion(), 0.0)
     for _ in range(200):
         airframe.step()
@@ -91,7 +91,7 @@ def test_linearizing_leaves_the_aircraft_able_to_fly():
 
 def test_the_state_is_told_with_the_books_axes():
     airframe = aircraft()
-    trim = airframe.start(Start(np.array((0.0, 0.0, 100.0)), np.pi / 2 - 0.4, 25.0, np.zeros(3)))
+    trim = airframe.start(InitialState(np.array((0.0, 0.0, 100.0)), np.pi / 2 - 0.4, 25.0, np.zeros(3)))
     u, v, w, p, q, r, phi, theta, psi, h = state_of(airframe.motion(), 50.0)
     assert (u, w) == pytest.approx((25 * np.cos(trim.alpha), 25 * np.sin(trim.alpha)), abs=1e-3)
     assert (phi, theta, psi, h) == pytest.approx((trim.roll, trim.alpha, 0.4, 150.0), abs=1e-3)

@@ -8,13 +8,13 @@ from schemas.messages import Event, NavState, Pose, SimObject, SimObjects
 from services.sim_air.build import build
 from services.sim_air.contact.collisions import Collisions, Hit
 from services.sim_air.contact.surroundings import Around
-from services.sim_air.engine.states import Motion
-from services.sim_air.environment.ground import Ground
+from services.sim_air.engine.states import AircraftMotion
+from services.sim_air.environment.ground import GroundSurface
 from tests.services.sim_air.shapes import MILVUS_TREE
 from uvf.maths.bvh import build as tree_over
 from uvf.maths.rotations import IDENTITY, from_euler
 from uvf.maths.solids import box
-from uvf.models.scenario import load_site
+from uvf.models.scenario import load_scenario
 from uvf.models.shapes.scene import scene
 from uvf.models.shapes.solid import Solid
 from uvf.runtime.messages.convert import quaternion, vector
@@ -26,12 +26,12 @@ SHAPES = {"a": MILVUS_TREE, "b": MILVUS_TREE, "van": tree_over(box((4.0, 2.0, 2.
 
 
 def motion(x=0.0, y=0.0, z=8.0, yaw=0.0):
-    return Motion(np.array((x, y, z)), np.zeros(3), from_euler(0.0, 0.0, yaw), np.zeros(3), np.zeros(3), 25.0)
+    return AircraftMotion(np.array((x, y, z)), np.zeros(3), from_euler(0.0, 0.0, yaw), np.zeros(3), np.zeros(3), 25.0)
 
 
 def told(steps, truth=None, objects=None):
     """steps: dicts of the aircraft's motions."""
-    around = Around([WALL, MAST], Ground(scene([WALL, MAST])), SHAPES, {}.get)
+    around = Around([WALL, MAST], GroundSurface(scene([WALL, MAST])), SHAPES, {}.get)
     collisions, hits = Collisions(around), []
     for i, motions in enumerate(steps):
         around.look(i / 100, truth or {}, objects, motions)
@@ -104,7 +104,7 @@ def test_a_flight_into_a_wall_ends_there_and_says_what_was_hit(tmp_path):
         "about: Too low.\nworld: house\nvehicles:\n"
         "  milvus: {model: milvus, system_id: 1, start: {x: -40.0, y: 4.0, z: 2.0, speed: 25.0}}\n"
     )
-    lockstep, events, truth = Lockstep(build(load_site(path))), [], []
+    lockstep, events, truth = Lockstep(build(load_scenario(path))), [], []
     lockstep.bus.subscribe(
         topics.EVENTS.by("sim_air").at("milvus"), topics.EVENTS.qos, lambda s: events.append(Event.FromString(s.payload))
     )

@@ -13,12 +13,12 @@ from services.sim_air.aircraft import Aircraft
 from services.sim_air.build import build
 from services.sim_air.contact.crash import Wreck, crash_of
 from services.sim_air.engine.airframe import Airframe
-from services.sim_air.engine.contacts import Touch
-from services.sim_air.engine.states import Air, Motion, Runaway, Start
+from services.sim_air.engine.contacts import GroundTouch
+from services.sim_air.engine.states import Air, AircraftMotion, InitialState, Runaway
 from services.sim_air.engine.wiring import Controls, JointAngle
 from uvf.maths import rotations
 from uvf.maths.geodesy import LocalTangent
-from uvf.models.scenario import ROOT, load_site
+from uvf.models.scenario import ROOT, load_scenario
 from uvf.models.vehicle.file import load_vehicle
 from uvf.runtime.messages.convert import array
 from uvf.runtime.time.lockstep import Lockstep
@@ -30,10 +30,10 @@ AIR = Air(97_000.0, 370.0, 285.0)
 
 def moving(speed, roll=0.0, pitch=0.0):
     attitude = rotations.from_euler(roll, pitch, 0.0)
-    return Motion(np.zeros(3), np.array((speed, 0.0, 0.0)), attitude, np.full(3, 0.1), np.array((0.0, 0.0, 9.8)), speed)
+    return AircraftMotion(np.zeros(3), np.array((speed, 0.0, 0.0)), attitude, np.full(3, 0.1), np.array((0.0, 0.0, 9.8)), speed)
 
 
-WHEELS = [Touch("left", True, 1.0), Touch("right", True, 2.9)]
+WHEELS = [GroundTouch("left", True, 1.0), GroundTouch("right", True, 2.9)]
 
 
 def test_wheels_that_sink_slowly_make_a_landing():
@@ -45,11 +45,11 @@ def test_wheels_that_sink_faster_than_the_gear_bears_break():
 
 
 def test_structure_on_the_moving_ground_is_a_crash_and_is_named_with_the_speed():
-    assert crash_of([*WHEELS, Touch("left_tip", False, 0.1)], moving(14.0), 3.05) == "left_tip touched the ground at 14.0 m/s"
+    assert crash_of([*WHEELS, GroundTouch("left_tip", False, 0.1)], moving(14.0), 3.05) == "left_tip touched the ground at 14.0 m/s"
 
 
 def test_structure_may_rest_on_the_ground():
-    assert crash_of([Touch("tail", False, 0.0)], moving(0.2), 3.05) == ""
+    assert crash_of([GroundTouch("tail", False, 0.0)], moving(0.2), 3.05) == ""
 
 
 def test_nobody_lands_on_the_back():
@@ -106,7 +106,7 @@ def flown(tmp_path, start, command, until, model="milvus"):
     """(truth, events) of one aircraft with one command held."""
     path = tmp_path / "one.yaml"
     path.write_text(f"about: One.\nworld: empty\nvehicles:\n  bird: {{model: {model}, system_id: 1, start: {start}}}\n")
-    lockstep, truth, events = Lockstep(build(load_site(path))), [], []
+    lockstep, truth, events = Lockstep(build(load_scenario(path))), [], []
     lockstep.bus.subscribe(topics.TRUTH.at("bird"), topics.TRUTH.qos, lambda s: truth.append(NavState.FromString(s.payload)))
     said = topics.EVENTS.by("sim_air")
     lockstep.bus.subscribe(said.at("bird"), said.qos, lambda s: events.append(Event.FromString(s.payload)))
@@ -145,7 +145,7 @@ def test_an_aircraft_begins_at_rest_on_its_wheels_and_stays_there(tmp_path):
 @pytest.mark.parametrize(("height", "breaks"), [(0.2, False), (1.5, True)])
 def test_a_fall_onto_the_wheels_breaks_them_when_it_is_deep(height, breaks):
     airframe = Airframe(ROOT / "vehicles" / "milvus", MILVUS.air, TANGENT)
-    airframe.drop(Start(np.zeros(3), 0.0, 0.0, np.zeros(3)), height)
+    airframe.drop(InitialState(np.zeros(3), 0.0, 0.0, np.zeros(3)), height)
     craft = Aircraft("f", MILVUS, airframe, Actuators(Controls(brake=1.0), MILVUS.air), Controls())
     craft.fly_to(2.0)
     assert ("wheel hit the ground sinking at" in craft.ended) == breaks

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from services.sim_air.engine.airframe import Airframe
-from services.sim_air.engine.states import Start
+from services.sim_air.engine.states import InitialState
 from services.sim_air.engine.trim import Trim
 from services.sim_air.engine.wiring import Controls
 from uvf.maths import atmosphere, rotations
@@ -24,7 +24,7 @@ CALM = np.zeros(3)
 
 
 def start(speed=25.0, yaw=0.3, wind=CALM, **kwargs):
-    return Start(np.array((-200.0, -150.0, 60.0)), yaw, speed, wind, **kwargs)
+    return InitialState(np.array((-200.0, -150.0, 60.0)), yaw, speed, wind, **kwargs)
 
 
 def airborne(**kwargs):
@@ -161,7 +161,7 @@ def test_wind_from_the_side_or_from_behind_is_no_airspeed():
     airframe = Airframe(VEHICLES / "milvus", BODY, TANGENT)
     pressures = {}
     for name, wind in (("ahead", (-10.0, 0.0)), ("side", (0.0, 10.0)), ("behind", (10.0, 0.0))):
-        airframe.stand(Start(np.zeros(3), 0.0, 25.0, np.array((*wind, 0.0))))
+        airframe.stand(InitialState(np.zeros(3), 0.0, 25.0, np.array((*wind, 0.0))))
         airframe.step()
         pressures[name] = airframe.air().differential_pressure
     assert pressures["ahead"] == pytest.approx(0.5 * 1.19 * 100.0, rel=0.02)

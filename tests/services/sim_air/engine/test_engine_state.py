@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from services.sim_air.engine.airframe import Airframe
-from services.sim_air.engine.states import Start
+from services.sim_air.engine.states import InitialState
 from services.sim_air.engine.wiring import Controls
 from uvf.maths.geodesy import LocalTangent
 from uvf.models.scenario import ROOT
@@ -20,7 +20,7 @@ def manoeuvring(name):
     """Rolling, its propeller slowing down since a tenth of a second, at the commands that hold."""
     body = load_vehicle(ROOT / "vehicles", name).air
     airframe = Airframe(ROOT / "vehicles" / name, body, TANGENT)
-    trim = airframe.start(Start(UP, 0.3, body.trim_speed, np.zeros(3))).controls
+    trim = airframe.start(InitialState(UP, 0.3, body.trim_speed, np.zeros(3))).controls
     for aileron, throttle, seconds in ((0.03, 0.1, 2.0), (-0.02, -0.2, 0.1)):
         fly(airframe, replace(trim, aileron=trim.aileron + aileron, throttle=trim.throttle + throttle), round(seconds * body.physics_hz))
     return airframe, round(5 * body.physics_hz)
@@ -61,7 +61,7 @@ def test_two_of_one_state_go_on_to_the_last_bit_alike():
 def test_what_stands_stands_where_it_stood():
     body = load_vehicle(ROOT / "vehicles", "milvus").air
     first = Airframe(ROOT / "vehicles" / "milvus", body, TANGENT)
-    first.stand(Start(np.zeros(3), 0.5, 0.0, np.zeros(3)))
+    first.stand(InitialState(np.zeros(3), 0.5, 0.0, np.zeros(3)))
     first.command(Controls(brake=1.0))
     place = first.motion().position
     second = first.restored(first.save())

@@ -8,7 +8,7 @@ import pytest
 from services.sim_air.engine import airframe as module
 from services.sim_air.engine.airframe import Airframe
 from services.sim_air.engine.gust_rates import with_gust_rates
-from services.sim_air.engine.states import Held, Start
+from services.sim_air.engine.states import Held, InitialState
 from services.sim_air.engine.wiring import Controls
 from services.sim_air.environment.wind import AirMotion
 from uvf.maths.geodesy import LocalTangent
@@ -45,7 +45,7 @@ def test_air_that_turns_one_way_is_felt_as_turning_the_other_way(axis, felt):
 def test_without_a_gust_the_flight_is_the_same_to_the_last_bit(monkeypatch):
     def flown():
         aircraft = Airframe(FOLDER, BODY, TANGENT)
-        aircraft.start(Start(np.array((0.0, 0.0, 60.0)), 0.3, 25.0, np.array((2.0, 1.0, 0.0))))
+        aircraft.start(InitialState(np.array((0.0, 0.0, 60.0)), 0.3, 25.0, np.array((2.0, 1.0, 0.0))))
         aircraft.command(Controls(aileron=0.05, elevator=-0.12, rudder=0.02, throttle=0.8))
         for _ in range(400):
             aircraft.step()

@@ -6,13 +6,13 @@ import pytest
 
 from services.sim_air.engine.wiring import Controls, Wiring
 from uvf.models.scenario import ROOT
-from uvf.models.vehicle.air import AirBody, Commands, JointReading, Lever, Surface, check_air
+from uvf.models.vehicle.air import AirBody, CommandProperties, JointReading, Lever, Surface, check_air
 from uvf.models.vehicle.file import load_vehicle
-from uvf.models.yaml_data import BadInput, Place
+from uvf.models.yaml_data import BadInput, FileLocation
 
 MILVUS = load_vehicle(ROOT / "vehicles", "milvus").air
 STANDARD = ("fcs/aileron-cmd-norm", "fcs/elevator-cmd-norm", "fcs/rudder-cmd-norm", "fcs/flap-cmd-norm", "fcs/throttle-cmd-norm")
-HERE = Place("vehicle.yaml", ("air",))
+HERE = FileLocation("vehicle.yaml", ("air",))
 
 
 def body(**changes):
@@ -31,18 +31,21 @@ def test_what_is_left_out_goes_to_the_standard_names_at_its_limit():
 
 
 def test_sign_limit_and_name_are_those_of_the_file():
-    controls = Commands(aileron=Surface(property="fcs/roll", limit=0.5, sign=-1))
+    controls = CommandProperties(aileron=Surface(property="fcs/roll", limit=0.5, sign=-1))
     assert written(Controls(aileron=0.25), (*STANDARD, "fcs/roll"), controls=controls)["fcs/roll"] == -0.5
 
 
 def test_each_engine_gets_the_throttle():
     engines = ("fcs/throttle-cmd-norm", "fcs/throttle-cmd-norm[1]")
     assert written(Controls(throttle=0.4), engines) == dict.fromkeys(engines, 0.4)
-    assert written(Controls(throttle=0.4), engines, controls=Commands(throttle=Lever(property=[engines[1]]))) == {engines[1]: 0.4}
+    assert written(Controls(throttle=0.4), engines, controls=CommandProperties(throttle=Lever(property=[engines[1]]))) == {engines[1]: 0.4}
 
 
 def test_the_first_of_several_may_be_written_with_its_number():
-    assert written(Controls(throttle=0.4), controls=Commands(throttle=Lever(property="fcs/throttle-cmd-norm[0]")))[STANDARD[-1]] == 0.4
+    assert (
+        written(Controls(throttle=0.4), controls=CommandProperties(throttle=Lever(property="fcs/throttle-cmd-norm[0]")))[STANDARD[-1]]
+        == 0.4
+    )
 
 
 def test_a_wheel_that_steers_goes_with_the_rudder_to_the_left():
@@ -81,10 +84,10 @@ def test_without_joints_in_the_file_the_standard_ones_that_the_model_has_are_tol
 
 BAD = {
     "controls: aileron: property: the model has no property 'fcs/aileron-cmd'; did you mean 'fcs/aileron-cmd-norm'?": {
-        "controls": Commands(aileron=Surface(property="fcs/aileron-cmd"))
+        "controls": CommandProperties(aileron=Surface(property="fcs/aileron-cmd"))
     },
     "controls: throttle: property: the model has no property 'fcs/throttle-cmd-norm[1]'; did you mean 'fcs/throttle-cmd-norm'?": {
-        "controls": Commands(throttle=Lever(property=["fcs/throttle-cmd-norm", "fcs/throttle-cmd-norm[1]"]))
+        "controls": CommandProperties(throttle=Lever(property=["fcs/throttle-cmd-norm", "fcs/throttle-cmd-norm[1]"]))
     },
     "joints: tail: position: the model has no property 'fcs/elevator-pos-rad'; did you mean 'fcs/elevator-cmd-norm'?": {
         "joints": {"tail": JointReading(position="fcs/elevator-pos-rad")}

@@ -8,11 +8,11 @@ from schemas import topics
 from schemas.messages import Event, NavState
 from services.sim_air.build import build
 from services.sim_air.engine.airframe import Airframe
-from services.sim_air.engine.states import Start
+from services.sim_air.engine.states import InitialState
 from services.sim_air.engine.wiring import Controls
-from services.sim_air.environment.ground import LEVEL, Ground
+from services.sim_air.environment.ground import LEVEL, GroundSurface
 from uvf.maths.geodesy import LocalTangent
-from uvf.models.scenario import ROOT, load_site
+from uvf.models.scenario import ROOT, load_scenario
 from uvf.models.shapes.scene import scene
 from uvf.models.shapes.solid import Solid
 from uvf.models.world.file import load_world
@@ -22,11 +22,11 @@ from uvf.runtime.time.lockstep import Lockstep
 
 TANGENT = LocalTangent.from_degrees(47.0, 8.0, 450.0)
 HILLS = load_world(ROOT / "worlds", "hills")
-LAND = Ground(scene(solids(HILLS)))
+LAND = GroundSurface(scene(solids(HILLS)))
 PLATFORM = Solid("platform", "box", (8.0, 8.0, 2.0), np.array((20.0, 0.0, 1.0)))
 ROOF = Solid("roof", "box", (10.0, 10.0, 0.2), np.array((-20.0, 0.0, 4.1)))
 MAST = Solid("mast", "cylinder", (0.2, 9.0), np.array((0.0, 30.0, 4.5)))
-YARD = Ground(scene([PLATFORM, ROOF, MAST]))
+YARD = GroundSurface(scene([PLATFORM, ROOF, MAST]))
 MISSION = """
 about: One.
 world: hills
@@ -40,14 +40,14 @@ def standing(ground, x, y):
     """An airframe on its wheels there."""
     airframe = Airframe(FOLDER, BODY, TANGENT)
     airframe.over(ground)
-    airframe.stand(Start(np.array((x, y, ground.top(x, y))), 0.0, 0.0, np.zeros(3)))
+    airframe.stand(InitialState(np.array((x, y, ground.top(x, y))), 0.0, 0.0, np.zeros(3)))
     return airframe
 
 
 def flown(tmp_path, start, seconds):
     path = tmp_path / "hills.yaml"
     path.write_text(MISSION.replace("START", start))
-    lockstep, events, truth = Lockstep(build(load_site(path))), [], []
+    lockstep, events, truth = Lockstep(build(load_scenario(path))), [], []
     bus, said = lockstep.bus, topics.EVENTS.by("sim_air")
     bus.subscribe(said.at("bird"), said.qos, lambda s: events.append(Event.FromString(s.payload)))
     bus.subscribe(topics.TRUTH.at("bird"), topics.TRUTH.qos, lambda s: truth.append(NavState.FromString(s.payload)))

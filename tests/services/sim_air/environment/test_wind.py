@@ -6,10 +6,10 @@ import pytest
 from schemas import topics
 from schemas.messages import NavState
 from services.sim_air.build import build
-from services.sim_air.environment.wind import AirMass, Flight
+from services.sim_air.environment.wind import AirMass, AirRelativeState
 from uvf.maths.dryden import strength
-from uvf.models.scenario import load_site
-from uvf.models.world.wind import Gust, Shear, Turbulence, Wind
+from uvf.models.scenario import load_scenario
+from uvf.models.world.wind import Gust, Shear, TurbulenceFile, Wind
 from uvf.runtime.time.lockstep import Lockstep
 
 DT = 0.01
@@ -20,12 +20,12 @@ def mass(wind, seed=1):
 
 
 def flight(x=0.0, height=60.0, yaw=0.0, airspeed=25.0):
-    return Flight(np.array((x, 0.0, height)), height, yaw, airspeed)
+    return AirRelativeState(np.array((x, 0.0, height)), height, yaw, airspeed)
 
 
 def test_air_that_an_aircraft_stands_still_in_does_not_turn_it():
-    mass = AirMass(Wind((8.0, 0.0, 0.0), turbulence=Turbulence(w20=8.0)), 2.9, np.random.default_rng(2))
-    standing = Flight(np.zeros(3), 0.4, 0.0, 0.0)
+    mass = AirMass(Wind((8.0, 0.0, 0.0), turbulence=TurbulenceFile(w20=8.0)), 2.9, np.random.default_rng(2))
+    standing = AirRelativeState(np.zeros(3), 0.4, 0.0, 0.0)
     assert not mass.step(0.0, 0.005, standing).rates.any()
     assert mass.step(0.005, 0.005, standing._replace(airspeed=8.0)).rates.any()
 
@@ -64,7 +64,7 @@ def test_a_gust_at_a_place_blows_there_and_only_there():
 
 
 def test_turbulence_has_the_intensities_of_the_standard_along_across_and_up():
-    data = Turbulence("moderate", w20=10.0)
+    data = TurbulenceFile("moderate", w20=10.0)
     air, yaw = mass(Wind(turbulence=data)), 0.7
     blown = np.array([air.step(k * 0.1, 0.1, flight(yaw=yaw, height=20.0)).velocity for k in range(100_000)])
     stated = strength(20.0, 10.0, "moderate")
@@ -74,7 +74,7 @@ def test_turbulence_has_the_intensities_of_the_standard_along_across_and_up():
 
 
 def test_two_aircraft_meet_gusts_of_their_own_and_each_the_same_again():
-    wind = Wind(turbulence=Turbulence("light"))
+    wind = Wind(turbulence=TurbulenceFile("light"))
     one, again, other = (mass(wind, seed) for seed in (1, 1, 2))
     steps = [(air.step(0.1, DT, flight()), air.step(0.2, DT, flight())) for air in (one, again, other)]
     assert all((a.velocity == b.velocity).all() and (a.rates == b.rates).all() for a, b in zip(steps[0], steps[1], strict=True))
@@ -95,7 +95,7 @@ vehicles:
 def flown(tmp_path, seed):
     path = tmp_path / f"{seed}.yaml"
     path.write_text(MISSION.format(seed=seed))
-    lockstep, truth = Lockstep(build(load_site(path))), {"first": [], "second": []}
+    lockstep, truth = Lockstep(build(load_scenario(path))), {"first": [], "second": []}
     for name, heard in truth.items():
         lockstep.bus.subscribe(topics.TRUTH.at(name), topics.TRUTH.qos, lambda s, heard=heard: heard.append(NavState.FromString(s.payload)))
     lockstep.run(3.0)

@@ -1,6 +1,5 @@
 """The localization service step by step, on messages, and how a mission asks for it."""
 
-import inspect
 from dataclasses import replace
 
 import msgspec
@@ -10,13 +9,14 @@ import pytest
 from schemas.messages import Event, FrameTransform, LaserScan, MapFix, PlaceRequest, RelocalizeRequest, Vector3
 from services.slam import localization_service
 from services.slam.build import build
-from services.slam.localization_service import Beginning, LocalizationService
+from services.slam.localization_service import LocalizationService, LocalizationStart
+from tests.runtime.stepping import recall, stepped
 from tests.services.live_params import all_settable_are_read
 from tests.slam.localization.places import ROOM, ellipse, errors, map_of, readings
 from uvf.maths.se2 import Pose2, compose
 from uvf.maths.se2_arrays import composed, inverted
 from uvf.models.mission.file import Maps
-from uvf.models.scenario import ROOT, load_site
+from uvf.models.scenario import ROOT, load_scenario
 from uvf.models.vehicle.sensors import Lidar, Mount
 from uvf.models.world.map_file import save_map
 from uvf.models.yaml_data import BadInput
@@ -26,7 +26,7 @@ from uvf.runtime.messages.grids import as_message
 from uvf.slam.localization import known_map
 from uvf.slam.localization.localizer import HALF_SURE
 from uvf.slam.localization.params import FilterParams
-from uvf.slam.maps.session import NO_EDGES, Session
+from uvf.slam.maps.session import NO_EDGES, MappingSession
 from uvf.slam.method import Keyframe
 
 LIDAR_FILE = Lidar(Mount((0.0, 0.0, 0.2)), hz=5, beams=360, angle_min=0.0, angle_increment=0.01745, range_min=0.05, range_max=3.5)
@@ -47,7 +47,7 @@ def frame(t, parent, child, pose):
 
 
 def service(known, anywhere=False):
-    return LocalizationService("v", LIDAR_FILE, WORLD_FROM_MAP, FilterParams(), Beginning(known, anywhere, 3))
+    return LocalizationService("v", LIDAR_FILE, WORLD_FROM_MAP, FilterParams(), LocalizationStart(known, anywhere, 3))
 
 
 def drive(localization, drive, known=None, asked=None):
@@ -58,7 +58,7 @@ def drive(localization, drive, known=None, asked=None):
         frames.add(frame(reading.t, "odom", "base_footprint", reading.odom_from_base))
         scan = LaserScan(timestamp=stamp(reading.t), frame_id="v/lidar", start_angle=0.0, end_angle=np.radians(359), ranges=reading.ranges)
         requests = {"pose": [], "relocalize": []} | (asked or {}).get(k, {})
-        said.append(localization.step(reading.t, scan, frames, known, **requests))
+        said.append(stepped(localization, reading.t, scan=scan, frames=frames, known=known, **requests))
     return said
 
 
@@ -127,7 +127,7 @@ def test_a_pose_can_be_set_and_the_vehicle_be_looked_for(room):
 def test_one_started_again_while_the_vehicle_was_looked_for_goes_on_looking(room, off, quality):
     way = ellipse(80, end=3.8 * np.pi)
     localization = service(moved(room, way)[0], anywhere=True)
-    localization.recall(correction=frame(0.0, "map", "odom", off), fix=MapFix(quality=quality))
+    recall(localization, correction=frame(0.0, "map", "odom", off), fix=MapFix(quality=quality))
     said = drive(localization, readings(ROOM, way))
     assert said[0]["fix"].quality <= HALF_SURE
     assert [e.text for out in said for e in out["events"]] == ["the vehicle is localized"]
@@ -138,7 +138,7 @@ def test_one_started_again_while_the_vehicle_was_looked_for_goes_on_looking(room
 def test_one_started_again_while_the_vehicle_was_tracked_goes_on_tracking(room):
     way = ellipse(20)
     localization = service(moved(room, way)[0], anywhere=True)
-    localization.recall(correction=frame(0.0, "map", "odom", (0.0, 0.0, 0.0)), fix=MapFix(quality=0.9))
+    recall(localization, correction=frame(0.0, "map", "odom", (0.0, 0.0, 0.0)), fix=MapFix(quality=0.9))
     said = drive(localization, readings(ROOM, way))
     assert said[1]["fix"].quality > HALF_SURE and not [e for out in said for e in out["events"]]
 
@@ -187,13 +187,8 @@ def test_parameters_count_while_running(room):
         drive(localization, readings(ROOM, way))
 
 
-def test_step_takes_what_is_declared():
-    declared = {*LocalizationService.inputs, *LocalizationService.requests}
-    assert set(inspect.signature(LocalizationService.step).parameters) == {"self", "t", *declared}
-
-
 def site_with(tmp_path, maps):
-    site = load_site(ROOT / "missions" / "demo.yaml")
+    site = load_scenario(ROOT / "missions" / "demo.yaml")
     burger = site.members["burger"]
     changed = replace(burger, entry=msgspec.structs.replace(burger.entry, maps=maps))
     return replace(site, mission_path=tmp_path / "mission.yaml", members={"burger": changed})
@@ -202,7 +197,7 @@ def site_with(tmp_path, maps):
 @pytest.mark.parametrize("kind", ["session", "picture"])
 def test_a_mission_names_the_map_and_gets_localization_in_the_place_of_mapping(room, tmp_path, kind):
     if kind == "session":
-        Session(tuple(moved(room, ellipse(40))[1]), NO_EDGES, "graph", {}).save(tmp_path / "room.npz")
+        MappingSession(tuple(moved(room, ellipse(40))[1]), NO_EDGES, "graph", {}).save(tmp_path / "room.npz")
     else:
         save_map(room.grid, tmp_path / "room.yaml")
     name = "room.npz" if kind == "session" else "room.yaml"

@@ -6,9 +6,10 @@ import pytest
 from schemas.messages import Event, MapSession
 from services.slam.merging.build import build
 from services.slam.merging.merging_service import MergingService
+from tests.runtime.stepping import stepped
 from tests.slam.merging.offices import anne, bert, first, off_by
 from uvf.maths.se2 import Pose2
-from uvf.models.scenario import ROOT, load_site
+from uvf.models.scenario import ROOT, load_scenario
 from uvf.runtime.messages.convert import occupancy_cells, stamp, yaw_of
 from uvf.slam.maps import tiles
 
@@ -19,8 +20,8 @@ def told(t, session):
 
 def run(service, sessions, steps, start=0.0):
     """Outputs of so many steps, those of the same name put together."""
-    every = [service.step(start + 2.0 * k, sessions) for k in range(steps)]
-    return {name: [outputs[name] for outputs in every] for name in every[0]}
+    every = [stepped(service, start + 2.0 * k, session=sessions) for k in range(steps)]
+    return {name: [outputs[name] for outputs in every] for name in service.outputs}
 
 
 @pytest.fixture(scope="module")
@@ -101,5 +102,5 @@ def test_a_session_that_is_none_is_told_of_and_the_others_go_on():
 
 
 def test_it_is_made_where_two_vehicles_draw_maps():
-    assert [host.writes_for for host in build(load_site(ROOT / "missions" / "team.yaml"))] == [("anne", "bert")]
-    assert build(load_site(ROOT / "missions" / "demo.yaml")) == []
+    assert [host.writes_for for host in build(load_scenario(ROOT / "missions" / "team.yaml"))] == [("anne", "bert")]
+    assert build(load_scenario(ROOT / "missions" / "demo.yaml")) == []

@@ -7,6 +7,7 @@ import pytest
 from schemas.messages import FrameTransform, Imu, KeyValuePair, Odometry, Vector3, WheelTicks
 from services.slam.odometry.service import SCALES, OdometryService
 from tests.estimation.odometry.test_satellites import GOOD, TANGENT, fix_at
+from tests.runtime.stepping import recall, stepped
 from tests.services.live_params import all_settable_are_read
 from uvf.estimation.odometry.params import OdometryParams
 from uvf.maths.kinematics import Twist, move
@@ -54,7 +55,7 @@ class Bench:
             told = self.said[-1]["odometry"] if self.said else None
             correction = corrected(self, told) if corrected and told else None
             fix = [fix_at(self.t - DT, compose(START, self.pose), mean, self.rng)] if fixes and round(self.t / DT) % 10 == 0 else []
-            self.said.append(self.service.step(self.t, wheels, [imu], correction, fix))
+            self.said.append(stepped(self.service, self.t, wheels=wheels, imu=[imu], correction=correction, gnss=fix))
             self.events += self.said[-1].get("events", [])
         return self
 
@@ -106,7 +107,7 @@ def test_motion_that_the_scans_do_not_see_is_no_motion():
         ticks = round(0.3 * t / BURGER.ground.wheel_radius / TICK)
         wheels = WheelTicks(timestamp=stamp(t - DT), left=ticks, right=ticks, radians_per_tick=TICK)
         correction = FrameTransform(timestamp=stamp(t), translation=Vector3(x=-x), rotation=quaternion(from_euler(0.0, 0.0, 0.0)))
-        out = service.step(t, wheels, [], correction if k % 5 == 0 else None)
+        out = stepped(service, t, wheels=wheels, imu=[], correction=correction if k % 5 == 0 else None)
         x = out["odometry"].pose.position.x
         events += out.get("events", [])
     assert [e.cause.startswith("odometry went") for e in events] == [True]
@@ -137,7 +138,7 @@ def test_scales_are_put_in_force_where_that_is_wanted_and_outlive_the_service():
     left_over = {pair.key: pair.value for pair in bench.newest["odometry"].metadata}
     assert float(left_over[SCALES].split()[0]) == pytest.approx(1.04, abs=0.015)
     again = Bench(OdometryParams(calibrate="apply"), radius=1.04)
-    again.service.recall(odometry=bench.newest["odometry"])
+    recall(again.service, odometry=bench.newest["odometry"])
     again.t, again.turned, again.pose, again.before = bench.t, bench.turned.copy(), bench.pose, bench.before
     start = bench.newest["odometry"].pose.position
     again.drive(2.0, bench.before)
@@ -192,7 +193,7 @@ def test_scales_left_by_somebody_else_are_not_taken_up_blindly(scales):
     left = {"left_ticks": "0", "right_ticks": "0", "gyro_bias": "0.0", SCALES: scales}
     bench = Bench()
     metadata = [KeyValuePair(key=k, value=v) for k, v in left.items()]
-    bench.service.recall(odometry=Odometry(metadata=metadata, pose_covariance=[-1.0] * 36))
+    recall(bench.service, odometry=Odometry(metadata=metadata, pose_covariance=[-1.0] * 36))
     told = bench.drive(2.0, Twist(0.2, 0.0)).newest["odometry"]
     assert told.pose.position.x == pytest.approx(0.4, abs=0.05)
     assert seconds(told.timestamp) == pytest.approx(2.0)

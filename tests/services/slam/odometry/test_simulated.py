@@ -14,9 +14,10 @@ from services.sim_ground.build import build as simulator
 from services.slam.build import build as slam
 from uvf.maths.rotations import wrap
 from uvf.maths.se2 import Pose2, compose, inverse
-from uvf.models.scenario import ROOT, load_site
+from uvf.models.scenario import ROOT, load_scenario
 from uvf.models.vehicle.sensors import GnssSensor, Mount
-from uvf.runtime.contract.instances import Host
+from uvf.runtime.contract.declaration import Writes, topic
+from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import seconds, yaw_of
 from uvf.runtime.time.lockstep import Lockstep
@@ -27,7 +28,7 @@ CHANGE = msgspec.structs.replace
 
 def demo(**changes):
     """The demo's site, with parts of the rover's file changed."""
-    site = load_site(ROOT / "missions" / "demo.yaml")
+    site = load_scenario(ROOT / "missions" / "demo.yaml")
     burger = site.members["burger"]
     return replace(site, members={**site.members, "burger": replace(burger, file=CHANGE(burger.file, **changes))})
 
@@ -62,13 +63,16 @@ def wheels_only(turning):
     """Commands of both wheels [rad/s] after a second of standing."""
 
     class Driver(Service):
-        name, hz, outputs = "driver", 50.0, {"wheels": topics.WHEEL_COMMAND}
+        name, hz = "driver", 50.0
 
-        def step(self, t):
+        class Outputs(Writes):
+            wheels: WheelCommand = topic(topics.WHEEL_COMMAND)
+
+        def step(self, t, now):
             left, right = turning(t) if t > 1.0 else (0.0, 0.0)
-            return {"wheels": WheelCommand(left=left, right=right)}
+            return self.Outputs(wheels=WheelCommand(left=left, right=right))
 
-    return Host(Driver, Driver, "burger")
+    return ServiceInstance(Driver, Driver, "burger")
 
 
 @pytest.fixture(scope="module")
@@ -96,7 +100,7 @@ def test_a_rover_that_drives_about_does_not_slip_by_its_own_account(explored):
 
 def test_wheels_that_spin_against_a_bookcase_are_noticed():
     """Strong motors on a slippery floor: the wheels turn on when the rover stands before the shelf after 9.5 s."""
-    ground = load_site(ROOT / "missions" / "demo.yaml").members["burger"].file.ground
+    ground = load_scenario(ROOT / "missions" / "demo.yaml").members["burger"].file.ground
     strong = CHANGE(ground, motor=CHANGE(ground.motor, stall_torque=2.0), friction=CHANGE(ground.friction, mu=0.4, mu2=0.4))
     site = demo(ground=strong)
     heard = run([*simulator(site), *slam(site), wheels_only(lambda t: (9.0, 9.0))], 18.0)
@@ -118,7 +122,7 @@ vehicles:
 def test_a_ramp_is_no_slip(tmp_path):
     mission = tmp_path / "ramp.yaml"
     mission.write_text(UP_THE_RAMP)
-    site = load_site(mission)
+    site = load_scenario(mission)
     heard = run([*simulator(site), *slam(site), wheels_only(lambda t: (9.0, 9.0))], 14.0)
     assert heard["TRUTH"][-1].position.z > 0.35
     assert [event.text for event in heard["EVENTS"]] == []
@@ -127,7 +131,7 @@ def test_a_ramp_is_no_slip(tmp_path):
 
 
 def test_a_receiver_keeps_the_pose_in_the_world():
-    sensors = load_site(ROOT / "missions" / "demo.yaml").members["burger"].file.sensors
+    sensors = load_scenario(ROOT / "missions" / "demo.yaml").members["burger"].file.sensors
     gnss = GnssSensor(hz=5.0, horizontal_noise=0.3, vertical_noise=0.5, speed_noise=0.05, latency=0.1, mount=Mount((-0.05, 0.03, 0.2)))
     site = demo(sensors=CHANGE(sensors, gnss=gnss))
     heard = run([*simulator(site), *slam(site), wheels_only(lambda t: (9.0, 9.0 + 2.0 * (t > 4.0)))], 9.0)

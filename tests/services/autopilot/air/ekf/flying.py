@@ -9,7 +9,7 @@ from uvf.estimation.ekf.alignment import attitude
 from uvf.estimation.ekf.datasheet import Datasheet
 from uvf.estimation.ekf.estimator import FullEstimator
 from uvf.estimation.ekf.states import MAGNETIC
-from uvf.estimation.sensor_inputs import Fix, Inertial, Pressures, Sensed
+from uvf.estimation.sensor_inputs import GnssFix, InertialSample, Pressures, Sensed
 from uvf.maths import atmosphere
 from uvf.models.vehicle.flight_params import AirParams
 
@@ -63,7 +63,7 @@ class Flown:
         force = self._matrix.T @ (SPEED * yaw_rate * along - G)
         field = self._matrix.T @ np.array(EARTH)
         n, sheet = self.rng.standard_normal, self.sheet
-        return Inertial(
+        return InertialSample(
             tuple(rates + self.gyro_bias + sheet.gyro_noise * n(3)),
             tuple(force + self.accel_bias + sheet.accel_noise * n(3)),
             tuple(field + self.iron + sheet.mag_noise * MAGNETIC * n(3)),
@@ -85,7 +85,7 @@ class Flown:
         _, v, p = self._past[-11]
         n = self.rng.standard_normal
         (north, east, down), (vn, ve, vd) = p + (0.3, 0.3, 0.5) * n(3), v + 0.05 * n(3)
-        return Fix(north, east, -down, vn, ve, -vd, AGE, 0.3, 0.5, 0.05)
+        return GnssFix(north, east, -down, vn, ve, -vd, AGE, 0.3, 0.5, 0.05)
 
     def errors(self, estimator):
         """(25,) state errors: true less estimated; attitude as a rotation vector in NED."""

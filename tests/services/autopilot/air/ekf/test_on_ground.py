@@ -9,7 +9,7 @@ from tests.services.autopilot.air.ekf.flying import DT, EARTH, PARAMS, SHEET, G
 from uvf.estimation.ekf.alignment import attitude
 from uvf.estimation.ekf.estimator import FullEstimator
 from uvf.estimation.mount import ImuMount
-from uvf.estimation.sensor_inputs import Fix, Inertial, Pressures, Sensed
+from uvf.estimation.sensor_inputs import GnssFix, InertialSample, Pressures, Sensed
 
 ROLL, PITCH, YAW = 0.02, 0.1, 2.5
 STATIC = 97_000.0
@@ -43,14 +43,14 @@ class Standing:
         self.speed += 0.01 * launch
         n = self.rng.standard_normal
         force = self.rotation.T @ (launch * nose - G)
-        return Inertial(
+        return InertialSample(
             tuple(self.gyro_bias + 0.0023 * n(3)), tuple(force + 0.025 * n(3)), tuple(self.rotation.T @ EARTH + 5e-7 * n(3)), age
         )
 
     def _fix(self):
         n = self.rng.standard_normal
         (north, east, down), (vn, ve, vd) = self.place + 0.5 * n(3), self.speed * self.rotation[:, 0] + 0.1 * n(3)
-        return Fix(north, east, -down, vn, ve, -vd, 0.0, 0.5, 0.5, 0.1)
+        return GnssFix(north, east, -down, vn, ve, -vd, 0.0, 0.5, 0.5, 0.1)
 
 
 def test_it_is_aligned_within_two_seconds():
@@ -92,6 +92,6 @@ def test_a_launch_at_three_g_is_followed():
 def test_a_mount_askew_and_ahead_is_read_as_if_it_were_not():
     """Half a metre ahead of an aircraft that spins at 1 rad/s the IMU is drawn inwards by 0.5 m/s^2; its own left is backwards."""
     mount, straight = ImuMount((0.5, 0.0, 0.0), (0.0, 0.0, math.pi / 2)), (0.0, 0.0, 1.0)
-    spun = mount.at_centre(Inertial(straight, (0.0, -0.5, -9.8), (0.0, 0.0, 0.0)), 0.01)
+    spun = mount.at_centre(InertialSample(straight, (0.0, -0.5, -9.8), (0.0, 0.0, 0.0)), 0.01)
     assert spun.rates == pytest.approx(straight)
     assert spun.force == pytest.approx((0.0, 0.0, -9.8), abs=1e-9)

@@ -5,17 +5,17 @@ from dataclasses import replace
 import pytest
 
 from schemas.messages import ArmRequest, Battery, Fence, FenceRequest, FenceZone, Vector3
-from services.autopilot.air.failsafes.prearm import CHECKS, Standing, faults
+from services.autopilot.air.failsafes.prearm import CHECKS, PrearmInputs, faults
 from tests.services.autopilot.air.sensing import resting
 from tests.services.autopilot.air.states import PARAMS, cruising
 from tests.stops import ENGAGED
 from uvf.estimation.state import Ratios
 from uvf.guidance import fence_plan
 
-AT_REST = Standing(cruising(ground_speed=0.1, airspeed=2.0, height=0.0, pitch=0.1), PARAMS, accuracy=0.8, field=46e-6)
+AT_REST = PrearmInputs(cruising(ground_speed=0.1, airspeed=2.0, height=0.0, pitch=0.1), PARAMS, accuracy=0.8, field=46e-6)
 WRONG = {
     "estimator": [{"now": replace(AT_REST.now, position_sigma=30.0)}, {"now": replace(AT_REST.now, yaw_sigma=1.0)}],
-    "GNSS": [{"unfixed": 4.0}, {"accuracy": 12.0}],
+    "GNSS": [{"gnss_age": 4.0}, {"accuracy": 12.0}],
     "battery": [{"charge": 0.1}],
     "air data": [{"has_air_data": False}, {"now": replace(AT_REST.now, airspeed=18.0)}],
     "compass": [{"field": 300e-6}, {"field": 1e-6}, {"now": replace(AT_REST.now, ratios=Ratios(field=2.0))}],

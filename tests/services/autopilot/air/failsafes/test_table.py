@@ -5,8 +5,8 @@ import re
 import msgspec
 import pytest
 
-from services.autopilot.air.failsafes.table import AIR_RULES, Known
-from services.autopilot.failsafes import Action, Change, Watch
+from services.autopilot.air.failsafes.table import AIR_RULES, FailsafeInputs
+from services.autopilot.failsafes import FailsafeAction, FailsafeWatch, RuleChange
 from uvf.models.scenario import ROOT
 from uvf.models.vehicle.failsafe_params import FailsafeParams
 from uvf.models.vehicle.flight_params import AirParams
@@ -15,8 +15,8 @@ PARAMS = AirParams()
 DT = 0.02
 CAUSES = {
     "link": {"silence": 6.0},
-    "sticks": {"let_go": True},
-    "gnss": {"unfixed": 3.0},
+    "sticks": {"stick_released": True},
+    "gnss": {"gnss_age": 3.0},
     "estimator": {"sigma": 60.0},
     "position": {"lost_for": 130.0},
     "air_data": {"has_air_data": False},
@@ -43,7 +43,7 @@ RULES = {rule.name: rule for rule in AIR_RULES}
 
 
 def known(**changes):
-    return Known(PARAMS, **changes)
+    return FailsafeInputs(PARAMS, **changes)
 
 
 def run(watch, seconds, **changes):
@@ -62,29 +62,29 @@ def test_every_rule_has_a_cause_here():
 
 @pytest.mark.parametrize("name", RULES)
 def test_it_begins_on_its_cause_after_its_time_and_ends_after_the_cause(name):
-    watch, rule = Watch([RULES[name]]), RULES[name]
+    watch, rule = FailsafeWatch([RULES[name]]), RULES[name]
     after = rule.after(known())
     assert run(watch, max(after - 0.1, 0.0), **CAUSES[name])[0] == []
     assert run(watch, 0.2, **CAUSES[name])[0] == [(name, True)]
     assert run(watch, 20.0, **CAUSES[name])[0] == []
-    assert run(watch, max(rule.clears - 0.1, 0.0))[0] == []
+    assert run(watch, max(rule.clear_delay - 0.1, 0.0))[0] == []
     assert run(watch, 0.2)[0] == [(name, False)]
 
 
 @pytest.mark.parametrize("name", IN_BETWEEN)
 def test_between_the_limits_nothing_changes(name):
-    watch = Watch([RULES[name]])
+    watch = FailsafeWatch([RULES[name]])
     assert run(watch, 60.0, **IN_BETWEEN[name])[0] == []
     run(watch, 60.0, **CAUSES[name])
     assert run(watch, 60.0, **IN_BETWEEN[name])[0] == []
 
 
-@pytest.mark.parametrize("name", [n for n in RULES if RULES[n].clears])
+@pytest.mark.parametrize("name", [n for n in RULES if RULES[n].clear_delay])
 def test_a_cause_that_comes_and_goes_does_not_flap(name):
-    watch = Watch([RULES[name]])
+    watch = FailsafeWatch([RULES[name]])
     run(watch, 60.0, **CAUSES[name])
     for _ in range(10):
-        assert run(watch, RULES[name].clears / 2)[0] == []
+        assert run(watch, RULES[name].clear_delay / 2)[0] == []
         assert run(watch, 0.1, **CAUSES[name])[0] == []
 
 
@@ -94,34 +94,34 @@ ACTED = [(n, p) for n, r in RULES.items() for p in r.parameters if p.endswith("_
 @pytest.mark.parametrize(("name", "parameter"), ACTED)
 @pytest.mark.parametrize("choice", ["warn", "hold", "return", "land"])
 def test_the_parameter_decides_what_is_done(name, parameter, choice):
-    changed = Known(msgspec.structs.replace(PARAMS, **{parameter: choice}))
-    assert RULES[name].action(changed) is Action[choice.upper()]
+    changed = FailsafeInputs(msgspec.structs.replace(PARAMS, **{parameter: choice}))
+    assert RULES[name].action(changed) is FailsafeAction[choice.upper()]
 
 
 def test_nobody_at_the_stick_is_told_when_it_shall_only_be_waited_for():
-    waiting = Known(msgspec.structs.replace(PARAMS, stick_action="wait"), let_go=True)
-    assert RULES["sticks"].action(waiting) is Action.WARN
+    waiting = FailsafeInputs(msgspec.structs.replace(PARAMS, stick_action="wait"), stick_released=True)
+    assert RULES["sticks"].action(waiting) is FailsafeAction.WARN
 
 
 def test_the_way_home_counts_before_the_battery_is_low():
-    watch = Watch(AIR_RULES)
+    watch = FailsafeWatch(AIR_RULES)
     assert run(watch, 10.0, charge=0.4, spare=0.2) == ([], [])
     seen, (order,) = run(watch, 10.0, charge=0.4, spare=0.05)
     assert seen == [("battery_low", True)]
-    assert order.action is Action.RETURN
-    assert "5 % at home" in order.rule.figures(known(charge=0.4, spare=0.05))
+    assert order.action is FailsafeAction.RETURN
+    assert "5 % at home" in order.rule.detail(known(charge=0.4, spare=0.05))
 
 
 def test_an_order_is_given_once_and_a_greater_one_goes_beyond_it():
-    watch = Watch(AIR_RULES)
+    watch = FailsafeWatch(AIR_RULES)
     _, first = run(watch, 10.0, charge=0.12)
     _, second = run(watch, 10.0, charge=0.05)
-    assert [o.action for o in first + second] == [Action.RETURN, Action.LAND]
+    assert [o.action for o in first + second] == [FailsafeAction.RETURN, FailsafeAction.LAND]
     assert run(watch, 10.0, charge=0.05, silence=20.0)[1] == []
 
 
 def test_after_an_operator_has_asked_for_a_mode_only_a_new_cause_orders_again():
-    watch = Watch(AIR_RULES)
+    watch = FailsafeWatch(AIR_RULES)
     run(watch, 10.0, charge=0.12)
     watch.overrule()
     assert run(watch, 60.0, charge=0.12)[1] == []
@@ -130,7 +130,7 @@ def test_after_an_operator_has_asked_for_a_mode_only_a_new_cause_orders_again():
 
 
 def test_on_the_ground_nobody_is_missed():
-    assert run(Watch(AIR_RULES), 10.0, airborne=False, silence=60.0, roll=2.0, breached=True, wind=30.0) == ([], [])
+    assert run(FailsafeWatch(AIR_RULES), 10.0, airborne=False, silence=60.0, roll=2.0, breached=True, wind=30.0) == ([], [])
 
 
 def test_every_parameter_is_used_by_a_rule():
@@ -145,11 +145,11 @@ def test_the_documented_table_is_that_of_the_code():
     assert [name for name in shown if name in RULES] == list(RULES)
     for name, rule in RULES.items():
         assert re.findall(r"`(\w+)`", shown[name][2]) == list(rule.parameters), name
-        assert rule.begins.split(":")[0] in shown[name][4], name
+        assert rule.raised_text.split(":")[0] in shown[name][4], name
 
 
 @pytest.mark.parametrize("rule", AIR_RULES, ids=lambda rule: rule.name)
 def test_the_end_of_a_failsafe_quotes_no_figure_of_its_beginning_and_no_text_reads_as_an_order(rule):
-    assert Change(rule, True, "aileron for 3 s").event(0.0).cause == "aileron for 3 s"
-    assert Change(rule, False, "aileron for 0 s").event(0.0).cause == ""
-    assert "less bank" not in rule.begins
+    assert RuleChange(rule, True, "aileron for 3 s").event(0.0).cause == "aileron for 3 s"
+    assert RuleChange(rule, False, "aileron for 0 s").event(0.0).cause == ""
+    assert "less bank" not in rule.raised_text

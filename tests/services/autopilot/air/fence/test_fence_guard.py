@@ -9,9 +9,9 @@ import pytest
 from schemas.messages import Fence
 from services.autopilot.air.fence.fence_guard import FenceGuard, circle_within, clamped, kept, turn
 from tests.services.autopilot.air.states import PARAMS, G, Kinematic, cruising
-from uvf.control.commands import Wanted
+from uvf.control.commands import AltitudeAirspeedSetpoint
 from uvf.guidance.fence_plan import fence_fit, mission_fault, place_fault
-from uvf.guidance.flight_plan import Item, Kind
+from uvf.guidance.flight_plan import ItemKind, PlanItem
 from uvf.guidance.route import Place
 from uvf.maths.zones import Disc, Polygon, Region
 from uvf.models.mission.fence import OPEN, Fencing
@@ -75,7 +75,7 @@ def test_a_fence_that_only_warns_does_not_steer():
     guard.take(fence(action=Fence.WARN, ceiling=50.0))
     now = cruising(north=395.0)
     assert guard.look(now, PARAMS).spare(PARAMS) < 0
-    wanted = Wanted(0.0, 60.0, 0.0, 25.0)
+    wanted = AltitudeAirspeedSetpoint(0.0, 60.0, 0.0, 25.0)
     assert kept(wanted, guard, now, PARAMS) == wanted
 
 
@@ -105,8 +105,8 @@ def test_a_climb_is_ended_below_the_ceiling():
     guard.take(fence(ceiling=100.0, floor=20.0))
     now = cruising(height=94.0, climb=6.0)
     assert guard.look(now, PARAMS).spare(PARAMS) < 0
-    assert kept(Wanted(0.0, None, 6.0, 25.0), guard, now, PARAMS).height == 94.0
-    assert kept(Wanted(0.0, 150.0, 6.0, 25.0), guard, now, PARAMS) == Wanted(0.0, 95.0, 0.0, 25.0)
+    assert kept(AltitudeAirspeedSetpoint(0.0, None, 6.0, 25.0), guard, now, PARAMS).height == 94.0
+    assert kept(AltitudeAirspeedSetpoint(0.0, 150.0, 6.0, 25.0), guard, now, PARAMS) == AltitudeAirspeedSetpoint(0.0, 95.0, 0.0, 25.0)
 
 
 def test_the_floor_counts_from_when_it_has_been_above_it():
@@ -114,9 +114,9 @@ def test_the_floor_counts_from_when_it_has_been_above_it():
     guard.take(fence(floor=40.0))
     low = cruising(height=10.0)
     assert guard.look(low, PARAMS).spare(PARAMS) > 0
-    assert kept(Wanted(0.0, 20.0, 0.0, 25.0), guard, low, PARAMS).height == 20.0
+    assert kept(AltitudeAirspeedSetpoint(0.0, 20.0, 0.0, 25.0), guard, low, PARAMS).height == 20.0
     guard.look(cruising(height=60.0), PARAMS)
-    assert kept(Wanted(0.0, 20.0, 0.0, 25.0), guard, cruising(height=60.0), PARAMS).height == 45.0
+    assert kept(AltitudeAirspeedSetpoint(0.0, 20.0, 0.0, 25.0), guard, cruising(height=60.0), PARAMS).height == 45.0
 
 
 def test_it_holds_where_there_is_room_for_the_circle():
@@ -127,7 +127,7 @@ def test_it_holds_where_there_is_room_for_the_circle():
 
 
 def item(north, east, height=60.0, **fields):
-    return Item(fields.pop("kind", Kind.WAYPOINT), Place(north, east, height), **fields)
+    return PlanItem(fields.pop("kind", ItemKind.WAYPOINT), Place(north, east, height), **fields)
 
 
 @pytest.mark.parametrize(
@@ -135,10 +135,13 @@ def item(north, east, height=60.0, **fields):
     [
         ([item(0.0, 0.0), item(500.0, 0.0)], "item 1: (0, 500) is 100 m outside of the fence"),
         ([item(0.0, 300.0), item(0.0, 100.0)], "item 1: the way there comes too near to the fence at (2"),
-        ([item(0.0, 300.0), item(0.0, 0.0, kind=Kind.JUMP), item(0.0, 100.0)], ""),
-        ([item(0.0, -330.0, kind=Kind.ORBIT, radius=-80.0)], "item 0: (-330, 0) is 70 m from the fence, 92 m are needed to circle at 80 m"),
+        ([item(0.0, 300.0), item(0.0, 0.0, kind=ItemKind.JUMP), item(0.0, 100.0)], ""),
+        (
+            [item(0.0, -330.0, kind=ItemKind.ORBIT, radius=-80.0)],
+            "item 0: (-330, 0) is 70 m from the fence, 92 m are needed to circle at 80 m",
+        ),
         ([item(0.0, 0.0, height=140.0)], "item 0: its height of 140 m is not within 25 to 115 m"),
-        ([item(0.0, 0.0), item(-300.0, 0.0), item(0.0, 0.0, kind=Kind.RETURN)], ""),
+        ([item(0.0, 0.0), item(-300.0, 0.0), item(0.0, 0.0, kind=ItemKind.RETURN)], ""),
     ],
 )
 def test_a_mission_that_leaves_the_fence_is_refused_with_item_and_reason(items, why):

@@ -6,7 +6,7 @@ import msgspec
 import pytest
 
 from schemas.messages import Breach, Fence, FenceRequest, FenceZone, Mode, ModeRequest, Vector3
-from services.autopilot.air.failsafes.prearm import Standing, faults
+from services.autopilot.air.failsafes.prearm import PrearmInputs, faults
 from services.autopilot.air.fence.fence_guard import FenceGuard
 from services.autopilot.air.fence.fence_in_force import FenceInForce, in_force, too_small
 from tests.services.autopilot.air.sensing import Bench
@@ -50,7 +50,7 @@ def test_one_that_leaves_no_room_is_only_told_of_and_speaks_against_arming():
     small = with_(max_distance=20.0)
     assert "no room to circle" in too_small(small) and "too low" in too_small(with_(max_height=10.0))
     assert not in_force(Fence(), HOME, small).steers
-    assert any(fault.startswith("fence: max_distance") for fault in faults(Standing(cruising(), small, fence_fault=too_small(small))))
+    assert any(fault.startswith("fence: max_distance") for fault in faults(PrearmInputs(cruising(), small, fence_fault=too_small(small))))
 
 
 def test_it_is_worked_out_when_something_changes_and_only_then():

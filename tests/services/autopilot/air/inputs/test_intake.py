@@ -6,7 +6,7 @@ import pytest
 
 from schemas.messages import AirData, Gnss, Imu, MissionItem, Vector3
 from services.autopilot.air.inputs import intake
-from uvf.guidance.flight_plan import Kind
+from uvf.guidance.flight_plan import ItemKind
 from uvf.maths.geodesy import LocalTangent
 from uvf.runtime.messages.convert import stamp
 
@@ -54,7 +54,7 @@ def test_air_that_there_is_not_is_no_reading(reading):
 def test_items_keep_their_meaning():
     orbit = MissionItem(kind=MissionItem.ORBIT, position=Vector3(x=1, y=2, z=3), radius=-80, turns=2)
     (item,) = intake.items([orbit])
-    assert (item.kind, item.place.north, item.place.east, item.place.height) == (Kind.ORBIT, 2, 1, 3)
+    assert (item.kind, item.place.north, item.place.east, item.place.height) == (ItemKind.ORBIT, 2, 1, 3)
     assert (item.radius, item.turns) == (-80, 2)
 
 

@@ -3,11 +3,11 @@
 import pytest
 
 from schemas.messages import Battery
-from services.autopilot.air.failsafes.monitor import Safety, Seen
-from services.autopilot.air.mode_manager import Pilot
+from services.autopilot.air.failsafes.monitor import FailsafeMonitor, VehicleCondition
+from services.autopilot.air.mode_manager import ModeManager
 from services.autopilot.air.mode_table import FlightMode
-from services.autopilot.air.modes.mission_flight import MissionFlight
-from services.autopilot.air.setpoints import Senses
+from services.autopilot.air.modes.mission_flight import MissionMode
+from services.autopilot.air.setpoints import FlightContext
 from tests.services.autopilot.air.modes.test_landing import on_final
 from tests.services.autopilot.air.states import PARAMS, cruising
 from uvf.control.servos import SERVOS
@@ -20,19 +20,19 @@ class Start:
     """A take-off under a watch whose battery is nearly empty."""
 
     def __init__(self):
-        self.pilot = Pilot([], 0.0)
-        self.pilot.mode = FlightMode.TAKEOFF
-        self.safety = Safety(self.pilot, SERVOS)
+        self.mode_manager = ModeManager([], 0.0)
+        self.mode_manager.mode = FlightMode.TAKEOFF
+        self.safety = FailsafeMonitor(self.mode_manager, SERVOS)
         self.t = 0.0
 
     def fly(self, now, seconds, charge=1.0, airborne=True):
         for _ in range(round(seconds * 50)):
             self.t += 0.02
-            self.pilot.hear(Senses(airborne=airborne, armed=True), 0.02)
+            self.mode_manager.hear(FlightContext(airborne=airborne, armed=True), 0.02)
             self.safety.hear(self.t, None, Battery(remaining=charge))
-            self.safety.step(self.t, Seen(now, 0.0, airborne), PARAMS, 0.02)
-            self.pilot.step(now, PARAMS, 0.02)
-        return self.pilot.mode
+            self.safety.step(self.t, VehicleCondition(now, 0.0, airborne), PARAMS, 0.02)
+            self.mode_manager.step(now, PARAMS, 0.02)
+        return self.mode_manager.mode
 
 
 def test_a_battery_that_is_critical_in_the_roll_is_landed_with_once_it_flies():
@@ -57,15 +57,15 @@ def test_a_landing_of_a_mission_is_given_up_for_a_failsafe_only_while_there_is_h
     landing.step(now, PARAMS, 0.02)
     start = Start()
     start.fly(now, 0.5)
-    flight = MissionFlight(start.pilot.navigator, start.pilot._field, start.pilot.home, start.pilot.senses)
+    flight = MissionMode(start.mode_manager.navigator, start.mode_manager._field, start.mode_manager.home, start.mode_manager.context)
     flight.part = landing
-    start.pilot.mode, start.pilot._phase = FlightMode.MISSION, flight
+    start.mode_manager.mode, start.mode_manager._phase = FlightMode.MISSION, flight
     for _ in range(400):  # the pilot stands still: this is one moment of the approach
         start.t += 0.02
         start.safety.hear(start.t, None, Battery(remaining=0.1))
-        start.safety.step(start.t, Seen(now, 0.0, True), PARAMS, 0.02)
+        start.safety.step(start.t, VehicleCondition(now, 0.0, True), PARAMS, 0.02)
     assert start.safety.texts == ["battery low"]
-    assert start.pilot.mode is mode
+    assert start.mode_manager.mode is mode
 
 
 @pytest.mark.parametrize(("height", "goes_on"), [(30.0, False), (8.0, True)])
@@ -73,8 +73,8 @@ def test_a_landing_goes_on_without_satellites_only_near_the_ground(height, goes_
     landing, now = on_final(height / 0.08, height)
     landing.step(now, PARAMS, 0.02)
     assert landing.committed is goes_on
-    pilot = Pilot([], 0.0)
-    pilot.step(now, PARAMS, 0.02)
-    pilot.mode, pilot._phase = FlightMode.LAND, landing
-    pilot.fly_blind(True)
-    assert pilot.mode is (FlightMode.LAND if goes_on else FlightMode.HOLD)
+    mode_manager = ModeManager([], 0.0)
+    mode_manager.step(now, PARAMS, 0.02)
+    mode_manager.mode, mode_manager._phase = FlightMode.LAND, landing
+    mode_manager.fly_blind(True)
+    assert mode_manager.mode is (FlightMode.LAND if goes_on else FlightMode.HOLD)

@@ -5,14 +5,14 @@ import math
 import numpy as np
 import pytest
 
-from services.autopilot.air.modes.landing import TOUCH_SINK, Landing, flare
-from services.autopilot.air.setpoints import Senses
+from services.autopilot.air.modes.landing import TOUCH_SINK, LandingMode, flare
+from services.autopilot.air.setpoints import FlightContext
 from tests.services.autopilot.air.states import PARAMS, cruising
 from uvf.control.commands import Surfaces
 from uvf.guidance.route import Place
-from uvf.guidance.runways import Strip, lane_for
+from uvf.guidance.runways import LandingStrip, lane_for
 
-STRIP = Strip(Place(0.0, 0.0, 5.0), math.pi / 2, 300.0, 12.0)  # east and west
+STRIP = LandingStrip(Place(0.0, 0.0, 5.0), math.pi / 2, 300.0, 12.0)  # east and west
 SLOPE = math.tan(PARAMS.glide_slope)
 EAST = STRIP.lane(math.pi / 2)
 
@@ -28,7 +28,7 @@ def test_in_calm_air_it_lands_straight_in():
 
 
 def test_the_nearest_strip_is_taken_and_without_any_the_place_itself():
-    other = Strip(Place(2000.0, 0.0, 0.0), 0.0, 200.0, 10.0)
+    other = LandingStrip(Place(2000.0, 0.0, 0.0), 0.0, 200.0, 10.0)
     assert lane_for(Place(1900.0, 0.0, 0.0), [STRIP, other], cruising()).width == 10.0
     assert lane_for(Place(70.0, 30.0, 2.0), [], cruising()).aim == Place(70.0, 30.0, 2.0)
 
@@ -36,7 +36,7 @@ def test_the_nearest_strip_is_taken_and_without_any_the_place_itself():
 def test_the_wheels_are_to_touch_a_quarter_or_sixty_metres_behind_the_threshold():
     assert EAST.aim.east == pytest.approx(-150.0 + 60.0)
     assert EAST.rest == pytest.approx(240.0)
-    assert Strip(Place(0.0, 0.0, 0.0), 0.0, 100.0, 8.0).lane(0.0).aim.north == pytest.approx(-25.0)
+    assert LandingStrip(Place(0.0, 0.0, 0.0), 0.0, 100.0, 8.0).lane(0.0).aim.north == pytest.approx(-25.0)
 
 
 @pytest.mark.parametrize("wind", [-2.0, 0.0, 8.0])
@@ -57,7 +57,7 @@ def test_the_flare_has_no_step_and_no_kink():
 
 def on_final(distance, height, right=0.0, airspeed=19.0, clearance=None, **now):
     """Eastwards, ``distance`` [m] before the point to touch at, the wheels ``height`` [m] over the strip."""
-    senses = Senses(clearance=clearance)
+    context = FlightContext(clearance=clearance)
     state = {
         "course": math.pi / 2,
         "yaw": math.pi / 2,
@@ -68,7 +68,7 @@ def on_final(distance, height, right=0.0, airspeed=19.0, clearance=None, **now):
         "height": height + 5.0 + PARAMS.gear_height,
         **now,
     }
-    landing = Landing(cruising(**state), lambda now: EAST, senses, PARAMS)
+    landing = LandingMode(cruising(**state), lambda now: EAST, context, PARAMS)
     start = 25.0 * PARAMS.min_airspeed
     joining = {**state, "east": EAST.aim.east - start, "north": 0.0, "height": 5.0 + PARAMS.gear_height + SLOPE * start}
     landing.step(cruising(**joining), PARAMS, 0.02)

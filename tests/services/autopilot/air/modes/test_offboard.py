@@ -6,14 +6,14 @@ import pytest
 
 from schemas import topics
 from schemas.messages import AttitudeSetpoint, CircleSetpoint, CourseSetpoint, FlightSetpoint, LineSetpoint, Mode, ModeRequest
-from services.autopilot.air.modes.offboard import Offboard, fresh
+from services.autopilot.air.modes.offboard import OffboardMode, fresh
 from services.autopilot.air.service import AutopilotAir
-from services.autopilot.air.setpoints import Senses
+from services.autopilot.air.setpoints import FlightContext
 from tests.services.autopilot.air.sensing import Bench, autopilot, sensors
 from tests.services.autopilot.air.states import PARAMS, cruising
 from uvf.runtime.bus.interface import LocalBus
-from uvf.runtime.contract.instances import Host
-from uvf.runtime.contract.service_runner import Shell
+from uvf.runtime.contract.instances import ServiceInstance
+from uvf.runtime.contract.service_runner import ServiceRunner
 from uvf.runtime.messages.convert import stamp
 
 OFFBOARD = [ModeRequest(mode=Mode.MODE_OFFBOARD, source="test")]
@@ -24,7 +24,7 @@ def attitude(t=1.0, bank=0.2):
 
 
 def asked(message, **now):
-    return Offboard(Senses(setpoint=message)).step(cruising(**now), PARAMS, 0.02).asked
+    return OffboardMode(FlightContext(setpoint=message)).step(cruising(**now), PARAMS, 0.02).asked
 
 
 def test_an_attitude_is_held_within_the_limits():
@@ -101,7 +101,7 @@ class Senders:
 
     @property
     def bank(self):
-        return self.bench.service._pilot.senses.setpoint.attitude.bank
+        return self.bench.service._mode_manager.context.setpoint.attitude.bank
 
     @property
     def texts(self):
@@ -167,7 +167,7 @@ class OnBus:
 
     def __init__(self):
         self.bus, self.banks, self.status = LocalBus(), [], None
-        self.shell = Shell(Host(AutopilotAir, autopilot, "milvus"), self.bus)
+        self.shell = ServiceRunner(ServiceInstance(AutopilotAir, autopilot, "milvus"), self.bus)
         self.bus.subscribe(topics.STATUS.at("milvus"), topics.STATUS.qos, self._see)
 
     def _see(self, sample):
@@ -188,7 +188,7 @@ class OnBus:
             for source, bank, ahead in said:
                 self._put(topics.SETPOINT.by(source), attitude(t - 0.01 + ahead, bank), t - 0.01)
             self.shell.advance()
-            setpoint = self.shell.service._pilot.senses.setpoint
+            setpoint = self.shell.service._mode_manager.context.setpoint
             self.banks.append(setpoint.attitude.bank if setpoint is not None else None)
 
     def ask_offboard(self):

@@ -5,7 +5,7 @@ from dataclasses import replace as changed
 import msgspec
 import pytest
 
-from services.autopilot.air.modes.return_mode import Homeward
+from services.autopilot.air.modes.return_mode import ReturnMode
 from tests.services.autopilot.air.states import PARAMS, cruising
 from uvf.guidance.route import Place
 
@@ -25,7 +25,7 @@ def flown(phase, params, seconds, height=None, north=PARAMS.hold_radius):
 
 
 def returning(lowest=-1e9, height=50.0):
-    return Homeward(OVER, lowest, HOME, height)
+    return ReturnMode(OVER, lowest, HOME, height)
 
 
 def test_without_wishes_it_circles_at_the_height_of_return_for_ever():

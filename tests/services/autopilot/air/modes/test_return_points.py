@@ -6,6 +6,7 @@ import pytest
 
 from schemas.messages import Breach, Fence, FenceRequest, FenceZone, Mode, ModeRequest, RallyPoints, RallyRequest, Vector3
 from services.autopilot.air.modes import return_points
+from tests.runtime.stepping import recall
 from tests.services.autopilot.air.sensing import Bench
 from tests.services.autopilot.air.states import PARAMS, cruising
 from uvf.guidance.route import Place
@@ -32,11 +33,11 @@ def within(radius, action=Fence.RETURN):
     ],
 )
 def test_return_leads_to_the_nearest_that_lies_within_the_fence(north, fence, leads_to):
-    assert return_points.haven(cruising(north=north), HOME, (NEAR, FAR), fence, PARAMS) == leads_to
+    assert return_points.return_point(cruising(north=north), HOME, (NEAR, FAR), fence, PARAMS) == leads_to
 
 
 def test_a_rally_point_is_circled_no_lower_than_home_would_be():
-    assert return_points.haven(cruising(east=3900.0), HOME, (NEAR, FAR), OPEN, PARAMS) == Place(0.0, 4000.0, LOWEST)
+    assert return_points.return_point(cruising(east=3900.0), HOME, (NEAR, FAR), OPEN, PARAMS) == Place(0.0, 4000.0, LOWEST)
 
 
 def test_rally_points_outside_of_the_fence_are_refused_by_number():
@@ -57,11 +58,11 @@ def test_the_autopilot_returns_to_a_rally_point_tells_of_it_and_takes_it_up_agai
     assert [(p.x, p.z) for p in out["rally"].points] == [(300.0, 150.0)]
     bench.run(mode=[ModeRequest(mode=Mode.MODE_RETURN)])
     bench.run()
-    centre = bench.service._pilot.circle.centre
+    centre = bench.service._mode_manager.circle.centre
     assert (centre.east, centre.north, centre.height) == (300.0, 200.0, 150.0)
     again = Bench()
-    again.service.recall(rally=out["rally"])
-    assert again.service._pilot.rally == (Place(200.0, 300.0, 150.0),)
+    recall(again.service, rally=out["rally"])
+    assert again.service._mode_manager.rally == (Place(200.0, 300.0, 150.0),)
 
 
 def test_at_its_fence_it_goes_to_the_fences_own_return_point_and_outside_of_it_says_so():
@@ -72,7 +73,7 @@ def test_at_its_fence_it_goes_to_the_fences_own_return_point_and_outside_of_it_s
     assert bench.run(fence=[FenceRequest(fence=fence)])["fence"][0].accepted
     bench.run(700)  # straight on, whatever it commands
     assert bench.status.reason == "fence ahead: turned away"
-    centre = bench.service._pilot.circle.centre
+    centre = bench.service._mode_manager.circle.centre
     assert (centre.east, centre.north, centre.height) == (200.0, 0.0, 90.0)
     bench.run(300)
     assert (bench.status.breach, bench.status.breaches) == (Breach.BREACH_EDGE, 1)

@@ -2,10 +2,10 @@
 
 import pytest
 
-from services.autopilot.air.modes.takeoff import TakeOff
-from services.autopilot.air.setpoints import Senses, Track
+from services.autopilot.air.modes.takeoff import TakeoffMode
+from services.autopilot.air.setpoints import FlightContext, PathSetpoint
 from tests.services.autopilot.air.states import PARAMS, cruising
-from uvf.control.commands import Attitude, Surfaces
+from uvf.control.commands import AttitudeSetpoint, Surfaces
 from uvf.models.vehicle.flight_params import AirParams
 
 THROWN = AirParams(launch_push=15.0)
@@ -13,7 +13,7 @@ STANDING = {"airspeed": 0.5, "ground_speed": 0.1, "height": 0.4, "pitch": 0.06}
 
 
 def standing(room=float("inf"), params=PARAMS):
-    phase = TakeOff(cruising(**STANDING), 40.0, Senses(airborne=False), room)
+    phase = TakeoffMode(cruising(**STANDING), 40.0, FlightContext(airborne=False), room)
     phase.step(cruising(**STANDING), params, 0.02)
     return phase
 
@@ -44,7 +44,7 @@ def test_it_rotates_at_its_speed_and_not_before():
     after(phase, 1.0, ground_speed=8.0, airspeed=8.0)
     assert isinstance(after(phase, 0.02, ground_speed=16.0, airspeed=0.89 * PARAMS.min_airspeed).asked, Surfaces)
     raised = after(phase, 0.02, ground_speed=17.5, airspeed=0.91 * PARAMS.min_airspeed).asked
-    assert isinstance(raised, Attitude)
+    assert isinstance(raised, AttitudeSetpoint)
     assert raised.pitch == pytest.approx(PARAMS.takeoff_pitch, abs=0.02)
 
 
@@ -59,7 +59,7 @@ def test_it_climbs_straight_ahead_with_full_throttle_and_is_done_at_its_height()
     phase = standing()
     after(phase, 2.0, height=2.5, airspeed=21.0, ground_speed=21.0, climb=2.0)
     climbing = after(phase, 0.02, height=20.0, airspeed=25.0, ground_speed=25.0, east=3.0).asked
-    assert isinstance(climbing, Track)
+    assert isinstance(climbing, PathSetpoint)
     assert (climbing.throttle, climbing.height, climbing.climb) == (1.0, None, PARAMS.climb_max)
     assert climbing.aim.error == pytest.approx(3.0)
     assert phase.ended == ""
@@ -92,21 +92,21 @@ def test_once_it_can_fly_it_is_not_given_up():
 
 
 def test_before_a_throw_the_motor_is_off_and_a_short_knock_does_not_start_it():
-    senses = Senses(airborne=False)
-    phase = TakeOff(cruising(**STANDING), 40.0, senses)
+    context = FlightContext(airborne=False)
+    phase = TakeoffMode(cruising(**STANDING), 40.0, context)
     assert after(phase, 2.0, THROWN).asked.throttle == 0.0
-    senses.push = 30.0
+    context.specific_force_x = 30.0
     after(phase, 0.06, THROWN)
-    senses.push = 0.0
+    context.specific_force_x = 0.0
     assert after(phase, 1.0, THROWN).asked.throttle == 0.0
 
 
 def test_a_throw_starts_the_motor_with_level_wings_and_the_nose_up():
-    senses = Senses(airborne=False, push=30.0)
-    phase = TakeOff(cruising(**STANDING), 40.0, senses)
+    context = FlightContext(airborne=False, specific_force_x=30.0)
+    phase = TakeoffMode(cruising(**STANDING), 40.0, context)
     after(phase, 0.12, THROWN, airspeed=9.0)
     wish = after(phase, 0.1, THROWN, airspeed=12.0, ground_speed=12.0).asked
-    assert isinstance(wish, Attitude)
+    assert isinstance(wish, AttitudeSetpoint)
     assert wish.throttle == 1.0
     assert 0.0 < wish.pitch <= THROWN.takeoff_pitch
     assert wish.bank == pytest.approx(0.0, abs=0.02)

@@ -2,7 +2,7 @@
 
 import pytest
 
-from services.autopilot.mavlink.connection.targets import Target, reserved, targets_from
+from services.autopilot.mavlink.connection.targets import MavlinkTarget, reserved, targets_from
 from services.autopilot.mavlink.service import MavlinkService
 from tests.services.autopilot.mavlink.rig import GCS, OTHER, PLANE, PLANE_FACTS, ROVER, ROVER_FACTS, Rig, long, of, shelves, texts
 from uvf.mavlink import dialect as mav
@@ -22,8 +22,8 @@ def rig():
 
 def test_a_port_is_for_all_vehicles_or_for_one():
     read = targets_from("10.0.0.2:14550, 127.0.0.1:14541/2,", NAME, (1, 2))
-    assert read == [Target(("10.0.0.2", 14550)), Target(("127.0.0.1", 14541), 2)]
-    assert reserved([Target(("10.0.0.2", 14550)), Target(("localhost", 14541), 2)]) == {("127.0.0.1", 14541): 2}
+    assert read == [MavlinkTarget(("10.0.0.2", 14550)), MavlinkTarget(("127.0.0.1", 14541), 2)]
+    assert reserved([MavlinkTarget(("10.0.0.2", 14550)), MavlinkTarget(("localhost", 14541), 2)]) == {("127.0.0.1", 14541): 2}
 
 
 @pytest.mark.parametrize("text", ["127.0.0.1:14541/3", "127.0.0.1:14541/", "127.0.0.1:14541/milvus"])

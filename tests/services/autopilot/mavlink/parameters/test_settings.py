@@ -5,7 +5,7 @@ import stat
 import msgspec
 import pytest
 
-from services.autopilot.mavlink.parameters.parameter_store import FileStore, Unreadable
+from services.autopilot.mavlink.parameters.parameter_store import FileStore, UnreadableStore
 from tests.services.autopilot.mavlink.parameters.test_parameters import ask_list, setting, value
 from tests.services.autopilot.mavlink.rig import _PLANE_PARAMS, PLANE, Rig, Shelf, acks, long, of, texts
 from uvf.mavlink import dialect as mav
@@ -126,7 +126,7 @@ def test_in_a_pause_they_are_not_reset():
 
 def test_a_broken_file_means_the_vehicles_own_values_and_everybody_hears_why():
     shelf = Shelf()
-    shelf.trouble = Unreadable("plane.json is broken")
+    shelf.trouble = UnreadableStore("plane.json is broken")
     rig = Rig(shelf=shelf)
     rig.say(mav.MAVLink_param_request_list_message(PLANE, 0))
     assert "Parameters: plane.json is broken; those of the vehicle's file count" in texts(rig.run(2.0))
@@ -160,5 +160,5 @@ def test_a_file_keeps_them_whole(tmp_path):
 def test_a_file_that_holds_no_settings_is_named(tmp_path, content):
     path = tmp_path / "milvus.json"
     path.write_bytes(content)
-    with pytest.raises(Unreadable, match=r"milvus\.json"):
+    with pytest.raises(UnreadableStore, match=r"milvus\.json"):
         FileStore(path).load()

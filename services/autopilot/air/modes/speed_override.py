@@ -6,7 +6,7 @@ from uvf.estimation.state import Estimate
 from uvf.models.vehicle.flight_params import AirParams
 
 
-class Pace:
+class SpeedOverride:
     """Nothing, an airspeed, or a speed over ground."""
 
     def __init__(self) -> None:

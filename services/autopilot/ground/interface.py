@@ -1,0 +1,82 @@
+"""What the autopilot of a ground vehicle reads and writes."""
+
+from schemas import topics
+from schemas.messages import (
+    ArmRequest,
+    Battery,
+    DriveCommand,
+    Event,
+    Fence,
+    FenceRequest,
+    FrameTransform,
+    Imu,
+    LaserScan,
+    Link,
+    Mission,
+    MissionProgress,
+    MissionRequest,
+    ModeRequest,
+    OrderRequest,
+    ParamValues,
+    PoseInFrame,
+    RallyPoints,
+    RallyRequest,
+    Reply,
+    SetCurrentRequest,
+    VehicleStatus,
+    WheelCommand,
+    WheelTicks,
+)
+from uvf.runtime.contract.declaration import Reads, Writes, every, optional, replies, request, stop_all, topic
+from uvf.runtime.state.stop_all import StopStatus
+
+
+class Inputs(Reads):
+    teleop: DriveCommand | None = optional(topics.DRIVE.by("teleop"))
+    mavlink: DriveCommand | None = optional(topics.DRIVE.by("mavlink"))
+    gcs: DriveCommand | None = optional(topics.DRIVE.by("gcs"))
+    client: DriveCommand | None = optional(topics.DRIVE.by("client"))
+    offboard: DriveCommand | None = optional(topics.DRIVE.by("offboard"))
+    planner: DriveCommand | None = optional(topics.DRIVE.by("planner"))
+    stop: StopStatus = stop_all()
+    pose: PoseInFrame | None = optional(topics.POSE)
+    link: Link | None = optional(topics.LINK)
+    imu: list[Imu] = optional(every(topics.IMU))
+    ticks: WheelTicks | None = optional(topics.WHEELS)
+    scan: LaserScan | None = optional(topics.SCAN)
+    correction: FrameTransform | None = optional(topics.TF_MAP)
+    battery: Battery | None = optional(topics.BATTERY)
+    arm: list[ArmRequest] = request(topics.ARM)
+    set_mode: list[ModeRequest] = request(topics.SET_MODE)
+    set_mission: list[MissionRequest] = request(topics.SET_MISSION)
+    set_current: list[SetCurrentRequest] = request(topics.SET_CURRENT)
+    set_fence: list[FenceRequest] = request(topics.SET_FENCE)
+    order: list[OrderRequest] = request(topics.ORDER)
+    set_rally: list[RallyRequest] = request(topics.SET_RALLY)
+
+
+class Outputs(Writes):
+    wheels: WheelCommand | None = topic(topics.WHEEL_COMMAND)
+    status: VehicleStatus | None = topic(topics.STATUS)
+    mission: Mission | None = topic(topics.MISSION)
+    bounds: Fence | None = topic(topics.FENCE)
+    rally: RallyPoints | None = topic(topics.RALLY)
+    progress: MissionProgress | None = topic(topics.PROGRESS)
+    events: list[Event] | None = topic(topics.EVENTS.by("autopilot"))
+    params: ParamValues | None = topic(topics.PARAMS.by("autopilot_ground"))
+    arm: list[Reply] = replies(topics.ARM)
+    set_mode: list[Reply] = replies(topics.SET_MODE)
+    set_mission: list[Reply] = replies(topics.SET_MISSION)
+    set_current: list[Reply] = replies(topics.SET_CURRENT)
+    set_fence: list[Reply] = replies(topics.SET_FENCE)
+    order: list[Reply] = replies(topics.ORDER)
+    set_rally: list[Reply] = replies(topics.SET_RALLY)
+
+
+class Recalls(Reads):
+    status: VehicleStatus | None = topic(topics.STATUS)
+    mission: Mission | None = topic(topics.MISSION)
+    progress: MissionProgress | None = topic(topics.PROGRESS)
+    bounds: Fence | None = topic(topics.FENCE)
+    rally: RallyPoints | None = topic(topics.RALLY)
+    params: ParamValues | None = topic(topics.PARAMS.by("autopilot_ground"))

@@ -1,0 +1,19 @@
+"""Who writes a name of before is told the name of now."""
+
+import pytest
+
+from services.planner.planner_service import PlannerParams
+from uvf.models.renamed import RENAMED
+from uvf.models.yaml_data import BadInput, convert
+
+OF_THE_PLANNER = {old: new for old, new in RENAMED.items() if new in PlannerParams.__struct_fields__}
+
+
+@pytest.mark.parametrize("old", OF_THE_PLANNER)
+def test_an_old_parameter_in_a_file_is_answered_by_the_new_one(old):
+    with pytest.raises(BadInput, match=f"unknown key '{old}'; it is called '{OF_THE_PLANNER[old]}' now"):
+        convert({old: 0.5}, PlannerParams, "vehicle.yaml", ("params", "planner"))
+
+
+def test_no_name_is_both_old_and_new():
+    assert not set(RENAMED) & set(RENAMED.values())
