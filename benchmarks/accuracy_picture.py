@@ -1,4 +1,4 @@
-"""``python -m benchmarks.accuracy_picture docs`` draws docs/accuracy.png: the course flown in calm air, and in 10 m/s with turbulence."""
+"""``python -m benchmarks.accuracy_picture docs/images`` draws accuracy.png: the course in calm air, and in 10 m/s with turbulence."""
 
 import sys
 from pathlib import Path

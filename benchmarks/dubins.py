@@ -3,7 +3,7 @@
 A switch lasts from where the curvature begins to change to where it is that of the next segment; ``overshoot`` is the largest distance
 of the true aircraft from the planned way from there until two seconds after it, ``control`` the same of where it believes to be: the
 rest is the estimate's error.
-``python -m benchmarks.dubins docs`` draws docs/dubins.png.
+``python -m benchmarks.dubins docs/images`` draws docs/images/dubins.png.
 """
 
 import sys

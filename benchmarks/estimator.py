@@ -4,7 +4,7 @@ The aircraft is flown by its own estimator; what that was given is given to the 
 from 30 s on (angles in deg, lengths in m, speeds in m/s; wind is that about the aircraft, gusts included), and NEES, the squared error
 over its covariance per state: 1 = as wrong as foretold. ``outage`` takes the fixes away from 60 to 90 s: drift is the error of position
 then, sigma what the filter says. ``bias`` adds 0.02 rad/s to each gyroscope: settled is when all errors of bias stay below 0.002 rad/s.
-``python -m benchmarks.estimator docs`` draws docs/estimator.png.
+``python -m benchmarks.estimator docs/images`` draws docs/images/estimator.png.
 """
 
 import copy

@@ -4,7 +4,7 @@
 state-space model, ``book %`` that to the transfer function of Beard and McLain, chapter 5, both as share of the flight's own RMS.
 In steps of elevator and throttle the ailerons keep the wings level.
 ``energy``: gliding with the motor off, the slowest balanced flight, the climb with full throttle, the longest flight on the battery.
-``python -m benchmarks.flight docs`` draws what is in docs/flight-dynamics.md.
+``python -m benchmarks.flight docs/images`` draws what is in docs/explanation/flight-dynamics.md.
 """
 
 import sys

@@ -1,7 +1,7 @@
 """The mission ``formation`` flown in lockstep, as it is and in moderate turbulence, judged from the truth.
 
 ``late``, ``aside`` and ``above`` are the distances of a follower from its station in m, ``least`` the smallest one between aircraft.
-``python -m benchmarks.formation docs`` draws docs/formation.png; ``... docs 60`` flies a minute only.
+``python -m benchmarks.formation docs/images`` draws docs/images/formation.png; ``... docs/images 60`` flies a minute only.
 """
 
 import sys

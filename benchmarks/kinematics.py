@@ -23,7 +23,7 @@ from uvf.models.scenario import ROOT
 from uvf.models.urdf.model import engine_urdf
 from uvf.models.vehicle.file import GroundBody, load_vehicle
 
-PICTURE = ROOT / "docs" / "kinematics.png"
+PICTURE = ROOT / "docs" / "images" / "kinematics.png"
 DT = 0.01  # s, between two commands
 SHARE = 0.6  # of the vehicle's top speeds
 RADII = (0.5, 1.0, 2.0)  # m
@@ -134,7 +134,7 @@ CASES = {"vehicles": vehicles}
 
 
 def main() -> None:
-    """Draws docs/kinematics.png: closed form as lines, simulated drives as dots."""
+    """Draws docs/images/kinematics.png: closed form as lines, simulated drives as dots."""
     from matplotlib.figure import Figure
 
     names = [name for name, _, _ in ground_vehicles()]

@@ -2,7 +2,7 @@
 
 Each of the flights has a seed of its own for sensors, turbulence and the direction of the wind, which is 8 m/s at 6 m height with
 Dryden turbulence of W20 = 8 m/s. Directions whose part across the strip is beyond CROSSWIND are drawn again: this is the limit within
-which Milvus is flown. ``python -m benchmarks.landings docs/landings.png`` draws where the wheels touch.
+which Milvus is flown. ``python -m benchmarks.landings docs/images/landings.png`` draws where the wheels touch.
 """
 
 import sys

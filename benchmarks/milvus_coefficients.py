@@ -1,7 +1,7 @@
 """The coefficients of the running Milvus by finite differences, beside the published ones.
 
 The body is held in a state in JSBSim; forces and moments follow from its accelerations, mass and inertia, not from the model's own
-properties. ``python -m benchmarks.milvus_coefficients docs/milvus-coefficients.png`` draws lift, drag and pitching moment.
+properties. ``python -m benchmarks.milvus_coefficients docs/images/milvus-coefficients.png`` draws lift, drag and pitching moment.
 """
 
 import sys
@@ -30,7 +30,7 @@ AIRSPEED, ALTITUDE = 25.0, 800.0  # m/s, m AMSL
 NAMES = ("CL", "CD", "Cm", "CY", "Cl", "Cn")
 INDUCED = 1 / (np.pi * 0.9 * SPAN**2 / AREA)
 
-# Beard and McLain, supplement of 2020, table E.2; the flaps' from docs/milvus.md.
+# Beard and McLain, supplement of 2020, table E.2; the flaps' from docs/explanation/milvus.md.
 STATED = {
     "CL_alpha": 5.61,
     "CL_q": 7.95,

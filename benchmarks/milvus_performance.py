@@ -1,8 +1,8 @@
 """What Milvus can do, from steady flights of the running model, beside hand calculation from its stated coefficients.
 
 By hand: alpha and elevator solve lift = weight across the path and C_m = 0, drag is the polar there, and the motor's and the
-propeller's torque are equal (Beard and McLain, supplement of 2020). ``python -m benchmarks.milvus_performance docs/milvus-performance.png``
-draws climb, glide and power over airspeed.
+propeller's torque are equal (Beard and McLain, supplement of 2020). ``python -m benchmarks.milvus_performance
+docs/images/milvus-performance.png`` draws climb, glide and power over airspeed.
 """
 
 import math

@@ -1,7 +1,7 @@
 """Milvus on the strip, flown by a scripted pilot: take-off, and approach with landing. No autopilot, no estimator.
 
 The pilot looks along the strip (it runs east from the world's origin): he keeps to its middle with the rudder, the wings level with the
-ailerons, and the nose at the pitch that the phase asks for. ``python -m benchmarks.milvus_strip docs/milvus-strip.png`` draws both.
+ailerons, and the nose at the pitch that the phase asks for. ``python -m benchmarks.milvus_strip docs/images/milvus-strip.png`` draws both.
 """
 
 import sys

@@ -1,4 +1,4 @@
-"""``python -m benchmarks.octree_picture LOG docs`` draws docs/map-3d.png from a log of the mission ``mapping``."""
+"""``python -m benchmarks.octree_picture LOG docs/images`` draws docs/images/map-3d.png from a log of the mission ``mapping``."""
 
 import sys
 from pathlib import Path

@@ -3,7 +3,7 @@
 ``drift %`` is the distance between the ends over the way, ``heading deg`` the error at the end (both RMS over the seeds). NEES is the
 squared error over its covariance per state, at the end: 1 = as wrong as foretold. ``ms per s`` is time on the processor for a second of
 driving. ``slip`` spins both wheels for 3 s and one for 4 s; ``wrong`` has radii of +3 and -2 % and a track of +5 %, ``calibrated`` the
-same after a drive of 3 minutes beside scans of 1 cm and 0.3 deg. ``python -m benchmarks.odometry docs`` draws docs/odometry.png.
+same after a drive of 3 minutes beside scans of 1 cm and 0.3 deg. ``python -m benchmarks.odometry docs/images`` draws it.
 """
 
 import sys

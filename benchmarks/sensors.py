@@ -28,7 +28,7 @@ from uvf.models.vehicle.file import load_vehicle
 from uvf.models.vehicle.sensor_presets import PRESETS
 from uvf.models.vehicle.sensors import AirDataSensor, Camera, Encoders, GnssSensor, ImuSensor, Lidar, Mount, RangeFinder, Sensors, Sonar
 from uvf.models.world.file import Origin, WorldFile
-from uvf.sensors.allan import expected, octaves, overlapping
+from uvf.sensors.allan import allan_deviation, expected, octaves
 from uvf.sensors.errors import Errors
 from uvf.sensors.fitted import accelerometer_errors, gyro_errors, line_of, receiver
 from uvf.sensors.range_sensors import LidarModel, RangeModel
@@ -215,7 +215,7 @@ def allan(data: Path | None) -> Figures:
     for name, errors, samples in _hour():
         hz = 100.0
         for tau in (0.1, 1.0, 10.0, 100.0):
-            measured = [overlapping(axis, hz, [round(tau * hz)])[1][0] for axis in samples.T]
+            measured = [allan_deviation(axis, hz, [round(tau * hz)])[1][0] for axis in samples.T]
             sigma, stated = float(np.sqrt(np.mean(np.square(measured)))), float(expected(errors, hz, [tau])[0])
             figures[f"{name} Allan {tau:g} s"] = {"samples": len(samples), "sigma stated": stated, "sigma": sigma, "ratio": sigma / stated}
     return figures
@@ -237,7 +237,7 @@ def plot(path: Path) -> None:
     figure = Figure(figsize=(10, 4.5), layout="constrained")
     for axes, (name, errors, samples), unit in zip(figure.subplots(1, 2), _hour(), ("rad/s", "m/s²"), strict=True):
         for axis, label in zip(samples.T, "xyz", strict=True):
-            taus, deviation = overlapping(axis, 100.0, octaves(len(axis)))
+            taus, deviation = allan_deviation(axis, 100.0, octaves(len(axis)))
             axes.loglog(taus, deviation, ".-", linewidth=0.8, label=f"{name} {label}")
         axes.loglog(taus, expected(errors, 100.0, taus), "k--", label="stated")
         axes.set(xlabel="averaging time [s]", ylabel=f"Allan deviation [{unit}]", title=f"burger, {name}, {HOURS:g} h at rest")

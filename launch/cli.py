@@ -258,6 +258,18 @@ def doctor() -> None:
 
 
 @app.command()
+def docs(
+    build: Annotated[Path | None, typer.Option(help="Build the site into this folder instead; a broken link is an error.")] = None,
+    port: Annotated[int, typer.Option(min=1024, max=65535, help="Where to serve it, on 127.0.0.1.")] = 8000,
+) -> None:
+    """Read the documentation: serve it as a site at http://127.0.0.1:8000 until Ctrl-C, or build it."""
+    from launch.commands.docs import build_docs, serve_docs
+
+    with bad_input_is_one_line():
+        raise typer.Exit(build_docs(build) if build else serve_docs(port))
+
+
+@app.command()
 def bench(
     names: Annotated[list[str], typer.Argument(help=BENCHMARKS, callback=known_benchmarks)],
     data: Annotated[Path | None, typer.Option(envvar="UVF_DATA", help="Folder with data sets.")] = None,

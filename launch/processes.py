@@ -153,4 +153,7 @@ class ConductorLoop:
         if waited and waited != self._complained and wall - self._held_since > PATIENCE:
             self._complained = waited
             names = ", ".join(self._conductor.missing()) or waited
-            self._say(f"time stands at {self._conductor.t_ns / 1e9:.2f} s: waiting for {names}", Event.WARNING)
+            if self._conductor.t_ns == 0:
+                self._say(f"starting: waiting for {names} (the first start compiles, about a minute)", Event.INFO)
+            else:
+                self._say(f"simulation clock held at {self._conductor.t_ns / 1e9:.2f} s: waiting for {names}", Event.WARNING)

@@ -78,7 +78,12 @@ def map_compare(
     a: MapArgument,
     b: Annotated[str | None, typer.Argument(help="Reference map.")] = None,
     world: Annotated[str | None, typer.Option(help="A world in worlds/, whose floor plan is the truth, instead of another map.")] = None,
-    shift: Annotated[tuple[float, float, float], typer.Option(help="Where the first map lies in the other's frame: x y [m] yaw [deg].")] = (
+    shift: Annotated[
+        tuple[float, float, float],
+        typer.Option(
+            help="Pose of the first map in the other's frame: x [m], y [m], yaw [degrees]; three numbers, as --shift 1.5 -0.2 90."
+        ),
+    ] = (
         0.0,
         0.0,
         0.0,

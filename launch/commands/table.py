@@ -1,4 +1,4 @@
-"""Renders the topic table into ``docs/topics.md``: ``python -m launch.commands.table [--check]``."""
+"""Renders the topic table into ``docs/reference/topics.md``: ``python -m launch.commands.table [--check]``."""
 
 import sys
 
@@ -6,7 +6,7 @@ from launch.catalogue import INFRASTRUCTURE, KINDS
 from schemas.topics import PREFIX, REQUESTS, TOPICS
 from uvf.models.scenario import ROOT
 
-PAGE = ROOT / "docs" / "topics.md"
+PAGE = ROOT / "docs" / "reference" / "topics.md"
 
 
 def render() -> str:
@@ -37,7 +37,7 @@ def main() -> None:
     if "--check" not in sys.argv:
         PAGE.write_text(render())
     elif not PAGE.exists() or PAGE.read_text() != render():
-        raise SystemExit("docs/topics.md is not up to date; run python -m launch.commands.table")
+        raise SystemExit("docs/reference/topics.md is not up to date; run python -m launch.commands.table")
 
 
 if __name__ == "__main__":

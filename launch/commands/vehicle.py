@@ -69,7 +69,7 @@ def check(
 @vehicle_app.command()
 def picture(
     names: Annotated[list[str] | None, typer.Argument(help="By default all vehicles.")] = None,
-    into: Annotated[Path | None, typer.Option(help="Folder of the pictures; by default docs/vehicles.")] = None,
+    into: Annotated[Path | None, typer.Option(help="Folder of the pictures; by default docs/images/vehicles.")] = None,
 ) -> None:
     """Draw vehicles from the front, from above and from their side."""
     from launch.vehicles.inspection import folder_of
@@ -77,7 +77,7 @@ def picture(
     from uvf.models.vehicle.file import load_vehicle
 
     with bad_input_is_one_line():
-        target = into or _root() / "docs" / "vehicles"
+        target = into or _root() / "docs" / "images" / "vehicles"
         for name in names or sorted(p.parent.name for p in _vehicles().glob("*/vehicle.yaml")):
             folder = folder_of(name, _vehicles())
             write_picture(folder, load_vehicle(folder.parent, folder.name), target / f"{folder.name}.png")

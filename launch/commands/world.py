@@ -44,7 +44,7 @@ def world_show(name: NameArgument) -> None:
 def world_picture(
     name: NameArgument,
     radius: RadiusOption = BURGER,
-    out: Annotated[Path | None, typer.Option(help="By default docs/worlds/NAME.png.")] = None,
+    out: Annotated[Path | None, typer.Option(help="By default docs/images/worlds/NAME.png.")] = None,
 ) -> None:
     """Draw floor plan and view side by side."""
     from launch.worlds.picture import save_picture
@@ -52,7 +52,7 @@ def world_picture(
     from uvf.models.world.file import load_world
     from uvf.models.world.geometry import floor_plan
 
-    path = out or _worlds().parent / "docs" / "worlds" / f"{name}.png"
+    path = out or _worlds().parent / "docs" / "images" / "worlds" / f"{name}.png"
     with bad_input_is_one_line():
         world = load_world(_worlds(), name)
         plan = floor_plan(world, RESOLUTION)

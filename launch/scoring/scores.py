@@ -130,18 +130,27 @@ class Verdict:
 
 
 def distance_driven(track: RecordedTrack) -> float:
-    """True way over the ground [m]."""
+    """Distance travelled over the ground [m].
+
+    Counts over the whole run, from the true positions.
+    """
     p = track.positions()
     return float(np.linalg.norm(np.diff(p[:, 1:3], axis=0), axis=1).sum()) if len(p) > 1 else 0.0
 
 
 def contacts(track: RecordedTrack) -> float:
-    """How often it began to touch something; infinite when the bumper was never heard."""
+    """Number of times that the vehicle began to touch something [count].
+
+    Counts over the whole run. Infinite when no contact message was received.
+    """
     return float(track.contacts) if track.felt else float("inf")
 
 
 def pose_error(track: RecordedTrack) -> float:
-    """Distance [m] between the last estimated pose and the truth at that time; infinite without a pose."""
+    """Horizontal distance between the estimated and the true position [m].
+
+    Counts at one moment: the last estimated pose of the run. Infinite without a pose.
+    """
     p = track.positions()
     if not track.pose or not len(p):
         return float("inf")
@@ -150,25 +159,38 @@ def pose_error(track: RecordedTrack) -> float:
 
 
 def mapped_floor(track: RecordedTrack) -> float:
-    """Share of the floor reachable from the start that the vehicle's own map knows as free."""
+    """Share of the reachable floor that the vehicle's own map knows as free [0 to 1].
+
+    Counts at the end of the run, in the last map. The floor is what the vehicle can reach from its start. 0 without a map.
+    """
     if track.grid is None:
         return 0.0
     return MappedFloor(track.site.world, track.site.members[track.name]).share(track.grid)
 
 
 def circuits(track: RecordedTrack) -> float:
-    """Rounds of the mission completed."""
+    """Rounds of the mission completed [count].
+
+    Counts over the whole run. A round is complete when a jump leads back to the first item.
+    """
     return float(max((laps for _, _, laps in track.progress), default=0))
 
 
 def legs(track: RecordedTrack) -> float:
-    """Mission items reached, counted in every round."""
+    """Mission items reached [count].
+
+    Counts over the whole run, each round anew.
+    """
     reached = [r for _, r, _ in track.progress]
     return float(sum(1 for a, b in pairwise(reached) if b != a and b >= 0))
 
 
 def path_error(track: RecordedTrack) -> float:
-    """Largest horizontal distance [m] from the nearest leg, from the first item reached on; infinite without one."""
+    """Largest horizontal distance from the nearest leg of the mission [m].
+
+    Counts from the first mission item reached until the end of the run. Legs are straight lines between waypoints, the last to the
+    first included. Infinite with fewer than two waypoints, or when no item was reached.
+    """
     p, corners = _scored(track), _corners(track)
     if not len(p) or len(corners) < 2:
         return float("inf")
@@ -177,7 +199,11 @@ def path_error(track: RecordedTrack) -> float:
 
 
 def altitude_error(track: RecordedTrack) -> float:
-    """Largest deviation [m] from the altitude of the nearest leg, from the first item reached on."""
+    """Largest difference from the altitude of the nearest leg of the mission [m].
+
+    Counts from the first mission item reached until the end of the run. Infinite with fewer than two waypoints, or when no item was
+    reached.
+    """
     p, corners = _scored(track), _corners(track)
     if not len(p) or len(corners) < 2:
         return float("inf")
@@ -189,12 +215,20 @@ def altitude_error(track: RecordedTrack) -> float:
 
 
 def waypoint_error(track: RecordedTrack) -> float:
-    """Largest distance [m] in space by which a waypoint was missed; infinite when one was not reached, or there is none."""
+    """Largest distance in space by which a waypoint was missed [m].
+
+    Counts within 3 s of the moment at which each waypoint was reached for the first time: there the nearest sample is taken. Infinite when
+    a waypoint was not reached, or the mission has none.
+    """
     return max((float(np.linalg.norm(p[0, 1:4] - array(item.position))) for item, p in _passes(track)), default=float("inf"))
 
 
 def course_error(track: RecordedTrack) -> float:
-    """Largest deviation [rad] over ground from the course that a waypoint asks for; infinite as ``waypoint_error``."""
+    """Largest difference between the course over ground and the course that a waypoint asks for [rad].
+
+    Counts at the sample nearest to each waypoint that has a course, within 3 s of the moment at which it was reached. Infinite when one was
+    not reached, or no waypoint has a course.
+    """
     asked = [(item, p) for item, p in _passes(track) if item.HasField("course")]
     flown = [np.arctan2(*(p[1] - p[0])[[2, 1]]) if len(p) > 1 else np.inf for _, p in asked]
     return max((abs(float(wrap(c - item.course))) for (item, _), c in zip(asked, flown, strict=True)), default=float("inf"))
@@ -214,19 +248,30 @@ def _passes(track: RecordedTrack) -> list[tuple[MissionItem, Floats]]:
 
 
 def separation(track: RecordedTrack) -> float:
-    """Least distance [m] from the other aircraft; 0 when nothing was heard of it."""
+    """Smallest distance from any other aircraft [m].
+
+    Counts over the time in which both are heard. 0 when nothing was heard of this one; infinite when it is alone.
+    """
     others = [other.motion() for name, other in track.team.items() if name != track.name and other.flies and other.truth]
     return formation_scores.separation(track.motion(), others) if track.truth else 0.0
 
 
 def spacing_error(track: RecordedTrack) -> float:
-    """RMS [m] along the leader's track, of a follower from its station; infinite for one that follows nobody."""
+    """RMS of the distance from the formation slot along the leader's track [m].
+
+    Counts every 0.1 s from 20 s after the start, in which slots are taken up, until the end of the run. Infinite for an aircraft that
+    follows nobody.
+    """
     errors = _station_errors(track)
     return float(np.sqrt(np.mean(errors[:, 1] ** 2))) if len(errors) else float("inf")
 
 
 def station_error(track: RecordedTrack) -> float:
-    """RMS [m] of the distance of a follower from its station; infinite for one that follows nobody."""
+    """RMS of the distance from the formation slot in space [m].
+
+    Counts every 0.1 s from 20 s after the start, in which slots are taken up, until the end of the run. Infinite for an aircraft that
+    follows nobody.
+    """
     errors = _station_errors(track)
     return float(np.sqrt(np.mean((errors[:, 1:] ** 2).sum(axis=1)))) if len(errors) else float("inf")
 
@@ -267,17 +312,27 @@ def _altitude(p: Floats, a: Floats, b: Floats) -> Floats:
 
 
 def touchdown_sink(track: RecordedTrack) -> float:
-    """Sink [m/s] with which the aircraft has touched the ground for good; infinite unless it stands at the end."""
+    """Sink rate at touchdown [m/s].
+
+    Counts over the last 0.2 s before the wheels touch the ground for good. Infinite unless the aircraft has flown and stands at the end.
+    """
     return touchdown.sink(track.positions())
 
 
 def touchdown_error(track: RecordedTrack) -> float:
-    """Distance [m] along the strip from where its wheels were to touch; infinite without a landing on a strip."""
+    """Distance between the touchdown point and the aiming point, along the runway [m].
+
+    Counts at the moment of touchdown. The aiming point is a quarter of the runway, at most 60 m, behind its threshold. Infinite without
+    a runway or a landing.
+    """
     return touchdown.error(track.positions(), track.site.world.strips)
 
 
 def speed_at_end(track: RecordedTrack) -> float:
-    """True speed [m/s] over the last second."""
+    """Mean speed in space [m/s].
+
+    Counts over the last second of the run.
+    """
     return touchdown.speed_at_end(track.positions())
 
 

@@ -30,6 +30,7 @@ from schemas.messages import (
 from services.planner.jobs import IDLE, Goal, Job, Orders, ReturnPoints, choose, home_of, mission_target, not_now
 from uvf.maths.rotations import wrap
 from uvf.maths.se2 import IDENTITY, Pose2, compose, inverse, transform
+from uvf.models.keys import key
 from uvf.models.params import Params
 from uvf.planning.costmap import RobotFootprint
 from uvf.planning.exploration import Explorer, Patrol
@@ -51,15 +52,17 @@ TRIES = 3  # at a place of the mission or the way home, before the vehicle holds
 
 
 class PlannerParams(Params, frozen=True):
-    margin: Positive = 0.03  # m kept from obstacles beyond the vehicle's radius
-    inflation_radius: Positive = 0.35  # m from obstacles at which a way is no dearer
-    cost_scaling_factor: Annotated[float, Meta(ge=1)] = 6.0  # cost of a way right along an obstacle
-    goal_tolerance: Positive = 0.12  # m
-    look_tolerance: Positive = 0.3  # m, for frontiers, which only have to be seen
-    wait_at_goal: Annotated[float, Meta(ge=0)] = 5.0  # s after a person's goal is reached or cancelled, before the job goes on
-    patience: Positive = 8.0  # s without getting anywhere, before the goal is given up
-    min_frontier_size: Annotated[int, Meta(ge=1)] = 6  # cells
-    frontier_gain: Annotated[float, Meta(ge=0)] = 0.5  # cells of way
+    margin: Annotated[Positive, key("m", "Distance kept from obstacles beyond the vehicle's radius.")] = 0.03
+    inflation_radius: Annotated[Positive, key("m", "Distance from obstacles beyond which a path costs no more.")] = 0.35
+    cost_scaling_factor: Annotated[float, Meta(ge=1), key("", "Cost factor of a path right along an obstacle.")] = 6.0
+    goal_tolerance: Annotated[Positive, key("m", "Distance at which a goal is reached.")] = 0.12
+    look_tolerance: Annotated[Positive, key("m", "Distance at which a frontier is reached; it only has to be seen.")] = 0.3
+    wait_at_goal: Annotated[float, Meta(ge=0), key("s", "Time at an operator's goal, reached or cancelled, before the job continues.")] = (
+        5.0
+    )
+    patience: Annotated[Positive, key("s", "Time without progress before the goal is given up.")] = 8.0
+    min_frontier_size: Annotated[int, Meta(ge=1), key("cells", "Smallest frontier that is explored.")] = 6
+    frontier_gain: Annotated[float, Meta(ge=0), key("cells", "Path length that a cell of frontier is worth.")] = 0.5
 
 
 class PlannerService(Service):

@@ -10,6 +10,7 @@ from schemas import topics
 from schemas.messages import DriveCommand, Event, LaserScan, PoseInFrame, PosesInFrame
 from uvf.maths.se2 import IDENTITY, Pose2, PoseHistory, inverse, transform
 from uvf.maths.se3 import Transform, from_above
+from uvf.models.keys import key
 from uvf.models.params import Params
 from uvf.models.vehicle.file import GroundBody
 from uvf.planning.collision_check import safe_share
@@ -30,13 +31,13 @@ EVENTS_EVERY = 10.0  # s between two events about what is ahead
 
 
 class TrackerParams(Params, frozen=True):
-    speed: Positive = 0.45  # m/s on straight ways
-    turn_speed: Positive = 1.5  # rad/s
-    deceleration: Positive = 0.5  # m/s^2 that braking is planned with
-    goal_tolerance: Positive = 0.06  # m
-    margin: Positive = 0.02  # m kept beyond the vehicle's radius
-    patience: Positive = 1.5  # s blocked before backing off
-    back_off: Positive = 0.1  # m/s backwards, out of a place that is blocked
+    speed: Annotated[Positive, key("m/s", "Speed on straight parts of the path.")] = 0.45
+    turn_speed: Annotated[Positive, key("rad/s", "Turn rate on the spot.")] = 1.5
+    deceleration: Annotated[Positive, key("m/s^2", "Deceleration that braking is planned with.")] = 0.5
+    goal_tolerance: Annotated[Positive, key("m", "Distance at which the goal is reached.")] = 0.06
+    margin: Annotated[Positive, key("m", "Distance kept from obstacles beyond the vehicle's radius.")] = 0.02
+    patience: Annotated[Positive, key("s", "Time blocked before the vehicle backs off.")] = 1.5
+    back_off: Annotated[Positive, key("m/s", "Speed of backing off.")] = 0.1
 
 
 class TrackerService(Service):

@@ -13,6 +13,7 @@ from schemas.messages import Event, FrameTransform, Grid, LaserScan, MapFix, Map
 from services.slam.placing_service import PlacingService, fix_message
 from uvf.maths.se2 import IDENTITY, Pose2, compose, inverse
 from uvf.maths.se3 import planar
+from uvf.models.keys import key, plain
 from uvf.models.vehicle.sensors import Lidar
 from uvf.models.yaml_data import BadInput
 from uvf.runtime.contract.declaration import Reads, Writes, frames, topic
@@ -32,10 +33,10 @@ LEAP, LEAP_TURN = 0.3, 0.1  # m, rad: a correction that moves the vehicle by mor
 
 
 class MappingParams(PlacingParams, frozen=True):
-    method: str = "graph"
-    resolution: Annotated[float, Meta(ge=0.02, le=0.2)] = 0.05  # m
-    map_period: Positive = 1.0  # s between publications of the map
-    session_period: Positive = 10.0  # s between publications of the session
+    method: Annotated[str, plain("SLAM method: `graph`, `rbpf`, `hector` or `odometry`.")] = "graph"
+    resolution: Annotated[float, Meta(ge=0.02, le=0.2), key("m", "Cell size of the published map.")] = 0.05
+    map_period: Annotated[Positive, key("s", "Time between publications of the map.")] = 1.0
+    session_period: Annotated[Positive, key("s", "Time between publications of the session.")] = 10.0
 
 
 class MappingService(PlacingService):

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from uvf.guidance.clothoid_dubins import eased, turned_onto, turned_onto_circle
-from uvf.maths.curves import dubins
+from uvf.guidance.clothoid_dubins import smooth_dubins_path, turned_onto, turned_onto_circle
+from uvf.maths.curves import dubins_path
 
 RADIUS, RAMP = 60.0, 30.0
 START = (10.0, -20.0, 0.3)
@@ -18,7 +18,7 @@ ends = st.tuples(st.floats(-400.0, 400.0), st.floats(-400.0, 400.0), st.floats(-
 @settings(max_examples=100, deadline=None)
 @given(end=ends)
 def test_it_leads_from_start_to_end_with_bounded_curvature_and_change_of_it(end):
-    way = eased(START, end, RADIUS, RAMP)
+    way = smooth_dubins_path(START, end, RADIUS, RAMP)
     assert way.points[0] == pytest.approx(START[:2])
     assert way.points[-1] == pytest.approx(end[:2], abs=1e-5)
     assert math.remainder(way.course[-1] - end[2], math.tau) == pytest.approx(0.0, abs=1e-6)
@@ -31,7 +31,7 @@ def test_it_leads_from_start_to_end_with_bounded_curvature_and_change_of_it(end)
 @settings(max_examples=60, deadline=None)
 @given(end=ends)
 def test_course_and_curvature_are_those_of_the_points(end):
-    way = eased(START, end, RADIUS, RAMP)
+    way = smooth_dubins_path(START, end, RADIUS, RAMP)
     chords = np.arctan2(*np.diff(way.points, axis=0).T[::-1])
     middle = (way.course[1:] + way.course[:-1]) / 2
     assert np.abs(np.remainder(chords - middle + math.pi, math.tau) - math.pi).max() < 2e-3
@@ -40,17 +40,17 @@ def test_course_and_curvature_are_those_of_the_points(end):
 
 def test_with_a_short_ramp_it_is_the_plain_path():
     end = (200.0, 150.0, -1.0)
-    assert eased(START, end, RADIUS, 0.5).length == pytest.approx(dubins(START, end, RADIUS).length, abs=1.0)
+    assert smooth_dubins_path(START, end, RADIUS, 0.5).length == pytest.approx(dubins_path(START, end, RADIUS).length, abs=1.0)
 
 
 def test_straight_ahead_is_straight():
-    way = eased((0.0, 0.0, 0.0), (300.0, 0.0, 0.0), RADIUS, RAMP)
+    way = smooth_dubins_path((0.0, 0.0, 0.0), (300.0, 0.0, 0.0), RADIUS, RAMP)
     assert way.length == pytest.approx(300.0)
     assert np.abs(way.points[:, 1]).max() < 1e-6
 
 
 def test_where_a_way_crosses_itself_the_branch_is_that_of_the_length_told():
-    way = eased((0.0, 0.0, 0.0), (1.0, 1.0, math.pi / 2), RADIUS, RAMP)
+    way = smooth_dubins_path((0.0, 0.0, 0.0), (1.0, 1.0, math.pi / 2), RADIUS, RAMP)
     early, late = way.nearest((0.0, 0.0), (0.0, 50.0))[0], way.nearest((0.0, 0.0), (way.length - 50.0, way.length))[0]
     assert early == pytest.approx(0.0, abs=1.0)
     assert late > way.length - 5.0

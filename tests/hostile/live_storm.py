@@ -38,7 +38,7 @@ WAITING_MOST = 200
 """Requests without an answer, of which there may be so many before the next ones are sent."""
 AHEAD = 60_000_000_000  # ns
 BELIEVED = (topics.CLOCK, topics.DONE, topics.STOP, topics.STOP_STATE, topics.GUEST)
-"""Of which a sound message is believed, whoever sends it: docs/security.md. What is broken is refused there too."""
+"""Of which a sound message is believed, whoever sends it: docs/explanation/security.md. What is broken is refused there too."""
 TYPE_MOST = 200  # characters; of longer ones Zenoh's own client panics before it sends them
 
 

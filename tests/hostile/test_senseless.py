@@ -16,7 +16,7 @@ SECONDS = float(os.environ.get("UVF_HOSTILE_SECONDS", "6"))
 A_TICK = 4  # messages to each instance
 TO_A_SIMULATOR = 0.1  # of the ticks: it steps more often than the others together
 LARGEST = 1e11
-TIMES = (topics.CLOCK, topics.DONE)  # who forges these stops or turns back time, and is told so: docs/security.md
+TIMES = (topics.CLOCK, topics.DONE)  # who forges these stops or turns back time, and is told so: docs/explanation/security.md
 
 
 class Beset:

@@ -1,4 +1,4 @@
-"""THE TABLE of the failsafes of a ground vehicle; docs/failsafes.md shows it."""
+"""THE TABLE of the failsafes of a ground vehicle; docs/reference/failsafes.md shows it."""
 
 from dataclasses import dataclass, field
 

@@ -70,7 +70,8 @@ def alerts(model: Model, t: float) -> list[Alert]:
     own: list[Alert] = []
     guests: list[Alert] = []
     if model.clock is not None and model.clock.waiting_for:
-        own.append(Alert("warn", f"⚠ time stands: waits for {model.clock.waiting_for}"))
+        held = "⚠ simulation clock held" if model.clock.t_ns else "starting (the first start compiles, about a minute)"
+        own.append(Alert("warn", f"{held}: waiting for {model.clock.waiting_for}"))
     for v in model.vehicles.values():
         (guests if model.is_guest(v.name) else own).extend(_of_vehicle(model, v, t))
     stop = [Alert("bad", f"■ STOP ALL ENGAGED {_by_whom(model)}".rstrip())] if model.stopped else []

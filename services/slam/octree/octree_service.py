@@ -15,6 +15,7 @@ from schemas.messages import CameraCalibration, CompressedImage, Event, Grid, La
 from services.slam.octree.beams import RayBundle, depth_beams, sweep_beams
 from services.slam.octree.octree_messages import FRAME, heights_message, octree_from, octree_message, slice_message
 from uvf.maths.se3 import apply
+from uvf.models.keys import key
 from uvf.models.params import Params
 from uvf.models.vehicle.sensors import Sensors
 from uvf.models.yaml_data import BadInput
@@ -42,12 +43,12 @@ NAME = re.compile(r"[A-Za-z0-9_-]{1,64}")
 
 
 class OctreeParams(Params, frozen=True):
-    resolution: Annotated[float, Meta(ge=0.01, le=10)] = 0.1  # m, side of a cell
-    depth_reach: Positive = 5.0  # m, what a depth camera sees farther away is not put in, only free space as far as there
-    lidar_reach: Positive = 30.0  # m, the same of a lidar
-    map_period: Positive = 5.0  # s between publications
-    slice_low: Height = 0.05  # m in the world, of the slice published as an occupancy grid
-    slice_high: Height = 0.5  # m
+    resolution: Annotated[float, Meta(ge=0.01, le=10), key("m", "Side of a cell.")] = 0.1
+    depth_reach: Annotated[Positive, key("m", "What a depth camera sees farther away counts as free space up to here.")] = 5.0
+    lidar_reach: Annotated[Positive, key("m", "What a lidar sees farther away counts as free space up to here.")] = 30.0
+    map_period: Annotated[Positive, key("s", "Time between publications.")] = 5.0
+    slice_low: Annotated[Height, key("m", "Lower height of the slice that is published as an occupancy grid.")] = 0.05
+    slice_high: Annotated[Height, key("m", "Upper height of that slice.")] = 0.5
 
 
 class Taken(NamedTuple):

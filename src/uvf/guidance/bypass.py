@@ -13,10 +13,10 @@ from math import atan2, cos, pi, sin
 import numpy as np
 from numpy.typing import NDArray
 
-from uvf.guidance.clothoid_dubins import SampledPath, eased
+from uvf.guidance.clothoid_dubins import SampledPath, smooth_dubins_path
 from uvf.guidance.corners import CornerLimits
 from uvf.guidance.vector_field import Point
-from uvf.maths.curves import Triple, dubins
+from uvf.maths.curves import Triple, dubins_path
 
 Floats = NDArray[np.float64]
 
@@ -52,13 +52,13 @@ def plan(places: Sequence[Point], acceptances: Sequence[float], room: Point, fly
     for before, after in itertools.product((f * radius for f in BEFORE), (f * radius for f in AFTER)):
         if before > room[0] or after > room[1]:
             continue
-        path = dubins(_on(corners[1], enters, ramp / 2 - before), _on(corners[-2], leaves, after - ramp / 2), radius)
+        path = dubins_path(_on(corners[1], enters, ramp / 2 - before), _on(corners[-2], leaves, after - ramp / 2), radius)
         points = path.at(np.linspace(0, path.length, SAMPLES))[:, :2]
         cost = _straying(points, wanted, corners, np.array(acceptances)) + LENGTH * (path.length - before - after)
         if best is None or cost < best[0]:
             best = cost, before, after
     _, before, after = best if best is not None else (0.0, 0.0, 0.0)
-    way = eased(_on(corners[1], enters, -before), _on(corners[-2], leaves, after), radius, ramp)
+    way = smooth_dubins_path(_on(corners[1], enters, -before), _on(corners[-2], leaves, after), radius, ramp)
     return Bypass(way, _passing(way, corners[1:-1]), before, after)
 
 

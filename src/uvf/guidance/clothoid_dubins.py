@@ -63,7 +63,7 @@ class SampledPath:
         return float(np.interp(s, self.s, self.curvature, left=0.0, right=0.0))
 
 
-def eased(start: Triple, end: Triple, radius: float, ramp: float) -> SampledPath:
+def smooth_dubins_path(start: Triple, end: Triple, radius: float, ramp: float) -> SampledPath:
     """The shortest word from ``start`` to ``end`` with ramps of ``ramp`` [m] from one curvature to the next.
 
     Where no word can be corrected (none has been seen), the plain path. Raises ValueError for a radius that is not positive.

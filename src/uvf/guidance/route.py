@@ -8,7 +8,7 @@ import numpy as np
 from uvf.estimation.state import Estimate
 from uvf.guidance.clothoid_dubins import SampledPath
 from uvf.guidance.corners import Corner
-from uvf.guidance.vector_field import PathReference, Point, line_aim, orbit_aim
+from uvf.guidance.vector_field import PathReference, Point, line_reference, orbit_reference
 from uvf.models.vehicle.flight_params import AirParams
 
 CAPTURED = 0.3  # of the radius, from the circle: near enough to count turns
@@ -76,7 +76,7 @@ class Leg:
 
     def aim(self, now: Estimate, params: AirParams) -> PathReference:
         position = (now.north, now.east)
-        aim = line_aim(self.along, self.start.point, position, params)
+        aim = line_reference(self.along, self.start.point, position, params)
         return replace(aim, curvature=self.bend(self.progress(position) + now.ground_speed * params.lead_time))
 
     def level(self, now: Estimate) -> AltitudeProfile:
@@ -207,7 +207,7 @@ class Circle:
         return cls(centre, radius)
 
     def aim(self, now: Estimate, params: AirParams) -> PathReference:
-        return orbit_aim(self.centre.point, self.radius, (now.north, now.east), params)
+        return orbit_reference(self.centre.point, self.radius, (now.north, now.east), params)
 
     def level(self, now: Estimate) -> AltitudeProfile:
         return AltitudeProfile(self.centre.height)

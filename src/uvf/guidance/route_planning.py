@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 from uvf.guidance import bypass, corners
 from uvf.guidance.approach import orbit_radius
-from uvf.guidance.clothoid_dubins import eased, turned_onto, turned_onto_circle
+from uvf.guidance.clothoid_dubins import smooth_dubins_path, turned_onto, turned_onto_circle
 from uvf.guidance.flight_plan import OFF_PATH, NextItem, PlanItem, following
 from uvf.guidance.route import Circle, Curve, Leg, Place
 from uvf.guidance.vector_field import Point
@@ -92,7 +92,7 @@ class RoutePlanner:
     def _between(self, start: Place, course: float, item: PlanItem) -> Curve:
         """The Dubins path to an item with a course."""
         assert item.course is not None
-        way = eased((*start.point, course), (*item.place.point, item.course), self.flying.radius, self.flying.ramp)
+        way = smooth_dubins_path((*start.point, course), (*item.place.point, item.course), self.flying.radius, self.flying.ramp)
         return Curve(way, (way.length,), (start.height, item.place.height, item.place.height))
 
     def _joining(self, start: Place, course: float, stop: NextItem) -> Curve | None:

@@ -40,13 +40,13 @@ def from_line(along: Point, origin: Point, position: Point) -> tuple[float, floa
     return along[0] * north + along[1] * east, along[0] * east - along[1] * north
 
 
-def line_aim(along: Point, origin: Point, position: Point, params: AirParams) -> PathReference:
+def line_reference(along: Point, origin: Point, position: Point, params: AirParams) -> PathReference:
     """The line through ``origin`` in the direction ``along`` (unit, north and east)."""
     _, right = from_line(along, origin, position)
     return PathReference(right, math.atan2(along[1], along[0]), 0.0, params.k_path, params.chi_inf)
 
 
-def orbit_aim(centre: Point, radius: float, position: Point, params: AirParams) -> PathReference:
+def orbit_reference(centre: Point, radius: float, position: Point, params: AirParams) -> PathReference:
     """The circle about ``centre``; ``radius`` [m] positive clockwise seen from above (10.13)."""
     turn = math.copysign(1.0, radius)
     north, east = position[0] - centre[0], position[1] - centre[1]

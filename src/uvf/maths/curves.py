@@ -100,7 +100,7 @@ def _nearest(start: Triple, radius: float, length: float, point: tuple[float, fl
     return turned * size, abs(hypot(ahead, side * aside - size) - size)
 
 
-def dubins(start: Triple, end: Triple, radius: float) -> DubinsPath:
+def dubins_path(start: Triple, end: Triple, radius: float) -> DubinsPath:
     """The shortest path."""
     return min(dubins_paths(start, end, radius), key=lambda path: path.length)
 

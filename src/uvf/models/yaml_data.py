@@ -152,8 +152,9 @@ def _check(data: Any, hint: Any, place: FileLocation) -> None:
         _check(value, inner, place.at(key))
     if isinstance(data, float) and not math.isfinite(data):
         raise BadInput(f"{place}: {data} is no number to work with")
-    if isinstance(data, str) and get_origin(hint) is Literal and data not in get_args(hint):
-        raise BadInput(f"{place}: no '{data}' here; {nearest(data, map(str, get_args(hint)))}")
+    bare = get_args(hint)[0] if get_origin(hint) is Annotated else hint
+    if isinstance(data, str) and get_origin(bare) is Literal and data not in get_args(bare):
+        raise BadInput(f"{place}: no '{data}' here; {nearest(data, map(str, get_args(bare)))}")
     try:
         msgspec.convert(data, hint)
     except msgspec.ValidationError as error:

@@ -12,7 +12,7 @@ from uvf.sensors.errors import Errors
 Floats = NDArray[np.float64]
 
 
-def overlapping(samples: ArrayLike, hz: float, factors: ArrayLike) -> tuple[Floats, Floats]:
+def allan_deviation(samples: ArrayLike, hz: float, factors: ArrayLike) -> tuple[Floats, Floats]:
     """(k,) averaging times [s] and (k,) deviations [unit of the samples].
 
     samples: (n,) at ``hz``; factors: (k,) interval lengths in samples, each at most n / 2. Raises ValueError.

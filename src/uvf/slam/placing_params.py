@@ -4,11 +4,12 @@ from typing import Annotated
 
 from msgspec import Meta
 
+from uvf.models.keys import key
 from uvf.models.params import Params
 
 Positive = Annotated[float, Meta(gt=0)]
 
 
 class PlacingParams(Params, frozen=True):
-    correction_speed: Positive = 0.1  # m/s, how fast the published correction follows the matched one
-    correction_turn: Positive = 0.1  # rad/s
+    correction_speed: Annotated[Positive, key("m/s", "Largest speed at which the published correction follows the matched one.")] = 0.1
+    correction_turn: Annotated[Positive, key("rad/s", "Largest rate at which the published correction follows the matched one.")] = 0.1

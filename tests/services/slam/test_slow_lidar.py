@@ -103,7 +103,7 @@ def test_a_sweep_that_began_before_the_first_frames_is_left_out_and_the_next_one
 
 
 def test_de_skewing_makes_the_map_and_the_pose_better():
-    """Figures of docs/slam.md are of a longer run."""
+    """Figures of docs/explanation/slam.md are of a longer run."""
     found = {way.removeprefix("fast, "): figures for way, figures in errors("fast", duration=10.0).items()}
     straight, live = found["de-skewed"], found["live"]
     for name in ("at the middle", "at the stamp"):

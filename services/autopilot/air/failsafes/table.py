@@ -1,4 +1,4 @@
-"""THE TABLE of the failsafes of an aircraft: causes, conditions, actions, words. docs/failsafes.md shows it."""
+"""THE TABLE of the failsafes of an aircraft: causes, conditions, actions, words. docs/reference/failsafes.md shows it."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -17,7 +17,7 @@ from uvf.estimation.wheel_height import WheelHeight
 from uvf.guidance.approach import Approach
 from uvf.guidance.route import Circle, Place
 from uvf.guidance.runways import Runway
-from uvf.guidance.vector_field import line_aim
+from uvf.guidance.vector_field import line_reference
 from uvf.maths.geodesy import GRAVITY
 from uvf.models.vehicle.flight_params import AirParams
 
@@ -166,7 +166,7 @@ class LandingMode(FlightPhase):
     def _down(self, now: Estimate, params: AirParams, climb: float, airspeed: float) -> PathSetpoint:
         """Along the lane; near the ground wings about level, then the nose along the strip and the throttle closing."""
         height = self._wheels.height
-        aim = line_aim(self.lane.along, self.lane.before(0.0), (now.north, now.east), params)
+        aim = line_reference(self.lane.along, self.lane.before(0.0), (now.north, now.east), params)
         rudder = self._decrab(now) if height < DECRAB_BELOW else None
         throttle = touch_throttle(now, params, climb, airspeed, height) if height < IDLES_BELOW else None
         return PathSetpoint(aim, None, climb, airspeed, LOW_BANK if height < LOW else None, throttle, rudder)
@@ -219,7 +219,7 @@ class LandingMode(FlightPhase):
         if now.height > circle - ON_CIRCLE:
             self._circle = self._new_circle(now, params)
             self._to(LandingStage.CIRCLE)
-        aim = line_aim(self.lane.along, self.lane.before(0.0), (now.north, now.east), params)
+        aim = line_reference(self.lane.along, self.lane.before(0.0), (now.north, now.east), params)
         low = now.height < self.lane.aim.height + LOW
         return Setpoint(
             PathSetpoint(aim, None, climb_at(now, params), params.trim_airspeed, bank_limit=LOW_BANK if low else None, throttle=1.0)

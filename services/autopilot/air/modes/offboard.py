@@ -9,7 +9,7 @@ from services.autopilot.multiplexing import OFFBOARD, Multiplexer
 from uvf.control.commands import AttitudeSetpoint
 from uvf.control.cycle import clip
 from uvf.estimation.state import Estimate
-from uvf.guidance.vector_field import PathReference, line_aim, orbit_aim
+from uvf.guidance.vector_field import PathReference, line_reference, orbit_reference
 from uvf.models.vehicle.flight_params import AirParams
 from uvf.runtime.messages.convert import seconds
 
@@ -79,7 +79,7 @@ def _line(message: FlightSetpoint, now: Estimate, params: AirParams) -> Setpoint
     origin, d = line.origin, line.direction
     level = math.hypot(d.x, d.y)
     along = (d.y / level, d.x / level)
-    aim = line_aim(along, (origin.y, origin.x), (now.north, now.east), params)
+    aim = line_reference(along, (origin.y, origin.x), (now.north, now.east), params)
     flown = (now.north - origin.y) * along[0] + (now.east - origin.x) * along[1]
     slope = d.z / level
     return Setpoint(PathSetpoint(aim, origin.z + slope * flown, slope * now.ground_speed, line.airspeed or params.trim_airspeed))
@@ -87,5 +87,5 @@ def _line(message: FlightSetpoint, now: Estimate, params: AirParams) -> Setpoint
 
 def _circle(message: FlightSetpoint, now: Estimate, params: AirParams) -> Setpoint:
     circle = message.circle
-    aim = orbit_aim((circle.centre.y, circle.centre.x), circle.radius, (now.north, now.east), params)
+    aim = orbit_reference((circle.centre.y, circle.centre.x), circle.radius, (now.north, now.east), params)
     return Setpoint(PathSetpoint(aim, circle.centre.z, 0.0, circle.airspeed or params.trim_airspeed))

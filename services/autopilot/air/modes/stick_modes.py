@@ -9,7 +9,7 @@ from services.autopilot.air.setpoints import FlightContext, FlightPhase, PathSet
 from uvf.control.commands import AltitudeAirspeedSetpoint, AttitudeSetpoint, Surfaces
 from uvf.control.cycle import Cycle
 from uvf.estimation.state import Estimate
-from uvf.guidance.vector_field import Point, line_aim
+from uvf.guidance.vector_field import Point, line_reference
 from uvf.models.vehicle.flight_params import AirParams
 
 CENTRED = 0.05  # of a stick's way
@@ -92,7 +92,7 @@ class PositionMode(AltitudeMode):
         if self._line is None:
             return super().step(now, params, dt)
         height, climb = self._vertical(now, params)
-        aim = line_aim(*self._line, (now.north, now.east), params)
+        aim = line_reference(*self._line, (now.north, now.east), params)
         return Setpoint(PathSetpoint(aim, height, climb, self._airspeed(params)), self._surfaces.flap)
 
 

@@ -8,7 +8,7 @@ from uvf.control.commands import AttitudeSetpoint, Surfaces
 from uvf.control.ground_roll import Gyros, held, rolling, rudder_along
 from uvf.control.total_energy import climb_at
 from uvf.estimation.state import Estimate
-from uvf.guidance.vector_field import Point, from_line, line_aim
+from uvf.guidance.vector_field import Point, from_line, line_reference
 from uvf.models.vehicle.flight_params import AirParams
 
 ROTATION = 0.9  # of min_airspeed
@@ -111,7 +111,7 @@ class TakeoffMode(FlightPhase):
         if self._rise(now) < STRAIGHT or now.airspeed < ROTATION * params.min_airspeed:
             spare = (now.airspeed - params.min_airspeed) / params.min_airspeed
             return Setpoint(held(now, level, AttitudeSetpoint(0.0, params.takeoff_pitch * min(max(0.75 + 2.5 * spare, 0.3), 1.0), 1.0)))
-        aim = line_aim(self._along, self._origin, (now.north, now.east), params)
+        aim = line_reference(self._along, self._origin, (now.north, now.east), params)
         return Setpoint(PathSetpoint(aim, None, climb_at(now, params), params.trim_airspeed, bank_limit=BANKED, throttle=1.0))
 
     @property

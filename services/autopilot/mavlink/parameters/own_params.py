@@ -1,11 +1,10 @@
 """The autopilot's own parameters as its type describes them: limits, units, choices, words."""
 
-from collections.abc import Mapping, Set
+from collections.abc import Set
 from dataclasses import dataclass
 from typing import Annotated, Any, Literal, get_args, get_origin, get_type_hints
 
-from msgspec import Meta
-
+from uvf.models.keys import meta_of, unit_of
 from uvf.models.params import Params
 from uvf.models.vehicle.failsafe_params import FailsafeParams
 
@@ -33,14 +32,13 @@ def own_params(params: Params, fixed: Set[str]) -> dict[str, Own]:
 
 
 def _described(name: str, hint: Any, fixed: str) -> Own:
-    meta: Meta = get_args(hint)[1] if get_origin(hint) is Annotated else Meta()
+    meta = meta_of(hint)
     kind = get_args(hint)[0] if get_origin(hint) is Annotated else hint
     about, group = meta.description or "", _group(name)
     if get_origin(kind) is Literal:
         return Own(name, about, group, choices=get_args(kind), fixed=fixed)
     if kind is float and meta.ge is not None and meta.le is not None:
-        extra: Mapping[str, str] = meta.extra_json_schema or {}
-        return Own(name, about, group, extra.get("unit", ""), float(meta.ge), float(meta.le), fixed=fixed)
+        return Own(name, about, group, unit_of(meta) or "", float(meta.ge), float(meta.le), fixed=fixed)
     raise TypeError(f"{name}: {hint} cannot be offered over MAVLink")
 
 

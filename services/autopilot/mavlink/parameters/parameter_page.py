@@ -1,4 +1,4 @@
-"""Renders the parameters into ``docs/parameters.md``: ``python -m services.autopilot.mavlink.parameters.parameter_page [--check]``."""
+"""Renders ``docs/reference/mavlink-parameters.md``: ``python -m services.autopilot.mavlink.parameters.parameter_page [--check]``."""
 
 import sys
 from collections.abc import Mapping
@@ -10,7 +10,7 @@ from uvf.models.scenario import ROOT
 from uvf.models.vehicle.flight_params import FIXED, AirParams
 from uvf.models.yaml_data import load_yaml
 
-PAGE = ROOT / "docs" / "parameters.md"
+PAGE = ROOT / "docs" / "reference" / "mavlink-parameters.md"
 COMMAND = "python -m services.autopilot.mavlink.parameters.parameter_page"
 KINDS: Mapping[Kind, tuple[str, Mapping[str, Own]]] = {
     "fixed_wing": ("aircraft", own_params(AirParams(), FIXED)),
@@ -75,7 +75,7 @@ def main() -> None:
     if "--check" not in sys.argv:
         PAGE.write_text(render())
     elif not PAGE.exists() or PAGE.read_text() != render():
-        raise SystemExit(f"docs/parameters.md is not up to date; run {COMMAND}")
+        raise SystemExit(f"docs/reference/mavlink-parameters.md is not up to date; run {COMMAND}")
 
 
 if __name__ == "__main__":

@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 import msgspec
 from msgspec import Meta
 
+from uvf.models.keys import key, plain
 from uvf.models.yaml_data import BadInput, FileLocation
 
 Part = Literal[
@@ -20,12 +21,25 @@ Moment = Annotated[float, Meta(ge=0, le=1e6)]
 class Fault(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """lost: nothing comes, or where the part shares its message, zero. frozen: as it was at ``at``. bias: off by ``size``."""
 
-    vehicle: str
-    part: Part
-    kind: Literal["lost", "frozen", "bias"]
-    at: Moment  # s
-    until: Moment | None = None  # s; None = for good
-    size: Size = 0.0  # of a bias: gnss m north, imu rad/s of roll, compass T ahead, pressures Pa, battery 0..1, surfaces rad, throttle 0..1
+    vehicle: Annotated[str, plain("Vehicle that has the fault.")]
+    part: Annotated[Part, plain("Sensor or servo that fails.")]
+    kind: Annotated[
+        Literal["lost", "frozen", "bias"],
+        plain(
+            "`lost`: no reading comes, or zero where the part shares its message. `frozen`: the reading of the time "
+            "`at`. `bias`: off by `size`."
+        ),
+    ]
+    at: Annotated[Moment, key("s", "Simulation time at which the fault begins.")]
+    until: Annotated[Moment | None, key("s", "Simulation time at which it ends; left out: never.")] = None
+    size: Annotated[
+        Size,
+        key(
+            "unit of the part",
+            "Offset of a `bias`: gnss m to the north, imu rad/s of roll rate, compass T ahead, pressures Pa, battery 0 "
+            "to 1, surfaces rad, throttle 0 to 1.",
+        ),
+    ] = 0.0
 
     def holds(self, t: float) -> bool:
         return self.at <= t and (self.until is None or t < self.until)

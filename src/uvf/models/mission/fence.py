@@ -10,6 +10,7 @@ import msgspec
 from msgspec import Meta
 
 from uvf.maths.zones import Area, Disc, Overlap, Point, Polygon, Region
+from uvf.models.keys import key, plain
 from uvf.models.yaml_data import BadInput
 
 Metres = Annotated[float, Meta(ge=-1e6, le=1e6)]
@@ -32,18 +33,22 @@ ACTIONS = {"return": FenceAction.RETURN, "hold": FenceAction.HOLD, "warn": Fence
 class ZoneFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """A polygon (corners x, y) or a circle (x, y, radius), m, world; ``exclude``: keep out of it, instead of within."""
 
-    polygon: list[tuple[Metres, Metres]] | None = None
-    circle: tuple[Metres, Metres, Annotated[float, Meta(gt=0, le=1e6)]] | None = None
-    exclude: bool = False
+    polygon: Annotated[list[tuple[Metres, Metres]] | None, plain("Corners [x, y] in metres, world frame.")] = None
+    circle: Annotated[
+        tuple[Metres, Metres, Annotated[float, Meta(gt=0, le=1e6)]] | None, plain("Centre x, y and radius in metres, world frame.")
+    ] = None
+    exclude: Annotated[bool, plain("Keep out of the zone instead of within it.")] = False
 
 
 class FenceFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Where a vehicle may be: within one of the zones that do not exclude, outside of all that do, between floor and ceiling."""
 
-    zones: list[ZoneFile] = []
-    floor: Metres | None = None  # m, world z, of an aircraft in flight
-    ceiling: Metres | None = None  # m, world z
-    action: Literal["return", "hold", "warn", "land"] = "return"
+    zones: Annotated[
+        list[ZoneFile], plain("Up to 32 zones. The vehicle stays within one of those that do not exclude, and outside of all that do.")
+    ] = []
+    floor: Annotated[Metres | None, key("m", "Lowest height above the world's origin, of an aircraft in flight.")] = None
+    ceiling: Annotated[Metres | None, key("m", "Largest height above the world's origin, of an aircraft.")] = None
+    action: Annotated[Literal["return", "hold", "warn", "land"], plain("What the vehicle does at the fence.")] = "return"
 
 
 class Zone(NamedTuple):

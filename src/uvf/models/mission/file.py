@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 import msgspec
 from msgspec import Meta
 
+from uvf.models.keys import key, plain
 from uvf.models.mission.faults import Fault, check_faults
 from uvf.models.mission.fence import FenceFile, zones_of
 from uvf.models.mission.formation import Follow, check_follow
@@ -22,44 +23,66 @@ FolderName = Annotated[str, Meta(pattern=rf"^{FOLDER}\Z", max_length=80)]
 class StartPose(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Where and how fast a vehicle begins, world frame (ENU)."""
 
-    x: Metres
-    y: Metres
-    z: Metres = 0.0
-    yaw: Annotated[float, Meta(ge=-7, le=7)] = 0.0  # rad, from east, left positive
-    speed: NotNegative = 0.0  # m/s; of an aircraft through the air, 0 = its trim_speed
-    climb: Annotated[float, Meta(ge=-1.5, le=1.5)] = 0.0  # rad, of an aircraft, up from the horizon
-    turn_rate: Annotated[float, Meta(ge=-3, le=3)] = 0.0  # rad/s, of an aircraft, to the left
-    on_ground: bool = False  # an aircraft stands on its wheels, as one with z = 0 does
+    x: Annotated[Metres, key("m", "East of the world's origin.")]
+    y: Annotated[Metres, key("m", "North of the world's origin.")]
+    z: Annotated[
+        Metres, key("m", "Height above the ground at that place. An aircraft with z = 0 stands on its wheels; a ground vehicle needs none.")
+    ] = 0.0
+    yaw: Annotated[float, Meta(ge=-7, le=7), key("rad", "Heading, counter-clockwise from east.")] = 0.0
+    speed: Annotated[NotNegative, key("m/s", "Airspeed of an aircraft at the start; 0 means the `trim_speed` of its file.")] = 0.0
+    climb: Annotated[float, Meta(ge=-1.5, le=1.5), key("rad", "Climb angle of an aircraft at the start, up from the horizon.")] = 0.0
+    turn_rate: Annotated[float, Meta(ge=-3, le=3), key("rad/s", "Turn rate of an aircraft at the start, positive to the left.")] = 0.0
+    on_ground: Annotated[bool, plain("The aircraft starts on its wheels, as one with z = 0 does.")] = False
 
 
 class Waypoint(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """One mission item as people write it; field meanings as in ``uvf.v1.MissionItem``."""
 
-    x: Metres = 0.0
-    y: Metres = 0.0
-    z: Metres = 0.0
-    kind: Literal[
-        "waypoint", "orbit", "return", "jump", "speed", "trigger", "trigger_distance", "takeoff", "land", "land_start", "set_home"
+    x: Annotated[Metres, key("m", "East of the world's origin.")] = 0.0
+    y: Annotated[Metres, key("m", "North of the world's origin.")] = 0.0
+    z: Annotated[Metres, key("m", "Height above the world's origin; of `takeoff`, the height to climb to. Ground vehicles ignore it.")] = (
+        0.0
+    )
+    kind: Annotated[
+        Literal["waypoint", "orbit", "return", "jump", "speed", "trigger", "trigger_distance", "takeoff", "land", "land_start", "set_home"],
+        plain("What the item does; see [mission items](modes.md#mission-items)."),
     ] = "waypoint"
-    acceptance_radius: NotNegative = 0.0  # m
-    hold: NotNegative = 0.0  # s
-    radius: Metres = 0.0
-    turns: NotNegative = 0.0
-    speed: NotNegative = 0.0  # m/s
-    jump_to: Annotated[int, Meta(ge=0, le=65535)] = 0
-    repeat: Annotated[int, Meta(ge=-1, le=65535)] = 0  # -1 = for ever
-    course: Annotated[float, Meta(ge=-7, le=7)] | None = None  # rad, over ground, from east, left positive
-    to_altitude: bool = False
-    distance: NotNegative = 0.0  # m
+    acceptance_radius: Annotated[
+        NotNegative,
+        key(
+            "m",
+            "Largest distance at which the waypoint counts as passed; 0 means any distance for an aircraft, the "
+            "parameter `acceptance_radius` for a ground vehicle.",
+        ),
+    ] = 0.0
+    hold: Annotated[NotNegative, key("s", "Time that an aircraft circles the waypoint. Ground vehicles do not wait.")] = 0.0
+    radius: Annotated[Metres, key("m", "Radius of an `orbit`; negative turns to the left.")] = 0.0
+    turns: Annotated[NotNegative, key("", "Turns of an `orbit`; 0 means without end.")] = 0.0
+    speed: Annotated[NotNegative, key("m/s", "Airspeed from this item on, of `speed` items; 0 means cruise speed.")] = 0.0
+    jump_to: Annotated[int, Meta(ge=0, le=65535), key("", "Index of the item that a `jump` leads to; the first item is 0.")] = 0
+    repeat: Annotated[int, Meta(ge=-1, le=65535), key("", "Number of times that a `jump` is taken; -1 means for ever.")] = 0
+    course: Annotated[
+        Annotated[float, Meta(ge=-7, le=7)] | None,
+        key("rad", "Course over ground at which the waypoint is passed, counter-clockwise from east. Left out: any."),
+    ] = None
+    to_altitude: Annotated[bool, plain("An `orbit` lasts until the aircraft is at its altitude.")] = False
+    distance: Annotated[NotNegative, key("m", "Distance over ground between two pictures, of `trigger_distance`; 0 ends the series.")] = 0.0
 
 
 class JobFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """What a vehicle does with nobody touching anything; empty = hold."""
 
-    explore: bool = False
-    armed: bool = False  # an aircraft that stands is armed from the beginning, and takes off when its mission begins
-    mission: list[Waypoint] = []
-    follow: Follow | None = None
+    explore: Annotated[bool, plain("A ground vehicle explores until it knows every place that it can reach.")] = False
+    armed: Annotated[
+        bool,
+        plain(
+            "An aircraft that stands on its wheels is armed from the start and takes off when its mission begins. "
+            "An aircraft that starts in the air is armed anyway. A ground vehicle with `explore` or a mission is armed "
+            "from the start; one without either waits disarmed in Hold."
+        ),
+    ] = False
+    mission: Annotated[list[Waypoint], plain("Mission items in the order in which they are done.")] = []
+    follow: Annotated[Follow | None, plain("The aircraft keeps a formation slot behind a leader.")] = None
 
 
 class Maps(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -71,47 +94,72 @@ class Maps(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     localize: the vehicle draws no map, but is localized on ``known``, or on what comes on map/known: from its start pose, or anywhere.
     """
 
-    known: str | None = None
-    known_at: tuple[Metres, Metres, Metres] = (0.0, 0.0, 0.0)
-    continues: str | None = None
-    localize: Literal["start", "anywhere"] | None = None
-    keepout: str | None = None
-    speed: str | None = None
-    speed_unit: Literal["percent", "m/s"] = "percent"
-    speed_base: float = 100.0
-    speed_multiplier: float = -1.0
+    known: Annotated[
+        str | None,
+        plain(
+            "Map that the vehicle knows: a map_server yaml (path from the mission file's folder), a session of a "
+            "mapping run (.npz), or the name of a saved map."
+        ),
+    ] = None
+    known_at: Annotated[
+        tuple[Metres, Metres, Metres], plain("Pose of the frame of `known` (or `continues`) in the world: x [m], y [m], yaw [rad].")
+    ] = (0.0, 0.0, 0.0)
+    continues: Annotated[str | None, plain("Session (.npz) that the vehicle's mapping continues, from its start pose.")] = None
+    localize: Annotated[
+        Literal["start", "anywhere"] | None,
+        plain(
+            "The vehicle draws no map but is localized on `known`: from its start pose (`start`) or without knowing "
+            "where it is (`anywhere`)."
+        ),
+    ] = None
+    keepout: Annotated[str | None, plain("Mask (map_server yaml) of the places to keep out of.")] = None
+    speed: Annotated[
+        str | None,
+        plain("Mask (map_server yaml) of speed limits: a cell of value v, 1 to 100, allows `speed_base + speed_multiplier * v`."),
+    ] = None
+    speed_unit: Annotated[
+        Literal["percent", "m/s"], plain("Unit of the limits in the speed mask: `percent` of the vehicle's own speed, or `m/s`.")
+    ] = "percent"
+    speed_base: Annotated[float, key("speed_unit", "Limit at mask value 0.")] = 100.0
+    speed_multiplier: Annotated[float, key("speed_unit", "Change of the limit per mask value.")] = -1.0
 
 
 class Vehicle(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    model: FolderName
-    start: StartPose
-    system_id: Annotated[int, Meta(ge=1, le=244)]
-    job: JobFile = JobFile()
-    roles: dict[str, str] = {}
-    fence: FenceFile = FenceFile()
-    maps: Maps | None = None  # of a ground vehicle: it serves these, and its own
+    """One vehicle of a mission: its model, where it starts and what it does."""
+
+    model: Annotated[FolderName, plain("Folder in `vehicles/`.")]
+    start: Annotated[StartPose, plain("Pose and motion at the start.")]
+    system_id: Annotated[int, Meta(ge=1, le=244), key("", "MAVLink system id; no two vehicles of a mission share one.")]
+    job: Annotated[JobFile, plain("What the vehicle does without an operator. Left out: it holds.")] = JobFile()
+    roles: Annotated[dict[str, str], plain("Vehicle by role, for services that read another vehicle's messages (`leader: milvus1`).")] = {}
+    fence: Annotated[FenceFile, plain("Where the vehicle may be.")] = FenceFile()
+    maps: Annotated[Maps | None, plain("Maps and masks that a ground vehicle starts with.")] = None
 
 
 class Criterion(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """One line of the score: a measured figure of a vehicle and its limits; see ``launch.scoring.scores``."""
 
-    vehicle: str
-    measure: str
-    at_least: float | None = None
-    at_most: float | None = None
+    vehicle: Annotated[str, plain("Vehicle that is measured.")]
+    measure: Annotated[str, plain("One of the [measures](#measures).")]
+    at_least: Annotated[float | None, key("unit of the measure", "The criterion holds when the measure is not below this.")] = None
+    at_most: Annotated[float | None, key("unit of the measure", "The criterion holds when the measure is not above this.")] = None
 
 
 class MissionFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """The whole of a mission file. ``wind`` stands for that of the world, whole."""
 
-    about: str
-    world: FolderName
-    vehicles: Annotated[dict[VehicleName, Vehicle], Meta(min_length=1)]
-    seed: int = 1
-    duration: Annotated[float, Meta(gt=0, le=1e6)] = 120.0  # s
-    criteria: list[Criterion] = []
-    wind: Wind | None = None
-    faults: list[Fault] = []
+    about: Annotated[str, plain("One sentence for lists.")]
+    world: Annotated[FolderName, plain("Folder in `worlds/`.")]
+    vehicles: Annotated[
+        dict[VehicleName, Vehicle],
+        Meta(min_length=1),
+        plain("Vehicles by name. A name has lower-case letters, digits and `_`, and begins with a letter."),
+    ]
+    seed: Annotated[int, key("", "Seed of every random number of the run. Two lockstep runs with the same seed are equal to the byte.")] = 1
+    duration: Annotated[float, Meta(gt=0, le=1e6), key("s", "Simulation time after which `uvf run` ends and scores.")] = 120.0
+    criteria: Annotated[list[Criterion], plain("When the mission counts as done. All must hold.")] = []
+    wind: Annotated[Wind | None, plain("Replaces the whole wind of the world.")] = None
+    faults: Annotated[list[Fault], plain("Sensors and servos that fail during the run.")] = []
 
 
 def load_mission(path: Path) -> MissionFile:

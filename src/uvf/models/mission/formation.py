@@ -6,6 +6,7 @@ from typing import Annotated
 import msgspec
 from msgspec import Meta
 
+from uvf.models.keys import key, plain
 from uvf.models.yaml_data import BadInput, FileLocation, nearest
 
 Aside = Annotated[float, Meta(ge=-1000, le=1000)]
@@ -14,10 +15,10 @@ Aside = Annotated[float, Meta(ge=-1000, le=1000)]
 class Follow(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """A station behind a leader, for an aircraft."""
 
-    leader: str
-    behind: Annotated[float, Meta(gt=0, le=1000)]  # m of the leader's way through the air
-    right: Aside = 0.0  # m, aside of the leader's path
-    above: Aside = 0.0  # m
+    leader: Annotated[str, plain("Vehicle that is followed.")]
+    behind: Annotated[float, Meta(gt=0, le=1000), key("m", "Distance behind the leader, along its path through the air.")]
+    right: Annotated[Aside, key("m", "Offset to the right of the leader's path.")] = 0.0
+    above: Annotated[Aside, key("m", "Offset above the leader.")] = 0.0
 
 
 def check_follow(follows: Mapping[str, Follow], vehicles: Mapping[str, object], place: FileLocation) -> None:

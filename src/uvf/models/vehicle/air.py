@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 import msgspec
 from msgspec import Meta
 
+from uvf.models.keys import key, plain
 from uvf.models.quantities import Name, NotNegative, PhysicsRate, Positive
 from uvf.models.vehicle.looks import Looks
 from uvf.models.yaml_data import BadInput, FileLocation
@@ -29,29 +30,29 @@ STANDARD: dict[str, tuple[str, ...]] = {
 class Surface(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Deflection to property: sign * deflection / limit. No ``property`` = JSBSim's standard one; rate and lag, where not the servos'."""
 
-    property: Properties = []
-    limit: Deflection = 0.35  # rad, at full command
-    sign: Literal[1, -1] = 1
-    rate: Positive | None = None  # rad/s
-    lag: NotNegative | None = None  # s
+    property: Annotated[Properties, plain("JSBSim property or properties that are written; left out: the standard one.")] = []
+    limit: Annotated[Deflection, key("rad", "Deflection at full command.")] = 0.35
+    sign: Annotated[Literal[1, -1], plain("1 or -1: the property's sense against that of the [convention](frames.md).")] = 1
+    rate: Annotated[Positive | None, key("rad/s", "Largest rate; left out: `servo_rate`.")] = None
+    lag: Annotated[NotNegative | None, key("s", "Time constant; left out: `servo_lag`.")] = None
 
 
 class Lever(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """What goes from 0 to 1: a throttle, with one property an engine, or brakes."""
 
-    property: Properties = []
-    lag: NotNegative = 0.0  # s
+    property: Annotated[Properties, plain("JSBSim property or properties that are written; left out: the standard one.")] = []
+    lag: Annotated[NotNegative, key("s", "Time constant.")] = 0.0
 
 
 class CommandProperties(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """What each field of a SurfaceCommand is written to."""
 
-    aileron: Surface = Surface()
-    elevator: Surface = Surface()
-    rudder: Surface = Surface()
-    flap: Surface = Surface(limit=0.6)
-    throttle: Lever = Lever()
-    brake: Lever = Lever()
+    aileron: Annotated[Surface, plain("Ailerons; positive rolls right.")] = Surface()
+    elevator: Annotated[Surface, plain("Elevator; positive pitches down.")] = Surface()
+    rudder: Annotated[Surface, plain("Rudder; positive yaws left.")] = Surface()
+    flap: Annotated[Surface, plain("Flaps; positive is down.")] = Surface(limit=0.6)
+    throttle: Annotated[Lever, plain("Throttle of the engines, 0 to 1.")] = Lever()
+    brake: Annotated[Lever, plain("Wheel brakes, 0 to 1.")] = Lever()
 
     def properties(self, name: str) -> tuple[str, ...]:
         """The names of what this command is written to."""
@@ -62,10 +63,10 @@ class CommandProperties(msgspec.Struct, frozen=True, forbid_unknown_fields=True)
 class JointReading(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Where a joint is told from; the unit is the end of the property's name, of ``-norm`` times ``limit``."""
 
-    position: PropertyName | None = None  # -rad, -deg or -norm
-    speed: PropertyName | None = None  # -rpm or -rad_sec
-    limit: Deflection = 1.0  # rad at 1, of a -norm
-    sign: Literal[1, -1] = 1
+    position: Annotated[PropertyName | None, plain("JSBSim property of the joint's position; it ends in -rad, -deg or -norm.")] = None
+    speed: Annotated[PropertyName | None, plain("JSBSim property of the joint's speed; it ends in -rpm or -rad_sec.")] = None
+    limit: Annotated[Deflection, key("rad", "Angle at 1, of a property in -norm.")] = 1.0
+    sign: Annotated[Literal[1, -1], plain("1 or -1.")] = 1
 
 
 STANDARD_JOINTS = {
@@ -86,14 +87,19 @@ class BatteryPack(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     voltage. power: the property that tells what the motors draw [W]; without it, their shaft power over ``efficiency``.
     """
 
-    energy: Positive  # J
-    full: Positive  # V
-    empty: Positive  # V
-    resistance: Annotated[float, Meta(ge=0, le=10)] = 0.0  # ohm, of cells and wires
-    rated: Positive | None = None  # V
-    avionics: NotNegative = 0.0  # W, drawn at all times
-    power: PropertyName | None = None
-    efficiency: Annotated[float, Meta(gt=0, le=1)] = 0.85  # of motor and speed controller together
+    energy: Annotated[Positive, key("J", "Energy of the full pack.")]
+    full: Annotated[Positive, key("V", "Open-circuit voltage of the full pack.")]
+    empty: Annotated[Positive, key("V", "Open-circuit voltage of the empty pack.")]
+    resistance: Annotated[float, Meta(ge=0, le=10), key("ohm", "Resistance of cells and wires.")] = 0.0
+    rated: Annotated[
+        Positive | None, key("V", "Voltage of an aircraft's motors at full throttle; left out: they do not feel the battery's voltage.")
+    ] = None
+    avionics: Annotated[NotNegative, key("W", "Power that is drawn at all times.")] = 0.0
+    power: Annotated[
+        PropertyName | None,
+        plain("JSBSim property of the power that the motors draw [W]; left out: their shaft power over `efficiency`. Aircraft only."),
+    ] = None
+    efficiency: Annotated[float, Meta(gt=0, le=1), key("", "Efficiency of motor and speed controller together.")] = 0.85
 
 
 class AirBody(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -102,18 +108,22 @@ class AirBody(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     settings: properties that are set once, before it flies: mixture, gear down.
     """
 
-    model: Name
-    physics_hz: PhysicsRate
-    trim_speed: Positive  # m/s
-    servo_rate: Positive  # rad/s
-    servo_lag: NotNegative  # s
-    controls: CommandProperties = CommandProperties()
-    joints: dict[Name, JointReading] = {}
-    settings: dict[PropertyName, float] = {}
-    max_sink: Positive = 3.05  # m/s at which the landing gear still holds; 10 ft/s, the most that 14 CFR 23.473 asks for
-    mesh: Name | None = None
-    battery: BatteryPack | None = None
-    looks: Looks = Looks()
+    model: Annotated[Name, plain("Name of the JSBSim model: the folder and the XML file in it.")]
+    physics_hz: Annotated[PhysicsRate, key("Hz", "Physics steps per second of simulation time.")]
+    trim_speed: Annotated[Positive, key("m/s", "Airspeed at which the aircraft starts in level flight.")]
+    servo_rate: Annotated[Positive, key("rad/s", "Largest rate of a surface.")]
+    servo_lag: Annotated[NotNegative, key("s", "Time constant of a servo.")]
+    controls: Annotated[CommandProperties, plain("What the commands are written to.")] = CommandProperties()
+    joints: Annotated[
+        dict[Name, JointReading], plain("Joints that `sensor/joints` reports, by name; left out: the standard surfaces and the propeller.")
+    ] = {}
+    settings: Annotated[dict[PropertyName, float], plain("JSBSim properties that are set at the start: mixture, gear down.")] = {}
+    max_sink: Annotated[
+        Positive, key("m/s", "Sink rate at touchdown that the landing gear survives; 10 ft/s of 14 CFR 23.473 by default.")
+    ] = 3.05
+    mesh: Annotated[Name | None, plain("STL or OBJ file that is drawn instead of `looks`.")] = None
+    battery: Annotated[BatteryPack | None, plain("Battery of an electric aircraft.")] = None
+    looks: Annotated[Looks, plain("How the aircraft is drawn; left out: derived from the JSBSim model.")] = Looks()
 
 
 def unnumbered(name: str) -> str:

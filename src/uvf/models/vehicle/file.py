@@ -1,10 +1,11 @@
 """``vehicles/<name>/vehicle.yaml``: what a vehicle is, as data."""
 
 from pathlib import Path
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 import msgspec
 
+from uvf.models.keys import key, plain
 from uvf.models.quantities import Name, NotNegative, PhysicsRate, Positive
 from uvf.models.vehicle.air import AirBody, BatteryPack, check_air, check_battery
 from uvf.models.vehicle.layers import file_of, fill_vehicle, folders_of
@@ -15,36 +16,38 @@ from uvf.models.yaml_data import BadInput, FileLocation, load_yaml, nearest
 class Motor(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """A wheel's motor with its gear, at the wheel; a first-order lag lies between the command and what it holds."""
 
-    stall_torque: Positive  # N m
-    no_load_speed: Positive  # rad/s
-    lag: NotNegative = 0.0  # s
+    stall_torque: Annotated[Positive, key("N m", "Torque at the wheel when it stands still at full voltage.")]
+    no_load_speed: Annotated[Positive, key("rad/s", "Speed of the wheel without load at full voltage.")]
+    lag: Annotated[NotNegative, key("s", "Time constant between the command and the motor.")] = 0.0
 
 
 class Friction(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Coulomb coefficients on the ground: of the wheels along their rolling and across it, and of the links that only slide."""
 
-    mu: Positive = 1.0
-    mu2: Positive = 1.0
-    castor: NotNegative = 0.02
+    mu: Annotated[Positive, key("", "Coulomb coefficient of the wheels along their rolling direction.")] = 1.0
+    mu2: Annotated[Positive, key("", "Coulomb coefficient of the wheels across it.")] = 1.0
+    castor: Annotated[NotNegative, key("", "Coulomb coefficient of the links that only slide.")] = 0.02
 
 
 class GroundBody(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """A differential-drive vehicle: URDF joint names, kinematics and limits."""
 
-    urdf: Name
-    left_joint: Name
-    right_joint: Name
-    wheel_radius: Positive  # m
-    track: Positive  # m, between the wheels' contact points
-    radius: Positive  # m, circle about base_link that holds the whole body
-    max_linear: Positive  # m/s
-    max_angular: Positive  # rad/s
-    max_linear_acceleration: Positive  # m/s^2
-    max_angular_acceleration: Positive  # rad/s^2
-    motor: Motor
-    friction: Friction = Friction()
-    battery: BatteryPack | None = None
-    physics_hz: PhysicsRate = 200.0
+    urdf: Annotated[Name, plain("URDF or xacro file in the vehicle's folder.")]
+    left_joint: Annotated[Name, plain("Name of the left wheel's joint in the URDF.")]
+    right_joint: Annotated[Name, plain("Name of the right wheel's joint in the URDF.")]
+    wheel_radius: Annotated[Positive, key("m", "Radius of the driven wheels; within 3 % of the URDF's.")]
+    track: Annotated[Positive, key("m", "Distance between the contact points of the driven wheels; within 3 % of the URDF's.")]
+    radius: Annotated[
+        Positive, key("m", "Radius of the circle about base_link that holds the whole body; the planner keeps it from obstacles.")
+    ]
+    max_linear: Annotated[Positive, key("m/s", "Largest speed.")]
+    max_angular: Annotated[Positive, key("rad/s", "Largest turn rate.")]
+    max_linear_acceleration: Annotated[Positive, key("m/s^2", "Largest acceleration.")]
+    max_angular_acceleration: Annotated[Positive, key("rad/s^2", "Largest angular acceleration.")]
+    motor: Annotated[Motor, plain("Motors of the driven wheels.")]
+    friction: Annotated[Friction, plain("Friction on the ground.")] = Friction()
+    battery: Annotated[BatteryPack | None, plain("Battery; left out: the vehicle has none and never runs empty.")] = None
+    physics_hz: Annotated[PhysicsRate, key("Hz", "Physics steps per second of simulation time.")] = 200.0
 
 
 class VehicleFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -53,13 +56,16 @@ class VehicleFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     variant_of: another vehicle, whose file holds what this one does not say.
     """
 
-    kind: Literal["ground", "fixed_wing"]
-    about: str
-    sensors: Sensors
-    ground: GroundBody | None = None
-    air: AirBody | None = None
-    params: dict[str, dict[str, Any]] = {}
-    variant_of: Name | None = None
+    kind: Annotated[Literal["ground", "fixed_wing"], plain("`ground` needs a `ground` section, `fixed_wing` an `air` section.")]
+    about: Annotated[str, plain("One sentence for lists.")]
+    sensors: Annotated[Sensors, plain("What the vehicle carries. SLAM and planner need a lidar and encoders.")]
+    ground: Annotated[GroundBody | None, plain("Body of a differential-drive vehicle.")] = None
+    air: Annotated[AirBody | None, plain("Body of a JSBSim aircraft.")] = None
+    params: Annotated[
+        dict[str, dict[str, Any]],
+        plain("Parameters by service: `params: {planner: {patience: 12.0}}`; see [parameters](service-parameters.md)."),
+    ] = {}
+    variant_of: Annotated[Name | None, plain("Another vehicle whose file holds what this one leaves out.")] = None
 
 
 def load_vehicle(vehicles: Path, name: str) -> VehicleFile:

@@ -7,6 +7,7 @@ from typing import Annotated
 import msgspec
 from msgspec import Meta
 
+from uvf.models.keys import key, plain
 from uvf.models.quantities import Name, NotNegative, Positive
 from uvf.models.yaml_data import BadInput, FileLocation
 
@@ -20,17 +21,17 @@ Bearing = Annotated[float, Meta(ge=-7, le=7)]
 class Mount(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Pose of a sensor in base_link (FLU). Where a file names a URDF's ``link`` instead, it is that link's."""
 
-    xyz: Triple = (0.0, 0.0, 0.0)  # m
-    rpy: Triple = (0.0, 0.0, 0.0)  # rad
-    link: Name | None = None
+    xyz: Annotated[Triple, plain("Position x forward, y left, z up [m], in base_link or in `link`.")] = (0.0, 0.0, 0.0)
+    rpy: Annotated[Triple, plain("Roll, pitch, yaw [rad]; [0, 1.5708, 0] looks straight down.")] = (0.0, 0.0, 0.0)
+    link: Annotated[Name | None, plain("Link of the URDF that the mount counts from; left out: base_link.")] = None
 
 
 class Delivery(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """How a sensor's readings come to their readers: late, and some not at all. Their stamp is the moment they are valid for."""
 
-    latency: Annotated[float, Meta(ge=0, le=10)] = 0.0  # s
-    dropout: Probability = 0.0  # that a reading is lost and a burst of losses begins
-    burst: Annotated[int, Meta(ge=1, le=1_000_000)] = 1  # readings lost in a row
+    latency: Annotated[float, Meta(ge=0, le=10), key("s", "Time from the moment a reading is valid for until it is delivered.")] = 0.0
+    dropout: Annotated[Probability, key("", "Probability that a reading is lost and a burst of losses begins.")] = 0.0
+    burst: Annotated[int, Meta(ge=1, le=1_000_000), key("", "Readings lost in a row.")] = 1
 
 
 class Lidar(Delivery, frozen=True, forbid_unknown_fields=True):
@@ -39,65 +40,75 @@ class Lidar(Delivery, frozen=True, forbid_unknown_fields=True):
     The stamp of a scan is that of the beam that is measured first.
     """
 
-    mount: Mount
-    hz: SensorRate
-    beams: Annotated[int, Meta(ge=1, le=4096)]
-    angle_min: Annotated[float, Meta(ge=-7, le=7)]  # rad
-    angle_increment: Positive  # rad, counter-clockwise
-    range_min: NotNegative  # m
-    range_max: Positive  # m
-    noise: NotNegative = 0.0  # m, 1 sigma of each beam
-    frame: Name = "lidar"
-    bias: NotNegative = 0.0  # m, 1 sigma of the constant of all beams
-    preset: str = ""
-    sweep_time: Annotated[float, Meta(ge=0, le=1)] = 0.0  # s from the first beam to the last; 0: all are taken at once
-    clockwise: bool = False  # the beam at angle_min is measured last
+    mount: Annotated[Mount, plain("Where the sensor is.")]
+    hz: Annotated[SensorRate, key("Hz", "Scans per second of simulation time.")]
+    beams: Annotated[int, Meta(ge=1, le=4096), key("", "Beams of a scan.")]
+    angle_min: Annotated[
+        float, Meta(ge=-7, le=7), key("rad", "Direction of the first beam of the message, counter-clockwise from forward.")
+    ]
+    angle_increment: Annotated[Positive, key("rad", "Angle from beam to beam, counter-clockwise. 360 beams of a whole turn: 0.0174533.")]
+    range_min: Annotated[NotNegative, key("m", "Ranges below this are sent as 0, no return.")]
+    range_max: Annotated[Positive, key("m", "Ranges above this are sent as 0, no return.")]
+    noise: Annotated[NotNegative, key("m", "1 sigma of each beam.")] = 0.0
+    frame: Annotated[Name, plain("Name of the sensor's frame: `<vehicle>/<frame>`.")] = "lidar"
+    bias: Annotated[NotNegative, key("m", "1 sigma of an offset that all beams share, drawn once per run.")] = 0.0
+    preset: Annotated[str, plain("Values of a known instrument; keys given beside it count. See [presets](sensors.md#presets).")] = ""
+    sweep_time: Annotated[
+        float,
+        Meta(ge=0, le=1),
+        key("s", "Time from the first beam to the last; 0 takes all beams at once. At most 1/hz. Ground vehicles only."),
+    ] = 0.0
+    clockwise: Annotated[bool, plain("The scanner turns clockwise: the beam at `angle_min` is measured last.")] = False
 
 
 class ImuSensor(Delivery, frozen=True, forbid_unknown_fields=True):
     """Six axes and a magnetometer; ``preset``: book. Noise is 1 sigma per sample: a data sheet's density times the root of ``hz``."""
 
-    mount: Mount
-    hz: SensorRate
-    gyro_noise: NotNegative = 0.0  # rad/s, 1 sigma per sample
-    gyro_bias: NotNegative = 0.0  # rad/s, 1 sigma of the constant drawn from the seed
-    accel_noise: NotNegative = 0.0  # m/s^2
-    accel_bias: NotNegative = 0.0  # m/s^2
-    mag_noise: NotNegative = 0.0  # T
-    frame: Name = "imu"
-    gyro_scale: NotNegative = 0.0  # 1 sigma of the scale factor's error
-    gyro_instability: NotNegative = 0.0  # rad/s, 1 sigma of the bias that comes and goes within instability_time
-    gyro_random_walk: NotNegative = 0.0  # rad/s/sqrt(s), growth of the bias that walks
-    gyro_range: Positive = math.inf  # rad/s, saturation
-    gyro_resolution: NotNegative = 0.0  # rad/s, step of quantisation
-    accel_scale: NotNegative = 0.0
-    accel_instability: NotNegative = 0.0  # m/s^2
-    accel_random_walk: NotNegative = 0.0  # m/s^2/sqrt(s)
-    accel_range: Positive = math.inf  # m/s^2
-    accel_resolution: NotNegative = 0.0  # m/s^2
-    instability_time: Positive = 100.0  # s
-    mag_bias: NotNegative = 0.0  # T, 1 sigma
-    mag_hz: SensorRate | None = None  # None = hz; the last field is repeated in the readings between
-    preset: str = ""
+    mount: Annotated[Mount, plain("Where the sensor is.")]
+    hz: Annotated[SensorRate, key("Hz", "Readings per second of simulation time.")]
+    gyro_noise: Annotated[NotNegative, key("rad/s", "1 sigma per sample: the density of a data sheet times the root of `hz`.")] = 0.0
+    gyro_bias: Annotated[NotNegative, key("rad/s", "1 sigma of a constant drawn once per run.")] = 0.0
+    accel_noise: Annotated[NotNegative, key("m/s^2", "1 sigma per sample.")] = 0.0
+    accel_bias: Annotated[NotNegative, key("m/s^2", "1 sigma of a constant drawn once per run.")] = 0.0
+    mag_noise: Annotated[NotNegative, key("T", "1 sigma per sample of the magnetometer.")] = 0.0
+    frame: Annotated[Name, plain("Name of the sensor's frame: `<vehicle>/<frame>`.")] = "imu"
+    gyro_scale: Annotated[NotNegative, key("", "1 sigma of the scale factor's error.")] = 0.0
+    gyro_instability: Annotated[NotNegative, key("rad/s", "1 sigma of the bias that varies within `instability_time`.")] = 0.0
+    gyro_random_walk: Annotated[NotNegative, key("rad/s/sqrt(s)", "Growth of the bias that walks.")] = 0.0
+    gyro_range: Annotated[Positive, key("rad/s", "Largest rate; beyond it the reading saturates.")] = math.inf
+    gyro_resolution: Annotated[NotNegative, key("rad/s", "Quantisation step.")] = 0.0
+    accel_scale: Annotated[NotNegative, key("", "1 sigma of the scale factor's error.")] = 0.0
+    accel_instability: Annotated[NotNegative, key("m/s^2", "1 sigma of the bias that varies within `instability_time`.")] = 0.0
+    accel_random_walk: Annotated[NotNegative, key("m/s^2/sqrt(s)", "Growth of the bias that walks.")] = 0.0
+    accel_range: Annotated[Positive, key("m/s^2", "Largest specific force; beyond it the reading saturates.")] = math.inf
+    accel_resolution: Annotated[NotNegative, key("m/s^2", "Quantisation step.")] = 0.0
+    instability_time: Annotated[Positive, key("s", "Correlation time of the bias instability.")] = 100.0
+    mag_bias: Annotated[NotNegative, key("T", "1 sigma of a constant drawn once per run.")] = 0.0
+    mag_hz: Annotated[
+        SensorRate | None, key("Hz", "Readings per second of the magnetometer; the last one is repeated between. Left out: `hz`.")
+    ] = None
+    preset: Annotated[str, plain("Values of a known instrument; keys given beside it count. See [presets](sensors.md#presets).")] = ""
 
 
 class Encoders(Delivery, frozen=True, forbid_unknown_fields=True):
-    hz: SensorRate
-    ticks_per_turn: Annotated[int, Meta(ge=1, le=10_000_000)]
+    """Wheel encoders: ticks of each driven wheel."""
+
+    hz: Annotated[SensorRate, key("Hz", "Readings per second of simulation time.")]
+    ticks_per_turn: Annotated[int, Meta(ge=1, le=10_000_000), key("", "Ticks per turn of the wheel.")]
 
 
 class GnssSensor(Delivery, frozen=True, forbid_unknown_fields=True):
     """A satellite receiver. ``preset``: book (drifts as in Beard & McLain, chapter 7) or good (does not)."""
 
-    hz: SensorRate
-    horizontal_noise: NotNegative = 0.0  # m, 1 sigma per axis
-    vertical_noise: NotNegative = 0.0  # m
-    speed_noise: NotNegative = 0.0  # m/s
-    horizontal_drift: NotNegative = 0.0  # m, 1 sigma per axis of the slow part
-    vertical_drift: NotNegative = 0.0  # m
-    drift_time: Positive = 1100.0  # s
-    preset: str = ""
-    mount: Mount = Mount()  # of a ground vehicle; an aircraft's is at base_link
+    hz: Annotated[SensorRate, key("Hz", "Fixes per second of simulation time.")]
+    horizontal_noise: Annotated[NotNegative, key("m", "1 sigma per axis.")] = 0.0
+    vertical_noise: Annotated[NotNegative, key("m", "1 sigma.")] = 0.0
+    speed_noise: Annotated[NotNegative, key("m/s", "1 sigma per axis.")] = 0.0
+    horizontal_drift: Annotated[NotNegative, key("m", "1 sigma per axis of the slow error.")] = 0.0
+    vertical_drift: Annotated[NotNegative, key("m", "1 sigma of the slow error.")] = 0.0
+    drift_time: Annotated[Positive, key("s", "Correlation time of the slow error.")] = 1100.0
+    preset: Annotated[str, plain("Values of a known instrument; keys given beside it count. See [presets](sensors.md#presets).")] = ""
+    mount: Annotated[Mount, plain("Where the antenna is, on a ground vehicle; that of an aircraft is at base_link.")] = Mount()
 
     @property
     def accuracy(self) -> tuple[float, float]:
@@ -108,32 +119,32 @@ class GnssSensor(Delivery, frozen=True, forbid_unknown_fields=True):
 class Sonar(Delivery, frozen=True, forbid_unknown_fields=True):
     """A cone of sound: the range of the nearest thing in it; outside the limits it is sent as 0 = no return."""
 
-    mount: Mount
-    hz: SensorRate
-    fov: Annotated[float, Meta(gt=0, lt=3.1)]  # rad
-    range_min: NotNegative  # m
-    range_max: Positive  # m
-    noise: NotNegative = 0.0  # m, 1 sigma
-    frame: Name = "sonar"
+    mount: Annotated[Mount, plain("Where the sensor is.")]
+    hz: Annotated[SensorRate, key("Hz", "Readings per second of simulation time.")]
+    fov: Annotated[float, Meta(gt=0, lt=3.1), key("rad", "Opening angle of the cone.")]
+    range_min: Annotated[NotNegative, key("m", "Ranges below this are sent as 0, no return.")]
+    range_max: Annotated[Positive, key("m", "Ranges above this are sent as 0, no return.")]
+    noise: Annotated[NotNegative, key("m", "1 sigma.")] = 0.0
+    frame: Annotated[Name, plain("Name of the sensor's frame: `<vehicle>/<frame>`.")] = "sonar"
 
 
 class RangeFinder(Delivery, frozen=True, forbid_unknown_fields=True):
     """A laser's single beam along its mount's x axis; outside the limits it is sent as 0 = no return. Look down: rpy [0, 1.5708, 0]."""
 
-    mount: Mount
-    hz: SensorRate
-    range_min: NotNegative  # m
-    range_max: Positive  # m
-    noise: NotNegative = 0.0  # m, 1 sigma
-    frame: Name = "rangefinder"
+    mount: Annotated[Mount, plain("Where it is; the beam runs along the mount's x axis.")]
+    hz: Annotated[SensorRate, key("Hz", "Readings per second of simulation time.")]
+    range_min: Annotated[NotNegative, key("m", "Ranges below this are sent as 0, no return.")]
+    range_max: Annotated[Positive, key("m", "Ranges above this are sent as 0, no return.")]
+    noise: Annotated[NotNegative, key("m", "1 sigma.")] = 0.0
+    frame: Annotated[Name, plain("Name of the sensor's frame: `<vehicle>/<frame>`.")] = "rangefinder"
 
 
 class Bumper(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """A sector of the body's outline that feels touches."""
 
-    name: Name
-    angle_min: Bearing  # rad from base_link's x axis, counter-clockwise
-    angle_max: Bearing  # rad
+    name: Annotated[Name, plain("Name that contact messages use.")]
+    angle_min: Annotated[Bearing, key("rad", "Right end of the sector, counter-clockwise from forward.")]
+    angle_max: Annotated[Bearing, key("rad", "Left end of the sector.")]
 
     def feels(self, bearing: float) -> bool:
         return (bearing - self.angle_min) % (2 * math.pi) <= self.angle_max - self.angle_min
@@ -142,57 +153,63 @@ class Bumper(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 class AirDataSensor(Delivery, frozen=True, forbid_unknown_fields=True):
     """Absolute and differential pressure; ``preset``: book."""
 
-    hz: SensorRate
-    static_noise: NotNegative = 0.0  # Pa
-    differential_noise: NotNegative = 0.0  # Pa
-    static_bias: NotNegative = 0.0  # Pa, 1 sigma
-    differential_bias: NotNegative = 0.0  # Pa, 1 sigma
-    preset: str = ""
+    hz: Annotated[SensorRate, key("Hz", "Readings per second of simulation time.")]
+    static_noise: Annotated[NotNegative, key("Pa", "1 sigma of the static pressure.")] = 0.0
+    differential_noise: Annotated[NotNegative, key("Pa", "1 sigma of the pitot pressure.")] = 0.0
+    static_bias: Annotated[NotNegative, key("Pa", "1 sigma of a constant drawn once per run.")] = 0.0
+    differential_bias: Annotated[NotNegative, key("Pa", "1 sigma of a constant drawn once per run.")] = 0.0
+    preset: Annotated[str, plain("Values of a known instrument; keys given beside it count. See [presets](sensors.md#presets).")] = ""
 
 
 class Camera(Delivery, frozen=True, forbid_unknown_fields=True):
-    mount: Mount
-    hz: SensorRate
-    width: Annotated[int, Meta(ge=16, le=1920)]
-    height: Annotated[int, Meta(ge=16, le=1080)]
-    fov: Annotated[float, Meta(gt=0, lt=3.1)]  # rad, horizontal
-    far: Positive = 100.0  # m
-    frame: Name = "camera"
-    depth: bool = False  # depth pictures too, of the same size and rate
-    depth_noise: NotNegative = 0.0  # 1/m: 1 sigma is this times the square of the depth
+    """A pin-hole camera; it looks along its mount's x axis."""
+
+    mount: Annotated[Mount, plain("Where the camera is; it looks along the mount's x axis.")]
+    hz: Annotated[SensorRate, key("Hz", "Pictures per second of simulation time.")]
+    width: Annotated[int, Meta(ge=16, le=1920), key("px", "Width of the picture.")]
+    height: Annotated[int, Meta(ge=16, le=1080), key("px", "Height of the picture.")]
+    fov: Annotated[float, Meta(gt=0, lt=3.1), key("rad", "Horizontal field of view.")]
+    far: Annotated[Positive, key("m", "Things farther away are not drawn.")] = 100.0
+    frame: Annotated[Name, plain("Name of the sensor's frame: `<vehicle>/<frame>`.")] = "camera"
+    depth: Annotated[bool, plain("Depth pictures of the same size and rate are sent too.")] = False
+    depth_noise: Annotated[NotNegative, key("1/m", "1 sigma of a depth is this times the square of the depth.")] = 0.0
 
 
 class Chase(Camera, frozen=True, forbid_unknown_fields=True):
     """Behind and above its vehicle, which it sees."""
 
-    frame: Name = "chase"
+    frame: Annotated[Name, plain("Name of the sensor's frame: `<vehicle>/<frame>`.")] = "chase"
 
 
 class Gimbal(Camera, frozen=True, forbid_unknown_fields=True):
     """A camera on three joints: pan about its mount's z axis, then roll, then tilt; it begins along its mount."""
 
-    frame: Name = "gimbal"
-    slew: Positive = 2.0  # rad/s, of each joint
-    pan_max: Annotated[float, Meta(ge=0, le=3.1416)] = 3.1416  # rad, to both sides; half a turn or more: it goes round without a stop
-    roll_max: Annotated[float, Meta(ge=0, le=1.5)] = 0.8  # rad, to both sides
-    tilt_min: Annotated[float, Meta(ge=-1.5708, le=0)] = -0.5  # rad, down positive
-    tilt_max: Annotated[float, Meta(ge=0, le=3.1416)] = 2.1  # rad; more than straight down, to stay there when the nose goes up
+    frame: Annotated[Name, plain("Name of the sensor's frame: `<vehicle>/<frame>`.")] = "gimbal"
+    slew: Annotated[Positive, key("rad/s", "Largest rate of each joint.")] = 2.0
+    pan_max: Annotated[
+        float, Meta(ge=0, le=3.1416), key("rad", "Largest pan to each side; from half a turn on it turns without a stop.")
+    ] = 3.1416
+    roll_max: Annotated[float, Meta(ge=0, le=1.5), key("rad", "Largest roll to each side.")] = 0.8
+    tilt_min: Annotated[float, Meta(ge=-1.5708, le=0), key("rad", "Smallest tilt; down is positive.")] = -0.5
+    tilt_max: Annotated[
+        float, Meta(ge=0, le=3.1416), key("rad", "Largest tilt; more than straight down keeps the view when the nose rises.")
+    ] = 2.1
 
 
 class Sensors(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """What the vehicle carries; absent = not fitted."""
 
-    lidar: Lidar | None = None
-    imu: ImuSensor | None = None
-    encoders: Encoders | None = None
-    gnss: GnssSensor | None = None
-    air_data: AirDataSensor | None = None
-    camera: Camera | None = None
-    chase: Chase | None = None
-    gimbal: Gimbal | None = None
-    sonars: list[Sonar] = []
-    rangefinders: list[RangeFinder] = []
-    bumpers: list[Bumper] = []
+    lidar: Annotated[Lidar | None, plain("2-D laser scanner.")] = None
+    imu: Annotated[ImuSensor | None, plain("Gyroscopes, accelerometers and magnetometer.")] = None
+    encoders: Annotated[Encoders | None, plain("Wheel encoders.")] = None
+    gnss: Annotated[GnssSensor | None, plain("Satellite receiver.")] = None
+    air_data: Annotated[AirDataSensor | None, plain("Static and pitot pressure.")] = None
+    camera: Annotated[Camera | None, plain("Camera of the vehicle.")] = None
+    chase: Annotated[Chase | None, plain("Camera behind the vehicle that shows the vehicle itself.")] = None
+    gimbal: Annotated[Gimbal | None, plain("Camera on pan, roll and tilt joints.")] = None
+    sonars: Annotated[list[Sonar], plain("Ultrasonic range sensors.")] = []
+    rangefinders: Annotated[list[RangeFinder], plain("Single-beam lasers.")] = []
+    bumpers: Annotated[list[Bumper], plain("Contact sensors.")] = []
 
 
 Sampled = Lidar | ImuSensor | Encoders | GnssSensor | AirDataSensor | Sonar | RangeFinder | Camera

@@ -9,6 +9,7 @@ from typing import Annotated
 import msgspec
 from msgspec import Meta
 
+from uvf.models.keys import key, plain
 from uvf.models.world.wind import Wind, check_wind
 from uvf.models.yaml_data import BadInput, FileLocation, load_yaml, nearest
 
@@ -31,76 +32,98 @@ LARGEST_FLOOR = 1e6  # m^2; maps and scores cut it into cells
 class Origin(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Where the world frame's origin lies (WGS84)."""
 
-    latitude: Annotated[float, Meta(ge=-90, le=90)]  # deg
-    longitude: Annotated[float, Meta(ge=-180, le=180)]  # deg
-    altitude: Annotated[float, Meta(ge=-500, le=10_000)] = 0.0  # m AMSL
+    latitude: Annotated[float, Meta(ge=-90, le=90), key("deg", "WGS84 latitude of the point (0, 0, 0).")]
+    longitude: Annotated[float, Meta(ge=-180, le=180), key("deg", "WGS84 longitude of the point (0, 0, 0).")]
+    altitude: Annotated[float, Meta(ge=-500, le=10_000), key("m", "Height of z = 0 above mean sea level.")] = 0.0
 
 
 class Wall(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """An upright wall along a poly-line of corner points [m, world]."""
 
-    points: Annotated[list[tuple[Metres, Metres]], Meta(min_length=2)]
-    height: Positive = 2.5  # m
-    thickness: Positive = 0.1  # m
-    colour: Colour = (0.85, 0.83, 0.78)
+    points: Annotated[
+        list[tuple[Metres, Metres]],
+        Meta(min_length=2),
+        plain("Corners [x, y] in metres, world frame; the wall runs along the line through them."),
+    ]
+    height: Annotated[Positive, key("m", "Height above z = 0.")] = 2.5
+    thickness: Annotated[Positive, key("m", "Thickness, half to each side of the line.")] = 0.1
+    colour: Annotated[Colour, plain("Red, green, blue, each 0 to 1.")] = (0.85, 0.83, 0.78)
 
 
 class Box(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """``rpy`` leans it, for ramps; with a ``path`` it moves by script: a door."""
 
-    name: str
-    centre: tuple[Metres, Metres, Metres]  # m, world
-    size: tuple[Positive, Positive, Positive]  # m
-    rpy: Angles = (0.0, 0.0, 0.0)  # rad
-    colour: Colour = (0.55, 0.4, 0.25)
-    path: Script = []
+    name: Annotated[str, plain("Name that contacts and events use; no two things of a world share one.")]
+    centre: Annotated[tuple[Metres, Metres, Metres], plain("Middle of the box x, y, z [m], world frame.")]
+    size: Annotated[tuple[Positive, Positive, Positive], plain("Length, width, height [m] along its own axes.")]
+    rpy: Annotated[Angles, plain("Roll, pitch, yaw [rad]. A pitch makes a ramp: positive lowers the end at +x.")] = (0.0, 0.0, 0.0)
+    colour: Annotated[Colour, plain("Red, green, blue, each 0 to 1.")] = (0.55, 0.4, 0.25)
+    path: Annotated[
+        Script,
+        plain(
+            "Motion by script: keys [t, x, y, yaw] in s, m, m, rad; t rises from 0, the last key is at the place of "
+            "the first, and the motion repeats."
+        ),
+    ] = []
 
 
 class Cylinder(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Stands on its lower face; ``rpy`` tilts it about that face's middle; with a ``path`` it moves by script: a person."""
 
-    name: str
-    base: tuple[Metres, Metres, Metres]  # m, world
-    radius: Positive  # m
-    height: Positive  # m
-    rpy: Angles = (0.0, 0.0, 0.0)  # rad
-    colour: Colour = (0.5, 0.5, 0.55)
-    path: Script = []
+    name: Annotated[str, plain("Name that contacts and events use; no two things of a world share one.")]
+    base: Annotated[tuple[Metres, Metres, Metres], plain("Middle of the lower face x, y, z [m], world frame.")]
+    radius: Annotated[Positive, key("m", "Radius.")]
+    height: Annotated[Positive, key("m", "Height along its axis.")]
+    rpy: Annotated[Angles, plain("Roll, pitch, yaw [rad]. The cylinder tilts about the middle of its lower face.")] = (0.0, 0.0, 0.0)
+    colour: Annotated[Colour, plain("Red, green, blue, each 0 to 1.")] = (0.5, 0.5, 0.55)
+    path: Annotated[
+        Script,
+        plain(
+            "Motion by script: keys [t, x, y, yaw] in s, m, m, rad; t rises from 0, the last key is at the place of "
+            "the first, and the motion repeats."
+        ),
+    ] = []
 
 
 class Sphere(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    name: str
-    centre: tuple[Metres, Metres, Metres]  # m, world
-    radius: Positive  # m
-    colour: Colour = (0.5, 0.5, 0.55)
+    """A ball."""
+
+    name: Annotated[str, plain("Name that contacts and events use; no two things of a world share one.")]
+    centre: Annotated[tuple[Metres, Metres, Metres], plain("Middle x, y, z [m], world frame.")]
+    radius: Annotated[Positive, key("m", "Radius.")]
+    colour: Annotated[Colour, plain("Red, green, blue, each 0 to 1.")] = (0.5, 0.5, 0.55)
 
 
 class Mesh(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Triangles of an STL or OBJ file in the world's folder; of a loaded world ``file`` is the whole path."""
 
-    name: str
-    file: FileName
-    position: tuple[Metres, Metres, Metres] = (0.0, 0.0, 0.0)  # m, world
-    rpy: Angles = (0.0, 0.0, 0.0)  # rad
-    scale: tuple[Positive, Positive, Positive] = (1.0, 1.0, 1.0)
-    colour: Colour = (0.6, 0.6, 0.6)
+    name: Annotated[str, plain("Name that contacts and events use; no two things of a world share one.")]
+    file: Annotated[FileName, plain("STL or OBJ file in the world's folder.")]
+    position: Annotated[tuple[Metres, Metres, Metres], plain("Place of the file's origin x, y, z [m], world frame.")] = (0.0, 0.0, 0.0)
+    rpy: Annotated[Angles, plain("Roll, pitch, yaw [rad].")] = (0.0, 0.0, 0.0)
+    scale: Annotated[tuple[Positive, Positive, Positive], plain("Factors along the file's axes; a file in millimetres needs 0.001.")] = (
+        1.0,
+        1.0,
+        1.0,
+    )
+    colour: Annotated[Colour, plain("Red, green, blue, each 0 to 1.")] = (0.6, 0.6, 0.6)
 
 
 class Field(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """A level coloured patch on the ground, for eyes and cameras only: a meadow, a road, a floor."""
 
-    area: Area  # m: x_min, y_min, x_max, y_max
-    colour: Colour
+    area: Annotated[Area, plain("x_min, y_min, x_max, y_max [m], world frame.")]
+    colour: Annotated[Colour, plain("Red, green, blue, each 0 to 1.")]
 
 
 class Strip(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """A level runway that aircraft take off from and land on in both directions."""
 
-    name: str
-    centre: tuple[Metres, Metres, Metres]  # m, world; z of its surface
-    yaw: Angle  # rad, from east, left positive, of one of its directions
-    length: Annotated[float, Meta(ge=20, le=1e4)]  # m
-    width: Annotated[float, Meta(ge=2, le=200)]  # m
+    name: Annotated[str, plain("Name of the runway.")]
+    centre: Annotated[tuple[Metres, Metres, Metres], plain("Middle of the runway x, y, z [m], world frame; z is its surface.")]
+    yaw: Annotated[Angle, key("rad", "One of its two directions, counter-clockwise from east.")]
+    length: Annotated[float, Meta(ge=20, le=1e4), key("m", "Length.")]
+    width: Annotated[float, Meta(ge=2, le=200), key("m", "Width.")]
 
 
 class Terrain(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -109,29 +132,32 @@ class Terrain(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     Its outermost pixels lie on the rim of ``size[0]`` x ``size[1]``. Beyond it the ground is z = 0, and it lies nowhere lower.
     """
 
-    heights: FileName  # a PNG in the world's folder; of a loaded world the whole path
-    size: tuple[Positive, Positive, Positive]  # m: east, north, from black to white
-    position: tuple[Metres, Metres, Annotated[float, Meta(ge=0, le=1e4)]] = (0.0, 0.0, 0.0)  # m, world, of the middle
-    colour: Colour = (0.42, 0.52, 0.3)
+    heights: Annotated[FileName, plain("Grey PNG, 8 or 16 bit, in the world's folder; its top is north.")]
+    size: Annotated[tuple[Positive, Positive, Positive], plain("Extent [m]: east, north, and height from black to white.")]
+    position: Annotated[
+        tuple[Metres, Metres, Annotated[float, Meta(ge=0, le=1e4)]],
+        plain("Place of the picture's middle x, y, and height of black z [m], world frame."),
+    ] = (0.0, 0.0, 0.0)
+    colour: Annotated[Colour, plain("Red, green, blue, each 0 to 1.")] = (0.42, 0.52, 0.3)
 
 
 class WorldFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """The whole of world.yaml."""
 
-    about: str
-    origin: Origin
-    floor: Area  # m: x_min, y_min, x_max, y_max of the drivable area
-    walls: list[Wall] = []
-    boxes: list[Box] = []
-    cylinders: list[Cylinder] = []
-    spheres: list[Sphere] = []
-    meshes: list[Mesh] = []
-    terrain: Terrain | None = None
-    strips: list[Strip] = []
-    wind: Wind = Wind()
-    magnetic_field: tuple[Tesla, Tesla, Tesla] = (0.0, 22.0e-6, -42.0e-6)  # T, ENU
-    ground_colour: Colour = (0.36, 0.5, 0.24)
-    fields: list[Field] = []
+    about: Annotated[str, plain("One sentence for lists.")]
+    origin: Annotated[Origin, plain("Where on Earth the world frame's origin lies.")]
+    floor: Annotated[Area, plain("Area that ground vehicles may use: x_min, y_min, x_max, y_max [m].")]
+    walls: Annotated[list[Wall], plain("Upright walls.")] = []
+    boxes: Annotated[list[Box], plain("Boxes: furniture, ramps, platforms, doors.")] = []
+    cylinders: Annotated[list[Cylinder], plain("Cylinders: pillars, people.")] = []
+    spheres: Annotated[list[Sphere], plain("Spheres.")] = []
+    meshes: Annotated[list[Mesh], plain("Things with a shape from a file.")] = []
+    terrain: Annotated[Terrain | None, plain("Hills from a picture.")] = None
+    strips: Annotated[list[Strip], plain("Runways that aircraft land on; they are not drawn.")] = []
+    wind: Annotated[Wind, plain("Wind of the place.")] = Wind()
+    magnetic_field: Annotated[tuple[Tesla, Tesla, Tesla], plain("Magnetic field [T], ENU.")] = (0.0, 22.0e-6, -42.0e-6)
+    ground_colour: Annotated[Colour, plain("Colour of the ground beyond the fields: red, green, blue, each 0 to 1.")] = (0.36, 0.5, 0.24)
+    fields: Annotated[list[Field], plain("Coloured patches of ground, only to be seen. Where two overlap, the first counts.")] = []
 
 
 def load_world(worlds: Path, name: str) -> WorldFile:

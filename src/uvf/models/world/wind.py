@@ -7,6 +7,7 @@ import msgspec
 from msgspec import Meta
 
 from uvf.maths.dryden import W20
+from uvf.models.keys import key, plain
 from uvf.models.yaml_data import BadInput, FileLocation
 
 WindSpeed = Annotated[float, Meta(ge=-100, le=100)]
@@ -18,10 +19,12 @@ Reference = Annotated[float, Meta(ge=1, le=300)]
 class Shear(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """How the steady wind grows with height: by the logarithm of MIL-F-8785C (3.7.3.3), or by a power of the height."""
 
-    law: Literal["logarithmic", "power"]
-    roughness: Annotated[float, Meta(ge=1e-4, le=3)] = 0.61  # m, z0: 2 ft; take-off and landing 0.046 m (0.15 ft)
-    exponent: Annotated[float, Meta(gt=0, le=1)] = 1 / 7
-    height: Reference = 6.096  # m above the ground at which the wind is the steady one (20 ft)
+    law: Annotated[Literal["logarithmic", "power"], plain("`logarithmic` (MIL-F-8785C, 3.7.3.3) or `power` of the height.")]
+    roughness: Annotated[
+        float, Meta(ge=1e-4, le=3), key("m", "Roughness length z0; 0.61 m is 2 ft, take-off and landing 0.046 m (0.15 ft).")
+    ] = 0.61
+    exponent: Annotated[float, Meta(gt=0, le=1), key("", "Exponent of the power law.")] = 1 / 7
+    height: Annotated[Reference, key("m", "Height above the ground at which the wind is the steady one; 20 ft by default.")] = 6.096
 
 
 class Gust(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -30,17 +33,23 @@ class Gust(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     length: the whole of it along the flight, twice the standard's gradient distance H.
     """
 
-    velocity: Velocity  # m/s, ENU, in the middle
-    length: Annotated[float, Meta(ge=1, le=10_000)]  # m
-    time: Annotated[float, Meta(ge=0, le=1e6)] | None = None  # s
-    place: tuple[Metres, Metres] | None = None  # m, world
+    velocity: Annotated[Velocity, plain("Velocity of the air in the middle of the gust [m/s], ENU, the way it blows to.")]
+    length: Annotated[float, Meta(ge=1, le=10_000), key("m", "Whole length along the flight, twice the gradient distance H of CS 25.341.")]
+    time: Annotated[
+        Annotated[float, Meta(ge=0, le=1e6)] | None,
+        key("s", "Simulation time at which every aircraft meets it; give either `time` or `place`."),
+    ] = None
+    place: Annotated[tuple[Metres, Metres] | None, plain("Middle of a standing round column of air, x, y [m], world frame.")] = None
 
 
 class TurbulenceFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Dryden's form after MIL-F-8785C, see ``uvf.maths.dryden``."""
 
-    severity: Literal["light", "moderate", "severe"] = "light"
-    w20: Annotated[float, Meta(ge=0, le=60)] | None = None  # m/s at 20 ft; left out: 15, 30 or 45 knots by the severity
+    severity: Annotated[Literal["light", "moderate", "severe"], plain("Severity after MIL-F-8785C; it sets `w20`.")] = "light"
+    w20: Annotated[
+        Annotated[float, Meta(ge=0, le=60)] | None,
+        key("m/s", "Wind at 20 ft that sets the intensity. Left out: 15, 30 or 45 knots by the severity."),
+    ] = None
 
     @property
     def at_20_feet(self) -> float:
@@ -51,10 +60,10 @@ class TurbulenceFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 class Wind(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Velocity of the air, the way it blows to, ENU [m/s]."""
 
-    steady: Velocity = (0.0, 0.0, 0.0)
-    shear: Shear | None = None
-    gusts: list[Gust] = []
-    turbulence: TurbulenceFile | None = None
+    steady: Annotated[Velocity, plain("Velocity of the air [m/s], ENU, the way it blows to.")] = (0.0, 0.0, 0.0)
+    shear: Annotated[Shear | None, plain("How the steady wind grows with height.")] = None
+    gusts: Annotated[list[Gust], plain("Single gusts, one minus cosine.")] = []
+    turbulence: Annotated[TurbulenceFile | None, plain("Dryden turbulence.")] = None
 
 
 def check_wind(wind: Wind, place: FileLocation) -> None:

@@ -2,12 +2,13 @@
 
 from collections import deque
 from collections.abc import Callable, Iterator
-from typing import Any, get_args, get_type_hints
+from typing import Any, get_type_hints
 
 import msgspec
 
 from schemas import topics
 from schemas.messages import Param, ParamReply, ParamRequest
+from uvf.models.keys import meta_of, unit_of
 from uvf.models.params import Params
 from uvf.models.yaml_data import nearest
 from uvf.runtime.bus.interface import Query
@@ -83,9 +84,7 @@ class ParamServer:
         param = Param(name=name, value=msgspec.json.encode(getattr(self._service.params, name)).decode())
         param.min, param.max = float("-inf"), float("inf")
         param.read_only = name in self._service.fixed_params
-        for meta in get_args(hints[name])[1:]:
-            if isinstance(meta, msgspec.Meta):
-                _describe_limits(param, meta)
+        _describe_limits(param, meta_of(hints[name]))
         return param
 
 
@@ -95,4 +94,4 @@ def _describe_limits(param: Param, meta: Any) -> None:
     param.min = float("-inf") if lowest is None else lowest
     param.max = float("inf") if highest is None else highest
     param.description = meta.description or ""
-    param.unit = (meta.extra_json_schema or {}).get("unit", "")
+    param.unit = unit_of(meta) or ""

@@ -3,11 +3,13 @@
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from math import hypot
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
 
 from uvf.maths.se2 import IDENTITY, Pose2, compose, inverse
+from uvf.models.keys import key
 from uvf.models.params import Params
 from uvf.slam.graph.closing import TIED, Closing
 from uvf.slam.graph.drift import PathLengths
@@ -42,8 +44,8 @@ DOUBTED = 0.01
 class GraphParams(Params, frozen=True):
     """keyframe_distance [m], keyframe_turn [rad]: motion after which a sweep becomes a keyframe."""
 
-    keyframe_distance: float = 0.35
-    keyframe_turn: float = 0.2
+    keyframe_distance: Annotated[float, key("m", "Distance driven after which a sweep becomes a keyframe.")] = 0.35
+    keyframe_turn: Annotated[float, key("rad", "Angle turned after which a sweep becomes a keyframe.")] = 0.2
 
 
 @dataclass(frozen=True)

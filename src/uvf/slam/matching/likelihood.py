@@ -23,7 +23,7 @@ REACH = 3.0  # sigmas around a point that are filled
 class LikelihoodField:
     """levels: (level, columns, rows); level l holds at a cell the most in the 2^l x 2^l cells from it upwards in x and y.
 
-    corner: (x, y) of cell [0, 0] [m]; resolution, sigma: m.
+    corner: (x, y) of the first cell, m; resolution, sigma: m.
     """
 
     levels: NDArray[np.uint8]

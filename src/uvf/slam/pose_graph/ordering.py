@@ -28,7 +28,7 @@ class Elimination(NamedTuple):
 
 
 class Quotient(NamedTuple):
-    """Pose i touches the poses neighbours[start[i]:][:near[i]] and the elements elements[start[i]:][:over[i]].
+    """Pose i touches the poses ``neighbours[start[i]:][:near[i]]`` and the elements ``elements[start[i]:][:over[i]]``.
 
     The members of element e are at first[e], ``size[e]`` of them; those of one that was absorbed are not looked at again.
     """

@@ -4,6 +4,7 @@ from typing import Annotated
 
 from msgspec import Meta
 
+from uvf.models.keys import key
 from uvf.models.params import Params
 
 Share = Annotated[float, Meta(ge=0.0, le=1.0)]
@@ -12,19 +13,21 @@ Length = Annotated[float, Meta(gt=0.0)]
 
 
 class RbpfParams(Params, frozen=True):
-    particles: Annotated[int, Meta(ge=1, le=500)] = 50
-    linearUpdate: Annotated[float, Meta(gt=0.0, le=5.0)] = 0.3  # m driven between updates of the particles
-    angularUpdate: Annotated[float, Meta(gt=0.0, le=3.2)] = 0.25  # rad turned, the same
-    minimumScore: Annotated[float, Meta(ge=0.0)] = 0.0  # sum over the beams of exp(-d^2 / 2 sigma^2), below which a match is not believed
-    maxUrange: Length = 80.0  # m, beams that are longer are not used
-    delta: Annotated[float, Meta(ge=0.01, le=0.5)] = 0.05  # m, side of a cell
-    sigma: Annotated[float, Meta(ge=0.005, le=0.5)] = 0.05  # m, of a beam's end while a sweep is matched
-    lsigma: Annotated[float, Meta(ge=0.005, le=0.5)] = 0.03  # m, the same where particles are compared
-    ogain: Annotated[float, Meta(ge=1.0, le=1000.0)] = 120.0  # what log-likelihoods are divided by: beams are not independent
-    srr: Noise = 0.1  # m per m, 1 sigma of the odometry's way by the way driven
-    srt: Noise = 0.1  # m per rad, of its way by the turn
-    str: Noise = 0.1  # rad per m, of its turn by the way driven
-    stt: Noise = 0.2  # rad per rad, of its turn by the turn
-    resampleThreshold: Share = 0.5  # part of the particles below which the effective ones are resampled
-    mapMemory: Annotated[float, Meta(ge=10.0, le=100_000.0)] = 1000.0  # MB that the maps of all particles may take together
-    seed: Annotated[int, Meta(ge=0)] = 1
+    particles: Annotated[int, Meta(ge=1, le=500), key("", "Particles; each has a path and a map.")] = 50
+    linearUpdate: Annotated[float, Meta(gt=0.0, le=5.0), key("m", "Distance driven between updates of the particles.")] = 0.3
+    angularUpdate: Annotated[float, Meta(gt=0.0, le=3.2), key("rad", "Angle turned between updates of the particles.")] = 0.25
+    minimumScore: Annotated[
+        float, Meta(ge=0.0), key("", "Sum over the beams of exp(-d^2 / 2 sigma^2) below which a match is rejected.")
+    ] = 0.0
+    maxUrange: Annotated[Length, key("m", "Longer beams are not used.")] = 80.0
+    delta: Annotated[float, Meta(ge=0.01, le=0.5), key("m", "Cell size.")] = 0.05
+    sigma: Annotated[float, Meta(ge=0.005, le=0.5), key("m", "1 sigma of a beam's end while a sweep is matched.")] = 0.05
+    lsigma: Annotated[float, Meta(ge=0.005, le=0.5), key("m", "1 sigma of a beam's end while particles are compared.")] = 0.03
+    ogain: Annotated[float, Meta(ge=1.0, le=1000.0), key("", "Divisor of the log-likelihoods, for beams are not independent.")] = 120.0
+    srr: Annotated[Noise, key("m/m", "1 sigma of the odometry's distance per distance.")] = 0.1
+    srt: Annotated[Noise, key("m/rad", "1 sigma of the odometry's distance per turn.")] = 0.1
+    str: Annotated[Noise, key("rad/m", "1 sigma of the odometry's turn per distance.")] = 0.1
+    stt: Annotated[Noise, key("rad/rad", "1 sigma of the odometry's turn per turn.")] = 0.2
+    resampleThreshold: Annotated[Share, key("", "Share of effective particles below which they are resampled.")] = 0.5
+    mapMemory: Annotated[float, Meta(ge=10.0, le=100_000.0), key("MB", "Memory that the maps of all particles may take together.")] = 1000.0
+    seed: Annotated[int, Meta(ge=0), key("", "Seed of the random numbers.")] = 1

@@ -153,7 +153,7 @@ def test_without_an_approach_there_is_nothing_to_go_around_from():
 
 
 def test_the_documentation_holds_the_table():
-    text = (ROOT / "docs" / "autopilot.md").read_text()
+    text = (ROOT / "docs" / "reference" / "modes.md").read_text()
     for mode, row in TABLE.items():
         needs = ", ".join(need.name.lower() for need in row.needs) or "-"
         without = row.without.value if row.keeps or row.is_manual else "-"

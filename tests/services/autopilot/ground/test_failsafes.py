@@ -103,7 +103,7 @@ def test_without_a_pose_a_mission_stands_and_says_so():
 
 
 def test_the_documented_table_is_that_of_the_code():
-    text = (ROOT / "docs" / "failsafes.md").read_text().partition("## Ground")[2]
+    text = (ROOT / "docs" / "reference" / "failsafes.md").read_text().partition("## Ground")[2]
     rows = [line.strip("|").split("|") for line in text.splitlines() if line.startswith("| `")]
     assert [row[0].strip(" `") for row in rows] == [rule.name for rule in GROUND_RULES]
     assert [re.findall(r"`(\w+)`", row[2]) for row in rows] == [list(rule.parameters) for rule in GROUND_RULES]

@@ -25,17 +25,23 @@ def test_a_normal_run_wants_no_attention(station):
     assert told(station) == []
 
 
-def test_that_time_stands_is_told_until_it_runs_again(station):
+def test_a_held_clock_is_told_until_it_runs_again(station):
     warning = Event(
-        text="time stands at 1.00 s: waiting for slam", severity=Event.WARNING, source="conductor", timestamp=Timestamp(seconds=1)
+        text="simulation clock held at 1.00 s: waiting for slam", severity=Event.WARNING, source="conductor", timestamp=Timestamp(seconds=1)
     )
     station.script.put("sys", topics.SYSTEM_EVENTS.by("conductor"), warning, 1.0)
     station.script.put("sys", topics.CLOCK, Clock(t_ns=10**9, waiting_for="slam"), 1.0)
     station.run(0.3, silent=True)
-    assert told(station) == ["⚠ time stands: waits for slam"]
+    assert told(station) == ["⚠ simulation clock held: waiting for slam"]
     station.run(0.3)
-    assert told(station) == [] and "time stands" not in station.page.now.html["bar"]
-    assert "time stands at 1.00 s" in station.page.now.html["log"]
+    assert told(station) == [] and "clock held" not in station.page.now.html["bar"]
+    assert "clock held at 1.00 s" in station.page.now.html["log"]
+
+
+def test_the_first_start_is_not_told_as_a_fault(station):
+    station.script.put("sys", topics.CLOCK, Clock(t_ns=0, waiting_for="slam"), 1.0)
+    station.run(0.3, silent=True)
+    assert told(station) == ["starting (the first start compiles, about a minute): waiting for slam"]
 
 
 def test_a_process_is_told_of_until_it_runs_again(station):

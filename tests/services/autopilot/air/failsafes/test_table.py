@@ -139,7 +139,7 @@ def test_every_parameter_is_used_by_a_rule():
 
 
 def test_the_documented_table_is_that_of_the_code():
-    text = (ROOT / "docs" / "failsafes.md").read_text().partition("## Ground")[0]
+    text = (ROOT / "docs" / "reference" / "failsafes.md").read_text().partition("## Ground")[0]
     rows = [[c.strip() for c in line.strip("|").split("|")] for line in text.splitlines() if line.startswith("| `")]
     shown = {row[0].strip("`"): row for row in rows}
     assert [name for name in shown if name in RULES] == list(RULES)

@@ -1,0 +1,52 @@
+"""``docs/reference/messages.md``: the project's own message types, from the comments in ``schemas/proto``."""
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+from uvf.models.scenario import ROOT
+
+PROTO = ROOT / "schemas" / "proto" / "uvf" / "v1"
+HEAD = """# Messages
+
+Generated from `schemas/proto/uvf/v1/*.proto` by `python -m launch.docs.pages`; do not edit.
+
+Types that begin with `foxglove.` are those of the package foxglove-schemas-protobuf, described in
+[Foxglove's documentation](https://docs.foxglove.dev/docs/sdk/schemas). Which topic carries which type stands in [topics](topics.md).
+"""
+BLOCK = re.compile(r"^(\s*)(message|enum) (\w+) \{")
+FIELD = re.compile(r"^\s*(?:(repeated|optional) )?([\w.]+) (\w+) = \d+[^;]*;\s*(?://\s*(.*))?$")
+VALUE = re.compile(r"^\s*([A-Z]\w*) = (\d+);\s*(?://\s*(.*))?$")
+
+
+def render() -> str:
+    """The whole page."""
+    return "\n".join((HEAD, *(line for path in sorted(PROTO.glob("*.proto")) for line in _file(path)))) + "\n"
+
+
+def _file(path: Path) -> Iterator[str]:
+    yield from (f"## `{path.name}`", "")
+    said: list[str] = []
+    outer: list[str] = []
+    for line in path.read_text(encoding="utf-8").splitlines():
+        text = line.strip()
+        if text.startswith("//"):
+            said.append(text.removeprefix("//").strip())
+            continue
+        if block := BLOCK.match(line):
+            outer.append(block.group(3))
+            head = ("field", "type", "meaning") if block.group(2) == "message" else ("value", "number", "meaning")
+            yield from ("", f"### {'.'.join(outer)}", "", " ".join(said), "", f"| {' | '.join(head)} |", "|---|---|---|")
+        elif field := FIELD.match(line):
+            many, kind, name, about = field.groups()
+            yield f"| `{name}` | {f'{many} ' if many else ''}{kind} | {_joined(said, about)} |"
+        elif value := VALUE.match(line):
+            yield f"| `{value.group(1)}` | {value.group(2)} | {_joined(said, value.group(3))} |"
+        elif text == "}" and outer:
+            outer.pop()
+        said = []
+    yield ""
+
+
+def _joined(said: list[str], about: str | None) -> str:
+    return " ".join((*said, about or "")).strip().replace("|", "\\|")

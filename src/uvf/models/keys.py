@@ -1,0 +1,37 @@
+"""What a key of a file or a parameter means and in which unit: said once, in its type, for the reference and for who asks.
+
+``x: Annotated[Metres, key("m", "East of the world's origin.")]``. A number without a unit says so by ``""``.
+"""
+
+from typing import Annotated, Any, get_args, get_origin
+
+from msgspec import UNSET, Meta
+
+UNIT = "unit"
+
+
+def key(unit: str, meaning: str) -> Meta:
+    """The note of a key whose limits, if it has any, are those of its type."""
+    return Meta(description=meaning, extra_json_schema={UNIT: unit})
+
+
+def plain(meaning: str) -> Meta:
+    """The note of a key that is no number: a name, a choice, a list, a part of the file."""
+    return Meta(description=meaning)
+
+
+def meta_of(hint: Any) -> Meta:
+    """All notes and limits of a type together; of two that say the same, the outer one counts."""
+    if get_origin(hint) is not Annotated:
+        return Meta()
+    said: dict[str, Any] = {}
+    for meta in get_args(hint)[1:]:
+        if isinstance(meta, Meta):
+            given = {name: getattr(meta, name, None) for name in ("gt", "ge", "lt", "le", "description", "extra_json_schema")}
+            said |= {name: value for name, value in given.items() if value is not None and value is not UNSET}
+    return Meta(**said)
+
+
+def unit_of(meta: Meta) -> str | None:
+    """None where nothing is said of a unit; empty for a number that has none."""
+    return (meta.extra_json_schema or {}).get(UNIT)

@@ -1,0 +1,70 @@
+"""The tutorial does what it says: its files and commands, in a copy of the tree."""
+
+import math
+import os
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+from foxglove_schemas_protobuf.LaserScan_pb2 import LaserScan
+
+from tests.docs.lessons import LESSONS, Command, File, alike, steps
+from uvf.models.scenario import ROOT
+
+pytestmark = pytest.mark.timeout(300)  # where kernels have to be compiled first
+TUTORIAL = ROOT / "docs" / "tutorial"
+CODE = ("launch", "services", "schemas", "src", "vehicles", "worlds", "missions")
+
+
+@pytest.fixture(scope="module")
+def clone(tmp_path_factory):
+    """A tree of one's own, compiled kernels included, in which the lessons leave their files."""
+    folder = tmp_path_factory.mktemp("uvf")
+    for name in CODE:
+        shutil.copytree(ROOT / name, folder / name)
+    for name in ("uvf", "pyproject.toml", "docker-compose.yml"):
+        shutil.copy2(ROOT / name, folder / name)
+    (folder / ".venv").symlink_to(ROOT / ".venv")
+    return folder
+
+
+def run(command: str, folder: Path) -> list[str]:
+    environment = {**os.environ, "COLUMNS": "120", "UVF_STATE": str(folder / "state")}
+    environment.pop("PYTHONPATH", None)
+    done = subprocess.run(command.split(), cwd=folder, env=environment, capture_output=True, text=True, timeout=240, check=False)
+    assert done.returncode == 0, f"{command}\n{done.stdout}{done.stderr}"
+    return (done.stdout + done.stderr).splitlines()
+
+
+@pytest.mark.parametrize("lesson", LESSONS)
+def test_lesson(lesson, clone):
+    for step in steps(TUTORIAL / f"{lesson}.md"):
+        if isinstance(step, File):
+            step.write(clone)
+        elif isinstance(step, Command):
+            seen = [alike(line) for line in run(step.line, clone)]
+            missing = [line for line in step.output if not any(alike(line) in each for each in seen)]
+            assert missing == [], f"{step.line} printed {seen}"
+
+
+def program() -> dict:
+    """The names of the tutorial's program, but for what needs a running system."""
+    (text,) = (step.text for step in steps(TUTORIAL / "first-algorithm.md") if isinstance(step, File) and step.path == "wander.py")
+    names: dict = {}
+    exec(compile(text.partition("with uvf.connect()")[0], "wander.py", "exec"), names)
+    return names
+
+
+def scan_of(wall: float, left: float, right: float) -> LaserScan:
+    """720 beams of a whole turn, the first one backwards."""
+    angles = [-math.pi + i * math.tau / 720 for i in range(720)]
+    ranges = [wall if abs(a) < 0.5 else left if 0.5 <= a < 1.5 else right if -1.5 < a <= -0.5 else 5.0 for a in angles]
+    return LaserScan(start_angle=angles[0], end_angle=angles[-1], ranges=ranges)
+
+
+def test_the_program_drives_where_the_way_is_free_and_turns_to_the_freer_side():
+    command = program()["command"]
+    assert command(scan_of(3.0, 1.0, 1.0)).linear > 0
+    assert command(scan_of(0.5, 2.0, 1.0)).angular > 0
+    assert command(scan_of(0.5, 1.0, 2.0)).angular < 0
