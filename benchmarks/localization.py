@@ -23,14 +23,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.logs import has_relations, logs_below
+from benchmarks.slam_evaluation.odometry_noise import EstimatedNoise, disturbed
+from benchmarks.slam_evaluation.variants import halves
 from launch.commands.bench import Case, Figures
 from launch.commands.slam import DEFAULT_METHOD
 from launch.slam.opening import open_log
 from uvf.maths.se2 import Pose2, compose, inverse
 from uvf.maths.se2_arrays import composed, inverted, steps
-from uvf.slam.evaluation.odometry_noise import EstimatedNoise, disturbed
 from uvf.slam.evaluation.relations import Relations, read_relations, relation_errors
-from uvf.slam.evaluation.variants import halves
 from uvf.slam.localization import known_map
 from uvf.slam.localization.beams import beams_of, field_of, fits_at
 from uvf.slam.localization.localizer import Localizer, LocalizerState

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.logs import has_relations, logs_below
+from benchmarks.slam_evaluation.variants import halves
 from launch import settings
 from launch.commands.bench import Case, Figures
 from launch.commands.slam import DEFAULT_METHOD
@@ -27,7 +28,6 @@ from uvf.maths.se2 import Pose2
 from uvf.maths.se2_arrays import composed, inverted
 from uvf.slam.evaluation.relations import Relations, read_relations, relation_errors
 from uvf.slam.evaluation.run import LogRun, run_over
-from uvf.slam.evaluation.variants import halves
 from uvf.slam.maps.session import MappingSession
 from uvf.slam.merging.team import Team
 from uvf.slam.methods import make_method, method_params

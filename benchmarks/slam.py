@@ -19,6 +19,7 @@ import yaml
 from numpy.typing import NDArray
 
 from benchmarks.logs import has_relations, logs_below
+from benchmarks.slam_evaluation.variants import VARIANTS
 from launch import settings
 from launch.commands.bench import Case
 from launch.commands.bench import Figures as Rows
@@ -31,7 +32,6 @@ from uvf.models.scenario import ROOT
 from uvf.models.yaml_data import BadInput
 from uvf.slam.evaluation.relations import Relations, relation_errors
 from uvf.slam.evaluation.run import run_over
-from uvf.slam.evaluation.variants import VARIANTS
 from uvf.slam.methods import METHODS, make_method, method_params
 
 Floats = NDArray[np.float64]

@@ -15,6 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.slam import RESOLUTION, WARM_UP, alone
+from benchmarks.slam_evaluation.building import corridors
+from benchmarks.slam_evaluation.driven import Driven, Wear, drive, route
+from benchmarks.slam_evaluation.straightness import hit_points, straight_walls, straightness
 from launch import settings
 from launch.commands.bench import Figures
 from launch.commands.slam import DEFAULT_METHOD
@@ -23,11 +26,8 @@ from launch.slam.results import Made, write_results
 from launch.slam.scoring import figures
 from uvf.maths.se2 import IDENTITY
 from uvf.maths.se2_arrays import composed, inverted
-from uvf.slam.evaluation.building import corridors
-from uvf.slam.evaluation.driven import Driven, Wear, drive, route
 from uvf.slam.evaluation.reference import Trajectory
 from uvf.slam.evaluation.run import LogRun, run_over
-from uvf.slam.maps.straightness import hit_points, straight_walls, straightness
 from uvf.slam.methods import make_method, method_params
 from uvf.slam.reading import Beams
 

@@ -12,9 +12,9 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.memory import in_own_process, peak_mb
+from benchmarks.slam_evaluation.driven import Driven, Wear, drive, route
+from benchmarks.slam_evaluation.open_country import scattered
 from launch.commands.bench import Figures
-from uvf.slam.evaluation.driven import Driven, Wear, drive, route
-from uvf.slam.evaluation.open_country import scattered
 from uvf.slam.methods import METHODS, make_method, method_params
 from uvf.slam.reading import Beams
 

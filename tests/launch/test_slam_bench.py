@@ -7,10 +7,10 @@ import pytest
 from typer.testing import CliRunner
 
 from benchmarks import slam
+from benchmarks.slam_evaluation.variants import VARIANTS
 from launch.cli import app
 from tests.slam.room_log import write_room_log
 from uvf.models.yaml_data import BadInput
-from uvf.slam.evaluation.variants import VARIANTS
 from uvf.slam.methods import METHODS
 
 

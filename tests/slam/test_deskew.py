@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
+from benchmarks.slam_evaluation.building import cast
 from tests.slam.matching.walls import ROOM, seen
 from uvf.maths.se2 import IDENTITY, Pose2, compose
 from uvf.slam.deskew import SPACING, deskewed, straightened
-from uvf.slam.evaluation.building import cast
 from uvf.slam.matching.cloud import cloud_of
 from uvf.slam.reading import Beams, Reading
 

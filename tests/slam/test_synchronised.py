@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from benchmarks.slam_evaluation.building import corridors
+from benchmarks.slam_evaluation.driven import Wear, drive, route
 from tests.slam.graph.buildings import HALF_ROUND
 from uvf.maths.se2 import Pose2
-from uvf.slam.evaluation.building import corridors
-from uvf.slam.evaluation.driven import Wear, drive, route
 from uvf.slam.graph.method import GraphSlam
 from uvf.slam.logs.laser_log import OdometryTrack
 from uvf.slam.synchronised import Synchronised

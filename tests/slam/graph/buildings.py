@@ -4,9 +4,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from benchmarks.slam_evaluation.building import corridors
+from benchmarks.slam_evaluation.driven import Driven, Wear, drive, route
 from uvf.maths.se2_arrays import composed, inverted
-from uvf.slam.evaluation.building import corridors
-from uvf.slam.evaluation.driven import Driven, Wear, drive, route
 from uvf.slam.evaluation.run import LogRun, run_over
 from uvf.slam.graph.method import GraphSlam
 from uvf.slam.reading import Beams

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
+from benchmarks.slam_evaluation.building import corridors
+from benchmarks.slam_evaluation.driven import Wear, drive, route
 from tests.slam.graph.buildings import BAD, HALF_ROUND, SHORT, bend, false_loops, mapped, rectangle, round_trip
 from uvf.maths.se2_arrays import wrapped
-from uvf.slam.evaluation.building import corridors
-from uvf.slam.evaluation.driven import Wear, drive, route
 
 SIZE = (40.0, 20.0)
 

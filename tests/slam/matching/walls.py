@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from benchmarks.slam_evaluation.building import cast
 from uvf.maths.se2 import IDENTITY, Pose2, compose
-from uvf.slam.evaluation.building import cast
 from uvf.slam.reading import Beams, Reading
 
 ROOM = np.array(

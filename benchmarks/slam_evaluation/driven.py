@@ -6,9 +6,9 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from benchmarks.slam_evaluation.building import cast
 from uvf.maths.se2 import Pose2
 from uvf.maths.se2_arrays import composed, inverted, steps, wrapped
-from uvf.slam.evaluation.building import cast
 from uvf.slam.logs.laser_log import LaserLog, OdometryTrack
 from uvf.slam.reading import Beams, Reading
 

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
+from benchmarks.slam_evaluation.odometry_noise import EstimatedNoise, disturbed
+from benchmarks.slam_evaluation.variants import VARIANTS, every_third, from_the_middle, halves, mirrored, noisier, worse
 from tests.slam.evaluation.made_log import BEAMS, PERIOD, made_log, made_relations, way
 from uvf.maths.se2_arrays import composed, inverted, steps
-from uvf.slam.evaluation.odometry_noise import EstimatedNoise, disturbed
 from uvf.slam.evaluation.relations import relation_errors
 from uvf.slam.evaluation.run import run_over
-from uvf.slam.evaluation.variants import VARIANTS, every_third, from_the_middle, halves, mirrored, noisier, worse
 from uvf.slam.logs.laser_log import LaserLog
 from uvf.slam.methods import make_method, method_params
 

@@ -10,9 +10,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from benchmarks.slam_evaluation.odometry_noise import EstimatedNoise, disturbed, exaggerated
 from uvf.maths.se2 import Pose2
 from uvf.maths.se2_arrays import composed, inverted
-from uvf.slam.evaluation.odometry_noise import EstimatedNoise, disturbed, exaggerated
 from uvf.slam.evaluation.relations import Relations, index_of
 from uvf.slam.logs.laser_log import LaserLog, OdometryTrack
 from uvf.slam.reading import Beams, Reading
