@@ -8,18 +8,17 @@ from services.autopilot.air.fence.fence_guard import FenceGuard
 from services.autopilot.air.flight_controller import FlightController
 from services.autopilot.air.manual_control import STICK_RELEASED, ManualControlState
 from services.autopilot.air.mode_table import TABLE, FlightMode, Need, Situation, refusal
+from services.autopilot.air.modes.beginnings import ModeContext, begin
 from services.autopilot.air.modes.descent import DescendMode
 from services.autopilot.air.modes.field import Airfield
 from services.autopilot.air.modes.follower import FollowMode, FormationLink
 from services.autopilot.air.modes.landing import LandingMode
 from services.autopilot.air.modes.leading import LeaderSpeedFilter
 from services.autopilot.air.modes.mission_flight import MissionMode
-from services.autopilot.air.modes.offboard import OLDEST, OffboardMode
+from services.autopilot.air.modes.offboard import OLDEST
 from services.autopilot.air.modes.paths import OWN, LoiterOptions, OrbitMode, PathMode
-from services.autopilot.air.modes.return_mode import ReturnMode
-from services.autopilot.air.modes.return_points import lowest_over, return_point
+from services.autopilot.air.modes.return_points import return_point
 from services.autopilot.air.modes.speed_override import SpeedOverride
-from services.autopilot.air.modes.stick_modes import STICK_MODES
 from services.autopilot.air.modes.takeoff import TakeoffMode
 from services.autopilot.air.setpoints import ControlOutput, FlightContext, FlightPhase, PathSetpoint, Setpoint
 from uvf.control.commands import AltitudeAirspeedSetpoint
@@ -207,22 +206,14 @@ class ModeManager:
     def _begun(self, now: Estimate, params: AirParams) -> FlightPhase:
         """The present mode from its beginning."""
         assert self.home is not None
-        if self.mode is FlightMode.MISSION:
-            return MissionMode(self.navigator, self._field, self.home, self.context)
-        if self.mode is FlightMode.TAKEOFF:
-            usual = self.home.height + params.takeoff_alt
-            return self._field.take_off(now, usual if self._climb_to is None else self._climb_to, self.context)
-        if self.mode is FlightMode.LAND:
-            return self._field.landing(now, self.home, self.context, params)
-        if self.mode is FlightMode.FOLLOW and self.formation is not None:
-            return FollowMode(self.formation)
-        if self.mode is FlightMode.OFFBOARD:
-            return OffboardMode(self.context)
-        if TABLE[self.mode].is_manual and self.context.hand is not None:
-            return STICK_MODES[self.mode](self.context)
-        if self.mode is FlightMode.RETURN and (to := self.return_point(now, params)) is not None:
-            return ReturnMode(to, lowest_over(to, self.rally), self.home.height, self._level.height)
-        return OrbitMode(Circle.ahead(now, max(self._level.height, params.min_altitude), params.hold_radius), OWN)
+        to = self.return_point(now, params) if self.mode is FlightMode.RETURN else None
+        height, climb_to = self._level.height, self._climb_to
+        return begin(
+            self.mode,
+            ModeContext(
+                now, params, self.home, self.navigator, self._field, self.context, height, climb_to, to, self.rally, self.formation
+            ),
+        )
 
     def _flown(self, wish: Setpoint, now: Estimate, params: AirParams, dt: float) -> ControlOutput:
         if self.leads is not None and isinstance(self._part, OrbitMode | PathMode):
