@@ -12,7 +12,7 @@ import typer
 from rich.console import Console
 from rich.table import Column, Table
 
-from launch.commands.bench_page import Facts, facts_now, notes_of, replace_section, verdicts
+from launch.commands.bench_page import BenchmarkFacts, facts_now, notes_of, replace_section, verdicts
 from launch.settings import ROOT, benchmark_group, benchmark_groups
 from uvf.models.yaml_data import BadInput, nearest
 
@@ -51,7 +51,7 @@ def _wanted(names: Sequence[str]) -> dict[str, list[str]]:
     return wanted
 
 
-def _write(group: str, rows: Figures, facts: Facts) -> None:
+def _write(group: str, rows: Figures, facts: BenchmarkFacts) -> None:
     page = RESULTS.read_text(encoding="utf-8") if RESULTS.exists() else "# Results\n"
     lines = [facts.line(), *notes_of(group), *verdicts(group, rows)]
     RESULTS.write_text(replace_section(page, group, rows, lines), encoding="utf-8")

@@ -40,7 +40,7 @@ class _Page(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 @dataclass(frozen=True)
-class Facts:
+class BenchmarkFacts:
     """Where figures come from."""
 
     command: str
@@ -52,11 +52,11 @@ class Facts:
         return f"`{self.command}`; commit {self.commit}, {self.date}; {self.machine}"
 
 
-def facts_now(names: Sequence[str]) -> Facts:
+def facts_now(names: Sequence[str]) -> BenchmarkFacts:
     """Of a run that begins now."""
     load = ", ".join(f"{value:.1f}" for value in os.getloadavg())
     machine = f"{os.cpu_count()} x {_processor()}, Python {platform.python_version()}, load before {load} (1, 5, 15 min)"
-    return Facts(shlex.join(["./uvf", "bench", *names, "--write"]), _commit(), time.strftime("%Y-%m-%d"), machine)
+    return BenchmarkFacts(shlex.join(["./uvf", "bench", *names, "--write"]), _commit(), time.strftime("%Y-%m-%d"), machine)
 
 
 def _processor() -> str:
