@@ -75,7 +75,7 @@ def visits(world: str, data: Path | None) -> Figures:
 
 
 def _row(log: Path, world_from_map: tuple[float, float, float]) -> dict[str, float]:
-    fixes = [MapFix.FromString(s.payload) for s in read_log(log) if s.key == topics.MAP_FIX.at(VEHICLE)]
+    fixes = [MapFix.FromString(s.payload) for s in read_log(log) if s.key == topics.MAP_POSE.at(VEHICLE)]
     stamps = np.array([seconds(f.timestamp) for f in fixes])
     truth = true_poses(read_log(log), VEHICLE)
     told = composed(np.array(world_from_map), np.array([(f.x, f.y, f.yaw) for f in fixes]))

@@ -182,7 +182,7 @@ def _rmse(true: Floats, told: Floats) -> dict[str, float]:
 
 def live_row(log: Path, truth: Truth) -> dict[str, float]:
     """Of each fix as it was told; the map begins at the start pose."""
-    fixes = [MapFix.FromString(s.payload) for s in read_log(log) if s.key == topics.MAP_FIX.at(VEHICLE)]
+    fixes = [MapFix.FromString(s.payload) for s in read_log(log) if s.key == topics.MAP_POSE.at(VEHICLE)]
     true = truth.at(np.array([seconds(f.timestamp) for f in fixes]))
     start = np.array((START["x"], START["y"], START["yaw"]))
     return _rmse(composed(inverted(start), true), np.array([(f.x, f.y, f.yaw) for f in fixes]))

@@ -148,7 +148,9 @@ NAV_STATE = Topic(f"{_V}/nav/state", m.NavState, 50, _Q.STATE, "best estimate of
 QUALITY = Topic(f"{_V}/nav/quality", m.EstimateQuality, 2, _Q.STATE, "how far the estimate may be off, and how well measurements fit")
 PATH = Topic(f"{_V}/nav/path", m.PosesInFrame, 2, _Q.STATE, "path being followed, world frame")
 NAV_STATUS = Topic(f"{_V}/nav/status", m.NavStatus, 2, _Q.STATE, "what the planner is doing", kept=True)
-MAP_FIX = Topic(f"{_V}/nav/fix", m.MapFix, 5, _Q.STATE, "where the newest sweep places the vehicle in its map, and how surely", kept=True)
+MAP_POSE = Topic(
+    f"{_V}/nav/map_pose", m.MapFix, 5, _Q.STATE, "where the newest sweep places the vehicle in its map, and how surely", kept=True
+)
 MAP_SESSION = Topic(f"{_V}/map/session", m.MapSession, 0, _Q.LATCHED, "keyframes, poses and edges of the map", logged=False, kept=True)
 MAP = Topic(f"{_V}/map/grid", m.Grid, 0, _Q.LATCHED, "occupancy, int8: -1 unknown, 0..100", kept=True)
 TEAM_MAP = Topic(
@@ -197,7 +199,9 @@ SET_MODE = Request(f"{_V}/srv/mode", m.ModeRequest, m.Reply, "change the flight 
 GOAL = Request(f"{_V}/srv/goal", m.GoalRequest, m.Reply, "go to a point")
 ORBIT = Request(f"{_V}/srv/orbit", m.OrbitRequest, m.Reply, "circle a place, in mode Orbit")
 GO_AROUND = Request(f"{_V}/srv/go_around", m.GoAroundRequest, m.Reply, "give up the approach and fly another one")
-ORDER = Request(f"{_V}/srv/order", m.OrderRequest, m.Reply, "take off to a height; speed, altitude, home, camera; begin anew")
+VEHICLE_COMMAND = Request(
+    f"{_V}/srv/vehicle_command", m.OrderRequest, m.Reply, "take off to a height; speed, altitude, home, camera; begin anew"
+)
 CANCEL = Request(f"{_V}/srv/cancel", m.CancelRequest, m.Reply, "give up the goal that is being driven to")
 SET_MISSION = Request(f"{_V}/srv/mission", m.MissionRequest, m.Reply, "replace the mission")
 SET_FENCE = Request(f"{_V}/srv/fence", m.FenceRequest, m.Reply, "replace the fence, or take it away")

@@ -99,7 +99,7 @@ def info(key: str) -> None:
     """The table's line and the endpoints alive."""
     topic = topic_of(_full(key))
     if topic is None:
-        known = [t.key.replace("<owner>", "*") for t in TOPICS.values()]
+        known = [t.key.replace("<owner>", key.partition("/")[0]) for t in TOPICS.values()]
         raise BadInput(f"no topic '{key}' in the table; {nearest(key, known)}")
     typer.echo(f"{topic.key}: {topic.about}\ntype {topic.message.DESCRIPTOR.full_name}, {topic.hz:g} Hz, QoS {topic.qos.value}")
     with ZenohBus(router_from(), timeout=3.0) as bus:

@@ -72,7 +72,7 @@ class BridgedVehicle(Service):
         goal: list[GoalRequest] = request(topics.GOAL)
         orbit: list[OrbitRequest] = request(topics.ORBIT)
         go_around: list[GoAroundRequest] = request(topics.GO_AROUND)
-        order: list[OrderRequest] = request(topics.ORDER)
+        order: list[OrderRequest] = request(topics.VEHICLE_COMMAND)
         cancel: list[CancelRequest] = request(topics.CANCEL)
         param: list[ParamRequest] = request(topics.PARAM.by("autopilot"))
 
@@ -98,7 +98,7 @@ class BridgedVehicle(Service):
         goal: list[Reply] = replies(topics.GOAL)
         orbit: list[Reply] = replies(topics.ORBIT)
         go_around: list[Reply] = replies(topics.GO_AROUND)
-        order: list[Reply] = replies(topics.ORDER)
+        order: list[Reply] = replies(topics.VEHICLE_COMMAND)
         cancel: list[Reply] = replies(topics.CANCEL)
         param: list[ParamReply] = replies(topics.PARAM.by("autopilot"))
 

@@ -52,14 +52,14 @@ class LocalizationService(PlacingService):
         correction: FrameTransform | None = topic(topics.TF_MAP)
         placing: FrameTransform | None = topic(topics.TF_WORLD)
         map: Grid | None = topic(topics.MAP)
-        fix: MapFix | None = topic(topics.MAP_FIX)
+        fix: MapFix | None = topic(topics.MAP_POSE)
         events: list[Event] | None = topic(topics.EVENTS.by("localization"))
         pose: list[Reply] = replies(topics.PLACE)
         relocalize: list[Reply] = replies(topics.RELOCALIZE)
 
     class Recalls(Reads):
         correction: FrameTransform | None = topic(topics.TF_MAP)
-        fix: MapFix | None = topic(topics.MAP_FIX)
+        fix: MapFix | None = topic(topics.MAP_POSE)
 
     params: FilterParams
     fixed_params = frozenset({"least_particles", "most_particles"})

@@ -53,7 +53,7 @@ class MappingService(PlacingService):
         correction: FrameTransform | None = topic(topics.TF_MAP)
         placing: FrameTransform | None = topic(topics.TF_WORLD)
         map: Grid | None = topic(topics.MAP)
-        fix: MapFix | None = topic(topics.MAP_FIX)
+        fix: MapFix | None = topic(topics.MAP_POSE)
         session: MapSession | None = topic(topics.MAP_SESSION)
         events: list[Event] | None = topic(topics.EVENTS.by("mapping"))
 

@@ -60,7 +60,7 @@ class Inputs(Reads):
     current: list[SetCurrentRequest] = request(topics.SET_CURRENT)
     orbit: list[OrbitRequest] = request(topics.ORBIT)
     go_around: list[GoAroundRequest] = request(topics.GO_AROUND)
-    order: list[OrderRequest] = request(topics.ORDER)
+    order: list[OrderRequest] = request(topics.VEHICLE_COMMAND)
     fence: list[FenceRequest] = request(topics.SET_FENCE)
     set_rally: list[RallyRequest] = request(topics.SET_RALLY)
 
@@ -87,7 +87,7 @@ class Outputs(Writes):
     current: list[Reply] = replies(topics.SET_CURRENT)
     orbit: list[Reply] = replies(topics.ORBIT)
     go_around: list[Reply] = replies(topics.GO_AROUND)
-    order: list[Reply] = replies(topics.ORDER)
+    order: list[Reply] = replies(topics.VEHICLE_COMMAND)
     fence: list[Reply] = replies(topics.SET_FENCE)
     set_rally: list[Reply] = replies(topics.SET_RALLY)
 

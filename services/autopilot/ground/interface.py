@@ -51,7 +51,7 @@ class Inputs(Reads):
     set_mission: list[MissionRequest] = request(topics.SET_MISSION)
     set_current: list[SetCurrentRequest] = request(topics.SET_CURRENT)
     set_fence: list[FenceRequest] = request(topics.SET_FENCE)
-    order: list[OrderRequest] = request(topics.ORDER)
+    order: list[OrderRequest] = request(topics.VEHICLE_COMMAND)
     set_rally: list[RallyRequest] = request(topics.SET_RALLY)
 
 
@@ -69,7 +69,7 @@ class Outputs(Writes):
     set_mission: list[Reply] = replies(topics.SET_MISSION)
     set_current: list[Reply] = replies(topics.SET_CURRENT)
     set_fence: list[Reply] = replies(topics.SET_FENCE)
-    order: list[Reply] = replies(topics.ORDER)
+    order: list[Reply] = replies(topics.VEHICLE_COMMAND)
     set_rally: list[Reply] = replies(topics.SET_RALLY)
 
 

@@ -115,7 +115,7 @@ class MavlinkService(Service):
         goal: list[Answer[GoalRequest, Reply]] = answers(topics.GOAL)
         orbit: list[Answer[OrbitRequest, Reply]] = answers(topics.ORBIT)
         go_around: list[Answer[GoAroundRequest, Reply]] = answers(topics.GO_AROUND)
-        order: list[Answer[OrderRequest, Reply]] = answers(topics.ORDER)
+        order: list[Answer[OrderRequest, Reply]] = answers(topics.VEHICLE_COMMAND)
         air_param: list[Answer[ParamRequest, ParamReply]] = answers(topics.PARAM.by("autopilot_air"))
         ground_param: list[Answer[ParamRequest, ParamReply]] = answers(topics.PARAM.by("autopilot_ground"))
 
@@ -133,7 +133,7 @@ class MavlinkService(Service):
         goal: list[GoalRequest] = call(topics.GOAL)
         orbit: list[OrbitRequest] = call(topics.ORBIT)
         go_around: list[GoAroundRequest] = call(topics.GO_AROUND)
-        order: list[OrderRequest] = call(topics.ORDER)
+        order: list[OrderRequest] = call(topics.VEHICLE_COMMAND)
         air_param: list[ParamRequest] = call(topics.PARAM.by("autopilot_air"))
         ground_param: list[ParamRequest] = call(topics.PARAM.by("autopilot_ground"))
 

@@ -5,5 +5,13 @@ RENAMED = {
     "dislike": "cost_scaling_factor",
     "least_frontier": "min_frontier_size",
     "frontier_worth": "frontier_gain",
+    "nav/fix": "nav/map_pose",
+    "srv/order": "srv/vehicle_command",
 }
-"""Old -> new, of parameters and of keys of files."""
+"""Old -> new, of parameters, keys of files and topics (without their owner)."""
+
+
+def new_name(name: str) -> str:
+    """What it is called now; of a topic with its owner, too. Empty where it was never called otherwise."""
+    owner, _, rest = name.partition("/")
+    return RENAMED.get(name) or (f"{owner}/{RENAMED[rest]}" if rest in RENAMED else "")

@@ -12,7 +12,7 @@ from typing import Annotated, Any, Literal, NamedTuple, TypeVar, Union, get_args
 import msgspec
 import yaml
 
-from uvf.models.renamed import RENAMED
+from uvf.models.renamed import new_name
 
 T = TypeVar("T")
 Key = str | int
@@ -129,8 +129,8 @@ def convert(data: Any, type_: type[T], file: str, keys: tuple[Key, ...] = ()) ->
 def nearest(name: str, known: Iterable[str]) -> str:
     """``did you mean 'x'?`` or the list of what there is."""
     choices = sorted(known)
-    if RENAMED.get(name) in choices:
-        return f"it is called '{RENAMED[name]}' now"
+    if (now := new_name(name)) in choices:
+        return f"it is called '{now}' now"
     close = difflib.get_close_matches(name, choices, n=1, cutoff=0.5)
     return f"did you mean '{_short(close[0])}'?" if close else f"there are: {listed(choices) or 'none'}"
 

@@ -123,7 +123,7 @@ def test_a_goal_is_flown_to_and_circled(plane):
 
 
 def test_higher_is_higher(plane):
-    assert plane.ask(topics.ORDER, OrderRequest(altitude=AltitudeOrder(altitude=110.0))).accepted
+    assert plane.ask(topics.VEHICLE_COMMAND, OrderRequest(altitude=AltitudeOrder(altitude=110.0))).accepted
     assert plane.run(30.0, lambda: abs(plane.truth.position.z - 110.0) < 6.0)
 
 

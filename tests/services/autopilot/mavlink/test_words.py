@@ -112,7 +112,10 @@ def test_a_command_that_cannot_be_is_refused_with_names_and_what_to_do(command, 
             "uvf/milvus/srv/orbit: broken uvf.v1.OrbitRequest: radius: 1e+30 is more than 9",
             "the radius cannot be that (1e+30 is more than 9)",
         ),
-        ("uvf/milvus/srv/order: broken uvf.v1.OrderRequest: Error parsing message", "it is too large, or has a number that cannot be"),
+        (
+            "uvf/milvus/srv/vehicle_command: broken uvf.v1.OrderRequest: Error parsing message",
+            "it is too large, or has a number that cannot be",
+        ),
         (
             "uvf/milvus/srv/fence: 9999999 bytes, 2097152 are the most for uvf.v1.FenceRequest",
             "it is too large, or has a number that cannot be",
