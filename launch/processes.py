@@ -6,7 +6,7 @@ from contextlib import closing
 from typing import Any
 
 from launch import catalogue, settings
-from launch.worker import Worker, give_way, spare_the_collector, worker
+from launch.worker import Worker, freeze_gc, lower_priority, worker
 from schemas import topics
 from schemas.messages import Clock, ClockRequest, Done, Event, Reply
 from uvf.models.scenario import load_scenario
@@ -35,7 +35,7 @@ def run_router(listen: str) -> None:
         try:
             with ZenohBus(listen.replace("0.0.0.0", "127.0.0.1"), timeout=CONNECT_PATIENCE) as bus:
                 keeper = StateStore(bus, life.warn)
-                spare_the_collector()
+                freeze_gc()
                 while not life.stop.wait(LOOK) and life.goes_on():
                     keeper.poll()
         finally:
@@ -59,12 +59,12 @@ def run_service(name: str, mission: str, vehicle: str | None, lockstep: bool = F
     """One kind of service for all its vehicles, or for one."""
     with worker(name) as life:
         kind = catalogue.kind(name)
-        give_way(kind.nice)
+        lower_priority(kind.nice)
         site = load_scenario(settings.mission_path(mission))
         hosts = catalogue.hosts(site, [kind], vehicle)
         with open_bus(life, lockstep) as bus, closing(Watchdog()) as watchdog:
             live = Live(name if vehicle is None else f"{name}.{vehicle}", hosts, bus, life.warn, watchdog)
-            spare_the_collector()
+            freeze_gc()
             live.run(life.stop, lambda: not life.goes_on())
 
 
@@ -77,7 +77,7 @@ def run_conductor(mission: str, rate: float, lockstep: bool = False, without: tu
         conductor = Conductor(simulators, [k.name for k in kinds if not k.simulator], rate, lockstep, site.members)
         with open_bus(life, lockstep) as bus:
             loop = ConductorLoop(conductor, bus, life)
-            spare_the_collector()
+            freeze_gc()
             loop.run()
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from launch import settings
 from launch.processes import open_bus
 from launch.runs import hold, keep_quota
-from launch.worker import Worker, give_way, spare_the_collector, worker
+from launch.worker import Worker, freeze_gc, lower_priority, worker
 from schemas import topics
 from schemas.messages import Event
 from uvf.models.scenario import Scenario, load_scenario
@@ -133,7 +133,7 @@ class LogSeries:
 def run_recorder(folder: Path, mission: str) -> None:
     """Writes everything on the bus to ``folder`` until told to stop."""
     with worker("recorder") as life:
-        give_way(NICE)
+        lower_priority(NICE)
         site = load_scenario(settings.mission_path(mission))
         quota = settings.runs_quota()
         try:
@@ -177,7 +177,7 @@ def _record(life: Worker, bus: ZenohBus, series: LogSeries) -> None:
     arrived: list[Sample] = []
     bus.subscribe_all(arrived.append, DEPTH)
     bus.token(f"@node/sys/recorder/{bus.boot:x}")
-    spare_the_collector()
+    freeze_gc()
     flushed = time.monotonic()
 
     def write() -> bool:

@@ -60,14 +60,14 @@ def worker(name: str) -> Iterator[Worker]:
         raise SystemExit(2) from error
 
 
-def give_way(nice: int) -> None:
+def lower_priority(nice: int) -> None:
     """Lowers this process's priority by ``nice``; then it also waits for its turn instead of interrupting when it wakes."""
     os.nice(nice)
     if nice and hasattr(os, "SCHED_BATCH"):
         os.sched_setscheduler(0, os.SCHED_BATCH, os.sched_param(0))
 
 
-def spare_the_collector() -> None:
+def freeze_gc() -> None:
     """What the start has built stays: looking through all of it for garbage would halt the process for 0.1 s now and then."""
     gc.collect()
     gc.freeze()

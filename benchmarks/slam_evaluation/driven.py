@@ -34,7 +34,7 @@ class Wear:
 
     along: float = 0.01
     turning: float = -0.03
-    veering: float = 0.002
+    heading_drift: float = 0.002
     noise: tuple[float, float, float] = (0.02, 0.03, 0.004)
 
 
@@ -80,11 +80,11 @@ def drive(poses: Floats, walls: Floats, beams: Beams, wear: Wear, seed: int) -> 
 
 def _worn(moved: Floats, wear: Wear, rng: np.random.Generator) -> Floats:
     way, turn = np.hypot(moved[:, 0], moved[:, 1]), np.abs(moved[:, 2])
-    along, turning, veering = wear.noise
+    along, turning, heading_drift = wear.noise
     off = np.zeros_like(moved)
     off[:, 0] = wear.along * moved[:, 0] + along * np.sqrt(way) * rng.standard_normal(len(way))
-    off[:, 2] = wear.turning * moved[:, 2] + wear.veering * way
-    off[:, 2] += (turning * np.sqrt(turn) + veering * np.sqrt(way)) * rng.standard_normal(len(way))
+    off[:, 2] = wear.turning * moved[:, 2] + wear.heading_drift * way
+    off[:, 2] += (turning * np.sqrt(turn) + heading_drift * np.sqrt(way)) * rng.standard_normal(len(way))
     poses = np.zeros((len(moved) + 1, 3))
     for i, step in enumerate(moved + off):
         poses[i + 1] = composed(poses[i], step)

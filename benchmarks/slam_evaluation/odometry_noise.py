@@ -33,10 +33,10 @@ class EstimatedNoise:
 
     along: float = 0.04
     turning: float = 0.05
-    veering: float = 0.03
+    heading_drift: float = 0.03
 
     def times(self, factor: float) -> "EstimatedNoise":
-        return EstimatedNoise(factor * self.along, factor * self.turning, factor * self.veering)
+        return EstimatedNoise(factor * self.along, factor * self.turning, factor * self.heading_drift)
 
     @classmethod
     def of(cls, odom_from_base: Floats, map_from_base: Floats) -> "EstimatedNoise":
@@ -51,8 +51,8 @@ class EstimatedNoise:
         forward = _unsteady(((told - known)[:, :2] * ahead).sum(axis=1), length[None])
         heading = _unsteady(wrapped(told[:, 2] - known[:, 2]), np.stack((length, wrapped(known[:, 2]))))
         along = _variances(forward, length[None])
-        veering, turning = _variances(heading, np.stack((length, angle)))
-        return cls(float(np.sqrt(along[0])), float(np.sqrt(turning)), float(np.sqrt(veering)))
+        heading_drift, turning = _variances(heading, np.stack((length, angle)))
+        return cls(float(np.sqrt(along[0])), float(np.sqrt(turning)), float(np.sqrt(heading_drift)))
 
 
 def _unsteady(errors: Floats, motions: Floats) -> Floats:
@@ -108,7 +108,7 @@ def _walked(poses: Floats, noise: EstimatedNoise, rng: np.random.Generator) -> F
     moved = steps(poses)
     driven, turned = np.hypot(moved[:, 0], moved[:, 1]), np.abs(moved[:, 2])
     along = rng.normal(size=len(moved)) * noise.along * np.sqrt(driven)
-    heading = rng.normal(size=len(moved)) * np.sqrt(noise.turning**2 * turned + noise.veering**2 * driven)
+    heading = rng.normal(size=len(moved)) * np.sqrt(noise.turning**2 * turned + noise.heading_drift**2 * driven)
     direction = np.arctan2(moved[:, 1], moved[:, 0])
     # The turn is uncertain while it is made: half of it before the step, half of it after.
     shifted = np.column_stack((along * np.cos(direction), along * np.sin(direction), np.zeros(len(moved))))

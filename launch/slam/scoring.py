@@ -37,7 +37,7 @@ def _of_run(run: LogRun) -> dict[str, float]:
         "readings": len(run.log),
         "keyframes": len(run.keyframes),
         "duration_s": run.log.duration,
-        "way_m": float(np.hypot(*np.diff(final[:, :2], axis=0).T).sum()),
+        "path_length_m": float(np.hypot(*np.diff(final[:, :2], axis=0).T).sum()),
         "wall_s": run.wall,
         "cpu_s": run.cpu,
         "times_real_time": run.times_real_time,

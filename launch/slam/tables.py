@@ -16,7 +16,7 @@ def run_rows(figures: Figures) -> Rows:
             f"{r['readings']}",
             f"{r['keyframes']}",
             f"{r['duration_s']:.1f} s",
-            f"{r['way_m']:.1f} m",
+            f"{r['path_length_m']:.1f} m",
             f"{r['wall_s']:.2f} s",
             f"{r['cpu_s']:.2f} s",
             f"{r['times_real_time']:.1f}",

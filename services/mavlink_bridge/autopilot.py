@@ -7,6 +7,7 @@ from typing import Any
 from schemas.messages import Event, MissionProgress, VehicleStatus
 from services.mavlink_bridge.commands import CommandSender
 from services.mavlink_bridge.connecting import Connecting
+from services.mavlink_bridge.connection import StatusText, Wire
 from services.mavlink_bridge.frame import BridgeOrigin, Chart
 from services.mavlink_bridge.modes import Modes
 from services.mavlink_bridge.parameters import ParameterClient
@@ -16,7 +17,6 @@ from services.mavlink_bridge.station import LOST_AFTER
 from services.mavlink_bridge.status import Told, progress_of, status_of
 from services.mavlink_bridge.telemetry import Telemetry
 from services.mavlink_bridge.transfers import Transfers
-from services.mavlink_bridge.wire import StatusText, Wire
 from uvf.mavlink import dialect as mav
 from uvf.mavlink.text_bucket import TEXTS_PER_SECOND, TextBucket
 

@@ -4,8 +4,8 @@ import math
 from collections import deque
 from dataclasses import dataclass
 
+from services.mavlink_bridge.connection import TEXT_WITHIN, Done, Wire
 from services.mavlink_bridge.station import COMPONENT, SYSTEM
-from services.mavlink_bridge.wire import TEXT_WITHIN, Done, Wire
 from uvf.mavlink import dialect as mav
 
 ANSWER_WITHIN = 4.5  # s: whoever asks over the bus hears nothing after 5

@@ -5,8 +5,8 @@ from collections.abc import Callable
 from typing import Any
 
 from services.mavlink_bridge.commands import CommandSender, command
+from services.mavlink_bridge.connection import Wire
 from services.mavlink_bridge.modes import LARGEST_LIST, Modes
-from services.mavlink_bridge.wire import Wire
 from uvf.mavlink import dialect as mav
 
 RATES: dict[int, float] = {

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from schemas.messages import Param, ParamReply
+from services.mavlink_bridge.connection import TEXT_WITHIN, Wire
 from services.mavlink_bridge.limits import LARGEST_FLOAT, WHOLE_FLOAT, OutOfLimits
-from services.mavlink_bridge.wire import TEXT_WITHIN, Wire
 from uvf.mavlink import dialect as mav
 from uvf.runtime.messages.validation import legible
 

@@ -6,10 +6,10 @@ from typing import Any
 
 from schemas.messages import Event, Fence, Mission, RallyPoints
 from services.mavlink_bridge import plans
+from services.mavlink_bridge.connection import Done
 from services.mavlink_bridge.frame import Chart
 from services.mavlink_bridge.telemetry import Telemetry
 from services.mavlink_bridge.transfers import Transfers
-from services.mavlink_bridge.wire import Done
 from uvf.mavlink import dialect as mav
 from uvf.runtime.mavlink.mission_items import BadItem, Body
 

@@ -26,9 +26,9 @@ from schemas.messages import (
 )
 from services.mavlink_bridge.autopilot import Autopilot
 from services.mavlink_bridge.commands import ANSWER_WITHIN, NAN, PendingCommand, command
+from services.mavlink_bridge.connection import Done
 from services.mavlink_bridge.frame import Chart
 from services.mavlink_bridge.limits import OutOfLimits, amsl, where
-from services.mavlink_bridge.wire import Done
 from uvf.mavlink import dialect as mav
 from uvf.runtime.contract.service import Later
 from uvf.runtime.mavlink.limits import HIGHEST

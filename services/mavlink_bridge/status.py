@@ -4,11 +4,11 @@ import math
 from dataclasses import dataclass
 
 from schemas.messages import Breach, Kind, MissionProgress, Mode, VehicleStatus
+from services.mavlink_bridge.connection import Wire
 from services.mavlink_bridge.frame import Chart
 from services.mavlink_bridge.limits import is_sound
 from services.mavlink_bridge.modes import Modes
 from services.mavlink_bridge.telemetry import FRESH, Telemetry
-from services.mavlink_bridge.wire import Wire
 from uvf.mavlink import dialect as mav
 
 KIND = {mav.MAV_TYPE_FIXED_WING: Kind.KIND_FIXED_WING, mav.MAV_TYPE_GROUND_ROVER: Kind.KIND_GROUND} | dict.fromkeys(

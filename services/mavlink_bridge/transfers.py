@@ -5,8 +5,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from services.mavlink_bridge.connection import TEXT_WITHIN, Wire
 from services.mavlink_bridge.station import COMPONENT, SYSTEM
-from services.mavlink_bridge.wire import TEXT_WITHIN, Wire
 from uvf.mavlink import dialect as mav
 from uvf.runtime.mavlink.mission_items import ORIGIN, Body, packed, unpacked
 

@@ -7,7 +7,7 @@ from services.slam.localization_service import LocalizationService, Localization
 from services.slam.map_serving import map_servers
 from services.slam.mapping_service import MappingParams, MappingService
 from services.slam.odometry.service import OdometryService
-from services.slam.warming import warm_up, warm_up_localization
+from services.slam.warm_up import warm_up, warm_up_localization
 from uvf.estimation.odometry.params import OdometryParams
 from uvf.maths.geodesy import LocalTangent
 from uvf.maths.se2 import IDENTITY, Pose2, compose, inverse

@@ -12,10 +12,10 @@ from hypothesis import strategies as st
 
 from schemas import topics
 from services.mavlink_bridge.commands import WAITING_MOST as COMMANDS_MOST
+from services.mavlink_bridge.connection import PARTS_MOST, TEXTS_MOST
 from services.mavlink_bridge.parameters import WAITING_MOST as PARAMETERS_MOST
 from services.mavlink_bridge.station import AUTOPILOTS_MOST, RIVALS_MOST
 from services.mavlink_bridge.transfers import WAITING_MOST as PLANS_MOST
-from services.mavlink_bridge.wire import PARTS_MOST, TEXTS_MOST
 from tests.hostile.bridge_storm import ANSWERS, ASKED, STEP, TOLD, Besieged, Liar
 
 EXAMPLES = int(os.environ.get("UVF_HOSTILE_EXAMPLES", "0"))

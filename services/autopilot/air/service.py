@@ -30,8 +30,8 @@ from services.autopilot.air.modes.paths import LoiterOptions
 from services.autopilot.air.setpoints import ControlOutput, FlightContext
 from services.autopilot.air.status import status_messages, telemetry
 from services.autopilot.air.status.event_log import EventLog
+from services.autopilot.parameter_state import ToldParams
 from services.autopilot.safe_state import coming_down
-from services.autopilot.told_params import ToldParams
 from uvf.control.flight_control import level_trim
 from uvf.estimation.landed import LandDetector
 from uvf.estimation.state import Estimate

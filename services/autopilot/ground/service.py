@@ -30,8 +30,8 @@ from services.autopilot.ground.multiplexer import COMMAND_MAX_AGE, SOURCES, Acti
 from services.autopilot.ground.params import GroundAutopilotParams
 from services.autopilot.ground.safety import GroundActivity, GroundFailsafeMonitor, GroundSensorInputs, mode_of, place
 from services.autopilot.multiplexing import Once
+from services.autopilot.parameter_state import ToldParams
 from services.autopilot.safe_state import standing
-from services.autopilot.told_params import ToldParams
 from uvf.control.drive_limits import DriveLimits, VelocityRamp, within_limits
 from uvf.maths.kinematics import DifferentialDrive, Twist, WheelSpeeds
 from uvf.models.vehicle.file import GroundBody

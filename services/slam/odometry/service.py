@@ -4,7 +4,7 @@ from math import isfinite
 
 from schemas import topics
 from schemas.messages import EstimateQuality, Event, FrameTransform, Gnss, Imu, NavState, Odometry, PoseInFrame, WheelTicks
-from services.slam.odometry import telling
+from services.slam.odometry import messages
 from services.slam.odometry.readings import Readings, satellite_fix
 from uvf.estimation.odometry.calibration import Scales, SegmentMaker, WheelCalibration
 from uvf.estimation.odometry.filter import DriveFilter
@@ -86,7 +86,7 @@ class OdometryService(Service):
             self._move(seconds(now.wheels.timestamp), step)
             cause = self._filter.doubt or (self._unseen.cause if self._unseen is not None else None)
             if (episode := self._episodes.step(cause, step.dt)) is not None:
-                events.append(telling.slipping(t, episode.cause))
+                events.append(messages.slipping(t, episode.cause))
         if now.correction is not None:
             self._correct(now.correction)
         if self._satellites is not None:
@@ -115,7 +115,7 @@ class OdometryService(Service):
         pose = pose2_of(odometry.pose)
         if not all(map(isfinite, pose)):
             return
-        self._filter.resume(pose, telling.pose_covariance(odometry), bias if isfinite(bias) else 0.0)
+        self._filter.resume(pose, messages.pose_covariance(odometry), bias if isfinite(bias) else 0.0)
         self._applied = applied if all(0.7 < scale < 1.4 for scale in applied) else Scales()
         self._readings.last = WheelTicks(timestamp=odometry.timestamp, left=left, right=right)
 
@@ -177,7 +177,7 @@ class OdometryService(Service):
         if not self._calibration.differs:
             return []
         applies = self.params.calibrate == "apply"
-        event = telling.calibrated(t, self._calibration, self._scales, applies)
+        event = messages.calibrated(t, self._calibration, self._scales, applies)
         if applies:
             self._applied = Scales(*(a * b for a, b in zip(self._applied, self._calibration.scales, strict=True)))
         return [event]
@@ -193,9 +193,9 @@ class OdometryService(Service):
             pose = self._satellites.shown(drive.pose, odom_from_base, self.params.correction_speed / self.hz)
             sigma, known, ratio = self._satellites.sigma, self._satellites.is_known(t), self._satellites.ratio
         return self.Outputs(
-            odometry=telling.odometry(t, self._vehicle, odom_from_base, drive, left_over),
-            moving=telling.moving(t, self._vehicle, odom_from_base),
+            odometry=messages.odometry(t, self._vehicle, odom_from_base, drive, left_over),
+            moving=messages.moving(t, self._vehicle, odom_from_base),
             pose=PoseInFrame(timestamp=stamp(t), frame_id="world", pose=planar_pose(*pose)),
-            nav_state=telling.nav_state(t, pose, drive.speeds, sigma),
-            quality=telling.quality(t, sigma, drive, (known, ratio)) if self._quality_due.at(t) else None,
+            nav_state=messages.nav_state(t, pose, drive.speeds, sigma),
+            quality=messages.quality(t, sigma, drive, (known, ratio)) if self._quality_due.at(t) else None,
         )

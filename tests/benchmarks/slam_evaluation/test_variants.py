@@ -70,7 +70,7 @@ def test_two_robots_share_nothing_but_the_relations_across_the_cut():
 
 
 def test_added_noise_has_the_spread_it_is_asked_for():
-    n, noise = 20_000, EstimatedNoise(along=0.02, turning=0.1, veering=0.03)
+    n, noise = 20_000, EstimatedNoise(along=0.02, turning=0.1, heading_drift=0.03)
     poses = np.zeros((n, 3))
     poses[:, 0] = 0.1 * np.arange(n)
     log = made_log(n, odometry=poses)
@@ -85,20 +85,20 @@ def test_added_noise_has_the_spread_it_is_asked_for():
 
 
 def test_the_noise_of_a_log_is_told_by_better_poses_and_steady_errors_are_none():
-    asked = EstimatedNoise(along=0.03, turning=0.08, veering=0.02)
+    asked = EstimatedNoise(along=0.03, turning=0.08, heading_drift=0.02)
     noisy = disturbed(made_log(9000), asked, 2).odom_from_base
     steady = steps(noisy) * (1.03, 1.03, 1.02)
     for odometry in (noisy, chained(steady)):
         found = EstimatedNoise.of(odometry, way(9000))
         assert found.along == pytest.approx(asked.along, rel=0.15)
         # Driving 2 m turns this vehicle by about 1 rad: which of the two is the cause can hardly be told, but their sum.
-        asked_there, found_there = (n.veering**2 * 0.1 + n.turning**2 * 0.05 for n in (asked, found))
+        asked_there, found_there = (n.heading_drift**2 * 0.1 + n.turning**2 * 0.05 for n in (asked, found))
         assert found_there == pytest.approx(asked_there, rel=0.25)
     assert EstimatedNoise.of(noisy[:50], way(50)) == EstimatedNoise()
 
 
 def test_wheels_that_slipped_now_and_then_are_no_noise():
-    noisy = steps(disturbed(made_log(9000), EstimatedNoise(along=0.03, turning=0.08, veering=0.02), 2).odom_from_base)
+    noisy = steps(disturbed(made_log(9000), EstimatedNoise(along=0.03, turning=0.08, heading_drift=0.02), 2).odom_from_base)
     slipped = noisy.copy()
     slipped[500::2000, 0] += 1.5
     slipped[900::2000, 2] += 1.0
@@ -108,7 +108,7 @@ def test_wheels_that_slipped_now_and_then_are_no_noise():
 
 def test_doubled_noise_doubles_the_errors_of_the_odometry_and_is_the_same_every_time():
     relations, best = made_relations(9000, apart=2), way(9000)
-    log = disturbed(made_log(9000), EstimatedNoise(along=0.03, turning=0.08, veering=0.02), 3)
+    log = disturbed(made_log(9000), EstimatedNoise(along=0.03, turning=0.08, heading_drift=0.02), 3)
     once, again = noisier(log, relations, best)[0], noisier(log, relations, best)[0]
     assert np.array_equal(once.odom_from_base, again.odom_from_base)
     before, after = (relation_errors(relations, x.stamps, x.odom_from_base) for x in (log, once))

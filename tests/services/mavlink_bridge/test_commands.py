@@ -5,7 +5,7 @@ import math
 import pytest
 
 from services.mavlink_bridge.commands import TRIES, CommandSender, command
-from services.mavlink_bridge.wire import Wire
+from services.mavlink_bridge.connection import Wire
 from tests.services.mavlink_bridge.far_end import ack, text
 from uvf.mavlink import dialect as mav
 

@@ -6,10 +6,10 @@ import pytest
 
 from schemas.messages import Event, MissionItem
 from services.mavlink_bridge.autopilot import RESTARTS_APART
+from services.mavlink_bridge.connection import PARTS_MOST, TEXT_LETTERS, TEXTS_MOST, Wire
 from services.mavlink_bridge.modes import MODES_MOST, Modes
 from services.mavlink_bridge.station import AUTOPILOTS_MOST, RIVALS_MOST
 from services.mavlink_bridge.transfers import STANDS_FOR, Transfers
-from services.mavlink_bridge.wire import PARTS_MOST, TEXT_LETTERS, TEXTS_MOST, Wire
 from tests.services.mavlink_bridge.far_end import US, heartbeat, item, text
 from tests.services.mavlink_bridge.test_station import HERE, Air
 from tests.services.mavlink_bridge.test_vehicle import HOME, Scripted, attitude, current, home, position

@@ -27,9 +27,9 @@ from schemas.messages import (
     Vector3,
 )
 from services.mavlink_bridge.commands import ANSWER_WITHIN, WAITING_MOST, CommandSender, command
+from services.mavlink_bridge.connection import Wire
 from services.mavlink_bridge.parameters import WAITING_MOST as PARAMETERS_MOST
 from services.mavlink_bridge.transfers import LARGEST
-from services.mavlink_bridge.wire import Wire
 from tests.services.mavlink_bridge.far_end import ARDUPILOT, ack, item
 from tests.services.mavlink_bridge.test_parameters import INT, Shelf
 from tests.services.mavlink_bridge.test_vehicle import Scripted, attitude, current, home, position

@@ -5,8 +5,8 @@ import struct
 
 import pytest
 
+from services.mavlink_bridge.connection import Wire
 from services.mavlink_bridge.parameters import ParameterClient
-from services.mavlink_bridge.wire import Wire
 from uvf.mavlink import dialect as mav
 
 REAL, INT = mav.MAV_PARAM_TYPE_REAL32, mav.MAV_PARAM_TYPE_INT32

@@ -2,8 +2,8 @@
 
 import pytest
 
+from services.mavlink_bridge.connection import Wire
 from services.mavlink_bridge.transfers import Transfers
-from services.mavlink_bridge.wire import Wire
 from tests.services.mavlink_bridge.far_end import DT, PlanKeeper, item, text
 from uvf.mavlink import dialect as mav
 from uvf.runtime.mavlink.mission_items import ORIGIN, packed, unpacked

@@ -30,19 +30,19 @@ def test_an_odometry_that_always_veers_is_set_straight(veers):
 
 def test_what_it_loses_in_turns_is_learnt_apart():
     trust = taught(Trust(), 100, 0.04, step=Pose2(0.0, 0.0, 0.1))
-    assert trust.veering.straightened(Pose2(0.0, 0.0, 1.0)).yaw == pytest.approx(1.04, abs=0.01)
-    assert trust.veering.straightened(Pose2(1.0, 0.0, 0.0)).yaw == pytest.approx(0.0, abs=1e-6)
+    assert trust.heading_drift.straightened(Pose2(0.0, 0.0, 1.0)).yaw == pytest.approx(1.04, abs=0.01)
+    assert trust.heading_drift.straightened(Pose2(1.0, 0.0, 0.0)).yaw == pytest.approx(0.0, abs=1e-6)
 
 
 def test_another_floor_is_learnt_anew():
     trust = taught(taught(Trust(), 500, 0.02), 400, -0.02)
-    assert trust.veering.straightened(STEP).yaw == pytest.approx(-0.002, rel=0.1)
+    assert trust.heading_drift.straightened(STEP).yaw == pytest.approx(-0.002, rel=0.1)
 
 
 def test_one_match_that_is_far_off_teaches_little():
     trust, motion = taught(Trust(), 100, 0.0), OdometryMotion(IDENTITY, STEP, NOISE)
     trust.learn(STEP, motion, Pose2(0.1, 0.0, 2.0))
-    assert abs(trust.veering.straightened(STEP).yaw) < 0.1 * motion.sigmas[1]
+    assert abs(trust.heading_drift.straightened(STEP).yaw) < 0.1 * motion.sigmas[1]
     assert trust.heading < 1.0
 
 

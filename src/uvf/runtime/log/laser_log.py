@@ -26,8 +26,8 @@ from uvf.runtime.messages.scans import Shape, beams_of, is_usable, shape_of
 from uvf.sensors.fitted import sweeping_of
 from uvf.sensors.sweeping import AT_ONCE, Sweeping
 from uvf.slam.deskew import straightened
+from uvf.slam.logs.jumps import without_jumps
 from uvf.slam.logs.laser_log import LaserLog, OdometryTrack
-from uvf.slam.logs.leaps import without_leaps
 from uvf.slam.logs.no_return import farthest_return
 from uvf.slam.reading import Beams
 
@@ -106,7 +106,7 @@ def _assembled(path: Path, name: str, heard: _Heard) -> LaserLog:
         raise BadInput(f"log {path}: no odometry of '{name}' in it")
     track = np.array(heard.odometry)
     track = track[np.unique(track[:, 0], return_index=True)[1]]
-    track[:, 1:], leapt = without_leaps(track[:, 0], track[:, 1:])
+    track[:, 1:], leapt = without_jumps(track[:, 0], track[:, 1:])
     track[:, 3] = np.unwrap(track[:, 3])
     sweeping, unknown = _sweeping(path, name)
     scans = sorted(heard.scans, key=lambda s: seconds(s.timestamp))

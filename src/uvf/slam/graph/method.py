@@ -18,7 +18,7 @@ from uvf.slam.graph.motion import UNKNOWN, OdometryMotion
 from uvf.slam.graph.nodes import KeyframeNodes, Node
 from uvf.slam.graph.restored import LOOP, add_edges, add_keyframes
 from uvf.slam.graph.tracker import LocalMap, Tracker
-from uvf.slam.logs.leaps import step_between
+from uvf.slam.logs.jumps import step_between
 from uvf.slam.maps.session import KINDS, Edges, MappingSession
 from uvf.slam.matching.cloud import cloud_of
 from uvf.slam.matching.imls import Match

@@ -15,7 +15,7 @@ from uvf.maths.se2 import IDENTITY, Pose2, compose, inverse
 from uvf.slam.hector.gradient import UNIT, climb, normal_equations
 from uvf.slam.hector.params import HectorParams
 from uvf.slam.incremental import IncrementalMethod
-from uvf.slam.logs.leaps import step_between
+from uvf.slam.logs.jumps import step_between
 from uvf.slam.maps.shared_tiles import SharedEvidence, SharedTiles
 from uvf.slam.matching.points import points_of
 from uvf.slam.method import Keyframe, SlamEstimate

@@ -18,7 +18,7 @@ from uvf.slam.localization.particle_filter import FilterSweep, Hypothesis, Parti
 from uvf.slam.localization.proposals import PoseProposal
 from uvf.slam.localization.recent import Moved, RecentSweeps
 from uvf.slam.localization.whole_map import Lately, whole_map
-from uvf.slam.logs.leaps import step_between
+from uvf.slam.logs.jumps import step_between
 from uvf.slam.matching.cloud import cloud_of
 from uvf.slam.matching.imls import match
 from uvf.slam.method import SlamEstimate

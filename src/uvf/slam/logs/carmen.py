@@ -23,8 +23,8 @@ from uvf.maths.se2 import Pose2
 from uvf.maths.se2_arrays import composed, inverted
 from uvf.models.yaml_data import BadInput
 from uvf.slam.logs.carmen_lines import LaserFan, LaserRecord, Lines, read_lines
+from uvf.slam.logs.jumps import without_jumps
 from uvf.slam.logs.laser_log import LaserLog, OdometryTrack
-from uvf.slam.logs.leaps import without_leaps
 from uvf.slam.logs.no_return import farthest_return
 from uvf.slam.logs.time_order import clock_resets, garbled, mended, rising, taking_order
 from uvf.slam.reading import Beams, Reading
@@ -73,7 +73,7 @@ def _assembled(path: Path, lines: Lines) -> LaserLog:
     order = taking_order(stamps, poses)
     stamps, sweeps = stamps[order], [lines.sweeps[i] for i in order]
     times = rising(mended(stamps))
-    poses, leapt = without_leaps(times, poses[order])
+    poses, leapt = without_jumps(times, poses[order])
     start = inverted(poses[0])
     readings = [
         Reading(t, sweep.ranges, shape, Pose2(*pose))
@@ -100,7 +100,7 @@ def _track(lines: Lines, stamps: Floats, start: Floats) -> OdometryTrack | None:
     if len(clock_resets(told)) or len(clock_resets(mended(stamps))):
         return None
     times = rising(told)
-    return OdometryTrack(times, composed(start, without_leaps(times, table[:, 1:])[0]))
+    return OdometryTrack(times, composed(start, without_jumps(times, table[:, 1:])[0]))
 
 
 def _notes_on_order(order: NDArray[np.int64], stamps: Floats) -> list[str]:

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from scipy.optimize import isotonic_regression
 
 from uvf.maths.se2_arrays import steps
-from uvf.slam.logs.leaps import FARTHEST
+from uvf.slam.logs.jumps import FARTHEST
 
 Floats = NDArray[np.float64]
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from uvf.maths.se2 import IDENTITY, Pose2, compose, inverse
 from uvf.maths.se2_arrays import composed, wrapped
-from uvf.slam.logs.leaps import step_between
+from uvf.slam.logs.jumps import step_between
 from uvf.slam.maps.shared_tiles import SharedEvidence, SharedTiles
 from uvf.slam.maps.tile_pool import TilePool
 from uvf.slam.matching.points import points_of

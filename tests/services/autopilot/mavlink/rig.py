@@ -24,7 +24,7 @@ from services.autopilot.ground.params import GroundAutopilotParams
 from services.autopilot.mavlink.connection.facts import VehicleInfo
 from services.autopilot.mavlink.parameters.parameter_store import UnreadableStore
 from services.autopilot.mavlink.service import MavlinkService
-from services.autopilot.told_params import ToldParams
+from services.autopilot.parameter_state import ToldParams
 from tests.runtime.stepping import stepped
 from uvf.maths.geodesy import LocalTangent
 from uvf.maths.rotations import from_euler

@@ -17,7 +17,7 @@ QUICKEST, WIDEST = 2 * np.pi, 1.0
 """rad/s and rad: the same of turns."""
 
 
-def without_leaps(times: Floats, odom_from_base: Floats) -> tuple[Floats, NDArray[np.int64]]:
+def without_jumps(times: Floats, odom_from_base: Floats) -> tuple[Floats, NDArray[np.int64]]:
     """The poses (n, 3) as if the vehicle had stood still while its odometry leapt (what else it did, nobody knows), and the indices
     of those that were reached by a leap. times: (n,) s, never falling.
     """

@@ -5,7 +5,7 @@ import json
 import msgspec
 
 from services.autopilot.ground.params import GroundAutopilotParams
-from services.autopilot.told_params import ToldParams
+from services.autopilot.parameter_state import ToldParams
 
 FILE = GroundAutopilotParams(link_timeout=7.0)
 

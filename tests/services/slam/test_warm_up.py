@@ -9,7 +9,7 @@ from numba.core.dispatcher import Dispatcher
 
 from launch.commands.testing import data_folder
 from launch.slam.opening import open_log
-from services.slam.warming import warm_up, warm_up_localization
+from services.slam.warm_up import warm_up, warm_up_localization
 from uvf.slam.localization import known_map
 from uvf.slam.localization.localizer import Localizer
 from uvf.slam.localization.params import FilterParams
