@@ -207,7 +207,7 @@ class GroundAutopilot(Service):
         if request.mode != self._mode:
             self._mode = request.mode
             self._tell(t, f"mode {mode_name(request.mode)}", f"asked by {request.source or 'unknown'}")
-        return Reply(accepted=True)
+        return Reply(accepted=True, reason="" if self._armed else "the vehicle is disarmed: arm it before it moves")
 
     def _set_mission(self, t: float, request: MissionRequest) -> Reply:
         items = list(request.mission.items)
