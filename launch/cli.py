@@ -266,7 +266,9 @@ def docs(
     from launch.commands.docs import build_docs, serve_docs
 
     with bad_input_is_one_line():
-        raise typer.Exit(build_docs(build) if build else serve_docs(port))
+        if build is None:
+            serve_docs(port)
+        raise typer.Exit(build_docs(build))
 
 
 @app.command()

@@ -4,30 +4,30 @@ import os
 import subprocess
 import sys
 from pathlib import Path
+from typing import NoReturn
 
 from uvf.models.scenario import ROOT
 from uvf.models.yaml_data import BadInput
 
 HOST = "127.0.0.1"
+MKDOCS = [sys.executable, "-m", "mkdocs"]
 
 
-def serve_docs(port: int) -> int:
-    """Serves the site at ``http://127.0.0.1:port`` until Ctrl-C; a page that is edited is shown anew. Returns an exit code."""
-    return _mkdocs("serve", "--dev-addr", f"{HOST}:{port}")
+def serve_docs(port: int) -> NoReturn:
+    """Serves the site at ``http://127.0.0.1:port`` until Ctrl-C; a page that is edited is shown anew. Takes the place of this process."""
+    os.chdir(ROOT)
+    os.execve(sys.executable, [*MKDOCS, "serve", "--dev-addr", f"{HOST}:{port}"], _environment())
 
 
 def build_docs(folder: Path) -> int:
-    """Builds the site into ``folder``; a broken link, anchor or reference is an error. Returns an exit code."""
+    """Builds the site into ``folder``; a broken link, anchor or reference is an error. Returns an exit code. Raises BadInput."""
     if folder.exists() and not folder.is_dir():
         raise BadInput(f"{folder} is a file; name a folder")
     if folder.is_dir() and any(folder.iterdir()) and not (folder / "sitemap.xml").is_file():
         raise BadInput(f"{folder} holds something else than a site, which building would delete; name an empty folder")
-    return _mkdocs("build", "--strict", "--site-dir", str(folder.resolve()))
+    command = [*MKDOCS, "build", "--strict", "--site-dir", str(folder.resolve())]
+    return subprocess.run(command, cwd=ROOT, env=_environment(), check=False).returncode
 
 
-def _mkdocs(*arguments: str) -> int:
-    settings = {**os.environ, "NO_MKDOCS_2_WARNING": "1", "PYTHONPATH": os.pathsep.join([str(ROOT), str(ROOT / "src")])}
-    try:
-        return subprocess.run([sys.executable, "-m", "mkdocs", *arguments], cwd=ROOT, env=settings, check=False).returncode
-    except KeyboardInterrupt:
-        return 0
+def _environment() -> dict[str, str]:
+    return {**os.environ, "NO_MKDOCS_2_WARNING": "1", "PYTHONPATH": os.pathsep.join([str(ROOT), str(ROOT / "src")])}
