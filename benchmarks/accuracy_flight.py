@@ -78,7 +78,7 @@ class Probe:
 
     def __call__(self, t: float) -> bool:
         """Whether to go on."""
-        pilot, now, motion = self.autopilot._pilot, self.autopilot._now, self.craft.motion
+        pilot, now, motion = self.autopilot._mode_manager, self.autopilot._now, self.craft.motion
         if now is None:
             return True
         east, north, height = motion.position.tolist()

@@ -55,7 +55,7 @@ class Probe:
         self._curves: list[tuple[int, Curve, list[tuple[float, ...]]]] = []
 
     def __call__(self, t: float) -> bool:
-        navigator = self._autopilot._pilot.navigator
+        navigator = self._autopilot._mode_manager.navigator
         piece, (east, north, _) = navigator._piece, self._craft.motion.position.tolist()
         if isinstance(piece, Curve) and navigator.index is not None:
             if not self._curves or self._curves[-1][1] is not piece:
@@ -69,7 +69,7 @@ class Probe:
 
     @property
     def items(self) -> tuple[PlanItem, ...]:
-        return self._autopilot._pilot.navigator.items
+        return self._autopilot._mode_manager.navigator.items
 
     def flown(self) -> list[Flown]:
         return [Flown(item, curve.way, np.array(rows)) for item, curve, rows in self._curves]

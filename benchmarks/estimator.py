@@ -105,7 +105,7 @@ def record(case: Case) -> Recorded:
             return True
 
         lockstep.run(SECONDS, look)
-        return Recorded(cycles, np.array(truth), probe.autopilot._ship.instruments, probe.autopilot.params)
+        return Recorded(cycles, np.array(truth), probe.autopilot._config.instruments, probe.autopilot.params)
 
 
 def _row(now: Estimate) -> tuple[float, ...]:

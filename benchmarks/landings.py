@@ -122,7 +122,7 @@ class Watch:
         """Whether to go on."""
         if abs(t - 5.0) < 1e-6:
             self._bus.call(topics.ARM.at(PLANE), ArmRequest(arm=True, source="bench").SerializeToString(), round(t * 1e9), self._heard)
-        pilot = self.autopilot._pilot
+        pilot = self.autopilot._mode_manager
         self._was_armed = self._was_armed or self.autopilot._armed
         if pilot.landing is not None:
             self.lane = pilot.landing.lane
@@ -140,7 +140,7 @@ class Watch:
         course = self.lane.course if self.lane is not None else np.pi / 2
         crab = float(np.remainder(np.pi / 2 - yaw - course + np.pi, 2 * np.pi) - np.pi)
         wheels = 0 if self.craft.wreck else sum(touch.is_wheel for touch in self.craft.body.touches())
-        mode = self.autopilot._pilot.mode.value
+        mode = self.autopilot._mode_manager.mode.value
         vertical = -float(motion.velocity[2])
         return Row(t, (x, y, z), z - self._stands, vertical, motion.airspeed, float(roll), -float(pitch), crab, wheels, mode)
 

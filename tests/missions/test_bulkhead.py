@@ -73,7 +73,7 @@ def runs(tmp_path_factory):
 
 def failing(step, system):
     def fails(self, t, now):
-        if getattr(self, "_system_id", None) == system or getattr(getattr(self, "_ship", None), "system_id", None) == system:
+        if getattr(self, "_system_id", None) == system or getattr(getattr(self, "_config", None), "system_id", None) == system:
             raise ZeroDivisionError("as told")
         return step(self, t, now)
 

@@ -47,7 +47,7 @@ def flown(request, tmp_path_factory):
     with closing(lockstep):
         probe = Probe(lockstep)
         lockstep.run(120.0, probe)
-        assert probe.autopilot._pilot.navigator.finished
+        assert probe.autopilot._mode_manager.navigator.finished
     return probe.flight(), speed
 
 

@@ -120,7 +120,7 @@ def test_what_is_not_answered_while_time_stands_is_told_to_be_done_later(monkeyp
     assert late.exit_code == 2
     assert (
         late.output
-        == "uvf: no answer from uvf/sys/srv/sim/remove within 5 s; while time stands it is done, and answered, at the next step\n"
+        == "uvf: no answer from uvf/sys/srv/sim/remove within 5 s; while the clock is paused it is done, and answered, at the next step\n"
     )
 
 

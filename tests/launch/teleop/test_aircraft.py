@@ -12,7 +12,7 @@ from launch.teleop.loop import operate
 from schemas import topics
 from schemas.messages import NavState, SurfaceCommand, VehicleStatus
 from tests.launch.teleop.test_command import Clock, Console
-from tests.launch.teleop.test_command import FlightTeleop as Nothing
+from tests.launch.teleop.test_command import Stick as Nothing
 from uvf.control.teleop_flight import PARKED, FlightTeleop, SurfaceLimits, SurfaceSetting
 from uvf.models.scenario import ROOT, load_scenario
 from uvf.models.yaml_data import BadInput

@@ -49,7 +49,7 @@ def test_a_paused_clock_is_not_a_lost_link(station):
 def test_the_one_who_is_waited_for_is_named(station):
     station.script.put("sys", topics.CLOCK, Clock(t_ns=10**9, waiting_for="sim_ground"), 1.0)
     station.run(0.5, silent=True)
-    assert "waits for sim_ground" in station.page.now.html["bar"]
+    assert "waiting for sim_ground" in station.page.now.html["bar"]
 
 
 def test_stop_all_is_shown_until_released(station):
