@@ -56,17 +56,17 @@ class Trust:
 
     position: float = 1.0
     heading: float = 1.0
-    veering: Veering = field(default_factory=Veering)
+    heading_drift: Veering = field(default_factory=Veering)
 
     def straightened(self, motion: OdometryMotion) -> OdometryMotion:
         """Without what the odometry always gets wrong."""
-        return replace(motion, step=self.veering.straightened(motion.step)) if motion.told else motion
+        return replace(motion, step=self.heading_drift.straightened(motion.step)) if motion.told else motion
 
     def learn(self, step: Pose2, motion: OdometryMotion, found: Pose2) -> None:
         """step: as the odometry told it; motion: as it was taken."""
         sigma, known = motion.sigmas[1], motion.step[2] - step[2]
         off = wrap(found[2] - motion.guess[2]) + known
-        self.veering.learn(step, min(max(off, -MOST_SIGMAS * sigma), MOST_SIGMAS * sigma), sigma)
+        self.heading_drift.learn(step, min(max(off, -MOST_SIGMAS * sigma), MOST_SIGMAS * sigma), sigma)
         if abs(step[2]) < STRAIGHT:
             position, heading = _off(motion, found) / np.array(motion.sigmas)
             self.position, self.heading = _followed(self.position, position), _followed(self.heading, heading)
