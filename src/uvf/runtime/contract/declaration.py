@@ -67,7 +67,7 @@ class StopInput:
 
 @dataclass(frozen=True)
 class Served:
-    """Requests of others: a list in ``Inputs`` (of services of the whole world a dict of lists by vehicle), the replies in ``Outputs``."""
+    """Requests of others: in ``Inputs`` those that are due, in ``Outputs`` the replies."""
 
     request: Request[Any, Any]
 
@@ -137,18 +137,9 @@ def request(of: Request[Any, Any]) -> Any:
     return _field(Served(of), [])
 
 
-def requests_by_vehicle(of: Request[Any, Any]) -> Any:
-    """The same for a service of the whole world: a dict of lists by vehicle."""
-    return _field(Served(of), {})
-
-
 def replies(of: Request[Any, Any]) -> Any:
     """One reply, or ``Later``, to each request of the same name."""
     return _field(Served(of), [])
-
-
-def replies_by_vehicle(of: Request[Any, Any]) -> Any:
-    return _field(Served(of), {})
 
 
 def call(of: Request[Any, Any]) -> Any:
@@ -187,8 +178,11 @@ class Writes:
 
     def add(self, name: str, vehicle: str, value: Value) -> None:
         """What is said of one vehicle, by a service of the whole world whose outputs' names are data: of sensors, of requests."""
-        by_vehicle = getattr(self, name) or {}
-        setattr(self, name, {**by_vehicle, vehicle: value})
+        by_vehicle = getattr(self, name)
+        if not by_vehicle:
+            by_vehicle = {}
+            setattr(self, name, by_vehicle)
+        by_vehicle[vehicle] = value
 
     def said(self) -> Iterator[tuple[str, Value]]:
         """Name and value of all that is said."""
