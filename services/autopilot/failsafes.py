@@ -102,7 +102,10 @@ class FailsafeWatch(Generic[K]):
 
     def step(self, known: K, dt: float) -> tuple[list[RuleChange[K]], FailsafeOrder[K] | None]:
         """The changes of this cycle of ``dt`` [s], and the order that follows, if it goes beyond what is in force."""
-        changes = [change for rule in self._rules if (change := self._look(rule, known, dt)) is not None]
+        turns = [rule.clear(known) if rule.name in self.holding else rule.trigger(known) for rule in self._rules]
+        changes = [
+            change for rule, turn in zip(self._rules, turns, strict=True) if (change := self._look(rule, turn, known, dt)) is not None
+        ]
         if not any(rule.action(known) for rule in self.holding.values()):
             self._in_charge = FailsafeAction.WARN
         begun = [FailsafeOrder(change.rule.action(known), change.rule) for change in changes if change.began]
@@ -112,9 +115,9 @@ class FailsafeWatch(Generic[K]):
         self._in_charge = order.action
         return changes, order
 
-    def _look(self, rule: FailsafeRule[K], known: K, dt: float) -> RuleChange[K] | None:
+    def _look(self, rule: FailsafeRule[K], turns: bool, known: K, dt: float) -> RuleChange[K] | None:
+        """turns: what would end a rule that holds, or begin one that does not, is there in this cycle."""
         holds = rule.name in self.holding
-        turns = rule.clear(known) if holds else rule.trigger(known)
         self._time[rule.name] = self._time.get(rule.name, 0.0) + dt if turns else 0.0
         if not turns or self._time[rule.name] < (rule.clear_delay if holds else rule.after(known)):
             return None

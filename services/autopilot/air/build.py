@@ -6,10 +6,10 @@ import numpy as np
 
 from schemas.messages import MissionItem
 from services.autopilot.air.config import AutopilotConfig
-from services.autopilot.air.formation.wingmen import wingman
 from services.autopilot.air.inputs import intake
-from services.autopilot.air.modes.leading import reserved
+from services.autopilot.air.modes.airspeed import reserved
 from services.autopilot.air.service import AutopilotAir
+from services.autopilot.air.wingman import wingman
 from services.autopilot.plan import item_from_file
 from uvf.control.servos import ServoLimits, Servos
 from uvf.estimation.ekf import datasheet

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import msgspec
 
-from services.autopilot.air.fence.fence_guard import FenceGuard, kept
+from services.autopilot.air.fence_guard import FenceGuard, kept
 from services.autopilot.air.setpoints import PathSetpoint, Setpoint
 from uvf.control.commands import AltitudeAirspeedSetpoint, AttitudeSetpoint, Surfaces
 from uvf.control.cycle import Cycle, clip

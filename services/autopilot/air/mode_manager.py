@@ -4,27 +4,25 @@ import math
 from collections.abc import Sequence
 from dataclasses import astuple, replace
 
-from services.autopilot.air.fence.fence_guard import FenceGuard
+from services.autopilot.air.active_mode import ROLLS_OUT, ActiveMode
+from services.autopilot.air.fence_guard import FenceGuard
 from services.autopilot.air.flight_controller import FlightController
-from services.autopilot.air.manual_control import STICK_RELEASED, ManualControlState
-from services.autopilot.air.mode_table import TABLE, FlightMode, Need, Situation, refusal
+from services.autopilot.air.manual_control import STICK_RELEASED
+from services.autopilot.air.mode_table import TABLE, FlightMode, Need
+from services.autopilot.air.modes.airspeed import LeaderSpeedFilter
 from services.autopilot.air.modes.beginnings import ModeContext, begin
 from services.autopilot.air.modes.descent import DescendMode
 from services.autopilot.air.modes.field import Airfield
-from services.autopilot.air.modes.follower import FollowMode, FormationLink
-from services.autopilot.air.modes.landing import LandingMode
-from services.autopilot.air.modes.leading import LeaderSpeedFilter
+from services.autopilot.air.modes.follower import FormationLink
 from services.autopilot.air.modes.mission_flight import MissionMode
 from services.autopilot.air.modes.offboard import OLDEST
 from services.autopilot.air.modes.paths import OWN, LoiterOptions, OrbitMode, PathMode
-from services.autopilot.air.modes.return_points import return_point
-from services.autopilot.air.modes.speed_override import SpeedOverride
+from services.autopilot.air.modes.return_mode import return_point
 from services.autopilot.air.modes.takeoff import TakeoffMode
 from services.autopilot.air.setpoints import ControlOutput, FlightContext, FlightPhase, PathSetpoint, Setpoint
 from uvf.control.commands import AltitudeAirspeedSetpoint
 from uvf.control.servos import SERVOS, Servos
 from uvf.estimation.state import Estimate
-from uvf.guidance.camera_trigger import CameraTrigger
 from uvf.guidance.flight_plan import PlanItem, PlanProgress
 from uvf.guidance.flyable import fault
 from uvf.guidance.plan_follower import PlanFollower
@@ -34,41 +32,25 @@ from uvf.guidance.vector_field import PathReference
 from uvf.models.vehicle.flight_params import AirParams
 
 BACK = "GNSS back: holds until a mode is asked for"
-ROLLS_OUT = "the aircraft is rolling out after its landing"
 
 
-class ModeManager:
+class ModeManager(ActiveMode):
     """Flies one mode of the table. Requests give the reason of a refusal, empty when accepted."""
 
     def __init__(
         self, items: Sequence[PlanItem], ground: float = 0.0, strips: Sequence[LandingStrip] = (), servos: Servos = SERVOS
     ) -> None:
         """ground: height [m] of home, which lies on the ground below the start."""
+        super().__init__(FlightMode.MISSION if items else FlightMode.HOLD, PlanFollower(items))
         self._ground = ground
         self._field = Airfield(strips)
         self.disarms = False
         """The motor has nothing more to do: whoever arms takes notice and resets this."""
-        self.navigator = PlanFollower(items)
-        self.mode = FlightMode.MISSION if items else FlightMode.HOLD
-        self.reason = "start"
-        self.stopped = ""
-        self._blind = False
-        self.home: Place | None = None
-        self.rally: tuple[Place, ...] = ()
-        """Where Return may lead beside home."""
-        self.context = FlightContext()
-        self.formation: FormationLink | None = None
         self.leads: LeaderSpeedFilter | None = None
         """Of an aircraft that others follow."""
-        self.speed_override = SpeedOverride()
-        self.shutter = CameraTrigger()
-        """Triggered by orders; the mission's is the navigator's."""
-        self._climb_to: float | None = None  # m, world; of a take-off that was asked for with a height
-        self._stick = ManualControlState()
         self._servos = servos
         self.fence = FenceGuard()
         self._flight_controller = FlightController(self._servos, self.fence)
-        self._phase: FlightPhase | None = None
         self._level = AltitudeProfile(math.nan)
         self._fresh = True
 
@@ -89,13 +71,6 @@ class ModeManager:
         self.context.update(context)
         self._stick.hold(context.hand, dt)
 
-    @property
-    def source(self) -> str:
-        """Whose commands reach the surfaces, or whose setpoints are followed."""
-        if TABLE[self.mode].is_manual and self.context.hand is not None:
-            return self.context.hand.source
-        return (self.mode is FlightMode.OFFBOARD and self.context.setpoint_from) or "autopilot"
-
     def _set_speed(self, now: Estimate, params: AirParams) -> None:
         part = self._part
         if isinstance(part, PathMode):
@@ -103,71 +78,9 @@ class ModeManager:
         elif isinstance(part, OrbitMode):
             part.airspeed = self.speed_override.of(now, params, part.airspeed)
 
-    @property
-    def circling(self) -> OrbitMode | None:
-        return self._phase if isinstance(self._phase, OrbitMode) else None
-
-    @property
-    def circle(self) -> Circle | None:
-        return self._phase.circle if isinstance(self._phase, OrbitMode | LandingMode | DescendMode) else None
-
-    @property
-    def landing(self) -> LandingMode | None:
-        """The landing that is being flown."""
-        return self._part if isinstance(self._part, LandingMode) else None
-
-    @property
-    def _part(self) -> FlightPhase | None:
-        return self._phase.part if isinstance(self._phase, MissionMode) else self._phase
-
-    @property
-    def is_blind(self) -> bool:
-        """Modes that need a position are not flown."""
-        return self._blind
-
-    @property
-    def is_manual(self) -> bool:
-        return TABLE[self.mode].is_manual and self.context.hand is not None
-
-    @property
-    def is_manual_control_lost(self) -> bool:
-        """In a mode that is flown by hand nobody does any more."""
-        return TABLE[self.mode].is_manual and self._stick.abandoned
-
-    @property
-    def goes_down(self) -> bool:
-        """It lands, with a position or without one."""
-        return self.landing is not None or isinstance(self._phase, DescendMode)
-
-    def is_committed(self, now: Estimate) -> bool:
-        """So near to the ground that no other mode should follow: at the begin of a take-off, on the last metres of a landing."""
-        return self._settles or (isinstance(self._part, TakeoffMode) and self._part.is_low(now))
-
-    @property
-    def _settles(self) -> bool:
-        return self.landing is not None and self.landing.committed
-
-    @property
-    def station(self) -> float | None:
-        """m, of the aircraft from its station behind a leader."""
-        return self._phase.distance if isinstance(self._phase, FollowMode) else None
-
     def join(self, formation: FormationLink) -> None:
         """Before the first step: follows from the start on."""
         self.formation, self.mode = formation, FlightMode.FOLLOW
-
-    @property
-    def _situation(self) -> Situation:
-        led = self.formation is not None and self.formation.is_led
-        return Situation(
-            self.context.airborne, not self._blind, bool(self.navigator.items), self.context.setpoint is not None, self.stopped, led
-        )
-
-    @property
-    def _stands(self) -> bool:
-        """On the ground with nothing to do: surfaces neutral, motor off, brakes on."""
-        moves = TABLE[self.mode].on_ground and (self.context.hand is not None if TABLE[self.mode].is_manual else self.context.armed)
-        return not self.context.airborne and not moves and not self._rolls_out
 
     def _look(self, now: Estimate, params: AirParams) -> None:
         """Whether this mode goes on."""
@@ -257,24 +170,6 @@ class ModeManager:
     def return_point(self, now: Estimate, params: AirParams) -> Place | None:
         """Where Return would lead now."""
         return return_point(now, self.home, self.rally, self.fence.fencing, params) if self.home is not None else None
-
-    @property
-    def blocked(self) -> str:
-        """Why it cannot be sent anywhere; empty if it can."""
-        return refusal(FlightMode.ORBIT, self._situation)
-
-    @property
-    def _rolls_out(self) -> bool:
-        descends = isinstance(self._phase, DescendMode) and self._phase.rolls
-        return descends or (self.landing is not None and self.landing.rolls)
-
-    def _change(self, mode: FlightMode, reason: str) -> None:
-        self.speed_override.begin(anew=mode is not self.mode)
-        self.mode, self.reason, self._phase, self._climb_to = mode, reason, None, None
-        self._stick.take()
-
-    def _refused(self, mode: FlightMode) -> str:
-        return refusal(mode, self._situation) or (ROLLS_OUT if self._rolls_out else "")
 
     def change_mode(self, mode: FlightMode, source: str, reason: str = "") -> str:
         """reason: what the status tells; by default who asked."""

@@ -17,18 +17,17 @@ from services.autopilot.air.config import AutopilotConfig
 from services.autopilot.air.failsafes.monitor import FailsafeMonitor, VehicleCondition
 from services.autopilot.air.failsafes.prearm import PrearmInputs, faults
 from services.autopilot.air.failsafes.table import GNSS_HOLD
-from services.autopilot.air.fence.fence_in_force import too_small
+from services.autopilot.air.fence_guard import too_small
 from services.autopilot.air.inputs import intake
 from services.autopilot.air.inputs.external_control import ExternalControl
-from services.autopilot.air.inputs.over_ground import GroundProximity
-from services.autopilot.air.inputs.sensing import SensorInputs, StateEstimation
+from services.autopilot.air.inputs.sensing import GroundProximity, SensorInputs, StateEstimation
 from services.autopilot.air.mission import orders
 from services.autopilot.air.mission.plans import ActivePlans
 from services.autopilot.air.mode_manager import ModeManager
-from services.autopilot.air.modes.leading import LeaderSpeedFilter
+from services.autopilot.air.modes.airspeed import LeaderSpeedFilter
 from services.autopilot.air.modes.paths import LoiterOptions
 from services.autopilot.air.setpoints import ControlOutput, FlightContext
-from services.autopilot.air.status import status_messages, telemetry
+from services.autopilot.air.status import telemetry
 from services.autopilot.air.status.event_log import EventLog
 from services.autopilot.parameter_state import ToldParams
 from services.autopilot.safe_state import coming_down
@@ -161,14 +160,14 @@ class AutopilotAir(Service):
             self._status.breach, self._status.breaches = self._safety.breach, self._safety.breaches
             out.status = self._stamped_status(t)
         if self._cycles % 5 == 0:
-            out.targets = status_messages.targets(t, self._mode_manager, flown)
+            out.targets = telemetry.targets(t, self._mode_manager, flown)
         navigator = self._mode_manager.navigator
         where = (navigator.index, navigator.reached, navigator.laps, navigator.finished)
         if self._cycles % 25 == 0 or where != self._where:
             self._where = where
             out.progress = telemetry.progress(t, self._mode_manager, self._plans.mission.id)
         if self._cycles % 25 == 0:
-            out.quality = status_messages.quality(t, now)
+            out.quality = telemetry.quality(t, now)
             out.path = telemetry.path(t, self._mode_manager)
         self._cycles += 1
 

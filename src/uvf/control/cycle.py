@@ -1,8 +1,6 @@
 """One cycle of the loops and what several of them need of it."""
 
 import math
-from dataclasses import dataclass
-from functools import cached_property
 
 from uvf.estimation.state import Estimate
 from uvf.maths.atmosphere import RHO0
@@ -11,76 +9,44 @@ from uvf.models.vehicle.flight_params import AirParams
 
 FULL_BANK = 1.2  # rad; beyond it load factors are not compensated
 STEEPEST = 0.5  # sine of a path
+LEAST = 1e-6  # of what is divided by: parameters that make no wing must not end the autopilot
 
 
 def clip(value: float, limit: float) -> float:
+    """``value`` within +-``limit``, in its unit."""
     return min(max(value, -limit), limit)
 
 
-@dataclass(frozen=True)
 class Cycle:
-    """The estimate and the parameters of now, and what follows from them."""
+    """The estimate and the parameters of a cycle of ``dt`` [s], and what follows from them, computed once for all loops."""
 
-    now: Estimate
-    params: AirParams
-    dt: float  # s
-
-    @cached_property
-    def speed(self) -> float:
-        """m/s true airspeed, not so low that it makes no sense to divide by it."""
-        return max(self.now.airspeed, 0.5 * self.params.trim_airspeed)
-
-    @cached_property
-    def eas(self) -> float:
-        """m/s."""
-        return self.speed * math.sqrt(self.now.density / RHO0)
-
-    @cached_property
-    def scale(self) -> float:
-        """Dynamic pressure at the trim airspeed over that of now."""
-        return (self.params.trim_airspeed / self.eas) ** 2
-
-    @cached_property
-    def load(self) -> float:
-        """Load factor of a level turn with this bank."""
-        return 1 / math.cos(clip(self.now.roll, FULL_BANK))
-
-    @cached_property
-    def alpha(self) -> float:
-        """rad, the angle of attack that carries this load."""
-        return self.params.alpha_zero_lift + self.params.alpha_per_load * self.load * GRAVITY / self.eas**2
-
-    @cached_property
-    def load_limit(self) -> float:
-        """What the wing carries at ``alpha_max`` now, and no more than ``load_max``."""
-        params = self.params
-        lifted = (params.alpha_max - params.alpha_zero_lift) * self.eas**2 / (params.alpha_per_load * GRAVITY)
-        return min(lifted, params.load_max)
-
-    @cached_property
-    def bank_limit(self) -> float:
-        """rad, of a level turn within ``load_limit``: the stall speed in the turn stays below the airspeed."""
-        return min(math.acos(min(1 / self.load_limit, 1.0)), self.params.bank_limit)
-
-    @cached_property
-    def slowest(self) -> float:
-        """m/s, the lowest airspeed to ask for with the load of now."""
-        return max(self.params.min_airspeed, self.stalled)
-
-    @cached_property
-    def stalled(self) -> float:
-        """m/s, true airspeed at which the load of now takes ``alpha_max``."""
-        params = self.params
-        eas = math.sqrt(params.alpha_per_load * self.load * GRAVITY / (params.alpha_max - params.alpha_zero_lift))
-        return eas * self.speed / self.eas
-
-    @cached_property
-    def highest_pitch(self) -> float:
-        """rad, at which the angle of attack will be ``alpha_max``, and no more than ``pitch_limit``.
+    def __init__(self, now: Estimate, params: AirParams, dt: float) -> None:
+        self.now, self.params, self.dt = now, params, dt
+        self.speed = max(now.airspeed, 0.5 * params.trim_airspeed)
+        """True airspeed [m/s], not so low that it makes no sense to divide by it."""
+        self.eas = self.speed * math.sqrt(now.density / RHO0)
+        """Equivalent airspeed [m/s]."""
+        self.scale = (params.trim_airspeed / self.eas) ** 2
+        """Dynamic pressure at the trim airspeed over that of now [-]."""
+        roll = clip(now.roll, FULL_BANK)
+        self.load = 1 / math.cos(roll)
+        """Load factor [-] of a level turn with this bank."""
+        self.alpha = params.alpha_zero_lift + params.alpha_per_load * self.load * GRAVITY / self.eas**2
+        """Angle of attack [rad] that carries this load."""
+        lifting, per_load = max(params.alpha_max - params.alpha_zero_lift, LEAST), max(params.alpha_per_load, LEAST)
+        lifted = lifting * self.eas**2 / (per_load * GRAVITY)
+        self.load_limit = min(lifted, params.load_max)
+        """Load factor [-] that the wing carries at ``alpha_max`` now, and no more than ``load_max``."""
+        self.bank_limit = min(math.acos(min(1 / self.load_limit, 1.0)), params.bank_limit)
+        """Bank [rad] of a level turn within ``load_limit``: the stall speed in the turn stays below the airspeed."""
+        stalled = math.sqrt(params.alpha_per_load * self.load * GRAVITY / lifting)
+        self.stalled = stalled * self.speed / self.eas
+        """True airspeed [m/s] at which the load of now takes ``alpha_max``."""
+        self.slowest = max(params.min_airspeed, self.stalled)
+        """The lowest airspeed [m/s] to ask for with the load of now."""
+        felt = params.alpha_zero_lift + params.alpha_per_load * now.lift / self.eas**2
+        self.highest_pitch = min(now.pitch + (params.alpha_max - felt) * math.cos(roll), params.pitch_limit)
+        """Pitch [rad] at which the angle of attack will be ``alpha_max``, and no more than ``pitch_limit``.
 
         The angle of attack of now is that of the lift that is felt: a kinematic one would take a downdraught for a stall.
         """
-        params = self.params
-        felt = params.alpha_zero_lift + params.alpha_per_load * self.now.lift / self.eas**2
-        room = (params.alpha_max - felt) * math.cos(clip(self.now.roll, FULL_BANK))
-        return min(self.now.pitch + room, params.pitch_limit)

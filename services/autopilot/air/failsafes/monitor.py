@@ -6,12 +6,11 @@ from dataclasses import dataclass, field
 from schemas.messages import Battery, Breach, Event, Fence, Link
 from services.autopilot.air.failsafes.endurance import Endurance
 from services.autopilot.air.failsafes.table import AIR_RULES, FailsafeInputs
-from services.autopilot.air.fence.fence_guard import circle_within
-from services.autopilot.air.fence.fence_in_force import FenceInForce, in_force
+from services.autopilot.air.fence_guard import FenceInForce, circle_within, in_force
 from services.autopilot.air.mode_manager import ModeManager
 from services.autopilot.air.mode_table import FlightMode
 from services.autopilot.air.modes.paths import LoiterOptions
-from services.autopilot.air.modes.return_points import is_within
+from services.autopilot.air.modes.return_mode import is_within
 from services.autopilot.failsafes import FailsafeAction, FailsafeOrder, FailsafeWatch
 from services.autopilot.link_watch import LinkWatch
 from uvf.control.commands import Surfaces

@@ -3,8 +3,8 @@
 from collections.abc import Mapping
 
 from schemas.messages import FlightSetpoint, SurfaceCommand
+from services.autopilot.air.active_mode import ActiveMode
 from services.autopilot.air.manual_control import ManualCommand, ManualSources
-from services.autopilot.air.mode_manager import ModeManager
 from services.autopilot.air.mode_table import FlightMode
 from services.autopilot.air.modes.offboard import SetpointSources
 from services.autopilot.air.setpoints import FlightContext
@@ -32,12 +32,12 @@ class ExternalControl:
         context.setpoint_from, context.setpoints_wait = self._setpoints.holder, self._setpoints.waiting
         return context
 
-    def followed(self, mode_manager: ModeManager) -> str:
+    def followed(self, active: ActiveMode) -> str:
         """Whose setpoints are flown; "" in other modes than Offboard."""
-        return self._setpoints.holder if mode_manager.mode is FlightMode.OFFBOARD else ""
+        return self._setpoints.holder if active.mode is FlightMode.OFFBOARD else ""
 
-    def news(self, t: float, mode_manager: ModeManager) -> list[tuple[str, str]]:
+    def news(self, t: float, active: ActiveMode) -> list[tuple[str, str]]:
         """Hand-overs, in the modes in which they matter: what and why."""
-        if mode_manager.mode is FlightMode.OFFBOARD:
+        if active.mode is FlightMode.OFFBOARD:
             return self._setpoints.news(t)
-        return self._hands.news(t) if mode_manager.is_manual else []
+        return self._hands.news(t) if active.is_manual else []

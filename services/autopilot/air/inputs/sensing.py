@@ -1,18 +1,20 @@
 """From what the instruments say to an estimate: each fix once, none of a receiver that has frozen, pressures as far as believed."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Literal, NamedTuple
 
-from schemas.messages import AirData, Gnss, NavState
+from schemas.messages import AirData, Gnss, NavState, Range
 from services.autopilot.air.inputs import intake
 from uvf.estimation.air_data_check import FlightState, Frozen
 from uvf.estimation.estimators import Instruments, estimator
 from uvf.estimation.mount import ImuMount
 from uvf.estimation.sensor_inputs import GnssFix, InertialSample, Pressures, Sensed
 from uvf.estimation.state import Estimate
-from uvf.maths.geodesy import LocalTangent
+from uvf.maths.filters import LowPass
+from uvf.maths.geodesy import GRAVITY, LocalTangent
 from uvf.models.vehicle.flight_params import AirParams
+from uvf.runtime.messages.convert import seconds
 
 SAME_FIXES = 4  # that are the same to the last bit: the receiver has frozen
 FIRST_FIX = 1.0  # s, waited for after a restart
@@ -97,3 +99,40 @@ def _stamped(air_data: AirData | None, t: float) -> tuple[object, Pressures] | N
     if air_data is None or (read := intake.pressures(air_data, t)) is None:
         return None
     return air_data.timestamp.ToNanoseconds(), read
+
+
+OLDEST = 0.3  # s
+STEEPEST = 0.7  # rad of bank or pitch, beyond which the beam says nothing of the height
+PUSH_TIME, HEAVE_TIME = 0.05, 0.03  # s
+
+
+class GroundProximity:
+    """Holds on to the newest reading. ``frame``: of the range finder that looks down, empty without one."""
+
+    def __init__(self, frame: str) -> None:
+        self._frame = frame
+        self._reading: Range | None = None
+        self._push = LowPass(PUSH_TIME)
+        self._heave = LowPass(HEAVE_TIME)
+        self.specific_force_x = 0.0
+        """m/s^2, specific force forwards."""
+        self.specific_force_up = GRAVITY
+        """m/s^2, specific force upwards."""
+
+    def hear(self, ranges: Sequence[Range], samples: Sequence[InertialSample], dt: float) -> None:
+        for reading in ranges:
+            if reading.frame_id == self._frame:
+                self._reading = reading
+        for sample in samples:
+            self.specific_force_x = self._push.step(sample.force[0], dt / len(samples))
+            self.specific_force_up = self._heave.step(-sample.force[2], dt / len(samples))
+
+    def clearance(self, t: float, now: Estimate, gear_height: float) -> float | None:
+        """m, of the wheels over the ground below at ``t`` [s]; None without a fresh echo or when the beam looks aside."""
+        reading = self._reading
+        if reading is None or not reading.range > 0 or max(abs(now.roll), abs(now.pitch)) > STEEPEST:
+            return None
+        age = t - seconds(reading.timestamp)
+        if not 0 <= age <= OLDEST:
+            return None
+        return reading.range * math.cos(now.roll) * math.cos(now.pitch) + now.climb * age - gear_height

@@ -5,7 +5,7 @@ from services.autopilot.air.failsafes.monitor import FailsafeMonitor, VehicleCon
 from services.autopilot.air.inputs import intake
 from services.autopilot.air.interface import Outputs
 from services.autopilot.air.mode_manager import ModeManager
-from services.autopilot.air.modes import return_points
+from services.autopilot.air.modes import return_mode
 from services.autopilot.air.status.event_log import EventLog
 from uvf.guidance.fence_plan import mission_fault
 from uvf.guidance.flyable import advice
@@ -44,7 +44,7 @@ class ActivePlans:
 
     def set_rally(self, rally: RallyPoints, params: AirParams) -> str:
         places = [intake.place(point) for point in rally.points]
-        refusal = return_points.fault(places, self._mode_manager.home or Place(0.0, 0.0, 0.0), self._mode_manager.fence.fencing, params)
+        refusal = return_mode.fault(places, self._mode_manager.home or Place(0.0, 0.0, 0.0), self._mode_manager.fence.fencing, params)
         if not refusal:
             self.rally, self._mode_manager.rally = rally, tuple(places)
             self._news.add("rally")

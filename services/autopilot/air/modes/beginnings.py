@@ -9,8 +9,7 @@ from services.autopilot.air.modes.follower import FollowMode, FormationLink
 from services.autopilot.air.modes.mission_flight import MissionMode
 from services.autopilot.air.modes.offboard import OffboardMode
 from services.autopilot.air.modes.paths import OWN, OrbitMode
-from services.autopilot.air.modes.return_mode import ReturnMode
-from services.autopilot.air.modes.return_points import lowest_over
+from services.autopilot.air.modes.return_mode import ReturnMode, lowest_over
 from services.autopilot.air.modes.stick_modes import STICK_MODES
 from services.autopilot.air.setpoints import FlightContext, FlightPhase
 from uvf.estimation.state import Estimate

@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 
 from schemas.messages import Event
-from services.autopilot.air.mode_manager import ModeManager
+from services.autopilot.air.active_mode import ActiveMode
 from services.autopilot.air.mode_table import FlightMode
 from uvf.runtime.messages.convert import stamp
 
@@ -22,21 +22,21 @@ class EventLog:
         self._finished = False
         self._lost = False
 
-    def events(self, t: float, mode_manager: ModeManager, armed: bool) -> list[Event]:
-        navigator = mode_manager.navigator
+    def events(self, t: float, active: ActiveMode, armed: bool) -> list[Event]:
+        navigator = active.navigator
         found: list[Event] = []
         if self._lost:
             found.append(_event(t, Event.NOTICE, "IMU back"))
-        if (mode_manager.mode, mode_manager.reason) != (self._mode, self._reason):
-            found.append(_event(t, Event.NOTICE, f"mode {mode_manager.mode.value}", mode_manager.reason))
+        if (active.mode, active.reason) != (self._mode, self._reason):
+            found.append(_event(t, Event.NOTICE, f"mode {active.mode.value}", active.reason))
         if self._armed is not None and armed != self._armed:
             found.append(_event(t, Event.NOTICE, "armed" if armed else "disarmed"))
         if navigator.reached != self._reached and navigator.reached >= 0:
             found.append(_event(t, Event.INFO, f"mission item {navigator.reached} reached"))
         if navigator.laps > self._laps:
             found.append(_event(t, Event.INFO, f"lap {navigator.laps} closed"))
-        pictures = (navigator.camera.pictures, mode_manager.shutter.pictures)
-        for camera, before in zip((navigator.camera, mode_manager.shutter), self._pictures, strict=True):
+        pictures = (navigator.camera.pictures, active.shutter.pictures)
+        for camera, before in zip((navigator.camera, active.shutter), self._pictures, strict=True):
             if camera.pictures > before and camera.last is not None:
                 north, east = camera.last
                 found.append(_event(t, Event.INFO, f"camera trigger {sum(pictures)}", f"at x {east:.1f} m, y {north:.1f} m"))
@@ -44,7 +44,7 @@ class EventLog:
         self._pictures, self._notes = pictures, []
         if navigator.finished and not self._finished:
             found.append(_event(t, Event.NOTICE, "mission complete"))
-        self._mode, self._reason, self._armed, self._lost = mode_manager.mode, mode_manager.reason, armed, False
+        self._mode, self._reason, self._armed, self._lost = active.mode, active.reason, armed, False
         self._reached, self._laps, self._finished = navigator.reached, navigator.laps, navigator.finished
         return found
 

@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from schemas.messages import (
+    EstimateQuality,
     FrameTransform,
     Kind,
     MissionProgress,
@@ -13,11 +14,12 @@ from schemas.messages import (
     PoseInFrame,
     PosesInFrame,
     SurfaceCommand,
+    Targets,
     Vector3,
     VehicleStatus,
 )
+from services.autopilot.air.active_mode import ActiveMode
 from services.autopilot.air.inputs import intake
-from services.autopilot.air.mode_manager import ModeManager
 from services.autopilot.air.mode_table import FlightMode
 from services.autopilot.air.setpoints import ControlOutput
 from uvf.control.commands import Surfaces
@@ -72,54 +74,52 @@ def surfaces(t: float, s: Surfaces, armed: bool) -> SurfaceCommand:
     )
 
 
-def status(t: float, mode_manager: ModeManager, now: Estimate, flown: ControlOutput) -> VehicleStatus:
+def status(t: float, active: ActiveMode, now: Estimate, flown: ControlOutput) -> VehicleStatus:
     """All but arming, landing, battery and the system id."""
     message = VehicleStatus(
         timestamp=stamp(t),
         kind=Kind.KIND_FIXED_WING,
-        mode=MODES[mode_manager.mode],
-        stopped=bool(mode_manager.stopped),
-        command_source=mode_manager.source,
-        reason=_reason(mode_manager),
+        mode=MODES[active.mode],
+        stopped=bool(active.stopped),
+        command_source=active.source,
+        reason=_reason(active),
         throttle=flown.surfaces.throttle,
         cross_track=flown.aim.error,
         altitude_error=now.height - flown.level.height,
-        distance_to_waypoint=_distance(mode_manager, now),
-        waypoint=mode_manager.navigator.index or 0,
+        distance_to_waypoint=_distance(active, now),
+        waypoint=active.navigator.index or 0,
     )
-    if mode_manager.circle is not None:
-        centre = mode_manager.circle.centre
+    if active.circle is not None:
+        centre = active.circle.centre
         message.circle.centre.CopyFrom(Vector3(x=centre.east, y=centre.north, z=centre.height))
-        message.circle.radius = mode_manager.circle.radius
-    if mode_manager.home is not None:
-        message.home.x, message.home.y, message.home.z = mode_manager.home.east, mode_manager.home.north, mode_manager.home.height
+        message.circle.radius = active.circle.radius
+    if active.home is not None:
+        message.home.x, message.home.y, message.home.z = active.home.east, active.home.north, active.home.height
     return message
 
 
-def _reason(mode_manager: ModeManager) -> str:
+def _reason(active: ActiveMode) -> str:
     """Of the mode; and who is not listened to."""
-    waits = ", ".join(mode_manager.context.setpoints_wait) if mode_manager.mode is FlightMode.OFFBOARD else ""
-    return f"{mode_manager.reason}; setpoints from {mode_manager.source}, those of {waits} wait" if waits else mode_manager.reason
+    waits = ", ".join(active.context.setpoints_wait) if active.mode is FlightMode.OFFBOARD else ""
+    return f"{active.reason}; setpoints from {active.source}, those of {waits} wait" if waits else active.reason
 
 
-def _distance(mode_manager: ModeManager, now: Estimate) -> float:
+def _distance(active: ActiveMode, now: Estimate) -> float:
     """m, to the current item's place, to the centre of the circle that is held, or to the station behind a leader."""
-    if mode_manager.station is not None:
-        return mode_manager.station
-    target = mode_manager.navigator.target
-    place = (
-        target.place if mode_manager.mode is FlightMode.MISSION and target else mode_manager.circle.centre if mode_manager.circle else None
-    )
+    if active.station is not None:
+        return active.station
+    target = active.navigator.target
+    place = target.place if active.mode is FlightMode.MISSION and target else active.circle.centre if active.circle else None
     return math.hypot(place.north - now.north, place.east - now.east) if place else 0.0
 
 
-def progress(t: float, mode_manager: ModeManager, mission_id: int) -> MissionProgress:
-    navigator = mode_manager.navigator
+def progress(t: float, active: ActiveMode, mission_id: int) -> MissionProgress:
+    navigator = active.navigator
     if not navigator.items:
         state = MissionProgress.NO_MISSION
     elif navigator.finished:
         state = MissionProgress.COMPLETE
-    elif mode_manager.mode is FlightMode.MISSION:
+    elif active.mode is FlightMode.MISSION:
         state = MissionProgress.ACTIVE
     else:
         state = MissionProgress.NOT_STARTED if navigator.reached < 0 and navigator.index is None else MissionProgress.PAUSED
@@ -141,20 +141,20 @@ def _current(navigator: PlanFollower) -> int:
     return len(navigator.items) - 1 if navigator.finished else 0
 
 
-def path(t: float, mode_manager: ModeManager) -> PosesInFrame:
+def path(t: float, active: ActiveMode) -> PosesInFrame:
     """What is flown, for display: the items still to come up to a return to the first of them, or the circle."""
-    if mode_manager.mode is FlightMode.MISSION and mode_manager.navigator.index is not None:
-        places = _ahead(mode_manager)
-    elif mode_manager.mode is FlightMode.FOLLOW and mode_manager.formation is not None:
-        places = mode_manager.formation.ahead()
+    if active.mode is FlightMode.MISSION and active.navigator.index is not None:
+        places = _ahead(active)
+    elif active.mode is FlightMode.FOLLOW and active.formation is not None:
+        places = active.formation.ahead()
     else:
-        places = _round(mode_manager.circle) if mode_manager.circle else []
+        places = _round(active.circle) if active.circle else []
     return PosesInFrame(timestamp=stamp(t), frame_id="world", poses=[_pose(p) for p in places])
 
 
-def _ahead(mode_manager: ModeManager) -> list[Place]:
+def _ahead(active: ActiveMode) -> list[Place]:
     """Each item once, then back to the first when the circuit closes."""
-    navigator = mode_manager.navigator
+    navigator = active.navigator
     places = navigator.curve_ahead()
     seen: list[int] = []
     index = navigator.index
@@ -176,3 +176,42 @@ def _round(circle: Circle) -> list[Place]:
 
 def _pose(place: Place) -> Pose:
     return Pose(position=Vector3(x=place.east, y=place.north, z=place.height))
+
+
+def targets(t: float, active: ActiveMode, flown: ControlOutput) -> Targets:
+    """Nothing that is not held now: by hand no place, with the surfaces in hand no attitude either."""
+    message = Targets(timestamp=stamp(t), airspeed=flown.airspeed)
+    if flown.airspeed is not None:
+        message.altitude = flown.level.height
+    if flown.attitude is not None:
+        message.bank, message.pitch = flown.attitude.bank, flown.attitude.pitch
+    item = active.navigator.target if active.mode is FlightMode.MISSION else None
+    if item is not None and active.circle is None:
+        message.place.CopyFrom(Vector3(x=item.place.east, y=item.place.north, z=item.place.height))
+        message.radius = 0.0 if item.flies_through or item.kind in OFF_PATH else item.radius
+    elif active.circle is not None:
+        centre = active.circle.centre
+        message.place.CopyFrom(Vector3(x=centre.east, y=centre.north, z=centre.height))
+        message.radius = active.circle.radius
+    return message
+
+
+def quality(t: float, now: Estimate) -> EstimateQuality:
+    fits = now.ratios
+    return EstimateQuality(
+        timestamp=stamp(t),
+        position_known=now.position_known,
+        height_known=now.height_known,
+        airspeed_known=now.airspeed_known,
+        position_sigma=now.position_sigma,
+        height_sigma=now.height_sigma,
+        tilt_sigma=now.tilt_sigma,
+        yaw_sigma=now.yaw_sigma,
+        wind_sigma=now.wind_sigma,
+        position_ratio=fits.position,
+        velocity_ratio=fits.velocity,
+        height_ratio=fits.height,
+        airspeed_ratio=fits.airspeed,
+        slip_ratio=fits.slip,
+        field_ratio=fits.field,
+    )

@@ -2,6 +2,7 @@
 
 import math
 
+import msgspec
 import pytest
 
 from tests.services.autopilot.air.point_mass import DT, PARAMS
@@ -97,3 +98,9 @@ def test_an_integrator_does_not_wait_for_a_servo_that_keeps_up():
         trim.step(asked, 1.0, 0.01 * math.cos(0.11 * k), 0.02)
         plain += 0.01 * math.cos(0.11 * k) * 0.02
     assert trim.value == pytest.approx(plain, rel=1e-9)
+
+
+@pytest.mark.parametrize("no_wing", [{"alpha_per_load": 0.0}, {"alpha_max": 0.05, "alpha_zero_lift": 0.3}])
+def test_parameters_that_make_no_wing_leave_limits_that_are_numbers(no_wing):
+    cycle = Cycle(cruising(), msgspec.structs.replace(PARAMS, **no_wing), DT)
+    assert all(map(math.isfinite, (cycle.load_limit, cycle.bank_limit, cycle.stalled, cycle.highest_pitch)))

@@ -20,8 +20,8 @@ from schemas.messages import (
 from services.autopilot.air.mission.orders import carry_out
 from services.autopilot.air.mode_manager import ModeManager
 from services.autopilot.air.mode_table import FlightMode
+from services.autopilot.air.modes.airspeed import airspeed_over_ground
 from services.autopilot.air.modes.paths import LoiterOptions
-from services.autopilot.air.modes.speed_override import airspeed_over_ground
 from services.autopilot.air.setpoints import FlightContext
 from tests.services.autopilot.air.sensing import WAYPOINTS, resting
 from tests.services.autopilot.air.states import PARAMS, cruising

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from schemas.messages import Breach, Fence, FenceRequest, FenceZone, Mode, ModeRequest, RallyPoints, RallyRequest, Vector3
-from services.autopilot.air.modes import return_points
+from services.autopilot.air.modes import return_mode
 from tests.runtime.stepping import recall
 from tests.services.autopilot.air.sensing import Bench
 from tests.services.autopilot.air.states import PARAMS, cruising
@@ -33,17 +33,17 @@ def within(radius, action=Fence.RETURN):
     ],
 )
 def test_return_leads_to_the_nearest_that_lies_within_the_fence(north, fence, leads_to):
-    assert return_points.return_point(cruising(north=north), HOME, (NEAR, FAR), fence, PARAMS) == leads_to
+    assert return_mode.return_point(cruising(north=north), HOME, (NEAR, FAR), fence, PARAMS) == leads_to
 
 
 def test_a_rally_point_is_circled_no_lower_than_home_would_be():
-    assert return_points.return_point(cruising(east=3900.0), HOME, (NEAR, FAR), OPEN, PARAMS) == Place(0.0, 4000.0, LOWEST)
+    assert return_mode.return_point(cruising(east=3900.0), HOME, (NEAR, FAR), OPEN, PARAMS) == Place(0.0, 4000.0, LOWEST)
 
 
 def test_rally_points_outside_of_the_fence_are_refused_by_number():
-    assert return_points.fault((NEAR, FAR), HOME, OPEN, PARAMS) == ""
-    assert return_points.fault((NEAR, FAR), HOME, within(1500.0), PARAMS).startswith("item 1: (4000, 0) is 2500 m outside")
-    assert "not finite" in return_points.fault((Place(math.nan, 0.0, 0.0),), HOME, OPEN, PARAMS)
+    assert return_mode.fault((NEAR, FAR), HOME, OPEN, PARAMS) == ""
+    assert return_mode.fault((NEAR, FAR), HOME, within(1500.0), PARAMS).startswith("item 1: (4000, 0) is 2500 m outside")
+    assert "not finite" in return_mode.fault((Place(math.nan, 0.0, 0.0),), HOME, OPEN, PARAMS)
 
 
 def rallied(*points):

@@ -1,16 +1,38 @@
-"""Makes the autopilots of followers, for stations that can be kept."""
+"""The autopilot of an aircraft that follows another one."""
 
 import math
 
+from schemas import topics
+from schemas.messages import NavState
+from services.autopilot.air import interface
 from services.autopilot.air.config import AutopilotConfig
-from services.autopilot.air.formation.wingman import AutopilotWingman
 from services.autopilot.air.modes.follower import FormationLink
+from services.autopilot.air.service import AutopilotAir
 from uvf.guidance.formation_slot import FormationSlot
 from uvf.models.mission.formation import Follow, chain_of, offset_of
 from uvf.models.scenario import Scenario
 from uvf.models.vehicle.flight_params import AirParams
 from uvf.models.yaml_data import BadInput, FileLocation
+from uvf.runtime.contract.declaration import each_vehicle
 from uvf.runtime.contract.instances import ServiceInstance
+
+
+class AutopilotWingman(AutopilotAir):
+    """All that an aircraft's autopilot does, and mode Follow: it hears where the others think they are."""
+
+    class Inputs(interface.Inputs):
+        others: dict[str, NavState] = each_vehicle(topics.NAV_STATE)
+
+    def __init__(self, config: AutopilotConfig, params: AirParams, formation: FormationLink) -> None:
+        super().__init__(config, params)
+        self._formation = formation
+        self._mode_manager.join(formation)
+
+    def step(self, t: float, now: interface.Inputs) -> interface.Outputs:
+        assert isinstance(now, self.Inputs)
+        self._formation.hear(t, now.others)
+        return super().step(t, now)
+
 
 NEAREST = 1.0  # s behind a leader: what lies ahead of the follower has to be known
 

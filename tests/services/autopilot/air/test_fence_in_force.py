@@ -7,8 +7,7 @@ import pytest
 
 from schemas.messages import Breach, Fence, FenceRequest, FenceZone, Mode, ModeRequest, Vector3
 from services.autopilot.air.failsafes.prearm import PrearmInputs, faults
-from services.autopilot.air.fence.fence_guard import FenceGuard
-from services.autopilot.air.fence.fence_in_force import FenceInForce, in_force, too_small
+from services.autopilot.air.fence_guard import FenceGuard, FenceInForce, in_force, too_small
 from tests.services.autopilot.air.sensing import Bench
 from tests.services.autopilot.air.states import PARAMS, G, Kinematic, cruising
 from uvf.guidance.route import Place

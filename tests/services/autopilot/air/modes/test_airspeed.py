@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 
 from services.autopilot.air.build import hosts
-from services.autopilot.air.modes.leading import LeaderSpeedFilter, reserved
+from services.autopilot.air.modes.airspeed import LeaderSpeedFilter, reserved
 from services.autopilot.air.setpoints import PathSetpoint, Setpoint
 from tests.services.autopilot.air.states import PARAMS, cruising
 from uvf.control.commands import AltitudeAirspeedSetpoint

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from schemas.messages import Fence
-from services.autopilot.air.fence.fence_guard import FenceGuard, circle_within, clamped, kept, turn
+from services.autopilot.air.fence_guard import FenceGuard, circle_within, clamped, kept, turn
 from tests.services.autopilot.air.states import PARAMS, G, Kinematic, cruising
 from uvf.control.commands import AltitudeAirspeedSetpoint
 from uvf.guidance.fence_plan import fence_fit, mission_fault, place_fault
