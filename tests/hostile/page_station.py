@@ -7,6 +7,7 @@ import sys
 import time
 from functools import partial
 
+from services.gcs.page import viser_socket
 from services.gcs.page.viser_page import ViserPage
 from services.gcs.service import GroundStation
 from services.gcs.view.cameras import cameras
@@ -16,7 +17,11 @@ from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.contract.service_runner import ServiceRunner
 
 
+SILENT_FOR = 3.0  # s, instead of ten that a test would wait for
+
+
 def main(port: int) -> None:
+    viser_socket.SILENT_FOR = SILENT_FOR
     site, script = with_eyes(demo_site()), Script()
     page = ViserPage(Address(port=port), partial(cameras, site))
     shell = ServiceRunner(ServiceInstance(GroundStation, lambda: GroundStation(site, page)), script.bus)

@@ -14,7 +14,8 @@ import msgspec
 import pytest
 import websockets
 
-from services.gcs.page.viser_socket import LARGEST, MOST_BROWSERS, SILENT_FOR, is_sound
+from services.gcs.page.viser_socket import LARGEST, MOST_BROWSERS, is_sound
+from tests.hostile.page_station import SILENT_FOR
 from tests.services.gcs.wire import CAMERA, Browser, connect, free_port, until
 from uvf.models.scenario import ROOT
 

@@ -1,21 +1,39 @@
 """The command line answers bad input with one clear line and a non-zero exit."""
 
+import contextlib
+import io
+import os
 import socket
 import subprocess
 import sys
+from contextlib import redirect_stderr, redirect_stdout
+from typing import NamedTuple
+from unittest import mock
 
 import pytest
 import yaml
 
 from launch import settings
+from launch.cli import main
 from uvf.models.scenario import ROOT
 
 
-def uvf(*arguments, **environment):
-    import os
+class Said(NamedTuple):
+    returncode: int
+    stdout: str
+    stderr: str
 
-    command = [sys.executable, "-m", "launch.cli", *arguments]
-    return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=60, env={**os.environ, **environment}, check=False)
+
+def uvf(*arguments, **environment):
+    """The command line's own entry in this process: starting one for each line would be most of the time."""
+    out, err = io.StringIO(), io.StringIO()
+    asked = mock.patch.object(sys, "argv", ["uvf", *arguments])
+    with mock.patch.dict(os.environ, environment), asked, contextlib.chdir(ROOT), redirect_stdout(out), redirect_stderr(err):
+        try:
+            main()
+        except SystemExit as end:
+            return Said(end.code or 0, out.getvalue(), err.getvalue())
+    raise AssertionError("it has to end with an exit code")
 
 
 def mission(tmp_path, **changes):
@@ -48,6 +66,12 @@ def test_a_bad_mission_is_one_line_that_names_the_mend(tmp_path, case):
     assert done.returncode == 2
     assert expected in done.stderr
     assert len(done.stderr.strip().splitlines()) == 1
+
+
+def test_a_process_of_its_own_says_the_same(tmp_path):
+    path = mission(tmp_path, world="hose")
+    done = subprocess.run([sys.executable, "-m", "launch.cli", "check", path], cwd=ROOT, capture_output=True, text=True, check=False)
+    assert tuple(uvf("check", path)) == (done.returncode, done.stdout, done.stderr)
 
 
 def test_an_unknown_measure_is_named_before_the_run(tmp_path):

@@ -1,5 +1,7 @@
 """``uvf vehicle tune``: figures from the model, margins of the loops, and a vehicle.yaml that keeps what it says."""
 
+import functools
+
 import numpy as np
 import pytest
 import yaml
@@ -14,9 +16,12 @@ PLACE = FileLocation("vehicle.yaml")
 FIGURES = {"roll_p": 0.05123456, "roll_time": 0.3}
 
 
-@pytest.fixture(scope="module", params=["milvus", "stick25"])
+tuned = functools.cache(tune)  # many steady flights: once for each aircraft
+
+
+@pytest.fixture(params=["milvus", "stick25"])
 def tuning(request):
-    return tune(ROOT / "vehicles" / request.param)
+    return tuned(ROOT / "vehicles" / request.param)
 
 
 def test_the_loops_are_stable_with_room(tuning):
@@ -47,7 +52,8 @@ def test_what_cannot_bank_is_refused():
         tune(ROOT / "vehicles" / "nas10")
 
 
-def test_it_is_printed_drawn_and_nothing_is_written_without_being_asked(tmp_path):
+def test_it_is_printed_drawn_and_nothing_is_written_without_being_asked(tmp_path, monkeypatch):
+    monkeypatch.setattr("launch.vehicles.tuning.tune", tuned)
     before = (ROOT / "vehicles" / "stick25" / "vehicle.yaml").read_text()
     done = CliRunner().invoke(vehicle_app, ["tune", "stick25", "--picture", str(tmp_path / "t.png")])
     assert done.exit_code == 0, done.output
