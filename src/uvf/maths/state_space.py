@@ -26,7 +26,7 @@ class StateSpace:
         return StateSpace(self.a[np.ix_(rows, rows)], self.b[np.ix_(rows, columns)], tuple(states), tuple(inputs))
 
     def slope(self, state: str, by: str) -> float:
-        """Partial derivative d(state') / d(by), by a state or an input: an element of A or B [unit of ``state`` / s / unit of ``by``]."""
+        """Partial derivative d(state') / d(by), by a state or an input: an element of A or B [unit of state / s / by]."""
         row = self.states.index(state)
         return float(self.a[row, self.states.index(by)] if by in self.states else self.b[row, self.inputs.index(by)])
 

@@ -150,7 +150,7 @@ class Region:
             done = min(done + max(room, STEP), length)
 
     def roomiest(self, near: Point, radius: float, cells: int = 41) -> tuple[Point, float]:
-        """(point (x, y) [m], its clearance [m]): of a grid, the nearest to ``near`` with a clearance of ``radius`` [m], else the roomiest."""
+        """(point (x, y), its clearance) [m] of a grid: the nearest to ``near`` with a clearance of ``radius`` [m], else the roomiest."""
         low, high = self._box(near, 4 * radius)
         x, y = np.meshgrid(np.linspace(low[0], high[0], cells), np.linspace(low[1], high[1], cells))
         points = np.column_stack((x.ravel(), y.ravel()))
