@@ -16,7 +16,7 @@ class StepHangs(BaseException):
 
 
 def time_limit(hz: float) -> float:
-    """Processor time [s] that one step of a service with ``hz`` may use: far more than any needs."""
+    """Processor time [s] that one step of a service that runs at ``hz`` [Hz] may use: far more than any needs."""
     return min(max(PERIODS / hz, SHORTEST), LONGEST)
 
 
@@ -34,6 +34,7 @@ class Watchdog:
         signal.signal(signal.SIGALRM, self._look)
 
     def close(self) -> None:
+        """Gives the signal back to the system's default."""
         signal.signal(signal.SIGALRM, signal.SIG_DFL)
 
     @contextmanager
