@@ -72,7 +72,7 @@ def twist_between(start: Pose2, end: Pose2, dt: float) -> Twist:
 
 
 def spin_velocity(angular_velocity: Floats, arm: Floats) -> Floats:
-    """(3,) omega x r [m/s]: velocity of a body's point at ``arm`` [m] against its origin, both in one frame.
+    """Velocity omega x r (3,) [m/s] of a body's point at ``arm`` (3,) [m] against its origin; rates (3,) [rad/s], all in one frame.
 
     Written out: ``np.cross`` takes ten times as long on one pair.
     """

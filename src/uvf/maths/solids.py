@@ -19,7 +19,7 @@ BOX, CYLINDER, SPHERE, TRIANGLE = 0, 1, 2, 3
 
 
 class Solids(NamedTuple):
-    """n primitives in one frame: kinds (n,) int64, rows (n, 12), and their bounds low, high (n, 3) [m]."""
+    """Table of n primitives in one frame: kinds (n,) int64, rows (n, 12), and their bounds low, high (n, 3) [m]."""
 
     kinds: NDArray[np.int64]
     rows: Floats

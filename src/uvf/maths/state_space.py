@@ -12,7 +12,10 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class StateSpace:
-    """a: (n, n), b: (n, m), in the order of ``states`` and ``inputs``; all are deviations from an equilibrium."""
+    """Linear model x' = A x + B u. a: (n, n), b: (n, m), in the order of ``states`` and ``inputs``.
+
+    States and inputs are deviations from an equilibrium.
+    """
 
     a: Floats
     b: Floats

@@ -43,7 +43,10 @@ def sample_sigma(density: float, hz: float) -> float:
 
 
 class GaussMarkov:
-    """dx/dt = -x / time_constant + white noise, exact for any step (Beard & McLain, eq. 7.17); begins in its steady state."""
+    """First-order Gauss-Markov process, exact for any step (Beard & McLain, eq. 7.17); begins in its steady state.
+
+    dx/dt = -x / time_constant + white noise.
+    """
 
     def __init__(self, sigma: Floats, time_constant: float, rng: np.random.Generator) -> None:
         """sigma: (n,) standard deviations in the steady state; time_constant: s."""

@@ -18,7 +18,7 @@ MAPS = (".yaml", ".yml", ".pgm", ".png")
 
 
 class Options(NamedTuple):
-    """models: folders with Gazebo models; height [m] of a map's walls; replace: overwrite a world of that name.
+    """Options of an import. models: folders with Gazebo models; height: of a map's walls [m]; replace: overwrite a world of that name.
 
     upright: turn meshes that say that y is up.
     """

@@ -30,7 +30,7 @@ class ModelFault:
 
 @dataclass(frozen=True)
 class Inertial:
-    """mass [kg]; com (3,) m in the link; inertia (3, 3) kg m^2 about the centre of mass, axes of the link."""
+    """Inertia of a link: mass [kg]; com (3,) [m] in the link; inertia (3, 3) [kg m^2] about the centre of mass, axes of the link."""
 
     mass: float
     com: Floats
@@ -39,7 +39,7 @@ class Inertial:
 
 @dataclass(frozen=True)
 class Link:
-    """inertial None = none given: a frame without mass. Shapes are in the link's frame.
+    """A link. inertial: None = none given, a frame without mass. Shapes are in the link's frame.
 
     contact: what the file says of touching (lateral_friction and the like), name -> value.
     """
@@ -54,7 +54,7 @@ class Link:
 
 @dataclass(frozen=True)
 class Joint:
-    """parent_from_child at rest; axis (3,) in the child's frame, unit; limits: lower and upper [rad or m], None = none.
+    """A joint. parent_from_child: at rest; axis: (3,) unit vector in the child's frame; limits: lower and upper [rad or m], None = none.
 
     damping [N m s/rad], friction [N m] of the bearing.
     """

@@ -69,7 +69,7 @@ class Comparison:
         return *pair, counts[pair]
 
     def differences(self, before_ns: float) -> Iterator[Difference]:
-        """Differences in messages stamped before ``before_ns`` [ns] that were not compared yet; all of them must have been added."""
+        """Differences in messages stamped before ``before_ns`` [ns] that were not compared yet; all must have been added, and all made."""
         while self._logged and self._logged[0][1].stamp_ns < before_ns:
             which, old = self._logged.popleft()
             _, new = self._made.pop(which, (0, None))

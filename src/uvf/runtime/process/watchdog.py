@@ -21,7 +21,7 @@ def time_limit(hz: float) -> float:
 
 
 class Watchdog:
-    """Of a process whose steps run in its main thread; there is one at a time.
+    """Ends steps that hang, in a process whose steps run in its main thread; there is one at a time.
 
     It counts the processor time of that thread, so a busy or a sleeping machine harms nobody. It interrupts Python code only:
     a step that is lost within an engine or a compiled kernel, or waits for a lock, is left to the launcher, which ends the whole process.
@@ -39,7 +39,7 @@ class Watchdog:
 
     @contextmanager
     def limited(self, limit: float) -> Iterator[None]:
-        """Raises StepHangs in its body after ``limit`` [s] of processor time."""
+        """Limits the processor time of its body: raises StepHangs in it after ``limit`` [s]."""
         self._since, self._limit = time.thread_time(), limit
         # Only now: a signal at the end of a SimpleQueue's timeout makes CPython 3.11 wait there for ever.
         signal.setitimer(signal.ITIMER_REAL, LOOK, LOOK)

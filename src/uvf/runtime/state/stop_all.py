@@ -57,7 +57,7 @@ class StopStatus:
 
 
 def told(engagements: Iterable[StopEngagement]) -> str:
-    """Who engages STOP ALL and why, for people; empty when nobody does."""
+    """Text of who engages STOP ALL and why; empty when nobody does."""
     reasons: dict[str, list[str]] = {}
     for one in engagements:
         reasons.setdefault(one.source or "somebody unnamed", []).append(one.reason)

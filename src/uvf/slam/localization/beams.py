@@ -40,8 +40,10 @@ class BeamLikelihood:
 
 @dataclass(frozen=True)
 class Scores:
-    """(n,) of each pose. logs: log-likelihood of the sweep; shares of its beams, 0..1: ``fits`` are on walls, ``against`` have
-    gone through one or end where the map knows free floor; what is left ends where it knows nothing."""
+    """Scores (n,) of a sweep, one for each pose. logs: log-likelihood of the sweep; fits, against: shares of its beams, 0..1.
+
+    ``fits`` are on walls, ``against`` have gone through one or end where the map knows free floor; the rest ends where it knows nothing.
+    """
 
     logs: Floats
     fits: Floats

@@ -55,7 +55,7 @@ class SharedTiles(TilePool):
     def draw(self, k: int, reading: Reading, map_from_base: Pose2, evidence: SharedEvidence, reach: float = LONGEST) -> Stroke | None:
         """Draws a reading into map k, and returns what was drawn; None where nothing can be.
 
-        reach: longest range that is a return [m].
+        reach: beams that say they are longer [m] are no return.
         """
         beams, pose = reading.beams, map_from_base
         if not all(isfinite(v) and abs(v) < FARTHEST for v in pose):

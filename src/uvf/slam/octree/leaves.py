@@ -39,8 +39,9 @@ class TooLarge(ValueError):
 
 
 class Leaves(NamedTuple):
-    """codes: (n,) Morton number of the lowest cell in each, rising; depths: (n,) 16 = a cell, a leaf's side is 2^(16 - depth) cells;
-    values: (n,) log-odds.
+    """Leaves of an octree. codes: (n,) Morton number of the lowest cell in each, rising; values: (n,) log-odds.
+
+    depths: (n,) 16 = a cell; a leaf's side is 2^(16 - depth) cells.
     """
 
     codes: Ints

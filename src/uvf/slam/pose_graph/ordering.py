@@ -16,7 +16,7 @@ Ints = NDArray[np.int64]
 
 
 class Elimination(NamedTuple):
-    """pivots: (n,) poses as they go; supernode s eliminates pivots[starts[s] : starts[s + 1]] together.
+    """Elimination order. pivots: (n,) poses as they go; supernode s eliminates pivots[starts[s] : starts[s + 1]] together.
 
     Each of those is tied to all others of them and to rows[row_starts[s] : row_starts[s + 1]], eliminated later.
     """
