@@ -25,7 +25,7 @@ OPERATORS = ("gcs", "client", "teleop", "mavlink")
 
 
 class Qos(Enum):
-    """How a topic travels; ``runtime.zenoh_bus`` turns each class into Zenoh's settings."""
+    """How a topic travels; ``uvf.runtime.bus.zenoh_bus`` turns each class into Zenoh's settings."""
 
     CONTROL = "control"
     STATE = "state"

@@ -145,7 +145,7 @@ class Recorder:
 
     @property
     def refused(self) -> Counter[str]:
-        """Number of messages that could not be recorded since the first file of the run began, by the words of ``log_bounds.REFUSED``."""
+        """Number of messages that could not be recorded since the first file of the run began, by the words of ``bounds.REFUSED``."""
         return self._admission.refused
 
     @property
