@@ -25,7 +25,7 @@ OPERATORS = ("gcs", "client", "teleop", "mavlink")
 
 
 class Qos(Enum):
-    """How a topic travels; ``runtime.zenoh_bus`` turns each class into Zenoh's settings."""
+    """How a topic travels; ``uvf.runtime.bus.zenoh_bus`` turns each class into Zenoh's settings."""
 
     CONTROL = "control"
     STATE = "state"
@@ -56,6 +56,7 @@ class Topic(Generic[M]):
 
     @property
     def per_vehicle(self) -> bool:
+        """Whether each vehicle has a topic of its own."""
         return "<owner>" in self.key
 
     @property
@@ -76,7 +77,7 @@ class Topic(Generic[M]):
 
 @dataclass(frozen=True)
 class Request(Generic[Q, R]):
-    """A question with an answer: asked by a service's ``calls``, served by another's ``requests``."""
+    """A request with its reply: sent by a service's ``calls``, served by another's ``requests``."""
 
     key: str
     message: type[Q]
@@ -85,12 +86,15 @@ class Request(Generic[Q, R]):
 
     @property
     def per_vehicle(self) -> bool:
+        """Whether each vehicle has a request of its own."""
         return "<owner>" in self.key
 
     def by(self, source: str) -> "Request[Q, R]":
+        """The same request to the service named ``source``."""
         return replace(self, key=self.key.replace("<source>", source))
 
     def at(self, owner: str) -> str:
+        """Full key for one owner: ``uvf/burger/srv/goal``."""
         return f"{PREFIX}/{self.key.replace('<owner>', owner)}"
 
 

@@ -40,7 +40,7 @@ def connect(endpoint: str | None = None, timeout: float = 5.0) -> "Client":
 
 
 class Client:
-    """A guest on the bus; a context manager."""
+    """A client of the bus for a person's own program; a context manager."""
 
     def __init__(self, bus: ZenohBus) -> None:
         self._bus = bus
@@ -78,7 +78,7 @@ class Client:
 
     @property
     def is_paused(self) -> bool:
-        """Whether time stands."""
+        """Whether simulation time is paused."""
         return self._clock().state == Clock.PAUSED
 
     def _clock(self) -> Clock:
@@ -90,21 +90,21 @@ class Client:
         return clock
 
     def read(self, owner: str, topic: Topic[M], timeout: float = 5.0) -> M:
-        """The newest message of a topic; waits for the first one. Raises TimeoutError."""
+        """Newest message of a topic; waits for the first one for ``timeout`` [s, wall]. Raises TimeoutError."""
         key = topic.at(owner)
         self._watch(key, topic)
         self.wait(lambda: key in self._newest, timeout, f"nothing on {key}")
         return cast(M, self._newest[key])
 
     def heard(self, owner: str, topic: Topic[Any]) -> int:
-        """How many messages of a topic have come so far."""
+        """Number of messages of a topic that have come so far."""
         key = topic.at(owner)
         self._watch(key, topic)
         self._bus.poll()
         return self._count[key]
 
     def wait(self, condition: Callable[[], bool], timeout: float, what: str = "condition not met") -> None:
-        """Until ``condition()`` holds. Raises TimeoutError with ``what``."""
+        """Waits until ``condition()`` holds, for at most ``timeout`` [s, wall]. Raises TimeoutError with ``what``."""
         end = time.monotonic() + timeout
         self._bus.poll()
         while not condition():
@@ -114,7 +114,7 @@ class Client:
             self._bus.poll()
 
     def send(self, owner: str, topic: Topic[M], message: M) -> None:
-        """Publishes, stamped with the simulation time now (in the message too, where it has no stamp of its own)."""
+        """Publishes a message, stamped with the simulation time now (in the message too, where it has no stamp of its own)."""
         key, now_ns = topic.at(owner), round(self.time * 1e9)
         if "timestamp" in message.DESCRIPTOR.fields_by_name and not message.HasField("timestamp"):
             message.timestamp.CopyFrom(stamp_ns(now_ns))  # type: ignore[attr-defined]
@@ -134,14 +134,20 @@ class Client:
         return [told([one]) for one in engagements]
 
     def ask(self, owner: str, request: Request[Q, R], message: Q, timeout: float = 5.0) -> R:
-        """Sends a request and waits for its reply. Raises TimeoutError, also when nobody answers, and Malformed for what is no reply."""
+        """Sends a request and waits ``timeout`` [s, wall] for its reply.
+
+        Raises TimeoutError, also when nobody answers, and Malformed for what is no reply.
+        """
         (reply,) = self.ask_together(owner, [request], message, timeout)
         if reply is None:
             raise TimeoutError(f"nobody answers {request.at(owner)}")
         return reply
 
     def ask_together(self, owner: str, requests: Sequence[Request[Q, R]], message: Q, timeout: float = 5.0) -> list[R | None]:
-        """The same of several services, who all take it at the same time; None where nobody answers. Raises TimeoutError."""
+        """Sends a message to several services, who all take it at the same time, and waits ``timeout`` [s, wall] for each reply.
+
+        The reply is None where nobody answers. Raises TimeoutError, and Malformed for what is no reply.
+        """
         got: dict[str, tuple[bytes | None, str]] = {}
         payload = message.SerializeToString(deterministic=True)
         ahead = TOGETHER if len(requests) > 1 and not self.is_paused else 0.0

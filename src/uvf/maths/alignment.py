@@ -9,7 +9,9 @@ Floats = NDArray[np.float64]
 
 
 def aligned(a: Floats, b: Floats) -> Pose2:
-    """a_from_b by least squares over pairs of points (n, 2) each; the yaw is 0 where the points do not tell it.
+    """Pose a_from_b [m, m, rad] that lays the points ``b`` (n, 2) [m] on ``a`` (n, 2) [m] by least squares.
+
+    The yaw is 0 where the points do not tell it.
 
     Umeyama, "Least-squares estimation of transformation parameters between two point patterns" (1991), in the plane and
     without scale: the sums of dot and cross products of the centred points give cosine and sine.

@@ -11,20 +11,20 @@ EXPONENT = 9.806_65 / (LAPSE * GAS)
 
 
 def pressure(altitude: float) -> float:
-    """Pa at a geopotential altitude [m AMSL]."""
+    """Static pressure [Pa] at a geopotential altitude [m AMSL]."""
     return P0 * math.pow(1 - LAPSE * altitude / T0, EXPONENT)
 
 
 def altitude(static_pressure: float) -> float:
-    """m AMSL; the inverse of ``pressure``."""
+    """Geopotential altitude [m AMSL] at a static pressure [Pa]; the inverse of ``pressure``."""
     return T0 / LAPSE * (1 - math.pow(static_pressure / P0, 1 / EXPONENT))
 
 
 def density(static_pressure: float, temperature: float) -> float:
-    """kg/m^3 of dry air at Pa, K."""
+    """Density [kg/m^3] of dry air at a static pressure [Pa] and a temperature [K]."""
     return static_pressure / (GAS * temperature)
 
 
 def airspeed(differential_pressure: float, rho: float) -> float:
-    """m/s from the pitot's pressure [Pa] in air of density ``rho``, incompressible; 0 for a negative reading."""
+    """Airspeed [m/s] from a pitot's differential pressure [Pa] in air of density ``rho`` [kg/m^3], incompressible; never negative."""
     return math.sqrt(2 * max(differential_pressure, 0.0) / rho)

@@ -36,7 +36,7 @@ class Bvh(NamedTuple):
 
 
 def build(solids: Solids) -> Bvh:
-    """The tree over a table of primitives."""
+    """Tree over a table of primitives, in their frame. Its leaves hold the primitives in another order than the table."""
     n = len(solids.kinds)
     order = np.arange(n)
     bounds, links = np.empty((max(2 * n - 1, 0), 6)), np.zeros((max(2 * n - 1, 0), 2), dtype=np.int64)

@@ -10,5 +10,5 @@ R = TypeVar("R")
 
 
 def compiled(function: Callable[P, R]) -> Callable[P, R]:
-    """numba in nopython mode: cached on disk, without the interpreter lock, float division as in numpy."""
+    """Compiles a function with numba in nopython mode: cached on disk, without the interpreter lock, float division as in numpy."""
     return cast(Callable[P, R], njit(cache=True, nogil=True, error_model="numpy")(function))

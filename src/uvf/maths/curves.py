@@ -23,7 +23,10 @@ WHOLE = 1e-9  # rad, by which a turn may fall short of a whole circle and still 
 
 @dataclass(frozen=True)
 class DubinsPath:
-    """Three segments from ``start``: ``turns`` are their curvatures times ``radius`` [m] (1, 0, -1), ``lengths`` [m] their lengths."""
+    """A path of three segments from ``start`` (x, y, course) [m, m, rad].
+
+    ``turns`` are the segments' curvatures times ``radius`` [m]: 1, 0 or -1; ``lengths`` [m] are their lengths.
+    """
 
     start: Triple
     radius: float
@@ -32,17 +35,17 @@ class DubinsPath:
 
     @property
     def length(self) -> float:
-        """m."""
+        """Length of the whole path [m]."""
         return sum(self.lengths)
 
     @property
     def word(self) -> str:
-        """Of L (positive curvature), S and R."""
+        """The kinds of the three segments, as letters: L (positive curvature), S (straight) and R (negative curvature)."""
         return "".join("SLR"[turn] for turn in self.turns)
 
     @cached_property
     def joints(self) -> tuple[Triple, Triple, Triple, Triple]:
-        """The configurations where segments begin, and the end."""
+        """Configurations (x, y, course) [m, m, rad] where the segments begin, and the end; courses are not wrapped."""
         found = [self.start]
         for turn, length in zip(self.turns, self.lengths, strict=True):
             x, y, course = _move(found[-1], turn / self.radius, np.array([length]))
@@ -50,7 +53,7 @@ class DubinsPath:
         return found[0], found[1], found[2], found[3]
 
     def at(self, s: Floats) -> Floats:
-        """(k, 3) x, y, course (not wrapped) at the arc lengths ``s`` (k,) [m]; straight on beyond both ends."""
+        """Configurations (k, 3) x, y [m], course [rad], not wrapped, at the arc lengths ``s`` (k,) [m]; straight on beyond both ends."""
         begins = np.cumsum((0.0, *self.lengths))
         found = np.empty((len(s), 3))
         which = np.searchsorted(begins, s, side="right") - 1
@@ -61,12 +64,12 @@ class DubinsPath:
         return found
 
     def curvature(self, s: Floats) -> Floats:
-        """(k,) 1/m at the arc lengths ``s`` (k,) [m]; 0 beyond both ends."""
+        """Curvature (k,) [1/m] at the arc lengths ``s`` (k,) [m]; 0 beyond both ends."""
         which = np.searchsorted(np.cumsum((0.0, *self.lengths)), s, side="right")
         return np.array((0, *self.turns, 0))[which] / self.radius
 
     def nearest(self, x: float, y: float) -> tuple[float, float]:
-        """(arc length [m], distance [m]) of the point of the path nearest to a point."""
+        """(arc length [m], distance [m]) of the point of the path that is nearest to (x, y) [m]."""
         begin, best = 0.0, (0.0, hypot(x - self.start[0], y - self.start[1]))
         for joint, turn, length in zip(self.joints, self.turns, self.lengths, strict=False):
             along, distance = _nearest(joint, turn * self.radius, length, (x, y))
@@ -101,12 +104,18 @@ def _nearest(start: Triple, radius: float, length: float, point: tuple[float, fl
 
 
 def dubins_path(start: Triple, end: Triple, radius: float) -> DubinsPath:
-    """The shortest path."""
+    """Shortest Dubins path between the configurations ``start`` and ``end`` (x, y, course) [m, m, rad] with turns of ``radius`` [m].
+
+    Raises ValueError for a radius that is not positive.
+    """
     return min(dubins_paths(start, end, radius), key=lambda path: path.length)
 
 
 def dubins_paths(start: Triple, end: Triple, radius: float) -> list[DubinsPath]:
-    """Every word that leads from ``start`` to ``end``; at least two do. Raises ValueError for a radius that is not positive."""
+    """Dubins paths of every word that leads from ``start`` to ``end`` (x, y, course) [m, m, rad], with turns of ``radius`` [m].
+
+    There are at least two. Raises ValueError for a radius that is not positive.
+    """
     if not radius > 0:
         raise ValueError(f"a turning radius of {radius:g} m")
     dx, dy = end[0] - start[0], end[1] - start[1]

@@ -40,7 +40,10 @@ class Strength(NamedTuple):
 
 
 def strength(height: float, w20: float, severity: str) -> Strength:
-    """At ``height`` [m] above the ground; ``w20`` [m/s] rules below 1000 ft, ``severity`` above 2000 ft, a straight line between."""
+    """Strength of the turbulence at ``height`` [m] above the ground.
+
+    ``w20`` [m/s], the wind at 20 ft, rules below 1000 ft, ``severity`` above 2000 ft; between them it changes linearly.
+    """
     if height >= HIGH:
         sigma = float(np.interp(height, ALTITUDES, INTENSITIES[severity]))
         return Strength(sigma, sigma, HIGH_LENGTH, HIGH_LENGTH)
@@ -58,13 +61,16 @@ def _low(height: float, w20: float) -> Strength:
 
 
 def roll_sigma(air: Strength, span: float) -> float:
-    """rad/s, of p: the root of its spectrum's integral. span: m."""
+    """Standard deviation [rad/s] of the roll gust p for a wing of ``span`` [m]: the root of its spectrum's integral."""
     filled = float((math.pi * air.length_w / (4 * span)) ** (1 / 3))
     return air.sigma_w * math.pi * math.sqrt(0.1 * filled / (span * air.length_w))
 
 
 def spectra(omega: ArrayLike, air: Strength, speed: float, span: float) -> dict[str, Floats]:
-    """Analytic spectra at ``omega`` [rad/s]: u, v, w in m^2/s and p, q, r in 1/s, of a wing of ``span`` [m] at ``speed`` [m/s]."""
+    """Analytic spectra of the gusts by name, each of the shape of ``omega`` (k,) [rad/s]: u, v, w [m^2/s] and p, q, r [1/s].
+
+    For a wing of ``span`` [m] at an airspeed ``speed`` [m/s].
+    """
     w = np.asarray(omega, dtype=np.float64)
     along = air.length_u * w / speed
     roll = 4 * span * w / (np.pi * speed)
@@ -86,7 +92,7 @@ def _lateral(omega: Floats, sigma: float, tau: float) -> Floats:
 
 
 class GustVelocities(NamedTuple):
-    """m/s and rad/s."""
+    """Gusts along the axes, u, v, w [m/s], and rotation of the air about them, p, q, r [rad/s]."""
 
     u: float
     v: float
@@ -114,7 +120,7 @@ class Turbulence:
         self._yaw, self._pitch = _Gradient(), _Gradient()
 
     def step(self, flown: float, dt: float, air: Strength) -> GustVelocities:
-        """The gusts ``flown`` [m] of air and ``dt`` [s] later."""
+        """Gusts that the aircraft meets ``flown`` [m] through the air and ``dt`` [s] after the last step."""
         n = self._draw()
         speed = max(flown / dt, 1e-3)
         self._u = _markov(self._u, flown / air.length_u, n[0])

@@ -20,32 +20,34 @@ class Mode:
 
     @property
     def oscillates(self) -> bool:
+        """Whether the eigenvalue is one of a complex pair."""
         return self.eigenvalue.imag > REAL
 
     @property
     def frequency(self) -> float:
-        """Natural, undamped, rad/s."""
+        """Natural, undamped frequency [rad/s]."""
         return abs(self.eigenvalue)
 
     @property
     def damping(self) -> float:
-        """Share of the critical one; below zero it grows. A real eigenvalue has 1 or -1."""
+        """Damping ratio [-]; below zero the motion grows. A real eigenvalue has 1 or -1."""
         return -self.eigenvalue.real / self.frequency if self.frequency else 1.0
 
     @property
     def time_constant(self) -> float:
-        """s, in which it falls to 1/e; below zero: in which it grows e-fold."""
+        """Time [s] in which the motion falls to 1/e; below zero, the time in which it grows e-fold; infinite where it does neither."""
         return -1 / self.eigenvalue.real if self.eigenvalue.real else float("inf")
 
     @property
     def period(self) -> float:
-        """s; infinite when it does not oscillate."""
+        """Period of the oscillation [s]; infinite when the motion does not oscillate."""
         return 2 * np.pi / self.eigenvalue.imag if self.oscillates else float("inf")
 
 
 def longitudinal_modes(a: Floats) -> list[Mode]:
-    """Of (5, 5) u, w, q, theta, h: two of short period, two of the phugoid, and that of the altitude, which is the slowest.
+    """Modes of a longitudinal state matrix (5, 5) with the states u, w, q, theta, h.
 
+    Two of the short period, two of the phugoid (one of each where it oscillates), and that of the altitude, which is the slowest.
     A pair between two real ones is neither: a pitch oscillation and two subsidences.
     """
     fast_first = _fast_first(a)
@@ -58,7 +60,10 @@ def longitudinal_modes(a: Floats) -> list[Mode]:
 
 
 def lateral_modes(a: Floats) -> list[Mode]:
-    """Of (5, 5) v, p, r, phi, psi: Dutch roll, roll, spiral, and the heading, for which every direction is the same."""
+    """Modes of a lateral state matrix (5, 5) with the states v, p, r, phi, psi: Dutch roll, roll, spiral and heading.
+
+    The heading's eigenvalue is zero, for every direction is the same.
+    """
     fast_first = _fast_first(a)
     heading = min((v for v in fast_first if abs(v.imag) <= REAL), key=abs)
     rest = [v for v in fast_first if v is not heading]

@@ -11,7 +11,7 @@ class LowPass:
         self.value: float | None = None
 
     def step(self, sample: float, dt: float) -> float:
-        """The filtered value ``dt`` [s] later."""
+        """Filtered value, in the unit of ``sample``, ``dt`` [s] after the last step."""
         if self.value is None:
             self.value = sample
         self.value += (1 - math.exp(-dt / self._time_constant)) * (sample - self.value)
@@ -19,12 +19,13 @@ class LowPass:
 
 
 class Integral:
-    """Integral within +-limit."""
+    """Integral that is kept within +-limit, in the unit of the rate times seconds."""
 
     def __init__(self, limit: float) -> None:
         self._limit = limit
         self.value = 0.0
 
     def step(self, rate: float, dt: float) -> float:
+        """Adds ``rate`` [unit/s] over ``dt`` [s] and returns the bounded integral [unit]."""
         self.value = min(max(self.value + rate * dt, -self._limit), self._limit)
         return self.value

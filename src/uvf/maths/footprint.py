@@ -31,7 +31,7 @@ class Footprint(NamedTuple):
 
 
 def footprint(solids: Solids | Bvh, low: float, high: float) -> Footprint:
-    """The shadows of what lies between the heights ``low`` < ``high`` [m]; a solid that only touches them is left out."""
+    """Shadows on the ground of what lies between the heights ``low`` < ``high`` [m]; a solid that only touches them is left out."""
     outlines = _triangle_outlines(solids.rows[solids.kinds == TRIANGLE, :9].reshape(-1, 3, 3), low, high)
     discs = []
     for kind, row in zip(solids.kinds, solids.rows, strict=True):
@@ -49,7 +49,7 @@ def footprint(solids: Solids | Bvh, low: float, high: float) -> Footprint:
 
 
 def segments(shadows: Footprint) -> Floats:
-    """(n, 2, 2) ends [m] of the sides of all outlines, discs as polygons of ``SIDES`` corners; shadows may lie over each other."""
+    """Sides (n, 2, 2) of all outlines, by their ends x, y [m]; discs count as polygons of ``SIDES`` corners. Shadows may overlap."""
     angles = np.arange(SIDES) * (2 * np.pi / SIDES)
     ring = np.column_stack((np.cos(angles), np.sin(angles)))
     closed = [*shadows.outlines, *(disc[:2] + disc[2] * ring for disc in shadows.discs)]
@@ -58,7 +58,7 @@ def segments(shadows: Footprint) -> Floats:
 
 
 def covered(shadows: Footprint, origin: tuple[float, float], resolution: float, shape: tuple[int, int]) -> NDArray[np.bool_]:
-    """(rows, columns): which cells have any part in a shadow; cell [r, c] begins at ``origin`` + (c, r) * ``resolution`` [m].
+    """Which cells (rows, columns) lie in a shadow with any part; cell [r, c] begins at ``origin`` + (c, r) * ``resolution`` [m].
 
     A shadow that only touches a cell's border does not cover it; a sheet seen edge-on that lies in a border covers both sides.
     """

@@ -16,7 +16,7 @@ GRAVITY = 9.80665  # m/s^2, standard
 
 
 def ecef_from_geodetic(latitude: float, longitude: float, altitude: float) -> Floats:
-    """(3,) m; angles in rad, altitude above the ellipsoid [m]."""
+    """ECEF position (3,) [m] of a WGS84 latitude and longitude [rad] and an altitude above the ellipsoid [m]."""
     n = A / np.sqrt(1 - E2 * np.sin(latitude) ** 2)
     x = (n + altitude) * np.cos(latitude) * np.cos(longitude)
     y = (n + altitude) * np.cos(latitude) * np.sin(longitude)
@@ -25,7 +25,10 @@ def ecef_from_geodetic(latitude: float, longitude: float, altitude: float) -> Fl
 
 
 def geodetic_from_ecef(ecef: Floats) -> tuple[float, float, float]:
-    """(latitude, longitude [rad], altitude [m]); Bowring 1976, sub-millimetre near the Earth's surface."""
+    """(latitude [rad], longitude [rad], altitude above the ellipsoid [m]) of an ECEF position (3,) [m].
+
+    Bowring 1976, sub-millimetre near the Earth's surface.
+    """
     x, y, z = ecef
     p = np.hypot(x, y)
     theta = np.arctan2(z * A, p * B)
@@ -38,7 +41,7 @@ def geodetic_from_ecef(ecef: Floats) -> tuple[float, float, float]:
 
 @dataclass(frozen=True)
 class LocalTangent:
-    """The ENU frame that touches the ellipsoid's normal at an origin [rad, rad, m]."""
+    """The ENU frame that touches the ellipsoid at an origin: latitude [rad], longitude [rad], altitude [m]."""
 
     latitude: float
     longitude: float
@@ -46,24 +49,25 @@ class LocalTangent:
 
     @classmethod
     def from_degrees(cls, latitude: float, longitude: float, altitude: float) -> "LocalTangent":
+        """Local tangent plane at a latitude and longitude [deg] and an altitude [m]."""
         return cls(float(np.radians(latitude)), float(np.radians(longitude)), altitude)
 
     @cached_property
     def enu_from_ecef(self) -> Floats:
-        """(3, 3) rotation."""
+        """Rotation matrix (3, 3) from ECEF to ENU axes."""
         sp, cp = np.sin(self.latitude), np.cos(self.latitude)
         sl, cl = np.sin(self.longitude), np.cos(self.longitude)
         return np.array(((-sl, cl, 0.0), (-sp * cl, -sp * sl, cp), (cp * cl, cp * sl, sp)))
 
     @cached_property
     def origin_ecef(self) -> Floats:
-        """(3,) m."""
+        """ECEF position (3,) [m] of the origin."""
         return ecef_from_geodetic(self.latitude, self.longitude, self.altitude)
 
     def enu(self, latitude: float, longitude: float, altitude: float) -> Floats:
-        """(3,) m east, north, up of a point given in rad, rad, m."""
+        """ENU position (3,) [m] of a point at a latitude and longitude [rad] and an altitude [m]."""
         return self.enu_from_ecef @ (ecef_from_geodetic(latitude, longitude, altitude) - self.origin_ecef)
 
     def geodetic(self, enu: Floats) -> tuple[float, float, float]:
-        """(latitude, longitude [rad], altitude [m]) of a point in the plane's frame."""
+        """(latitude [rad], longitude [rad], altitude [m]) of an ENU position (3,) [m]; the inverse of ``enu``."""
         return geodetic_from_ecef(self.origin_ecef + self.enu_from_ecef.T @ enu)

@@ -32,7 +32,7 @@ def _lower_envelope(f: NDArray[np.float64], n: int, out: NDArray[np.float64], v:
 
 @compiled
 def distance_field(occupied: NDArray[np.bool_]) -> NDArray[np.float64]:
-    """Distance [cells] from each cell's centre to the centre of the nearest occupied one; (rows, columns).
+    """Distance (rows, columns) [cells] from each cell's centre to that of the nearest cell that ``occupied`` (rows, columns) has.
 
     Exact, in linear time: Felzenszwalb & Huttenlocher, "Distance Transforms of Sampled Functions" (2012), columns
     and then rows. ``FAR`` everywhere when nothing is occupied.

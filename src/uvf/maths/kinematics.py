@@ -16,14 +16,14 @@ Floats = NDArray[np.float64]
 
 
 class Twist(NamedTuple):
-    """Velocity in the body frame: m/s forward, rad/s to the left."""
+    """Velocity of the body: ``linear`` forward [m/s], ``angular`` counter-clockwise [rad/s]."""
 
     linear: float
     angular: float
 
 
 class WheelSpeeds(NamedTuple):
-    """rad/s; positive drives forward."""
+    """Speeds of the left and the right wheel [rad/s]; positive drives forward."""
 
     left: float
     right: float
@@ -31,7 +31,7 @@ class WheelSpeeds(NamedTuple):
 
 @dataclass(frozen=True)
 class DifferentialDrive:
-    """wheel_radius: r [m]; track: l [m], between the wheels' contact points."""
+    """Geometry of a differential drive. wheel_radius: r [m]; track: l [m], between the wheels' contact points."""
 
     wheel_radius: float
     track: float
@@ -42,13 +42,13 @@ class DifferentialDrive:
         return Twist(r * (right + left) / 2, r * (right - left) / self.track)
 
     def wheels(self, twist: Twist) -> WheelSpeeds:
-        """Inverse kinematics: the wheel speeds of a wanted body velocity."""
+        """Inverse kinematics: the wheel speeds for a commanded body velocity."""
         half_difference = twist.angular * self.track / 2
         return WheelSpeeds((twist.linear - half_difference) / self.wheel_radius, (twist.linear + half_difference) / self.wheel_radius)
 
 
 def move(pose: Pose2, twist: Twist, dt: float) -> Pose2:
-    """The pose after ``dt`` [s] at constant velocity: the exact arc about the instantaneous centre of curvature.
+    """Pose after ``dt`` [s] at constant velocity: the exact arc about the instantaneous centre of curvature.
 
     Written by the arc's chord, v dt sinc(omega dt / 2) along the mean heading, which equals the rotation about
     ICC = (x - R sin yaw, y + R cos yaw), R = v / omega, and has no special case for straight lines.
@@ -61,7 +61,7 @@ def move(pose: Pose2, twist: Twist, dt: float) -> Pose2:
 
 
 def twist_between(start: Pose2, end: Pose2, dt: float) -> Twist:
-    """The constant velocity whose arc leads from one pose to the other in ``dt`` [s]: the inverse of ``move`` for turns below pi.
+    """Constant velocity whose arc leads from one pose to the other in ``dt`` [s]: the inverse of ``move`` for turns below pi.
 
     Where no arc does, because of a step sideways, the one of the same turn whose chord reaches as far along its heading.
     """
@@ -72,7 +72,7 @@ def twist_between(start: Pose2, end: Pose2, dt: float) -> Twist:
 
 
 def spin_velocity(angular_velocity: Floats, arm: Floats) -> Floats:
-    """(3,) omega x r [m/s]: velocity of a body's point at ``arm`` [m] against its origin, both in one frame.
+    """Velocity omega x r (3,) [m/s] of a body's point at ``arm`` (3,) [m] against its origin; rates (3,) [rad/s], all in one frame.
 
     Written out: ``np.cross`` takes ten times as long on one pair.
     """

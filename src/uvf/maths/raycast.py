@@ -45,14 +45,14 @@ class MovingBody(NamedTuple):
 
 
 class Rays(NamedTuple):
-    """Origins (n, 3), or (3,) for all, [m] and directions (n, 3), of unit length, in the world."""
+    """Rays in the world: origins (n, 3), or (3,) for all [m], and directions (n, 3), of unit length."""
 
     origins: Floats
     directions: Floats
 
 
 def cast(scene: Scene, bodies: Sequence[MovingBody], rays: Rays, max_range: float) -> Floats:
-    """(n,) distances [m] to the first surface met within ``max_range`` [m], inf where there is none.
+    """Distances (n,) [m] to the first surface that each ray meets within ``max_range`` [m], inf where there is none.
 
     A sensor leaves its own body out by not listing it. Directions that are not of unit length give distances, and take
     ``max_range``, in multiples of that length. Raises ValueError when there are neither one origin nor n.
@@ -74,7 +74,7 @@ def cast(scene: Scene, bodies: Sequence[MovingBody], rays: Rays, max_range: floa
 
 
 def warm_up() -> None:
-    """Loads or compiles every kernel: call it once at start, before time counts."""
+    """Loads or compiles every kernel: call it once at the start, before timing matters."""
     parts = [box((1, 1, 1), (3, 0, 0)), cylinder(0.5, 1.0, (0, 3, 0)), sphere(0.5, (0, 0, 3)), mesh(np.eye(3), ((0, 1, 2),))]
     tree = build(joined(parts))
     cast(Scene(tree, -1.0), [MovingBody(tree, np.ones(3))], Rays(np.zeros(3), np.eye(3)), 10.0)

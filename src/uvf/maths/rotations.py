@@ -20,12 +20,12 @@ FLU_FROM_FRD: Floats = np.diag((1.0, -1.0, -1.0))
 
 
 def wrap(angle: float) -> float:
-    """The same angle in (-pi, pi]."""
+    """Angle [rad] wrapped into (-pi, pi]."""
     return float(-((np.pi - angle) % (2 * np.pi) - np.pi))
 
 
 def multiply(p: Floats, q: Floats) -> Floats:
-    """Hamilton product: ``a_from_c = multiply(a_from_b, b_from_c)``."""
+    """Hamilton product (4,) of two quaternions wxyz (4,): ``a_from_c = multiply(a_from_b, b_from_c)``."""
     pw, px, py, pz = p.tolist()
     qw, qx, qy, qz = q.tolist()
     return np.array(
@@ -39,24 +39,24 @@ def multiply(p: Floats, q: Floats) -> Floats:
 
 
 def inverse(q: Floats) -> Floats:
-    """``b_from_a`` of a unit ``a_from_b``."""
+    """Inverse (4,) of a unit quaternion wxyz (4,): ``b_from_a`` of ``a_from_b``."""
     b_from_a: Floats = q * np.array((1.0, -1.0, -1.0, -1.0))
     return b_from_a
 
 
 def rotate(a_from_b: Floats, v_b: Floats) -> Floats:
-    """(3,) vector in frame a."""
+    """Vector (3,) of frame b in frame a, by the unit quaternion ``a_from_b`` wxyz (4,)."""
     v_a: Floats = matrix(a_from_b) @ v_b
     return v_a
 
 
 def matrix(q: Floats) -> Floats:
-    """(3, 3) rotation matrix of a unit quaternion."""
+    """Rotation matrix (3, 3) of a unit quaternion wxyz (4,)."""
     return np.array(_rows(*q.tolist()))
 
 
 def matrices(q: Floats) -> Floats:
-    """(n, 3, 3) ``a_from_b`` of unit quaternions (n, 4)."""
+    """Rotation matrices ``a_from_b`` (n, 3, 3) of unit quaternions wxyz (n, 4)."""
     return np.moveaxis(np.array(_rows(*q.T)), 2, 0)
 
 
@@ -69,7 +69,7 @@ def _rows(w: Number, x: Number, y: Number, z: Number) -> tuple[tuple[Number, Num
 
 
 def from_matrix(r: Floats) -> Floats:
-    """Unit quaternion of a (3, 3) rotation matrix, w >= 0 (Shepperd 1978: divide by the largest component)."""
+    """Unit quaternion wxyz (4,) of a rotation matrix (3, 3), w >= 0 (Shepperd 1978: divide by the largest component)."""
     trace = float(np.trace(r))
     squares = np.array((trace, r[0, 0], r[1, 1], r[2, 2]))
     i = int(np.argmax(squares))
@@ -87,7 +87,7 @@ def from_matrix(r: Floats) -> Floats:
 
 
 def from_euler(roll: float, pitch: float, yaw: float) -> Floats:
-    """Quaternion of yaw about z, then pitch about y, then roll about x [rad]."""
+    """Quaternion wxyz (4,) of yaw about z, then pitch about y, then roll about x [rad]."""
     cr, sr = math.cos(roll / 2), math.sin(roll / 2)
     cp, sp = math.cos(pitch / 2), math.sin(pitch / 2)
     cy, sy = math.cos(yaw / 2), math.sin(yaw / 2)
@@ -102,12 +102,12 @@ def from_euler(roll: float, pitch: float, yaw: float) -> Floats:
 
 
 def from_axis(axis: Floats, angle: float) -> Floats:
-    """Quaternion of a turn by ``angle`` [rad] about a unit axis (3,)."""
+    """Quaternion wxyz (4,) of a turn by ``angle`` [rad] about a unit axis (3,)."""
     return np.concatenate(((np.cos(angle / 2),), np.sin(angle / 2) * axis))
 
 
 def to_euler(q: Floats) -> tuple[float, float, float]:
-    """(roll, pitch, yaw) [rad]; pitch in [-pi/2, pi/2]."""
+    """Euler angles (roll, pitch, yaw) [rad] of a quaternion wxyz (4,); pitch in [-pi/2, pi/2]."""
     w, x, y, z = q
     roll = np.arctan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y))
     pitch = np.arcsin(np.clip(2 * (w * y - z * x), -1.0, 1.0))
@@ -116,5 +116,8 @@ def to_euler(q: Floats) -> tuple[float, float, float]:
 
 
 def enu_flu_from_ned_frd(ned_from_frd: Floats) -> Floats:
-    """The same attitude as ENU-from-FLU; also the other way round, for both changes are their own inverse."""
+    """Attitude of the FLU body in ENU, as a quaternion wxyz (4,), from that of the FRD body in NED (4,).
+
+    It serves the other way round as well, for both changes of axes are their own inverse.
+    """
     return from_matrix(ENU_FROM_NED @ matrix(ned_from_frd) @ FLU_FROM_FRD)

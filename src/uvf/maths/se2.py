@@ -15,7 +15,7 @@ Floats = NDArray[np.float64]
 
 
 class Pose2(NamedTuple):
-    """m, m, rad."""
+    """A pose in the plane: x [m], y [m], yaw [rad]."""
 
     x: float
     y: float
@@ -26,34 +26,34 @@ IDENTITY = Pose2(0.0, 0.0, 0.0)
 
 
 def compose(a_from_b: Pose2, b_from_c: Pose2) -> Pose2:
-    """``a_from_c``."""
+    """Pose ``a_from_c``: ``b_from_c`` seen from frame a; the yaw is wrapped."""
     x, y, heading = a_from_b
     c, s = cos(heading), sin(heading)
     return Pose2(x + c * b_from_c[0] - s * b_from_c[1], y + s * b_from_c[0] + c * b_from_c[1], wrap(heading + b_from_c[2]))
 
 
 def inverse(a_from_b: Pose2) -> Pose2:
-    """``b_from_a``."""
+    """Pose ``b_from_a`` of a pose ``a_from_b``."""
     x, y, heading = a_from_b
     c, s = cos(heading), sin(heading)
     return Pose2(-c * x - s * y, s * x - c * y, wrap(-heading))
 
 
 def transform(a_from_b: Pose2, points_b: Floats) -> Floats:
-    """(n, 2) points of frame b in frame a."""
+    """Points (n, 2) [m] of frame b in frame a."""
     c, s = cos(a_from_b[2]), sin(a_from_b[2])
     points_a: Floats = points_b @ np.array(((c, s), (-s, c))) + np.array(a_from_b[:2])
     return points_a
 
 
 def interpolate(p: Pose2, q: Pose2, fraction: float) -> Pose2:
-    """Between p (0) and q (1), the heading by the shorter way."""
+    """Pose between p (``fraction`` 0) and q (``fraction`` 1 [-]), straight in x and y, the heading by the shorter way."""
     x, y = p[0] + fraction * (q[0] - p[0]), p[1] + fraction * (q[1] - p[1])
     return Pose2(x, y, wrap(p[2] + fraction * wrap(q[2] - p[2])))
 
 
 class PoseHistory:
-    """The last poses of a moving body by time, to look up where it was when a sensor looked."""
+    """The last poses of a moving body by time, to look up where it was when a sensor took its reading."""
 
     def __init__(self, length: int) -> None:
         self._length = length
@@ -61,7 +61,7 @@ class PoseHistory:
         self._poses: list[Pose2] = []
 
     def add(self, t: float, pose: Pose2) -> None:
-        """Times [s] must rise; a time that does not is left out."""
+        """Adds the pose at ``t`` [s]; times must rise, and one that does not is left out."""
         if self._times and t <= self._times[-1]:
             return
         self._times.append(t)
@@ -70,7 +70,7 @@ class PoseHistory:
             del self._times[: -self._length], self._poses[: -self._length]
 
     def at(self, t: float) -> Pose2 | None:
-        """The pose at ``t`` [s], or None when that is before the first or after the last one known."""
+        """Pose at ``t`` [s], interpolated, or None when that is before the first or after the last one known."""
         if not self._times or not self._times[0] <= t <= self._times[-1]:
             return None
         i = max(int(np.searchsorted(self._times, t)), 1) if len(self._times) > 1 else 0

@@ -19,7 +19,7 @@ BOX, CYLINDER, SPHERE, TRIANGLE = 0, 1, 2, 3
 
 
 class Solids(NamedTuple):
-    """n primitives in one frame: kinds (n,) int64, rows (n, 12), and their bounds low, high (n, 3) [m]."""
+    """Table of n primitives in one frame: kinds (n,) int64, rows (n, 12), and their bounds low, high (n, 3) [m]."""
 
     kinds: NDArray[np.int64]
     rows: Floats
@@ -28,13 +28,19 @@ class Solids(NamedTuple):
 
 
 def box(size: ArrayLike, position: ArrayLike, orientation: Floats = IDENTITY) -> Solids:
-    """A box of full edges ``size`` (3,) [m], centred at ``position`` (3,) [m], turned by a unit quaternion wxyz (4,)."""
+    """Box of full edges ``size`` (3,) [m], centred at ``position`` (3,) [m], turned by a unit quaternion wxyz (4,).
+
+    Raises ValueError for a size that is not positive or a pose that is not finite.
+    """
     half = _positive(size, "box size") / 2
     return _image(BOX, half, position, orientation, np.abs(matrix(orientation)) @ half)
 
 
 def cylinder(radius: float, height: float, position: ArrayLike, orientation: Floats = IDENTITY) -> Solids:
-    """A cylinder with both caps [m]: its axis is the local z, ``position`` (3,) the middle of the axis."""
+    """Cylinder with both caps, ``radius`` and ``height`` [m], turned by a unit quaternion wxyz (4,).
+
+    Its axis is the local z, ``position`` (3,) [m] the middle of the axis. Raises ValueError as ``box`` does.
+    """
     _positive((radius, height), "cylinder radius and height")
     axis = matrix(orientation)[:, 2]
     reach = np.abs(axis) * height / 2 + radius * np.sqrt(np.maximum(0.0, 1 - axis * axis))
@@ -42,13 +48,16 @@ def cylinder(radius: float, height: float, position: ArrayLike, orientation: Flo
 
 
 def sphere(radius: float, position: ArrayLike) -> Solids:
-    """A sphere round ``position`` (3,) [m]."""
+    """Sphere of ``radius`` [m] round ``position`` (3,) [m]. Raises ValueError as ``box`` does."""
     _positive(radius, "sphere radius")
     return _image(SPHERE, np.full(3, radius), position, IDENTITY, np.full(3, radius))
 
 
 def mesh(vertices: ArrayLike, faces: ArrayLike, position: ArrayLike = (0.0, 0.0, 0.0), orientation: Floats = IDENTITY) -> Solids:
-    """Two-sided triangles: vertices (k, 3) [m] in the mesh's frame, faces (n, 3) their indices. Raises ValueError."""
+    """Two-sided triangles: vertices (k, 3) [m] in the mesh's frame, faces (n, 3) their indices.
+
+    Raises ValueError for a face that names no vertex, and for vertices or a pose that are not finite.
+    """
     corners = np.asarray(vertices, dtype=np.float64).reshape(-1, 3) @ matrix(orientation).T + np.asarray(position, dtype=np.float64)
     indices = np.asarray(faces, dtype=np.int64).reshape(-1, 3)
     if indices.size and not (indices.min() >= 0 and indices.max() < len(corners)):
@@ -62,13 +71,13 @@ def mesh(vertices: ArrayLike, faces: ArrayLike, position: ArrayLike = (0.0, 0.0,
 
 
 def joined(parts: Sequence[Solids]) -> Solids:
-    """All primitives of several tables in one, in their order; of none: an empty table."""
+    """All primitives of several tables in one, in their order; an empty table where there are none."""
     empty = Solids(np.zeros(0, dtype=np.int64), np.zeros((0, 12)), np.zeros((0, 3)), np.zeros((0, 3)))
     return Solids(*(np.concatenate(columns) for columns in zip(empty, *parts, strict=True)))
 
 
 def chosen(parts: Solids, which: NDArray[np.bool_]) -> Solids:
-    """Those primitives; which: (n,)."""
+    """The primitives that the mask ``which`` (n,) selects."""
     return Solids(parts.kinds[which], parts.rows[which], parts.low[which], parts.high[which])
 
 

@@ -12,7 +12,10 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class StateSpace:
-    """a: (n, n), b: (n, m), in the order of ``states`` and ``inputs``; all are deviations from an equilibrium."""
+    """Linear model x' = A x + B u. a: (n, n), b: (n, m), in the order of ``states`` and ``inputs``.
+
+    States and inputs are deviations from an equilibrium.
+    """
 
     a: Floats
     b: Floats
@@ -20,25 +23,25 @@ class StateSpace:
     inputs: tuple[str, ...]
 
     def part(self, states: Sequence[str], inputs: Sequence[str]) -> "StateSpace":
-        """The rows and columns of these alone: what couples them with the rest is left out."""
+        """The model of these states and inputs alone, without what couples them with the rest. Raises ValueError for an unknown name."""
         rows = [self.states.index(name) for name in states]
         columns = [self.inputs.index(name) for name in inputs]
         return StateSpace(self.a[np.ix_(rows, rows)], self.b[np.ix_(rows, columns)], tuple(states), tuple(inputs))
 
     def slope(self, state: str, by: str) -> float:
-        """d(state') / d(by), of a state or an input."""
+        """Partial derivative d(state') / d(by), by a state or an input: an element of A or B [unit of state / s / by]."""
         row = self.states.index(state)
         return float(self.a[row, self.states.index(by)] if by in self.states else self.b[row, self.inputs.index(by)])
 
     def transfer(self, state: str, by: str, omega: Floats) -> NDArray[np.complex128]:
-        """(k,) of a state over an input at (k,) ``omega`` [rad/s]."""
+        """Frequency response (k,) of a state to an input at ``omega`` (k,) [rad/s]."""
         column = self.b[:, self.inputs.index(by)]
         resolvent = 1j * omega[:, None, None] * np.eye(len(self.a)) - self.a
         found = np.linalg.solve(resolvent, np.broadcast_to(column, (len(omega), len(column)))[..., None])
         return np.asarray(found[:, self.states.index(state), 0], dtype=np.complex128)
 
     def response(self, inputs: Floats, dt: float) -> Floats:
-        """(k + 1, n) states from rest under (k, m) inputs, each held for ``dt`` [s]; exact."""
+        """States (k + 1, n) from rest under inputs (k, m), each held for ``dt`` [s]; exact."""
         a, b, *_ = cont2discrete((self.a, self.b, np.eye(len(self.a)), np.zeros_like(self.b)), dt)
         states = np.zeros((len(inputs) + 1, len(self.a)))
         for k, held in enumerate(inputs):
@@ -47,7 +50,7 @@ class StateSpace:
 
 
 def jacobian(function: Callable[[Floats], Floats], at: ArrayLike, steps: ArrayLike) -> Floats:
-    """(m, n) slopes of an (n,) -> (m,) function by central differences with (n,) ``steps``."""
+    """Jacobian (m, n) of a function (n,) -> (m,) at ``at`` (n,) by central differences with ``steps`` (n,)."""
     at = np.asarray(at, dtype=np.float64)
     moves = np.diag(np.asarray(steps, dtype=np.float64))
     return np.column_stack([(function(at + move) - function(at - move)) / (2 * move.sum()) for move in moves])

@@ -10,7 +10,10 @@ Floats = NDArray[np.float64]
 
 @compiled
 def solve(a: Floats, b: Floats) -> Floats:
-    """x (3,) of a x = b; a: (3, 3), symmetric and positive definite (Cholesky without roots: Golub & Van Loan 2013, 4.1)."""
+    """Solution x (3,) of a x = b with b (3,) and a (3, 3), symmetric and positive definite.
+
+    Cholesky without roots: Golub & Van Loan 2013, 4.1.
+    """
     d0 = a[0, 0]
     l10, l20 = a[1, 0] / d0, a[2, 0] / d0
     d1 = a[1, 1] - l10 * a[1, 0]

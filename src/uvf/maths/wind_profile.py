@@ -7,7 +7,7 @@ CEILING = 1000 * FT  # m, above which the mean wind grows no more
 
 
 def logarithmic(height: float, roughness: float, reference: float) -> float:
-    """Wind at ``height`` over that at ``reference`` [m above the ground]: MIL-F-8785C, 3.7.3.3, ln(h / z0) / ln(h_ref / z0).
+    """Ratio [-] of the wind at ``height`` to that at ``reference`` [m above the ground]: MIL-F-8785C, 3.7.3.3, ln(h / z0) / ln(h_ref / z0).
 
     roughness: z0 [m]; the standard has 0.15 ft for take-off and landing, 2 ft elsewhere. Below 3 ft it falls straight to nothing.
     """
@@ -18,10 +18,13 @@ def logarithmic(height: float, roughness: float, reference: float) -> float:
 
 
 def power(height: float, exponent: float, reference: float) -> float:
-    """Wind at ``height`` over that at ``reference`` [m above the ground]: (h / h_ref)^exponent; 1/7 over open country."""
+    """Ratio [-] of the wind at ``height`` to that at ``reference`` [m above the ground]: (h / h_ref)^exponent; 1/7 over open country."""
     return float((min(max(height, 0.0), CEILING) / reference) ** exponent)
 
 
 def one_minus_cosine(flown: float, length: float) -> float:
-    """0..1 after ``flown`` [m] into a gust of this whole ``length`` [m], 1 in its middle: CS 25.341(a), (1 - cos(2 pi s / length)) / 2."""
+    """Strength of a gust, 0 to 1 [-], ``flown`` [m] into its whole ``length`` [m]; 1 in its middle.
+
+    CS 25.341(a): (1 - cos(2 pi s / length)) / 2.
+    """
     return 0.5 * (1 - math.cos(2 * math.pi * flown / length)) if 0 < flown < length else 0.0

@@ -16,31 +16,37 @@ STEP = 0.5  # m, by which a way goes on where it runs along an edge
 
 
 class Area(Protocol):
+    """An area of the plane."""
+
     def inside(self, points: Floats) -> Floats:
-        """(n,) m from (n, 2) points [m] to the edge, positive inside."""
+        """Signed distances (n,) [m] from points (n, 2) [m] to the edge, positive inside."""
 
     @property
     def box(self) -> tuple[Point, Point]:
-        """Lower and upper corner [m]."""
+        """Lower and upper corner (x, y) [m] of the bounding box."""
 
 
 @dataclass(frozen=True)
 class Disc:
+    """The inside of a circle."""
+
     centre: Point  # m
     radius: float  # m
 
     def inside(self, points: Floats) -> Floats:
+        """Signed distances (n,) [m] from points (n, 2) [m] to the circle, positive inside."""
         distance: Floats = self.radius - np.hypot(points[:, 0] - self.centre[0], points[:, 1] - self.centre[1])
         return distance
 
     @property
     def box(self) -> tuple[Point, Point]:
+        """Lower and upper corner (x, y) [m] of the bounding box."""
         (x, y), r = self.centre, self.radius
         return (x - r, y - r), (x + r, y + r)
 
 
 class Polygon:
-    """Its edges must not cross (``crossing`` tells)."""
+    """The inside of a simple polygon, whose edges must not cross (``crossing`` tells)."""
 
     def __init__(self, vertices: Sequence[Point]) -> None:
         """vertices: at least three, m, either way round; the last one is joined to the first."""
@@ -50,7 +56,7 @@ class Polygon:
         self._squared = np.maximum((self._along**2).sum(axis=1), 1e-12)
 
     def inside(self, points: Floats) -> Floats:
-        """Distance to the nearest edge; inside by the even-odd rule."""
+        """Signed distances (n,) [m] from points (n, 2) [m] to the nearest edge, positive inside by the even-odd rule."""
         away = points[:, None, :] - self._start
         part = np.clip((away * self._along).sum(axis=2) / self._squared, 0.0, 1.0)
         distance = np.sqrt(((away - part[..., None] * self._along) ** 2).sum(axis=2)).min(axis=1)
@@ -64,12 +70,13 @@ class Polygon:
 
     @property
     def box(self) -> tuple[Point, Point]:
+        """Lower and upper corner (x, y) [m] of the bounding box."""
         low, high = self._start.min(axis=0).tolist(), self._start.max(axis=0).tolist()
         return (low[0], low[1]), (high[0], high[1])
 
     @property
     def crossing(self) -> tuple[int, int] | None:
-        """The first two edges (numbered by their first vertex) that cross each other."""
+        """The first two edges, numbered by their first vertex, that cross each other; None where none do."""
         corners = [*self.vertices, self.vertices[0]]
         edges = list(itertools.pairwise(corners))
         for i, one in enumerate(edges):
@@ -86,12 +93,13 @@ class Overlap:
     areas: tuple[Area, ...]
 
     def inside(self, points: Floats) -> Floats:
+        """Signed distances (n,) [m] from points (n, 2) [m], positive inside: the least over all areas."""
         least: Floats = np.min([area.inside(points) for area in self.areas], axis=0)
         return least
 
     @property
     def box(self) -> tuple[Point, Point]:
-        """Of what may overlap; a point where nothing does."""
+        """Lower and upper corner (x, y) [m] of where the areas may overlap; a point, or a segment, where they do not."""
         lows, highs = zip(*(area.box for area in self.areas), strict=True)
         low = max(x for x, _ in lows), max(y for _, y in lows)
         return low, (max(low[0], min(x for x, _ in highs)), max(low[1], min(y for _, y in highs)))
@@ -112,7 +120,7 @@ class Region:
     exclude: tuple[Area, ...] = ()
 
     def clearance(self, points: Floats) -> Floats:
-        """(n,) m: no edge is nearer to these (n, 2) points; negative outside, by how far at least one has to go back."""
+        """Signed distances (n,) [m] from points (n, 2) [m]: no edge is nearer; negative outside, by how far at least one has to go back."""
         least = np.full(len(points), np.inf)
         if self.include:
             least = np.max([area.inside(points) for area in self.include], axis=0)
@@ -121,12 +129,13 @@ class Region:
         return least
 
     def at(self, point: Point) -> float:
+        """Clearance [m] at a point (x, y) [m]; negative outside."""
         return float(self.clearance(np.array((point,)))[0])
 
     def leaves(self, start: Point, end: Point, keep: float = 0.0) -> Point | None:
-        """Where the straight way first comes nearer than ``keep`` [m] to an edge, to ``STEP``; None if it does not.
+        """First point (x, y) [m] of the line from ``start`` to ``end`` that is nearer than ``keep`` [m] to an edge; None where none is.
 
-        Sphere tracing: as far as the clearance goes nothing can be met.
+        Sphere tracing, in steps of the clearance (nothing can be met within it) but at least ``STEP``.
         """
         length = math.dist(start, end)
         done = 0.0
@@ -141,7 +150,7 @@ class Region:
             done = min(done + max(room, STEP), length)
 
     def roomiest(self, near: Point, radius: float, cells: int = 41) -> tuple[Point, float]:
-        """The nearest point to ``near`` with that clearance [m], else the one with the most, of a grid; and its clearance."""
+        """(point (x, y), its clearance) [m] of a grid: the nearest to ``near`` with a clearance of ``radius`` [m], else the roomiest."""
         low, high = self._box(near, 4 * radius)
         x, y = np.meshgrid(np.linspace(low[0], high[0], cells), np.linspace(low[1], high[1], cells))
         points = np.column_stack((x.ravel(), y.ravel()))

@@ -13,7 +13,7 @@ Floats = NDArray[np.float64]
 
 
 def handed_file(stem: str, suffix: str, content: bytes) -> Path:
-    """The file with this content; written once, whole or not at all, however many processes ask for it."""
+    """Path of a file with this content; written once, whole or not at all, however many processes ask for it."""
     folder = Path(tempfile.gettempdir()) / f"uvf-files-{os.getuid()}"
     folder.mkdir(mode=0o700, exist_ok=True)
     target = folder / f"{stem}-{hashlib.sha256(content).hexdigest()[:16]}{suffix}"
@@ -25,7 +25,7 @@ def handed_file(stem: str, suffix: str, content: bytes) -> Path:
 
 
 def mesh_file(stem: str, vertices: Floats, faces: NDArray[Any]) -> Path:
-    """An STL with these vertices (n, 3) [m] and faces (m, 3)."""
+    """Path of an STL file with these vertices (n, 3) [m] and faces (m, 3)."""
     # Takes a second to import: an autopilot that is started again in flight needs no meshes.
     import trimesh
 

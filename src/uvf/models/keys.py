@@ -11,17 +11,17 @@ UNIT = "unit"
 
 
 def key(unit: str, meaning: str) -> Meta:
-    """The note of a key whose limits, if it has any, are those of its type."""
+    """Note of a key that is a number of this unit; its limits, if it has any, are those of its type."""
     return Meta(description=meaning, extra_json_schema={UNIT: unit})
 
 
 def plain(meaning: str) -> Meta:
-    """The note of a key that is no number: a name, a choice, a list, a part of the file."""
+    """Note of a key that is no number: a name, a choice, a list, a part of the file."""
     return Meta(description=meaning)
 
 
 def meta_of(hint: Any) -> Meta:
-    """All notes and limits of a type together; of two that say the same, the outer one counts."""
+    """All notes and limits of a type in one; of two that say the same, the outer one counts."""
     if get_origin(hint) is not Annotated:
         return Meta()
     said: dict[str, Any] = {}
@@ -33,5 +33,5 @@ def meta_of(hint: Any) -> Meta:
 
 
 def unit_of(meta: Meta) -> str | None:
-    """None where nothing is said of a unit; empty for a number that has none."""
+    """Unit that a note names; None where it names none, empty for a dimensionless number."""
     return (meta.extra_json_schema or {}).get(UNIT)

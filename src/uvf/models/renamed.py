@@ -12,6 +12,6 @@ RENAMED = {
 
 
 def new_name(name: str) -> str:
-    """What it is called now; of a topic with its owner, too. Empty where it was never called otherwise."""
+    """New name of a parameter, key or topic (also of a topic with its owner); empty where it was never renamed."""
     owner, _, rest = name.partition("/")
     return RENAMED.get(name) or (f"{owner}/{RENAMED[rest]}" if rest in RENAMED else "")

@@ -32,12 +32,14 @@ class MissionVehicle:
     folder: Path
 
     def params(self, service: str, type_: type[P]) -> P:
-        """The parameters that this vehicle's file sets for a service, the rest by default. Raises BadInput."""
+        """Parameters of a service as this vehicle's file sets them, the rest by default. Raises BadInput."""
         return convert(self.file.params.get(service, {}), type_, str(self.folder / "vehicle.yaml"), ("params", service))
 
 
 @dataclass(frozen=True)
 class Scenario:
+    """A mission with its world and its vehicles, loaded and checked."""
+
     mission_path: Path
     mission: MissionFile
     world: WorldFile
@@ -45,26 +47,27 @@ class Scenario:
     members: dict[str, MissionVehicle]
 
     def of_kind(self, kind: str) -> Iterator[MissionVehicle]:
+        """The vehicles of one kind: ``ground`` or ``fixed_wing``."""
         return (m for m in self.members.values() if m.file.kind == kind)
 
     @property
     def vehicles_folder(self) -> Path:
-        """Where the models of its vehicles lie, and those that may be put in later."""
+        """Folder that holds the models of its vehicles, and those that may be put in later."""
         return next(iter(self.members.values())).folder.parent
 
     @property
     def wind(self) -> Wind:
-        """The mission's, or else the world's."""
+        """Wind of the mission, or else that of the world."""
         return self.world.wind if self.mission.wind is None else self.mission.wind
 
     def rng(self, *names: str) -> np.random.Generator:
-        """A generator of its own for each purpose: the mission's seed and the names decide, nothing else."""
+        """A random generator for one purpose: the mission's seed and the names decide its numbers, nothing else."""
         text = "/".join((str(self.mission.seed), *names))
         return np.random.default_rng(int.from_bytes(hashlib.sha256(text.encode()).digest()[:8], "big"))
 
 
 def check_starts(site: Scenario) -> None:
-    """Every vehicle begins in its world and none inside another one. Raises BadInput."""
+    """Checks that every vehicle begins in its world and none inside another one. Raises BadInput."""
     x_min, y_min, x_max, y_max = site.world.floor
     place = FileLocation(str(site.mission_path)).at("vehicles")
     for name, member in site.members.items():

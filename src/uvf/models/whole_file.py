@@ -8,7 +8,7 @@ from uvf.models.yaml_data import BadInput
 
 
 def write_whole(path: Path, content: bytes) -> None:
-    """Written beside and then renamed, so that nobody ever reads half of it. Raises BadInput, and what was there stays."""
+    """Writes a file beside and renames it, so that nobody ever reads half of it. Raises BadInput, and what was there stays."""
     part = path.with_name(f".{path.name}.{os.getpid()}")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)

@@ -39,6 +39,7 @@ class FileLocation(NamedTuple):
     keys: tuple[Key, ...] = ()
 
     def at(self, *keys: Key) -> "FileLocation":
+        """The spot below this one that ``keys`` lead to."""
         return FileLocation(self.file, (*self.keys, *keys))
 
     def __str__(self) -> str:
@@ -100,7 +101,7 @@ def load_yaml(path: Path, type_: type[T], fill: Callable[[Any, FileLocation], An
 
 
 def read_yaml(path: Path) -> Any:
-    """The plain data of a YAML file. Raises BadInput."""
+    """Plain data of a YAML file. Raises BadInput."""
     try:
         data = yaml.load(path.read_text(encoding="utf-8"), _Loader)
     except OSError as error:
@@ -121,13 +122,13 @@ def read_yaml(path: Path) -> Any:
 
 
 def convert(data: Any, type_: type[T], file: str, keys: tuple[Key, ...] = ()) -> T:
-    """Plain data, which came from ``keys`` of ``file``, into ``type_``. Raises BadInput."""
+    """Converts plain data, which came from ``keys`` of ``file``, into ``type_``. Raises BadInput."""
     _check(data, type_, FileLocation(file, keys))
     return msgspec.convert(data, type_)
 
 
 def nearest(name: str, known: Iterable[str]) -> str:
-    """``did you mean 'x'?`` or the list of what there is."""
+    """Hint for an unknown name: ``did you mean 'x'?``, or the list of what there is."""
     choices = sorted(known)
     if (now := new_name(name)) in choices:
         return f"it is called '{now}' now"
@@ -136,7 +137,7 @@ def nearest(name: str, known: Iterable[str]) -> str:
 
 
 def listed(names: Iterable[str]) -> str:
-    """``a, b and 3 more``: never so long that nobody reads it, or that no message can carry it."""
+    """Names as ``a, b and 3 more``: never too long to be read or to be sent."""
     known = list(names)
     more = f" and {len(known) - LISTED} more" if len(known) > LISTED else ""
     return ", ".join(map(_short, known[:LISTED])) + more

@@ -13,9 +13,9 @@ Floats = NDArray[np.float64]
 
 
 def allan_deviation(samples: ArrayLike, hz: float, factors: ArrayLike) -> tuple[Floats, Floats]:
-    """(k,) averaging times [s] and (k,) deviations [unit of the samples].
+    """Averaging times (k,) [s] and overlapping Allan deviations (k,) [unit of the samples].
 
-    samples: (n,) at ``hz``; factors: (k,) interval lengths in samples, each at most n / 2. Raises ValueError.
+    samples: (n,) at ``hz`` [Hz]; factors: (k,) interval lengths in samples, each at most n / 2. Raises ValueError.
     """
     rate = np.asarray(samples, dtype=np.float64)
     lengths = np.asarray(factors, dtype=np.int64)
@@ -28,12 +28,12 @@ def allan_deviation(samples: ArrayLike, hz: float, factors: ArrayLike) -> tuple[
 
 
 def octaves(count: int, least: int = 9) -> NDArray[np.int64]:
-    """Interval lengths 1, 2, 4, ... of which at least ``least`` fit into ``count`` samples one after another."""
+    """Interval lengths (k,) 1, 2, 4, ... [samples] of which at least ``least`` fit into ``count`` samples one after another."""
     return 2 ** np.arange(int(np.log2(count // least)) + 1)
 
 
 def expected(errors: Errors, hz: float, taus: ArrayLike) -> Floats:
-    """(k,) deviations that a channel of one component with these errors has at averaging times (k,) [s], sampled at ``hz``.
+    """Analytic deviations (k,) of one component with these errors at averaging times (k,) [s], sampled at ``hz`` [Hz], in its own unit.
 
     White noise N / sqrt(tau), exponentially correlated (Markov) noise, rate random walk K sqrt(tau / 3); for taus well above 1 / hz.
     """

@@ -10,16 +10,21 @@ Floats = NDArray[np.float64]
 
 
 class PosedBody(Protocol):
-    """A body's pose in the world: position (3,) m, world_from_body wxyz."""
+    """A body's pose in the world."""
 
     @property
-    def position(self) -> Floats: ...
+    def position(self) -> Floats:
+        """Position (3,) [m] in the world."""
+        ...
+
     @property
-    def world_from_body(self) -> Floats: ...
+    def world_from_body(self) -> Floats:
+        """Attitude as a unit quaternion wxyz (4,)."""
+        ...
 
 
 class BodyTrack:
-    """Poses by time, straight on between; before the first one and after the last the body stands."""
+    """The poses of a body by time, interpolated between them; before the first one and after the last the body stands still."""
 
     def __init__(self, span: float) -> None:
         """span: s that are looked back over."""
@@ -27,7 +32,7 @@ class BodyTrack:
         self._poses: deque[tuple[float, Floats, Floats]] = deque()
 
     def add(self, t: float, body: PosedBody) -> None:
-        """Each step, by rising ``t`` [s]."""
+        """Adds the pose of a step at ``t`` [s]; times must rise."""
         self._poses.append((t, body.position, body.world_from_body))
         while len(self._poses) > 1 and self._poses[1][0] <= t - self._span:
             self._poses.popleft()

@@ -38,12 +38,15 @@ class Errors:
 
 
 def sample_sigma(density: float, hz: float) -> float:
-    """1 sigma of a sample at ``hz`` whose white noise has this density [unit/sqrt(Hz)]: angle random walk, N of IEEE Std 952."""
+    """1 sigma [unit] of a sample at ``hz`` [Hz] of white noise of a ``density`` [unit/sqrt(Hz)]: angle random walk, N of IEEE Std 952."""
     return density * float(np.sqrt(hz))
 
 
 class GaussMarkov:
-    """dx/dt = -x / time_constant + white noise, exact for any step (Beard & McLain, eq. 7.17); begins in its steady state."""
+    """First-order Gauss-Markov process, exact for any step (Beard & McLain, eq. 7.17); begins in its steady state.
+
+    dx/dt = -x / time_constant + white noise.
+    """
 
     def __init__(self, sigma: Floats, time_constant: float, rng: np.random.Generator) -> None:
         """sigma: (n,) standard deviations in the steady state; time_constant: s."""
@@ -53,7 +56,7 @@ class GaussMarkov:
         self.value: Floats = sigma * rng.standard_normal(sigma.shape)
 
     def step(self, dt: float) -> Floats:
-        """(n,) the value ``dt`` [s] later."""
+        """Value (n,) ``dt`` [s] after the last step, in the unit of sigma."""
         keep = exp(-dt / self._time_constant)
         new = self._rng.standard_normal(self._sigma.shape)
         self.value = keep * self.value + self._sigma * sqrt(1 - keep * keep) * new
@@ -70,7 +73,7 @@ class RandomWalk:
         self.value: Floats = np.zeros(density.shape)
 
     def step(self, dt: float) -> Floats:
-        """(n,) the value ``dt`` [s] later."""
+        """Value (n,) ``dt`` [s] after the last step, in the density's unit times sqrt(s)."""
         self.value = self.value + self._density * sqrt(dt) * self._rng.standard_normal(self._density.shape)
         return self.value
 
@@ -93,7 +96,7 @@ class Channel:
             self._slow.append(RandomWalk(np.ones(size) * errors.random_walk, walk))
 
     def read(self, true: Floats, dt: float) -> Floats:
-        """(size,) the reading of ``true``, ``dt`` [s] after the one before."""
+        """Reading (size,) of the ``true`` value (size,), ``dt`` [s] after the last one."""
         errors = self._errors
         value: Floats = self._scale * true + self._bias + self._noise * self._rng.standard_normal(self._noise.shape)
         for process in self._slow:

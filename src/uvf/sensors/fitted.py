@@ -13,7 +13,7 @@ from uvf.sensors.sweeping import Sweeping
 
 
 def gyro_errors(imu: ImuSensor) -> Errors:
-    """rad/s."""
+    """Error budget of the gyroscopes [rad/s]."""
     return Errors(
         noise=imu.gyro_noise,
         bias=imu.gyro_bias,
@@ -27,7 +27,7 @@ def gyro_errors(imu: ImuSensor) -> Errors:
 
 
 def accelerometer_errors(imu: ImuSensor) -> Errors:
-    """m/s^2."""
+    """Error budget of the accelerometers [m/s^2]."""
     return Errors(
         noise=imu.accel_noise,
         bias=imu.accel_bias,
@@ -41,21 +41,23 @@ def accelerometer_errors(imu: ImuSensor) -> Errors:
 
 
 def inertial_unit(imu: ImuSensor, rng: np.random.Generator) -> InertialUnit:
+    """Simulated IMU and magnetometer with the errors of the vehicle's file."""
     magnetometer = Errors(noise=imu.mag_noise, bias=imu.mag_bias)  # T
     return InertialUnit(gyro_errors(imu), accelerometer_errors(imu), magnetometer, imu.mag_hz or imu.hz, rng)
 
 
 def receiver(gnss: GnssSensor, tangent: LocalTangent, rng: np.random.Generator) -> Receiver:
-    """tangent: the plane of the world's origin."""
+    """Simulated satellite receiver with the errors of the vehicle's file; ``tangent``: the plane of the world's origin."""
     noise = np.array((gnss.horizontal_noise, gnss.horizontal_noise, gnss.vertical_noise))
     drift = np.array((gnss.horizontal_drift, gnss.horizontal_drift, gnss.vertical_drift))
     return Receiver(Errors(noise=noise, drift=drift, drift_time=gnss.drift_time), Errors(noise=gnss.speed_noise), tangent, rng)
 
 
 def sweeping_of(lidar: Lidar) -> Sweeping:
+    """Timing of a lidar's sweep by the vehicle's file."""
     return Sweeping(lidar.sweep_time, lidar.clockwise)
 
 
 def line_of(sensor: Sampled, rng: np.random.Generator) -> DelayLine[Any]:
-    """The way of a sensor's readings to their readers."""
+    """Delay line that takes a sensor's readings to their readers."""
     return DelayLine(sensor.hz, sensor.latency, Dropout(sensor.dropout, sensor.burst, rng) if sensor.dropout else None)

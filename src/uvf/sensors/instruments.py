@@ -13,7 +13,10 @@ Floats = NDArray[np.float64]
 
 
 class ImuReading(NamedTuple):
-    """Valid for ``t`` [s]; (3,) each, sensor frame: rad/s, m/s^2 (at rest +g upwards), T."""
+    """A reading valid for ``t`` [s], (3,) each, sensor frame.
+
+    Angular velocity [rad/s], specific force [m/s^2] (at rest +g upwards), magnetic field [T].
+    """
 
     t: float
     angular_velocity: Floats
@@ -32,7 +35,7 @@ class InertialUnit:
         """s, of the newest reading."""
 
     def read(self, t: float, angular_velocity: Floats, specific_force: Floats, magnetic_field: Floats) -> ImuReading:
-        """From the truth, (3,) each, sensor frame."""
+        """Reading at ``t`` [s] of true angular velocity [rad/s], specific force [m/s^2], magnetic field [T]: (3,) each, sensor frame."""
         dt, self.t = t - self.t, t
         if self._mag_due.at(t):
             self._field = self._mag.read(magnetic_field, dt)
@@ -40,7 +43,7 @@ class InertialUnit:
 
 
 class ReceiverFix(NamedTuple):
-    """Valid for ``t`` [s]: rad, rad, m AMSL; (3,) m/s ENU."""
+    """A fix valid for ``t`` [s]: latitude, longitude [rad], altitude [m AMSL], and velocity (3,) [m/s, ENU]."""
 
     t: float
     latitude: float
@@ -59,7 +62,7 @@ class Receiver:
         self._t = 0.0
 
     def read(self, t: float, position: Floats, velocity: Floats) -> ReceiverFix:
-        """From the truth, (3,) m and m/s, ENU."""
+        """Fix at ``t`` [s] of the true position (3,) [m, ENU] and velocity (3,) [m/s, ENU]."""
         dt, self._t = t - self._t, t
         measured = self._position.read(position, dt)
         return ReceiverFix(t, *self._tangent.geodetic(measured), self._velocity.read(velocity, dt))

@@ -17,7 +17,7 @@ SPACING = np.radians(1.5)  # at most, between a sonar's rays: a leg of 3 cm is m
 
 
 class RayFan:
-    """Rays at angles about a mount's z axis, from its x axis, counter-clockwise. angles: (n,) rad."""
+    """Rays about a mount's z axis, at ``angles`` (n,) [rad] counter-clockwise from its x axis."""
 
     def __init__(self, mount: Mount, angles: Floats) -> None:
         level = np.column_stack((np.cos(angles), np.sin(angles), np.zeros(len(angles))))
@@ -25,13 +25,13 @@ class RayFan:
         self._origin = np.array(mount.xyz)
 
     def cast(self, scene: Scene, others: Sequence[MovingBody], body: PosedBody, reach: float) -> Floats:
-        """(n,) m to what each ray meets first, inf where that is nothing within ``reach`` [m]; the own body is not met."""
+        """Distances (n,) [m] to what each ray meets first, inf where that is nothing within ``reach`` [m]; the body itself is not met."""
         world_from_body = matrix(body.world_from_body)
         rays = Rays(body.position + world_from_body @ self._origin, self._directions @ world_from_body.T)
         return cast(scene, others, rays, reach)
 
     def cast_on_the_move(self, scene: Scene, others: Sequence[MovingBody], poses: tuple[Floats, Floats], reach: float) -> Floats:
-        """The same with a pose of the body for each ray: positions (n, 3), attitudes (n, 4)."""
+        """Distances (n,) [m], as ``cast``, with a pose of the body for each ray: positions (n, 3) [m] and attitudes wxyz (n, 4), world."""
         positions, attitudes = poses
         world_from_body = matrices(attitudes)
         directions = np.einsum("nij,nj->ni", world_from_body, self._directions)
@@ -39,7 +39,7 @@ class RayFan:
 
 
 class LidarModel:
-    """One scanner, in its own plane however the vehicle stands."""
+    """One simulated lidar, in its own plane however the vehicle is tilted."""
 
     def __init__(self, lidar: Lidar, scene: Scene, rng: np.random.Generator) -> None:
         self._lidar = lidar
@@ -55,11 +55,14 @@ class LidarModel:
         """Of the body; who calls ``sweep`` keeps it."""
 
     def scan(self, body: PosedBody, others: Sequence[MovingBody]) -> Floats:
-        """(beams,) ranges [m], counter-clockwise from ``angle_min``, 0 = no return. others: what moves about the body."""
+        """Ranges (beams,) [m], counter-clockwise from ``angle_min``, 0 = no return. others: what moves about the body."""
         return self._measured(self._fan.cast(self._scene, others, body, self._reach))
 
     def sweep(self, t: float, others: Sequence[MovingBody]) -> Floats:
-        """The same of a sweep that ends at ``t`` [s], each beam from where the body was. others: where they are at its end."""
+        """Ranges (beams,) [m] of a sweep that ends at ``t`` [s], each beam from where the body was; 0 = no return.
+
+        others: what moves about the body, where it is at the end of the sweep.
+        """
         poses = self.track.at(t + self._moments)
         return self._measured(self._fan.cast_on_the_move(self._scene, others, poses, self._reach))
 
@@ -70,7 +73,7 @@ class LidarModel:
 
 
 class RangeModel:
-    """A sonar, of whose cone the nearest thing answers that one of its rays in a fan meets, or a range finder: one ray."""
+    """A simulated sonar, which measures the nearest thing that a fan of rays in its cone meets, or a range finder: one ray."""
 
     def __init__(self, sensor: Sonar | RangeFinder, scene: Scene, rng: np.random.Generator) -> None:
         self._sensor = sensor
@@ -80,7 +83,7 @@ class RangeModel:
         self._reach = sensor.range_max + 10.0 * sensor.noise
 
     def range(self, body: PosedBody, others: Sequence[MovingBody]) -> float:
-        """m, 0 = no return. body: the vehicle's own; others: what moves about it."""
+        """Measured range [m], 0 = no return. body: the vehicle's own; others: what moves about it."""
         sensor = self._sensor
         true = self._fan.cast(self._scene, others, body, self._reach).min()
         measured = float(self._errors.read(np.array((true,)), 0.0)[0])

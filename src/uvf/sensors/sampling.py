@@ -13,7 +13,7 @@ EARLY = 1e-6
 
 
 class Due:
-    """Whether a sensor of ``hz`` takes a new reading at time t.
+    """Tells when a sensor that runs at ``hz`` takes a new reading.
 
     The k-th one is due at k / hz and is taken at the first step from then on: a rate that does not divide that of the steps
     keeps its mean exactly, and no reading is taken twice.
@@ -24,6 +24,7 @@ class Due:
         self._n = 0
 
     def at(self, t: float) -> bool:
+        """Whether a new reading is due at ``t`` [s]; True once for each."""
         if t * self._hz < self._n + 1 - EARLY:
             return False
         self._n = math.floor(t * self._hz + EARLY)
@@ -54,7 +55,7 @@ class Dropout:
 
 
 class DelayLine(Generic[T]):
-    """A sensor's way to its readers: takes readings when they are due, loses some, hands over the rest late and in order."""
+    """Delivers a sensor's readings: takes them when they are due, loses some, hands over the rest late and in order."""
 
     def __init__(self, hz: float, latency: float = 0.0, dropout: Dropout | None = None) -> None:
         """latency: s, from the moment a reading is valid for."""
@@ -64,7 +65,10 @@ class DelayLine(Generic[T]):
         self._under_way: deque[tuple[float, T]] = deque()
 
     def step(self, t: float, take: Callable[[], T]) -> T | None:
-        """The reading that arrives at the step at ``t`` [s], if any. One that is lost is taken too, so that noise goes on as without."""
+        """Reading that arrives at the step at ``t`` [s], if any.
+
+        ``take`` is called for lost ones too, so that the noise does not depend on losses.
+        """
         if self._due.at(t):
             reading = take()
             if self._dropout is None or not self._dropout.lost():

@@ -24,14 +24,14 @@ Floats = NDArray[np.float64]
 
 
 class Whereabouts(NamedTuple):
-    """position: (3,) m, world; world_from_body: wxyz."""
+    """Pose in the world: position (3,) [m], attitude world_from_body wxyz (4,)."""
 
     position: Floats
     world_from_body: Floats
 
 
 class Surroundings:
-    """Trees of solids are built once; only poses change."""
+    """All that a vehicle's rays may meet. Trees of solids are built once; only poses change."""
 
     def __init__(self, things: Sequence[Solid], vehicles: Mapping[str, Bvh], still: Scene | None = None) -> None:
         """vehicles: their collision shapes in their own frames; still: the scene of the things, where it is there already."""
@@ -41,36 +41,39 @@ class Surroundings:
         self._vehicles = dict(vehicles)
 
     def moving(self, t: float) -> dict[str, MovingBody]:
-        """What moves by script, as it stands at simulation time ``t`` [s]."""
+        """Bodies that move by script, by name, where they are at simulation time ``t`` [s]."""
         return {solid.name: MovingBody(tree, *pose_at(solid, t)) for solid, tree in self._scripted}
 
     def add_vehicle(self, name: str, tree: Bvh) -> None:
+        """Adds a vehicle by its collision shapes in its own frame, or replaces them."""
         self._vehicles[name] = tree
 
     def add_object(self, name: str, solid: Solid) -> None:
+        """Adds an object that was put into the simulation, or replaces it."""
         self._objects[name] = own_tree(solid)
 
     def remove(self, name: str) -> None:
+        """Takes out the vehicle or object of this name, if there is one."""
         self._vehicles.pop(name, None)
         self._objects.pop(name, None)
 
     def objects(self, poses: Mapping[str, tuple[Floats, Floats]]) -> dict[str, MovingBody]:
-        """What has been put in, at these poses."""
+        """Objects that were put in, by name, at these poses: positions (3,) [m] and attitudes wxyz (4,), world."""
         return {name: MovingBody(self._objects[name], *pose) for name, pose in poses.items()}
 
     def bodies(self, states: Mapping[str, PosedBody]) -> dict[str, MovingBody]:
-        """The vehicles of which it is known where they are."""
+        """Vehicles whose state is known, by name."""
         known = ((name, tree, states[name]) for name, tree in self._vehicles.items() if name in states)
         return {name: MovingBody(tree, state.position, state.world_from_body) for name, tree, state in known}
 
 
 def own_tree(solid: Solid) -> Bvh:
-    """One solid in its own frame."""
+    """Tree of one solid in its own frame."""
     return build(primitives(replace(solid, position=np.zeros(3), orientation=IDENTITY)))
 
 
 def vehicle_tree(model: UrdfModel) -> Bvh:
-    """All collision shapes of a vehicle in its base frame; wheels look the same however they are turned."""
+    """Tree of all collision shapes of a vehicle in its root frame; wheels look the same however they are turned."""
     parts = []
     for name, root_from_link in model.link_poses().items():
         for solid in model.links[name].collisions:
@@ -80,11 +83,11 @@ def vehicle_tree(model: UrdfModel) -> Bvh:
 
 
 def aircraft_tree(shape: AircraftShape) -> Bvh:
-    """An aircraft in its body frame, as it is seen, without its wheels: what these touch is the simulator's matter."""
+    """Tree of an aircraft in its body frame without its wheels, whose contacts the flight simulator computes."""
     vertices, faces = joined_parts(shape.airborne)
     return build(mesh(vertices, faces, np.zeros(3), IDENTITY))
 
 
 def aircraft_solid(name: str, shape: AircraftShape) -> Solid:
-    """The same with its wheels, for an engine that reads files."""
+    """Solid of an aircraft with its wheels, as a mesh file, for engines that read files."""
     return Solid(name, "mesh", (1.0, 1.0, 1.0), np.zeros(3), mesh=mesh_file(name, *joined_parts(shape.at_rest)))

@@ -11,14 +11,14 @@ SPACING = 0.02  # s, at most, within which the beams of a part are measured
 
 
 class SweepSegment(NamedTuple):
-    """Neighbouring beams of a message, ``ranges[beams]``, and the middle of the time in which they were measured [s]."""
+    """Neighbouring beams of a message, ``ranges[beams]``, and the middle of the time in which they were measured, ``at`` [s]."""
 
     at: float
     beams: slice
 
 
 class Sweeping(NamedTuple):
-    """duration: s from the first beam to the last, evenly; clockwise: the last of the message is measured first.
+    """Timing of a sweep: ``duration`` [s] from the first beam to the last; clockwise: the message's last beam is measured first.
 
     The stamp of a message is that of the beam that is measured first.
     """
@@ -27,15 +27,15 @@ class Sweeping(NamedTuple):
     clockwise: bool = False
 
     def in_order(self, ranges: NDArray[np.float64]) -> NDArray[np.float64]:
-        """(n,) m, of a message, in the order in which they were measured."""
+        """Ranges (n,) [m] of a message in the order in which they were measured."""
         return ranges[::-1].copy() if self.clockwise else ranges
 
     def end(self, stamp: float) -> float:
-        """s, when the last beam of the scan stamped ``stamp`` [s] was measured."""
+        """Time [s] at which the last beam of the scan stamped ``stamp`` [s] was measured."""
         return stamp + self.duration
 
     def parts(self, beams: int, stamp: float) -> list[SweepSegment]:
-        """All ``beams`` of the scan stamped ``stamp`` [s] in the order of the message; a single part where all are taken at once."""
+        """Segments of a scan of ``beams`` beams stamped ``stamp`` [s], in the message's order; one segment where all are taken at once."""
         n, first = max(beams, 1), stamp
         count = min(n, max(ceil(self.duration / SPACING - 1e-9), 1))
         edges = [round(n * k / count) for k in range(count + 1)]

@@ -16,12 +16,15 @@ SPACING = 0.025  # s, at most, between the moments at which the odometry is aske
 
 
 def moments(first: float, duration: float) -> Floats:
-    """s, evenly from the first beam to the last."""
+    """Times (m,) [s], evenly spaced over ``duration`` [s] from the first beam, measured at ``first`` [s], to the last."""
     return np.linspace(first, first + duration, ceil(duration / SPACING - 1e-9) + 1)
 
 
 def straightened(ranges: Floats, beams: Beams, first: float, odom_from_base: Callable[[Floats], Floats]) -> Reading:
-    """The reading of a sweep whose first beam was measured at ``first`` [s]; odom_from_base: (m, 3) at times (m,) [s]."""
+    """Deskewed reading of ranges (n,) [m] whose first beam was measured at ``first`` [s].
+
+    odom_from_base: gives the poses (m, 3) at times (m,) [s].
+    """
     times = moments(first, beams.duration)
     poses = odom_from_base(times)
     reading = Reading(float(times[-1]), ranges, beams, Pose2(*poses[-1].tolist()))
@@ -29,7 +32,7 @@ def straightened(ranges: Floats, beams: Beams, first: float, odom_from_base: Cal
 
 
 def deskewed(reading: Reading, last_from_base: Floats) -> Reading:
-    """The same points seen from the lidar's place at the last beam.
+    """Reading with the same points as if they had all been seen from the lidar's place at the last beam.
 
     last_from_base: (m, 3) where the base was at m moments, evenly from the first beam to the last, seen from where it was then.
     The limits of its ranges are wider by as much as the lidar has moved; what is no return is infinite, what says nothing NaN.

@@ -21,16 +21,19 @@ class IncrementalMethod:
         self._keyframes: list[Keyframe] = []
 
     def trajectory(self) -> Floats:
+        """Poses map_from_base (readings, 3) [m, m, rad] as they were told."""
         return np.array(self._poses, dtype=np.float64).reshape(-1, 3)
 
     def keyframes(self) -> Iterator[Keyframe]:
+        """The keyframes at the poses at which they were taken."""
         return iter(self._keyframes)
 
     def keyframe_count(self) -> int:
+        """Number of keyframes."""
         return len(self._keyframes)
 
     def finish(self) -> None:
-        """Nothing has been put off."""
+        """Does nothing: no work has been put off."""
 
     def _has_moved(self, distance: float, turn: float) -> bool:
         """Whether the last pose is farther [m, rad] from the last keyframe's, or there is none yet."""

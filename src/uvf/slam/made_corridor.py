@@ -9,7 +9,7 @@ from uvf.slam.reading import Beams, Reading
 
 
 def there_and_back() -> Iterator[Reading]:
-    """Through a made-up corridor."""
+    """Readings of a drive through a made-up corridor, there and back."""
     beams = Beams((0.0, 0.0), np.linspace(-np.pi, np.pi, 120), 0.1, 10.0)
     for k in range(50):
         x = 0.4 * min(k, 50 - k)

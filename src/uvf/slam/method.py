@@ -15,7 +15,7 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class SlamEstimate:
-    """Where the vehicle is by what is known now.
+    """Estimate of where the vehicle is.
 
     covariance: (3, 3) of (x, y, yaw) in the map frame [m, rad]; quality: 0 (the sweep fits nothing) to 1 (all of it fits).
     """
@@ -34,22 +34,22 @@ class Keyframe:
 
 
 class SlamMethod(Protocol):
-    """Fed with readings in the order in which they were taken; the map frame is the first pose of the base.
+    """Interface of a SLAM method, fed with readings in the order in which they were taken. The map frame is the first pose of the base.
 
     Nothing in a reading may end it: what cannot be used is left out, and the odometry carries on.
     """
 
     def add(self, reading: Reading) -> SlamEstimate:
-        """Takes in one reading and says where the vehicle is."""
+        """Takes in one reading; returns where the vehicle is."""
 
     def trajectory(self) -> Floats:
-        """(readings, 3): map_from_base of every reading so far, by what is known now."""
+        """Poses map_from_base (readings, 3) [m, m, rad] of every reading so far, by what is known now."""
 
     def keyframes(self) -> Iterator[Keyframe]:
-        """What the map is to be drawn from, by what is known now."""
+        """The keyframes that the map is to be drawn from, by what is known now."""
 
     def keyframe_count(self) -> int:
-        """Of ``keyframes``; as long as readings come these are the same, at the same poses, until there is one more."""
+        """Number of ``keyframes``; as long as readings come these are the same, at the same poses, until there is one more."""
 
     def finish(self) -> None:
-        """After the last reading: work that had been put off."""
+        """Does the work that had been put off; called after the last reading."""

@@ -17,7 +17,7 @@ from uvf.slam.rbpf.params import RbpfParams
 
 @dataclass(frozen=True)
 class MethodKind:
-    """What a method is made of, and what its parameters may be."""
+    """Parameters and constructor of a method."""
 
     params: type[Params]
     make: Callable[[Any], SlamMethod]
@@ -32,12 +32,12 @@ METHODS: dict[str, MethodKind] = {
 
 
 def method_params(name: str, values: Mapping[str, Any], source: str) -> Params:
-    """The parameters of a method: its own, but for ``values``, which come from ``source``. Raises BadInput."""
+    """Parameters of a method: its defaults, but for ``values``, which come from ``source``. Raises BadInput."""
     if name not in METHODS:
         raise BadInput(f"no SLAM method '{name}'; {nearest(name, METHODS)}")
     return convert(dict(values), METHODS[name].params, source)
 
 
 def make_method(name: str, params: Params) -> SlamMethod:
-    """A fresh one. params: of ``method_params``."""
+    """A new instance of a method. params: of ``method_params``."""
     return METHODS[name].make(params)

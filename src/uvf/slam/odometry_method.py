@@ -21,11 +21,11 @@ DRIFT = (0.05, 0.02, 0.1)
 
 
 class OdometryMethodParams(Params, frozen=True):
-    """It has none."""
+    """Parameters of ``OdometryMethod``: it has none."""
 
 
 class OdometryMethod(IncrementalMethod):
-    """Where the odometry has the vehicle; uncertainty grows with the way, the quality of what is not checked is 0."""
+    """The odometry's pose as a SLAM method; its uncertainty grows with the way, its quality is 0, for nothing is checked."""
 
     def __init__(self, params: OdometryMethodParams) -> None:
         super().__init__()
@@ -33,6 +33,7 @@ class OdometryMethod(IncrementalMethod):
         self._driven = self._turned = 0.0
 
     def add(self, reading: Reading) -> SlamEstimate:
+        """Takes over the odometry's pose, relative to that of the first reading."""
         if not self._poses:
             self._base_from_odom = inverse(reading.odom_from_base)
         pose = compose(self._base_from_odom, reading.odom_from_base)

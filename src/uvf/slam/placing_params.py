@@ -11,5 +11,7 @@ Positive = Annotated[float, Meta(gt=0)]
 
 
 class PlacingParams(Params, frozen=True):
+    """Parameters that mapping and localization share."""
+
     correction_speed: Annotated[Positive, key("m/s", "Largest speed at which the published correction follows the matched one.")] = 0.1
     correction_turn: Annotated[Positive, key("rad/s", "Largest rate at which the published correction follows the matched one.")] = 0.1

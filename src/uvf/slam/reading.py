@@ -12,7 +12,7 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Beams:
-    """Where the beams of a lidar begin and point; one object serves all sweeps of the same shape.
+    """Geometry of a lidar's beams; one object serves all sweeps of the same shape.
 
     origin: (x, y) of the lidar in the base frame [m]; bearings: (n,) direction of each beam in the base frame [rad], in the
     order in which they are measured: falling for a lidar that turns clockwise or hangs upside down.
@@ -34,7 +34,7 @@ class Beams:
 
 @dataclass(frozen=True)
 class Reading:
-    """One sweep. t: stamp of its last beam [s]; ranges: (n,) m; odom_from_base: by the odometry at ``t``."""
+    """One sweep. t: stamp of its last beam [s]; ranges: (n,) [m]; odom_from_base: by the odometry at ``t``."""
 
     t: float
     ranges: Floats
@@ -43,7 +43,7 @@ class Reading:
 
     @property
     def returned(self) -> NDArray[np.bool_]:
-        """(n,) which beams came back."""
+        """Mask (n,) of the beams that came back."""
         with np.errstate(invalid="ignore"):
             found: NDArray[np.bool_] = (self.ranges > max(self.beams.range_min, 0.0)) & (self.ranges < self.beams.range_max)
         return found

@@ -12,10 +12,10 @@ class Resumable(SlamMethod, Protocol):
     """A method whose work another instance can go on with."""
 
     def session(self) -> MappingSession:
-        """All of it."""
+        """The whole mapping session so far."""
 
     def resume(self, session: MappingSession, map_from_base: Pose2) -> None:
-        """Before the first reading; map_from_base: where the vehicle is now."""
+        """Continues a session; called before the first reading. map_from_base: where the vehicle is now."""
 
 
 @runtime_checkable
@@ -24,4 +24,4 @@ class Noting(SlamMethod, Protocol):
 
     @property
     def notes(self) -> list[str]:
-        """A line each, and no line goes again."""
+        """Remarks for the user, a line each; a line never goes away again."""

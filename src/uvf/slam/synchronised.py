@@ -48,9 +48,11 @@ class Synchronised:
 
     @property
     def skew(self) -> Skew:
+        """Skew between sweeps and odometry as estimated so far."""
         return self._skew.estimate()
 
     def add(self, reading: Reading) -> SlamEstimate:
+        """Feeds the method with a reading whose odometry is that of the sweep's true time, and learns the skew."""
         end = int(np.searchsorted(self._t, reading.t, side="right"))
         for t, (_, _, heading) in zip(self._t[self._fed : end].tolist(), self._poses[self._fed : end].tolist(), strict=True):
             self._skew.add_odometry(t, heading)
@@ -60,15 +62,19 @@ class Synchronised:
         return estimate
 
     def trajectory(self) -> Floats:
+        """Poses map_from_base (readings, 3) [m, m, rad], as the method has them."""
         return self.method.trajectory()
 
     def keyframes(self) -> Iterator[Keyframe]:
+        """The method's keyframes."""
         return self.method.keyframes()
 
     def keyframe_count(self) -> int:
+        """Number of the method's keyframes."""
         return self.method.keyframe_count()
 
     def finish(self) -> None:
+        """Lets the method do the work that it had put off."""
         self.method.finish()
 
     def _corrected(self, reading: Reading) -> Reading:

@@ -27,7 +27,7 @@ BOOMS = ("twin_boom", "inverted_v")
 
 
 def fuselage_parts(looks: Looks, sizes: Sizes) -> list[MeshPart]:
-    """Body, canopy, booms, and the housings of engines that are not in it."""
+    """Body, canopy and booms of an aircraft, and the housings of engines that are not in them, as meshes [m, body frame FLU]."""
     body, wing, tail = looks.fuselage, looks.wing, looks.tail
     on_booms = tail.kind in BOOMS
     half, centre = body.width / 2, (body.tail, 0.0, body.z)
@@ -54,7 +54,7 @@ def _housing(thruster: Thruster, width: float) -> MeshPart:
 
 
 def undercarriage(sizes: Sizes, width: float, above: float) -> list[MeshPart]:
-    """A wheel and a leg at each contact; above: the height at which legs are fixed [m]."""
+    """A wheel and a leg at each contact point of a fuselage of ``width`` [m]; legs begin at the height ``above`` [m, body frame FLU]."""
     parts = []
     for x, y, z in sizes.wheels:
         radius = min(0.3 * (above - z), 0.12 * width + 0.02)
@@ -66,14 +66,14 @@ def undercarriage(sizes: Sizes, width: float, above: float) -> list[MeshPart]:
 
 
 class Gondola(NamedTuple):
-    """m, body frame."""
+    """Box below an airship's hull: centre and full edges x, y, z [m, body frame FLU]."""
 
     centre: tuple[float, float, float]
     size: tuple[float, float, float]
 
 
 def gondola(sizes: Sizes, hull: Hull) -> Gondola:
-    """Below the hull, where wheels and engines are."""
+    """The gondola of an airship, below the hull, where wheels and engines are."""
     x, y, z = hull.middle
     along, across, high = (float(r) for r in hull.radii)
     below = [p[0] for p in (*sizes.wheels, *(t.place for t in sizes.thrusters)) if p[2] < z - 0.6 * high]
@@ -83,7 +83,7 @@ def gondola(sizes: Sizes, hull: Hull) -> Gondola:
 
 
 def airship(sizes: Sizes, hull: Hull, car: Gondola) -> list[MeshPart]:
-    """An ellipsoid, the gondola, engines on rods."""
+    """The fixed parts of an airship: an ellipsoid as hull, the gondola, engines on rods."""
     places = np.linspace(-1.0, 1.0, 17) * 0.99
     envelope = lathe(0, [(float(x * hull.radii[0]), float(np.sqrt(1 - x * x))) for x in places], (0.0, 0.0, 0.0))
     parts = [
@@ -96,7 +96,7 @@ def airship(sizes: Sizes, hull: Hull, car: Gondola) -> list[MeshPart]:
 
 
 def propeller(name: str, thruster: Thruster) -> Movable:
-    """Two blades and a hub."""
+    """A propeller as a turning part of two blades and a hub, about the thruster's place."""
     r = thruster.radius
     blades = [box((0, side * 0.52 * r, 0), (0.05 * r, 0.96 * r, 0.15 * r), BLADE) for side in (-1.0, 1.0)]
     hub = lathe(0, [(-0.12 * r, 0.06 * r), (0.0, 0.14 * r), (0.12 * r, 0.06 * r)], (0, 0, 0), BLADE)
@@ -104,7 +104,7 @@ def propeller(name: str, thruster: Thruster) -> Movable:
 
 
 def payload(sensors: Sensors) -> list[MeshPart]:
-    """The housings of gimbal and lidar, where they are mounted."""
+    """The housings of the gimbal and the lidar, where they are mounted."""
     parts = []
     if sensors.gimbal is not None:
         parts.append(_ball(*sensors.gimbal.mount.xyz))

@@ -21,7 +21,7 @@ CENTRE = 0.05  # of the span: what is nearer to the middle is in it
 
 
 def planned(looks: Looks, sizes: Sizes) -> Looks:
-    """With every measure given."""
+    """The looks with every measure given: those that are not told (nan) are derived from the model's sizes or are the usual ones."""
     wing = _wing(looks, sizes)
     rear = rear_propeller(sizes, wing.span)
     tail = _tail(looks.tail, wing, sizes, rear is not None)
@@ -30,7 +30,7 @@ def planned(looks: Looks, sizes: Sizes) -> Looks:
 
 
 def rear_propeller(sizes: Sizes, span: float) -> Thruster | None:
-    """One in the middle behind the centre of gravity: the tail stands on booms beside it."""
+    """The propeller in the middle behind the centre of gravity, for a wing of ``span`` [m]; None without one. Tail booms pass beside it."""
     found = (t for t in sizes.thrusters if t.radius and abs(t.place[1]) < CENTRE * span and t.place[0] < 0)
     return next(found, None)
 

@@ -37,7 +37,10 @@ class Movable:
 
 
 class PanelSurface(NamedTuple):
-    """From ``start`` to ``end`` of the way from root to tip; a positive angle moves its trailing edge that ``way``."""
+    """A hinged surface from ``start`` to ``end``, parts of the panel's span from 0 at its root to 1 at its tip.
+
+    way: the direction, in the body frame (FLU), in which a positive angle moves its trailing edge.
+    """
 
     name: str
     start: float
@@ -47,7 +50,10 @@ class PanelSurface(NamedTuple):
 
 @dataclass(frozen=True)
 class Panel:
-    """root, tip: (3,) the front edge's ends [m]; chords go straight back. surfaces: in order from root to tip."""
+    """A flat panel between the leading edges of its root and tip, (3,) [m, body frame FLU]; chords [m] go straight back.
+
+    surfaces: in order from root to tip; hinge: where they begin, as a part of the chord.
+    """
 
     root: Point
     tip: Point
@@ -57,13 +63,14 @@ class Panel:
     hinge: float = TAIL_HINGE
 
     def fixed(self) -> list[MeshPart]:
-        """What does not move: all before the hinge line, and behind it what lies between the surfaces."""
+        """The part of the panel that does not move: all before the hinge line, and behind it what lies between the surfaces."""
         edges = [0.0, *(edge for surface in self.surfaces for edge in (surface.start, surface.end)), 1.0]
         behind = [(a, b) for a, b in zip(edges[::2], edges[1::2], strict=True) if b - a > GAP]
         strips = [self._strip((0.0, 1.0), (0.0, self.hinge)), *(self._strip(along, (self.hinge, 1.0)) for along in behind)]
         return [plate(strip, self._thickness) for strip in strips]
 
     def movables(self) -> list[Movable]:
+        """Each surface as a part that turns about its hinge."""
         return [self._hinged(surface) for surface in self.surfaces]
 
     @property
@@ -89,6 +96,7 @@ class Panel:
 
 
 def wing_panels(looks: Looks) -> list[Panel]:
+    """The left and the right half of the wing, each with a flap and an aileron."""
     wing, half = looks.wing, looks.wing.span / 2
     return [
         Panel(
@@ -104,6 +112,7 @@ def wing_panels(looks: Looks) -> list[Panel]:
 
 
 def tail_panels(looks: Looks) -> list[Panel]:
+    """The panels of the tail that ``looks`` asks for, with elevators, rudders or both; none for a tail of kind ``none``."""
     tail, booms = looks.tail, looks.booms
     if tail.kind == "none":
         return []
@@ -131,7 +140,7 @@ def _panel(tail: Tail, at: Point, reach: tuple[float, float], surfaces: Sequence
 
 
 def hull_fins(hull: Hull) -> list[Panel]:
-    """A cross at the stern of an airship, reaching 1.36 radii out; a fin's root lies within the hull."""
+    """The four fins at the stern of an airship, reaching 1.36 radii out; their roots lie within the hull."""
     x, across, high = hull.radii
     ways = {
         "left_elevator": (across, 0.0, DOWN),

@@ -22,7 +22,10 @@ from uvf.models.vehicle.layers import folders_of, holding
 
 @dataclass(frozen=True, eq=False)
 class AircraftShape:
-    """Origin at the centre of gravity, FLU, m; ``colour``: of the parts that have none of their own, 0..1."""
+    """The shape of an aircraft: origin at the centre of gravity, FLU, in metres.
+
+    colour: red, green, blue, 0..1, of the parts that have none of their own.
+    """
 
     fixed: list[MeshPart]
     movables: list[Movable]
@@ -31,27 +34,29 @@ class AircraftShape:
 
     @property
     def at_rest(self) -> list[MeshPart]:
-        """All of it, nothing deflected."""
+        """All parts, with nothing deflected."""
         return self.airborne + self.undercarriage
 
     @property
     def airborne(self) -> list[MeshPart]:
-        """What may touch nothing: all but wheels and legs."""
+        """All parts but wheels and legs: those that must touch nothing."""
         return self.fixed + [moved(part, m.origin) for m in self.movables for part in m.parts]
 
     @property
     def bounds(self) -> Floats:
-        """(2, 3) m: lowest and highest corner."""
+        """Lowest and highest corner (2, 3) [m, body frame FLU]."""
         points = np.vstack([part.vertices for part in self.at_rest])
         return np.array((points.min(axis=0), points.max(axis=0)))
 
     def scaled(self, scale: float) -> "AircraftShape":
+        """The shape made larger by the factor ``scale`` [-] about the centre of gravity."""
         movables = [replace(m, origin=m.origin * scale, parts=_scaled(m.parts, scale)) for m in self.movables]
         legs = _scaled(self.undercarriage, scale)
         return replace(self, fixed=_scaled(self.fixed, scale), movables=movables, undercarriage=legs)
 
 
 def moved(part: MeshPart, way: Floats) -> MeshPart:
+    """The part shifted by ``way`` (3,) [m]."""
     return replace(part, vertices=part.vertices + way)
 
 
@@ -60,7 +65,7 @@ def _scaled(parts: Sequence[MeshPart], scale: float) -> list[MeshPart]:
 
 
 def aircraft_shape(folder: Path, file: VehicleFile) -> AircraftShape:
-    """Of the vehicle in this folder. Raises BadInput for a mesh or a model that cannot be read."""
+    """The shape of the aircraft in this folder. Raises BadInput for a mesh or a model that cannot be read."""
     air = file.air
     assert air is not None
     if air.mesh is not None:

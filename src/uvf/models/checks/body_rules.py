@@ -32,7 +32,7 @@ ROUND = np.column_stack(
 
 
 class CheckedBody:
-    """The model's collision shapes where they are in base_link at rest."""
+    """A ground vehicle's links and collision shapes, where they are in base_link at rest."""
 
     def __init__(self, model: UrdfModel, ground: GroundBody) -> None:
         self.model, self.ground = model, ground
@@ -43,17 +43,21 @@ class CheckedBody:
         self.turning = {name for links in self.wheels.values() for name in links}
 
     def collisions(self, names: list[str]) -> list[Solid]:
+        """The collision shapes of the links of these names, in base_link."""
         links = [self.model.links[n] for n in names if n in self.poses and n in self.model.links]
         return [placed(solid, self.poses[link.name]) for link in links for solid in link.collisions]
 
     @property
     def rest(self) -> list[str]:
-        """The links that are no wheels."""
+        """The names of the links that are not part of a driven wheel."""
         return [name for name in self.poses if name not in self.turning]
 
 
 def body_faults(model: UrdfModel, file: VehicleFile, yaml: Path) -> list[str]:
-    """Wheels, outline, balance and sensors, a line each; nothing of what hangs on a mesh that cannot be read."""
+    """Faults of a ground vehicle's wheels, outline, balance and sensors, a line each.
+
+    None while a mesh cannot be read, for that is told already.
+    """
     assert file.ground is not None
     body, ground = CheckedBody(model, file.ground), FileLocation(str(yaml), ("ground",))
     try:
@@ -70,7 +74,7 @@ def body_faults(model: UrdfModel, file: VehicleFile, yaml: Path) -> list[str]:
 
 
 def body_notes(model: UrdfModel, file: VehicleFile) -> list[str]:
-    """What may be meant so."""
+    """Remarks on what looks odd but may be meant so, a line each."""
     assert file.ground is not None
     body = CheckedBody(model, file.ground)
     try:

@@ -21,7 +21,7 @@ Poses = Mapping[str, Transform]
 
 
 def sensor_faults(model: UrdfModel, sensors: Sensors, poses: Poses, place: FileLocation) -> Iterator[str]:
-    """Frames are named once and agree with the links of their names; scanners are not shut up in the body."""
+    """Faults of the sensors' mounts: frames named twice or apart from the links of their names, and scanners shut up in the body."""
     seen: dict[str, str] = {}
     for keys, sensor in mounted(sensors):
         where = place.at(*keys, "frame")
@@ -41,7 +41,7 @@ def sensor_faults(model: UrdfModel, sensors: Sensors, poses: Poses, place: FileL
 
 
 def sensor_notes(model: UrdfModel, sensors: Sensors, poses: Poses, turning: set[str]) -> Iterator[str]:
-    """What missions miss; beams that the vehicle's own body is in the way of, as a real scanner would see it."""
+    """Remarks on sensors that missions need and the vehicle lacks, and on beams that the vehicle's own body is in the way of."""
     for kind, example in NEEDED.items():
         if getattr(sensors, kind) is None:
             yield f"no {kind}: no mission takes it, for SLAM needs them; give it sensors: {kind}: {{{example}}}"
@@ -60,7 +60,7 @@ def sensor_notes(model: UrdfModel, sensors: Sensors, poses: Poses, turning: set[
 
 
 def mounted(sensors: Sensors) -> Iterator[tuple[tuple[Key, ...], Any]]:
-    """(keys in the file, sensor) of those that sit somewhere."""
+    """(keys in the file, sensor) of each sensor that has a mount."""
     for kind in ("lidar", "imu", "camera", "chase", "gimbal"):
         sensor = getattr(sensors, kind)
         if sensor is not None:

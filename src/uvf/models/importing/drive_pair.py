@@ -35,7 +35,10 @@ RIGHT = re.compile(
 
 @dataclass(frozen=True)
 class WheelGuess:
-    """In the root's frame: centre (3,) m on the axis at the middle of the tread, axis (3,), radius and width [m]."""
+    """A joint that may be a driven wheel, in the root's frame: centre (3,) [m] on the axis at the middle of the tread, axis (3,).
+
+    radius, width: of the tread [m].
+    """
 
     joint: Joint
     centre: Floats
@@ -46,7 +49,10 @@ class WheelGuess:
 
 @dataclass(frozen=True)
 class DrivePair:
-    """left, right as the vehicle drives; base_from_root: to the floor under the axle's middle, x forward, z up."""
+    """The driven wheels, left and right as the vehicle drives, and the other wheels.
+
+    base_from_root: to the floor under the axle's middle, x forward, z up.
+    """
 
     left: WheelGuess
     right: WheelGuess
@@ -55,15 +61,17 @@ class DrivePair:
 
     @property
     def radius(self) -> float:
+        """Mean radius of the two driven wheels [m]."""
         return (self.left.radius + self.right.radius) / 2
 
     @property
     def track(self) -> float:
+        """Distance between the centres of the two driven wheels [m]."""
         return float(np.linalg.norm(self.left.centre - self.right.centre))
 
 
 def find_pair(foreign: Foreign) -> DrivePair:
-    """Raises BadInput, with what a person must do, where there is no pair."""
+    """The pair of joints that drives a vehicle. Raises BadInput, with what a person must do, where there is none."""
     model = foreign.model
     wheels = [w for joint in model.joints.values() if _may_turn(joint) and (w := _wheel(model, joint)) is not None]
     pairs = [(a, b) for a, b in combinations(wheels, 2) if _opposite(a, b)]
@@ -104,7 +112,7 @@ def _wheel(model: UrdfModel, joint: Joint) -> WheelGuess | None:
 
 
 def shapes_below(model: UrdfModel, link: str, poses: dict[str, Transform]) -> list[Solid]:
-    """The collisions, else the visuals, of a link and all below it, in the root's frame."""
+    """The collision shapes, else the visuals, of a link and all below it, in the root's frame."""
     links = [model.links[n] for n in model.below(link) if n in model.links and n in poses]
     shapes = [(n.name, s) for n in links for s in n.collisions] or [(n.name, s) for n in links for s in n.visuals]
     return [placed(s, poses[name]) for name, s in shapes]

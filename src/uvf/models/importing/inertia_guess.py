@@ -19,7 +19,7 @@ FAR = 2.0  # of the shape's largest side: a radius of gyration beyond that is a 
 
 
 def mended(link: Link, is_body: bool, notes: Notes) -> Link:
-    """The link with an inertia that it can have; frames without shapes stay without mass. is_body: it must weigh something."""
+    """The link with an inertia that is physically possible; frames without shapes stay without mass. is_body: it must weigh something."""
     solids = link.collisions or link.visuals
     if not solids:
         return replace(link, inertial=None) if link.inertial is not None and any(inertial_faults(link.inertial)) else link

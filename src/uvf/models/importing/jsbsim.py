@@ -12,7 +12,7 @@ PLACES = {"engine": "engine", "thruster": "engine", "system": "systems"}
 
 
 def jsbsim_model(source: Path) -> Path | None:
-    """The model that ``source`` is, or that lies in this folder under its name; None for what is none of JSBSim's."""
+    """The JSBSim model file that ``source`` is, or that lies in this folder under its name; None where it is none of JSBSim's."""
     path = source / f"{source.resolve().name}.xml" if source.is_dir() else source
     if path.suffix != ".xml" or not path.is_file() or b"<fdm_config" not in path.read_bytes():
         return None
@@ -20,7 +20,7 @@ def jsbsim_model(source: Path) -> Path | None:
 
 
 def copy_model(path: Path, folder: Path) -> str:
-    """Into a vehicle's folder; the model's name there. Raises BadInput for what is missing."""
+    """Copies a model and all its files into a vehicle's folder; returns the model's name there. Raises BadInput for what is missing."""
     name = UNFIT.sub("_", path.stem)
     used = parts(path)
     for part in used:

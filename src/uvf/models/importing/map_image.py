@@ -19,7 +19,7 @@ MANY = 3000  # boxes
 
 
 def map_world(path: Path, height: float, notes: Notes) -> WorldFile:
-    """Walls of ``height`` [m] where the map is occupied. Raises BadInput."""
+    """A world with walls of ``height`` [m] where the map is occupied. Raises BadInput."""
     grid = load_map(path)
     occupied, known = grid.cells >= OCCUPIED_FROM, grid.cells >= 0
     rectangles = greedy_rectangles(occupied)
@@ -34,7 +34,10 @@ def map_world(path: Path, height: float, notes: Notes) -> WorldFile:
 
 
 def greedy_rectangles(cells: Mask) -> list[Rectangle]:
-    """Few rectangles that cover exactly the cells that are set: at each first free cell the larger of the two that grow along and up."""
+    """Few rectangles that cover exactly the cells (rows, columns) that are set.
+
+    At each first free cell the larger of the two that grow along and up.
+    """
     left = cells.copy()
     found = []
     for row, column in np.argwhere(cells):

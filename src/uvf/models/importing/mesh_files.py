@@ -43,7 +43,7 @@ class MeshStore:
         self._colours: dict[Path, Colour | None] = {}
 
     def convert(self, source: Path, wanted: RequestedMesh) -> str:
-        """Name in the world's folder of a copy of ``source`` as STL. Raises BadInput when it cannot be read."""
+        """Copies ``source`` as an STL file; returns its name in the world's folder. Raises BadInput when it cannot be read."""
         key = (source.resolve(), wanted)
         if key not in self._written:
             loaded = self._load(source, wanted)
@@ -52,7 +52,7 @@ class MeshStore:
         return self._written[key]
 
     def colour(self, source: Path) -> Colour | None:
-        """Mean colour of a mesh file, None when it tells none or cannot be read."""
+        """Mean colour of a mesh file; None when it has none or cannot be read."""
         if source not in self._colours:
             try:
                 self._colours[source] = _colour(trimesh.load_scene(source))
@@ -61,7 +61,7 @@ class MeshStore:
         return self._colours[source]
 
     def write(self, shape: Any, name: str) -> str:
-        """Name of the new file in the world's folder."""
+        """Writes a mesh under a free name like ``name``; returns that of the file in the world's folder."""
         stem = "".join(c if c.isalnum() or c in "_-" else "_" for c in name).lstrip("-") or "mesh"
         meshes = self._folder / "meshes"
         meshes.mkdir(parents=True, exist_ok=True)

@@ -24,7 +24,10 @@ Scale = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class Tools:
-    """millimetres: scales of this robot's meshes with which one of them would be larger than any part."""
+    """What the meshes of one robot are brought over with.
+
+    millimetres: scales of this robot's meshes with which one of them would be larger than any part.
+    """
 
     foreign: Foreign
     store: MeshStore
@@ -33,7 +36,10 @@ class Tools:
 
 
 def with_own_meshes(foreign: Foreign, folder: Path) -> UrdfModel:
-    """Every mesh as a file below ``folder``, of collisions the convex hull, which is what physics takes of a body that moves."""
+    """The robot with every mesh as a file below ``folder``.
+
+    Of a collision shape it is the convex hull, which is what physics takes of a body that moves.
+    """
     tools = Tools(foreign, MeshStore(folder, foreign.notes), folder)
     tools = replace(tools, millimetres=frozenset(_too_big(tools)))
     links = {name: _link(link, tools) for name, link in foreign.model.links.items()}

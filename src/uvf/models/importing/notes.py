@@ -4,15 +4,17 @@ NAMED = 4  # of each kind; the rest is counted
 
 
 class Notes:
-    """Each reason is told once, with what it concerns."""
+    """What an import has to tell: each reason once, with the things that it concerns."""
 
     def __init__(self) -> None:
         self._found: dict[str, list[str]] = {}
 
     def add(self, reason: str, thing: str = "") -> None:
+        """Notes that ``reason`` applies to ``thing``."""
         self._found.setdefault(reason, []).append(thing)
 
     def lines(self) -> list[str]:
+        """One line for each reason."""
         return [_line(reason, [t for t in things if t]) for reason, things in self._found.items()]
 
 

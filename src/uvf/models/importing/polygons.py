@@ -8,7 +8,7 @@ Ints = NDArray[np.int64]
 
 
 def extruded(outline: Floats, height: float) -> tuple[Floats, Ints]:
-    """Vertices (2n, 3) [m] and faces of the prism over a simple outline (n, 2), from z = 0 to ``height``. Raises ValueError."""
+    """Vertices (2n, 3) [m] and faces (m, 3) of the prism over a simple outline (n, 2) [m] up to z = ``height`` [m]. Raises ValueError."""
     if len(outline) > 1 and np.allclose(outline[0], outline[-1]):
         outline = outline[:-1]
     if len(outline) < 3:
@@ -25,7 +25,7 @@ def extruded(outline: Floats, height: float) -> tuple[Floats, Ints]:
 
 
 def triangulated(outline: Floats) -> Ints:
-    """(n - 2, 3) corners of triangles that fill a simple outline (n, 2), anticlockwise, by cutting off ears (Meisters 1975)."""
+    """Corners (n - 2, 3) of triangles that fill a simple outline (n, 2), anticlockwise, by cutting off ears (Meisters 1975)."""
     left, made = list(range(len(outline))), []
     while len(left) > 3:
         ear = next((k for k in range(len(left)) if _is_ear(outline, left, k)), None)

@@ -38,7 +38,7 @@ class _Parts:
 
 
 def rebuilt(foreign: Foreign, pair: DrivePair) -> UrdfModel:
-    """The new model; notes of what was changed go to ``foreign``."""
+    """The vehicle's model rebuilt to UVF's conventions; notes of what was changed go to ``foreign``."""
     model = foreign.model
     poses = {name: compose(pair.base_from_root, pose) for name, pose in model.link_poses().items()}
     parts = _Parts(model, pair, poses, {}, {})

@@ -18,7 +18,10 @@ UNKNOWN = "kinds of joint that are not simulated, held fast"
 
 @dataclass(frozen=True)
 class ForeignSensor:
-    """element: its <sensor> of SDF; None where only a link's name tells of it. link_from_sensor: where it sits."""
+    """A sensor of an imported robot. link_from_sensor: where it sits on its link.
+
+    element: its <sensor> tag of SDF; None where only a link's name tells of it.
+    """
 
     kind: str
     link: str
@@ -28,7 +31,7 @@ class ForeignSensor:
 
 @dataclass(frozen=True)
 class ImportedDrive:
-    """What a plugin for differential drive says: the joints, and the measures [m] where it gives them."""
+    """What a plugin for differential drive tells: the joints' names, and track and wheel radius [m] where it gives them."""
 
     left: tuple[str, ...] = ()
     right: tuple[str, ...] = ()
@@ -38,13 +41,15 @@ class ImportedDrive:
 
 @dataclass
 class Foreign:
+    """An imported robot before it is rebuilt: body, drive, sensors, and the notes of the import."""
+
     model: UrdfModel
     drive: ImportedDrive = ImportedDrive()
     sensors: list[ForeignSensor] = field(default_factory=list)
     notes: Notes = field(default_factory=Notes)
 
     def take_plugins(self, element: Any) -> None:
-        """The first drive among the plugins below an element; all else about them is dropped with a note."""
+        """Takes over the first drive among the plugins below an element; all other plugins are dropped with a note."""
         for plugin in element.iter("plugin"):
             drive = drive_of(plugin)
             if drive is not None and self.drive == ImportedDrive():
@@ -55,7 +60,7 @@ class Foreign:
 
 
 def drive_of(plugin: Any) -> ImportedDrive | None:
-    """The figures of a plugin for differential or skid-steer drive, by the names that ROS 1, ROS 2 and Gazebo use."""
+    """The joints and measures of a plugin for differential or skid-steer drive, by the names that ROS 1, ROS 2 and Gazebo use."""
     name = f"{plugin.get('filename', '')} {plugin.get('name', '')}".lower()
     if not any(word in name for word in ("diff", "skid")):
         return None
@@ -78,13 +83,13 @@ def _number(text: str | None) -> float | None:
 
 
 def moved(inertial: Inertial, a_from_b: Transform) -> Inertial:
-    """The same body seen from frame a."""
+    """The same inertial seen from frame a."""
     turn = matrix(a_from_b.rotation)
     return Inertial(inertial.mass, apply(a_from_b, inertial.com[None])[0], turn @ inertial.inertia @ turn.T)
 
 
 def joined(parts: list[Inertial]) -> Inertial | None:
-    """Bodies of one frame as one (Steiner's theorem); None of none."""
+    """Several inertials of one frame as one (Steiner's theorem); None of none."""
     mass = sum(p.mass for p in parts)
     if not parts or mass <= 0:
         return None

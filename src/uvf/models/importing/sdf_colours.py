@@ -45,7 +45,7 @@ SCRIPTS: dict[str, Colour] = {
 
 
 def visual_colour(visual: Any) -> Colour | None:
-    """What the name of its script or picture says, else diffuse, else ambient; None when there is nothing of it. Raises BadInput."""
+    """Colour of a <visual>: by the name of its script or picture, else diffuse, else ambient; None when it tells none. Raises BadInput."""
     material = visual.find("material")
     if material is None:
         return None

@@ -28,14 +28,14 @@ BARE = WorldFile(about="", origin=Origin(0.0, 0.0), floor=(-10.0, -10.0, 10.0, 1
 
 
 class SdfGround:
-    """Finds what one drives on; ``folder`` holds the meshes."""
+    """Finds the ground of an imported world; ``folder`` holds its meshes."""
 
     def __init__(self, folder: Path, notes: Notes) -> None:
         self._folder = folder
         self._notes = notes
 
     def levelled(self, world: WorldFile, things: Sequence[Thing], planes: Planes) -> WorldFile:
-        """``world`` with the things, moved so that what one drives on is z = 0. planes: height [m] and colour of level ones."""
+        """``world`` with the things, moved so that the ground that one drives on is z = 0. planes: height [m] and colour of level ones."""
         kept = [t for t in things if np.abs(_place(t)).max() < FARTHEST]
         if len(kept) < len(things):
             self._notes.add(f"things farther than {FARTHEST:g} m from the origin are left out", f"{len(things) - len(kept)}")

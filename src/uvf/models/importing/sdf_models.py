@@ -37,7 +37,7 @@ def read_sdf(path: Path) -> Any:
 
 
 class Models:
-    """Where models and their meshes are looked for: about the file, in ``folders``, in Gazebo's variables and caches."""
+    """Finds models and their meshes: about the file, in ``folders``, in Gazebo's variables and caches."""
 
     def __init__(self, path: Path, folders: Sequence[Path], notes: Notes) -> None:
         about = [path.resolve().parent, *list(path.resolve().parents)[1:PARENTS_SEARCHED]]
@@ -47,7 +47,7 @@ class Models:
         self._notes = notes
 
     def expand(self, element: Any, depth: int = 0) -> None:
-        """Replaces every <include> below ``element``. Raises BadInput for a file that is found and cannot be read."""
+        """Replaces every <include> below ``element`` by its model. Raises BadInput for a file that is found and cannot be read."""
         if depth > DEEPEST:
             raise BadInput(f"{place_of(element)}: models include each other without end; cut the ring")
         for child in list(element):
@@ -93,7 +93,7 @@ class Models:
         return next((p for p in (found / "model.sdf", *sorted(found.glob("*.sdf"))) if p.is_file()), None)
 
     def find(self, uri: str, user: Any) -> Path | None:
-        """The file or folder that a URI stands for, as the element ``user`` writes it."""
+        """The file or folder that a URI stands for, as the element ``user`` writes it; None where it is not found."""
         return next((p for p in self._tries(uri.strip(), user) if p.exists()), None)
 
     def _tries(self, uri: str, user: Any) -> Iterator[Path]:

@@ -18,7 +18,7 @@ HERE = ("", "__model__", "__root__", "world")
 
 
 def place_of(element: Any) -> str:
-    """file:line of an element."""
+    """Where an element is written, as ``file:line``."""
     owner = element
     while owner is not None and FILE not in owner.attrib:
         owner = owner.getparent()
@@ -26,7 +26,7 @@ def place_of(element: Any) -> str:
 
 
 def numbers(element: Any, count: int | None = None) -> Floats:
-    """The numbers in an element. Raises BadInput when there are not ``count`` finite ones."""
+    """The numbers (n,) in an element, in its own units. Raises BadInput when there are not ``count`` finite ones."""
     try:
         values = np.array([float(word) for word in (element.text or "").split()])
     except ValueError as error:
@@ -37,7 +37,7 @@ def numbers(element: Any, count: int | None = None) -> Floats:
 
 
 def transform(pose: Any) -> Transform:
-    """A <pose> in the frame it is relative to; without one, identity. Raises BadInput."""
+    """Transform of a <pose> from the frame that it is relative to; identity without one. Raises BadInput."""
     if pose is None or not (pose.text or "").strip():
         return IDENTITY
     if pose.get("rotation_format") == "quat_xyzw":
@@ -53,7 +53,7 @@ def transform(pose: Any) -> Transform:
 
 
 def relative_to(pose: Any) -> str:
-    """The frame that a <pose> names; SDF up to 1.6 called the attribute ``frame``."""
+    """Name of the frame that a <pose> is relative to; SDF up to 1.6 called the attribute ``frame``."""
     return "" if pose is None else str(pose.get("relative_to") or pose.get("frame") or "")
 
 
@@ -69,13 +69,13 @@ class Scope:
         self._inner: dict[str, Scope] = {}
 
     def inner(self, name: str) -> "Scope":
-        """The frames of a model in this one."""
+        """The frames of a model that lies in this one."""
         if name not in self._inner:
             self._inner[name] = Scope(self._entries[name], self._notes)
         return self._inner[name]
 
     def pose(self, name: str, asking: tuple[str, ...] = ()) -> Transform:
-        """A frame in that of this model. Raises BadInput when frames refer to each other in a ring."""
+        """Transform of a frame in that of this model. Raises BadInput when frames refer to each other in a ring."""
         if name in HERE:
             return IDENTITY
         if name in asking:

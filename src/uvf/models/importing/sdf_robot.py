@@ -25,7 +25,7 @@ BASE = "base_link"
 
 
 def read_foreign_sdf(path: Path) -> Foreign:
-    """The file's model; of a world's the first with a drive, else the first with joints. Raises BadInput."""
+    """The robot that a file describes; of a world's models the first with a drive, else the first with joints. Raises BadInput."""
     root, notes = read_sdf(path), Notes()
     models = Models(path, [], notes)
     for tag in (root, *root.findall("world")):

@@ -26,7 +26,7 @@ SMALLEST = 1e-4  # m, what a world file takes
 
 
 class Named(NamedTuple):
-    """Who a shape is: its name in the world, colour if a visual tells one, and the state's scale (3,)."""
+    """Identity of a shape: its name in the world, its colour if a visual tells one, and the scale (3,) [-] of the saved state."""
 
     name: str
     colour: Colour | None
@@ -34,7 +34,7 @@ class Named(NamedTuple):
 
 
 class Shapes:
-    """Turns one <geometry> after the other into things."""
+    """Turns one <geometry> after the other into things of a world file."""
 
     def __init__(self, store: MeshStore, find: Callable[[str, Any], Path | None], notes: Notes) -> None:
         self._store = store
@@ -42,7 +42,10 @@ class Shapes:
         self._notes = notes
 
     def things(self, geometry: Any, pose: Transform, who: Named) -> list[Thing]:
-        """What ``geometry`` is in the world; empty, with a note, when it cannot be had. Raises BadInput for missing measures."""
+        """The things that ``geometry`` becomes in the world; none, with a note, if it cannot be had.
+
+        Raises BadInput for missing measures.
+        """
         kind = next((child for child in geometry if isinstance(child.tag, str)), None)
         if kind is None or kind.tag == "empty":
             return []
@@ -119,7 +122,7 @@ class Shapes:
         return [Mesh(who.name, file, _point(pose.translation), _angles(pose), colour=who.colour or self._store.colour(source) or GREY)]
 
     def mesh_colour(self, mesh: Any) -> Colour | None:
-        """What the file of a <mesh> says, None when it says nothing or is not there."""
+        """Colour that the file of a <mesh> tells; None when it tells none or is not there."""
         source = self._find((mesh.findtext("uri") or "").strip(), mesh)
         return None if source is None or not source.is_file() else self._store.colour(source)
 
@@ -132,7 +135,7 @@ SHAPES = ("box", "cylinder", "sphere", "capsule", "ellipsoid", "cone", "polyline
 
 
 def plane_normal(plane: Any) -> Floats:
-    """(3,) unit normal of a <plane> in its own frame."""
+    """Unit normal (3,) of a <plane> in its own frame."""
     normal = numbers(plane.find("normal"), 3) if plane.find("normal") is not None else np.array((0.0, 0.0, 1.0))
     length = float(np.linalg.norm(normal))
     upright: Floats = np.array((0.0, 0.0, 1.0)) if length == 0 else normal / length
@@ -140,7 +143,7 @@ def plane_normal(plane: Any) -> Floats:
 
 
 def is_level(plane: Any, pose: Transform) -> bool:
-    """Whether a <plane> at ``pose`` faces upward: the ground."""
+    """Whether a <plane> at ``pose`` faces upward, as the ground does."""
     return bool(rotate(pose.rotation, plane_normal(plane))[2] > 0.999)
 
 

@@ -12,7 +12,7 @@ Floats = NDArray[np.float64]
 
 
 class ModelState(NamedTuple):
-    """world_from_model and world_from_link by name, as saved; scale (3,) of the shapes."""
+    """Saved poses world_from_model, and world_from_link by name; scale (3,) [-] of the shapes."""
 
     pose: Transform | None
     links: dict[str, Transform]
@@ -23,7 +23,7 @@ NOTHING_SAVED = ModelState(None, {}, np.ones(3))
 
 
 def saved_states(world: Any) -> dict[str, ModelState]:
-    """By the model's name, that of a model in a model after ``::``. Raises BadInput."""
+    """Saved states by the model's name, that of a model in a model after ``::``. Raises BadInput."""
     states: dict[str, ModelState] = {}
     for model in world.findall("state/model"):
         _add(states, model, "")
@@ -31,7 +31,7 @@ def saved_states(world: Any) -> dict[str, ModelState]:
 
 
 def deleted(world: Any) -> set[str]:
-    """Names of models that were taken away after the start."""
+    """Names of the models that were taken away after the start."""
     return {(name.text or "").strip() for name in world.findall("state/deletions/name")}
 
 

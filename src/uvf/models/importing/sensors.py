@@ -25,7 +25,7 @@ LINK_KINDS = {"lidar": "ray", "imu": "imu", "camera": "camera"}
 
 
 def sensors_section(foreign: Foreign, base_from_link: dict[str, Transform]) -> Section:
-    """What is there, what links are called after, and encoders, which every vehicle here has."""
+    """The ``sensors`` section of a vehicle file: what the robot carries, what its links' names tell of, and encoders, which all have."""
     section: Section = {}
     for sensor in (*foreign.sensors, *_by_names(foreign)):
         kind, make = _kind(sensor)

@@ -15,7 +15,7 @@ GIVEN = {"material", "mu1", "mu2", "mu", "kp", "kd", "selfCollide", "turnGravity
 
 
 def read_foreign_urdf(path: Path, arguments: Mapping[str, str]) -> Foreign:
-    """Raises BadInput where it is no URDF or xacro cannot expand it."""
+    """The robot that a URDF or xacro file describes. Raises BadInput where it is no URDF or xacro cannot expand it."""
     notes = Notes()
     robot = read_xml(path, arguments, note=notes.add)
     if robot.tag != "robot":

@@ -18,7 +18,7 @@ MAPS = (".yaml", ".yml", ".pgm", ".png")
 
 
 class Options(NamedTuple):
-    """models: folders with Gazebo models; height [m] of a map's walls; replace: overwrite a world of that name.
+    """Options of an import. models: folders with Gazebo models; height: of a map's walls [m]; replace: overwrite a world of that name.
 
     upright: turn meshes that say that y is up.
     """
@@ -30,7 +30,7 @@ class Options(NamedTuple):
 
 
 def import_world(file: Path, folder: Path, options: Options) -> tuple[Path, list[str]]:
-    """The new world.yaml, and lines about what there is in it and what was left out. Raises BadInput."""
+    """Imports a world; returns the new world.yaml and lines about what is in it and what was left out. Raises BadInput."""
     make_room(folder, options.replace)
     if not file.is_file():
         raise BadInput(f"{file}: no such file")
@@ -45,14 +45,14 @@ def import_world(file: Path, folder: Path, options: Options) -> tuple[Path, list
 
 
 def new_folder(worlds: Path, name: str) -> Path:
-    """Where a world of that name lies. Raises BadInput for a name that is no plain folder's."""
+    """Folder of a world of that name. Raises BadInput for a name that is no plain folder's."""
     if not re.fullmatch(r"[A-Za-z0-9_][A-Za-z0-9_-]*", name):
         raise BadInput(f"a world cannot be called '{name}'; use letters, digits, - and _")
     return worlds / name
 
 
 def make_room(folder: Path, replace: bool) -> None:
-    """Raises BadInput for a folder that is there, unless it may be replaced."""
+    """Removes a folder that is there already when it may be replaced. Raises BadInput when it may not."""
     if folder.exists() and not replace:
         raise BadInput(f"{folder} is there already; give another --name, or --replace to overwrite it")
     shutil.rmtree(folder, ignore_errors=True)

@@ -22,13 +22,13 @@ SLUG_FT2 = 1.3558179619  # kg m^2
 
 
 def check_model(path: Path) -> None:
-    """Raises BadInput with the first of the model's faults."""
+    """Checks a JSBSim model. Raises BadInput with the first of its faults."""
     for fault in model_faults(path):
         raise BadInput(fault)
 
 
 def model_faults(path: Path) -> Iterator[str]:
-    """Missing sections, sizes, mass and inertia that no body has, engines and propellers that are not there. Raises BadInput for no XML."""
+    """Faults of a model: missing sections, sizes, mass and inertia that no body has, missing engines. Raises BadInput for no XML."""
     model = read(path)
     if model.tag != "fdm_config":
         yield f"{path}: the outermost tag is <{model.tag}>; a JSBSim model begins with <fdm_config>"
@@ -85,13 +85,13 @@ def _moment(model: ElementTree.Element, name: str) -> float:
 
 
 def contact_names(path: Path, number: int) -> list[str]:
-    """The ``number`` contacts' names in the order of the file; numbered where the model has them in a file of its own."""
+    """Names of the ``number`` contacts in the order of the file; numbered where the model has them in a file of its own."""
     named = [tag.get("name", "").strip() for tag in read(path).findall("ground_reactions/contact")]
     return [name or f"contact {i}" for i, name in enumerate(named)] if len(named) == number else [f"contact {i}" for i in range(number)]
 
 
 def weight_and_wing(path: Path) -> tuple[float, float]:
-    """Empty mass with what is loaded on it [kg], tanks full as the file has them, and the wing's area [m^2]. Raises BadInput."""
+    """Mass [kg], empty with what is loaded and the tanks as full as the file has them, and wing area [m^2]. Raises BadInput."""
     model = _whole(path)
     mass = _mass(model, "mass_balance/emptywt") + _mass(model, "mass_balance/pointmass/weight")
     fuel = _mass(model, "propulsion/tank/contents")

@@ -29,7 +29,10 @@ class Unmade(BadInput):
 
 
 class ModelPart(NamedTuple):
-    """A file that ``by`` refers to in a tag of this ``kind``; found: None when it is nowhere; folders: where it may lie, best first."""
+    """A file that the file ``by`` refers to in a tag of this ``kind``.
+
+    found: its path, None when it is nowhere; folders: where it may lie, best first.
+    """
 
     kind: str
     name: str
@@ -39,7 +42,7 @@ class ModelPart(NamedTuple):
 
 
 def parts(path: Path) -> list[ModelPart]:
-    """Everything that the model at ``path`` refers to, and what that refers to. Raises BadInput for what is no XML."""
+    """Files that the model at ``path`` refers to, and those that these refer to. Raises BadInput for what is no XML."""
     gathered: list[ModelPart] = []
     waiting, seen = [path], {path}
     while waiting:
@@ -69,7 +72,7 @@ def _find(name: str, folders: tuple[Path, ...]) -> Path | None:
 
 
 def read(path: Path) -> ElementTree.Element:
-    """The outermost element. Raises BadInput."""
+    """Root element of an XML file. Raises BadInput."""
     try:
         return ElementTree.parse(path).getroot()
     except ElementTree.ParseError as error:
@@ -79,7 +82,7 @@ def read(path: Path) -> ElementTree.Element:
 
 
 def properties_read(path: Path) -> dict[str, Path]:
-    """The name of each property that the model reads, and the file that does first. Raises BadInput."""
+    """Name of each property that the model reads, and the file that reads it first. Raises BadInput."""
     files = dict.fromkeys([path, *(part.found for part in parts(path) if part.found is not None)])
     names: dict[str, Path] = {}
     for file in files:
@@ -101,7 +104,7 @@ def _read_by(model: ElementTree.Element) -> Iterator[str]:
 
 
 def number(text: str) -> float:
-    """nan for what is none."""
+    """The number that a text holds, not converted from its tag's unit ([ft], [lbs] ...); nan where it holds none."""
     try:
         return float(text)
     except ValueError:

@@ -18,7 +18,7 @@ AREAS = {f"{unit}2": length**2 for unit, length in METRES.items()}
 
 @dataclass(frozen=True)
 class Thruster:
-    """place: (3,) m; radius of a propeller [m], 0 of a jet."""
+    """An engine or propeller at ``place`` (3,) [m from the centre of gravity, FLU]; radius of the propeller [m], 0 of a jet."""
 
     place: Floats
     radius: float
@@ -26,7 +26,7 @@ class Thruster:
 
 @dataclass(frozen=True)
 class Hull:
-    """Of an airship: middle (3,) m and half its length, width and height (3,) m."""
+    """Hull of an airship: middle (3,) [m from the centre of gravity, FLU], and half its length, width and height (3,) [m]."""
 
     middle: Floats
     radii: Floats
@@ -34,7 +34,10 @@ class Hull:
 
 @dataclass(frozen=True)
 class Sizes:
-    """Places are in metres from the centre of gravity, FLU. aero: where the wing's lift is given about; arms: from there to the tail."""
+    """Measures of an aircraft [m, m^2]; places are from the centre of gravity, FLU; nan where the file does not tell.
+
+    aero: aerodynamic reference point (3,), which the wing's lift is given about; tail_arm: from there to the tail.
+    """
 
     span: float
     area: float  # m^2
@@ -50,7 +53,7 @@ class Sizes:
 
 
 def sizes_of(path: Path) -> Sizes:
-    """Of ``<folder>/<model>/<model>.xml``. Raises BadInput where it is no XML."""
+    """Measures that a JSBSim model's file tells, ``<folder>/<model>/<model>.xml``. Raises BadInput where it is no XML."""
     model = _root(path)
     metrics = _section(model, "metrics", path)
     cg = _centre_of_gravity(_section(model, "mass_balance", path))

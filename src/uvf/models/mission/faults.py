@@ -42,11 +42,12 @@ class Fault(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     ] = 0.0
 
     def holds(self, t: float) -> bool:
+        """Whether the fault is active at simulation time ``t`` [s]."""
         return self.at <= t and (self.until is None or t < self.until)
 
 
 def check_faults(faults: Sequence[Fault], vehicles: Mapping[str, object], place: FileLocation) -> None:
-    """Raises BadInput."""
+    """Checks a mission's faults against its vehicles. Raises BadInput."""
     for i, fault in enumerate(faults):
         if fault.vehicle not in vehicles:
             raise BadInput(f"{place.at(i, 'vehicle')}: no vehicle '{fault.vehicle}'; there are: {', '.join(sorted(vehicles))}")

@@ -52,7 +52,7 @@ class FenceFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class Zone(NamedTuple):
-    """A polygon, or a circle where there are no vertices. m, world. Zones of one group overlap, those of several add up."""
+    """A polygon, or a circle where there are no vertices [m, world frame]. Zones of one group overlap, those of several add up."""
 
     vertices: Sequence[Point]
     centre: Point = (0.0, 0.0)
@@ -62,12 +62,13 @@ class Zone(NamedTuple):
 
     @property
     def area(self) -> Area:
+        """The zone as an area of the plane."""
         return Polygon(list(self.vertices)) if self.vertices else Disc(self.centre, self.radius)
 
 
 @dataclass(frozen=True)
 class Fencing:
-    """A fence to reckon with. m, world frame (ENU)."""
+    """A fence in force: a region, and a floor and a ceiling [m], world frame (ENU)."""
 
     region: Region
     floor: float
@@ -78,12 +79,12 @@ class Fencing:
 
     @property
     def steers(self) -> bool:
-        """Whether it is more than told of."""
+        """Whether the vehicle does anything at the fence but report it."""
         return self.action != FenceAction.WARN
 
     @property
     def is_open(self) -> bool:
-        """Nothing is kept out of."""
+        """Whether the fence bounds nothing."""
         return not (self.region.include or self.region.exclude) and self.floor == -inf and self.ceiling == inf
 
 
@@ -91,7 +92,7 @@ OPEN = Fencing(Region(), -inf, inf, FenceAction.WARN)
 
 
 def zones_of(file: FenceFile, place: object) -> list[Zone]:
-    """The zones of a fence that can be meant. Raises BadInput with ``place`` for one that cannot."""
+    """The zones of a fence file. Raises BadInput with ``place`` for a fence that makes no sense."""
     zones = []
     for i, zone in enumerate(file.zones):
         if (zone.polygon is None) == (zone.circle is None):
@@ -104,7 +105,7 @@ def zones_of(file: FenceFile, place: object) -> list[Zone]:
 
 
 def fence_fault(zones: Sequence[Zone], floor: float | None, ceiling: float | None) -> str:
-    """Why a fence makes no sense; empty if it does. floor, ceiling: m, world z."""
+    """Why a fence makes no sense; empty if it does. floor, ceiling: heights [m], world z."""
     if len(zones) > MOST_ZONES:
         return f"{len(zones)} zones; {MOST_ZONES} are possible"
     for i, zone in enumerate(zones):
@@ -125,7 +126,7 @@ def _zone_fault(zone: Zone) -> str:
 
 
 def region_of(zones: Sequence[Zone]) -> Region:
-    """Within one of the groups of zones that do not exclude, outside of all zones that do."""
+    """The region within one of the groups of zones that do not exclude, and outside of all zones that do."""
     groups: dict[int, list[Area]] = {}
     for zone in zones:
         if not zone.excludes:
@@ -135,7 +136,7 @@ def region_of(zones: Sequence[Zone]) -> Region:
 
 
 def near_home(plan: Fencing, home: Point, distance: float) -> Fencing:
-    """The same, and not farther than ``distance`` [m] from home; 0: however far."""
+    """The same fence, also bounded to ``distance`` [m] from home (x, y) [m, world frame]; a distance of 0 adds no bound."""
     if not distance:
         return plan
     disc, region = Disc(home, distance), plan.region

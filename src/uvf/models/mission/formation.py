@@ -22,7 +22,7 @@ class Follow(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 def check_follow(follows: Mapping[str, Follow], vehicles: Mapping[str, object], place: FileLocation) -> None:
-    """follows: by the follower's name. Raises BadInput."""
+    """Checks who follows whom; ``follows`` is by the follower's name. Raises BadInput for an unknown leader or a ring."""
     for name, follow in follows.items():
         where = place.at(name, "job", "follow", "leader")
         if follow.leader not in vehicles:
@@ -34,7 +34,7 @@ def check_follow(follows: Mapping[str, Follow], vehicles: Mapping[str, object], 
 
 
 def chain_of(name: str, follows: Mapping[str, Follow]) -> list[str]:
-    """The leader of ``name``, the leader's leader and so on; it ends where one comes up again."""
+    """Names of the leader of ``name``, the leader's leader and so on; the chain ends where one comes up again."""
     chain: list[str] = []
     while name in follows and follows[name].leader not in chain:
         name = follows[name].leader
@@ -43,6 +43,6 @@ def chain_of(name: str, follows: Mapping[str, Follow]) -> list[str]:
 
 
 def offset_of(name: str, follows: Mapping[str, Follow]) -> tuple[float, float, float]:
-    """m behind, right of and above the first of all leaders."""
+    """Offset [m] of a formation slot behind, right of and above the first of all leaders."""
     parts = [follows[n] for n in (name, *chain_of(name, follows)) if n in follows]
     return sum(f.behind for f in parts), sum(f.right for f in parts), sum(f.above for f in parts)

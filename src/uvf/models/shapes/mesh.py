@@ -19,19 +19,19 @@ ROUND = 48  # sides of a circle
 
 
 def placed(solid: Solid, frame_from_link: Transform) -> Solid:
-    """The same shape in the frame that its link's pose is given in."""
+    """The same shape in the frame in which the link's pose is given."""
     pose = compose(frame_from_link, Transform(solid.orientation, solid.position))
     return Solid(solid.name, solid.shape, solid.size, pose.translation, pose.rotation, solid.colour, solid.mesh)
 
 
 def triangles(solid: Solid) -> tuple[Floats, NDArray[Any]]:
-    """vertices (n, 3) m in the frame that the solid's pose is given in, faces (m, 3). Raises BadInput for a mesh that cannot be read."""
+    """Vertices (n, 3) [m], in the frame of the solid's pose, and faces (m, 3). Raises BadInput for a mesh that cannot be read."""
     vertices, faces = _own_triangles(solid)
     return vertices @ matrix(solid.orientation).T + solid.position, faces
 
 
 def reach(solid: Solid, directions: Floats) -> Floats:
-    """How far the shape goes in each unit direction (n, 3) from the origin of its frame [m]; exact, of a mesh that of its hull."""
+    """How far (n,) [m] the shape goes in each unit direction (n, 3) from the origin of its frame; exact, of a mesh that of its hull."""
     local = directions @ matrix(solid.orientation)
     middle: Floats = directions @ solid.position
     if solid.shape == "sphere":
@@ -46,7 +46,7 @@ def reach(solid: Solid, directions: Floats) -> Floats:
 
 
 def contains(solid: Solid, point: Floats) -> bool:
-    """Whether a point (3,) is inside; a mesh counts as its hull."""
+    """Whether a point (3,) [m] is inside the shape; a mesh counts as its convex hull."""
     local = (point - solid.position) @ matrix(solid.orientation)
     if solid.shape == "sphere":
         return bool(np.linalg.norm(local) < solid.size[0])
@@ -73,7 +73,7 @@ def _own_triangles(solid: Solid) -> tuple[Floats, NDArray[Any]]:
 
 @lru_cache(maxsize=128)
 def load_mesh(path: Path) -> tuple[Floats, NDArray[Any]]:
-    """vertices (n, 3), faces (m, 3) of a file in its own units. Raises BadInput."""
+    """Vertices (n, 3), in the file's own units, and faces (m, 3) of a mesh file. Raises BadInput."""
     if path.suffix.lower() not in FORMATS:
         raise BadInput(f"{path}: meshes are {' or '.join(FORMATS)} here; 'uvf vehicle import' makes them of others")
     try:

@@ -16,7 +16,10 @@ Place = Sequence[float] | Floats
 
 @dataclass(frozen=True)
 class MeshPart:
-    """vertices: (n, 3) m, body frame (FLU); faces: (m, 3), counter-clockwise from outside; colour None = the vehicle's own."""
+    """A mesh: vertices (n, 3) [m, body frame FLU], faces (m, 3), counter-clockwise from outside.
+
+    colour: None is the vehicle's own.
+    """
 
     vertices: Floats
     faces: NDArray[Any]
@@ -24,6 +27,7 @@ class MeshPart:
 
 
 def box(centre: Place, size: Sequence[float], colour: Colour | None = None) -> MeshPart:
+    """An axis-aligned box of full edges ``size`` (3,) [m] about ``centre`` (3,) [m]."""
     corners = np.array([(x, y, z) for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
     sides = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
     faces = [face for a, b, c, d in sides for face in ((a, b, c), (a, c, d))]
@@ -31,7 +35,10 @@ def box(centre: Place, size: Sequence[float], colour: Colour | None = None) -> M
 
 
 def lathe(axis: int, stations: Sequence[tuple[float, float]], centre: Place, colour: Colour | None = None) -> MeshPart:
-    """A solid of revolution about x, y or z (axis 0, 1, 2). stations: (place on the axis, radius) in rising order [m]."""
+    """A solid of revolution about x, y or z (axis 0, 1, 2) through ``centre`` (3,) [m].
+
+    stations: (place on the axis, radius) [m] in rising order.
+    """
     n, a = 24, np.linspace(0, 2 * np.pi, 24, endpoint=False)
     rings = []
     for along, radius in stations:
@@ -43,7 +50,7 @@ def lathe(axis: int, stations: Sequence[tuple[float, float]], centre: Place, col
 
 
 def rod(start: Place, end: Place, radius: float, colour: Colour | None = None) -> MeshPart:
-    """A straight one of six sides [m]."""
+    """A straight rod of six sides and ``radius`` [m] from ``start`` (3,) to ``end`` (3,) [m]."""
     a, b = np.asarray(start, dtype=np.float64), np.asarray(end, dtype=np.float64)
     along = (b - a) / max(float(np.linalg.norm(b - a)), 1e-9)
     across = np.cross(along, (0.0, 0.0, 1.0) if abs(along[2]) < 0.9 else (1.0, 0.0, 0.0))
@@ -54,7 +61,7 @@ def rod(start: Place, end: Place, radius: float, colour: Colour | None = None) -
 
 
 def plate(outline: Sequence[Point], thickness: float, colour: Colour | None = None) -> MeshPart:
-    """A flat convex slab about its outline, as thick on both sides [m]."""
+    """A flat convex slab of ``thickness`` [m], half of it to each side of its outline of points (3,) [m]."""
     points = np.array(outline)
     normal = np.cross(points[1] - points[0], points[-1] - points[0])
     across = normal / max(float(np.linalg.norm(normal)), 1e-12) * thickness / 2
@@ -86,6 +93,6 @@ def _outward(vertices: Floats, faces: Sequence[tuple[int, int, int]], colour: Co
 
 
 def joined(parts: Sequence[MeshPart]) -> tuple[Floats, NDArray[Any]]:
-    """All vertices (n, 3) m and faces (m, 3) as one mesh."""
+    """All parts as one mesh: vertices (n, 3) [m] and faces (m, 3)."""
     offsets = np.cumsum([0, *(len(part.vertices) for part in parts[:-1])])
     return np.vstack([p.vertices for p in parts]), np.vstack([p.faces + o for p, o in zip(parts, offsets, strict=True)])

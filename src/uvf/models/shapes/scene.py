@@ -13,7 +13,7 @@ from uvf.models.shapes.solid import Solid
 
 
 def primitives(solid: Solid) -> Solids:
-    """One solid where it stands; what moves by script at its script's beginning. Raises BadInput for a mesh that cannot be read."""
+    """One solid as primitives; if it moves by script, at the script's beginning. Raises BadInput for a mesh that cannot be read."""
     if solid.shape == "box":
         return box(solid.size, solid.position, solid.orientation)
     if solid.shape == "cylinder":
@@ -26,10 +26,10 @@ def primitives(solid: Solid) -> Solids:
 
 
 def still(solids: Iterable[Solid]) -> Solids:
-    """All that never moves, in one table."""
+    """The primitives of all solids that never move, in one table."""
     return joined([primitives(solid) for solid in solids if solid.path is None])
 
 
 def scene(solids: Iterable[Solid], ground: float | None = 0.0) -> Scene:
-    """What rays meet of the solids that never move, and of the ground."""
+    """The scene of all solids that never move and of the ground plane z = ``ground`` [m]; None is no ground."""
     return Scene(build(still(solids)), ground)

@@ -17,8 +17,8 @@ Colour = tuple[float, float, float]
 class Solid:
     """One shape in the frame of whatever it belongs to: the world, or a vehicle's link.
 
-    size: box (x, y, z), cylinder (radius, height along z), sphere (radius,), mesh (scale x, y, z); m.
-    position: (3,) m, of the middle, for a mesh of its file's origin; orientation: wxyz.
+    size [m]: box (x, y, z), cylinder (radius, height along z), sphere (radius,); mesh (scale x, y, z) [-].
+    position: (3,) [m], of the middle, for a mesh of its file's origin; orientation: wxyz (4,).
     """
 
     name: str
@@ -33,18 +33,18 @@ class Solid:
 
 @dataclass(frozen=True)
 class Keyframes:
-    """A motion by script that begins anew when it has come to its end. keys: (n, 4) t [s], x, y [m], yaw [rad], t rising from 0."""
+    """A scripted motion that starts over at its end. keys: (n, 4) t [s], x, y [m], yaw [rad]; t rises from 0."""
 
     keys: Floats
 
     def at(self, t: float) -> tuple[float, float, float]:
-        """x, y [m], yaw [rad] at simulation time ``t`` [s]: straight between the keys, the yaw by the way written."""
+        """Pose x, y [m], yaw [rad] at simulation time ``t`` [s]: straight between the keys, the yaw as written, not by the shorter way."""
         time = t % self.keys[-1, 0]
         x, y, yaw = (float(np.interp(time, self.keys[:, 0], column)) for column in self.keys[:, 1:].T)
         return x, y, yaw
 
     def velocity(self, t: float) -> tuple[float, float, float]:
-        """m/s, m/s, rad/s of the stretch that holds at ``t`` [s]."""
+        """Velocity x, y [m/s] and yaw rate [rad/s] between the keys around simulation time ``t`` [s]."""
         time = t % self.keys[-1, 0]
         i = min(int(np.searchsorted(self.keys[:, 0], time, side="right")), len(self.keys) - 1)
         dt, *moved = self.keys[i] - self.keys[i - 1]
@@ -53,7 +53,7 @@ class Keyframes:
 
 
 def pose_at(solid: Solid, t: float) -> tuple[Floats, Floats]:
-    """Position (3,) m and orientation wxyz of a solid of the world at simulation time ``t`` [s]."""
+    """Position (3,) [m] and orientation wxyz (4,) of a solid of the world at simulation time ``t`` [s]."""
     if solid.path is None:
         return solid.position, solid.orientation
     x, y, yaw = solid.path.at(t)

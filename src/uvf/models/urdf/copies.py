@@ -26,7 +26,10 @@ NOTHING = b"<robot/>"
 
 
 class Copies:
-    """path: the file to expand; scratch: an empty folder; note: told of what is not there, which then is left out."""
+    """The scratch copies of a xacro file and of what it includes.
+
+    path: the file to expand; scratch: an empty folder; note: is told of files that are not there, which then are left out.
+    """
 
     def __init__(self, path: Path, scratch: Path, note: Callable[[str], None] | None) -> None:
         self.path = path
@@ -38,7 +41,7 @@ class Copies:
         self._copy(path, self.main)
 
     def bring(self, name: str) -> bool:
-        """Copies what xacro missed under this name; False where that would change nothing. Raises BadInput for what is nowhere."""
+        """Copies the file that xacro missed under this name; False where that changes nothing. Raises BadInput for one that is nowhere."""
         if name in self._done or not name.startswith((self._files, self._packages)):
             return False
         original = self._original(name)
@@ -53,12 +56,12 @@ class Copies:
         return True
 
     def bring_matching(self, spec: str) -> bool:
-        """As ``bring`` for a name with wild cards; False where it matches nothing new."""
+        """Copies the files that a name with wild cards matches; False where it matches nothing new."""
         brought = [self.bring(name) for name in self._matching(spec)]
         return any(brought)
 
     def original_names(self, text: str) -> str:
-        """A text of the expansion with the names of the originals. Raises BadInput for a package that is nowhere."""
+        """A text of the expansion with the names of the original files. Raises BadInput for a package that is nowhere."""
         text = re.sub(rf"{re.escape(self._packages)}/([^/\"'<>\s]+)", lambda found: self._folder(found[1]), text)
         return text.replace(self._files, "")
 

@@ -13,7 +13,7 @@ MARKED = ("link", "joint", "material")
 
 
 def parsed(path: Path) -> Any:
-    """The root element. Raises BadInput."""
+    """Root element of an XML file. Raises BadInput."""
     try:
         return etree.fromstring(path.read_bytes())
     except etree.XMLSyntaxError as error:
@@ -24,7 +24,7 @@ def parsed(path: Path) -> Any:
 
 
 def marked(path: Path, shown: Path) -> Any:
-    """The root element, each link and joint with "shown:line" as an attribute, which expansion keeps. Raises BadInput."""
+    """Root element of an XML file with "shown:line" as an attribute of each link and joint, which expansion keeps. Raises BadInput."""
     root = parsed(path)
     for tag in root.iter(*MARKED):
         tag.set(LINE, f"{shown}:{tag.sourceline}")
@@ -32,4 +32,5 @@ def marked(path: Path, shown: Path) -> Any:
 
 
 def one_line(text: object) -> str:
+    """The text on one line, each run of white space as one space."""
     return " ".join(str(text).split())

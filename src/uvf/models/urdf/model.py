@@ -22,7 +22,7 @@ MARGIN = 1e-6
 
 
 def read_urdf(path: Path) -> UrdfModel:
-    """The model with all that is wrong with its elements in ``faults``. Raises BadInput where it is no URDF at all."""
+    """Model of a URDF file, with all that is wrong with its elements in ``faults``. Raises BadInput where it is no URDF at all."""
     robot = read_xml(path)
     if robot.tag != "robot":
         raise BadInput(f"{path}: the outermost tag is <{robot.tag}>; a URDF begins with <robot>")
@@ -30,7 +30,7 @@ def read_urdf(path: Path) -> UrdfModel:
 
 
 def load_urdf(path: Path) -> UrdfModel:
-    """A sound model. Raises BadInput for the first fault."""
+    """Model of a URDF file without faults. Raises BadInput for the first fault."""
     model = read_urdf(path)
     for fault in model_faults(model):
         raise BadInput(str(fault))
@@ -38,7 +38,7 @@ def load_urdf(path: Path) -> UrdfModel:
 
 
 def check_urdf(path: Path, wheel_joints: Iterable[str]) -> UrdfModel:
-    """As ``load_urdf``, and the wheel joints are there and turn. Raises BadInput."""
+    """Model of a URDF file without faults in which the wheel joints exist and turn. Raises BadInput for the first fault."""
     model = read_urdf(path)
     for fault in (*wheel_faults(model, tuple(wheel_joints)), *model_faults(model)):
         raise BadInput(str(fault))
@@ -46,7 +46,7 @@ def check_urdf(path: Path, wheel_joints: Iterable[str]) -> UrdfModel:
 
 
 def engine_urdf(path: Path) -> Path:
-    """A plain URDF with meshes by their whole paths, in the folder for passing files, named by its content. Raises BadInput."""
+    """Path of the URDF as a plain file that names its meshes by their whole paths; the file is named by its content. Raises BadInput."""
     return _written(path, *_state(path))
 
 

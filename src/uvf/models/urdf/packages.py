@@ -34,7 +34,7 @@ def find_mesh(path: Path, name: str) -> Path | None:
 
 
 def is_file(path: Path) -> bool:
-    """False also for a name that the system cannot take."""
+    """Whether a path is a file; False also for a name that the system cannot take."""
     with contextlib.suppress(OSError, ValueError):
         return path.is_file()
     return False

@@ -22,7 +22,7 @@ SHAPES = ("box", "capsule", "cylinder", "mesh", "sphere")
 
 
 def read_model(path: Path, robot: Any) -> UrdfModel:
-    """robot: the root element as ``source.read_xml`` gives it; path: where it came from, for meshes and messages."""
+    """Model of a URDF. robot: the root element as ``source.read_xml`` gives it; path: where it came from, for meshes and messages."""
     return _Reader(path).model(robot)
 
 
@@ -180,7 +180,7 @@ class _Reader:
 
 
 def numbers(text: str) -> list[float]:
-    """The finite numbers of a text; empty where anything else stands in it."""
+    """The finite numbers of a text, in the URDF's units ([m], [rad], [kg] ...); empty where anything else stands in it."""
     try:
         values = [float(part) for part in text.split()]
     except ValueError:

@@ -30,7 +30,7 @@ class ModelFault:
 
 @dataclass(frozen=True)
 class Inertial:
-    """mass [kg]; com (3,) m in the link; inertia (3, 3) kg m^2 about the centre of mass, axes of the link."""
+    """Inertia of a link: mass [kg]; com (3,) [m] in the link; inertia (3, 3) [kg m^2] about the centre of mass, axes of the link."""
 
     mass: float
     com: Floats
@@ -39,7 +39,7 @@ class Inertial:
 
 @dataclass(frozen=True)
 class Link:
-    """inertial None = none given: a frame without mass. Shapes are in the link's frame.
+    """A link. inertial: None = none given, a frame without mass. Shapes are in the link's frame.
 
     contact: what the file says of touching (lateral_friction and the like), name -> value.
     """
@@ -54,7 +54,7 @@ class Link:
 
 @dataclass(frozen=True)
 class Joint:
-    """parent_from_child at rest; axis (3,) in the child's frame, unit; limits: lower and upper [rad or m], None = none.
+    """A joint. parent_from_child: at rest; axis: (3,) unit vector in the child's frame; limits: lower and upper [rad or m], None = none.
 
     damping [N m s/rad], friction [N m] of the bearing.
     """
@@ -72,7 +72,7 @@ class Joint:
     line: int = 0
 
     def at(self, value: float) -> Transform:
-        """parent_from_child at an angle [rad] or, prismatic, a displacement [m]."""
+        """Transform parent_from_child at an angle [rad] or, for a prismatic joint, a displacement [m]."""
         if self.kind == "prismatic":
             moved = Transform(IDENTITY.rotation, self.axis * value)
         elif self.kind in ("continuous", "revolute"):
@@ -94,17 +94,17 @@ class UrdfModel:
 
     @property
     def parents(self) -> dict[str, Joint]:
-        """Child link -> the joint it hangs on."""
+        """The joint that each link hangs on, by the name of the child link."""
         return {joint.child: joint for joint in self.joints.values()}
 
     @property
     def roots(self) -> list[str]:
-        """The links that hang on no joint: one in a sound model."""
+        """The links that hang on no joint; one in a sound model."""
         parents = self.parents
         return [name for name in self.links if name not in parents]
 
     def link_poses(self, joint_angles: Mapping[str, float] | None = None) -> dict[str, Transform]:
-        """root_from_link of every link that hangs on the first root; joints not named stand at zero."""
+        """Transform root_from_link of each link below the first root, at joint angles [rad] or displacements [m], 0 where not named."""
         angles, poses = joint_angles or {}, dict.fromkeys(self.roots[:1], IDENTITY)
         waiting = [j for j in self.joints.values() if j.child in self.links]
         while ready := [j for j in waiting if j.parent in poses and j.child not in poses]:
@@ -114,7 +114,7 @@ class UrdfModel:
         return poses
 
     def below(self, link: str) -> Iterator[str]:
-        """A link and all that hang on it, each once, also where joints make a ring."""
+        """A link and all that hang on it, each once, even where joints form a ring."""
         found = [link]
         for name in found:  # grows
             yield name

@@ -16,7 +16,7 @@ RESERVED = ("base_footprint", "map", "odom")
 
 
 def model_faults(model: UrdfModel) -> Iterator[ModelFault]:
-    """What was found in reading, then inertia, tree and wheels."""
+    """Faults of a model: those found in reading, then those of inertia, tree and wheels."""
     yield from model.faults
     for link in model.links.values():
         yield from (ModelFault(model.path, link.line, f"link '{link.name}': {text}") for text in _inertia_faults(model, link))
@@ -28,7 +28,7 @@ def model_faults(model: UrdfModel) -> Iterator[ModelFault]:
 
 
 def wheel_faults(model: UrdfModel, wheel_joints: tuple[str, ...]) -> Iterator[ModelFault]:
-    """The joints that vehicle.yaml names are there and turn."""
+    """Faults of the wheel joints that vehicle.yaml names: joints that do not exist or do not turn."""
     for name in wheel_joints:
         joint = model.joints.get(name)
         if joint is None:
@@ -49,7 +49,7 @@ def _inertia_faults(model: UrdfModel, link: Link) -> Iterator[str]:
 
 
 def inertial_faults(inertial: Inertial) -> Iterator[str]:
-    """A body's principal moments are above zero and none is more than the other two together (the triangle rule)."""
+    """Faults of an inertia: principal moments must be above zero, and none above the sum of the other two (the triangle rule)."""
     if inertial.mass <= 0 or not (np.diag(inertial.inertia) > 0).all():
         yield "mass, ixx, iyy and izz must be numbers above zero"
         return

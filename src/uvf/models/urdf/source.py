@@ -22,7 +22,7 @@ Note = Callable[[str], None]
 
 
 def read_xml(path: Path, arguments: Mapping[str, str] | None = None, note: Note | None = None) -> Any:
-    """The root element, xacro expanded; ``uvf_line`` of links and joints is "file:line" where they are written.
+    """Root element of a URDF, xacro expanded; ``uvf_line`` of links and joints is "file:line" where they are written.
 
     note: is told of included files that are not there, which then are left out; without it they are an error. Raises BadInput.
     """

@@ -15,7 +15,7 @@ NameMesh = Callable[[Path], str]
 
 
 def urdf_text(model: UrdfModel, name_mesh: NameMesh, comment: str = "") -> str:
-    """name_mesh: how a mesh's file is written in the URDF."""
+    """Text of a model as a plain URDF. name_mesh: how a mesh's file is written there."""
     robot = etree.Element("robot", name=model.name)
     if comment:
         robot.append(etree.Comment(f" {comment} "))

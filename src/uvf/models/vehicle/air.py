@@ -55,7 +55,7 @@ class CommandProperties(msgspec.Struct, frozen=True, forbid_unknown_fields=True)
     brake: Annotated[Lever, plain("Wheel brakes, 0 to 1.")] = Lever()
 
     def properties(self, name: str) -> tuple[str, ...]:
-        """The names of what this command is written to."""
+        """Names of the JSBSim properties that this command is written to."""
         given: str | list[str] = getattr(self, name).property
         return (given,) if isinstance(given, str) else tuple(given) or STANDARD[name]
 
@@ -127,12 +127,12 @@ class AirBody(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 def unnumbered(name: str) -> str:
-    """A property's name without the number at its end."""
+    """Name of a property without the number at its end."""
     return re.sub(r"\[\d+\]$", "", name)
 
 
 def check_battery(pack: BatteryPack, place: FileLocation) -> None:
-    """Raises BadInput."""
+    """Checks the voltages of a battery. Raises BadInput."""
     if pack.empty >= pack.full:
         raise BadInput(f"{place}: empty at {pack.empty:g} V, full at {pack.full:g} V; exchange them")
     if pack.rated is not None and pack.rated > pack.full:
@@ -140,7 +140,7 @@ def check_battery(pack: BatteryPack, place: FileLocation) -> None:
 
 
 def check_air(air: AirBody, place: FileLocation) -> None:
-    """What the types do not say. Raises BadInput."""
+    """Checks what the types of the ``air`` section do not say. Raises BadInput."""
     if air.battery is not None:
         check_battery(air.battery, place.at("battery"))
     for name, joint in air.joints.items():

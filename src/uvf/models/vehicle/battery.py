@@ -11,7 +11,7 @@ MOST_LOST = 0.5  # of the open-circuit voltage: there a pack gives the most it c
 
 
 class Charge:
-    """Thevenin's model: the cells give the current at their open-circuit voltage, behind a resistance and a first-order lag.
+    """Charge and voltage of a battery by Thevenin's model: an open-circuit voltage behind a resistance and a first-order lag.
 
     The open-circuit voltage falls in a straight line with the charge. A current-limited start of the motor is not modelled; the lag
     keeps its first milliseconds, when it still stands, from pulling the voltage down.
@@ -24,35 +24,35 @@ class Charge:
         self.current = 0.0  # A
 
     def draw(self, motor_power: float, dt: float) -> None:
-        """``motor_power`` [W], electric, over ``dt`` [s]."""
+        """Draws the electric ``motor_power`` [W], and that of the avionics, for ``dt`` [s]."""
         self.current = (motor_power + self._pack.avionics) / self.voltage
         self._left = max(self._left - self.open_circuit * self.current * dt, 0.0)
         self._sag += (self._pack.resistance * self.current - self._sag) * -math.expm1(-dt / RELAXATION)
 
     @property
     def remaining(self) -> float:
-        """0..1."""
+        """Energy that is left, from 0 to 1 of the full pack [-]."""
         return self._left / self._pack.energy
 
     @property
     def open_circuit(self) -> float:
-        """V, with no load."""
+        """Open-circuit voltage [V]."""
         return self._pack.empty + (self._pack.full - self._pack.empty) * self.remaining
 
     @property
     def voltage(self) -> float:
-        """V, at the terminals."""
+        """Terminal voltage [V]."""
         return self.open_circuit - min(self._sag, MOST_LOST * self.open_circuit)
 
     def throttle(self, wanted: float) -> float:
-        """What the motors get of it: their voltage is throttle times ``rated``, and at most the battery's. Empty, it stops them."""
+        """Throttle, 0 to 1 [-], that the motors get of ``wanted`` [-]: their voltage is at most the battery's; 0 when it is empty."""
         if self.remaining == 0:
             return 0.0
         return wanted if self._pack.rated is None else min(wanted, self.voltage / self._pack.rated)
 
 
 def lasts(pack: BatteryPack, power: float) -> float:
-    """s from full to empty at a steady electric ``power`` [W], avionics included: the integral of V / (E P) over the energy."""
+    """Time [s] from full to empty at a steady electric ``power`` [W], avionics included: the integral of V / (E P) over the energy."""
     cells = np.linspace(pack.empty, pack.full, 201)  # V, E
     terminals = cells / 2 + np.sqrt(np.maximum(cells**2 / 4 - pack.resistance * power, 0.0))
     return float(pack.energy / power * np.mean(terminals / cells))

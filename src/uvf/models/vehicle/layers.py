@@ -17,7 +17,7 @@ ZERO = (0.0, 0.0, 0.0)
 
 
 def fill_vehicle(data: Any, place: FileLocation) -> Any:
-    """The plain data of a vehicle.yaml, whole. Raises BadInput for what it refers to and is not there."""
+    """The plain data of a vehicle.yaml with all that it refers to put in. Raises BadInput for what is not there."""
     if not isinstance(data, dict):
         return data  # what is wrong with it is found when it is converted
     folders = folders_of(Path(place.file).parent)
@@ -64,7 +64,7 @@ def holding(folders: list[Path], name: str) -> Path:
 
 
 def file_of(folders: list[Path], name: str) -> str:
-    """Where a file of a vehicle lies, as seen from its own folder, which is the first."""
+    """Path of a vehicle's file as seen from its own folder, which is the first."""
     found = holding(folders, name)
     return name if found == folders[0] else f"../{found.name}/{name}"
 

@@ -112,7 +112,7 @@ class GnssSensor(Delivery, frozen=True, forbid_unknown_fields=True):
 
     @property
     def accuracy(self) -> tuple[float, float]:
-        """m, 1 sigma of the whole error: horizontal per axis, vertical."""
+        """1 sigma [m] of the whole error of a fix: horizontal per axis, vertical."""
         return math.hypot(self.horizontal_noise, self.horizontal_drift), math.hypot(self.vertical_noise, self.vertical_drift)
 
 
@@ -147,6 +147,7 @@ class Bumper(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     angle_max: Annotated[Bearing, key("rad", "Left end of the sector.")]
 
     def feels(self, bearing: float) -> bool:
+        """Whether a touch at ``bearing`` [rad], counter-clockwise from forward, lies in the sector."""
         return (bearing - self.angle_min) % (2 * math.pi) <= self.angle_max - self.angle_min
 
 
@@ -216,7 +217,7 @@ Sampled = Lidar | ImuSensor | Encoders | GnssSensor | AirDataSensor | Sonar | Ra
 
 
 def check_sensors(sensors: Sensors, place: FileLocation) -> None:
-    """Raises BadInput for what cannot be meant."""
+    """Checks what the types of the ``sensors`` section do not say. Raises BadInput."""
     _check_lidar(sensors.lidar, place.at("lidar"))
     _check_rangers("sonar", sensors.sonars, place.at("sonars"))
     _check_rangers("range finder", sensors.rangefinders, place.at("rangefinders"))
@@ -224,7 +225,7 @@ def check_sensors(sensors: Sensors, place: FileLocation) -> None:
 
 
 def check_sensors_of_aircraft(sensors: Sensors, place: FileLocation) -> None:
-    """What only ground vehicles have would be silent."""
+    """Checks that an aircraft has no sensors that only work on ground vehicles. Raises BadInput."""
     for kind in ("encoders", "bumpers"):
         if getattr(sensors, kind):
             raise BadInput(f"{place.at(kind)}: an aircraft has no {kind}; leave them out")

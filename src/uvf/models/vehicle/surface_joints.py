@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 
 def deflection(name: str, told: Mapping[str, float]) -> float:
-    """rad, of left_aileron, right_flap and so on; signs: trailing edge down, or left for a rudder.
+    """Deflection [rad] of left_aileron, right_flap ... by the joint angles ``told`` [rad]; trailing edge down (a rudder: left) positive.
 
     A model that tells of one joint for both sides (rudder, flap, aileron) moves both, ailerons against each other.
     """

@@ -25,7 +25,7 @@ SIDES = 32  # of a disc
 
 
 class DrivableGround(NamedTuple):
-    """What is drivable, cell by cell: height (rows, columns) [m], slope (rows, columns) as a gradient.
+    """Drivable ground, cell by cell: height (rows, columns) [m, world], slope (rows, columns) as a gradient [-].
 
     surface: (n,) which primitives are driven on instead of bumped into.
     """
@@ -35,7 +35,7 @@ class DrivableGround(NamedTuple):
     surface: Mask
 
     def cliffs(self, resolution: float) -> Mask:
-        """Cells beside a step that a vehicle neither climbs nor may fall down, and where the terrain is too steep."""
+        """Cells (rows, columns), of side ``resolution`` [m], beside a step that a vehicle cannot take, and those that are too steep."""
         found = self.slope > STEEPEST_GRADIENT
         for axis in (0, 1):
             allowed = LEDGE + resolution * np.maximum(*_pairs(self.slope, axis))
@@ -58,7 +58,7 @@ class _Face(NamedTuple):
 
 
 def drivable(solids: Solids, xs: Floats, ys: Floats, relief: Relief | None = None) -> DrivableGround:
-    """The ground over the cells with centres at ``xs`` (columns,) and ``ys`` (rows,) [m]. relief: without one the floor is z = 0."""
+    """Drivable ground of the cells with centres at ``xs`` (columns,) and ``ys`` (rows,) [m, world]; without ``relief`` on z = 0."""
     height, slope = (np.zeros((len(ys), len(xs))) for _ in range(2)) if relief is None else relief.at(*np.meshgrid(xs, ys))
     ground = DrivableGround(height, slope, np.zeros(len(solids.kinds), dtype=np.bool_))
     rastered = [(owner, corners, _raster(owner, corners, xs, ys)) for owner, corners in _upward(solids)]

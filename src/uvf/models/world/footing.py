@@ -18,7 +18,7 @@ COARSE = 0.1  # m, cells in which the ground under one point is looked for
 
 
 class GroundContact(NamedTuple):
-    """room: [m] to the nearest thing; height [m] and slope, as a gradient, of what one stands on: floor, ramp, platform, terrain."""
+    """Room [m] to the nearest obstacle, and height [m, world] and slope, as a gradient [-], of the ground there."""
 
     room: float
     height: float
@@ -26,7 +26,10 @@ class GroundContact(NamedTuple):
 
 
 class Footing:
-    """What moves by script counts where it is at the beginning; what one drives on is nothing that one bumps into."""
+    """Looks up ground height and free room in a world. What moves by script counts where it is at the beginning.
+
+    What one drives on is no obstacle.
+    """
 
     def __init__(self, world: WorldFile) -> None:
         """Raises BadInput for a mesh or a terrain that cannot be read."""
@@ -36,12 +39,12 @@ class Footing:
         self._bulk = chosen(every, ~self._ground.surface)
 
     def at(self, x: float, y: float, height: float = 0.2) -> GroundContact:
-        """Of a ground vehicle so many metres tall."""
+        """Ground contact of a vehicle of ``height`` [m] at (x, y) [m, world]."""
         floor, slope = self._floor(x, y)
         return GroundContact(self.room(x, y, (floor + GRAZE, floor + height)), floor, slope)
 
     def room(self, x: float, y: float, heights: tuple[float, float]) -> float:
-        """Distance [m] from a point to the nearest thing between two heights [m, world]; 0 inside one, inf when there is none."""
+        """Distance [m] from (x, y) [m, world] to the nearest thing between two heights [m, world]; 0 inside one, inf when there is none."""
         return distance(footprint(self._bulk, *heights), x, y)
 
     def _floor(self, x: float, y: float) -> tuple[float, float]:
@@ -55,7 +58,7 @@ class Footing:
 
 
 def distance(shadows: Footprint, x: float, y: float) -> float:
-    """[m] From a point to the nearest shadow, 0 inside one, inf when there is none."""
+    """Distance [m] from (x, y) [m] to the nearest shadow; 0 inside one, inf when there is none."""
     nearest = [max(float(np.hypot(x - cx, y - cy)) - radius, 0.0) for cx, cy, radius in shadows.discs]
     return min([*nearest, *(_to_outline(outline, np.array((x, y))) for outline in shadows.outlines)], default=np.inf)
 

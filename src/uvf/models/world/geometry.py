@@ -26,7 +26,10 @@ BAND = 0.05  # m, steps of height in which obstacles on ramps are looked for
 
 @dataclass(frozen=True)
 class FloorPlan:
-    """True occupancy. cells: (rows, columns), row 0 at the lowest y; cell [0, 0] has its lower left corner at (x, y) [m]."""
+    """True occupancy. cells: (rows, columns), row 0 at the lowest y; cell [0, 0] has its lower left corner at (x, y) [m, world].
+
+    resolution: side of a cell [m].
+    """
 
     cells: Mask
     resolution: float
@@ -34,18 +37,18 @@ class FloorPlan:
     y: float
 
     def cell(self, x: float, y: float) -> tuple[int, int]:
-        """(row, column) of a point [m, world]."""
+        """(row, column) of the point (x, y) [m, world]."""
         return int(np.floor((y - self.y) / self.resolution)), int(np.floor((x - self.x) / self.resolution))
 
     def axes(self) -> tuple[Floats, Floats]:
-        """x of the columns' and y of the rows' centres [m, world]."""
+        """x (columns,) and y (rows,) [m, world] of the cells' centres."""
         rows, columns = self.cells.shape
         xs = self.x + (np.arange(columns, dtype=np.float64) + 0.5) * self.resolution
         ys = self.y + (np.arange(rows, dtype=np.float64) + 0.5) * self.resolution
         return xs, ys
 
     def under(self, shadows: Footprint) -> Mask:
-        """(rows, columns): the cells that shadows cover in any part."""
+        """Cells (rows, columns) that shadows cover in any part."""
         return covered(shadows, (self.x, self.y), self.resolution, (self.cells.shape[0], self.cells.shape[1]))
 
     def centres(self) -> tuple[Floats, Floats]:
@@ -55,7 +58,7 @@ class FloorPlan:
 
 
 def wall_boxes(wall: Wall) -> Iterator[Box]:
-    """One box a stretch; stretches that meet at a corner overlap there, free ends (door frames) keep their length."""
+    """One box for each stretch of a wall; stretches overlap where they meet at a corner, free ends (door frames) keep their length."""
     closed = wall.points[0] == wall.points[-1]
     last = len(wall.points) - 2
     for i, (a, b) in enumerate(zip(wall.points, wall.points[1:], strict=False)):
@@ -71,7 +74,7 @@ def wall_boxes(wall: Wall) -> Iterator[Box]:
 
 
 def all_boxes(world: WorldFile) -> list[Box]:
-    """The walls' boxes, then the furniture."""
+    """The boxes of a world: those of the walls, then the furniture."""
     return [box for wall in world.walls for box in wall_boxes(wall)] + world.boxes
 
 
@@ -87,7 +90,7 @@ def solids(world: WorldFile, folder: Path = Path()) -> list[Solid]:
 
 
 def things(world: WorldFile, folder: Path = Path()) -> list[Solid]:
-    """All that stands on the ground or the terrain; folder: as for ``solids``."""
+    """Solids that stand on the ground or the terrain of a world; folder: as for ``solids``."""
     made = [Solid(b.name, "box", b.size, np.array(b.centre), from_euler(*b.rpy), b.colour, path=_script(b.path)) for b in all_boxes(world)]
     for c in world.cylinders:
         tilt = from_euler(*c.rpy)
@@ -104,7 +107,7 @@ def _script(path: Script) -> Keyframes | None:
 
 
 def floor_plan(world: WorldFile, resolution: float, height: float = 0.2) -> FloorPlan:
-    """Which cells of the floor hold anything up to ``height`` [m] above what one drives on: what a robot that tall bumps into.
+    """Which cells, of side ``resolution`` [m], hold an obstacle for a robot of ``height`` [m], above the ground that it drives on.
 
     Ramps and platforms with a ramp are driven on (``drivable.py``), their steep edges are obstacles. What moves by script is left out.
     Exact in the plane: a cell is occupied when any part of it is. Raises BadInput for a mesh that cannot be read.
@@ -122,25 +125,25 @@ def floor_plan(world: WorldFile, resolution: float, height: float = 0.2) -> Floo
 
 
 def floor_segments(world: WorldFile, height: float) -> Floats:
-    """(n, 2, 2) ends [m, world] of the outlines of all that stands still at ``height`` [m]; outlines may lie over each other."""
+    """Segments (n, 2, 2) [m, world], by their ends, of the outlines of all that stands still at ``height`` [m]; outlines may overlap."""
     return segments(footprint(still(solids(world)), height - GRAZE, height + GRAZE))
 
 
 def section(world: WorldFile, resolution: float, height: float) -> FloorPlan:
-    """Which cells hold anything that stands still at ``height`` [m]: what a level lidar there meets."""
+    """Which cells, of side ``resolution`` [m], hold anything that stands still at ``height`` [m]: what a level lidar there sees."""
     plan = empty_plan(world, resolution)
     return replace(plan, cells=plan.under(footprint(still(solids(world)), height - GRAZE, height + GRAZE)))
 
 
 def empty_plan(world: WorldFile, resolution: float) -> FloorPlan:
-    """The floor with nothing on it."""
+    """The floor of a world with nothing on it, in cells of side ``resolution`` [m]."""
     x_min, y_min, x_max, y_max = world.floor
     rows, columns = (int(np.ceil((high - low) / resolution - 1e-9)) for low, high in ((y_min, y_max), (x_min, x_max)))
     return FloorPlan(np.zeros((rows, columns), dtype=np.bool_), resolution, x_min, y_min)
 
 
 def reachable_floor(plan: FloorPlan, x: float, y: float, radius: float) -> Mask:
-    """(rows, columns): the floor that a round robot of ``radius`` [m] starting at (x, y) can cover with its body.
+    """Floor (rows, columns) that a round robot of ``radius`` [m] starting at (x, y) [m, world] can cover with its body.
 
     Its centre may be where the nearest solid is no closer than the radius; the floor is what its disc sweeps.
     Empty when the start is not free.
@@ -153,7 +156,7 @@ def reachable_floor(plan: FloorPlan, x: float, y: float, radius: float) -> Mask:
 
 
 def free_regions(plan: FloorPlan, radius: float) -> list[Mask]:
-    """Every floor, (rows, columns), that such a robot can cover from one start, the largest first."""
+    """Each floor (rows, columns) that a round robot of ``radius`` [m] can cover from one start, the largest first."""
     labels = _where_it_fits(plan, radius)
     regions = [_swept(plan, labels == label, radius) for label in range(1, int(labels.max()) + 1)]
     return sorted(regions, key=lambda region: -int(region.sum()))

@@ -50,7 +50,7 @@ class MapFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 @dataclass(frozen=True)
 class GridMap:
-    """Occupancy. cells: (rows, columns), row 0 at the lowest y; -1 unknown, 0 free .. 100 occupied.
+    """An occupancy grid. cells: (rows, columns), row 0 at the lowest y; -1 unknown, 0 free .. 100 occupied.
 
     origin: frame_from_grid, the corner of cell [0, 0]; cells are squares of ``resolution`` [m] along the grid's axes.
     """
@@ -61,7 +61,7 @@ class GridMap:
 
 
 def load_map(path: Path) -> GridMap:
-    """A map by its yaml, or by its picture when the yaml lies beside it under the same name. Raises BadInput."""
+    """Map of a yaml file, or of a picture when the yaml lies beside it under the same name. Raises BadInput."""
     if path.suffix not in YAML:
         if path.suffix and path.suffix.lower() not in PICTURES:
             raise BadInput(f"{path}: no map by its ending: a map is a .yaml with a picture (.pgm or .png) beside it")
@@ -98,7 +98,7 @@ def save_map(grid: GridMap, path: Path, mode: str = "trinary") -> Path:
 
 
 def check_mode(path: Path, mode: str) -> None:
-    """Raises BadInput where ``save_map`` would for it."""
+    """Checks path and mode as ``save_map`` does. Raises BadInput."""
     if mode not in THRESHOLDS:
         raise BadInput(f"mode: no '{mode}' here; {nearest(mode, THRESHOLDS)}")
     if mode == "scale" and path.suffix == ".pgm":

@@ -23,14 +23,17 @@ FINEST = 513  # pixels a side: half a million triangles
 
 @dataclass(frozen=True)
 class Relief:
-    """x: (columns,), y: (rows,) m, world, rising; heights: (rows, columns) m, world. Each cell is two triangles, cut from south-west."""
+    """Heights (rows, columns) [m, world] at x (columns,) and y (rows,) [m, world], both rising.
+
+    Each cell is two triangles, cut from the south-west.
+    """
 
     x: Floats
     y: Floats
     heights: Floats
 
     def at(self, x: Floats, y: Floats) -> tuple[Floats, Floats]:
-        """Height [m] and slope, as a gradient, at points of any shape; 0 and level beyond the rim."""
+        """Height [m, world] and slope, as a gradient [-], at points x and y [m, world] of any shape (...,); 0 and level beyond the rim."""
         dx, dy = self.x[1] - self.x[0], self.y[1] - self.y[0]
         u, v = (np.asarray(x) - self.x[0]) / dx, (np.asarray(y) - self.y[0]) / dy
         columns, rows = len(self.x) - 1, len(self.y) - 1
@@ -46,7 +49,7 @@ class Relief:
         return np.where(inside, height, 0.0), np.where(inside, np.hypot(east / dx, north / dy), 0.0)
 
     def triangles(self) -> tuple[Floats, Ints]:
-        """vertices (n, 3) m, world, and faces (m, 3), anticlockwise from above; the rim has walls down to 0."""
+        """Vertices (n, 3) [m, world] and faces (m, 3), anticlockwise from above; the rim has walls down to 0."""
         rows, columns = self.heights.shape
         grid_x, grid_y = np.meshgrid(self.x, self.y)
         top = np.column_stack((grid_x.ravel(), grid_y.ravel(), self.heights.ravel()))
@@ -70,12 +73,12 @@ def _walls(ring: Ints, foot: Ints, heights: Floats) -> Iterator[tuple[int, int, 
 
 
 def relief(world: WorldFile) -> Relief | None:
-    """The heights of a loaded world's terrain; None: it is flat. Raises BadInput."""
+    """Relief of a loaded world's terrain; None where it is flat. Raises BadInput."""
     return None if world.terrain is None else relief_of(world.terrain)
 
 
 def relief_of(terrain: Terrain) -> Relief:
-    """The heights of a loaded world. Raises BadInput for a picture that cannot be read."""
+    """Relief of a loaded world's terrain. Raises BadInput for a picture that cannot be read."""
     return _read(Path(terrain.heights), terrain)
 
 
@@ -100,7 +103,10 @@ def _read(path: Path, terrain: Terrain) -> Relief:
 
 
 def terrain_mesh(terrain: Terrain, folder: Path = Path()) -> Path:
-    """An STL file in metres, world axes; folder: holds the picture of a world that was not loaded from a file. Raises BadInput."""
+    """Path of the terrain as an STL file in metres, world axes. Raises BadInput.
+
+    folder: holds the picture of a world that was not loaded from a file.
+    """
     return _written(folder / terrain.heights, terrain)
 
 

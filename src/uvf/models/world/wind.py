@@ -53,7 +53,7 @@ class TurbulenceFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     @property
     def at_20_feet(self) -> float:
-        """m/s."""
+        """Wind speed [m/s] at 20 feet above the ground."""
         return W20[self.severity] if self.w20 is None else self.w20
 
 
@@ -67,7 +67,7 @@ class Wind(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 def check_wind(wind: Wind, place: FileLocation) -> None:
-    """Raises BadInput."""
+    """Checks a wind for what its types do not say. Raises BadInput."""
     shear = wind.shear
     if shear is not None and shear.law == "logarithmic" and shear.height <= math.e * shear.roughness:
         raise BadInput(f"{place.at('shear')}: height {shear.height:g} m is within the roughness of {shear.roughness:g} m; raise it")

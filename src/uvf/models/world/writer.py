@@ -15,7 +15,7 @@ GROUPS = ("walls", "boxes", "cylinders", "spheres", "meshes", "fields")
 
 
 def write_world(world: WorldFile, folder: Path, remarks: Sequence[str] = ()) -> Path:
-    """Writes ``folder``/world.yaml, ``remarks`` as comments at its head."""
+    """Writes ``folder``/world.yaml, with ``remarks`` as comments at its head; returns its path."""
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / "world.yaml"
     path.write_text("\n".join(_lines(world, remarks)) + "\n", encoding="utf-8")

@@ -15,14 +15,14 @@ HOST, PORT, TOKEN = "UVF_GCS_HOST", "UVF_GCS_PORT", "UVF_GCS_TOKEN"
 
 
 def router_from(environment: Mapping[str, str] = os.environ) -> str:
-    """Reads UVF_ROUTER. Raises BadInput."""
+    """Endpoint of the router, by UVF_ROUTER or the default. Raises BadInput."""
     endpoint = environment.get(ROUTER, DEFAULT_ROUTER)
     host_and_port(endpoint)
     return endpoint
 
 
 def host_and_port(endpoint: str, given: str = f"{ROUTER}=") -> tuple[str, int]:
-    """Of an endpoint such as ``tcp/127.0.0.1:7447``. Raises BadInput; given: in which way it was."""
+    """Host and port of an endpoint such as ``tcp/127.0.0.1:7447``. Raises BadInput; given: how the endpoint was given, for its text."""
     link, _, place = re.split("[?#]", endpoint)[0].partition("/")  # zenoh's settings of a link follow
     host, _, port = place.rpartition(":")
     if not link or not host or not port.isdecimal() or not 0 < int(port) < 65536:
@@ -31,7 +31,7 @@ def host_and_port(endpoint: str, given: str = f"{ROUTER}=") -> tuple[str, int]:
 
 
 def peer(text: str, place: str, example: str) -> tuple[str, int]:
-    """``host:port`` of something that is spoken to over UDP, the name not yet looked up. Raises BadInput."""
+    """Host and port of a UDP peer written as ``host:port``, the name not yet looked up. Raises BadInput."""
     host, _, port = text.strip().rpartition(":")
     if not host or not port.isdecimal() or not 0 < int(port) < 65536:
         raise BadInput(f"{place}: '{text.strip()}' is not host:port, as in {example}")
@@ -39,6 +39,7 @@ def peer(text: str, place: str, example: str) -> tuple[str, int]:
 
 
 def is_loopback(host: str) -> bool:
+    """Whether a host is this machine itself, by its address or as ``localhost``."""
     try:
         return ipaddress.ip_address(host).is_loopback
     except ValueError:
@@ -47,18 +48,21 @@ def is_loopback(host: str) -> bool:
 
 @dataclass(frozen=True)
 class Address:
+    """Where the page is served, and the token that it asks for; no token where it is empty."""
+
     host: str = "127.0.0.1"
     port: int = 8080
     token: str = ""
 
     @property
     def url(self) -> str:
+        """URL of the page, with the token."""
         host = socket.gethostname() if self.host == "0.0.0.0" else self.host
         return f"http://{host}:{self.port}/" + (f"?token={self.token}" if self.token else "")
 
 
 def address_from(environment: Mapping[str, str] = os.environ) -> Address:
-    """Reads UVF_GCS_HOST, UVF_GCS_PORT and UVF_GCS_TOKEN. Raises BadInput.
+    """Address of the page, by UVF_GCS_HOST, UVF_GCS_PORT and UVF_GCS_TOKEN. Raises BadInput.
 
     An address that others can reach gets a random token, unless one is given; an empty one is for containers whose
     port is published on the host's loopback only.
@@ -71,12 +75,12 @@ def address_from(environment: Mapping[str, str] = os.environ) -> Address:
 
 
 def claim(address: Address) -> None:
-    """Fails loudly when the page's port cannot be had; viser would take the next one without a word. Raises BadInput."""
+    """Checks that the page's port is free, for viser would silently take the next one. Raises BadInput."""
     _claim(address.host, address.port, "the page", f"{PORT}=8081")
 
 
 def claim_router(endpoint: str) -> None:
-    """The same of the router's port. Raises BadInput."""
+    """Checks that the router's port is free. Raises BadInput."""
     _claim(*host_and_port(endpoint), "the router", f"{ROUTER}=tcp/127.0.0.1:7448")
 
 
@@ -88,7 +92,7 @@ def _claim(host: str, port: int, what: str, mend: str) -> None:
 
 
 def refusal(host: str, port: int) -> str:
-    """Why nobody can listen there now; empty when one can."""
+    """Why nobody can listen at this host and port now; empty when one can."""
     with socket.socket(socket.AF_INET6 if ":" in host else socket.AF_INET) as probe:
         probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:

@@ -10,7 +10,7 @@ BYTES_MOST = 256_000_000
 
 
 class Backlog(Generic[T]):
-    """Bounded in number and in bytes: the oldest go first. One thread pushes, another one takes; neither waits."""
+    """A queue bounded in number and in bytes: the oldest messages go first. One thread pushes, another one takes; neither waits."""
 
     def __init__(self, depth: int, size_of: Callable[[T], int], bytes_most: int = BYTES_MOST) -> None:
         self._depth = depth
@@ -21,6 +21,7 @@ class Backlog(Generic[T]):
         self._pushed = self._dropped = self._taken = 0
 
     def push(self, message: T) -> None:
+        """Adds a message, and drops the oldest ones beyond the bounds."""
         self._messages.append(message)
         self._pushed += self._size_of(message)
         while len(self._messages) > self._depth or self._pushed - self._dropped - self._taken > self._bytes_most:
@@ -30,7 +31,7 @@ class Backlog(Generic[T]):
             self._dropped += self._size_of(oldest)
 
     def take(self) -> T | None:
-        """The oldest one, or None."""
+        """Removes and returns the oldest message; None without one."""
         message = self._pop()
         if message is not None:
             self._taken += self._size_of(message)

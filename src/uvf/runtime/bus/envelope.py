@@ -17,7 +17,10 @@ BOOTS_MOST = 8  # senders told apart on a key: those that were heard last
 
 
 class Envelope(NamedTuple):
-    """seq: from 1 on each key; stamp_ns: simulation time; boot: of the sender; epoch: of its clock, 0 = of none."""
+    """Metadata of a message. seq: from 1 on each key; stamp_ns: simulation time [ns]; boot: of the sender.
+
+    epoch: of the sender's clock, 0 = of none.
+    """
 
     seq: int = 0
     stamp_ns: int = 0
@@ -25,11 +28,12 @@ class Envelope(NamedTuple):
     epoch: int = 0
 
     def pack(self) -> bytes:
+        """The envelope as the bytes of an attachment."""
         return _FORMAT.pack(*self)
 
 
 def unpack(attachment: bytes) -> Envelope:
-    """Empty for a message of somebody who sends none, or nonsense."""
+    """Envelope in an attachment; empty for a sender that attaches none, or nonsense."""
     return Envelope(*_FORMAT.unpack(attachment)) if len(attachment) == _FORMAT.size else Envelope()
 
 
@@ -71,6 +75,7 @@ class GapCounter:
         self._senders: dict[str, dict[int, _Sender]] = {}  # key -> boot -> sender, the one heard last at the end
 
     def count(self, key: str, boot: int, seq: int) -> None:
+        """Takes note of a message; adds the messages missed before it to the key's gaps."""
         senders = self._senders.get(key)
         if senders is None:
             if len(self._senders) < KEYS_MOST and len(key) <= KEY_MOST:

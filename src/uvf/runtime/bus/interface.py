@@ -9,7 +9,7 @@ from schemas.topics import Qos
 
 
 class Sample(NamedTuple):
-    """One message as it travels. stamp_ns: simulation time from which (exclusive) steps may read it.
+    """One message as it travels. stamp_ns: simulation time [ns] from which (exclusive) steps may read it.
 
     epoch: of the sender's clock; 0 where there is but one (a bus inside a process) or none.
     """
@@ -25,7 +25,7 @@ class Sample(NamedTuple):
 
 @dataclass
 class Query:
-    """A request that waits for its end: ``answer`` or ``refuse`` is called once."""
+    """A request that waits for its answer: ``answer`` or ``refuse`` is called once."""
 
     key: str
     payload: bytes
@@ -40,21 +40,29 @@ OnReply = Callable[[bytes | None, str, int], None]
 
 
 class Publisher(Protocol):
+    """Sends messages on one key."""
+
     def put(self, payload: bytes, stamp_ns: int) -> int:
-        """Sends, and returns the message's sequence number on its key (from 1)."""
+        """Sends a message stamped ``stamp_ns`` [ns]; returns its sequence number on the key (from 1)."""
 
 
 class Bus(Protocol):
     """A message layer; sinks are called in ``poll``, never from a foreign thread."""
 
-    def publisher(self, key: str, type_name: str, qos: Qos) -> Publisher: ...
+    def publisher(self, key: str, type_name: str, qos: Qos) -> Publisher:
+        """A publisher of messages of one type on ``key``."""
+        ...
 
     def subscribe(self, key: str, qos: Qos, sink: Sink, depth: int = 1) -> None:
-        """``key`` may hold ``*`` for one chunk. depth: how many unread messages are kept."""
+        """Subscribes to ``key``, in which ``*`` stands for one chunk. depth: how many unread messages are kept."""
 
-    def serve(self, key: str, sink: Callable[[Query], None]) -> None: ...
+    def serve(self, key: str, sink: Callable[[Query], None]) -> None:
+        """Hands requests on ``key`` to ``sink``, which answers or refuses each once."""
+        ...
 
-    def call(self, key: str, payload: bytes, stamp_ns: int, on_reply: OnReply) -> None: ...
+    def call(self, key: str, payload: bytes, stamp_ns: int, on_reply: OnReply) -> None:
+        """Sends a request; ``on_reply`` is called once, with the reply or the reason why there is none."""
+        ...
 
     def poll(self) -> bool:
         """Hands over what has arrived; True when there was too much of it for one call and more waits."""
@@ -69,7 +77,7 @@ def matches(expression: str, key: str) -> bool:
 
 
 class LocalBus:
-    """Delivers within one process, in order, as bytes; latched topics reach late subscribers."""
+    """A bus within one process: delivers in order, as bytes; latched topics reach late subscribers."""
 
     def __init__(self) -> None:
         self._sinks: list[tuple[str, Sink]] = []
@@ -79,9 +87,11 @@ class LocalBus:
         self._latched: dict[str, Sample] = {}
 
     def publisher(self, key: str, type_name: str, qos: Qos) -> "LocalPublisher":
+        """A publisher that delivers at once."""
         return LocalPublisher(self, key, type_name, qos)
 
     def subscribe(self, key: str, qos: Qos, sink: Sink, depth: int = 1) -> None:
+        """Subscribes to ``key``, and hands over the latched messages that match it; ``depth`` has no effect."""
         self._sinks.append((key, sink))
         self._by_key.clear()
         for sample in self._latched.values():
@@ -89,9 +99,11 @@ class LocalBus:
                 sink(sample)
 
     def serve(self, key: str, sink: Callable[[Query], None]) -> None:
+        """Hands requests on ``key`` to ``sink`` at once."""
         self._servers[key] = sink
 
     def call(self, key: str, payload: bytes, stamp_ns: int, on_reply: OnReply) -> None:
+        """Hands a request to its server at once; ``on_reply`` gets the reason where there is none."""
         server = next((sink for wanted, sink in self._servers.items() if matches(wanted, key)), None)
         if server is None:
             on_reply(None, f"nobody answers {key}", stamp_ns)
@@ -99,10 +111,11 @@ class LocalBus:
         server(Query(key, payload, stamp_ns, lambda reply, at: on_reply(reply, "", at), lambda why: on_reply(None, why, stamp_ns)))
 
     def poll(self) -> bool:
-        """Everything is handed over at once when it is put."""
+        """Does nothing: everything is handed over at once when it is put."""
         return False
 
     def deliver(self, key: str, type_name: str, qos: Qos, payload: bytes, stamp_ns: int) -> int:
+        """Hands a message to all subscribers of its key; returns its sequence number there."""
         self._seq[key] += 1
         sample = Sample(key, type_name, payload, stamp_ns, self._seq[key], 0)
         if qos is Qos.LATCHED:
@@ -119,10 +132,13 @@ class LocalBus:
 
 @dataclass
 class LocalPublisher:
+    """Publisher of a ``LocalBus``."""
+
     bus: LocalBus
     key: str
     type_name: str
     qos: Qos
 
     def put(self, payload: bytes, stamp_ns: int) -> int:
+        """Delivers a message stamped ``stamp_ns`` [ns]; returns its sequence number on the key (from 1)."""
         return self.bus.deliver(self.key, self.type_name, self.qos, payload, stamp_ns)

@@ -20,7 +20,7 @@ class Malformed(Exception):
 
 
 def decode(key: str, payload: bytes, type_: type[M]) -> M:
-    """Raises Malformed, also for what is beyond the limits of the schema."""
+    """Message of this type in the bytes on ``key``. Raises Malformed, also for what is beyond the limits of the schema."""
     if len(payload) > size_of(type_):
         raise Malformed(f"{key}: {len(payload)} bytes, {size_of(type_)} are the most for {type_.DESCRIPTOR.full_name}")
     try:
@@ -33,7 +33,7 @@ def decode(key: str, payload: bytes, type_: type[M]) -> M:
 
 
 def decode_sample(sample: Sample, type_: type[M]) -> M:
-    """Raises Malformed, also for another type than the one that is due."""
+    """Message in a sample. Raises Malformed, also where the sample is of another type."""
     name = type_.DESCRIPTOR.full_name
     if sample.type_name != name:
         raise Malformed(f"{sample.key}: {escaped(sample.type_name[:TYPE_SHOWN]) or 'untyped bytes'} where {name} is due")
@@ -41,7 +41,7 @@ def decode_sample(sample: Sample, type_: type[M]) -> M:
 
 
 def guarded(topic: Topic[Any], heard: Callable[[Any, Sample], None], warn: Callable[[str], None]) -> Sink:
-    """A sink that hands over decoded messages and tells of the others."""
+    """A sink that hands decoded messages to ``heard`` and tells ``warn`` of those that cannot be decoded."""
 
     def sink(sample: Sample) -> None:
         try:

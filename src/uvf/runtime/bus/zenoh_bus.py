@@ -77,7 +77,7 @@ def _first_line(error: Exception) -> str:
 
 
 def kept_key(key: str) -> str:
-    """Where the keeper answers for a key; the ``@`` keeps it out of wildcards."""
+    """Key on which the state store answers for a key; the ``@`` keeps it out of wildcards."""
     return f"{PREFIX}/@kept/{key.removeprefix(f'{PREFIX}/')}"
 
 
@@ -116,9 +116,11 @@ class ZenohBus:
         self.close()
 
     def close(self) -> None:
+        """Closes the session."""
         self._session.close()  # type: ignore[no-untyped-call]
 
     def publisher(self, key: str, type_name: str, qos: Qos) -> "ZenohPublisher":
+        """A publisher with Zenoh's settings for the class of service; latched and event topics keep a history."""
         priority, express = _PRIORITY[qos]
         how: dict[str, Any] = {
             "encoding": f"application/protobuf;{type_name}",
@@ -142,7 +144,7 @@ class ZenohBus:
         return made
 
     def subscribe(self, key: str, qos: Qos, sink: Sink, depth: int = 1, wake: bool = False) -> None:
-        """wake: ``wait`` returns when something arrives here; costs the interpreter's lock for each message."""
+        """Subscribes to ``key``. wake: ``wait`` returns when something arrives here; costs the interpreter's lock for each message."""
         handler: Any = self._handed_over(key, sink, depth) if wake else zenoh.handlers.RingChannel(depth)
         if qos in _KEPT:
             history = ext.HistoryConfig(max_samples=_KEPT[qos], detect_late_publishers=True)
@@ -173,7 +175,7 @@ class ZenohBus:
         return hand_over
 
     def subscribe_all(self, sink: Sink, depth: int) -> None:
-        """Everything below ``uvf/``, each message once, with the history of latched and event topics.
+        """Subscribes to everything below ``uvf/``, each message once, with the history of latched and event topics.
 
         An advanced subscriber on all keys would do, but it drops messages of plain publishers at random.
         """
@@ -206,7 +208,7 @@ class ZenohBus:
             self.subscribe(pattern, topic.qos, once, EVENT_HISTORY)
 
     def behind(self, published: Mapping[str, int]) -> str:
-        """A key of which some subscription has not received the number given yet; empty when all have."""
+        """A key of which some subscription has not received the given number yet; empty when all have."""
         for inbound in self._inbound:
             for key, seq in published.items():
                 if inbound.seen.get(key, 0) < seq and matches(inbound.key, key):
@@ -218,28 +220,31 @@ class ZenohBus:
         self._woken.acquire(timeout=max(timeout, 0.0))
 
     def serve(self, key: str, sink: Callable[[Query], None]) -> None:
+        """Hands requests on ``key`` to ``sink`` in ``poll``."""
         self._servers.append((self._session.declare_queryable(key, zenoh.handlers.FifoChannel(QUERIES), complete=True), sink))
 
     def call(self, key: str, payload: bytes, stamp_ns: int, on_reply: OnReply) -> None:
+        """Sends a request; ``on_reply`` is called in ``poll``, with the reply or the reason why there is none."""
         attachment = Envelope(0, stamp_ns, self.boot, self.epoch).pack()
         replies = self._session.get(key, payload=payload, attachment=attachment, timeout=CALL_TIMEOUT)
         self._calls.append((replies, on_reply, stamp_ns, key))
 
     def recall(self, key: str) -> bytes | None:
-        """The newest message of a kept topic, also of a writer that has died; waits for the keeper's answer."""
+        """Newest message of a kept topic, also of a writer that has died; waits for the state store's answer."""
         replies = self._session.get(kept_key(key), timeout=RECALL_TIMEOUT)
         return next((reply.ok.payload.to_bytes() for reply in replies if reply.ok is not None), None)
 
     def token(self, key: str) -> None:
-        """Declares a liveliness token below ``uvf/@...`` that ends with this session."""
+        """Declares a liveliness token ``uvf/<key>`` that ends with this session."""
         self._declared.append(self._session.liveliness().declare_token(f"{PREFIX}/{key}"))
 
     def tokens(self, key: str) -> list[str]:
-        """The liveliness tokens that match now, without ``uvf/``."""
+        """Liveliness tokens that match now, without ``uvf/``."""
         replies = self._session.liveliness().get(f"{PREFIX}/{key}", timeout=2.0)
         return sorted(str(r.ok.key_expr).removeprefix(f"{PREFIX}/") for r in replies if r.ok)
 
     def poll(self) -> bool:
+        """Hands over what has arrived, requests and replies too; True when more messages may wait."""
         for publisher in self._latched:
             publisher.say_again()
         left = [inbound for inbound in (*self._waking, *self._inbound) if not self._empty(inbound)]
@@ -331,6 +336,8 @@ def _query(query: zenoh.Query) -> Query:
 
 @dataclass
 class ZenohPublisher:
+    """Publisher of a ``ZenohBus``."""
+
     publisher: Any
     bus: ZenohBus
     seq: int = 0
@@ -338,6 +345,7 @@ class ZenohPublisher:
     """When (s, wall), payload and envelope of what is to be said again."""
 
     def put(self, payload: bytes, stamp_ns: int) -> int:
+        """Sends a message stamped ``stamp_ns`` [ns]; returns its sequence number on the key (from 1)."""
         self.seq += 1
         envelope = Envelope(self.seq, stamp_ns, self.bus.boot, self.bus.epoch).pack()
         self.publisher.put(payload, attachment=envelope)
@@ -345,9 +353,10 @@ class ZenohPublisher:
         return self.seq
 
     def say_again(self) -> None:
-        """A latched message sent right after its publisher was declared was seen to miss a subscriber, history and all.
+        """Sends the last latched message once more, if nothing newer has come.
 
-        Once more, when nothing newer has come: with the same envelope, so that nobody takes it for another one.
+        A message sent right after its publisher was declared was seen to miss a subscriber, history and all.
+        It goes with the same envelope, so that nobody takes it for another one.
         """
         if self.last is not None and time.monotonic() - self.last[0] > SAY_AGAIN:
             _, payload, envelope = self.last

@@ -15,7 +15,7 @@ LONGEST = 300  # characters of a cause
 
 @dataclass
 class Bulkhead:
-    """Of one instance; its failures are kept from the instances of other vehicles in the same process."""
+    """Counts the failures of one instance, and keeps them from the instances of other vehicles in the same process."""
 
     given_up: str = ""
     """The cause, once it is."""
@@ -23,7 +23,7 @@ class Bulkhead:
 
     @staticmethod
     def contain(action: Callable[[], None]) -> str:
-        """What is raised in ``action``, whatever it is, ends here, for the process goes on for others; returns the cause."""
+        """Runs ``action`` and returns the cause if it failed, whatever it has raised; empty if it did not."""
         try:
             action()
         except KeyboardInterrupt:
@@ -33,7 +33,7 @@ class Bulkhead:
         return ""
 
     def failed(self, t: float, cause: str) -> bool:
-        """Counts a failure at ``t`` [s]; True when that was one too many."""
+        """Counts a failure at ``t`` [s]; True when that was one too many within the window."""
         self._times.append(t)
         if len(self._times) == FAILURES and t - self._times[0] < WINDOW:
             self.given_up = cause
@@ -45,7 +45,7 @@ class Bulkhead:
 
 
 def cause_of(error: BaseException) -> str:
-    """``ValueError: math domain error (service.py:212 in _steer)``, in one line that can be sent and shown."""
+    """Cause of an error on one line: ``ValueError: math domain error (service.py:212 in _steer)``."""
     frames = traceback.extract_tb(error.__traceback__)
     if isinstance(error, StepHangs):
         frames.pop()  # the watchdog's own: the one before is where the step was

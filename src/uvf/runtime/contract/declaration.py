@@ -34,7 +34,7 @@ class Input:
     """False: it counts however old it is."""
 
     def empty(self) -> Any:
-        """What stands for nothing that has been heard."""
+        """Value of the input when nothing has been heard."""
         return {} if self.each_vehicle else [] if self.every else None
 
 
@@ -44,12 +44,12 @@ FRAME_TOPICS = (topics.TF_STATIC, topics.TF_WORLD, topics.TF_MAP, topics.TF_ODOM
 
 @dataclass(frozen=True)
 class Frames:
-    """The tree of frames as one input: a ``FrameBuffer``."""
+    """Declares the tree of frames as one input: a ``FrameBuffer``."""
 
     team: bool
 
     def parts(self, name: str) -> dict[str, Input]:
-        """The inputs that it consists of."""
+        """The inputs that it consists of, by name."""
         return {
             f"{name}/{topic.key}": Input(topic, every=True, required=False, each_vehicle=self.team, ages=False) for topic in FRAME_TOPICS
         }
@@ -57,24 +57,24 @@ class Frames:
 
 @dataclass(frozen=True)
 class StopInput:
-    """STOP ALL as one input: a ``stop_all.StopStatus``."""
+    """Declares STOP ALL as one input: a ``stop_all.StopStatus``."""
 
     def parts(self, name: str) -> dict[str, Input]:
-        """The inputs that it consists of."""
+        """The inputs that it consists of, by name."""
         heard: dict[str, Topic[Any]] = {"said": topics.STOP.by("*"), "known": topics.STOP_STATE}
         return {f"{name}/{part}": Input(topic, every=True, required=False, ages=False) for part, topic in heard.items()}
 
 
 @dataclass(frozen=True)
 class Served:
-    """Requests of others: in ``Inputs`` those that are due, in ``Outputs`` the replies."""
+    """Declares requests of others: in ``Inputs`` those that are due, in ``Outputs`` the replies."""
 
     request: Request[Any, Any]
 
 
 @dataclass(frozen=True)
 class Called:
-    """Requests to others: to be sent in ``Outputs``, the answers in ``Inputs``."""
+    """Declares requests to others: to be sent in ``Outputs``, the answers in ``Inputs``."""
 
     request: Request[Any, Any]
 
@@ -98,57 +98,60 @@ def _read(declared: Input) -> Any:
 
 
 def topic(of: Topic[Any]) -> Any:
-    """Read: the newest message; ``step`` is held back while it is absent or old. Written: a message, a list, or a dict by vehicle."""
+    """Declares a topic that is read or written.
+
+    Read: the newest message; ``step`` is held back while it is absent or old. Written: a message, a list, or a dict by vehicle.
+    """
     return _read(Input(of))
 
 
 def every(of: Topic[Any]) -> Any:
-    """All messages since the last step, oldest first (maybe none), while the topic is fresh."""
+    """Declares a topic of which all messages since the last step are read, oldest first (maybe none), while it is fresh."""
     return _read(Input(of, every=True))
 
 
 def optional(of: Any) -> Any:
-    """None (or an empty list) while absent or stale, instead of holding the step back."""
+    """Makes an input optional: None (or an empty list) while absent or stale, instead of holding the step back."""
     return _read(replace(_input(of), required=False))
 
 
 def each_vehicle(of: Any) -> Any:
-    """A dict by vehicle, holding those whose message is fresh; never holds the step back."""
+    """Reads an input of each vehicle: a dict of those whose message is fresh; never holds the step back."""
     return _read(replace(_input(of), each_vehicle=True, required=False))
 
 
 def of_role(role: str, of: Any) -> Any:
-    """The topic of the vehicle that the mission binds to ``role`` (``leader: milvus1``)."""
+    """Reads an input of the vehicle that the mission binds to ``role`` (``leader: milvus1``)."""
     return _read(replace(_input(of), role=role))
 
 
 def frames(team: bool = False) -> Any:
-    """The transforms told before the step, of this vehicle (or of every one), to be looked up; never holds the step back."""
+    """Declares the transforms told before the step, of this vehicle (``team``: of each), as a FrameBuffer; never holds the step back."""
     return _field(Frames(team))
 
 
 def stop_all() -> Any:
-    """Who engages STOP ALL, by every word that was said before the step; never holds the step back."""
+    """Declares as input who engages STOP ALL, by every word that was said before the step; never holds the step back."""
     return _field(StopInput())
 
 
 def request(of: Request[Any, Any]) -> Any:
-    """Requests that are due, to be answered in this step by ``replies`` of the same name, in their order."""
+    """Declares requests that are due, to be answered in this step by ``replies`` of the same name, in their order."""
     return _field(Served(of), [])
 
 
 def replies(of: Request[Any, Any]) -> Any:
-    """One reply, or ``Later``, to each request of the same name."""
+    """Declares the replies: one, or ``Later``, to each request of the same name."""
     return _field(Served(of), [])
 
 
 def call(of: Request[Any, Any]) -> Any:
-    """Requests to send: one, a list, or a dict by vehicle; their answers come to later steps."""
+    """Declares requests to send: one, a list, or a dict by vehicle; their answers come to later steps."""
     return _field(Called(of), [])
 
 
 def answers(of: Request[Any, Any]) -> Any:
-    """What became of requests that this service has sent under the same name."""
+    """Declares the answers to requests that this service has sent under the same name."""
     return _field(Called(of), [])
 
 
@@ -162,7 +165,7 @@ class Reads:
 
 @dataclass_transform(kw_only_default=True)
 class Writes:
-    """Base of what a step writes; what is None or empty is not said."""
+    """Base of what a step writes; outputs that are None or empty are not sent."""
 
     names: ClassVar[tuple[str, ...]] = ()
 
@@ -171,13 +174,13 @@ class Writes:
         cls.names = tuple(declared_in(cls))
 
     def update(self, values: Mapping[str, Any]) -> None:
-        """What is said under names that are data. Raises AttributeError for one that is not declared."""
+        """Sets outputs by their names. Raises AttributeError for one that is not declared."""
         for name, value in values.items():
             getattr(self, name)
             setattr(self, name, value)
 
     def add(self, name: str, vehicle: str, value: Value) -> None:
-        """What is said of one vehicle, by a service of the whole world whose outputs' names are data: of sensors, of requests."""
+        """Sets the output of one vehicle, for a service of the whole world that names its outputs by data: sensors, requests."""
         by_vehicle = getattr(self, name)
         if not by_vehicle:
             by_vehicle = {}
@@ -185,7 +188,7 @@ class Writes:
         by_vehicle[vehicle] = value
 
     def said(self) -> Iterator[tuple[str, Value]]:
-        """Name and value of all that is said."""
+        """Name and value of each output that is sent."""
         for name in self.names:
             value = getattr(self, name)
             if value is not None and not (isinstance(value, list | tuple | dict) and not value):
@@ -193,5 +196,5 @@ class Writes:
 
 
 def declared_in(owner: type) -> dict[str, Declared]:
-    """Every field of ``Inputs`` or ``Outputs`` by its name."""
+    """Declaration of every field of ``Inputs`` or ``Outputs``, by its name."""
     return {f.name: f.metadata[DECLARED] for f in fields(owner)} if hasattr(owner, "__dataclass_fields__") else {}

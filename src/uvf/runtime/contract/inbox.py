@@ -44,10 +44,11 @@ class Slot:
         """What held before the newest ``take``."""
 
     def push(self, sample: Sample) -> None:
+        """Adds a message that has arrived."""
         self.arrived.append(sample)
 
     def take(self, t_ns: int) -> None:
-        """Makes readable what is stamped before ``t_ns``, ordered by (epoch, stamp, key, seq)."""
+        """Makes readable what is stamped before ``t_ns`` [ns], ordered by (epoch, stamp, key, seq)."""
         self._good = (self._latest, self.accepted)
         if not self.arrived:
             return
@@ -104,10 +105,11 @@ class Slot:
         return (sample.epoch or before.epoch, sample.stamp_ns) < (before.epoch or sample.epoch, before.stamp_ns)
 
     def is_fresh(self, t_ns: int) -> bool:
+        """Whether the newest message is young enough to count at ``t_ns`` [ns]."""
         return self._latest is not None and t_ns - self._latest[0] <= self._max_age
 
     def value(self, t_ns: int) -> Any:
-        """The newest message, or the list of those not yet seen; None or [] when there is none."""
+        """Newest message, or the list of those not yet seen; None or [] when there is none that counts at ``t_ns`` [ns]."""
         if self._input.every:
             taken = [message for stamp, message in self._fresh if t_ns - stamp <= self._max_age]
             self._fresh.clear()
@@ -120,7 +122,7 @@ def _of_no_epoch(sample: Sample) -> str:
 
 
 class InputBox:
-    """All owners of one declared input."""
+    """Messages of one declared input, of all its owners."""
 
     def __init__(self, declared: Input, ageless: bool, epoch: int) -> None:
         self.declared = declared
@@ -136,7 +138,7 @@ class InputBox:
         self._next_since: int | None = None
 
     def begin(self, epoch: int) -> None:
-        """The clock tells of an epoch; what was sent ahead of it counts from now on, or never."""
+        """Begins an epoch of the clock; what was sent ahead of it counts from now on, or never."""
         self.epoch = epoch
         ahead = self._ahead()
         self._forget_next_epoch()
@@ -152,7 +154,7 @@ class InputBox:
         return [sample for samples in self._next.values() for sample in samples]
 
     def push(self, sample: Sample) -> None:
-        """Takes a message of this epoch (or of none); what an old one still sends is dropped, an operator's word is not."""
+        """Adds a message of this epoch (or of none); one of an old epoch is dropped, unless it holds across epochs."""
         if 0 < sample.epoch < self.epoch:
             if not self.declared.topic.across_epochs:
                 return
@@ -207,7 +209,7 @@ class InputBox:
             self._forget_next_epoch()
 
     def surviving(self, epoch: int) -> list[Sample]:
-        """What still counts when time starts over: the new epoch's own messages, and what holds across epochs.
+        """Messages that still count when time starts over: the new epoch's own, and what holds across epochs.
 
         The latter is stamped anew with the beginning of time, so that everything said later comes after it.
         """
@@ -219,6 +221,7 @@ class InputBox:
         return [s._replace(stamp_ns=-1) for s in sorted(old, key=lambda s: (s.epoch, s.stamp_ns))[-1:]] + new
 
     def take(self, t_ns: int) -> None:
+        """Makes readable what is stamped before ``t_ns`` [ns], of all owners."""
         self._t_ns = t_ns
         if self._next:
             self._give_up_next_epoch(t_ns)
@@ -237,9 +240,11 @@ class InputBox:
                 yield slot.accepted.key, slot.accepted.payload
 
     def is_missing(self, t_ns: int) -> bool:
+        """Whether the input is required and no message of it counts at ``t_ns`` [ns]."""
         return self.declared.required and not any(slot.is_fresh(t_ns) for slot in self._slots.values())
 
     def value(self, t_ns: int) -> Any:
+        """What a step at ``t_ns`` [ns] sees: a message, a list, or a dict of either by owner."""
         if self.declared.each_vehicle:
             return {owner: slot.value(t_ns) for owner, slot in self._slots.items() if slot.is_fresh(t_ns)}
         if not self._slots:

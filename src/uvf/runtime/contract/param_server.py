@@ -17,7 +17,7 @@ from uvf.runtime.contract.service import Service
 
 
 class ParamServer:
-    """Holds the queue of requests of one service instance; answered at the start of its next step."""
+    """Holds the parameter requests of one service instance; they are answered at the start of its next step."""
 
     def __init__(self, service: Service) -> None:
         self._service = service
@@ -26,17 +26,20 @@ class ParamServer:
         """As they are since one was set while it runs."""
 
     def key(self, owner: str) -> str:
+        """Key on which the requests come, for this owner."""
         return topics.PARAM.by(self._service.name).at(owner)
 
     @property
     def waiting(self) -> int:
+        """Number of requests that wait."""
         return len(self._queue)
 
     def queue(self, query: Query) -> None:
+        """Adds a request."""
         self._queue.append(query)
 
     def answer(self, due: Callable[[int], bool], refused: Callable[[str], None]) -> Iterator[tuple[Query, ParamReply]]:
-        """The requests whose stamp is due now, each with its reply. refused: takes a line about each broken one."""
+        """Requests whose stamp is due now, each with its reply. refused: takes a line about each malformed one."""
         taken = [query for query in self._queue if due(query.stamp_ns)]
         self._queue = deque(query for query in self._queue if not due(query.stamp_ns))
         for query in taken:
@@ -47,11 +50,12 @@ class ParamServer:
                 yield query, ParamReply(accepted=False, reason=str(error))
 
     def refuse_all(self, reason: str) -> None:
+        """Refuses all requests that wait."""
         while self._queue:
             self._queue.popleft().refuse(reason)
 
     def reply(self, request: ParamRequest) -> ParamReply:
-        """Lists, reads or sets; a refused value leaves everything as it was."""
+        """Reply to a request that lists, reads or sets; a refused value leaves everything as it was."""
         fields = self._service.params.__struct_fields__
         if request.name and request.name not in fields:
             return ParamReply(
@@ -76,7 +80,7 @@ class ParamServer:
         self.take_up(msgspec.convert(data, type(self._service.params)))
 
     def take_up(self, params: Params) -> None:
-        """Those that an instance before this one was set to."""
+        """Sets all parameters, to those of an instance before this one."""
         self._service.params = self.set_params = params
 
     def _describe(self, name: str) -> Param:

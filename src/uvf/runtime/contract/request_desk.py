@@ -23,7 +23,10 @@ Put = Callable[[str, type[Message], Qos, bytes, int], None]
 
 
 class RequestDesk:
-    """``put`` sends both halves of what was answered as messages of their own, so that logs hold them."""
+    """Queues, decodes and answers the requests of one service instance.
+
+    put: sends both halves of what was answered as messages of their own, so that logs hold them.
+    """
 
     def __init__(self, service: type[Service], put: Put, malformed: Callable[[str], None]) -> None:
         self._type = service
@@ -36,16 +39,18 @@ class RequestDesk:
         """Requests that a later step answers."""
 
     def queue(self, name: str, query: Query) -> None:
+        """Adds a request to those of this name; refuses it when too many wait."""
         if len(self._queries[name]) >= QUERIES_MOST:
             query.refuse(f"{self._type.name}: {QUERIES_MOST} requests wait already")
         else:
             self._queries[name].append(query)
 
     def waiting(self, name: str) -> int:
+        """Number of requests of this name that wait."""
         return len(self._queries[name])
 
     def refuse_all(self, reason: str) -> None:
-        """Also those in hand and those that a later step was to answer."""
+        """Refuses all requests, also those in hand and those that a later step was to answer."""
         for waiting in self._queries.values():
             while waiting:
                 waiting.popleft().refuse(reason)
@@ -58,7 +63,7 @@ class RequestDesk:
         self._open.clear()
 
     def take(self, is_due: Callable[[int], bool]) -> dict[str, Any]:
-        """What ``step`` sees of those that are due now, decoded."""
+        """Requests that are due now, decoded, as ``step`` sees them by name."""
         requests: dict[str, Any] = {}
         self._in_hand = {}
         for name, request in self._type.requests.items():
@@ -118,12 +123,13 @@ class RequestDesk:
                 self.answer(query, request, reply, t_ns)
 
     def refuse_due(self, reason: str, is_due: Callable[[int], bool], t_ns: int) -> None:
-        """Answers what is due now with a refusal."""
+        """Refuses the requests that are due now."""
         for name, request in self._type.requests.items():
             for query, _ in self._decodable(name, request, is_due):
                 self.answer(query, request, request.reply(accepted=False, reason=reason), t_ns)
 
     def answer(self, query: Query, request: Request[Any, Any], reply: Message, t_ns: int) -> None:
+        """Answers one request, and publishes it and its reply for logs, stamped ``t_ns`` [ns]."""
         payload = _bytes_of(reply)
         query.answer(payload, t_ns)
         self._put(f"{query.key}/request", request.message, Qos.EVENT, query.payload, t_ns)

@@ -17,7 +17,7 @@ R = TypeVar("R", bound=Message)
 
 @dataclass(frozen=True)
 class Answer(Generic[Q, R]):
-    """What became of a request that this service sent: the reply, or None and why."""
+    """Outcome of a request that this service sent: the reply, or None and why."""
 
     vehicle: str
     request: Q
@@ -26,12 +26,12 @@ class Answer(Generic[Q, R]):
 
 
 class Later(Generic[R]):
-    """Stands in a step's replies for one that a later step will know: the request stays open until ``give`` is called."""
+    """A reply that a later step will know: the request stays open until ``give`` is called."""
 
     reply: R | None = None
 
     def give(self, reply: R) -> None:
-        """The first one counts."""
+        """Gives the reply; only the first one counts."""
         self.reply = self.reply or reply
 
 
@@ -69,7 +69,7 @@ class Service:
     died, from those of its messages that were found; the others are None."""
 
     def stale(self, t: float, missing: tuple[str, ...]) -> Writes:
-        """Called instead of ``step`` while required inputs are absent or old: the place of failsafes."""
+        """Outputs of a step at ``t`` [s] while required inputs are absent or old: called instead of ``step``, the place of failsafes."""
         return self.Outputs()
 
     given_up: ClassVar[str] = "the vehicle does without it"
@@ -81,7 +81,7 @@ class Service:
     """
 
     def close(self) -> None:
-        """Gives back engines and sockets; called once, when the process or the run ends."""
+        """Frees engines and sockets; called once, when the process or the run ends."""
 
     inputs: ClassVar[Mapping[str, Input | Frames | StopInput]] = {}
     outputs: ClassVar[Mapping[str, Topic[Any]]] = {}

@@ -38,6 +38,8 @@ AFRESH = "time has started over: ask again"
 
 @dataclass
 class Counters:
+    """Counters of one instance's steps and messages."""
+
     steps: int = 0
     stale: int = 0
     skipped: int = 0
@@ -52,10 +54,7 @@ class ServiceRunner:
     def __init__(
         self, host: ServiceInstance, bus: Bus, warn: Warn = lambda line: None, contains: bool = False, watchdog: Watchdog | None = None
     ) -> None:
-        """contains: what goes wrong in the instance of a vehicle is kept from those of the others; else it is raised.
-
-        watchdog: ends, with ``contains``, a step that does not come back.
-        """
+        """contains: failures of a vehicle's instance are kept from the others, else raised; watchdog: then ends a step that hangs."""
         self.host = host
         self.type = host.service
         self.owner = host.vehicle or SYSTEM
@@ -85,13 +84,13 @@ class ServiceRunner:
         self._subscribe()
 
     def join(self, epoch: int) -> None:
-        """Goes on in an epoch, without being made afresh: at the first clock, and wall-clock services always."""
+        """Enters an epoch without being made afresh: at the first clock, and wall-clock services always."""
         self.epoch = epoch
         for box in self._boxes.values():
             box.begin(epoch)
 
     def restart(self, epoch: int) -> None:
-        """Makes the service afresh because time has started over; what was asked in the old epoch is refused."""
+        """Makes the service afresh because time has started over; requests of the old epoch are refused."""
         trouble = self._contain(self._close)
         self.epoch = epoch
         kept = [(name, sample) for name, box in self._boxes.items() for sample in box.surviving(epoch)]
@@ -154,7 +153,7 @@ class ServiceRunner:
         return isinstance(self.type.inputs.get(name.partition("/")[0]), StopInput)
 
     def reads(self) -> Iterator[tuple[str, Input, str]]:
-        """Each declared input with the owner whose messages it takes; ``*`` = of every vehicle."""
+        """Each declared input by name, with the owner whose messages it takes; ``*`` = of every vehicle."""
         for name, declared in self.type.declared_inputs().items():
             yield name, declared, "*" if declared.each_vehicle else (self.host.roles or {}).get(declared.role or "", self.owner)
 
@@ -177,24 +176,25 @@ class ServiceRunner:
 
     @property
     def n(self) -> int:
-        """The number of the next step, from 1."""
+        """Number of the next step, from 1."""
         return self._n
 
     @n.setter
     def n(self, n: int) -> None:
+        """Sets the number of the next step, and when it is due."""
         self._n = n
         self.due_ns = step_time(n, self.type.hz)
         """When it is due [ns]; asked far more often than it changes."""
 
     def skip_to(self, t_ns: int, count: bool = True) -> None:
-        """Leaves out the steps due before the newest one that is due at ``t_ns``, and counts them as skipped."""
+        """Skips the steps due before the newest one that is due at ``t_ns`` [ns], and counts them if ``count``."""
         newest = first_step_after(t_ns, self.type.hz) - 1
         if newest > self.n:
             self.counters.skipped += (newest - self.n) * count
             self.n = newest
 
     def advance(self) -> None:
-        """One step at the due time: fresh inputs in, outputs published, requests answered."""
+        """Runs one step at its due time: fresh inputs in, outputs published, requests answered."""
         t_ns = self.due_ns
         self.n += 1
         if self._bulkhead is None:
@@ -235,10 +235,7 @@ class ServiceRunner:
             self.service.close()
 
     def _revive(self, keep_params: bool) -> None:
-        """A new instance with the state that the last one has left, without what has come since its last good step.
-
-        keep_params: those that were set while it ran; but they may be what makes it fail.
-        """
+        """A new instance with the state of the last good step; keep_params: and the parameters set while it ran, which may be to blame."""
         for box in self._boxes.values():
             box.undo()
         heard = {key: payload for box in self._boxes.values() for key, payload in box.accepted()}

@@ -27,7 +27,7 @@ REFUSED = {
 
 
 class Admission:
-    """Says which messages are recorded, and counts the others; one for all files of a run.
+    """Decides which messages are recorded, and counts the others; one for all files of a run.
 
     Who was there first stays: a flood of new keys cannot push out the topics of a running system.
     """
@@ -39,6 +39,7 @@ class Admission:
         self._foreign: set[tuple[str, str]] = set()
 
     def admits(self, sample: Sample) -> bool:
+        """Whether a message is recorded; counts it by the reason if it is not."""
         why = self._fault(sample)
         if why:
             self.refused[why] += 1
@@ -75,7 +76,7 @@ class Standing:
         """Of the clock that was heard last; None without one."""
 
     def remember(self, sample: Sample) -> bool:
-        """Whether there was room. History that comes late does not take the place of what is newer."""
+        """Keeps a message; False when there was no room. History that comes late does not take the place of what is newer."""
         if sample.key == CLOCK.at(SYSTEM):
             self._epoch = sample.epoch
         old = self._newest.get(sample.key)
@@ -90,7 +91,7 @@ class Standing:
         return True
 
     def in_force(self) -> Iterable[Sample]:
-        """Without those of an epoch that is over, except what holds on when time starts over (an operator's word)."""
+        """Messages in force: without those of an epoch that is over, except what holds across epochs (an operator's word)."""
         samples = sorted(self._newest.values(), key=lambda s: (s.stamp_ns, s.key))
         epoch = max((s.epoch for s in samples), default=0) if self._epoch is None else self._epoch
         return [s for s in samples if s.epoch == 0 or s.epoch >= epoch or ((topic := topic_of(s.key)) is not None and topic.across_epochs)]

@@ -23,7 +23,7 @@ Which = tuple[str, int, int]
 
 @dataclass(frozen=True)
 class Difference:
-    """One field that came out otherwise than in the log."""
+    """A field that came out otherwise than in the log."""
 
     key: str
     stamp_ns: int
@@ -52,12 +52,12 @@ class Comparison:
         """Messages that are not in the log, by key: for each, how many were made before it, stamp and number."""
 
     def add_logged(self, sample: Sample) -> None:
-        """Messages of the log, in order of their stamps."""
+        """Adds a message of the log, in the order of their stamps."""
         if sample.stamp_ns > self._since:
             self._logged.append((self._which(sample, self._counts[0]), sample))
 
     def add_made(self, sample: Sample) -> None:
-        """Messages as the service puts them out."""
+        """Adds a message that the service puts out now."""
         if sample.stamp_ns > self._since:
             self._made[self._which(sample, self._counts[1])] = (self._made_count, sample)
             self._made_count += 1
@@ -69,7 +69,7 @@ class Comparison:
         return *pair, counts[pair]
 
     def differences(self, before_ns: float) -> Iterator[Difference]:
-        """Of the log's messages that are stamped before this and were not compared yet; all of them must have been added, and all made."""
+        """Differences in messages stamped before ``before_ns`` [ns] that were not compared yet; all must have been added, and all made."""
         while self._logged and self._logged[0][1].stamp_ns < before_ns:
             which, old = self._logged.popleft()
             _, new = self._made.pop(which, (0, None))
@@ -85,7 +85,7 @@ class Comparison:
                 del counts[pair]
 
     def rest(self) -> Iterator[Difference]:
-        """What is left when nothing comes any more: at the end all messages that are not in the log, as they were made."""
+        """Differences at the end, when nothing comes any more: with all messages that are not in the log, as they were made."""
         yield from self.differences(float("inf"))
         for _, key, stamp_ns, seq in heapq.merge(*(_rows(key, numbers) for key, numbers in self._surplus.items())):
             yield Difference(key, stamp_ns, "message", "missing", f"number {seq}")
@@ -111,7 +111,7 @@ def _fields(old: Sample, new: Sample, tolerance: float) -> Iterator[Difference]:
 
 
 def differing(a: Message, b: Message, tolerance: float, prefix: str = "") -> Iterator[tuple[str, str, str]]:
-    """(field, value in a, value in b) of every leaf that differs by more than ``tolerance`` (floats: absolute)."""
+    """(field, value in a, value in b) of every leaf that differs by more than ``tolerance``, absolute [unit of the field]."""
     for field in a.DESCRIPTOR.fields:
         x, y, name = getattr(a, field.name), getattr(b, field.name), f"{prefix}{field.name}"
         if isinstance(x, Message):

@@ -70,7 +70,7 @@ class _Heard:
 
 
 def samples_of(path: Path) -> Iterator[Sample]:
-    """Of a log, or of all logs of a run's folder in order. Raises BadInput."""
+    """Messages of a log, or of all logs of a run's folder in order. Raises BadInput."""
     for log in _logs(path):
         yield from read_log(log)
 
@@ -80,7 +80,7 @@ def _logs(path: Path) -> list[Path]:
 
 
 def read_mcap(path: Path, vehicle: str | None = None) -> LaserLog:
-    """Of one vehicle, which needs a name where several have a lidar. path: a log or a run's folder. Raises BadInput."""
+    """Laser log of one vehicle, which needs a name where several have a lidar. path: a log or a run's folder. Raises BadInput."""
     heard: dict[str, _Heard] = {}
     wanted = (topics.SCAN, topics.ODOMETRY, topics.TF_STATIC)
     for sample in samples_of(path):

@@ -30,7 +30,7 @@ HEAD = struct.Struct("<BQ")  # kind and length of a record
 
 @contextlib.contextmanager
 def opened_log(path: Path) -> Iterator[IO[bytes]]:
-    """Raises BadInput for what cannot be read or is no whole log."""
+    """Opens a log for reading. Raises BadInput for what cannot be read or is no whole log."""
     try:
         if not (path.is_file() or path.is_dir()) and path.exists():  # a pipe would never be opened
             raise BadInput(f"log {path}: is no file")
@@ -118,7 +118,7 @@ def _in_order(file: IO[bytes], topics: Container[str] | None = None) -> Iterator
 
 
 def read_log(path: Path, keys: Iterable[str] | None = None) -> Iterator[Sample]:
-    """The messages of a log, of all keys or of these, in order of time. Raises BadInput for a file that is not a whole log."""
+    """Messages of a log, of all keys or of these, in order of time. Raises BadInput for a file that is not a whole log."""
     topics = None if keys is None else {f"/{key}" for key in keys}
     with opened_log(path) as file:
         for schema, channel, message in _in_order(file, topics):
@@ -127,7 +127,7 @@ def read_log(path: Path, keys: Iterable[str] | None = None) -> Iterator[Sample]:
 
 
 def log_begin(path: Path) -> int:
-    """The simulation time [ns] at which the recording began, for one that did not begin with the run; else 0. Raises BadInput.
+    """Simulation time [ns] at which the recording began, for one that did not begin with the run; else 0. Raises BadInput.
 
     What is stamped earlier stands at the head of the file and is repeated from before.
     """
@@ -136,7 +136,7 @@ def log_begin(path: Path) -> int:
 
 
 def log_end(path: Path) -> int | None:
-    """The simulation time [ns] of the last tick of the clock; None without any. Raises BadInput.
+    """Simulation time [ns] of the last tick of the clock; None without any. Raises BadInput.
 
     What is stamped later is of services whose outputs come late.
     """
@@ -146,12 +146,12 @@ def log_end(path: Path) -> int | None:
 
 
 def log_metadata(path: Path) -> dict[str, str]:
-    """What the recorder noted at the end: message count, completeness, hash, gaps. Raises BadInput."""
+    """Notes of the recorder at the end of a log: message count, completeness, hash, gaps. Raises BadInput."""
     with opened_log(path) as file:
         return next((dict(m.metadata) for m in make_reader(file).iter_metadata() if m.name == "uvf"), {})
 
 
 def log_attachments(path: Path) -> dict[str, bytes]:
-    """The files that say what was run, by name. Raises BadInput."""
+    """Files that say what was run, by name. Raises BadInput."""
     with opened_log(path) as file:
         return {a.name: a.data for a in make_reader(file).iter_attachments()}

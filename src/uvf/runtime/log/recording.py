@@ -35,12 +35,13 @@ class LogHash:
         self._topics: defaultdict[str, Any] = defaultdict(hashlib.sha256)
 
     def add(self, topic: str, stamp_ns: int, seq: int, payload: bytes) -> None:
-        """Messages of one topic must come in their order; wall-clock sources are left out."""
+        """Adds a message; those of one topic must come in their order; wall-clock sources are left out."""
         if topic.rpartition("/")[2] in _WALL_SOURCES:
             return
         self._topics[topic].update(stamp_ns.to_bytes(8, "big") + seq.to_bytes(8, "big") + payload)
 
     def hexdigest(self) -> str:
+        """The hash of all that was added, in hexadecimal."""
         whole = hashlib.sha256()
         for topic in sorted(self._topics):
             whole.update(topic.encode() + self._topics[topic].digest())
@@ -100,7 +101,7 @@ class Recorder:
         bus.subscribe(f"{PREFIX}/**", Qos.SENSOR, self.write, DEPTH)
 
     def write(self, sample: Sample) -> None:
-        """One message; a full disk ends the recording with one line in ``error``, never the program."""
+        """Writes one message; a full disk ends the recording with one line in ``error``, never the program."""
         topic = topic_of(sample.key)
         if (topic is not None and not topic.logged) or not self._admission.admits(sample):
             return
@@ -139,17 +140,17 @@ class Recorder:
 
     @property
     def gaps(self) -> dict[str, int]:
-        """Messages missed, by key, since the first file of the run began."""
+        """Number of messages missed, by key, since the first file of the run began."""
         return dict(self._counter.gaps)
 
     @property
     def refused(self) -> Counter[str]:
-        """Messages that could not be recorded since the first file of the run began, by the words of ``log_bounds.REFUSED``."""
+        """Number of messages that could not be recorded since the first file of the run began, by the words of ``bounds.REFUSED``."""
         return self._admission.refused
 
     @property
     def size(self) -> int:
-        """Bytes written so far; the open chunk comes on top."""
+        """Size in bytes written so far; the open chunk comes on top."""
         return self._file.tell()
 
     def _add_channel(self, sample: Sample) -> int:
@@ -168,6 +169,7 @@ class Recorder:
                 self._unsaved.clear()
 
     def close(self) -> None:
+        """Writes the footer and closes the file; after an error only what is possible."""
         if self._file.closed:
             return
         if not self.error:
@@ -187,7 +189,7 @@ class Recorder:
 
 
 def descriptor_set(type_name: str) -> bytes:
-    """The FileDescriptorSet of a type of the table with all that it imports; empty for an unknown type."""
+    """FileDescriptorSet of a type of the table with all that it imports; empty for an unknown type."""
     if type_name not in MESSAGES:
         return b""
     files: dict[str, FileDescriptor] = {}

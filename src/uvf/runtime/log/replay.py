@@ -59,7 +59,7 @@ def _run_in(log: Path, begin: int, warn: Warn) -> Iterator[Sample]:
 
 
 def onto_bus(log: Path, bus: Bus, rate: float = 1.0, go_on: Callable[[], bool] = lambda: True, warn: Warn = lambda line: None) -> int:
-    """Publishes a log's messages at ``rate`` times real time; returns how many. Raises BadInput.
+    """Publishes a log's messages at ``rate`` times real time [-]; returns how many. Raises BadInput.
 
     What stands at the head of a log that did not begin with the run is said at once.
     """
@@ -82,7 +82,7 @@ def onto_bus(log: Path, bus: Bus, rate: float = 1.0, go_on: Callable[[], bool] =
 def into_service(log: Path, host: ServiceInstance, tolerance: float = TOLERANCE, warn: Warn = lambda line: None) -> Iterator[Difference]:
     """Feeds inputs, requests and answers of a log to one service and yields each field that it puts out otherwise.
 
-    The log is read while the service runs, and held nowhere. Raises BadInput.
+    tolerance: of floats, absolute [unit of the field]. The log is read while the service runs, and held nowhere. Raises BadInput.
     """
     owners = (host.vehicle,) if host.vehicle else host.writes_for or (SYSTEM,)
     served = [request.at(owner) for request in host.service.requests.values() for owner in owners]
@@ -147,7 +147,7 @@ def _answers(log: Path, key: str) -> Callable[[Query], None]:
 
 
 def play(shell: ServiceRunner, samples: Iterable[Sample], take: Callable[[Sample], None], end_ns: int | None = None) -> Iterator[None]:
-    """Steps a service up to ``end_ns``, or to the last of ``samples``, which come by stamp; yields after each step.
+    """Steps a service up to ``end_ns`` [ns], or to the last of ``samples``, which come by stamp; yields after each step.
 
     take: called with each sample before the first step that may read it. A recorded request carries the stamp of the step that
     answered it: it was there before that step.
@@ -176,7 +176,7 @@ def play(shell: ServiceRunner, samples: Iterable[Sample], take: Callable[[Sample
 
 
 def hand_over(bus: LocalBus, sample: Sample, asked: Container[str] = ()) -> None:
-    """Puts a recorded message onto the bus, or asks what was asked; asked: keys of requests that the service makes itself."""
+    """Puts a recorded message onto the bus, or sends a recorded request; asked: keys of requests that the service makes itself."""
     key, _, half = sample.key.rpartition("/")
     if half == "request":
         if key not in asked:

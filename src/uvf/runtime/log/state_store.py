@@ -18,7 +18,7 @@ FOR_EVER = 2**63  # ns
 
 
 class StateStore:
-    """Lives beside the router, which outlives the services. ``poll`` hands over and answers."""
+    """Keeps the newest message of kept topics, beside the router, which outlives the services. ``poll`` hands over and answers."""
 
     def __init__(self, bus: ZenohBus, tell: Callable[[str], None]) -> None:
         """tell: takes a line about each kind of message that is not kept because nobody could read it."""
@@ -75,6 +75,7 @@ class StateStore:
             query.answer(kept.payload, kept.stamp_ns)
 
     def poll(self) -> None:
+        """Takes in messages and answers requests; publishes who engages STOP ALL when that has changed."""
         self._bus.poll()
         if self._stops.now != self._told:
             self._told = self._stops.now

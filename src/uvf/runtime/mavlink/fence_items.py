@@ -22,7 +22,7 @@ MOST_GROUP = 255
 
 
 def checked(item: Item, facts: GeoPosition, home_z: float) -> Item:
-    """The item, which by itself makes sense. Raises BadItem."""
+    """The fence item, if it makes sense by itself. home_z: height of home [m, world]. Raises BadItem."""
     if item.command not in (POINT, *POLYGONS, *CIRCLES):
         raise BadItem(mav.MAV_MISSION_UNSUPPORTED, f"{command_name(item.command)} is none of a fence")
     place_of(item, facts, home_z)
@@ -36,7 +36,10 @@ def checked(item: Item, facts: GeoPosition, home_z: float) -> Item:
 
 
 def fence_of(items: Sequence[Item], base: Fence, facts: GeoPosition, home_z: float) -> Fence:
-    """With floor, ceiling and action of ``base``, which are no items. Raises BadItem, which names the item."""
+    """Fence of checked items, with floor, ceiling and action of ``base``, which are no items. home_z: height of home [m, world].
+
+    Raises BadItem, which names the item.
+    """
     fence = Fence(action=base.action, origin=[packed(item) for item in items])
     for limit in ("floor", "ceiling"):
         if base.HasField(limit):
@@ -76,7 +79,7 @@ def _group(item: Item) -> int:
 
 
 def bodies(fence: Fence, facts: GeoPosition, home_z: float) -> list[Body]:
-    """What came over the wire, or the items of a fence that was set elsewhere."""
+    """Items of a fence: those that came over the wire, or those that a fence set elsewhere needs. home_z: height of home [m, world]."""
     if fence.origin:
         given = [unpacked(origin) for origin in fence.origin]
         return [remembered_point(body, fence.return_point, facts, home_z) if body[1] == POINT else body for body in given]

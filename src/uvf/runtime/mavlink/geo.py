@@ -11,20 +11,21 @@ HOME_FRAMES = (mav.MAV_FRAME_GLOBAL_RELATIVE_ALT, mav.MAV_FRAME_GLOBAL_RELATIVE_
 
 
 class GeoPosition:
-    """A vehicle whose world has an ``origin``, the altitude of which counts as above mean sea level."""
+    """Converts positions of a vehicle's world with an ``origin``, the altitude of which counts as above mean sea level."""
 
     origin: LocalTangent
 
     @property
     def is_ground(self) -> bool:
+        """Whether it is a ground vehicle; to be implemented by subclasses."""
         raise NotImplementedError
 
     def geodetic(self, position: Floats) -> tuple[float, float, float]:
-        """(latitude, longitude [deg], altitude [m AMSL]) of a world position (3,) [m]."""
+        """(latitude [deg], longitude [deg], altitude [m AMSL]) of a world position (3,) [m, ENU]."""
         latitude, longitude, _ = self.origin.geodetic(np.array((position[0], position[1], 0.0)))
         return float(np.degrees(latitude)), float(np.degrees(longitude)), float(position[2]) + self.origin.altitude
 
     def world(self, latitude: float, longitude: float, altitude: float) -> Vector3:
-        """World position of a point given in deg, deg, m AMSL; inverse of ``geodetic``."""
+        """World position (x, y, z) [m, ENU] of a latitude and longitude [deg] and an altitude [m AMSL]; the inverse of ``geodetic``."""
         x, y, _ = self.origin.enu(float(np.radians(latitude)), float(np.radians(longitude)), self.origin.altitude)
         return Vector3(x=float(x), y=float(y), z=altitude - self.origin.altitude)

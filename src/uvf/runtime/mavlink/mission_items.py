@@ -66,20 +66,20 @@ SAME_PLACE = 0.5  # m
 
 @dataclass
 class BadItem(Exception):
-    """An item that is refused: the MAV_MISSION_RESULT and the reason in words."""
+    """A refused item: the MAV_MISSION_RESULT and the reason in words."""
 
     result: int
     reason: str
 
 
 def is_skipped(command: int, pictures: float, facts: GeoPosition) -> bool:
-    """Whether such an item is carried, but nothing is done for it. pictures: its param3."""
+    """Whether an item is kept in the plan but nothing is done for it. pictures: its param3, the number of pictures [-]."""
     series = command == mav.MAV_CMD_IMAGE_START_CAPTURE and pictures != 1
     return command in SKIPPED or series or (facts.is_ground and command in TRIGGERS)
 
 
 def from_wire(item: mav.MAVLink_mission_item_int_message, facts: GeoPosition, home_z: float) -> MissionItem:
-    """home_z: height of home [m, world]. Raises BadItem."""
+    """Mission item of one on the wire. home_z: height of home [m, world]. Raises BadItem."""
     kind = KIND.get(item.command)
     if item.command in REFUSED:
         raise BadItem(mav.MAV_MISSION_UNSUPPORTED, REFUSED[item.command])
@@ -106,19 +106,19 @@ def _has_place(item: mav.MAVLink_mission_item_int_message, kind: "MissionItem.Ki
 
 
 def packed(item: mav.MAVLink_mission_item_int_message) -> bytes:
-    """As in ``ORIGIN``."""
+    """Bytes of a wire item, in the format ``ORIGIN``."""
     params = (item.param1, item.param2, item.param3, item.param4)
     return ORIGIN.pack(item.frame, item.command, item.autocontinue, *params, item.x, item.y, item.z)
 
 
 def unpacked(origin: bytes) -> "Body":
-    """As in ``ORIGIN``."""
+    """Body of a wire item from its bytes in the format ``ORIGIN``."""
     frame, command, autocontinue, p1, p2, p3, p4, x, y, z = ORIGIN.unpack(origin)
     return frame, command, autocontinue, p1, p2, p3, p4, x, y, z
 
 
 def place_of(item: mav.MAVLink_mission_item_int_message, facts: GeoPosition, home_z: float) -> Vector3:
-    """home_z: height of home [m, world]. Raises BadItem."""
+    """Place (x, y, z) [m, world] of a wire item. home_z: height of home [m, world]. Raises BadItem."""
     if item.frame not in HOME_FRAMES + AMSL_FRAMES:
         raise BadItem(mav.MAV_MISSION_UNSUPPORTED_FRAME, bad_frame(item.frame))
     if abs(item.x) > 900_000_000:
@@ -178,7 +178,7 @@ def _count(value: float) -> int:
 
 
 def check_whole(items: list[MissionItem]) -> None:
-    """What only the whole plan shows; a delay takes the place of the item before it. Raises BadItem."""
+    """Checks what only the whole plan shows; a delay takes the place of the item before it. Raises BadItem."""
     before: MissionItem | None = None
     for index, item in enumerate(items):
         if item.kind in WITH_PLACE and not item.HasField("position"):
@@ -191,7 +191,7 @@ def check_whole(items: list[MissionItem]) -> None:
 
 
 def mission_of(items: list[MissionItem]) -> Mission:
-    """With the id of its content: CRC-32, not 0 unless empty."""
+    """Mission of these items with the id of its content: CRC-32, not 0 unless empty."""
     return Mission(items=items, id=mission_id(items))
 
 
@@ -199,22 +199,27 @@ Body = tuple[int, int, int, float, float, float, float, int, int, float]
 
 
 def as_item(body: Body) -> mav.MAVLink_mission_item_int_message:
-    """The wire item of a body, for no one in particular."""
+    """Wire item of a body, addressed to nobody in particular."""
     frame, command, autocontinue, p1, p2, p3, p4, x, y, z = body
     return mav.MAVLink_mission_item_int_message(0, 0, 0, frame, command, 0, autocontinue, p1, p2, p3, p4, x, y, z)
 
 
 def is_nowhere(item: MissionItem) -> bool:
+    """Whether the item is of a kind that needs a place and has none."""
     return item.kind in WITH_PLACE and not item.HasField("position")
 
 
 def is_same_place(one: Vector3, other: Vector3, ignore_height: bool = False) -> bool:
+    """Whether two places (x, y, z) [m, world] are the same but for rounding, along each axis; ``ignore_height``: in x and y alone."""
     apart = abs(one.x - other.x), abs(one.y - other.y), 0.0 if ignore_height else abs(one.z - other.z)
     return max(apart) < SAME_PLACE
 
 
 def means_the_same(item: MissionItem, facts: GeoPosition, home_z: float) -> bool:
-    """Whether the wire item is what the item is and lies where it does: with another home, or changed by somebody, it does not."""
+    """Whether the item's wire form still says what the item does, place included; home_z: height of home [m, world].
+
+    With another home, or when somebody has changed the item, it does not.
+    """
     return _means(unpacked(item.origin), item, facts, home_z)
 
 
@@ -236,7 +241,7 @@ def _means(body: Body, item: MissionItem, facts: GeoPosition, home_z: float) -> 
 
 
 def lifted(body: Body, z: float, home_z: float) -> Body:
-    """The same wire item at a height [m, world], where its own is one above a home that has moved since."""
+    """The same wire item at the height ``z`` [m, world] where its frame counts from home, which is now at ``home_z`` [m, world]."""
     return (*body[:9], z - home_z) if body[0] in HOME_FRAMES else body
 
 
@@ -252,7 +257,7 @@ def _remembered(item: MissionItem, facts: GeoPosition, home_z: float) -> Body | 
 
 
 def to_wire(item: MissionItem, facts: GeoPosition, home_z: float) -> Body:
-    """As in ``ORIGIN``: what came over the wire, as long as it means the same, or the nearest to an item of a mission file.
+    """Body of an item: what came over the wire, as long as it means the same, or the nearest to an item of a mission file.
 
     The latter with altitudes above home (``home_z`` [m, world]): MAVSDK takes no others.
     """
@@ -290,7 +295,7 @@ def _yaw(item: MissionItem) -> float:
 
 
 def remembered_point(body: Body, point: Vector3, facts: GeoPosition, home_z: float) -> Body:
-    """Of an item that came over the wire and is nothing but a place, which lies where it was when home has moved."""
+    """Body of a place that came over the wire, at ``point`` (x, y, z) [m, world] even if home, now at ``home_z`` [m, world], has moved."""
     try:
         stays = is_same_place(place_of(as_item(body), facts, home_z), point)
     except BadItem:
@@ -299,7 +304,7 @@ def remembered_point(body: Body, point: Vector3, facts: GeoPosition, home_z: flo
 
 
 def point_body(command: int, point: Vector3, facts: GeoPosition, home_z: float) -> Body:
-    """Of an item that is nothing but a place (rally point, return point), above home."""
+    """Body of an item that is only a place (rally point, return point): ``point`` (x, y, z) [m, world], above ``home_z`` [m, world]."""
     latitude, longitude, _ = facts.geodetic(array(point))
     where = round(latitude * 1e7), round(longitude * 1e7), point.z - home_z
     return mav.MAV_FRAME_GLOBAL_RELATIVE_ALT, command, 1, 0.0, 0.0, 0.0, 0.0, *where

@@ -31,6 +31,7 @@ class ModeRow:
 
     @property
     def custom(self) -> int:
+        """The ``custom_mode`` word of the mode."""
         return self.main << 16 | self.sub << 24
 
 
@@ -64,21 +65,25 @@ _BY_STANDARD = {row.standard: row for row in TABLE if row.standard != mav.MAV_ST
 
 
 def row_of(mode: Mode) -> ModeRow | None:
+    """Row of a mode; None for one that has none on the wire."""
     return _BY_MODE.get(mode)
 
 
 def from_custom(custom: int) -> ModeRow | None:
-    """The mode of a custom_mode word, or None when there is no such mode."""
+    """Mode of a custom_mode word; None when there is no such mode."""
     return _BY_CUSTOM.get(custom)
 
 
 def from_standard(standard: int) -> ModeRow | None:
-    """The mode of a MAV_STANDARD_MODE, or None."""
+    """Mode of a MAV_STANDARD_MODE; None when there is no such mode."""
     return _BY_STANDARD.get(standard)
 
 
 def from_command(param2: float, param3: float) -> ModeRow | None:
-    """DO_SET_MODE: main and sub mode (MAVSDK; sub may be NaN), or the whole word in param2 (Mission Planner)."""
+    """Mode of DO_SET_MODE, by its param2 and param3 [-]; None when there is no such mode.
+
+    Main and sub mode (MAVSDK; sub may be NaN), or the whole word in param2 (Mission Planner).
+    """
     if not math.isfinite(param2):
         return None
     if param2 > 255:
@@ -99,7 +104,7 @@ def unknown(custom: int, is_ground: bool) -> str:
 
 
 def available(index: int) -> mav.MAVLink_available_modes_message | None:
-    """AVAILABLE_MODES number ``index`` (from 1), or None beyond the list."""
+    """AVAILABLE_MODES number ``index`` (from 1); None beyond the list."""
     if not 1 <= index <= len(TABLE):
         return None
     row = TABLE[index - 1]

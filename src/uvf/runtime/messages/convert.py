@@ -11,37 +11,39 @@ Floats = NDArray[np.float64]
 
 
 def stamp(t: float) -> Timestamp:
-    """Simulation time ``t`` [s] as a message stamp, exact to the nanosecond."""
+    """Message stamp of simulation time ``t`` [s], exact to the nanosecond."""
     return stamp_ns(round(t * 1e9))
 
 
 def stamp_ns(t_ns: int) -> Timestamp:
+    """Message stamp of simulation time ``t_ns`` [ns]."""
     return Timestamp(seconds=t_ns // 1_000_000_000, nanos=t_ns % 1_000_000_000)
 
 
 def seconds(s: Timestamp) -> float:
+    """Time [s] of a message stamp."""
     return s.seconds + s.nanos * 1e-9
 
 
 def vector(v: Floats) -> Vector3:
-    """(3,) array as a message."""
+    """Message of a vector (3,)."""
     x, y, z = v.tolist()
     return Vector3(x=x, y=y, z=z)
 
 
 def array(v: Vector3) -> Floats:
-    """(3,) float64."""
+    """Vector (3,) of a message."""
     return np.array((v.x, v.y, v.z))
 
 
 def quaternion(q: Floats) -> Quaternion:
-    """(4,) wxyz as a message."""
+    """Message of a quaternion wxyz (4,)."""
     w, x, y, z = q.tolist()
     return Quaternion(w=w, x=x, y=y, z=z)
 
 
 def wxyz(q: Quaternion) -> Floats:
-    """(4,) float64, wxyz; the all-zero default of an unset field is the identity."""
+    """Quaternion wxyz (4,) of a message; the all-zero default of an unset field is the identity."""
     out = np.array((q.w, q.x, q.y, q.z))
     return out if out.any() else np.array((1.0, 0.0, 0.0, 0.0))
 
@@ -53,7 +55,7 @@ def yaw_of(q: Quaternion) -> float:
 
 
 def planar_pose(x: float, y: float, yaw: float, z: float = 0.0) -> Pose:
-    """Pose on level ground: m, rad."""
+    """Pose on level ground: x, y [m], yaw [rad], at height z [m]."""
     return Pose(
         position=Vector3(x=x, y=y, z=z),
         orientation=Quaternion(w=float(np.cos(yaw / 2)), z=float(np.sin(yaw / 2))),
@@ -61,12 +63,12 @@ def planar_pose(x: float, y: float, yaw: float, z: float = 0.0) -> Pose:
 
 
 def pose2_of(pose: Pose) -> Pose2:
-    """A pose seen from above."""
+    """Pose in the plane of a pose seen from above."""
     return Pose2(pose.position.x, pose.position.y, yaw_of(pose.orientation))
 
 
 def planar_frame(t: float, parent: str, child: str, parent_from_child: Pose2) -> FrameTransform:
-    """Where one frame lies in another, both by their full names."""
+    """Transform at ``t`` [s] from one frame to another in the plane, both by their full names."""
     x, y, yaw = parent_from_child
     return FrameTransform(
         timestamp=stamp(t),
@@ -78,26 +80,26 @@ def planar_frame(t: float, parent: str, child: str, parent_from_child: Pose2) ->
 
 
 def pose2_of_frame(transform: FrameTransform) -> Pose2:
-    """``parent_from_child`` seen from above."""
+    """Pose ``parent_from_child`` of a transform seen from above."""
     return Pose2(transform.translation.x, transform.translation.y, yaw_of(transform.rotation))
 
 
 def scan_rays(scan: LaserScan) -> tuple[Floats, Floats]:
-    """(n,) ranges [m], 0 where nothing came back, and (n, 2) unit directions of the beams, lidar frame."""
+    """Ranges (n,) [m], 0 where nothing came back, and unit directions (n, 2) of the beams, lidar frame."""
     ranges = np.nan_to_num(np.asarray(scan.ranges, dtype=np.float64), nan=0.0, posinf=0.0, neginf=0.0)
     angles = np.linspace(scan.start_angle, scan.end_angle, len(ranges))
     return ranges, np.column_stack((np.cos(angles), np.sin(angles)))
 
 
 def scan_points(scan: LaserScan) -> Floats:
-    """(n, 2) m, lidar frame: what the beams hit; those without a return are left out."""
+    """Points (n, 2) [m, lidar frame] that the beams hit; those without a return are left out."""
     ranges, rays = scan_rays(scan)
     points: Floats = rays[ranges > 0.0] * ranges[ranges > 0.0, None]
     return points
 
 
 def occupancy_grid(cells: NDArray[np.int8], resolution: float, x: float, y: float, frame: str, t: float) -> Grid:
-    """(rows, columns) int8 as a message; cell [0, 0] has its lower left corner at (x, y) [m, frame]."""
+    """Message at ``t`` [s] of cells (rows, columns) of side ``resolution`` [m]; the lower left corner of cell [0, 0] is (x, y) [m]."""
     columns = cells.shape[1]
     grid = Grid(
         timestamp=stamp(t),
@@ -114,10 +116,10 @@ def occupancy_grid(cells: NDArray[np.int8], resolution: float, x: float, y: floa
 
 
 def occupancy_cells(grid: Grid) -> NDArray[np.int8]:
-    """(rows, columns) int8, row 0 at the lowest y; -1 unknown, 0 free .. 100 occupied."""
+    """Cells (rows, columns) of a message, row 0 at the lowest y; -1 unknown, 0 free .. 100 occupied."""
     return np.frombuffer(grid.data, dtype=np.int8).reshape(-1, grid.column_count)
 
 
 def mode_name(mode: int) -> str:
-    """``MISSION`` for ``MODE_MISSION``; the number for one that nobody knows."""
+    """Name of a mode without its prefix, ``MISSION`` for ``MODE_MISSION``; the number for an unknown one."""
     return Mode.Name(Mode.ValueType(mode)).removeprefix("MODE_") if mode in Mode.values() else str(mode)

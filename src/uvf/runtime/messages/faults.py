@@ -14,7 +14,10 @@ EARTH_RADIUS = 6.371e6  # m
 
 @dataclass(frozen=True)
 class Where:
-    """Fields of a message; the first one takes a bias, times ``scale``, if there is one. whole: the message is about this alone."""
+    """Fields of a message that a fault concerns; the first one takes a bias, times ``scale``, if there is one.
+
+    whole: the message is about this alone.
+    """
 
     output: str
     fields: tuple[str, ...] = ()
@@ -41,13 +44,13 @@ PARTS: dict[str, Where] = {
 
 @dataclass
 class Faults:
-    """Those of a run, with what a frozen part was like."""
+    """Faults of a run, with the messages that frozen parts repeat."""
 
     faults: Sequence[Fault] = ()
     _kept: dict[int, Any] = field(default_factory=dict)
 
     def spoil(self, t: float, vehicle: str, read: dict[str, Value]) -> dict[str, Value]:
-        """What arrives of a vehicle's messages at ``t`` [s], by output. The messages may be changed."""
+        """Messages of a vehicle at ``t`` [s], by output, as its faults let them arrive. The messages may be changed."""
         for number, fault in enumerate(self.faults):
             where = PARTS[fault.part]
             message = read.get(where.output)

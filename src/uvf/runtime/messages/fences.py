@@ -8,7 +8,7 @@ from uvf.models.mission.fence import ACTIONS, OPEN, FenceAction, FenceFile, Fenc
 
 
 def fence_message(file: FenceFile, place: object) -> Fence:
-    """Raises BadInput with ``place`` when it cannot be meant."""
+    """Message of a fence file. Raises BadInput with ``place`` when the fence makes no sense."""
     zones = [_zone_message(zone) for zone in zones_of(file, place)]
     return Fence(zones=zones, floor=file.floor, ceiling=file.ceiling, action=ACTIONS[file.action].name)
 
@@ -30,7 +30,7 @@ def fence_fault(message: Fence) -> str:
 
 
 def fencing(message: Fence) -> Fencing:
-    """Of a message without fault; one that is disabled keeps out of nothing."""
+    """Fence of a message without fault; one that is disabled keeps out of nothing."""
     if message.disabled:
         return OPEN
     floor = message.floor if message.HasField("floor") else -inf

@@ -26,7 +26,7 @@ class FrameError(LookupError):
 
 
 class FrameEdge:
-    """``parent_from_child`` by time [ns]; a static one has a single sample that holds at all times."""
+    """Samples of ``parent_from_child`` by time [ns]; a static one has a single sample that holds at all times."""
 
     def __init__(self, parent: str, is_static: bool) -> None:
         self.parent = parent
@@ -36,14 +36,16 @@ class FrameEdge:
 
     @property
     def oldest(self) -> int:
+        """Time [ns] of the oldest sample."""
         return self._times[0]
 
     @property
     def newest(self) -> int:
+        """Time [ns] of the newest sample."""
         return self._times[-1]
 
     def add(self, t_ns: int, sample: Transform, history_ns: int) -> None:
-        """In order of time, however they come; of two with one stamp the first holds. Static: the newest holds."""
+        """Adds a sample in order of time, however they come; of two with one stamp the first holds. Static: the newest holds."""
         if self.is_static:
             self._times, self._samples = [t_ns], [sample]
             return
@@ -56,7 +58,7 @@ class FrameEdge:
         del self._times[:old], self._samples[:old]
 
     def at(self, t_ns: int) -> Transform:
-        """The sample at a time between ``oldest`` and ``newest``, both included."""
+        """Transform at a time [ns] between ``oldest`` and ``newest``, both included."""
         if self.is_static:
             return self._samples[0]
         i = bisect_left(self._times, t_ns)
@@ -77,7 +79,7 @@ class FrameBuffer:
         """Every frame that has been named as a parent."""
 
     def add(self, message: Message, is_static: bool = False) -> None:
-        """Takes in one transform, or all of a ``FrameTransforms``."""
+        """Adds one transform, or all of a ``FrameTransforms``."""
         if isinstance(message, FrameTransforms):
             for transform in message.transforms:
                 self._add(transform, is_static)
@@ -101,10 +103,11 @@ class FrameBuffer:
 
     @property
     def frames(self) -> set[str]:
+        """Names of all frames."""
         return {*self._edges, *self._parents}
 
     def lookup(self, target: str, source: str, t: float | None = None) -> Transform:
-        """``target_from_source`` at ``t`` [s], or at the newest time known to the whole way. Raises FrameError."""
+        """Transform ``target_from_source`` at ``t`` [s], or at the newest time known to the whole way. Raises FrameError."""
         down, up = self._ways(target, source)
         t_ns = self._newest_common((*down, *up)) if t is None else round(t * NS)
         for child in (*down, *up):

@@ -7,14 +7,14 @@ from uvf.runtime.messages.convert import occupancy_cells, occupancy_grid, planar
 
 
 def as_message(grid: GridMap, frame: str, t: float) -> Grid:
-    """frame: what the grid's origin is given in; t: s."""
+    """Message of a map at ``t`` [s]; frame: what the grid's origin is given in."""
     message = occupancy_grid(grid.cells, grid.resolution, grid.origin.x, grid.origin.y, frame, t)
     message.pose.CopyFrom(planar_pose(*grid.origin))
     return message
 
 
 def as_map(message: Grid) -> GridMap:
-    """Raises BadInput for a message that is no occupancy of square cells."""
+    """Map of a message. Raises BadInput for a message that is no occupancy of square cells."""
     columns, size = message.column_count, message.cell_size
     if columns == 0 or len(message.data) == 0 or len(message.data) % columns or message.row_stride != columns:
         raise BadInput(f"a grid of {columns} columns with {len(message.data)} bytes is no map of whole rows")

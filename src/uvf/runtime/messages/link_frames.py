@@ -18,7 +18,7 @@ FOOTPRINT, BASE = "base_footprint", "base_link"
 
 
 class Links:
-    """All links below ``base_footprint``; joints that nobody reads stand at zero."""
+    """Frames of all links below ``base_footprint``; joints that nobody reads stand at zero."""
 
     def __init__(self, urdf: Path, turning: Sequence[str]) -> None:
         """urdf: one that ``check_urdf`` lets pass; turning: the joints whose angles are measured."""
@@ -27,14 +27,14 @@ class Links:
         self._resting = [j for j in joints if j.name not in turning]
 
     def resting(self, vehicle: str, sensors: Sensors, t: float) -> FrameTransforms:
-        """Those that do not move, and the sensors; where a link has a sensor's name, the sensor's mount holds."""
+        """Transforms at ``t`` [s] of the links that do not move, and of the sensors; a sensor's mount holds before a link of its name."""
         mounted = sensor_frames(vehicle, sensors, t).transforms
         names = {frame.child_frame_id for frame in mounted}
         links = [frame for joint in self._resting if (frame := _frame(joint, vehicle, t)).child_frame_id not in names]
         return FrameTransforms(transforms=[*links, *mounted])
 
     def turned(self, vehicle: str, states: JointStates) -> FrameTransforms:
-        """Those that do, at the angles measured, stamped like these."""
+        """Transforms of the links that joints move, at the measured angles, stamped like these."""
         t = seconds(states.timestamp)
         read = [(self._turning[s.name], s.position) for s in states.joints if s.name in self._turning]
         return FrameTransforms(transforms=[_frame(joint, vehicle, t, angle) for joint, angle in read])

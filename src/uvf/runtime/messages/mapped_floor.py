@@ -24,7 +24,7 @@ class MappedFloor:
         self._x, self._y = x[inside], y[inside]
 
     def share(self, grid: Grid) -> float:
-        """0..1 of that floor which the map (placed in the world at the vehicle's start) holds as free."""
+        """Share, 0 to 1, of that floor which the map (placed in the world at the vehicle's start) holds as free."""
         cells = occupancy_cells(grid)
         c, s = np.cos(self._start.yaw), np.sin(self._start.yaw)
         dx, dy = self._x - self._start.x, self._y - self._start.y

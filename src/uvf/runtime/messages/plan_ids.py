@@ -7,12 +7,13 @@ from schemas.messages import Fence, MissionItem, RallyPoints
 
 
 def mission_id(items: Sequence[MissionItem]) -> int:
+    """Id of a mission's items."""
     crc = zlib.crc32(b"".join(item.SerializeToString(deterministic=True) for item in items))
     return (crc or 1) if items else 0
 
 
 def fence_id(fence: Fence | None) -> int:
-    """Of zones and return point: floor, ceiling and action are parameters, no items."""
+    """Id of a fence's zones and return point: floor, ceiling and action are parameters, no items."""
     if fence is None:
         return 0
     parts = [zone.SerializeToString(deterministic=True) for zone in fence.zones]
@@ -21,6 +22,7 @@ def fence_id(fence: Fence | None) -> int:
 
 
 def rally_id(rally: RallyPoints | None) -> int:
+    """Id of the rally points."""
     if rally is None:
         return 0
     return _id([*(point.SerializeToString(deterministic=True) for point in rally.points), *rally.origin])

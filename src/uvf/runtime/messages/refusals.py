@@ -13,6 +13,8 @@ SHOWN = 20
 
 
 class Refusals:
+    """Counts messages that are not taken, by key, and tells each reason once."""
+
     def __init__(self, tell: Callable[[str], None]) -> None:
         """tell: takes each different line once."""
         self.count = 0
@@ -21,7 +23,7 @@ class Refusals:
         self._by_key: dict[str, Refusal] = {}
 
     def refuse(self, line: str) -> None:
-        """line: ``KEY: what is wrong``; what is told of it can be shown anywhere."""
+        """Counts a refused message. line: ``KEY: what is wrong``; what is told of it can be shown anywhere."""
         self.count += 1
         key, _, why = line.partition(": ")
         key, why = (escaped(text[:LENGTH])[:LENGTH] for text in (key, why))
@@ -38,7 +40,7 @@ class Refusals:
 
 
 def together(several: Iterable[Refusals]) -> list[Refusal]:
-    """Of all instances of a process: by key, with the first reason; the most frequent ones, those first."""
+    """Refusals of all instances of a process, by key with the first reason; only the most frequent, those first."""
     sums: dict[str, Refusal] = {}
     for refusal in (r for refusals in several for r in refusals):
         sums.setdefault(refusal.key, Refusal(key=refusal.key, why=refusal.why)).count += refusal.count

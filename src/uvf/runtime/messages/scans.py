@@ -13,17 +13,17 @@ Shape = tuple[str, float, float, int]
 
 
 def is_usable(scan: LaserScan) -> bool:
-    """Whether it has beams whose directions are numbers; what their ranges are does not matter."""
+    """Whether a scan has beams whose directions are numbers; what their ranges are does not matter."""
     return len(scan.ranges) > 0 and isfinite(scan.start_angle) and isfinite(scan.end_angle)
 
 
 def shape_of(scan: LaserScan) -> Shape:
-    """What scans of the same beams have in common."""
+    """Key that scans of the same beams have in common."""
     return scan.frame_id, scan.start_angle, scan.end_angle, len(scan.ranges)
 
 
 def beams_of(scan: LaserScan, base_from_lidar: Transform, limits: tuple[float, float], sweeping: Sweeping = AT_ONCE) -> Beams:
-    """In the order in which they are measured; limits: least and largest range that are a return [m].
+    """Beams of a scan in the order in which they are measured, base frame; limits: least and largest range that are a return [m].
 
     Seen from above, so that a lidar that hangs upside down turns clockwise.
     """

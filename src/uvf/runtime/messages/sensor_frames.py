@@ -15,7 +15,10 @@ OPTICAL = Mount(rpy=(-np.pi / 2, 0.0, -np.pi / 2))
 
 
 def sensor_frames(vehicle: str, sensors: Sensors, t: float) -> FrameTransforms:
-    """``base_link`` to each sensor, and for a camera (a gimbal: from itself) on to ``<camera>_optical``, the frame of its pictures."""
+    """Transforms at ``t`` [s] from ``base_link`` to each sensor, and from each camera to ``<camera>_optical``, the frame of its pictures.
+
+    A gimbal's own frame is not among them, for it moves.
+    """
     fitted = [
         s for s in (sensors.lidar, sensors.imu, sensors.camera, sensors.chase, *sensors.sonars, *sensors.rangefinders) if s is not None
     ]
@@ -37,5 +40,5 @@ def _placed(parent: str, child: str, pose: tuple[Floats, Floats], t: float) -> F
 
 
 def mounted(vehicle: str, camera: Camera, body_from_camera: Floats, t: float) -> FrameTransform:
-    """``base_link`` to a camera that moves, turned as it is at ``t`` [s]. body_from_camera: wxyz."""
+    """Transform at ``t`` [s] from ``base_link`` to a camera that moves. body_from_camera: its attitude wxyz (4,)."""
     return _placed(f"{vehicle}/base_link", f"{vehicle}/{camera.frame}", (np.array(camera.mount.xyz), body_from_camera), t)

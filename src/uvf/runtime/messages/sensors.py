@@ -16,6 +16,7 @@ SATELLITES = 14  # seen under an open sky
 
 
 def imu_message(frame: str, reading: ImuReading) -> Imu:
+    """Message of an IMU reading."""
     return Imu(
         timestamp=stamp(reading.t),
         frame_id=frame,
@@ -26,7 +27,7 @@ def imu_message(frame: str, reading: ImuReading) -> Imu:
 
 
 def gnss_message(gnss: GnssSensor, fix: ReceiverFix) -> Gnss:
-    """Its timestamp is the moment the fix is valid for."""
+    """Message of a fix; its timestamp is the moment the fix is valid for."""
     horizontal, vertical = gnss.accuracy
     return Gnss(
         timestamp=stamp(fix.t),
@@ -43,7 +44,10 @@ def gnss_message(gnss: GnssSensor, fix: ReceiverFix) -> Gnss:
 
 
 def scan_message(t: float, frame: str, lidar: Lidar, ranges: NDArray[np.float64]) -> LaserScan:
-    """Counter-clockwise from ``start_angle``; the beams share [start, end] evenly, both ends included."""
+    """Message of ranges (beams,) [m] of a scan stamped ``t`` [s], counter-clockwise from ``start_angle``.
+
+    The beams share [start, end] evenly, both ends included.
+    """
     end = lidar.angle_min + (lidar.beams - 1) * lidar.angle_increment
     scan = LaserScan(timestamp=stamp(t), frame_id=frame, start_angle=lidar.angle_min, end_angle=end, ranges=ranges.tolist())
     scan.pose.orientation.w = 1.0
@@ -51,7 +55,7 @@ def scan_message(t: float, frame: str, lidar: Lidar, ranges: NDArray[np.float64]
 
 
 def range_message(t: float, frame: str, sensor: Sonar | RangeFinder, distance: float) -> Range:
-    """A range finder's cone has no width."""
+    """Message of a measured ``distance`` [m] at ``t`` [s]; a range finder's cone has no width."""
     return Range(
         timestamp=stamp(t),
         frame_id=frame,
@@ -63,6 +67,7 @@ def range_message(t: float, frame: str, sensor: Sonar | RangeFinder, distance: f
 
 
 def battery_message(t: float, charge: Charge) -> Battery:
+    """Message of a battery's voltage, current and charge at ``t`` [s]."""
     return Battery(timestamp=stamp(t), voltage=charge.voltage, current=charge.current, remaining=charge.remaining)
 
 

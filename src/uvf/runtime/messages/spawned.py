@@ -26,19 +26,19 @@ SPAWNED_MOST = 256
 
 
 def name_fault(name: str) -> str:
-    """Why nothing can be called so; empty = it may."""
+    """Why nothing can have this name; empty = it may."""
     if not NAME.fullmatch(name) or name == SYSTEM:
         return f"{name[:60]!a} is no name: small letters, digits and _, a letter first, 40 at most"
     return ""
 
 
 def crowd_fault(there: int) -> str:
-    """Why nothing more can be put in beside so many; empty = it can."""
+    """Why nothing more can be put in beside ``there`` others; empty = it can."""
     return f"{there} things are there already, {SPAWNED_MOST} at most: remove some first" if there >= SPAWNED_MOST else ""
 
 
 def pose_fault(pose: Pose) -> str:
-    """Why nothing can be put there; empty = it may."""
+    """Why nothing can be put at this pose; empty = it may."""
     numbers = (*array(pose.position), *wxyz(pose.orientation))
     if not all(math.isfinite(x) and abs(x) <= FARTHEST for x in numbers):
         return f"the pose must be of finite numbers, positions within {FARTHEST:g} m of the world's origin"
@@ -48,7 +48,7 @@ def pose_fault(pose: Pose) -> str:
 
 
 def shape_fault(told: SimObject) -> str:
-    """Why nothing has that shape; empty = it may."""
+    """Why nothing has the shape that the message tells of; empty = it may."""
     if told.shape not in SIZES:
         return f"there is no shape {told.shape[:60]!a}; {nearest(told.shape, SIZES)}"
     if len(told.size) != SIZES[told.shape]:
@@ -59,28 +59,28 @@ def shape_fault(told: SimObject) -> str:
 
 
 def body_fault(told: SimObject) -> str:
-    """Why nothing like it, whatever it is called, can be in a simulation; empty = it can."""
+    """Why nothing like it, whatever its name, can be in a simulation; empty = it can."""
     return pose_fault(told.pose) or ("" if told.model else shape_fault(told))
 
 
 def object_fault(told: SimObject) -> str:
-    """Why what is told of cannot be in a simulation; empty = it can."""
+    """Why the object of the message cannot be in a simulation; empty = it can."""
     return name_fault(told.name) or body_fault(told)
 
 
 def sound_objects(*lists: SimObjects | None) -> list[SimObject]:
-    """What can be in a simulation, of all that simulators tell of."""
+    """Objects that can be in a simulation, of all that simulators tell of."""
     return [one for told in lists if told is not None for one in told.objects if not object_fault(one)]
 
 
 def solid_of(told: SimObject) -> Solid:
-    """The shape of what is no vehicle, where it stands in the world."""
+    """Solid of an object that is no vehicle, where it stands in the world."""
     shape: Any = told.shape
     colour = (told.color.r, told.color.g, told.color.b) if told.HasField("color") else GREY
     return Solid(told.name, shape, tuple(told.size), array(told.pose.position), unit_wxyz(told.pose), colour)
 
 
 def unit_wxyz(pose: Pose) -> NDArray[np.float64]:
-    """(4,) w, x, y, z of length 1."""
+    """Attitude of a pose as a unit quaternion wxyz (4,)."""
     q = wxyz(pose.orientation)
     return q / float(np.linalg.norm(q))

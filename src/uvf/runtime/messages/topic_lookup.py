@@ -44,7 +44,7 @@ _TOPICS, _REQUESTS = _tree(TOPICS), _tree(REQUESTS)
 
 
 def topic_of(key: str) -> Topic[Message] | None:
-    """The line of the table that a key belongs to; requests and their replies are of none."""
+    """Topic of the table that a key belongs to; None for requests, their replies and unknown keys."""
     return _topic_of(key) if len(key) <= KEY_MOST else None
 
 
@@ -55,7 +55,7 @@ def _topic_of(key: str) -> Topic[Message] | None:
 
 
 def is_of_table(key: str, type_name: str) -> bool:
-    """Whether such a message is what the table has for this key, as a topic or as one half of a request."""
+    """Whether a message of this type is what the table has for this key, as a topic or as one half of a request."""
     topic = topic_of(key)
     if topic is not None:
         return type_name == topic.message.DESCRIPTOR.full_name

@@ -62,12 +62,12 @@ def _size(value: float | Vector3) -> float:
 
 
 def is_text(text: str, longest: int = TEXT) -> bool:
-    """Short enough and free of what a terminal, a log or a page would obey: control characters and changes of direction."""
+    """Whether a text is short enough and free of what a terminal, a log or a page would obey: control characters, changes of direction."""
     return len(text) <= longest and (text.isprintable() or text.translate(_BREAKS).isprintable())
 
 
 def legible(text: str, most: int = TEXT) -> str:
-    """Any text on one line that ``is_text``: without what would steer a terminal or turn the text round, and cut to ``most`` characters."""
+    """Any text as one line that ``is_text`` accepts: without control characters and changes of direction, cut to ``most`` characters."""
     kept = "".join(letter if letter.isprintable() else " " for letter in text[: most + 1]).strip()
     return kept if len(kept) <= most else f"{kept[: most - 1]}…"
 

@@ -13,21 +13,21 @@ _sink = ContextVar("_sink", default=os.devnull)
 
 @contextmanager
 def c_errors_discarded() -> Iterator[None]:
-    """pybullet writes a line when it is imported; logs and terminals shall not hold it. Exceptions still come through."""
+    """Discards what is written to standard error from C: pybullet writes a line when it is imported. Exceptions still come through."""
     with _discarded(ERRORS):
         yield
 
 
 @contextmanager
 def c_output_discarded() -> Iterator[None]:
-    """JSBSim tells in many lines what it then raises in one. Exceptions still come through."""
+    """Discards what is written from C: JSBSim tells in many lines what it then raises in one. Exceptions still come through."""
     with _discarded(OUTPUT), _discarded(ERRORS):
         yield
 
 
 @contextmanager
 def c_output_to(path: str) -> Iterator[None]:
-    """What is written is kept in a file, also what would be discarded within."""
+    """Keeps what is written from C in a file, also what would be discarded within."""
     before = _sink.set(path)
     try:
         with c_output_discarded():

@@ -41,10 +41,10 @@ class Died(Exception):
 
 
 def run_in_subprocess(function: Callable[..., T], *arguments: object) -> T:
-    """What a function of a module returns, or the BadInput that it raises. Raises Died where it ends its process.
+    """Runs a function of a module in another process: returns what it returns, raises the BadInput that it raises.
 
-    Arguments and result travel as MessagePack and become what the function's annotations say: numbers, text, lists, dicts,
-    msgspec structs. What it writes to standard output and error is kept for ``Died``.
+    Raises Died where it ends its process. Arguments and result travel as MessagePack and become what the function's annotations say:
+    numbers, text, lists, dicts, msgspec structs. What it writes to standard output and error is kept for ``Died``.
     """
     worker: _Worker | None = getattr(_mine, "worker", None)
     if worker is None or not worker.is_ready():
@@ -131,7 +131,10 @@ class _Worker:
 
 
 def serve(answers: int, parent: int) -> None:
-    """The process itself: does jobs until none comes any more. A job in an engine's own code hears nothing but the system's signal."""
+    """Main loop of the other process: does jobs until none comes any more.
+
+    A job in an engine's own code hears nothing but the system's signal.
+    """
     ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
     if os.getppid() != parent:
         return

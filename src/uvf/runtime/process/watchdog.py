@@ -16,12 +16,12 @@ class StepHangs(BaseException):
 
 
 def time_limit(hz: float) -> float:
-    """Processor time [s] that one step of a service with ``hz`` may use: far more than any needs."""
+    """Processor time [s] that one step of a service that runs at ``hz`` [Hz] may use: far more than any needs."""
     return min(max(PERIODS / hz, SHORTEST), LONGEST)
 
 
 class Watchdog:
-    """Of a process whose steps run in its main thread; there is one at a time.
+    """Ends steps that hang, in a process whose steps run in its main thread; there is one at a time.
 
     It counts the processor time of that thread, so a busy or a sleeping machine harms nobody. It interrupts Python code only:
     a step that is lost within an engine or a compiled kernel, or waits for a lock, is left to the launcher, which ends the whole process.
@@ -34,11 +34,12 @@ class Watchdog:
         signal.signal(signal.SIGALRM, self._look)
 
     def close(self) -> None:
+        """Gives the signal back to the system's default."""
         signal.signal(signal.SIGALRM, signal.SIG_DFL)
 
     @contextmanager
     def limited(self, limit: float) -> Iterator[None]:
-        """Raises StepHangs in its body after ``limit`` [s] of processor time."""
+        """Limits the processor time of its body: raises StepHangs in it after ``limit`` [s]."""
         self._since, self._limit = time.thread_time(), limit
         # Only now: a signal at the end of a SimpleQueue's timeout makes CPython 3.11 wait there for ever.
         signal.setitimer(signal.ITIMER_REAL, LOOK, LOOK)

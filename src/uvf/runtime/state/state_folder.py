@@ -11,7 +11,7 @@ PRIVATE = 0o600
 
 
 def state_folder(environment: Mapping[str, str] = os.environ) -> Path:
-    """UVF_STATE, by default ``state/`` beside ``runs/``; need not exist."""
+    """Folder of what outlives a run: UVF_STATE, by default ``state/`` beside ``runs/``; need not exist."""
     return Path(environment.get(STATE, str(ROOT / "state")))
 
 

@@ -41,7 +41,7 @@ Word = tuple[int, int]
 
 @dataclass(frozen=True)
 class StopStatus:
-    """Who engages STOP ALL now; true while anybody does."""
+    """The engagements of STOP ALL that hold now; true while there is any."""
 
     engagements: tuple[StopEngagement, ...] = ()
     released_by: str = ""
@@ -52,12 +52,12 @@ class StopStatus:
 
     @property
     def who(self) -> str:
-        """Each source once with its reason: ``gcs (button); launcher (slam was given up)``."""
+        """Each source once with its reasons: ``gcs (button); launcher (slam was given up)``."""
         return told(self.engagements)
 
 
 def told(engagements: Iterable[StopEngagement]) -> str:
-    """Who engages STOP ALL and why, for people; empty when nobody does."""
+    """Text of who engages STOP ALL and why; empty when nobody does."""
     reasons: dict[str, list[str]] = {}
     for one in engagements:
         reasons.setdefault(one.source or "somebody unnamed", []).append(one.reason)
@@ -66,11 +66,12 @@ def told(engagements: Iterable[StopEngagement]) -> str:
 
 
 def name_of(engagement: StopEngagement) -> Name:
+    """Name of an engagement: its source and its id."""
     return engagement.source, engagement.id
 
 
 class StopBook:
-    """Every word about STOP ALL that one process has heard."""
+    """All engagements and releases of STOP ALL that one process has heard of."""
 
     def __init__(self, at_once: bool = True) -> None:
         """at_once: words count when they arrive. Else a step reads those stamped before it, and at the step after at the latest."""
@@ -85,7 +86,7 @@ class StopBook:
         self._view = StopStatus()
 
     def follow(self, bus: Bus) -> None:
-        """Hears all words from now on, and those that the book beside the router has kept."""
+        """Subscribes to all words about STOP ALL, and to those that the book beside the router has kept."""
         for topic in (topics.STOP.by("*"), topics.STOP_STATE):
             bus.subscribe(topic.at(topics.SYSTEM), topic.qos, self.push, FOLLOW_DEPTH)
 
@@ -99,7 +100,7 @@ class StopBook:
             self._apply(self._waiting.popleft()[0])
 
     def take(self, t_ns: int) -> StopStatus:
-        """What holds for the step at ``t_ns``. No stamp, however odd, holds a word back for more than one step."""
+        """Status that holds for the step at ``t_ns`` [ns]. No stamp, however odd, holds a word back for more than one step."""
         if self._waiting:
             waiting, self._waiting = self._waiting, deque()
             for sample, seen in waiting:
@@ -111,6 +112,7 @@ class StopBook:
 
     @property
     def now(self) -> StopStatus:
+        """Status by all words that count so far."""
         return self._view
 
     def refused(self) -> list[str]:
@@ -120,13 +122,13 @@ class StopBook:
         return lines
 
     def take_up(self, engagements: Iterable[StopEngagement]) -> None:
-        """Engagements that somebody else has heard: an instance before this one, or the book beside the router."""
+        """Adds engagements that somebody else has heard: an instance before this one, or the book beside the router."""
         for engagement in engagements:
             self._engage(engagement)
         self._look()
 
     def state(self, now_ns: int) -> StopState:
-        """The book as a message for those who come late."""
+        """Message of the whole book at ``now_ns`` [ns], for those who come late."""
         released = [StopEngagement(source=source, id=id_) for source, id_ in list(self._released)[-REPEATED_MOST:]]
         return StopState(timestamp=stamp_ns(now_ns), engagements=self._view.engagements, released=released)
 
@@ -224,7 +226,7 @@ def _digest(data: bytes) -> int:
 
 
 class StopVoice:
-    """What one source says of STOP ALL; each word repeats its earlier releases, for whoever hears only the last one."""
+    """Speaks about STOP ALL for one source; each word repeats its earlier releases, for whoever hears only the last one."""
 
     def __init__(self, source: str, new_id: Callable[[], int] = lambda: secrets.randbits(63) | 1) -> None:
         self._source = source
@@ -233,19 +235,19 @@ class StopVoice:
 
     @property
     def engages(self) -> Name | None:
-        """The engagement that it stands by."""
+        """Name of the engagement that it stands by; None without one."""
         return (self._source, self._said.id) if self._said.engaged else None
 
     def engage(self, now_ns: int, reason: str) -> StopCommand:
-        """A new engagement, also where an older one holds: a release that is under way does not name it."""
+        """Word of a new engagement, also where an older one holds: a release that is under way does not name it."""
         return self._say(now_ns, engaged=True, id=self._new_id(), reason=reason)
 
     def withdraw(self, now_ns: int) -> StopCommand:
-        """No longer stands by an engagement that an operator has released."""
+        """Word by which it no longer stands by an engagement that an operator has released."""
         return self._say(now_ns, engaged=False, id=self._said.id, reason="")
 
     def release(self, now_ns: int, engagements: Iterable[StopEngagement]) -> StopCommand:
-        """Ends these by name."""
+        """Word that releases these engagements by name."""
         names = {name_of(one): StopEngagement(source=one.source, id=one.id) for one in (*self._said.releases, *engagements)}
         own = (self._source, self._said.id)
         command = StopCommand(releases=list(names.values())[-REPEATED_MOST:])

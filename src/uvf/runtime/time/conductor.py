@@ -22,7 +22,7 @@ class Participant:
 
 
 class Conductor:
-    """Real time, scaled, paused, single step and lockstep, as one state machine on wall seconds.
+    """Advances simulation time: real time, scaled, paused, single step and lockstep, as one state machine on wall seconds.
 
     simulators hold the clock back always; all participants hold it back at the start and in lockstep.
     vehicles: of the mission; a kind may have a process for each.
@@ -49,6 +49,7 @@ class Conductor:
 
     @property
     def started(self) -> bool:
+        """Whether simulation time has begun."""
         return self._started
 
     def done(self, message: Done, boot: int) -> str:
@@ -79,7 +80,7 @@ class Conductor:
         return f"conductor: time goes on from {self.t_ns / NS:.2f} s"
 
     def reset(self) -> None:
-        """Simulation time starts again from zero in a new epoch."""
+        """Starts simulation time again from zero in a new epoch."""
         self.epoch += 1
         self.tick = self.t_ns = 0
         self._allowed = 0.0
@@ -88,16 +89,17 @@ class Conductor:
             participant.t_ns, participant.published = -1 if participant.t_ns < 0 else 0, {}
 
     def waiting_for(self) -> str:
-        """The participant that holds the next tick back; empty when nobody does."""
+        """Name of a participant that holds the next tick back; empty when nobody does."""
         everybody = not self._started or self._lockstep
         names = sorted(n for n in self._participants if everybody or n.partition(".")[0] in self._simulators)
         return next((n for n in names if self._participants[n].t_ns < (self.t_ns if self._started else 0)), "")
 
     def missing(self) -> list[str]:
-        """Participants that have not reported at all."""
+        """Names of the participants that have not reported at all."""
         return sorted(name for name, p in self._participants.items() if p.t_ns < 0)
 
     def request(self, request: ClockRequest) -> Reply:
+        """Carries out a request for the clock (rate, pause, resume, step, reset), or refuses it with the reason."""
         if request.action == ClockRequest.SET_RATE:
             if not 0 <= request.rate <= 1000:
                 return Reply(accepted=False, reason=f"rate {request.rate:g}: must be 0 (as fast as it goes) to 1000")
@@ -115,11 +117,11 @@ class Conductor:
         return Reply(accepted=True)
 
     def take_up(self, clock: Clock) -> None:
-        """Rate and pause as a conductor before has left them."""
+        """Takes over rate and pause from the last clock of a conductor before this one."""
         self._rate, self._paused = clock.rate_wanted, clock.state == Clock.PAUSED
 
     def advance(self, wall: float) -> Clock | None:
-        """The next tick if it is due at ``wall`` [s] and nobody holds it back."""
+        """Next tick of the clock if it is due at ``wall`` [s] and nobody holds it back; else None."""
         elapsed = wall - self._last_wall if self._last_wall is not None else 0.0
         self._last_wall = wall
         if self.waiting_for():
@@ -142,7 +144,7 @@ class Conductor:
 
     @property
     def patience(self) -> float:
-        """How long [s, wall] nothing can be due; a participant's report ends the wait."""
+        """Longest time [s, wall] in which nothing can become due; a participant's report ends the wait."""
         if self.waiting_for() or self._paused or self._rate == 0:
             return LONGEST_LOOK
         ahead = step_time(self.tick + 1, topics.CLOCK.hz) / NS - self._allowed
@@ -155,7 +157,7 @@ class Conductor:
         self._allowed = min(self._allowed + elapsed * self._rate, self.t_ns / NS + MAX_BEHIND * max(self._rate, 1.0))
 
     def clock(self, wall: float, waiting_for: str = "") -> Clock:
-        """The state of time as a message; ``waiting_for`` names who has held it back for long."""
+        """State of the clock at ``wall`` [s] as a message; ``waiting_for`` names who has held it back for long."""
         message = Clock(tick=self.tick, t_ns=self.t_ns, epoch=self.epoch, rate_wanted=self._rate, lockstep=self._lockstep)
         message.state = Clock.PAUSED if self._paused else Clock.RUNNING
         message.waiting_for = waiting_for

@@ -19,7 +19,10 @@ OTHERS = "others"
 
 
 def told_gaps(gaps: Mapping[str, int]) -> dict[str, int]:
-    """Messages missed by key: the largest counts, and the sum of all others; so many keys, or such, as no reader would take count too."""
+    """Number of messages missed by key, as they are told: the largest counts, and the sum of all others.
+
+    Among the others are also keys that no reader would take.
+    """
     told: dict[str, int] = {}
     for key in nlargest(GAPS_MOST, gaps, key=lambda key: gaps[key]):
         if len(key) <= LENGTH and is_text(key):
@@ -29,7 +32,7 @@ def told_gaps(gaps: Mapping[str, int]) -> dict[str, int]:
 
 
 class HealthReport:
-    """Counts how late steps begin and publishes the sums."""
+    """Counts how late steps begin and publishes a process's counters."""
 
     def __init__(self, name: str, shells: Sequence[ServiceRunner], bus: ZenohBus, refusals: Refusals) -> None:
         """refusals: of the process itself, beside those of its instances."""
@@ -43,12 +46,12 @@ class HealthReport:
         self._publisher = bus.publisher(topics.HEALTH.by(name).at("sys"), Health.DESCRIPTOR.full_name, topics.HEALTH.qos)
 
     def begun(self, shell: ServiceRunner, lateness: float) -> None:
-        """A step begins ``lateness`` [s, wall] after it was due: by more than one period counts as late."""
+        """Takes note of a step that begins ``lateness`` [s, wall] after it was due: by more than one period counts as late."""
         self._worst = max(self._worst, lateness)
         self._late += lateness > 1 / shell.type.hz
 
     def publish_when_due(self, wall: float, now: int) -> None:
-        """now: simulation time [ns]."""
+        """Publishes the counters if that is due at ``wall`` [s]. now: simulation time [ns]."""
         if wall < self._next:
             return
         self._next = wall + 1 / topics.HEALTH.hz

@@ -23,7 +23,7 @@ LOCKSTEP_PATIENCE = 5.0  # s, after which the message that is waited for is name
 
 
 class Live:
-    """One process: its shells, its place in the clock's barrier, its sign of life."""
+    """One process: its services, its place in the clock's barrier, its sign of life."""
 
     def __init__(self, name: str, hosts: Sequence[ServiceInstance], bus: ZenohBus, warn: Warn, watchdog: Watchdog | None = None) -> None:
         self._name = name
@@ -52,7 +52,7 @@ class Live:
             _declare_tokens(shell, bus)
 
     def join(self, host: ServiceInstance) -> None:
-        """One more instance on wall time, from now on."""
+        """Adds an instance on wall time, from now on."""
         shell = ServiceRunner(host, self._bus, self._warn, contains=True)
         shell.join(self._epoch)
         shell.sim_ns = self._t_ns
@@ -61,7 +61,7 @@ class Live:
         _declare_tokens(shell, self._bus)
 
     def run(self, stop: Event, until: Callable[[], bool] = lambda: False) -> None:
-        """Until ``stop`` is set (or ``until()``); closes the services in every case."""
+        """Runs until ``stop`` is set or ``until()`` is true; closes the services in every case."""
         start = time.monotonic()
         try:
             while not stop.is_set() and not until():

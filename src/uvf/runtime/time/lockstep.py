@@ -11,7 +11,7 @@ from uvf.runtime.messages.step_times import NS, step_time
 
 
 class Lockstep:
-    """All sim-clock services of a run on one LocalBus.
+    """Runs all sim-clock services of a mission on one LocalBus.
 
     Steps due at the same time may run in any order: what one puts out at t is read only by steps later than t.
     """
@@ -55,5 +55,6 @@ class Lockstep:
         return [f"{shell.type.name} of {shell.owner} failed: {shell.counters.failures} of its steps" for shell in failed]
 
     def close(self) -> None:
+        """Closes all services."""
         for shell in self.shells:
             shell.service.close()

@@ -23,7 +23,7 @@ SHARED = 0.5
 
 @dataclass(frozen=True)
 class Beside:
-    """By the name of their file; those of the log's own stem first."""
+    """Files that lie beside a log and score its runs, by their names; those of the log's own stem first."""
 
     relations: dict[str, Relations]
     references: dict[str, Trajectory]
@@ -32,7 +32,7 @@ class Beside:
 
 
 def beside(path: Path, log: LaserLog) -> Beside:
-    """path: of the log, whose folder is searched."""
+    """Relations and reference trajectories in the folder of the log at ``path``."""
     relations, of_relations = _readable(read_relations, _by_stem(path, log, (RELATIONS,)))
     references, of_references = _readable(read_trajectory, _by_stem(path, log, TRAJECTORIES))
     return Beside(

@@ -27,7 +27,7 @@ FORMS = "'stamp x y yaw' or 'stamp x y z qx qy qz qw'"
 
 @dataclass(frozen=True)
 class Trajectory:
-    """stamps: (n,) s, rising; world_from_base: (n, 3) m, m, rad."""
+    """A trajectory: stamps (n,) [s], rising, and poses world_from_base (n, 3) [m, m, rad]."""
 
     stamps: Floats
     world_from_base: Floats
@@ -37,7 +37,7 @@ class Trajectory:
 
 
 def read_trajectory(path: Path) -> Trajectory:
-    """Text, a pose a line: ``stamp x y yaw``, or as TUM has it ``stamp x y z qx qy qz qw``. Raises BadInput."""
+    """Trajectory of a text file, a pose a line: ``stamp x y yaw``, or as TUM has it ``stamp x y z qx qy qz qw``. Raises BadInput."""
     rows = [_row(numbers, place) for place, numbers in rows_of(path, "trajectory")]
     if not rows:
         raise BadInput(f"trajectory {path}: holds no pose")
@@ -58,7 +58,7 @@ def _row(numbers: list[float], place: str) -> tuple[float, float, float, float]:
 
 
 def paired(estimate: Trajectory, reference: Trajectory) -> tuple[Floats, Floats]:
-    """(k, 3) poses of both at the times of the estimate that have a reference within ASSOCIATION; the nearest counts."""
+    """Poses (k, 3) of both at the times of the estimate that have a reference within ASSOCIATION; the nearest counts."""
     after = np.searchsorted(reference.stamps, estimate.stamps).clip(0, len(reference) - 1)
     before = np.maximum(after - 1, 0)
     nearer = np.abs(reference.stamps[after] - estimate.stamps) < np.abs(reference.stamps[before] - estimate.stamps)
@@ -68,7 +68,7 @@ def paired(estimate: Trajectory, reference: Trajectory) -> tuple[Floats, Floats]
 
 
 class TrajectoryError(NamedTuple):
-    """m and degrees."""
+    """Errors of a trajectory: rmse, mean and max of the translation [m], rmse of the rotation [deg]."""
 
     number: int
     rmse: float
@@ -78,7 +78,7 @@ class TrajectoryError(NamedTuple):
 
     @classmethod
     def of(cls, error: Floats) -> "TrajectoryError":
-        """error: (n, 3) poses that ought to be zero; NaN where there are none."""
+        """Statistics of error poses (n, 3) [m, m, rad], which ought to be zero; NaN where there are none."""
         if not len(error):
             return cls(0, *[float("nan")] * 4)
         distance, turn = np.hypot(error[:, 0], error[:, 1]), np.degrees(error[:, 2])
@@ -87,7 +87,7 @@ class TrajectoryError(NamedTuple):
 
 
 def deviations(estimate: Trajectory, reference: Trajectory) -> Floats:
-    """(k, 3) differences [m, m, rad] of the poses once the estimate is laid onto the reference as a whole, without scale.
+    """Differences (k, 3) [m, m, rad] of the poses once the estimate is laid onto the reference as a whole, without scale.
 
     Of those poses of the estimate that have a reference. Raises BadInput.
     """
@@ -98,12 +98,15 @@ def deviations(estimate: Trajectory, reference: Trajectory) -> Floats:
 
 
 def absolute_error(estimate: Trajectory, reference: Trajectory) -> TrajectoryError:
-    """ATE: how far the poses are apart after alignment. Raises BadInput."""
+    """Absolute trajectory error (ATE): how far the poses are apart after alignment. Raises BadInput."""
     return TrajectoryError.of(deviations(estimate, reference))
 
 
 def relative_error(estimate: Trajectory, reference: Trajectory, distance: float) -> TrajectoryError:
-    """RPE: the error of the motion from every pose to the first one that is ``distance`` [m] of way further on. Raises BadInput."""
+    """Relative pose error (RPE): that of the motion from each pose to the first one ``distance`` [m] further along the way.
+
+    Raises BadInput.
+    """
     ours, theirs = _enough(paired(estimate, reference))
     way = np.concatenate(((0.0,), np.cumsum(np.hypot(*np.diff(theirs[:, :2], axis=0).T))))
     ends = np.searchsorted(way, way + distance)

@@ -26,7 +26,10 @@ COLUMNS = 8
 
 @dataclass(frozen=True)
 class Relations:
-    """stamps: (n, 2) s; first_from_second: (n, 3) m, m, rad, the pose at the second stamp as seen from the first."""
+    """Known motions between pairs of poses.
+
+    stamps: (n, 2) [s]; first_from_second: (n, 3) [m, m, rad], the pose at the second stamp as seen from the first.
+    """
 
     stamps: Floats
     first_from_second: Floats
@@ -36,16 +39,17 @@ class Relations:
 
     @property
     def is_near(self) -> NDArray[np.bool_]:
-        """(n,)."""
+        """Mask (n,) of the relations whose two stamps are less than NEAR apart."""
         near: NDArray[np.bool_] = np.abs(self.stamps[:, 1] - self.stamps[:, 0]) < NEAR
         return near
 
     def only(self, mask: NDArray[np.bool_]) -> "Relations":
+        """The relations that the mask (n,) selects."""
         return Relations(self.stamps[mask], self.first_from_second[mask])
 
 
 def read_relations(path: Path) -> Relations:
-    """Raises BadInput where the file or a line of it is not as it should be."""
+    """Relations of a text file. Raises BadInput where the file or a line of it is not as it should be."""
     rows = [_row(numbers, place) for place, numbers in rows_of(path, "relations")]
     if not rows:
         raise BadInput(f"relations {path}: holds none")
@@ -60,14 +64,14 @@ def _row(row: list[float], place: str) -> list[float]:
 
 
 def index_of(stamps: Floats, wanted: Floats) -> NDArray[np.int64]:
-    """Where each wanted stamp is among the stamps (n,), which need no order, to the microsecond; -1 where it is not."""
+    """Index of each wanted stamp [s] among ``stamps`` (n,) [s], to the microsecond, in the shape of ``wanted``; -1 where it is missing."""
     where = {stamp: i for i, stamp in reversed(list(enumerate(np.rint(stamps * 1e6).tolist())))}
     found = [where.get(stamp, -1) for stamp in np.rint(wanted * 1e6).ravel().tolist()]
     return np.array(found, dtype=np.int64).reshape(wanted.shape)
 
 
 class RelationErrors(NamedTuple):
-    """Of each relation whose two stamps are known, by both formulas; (n,) m and rad, never negative."""
+    """Errors (n,) [m] and [rad] of each relation whose two stamps are known, by both formulas; never negative."""
 
     freiburg_translation: Floats
     cartographer_translation: Floats
@@ -77,7 +81,7 @@ class RelationErrors(NamedTuple):
 
 
 def relation_errors(relations: Relations, stamps: Floats, map_from_base: Floats) -> RelationErrors:
-    """stamps: (m,) s; map_from_base: (m, 3), the pose at each.
+    """Errors of a trajectory with stamps (m,) [s] and poses map_from_base (m, 3) [m, m, rad].
 
     Freiburg (metricEvaluator): the difference of the two motions by components. Cartographer (compute_relations_metrics):
     the length of ``motion o known motion^-1``, to which an error of the heading adds in proportion to the length.
@@ -97,7 +101,7 @@ def relation_errors(relations: Relations, stamps: Floats, map_from_base: Floats)
 
 
 class Statistics(NamedTuple):
-    """Of errors, in their unit; NaN for no errors at all."""
+    """Statistics of errors, in their unit; NaN for no errors at all."""
 
     number: int
     mean: float
@@ -109,7 +113,7 @@ class Statistics(NamedTuple):
 
     @classmethod
     def of(cls, errors: Floats) -> "Statistics":
-        """std: of a sample (n - 1)."""
+        """Statistics of errors (n,); std is that of a sample (n - 1)."""
         n = len(errors)
         if n == 0:
             return cls(0, *[float("nan")] * 6)
@@ -119,7 +123,7 @@ class Statistics(NamedTuple):
 
 
 class RelationScore(NamedTuple):
-    """The figures of a group of relations."""
+    """Scores of a group of relations."""
 
     freiburg_translation: Statistics
     cartographer_translation: Statistics
@@ -130,7 +134,7 @@ class RelationScore(NamedTuple):
 
 
 def relation_scores(errors: RelationErrors) -> dict[str, RelationScore]:
-    """For ``all`` relations, the ``near`` ones (less than NEAR apart) and the ``far`` ones."""
+    """Scores of ``all`` relations, of the ``near`` ones (less than NEAR apart) and of the ``far`` ones."""
     everything = np.ones(len(errors.is_near), dtype=np.bool_)
     return {name: _score(errors, mask) for name, mask in (("all", everything), ("near", errors.is_near), ("far", ~errors.is_near))}
 

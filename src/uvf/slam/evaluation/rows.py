@@ -8,7 +8,10 @@ from uvf.models.yaml_data import BadInput
 
 
 def rows_of(path: Path, kind: str) -> list[tuple[str, list[float]]]:
-    """(place, numbers) of each line that is neither empty nor a comment; no numbers where one is none. Raises BadInput for ``kind``."""
+    """(place, numbers) of each line that is neither empty nor a comment; units are the file's ([s], [m], [rad]).
+
+    The numbers are empty where one of them is none. Raises BadInput with ``kind`` where the file cannot be read.
+    """
     try:
         lines = path.read_text(encoding="ascii", errors="replace").splitlines()
     except OSError as error:

@@ -18,7 +18,7 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class LogRun:
-    """Poses (readings, 3) are map_from_base [m, m, rad]."""
+    """What came out of a run; poses (readings, 3) are map_from_base [m, m, rad]."""
 
     log: LaserLog
     online: Floats
@@ -41,11 +41,15 @@ class LogRun:
 
     @property
     def times_real_time(self) -> float:
+        """Speed of the run as a multiple of real time [-]."""
         return self.log.duration / self.wall
 
 
 def run_over(log: LaserLog, method: SlamMethod, watch: Callable[[int], None] = lambda done: None) -> LogRun:
-    """The skew of the odometry's stamps is learnt and taken off on the way. watch: is told the number of readings done, after each."""
+    """Runs a method over a log. The skew of the odometry's stamps is estimated and taken off on the way.
+
+    watch: is told the number of readings done, after each.
+    """
     estimates = []
     fed = Synchronised(method, _track(log))
     wall, cpu = time.perf_counter(), time.process_time()

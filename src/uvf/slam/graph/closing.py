@@ -31,7 +31,7 @@ TELLING = 3.0
 
 @dataclass
 class Closing:
-    """Adds what it believes to the graph; keeps the nodes' poses as the graph has them."""
+    """Adds the loop closures that it believes to the graph, and keeps the nodes' poses as the graph has them."""
 
     graph: PoseGraph
     nodes: KeyframeNodes
@@ -42,7 +42,7 @@ class Closing:
     loops: int = 0
 
     def look(self, k: int) -> bool:
-        """For places that keyframe k, the newest, has seen before; whether the graph has been settled."""
+        """Looks for loop closures of keyframe k, the newest; returns whether the graph has been optimised."""
         if k % EVERY:
             return False
         ways = self.ways.since(k, len(self.nodes))

@@ -12,7 +12,7 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Drift:
-    """Bounds on what odometry and matching lose: m per m of way, m at once; rad per m, rad at once."""
+    """Bounds on the drift of odometry and matching: position [m/m] and at once [m], heading [rad/m] and at once [rad]."""
 
     position: float = 0.04
     position_start: float = 0.3
@@ -21,16 +21,16 @@ class Drift:
     heading_most: float = 0.5
 
     def radius(self, way: Floats) -> Floats:
-        """m, of the disc in which a keyframe lies that is ``way`` [m] of driving away."""
+        """Radii (n,) [m] of the discs in which keyframes lie that are ``way`` (n,) [m] of driving away."""
         return self.position_start + self.position * way
 
     def turn(self, way: Floats) -> Floats:
-        """rad, the same for its heading."""
+        """Bounds (n,) [rad] on the error of the headings of keyframes that are ``way`` (n,) [m] of driving away."""
         return np.minimum(self.heading_start + self.heading * way, self.heading_most)
 
 
 class PathLengths:
-    """Shortest ways between keyframes along the edges of the graph [m]."""
+    """Shortest path lengths [m] between keyframes along the edges of the graph."""
 
     def __init__(self) -> None:
         self._i: list[int] = []
@@ -38,12 +38,13 @@ class PathLengths:
         self._length: list[float] = []
 
     def add(self, i: int, j: int, length: float) -> None:
+        """Adds an edge of ``length`` [m] between keyframes i and j; shorter ones count 1 mm."""
         self._i.append(i)
         self._j.append(j)
         self._length.append(max(length, 1e-3))
 
     def since(self, k: int, n: int) -> Floats:
-        """(n,) m from keyframe k to every one."""
+        """Shortest path lengths (n,) [m] from keyframe k to each of the n keyframes."""
         graph = csr_matrix((self._length, (self._i, self._j)), shape=(n, n))
         ways: Floats = dijkstra(graph, directed=False, indices=k)
         return ways

@@ -19,7 +19,7 @@ FLOOR = np.diag((0.01, 0.01, 0.003)) ** 2
 
 
 def fitted(node: Node, submap: Submap, nodes: KeyframeNodes, guess: Pose2) -> Match | None:
-    """Where near ``guess`` (anchor_from_node) a keyframe fits into a submap of ``nodes``; None where it does not."""
+    """Match of a keyframe to a submap of ``nodes`` near ``guess`` (anchor_from_node); None where it does not fit."""
     found = match(guess, node.cloud, submap.surfaces, NO_PRIOR)
     if found.share < LEAST_SHARE or found.rms > MOST_RMS:
         return None
@@ -28,7 +28,7 @@ def fitted(node: Node, submap: Submap, nodes: KeyframeNodes, guess: Pose2) -> Ma
 
 
 def looks(node: Node, submap: Submap, nodes: KeyframeNodes, anchor_from_node: Pose2) -> tuple[int, int]:
-    """Surface points that the keyframe and three of the submap's see of each other's, and those they look through."""
+    """(seen, looked through): surface points that the keyframe and three of the submap's see of each other's, or look through."""
     agree = through = 0
     for m in (submap.members[0], submap.anchor, submap.members[-1]):
         member = nodes.all[m]
@@ -43,7 +43,7 @@ def looks(node: Node, submap: Submap, nodes: KeyframeNodes, anchor_from_node: Po
 
 
 def information_of(found: Match) -> Floats:
-    """(3, 3) of a closure."""
+    """Information (3, 3) [1/m^2, 1/rad^2] of a closure by a match, no better than FLOOR allows."""
     covariance = np.linalg.inv(found.information + 10.0 * np.eye(3)) + FLOOR
     information: Floats = np.linalg.inv(covariance)
     return information

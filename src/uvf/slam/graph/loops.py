@@ -29,7 +29,10 @@ QUERY_GRID, QUERY_RANGE = 0.1, 15.0
 
 @dataclass(frozen=True)
 class Closure:
-    """Keyframe j seen in the submap of i. information: (3, 3) of i_from_j; score: 0..1."""
+    """A loop closure: keyframe j seen in the submap of i.
+
+    information: (3, 3) of (x, y, yaw) of i_from_j [1/m^2, 1/rad^2]; score: 0..1.
+    """
 
     i: int
     j: int
@@ -40,13 +43,13 @@ class Closure:
 
 @dataclass
 class LoopSearch:
-    """Finds closures; decides nothing of what becomes of them."""
+    """Searches for loop closures; decides nothing of what becomes of them."""
 
     nodes: KeyframeNodes
     drift: Drift = field(default_factory=Drift)
 
     def near(self, k: int, ways: Floats) -> list[Closure]:
-        """At anchors to which keyframe k is tied so well that it can be matched where it is believed to be."""
+        """Closures of keyframe k at anchors that its path lengths ``ways`` (n,) [m] tie closely enough for a match at its believed pose."""
         found: list[Closure] = []
         radius = self.drift.radius(ways)
         anchors = [a for a in self._anchors(k, radius) if radius[a] <= SURE]
@@ -61,7 +64,10 @@ class LoopSearch:
         return found
 
     def far(self, k: int, ways: Floats) -> Closure | None:
-        """Anywhere within the uncertainty of keyframe k; None where nothing fits, or where two places fit."""
+        """The closure of keyframe k anywhere within its uncertainty, by its path lengths ``ways`` (n,) [m] to all keyframes.
+
+        None where nothing fits, or where two places fit.
+        """
         radius = self.drift.radius(ways)
         found: list[Closure] = []
         for a in self._anchors(k, radius):

@@ -42,7 +42,7 @@ DOUBTED = 0.01
 
 
 class GraphParams(Params, frozen=True):
-    """keyframe_distance [m], keyframe_turn [rad]: motion after which a sweep becomes a keyframe."""
+    """Motion after which a sweep becomes a keyframe: keyframe_distance [m], keyframe_turn [rad]."""
 
     keyframe_distance: Annotated[float, key("m", "Distance driven after which a sweep becomes a keyframe.")] = 0.35
     keyframe_turn: Annotated[float, key("rad", "Angle turned after which a sweep becomes a keyframe.")] = 0.2
@@ -58,7 +58,7 @@ class _Placed:
 
 @dataclass
 class GraphSlam:
-    """The default method; see ``SlamMethod``."""
+    """Graph SLAM, the default method; see ``SlamMethod``."""
 
     params: GraphParams = field(default_factory=GraphParams)
 
@@ -78,6 +78,7 @@ class GraphSlam:
         self._node_covariance = self._covariance = np.zeros((3, 3))
 
     def add(self, reading: Reading) -> SlamEstimate:
+        """Tracks one reading, makes it a keyframe if the vehicle has moved enough, and closes loops."""
         step = self._step(reading)
         if len(self.nodes) == 0:
             self._matched = reading
@@ -107,17 +108,18 @@ class GraphSlam:
         return self._place(found.share)
 
     def trajectory(self) -> Floats:
+        """Poses map_from_base (readings, 3) [m, m, rad] of all readings, by the keyframes' poses as known now."""
         return np.array([compose(self.nodes.poses[p.node], p.node_from_base) for p in self._placed]).reshape(-1, 3)
 
     def session(self) -> MappingSession:
-        """All of it, so that another can ``resume``."""
+        """The whole mapping session, so that another instance can ``resume`` it."""
         rows = self.graph.edges.rows
         kinds = np.where(rows.robust, KINDS.index("loop"), KINDS.index("match")).astype(np.uint8)
         edges = Edges(rows.ends.copy(), rows.measured.copy(), rows.information.copy(), kinds, rows.enabled.copy())
         return MappingSession(tuple(self.keyframes()), edges, "graph", {})
 
     def resume(self, session: MappingSession, map_from_base: Pose2) -> None:
-        """Goes on with a session before the first reading; the vehicle stands near map_from_base, wherever the session has ended."""
+        """Continues a session before the first reading; the vehicle stands near map_from_base, wherever the session has ended."""
         way, turn = add_keyframes(session, self.nodes)
         for pose in self.nodes.poses:
             self.graph.add_pose(pose)
@@ -131,13 +133,16 @@ class GraphSlam:
         self._look_around()
 
     def keyframes(self) -> Iterator[Keyframe]:
+        """The keyframes with their poses as known now."""
         for pose, node in zip(self.nodes.poses, self.nodes.all, strict=True):
             yield Keyframe(pose, node.reading)
 
     def keyframe_count(self) -> int:
+        """Number of keyframes."""
         return len(self.nodes)
 
     def finish(self) -> None:
+        """Optimises the graph a last time."""
         if len(self.nodes) > 1:
             self.closing.settle()
 

@@ -13,18 +13,18 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class MotionNoise:
-    """1 sigma of a step of odometry: m and rad at once, per m driven and per rad turned."""
+    """1 sigma of a step of odometry: position [m] and heading [rad], each at once, per m driven and per rad turned."""
 
     position: tuple[float, float, float] = (0.005, 0.1, 0.03)
     heading: tuple[float, float, float] = (0.003, 0.02, 0.15)
 
     def sigmas(self, step: Pose2) -> tuple[float, float]:
-        """m, rad."""
+        """1 sigma (position [m], heading [rad]) of a step."""
         way = np.array((1.0, hypot(step[0], step[1]), abs(step[2])))
         return float(way @ self.position), float(way @ self.heading)
 
     def information(self, step: Pose2) -> Floats:
-        """(3, 3) of (x, y, yaw)."""
+        """Information (3, 3) of (x, y, yaw) of a step [1/m^2, 1/rad^2]."""
         position, heading = self.sigmas(step)
         return np.diag((position**-2, position**-2, heading**-2))
 
@@ -35,7 +35,7 @@ UNKNOWN = MotionNoise((0.25, 0.1, 0.03), (0.25, 0.02, 0.15))
 
 @dataclass(frozen=True)
 class OdometryMotion:
-    """From where the vehicle was (map_from_base), by the odometry; disputed: something tells that this is wrong."""
+    """A step of odometry from the pose ``before`` (map_from_base); disputed: something tells that the step is wrong."""
 
     before: Pose2
     step: Pose2
@@ -44,19 +44,20 @@ class OdometryMotion:
 
     @property
     def guess(self) -> Pose2:
+        """Pose map_from_base after the step."""
         return compose(self.before, self.step)
 
     @property
     def sigmas(self) -> tuple[float, float]:
-        """m, rad."""
+        """1 sigma (position [m], heading [rad]) of the step."""
         return self.noise.sigmas(self.step)
 
     @property
     def information(self) -> Floats:
-        """(3, 3) of (x, y, yaw)."""
+        """Information (3, 3) of (x, y, yaw) of the step [1/m^2, 1/rad^2]."""
         return self.noise.information(self.step)
 
     @property
     def told(self) -> bool:
-        """Whether there is an odometry to be held to."""
+        """Whether there is an odometry to rely on."""
         return self.noise is not UNKNOWN and not self.disputed

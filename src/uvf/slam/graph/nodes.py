@@ -30,7 +30,7 @@ RESOLUTION, SIGMA, DEPTH = 0.1, 0.1, 4
 
 @dataclass(frozen=True)
 class Node:
-    """A keyframe. cloud: base frame; travelled, turned: m and rad of the way to it by odometry."""
+    """A keyframe. cloud: in the base frame; travelled [m], turned [rad]: the way to it by odometry."""
 
     reading: Reading
     cloud: Cloud
@@ -39,12 +39,13 @@ class Node:
 
     @cached_property
     def rays(self) -> Rays:
+        """The beams of its sweep, sorted by bearing."""
         return rays_of(self.reading)
 
 
 @dataclass
 class Submap:
-    """Keyframes around an anchor, in the anchor's frame."""
+    """Keyframes around an anchor and their surfaces, in the anchor's frame."""
 
     anchor: int
     members: range
@@ -53,6 +54,7 @@ class Submap:
 
     @cached_property
     def field(self) -> LikelihoodField:
+        """Likelihood field of its surfaces, in the anchor's frame."""
         return likelihood_field(self.surfaces.points, RESOLUTION, SIGMA, DEPTH)
 
 
@@ -69,6 +71,7 @@ class KeyframeNodes:
         return len(self.all)
 
     def add(self, node: Node, map_from_node: Pose2) -> int:
+        """Adds a keyframe; returns its number."""
         k = len(self.all)
         self.all.append(node)
         self.poses.append(map_from_node)
@@ -83,26 +86,26 @@ class KeyframeNodes:
         self._seen[j] += verdicts(self.all[j].cloud.points, self.between(i, j), self.all[i].rays)
 
     def still(self, i: int) -> Cloud:
-        """Of a keyframe without what has moved: what more of its neighbours look through than see."""
+        """Cloud of a keyframe without moving things: without points that more of its neighbours look through than see."""
         cloud, stays = self.all[i].cloud, self._seen[i] >= 0
         return Cloud(cloud.points[stays], cloud.normals[stays], cloud.weights[stays])
 
     def nearest(self, map_from_base: Pose2) -> int:
-        """The keyframe taken from nearest to a pose; half a metre counts as much as a radian."""
+        """Number of the keyframe taken nearest to a pose; half a metre counts as much as a radian."""
         poses = np.array(self.poses)
         turn = np.abs(wrapped(poses[:, 2] - map_from_base.yaw))
         return int(np.argmin(np.hypot(poses[:, 0] - map_from_base.x, poses[:, 1] - map_from_base.y) + 0.5 * turn))
 
     def surfaces(self, members: range) -> PointMap:
-        """Of some keyframes, in the map frame."""
+        """Surfaces of some keyframes, in the map frame."""
         return point_map([self.still(i).moved(self.poses[i]) for i in members])
 
     def between(self, i: int, j: int) -> Pose2:
-        """i_from_j by the poses known now."""
+        """Pose i_from_j by the poses known now."""
         return compose(inverse(self.poses[i]), self.poses[j])
 
     def submap(self, anchor: int) -> Submap:
-        """Around a keyframe, from the cache while its keyframes lie in it as they did."""
+        """Submap around a keyframe; it is made anew when its keyframes have moved relative to each other."""
         members = range(max(0, anchor - HALF), min(len(self.all), anchor + HALF + 1))
         now = [self.between(anchor, i) for i in members]
         kept = self._submaps.get(anchor)

@@ -13,7 +13,7 @@ LOOP = KINDS.index("loop")
 
 
 def add_keyframes(session: MappingSession, nodes: KeyframeNodes) -> tuple[float, float]:
-    """Those that the nodes do not have yet, and all of them to where they are; m and rad of the way to the last one."""
+    """Adds the keyframes that the nodes lack, and moves all to their poses; returns the way [m] and the turns [rad] to the last one."""
     known = len(nodes)
     nodes.poses[:] = [keyframe.map_from_base for keyframe in session.keyframes[:known]]
     way, turn = (nodes.all[-1].travelled, nodes.all[-1].turned) if known else (0.0, 0.0)
@@ -26,7 +26,10 @@ def add_keyframes(session: MappingSession, nodes: KeyframeNodes) -> tuple[float,
 
 
 def add_edges(edges: Edges, graph: PoseGraph, first: int = 0) -> None:
-    """Between poses that the graph has. first: the pose of the session's first keyframe. Raises ValueError as ``add_edge`` does."""
+    """Adds a session's edges to a graph that has the poses already. first: the pose of the session's first keyframe.
+
+    Raises ValueError as ``add_edge`` does.
+    """
     rows = zip(edges.ends.tolist(), edges.measured.tolist(), edges.information, edges.kinds.tolist(), edges.enabled.tolist(), strict=True)
     for (i, j), measured, information, kind, enabled in rows:
         edge = graph.add_edge(Edge(first + i, first + j, Pose2(*measured), information, robust=kind == LOOP))

@@ -50,12 +50,13 @@ class LocalMap:
 
     @cached_property
     def field(self) -> LikelihoodField:
+        """Likelihood field of its surfaces, in the map frame."""
         return likelihood_field(self.surfaces.points, RESOLUTION, SIGMA, DEPTH)
 
 
 @dataclass(frozen=True)
 class Tracked:
-    """match: where the sweep has been taken; its share is 0 where the odometry alone has decided. doubted: it may be wrong."""
+    """Outcome of tracking one sweep. match: its share is 0 where the odometry alone has decided; doubted: it may be wrong."""
 
     match: Match
     doubted: bool
@@ -63,7 +64,7 @@ class Tracked:
 
 @dataclass
 class Tracker:
-    """Matches sweeps to local maps. searched counts those that had to be looked for, lost those that were not found."""
+    """Matches sweeps to local maps. ``searched`` counts those that had to be looked for, ``lost`` those that were not found."""
 
     noise: MotionNoise = field(default_factory=MotionNoise)
     trust: Trust = field(default_factory=Trust)
@@ -73,9 +74,9 @@ class Tracker:
     rms: float = USUAL_RMS
 
     def track(self, local: LocalMap, motion: OdometryMotion, cloud: Cloud) -> Tracked:
-        """The pose (map_from_base) of a sweep.
+        """Pose (map_from_base) of a sweep, by its cloud in the base frame and the odometry's motion.
 
-        A step after which the sweep fits badly is none of the vehicle's if it fits well near where that was before.
+        When the sweep fits badly after the step but well near the pose before it, the step is taken for wrong.
         """
         step, motion = motion.step, self.trust.straightened(motion)
         found = self._found(local, motion, cloud)

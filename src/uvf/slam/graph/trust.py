@@ -26,7 +26,7 @@ REMEMBERED = 10.0
 
 @dataclass
 class Veering:
-    """What the odometry's heading is off by per m driven and per rad turned; it changes slowly, with the floor and the tyres.
+    """Heading drift of the odometry per m driven and per rad turned; it changes slowly, with the floor and the tyres.
 
     Weighted least squares with a zero-mean prior, in which older steps fade.
     """
@@ -35,10 +35,11 @@ class Veering:
     _right: Floats = field(default_factory=lambda: np.zeros(2))
 
     def straightened(self, step: Pose2) -> Pose2:
+        """The step without the heading drift that is expected of it."""
         return Pose2(step[0], step[1], step[2] + float(_ways(step) @ np.linalg.solve(self._normal, self._right)))
 
     def learn(self, step: Pose2, off: float, sigma: float) -> None:
-        """off: rad by which the heading came to be another one than by the step; sigma: rad, of that."""
+        """Learns from a step whose heading was off by ``off`` [rad], known to ``sigma`` [rad]."""
         ways = _ways(step)
         fading = exp(-float(np.abs(ways).sum()) / REMEMBERED)
         self._normal = PRIOR + fading * (self._normal - PRIOR) + np.outer(ways, ways) / sigma**2
@@ -52,18 +53,18 @@ def _ways(step: Pose2) -> Floats:
 
 @dataclass
 class Trust:
-    """How far this vehicle's odometry usually is off, in sigmas of its noise: learnt from sweeps that fit well."""
+    """How far this vehicle's odometry usually is off, in sigmas of its noise [-]: learnt from sweeps that fit well."""
 
     position: float = 1.0
     heading: float = 1.0
     heading_drift: Veering = field(default_factory=Veering)
 
     def straightened(self, motion: OdometryMotion) -> OdometryMotion:
-        """Without what the odometry always gets wrong."""
+        """The motion without the heading drift that is expected of it."""
         return replace(motion, step=self.heading_drift.straightened(motion.step)) if motion.told else motion
 
     def learn(self, step: Pose2, motion: OdometryMotion, found: Pose2) -> None:
-        """step: as the odometry told it; motion: as it was taken."""
+        """Learns from a matched pose ``found``. step: as the odometry told it; motion: as it was assumed."""
         sigma, known = motion.sigmas[1], motion.step[2] - step[2]
         off = wrap(found[2] - motion.guess[2]) + known
         self.heading_drift.learn(step, min(max(off, -MOST_SIGMAS * sigma), MOST_SIGMAS * sigma), sigma)
@@ -72,11 +73,17 @@ class Trust:
             self.position, self.heading = _followed(self.position, position), _followed(self.heading, heading)
 
     def information(self, motion: OdometryMotion) -> Floats:
-        """(3, 3) of (x, y, yaw): of the motion, as the odometry has been found to be; of one not told, as it is."""
+        """Information (3, 3) of (x, y, yaw) of a motion [1/m^2, 1/rad^2], by how far off this odometry usually is.
+
+        Of a motion that the odometry has not told, as it is.
+        """
         return self._usual(motion.noise).information(motion.step) if motion.told else motion.information
 
     def surprise(self, motion: OdometryMotion, found: Pose2) -> float:
-        """How unlikely it is that the vehicle came to be there; it grows slowly far out: wheels slip, vehicles are bumped into."""
+        """How unlikely the pose ``found`` is after the motion [-]: log(1 + d^2) of its distance d in sigmas.
+
+        It grows slowly far out, for wheels slip and vehicles are bumped into.
+        """
         return log1p(float(np.sum((_off(motion, found) / np.array(self._usual(motion.noise).sigmas(motion.step))) ** 2)))
 
     def _usual(self, noise: MotionNoise) -> MotionNoise:

@@ -27,7 +27,7 @@ def _probability(row: int, column: int, grid: Grid) -> float:
 
 @compiled
 def interpolated(x: float, y: float, grid: Grid) -> tuple[float, float, float]:
-    """(M, dM/dx, dM/dy) at (x, y) [cells]: occupancy between the middles of four cells, equations 4 to 6."""
+    """(M, dM/dx, dM/dy) at (x, y) [cells]: occupancy [-] between the middles of four cells and its slopes [1/cell], equations 4 to 6."""
     u, v = x - 0.5, y - 0.5
     column, row = int(np.floor(u)), int(np.floor(v))
     dx, dy = u - column, v - row
@@ -39,7 +39,10 @@ def interpolated(x: float, y: float, grid: Grid) -> tuple[float, float, float]:
 
 @compiled
 def normal_equations(pose: Floats, points: Floats, grid: Grid) -> tuple[Floats, Floats, float]:
-    """(H, g, mean occupancy at the points) at a pose (3,): equations 12 and 13. points: (n, 2) m, base frame."""
+    """(H (3, 3), g (3,), mean occupancy 0 to 1 at the points) at a pose (3,) [m, m, rad]: equations 12 and 13.
+
+    points: (n, 2) [m, base frame].
+    """
     h, g, j = np.zeros((3, 3)), np.zeros(3), np.zeros(3)
     c, s = np.cos(pose[2]), np.sin(pose[2])
     total, cell = 0.0, grid[4]
@@ -57,7 +60,7 @@ def normal_equations(pose: Floats, points: Floats, grid: Grid) -> tuple[Floats, 
 
 @compiled
 def climb(start: Floats, points: Floats, grid: Grid, rounds: int, hold: tuple[Floats, Floats]) -> Floats:
-    """The pose (3,) after some Gauss-Newton steps on one map; where it is flat nothing moves.
+    """Pose (3,) [m, m, rad] after some Gauss-Newton steps from ``start`` on one map; where it is flat nothing moves. points: (n, 2) [m].
 
     hold: pose (3,) and weights (3,) of a weak spring, without which noise moves the pose along a bare corridor.
     """

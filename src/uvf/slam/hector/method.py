@@ -47,7 +47,7 @@ NOTHING = np.diag((1.0, 1.0, 0.3)) ** 2
 
 @dataclass
 class HectorSlam(IncrementalMethod):
-    """See ``SlamMethod``."""
+    """Scan matching on a pyramid of occupancy grids; see ``SlamMethod``."""
 
     params: HectorParams = field(default_factory=HectorParams)
 
@@ -60,6 +60,7 @@ class HectorSlam(IncrementalMethod):
         self._last: Reading | None = None
 
     def add(self, reading: Reading) -> SlamEstimate:
+        """Matches one reading to the maps, and draws it into them if the vehicle has moved enough."""
         last, self._last = self._last, reading
         if last is None:
             self._poses.append(IDENTITY)

@@ -9,6 +9,8 @@ from uvf.models.params import Params
 
 
 class HectorParams(Params, frozen=True):
+    """Parameters of ``HectorSlam``."""
+
     map_resolution: Annotated[float, Meta(ge=0.01, le=0.5), key("m", "Cell size of the finest map.")] = 0.05
     map_multi_res_levels: Annotated[
         int, Meta(ge=1, le=6), key("", "Maps of the pyramid; each has cells twice as large as the one before.")

@@ -32,7 +32,7 @@ STRIDE = 0.9  # of the distance to the nearest wall that a beam can be followed 
 
 @dataclass(frozen=True)
 class BeamLikelihood:
-    """ends: (n, 2) m, where beams came back from; origin: (x, y) m of the lidar; base frame."""
+    """Beams of a sweep in the base frame: their ends (n, 2) [m], and the lidar's place (x, y) [m]."""
 
     ends: Floats
     origin: tuple[float, float]
@@ -40,8 +40,10 @@ class BeamLikelihood:
 
 @dataclass(frozen=True)
 class Scores:
-    """(n,) of each pose. logs: log-likelihood of the sweep; shares of its beams, 0..1: ``fits`` are on walls, ``against`` have
-    gone through one or end where the map knows free floor; what is left ends where it knows nothing."""
+    """Scores (n,) of a sweep, one for each pose. logs: log-likelihood of the sweep; fits, against: shares of its beams, 0..1.
+
+    ``fits`` are on walls, ``against`` have gone through one or end where the map knows free floor; the rest ends where it knows nothing.
+    """
 
     logs: Floats
     fits: Floats
@@ -49,7 +51,10 @@ class Scores:
 
 
 def beams_of(reading: Reading, most: int) -> BeamLikelihood:
-    """At most so many, evenly taken; what gave no return tells nothing: black things and glass give none either."""
+    """At most ``most`` beams of a reading, evenly taken, of those that came back.
+
+    No return tells nothing: black things and glass give none either.
+    """
     returned = np.flatnonzero(reading.returned)
     taken = returned[:: max(1, -(-len(returned) // most))]
     return BeamLikelihood(
@@ -58,12 +63,13 @@ def beams_of(reading: Reading, most: int) -> BeamLikelihood:
 
 
 def field_of(known: KnownMap) -> Field:
+    """The distances of a known map and where its cells lie, for compiled kernels."""
     return known.distances, known.grid.origin.x, known.grid.origin.y, known.grid.resolution
 
 
 @compiled
 def distance_at(field: Field, x: float, y: float) -> float:
-    """m to the nearest wall, between the cells' middles; where nothing is known, as much below -1."""
+    """Distance [m] from (x, y) [m, map] to the nearest wall, between the cells' middles; where nothing is known, as much below -1."""
     distances, left, low, cell = field
     u, v = (x - left) / cell - 0.5, (y - low) / cell - 0.5
     c, r = int(np.floor(u)), int(np.floor(v))
@@ -138,17 +144,20 @@ def _scores(poses: Floats, beams: tuple[Floats, tuple[float, float]], field: Fie
 
 
 def ways(poses: Floats, beams: BeamLikelihood, field: Field) -> Mask:
-    """(poses, beams) whether each beam has gone through a wall, seen from poses (n, 3)."""
+    """Whether each beam has gone through a wall, (poses, beams), seen from poses (n, 3) [m, m, rad, map]."""
     return _ways(poses, (beams.ends, beams.origin), field)
 
 
 def scores(poses: Floats, beams: BeamLikelihood, field: Field, blocked: Mask, of: Ints) -> Scores:
-    """Of a sweep at poses (n, 3). blocked: as of ``ways`` of some of the places; of: (n,) which of them is a pose's, -1 for none."""
+    """Scores of a sweep at poses (n, 3) [m, m, rad, map].
+
+    blocked: as of ``ways`` at some places; of: (n,) which of these places is a pose's, -1 for none.
+    """
     logs, fits, against = _scores(poses, (beams.ends, beams.origin), field, (blocked, of))
     n = max(len(beams.ends), 1)
     return Scores(logs * min(1.0, INDEPENDENT / n), fits / n, against / n)
 
 
 def fits_at(poses: Floats, beams: BeamLikelihood, field: Field) -> Scores:
-    """The same with all beams looked along from each pose."""
+    """Scores of a sweep at poses (n, 3) [m, m, rad, map], with all beams followed from each pose."""
     return scores(poses, beams, field, np.zeros((0, len(beams.ends)), dtype=np.bool_), np.full(len(poses), -1))

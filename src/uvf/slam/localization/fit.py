@@ -22,42 +22,44 @@ PER_RMS = 4.0
 
 
 def worth(found: Match) -> float:
-    """Matches are compared by it: the share of points that find a surface, less PER_RMS for each metre of their distance."""
+    """Score by which matches are compared [-]: the share of points that find a surface, less PER_RMS for each metre of their distance."""
     return found.share - PER_RMS * found.rms
 
 
 @dataclass
 class UsualMatch:
-    """How many points of a sweep find a surface of the map, and how near [m] they are to it."""
+    """Averages of matches: the share of a sweep's points that find a surface of the map [-], and their rms distance to it [m]."""
 
     share: float = 0.7
     rms: float = 0.02
 
     def add(self, found: Match) -> bool:
-        """Whether it is as good as matches usually are."""
+        """Learns from a match; returns whether it is as good as matches usually are."""
         good = self.is_good(found)
         self.share += LEARNT * (found.share - self.share)
         self.rms += LEARNT * (found.rms - self.rms)
         return good
 
     def is_good(self, found: Match) -> bool:
+        """Whether a match is about as good as matches usually are."""
         return found.share >= WELL * self.share and found.rms <= LOOSE * self.rms
 
 
 @dataclass(frozen=True)
 class Fit:
-    """Of a sweep's beams, 0..1: how many are on walls of the map, and how many contradict it. The others tell nothing."""
+    """How a sweep fits the map: shares of its beams, 0..1, on walls and contradicting it. The others tell nothing."""
 
     on_walls: float
     against: float
 
     @property
     def says_something(self) -> bool:
+        """Whether enough beams agree with or contradict the map for the sweep to count."""
         return self.on_walls + self.against > ENOUGH
 
     @property
     def agreement(self) -> float:
-        """0..1; 0 where no beam tells anything."""
+        """Share of the beams that agree, of those that tell anything, 0 to 1; 0 where none does."""
         return self.on_walls / max(self.on_walls + self.against, 1e-9)
 
 
@@ -71,7 +73,7 @@ class UsualFit:
     usual: float = USUAL
 
     def add(self, fit: Fit, news: float, learns: bool) -> None:
-        """news: 0..1, how much the sweep tells; learns: whether it is to count as usual."""
+        """Takes a fit into the averages. news: how much new the sweep tells, 0 to 1; learns: whether the fit is to count as usual."""
         rate = 1.0 - (1.0 - SHORT) ** news
         self.on_walls += rate * (fit.on_walls - self.on_walls)
         self.against += rate * (fit.against - self.against)
@@ -82,23 +84,26 @@ class UsualFit:
 
     @property
     def share(self) -> float:
-        """0..1, how well it agrees now for what is usual."""
+        """How well the sweeps agree now compared with what is usual, 0 to 1."""
         return min(self.agreement / max(self.usual, LEAST_USUAL), 1.0)
 
     def contradicts(self, most: float) -> bool:
-        """Whether more beams than ``most`` tell against the place, and more than tell for it."""
+        """Whether the share of beams that contradict the map is above ``most``, 0 to 1, and above that of those on its walls."""
         return self.against > max(most, self.on_walls)
 
     @property
     def shows_nothing(self) -> bool:
+        """Whether hardly any beam ends on a wall of the map."""
         return self.on_walls < NOTHING
 
     def is_usual(self, fit: Fit, part: float) -> bool:
+        """Whether a fit tells something and agrees by more than ``part``, 0 to 1, of what is usual."""
         return fit.says_something and fit.agreement > part * max(self.usual, LEAST_USUAL)
 
     def begin(self, fit: Fit) -> None:
-        """What counts from now on is how it fits here."""
+        """Starts the short-term averages anew from this fit."""
         self.on_walls, self.against, self.agreement = fit.on_walls, fit.against, fit.agreement
 
     def forget_newest(self) -> None:
+        """Resets the short-term averages to no worse than what is usual."""
         self.on_walls, self.against, self.agreement = max(self.on_walls, USUAL), 0.0, max(self.agreement, self.usual)

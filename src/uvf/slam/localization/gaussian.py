@@ -10,7 +10,7 @@ Floats = NDArray[np.float64]
 
 @compiled
 def inverse(m: Floats) -> Floats:
-    """Of a symmetric matrix (3, 3) that is positive definite, by its Cholesky factor."""
+    """Inverse (3, 3) of a symmetric, positive definite matrix (3, 3), by its Cholesky factor."""
     f = factor(m)
     a, b, c = 1.0 / f[0, 0], 1.0 / f[1, 1], 1.0 / f[2, 2]
     ba = -f[1, 0] * a * b
@@ -26,7 +26,7 @@ def inverse(m: Floats) -> Floats:
 
 @compiled
 def factor(m: Floats) -> Floats:
-    """Lower triangle F (3, 3) with F F^T = m."""
+    """Lower triangle F (3, 3) of a symmetric, positive definite matrix m (3, 3) with F F^T = m."""
     f = np.zeros((3, 3))
     f[0, 0] = np.sqrt(m[0, 0])
     f[1, 0], f[2, 0] = m[1, 0] / f[0, 0], m[2, 0] / f[0, 0]
@@ -38,7 +38,7 @@ def factor(m: Floats) -> Floats:
 
 @compiled
 def drawn(mean: Floats, covariance: Floats, normals: Floats) -> Floats:
-    """(n, 3) of the Gaussian, from as many of the standard normal distribution."""
+    """Samples (n, 3) of a Gaussian with mean (3,) and covariance (3, 3), from standard normal numbers (n, 3)."""
     f = factor(covariance)
     out = np.empty_like(normals)
     for k in range(normals.shape[0]):
@@ -51,7 +51,7 @@ def drawn(mean: Floats, covariance: Floats, normals: Floats) -> Floats:
 
 @compiled
 def log_density(poses: Floats, mean: Floats, covariance: Floats) -> Floats:
-    """(n,) at poses (n, 3), but for a constant that is the same for all Gaussians."""
+    """Log density (n,) of a Gaussian with mean (3,) and covariance (3, 3) at poses (n, 3), but for a constant that all Gaussians share."""
     f = factor(covariance)
     size = np.log(f[0, 0]) + np.log(f[1, 1]) + np.log(f[2, 2])
     out = np.empty(poses.shape[0])

@@ -18,7 +18,7 @@ NONE, DROPPED = -1, -2
 
 @dataclass(frozen=True)
 class ParticleGroup:
-    """members: indices of its particles; weight: their sum; mean (x, y, yaw) and covariance (3, 3) [m, rad]."""
+    """Particles of one place: indices of its members (k,), sum of their weights, mean and covariance (3, 3) of (x, y, yaw) [m, rad]."""
 
     members: NDArray[np.int64]
     weight: float
@@ -27,7 +27,7 @@ class ParticleGroup:
 
 
 def groups_of(poses: Floats, weights: Floats, most: int) -> tuple[list[ParticleGroup], NDArray[np.int64]]:
-    """(at most so many groups, the heaviest first; indices of the particles in none of them): leader clustering."""
+    """(at most ``most`` groups, heaviest first; indices (k,) of particles in none) of poses (n, 3), weights (n,): leader clustering."""
     labels, count = _led(poses, weights, most)
     found = [_group(poses, weights, np.flatnonzero(labels == k)) for k in range(count)]
     return sorted(found, key=lambda g: -g.weight), np.flatnonzero(labels == NONE)
@@ -81,5 +81,5 @@ def _moments(poses: Floats, weights: Floats) -> tuple[float, Floats, Floats]:
 
 
 def near(p: Pose2, q: Pose2, distance: float = RADIUS, turn: float = TURN) -> bool:
-    """Whether two poses are the same place."""
+    """Whether two poses are less than ``distance`` [m] and ``turn`` [rad] apart: the same place."""
     return bool(np.hypot(p.x - q.x, p.y - q.y) < distance and abs(wrap(p.yaw - q.yaw)) < turn)

@@ -11,13 +11,13 @@ QUANTILE = 2.326  # of the normal distribution: the bound holds in 99 % of cases
 
 
 def bins_of(poses: Floats) -> int:
-    """Number of bins that poses (n, 3) fall into."""
+    """Number of bins that poses (n, 3) [m, m, rad] fall into."""
     places = np.floor(poses / (BIN, BIN, BIN_TURN)).astype(np.int64)
     return len(np.unique((places[:, 0] << 40) ^ ((places[:, 1] & 0xFFFFF) << 16) ^ (places[:, 2] & 0xFFFF)))
 
 
 def enough(bins: int) -> int:
-    """Particles for so many bins: equation 7, by Wilson and Hilferty's approximation."""
+    """Number of particles that are enough for so many bins: equation 7, by Wilson and Hilferty's approximation."""
     if bins < 2:
         return 1
     a = 2.0 / (9.0 * (bins - 1))

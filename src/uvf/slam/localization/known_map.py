@@ -35,9 +35,9 @@ UNKNOWN, OUTSIDE = -1.0, -2.0  # distances where nothing is known begin at the o
 
 @dataclass(frozen=True)
 class KnownMap:
-    """All in the map frame.
+    """A map that vehicles are localized on; all in the map frame.
 
-    grid: occupancy, its axes those of the frame; distances: (rows, columns) m to the nearest occupied cell, as much below -1 where
+    grid: occupancy, its axes those of the frame; distances: (rows, columns) [m] to the nearest occupied cell, as much below -1 where
     the map does not know whether the floor is free; surfaces: what sweeps are matched to; field: where a sweep is searched for in
     the whole map.
     """
@@ -49,13 +49,13 @@ class KnownMap:
 
     @cached_property
     def places(self) -> Floats:
-        """(n, 2) m, the middles of the cells where a vehicle may stand."""
+        """Middles (n, 2) [m] of the cells where a vehicle may stand."""
         row, column = np.nonzero((self.grid.cells >= 0) & (self.grid.cells <= FREE))
         return transform(self.grid.origin, np.column_stack((column + 0.5, row + 0.5)) * self.grid.resolution)
 
     @cached_property
     def floor(self) -> NDArray[np.bool_]:
-        """(columns, rows) of the field's cells in which a vehicle may stand."""
+        """Mask (columns, rows) of the field's cells in which a vehicle may stand."""
         floor = np.zeros(self.field.levels.shape[1:], dtype=np.bool_)
         cells = np.floor((self.places - np.array(self.field.corner)) / self.field.resolution).astype(np.int64)
         inside = ((cells >= 0) & (cells < floor.shape)).all(axis=1)
@@ -63,18 +63,18 @@ class KnownMap:
         return floor
 
     def covers(self, pose: Pose2) -> bool:
-        """Whether a pose is within the grid."""
+        """Whether a pose lies within the grid."""
         return bool(cells_of(self.grid, np.array((pose[:2],)))[2][0])
 
 
 def of_grid(grid: GridMap, map_from_grid: Pose2 = IDENTITY, source: str = "map") -> KnownMap:
-    """map_from_grid: of the frame that the grid's origin is in. Raises BadInput where there are no walls to go by."""
+    """Known map of an occupancy grid; map_from_grid: of the frame that its origin is in. Raises BadInput where it has too few walls."""
     placed = GridMap(grid.cells, grid.resolution, compose(map_from_grid, grid.origin))
     return _known(upright(placed), surfaces.of_grid(placed), source)
 
 
 def of_keyframes(keyframes: Sequence[Keyframe], source: str = "map") -> KnownMap:
-    """Raises BadInput where there are no walls to go by."""
+    """Known map of a session's keyframes. Raises BadInput where they show too few walls."""
     tiles = TileMap(CELL)
     tiles.follow(keyframes)
     cells, (x, y) = tiles.cells()
@@ -83,11 +83,12 @@ def of_keyframes(keyframes: Sequence[Keyframe], source: str = "map") -> KnownMap
 
 
 def is_session(path: Path) -> bool:
+    """Whether the path is that of a session's file, by its ending."""
     return path.suffix == SESSION
 
 
 def known_map(path: Path, map_from_file: Pose2) -> KnownMap:
-    """A session's file or a map's. Raises BadInput."""
+    """Known map of a session's file or a map's. Raises BadInput."""
     if not is_session(path):
         return of_grid(load_map(path), map_from_file, str(path))
     keyframes = MappingSession.load(path).keyframes

@@ -52,13 +52,15 @@ PUT_IN = 0.4  # weight of what a search has found while it is not known where th
 
 
 class LocalizerState(Enum):
+    """Whether the localizer knows its pose, searches for it from nothing, or has lost it."""
+
     TRACKING = "tracking"
     SEARCHING = "searching"
     LOST = "lost"
 
 
 class Localizer:
-    """Fed with readings as a ``SlamMethod`` is; poses are those of the known map's frame."""
+    """Monte Carlo localization, fed with readings as a ``SlamMethod`` is; poses are those of the known map's frame."""
 
     def __init__(self, known: KnownMap, params: FilterParams, seed: int, start: Pose2 | None = None, covariance: Floats = START) -> None:
         """start: map_from_base at the first reading; None where nothing is known."""
@@ -72,19 +74,19 @@ class Localizer:
         self.relocalize() if start is None else self.set_pose(start, covariance)
 
     def set_pose(self, pose: Pose2, covariance: Floats = START) -> None:
-        """The vehicle is at ``pose`` (map_from_base), with a covariance (3, 3) of (x, y, yaw)."""
+        """Begins at ``pose`` (map_from_base), with a covariance (3, 3) of (x, y, yaw) [m, rad]."""
         self.state = LocalizerState.TRACKING
         self.filter.begin_at(pose, covariance)
         self._begin(pose)
 
     def doubt(self, pose: Pose2) -> None:
-        """The vehicle may be at ``pose`` (map_from_base), or anywhere."""
+        """Begins at ``pose`` (map_from_base), which may be wrong, and searches the whole map as well."""
         self.state = LocalizerState.LOST
         self.filter.begin_at(pose, REMEMBERED)
         self._begin(pose)
 
     def relocalize(self) -> None:
-        """Nothing is known of where the vehicle is."""
+        """Begins with no knowledge of the pose: searches the whole map."""
         self.state = LocalizerState.SEARCHING
         self.filter.begin_anywhere()
         self._begin(self.pose)
@@ -101,6 +103,7 @@ class Localizer:
         self.fit.forget_newest()
 
     def add(self, reading: Reading) -> SlamEstimate:
+        """Takes in one reading; the estimate is in the known map's frame."""
         told = self._step(reading)
         news = 1.0 if self.is_fresh else min(1.0, hypot(told.x, told.y) / NEWS_WAY + abs(told.yaw) / NEWS_TURN)
         sweep = FilterSweep(cloud_of(reading), beams_of(reading, self.params.beams), news)
@@ -154,7 +157,7 @@ class Localizer:
 
     @property
     def quality(self) -> float:
-        """0..1: how sure it is that the vehicle is there, and how well what it sees fits."""
+        """Confidence, 0 to 1: how sure it is that the vehicle is there, and how well what it sees fits."""
         own = self._own
         if own is None:
             return 0.0

@@ -31,13 +31,13 @@ class OdometryNoise:
     turn: float = 0.002
 
     def times(self, factor: float) -> "OdometryNoise":
-        """Of an odometry whose sigmas are so many times as large."""
+        """Noise of an odometry whose sigmas are ``factor`` [-] times as large."""
         parts = (self.turn_by_turn, self.turn_by_way, self.way_by_way, self.way_by_turn)
         return OdometryNoise(*(factor**2 * v for v in parts), *(factor * v for v in (self.way, self.turn)))
 
 
 def sample_motion(poses: Floats, step: Pose2, noise: OdometryNoise, rng: np.random.Generator) -> Floats:
-    """Poses (n, 3) after a step of the odometry, each by a turn, a way and a second turn of its own.
+    """Poses (n, 3) [m, m, rad] after a step of the odometry, each by a turn, a way and a second turn of its own.
 
     A short step has hardly a direction: no more counts as its two turns than the vehicle has turned.
     """

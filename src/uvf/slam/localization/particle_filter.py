@@ -33,7 +33,7 @@ IN_GROUP = 60  # particles of a hypothesis that is put in
 
 @dataclass(frozen=True)
 class Hypothesis:
-    """Where the vehicle may be. weight: 0..1 of all; fit: of the newest sweep."""
+    """A pose that the vehicle may have. weight: 0..1 of all; fit: of the newest sweep."""
 
     pose: Pose2
     covariance: Floats
@@ -44,7 +44,7 @@ class Hypothesis:
 
 @dataclass(frozen=True)
 class FilterSweep:
-    """What was measured: cloud for matching, beams for weighing, both in the base frame. news: 0..1, how far it tells something new."""
+    """A sweep: cloud for matching, beams for weighing, both in the base frame. news: how much new it tells, 0 to 1."""
 
     cloud: Cloud
     beams: BeamLikelihood
@@ -52,18 +52,18 @@ class FilterSweep:
 
 
 class Prediction(NamedTuple):
-    """poses: (n, 3) of all particles after the motion; proposals: of their groups, the heaviest first, and of those in none."""
+    """Poses (n, 3) of all particles after the motion, and a proposal for each of their groups, the heaviest first, and for the rest."""
 
     poses: Floats
     proposals: list[PoseProposal]
 
     @property
     def only(self) -> PoseProposal | None:
-        """Of the one place that the particles stand for; None while there are several."""
+        """The proposal of the only place that the particles stand for; None while there are several."""
         return self.proposals[0] if len(self.proposals) == 1 and self.proposals[0].near else None
 
     def instead(self, other: Match | None) -> "Prediction":
-        """The same with another match of the heaviest group."""
+        """The prediction with another match of the heaviest group."""
         return self._replace(proposals=[replace(self.proposals[0], match=other), *self.proposals[1:]])
 
 
@@ -76,7 +76,7 @@ class _Drawn(NamedTuple):
 
 
 class ParticleFilter:
-    """poses: (n, 3) map_from_base; weights: (n,), sum 1."""
+    """Particles: poses map_from_base (n, 3) [m, m, rad] and weights (n,), of sum 1."""
 
     def __init__(self, known: KnownMap, limits: tuple[int, int], rng: np.random.Generator) -> None:
         """limits: fewest and most particles."""
@@ -87,12 +87,12 @@ class ParticleFilter:
         self.poses, self.weights = np.zeros((1, 3)), np.ones(1)
 
     def begin_at(self, pose: Pose2, covariance: Floats) -> None:
-        """All particles around one pose."""
+        """Draws all particles around one pose, with a covariance (3, 3) of (x, y, yaw) [m, rad]."""
         self.poses = self._around(pose, covariance, self.limits[0])
         self.weights = np.full(self.limits[0], 1.0 / self.limits[0])
 
     def begin_anywhere(self) -> None:
-        """As many particles as there may be, where a vehicle can stand."""
+        """Draws as many particles as there may be, wherever a vehicle can stand."""
         n = self.limits[1]
         places = self._places[self._rng.integers(len(self._places), size=n)]
         jitter = (self._rng.random((n, 2)) - 0.5) * self.known.grid.resolution
@@ -100,7 +100,7 @@ class ParticleFilter:
         self.weights = np.full(n, 1.0 / n)
 
     def put_in(self, poses: list[Pose2], covariance: Floats, part: float) -> None:
-        """New hypotheses that together get ``part`` of the weight."""
+        """Adds hypotheses at ``poses`` with a covariance (3, 3) of (x, y, yaw) [m, rad]; ``part``, 0 to 1, is their weight together."""
         if not poses:
             return
         fresh = [self._around(pose, covariance, IN_GROUP) for pose in poses]
@@ -109,7 +109,7 @@ class ParticleFilter:
         self.weights = np.concatenate((self.weights * (1.0 - part), np.full(n, part / n)))
 
     def predict(self, step: Pose2, noise: OdometryNoise, sweep: FilterSweep) -> Prediction:
-        """Where one motion leads, and what a sweep fits there. Nothing is changed yet."""
+        """Moves all particles by a step and proposes where the sweep fits there. Nothing is changed yet."""
         moved = sample_motion(self.poses, step, noise, self._rng)
         groups, loose = groups_of(moved, self.weights, MOST_GROUPS)
         proposals = [self._agreeing(proposal(self.known, group, sweep.cloud), sweep.beams) for group in groups]
@@ -126,7 +126,7 @@ class ParticleFilter:
         return found if at.fits[0] > at.against[0] else replace(found, match=None)
 
     def correct(self, prediction: Prediction, sweep: FilterSweep) -> list[Hypothesis]:
-        """One motion and one sweep; the hypotheses, the heaviest first."""
+        """Draws and weighs new particles by a prediction and its sweep; returns the hypotheses, the heaviest first."""
         proposals = prediction.proposals
         places = np.array([p.pose for p in proposals])
         blocked = ways(places, sweep.beams, self._field)
@@ -182,7 +182,7 @@ class ParticleFilter:
         return shares
 
     def spread(self) -> Floats:
-        """(3, 3) covariance of all particles."""
+        """Covariance (3, 3) of (x, y, yaw) of all particles [m, rad]."""
         off = self.poses - self.weights @ self.poses
         return (self.weights[:, None] * off).T @ off
 

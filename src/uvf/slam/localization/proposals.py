@@ -39,7 +39,10 @@ WIDER = 4.0  # factor of the match's covariance, whose Gaussian has to cover the
 
 @dataclass(frozen=True)
 class PoseProposal:
-    """group: after the motion; match: None where the sweep fits nowhere near; near: whether its particles stand for one place."""
+    """Where new particles of a group are drawn from. group: after the motion; match: None where the sweep fits nowhere near.
+
+    near: whether its particles stand for one place.
+    """
 
     group: ParticleGroup
     match: Match | None
@@ -47,11 +50,12 @@ class PoseProposal:
 
     @property
     def pose(self) -> Pose2:
+        """Pose map_from_base of the match, or the group's mean without one."""
         return self.match.map_from_base if self.match else self.group.mean
 
     @cached_property
     def covariance(self) -> Floats:
-        """(3, 3) of the pose."""
+        """Covariance (3, 3) of (x, y, yaw) of the pose [m, rad]."""
         predicted: Floats = self.group.covariance + LEAST_SPREAD
         if self.match is None:
             return predicted
@@ -59,7 +63,10 @@ class PoseProposal:
         return found
 
     def draw(self, n: int, moved: tuple[Floats, Floats], rng: np.random.Generator) -> tuple[Floats, Floats]:
-        """(poses (n, 3), log of prediction over proposal (n,)). moved: all particles after the motion, and their weights."""
+        """n new particles: (poses (n, 3), log of prediction over proposal (n,)).
+
+        moved: poses (m, 3) of all particles after the motion, and their weights (m,).
+        """
         by_motion = int(np.ceil(BY_MOTION * n))
         poses = moved[0][resampled(self.group.members, moved[1][self.group.members], by_motion, rng)]
         wide = WIDER * self.covariance
@@ -70,8 +77,11 @@ class PoseProposal:
         return poses, predicted - mixed
 
     def keep(self, part: float, moved: tuple[Floats, Floats], rng: np.random.Generator) -> tuple[Floats, Floats]:
-        """The particles of the group with the log of their weights, which are 1 on average; drawn anew where few have most of it,
-        or where only a part (0..1) of them is to be kept."""
+        """The group's particles (k, 3) and the log of their weights (k,), which are 1 on average.
+
+        They are resampled where few have most of the weight, or where only a ``part``, 0 to 1, of them is to be kept.
+        moved: poses (m, 3) of all particles after the motion, and their weights (m,).
+        """
         own = moved[1][self.group.members]
         weights = own * len(own) / own.sum()
         if part >= 1.0 and (weights**2).mean() < MOST_UNEQUAL and len(own) >= FEWEST:
@@ -81,7 +91,7 @@ class PoseProposal:
 
 
 def resampled(members: NDArray[np.int64], weights: Floats, n: int, rng: np.random.Generator) -> NDArray[np.int64]:
-    """n of the members by their weights, with low variance (Thrun et al. 2005, table 4.4)."""
+    """n of the members (k,) drawn by their weights (k,), with low variance (Thrun et al. 2005, table 4.4)."""
     ends = np.cumsum(weights)
     places = (rng.random() + np.arange(n)) / n * ends[-1]
     found: NDArray[np.int64] = members[np.minimum(np.searchsorted(ends, places), len(members) - 1)]
@@ -89,7 +99,7 @@ def resampled(members: NDArray[np.int64], weights: Floats, n: int, rng: np.rando
 
 
 def proposal(known: KnownMap, group: ParticleGroup, cloud: Cloud) -> PoseProposal:
-    """The sweep matched to the map from where the group is; looked for around it where that fits badly."""
+    """Proposal for a group: the sweep matched to the map from the group's mean, or searched for around it where that fits badly."""
     if len(cloud.points) == 0:
         return PoseProposal(group, None)
     spread = group.covariance + LEAST_SPREAD

@@ -16,7 +16,7 @@ SPACING, SPACING_TURN = 0.35, 0.2  # m, rad between them
 
 @dataclass(frozen=True)
 class Moved:
-    """step: of the base since the last sweep; matched: by the sweeps; fits: 0..1 and above, how well for what is usual."""
+    """Motion since the last sweep. matched: whether sweeps confirm it; fits: how well compared with what is usual, 0 to 1 and above."""
 
     step: Pose2
     matched: bool
@@ -24,7 +24,7 @@ class Moved:
 
 
 class RecentSweeps:
-    """Matches sweeps to those before them, in a frame that drifts."""
+    """Matches sweeps to the last ones before them, in a local frame that drifts."""
 
     def __init__(self) -> None:
         self._tracker = Tracker()
@@ -34,7 +34,7 @@ class RecentSweeps:
         """local_from_base."""
 
     def add(self, cloud: Cloud, step: Pose2) -> Moved:
-        """step: by the odometry."""
+        """Matches a sweep, starting from the odometry's ``step``; returns the improved motion."""
         before = self.pose
         if not self._kept:
             self._keep(cloud)
@@ -50,7 +50,7 @@ class RecentSweeps:
         return Moved(compose(inverse(before), self.pose), not tracked.doubted, tracked.match.share / max(usual, 1e-3))
 
     def follow(self, cloud: Cloud, step: Pose2) -> Moved:
-        """step: as it is known already."""
+        """Takes in a sweep after a ``step`` that is known already."""
         self.pose = compose(self.pose, step)
         self._keep(cloud)
         return Moved(step, True, 1.0)

@@ -26,7 +26,7 @@ PROBES = (1.6, 2.4)
 
 
 def of_keyframes(keyframes: Iterable[Keyframe], grid: GridMap) -> Cloud:
-    """What keyframes have hit and ``grid``, the map drawn of them, still knows as occupied; map frame."""
+    """Surfaces that keyframes have hit and that ``grid``, the map drawn of them, still has as occupied; map frame."""
     clouds = [cloud_of(k.reading).moved(k.map_from_base) for k in keyframes]
     if not clouds:
         return Cloud(np.zeros((0, 2)), np.zeros((0, 2)), np.zeros(0))
@@ -58,7 +58,7 @@ def _thinned(cloud: Cloud) -> Cloud:
 
 
 def of_grid(grid: GridMap) -> Cloud:
-    """Walls that border on floor, one point for each cell and each side from which it can be seen; frame of the grid's origin."""
+    """Surfaces of the walls that border on free floor, one point for each cell and side that can be seen; frame of the grid's origin."""
     occupied, free = grid.cells > OCCUPIED, (grid.cells >= 0) & (grid.cells <= FREE)
     points, normals = _faces(occupied, free)
     placed = transform(grid.origin, points * grid.resolution)

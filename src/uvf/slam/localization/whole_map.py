@@ -23,7 +23,7 @@ GRID, POINTS, REACH = 0.1, 160, 20.0  # m between points, number of them, m
 
 
 class Lately:
-    """The points seen on the last metres of the way, put together by odometry alone."""
+    """Points seen on the last metres of the way, put together by odometry alone."""
 
     def __init__(self) -> None:
         self._seen: deque[tuple[float, Pose2, Floats]] = deque(maxlen=MOST_KEPT)
@@ -31,7 +31,7 @@ class Lately:
         self._last: Pose2 | None = None
 
     def add(self, odom_from_base: Pose2, points: Floats) -> None:
-        """points: (n, 2) m, base frame."""
+        """Adds the points (n, 2) [m, base frame] of a sweep."""
         if self._last is not None:
             self.way += hypot(odom_from_base.x - self._last.x, odom_from_base.y - self._last.y)
         self._last = odom_from_base
@@ -46,10 +46,11 @@ class Lately:
         return len(self._seen)
 
     def forget(self) -> None:
+        """Drops all points."""
         self._seen.clear()
 
     def points(self) -> Floats:
-        """(n, 2) m in the base frame of now, thinned."""
+        """Points (n, 2) [m] in the base frame of now, thinned."""
         if self._last is None or not self._seen:
             return np.zeros((0, 2))
         base_from_odom = inverse(self._last)
@@ -61,5 +62,5 @@ class Lately:
 
 
 def whole_map(known: KnownMap, points: Floats, most: int) -> list[Found]:
-    """The best places for points (n, 2) [m, base frame], no two of them the same, the best first."""
+    """At most ``most`` places of the map where points (n, 2) [m, base frame] fit best, no two of them the same, the best first."""
     return everywhere(points, all_turns(points, known.field.sigma), known.field, Floor(known.floor, LEAST, RIVAL, most))

@@ -44,7 +44,7 @@ USUAL_RANGES = 100.0
 
 
 def read_carmen(path: Path) -> LaserLog:
-    """Lines that cannot be read are left out, counted and told in the notes. Raises BadInput for a file without a usable sweep."""
+    """Log of a CARMEN file. Lines that cannot be read are left out and counted in the notes. Raises BadInput for one without sweeps."""
     try:
         with path.open(encoding="ascii", errors="replace") as file:
             lines = read_lines(file)

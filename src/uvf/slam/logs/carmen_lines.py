@@ -23,11 +23,11 @@ NOWHERE = 1e9
 
 
 class UnreadableLine(ValueError):
-    """Why a line cannot be used."""
+    """A line that cannot be used, and why."""
 
 
 class LaserFan(NamedTuple):
-    """Directions as a ROBOTLASER line has them: bearing of the first beam and step [rad], largest range [m]."""
+    """Directions of beams as a ROBOTLASER line has them: bearing of the first beam and step [rad], largest range [m]."""
 
     start: float
     step: float
@@ -35,7 +35,7 @@ class LaserFan(NamedTuple):
 
 
 class LaserRecord(NamedTuple):
-    """A FLASER or ROBOTLASER line; only the latter says how its beams lie and where the laser was."""
+    """A FLASER or ROBOTLASER line: stamp [s], ranges (n,) [m]; only the latter tells how its beams lie and where the laser was."""
 
     stamp: float
     ranges: Floats
@@ -46,7 +46,7 @@ class LaserRecord(NamedTuple):
 
 @dataclass
 class Lines:
-    """What a file holds, in its order."""
+    """Contents of a CARMEN file, in its order."""
 
     sweeps: list[LaserRecord] = field(default_factory=list)
     odometry: list[tuple[float, float, float, float]] = field(default_factory=list)
@@ -57,7 +57,7 @@ class Lines:
 
 
 def read_lines(text: Iterable[str]) -> Lines:
-    """Lines of kinds that are of no use here are passed over in silence, broken ones are counted."""
+    """Reads lines; those of kinds that are of no use here are skipped in silence, broken ones are counted."""
     lines = Lines()
     with warnings.catch_warnings():
         # numpy warns where text is no number and will raise later; both mean the same here.

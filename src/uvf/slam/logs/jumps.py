@@ -18,8 +18,9 @@ QUICKEST, WIDEST = 2 * np.pi, 1.0
 
 
 def without_jumps(times: Floats, odom_from_base: Floats) -> tuple[Floats, NDArray[np.int64]]:
-    """The poses (n, 3) as if the vehicle had stood still while its odometry leapt (what else it did, nobody knows), and the indices
-    of those that were reached by a leap. times: (n,) s, never falling.
+    """Poses (n, 3) as if the vehicle had stood still where its odometry jumped, and the indices (k,) of those reached by a jump.
+
+    What else the vehicle did, nobody knows. times: (n,) [s], never falling; odom_from_base: (n, 3) [m, m, rad].
     """
     moved = steps(odom_from_base)
     leapt = np.flatnonzero(~_driven(moved.T, np.diff(times)))
@@ -33,7 +34,7 @@ def without_jumps(times: Floats, odom_from_base: Floats) -> tuple[Floats, NDArra
 
 
 def step_between(last: Reading, now: Reading) -> Pose2 | None:
-    """last_from_now by the odometry; None where that is a leap, or no number."""
+    """Motion last_from_now by the odometry; None where it is a jump or not finite."""
     if not all(isfinite(v) for v in (*last.odom_from_base, *now.odom_from_base)):
         return None
     step = compose(inverse(last.odom_from_base), now.odom_from_base)

@@ -15,7 +15,7 @@ Floats = NDArray[np.float64]
 class OdometryTrack:
     """The odometry's own lines, which come at other times than the sweeps.
 
-    t: (n,) s in the clock of the readings; odom_from_base: (n, 3) m, m, rad in the odometry frame of the readings.
+    t: (n,) [s] in the clock of the readings; odom_from_base: (n, 3) [m, m, rad] in the odometry frame of the readings.
     """
 
     t: Floats
@@ -24,7 +24,7 @@ class OdometryTrack:
 
 @dataclass(frozen=True)
 class LaserLog:
-    """Readings in the order in which they were taken.
+    """A recorded run: readings in the order in which they were taken.
 
     The odometry frame is the base frame of the first reading. Times of readings never fall.
     """
@@ -45,10 +45,10 @@ class LaserLog:
 
     @property
     def odom_from_base(self) -> Floats:
-        """(readings, 3) m, m, rad."""
+        """Poses (readings, 3) [m, m, rad] of the readings by the odometry."""
         return np.array([r.odom_from_base for r in self.readings], dtype=np.float64).reshape(-1, 3)
 
     @property
     def duration(self) -> float:
-        """s from the first reading to the last."""
+        """Time [s] from the first reading to the last."""
         return self.readings[-1].t - self.readings[0].t if self.readings else 0.0

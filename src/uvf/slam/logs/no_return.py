@@ -18,7 +18,7 @@ OUTSTANDING = 5.0
 
 
 def farthest_return(ranges: Sequence[Floats]) -> float:
-    """m: the ranges of a lidar's sweeps that are as long or longer are no returns.
+    """Range [m] from which on a lidar's readings are no returns, by its sweeps' ranges (n,) [m].
 
     Lidars that answer with their largest value, or codes near it, where nothing comes back have single values at the end of the
     histogram that stand out. Where none does every reading is a return, and the answer lies just above the longest.

@@ -20,7 +20,7 @@ CLOCK_SET_BACK = 10.0
 
 
 def taking_order(stamps: Floats, odom_from_base: Floats) -> NDArray[np.int64]:
-    """Indices that put the poses (n, 3) into the order in which they were driven through.
+    """Indices (n,) that put poses (n, 3) [m, m, rad] with stamps (n,) [s] into the order in which they were driven through.
 
     A file in order may have stamps that are not, and a shuffled file has good stamps. The vehicle tells which is the case: in
     the wrong order it goes to and fro, which makes the way longer. A leap of the odometry counts no more than one of FARTHEST.
@@ -36,26 +36,26 @@ def _way(odom_from_base: Floats) -> float:
 
 
 def garbled(stamps: Floats) -> NDArray[np.int64]:
-    """Indices of single stamps that are off by more than a clock's jitter, while those before and after them agree."""
+    """Indices (k,) of single stamps (n,) [s] that are off by more than a clock's jitter, while those before and after them agree."""
     before, after = np.diff(stamps)[:-1], np.diff(stamps)[1:]
     alone = (np.abs(before) > CLOCK_SET_BACK) & (np.abs(after) > CLOCK_SET_BACK) & (np.abs(before + after) <= CLOCK_SET_BACK)
     return np.flatnonzero(alone) + 1
 
 
 def mended(stamps: Floats) -> Floats:
-    """The stamps, a garbled one in the middle between its neighbours."""
+    """Stamps (n,) [s] with each garbled one set to the middle between its neighbours."""
     found, wrong = stamps.copy(), garbled(stamps)
     found[wrong] = (stamps[wrong - 1] + stamps[wrong + 1]) / 2
     return found
 
 
 def clock_resets(stamps: Floats) -> NDArray[np.int64]:
-    """Indices of the stamps before which the clock was set back."""
+    """Indices (k,) of the stamps (n,) [s] before which the clock was set back."""
     return np.flatnonzero(np.diff(stamps) < -CLOCK_SET_BACK) + 1
 
 
 def rising(stamps: Floats) -> Floats:
-    """Times [s] that never fall, as near to the stamps as can be (least squares; pool adjacent violators).
+    """Times (n,) [s] that never fall, as near to the stamps (n,) [s] as can be (least squares; pool adjacent violators).
 
     Where a clock was set back the time goes on with the median period.
     """

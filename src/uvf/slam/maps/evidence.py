@@ -17,7 +17,7 @@ _PER_CENT = np.rint(100.0 / (1.0 + np.exp(-UNIT * np.arange(LOWEST, HIGHEST + 1)
 
 
 class CellEvidence:
-    """Tiles are known by a number each, epochs by theirs, which grow with time."""
+    """Evidence of cells, as sums by tile and epoch. Tiles are known by a number each, epochs by theirs, which grow with time."""
 
     def __init__(self) -> None:
         self._pool = np.zeros((64, TILE, TILE), dtype=np.int16)
@@ -28,7 +28,7 @@ class CellEvidence:
 
     @property
     def size(self) -> int:
-        """Sums of one tile in one epoch that are kept."""
+        """Number of sums that are kept, each of one tile in one epoch."""
         return len(self._pool) - len(self._free)
 
     def is_settled(self, epoch: int, tiles: Sequence[int]) -> bool:
@@ -49,13 +49,13 @@ class CellEvidence:
         spread(*window, np.array([slots[tile] for tile in tiles], dtype=np.int64), self._pool, sign)
 
     def forget(self, epoch: int) -> None:
-        """Gives the room of an epoch back, of which everything has been taken away."""
+        """Frees the memory of an epoch of which everything has been taken away."""
         for tile, slot in self._slots.pop(epoch, {}).items():
             self._epochs[tile].remove((epoch, slot))
             self._free.append(slot)
 
     def cells(self, tiles: Sequence[int]) -> Cells:
-        """(n, TILE, TILE): -1 unknown, 0..100 per cent occupied."""
+        """Occupancy (n, TILE, TILE) of n tiles: -1 unknown, 0..100 per cent occupied."""
         out = np.zeros((len(tiles), TILE, TILE), dtype=np.int8)
         for i, tile in enumerate(tiles):
             if tile in self._settled:

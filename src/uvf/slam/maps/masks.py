@@ -21,25 +21,25 @@ LETHAL = 100
 
 @dataclass(frozen=True)
 class KeepOut:
-    """mask: as read from its file."""
+    """A keep-out mask, as read from its file."""
 
     mask: GridMap
 
     def onto(self, grid: GridMap) -> Mask:
-        """(rows, columns) of ``grid``: the cells that a kept-out one touches with its centre, or that have theirs in one."""
+        """Mask (rows, columns) of ``grid``: the cells that a kept-out one touches with its centre, or that have theirs in one."""
         kept_out: Mask = values_at(self.mask, centres(grid)).reshape(grid.cells.shape) == LETHAL
         row, column, inside = cells_of(grid, centres(self.mask)[self.mask.cells.ravel() == LETHAL])
         kept_out[row[inside], column[inside]] = True
         return kept_out
 
     def layer(self) -> GridMap:
-        """100 keep out, 0 not."""
+        """The mask as a grid: 100 keep out, 0 not."""
         return GridMap(np.where(self.mask.cells == LETHAL, 100, 0).astype(np.int8), self.mask.resolution, self.mask.origin)
 
 
 @dataclass(frozen=True)
 class SpeedLimit:
-    """A value v of the mask, 1..100, allows base + multiplier * v, in per cent of the vehicle's own speed or in m/s.
+    """A speed mask: its value v, 1..100, allows base + multiplier * v, in per cent of the vehicle's own speed or in m/s.
 
     0 and unknown are no limit. Nav2's demonstration has base 100 and multiplier -1: the darker, the slower.
     """
@@ -50,17 +50,17 @@ class SpeedLimit:
     multiplier: float = -1.0
 
     def shares(self, full_speed: float) -> Floats:
-        """(rows, columns) of the mask: allowed share, 0..1, of the vehicle's full speed [m/s]."""
+        """Allowed share (rows, columns), 0 to 1, of the vehicle's full speed [m/s], at the mask's cells."""
         values = self.mask.cells.astype(np.float64)
         limit = self.base + self.multiplier * values
         share = limit / 100.0 if self.unit == "percent" else limit / full_speed
         return np.where(values > 0, np.clip(share, 0.0, 1.0), 1.0)
 
     def onto(self, grid: GridMap, full_speed: float) -> Floats:
-        """(rows, columns) of ``grid``: allowed speed [m/s] at the cells' centres."""
+        """Allowed speed (rows, columns) [m/s] at the centres of the cells of ``grid``, for a vehicle of ``full_speed`` [m/s]."""
         values = values_at(self.layer(full_speed), centres(grid)).reshape(grid.cells.shape)
         return np.where(values < 0, 1.0, values / 100.0) * full_speed
 
     def layer(self, full_speed: float) -> GridMap:
-        """Per cent of the full speed [m/s], rounded down."""
+        """The mask as a grid of per cent of the full speed [m/s], rounded down."""
         return GridMap(np.floor(self.shares(full_speed) * 100.0 + 1e-6).astype(np.int8), self.mask.resolution, self.mask.origin)

@@ -28,7 +28,10 @@ GENUINE = 0.5
 
 @dataclass(frozen=True)
 class Detection:
-    """precision: share of the map's walls that are true ones; recall: share of the true ones that it has; within ``tolerance`` [m]."""
+    """How well walls are found within ``tolerance`` [m].
+
+    precision: share of the map's walls that are true ones; recall: share of the true ones that it has.
+    """
 
     tolerance: float
     precision: float
@@ -36,13 +39,17 @@ class Detection:
 
     @property
     def f1(self) -> float:
+        """F1 score, 0 to 1: the harmonic mean of precision and recall."""
         total = self.precision + self.recall
         return 2.0 * self.precision * self.recall / total if total else 0.0
 
 
 @dataclass(frozen=True)
 class WallAgreement:
-    """detections: for each of TOLERANCES; distances [m], (mean, 95th percentile): from the map's walls to true ones, and back."""
+    """Agreement of walls. detections: for each of TOLERANCES.
+
+    to_true, to_map: distances (mean, 95th percentile) [m] from the map's walls to true ones, and back.
+    """
 
     detections: tuple[Detection, ...]
     to_true: tuple[float, float]
@@ -51,7 +58,10 @@ class WallAgreement:
 
 @dataclass(frozen=True)
 class MapScore:
-    """free_iou, occupied_iou: intersection over union, over cells that both know; unknown: share of the floor that the map lacks."""
+    """Scores of a map. free_iou, occupied_iou: intersection over union, over cells that both know [-].
+
+    unknown: share of the floor that the map lacks [-]; thickness: of its walls [m].
+    """
 
     walls: WallAgreement
     free_iou: float
@@ -62,7 +72,7 @@ class MapScore:
 
 
 def score(grid: GridMap, plan: FloorPlan, plan_from_map: Pose2, floor: Mask | None = None) -> MapScore:
-    """A map against the truth. plan_from_map: where the map's frame lies in the plan's.
+    """Scores of a map against the truth. plan_from_map: where the map's frame lies in the plan's.
 
     plan: cells a few times smaller than the map's tell distances well; floor: its cells that could have been seen, else all free ones.
     """
@@ -83,7 +93,7 @@ def score(grid: GridMap, plan: FloorPlan, plan_from_map: Pose2, floor: Mask | No
 
 
 def compare(a: GridMap, b: GridMap) -> tuple[WallAgreement, float, float]:
-    """(walls of ``a`` against those of ``b`` where each knows the other's place, IoU of free cells, of occupied ones).
+    """(walls of ``a`` against those of ``b`` where each knows the other's place, IoU [-] of free cells, of occupied ones).
 
     Their origins are in one frame.
     """
@@ -93,12 +103,15 @@ def compare(a: GridMap, b: GridMap) -> tuple[WallAgreement, float, float]:
 
 
 def as_grid(plan: FloorPlan) -> GridMap:
-    """Every cell of the plan known."""
+    """The plan as an occupancy grid in which every cell is known."""
     return GridMap(np.where(plan.cells, 100, 0).astype(np.int8), plan.resolution, Pose2(plan.x, plan.y, 0.0))
 
 
 def agreement(found: tuple[Floats, Mask], true: tuple[Floats, Mask]) -> WallAgreement:
-    """Found against true wall points, (n, 2) m, and which of them count: the others may be matched, but need not be."""
+    """Agreement of found with true wall points, each (n, 2) [m] with a mask (n,) of those that count.
+
+    Points that do not count may be matched, but need not be.
+    """
     to_true, to_map = _nearest(found[0][found[1]], true[0]), _nearest(true[0][true[1]], found[0])
     detections = tuple(Detection(t, _share(to_true <= t), _share(to_map <= t)) for t in TOLERANCES)
     return WallAgreement(detections, _mean_and_tail(to_true), _mean_and_tail(to_map))
@@ -111,7 +124,7 @@ def _seen(walls: WallPoints, grid: GridMap) -> Mask:
 
 
 def overlaps(cells: NDArray[np.int8], others: NDArray[np.int8]) -> tuple[float, float]:
-    """Intersection over union of the free and of the occupied cells, over those that both know; both (rows, columns)."""
+    """Intersection over union [-] of the free and of the occupied cells, over those that both grids (rows, columns) know."""
     known = (cells >= 0) & (others >= 0)
     a, b = cells[known] > OCCUPIED, others[known] > OCCUPIED
     return _share((~a & ~b)[~a | ~b]), _share((a & b)[a | b])

@@ -61,7 +61,10 @@ NO_EDGES = Edges(np.zeros((0, 2), np.int64), np.zeros((0, 3)), np.zeros((0, 3, 3
 
 @dataclass(frozen=True)
 class MappingSession:
-    """keyframes in the order in which they were taken; method and parameters: what has made them, for the record."""
+    """A mapping session: keyframes in the order in which they were taken, and edges between them.
+
+    method and parameters: what has made them, for the record.
+    """
 
     keyframes: tuple[Keyframe, ...]
     edges: Edges
@@ -69,15 +72,15 @@ class MappingSession:
     parameters: dict[str, Any]
 
     def moved(self, a_from_map: Pose2) -> "MappingSession":
-        """The same in frame a."""
+        """The session with all poses in frame a."""
         return replace(self, keyframes=tuple(Keyframe(compose(a_from_map, k.map_from_base), k.reading) for k in self.keyframes))
 
     def save(self, path: Path) -> None:
-        """Ranges are kept as float32. Raises BadInput, also for what ``load`` would refuse; what was there before then stays."""
+        """Writes the session's file, ranges as float32. Raises BadInput, also for what ``load`` would refuse; what was there then stays."""
         write_whole(path, self.encoded(str(path)))
 
     def encoded(self, name: str) -> bytes:
-        """What a file holds; name: for the message of BadInput."""
+        """The bytes of the session's file; name: for the message of BadInput."""
         arrays = _arrays(self)
         _check(arrays, name)
         header = {"format": FORMAT, "version": VERSION, "method": self.method, "parameters": self.parameters}
@@ -87,7 +90,7 @@ class MappingSession:
 
     @classmethod
     def load(cls, path: Path) -> "MappingSession":
-        """Raises BadInput: no such file, not a session, of a later version, damaged, or numbers that make no sense."""
+        """Reads a session's file. Raises BadInput: none there, not a session, a later version, damaged, or numbers that make no sense."""
         try:
             data = path.read_bytes()
         except FileNotFoundError as error:
@@ -98,7 +101,7 @@ class MappingSession:
 
     @classmethod
     def decoded(cls, data: bytes, name: str) -> "MappingSession":
-        """Of what ``encoded`` has made; raises as ``load`` does."""
+        """The session in bytes that ``encoded`` has made. Raises BadInput as ``load`` does."""
         header, arrays = _read(io.BytesIO(data), name)
         _check(arrays, name)
         edges = Edges(*(arrays[name] for name in _EDGES))

@@ -33,7 +33,7 @@ def _entry(key: int, keys: Ints) -> int:
 
 @compiled
 def slot_at(row: int, column: int, grid: Grid) -> int:
-    """Where in the pool the tile of this row and column is."""
+    """Index in the pool of the tile of this row and column; 0 where there is none."""
     _, slots, keys, columns, _ = grid
     i = _entry(row * _ROW + column, keys)
     return int(slots[columns[i]]) if keys[i] != NO_KEY else 0
@@ -41,13 +41,13 @@ def slot_at(row: int, column: int, grid: Grid) -> int:
 
 @compiled
 def slot_of(row: int, column: int, grid: Grid) -> int:
-    """Where in the pool the tile of a cell is, of tiles of side TILE."""
+    """Index in the pool of the tile of a cell, of tiles of side TILE."""
     return slot_at(row // TILE, column // TILE, grid)
 
 
 @compiled
 def columns_of(places: Ints, keys: Ints, columns: Slots, count: int) -> tuple[Ints, int]:
-    """(column of each tile (n, 2), number of columns then): new ones are counted on from ``count`` and put into the table."""
+    """(columns (n,) of tiles (n, 2) in the table, number of columns then); new tiles are counted on from ``count`` and put into it."""
     found = np.empty(places.shape[0], dtype=np.int64)
     for n in range(places.shape[0]):
         key = places[n, 0] * _ROW + places[n, 1]
@@ -61,7 +61,7 @@ def columns_of(places: Ints, keys: Ints, columns: Slots, count: int) -> tuple[In
 
 @compiled
 def moved_keys(keys: Ints, columns: Slots, numbers: Ints, size: int) -> tuple[Ints, Slots]:
-    """A table of ``size`` entries in which column i is numbers[i]; negative: it is left out."""
+    """A table of ``size`` entries in which column i has become numbers[i]; those below 0 are left out."""
     new_keys, new_columns = np.full(size, NO_KEY, dtype=np.int64), np.zeros(size, dtype=np.int32)
     for k in range(keys.shape[0]):
         if keys[k] != NO_KEY and numbers[columns[k]] >= 0:
@@ -72,9 +72,9 @@ def moved_keys(keys: Ints, columns: Slots, numbers: Ints, size: int) -> tuple[In
 
 @compiled
 def add_evidence(window: NDArray[np.int8], tiles: Ints, slots: Ints, pool: Cells, evidence: tuple[int, int, int, int]) -> None:
-    """Adds to the log-odds what ``tile_kernels.sketch`` has drawn, and empties the window. evidence: hit, miss, lowest, highest.
+    """Adds what ``tile_kernels.sketch`` drew into a window (rows, columns) to the log-odds of its ``tiles`` (k, 2); empties the window.
 
-    What has no place but 0, the unknown tile's, is not drawn.
+    evidence: hit, miss, lowest, highest. Tiles without a place but 0, the unknown tile's, are not drawn.
     """
     hit, miss, lowest, highest = evidence
     words = window.view(np.int64)

@@ -24,7 +24,7 @@ LARGEST = 64_000_000
 
 @dataclass(frozen=True)
 class SharedEvidence:
-    """What a beam does to the log-odds of a cell that it ends in or goes through, and their bounds; whole numbers of any unit."""
+    """Change of a cell's log-odds by a beam that ends in it or goes through it, and their bounds; whole numbers of any unit."""
 
     hit: int
     miss: int
@@ -34,7 +34,10 @@ class SharedEvidence:
 
 @dataclass(frozen=True)
 class Stroke:
-    """Beams as they were drawn, in cells from the corner of tile ``first`` (row, column). ends: (n, 2); hit: (n,)."""
+    """Beams as they were drawn, in cells from the corner of tile ``first`` (row, column).
+
+    ends: (n, 2) [cells]; hit: (n,) whether the beam came back.
+    """
 
     ends: Floats
     hit: NDArray[np.bool_]
@@ -52,7 +55,7 @@ class SharedTiles(TilePool):
     def draw(self, k: int, reading: Reading, map_from_base: Pose2, evidence: SharedEvidence, reach: float = LONGEST) -> Stroke | None:
         """Draws a reading into map k, and returns what was drawn; None where nothing can be.
 
-        reach: m; beams that say they are longer are no return.
+        reach: beams that say they are longer [m] are no return.
         """
         beams, pose = reading.beams, map_from_base
         if not all(isfinite(v) and abs(v) < FARTHEST for v in pose):

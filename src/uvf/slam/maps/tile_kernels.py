@@ -25,9 +25,9 @@ _WORD = 8  # bytes looked at together
 def beam_ends(
     beams: tuple[Floats, Floats], sensor: tuple[float, float, float], gate: tuple[float, float, float], cell: float
 ) -> tuple[Floats, NDArray[np.bool_], tuple[float, float], tuple[int, int, int, int]]:
-    """(ends (m, 2), whether they hit (m,), where they begin, window), of the beams that say anything; in cells from the window's corner.
+    """(ends (m, 2), whether they hit (m,), start, window) of the beams that tell anything; in cells of side ``cell`` [m] from its corner.
 
-    beams: ranges (n,) [m] and directions (n, 2) in the base frame; sensor: the lidar's place [m, map] and the base's yaw;
+    beams: ranges (n,) [m] and directions (n, 2) in the base frame; sensor: the lidar's place [m, map] and the base's yaw [rad];
     gate: range_min, range_max, and how far a beam without a return counts as free [m]. What is closer than range_min and NaN
     is a disturbed beam and says nothing; 0 and what is beyond range_max is no return.
     window: the tiles that the beams are in: row and column of the first, number of rows and columns.
@@ -96,7 +96,7 @@ def sketch(ends: Floats, hit: NDArray[np.bool_], sensor: tuple[float, float], ga
 
 @compiled
 def touched_tiles(words: Ints) -> Ints:
-    """(k, 2) row and column of the window's tiles in which anything is drawn. words: its bytes, eight a word, (rows, columns / 8)."""
+    """Row and column (k, 2) of the window's tiles in which anything is drawn. words: its bytes, eight a word, (rows, columns / 8)."""
     rows, columns = words.shape[0] // TILE, words.shape[1] // (TILE // _WORD)
     found = np.empty((rows * columns, 2), dtype=np.int64)
     n = 0
@@ -128,10 +128,10 @@ def spread(window: NDArray[np.int8], tiles: Ints, slots: Ints, pool: Counts, sig
 
 @compiled
 def fold(pool: Counts, slots: Ints, first: Ints, per_cent: Bytes, out: Bytes) -> None:
-    """out[i]: occupancy of tile i from what was believed (out before) and its epochs, oldest first; (n, TILE, TILE), -1 unknown, 0..100.
+    """Writes to out (n, TILE, TILE) the occupancy of each tile by what was believed (out before) and its epochs: -1 unknown, 0..100.
 
-    slots[first[i] : first[i + 1]] are the places of its epochs in the pool. What is believed after each epoch is kept within
-    LOWEST .. HIGHEST, so that the next one can turn it over. per_cent: of each log-odds from LOWEST on.
+    slots[first[i] : first[i + 1]] are the places of tile i's epochs in the pool, oldest first. What is believed after each is kept
+    within LOWEST .. HIGHEST, so that the next one can turn it over. per_cent: of each log-odds from LOWEST on.
     """
     for i in range(out.shape[0]):
         for r in range(TILE):

@@ -22,7 +22,7 @@ SPARE = 8
 
 @dataclass(frozen=True)
 class TileKind:
-    """Squares of ``side`` x ``side`` cells, each of ``channels`` whole numbers of a type."""
+    """Kind of tiles: ``side`` x ``side`` cells, each of ``channels`` whole numbers of a type."""
 
     side: int
     channels: int
@@ -30,7 +30,7 @@ class TileKind:
 
     @property
     def size(self) -> int:
-        """Bytes."""
+        """Size of a tile in bytes."""
         return self.side * self.side * self.channels * np.dtype(self.number).itemsize
 
 
@@ -59,20 +59,20 @@ class TilePool:
 
     @property
     def tiles(self) -> int:
-        """Tiles that are held, each counted once."""
+        """Number of tiles that are held, each counted once."""
         return self.capacity - self._free_count
 
     def grid(self, k: int) -> Grid:
-        """Map k as compiled kernels read it; good until something is drawn."""
+        """Map k as compiled kernels read it; valid until something is drawn."""
         return self._pool, self._slots[k], self._keys, self._key_columns, self.cell
 
     def take(self, ancestors: Ints) -> None:
-        """Map i becomes what map ancestors[i] was. No tile is copied."""
+        """Makes map i what map ancestors[i] was. No tile is copied."""
         self._slots = self._slots[ancestors]
         self._keep((self._slots[:, : self._columns] != EMPTY).any(axis=0))
 
     def writable(self, k: int, places: Ints) -> Ints:
-        """Where in the pool the tiles at ``places`` (n, 2), row and column, are as map k's own; EMPTY where there is no room for it."""
+        """Indices (n,) in the pool of map k's own tiles at ``places`` (n, 2), row and column; EMPTY where there is no room for one."""
         self._now += 1
         columns = self._columns_at(places)
         slots: Ints = self._slots[k, columns].astype(np.int64)

@@ -53,7 +53,10 @@ class _Drawn:
 
 
 class TileMap:
-    """Square cells of ``resolution`` [m] in tiles; cell (row, column) covers resolution * (column..+1, row..+1) of the map frame."""
+    """Occupancy map of square cells of ``resolution`` [m] in tiles.
+
+    Cell (row, column) covers resolution * (column..+1, row..+1) of the map frame.
+    """
 
     def __init__(self, resolution: float = 0.05) -> None:
         self.resolution = resolution
@@ -108,7 +111,7 @@ class TileMap:
         return True
 
     def cells(self) -> tuple[Cells, tuple[float, float]]:
-        """((rows, columns) -1 unknown, 0..100 per cent occupied; (x, y) [m, map] of the corner of cell [0, 0]).
+        """Occupancy (rows, columns), -1 unknown, 0..100 per cent occupied, and the corner (x, y) [m, map] of cell [0, 0].
 
         Of the tiles in which anything is known; one unknown cell where there are none. Raises BadInput when that is too large.
         """
@@ -127,7 +130,7 @@ class TileMap:
         return out, (float(low[1] * TILE * self.resolution), float(low[0] * TILE * self.resolution))
 
     def distances(self) -> tuple[Floats, tuple[float, float]]:
-        """((rows, columns) m from each cell's centre to the nearest occupied one's, the corner of cell [0, 0] as of ``cells``)."""
+        """Distances (rows, columns) [m] from each cell's centre to the nearest occupied one's, and the corner [m, map] of cell [0, 0]."""
         cells, corner = self.cells()
         return distance_field(cells > OCCUPIED) * self.resolution, corner
 

@@ -27,7 +27,7 @@ OPENS = 0.15  # of its length, as an open door leaf does from its wall: no doubl
 
 @dataclass(frozen=True)
 class WallPoints:
-    """Where walls are, and the side from which they were seen. points: (n, 2) m; towards_free: (n, 2) unit vectors."""
+    """Wall points (n, 2) [m] and unit vectors towards_free (n, 2) to the side from which they were seen."""
 
     points: Floats
     towards_free: Floats
@@ -35,7 +35,10 @@ class WallPoints:
 
 @dataclass(frozen=True)
 class WallFigures:
-    """thickness: mean over all cells of flat walls [m]; double_walls: stretches; doubled: (rows, columns) the gaps within them."""
+    """Figures of a map's walls. thickness: mean over all cells of flat walls [m]; double_walls: number of stretches.
+
+    doubled: (rows, columns) the gaps within them.
+    """
 
     thickness: float
     double_walls: int
@@ -43,8 +46,10 @@ class WallFigures:
 
 
 def wall_points(grid: GridMap) -> WallPoints:
-    """Centres of the wall cells that border on what is free, in the frame that the grid's origin is given in; of those that are
-    as free on either side, one of the two counts."""
+    """Centres of the wall cells that border on free cells, in the frame that the grid's origin is given in.
+
+    Of cells that are as free on either side, one of the two counts.
+    """
     x, y = _free_side(grid.cells)
     even = (x == 0.0) & (y == 0.0)
     x[even], y[even] = _freest(grid.cells)[:, even]
@@ -57,7 +62,7 @@ def wall_points(grid: GridMap) -> WallPoints:
 
 
 def wall_figures(grid: GridMap) -> WallFigures:
-    """What the map tells of itself. A gap counts as doubled where it is free, as nobody can look in between two true walls."""
+    """Thickness and double walls of a map. A gap counts as doubled where it is free, for nobody can look in between two true walls."""
     normals, flat = _normals(grid.cells > OCCUPIED, max(round(WINDOW / grid.resolution), 2))
     gaps = np.zeros(grid.cells.shape)
     reach = int(np.ceil(DOUBLE_GAP / grid.resolution - 1e-9))
@@ -85,7 +90,7 @@ def _freest(cells: Cells) -> Floats:
 
 
 def beside_free(cells: Cells) -> Mask:
-    """(rows, columns) whether a free cell is among a cell's eight neighbours, or itself."""
+    """Mask (rows, columns) of the cells that are free or have a free one among their eight neighbours."""
     borders: Mask = ndimage.binary_dilation((cells >= 0) & (cells <= OCCUPIED), np.ones((3, 3)))
     return borders
 

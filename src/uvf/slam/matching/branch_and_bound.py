@@ -24,7 +24,7 @@ FINEST, COARSEST = 0.004, 0.02  # rad
 
 @dataclass(frozen=True)
 class Window:
-    """Poses to be searched: within ``side`` [m] of the centre in x and in y, within ``turn`` [rad]."""
+    """Poses to be searched: within ``side`` [m] of the centre in x and in y, within ``turn`` [rad] of its yaw."""
 
     centre: Pose2
     side: float
@@ -41,7 +41,7 @@ class Found:
 
 @compiled
 def score_at(cells: Ints, level: NDArray[np.uint8], a: int, b: int) -> int:
-    """Sum over the points, whose cells are (n, 2), moved by (a, b) cells."""
+    """Sum of a field's level over the points, whose cells are (n, 2), moved by (a, b) cells."""
     total = 0
     for k in range(cells.shape[0]):
         i, j = cells[k, 0] + a, cells[k, 1] + b
@@ -52,7 +52,7 @@ def score_at(cells: Ints, level: NDArray[np.uint8], a: int, b: int) -> int:
 
 @compiled
 def cells_at(points: Floats, pose: tuple[float, float, float], corner: tuple[float, float], resolution: float) -> Ints:
-    """(n, 2) cells of the points seen from a pose."""
+    """Cells (n, 2) of points (n, 2) [m] seen from a pose [m, m, rad]; corner [m] and resolution [m] are the field's."""
     cells = np.empty(points.shape, dtype=np.int64)
     c, s = np.cos(pose[2]), np.sin(pose[2])
     for k in range(points.shape[0]):
@@ -82,7 +82,7 @@ def _roots(cells: NDArray[np.int64], levels: NDArray[np.uint8], side: int) -> tu
 
 @compiled
 def descend(cells: NDArray[np.int64], levels: NDArray[np.uint8], node: Ints, best: int, side: int, out: Ints) -> int:
-    """Looks for a pose better than ``best`` below a node of the top level; fills ``out`` (turn, x, y) and gives its score."""
+    """Searches below a node of the top level for a pose better than ``best``; fills ``out`` (turn, x, y) and returns its score."""
     depth = levels.shape[0]
     stack = np.empty((4 * depth + 4, 5), dtype=np.int64)
     stack[0, 0], stack[0, 1], stack[0, 2], stack[0, 3], stack[0, 4] = depth - 1, node[0], node[1], node[2], best + 1
@@ -148,7 +148,7 @@ def _turn_step(points: Floats, sigma: float) -> float:
 
 
 def search(points: Floats, field: LikelihoodField, window: Window, least: float) -> Found | None:
-    """The pose in the window at which points (n, 2) [m] score best, None where none reaches ``least`` (0..1)."""
+    """Pose in the window at which points (n, 2) [m] score best; None where none reaches ``least``, 0 to 1."""
     if len(points) == 0:
         return None
     points = np.ascontiguousarray(points)  # one layout, one compiled kernel

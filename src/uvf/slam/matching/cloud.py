@@ -27,7 +27,7 @@ UNSURE = 0.3  # weight of a point whose normal is not known
 
 @dataclass(frozen=True)
 class Cloud:
-    """points: (n, 2) m; normals: (n, 2) unit vectors towards the lidar, 0 where the surface is not straight; one frame for both.
+    """A sweep as points (n, 2) [m] with unit normals (n, 2) towards the lidar, 0 where the surface is not straight; in one frame.
 
     weights: (n,) 0..1, how far a point tells where its surface is.
     """
@@ -38,18 +38,18 @@ class Cloud:
 
     @property
     def flat(self) -> NDArray[np.bool_]:
-        """(n,) where the normal is known."""
+        """Mask (n,) of the points whose normal is known."""
         known: NDArray[np.bool_] = (self.normals != 0.0).any(axis=1)
         return known
 
     def moved(self, a_from_b: Pose2) -> "Cloud":
-        """The same in frame a."""
+        """The cloud in frame a."""
         return Cloud(*placed(self.points, self.normals, np.array(a_from_b)), self.weights)
 
 
 @compiled
 def placed(points: Floats, normals: Floats, pose: Floats) -> tuple[Floats, Floats]:
-    """Points and normals, (n, 2) each, of frame b in frame a; pose: (3,) a_from_b."""
+    """Points and normals, (n, 2) each, of frame b in frame a; pose: a_from_b (3,) [m, m, rad]."""
     c, s = np.cos(pose[2]), np.sin(pose[2])
     moved, turned = np.empty_like(points), np.empty_like(normals)
     for i in range(points.shape[0]):
@@ -110,8 +110,10 @@ def _normals(points: Floats, returned: NDArray[np.bool_], view: tuple[tuple[floa
 
 
 def cloud_of(reading: Reading) -> Cloud:
-    """The beams that came back, base frame; of dense sweeps every second, third ... one. Normals: principal axis of the
-    neighbours in the order of the beams, of which none is left out."""
+    """Cloud of the beams that came back, base frame; of dense sweeps every second, third ... one.
+
+    Normals: principal axis of the neighbours in the order of the beams, of which none is left out.
+    """
     beams, returned = reading.beams, reading.returned
     ranges = np.where(returned, reading.ranges, 0.0)
     points = beams.directions * ranges[:, None] + np.array(beams.origin)
@@ -122,7 +124,7 @@ def cloud_of(reading: Reading) -> Cloud:
 
 
 def window_of(bearings: Floats) -> int:
-    """Number of beams within ``WINDOW`` to one side, at least 3."""
+    """Number of beams within ``WINDOW`` to one side of a beam, at least 3, by bearings (n,) [rad]."""
     if len(bearings) < 2:
         return 3
     return max(3, round(WINDOW / max(float(np.median(np.abs(np.diff(bearings)))), 1e-4)))

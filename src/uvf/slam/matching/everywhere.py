@@ -26,7 +26,7 @@ MOST_FOUND = 4000
 
 @dataclass(frozen=True)
 class Floor:
-    """What a place must be.
+    """Where a search may find the base, and which places count.
 
     free: (columns, rows) of the field's cells in which the base may be; least: score, 0..1; rival: part of the best score that
     another place has to reach; most: number of places.
@@ -97,13 +97,13 @@ def _peaks(cells: Ints, levels: NDArray[np.uint8], roots: tuple[Ints, Ints], lea
 
 
 def all_turns(points: Floats, sigma: float) -> Floats:
-    """(n,) rad, headings all round, so fine that most of the points (m, 2) move by no more than the field is wide from one to the next."""
+    """Headings (n,) [rad] all round, so fine that most points (m, 2) [m] move by about the field's ``sigma`` [m] from one to the next."""
     far = float(np.quantile(np.hypot(*points.T), FAR)) if len(points) else 1.0
     return np.arange(-np.pi, np.pi, min(max(1.5 * sigma / max(far, 1e-3), FINEST), COARSEST), dtype=np.float64)
 
 
 def everywhere(points: Floats, turns: Floats, field: LikelihoodField, floor: Floor) -> list[Found]:
-    """The best places for points (n, 2) [m, base frame] at one of the headings, no two of them the same, the best first."""
+    """Best places for points (n, 2) [m, base frame] at one of the headings ``turns`` (k,) [rad], no two the same, the best first."""
     if len(points) == 0 or len(turns) == 0:
         return []
     half = 0.5 * field.resolution

@@ -35,7 +35,10 @@ CAP = 0.1  # m, a residual counts no more than that in the root mean square
 
 @dataclass(frozen=True)
 class Match:
-    """map_from_base found; information: (3, 3) of (x, y, yaw), of the sweep alone; share: of the points that found a surface; rms [m]."""
+    """A match: map_from_base; information (3, 3) of (x, y, yaw) [1/m^2, 1/rad^2], of the sweep alone.
+
+    share: of the points that found a surface, 0..1; rms: of their distances to it [m].
+    """
 
     map_from_base: Pose2
     information: Floats
@@ -145,7 +148,10 @@ def _step(pose: Floats, h: Floats, g: Floats, prior: tuple[Floats, Floats]) -> F
 def refine(
     start: Floats, cloud: tuple[Floats, Floats, Floats], table: Table, prior: tuple[Floats, Floats], reach: float
 ) -> tuple[Floats, Floats, float, float]:
-    """(pose, H, share, rms). prior: pose and weight (3, 3) in units of one point's; reach: m, of the first association."""
+    """(pose (3,), H (3, 3), share [-], rms [m]) of a cloud's points (n, 2), normals (n, 2), weights (n,) near ``start`` (3,) [m, m, rad].
+
+    prior: pose (3,) and weight (3, 3) in units of one point's; reach: of the first association [m].
+    """
     pose = start.copy()
     h = np.zeros((3, 3))
     share = rms = 0.0
@@ -167,7 +173,10 @@ def refine(
 
 
 def match(start: Pose2, cloud: Cloud, surfaces: PointMap, prior_information: Floats, reach: float = CELL) -> Match:
-    """The pose near ``start`` at which the cloud fits, held by a prior there. prior_information: (3, 3) of (x, y, yaw)."""
+    """Match of a cloud near ``start``, held there by a prior with information (3, 3) of (x, y, yaw) [1/m^2, 1/rad^2].
+
+    reach: how far from a point its surface may be at first [m], at most CELL.
+    """
     begin = np.array(start)
     prior = (begin, prior_information * SIGMA**2)
     pose, h, share, rms = refine(begin, (cloud.points, cloud.normals, cloud.weights), surfaces.table, prior, min(reach, CELL))
@@ -190,7 +199,7 @@ def honest(h: Floats) -> Floats:
 
 
 def offsets(points: Floats, normals: Floats, surfaces: PointMap) -> Floats:
-    """(n,) m from points with normals, (n, 2) each, to the surface of the same side; infinite where there is none within CELL."""
+    """Distances (n,) [m] from points with normals, (n, 2) each, to the surface of the same side; infinite where none is within CELL."""
     return _offsets(points, normals, surfaces.table)
 
 

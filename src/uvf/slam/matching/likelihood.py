@@ -21,9 +21,10 @@ REACH = 3.0  # sigmas around a point that are filled
 
 @dataclass(frozen=True)
 class LikelihoodField:
-    """levels: (level, columns, rows); level l holds at a cell the most in the 2^l x 2^l cells from it upwards in x and y.
+    """A likelihood field and its bounds, scaled to FULL.
 
-    corner: (x, y) of the first cell, m; resolution, sigma: m.
+    levels: (level, columns, rows); level l holds at a cell the most in the 2^l x 2^l cells from it upwards in x and y.
+    corner: (x, y) of the first cell [m]; resolution, sigma [m].
     """
 
     levels: NDArray[np.uint8]
@@ -67,7 +68,7 @@ def _bounds(levels: NDArray[np.uint8]) -> None:
 
 
 def likelihood_field(points: Floats, resolution: float, sigma: float, depth: int) -> LikelihoodField:
-    """Of points (n, 2) [m] with ``depth`` levels of bounds above the field itself.
+    """Likelihood field of points (n, 2) [m], with cells of ``resolution`` [m], ``sigma`` [m], and ``depth`` levels of bounds above it.
 
     The margin below and to the left is the side of the top level's squares: a square that begins outside still has its bound.
     """

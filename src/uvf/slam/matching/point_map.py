@@ -20,13 +20,13 @@ Table = tuple[Floats, Floats, Floats, Ints, float, float, int, int]
 
 @dataclass(frozen=True)
 class PointMap:
-    """Surfaces known in one frame. table: for the compiled kernels."""
+    """Surfaces in one frame, as points in a hash of cells. table: for the compiled kernels."""
 
     table: Table
 
     @property
     def points(self) -> Floats:
-        """(n, 2) m."""
+        """Points (n, 2) [m] on the surfaces."""
         return self.table[0]
 
 
@@ -50,7 +50,7 @@ def _order(points: Floats, corner: tuple[float, float], shape: tuple[int, int]) 
 
 
 def point_map(clouds: list[Cloud]) -> PointMap:
-    """Of the points whose normal is known, all in the same frame."""
+    """Point map of the points whose normal is known, of clouds in one frame."""
     points = np.concatenate([np.empty((0, 2)), *(c.points for c in clouds)])
     normals = np.concatenate([np.empty((0, 2)), *(c.normals for c in clouds)])
     weights = np.concatenate([np.empty(0), *(c.weights for c in clouds)])

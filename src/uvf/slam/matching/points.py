@@ -9,7 +9,7 @@ Floats = NDArray[np.float64]
 
 
 def points_of(reading: Reading, reach: float, most: int) -> Floats:
-    """(n, 2) m, base frame: of the beams that came back from within ``reach`` [m], thinned evenly to no more than ``most``.
+    """Ends (n, 2) [m, base frame] of the beams that came back from within ``reach`` [m], thinned evenly to no more than ``most``.
 
     None of a reading that has another number of ranges than of beams.
     """

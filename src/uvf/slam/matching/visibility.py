@@ -21,6 +21,7 @@ Rays = tuple[tuple[float, float], Floats, Floats]
 
 
 def rays_of(reading: Reading) -> Rays:
+    """The beams of a reading sorted by bearing, base frame."""
     ranges = np.where(reading.returned, reading.ranges, 0.0)
     bearings = np.ascontiguousarray(reading.beams.bearings)
     if (np.diff(bearings) < 0.0).any():  # it turns clockwise, or has moved past an edge while it swept
@@ -44,7 +45,10 @@ def _place(rising: Floats, value: float) -> int:
 
 @compiled
 def verdicts(points: Floats, base_from_points: tuple[float, float, float], rays: Rays) -> NDArray[np.int8]:
-    """(n,) of surface points (n, 2) [m]: AGREES where the sweep sees them, THROUGH where it looks through them, 0 where neither."""
+    """Verdict (n,) on surface points (n, 2) [m]: AGREES where the sweep sees them, THROUGH where it looks through them, 0 where neither.
+
+    base_from_points: pose [m, m, rad] of the points' frame in the sweep's base frame.
+    """
     origin, bearings, ranges = rays
     found = np.zeros(points.shape[0], dtype=np.int8)
     last = bearings.shape[0] - 1

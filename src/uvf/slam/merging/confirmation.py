@@ -25,7 +25,7 @@ HIDDEN, HIDDEN_SLOPE = 0.35, 0.02
 
 
 def confirmed_part(told: Floats, confirmed: Floats) -> float:
-    """0..1: of ``told`` (2, 2), sum of outer products of normals, the part confirmed along the direction with the least."""
+    """Part, 0 to 1, of ``told`` (2, 2), a sum of outer products of normals, that ``confirmed`` (2, 2) has along its weakest direction."""
     values, axes = np.linalg.eigh(told)
     if values[0] <= 0.0:
         return 0.0
@@ -34,7 +34,10 @@ def confirmed_part(told: Floats, confirmed: Floats) -> float:
 
 
 def of_place(a: VehicleMap, i: int, b: VehicleMap, j: int, i_from_j: Pose2) -> tuple[Floats, Floats]:
-    """(told, confirmed), each (2, 2) in the frame of i: of keyframes around j where those around i have looked, and the other way round."""
+    """Sums (told, confirmed) of outer products of normals, each (2, 2) in the frame of i.
+
+    Of keyframes around j where those around i have looked, and the other way round.
+    """
     one, back = _told(a, i, b, j, i_from_j), _told(b, j, a, i, inverse(i_from_j))
     c, s = np.cos(i_from_j.yaw), np.sin(i_from_j.yaw)
     turn = np.array(((c, -s), (s, c)))

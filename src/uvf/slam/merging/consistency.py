@@ -24,7 +24,7 @@ CONSISTENT = 11.3
 
 
 def chi_square(p: Closure, q: Closure, a: VehicleMap, b: VehicleMap) -> float:
-    """Of the difference between two ways from p.i in a to q.j in b: by closure p and along b, and along a and by closure q."""
+    """Chi square [-] of the difference of two ways from p.i in a to q.j in b: by closure p and along b, and along a and by closure q."""
     along_b, along_a = b.nodes.between(p.j, q.j), a.nodes.between(p.i, q.i)
     first, second = compose(p.i_from_j, along_b), compose(along_a, q.i_from_j)
     of_p: Floats = np.asarray(np.linalg.inv(p.information), dtype=np.float64)
@@ -35,7 +35,7 @@ def chi_square(p: Closure, q: Closure, a: VehicleMap, b: VehicleMap) -> float:
 
 
 def agreement(closures: Sequence[Closure], a: VehicleMap, b: VehicleMap) -> Mask:
-    """(n, n) which closures agree; none with another of the same keyframe, which is in one place only."""
+    """Which closures agree with which (n, n); none with another of the same keyframe, which is in one place only."""
     n = len(closures)
     agree = np.zeros((n, n), dtype=np.bool_)
     for k, p in enumerate(closures):
@@ -46,8 +46,10 @@ def agreement(closures: Sequence[Closure], a: VehicleMap, b: VehicleMap) -> Mask
 
 
 def largest_clique(agree: Mask) -> list[int]:
-    """Rows that all agree with each other, as many as the heuristic of Pattabiraman et al. (2013) finds: from each row on, always
-    the one that agrees with the most is taken."""
+    """Rows of ``agree`` (n, n) that all agree with each other, as many as the heuristic of Pattabiraman et al. (2013) finds.
+
+    From each row on, always the one that agrees with the most is taken.
+    """
     best: list[int] = []
     degree = agree.sum(axis=1)
     for start in np.argsort(-degree, kind="stable").tolist():

@@ -16,7 +16,7 @@ CONFIRMED = 0.75
 
 
 def searched(a: VehicleMap, b: VehicleMap, j: int) -> list[Closure]:
-    """Places of session a in which what b has seen around its keyframe j fits: several where they look alike."""
+    """Closures where what b has seen around its keyframe j fits into session a: several where places look alike."""
     points = b.query(j)
     turns = likely(all_turns(points, SIGMA), a.facing, facing(b.nodes.submap(j).surfaces.table[1]))
     places = everywhere(points, turns, a.field, Floor(a.near, LEAST_SCORE, RIVAL, MOST_PLACES))
@@ -25,7 +25,7 @@ def searched(a: VehicleMap, b: VehicleMap, j: int) -> list[Closure]:
 
 
 def fit(a: VehicleMap, b: VehicleMap, j: int, a_from_j: Pose2) -> Closure | None:
-    """Keyframe j of b in the submap of a nearest to where it is believed to be in the map of a; None where it does not fit.
+    """Closure of keyframe j of b and the submap of a nearest to its believed pose in the map of a; None where it does not fit.
 
     The score is the part of it that is confirmed.
     """
@@ -53,7 +53,7 @@ def _seen_around(a: VehicleMap, i: int, b: VehicleMap, j: int, i_from_j: Pose2) 
 
 
 def the_other_way_round(closure: Closure) -> Closure:
-    """The same with i and j exchanged."""
+    """The closure with i and j exchanged."""
     j_from_i = inverse(closure.i_from_j)
     c, s = np.cos(j_from_i.yaw), np.sin(j_from_i.yaw)
     by = np.array(((-c, s, j_from_i.y), (-s, -c, -j_from_i.x), (0.0, 0.0, -1.0)))  # of (x, y, yaw) of j_from_i by that of i_from_j

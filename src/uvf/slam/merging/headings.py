@@ -16,7 +16,7 @@ LIKELY = 0.5
 
 
 def facing(normals: Floats, yaw: float = 0.0) -> Floats:
-    """(FACES,) how many unit normals (n, 2), turned by yaw [rad], face which way; those that are 0 count nowhere."""
+    """Histogram (FACES,) of the directions of unit normals (n, 2), turned by yaw [rad]; normals that are 0 do not count."""
     known = normals[(normals != 0.0).any(axis=1)]
     angles = np.arctan2(known[:, 1], known[:, 0]) + yaw
     counts = np.bincount(np.floor(angles / (2.0 * np.pi) * FACES).astype(np.int64) % FACES, minlength=FACES)
@@ -24,7 +24,7 @@ def facing(normals: Floats, yaw: float = 0.0) -> Floats:
 
 
 def likely(turns: Floats, a: Floats, b: Floats) -> Floats:
-    """Those of the turns [rad] that bring what b faces to what a faces."""
+    """Those of the ``turns`` (n,) [rad] that bring what b (FACES,) faces to what a (FACES,) faces."""
     waves = np.fft.rfftfreq(FACES, 1.0 / FACES)
     blur = np.exp(-((waves * BLUR) ** 2))
     alike = np.fft.irfft(np.fft.rfft(a) * np.conj(np.fft.rfft(b)) * blur, FACES)

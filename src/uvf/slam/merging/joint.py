@@ -22,7 +22,7 @@ LOOP = KINDS.index("loop")
 
 @dataclass(frozen=True)
 class Crossing:
-    """Keyframe i of session a and j of session b, by their names."""
+    """A closure between keyframe i of session a and keyframe j of session b, by their names."""
 
     a: str
     b: str
@@ -31,14 +31,17 @@ class Crossing:
 
 @dataclass(frozen=True)
 class JointGraph:
-    """poses: (n, 3) by session, team_from_base; crossings: those that are believed."""
+    """Several sessions in one graph: poses team_from_base (n, 3) [m, m, rad] by session, and the crossings that are believed."""
 
     poses: dict[str, Floats]
     crossings: list[Crossing]
 
 
 def settled(parts: Mapping[str, VehicleMap], crossings: Sequence[Crossing], starts: Mapping[str, Floats]) -> JointGraph:
-    """All measurements of all sessions at once, from starts (n, 3) by session; the first keyframe of the first session stays."""
+    """Optimises all measurements of all sessions at once, from starts (n, 3) [m, m, rad] by session.
+
+    The first keyframe of the first session stays.
+    """
     graph, first = PoseGraph(), _firsts(parts)
     for name in parts:
         for pose in starts[name].tolist():
@@ -57,13 +60,13 @@ def settled(parts: Mapping[str, VehicleMap], crossings: Sequence[Crossing], star
 
 
 def start_by(closure: Closure, placed_a: Floats, own_b: Floats) -> Floats:
-    """(n, 3) where the keyframes of b are, by a closure to one of a, whose own are placed already."""
+    """Poses (n, 3) of the keyframes of b by a closure to a, from placed poses of a (m, 3) and b's own (n, 3) [m, m, rad]."""
     team_from_j = composed(placed_a[closure.i], np.array(closure.i_from_j))
     return composed(team_from_j, composed(inverted(own_b[closure.j]), own_b))
 
 
 def session_of(parts: Mapping[str, VehicleMap], joint: JointGraph) -> MappingSession:
-    """All keyframes, one session after the other, and all edges."""
+    """One session of all keyframes, one session after the other, and all edges."""
     first = _firsts(parts)
     keyframes = [
         Keyframe(Pose2(*pose), node.reading)

@@ -27,7 +27,7 @@ KEPT = 60  # closures that wait for others to agree with them
 
 @dataclass
 class Pair:
-    """closures: keyframe i of a, j of b, right ones and wrong ones."""
+    """Two sessions, and the closures found between keyframes i of a and j of b, right ones and wrong ones."""
 
     a: VehicleMap
     b: VehicleMap
@@ -37,7 +37,7 @@ class Pair:
     _known: tuple[int, int] = (0, 0)
 
     def grow(self) -> None:
-        """Takes note of new places; of what there is at first only the session with fewer places is searched in the other."""
+        """Queues new places for the search; of those that are there at first only those of the session with fewer places."""
         before, self._known = self._known, (len(self.a.places), len(self.b.places))
         if 0 in self._known:
             self._known = (0, 0)
@@ -53,11 +53,11 @@ class Pair:
 
     @property
     def waiting(self) -> int:
-        """Places that have not been searched for yet."""
+        """Number of places that have not been searched for yet."""
         return len(self._waiting)
 
     def ask(self, most: int) -> int:
-        """Searches for so many of the places that wait; how many there were."""
+        """Searches for at most ``most`` of the waiting places; returns how many there were."""
         for done in range(most):
             if not self._waiting:
                 return done

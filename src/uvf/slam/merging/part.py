@@ -33,7 +33,7 @@ LEG = np.diag((0.03, 0.03, 0.01)) ** 2
 
 
 class VehicleMap:
-    """All in the map frame of the session. name: for messages.
+    """A session made ready to be merged; all in its map frame. name: for messages.
 
     places: keyframes from which all that was seen was seen, no two of them near each other.
     """
@@ -86,12 +86,12 @@ class VehicleMap:
 
     @property
     def poses(self) -> Floats:
-        """(n, 3) map_from_base of the keyframes."""
+        """Poses map_from_base (n, 3) [m, m, rad] of the keyframes."""
         return np.array(self.nodes.poses).reshape(-1, 3)
 
     @property
     def field(self) -> LikelihoodField:
-        """Of all surfaces. Raises ValueError where there are none."""
+        """Likelihood field of all surfaces. Raises ValueError where there are none."""
         if self._field is None:
             points = np.concatenate([transform(pose, self.nodes.still(i).points) for i, pose in enumerate(self.nodes.poses)])
             _, first = np.unique(np.floor(points / GRAIN).astype(np.int64), axis=0, return_index=True)
@@ -100,7 +100,7 @@ class VehicleMap:
 
     @property
     def near(self) -> Mask:
-        """(columns, rows) of the field's cells that are near a keyframe."""
+        """Mask (columns, rows) of the field's cells that are near a keyframe."""
         if self._near is None:
             self._near = np.zeros(self.field.levels.shape[1:], dtype=np.bool_)
             reach = round(VIEW / RESOLUTION)
@@ -111,7 +111,7 @@ class VehicleMap:
 
     @property
     def facing(self) -> Floats:
-        """(FACES,) how much of all surfaces faces which way."""
+        """Histogram (FACES,) of the directions in which all surfaces face."""
         if self._facing is None:
             self._facing = np.sum(
                 [facing(self.nodes.all[i].cloud.normals, pose.yaw) for i, pose in enumerate(self.nodes.poses)], axis=0, initial=0.0
@@ -119,7 +119,7 @@ class VehicleMap:
         return self._facing
 
     def query(self, i: int) -> Floats:
-        """(n, 2) m, base frame of keyframe i: what was seen around it, thinned."""
+        """Points (n, 2) [m, base frame of keyframe i] that were seen around it, thinned."""
         points = self.nodes.submap(i).surfaces.points
         points = points[np.hypot(*points.T) < QUERY_RANGE]
         _, first = np.unique(np.floor(points / QUERY_GRID).astype(np.int64), axis=0, return_index=True)
@@ -127,7 +127,7 @@ class VehicleMap:
         return thinned[:: max(1, -(-len(thinned) // QUERY_POINTS))]
 
     def leg(self, i: int, j: int) -> Floats:
-        """(3, 3) of (x, y, yaw) of i_from_j, by the session's own measurements."""
+        """Covariance (3, 3) of (x, y, yaw) of i_from_j [m, rad], by the session's own measurements."""
         if i not in self._covariances:
             self._covariances[i] = self.graph.covariances_from(i)
         known: Floats = self._covariances[i][j] + LEG

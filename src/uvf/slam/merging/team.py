@@ -25,23 +25,24 @@ AT_ONCE = 8  # places that are searched for before it is seen whether these are 
 
 @dataclass(frozen=True)
 class MapGroup:
-    """Sessions in one frame, the map of the first. common: by two of them, places where they must have seen the same."""
+    """Sessions in one frame, the map of the first. common: by pairs of them, places where they must have seen the same."""
 
     joint: JointGraph
     common: Mapping[tuple[str, str], Ties] = field(default_factory=dict)
 
     @property
     def names(self) -> tuple[str, ...]:
+        """Names of its sessions, the first of which gives the frame."""
         return tuple(self.joint.poses)
 
     @property
     def quality(self) -> float:
-        """0..1: how far what its sessions tell of common places is the same; 1 for a session alone."""
+        """How far its sessions agree about common places, 0 to 1; 1 for a session alone."""
         return agreement(self.common.values())
 
 
 class Team:
-    """Fed with sessions by name, as often as they grow; works when told to."""
+    """Merges sessions, which are fed by name as often as they grow; works when told to."""
 
     def __init__(self) -> None:
         self.parts: dict[str, VehicleMap] = {}
@@ -50,7 +51,7 @@ class Team:
         self._refused: dict[tuple[str, str], int] = {}
 
     def follow(self, name: str, session: MappingSession) -> None:
-        """A session that does not go on from what it was is taken for a new one. Raises BadInput."""
+        """Takes in a session; one that does not go on from what it was is taken for a new one. Raises BadInput."""
         part = self.parts.get(name)
         if part is None or not part.follow(session):
             part = VehicleMap(name)
@@ -63,7 +64,7 @@ class Team:
             pair.grow()
 
     def work(self, most: int) -> bool:
-        """Takes in what is new, and searches for so many places at most; whether a map may have changed."""
+        """Takes in what is new, and searches for at most ``most`` places; returns whether a map may have changed."""
         changed = [self._grow(group) for group in list(self.groups)]
         joined = False
         for (a, b), pair in self._pairs.items():
@@ -79,15 +80,17 @@ class Team:
             self.work(AT_ONCE)
 
     def group_of(self, name: str) -> MapGroup:
+        """The group that a session belongs to."""
         return next(group for group in self.groups if name in group.names)
 
     def team_from_map(self, name: str) -> Pose2:
-        """Where the map of a session lies in the frame of its group, as a whole."""
+        """Pose of a session's map, as a whole, in the frame of its group."""
         if not len(self.parts[name]):
             return IDENTITY
         return aligned(self.group_of(name).joint.poses[name][:, :2], self.parts[name].poses[:, :2])
 
     def session_of(self, group: MapGroup) -> MappingSession:
+        """One session of all keyframes and edges of a group."""
         return session_of(self._members(group), group.joint)
 
     def _members(self, *groups: MapGroup) -> dict[str, VehicleMap]:

@@ -21,7 +21,10 @@ REACH, REACH_TURN = 1.5, 0.7
 
 @dataclass(frozen=True)
 class Ties:
-    """looked: places where the sessions are that near to each other; crossings: those at which they fit."""
+    """Further closures between two sessions. looked: number of places where the sessions are near each other.
+
+    crossings: those at which they fit.
+    """
 
     looked: int
     crossings: tuple[Crossing, ...]
@@ -31,14 +34,14 @@ class Ties:
 
 
 def agreement(found: Iterable[Ties]) -> float:
-    """0..1: how far what they tell is confirmed where they are near each other, on average; 1 where there is no such place."""
+    """Mean part, 0 to 1, of what they tell that is confirmed where they are near each other; 1 where there is no such place."""
     every = list(found)
     looked = sum(of_two.looked for of_two in every)
     return sum(c.closure.score for of_two in every for c in of_two.crossings) / looked if looked else 1.0
 
 
 def ties(parts: Mapping[str, VehicleMap], poses: Mapping[str, Floats], a: str, b: str, since: int = 0) -> Ties:
-    """Of keyframes of b, from ``since`` on, in submaps of a. poses: (n, 3) by session, team_from_base."""
+    """Closures of keyframes of b, from ``since`` on, in submaps of a. poses: team_from_base (n, 3) [m, m, rad] by session."""
     found, looked = [], 0
     for j in range(since, len(parts[b]), SPACING):
         pose = poses[b][j]

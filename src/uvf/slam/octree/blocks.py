@@ -64,7 +64,7 @@ def _inside_block(x: int, y: int, z: int) -> int:
 
 @compiled
 def find_or_add(blocks: Blocks, key: int) -> int:
-    """The number of a block, made unknown if it was not there; there must be room for it."""
+    """Number of a block, which is added as unknown if it was not there; there must be room for it."""
     place = _place(blocks.table, blocks.keys, key, np.uint64(blocks.table.shape[0] - 1))
     number = blocks.table[place]
     if number < 0:
@@ -79,7 +79,7 @@ def find_or_add(blocks: Blocks, key: int) -> int:
 
 @compiled
 def rehash(blocks: Blocks) -> None:
-    """Fills an empty table anew."""
+    """Fills an empty hash table with all blocks."""
     mask = np.uint64(blocks.table.shape[0] - 1)
     for number in range(blocks.counts[BLOCKS]):
         blocks.table[_place(blocks.table, blocks.keys, blocks.keys[number], mask)] = number
@@ -292,7 +292,7 @@ def _value(blocks: Blocks, x: int, y: int, z: int) -> np.float32:
 
 @compiled
 def values_at(blocks: Blocks, points: Singles, resolution: float) -> Singles:
-    """(n,) log-odds at points (n, 3) [m]; NaN unknown."""
+    """Log-odds (n,) [-] at points (n, 3) [m], in cells of ``resolution`` [m]; NaN unknown."""
     found = np.full(points.shape[0], UNKNOWN, dtype=np.float32)
     for i in range(points.shape[0]):
         p = points[i]
@@ -303,9 +303,9 @@ def values_at(blocks: Blocks, points: Singles, resolution: float) -> Singles:
 
 @compiled
 def cast(blocks: Blocks, rays: tuple[Singles, Singles, float], resolution: float, through_unknown: bool) -> Ints:
-    """(n, 3) the first occupied cell on each ray, or -1: nothing, or the unknown, came first.
+    """Cell (n, 3) of the first occupied cell on each ray, or -1: nothing, or the unknown, came first. resolution: side of a cell [m].
 
-    rays: origins (n, 3), directions (n, 3), reach [m] to a cell's middle; 0: to the end of the map.
+    rays: origins (n, 3) [m], directions (n, 3), reach [m] to a cell's middle; 0: to the end of the map.
     """
     origins, directions, reach = rays
     met = np.full((origins.shape[0], 3), -1)
@@ -348,7 +348,10 @@ def cast(blocks: Blocks, rays: tuple[Singles, Singles, float], resolution: float
 
 @compiled
 def set_cells(blocks: Blocks, keys: Ints, inside: Ints, values: Singles) -> None:
-    """Gives cells a value: keys (n,) of their blocks, inside (n,) their Morton numbers there; room and spare rows must be there."""
+    """Gives cells the ``values`` (n,): keys (n,) of their blocks, inside (n,) their Morton numbers there.
+
+    Room and spare rows must be there.
+    """
     for i in range(keys.shape[0]):
         slot = _expand(blocks, find_or_add(blocks, keys[i]))
         blocks.values[slot, inside[i]] = values[i]
@@ -356,6 +359,6 @@ def set_cells(blocks: Blocks, keys: Ints, inside: Ints, values: Singles) -> None
 
 @compiled
 def set_blocks(blocks: Blocks, keys: Ints, values: Singles) -> None:
-    """Gives whole new blocks a single value."""
+    """Gives whole new blocks with keys (n,) a single value (n,) each."""
     for i in range(keys.shape[0]):
         blocks.uniform[find_or_add(blocks, keys[i])] = values[i]

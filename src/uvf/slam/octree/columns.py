@@ -35,7 +35,7 @@ class Columns:
 
 
 def columns_of(octree: Octree, low: float, high: float, most: int) -> Columns | None:
-    """All columns; None while nothing is known.
+    """The map seen from above, in columns of cells; None while nothing is known.
 
     The slice holds the cells that reach into low..high [m]: one occupied cell makes its column occupied, else one free cell makes it free.
     Where there would be more than ``most`` columns they are put together, four in one, until there are not; no larger grid is made

@@ -30,7 +30,7 @@ NODE = np.dtype([("value", "<f4"), ("children", "u1")])
 
 
 class FileNodes(NamedTuple):
-    """The whole tree, from the root down, each node before its children. value: (n,) log-odds, of an inner node its children's highest;
+    """Nodes of the whole tree, from the root down, each before its children. value: (n,) log-odds, of an inner node its children's highest;
     children: (n,) one bit each; pairs: (n,) two bits each, as in .bt.
     """
 
@@ -40,7 +40,7 @@ class FileNodes(NamedTuple):
 
 
 def to_ot(leaves: Leaves, resolution: float) -> bytes:
-    """The file's content."""
+    """Content of an .ot file of leaves in cells of ``resolution`` [m]."""
     nodes = FileNodes(*_nodes(*leaves))
     packed = np.empty(len(nodes.value), dtype=NODE)
     packed["value"], packed["children"] = nodes.value, nodes.children
@@ -48,7 +48,7 @@ def to_ot(leaves: Leaves, resolution: float) -> bytes:
 
 
 def to_bt(leaves: Leaves, resolution: float) -> bytes:
-    """The file's content; how sure a cell is is lost."""
+    """Content of a .bt file of leaves in cells of ``resolution`` [m]; how sure a cell is is lost."""
     nodes = FileNodes(*_nodes(*likeliest(leaves, LOWEST, HIGHEST)))
     inner = nodes.pairs[nodes.children > 0]
     return _header(BINARY, len(nodes.value), resolution) + inner.astype("<u2").tobytes()
@@ -59,7 +59,7 @@ def _header(first: str, size: int, resolution: float) -> bytes:
 
 
 def read_octree(data: bytes, name: str) -> Octree:
-    """The map in a .bt or .ot file's content; name: of the file. Raises BadInput."""
+    """Map in the content of a .bt or .ot file; name: of the file. Raises BadInput."""
     first, resolution, size, body = _read_header(data, name)
     if first == BINARY:
         pairs = np.frombuffer(body[: len(body) // 2 * 2], dtype="<u2").astype(np.uint16)

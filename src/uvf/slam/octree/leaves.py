@@ -35,12 +35,13 @@ STAGES = (
 
 
 class TooLarge(ValueError):
-    """A map that does not fit into what it is to be put into; one line says so."""
+    """A map does not fit into what it is to be put into."""
 
 
 class Leaves(NamedTuple):
-    """codes: (n,) Morton number of the lowest cell in each, rising; depths: (n,) 16 = a cell, a leaf's side is 2^(16 - depth) cells;
-    values: (n,) log-odds.
+    """Leaves of an octree. codes: (n,) Morton number of the lowest cell in each, rising; values: (n,) log-odds.
+
+    depths: (n,) 16 = a cell; a leaf's side is 2^(16 - depth) cells.
     """
 
     codes: Ints
@@ -49,7 +50,7 @@ class Leaves(NamedTuple):
 
 
 def leaves_of(octree: Octree) -> Leaves:
-    """All that is known, pruned. Raises TooLarge for a map that reaches farther than OctoMap's 32768 cells from the origin."""
+    """Leaves of all that is known, pruned. Raises TooLarge for a map that reaches farther than OctoMap's 32768 cells from the origin."""
     blocks = octree.blocks
     places = block_places(blocks.keys[: blocks.counts[BLOCKS]]) - SHIFT
     if len(places) and (places.min() < 0 or places.max() >= 1 << BLOCK_DEPTH):
@@ -62,12 +63,12 @@ def leaves_of(octree: Octree) -> Leaves:
 
 
 def pruned(leaves: Leaves) -> Leaves:
-    """Eight leaves that fill a cube and say the same become one."""
+    """The leaves with each eight that fill a cube and say the same as one."""
     return Leaves(*_prune(*leaves))
 
 
 def coarser(leaves: Leaves, depth: int) -> Leaves:
-    """No leaf smaller than those of ``depth``; of several in one, the most occupied counts (as for OctoMap's inner nodes)."""
+    """The leaves with none smaller than those of ``depth``; of several in one, the most occupied counts (as for OctoMap's inner nodes)."""
     shift = 3 * (DEPTH - depth)
     codes = leaves.codes >> shift << shift
     first = np.flatnonzero(np.diff(codes, prepend=-1))
@@ -76,19 +77,19 @@ def coarser(leaves: Leaves, depth: int) -> Leaves:
 
 
 def likeliest(leaves: Leaves, lowest: np.float32, highest: np.float32) -> Leaves:
-    """Each leaf surely occupied or surely free."""
+    """The leaves with each surely occupied, ``highest``, or surely free, ``lowest``."""
     return pruned(leaves._replace(values=np.where(leaves.values >= 0.0, highest, lowest).astype(np.float32)))
 
 
 def boxes(leaves: Leaves, resolution: float) -> tuple[Floats, Floats]:
-    """Middles (n, 3) and sides (n,) of the leaves [m]."""
+    """Middles (n, 3) [m] and sides (n,) [m] of the leaves, in cells of ``resolution`` [m]."""
     sides = (1 << (DEPTH - leaves.depths.astype(np.int64))).astype(np.float64)
     corners = unmorton(leaves.codes) - CENTRE
     return (corners + sides[:, None] / 2) * resolution, sides * resolution
 
 
 def bounds(leaves: Leaves, resolution: float) -> tuple[Floats, Floats] | None:
-    """Lowest and highest corner (3,) of all that is known [m]; None: nothing is."""
+    """Lowest and highest corner (3,) [m] of all that is known, in cells of ``resolution`` [m]; None while nothing is."""
     if not len(leaves.codes):
         return None
     middles, sides = boxes(leaves, resolution)
@@ -96,7 +97,7 @@ def bounds(leaves: Leaves, resolution: float) -> tuple[Floats, Floats] | None:
 
 
 def octree_of(leaves: Leaves, resolution: float) -> Octree:
-    """The map that has these leaves. Raises TooLarge for one that is known throughout in too large a volume."""
+    """Map that has these leaves, in cells of ``resolution`` [m]. Raises TooLarge for one that is known in too large a volume."""
     octree = Octree(resolution)
     large = leaves.depths <= BLOCK_DEPTH
     counts = np.left_shift(1, 3 * (BLOCK_DEPTH - leaves.depths[large].astype(np.int64)))
@@ -123,14 +124,14 @@ def _keys(codes: Ints) -> Ints:
 
 
 def block_places(keys: Ints) -> Ints:
-    """(n, 3) x, y, z of blocks, counted from the map's lowest corner."""
+    """Places (n, 3) x, y, z of blocks by their keys (n,), counted from the map's lowest corner."""
     mask = (1 << AXIS) - 1
     places: Ints = np.column_stack((keys & mask, keys >> AXIS & mask, keys >> (2 * AXIS) & mask))
     return places
 
 
 def morton(places: Ints) -> Ints:
-    """(n,) the bits of (n, 3) numbers below 2^21 interleaved, x in the lowest place."""
+    """Morton numbers (n,): the bits of places (n, 3) below 2^21 interleaved, x in the lowest place."""
     for shift, mask in STAGES:
         places = (places | places << shift) & mask
     codes: Ints = places[:, 0] | places[:, 1] << 1 | places[:, 2] << 2
@@ -138,7 +139,7 @@ def morton(places: Ints) -> Ints:
 
 
 def unmorton(codes: Ints) -> Ints:
-    """(n, 3): ``morton`` undone."""
+    """Places (n, 3) of Morton numbers (n,); the inverse of ``morton``."""
     places = codes[:, None] >> np.arange(3, dtype=np.int64) & STAGES[-1][1]
     for (shift, _), (_, mask) in zip(STAGES[::-1], (*STAGES[-2::-1], (0, 0x1FFFFF)), strict=True):
         places = (places | places >> shift) & mask

@@ -15,10 +15,10 @@ FREE, OCCUPIED, NOT_KNOWN = 0, 1, -1
 
 
 class Octree:
-    """The map's cells are cubes of ``resolution`` [m], the first from the frame's origin on; it reaches 4 194 300 of them to each side.
+    """A 3-D occupancy map. Its cells are cubes of ``resolution`` [m], the first from the frame's origin on.
 
-    What is measured and how sure it is are OctoMap's (``layout.py``); a cell is occupied from log-odds 0 on. Points and directions are
-    taken in single precision, as there.
+    It reaches 4 194 300 of them to each side. What is measured and how sure it is are OctoMap's (``layout.py``); a cell is occupied
+    from log-odds 0 on. Points and directions are taken in single precision, as there.
     """
 
     def __init__(self, resolution: float) -> None:
@@ -36,24 +36,26 @@ class Octree:
 
     @property
     def is_empty(self) -> bool:
+        """Whether nothing is known."""
         return self.block_count == 0
 
     @property
     def block_count(self) -> int:
+        """Number of blocks of cells of which anything is known."""
         return int(self._blocks.counts[BLOCKS])
 
     @property
     def memory(self) -> int:
-        """Bytes taken, with what is kept for growing and for the next scan."""
+        """Memory taken in bytes, with what is kept for growing and for the next scan."""
         return sum(array.nbytes for array in (*self._blocks, *self._marks))
 
     @property
     def blocks(self) -> Blocks:
-        """For kernels that read the whole map."""
+        """The blocks, for kernels that read the whole map."""
         return self._blocks
 
     def insert(self, origin: Floats, points: Floats, reach: float = np.inf) -> None:
-        """One scan. origin: (3,) m, where it was taken from; points: (n, 3) m, where its beams ended.
+        """Inserts one scan: origin (3,) [m], where it was taken from, and points (n, 3) [m], where its beams ended.
 
         A beam longer than ``reach`` [m] has met nothing: it is free as far as there (that is how those without a return are told).
         Points that are not finite, and beams that leave the map, are left out.
@@ -70,32 +72,32 @@ class Octree:
             apply_marks(self._blocks, self._marks)
 
     def log_odds(self, points: Floats) -> Singles:
-        """(n,) of the cells at (n, 3) points [m]; NaN where nothing is known."""
+        """Log-odds (n,) of the cells at points (n, 3) [m]; NaN where nothing is known."""
         return values_at(self._blocks, np.ascontiguousarray(points, dtype=np.float32).reshape(-1, 3), self.resolution)
 
     def states(self, points: Floats) -> NDArray[np.int8]:
-        """(n,) OCCUPIED, FREE or NOT_KNOWN at (n, 3) points [m]."""
+        """State (n,) of the cells at points (n, 3) [m]: OCCUPIED, FREE or NOT_KNOWN."""
         values = self.log_odds(points)
         return np.where(np.isnan(values), NOT_KNOWN, np.where(values >= 0.0, OCCUPIED, FREE)).astype(np.int8)
 
     def cast(self, origins: Floats, directions: Floats, reach: float = 0.0, through_unknown: bool = False) -> Floats:
-        """(n, 3) m, middle of the first occupied cell on each ray; NaN where nothing, or something unknown, comes first.
+        """Middles (n, 3) [m] of the first occupied cell on each ray; NaN where nothing, or something unknown, comes first.
 
-        origins, directions: (n, 3), of any length; reach: m to a cell's middle, 0 = to the map's end.
+        origins (n, 3) [m]; directions (n, 3), of any length; reach: to a cell's middle [m], 0 = to the map's end.
         """
         starts, along = (np.ascontiguousarray(a, dtype=np.float32).reshape(-1, 3) for a in (origins, directions))
         cells = cast(self._blocks, (starts, along, float(reach)), self.resolution, through_unknown)
         return np.where(cells >= 0, (cells - REACH + 0.5) * self.resolution, np.nan)
 
     def set_cells(self, keys: Ints, inside: Ints, values: Singles) -> None:
-        """Gives cells a log-odds. keys: (n,) of their blocks, inside: (n,) Morton numbers within these; clamped."""
+        """Gives cells log-odds (n,), clamped. keys: (n,) of their blocks, inside: (n,) Morton numbers within these."""
         fresh = np.unique(keys)
         self._grow_blocks(self.block_count + len(fresh))
         self._grow_rows(len(fresh))
         set_cells(self._blocks, keys, inside, np.clip(values, LOWEST, HIGHEST))
 
     def set_blocks(self, keys: Ints, values: Singles) -> None:
-        """Gives whole blocks that are not there yet one log-odds, clamped; keys: (n,)."""
+        """Gives whole blocks that are not there yet one log-odds each, values (n,), clamped; keys: (n,)."""
         self._grow_blocks(self.block_count + len(keys))
         set_blocks(self._blocks, keys, np.clip(values, LOWEST, HIGHEST))
 

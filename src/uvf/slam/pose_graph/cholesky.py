@@ -106,7 +106,7 @@ def _eliminate(front: Floats, columns: int) -> bool:
 
 @compiled
 def factorise(tree: Tree, normal: Normal, damping: float, panels: Floats, updates: Floats) -> bool:
-    """Fills ``panels`` and ``updates`` with the factor of the normal matrix plus ``damping`` on its diagonal.
+    """Fills ``panels`` and ``updates`` with the factor of the normal matrix plus ``damping`` [1/m^2, 1/rad^2] on its diagonal.
 
     Blocks between poses are [a, b] = (a of the pose eliminated first, b of the other). False: not positive definite.
     """
@@ -170,7 +170,7 @@ def _backward(tree: Tree, s: int, panels: Floats, x: Floats) -> None:
 
 @compiled
 def solve(tree: Tree, panels: Floats, right: Floats) -> Floats:
-    """(k, n, 3) solutions for as many right sides, by pose."""
+    """Solutions (k, n, 3) for k right sides (k, n, 3), by pose."""
     n = tree.pivots.shape[0]
     out, x = np.empty_like(right), np.empty(3 * n)
     for side in range(right.shape[0]):

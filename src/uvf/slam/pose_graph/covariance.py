@@ -10,7 +10,7 @@ Floats = NDArray[np.float64]
 
 
 def jacobians(poses: Floats, i: int) -> tuple[Floats, Floats]:
-    """(n, 3, 3) each, of (x, y, yaw) of i_from_j for every pose j: by pose i, by pose j, in the map frame."""
+    """Jacobians (n, 3, 3) of (x, y, yaw) of i_from_j for every pose j of ``poses`` (n, 3): by pose i, and by pose j, in the map frame."""
     c, s = np.cos(poses[i, 2]), np.sin(poses[i, 2])
     by_j = np.array(((c, s, 0.0), (-s, c, 0.0), (0.0, 0.0, 1.0)))
     lever = np.tile(np.eye(3), (len(poses), 1, 1))
@@ -19,7 +19,7 @@ def jacobians(poses: Floats, i: int) -> tuple[Floats, Floats]:
 
 
 class Marginals:
-    """Covariances of the poses of a linearised system, for as long as that is left alone."""
+    """Covariances of the poses of a linearised system, valid for as long as that is left alone."""
 
     def __init__(self, system: LinearSystem, poses: Floats) -> None:
         system.step()
@@ -27,7 +27,7 @@ class Marginals:
         self._own: Floats | None = None
 
     def relative(self, i: int, j: int) -> Floats:
-        """(3, 3) of (x, y, yaw) of i_from_j."""
+        """Covariance (3, 3) of (x, y, yaw) of i_from_j [m, rad]."""
         if i == j:
             return np.zeros((3, 3))
         both = np.array((i, j))
@@ -39,7 +39,7 @@ class Marginals:
         return (covariance + covariance.T) / 2.0
 
     def all_from(self, i: int) -> Floats:
-        """(n, 3, 3) of (x, y, yaw) of i_from_j for every pose j."""
+        """Covariances (n, 3, 3) of (x, y, yaw) of i_from_j for every pose j [m, rad]."""
         if self._own is None:
             self._own = self._system.inverse_diagonal()
         right = np.zeros((3, len(self._poses), 3))
@@ -54,7 +54,7 @@ class Marginals:
 
 
 def along_chain(rows: EdgeRows, poses: Floats, i: int, j: int) -> Floats:
-    """(3, 3) of (x, y, yaw) of i_from_j by the trusted edges between successive poses alone."""
+    """Covariance (3, 3) of (x, y, yaw) of i_from_j [m, rad] by the trusted edges between successive poses (n, 3) alone."""
     first, last = min(i, j), max(i, j)
     trusted = rows.enabled & ~rows.robust & (rows.ends[:, 1] - rows.ends[:, 0] == 1)
     of = np.full(len(poses), -1)

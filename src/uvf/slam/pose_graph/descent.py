@@ -19,7 +19,7 @@ HEADINGS, POSITIONS = np.array((False, False, True)), np.array((True, True, Fals
 
 @dataclass(frozen=True)
 class Descent:
-    """poses: (n, 3) where it ended; steps: linear systems solved; converged: by the length of the last step."""
+    """Outcome of a descent: poses (n, 3) [m, m, rad], number of linear systems solved, and whether the last step was short enough."""
 
     poses: Floats
     steps: int
@@ -27,7 +27,7 @@ class Descent:
 
 
 def heading_first(system: LinearSystem, poses: Floats, weights: Floats) -> Floats:
-    """(n, 3) poses found from the headings that the edges want and the positions that follow from those.
+    """Poses (n, 3) [m, m, rad] found from the headings that the edges want and the positions that follow from those.
 
     Both are linear problems once the turns are counted, which is done from the headings of ``poses``: Carlone, Aragues, Castellanos,
     Bona, "A Fast and Accurate Approximation for Planar Pose Graph Optimization" (2014).
@@ -40,8 +40,9 @@ def heading_first(system: LinearSystem, poses: Floats, weights: Floats) -> Float
 
 
 def descend(system: LinearSystem, poses: Floats, weights: Floats, limits: tuple[int, float]) -> Descent:
-    """limits: most steps, and the length of a step [standard deviations] that is short enough to end it.
+    """Descends from poses (n, 3) [m, m, rad] to the least cost under weights (m,) of all edges.
 
+    limits: most steps, and the length of a step [standard deviations] that is short enough to end it.
     A factor is used again as long as each step by it is much shorter than the one before.
     The first step that raises the cost is held against a start by headings. When PATIENCE steps in a row stay above the best, it goes back
     there and damps (Levenberg-Marquardt).

@@ -17,7 +17,7 @@ ROUNDING = 1e-9
 
 @dataclass(frozen=True)
 class Edge:
-    """Pose j as measured from pose i.
+    """A measurement of pose j from pose i.
 
     information: (3, 3) inverse covariance of (x, y, yaw) of ``i_from_j``, so along the axes of i [1/m^2, 1/rad^2]; may
     be singular. robust: may lose its weight when the other edges contradict it (loops); odometry does not.
@@ -32,7 +32,7 @@ class Edge:
 
 @dataclass(frozen=True)
 class EdgeRows:
-    """Edges as columns; ends: (m, 2) poses i and j; measured: (m, 3); information: (m, 3, 3).
+    """Edges as columns. ends: (m, 2) poses i and j; measured: (m, 3) [m, m, rad]; information: (m, 3, 3) [1/m^2, 1/rad^2].
 
     judged: whether an optimisation has weighed it since it was added or put back.
     """
@@ -57,12 +57,12 @@ class EdgeTable:
 
     @property
     def rows(self) -> EdgeRows:
-        """Views of what there is: writing into them writes the table."""
+        """Views of all edges as columns: writing into them writes the table."""
         n, r = self._count, self._rows
         return EdgeRows(r.ends[:n], r.measured[:n], r.information[:n], r.robust[:n], r.enabled[:n], r.judged[:n])
 
     def add(self, edge: Edge, poses: int) -> int:
-        """Its number. Raises ValueError: an end that is none of ``poses``, numbers that make no measurement."""
+        """Adds an edge and returns its number. Raises ValueError: an end that is none of ``poses``, numbers that make no measurement."""
         information = checked(edge, poses)
         if self._count == len(self._rows.ends):
             self._rows = _copied(self._rows, 2 * self._count)
@@ -95,7 +95,10 @@ def _copied(rows: EdgeRows, capacity: int) -> EdgeRows:
 
 
 def checked(edge: Edge, poses: int) -> Floats:
-    """Its information, symmetric to the last bit. Raises ValueError: an end that is none of ``poses``, numbers that make no measurement."""
+    """Information (3, 3) [1/m^2, 1/rad^2] of an edge, symmetric to the last bit.
+
+    Raises ValueError: an end that is none of ``poses``, numbers that make no measurement.
+    """
     where = f"edge {edge.i} -> {edge.j}"
     for end in (edge.i, edge.j):
         if not 0 <= end < poses:

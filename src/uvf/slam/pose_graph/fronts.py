@@ -53,7 +53,7 @@ class Tree(NamedTuple):
 
 
 def structure(poses: int, ends: Ints, fixed: int) -> Structure:
-    """ends: (m, 2)."""
+    """Structure of a graph of ``poses`` poses whose edges have the ends (m, 2)."""
     slots, pairs = _pairs(poses, ends, fixed)
     return _adjacency(poses, slots, pairs)
 
@@ -217,7 +217,7 @@ def _fill(given: Structure, e: Elimination, rows: Ints, place: Ints, family: tup
 
 
 def plan(given: Structure) -> Tree:
-    """The tree for a structure. In parts, as each kernel is compiled with all that it calls."""
+    """Elimination tree for a structure. In parts, as each kernel is compiled with all that it calls."""
     e = minimum_degree(given.start, given.neighbours)
     place, owner = _placed(e)
     rows, parents = _parents(e, place, owner)

@@ -47,7 +47,7 @@ def read(path: Path) -> tuple[list[Pose2], list[Edge]]:
 
 
 def write(path: Path, graph: PoseGraph) -> None:
-    """All poses and the enabled edges."""
+    """Writes all poses and the enabled edges."""
     lines = [f"VERTEX_SE2 {k} {_said(pose)}" for k, pose in enumerate(graph.poses)]
     rows = graph.edges.rows
     for k in np.flatnonzero(rows.enabled):
@@ -83,7 +83,7 @@ def _parsed(words: list[str], place: str) -> tuple[list[int], Floats]:
 
 
 def turned(information: Floats, yaw: float) -> Floats:
-    """Along axes from which the present ones are turned by ``yaw``."""
+    """Information (3, 3) along the axes of a frame in which those of the given one are turned by ``yaw`` [rad]."""
     c, s = np.cos(yaw), np.sin(yaw)
     turn = np.array(((c, -s, 0.0), (s, c, 0.0), (0.0, 0.0, 1.0)))
     turned: Floats = turn @ information @ turn.T

@@ -17,7 +17,7 @@ STIFFEST = 1e12
 
 
 class LinearSystem:
-    """H x = -g of the edges in ``used`` (m,), without the fixed pose, whose step is zero."""
+    """The system H x = -g of the edges in ``used`` (m,), without the fixed pose, whose step is zero."""
 
     def __init__(self, poses: int, rows: EdgeRows, used: Bools, fixed: int) -> None:
         self.used = used.copy()
@@ -33,14 +33,14 @@ class LinearSystem:
         self._panels, self._updates = np.empty(self._tree.panels[-1]), np.empty(self._tree.updates[-1])
 
     def linearise(self, poses: Floats, weights: Floats) -> float:
-        """At (n, 3) poses with (m,) weights of all edges; half the weighted chi square."""
+        """Linearises at poses (n, 3) [m, m, rad] with weights (m,) of all edges; returns half the weighted chi square [-]."""
         w = weights[self._which]
         cost = normal_equations(poses, self._ends, self._measured, self._information, w, self._slots, self._normal)
         self._release()
         return cost
 
     def linearise_some(self, poses: Floats, weights: Floats, axes: Bools) -> None:
-        """The same of those of x, y and yaw of the measurements that ``axes`` (3,) has; the others of the poses are held."""
+        """Linearises at poses (n, 3) with weights (m,) in those of x, y and yaw that ``axes`` (3,) has; the others are held."""
         information, normal = self._information * np.outer(axes, axes), self._normal
         normal_equations(poses, self._ends, self._measured, information, weights[self._which], self._slots, normal)
         held = np.flatnonzero(~axes)
@@ -57,9 +57,10 @@ class LinearSystem:
         self._normal.gradient[self._fixed] = 0.0
 
     def step(self, damping: float = REST) -> tuple[Floats, float]:
-        """(n, 3) x, and its length in standard deviations of the whole graph.
+        """Step x (n, 3) [m, m, rad], and its length in standard deviations of the whole graph [-].
 
-        H gets ``damping`` on its diagonal, and as much more as it takes to make it positive definite.
+        H gets ``damping`` [1/m^2, 1/rad^2] on its diagonal, and as much more as it takes to make it positive definite.
+        Raises ValueError where no damping does.
         """
         while not factorise(self._tree, self._normal, damping, self._panels, self._updates):
             damping *= 100.0
@@ -68,18 +69,18 @@ class LinearSystem:
         return self.step_again()
 
     def step_again(self) -> tuple[Floats, float]:
-        """The same by the factor of the last step, whatever has been linearised since."""
+        """Step (n, 3) [m, m, rad] and its length [-] by the factor of the last step, whatever has been linearised since."""
         x = -self.solve(self._normal.gradient[None])[0]
         return x, float(np.sqrt(max(-(self._normal.gradient * x).sum(), 0.0)))
 
     def solve(self, right: Floats) -> Floats:
-        """(k, n, 3) for as many right sides, by the factor of the last step."""
+        """Solutions (k, n, 3) for right sides (k, n, 3), by the factor of the last step."""
         x = solve(self._tree, self._panels, right)
         x[:, self._fixed] = 0.0
         return x
 
     def inverse_diagonal(self) -> Floats:
-        """(n, 3, 3) covariance of each pose in the map frame, by the factor of the last step."""
+        """Covariance (n, 3, 3) of each pose in the map frame [m, rad], by the factor of the last step."""
         out = diagonal_of_inverse(self._tree, self._panels)
         out[self._fixed] = 0.0
         return out

@@ -21,7 +21,10 @@ Bools = NDArray[np.bool_]
 
 
 class Normal(NamedTuple):
-    """diagonal: (n, 3, 3), lower triangles; between: (pairs, 3, 3); gradient: (n, 3) of half the weighted chi square."""
+    """Normal equations of half the weighted chi square.
+
+    diagonal: (n, 3, 3), lower triangles; between: (pairs, 3, 3); gradient: (n, 3).
+    """
 
     diagonal: Floats
     between: Floats
@@ -30,7 +33,7 @@ class Normal(NamedTuple):
 
 @compiled
 def residual(poses: Floats, i: int, j: int, measured: Floats) -> tuple[float, float, float]:
-    """(x, y, yaw) [m, rad] of one edge."""
+    """Residual (x, y, yaw) [m, m, rad] of the edge from pose i to j of ``poses`` (n, 3) with the measurement (3,)."""
     c, s = np.cos(poses[i, 2]), np.sin(poses[i, 2])
     dx, dy = poses[j, 0] - poses[i, 0], poses[j, 1] - poses[i, 1]
     turn = poses[j, 2] - poses[i, 2] - measured[2]
@@ -40,7 +43,7 @@ def residual(poses: Floats, i: int, j: int, measured: Floats) -> tuple[float, fl
 
 @compiled
 def chi_squares(poses: Floats, ends: Ints, measured: Floats, information: Floats) -> Floats:
-    """(m,) squared Mahalanobis length of the residual of each edge."""
+    """Squared Mahalanobis length (m,) of the residual of each edge: ends (m, 2), measured (m, 3), information (m, 3, 3); poses (n, 3)."""
     out = np.empty(ends.shape[0])
     for k in range(ends.shape[0]):
         x, y, a = residual(poses, ends[k, 0], ends[k, 1], measured[k])
@@ -74,8 +77,9 @@ def _add(h: Floats, xx: float, xy: float, yy: float, xa: float, ya: float, aa: f
 def normal_equations(
     poses: Floats, ends: Ints, measured: Floats, information: Floats, weights: Floats, slots: tuple[Ints, Bools], out: Normal
 ) -> float:
-    """Fills ``out``; returns half the weighted chi square.
+    """Fills ``out``; returns half the weighted chi square [-].
 
+    poses: (n, 3) [m, m, rad]; ends, measured, information as of ``chi_squares``; weights: (m,).
     slots: (m,) pair of each edge in ``out.between``, -1 for none, and whether its block is kept as (j, i) instead of (i, j).
     """
     out.diagonal[:] = 0.0

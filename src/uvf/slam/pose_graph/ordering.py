@@ -16,7 +16,7 @@ Ints = NDArray[np.int64]
 
 
 class Elimination(NamedTuple):
-    """pivots: (n,) poses as they go; supernode s eliminates pivots[starts[s] : starts[s + 1]] together.
+    """Elimination order. pivots: (n,) poses as they go; supernode s eliminates pivots[starts[s] : starts[s + 1]] together.
 
     Each of those is tied to all others of them and to rows[row_starts[s] : row_starts[s + 1]], eliminated later.
     """
@@ -177,7 +177,10 @@ def _eliminate(q: Quotient, queue: Queue, p: int, members: Ints, work: tuple[Int
 
 @compiled
 def minimum_degree(start: Ints, neighbours: Ints) -> Elimination:
-    """Neighbours of pose i: neighbours[start[i] : start[i + 1]], each once, without i itself, and i among theirs."""
+    """Elimination order of the poses of a graph.
+
+    Neighbours of pose i: neighbours[start[i] : start[i + 1]], each once, without i itself, and i among theirs.
+    """
     n = start.shape[0] - 1
     near = np.empty(n, np.int64)
     for i in range(n):

@@ -19,7 +19,10 @@ MANY = 10
 
 @dataclass(frozen=True)
 class Outcome:
-    """cost: half the weighted chi square; iterations: linear systems solved; annealed: whether a wide kernel was tried."""
+    """Outcome of an optimisation. cost: half the weighted chi square; iterations: linear systems solved.
+
+    annealed: whether a wide kernel was tried.
+    """
 
     cost: float
     iterations: int
@@ -48,13 +51,14 @@ class PoseGraph:
 
     @property
     def poses(self) -> Floats:
-        """(n, 3) map_from_node [m, m, rad], headings not wrapped; a view to read from. To move poses, assign all of them."""
+        """Poses map_from_node (n, 3) [m, m, rad], headings not wrapped; a view to read from. To move poses, assign all of them."""
         view = self._poses[: self._count]
         view.flags.writeable = False
         return view
 
     @poses.setter
     def poses(self, poses: Floats) -> None:
+        """Moves all poses to (n, 3) [m, m, rad]. Raises ValueError for another shape or numbers that are not finite."""
         if np.shape(poses) != (self._count, 3) or not np.isfinite(poses).all():
             raise ValueError(f"poses of shape {np.shape(poses)}: wanted are ({self._count}, 3) finite numbers")
         self._poses[: self._count] = poses
@@ -62,27 +66,28 @@ class PoseGraph:
 
     @property
     def edges(self) -> EdgeTable:
+        """The table of all edges."""
         return self._edges
 
     @property
     def weights(self) -> Floats:
-        """(m,) of each edge by the last optimisation: 1 counts fully, 0 switched off; edges added since have 1."""
+        """Weight (m,) of each edge by the last optimisation: 1 counts fully, 0 switched off; edges added since have 1."""
         new = np.ones(len(self._edges) - len(self._weights))
         return np.where(self._edges.rows.enabled, np.concatenate((self._weights, new)), 0.0)
 
     @property
     def chi2(self) -> Floats:
-        """(m,) squared Mahalanobis length of each edge's residual at the present poses, unweighted."""
+        """Squared Mahalanobis length (m,) of each edge's residual at the present poses, unweighted."""
         rows = self._edges.rows
         return chi_squares(self._poses, rows.ends, rows.measured, rows.information)
 
     @property
     def cost(self) -> float:
-        """Half the sum of weight times chi square, as gtsam and (twice that) g2o count."""
+        """Half the sum of weight times chi square [-], as gtsam and (twice that) g2o count."""
         return 0.5 * float((self.weights * self.chi2).sum())
 
     def add_pose(self, map_from_node: Pose2) -> int:
-        """Its number: 0, 1, 2, ... Raises ValueError for numbers that are not finite."""
+        """Adds a pose and returns its number: 0, 1, 2, ... Raises ValueError for numbers that are not finite."""
         if not np.isfinite(map_from_node).all():
             raise ValueError(f"pose {self._count}: a number that is not finite: {tuple(map_from_node)}")
         if self._count == len(self._poses):
@@ -93,7 +98,10 @@ class PoseGraph:
         return self._count - 1
 
     def add_edge(self, edge: Edge) -> int:
-        """Its number: 0, 1, 2, ... Raises ValueError: a pose that is not there, numbers that make no measurement."""
+        """Adds an edge and returns its number: 0, 1, 2, ...
+
+        Raises ValueError: a pose that is not there, numbers that make no measurement.
+        """
         number = self._edges.add(edge, self._count)
         self._changed()
         return number
@@ -111,7 +119,7 @@ class PoseGraph:
 
         A robust edge that is new and would be switched off is given a trial when the graph leaves room for it.
         anneal: whether to look from a wide kernel, too, under which no edge is lost from the start; None: when the trial leaves it open, or
-        many have been switched off since the last time. tolerance: length of the step that ends it, in standard deviations of the graph.
+        many have been switched off since the last time. tolerance: length of the step that ends it [standard deviations].
         Raises ValueError: no pose to hold fixed.
         """
         solver, rows, start = self._solver_now(), self._edges.rows, self._poses[: self._count]
@@ -135,7 +143,7 @@ class PoseGraph:
         return Outcome(self.cost, sum(settled.steps for settled in found), best.converged, anneal)
 
     def relative_covariance(self, i: int, j: int) -> Floats:
-        """(3, 3) covariance of (x, y, yaw) of i_from_j [m, rad], by all edges with the weights of the last optimisation.
+        """Covariance (3, 3) of (x, y, yaw) of i_from_j [m, rad], by all edges with the weights of the last optimisation.
 
         Raises ValueError: no such pose.
         """
@@ -143,14 +151,17 @@ class PoseGraph:
         return self._marginals_now().relative(i, j)
 
     def covariances_from(self, i: int) -> Floats:
-        """(n, 3, 3): the same of i_from_j for every pose j at once, for about two iterations' cost. Raises ValueError: no such pose."""
+        """Covariances (n, 3, 3) of (x, y, yaw) of i_from_j [m, rad] for every pose j at once, for about two iterations' cost.
+
+        Raises ValueError: no such pose.
+        """
         self._check(i)
         return self._marginals_now().all_from(i)
 
     def chain_covariance(self, i: int, j: int) -> Floats:
-        """The same by the trusted edges from each pose to the next alone: never smaller, and needs no factorisation.
+        """Covariance (3, 3) of i_from_j [m, rad] by the trusted edges from each pose to the next alone.
 
-        Raises ValueError: no such pose, or no such edge on the way.
+        It is never smaller, and needs no factorisation. Raises ValueError: no such pose, or no such edge on the way.
         """
         self._check(i, j)
         return along_chain(self._edges.rows, self._poses[: self._count], i, j)

@@ -34,7 +34,7 @@ STEPS = 30
 
 @dataclass(frozen=True)
 class Settled:
-    """poses: (n, 3); weights: (m,); cost: half the truncated chi square; steps: linear systems solved."""
+    """Outcome: poses (n, 3) [m, m, rad], weights (m,), half the truncated chi square, and number of linear systems solved."""
 
     poses: Floats
     weights: Floats
@@ -44,7 +44,7 @@ class Settled:
 
 
 def truncated(chi2: Floats, mu: float, limit: float) -> Floats:
-    """Weights 0..1 of the surrogate for ``mu``."""
+    """Weights (m,), 0 to 1, of edges with chi squares (m,), by the surrogate of truncated least squares at ``limit`` for ``mu`` [-]."""
     with np.errstate(divide="ignore"):
         middle = np.sqrt(limit * mu * (mu + 1.0) / chi2) - mu
     out: Floats = np.clip(middle, 0.0, 1.0)
@@ -52,14 +52,14 @@ def truncated(chi2: Floats, mu: float, limit: float) -> Floats:
 
 
 class RobustSolver:
-    """Of one state of a graph."""
+    """Optimises one state of a graph with robust edges."""
 
     def __init__(self, rows: EdgeRows, limit: float, fixed: int) -> None:
         self._rows, self._limit, self._fixed = rows, limit, fixed
         self._system: LinearSystem | None = None
 
     def settle(self, poses: Floats, tolerance: float, believed: Bools | None = None) -> Settled:
-        """Down from where the poses are, with the weights that the edges have there. tolerance: see ``descend``.
+        """Descends from poses (n, 3) [m, m, rad], with the weights that the edges have there. tolerance: as of ``descend`` [sigmas].
 
         believed: (m,) edges that count fully until the first rest, however far off they are.
         """
@@ -75,7 +75,10 @@ class RobustSolver:
         return Settled(poses, before, self._cost(poses), steps, down.converged)
 
     def anneal(self, poses: Floats, tolerance: float) -> Settled:
-        """The same, from a cost without local minima: far-off edges begin with little weight, and may win the others over."""
+        """Descends from poses (n, 3) [m, m, rad] by way of a cost without local minima. tolerance: as for ``settle``.
+
+        Far-off edges begin with little weight, and may win the others over.
+        """
         doubtful = self._rows.robust & self._rows.enabled
         largest = max(float(self._chi2(poses)[doubtful].max(initial=0.0)), self._limit)
         mu, steps = GENTLE * self._limit / (2.0 * largest - self._limit), 0
@@ -90,7 +93,7 @@ class RobustSolver:
         return replace(found, steps=steps + found.steps)
 
     def plausible(self, settled: Settled, asked: Bools) -> Bools:
-        """(m,) which of the edges asked for, switched off there, would raise the chi square of the others by less than the limit.
+        """Mask (m,) of the edges asked for, switched off there, that would raise the chi square of the others by less than the limit.
 
         By how far they are off in terms of what the graph leaves open there: exact as far as the graph is linear.
         """
@@ -107,7 +110,7 @@ class RobustSolver:
         return out
 
     def system(self, poses: int, weights: Floats) -> LinearSystem:
-        """The one in use if it fits: it has each edge that has a weight, and few others."""
+        """Linear system for weights (m,); the one in use if it fits: it has each edge that has a weight, and few others."""
         used, now = weights > 0.0, self._system
         if now is None or (used & ~now.used).any() or np.count_nonzero(now.used & ~used) > 0.02 * len(used):
             self._system = now = LinearSystem(poses, self._rows, used, self._fixed)

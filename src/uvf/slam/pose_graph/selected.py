@@ -72,7 +72,7 @@ def _close(panel: Floats, inverse: Floats, columns: int) -> None:
 
 @compiled
 def diagonal_of_inverse(tree: Tree, panels: Floats) -> Floats:
-    """(n, 3, 3) by pose."""
+    """Diagonal blocks (n, 3, 3) of the inverse, by pose."""
     supernodes = tree.sequence.shape[0]
     at = np.zeros(supernodes + 1, np.int64)
     for s in range(supernodes):

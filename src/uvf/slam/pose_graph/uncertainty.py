@@ -9,13 +9,13 @@ Floats = NDArray[np.float64]
 
 
 def turned(yaw: float) -> Floats:
-    """(3, 3) that turns (x, y, yaw) of a frame by ``yaw`` [rad]: a_from_b for vectors."""
+    """Matrix (3, 3) that turns (x, y, yaw) of a frame by ``yaw`` [rad]: a_from_b for vectors."""
     c, s = np.cos(yaw), np.sin(yaw)
     return np.array(((c, -s, 0.0), (s, c, 0.0), (0.0, 0.0, 1.0)))
 
 
 def followed(covariance: Floats, a_from_b: Pose2, b_from_c: Pose2, step: Floats) -> Floats:
-    """(3, 3) covariance of a_from_c, from that of a_from_b and that of b_from_c (``step``, along the axes of b).
+    """Covariance (3, 3) of a_from_c, from that of a_from_b (3, 3) and that of b_from_c (``step`` (3, 3), along the axes of b).
 
     First order: Smith, Self & Cheeseman, "Estimating Uncertain Spatial Relationships in Robotics" (1990), compounding.
     """

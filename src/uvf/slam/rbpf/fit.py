@@ -30,9 +30,9 @@ def _wrapped(angle: float) -> float:
 
 @compiled
 def normal_equations(pose: Floats, sweep: Sweep, maps: ParticleMap, sigma: float) -> tuple[Floats, Floats, int, float]:
-    """(H, g, points that found their surface, score) at a pose (3,), of the score: the sum of exp(-d^2 / 2 sigma^2).
+    """(H (3, 3), g (3,), points that found their surface, score) at a pose (3,) [m, m, rad].
 
-    H is in units of 1 / m^2 of a point: what the sweep tells is H / sigma^2.
+    The score is the sum of exp(-d^2 / 2 sigma^2), sigma [m]. H is in units of 1 / m^2 of a point: what the sweep tells is H / sigma^2.
     """
     points, sensor = sweep
     cell = maps[0][4]
@@ -61,7 +61,7 @@ def normal_equations(pose: Floats, sweep: Sweep, maps: ParticleMap, sigma: float
 
 @compiled
 def climb(start: Floats, sweep: Sweep, maps: ParticleMap, prior: Gaussian, scale: tuple[float, float]) -> tuple[Floats, Floats, int, float]:
-    """(pose, H, points that found their surface, score) at the best pose near ``start``.
+    """(pose (3,), H (3, 3), points that found their surface, score [-]) at the best pose near ``start`` (3,) [m, m, rad].
 
     Gauss-Newton on the score with weights of the last step, which climbs it. prior: holds the pose where the sweep does not;
     scale: sigma [m], and how many independent beams a point is worth.
@@ -83,7 +83,10 @@ def climb(start: Floats, sweep: Sweep, maps: ParticleMap, prior: Gaussian, scale
 
 @compiled
 def log_likelihood(pose: Floats, sweep: Sweep, maps: ParticleMap, sigma: float) -> float:
-    """ln p(z | x, m) of all points as if they were independent; 0 where each lies on its surface."""
+    """Log-likelihood ln p(z | x, m) [-] at a pose (3,) of all points as if they were independent; 0 where each lies on its surface.
+
+    sigma: of a beam's end [m].
+    """
     points, sensor = sweep
     cell = maps[0][4]
     total = 0.0

@@ -38,7 +38,7 @@ STOOD = 1e-4  # m, rad: odometry that moves less has not moved
 
 @dataclass
 class RbpfSlam:
-    """See ``SlamMethod``."""
+    """Rao-Blackwellized particle filter; see ``SlamMethod``."""
 
     params: RbpfParams = field(default_factory=RbpfParams)
 
@@ -61,6 +61,7 @@ class RbpfSlam:
         self._quality = 1.0
 
     def add(self, reading: Reading) -> SlamEstimate:
+        """Tracks one reading against the best particle's map, and updates all particles if the vehicle has moved enough."""
         sweep = (points_of(reading, self._reach, POINTS), reading.beams.origin)
         last, self._last = self._last, reading
         if last is None:
@@ -75,6 +76,7 @@ class RbpfSlam:
         return self._place()
 
     def trajectory(self) -> Floats:
+        """Poses map_from_base (readings, 3) [m, m, rad] by the path of the best particle."""
         nodes = np.array([node for node, _ in self._placed], dtype=np.int64)
         moved = np.array([pose for _, pose in self._placed]).reshape(-1, 3)
         path = self.particles.path(self.particles.best)
@@ -86,10 +88,12 @@ class RbpfSlam:
             yield Keyframe(Pose2(*pose), reading)
 
     def keyframe_count(self) -> int:
+        """Number of readings that the maps are made of."""
         return len(self._readings)
 
     @property
     def notes(self) -> list[str]:
+        """Remarks where the memory was too small for the maps, a line each."""
         full, found = f"the {self.params.mapMemory:g} MB of mapMemory", []
         if self._readings and self._reach < min(self.params.maxUrange, self._readings[0].beams.range_max):
             found.append(f"beams are used up to {self._reach:.0f} m only: more of {len(self.particles)} particles does not fit into {full}")
@@ -98,7 +102,7 @@ class RbpfSlam:
         return found
 
     def finish(self) -> None:
-        """Nothing has been put off."""
+        """Does nothing: no work has been put off."""
 
     def _begin(self, reading: Reading) -> None:
         """All particles begin with one map."""

@@ -15,9 +15,9 @@ LEAST, LEAST_TURN = 0.01, 0.005  # m, rad: what no motion at all may be off by
 
 @dataclass(frozen=True)
 class MotionModel:
-    """1 sigma in proportion to the motion, by the names of gmapping's parameters.
+    """1 sigma of the odometry in proportion to the motion, by the names of gmapping's parameters.
 
-    srr: m per m; srt: m per rad; str_: rad per m; stt: rad per rad.
+    srr: [m/m]; srt: [m/rad]; str_: [rad/m]; stt: [rad/rad].
     """
 
     srr: float
@@ -26,7 +26,7 @@ class MotionModel:
     stt: float
 
     def covariance(self, motion: Pose2) -> Floats:
-        """(3, 3) of (x, y, yaw), the same in every frame: no direction is surer than another."""
+        """Covariance (3, 3) of (x, y, yaw) [m, rad], the same in every frame: no direction is surer than another."""
         way, turn = hypot(motion.x, motion.y), abs(motion.yaw)
         position = LEAST + self.srr * way + self.srt * turn
         heading = LEAST_TURN + self.str_ * way + self.stt * turn

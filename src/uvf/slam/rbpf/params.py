@@ -13,6 +13,8 @@ Length = Annotated[float, Meta(gt=0.0)]
 
 
 class RbpfParams(Params, frozen=True):
+    """Parameters of ``RbpfSlam``."""
+
     particles: Annotated[int, Meta(ge=1, le=500), key("", "Particles; each has a path and a map.")] = 50
     linearUpdate: Annotated[float, Meta(gt=0.0, le=5.0), key("m", "Distance driven between updates of the particles.")] = 0.3
     angularUpdate: Annotated[float, Meta(gt=0.0, le=3.2), key("rad", "Angle turned between updates of the particles.")] = 0.25

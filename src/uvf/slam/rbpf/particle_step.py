@@ -20,7 +20,7 @@ LEAST_POINTS, LEAST_SHARE = 10, 0.2
 
 @dataclass(frozen=True)
 class Matched:
-    """pose: map_from_base (3,); h: normal matrix (3, 3) of the points; share: of them that lie on a surface.
+    """A match: pose map_from_base (3,) [m, m, rad]; h: normal matrix (3, 3) of the points; share of them on a surface, 0..1.
 
     found: whether this is to be believed.
     """
@@ -31,14 +31,14 @@ class Matched:
     found: bool
 
     def covariance(self, prior: Gaussian, params: RbpfParams) -> Floats:
-        """(3, 3) of what sweep and odometry tell together."""
+        """Covariance (3, 3) [m, rad] by the sweep and the odometry together."""
         information: Floats = prior[1] + (self.h / params.sigma**2 * WORTH if self.found else 0.0)
         covariance: Floats = np.linalg.inv(information).astype(np.float64)
         return covariance
 
 
 def match(start: Floats, sweep: Sweep, maps: ParticleMap, prior: Gaussian, params: RbpfParams) -> Matched:
-    """The best pose near ``start`` (3,): step 1 of the paper's algorithm."""
+    """Best pose near ``start`` (3,) [m, m, rad]: step 1 of the paper's algorithm."""
     pose, h, found, score = climb(start, sweep, maps, prior, (params.sigma, WORTH))
     share = found / max(len(sweep[0]), 1)
     good = found >= LEAST_POINTS and share >= LEAST_SHARE and score >= params.minimumScore and bool(np.isfinite(pose).all())
@@ -48,7 +48,10 @@ def match(start: Floats, sweep: Sweep, maps: ParticleMap, prior: Gaussian, param
 def draw_pose(
     matched: Matched, sweep: Sweep, maps: ParticleMap, prior: Gaussian, params: RbpfParams, rng: np.random.Generator
 ) -> tuple[Floats, float]:
-    """(map_from_base (3,), ln of the factor of the weight): from the proposal, or from the motion model where nothing matches."""
+    """(pose map_from_base (3,) [m, m, rad], log of the factor of its weight [-]), drawn from the proposal.
+
+    Where nothing matches it is drawn from the motion model.
+    """
     target = (sweep, maps, params.lsigma, WORTH)
     if matched.found:
         proposed = proposal(matched.pose, matched.h, prior, target, rng)

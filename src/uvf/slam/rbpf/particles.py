@@ -10,7 +10,7 @@ Ints = NDArray[np.int64]
 
 
 class Particles:
-    """``poses`` (n, 3) are map_from_base of now."""
+    """The particles; ``poses`` (n, 3) are map_from_base of now [m, m, rad]."""
 
     def __init__(self, number: int) -> None:
         self.poses = np.zeros((number, 3))
@@ -26,28 +26,28 @@ class Particles:
 
     @property
     def steps(self) -> int:
-        """Poses that are kept of each."""
+        """Number of poses that are kept of each particle."""
         return len(self._places)
 
     @property
     def weights(self) -> Floats:
-        """(n,), of sum 1."""
+        """Weights (n,), of sum 1."""
         parts = np.exp(self.log_weights - self.log_weights.max())
         weights: Floats = parts / parts.sum()
         return weights
 
     @property
     def effective(self) -> float:
-        """N_eff = 1 / sum of the squared weights (equation 20): how many particles still count."""
+        """Effective number of particles [-]: N_eff = 1 / sum of the squared weights (equation 20)."""
         return float(1.0 / np.square(self.weights).sum())
 
     @property
     def best(self) -> int:
-        """That whose whole past has been the likeliest."""
+        """Number of the particle whose whole past has been the likeliest."""
         return int(np.argmax(self._ever))
 
     def reweigh(self, log_weights: Floats) -> None:
-        """Multiplies the weights by those given (n,)."""
+        """Multiplies the weights by exp of ``log_weights`` (n,)."""
         self.log_weights = self.log_weights + log_weights
         self._ever = self._ever + log_weights
 
@@ -58,7 +58,7 @@ class Particles:
         self._next = np.arange(len(self))
 
     def resample(self, rng: np.random.Generator) -> Ints:
-        """Low-variance resampling (Thrun et al. 2005, table 4.4): which particle (n,) each has been until now."""
+        """Low-variance resampling (Thrun et al. 2005, table 4.4); returns which particle (n,) each has been until now."""
         n = len(self)
         ladder = np.cumsum(self.weights)
         chosen: Ints = np.searchsorted(ladder, (rng.random() + np.arange(n)) / n * ladder[-1], side="left").clip(0, n - 1)
@@ -67,7 +67,7 @@ class Particles:
         return chosen
 
     def path(self, k: int) -> Floats:
-        """(steps, 3) the kept poses of particle k's past."""
+        """Kept poses (steps, 3) [m, m, rad] of particle k's past."""
         found = np.empty((len(self._places), 3))
         k = int(self._next[k])
         for i in range(len(self._places) - 1, -1, -1):
@@ -76,7 +76,7 @@ class Particles:
         return found
 
     def spread(self) -> Floats:
-        """(3, 3) covariance of the poses by their weights."""
+        """Covariance (3, 3) of the poses by their weights [m, rad]."""
         away = self.poses - self.poses[self.best]
         away[:, 2] = wrapped(away[:, 2])
         weights = self.weights

@@ -25,7 +25,7 @@ FLOOR = (1e-3, 1e-3, 1e-3)
 
 @dataclass(frozen=True)
 class ProposalDistribution:
-    """mean (3,) and covariance (3, 3) of (x, y, yaw) [m, rad]; log_weight: ln of eta, by which the particle's weight grows."""
+    """A Gaussian: mean (3,) and covariance (3, 3) of (x, y, yaw) [m, rad]; log_weight: ln of eta, by which the particle's weight grows."""
 
     mean: Floats
     covariance: Floats
@@ -34,7 +34,7 @@ class ProposalDistribution:
 
 @compiled
 def weighed(offsets: Floats, normals: Floats, matched: Floats, prior: Gaussian, target: Target) -> tuple[Floats, Floats, float]:
-    """(mean, covariance, ln eta) of equations 16 to 19, from samples ``matched`` + ``offsets`` (K, 3).
+    """(mean (3,), covariance (3, 3), ln eta [-]) of equations 16 to 19, from samples ``matched`` (3,) + ``offsets`` (K, 3).
 
     The paper draws the samples x_j evenly; here they are drawn from a Gaussian q, ``normals`` (K, 3) being their places in its
     unit sphere, and each counts p(z | m, x_j) p(x_j | x_t-1, u) / q(x_j). So eta is the same integral, found with fewer samples.
@@ -61,7 +61,7 @@ def weighed(offsets: Floats, normals: Floats, matched: Floats, prior: Gaussian, 
 
 
 def proposal(matched: Floats, h: Floats, prior: Gaussian, target: Target, rng: np.random.Generator) -> ProposalDistribution:
-    """About a matched pose (3,), where the points of the sweep have the normal matrix ``h``. prior: the motion model."""
+    """Proposal about a matched pose (3,), where the points of the sweep have the normal matrix ``h`` (3, 3). prior: the motion model."""
     _, _, sigma, worth = target
     spread = WIDER**2 * np.linalg.inv(worth * h / sigma**2 + prior[1])
     normals = rng.standard_normal((SAMPLES, 3))

@@ -99,7 +99,7 @@ def _add_all(points: Floats, slots: Ints, sensor: tuple[float, float], pool: Cel
 
 
 def add_surfaces(stroke: Stroke, surfaces: TilePool, k: int) -> None:
-    """What a sweep has hit, into map k."""
+    """Adds to map k what a sweep has hit."""
     points = _on_surfaces(stroke.ends, stroke.hit, surfaces.cell)
     tiles = np.floor(points[:, ::-1] / SIDE).astype(np.int64) + np.array(stroke.first) * (TILE // SIDE)
     _, first, which = np.unique(tiles[:, 0] * _ROW + tiles[:, 1], return_index=True, return_inverse=True)
@@ -111,7 +111,7 @@ def add_surfaces(stroke: Stroke, surfaces: TilePool, k: int) -> None:
 def line_at(x: float, y: float, view: tuple[float, float], maps: ParticleMap) -> tuple[float, float, float, bool]:
     """(normal x, normal y, distance along it [cells], found) of the surface near (x, y) [cells] that is seen from ``view``.
 
-    A line through the means of the cells around, weighted by their distance: moving least squares.
+    view: unit vector towards the lidar. A line through the means of the cells around, weighted by their distance: moving least squares.
     """
     known, surfaces = maps
     column, row = int(np.floor(x)), int(np.floor(y))
