@@ -16,7 +16,6 @@ from uvf.runtime.bus.address import Address
 from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.contract.service_runner import ServiceRunner
 
-
 SILENT_FOR = 3.0  # s, instead of ten that a test would wait for
 
 

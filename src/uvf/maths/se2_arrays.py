@@ -1,4 +1,4 @@
-"""Rigid motion in the plane for many poses at once: arrays (..., 3) of x [m], y [m], yaw [rad]; names cancel as in planar."""
+"""Rigid motion in the plane for many poses at once: arrays (..., 3) of x [m], y [m], yaw [rad]; names cancel as in se2."""
 
 import numpy as np
 from numpy.typing import NDArray

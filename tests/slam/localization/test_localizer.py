@@ -12,7 +12,7 @@ from uvf.models.world.map_file import GridMap
 from uvf.slam.localization import known_map
 from uvf.slam.localization.localizer import Localizer, LocalizerState
 from uvf.slam.localization.params import FilterParams
-from uvf.slam.localization.particle_filter import IN_GROUP, MOST_GROUPS
+from uvf.slam.localization.particle_filter import IN_GROUP, MOST_GROUPS, ParticleFilter
 from uvf.slam.localization.whole_map import MOST_KEPT, Lately
 from uvf.slam.matching.cloud import cloud_of
 
@@ -189,3 +189,11 @@ def test_the_same_seed_gives_the_same_poses(room):
     way = ellipse(30)
     runs = [[e.map_from_base for e in run(Localizer(room, PARAMS, 8), readings(ROOM, way))] for _ in range(2)]
     assert runs[0] == runs[1] and runs[0][0] != IDENTITY
+
+
+def test_headings_on_both_sides_of_a_half_turn_lie_near_each_other(room):
+    particles = ParticleFilter(room, (50, 500), np.random.default_rng(1))
+    particles.begin_at(Pose2(1.0, 1.0, np.pi), np.diag((0.01, 0.01, 0.04)))
+    particles.poses[:, 2] = np.arctan2(np.sin(particles.poses[:, 2]), np.cos(particles.poses[:, 2]))
+    assert np.ptp(particles.poses[:, 2]) > 6.0
+    assert np.diag(particles.spread()) == pytest.approx((0.01, 0.01, 0.04), rel=0.6)

@@ -1,6 +1,6 @@
 """``air: looks:`` of a vehicle.yaml: how an aircraft is drawn, in metres from its centre of gravity, x forward, y left, z up.
 
-All of it may be left out: what is not given (nan, or "") is worked out from the JSBSim model (``aircraft_plan``),
+All of it may be left out: what is not given (nan, or "") is worked out from the JSBSim model (``aircraft.dimensions``),
 and is left out again when they are written.
 """
 

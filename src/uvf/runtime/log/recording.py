@@ -1,4 +1,4 @@
-"""MCAP logs of the bytes as they travel: schemas inside, sim time as log time, gaps counted. They are read by ``log_reading``."""
+"""MCAP logs of the bytes as they travel: schemas inside, sim time as log time, gaps counted. They are read by ``reading``."""
 
 import contextlib
 import errno

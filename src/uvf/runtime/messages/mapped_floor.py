@@ -33,4 +33,4 @@ class MappedFloor:
         within = (row >= 0) & (row < cells.shape[0]) & (column >= 0) & (column < cells.shape[1])
         free: NDArray[np.bool_] = np.zeros(len(dx), dtype=np.bool_)
         free[within] = (cells[row[within], column[within]] >= 0) & (cells[row[within], column[within]] < FREE_BELOW)
-        return float(free.mean())
+        return float(free.mean()) if len(free) else 0.0

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uvf.maths.se2 import IDENTITY, Pose2
+from uvf.maths.se2_arrays import wrapped
 from uvf.slam.localization.beams import BeamLikelihood, field_of, fits_at, scores, ways
 from uvf.slam.localization.fit import Fit
 from uvf.slam.localization.gaussian import drawn
@@ -183,7 +184,9 @@ class ParticleFilter:
 
     def spread(self) -> Floats:
         """Covariance (3, 3) of (x, y, yaw) of all particles [m, rad]."""
-        off = self.poses - self.weights @ self.poses
+        off = self.poses - self.poses[int(np.argmax(self.weights))]
+        off[:, 2] = wrapped(off[:, 2])  # about one of them: a mean of yaws near +-pi would lie opposite of all
+        off = off - self.weights @ off
         return (self.weights[:, None] * off).T @ off
 
     def _around(self, pose: Pose2, covariance: Floats, n: int) -> Floats:
