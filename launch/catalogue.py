@@ -43,7 +43,7 @@ INFRASTRUCTURE = ("router", "conductor", "recorder")
 
 
 def kind(name: str) -> Kind:
-    """Raises BadInput for an unknown name."""
+    """The service kind of this name. Raises BadInput for an unknown name."""
     found = next((k for k in KINDS if k.name == name), None)
     if found is None:
         raise BadInput(f"no service '{name}'; {nearest(name, [k.name for k in KINDS])}")
@@ -51,7 +51,7 @@ def kind(name: str) -> Kind:
 
 
 def needed(site: Scenario) -> list[Kind]:
-    """The kinds that have work in a mission."""
+    """The service kinds that have work in a mission."""
     kinds: set[str] = {member.file.kind for member in site.members.values()}
     asked = {name for member in site.members.values() for name in member.file.params}
     mapping = [m for m in site.of_kind("ground") if m.entry.maps is None or m.entry.maps.localize is None]

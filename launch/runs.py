@@ -62,9 +62,9 @@ def hold(folder: Path) -> int:
 
 
 def keep_quota(folder: Path, limit: float) -> list[Path]:
-    """What a running recorder does: removes the oldest runs beside ``folder``, then its own oldest logs; returns what is gone.
+    """Removes the oldest runs beside ``folder``, then its own oldest logs; returns what was removed.
 
-    limit: bytes that all runs may take together, or ``folder`` alone where it is no folder of a run.
+    limit [bytes]: that all runs may take together, or ``folder`` alone where it is no folder of a run.
     """
     base = settings.runs_folder().resolve()
     if folder.resolve().parent != base:
@@ -74,9 +74,9 @@ def keep_quota(folder: Path, limit: float) -> list[Path]:
 
 
 def prune(base: Path, quota: float) -> list[Path]:
-    """Removes the oldest runs until the rest takes less than ``quota`` bytes.
+    """Removes the oldest runs until the rest takes at most ``quota`` [bytes]; returns the removed folders.
 
-    Stay: the newest, what a living process holds, and whatever else lies there that is no run.
+    Kept are the newest run, runs held by a living process, and everything else there that is no run.
     """
     folders = _runs(base)
     sizes = {folder: _size([folder]) for folder in folders}

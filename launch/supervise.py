@@ -30,7 +30,7 @@ def supervise(arguments: list[str], say: Say) -> int:
 
 
 def process_name(arguments: list[str]) -> str:
-    """As ``uvf up`` calls it: ``slam``, ``slam.burger`` of one vehicle only, ``router``, ``recorder``. Raises BadInput."""
+    """The name by which ``uvf up`` knows a process: ``slam``, ``slam.burger`` of one vehicle, ``router``, ``recorder``. Raises BadInput."""
     match arguments:
         case ["service", name, *options]:
             words = [word for option in options for word in option.split("=")]

@@ -28,7 +28,7 @@ class Known:
 
 
 def known_of(path: Path, log: LaserLog, vehicle: str | None, relations: Path | None) -> Known:
-    """relations: a file to score by, instead of those beside the log. Raises BadInput."""
+    """The relations and references that belong to a log; relations: a file to score by instead of those beside it. Raises BadInput."""
     found = beside(path, log)
     chosen = {relations.name: _about(log, relations)} if relations else found.relations
     references = dict(found.references)

@@ -26,7 +26,10 @@ RIM = 16  # points on a round one's rim
 
 
 def problems(world: WorldFile, radius: float) -> Iterator[str]:
-    """One line each. Raises BadInput for a mesh that cannot be read."""
+    """Yields likely mistakes in a world, a line each; radius [m]: of the vehicle that is to drive there.
+
+    Raises BadInput for a mesh that cannot be read.
+    """
     standing = things(world)
     yield from _heights(standing, relief(world))
     yield from _out_of_reach(world, radius)
