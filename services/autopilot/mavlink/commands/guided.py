@@ -143,7 +143,7 @@ def _orbit(line: VehicleConnection, command: ReceivedCommand, ack: Acknowledger)
 
 
 def go_to(line: VehicleConnection, goal: GoalRequest, may_change_mode: bool, done: Done) -> None:
-    """A rover's planner drives in mode Mission only: changed to first, if that may be, and back if there is no way."""
+    """Requests a goal. A rover's planner drives in mode Mission only: it is set first, if allowed, and reset if there is no path."""
     before = line.latest.status.mode if line.latest.status is not None else Mode.MODE_MISSION
 
     def in_mission() -> bool:
