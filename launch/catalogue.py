@@ -12,10 +12,10 @@ from uvf.runtime.contract.instances import Build, ServiceInstance
 
 @dataclass(frozen=True)
 class Kind:
-    """``build``: module with ``build(site)``; ``needs``: the vehicles without which it has no work, or ``asked``: one that has parameters
-    for it, or ``team``: two that draw maps.
+    """A kind of service. ``build``: module with ``build(site)``; ``needs``: the vehicles without which it has no work, or
+    ``asked``: one that has parameters for it, or ``team``: two that draw maps.
 
-    ``nice``: how far it gives way to those that keep time (router, conductor, simulators) when processors are few.
+    ``nice``: its nice value, so that time keepers (router, conductor, simulators) come first when processors are few.
     """
 
     name: str

@@ -41,7 +41,7 @@ class Launcher:
         self._supervisor.start(name, arguments, write)
 
     def connect(self, timeout: float) -> ZenohBus:
-        """Raises BadInput without a router within ``timeout`` [s]."""
+        """Connects to the router. Raises BadInput when there is none within ``timeout`` [s]."""
         self.bus = bus = ZenohBus(router_from(), timeout=timeout)
         self._events = self._publisher(bus, topics.SYSTEM_EVENTS)
         self._stop = self._publisher(bus, topics.STOP)

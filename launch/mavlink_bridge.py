@@ -92,7 +92,7 @@ def _origin(site: Scenario | None) -> BridgeOrigin:
 
 
 class Bridge:
-    """The process: one reader of the address, one service for each autopilot there."""
+    """The bridge's process: one reader of the address, one service for each autopilot there."""
 
     def __init__(
         self, wanted: BridgeOptions, names: Names, bus: ZenohBus, station: Station, origin: BridgeOrigin, warn: Callable[[str], None]

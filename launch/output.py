@@ -20,7 +20,7 @@ Write = Callable[[bytes], object]
 
 
 class RotatingLog(RotatingFileHandler):
-    """``x.log``; once it holds half of ``kept`` bytes it becomes ``x.log.1``, and the one that was so called goes.
+    """``x.log``; once it holds half of ``kept`` bytes it replaces ``x.log.1``, and a new one begins.
 
     Only the launcher writes to it, whole lines in order, so that none is lost or torn between the two.
     """

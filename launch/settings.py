@@ -29,7 +29,7 @@ def runs_quota() -> float:
 
 
 def mission_path(name: str) -> Path:
-    """A mission by its file's path or by its name in ``missions/``. Raises BadInput."""
+    """The file of a mission given by its path or by its name in ``missions/``. Raises BadInput."""
     for path in (Path(name), ROOT / "missions" / f"{name}.yaml", ROOT / name):
         if path.is_file():
             return path
@@ -39,7 +39,7 @@ def mission_path(name: str) -> Path:
 
 
 def log_path(path: Path, what: str = "log") -> Path:
-    """A log, or a run's folder, that is there. Raises BadInput."""
+    """The path of an existing log or folder of a run. Raises BadInput."""
     if path.exists():
         return path
     _look_at(path)

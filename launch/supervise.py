@@ -10,10 +10,10 @@ CONNECT_PATIENCE = 1.0  # s, one attempt
 
 
 def supervise(arguments: list[str], say: Say) -> int:
-    """Runs ``uvf <arguments>`` until Ctrl-C or SIGTERM; returns the exit code. Raises BadInput for what is no process of a run.
+    """Runs ``uvf <arguments>`` until Ctrl-C or SIGTERM; returns the exit code. Raises BadInput for an unknown process.
 
-    A process that is given up stays down, and the launcher stays to say so: a container that ended would be started
-    again, and with it the count of deaths.
+    A process that is given up stays down, and the launcher stays to report that: a container that ended would be restarted,
+    and with it the count of deaths.
     """
     name, stop = process_name(arguments), stop_flag()
     launcher = Launcher(f"launcher.{name}", say)

@@ -67,7 +67,7 @@ class Child:
 
 
 class Supervisor:
-    """Processes by name. ``tell(line, given_up)`` hears of every death."""
+    """Supervises processes by name. ``tell(line, given_up)`` is called at every death."""
 
     def __init__(self, tell: Callable[[str, bool], None], environment: Mapping[str, str] | None = None) -> None:
         self.children: dict[str, Child] = {}
@@ -76,7 +76,7 @@ class Supervisor:
         self._environment = {**os.environ, **(environment or {}), PARENT: str(os.getpid()), "PYTHONUNBUFFERED": "1"}
 
     def start(self, name: str, arguments: list[str], write: Write) -> None:
-        """Starts ``uvf <arguments>`` and hands on what it prints, line by line."""
+        """Starts ``uvf <arguments>`` and passes on its output line by line."""
         child = Child(name, arguments, write, Path(self._alive.name) / f"{name}.alive")
         self.children[name] = child
         self._spawn(child)

@@ -29,7 +29,7 @@ class BenchmarkGoal(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class Stated(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """What is known of a group beforehand. notes: where rows come from that the command does not measure."""
+    """What goals.yaml states about a benchmark group. notes: where rows come from that the command does not measure."""
 
     goals: list[BenchmarkGoal] = []
     notes: list[str] = []
@@ -110,7 +110,7 @@ def _verdict(goal: BenchmarkGoal, value: float) -> str:
 
 
 def replace_section(text: str, group: str, figures: Rows, lines: Sequence[str]) -> str:
-    """The results page with the section of one group renewed; lines: what stands above its table, as a list."""
+    """The results page with one group's section renewed; lines: the list above its table."""
     columns = list(dict.fromkeys(metric for row in figures.values() for metric in row))
     table = [f"| {group} | {' | '.join(columns)} |", "|---" * (len(columns) + 1) + "|"]
     table += [f"| {n} | {' | '.join(f'{row[c]:.4g}' if c in row else '' for c in columns)} |" for n, row in figures.items()]

@@ -55,7 +55,7 @@ STREAMS = {
 
 
 class Series:
-    """Rows of numbers over time."""
+    """Numbers of a stream over time, a row each."""
 
     def __init__(self, width: int) -> None:
         self.width = width
@@ -70,13 +70,13 @@ class Series:
 
     @property
     def rows(self) -> Floats:
-        """(k, 1 + width): t [s] and the numbers."""
+        """Rows (k, 1 + width): t [s] and the numbers in the units of the message."""
         return np.array(self._values).reshape(-1, 1 + self.width)
 
 
 @dataclass(frozen=True)
 class FlownMotion:
-    """Arrays of one length k, of an estimate or of the truth; world frame ENU, attitude as pilots give it."""
+    """Estimated or true motion, arrays of one length k; world frame ENU, attitude of NED/FRD as pilots give it."""
 
     t: Floats  # (k,) s
     position: Floats  # (k, 3) m
@@ -109,7 +109,7 @@ def motion(rows: Floats) -> FlownMotion:
 
 @dataclass
 class History:
-    """All that was heard of one vehicle."""
+    """The recorded messages of one vehicle."""
 
     name: str
     series: dict[str, Series] = field(default_factory=lambda: {key: Series(s.width) for key, s in STREAMS.items()})

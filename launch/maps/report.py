@@ -41,7 +41,10 @@ def figures(grid: GridMap) -> Iterator[str]:
 
 
 def compared(a: GridMap, b: GridMap, shift: Shift, picture: Path) -> Iterator[str]:
-    """Lines about map ``a`` against ``b``, and the picture. Raises BadInput when that cannot be written."""
+    """Yields lines about map ``a`` against ``b``, and draws the picture.
+
+    shift: (x [m], y [m], yaw [degrees]) of ``a`` in the frame of ``b``. Raises BadInput when the picture cannot be written.
+    """
     placed = _placed(a, shift)
     walls, free, occupied = compare(placed, b)
     draw_differences(placed, b, picture)

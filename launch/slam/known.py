@@ -19,7 +19,7 @@ from uvf.slam.logs.laser_log import LaserLog
 
 @dataclass(frozen=True)
 class Known:
-    """By the name of the file they come from."""
+    """The relations and references of a log, by the name of the file they come from."""
 
     relations: dict[str, Relations]
     references: dict[str, Trajectory]

@@ -114,7 +114,7 @@ class Cockpit:
         self._stick.key(name)
 
     def turn(self, t: float, pad: GamepadState) -> None:
-        """Takes the gamepad at ``t`` [s], and sends the surface command if this post has the aircraft's state."""
+        """Takes the gamepad at ``t`` [s], and sends the surface command once the stick has been aligned with the surfaces."""
         self._stick.pad(t, pad)
         flight = self._aircraft.flight()
         if flight is not None and self._ours:

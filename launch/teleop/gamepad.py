@@ -12,8 +12,9 @@ STICK_FULL = 32767.0
 
 
 class Gamepad:
-    """Left stick: drive, or roll and pitch; right one: throttle and rudder. Left shoulder: dead-man. B: stop, or brakes.
+    """The first gamepad.
 
+    Left stick: drive, or roll and pitch; right one: throttle and rudder. Left shoulder: dead-man. B: stop, or brakes.
     D-pad: up and down the linear, right and left the angular scale; trim and flaps of an aircraft.
     """
 

@@ -56,7 +56,7 @@ def _end_of_sequence(data: bytes) -> int | None:
 
 
 class Terminal:
-    """Standard input, key by key."""
+    """Standard input, read key by key."""
 
     def __init__(self, file: int) -> None:
         self._file = file
@@ -64,7 +64,7 @@ class Terminal:
         self._pressed: list[str] = []
 
     def press(self, name: str) -> None:
-        """The key counts as pressed; may be called by a signal's handler."""
+        """Counts the key as pressed; may be called by a signal's handler."""
         self._pressed.append(name)
 
     def read(self, patience: float) -> list[str]:

@@ -30,7 +30,7 @@ WEAK = 1e-3  # rad/s^2
 
 
 def aircraft_faults(folder: Path, air: AirBody) -> tuple[list[str], list[str]]:
-    """(faults, notes), a line each; also of a model at which the engine ends its process."""
+    """(faults, notes), a line each; also for a model that makes the engine end its process."""
     try:
         return run_in_subprocess(_aircraft_faults, str(folder), air)
     except Died as error:

@@ -21,7 +21,7 @@ SECTIONS = {"ground": GroundBody, "air": AirBody}
 
 @dataclass
 class Inspection:
-    """faults: what must be mended, a line each; notes: what is worth a look; the vehicle and its body as far as they could be read."""
+    """Result of an inspection. faults: what must be fixed, a line each; notes: what is worth a look; file and model as far as readable."""
 
     folder: Path
     faults: list[str] = field(default_factory=list)

@@ -29,7 +29,7 @@ UP = np.array((0.0, 0.0, 1.0))
 
 @dataclass(frozen=True)
 class PictureView:
-    """title; to_eye: (3,) from the vehicle's middle; away: in sizes of the vehicle; axes: which of x, y go right and up."""
+    """A view. to_eye: (3,) direction from the vehicle's middle; away: distance in sizes of the vehicle; axes: which go right and up."""
 
     title: str
     to_eye: tuple[float, float, float]

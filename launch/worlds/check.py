@@ -37,7 +37,7 @@ def problems(world: WorldFile, radius: float) -> Iterator[str]:
 
 
 def blocked_starts(site: Scenario) -> Iterator[str]:
-    """Ground vehicles of a mission that begin in or too close to something."""
+    """Yields the ground vehicles of a mission that start inside or too close to something."""
     footing = Footing(site.world)
     for name, member in site.members.items():
         body, start = member.file.ground, member.entry.start

@@ -52,7 +52,7 @@ class ManualDriving:
             self.free(t, vehicle)
 
     def steer(self, t: float, page: int, way: tuple[float, float]) -> None:
-        """Takes what a page holds at ``t`` [s]: parts (-1..1) of the linear and angular scale, (0, 0) for nothing; ignored unless it drives."""
+        """Takes what a page holds at ``t`` [s]: parts (-1..1) of the linear and angular scale; ignored unless the page drives."""
         hand = self._hands.get(self.held_by(page))
         if hand is None:
             return

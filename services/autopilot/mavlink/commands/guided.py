@@ -173,7 +173,7 @@ def go_to(line: VehicleConnection, goal: GoalRequest, may_change_mode: bool, don
 
 
 def goal_of_item(line: VehicleConnection, item: mav.MAVLink_mission_item_int_message, done: Done) -> None:
-    """A "guided" item (current = 2) of Mission Planner and MAVProxy: go there."""
+    """Goes to a "guided" item (current = 2) of Mission Planner and MAVProxy."""
     try:
         place = place_of(line, item.frame, (item.x * 1e-7, item.y * 1e-7), math.nan if line.facts.is_ground else item.z)
         _check_height(line, place, math.nan if line.facts.is_ground else item.z)

@@ -79,7 +79,7 @@ def named(station: Sender, to: Sender) -> str:
 
 
 class VehicleConnection:
-    """What the protocols of one vehicle share; ``t`` [s, wall] is set before each step's work."""
+    """The state shared by the protocols of one vehicle; ``t`` [s, wall] is set before each step's work."""
 
     def __init__(self, facts: VehicleInfo) -> None:
         self.facts = facts

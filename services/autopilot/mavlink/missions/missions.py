@@ -242,7 +242,7 @@ class Missions:
         self._line.send(mav.MAVLink_mission_item_int_message(*head, p1, p2, p3, p4, x, y, z, kind), sender.peer)
 
     def on_ack(self, message: mav.MAVLink_mission_ack_message, sender: Sender) -> None:
-        """Ends a download; anything but "accepted" ends the sender's own upload too."""
+        """Handles MISSION_ACK: it ends a download; anything but "accepted" ends the sender's own upload too."""
         self._shown.pop((sender, message.mission_type), None)
         upload = self._open(message.mission_type)
         if upload is not None and not upload.is_complete and upload.sender == sender and message.type != mav.MAV_MISSION_ACCEPTED:

@@ -74,14 +74,14 @@ class Parameter:
         return self.type == mav.MAV_PARAM_TYPE_INT32
 
     def number(self, own: Mapping[str, Any]) -> float:
-        """Its value on the wire [in its unit], for these values of the autopilot's own parameters."""
+        """Its value [unit of the parameter] on the wire, for these values of the autopilot's own parameters."""
         if self.own and not self.cases:
             return round(own[self.own]) if self.is_int else float(own[self.own])
         fits = (number for number, case in self.cases.items() if all(own[name] == value for name, value in case.sets.items()))
         return next(fits, self.value)
 
     def settings(self, number: float) -> dict[str, Any]:
-        """The autopilot's parameters that give it the value ``number`` [in its unit]; empty if it is impossible.
+        """The autopilot's parameters for which its value is ``number`` [unit of the parameter]; empty if it is impossible.
 
         Limits are compared in single precision: a station that sends 0.3 means the limit 0.3.
         """

@@ -34,19 +34,19 @@ class ParameterValues:
 
 
 def crc32(data: bytes) -> int:
-    """As MAVLink counts it for parameters and files: polynomial 0xEDB88320, start 0, not inverted."""
+    """CRC-32 as MAVLink defines it for parameters and files: polynomial 0xEDB88320, start 0, not inverted."""
     return zlib.crc32(data, 0xFFFFFFFF) ^ 0xFFFFFFFF
 
 
 def encoded(p: Parameter, number: float) -> bytes:
-    """The four bytes of a value ``number`` [in the parameter's unit]; an integer as its own bytes."""
+    """The four bytes of a value ``number`` [unit of the parameter]; an integer as its own bytes."""
     if p.is_int:
         return struct.pack("<i", min(max(int(number), WHOLE[0]), WHOLE[1]))
     return struct.pack("<f", number)
 
 
 def decoded(p: Parameter, raw: bytes) -> float:
-    """The value [in the parameter's unit] of four bytes; NaN when it is not finite."""
+    """The value [unit of the parameter] of four bytes; NaN when it is not finite."""
     number = struct.unpack("<i" if p.is_int else "<f", raw)[0]
     return float(number) if math.isfinite(number) else math.nan
 
