@@ -22,7 +22,7 @@ OUTPUT = "up.txt"
 
 @contextmanager
 def apart(mission: Path, folder: Path) -> Iterator[Client]:
-    """``uvf up`` without the page, from when time begins to run; everything it leaves is below ``folder``, the run in ``latest``.
+    """Starts ``uvf up`` without the page and yields a client once time has begun to run; logs go below ``folder``, the run in ``latest``.
 
     Raises BadInput when time does not begin to run.
     """

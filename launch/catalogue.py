@@ -12,10 +12,10 @@ from uvf.runtime.contract.instances import Build, ServiceInstance
 
 @dataclass(frozen=True)
 class Kind:
-    """``build``: module with ``build(site)``; ``needs``: the vehicles without which it has no work, or ``asked``: one that has parameters
-    for it, or ``team``: two that draw maps.
+    """A kind of service. ``build``: module with ``build(site)``; ``needs``: the vehicles without which it has no work, or
+    ``asked``: one that has parameters for it, or ``team``: two that draw maps.
 
-    ``nice``: how far it gives way to those that keep time (router, conductor, simulators) when processors are few.
+    ``nice``: its nice value, so that time keepers (router, conductor, simulators) come first when processors are few.
     """
 
     name: str
@@ -43,7 +43,7 @@ INFRASTRUCTURE = ("router", "conductor", "recorder")
 
 
 def kind(name: str) -> Kind:
-    """Raises BadInput for an unknown name."""
+    """The service kind of this name. Raises BadInput for an unknown name."""
     found = next((k for k in KINDS if k.name == name), None)
     if found is None:
         raise BadInput(f"no service '{name}'; {nearest(name, [k.name for k in KINDS])}")
@@ -51,7 +51,7 @@ def kind(name: str) -> Kind:
 
 
 def needed(site: Scenario) -> list[Kind]:
-    """The kinds that have work in a mission."""
+    """The service kinds that have work in a mission."""
     kinds: set[str] = {member.file.kind for member in site.members.values()}
     asked = {name for member in site.members.values() for name in member.file.params}
     mapping = [m for m in site.of_kind("ground") if m.entry.maps is None or m.entry.maps.localize is None]

@@ -35,7 +35,7 @@ SENSORS: dict[Topic[Any], str] = {
 
 
 def check_mission(mission: str) -> list[str]:
-    """The problems found, a line each. Raises BadInput for a file that is wrong in itself."""
+    """The problems found in a mission, one line each. Raises BadInput for a file that is wrong in itself."""
     site = load_scenario(settings.mission_path(mission))
     check_criteria(site)
     hosts = catalogue.hosts(site, catalogue.needed(site))
@@ -44,14 +44,14 @@ def check_mission(mission: str) -> list[str]:
 
 
 def refuse_problems(site: Scenario, hosts: Sequence[ServiceInstance]) -> None:
-    """Raises BadInput for the first thing for which a run would wait in vain."""
+    """Raises BadInput for the first problem that would make a run wait in vain."""
     check_params(site, hosts)
     for line in wiring_problems(site, hosts):
         raise BadInput(f"{site.mission_path}: {line}")
 
 
 def check_params(site: Scenario, hosts: Sequence[ServiceInstance]) -> None:
-    """Every group of parameters in a vehicle's file is that of a service it has. Raises BadInput."""
+    """Checks that every group of parameters in a vehicle's file belongs to a service that the vehicle has. Raises BadInput."""
     for member in site.members.values():
         services = {host.service.name for host in hosts if host.vehicle == member.name}
         for name in member.file.params:
@@ -61,7 +61,7 @@ def check_params(site: Scenario, hosts: Sequence[ServiceInstance]) -> None:
 
 
 def wiring_problems(site: Scenario, hosts: Sequence[ServiceInstance]) -> Iterator[str]:
-    """One writer per key, every required input fed, every sensor simulated, steps on the clock's ticks."""
+    """Yields wiring problems: one writer per key, every required input fed, every sensor simulated, steps on the clock's ticks."""
     yield from _writers(hosts)
     yield from _inputs(site, hosts)
     yield from _unread_sensors(site, hosts)
@@ -128,7 +128,7 @@ def _rates(hosts: Sequence[ServiceInstance]) -> Iterator[str]:
 
 
 def compose_problems(path: Path) -> Iterator[str]:
-    """The stanzas of the compose file are the services."""
+    """Yields the differences between the stanzas of the compose file and the services."""
     if not path.exists():
         return
     stanzas = set(yaml.safe_load(path.read_text())["services"])

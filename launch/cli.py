@@ -32,7 +32,7 @@ app.command()(slam)
 
 
 def known_mission(name: str | None) -> str | None:
-    """Answers a misspelt mission before anything is imported."""
+    """Rejects a misspelt mission name before anything is imported."""
     with bad_input_is_one_line():
         if name:
             settings.mission_path(name)
@@ -40,17 +40,19 @@ def known_mission(name: str | None) -> str | None:
 
 
 def known_log(path: Path) -> Path:
+    """Resolves the path of a log or exits with one line."""
     with bad_input_is_one_line():
         return settings.log_path(path)
 
 
 def known_run(path: Path | None) -> Path | None:
+    """Resolves the folder of a run or a log, if one is given, or exits with one line."""
     with bad_input_is_one_line():
         return path and settings.log_path(path, "run")
 
 
 def known_benchmarks(names: list[str]) -> list[str]:
-    """The first is a group; those that follow may be cases of it, which only the group knows."""
+    """Checks the first name, a benchmark group; those that follow may be cases, which only the group knows."""
     with bad_input_is_one_line():
         settings.benchmark_group(names[0])
     return names
@@ -74,6 +76,7 @@ udpout:HOST:PORT: call an autopilot that listens there."""
 
 
 def say(line: str) -> None:
+    """Prints a line with the prefix ``uvf:``."""
     typer.echo(f"uvf: {line}")
 
 
@@ -372,6 +375,7 @@ def log_recover(log: LogArgument, out: Annotated[Path | None, typer.Option(help=
 
 
 def main() -> None:
+    """Runs the command line and exits with its code."""
     with usage_is_one_line():
         sys.exit(app(prog_name="uvf", standalone_mode=False))
 

@@ -21,7 +21,7 @@ Say = Callable[[str], None]
 
 
 class Launcher:
-    """One may run every process of a mission, or one stands in each container around its only process."""
+    """Starts and supervises processes: all of a mission, or the only one of a container."""
 
     def __init__(self, name: str, say: Say) -> None:
         """name: who speaks on the bus, on keys of its own."""
@@ -37,11 +37,11 @@ class Launcher:
         self._t_ns = 0
 
     def start(self, name: str, arguments: list[str], write: Write) -> None:
-        """Starts ``uvf <arguments>`` with its output to ``write``; whoever has started the last one says ``tell``."""
+        """Starts ``uvf <arguments>`` with its output to ``write``; whoever has started the last one calls ``tell``."""
         self._supervisor.start(name, arguments, write)
 
     def connect(self, timeout: float) -> ZenohBus:
-        """Raises BadInput without a router within ``timeout`` [s]."""
+        """Connects to the router. Raises BadInput when there is none within ``timeout`` [s]."""
         self.bus = bus = ZenohBus(router_from(), timeout=timeout)
         self._events = self._publisher(bus, topics.SYSTEM_EVENTS)
         self._stop = self._publisher(bus, topics.STOP)
@@ -67,7 +67,7 @@ class Launcher:
         self._t_ns, bus.epoch = clock.t_ns, clock.epoch
 
     def look(self) -> None:
-        """Hears the bus, starts again what has died, tells what has changed."""
+        """Polls the bus, restarts what has died and publishes changes."""
         if self.bus is not None:
             self.bus.poll()
             self._heed_release()
@@ -90,7 +90,7 @@ class Launcher:
             self._say(f"STOP ALL: {line}")
 
     def tell(self) -> None:
-        """The deaths not told yet and the processes as they are now; waits for the bus if there is none."""
+        """Publishes the deaths not yet reported and the state of the processes; without a bus they wait for ``connect``."""
         if self.bus is None:
             return
         self._ask_time(self.bus)
@@ -109,7 +109,7 @@ class Launcher:
         self._processes.put(processes.SerializeToString(deterministic=True), now)
 
     def stop(self) -> None:
-        """Ends all processes and says so, while there still is a router."""
+        """Ends all processes and publishes that, while there is still a router."""
         self._supervisor.end(but="router")
         self.tell()
         if self.bus is not None:
@@ -119,7 +119,7 @@ class Launcher:
 
 
 def stop_flag() -> Flag:
-    """Set by Ctrl-C and SIGTERM."""
+    """A flag that Ctrl-C and SIGTERM set."""
     stop = Flag()
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: stop.set())

@@ -34,7 +34,7 @@ VEHICLES = ROOT / "vehicles"
 
 @dataclass(frozen=True)
 class BridgeOptions:
-    """What ``uvf mavlink-bridge`` was asked for. names: ``NAME`` or ``NAME=SYSTEM``; mission: whose world it is, if anybody's."""
+    """Options of ``uvf mavlink-bridge``. names: ``NAME`` or ``NAME=SYSTEM``; mission: the one whose world is used, if any."""
 
     address: str
     names: tuple[str, ...] = ()
@@ -43,7 +43,7 @@ class BridgeOptions:
 
 
 def open_address(text: str) -> UdpLink:
-    """``udp:``, ``udpin:`` (wait to be called) or ``udpout:`` (call), then host:port, perhaps with MAVSDK's ``//``. Raises BadInput."""
+    """Opens ``udp:``, ``udpin:`` (listen) or ``udpout:`` (call) followed by host:port, perhaps with MAVSDK's ``//``. Raises BadInput."""
     way, _, place = text.partition(":")
     if way not in (*LISTENING, *CALLING):
         raise BadInput(f"'{text}': no such kind of address; {nearest(way, [*LISTENING, *CALLING])}, as in {EXAMPLE}")
@@ -59,7 +59,7 @@ def open_address(text: str) -> UdpLink:
 
 
 def bridge(wanted: BridgeOptions) -> None:
-    """Until told to stop. Raises BadInput before anything is opened."""
+    """Runs the bridge until told to stop. Raises BadInput before anything is opened."""
     names = names_from(wanted.names)
     if wanted.model:
         load_vehicle(VEHICLES, wanted.model)
@@ -80,7 +80,7 @@ def _check_free(bus: ZenohBus, names: Names) -> None:
 
 
 def is_taken(bus: ZenohBus, name: str) -> bool:
-    """Whether somebody runs services of a vehicle of this name."""
+    """Whether services of a vehicle of this name are running."""
     return bool(bus.tokens(f"@node/{name}/**"))
 
 
@@ -92,7 +92,7 @@ def _origin(site: Scenario | None) -> BridgeOrigin:
 
 
 class Bridge:
-    """The process: one reader of the address, one service for each autopilot there."""
+    """The bridge's process: one reader of the address, one service for each autopilot there."""
 
     def __init__(
         self, wanted: BridgeOptions, names: Names, bus: ZenohBus, station: Station, origin: BridgeOrigin, warn: Callable[[str], None]
@@ -121,7 +121,7 @@ class Bridge:
 
 
 def default_model(type_: int) -> str:
-    """The first in vehicles/ of the same kind, or the first of all: only a picture hangs on it."""
+    """The display model of a MAV_TYPE: the first in vehicles/ of the same kind, or the first of all."""
     kinds = {1: "ground", 2: "fixed_wing"}
     names = sorted(folder.name for folder in VEHICLES.iterdir() if (folder / "vehicle.yaml").is_file())
     kind = kinds.get(KIND.get(type_, 0), "fixed_wing")

@@ -20,7 +20,7 @@ Write = Callable[[bytes], object]
 
 
 class RotatingLog(RotatingFileHandler):
-    """``x.log``; once it holds half of ``kept`` bytes it becomes ``x.log.1``, and the one that was so called goes.
+    """``x.log``; once it holds half of ``kept`` bytes it replaces ``x.log.1``, and a new one begins.
 
     Only the launcher writes to it, whole lines in order, so that none is lost or torn between the two.
     """
@@ -32,11 +32,11 @@ class RotatingLog(RotatingFileHandler):
         super().__init__(path, maxBytes=kept // 2, backupCount=1, encoding="latin-1")
 
     def write(self, line: bytes) -> None:
-        """Raises OSError where the disk is full."""
+        """Appends a line. Raises OSError where the disk is full."""
         self.handle(makeLogRecord({"msg": line.decode("latin-1")}))
 
     def handleError(self, record: LogRecord) -> None:
-        """Who writes decides what is done about it; a handler would print it among the launcher's own lines."""
+        """Reraises the error, so that the writer decides what is done about it."""
         if (error := sys.exception()) is not None:
             raise error
 
@@ -58,5 +58,5 @@ class Output:
                 self.last = legible(line.decode(errors="replace"), LAST_SHOWN) or self.last
 
     def finish(self) -> None:
-        """Waits until what a dead process has printed is read; not for ever, a child of its own may hold the pipe open."""
+        """Waits a limited time until the output of a dead process is read; a child of its own may hold the pipe open."""
         self._thread.join(READ_PATIENCE)

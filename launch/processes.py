@@ -29,7 +29,7 @@ PATIENCE = 3.0  # s, after which a clock that is held back says by whom
 
 
 def run_router(listen: str) -> None:
-    """The router, and beside it the keeper, until told to stop."""
+    """Runs the router and the state store beside it until told to stop."""
     with worker("router") as life:
         session = open_router(listen)
         try:
@@ -43,7 +43,7 @@ def run_router(listen: str) -> None:
 
 
 def open_bus(life: Worker, blocking: bool = False) -> ZenohBus:
-    """Waits for the router until told to stop, and says so once."""
+    """Connects to the router; waits for it until told to stop, and reports the wait once."""
     endpoint, said = router_from(), False
     while not life.stop.is_set() and not life.orphaned():
         try:
@@ -56,7 +56,7 @@ def open_bus(life: Worker, blocking: bool = False) -> ZenohBus:
 
 
 def run_service(name: str, mission: str, vehicle: str | None, lockstep: bool = False) -> None:
-    """One kind of service for all its vehicles, or for one."""
+    """Runs one kind of service for all its vehicles, or for one."""
     with worker(name) as life:
         kind = catalogue.kind(name)
         lower_priority(kind.nice)
@@ -69,7 +69,7 @@ def run_service(name: str, mission: str, vehicle: str | None, lockstep: bool = F
 
 
 def run_conductor(mission: str, rate: float, lockstep: bool = False, without: tuple[str, ...] = ()) -> None:
-    """Publishes the clock for a mission's participants."""
+    """Publishes the clock for a mission's participants at real-time factor ``rate`` [-]; 0 = as fast as possible."""
     with worker("conductor") as life:
         site = load_scenario(settings.mission_path(mission))
         kinds = [k for k in catalogue.needed(site) if k.clock == "sim" and k.name not in without]
@@ -82,7 +82,7 @@ def run_conductor(mission: str, rate: float, lockstep: bool = False, without: tu
 
 
 class ConductorLoop:
-    """The conductor's state machine on the bus and on wall time."""
+    """Runs the conductor's state machine on the bus and on wall time."""
 
     def __init__(self, conductor: Conductor, bus: ZenohBus, life: Worker) -> None:
         self._conductor = conductor
@@ -126,6 +126,7 @@ class ConductorLoop:
         self._events.put(event.SerializeToString(deterministic=True), self._conductor.t_ns)
 
     def run(self) -> None:
+        """Advances the clock until told to stop or orphaned."""
         while not self._life.stop.is_set() and self._life.goes_on():
             self._bus.wait(self._conductor.patience)
             self._bus.poll()

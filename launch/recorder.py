@@ -32,7 +32,7 @@ Tell = Callable[[str, Event.Severity], None]
 
 
 def free_space(folder: Path) -> int:
-    """Bytes; none where the folder is gone."""
+    """Free bytes on the folder's disk; 0 where the folder is gone."""
     try:
         return shutil.disk_usage(folder).free
     except OSError:
@@ -40,12 +40,12 @@ def free_space(folder: Path) -> int:
 
 
 def next_number(folder: Path) -> int:
-    """One more than that of the newest log; the numbers of removed ones are not given again."""
+    """One more than the number of the newest log; numbers of removed logs are not reused."""
     return 1 + max((int(m[1]) for p in folder.glob("log-*.mcap") if (m := re.fullmatch(r"log-(\d+)", p.stem))), default=-1)
 
 
 class LogSeries:
-    """``log-000.mcap``, ``log-001.mcap``, ...: each can be read alone; where the disk refuses, it waits and goes on.
+    """``log-000.mcap``, ``log-001.mcap``, ...: each is readable alone; where the disk refuses, recording pauses and resumes.
 
     make_room: called before each file but the first.
     """
@@ -84,6 +84,7 @@ class LogSeries:
         return begun
 
     def write(self, sample: Sample) -> None:
+        """Records a sample and rotates the file when it is full."""
         self._recorder.write(sample)
         if not self._recorder.error and self._recorder.size >= self._rotate_bytes:
             self._recorder.close()
@@ -99,7 +100,7 @@ class LogSeries:
             self._recorder.error = str(error)
 
     def flush(self) -> None:
-        """Now and then: what has been written is safe, and recording is taken up again where the disk had refused."""
+        """Flushes what has been written, and resumes recording where the disk had refused."""
         self._recorder.flush()
         self._tell_refused()
         if not self._recorder.error and not self._recorder.path.exists():
@@ -125,6 +126,7 @@ class LogSeries:
             self._tell(f"recording goes on in {self._recorder.path}", Event.INFO)
 
     def close(self) -> None:
+        """Closes the current file and reports an error that was not yet reported."""
         self._recorder.close()
         if self._recorder.error and not self._told:
             self._tell(self._recorder.error, Event.CRITICAL)
@@ -200,7 +202,7 @@ def _record(life: Worker, bus: ZenohBus, series: LogSeries) -> None:
 
 
 def attachments(site: Scenario) -> dict[str, bytes]:
-    """The files that say what was run, mission, world and vehicles, by their places below the project's folder."""
+    """The files that define the run (mission, world, vehicles) by their paths below the project's folder."""
     files = {f"missions/{site.mission_path.name}": site.mission_path}
     folders = {f"worlds/{site.mission.world}": site.world_folder}
     vehicles = {folder for member in site.members.values() for folder in (*folders_of(member.folder), member.folder.parent / COMMON)}

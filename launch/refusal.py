@@ -17,7 +17,7 @@ _WORD, _SHOWN = 255, 60
 
 @contextmanager
 def bad_input_is_one_line() -> Iterator[None]:
-    """Exit code 2 and the line, instead of a traceback."""
+    """Turns BadInput into one line and exit code 2 instead of a traceback."""
     try:
         yield
     except BadInput as error:
@@ -30,7 +30,7 @@ def bad_input_is_one_line() -> Iterator[None]:
 
 @contextmanager
 def usage_is_one_line() -> Iterator[None]:
-    """The same for a missing or misspelt argument, option or command. Ends the process."""
+    """Turns a missing or misspelt argument, option or command into one line, and ends the process."""
     try:
         yield
     except typer.Abort as error:
@@ -46,7 +46,7 @@ def usage_is_one_line() -> Iterator[None]:
 
 
 def within(low: float, high: float = math.inf) -> Callable[[float | None], float | None]:
-    """A callback for an option that is a number, and a finite one: typer's own limits take NaN for a number that is too large."""
+    """A typer callback that accepts finite numbers from ``low`` to ``high`` [unit of the option]: typer's own limits let NaN through."""
     limits = f"at least {low:g}" if math.isinf(high) else f"from {low:g} to {high:g}"
 
     def checked(value: float | None) -> float | None:

@@ -16,6 +16,8 @@ from uvf.runtime.time.lockstep import Lockstep
 
 @dataclass(frozen=True)
 class Result:
+    """What a lockstep run yields: verdicts, log hash, times and failures."""
+
     verdicts: list[Verdict]
     log_hash: str
     simulated: float  # s
@@ -27,11 +29,12 @@ class Result:
 
     @property
     def factor(self) -> float:
-        """Real-time factor."""
+        """Real-time factor [-]: simulated over wall time."""
         return self.simulated / self.wall
 
     @property
     def passed(self) -> bool:
+        """Whether every criterion holds and no instance has failed."""
         return not self.failures and all(v.passed for v in self.verdicts)
 
 

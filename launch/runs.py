@@ -17,7 +17,7 @@ _RUN = re.compile(r"(\d{4}-\d\d-\d\d_\d\d-\d\d-\d\d)(?:-(\d+))?")
 
 
 def new_run() -> Path:
-    """Makes ``runs/<date>_<time>/``, holds it and points ``runs/latest`` to it. Raises BadInput."""
+    """Makes ``runs/<date>_<time>/``, marks it as in use and points ``runs/latest`` to it. Raises BadInput."""
     base = settings.runs_folder()
     stamp = time.strftime("%Y-%m-%d_%H-%M-%S")
     try:
@@ -50,9 +50,9 @@ def _point(link: Path, folder: Path) -> None:
 
 
 def hold(folder: Path) -> int:
-    """Marks a folder as one that a living process writes to; returns the descriptor whose closing lets go.
+    """Marks a folder as one that a living process writes to; closing the returned descriptor releases it.
 
-    A lock, not a process number: the system lets go of it however the process ends, and it holds between containers.
+    It is a lock, not a process number: the system releases it however the process ends, and it holds between containers.
     Raises OSError when nothing can be written there.
     """
     descriptor = os.open(folder / HELD, os.O_RDWR | os.O_CREAT, 0o644)
@@ -62,9 +62,9 @@ def hold(folder: Path) -> int:
 
 
 def keep_quota(folder: Path, limit: float) -> list[Path]:
-    """What a running recorder does: removes the oldest runs beside ``folder``, then its own oldest logs; returns what is gone.
+    """Removes the oldest runs beside ``folder``, then its own oldest logs; returns what was removed.
 
-    limit: bytes that all runs may take together, or ``folder`` alone where it is no folder of a run.
+    limit [bytes]: that all runs may take together, or ``folder`` alone where it is no folder of a run.
     """
     base = settings.runs_folder().resolve()
     if folder.resolve().parent != base:
@@ -74,9 +74,9 @@ def keep_quota(folder: Path, limit: float) -> list[Path]:
 
 
 def prune(base: Path, quota: float) -> list[Path]:
-    """Removes the oldest runs until the rest takes less than ``quota`` bytes.
+    """Removes the oldest runs until the rest takes at most ``quota`` [bytes]; returns the removed folders.
 
-    Stay: the newest, what a living process holds, and whatever else lies there that is no run.
+    Kept are the newest run, runs held by a living process, and everything else there that is no run.
     """
     folders = _runs(base)
     sizes = {folder: _size([folder]) for folder in folders}

@@ -15,11 +15,12 @@ GIGABYTE = 1_000_000_000
 
 
 def runs_folder() -> Path:
+    """The folder of recorded runs: UVF_RUNS, or ``runs/``."""
     return Path(os.environ.get("UVF_RUNS", str(ROOT / "runs")))
 
 
 def runs_quota() -> float:
-    """Bytes that old runs may take together. Raises BadInput."""
+    """Size [bytes] that old runs may take together, from UVF_RUNS_QUOTA_GB. Raises BadInput."""
     text = os.environ.get("UVF_RUNS_QUOTA_GB", "5")
     try:
         return float(text) * GIGABYTE
@@ -28,7 +29,7 @@ def runs_quota() -> float:
 
 
 def mission_path(name: str) -> Path:
-    """A mission by its file's path or by its name in ``missions/``. Raises BadInput."""
+    """The file of a mission given by its path or by its name in ``missions/``. Raises BadInput."""
     for path in (Path(name), ROOT / "missions" / f"{name}.yaml", ROOT / name):
         if path.is_file():
             return path
@@ -38,7 +39,7 @@ def mission_path(name: str) -> Path:
 
 
 def log_path(path: Path, what: str = "log") -> Path:
-    """A log, or a run's folder, that is there. Raises BadInput."""
+    """The path of an existing log or folder of a run. Raises BadInput."""
     if path.exists():
         return path
     _look_at(path)
@@ -53,11 +54,12 @@ def _look_at(path: Path) -> None:
 
 
 def benchmark_groups() -> list[str]:
+    """The names of all benchmark groups, sorted."""
     return sorted(p.stem for p in (ROOT / "benchmarks").glob("*.py") if "CASES = " in p.read_text(encoding="utf-8"))
 
 
 def benchmark_group(name: str) -> str:
-    """Raises BadInput."""
+    """The name, if it is that of a benchmark group. Raises BadInput."""
     groups = benchmark_groups()
     if name not in groups:
         raise BadInput(f"no benchmark group '{name}'; {nearest(name, groups)}")

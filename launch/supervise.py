@@ -10,10 +10,10 @@ CONNECT_PATIENCE = 1.0  # s, one attempt
 
 
 def supervise(arguments: list[str], say: Say) -> int:
-    """Runs ``uvf <arguments>`` until Ctrl-C or SIGTERM; returns the exit code. Raises BadInput for what is no process of a run.
+    """Runs ``uvf <arguments>`` until Ctrl-C or SIGTERM; returns the exit code. Raises BadInput for an unknown process.
 
-    A process that is given up stays down, and the launcher stays to say so: a container that ended would be started
-    again, and with it the count of deaths.
+    A process that is given up stays down, and the launcher stays to report that: a container that ended would be restarted,
+    and with it the count of deaths.
     """
     name, stop = process_name(arguments), stop_flag()
     launcher = Launcher(f"launcher.{name}", say)
@@ -30,7 +30,7 @@ def supervise(arguments: list[str], say: Say) -> int:
 
 
 def process_name(arguments: list[str]) -> str:
-    """As ``uvf up`` calls it: ``slam``, ``slam.burger`` of one vehicle only, ``router``, ``recorder``. Raises BadInput."""
+    """The name by which ``uvf up`` knows a process: ``slam``, ``slam.burger`` of one vehicle, ``router``, ``recorder``. Raises BadInput."""
     match arguments:
         case ["service", name, *options]:
             words = [word for option in options for word in option.split("=")]

@@ -43,13 +43,14 @@ class Child:
     deaths: deque[float] = field(default_factory=lambda: deque(maxlen=DEATHS))
 
     def describe(self) -> Process:
+        """The process as a message."""
         pid = self.popen.pid if self.popen else 0
         return Process(name=self.name, state=self.state, pid=pid, restarts=self.restarts, reason=self.reason)
 
     def is_silent(self, now: float) -> bool:
-        """Whether its loop has begun and has not gone round for ``HANGS``; now [s, monotonic].
+        """Whether its main loop has begun and has shown no sign of life for ``HANGS``; now [s, monotonic].
 
-        On a machine with too much to do, one that gives way to others may get no processor for longer than that.
+        Time in which no processor was free for it is not counted: a low-priority process may wait that long on a busy machine.
         """
         touched = None
         with contextlib.suppress(FileNotFoundError):
@@ -66,7 +67,7 @@ class Child:
 
 
 class Supervisor:
-    """Processes by name. ``tell(line, given_up)`` hears of every death."""
+    """Supervises processes by name. ``tell(line, given_up)`` is called at every death."""
 
     def __init__(self, tell: Callable[[str, bool], None], environment: Mapping[str, str] | None = None) -> None:
         self.children: dict[str, Child] = {}
@@ -75,7 +76,7 @@ class Supervisor:
         self._environment = {**os.environ, **(environment or {}), PARENT: str(os.getpid()), "PYTHONUNBUFFERED": "1"}
 
     def start(self, name: str, arguments: list[str], write: Write) -> None:
-        """Starts ``uvf <arguments>`` and hands on what it prints, line by line."""
+        """Starts ``uvf <arguments>`` and passes on its output line by line."""
         child = Child(name, arguments, write, Path(self._alive.name) / f"{name}.alive")
         self.children[name] = child
         self._spawn(child)
@@ -96,7 +97,7 @@ class Supervisor:
         child.state = Process.RUNNING
 
     def look(self) -> bool:
-        """Starts again what has died and ends what hangs, to be started again; True when something has changed."""
+        """Restarts what has died and kills what hangs; True when something has changed."""
         changed = False
         for child in self.children.values():
             if child.state != Process.RUNNING:
@@ -123,6 +124,7 @@ class Supervisor:
         self._tell(f"{child.name} {child.reason}; started again", False)
 
     def describe(self) -> list[Process]:
+        """All processes as messages."""
         return [child.describe() for child in self.children.values()]
 
     def end(self, but: str = "") -> None:

@@ -21,7 +21,7 @@ ROUTER_PATIENCE = 10.0  # s
 
 @dataclass(frozen=True)
 class StartOptions:
-    """What ``uvf up`` was asked for."""
+    """Options of ``uvf up``."""
 
     mission: str
     rate: float = 1.0
@@ -46,7 +46,7 @@ def up(wanted: StartOptions, folder: Path, say: Say) -> int:
 
 
 class RunningMission:
-    """The processes of one run, from the first to the end."""
+    """The processes of one run."""
 
     def __init__(self, wanted: StartOptions, folder: Path, say: Say) -> None:
         self._wanted = wanted
@@ -58,7 +58,7 @@ class RunningMission:
         self.simulated = 0.0  # s
 
     def start(self, services: list[str]) -> None:
-        """The router first, then everybody; the conductor lets time begin when all are there."""
+        """Starts the router first, then all others; the conductor starts time when all are there."""
         mission = self._wanted.mission
         self._start("router", "router")
         bus, refuse = self.launcher.connect(ROUTER_PATIENCE), Refusals(self._say).refuse
@@ -84,7 +84,7 @@ class RunningMission:
             self._say(f"time runs, {self._moving_since - self._begun:.1f} s after the start")
 
     def watch(self, stop: Flag) -> None:
-        """Until ``stop``; starts again what dies."""
+        """Supervises until ``stop``; restarts what dies."""
         while not stop.wait(LOOK) and not self._over() and not self._cannot_begin():
             self.launcher.look()
 

@@ -10,7 +10,7 @@ PATIENCE = 5.0  # s, wall: at the start everybody waits a little
 
 
 class Waits:
-    """Tells once of each input that has been missing for ``PATIENCE``, and when it has come after all."""
+    """Reports once each input that has been missing for ``PATIENCE``, and its arrival after all."""
 
     def __init__(self, say: Say, processes: Collection[str], clock: Callable[[], float] = time.monotonic) -> None:
         """processes: whose reports count; anybody may send others."""
@@ -21,7 +21,7 @@ class Waits:
         self._told: set[tuple[str, str]] = set()
 
     def hear(self, health: Health) -> None:
-        """health: ``missing`` holds 'service:input'."""
+        """Takes a health message, whose ``missing`` holds 'service:input'."""
         if health.service not in self._processes:
             return
         now = self._clock()

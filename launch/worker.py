@@ -18,7 +18,7 @@ ALIVE_FILE = "UVF_ALIVE_FILE"
 
 
 class Worker:
-    """The life of one process: ``stop`` is set by SIGTERM, by Ctrl-C, and when the launcher has gone."""
+    """Lifecycle of a process: ``stop`` is set by SIGTERM, by Ctrl-C, and when the launcher has gone."""
 
     def __init__(self, name: str) -> None:
         self.name = name
@@ -30,7 +30,7 @@ class Worker:
             signal.signal(number, lambda *_: self.stop.set())
 
     def warn(self, line: str) -> None:
-        """One line to the process's log; lost where the disk is full."""
+        """Writes one line to the process's log; it is lost where the disk is full."""
         with contextlib.suppress(OSError):
             sys.stderr.write(f"{time.strftime('%H:%M:%S')} {self.name}: {line}\n")
             sys.stderr.flush()
@@ -40,7 +40,7 @@ class Worker:
         return self._parent != 0 and os.getppid() != self._parent
 
     def goes_on(self) -> bool:
-        """Not orphaned; asked in the main loop, it also shows the launcher that the loop goes round."""
+        """Whether the process is not orphaned; called in the main loop, it is also the sign of life for the launcher."""
         now = time.monotonic()
         if self._alive is not None and now - self._touched > 1:
             with contextlib.suppress(OSError):  # a full disk shall stop nobody
@@ -61,13 +61,13 @@ def worker(name: str) -> Iterator[Worker]:
 
 
 def lower_priority(nice: int) -> None:
-    """Lowers this process's priority by ``nice``; then it also waits for its turn instead of interrupting when it wakes."""
+    """Lowers this process's priority by ``nice`` and keeps it from preempting others when it wakes."""
     os.nice(nice)
     if nice and hasattr(os, "SCHED_BATCH"):
         os.sched_setscheduler(0, os.SCHED_BATCH, os.sched_param(0))
 
 
 def freeze_gc() -> None:
-    """What the start has built stays: looking through all of it for garbage would halt the process for 0.1 s now and then."""
+    """Exempts what the start has built from garbage collection, which would halt the process for 0.1 s now and then."""
     gc.collect()
     gc.freeze()

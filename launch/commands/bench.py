@@ -23,7 +23,7 @@ RESULTS = ROOT / "benchmarks" / "results.md"
 
 
 def run_groups(names: Sequence[str], data: Path | None, json_file: Path | None, write: bool) -> None:
-    """Groups, each followed by the cases wanted of it (none = all); every name is looked up before anything runs. Raises BadInput."""
+    """Runs benchmark groups, each followed by its wanted cases (none = all); names are looked up before anything runs. Raises BadInput."""
     wanted = _wanted(names)
     chosen = {group: _chosen(group, cases, data) for group, cases in wanted.items()}
     console = Console(width=None if sys.stdout.isatty() else WIDTH)
@@ -81,7 +81,7 @@ def _run(group: str, cases: Mapping[str, Case], data: Path | None) -> Figures:
 
 
 def cases_of(module: Any, data: Path | None) -> dict[str, Case]:
-    """What a group measures; CASES may be a function of the data folder, where the cases depend on it. Raises BadInput."""
+    """The cases that a group measures; CASES may be a function of the data folder. Raises BadInput."""
     found: dict[str, Case] = module.CASES(data) if callable(module.CASES) else module.CASES
     return found
 

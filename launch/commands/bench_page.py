@@ -29,7 +29,7 @@ class BenchmarkGoal(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class Stated(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """What is known of a group beforehand. notes: where rows come from that the command does not measure."""
+    """What goals.yaml states about a benchmark group. notes: where rows come from that the command does not measure."""
 
     goals: list[BenchmarkGoal] = []
     notes: list[str] = []
@@ -41,7 +41,7 @@ class _Page(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 @dataclass(frozen=True)
 class BenchmarkFacts:
-    """Where figures come from."""
+    """How benchmark figures were obtained: command, commit, date and machine."""
 
     command: str
     commit: str
@@ -49,11 +49,12 @@ class BenchmarkFacts:
     machine: str
 
     def line(self) -> str:
+        """The facts as one line of Markdown."""
         return f"`{self.command}`; commit {self.commit}, {self.date}; {self.machine}"
 
 
 def facts_now(names: Sequence[str]) -> BenchmarkFacts:
-    """Of a run that begins now."""
+    """The facts of a benchmark run that begins now."""
     load = ", ".join(f"{value:.1f}" for value in os.getloadavg())
     machine = f"{os.cpu_count()} x {_processor()}, Python {platform.python_version()}, load before {load} (1, 5, 15 min)"
     return BenchmarkFacts(shlex.join(["./uvf", "bench", *names, "--write"]), _commit(), time.strftime("%Y-%m-%d"), machine)
@@ -83,11 +84,12 @@ def _stated(group: str) -> Stated:
 
 
 def notes_of(group: str) -> list[str]:
+    """The notes that goals.yaml holds for a benchmark group."""
     return list(_stated(group).notes)
 
 
 def verdicts(group: str, rows: Rows) -> list[str]:
-    """A line for each goal of the rows that have been measured."""
+    """One line for each goal whose row was measured, with the value and whether the goal is met."""
     lines = []
     for goal in _stated(group).goals:
         for name in goal.rows:
@@ -108,7 +110,7 @@ def _verdict(goal: BenchmarkGoal, value: float) -> str:
 
 
 def replace_section(text: str, group: str, figures: Rows, lines: Sequence[str]) -> str:
-    """The results page with the section of one group renewed; lines: what stands above its table, as a list."""
+    """The results page with one group's section renewed; lines: the list above its table."""
     columns = list(dict.fromkeys(metric for row in figures.values() for metric in row))
     table = [f"| {group} | {' | '.join(columns)} |", "|---" * (len(columns) + 1) + "|"]
     table += [f"| {n} | {' | '.join(f'{row[c]:.4g}' if c in row else '' for c in columns)} |" for n, row in figures.items()]

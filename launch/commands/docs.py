@@ -14,7 +14,7 @@ MKDOCS = [sys.executable, "-m", "mkdocs"]
 
 
 def serve_docs(port: int) -> NoReturn:
-    """Serves the site at ``http://127.0.0.1:port`` until Ctrl-C; a page that is edited is shown anew. Takes the place of this process."""
+    """Serves the site at ``http://127.0.0.1:port`` until Ctrl-C, reloading edited pages; replaces this process."""
     os.chdir(ROOT)
     os.execve(sys.executable, [*MKDOCS, "serve", "--dev-addr", f"{HOST}:{port}"], _environment())
 

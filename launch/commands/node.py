@@ -13,7 +13,7 @@ from uvf.runtime.bus.zenoh_bus import ZenohBus
 
 
 def list_nodes() -> None:
-    """One line for each living service instance, then one for each process that a launcher looks after."""
+    """Prints a line for each living service instance, then one for each process under a launcher's supervision."""
     with ZenohBus(router_from(), timeout=3.0) as bus:
         nodes = [token.split("/")[1:] for token in bus.tokens("@node/**")]
         for owner, service, boot in nodes:
@@ -26,7 +26,7 @@ def list_nodes() -> None:
 
 
 def graph() -> None:
-    """For each key: writers -> readers."""
+    """Prints for each key: writers -> readers."""
     with ZenohBus(router_from(), timeout=3.0) as bus:
         tokens = [token.split("/") for token in bus.tokens("@ep/**")]
     writers: defaultdict[str, set[str]] = defaultdict(set)

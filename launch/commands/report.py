@@ -29,7 +29,10 @@ console = Console()
 
 
 def run_and_report(mission: str, until: float | None, log: Path | None) -> int:
-    """Runs in lockstep with a progress bar and prints the score; 0 when every criterion holds."""
+    """Runs in lockstep up to ``until`` [s, simulation] with a progress bar and prints the score; 0 when every criterion holds, else 1.
+
+    Raises BadInput.
+    """
     site = load_scenario(settings.mission_path(mission))
     until = until if until is not None else site.mission.duration
     if not 0 < until < math.inf:
@@ -70,7 +73,7 @@ def _print_result(result: Result, log: Path) -> None:
 
 
 def replay_onto_bus(log: Path, rate: float) -> int:
-    """Until the end or Ctrl-C."""
+    """Replays a log onto the bus at ``rate`` [simulation s per s] until its end or Ctrl-C; returns the exit code. Raises BadInput."""
     log_begin(log)  # what is wrong with it, before a router is looked for
     stop = Event()
     signal.signal(signal.SIGINT, lambda *_: stop.set())
@@ -81,7 +84,7 @@ def replay_onto_bus(log: Path, rate: float) -> int:
 
 
 def replay_into(log: Path, service: str, vehicle: str | None, mission: str | None) -> int:
-    """Prints the fields that came out otherwise; 0 when there are none."""
+    """Replays a log into a service and prints the output fields that differ; 0 when there are none, else 1. Raises BadInput."""
     with nullcontext(load_scenario(settings.mission_path(mission))) if mission else logged_site(log) as site:
         hosts = _hosts_named(service, site, vehicle)
         if begin := log_begin(log):
@@ -119,7 +122,7 @@ def _hosts_named(name: str, site: Scenario, vehicle: str | None) -> list[Service
 
 
 def describe_log(log: Path) -> None:
-    """Topics with type, count and rate."""
+    """Prints the topics of a log with type, count and rate [Hz], its length and its metadata. Raises BadInput."""
     counts: Counter[str] = Counter()
     sizes: Counter[str] = Counter()
     types: dict[str, str] = {}
@@ -141,5 +144,6 @@ def describe_log(log: Path) -> None:
 
 
 def recover_log(log: Path, out: Path | None) -> None:
+    """Saves the readable part of a log that was cut off into ``out`` or beside it."""
     target = out or log.with_name(f"{log.stem}-recovered.mcap")
     typer.echo(f"{recover(log, target, lambda line: typer.echo(line, err=True))} messages saved into {target}")

@@ -10,7 +10,7 @@ PAGE = ROOT / "docs" / "reference" / "topics.md"
 
 
 def render() -> str:
-    """The whole page."""
+    """Renders the whole page."""
     lines = [
         "# Topics, requests and processes",
         "",

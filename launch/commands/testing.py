@@ -16,7 +16,7 @@ ON_THE_WALL = ["tests/browser", "tests/distributed"]
 
 
 def left_out() -> list[str]:
-    """What the tests will leave out here, and what would bring it in."""
+    """The tests that will be skipped on this machine, and what would enable them."""
     lines = []
     if not data_folder():
         lines.append("no data folder: benchmark data tests left out (set UVF_DATA)")

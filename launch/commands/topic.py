@@ -21,7 +21,7 @@ DEPTH = 16_384
 
 
 def list_table() -> None:
-    """One line for each topic and request of the table; keys are never cut."""
+    """Prints one line for each topic and request of the table; keys are never cut."""
     width = max(len(key) for key in (*(t.key for t in TOPICS.values()), *(r.key for r in REQUESTS.values())))
     for topic in TOPICS.values():
         hz = f"{topic.hz:g} Hz" if topic.hz else "on change"
@@ -47,7 +47,7 @@ def _listen(key: str, heard: Callable[[Sample], None], go_on: Callable[[], bool]
 
 
 def list_live() -> None:
-    """The keys heard within two seconds."""
+    """Prints the keys heard within two seconds."""
     heard: dict[str, str] = {}
     end = time.monotonic() + LIVE_SECONDS
     _listen("**", lambda s: heard.update({s.key: s.type_name}), lambda: time.monotonic() < end)
@@ -83,7 +83,7 @@ def _text(sample: Sample) -> str:
 
 
 def rates(key: str, seconds: float) -> None:
-    """Messages per second of wall and of simulation time, for every key that matches."""
+    """Prints the message rate [1/s] by wall and by simulation time of every key that matches, counted over ``seconds`` [s, wall]."""
     stamps: defaultdict[str, list[int]] = defaultdict(list)
     end = time.monotonic() + seconds
     _listen(key, lambda s: stamps[s.key].append(s.stamp_ns), lambda: time.monotonic() < end)
@@ -96,7 +96,7 @@ def rates(key: str, seconds: float) -> None:
 
 
 def info(key: str) -> None:
-    """The table's line and the endpoints alive."""
+    """Prints the table's line of a key and its live endpoints."""
     topic = topic_of(_full(key))
     if topic is None:
         known = [t.key.replace("<owner>", key.partition("/")[0]) for t in TOPICS.values()]

@@ -20,7 +20,7 @@ PARTS: dict[str, str] = {
 
 
 def render(part: str) -> str:
-    """The page of one part: its modules in the order of their names."""
+    """Renders the page of one part: its modules in the order of their names."""
     lines = [
         f"# uvf.{part}",
         "",

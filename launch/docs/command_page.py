@@ -16,7 +16,7 @@ Every command answers `--help`. An error is one line that says what is wrong, wh
 
 
 def render() -> str:
-    """The whole page."""
+    """Renders the whole page."""
     return "\n".join((HEAD, *_command(typer.main.get_command(app), ""))) + "\n"
 
 

@@ -37,7 +37,7 @@ class Measure(NamedTuple):
 
 
 def render() -> str:
-    """The whole page."""
+    """Renders the whole page."""
     links: dict[type, str] = {}
     for _, root, _ in FILES:
         for struct, path in _sections(root, "", set()):
@@ -76,7 +76,7 @@ def _about(struct: type[msgspec.Struct]) -> str:
 
 
 def measures() -> list[Measure]:
-    """Every measure. Raises ValueError for a docstring that does not say unit or time."""
+    """All measures of criteria. Raises ValueError for a docstring that does not say unit or time."""
     return [_measure(name, function) for name, function in MEASURES.items()]
 
 

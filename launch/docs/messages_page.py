@@ -20,7 +20,7 @@ VALUE = re.compile(r"^\s*([A-Z]\w*) = (\d+);\s*(?://\s*(.*))?$")
 
 
 def render() -> str:
-    """The whole page."""
+    """Renders the whole page."""
     return "\n".join((HEAD, *(line for path in sorted(PROTO.glob("*.proto")) for line in _file(path)))) + "\n"
 
 

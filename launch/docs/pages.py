@@ -23,7 +23,7 @@ PAGES: dict[Path, Callable[[], str]] = {
 
 
 def outdated() -> list[str]:
-    """The pages that are not as they would be rendered now."""
+    """The pages that differ from what would be rendered now."""
     pages = ((path, path.read_text(encoding="utf-8") if path.exists() else "", render()) for path, render in PAGES.items())
     return [str(path.relative_to(ROOT)) for path, old, new in pages if old != new]
 

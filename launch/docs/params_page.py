@@ -35,7 +35,7 @@ SERVICES: dict[str, tuple[type[Params], str]] = {
 
 
 def render() -> str:
-    """The whole page."""
+    """Renders the whole page."""
     return "\n".join((HEAD, *_sections())) + "\n"
 
 

@@ -22,7 +22,7 @@ def on_page_markdown(markdown: str, *, page: Any, config: Any, files: Any) -> st
 
 
 def shown(markdown: str, page: str, docs: Path) -> str:
-    """page: path of the page below ``docs``."""
+    """The Markdown of a page with links to sources rewritten; page: path of the page below ``docs``."""
     parts = CODE.split(markdown)
     return "".join(part if i % 2 else LINK.sub(lambda m: _shown(m, page, docs), part) for i, part in enumerate(parts))
 

@@ -25,6 +25,7 @@ class Key(NamedTuple):
 
     @property
     def is_number(self) -> bool:
+        """Whether the key holds a float or an integer."""
         return bare(self.hint) in (float, int)
 
 
@@ -35,7 +36,7 @@ def keys_of(struct: type[msgspec.Struct]) -> list[Key]:
 
 
 def bare(hint: Any) -> Any:
-    """A type without its notes, and without None where a key may be left out."""
+    """The type without its annotations, and without None where a key may be left out."""
     while True:
         if get_origin(hint) is Annotated:
             hint = get_args(hint)[0]

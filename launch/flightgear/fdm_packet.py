@@ -35,7 +35,7 @@ SIZE = _LAYOUT.size
 
 @dataclass(frozen=True)
 class Seen:
-    """What FlightGear shows. Angles in rad and vectors in NED or FRD."""
+    """The state that FlightGear displays: angles [rad], vectors [m/s, rad/s, m/s^2] in NED or FRD."""
 
     latitude: float
     longitude: float
@@ -53,7 +53,7 @@ class Seen:
 
 
 def packet(seen: Seen) -> bytes:
-    """One packet. FlightGear counts a rudder's way to the right as positive."""
+    """One FDM packet as bytes; FlightGear counts rudder to the right as positive."""
     u, v, w = seen.through_air
     airspeed = float(np.linalg.norm(seen.through_air))
     alpha, beta = (np.arctan2(w, u), np.arcsin(v / airspeed)) if airspeed > STILL else (0.0, 0.0)
@@ -80,7 +80,10 @@ def packet(seen: Seen) -> bytes:
 
 
 def euler_rates(attitude: tuple[float, float, float], rates: Floats) -> tuple[float, float, float]:
-    """rad/s of roll, pitch and heading from body rates (3,); Beard & McLain (3.3)."""
+    """Rates of roll, pitch and heading [rad/s] from the attitude (roll, pitch, heading) [rad] and body rates (3,) [rad/s, FRD].
+
+    Beard & McLain (3.3).
+    """
     roll, pitch, _ = attitude
     p, q, r = rates
     turn = q * np.sin(roll) + r * np.cos(roll)
@@ -88,7 +91,10 @@ def euler_rates(attitude: tuple[float, float, float], rates: Floats) -> tuple[fl
 
 
 def calibrated(airspeed: float, altitude: float) -> float:
-    """m/s from the true airspeed, in the standard atmosphere; far below the speed of sound equivalent airspeed is the same."""
+    """Calibrated airspeed [m/s] from the true ``airspeed`` [m/s] at ``altitude`` [m AMSL], in the standard atmosphere.
+
+    Far below the speed of sound it equals the equivalent airspeed.
+    """
     static = atmosphere.pressure(altitude)
     rho = atmosphere.density(static, atmosphere.T0 - atmosphere.LAPSE * altitude)
     return airspeed * float(np.sqrt(rho / atmosphere.RHO0))

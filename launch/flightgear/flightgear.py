@@ -33,7 +33,7 @@ M = TypeVar("M", bound=Message)
 
 
 class Feed:
-    """One aircraft: messages (ENU, FLU) in, what FlightGear is told out."""
+    """Converts one aircraft's messages (ENU, FLU) into what FlightGear displays."""
 
     def __init__(self, body: AirBody, tangent: LocalTangent) -> None:
         self._tangent = tangent
@@ -42,7 +42,7 @@ class Feed:
         self._limits = {"elevator": body.controls.elevator.limit, **sides, "left_rudder": rudder}
 
     def seen(self, truth: NavState, joints: JointStates | None, imu: Imu | None) -> Seen:
-        """Without joints the surfaces rest, without an IMU the pilot feels a g."""
+        """The state for FlightGear; without joints the surfaces are centred, without an IMU the specific force is 1 g upwards."""
         attitude, velocity = wxyz(truth.orientation), array(truth.velocity)
         latitude, longitude, altitude = self._tangent.geodetic(array(truth.position))
         body_from_world = inverse(attitude)
@@ -65,7 +65,7 @@ class Feed:
 
 
 def feed_of(site: Scenario, vehicle: str) -> Feed:
-    """Raises BadInput."""
+    """The feed of a mission's aircraft. Raises BadInput when there is no such aircraft."""
     bodies = {m.name: m.file.air for m in site.members.values() if m.file.air is not None}
     body = bodies.get(vehicle)
     if body is None:
@@ -75,11 +75,12 @@ def feed_of(site: Scenario, vehicle: str) -> Feed:
 
 
 def newest(client: Client, vehicle: str, topic: Topic[M]) -> M | None:
+    """The newest message of a vehicle on this topic; None before the first."""
     return client.read(vehicle, topic) if client.heard(vehicle, topic) else None
 
 
 def show(client: Client, vehicle: str, feed: Feed, send: Callable[[bytes], object]) -> None:
-    """Sends one packet, once the aircraft has been heard."""
+    """Sends one packet, once the aircraft's true state has been heard."""
     truth = newest(client, vehicle, topics.TRUTH)
     joints, imu = newest(client, vehicle, topics.JOINTS), newest(client, vehicle, topics.IMU)
     if truth is not None:
@@ -87,7 +88,7 @@ def show(client: Client, vehicle: str, feed: Feed, send: Callable[[bytes], objec
 
 
 def flightgear(vehicle: str, to: str, hz: float, mission: str) -> None:
-    """Sends until Ctrl-C, from a port that nobody can send to. Raises BadInput."""
+    """Sends ``hz`` packets a second [1/s] until Ctrl-C, from a port that accepts no input. Raises BadInput."""
     place = peer(to, "--to", DEFAULT_TO)
     feed = feed_of(load_scenario(settings.mission_path(mission)), vehicle)
     with uvf.connect() as client, socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as link, suppress(KeyboardInterrupt):

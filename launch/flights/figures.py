@@ -28,7 +28,7 @@ class Figure:
 
 @dataclass(frozen=True)
 class TrackingError:
-    """Of the path, arrays of one length k."""
+    """Cross-track errors over time: arrays of one length (k,)."""
 
     t: Floats  # s
     cross_track: Floats  # m to the right, as the autopilot knows it
@@ -39,7 +39,10 @@ class TrackingError:
 
 
 def deviation(history: History) -> TrackingError | None:
-    """None without a status or an estimate. The truth's is the autopilot's own, and the error of its estimate across its course."""
+    """Cross-track errors of a flight; None without a status or an estimate.
+
+    That of the truth is the autopilot's own figure plus the error of its estimate across its course.
+    """
     rows, estimate, truth = history.rows("state/vehicle"), history.estimate, history.truth
     if len(rows) < 2 or estimate is None:
         return None
@@ -55,7 +58,7 @@ def deviation(history: History) -> TrackingError | None:
 
 
 def energy(history: History) -> Floats:
-    """(k, 3): t [s], power [W], energy drawn since the beginning [J]."""
+    """Electric power over time, (k, 3): t [s], power [W], energy drawn since the beginning [J]."""
     rows = history.rows("sensor/battery")
     if not len(rows):
         return np.zeros((0, 3))
@@ -65,7 +68,7 @@ def energy(history: History) -> Floats:
 
 
 def figures(history: History) -> list[Figure]:
-    """Those that the log has the messages for."""
+    """The figures of a flight that the log has the messages for."""
     flown = history.truth or history.estimate
     found: list[Figure] = []
     if flown is not None:

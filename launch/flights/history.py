@@ -55,7 +55,7 @@ STREAMS = {
 
 
 class Series:
-    """Rows of numbers over time."""
+    """Numbers of a stream over time, a row each."""
 
     def __init__(self, width: int) -> None:
         self.width = width
@@ -63,20 +63,20 @@ class Series:
         self._next = -np.inf
 
     def add(self, t: float, numbers: tuple[float, ...], period: float) -> None:
-        """Unless it comes within ``period`` [s] of the one before."""
+        """Adds a row at ``t`` [s] unless it comes within ``period`` [s] of the one before."""
         if t >= self._next:
             self._next = t + period - 1e-6
             self._values.extend((t, *numbers))
 
     @property
     def rows(self) -> Floats:
-        """(k, 1 + width): t [s] and the numbers."""
+        """Rows (k, 1 + width): t [s] and the numbers in the units of the message."""
         return np.array(self._values).reshape(-1, 1 + self.width)
 
 
 @dataclass(frozen=True)
 class FlownMotion:
-    """Arrays of one length k, of an estimate or of the truth; world frame ENU, attitude as pilots give it."""
+    """Estimated or true motion, arrays of one length k; world frame ENU, attitude of NED/FRD as pilots give it."""
 
     t: Floats  # (k,) s
     position: Floats  # (k, 3) m
@@ -88,7 +88,7 @@ class FlownMotion:
     wind: Floats  # (k, 2) m/s east and north, the way it blows to
 
     def at(self, t: Floats) -> "FlownMotion":
-        """Interpolated; angles along the shorter way."""
+        """The motion interpolated at times ``t`` (k,) [s]; angles along the shorter way."""
 
         def over(values: Floats) -> Floats:
             return np.array([np.interp(t, self.t, column) for column in values.T]).T
@@ -99,7 +99,7 @@ class FlownMotion:
 
 
 def motion(rows: Floats) -> FlownMotion:
-    """Of the rows that ``_motion`` makes."""
+    """The motion over time from rows (k, 14): t [s] and the numbers of ``_motion`` (position, velocity, quaternion, airspeed, wind)."""
     w, x, y, z = rows[:, 7:11].T
     roll = np.arctan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y))
     pitch = -np.arcsin(np.clip(2 * (w * y - z * x), -1, 1))
@@ -109,7 +109,7 @@ def motion(rows: Floats) -> FlownMotion:
 
 @dataclass
 class History:
-    """All that was heard of one vehicle."""
+    """The recorded messages of one vehicle."""
 
     name: str
     series: dict[str, Series] = field(default_factory=lambda: {key: Series(s.width) for key, s in STREAMS.items()})
@@ -119,7 +119,7 @@ class History:
     kind: int = Kind.KIND_UNSPECIFIED
 
     def heard(self, name: str, sample: Sample) -> None:
-        """Raises Malformed."""
+        """Stores a sample of the topic ``name`` (without the vehicle). Raises Malformed."""
         t = sample.stamp_ns / 1e9
         if name in STREAMS:
             stream = STREAMS[name]
@@ -135,20 +135,23 @@ class History:
             self.path = path if path.poses else None
 
     def rows(self, name: str) -> Floats:
+        """Rows (k, 1 + width) of a stream: t [s] and its numbers in the units of the message."""
         return self.series[name].rows
 
     @property
     def is_aircraft(self) -> bool:
+        """Whether it said that it is a fixed-wing aircraft, or has commanded control surfaces."""
         return self.kind == Kind.KIND_FIXED_WING or len(self.rows("actuator/surfaces")) > 0
 
     @property
     def truth(self) -> FlownMotion | None:
-        """None in the log of a real flight."""
+        """True motion; None in the log of a real flight."""
         rows = self.rows("truth/state")
         return motion(rows) if len(rows) > 1 else None
 
     @property
     def estimate(self) -> FlownMotion | None:
+        """Estimated motion (``nav/state``); None with fewer than two samples."""
         rows = self.rows("nav/state")
         return motion(rows) if len(rows) > 1 else None
 
@@ -164,7 +167,7 @@ def logs_of(run: Path) -> list[Path]:
 
 
 def histories(logs: list[Path]) -> dict[str, History]:
-    """By vehicle, in order of their names. A file that was cut off is read as far as it is whole. Raises BadInput."""
+    """The history of each vehicle, sorted by name. A file that was cut off is read as far as it is whole. Raises BadInput."""
     found: dict[str, History] = {}
     for log in logs:
         for sample in _samples(log):

@@ -23,7 +23,7 @@ FEW = 40  # marks of mission items
 
 
 def draw(history: History, target: Path) -> None:
-    """Writes a PNG."""
+    """Draws the page of plots of one flight into a PNG."""
     sheet = matplotlib.figure.Figure(figsize=(15.0, 17.0), layout="constrained")
     grid = sheet.add_gridspec(7, 2, height_ratios=(2.0, 2.0, 0.5, 1.5, 1.5, 1.5, 1.5))
     sheet.suptitle(f"Flight of {history.name}", fontsize=15, fontweight="bold")

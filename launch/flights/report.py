@@ -13,7 +13,7 @@ FOLDER = "report"
 
 
 def flights(run: Path) -> list[History]:
-    """The aircraft of a run's folder or of one log. Raises BadInput."""
+    """The aircraft in the folder of a run or in one log. Raises BadInput."""
     found = [h for h in histories(logs_of(run)).values() if h.is_aircraft]
     if not found:
         raise BadInput(f"{run}: there is no aircraft in this log: nothing to report of")
@@ -21,12 +21,12 @@ def flights(run: Path) -> list[History]:
 
 
 def folder_beside(run: Path) -> Path:
-    """Where the report of a run is put."""
+    """The folder of a run's report, beside its logs."""
     return (run if run.is_dir() else run.parent) / FOLDER
 
 
 def write(aircraft: list[History], target: Path) -> list[Path]:
-    """A picture for each aircraft and ``report.md`` with all figures; what was written. Raises BadInput."""
+    """Writes a picture for each aircraft and ``report.md`` with all figures; returns the files written. Raises BadInput."""
     try:
         target.mkdir(parents=True, exist_ok=True)
         pages = [target / f"{history.name}.png" for history in aircraft]
@@ -49,7 +49,7 @@ def _text(aircraft: list[History]) -> str:
 
 
 def table(history: History) -> Table:
-    """For a terminal."""
+    """The figures of one flight as a table for the terminal."""
     made = Table("flight of", history.name)
     for figure in figures(history):
         made.add_row(figure.name, figure.value)

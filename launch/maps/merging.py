@@ -19,7 +19,10 @@ COLOURS = matplotlib.colormaps["tab10"].colors  # type: ignore[attr-defined]
 
 
 def merge_files(names: list[str], out: str, resolution: float) -> tuple[list[str], bool]:
-    """(lines about each session and what was written, whether any of them fit). names: files, or saved ones. Raises BadInput."""
+    """Merges saved sessions into one map with cells of ``resolution`` [m]; writes map, session and picture.
+
+    Returns (lines about each session and what was written, whether any of them fit). names: files, or saved sessions. Raises BadInput.
+    """
     if len(names) < 2:
         raise BadInput("'uvf map merge' needs two sessions at least")
     paths = [_session_path(name) for name in names]
@@ -69,7 +72,7 @@ def _write(team: Team, group: MapGroup, out: str, resolution: float) -> str:
 
 
 def draw_team(group: MapGroup, grid: GridMap, target: Path) -> None:
-    """The map with the way of each session in its colour. Writes a PNG."""
+    """Draws the map with the trajectory of each session in its own colour into a PNG."""
 
     def ways(axes: Any) -> None:
         for colour, (name, poses) in zip(COLOURS * len(group.names), group.joint.poses.items(), strict=False):

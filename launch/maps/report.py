@@ -28,7 +28,7 @@ GREY, WHITE, BLACK, RED, BLUE = (128, 128, 128), (255, 255, 255), (0, 0, 0), (22
 
 
 def figures(grid: GridMap) -> Iterator[str]:
-    """Lines about one map."""
+    """Yields lines that describe one map."""
     rows, columns = grid.cells.shape
     x, y, yaw = grid.origin
     walls = wall_figures(grid)
@@ -41,7 +41,10 @@ def figures(grid: GridMap) -> Iterator[str]:
 
 
 def compared(a: GridMap, b: GridMap, shift: Shift, picture: Path) -> Iterator[str]:
-    """Lines about map ``a`` against ``b``, and the picture. Raises BadInput when that cannot be written."""
+    """Yields lines about map ``a`` against ``b``, and draws the picture.
+
+    shift: (x [m], y [m], yaw [degrees]) of ``a`` in the frame of ``b``. Raises BadInput when the picture cannot be written.
+    """
     placed = _placed(a, shift)
     walls, free, occupied = compare(placed, b)
     draw_differences(placed, b, picture)
@@ -50,7 +53,10 @@ def compared(a: GridMap, b: GridMap, shift: Shift, picture: Path) -> Iterator[st
 
 
 def scored(grid: GridMap, world: str, shift: Shift, picture: Path) -> Iterator[str]:
-    """The same against the floor plan of a world, in whose frame the map lies but for the shift."""
+    """Yields lines about a map against the floor plan of a world, and draws the picture.
+
+    shift: (x [m], y [m], yaw [degrees]) of the map in the world frame. Raises BadInput.
+    """
     plan = floor_plan(load_world(ROOT / "worlds", world), PLAN_CELL)
     found = score(grid, plan, _pose(shift))
     draw_differences(_placed(grid, shift), _hollow(plan), picture)
@@ -61,7 +67,7 @@ def scored(grid: GridMap, world: str, shift: Shift, picture: Path) -> Iterator[s
 
 
 def draw_differences(a: GridMap, b: GridMap, picture: Path) -> None:
-    """PNG along the axes of ``a``, as far as both reach. Raises BadInput."""
+    """Draws the differences of two maps along the axes of ``a``, as far as both reach, into a PNG. Raises BadInput."""
     wide = _widened(a, b)
     mine, other = wide.cells, values_at(b, centres(wide)).reshape(wide.cells.shape)
     wall, other_wall = mine > OCCUPIED, other > OCCUPIED

@@ -17,7 +17,7 @@ PATIENCE = 5.0  # s
 
 
 def drawn_map(vehicle: str | None, own_frame: bool) -> tuple[str, GridMap]:
-    """(vehicle, its map in the world frame or in its own). Raises BadInput."""
+    """The map that a vehicle publishes: (vehicle, map in the world frame or in its own). Raises BadInput."""
     owner = _chosen(vehicle, _writers())
     with uvf.client.connect() as run:
         try:
@@ -28,7 +28,7 @@ def drawn_map(vehicle: str | None, own_frame: bool) -> tuple[str, GridMap]:
 
 
 def running_session(vehicle: str | None) -> MappingSession:
-    """Of the vehicle's mapping, as it was published last. Raises BadInput."""
+    """The mapping session that the vehicle published last. Raises BadInput."""
     owner = _chosen(vehicle, _writers())
     with uvf.client.connect() as run:
         try:
@@ -38,7 +38,7 @@ def running_session(vehicle: str | None) -> MappingSession:
 
 
 def serve(grid: GridMap, vehicle: str, ready: Callable[[], None]) -> None:
-    """Publishes a map, world frame, for whoever comes, until Ctrl-C or SIGTERM. Raises BadInput."""
+    """Publishes a map (world frame) as a latched message until Ctrl-C or SIGTERM. Raises BadInput."""
     stop = stop_flag()
     with uvf.client.connect() as run:
         run.send(vehicle, topics.KNOWN_MAP, as_message(grid, "world", run.time))

@@ -14,7 +14,7 @@ SAMPLES = 0.1  # s
 
 
 def separation(own: Floats, others: list[Floats]) -> float:
-    """Least distance [m] between an aircraft and any of the others, (n, >= 4) t, x, y, z each; infinite when alone."""
+    """Least distance [m] between an aircraft and any of the others, each (n, >= 4): t [s], x, y, z [m, world]; infinite when alone."""
     least = float("inf")
     for other in others:
         begin, end = max(own[0, 0], other[0, 0]), min(own[-1, 0], other[-1, 0])
@@ -25,10 +25,10 @@ def separation(own: Floats, others: list[Floats]) -> float:
 
 
 def station_errors(own: Floats, leader: Floats, follow: Follow) -> Floats:
-    """(k, 4) t [s] and m late, right and above, of the station that ``follow`` means, every ``SAMPLES`` from ``JOINING`` on.
+    """Errors of the formation slot, (k, 4): t [s] and m late, right and above, every ``SAMPLES`` from ``JOINING`` on.
 
-    own, leader: (n, 5) t, x, y, z, true airspeed. The station is where the leader was so long ago as it takes it, at its mean
-    airspeed, to fly ``behind``. Late is measured over ground along the leader's track, from the point of it that the follower is beside.
+    own, leader: (n, 5) t [s], x, y, z [m, world], true airspeed [m/s]. The slot is where the leader was as long ago as it takes it, at
+    its mean airspeed, to fly ``behind``. Late is measured over ground along the leader's track, from the point of it abeam of the follower.
     """
     begin = max(own[0, 0], leader[0, 0]) + JOINING
     times = np.arange(begin, min(own[-1, 0], leader[-1, 0]), SAMPLES)

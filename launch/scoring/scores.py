@@ -28,7 +28,7 @@ PASSED = 3.0  # s, within which of being told so a waypoint is passed
 
 @dataclass
 class RecordedTrack:
-    """What was heard of one vehicle."""
+    """What a run recorded about one vehicle; positions [m, world], times [s, simulation]."""
 
     name: str
     site: Scenario
@@ -43,6 +43,7 @@ class RecordedTrack:
     team: "dict[str, RecordedTrack]" = field(default_factory=dict)  # all of the run, this one included
 
     def heard(self, sample: Sample) -> None:
+        """Stores a sample of this vehicle."""
         t = sample.stamp_ns / 1e9
         name = sample.key.split("/", 2)[2]
         if name == "truth/state":
@@ -66,19 +67,20 @@ class RecordedTrack:
 
     @property
     def flies(self) -> bool:
+        """Whether the vehicle is an aircraft."""
         return self.site.members[self.name].file.kind == "fixed_wing"
 
     def positions(self) -> Floats:
-        """(n, 4) true t, x, y, z."""
+        """True positions (n, 4): t [s], x, y, z [m, world]."""
         return self.motion()[:, :4]
 
     def motion(self) -> Floats:
-        """(n, 5) true t, x, y, z and airspeed."""
+        """True motion (n, 5): t [s], x, y, z [m, world], airspeed [m/s]."""
         return np.array(self.truth).reshape(-1, 5)
 
 
 def check_criteria(site: Scenario) -> None:
-    """Raises BadInput for a measure that there is not."""
+    """Raises BadInput for a criterion with an unknown measure."""
     for criterion in site.mission.criteria:
         if criterion.measure not in MEASURES:
             raise BadInput(f"{site.mission_path}: criteria: no measure '{criterion.measure}'; {nearest(criterion.measure, MEASURES)}")
@@ -100,12 +102,13 @@ class Scorer:
             bus.subscribe(topic.at("*"), topic.qos, self.heard, depth=256)
 
     def heard(self, sample: Sample) -> None:
+        """Stores a sample with the vehicle that it belongs to."""
         track = self._tracks.get(sample.key.split("/")[1])
         if track is not None:
             track.heard(sample)
 
     def motions(self) -> dict[str, Floats]:
-        """``Track.motion`` of each aircraft."""
+        """``RecordedTrack.motion`` (n, 5) [s, m, m/s] of each aircraft, by name."""
         return {name: track.motion() for name, track in self._tracks.items() if track.flies}
 
     def judge(self) -> list["Verdict"]:
@@ -115,16 +118,20 @@ class Scorer:
 
 @dataclass(frozen=True)
 class Verdict:
+    """The measured value of one criterion."""
+
     criterion: Criterion
     value: float
 
     @property
     def passed(self) -> bool:
+        """Whether the value is within the criterion's limits."""
         low, high = self.criterion.at_least, self.criterion.at_most
         return (low is None or self.value >= low) and (high is None or self.value <= high)
 
     @property
     def limits(self) -> str:
+        """The criterion's limits as text."""
         low, high = self.criterion.at_least, self.criterion.at_most
         return " and ".join(text for text in (f">= {low:g}" if low is not None else "", f"<= {high:g}" if high is not None else "") if text)
 

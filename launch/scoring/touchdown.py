@@ -26,7 +26,7 @@ def touchdown(track: Floats) -> int | None:
 
 
 def speed_at_end(track: Floats) -> float:
-    """m/s over the last second; infinite without a track."""
+    """Mean speed [m/s] over the last second of a track (n, 4): t [s], x, y, z [m, world]; infinite without a track."""
     last = track[track[:, 0] >= track[-1, 0] - 1.0] if len(track) else track
     if len(last) < 2:
         return math.inf
@@ -34,7 +34,7 @@ def speed_at_end(track: Floats) -> float:
 
 
 def sink(track: Floats) -> float:
-    """m/s at touchdown; infinite without one."""
+    """Sink rate [m/s] at touchdown of a track (n, 4): t [s], x, y, z [m, world]; infinite without a touchdown."""
     at = touchdown(track)
     if at is None:
         return math.inf
@@ -43,7 +43,10 @@ def sink(track: Floats) -> float:
 
 
 def error(track: Floats, strips: list[Strip]) -> float:
-    """m along the strip from where wheels are to touch, in the direction of landing; infinite without strip or landing."""
+    """Distance [m] along the strip between touchdown and aiming point of a track (n, 4): t [s], x, y, z [m, world].
+
+    Infinite without a strip or a landing.
+    """
     at = touchdown(track)
     if at is None or not strips:
         return math.inf

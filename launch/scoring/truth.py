@@ -13,7 +13,7 @@ Floats = NDArray[np.float64]
 
 
 def true_poses(samples: Iterable[Sample], vehicle: str) -> Floats:
-    """(n, 4) t [s], x, y [m], yaw [rad] in the world frame, the yaw without leaps; samples: of a log."""
+    """True poses (n, 4): t [s], x, y [m], yaw [rad, unwrapped] in the world frame, from the samples of a log."""
     key = topics.TRUTH.at(vehicle)
     states = [topics.TRUTH.message.FromString(s.payload) for s in samples if s.key == key]
     track = np.array([(seconds(s.timestamp), s.position.x, s.position.y, yaw_of(s.orientation)) for s in states]).reshape(-1, 4)
@@ -22,6 +22,6 @@ def true_poses(samples: Iterable[Sample], vehicle: str) -> Floats:
 
 
 def within(track: Floats, stamps: Floats) -> NDArray[np.bool_]:
-    """(m,) which of the stamps (m,) [s] a track (n, 4) reaches over."""
+    """(m,) which of the stamps (m,) [s] lie within the time span of a track (n, 4)."""
     reached: NDArray[np.bool_] = (stamps >= track[0, 0]) & (stamps <= track[-1, 0])
     return reached

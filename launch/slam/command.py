@@ -32,7 +32,7 @@ SHOWN_EVERY = 25  # readings
 
 @dataclass(frozen=True)
 class SlamJob:
-    """The command's words."""
+    """The arguments of ``uvf slam``."""
 
     log: Path
     method: str
@@ -44,7 +44,7 @@ class SlamJob:
 
 
 def run_job(job: SlamJob) -> None:
-    """Raises BadInput."""
+    """Runs a SLAM method over a log and writes the results. Raises BadInput."""
     params = method_params(job.method, _values(job.values), "--set")
     log = open_log(job.log, job.vehicle)
     known = known_of(job.log, log, job.vehicle, job.relations)

@@ -30,12 +30,12 @@ FRINGE, MARGIN = 0.002, 2.0
 
 
 def draw_map(grid: GridMap, run: LogRun, title: str, target: Path) -> None:
-    """The map as large as it may be, with the final trajectory coloured by time. Writes a PNG."""
+    """Draws the map with the final trajectory coloured by time into a PNG."""
     draw_on_map(grid, lambda axes: _show_way(axes, run), title, target)
 
 
 def draw_on_map(grid: GridMap, draw: Callable[[Any], None], title: str, target: Path) -> None:
-    """The map as large as it may be, with what ``draw`` puts on its axes [m]. Writes a PNG."""
+    """Draws the map with what ``draw`` adds to its axes [m] into a PNG."""
     sheet = matplotlib.figure.Figure(layout="constrained")
     axes = sheet.add_subplot()
     _show_map(axes, grid)
@@ -48,7 +48,7 @@ def draw_on_map(grid: GridMap, draw: Callable[[Any], None], title: str, target: 
 
 
 def draw_page(grid: GridMap, run: LogRun, known: Known, title: str, target: Path) -> None:
-    """Map, trajectory against odometry and references, errors of the relations, quality over time. Writes a PNG."""
+    """Draws map, trajectory against odometry and references, errors of the relations, and match quality over time into a PNG."""
     sheet = matplotlib.figure.Figure(figsize=(15.0, 15.0), layout="constrained")
     sheet.suptitle(title, fontsize=14, fontweight="bold")
     grids = sheet.add_gridspec(3, 2, height_ratios=(2.2, 1.0, 0.8))

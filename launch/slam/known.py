@@ -19,7 +19,7 @@ from uvf.slam.logs.laser_log import LaserLog
 
 @dataclass(frozen=True)
 class Known:
-    """By the name of the file they come from."""
+    """The relations and references of a log, by the name of the file they come from."""
 
     relations: dict[str, Relations]
     references: dict[str, Trajectory]
@@ -28,7 +28,7 @@ class Known:
 
 
 def known_of(path: Path, log: LaserLog, vehicle: str | None, relations: Path | None) -> Known:
-    """relations: a file to score by, instead of those beside the log. Raises BadInput."""
+    """The relations and references that belong to a log; relations: a file to score by instead of those beside it. Raises BadInput."""
     found = beside(path, log)
     chosen = {relations.name: _about(log, relations)} if relations else found.relations
     references = dict(found.references)

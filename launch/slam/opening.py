@@ -12,7 +12,7 @@ CARMEN_ENDINGS = (".clf", ".log")
 
 
 def open_log(path: Path, vehicle: str | None = None) -> LaserLog:
-    """path: a log, or the folder of a run. vehicle: which one, where a run has several. Raises BadInput."""
+    """Opens a log, or the log of a run's folder; vehicle: which one, where a run has several. Raises BadInput."""
     if is_recorded(path):
         return read_mcap(path, vehicle)
     if path.is_dir():
@@ -27,5 +27,5 @@ def open_log(path: Path, vehicle: str | None = None) -> LaserLog:
 
 
 def is_recorded(path: Path) -> bool:
-    """Whether it is a log of a run of our own, or the folder of one."""
+    """Whether the path is a log recorded by uvf, or the folder of a run."""
     return path.suffix == MCAP_ENDING or (path.is_dir() and any(path.glob(f"*{MCAP_ENDING}")))

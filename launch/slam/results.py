@@ -27,7 +27,7 @@ Floats = NDArray[np.float64]
 
 
 def grid_of(keyframes: Iterable[Keyframe], resolution: float) -> GridMap:
-    """The occupancy map of keyframes. Raises BadInput."""
+    """The occupancy map of keyframes with cells of ``resolution`` [m]. Raises BadInput."""
     tiles = TileMap(resolution)
     tiles.follow(keyframes)
     cells, corner = tiles.cells()
@@ -36,7 +36,7 @@ def grid_of(keyframes: Iterable[Keyframe], resolution: float) -> GridMap:
 
 @dataclass(frozen=True)
 class Made:
-    """How a run was made. resolution: of its map [m]."""
+    """How a run was made. resolution: cell size of its map [m]."""
 
     method: str
     params: Params
@@ -44,7 +44,7 @@ class Made:
 
 
 def write_results(run: LogRun, known: Known, made: Made, figures: Figures, folder: Path) -> None:
-    """Raises BadInput."""
+    """Writes trajectories, map, figures, parameters and report into ``folder``. Raises BadInput."""
     grid = grid_of(run.keyframes, made.resolution)
     write_whole(folder / "trajectory.txt", _trajectory(run, run.final))
     write_whole(folder / "trajectory_online.txt", _trajectory(run, run.online))

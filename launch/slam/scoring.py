@@ -16,7 +16,7 @@ Figures = dict[str, Any]
 
 
 def figures(run: LogRun, known: Known) -> Figures:
-    """``run``: size and times; ``relations`` and ``references``: by file, for online and final poses."""
+    """Figures of a run: ``run`` has size and times; ``relations`` and ``references`` have errors by file, of online and final poses."""
     poses = {"online": run.online, "final": run.final}
     return {
         "run": _of_run(run),

@@ -9,6 +9,7 @@ REFERENCE_HEAD = ("poses", "error", "number", "RMSE m", "mean m", "worst m", "RM
 
 
 def run_rows(figures: Figures) -> Rows:
+    """Size and times of the run, as rows."""
     r = figures["run"]
     return [
         ("readings", "keyframes", "duration", "way", "wall", "CPU", "times real time"),
@@ -25,7 +26,7 @@ def run_rows(figures: Figures) -> Rows:
 
 
 def relation_rows(figures: Figures) -> dict[str, Rows]:
-    """For each file, by poses and group."""
+    """Errors by poses and group, as rows for each file of relations."""
     return {name: [RELATION_HEAD, *_relation_rows(by_poses)] for name, by_poses in figures["relations"].items()}
 
 
@@ -44,7 +45,7 @@ def _spread(f: dict[str, float]) -> str:
 
 
 def reference_rows(figures: Figures) -> dict[str, Rows]:
-    """For each file, by poses and kind of error."""
+    """Errors by poses and kind, as rows for each reference file."""
     return {name: [REFERENCE_HEAD, *_reference_rows(by_poses)] for name, by_poses in figures["references"].items()}
 
 
@@ -58,7 +59,7 @@ def _reference_rows(by_poses: Figures) -> Rows:
 
 
 def all_tables(figures: Figures) -> dict[str, Rows]:
-    """By their headings: the run itself, each file of relations, each reference."""
+    """All tables by heading: the run itself, each file of relations, each reference."""
     relations = {f"errors of {name}": rows for name, rows in relation_rows(figures).items()}
     references = {f"distance to {name}": rows for name, rows in reference_rows(figures).items()}
     return {"run": run_rows(figures), **relations, **references}

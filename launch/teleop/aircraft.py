@@ -24,7 +24,7 @@ TOLD = (topics.STATUS, topics.NAV_STATE, topics.SURFACE_COMMAND)
 
 
 class FlownState(NamedTuple):
-    """What is known of the aircraft."""
+    """What is known of the aircraft's state."""
 
     by_hand: bool
     """It is in mode Manual."""
@@ -36,35 +36,45 @@ class FlownState(NamedTuple):
 
 
 class AircraftPost(Protocol):
-    """The way to one aircraft."""
+    """The connection to one aircraft."""
 
-    def send(self, setting: SurfaceSetting) -> None: ...
+    def send(self, setting: SurfaceSetting) -> None:
+        """Sends deflections of the surfaces, throttle and brakes."""
+        ...
 
-    def take_over(self) -> str: ...
+    def take_over(self) -> str:
+        """Asks for mode MANUAL and arms; what was refused and why, "" if nothing."""
+        ...
 
-    def state(self) -> str: ...
+    def state(self) -> str:
+        """State of the connection, in words."""
+        ...
 
     def flight(self, patience: float = 0.0) -> FlownState | None:
-        """None when not all of it has been heard within ``patience`` [s]."""
+        """State of the aircraft; None when not all of it has been heard within ``patience`` [s]."""
 
 
 class AirLink:
-    """An aircraft over the bus."""
+    """The connection to an aircraft over the bus."""
 
     def __init__(self, client: Client, name: str) -> None:
         self._client, self._name = client, name
         self._link = TeleopLink(client)
 
     def send(self, setting: SurfaceSetting) -> None:
+        """Publishes the surface command."""
         self._client.send(self._name, topics.SURFACES.by(SOURCE), SurfaceCommand(**setting._asdict()))
 
     def take_over(self) -> str:
+        """Asks for mode MANUAL and arms; what was refused and why, "" if nothing."""
         return self._link.take_over(self._name)
 
     def state(self) -> str:
+        """State of the connection, in words."""
         return self._link.state(self._name)
 
     def flight(self, patience: float = 0.0) -> FlownState | None:
+        """State of the aircraft from its newest messages; None when not all have been heard within ``patience`` [s]."""
         client, name = self._client, self._name
         try:
             client.wait(lambda: min(client.heard(name, topic) for topic in TOLD) > 0, patience)
@@ -83,7 +93,7 @@ class AirLink:
 
 
 class Cockpit:
-    """The post of one aircraft's pilot. Its commands go out all the time, so that a pilot who falls silent is noticed."""
+    """The control post of an aircraft's pilot. It sends commands all the time, so that the autopilot notices a pilot who falls silent."""
 
     def __init__(self, stick: FlightTeleop, aircraft: AircraftPost) -> None:
         self._stick, self._aircraft = stick, aircraft
@@ -91,7 +101,7 @@ class Cockpit:
         """The stick is where the surfaces are."""
 
     def take_over(self) -> str:
-        """Not before it is known where the surfaces are: an aircraft that flies is not taken over with its motor off."""
+        """Takes over once the surfaces' deflections are known: a flying aircraft is not taken over with its motor off."""
         flight = self._aircraft.flight(HEARD_WITHIN)
         if flight is None:
             return f"{UNHEARD}: m tries again"
@@ -100,9 +110,11 @@ class Cockpit:
         return self._aircraft.take_over() or ("" if _straight(flight) else TURNING)
 
     def key(self, t: float, name: str) -> None:
+        """Passes a key on to the stick; ``t`` [s] is not used."""
         self._stick.key(name)
 
     def turn(self, t: float, pad: GamepadState) -> None:
+        """Takes the gamepad at ``t`` [s], and sends the surface command once the stick has been aligned with the surfaces."""
         self._stick.pad(t, pad)
         flight = self._aircraft.flight()
         if flight is not None and self._ours:
@@ -110,6 +122,7 @@ class Cockpit:
             self._aircraft.send(self._stick.setting)
 
     def line(self, t: float, pad: str) -> str:
+        """Status line for the terminal: link, instruments, surfaces, gamepad ``pad``; ``t`` [s] is not used."""
         flight, s = self._aircraft.flight(), self._stick.setting
         parts = [self._aircraft.state(), _instruments(flight) if flight is not None else UNHEARD]
         parts.append(f"ail {_deg(s.aileron)} ele {_deg(s.elevator)} rud {_deg(s.rudder)} flap {degrees(s.flap):.0f}")
@@ -117,7 +130,7 @@ class Cockpit:
         return " | ".join([*parts, pad] if pad else parts)
 
     def leave(self) -> None:
-        """Silence: in the air the autopilot holds, on the ground the motor stops and the brakes are on."""
+        """Sends nothing more: in the air the autopilot holds, on the ground the motor stops and the brakes are on."""
 
     def _follow(self, flight: FlownState) -> None:
         """While somebody else flies, the stick goes along; an aircraft on the ground is taken over from the autopilot parked."""
@@ -129,6 +142,7 @@ class Cockpit:
 
 
 def cockpit(client: Client, name: str, body: AirBody) -> Cockpit:
+    """The control post of a vehicle, with the travel of its surfaces."""
     controls = body.controls
     limits = SurfaceLimits(controls.aileron.limit, controls.elevator.limit, controls.rudder.limit, controls.flap.limit)
     return Cockpit(FlightTeleop(limits), AirLink(client, name))

@@ -25,48 +25,57 @@ gamepad: hold the left shoulder button and use the left stick; d-pad: speeds; B:
 
 
 class Vehicles(Protocol):
-    """The way to the vehicles."""
+    """The connection to the vehicles."""
 
-    def send(self, vehicle: str, command: TeleopCommand) -> None: ...
+    def send(self, vehicle: str, command: TeleopCommand) -> None:
+        """Sends a velocity command to a vehicle."""
+        ...
 
     def take_over(self, vehicle: str) -> str:
         """Asks for mode MANUAL and arms; what was refused and why, "" if nothing."""
 
-    def state(self, vehicle: str) -> str: ...
+    def state(self, vehicle: str) -> str:
+        """State of the connection to a vehicle, in words."""
+        ...
 
 
 class WheelPost:
-    """The post of whoever drives ground vehicles; left, all of them are told to stand."""
+    """The control post of a driver of ground vehicles; leaving it stops all of them."""
 
     def __init__(self, hand: DriveTeleop, vehicles: Vehicles) -> None:
         self._hand, self._vehicles = hand, vehicles
 
     def take_over(self) -> str:
+        """Takes over all active vehicles; what was refused and why, "" if nothing."""
         return "; ".join(filter(None, (self._vehicles.take_over(name) for name in self._hand.vehicles if name in self._hand.active)))
 
     def key(self, t: float, name: str) -> None:
+        """Passes a key pressed at ``t`` [s] on to the teleoperation."""
         self._hand.key(t, name)
 
     def turn(self, t: float, pad: GamepadState) -> None:
+        """Takes the gamepad at ``t`` [s] and sends each vehicle its velocity command."""
         self._hand.pad(t, pad)
         for name, command in self._hand.commands(t).items():
             self._vehicles.send(name, command)
 
     def line(self, t: float, pad: str) -> str:
+        """Status line at ``t`` [s] for the terminal; pad: the gamepad's name."""
         return status_line(self._hand, self._vehicles, pad, t)
 
     def leave(self) -> None:
+        """Commands zero velocity to every vehicle."""
         for name in self._hand.vehicles:
             self._vehicles.send(name, STILL)
 
 
 def drive(hand: DriveTeleop, vehicles: Vehicles, console: Console, pad: Padlike, clock: Callable[[], float]) -> None:
-    """Until the key x, or an exception; in every case all vehicles are told to stand."""
+    """Drives until the key x or an exception; then all vehicles are told to stop. clock: seconds, monotonic."""
     operate(WheelPost(hand, vehicles), console, pad, clock)
 
 
 def status_line(hand: DriveTeleop, vehicles: Vehicles, pad: str, t: float) -> str:
-    """Vehicles with their links (those switched off in brackets), the scales, the velocity now, the gamepad."""
+    """Vehicles with their links (those switched off in brackets), speed scales, velocity commanded at ``t`` [s], the gamepad."""
     names = [f"{i} {name}" if name in hand.active else f"({i} {name})" for i, name in enumerate(hand.vehicles, 1)]
     links = ", ".join(f"{shown} {vehicles.state(name)}" for shown, name in zip(names, hand.vehicles, strict=True))
     scale, now = hand.scale, hand.wanted(t)
@@ -75,7 +84,7 @@ def status_line(hand: DriveTeleop, vehicles: Vehicles, pad: str, t: float) -> st
 
 
 def wanted_vehicles(site: Scenario, names: Sequence[str]) -> tuple[list[str], TeleopCommand]:
-    """The vehicles meant, and what the slowest of them can do. Raises BadInput."""
+    """The ground vehicles asked for, and the speed limits of the slowest of them. Raises BadInput."""
     bodies = {m.name: m.file.ground for m in site.of_kind("ground") if m.file.ground is not None}
     chosen = list(dict.fromkeys(names)) or list(bodies)
     for name in chosen:
@@ -107,7 +116,7 @@ def _signals_are_the_key(end: str, terminal: Terminal) -> Iterator[None]:
 
 
 def wanted_aircraft(site: Scenario, names: Sequence[str]) -> str:
-    """The aircraft meant, "" when it is not one. Raises BadInput for several of them."""
+    """The aircraft asked for, "" when it is not one. Raises BadInput for several of them."""
     flying = [name for name in dict.fromkeys(names) if name in site.members and site.members[name].file.air is not None]
     if flying and len(set(names)) > 1:
         raise BadInput(f"{site.mission_path}: '{flying[0]}' flies, and one flies one aircraft at a time; name it alone")
@@ -115,7 +124,7 @@ def wanted_aircraft(site: Scenario, names: Sequence[str]) -> str:
 
 
 def post_for(site: Scenario, names: Sequence[str]) -> tuple[str, Callable[[Client], Post]]:
-    """(words for the operator, what makes the post on a connection). Raises BadInput."""
+    """(greeting for the operator, function that makes the control post on a connection). Raises BadInput."""
     name = wanted_aircraft(site, names)
     body = site.members[name].file.air if name else None
     if body is not None:

@@ -12,8 +12,9 @@ STICK_FULL = 32767.0
 
 
 class Gamepad:
-    """Left stick: drive, or roll and pitch; right one: throttle and rudder. Left shoulder: dead-man. B: stop, or brakes.
+    """The first gamepad.
 
+    Left stick: drive, or roll and pitch; right one: throttle and rudder. Left shoulder: dead-man. B: stop, or brakes.
     D-pad: up and down the linear, right and left the angular scale; trim and flaps of an aircraft.
     """
 
@@ -26,11 +27,11 @@ class Gamepad:
 
     @property
     def name(self) -> str:
-        """As its maker calls it; "" while there is none."""
+        """The maker's name of the gamepad; "" while there is none."""
         return self._sdl.SDL_GameControllerName(self._pad).decode("utf-8", "replace") if self._pad else ""
 
     def read(self) -> GamepadState:
-        """Its state now; all zero, the dead-man not held, while there is none."""
+        """Its present state; all zero and the dead-man switch not held while there is none."""
         sdl = self._sdl
         sdl.SDL_GameControllerUpdate()
         if self._pad and not sdl.SDL_GameControllerGetAttached(self._pad):
@@ -52,6 +53,7 @@ class Gamepad:
         )
 
     def close(self) -> None:
+        """Closes the gamepad and SDL's part for it."""
         if self._pad:
             self._sdl.SDL_GameControllerClose(self._pad)
         self._sdl.SDL_QuitSubSystem(self._sdl.SDL_INIT_GAMECONTROLLER)

@@ -14,7 +14,7 @@ ANSWER_WITHIN = 1.0  # s
 
 
 class TeleopLink:
-    """Vehicles over the bus."""
+    """The connection to vehicles over the bus."""
 
     def __init__(self, client: Client) -> None:
         self._client = client
@@ -22,9 +22,11 @@ class TeleopLink:
         self._heard_at: dict[str, float] = {}
 
     def send(self, vehicle: str, command: TeleopCommand) -> None:
+        """Publishes a velocity command [m/s, rad/s] for a ground vehicle."""
         self._client.send(vehicle, topics.DRIVE.by(SOURCE), DriveCommand(linear=command.linear, angular=command.angular))
 
     def take_over(self, vehicle: str) -> str:
+        """Asks for mode MANUAL and arms; what was refused and why, "" if nothing."""
         try:
             replies = (
                 self._client.ask(vehicle, topics.SET_MODE, ModeRequest(mode=Mode.MODE_MANUAL, source=SOURCE), ANSWER_WITHIN),
@@ -35,7 +37,7 @@ class TeleopLink:
         return next((f"{vehicle}: {reply.reason}" for reply in replies if not reply.accepted), "")
 
     def state(self, vehicle: str) -> str:
-        """LIVE and whose commands count, or for how long nothing has been heard."""
+        """LIVE and whose commands are in force, or for how long nothing has been heard."""
         now, count = time.monotonic(), self._client.heard(vehicle, topics.STATUS)
         if count != self._count.get(vehicle, 0):
             self._count[vehicle], self._heard_at[vehicle] = count, now

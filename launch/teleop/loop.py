@@ -12,37 +12,53 @@ SHOW_EVERY = 4  # commands between two refreshments of the line
 
 
 class Console(Protocol):
-    def read(self, patience: float) -> list[str]: ...
+    """Where keys come from and the status line goes to."""
 
-    def show(self, line: str) -> None: ...
+    def read(self, patience: float) -> list[str]:
+        """Keys pressed, waiting at most ``patience`` [s]."""
+        ...
+
+    def show(self, line: str) -> None:
+        """Shows the status line."""
+        ...
 
 
 class Padlike(Protocol):
-    @property
-    def name(self) -> str: ...
+    """A gamepad, or what stands in for one."""
 
-    def read(self) -> GamepadState: ...
+    @property
+    def name(self) -> str:
+        """Name of the gamepad; "" while there is none."""
+        ...
+
+    def read(self) -> GamepadState:
+        """Present state of the gamepad."""
+        ...
 
 
 class Post(Protocol):
-    """Where an operator sits."""
+    """The operator's control post of one or more vehicles."""
 
     def take_over(self) -> str:
         """Asks for mode MANUAL and arms; what was refused and why, "" if nothing."""
 
-    def key(self, t: float, name: str) -> None: ...
+    def key(self, t: float, name: str) -> None:
+        """Handles a key pressed at ``t`` [s]."""
+        ...
 
     def turn(self, t: float, pad: GamepadState) -> None:
-        """Takes the gamepad as it is now, and sends the commands that are due."""
+        """Takes the gamepad as it is at ``t`` [s], and sends the commands that are due."""
 
     def line(self, t: float, pad: str) -> str:
-        """What the operator sees. pad: the gamepad's name."""
+        """Status line at ``t`` [s]. pad: the gamepad's name."""
 
-    def leave(self) -> None: ...
+    def leave(self) -> None:
+        """Gives up control of the vehicles."""
+        ...
 
 
 def operate(post: Post, console: Console, pad: Padlike, clock: Callable[[], float]) -> None:
-    """Until the key x, or an exception; in every case the post is left."""
+    """Runs the post until the key x or an exception, and leaves it in every case. clock: seconds, monotonic."""
     note = post.take_over()
     due, turn = clock(), 0
     try:

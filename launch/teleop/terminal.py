@@ -16,17 +16,17 @@ CHUNK = 1024
 
 
 class TerminalClosed(Exception):
-    """Nobody can press a key any more."""
+    """The terminal is gone: no key can be pressed any more."""
 
 
 class Keys:
-    """Turns what a terminal sends into names of keys; a sequence that is cut goes on with the next bytes."""
+    """Turns the bytes of a terminal into names of keys; a split escape sequence continues with the next bytes."""
 
     def __init__(self) -> None:
         self._cut = b""
 
     def feed(self, data: bytes) -> list[str]:
-        """``\\x1b[A`` and ``\\x1bOA`` are "up", and so on; other sequences are nothing; letters come in lower case."""
+        r"""Keys in ``data``: ``\x1b[A`` and ``\x1bOA`` are "up", and so on; other sequences are ignored; letters come in lower case."""
         data, self._cut = self._cut + data, b""
         found: list[str] = []
         while data:
@@ -56,7 +56,7 @@ def _end_of_sequence(data: bytes) -> int | None:
 
 
 class Terminal:
-    """Standard input, key by key."""
+    """Standard input, read key by key."""
 
     def __init__(self, file: int) -> None:
         self._file = file
@@ -64,7 +64,7 @@ class Terminal:
         self._pressed: list[str] = []
 
     def press(self, name: str) -> None:
-        """The key counts as pressed; may be called by a signal's handler."""
+        """Counts the key as pressed; may be called by a signal's handler."""
         self._pressed.append(name)
 
     def read(self, patience: float) -> list[str]:
@@ -82,7 +82,7 @@ class Terminal:
         return self._keys.feed(data)
 
     def show(self, line: str) -> None:
-        """Writes over the line before, as much as fits. Raises TerminalClosed."""
+        """Overwrites the status line, cut to the terminal's width. Raises TerminalClosed."""
         width = shutil.get_terminal_size().columns - 1
         try:
             sys.stdout.write(f"\r\x1b[2K{line[:width]}")
@@ -100,7 +100,7 @@ def _keep_keys_at_signals(file: int) -> None:
 
 @contextmanager
 def key_by_key() -> Iterator[Terminal]:
-    """The terminal without echo and without waiting for the end of a line, until the end in any way. Raises BadInput."""
+    """The terminal without echo and line buffering, restored at the end. Raises BadInput."""
     file = sys.stdin.fileno()
     if not os.isatty(file):
         raise BadInput("teleop reads keys, but its input is no terminal: run it in one")

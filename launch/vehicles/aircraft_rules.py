@@ -30,7 +30,7 @@ WEAK = 1e-3  # rad/s^2
 
 
 def aircraft_faults(folder: Path, air: AirBody) -> tuple[list[str], list[str]]:
-    """(faults, notes), a line each; also of a model at which the engine ends its process."""
+    """(faults, notes), a line each; also for a model that makes the engine end its process."""
     try:
         return run_in_subprocess(_aircraft_faults, str(folder), air)
     except Died as error:
@@ -77,7 +77,7 @@ def _flight(airframe: Airframe, air: AirBody, place: FileLocation) -> tuple[list
 
 
 def throttle_works(airframe: Airframe, level: InitialState, trim: Trim) -> bool:
-    """Of an airframe that is held still."""
+    """Whether the throttle changes the thrust of an airframe that is held still."""
     thrusts = []
     for throttle in (0.0, 1.0):
         airframe.accelerations(level, replace(trim, throttle=throttle))
@@ -86,7 +86,7 @@ def throttle_works(airframe: Airframe, level: InitialState, trim: Trim) -> bool:
 
 
 def effect(airframe: Airframe, level: InitialState, trim: Trim, controls: object, name: str) -> np.ndarray:
-    """(6,) body accelerations with one surface moved."""
+    """Body accelerations (6,) [m/s^2, rad/s^2] with the surface ``name`` deflected."""
     moved = {name: getattr(trim, name) + FULL * getattr(controls, name).limit}
     return airframe.accelerations(level, replace(trim, **moved))
 
@@ -121,7 +121,10 @@ def _gear_faults(models: Path, air: AirBody, place: FileLocation) -> Iterator[st
 
 
 def comes_to_rest(models: Path, air: AirBody, rate: float) -> bool:
-    """On its wheels, dropped from a small height, at ``rate`` physics steps a second; it may roll on, idling, where it has no brakes."""
+    """Whether the aircraft, dropped from a small height at ``rate`` [1/s] physics steps, comes to rest on its wheels.
+
+    It may roll on, idling, where it has no brakes.
+    """
     airframe = Airframe(models, msgspec.structs.replace(air, physics_hz=rate), SEA_LEVEL)
     airframe.drop(InitialState(np.zeros(3), 0.0, 0.0, np.zeros(3)), FALL)
     worst = 0.0

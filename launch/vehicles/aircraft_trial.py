@@ -26,7 +26,7 @@ LEAST = 0.02  # rad of travel that is one
 
 
 def tried(folder: Path, body: AirBody, notes: Notes) -> AirBody:
-    """The body with what was found out. Raises BadInput where the engine refuses the model."""
+    """The body with what trial flights of the model have shown. Raises BadInput where the engine refuses the model."""
     body = _with_throttle(folder, _with_settings(folder, body, notes), notes)
     body = _with_signs(Airframe(folder, body, SEA_LEVEL), body, notes)
     body = _with_travel(Airframe(folder, body, SEA_LEVEL), body, notes)
@@ -35,6 +35,7 @@ def tried(folder: Path, body: AirBody, notes: Notes) -> AirBody:
 
 
 def level(speed: float, climb: float = 0.0) -> InitialState:
+    """Flight at ``speed`` [m/s] through still air with flight-path angle ``climb`` [rad], yaw 0, at the height of the trials."""
     return InitialState(np.array((0.0, 0.0, HEIGHT)), 0.0, speed, np.zeros(3), climb)
 
 

@@ -37,7 +37,10 @@ YAW, SLIP = 3.0, 0.2  # of the aircraft's own damping; rad/s
 
 
 def autopilot_figures(airframe: Airframe, body: AirBody) -> dict[str, float]:
-    """Parameter name -> value, of an aircraft with an engine. Raises BadInput where it does not fly so."""
+    """Autopilot parameters by name, each in its own unit (s, rad, m/s, 1/s, [-]), of an aircraft with an engine.
+
+    The pitch and roll feed-forward follow Beard & McLain (5.26, 5.30). Raises BadInput where it has no such steady flight.
+    """
     models = linearize(airframe, body.trim_speed, HEIGHT, Path(body.model))
     rates = _rates(models, body)  # first: it tells of an aircraft that cannot bank, which would not fly a turn either
     found = {**_balance(airframe, body.trim_speed), **rates, **_yaw(models), **_measures(body.trim_speed)}

@@ -13,7 +13,7 @@ from uvf.models.yaml_data import BadInput
 
 
 def check_all(names: list[str], vehicles: Path, picture: Path | None) -> int:
-    """How many faults the vehicles have together; by default all in ``vehicles``. Raises BadInput for one that is not there."""
+    """Number of faults of the vehicles together; by default all in ``vehicles``. Raises BadInput for one that is not there."""
     wanted = names or sorted(p.parent.name for p in vehicles.glob("*/vehicle.yaml"))
     found = [inspect(folder_of(name, vehicles)) for name in wanted]
     for one in found:

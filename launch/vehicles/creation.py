@@ -77,7 +77,7 @@ sensors:
 
 
 class Measures(NamedTuple):
-    """m: of the body from base_link to its edge; between the wheels; of a wheel; from the floor to the top of the body."""
+    """Sizes [m]: base_link to the body's edge, track of the wheels, radius of a wheel, floor to the top of the body."""
 
     radius: float
     track: float
@@ -86,7 +86,7 @@ class Measures(NamedTuple):
 
 
 def create(folder: Path, measures: Measures) -> Path:
-    """The new folder. Raises BadInput for one that exists, and for measures that no vehicle can have."""
+    """Makes the folder of a new vehicle. Raises BadInput for one that exists, and for impossible sizes."""
     check_new(folder)
     _check(measures)
     values = _values(folder.name, measures)
@@ -97,7 +97,7 @@ def create(folder: Path, measures: Measures) -> Path:
 
 
 def check_new(folder: Path) -> None:
-    """Raises BadInput for a name that no vehicle can have or that one has."""
+    """Raises BadInput for a name that no vehicle can have or that one already has."""
     if not folder.name.replace("_", "a").isalnum() or not folder.name.isascii() or folder.name == "sys":
         raise BadInput(f"'{folder.name}': a vehicle's name is made of letters, digits and _")
     if folder.exists():

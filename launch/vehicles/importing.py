@@ -33,7 +33,7 @@ ROUND = np.column_stack([f(np.linspace(0, 2 * np.pi, 180, endpoint=False)) for f
 
 
 def import_vehicle(source: Path, folder: Path, arguments: Mapping[str, str]) -> list[str]:
-    """Makes ``folder``; the notes, which also stand in its import.txt. Raises BadInput with what a person must do."""
+    """Imports a third-party model into ``folder``; returns the notes, also written to its import.txt. Raises BadInput."""
     check_new(folder)
     if (aircraft := jsbsim_model(source)) is not None:
         return import_aircraft(aircraft, folder)

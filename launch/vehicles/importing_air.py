@@ -37,7 +37,7 @@ SENSORS = {
 
 
 def import_aircraft(path: Path, folder: Path) -> list[str]:
-    """Makes ``folder`` of the model at ``path``; the notes. Raises BadInput where JSBSim refuses the model."""
+    """Imports the JSBSim model at ``path`` into ``folder``; returns the notes. Raises BadInput where JSBSim refuses the model."""
     with tempfile.TemporaryDirectory() as scratch:
         made = Path(scratch) / folder.name
         made.mkdir()

@@ -21,7 +21,7 @@ SECTIONS = {"ground": GroundBody, "air": AirBody}
 
 @dataclass
 class Inspection:
-    """faults: what must be mended, a line each; notes: what is worth a look; the vehicle and its body as far as they could be read."""
+    """Result of an inspection. faults: what must be fixed, a line each; notes: what is worth a look; file and model as far as readable."""
 
     folder: Path
     faults: list[str] = field(default_factory=list)
@@ -31,7 +31,7 @@ class Inspection:
 
 
 def folder_of(name: str, vehicles: Path) -> Path:
-    """A vehicle's folder by its name in ``vehicles`` or by its path. Raises BadInput."""
+    """The folder of a vehicle given by its name in ``vehicles`` or by its path. Raises BadInput."""
     folder = next((f for f in (vehicles / name, Path(name)) if (f / "vehicle.yaml").is_file()), None)
     if folder is None:
         known = [p.parent.name for p in vehicles.glob("*/vehicle.yaml")]
@@ -40,7 +40,7 @@ def folder_of(name: str, vehicles: Path) -> Path:
 
 
 def inspect(folder: Path) -> Inspection:
-    """All faults of the files, of the URDF and of the two against each other."""
+    """Finds all faults of the vehicle's files, of its URDF, and between the two."""
     found = Inspection(folder)
     try:
         found.file = load_vehicle(folder.parent, folder.name)

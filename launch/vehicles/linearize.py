@@ -31,7 +31,7 @@ UNITS = {
 
 
 def airframe_of(folder: Path, ground: float = 0.0) -> Airframe:
-    """The aircraft of a vehicle's folder over a plain at ``ground`` [m AMSL]. Raises BadInput."""
+    """The airframe of a vehicle's folder over a plain at ``ground`` [m AMSL]. Raises BadInput."""
     file = load_vehicle(folder.parent, folder.name)
     if file.air is None:
         raise BadInput(f"{folder}: kind is '{file.kind}'; only aircraft of JSBSim have these models")
@@ -39,14 +39,14 @@ def airframe_of(folder: Path, ground: float = 0.0) -> Airframe:
 
 
 def linear_models(folder: Path, speed: float | None, altitude: float) -> LinearModels:
-    """``speed`` [m/s], by default that of the vehicle's file; ``altitude`` [m AMSL]. Raises BadInput."""
+    """The linear models at ``speed`` [m/s], by default the trim speed of the vehicle's file, and ``altitude`` [m AMSL]. Raises BadInput."""
     airframe, file = airframe_of(folder, altitude - CLEAR), load_vehicle(folder.parent, folder.name)
     assert file.air is not None
     return linearize(airframe, speed or file.air.trim_speed, altitude, folder)
 
 
 def tables(models: LinearModels) -> Iterator[Table]:
-    """Trim, matrices, modes, coefficients."""
+    """Yields the tables of trim, matrices, modes and transfer-function coefficients."""
     yield _trim_table(models)
     for title, side in (("longitudinal", models.longitudinal), ("lateral", models.lateral)):
         yield _matrix_table(title, side)
@@ -87,7 +87,7 @@ def _modes_table(modes: list[Mode]) -> Table:
 
 
 def as_json(models: LinearModels) -> str:
-    """Everything of the tables; what is infinite is null."""
+    """All figures of the tables as JSON; what is infinite is null."""
     sides = {"longitudinal": models.longitudinal, "lateral": models.lateral}
     figures: dict[str, Any] = {
         "trim": asdict(models.trim) | {"residual": models.residual},
@@ -99,7 +99,7 @@ def as_json(models: LinearModels) -> str:
 
 
 def write_json(models: LinearModels, target: Path) -> None:
-    """Raises BadInput where it cannot be written."""
+    """Writes the figures as JSON. Raises BadInput where the file cannot be written."""
     try:
         target.write_text(as_json(models))
     except OSError as error:
@@ -113,7 +113,7 @@ def _mode_figures(mode: Mode) -> dict[str, Any]:
 
 
 def write_pole_map(models: LinearModels, title: str, target: Path) -> None:
-    """A PNG of the eigenvalues of both sides. Raises BadInput where it cannot be written."""
+    """Draws the longitudinal and lateral eigenvalues into a PNG. Raises BadInput where it cannot be written."""
     figure = Figure(figsize=(11.0, 5.2), layout="constrained")
     longitudinal, lateral = figure.subplots(1, 2)
     _draw(longitudinal, "longitudinal", longitudinal_modes(models.longitudinal.a))

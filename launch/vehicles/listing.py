@@ -14,7 +14,7 @@ from uvf.models.yaml_data import BadInput
 
 
 def vehicle_table(vehicles: Path) -> Table:
-    """All vehicles of a folder, a row each; those that cannot be read say so."""
+    """All vehicles of a folder, a row each; an unreadable one has its error in the row."""
     table = Table("vehicle", "kind", "size", "sensors", "about")
     for path in sorted(vehicles.glob("*/vehicle.yaml")):
         try:
@@ -28,7 +28,7 @@ def vehicle_table(vehicles: Path) -> Table:
 
 
 def vehicle_figures(file: VehicleFile, model: UrdfModel | None) -> Table:
-    """Sizes, limits and sensors."""
+    """A vehicle's sizes, limits and sensors."""
     table = Table(show_header=False, box=None)
     table.add_row("about", file.about)
     if file.variant_of is not None:
@@ -65,7 +65,7 @@ def _fitted(file: VehicleFile) -> list[str]:
 
 
 def frame_tree(model: UrdfModel, file: VehicleFile) -> Tree:
-    """base_footprint, base_link, links and sensors, each with its place in base_link [m]."""
+    """The tree of base_footprint, base_link, links and sensors, each with its position in base_link [m]."""
     poses = model.link_poses()
     tree = Tree("base_footprint")
     root = model.roots[0] if model.roots else ""

@@ -20,7 +20,7 @@ Complex = NDArray[np.complex128]
 
 @dataclass(frozen=True)
 class Loop:
-    """One loop, opened where ``opened`` says."""
+    """One control loop, opened where ``opened`` says."""
 
     axis: str
     opened: str
@@ -29,17 +29,24 @@ class Loop:
 
     @property
     def margins(self) -> Margins:
+        """Gain, phase and delay margins of the open loop."""
         return margins(OMEGA, self.response)
 
     def step(self, t: NDArray[np.float64]) -> NDArray[np.float64]:
-        """(k,) what is controlled after its command has gone from 0 to 1, from the closed loop's frequency response."""
+        """Response (k,) of the controlled variable at times ``t`` (k,) [s] after a unit step of its command.
+
+        Computed from the closed loop's frequency response.
+        """
         kernel = self.closed.real * np.sin(np.outer(t, OMEGA)) / OMEGA
         slower = self.closed.real[0] * sici(OMEGA[0] * t)[0]  # what lies below the lowest frequency
         return np.asarray(2 / np.pi * (np.trapezoid(kernel, OMEGA, axis=1) + slower))
 
 
 def loops(models: LinearModels, gains: Mapping[str, float], body: AirBody) -> Iterator[Loop]:
-    """Of src/uvf/control/attitude_loops.py and energy.py at the trim speed; ``gains``: parameters by name."""
+    """Loops of roll, pitch, height and airspeed (``uvf.control``: attitude_loops, energy) at the trim speed.
+
+    gains: autopilot parameters by name, each in its own unit (s, 1/s, [-]).
+    """
     yield _attitude("roll", models, gains, body)
     pitch = _attitude("pitch", models, gains, body)
     yield pitch

@@ -29,7 +29,7 @@ UP = np.array((0.0, 0.0, 1.0))
 
 @dataclass(frozen=True)
 class PictureView:
-    """title; to_eye: (3,) from the vehicle's middle; away: in sizes of the vehicle; axes: which of x, y go right and up."""
+    """A view. to_eye: (3,) direction from the vehicle's middle; away: distance in sizes of the vehicle; axes: which go right and up."""
 
     title: str
     to_eye: tuple[float, float, float]
@@ -45,7 +45,7 @@ VIEWS = (
 
 
 def write_picture(folder: Path, file: VehicleFile, target: Path) -> None:
-    """A PNG of three views with scales in metres. Raises BadInput where it cannot be written."""
+    """Draws three views with scales in metres into a PNG. Raises BadInput where it cannot be written."""
     look = look_at(folder, file)
     middle, size = _extent(look, folder, file)
     renderer = BulletRenderer(WorldFile("", Origin(0.0, 0.0, 0.0), (-1.0, -1.0, 1.0, 1.0), ground_colour=GROUND), [], {"it": look})

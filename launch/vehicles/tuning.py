@@ -26,7 +26,7 @@ SECONDS = {"roll": 6.0, "pitch": 6.0, "height": 20.0, "airspeed": 20.0}  # of th
 
 @dataclass(frozen=True)
 class Tuning:
-    """Figures and what they make of the aircraft."""
+    """The autopilot parameters of an aircraft and the control loops that they make."""
 
     folder: Path
     before: dict[str, float]
@@ -35,7 +35,7 @@ class Tuning:
 
 
 def tune(folder: Path) -> Tuning:
-    """Of the aircraft in ``folder``. Raises BadInput."""
+    """Tunes the autopilot for the aircraft in ``folder`` from its own model. Raises BadInput."""
     airframe, file = airframe_of(folder), load_vehicle(folder.parent, folder.name)
     assert file.air is not None
     before = convert(file.params.get(SERVICE, {}), AirParams, str(folder / "vehicle.yaml"), ("params", SERVICE))
@@ -46,6 +46,7 @@ def tune(folder: Path) -> Tuning:
 
 
 def tables(tuning: Tuning) -> Iterator[Table]:
+    """Yields the table of parameters and that of the loops' margins."""
     figures = Table("parameter", "before", "now", title=f"{SERVICE} of {tuning.folder.name}")
     for name, value in tuning.figures.items():
         figures.add_row(name, f"{tuning.before[name]:.3g}", f"{value:.3g}")
@@ -59,7 +60,7 @@ def tables(tuning: Tuning) -> Iterator[Table]:
 
 
 def draw(tuning: Tuning, path: Path) -> None:
-    """The gain of the open loops and the step responses of the closed ones."""
+    """Draws the gain of the open loops and the step responses of the closed ones."""
     figure = Figure(figsize=(10.0, 4.0), layout="constrained")
     bode, step = figure.subplots(1, 2)
     for loop in tuning.loops:
@@ -77,7 +78,7 @@ def draw(tuning: Tuning, path: Path) -> None:
 
 
 def write(tuning: Tuning) -> Path:
-    """Puts the figures into the vehicle.yaml, which keeps its other lines. Raises BadInput."""
+    """Writes the parameters into the vehicle.yaml, which keeps its other lines; returns its path. Raises BadInput."""
     path = tuning.folder / "vehicle.yaml"
     text = with_params(path.read_text(encoding="utf-8"), tuning.figures, FileLocation(str(path)))
     path.write_text(text, encoding="utf-8")
@@ -86,7 +87,10 @@ def write(tuning: Tuning) -> Path:
 
 
 def with_params(text: str, figures: Mapping[str, float], place: FileLocation) -> str:
-    """The text of a vehicle.yaml with these parameters of the autopilot in place of those of the same name. Raises BadInput."""
+    """The text of a vehicle.yaml with these autopilot parameters, each in its own unit (rad, m/s, s, [-]), replaced or added.
+
+    Raises BadInput.
+    """
     lines = text.rstrip("\n").splitlines()
     begin = next((i for i, line in enumerate(lines) if re.fullmatch(rf"  {SERVICE}:\s*(#.*)?", line)), None)
     if begin is None:

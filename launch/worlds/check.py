@@ -26,7 +26,10 @@ RIM = 16  # points on a round one's rim
 
 
 def problems(world: WorldFile, radius: float) -> Iterator[str]:
-    """One line each. Raises BadInput for a mesh that cannot be read."""
+    """Yields likely mistakes in a world, a line each; radius [m]: of the vehicle that is to drive there.
+
+    Raises BadInput for a mesh that cannot be read.
+    """
     standing = things(world)
     yield from _heights(standing, relief(world))
     yield from _out_of_reach(world, radius)
@@ -34,7 +37,7 @@ def problems(world: WorldFile, radius: float) -> Iterator[str]:
 
 
 def blocked_starts(site: Scenario) -> Iterator[str]:
-    """Ground vehicles of a mission that begin in or too close to something."""
+    """Yields the ground vehicles of a mission that start inside or too close to something."""
     footing = Footing(site.world)
     for name, member in site.members.items():
         body, start = member.file.ground, member.entry.start

@@ -24,7 +24,7 @@ FLOORS: Sequence[Colour] = ((0.66, 0.53, 0.38), (0.7, 0.68, 0.64), (0.58, 0.46, 
 
 
 class Room(NamedTuple):
-    """m."""
+    """A rectangular room: its edges [m, world]."""
 
     x_min: float
     y_min: float
@@ -33,15 +33,17 @@ class Room(NamedTuple):
 
     @property
     def sides(self) -> tuple[float, float]:
+        """Its lengths along x and y [m]."""
         return self.x_max - self.x_min, self.y_max - self.y_min
 
     @property
     def middle(self) -> tuple[float, float]:
+        """Its centre (x, y) [m, world]."""
         return (self.x_min + self.x_max) / 2, (self.y_min + self.y_max) / 2
 
 
 class Border(NamedTuple):
-    """A stretch of wall between two rooms, by their numbers; begin and end [m]; door: the middle and width [m] of one, or None."""
+    """A stretch of wall between two rooms (their indices), begin and end [m]; door: (x, y) of the middle and width [m], or None."""
 
     rooms: tuple[int, int]
     begin: tuple[float, float]
@@ -50,7 +52,7 @@ class Border(NamedTuple):
 
 
 class Piece(NamedTuple):
-    """width along the wall, depth, height [m]."""
+    """A piece of furniture; size: width along the wall, depth, height [m]."""
 
     name: str
     size: tuple[float, float, float]
@@ -72,7 +74,7 @@ PIECES = (
 
 
 def generate(rooms: int, seed: int) -> WorldFile:
-    """A house of so many rooms, each of which a robot of radius ``PASSER`` reaches from each other one."""
+    """A house of so many rooms, all mutually reachable for a robot of radius ``PASSER``."""
     rng = np.random.default_rng(seed)
     while True:
         cut = _cut(rooms, rng)
@@ -202,7 +204,7 @@ def all_reachable(world: WorldFile, rooms: Sequence[Room]) -> bool:
 
 
 def free_start(plan: FloorPlan, room: Room) -> tuple[float, float] | None:
-    """The place nearest to the room's middle where such a robot stands; None when there is none."""
+    """The place (x, y) [m, world] nearest to the room's middle where a robot of radius ``PASSER`` fits; None when there is none."""
     x, y = plan.centres()
     (r0, c0), (r1, c1) = plan.cell(*room[:2]), plan.cell(*room[2:])
     window = np.s_[r0:r1, c0:c1]

@@ -35,7 +35,7 @@ CUT = 1.4  # m, without terrain: higher walls and things are shown cut there, so
 
 
 def save_picture(world: WorldFile, plan: FloorPlan, reachable: Mask, path: Path) -> None:
-    """Writes a PNG: occupied cells dark, reachable floor (rows, columns) light green, things in their colours."""
+    """Draws a PNG: occupied cells dark, reachable floor (rows, columns) light green, things in their colours."""
     figure = Figure(figsize=(15, 6.5), layout="constrained")
     left, right = figure.subplots(1, 2, width_ratios=(1.0, 1.35))
     _draw_plan(left, world, plan, reachable)
@@ -80,7 +80,7 @@ def _draw_solid(axes: Axes, solid: Solid) -> None:
 
 
 def view(world: WorldFile) -> NDArray[np.uint8]:
-    """(height, width, 3) RGB from the south-east and above, tall things cut, moving ones at the beginning of their scripts."""
+    """RGB image (height, width, 3) from the south-east and above, tall things cut, moving ones at the start of their scripts."""
     camera = Camera(Mount((0.0, 0.0, 0.0)), hz=1.0, width=WIDTH, height=HEIGHT, fov=LENS, far=2000.0)
     with TemporaryDirectory() as scratch:
         placed = [_at_start(solid if world.terrain else _cut(solid, Path(scratch))) for solid in solids(world)]

@@ -17,7 +17,7 @@ RESOLUTION = 0.05  # m
 
 
 def listed(worlds: Path) -> Iterator[str]:
-    """A line for each world, what is wrong with it instead of what it is about when it cannot be read."""
+    """Yields a line for each world: what it is about, or what is wrong with it."""
     for path in sorted(worlds.glob("*/world.yaml")):
         name = path.parent.name
         try:
@@ -27,7 +27,7 @@ def listed(worlds: Path) -> Iterator[str]:
 
 
 def figures(world: WorldFile) -> Iterator[str]:
-    """Size, place, air, and how many things of each kind."""
+    """Yields lines on size, geographic origin, weather, and the number of things of each kind."""
     x_min, y_min, x_max, y_max = world.floor
     origin, east_north_up = world.origin, ", ".join(f"{v:g}" for v in world.wind.steady)
     yield world.about
@@ -47,6 +47,6 @@ def figures(world: WorldFile) -> Iterator[str]:
 
 
 def largest_reachable(plan: FloorPlan, radius: float) -> Mask:
-    """(rows, columns): the largest floor that a round robot of ``radius`` [m] covers from one start."""
+    """Mask (rows, columns) of the largest floor region that a round robot of ``radius`` [m] covers from one start."""
     regions = free_regions(plan, radius)
     return regions[0] if regions else np.zeros_like(plan.cells)

@@ -7,4 +7,5 @@ from uvf.runtime.contract.instances import ServiceInstance
 
 
 def build(site: Scenario) -> list[ServiceInstance]:
+    """The autopilots of a mission's aircraft and ground vehicles. Raises BadInput for a job that does not suit its vehicle."""
     return [*air.hosts(site), *ground.hosts(site)]

@@ -12,7 +12,7 @@ K = TypeVar("K")
 
 
 class FailsafeAction(IntEnum):
-    """Ordered by increasing priority."""
+    """What a failsafe does, ordered by increasing priority."""
 
     WARN = 0
     HOLD = 1
@@ -35,7 +35,7 @@ ACTIONS = {
 
 @dataclass(frozen=True)
 class FailsafeRule(Generic[K]):
-    """One line of a table of failsafes. Between ``trigger`` and ``clear`` there may be a gap: then it stays as it is."""
+    """One row of a failsafe table. Between ``trigger`` and ``clear`` there may be a gap (hysteresis): there the state is kept."""
 
     name: str
     trigger: Callable[[K], bool]
@@ -58,14 +58,14 @@ class FailsafeRule(Generic[K]):
 
 @dataclass(frozen=True)
 class RuleChange(Generic[K]):
-    """A rule that has begun or ended in this cycle."""
+    """A failsafe rule that was raised or cleared in this cycle."""
 
     rule: FailsafeRule[K]
     began: bool
     cause: str
 
     def event(self, t: float) -> Event:
-        """What is said of it at ``t`` [s]; the figures are those of a beginning."""
+        """The event at ``t`` [s] that reports the change; its figures are those of the moment at which the rule was raised."""
         severity = self.rule.severity if self.began else Event.NOTICE
         text = self.rule.raised_text if self.began else self.rule.cleared_text
         return Event(timestamp=stamp(t), severity=severity, text=text, cause=self.cause if self.began else "", source="autopilot")
@@ -73,14 +73,14 @@ class RuleChange(Generic[K]):
 
 @dataclass(frozen=True)
 class FailsafeOrder(Generic[K]):
-    """What is to be done now, and why."""
+    """The action to be taken now, and its cause."""
 
     action: FailsafeAction
     rule: FailsafeRule[K]
 
 
 class FailsafeWatch(Generic[K]):
-    """Which rules hold. An order is given once, when a rule begins; what somebody asks for afterwards is theirs to ask for."""
+    """Keeps track of the rules that hold. An action is ordered once, when its rule is raised; modes requested later take precedence."""
 
     def __init__(self, rules: Sequence[FailsafeRule[K]]) -> None:
         self._rules = tuple(rules)
@@ -91,17 +91,17 @@ class FailsafeWatch(Generic[K]):
         self._overruled: set[str] = set()
 
     def overrule(self) -> None:
-        """Somebody has asked for a mode: of what holds already nothing is ordered any more."""
+        """Notes that somebody has requested a mode: rules that already hold order nothing more."""
         self._in_charge = FailsafeAction.WARN
         self._overruled = set(self.holding)
 
     def in_force(self, known: K) -> FailsafeOrder[K] | None:
-        """What has been ordered last by a rule that still holds, unless somebody has overruled it."""
+        """The last order whose rule still holds, unless somebody has overruled it."""
         held = [FailsafeOrder(rule.action(known), rule) for name, rule in self.holding.items() if name not in self._overruled]
         return max((order for order in held if order.action), key=lambda o: o.action, default=None)
 
     def step(self, known: K, dt: float) -> tuple[list[RuleChange[K]], FailsafeOrder[K] | None]:
-        """The changes of this cycle of ``dt`` [s], and the order that follows, if it goes beyond what is in force."""
+        """One cycle of ``dt`` [s]: the rules that changed, and the resulting order if it goes beyond the one in force."""
         turns = [rule.clear(known) if rule.name in self.holding else rule.trigger(known) for rule in self._rules]
         changes = [
             change for rule, turn in zip(self._rules, turns, strict=True) if (change := self._look(rule, turn, known, dt)) is not None

@@ -5,7 +5,7 @@ from uvf.runtime.messages.convert import seconds
 
 
 class LinkWatch:
-    """Counts on while nothing is told, as when the process that listens to ground stations has died."""
+    """Measures the silence of the ground stations; it counts on while nothing is heard, as when the listening process has died."""
 
     def __init__(self) -> None:
         self.silence = 0.0
@@ -13,9 +13,9 @@ class LinkWatch:
         self._told: Link | None = None
 
     def step(self, t: float, link: Link | None) -> None:
-        """t [s, simulation]; link: the newest word, or None.
+        """One cycle at ``t`` [s, simulation]; link: the newest message, or None.
 
-        A ground station that was gone before this vehicle began is none that it has lost; a listener that has just begun knows of none.
+        A ground station that was gone before this vehicle began is not a lost one; a listener that has just begun knows of none.
         """
         if link is not None and (link.stations or (link.silence > 0 and self._told is not None)):
             self._told = link

@@ -13,12 +13,12 @@ SAME_WITHIN = 10.0  # s: what happens again within that time is an alternation t
 
 
 def in_turn(sources: Collection[str]) -> Order:
-    """Each comes before the next."""
+    """The order in which each source is a rank of its own, the first one the highest."""
     return tuple((source,) for source in sources)
 
 
 def holder(fresh: Collection[str], order: Order, held: str) -> str:
-    """Who is let through of those that have sent something ``fresh``; held: who was until now. "" = nobody."""
+    """The source in force of those ``fresh``, by rank; among equals the one that was in force, ``held``. "" = none."""
     for rank in order:
         present = [source for source in rank if source in fresh]
         if present:
@@ -27,20 +27,20 @@ def holder(fresh: Collection[str], order: Order, held: str) -> str:
 
 
 class Once:
-    """What is told when it happens, but not again while it goes on or alternates."""
+    """Reports an occurrence when it begins, but not again while it goes on or alternates."""
 
     def __init__(self) -> None:
         self._last: dict[str, float] = {}
 
     def is_new(self, t: float, what: str) -> bool:
-        """what: one of few."""
+        """Whether it has not occurred within ``SAME_WITHIN`` before ``t`` [s]; what: one of few texts."""
         last = self._last.get(what)
         self._last[what] = t
         return last is None or not 0 <= t - last < SAME_WITHIN
 
 
 class Multiplexer:
-    """Of one kind of command: remembers who holds, and what is to be told of it."""
+    """Selects the source of one kind of command, and reports changes of it."""
 
     def __init__(self, what: str, order: Order) -> None:
         """what: as it is told of, in the plural."""
@@ -52,14 +52,17 @@ class Multiplexer:
         self._once = Once()
 
     def pick(self, fresh: Collection[str]) -> str:
-        """Who is let through; called in each cycle."""
+        """The source in force; called in each cycle."""
         self._before = self.holder
         self.holder = holder(fresh, self._order, self.holder)
         self.waiting = tuple(s for rank in self._order for s in rank if s in fresh and s != self.holder)
         return self.holder
 
     def news(self, t: float) -> list[tuple[str, str]]:
-        """(what has happened, why) in this cycle: a hand-over, or somebody else who sends. For cycles in which the commands count."""
+        """(occurrence, cause) to be reported in this cycle at ``t`` [s]: a hand-over, or another source that sends.
+
+        Call it in cycles in which the commands are in force.
+        """
         told = [(f"{self._what} of {source} wait", f"{self.holder} {self._why_not(source)}") for source in self.waiting]
         before, now = self._before, self.holder
         if before and now and before != now:

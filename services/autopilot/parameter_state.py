@@ -12,14 +12,14 @@ P = TypeVar("P", bound=Params)
 
 
 class ToldParams:
-    """One service's; a set is another object after each request that has set one."""
+    """Publishes a service's parameters; a set is another object after each request that has set one."""
 
     def __init__(self) -> None:
         self._told: Params | None = None
         self._changes = -1
 
     def news(self, t: float, params: Params) -> ParamValues | None:
-        """None while nothing has changed."""
+        """The message stamped ``t`` [s] with all parameters; None while nothing has changed."""
         if params is self._told:
             return None
         self._told = params
@@ -28,7 +28,7 @@ class ToldParams:
         return ParamValues(timestamp=stamp(t), changes=self._changes, values=values)
 
     def taken_up(self, said: ParamValues, params: P) -> P:
-        """What an instance that has died had: with its values, and counting on from its changes."""
+        """The parameters of an instance that has died; the count of changes continues."""
         self._changes = said.changes - 1
         values = {name: msgspec.json.decode(value) for name, value in said.values.items()}
         return msgspec.convert({**msgspec.to_builtins(params), **values}, type(params))

@@ -5,7 +5,7 @@ from uvf.models.mission.file import Waypoint
 
 
 def item_from_file(waypoint: Waypoint) -> MissionItem:
-    """A line of a mission file as a message."""
+    """The mission item of a waypoint in a mission file."""
     return MissionItem(
         kind=waypoint.kind.upper(),
         position=Vector3(x=waypoint.x, y=waypoint.y, z=waypoint.z),

@@ -8,12 +8,12 @@ SPIRAL = 0.1  # rad of rudder: with the motor off it comes down in a wide turn i
 
 
 def standing(t: float, reason: str) -> OutputMessages:
-    """A ground vehicle's wheels stand."""
+    """Outputs at ``t`` [s] that stop the wheels of a ground vehicle."""
     return {"wheels": WheelCommand(timestamp=stamp(t)), "status": _status(t, Kind.KIND_GROUND, reason)}
 
 
 def coming_down(t: float, reason: str) -> OutputMessages:
-    """Nothing is left that could fly it: motor off and a little rudder, as a radio without signal does; on the ground it brakes."""
+    """Outputs at ``t`` [s] for an aircraft that nothing controls: motor off, ``SPIRAL`` [rad] of rudder; on the ground it brakes."""
     down = SurfaceCommand(timestamp=stamp(t), rudder=SPIRAL, brake=1.0)
     return {"surfaces": down, "status": _status(t, Kind.KIND_FIXED_WING, reason)}
 

@@ -10,7 +10,7 @@ from uvf.runtime.contract.instances import ServiceInstance
 
 
 def build(site: Scenario) -> list[ServiceInstance]:
-    """One service; its page's address is UVF_GCS_HOST:UVF_GCS_PORT. Raises BadInput."""
+    """The ground station's service; its page's address is UVF_GCS_HOST:UVF_GCS_PORT. Raises BadInput."""
     address = address_from()
 
     def make() -> GroundStation:

@@ -48,7 +48,7 @@ class Join:
 
 @dataclass(frozen=True)
 class Leave:
-    """A browser is gone."""
+    """A browser has disconnected."""
 
     page: int
 
@@ -61,7 +61,7 @@ class Select:
 
 @dataclass(frozen=True)
 class ClickGround:
-    """A click that hit no vehicle: the ray of sight, world frame. vehicle: here and below, the one shown where it was asked for."""
+    """A click that hit no vehicle: its ray (origin [m], direction), world frame. vehicle: here and below, the one the page shows."""
 
     vehicle: str
     origin: tuple[float, float, float]
@@ -88,7 +88,7 @@ class StopAll:
 
 @dataclass(frozen=True)
 class Layer:
-    """A page shows part of the scene, or hides it."""
+    """Show or hide a layer of the scene on a page."""
 
     page: int
     name: str
@@ -97,14 +97,14 @@ class Layer:
 
 @dataclass(frozen=True)
 class Cancel:
-    """Of the goal that it drives to."""
+    """Cancel the goal that the vehicle drives to."""
 
     vehicle: str
 
 
 @dataclass(frozen=True)
 class TakeWheel:
-    """The page wants to drive the vehicle by hand."""
+    """Drive the vehicle by hand from this page."""
 
     page: int
     vehicle: str
@@ -112,14 +112,14 @@ class TakeWheel:
 
 @dataclass(frozen=True)
 class LeaveWheel:
-    """The page does not want to drive by hand any more."""
+    """End driving by hand from this page."""
 
     page: int
 
 
 @dataclass(frozen=True)
 class Steer:
-    """What a page holds: parts (-1..1) of the linear and the angular scale."""
+    """Directions that a page holds: parts (-1..1) of the linear and the angular scale."""
 
     page: int
     forward: float
@@ -134,7 +134,7 @@ class Rescale:
 
 @dataclass(frozen=True)
 class ShowCamera:
-    """Which of the vehicle's cameras the page shows: image, chase or gimbal."""
+    """Show a camera of the vehicle on the page: image, chase or gimbal."""
 
     page: int
     name: str
@@ -142,14 +142,14 @@ class ShowCamera:
 
 @dataclass(frozen=True)
 class Looking:
-    """A page says that the picture is before somebody's eyes."""
+    """The page reports that the camera picture is visible."""
 
     page: int
 
 
 @dataclass(frozen=True)
 class AimGimbal:
-    """vehicle: whose gimbal the page was showing; the rest as in GimbalCommand [rad]."""
+    """Point the gimbal. vehicle: the one that the page was showing; pan and tilt [rad] and mode as in GimbalCommand."""
 
     vehicle: str
     pan: float
@@ -164,7 +164,7 @@ Action = Shown | ClickGround | Arm | SetMode | StopAll | Cancel | TakeWheel | Le
 
 @dataclass
 class Outbox:
-    """What a step sends, by the service's declared names."""
+    """The messages that a step sends, by the service's declared names."""
 
     stop: list[StopCommand] = field(default_factory=list)
     arm: dict[str, list[Message]] = field(default_factory=dict)
@@ -176,7 +176,7 @@ class Outbox:
 
 
 def ground_point(origin: Sequence[float], direction: Sequence[float]) -> tuple[float, float] | None:
-    """Where a ray meets the ground z = 0 [m, world]; None if it never does."""
+    """Where a ray (origin (3,) [m], direction (3,), world) meets the ground z = 0: (x, y) [m, world]; None if it never does."""
     o, d = np.asarray(origin, dtype=float), np.asarray(direction, dtype=float)
     if o.shape != (3,) or d.shape != (3,) or not (np.isfinite(o).all() and np.isfinite(d).all()):
         return None
@@ -202,7 +202,7 @@ class Commander:
         return asked is not None and asked[:2] == (vehicle, arm) and t - asked[2] <= CONFIRM_WITHIN
 
     def act(self, t: float, actions: Sequence[Action]) -> Outbox:
-        """The messages to send for what people asked at ``t`` [s, wall]."""
+        """The messages to send for the actions asked for at ``t`` [s, wall]."""
         out = Outbox()
         for name, before in self._back.items():
             out.mode[name] = [ModeRequest(mode=before, source=SOURCE)]  # type: ignore[arg-type]
@@ -372,7 +372,7 @@ class Commander:
         self._model.log.tell(t, line, good)
 
     def hear(self, t: float, answers: Sequence[Answer[Any, Any]]) -> None:
-        """Takes in what became of earlier requests."""
+        """Takes the answers to earlier requests at ``t`` [s, wall]."""
         for answer in answers:
             vehicle = self._model.vehicles.get(answer.vehicle)
             if vehicle is None:
@@ -393,7 +393,7 @@ class Commander:
             self._back[vehicle] = self._mode_before.pop(vehicle)
 
     def expire(self, t: float) -> None:
-        """An order that nobody answers in time is shown as refused."""
+        """Shows orders that were not answered by ``t`` [s, wall] as refused."""
         for vehicle in self._model.vehicles.values():
             order = vehicle.order
             if order is not None and order.state == "sent" and t - order.at > ANSWER_WITHIN:

@@ -70,7 +70,7 @@ NEWEST = (
 
 
 class GroundStation(Service):
-    """Shows the vehicles of one site on a page, and sends what is asked there."""
+    """Shows the vehicles of a mission on a page, and sends the requests made there."""
 
     name = "gcs"
     hz = 20.0
@@ -78,6 +78,8 @@ class GroundStation(Service):
     clock = "wall"
 
     class Inputs(Reads):
+        """Messages of the vehicles and of the system, and answers to requests."""
+
         clock: Clock | None = optional(topics.CLOCK)
         processes: list[Processes] = optional(every(topics.PROCESSES.by("*")))
         objects: SimObjects | None = optional(topics.OBJECTS)
@@ -111,6 +113,8 @@ class GroundStation(Service):
         mode: list[Answer[ModeRequest, Reply]] = answers(topics.SET_MODE)
 
     class Outputs(Writes):
+        """Commands and requests to the vehicles."""
+
         stop: StopCommand | None = topic(topics.STOP.by(SOURCE))
         drive: dict[str, DriveCommand] | None = topic(topics.DRIVE.by(SOURCE))
         gimbal: dict[str, GimbalCommand] | None = topic(topics.GIMBAL.by(SOURCE))
@@ -156,4 +160,5 @@ class GroundStation(Service):
         return self.Outputs(**{name: getattr(out, name) for name in (*self.outputs, *self.calls)})
 
     def close(self) -> None:
+        """Stops the page's server."""
         self._page.close()

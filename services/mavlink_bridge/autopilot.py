@@ -38,6 +38,8 @@ SEVERITY = {
 
 
 class Autopilot:
+    """One autopilot at the far end: its link, the requests to it, and what is published of it."""
+
     def __init__(self, system: int, component: int, heartbeat: mav.MAVLink_heartbeat_message, origin: BridgeOrigin) -> None:
         self.wire = Wire(system, component)
         self.commands = CommandSender(self.wire)
@@ -85,13 +87,15 @@ class Autopilot:
 
     @property
     def chart(self) -> Chart | None:
+        """The vehicle's world frame; None before it is known where the world lies."""
         return self.plans.chart
 
     def say(self, severity: Event.Severity, text: str) -> None:
+        """Queues an event to be published."""
         self.events.append((severity, text))
 
     def step(self, t: float, messages: Sequence[mav.MAVLink_message]) -> None:
-        """Takes in what has come until ``t`` [s, wall], and goes on with what is under way."""
+        """Handles the messages received until ``t`` [s, wall], and goes on with what is under way."""
         self.wire.t = self.telemetry.t = t
         for message in messages:
             for handler in self._handlers.get(message.get_msgId(), ()):
@@ -126,7 +130,7 @@ class Autopilot:
             self.give_up("the link was lost")
 
     def give_up(self, reason: str) -> None:
-        """Nothing that was asked is done any more."""
+        """Refuses all open requests."""
         self._plans_due = None
         self.commands.give_up(reason)
         self.transfers.give_up(reason)
@@ -173,6 +177,7 @@ class Autopilot:
             self.plans.place(Chart(tangent, self.told.heartbeat.type == mav.MAV_TYPE_GROUND_ROVER))
 
     def status(self) -> VehicleStatus:
+        """The vehicle's status as a message."""
         status = status_of(self.told, self.chart, self.first)
         if self.plans.mission is not None:
             status.waypoint = min(status.waypoint, len(self.plans.mission.items))
@@ -184,6 +189,7 @@ class Autopilot:
         return status
 
     def progress(self) -> MissionProgress | None:
+        """The mission's progress as a message; None while the mission is unknown."""
         mission = self.plans.mission
         if mission is None:
             return None

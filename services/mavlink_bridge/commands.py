@@ -30,7 +30,10 @@ NAN = math.nan
 
 @dataclass
 class PendingCommand:
-    """p: parameters 1 to 7, NaN = left out. frame: of a COMMAND_INT, whose parameters 5 and 6 are deg; None = COMMAND_LONG."""
+    """A command that waits. p: parameters 1 to 7, NaN = left out.
+
+    frame: of a COMMAND_INT, whose parameters 5 and 6 are degrees; None = COMMAND_LONG.
+    """
 
     number: int
     p: tuple[float, ...]
@@ -49,19 +52,19 @@ class PendingCommand:
 
 
 def command(number: int, p: tuple[float, ...], done: Done, frame: int | None = None) -> PendingCommand:
-    """Parameters that are left out at the end are NaN."""
+    """A command with parameters ``p`` (k,) [units of the MAV_CMD]; those left out at the end are NaN."""
     return PendingCommand(number, (*p, *(NAN,) * (7 - len(p))), done, frame)
 
 
 class CommandSender:
-    """One at a time of each number, for an ACK names nothing else; the others wait for their turn."""
+    """Sends commands; one at a time of each number, for an ACK names nothing else. The others wait for their turn."""
 
     def __init__(self, wire: Wire) -> None:
         self._wire = wire
         self._queues: dict[int, deque[PendingCommand]] = {}
 
     def ask(self, asked: PendingCommand, patience: float = ANSWER_WITHIN) -> None:
-        """patience: how long it may wait for its turn [s]; a vehicle does not obey what was given up long ago."""
+        """Queues a command; patience: how long it may wait for its turn [s], for a vehicle must not obey what was given up long ago."""
         queue = self._queues.setdefault(asked.number, deque())
         if len(queue) >= WAITING_MOST:
             asked.done(False, f"{WAITING_MOST} commands of this kind wait for the autopilot already: ask again later, and less often")
@@ -71,7 +74,7 @@ class CommandSender:
         self.tick()
 
     def ask_first(self, asked: PendingCommand) -> None:
-        """Goes out at once, whatever is under way, and ends what waits: to hold, to disarm."""
+        """Sends a command at once, ahead of those that wait, which are dropped: to hold, to disarm."""
         queue = self._queues.setdefault(asked.number, deque())
         under_way = [each for each in queue if each.tries]
         unsent = [each for each in queue if not each.tries]
@@ -85,7 +88,7 @@ class CommandSender:
         self.tick()
 
     def on_ack(self, message: mav.MAVLink_command_ack_message) -> None:
-        """Only of what was asked; an autopilot answers other stations, too."""
+        """Handles COMMAND_ACK, only of own commands: an autopilot answers other stations, too."""
         queue = self._queues.get(message.command)
         if not queue or queue[0].tries == 0 or queue[0].refused or not _for_us(message):
             return
@@ -102,6 +105,7 @@ class CommandSender:
             self.tick()
 
     def tick(self) -> None:
+        """Repeats commands without an answer, and ends those that were refused."""
         for queue in list(self._queues.values()):
             if not queue:
                 continue  # or it is empty by now: whoever hears of an end may ask for something else
@@ -144,7 +148,7 @@ class CommandSender:
         asked.done(accepted, reason)
 
     def give_up(self, reason: str) -> None:
-        """Nothing that was asked is done any more."""
+        """Refuses all open commands."""
         queues, self._queues = self._queues, {}
         for asked in (asked for queue in queues.values() for asked in queue):
             asked.done(False, reason)

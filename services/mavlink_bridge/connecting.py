@@ -31,6 +31,8 @@ INSTEAD = {mav.MAVLINK_MSG_ID_ATTITUDE_QUATERNION: mav.MAVLINK_MSG_ID_ATTITUDE}
 
 
 class Connecting:
+    """Requests of a new connection: capabilities, home, modes and message rates."""
+
     def __init__(self, wire: Wire, commands: CommandSender, modes: Modes) -> None:
         self._wire, self._commands, self._modes = wire, commands, modes
         self.capabilities = 0
@@ -40,9 +42,11 @@ class Connecting:
         """Which line of its list of modes was asked for."""
 
     def handlers(self) -> dict[int, Callable[[Any], None]]:
+        """Handlers of the answers, by message id."""
         return {mav.MAVLINK_MSG_ID_AUTOPILOT_VERSION: self._on_version, mav.MAVLINK_MSG_ID_AVAILABLE_MODES: self._on_mode}
 
     def begin(self) -> None:
+        """Sends the requests."""
         self._refused = 0
         self._request(mav.MAVLINK_MSG_ID_AUTOPILOT_VERSION)
         self._request(mav.MAVLINK_MSG_ID_HOME_POSITION)

@@ -36,13 +36,15 @@ def _joined(parts: dict[int, bytes]) -> bytes:
 
 @dataclass(frozen=True)
 class StatusText:
+    """A received text. t: when it was complete [s, wall]; severity: MAV_SEVERITY."""
+
     t: float
     severity: int
     text: str
 
 
 class Wire:
-    """``t`` [s, wall] is set before each step's work."""
+    """The connection to one autopilot; ``t`` [s, wall] is set before each step's work."""
 
     def __init__(self, system: int, component: int) -> None:
         self.t = 0.0
@@ -54,14 +56,16 @@ class Wire:
         """By id: when it began, its severity, its chunks by number."""
 
     def send(self, message: mav.MAVLink_message) -> None:
+        """Queues a message."""
         self.outbox.append(message)
 
     def take_out(self) -> list[mav.MAVLink_message]:
+        """Takes the queued messages."""
         out, self.outbox = self.outbox, []
         return out
 
     def hear_text(self, message: mav.MAVLink_statustext_message) -> list[StatusText]:
-        """A whole text, once its last chunk is there; and what it has pushed out."""
+        """The complete text of a STATUSTEXT, once its last chunk is there, and texts that it ends."""
         raw = message.text.encode("utf-8", "replace") if isinstance(message.text, str) else bytes(message.text)
         part = raw.split(b"\0")[0]
         if message.id == 0:
@@ -77,7 +81,7 @@ class Wire:
         return [*said, self._said(severity, _joined(parts))]
 
     def unfinished_texts(self) -> list[StatusText]:
-        """Those whose end has not come in time, as far as they have: the gravest words are often the longest, on the worst links."""
+        """Texts whose end has not come in time, as far as they have: the gravest are often the longest, on the worst links."""
         return [self._broken_off(id) for id in [id for id, (begun, *_) in self._parts.items() if self.t - begun > CHUNKS_WITHIN]]
 
     def _broken_off(self, id: int) -> StatusText:
@@ -90,6 +94,6 @@ class Wire:
         return text
 
     def worry_since(self, t: float) -> str:
-        """The newest grave text from ``t`` [s] on, or nothing."""
+        """The newest text of severity WARNING or graver from ``t`` [s, wall] on, or ""."""
         grave = [text.text for text in self.texts if text.t >= t - 1e-9 and text.severity <= WORRYING]
         return grave[-1] if grave else ""

@@ -18,7 +18,7 @@ Say = Callable[[str], None]
 
 
 class Names:
-    """Who is called what: as asked for by system id; the first one else takes the free name; the others add their id to it."""
+    """Names of the autopilots: by system id as asked for; the first other one takes the free name; the rest append their id to it."""
 
     def __init__(self, free: str, by_system: Mapping[int, str]) -> None:
         self.free, self._by_system = free, dict(by_system)
@@ -26,14 +26,16 @@ class Names:
 
     @property
     def asked_for(self) -> list[str]:
+        """The free name and all names given to ids."""
         return [self.free, *self._by_system.values()]
 
     @property
     def systems(self) -> frozenset[int]:
-        """Ids that are named."""
+        """The system ids that have been given a name."""
         return frozenset(self._by_system)
 
     def of(self, system: int) -> str:
+        """The name of a system."""
         if system in self._by_system:
             return self._by_system[system]
         if self._taken is None:
@@ -42,7 +44,7 @@ class Names:
 
 
 def names_from(texts: Sequence[str]) -> Names:
-    """Of ``NAME`` (at most one) and ``NAME=SYSTEM``. Raises BadInput."""
+    """Parses ``NAME`` (at most one) and ``NAME=SYSTEM``. Raises BadInput."""
     free = ""
     by_system: dict[int, str] = {}
     for text in texts:
@@ -68,7 +70,7 @@ def _check(text: str, name: str, number: str | None) -> None:
 
 
 class Discovery(Service):
-    """Runs on wall time; the one reader of the address, for all vehicles there. It has nothing to say on the bus."""
+    """Reads the address for all vehicles there, on wall time; it publishes nothing."""
 
     name = "mavlink_discovery"
     hz = 50.0
@@ -76,6 +78,8 @@ class Discovery(Service):
     clock = "wall"
 
     class Inputs(Reads):
+        """The links of this bus's own vehicles."""
+
         links: dict[str, Link] = each_vehicle(topics.LINK)
 
     def __init__(self, station: Station, names: Names, found: Found, say: Say) -> None:
@@ -85,7 +89,7 @@ class Discovery(Service):
         self._is_patient = True
 
     def step(self, t: float, now: Inputs) -> Writes:
-        """``t`` [s]: wall time since the start. A vehicle of this bus that speaks to the address, too, is none more."""
+        """One cycle at ``t`` [s]: wall time since the start. A vehicle of this bus that speaks to the address, too, is ignored."""
         own = {link.port for link in now.links.values()}
         for line in self._station.poll(t, own):
             self._say(line)
@@ -102,4 +106,5 @@ class Discovery(Service):
         return self.Outputs()
 
     def close(self) -> None:
+        """Closes the link."""
         self._station.close()

@@ -7,13 +7,13 @@ from uvf.runtime.mavlink.geo import GeoPosition
 
 
 class BridgeOrigin:
-    """One for all vehicles of an address."""
+    """The world's origin, common to all vehicles of an address."""
 
     def __init__(self, tangent: LocalTangent | None = None) -> None:
         self.tangent = tangent
 
     def settle(self, latitude: float, longitude: float, altitude: float) -> bool:
-        """deg, deg, m AMSL: counts if nothing else has; returns whether it does."""
+        """Sets the origin at latitude [deg], longitude [deg] and altitude [m AMSL], unless it is known; returns whether it did."""
         if self.tangent is not None:
             return False
         self.tangent = LocalTangent.from_degrees(latitude, longitude, altitude)
@@ -22,11 +22,12 @@ class BridgeOrigin:
 
 @dataclass(frozen=True)
 class Chart(GeoPosition):
-    """A vehicle of a kind in such a world."""
+    """The world frame of a vehicle of a given kind."""
 
     origin: LocalTangent
     ground: bool
 
     @property
     def is_ground(self) -> bool:
+        """Whether the vehicle is a ground vehicle."""
         return self.ground

@@ -10,11 +10,11 @@ WHOLE_FLOAT = 2**24  # up to here each whole number is a 32-bit float
 
 
 class OutOfLimits(Exception):
-    """What was asked cannot go to the autopilot; the text says why, and how to mend it."""
+    """A request that cannot be sent to the autopilot; the text says why, and how to mend it."""
 
 
 def where(chart: Chart, place: Vector3) -> tuple[float, float, float]:
-    """(latitude, longitude [deg], altitude [m AMSL]) of a place that an autopilot may be sent to. Raises Refused."""
+    """Latitude [deg], longitude [deg], altitude [m AMSL] of a place (x, y, z) [m, world] for an autopilot. Raises OutOfLimits."""
     if reason := far_off(place):
         raise OutOfLimits(reason)
     latitude, longitude, _ = chart.geodetic((place.x, place.y, place.z))  # type: ignore[arg-type]
@@ -22,7 +22,7 @@ def where(chart: Chart, place: Vector3) -> tuple[float, float, float]:
 
 
 def amsl(chart: Chart, z: float) -> float:
-    """m AMSL of a height in the world. Raises Refused."""
+    """Altitude [m AMSL] of the height ``z`` [m, world]. Raises OutOfLimits."""
     altitude = z + chart.origin.altitude
     if not abs(altitude) <= HIGHEST:
         raise OutOfLimits(f"an altitude of {altitude:g} m above sea level: name one within {HIGHEST:g} m")
@@ -30,10 +30,10 @@ def amsl(chart: Chart, z: float) -> float:
 
 
 def is_on_earth(latitude: float, longitude: float) -> bool:
-    """Of degrees that an autopilot tells."""
+    """Whether latitude and longitude [deg] told by an autopilot are possible."""
     return abs(latitude) <= 90.0 and abs(longitude) <= 180.0
 
 
 def is_sound(*told: float) -> bool:
-    """Whether numbers that an autopilot tells are finite and can be true."""
+    """Whether numbers told by an autopilot, of any unit [-], are finite and below 1e9."""
     return all(abs(number) < LARGEST for number in told)

@@ -84,7 +84,7 @@ NAME_LETTERS = 35
 
 
 class Modes:
-    """Of one autopilot; better known once it has told its own list."""
+    """The modes of one autopilot, by the known tables and its own list."""
 
     def __init__(self, autopilot: int, type_: int) -> None:
         is_ardupilot = autopilot == mav.MAV_AUTOPILOT_ARDUPILOTMEGA
@@ -94,7 +94,7 @@ class Modes:
         self._splits = not is_ardupilot
 
     def hear(self, message: mav.MAVLink_available_modes_message) -> None:
-        """One line of the autopilot's own list: its name counts; its meaning, where it can be told."""
+        """Takes a line of the autopilot's own list: its name, and its meaning where it can be told."""
         raw = message.mode_name
         text = (raw if isinstance(raw, str) else bytes(raw).decode("utf-8", "replace")).rstrip("\0")
         name = legible(text, NAME_LETTERS)
@@ -107,14 +107,15 @@ class Modes:
             self._asked_for.setdefault(mode, message.custom_mode)
 
     def mode_of(self, custom: int) -> Mode:
+        """The mode that a ``custom_mode`` means; MODE_UNSPECIFIED for an unknown one."""
         return self._by_custom.get(custom, ("", Mode.MODE_UNSPECIFIED))[1]
 
     def name_of(self, custom: int) -> str:
-        """As the autopilot calls it."""
+        """The autopilot's own name of a ``custom_mode``."""
         return self._by_custom.get(custom, ("", Mode.MODE_UNSPECIFIED))[0] or f"{custom:#x}"
 
     def custom_of(self, mode: Mode) -> int | None:
-        """The ``custom_mode`` to ask for, None where the autopilot has none like it."""
+        """The ``custom_mode`` to request for a mode; None where the autopilot has none like it."""
         if mode == Mode.MODE_UNSPECIFIED:
             return None
         if mode in self._asked_for:
@@ -122,7 +123,7 @@ class Modes:
         return next((custom for custom, (_, meant) in self._by_custom.items() if meant == mode), None)
 
     def command_parameters(self, custom: int) -> tuple[float, float, float]:
-        """Of DO_SET_MODE: PX4 takes main and sub mode apart, ArduPilot the number whole."""
+        """Parameters 1 to 3 [-] of DO_SET_MODE: PX4 takes main and sub mode apart, ArduPilot the number whole."""
         if self._splits:
             return float(mav.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED), float(custom >> 16 & 0xFF), float(custom >> 24 & 0xFF)
         return float(mav.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED), float(custom), 0.0

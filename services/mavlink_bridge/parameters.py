@@ -49,6 +49,8 @@ Value = int | float
 
 @dataclass
 class RequestedParameter:
+    """A request to read or set a parameter."""
+
     name: str
     value: Value | None
     """To be set; None = only read."""
@@ -61,7 +63,7 @@ class RequestedParameter:
 
 
 class ParameterClient:
-    """bytewise: whether integers travel as their bytes (PX4), or as the float next to them (ArduPilot)."""
+    """Reads and sets parameters. bytewise: whether integers travel as their bytes (PX4), or as the nearest float (ArduPilot)."""
 
     def __init__(self, wire: Wire) -> None:
         self._wire = wire
@@ -69,10 +71,11 @@ class ParameterClient:
         self._wanted: list[RequestedParameter] = []
 
     def handlers(self) -> dict[int, Callable[[Any], None]]:
+        """Handlers of the parameter messages, by message id."""
         return {mav.MAVLINK_MSG_ID_PARAM_VALUE: self._on_value, mav.MAVLINK_MSG_ID_PARAM_ERROR: self._on_error}
 
     def ask(self, name: str, value: str, done: Callable[[ParamReply], None]) -> None:
-        """value: JSON, empty = read only."""
+        """Reads a parameter, or sets it to ``value``: JSON, empty = read only; ``done`` hears the reply."""
         try:
             wanted = _number(name, value) if value else None
             _check_name(name)
@@ -85,6 +88,7 @@ class ParameterClient:
         self.tick()
 
     def tick(self) -> None:
+        """Repeats requests without an answer, and ends those that were refused."""
         for wanted in list(self._wanted):
             if wanted.why and self._wire.t - wanted.sent_at > TEXT_WITHIN:
                 self._end(wanted, ParamReply(accepted=False, reason=wanted.why))
@@ -132,7 +136,7 @@ class ParameterClient:
             wanted.why = f"{wanted.name}: {ERRORS.get(message.error, f'error {message.error}')}"
 
     def _check(self, value: Value | None, kind: int) -> None:
-        """Whether the parameter can have a value. Raises Refused."""
+        """Whether the parameter can have a value. Raises OutOfLimits."""
         if value is None:
             return
         low, high = LIMITS[kind]
@@ -151,7 +155,7 @@ class ParameterClient:
         return coded
 
     def _decoded(self, value: float, kind: int) -> Value:
-        """What the autopilot means. Raises Refused when that is no number."""
+        """What the autopilot means. Raises OutOfLimits when that is no number."""
         if kind not in LIMITS:
             raise OutOfLimits(f"the autopilot tells it as one of type {kind}, which the bridge does not know")
         if kind in INTEGER and self.bytewise:
@@ -167,12 +171,13 @@ class ParameterClient:
         wanted.done(reply)
 
     def give_up(self, reason: str) -> None:
+        """Refuses all open requests."""
         for wanted in list(self._wanted):
             self._end(wanted, ParamReply(accepted=False, reason=reason))
 
 
 def _number(name: str, text: str) -> Value:
-    """Of a request. Raises Refused."""
+    """Of a request. Raises OutOfLimits."""
     value: object = None
     if len(text) <= NUMBER_LETTERS:
         try:
@@ -185,7 +190,7 @@ def _number(name: str, text: str) -> Value:
 
 
 def _check_name(name: str) -> None:
-    """Raises Refused."""
+    """Raises OutOfLimits."""
     if not name or len(name) > NAME_BYTES or not (name.isascii() and name.isprintable()):
         raise OutOfLimits("name one parameter of the autopilot, of at most 16 letters")
 

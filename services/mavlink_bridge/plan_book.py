@@ -27,7 +27,7 @@ Plan = Mission | Fence | RallyPoints
 
 
 class PlanBook:
-    """``news`` are what the bus has not been told yet, by output."""
+    """The plans of one autopilot; ``news`` are those not published yet, by output."""
 
     def __init__(self, transfers: Transfers, telemetry: Telemetry, first: int, say: Say) -> None:
         self._transfers, self._telemetry, self._say = transfers, telemetry, say
@@ -44,12 +44,12 @@ class PlanBook:
 
     @property
     def home_z(self) -> float:
-        """m, world; of the origin while home is unknown."""
+        """Height z of home [m, world]; that of the origin while home is unknown."""
         home = self._telemetry.home
         return home[2] - self.chart.origin.altitude if home is not None and self.chart is not None else 0.0
 
     def read_all(self, capabilities: int) -> None:
-        """Of fence and rally points only what the autopilot says it can have; when it says nothing, they are asked for."""
+        """Downloads the mission, and fence and rally points unless the capabilities exclude them; 0 = unknown."""
         for kind, needed in CAPABILITY.items():
             if not needed or not capabilities or capabilities & needed:
                 self._read(kind)
@@ -77,7 +77,7 @@ class PlanBook:
         self._write_out(kind)
 
     def place(self, chart: Chart) -> None:
-        """From now on (or anew) it is known where the world lies; what has been read is told."""
+        """Sets the world frame (anew), and publishes what has been read in it."""
         self.chart = chart
         self.tell_again()
 
@@ -96,7 +96,7 @@ class PlanBook:
             self._say(Event.WARNING, f"its {NAMES[kind]} cannot be told: {bad.reason}")
 
     def on_current(self, message: mav.MAVLink_mission_current_message) -> None:
-        """Somebody else may have replaced a plan: by its id where there are ids, by its length otherwise."""
+        """Downloads plans that somebody else has replaced: known by their id, or by the mission's length where there are no ids."""
         told = {MISSION: message.mission_id, FENCE: message.fence_id, RALLY: message.rally_points_id}
         for kind in [kind for kind in told if kind in self._ids and told[kind] != self._ids[kind] and self._is_due(kind)]:
             if any(self._ids.values()) or any(told.values()):
@@ -112,7 +112,7 @@ class PlanBook:
         return kind not in self._reading and self._telemetry.t - self._read_at.get(kind, -math.inf) >= READ_APART
 
     def write(self, plan: Plan, done: Done) -> None:
-        """Replaces one; the bus is told once the autopilot has it."""
+        """Replaces a plan; it is published once the autopilot has it."""
         kind = MISSION if isinstance(plan, Mission) else FENCE if isinstance(plan, Fence) else RALLY
         if self.chart is None:
             done(False, "the autopilot has not told yet where it is")
@@ -145,10 +145,11 @@ class PlanBook:
             raise BadItem(mav.MAV_MISSION_ERROR, "the autopilot has not told its home yet, above which heights count: try again")
 
     def tell_again(self) -> None:
-        """To a bus whose time has started over."""
+        """Publishes the plans again, as to a bus whose time has started over."""
         for kind in self._bodies:
             self._write_out(kind)
 
     def take_news(self) -> dict[str, Any]:
+        """Takes the plans to be published, by output."""
         news, self.news = self.news, {}
         return news

@@ -31,13 +31,16 @@ MADE_UP = mav.MAV_MISSION_INVALID
 
 
 class MissionScribe:
-    """first: how many items of the wire come before the mission's own; ArduPilot keeps home there."""
+    """Converts missions. first: number of wire items before the mission's own; ArduPilot keeps home there."""
 
     def __init__(self, first: int) -> None:
         self.first = first
 
     def mission(self, bodies: Sequence[Body], chart: Chart, home_z: float) -> Mission:
-        """An item that the system has no word for is carried as one that is never done, and given back unchanged."""
+        """The mission of wire items; home_z: height of home [m, world].
+
+        An item without a counterpart is carried as one that is never executed, and given back unchanged.
+        """
         items = [self._read(as_item(body), chart, home_z) for body in bodies[self.first :]]
         for item in items:
             if item.kind == MissionItem.JUMP and item.jump_to >= len(items):
@@ -60,7 +63,10 @@ class MissionScribe:
         return read
 
     def bodies(self, mission: Mission, chart: Chart, home: tuple[float, float, float] | None, home_z: float) -> list[Body]:
-        """home: deg, deg, m AMSL. What the items came from counts only as long as it means the same here. Raises BadItem."""
+        """The wire items of a mission; home: (deg, deg, m AMSL), home_z: its height [m, world].
+
+        The original wire item of an item is used only as long as it means the same here. Raises BadItem.
+        """
         found: list[Body] = []
         for index, item in enumerate(mission.items):
             own = self._trusted(item, chart, home_z)
@@ -111,7 +117,7 @@ def _misshapen(origins: Sequence[bytes]) -> str:
 
 
 def fence_read(bodies: Sequence[Body], chart: Chart, home_z: float) -> Fence:
-    """Raises BadItem."""
+    """The fence of wire items; home_z: height of home [m, world]. Raises BadItem."""
     fence = fence_items.fence_of([fence_items.checked(as_item(body), chart, home_z) for body in bodies], Fence(), chart, home_z)
     if reason := error_in(fence):
         raise BadItem(MADE_UP, reason)
@@ -119,7 +125,10 @@ def fence_read(bodies: Sequence[Body], chart: Chart, home_z: float) -> Fence:
 
 
 def fence_bodies(fence: Fence, chart: Chart, home_z: float) -> list[Body]:
-    """Raises BadItem where the fence has what no item says, or none that makes sense."""
+    """The wire items of a fence; home_z: height of home [m, world].
+
+    Raises BadItem for what no item can express, and for an invalid fence.
+    """
     if fence.HasField("floor") or fence.HasField("ceiling") or fence.disabled:
         raise BadItem(mav.MAV_MISSION_UNSUPPORTED, "floor, ceiling and the switch are parameters of the autopilot, no items of a fence")
     given = _given(fence.origin)
@@ -161,7 +170,7 @@ def _is_same_fence(one: Fence, other: Fence) -> bool:
 
 
 def rally_read(bodies: Sequence[Body], chart: Chart, home_z: float) -> RallyPoints:
-    """Raises BadItem."""
+    """The rally points of wire items; home_z: height of home [m, world]. Raises BadItem."""
     rally = rally_items.rally_of([as_item(body) for body in bodies], chart, home_z)
     if reason := error_in(rally):
         raise BadItem(MADE_UP, reason)
@@ -169,7 +178,7 @@ def rally_read(bodies: Sequence[Body], chart: Chart, home_z: float) -> RallyPoin
 
 
 def rally_bodies(rally: RallyPoints, chart: Chart, home_z: float) -> list[Body]:
-    """Raises BadItem."""
+    """The wire items of rally points; home_z: height of home [m, world]. Raises BadItem."""
     given = _given(rally.origin)
     if given and _is_same_rally(rally_read(given, chart, home_z), rally):
         return given

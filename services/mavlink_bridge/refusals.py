@@ -10,13 +10,15 @@ MEND = "the bridge goes on without it; look at what the autopilot sends"
 
 
 class LinkRefusals:
+    """Counts what is refused on the link, and reports the first of each kind."""
+
     def __init__(self, say: Callable[[Event.Severity, str], None]) -> None:
         self.counts: Counter[str] = Counter()
         """By what is refused: messages, or parts of them."""
         self._say = say
 
     def refuse(self, what: str, why: str) -> None:
-        """what: one of few words; why: may hold numbers."""
+        """Counts a refusal. what: one of few words; why: may hold numbers."""
         if what not in self.counts and len(self.counts) >= KINDS_MOST:
             return
         self.counts[what] += 1

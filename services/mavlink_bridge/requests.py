@@ -44,7 +44,7 @@ MOVING = (ModeRequest, GoalRequest, OrbitRequest, OrderRequest, GoAroundRequest,
 
 
 class Requests:
-    """``stopped`` says who engages STOP ALL, while anybody does."""
+    """Passes requests from the bus on to the autopilot. ``stopped``: who engages STOP ALL, "" if nobody does."""
 
     def __init__(self, autopilot: Autopilot) -> None:
         self._autopilot = autopilot
@@ -53,7 +53,7 @@ class Requests:
         """(until when, what is not answered yet, by what kind of reply)."""
 
     def ask(self, request: Message) -> Later[Any]:
-        """The reply comes with a later step, or with this one."""
+        """Passes a request on; the reply comes with this step or a later one."""
         later: Later[Any] = Later()
         kind = ParamReply if isinstance(request, ParamRequest) else Reply
 
@@ -75,7 +75,7 @@ class Requests:
         return later
 
     def tick(self) -> None:
-        """Whoever asks over the bus is not left without an answer."""
+        """Answers requests that were not answered in time."""
         for until, later, kind in self._open:
             if later.reply is None and self._autopilot.wire.t >= until:
                 later.give(kind(accepted=False, reason=f"not done within {ANSWER_WITHIN:g} s; it may still be"))
@@ -83,11 +83,12 @@ class Requests:
 
 
 def hold(autopilot: Autopilot, done: Done) -> None:
+    """Requests mode Hold."""
     set_mode(autopilot, Mode.MODE_HOLD, done)
 
 
 def set_mode(autopilot: Autopilot, mode: Mode, done: Done) -> None:
-    """Mode Hold comes before any other."""
+    """Requests a mode; mode Hold is sent ahead of all others."""
     custom = autopilot.modes.custom_of(mode)
     if custom is None:
         done(False, f"the autopilot has no mode like {mode_name(mode).capitalize()}")
@@ -97,7 +98,7 @@ def set_mode(autopilot: Autopilot, mode: Mode, done: Done) -> None:
 
 
 def arm(autopilot: Autopilot, armed: bool, force: bool, done: Done) -> None:
-    """To disarm comes before to arm."""
+    """Requests arming or disarming; disarming is sent ahead of all others."""
     p = (float(armed), FORCE[armed] if force else 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     _send(autopilot, command(mav.MAV_CMD_COMPONENT_ARM_DISARM, p, done), not armed)
 
@@ -167,7 +168,7 @@ def _flyable(speed: float) -> float:
 
 
 def _within(what: str, value: float, low: float, high: float, unit: str) -> float:
-    """Raises Refused."""
+    """Raises OutOfLimits."""
     if not low <= value <= high:
         raise OutOfLimits(f"{what} of {value:g} {unit}: name one from {low:g} to {high:g} {unit}")
     return value

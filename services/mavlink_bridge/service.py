@@ -54,13 +54,18 @@ Asked = Sequence[Any]
 
 
 class BridgedVehicle(Service):
-    """Runs on wall time, as its autopilot does; stamps are simulation time where somebody keeps it, else time since the start."""
+    """A vehicle with an autopilot at the far end.
+
+    It runs on wall time, as its autopilot does; stamps are simulation time where there is a clock, else time since the start.
+    """
 
     name = "mavlink_bridge"
     hz = 50.0
     clock = "wall"
 
     class Inputs(Reads):
+        """Requests, STOP ALL and the clock."""
+
         clock: Clock | None = optional(topics.CLOCK)
         stop: StopStatus = stop_all()
         arm: list[ArmRequest] = request(topics.ARM)
@@ -77,6 +82,8 @@ class BridgedVehicle(Service):
         param: list[ParamRequest] = request(topics.PARAM.by("autopilot"))
 
     class Outputs(Writes):
+        """The vehicle's messages, and replies."""
+
         nav_state: NavState | None = topic(topics.NAV_STATE)
         pose: PoseInFrame | None = topic(topics.POSE)
         body_frame: FrameTransform | None = topic(topics.TF_BODY)
@@ -133,7 +140,7 @@ class BridgedVehicle(Service):
         self._autopilot.events = [*before.events, (Event.WARNING, words)]
 
     def step(self, t: float, now: Inputs) -> Outputs:
-        """``t`` [s]: wall time since the start."""
+        """One cycle at ``t`` [s]: wall time since the start."""
         sim_time = now.clock.t_ns * 1e-9 if now.clock is not None else t
         if now.clock is not None and now.clock.epoch != self._epoch:
             self._epoch = now.clock.epoch

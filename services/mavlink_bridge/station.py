@@ -34,7 +34,7 @@ NO_VEHICLES = {
 
 @dataclass
 class HeardAutopilot:
-    """One system at the address; its id may be anybody's again once it has been silent."""
+    """An autopilot heard at the address; its system id may be reused once it has been silent."""
 
     system: int
     component: int
@@ -48,15 +48,16 @@ class HeardAutopilot:
 
     @property
     def identity(self) -> tuple[int, int, int]:
-        """Component, firmware and type: with another one it is another autopilot, whose numbers mean something else."""
+        """Component, firmware and type: where they differ it is another autopilot, whose numbers mean something else."""
         return self.component, self.heartbeat.autopilot, self.heartbeat.type
 
     def is_lost(self, t: float) -> bool:
+        """Whether no heartbeat has come within ``LOST_AFTER`` before ``t`` [s, wall]."""
         return t - self.heard_at > LOST_AFTER
 
 
 class Station:
-    """Shared by all vehicles at one address."""
+    """The bridge's end of a link, shared by all vehicles at one address."""
 
     def __init__(self, link: DatagramLink) -> None:
         self.autopilots: dict[int, HeardAutopilot] = {}
@@ -72,7 +73,7 @@ class Station:
         self._last_heartbeat = -HEARTBEAT_PERIOD
 
     def poll(self, t: float, own: Collection[int] = ()) -> list[str]:
-        """Takes in what has arrived until ``t`` [s, wall] and says that the station is there; returns what has to be told.
+        """Receives what has arrived until ``t`` [s, wall] and sends heartbeats; returns lines to be reported.
 
         own: ports from which this bus's own vehicles speak; they are on it already.
         """
@@ -129,17 +130,17 @@ class Station:
         return [f"system {system} is left alone, as all others that come: {AUTOPILOTS_MOST} are at one address; {mend}"]
 
     def forget(self, system: int) -> None:
-        """It is none for this bus."""
+        """Drops a system that is not to be a vehicle of this bus."""
         del self.autopilots[system]
 
     def fetch(self, system: int) -> list[mav.MAVLink_message]:
-        """What an autopilot has said since the last call."""
+        """Takes the messages of an autopilot since the last call."""
         taken = self.autopilots[system].inbox
         self.autopilots[system].inbox = []
         return taken
 
     def send(self, system: int, messages: Sequence[mav.MAVLink_message]) -> None:
-        """To one autopilot, where it was heard last."""
+        """Sends to an autopilot, where it was heard last."""
         for message in messages:
             self._send(message, [self.autopilots[system].peer])
 
@@ -152,11 +153,12 @@ class Station:
             self._untold.append(f"{message.get_type()} is not sent: a number does not fit its field")
 
     def close(self) -> None:
+        """Closes the link."""
         self._link.close()
 
 
 def is_autopilot(message: Any) -> bool:
-    """Whether a heartbeat is that of something that flies or drives, and not of a camera, a gimbal or a ground station."""
+    """Whether a heartbeat is that of a vehicle, and not of a camera, a gimbal or a ground station."""
     return bool(message.autopilot != mav.MAV_AUTOPILOT_INVALID and message.type not in NO_VEHICLES)
 
 

@@ -31,7 +31,7 @@ STATES = {
 
 @dataclass
 class Told:
-    """What a status is made of."""
+    """What an autopilot has told, from which its status is made."""
 
     wire: Wire
     telemetry: Telemetry
@@ -40,19 +40,22 @@ class Told:
 
     @property
     def kind(self) -> Kind:
+        """Kind of the vehicle; KIND_UNSPECIFIED for a type without a counterpart."""
         return KIND.get(self.heartbeat.type, Kind.KIND_UNSPECIFIED)
 
     @property
     def mode(self) -> Mode:
+        """Mode that the autopilot is in."""
         return self.modes.mode_of(self.heartbeat.custom_mode)
 
     @property
     def armed(self) -> bool:
+        """Whether it is armed."""
         return bool(self.heartbeat.base_mode & mav.MAV_MODE_FLAG_SAFETY_ARMED)
 
     @property
     def landed(self) -> bool:
-        """Where the autopilot does not say, it stands while it is disarmed; a ground vehicle always does."""
+        """Whether it stands on the ground; an autopilot that does not say so stands while it is disarmed, a ground vehicle always."""
         state = self.telemetry.newest(mav.MAVLINK_MSG_ID_EXTENDED_SYS_STATE)
         if self.kind == Kind.KIND_GROUND:
             return True
@@ -62,7 +65,7 @@ class Told:
 
 
 def status_of(told: Told, chart: Chart | None, first: int) -> VehicleStatus:
-    """first: number of the wire item where the mission begins. Without a chart nothing is said of places."""
+    """The status as a message; first: number of the wire item where the mission begins. Without a chart it has no positions."""
     telemetry = told.telemetry
     volts, _, remaining = telemetry.charge()
     status = VehicleStatus(
@@ -115,7 +118,10 @@ def _prearm(told: Told) -> list[str]:
 
 
 def progress_of(told: Told, items: int, mission_id: int, first: int, reached: int) -> MissionProgress | None:
-    """None until the autopilot has told. reached: the wire's number of the last item reached, -1 = none."""
+    """The mission's progress as a message; None until the autopilot has told it.
+
+    first: number of the wire item where the mission begins; reached: that of the last item reached, -1 = none.
+    """
     current = told.telemetry.newest(mav.MAVLINK_MSG_ID_MISSION_CURRENT)
     if current is None:
         return None

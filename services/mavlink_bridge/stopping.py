@@ -11,9 +11,9 @@ AGAIN_AFTER = 5.0  # s, after a refusal or no answer
 
 
 class Stopping:
-    """While it is engaged, a vehicle that is armed, or arms, is made to hold, as often as that takes.
+    """Makes an armed vehicle hold while STOP ALL is engaged, as often as that takes.
 
-    Once it has held, whoever takes another mode there (a pilot with a transmitter) is let, and it is told.
+    Once it has held, whoever sets another mode there (a pilot with a transmitter) is let, and that is reported.
     """
 
     def __init__(self, autopilot: Autopilot) -> None:
@@ -25,6 +25,7 @@ class Stopping:
         self._asking = self._accepted = self._holds = self._told = False
 
     def heed(self, stop: StopStatus) -> None:
+        """One cycle with the present state of STOP ALL."""
         told = self._autopilot.told
         if not stop or self._autopilot.is_lost or not told.armed:
             if not self._asking:

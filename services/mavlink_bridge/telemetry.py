@@ -23,6 +23,8 @@ Message = Any
 
 @dataclass
 class Heard:
+    """A received message and when it came [s, wall]."""
+
     message: Message
     at: float  # s, wall
 
@@ -57,6 +59,7 @@ class Telemetry:
         """Kinds heard since the last look."""
 
     def handlers(self) -> dict[int, Callable[[Message], None]]:
+        """Handlers of the telemetry messages, by message id."""
         return dict.fromkeys(self.KINDS, self._hear)
 
     def _hear(self, message: Message) -> None:
@@ -69,28 +72,29 @@ class Telemetry:
         self._news.add(kind)
 
     def forget(self) -> None:
-        """After a restart of the autopilot nothing of before holds."""
+        """Drops all messages, after a restart of the autopilot."""
         self._heard.clear()
         self._news.clear()
 
     def newest(self, kind: int, within: float = math.inf) -> Message | None:
+        """The newest message of a kind, if it came within ``within`` [s]; else None."""
         heard = self._heard.get(kind)
         return heard.message if heard is not None and self.t - heard.at <= within else None
 
     def is_new(self, *kinds: int) -> bool:
-        """Whether one of them has come since this was asked last."""
+        """Whether a message of one of these kinds has come since the last call."""
         found = bool(self._news & set(kinds))
         self._news -= set(kinds)
         return found
 
     @property
     def home(self) -> tuple[float, float, float] | None:
-        """deg, deg, m AMSL."""
+        """Home (latitude [deg], longitude [deg], altitude [m AMSL]); None while unknown."""
         home = self.newest(mav.MAVLINK_MSG_ID_HOME_POSITION)
         return (home.latitude * 1e-7, home.longitude * 1e-7, home.altitude * 1e-3) if home is not None else None
 
     def nav(self, chart: Chart) -> NavState | None:
-        """None until position and attitude have been told, and while there is nothing new of either."""
+        """The estimated motion in the world frame; None until position and attitude are known, and while neither is new."""
         kinds = (mav.MAVLINK_MSG_ID_GLOBAL_POSITION_INT, mav.MAVLINK_MSG_ID_ATTITUDE_QUATERNION, mav.MAVLINK_MSG_ID_ATTITUDE)
         if not self.is_new(*kinds):
             return None
@@ -139,7 +143,7 @@ class Telemetry:
         return nav
 
     def gnss(self) -> Gnss | None:
-        """A new reading of the receiver, if there is one."""
+        """The newest reading of the GNSS receiver; None while there is no new one."""
         gps = self.newest(mav.MAVLINK_MSG_ID_GPS_RAW_INT)
         if gps is None or not self.is_new(mav.MAVLINK_MSG_ID_GPS_RAW_INT):
             return None
@@ -153,7 +157,7 @@ class Telemetry:
         return told
 
     def battery(self) -> Battery | None:
-        """The first battery; a new reading, if all of it is known."""
+        """The newest reading of the first battery; None while there is no complete new one."""
         if not self.is_new(mav.MAVLINK_MSG_ID_BATTERY_STATUS, mav.MAVLINK_MSG_ID_SYS_STATUS):
             return None
         volts, amperes, remaining = self.charge()
@@ -162,7 +166,7 @@ class Telemetry:
         return Battery(voltage=volts, current=amperes, remaining=remaining)
 
     def charge(self) -> tuple[float, float, float]:
-        """Voltage [V], current [A], both NaN when unknown, and what is left (0..1, negative = unknown)."""
+        """Voltage [V] and current [A], both NaN when unknown, and remaining charge (0..1, negative = unknown)."""
         pack, status = self.newest(mav.MAVLINK_MSG_ID_BATTERY_STATUS, 5 * FRESH), self.newest(mav.MAVLINK_MSG_ID_SYS_STATUS, 5 * FRESH)
         volts = amperes = math.nan
         left = -1
@@ -178,7 +182,7 @@ class Telemetry:
         return volts, amperes, left * 0.01 if 0 <= left <= 100 else -1.0
 
     def circle(self, chart: Chart) -> Circle | None:
-        """Being flown, as long as it is told."""
+        """The circle being flown, in the world frame; None while none is reported."""
         told = self.newest(mav.MAVLINK_MSG_ID_ORBIT_EXECUTION_STATUS, FRESH)
         if told is None or told.frame not in (mav.MAV_FRAME_GLOBAL, mav.MAV_FRAME_GLOBAL_INT) or not is_sound(told.radius, told.z):
             return None
@@ -194,7 +198,7 @@ PLACES = {
 
 
 def nonsense(message: Message) -> str:
-    """Why a message says nothing that can be true; empty if it may be."""
+    """Why a message cannot be true; "" if it may be."""
     kind = message.get_msgId()
     if kind == mav.MAVLINK_MSG_ID_ORBIT_EXECUTION_STATUS:
         return "" if is_on_earth(message.x * 1e-7, message.y * 1e-7) else "its centre is nowhere on earth"

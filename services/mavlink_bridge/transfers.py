@@ -35,6 +35,8 @@ Read = Callable[[list[Body] | None, str, int], None]
 
 @dataclass
 class Download:
+    """A plan being downloaded."""
+
     kind: int
     done: Read
     count: int = -1
@@ -46,6 +48,8 @@ class Download:
 
 @dataclass
 class UploadTransfer:
+    """A plan being uploaded."""
+
     kind: int
     items: Sequence[Body]
     done: Callable[[bool, str, int], None]
@@ -65,13 +69,14 @@ class UploadTransfer:
 
 
 class Transfers:
-    """Answers of other kinds of plan, and for other stations, are nobody's business here."""
+    """The mission protocol of a client; plans are transferred one after the other."""
 
     def __init__(self, wire: Wire) -> None:
         self._wire = wire
         self._queue: deque[Download | UploadTransfer] = deque()
 
     def handlers(self) -> dict[int, Callable[[Any], None]]:
+        """Handlers of the mission protocol, by message id."""
         return {
             mav.MAVLINK_MSG_ID_MISSION_COUNT: self._on_count,
             mav.MAVLINK_MSG_ID_MISSION_ITEM_INT: self._on_item,
@@ -86,6 +91,7 @@ class Transfers:
         self.tick()
 
     def write(self, kind: int, items: Sequence[Body], done: Callable[[bool, str, int], None]) -> None:
+        """Uploads a plan; ``done`` hears (accepted, reason, opaque id)."""
         if len(items) > LARGEST:
             done(False, f"a plan of {len(items)} items: at most {LARGEST} go over the bridge", 0)
         elif len(self._queue) >= WAITING_MOST:
@@ -95,11 +101,13 @@ class Transfers:
             self.tick()
 
     def give_up(self, reason: str) -> None:
+        """Ends all transfers without success."""
         queue, self._queue = self._queue, deque()
         for job in queue:
             self._tell(job, reason)
 
     def tick(self) -> None:
+        """Continues the current transfer."""
         job = self._queue[0] if self._queue else None
         if isinstance(job, Download):
             self._pull(job)

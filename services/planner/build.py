@@ -17,7 +17,7 @@ from uvf.sensors.fitted import sweeping_of
 
 
 def build(site: Scenario) -> list[ServiceInstance]:
-    """Raises BadInput for a vehicle without lidar."""
+    """The planner and tracker of each ground vehicle. Raises BadInput for a vehicle without lidar."""
     members = list(site.of_kind("ground"))
     if members:
         _warm_up()

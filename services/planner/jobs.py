@@ -11,7 +11,7 @@ Point = tuple[float, float]
 
 @dataclass(frozen=True)
 class Goal:
-    """A person's goal [m, world]; yaw [rad, world] or None = any."""
+    """A person's goal: position (x, y) [m, world] and yaw [rad, world], None = any."""
 
     point: Point
     yaw: float | None = None
@@ -19,7 +19,7 @@ class Goal:
 
 @dataclass(frozen=True)
 class Job:
-    """name as in ``NavStatus.job``; target: where to go [m, world], None: the job finds its own, or there is none."""
+    """The vehicle's job. name: as in ``NavStatus.job``; target: position to reach [m, world], None: it finds its own, or there is none."""
 
     name: str
     target: Point | None = None
@@ -27,13 +27,13 @@ class Job:
 
     @property
     def allow_unknown(self) -> bool:
-        """Whether unknown ground may be crossed: the mission's author and the way home know more than the map."""
+        """Whether the path may cross unknown cells: the mission's author and the way home know more than the map."""
         return self.name in ("mission", "return")
 
 
 @dataclass(frozen=True)
 class Orders:
-    """haven: where the way back leads [m, world]; explores: what it does when nothing else is to be done."""
+    """Standing orders. haven: return point [m, world]; explores: whether it explores when nothing else is to be done."""
 
     return_point: Point
     explores: bool
@@ -44,7 +44,7 @@ EXPLORE = Job("explore")
 
 
 def mission_target(mission: Mission | None, progress: MissionProgress | None, home: Point) -> Point | None:
-    """Where the current item of the mission in force is; None when there is nothing to drive to."""
+    """Position (x, y) [m, world] of the current mission item; None when there is nothing to drive to."""
     if mission is None or progress is None or progress.mission_id != mission.id or progress.current >= len(mission.items):
         return None
     if progress.state != MissionProgress.ACTIVE:
@@ -54,13 +54,13 @@ def mission_target(mission: Mission | None, progress: MissionProgress | None, ho
 
 
 class ReturnPoints:
-    """Where mode Return leads: the nearest of home and rally points when it begins; it does not change on the way."""
+    """The return point of mode Return: the nearest of home and rally points when it begins; it does not change on the way."""
 
     def __init__(self) -> None:
         self._chosen: Point | None = None
 
     def step(self, status: VehicleStatus | None, here: Point, home: Point, rally: RallyPoints | None) -> Point:
-        """Each cycle. All in m, world."""
+        """The return point (x, y) in this cycle; all positions [m, world]."""
         places = [home, *((p.x, p.y) for p in (rally.points if rally is not None else ()))]
         if status is None or status.mode != Mode.MODE_RETURN or self._chosen not in places:
             self._chosen = min(places, key=lambda place: math.dist(place, here))
@@ -68,7 +68,7 @@ class ReturnPoints:
 
 
 def choose(status: VehicleStatus | None, goal: Goal | None, target: Point | None, orders: Orders) -> Job:
-    """target: of the mission's current item, if there is one."""
+    """The job that follows from status, goal and mission; target: position (x, y) [m, world] of the current item, if any."""
     if status is not None and status.mode == Mode.MODE_RETURN:
         return Job("return", orders.return_point)
     if goal is not None:
@@ -79,7 +79,7 @@ def choose(status: VehicleStatus | None, goal: Goal | None, target: Point | None
 
 
 def home_of(status: VehicleStatus | None) -> Point | None:
-    """m, world; None while the autopilot has not told it."""
+    """Home (x, y) [m, world]; None while the autopilot has not reported it."""
     return (status.home.x, status.home.y) if status is not None and status.HasField("home") else None
 
 

@@ -52,6 +52,8 @@ TRIES = 3  # at a place of the mission or the way home, before the vehicle holds
 
 
 class PlannerParams(Params, frozen=True):
+    """Parameters of the planner."""
+
     margin: Annotated[Positive, key("m", "Distance kept from obstacles beyond the vehicle's radius.")] = 0.03
     inflation_radius: Annotated[Positive, key("m", "Distance from obstacles beyond which a path costs no more.")] = 0.35
     cost_scaling_factor: Annotated[float, Meta(ge=1), key("", "Cost factor of a path right along an obstacle.")] = 6.0
@@ -66,13 +68,15 @@ class PlannerParams(Params, frozen=True):
 
 
 class PlannerService(Service):
-    """One per vehicle. Plans in the map frame; all that it says is in the world frame."""
+    """Global planner of one vehicle. It plans in the map frame and publishes in the world frame."""
 
     name = "planner"
     hz = 4.0
     given_up = "the vehicle stands where it would drive by itself"
 
     class Inputs(Reads):
+        """Pose, map, mission, and requests for goals."""
+
         pose: PoseInFrame = topic(topics.POSE)
         map: Grid = topic(topics.MAP)
         status: VehicleStatus | None = optional(topics.STATUS)
@@ -85,6 +89,8 @@ class PlannerService(Service):
         set_mode: list[Answer[ModeRequest, Reply]] = answers(topics.SET_MODE)
 
     class Outputs(Writes):
+        """Path, status, and replies."""
+
         path: PosesInFrame | None = topic(topics.PATH)
         nav_status: NavStatus | None = topic(topics.NAV_STATUS)
         events: list[Event] | None = topic(topics.EVENTS.by("planner"))
@@ -93,6 +99,8 @@ class PlannerService(Service):
         set_mode: list[ModeRequest] = call(topics.SET_MODE)
 
     class Recalls(Reads):
+        """Latched status from which a restarted instance resumes."""
+
         nav_status: NavStatus | None = topic(topics.NAV_STATUS)
 
     params: PlannerParams
@@ -125,6 +133,7 @@ class PlannerService(Service):
         self._bounds: Fence | None = None
 
     def step(self, t: float, now: Inputs) -> Outputs:
+        """One cycle at ``t`` [s, simulation]: chooses the job, plans anew where map or job have changed, and watches the progress."""
         here = compose(self._map_from_world, pose2_of(now.pose.pose))
         self._explorer.taste = self._taste
         self._bounds = now.bounds
@@ -153,7 +162,7 @@ class PlannerService(Service):
         )
 
     def recall(self, left: Recalls) -> None:
-        """A person's goal that was being driven to is still wanted; its heading is not told."""
+        """Resumes a person's goal that was being driven to; its heading is not known any more."""
         if (
             left.nav_status is not None
             and left.nav_status.job == "goal"
@@ -162,7 +171,7 @@ class PlannerService(Service):
             self._goal = Goal((left.nav_status.goal.x, left.nav_status.goal.y))
 
     def stale(self, t: float, missing: tuple[str, ...]) -> Outputs:
-        """Without a fresh pose or a map there is no path: the tracker stands still."""
+        """Outputs at ``t`` [s, simulation] without a fresh pose or a map: no path, so that the tracker stops."""
         reason = f"waiting for {', '.join(missing)}"
         return self.Outputs(
             path=PosesInFrame(timestamp=stamp(t), frame_id="world"),

@@ -31,6 +31,8 @@ EVENTS_EVERY = 10.0  # s between two events about what is ahead
 
 
 class TrackerParams(Params, frozen=True):
+    """Parameters of the path tracker."""
+
     speed: Annotated[Positive, key("m/s", "Speed on straight parts of the path.")] = 0.45
     turn_speed: Annotated[Positive, key("rad/s", "Turn rate on the spot.")] = 1.5
     deceleration: Annotated[Positive, key("m/s^2", "Deceleration that braking is planned with.")] = 0.5
@@ -41,18 +43,22 @@ class TrackerParams(Params, frozen=True):
 
 
 class TrackerService(Service):
-    """One per vehicle."""
+    """Path tracker of one vehicle."""
 
     name = "tracker"
     hz = 20.0
     given_up = "the vehicle stands where it would drive by itself"
 
     class Inputs(Reads):
+        """Path, poses, and the lidar's scan."""
+
         path: PosesInFrame = topic(topics.PATH)
         pose: list[PoseInFrame] = every(topics.POSE)
         scan: LaserScan = topic(topics.SCAN)
 
     class Outputs(Writes):
+        """Velocity command and events."""
+
         drive: DriveCommand | None = topic(topics.DRIVE.by("planner"))
         events: list[Event] | None = topic(topics.EVENTS.by("tracker"))
 
@@ -73,6 +79,7 @@ class TrackerService(Service):
         self._told_at = -np.inf
 
     def step(self, t: float, now: Inputs) -> Outputs:
+        """One cycle at ``t`` [s, simulation]: the velocity along the path, slowed before obstacles that the scan shows."""
         for message in now.pose:
             self._pose = pose2_of(message.pose)
             self._history.add(seconds(message.timestamp), self._pose)
@@ -87,7 +94,7 @@ class TrackerService(Service):
         return self.Outputs(drive=DriveCommand(timestamp=stamp(t), linear=velocity[0], angular=velocity[1]), events=events)
 
     def stale(self, t: float, missing: tuple[str, ...]) -> Outputs:
-        """Without path, pose or sight the vehicle stands."""
+        """Zero velocity at ``t`` [s, simulation], without path, pose or scan."""
         return self.Outputs(drive=DriveCommand(timestamp=stamp(t)))
 
     @property

@@ -8,7 +8,7 @@ from uvf.models.vehicle.air import AirBody, Lever, Surface
 
 
 class Servo:
-    """One control surface [rad], or lever [0..1]."""
+    """A control surface [rad], or a lever [0..1]."""
 
     def __init__(self, position: float, reach: tuple[float, float], rate: float, lag: float) -> None:
         """reach: its stops; rate: of its motion [1/s of what it moves]; lag: s."""
@@ -19,7 +19,7 @@ class Servo:
         self._dt, self._share = 0.0, 0.0
 
     def step(self, command: float, dt: float) -> float:
-        """Exact response of the lag over ``dt`` [s] to a held command, cut at the servo's rate."""
+        """Position [rad or 0..1] after ``dt`` [s]: exact first-order response to a held ``command`` [rad or 0..1], rate-limited."""
         if dt != self._dt:
             self._dt, self._share = dt, 1 - math.exp(-dt / self._lag) if self._lag else 1.0
         target = min(max(command, self._low), self._high)
@@ -30,7 +30,7 @@ class Servo:
 
 
 class Actuators:
-    """The servos of one aircraft; a motor follows its throttle at once unless its lag is given, the propeller's inertia is JSBSim's."""
+    """The servos of one aircraft. A motor follows its throttle at once unless its lag is given; JSBSim has the propeller's inertia."""
 
     def __init__(self, start: Controls, body: AirBody) -> None:
         controls = body.controls
@@ -38,7 +38,7 @@ class Actuators:
         self.position = start
 
     def step(self, command: Controls, dt: float) -> Controls:
-        """Where the surfaces are ``dt`` [s] later."""
+        """Deflections of the surfaces [rad] and levers [0..1] after ``dt`` [s]."""
         commands = (command.aileron, command.elevator, command.rudder, command.throttle, command.flap, command.brake)
         self.position = Controls(*(servo.step(wanted, dt) for servo, wanted in zip(self._servos, commands, strict=True)))
         return self.position

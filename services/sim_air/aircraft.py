@@ -29,21 +29,52 @@ STILL = np.zeros(3)
 
 
 class AircraftBody(Protocol):
-    """What flies: ``airframe.Airframe`` or a test's own. ``step`` may raise Runaway."""
+    """The flight dynamics: ``airframe.Airframe`` or a test's own. ``step`` may raise Runaway."""
 
-    def command(self, controls: Controls) -> None: ...
-    def step(self) -> None: ...
-    def motion(self) -> AircraftMotion: ...
-    def air(self) -> Air: ...
-    def set_wind(self, air: AirMotion) -> None: ...
-    def flight(self) -> AirRelativeState: ...
-    def joints(self) -> list[JointAngle]: ...
-    def touches(self) -> list[GroundTouch]: ...
-    def save(self) -> EngineState: ...
-    def restored(self, state: EngineState) -> "AircraftBody": ...
+    def command(self, controls: Controls) -> None:
+        """Sets deflections, throttle and brake, held until the next call."""
+        ...
+
+    def step(self) -> None:
+        """Makes one physics step."""
+        ...
+
+    def motion(self) -> AircraftMotion:
+        """True motion now."""
+        ...
+
+    def air(self) -> Air:
+        """The air about the aircraft now."""
+        ...
+
+    def set_wind(self, air: AirMotion) -> None:
+        """Sets velocity and rotation of the air until the next call."""
+        ...
+
+    def flight(self) -> AirRelativeState:
+        """The state that the wind model depends on."""
+        ...
+
+    def joints(self) -> list[JointAngle]:
+        """Angles and speeds of the moving parts."""
+        ...
+
+    def touches(self) -> list[GroundTouch]:
+        """Its points that touch the ground."""
+        ...
+
+    def save(self) -> EngineState:
+        """Its state, from which ``restored`` makes another one."""
+        ...
+
+    def restored(self, state: EngineState) -> "AircraftBody":
+        """Another body that goes on from a saved state."""
+        ...
 
     @property
-    def motor_power(self) -> float: ...
+    def motor_power(self) -> float:
+        """Electric power [W] drawn by all motors; 0 without a battery."""
+        ...
 
 
 Begin = Callable[[mission_file.StartPose], tuple[AircraftBody, Controls, Controls]]
@@ -51,7 +82,7 @@ Begin = Callable[[mission_file.StartPose], tuple[AircraftBody, Controls, Control
 
 
 class Aircraft:
-    """Absent sensors are not fitted. ``trim``: the controls of level flight, when nobody steers."""
+    """One simulated aircraft. Absent sensors are None. ``trim``: the controls of level flight, used without a command."""
 
     def __init__(self, name: str, file: VehicleFile, body: AircraftBody, actuators: Actuators, trim: Controls) -> None:
         assert file.air is not None
@@ -84,7 +115,7 @@ class Aircraft:
         self._max_sink = file.air.max_sink
 
     def begin_anew(self, start: mission_file.StartPose) -> None:
-        """Elsewhere, whole again; sensors and battery go on. Raises BadInput, and is then as it was."""
+        """Restarts it elsewhere, undamaged; sensors and battery go on. Raises BadInput, and is then as it was."""
         assert self.file.air is not None and self.begin is not None
         body, now, level = self.begin(start)
         self.body, self.trim, self.command = body, level, now
@@ -93,32 +124,32 @@ class Aircraft:
         self.wreck, self.ended = None, ""
 
     def wait_until(self, t: float) -> None:
-        """It begins at ``t`` [s]."""
+        """Sets its time to ``t`` [s], at which it begins."""
         self.physics_steps = round(t / self.dt)
 
     def keep(self) -> "SavedAircraft":
-        """A wreck's body does nothing any more, and its numbers may be none: it is left as it is."""
+        """Saves its state. A wreck's body does nothing any more, and its numbers may be invalid: it is left out."""
         return SavedAircraft(copy.deepcopy(self), None if self.wreck else self.body.save())
 
     def __deepcopy__(self, memo: dict[int, object]) -> Self:
-        """One that goes on from here by itself but for the body, which ``Kept.again`` makes anew."""
+        """One that goes on from here by itself but for the body, which ``SavedAircraft.again`` makes anew."""
         memo |= {id(part): part for part in (self.file, self.body, self.begin)}
         twin = object.__new__(type(self))
         twin.__dict__ = copy.deepcopy(self.__dict__, memo)
         return twin
 
     def take(self, command: SurfaceCommand) -> None:
-        """A command with a number that is not finite is none: the engine would not recover from it."""
+        """Takes a surface command; one with a non-finite number is ignored, for the engine would not recover from it."""
         s = (command.aileron, command.elevator, command.rudder, command.throttle, command.flap, command.brake)
         if all(map(math.isfinite, s)):
             self.command = Controls(*s)
 
     def let_go(self) -> None:
-        """Nobody steers: what servos fall back to, the trim of level flight. A motor that was off stays off, and the wheels are braked."""
+        """Without a command: servos go to the trim of level flight. A motor that was off stays off, and the wheels are braked."""
         self.command = self.trim if self.command.throttle > 0 else replace(self.trim, throttle=0.0, brake=1.0)
 
     def fly_to(self, t: float) -> None:
-        """Physics steps up to ``t`` [s]."""
+        """Makes physics steps up to ``t`` [s]."""
         due = round(t / self.dt)
         while self.physics_steps < due:
             if self.wreck is None:
@@ -151,30 +182,33 @@ class Aircraft:
                 self.end(reason, motion)
 
     def end(self, reason: str, motion: AircraftMotion, velocity: Floats = STILL) -> None:
-        """Motor off; it falls from where it is with what is left of its ``velocity`` (3,) m/s, world."""
+        """Makes it a wreck: motor off, it falls from where it is with a remaining ``velocity`` (3,) [m/s, world]."""
         self.ended = reason
         self.wreck = Wreck(replace(motion, velocity=velocity), self.body.air(), self.body.joints(), self.rests)
 
     def air(self) -> Air:
+        """The air about the aircraft now."""
         return self.wreck.air if self.wreck else self.body.air()
 
     def joints(self) -> list[JointAngle]:
+        """Angles and speeds of the moving parts."""
         return self.wreck.joints if self.wreck else self.body.joints()
 
     @property
     def throttle(self) -> float:
+        """Throttle after its servo, 0..1 [-]; 0 of a wreck."""
         return 0.0 if self.wreck else self.actuators.position.throttle
 
 
 @dataclass(frozen=True)
 class SavedAircraft:
-    """An aircraft as it was, and its engine's state."""
+    """A saved aircraft and the state of its engine."""
 
     aircraft: Aircraft
     engine: EngineState | None
 
     def again(self) -> Aircraft:
-        """One that goes on from there, each time alike."""
+        """A new aircraft that goes on from there, identically each time."""
         twin = copy.deepcopy(self.aircraft)
         if self.engine is not None:
             twin.body = twin.body.restored(self.engine)

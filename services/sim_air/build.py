@@ -41,7 +41,7 @@ from uvf.sensors.surroundings import aircraft_tree, vehicle_tree
 
 
 def build(site: Scenario) -> list[ServiceInstance]:
-    """Nothing when the mission has no aircraft. Raises BadInput."""
+    """The service of the mission's aircraft; empty when there are none. Raises BadInput."""
     if not any(site.of_kind("fixed_wing")):
         return []
     warm_up()
@@ -52,13 +52,13 @@ def build(site: Scenario) -> list[ServiceInstance]:
 
 
 class Land(NamedTuple):
-    """What there is to begin on and to begin beside."""
+    """The ground and the obstacles that aircraft begin on and beside."""
 
     footing: Footing
     ground: GroundSurface
 
     def check_room(self, who: str, start: StartPose) -> None:
-        """Raises BadInput with too little room beside an aircraft at its start; what it stands on is none of it."""
+        """Raises BadInput with too little room beside an aircraft at its start; what it stands on does not count."""
         if (room := self._room(start)) < AIRCRAFT_RADIUS:
             raise BadInput(f"{who}: {room:.2f} m from a wall or another solid at {start.z:g} m; move it or begin higher")
 

@@ -13,7 +13,7 @@ STEEPEST, QUICKEST, FASTEST = 1.5, 3.0, 1e3  # rad, rad/s, m/s
 
 
 def place(aircraft: Mapping[str, Aircraft], request: SetPoseRequest) -> Reply:
-    """What cannot be done leaves the aircraft as it was."""
+    """Puts an aircraft elsewhere; if that is refused, the aircraft is as it was."""
     if request.name not in aircraft:
         return Reply(reason=f"there is no aircraft '{request.name}'; {nearest(request.name, aircraft)}")
     if fault := fault_of(request):
@@ -26,13 +26,14 @@ def place(aircraft: Mapping[str, Aircraft], request: SetPoseRequest) -> Reply:
 
 
 def start_of(request: SetPoseRequest) -> mission_file.StartPose:
+    """The start pose that a request asks for."""
     x, y, z = array(request.pose.position).tolist()
     yaw, climb, turn_rate = yaw_of(request.pose.orientation), request.climb, request.turn_rate
     return mission_file.StartPose(x=x, y=y, z=z, yaw=yaw, speed=request.speed, climb=climb, turn_rate=turn_rate)
 
 
 def fault_of(request: SetPoseRequest) -> str:
-    """Why nothing can be put there; empty = it may."""
+    """Why nothing can be placed there; "" = it may."""
     if fault := pose_fault(request.pose):
         return fault
     if request.pose.position.z < 0:

@@ -24,7 +24,7 @@ Fitted = tuple[str, DelayLine[Message], Look]
 
 
 class Rangers:
-    """``rng`` gives each sensor a generator of its own by its name."""
+    """The range sensors of an aircraft; ``rng`` gives each of them a generator of its own by its name."""
 
     def __init__(self, vehicle: str, sensors: Sensors, scene: Scene, rng: Rng) -> None:
         self._vehicle = vehicle
@@ -53,7 +53,7 @@ class Rangers:
         return output, line_of(sensor, self._rng(f"{output}/{sensor.frame}/dropout")), look
 
     def read(self, t: float, motion: AircraftMotion, others: Callable[[], list[MovingBody]]) -> dict[str, Value]:
-        """What arrives at ``t`` [s], by output name; ``others``, what moves about the aircraft, is asked when a ray is cast."""
+        """Readings that arrive at ``t`` [s], by output name; ``others``, the moving bodies, is called when a ray is cast."""
         found: dict[str, list[Message]] = {}
         for output, line, look in self._fitted:
             if (message := line.step(t, lambda look=look: look(t, motion, others()))) is not None:  # type: ignore[misc]

@@ -18,7 +18,7 @@ Floats = rotations.Floats
 
 
 class Imu:
-    """At its mount: away from the centre of gravity it feels the turning too."""
+    """An IMU at its mount; away from the centre of gravity it measures the rotation's accelerations too."""
 
     def __init__(self, data: ImuSensor, field: Floats, rng: np.random.Generator) -> None:
         """``field`` is the magnetic field, (3,) T, ENU."""
@@ -57,7 +57,7 @@ class Gnss:
 
 
 class AirSample(NamedTuple):
-    """Valid for ``t`` [s]."""
+    """A reading valid for ``t`` [s]."""
 
     t: float
     air: Air

@@ -46,6 +46,8 @@ class SimAir(Service):
     simulator = True
 
     class Inputs(Reads):
+        """Surface commands, true motion of the ground vehicles, and requests."""
+
         surfaces: dict[str, SurfaceCommand] = each_vehicle(optional(topics.SURFACE_COMMAND))
         truth: dict[str, NavState] = each_vehicle(optional(topics.TRUTH))
         objects: SimObjects | None = optional(topics.OBJECTS)
@@ -56,6 +58,8 @@ class SimAir(Service):
         restore: list[StateRequest] = request(topics.AIR_RESTORE)
 
     class Outputs(Writes):
+        """Sensor readings and true motion of each aircraft, and replies."""
+
         imu: dict[str, Imu] | None = topic(topics.IMU)
         gnss: dict[str, Gnss] | None = topic(topics.GNSS)
         air_data: dict[str, AirData] | None = topic(topics.AIR_DATA)
@@ -81,7 +85,10 @@ class SimAir(Service):
         self._had_spawned = False
 
     def step(self, t: float, now: Inputs) -> Outputs:
-        """What is asked for holds from this step's end. truth: of the ground vehicles; the aircraft's own is known better here."""
+        """One cycle at ``t`` [s, simulation]. Requests take effect at its end.
+
+        truth: of the ground vehicles; that of the aircraft is known better here.
+        """
         stage, n = self._stage, round(t * self.hz)
         flown = self._flown(t)
         for craft in stage.aircraft.values():

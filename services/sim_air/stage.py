@@ -19,7 +19,7 @@ SAVED_MOST = 16
 
 
 class JoiningAircraft(NamedTuple):
-    """An aircraft that is made ready to be put in, and its shape."""
+    """A new aircraft ready to be added, and its shape."""
 
     aircraft: Aircraft
     shape: Bvh
@@ -31,7 +31,7 @@ Join = Callable[[str, str, mission_file.StartPose], JoiningAircraft]
 
 @dataclass(frozen=True)
 class KeptWorld:
-    """A state under a name: all aircraft, what had been put in with its shape, and the step at which it was."""
+    """A saved state: all aircraft, the spawned ones with their shapes, and the step at which it was saved."""
 
     aircraft: dict[str, SavedAircraft]
     spawned: dict[str, tuple[SimObject, Bvh]]
@@ -39,7 +39,7 @@ class KeptWorld:
 
 
 class AirStage:
-    """Requests are answered in the order spawn, remove, set pose, save, restore, each in the order asked."""
+    """The aircraft of the simulation. Requests are carried out in the order spawn, remove, set pose, save, restore."""
 
     def __init__(self, aircraft: Mapping[str, Aircraft], around: Around, taken: tuple[str, ...], join: Join) -> None:
         """taken: names of what is there from the beginning, of vehicles that others simulate too."""
@@ -56,7 +56,7 @@ class AirStage:
         self._kept: dict[str, KeptWorld] = {}
 
     def spawn(self, t: float, request: SpawnRequest, others: Collection[str]) -> Reply:
-        """others: names of what the ground simulator has put in."""
+        """Adds an aircraft at ``t`` [s]. others: names of what the ground simulator has spawned."""
         wanted = request.object
         asked = SetPoseRequest(name=wanted.name, pose=wanted.pose, speed=request.speed)
         if fault := self._name_fault(wanted.name, others) or crowd_fault(len(self._spawned) + len(others)) or fault_of(asked):
@@ -83,6 +83,7 @@ class AirStage:
         self.collisions.add(craft.name, shape)
 
     def remove(self, request: RemoveRequest) -> Reply:
+        """Removes a spawned aircraft."""
         name = request.name
         if name not in self._spawned:
             if name in self.aircraft:
@@ -98,13 +99,14 @@ class AirStage:
         del self.aircraft[name], self._spawned[name]
 
     def set_pose(self, request: SetPoseRequest) -> Reply:
+        """Puts an aircraft elsewhere."""
         reply = place(self.aircraft, request)
         if reply.accepted:
             self.collisions.forget(request.name)
         return reply
 
     def save(self, step: int, request: StateRequest) -> Reply:
-        """step: number of the service's step that has been made. The aircraft go on in the state that was saved, to the last bit."""
+        """Saves the state after the service's ``step``. The aircraft continue from the saved state, to the last bit."""
         if request.name not in self._kept and len(self._kept) >= SAVED_MOST:
             return Reply(reason=f"{SAVED_MOST} states are kept already: {listed(self._kept)}; use one of these names again")
         if not request.only_ask:
@@ -114,7 +116,7 @@ class AirStage:
         return Reply(accepted=True)
 
     def restore(self, step: int, request: StateRequest) -> Reply:
-        """What has been put in since is taken out, what has been taken out since is there again."""
+        """Restores a saved state at the service's ``step``: aircraft spawned since are removed, those removed since are there again."""
         kept = self._kept.get(request.name)
         if kept is None:
             return Reply(reason=f"no state '{request.name}' of the air simulation has been saved; {nearest(request.name, self._kept)}")
@@ -133,7 +135,7 @@ class AirStage:
             self.collisions.forget(name)
 
     def objects(self, t: float) -> SimObjects:
-        """The aircraft that have been put in, as they are at ``t`` [s]."""
+        """The spawned aircraft as they are at ``t`` [s]."""
         for name, (told, _) in self._spawned.items():
             motion = self.aircraft[name].motion
             told.pose.position.CopyFrom(vector(motion.position))

@@ -21,7 +21,7 @@ HAZE = 2500.0  # m, distance at which the ground has lost 63 % of its colour
 
 
 class Backdrop:
-    """The outdoors of one world as seen from above z = 0."""
+    """The background of one world (sky and ground) as seen from above z = 0."""
 
     def __init__(self, world: WorldFile) -> None:
         everywhere = (-np.inf, -np.inf, np.inf, np.inf)
@@ -31,14 +31,14 @@ class Backdrop:
         _paint(np.zeros((1, 1, 3), dtype=np.uint8), np.zeros(3), np.eye(3), self._fields)  # compiles it
 
     def paint(self, camera: Camera, eye: Floats, world_from_optical: Floats) -> Picture:
-        """(height, width, 3) RGB. eye: (3,) m, world; world_from_optical: (3, 3), from x right, y down, z along the view."""
+        """RGB image (height, width, 3). eye: (3,) [m, world]; world_from_optical: (3, 3), from x right, y down, z along the view."""
         rays = world_from_optical @ np.linalg.inv(intrinsics(camera))
         picture = np.empty((camera.height, camera.width, 3), dtype=np.uint8)
         _paint(picture, eye, rays, self._fields)
         return picture
 
     def depth(self, camera: Camera, eye: Floats, world_from_optical: Floats) -> Floats:
-        """(height, width) m along the view to the ground; inf in the sky."""
+        """Depth (height, width) [m] of the ground along the view; inf in the sky. eye (3,) [m, world], world_from_optical (3, 3)."""
         down = -(world_from_optical @ np.linalg.inv(intrinsics(camera)))[2]
         fall = down[0] * np.arange(camera.width) + down[1] * np.arange(camera.height)[:, None] + down[2]
         with np.errstate(divide="ignore"):

@@ -21,7 +21,7 @@ OUTPUTS = {"camera": "image", "chase": "chase", "gimbal": "gimbal"}
 
 
 def build(site: Scenario) -> list[ServiceInstance]:
-    """Nothing when no vehicle has a camera. Raises BadInput."""
+    """The camera service; empty when no vehicle has a camera. Raises BadInput."""
     cameras = {(m.name, kind): camera for m in site.members.values() for kind, camera in _cameras(m).items()}
     for (name, kind), camera in cameras.items():
         _check(site.members[name], kind, camera)
@@ -57,7 +57,7 @@ def _check(member: MissionVehicle, kind: str, camera: Camera) -> None:
 
 
 def look_at(folder: Path, file: VehicleFile) -> Look:
-    """What the vehicle in this folder looks like. Raises BadInput."""
+    """The appearance of the vehicle in this folder. Raises BadInput."""
     if file.ground is not None:
         return engine_urdf(folder / file.ground.urdf)
     mesh = file.air.mesh if file.air is not None else None

@@ -18,11 +18,15 @@ from uvf.sensors.sampling import DelayLine
 
 
 class Pictures(NamedTuple):
+    """The pictures of one shot as messages."""
+
     image: CompressedImage
     depth: CompressedImage | None
 
 
 class FittedCamera:
+    """A camera of a vehicle: its timing, and its gimbal if it has one."""
+
     def __init__(self, vehicle: str, camera: Camera, rng: np.random.Generator, output: str = "image") -> None:
         """output: the name under which its pictures go out."""
         delivery, self._rng = rng.spawn(2)
@@ -35,14 +39,14 @@ class FittedCamera:
         self._line: DelayLine[Pictures] = line_of(camera, delivery)
 
     def looking(self, body: Pose) -> tuple[Camera, Pose]:
-        """The camera as the renderer takes it, when its vehicle is there; of a gimbal its own pose, turned as it is now."""
+        """The camera and the pose to render from; with a gimbal its own pose as it is turned now."""
         if self.aim is None:
             return self.camera, body
         eye = body.position + rotate(body.world_from_body, np.array(self.camera.mount.xyz))
         return msgspec.structs.replace(self.camera, mount=Mount()), Pose(eye, multiply(body.world_from_body, self.aim.body_from_camera))
 
     def step(self, t: float, taken: Timestamp, shoot: Callable[[], Shot]) -> Pictures | None:
-        """The pictures that arrive at ``t`` [s], if any; ``taken`` is the stamp of the pose from which one would be shot now."""
+        """The pictures that arrive at ``t`` [s], if any; ``taken`` is the stamp of the pose that a shot would be taken from now."""
         return self._line.step(t, lambda: self._messages(taken, shoot()))
 
     def _messages(self, taken: Timestamp, shot: Shot) -> Pictures:

@@ -16,7 +16,7 @@ X = np.array((1.0, 0.0, 0.0))
 
 
 class Joints(NamedTuple):
-    """From the mount outwards [rad]: pan about z, left positive; roll about x, right down positive; tilt about y, down positive."""
+    """Gimbal joints, mount outwards [rad]: pan about z, left positive; roll about x, right down positive; tilt about y, down positive."""
 
     pan: float = 0.0
     roll: float = 0.0
@@ -24,7 +24,7 @@ class Joints(NamedTuple):
 
 
 class Aim:
-    """Where the camera looks. Until it is told it looks ahead, level."""
+    """Where the gimbal's camera looks; until it is commanded ahead, level."""
 
     def __init__(self, gimbal: Gimbal) -> None:
         self._gimbal = gimbal
@@ -34,18 +34,18 @@ class Aim:
 
     @property
     def body_from_camera(self) -> Floats:
-        """wxyz; x along the view, z up in the picture."""
+        """Orientation (4,) wxyz of the camera in the body; x along the view, z up in the picture."""
         pan, roll, tilt = self.joints
         turned = multiply(multiply(from_euler(0.0, 0.0, pan), from_axis(X, roll)), from_euler(0.0, tilt, 0.0))
         return multiply(self._body_from_mount, turned)
 
     def tell(self, command: GimbalCommand) -> None:
-        """One that is not finite, or of a mode that there is not, is none."""
+        """Takes a command; one that is not finite, or of an unknown mode, is ignored."""
         if math.isfinite(command.pan) and math.isfinite(command.tilt) and command.mode in GimbalCommand.Mode.values():
             self._told = command
 
     def turn(self, world_from_body: Floats, dt: float) -> None:
-        """Towards what it was told, within the joints' limits and at their rate, for ``dt`` [s]; world_from_body: wxyz."""
+        """Turns towards the commanded direction for ``dt`` [s], within the joints' limits and rate; world_from_body: (4,) wxyz."""
         g, wanted, most = self._gimbal, self._wanted(world_from_body), self._gimbal.slew * dt
         round_about = g.pan_max >= math.pi
         pan_left = wrap(wanted.pan - self.joints.pan) if round_about else _within(wanted.pan, g.pan_max) - self.joints.pan
@@ -66,7 +66,7 @@ class Aim:
 
 
 def joints_of(mount_from_camera: Floats) -> Joints:
-    """The joints that turn the camera so (wxyz): R = Rz(pan) Rx(roll) Ry(tilt), the Euler angles of the order z, x, y; roll within pi/2."""
+    """The joints [rad] that turn the camera to ``mount_from_camera`` (4,) wxyz: R = Rz(pan) Rx(roll) Ry(tilt), roll within pi/2."""
     r = matrix(mount_from_camera)
     return Joints(float(np.arctan2(-r[0, 1], r[1, 1])), float(np.arcsin(np.clip(r[2, 1], -1.0, 1.0))), float(np.arctan2(-r[2, 0], r[2, 2])))
 

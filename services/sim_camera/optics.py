@@ -9,7 +9,10 @@ Floats = NDArray[np.float64]
 
 
 def intrinsics(camera: Camera) -> Floats:
-    """(3, 3) K of the optical frame (x right, y down, z along the view); pixel (0, 0) is the centre of the first pixel."""
+    """Intrinsic matrix K (3, 3) [pixels] of the optical frame (x right, y down, z along the view).
+
+    Pixel (0, 0) is the centre of the first pixel.
+    """
     f = camera.width / 2 / np.tan(camera.fov / 2)
     return np.array(((f, 0.0, (camera.width - 1) / 2), (0.0, f, (camera.height - 1) / 2), (0.0, 0.0, 1.0)))
 
@@ -23,6 +26,6 @@ def frustum(camera: Camera, near: float) -> tuple[float, float, float, float]:
 
 
 def project(k: Floats, point: Floats) -> tuple[float, float]:
-    """(column, row) of a point before the camera, (3,) m in the optical frame."""
+    """Pixel (column, row) [pixels] of a ``point`` (3,) [m] in the optical frame, before a camera with intrinsics ``k`` (3, 3)."""
     u, v, w = k @ point
     return float(u / w), float(v / w)

@@ -19,14 +19,14 @@ DEEPEST = np.iinfo(np.uint16).max / MILLIMETRES  # m
 
 
 def image_message(taken: Timestamp, frame: str, picture: NDArray[np.uint8]) -> CompressedImage:
-    """picture: (height, width, 3) RGB."""
+    """The picture (height, width, 3) RGB as a JPEG message."""
     stream = io.BytesIO()
     Image.fromarray(picture).save(stream, format="JPEG", quality=JPEG_QUALITY)
     return CompressedImage(timestamp=taken, frame_id=frame, data=stream.getvalue(), format="jpeg")
 
 
 def depth_message(taken: Timestamp, frame: str, depth: NDArray[np.float64]) -> CompressedImage:
-    """depth: (height, width) m along the view; sent as mm, 0 where there is nothing within 65.535 m (16UC1 of REP-118)."""
+    """The depth (height, width) [m] along the view as a PNG in mm, 0 where there is nothing within 65.535 m (16UC1 of REP-118)."""
     millimetres = np.where((depth > 0) & (depth <= DEEPEST), np.round(depth * MILLIMETRES), 0.0).astype(np.uint16)
     stream = io.BytesIO()
     Image.fromarray(millimetres).save(stream, format="PNG", compress_level=1)
@@ -34,6 +34,7 @@ def depth_message(taken: Timestamp, frame: str, depth: NDArray[np.float64]) -> C
 
 
 def info_message(t: float, frame: str, camera: Camera) -> CameraCalibration:
+    """The camera's intrinsics [pixels] as a message stamped ``t`` [s]."""
     k = intrinsics(camera)
     return CameraCalibration(
         timestamp=stamp(t),
@@ -49,5 +50,5 @@ def info_message(t: float, frame: str, camera: Camera) -> CameraCalibration:
 
 
 def joints_message(taken: Timestamp, joints: Joints) -> JointStates:
-    """The gimbal's angles [rad] at the moment of a pose."""
+    """The gimbal's joint angles [rad] as a message."""
     return JointStates(timestamp=taken, joints=[JointState(name=name, position=angle) for name, angle in joints._asdict().items()])

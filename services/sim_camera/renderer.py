@@ -30,14 +30,14 @@ TO_LIGHT = (0.4, -0.6, 1.0)
 
 
 class Pose(NamedTuple):
-    """position: (3,) m, world; world_from_body: wxyz."""
+    """A pose. position: (3,) [m, world]; world_from_body: (4,) wxyz."""
 
     position: Floats
     world_from_body: Floats
 
 
 class Shot(NamedTuple):
-    """picture: (height, width, 3) RGB; depth: (height, width) m along the view, inf where there is nothing; None if not asked for."""
+    """A picture (height, width, 3) RGB and its depth (height, width) [m] along the view, inf where nothing is; None if not asked for."""
 
     picture: Picture
     depth: Floats | None
@@ -56,7 +56,7 @@ class _Shown:
 
 
 class BulletRenderer:
-    """A copy of the world without physics, on a client of its own."""
+    """Renders a copy of the world without physics, on a client of its own."""
 
     def __init__(self, world: WorldFile, solids: Sequence[Solid], vehicles: Mapping[str, Look]) -> None:
         self._client: int = pybullet.connect(pybullet.DIRECT)
@@ -88,7 +88,7 @@ class BulletRenderer:
         return _Shown(index, Pose(np.array(local[3]), np.array((w, x, y, z))))
 
     def place(self, t: float, poses: Mapping[str, Pose]) -> None:
-        """Puts vehicles where they truly are, and what moves by script where it is at ``t`` [s]."""
+        """Places vehicles at their true poses, and scripted solids where they are at ``t`` [s]."""
         for index, solid in self._scripted:
             position, turned = pose_at(solid, t)
             pybullet.resetBasePositionAndOrientation(index, position.tolist(), _xyzw(turned), physicsClientId=self._client)
@@ -100,7 +100,7 @@ class BulletRenderer:
             pybullet.resetBasePositionAndOrientation(shown.index, centre.tolist(), _xyzw(turned), physicsClientId=self._client)
 
     def show(self, guests: Mapping[str, Solid | Look]) -> None:
-        """What has been put into the running simulation: solids where they are now; vehicles are placed as the others are."""
+        """Shows what has been spawned: solids where they are now; vehicles are placed like the others."""
         kinds = {name: guest if isinstance(guest, Path | AircraftShape) else (guest.shape, guest.size) for name, guest in guests.items()}
         for name in [name for name, (kind, _) in self._guests.items() if kinds.get(name) != kind]:
             pybullet.removeBody(self._guests.pop(name)[1], physicsClientId=self._client)
@@ -117,7 +117,7 @@ class BulletRenderer:
             pybullet.resetBasePositionAndOrientation(index, guest.position.tolist(), turned, physicsClientId=self._client)
 
     def take(self, camera: Camera, body: Pose) -> Shot:
-        """What a vehicle's camera sees when its body is there."""
+        """The picture that a camera of a vehicle takes with its body at this pose."""
         eye = body.position + rotate(body.world_from_body, np.array(camera.mount.xyz))
         world_from_camera = multiply(body.world_from_body, from_euler(*camera.mount.rpy))
         forward, left, up = matrix(world_from_camera).T
@@ -142,11 +142,15 @@ class BulletRenderer:
         return Shot(picture, np.where(nothing, self._backdrop.depth(camera, eye, world_from_optical), depth))
 
     def close(self) -> None:
+        """Disconnects the client."""
         pybullet.disconnect(physicsClientId=self._client)
 
 
 def linear_depth(buffer: Floats, far: float) -> Floats:
-    """m along the view, from OpenGL's depth buffer, 0 at ``NEAR`` and 1 at ``far``: even steps of 1 / depth."""
+    """Depth (height, width) [m] along the view from OpenGL's depth buffer, 0 at ``NEAR`` and 1 at ``far`` [m].
+
+    The buffer has even steps of 1 / depth.
+    """
     return far * NEAR / (far - (far - NEAR) * buffer)
 
 

@@ -21,31 +21,43 @@ INFO = {"image": "info", "chase": "chase_info", "gimbal": "gimbal_info"}
 
 
 class Renderer(Protocol):
-    """What draws."""
+    """What renders the pictures."""
 
-    def place(self, t: float, poses: Mapping[str, Pose]) -> None: ...
+    def place(self, t: float, poses: Mapping[str, Pose]) -> None:
+        """Places vehicles at their true poses, and scripted solids where they are at ``t`` [s]."""
+        ...
 
-    def show(self, guests: Mapping[str, Solid | Look]) -> None: ...
+    def show(self, guests: Mapping[str, Solid | Look]) -> None:
+        """Shows what has been spawned."""
+        ...
 
-    def take(self, camera: Camera, body: Pose) -> Shot: ...
+    def take(self, camera: Camera, body: Pose) -> Shot:
+        """The picture that a camera of a vehicle takes with its body at this pose."""
+        ...
 
-    def close(self) -> None: ...
+    def close(self) -> None:
+        """Releases the renderer."""
+        ...
 
 
 class SimCamera(Service):
-    """A picture carries the stamp of the pose it was taken from, as do a gimbal's joints and frame; without a fresh pose there is none."""
+    """All cameras. A picture carries the stamp of its pose, as do a gimbal's joints and frame; without a fresh pose there is none."""
 
     name = "sim_camera"
     hz = 5.0
     scope = "world"
 
     class Inputs(Reads):
+        """True poses, spawned objects, and gimbal commands."""
+
         truth: dict[str, NavState] = each_vehicle(optional(topics.TRUTH))
         objects: SimObjects | None = optional(topics.OBJECTS)
         aircraft: SimObjects | None = optional(topics.AIR_OBJECTS)
         gimbals: dict[str, GimbalCommand] = each_vehicle(optional(topics.GIMBAL.by("*")))
 
     class Outputs(Writes):
+        """Pictures, calibrations, and gimbal states."""
+
         image: dict[str, CompressedImage] | None = topic(topics.IMAGE)
         depth: dict[str, CompressedImage] | None = topic(topics.DEPTH)
         info: dict[str, CameraCalibration] | None = topic(topics.CAMERA_INFO)
@@ -64,7 +76,7 @@ class SimCamera(Service):
         self._told = False
 
     def step(self, t: float, now: Inputs) -> Outputs:
-        """objects, aircraft: what has been put in while the simulation runs."""
+        """Takes the pictures due at ``t`` [s, simulation]. objects, aircraft: what has been spawned."""
         looks = {o.name: self._look_of(o.model) if o.model else solid_of(o) for o in sound_objects(now.objects, now.aircraft)}
         self._renderer.show({name: look for name, look in looks.items() if look is not None})
         poses = {name: Pose(array(state.position), wxyz(state.orientation)) for name, state in now.truth.items()}
@@ -95,4 +107,5 @@ class SimCamera(Service):
         return fitted.step(t, truth[name].timestamp, lambda: self._renderer.take(*fitted.looking(poses[name])))
 
     def close(self) -> None:
+        """Releases the renderer."""
         self._renderer.close()

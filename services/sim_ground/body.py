@@ -14,7 +14,7 @@ Four = tuple[float, float, float, float]
 
 
 class Touch(NamedTuple):
-    """other: name of what is touched; bearing: where on the body, rad from its x axis, counter-clockwise."""
+    """A contact. other: name of what is touched; bearing: its direction [rad] from the body's x axis, counter-clockwise."""
 
     other: str
     bearing: float
@@ -39,9 +39,10 @@ class BodyState(NamedTuple):
 def base_motion(
     com: Three, world_from_com_xyzw: Four, com_velocity: Three, angular: Three, com_in_base: Floats, base_from_com: Floats
 ) -> tuple[Floats, Floats, Floats, Floats]:
-    """The first four fields of ``BodyState`` from the motion of the centre of mass, as the engine tells it.
+    """The first four fields of ``BodyState`` from the engine's motion of the centre of mass.
 
-    com: m, com_velocity: m/s, angular: rad/s, all world; com_in_base: (3,) m, base_from_com: wxyz.
+    com (3,) [m], com_velocity (3,) [m/s], angular (3,) [rad/s], world_from_com_xyzw (4,), all world; com_in_base: (3,) [m],
+    base_from_com: (4,) wxyz.
     """
     bx, by, bz, bw = world_from_com_xyzw
     cw, cx, cy, cz = base_from_com[0], -base_from_com[1], -base_from_com[2], -base_from_com[3]

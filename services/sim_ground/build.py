@@ -21,7 +21,7 @@ from uvf.sensors.surroundings import Surroundings, aircraft_solid, own_tree, veh
 
 
 def build(site: Scenario) -> list[ServiceInstance]:
-    """Nothing when the mission has no ground vehicle. Raises BadInput."""
+    """The service of the mission's ground vehicles; empty when there are none. Raises BadInput."""
     bodies = {m.name: m.file.ground for m in site.of_kind("ground") if m.file.ground is not None}
     if not bodies:
         return []

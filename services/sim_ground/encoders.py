@@ -6,6 +6,7 @@ from uvf.models.vehicle.sensors import Encoders
 
 
 def radians_per_tick(encoders: Encoders) -> float:
+    """Wheel angle [rad] from one tick to the next."""
     return 2 * np.pi / encoders.ticks_per_turn
 
 

@@ -15,7 +15,7 @@ LONGEST = 0.1  # s, for which it is taken to go straight on
 
 
 class Course(NamedTuple):
-    """t: s, when it was there; position: (3,) m, velocity: (3,) m/s, world; world_from_body: wxyz."""
+    """State at ``t`` [s] of a body that another simulator moves: position (3,) [m], velocity (3,) [m/s], world; world_from_body wxyz."""
 
     t: float
     position: Floats
@@ -23,12 +23,12 @@ class Course(NamedTuple):
     world_from_body: Floats
 
     def at(self, t: float) -> Whereabouts:
-        """Where it is at ``t`` [s], a moment later."""
+        """Its pose extrapolated to ``t`` [s]."""
         return Whereabouts(self.position + self.velocity * min(max(t - self.t, 0.0), LONGEST), self.world_from_body)
 
 
 def courses(truth: Mapping[str, NavState], names: Collection[str]) -> dict[str, Course]:
-    """Of those of these names that are told of."""
+    """The courses of the named vehicles that have published their true motion."""
     return {
         name: Course(seconds(told.timestamp), array(told.position), array(told.velocity), wxyz(told.orientation))
         for name, told in truth.items()

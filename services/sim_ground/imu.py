@@ -37,7 +37,7 @@ def _times(m: Floats, v: Floats) -> Floats:
 
 
 class ImuModel:
-    """One unit. The specific force is the mean over the time since the reading before: the change of velocity, less gravity."""
+    """One IMU. The specific force is the mean since the reading before: change of velocity, less gravity."""
 
     def __init__(self, imu: ImuSensor, magnetic_field: Floats, rng: np.random.Generator) -> None:
         """magnetic_field: (3,) T, ENU."""

@@ -19,21 +19,24 @@ class WheelMotor:
         """rad/s, what the wheel is held at if the torque is enough."""
 
     def step(self, command: float, speed: float) -> float:
-        """The most torque [N m] with which the wheel, now at ``speed``, may be led to the new reference; speeds in rad/s."""
+        """Available torque [N m] to bring the wheel, now at ``speed`` [rad/s], to the new reference; command [rad/s]."""
         top = self._motor.no_load_speed
         wanted = min(max(command, -top), top)
         self.reference = wanted + (self.reference - wanted) * self._keep
         return self.torque(speed, self.reference - speed)
 
     def power(self, torque: float, speed: float) -> float:
-        """W, electric, at this torque [N m] and speed [rad/s]: the mechanical one and the winding's loss, which at a stand is all of it.
+        """Electric power [W] at this torque [N m] and speed [rad/s]: mechanical power and the winding's loss, which at a stand is all.
 
-        The loss is I^2 R, and at the stall torque V^2 / R, which is stall torque times no-load speed. What braking gives back is lost.
+        The loss is I^2 R, and at the stall torque V^2 / R, which is stall torque times no-load speed. Energy of braking is not recovered.
         """
         loss = torque**2 * self._motor.no_load_speed / self._motor.stall_torque
         return max(torque * speed + loss, 0.0)
 
     def torque(self, speed: float, error: float) -> float:
-        """N m >= 0 in the direction of ``error``: full at a stand and against the turning, where the driver limits the current."""
+        """Available torque [N m], >= 0, in the direction of ``error`` [rad/s] at ``speed`` [rad/s].
+
+        It is full at a stand and against the rotation, where the driver limits the current.
+        """
         with_it = speed if error >= 0.0 else -speed
         return self._motor.stall_torque * min(max(1.0 - with_it / self._motor.no_load_speed, 0.0), 1.0)

@@ -16,23 +16,26 @@ Floats = NDArray[np.float64]
 
 
 def wheels_message(t: float, encoders: Encoders, body: BodyState) -> WheelTicks:
+    """Encoder ticks as a message stamped ``t`` [s]."""
     left, right = ticks(encoders, body.wheel_angles)
     return WheelTicks(timestamp=stamp(t), left=left, right=right, radians_per_tick=radians_per_tick(encoders))
 
 
 def contact_message(t: float, bumpers: Sequence[Bumper], touches: Sequence[Touch]) -> Contact:
-    """All that was touched since the message before; the first one gives its name."""
+    """All contacts since the message before, stamped ``t`` [s]; the first one gives its name."""
     sectors = [b.name for b in bumpers if any(b.feels(touch.bearing) for touch in touches)]
     return Contact(timestamp=stamp(t), touching=bool(touches), other=touches[0].other if touches else "", sectors=sectors)
 
 
 def joints_message(t: float, ground: GroundBody, body: BodyState) -> JointStates:
+    """Wheel angles [rad] and speeds [rad/s] as a message stamped ``t`` [s]."""
     rows = zip((ground.left_joint, ground.right_joint), body.wheel_angles, body.wheel_speeds, strict=True)
     joints = [JointState(name=name, position=angle, velocity=speed) for name, angle, speed in rows]
     return JointStates(timestamp=stamp(t), joints=joints)
 
 
 def truth_message(t: float, body: BodyState) -> NavState:
+    """True motion of base_link in the world frame as a message stamped ``t`` [s]."""
     return NavState(
         timestamp=stamp(t),
         position=vector(body.position),

@@ -37,7 +37,7 @@ STEP_HZ = 100.0
 
 
 class Moment(NamedTuple):
-    """What there is to measure: the body, what moves about it (worked out when a ray is cast), and all that it touches."""
+    """What there is to measure: the body, the moving bodies (computed when a ray is cast), and all contacts."""
 
     body: BodyState
     others: Callable[[], list[MovingBody]] = list
@@ -49,7 +49,7 @@ Read = Callable[[float, Moment], Message]
 
 
 class FittedSensor(NamedTuple):
-    """A sensor: how it reads the moment, and how its readings get out."""
+    """A sensor: how it reads the moment, and its delay line."""
 
     read: Read
     line: DelayLine[Message]
@@ -60,7 +60,7 @@ class FittedSensor(NamedTuple):
 
 
 class Rig:
-    """Built once a vehicle; each sensor draws from generators of its own, so that none disturbs another."""
+    """The sensors of one vehicle; each draws from generators of its own, so that none disturbs another."""
 
     def __init__(self, site: Scenario, member: MissionVehicle, ground: GroundBody, scene: Scene) -> None:
         """scene: what stands in the world."""
@@ -99,22 +99,22 @@ class Rig:
 
     @property
     def is_flat(self) -> bool:
-        """The battery is empty."""
+        """Whether the battery is empty."""
         return self.charge is not None and self.charge.remaining == 0
 
     def frames(self, t: float) -> FrameTransforms:
-        """What does not move on the vehicle, stamped ``t`` [s]."""
+        """The fixed frames of the vehicle, stamped ``t`` [s]."""
         return self._links.resting(self._member.name, self._member.file.sensors, t)
 
     def glance(self, t: float, body: BodyState) -> None:
-        """Between two steps, for an IMU that is faster than these; what it says is told at the next one."""
+        """Reads an IMU that is faster than the steps, between two of them at ``t`` [s]; the reading is published at the next step."""
         if self.is_quick and (message := self._fitted["imu"].step(t, Moment(body))) is not None:
             self._early.append(message)
 
     def read(self, t: float, moment: Moment) -> Mapping[str, Value]:
-        """What arrives at the step at ``t`` [s], by output name.
+        """Readings that arrive at the step at ``t`` [s], by output name.
 
-        A touch counts until it has been told, so that a short one between two messages is not lost.
+        A contact is kept until it has been published, so that a short one between two messages is not lost.
         """
         self._touches += moment.touches
         if self._track is not None:

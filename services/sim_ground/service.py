@@ -44,21 +44,33 @@ class GroundWorld(Stageable, Protocol):
     rate: float
     """Physics steps a second."""
 
-    def advance(self, wheels: Mapping[str, WheelSpeeds], duration: float, since: float) -> None: ...
+    def advance(self, wheels: Mapping[str, WheelSpeeds], duration: float, since: float) -> None:
+        """Moves the world from simulation time ``since`` [s] by ``duration`` [s] with these wheel speed commands [rad/s]."""
+        ...
 
-    def state(self, vehicle: str) -> BodyState: ...
+    def state(self, vehicle: str) -> BodyState:
+        """Motion of a vehicle's base_link and wheels now."""
+        ...
 
-    def touches(self, vehicle: str) -> list[Touch]: ...
+    def touches(self, vehicle: str) -> list[Touch]:
+        """Everything that a vehicle touches now."""
+        ...
 
-    def motor_energy(self, vehicle: str) -> float: ...
+    def motor_energy(self, vehicle: str) -> float:
+        """Energy [J] that a vehicle's motors have drawn since the last call."""
+        ...
 
-    def guide(self, guests: Mapping[str, Course]) -> None: ...
+    def guide(self, guests: Mapping[str, Course]) -> None:
+        """Sets how bodies of another simulator move until the next call."""
+        ...
 
-    def close(self) -> None: ...
+    def close(self) -> None:
+        """Releases the engine."""
+        ...
 
 
 class SimGround(Service):
-    """All ground vehicles in one world. A vehicle whose command is older than 0.5 s brakes its wheels to a stand.
+    """All ground vehicles in one world. A vehicle whose command is older than 0.5 s brakes its wheels to a stop.
 
     Truth is the motion of base_link: the point on the floor under the axle's middle, in the world frame.
     """
@@ -69,6 +81,8 @@ class SimGround(Service):
     simulator = True
 
     class Inputs(Reads):
+        """Wheel commands, true motion of the aircraft, and requests."""
+
         commands: dict[str, WheelCommand] = each_vehicle(optional(topics.WHEEL_COMMAND))
         truth: dict[str, NavState] = each_vehicle(optional(topics.TRUTH))
         flying: SimObjects | None = optional(topics.AIR_OBJECTS)
@@ -79,6 +93,8 @@ class SimGround(Service):
         restore: list[StateRequest] = request(topics.RESTORE)
 
     class Outputs(Writes):
+        """Sensor readings and true motion of each vehicle, and replies."""
+
         imu: dict[str, Imu] | None = topic(topics.IMU)
         scan: dict[str, LaserScan] | None = topic(topics.SCAN)
         wheels: dict[str, WheelTicks] | None = topic(topics.WHEELS)
@@ -117,7 +133,10 @@ class SimGround(Service):
         self._had_objects = False
 
     def step(self, t: float, now: Inputs) -> Outputs:
-        """What is asked for holds from this step's end. truth: of the aircraft; flying: those of them that have been put in."""
+        """One cycle at ``t`` [s, simulation]. Requests take effect at its end.
+
+        truth: of the aircraft; flying: the spawned ones among them.
+        """
         self._guests = courses(now.truth, self._aircraft)
         self._world.guide(self._guests)
         self._advance(t, {name: WheelSpeeds(c.left, c.right) for name, c in now.commands.items() if not self._is_flat(name)})
@@ -180,6 +199,7 @@ class SimGround(Service):
         return told if told.objects or had else None
 
     def close(self) -> None:
+        """Releases the engine."""
         self._world.close()
 
 

@@ -23,27 +23,43 @@ SAVED_MOST = 16
 
 
 class Stageable(Protocol):
-    """What of the physics the requests need."""
+    """The part of the physics that the requests need."""
 
-    def put(self, name: str, solid: Solid, mass: float) -> str: ...
+    def put(self, name: str, solid: Solid, mass: float) -> str:
+        """Adds a solid of ``mass`` [kg], 0 = fixed. Returns what it would stand in, "" when it is added."""
+        ...
 
-    def put_vehicle(self, name: str, vehicle: BodyPlacement) -> str: ...
+    def put_vehicle(self, name: str, vehicle: BodyPlacement) -> str:
+        """Adds a vehicle. Returns what it would stand in, "" when it is added. Raises BadInput."""
+        ...
 
-    def remove(self, name: str) -> None: ...
+    def remove(self, name: str) -> None:
+        """Removes a solid or a vehicle."""
+        ...
 
-    def place(self, name: str, position: Floats, orientation: Floats) -> str: ...
+    def place(self, name: str, position: Floats, orientation: Floats) -> str:
+        """Puts it at ``position`` (3,) [m, world], ``orientation`` (4,) wxyz, at rest. Returns what it would stand in, "" when done."""
+        ...
 
-    def poses(self) -> dict[str, tuple[Floats, Floats]]: ...
+    def poses(self) -> dict[str, tuple[Floats, Floats]]:
+        """Position (3,) [m, world] and orientation (4,) wxyz of each added solid, by name."""
+        ...
 
-    def save(self) -> Any: ...
+    def save(self) -> Any:
+        """Saves the state of the engine."""
+        ...
 
-    def restore(self, saved: Any) -> None: ...
+    def restore(self, saved: Any) -> None:
+        """Restores a saved state."""
+        ...
 
-    def forget(self, saved: Any) -> None: ...
+    def forget(self, saved: Any) -> None:
+        """Releases a saved state."""
+        ...
 
 
 class JoiningVehicle(NamedTuple):
-    """A vehicle that is made ready to be put in."""
+    """A new vehicle ready to be added."""
 
     placed: BodyPlacement
     rig: Rig
@@ -56,7 +72,7 @@ Join = Callable[[str, str, tuple[float, float, float], float], JoiningVehicle]
 
 @dataclass(frozen=True)
 class SavedState:
-    """A state under a name: the engine's, the sensors', the step at which it was, and what had been put in, by name and number."""
+    """A saved state: the engine's, the sensors', the step at which it was saved, and the spawned objects by name and number."""
 
     world: Any
     rigs: dict[str, Rig]
@@ -65,7 +81,7 @@ class SavedState:
 
 
 class GroundStage:
-    """Requests are answered in the order spawn, remove, set pose, save, restore, each in the order asked."""
+    """The vehicles and objects of the simulation. Requests are carried out in the order spawn, remove, set pose, save, restore."""
 
     def __init__(self, world: Stageable, rigs: Mapping[str, Rig], surroundings: Surroundings, taken: tuple[str, ...], join: Join) -> None:
         """taken: names of what is there from the beginning, of vehicles that others simulate too."""
@@ -84,7 +100,7 @@ class GroundStage:
         self._kept: dict[str, SavedState] = {}
 
     def spawn(self, request: SpawnRequest, others: Collection[str]) -> Reply:
-        """others: names of what the air simulator has put in."""
+        """Adds an object or a vehicle. others: names of what the air simulator has spawned."""
         wanted = request.object
         reason = self._name_fault(wanted.name, others) or crowd_fault(len(self._objects) + len(others)) or body_fault(wanted)
         if not reason:
@@ -123,6 +139,7 @@ class GroundStage:
         return ""
 
     def remove(self, request: RemoveRequest) -> Reply:
+        """Removes what has been spawned."""
         name = request.name
         if name not in self._objects:
             if name in self._taken:
@@ -139,6 +156,7 @@ class GroundStage:
         del self._objects[name], self._numbers[name]
 
     def set_pose(self, request: SetPoseRequest) -> Reply:
+        """Puts a vehicle or an object elsewhere, at rest."""
         known = {**self._objects, **self.rigs}
         if request.name not in known:
             return _reply(f"there is no '{request.name}' that can be put elsewhere; {nearest(request.name, known)}")
@@ -148,7 +166,7 @@ class GroundStage:
         return _reply(_inside(request.name, met) if met else "")
 
     def save(self, step: int, request: StateRequest) -> Reply:
-        """step: number of the service's step that has been made."""
+        """Saves the state after the service's ``step``."""
         if request.name not in self._kept and len(self._kept) >= SAVED_MOST:
             return _reply(f"{SAVED_MOST} states are kept already: {listed(self._kept)}; use one of these names again")
         if request.only_ask:
@@ -159,7 +177,10 @@ class GroundStage:
         return _reply("")
 
     def restore(self, step: int, request: StateRequest) -> Reply:
-        """What has been put in since is taken out. What has been taken out since cannot come back: then it is refused."""
+        """Restores a saved state at the service's ``step``: what was spawned since is removed.
+
+        It is refused when something was removed since, which cannot come back.
+        """
         kept = self._kept.get(request.name)
         if kept is None:
             return _reply(f"no state '{request.name}' has been saved; {nearest(request.name, self._kept)}")
@@ -175,7 +196,7 @@ class GroundStage:
         return _reply("")
 
     def objects(self, t: float) -> SimObjects:
-        """All that has been put in, as it stands at ``t`` [s]; vehicles where they were put, for their truth is told elsewhere."""
+        """All spawned objects as they stand at ``t`` [s]; vehicles where they were spawned, for their truth is published elsewhere."""
         poses = self._world.poses()
         for name, (position, orientation) in poses.items():
             self._objects[name].pose.position.CopyFrom(vector(position))

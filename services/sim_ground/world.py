@@ -41,7 +41,7 @@ SETTLING = 0.3  # s of physics before the start: the wheels sink into their cont
 
 @dataclass(frozen=True)
 class BodyPlacement:
-    """A vehicle to put into the world: its file's data, its URDF, its start (x, y [m], yaw [rad], world) and z [m] of what it stands on."""
+    """A vehicle to add to the world: its file's data, its URDF, its start (x, y [m], yaw [rad], world) and z [m] of what it stands on."""
 
     body: GroundBody
     urdf: Path
@@ -69,7 +69,7 @@ class Saved:
 
 
 class BulletWorld:
-    """One physics client of its own. The floor is z = 0; base_link is the point on the floor under the axle's middle."""
+    """A physics client of its own. The floor is z = 0; base_link is the point on the floor under the axle's middle."""
 
     def __init__(self, solids: Sequence[Solid], vehicles: Mapping[str, BodyPlacement]) -> None:
         self._client: int = pybullet.connect(pybullet.DIRECT)
@@ -141,9 +141,9 @@ class BulletWorld:
         pybullet.resetBasePositionAndOrientation(index, position.tolist(), _xyzw(orientation), physicsClientId=self._client)
 
     def advance(self, wheels: Mapping[str, WheelSpeeds], duration: float, since: float = 0.0) -> None:
-        """Moves the world by ``duration`` [s]; a vehicle without a finite command brakes its wheels to a stand.
+        """Moves the world by ``duration`` [s]; a vehicle without a finite command brakes its wheels to a stop.
 
-        since: s, simulation time at which it begins: where scripted solids are.
+        since: simulation time [s] at the beginning, for scripted solids. wheels: speed commands [rad/s].
         """
         wanted = {name: wheels.get(name, STOPPED) for name in self._vehicles}
         for name, speeds in wanted.items():
@@ -157,7 +157,7 @@ class BulletWorld:
             pybullet.stepSimulation(physicsClientId=self._client)
 
     def motor_energy(self, vehicle: str) -> float:
-        """J that its motors have drawn since this was asked last."""
+        """Energy [J] that a vehicle's motors have drawn since the last call."""
         return self._drawn.pop(vehicle, 0.0)
 
     def _drive(self, vehicle: _Loaded, wanted: WheelSpeeds) -> float:
@@ -187,11 +187,11 @@ class BulletWorld:
             pybullet.resetBaseVelocity(index, [x, y, 0.0], [0.0, 0.0, turning], physicsClientId=self._client)
 
     def let_in(self, name: str, solid: Solid) -> None:
-        """A body that others move, see ``guide``: it pushes what stands in its way and is not pushed. Until then it is out of reach."""
+        """Adds a body that another simulator moves, see ``guide``: it pushes others and is not pushed. Until then it is out of reach."""
         self._guests[name] = self._add(name, _collision_shape(solid, self._client), AWAY, IDENTITY), None
 
     def guide(self, guests: Mapping[str, Course]) -> None:
-        """How they move until the next call; who is not named stays where it is."""
+        """Sets how these bodies move until the next call; one that is not named stays where it is."""
         for name, (index, _) in self._guests.items():
             self._guests[name] = index, guests.get(name)
 
@@ -212,7 +212,7 @@ class BulletWorld:
         return BodyState(*motion, wheel_angles=(left[0], right[0]), wheel_speeds=WheelSpeeds(left[1], right[1]))
 
     def touches(self, vehicle: str) -> list[Touch]:
-        """All that is touched now, floor and terrain only by a vehicle that has fallen over."""
+        """Everything that a vehicle touches now; floor and terrain only if it has fallen over."""
         loaded = self._vehicles[vehicle]
         contacts: Any = pybullet.getContactPoints(bodyA=loaded.index, physicsClientId=self._client)
         felt = [c for c in contacts if c[8] <= TOUCH and self._names[c[2]] not in GROUND]
@@ -231,12 +231,12 @@ class BulletWorld:
         return up < FALLEN
 
     def put(self, name: str, solid: Solid, mass: float) -> str:
-        """Puts a solid in; mass: kg, 0 = it stands fast. Returns what it would stand in, empty when it is in."""
+        """Adds a solid of ``mass`` [kg], 0 = fixed. Returns what it would stand in, "" when it is added."""
         self._objects[name] = self._add(name, _collision_shape(solid, self._client), solid.position, solid.orientation, mass)
         return self._unless_free(name)
 
     def put_vehicle(self, name: str, vehicle: BodyPlacement) -> str:
-        """As ``put``. Raises BadInput for a URDF that the engine cannot load."""
+        """Adds a vehicle, as ``put`` does. Raises BadInput for a URDF that the engine cannot load."""
         self._vehicles[name] = self._load(name, vehicle)
         return self._unless_free(name)
 
@@ -246,6 +246,7 @@ class BulletWorld:
         return met
 
     def remove(self, name: str) -> None:
+        """Removes a solid or a vehicle."""
         index = self._index(name)
         self._objects.pop(name, None)
         self._vehicles.pop(name, None)
@@ -253,7 +254,10 @@ class BulletWorld:
         pybullet.removeBody(index, physicsClientId=self._client)
 
     def place(self, name: str, position: Floats, orientation: Floats) -> str:
-        """Puts a vehicle's base_link or an object there, at rest. Returns what it would stand in; then it has not moved."""
+        """Puts a vehicle's base_link or an object at ``position`` (3,) [m, world], ``orientation`` (4,) wxyz, at rest.
+
+        Returns what it would stand in; then it has not moved.
+        """
         index = self._index(name)
         before = pybullet.getBasePositionAndOrientation(index, physicsClientId=self._client)
         moving = pybullet.getBaseVelocity(index, physicsClientId=self._client)
@@ -288,18 +292,18 @@ class BulletWorld:
         return ""
 
     def poses(self) -> dict[str, tuple[Floats, Floats]]:
-        """Position (3,) m and orientation wxyz of what has been put in, vehicles apart."""
+        """Position (3,) [m, world] and orientation (4,) wxyz of each added solid, by name; vehicles are not included."""
         found = {n: pybullet.getBasePositionAndOrientation(i, physicsClientId=self._client) for n, i in self._objects.items()}
         return {name: (np.array(position), _wxyz(turned)) for name, (position, turned) in found.items()}
 
     def save(self) -> Saved:
-        """All that the next steps depend on."""
+        """Saves all that the next steps depend on."""
         self._find_contacts_anew()
         references = {name: [m.reference for m in v.motors] for name, v in self._vehicles.items()}
         return Saved(pybullet.saveState(physicsClientId=self._client), references)
 
     def restore(self, saved: Saved) -> None:
-        """Goes back; the same bodies must be there as then."""
+        """Restores a saved state; the same bodies must be there as then."""
         pybullet.restoreState(stateId=saved.state, physicsClientId=self._client)
         self._find_contacts_anew()
         for name, references in saved.references.items():
@@ -318,9 +322,11 @@ class BulletWorld:
                 pybullet.setCollisionFilterGroupMask(index, link, group, mask, physicsClientId=self._client)
 
     def forget(self, saved: Saved) -> None:
+        """Releases a saved state."""
         pybullet.removeState(saved.state, physicsClientId=self._client)
 
     def close(self) -> None:
+        """Disconnects the physics client."""
         pybullet.disconnect(physicsClientId=self._client)
 
 

@@ -27,7 +27,10 @@ from uvf.slam.resumable import Resumable
 
 
 def build(site: Scenario) -> list[ServiceInstance]:
-    """Raises BadInput for a vehicle without lidar or wheel encoders, and for files that are no maps."""
+    """The odometry, the mapping or localization, and the map server of the ground vehicles.
+
+    Raises BadInput for a vehicle without lidar or wheel encoders, and for files that are no maps.
+    """
     warm: set[str] = set()
     hosts = [host for member in site.of_kind("ground") for host in _hosts(site, member, warm)]
     return hosts + map_servers(site)

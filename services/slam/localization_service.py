@@ -28,7 +28,7 @@ LEAST_SIGMA, MOST_SIGMA = 1e-4, 1000.0
 
 @dataclass(frozen=True)
 class LocalizationStart:
-    """known: the map, in the map frame; None: it comes on map/known. anywhere: nothing is known of where the vehicle is."""
+    """How localization begins. known: the map, in the map frame; None: it comes on map/known. anywhere: the vehicle's pose is unknown."""
 
     known: KnownMap | None
     anywhere: bool
@@ -36,12 +36,14 @@ class LocalizationStart:
 
 
 class LocalizationService(PlacingService):
-    """In the place of mapping where a map is given; its outputs are those of mapping, the map is as it was given."""
+    """Takes the place of mapping where a map is given; its outputs are those of mapping, with the map as given."""
 
     name = "localization"
     purpose = "placed in the map"
 
     class Inputs(Reads):
+        """Scans, frames, a known map, and requests."""
+
         scan: LaserScan = topic(topics.SCAN)
         frames: FrameBuffer = frames()
         known: Grid | None = optional(topics.KNOWN_MAP)
@@ -49,6 +51,8 @@ class LocalizationService(PlacingService):
         relocalize: list[RelocalizeRequest] = request(topics.RELOCALIZE)
 
     class Outputs(Writes):
+        """Frames, map, pose in the map, events and replies."""
+
         correction: FrameTransform | None = topic(topics.TF_MAP)
         placing: FrameTransform | None = topic(topics.TF_WORLD)
         map: Grid | None = topic(topics.MAP)
@@ -58,6 +62,8 @@ class LocalizationService(PlacingService):
         relocalize: list[Reply] = replies(topics.RELOCALIZE)
 
     class Recalls(Reads):
+        """Latched messages from which a restarted instance resumes."""
+
         correction: FrameTransform | None = topic(topics.TF_MAP)
         fix: MapFix | None = topic(topics.MAP_POSE)
 
@@ -76,6 +82,7 @@ class LocalizationService(PlacingService):
         self._refused: Grid | None = None
 
     def step(self, t: float, now: Inputs) -> Outputs:
+        """One cycle at ``t`` [s, simulation]: localizes a new scan in the map, and publishes the odometry frame in it."""
         events = self._take_map(t, now.known)
         out = self.Outputs(
             pose=[self._placed(request) for request in now.pose],
@@ -102,7 +109,7 @@ class LocalizationService(PlacingService):
         return out
 
     def recall(self, left: Recalls) -> None:
-        """Goes on where the vehicle was last believed to be, as surely as it was believed."""
+        """Resumes at the last estimated pose, with the certainty it had."""
         if left.correction is not None:
             self._published = self._map_from_odom = self._start = pose2_of_frame(left.correction)
             self._is_doubtful = left.fix is not None and not left.fix.quality > HALF_SURE

@@ -21,18 +21,22 @@ DRAWN = "grid"
 
 
 class MapServer(Service):
-    """Publishes what the mission gives a vehicle once, latched, and answers for these layers and the vehicle's own map."""
+    """Publishes the map layers of the mission once, latched, and answers requests for them and for the vehicle's own map."""
 
     name = "map_server"
     hz = 2.0
 
     class Inputs(Reads):
+        """The vehicle's own map, and requests."""
+
         map: Grid | None = optional(topics.MAP)
         placing: FrameTransform | None = optional(topics.TF_WORLD)
         save: list[SaveMapRequest] = request(topics.SAVE_MAP)
         get: list[MapRequest] = request(topics.GET_MAP)
 
     class Outputs(Writes):
+        """Map layers and replies."""
+
         known: Grid | None = topic(topics.KNOWN_MAP)
         keepout: Grid | None = topic(topics.KEEP_OUT)
         speed: Grid | None = topic(topics.SPEED_MAP)
@@ -46,6 +50,7 @@ class MapServer(Service):
         self._served: dict[str, Grid] = {}
 
     def step(self, t: float, now: Inputs) -> Outputs:
+        """One cycle at ``t`` [s, simulation]: publishes the layers at the first one, and answers requests."""
         fresh = not self._served
         self._served = self._served or {name: as_message(layer, "world", t) for name, layer in self._layers.items()}
         layers = self._served if fresh else {}
@@ -78,5 +83,5 @@ class MapServer(Service):
 
 
 def in_world(grid: GridMap, world_from_map: FrameTransform) -> GridMap:
-    """A vehicle's map where it lies in the world."""
+    """A vehicle's map placed in the world frame."""
     return GridMap(grid.cells, grid.resolution, compose(pose2_of_frame(world_from_map), grid.origin))

@@ -16,7 +16,7 @@ from uvf.slam.maps.masks import KeepOut, SpeedLimit
 
 
 def map_servers(site: Scenario) -> list[ServiceInstance]:
-    """One for each ground vehicle with ``maps:``. Raises BadInput: a file that is no map, or maps for an aircraft."""
+    """One map server for each ground vehicle with ``maps:``. Raises BadInput for a file that is no map, or maps for an aircraft."""
     place = FileLocation(str(site.mission_path)).at("vehicles")
     for member in site.of_kind("fixed_wing"):
         if member.entry.maps is not None:

@@ -33,6 +33,8 @@ LEAP, LEAP_TURN = 0.3, 0.1  # m, rad: a correction that moves the vehicle by mor
 
 
 class MappingParams(PlacingParams, frozen=True):
+    """Parameters of mapping."""
+
     method: Annotated[str, plain("SLAM method: `graph`, `rbpf`, `hector` or `odometry`.")] = "graph"
     resolution: Annotated[float, Meta(ge=0.02, le=0.2), key("m", "Cell size of the published map.")] = 0.05
     map_period: Annotated[Positive, key("s", "Time between publications of the map.")] = 1.0
@@ -46,10 +48,14 @@ class MappingService(PlacingService):
     purpose = "mapped"
 
     class Inputs(Reads):
+        """Scans and frames."""
+
         scan: LaserScan = topic(topics.SCAN)
         frames: FrameBuffer = frames()
 
     class Outputs(Writes):
+        """Frames, map, pose in the map, session and events."""
+
         correction: FrameTransform | None = topic(topics.TF_MAP)
         placing: FrameTransform | None = topic(topics.TF_WORLD)
         map: Grid | None = topic(topics.MAP)
@@ -58,6 +64,8 @@ class MappingService(PlacingService):
         events: list[Event] | None = topic(topics.EVENTS.by("mapping"))
 
     class Recalls(Reads):
+        """Latched messages from which a restarted instance resumes."""
+
         session: MapSession | None = topic(topics.MAP_SESSION)
         correction: FrameTransform | None = topic(topics.TF_MAP)
 
@@ -87,6 +95,7 @@ class MappingService(PlacingService):
         self._undrawn = False
 
     def step(self, t: float, now: Inputs) -> Outputs:
+        """One cycle at ``t`` [s, simulation]: adds a new scan to the map, and publishes the odometry frame in it."""
         out = self.Outputs()
         events: list[Event] = []
         try:
@@ -108,7 +117,7 @@ class MappingService(PlacingService):
         return out
 
     def recall(self, left: Recalls) -> None:
-        """Goes on where the vehicle has been, with the session published last if the method can; else a new map grows there."""
+        """Resumes at the last pose, with the session published last if the method can; otherwise it begins a new map there."""
         if left.correction is None:
             return
         self._published = self._map_from_odom = pose2_of_frame(left.correction)

@@ -26,7 +26,7 @@ PATIENCE = 2.0  # s without a scan that has a place, until this is told
 
 
 class PlacingService(Service):
-    """Base of the services that tell where the odometry's frame lies in the map, without jumps."""
+    """Base of the services that publish the odometry frame's place in the map, without jumps."""
 
     hz = 10.0
     given_up = "the vehicle stands where it would drive by itself"
@@ -97,5 +97,6 @@ class PlacingService(Service):
 
 
 def fix_message(t: float, map_from_base: Pose2, covariance: Floats, quality: float) -> MapFix:
+    """Pose in the map [m, rad], its covariance (3, 3) [m^2, rad^2] and match quality [-] as a message stamped ``t`` [s]."""
     x, y, yaw = map_from_base
     return MapFix(timestamp=stamp(t), x=x, y=y, yaw=yaw, covariance=covariance.ravel().tolist(), quality=quality)

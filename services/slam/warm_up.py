@@ -18,7 +18,7 @@ from uvf.slam.method import Keyframe, SlamMethod
 
 
 def warm_up(method: SlamMethod) -> None:
-    """Odometry, a method and the map that is drawn of it; and the search for a place, which a corridor needs nowhere."""
+    """Compiles the kernels of odometry, a SLAM method, its map and the place search before the first scan."""
     readings = list(there_and_back())
     for reading in readings:
         method.add(reading)
@@ -33,7 +33,7 @@ def warm_up(method: SlamMethod) -> None:
 
 
 def warm_up_localization() -> None:
-    """The same on a made-up map: the one of the mission may come later."""
+    """Compiles the kernels of localization on a made-up map: the one of the mission may come later."""
     readings = list(there_and_back())
     known = known_map.of_grid(known_map.of_keyframes([Keyframe(r.odom_from_base, r) for r in readings]).grid)
     lost, tracked = Localizer(known, FilterParams(), 0), Localizer(known, FilterParams(), 0, IDENTITY)

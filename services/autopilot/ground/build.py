@@ -14,7 +14,7 @@ from uvf.sensors.sweeping import AT_ONCE
 
 
 def hosts(site: Scenario) -> list[ServiceInstance]:
-    """Raises BadInput when a job's mission is not one for a ground vehicle."""
+    """The autopilots of a mission's ground vehicles. Raises BadInput when a job's mission is not one for a ground vehicle."""
     return [_host(member, site) for member in site.of_kind("ground")]
 
 

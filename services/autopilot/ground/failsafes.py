@@ -22,7 +22,7 @@ ACTIONS = {
 
 @dataclass(frozen=True, slots=True)
 class GroundFailsafeInputs:
-    """What the rules look at."""
+    """The values that the failsafe rules of a ground vehicle are evaluated on."""
 
     params: GroundAutopilotParams = field(default_factory=GroundAutopilotParams)
     moves: bool = True

@@ -14,7 +14,7 @@ NEARER = 1e-3  # m, that counts as coming nearer
 
 @dataclass(frozen=True, slots=True)
 class GroundPose:
-    """m, rad, world frame."""
+    """Planar pose: x, y [m] and yaw [rad] in the world frame."""
 
     x: float
     y: float
@@ -22,7 +22,10 @@ class GroundPose:
 
 
 def stops(fencing: Fencing, here: GroundPose, linear: float, keep: tuple[float, float]) -> bool:
-    """Whether driving on at ``linear`` [m/s] would end nearer to the edge than allowed. keep: (radius [m], deceleration [m/s^2])."""
+    """Whether driving on at ``linear`` [m/s] would end nearer to the fence's edge than allowed.
+
+    keep: (radius of the vehicle [m], deceleration [m/s^2]).
+    """
     if linear == 0.0 or not fencing.steers:
         return False
     radius, deceleration = keep
@@ -33,7 +36,7 @@ def stops(fencing: Fencing, here: GroundPose, linear: float, keep: tuple[float, 
 
 
 def refusal(items: list[MissionItem], fencing: Fencing, radius: float) -> str:
-    """Which item lies outside, or too near to the edge; empty if none does."""
+    """Which mission item lies outside the fence or too near to its edge for a vehicle of ``radius`` [m]; empty if none does."""
     for i, item in enumerate(items):
         if item.kind in DRIVABLE and item.kind != MissionItem.RETURN and (why := _fault(item.position, fencing, radius)):
             return f"item {i}: {why}"
@@ -41,7 +44,7 @@ def refusal(items: list[MissionItem], fencing: Fencing, radius: float) -> str:
 
 
 def rally_refusal(rally: RallyPoints, fencing: Fencing, radius: float) -> str:
-    """Which rally point cannot be driven to; empty if all can."""
+    """Which rally point a vehicle of ``radius`` [m] cannot drive to within the fence; empty if it can reach all."""
     for i, point in enumerate(rally.points):
         if not (math.isfinite(point.x) and math.isfinite(point.y)):
             return f"item {i} holds a number that is not finite"

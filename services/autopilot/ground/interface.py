@@ -32,6 +32,8 @@ from uvf.runtime.state.stop_all import StopStatus
 
 
 class Inputs(Reads):
+    """Messages and requests that the ground autopilot reads."""
+
     teleop: DriveCommand | None = optional(topics.DRIVE.by("teleop"))
     mavlink: DriveCommand | None = optional(topics.DRIVE.by("mavlink"))
     gcs: DriveCommand | None = optional(topics.DRIVE.by("gcs"))
@@ -56,6 +58,8 @@ class Inputs(Reads):
 
 
 class Outputs(Writes):
+    """Messages and replies that the ground autopilot publishes."""
+
     wheels: WheelCommand | None = topic(topics.WHEEL_COMMAND)
     status: VehicleStatus | None = topic(topics.STATUS)
     mission: Mission | None = topic(topics.MISSION)
@@ -74,6 +78,8 @@ class Outputs(Writes):
 
 
 class Recalls(Reads):
+    """Latched messages from which a restarted instance resumes."""
+
     status: VehicleStatus | None = topic(topics.STATUS)
     mission: Mission | None = topic(topics.MISSION)
     progress: MissionProgress | None = topic(topics.PROGRESS)

@@ -40,12 +40,12 @@ def _fault(item: MissionItem, total: int) -> str:
 
 
 def mission_of(items: Sequence[MissionItem], timestamp: Timestamp) -> Mission:
-    """The items as a message, with the CRC-32 that tells one mission from another."""
+    """The items as a mission message with its id, a CRC-32 of the items."""
     return Mission(timestamp=timestamp, items=items, id=mission_id(items))
 
 
 class MissionEngine:
-    """Steps through the items: waypoints by distance and holding time, jumps and speeds at once."""
+    """Steps through the items: waypoints by acceptance radius and hold time, jumps and speed changes at once."""
 
     def __init__(self, home: Point, acceptance_radius: float) -> None:
         self.mission = Mission()
@@ -62,7 +62,7 @@ class MissionEngine:
         self._here: Point | None = None  # m, world
 
     def load(self, mission: Mission) -> None:
-        """Begins another mission at its first item; ``refusal`` has been asked before."""
+        """Starts another mission at its first item; check it with ``refusal`` first."""
         self.mission = mission
         self.reached, self.laps, self.speed = -1, 0, 0.0
         self._jumps.clear()
@@ -70,7 +70,7 @@ class MissionEngine:
         self._go_to(0)
 
     def resume(self, mission: Mission, progress: MissionProgress) -> None:
-        """Goes on where an engine before this one has come to."""
+        """Resumes a mission at the item where an earlier engine was."""
         self.load(mission)
         if progress.mission_id != mission.id or progress.current >= len(mission.items):
             return
@@ -80,7 +80,7 @@ class MissionEngine:
         self.speed = changes[-1] if changes else 0.0
 
     def jump_to(self, index: int) -> str:
-        """Makes an item the current one; why not, or ""."""
+        """Makes an item the current one; returns why it cannot, or ""."""
         if index >= len(self.mission.items):
             return f"there is no item {index}; the mission has {len(self.mission.items)}"
         if self.state == MissionProgress.COMPLETE:
@@ -90,14 +90,14 @@ class MissionEngine:
 
     @property
     def target(self) -> Point | None:
-        """Where the current item is [m, world frame]; None when there is nothing to drive to."""
+        """Position (x, y) [m, world] of the current item; None when there is nothing to drive to."""
         if self.state in (MissionProgress.NO_MISSION, MissionProgress.COMPLETE):
             return None
         item = self.mission.items[self.current]
         return self.home if item.kind == MissionItem.RETURN else (item.position.x, item.position.y)
 
     def distance_left(self, position: Point | None) -> float:
-        """m to the target; 0 where there is none, or nobody knows from where."""
+        """Distance [m] from ``position`` [m, world] to the target; 0 without a target or a position."""
         target = self.target
         return hypot(position[0] - target[0], position[1] - target[1]) if position and target else 0.0
 
@@ -122,6 +122,7 @@ class MissionEngine:
         return self.reached
 
     def progress(self, timestamp: Timestamp) -> MissionProgress:
+        """The progress as a message."""
         return MissionProgress(
             timestamp=timestamp,
             state=self.state,
@@ -172,4 +173,5 @@ class MissionEngine:
 
 
 def vector(point: Point) -> Vector3:
+    """The point (x, y) [m] as a message with z = 0."""
     return Vector3(x=point[0], y=point[1])

@@ -21,7 +21,7 @@ JUMP = 0.5  # m, of a pose that was set anew
 
 
 class WheelSpeedometer:
-    """Speeds by the ticks [m/s]."""
+    """Low-pass filtered wheel speeds [m/s] from encoder ticks."""
 
     def __init__(self, radius: float) -> None:
         """radius: m."""
@@ -32,6 +32,7 @@ class WheelSpeedometer:
         self._last: WheelTicks | None = None
 
     def step(self, ticks: WheelTicks | None) -> None:
+        """Takes the newest encoder ticks; the same message again changes nothing."""
         last = self._last
         if ticks is None or (last is not None and ticks.timestamp == last.timestamp):
             return
@@ -48,12 +49,15 @@ class WheelSpeedometer:
 
     @property
     def speed(self) -> float:
-        """m/s, ahead."""
+        """Forward speed [m/s]: the mean of both wheels."""
         return ((self.left.value or 0.0) + (self.right.value or 0.0)) / 2
 
 
 class StuckDetector:
-    """``stuck_for``: s that wheels have been held fast, or have turned while the vehicle stayed; it stands still while nothing is asked."""
+    """Detects wheels that are blocked or slip.
+
+    ``stuck_for`` [s]: how long they have; it does not change while no motion is commanded.
+    """
 
     def __init__(self, wheels: WheelSpeedometer) -> None:
         self.stuck_for = 0.0
@@ -65,11 +69,11 @@ class StuckDetector:
         self._well = 0.0
 
     def forget(self) -> None:
-        """Somebody has it try again."""
+        """Starts anew, when somebody has the vehicle try again."""
         self.stuck_for = self._well = 0.0
 
     def step(self, asked: WheelSpeeds, here: GroundPose | None, dt: float) -> None:
-        """asked: m/s at the rims."""
+        """One cycle of ``dt`` [s]. asked: commanded rim speeds [m/s]; here: pose in the world frame."""
         slips = self._slips(here, dt)
         wheels = self._wheels
         pairs = ((asked.left, wheels.left.value), (asked.right, wheels.right.value))
@@ -97,7 +101,7 @@ class StuckDetector:
 
 
 class TiltEstimate:
-    """The angle [rad] between the body's upward axis and what the accelerometer feels as up."""
+    """The angle [rad] between the body's z axis and the direction of the low-pass filtered specific force."""
 
     def __init__(self, imu_rpy: tuple[float, float, float]) -> None:
         self.angle = 0.0
@@ -105,6 +109,7 @@ class TiltEstimate:
         self._force = (LowPass(TILT_TIME), LowPass(TILT_TIME), LowPass(TILT_TIME))
 
     def step(self, imu: Sequence[Imu], dt: float) -> None:
+        """Takes the IMU samples of a cycle of ``dt`` [s]."""
         for sample in imu:
             felt = sample.specific_force
             for part, value in zip(self._force, (felt.x, felt.y, felt.z), strict=True):

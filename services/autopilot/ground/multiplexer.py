@@ -25,7 +25,7 @@ RANKS: Mapping[int, Order] = {mode: in_turn(sources) for mode, sources in SOURCE
 
 @dataclass(frozen=True)
 class VelocityCommand:
-    """A command as it came. t: when it was sent [s]; linear m/s, angular rad/s; lasts: how long it counts [s]."""
+    """A received velocity command. t: when it was sent [s]; linear [m/s], angular [rad/s]; lasts: how long it is valid [s]."""
 
     t: float
     linear: float
@@ -33,19 +33,20 @@ class VelocityCommand:
     lasts: float = COMMAND_MAX_AGE
 
     def is_fresh(self, t: float) -> bool:
-        """Neither too old at ``t`` [s] nor from the future, where it would never grow old."""
+        """Whether it is valid at ``t`` [s]: neither too old nor from the future, where it would never grow old."""
         return -CLOCK_TOLERANCE <= t - self.t <= self.lasts
 
     @property
     def is_finite(self) -> bool:
+        """Whether both velocities are finite."""
         return isfinite(self.linear) and isfinite(self.angular)
 
 
 @dataclass(frozen=True)
 class ActiveCommand:
-    """What is let through: the source ("" = nobody, stand still), why, and the velocity.
+    """The command that is let through: its source ("" = none, stand still), the reason, linear [m/s] and angular [rad/s] velocity.
 
-    refused: commands that were fresh and admitted but no numbers, "" if there are none.
+    refused: commands that were fresh and admitted but not finite, "" if there are none.
     """
 
     source: str
@@ -56,7 +57,10 @@ class ActiveCommand:
 
 
 def choose(t: float, mode: int, commands: Mapping[str, VelocityCommand], obstacle: str, held: str = "") -> ActiveCommand:
-    """The command that counts at ``t`` [s]. obstacle: why nothing may move (STOP ALL, disarmed), "" if it may; held: whose did before."""
+    """The command in force at ``t`` [s].
+
+    obstacle: why nothing may move (STOP ALL, disarmed), "" if it may; held: the source in force before.
+    """
     if obstacle:
         return ActiveCommand("", obstacle)
     admitted = SOURCES[mode]

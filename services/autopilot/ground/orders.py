@@ -8,7 +8,7 @@ from uvf.models.vehicle.file import GroundBody
 
 
 def carry_out(order: OrderRequest, engine: MissionEngine, here: Point | None, body: GroundBody) -> str:
-    """Why it is refused; empty if it is done. Restarting is the service's own. here: m, world."""
+    """Carries out an order, other than a restart; returns why it is refused, "" if it is done. here: x, y [m, world]."""
     kind = order.WhichOneof("kind")
     if kind == "speed":
         return _speed(order.speed, engine, body)

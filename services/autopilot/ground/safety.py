@@ -22,7 +22,7 @@ BY_ITSELF = (Mode.MODE_MISSION, Mode.MODE_RETURN)
 
 @dataclass(slots=True)
 class GroundSensorInputs:
-    """What has come in a cycle; None: nothing fresh."""
+    """The messages of one cycle; None: nothing fresh."""
 
     here: GroundPose | None = None
     link: Link | None = None
@@ -35,7 +35,7 @@ class GroundSensorInputs:
 
 @dataclass(frozen=True, slots=True)
 class GroundActivity:
-    """What the vehicle is about."""
+    """What the vehicle is doing."""
 
     mode: int
     free: bool
@@ -47,7 +47,7 @@ class GroundActivity:
 
 
 class GroundFailsafeMonitor:
-    """``step`` once a cycle, then ``brakes`` for the velocity that was chosen."""
+    """Evaluates the failsafes and the fence: ``step`` once a cycle, then ``brakes`` for the velocity that was chosen."""
 
     def __init__(self, body: GroundBody, fence: Fence, imu_rpy: tuple[float, float, float], sweeping: Sweeping) -> None:
         self.watch = FailsafeWatch(GROUND_RULES)
@@ -70,7 +70,7 @@ class GroundFailsafeMonitor:
         """How often it has been."""
 
     def set_fence(self, fence: Fence, here: GroundPose | None) -> str:
-        """Why it is refused; empty if it is in force from now on."""
+        """Sets the fence; returns why it is refused, "" if it is in force from now on."""
         why = fence_fault(fence)
         if not why and here is not None and (room := fencing(fence).region.at((here.x, here.y))) < 0:
             why = f"the vehicle is {-room:.1f} m outside of it"
@@ -80,7 +80,7 @@ class GroundFailsafeMonitor:
         return why
 
     def keep_near(self, home: Point, distance: float) -> None:
-        """No farther than ``distance`` [m] from home; 0: however far."""
+        """Limits the distance from home [m, world] to ``distance`` [m]; 0: no limit."""
         if (home, distance) != self._about:
             self._about = home, distance
             self._renew()
@@ -89,14 +89,14 @@ class GroundFailsafeMonitor:
         self.fencing = self._plan if self.fence.disabled else near_home(self._plan, *self._about)
 
     def overrule(self) -> None:
-        """Somebody has asked for a mode."""
+        """Notes that somebody has requested a mode."""
         self.watch.overrule()
         self._grip.forget()
 
     def step(
         self, t: float, sensed: GroundSensorInputs, doing: GroundActivity, params: GroundAutopilotParams, dt: float
     ) -> tuple[list[Event], FailsafeOrder[GroundFailsafeInputs] | None]:
-        """What has begun and ended, and what is to be done."""
+        """One cycle of ``dt`` [s] at ``t`` [s]: the events of rules raised and cleared, and the order that follows."""
         self._hear(t, sensed, doing, dt)
         if sensed.here is not None:
             was, self.is_outside = self.is_outside, self.fencing.region.at((sensed.here.x, sensed.here.y)) < 0
@@ -141,24 +141,25 @@ class GroundFailsafeMonitor:
         )
 
     def brakes(self, here: GroundPose | None, linear: float) -> bool:
-        """Whether it has to stop before the fence; it may still turn away from it."""
+        """Whether the vehicle at ``linear`` [m/s] has to stop before the fence; it may still turn away from it."""
         self._fenced = here is not None and stops(self.fencing, here, linear, self._keep)
         return self._fenced
 
     def obstacle(self, mode: int) -> str:
-        """Why it must not move by itself in ``mode``: what it lacks for that; "" if it may."""
+        """What it lacks to move autonomously in ``mode``; "" if it may move."""
         holding = [self.watch.holding[name] for name in STANDS if name in self.watch.holding] if mode in BY_ITSELF else []
         return holding[0].raised_text if holding else ""
 
     def faults(self) -> list[str]:
-        """Why it should not be armed."""
+        """The reasons against arming."""
         return [rule.raised_text for rule in self.watch.holding.values() if rule.name in ("tipped", "battery_critical")]
 
 
 def mode_of(action: FailsafeAction) -> int:
-    """The mode that carries it out."""
+    """The mode that carries out a failsafe action."""
     return Mode.MODE_RETURN if action is FailsafeAction.RETURN else Mode.MODE_HOLD
 
 
 def place(pose: PoseInFrame, yaw: float) -> GroundPose:
+    """The planar pose of a message, with its ``yaw`` [rad, world]."""
     return GroundPose(pose.pose.position.x, pose.pose.position.y, yaw)

@@ -108,6 +108,7 @@ class GroundAutopilot(Service):
         self._events: list[Event] = []
 
     def step(self, t: float, now: interface.Inputs) -> interface.Outputs:
+        """One cycle at ``t`` [s, simulation]: requests, failsafes, mission, command multiplexer, wheel speeds."""
         self._handle_stop_all(t, now.stop)
         self._here = place(now.pose, yaw_of(now.pose.pose.orientation)) if now.pose is not None else None
         self._watch(t, GroundSensorInputs(self._here, now.link, now.imu, now.ticks, now.scan, now.correction, now.battery))
@@ -133,7 +134,7 @@ class GroundAutopilot(Service):
         return out
 
     def recall(self, left: interface.Recalls) -> None:
-        """Goes on in the mode, armed or not, stopped or not, at the mission's item and with the parameters of the instance before."""
+        """Resumes mode, arming, STOP ALL, mission item and parameters of the instance before."""
         if left.params is not None:
             self.params = self._told_params.taken_up(left.params, self.params)
         if left.status is not None and left.status.mode in SOURCES:

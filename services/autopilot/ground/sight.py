@@ -8,7 +8,10 @@ MOVED = 0.03  # m of the wheels, after which a scan that is the same to the last
 
 
 class SensorWatch:
-    """``unseen`` and ``map_age``: s; 0 as long as there never was any. A scan is as old as its last beam."""
+    """Age of the last scan that changed, ``unseen`` [s], and of the map correction, ``map_age`` [s]; 0 while there never was one.
+
+    A scan is as old as its last beam.
+    """
 
     def __init__(self, sweeping: Sweeping) -> None:
         self._sweeping = sweeping
@@ -19,7 +22,7 @@ class SensorWatch:
         self._travelled = 0.0
 
     def step(self, t: float, scan: LaserScan | None, correction: FrameTransform | None, travelled: float) -> None:
-        """travelled: m by the wheels since the start."""
+        """One cycle at ``t`` [s]. travelled: distance by the wheels [m] since the start."""
         if scan is not None and (self._scan is None or scan.timestamp != self._scan.timestamp):
             changed = self._scan is None or scan.ranges != self._scan.ranges
             if changed or travelled - self._travelled < MOVED:

@@ -39,7 +39,7 @@ log = logging.getLogger(__name__)
 
 
 def build(site: Scenario) -> list[ServiceInstance]:
-    """Raises BadInput when an address in the environment is none or names a vehicle that there is not, or a choice is none of those."""
+    """The MAVLink service of a mission. Raises BadInput for an address, a vehicle name or a choice in the environment that is wrong."""
     targets = targets_from(os.environ.get(TARGETS, DEFAULT_TARGETS), TARGETS, [m.entry.system_id for m in site.members.values()])
     where = os.environ.get(LISTEN, DEFAULT_LISTEN)
     listen = peer(where, LISTEN, EXAMPLE) if where.strip() else None
@@ -57,7 +57,7 @@ def build(site: Scenario) -> list[ServiceInstance]:
 
 
 def chosen(name: str, choices: Mapping[str, bool], default: str, environment: Mapping[str, str]) -> bool:
-    """Raises BadInput."""
+    """The value of an environment variable that offers a choice. Raises BadInput for another word."""
     text = environment.get(name, default)
     if text not in choices:
         raise BadInput(f"{name}={text}: {nearest(text, choices)}")
@@ -65,6 +65,7 @@ def chosen(name: str, choices: Mapping[str, bool], default: str, environment: Ma
 
 
 def facts_of(site: Scenario, generic: bool = False, started: float = 0.0) -> list[VehicleInfo]:
+    """The static facts of every vehicle of a mission; started: Unix time [s] of the link's start, 0 = unknown."""
     origin = site.world.origin
     tangent = LocalTangent.from_degrees(origin.latitude, origin.longitude, origin.altitude)
     own = {m.name: own_of(m) for m in site.members.values()}
@@ -72,7 +73,10 @@ def facts_of(site: Scenario, generic: bool = False, started: float = 0.0) -> lis
 
 
 def open_keys(started: float, required: bool) -> Signing:
-    """A file that is none of ours is put aside: without its keys everybody is a stranger, which ``required`` refuses."""
+    """Message signing with the stored keys; started: Unix time [s] at t = 0.
+
+    A broken key file is put aside: without its keys every peer is unknown, and ``required`` refuses it.
+    """
     path = state_folder() / KEYS
     try:
         return Signing(KeyStore(path), started, required)
@@ -83,19 +87,19 @@ def open_keys(started: float, required: bool) -> Signing:
 
 
 def own_of(member: MissionVehicle) -> tuple[Params, frozenset[str]]:
-    """The autopilot's parameters as its file sets them, and those that it reads only when it starts."""
+    """The autopilot's parameters as the vehicle's file sets them, and those that it reads only when it starts."""
     if member.file.kind == "ground":
         return member.params(GROUND, GroundAutopilotParams), frozenset()
     return member.params(AIR, AirParams), FIXED
 
 
 def store_of(site: Scenario, vehicle: str) -> FileStore:
-    """Of one vehicle of one mission: another mission's begins with its own file."""
+    """The parameter file of one vehicle of one mission; each mission has its own."""
     return FileStore(state_folder() / "parameters" / site.mission_path.stem / f"{vehicle}.json")
 
 
 def open_link(targets: list[Peer], listen: Peer | None) -> UdpLink:
-    """Names looked up; without the listening port when it is taken, and without targets that nobody knows."""
+    """Opens the UDP link, host names resolved; without the listening port when it is taken, and without unresolvable targets."""
     numeric = [peer for peer in map(_looked_up, targets) if peer is not None]
     try:
         return UdpLink(numeric, listen)

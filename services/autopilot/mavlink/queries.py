@@ -14,12 +14,13 @@ from uvf.runtime.mavlink import modes
 
 
 class Queries:
-    """The acknowledgement always goes before the message that was asked for."""
+    """Commands that request messages and rates. The acknowledgement always precedes the requested message."""
 
     def __init__(self, schedule: Schedule) -> None:
         self._schedule = schedule
 
     def handlers(self) -> dict[int, Handler]:
+        """Handlers of these commands, by MAV_CMD."""
         return {
             mav.MAV_CMD_REQUEST_MESSAGE: self._request_message,
             mav.MAV_CMD_SET_MESSAGE_INTERVAL: self._set_interval,

@@ -30,6 +30,8 @@ ENGAGING = frozenset(
 
 
 class Reception:
+    """Checks incoming messages and passes them on to the vehicles they address."""
+
     def __init__(self, vehicles: Sequence[VehicleLink], link: DatagramLink, signing: Signing, reserved: Reserved) -> None:
         self.stations = Stations()
         self._vehicles = vehicles
@@ -40,7 +42,7 @@ class Reception:
         self._peers = Peers()
 
     def take(self, t: float, message: mav.MAVLink_message, peer: Peer) -> None:
-        """One sound message at ``t`` [s, wall]; own packets that come back are nobody's."""
+        """Takes a valid message at ``t`` [s, wall]; own packets that come back are dropped."""
         header = message.get_header()
         sender = Sender(peer, header.srcSystem, header.srcComponent)
         if sender.system in self._own_ids:
@@ -66,7 +68,7 @@ class Reception:
             vehicle.welcome(sender.peer)
 
     def forget(self, t: float) -> None:
-        """Drops what is known of peers that are gone."""
+        """Drops what is known of peers that are gone at ``t`` [s, wall]."""
         known = self._link.peers(t)
         self._peers.forget(t, known)
         self._signing.forget_all_but(known)

@@ -80,7 +80,7 @@ NEWS = (
 
 
 class MavlinkService(Service):
-    """Runs on wall time: heartbeats, answers and timers go on while the simulation is slow or paused."""
+    """MAVLink for all vehicles. It runs on wall time: heartbeats, answers and timers go on while the simulation is slow or paused."""
 
     name = "mavlink"
     hz = 50.0
@@ -88,6 +88,8 @@ class MavlinkService(Service):
     clock = "wall"
 
     class Inputs(Reads):
+        """Messages of the vehicles, and answers to requests."""
+
         nav: dict[str, NavState] = each_vehicle(topics.NAV_STATE)
         status: dict[str, VehicleStatus] = each_vehicle(topics.STATUS)
         mission: dict[str, Mission] = each_vehicle(topics.MISSION)
@@ -120,6 +122,8 @@ class MavlinkService(Service):
         ground_param: list[Answer[ParamRequest, ParamReply]] = answers(topics.PARAM.by("autopilot_ground"))
 
     class Outputs(Writes):
+        """Commands and requests to the vehicles."""
+
         drive: dict[str, DriveCommand] | None = topic(topics.DRIVE.by("mavlink"))
         surfaces: dict[str, SurfaceCommand] | None = topic(topics.SURFACES.by("mavlink"))
         setpoint: dict[str, FlightSetpoint] | None = topic(topics.SETPOINT.by("mavlink"))
@@ -158,7 +162,7 @@ class MavlinkService(Service):
         self._link_due = Due(topics.LINK.hz)
 
     def step(self, t: float, now: Inputs) -> Outputs:
-        """``t`` [s]: wall time since the start; answers end the commands that wait for them."""
+        """One cycle at ``t`` [s]: wall time since the start; answers end the commands that wait for them."""
         self._update(t, {name: getattr(now, name) for name in NEWS}, now.clock)
         for called in self.calls:
             for answer in getattr(now, called):
@@ -172,6 +176,7 @@ class MavlinkService(Service):
         return out
 
     def close(self) -> None:
+        """Closes the UDP link."""
         self._link.close()
 
     def _update(self, t: float, news: Mapping[str, Mapping[str, Message]], clock: Clock | None) -> None:

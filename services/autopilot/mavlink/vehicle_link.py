@@ -47,6 +47,8 @@ ON_CHANGE = (
 
 
 class VehicleLink:
+    """The MAVLink protocols of one vehicle."""
+
     def __init__(self, facts: VehicleInfo, store: Store) -> None:
         self.line = VehicleConnection(facts)
         self.schedule = Schedule({number: stream.hz for number, stream in STREAMS.items()})
@@ -92,7 +94,7 @@ class VehicleLink:
         }
 
     def hear(self, message: mav.MAVLink_message, sender: Sender) -> None:
-        """One message for this vehicle. Who calls it by its number knows it, and listens."""
+        """Handles a message for this vehicle."""
         if sender.peer in self._to_greet and getattr(message, "target_system", 0) == self.line.facts.system_id:
             self._greet(sender.peer)
         handler = self._handlers.get(message.get_msgId())
@@ -101,7 +103,7 @@ class VehicleLink:
                 handler(message, sender)
 
     def welcome(self, peer: Peer) -> None:
-        """Somebody is new there: ground stations drop texts of a vehicle whose heartbeat they have not heard yet."""
+        """Greets a new peer: ground stations drop texts of a vehicle whose heartbeat they have not heard yet."""
         self._to_greet[peer] = self.line.t + HEARTBEAT_WITHIN
 
     def _greet(self, peer: Peer) -> None:
@@ -114,7 +116,7 @@ class VehicleLink:
             self.line.text(mav.MAV_SEVERITY_WARNING, f"PreArm: {complaint}", peer)
 
     def tick(self, peers: Sequence[Peer], events: Sequence[Event]) -> list[tuple[mav.MAVLink_message, list[Peer]]]:
-        """What goes out now, and to whom, after the messages of this step have been heard."""
+        """The outgoing messages and their receivers, after the messages of this step have been heard."""
         line = self.line
         line.settle()
         self._parameters.tick()
@@ -134,7 +136,7 @@ class VehicleLink:
         return out
 
     def forget(self, peers: Sequence[Peer]) -> None:
-        """Drops what peers that are gone have wished for."""
+        """Drops the message rates requested by peers that are gone."""
         self.schedule.forget(peers)
         self._parameters.forget(peers)
         self._to_greet = {peer: at for peer, at in self._to_greet.items() if peer in peers}

@@ -22,14 +22,14 @@ COOKIE = "gcs"
 
 @dataclass(frozen=True)
 class Guard:
-    """The rules for one listening address. token: empty = loopback only, no token asked."""
+    """Access rules of one listening address. token: empty = loopback only, no token asked."""
 
     port: int
     token: str = ""
     health: Callable[[], bytes] = field(default=lambda: b'{"status": "ok"}')
 
     def refuses(self, path: str, headers: Mapping[str, str]) -> str:
-        """Why the request is refused; empty when it may pass."""
+        """Why the request is refused; "" when it may pass."""
         host = headers.get("Host", "")
         name = urlsplit(f"//{host}").hostname or ""
         if not self.token and not is_loopback(name):
@@ -45,7 +45,7 @@ class Guard:
         return secrets.compare_digest(token.encode(), self.token.encode())
 
     def answer(self, path: str, headers: Mapping[str, str]) -> Response | None:
-        """The guard's own answer to a request, or None to let viser answer."""
+        """The guard's own response to a request, or None to let viser respond."""
         try:
             return self._answer(path, headers)
         except (ValueError, LookupError):  # half an IPv6 address, letters that are none, a header given twice
@@ -64,7 +64,7 @@ class Guard:
         return None
 
     def wrap(self, process_request: Callable[..., Any] | None) -> Callable[[Any, Request], Any]:
-        """A ``process_request`` for websockets' server that asks the guard first."""
+        """A ``process_request`` for the websockets server that asks the guard first."""
 
         def guarded(connection: Any, request: Request) -> Any:
             answer = self.answer(request.path, request.headers)

@@ -25,6 +25,8 @@ Draw = Callable[[], Html]
 
 
 class Composer:
+    """Composes what the page shows from the state of the ground station."""
+
     def __init__(self, model: Model, commander: Commander) -> None:
         self._model = model
         self._commander = commander
@@ -38,7 +40,7 @@ class Composer:
         self._step = 0
 
     def picture(self, t: float) -> Picture:
-        """What to show at ``t`` [s, wall]."""
+        """The picture to show at ``t`` [s, wall]."""
         self._drawn.clear()
         self._html.update(self._due(self._shared(t), everything=self._step == 0))
         self._own = {page: own for page, own in self._own.items() if page in self._model.sessions}

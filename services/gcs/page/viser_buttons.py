@@ -11,7 +11,7 @@ PLACES = {"stop": 1.0, "release": 1.1, "cancel": 55.0}
 
 
 class ViserButtons:
-    """gui: everybody's or one browser's; ask: takes what is asked for with a click."""
+    """A row of buttons. gui: everybody's or one browser's; ask: takes the action of a click."""
 
     def __init__(self, gui: Any, ask: Callable[[Action], None]) -> None:
         self._gui = gui
@@ -19,6 +19,7 @@ class ViserButtons:
         self._shown: dict[str, tuple[Any, Button]] = {}
 
     def show(self, buttons: Sequence[Button]) -> None:
+        """Shows these buttons, changing only what differs."""
         wanted = {button.key for button in buttons}
         for key in [key for key in self._shown if key not in wanted]:
             self._shown.pop(key)[0].remove()

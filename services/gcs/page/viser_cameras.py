@@ -15,7 +15,7 @@ ROUNDED = radians(0.5)  # the sliders' ends are whole degrees
 
 
 class ViserCameras:
-    """gui: that of the browser; ask: takes what is asked for with the sliders."""
+    """Camera picture and gimbal sliders. gui: the browser's; ask: takes the action of a slider."""
 
     def __init__(self, gui: Any, ask: Callable[[Action], None]) -> None:
         self._ask = ask
@@ -46,6 +46,7 @@ class ViserCameras:
             self._ask(AimGimbal(panel.vehicle, pan, tilt, mode))
 
     def show(self, shown: PagePanel) -> None:
+        """Shows the camera picture and the gimbal of a panel."""
         self._show_controls(shown.gimbal)
         there = bool(shown.html.get("cameras"))
         if self._folder.visible != there:

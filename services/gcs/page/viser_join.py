@@ -21,7 +21,7 @@ WRITTEN_FOR = "1.1.1"
 
 
 class JumpingBuffer(AsyncMessageBuffer):
-    """Of what all browsers are sent: the same messages in the same windows and the same order as viser's own."""
+    """viser's buffer of what all browsers are sent: the same messages in the same windows and order."""
 
     async def _window_loop(
         self, client_id: int, backlog_last_id: int, backlog_done_message: Message | None
@@ -74,7 +74,7 @@ class JumpingBuffer(AsyncMessageBuffer):
 
 @contextlib.contextmanager
 def jumping() -> Iterator[None]:
-    """A server that is started meanwhile has the override. With another viser than the known one it goes without, and says so."""
+    """Installs the buffer for servers that are started meanwhile; with another version of viser it does not, and says so."""
     if viser.__version__ != WRITTEN_FOR:
         sys.stderr.write(f"gcs: viser is {viser.__version__}, not {WRITTEN_FOR}: who joins after hours may stop all pages for seconds\n")
         yield

@@ -11,6 +11,8 @@ from services.gcs.state.layers import ROOTS, SHOWN_AT_FIRST
 
 
 class ViserLayers:
+    """The visible layers of one browser."""
+
     def __init__(self, client: viser.ClientHandle, ask: Callable[[Action], None]) -> None:
         """ask: takes what is asked for with a click."""
         self._client = client
@@ -30,7 +32,7 @@ class ViserLayers:
         return showing
 
     def show(self, hidden: Set[str]) -> None:
-        """Hides these nodes of everybody's scene, and what hangs below them, in this browser; shows the others again."""
+        """Hides these nodes, and what hangs below them, in this browser only; shows the others again."""
         for root in sorted(hidden ^ self._hidden):
             message = _messages.SetSceneNodeVisibilityMessage(root, root not in hidden)
             self._client._websock_connection.queue_message(message)

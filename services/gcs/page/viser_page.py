@@ -27,7 +27,7 @@ FLEET_WIDTH, VEHICLE_WIDTH = 270, 350
 
 
 class ViserPage:
-    """One server; every browser sees the same scene, and beside it a panel of its own. views: see ``viser_views``."""
+    """The page: one server; every browser sees the same scene and a panel of its own. views: see ``viser_views``."""
 
     def __init__(self, address: Address, views: Views) -> None:
         claim(address)
@@ -113,6 +113,7 @@ class ViserPage:
             self._actions.put(ClickGround(panel.vehicle, event.ray_origin, event.ray_direction))
 
     def show(self, picture: Picture) -> None:
+        """Shows a picture in all browsers."""
         with self._server.atomic():
             self._scene.show(picture.nodes, picture.places)
             self._show_html(picture.html)
@@ -129,17 +130,19 @@ class ViserPage:
                 self._html[name].content = padded(content)
 
     def actions(self) -> list[Action]:
+        """Takes the actions asked for since the last call."""
         taken = []
         while not self._actions.empty():
             taken.append(self._actions.get())
         return taken
 
     def close(self) -> None:
+        """Stops the server."""
         with contextlib.redirect_stdout(io.StringIO()):
             self._server.stop()
 
 
 def sky() -> NDArray[np.uint8]:
-    """A dusk that leaves the ground's haze at the horizon: (64, 4, 3)."""
+    """Background image (64, 4, 3) RGB: a dusk that ends in the ground's haze at the horizon."""
     share = np.linspace(0, 1, 64)[:, None, None] ** 1.5
     return np.tile(np.array((10, 17, 32)) * (1 - share) + np.array((74, 98, 134)) * share, (1, 4, 1)).astype(np.uint8)

@@ -22,7 +22,7 @@ IN_TAB = {"instrument": 1.0, "facts": 100.0}
 
 
 class ViserPanel:
-    """ask: takes what is asked for; reshape: takes the shape of the window, and whether nobody has turned its view by hand."""
+    """A browser's own panel. ask: takes actions; reshape: takes the window's aspect ratio, and whether nobody has turned its view."""
 
     def __init__(
         self, client: viser.ClientHandle, tab: Any, ask: Callable[[Action], None], reshape: Callable[[Any, float, bool], None]
@@ -57,7 +57,7 @@ class ViserPanel:
             self._reshape(self._client, *shape)
 
     def show(self, panel: PagePanel) -> None:
-        """A browser that has gone meanwhile is written to in vain, which is no fault."""
+        """Shows the panel; writing to a browser that has gone meanwhile is no fault."""
         try:
             with self._client._websock_connection.get_message_buffer().sanctioned_dead_writes(), self._client.atomic():
                 self.vehicle = panel.vehicle

@@ -18,7 +18,7 @@ TURNED = 1e-3  # quaternion components
 
 
 class ViserScene:
-    """on_pick(vehicle, event): called on viser's event loop when a vehicle's body is clicked."""
+    """Keeps viser's scene in step with the picture. on_pick(vehicle, event): called on viser's event loop when a vehicle is clicked."""
 
     def __init__(self, server: viser.ViserServer, on_pick: Callable[[str, Any], None]) -> None:
         self._server = server
@@ -30,6 +30,7 @@ class ViserScene:
             server.scene.add_frame(root, show_axes=False)
 
     def show(self, nodes: Mapping[str, Node], places: Mapping[str, DisplayPose]) -> None:
+        """Shows these nodes and frames by name, changing only what differs."""
         for name in [n for n in self._shown if n not in nodes]:
             self._shown.pop(name)[1].remove()
         for name in [n for n in reversed(self._frames) if n not in places]:  # what hangs on a frame before the frame

@@ -11,28 +11,31 @@ SCRIPT = Path(__file__).with_name("page.js")
 
 
 def script(bridge: str) -> str:
-    """bridge: the id of the hidden text field through which the page speaks."""
+    """The page's JavaScript. bridge: id of the hidden text field through which the page sends messages."""
     arguments = ", ".join(json.dumps(text) for text in (bridge, STYLE.read_text(encoding="utf-8")))
     return f"{SCRIPT.read_text(encoding='utf-8').strip()}({arguments})"
 
 
 def follow(on: bool) -> str:
-    """Makes one page's view go along with the chosen vehicle, or stand still again; either way it is no longer turned by hand."""
+    """JavaScript that makes a page's view follow the chosen vehicle, or stop; either way it counts as not turned by hand."""
     return f"window.__gcsFollow = {json.dumps(on)}; window.__gcsHand = false"
 
 
 def bar_source(content: Html, beat: int, bridge: str) -> str:
-    """The hidden element that the bar is copied from. A new ``beat`` shows that the ground station lives; bridge: of which connection."""
+    """The hidden element that the status bar is copied from.
+
+    A new ``beat`` shows that the ground station is alive; bridge: of which connection.
+    """
     return str(html("<div id='gcs-bar-source' data-beat='{}' data-bridge='{}' hidden>{}</div>", beat, bridge, content))
 
 
 def padded(content: Html) -> str:
-    """viser lays HTML flush with the panel's edge; buttons and pictures stand a little off it. A plain string, as viser sends no other."""
+    """The content with a margin, which viser's panels do not have. A plain string, as viser sends no other."""
     return str(html("<div class='g-pad'>{}</div>", content))
 
 
 def said_in(value: str) -> tuple[str, str]:
-    """(what, about what) of a message of the page, as in ``select:burger`` or ``shape:1.25``; empty when it is none."""
+    """(kind, argument) of a message from the page, as in ``select:burger`` or ``shape:1.25``; empty for an invalid one."""
     try:
         said = json.loads(value)
     except ValueError:
@@ -44,7 +47,7 @@ def said_in(value: str) -> tuple[str, str]:
 
 
 def action_in(value: str, page: int, vehicle: str) -> Action | None:
-    """What a message of a page's own script asks for; None when it asks for nothing.
+    """The action that a message of a page's script asks for, or None.
 
     page, vehicle: which page it came from and which vehicle that one shows; its script has no say in that.
     """
@@ -76,7 +79,7 @@ def _steer(page: int, *way: str) -> Steer | None:
 
 
 def shape_in(value: str) -> tuple[float, bool] | None:
-    """(width by height of the page's scene, whether nobody has turned its view by hand), where its message tells that."""
+    """(aspect ratio, width over height [-] of the page's scene, whether nobody has turned its view by hand); None for another message."""
     what, shape = said_in(value)
     try:
         return (float(shape), what == "shape") if what in ("shape", "hand") and 0.05 < float(shape) < 20.0 else None

@@ -49,7 +49,7 @@ def guarded_server(address: Address) -> viser.ViserServer:
 
 
 def telling_of_few() -> Callable[[Any, dict[str, Any]], None]:
-    """Reports the first errors of viser's loop only: a client that sends a word for a number makes one with each message."""
+    """Reports only the first errors of viser's loop: a client that sends a word for a number causes one with each message."""
     told = 0
 
     def report(loop: Any, context: dict[str, Any]) -> None:

@@ -46,17 +46,21 @@ class CameraMessage(msgspec.Struct, tag="ViewerCameraMessage", forbid_unknown_fi
 
 
 class Value(msgspec.Struct, forbid_unknown_fields=True):
-    """Of a button, slider, choice or text; nothing else of them is a client's to set."""
+    """New value of a button, slider, choice or text field, the only attribute that a client may set."""
 
     value: bool | int | float | Word
 
 
 class Update(msgspec.Struct, tag="GuiUpdateMessage", forbid_unknown_fields=True):
+    """As ``viser._messages.GuiUpdateMessage``."""
+
     uuid: Word
     updates: Value
 
 
 class Click(msgspec.Struct, tag="ScenePointerMessage", forbid_unknown_fields=True):
+    """As ``viser._messages.ScenePointerMessage``, of clicks only."""
+
     event_type: Literal["click"]
     ray_origin: Vector
     ray_direction: Vector
@@ -65,6 +69,8 @@ class Click(msgspec.Struct, tag="ScenePointerMessage", forbid_unknown_fields=Tru
 
 
 class NodeClick(msgspec.Struct, tag="SceneNodeClickMessage", forbid_unknown_fields=True):
+    """As ``viser._messages.SceneNodeClickMessage``."""
+
     name: Name
     ray_origin: Vector
     ray_direction: Vector
@@ -78,7 +84,7 @@ DECODER: msgspec.msgpack.Decoder[Any] = msgspec.msgpack.Decoder(CameraMessage | 
 
 
 def is_sound(raw: object) -> bool:
-    """Whether it is a message of a page, and its numbers are finite."""
+    """Whether it is a valid message of a page with finite numbers."""
     if not isinstance(raw, bytes):
         return False
     try:
@@ -110,11 +116,11 @@ class Door:
         """Messages of no known form."""
 
     def connection(self, *args: Any, **kwargs: Any) -> "PageConnection":
-        """What websockets' server makes of each."""
+        """Factory of connections for the websockets server."""
         return PageConnection(self, *args, **kwargs)
 
     def handler(self, serve: Callable[[Any], Any]) -> Callable[[Any], Any]:
-        """viser's own for each browser, for as many as there may be at a time."""
+        """viser's own handler, limited to as many browsers as there may be at a time."""
 
         async def bounded(connection: Any) -> None:
             if connection.subprotocol != VERSION:
@@ -146,7 +152,7 @@ class Door:
 
 
 class PageConnection(ServerConnection):
-    """Hands on what is sound; who sends more than a page does is read more slowly, who sends nonsense is cut off."""
+    """Passes on valid messages; a client over its rate is read more slowly, one that sends invalid ones is disconnected."""
 
     def __init__(self, door: Door, *args: Any, **kwargs: Any) -> None:
         super().__init__(*args, **kwargs)
@@ -158,21 +164,24 @@ class PageConnection(ServerConnection):
         """When it last said something sound, or connected [s]."""
 
     def end_if_mute(self) -> None:
-        """For who has said nothing since it connected: a browser says at once where its camera is."""
+        """Disconnects a client that has said nothing since it connected: a browser sends its camera pose at once."""
         if not self._has_spoken:
             self.transport.abort()
 
     def connection_made(self, transport: Any) -> None:
+        """Counts the connection, and refuses it beyond ``MOST_OPEN``."""
         super().connection_made(transport)
         self._door.open += 1
         if self._door.open > MOST_OPEN:
             transport.abort()
 
     def connection_lost(self, exc: Exception | None) -> None:
+        """Counts the connection off."""
         super().connection_lost(exc)
         self._door.open -= 1
 
     async def recv(self, decode: bool | None = None) -> Any:
+        """The next valid message, within the client's rate."""
         while True:
             raw = await super().recv(decode)
             await self._in_turn()

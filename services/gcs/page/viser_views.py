@@ -17,7 +17,7 @@ NEAR = 0.2  # m
 
 
 class ViserViews:
-    """A view that nobody has moved since it was chosen is fitted anew when the window's shape changes."""
+    """The views of each browser. One that nobody has moved since it was chosen is refitted when the window's shape changes."""
 
     def __init__(self, server: viser.ViserServer, views: Views) -> None:
         self._views = views
@@ -36,7 +36,7 @@ class ViserViews:
         self._shapes.pop(client.client_id, None)
 
     async def choose(self, event: Any) -> None:
-        """A click on the row of views: it counts for the page that asked alone."""
+        """Handles a click on the row of views, for the page that was clicked only."""
         name = event.target.value
         if name not in self.names:
             return
@@ -47,7 +47,7 @@ class ViserViews:
             self._look(event.client, name)
 
     def reshape(self, client: Any, shape: float, untouched: bool) -> None:
-        """A page says, again and again, how wide by high its scene is, and whether nobody has turned its view by hand."""
+        """Takes a page's aspect ratio ``shape``, width over height [-], and whether nobody has turned its view by hand."""
         self._shapes[client.client_id] = shape
         name = self._chosen.get(client.client_id)
         if name is None or not untouched:

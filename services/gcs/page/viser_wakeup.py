@@ -13,6 +13,7 @@ class LoopEvent(asyncio.Event):
     """An event that only its loop sets: from another thread ``set`` does nothing, as viser has its loop set it too."""
 
     def set(self) -> None:
+        """Sets the event, if called on an event loop."""
         try:
             asyncio.get_running_loop()
         except RuntimeError:
@@ -21,7 +22,7 @@ class LoopEvent(asyncio.Event):
 
 
 def wake_from_the_loop(websock_server: Any) -> None:
-    """For what all are sent, and for what each browser is: before anybody waits for it."""
+    """Replaces the events of viser's message buffers, common and per browser, before anybody waits for them."""
 
     def begin(connection: Any) -> None:
         connection.get_message_buffer().message_event = LoopEvent()

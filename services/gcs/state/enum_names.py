@@ -6,7 +6,7 @@ from typing import Any
 def enum_name(enum: Any, value: int) -> str:
     """``return`` for ``Mode.MODE_RETURN``, ``no mission`` for ``NO_MISSION``; ``mode 99``, ``state 99`` for a value without a name.
 
-    enum: as protobuf makes it, for example ``Mode`` or ``NavStatus.State``.
+    enum: as protobuf generates it, for example ``Mode`` or ``NavStatus.State``.
     """
     described = enum.DESCRIPTOR
     known = described.values_by_number.get(value)

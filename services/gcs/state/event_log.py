@@ -34,13 +34,15 @@ class EventLine(NamedTuple):
 
 
 class Notice(NamedTuple):
+    """A line shown over the scene for a while."""
+
     line: EventLine
     good: bool
     until: float  # s, wall
 
 
 class EventHistory:
-    """The newest lines of each class in rings of their own, so that many of one push out none of another."""
+    """The newest lines of each class in rings of their own, so that many of one displace none of another."""
 
     def __init__(self) -> None:
         self._kept: dict[str, deque[tuple[int, EventLine]]] = {}
@@ -48,16 +50,17 @@ class EventHistory:
         self.count = 0
 
     def write(self, line: EventLine) -> None:
+        """Appends a line to the log."""
         self._kept.setdefault(line.kind, deque(maxlen=KEPT)).append((self.count, line))
         self.count += 1
 
     def tell(self, t: float, line: EventLine, good: bool = False) -> None:
-        """Also shows it on the page, from ``t`` [s, wall] on, the longer the worse it is."""
+        """Shows a line on the page too, from ``t`` [s, wall] on, the longer the more severe it is."""
         time = TOLD_FOR if good else WARNED_FOR if line.severity <= Event.WARNING else ALARMED_FOR
         self._notices.append(Notice(line, good, t + time))
 
     def notices(self, t: float) -> list[Notice]:
-        """Those to be shown at ``t`` [s, wall], newest first."""
+        """The notices to be shown at ``t`` [s, wall], newest first."""
         return [notice for notice in reversed(self._notices) if notice.until > t]
 
     def __iter__(self) -> Iterator[EventLine]:

@@ -12,14 +12,14 @@ FORGOTTEN_AFTER = 60.0  # s, wall: who has been lost for so long makes room for 
 
 
 class Forgotten(NamedTuple):
-    """What had last been heard of it: its word of itself stays on the bus for ever, and is no sign that it is there."""
+    """What was last heard of a forgotten guest: its latched announcement stays on the bus for ever, and is no sign of life."""
 
     guest: Guest
     signs: Mapping[str, Message | None]
 
 
 class Guests:
-    """Remembers as many names that are not shown as there can be on an input: each is looked at once."""
+    """Vehicles that no mission names: those shown, and those turned away or forgotten."""
 
     def __init__(self) -> None:
         self.met: dict[str, tuple[float, Guest]] = {}
@@ -29,29 +29,30 @@ class Guests:
         self._forgotten: dict[str, Forgotten] = {}
 
     def is_away(self, name: str, guest: Guest) -> bool:
-        """Turned away or forgotten, and there is nothing new of it since."""
+        """Whether it was turned away or forgotten, and there is nothing new of it since."""
         before = self._forgotten.get(name)
         return self._undrawable.get(name) == guest.model or (before is not None and before.guest is guest)
 
     def turn_away(self, name: str, model: str) -> bool:
-        """Because of its model; whether it is the first time."""
+        """Does not show a vehicle because of its model; returns whether that is the first time."""
         new = name not in self._undrawable
         self._undrawable[name] = model
         _trim(self._undrawable)
         return new
 
     def take_in(self, t: float, name: str, guest: Guest) -> None:
+        """Notes a guest that is shown from ``t`` [s, wall] on."""
         self.met[name] = (t, guest)
         self._undrawable.pop(name, None)
         self._forgotten.pop(name, None)
 
     def forget(self, name: str, signs: Mapping[str, Message | None]) -> None:
-        """signs: the newest of each kind by which one hears that it is there."""
+        """Drops a guest. signs: its newest message of each kind that is a sign of life."""
         self._forgotten[name] = Forgotten(self.met.pop(name)[1], signs)
         _trim(self._forgotten)
 
     def hear(self, what: str, name: str, message: Message) -> None:
-        """Of somebody who is not shown: who speaks again is forgotten no more."""
+        """Takes a message of a vehicle that is not shown: one that speaks again is no longer forgotten."""
         before = self._forgotten.get(name)
         if before is not None and what in before.signs and before.signs[what] is not message:
             del self._forgotten[name]

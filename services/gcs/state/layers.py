@@ -18,5 +18,5 @@ SHOWN_AT_FIRST = frozenset(ROOTS) - {"Team maps", "True pose"}
 
 
 def hidden_roots(layers: Set[str]) -> frozenset[str]:
-    """Of a browser that shows these layers: the nodes that it does not show, with all below them."""
+    """The scene nodes that a browser with these layers hides, with all below them."""
     return frozenset(root for layer, roots in ROOTS.items() if layer not in layers for root in roots)

@@ -11,7 +11,7 @@ FORGOTTEN_AFTER = 60.0  # s, wall
 
 
 class ProcessBook:
-    """Of so many names; for a new one the longest silent makes room, once nobody has said a word of it for long."""
+    """The state of all processes; at the limit the longest silent one makes room for a new one, once it has been silent for long."""
 
     def __init__(self, refused: PageRefusals) -> None:
         self.told: dict[str, Process] = {}
@@ -22,12 +22,13 @@ class ProcessBook:
         self._refused = refused
 
     def hear(self, t: float, told: Sequence[Processes]) -> None:
-        """Each launcher tells of its own; together they are what runs."""
+        """Takes the launchers' reports at ``t`` [s, wall]; each launcher reports its own processes."""
         for process in (process for message in told for process in message.processes):
             if self._has_room(t, process.name):
                 self.told[process.name] = process
 
     def hear_health(self, t: float, reports: Sequence[Health]) -> None:
+        """Takes the processes' own health reports at ``t`` [s, wall]."""
         for report in reports:
             if self._has_room(t, report.service):
                 self.vitals.setdefault(report.service, Vitals()).hear(t, report)

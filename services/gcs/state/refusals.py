@@ -7,14 +7,14 @@ LENGTH = 64  # letters by which two of them are told apart
 
 
 class PageRefusals:
-    """tell: takes a line for the log."""
+    """Counts what the page does not show. tell: takes a line for the log."""
 
     def __init__(self, tell: Callable[[str], None]) -> None:
         self._tell = tell
         self._seen: dict[str, set[str]] = {}
 
     def add(self, kind: str, name: str, line: str) -> None:
-        """kind: plural, as in ``names``; ``line`` is told with the first of its kind."""
+        """Counts a name of a kind (plural, as in ``names``); ``line`` is reported with the first of its kind."""
         seen = self._seen.setdefault(kind, set())
         if not seen:
             self._tell(f"{line}; further ones are only counted")

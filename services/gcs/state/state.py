@@ -63,7 +63,7 @@ COLOURS = ("#4ea1ff", "#f2913d", "#3fbf7f", "#b98cf5", "#e8c547", "#5fd4d6")
 
 
 class DisplayPose(NamedTuple):
-    """A pose in the world: m, and the quaternion wxyz."""
+    """A pose in the world frame: position (3,) [m], quaternion (4,) wxyz."""
 
     position: Floats
     wxyz: Floats
@@ -71,7 +71,7 @@ class DisplayPose(NamedTuple):
 
 @dataclass
 class Order:
-    """The last thing asked of a vehicle, and what became of it."""
+    """The last request made to a vehicle, and its outcome."""
 
     text: str
     at: float  # s, wall
@@ -119,27 +119,28 @@ class VehicleModel:
 
     @property
     def flies(self) -> bool:
+        """Whether it is a fixed-wing aircraft."""
         return self.member.file.kind == "fixed_wing"
 
     @property
     def leader(self) -> str:
-        """Whom the mission has it follow; empty for one that follows nobody."""
+        """The vehicle that the mission has it follow; "" if none."""
         follow = self.member.entry.job.follow
         return follow.leader if follow is not None else ""
 
     @property
     def stopped(self) -> bool:
-        """It says itself that it heeds STOP ALL."""
+        """Whether it reports that it obeys STOP ALL."""
         return self.status is not None and self.status.stopped
 
     @property
     def heard(self) -> float | None:
-        """When the vehicle's own running messages were last heard [s, wall]: neither latched ones nor the simulator's truth."""
+        """When its own running messages were last heard [s, wall]: neither latched ones nor the simulator's truth."""
         return max((at for name, at in self.heard_at.items() if name in SIGNS_OF_LIFE), default=None)
 
     @property
     def place(self) -> DisplayPose | None:
-        """Where the vehicle believes to be: the newer of its two estimates."""
+        """Its estimated pose: the newer of its two estimates."""
         nav_at, pose_at = self.heard_at.get("nav", -1.0), self.heard_at.get("pose", -1.0)
         if self.nav is not None and nav_at >= pose_at - STALE_AFTER:
             return DisplayPose(array(self.nav.position), wxyz(self.nav.orientation))
@@ -149,18 +150,19 @@ class VehicleModel:
 
     @property
     def true_place(self) -> DisplayPose | None:
+        """Its true pose, where a simulator publishes it."""
         return None if self.truth is None else DisplayPose(array(self.truth.position), wxyz(self.truth.orientation))
 
     @property
     def speed(self) -> float:
-        """m/s over the ground; forward speed of a ground vehicle, negative backwards."""
+        """Speed over ground [m/s]; of a ground vehicle the forward speed, negative backwards."""
         if self.odometry is not None and not self.flies:
             return self.odometry.linear_velocity.x
         return float(np.hypot(self.nav.velocity.x, self.nav.velocity.y)) if self.nav is not None else 0.0
 
     @property
     def turn_rate(self) -> float:
-        """rad/s, left positive."""
+        """Turn rate [rad/s], left positive."""
         if self.odometry is not None and not self.flies:
             return self.odometry.angular_velocity.z
         return self.nav.angular_velocity.z if self.nav is not None else 0.0
@@ -194,44 +196,45 @@ class Model:
         self.vehicles[name] = VehicleModel(name, member, colour, _track(member))
 
     def join(self, page: int) -> None:
-        """A browser has connected; it shows a ground vehicle at first, if there is one."""
+        """Notes a browser that has connected; it shows a ground vehicle at first, if there is one."""
         grounded = [v.name for v in self.vehicles.values() if not v.flies]
         self.sessions[page] = BrowserSession(page, next(iter(grounded or self.vehicles), ""))
 
     @property
     def layers(self) -> Set[str]:
-        """Those that any browser shows; while there is none, those that the first one will."""
+        """The layers that any browser shows; without a browser, those shown at first."""
         return frozenset().union(*(session.layers for session in self.sessions.values())) if self.sessions else SHOWN_AT_FIRST
 
     def chosen_by(self, session: BrowserSession) -> VehicleModel | None:
-        """None while no vehicle is known; then the first that comes."""
+        """The vehicle that a browser shows; None while no vehicle is known."""
         if session.vehicle not in self.vehicles:
             session.vehicle = next(iter(self.vehicles), "")
         return self.vehicles.get(session.vehicle)
 
     @property
     def stopped(self) -> bool:
-        """STOP ALL is engaged: by a word of anybody, or as a vehicle reports it."""
+        """Whether STOP ALL is engaged, by a command or as a vehicle reports it."""
         return bool(self.stop) or any(v.stopped for v in self.vehicles.values())
 
     @property
     def stops(self) -> list[StopEngagement]:
-        """Every engagement that is known here or that a vehicle reports."""
+        """All engagements of STOP ALL that are known here or reported by a vehicle."""
         reported = [one for v in self.vehicles.values() if v.status is not None for one in v.status.stops]
         return list({name_of(one): one for one in (*reported, *self.stop.engagements)}.values())
 
     @property
     def sim_time(self) -> float:
+        """Simulation time [s]; 0 before the first clock message."""
         return self.clock.t_ns * 1e-9 if self.clock is not None else 0.0
 
     def hear_newest(self, t: float, newest: Mapping[str, Mapping[str, Message]], events: Mapping[str, Sequence[Event]]) -> None:
-        """newest: by kind, then by vehicle; events: by vehicle."""
+        """Takes the messages of a step at ``t`` [s, wall]. newest: by kind, then by vehicle; events: by vehicle."""
         for what, messages in newest.items():
             self.hear(t, what, messages)
         self.hear_events(t, events)
 
     def hear(self, t: float, what: str, messages: Mapping[str, Message]) -> None:
-        """Takes in the newest message of one kind for each vehicle that has a new one."""
+        """Takes the newest message of one kind of each vehicle at ``t`` [s, wall]; one that is not new is ignored."""
         for name, message in messages.items():
             vehicle = self.vehicles.get(name)
             if vehicle is None:
@@ -250,6 +253,7 @@ class Model:
                 vehicle.mapped = floor.share(vehicle.grid) if floor and vehicle.grid and vehicle.grid.column_count else None
 
     def hear_clock(self, t: float, clock: Clock | None) -> None:
+        """Takes the clock message at ``t`` [s, wall]; a new epoch clears tracks and goals."""
         if clock is None or clock is self.clock:
             return
         if self.clock is not None and clock.epoch != self.clock.epoch:
@@ -260,7 +264,7 @@ class Model:
         self.clock, self.clock_at = clock, t
 
     def hear_stop(self, stop: StopStatus) -> None:
-        """Writes down who engages STOP ALL, and who has released the last engagement."""
+        """Logs who engages STOP ALL, and who has released the last engagement."""
         before, self.stop = self.stop, stop
         known = {name_of(one) for one in before.engagements}
         for one in stop.engagements:
@@ -270,17 +274,17 @@ class Model:
             self.note("", f"STOP ALL released by {stop.released_by or 'somebody unnamed'}", Event.NOTICE)
 
     def hear_objects(self, lists: Sequence[SimObjects | None], truth: Mapping[str, NavState]) -> None:
-        """lists: of each simulator, what has been put into it."""
+        """Takes the objects spawned in each simulator (``lists``) and the true motion of the vehicles among them."""
         told = (thing for one in lists if one is not None for thing in one.objects)
         self.spawned = [thing for thing in told if self._is_sound(thing)][:SPAWNED_MOST]
         self.strangers = {name: state for name, state in truth.items() if name not in self.vehicles}
 
     def is_guest(self, name: str) -> bool:
-        """No mission names it."""
+        """Whether no mission names the vehicle."""
         return name not in self.site.members
 
     def hear_guests(self, t: float, guests: Mapping[str, Guest]) -> None:
-        """Vehicles that no mission names are shown like all others, once it is known what they look like."""
+        """Takes announcements of guests at ``t`` [s, wall]; a guest is shown once its model is known."""
         strangers = [(name, guest) for name, guest in guests.items() if name not in self.vehicles]
         lost = self._lost_guests(t) if strangers else []
         for name, guest in strangers:
@@ -338,6 +342,7 @@ class Model:
         self.note("", text[:LONGEST_TEXT], Event.WARNING)
 
     def hear_events(self, t: float, by_vehicle: Mapping[str, Sequence[Event]]) -> None:
+        """Logs the vehicles' events, and shows warnings from ``t`` [s, wall] on."""
         for name, events in by_vehicle.items():
             if name != SYSTEM and not self._is_name(name):
                 continue
@@ -357,7 +362,7 @@ class Model:
 
 
 def model_name(told: str) -> str:
-    """What somebody on the bus gives as the name of a folder in ``vehicles/``. Raises BadInput when it cannot be one."""
+    """The name of a folder in ``vehicles/`` that a guest gives. Raises BadInput when it cannot be one."""
     if fault := name_fault(told):
         raise BadInput(f"its model: {fault}")
     return told
@@ -368,7 +373,7 @@ def _track(member: MissionVehicle) -> VehicleTrack:
 
 
 def scan_in_world(vehicle: VehicleModel) -> Floats | None:
-    """(n, 3) m, world: the returns of the newest scan; None while the vehicle or its lidar has no place."""
+    """Points (n, 3) [m, world] of the newest scan; None while the vehicle's pose or its lidar is unknown."""
     scan, place, lidar = vehicle.scan, vehicle.place, vehicle.member.file.sensors.lidar
     if scan is None or place is None or lidar is None or not scan.ranges:
         return None
@@ -380,7 +385,7 @@ def scan_in_world(vehicle: VehicleModel) -> Floats | None:
 
 
 def link_of(heard: float | None, t: float) -> tuple[str, str]:
-    """(word, class) for the age of the last message: WAITING, LIVE, STALE 3 s, LINK LOST."""
+    """(word, CSS class) for the last message at ``heard`` and the time ``t`` [s, wall]: WAITING, LIVE, STALE 3 s, LINK LOST."""
     if heard is None:
         return "WAITING", "idle"
     age = t - heard

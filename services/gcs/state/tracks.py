@@ -23,7 +23,7 @@ class VehicleTrack:
         self._count = 0
 
     def add(self, position: Floats) -> None:
-        """position: (3,) m, world."""
+        """Appends a position (3,) [m, world]."""
         if not self._tail:
             self._tail.append(position)
             return
@@ -43,16 +43,18 @@ class VehicleTrack:
             self._count += 1
 
     def clear(self) -> None:
+        """Drops all points."""
         self.closed.clear()
         self._tail = []
 
     @property
     def tail(self) -> Floats:
-        """(n, 3) m, world."""
+        """Points (n, 3) [m, world] of the growing tail."""
         return np.array(self._tail).reshape(-1, 3)
 
     @property
     def tail_length(self) -> int:
+        """Number of points of the growing tail."""
         return len(self._tail)
 
     @property

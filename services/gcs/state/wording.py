@@ -18,7 +18,7 @@ FOLLOWER: Mapping[str, Any] = {"Hold": Mode.MODE_HOLD, "Follow leader": Mode.MOD
 
 
 def describe(request: Message) -> str:
-    """A request in the operator's words."""
+    """A request in words for the operator."""
     match request:
         case GoalRequest():
             return f"go to ({request.position.x:.1f}, {request.position.y:.1f}) m"
@@ -37,5 +37,5 @@ def mode_name(mode: Any) -> str:
 
 
 def modes_of(vehicle: VehicleModel) -> Mapping[str, Any]:
-    """What can be asked of it, by the words on the buttons."""
+    """The modes that a vehicle offers, by the labels of their buttons."""
     return FOLLOWER if vehicle.leader else MODES[vehicle.member.file.kind]

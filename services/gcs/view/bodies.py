@@ -10,7 +10,7 @@ from uvf.models.urdf.model import load_urdf
 
 
 def rover(urdf: Path) -> list[MeshPart]:
-    """What the URDF shows, wheels at rest, and above it a small arrow forward in the vehicle's own colour. Raises BadInput."""
+    """The visual parts of the URDF, wheels at rest, with a forward arrow in the vehicle's own colour above. Raises BadInput."""
     model = load_urdf(urdf)
     poses = model.link_poses()
     shown = [placed(solid, poses[link.name]) for link in model.links.values() for solid in link.visuals or link.collisions]
@@ -23,6 +23,6 @@ def rover(urdf: Path) -> list[MeshPart]:
 
 
 def rgb(colour: tuple[float, float, float]) -> Colour:
-    """0..1 -> 0..255."""
+    """The colour as 0..255 from parts of 0..1 [-]."""
     r, g, b = (round(255 * c) for c in colour)
     return r, g, b

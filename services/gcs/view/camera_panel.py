@@ -19,7 +19,7 @@ MODES = {"Follow": GimbalCommand.FOLLOW, "Lock": GimbalCommand.LOCK, "Body": Gim
 
 @dataclass(frozen=True)
 class GimbalPanel:
-    """Of which vehicle, how far the sliders go [rad], and what it was last asked here."""
+    """The gimbal controls of a vehicle: range of the sliders [rad], and what was last requested here."""
 
     vehicle: str
     pan_max: float
@@ -30,23 +30,24 @@ class GimbalPanel:
 
 
 def cameras_of(v: VehicleModel) -> list[str]:
-    """The fields of those it has."""
+    """The fields of the model that hold the vehicle's cameras."""
     sensors = v.member.file.sensors
     return [name for name, kind in SHOWN.items() if getattr(sensors, kind) is not None]
 
 
 def shown_camera(v: VehicleModel, session: BrowserSession) -> str:
-    """Field of the camera that is on show; empty when there is none."""
+    """Field of the camera on show; "" when there is none."""
     there = cameras_of(v)
     return session.camera if session.camera in there else next(iter(there), "")
 
 
 def is_watched(session: BrowserSession, t: float) -> bool:
+    """Whether the page had its camera picture visible at ``t`` [s, wall]."""
     return t - session.looked_at <= SEEN_FOR
 
 
 def picture(v: VehicleModel, session: BrowserSession, t: float) -> bytes | None:
-    """JPEG of the camera on show; None when there is none, or nobody to see it."""
+    """JPEG of the camera on show at ``t`` [s, wall]; None when there is none, or nobody watches."""
     name = shown_camera(v, session)
     if not name or not is_watched(session, t):
         return None
@@ -55,7 +56,7 @@ def picture(v: VehicleModel, session: BrowserSession, t: float) -> bytes | None:
 
 
 def gimbal_panel(v: VehicleModel, session: BrowserSession) -> GimbalPanel | None:
-    """Only while the gimbal's picture is on show."""
+    """The gimbal controls; None unless the gimbal's picture is on show."""
     if shown_camera(v, session) != "gimbal" or (gimbal := v.member.file.sensors.gimbal) is None:
         return None
     mode = next(name for name, value in MODES.items() if value == v.aim.mode)
@@ -63,7 +64,7 @@ def gimbal_panel(v: VehicleModel, session: BrowserSession) -> GimbalPanel | None
 
 
 def panel(v: VehicleModel, session: BrowserSession, t: float) -> Html:
-    """The row of cameras, and below it the age of the picture; empty when the vehicle has none."""
+    """The row of cameras, and below it the picture's age at ``t`` [s, wall]; empty when the vehicle has none."""
     shown = shown_camera(v, session)
     if not shown:
         return html("")

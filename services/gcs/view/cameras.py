@@ -17,7 +17,7 @@ LOW = 0.04  # rad between the lower edge of the window and what is fitted
 
 
 def direction(azimuth: float, elevation: float) -> Floats:
-    """Unit vector of sight from a camera that stands at ``azimuth`` (from east, left positive) and ``elevation`` [rad]."""
+    """Unit vector of sight (3,) of a camera that stands at ``azimuth`` (from east, left positive) and ``elevation`` [rad]."""
     flat = np.cos(elevation)
     return -np.array((flat * np.cos(azimuth), flat * np.sin(azimuth), np.sin(elevation)))
 
@@ -30,7 +30,10 @@ def _axes(sight: Floats) -> tuple[Floats, Floats]:
 
 
 def fit(points: Floats, sight: Floats, aspect: float) -> CameraView:
-    """The nearest camera along ``sight`` that sees all points. points: (n, 3) m, world; aspect: width by height."""
+    """The nearest camera that looks along ``sight`` (3,) and sees all points.
+
+    points: (n, 3) [m, world]; aspect: width over height [-].
+    """
     middle = (points.min(axis=0) + points.max(axis=0)) / 2
     right, up = _axes(sight)
     x, y, z = (points - middle) @ right, (points - middle) @ up, (points - middle) @ sight
@@ -40,7 +43,7 @@ def fit(points: Floats, sight: Floats, aspect: float) -> CameraView:
 
 
 def tilted_up(camera: CameraView, points: Floats) -> CameraView:
-    """The same camera turned up until the points lie at the window's lower edge: room for the sky above them."""
+    """The camera turned up until the points (n, 3) [m, world] lie at the window's lower edge: room for the sky above them."""
     position, look_at = np.array(camera.position), np.array(camera.look_at)
     distance = float(np.linalg.norm(look_at - position))
     sight = (look_at - position) / distance
@@ -57,9 +60,9 @@ def _camera(position: Floats, sight: Floats, distance: float) -> CameraView:
 
 
 def cameras(site: Scenario, aspect: float = ASPECT) -> dict[str, CameraView]:
-    """Named views for a window of ``aspect`` (width by height).
+    """Named views for a window of ``aspect``, width over height [-].
 
-    The first is how the page opens: the floor before the sky, if something flies there.
+    The first is the initial one: the floor before the sky, if the mission has aircraft.
     """
     x_min, y_min, x_max, y_max = site.world.floor
     floor = np.array([(x, y, z) for x in (x_min, x_max) for y in (y_min, y_max) for z in (0.0, 0.5)])

@@ -18,7 +18,7 @@ Colour = tuple[int, int, int]
 
 @dataclass(frozen=True, eq=False)
 class MeshNode:
-    """vertices: (n, 3) m, parent's frame; faces: (m, 3) indices."""
+    """A mesh. vertices: (n, 3) [m, parent's frame]; faces: (m, 3) indices."""
 
     vertices: Floats
     faces: NDArray[np.int64]
@@ -30,7 +30,7 @@ class MeshNode:
 
 @dataclass(frozen=True, eq=False)
 class Polyline:
-    """points: (n, 3) m, parent's frame."""
+    """A line. points: (n, 3) [m, parent's frame]."""
 
     points: Floats
     colour: Colour
@@ -39,7 +39,7 @@ class Polyline:
 
 @dataclass(frozen=True, eq=False)
 class Points:
-    """points: (n, 3) m, parent's frame."""
+    """A point cloud. points: (n, 3) [m, parent's frame]."""
 
     points: Floats
     colour: Colour
@@ -48,7 +48,7 @@ class Points:
 
 @dataclass(frozen=True, eq=False)
 class FloorPicture:
-    """A PNG lying on the ground: its sizes [m] and the place of its middle."""
+    """A PNG lying on the ground: its sizes [m] and the position of its centre [m, world]."""
 
     png: bytes
     width: float
@@ -59,6 +59,8 @@ class FloorPicture:
 
 @dataclass(frozen=True, eq=False)
 class TextNode:
+    """A label at a position [m, parent's frame]."""
+
     text: str
     position: tuple[float, float, float]
 
@@ -68,7 +70,7 @@ Node = MeshNode | Polyline | Points | FloorPicture | TextNode
 
 @dataclass(frozen=True)
 class Button:
-    """One command button; ``lit`` when its state is the present one."""
+    """A command button; ``lit`` when its state is the present one."""
 
     key: str
     label: str
@@ -81,7 +83,7 @@ class Button:
 
 @dataclass(frozen=True)
 class CameraView:
-    """From where to where the scene is looked at [m, world]."""
+    """A camera's position and the point it looks at [m, world]."""
 
     position: tuple[float, float, float]
     look_at: tuple[float, float, float]
@@ -89,7 +91,7 @@ class CameraView:
 
 @dataclass(frozen=True)
 class PagePanel:
-    """What one browser alone shows: its vehicle, and the buttons for it."""
+    """The panel of one browser: its vehicle, and the buttons for it."""
 
     vehicle: str = ""
     html: Mapping[str, Html] = field(default_factory=dict)
@@ -102,22 +104,26 @@ class PagePanel:
 
 @dataclass(frozen=True)
 class Picture:
-    """What all browsers show after one step, and each of its own. A node that is the same object as before has not changed."""
+    """What the page shows after a step, in common and per browser. A node that is the same object as before has not changed."""
 
     nodes: Mapping[str, Node] = field(default_factory=dict)
     places: Mapping[str, DisplayPose] = field(default_factory=dict)
     html: Mapping[str, Html] = field(default_factory=dict)
     buttons: Sequence[Button] = ()
     panels: Mapping[int, PagePanel] = field(default_factory=dict)
-    """By page, as in ``Session.page``."""
+    """By page, as in ``BrowserSession.page``."""
 
 
 class Page(Protocol):
     """Where pictures are shown and people click: viser, or a list in a test."""
 
-    def show(self, picture: Picture) -> None: ...
+    def show(self, picture: Picture) -> None:
+        """Shows a picture in all browsers."""
+        ...
 
     def actions(self) -> list[Action]:
-        """What people have asked for since the last call, oldest first."""
+        """Actions requested since the last call, oldest first."""
 
-    def close(self) -> None: ...
+    def close(self) -> None:
+        """Ends the page."""
+        ...

@@ -17,7 +17,7 @@ WALL, WALL_OUT = 0.07, 0.2  # opacity
 
 
 def fence_nodes(fence: Fence, colour: Colour, flies: bool) -> dict[str, Node]:
-    """By the end of the node's name; ``colour`` of the zones to stay in. Without zones there is nothing to show it at."""
+    """Scene nodes of a fence by the end of their name; ``colour`` is that of inclusion zones. None without zones."""
     nodes: dict[str, Node] = {}
     for i, zone in enumerate(fence.zones):
         shade, opacity = (KEEP_OUT, WALL_OUT) if zone.excludes else (colour, WALL)
@@ -30,7 +30,7 @@ def fence_nodes(fence: Fence, colour: Colour, flies: bool) -> dict[str, Node]:
 
 
 def outline(zone: FenceZone) -> tuple[Floats, list[int]]:
-    """(n, 2) m, world: the corners of its edge, not closed; and at which of them posts stand."""
+    """The outline (n, 2) [m, world] of a zone, not closed, and the indices of the points that get a post."""
     if zone.vertices:
         return np.array([(v.x, v.y) for v in zone.vertices]), list(range(len(zone.vertices)))
     turns = np.linspace(0.0, 2 * np.pi, CORNERS, endpoint=False)

@@ -14,7 +14,7 @@ FONT = "font-family='ui-sans-serif,system-ui,DejaVu Sans,sans-serif' font-varian
 
 @dataclass(frozen=True)
 class FlightInstruments:
-    """What a pilot reads. Nose up and right wing down are positive; heading from north, clockwise [rad, m, m/s]."""
+    """Readings of an aircraft [rad, m, m/s]: nose up and right wing down are positive; heading from north, clockwise."""
 
     roll: float
     pitch: float
@@ -29,7 +29,7 @@ class FlightInstruments:
 
 @dataclass(frozen=True)
 class DriveInstruments:
-    """What a driver reads [rad, m/s, rad/s, m]; heading from north, clockwise; limits are the vehicle's own."""
+    """Readings of a ground vehicle [rad, m/s, rad/s, m]; heading from north, clockwise; limits are the vehicle's own."""
 
     heading: float
     speed: float
@@ -42,6 +42,7 @@ class DriveInstruments:
 
 
 def primary_flight_display(f: FlightInstruments) -> Html:
+    """The primary flight display as SVG: horizon, tapes of airspeed and altitude, heading."""
     roll, pitch, heading = degrees(f.roll), degrees(f.pitch), degrees(f.heading) % 360
     label = f"roll {roll:.0f} deg, pitch {pitch:.0f} deg, heading {heading:03.0f}, {f.airspeed:.1f} m/s, {f.altitude:.0f} m"
     return trusted(
@@ -141,6 +142,7 @@ def _corners(f: FlightInstruments) -> str:
 
 
 def drive_panel(d: DriveInstruments) -> Html:
+    """The driver's panel as SVG: compass rose, bars of speed and turn rate, distance to the goal."""
     heading = degrees(d.heading) % 360
     label = f"heading {heading:03.0f}, {d.speed:.2f} m/s, turning {degrees(d.turn_rate):.0f} deg/s"
     armed = (GREEN, "ARMED") if d.armed else (AMBER, "DISARMED")

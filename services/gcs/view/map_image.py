@@ -25,9 +25,9 @@ RGB, ALPHA = _palette()
 
 
 def known_part(cells: NDArray[np.int8]) -> tuple[NDArray[np.int8], tuple[int, int]]:
-    """The cells without the unknown margins, cut at multiples of ``BLOCK``, and the (row, column) of the first.
+    """The cells (rows, columns) without unknown margins, cut at multiples of ``BLOCK``, and the (row, column) of the first.
 
-    A see-through picture still hides other see-through things that lie under it, as the ground does in a browser.
+    A transparent picture still hides other transparent things below it, as the ground does in a browser.
     """
     rows, columns = np.flatnonzero((cells >= 0).any(axis=1)), np.flatnonzero((cells >= 0).any(axis=0))
     if len(rows) == 0:
@@ -38,7 +38,7 @@ def known_part(cells: NDArray[np.int8]) -> tuple[NDArray[np.int8], tuple[int, in
 
 
 def occupancy_png(cells: NDArray[np.int8]) -> bytes:
-    """cells: (rows, columns), row 0 at the lowest y, -1 unknown. viser lays row 0 at -y too, so nothing is flipped."""
+    """PNG of the cells (rows, columns), row 0 at the lowest y, -1 unknown. viser lays row 0 at -y too, so nothing is flipped."""
     image = Image.fromarray(cells.astype(np.uint8))
     image = image.convert("L")
     image.putpalette(RGB)

@@ -10,23 +10,23 @@ from numbers import Real
 
 
 class Html(str):
-    """Text that is safe to hand to a browser as markup."""
+    """Text that is safe to send to a browser as markup."""
 
     __slots__ = ()
 
 
 def html(template: str, *values: object, **named: object) -> Html:
-    """The template, a literal of this program, with ``{}`` filled as by ``str.format``; text from elsewhere is escaped, quotes too."""
+    """The template, a literal of this program, with ``{}`` filled as by ``str.format``; values are escaped, quotes too."""
     return Html(template.format(*map(_safe, values), **{name: _safe(value) for name, value in named.items()}))
 
 
 def joined(parts: Iterable[object], between: str = "") -> Html:
-    """One after the other; what is no markup is escaped."""
+    """The parts one after the other; what is no markup is escaped."""
     return Html(str(_safe(between)).join(str(_safe(part)) for part in parts))
 
 
 def trusted(text: str) -> Html:
-    """Takes text for markup as it is: only for what this program brings along itself."""
+    """Marks text as markup without escaping: only for what this program itself provides."""
     return Html(text)
 
 

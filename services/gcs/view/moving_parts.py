@@ -16,7 +16,7 @@ MOST_TURN = 0.9  # rad of the propeller between two messages: two blades that tu
 
 
 class MovingParts:
-    """The parts of one aircraft."""
+    """The moving parts of one aircraft's display model."""
 
     def __init__(self, movables: Sequence[Movable]) -> None:
         self._movables = movables
@@ -25,7 +25,7 @@ class MovingParts:
         self._heard: JointStates | None = None
 
     def places(self, joints: JointStates | None) -> Mapping[str, DisplayPose]:
-        """Name -> frame of the part in the body frame; the same objects while nothing is seen to turn."""
+        """Poses of the parts in the body frame, by name; the same objects while no visible turn happens."""
         if joints is not None and joints is not self._heard:
             angles = {joint.name: joint.position for joint in joints.joints}
             speeds = {joint.name: joint.velocity for joint in joints.joints}

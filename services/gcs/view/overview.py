@@ -20,6 +20,8 @@ MAX_POINTS = 150
 
 
 class Overview:
+    """Draws the overview map."""
+
     def __init__(self, model: Model) -> None:
         self._model = model
         low, high = extent(model.site)[:, :2]
@@ -29,6 +31,7 @@ class Overview:
         self._still = joined((self._floor(), self._scale_bar()))
 
     def svg(self, chosen: VehicleModel | None) -> Html:
+        """The map as SVG; the chosen vehicle is drawn larger."""
         moving = joined(self._vehicle(v, v is chosen) for v in self._model.vehicles.values())
         return html(
             "<svg id='gcs-overview' role='img' aria-label='map of all vehicles, north up' viewBox='0 0 {:.0f} {:.0f}' "

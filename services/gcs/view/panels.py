@@ -17,6 +17,7 @@ HELP = Path(__file__).with_name("help.html")
 
 
 def fleet(model: Model, chosen: VehicleModel, t: float) -> Html:
+    """The cards of all vehicles at ``t`` [s, wall]."""
     return html("<div class='g-fleet'>{}</div>", joined(_card(v, v is chosen, t) for v in model.vehicles.values()))
 
 
@@ -41,7 +42,7 @@ def _card(v: VehicleModel, is_chosen: bool, t: float) -> Html:
 
 
 def badge_of(v: VehicleModel) -> tuple[str, str]:
-    """(words, class): the one state that matters most."""
+    """(words, CSS class) of the vehicle's most important state."""
     if v.status is None:
         return "…", "idle"
     if v.status.stopped:
@@ -64,6 +65,7 @@ def _numbers(v: VehicleModel) -> list[tuple[str, str]]:
 
 
 def waypoint_text(v: VehicleModel) -> str:
+    """The current waypoint, number of waypoints and lap, in words."""
     if v.progress is None or v.progress.total == 0:
         return "–"
     lap = f", lap {v.progress.laps + 1}" if v.progress.laps else ""
@@ -72,11 +74,12 @@ def waypoint_text(v: VehicleModel) -> str:
 
 
 def signed(value: float) -> str:
-    """``+1.4``, ``-0.3``, and never ``-0.0``."""
+    """A number [any unit] as ``+1.4`` or ``-0.3``, and never ``-0.0``."""
     return f"{round(value, 1) + 0.0:+.1f}"
 
 
 def instrument(v: VehicleModel) -> Html:
+    """The primary flight display of an aircraft, or the driver's panel of a ground vehicle."""
     mode = html("{}", mode_name(v.status.mode).upper() if v.status is not None else "NO STATUS")
     armed = v.status is not None and v.status.armed
     place, ground = v.place, v.member.file.ground
@@ -95,7 +98,7 @@ def instrument(v: VehicleModel) -> Html:
 
 
 def facts(v: VehicleModel, t: float) -> Html:
-    """The chosen vehicle's facts as a table of two columns."""
+    """The chosen vehicle's facts as a table of two columns; ``t`` [s] is not used."""
     rows: list[tuple[str, str]] = []
     if v.place is not None:
         x, y, z = v.place.position
@@ -144,12 +147,12 @@ def _job(v: VehicleModel) -> list[tuple[str, str]]:
 
 
 def orders(v: VehicleModel) -> Html:
-    """Under the buttons: what became of the last order, and how far the vehicle is with its job."""
+    """Under the buttons: the outcome of the last order, and the progress of the vehicle's job."""
     return joined((order_line(v), progress_line(v)))
 
 
 def progress_line(v: VehicleModel) -> Html:
-    """The mission, the way to the goal or the station behind a leader: in words, and as a bar where there is an end to it."""
+    """Progress of the mission, the way to the goal or the formation slot: in words, and as a bar where there is an end to it."""
     p = v.progress
     if v.status is not None and v.status.mode == Mode.MODE_FOLLOW:
         return _progress(f"{v.status.reason}: {v.status.distance_to_waypoint:.0f} m from its station", None)
@@ -171,7 +174,7 @@ def progress_line(v: VehicleModel) -> Html:
 
 
 def drives_to_goal(v: VehicleModel) -> bool:
-    """Whether there is a person's goal that can be cancelled."""
+    """Whether it drives to a person's goal, which can be cancelled."""
     ended = (NavStatus.REACHED, NavStatus.CANCELLED)
     return v.nav_status is not None and v.nav_status.job == "goal" and v.nav_status.state not in ended
 

@@ -34,7 +34,7 @@ HINTS = (
 
 
 def event_log(journal: EventHistory) -> Html:
-    """What the operator has done stays on top; below, everything, filtered by the page itself (``data-log``)."""
+    """The log: operator's actions on top; below, all lines, filtered by the page itself (``data-log``)."""
     lines = list(journal)
     if not lines:
         return html("<div class='g-empty'>Nothing has happened yet</div>")
@@ -67,7 +67,7 @@ def _rows(lines: Sequence[EventLine]) -> Html:
 
 
 def processes(model: Model, t: float) -> Html:
-    """One row a process: what the launchers say of it, and what it says of itself."""
+    """The table of processes at ``t`` [s, wall], a row each, from the launchers' and their own reports."""
     refused = html("<div class='g-warn'>⚠ not taken in from the bus: {}</div>", model.refused) if str(model.refused) else html("")
     names = sorted(model.processes.told.keys() | model.processes.vitals.keys())
     if not names:

@@ -27,7 +27,7 @@ YARD_WIDTH = 6.0  # m about the floor
 
 
 def scenery(world: WorldFile) -> dict[str, Node]:
-    """Node name -> what stands there."""
+    """The static scene nodes of a world, by name."""
     x_min, y_min, x_max, y_max = world.floor
     floor = box(((x_min + x_max) / 2, (y_min + y_max) / 2, -0.06), (x_max - x_min, y_max - y_min, 0.1))
     yard = box(((x_min + x_max) / 2, (y_min + y_max) / 2, -0.09), (x_max - x_min + 2 * YARD_WIDTH, y_max - y_min + 2 * YARD_WIDTH, 0.1))
@@ -44,12 +44,12 @@ def scenery(world: WorldFile) -> dict[str, Node]:
 
 
 def moving(world: WorldFile) -> list[Solid]:
-    """What goes its way by a script: people, doors."""
+    """The solids that move by a script: people, doors."""
     return [solid for solid in solids(world) if solid.path is not None]
 
 
 def places_of(scripted: Sequence[Solid], t: float) -> dict[str, DisplayPose]:
-    """Node name -> where it is at simulation time ``t`` [s]; its shape is drawn in that frame."""
+    """Frames of the moving solids at simulation time ``t`` [s], by node name."""
     return {_frame(solid): DisplayPose(*pose_at(solid, t)) for solid in scripted}
 
 
@@ -92,11 +92,12 @@ def _merged(name: str, parts: list[tuple[tuple[float, float, float], MeshPart]])
 
 
 def merge(parts: list[MeshPart], colour: Colour, selects: str = "") -> MeshNode:
+    """The parts as one mesh of one colour; ``selects``: the vehicle that a click selects."""
     return MeshNode(*joined(parts), colour, selects=selects)
 
 
 def coloured(parts: Sequence[MeshPart], colour: Colour, selects: str = "") -> dict[str, Node]:
-    """The parts of a body, those of one colour in one mesh; ``colour`` for those that have none."""
+    """The parts of a body merged by colour; ``colour`` is that of parts without one."""
     groups: dict[Colour, list[MeshPart]] = {}
     for part in parts:
         groups.setdefault(part.colour or colour, []).append(part)
@@ -109,7 +110,7 @@ def rgb_of(colour: str) -> Colour:
 
 
 def circuit(items: list[Waypoint]) -> Floats:
-    """(n, 3) m, world: the mission's legs as written, closed where a jump leads back."""
+    """Legs of the mission (n, 3) [m, world] as written, closed where a jump leads back."""
     points = [(w.x, w.y, w.z) for w in items if w.kind in ("waypoint", "orbit")]
     if points and any(w.kind == "jump" for w in items):
         points.append(points[0])
@@ -117,11 +118,12 @@ def circuit(items: list[Waypoint]) -> Floats:
 
 
 def circuit_line(points: Floats, colour: Colour) -> Polyline:
+    """The line through points (n, 3) [m, world]."""
     return Polyline(points, colour, 2.0)
 
 
 def extent(site: Scenario) -> Floats:
-    """(2, 3) m: lowest and highest corner of the floor, the starts and the circuits."""
+    """Lowest and highest corner (2, 3) [m, world] of the floor, the starts and the missions."""
     x_min, y_min, x_max, y_max = site.world.floor
     points = [np.array(((x_min, y_min, 0.0), (x_max, y_max, 0.0)))]
     points += [_reach(member) for member in site.members.values()]

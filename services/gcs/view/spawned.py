@@ -19,14 +19,14 @@ Look = tuple[str, str, tuple[float, ...], bytes]
 
 
 class Spawned:
-    """Remembers the meshes it has made, by what they look like: many things of one look are made once."""
+    """Spawned objects. Meshes are cached by appearance: many objects of one look are made once."""
 
     def __init__(self, model: Model) -> None:
         self._model = model
         self._made: dict[Look, dict[str, Node]] = {}
 
     def nodes(self) -> dict[str, Node]:
-        """Each thing's parts, in its own frame ``/spawned/<name>``."""
+        """The parts of each object, in its own frame ``/spawned/<name>``."""
         before, self._made = self._made, {}
         nodes: dict[str, Node] = {}
         for thing in self._model.spawned:
@@ -52,7 +52,7 @@ class Spawned:
         return rover(folder / model / file.ground.urdf) if file.ground is not None else aircraft_shape(folder / model, file).at_rest
 
     def places(self) -> dict[str, DisplayPose]:
-        """Frames: of a vehicle as its truth tells, of the rest as the list does."""
+        """Frames of the objects: a vehicle's from its true pose, the others' from the list of objects."""
         return {f"/spawned/{thing.name}": self._place(thing) for thing in self._model.spawned}
 
     def _place(self, thing: SimObject) -> DisplayPose:

@@ -23,19 +23,21 @@ UNWELL = {Process.RESTARTING: ("is started again", "warn"), Process.FAILED: ("ha
 
 
 class Alert(NamedTuple):
+    """A state that wants attention."""
+
     style: str
     """Class of the line: bad or warn."""
     text: str
 
 
 def clock_text(seconds: float) -> str:
-    """``00:01:23`` of simulation time [s]."""
+    """Simulation time [s] as ``00:01:23``."""
     whole = int(seconds)
     return f"{whole // 3600:02d}:{whole // 60 % 60:02d}:{whole % 60:02d}"
 
 
 def system_link(model: Model, t: float) -> tuple[str, str]:
-    """(word, class) for the whole link: by the clock, or by the vehicles where there is no clock."""
+    """(word, CSS class) for the whole link at ``t`` [s, wall]: by the clock, or by the vehicles where there is no clock."""
     heard = [v.heard for v in model.vehicles.values() if v.heard is not None]
     newest = model.clock_at if model.clock_at is not None else max(heard, default=None)
     word, style = link_of(newest, t)
@@ -45,6 +47,7 @@ def system_link(model: Model, t: float) -> tuple[str, str]:
 
 
 def status_bar(model: Model, chosen: VehicleModel | None, t: float) -> Html:
+    """The bar over the scene at ``t`` [s, wall]: link, time, vehicles, alerts and notices."""
     word, style = system_link(model, t)
     rate = f"× {model.clock.rate:.2f}" if model.clock is not None and model.clock.rate > 0 else ""
     live = sum(link_of(v.heard, t)[1] == "good" for v in model.vehicles.values())
@@ -62,7 +65,7 @@ def status_bar(model: Model, chosen: VehicleModel | None, t: float) -> Html:
 
 
 def alerts(model: Model, t: float) -> list[Alert]:
-    """Each state that wants attention now; each goes when its state goes.
+    """The states that want attention at ``t`` [s, wall].
 
     Only so many are shown: first what concerns the mission and its vehicles, then guests, then processes, of each the gravest
     first. So neither strangers nor a launcher that tells of many failures hide what a vehicle of the mission needs.
@@ -122,7 +125,7 @@ def _notices(model: Model, t: float) -> Html:
 
 
 def stop_line(model: Model) -> Html:
-    """Under STOP ALL: whether it is engaged, since when and by whom, which vehicles heed it, how it ends."""
+    """Under STOP ALL: whether it is engaged, since when and by whom, which vehicles obey it, how it ends."""
     if not model.stopped:
         return html("<div class='g-stopline'>STOP ALL is not engaged</div>")
     heeding = ", ".join(v.name for v in model.vehicles.values() if v.stopped)

@@ -23,7 +23,7 @@ ARROWS = {"w": "ArrowUp", "a": "ArrowLeft", "s": "ArrowDown", "d": "ArrowRight"}
 
 
 def wheel(v: VehicleModel, by_hand: ManualDriving, page: int) -> Html:
-    """As this page sees it: it drives the vehicle itself, another page does, or nobody."""
+    """The controls for driving by hand as this page sees them: it drives the vehicle itself, another page does, or nobody."""
     if not by_hand.can_drive(v.name):
         return html("")
     holder = by_hand.holder(v.name)

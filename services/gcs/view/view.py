@@ -35,7 +35,7 @@ UP = 0.02  # m above the floor, so that what lies on it is seen
 
 
 class SceneView:
-    """Draws one model; remembers the nodes it has made, by what they were made from."""
+    """Draws the state of the ground station; caches the nodes it has made by what they were made from."""
 
     def __init__(self, model: Model) -> None:
         self._model = model
@@ -63,7 +63,7 @@ class SceneView:
                 self._moving[v.name] = MovingParts(shape.movables)
 
     def nodes(self, t: float) -> dict[str, Node]:
-        """Everything in the scene, by name; ``/vehicles/<v>/...`` is given in that vehicle's frame."""
+        """All scene nodes at ``t`` [s, wall], by name; ``/vehicles/<v>/...`` is given in that vehicle's frame."""
         self._learn()
         layers = self._model.layers
         shown = {k: n for k, n in self._surroundings.items() if "Walls" in layers or not k.startswith("/world/walls/")}
@@ -76,7 +76,7 @@ class SceneView:
         return shown
 
     def places(self) -> dict[str, DisplayPose]:
-        """Poses of the frames of vehicles and of what moves by script."""
+        """Poses of the frames of vehicles and of what moves by script, by node name."""
         self._learn()
         layers = self._model.layers
         placed = places_of(self._scripted, self._model.sim_time) | self._spawned.places()
@@ -240,7 +240,7 @@ def _parts(v: VehicleModel, shape: AircraftShape | None) -> list[MeshPart]:
 
 
 def floor_picture(grid: Grid, world_from_map: FrameTransform | None) -> FloorPicture:
-    """The grid as a picture lying where its pose, which is that of its lower left corner, and its frame's say."""
+    """The grid as a picture on the ground, placed by its pose (that of its lower left corner) and its frame's."""
     cells, (row, column) = known_part(occupancy_cells(grid))
     dx, dy = grid.cell_size.x, grid.cell_size.y
     width, height = cells.shape[1] * dx, cells.shape[0] * dy
@@ -254,7 +254,7 @@ def floor_picture(grid: Grid, world_from_map: FrameTransform | None) -> FloorPic
 
 
 def mission_points(v: VehicleModel) -> Floats:
-    """(n, 3) m, world: the places of the mission in force, closed where a jump leads back."""
+    """Positions (n, 3) [m, world] of the mission in force, closed where a jump leads back."""
     items = v.mission.items if v.mission is not None else []
     points = [array(i.position) for i in items if i.kind in (i.WAYPOINT, i.ORBIT)]
     if len(points) > 1 and any(i.kind == i.JUMP for i in items):

@@ -22,17 +22,24 @@ UNKNOWN = ("airspeed", "alpha", "climb", "roll", "aileron", "elevator", "rudder"
 
 
 class FlightModel(Protocol):
-    """What is held in a state: ``airframe.Airframe`` or a test's own."""
+    """Flight dynamics held in a state: ``airframe.Airframe`` or a test's own."""
 
-    def accelerations_held(self, held: Held, controls: Controls) -> Floats: ...
+    def accelerations_held(self, held: Held, controls: Controls) -> Floats:
+        """Derivatives (6,) of u, v, w [m/s^2] and p, q, r [rad/s^2], FRD, in the held state."""
+        ...
 
     @property
-    def powered(self) -> bool: ...
+    def powered(self) -> bool:
+        """Whether it has an engine."""
+        ...
 
 
 @dataclass(frozen=True)
 class Condition:
-    """Straight flight; angles [rad], ``climb`` up from the horizon, ``alpha`` of the path in the plane of symmetry."""
+    """Steady straight flight; angles and deflections [rad], throttle 0..1.
+
+    ``climb`` is up from the horizon, ``alpha`` the angle of attack in the plane of symmetry.
+    """
 
     airspeed: float  # m/s
     altitude: float  # m AMSL
@@ -47,7 +54,7 @@ class Condition:
 
     @property
     def state(self) -> Floats:
-        """(10,) in the order of STATES, northward."""
+        """State (10,) in the order of STATES [m/s, rad/s, rad, m AMSL], heading north but for the slip."""
         angles = (self.roll, self.alpha + self.climb, -self.slip)
         path = self.airspeed * np.array((np.cos(self.climb), 0.0, -np.sin(self.climb)))  # NED
         u, v, w = rotations.matrix(rotations.from_euler(*angles)).T @ path
@@ -55,12 +62,15 @@ class Condition:
 
     @property
     def inputs(self) -> Floats:
-        """(4,) in the order of INPUTS."""
+        """Inputs (4,) in the order of INPUTS [rad, throttle 0..1]."""
         return np.array((self.aileron, self.elevator, self.rudder, self.throttle))
 
 
 def derivatives(body: FlightModel, state: Floats, inputs: Floats) -> Floats:
-    """(10,) d/dt of the state: the body's own accelerations and the kinematics (equations 3.14 to 3.16 of the book)."""
+    """Time derivatives (10,) of the state (10,), in its units per second, at inputs (4,) [rad, 0..1].
+
+    The body's own accelerations and the kinematics (Beard & McLain, equations 3.14 to 3.16).
+    """
     velocity, rates, (phi, theta, _) = state[:3], state[3:6], state[6:9]
     accelerations = body.accelerations_held(Held(velocity, rates, state[6:9], float(state[9])), Controls(*inputs.tolist()))
     p, q, r = rates
@@ -71,7 +81,10 @@ def derivatives(body: FlightModel, state: Floats, inputs: Floats) -> Floats:
 
 
 def level(body: FlightModel, airspeed: float, altitude: float) -> Condition | None:
-    """Level flight by the simulator's own trim, of a glider its glide; with side slip where a surface is missing; None: there is none."""
+    """Level flight at ``airspeed`` [m/s] and ``altitude`` [m AMSL] by the simulator's own trim; None when there is none.
+
+    A glider's is its glide; where a surface is missing it has side slip.
+    """
 
     def flown(trim: Trim) -> Condition:
         c = trim.controls
@@ -82,7 +95,7 @@ def level(body: FlightModel, airspeed: float, altitude: float) -> Condition | No
 
 
 def find(body: FlightModel, given: Condition, fixed: tuple[str, str]) -> Condition | None:
-    """The six other figures of UNKNOWN for which nothing accelerates, beginning at ``given``; None when there are none."""
+    """The equilibrium near ``given`` with two of the figures of UNKNOWN fixed; None when none is found."""
     free = [name for name in UNKNOWN if name not in fixed]
 
     def left(values: Floats) -> Floats:

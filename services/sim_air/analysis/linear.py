@@ -25,7 +25,7 @@ INPUT_STEPS = (1e-3, 1e-3, 1e-3, 1e-3)  # rad, throttle 0..1
 
 @dataclass(frozen=True)
 class LinearModels:
-    """About the level flight ``trim``."""
+    """Linear models about the level flight ``trim``."""
 
     trim: Condition
     residual: float  # m/s^2 or rad/s^2, the largest that is left in trim
@@ -33,24 +33,28 @@ class LinearModels:
 
     @property
     def longitudinal(self) -> StateSpace:
+        """The longitudinal model: states u, w, q, theta, h; inputs delta_e, delta_t."""
         return self.whole.part(*LONGITUDINAL)
 
     @property
     def lateral(self) -> StateSpace:
+        """The lateral model: states v, p, r, phi, psi; inputs delta_a, delta_r."""
         return self.whole.part(*LATERAL)
 
     @property
     def modes(self) -> list[Mode]:
+        """The longitudinal and lateral modes."""
         return [*longitudinal_modes(self.longitudinal.a), *lateral_modes(self.lateral.a)]
 
     @property
     def design(self) -> DesignModels:
+        """The transfer-function coefficients of the design models."""
         return design_models(self.longitudinal, self.lateral, self.trim.airspeed, self.trim.alpha)
 
 
 @contextmanager
 def held_still(airframe: Airframe) -> Iterator[Airframe]:
-    """The motion of the body stands, the engine turns on."""
+    """Holds the motion of the body while the engine runs on, within the context."""
     airframe.hold_still(True)
     try:
         yield airframe
@@ -59,7 +63,10 @@ def held_still(airframe: Airframe) -> Iterator[Airframe]:
 
 
 def linearize(airframe: Airframe, airspeed: float, altitude: float, path: Path) -> LinearModels:
-    """About level flight at ``airspeed`` [m/s] and ``altitude`` [m AMSL]; ``path`` names it. Raises BadInput when it cannot fly so."""
+    """Linear models about level flight at ``airspeed`` [m/s] and ``altitude`` [m AMSL].
+
+    ``path`` names the model in errors. Raises BadInput when there is no such flight.
+    """
     with held_still(airframe):
         trim = level(airframe, airspeed, altitude)
         if trim is None:
@@ -68,7 +75,7 @@ def linearize(airframe: Airframe, airspeed: float, altitude: float, path: Path) 
 
 
 def about(airframe: Airframe, trim: Condition) -> LinearModels:
-    """Of a body that is held still."""
+    """Linear models about ``trim`` of a body that is held still."""
     a = jacobian(lambda x: derivatives(airframe, x, trim.inputs), trim.state, STATE_STEPS)
     b = jacobian(lambda u: derivatives(airframe, trim.state, u), trim.inputs, INPUT_STEPS)
     residual = float(np.abs(derivatives(airframe, trim.state, trim.inputs)[:6]).max())
@@ -76,7 +83,7 @@ def about(airframe: Airframe, trim: Condition) -> LinearModels:
 
 
 def state_of(motion: AircraftMotion, altitude: float) -> Floats:
-    """(10,) in the order of STATES, of what flies over an origin at ``altitude`` [m AMSL]; the way through calm air."""
+    """State (10,) in the order of STATES [m/s, rad/s, rad, m AMSL] over a world origin at ``altitude`` [m AMSL], in calm air."""
     roll, pitch, yaw = rotations.to_euler(motion.world_from_body)
     flip = np.array((1.0, -1.0, -1.0))
     velocity = rotations.matrix(motion.world_from_body).T @ motion.velocity * flip

@@ -23,7 +23,7 @@ POWER_SPEEDS = tuple(np.arange(1.0, 2.01, 0.05).tolist())
 
 @dataclass(frozen=True)
 class Performance:
-    """The best of each; ``endurance`` [s] is None without a battery, ``climb`` when no climb was found."""
+    """The best flight of each kind; ``endurance`` [s] is None without a battery, ``climb`` when no climb was found."""
 
     glide: Condition
     sink: Condition
@@ -37,7 +37,7 @@ class Performance:
 
 
 def performance(airframe: Airframe, body: AirBody, altitude: float) -> Performance:
-    """At ``altitude`` [m AMSL], of an airframe that is held still. Raises BadInput when it does not glide.
+    """The performance at ``altitude`` [m AMSL] of an airframe that is held still. Raises BadInput when it has no steady glide.
 
     Gliding is with the motor off. What the elevator cannot balance is left out.
     """
@@ -65,12 +65,12 @@ def performance(airframe: Airframe, body: AirBody, altitude: float) -> Performan
 
 
 def climb_rate(flight: Condition) -> float:
-    """m/s, upwards."""
+    """Climb rate [m/s], upwards."""
     return flight.airspeed * math.sin(flight.climb)
 
 
 def glide_ratio(flight: Condition) -> float:
-    """Way over height lost, in calm air."""
+    """Glide ratio [-] in calm air: distance over height lost."""
     return -1 / math.tan(flight.climb)
 
 

@@ -19,12 +19,14 @@ NOTHING = Scene(build(joined([])))
 
 
 class Hit(NamedTuple):
+    """A collision of an aircraft with something named ``other``."""
+
     aircraft: str
     other: str
 
 
 class Feelers:
-    """Lines through an aircraft from nose to tail, tip to tip and top to bottom, and from where each end was to where it is."""
+    """Lines through an aircraft from nose to tail, tip to tip and top to bottom, and from the last to the present position of each end."""
 
     def __init__(self, shape: Bvh) -> None:
         low, high = shape.bounds[0, :3], shape.bounds[0, 3:]
@@ -32,7 +34,7 @@ class Feelers:
         self.radius = float(np.linalg.norm(np.maximum(-low, high)))
 
     def feel(self, before: AircraftMotion, motion: AircraftMotion) -> Rays:
-        """Directions are as long as the lines. What did not move is felt by the lines through it only."""
+        """The rays to test; directions are as long as the lines. Of an aircraft that did not move only the lines through it."""
         was, now = self._at(before), self._at(motion)
         starts, ends = now[:3], now[3:]
         if np.linalg.norm(now - was, axis=1).min() > 0:
@@ -45,7 +47,7 @@ class Feelers:
 
 
 class Collisions:
-    """Each pair is told of once, when it begins to touch."""
+    """Detects collisions; each pair is reported once, when it begins to touch."""
 
     def __init__(self, around: Around) -> None:
         self._around = around
@@ -56,19 +58,21 @@ class Collisions:
         self._highest = float(bounds[0, 5]) if len(bounds) else -np.inf
 
     def add(self, name: str, shape: Bvh) -> None:
+        """Adds an aircraft with its shape."""
         self._feelers[name] = Feelers(shape)
 
     def remove(self, name: str) -> None:
+        """Removes an aircraft."""
         del self._feelers[name]
         self.forget(name)
 
     def forget(self, name: str) -> None:
-        """It has been put elsewhere: it did not fly there."""
+        """Forgets the last position of an aircraft that was put elsewhere: it did not fly there."""
         self._before = {other: motion for other, motion in self._before.items() if other != name}
         self._touching = {pair for pair in self._touching if name not in pair}
 
     def step(self, motions: Mapping[str, AircraftMotion]) -> list[Hit]:
-        """What has begun to touch."""
+        """The collisions that began in this step; motions: of all aircraft, by name."""
         moving = self._around.bodies() if self._around.crowded else {}
         near = self._near(motions, moving)
         close = {name: {other: moving[other] for other in others} for name, others in near.items()}

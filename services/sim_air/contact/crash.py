@@ -26,7 +26,7 @@ STEEPEST = math.radians(45.0)  # of the wings or the nose while a wheel is on th
 
 
 def crash_of(touches: list[GroundTouch], motion: AircraftMotion, max_sink: float) -> str:
-    """What touched the ground and how fast, when that was more than a landing; empty = no crash.
+    """What touched the ground and how fast, when that was more than a landing; "" = no crash.
 
     A part of the structure moving over the ground, a wheel sinking faster than ``max_sink`` [m/s], or wheels on the ground in an
     attitude in which nobody lands.
@@ -46,7 +46,7 @@ def crash_of(touches: list[GroundTouch], motion: AircraftMotion, max_sink: float
 
 
 class Resting:
-    """Where a wreck comes to lie: a corner of the box about it on the ground."""
+    """How a wreck comes to rest: a corner of its bounding box on the ground."""
 
     def __init__(self, ground: GroundSurface, shape: Bvh) -> None:
         self._ground = ground
@@ -54,7 +54,10 @@ class Resting:
         self._corners = np.array([np.where(side, high, low) for side in itertools.product((False, True), repeat=3)])
 
     def above(self, position: Floats, world_from_body: Floats) -> float:
-        """m between the lowest corner and the ground below; negative when it is in it."""
+        """Distance [m] between the lowest corner at ``position`` (3,) [m, world], ``world_from_body`` (4,) wxyz, and the ground below.
+
+        Negative when the corner is in the ground.
+        """
         lowest = float((self._corners @ rotations.matrix(world_from_body).T)[:, 2].min())
         return float(position[2]) + lowest - self._ground.under(position)
 
@@ -63,7 +66,7 @@ class Resting:
 
 
 class Wreck:
-    """What is left, motor off: it falls tumbling, with drag, until it lies."""
+    """A wreck, motor off: it falls tumbling, with drag, until it lies."""
 
     def __init__(self, motion: AircraftMotion, air: Air, joints: list[JointAngle], rests: Resting | None = None) -> None:
         """rests: without one it stays where it is."""

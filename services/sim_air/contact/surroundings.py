@@ -14,7 +14,7 @@ from uvf.sensors.surroundings import Surroundings, Whereabouts
 
 
 class Around:
-    """Worked out when somebody looks, once a step."""
+    """The obstacles about the aircraft, computed on demand once a step."""
 
     def __init__(
         self, things: Sequence[Solid], ground: GroundSurface, vehicles: Mapping[str, Bvh], tree_of: Callable[[str], Bvh | None]
@@ -36,13 +36,15 @@ class Around:
         self._bodies: dict[str, MovingBody] | None = None
 
     def add_aircraft(self, name: str, shape: Bvh) -> None:
+        """Adds an aircraft with its shape."""
         self._surroundings.add_vehicle(name, shape)
 
     def remove_aircraft(self, name: str) -> None:
+        """Removes an aircraft."""
         self._surroundings.remove(name)
 
     def look(self, t: float, truth: Mapping[str, NavState], objects: SimObjects | None, aircraft: Mapping[str, AircraftMotion]) -> None:
-        """How it stands at ``t`` [s]: ground vehicles by their newest truth, aircraft by their motion."""
+        """Sets the situation at ``t`` [s]: ground vehicles by their newest truth, aircraft by their motion."""
         self._t, self._truth, self._objects, self._aircraft = t, truth, sound_objects(objects), aircraft
         self._bodies = None
 
@@ -52,7 +54,7 @@ class Around:
         return self._scripted or len(self._aircraft.keys() | self._truth.keys()) + len(self._objects) > 1
 
     def bodies(self) -> dict[str, MovingBody]:
-        """All that moves, by name."""
+        """All moving bodies, by name."""
         if self._bodies is None:
             self._take_in()
             placed = {o.name: (array(o.pose.position), unit_wxyz(o.pose)) for o in self._objects if not o.model}
@@ -62,7 +64,7 @@ class Around:
         return self._bodies
 
     def others(self, name: str) -> list[MovingBody]:
-        """What moves about one aircraft."""
+        """The moving bodies other than the named aircraft."""
         return [body for other, body in self.bodies().items() if other != name]
 
     def _take_in(self) -> None:

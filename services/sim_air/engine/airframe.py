@@ -63,11 +63,11 @@ class Airframe:
         self._controls = Controls()
 
     def save(self) -> EngineState:
-        """What ``restored`` makes a second one of."""
+        """Its state, from which ``restored`` makes another one."""
         return EngineState({name: self._fdm[name] for name in _catalogue(self._fdm)}, self._controls, self._fdm.get_sim_time())
 
     def restored(self, state: EngineState) -> Self:
-        """A second one that goes on from a saved state: always alike, and nearly as the first one does."""
+        """Another airframe that goes on from a saved state: identically each time, and nearly as the original does."""
         twin = type(self)(self._folder, self._body, self._tangent)
         twin.over(self._ground)
         turns = round(HELD * self._body.physics_hz / CYCLES)
@@ -83,11 +83,11 @@ class Airframe:
         return twin
 
     def over(self, ground: GroundSurface) -> None:
-        """The ground that it will stand on and fly over, from its next beginning on."""
+        """Sets the ground that it stands on and flies over, from its next start on."""
         self._ground = ground
 
     def start(self, start: InitialState) -> Trim:
-        """Puts the aircraft into trimmed flight. Raises BadInput when it cannot fly so."""
+        """Puts the aircraft into trimmed flight; returns the trim. Raises BadInput when it cannot fly so."""
         self._load()
         try:
             with c_output_discarded():
@@ -147,7 +147,7 @@ class Airframe:
         return False
 
     def touches(self) -> list[GroundTouch]:
-        """What is on the ground."""
+        """Its points that touch the ground."""
         return self._contacts.touches() if self._gauges.height() < self._reach + TOUCHING else []
 
     def _trim(self, start: InitialState) -> Trim:
@@ -159,11 +159,11 @@ class Airframe:
         return trim
 
     def hold_still(self, still: bool) -> None:
-        """Stops the motion of the body while the engine turns on, or lets it go."""
+        """Holds the motion of the body while the engine runs on, or releases it."""
         self._hold.still(still)
 
     def accelerations(self, start: InitialState, trim: Trim) -> Floats:
-        """(6,) body accelerations [m/s^2, rad/s^2] once the propeller turns steadily, the body held in this state."""
+        """Body accelerations (6,) [m/s^2, rad/s^2, FRD] once the propeller turns steadily, the body held in this state."""
         flown = replace(start, climb=start.climb - trim.glide)
         return self._steady(partial(self._place, flown, attitude(start.path, trim)), trim.controls)
 
@@ -205,20 +205,21 @@ class Airframe:
         self.blow(wind)
 
     def blow(self, wind: Floats) -> None:
-        """Sets the velocity of the air [m/s, world]."""
+        """Sets the wind velocity (3,) [m/s, world], the direction it blows to."""
         blow(self._fdm, wind)
 
     def set_wind(self, air: AirMotion) -> None:
-        """The air until the next call, turning too."""
+        """Sets velocity and rotation of the air until the next call."""
         self.blow(air.velocity)
         for name, rate in zip(GUST_RATES, air.rates, strict=True):
             self._fdm[name] = rate
 
     def flight(self) -> AirRelativeState:
-        """What the wind depends on."""
+        """The state that the wind model depends on."""
         return self._gauges.flight()
 
     def command(self, controls: Controls) -> None:
+        """Sets deflections, throttle and brake, held until the next call."""
         self._controls = controls
         self._wiring.write(controls)
 
@@ -240,18 +241,20 @@ class Airframe:
         self._fdm["position/terrain-elevation-asl-ft"] = self._fdm["position/geod-alt-ft"] - height / FT
 
     def motion(self) -> AircraftMotion:
+        """True motion now: world ENU, body FLU."""
         return self._gauges.motion()
 
     def air(self) -> Air:
+        """The air about the aircraft now."""
         return self._gauges.air()
 
     def joints(self) -> list[JointAngle]:
-        """Where the surfaces are and how fast the propellers turn."""
+        """Angles of the surfaces and speeds of the propellers."""
         return self._wiring.joints()
 
     @property
     def span(self) -> float:
-        """m, of the wing."""
+        """Wing span [m]."""
         return self._gauges.span
 
     @property
@@ -261,17 +264,17 @@ class Airframe:
 
     @property
     def propulsive_force(self) -> float:
-        """N along the body's x axis, of all engines."""
+        """Force [N] of all engines along the body's x axis."""
         return self._gauges.propulsive_force
 
     @property
     def shaft_power(self) -> float:
-        """W, of all engines."""
+        """Shaft power [W] of all engines."""
         return self._gauges.shaft_power
 
     @property
     def motor_power(self) -> float:
-        """W that all engines draw from the battery, 0 without one."""
+        """Electric power [W] that all engines draw from the battery; 0 without one."""
         return self._gauges.motor_power(self._body.battery)
 
 

@@ -17,7 +17,7 @@ CLEAR = 100.0  # m above the ground, where the trim of an aircraft that stands i
 
 @dataclass(frozen=True)
 class FlightStart:
-    """flight: what to fly, or only where to stand; trim_speed: m/s."""
+    """How a flight begins. flight: what to fly, or only where to stand; trim_speed [m/s]."""
 
     flight: InitialState
     standing: bool
@@ -25,14 +25,14 @@ class FlightStart:
 
 
 def as_told(begin: mission_file.StartPose, body: AirBody, air: AirMass, ground: float) -> FlightStart:
-    """From a mission's start: no height above the ``ground`` [m, world] means standing, no speed the trim speed."""
+    """The beginning that a mission's start asks for: no height above the ``ground`` [m, world] means standing, no speed the trim speed."""
     position, standing = np.array((begin.x, begin.y, ground + begin.z)), begin.on_ground or begin.z == 0
     flight = InitialState(position, begin.yaw, begin.speed or body.trim_speed, air.mean(begin.z), begin.climb, begin.turn_rate)
     return FlightStart(flight, standing, body.trim_speed)
 
 
 def begun(airframe: Airframe, begin: FlightStart) -> tuple[Controls, Controls]:
-    """Puts it there; its controls then, and those of level flight for when nobody steers. Raises BadInput."""
+    """Puts the airframe there; returns its controls then, and those of level flight for when nobody steers. Raises BadInput."""
     if begin.standing:
         level = _level(airframe, begin)
         airframe.stand(begin.flight)

@@ -16,7 +16,7 @@ FT = 0.3048  # m
 
 
 class GroundTouch(NamedTuple):
-    """A point on the ground; speed: m/s, down into it."""
+    """A point that touches the ground; speed: sink rate [m/s]."""
 
     name: str
     is_wheel: bool
@@ -24,7 +24,7 @@ class GroundTouch(NamedTuple):
 
 
 class Contacts:
-    """Of one loaded model."""
+    """The contact points of one loaded model."""
 
     def __init__(self, properties: Properties, known: Collection[str], path: Path) -> None:
         self._properties = properties
@@ -32,11 +32,12 @@ class Contacts:
         self._names = contact_names(path, len(self._nodes))
 
     def points(self) -> Floats:
-        """(n, 3) m from the centre of gravity, body FLU, as they are unloaded."""
+        """Positions (n, 3) [m] of the unloaded contact points from the centre of gravity, body FLU."""
         cg = self._place("inertia/cg-{}-in")
         return np.array([(self._place(node + "/{}-position") - cg) * (-1, -1, 1) for node in self._nodes]).reshape(-1, 3) * INCH
 
     def touches(self) -> list[GroundTouch]:
+        """The points that touch the ground now."""
         now = []
         for node, name in zip(self._nodes, self._names, strict=True):
             if self._properties[f"{node}/WOW"]:

@@ -40,27 +40,27 @@ PLACES = {
 
 @dataclass(frozen=True)
 class EngineState:
-    """All that a model told of itself, by property, the commands it was given last and its time [s]."""
+    """A saved state: all properties of the model by name, the last commands, and its time [s]."""
 
     values: Mapping[str, float]
     controls: Controls
     time: float
 
     def place(self, fdm: Engine, held: float) -> None:
-        """held: s for which the body will be held; the Earth turns under it."""
+        """Sets the initial conditions; held: time [s] for which the body will be held, while the Earth turns under it."""
         for initial, source in PLACES.items():
             fdm[f"ic/{initial}"] = self.values[source]
         fdm["ic/long-gc-rad"] = self.values["position/long-gc-rad"] + EARTH_RATE * held
         fdm.run_ic()
 
     def write(self, fdm: Engine) -> None:
-        """Whatever differs: what is as it was stays untouched, some write more than themselves."""
+        """Writes all properties that differ; unchanged ones are left alone, for some affect others when written."""
         for name in _writable(fdm):
             if (name in WIND or not name.startswith(OTHERWISE)) and fdm[name] != (value := self.values[name]) and np.isfinite(value):
                 fdm[name] = value
 
     def settle(self, fdm: Engine, command: Callable[[Controls], None], turns: int) -> None:
-        """Of a body held still: the properties that can be written, and then what takes time."""
+        """Brings a body held still into the state: first the writable properties, then, in ``turns``, what takes time."""
         self.write(fdm)
         drive = EngineDrive(fdm, command, self)
         for left in range(turns, 0, -1):
@@ -74,7 +74,7 @@ def _writable(fdm: Engine) -> list[str]:
 
 
 class EngineDrive:
-    """Brings the propellers of a held body to a speed, a turn of three cycles at a time, two of them at the commands that hold.
+    """Drives the propellers of a held body to a speed, in turns of three cycles, two of them at the commands that hold.
 
     Over a turn the speed's distance from the target goes as e' = a e + b u + c with the throttle u of its first cycle; a, b, c are
     fitted to the last three turns. All engines are driven alike, by the first one's speed.
@@ -91,10 +91,11 @@ class EngineDrive:
 
     @property
     def off(self) -> float:
-        """rpm above the target, 0 without a propeller."""
+        """Propeller speed above the target [rpm]; 0 without a propeller."""
         return 0.0 if self._target is None else self._fdm[SPEED] - self._target
 
     def turn(self) -> None:
+        """Makes one turn of CYCLES cycles."""
         before = self.off
         self._command(replace(self._controls, throttle=self._throttle))
         self._fdm.run()

@@ -25,7 +25,7 @@ POWER = re.compile(r"propulsion/engine(\[\d+\])?/power-hp")
 
 
 def pitot_share(forward: float, airspeed: float) -> float:
-    """Of the dynamic pressure, what a tube that looks forward takes in of air that comes at ``airspeed``, ``forward`` of it from ahead.
+    """Share [-] of the dynamic pressure that a forward tube takes in at ``airspeed``, ``forward`` of it from ahead (one unit, e.g. [m/s]).
 
     All of it within 20 degrees, as real tubes do, then less by the square of the cosine, and nothing from the side or from behind.
     """
@@ -35,7 +35,7 @@ def pitot_share(forward: float, airspeed: float) -> float:
 
 
 class Gauges:
-    """Of one aircraft; known: the names of the model's properties."""
+    """Reads the state of one aircraft; known: the names of the model's properties."""
 
     def __init__(self, properties: Properties, known: Collection[str], tangent: LocalTangent) -> None:
         self._properties = properties
@@ -46,6 +46,7 @@ class Gauges:
         self._powers = [name for name in known if POWER.fullmatch(name)]
 
     def motion(self) -> AircraftMotion:
+        """True motion now: world ENU, body FLU."""
         p = self._properties
         velocity = np.array((p["velocities/v-east-fps"] * FT, p["velocities/v-north-fps"] * FT, p["velocities/v-down-fps"] * -FT))
         # ENU and FLU are each half a turn away from NED and FRD: yaw is mirrored, pitch changes sign with y and z.
@@ -58,22 +59,23 @@ class Gauges:
         return AircraftMotion(self.position(), velocity, attitude, rates, force, p["velocities/vt-fps"] * FT, spin)
 
     def position(self) -> Floats:
-        """(3,) m, world."""
+        """Position (3,) [m, world]."""
         p = self._properties
         x0, y0, z0 = self._origin_ecef
         x, y, z = p["position/ecef-x-ft"] * FT - x0, p["position/ecef-y-ft"] * FT - y0, p["position/ecef-z-ft"] * FT - z0
         return np.array([a * x + b * y + c * z for a, b, c in self._enu_from_ecef])  # asked for too often for matrices
 
     def height(self) -> float:
-        """m above the ground."""
+        """Height [m] above the ground."""
         return self._properties["position/h-agl-ft"] * FT
 
     def flight(self) -> AirRelativeState:
-        """What the wind depends on."""
+        """The state that the wind model depends on."""
         p = self._properties
         return AirRelativeState(self.position(), self.height(), np.pi / 2 - p["attitude/psi-rad"], p["velocities/vt-fps"] * FT)
 
     def air(self) -> Air:
+        """Pressures [Pa] and temperature [K] now; the differential pressure is that of the pitot tube."""
         p = self._properties
         pitot = pitot_share(p["velocities/u-aero-fps"], p["velocities/vt-fps"]) * p["aero/qbar-psf"]
         return Air(p["atmosphere/P-psf"] * PSF, pitot * PSF, p["atmosphere/T-R"] * RANKINE)
@@ -86,21 +88,21 @@ class Gauges:
 
     @property
     def span(self) -> float:
-        """m, of the wing."""
+        """Wing span [m]."""
         return float(self._properties["metrics/bw-ft"] * FT)
 
     @property
     def propulsive_force(self) -> float:
-        """N along the body's x axis, of all engines."""
+        """Force [N] of all engines along the body's x axis."""
         return float(self._properties["forces/fbx-prop-lbs"] * LBF) if self._has_engines else 0.0
 
     @property
     def shaft_power(self) -> float:
-        """W, of all engines."""
+        """Shaft power [W] of all engines."""
         return float(sum(max(self._properties[name], 0.0) for name in self._powers) * HP)
 
     def motor_power(self, pack: BatteryPack | None) -> float:
-        """W that all engines draw from the battery, 0 without one."""
+        """Electric power [W] that all engines draw from the battery; 0 without one."""
         if pack is None:
             return 0.0
         return float(self._properties[pack.power]) if pack.power else self.shaft_power / pack.efficiency

@@ -21,7 +21,7 @@ GUST_RATES = tuple(f"gust/{axis}-rad_sec" for axis in AXES)
 
 @contextmanager
 def with_gust_rates(path: Path) -> Iterator[Path]:
-    """The folder in which the engine finds ``<model>/<model>.xml`` of the model at ``path``, changed so. Raises BadInput."""
+    """Adds rotation of the air to the model at ``path``; yields the folder of the changed ``<model>/<model>.xml``. Raises BadInput."""
     with TemporaryDirectory() as folder:
         copied = Path(shutil.copytree(path.parent, Path(folder) / path.parent.name))
         ElementTree(_changed(read(path))).write(copied / path.name)

@@ -16,22 +16,33 @@ EARTH_RATE = 7.292115e-5  # rad/s
 
 
 class Engine(Properties, Protocol):
-    """A loaded model."""
+    """A loaded JSBSim model (part of FGFDMExec)."""
 
-    def run(self) -> bool: ...
-    def run_ic(self) -> bool: ...
-    def query_property_catalog(self, check: str) -> str: ...
-    def set_trim_status(self, status: bool) -> None: ...
+    def run(self) -> bool:
+        """Makes one physics step."""
+        ...
+
+    def run_ic(self) -> bool:
+        """Applies the initial conditions."""
+        ...
+
+    def query_property_catalog(self, check: str) -> str:
+        """The catalogue of properties whose names contain ``check``, one a line."""
+        ...
+
+    def set_trim_status(self, status: bool) -> None:
+        """Sets whether the model counts as being trimmed."""
+        ...
 
 
 def at_rest(place: InitialState, height: float) -> InitialState:
-    """height: of the centre of gravity, m."""
+    """The state at rest in calm air with the centre of gravity at ``height`` [m, world]."""
     x, y, _ = place.position
     return replace(place, position=np.array((x, y, height)), airspeed=0.0, climb=0.0, turn_rate=0.0, wind=np.zeros(3))
 
 
 def put(fdm: Engine, tangent: LocalTangent, start: InitialState, lies: TrimAttitude, spin_up: float = 0.0) -> None:
-    """Over the terrain that was laid before; spin_up: s for which the body will be held still."""
+    """Places the aircraft over the terrain laid before; spin_up: time [s] for which the body will be held still."""
     latitude, longitude, altitude = tangent.geodetic(start.position)
     fdm["ic/lat-geod-rad"], fdm["ic/h-sl-ft"] = latitude, altitude / FT
     fdm["ic/long-gc-rad"] = longitude + EARTH_RATE * spin_up  # the Earth turns under a body that is held still
@@ -43,12 +54,12 @@ def put(fdm: Engine, tangent: LocalTangent, start: InitialState, lies: TrimAttit
 
 
 def lay_terrain(fdm: Engine, tangent: LocalTangent, x: float, y: float, height: float) -> None:
-    """height: m, world, of the ground below where the aircraft will be put."""
+    """Sets the terrain below the start at x, y [m, world] to ``height`` [m, world]."""
     fdm["ic/terrain-elevation-ft"] = tangent.geodetic(np.array((x, y, height)))[2] / FT
 
 
 def put_held(fdm: Engine, tangent: LocalTangent, held: Held) -> None:
-    """Into a state in calm air."""
+    """Places the aircraft in a held state in calm air."""
     fdm["ic/lat-geod-rad"], fdm["ic/h-sl-ft"] = tangent.latitude, held.altitude / FT
     fdm["ic/terrain-elevation-ft"] = tangent.altitude / FT
     for name, value in zip(("phi-rad", "theta-rad", "psi-true-rad"), held.angles, strict=True):
@@ -59,7 +70,7 @@ def put_held(fdm: Engine, tangent: LocalTangent, held: Held) -> None:
 
 
 def blow(fdm: Properties, wind: Floats) -> None:
-    """Sets the velocity of the air [m/s, world]."""
+    """Sets the wind velocity (3,) [m/s, world], the direction it blows to."""
     fdm["atmosphere/wind-east-fps"] = wind[0] / FT
     fdm["atmosphere/wind-north-fps"] = wind[1] / FT
     fdm["atmosphere/wind-down-fps"] = -wind[2] / FT

@@ -15,9 +15,9 @@ INTEGRATORS = tuple(
 
 
 class Hold:
-    """Stops the motion of the body while the engine turns on, and lets it go.
+    """Holds the motion of the body while the engine runs on, and releases it.
 
-    The model's own actuators follow at once meanwhile, as while JSBSim trims: their hysteresis would make what is found depend on the way.
+    The model's own actuators follow at once meanwhile, as while JSBSim trims: with their hysteresis the result would depend on the way.
     """
 
     def __init__(self, fdm: Engine) -> None:
@@ -25,6 +25,7 @@ class Hold:
         self._integrators = {name: fdm[name] for name in INTEGRATORS}
 
     def still(self, still: bool) -> None:
+        """Holds or releases the body."""
         for name, method in self._integrators.items():
             self._fdm[name] = 0 if still else method
         self._fdm["propulsion/fuel_freeze"] = int(still)
@@ -32,7 +33,7 @@ class Hold:
 
 
 class SpinUp:
-    """Remembers how long it takes with this aircraft."""
+    """Runs the engines of a held body until they are steady, and remembers how long that takes with this aircraft."""
 
     def __init__(self, hz: float) -> None:
         """hz: physics steps a second."""
@@ -40,7 +41,7 @@ class SpinUp:
         self._time = FIRST
 
     def settle(self, fdm: Engine, gauges: Gauges, put: Callable[[float], None]) -> None:
-        """put: sets the state, given the time [s] for which it will be held."""
+        """Runs until the thrust is steady; put: sets the state, given the time [s] for which it will be held."""
         put(self._time)
         while not self._steady(fdm, gauges):
             self._time *= 2

@@ -14,7 +14,7 @@ class Runaway(Exception):
 
 @dataclass(frozen=True)
 class AircraftMotion:
-    """What is true now. World frame ENU, body frame FLU."""
+    """True motion. World frame ENU, body frame FLU."""
 
     position: Floats  # (3,) m
     velocity: Floats  # (3,) m/s over ground
@@ -50,18 +50,19 @@ class InitialState:
 
     @property
     def path(self) -> FlightPath:
+        """The steady flight path through the air."""
         return FlightPath(self.airspeed, self.climb, -self.turn_rate)
 
     @property
     def velocity(self) -> Floats:
-        """(3,) m/s over ground, world."""
+        """Velocity over ground (3,) [m/s, world]."""
         level = np.cos(self.climb)
         return self.airspeed * np.array((level * np.cos(self.yaw), level * np.sin(self.yaw), np.sin(self.climb))) + self.wind
 
 
 @dataclass(frozen=True)
 class Held:
-    """A state in calm air, with the axes of Beard and McLain: body FRD, angles from NED."""
+    """A state in calm air, in the axes of Beard & McLain: body FRD, angles from NED."""
 
     velocity: Floats  # (3,) u, v, w m/s
     rates: Floats  # (3,) p, q, r rad/s

@@ -41,17 +41,19 @@ class Trim:
 
     @property
     def converged(self) -> bool:
+        """Whether nothing accelerates, within TOLERANCE, and the throttle is within 0..1."""
         return self.residual < TOLERANCE and 0 <= self.throttle <= 1
 
     @property
     def lacks(self) -> str:
-        """Why it is none."""
+        """Why it is no trim."""
         if self.residual >= TOLERANCE:
             return f"{self.residual:.2g} m/s^2 or rad/s^2 are left"
         return f"that needs {self.throttle:.2f} of the throttle; try another speed"
 
     @property
     def controls(self) -> Controls:
+        """The controls of the trim."""
         return Controls(self.aileron, self.elevator, self.rudder, self.throttle)
 
 
@@ -65,7 +67,7 @@ class FlightPath:
 
     @property
     def bank(self) -> float:
-        """rad, of a coordinated turn: tan(phi) = V cos(gamma) chi_dot / g (Beard and McLain, equation 9.11)."""
+        """Bank [rad] of a coordinated turn: tan(phi) = V cos(gamma) chi_dot / g (Beard & McLain, equation 9.11)."""
         return float(np.arctan(self.airspeed * np.cos(self.climb) * self.turn / G))
 
 
@@ -80,7 +82,7 @@ class TrimAttitude:
 
 
 def attitude(path: FlightPath, trim: Trim) -> TrimAttitude:
-    """How the body lies on the path. Straight, the nose is on the course; in a turn there is no side slip."""
+    """Attitude of the body on the path. In straight flight the nose is on the course; in a turn there is no side slip."""
     climb = path.climb - trim.glide
     if path.turn == 0:
         return TrimAttitude(trim.roll, trim.alpha + climb, -trim.slip, (0.0, 0.0, 0.0))
@@ -98,10 +100,10 @@ def _pitch(climb: float, alpha: float, roll: float) -> float:
 
 
 def solve(accelerations: Callable[[Trim], Floats], bank: float = 0.0, powered: bool = True) -> Trim:
-    """Finds the six unknowns for which the six body accelerations (3 m/s^2, 3 rad/s^2) vanish, from about ``bank`` [rad].
+    """Finds the six unknowns for which the six body accelerations (6,) [m/s^2, rad/s^2] vanish, starting at ``bank`` [rad].
 
-    What has no engine glides: an angle below the path asked for takes the throttle's place. An aircraft without one of the
-    surfaces flies with side slip, and what does nothing stays where it is.
+    Without an engine an angle below the path asked for takes the throttle's place. An aircraft without one of the surfaces flies with
+    side slip, and controls without effect stay where they are.
     """
     last = THROTTLES if powered else GLIDES
     for first in last:

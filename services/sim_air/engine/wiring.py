@@ -31,7 +31,7 @@ class Controls:
 
 
 class JointAngle(NamedTuple):
-    """rad, or rad/s of what turns."""
+    """A moving part: position [rad], or speed [rad/s] of what rotates."""
 
     name: str
     position: float = 0.0
@@ -39,14 +39,14 @@ class JointAngle(NamedTuple):
 
 
 class Properties(Protocol):
-    """The model's, by name."""
+    """The model's properties, by name."""
 
     def __getitem__(self, name: str) -> float: ...
     def __setitem__(self, name: str, value: float) -> None: ...
 
 
 class Wiring:
-    """The controls of one aircraft."""
+    """Maps the controls of one aircraft to the model's properties."""
 
     def __init__(self, properties: Properties, known: Collection[str], body: AirBody, place: FileLocation) -> None:
         """known: the names the model has; place: of ``air:`` in the vehicle's file. Raises BadInput for what the model has not."""
@@ -62,15 +62,17 @@ class Wiring:
         self._settings = running | {self._there(name, place.at("settings", name)): value for name, value in body.settings.items()}
 
     def write(self, controls: Controls) -> None:
+        """Writes deflections, throttle and brake."""
         for name, target, scale in self._lines:
             self._properties[target] = getattr(controls, name) * scale
 
     def set_up(self) -> None:
-        """Makes the settings, which the engine forgets at each beginning."""
+        """Writes the settings, which the engine forgets at each start."""
         for name, value in self._settings.items():
             self._properties[name] = value
 
     def joints(self) -> list[JointAngle]:
+        """Angles of the surfaces and speeds of the propellers."""
         return [read() for read in self._joints]
 
     def _command(self, name: str, body: AirBody, place: FileLocation) -> list[tuple[str, str, float]]:

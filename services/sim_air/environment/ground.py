@@ -14,7 +14,7 @@ DOWN = np.array(((0.0, 0.0, -1.0),))
 
 
 class GroundSurface:
-    """Looked at along the vertical, so that an aircraft stands in a hangar as well as on its roof."""
+    """The ground below an aircraft along the vertical, so that it stands in a hangar as well as on its roof."""
 
     def __init__(self, scene: Scene) -> None:
         self.scene = scene
@@ -22,11 +22,11 @@ class GroundSurface:
         self._area: Floats = bounds[0, (0, 1, 3, 4)] if len(bounds) else np.array((np.inf, np.inf, -np.inf, -np.inf))
 
     def under(self, position: Floats) -> float:
-        """Height [m, world] of what lies below an aircraft at ``position`` (3,) m."""
+        """Height [m, world] of the surface below an aircraft at ``position`` (3,) [m, world]."""
         return self._below(position[0], position[1], position[2] + CLEAR)
 
     def top(self, x: float, y: float) -> float:
-        """Height [m, world] of the uppermost surface on which an aircraft has room: the top of a wall or a mast is none."""
+        """Height [m, world] of the uppermost surface with room for an aircraft at x, y [m, world]: not the top of a wall or mast."""
         here = self._below(x, y, HIGHEST)
         beside = min(self._below(x + dx, y + dy, HIGHEST) for dx, dy in ((WIDE, 0.0), (0.0, WIDE), (-WIDE, 0.0), (0.0, -WIDE)))
         return here if here - beside <= WIDE else beside

@@ -15,7 +15,7 @@ STILL = 1.0  # m/s through the air, below which turning air is left out: the eng
 
 
 class AirRelativeState(NamedTuple):
-    """What the air needs to know of the aircraft."""
+    """The state of the aircraft that the wind model depends on."""
 
     position: Floats  # (3,) m, world
     height: float  # m above the ground
@@ -24,14 +24,14 @@ class AirRelativeState(NamedTuple):
 
 
 class AirMotion(NamedTuple):
-    """velocity: (3,) m/s, world; rates: (3,) rad/s, rotation of the air about the aircraft's forward, right and down axes."""
+    """Motion of the air. velocity: (3,) [m/s, world]; rates: (3,) [rad/s], rotation about the aircraft's forward, right and down axes."""
 
     velocity: Floats
     rates: Floats
 
 
 class AirMass:
-    """One aircraft's share of the weather; ``steps`` follow one another by the physics step."""
+    """The air about one aircraft; ``step`` is called once a physics step."""
 
     def __init__(self, wind: Wind, span: float, rng: np.random.Generator) -> None:
         """span: of the wing, m."""
@@ -42,12 +42,12 @@ class AirMass:
         self.is_steady = not (wind.shear or wind.gusts or wind.turbulence)
 
     def mean(self, height: float) -> Floats:
-        """(3,) m/s, world, at ``height`` [m above the ground]: without gusts."""
+        """Mean wind (3,) [m/s, world] at ``height`` [m above the ground], without gusts."""
         shear = self._wind.shear
         return self._steady if shear is None else self._steady * _growth(shear, height)
 
     def step(self, t: float, dt: float, flight: AirRelativeState) -> AirMotion:
-        """The air that the aircraft meets at ``t`` [s], ``dt`` [s] after the step before."""
+        """Motion of the air at the aircraft at ``t`` [s], ``dt`` [s] after the step before."""
         velocity, rates = self.mean(flight.height), CALM
         for i, gust in enumerate(self._wind.gusts):
             velocity = velocity + self._share(i, gust, t, flight.airspeed * dt, flight) * np.array(gust.velocity)

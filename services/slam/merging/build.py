@@ -9,7 +9,7 @@ from uvf.slam.merging.team import Team
 
 
 def build(site: Scenario) -> list[ServiceInstance]:
-    """None where fewer than two of them do."""
+    """The merging service; empty where fewer than two vehicles draw maps."""
     names = tuple(m.name for m in site.of_kind("ground") if m.entry.maps is None or m.entry.maps.localize is None)
     if len(names) < 2:
         return []
@@ -18,7 +18,7 @@ def build(site: Scenario) -> list[ServiceInstance]:
 
 
 def warm_up() -> None:
-    """Compiles the kernels, or loads them from their cache, before the first session: one that meets itself."""
+    """Compiles the kernels, or loads them from their cache, before the first session, by matching one with itself."""
     slam, team = GraphSlam(), Team()
     for reading in there_and_back():
         slam.add(reading)

@@ -19,9 +19,9 @@ RESOLUTION = 0.05  # m
 
 
 class MergingService(Service):
-    """Takes in one session a step, and what is new of it. Nothing is known of where the vehicles began.
+    """Merges the vehicles' sessions, one a step; their relative start poses are unknown.
 
-    The frame of a team is the map frame of its first vehicle, which its map is published for.
+    The frame of a team is the map frame of its first vehicle, for which its map is published.
     """
 
     name = "merging"
@@ -29,9 +29,13 @@ class MergingService(Service):
     scope = "world"
 
     class Inputs(Reads):
+        """The vehicles' mapping sessions."""
+
         session: dict[str, MapSession] = each_vehicle(topics.MAP_SESSION)
 
     class Outputs(Writes):
+        """Team maps, the place of each vehicle's map in them, and events."""
+
         map: dict[str, Grid] | None = topic(topics.TEAM_MAP)
         place: dict[str, FrameTransform] | None = topic(topics.TEAM_PLACE)
         events: dict[str, list[Event]] | None = topic(topics.EVENTS.by("merging"))
@@ -43,6 +47,7 @@ class MergingService(Service):
         self._maps: dict[str, TileMap] = {}
 
     def step(self, t: float, now: Inputs) -> Outputs:
+        """One cycle at ``t`` [s, simulation]: takes a new session, searches for common places, and publishes changed teams."""
         events = self._take(t, now.session)
         self._team.work(PLACES)
         teams = {group.names[0]: group for group in self._team.groups if len(group.names) > 1}

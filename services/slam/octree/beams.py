@@ -20,16 +20,16 @@ BEYOND = 2.0
 
 
 class RayBundle(NamedTuple):
-    """ends: (n, 3) m in the sensor's frame; reach: m, what ended farther away has met nothing."""
+    """Beams. ends: (n, 3) [m] in the sensor's frame; reach [m]: a beam that ends farther away has met nothing."""
 
     ends: Floats
     reach: float
 
 
 def depth_beams(picture: CompressedImage, info: CameraCalibration, reach: float) -> RayBundle:
-    """Of a depth picture (16-bit PNG: mm along the view, 0 = nothing there), in the optical frame (x right, y down, z along the view).
+    """Beams (n, 3) [m] of a depth picture (16-bit PNG: mm along the view, 0 = no return), in the optical frame (x right, y down).
 
-    reach: m, not more than the camera sees. Raises BadInput.
+    reach: [m], not more than the camera's own. Raises BadInput.
     """
     depths = _depths(picture, (info.height, info.width)).ravel() / MILLIMETRES
     rays = _rays(info.width, info.height, tuple(info.K))
@@ -40,7 +40,7 @@ def depth_beams(picture: CompressedImage, info: CameraCalibration, reach: float)
 
 
 def sweep_beams(scan: LaserScan, reach: float) -> RayBundle:
-    """Of a 2-D lidar, in its own frame; reach: m, not more than the lidar's own."""
+    """Beams (n, 3) [m] of a 2-D lidar, in its own frame; reach: [m], not more than the lidar's own."""
     ranges, rays = scan_rays(scan)
     lengths = np.where((ranges > 0.0) & (ranges <= reach), ranges, BEYOND * reach)
     return RayBundle(np.column_stack((rays * lengths[:, None], np.zeros(len(rays)))), reach)

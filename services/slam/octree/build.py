@@ -17,7 +17,7 @@ from uvf.slam.octree.octree import Octree
 
 
 def build(site: Scenario) -> list[ServiceInstance]:
-    """Raises BadInput for a vehicle that asks for a map and sees nothing of the world."""
+    """The octree service of each vehicle that asks for a map. Raises BadInput for one without a suitable sensor."""
     members = [member for member in site.members.values() if OctreeService.name in member.file.params]
     if members:
         _warm_up()

@@ -13,7 +13,7 @@ FRAME = "world"
 
 
 def octree_message(octree: Octree, most: int, t: float) -> OctreeMap:
-    """The whole map; where its file would be longer than ``most`` bytes, with cells of twice the side, and so on. Raises TooLarge."""
+    """The whole map stamped ``t`` [s], coarsened by doubling its cells until its file has at most ``most`` bytes. Raises TooLarge."""
     leaves, depth = leaves_of(octree), DEPTH
     data = to_bt(leaves, octree.resolution)
     while len(data) > most and depth > 1:
@@ -24,16 +24,17 @@ def octree_message(octree: Octree, most: int, t: float) -> OctreeMap:
 
 
 def octree_from(message: OctreeMap) -> Octree:
-    """Raises BadInput."""
+    """The octree of a message. Raises BadInput."""
     return read_octree(message.data, f"the octree told at {message.timestamp.seconds} s")
 
 
 def slice_message(columns: Columns, t: float) -> Grid:
+    """The horizontal slice as an occupancy grid in the world frame, stamped ``t`` [s]."""
     return occupancy_grid(columns.slice, columns.resolution, columns.x, columns.y, FRAME, t)
 
 
 def heights_message(columns: Columns, t: float) -> Grid:
-    """Two numbers a cell, ``top`` and ``ground`` [m]."""
+    """The grid of heights ``top`` and ``ground`` [m, world], two numbers a cell, stamped ``t`` [s]."""
     grid = occupancy_grid(columns.slice, columns.resolution, columns.x, columns.y, FRAME, t)
     grid.cell_stride, grid.row_stride = 8, 8 * grid.column_count
     del grid.fields[:]

@@ -43,6 +43,8 @@ NAME = re.compile(r"[A-Za-z0-9_-]{1,64}")
 
 
 class OctreeParams(Params, frozen=True):
+    """Parameters of the octree map."""
+
     resolution: Annotated[float, Meta(ge=0.01, le=10), key("m", "Side of a cell.")] = 0.1
     depth_reach: Annotated[Positive, key("m", "What a depth camera sees farther away counts as free space up to here.")] = 5.0
     lidar_reach: Annotated[Positive, key("m", "What a lidar sees farther away counts as free space up to here.")] = 30.0
@@ -52,26 +54,28 @@ class OctreeParams(Params, frozen=True):
 
 
 class Taken(NamedTuple):
-    """A picture or a sweep that waits for its place. parts: its beams by when they were measured."""
+    """A picture or sweep that waits for the frames at its time. parts: its beams by when they were measured."""
 
     parts: list[SweepSegment]
     frame: str
     beams: RayBundle
 
     def placed(self, frames: FrameBuffer) -> tuple[Floats, Floats]:
-        """(3,), (n, 3) m, world: where it was taken from, a sweep from where its middle was, and the beams' ends. Raises FrameError."""
+        """Origin (3,) and ends (n, 3) of the beams [m, world]; the origin of a sweep is that of its middle. Raises FrameError."""
         places = [frames.lookup(FRAME, self.frame, part.at) for part in self.parts]
         ends = [apply(place, self.beams.ends[part.beams]) for place, part in zip(places, self.parts, strict=True)]
         return places[len(places) // 2].translation, np.concatenate(ends)
 
 
 class OctreeService(Service):
-    """One map per vehicle, in the world frame: each picture and sweep is put in from where the vehicle believes it was taken."""
+    """One octree map per vehicle, in the world frame: pictures and sweeps are inserted from their estimated sensor poses."""
 
     name = "octree"
     hz = 2.0
 
     class Inputs(Reads):
+        """Depth pictures, scans, frames, and requests."""
+
         depth: list[CompressedImage] = optional(every(topics.DEPTH))
         info: CameraCalibration | None = optional(topics.CAMERA_INFO)
         scan: list[LaserScan] = optional(every(topics.SCAN))
@@ -79,6 +83,8 @@ class OctreeService(Service):
         save: list[OctreeSaveRequest] = request(topics.SAVE_OCTREE)
 
     class Outputs(Writes):
+        """Octree, slice and heights, events and replies."""
+
         map: OctreeMap | None = topic(topics.OCTREE)
         slice: Grid | None = topic(topics.SLICE)
         heights: Grid | None = topic(topics.HEIGHTS)
@@ -86,6 +92,8 @@ class OctreeService(Service):
         save: list[Reply] = replies(topics.SAVE_OCTREE)
 
     class Recalls(Reads):
+        """Latched map from which a restarted instance resumes."""
+
         map: OctreeMap | None = topic(topics.OCTREE)
 
     params: OctreeParams
@@ -104,6 +112,7 @@ class OctreeService(Service):
         self._placed_at = 0.0
 
     def step(self, t: float, now: Inputs) -> Outputs:
+        """One cycle at ``t`` [s, simulation]: inserts what has a place by now, and publishes the map when it is due."""
         events = [*self._take(t, now.depth, now.info, now.scan), *self._place(t, now.frames)]
         out = self.Outputs(events=events)
         if self._changed and t - self._published_at >= self.params.map_period - 1e-9:
@@ -120,7 +129,7 @@ class OctreeService(Service):
         return out
 
     def recall(self, left: Recalls) -> None:
-        """Goes on with the last map published, as sure as clamping allows of what it says."""
+        """Resumes with the last map published, with the certainty that clamping allows."""
         if left.map is not None and left.map.resolution == self.params.resolution:
             with suppress(BadInput):  # it begins anew, as it would without a map
                 self._octree = octree_from(left.map)

@@ -20,7 +20,10 @@ NO_SIDEWAYS = 1e-4  # m^2/s^2, variance of a speed that there is none of
 
 
 def odometry(t: float, vehicle: str, odom_from_base: Pose2, drive: DriveFilter, left_over: dict[str, str]) -> Odometry:
-    """left_over: what the next instance needs."""
+    """Pose of base_footprint in the odom frame [m, rad], speeds and covariances as a message stamped ``t`` [s].
+
+    left_over: what the next instance needs.
+    """
     linear, angular = drive.speeds
     pose, twist = np.zeros((6, 6)), np.zeros((6, 6))
     pose[np.ix_(PLANAR, PLANAR)] = drive.covariance[POSE, POSE]
@@ -39,7 +42,7 @@ def odometry(t: float, vehicle: str, odom_from_base: Pose2, drive: DriveFilter, 
 
 
 def pose_covariance(told: Odometry) -> Floats:
-    """(3, 3) of x, y and heading; zero where the message has none."""
+    """Covariance (3, 3) of x, y [m^2] and heading [rad^2]; zero where the message has none."""
     if len(told.pose_covariance) != 36:
         return np.zeros((3, 3))
     found = np.array(told.pose_covariance).reshape(6, 6)[np.ix_(PLANAR, PLANAR)]
@@ -48,10 +51,12 @@ def pose_covariance(told: Odometry) -> Floats:
 
 
 def moving(t: float, vehicle: str, odom_from_base: Pose2) -> FrameTransform:
+    """The frame odom -> base_footprint stamped ``t`` [s]."""
     return planar_frame(t, f"{vehicle}/odom", f"{vehicle}/base_footprint", odom_from_base)
 
 
 def nav_state(t: float, world_from_base: Pose2, speeds: tuple[float, float], position_sigma: float) -> NavState:
+    """Pose [m, rad, world] and speeds (linear [m/s], angular [rad/s]) as a message stamped ``t`` [s]; position_sigma [m]."""
     linear, angular = speeds
     x, y, heading = world_from_base
     return NavState(
@@ -65,7 +70,10 @@ def nav_state(t: float, world_from_base: Pose2, speeds: tuple[float, float], pos
 
 
 def quality(t: float, position_sigma: float, drive: DriveFilter, satellites: tuple[bool, float]) -> EstimateQuality:
-    """satellites: whether the position is measured, and how the newest fix fits."""
+    """Quality of the estimate as a message stamped ``t`` [s]; position_sigma [m].
+
+    satellites: (whether the position is measured, innovation ratio of the newest fix [-]).
+    """
     return EstimateQuality(
         timestamp=stamp(t),
         position_known=satellites[0],
@@ -77,11 +85,12 @@ def quality(t: float, position_sigma: float, drive: DriveFilter, satellites: tup
 
 
 def slipping(t: float, cause: str) -> Event:
+    """The event at ``t`` [s] that reports slipping wheels."""
     return Event(timestamp=stamp(t), severity=Event.WARNING, text="wheels slip: the odometry is less certain", cause=cause, source=SOURCE)
 
 
 def calibrated(t: float, calibration: WheelCalibration, before: Scales, applied: bool) -> Event:
-    """before: the scales in force, which the found ones come on top of."""
+    """The event at ``t`` [s] that reports found wheel scales. before: the scales in force, which the found ones multiply."""
     found = Scales(*(a * b for a, b in zip(before, calibration.scales, strict=True)))
     sigmas = calibration.sigmas
     values = ", ".join(f"{n}_scale: {v:.4f}" for n, v in zip(Scales._fields, found, strict=True))

@@ -19,7 +19,7 @@ MAX_RATE, MAX_FORCE = 100.0, 1000.0  # rad/s, m/s^2: what no vehicle survives
 
 
 class Readings:
-    """Keeps what has come until a wheel message closes a step."""
+    """Collects messages until a wheel message closes a step."""
 
     def __init__(self, body: GroundBody, imu: Mount | None) -> None:
         mount = imu or Mount()
@@ -32,12 +32,11 @@ class Readings:
 
     @property
     def resolution(self) -> float:
-        """m that a wheel rolls from one tick to the next."""
+        """Distance [m] that a wheel rolls from one tick to the next."""
         return self.last.radians_per_tick * self._radius if self.last else 0.0
 
     def take(self, wheels: WheelTicks, imu: list[Imu]) -> Step | None:
-        """The step that ends with a wheel message newer than the one before; counters that jump, because they began anew or are broken,
-        make none."""
+        """The step that ends with a new wheel message; None where counters jump, because they were reset or are broken."""
         self._waiting += imu
         last, self.last = self.last, wheels
         now = seconds(wheels.timestamp)
@@ -76,6 +75,7 @@ class Readings:
 
 
 def satellite_fix(m: Gnss) -> SatelliteFix:
+    """The fix of a GNSS message: latitude and longitude [rad], altitude [m], velocity (2,) east and north [m/s]."""
     velocity = (m.velocity_enu.x, m.velocity_enu.y)
     known = m.fix == Gnss.FIX_3D
     return SatelliteFix(seconds(m.timestamp), known, m.latitude, m.longitude, m.altitude, velocity, m.horizontal_accuracy, m.speed_accuracy)

@@ -28,19 +28,23 @@ LEFT, RIGHT, BIAS, SCALES = "left_ticks", "right_ticks", "gyro_bias", "scales"
 
 
 class OdometryService(Service):
-    """The pose is the odometry seen through the newest ``map_from_odom``, or what satellites make of it where the vehicle hears any."""
+    """Wheel odometry. The pose is the odometry seen through the newest ``map_from_odom``, or fused with satellites where there are any."""
 
     name = "odometry"
     hz = 50.0
     given_up = "the vehicle stands where it would drive by itself"
 
     class Inputs(Reads):
+        """Encoder ticks, IMU samples, the map's correction, and GNSS fixes."""
+
         wheels: WheelTicks = topic(topics.WHEELS)
         imu: list[Imu] = optional(every(topics.IMU))
         correction: FrameTransform | None = optional(topics.TF_MAP)
         gnss: list[Gnss] | None = optional(every(topics.GNSS))
 
     class Outputs(Writes):
+        """Odometry, frame, pose, motion, quality and events."""
+
         odometry: Odometry | None = topic(topics.ODOMETRY)
         moving: FrameTransform | None = topic(topics.TF_ODOM)
         pose: PoseInFrame | None = topic(topics.POSE)
@@ -49,6 +53,8 @@ class OdometryService(Service):
         events: list[Event] | None = topic(topics.EVENTS.by("odometry"))
 
     class Recalls(Reads):
+        """Latched messages from which a restarted instance resumes."""
+
         odometry: Odometry | None = topic(topics.ODOMETRY)
         correction: FrameTransform | None = topic(topics.TF_MAP)
 
@@ -80,6 +86,7 @@ class OdometryService(Service):
         self._quality_due = Due(topics.QUALITY.hz)
 
     def step(self, t: float, now: Inputs) -> Outputs:
+        """One cycle at ``t`` [s, simulation]: filters the new readings, and publishes the pose predicted to ``t``."""
         self._set_up()
         events: list[Event] = []
         if (step := self._readings.take(now.wheels, now.imu)) is not None:
@@ -98,7 +105,7 @@ class OdometryService(Service):
         return out
 
     def recall(self, left: Recalls) -> None:
-        """Goes on at the last pose told; what was driven since then is in the ticks counted since then."""
+        """Resumes at the last pose published; the distance driven since then is in the ticks counted since then."""
         if left.odometry is not None:
             self._resume(left.odometry)
         if left.correction is not None:

@@ -16,13 +16,14 @@ LAST_ITEM = 0xFFFE
 
 
 def set_mode(line: VehicleConnection, mode: Mode, done: Done) -> None:
+    """Requests a mode from the autopilot; ``done`` hears the answer."""
     row = modes.row_of(mode)
     line.latest.intended_custom_mode = row.custom if row else 0
     line.ask("set_mode", ModeRequest(mode=mode, source=SOURCE), done)
 
 
 def set_current(line: VehicleConnection, index: int, done: Done) -> None:
-    """Jumps to a mission item, and says so at once: clients repeat the wish until they see it."""
+    """Jumps to a mission item, and reports it at once: clients repeat the request until they see it."""
 
     def told(accepted: bool, reason: str) -> None:
         if accepted:
@@ -33,7 +34,7 @@ def set_current(line: VehicleConnection, index: int, done: Done) -> None:
 
 
 def on_set_mode(line: VehicleConnection, message: mav.MAVLink_set_mode_message, sender: Sender) -> None:
-    """SET_MODE has no answer but the next HEARTBEAT; a refusal is said in words."""
+    """Handles SET_MODE, which has no answer but the next HEARTBEAT; a refusal is reported as STATUSTEXT."""
     row = modes.from_custom(message.custom_mode)
     if row is None:
         line.text(mav.MAV_SEVERITY_WARNING, modes.unknown(message.custom_mode, line.facts.is_ground), sender.peer)

@@ -20,7 +20,7 @@ REMEMBERED_FOR = 10.0  # s: longer than anybody repeats, and than a command wait
 
 @dataclass(frozen=True)
 class ReceivedCommand:
-    """p: seven parameters, NaN = not given; p[4] and p[5] in degrees; frame: None for a COMMAND_LONG."""
+    """A received command. p: seven parameters, NaN = not given; p[4] and p[5] in degrees; frame: None for a COMMAND_LONG."""
 
     number: int
     p: tuple[float, ...]
@@ -30,20 +30,23 @@ class ReceivedCommand:
 
     @classmethod
     def from_long(cls, m: mav.MAVLink_command_long_message, sender: Sender) -> "ReceivedCommand":
+        """The command of a COMMAND_LONG."""
         p = (m.param1, m.param2, m.param3, m.param4, m.param5, m.param6, m.param7)
         return cls(m.command, p, None, sender, m.confirmation)
 
     @classmethod
     def from_int(cls, m: mav.MAVLink_command_int_message, sender: Sender) -> "ReceivedCommand":
+        """The command of a COMMAND_INT; x and y become degrees."""
         x, y = (math.nan if v == NOT_GIVEN else v * SCALE for v in (m.x, m.y))
         return cls(m.command, (m.param1, m.param2, m.param3, m.param4, x, y, m.z), m.frame, sender)
 
     @property
     def absurd(self) -> int | None:
-        """The first parameter, counted from 1, that can mean nothing."""
+        """The number, from 1, of the first parameter that is infinite or beyond any meaning; None if all make sense."""
         return next((n for n, v in enumerate(self.p, 1) if not (math.isnan(v) or abs(v) <= LARGEST)), None)
 
     def same_as(self, other: "ReceivedCommand") -> bool:
+        """Whether number, sender and parameters are the same (NaN equals NaN)."""
         return (self.number, self.sender, repr(self.p)) == (other.number, other.sender, repr(other.p))
 
 
@@ -63,11 +66,12 @@ class Pending:
         self.hear(self.command, self.t)
 
     def hear(self, command: ReceivedCommand, t: float) -> None:
+        """Notes a repetition at ``t`` [s, wall]."""
         self.confirmation, self.heard = command.confirmation, t
 
 
 class Acknowledger:
-    """Answers one command once."""
+    """Acknowledges one command once."""
 
     def __init__(self, line: VehicleConnection, pending: Pending) -> None:
         self._line = line
@@ -81,7 +85,7 @@ class Acknowledger:
             self._line.text(mav.MAV_SEVERITY_WARNING, why, self._pending.command.sender.peer)
 
     def outcome(self, prefix: str) -> Callable[[bool, str], None]:
-        """For ``Line.ask``: accepted, or temporarily rejected with the autopilot's reason."""
+        """A callback for ``VehicleConnection.ask``: accepted, or temporarily rejected with the autopilot's reason."""
 
         def done(accepted: bool, reason: str) -> None:
             if accepted:
@@ -93,6 +97,7 @@ class Acknowledger:
 
 
 def acknowledge(line: VehicleConnection, command: ReceivedCommand, result: int) -> None:
+    """Sends a COMMAND_ACK to the sender of a command."""
     to = command.sender
     line.send(mav.MAVLink_command_ack_message(command.number, result, 0, 0, to.system, to.component), to.peer)
 
@@ -101,7 +106,7 @@ Handler = Callable[[VehicleConnection, ReceivedCommand, Acknowledger], None]
 
 
 class CommandServer:
-    """handlers: by MAV_CMD; whatever is not in it is UNSUPPORTED."""
+    """Executes commands. handlers: by MAV_CMD; any other command is UNSUPPORTED."""
 
     def __init__(self, line: VehicleConnection, handlers: dict[int, Handler]) -> None:
         self._line = line
@@ -110,13 +115,18 @@ class CommandServer:
         """The newest of each command, by number, of each sender."""
 
     def on_long(self, message: mav.MAVLink_command_long_message, sender: Sender) -> None:
+        """Executes a COMMAND_LONG."""
         self._execute(ReceivedCommand.from_long(message, sender))
 
     def on_int(self, message: mav.MAVLink_command_int_message, sender: Sender) -> None:
+        """Executes a COMMAND_INT."""
         self._execute(ReceivedCommand.from_int(message, sender))
 
     def on_cancel(self, message: mav.MAVLink_command_cancel_message, sender: Sender) -> None:
-        """What was asked of the autopilot cannot be called back: a command that waits gets its own answer, which is the only one."""
+        """Handles COMMAND_CANCEL: what was asked of the autopilot cannot be recalled.
+
+        A command that waits gets its own answer, which is the only one.
+        """
         last = self._last.get(sender, {}).get(message.command)
         if last is not None and last.result is None:
             return
@@ -124,7 +134,7 @@ class CommandServer:
         self._line.send(ack, sender.peer)
 
     def forget(self) -> None:
-        """Drops what nobody will repeat any more."""
+        """Drops commands that nobody will repeat any more."""
         since = self._line.t - REMEMBERED_FOR
         for sender, mine in list(self._last.items()):
             self._last[sender] = {number: pending for number, pending in mine.items() if pending.heard > since}

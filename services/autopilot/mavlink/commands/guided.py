@@ -143,7 +143,7 @@ def _orbit(line: VehicleConnection, command: ReceivedCommand, ack: Acknowledger)
 
 
 def go_to(line: VehicleConnection, goal: GoalRequest, may_change_mode: bool, done: Done) -> None:
-    """A rover's planner drives in mode Mission only: changed to first, if that may be, and back if there is no way."""
+    """Requests a goal. A rover's planner drives in mode Mission only: it is set first, if allowed, and reset if there is no path."""
     before = line.latest.status.mode if line.latest.status is not None else Mode.MODE_MISSION
 
     def in_mission() -> bool:
@@ -173,7 +173,7 @@ def go_to(line: VehicleConnection, goal: GoalRequest, may_change_mode: bool, don
 
 
 def goal_of_item(line: VehicleConnection, item: mav.MAVLink_mission_item_int_message, done: Done) -> None:
-    """A "guided" item (current = 2) of Mission Planner and MAVProxy: go there."""
+    """Goes to a "guided" item (current = 2) of Mission Planner and MAVProxy."""
     try:
         place = place_of(line, item.frame, (item.x * 1e-7, item.y * 1e-7), math.nan if line.facts.is_ground else item.z)
         _check_height(line, place, math.nan if line.facts.is_ground else item.z)

@@ -26,7 +26,7 @@ ROLL, PITCH, THROTTLE, YAW = range(4)
 
 @dataclass(frozen=True, slots=True)
 class Sticks:
-    """-1..1: forward (nose down), right, right, forward; of an aircraft the throttle is 0..1."""
+    """Stick positions -1..1 [-]: pitch forward (nose down), roll right, yaw right, throttle forward; an aircraft's throttle is 0..1."""
 
     pitch: float
     roll: float
@@ -35,7 +35,7 @@ class Sticks:
 
 
 def of_manual_control(m: mav.MAVLink_manual_control_message) -> Sticks | None:
-    """None without a throttle. Another stick that is not there is centred."""
+    """The sticks of MANUAL_CONTROL; None without a throttle, any other axis that is missing is centred."""
     if m.z == NOT_THERE:
         return None
     x, y, r = (0 if axis == NOT_THERE else axis for axis in (m.x, m.y, m.r))
@@ -43,7 +43,7 @@ def of_manual_control(m: mav.MAVLink_manual_control_message) -> Sticks | None:
 
 
 def of_channels(channels: list[int], is_ground: bool) -> Sticks | None:
-    """Channels 1 to 4 [us]: roll, pitch (high = stick back), throttle, yaw. None without a throttle."""
+    """The sticks of channels 1 to 4 [us]: roll, pitch (high = stick back), throttle, yaw. None without a throttle."""
     if not channels[THROTTLE]:
         return None
     roll, pitch, throttle, yaw = (_part((us - MIDDLE) / HALF) if us else 0.0 for us in channels[: YAW + 1])
@@ -51,7 +51,7 @@ def of_channels(channels: list[int], is_ground: bool) -> Sticks | None:
 
 
 def merged(channels: list[int], m: mav.MAVLink_rc_channels_override_message) -> list[int]:
-    """The channels with what a message says of them."""
+    """The channels [us] updated by an RC_CHANNELS_OVERRIDE."""
     new = list(channels)
     for i in range(CHANNELS):
         said = getattr(m, f"chan{i + 1}_raw")
@@ -67,7 +67,7 @@ def _part(value: float) -> float:
 
 
 class ManualControl:
-    """What the newest sticks mean goes into ``line.commands``."""
+    """Turns stick messages into commands in ``line.commands``."""
 
     def __init__(self, line: VehicleConnection) -> None:
         self._line = line
@@ -78,13 +78,14 @@ class ManualControl:
         self._heard = -math.inf
 
     def handlers(self) -> dict[int, Callable[[Any, Sender], None]]:
+        """Handlers of the stick messages, by message id."""
         return {
             mav.MAVLINK_MSG_ID_MANUAL_CONTROL: self._on_manual_control,
             mav.MAVLINK_MSG_ID_RC_CHANNELS_OVERRIDE: self._on_override,
         }
 
     def tick(self) -> None:
-        """Channels that nobody has repeated for a while are released."""
+        """Releases channels that nobody has repeated for a while."""
         if self._line.t - self._heard > self._line.latest.own["stick_timeout"] and any(self._channels):
             self._forget()
 

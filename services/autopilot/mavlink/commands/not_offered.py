@@ -12,6 +12,8 @@ CONSOLE_BYTES, LOG_BYTES = 70, 90
 
 
 def handlers(line: VehicleConnection) -> dict[int, Callable[[Any, Sender], None]]:
+    """Handlers that answer requests for logs and a console, by message id."""
+
     def on_log_list(m: mav.MAVLink_log_request_list_message, sender: Sender) -> None:
         line.send(mav.MAVLink_log_entry_message(0, 0, 0, 0, 0), sender.peer)
 

@@ -90,7 +90,7 @@ def _land_start(line: VehicleConnection, command: ReceivedCommand, ack: Acknowle
 
 
 def landing_begins(plan: Sequence[MissionItem]) -> int | None:
-    """Index in the plan, or None without a landing."""
+    """Index of the item at which the landing begins; None without a landing."""
     kinds = [item.kind for item in plan]
     return next((kinds.index(kind) for kind in (MissionItem.LAND_START, MissionItem.LAND) if kind in kinds), None)
 
@@ -111,7 +111,7 @@ def _set_home(line: VehicleConnection, command: ReceivedCommand, ack: Acknowledg
 
 
 def on_set_home_position(line: VehicleConnection, m: mav.MAVLink_set_home_position_message) -> None:
-    """Has no answer but the next HOME_POSITION; a refusal is said in words."""
+    """Handles SET_HOME_POSITION, which has no answer but the next HOME_POSITION; a refusal is reported as STATUSTEXT."""
     done = line.refusal("New home")
     try:
         place = place_of(line, mav.MAV_FRAME_GLOBAL, (m.latitude * 1e-7, m.longitude * 1e-7), m.altitude * 1e-3)
@@ -122,7 +122,7 @@ def on_set_home_position(line: VehicleConnection, m: mav.MAVLink_set_home_positi
 
 
 def on_set_origin(line: VehicleConnection, m: mav.MAVLink_set_gps_global_origin_message, sender: Sender) -> None:
-    """The origin is the world's; it is told instead."""
+    """Handles SET_GPS_GLOBAL_ORIGIN: the origin is the world's, and is sent instead."""
     line.text(mav.MAV_SEVERITY_WARNING, "The origin is that of the world file and stays", sender.peer)
     if (origin := global_origin(line.facts, line.latest, line.t)) is not None:
         line.send(origin, sender.peer)

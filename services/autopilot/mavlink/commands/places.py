@@ -15,14 +15,14 @@ from uvf.runtime.mavlink.limits import HIGHEST, too_far, too_wide
 
 @dataclass
 class BadPlace(Exception):
-    """The MAV_RESULT of the refusal and the reason in words."""
+    """A position that is refused: the MAV_RESULT and the reason in words."""
 
     result: int
     reason: str
 
 
 def altitude_of(line: VehicleConnection, frame: int, altitude: float) -> float:
-    """m, world z, of an altitude in one of MAVLink's frames; NaN stays. Raises BadPlace."""
+    """Height z [m, world] of an ``altitude`` [m] in one of MAVLink's frames; NaN stays NaN. Raises BadPlace."""
     if frame not in AMSL_FRAMES + HOME_FRAMES:
         raise BadPlace(mav.MAV_RESULT_COMMAND_UNSUPPORTED_MAV_FRAME, bad_frame(frame))
     if abs(altitude) > HIGHEST:
@@ -34,7 +34,10 @@ def altitude_of(line: VehicleConnection, frame: int, altitude: float) -> float:
 
 
 def place_of(line: VehicleConnection, frame: int, degrees: tuple[float, float], altitude: float) -> Vector3:
-    """World position of latitude and longitude [deg] and altitude [m]; what is NaN is as now. Raises BadPlace."""
+    """World position [m] of ``degrees`` (latitude, longitude) and ``altitude`` [m]; what is NaN stays as it is now.
+
+    The altitude is in MAVLink's ``frame``. Raises BadPlace.
+    """
     here = line.latest.position
     if here is None:
         raise BadPlace(mav.MAV_RESULT_TEMPORARILY_REJECTED, "own position is unknown")
@@ -51,22 +54,23 @@ def place_of(line: VehicleConnection, frame: int, degrees: tuple[float, float], 
 
 
 def place_in(line: VehicleConnection, command: ReceivedCommand) -> Vector3:
-    """Of parameters 5 to 7. COMMAND_LONG has altitudes above sea level. Raises BadPlace."""
+    """World position (x, y, z) [m] of a command's parameters 5 to 7; COMMAND_LONG has altitudes above sea level. Raises BadPlace."""
     return place_of(line, frame_of(command), (command.p[4], command.p[5]), command.p[6])
 
 
 def check_radius(radius: float) -> None:
-    """NaN = left out. Raises BadPlace."""
+    """Raises BadPlace for a ``radius`` [m] that is too large; NaN = left out."""
     if not math.isnan(radius) and (reason := too_wide(radius)):
         raise BadPlace(mav.MAV_RESULT_DENIED, reason)
 
 
 def frame_of(command: ReceivedCommand) -> int:
+    """The MAV_FRAME of a command's position; a COMMAND_LONG is global."""
     return int(mav.MAV_FRAME_GLOBAL) if command.frame is None else command.frame
 
 
 def refusing(what: str, handler: Callable[[VehicleConnection, ReceivedCommand, Acknowledger], None]) -> Handler:
-    """A handler whose BadPlace becomes the answer."""
+    """Wraps a handler so that its BadPlace becomes the acknowledgement."""
 
     def handle(line: VehicleConnection, command: ReceivedCommand, ack: Acknowledger) -> None:
         try:
@@ -78,7 +82,7 @@ def refusing(what: str, handler: Callable[[VehicleConnection, ReceivedCommand, A
 
 
 def of_aircraft(what: str, handler: Handler) -> Handler:
-    """What a ground vehicle has not."""
+    """Wraps a handler so that a ground vehicle answers UNSUPPORTED."""
 
     def handle(line: VehicleConnection, command: ReceivedCommand, ack: Acknowledger) -> None:
         if line.facts.is_ground:

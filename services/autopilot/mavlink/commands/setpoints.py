@@ -44,22 +44,24 @@ TO_GO = {False: (Mode.MODE_HOLD,), True: (Mode.MODE_HOLD, Mode.MODE_MISSION)}
 
 @dataclass(frozen=True, slots=True)
 class Target:
-    """World frame (ENU), m and m/s; NaN = not given."""
+    """A position and velocity target in the world frame (ENU): place (3,) [m], velocity (3,) [m/s]; NaN = not given."""
 
     place: Floats
     velocity: Floats
 
     @property
     def has_place(self) -> bool:
+        """Whether a horizontal position is given."""
         return bool(np.isfinite(self.place[:2]).all())
 
     @property
     def has_velocity(self) -> bool:
+        """Whether a horizontal velocity is given."""
         return bool(np.isfinite(self.velocity[:2]).all())
 
     @property
     def absurd(self) -> str:
-        """Why nobody can follow it, without figures: a stream of them is told once."""
+        """Why the target cannot be followed, "" if it can; without figures, so that a stream of them is reported once."""
         if np.isinf(self.place).any() or np.isinf(self.velocity).any() or (self.has_velocity and math.isnan(self.velocity[2])):
             return "a place or a velocity is not finite"
         if self.has_place and math.hypot(*self.place[:2]) > PLACE:
@@ -72,7 +74,7 @@ class Target:
 
 
 def given(mask: int, velocity: tuple[float, float, float], place: Vector3) -> Target:
-    """Without what the type mask leaves out; velocity: NED [m/s]."""
+    """The target without what the type mask leaves out; velocity: (3,) NED [m/s], place: (x, y, z) [m, world]."""
     nan = math.nan
     v = (nan, nan) if mask & IGNORE_VELOCITY else (velocity[1], velocity[0])
     xy = (nan, nan) if mask & IGNORE_PLACE else (place.x, place.y)
@@ -81,7 +83,7 @@ def given(mask: int, velocity: tuple[float, float, float], place: Vector3) -> Ta
 
 
 class Alone(NamedTuple):
-    """A place that has come without another one: when [s], where, and from whom."""
+    """A position target that was not followed by another: time [s, wall], place [m, world], sender."""
 
     t: float
     place: Vector3
@@ -89,6 +91,8 @@ class Alone(NamedTuple):
 
 
 class Setpoints:
+    """Handles the SET_POSITION_TARGET and SET_ATTITUDE_TARGET messages of one vehicle."""
+
     def __init__(self, line: VehicleConnection) -> None:
         self._line = line
         self._holder = Holder(line, "Setpoints ignored")
@@ -98,6 +102,7 @@ class Setpoints:
         """(velocity, place where it was asked for first)."""
 
     def handlers(self) -> dict[int, Callable[[Any, Sender], None]]:
+        """Handlers of the target messages, by message id."""
         return {
             mav.MAVLINK_MSG_ID_SET_POSITION_TARGET_LOCAL_NED: self._on_local,
             mav.MAVLINK_MSG_ID_SET_POSITION_TARGET_GLOBAL_INT: self._on_global,
@@ -105,7 +110,7 @@ class Setpoints:
         }
 
     def tick(self) -> None:
-        """Goes to the place that has come alone."""
+        """Goes to a position target that was not followed by another."""
         alone, line, status = self._alone, self._line, self._line.latest.status
         if alone is None or line.t - alone.t < ALONE:
             return

@@ -24,7 +24,7 @@ Done = Callable[[bool, str], None]
 
 @dataclass
 class Asked:
-    """asker: None for what this end asks by itself; until [s, wall]."""
+    """An open request. asker: None for requests of this end itself; until [s, wall]."""
 
     asker: Peer | None
     call: str
@@ -34,18 +34,20 @@ class Asked:
 
     @property
     def is_urgent(self) -> bool:
-        """What makes a vehicle safe passes, whatever else is asked."""
+        """Whether the request makes a vehicle safe (Hold, Return, disarm): it passes whatever else is asked."""
         if isinstance(self.request, ModeRequest):
             return self.request.mode in SAFE
         return isinstance(self.request, ArmRequest) and not self.request.arm
 
     @property
     def can_wait(self) -> bool:
-        """Orders could be obsolete by the time that they are carried out."""
+        """Whether it is a parameter request, which may be queued; other orders could be obsolete when they are carried out."""
         return self.call.endswith("_param")
 
 
 class Asking:
+    """The requests to the services that await an answer, limited for each peer."""
+
     def __init__(self) -> None:
         self._open: list[Asked] = []
         self._waiting: list[Asked] = []
@@ -56,6 +58,7 @@ class Asking:
         return len(self._open) + len(self._waiting)
 
     def ask(self, t: float, asker: Peer | None, call: str, request: Message, done: Done) -> None:
+        """Sends or queues a request at ``t`` [s, wall]; ``done`` hears at once when there are too many."""
         asked = Asked(asker, call, request, done, t + ANSWER_WITHIN)
         if self._may_open(asked) and not (asked.can_wait and self._count(self._waiting, asker)):
             self._send(asked)
@@ -82,7 +85,7 @@ class Asking:
         self._requests.append((asked.call, asked.request))
 
     def answered(self, answer: Answer[Any, Any]) -> None:
-        """Passes an answer to whoever asked."""
+        """Passes an answer on to whoever asked."""
         asked = next((asked for asked in self._open if asked.request is answer.request), None)
         if asked is None:
             return
@@ -93,7 +96,7 @@ class Asking:
             asked.done(answer.reply.accepted, answer.reply.reason)
 
     def settle(self, t: float) -> None:
-        """Ends what nobody has answered in time, and sends what has waited for its turn."""
+        """Ends requests not answered by ``t`` [s, wall], and sends those that have waited for their turn."""
         late = [asked for asked in (*self._open, *self._waiting) if t >= asked.until]
         self._open = [asked for asked in self._open if t < asked.until]
         waiting, self._waiting = [asked for asked in self._waiting if t < asked.until], []
@@ -106,5 +109,6 @@ class Asking:
             asked.done(False, "the autopilot did not answer")
 
     def take_requests(self) -> list[tuple[str, Message]]:
+        """Takes the requests to be sent now: (name of the call, request)."""
         requests, self._requests = self._requests, []
         return requests

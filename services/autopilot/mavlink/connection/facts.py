@@ -42,8 +42,12 @@ HOME_FENCE = "max_distance", "max_height"
 
 
 class Stamped(Protocol):
+    """A message with a time stamp."""
+
     @property
-    def timestamp(self) -> Timestamp: ...
+    def timestamp(self) -> Timestamp:
+        """When the message was made."""
+        ...
 
 
 S = TypeVar("S", bound=Stamped)
@@ -51,7 +55,7 @@ S = TypeVar("S", bound=Stamped)
 
 @dataclass(frozen=True)
 class VehicleInfo(GeoPosition):
-    """origin: of the world frame; its altitude counts as above mean sea level.
+    """The static facts of a vehicle. origin: of the world frame; its altitude counts as above mean sea level.
 
     params: the autopilot's, as the vehicle's file sets them; fixed_params: those that it reads only when it starts.
     """
@@ -69,20 +73,23 @@ class VehicleInfo(GeoPosition):
 
     @property
     def kind(self) -> Kind:
+        """Kind of the vehicle."""
         return Kind.KIND_GROUND if self.file.kind == "ground" else Kind.KIND_FIXED_WING
 
     @property
     def is_ground(self) -> bool:
+        """Whether it is a ground vehicle."""
         return self.file.kind == "ground"
 
     @property
     def sensors(self) -> Sensors:
+        """The sensors of the vehicle's file."""
         return self.file.sensors
 
 
 @dataclass
 class VehicleState:
-    """None until the first one has arrived."""
+    """The newest message of each kind of one vehicle; None until the first has arrived."""
 
     nav: NavState | None = None
     status: VehicleStatus | None = None
@@ -122,37 +129,38 @@ class VehicleState:
 
     @property
     def is_paused(self) -> bool:
+        """Whether the simulation clock does not run."""
         return self.clock is not None and self.clock.state != Clock.RUNNING
 
     @property
     def is_fenced(self) -> bool:
-        """By a plan, or by parameters about home."""
+        """Whether a fence is in force, by a plan or by parameters about home."""
         if self.fence is None or self.fence.disabled:
             return False
         return not fencing(self.fence).is_open or any(self.own.get(limit, 0.0) > 0 for limit in HOME_FENCE)
 
     @property
     def is_gliding(self) -> bool:
-        """An aircraft in the air that is disarmed."""
+        """Whether it is an aircraft in the air that is disarmed."""
         status = self.status
         return status is not None and status.kind == Kind.KIND_FIXED_WING and not status.armed and not status.landed
 
     @property
     def is_silent(self) -> bool:
-        """Whether estimator or autopilot have not been heard for a while of simulation time, or never."""
+        """Whether estimator or autopilot have been silent for ``SILENT_AFTER``, or were never heard."""
         oldest = min(seconds(m.timestamp) if m is not None else -np.inf for m in (self.nav, self.status))
         return bool(self.sim_time - oldest > SILENT_AFTER)
 
     def fresh(self, message: S | None) -> S | None:
-        """The message, or None when it is old: what is no longer told is not known."""
+        """The message, or None when it is older than ``SILENT_AFTER``."""
         return message if message is not None and self.sim_time - seconds(message.timestamp) <= SILENT_AFTER else None
 
     @property
     def home(self) -> Floats | None:
-        """(3,) m, world frame."""
+        """Home position (3,) [m, world]; None while unknown."""
         return array(self.status.home) if self.status is not None and self.status.HasField("home") else None
 
     @property
     def position(self) -> Floats | None:
-        """(3,) m, world frame."""
+        """Estimated position (3,) [m, world]; None while unknown."""
         return array(self.nav.position) if self.nav is not None else None

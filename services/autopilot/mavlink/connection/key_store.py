@@ -12,7 +12,7 @@ MOST_KEYS = 16
 
 
 class StoredKeys(msgspec.Struct, forbid_unknown_fields=True):
-    """keys: in hexadecimal, the newest first; newest: timestamp of a signature, never to be gone below."""
+    """The content of the key file. keys: hexadecimal, the newest first; newest: timestamp below which no signature counts."""
 
     keys: list[str] = []
     newest: int = 0
@@ -20,12 +20,12 @@ class StoredKeys(msgspec.Struct, forbid_unknown_fields=True):
 
 @dataclass
 class KeyStore:
-    """path: None keeps nothing. Keys are never part of a text: neither of an error nor of a log."""
+    """The file of signing keys; path: None keeps nothing. Keys never appear in an error or a log."""
 
     path: Path | None = None
 
     def load(self) -> tuple[list[bytes], int]:
-        """Keys, the newest first, and the newest timestamp. Raises ValueError, without its contents, for a file that is none of ours."""
+        """Keys, the newest first, and the newest timestamp. Raises ValueError, without its contents, for a file of another kind."""
         if self.path is None or not self.path.exists():
             return [], 0
         try:
@@ -38,6 +38,6 @@ class KeyStore:
         return keys, kept.newest
 
     def save(self, keys: list[bytes], newest: int) -> None:
-        """Raises OSError."""
+        """Writes keys and timestamp. Raises OSError."""
         if self.path is not None:
             write_private(self.path, msgspec.json.encode(StoredKeys([key.hex() for key in keys[:MOST_KEYS]], newest)))

@@ -21,7 +21,7 @@ HELD_FOR = 1.0  # s, wall: as long a station that steers may be silent before an
 
 
 class Sender(NamedTuple):
-    """Who sent a message: where it came from, and the system and component that answers are addressed to."""
+    """Who sent a message: the peer's address, and the system and component that answers go to."""
 
     peer: Peer
     system: int
@@ -29,13 +29,15 @@ class Sender(NamedTuple):
 
 
 class SpokenText(NamedTuple):
-    """A text, which is cut into messages for who gets it."""
+    """A status text before it is split into STATUSTEXT messages."""
 
     severity: int
     text: str
 
 
 class Out(NamedTuple):
+    """An outgoing message or text and its receiver."""
+
     what: mav.MAVLink_message | SpokenText
     to: Peer | None
     """None = every peer."""
@@ -43,13 +45,15 @@ class Out(NamedTuple):
 
 @dataclass
 class Awaited:
+    """A condition that is waited for until ``until`` [s, wall]."""
+
     condition: Callable[[], bool]
     done: Done
     until: float
 
 
 class Holder:
-    """Only one station steers: the first one, until it has been silent for a while."""
+    """Admits only one station to steer: the first one, until it has been silent for a while."""
 
     def __init__(self, line: "VehicleConnection", otherwise: str) -> None:
         """otherwise: what another one is told."""
@@ -58,6 +62,7 @@ class Holder:
         self._heard = -math.inf
 
     def admits(self, sender: Sender) -> bool:
+        """Whether this sender may steer now; another one is told who does."""
         holder, free = self._holder, self._line.t - self._heard > HELD_FOR
         if holder is not None and not free and sender != holder:
             self._line.text(mav.MAV_SEVERITY_WARNING, f"{self._otherwise}: {named(holder, sender)} steers", sender.peer)
@@ -67,14 +72,14 @@ class Holder:
 
 
 def named(station: Sender, to: Sender) -> str:
-    """A station in words to another one, which may have the same number."""
+    """A station in words for another one, which may have the same system id."""
     if station.system != to.system:
         return f"station {station.system}"
     return f"another station {station.system} (at {station.peer[0]}:{station.peer[1]})"
 
 
 class VehicleConnection:
-    """What the protocols of one vehicle share; ``t`` [s, wall] is set before each step's work."""
+    """The state shared by the protocols of one vehicle; ``t`` [s, wall] is set before each step's work."""
 
     def __init__(self, facts: VehicleInfo) -> None:
         self.facts = facts
@@ -96,21 +101,22 @@ class VehicleConnection:
         self._budget = TextBudget()
 
     def send(self, message: mav.MAVLink_message, to: Peer | None = None) -> None:
+        """Queues a message for one peer, or for all."""
         self.outbox.append(Out(message, to))
 
     def tells(self, number: int, peer: Peer) -> bool:
-        """Whether a peer gets messages of this number: who hears the other vehicles themselves needs no picture of them as traffic."""
+        """Whether a peer gets messages of this id: ADSB_VEHICLE goes only to those who do not hear the other vehicles themselves."""
         return number != mav.MAVLINK_MSG_ID_ADSB_VEHICLE or peer in self.alone
 
     def text(self, severity: int, text: str, to: Peer | None = None) -> None:
-        """STATUSTEXT; the same text to the same peers at most every 10 s. Items are counted as on a station's map."""
+        """Queues a STATUSTEXT; the same text to the same peers at most every 10 s. Item numbers count from 1, as on a station's map."""
         text = counted_from_one(text)
         if self._limiter.admits(self.t, (text, to)):
             self.outbox.append(Out(SpokenText(severity, text), to))
 
     @contextmanager
     def hearing(self, speaker: Peer | None) -> Iterator[None]:
-        """What is done meanwhile is done for a peer."""
+        """Context in which requests and texts are made on behalf of a peer."""
         before, self._speaker = self._speaker, speaker
         try:
             yield
@@ -129,7 +135,7 @@ class VehicleConnection:
         return told
 
     def refusal(self, what: str) -> Done:
-        """For ``ask``, where the protocol has no answer of its own: a refusal is said in words to who has asked."""
+        """A callback for ``ask`` where the protocol has no answer of its own: a refusal is sent as text to whoever has asked."""
         to = self._speaker
 
         def done(accepted: bool, reason: str) -> None:
@@ -139,22 +145,22 @@ class VehicleConnection:
         return done
 
     def ask(self, call: str, request: Message, done: Done) -> None:
-        """Sends a request to a service; ``done`` hears the answer, or why there is none. Never waits in a pause."""
+        """Sends a request to a service; ``done`` hears the answer, or why there is none: at once while the simulation is paused."""
         if self.latest.is_paused:
             done(False, "the simulation is paused")
             return
         self._asking.ask(self.t, self._speaker, call, request, self._for_speaker(done))
 
     def answered(self, answer: Answer[Any, Any]) -> None:
-        """Passes an answer to whoever asked."""
+        """Passes an answer on to whoever asked."""
         self._asking.answered(answer)
 
     def when(self, condition: Callable[[], bool], done: Done) -> None:
-        """Goes on once a condition has come true, or says that it did not in time."""
+        """Calls ``done`` once a condition has come true, or when it has not in time."""
         self._awaited.append(Awaited(condition, self._for_speaker(done), self.t + ANSWER_WITHIN))
 
     def settle(self) -> None:
-        """Goes on with what has come true, and ends what nobody has answered in time."""
+        """Resolves conditions that have come true, and ends what was not answered in time."""
         waiting, self._awaited = self._awaited, []
         for awaited in waiting:
             if awaited.condition():
@@ -166,7 +172,7 @@ class VehicleConnection:
         self._asking.settle(self.t)
 
     def take_out(self, peers: Sequence[Peer]) -> list[tuple[mav.MAVLink_message, list[Peer]]]:
-        """What goes out, and to whom; ``peers`` hear what is meant for everybody."""
+        """Takes the outgoing messages with their receivers; ``peers`` get what is meant for all."""
         out, self.outbox = self.outbox, []
         found: list[tuple[mav.MAVLink_message, list[Peer]]] = []
         for what, to in out:
@@ -183,4 +189,5 @@ class VehicleConnection:
         return [(chunk, receivers) for chunk in chunks(said.severity, said.text, self._limiter.next_id())] if receivers else []
 
     def take_requests(self) -> list[tuple[str, Message]]:
+        """Takes the requests to be sent to services: (name of the call, request)."""
         return self._asking.take_requests()

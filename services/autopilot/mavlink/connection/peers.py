@@ -12,14 +12,14 @@ MOST_BEHIND_ONE = 32  # systems and components behind one address
 
 
 class PeerNews(NamedTuple):
-    """connection: nobody was there at this peer; system: this one was not."""
+    """What is new. connection: nobody was there at this peer; system: this system was not."""
 
     connection: bool
     system: bool
 
 
 class Peers:
-    """A router may speak for several systems at one address; a ground station may be started anew at the same one."""
+    """Who speaks through each peer: a router may forward several systems at one address, a ground station may restart at the same one."""
 
     def __init__(self) -> None:
         self._heard: dict[Peer, dict[tuple[int, int], float]] = {}
@@ -29,7 +29,7 @@ class Peers:
         return sum(map(len, self._heard.values()))
 
     def hear(self, t: float, sender: Sender) -> PeerNews:
-        """One message at ``t`` [s, wall]: is its peer, or its system, newly there?"""
+        """Notes a message at ``t`` [s, wall]: are its peer and its system new?"""
         there, who = self._heard.setdefault(sender.peer, {}), (sender.system, sender.component)
         before = self.systems(t, sender.peer)
         make_room(there, who, MOST_BEHIND_ONE, lambda other: there[other])
@@ -37,10 +37,10 @@ class Peers:
         return PeerNews(connection=not before, system=sender.system not in before)
 
     def systems(self, t: float, peer: Peer) -> set[int]:
-        """Those who have spoken through a peer lately."""
+        """The system ids heard through a peer within ``CONNECTION_ENDS`` before ``t`` [s, wall]."""
         return {system for (system, _), heard in self._heard.get(peer, {}).items() if t - heard <= CONNECTION_ENDS}
 
     def forget(self, t: float, known: Collection[Peer]) -> None:
-        """Drops who has not been heard for long, or is no peer any more: callers from ever new addresses leave nothing behind."""
+        """Drops peers that are not in ``known`` or silent at ``t`` [s, wall]: callers from ever new addresses leave nothing behind."""
         for peer in [peer for peer in self._heard if peer not in known or not self.systems(t, peer)]:
             del self._heard[peer]

@@ -8,7 +8,7 @@ INDEX = re.compile(r"\[(\d+)\]")
 
 
 def plain(reason: str) -> str:
-    """What a station's user reads. The first index is that of an item."""
+    """The reason of a refusal in words for a station's user; a leading index becomes that of an item."""
     if found := BROKEN.fullmatch(reason):
         index, name = INDEX.search(found["field"]), _named(found["field"])
         item = f"item {index[1]}: " if index is not None else ""

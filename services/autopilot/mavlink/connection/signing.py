@@ -29,7 +29,7 @@ NOT_SIGNED_ELSEWHERE = "Unsigned message refused: signing is required from other
 
 
 class SignatureVerdict(Enum):
-    """SIGNED: by a key of ours, and new; UNSIGNED: may be heard all the same; REFUSED: neither."""
+    """SIGNED: by one of our keys, and new; UNSIGNED: accepted without a signature; REPLAYED or REFUSED: rejected."""
 
     SIGNED = "signed"
     UNSIGNED = "unsigned"
@@ -39,13 +39,15 @@ class SignatureVerdict(Enum):
 
 @dataclass
 class SignatureCounts:
+    """Number of messages by verdict."""
+
     good: int = 0
     replayed: int = 0
     refused: int = 0
 
 
 class Signing:
-    """Each peer (link) has a key or none; the keys that were given are kept, so that a peer is known again after a restart.
+    """Signs and checks messages. Each peer (link) has a key or none; keys are stored, so that a peer is known again after a restart.
 
     started: Unix time [s] at t = 0; required: unsigned messages from other machines are refused, but heartbeats.
     Raises ValueError when the file of keys is broken.
@@ -64,7 +66,10 @@ class Signing:
         """(key, link id, system, component) -> newest timestamp: a packet counts once, whatever address repeats it."""
 
     def check(self, t: float, message: mav.MAVLink_message, sender: Sender) -> SignatureVerdict:
-        """Whether one message may be heard. A peer that signs with a key of ours is signed to from then on."""
+        """Whether a message is accepted at ``t`` [s] since the link's start.
+
+        A peer that signs with one of our keys is signed to from then on.
+        """
         verdict = self._look(t, bytes(message.get_msgbuf()), sender)
         if verdict is SignatureVerdict.UNSIGNED and self._has_to_sign(sender.peer) and message.get_msgId() not in ALWAYS_HEARD:
             verdict = SignatureVerdict.REFUSED
@@ -74,10 +79,11 @@ class Signing:
         return verdict
 
     def why_refused(self, peer: Peer) -> str:
+        """Why an unsigned message of this peer is refused."""
         return NOT_SIGNED if peer in self._by_peer else NOT_SIGNED_ELSEWHERE
 
     def setup(self, message: mav.MAVLink_setup_signing_message, sender: Sender, verdict: SignatureVerdict, armed: bool) -> str:
-        """SETUP_SIGNING, addressed to a vehicle that is ``armed`` or not; returns what is said of it, nothing to a repetition."""
+        """Handles SETUP_SIGNING for a vehicle that is ``armed`` or not; returns the text to report, "" for a repetition."""
         key = bytes(message.secret_key)
         if verdict is not SignatureVerdict.SIGNED and not is_loopback(sender.peer[0]):
             return "Signing refused: it is set up from this machine, or over a link that is signed"
@@ -99,7 +105,7 @@ class Signing:
         return "This link is signed from now on" + self._keep()
 
     def signer(self, t: float, peer: Peer) -> Sign | None:
-        """What signs a packet to a peer at ``t`` [s]; None where nothing is signed."""
+        """The function that signs packets to a peer at ``t`` [s, since the link's start]; None where nothing is signed."""
         key = self._by_peer.get(peer)
         return partial(self._sign, t, key) if key is not None else None
 
@@ -114,10 +120,11 @@ class Signing:
         return idle is not None
 
     def forget_all_but(self, peers: Collection[Peer]) -> None:
+        """Drops the keys of peers that are gone."""
         self._by_peer = {peer: key for peer, key in self._by_peer.items() if peer in peers}
 
     def forget(self, peer: Peer) -> None:
-        """A connection ends: whoever comes next signs, or does not."""
+        """Drops a peer's key at the end of a connection: whoever comes next signs, or does not."""
         self._by_peer.pop(peer, None)
 
     def _sign(self, t: float, key: bytes, packet: bytes) -> bytes:

@@ -9,9 +9,9 @@ MOST = 64
 
 
 class Stations:
-    """Programs that are no ground station (companions, cameras, other vehicles) do not count.
+    """The ground stations in touch; other programs (companions, cameras, other vehicles) do not count.
 
-    Two at different addresses are two, whatever numbers they have: every QGroundControl is 255 unless somebody changes it.
+    Stations at different addresses are different ones, even with the same system id: every QGroundControl is 255 by default.
     """
 
     def __init__(self) -> None:
@@ -19,15 +19,16 @@ class Stations:
         self._last: float | None = None
 
     def hear(self, t: float, message: mav.MAVLink_message, sender: Sender) -> None:
-        """Any message at ``t`` [s, wall]."""
+        """Notes a message at ``t`` [s, wall]."""
         if isinstance(message, mav.MAVLink_heartbeat_message) and message.type == mav.MAV_TYPE_GCS:
             make_room(self._heard, sender, MOST, lambda who: self._heard[who])
             self._heard[sender] = self._last = t
 
     def count(self, t: float) -> int:
+        """Number of stations in touch at ``t`` [s, wall]."""
         self._heard = {who: heard for who, heard in self._heard.items() if t - heard <= SILENT_AFTER}
         return len(self._heard)
 
     def silence(self, t: float) -> float:
-        """s since the last heartbeat of any; 0 while there was none."""
+        """Time [s] at ``t`` [s, wall] since the last heartbeat of any station; 0 while there was none."""
         return t - self._last if self._last is not None else 0.0

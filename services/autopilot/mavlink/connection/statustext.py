@@ -37,22 +37,24 @@ def chunks(severity: int, text: str, chunk_id: int) -> list[mav.MAVLink_statuste
 
 
 def event_text(event: Event) -> str:
+    """The text of an event with its cause."""
     return f"{event.text}: {event.cause}" if event.cause else event.text
 
 
 def counted_from_one(text: str) -> str:
-    """Items of plans are counted from 0 in mission files and messages, and from 1 on the map beside which the text is read."""
+    """The text with item numbers counted from 1, as on a station's map; mission files and messages count from 0."""
     return ITEMS.sub(lambda named: re.sub(r"\d+", lambda number: str(int(number[0]) + 1), named[0]), text)
 
 
 class TextLimiter:
-    """Says which texts may go out now, and numbers the chunked ones."""
+    """Limits repetitions of texts, and numbers the split ones."""
 
     def __init__(self) -> None:
         self._said: dict[Hashable, float] = {}
         self._id = 0
 
     def admits(self, t: float, what: Hashable) -> bool:
+        """Whether a text may go out at ``t`` [s, wall], being no repetition within ``REPEAT_AFTER``."""
         self._said = {key: at for key, at in self._said.items() if t - at < REPEAT_AFTER}
         if what in self._said:
             return False
@@ -61,20 +63,21 @@ class TextLimiter:
         return True
 
     def next_id(self) -> int:
+        """The next id of a split text, 1 to 65535."""
         self._id = self._id % 0xFFFF + 1
         return self._id
 
 
 @dataclass
 class Share(TextBucket):
-    """How many texts a receiver may still get; how many it has not got, and since when [s]."""
+    """The budget of one receiver: texts left, number left out, and since when [s, wall]."""
 
     left_out: int = 0
     since: float = 0.0
 
 
 class TextBudget:
-    """No receiver gets more texts than somebody can read, whoever causes them; what is critical is never left out."""
+    """Limits the texts to each receiver to what a person can read; critical texts are never left out."""
 
     def __init__(self) -> None:
         self._shares: dict[Peer, Share] = {}
@@ -83,6 +86,7 @@ class TextBudget:
         return len(self._shares)
 
     def admitted(self, t: float, severity: int, receivers: Sequence[Peer]) -> list[Peer]:
+        """The receivers that get a text of this severity at ``t`` [s, wall]."""
         return [peer for peer in receivers if severity <= mav.MAV_SEVERITY_CRITICAL or self._admits(t, peer)]
 
     def _admits(self, t: float, peer: Peer) -> bool:
@@ -95,7 +99,7 @@ class TextBudget:
         return False
 
     def left_out(self, t: float) -> list[tuple[Peer, int]]:
-        """Who has to be told by now how many texts it has not got: once the flood is over, or while it goes on every 10 s."""
+        """(receiver, number of texts left out) to be reported at ``t`` [s, wall]: after the flood, or every 10 s during it."""
         told = []
         for peer, share in list(self._shares.items()):
             share.refill(t)

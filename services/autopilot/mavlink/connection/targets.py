@@ -16,14 +16,14 @@ Reserved = Mapping[Peer, int]
 
 
 class MavlinkTarget(NamedTuple):
-    """system_id: of the one vehicle that this port is for, or None."""
+    """An address to send to. system_id: of the only vehicle on this port, or None for all."""
 
     peer: Peer
     system_id: int | None = None
 
 
 def targets_from(text: str, name: str, system_ids: Collection[int]) -> list[MavlinkTarget]:
-    """``host:port`` or ``host:port/system_id``, with commas between. name: of the variable. Raises BadInput."""
+    """Parses ``host:port`` or ``host:port/system_id``, separated by commas. name: of the variable. Raises BadInput."""
     return [_target(part.strip(), name, system_ids) for part in text.split(",") if part.strip()]
 
 
@@ -39,7 +39,7 @@ def _target(text: str, name: str, system_ids: Collection[int]) -> MavlinkTarget:
 
 
 def reserved(targets: Sequence[MavlinkTarget]) -> Reserved:
-    """Names that nobody knows are left out."""
+    """The addresses reserved for one vehicle; unresolvable names are left out."""
     found = {}
     for (host, port), system_id in targets:
         if system_id is not None:

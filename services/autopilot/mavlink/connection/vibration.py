@@ -13,7 +13,7 @@ MEAN = 1 / (2 * math.pi * 2.0)  # s, of 2 Hz, over which the rest is squared and
 
 
 class Vibration:
-    """limit: range of the accelerometer [m/s^2]; a sample beyond it counts as clipped."""
+    """Vibration of the specific force and clipped samples. limit: range of the accelerometer [m/s^2]."""
 
     def __init__(self, limit: float = math.inf) -> None:
         self.clipped = 0
@@ -24,11 +24,11 @@ class Vibration:
 
     @property
     def level(self) -> Floats:
-        """(3,) m/s^2, root mean square."""
+        """Vibration (3,) [m/s^2, sensor axes], root mean square."""
         return np.sqrt(self._mean_square)
 
     def hear(self, imu: Imu) -> None:
-        """One sample; the same one again, or one that is no number, changes nothing."""
+        """Takes one sample; a repeated or non-finite one changes nothing."""
         at, force = seconds(imu.timestamp), array(imu.specific_force)
         dt = at - self._at
         if self._slow is None or dt < 0:

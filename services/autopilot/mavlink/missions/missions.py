@@ -25,7 +25,7 @@ GUIDED = 2  # in the field `current` of an item: not part of a plan, fly there n
 
 @dataclass
 class Upload:
-    """The old plan stays in force until the last item is in and the autopilot has taken the new one."""
+    """An upload in progress; the old plan stays in force until the autopilot has accepted the new one."""
 
     sender: Sender
     kind: int
@@ -42,13 +42,15 @@ class Upload:
 
 @dataclass
 class Shown:
-    """What somebody downloads is one plan, that of its MISSION_COUNT, whatever another station uploads meanwhile."""
+    """The plan that somebody downloads, as of its MISSION_COUNT, whatever another station uploads meanwhile."""
 
     bodies: list[Body]
     asked_at: float
 
 
 class Missions:
+    """The mission protocol of one vehicle, for its mission, fence and rally points."""
+
     def __init__(self, line: VehicleConnection) -> None:
         self._line = line
         self._plans: dict[int, Plan[Any]] = {
@@ -66,6 +68,7 @@ class Missions:
         """Since when [s] the autopilot has been heard."""
 
     def handlers(self) -> dict[int, Callable[[Any, Sender], None]]:
+        """Handlers of the mission protocol, by message id."""
         return {
             mav.MAVLINK_MSG_ID_MISSION_COUNT: self.on_count,
             mav.MAVLINK_MSG_ID_MISSION_ITEM_INT: self.on_item,
@@ -80,6 +83,7 @@ class Missions:
         }
 
     def on_count(self, message: mav.MAVLink_mission_count_message, sender: Sender) -> None:
+        """Handles MISSION_COUNT: an upload begins."""
         kind, plan = message.mission_type, self._plans.get(message.mission_type)
         if plan is None:
             self._ack(sender, mav.MAV_MISSION_UNSUPPORTED, kind)
@@ -119,7 +123,7 @@ class Missions:
         return False
 
     def on_item(self, message: mav.MAVLink_mission_item_int_message, sender: Sender) -> None:
-        """Duplicates are ignored, items out of order bring the wanted one's request again."""
+        """Handles an item: duplicates are ignored, out-of-order items repeat the request for the expected one."""
         upload = self._open(message.mission_type)
         if message.current == GUIDED and message.mission_type == MISSION:
             goal_of_item(self._line, message, lambda accepted, reason: self._guided(sender, accepted, reason))
@@ -177,7 +181,7 @@ class Missions:
         self._line.send(request, upload.sender.peer)
 
     def tick(self) -> None:
-        """Tells the plans that have become known; asks again for an item that does not come, and gives up in the end."""
+        """Reports plans that have become known; requests missing items again, and gives up in the end."""
         if self._reporting is None and self._line.latest.status is not None:
             self._reporting = self._line.t
         self._waiting = {who: t for who, t in self._waiting.items() if self._line.t - t < ASKED_FOR}
@@ -195,7 +199,7 @@ class Missions:
         self._ack(upload.sender, mav.MAV_MISSION_OPERATION_CANCELLED, upload.kind)
 
     def on_request_list(self, message: mav.MAVLink_mission_request_list_message, sender: Sender) -> None:
-        """Answered as soon as the plan is known: of a count of 0 no station asks again whether it was only too early."""
+        """Handles MISSION_REQUEST_LIST once the plan is known: no station would ask again after a count of 0."""
         kind = message.mission_type
         if kind not in self._plans:
             self._ack(sender, mav.MAV_MISSION_UNSUPPORTED, kind)
@@ -221,7 +225,7 @@ class Missions:
         return self._reporting is not None and self._line.t - self._reporting >= TOLD_WITHIN
 
     def on_request(self, message: mav.MAVLink_mission_request_int_message, sender: Sender) -> None:
-        """MISSION_REQUEST_INT, or the older MISSION_REQUEST: the same item either way."""
+        """Answers MISSION_REQUEST_INT, or the older MISSION_REQUEST, with the item."""
         kind, seq = message.mission_type, message.seq
         in_force = self._plans[kind].bodies if kind in self._plans else []
         shown = self._shown.get((sender, kind))
@@ -238,14 +242,14 @@ class Missions:
         self._line.send(mav.MAVLink_mission_item_int_message(*head, p1, p2, p3, p4, x, y, z, kind), sender.peer)
 
     def on_ack(self, message: mav.MAVLink_mission_ack_message, sender: Sender) -> None:
-        """Ends a download; anything but "accepted" ends the sender's own upload too."""
+        """Handles MISSION_ACK: it ends a download; anything but "accepted" ends the sender's own upload too."""
         self._shown.pop((sender, message.mission_type), None)
         upload = self._open(message.mission_type)
         if upload is not None and not upload.is_complete and upload.sender == sender and message.type != mav.MAV_MISSION_ACCEPTED:
             upload.is_over = True
 
     def on_clear(self, message: mav.MAVLink_mission_clear_all_message, sender: Sender) -> None:
-        """Each plan by itself, whatever else goes on: QGroundControl clears all three within a millisecond, and asks once."""
+        """Clears the plans, one after the other: QGroundControl clears all three within a millisecond, and asks once."""
         kind = message.mission_type
         if kind not in (*self._plans, mav.MAV_MISSION_TYPE_ALL):
             self._ack(sender, mav.MAV_MISSION_UNSUPPORTED, kind)
@@ -276,9 +280,11 @@ class Missions:
         self._line.ask(plan.call, plan.request(empty), done)
 
     def on_write_partial(self, message: mav.MAVLink_mission_write_partial_list_message, sender: Sender) -> None:
+        """Refuses MISSION_WRITE_PARTIAL_LIST as unsupported."""
         self._ack(sender, mav.MAV_MISSION_UNSUPPORTED, message.mission_type)
 
     def on_set_current(self, message: mav.MAVLink_mission_set_current_message, sender: Sender) -> None:
+        """Handles MISSION_SET_CURRENT; a refusal is reported as STATUSTEXT."""
         set_current(self._line, message.seq, self._line.refusal("Set waypoint"))
 
     def _guided(self, sender: Sender, accepted: bool, reason: str) -> None:

@@ -10,7 +10,7 @@ OUT_OF_RANGE = 2**31 - 1
 
 
 def as_int(item: mav.MAVLink_mission_item_message) -> mav.MAVLink_mission_item_int_message:
-    """The same item with integer places."""
+    """The MISSION_ITEM as a MISSION_ITEM_INT, with integer coordinates."""
     scale = 1.0 if item.frame == mav.MAV_FRAME_MISSION else SCALE
     place = (_whole(item.x * scale), _whole(item.y * scale), item.z)
     params = (item.param1, item.param2, item.param3, item.param4)

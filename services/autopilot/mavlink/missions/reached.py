@@ -9,14 +9,14 @@ UNBEGUN = (MissionProgress.NO_MISSION, MissionProgress.NOT_STARTED)
 
 
 class ReachedItems:
-    """Each item once for each lap; nothing of what was done before the first look."""
+    """Reports each reached item once per lap; nothing that was reached before the first look."""
 
     def __init__(self) -> None:
         self._before: tuple[int, int, bool] | None = None
         self._current = 0  # of the look before
 
     def look(self, progress: MissionProgress, items: Sequence[MissionItem]) -> range:
-        """Those done since the look before."""
+        """The items reached since the look before."""
         begun = progress.state not in UNBEGUN or progress.reached >= 0
         now = (progress.laps, progress.reached, begun)
         before, self._before = self._before, now

@@ -23,16 +23,17 @@ COARSE = 30.0  # numbers that become so large need few decimals
 
 
 def general_of(system_id: int) -> str:
-    """Path of the first file. QGroundControl keeps what it downloads under its name: with one name for all it mixes vehicles up."""
+    """Path of the general file. QGroundControl caches downloads by name: with one name for all it mixes vehicles up."""
     return f"{FOLDER}/general_{system_id}.json"
 
 
 def parameters_file_of(system_id: int) -> str:
+    """Path of the compressed parameter file."""
     return f"{FOLDER}/parameters_{system_id}.json.xz"
 
 
 def files_of(facts: VehicleInfo, table: Sequence[Parameter]) -> dict[str, bytes]:
-    """Path -> content; the same for the same vehicle."""
+    """Content of both files by path; reproducible for a given vehicle."""
     own = msgspec.to_builtins(facts.params)
     told = {"version": FORMAT, "parameters": [described(p, own) for p in table]}
     # Small decoders know CRC-32 alone as the check of an xz stream.
@@ -50,7 +51,7 @@ def files_of(facts: VehicleInfo, table: Sequence[Parameter]) -> dict[str, bytes]
 
 
 def described(p: Parameter, own: Mapping[str, Any]) -> dict[str, Any]:
-    """One entry; its default is what the vehicle's file says."""
+    """The entry of one parameter; its default is the value of the vehicle's file."""
     entry: dict[str, Any] = {
         "name": p.name,
         "type": "Int32" if p.is_int else "Float",
@@ -73,6 +74,7 @@ def described(p: Parameter, own: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def component_metadata(facts: VehicleInfo, files: Mapping[str, bytes], boot_ms: int) -> mav.MAVLink_component_metadata_message:
+    """COMPONENT_METADATA, which names the general file and its CRC-32; boot_ms: time since boot [ms]."""
     general = general_of(facts.system_id)
     return mav.MAVLink_component_metadata_message(boot_ms, crc32(files[general]), f"mftp://{general}".encode())
 

@@ -4,17 +4,17 @@ from collections.abc import Mapping
 
 
 class FileTree:
-    """files: by path from the root, as ``/etc/extras/x.json``. A path that goes up, or through anything unknown, is nothing."""
+    """A tree of files by absolute path, such as ``/etc/extras/x.json``. A path that goes up, or through an unknown folder, is not found."""
 
     def __init__(self, files: Mapping[str, bytes]) -> None:
         self._files = {_parts(path): content for path, content in files.items()}
 
     def content(self, path: str) -> bytes | None:
-        """Of a file; with or without the slash of the root."""
+        """Content of a file, its path with or without the root's slash; None if there is none."""
         return self._files.get(_parts(path))
 
     def entries(self, path: str) -> list[bytes] | None:
-        """Of a folder, as MAVLink FTP lists them: ``D`` name or ``F`` name, tab, size, each with a NUL; None: no such folder."""
+        """Entries of a folder as MAVLink FTP lists them: ``D`` name or ``F`` name, tab, size, each with a NUL; None: no such folder."""
         folder = _parts(path)
         inside = {parts[len(folder) :]: content for parts, content in self._files.items() if parts[: len(folder)] == folder}
         if not inside or () in inside:

@@ -28,7 +28,7 @@ _WRITING = range(mav.MAV_FTP_OPCODE_CREATEFILE, mav.MAV_FTP_OPCODE_RENAME + 1)
 
 @dataclass(frozen=True)
 class FtpRequest:
-    """One request."""
+    """A request of MAVLink FTP."""
 
     seq: int
     session: int
@@ -39,17 +39,19 @@ class FtpRequest:
 
     @classmethod
     def read(cls, payload: bytes) -> "FtpRequest":
+        """Decodes a request from the payload of FILE_TRANSFER_PROTOCOL."""
         seq, session, opcode, size, _, _, offset = HEADER.unpack_from(payload)
         return cls(seq, session, opcode, size, offset, payload[HEADER.size : HEADER.size + min(size, DATA_BYTES)])
 
     @property
     def path(self) -> str:
+        """The path that the request names."""
         return self.data.split(b"\0")[0].decode("utf-8", "replace")
 
 
 @dataclass(frozen=True)
 class FtpReply:
-    """One answer, without its sequence number."""
+    """A reply, without its sequence number."""
 
     session: int
     opcode: int
@@ -60,7 +62,7 @@ class FtpReply:
 
 @dataclass
 class FtpSession:
-    """A file that one peer reads, perhaps has begun to read."""
+    """A file that a peer has opened, and perhaps begun to read."""
 
     owner: Sender
     content: bytes
@@ -70,7 +72,7 @@ class FtpSession:
 
 @dataclass
 class Burst:
-    """What is still to be sent of a file."""
+    """The part of a file that is still to be sent in a burst."""
 
     asked: FtpRequest
     content: bytes
@@ -80,7 +82,7 @@ class Burst:
 
 @dataclass
 class Talk:
-    """With one peer: its last request and what was answered, for when the answer is lost."""
+    """The exchange with one peer: its last request and the reply, to be repeated when the reply is lost."""
 
     asked: FtpRequest
     t: float
@@ -89,7 +91,7 @@ class Talk:
 
 
 class FtpRefusal(Exception):
-    """With the MAV_FTP_ERR to be answered."""
+    """A refusal with the MAV_FTP_ERR to reply."""
 
     def __init__(self, error: int) -> None:
         super().__init__(error)
@@ -97,6 +99,8 @@ class FtpRefusal(Exception):
 
 
 class FileServer:
+    """The MAVLink FTP server of one vehicle."""
+
     def __init__(self, line: VehicleConnection, files: Mapping[str, bytes]) -> None:
         self._line = line
         self._tree = FileTree(files)
@@ -114,7 +118,7 @@ class FileServer:
         }
 
     def on_ftp(self, message: mav.MAVLink_file_transfer_protocol_message, sender: Sender) -> None:
-        """Every request is answered at once; one that is repeated gets the same answer again."""
+        """Answers a request at once; a repeated request gets the same reply again."""
         asked = FtpRequest.read(bytes(message.payload))
         if asked.opcode >= ACK:
             return  # an answer, of somebody else
@@ -140,7 +144,7 @@ class FileServer:
         return self._does[asked.opcode](asked, sender)
 
     def tick(self) -> None:
-        """Goes on with the bursts, and forgets who has fallen silent."""
+        """Continues bursts, and drops peers that have fallen silent."""
         t = self._line.t
         self._sessions = {number: s for number, s in self._sessions.items() if t - s.t < FORGET_AFTER}
         self._talks = {sender: talk for sender, talk in self._talks.items() if t - talk.t < FORGET_AFTER}

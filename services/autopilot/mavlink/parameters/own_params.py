@@ -13,7 +13,7 @@ READ_ONCE = "it is read only when the autopilot starts; the vehicle's file sets 
 
 @dataclass(frozen=True)
 class Own:
-    """choices: of a parameter that is a word; else low..high are the limits of a number."""
+    """A parameter of the autopilot itself. choices: of a parameter that is a word; else low..high are the limits of a number."""
 
     name: str
     about: str
@@ -26,7 +26,7 @@ class Own:
 
 
 def own_params(params: Params, fixed: Set[str]) -> dict[str, Own]:
-    """Of a set of parameters, by name. Raises TypeError for one that is neither a number within limits nor a choice."""
+    """The parameters of a set by name. Raises TypeError for one that is neither a number within limits nor a choice."""
     hints = get_type_hints(type(params), include_extras=True)
     return {name: _described(name, hints[name], READ_ONCE if name in fixed else "") for name in params.__struct_fields__}
 

@@ -30,7 +30,7 @@ follows `NAV_LOITER_RAD`; a landing is planned with what is set when it begins, 
 
 
 def render() -> str:
-    """The whole page."""
+    """Renders the whole page."""
     tables = {kind: {p.name: p for p in parameters_with(own, kind)} for kind, (_, own) in KINDS.items()}
     lines = [HEAD]
     for name, row in sorted(load_yaml(FILE, Table).parameters.items()):

@@ -9,22 +9,27 @@ from uvf.runtime.state.state_folder import write_private
 
 
 class UnreadableStore(Exception):
-    """A file of settings that is none; the text says what is wrong with it."""
+    """The file of settings cannot be read; the text says why."""
 
 
 class Store(Protocol):
+    """Where settings are kept."""
+
     def load(self) -> dict[str, Any]:
-        """Name -> value; empty if there are none. Raises Unreadable."""
+        """Settings by name; empty if there are none. Raises UnreadableStore."""
 
     def save(self, settings: Mapping[str, Any]) -> None:
-        """Whole or not at all. Raises OSError."""
+        """Writes all settings atomically. Raises OSError."""
 
 
 class FileStore:
+    """Settings in a JSON file."""
+
     def __init__(self, path: Path) -> None:
         self._path = path
 
     def load(self) -> dict[str, Any]:
+        """Settings by name; empty without a file. Raises UnreadableStore."""
         try:
             found = json.loads(self._path.read_bytes())
         except FileNotFoundError:
@@ -38,4 +43,5 @@ class FileStore:
         return found
 
     def save(self, settings: Mapping[str, Any]) -> None:
+        """Writes the file, readable by its owner only. Raises OSError."""
         write_private(self._path, json.dumps(dict(settings), indent=1, sort_keys=True).encode() + b"\n")

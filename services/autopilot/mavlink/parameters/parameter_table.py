@@ -22,14 +22,14 @@ WHOLE = (-(2**31), 2**31 - 1)
 
 
 class Case(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """One number of an enumeration: what it is called, and the autopilot's parameters that say the same."""
+    """One value of an enumeration: its name, and the autopilot parameters that mean the same."""
 
     says: str
     sets: dict[str, str] = {}
 
 
 class ParameterRow(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """As the head of ``parameters.yaml`` explains."""
+    """One row of ``parameters.yaml``, whose head explains the keys."""
 
     type: Literal["int", "real"]
     group: str
@@ -44,12 +44,14 @@ class ParameterRow(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class Table(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """The file ``parameters.yaml``."""
+
     parameters: dict[str, ParameterRow]
 
 
 @dataclass(frozen=True)
 class Parameter:
-    """One on the wire. ``fixed``: why it cannot be set; else it is ``own``, a number, or one of ``cases``."""
+    """A parameter as MAVLink shows it. ``fixed``: why it cannot be set; else it is ``own``, a number, or one of ``cases``."""
 
     name: str
     type: int
@@ -68,19 +70,20 @@ class Parameter:
 
     @property
     def is_int(self) -> bool:
+        """Whether its type is INT32."""
         return self.type == mav.MAV_PARAM_TYPE_INT32
 
     def number(self, own: Mapping[str, Any]) -> float:
-        """On the wire, for these of the autopilot's own parameters."""
+        """Its value [unit of the parameter] on the wire, for these values of the autopilot's own parameters."""
         if self.own and not self.cases:
             return round(own[self.own]) if self.is_int else float(own[self.own])
         fits = (number for number, case in self.cases.items() if all(own[name] == value for name, value in case.sets.items()))
         return next(fits, self.value)
 
     def settings(self, number: float) -> dict[str, Any]:
-        """The autopilot's parameters that make it this number; empty if it cannot be.
+        """The autopilot's parameters for which its value is ``number`` [unit of the parameter]; empty if it is impossible.
 
-        Limits count as they are in single precision: who sends 0.3 means the limit 0.3.
+        Limits are compared in single precision: a station that sends 0.3 means the limit 0.3.
         """
         if self.cases:
             return dict(self.cases[int(number)].sets) if number in self.cases else {}
@@ -90,7 +93,7 @@ class Parameter:
 
 
 def parameters_of(facts: VehicleInfo) -> list[Parameter]:
-    """In order of name, numbered from 0. Raises BadInput when the file names what the autopilot has not."""
+    """The parameters of a vehicle in order of name, numbered from 0. Raises BadInput when the file names an unknown one."""
     return parameters_with(own_params(facts.params, facts.fixed_params), facts.file.kind, {"system_id": facts.system_id, **_battery(facts)})
 
 
@@ -105,7 +108,10 @@ def _battery(facts: VehicleInfo) -> dict[str, float]:
 
 
 def parameters_with(own: Mapping[str, Own], kind: Kind, given: Mapping[str, float] | None = None) -> list[Parameter]:
-    """Of an autopilot of this kind with these parameters of its own; given: what the vehicle's file says. Raises BadInput."""
+    """Parameters of an autopilot of this kind with its ``own`` ones, in order of name.
+
+    given: system_id, cells [-], cell_full and cell_empty [V] from the vehicle's file. Raises BadInput.
+    """
     rows = {name: row for name, row in _table().parameters.items() if kind not in row.absent}
     found = [_standard(name, _of_kind(row, kind, given or {}), own, kind) for name, row in rows.items()]
     found += [_offered(one) for one in own.values() if len(one.name) <= OWN_NAME_MOST]

@@ -11,7 +11,7 @@ from uvf.mavlink import dialect as mav
 
 
 class ParameterValues:
-    """own: the autopilot's own parameters by name, as far as known."""
+    """The present values of a vehicle's parameters. own: the autopilot's own parameters by name, as far as known."""
 
     def __init__(self, table: Sequence[Parameter], own: Mapping[str, Any]) -> None:
         self.table = table
@@ -19,10 +19,11 @@ class ParameterValues:
         self._raw = {p.name: encoded(p, p.number(own)) for p in table}
 
     def raw(self, p: Parameter) -> bytes:
+        """The four bytes of a parameter's value."""
         return self._raw[p.name]
 
     def update(self, own: Mapping[str, Any]) -> list[Parameter]:
-        """Takes over what is known now; returns what has changed."""
+        """Updates the values; returns the parameters that have changed."""
         before, self._raw = self._raw, {p.name: encoded(p, p.number(own)) for p in self.table}
         return [p for p in self.table if self._raw[p.name] != before[p.name]]
 
@@ -33,25 +34,25 @@ class ParameterValues:
 
 
 def crc32(data: bytes) -> int:
-    """As MAVLink counts it for parameters and files: polynomial 0xEDB88320, start 0, not inverted."""
+    """CRC-32 as MAVLink defines it for parameters and files: polynomial 0xEDB88320, start 0, not inverted."""
     return zlib.crc32(data, 0xFFFFFFFF) ^ 0xFFFFFFFF
 
 
 def encoded(p: Parameter, number: float) -> bytes:
-    """The four bytes of a value; an integer as its own bytes."""
+    """The four bytes of a value ``number`` [unit of the parameter]; an integer as its own bytes."""
     if p.is_int:
         return struct.pack("<i", min(max(int(number), WHOLE[0]), WHOLE[1]))
     return struct.pack("<f", number)
 
 
 def decoded(p: Parameter, raw: bytes) -> float:
-    """NaN when it is no number to work with."""
+    """The value [unit of the parameter] of four bytes; NaN when it is not finite."""
     number = struct.unpack("<i" if p.is_int else "<f", raw)[0]
     return float(number) if math.isfinite(number) else math.nan
 
 
 def raw_of(message: mav.MAVLink_param_set_message) -> bytes:
-    """The bytes of its value field: some patterns of integers (signalling NaNs) do not survive as a Python float."""
+    """The bytes of the value field: some bit patterns of integers (signalling NaNs) do not survive as a Python float."""
     packet = bytes(message.get_msgbuf() or b"")
     head = mav.HEADER_LEN_V2 if packet[:1] == bytes((mav.PROTOCOL_MARKER_V2,)) else mav.HEADER_LEN_V1
     return packet[head : head + min(4, packet[1])].ljust(4, b"\0")

@@ -21,6 +21,8 @@ LOAD, SAVE, RESET = 0.0, 1.0, 2.0  # of MAV_CMD_PREFLIGHT_STORAGE
 
 
 class ParameterServer:
+    """The parameter protocol of one vehicle."""
+
     def __init__(self, line: VehicleConnection, store: Store) -> None:
         self._line = line
         self._settings = ParameterSettings(line, store)
@@ -31,18 +33,20 @@ class ParameterServer:
 
     @property
     def note(self) -> str:
+        """What every ground station should hear about the stored parameters."""
         return self._settings.note
 
     def commands(self) -> dict[int, Handler]:
+        """Handlers of the parameter commands, by MAV_CMD."""
         return {mav.MAV_CMD_PREFLIGHT_STORAGE: self._storage}
 
     def on_request_list(self, message: mav.MAVLink_param_request_list_message, sender: Sender) -> None:
-        """Starts (again); the hash goes first, so that a peer with a cache can stop the rest."""
+        """Starts the list (again); the hash goes first, so that a peer with a cache can stop the rest."""
         self._send_hash(sender.peer)
         self._progress[sender.peer] = 0
 
     def on_request_read(self, message: mav.MAVLink_param_request_read_message, sender: Sender) -> None:
-        """By index, or by name when the index is -1. By index ask those that have lost something: they get it twice."""
+        """Sends a parameter by index, or by name when the index is -1; by index twice, for the asker has lost messages."""
         if message.param_index == -1 and message.param_id == HASH:
             self._send_hash(sender.peer)
             return
@@ -57,7 +61,7 @@ class ParameterServer:
                 self._send(found, sender.peer)
 
     def on_set(self, message: mav.MAVLink_param_set_message, sender: Sender) -> None:
-        """Told to everybody once the autopilot has it. A hash sent back ends the list."""
+        """Sets a parameter; all are told once the autopilot has it. A hash sent back ends the list."""
         if message.param_id == HASH:
             self._progress.pop(sender.peer, None)
             return
@@ -87,11 +91,11 @@ class ParameterServer:
         self._settings.set(settings, done)
 
     def forget(self, peers: Collection[Peer]) -> None:
-        """Who is gone waits for no list."""
+        """Ends the lists of peers that are gone."""
         self._progress = {peer: start for peer, start in self._progress.items() if peer in peers}
 
     def tick(self) -> None:
-        """What others have changed, to everybody; and the next few values for each peer that waits for the list."""
+        """Sends changed values to all, and the next few values to each peer that waits for the list."""
         if self._settings.hear():
             self._tell()
         self._settings.tick()
@@ -142,7 +146,7 @@ class ParameterServer:
 
 
 def possible(p: Parameter) -> str:
-    """In words, what it may be set to."""
+    """The values that it may be set to, in words."""
     if p.cases:
         return ", ".join(f"{number} ({case.says})" for number, case in p.cases.items() if case.sets)
     return f"{p.low:g} to {p.high:g}{' ' + p.unit if p.unit else ''}"

@@ -38,17 +38,18 @@ class ParameterSettings:
 
     @property
     def own(self) -> Settings:
+        """The autopilot's parameters by name, with those still to be set."""
         return {**self._said, **self._wanted}
 
     @property
     def is_settled(self) -> bool:
+        """Whether nothing is left to be set."""
         return not self._wanted
 
     def hear(self) -> bool:
-        """Takes in what the autopilot says; whether it has said something.
+        """Takes the autopilot's report; returns whether there was a new one.
 
-        One that has begun with its file is to be given what is remembered; one that has been told already when this end
-        comes up knows better.
+        An autopilot that has begun with its file is given the stored settings; one that was changed before this end started keeps its own.
         """
         heard = self._line.latest.params
         if heard is None or heard is self._heard:
@@ -64,7 +65,7 @@ class ParameterSettings:
         return True
 
     def tick(self) -> None:
-        """Sets what is still to be set."""
+        """Requests the settings that are still to be set."""
         if self._heard is None or self._line.t < self._ask_at or self._line.latest.is_paused:
             return
         for name, value in self._wanted.items():
@@ -81,7 +82,7 @@ class ParameterSettings:
         return asked
 
     def set(self, settings: Mapping[str, Any], done: Done) -> None:
-        """One after the other; ``done`` hears once whether all are set, or why one is not."""
+        """Sets parameters one after the other; ``done`` hears once whether all are set, or why one is not."""
         (name, value), *rest = settings.items()
 
         def asked(accepted: bool, reason: str) -> None:
@@ -104,11 +105,11 @@ class ParameterSettings:
         self._line.ask(call, ParamRequest(name=name, value=json.dumps(value), source=SOURCE), asked)
 
     def reset(self) -> None:
-        """Back to the vehicle's file."""
+        """Restores the values of the vehicle's file."""
         self._want(self._file)
 
     def reload(self) -> None:
-        """To what is remembered."""
+        """Restores the stored settings."""
         self._want({**self._file, **self._load()})
 
     def _want(self, target: Settings) -> None:
@@ -116,7 +117,7 @@ class ParameterSettings:
         self._publish()
 
     def save(self) -> str:
-        """Remembers what differs from the vehicle's file; returns what went wrong, or nothing."""
+        """Stores what differs from the vehicle's file; returns what went wrong, or ""."""
         try:
             self._store.save(self._kept)
         except OSError as error:

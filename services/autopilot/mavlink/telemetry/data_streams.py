@@ -28,7 +28,7 @@ GROUPS: dict[int, tuple[int, ...]] = {
 
 
 def set_rates(schedule: Schedule, message: mav.MAVLink_request_data_stream_message, peer: Peer) -> None:
-    """Stopped, a group is not sent; 0 a second = default rates. Group 0 = all groups. Unknown groups ask for nothing."""
+    """Sets the rates of REQUEST_DATA_STREAM: a stopped group is not sent; 0 [1/s] = default rates; group 0 = all. Others are ignored."""
     group = message.req_stream_id
     wanted = {n for numbers in GROUPS.values() for n in numbers} if group == mav.MAV_DATA_STREAM_ALL else GROUPS.get(group, ())
     started = 1e6 / message.req_message_rate if message.req_message_rate else 0.0

@@ -15,7 +15,10 @@ VERTICAL = mav.ESTIMATOR_VELOCITY_VERT | mav.ESTIMATOR_POS_VERT_ABS
 
 
 def estimator_status(facts: VehicleInfo, latest: VehicleState, t: float) -> Message:
-    """Ratios as PX4 has them: innovation over its gate, above 1 refused; NaN where nothing is compared or nobody tells."""
+    """ESTIMATOR_STATUS at ``t`` [s, since the link's start]; None without an estimate.
+
+    Ratios [-] as PX4 has them: innovation over its gate, above 1 rejected; NaN where nothing is compared or reported.
+    """
     if latest.nav is None:
         return None
     told = latest.fresh(latest.quality)
@@ -45,7 +48,7 @@ def _ratios(told: EstimateQuality | None) -> tuple[float, ...]:
 
 
 def wind(facts: VehicleInfo, latest: VehicleState, t: float) -> Message:
-    """Velocity of the air in NED; aircraft only. No vertical wind is estimated."""
+    """WIND_COV: wind velocity [m/s, NED] at ``t`` [s], of aircraft only; no vertical wind is estimated."""
     if latest.nav is None or facts.is_ground:
         return None
     east, north, _ = array(latest.nav.wind)

@@ -15,7 +15,7 @@ TOLD_OTHERWISE = re.compile(r"mission item \d+ reached|camera trigger \d+")
 
 
 class EventNews:
-    """The bus hands old events to whoever comes later: a link that starts again is no reason to say them once more."""
+    """Selects the events to report: the bus hands old events to whoever comes later, and a restarted link must not repeat them."""
 
     def __init__(self) -> None:
         self._since: float | None = None
@@ -23,7 +23,7 @@ class EventNews:
         self._held: list[Event] = []
 
     def of(self, latest: VehicleState, events: Sequence[Event]) -> list[Event]:
-        """What is to be said of these, and of those that came before the time was known."""
+        """The new ones of these events, and of those that came before the time was known."""
         events = [*self._held, *events][-MOST_HELD:]
         if latest.clock is None and latest.nav is None and latest.status is None:
             self._held = events

@@ -21,7 +21,7 @@ _FLIGHT_CONTROL = mav.MAV_SYS_STATUS_SENSOR_ATTITUDE_STABILIZATION | mav.MAV_SYS
 
 @dataclass(frozen=True)
 class Health:
-    """Bits of MAV_SYS_STATUS_SENSOR; all that is present is enabled."""
+    """Bits of MAV_SYS_STATUS_SENSOR; all sensors present are enabled."""
 
     present: int
     healthy: int
@@ -29,7 +29,7 @@ class Health:
 
 
 def health(facts: VehicleInfo, latest: VehicleState) -> Health:
-    """Present: what the vehicle file fits. Healthy: what has shown itself in the newest messages."""
+    """Sensors present as the vehicle's file has them, and healthy as the newest messages show."""
     present = mav.MAV_SYS_STATUS_PREARM_CHECK | _CONTROL | (0 if facts.is_ground else _FLIGHT_CONTROL)
     present |= _IMU if facts.sensors.imu else 0
     present |= _AIR_DATA if facts.sensors.air_data else 0

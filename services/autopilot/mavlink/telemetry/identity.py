@@ -44,12 +44,13 @@ PRODUCT = {Kind.KIND_FIXED_WING: 1, Kind.KIND_GROUND: 2}
 
 
 def greeting(facts: VehicleInfo) -> str:
+    """The text that introduces the vehicle to a new ground station."""
     interface = "generic MAVLink" if facts.generic else "PX4-compatible MAVLink, not PX4"
     return f"UVF {'.'.join(map(str, VERSION))} simulated autopilot ({interface})"
 
 
 def heartbeat(facts: VehicleInfo, latest: VehicleState) -> mav.MAVLink_heartbeat_message:
-    """The HIL flag is always set: it is the truth, and it keeps sensor calibration pages away."""
+    """HEARTBEAT. The HIL flag is always set: it is true, and it keeps sensor calibration pages away."""
     flags = mav.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED | mav.MAV_MODE_FLAG_HIL_ENABLED
     status = latest.status
     row = row_of(status.mode) if status is not None else None
@@ -70,7 +71,7 @@ def _system_status(latest: VehicleState) -> int:
 
 
 def autopilot_version(facts: VehicleInfo) -> mav.MAVLink_autopilot_version_message:
-    """Version type DEV (0): an official one is compared with the newest PX4. Own version in the custom bytes, reversed."""
+    """AUTOPILOT_VERSION of type DEV (0): an official one is compared with the newest PX4. Own version in the custom bytes, reversed."""
     major, minor, patch = VERSION if facts.generic else EMULATED_PX4
     own = VERSION[0] << 24 | VERSION[1] << 16 | VERSION[2] << 8
     custom = (VERSION[2], VERSION[1], VERSION[0], 0, 0, 0, 0, 0)
@@ -93,10 +94,11 @@ def autopilot_version(facts: VehicleInfo) -> mav.MAVLink_autopilot_version_messa
 
 
 def protocol_version() -> mav.MAVLink_protocol_version_message:
-    """Refused, an older QGroundControl would assume MAVLink 1 and leave out parts of the connection."""
+    """PROTOCOL_VERSION: if it were refused, an older QGroundControl would assume MAVLink 1 and skip parts of the connection."""
     return mav.MAVLink_protocol_version_message(200, 100, 200, tuple(XML_COMMIT), (0,) * 8)
 
 
 def current_mode(latest: VehicleState) -> mav.MAVLink_current_mode_message | None:
+    """CURRENT_MODE; None before the first status, and for an unknown mode."""
     row = row_of(latest.status.mode) if latest.status is not None else None
     return mav.MAVLink_current_mode_message(row.standard, row.custom, latest.intended_custom_mode) if row else None

@@ -16,27 +16,28 @@ Message = mav.MAVLink_message | None
 
 
 def boot_ms(t: float) -> int:
-    """[ms] since the link came up."""
+    """Time [ms] since the link came up at ``t`` [s]."""
     return whole(t * 1e3, (0, 2**32 - 1))
 
 
 def system_time(facts: VehicleInfo, latest: VehicleState, t: float) -> Message:
-    """Wall time, as of all that goes over the link."""
+    """SYSTEM_TIME at ``t`` [s, since the link's start]: wall time, as in all messages of the link."""
     unix = whole((facts.started + t) * 1e6, (0, 2**63)) if facts.started else 0
     return mav.MAVLink_system_time_message(unix, boot_ms(t))
 
 
 def ned_from_frd(enu_from_flu: Floats) -> Floats:
-    """(4,) wxyz; the change of conventions is its own inverse."""
+    """Attitude NED from FRD (4,) wxyz of an attitude ENU from FLU (4,) wxyz; the change of conventions is its own inverse."""
     return enu_flu_from_ned_frd(enu_from_flu)
 
 
 def frd_rates(nav: NavState) -> tuple[float, float, float]:
-    """(roll, pitch, yaw) rates [rad/s], forward-right-down."""
+    """Body rates (roll, pitch, yaw) [rad/s, FRD]."""
     return nav.angular_velocity.x, -nav.angular_velocity.y, -nav.angular_velocity.z
 
 
 def attitude(facts: VehicleInfo, latest: VehicleState, t: float) -> Message:
+    """ATTITUDE at ``t`` [s]: Euler angles [rad, NED] and body rates [rad/s, FRD]; None without an estimate."""
     if latest.nav is None:
         return None
     roll, pitch, yaw = to_euler(ned_from_frd(wxyz(latest.nav.orientation)))
@@ -44,7 +45,7 @@ def attitude(facts: VehicleInfo, latest: VehicleState, t: float) -> Message:
 
 
 def local_position(facts: VehicleInfo, latest: VehicleState, t: float) -> Message:
-    """In the world's frame, turned to NED."""
+    """LOCAL_POSITION_NED at ``t`` [s]: position [m] and velocity [m/s] of the world frame, turned to NED."""
     if latest.nav is None:
         return None
     p, v = latest.nav.position, latest.nav.velocity
@@ -52,13 +53,14 @@ def local_position(facts: VehicleInfo, latest: VehicleState, t: float) -> Messag
 
 
 def relative_altitude(latest: VehicleState) -> float:
-    """[m] above home; above the world's origin while home is unknown."""
+    """Altitude [m] above home; above the world's origin while home is unknown."""
     assert latest.nav is not None
     home = latest.home
     return latest.nav.position.z - (float(home[2]) if home is not None else 0.0)
 
 
 def global_position(facts: VehicleInfo, latest: VehicleState, t: float) -> Message:
+    """GLOBAL_POSITION_INT at ``t`` [s]: degrees times 1e7, mm, cm/s NED, heading in 0.01 degrees; None without a finite position."""
     nav = latest.nav
     if nav is None or not np.isfinite(array(nav.position)).all():
         return None
@@ -78,7 +80,7 @@ def global_position(facts: VehicleInfo, latest: VehicleState, t: float) -> Messa
 
 
 def altitude(facts: VehicleInfo, latest: VehicleState, t: float) -> Message:
-    """Monotonic: the estimate itself, for there is no other clock of height."""
+    """ALTITUDE [m] at ``t`` [s]: the estimate itself as the monotonic one, for no other altitude is measured."""
     if latest.nav is None:
         return None
     z = latest.nav.position.z
@@ -88,6 +90,7 @@ def altitude(facts: VehicleInfo, latest: VehicleState, t: float) -> Message:
 
 
 def hud(facts: VehicleInfo, latest: VehicleState, t: float) -> Message:
+    """VFR_HUD: airspeed, ground speed and climb [m/s], heading [deg], throttle [%], altitude [m AMSL]; ``t`` [s] is not used."""
     nav = latest.nav
     if nav is None:
         return None
@@ -99,5 +102,6 @@ def hud(facts: VehicleInfo, latest: VehicleState, t: float) -> Message:
 
 
 def global_origin(facts: VehicleInfo, latest: VehicleState, t: float) -> Message:
+    """GPS_GLOBAL_ORIGIN: that of the world, degrees times 1e7 and mm AMSL; ``t`` [s] is not used."""
     latitude, longitude, amsl = facts.geodetic(np.zeros(3))
     return mav.MAVLink_gps_global_origin_message(whole(latitude * 1e7, I32), whole(longitude * 1e7, I32), whole(amsl * 1e3, I32))

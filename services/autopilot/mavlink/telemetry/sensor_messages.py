@@ -32,7 +32,7 @@ _PRESSURES = (
 
 
 def body_frd(facts: VehicleInfo, sensed: Floats) -> Floats:
-    """(3,) of the IMU's axes (FLU, mounted as the vehicle's file says) in the body's (FRD)."""
+    """A vector (3,) of the IMU's axes (FLU, mounted as the vehicle's file says) in the body frame (FRD)."""
     imu = facts.sensors.imu
     if imu is not None and any(imu.mount.rpy):
         sensed = rotate(from_euler(*imu.mount.rpy), sensed)
@@ -40,7 +40,7 @@ def body_frd(facts: VehicleInfo, sensed: Floats) -> Floats:
 
 
 def highres_imu(facts: VehicleInfo, latest: VehicleState, t: float) -> Message:
-    """``fields_updated`` names what is there: a vehicle without air data or magnetometer has no numbers for them."""
+    """HIGHRES_IMU at ``t`` [s]: body FRD [m/s^2, rad/s, gauss], pressures [hPa]; ``fields_updated`` names what is measured."""
     imu, air = latest.fresh(latest.imu), latest.fresh(latest.air_data)
     if imu is None:
         return None
@@ -60,6 +60,7 @@ def _air(air: AirData) -> tuple[float, float, float, float]:
 
 
 def scaled_pressure(facts: VehicleInfo, latest: VehicleState, t: float) -> Message:
+    """SCALED_PRESSURE at ``t`` [s]: static and differential pressure [hPa], temperature [0.01 deg C]; None without air data."""
     air = latest.fresh(latest.air_data)
     if air is None:
         return None
@@ -68,7 +69,7 @@ def scaled_pressure(facts: VehicleInfo, latest: VehicleState, t: float) -> Messa
 
 
 def vibration(facts: VehicleInfo, latest: VehicleState, t: float) -> Message:
-    """Of aircraft: the shaking of the specific force, sensor axes; see ``vibration.py``."""
+    """VIBRATION at ``t`` [s] of aircraft: RMS of the specific force's vibration [m/s^2, sensor axes]; see ``vibration.py``."""
     if facts.is_ground or latest.fresh(latest.imu) is None:
         return None
     x, y, z = latest.vibration.level.tolist()
@@ -76,7 +77,7 @@ def vibration(facts: VehicleInfo, latest: VehicleState, t: float) -> Message:
 
 
 def servo_output(facts: VehicleInfo, latest: VehicleState, t: float) -> Message:
-    """Outputs 1 to 6: aileron, elevator, throttle, rudder, flap, brake; of a ground vehicle 1 and 2: left and right wheel."""
+    """SERVO_OUTPUT_RAW [us] at ``t`` [s]: aileron, elevator, throttle, rudder, flap, brake; of a ground vehicle left and right wheel."""
     pulses: list[int] = []
     if (surfaces := latest.fresh(latest.surface_command)) is not None:
         pulses = _surfaces(facts, surfaces)

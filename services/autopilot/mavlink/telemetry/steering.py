@@ -25,7 +25,7 @@ UNDER_WAY = (NavStatus.PLANNING, NavStatus.DRIVING, NavStatus.RECOVERING)
 
 
 def place(latest: VehicleState) -> Floats | None:
-    """(3,) m, world: what the autopilot, or the planner of a ground vehicle, goes to; else the mission's item; None: nowhere."""
+    """Position (3,) [m, world] of the target: the autopilot's, the planner's goal, or the mission item; None without one."""
     targets, planning = latest.fresh(latest.targets), latest.fresh(latest.planning)
     if targets is not None:
         return array(targets.place) if targets.HasField("place") else None
@@ -38,7 +38,7 @@ def place(latest: VehicleState) -> Floats | None:
 
 
 def position_target(facts: VehicleInfo, latest: VehicleState, t: float) -> Message:
-    """The place, at the height that is held now where that is another."""
+    """POSITION_TARGET_GLOBAL_INT at ``t`` [s]: the target position [deg, m AMSL], at the altitude held now where that differs."""
     to, targets = place(latest), latest.fresh(latest.targets)
     if to is None or not np.isfinite(to).all():
         return None
@@ -50,7 +50,7 @@ def position_target(facts: VehicleInfo, latest: VehicleState, t: float) -> Messa
 
 
 def attitude_target(facts: VehicleInfo, latest: VehicleState, t: float) -> Message:
-    """Bank and pitch that are held, with the heading of now, which is not."""
+    """ATTITUDE_TARGET at ``t`` [s]: the bank and pitch held, with the present heading, which is not held."""
     targets, nav, status = latest.fresh(latest.targets), latest.nav, latest.status
     if targets is None or nav is None or status is None or not targets.HasField("bank"):
         return None
@@ -59,7 +59,9 @@ def attitude_target(facts: VehicleInfo, latest: VehicleState, t: float) -> Messa
 
 
 def controller_output(facts: VehicleInfo, latest: VehicleState, t: float) -> Message:
-    """Bearing and distance of the place, errors of height and airspeed (too low and too slow is positive), attitude that is held."""
+    """NAV_CONTROLLER_OUTPUT: attitude held [deg], bearing [deg] and distance [m] of the target, errors of altitude [m] and airspeed
+    [m/s] (too low and too slow is positive), cross-track error [m]; ``t`` [s] is not used.
+    """
     status, nav, to = latest.status, latest.nav, place(latest)
     if status is None or nav is None or to is None:
         return None

@@ -12,7 +12,7 @@ UNUSED, UNKNOWN_STRENGTH = 0xFFFF, 255
 
 
 def rc_channels(facts: VehicleInfo, latest: VehicleState, t: float) -> Message:
-    """us; channels that are released are not there."""
+    """RC_CHANNELS [us] at ``t`` [s]; released channels are marked unused. None while no channel is overridden."""
     if not latest.rc_channels:
         return None
     raw = [us or UNUSED for us in latest.rc_channels]
@@ -22,7 +22,7 @@ def rc_channels(facts: VehicleInfo, latest: VehicleState, t: float) -> Message:
 
 
 def orbit_status(facts: VehicleInfo, latest: VehicleState, t: float) -> Message:
-    """Radius positive clockwise, altitude above mean sea level."""
+    """ORBIT_EXECUTION_STATUS at ``t`` [s]: radius [m] positive clockwise, centre [deg, m AMSL]; None in other modes than Orbit."""
     status = latest.status
     if status is None or status.mode != Mode.MODE_ORBIT or not status.HasField("circle"):
         return None

@@ -8,7 +8,7 @@ SHORTEST = 0.02  # s: one step of the service
 
 
 class Schedule:
-    """Due times by message id. Intervals in seconds; ``None`` = not sent."""
+    """When each message is due, by message id. Intervals [s]; ``None`` = not sent."""
 
     def __init__(self, hz: Mapping[int, float]) -> None:
         self._default = {message: 1.0 / rate if rate > 0 else None for message, rate in hz.items()}
@@ -20,7 +20,7 @@ class Schedule:
         return self._own.get((message, peer), self._default.get(message))
 
     def set_interval(self, message: int, peer: Peer, microseconds: float) -> bool:
-        """As MAV_CMD_SET_MESSAGE_INTERVAL: -1 off, 0 default. False when there is no such message."""
+        """Sets the interval [microseconds] as MAV_CMD_SET_MESSAGE_INTERVAL does: -1 off, 0 default. False for an unknown message."""
         if message not in self._default:
             return False
         self._own.pop((message, peer), None)
@@ -30,12 +30,12 @@ class Schedule:
         return True
 
     def hurry(self, message: int, t: float) -> None:
-        """Makes a message due at once for everybody who gets it."""
+        """Makes a message due at once, at ``t`` [s, wall], for everybody who gets it."""
         for key in [k for k in self._due if k[0] == message]:
             self._due[key] = t
 
     def due(self, t: float, peers: Sequence[Peer]) -> list[tuple[int, list[Peer]]]:
-        """(message id, who gets it now) and sets the next due times."""
+        """(message id, who gets it at ``t`` [s, wall]); sets the next due times."""
         own: dict[int, dict[Peer, float | None]] = {}
         for (message, peer), interval in self._own.items():
             own.setdefault(message, {})[peer] = interval
@@ -49,12 +49,12 @@ class Schedule:
         return result
 
     def renew(self, peer: Peer) -> None:
-        """Default rates for a peer again."""
+        """Restores the default rates for a peer."""
         self._own = {key: interval for key, interval in self._own.items() if key[1] != peer}
         self._due = {key: at for key, at in self._due.items() if key[1] != peer}
 
     def forget(self, peers: Sequence[Peer]) -> None:
-        """Drops the wishes of peers that are gone."""
+        """Drops the rates of peers that are gone."""
         for gone in {peer for _, peer in self._own if peer not in peers}:
             self.renew(gone)
 

@@ -27,13 +27,13 @@ Build = Callable[[VehicleInfo, VehicleState, float], Message | list[mav.MAVLink_
 
 @dataclass(frozen=True)
 class TelemetryStream:
-    """hz: default rate [1/s, wall]; 0 = only when asked for."""
+    """A message that is sent regularly. hz: default rate [1/s, wall]; 0 = only on request."""
 
     build: Build
     hz: float
 
     def messages(self, facts: VehicleInfo, latest: VehicleState, t: float) -> list[mav.MAVLink_message]:
-        """What there is to say at ``t`` [s]: none, one, or several."""
+        """The messages to send at ``t`` [s, since the link's start]: none, one, or several."""
         told = self.build(facts, latest, t)
         return told if isinstance(told, list) else [told] if told is not None else []
 
@@ -67,7 +67,7 @@ def _battery_status(facts: VehicleInfo, latest: VehicleState, t: float) -> Messa
 
 
 def charge_state(remaining: float, own: Mapping[str, float]) -> int:
-    """MAV_BATTERY_CHARGE_STATE of a charge 0..1; negative or NaN = unknown. own: the autopilot's parameters, its limits among them."""
+    """MAV_BATTERY_CHARGE_STATE of a charge 0..1 [-]; negative or NaN = unknown. own: the autopilot's parameters, with its limits."""
     if not remaining >= 0:
         return int(mav.MAV_BATTERY_CHARGE_STATE_UNDEFINED)
     if remaining < own["emergency_charge"]:
@@ -126,7 +126,7 @@ def _home_position(facts: VehicleInfo, latest: VehicleState, t: float) -> Messag
 
 
 def landed_state(facts: VehicleInfo, latest: VehicleState) -> int:
-    """MAV_LANDED_STATE. An armed rover counts as in the air, as PX4's does: else no ground station lets it be guided."""
+    """MAV_LANDED_STATE. An armed rover counts as in the air, as PX4's does: otherwise no ground station would guide it."""
     status = latest.status
     if status is None:
         return int(mav.MAV_LANDED_STATE_UNDEFINED)
@@ -152,7 +152,7 @@ def _extended_sys_state(facts: VehicleInfo, latest: VehicleState, t: float) -> M
 
 
 def mission_current(latest: VehicleState, seq: int | None = None) -> mav.MAVLink_mission_current_message:
-    """``seq``: an item just set, ahead of the autopilot's next report."""
+    """MISSION_CURRENT; ``seq``: an item just set, ahead of the autopilot's next report."""
     progress = latest.progress
     ids = fence_id(latest.fence), rally_id(latest.rally)
     if progress is None or progress.state == progress.NO_MISSION:

@@ -25,11 +25,12 @@ FLAGS = (
 
 
 def traffic(facts: VehicleInfo, latest: VehicleState, t: float) -> list[mav.MAVLink_message]:
-    """Where each of the others believes to be; one that has fallen silent is no longer seen."""
+    """ADSB_VEHICLE messages with the other vehicles' estimated positions; a silent one is left out; ``t`` [s] is not used."""
     return [one for other, known in latest.others if (one := seen(other, known)) is not None]
 
 
 def seen(facts: VehicleInfo, latest: VehicleState) -> mav.MAVLink_adsb_vehicle_message | None:
+    """ADSB_VEHICLE of one vehicle; None when it is silent or its position is not known."""
     nav = latest.nav
     if nav is None or latest.is_silent or not np.isfinite([*array(nav.position), *array(nav.velocity)]).all():
         return None
@@ -55,12 +56,12 @@ def seen(facts: VehicleInfo, latest: VehicleState) -> mav.MAVLink_adsb_vehicle_m
 
 
 def address(facts: VehicleInfo) -> int:
-    """24 bits, one a vehicle: its system id in the last byte keeps those of a mission apart."""
+    """ICAO address of 24 bits: the system id in the last byte keeps the vehicles of a mission apart."""
     return int.from_bytes(hashlib.sha256(facts.name.encode()).digest()[:2], "big") << 8 | facts.system_id
 
 
 def callsign(facts: VehicleInfo) -> str:
-    """Letters and digits of the name; of a long one the beginning and the system id."""
+    """Call sign: letters and digits of the name; a long name is cut, and the system id appended."""
     name = re.sub("[^A-Z0-9]", "", facts.name.upper())
     number = str(facts.system_id)
     return name if len(name) <= CALLSIGN else name[: CALLSIGN - len(number)] + number
