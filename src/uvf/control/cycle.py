@@ -14,12 +14,13 @@ STEEPEST = 0.5  # sine of a path
 
 
 def clip(value: float, limit: float) -> float:
+    """``value`` limited to +-``limit``, both in one unit, e.g. [rad] or [m/s]."""
     return min(max(value, -limit), limit)
 
 
 @dataclass(frozen=True)
 class Cycle:
-    """The estimate and the parameters of now, and what follows from them."""
+    """The estimate and the parameters of one control cycle, and the quantities that several loops derive from them."""
 
     now: Estimate
     params: AirParams
@@ -27,58 +28,58 @@ class Cycle:
 
     @cached_property
     def speed(self) -> float:
-        """m/s true airspeed, not so low that it makes no sense to divide by it."""
+        """True airspeed [m/s], at least half of ``trim_airspeed``, so that it is safe to divide by."""
         return max(self.now.airspeed, 0.5 * self.params.trim_airspeed)
 
     @cached_property
     def eas(self) -> float:
-        """m/s."""
+        """Equivalent airspeed [m/s]."""
         return self.speed * math.sqrt(self.now.density / RHO0)
 
     @cached_property
     def scale(self) -> float:
-        """Dynamic pressure at the trim airspeed over that of now."""
+        """Dynamic pressure at the trim airspeed over the present one [-], by which surface gains are scaled."""
         return (self.params.trim_airspeed / self.eas) ** 2
 
     @cached_property
     def load(self) -> float:
-        """Load factor of a level turn with this bank."""
+        """Load factor [-] of a level turn at the present bank."""
         return 1 / math.cos(clip(self.now.roll, FULL_BANK))
 
     @cached_property
     def alpha(self) -> float:
-        """rad, the angle of attack that carries this load."""
+        """Angle of attack [rad] at which the wing carries ``load``."""
         return self.params.alpha_zero_lift + self.params.alpha_per_load * self.load * GRAVITY / self.eas**2
 
     @cached_property
     def load_limit(self) -> float:
-        """What the wing carries at ``alpha_max`` now, and no more than ``load_max``."""
+        """Largest load factor [-]: what the wing carries at ``alpha_max`` at this airspeed, at most ``load_max``."""
         params = self.params
         lifted = (params.alpha_max - params.alpha_zero_lift) * self.eas**2 / (params.alpha_per_load * GRAVITY)
         return min(lifted, params.load_max)
 
     @cached_property
     def bank_limit(self) -> float:
-        """rad, of a level turn within ``load_limit``: the stall speed in the turn stays below the airspeed."""
+        """Largest bank [rad] of a level turn within ``load_limit``: the stall speed in the turn stays below the airspeed."""
         return min(math.acos(min(1 / self.load_limit, 1.0)), self.params.bank_limit)
 
     @cached_property
     def slowest(self) -> float:
-        """m/s, the lowest airspeed to ask for with the load of now."""
+        """Lowest true airspeed [m/s] to ask for at the present load factor."""
         return max(self.params.min_airspeed, self.stalled)
 
     @cached_property
     def stalled(self) -> float:
-        """m/s, true airspeed at which the load of now takes ``alpha_max``."""
+        """True airspeed [m/s] at which the present load factor takes ``alpha_max``."""
         params = self.params
         eas = math.sqrt(params.alpha_per_load * self.load * GRAVITY / (params.alpha_max - params.alpha_zero_lift))
         return eas * self.speed / self.eas
 
     @cached_property
     def highest_pitch(self) -> float:
-        """rad, at which the angle of attack will be ``alpha_max``, and no more than ``pitch_limit``.
+        """Pitch [rad] at which the angle of attack reaches ``alpha_max``, at most ``pitch_limit``.
 
-        The angle of attack of now is that of the lift that is felt: a kinematic one would take a downdraught for a stall.
+        The present angle of attack is that of the lift that is felt: a kinematic one would take a downdraught for a stall.
         """
         params = self.params
         felt = params.alpha_zero_lift + params.alpha_per_load * self.now.lift / self.eas**2
