@@ -31,7 +31,10 @@ GAIN = (0.7, 1.4)  # how much longer or shorter the odometry's turns may be than
 
 @dataclass(frozen=True)
 class Skew:
-    """seconds: the odometry at ``t + seconds`` belongs to the scan stamped ``t``: negative where scans come late; sigma: [s]."""
+    """Time skew [s] between odometry and scans, and its 1 sigma [s].
+
+    The odometry at ``t + seconds`` belongs to the scan stamped ``t``: negative where scans come late.
+    """
 
     seconds: float
     sigma: float
