@@ -16,7 +16,7 @@ PITCH_RATE_LIMIT = 0.8  # rad/s
 
 
 class AttitudeLoops:
-    """Roll, pitch and yaw with their integrators."""
+    """Roll, pitch and yaw loops from an attitude setpoint to surface deflections, with their integrators."""
 
     def __init__(self, servos: Servos) -> None:
         self._servos = servos
@@ -25,6 +25,7 @@ class AttitudeLoops:
         self._slip = SurfaceTrim(servos.rudder)
 
     def step(self, cycle: Cycle, wanted: AttitudeSetpoint) -> Surfaces:
+        """Surface deflections [rad] and throttle [0..1] for one cycle; bank, pitch and throttle asked for are limited first."""
         aileron = self._aileron(cycle, clip(wanted.bank, cycle.bank_limit))
         elevator = self._elevator(cycle, max(min(wanted.pitch, cycle.highest_pitch), -cycle.params.pitch_limit))
         return Surfaces(aileron, elevator, self._rudder(cycle, wanted.rudder), min(max(wanted.throttle, 0.0), 1.0))

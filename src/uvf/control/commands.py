@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class AltitudeAirspeedSetpoint:
-    """What guidance asks for."""
+    """What guidance asks of the outer loops: bank, height or climb rate, and airspeed."""
 
     bank: float  # rad
     height: float | None  # m; None: the climb rate is held instead
@@ -27,7 +27,7 @@ class AttitudeSetpoint:
 
 @dataclass(frozen=True, slots=True)
 class Surfaces:
-    """rad with the signs of SurfaceCommand, throttle and brake 0..1."""
+    """Surface deflections and flap [rad] with the signs of SurfaceCommand; throttle and brake 0..1."""
 
     aileron: float
     elevator: float

@@ -17,17 +17,27 @@ from uvf.models.vehicle.flight_params import AirParams
 
 
 class AttitudeLaw(Protocol):
-    def step(self, cycle: Cycle, wanted: AttitudeSetpoint) -> Surfaces: ...
+    """Inner control law: from an attitude setpoint to the surfaces."""
+
+    def step(self, cycle: Cycle, wanted: AttitudeSetpoint) -> Surfaces:
+        """Surface deflections [rad] and throttle [0..1] that bring the aircraft to the attitude ``wanted``."""
+        ...
 
 
 class PathLaw(Protocol):
-    def begin(self, cycle: Cycle, wanted: AltitudeAirspeedSetpoint, pitch: float, throttle: float) -> None: ...
+    """Outer control law: from height or climb rate, and airspeed, to pitch and throttle."""
 
-    def step(self, cycle: Cycle, wanted: AltitudeAirspeedSetpoint) -> tuple[float, float]: ...
+    def begin(self, cycle: Cycle, wanted: AltitudeAirspeedSetpoint, pitch: float, throttle: float) -> None:
+        """Sets the integrators so that the first step asks for ``pitch`` [rad] and ``throttle`` [0..1]: a bumpless transfer."""
+        ...
+
+    def step(self, cycle: Cycle, wanted: AltitudeAirspeedSetpoint) -> tuple[float, float]:
+        """Pitch [rad] and throttle [0..1] for one cycle."""
+        ...
 
 
 class FlightControl:
-    """Both levels of the law that is chosen, and what they have learnt."""
+    """Inner and outer loops of the control law chosen by ``params.law``, with their integrators."""
 
     def __init__(self, servos: Servos) -> None:
         self._inner: dict[str, AttitudeLaw] = {"energy": AttitudeLoops(servos), "thesis": ThesisAttitude(servos)}
@@ -37,11 +47,11 @@ class FlightControl:
 
     @property
     def held(self) -> AttitudeSetpoint | None:
-        """What the lower level was asked for in the last cycle."""
+        """The attitude setpoint of the last cycle; None before the first."""
         return self._held
 
     def step(self, now: Estimate, wanted: AltitudeAirspeedSetpoint, params: AirParams, dt: float) -> Surfaces:
-        """Holds a height or a climb rate, and an airspeed."""
+        """Surfaces that hold a height or a climb rate, an airspeed and a bank, for one cycle of ``dt`` [s]."""
         cycle, outer = Cycle(now, params, dt), self._outer[params.law]
         if self._held is not None and self._flown != params.law:
             outer.begin(cycle, wanted, self._held.pitch, self._held.throttle)
@@ -51,7 +61,7 @@ class FlightControl:
         return self._inner[params.law].step(cycle, self._held)
 
     def hold(self, now: Estimate, wanted: AttitudeSetpoint, params: AirParams, dt: float) -> Surfaces:
-        """Holds an attitude with a given throttle: the lower level alone."""
+        """Surfaces that hold an attitude with a given throttle by the inner loops alone, for one cycle of ``dt`` [s]."""
         self._held, self._flown = wanted, ""
         return self._inner[params.law].step(Cycle(now, params, dt), wanted)
 

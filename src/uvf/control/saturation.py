@@ -11,25 +11,26 @@ SHARE = 0.5  # of bank and climb that is still asked for
 
 
 class Saturation:
-    """A surface counts as free again after as long away from its stop as it was at it."""
+    """How long each surface has been at its stop; it counts as free again after as long away from the stop as it was at it."""
 
     def __init__(self, servos: Servos) -> None:
         self._stops = {name: getattr(servos, name).limit for name in ("aileron", "elevator", "rudder")}
         self._times = dict.fromkeys(self._stops, 0.0)
 
     def step(self, surfaces: Surfaces, dt: float) -> None:
+        """Takes the commanded surfaces [rad] of one cycle of ``dt`` [s]."""
         for name, time in self._times.items():
             stopped = abs(getattr(surfaces, name)) >= AT_STOP * self._stops[name]
             self._times[name] = time + dt if stopped else max(time - dt, 0.0)
 
     @property
     def worst(self) -> tuple[str, float]:
-        """The surface and its time at the stop [s]."""
+        """The surface that has been at its stop for longest, and its time there [s]."""
         return max(self._times.items(), key=lambda item: item[1])
 
 
 def eased(params: AirParams) -> AirParams:
-    """Less bank, less climb and descent."""
+    """Parameters with half the bank, climb and descent: what is still asked for while a surface is at its stop."""
     return msgspec.structs.replace(
         params,
         bank_limit=SHARE * params.bank_limit,

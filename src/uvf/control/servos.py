@@ -11,7 +11,7 @@ TRIM_SHARE = 0.45  # of a surface's way that its integrator may take
 
 @dataclass(frozen=True)
 class ServoLimits:
-    """How far and how fast a surface goes, to both sides."""
+    """Deflection and rate limit of a surface, the same to both sides."""
 
     limit: float  # rad
     rate: float = math.inf  # rad/s
@@ -19,7 +19,7 @@ class ServoLimits:
 
 @dataclass(frozen=True)
 class Servos:
-    """Of the surfaces that the loops move; the flap from 0 down to its limit."""
+    """Limits of the surfaces that the loops move; the flap goes from 0 down to its limit."""
 
     aileron: ServoLimits
     elevator: ServoLimits
@@ -32,7 +32,7 @@ SERVOS = Servos(ServoLimits(0.35), ServoLimits(0.35), ServoLimits(0.35))
 
 
 class SurfaceTrim:
-    """The integrator of one surface; it waits while the surface is at a stop or the servo behind, and it would push further."""
+    """Integrator of one surface with anti-windup: it waits while the surface is at a stop or the servo lags, and it would push further."""
 
     def __init__(self, servo: ServoLimits) -> None:
         self._servo = servo
@@ -41,11 +41,14 @@ class SurfaceTrim:
 
     @property
     def value(self) -> float:
-        """rad."""
+        """Value of the integrator [rad]."""
         return self._trim.value
 
     def step(self, moving: float, effect: float, rate: float, dt: float) -> float:
-        """rad, to command: ``moving`` and the trim by its ``effect``; ``rate`` [rad/s] is that of the trim if it does not wait."""
+        """Deflection [rad] to command: ``moving`` [rad] plus the integrator times ``effect`` [-], limited to the stops.
+
+        ``rate`` [rad/s] is the integrator's input over ``dt`` [s], unless it has to wait.
+        """
         limit = self._servo.limit
         if self._lacks(moving + effect * self._trim.value, dt) * effect * rate <= 0:
             self._trim.step(rate, dt)

@@ -32,7 +32,7 @@ SCALINGS = {"r": (STEP, 1.0), "f": (1 / STEP, 1.0), "t": (1.0, STEP), "g": (1.0,
 
 
 class GamepadState(NamedTuple):
-    """A gamepad's state. forward, left: -1..1 of the left stick; steps: -1, 0 or 1, counted when they change."""
+    """A gamepad's state. forward, left: -1..1 of the left stick; linear_step, angular_step: -1, 0 or 1, counted when they change."""
 
     forward: float = 0.0
     left: float = 0.0
@@ -46,6 +46,8 @@ class GamepadState(NamedTuple):
 
 
 class TeleopCommand(NamedTuple):
+    """Velocity commanded by an operator, in the base frame."""
+
     linear: float  # m/s
     angular: float  # rad/s
 
@@ -54,7 +56,7 @@ STILL = TeleopCommand(0.0, 0.0)
 
 
 class DriveTeleop:
-    """One operator at several vehicles. Times [s] come from one clock that never goes back."""
+    """One operator who drives several vehicles. Times [s] come from one clock that never goes back."""
 
     def __init__(self, vehicles: Sequence[str], most: TeleopCommand) -> None:
         """most: what the slowest of the vehicles can do."""
@@ -69,7 +71,7 @@ class DriveTeleop:
         self._silent_from = dict.fromkeys(vehicles, -inf)
 
     def key(self, t: float, name: str) -> None:
-        """One press, or one repetition, of a key; keys without a meaning change nothing."""
+        """Takes one press, or one repetition, of a key at ``t`` [s]; keys without a meaning change nothing."""
         if name in DIRECTIONS:
             self._press(t, DIRECTIONS[name])
         elif name in SCALINGS:
@@ -80,7 +82,7 @@ class DriveTeleop:
             self.active ^= {self.vehicles[int(name) - 1]}
 
     def pad(self, t: float, pad: GamepadState) -> None:
-        """The gamepad as it is now; it drives while its dead-man button is held, and stops when that is let go."""
+        """Takes the gamepad's state at ``t`` [s]; it drives while its dead-man button is held, and stops when that is released."""
         before, self._pad = self._pad, pad
         self._rescale(
             STEP**pad.linear_step if pad.linear_step != before.linear_step else 1.0,
@@ -92,24 +94,24 @@ class DriveTeleop:
             self.hold(t, (beyond_dead_zone(pad.forward), beyond_dead_zone(pad.left)), REPEAT_HOLD)
 
     def hold(self, t: float, direction: tuple[float, float], patience: float) -> None:
-        """Drives that way, parts of the linear and the angular scale, for ``patience`` [s] if it is not held anew."""
+        """Drives in a direction (linear, angular) [parts of the scales, -1..1] from ``t`` for ``patience`` [s], unless held anew."""
         self._direction, self._until = direction, t + patience
         self._keep(t)
 
     def stop(self, t: float) -> None:
-        """Stands still, and says so for a while to all that are active."""
+        """Stops the active vehicles at ``t`` [s]; zero commands are sent to them for ``ZEROS`` seconds."""
         self._until = -inf
         self._keep(t)
 
     def wanted(self, t: float) -> TeleopCommand:
-        """What the active vehicles shall do."""
+        """The velocity commanded to the active vehicles at ``t`` [s]."""
         if t >= self._until:
             return STILL
         forward, left = self._direction
         return TeleopCommand(forward * self.scale.linear, left * self.scale.angular)
 
     def commands(self, t: float) -> dict[str, TeleopCommand]:
-        """What is to be sent now; nothing to a vehicle that has been told long enough to stand."""
+        """Commands to send at ``t`` [s], by vehicle; none to a vehicle that has been sent zeros for long enough."""
         wanted = self.wanted(t)
         found = {name: wanted if name in self.active else STILL for name in self.vehicles}
         self._silent_from |= {name: t + ZEROS for name, command in found.items() if command != STILL}
@@ -134,5 +136,5 @@ def _within(scale: float, most: float) -> float:
 
 
 def beyond_dead_zone(way: float) -> float:
-    """0 within the dead zone, from there on rising evenly to 1."""
+    """Stick deflection ``way`` [-1..1] without its dead zone: 0 within it, from there rising linearly to +-1 at full deflection."""
     return max(abs(way) - DEAD_ZONE, 0.0) / (1 - DEAD_ZONE) * (1.0 if way > 0 else -1.0)

@@ -28,7 +28,7 @@ KEYS = {
 
 
 class SurfaceLimits(NamedTuple):
-    """rad, either way; the flap's from 0."""
+    """Largest deflections [rad], to either side; the flap's from 0."""
 
     aileron: float
     elevator: float
@@ -37,7 +37,7 @@ class SurfaceLimits(NamedTuple):
 
 
 class SurfaceSetting(NamedTuple):
-    """rad with the signs of SurfaceCommand, throttle and brake 0..1."""
+    """Surface deflections and flap [rad] with the signs of SurfaceCommand; throttle and brake 0..1."""
 
     aileron: float = 0.0
     elevator: float = 0.0
@@ -51,7 +51,7 @@ PARKED = SurfaceSetting(brake=1.0)
 
 
 class FlightTeleop:
-    """One operator at one aircraft. Times [s] come from one clock that never goes back."""
+    """One operator who flies one aircraft by its surfaces. Times [s] come from one clock that never goes back."""
 
     def __init__(self, limits: SurfaceLimits) -> None:
         self.setting = PARKED
@@ -62,7 +62,7 @@ class FlightTeleop:
         self._read_at = 0.0
 
     def follow(self, setting: SurfaceSetting, straight: bool = True) -> None:
-        """Somebody else flies: goes on from where the surfaces are, once it is our turn.
+        """Takes over the surfaces that somebody else has set, to go on from them once the operator takes control.
 
         In a turn the elevator is that of a slower straight flight: once there is a neutral place, a turn does not move it.
         """
@@ -72,7 +72,7 @@ class FlightTeleop:
         self._followed = True
 
     def key(self, name: str) -> None:
-        """One press, or one repetition, of a key; keys without a meaning change nothing."""
+        """Takes one press, or one repetition, of a key; keys without a meaning change nothing."""
         if name in KEYS:
             self._move(*KEYS[name], STEP)
         elif name in (" ", "c"):
@@ -83,11 +83,11 @@ class FlightTeleop:
             self.setting = self.setting._replace(brake=0.0 if self.setting.brake else 1.0)
 
     def centre(self) -> None:
-        """Aileron and rudder to zero, the elevator to its neutral place."""
+        """Centres aileron and rudder, and puts the elevator to its neutral place."""
         self.setting = self.setting._replace(aileron=0.0, elevator=self.neutral, rudder=0.0)
 
     def pad(self, t: float, pad: GamepadState) -> None:
-        """The gamepad as it is now; its sticks count while its dead-man button is held, then the surfaces are centred."""
+        """Takes the gamepad's state at ``t`` [s]; its sticks count while the dead-man button is held, on release surfaces are centred."""
         before, self._pad = self._pad, pad
         dt, self._read_at = min(t - self._read_at, LONGEST_TURN), t
         if pad.linear_step != before.linear_step:

@@ -20,7 +20,7 @@ LEAD = 2.0  # s, that a held climb rate's height is ahead
 
 @dataclass(frozen=True)
 class Gains:
-    """Defaults of the thesis; -1..1, rad, m, s."""
+    """The thesis' default gains, for surfaces and throttle in parts of their travel (-1..1), rad, m and s."""
 
     course_kp: float = 0.7329
     roll_kp: float = 1.17
@@ -44,19 +44,23 @@ GAINS = Gains()
 
 
 def preset(trim_airspeed: float) -> dict[str, float | str]:
-    """Parameters of the autopilot that make it fly by the thesis' gains; its course loop gives bank, ours turn rate."""
+    """Autopilot parameters for the thesis' gains at ``trim_airspeed`` [m/s]; its course loop commands bank, ours turn rate."""
     follower = {"chi_inf": GAINS.chi_inf, "k_path": GAINS.k_path, "k_orbit": GAINS.k_orbit, "cross_track_i": 0.0, "lead_time": 0.0}
     return {"law": "thesis", "course_p": GAINS.course_kp * GRAVITY / trim_airspeed, **follower}
 
 
 class PiController:
-    """PI that does not wind up: its integral gives way to the limits of what it sets."""
+    """PI controller with anti-windup: its integral gives way to the limits of its output."""
 
     def __init__(self, kp: float, ki: float) -> None:
         self._kp, self._ki = kp, ki
         self.integral = 0.0
 
     def step(self, error: float, trim: float, reach: tuple[float, float], dt: float) -> float:
+        """Output for ``error``: ``trim`` plus proportional and integral parts, limited to ``reach`` (lowest, highest).
+
+        ``dt`` in [s]; trim and reach are in the output's unit, the gains convert from the error's.
+        """
         self.integral += error * dt
         asked = trim + self._kp * error + self._ki * self.integral
         given = min(max(asked, reach[0]), reach[1])
@@ -68,13 +72,14 @@ class PiController:
 
 
 class ThesisAttitude:
-    """Roll, pitch and side slip."""
+    """The thesis' inner loops: PD on roll and pitch, PI on sideslip."""
 
     def __init__(self, servos: Servos) -> None:
         self._servos = servos
         self._slip = PiController(GAINS.beta_kp, GAINS.beta_ki)
 
     def step(self, cycle: Cycle, wanted: AttitudeSetpoint) -> Surfaces:
+        """Surface deflections [rad] and throttle [0..1] for one cycle."""
         now, params, servos = cycle.now, cycle.params, self._servos
         bank = clip(wanted.bank, params.bank_limit)
         roll = clip(GAINS.roll_kp * (bank - now.roll) + GAINS.roll_kd * now.p, 1.0)
@@ -88,7 +93,7 @@ class ThesisAttitude:
 
 
 class ThesisPath:
-    """Altitude and airspeed by the phase of flight."""
+    """The thesis' outer loops: altitude and airspeed by the phase of flight (climb, descend, hold)."""
 
     def __init__(self) -> None:
         self._altitude = PiController(GAINS.alt_kp, GAINS.alt_ki)
@@ -96,13 +101,13 @@ class ThesisPath:
         self._before: float | None = None  # m/s
 
     def begin(self, cycle: Cycle, wanted: AltitudeAirspeedSetpoint, pitch: float, throttle: float) -> None:
-        """The integrals start so that the first step asks for this pitch [rad] and throttle."""
+        """Sets the integrals so that the first step in the hold zone asks for ``pitch`` [rad] and ``throttle`` [0..1]."""
         higher, faster = self._errors(cycle, wanted)
         self._altitude.integral = (pitch - _cruise_alpha(cycle) - GAINS.alt_kp * higher) / GAINS.alt_ki
         self._airspeed.integral = (throttle - cycle.params.trim_throttle - GAINS.as_thr_kp * faster) / GAINS.as_thr_ki
 
     def step(self, cycle: Cycle, wanted: AltitudeAirspeedSetpoint) -> tuple[float, float]:
-        """Pitch [rad] and throttle."""
+        """Pitch [rad] and throttle [0..1] for one cycle."""
         higher, faster = self._errors(cycle, wanted)
         gained = 0.0 if self._before is None else (cycle.now.airspeed - self._before) / cycle.dt
         self._before = cycle.now.airspeed

@@ -27,14 +27,14 @@ LEAST_SLOPE = 1e-3  # s/m, of throttle per climb
 
 
 class PowerObserver:
-    """Learns the power besides that of the throttle, in m/s of climb, from the kinetic energy: a double pole."""
+    """Estimates the power besides that of the throttle, as a climb rate [m/s], from the kinetic energy: an observer with a double pole."""
 
     def __init__(self) -> None:
         self.unexplained = 0.0
         self._height: float | None = None  # m, of the kinetic energy
 
     def step(self, cycle: Cycle, throttle: float) -> None:
-        """One cycle with the throttle that has been set."""
+        """Takes one cycle that was flown with ``throttle`` [0..1]."""
         pole, now = cycle.params.power_pole, cycle.now
         height = now.airspeed**2 / (2 * GRAVITY)
         before = height if self._height is None else self._height
@@ -45,7 +45,7 @@ class PowerObserver:
 
 @dataclass(frozen=True, slots=True)
 class Power:
-    """What is asked for, all m/s."""
+    """Specific power asked for, as climb rates [m/s]."""
 
     climb: float
     faster: float  # V V' / g
@@ -53,7 +53,7 @@ class Power:
 
 
 class EnergyLoops:
-    """Path and speed, and what they have learnt."""
+    """Total energy control of path and airspeed, with its integrator and power observer."""
 
     def __init__(self) -> None:
         self._trim = Integral(CLIMB_TRIM_LIMIT)
@@ -61,7 +61,7 @@ class EnergyLoops:
         self._throttle: float | None = None
 
     def begin(self, cycle: Cycle, wanted: AltitudeAirspeedSetpoint, pitch: float, throttle: float) -> None:
-        """What is learnt starts so that the first step asks for this pitch [rad] and throttle, as far as limits allow."""
+        """Sets integrator and observer so that the first step asks for ``pitch`` [rad] and ``throttle`` [0..1], as far as limits allow."""
         self._power, self._trim.value, self._throttle = PowerObserver(), 0.0, None
         if wanted.throttle is None:
             asked = self._asked(cycle, wanted)
@@ -70,7 +70,7 @@ class EnergyLoops:
         self._trim.value = clip(pitch - self._pitch(cycle, self._asked(cycle, wanted).reached), CLIMB_TRIM_LIMIT)
 
     def step(self, cycle: Cycle, wanted: AltitudeAirspeedSetpoint) -> tuple[float, float]:
-        """Pitch [rad] and throttle."""
+        """Pitch [rad] and throttle [0..1] for one cycle."""
         if self._throttle is not None:
             self._power.step(cycle, self._throttle)
         asked = self._asked(cycle, wanted)
@@ -134,13 +134,13 @@ def _slope(cycle: Cycle) -> float:
 
 
 def level_throttle(cycle: Cycle, airspeed: float) -> float:
-    """Of level flight at this airspeed [m/s] with the load of now."""
+    """Throttle [-] of level flight at ``airspeed`` [m/s] and the present load factor, not limited to 0..1."""
     params = cycle.params
     return params.trim_throttle + params.throttle_speed * (airspeed - params.trim_airspeed) + params.throttle_load * (cycle.load**2 - 1)
 
 
 def made(cycle: Cycle, throttle: float) -> float:
-    """m/s of climb that this throttle makes beyond level flight at the airspeed of now: a straight line down to ``idle_sink``.
+    """Climb rate [m/s] that ``throttle`` [0..1] makes beyond level flight at the present airspeed: linear, down to ``idle_sink``.
 
     Below that less throttle brakes no more. Believing otherwise the observer would take an idling motor for a strong one.
     """
@@ -148,6 +148,6 @@ def made(cycle: Cycle, throttle: float) -> float:
 
 
 def climb_at(now: Estimate, params: AirParams) -> float:
-    """m/s that full throttle may be spent on: the fastest climb at cruise, none at the lowest airspeed."""
+    """Climb rate [m/s] that full throttle may be spent on: ``climb_max`` from cruise on, falling to 0 at the lowest airspeed."""
     spare = (now.airspeed - params.min_airspeed) / (params.trim_airspeed - params.min_airspeed)
     return params.climb_max * min(max(spare, 0.0), 1.0)

@@ -31,7 +31,7 @@ class Frozen:
         self._times = 0
 
     def same(self, value: object, limit: int) -> bool:
-        """Whether this new reading is the ``limit``-th repetition or a later one."""
+        """Whether this new reading is the ``limit``-th repetition of the same value, or a later one."""
         self._times = self._times + 1 if value == self._last else 0
         self._last = value
         return self._times >= limit
@@ -47,7 +47,7 @@ class FlightState:
 
 
 class AirDataCheck:
-    """Hands on what can be believed; in place of a pitot pressure that cannot, one of ground speed and wind."""
+    """Passes on the pressures that can be believed; replaces a pitot pressure that cannot by that of ground speed and wind."""
 
     def __init__(self) -> None:
         self.gap = 0.0
@@ -62,7 +62,11 @@ class AirDataCheck:
         self._watched = False
 
     def step(self, read: tuple[object, Pressures] | None, flying: FlightState | None, params: AirParams, dt: float) -> Pressures | None:
-        """``read``: stamp and pressures. None: neither height nor airspeed can be taken from them."""
+        """The pressures as far as they can be believed; None where neither height nor airspeed can be taken from them.
+
+        ``read``: stamp and pressures [Pa, K] of the newest reading, None without one; ``flying``: None before the first estimate;
+        ``dt`` [s] since the last cycle. Pressures are only checked in the air.
+        """
         if read is None or flying is None or not flying.airborne:
             self._forget()
             return read[1] if read is not None else None
@@ -115,7 +119,7 @@ class AirDataCheck:
 
 
 def lift_airspeed(now: Estimate, params: AirParams) -> float | None:
-    """m/s, true, at which the angle of attack of now carries the lift of now; None where that tells nothing.
+    """True airspeed [m/s] at which the present angle of attack carries the present lift; None where that tells nothing.
 
     The angle of attack is that between pitch and path, in air that does not rise or sink.
     """

@@ -15,7 +15,7 @@ BIAS_STEP = 2e-4  # rad: larger corrections come of a wrong start or an accelera
 
 @dataclass(slots=True)
 class AttitudeFilter:
-    """rad; covariance rad^2; bias rad/s of the roll and pitch gyroscopes."""
+    """Roll and pitch [rad], their covariance p00, p01, p11 [rad^2], and the bias [rad/s] of the roll and pitch gyroscopes."""
 
     roll: float = 0.0
     pitch: float = 0.0
@@ -26,12 +26,12 @@ class AttitudeFilter:
     bias_q: float = 0.0
 
     def start(self, force: tuple[float, float, float]) -> None:
-        """Level flight without acceleration: the specific force [m/s^2, FRD] is minus gravity."""
+        """Starts from level flight without acceleration, where the specific force [m/s^2, FRD] is minus gravity."""
         fx, fy, fz = force
         self.roll, self.pitch = math.atan2(-fy, -fz), math.atan2(fx, math.hypot(fy, fz))
 
     def predict(self, rates: tuple[float, float, float], dt: float) -> None:
-        """Kinematics of the Euler angles (3.3) over ``dt`` [s] with body rates [rad/s, FRD]."""
+        """Propagates the Euler angles (3.3) over ``dt`` [s] with body rates [rad/s, FRD]."""
         p, q, r = rates[0] - self.bias_p, rates[1] - self.bias_q, rates[2]
         s, c, tan = math.sin(self.roll), math.cos(self.roll), math.tan(self.pitch)
         a00, a01 = (q * c - r * s) * tan, (q * s + r * c) * (1 + tan * tan)
@@ -50,7 +50,7 @@ class AttitudeFilter:
         return self.roll + age * (p + (q * s + r * c) * math.tan(self.pitch)), self.pitch + age * (q * c - r * s)
 
     def correct(self, gravity: tuple[float, float, float], dt: float) -> None:
-        """Gravity [m/s^2, FRD] as seen by the accelerometers; two scalar updates."""
+        """Corrects roll and pitch by gravity [m/s^2, FRD] as the accelerometers show it: two scalar updates; ``dt`` [s] is not used."""
         gx, gy, gz = gravity
         roll_error = math.remainder(math.atan2(gy, gz) - self.roll, math.tau)
         k0, k1 = self._gains(self.p00, self.p01)

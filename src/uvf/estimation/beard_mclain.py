@@ -50,16 +50,17 @@ class BookEstimator:
         self._aside = 0.0  # rad, of the flight through the air from the nose
 
     def begin_at(self, roll: float, pitch: float, yaw: float) -> None:
-        """Attitude [rad] to begin with, where another estimator has left it; else level flight is supposed."""
+        """Attitude [rad, NED to FRD] to start from, where another estimator has left it; without it level flight is supposed."""
         self._attitude.roll, self._attitude.pitch = roll, pitch
         self._yaw = yaw
 
     @property
     def started(self) -> bool:
+        """Whether the filters have been started by a first fix."""
         return self._track is not None
 
     def step(self, sensed: Sensed, params: AirParams, dt: float) -> Estimate:
-        """One cycle of ``dt`` [s]."""
+        """The estimate after one cycle of ``dt`` [s]. Raises AssertionError if the first cycle has no fix."""
         dt = min(dt, LONGEST)
         samples, fix = sensed.samples, sensed.fix
         self.gnss_age = 0.0 if fix is not None else self.gnss_age + dt

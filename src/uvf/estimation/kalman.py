@@ -16,7 +16,7 @@ Motion = Callable[[Floats], Floats]
 
 
 class Measured(NamedTuple):
-    """A measurement: its values (m,), what the state says they should be, the derivative (m, n) of that, and its covariance (m, m)."""
+    """A measurement: values (m,), what the state (n,) says they should be, the derivative (m, n) of that, and its covariance (m, m)."""
 
     z: Floats
     expected: Callable[[Floats], Floats]
@@ -25,19 +25,21 @@ class Measured(NamedTuple):
 
 
 class Kalman(Protocol):
-    """Mean x (n,) and covariance P (n, n), as filterpy calls them."""
+    """A Kalman filter with mean x (n,) and covariance P (n, n), as filterpy calls them."""
 
     x: Floats
     P: Floats
 
     def move(self, motion: Motion, jacobian: Floats, noise: Floats) -> None:
-        """x becomes motion(x)."""
+        """Predicts: x (n,) becomes motion(x); ``jacobian`` (n, n) is the derivative of ``motion``, ``noise`` (n, n) the process noise."""
 
     def take(self, measured: Measured) -> None:
-        """Corrects x and P."""
+        """Corrects x and P by a measurement."""
 
 
 class Ekf(ExtendedKalmanFilter):  # type: ignore[misc]  # filterpy has no types
+    """Extended Kalman filter of filterpy with mean ``x`` (n,) and covariance ``p`` (n, n)."""
+
     x: Floats
     P: Floats
 
@@ -47,19 +49,21 @@ class Ekf(ExtendedKalmanFilter):  # type: ignore[misc]  # filterpy has no types
         self._motion: Motion = lambda x: x
 
     def predict_x(self, u: float = 0) -> None:
-        """Where the state goes to: filterpy calls it and has it overridden where the motion is not linear."""
+        """Applies the motion given to ``move``: filterpy calls this with its control input ``u`` [-], which is not used."""
         self.x = self._motion(self.x)
 
     def move(self, motion: Motion, jacobian: Floats, noise: Floats) -> None:
+        """Predicts: x (n,) becomes motion(x), P follows with ``jacobian`` (n, n) and process noise ``noise`` (n, n)."""
         self._motion, self.F, self.Q = motion, jacobian, noise
         self.predict()
 
     def take(self, measured: Measured) -> None:
+        """Corrects x and P with the measurement's derivative at x."""
         self.update(measured.z, lambda x: measured.jacobian, measured.expected, R=measured.noise)
 
 
 class Ukf(UnscentedKalmanFilter):  # type: ignore[misc]  # filterpy has no types
-    """Sigma points with weights that are all positive: the covariance stays one."""
+    """Unscented Kalman filter of filterpy; all weights are positive, so that the covariance stays positive semi-definite."""
 
     x: Floats
     P: Floats
@@ -70,10 +74,12 @@ class Ukf(UnscentedKalmanFilter):  # type: ignore[misc]  # filterpy has no types
         self.x, self.P = x, p
 
     def move(self, motion: Motion, jacobian: Floats, noise: Floats) -> None:
+        """Predicts by sigma points: x (n,) becomes motion(x); ``noise`` (n, n) is the process noise, ``jacobian`` (n, n) is not used."""
         self.Q = noise
         self.predict(fx=lambda x, dt: motion(x))
 
     def take(self, measured: Measured) -> None:
+        """Corrects x and P with new sigma points of the present mean and covariance."""
         # Those of the last motion are none of this state any more where another measurement has come between.
         self.sigmas_f = self.points_fn.sigma_points(self.x, self.P)
         self.update(measured.z, R=measured.noise, hx=measured.expected)
@@ -83,12 +89,15 @@ FILTERS: dict[Kind, type[Ekf] | type[Ukf]] = {"ekf": Ekf, "ukf": Ukf}
 
 
 def move_linearly(kalman: Kalman, transition: Floats, shift: Floats, noise: Floats) -> None:
-    """x becomes transition x + shift: exact for both kinds, and sooner done than with sigma points."""
+    """Predicts: x (n,) becomes ``transition`` (n, n) x + ``shift`` (n,), with process noise ``noise`` (n, n).
+
+    Exact for both kinds of filter, and faster than sigma points.
+    """
     kalman.x, kalman.P = predict(kalman.x, kalman.P, F=transition, Q=noise, u=shift)
 
 
 def correct(kalman: Kalman, measured: Measured, held: slice) -> None:
-    """Takes a measurement in; the states ``held`` keep their mean and covariance, and how they vary with the others follows.
+    """Corrects by a measurement; the states ``held`` keep their mean and covariance, their correlation with the others follows.
 
     With the rows of the gain that belong to them zero, Joseph's form gives for the others what the whole gain gives.
     """
@@ -99,7 +108,7 @@ def correct(kalman: Kalman, measured: Measured, held: slice) -> None:
 
 
 def misfit(kalman: Kalman, measured: Measured) -> float:
-    """The normalised innovation squared: chi-square distributed with as many degrees of freedom as the measurement has values."""
+    """Normalised innovation squared [-]: chi-square distributed, with as many degrees of freedom as the measurement has values."""
     y = measured.z - measured.expected(kalman.x)
     s = measured.jacobian @ kalman.P @ measured.jacobian.T + measured.noise
     return float(y @ np.linalg.solve(s, y))

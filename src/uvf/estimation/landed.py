@@ -10,13 +10,14 @@ SETTLES = 1.0  # s at rest
 
 
 class LandDetector:
-    """In the air from the roll of a take-off on, on the ground once it has come to rest without the airspeed to hover in a headwind."""
+    """Whether the aircraft is airborne: from the take-off run on, until it rests without the airspeed to hover in a headwind."""
 
     def __init__(self, airborne: bool) -> None:
         self.airborne = airborne
         self._rested = 0.0  # s
 
     def step(self, now: Estimate, params: AirParams, dt: float) -> None:
+        """Takes one estimate, ``dt`` [s] after the last, and sets ``airborne``."""
         if not self.airborne:
             self.airborne = now.airspeed > LIFTS * params.min_airspeed and now.ground_speed > ROLLS
             return

@@ -11,7 +11,7 @@ DERIVATIVE_TIME = 0.03  # s, over which the turn rates are differentiated
 
 
 class ImuMount:
-    """Of one IMU, fed with its samples in order."""
+    """Lever arm and orientation of one IMU, which is fed with its samples in order."""
 
     def __init__(self, xyz: Triple = (0.0, 0.0, 0.0), rpy: Triple = (0.0, 0.0, 0.0)) -> None:
         """Pose in base_link, FLU: m, rad."""
@@ -20,7 +20,7 @@ class ImuMount:
         self._slow: Floats | None = None
 
     def at_centre(self, sample: InertialSample, dt: float) -> InertialSample:
-        """The sample ``dt`` [s] after the one before, in the body's axes; a = a_sensor - w' x r - w x (w x r)."""
+        """The sample as at base_link's origin, in the body's axes (FRD), ``dt`` [s] after the last; a = a_sensor - w' x r - w x (w x r)."""
         if self._body_from_sensor is not None:
             rates, force, field = (_triple(self._body_from_sensor @ v) for v in (sample.rates, sample.force, sample.field))
             sample = replace(sample, rates=rates, force=force, field=field)

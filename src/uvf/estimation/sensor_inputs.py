@@ -7,7 +7,7 @@ Triple = tuple[float, float, float]
 
 @dataclass(frozen=True, slots=True)
 class InertialSample:
-    """One IMU sample, FRD: rad/s, m/s^2, T."""
+    """One IMU sample in FRD: angular rates [rad/s], specific force [m/s^2], magnetic field [T]."""
 
     rates: Triple
     force: Triple
@@ -33,6 +33,8 @@ class GnssFix:
 
 @dataclass(frozen=True, slots=True)
 class Pressures:
+    """Air data: static and differential pressure, and the temperature of the air."""
+
     static: float  # Pa
     differential: float  # Pa
     temperature: float  # K
@@ -41,7 +43,7 @@ class Pressures:
 
 @dataclass(frozen=True, slots=True)
 class Sensed:
-    """What a cycle has: the IMU samples since the last, the newest pressures and a new fix, if any."""
+    """Sensor inputs of one cycle: IMU samples since the last, the newest pressures, and a new fix, if any."""
 
     samples: list[InertialSample]
     pressures: Pressures | None

@@ -7,7 +7,7 @@ from uvf.maths.geodesy import GRAVITY
 
 @dataclass(frozen=True, slots=True)
 class Ratios:
-    """How well the newest measurement of each kind fits, as ECL's ``estimator_innovations`` has it.
+    """Test ratio [-] of the newest measurement of each kind, as ECL's ``estimator_innovations`` has them.
 
     The normalised innovation squared over the square of its gate: below 1 it was used, above it was refused; 0 until there is one.
     """
@@ -22,7 +22,7 @@ class Ratios:
 
 @dataclass(frozen=True, slots=True)
 class Estimate:
-    """For guidance, control and failsafes.
+    """State of the aircraft for guidance, control and failsafes.
 
     A failsafe looks at ``position_known``, ``height_known`` and ``airspeed_known`` (what is told of each is measured, not supposed),
     at the sigmas (how far it may be off: they grow by themselves without measurements) and at ``ratios`` (a sensor that contradicts

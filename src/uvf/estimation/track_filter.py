@@ -23,7 +23,7 @@ RECKONING_SIGMA = 0.3  # m/s, of the ground velocity without fixes
 
 
 class TrackFilter:
-    """The filter, started by the first fix."""
+    """The seven-state filter, started by the first fix."""
 
     def __init__(self, north: float, east: float, v_north: float, v_east: float) -> None:
         course = math.atan2(v_east, v_north)
@@ -33,15 +33,16 @@ class TrackFilter:
 
     @property
     def x(self) -> Floats:
+        """State (7,): north, east [m], ground speed [m/s], course [rad], wind north, east [m/s], azimuth of the airspeed [rad]."""
         return self._ekf.x
 
     @property
     def position_sigma(self) -> float:
-        """m, of the worse axis."""
+        """1 sigma [m] of the horizontal position, of the worse axis."""
         return math.sqrt(max(self._ekf.P[N, N], self._ekf.P[E, E]))
 
     def predict(self, airspeed: float, yaw_rate: float, roll: float, dt: float) -> None:
-        """Equations of 8.7 over ``dt`` [s]: horizontal airspeed [m/s], psi' [rad/s], roll [rad]."""
+        """Propagates the equations of 8.7 over ``dt`` [s]: horizontal airspeed [m/s], psi' [rad/s], roll [rad]."""
         n, e, v, chi, wn, we, psi = self._ekf.x.tolist()
         v = max(v, 1.0)
         c, s, cp, sp = math.cos(chi), math.sin(chi), math.cos(psi), math.sin(psi)
@@ -63,11 +64,14 @@ class TrackFilter:
         self._ekf.move(lambda _: then, f, PROCESS * dt)
 
     def reckon(self, gnss_age: float, dt: float) -> None:
-        """Errors of wind and compass last: ``gnss_age`` [s] after the last fix sigma grows with time, not with its root."""
+        """Adds to the position's variance over ``dt`` [s], ``gnss_age`` [s] after the last fix.
+
+        Errors of wind and compass last: sigma grows with time, not with its root.
+        """
         self._ekf.P[:2, :2] += np.eye(2) * 2 * RECKONING_SIGMA**2 * gnss_age * dt
 
     def correct_fix(self, fix: tuple[float, float, float, float], age: float, sigma: tuple[float, float]) -> None:
-        """(north, east [m], v_north, v_east [m/s]) that was valid ``age`` [s] ago; 1 sigma of position and speed."""
+        """Corrects by (north, east [m], v_north, v_east [m/s]) valid ``age`` [s] ago; sigma: of position [m] and speed [m/s]."""
         north, east, v_north, v_east = fix
         speed, course = math.hypot(v_north, v_east), math.atan2(v_east, v_north) + self._course_rate * age
         mid = self._ekf.x[CHI] - 0.5 * self._course_rate * age
@@ -77,7 +81,7 @@ class TrackFilter:
         self._update(z, np.eye(4, 7), self._ekf.x[:4], np.diag((sigma[0] ** 2, sigma[0] ** 2, sigma[1] ** 2, course_sigma**2)))
 
     def correct_triangle(self, airspeed: float) -> None:
-        """V_a (cos psi, sin psi) + w - V_g (cos chi, sin chi) = 0 (8.20)."""
+        """Corrects by the wind triangle V_a (cos psi, sin psi) + w - V_g (cos chi, sin chi) = 0 (8.20); horizontal airspeed [m/s]."""
         _, _, v, chi, wn, we, psi = self._ekf.x.tolist()
         c, s, cp, sp = math.cos(chi), math.sin(chi), math.cos(psi), math.sin(psi)
         expected = np.array((airspeed * cp + wn - v * c, airspeed * sp + we - v * s))
@@ -87,7 +91,7 @@ class TrackFilter:
         self._update(np.zeros(2), h, expected, np.eye(2) * TRIANGLE_SIGMA**2)
 
     def correct_heading(self, heading: float) -> None:
-        """Magnetic heading [rad]."""
+        """Corrects psi by a heading [rad] from true north."""
         h = np.zeros((1, 7))
         h[0, PSI] = 1.0
         psi = self._ekf.x[PSI]

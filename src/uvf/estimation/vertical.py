@@ -10,7 +10,7 @@ FIX_WEIGHT = 0.3  # of a fix's height and climb, without a barometer
 
 
 class Vertical:
-    """Started at the height [m] and climb [m/s] of the first fix."""
+    """Height [m, above the world's origin] and climb rate [m/s], started by those of the first fix."""
 
     def __init__(self, height: float, climb: float) -> None:
         self.height = height
@@ -20,23 +20,23 @@ class Vertical:
         self._fixes = 1
 
     def step(self, baro: float | None, acceleration: float, dt: float) -> None:
-        """Barometric altitude [m], if there is one, and upward acceleration without gravity [m/s^2]."""
+        """Propagates over ``dt`` [s]: barometric altitude [m], if there is one, and upward acceleration without gravity [m/s^2]."""
         error = 0.0 if baro is None else baro + self._known_offset(baro) - self.height
         self._bias += POLE**3 * error * dt
         self.height += (self.climb + 3 * POLE * error) * dt
         self.climb += (acceleration + self._bias + 3 * POLE**2 * error) * dt
 
     def rest(self) -> None:
-        """Neither barometer nor fixes: the height is held, for an acceleration alone leads anywhere."""
+        """Holds the height while there are neither barometer nor fixes, for an acceleration alone leads anywhere."""
         self.climb = 0.0
 
     def correct(self, height: float, climb: float) -> None:
-        """A fix while there is no barometer."""
+        """Corrects by height [m] and climb [m/s] of a fix while there is no barometer."""
         self.height += FIX_WEIGHT * (height - self.height)
         self.climb += FIX_WEIGHT * (climb - self.climb)
 
     def correct_offset(self, height: float, baro: float) -> None:
-        """A running mean over the fixes, then a slow average."""
+        """Learns the barometer's offset from a fix's ``height`` [m] and ``baro`` [m]: a running mean, later a slow average."""
         self._fixes = min(self._fixes + 1, FIXES_AVERAGED)
         change = (height - baro - self._known_offset(baro)) / self._fixes
         self._offset = self._known_offset(baro) + change

@@ -9,7 +9,7 @@ MOST_DRIFT = 0.5  # m/s
 
 
 class WheelHeight:
-    """An observer with a double pole learns by how much the estimated height is off, and how fast that changes."""
+    """Observer with a double pole that learns by how much the estimated height is off, and how fast that changes."""
 
     def __init__(self, ground: float) -> None:
         """ground: m, world, of the strip."""
@@ -22,7 +22,10 @@ class WheelHeight:
         """m/s."""
 
     def step(self, now: Estimate, seen: float | None, distance: float, params: AirParams, dt: float) -> None:
-        """seen: m below the wheels, None without an echo; distance: m before the point to touch at."""
+        """Takes one cycle of ``dt`` [s].
+
+        seen: [m] from the wheels down to the ground by the range finder, None without an echo; distance: [m] before the aiming point.
+        """
         estimated = now.height - params.gear_height - self._ground
         if seen is not None and distance < WITHIN and seen < BELOW:
             error = seen - estimated - self._off

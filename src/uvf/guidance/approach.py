@@ -18,7 +18,7 @@ ON_THE_WAY = (ItemKind.WAYPOINT, ItemKind.ORBIT)
 
 @dataclass(frozen=True, slots=True)
 class Approach:
-    """To ``place``, where the wheels are to touch, by ``course`` [rad] from ``length`` [m] before it at ``height`` [m, world].
+    """Final approach to ``place``, where the wheels touch: on ``course`` [rad] from ``length`` [m] before it at ``height`` [m, world].
 
     ``radius`` [m] of the circle that it leaves, positive clockwise; 0: it begins at a waypoint.
     """
@@ -31,21 +31,22 @@ class Approach:
 
     @property
     def slope(self) -> float:
-        """Tangent of the angle down."""
+        """Tangent of the glide path's angle [-], positive downwards."""
         return (self.height - self.place.height) / max(self.length, 1.0)
 
 
 def orbit_radius(item: PlanItem, params: AirParams) -> float:
-    """m, positive clockwise, of the circle that is flown for an item."""
+    """Radius [m], positive clockwise, of the circle that is flown for an item."""
     wanted = item.radius or params.hold_radius
     tightest = TIGHTEST_ORBIT * turn_radius(params.trim_airspeed, params.turn_bank)
     return math.copysign(max(abs(wanted), tightest), wanted)
 
 
 def laid_down(items: Sequence[PlanItem], index: int, params: AirParams) -> Approach | None:
-    """The approach of the landing at ``index``: a circle down to an altitude right before it, or a waypoint of its landing pattern.
+    """The approach that the mission prescribes for the landing at ``index``.
 
-    None where the mission leaves it to the aircraft, and where no tangent leads from the circle to the place.
+    From a circle down to an altitude right before it, or from a waypoint of its landing pattern. None where the mission leaves it to
+    the aircraft, and where no tangent leads from the circle to the place.
     """
     place, before = items[index].place, _before(items, index)
     if before is None:
@@ -62,7 +63,7 @@ def laid_down(items: Sequence[PlanItem], index: int, params: AirParams) -> Appro
 
 
 def approach_fault(items: Sequence[PlanItem], index: int, params: AirParams) -> str:
-    """Why the approach that is laid down for the landing at ``index`` cannot be flown, and how to mend it; empty if it can."""
+    """Why the approach prescribed for the landing at ``index`` cannot be flown, and how to mend it; empty if it can."""
     before = _before(items, index)
     if before is None:
         return ""
@@ -113,7 +114,7 @@ def _fault(approach: Approach, begin: int, params: AirParams) -> str:
 
 
 def with_courses(items: Sequence[PlanItem]) -> list[PlanItem]:
-    """A waypoint that a final approach begins at is passed in its direction."""
+    """The items, with the course of its final approach for each waypoint that one begins at and that has none."""
     found = list(items)
     for index in (i for i, item in enumerate(items) if item.kind is ItemKind.LAND):
         before = _before(items, index)

@@ -31,7 +31,10 @@ LENGTH = 0.1  # m of straying that a metre of way is worth
 
 @dataclass(frozen=True)
 class Bypass:
-    """``passing``: m along the way where it is nearest to each waypoint; ``before``, ``after``: m of the legs."""
+    """A curve past waypoints.
+
+    ``passing``: [m] along the path where it is nearest to each waypoint; ``before``, ``after``: [m] of the legs that it replaces.
+    """
 
     way: SampledPath
     passing: tuple[float, ...]
@@ -40,9 +43,9 @@ class Bypass:
 
 
 def plan(places: Sequence[Point], acceptances: Sequence[float], room: Point, flying: CornerLimits) -> Bypass:
-    """Past all but the first and last of ``places`` (north, east [m]), with ``room`` [m] on the first and last leg.
+    """A curve past all but the first and last of ``places`` (north, east [m]), with ``room`` [m] on the first and last leg.
 
-    ``acceptances``: m from each waypoint passed that are near enough.
+    ``acceptances``: acceptance radius [m] of each waypoint passed.
     """
     corners, radius, ramp = np.array(places), flying.radius, flying.ramp
     enters, leaves = _along(corners[0], corners[1]), _along(corners[-2], corners[-1])

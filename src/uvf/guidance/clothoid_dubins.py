@@ -26,7 +26,7 @@ NUDGE = 1e-3  # m, for derivatives
 
 @dataclass(frozen=True)
 class SampledPath:
-    """Samples of a way; (k,) each. Curvatures are positive from x towards y."""
+    """Samples of a path, (k,) each. Curvatures are positive from x towards y."""
 
     points: Floats  # (k, 2) m
     course: Floats  # rad, unwrapped
@@ -34,18 +34,19 @@ class SampledPath:
 
     @cached_property
     def s(self) -> Floats:
-        """(k,) m along the way."""
+        """Arc length (k,) [m] at each sample."""
         steps = np.hypot(*np.diff(self.points, axis=0).T)
         return np.concatenate(((0.0,), np.cumsum(steps)))
 
     @property
     def length(self) -> float:
+        """Length [m] of the path."""
         return float(self.s[-1])
 
     def nearest(self, position: tuple[float, float], within: tuple[float, float] = (-np.inf, np.inf)) -> Triple:
-        """(m along the way, m beside it, course [rad]) at the point nearest to ``position``; straight on beyond its ends.
+        """(arc length [m], lateral distance [m], course [rad]) at the point nearest to ``position`` [m]; straight on beyond its ends.
 
-        Beside is positive in the sense of the curvature. Looked for where the length along the way is ``within`` [m].
+        The lateral distance is positive in the sense of the curvature. Searched where the arc length is ``within`` [m].
         """
         low, high = np.searchsorted(self.s, within)
         low = min(int(low), len(self.s) - 1)
@@ -59,14 +60,15 @@ class SampledPath:
         return float(self.s[i]) + ahead, e * c - n * s - 0.5 * curvature * ahead**2, float(self.course[i]) + curvature * ahead
 
     def bend(self, s: float) -> float:
-        """Curvature at ``s`` [m] along the way, 0 before and after it [1/m]."""
+        """Curvature [1/m] at the arc length ``s`` [m], 0 before and after the path."""
         return float(np.interp(s, self.s, self.curvature, left=0.0, right=0.0))
 
 
 def smooth_dubins_path(start: Triple, end: Triple, radius: float, ramp: float) -> SampledPath:
-    """The shortest word from ``start`` to ``end`` with ramps of ``ramp`` [m] from one curvature to the next.
+    """The shortest path of turns and straights from ``start`` to ``end`` with ramps of ``ramp`` [m] between curvatures.
 
-    Where no word can be corrected (none has been seen), the plain path. Raises ValueError for a radius that is not positive.
+    start, end: (x [m], y [m], course [rad]); radius: [m], smallest. Where no word can be corrected (none has been seen), the plain
+    Dubins path. Raises ValueError for a radius that is not positive.
     """
     begin, finish = _ahead(start, ramp / 2), _ahead(end, -ramp / 2)
     words = sorted(dubins_paths(begin, finish, radius), key=lambda path: path.length)
@@ -142,18 +144,20 @@ def _count(length: float) -> int:
 
 
 def turned_onto(start: Triple, point: tuple[float, float], radius: float, ramp: float) -> SampledPath | None:
-    """From ``start`` one turn, the shorter, until straight on leads through ``point``; None where that is not found.
+    """The path from ``start`` by one turn, the shorter, until straight on leads through ``point``; None where none is found.
 
-    A point within the turning circle to one side is reached by the turn to the other.
+    start: (x [m], y [m], course [rad]); point: [m]; radius and ramp of the turn: [m]. A point within the turning circle to one side is
+    reached by the turn to the other.
     """
     ways = [way for side in (1, -1) if (way := _one_turn(_Word(start, radius, (side, 0, 0), ramp), point)) is not None]
     return min(ways, key=lambda way: way.length, default=None)
 
 
 def turned_onto_circle(start: Triple, circle: Triple, radius: float, ramp: float) -> SampledPath | None:
-    """From ``start`` one turn, then straight on up to where ``circle`` is touched in its sense; None from within it.
+    """The path from ``start`` by one turn, then straight on to where it touches ``circle`` in its sense; None from within it.
 
-    circle: x, y of the centre [m], its radius [m], positive from x towards y.
+    start: (x [m], y [m], course [rad]); circle: x, y of the centre [m], its radius [m], positive from x towards y; radius and ramp of
+    the turn: [m].
     """
     ways = [way for side in (1, -1) if (way := _turn_and_tangent(_Word(start, radius, (side, 0, 0), ramp), circle)) is not None]
     return min(ways, key=lambda way: way.length, default=None)

@@ -31,7 +31,7 @@ HALVINGS = 8
 
 @dataclass(frozen=True, slots=True)
 class CornerLimits:
-    """How corners are flown."""
+    """Airspeed, wind and bank that corners are flown with."""
 
     airspeed: float  # m/s
     wind: Point  # m/s north and east, the way it blows to
@@ -39,12 +39,12 @@ class CornerLimits:
 
     @property
     def radius(self) -> float:
-        """m, over ground, that takes no more than the bank wherever the wind comes from (Beard & McLain 9.3.2, at its fastest)."""
+        """Turn radius [m] over ground within the bank wherever the wind comes from (Beard & McLain 9.3.2, at its fastest)."""
         return turn_radius(self._fastest, self.bank)
 
     @property
     def ramp(self) -> float:
-        """m, in which it rolls from level to the bank of the turn."""
+        """Distance [m] over ground in which it rolls from level to the bank of the turn."""
         return EASED * self._fastest
 
     @property
@@ -54,13 +54,13 @@ class CornerLimits:
 
 @dataclass(frozen=True)
 class Corner(SampledPath):
-    """Samples of the way, evenly in time. ``before``, ``after``: m of the two legs that it takes the place of."""
+    """Samples of the path round a corner, evenly in time. ``before``, ``after``: [m] of the two legs that it replaces."""
 
     before: float
     after: float
 
     def cut(self, waypoint: Point) -> float:
-        """m, by which the way passes the waypoint."""
+        """Smallest distance [m] between the path and the waypoint."""
         return float(np.hypot(*(self.points - waypoint).T).min())
 
 
@@ -91,7 +91,7 @@ def _same_way(turn: float, change: float) -> float:
 
 @dataclass(frozen=True)
 class CornerPlanner:
-    """Corners of one waypoint; they differ in how far they go beyond the new heading."""
+    """Corners round one waypoint, which differ in how far they turn beyond the new heading."""
 
     waypoint: Point
     courses: tuple[float, float]
@@ -100,7 +100,10 @@ class CornerPlanner:
     turn: float  # rad, of the heading, to the right
 
     def balanced(self, room: float) -> Corner:
-        """As far outside of the second leg as inside of both, within MOST_OUTSIDE and, where it can be, ``room`` [m] on that leg."""
+        """The corner that goes as far outside of the second leg as inside of both.
+
+        Within MOST_OUTSIDE and, where it can be, ``room`` [m] on that leg.
+        """
         most = MOST_OUTSIDE * turn_radius(self.flying.airspeed, self.flying.bank)
         low, high = 0.0, min(MOST_BEYOND, abs(self.turn))
         for _ in range(HALVINGS):
@@ -111,7 +114,7 @@ class CornerPlanner:
         return self.corner(low)
 
     def corner(self, beyond: float) -> Corner:
-        """Turning ``beyond`` [rad] further than to the new heading, and back."""
+        """The corner that turns ``beyond`` [rad] further than to the new heading, and back."""
         side, v = math.copysign(1.0, self.turn), self.flying.airspeed
         rate = np.concatenate((_pulse(abs(self.turn) + beyond, self.flying.bank, v), -_pulse(beyond, BACK * self.flying.bank, v))) * side
         heading = self.heading + _integral(rate)

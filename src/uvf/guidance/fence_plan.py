@@ -14,14 +14,14 @@ WIDER = 1.2  # than the tightest circle, in wind
 
 
 class CachedFenceCheck:
-    """``mission_fault``, worked out once per mission, fence and parameters: they are asked for many times a second."""
+    """``mission_fault``, computed once per mission, fence and parameters, for callers that ask many times a second."""
 
     def __init__(self) -> None:
         self._of: tuple[object, ...] = ()
         self._fault = ""
 
     def mission_fault(self, items: Sequence[PlanItem], fencing: Fencing, params: AirParams) -> str:
-        """Which item leaves the fence; empty if none does."""
+        """Which item leaves the fence, and why; empty if none does."""
         of = items, fencing, params
         if len(self._of) != len(of) or any(one is not other for one, other in zip(self._of, of, strict=True)):
             self._of, self._fault = of, mission_fault(items, fencing, params)
@@ -29,7 +29,10 @@ class CachedFenceCheck:
 
 
 def mission_fault(items: Sequence[PlanItem], fencing: Fencing, params: AirParams) -> str:
-    """Which item leaves the fence; empty if none does. Jumps are taken as read: their items are looked at where they stand."""
+    """Which item leaves the fence, and why; empty if none does.
+
+    Jumps are not followed: their items are checked where they stand.
+    """
     if fencing.is_open:
         return ""
     before: Point | None = None
@@ -77,5 +80,5 @@ def fence_fit(fencing: Fencing, here: Place | None, airborne: bool, params: AirP
 
 
 def tightest(params: AirParams) -> float:
-    """m, radius of the tightest circle that it can be asked to hold."""
+    """Radius [m] of the tightest circle that the aircraft can be asked to hold."""
     return WIDER * turn_radius(params.trim_airspeed, params.turn_bank)

@@ -10,6 +10,8 @@ from uvf.guidance.route import Place
 
 
 class ItemKind(Enum):
+    """Kind of a mission item."""
+
     WAYPOINT = "waypoint"
     ORBIT = "orbit"
     RETURN = "return"
@@ -29,7 +31,7 @@ OFF_PATH = (ItemKind.RETURN, ItemKind.TAKEOFF, ItemKind.LAND)
 
 @dataclass(frozen=True, slots=True)
 class PlanItem:
-    """One line of a mission; which fields count depends on the kind (see mission.proto).
+    """One item of a mission; which fields count depends on the kind (see mission.proto).
 
     An acceptance radius limits how far from a waypoint the corner may be rounded; the waypoint counts as reached where the corner begins.
     """
@@ -50,17 +52,18 @@ class PlanItem:
 
     @property
     def flies_through(self) -> bool:
+        """Whether it is a waypoint that is passed without holding."""
         return self.kind is ItemKind.WAYPOINT and self.hold == 0
 
     def is_at(self, place: Place) -> bool:
-        """Whether nothing more than this place is asked for."""
+        """Whether it asks for nothing more than to pass this place."""
         away = math.hypot(self.place.north - place.north, self.place.east - place.east)
         return self.flies_through and self.course is None and away < ONE_PLACE
 
 
 @dataclass(frozen=True, slots=True)
 class PlanProgress:
-    """Where in a mission an aircraft is; index None: not begun."""
+    """Progress of an aircraft in a mission; index None: not begun."""
 
     index: int | None
     reached: int
@@ -85,7 +88,10 @@ class NextItem:
 
 
 def next_stop(items: Sequence[PlanItem], index: int, jumps: Mapping[int, int]) -> NextItem:
-    """From ``index`` on past speed changes, deeds, marks and jumps; jumps without anything to fly between them end the mission."""
+    """The next item to fly, from ``index`` on past speed changes, actions, marks and jumps.
+
+    Jumps without anything to fly between them end the mission.
+    """
     taken, laps = dict(jumps), 0
     speed: float | None = None
     deeds: tuple[int, ...] = ()
@@ -111,7 +117,7 @@ def next_stop(items: Sequence[PlanItem], index: int, jumps: Mapping[int, int]) -
 
 
 def following(items: Sequence[PlanItem], stop: NextItem) -> NextItem:
-    """After the item of ``stop``: waypoints that are flown through at the same place are passed with it."""
+    """The item to fly after that of ``stop``: waypoints at the same place that are flown through are passed with it."""
     assert stop.index is not None
     here, found = items[stop.index], next_stop(items, stop.index + 1, stop.jumps)
     for _ in items:

@@ -53,7 +53,7 @@ def _speeds(items: Sequence[PlanItem], params: AirParams) -> list[float]:
 
 
 def advice(items: Sequence[PlanItem], params: AirParams) -> Iterator[tuple[str, str]]:
-    """What and why for each waypoint that is not rounded by a corner of its own, in calm air."""
+    """(what, why) for each waypoint that is not rounded by a corner of its own, in calm air."""
     speeds, stops = _speeds(items, params), [NextItem(i, NO_JUMPS, 0, None) for i in range(len(items))]
     for stop in stops:
         assert stop.index is not None

@@ -25,7 +25,7 @@ SIDE_SHARE = 0.5  # of the speeds that there are to spare, for an offset to swin
 
 @dataclass(frozen=True, slots=True)
 class FormationSlot:
-    """Where a follower is to be."""
+    """Place of a follower relative to its leader."""
 
     behind: float  # m, of the leader's way through the air
     right: float = 0.0  # m, aside of the trail
@@ -34,7 +34,7 @@ class FormationSlot:
 
 @dataclass(frozen=True, slots=True)
 class SlotSetpoint:
-    """What is asked for, and how far the aircraft is from its station."""
+    """Path, height and airspeed that lead to the slot, and how far the aircraft is from it."""
 
     aim: PathReference
     height: float  # m
@@ -45,7 +45,7 @@ class SlotSetpoint:
 
 
 class LateralOffset:
-    """The offset aside of the trail, swung round in corners no faster than airspeed can change.
+    """Lateral offset from the leader's track, swung round in corners no faster than airspeed can change.
 
     An offset that turned with the leader would want the wings of a formation to fly a corner at quite another speed. Where the
     leader turns faster, the offset keeps its direction for a while, so that the corner flown is the leader's, moved aside.
@@ -57,7 +57,7 @@ class LateralOffset:
         self._rate = 0.0  # rad/s
 
     def step(self, spot: TrackPoint, params: AirParams, dt: float) -> tuple[Point, Point]:
-        """Offset [m] and how it changes [m/s], north and east."""
+        """Offset [m] and its rate of change [m/s], north and east, after ``dt`` [s] beside ``spot``."""
         if self._direction is None or not self._right:
             self._direction, self._rate = spot.course, 0.0
         else:
@@ -93,7 +93,7 @@ def _airspeed(wanted: Point, now: Estimate) -> float:
 
 
 class SlotKeeping:
-    """Follows the trail by its cross-track distance and curvature, and its station on it by airspeed."""
+    """Follows the leader's track by its cross-track distance and curvature, and the slot on it by airspeed."""
 
     def __init__(self, station: FormationSlot) -> None:
         self.station = station
@@ -103,7 +103,7 @@ class SlotKeeping:
         self._spot: TrackPoint | None = None
 
     def step(self, trail: LeaderTrack, t: float, now: Estimate, params: AirParams, dt: float) -> SlotSetpoint:
-        """At ``t`` [s], behind a leader who has been heard."""
+        """The setpoint at ``t`` [s], ``dt`` [s] after the last, behind a leader who has been heard."""
         spot = self._spot = self._find(trail, now)
         self._offset, moves = self._boom.step(spot, params, dt)
         c, s = math.cos(spot.course), math.sin(spot.course)

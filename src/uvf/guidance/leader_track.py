@@ -26,7 +26,7 @@ SLOWEST = 1.0  # m/s
 
 @dataclass(frozen=True, slots=True)
 class LeaderReport:
-    """What an aircraft tells of itself."""
+    """What an aircraft of a formation reports of itself, in the world frame."""
 
     t: float  # s, that it is valid for
     north: float  # m
@@ -40,7 +40,7 @@ class LeaderReport:
 
 @dataclass(frozen=True, slots=True)
 class TrackPoint:
-    """A place on the trail and how the leader flew there."""
+    """A point of the leader's track and how the leader flew there."""
 
     t: float  # s, when the leader was there
     north: float  # m
@@ -53,7 +53,7 @@ class TrackPoint:
 
 
 class LeaderTrack:
-    """Spots of the last ``KEPT`` seconds; before the oldest and beyond the newest it goes straight on."""
+    """The leader's track over the last ``KEPT`` seconds; before the oldest point and beyond the newest it goes straight on."""
 
     def __init__(self) -> None:
         self.newest: LeaderReport | None = None
@@ -64,7 +64,7 @@ class LeaderTrack:
         self._table: Floats = np.zeros((0, 7))
 
     def add(self, report: LeaderReport) -> None:
-        """A newer report; one that is no newer than the last, or holds a number that is none, tells nothing."""
+        """Adds a report; one that is not newer than the last, or has a number that is not finite, is ignored."""
         last = self.newest
         if not all(map(math.isfinite, astuple(report))) or (last is not None and report.t <= last.t):
             return
@@ -99,16 +99,16 @@ class LeaderTrack:
 
     @property
     def pace(self) -> float:
-        """m/s, mean airspeed of the leader over the last seconds. Only for a trail that has begun, as what follows."""
+        """Mean airspeed [m/s] of the leader over the last seconds. Only once there is a report, as ``at`` and ``nearest``."""
         return self._paced[0]
 
     @property
     def pace_rate(self) -> float:
-        """m/s^2, how the pace changes."""
+        """Rate of change [m/s^2] of the pace."""
         return self._paced[1]
 
     def at(self, t: float) -> TrackPoint:
-        """Where the leader was at ``t`` [s]."""
+        """The point of the track where the leader was at ``t`` [s]."""
         table = self._table
         i = min(max(bisect_right(self._t, t) - 1, 0), len(table) - 1)
         row = table[i]
@@ -139,7 +139,10 @@ class LeaderTrack:
         return float(heights.mean()), float(times @ heights / (times @ times)), bend
 
     def nearest(self, position: Point, about: float | None = None) -> TrackPoint:
-        """The spot nearest to ``position`` [m]; only within ``SPAN`` of the one flown over at ``about`` [s], where that is given."""
+        """The point of the track nearest to ``position`` (north, east [m]).
+
+        Only within ``SPAN`` of the one passed at ``about`` [s], where that is given.
+        """
         low, high = 0, len(self._t)
         if about is not None:
             low = min(bisect_right(self._t, about - SPAN), len(self._t) - 1)

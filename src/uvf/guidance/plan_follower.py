@@ -23,7 +23,7 @@ LEVELLED = 2.0  # m, from the altitude that a circle is to reach
 
 
 class PlanFollower:
-    """``index`` is the item flown towards, None before the start and after the end."""
+    """Flies a mission. ``index`` is the item flown towards, None before the start and after the end."""
 
     def __init__(self, items: Sequence[PlanItem]) -> None:
         self.items = tuple(items)
@@ -44,7 +44,7 @@ class PlanFollower:
         self._held = 0.0  # s, on the circle
 
     def jump_to(self, index: int) -> None:
-        """Goes on with this item from wherever the aircraft is."""
+        """Goes on with the item at ``index`` from wherever the aircraft is."""
         self.speed = self._speed_at(index)
         self._take(next_stop(self.items, index, self._jumps))
         self.finished = self.index is None
@@ -55,7 +55,7 @@ class PlanFollower:
         self.jump_to(0 if self.index is None else self.index)
 
     def take_up(self, index: int | None, reached: int, laps: int, finished: bool) -> None:
-        """Stands where another navigator of the same items has stood; jumps are counted anew."""
+        """Takes over the progress of another follower of the same items; jumps are counted anew."""
         self.index, self.reached, self.laps, self.finished = index, reached, laps, finished
         self.speed = self._speed_at(index or 0)
 
@@ -64,7 +64,7 @@ class PlanFollower:
         return next((item.speed for item in reversed(self.items[:index]) if item.kind is ItemKind.SPEED), 0.0)
 
     def pass_item(self) -> None:
-        """The current item, which is none of legs and circles, is done."""
+        """Marks the current item, one that is not flown along legs and circles, as done."""
         assert self.index is not None
         self.reached = self.index
         stop = next_stop(self.items, self.index + 1, self._jumps)
@@ -73,11 +73,12 @@ class PlanFollower:
         self.finished, self._piece = self.index is None, None
 
     def approach(self, params: AirParams) -> Approach | None:
-        """Of the landing that is the current item, if the mission lays one down."""
+        """The approach that the mission prescribes for the landing that is the current item, if it does."""
         return laid_down(self.items, self.index, params) if self.index is not None else None
 
     @property
     def returns_home(self) -> bool:
+        """Whether the current item is a return."""
         return self.index is not None and self.items[self.index].kind is ItemKind.RETURN
 
     @property
@@ -86,10 +87,14 @@ class PlanFollower:
 
     @property
     def target(self) -> PlanItem | None:
+        """The current item, None before the start and after the end."""
         return self.items[self.index] if self.index is not None else None
 
     def step(self, now: Estimate, params: AirParams, dt: float) -> tuple[PathReference, AltitudeProfile]:
-        """Aim and height towards the current item; call it only while there is one that is flown along a path."""
+        """Path reference and altitude profile towards the current item, ``dt`` [s] after the last step.
+
+        Only while there is a current item that is flown along a path.
+        """
         if self._piece is None:
             self._piece = self._from_here(now, params)
         self._replan(now, params, dt)
@@ -99,7 +104,7 @@ class PlanFollower:
         return piece.aim(now, params), piece.level(now)
 
     def curve_ahead(self) -> list[Place]:
-        """What is left of a curve to the current item, about each 10 m; empty on other pieces."""
+        """Places about every 10 m along what is left of a curve to the current item; empty on other pieces."""
         piece = self._piece
         if not isinstance(piece, Curve) or not piece.ends_at_item:
             return []

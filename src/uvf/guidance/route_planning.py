@@ -25,7 +25,7 @@ Bend = corners.Corner | Curve
 
 @dataclass(frozen=True)
 class RoutePlanner:
-    """Plans for one speed through the air in one wind."""
+    """Plans the pieces of a route for one airspeed in one wind."""
 
     items: Sequence[PlanItem]
     params: AirParams
@@ -34,6 +34,7 @@ class RoutePlanner:
 
     @property
     def flying(self) -> corners.CornerLimits:
+        """Limits of corners at this airspeed and in this wind, with ``turn_bank``."""
         return corners.CornerLimits(self.speed, self.wind, self.params.turn_bank)
 
     def towards(self, stop: NextItem, start: Place, course: float | None = None, entry: Bend | None = None) -> Leg | Curve | Circle:

@@ -15,7 +15,10 @@ MEADOW = 400.0, 30.0  # m, length and width of what is supposed to be free about
 
 @dataclass(frozen=True, slots=True)
 class LandingStrip:
-    """``middle`` lies on the ground; ``course`` [rad] is that of one of its directions; length and width in m."""
+    """A strip of the world to take off from and land on.
+
+    ``middle`` lies on the ground; ``course`` [rad] is that of one of its directions; length and width in [m].
+    """
 
     middle: Place
     course: float
@@ -23,7 +26,7 @@ class LandingStrip:
     width: float
 
     def lane(self, course: float) -> "Runway":
-        """The direction nearer to this course [rad]."""
+        """The runway in that direction of the strip which is nearer to ``course`` [rad]."""
         turned = self.course if math.cos(course - self.course) >= 0 else self.course + math.pi
         back = self.length / 2 - min(AIM_SHARE * self.length, AIM_MOST)
         n, e, up = self.middle.north, self.middle.east, self.middle.height
@@ -33,7 +36,7 @@ class LandingStrip:
 
 @dataclass(frozen=True, slots=True)
 class Runway:
-    """One direction of a strip from the point where the wheels are to touch; ``rest`` [m] of it lies behind that."""
+    """One direction of a strip from the aiming point, where the wheels are to touch; ``rest`` [m] of it lies behind that."""
 
     aim: Place
     course: float  # rad
@@ -42,30 +45,33 @@ class Runway:
 
     @property
     def along(self) -> Point:
-        """Unit vector, north and east."""
+        """Unit vector of the landing direction, north and east."""
         return math.cos(self.course), math.sin(self.course)
 
     def locate(self, now: Estimate) -> tuple[float, float]:
-        """m before the point to touch at, and to the right of the middle."""
+        """Distance [m] of the aircraft before the aiming point, and to the right of the centre line."""
         ahead, right = from_line(self.along, (self.aim.north, self.aim.east), (now.north, now.east))
         return -ahead, right
 
     def tailwind(self, now: Estimate) -> float:
-        """m/s."""
+        """Tailwind [m/s] along the landing direction."""
         return now.wind_north * self.along[0] + now.wind_east * self.along[1]
 
     def before(self, distance: float, aside: float = 0.0) -> Point:
-        """North and east of a point so far before the point to touch at, and aside to the right [m]."""
+        """Point (north, east [m]) at ``distance`` [m] before the aiming point and ``aside`` [m] to the right."""
         cn, ce = self.along
         return self.aim.north - distance * cn - aside * ce, self.aim.east - distance * ce + aside * cn
 
     def off(self, angle: float) -> float:
-        """rad, of a course or heading, to the right of the lane's."""
+        """Angle [rad] of a course or heading to the right of the runway's course."""
         return math.remainder(angle - self.course, math.tau)
 
 
 def lane_for(place: Place, strips: Sequence[LandingStrip], now: Estimate) -> Runway:
-    """The strip nearest to ``place``, against the wind; without any the place itself, from where the aircraft is when it is calm."""
+    """The runway of the strip nearest to ``place``, against the wind; when it is calm, in the direction from the aircraft to the place.
+
+    Without any strip the place itself is landed on.
+    """
     if math.hypot(now.wind_north, now.wind_east) > 1.0:
         upwind = math.atan2(-now.wind_east, -now.wind_north)
     else:
@@ -77,7 +83,10 @@ def lane_for(place: Place, strips: Sequence[LandingStrip], now: Estimate) -> Run
 
 
 def lane_by(place: Place, course: float, strips: Sequence[LandingStrip]) -> Runway:
-    """To touch right at ``place`` by ``course`` [rad]; with the room that is left of the strip there, if it lies on one and along it."""
+    """The runway to touch right at ``place`` on ``course`` [rad].
+
+    It has the room that is left of the strip there, if the place lies on one and the course along it.
+    """
     for strip in strips:
         axis = math.cos(strip.course), math.sin(strip.course)
         ahead, right = from_line(axis, strip.middle.point, place.point)

@@ -24,7 +24,7 @@ class Threat:
 
 
 def threat(t: float, now: Estimate, others: Mapping[str, LeaderReport], least: float) -> Threat | None:
-    """The one that comes nearest, if nearer than ``least`` [m]."""
+    """The other aircraft that comes nearest, if nearer than ``least`` [m]; reports older than ``OLDEST`` at ``t`` [s] do not count."""
     found = [_meeting(t, now, other, report) for other, report in sorted(others.items()) if abs(t - report.t) <= OLDEST]
     near = [meeting for meeting in found if meeting.distance < least]
     return min(near, key=lambda meeting: meeting.distance, default=None)
@@ -46,9 +46,10 @@ def _meeting(t: float, now: Estimate, other: str, report: LeaderReport) -> Threa
 
 
 def evasion(found: Threat, name: str, wanted: tuple[float, float], params: AirParams) -> tuple[float, float]:
-    """Height [m] and airspeed [m/s] of the aircraft ``name`` instead of those wanted.
+    """Height [m] and airspeed [m/s] of the aircraft ``name`` to evade a threat, instead of those wanted.
 
-    The one whose station is higher goes up, the other one down; on one height the names decide, so that both do not go one way.
+    The one that wants to be higher than the other is now goes up, else down; on one height the names decide, so that both do not go
+    one way.
     """
     height, airspeed = wanted
     apart, climbs = CLEAR * params.follow_sep, (height, name) > (found.height, found.name)

@@ -19,13 +19,13 @@ TURN_TRIM_LIMIT = 0.05  # rad/s
 
 
 def turn_radius(speed: float, bank: float) -> float:
-    """m, of a coordinated turn with this bank [rad] at this speed [m/s] (Beard & McLain 9.3.2)."""
+    """Radius [m] of a coordinated turn with this bank [rad] at this speed [m/s] (Beard & McLain 9.3.2)."""
     return speed**2 / (GRAVITY * math.tan(bank))
 
 
 @dataclass(frozen=True, slots=True)
 class PathReference:
-    """Where a path wants the aircraft now."""
+    """Path to follow at the present position: distance from it, its course and curvature, and the vector field about it."""
 
     error: float  # m, the aircraft's distance to the right of the path
     course: float  # rad, of the path there
@@ -35,19 +35,19 @@ class PathReference:
 
 
 def from_line(along: Point, origin: Point, position: Point) -> tuple[float, float]:
-    """m ahead of ``origin`` in the direction ``along`` (unit, north and east), and to the right of the line."""
+    """Distance [m] ahead of ``origin`` in the direction ``along`` (unit vector, north and east), and to the right of the line."""
     north, east = position[0] - origin[0], position[1] - origin[1]
     return along[0] * north + along[1] * east, along[0] * east - along[1] * north
 
 
 def line_reference(along: Point, origin: Point, position: Point, params: AirParams) -> PathReference:
-    """The line through ``origin`` in the direction ``along`` (unit, north and east)."""
+    """Path reference on the line through ``origin`` [m] in the direction ``along`` (unit vector, north and east)."""
     _, right = from_line(along, origin, position)
     return PathReference(right, math.atan2(along[1], along[0]), 0.0, params.k_path, params.chi_inf)
 
 
 def orbit_reference(centre: Point, radius: float, position: Point, params: AirParams) -> PathReference:
-    """The circle about ``centre``; ``radius`` [m] positive clockwise seen from above (10.13)."""
+    """Path reference on the circle about ``centre`` [m]; ``radius`` [m] positive clockwise seen from above (10.13)."""
     turn = math.copysign(1.0, radius)
     north, east = position[0] - centre[0], position[1] - centre[1]
     distance = math.hypot(north, east)
@@ -58,13 +58,16 @@ def orbit_reference(centre: Point, radius: float, position: Point, params: AirPa
 
 
 class LateralGuidance:
-    """From an aim to a bank angle."""
+    """From a path reference to a bank angle."""
 
     def __init__(self) -> None:
         self._trim = Integral(TURN_TRIM_LIMIT)
 
     def bank(self, aim: PathReference, now: Estimate, params: AirParams, dt: float) -> float:
-        """Course rate of the path and of the field about it, plus the course error, as a coordinated turn (9.14)."""
+        """Bank angle [rad] to follow the path, ``dt`` [s] after the last call.
+
+        Course rate of the path and of the field about it, plus the course error, as a coordinated turn (9.14).
+        """
         speed = max(now.ground_speed, 5.0)
         off_path = math.remainder(now.course - aim.course, math.tau)
         slope = aim.limit * 2 / math.pi * aim.convergence

@@ -7,6 +7,6 @@ K = TypeVar("K")
 
 
 def make_room(table: MutableMapping[K, Any], key: K, most: int, rank: Callable[[K], Any]) -> None:
-    """Before ``key`` is put in: where it would be one more than ``most``, the lowest of ``rank`` goes."""
+    """Removes the entries of lowest ``rank`` until ``key`` can be added to ``table`` without exceeding ``most``."""
     while key not in table and len(table) >= most:
         del table[min(table, key=rank)]

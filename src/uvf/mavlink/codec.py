@@ -14,6 +14,8 @@ AUTOPILOT = mav.MAV_COMP_ID_AUTOPILOT1
 
 @dataclass
 class LinkCounts:
+    """Counts of messages on a link: received, and those that were broken, unknown or could not be sent."""
+
     received: int = 0
     broken: int = 0
     """Bytes that are no packet, or one with a wrong checksum or flags."""
@@ -24,7 +26,7 @@ class LinkCounts:
 
 
 class Codec:
-    """All systems behind one link."""
+    """Encoder and decoder of all systems behind one link."""
 
     def __init__(self, component: int = AUTOPILOT) -> None:
         """component: that its systems speak as."""
@@ -36,7 +38,7 @@ class Codec:
         """The next number of each system to each peer: one who is told less than another misses nothing."""
 
     def packets(self, system: int, message: mav.MAVLink_message, to: Sequence[tuple[Peer, Sign | None]]) -> Iterator[tuple[bytes, Peer]]:
-        """MAVLink 2 packets from a system, for each peer with its own numbering; none when a number does not fit."""
+        """MAVLink 2 packets from a system, for each peer with its own sequence numbers; none when a number does not fit its field."""
         try:
             what = body(message)
         except (struct.error, OverflowError):
@@ -48,12 +50,12 @@ class Codec:
             yield frame(what, seq, (system, self._component), sign), peer
 
     def forget(self, peers: Collection[Peer]) -> None:
-        """Counts only for these peers on."""
+        """Drops the sequence numbers of all peers but these."""
         for key in [key for key in self._seq if key[1] not in peers]:
             del self._seq[key]
 
     def parse(self, datagram: bytes) -> list[mav.MAVLink_message]:
-        """The messages of a datagram. A packet never spans two, so a broken one spoils nothing after it."""
+        """The messages of a datagram. A packet never spans two datagrams, so a broken one spoils nothing after it."""
         self._mav.buf, self._mav.buf_index, self._mav.expected_length = bytearray(), 0, mav.HEADER_LEN_V1 + 2
         good = []
         for message in self._mav.parse_buffer(datagram) or ():

@@ -27,54 +27,63 @@ class DatagramLink(Protocol):
 
     @property
     def port(self) -> int:
-        """From which this end speaks first."""
+        """Port from which this end speaks first."""
 
     def receive(self, t: float) -> list[tuple[bytes, Peer]]:
-        """Everything that has arrived, without waiting; ``t`` [s] is now."""
+        """All datagrams that have arrived, without waiting; ``t`` [s] is now."""
 
     def peers(self, t: float) -> list[Peer]:
-        """Who hears what is meant for everybody."""
+        """Peers that broadcasts go to at ``t`` [s]."""
 
     def keep(self, t: float, peer: Peer, engaged: bool = False) -> None:
-        """Something sound has come from a peer, in the last call: it hears the vehicles while it says something now and then.
+        """Keeps a peer that has sent something valid in the last call: it is sent broadcasts while it speaks now and then.
 
-        engaged: it transfers something, or steers.
+        t: [s], now; engaged: it transfers something, or steers.
         """
 
-    def send(self, datagram: bytes, peer: Peer) -> None: ...
+    def send(self, datagram: bytes, peer: Peer) -> None:
+        """Sends a datagram to a peer."""
+        ...
 
-    def close(self) -> None: ...
+    def close(self) -> None:
+        """Closes the link."""
+        ...
 
 
 @dataclass
 class Caller:
-    """Since when a peer has spoken, when it was heard, and when it transferred something or steered [s]."""
+    """Times [s] of a peer: since when it has spoken, when it was heard last, and when it last transferred something or steered."""
 
     since: float
     heard: float
     engaged: float = -math.inf
 
     def hear(self, t: float) -> None:
+        """Notes that the peer has spoken at ``t`` [s]; after a silence it counts as a newcomer."""
         if t - self.heard > SPEAKS_WITHIN:
             self.since = t
         self.heard = t
 
     def rank(self, t: float, is_in_crowd: bool) -> tuple[bool, bool, bool, float]:
-        """Who has spoken for a while counts more than newcomers, however often these speak, and the longer the more."""
+        """Sort key at ``t`` [s]; the lowest is dropped first.
+
+        Who has spoken for a while counts more than newcomers, however often these speak, and the longer the more.
+        """
         at_home = self.heard - self.since > AT_HOME_AFTER and t - self.heard <= SPEAKS_WITHIN
         return at_home, not is_in_crowd, t - self.engaged <= ENGAGED_FOR, -self.since if at_home else self.heard
 
 
 class Callers:
-    """Who has called and is heard now and then: never more than a few, however many strangers there are."""
+    """Peers that have called and are heard now and then: never more than a few, however many strangers there are."""
 
     def __init__(self) -> None:
         self._heard: dict[Peer, Caller] = {}
 
     def keep(self, t: float, peer: Peer, engaged: bool = False) -> None:
-        """The lowest in rank makes room: a newcomer, or one that has fallen silent, first of a host with many.
+        """Adds or refreshes a peer at ``t`` [s]; where there are too many, the lowest in rank makes room.
 
-        One that transfers or steers goes after its equals.
+        That is a newcomer, or one that has fallen silent, first of a host with many. One that transfers or steers (``engaged``) goes after
+        its equals.
         """
         hosts = Counter(host for host, _ in self._heard) if peer not in self._heard else Counter[str]()
         make_room(self._heard, peer, MOST_LEARNED, lambda p: self._heard[p].rank(t, hosts[p[0]] > CROWD))
@@ -84,6 +93,7 @@ class Callers:
             caller.engaged = t
 
     def peers(self, t: float) -> list[Peer]:
+        """Peers that are kept at ``t`` [s]; those silent for ``FORGET_AFTER`` seconds are forgotten."""
         self._heard = {peer: caller for peer, caller in self._heard.items() if t - caller.heard <= FORGET_AFTER}
         return list(self._heard)
 
@@ -91,7 +101,7 @@ class Callers:
 class UdpLink:
     """One socket to speak from and perhaps one with a known port to be called at.
 
-    targets: numeric addresses that always hear the vehicle; listen: where others may call, port 0 = any free one.
+    targets: numeric addresses that are always sent broadcasts; listen: where others may call, port 0 = any free one.
     Raises OSError when ``listen`` is taken.
     """
 
@@ -112,14 +122,16 @@ class UdpLink:
 
     @property
     def port(self) -> int:
+        """Port of the socket that speaks first."""
         return int(self._own.getsockname()[1])
 
     @property
     def addresses(self) -> list[Peer]:
-        """Where this end can be reached: the speaking socket first."""
+        """Addresses where this end can be reached: the speaking socket first."""
         return [sock.getsockname() for sock in self._sockets]
 
     def receive(self, t: float) -> list[tuple[bytes, Peer]]:
+        """All datagrams that have arrived at either socket, at most ``DATAGRAMS_PER_CALL`` of each; ``t`` [s] is now."""
         callers = self._callers.peers(t)
         self._called_at = {peer: sock for peer, sock in self._called_at.items() if peer in callers}
         return [(data, peer) for sock in self._sockets for data, peer in self._drain(sock)]
@@ -138,14 +150,16 @@ class UdpLink:
         return arrived
 
     def keep(self, t: float, peer: Peer, engaged: bool = False) -> None:
+        """Keeps a peer at ``t`` [s] as a caller, unless it is a target, which is always kept."""
         if peer not in self._targets:
             self._callers.keep(t, peer, engaged)
 
     def peers(self, t: float) -> list[Peer]:
+        """The targets, then the callers kept at ``t`` [s]."""
         return [*self._targets, *self._callers.peers(t)]
 
     def send(self, datagram: bytes, peer: Peer) -> None:
-        """An answer comes from where it was asked; a configured peer always hears the socket that spoke first."""
+        """Sends from the socket at which the peer has called; targets always hear the socket that speaks first. Errors are ignored."""
         sock = self._own if peer in self._targets else self._called_at.get(peer, self._own)
         try:
             sock.sendto(datagram, peer)
@@ -153,6 +167,7 @@ class UdpLink:
             return  # refused, unreachable or the buffer is full: a datagram may be lost, the vehicle goes on
 
     def close(self) -> None:
+        """Closes the sockets."""
         for sock in self._sockets:
             sock.close()
 

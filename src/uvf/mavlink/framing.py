@@ -14,7 +14,10 @@ Sign = Callable[[bytes], bytes]
 
 
 class MessageBody(NamedTuple):
-    """payload: without its trailing zeros; extra: of the message's definition, part of the checksum."""
+    """What a message's packets to all peers have in common.
+
+    number: its id; extra: CRC_EXTRA of its definition, part of the checksum; payload: without its trailing zeros.
+    """
 
     number: int
     extra: int
@@ -22,7 +25,7 @@ class MessageBody(NamedTuple):
 
 
 def body(message: mav.MAVLink_message) -> MessageBody:
-    """Raises struct.error or OverflowError when a number does not fit its field."""
+    """Payload of a message. Raises struct.error or OverflowError when a number does not fit its field."""
     # The dialect's own frames are for one link with one key: only its payload is taken.
     message._pack = lambda framer, extra, payload, **_: payload  # type: ignore[method-assign]
     payload: bytes = message.pack(None)  # type: ignore[arg-type]
@@ -30,7 +33,7 @@ def body(message: mav.MAVLink_message) -> MessageBody:
 
 
 def frame(what: MessageBody, seq: int, source: tuple[int, int], sign: Sign | None = None) -> bytes:
-    """One packet from ``source`` (system, component); ``sign`` gives it a signature."""
+    """A MAVLink 2 packet from ``source`` (system, component) with the sequence number ``seq``; ``sign`` appends a signature."""
     flags = SIGNED if sign is not None else 0
     low, high = what.number & 0xFFFF, what.number >> 16
     head = HEADER.pack(mav.PROTOCOL_MARKER_V2, len(what.payload), flags, 0, seq, *source, low, high)

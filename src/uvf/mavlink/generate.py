@@ -19,7 +19,7 @@ NAME = "dialect.py"
 
 
 def dialect_folder(package: Path = PACKAGE, definitions: Path = DEFINITIONS) -> Path:
-    """The folder of a ``dialect.py`` that was made of these definitions: the package, where it can be written or brings one along.
+    """The folder of a ``dialect.py`` made from these definitions: the package, if it is writable or already has one.
 
     Else the user's cache, else one that ends with this process. Raises ImportError for definitions that the generator refuses.
     """

@@ -12,9 +12,9 @@ STEP = 0.04  # s between the places looked at
 
 @compiled
 def clearance_along(points: Floats, linear: float, angular: float, horizon: float) -> tuple[float, float]:
-    """(now, least) distance [m] from the vehicle's centre to the points while it drives an arc for ``horizon`` [s].
+    """Smallest distance [m] from the vehicle's centre to the points: (now, while it drives an arc for ``horizon`` [s]).
 
-    points: (n, 2) m, base frame. Without points both are inf.
+    points: (n, 2) [m], base frame; linear: [m/s]; angular: [rad/s]. Without points both are inf.
     """
     now = least = np.inf
     for i in range(points.shape[0]):
@@ -37,10 +37,10 @@ SHARES = (1.0, 0.7, 0.45, 0.25, 0.12)
 
 
 def safe_share(points: Floats, velocity: tuple[float, float], keep: float, brake: tuple[float, float]) -> float:
-    """The largest part of a velocity (m/s, rad/s) at which the vehicle can still stop ``keep`` [m] from everything.
+    """The largest fraction [-] of ``velocity`` ([m/s], [rad/s]) at which the vehicle can still stop ``keep`` [m] from all points.
 
-    keep: from its centre; brake: (reaction [s], deceleration [m/s^2]). A vehicle that is already nearer may move
-    as long as it does not come nearer still. 0 when nothing goes.
+    points: (n, 2) [m], base frame; keep: from the vehicle's centre; brake: (reaction [s], deceleration [m/s^2]). A vehicle that is
+    already nearer may move as long as it does not come nearer still. 0 when nothing is safe.
     """
     linear, angular = velocity
     for share in SHARES:

@@ -23,7 +23,7 @@ Frame = tuple[float, tuple[float, float]]
 
 @dataclass(frozen=True)
 class RobotFootprint:
-    """How much room a vehicle needs and likes."""
+    """The vehicle's radius, and how paths are kept from obstacles beyond it."""
 
     radius: float  # m, to the nearest obstacle: nearer is impassable
     inflation_radius: float  # m, nearer costs more
@@ -32,7 +32,7 @@ class RobotFootprint:
 
 @dataclass(frozen=True)
 class Costmap:
-    """One map made ready for planning; arrays are (rows, columns), points m in the map frame."""
+    """A map prepared for planning; arrays are (rows, columns), points [m] in the map frame."""
 
     resolution: float
     origin: tuple[float, float]
@@ -44,24 +44,28 @@ class Costmap:
     """Per cell driven through, 1 at ease and more near obstacles; ``IMPASSABLE`` where the centre may not be."""
 
     def cell(self, x: float, y: float) -> Cell:
-        """(row, column) of a point, which must be finite; may lie outside."""
+        """Cell (row, column) of a point [m, map frame], which must be finite; may lie outside."""
         return self._index(y - self.origin[1]), self._index(x - self.origin[0])
 
     def _index(self, distance: float) -> int:
         return floor(min(max(distance / self.resolution, -FAR), FAR))
 
     def holds(self, cell: Cell) -> bool:
+        """Whether a cell (row, column) lies on the map."""
         rows, columns = self.cost.shape
         return bool(0 <= cell[0] < rows and 0 <= cell[1] < columns)
 
     def points(self, cells: NDArray[np.int64]) -> Floats:
-        """(n, 2) x, y of the centres of (n, 2) cells."""
+        """Centres (n, 2) [m, map frame] of the cells (n, 2), given as row and column."""
         out: Floats = (cells[:, ::-1] + 0.5) * self.resolution + np.array(self.origin)
         return out
 
 
 def make_costmap(cells: NDArray[np.int8], frame: Frame, body: RobotFootprint, unknown_cost: float = IMPASSABLE) -> Costmap:
-    """cells: (rows, columns) -1 unknown, 0..100 per cent; unknown_cost: factor on the cost of unknown ground."""
+    """The costmap of an occupancy grid.
+
+    cells: (rows, columns), -1 unknown, 0..100 per cent; unknown_cost: factor [-] on the cost of unknown ground, negative = impassable.
+    """
     resolution, origin = frame
     occupied, unknown = cells >= OCCUPIED, cells < 0
     free = ~unknown & (cells <= FREE)
@@ -75,7 +79,7 @@ def make_costmap(cells: NDArray[np.int8], frame: Frame, body: RobotFootprint, un
 
 
 def with_way_out(costs: Costmap, start: Cell, reach: float) -> Costmap:
-    """The same, with dear but passable cells around a start that stands too near an obstacle: reach [m]."""
+    """The costmap with expensive but passable cells within ``reach`` [m] of a start that is too near to an obstacle."""
     if not costs.holds(start) or costs.cost[start] >= 0.0:
         return costs
     n = int(np.ceil(reach / costs.resolution))

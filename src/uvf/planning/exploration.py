@@ -21,6 +21,8 @@ PATROL_REST = 1.5  # m, when no place is farther from those visited, the round b
 
 @dataclass
 class Shunned:
+    """A goal left alone until a time [s], and how often it was shunned again."""
+
     point: Point
     until: float
     times: int
@@ -28,7 +30,7 @@ class Shunned:
 
 @dataclass
 class Explorer:
-    """Chooses goals in the map frame; keeps one as long as its frontier is there."""
+    """Chooses frontiers as goals in the map frame; keeps one as long as its frontier is there."""
 
     taste: FrontierWeights
     goal: Point | None = None
@@ -37,7 +39,7 @@ class Explorer:
     _shunned: list[Shunned] = field(default_factory=list)
 
     def choose(self, t: float, costs: Costmap, ways: CostToGo) -> Point | None:
-        """Where to go next [m, map], None when there is nothing left to see."""
+        """The goal [m, map frame] to go to at ``t`` [s], None when there is nothing left to explore."""
         mask = self._shunned_mask(t, costs)
         found = frontiers(costs, ways.cost, mask, self.taste)
         self.explored = self._estimate(costs, ways, sum(f.size for f in found))
@@ -49,14 +51,14 @@ class Explorer:
         return self.goal
 
     def still_worth_it(self, t: float, costs: Costmap) -> bool:
-        """Whether enough frontier is left about the goal."""
+        """Whether at ``t`` [s] enough frontier is left about the goal."""
         if self.goal is None:
             return False
         near = disc(costs, self.goal, STILL_THERE) & ~self._shunned_mask(t, costs)
         return int((frontier_mask(costs) & near).sum()) >= self.taste.least_size
 
     def blacklist_goal(self, t: float) -> None:
-        """The goal has been reached, or cannot be: what frontier is left there does not count for a while."""
+        """Gives up the goal at ``t`` [s], reached or not: frontier that is left there does not count for a while."""
         if self.goal is None:
             return
         for old in self._shunned:
@@ -89,7 +91,7 @@ class Patrol:
     _visited: list[Point] = field(default_factory=list)
 
     def choose(self, here: Point, costs: Costmap, ways: CostToGo) -> Point | None:
-        """Where to go [m, map]; keeps a goal until ``reached`` or until no way leads there."""
+        """The goal [m, map frame] to go to; kept until ``reached`` or until no path leads there."""
         if self.goal is not None and np.isfinite(ways.cost[costs.cell(*self.goal)]):
             return self.goal
         easy = np.isfinite(ways.cost) & (costs.cost >= 0.0) & (costs.cost < 1.5)
@@ -105,7 +107,7 @@ class Patrol:
         return self.goal
 
     def reached(self) -> None:
-        """The goal has been visited, or was given up."""
+        """Marks the goal as visited, or given up."""
         if self.goal is not None:
             self._visited.append(self.goal)
         self.goal = None
@@ -119,7 +121,7 @@ class Patrol:
 
 
 def disc(costs: Costmap, centre: Point, radius: float) -> Mask:
-    """(rows, columns): the cells whose centres lie within ``radius`` [m] of a point."""
+    """Mask (rows, columns) of the cells whose centres lie within ``radius`` [m] of a point [m, map frame]."""
     rows, columns = costs.cost.shape
     x = costs.origin[0] + (np.arange(columns) + 0.5) * costs.resolution - centre[0]
     y = costs.origin[1] + (np.arange(rows) + 0.5) * costs.resolution - centre[1]

@@ -18,6 +18,8 @@ ALL_ROUND = np.ones((3, 3), dtype=int)
 
 @dataclass(frozen=True)
 class Frontier:
+    """A connected frontier and the cell from which to look at it."""
+
     goal: Cell
     """Where to go to look at it."""
     size: int
@@ -36,14 +38,17 @@ class FrontierWeights:
 
 
 def frontier_mask(costs: Costmap) -> Mask:
-    """(rows, columns): free cells beside unknown ones, not along obstacles."""
+    """Mask (rows, columns) of free cells beside unknown ones, not along obstacles."""
     beside_unknown = ndimage.binary_dilation(costs.unknown)
     mask: Mask = costs.free & beside_unknown & (costs.clearance > costs.resolution)
     return mask
 
 
 def frontiers(costs: Costmap, way: Floats, shunned: Mask, taste: FrontierWeights) -> list[Frontier]:
-    """Those that can be seen from somewhere the ways lead to, best first. shunned: cells that do not count."""
+    """Frontiers that can be seen from a reachable cell, best first.
+
+    way: (rows, columns), cost to go [cells], inf where no path leads; shunned: mask (rows, columns) of cells that do not count.
+    """
     labels, _ = ndimage.label(frontier_mask(costs) & ~shunned, structure=ALL_ROUND)
     reachable = np.isfinite(way)
     found = []

@@ -28,14 +28,14 @@ NO_PLACE = "the goal is not a place: its coordinates must be finite"
 
 @dataclass(frozen=True)
 class PlannedPath:
-    """A path (n, 2) [m, map], or none and why."""
+    """A path (n, 2) [m, map frame], or None and the reason."""
 
     path: Floats | None
     reason: str = ""
 
 
 class GlobalPlanner:
-    """Plans on the newest map; all points in m, map frame."""
+    """Plans on the newest map; all points are (x, y) [m, map frame]."""
 
     def __init__(self, body: RobotFootprint) -> None:
         self._body = body
@@ -56,7 +56,10 @@ class GlobalPlanner:
         return True
 
     def see(self, cells: NDArray[np.int8], frame: Frame) -> None:
-        """Takes a new map; costs are worked out once for it. On one of too many cells nobody drives."""
+        """Takes a new map, (rows, columns) of -1 unknown, 0..100 per cent, and computes its costs.
+
+        ``frame``: resolution [m] and origin [m]. On a map of more than ``MOST_CELLS`` cells nothing is planned.
+        """
         self._unknown_costmap = None
         self._ways = None
         if cells.size > MOST_CELLS:
@@ -67,7 +70,7 @@ class GlobalPlanner:
         self.costs = make_costmap(cells, frame, self._body)
 
     def ways(self, start: Point) -> CostToGo | None:
-        """The cheapest ways from ``start`` to everywhere known, worked out once for each place; None without a map or outside it."""
+        """Cost to go from ``start``, computed once per cell and map; None without a map or outside it."""
         if self.costs is None or not self.costs.holds(self.costs.cell(*start)):
             return None
         cell = self.costs.cell(*start)
@@ -76,7 +79,7 @@ class GlobalPlanner:
         return self._ways[1]
 
     def refusal(self, start: Point, goal: Point) -> str:
-        """Why nobody can drive from ``start`` to ``goal`` over known ground; "" if it can be done."""
+        """Why no path leads from ``start`` to ``goal`` over known ground; empty if one does."""
         costs = self.costs
         if costs is None:
             return self.missing
@@ -99,7 +102,10 @@ class GlobalPlanner:
         return _too_far(costs.points(ways.to(cell)))
 
     def plan(self, start: Point, goal: Point, allow_unknown: bool = False) -> PlannedPath:
-        """bold: unknown ground may be crossed, and the goal may lie beyond the map: its nearest cell is taken."""
+        """The smoothed path from ``start`` to ``goal``, or the reason why there is none.
+
+        allow_unknown: unknown ground may be crossed, and the goal may lie beyond the map: its nearest cell is taken.
+        """
         known = self._costs(allow_unknown)
         if known is None:
             return PlannedPath(None, self.missing)

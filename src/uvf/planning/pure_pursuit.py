@@ -21,7 +21,7 @@ TURN_GAIN = 3.0  # 1/s
 
 @dataclass(frozen=True)
 class SpeedLimits:
-    """How fast the vehicle is driven."""
+    """Speed limits, deceleration and goal tolerance of path tracking."""
 
     linear: float  # m/s
     angular: float  # rad/s
@@ -38,9 +38,10 @@ class PathTracker:
         self._speed = 0.0
 
     def follow(self, pose: Pose2, path: Floats, final_heading: float | None, room: float) -> tuple[float, float]:
-        """(m/s, rad/s) at ``pose`` along path (n, 2) m in the same frame; zero at its end.
+        """Velocity (linear [m/s], angular [rad/s]) at ``pose`` along ``path`` (n, 2) [m] in the same frame; zero at its end.
 
-        room: m to spare beside the nearest obstacle; with little of it the path's corners are not cut.
+        final_heading: [rad], to turn to at the end, None = any; room: [m] to spare beside the nearest obstacle, with little of it the
+        path's corners are not cut.
         """
         if len(path) == 0:
             return self._go(0.0, 0.0)

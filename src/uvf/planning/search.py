@@ -125,19 +125,19 @@ def _trace(before: Cells, columns: int, goal: tuple[int, int]) -> Cells:
 
 
 class CostToGo:
-    """The cheapest ways from one cell to all others of a cost grid (negative = impassable)."""
+    """The cheapest paths from one cell to all others of a cost grid (negative = impassable)."""
 
     def __init__(self, cost: Floats, start: Cell) -> None:
         self.cost, self._before = _expand(cost, start, (-1, -1))
         """(rows, columns) cost of the way there [cells], inf where none leads."""
 
     def to(self, goal: Cell) -> Cells:
-        """(n, 2) cells; only for a goal that ``cost`` says can be reached."""
+        """Path (n, 2) of cells from the start to ``goal``; only for a goal that ``cost`` says can be reached."""
         return _trace(self._before, self.cost.shape[1], goal)
 
 
 def astar(cost: Floats, start: Cell, goal: Cell) -> tuple[Cells, float] | None:
-    """((n, 2) cells from start to goal, cost of the way [cells]) over a grid of costs >= 1, or None: no way."""
+    """Path (n, 2) of cells from start to goal and its cost [cells] over a grid (rows, columns) of costs >= 1; None if there is none."""
     if cost[goal] < 0.0:
         return None
     g, before = _expand(cost, start, goal)

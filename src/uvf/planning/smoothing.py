@@ -15,7 +15,7 @@ FIDELITY, TENSION = 0.05, 0.45
 
 
 def resample(points: Floats, spacing: float = SPACING) -> Floats:
-    """(m, 2) points of the same polyline at even distances about ``spacing`` [m], ends kept."""
+    """Points (m, 2) [m] of the same polyline as (n, 2) at even distances of about ``spacing`` [m], ends kept."""
     if len(points) < 2:
         return points
     lengths = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))))
@@ -43,10 +43,13 @@ def _relax(points: Floats, clearance: Floats, frame: tuple[float, float, float],
 
 
 def smoothed(points: Floats, costs: Costmap, least: float) -> Floats:
-    """(m, 2) m, map frame; least: m that must stay free around each point."""
+    """The polyline (n, 2) [m, map frame] resampled and rounded, (m, 2) points.
+
+    least: [m], no point is moved to where its clearance is less.
+    """
     return _relax(resample(points), costs.clearance, (*costs.origin, costs.resolution), least)
 
 
 def length(points: Floats) -> float:
-    """m along the polyline."""
+    """Length [m] of a polyline (n, 2) [m]."""
     return float(np.hypot(*np.diff(points, axis=0).T).sum()) if len(points) > 1 else 0.0

@@ -30,7 +30,7 @@ class AirframeCoefficients:
 
 
 def gains(frame: AirframeCoefficients, airspeed: float) -> dict[str, float]:
-    """Parameter name -> value at ``airspeed`` [m/s].
+    """Autopilot parameters by name, for the airframe at ``airspeed`` [m/s].
 
     The elevator that balances alpha solves C_m = 0, and its lift counts as lift of the wing; the feed-forward of a rate is
     the deflection that holds it against the damping: a_phi1 / a_phi2 (5.23, 5.24) and C_m_q c / 2V / C_m_delta_e.

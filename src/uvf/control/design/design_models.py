@@ -10,7 +10,7 @@ from uvf.maths.state_space import StateSpace
 
 @dataclass(frozen=True)
 class DesignModels:
-    """Names as in the book.
+    """Coefficients of the design transfer functions, named as in the book.
 
     phi / delta_a = a_phi2 / (s (s + a_phi1)), equation 5.26; beta / delta_r = a_beta2 / (s + a_beta1), 5.28;
     theta / delta_e = a_theta3 / (s^2 + a_theta1 s + a_theta2), 5.30;
@@ -30,7 +30,7 @@ class DesignModels:
 
 
 def design_models(longitudinal: StateSpace, lateral: StateSpace, airspeed: float, alpha: float) -> DesignModels:
-    """From the slopes in u, w, q, theta and v, p of wings-level flight at ``airspeed`` [m/s] and ``alpha`` [rad].
+    """Coefficients from the derivatives in u, w, q, theta and v, p of wings-level flight at ``airspeed`` [m/s] and ``alpha`` [rad].
 
     The book takes the angles' slopes at constant airspeed and the airspeed's at constant angles:
     d/d alpha = u d/dw - w d/du, V' = u' cos alpha + w' sin alpha, beta = v / V.

@@ -22,7 +22,10 @@ class Margins:
 
 
 def margins(omega: Floats, loop: Complex) -> Margins:
-    """omega: (k,) rad/s, rising; loop: (k,) open-loop response L with the feedback's minus left out (the loop closes as 1 + L)."""
+    """Gain, phase and delay margin of a loop from its frequency response.
+
+    omega: (k,) [rad/s], rising; loop: (k,) open-loop response L with the feedback's minus left out (the loop closes as 1 + L).
+    """
     size, angle = np.log(np.abs(loop)), np.unwrap(np.angle(loop))
     crossings = [(abs(math.remainder(math.pi + a, math.tau)), w) for w, a in _crossings(omega, size, angle)]
     phase, crossover = min(crossings, default=(math.nan, math.nan))

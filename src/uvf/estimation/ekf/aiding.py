@@ -42,7 +42,7 @@ AHEAD = 5.0  # m/s, over ground, from where on the nose is about ahead
 
 
 class Aiding:
-    """Corrects ``filter``; the moments of its calls are those of the newest IMU sample."""
+    """Corrects ``filter`` by the sensors; the times ``t`` [s] of its calls are those of the newest IMU sample."""
 
     def __init__(self, filter_: Filter, sheet: Datasheet, earth: Floats) -> None:
         """earth: (3,) magnetic field, NED, in units of the filter; zero = there is none to go by."""
@@ -61,11 +61,12 @@ class Aiding:
 
     @property
     def ratios(self) -> Ratios:
+        """Test ratios of the newest measurements."""
         height = max(self._depth.ratio, self._height.ratio)
         return Ratios(self._position.ratio, self._velocity.ratio, height, self._airspeed.ratio, self._slip.ratio, self._field.ratio)
 
     def fix(self, fix: GnssFix, acceleration: Floats, t: float, lag: float) -> None:
-        """A satellite fix, valid ``lag`` [s] before ``t``; acceleration: (3,) m/s^2, NED."""
+        """Corrects by a satellite fix, valid ``lag`` [s] before ``t`` [s]; acceleration: (3,) [m/s^2], NED."""
         sheet, state = self._sheet, self.filter.state
         v, p = self.delay.at(t - lag)
         sigma = _without(fix.position_sigma, sheet.drift)
@@ -90,6 +91,10 @@ class Aiding:
         self.delay.keep(t, x)  # the next pressure may come before the next IMU sample
 
     def height(self, pressures: Pressures, t: float, lag: float) -> None:
+        """Corrects by the barometric altitude of pressures taken ``lag`` [s] before ``t`` [s].
+
+        The first one, and one after long refusal, sets the barometer's offset.
+        """
         altitude = atmosphere.altitude(pressures.static)
         _, p = self.delay.at(t - lag)
         if not self._baro_known:
@@ -100,9 +105,9 @@ class Aiding:
         self._baro_known = not self._height.exhausted(self._apply(seen), 0.02)
 
     def meet_wind(self, speed: float) -> bool:
-        """The wind of the triangle once heading and tilt are known; before, the filter would be linear about a wind far from the true one.
+        """Sets the wind by the wind triangle once heading and tilt are known; whether it has been set.
 
-        speed: m/s through the air. Whether the wind has been met.
+        Before, the filter would be linear about a wind far from the true one. speed: airspeed [m/s].
         """
         filter_, state = self.filter, self.filter.state
         if self._wind_met or (filter_.sigma(TILT) > MEETING and self._heard):
@@ -115,13 +120,19 @@ class Aiding:
         return True
 
     def airspeed(self, pressures: Pressures, density: float, dt: float) -> None:
-        """The differential pressure, ``dt`` [s] after the one before; in flight only, where the flow comes from ahead."""
+        """Corrects by the differential pressure, ``dt`` [s] after the last; density: [kg/m^3].
+
+        In flight only, where the flow comes from ahead.
+        """
         seen = observations.pitot(self.filter.state, pressures.differential, density, self._sheet.pitot_noise**2)
         if self._airspeed.exhausted(self._apply(seen), dt):
             self._lose_wind()
 
     def slip(self, t: float) -> None:
-        """Nil in coordinated flight; what is left of it lasts, and counts as the few independent samples that there are."""
+        """Corrects by zero sideslip, as in coordinated flight, at ``t`` [s].
+
+        What is left of it lasts, and counts as the few independent samples that there are.
+        """
         if not self._slip_due.due(t):
             return
         state = self.filter.state
@@ -134,7 +145,10 @@ class Aiding:
         self._wind_met = False
 
     def field(self, sample: InertialSample, t: float) -> None:
-        """A magnetometer that is slower than the gyroscopes repeats itself: the same reading counts once a second."""
+        """Corrects by the magnetic field of a sample at ``t`` [s].
+
+        A magnetometer that is slower than the gyroscopes repeats itself: the same reading counts only once.
+        """
         if not (any(sample.field) and self._earth.any()) or not self._field_due.due(t):
             return
         if sample.field == self._read:
@@ -149,7 +163,7 @@ class Aiding:
             self.filter.forget(IRON, UNKNOWN_IRON)
 
     def course(self) -> None:
-        """Where nothing tells the heading, the course does about, once it moves."""
+        """Sets the yaw to the course once the aircraft moves, where nothing else tells the heading."""
         vn, ve, _ = self.filter.state.x[VELOCITY].tolist()
         if self.filter.sigma(YAW) > LOST_YAW and math.hypot(vn, ve) > AHEAD:
             self._set_yaw(math.atan2(ve, vn), SET_YAW_BY_COURSE)
@@ -160,13 +174,13 @@ class Aiding:
         self.filter.forget(YAW, sigma)
 
     def rest(self, rates: Floats, t: float) -> None:
-        """It stands on the ground."""
+        """Corrects by standing on the ground at ``t`` [s]: no velocity, and the gyroscopes' rates (3,) [rad/s], FRD, are their bias."""
         if self._rest_due.due(t):
             self._apply(observations.rest(self.filter.state, STANDING))
             self._apply(observations.no_turning(self.filter.state, rates, self._sheet.gyro_noise))
 
     def suppose(self, trim_airspeed: float, t: float) -> None:
-        """Neither pressures nor satellites: level flight at trim, about."""
+        """Corrects by level flight at about ``trim_airspeed`` [m/s] at ``t`` [s], where there are neither pressures nor satellites."""
         if self._supposed_due.due(t):
             self._apply(observations.airspeed(self.filter.state, trim_airspeed, SUPPOSED_SPEED))
             self._apply(observations.climb(self.filter.state, 0.0, SUPPOSED_CLIMB))

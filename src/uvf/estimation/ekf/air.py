@@ -19,7 +19,7 @@ class AirData:
         self._taken = -1.0  # s
 
     def take(self, pressures: Pressures | None, t: float, dt: float) -> None:
-        """At ``t`` [s], ``dt`` [s] after the cycle before."""
+        """Takes the pressures of the cycle at ``t`` [s], ``dt`` [s] after the last."""
         self.pressures = pressures
         self.fresh = False
         if pressures is None:
@@ -30,5 +30,5 @@ class AirData:
         self._differential.step(pressures.differential, dt)
 
     def airspeed(self, bias: float) -> float:
-        """m/s, true; bias of the differential pressure [Pa]."""
+        """True airspeed [m/s]; bias of the differential pressure [Pa]."""
         return atmosphere.airspeed((self._differential.value or 0.0) - bias, self.density)

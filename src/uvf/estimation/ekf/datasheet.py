@@ -11,7 +11,7 @@ PA_PER_M = 11.7  # near the ground
 
 @dataclass(frozen=True, slots=True)
 class Datasheet:
-    """1 sigma each. Defaults are those of small MEMS sensors, and the least that is believed of any."""
+    """Sensor noise, 1 sigma each. Defaults are those of small MEMS sensors, and the least that is believed of any."""
 
     gyro_noise: float = 0.001  # rad/s of a sample
     gyro_bias: float = 0.005  # rad/s at turn-on
@@ -33,7 +33,7 @@ class Datasheet:
 
 
 def read(sensors: Sensors) -> Datasheet:
-    """Of a vehicle's sensors."""
+    """Data sheet of a vehicle's sensors; none is believed to be better than the defaults."""
     least = Datasheet()
     found: dict[str, float] = {}
     if (imu := sensors.imu) is not None:

@@ -17,24 +17,24 @@ class _Past(NamedTuple):
 
 
 class Delay:
-    """Velocity and position of the last moments. What has been put right since then was wrong then already."""
+    """Velocity and position of the last moments; what has been corrected since then was wrong then already."""
 
     def __init__(self) -> None:
         self._past: deque[_Past] = deque()
         self._corrected: Floats = np.zeros(6)
 
     def keep(self, t: float, x: Floats) -> None:
-        """x: (25,) states at ``t`` [s]."""
+        """Stores velocity and position of the states ``x`` (25,) at ``t`` [s]."""
         self._past.append(_Past(t, x[VELOCITY.start : POSITION.stop].copy(), self._corrected))
         while t - self._past[0].t > KEPT:
             self._past.popleft()
 
     def correct(self, before: Floats, x: Floats) -> None:
-        """The states (25,) have been changed by a measurement, not by time."""
+        """Notes that a measurement, not time, has changed the states (25,) from ``before`` to ``x``."""
         self._corrected = self._corrected + (x - before)[VELOCITY.start : POSITION.stop]
 
     def at(self, t: float) -> tuple[Floats, Floats]:
-        """Velocity (3,) m/s and position (3,) m, NED, at ``t`` [s] as they are known now; straight lines between what is kept."""
+        """Velocity (3,) [m/s] and position (3,) [m], NED, at ``t`` [s] as they are known now; interpolated linearly."""
         later = self._past[-1]
         for past in reversed(self._past):
             if past.t <= t:
@@ -50,5 +50,5 @@ class Delay:
         return motion
 
     def clear(self) -> None:
-        """What was there before has nothing to do with what comes."""
+        """Forgets the past: the states have been set anew."""
         self._past.clear()

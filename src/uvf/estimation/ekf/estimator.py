@@ -49,7 +49,7 @@ UNFELT_TURN, UNFELT_ACCELERATION = 0.5, 5.0  # rad/s, m/s^2
 
 
 class FullEstimator:
-    """Started by the first fix and the first IMU sample.
+    """Error-state Kalman filter of an aircraft, started by the first fix and the first IMU sample.
 
     Without fixes it reckons on by inertia, held by airspeed, sideslip, compass and barometer; sigmas grow. Without pressures the
     airspeed is the ground velocity less the wind and the height that of the fixes; without both, level flight at trim is supposed.
@@ -76,25 +76,26 @@ class FullEstimator:
         """s since the last fix."""
 
     def begin_at(self, roll: float, pitch: float, yaw: float) -> None:
-        """Attitude [rad] to begin with, where another estimator has left it."""
+        """Attitude [rad, NED to FRD] to start from, where another estimator has left it."""
         self._left = roll, pitch, yaw
 
     @property
     def started(self) -> bool:
+        """Whether the filter has been started by a first fix."""
         return self._aiding is not None
 
     @property
     def density(self) -> float:
-        """kg/m^3."""
+        """Air density [kg/m^3]."""
         return self._air.density
 
     @property
     def gyro_bias(self) -> Floats:
-        """(3,) rad/s, as known now."""
+        """Bias (3,) [rad/s] of the gyroscopes, FRD, as known now; zero before the start."""
         return self._aiding.filter.state.x[GYRO_BIAS].copy() if self._aiding is not None else np.zeros(3)
 
     def step(self, sensed: Sensed, params: AirParams, dt: float) -> Estimate:
-        """One cycle, ``dt`` [s] after the one before."""
+        """The estimate after one cycle, ``dt`` [s] after the last. Raises AssertionError if the first cycle has no fix."""
         self._t += dt
         fix, gnss_age = sensed.fix, self.gnss_age + dt
         self.gnss_age = 0.0 if fix is not None else gnss_age

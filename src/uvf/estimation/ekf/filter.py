@@ -14,7 +14,10 @@ otherwise find in gusts what a bias of airspeed would do."""
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Observation:
-    """A measurement beside what the state makes of it. residual: (m,); jacobian: (m, 25); variance: (m,), of independent noise."""
+    """A measurement against what the state predicts.
+
+    residual: (m,), measured less predicted; jacobian: (m, 25); variance: (m,), of independent noise.
+    """
 
     residual: Floats
     jacobian: Floats
@@ -30,12 +33,15 @@ class Filter:
         self.p: Floats = np.diag(sigma**2)
 
     def predict(self, transition: Floats, gained: Floats) -> None:
-        """gained: (25,) variances."""
+        """Propagates the covariance by ``transition`` (25, 25) and adds ``gained`` (25,) to its diagonal."""
         self.p = transition @ self.p @ transition.T
         self.p.flat[:: SIZE + 1] += gained
 
     def update(self, seen: Observation) -> float:
-        """Returns the normalised innovation squared over that of the gate; beyond 1 nothing is changed."""
+        """Corrects by a measurement; returns its test ratio [-], the normalised innovation squared over the square of the gate.
+
+        Beyond 1 nothing is changed.
+        """
         across: Floats = self.p @ seen.jacobian.T
         spread: Floats = seen.jacobian @ across
         spread.flat[:: len(seen.variance) + 1] += seen.variance
@@ -53,12 +59,15 @@ class Filter:
         return ratio
 
     def forget(self, part: slice | int, sigma: float | Floats) -> None:
-        """These states are known no better than ``sigma`` any more, and by nothing else."""
+        """Resets the covariance of some states to 1 ``sigma`` each, without correlation with any other.
+
+        sigma: one for all, or (k,) for k states, in the states' units [m, m/s, rad, ...].
+        """
         k = np.arange(SIZE)[part]
         self.p[k, :] = 0.0
         self.p[:, k] = 0.0
         self.p[k, k] = np.square(sigma)
 
     def sigma(self, part: slice | int) -> float:
-        """Of the worst of these states."""
+        """1 sigma of a state, or the largest among several, in their unit [m, m/s, rad, ...]."""
         return float(np.sqrt(self.p.diagonal()[part].max()))

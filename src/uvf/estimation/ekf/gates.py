@@ -2,7 +2,7 @@
 
 
 class Gate:
-    """The newest ratio, and how long nothing has passed."""
+    """The newest test ratio of a sensor, and for how long all its measurements have been refused."""
 
     def __init__(self, patience: float) -> None:
         """patience: s, after which the state is taken to be wrong, not the sensor."""
@@ -11,7 +11,7 @@ class Gate:
         self._refused = 0.0  # s
 
     def exhausted(self, ratio: float, dt: float) -> bool:
-        """Takes the ratio of a measurement ``dt`` [s] after the one before; whether it is time to begin anew from it."""
+        """Takes the test ratio [-] of a measurement ``dt`` [s] after the last; whether it is time to reset the state to the sensor."""
         self.ratio = ratio
         self._refused = self._refused + dt if ratio > 1.0 else 0.0
         if self._refused < self._patience:
@@ -28,6 +28,7 @@ class Every:
         self._last = -period
 
     def due(self, t: float) -> bool:
+        """Whether the period has passed at ``t`` [s] since it last had; if so the next one begins."""
         if t - self._last < self._period - 1e-6:
             return False
         self._last = t

@@ -12,7 +12,7 @@ FIRST, LEAST = 0.3, 0.05  # m/s/sqrt(s)
 
 
 class GustEstimate:
-    """walk: m/s/sqrt(s), of the wind's components."""
+    """Random walk of the wind along the flight path; walk: [m/s/sqrt(s)], of each component of the wind."""
 
     def __init__(self) -> None:
         self.walk = FIRST
@@ -20,7 +20,7 @@ class GustEstimate:
         self._passed = 0.0  # s
 
     def learn(self, wind: Floats, through_air: Floats, dt: float) -> None:
-        """wind (2,) and through_air (3,) m/s NED, in flight, ``dt`` [s] after the last."""
+        """Takes wind (2,) and velocity through the air (3,) [m/s], NED, in flight, ``dt`` [s] after the last."""
         self._passed += dt
         if self._before is not None and self._passed < WINDOW:
             return

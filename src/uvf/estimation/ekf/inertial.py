@@ -39,7 +39,10 @@ class Mechanisation:
     missed: Floats = field(default_factory=lambda: np.zeros(SIZE))
 
     def step(self, state: FilterState, rates: Floats, force: Floats, dt: float) -> Floats:
-        """Moves the state on by ``dt`` [s] to the new readings; returns the mean acceleration (3,) m/s^2, NED, gravity included."""
+        """Moves the state on by ``dt`` [s] to the new readings; returns the mean acceleration (3,) [m/s^2], NED, with gravity.
+
+        rates: (3,) [rad/s]; force: (3,) [m/s^2], specific force; FRD.
+        """
         x = state.x
         turn = (0.5 * dt) * (self.rates + rates) - dt * x[GYRO_BIAS]
         before = state.rotation @ (self.force - x[ACCEL_BIAS])
@@ -55,15 +58,20 @@ class Mechanisation:
         return acceleration
 
     def take_missed(self) -> Floats:
-        """(25,) since the last time. The integral of a Brownian motion between two values d apart, dt after each other, has a variance
-        of d^2 dt^2 / 12 about the trapezoid."""
+        """Variance (25,) of what the trapezoids have left out since the last call.
+
+        The integral of a Brownian motion between two values d apart, dt after each other, has a variance of d^2 dt^2 / 12 about the
+        trapezoid.
+        """
         missed, self.missed = self.missed, np.zeros(SIZE)
         return missed
 
 
 def transition(state: FilterState, acceleration: Floats, drift_time: float, dt: float) -> Floats:
-    """(25, 25): errors after ``dt`` [s] from those before; acceleration: (3,) m/s^2, NED, of the motion;
-    drift_time: s, of the satellites' drift."""
+    """Transition matrix (25, 25) of the errors over ``dt`` [s].
+
+    acceleration: (3,) [m/s^2], NED, of the motion; drift_time: [s], time constant of the satellites' drift.
+    """
     f = np.eye(SIZE)
     force = cross_matrix(acceleration - FALL)
     rotation = state.rotation
@@ -78,7 +86,7 @@ def transition(state: FilterState, acceleration: Floats, drift_time: float, dt: 
 
 
 def process_noise(sheet: Datasheet, imu_dt: float) -> Floats:
-    """(25,) variance that each state gains in a second; imu_dt: s between samples."""
+    """Variance (25,) that each state gains in a second; imu_dt: [s] between samples."""
     q = np.zeros(SIZE)
     q[TILT] = sheet.gyro_noise**2 * imu_dt
     q[VELOCITY] = sheet.accel_noise**2 * imu_dt

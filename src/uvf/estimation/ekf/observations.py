@@ -29,7 +29,7 @@ def _scalar(residual: float, row: Floats, variance: float) -> Observation:
 
 
 def place(residual: Floats, lag: float, sigma: float) -> Observation:
-    """Satellite position, horizontal. residual: (2,) m, at the moment of the fix, ``lag`` [s] before the state's."""
+    """Horizontal satellite position. residual: (2,) [m], NED, at the fix, ``lag`` [s] before the state; sigma: [m]."""
     h = np.zeros((2, SIZE))
     h[0, 6] = h[1, 7] = 1.0
     h[0, 3] = h[1, 4] = -lag
@@ -38,14 +38,17 @@ def place(residual: Floats, lag: float, sigma: float) -> Observation:
 
 
 def depth(residual: float, lag: float, sigma: float) -> Observation:
-    """Satellite position, down [m]."""
+    """Satellite position, down. residual: [m], at the fix, ``lag`` [s] before the state; sigma: [m]."""
     h = np.zeros(SIZE)
     h[DOWN], h[5], h[DRIFT.stop - 1] = 1.0, -lag, 1.0
     return _scalar(residual, h, sigma**2)
 
 
 def velocity(residual: Floats, state: FilterState, acceleration: Floats, lag: float, sigma: float) -> Observation:
-    """Satellite velocity. residual: (3,) m/s; an error of tilt has meanwhile changed that of velocity."""
+    """Satellite velocity. residual: (3,) [m/s], NED, at the fix, ``lag`` [s] before the state; sigma: [m/s].
+
+    acceleration: (3,) [m/s^2], NED; an error of tilt has meanwhile changed that of velocity.
+    """
     h = np.zeros((3, SIZE))
     h[:, VELOCITY] = np.eye(3)
     h[:, TILT] = lag * cross_matrix(acceleration - FALL)
@@ -54,7 +57,7 @@ def velocity(residual: Floats, state: FilterState, acceleration: Floats, lag: fl
 
 
 def height(residual: float, lag: float, sigma: float) -> Observation:
-    """Barometric altitude [m], up."""
+    """Barometric altitude. residual: [m], up, ``lag`` [s] before the state; sigma: [m]."""
     h = np.zeros(SIZE)
     h[DOWN], h[5], h[BARO] = -1.0, lag, 1.0
     return _scalar(residual, h, sigma**2)
@@ -71,7 +74,7 @@ def _airspeed_row(state: FilterState) -> tuple[float, Floats]:
 
 
 def pitot(state: FilterState, pressure: float, density: float, variance: float) -> Observation:
-    """Differential pressure [Pa] of air of ``density`` [kg/m^3]: half rho V squared and the sensor's bias."""
+    """Differential pressure [Pa] of air of ``density`` [kg/m^3]: half rho V squared plus the sensor's bias; variance: [Pa^2]."""
     speed, h = _airspeed_row(state)
     h *= density * speed
     h[PITOT] = 1.0
@@ -79,20 +82,20 @@ def pitot(state: FilterState, pressure: float, density: float, variance: float) 
 
 
 def airspeed(state: FilterState, speed: float, sigma: float) -> Observation:
-    """True airspeed [m/s]."""
+    """True airspeed ``speed`` [m/s]; sigma: [m/s]."""
     known, h = _airspeed_row(state)
     return _scalar(speed - known, h, sigma**2)
 
 
 def climb(state: FilterState, rate: float, sigma: float) -> Observation:
-    """m/s, up."""
+    """Climb rate [m/s], up; sigma: [m/s]."""
     h = np.zeros(SIZE)
     h[5] = -1.0
     return _scalar(rate + float(state.x[5]), h, sigma**2)
 
 
 def slip(state: FilterState, aside: float, sigma: float) -> Observation:
-    """The flow along the body's right axis [m/s]: ``aside`` where the flight is coordinated."""
+    """Flow ``aside`` along the body's right axis [m/s], which is zero in coordinated flight; sigma: [m/s]."""
     through = state.through_air
     right = state.rotation[:, 1]
     h = np.zeros(SIZE)
@@ -103,7 +106,7 @@ def slip(state: FilterState, aside: float, sigma: float) -> Observation:
 
 
 def field(state: FilterState, read: Floats, earth: Floats, sigma: float) -> Observation:
-    """The magnetic field (3,), FRD; ``earth``: (3,), NED; both in units of the filter."""
+    """Magnetic field ``read`` (3,), FRD; ``earth``: (3,), NED; both and sigma in the filter's unit [uT]."""
     h = np.zeros((3, SIZE))
     h[:, TILT] = state.rotation.T @ cross_matrix(earth)
     h[:, IRON] = np.eye(3)
@@ -111,14 +114,14 @@ def field(state: FilterState, read: Floats, earth: Floats, sigma: float) -> Obse
 
 
 def rest(state: FilterState, sigma: float) -> Observation:
-    """It stands: no velocity."""
+    """Standstill: no velocity; sigma: [m/s]."""
     h = np.zeros((3, SIZE))
     h[:, VELOCITY] = np.eye(3)
     return Observation(-state.x[VELOCITY], h, np.full(3, sigma**2))
 
 
 def no_turning(state: FilterState, rates: Floats, sigma: float) -> Observation:
-    """It does not turn: the gyroscopes (3,) [rad/s] read their bias."""
+    """Standstill: the gyroscopes' rates (3,) [rad/s], FRD, are their bias; sigma: [rad/s]."""
     h = np.zeros((3, SIZE))
     h[:, GYRO_BIAS] = np.eye(3)
     return Observation(rates - state.x[GYRO_BIAS], h, np.full(3, sigma**2))

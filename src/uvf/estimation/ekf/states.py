@@ -39,7 +39,7 @@ class NominalAttitude(NamedTuple):
     z: float
 
     def times(self, o: "NominalAttitude") -> "NominalAttitude":
-        """a_from_b times b_from_c, of unit length again."""
+        """Product a_from_b times b_from_c, normalised."""
         w = self.w * o.w - self.x * o.x - self.y * o.y - self.z * o.z
         x = self.w * o.x + self.x * o.w + self.y * o.z - self.z * o.y
         y = self.w * o.y - self.x * o.z + self.y * o.w + self.z * o.x
@@ -48,7 +48,7 @@ class NominalAttitude(NamedTuple):
         return NominalAttitude(w * n, x * n, y * n, z * n)
 
     def matrix(self) -> Floats:
-        """(3, 3)."""
+        """Rotation matrix (3, 3) ned_from_frd."""
         w, x, y, z = self
         return np.array(
             (
@@ -59,14 +59,14 @@ class NominalAttitude(NamedTuple):
         )
 
     def euler(self) -> tuple[float, float, float]:
-        """(roll, pitch, yaw) [rad]."""
+        """Euler angles (roll, pitch, yaw) [rad]."""
         w, x, y, z = self
         pitch = math.asin(min(max(2 * (w * y - z * x), -1.0), 1.0))
         return math.atan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y)), pitch, math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
 
 
 def turned(vector: Floats) -> NominalAttitude:
-    """The quaternion of a rotation vector (3,) [rad]."""
+    """Quaternion of a rotation vector (3,) [rad]."""
     x, y, z = vector.tolist()
     angle = math.sqrt(x * x + y * y + z * z)
     k = 0.5 - angle * angle / 48 if angle < 1e-3 else math.sin(angle / 2) / angle
@@ -74,36 +74,38 @@ def turned(vector: Floats) -> NominalAttitude:
 
 
 def cross_matrix(v: Floats) -> Floats:
-    """(3, 3): ``cross_matrix(v) @ u`` is v x u."""
+    """Skew-symmetric matrix (3, 3) of ``v`` (3,): ``cross_matrix(v) @ u`` is v x u."""
     x, y, z = v.tolist()
     return np.array(((0.0, -z, y), (z, 0.0, -x), (-y, x, 0.0)))
 
 
 class FilterState:
-    """The best guess. ``x``: (25,) by the slices above, but for the attitude, which is ``attitude`` and ``rotation``."""
+    """Nominal state. ``x``: (25,) by the slices above, but for the attitude, which is ``attitude`` and ``rotation``."""
 
     def __init__(self, attitude: NominalAttitude) -> None:
         self.x: Floats = np.zeros(SIZE)
         self.turn_to(attitude)
 
     def turn_to(self, attitude: NominalAttitude) -> None:
+        """Sets the attitude, and the rotation matrix with it."""
         self.attitude = attitude
         self.rotation = attitude.matrix()
         """(3, 3) ned_from_frd."""
 
     def add(self, error: Floats) -> None:
-        """The error (25,) is put right."""
+        """Injects the estimated error (25,) into the state."""
         self.x[3:] += error[3:]
         self.turn_to(turned(error[TILT]).times(self.attitude))
 
     def copy(self) -> "FilterState":
+        """A state of its own with the same values."""
         twin = FilterState(self.attitude)
         twin.x = self.x.copy()
         return twin
 
     @property
     def through_air(self) -> Floats:
-        """(3,) m/s NED: velocity less the wind, which blows level."""
+        """Velocity through the air (3,) [m/s], NED: velocity less the wind, which is horizontal."""
         relative: Floats = self.x[VELOCITY].copy()
         relative[:2] -= self.x[WIND]
         return relative

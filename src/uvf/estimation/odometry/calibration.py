@@ -29,7 +29,7 @@ LONG, WIDE = 1.5, 2.5  # m and rad after which a segment is closed
 
 
 class Scales(NamedTuple):
-    """What the true left and right radius and the true track are, over those that the odometry reckons with."""
+    """True left and right wheel radius and true track [-], over those that the odometry reckons with."""
 
     left: float = 1.0
     right: float = 1.0
@@ -38,8 +38,11 @@ class Scales(NamedTuple):
 
 @dataclass
 class Segment:
-    """A motion from one match to another. rolled: m, ways of the wheels; along: (2 axes, 2 wheels) m, halves of them along the headings,
-    in the frame of the begin; length, turned and wheels: m, rad and m, sums of all ways forth and back, turns, and ways of both wheels."""
+    """Wheel motion from one matched pose to another.
+
+    rolled: (2,) [m], distance rolled by each wheel; along: (2 axes, 2 wheels) [m], halves of them along the headings, in the frame of
+    the begin; length [m], turned [rad], wheels [m]: sums of all distances forth and back, of turns, and of both wheels' distances.
+    """
 
     begin: Pose2
     rolled: Floats = field(default_factory=lambda: np.zeros(2))
@@ -49,7 +52,10 @@ class Segment:
     wheels: float = 0.0
 
     def roll(self, left: float, right: float, heading: float, turn: float) -> None:
-        """heading: by the odometry since the begin, at the middle of the step [rad]; turn: of the step."""
+        """Adds a step: distances [m] of the left and right wheel.
+
+        heading: [rad], of the odometry since the begin, at the middle of the step; turn: [rad], of the step.
+        """
         ways = np.array((left, right))
         self.rolled += ways
         self.along += np.outer((cos(heading), sin(heading)), ways / 2)
@@ -59,7 +65,7 @@ class Segment:
 
 
 class WheelCalibration:
-    """Radii and track as ``Scales``, with their covariance."""
+    """Wheel radii and track as ``Scales``, with their covariance."""
 
     def __init__(self, track: float) -> None:
         """track: m, nominal."""
@@ -71,26 +77,31 @@ class WheelCalibration:
 
     @property
     def scales(self) -> Scales:
+        """The scales as they are known now."""
         return Scales(*self._kalman.x.tolist())
 
     @property
     def covariance(self) -> Floats:
-        """(3, 3); larger where the segments fit worse than they should. What was not moved stays as uncertain as it was."""
+        """Covariance (3, 3) of the scales, larger where segments fit worse than they should.
+
+        What was not moved stays as uncertain as it was.
+        """
         limit: Floats = np.minimum(1.0, PRIOR / np.sqrt(np.diag(self._kalman.P) * self._worse))
         return self._kalman.P * self._worse * np.outer(limit, limit)
 
     @property
     def sigmas(self) -> Floats:
-        """(3,)."""
+        """1 sigma (3,) [-] of left radius, right radius and track."""
         return np.sqrt(np.diag(self.covariance))
 
     @property
     def is_certain(self) -> bool:
+        """Whether enough segments were used and all sigmas are small enough."""
         return self.used >= LEAST_SEGMENTS and bool(np.all(self.sigmas < CERTAIN))
 
     @property
     def differs(self) -> bool:
-        """Whether any scale is surely not one."""
+        """Whether any scale differs from one by more than two sigma."""
         return bool(np.any(np.abs(self._kalman.x - 1.0) > 2.0 * self.sigmas))
 
     @property
@@ -98,7 +109,7 @@ class WheelCalibration:
         return max(self._misfit, 1.0)
 
     def add(self, segment: Segment, end: Pose2) -> bool:
-        """end: where the scans have the base at the segment's end, in the frame of its begin; whether it was used."""
+        """Takes a segment whose end the scans see at ``end``, in the same frame as ``segment.begin``; whether it was used."""
         matched = compose(inverse(segment.begin), end)
         left, right, track = self._kalman.x
         turn = (segment.rolled[1] * right - segment.rolled[0] * left) / (self._track * track)
@@ -129,7 +140,10 @@ class SegmentMaker:
         self._last = 0.0
 
     def roll(self, left: float, right: float, heading: float, slipping: bool) -> None:
-        """left, right: m, ways by the nominal radii; heading: of the odometry after the step [rad]; a segment with slip is thrown away."""
+        """Adds a step: distances [m] of the left and right wheel by their nominal radii; a segment with slip is discarded.
+
+        heading: [rad], of the odometry after the step.
+        """
         turn = wrap(heading - self._last)
         self._last = heading
         if slipping:
@@ -139,7 +153,7 @@ class SegmentMaker:
             self._heading += turn
 
     def match(self, map_from_base: Pose2) -> None:
-        """A pose by the scans, at the end of the last step."""
+        """Takes a matched pose at the end of the last step; a segment that is long enough ends there."""
         segment = self._segment
         if segment is not None and segment.length < LONG and segment.turned < WIDE:
             return

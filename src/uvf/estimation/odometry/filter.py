@@ -43,7 +43,7 @@ NOTHING = slice(0, 0)
 
 
 class DriveFilter:
-    """One filter. States by ``states``; ``track`` and the wheels' radius may be changed while running."""
+    """Odometry filter. States as in ``states``; ``track`` [m] and the wheels' radii may be changed while running."""
 
     def __init__(self, kind: Kind, noise: Noise, track: float, gnss: GnssSensor | None = None) -> None:
         """gnss: data sheet of a receiver, whose slow error is estimated too; the pose is then corrected, else it is held."""
@@ -67,73 +67,76 @@ class DriveFilter:
 
     @property
     def pose(self) -> Pose2:
-        """parent_from_base."""
+        """Pose parent_from_base (x [m], y [m], heading [rad])."""
         x, y, heading = self.kalman.x[POSE].tolist()
         return Pose2(x, y, wrap(heading))
 
     @property
     def bias(self) -> float:
-        """Of the gyroscope [rad/s]."""
+        """Bias of the gyroscope [rad/s]."""
         return float(self.kalman.x[GYRO_BIAS])
 
     @property
     def turn_rate_variance(self) -> float:
-        """(rad/s)^2."""
+        """Variance of the turn rate [(rad/s)^2]."""
         return float(self.kalman.P[GYRO_BIAS, GYRO_BIAS]) + self.noise.gyro**2 / WHEEL_PERIOD
 
     @property
     def speeds(self) -> tuple[float, float]:
-        """m/s forward and rad/s of the last step."""
+        """Forward speed [m/s] and turn rate [rad/s] of the last step."""
         return float(self.kalman.x[SPEED]), self._turn_rate
 
     @property
     def state(self) -> Floats:
-        """(n,)."""
+        """Mean (n,) of the states, n = 8, or 10 with satellites."""
         return self.kalman.x
 
     @property
     def covariance(self) -> Floats:
-        """(n, n)."""
+        """Covariance (n, n) of the states."""
         return self.kalman.P
 
     @property
     def slip_ratio(self) -> float:
-        """Of the worse wheel: above 1 it is not believed."""
+        """Test ratio [-] of the worse wheel: above 1 it is not believed."""
         return max(watch.ratio for watch in self._watches.values())
 
     def resume(self, pose: Pose2, covariance: Floats, bias: float) -> None:
-        """Goes on from where a filter before this one has come to. covariance: (3, 3) of the pose."""
+        """Goes on from a former filter's pose, its covariance (3, 3) [m^2, rad^2], and the gyroscope's bias [rad/s]."""
         self.kalman.x[POSE] = pose
         self.kalman.P[POSE, POSE] = covariance
         self.kalman.x[GYRO_BIAS] = bias
 
     def place(self, pose: Pose2, sigmas: tuple[float, float]) -> None:
-        """Begins at a pose with 1 sigma of position [m] and heading [rad]."""
+        """Sets the pose, with 1 sigma of position [m] and heading [rad]."""
         self.kalman.x[POSE] = pose
         self.kalman.P[POSE, :] = self.kalman.P[:, POSE] = 0.0
         self.kalman.P[POSE, POSE] = np.diag((sigmas[0] ** 2, sigmas[0] ** 2, sigmas[1] ** 2))
 
     def doubt_position(self, sigma: float) -> None:
-        """The position is as uncertain as ``sigma`` [m] on top: measurements have said for long that it is wrong."""
+        """Adds ``sigma`` [m] to the position's uncertainty: measurements have said for long that it is wrong."""
         self.kalman.P[[0, 1], [0, 1]] += sigma**2
 
     def believe_radii(self) -> None:
-        """The wheels' ways are told by other radii from now on, which hold as well as those before did at the start."""
+        """Sets the estimated errors of the wheel radii to zero: from now on the wheels' distances are told by other radii."""
         self.kalman.x[[LEFT, RIGHT]] = 0.0
 
     def correct(self, measured: Measured, gate: float = np.inf) -> float:
-        """Takes a measurement in, unless its normalised innovation squared is beyond the gate; its part of the gate."""
+        """Corrects by a measurement unless its normalised innovation squared exceeds ``gate`` [-]; returns their ratio [-].
+
+        A ratio of 1 or more means that the measurement was refused.
+        """
         ratio = misfit(self.kalman, measured) / gate
         if ratio < 1.0:
             correct(self.kalman, measured, self._held)
         return ratio
 
     def see(self, speed: float) -> None:
-        """Forward speed by the scans [m/s], for when the wheels are not believed."""
+        """Corrects the forward speed by that of the scans [m/s], for when the wheels are not believed."""
         self.correct(_linear(speed, len(self.kalman.x), {SPEED: 1.0}, SEEN_SPEED**2))
 
     def step(self, step: Step) -> None:
-        """Moves on by a step."""
+        """Predicts and corrects by the wheels and the inertial unit of one step."""
         self._drive(step)
         told = model.told(step, self.track)
         turn = model.turn_rate(self.kalman.x, told) * step.dt

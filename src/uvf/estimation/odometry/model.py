@@ -20,13 +20,14 @@ Told = tuple[float, float, float, float, float, float, bool, bool]
 
 
 def told(step: Step, track: float) -> Told:
+    """The step and the track [m] as one tuple for the compiled functions."""
     rate, force = step.rate, step.force
     return step.dt, step.left, step.right, rate or 0.0, force or 0.0, track, rate is not None, force is not None
 
 
 @compiled
 def turn_rate(x: Floats, told: Told) -> float:
-    """rad/s; by the wheels where there is no gyroscope."""
+    """Turn rate [rad/s] at state ``x`` (n,); by the wheels where there is no gyroscope."""
     dt, left, right, rate, _, track, gyro, _ = told
     if gyro:
         return float(rate - x[GYRO_BIAS])
@@ -35,13 +36,13 @@ def turn_rate(x: Floats, told: Told) -> float:
 
 @compiled
 def mean_speed(x: Floats, told: Told) -> float:
-    """m/s over the step whose end has the state's speed."""
+    """Mean forward speed [m/s] of the step at whose end the state ``x`` (n,) is."""
     return float(x[SPEED] - (0.5 * told[0] * (told[4] - x[ACCEL_OFFSET]) if told[7] else 0.0))
 
 
 @compiled
 def moved(x: Floats, told: Told) -> Floats:
-    """The state after the pose has moved: the arc's chord at the mean heading (as ``kinematics.move``)."""
+    """State (n,) after the pose of ``x`` (n,) has moved along the arc's chord at the mean heading (as ``kinematics.move``)."""
     dt, turn = told[0], turn_rate(x, told) * told[0]
     chord = mean_speed(x, told) * dt * np.sinc(turn / (2 * np.pi))
     y = x.copy()
@@ -53,7 +54,7 @@ def moved(x: Floats, told: Told) -> Floats:
 
 @compiled
 def moved_jacobian(x: Floats, told: Told) -> Floats:
-    """(n, n) derivative of ``moved``."""
+    """Derivative (n, n) of ``moved`` at ``x`` (n,)."""
     dt, left, right, _, _, track, gyro, accel = told
     turn = turn_rate(x, told) * dt
     arc = np.sinc(turn / (2 * np.pi))
@@ -72,7 +73,10 @@ def moved_jacobian(x: Floats, told: Told) -> Floats:
 
 
 def pose_noise(x: Floats, step: Step, noise: Noise, turn: float, track: float) -> Floats:
-    """(n, n) of the heading; without a gyroscope it is as uncertain as the wheels."""
+    """Process noise (n, n) of the pose's motion at ``x`` (n,), that of the heading [rad^2]; turn: [rad], track: [m].
+
+    Without a gyroscope the heading is as uncertain as the wheels.
+    """
     q = np.zeros((len(x), len(x)))
     q[HEADING, HEADING] = noise.turn**2 * abs(turn) + noise.gyro**2 * step.dt
     if step.rate is None:
@@ -81,9 +85,9 @@ def pose_noise(x: Floats, step: Step, noise: Noise, turn: float, track: float) -
 
 
 def wheel_variance(x: Floats, step: Step, noise: Noise, turn: float, track: float) -> tuple[float, float]:
-    """m^2 of the ways of the left and the right wheel in a step that turns by ``turn`` [rad].
+    """Variances [m^2] of the distances of left and right wheel in a step that turns by ``turn`` [rad], at ``x`` (n,); track: [m].
 
-    By the ways that the state expects: by those that were told, the ones that noise has made short would count more.
+    By the distances that the state expects: by those that were told, the ones that noise has made short would count more.
     """
     skidding = (noise.skid * turn * track / 2) ** 2 + noise.resolution**2 / 6
     way, side = float(x[SPEED]) * step.dt, turn * track / 2
@@ -91,7 +95,10 @@ def wheel_variance(x: Floats, step: Step, noise: Noise, turn: float, track: floa
 
 
 def driven(step: Step, size: int, slow: float) -> tuple[Floats, Floats]:
-    """(F, shift) of the first part: x becomes F x + shift. slow: what a step leaves of the satellites' slow error."""
+    """(F (n, n), shift (n,)) of a step's first part, in which x becomes F x + shift; ``size`` is n.
+
+    slow: the part [-] of the satellites' slow error that a step leaves.
+    """
     f, shift = np.eye(size), np.zeros(size)
     if step.force is not None:
         f[SPEED, ACCEL_OFFSET] = -step.dt
@@ -102,6 +109,7 @@ def driven(step: Step, size: int, slow: float) -> tuple[Floats, Floats]:
 
 
 def drive_noise(step: Step, noise: Noise, size: int) -> Floats:
+    """Process noise (n, n) of a step's first part, in the states' units squared; ``size`` is n."""
     q = np.zeros((size, size))
     accel = FOLLOWING if step.force is None else noise.accel
     q[SPEED, SPEED] = accel**2 * step.dt

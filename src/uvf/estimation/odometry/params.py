@@ -15,6 +15,8 @@ Scale = Annotated[float, Meta(ge=0.7, le=1.4)]
 
 
 class OdometryParams(Params, frozen=True):
+    """Parameters of the wheel odometry: noise, wheel calibration, and how the pose follows map and satellites."""
+
     filter: Annotated[Literal["ekf", "ukf"], Meta(description="extended (derivatives) or unscented (sigma points)")] = "ekf"
     distance_noise: Annotated[Positive, key("m/sqrt(m)", "1 sigma of the distance that a wheel rolls.")] = 0.005
     skid_noise: Annotated[Part, key("", "Relative error of wheel-derived rotation.")] = 0.05
@@ -42,10 +44,11 @@ class OdometryParams(Params, frozen=True):
 
     @property
     def scales(self) -> Scales:
+        """The scales of wheel radii and track as given."""
         return Scales(self.left_scale, self.right_scale, self.track_scale)
 
     def noise(self, resolution: float) -> Noise:
-        """resolution: m, way of a wheel from one tick to the next."""
+        """Noise model for wheels with ``resolution`` [m], the distance rolled from one encoder tick to the next."""
         return Noise(
             distance=self.distance_noise,
             resolution=resolution,

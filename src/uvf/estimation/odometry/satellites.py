@@ -26,7 +26,7 @@ ANYWHERE = 1000.0  # m, 1 sigma of a place that was wrong
 
 
 class SatelliteFix(NamedTuple):
-    """What a receiver says, valid for ``t``; ``known`` is False without a position in three dimensions."""
+    """A receiver's fix, valid for ``t``; ``known`` is False without a position in three dimensions."""
 
     t: float  # s
     known: bool
@@ -40,14 +40,14 @@ class SatelliteFix(NamedTuple):
 
 @dataclass(frozen=True)
 class Antenna:
-    """arm: m, of the receiver in the base; drift: m, 1 sigma of the slow part of its errors."""
+    """arm: [m], of the receiver in the base frame (forward, left); drift: [m], 1 sigma of the slow part of its errors."""
 
     arm: tuple[float, float]
     drift: float
 
 
 class Satellites:
-    """Feeds a filter with fixes; the filter's pose is in the world."""
+    """Corrects a filter by satellite fixes; the filter's pose is in the world frame."""
 
     def __init__(self, tangent: LocalTangent, antenna: Antenna, heading_sigma: float) -> None:
         """heading_sigma: rad, of the heading at the start, which a single fix does not tell."""
@@ -60,15 +60,15 @@ class Satellites:
         """Of the newest fix to its gate: above 1 it was refused."""
 
     def is_lost(self, t: float) -> bool:
-        """No fix that fits for ``LOST`` s at ``t`` [s]."""
+        """Whether at ``t`` [s] no fix has been used for ``LOST`` seconds."""
         return t - self._taken > LOST
 
     def note(self, t: float, odom_from_base: Pose2) -> None:
-        """Where the odometry has the base, for fixes that come late."""
+        """Stores the odometry's pose at ``t`` [s], for fixes that come late."""
         self._history.add(t, odom_from_base)
 
     def take(self, fix: SatelliteFix, world: DriveFilter, odom_from_base: Pose2) -> bool:
-        """A fix into the filter, whose pose belongs to ``odom_from_base``; whether it was used."""
+        """Corrects the filter ``world``, whose pose belongs to ``odom_from_base``, by a fix; whether it was used."""
         t = fix.t
         told = (fix.latitude, fix.longitude, fix.altitude, fix.horizontal_accuracy)
         known = fix.known and all(map(isfinite, told)) and fix.horizontal_accuracy > 0.0
@@ -112,7 +112,10 @@ class Satellites:
 
 
 def position(x: Floats, place: Floats, arm: Floats, variance: float) -> Measured:
-    """place: (2,) m, world, of the antenna; arm: (2,) m, of where it was then, in the base as it is now. The slow error adds to it."""
+    """Measurement of the antenna's position ``place`` (2,) [m], world frame (ENU), at state ``x`` (n,); variance: [m^2].
+
+    arm: (2,) [m], of where the antenna was at the fix, in the present base frame. The slow error of satellites adds to it.
+    """
 
     def expected(point: Floats) -> Floats:
         antenna: Floats = transform(Pose2(*point[POSE].tolist()), arm[None])[0] + point[GNSS_X : GNSS_X + 2]
@@ -126,7 +129,7 @@ def position(x: Floats, place: Floats, arm: Floats, variance: float) -> Measured
 
 
 class Changed(NamedTuple):
-    """What was otherwise when a fix was taken: heading and speed then less those of now, and the turn rate then."""
+    """State at a fix against the present one: heading and speed then less those of now, and the turn rate then."""
 
     heading: float  # rad
     speed: float  # m/s
@@ -134,7 +137,10 @@ class Changed(NamedTuple):
 
 
 def velocity(x: Floats, told: tuple[float, float], then: Changed, arm: tuple[float, float], variance: float) -> Measured:
-    """told: m/s, world, of the antenna at ``arm`` [m]."""
+    """Measurement of the antenna's velocity ``told`` (east, north) [m/s] at state ``x`` (n,); variance: [(m/s)^2].
+
+    arm: [m], of the antenna in the base frame.
+    """
     across, along = then.rate * arm[0], then.speed - then.rate * arm[1]
 
     def expected(point: Floats) -> Floats:

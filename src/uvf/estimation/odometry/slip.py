@@ -14,7 +14,7 @@ WINDOW, LEAST_WAY = 2.0, 0.15  # s and m: what the odometry went and the scans d
 
 
 class WheelWatch:
-    """Whether a wheel rolls as the inertial unit says: in each step, and on the mean of the last ones."""
+    """Tests a wheel against the inertial unit: in each step, and on the mean of the last ones."""
 
     def __init__(self) -> None:
         self.mean = 0.0
@@ -23,7 +23,7 @@ class WheelWatch:
         """Of the worse test to its gate: above 1 the wheel is not believed."""
 
     def believes(self, innovation: float, variance: float, dt: float) -> bool:
-        """innovation [m/s] and its variance in a step of ``dt`` [s]."""
+        """Whether the wheel is believed in a step of ``dt`` [s]; innovation: [m/s], and its variance [(m/s)^2]."""
         share = min(dt / MEMORY, 1.0)
         self.mean += share * (innovation - self.mean)
         of_step = innovation**2 / (ONE_GATE * variance)
@@ -33,13 +33,13 @@ class WheelWatch:
 
 
 class Slipping(NamedTuple):
-    """What an episode is told with."""
+    """What is reported of an episode of slipping."""
 
     cause: str
 
 
 class Episodes:
-    """Tells each episode of slipping once."""
+    """Reports each episode of slipping once."""
 
     def __init__(self) -> None:
         self.active = False
@@ -47,7 +47,10 @@ class Episodes:
         self._calm_for = 0.0
 
     def step(self, cause: str | None, dt: float) -> Slipping | None:
-        """cause: what disagrees now, if anything; the answer is there when an episode begins."""
+        """The episode that begins in this step of ``dt`` [s], if one does.
+
+        cause: what disagrees now, None if nothing does.
+        """
         self._doubt_for = self._doubt_for + dt if cause else 0.0
         self._calm_for = 0.0 if cause else self._calm_for + dt
         if self.active:
@@ -58,7 +61,7 @@ class Episodes:
 
 
 class Unseen(NamedTuple):
-    """Motion that the scans do not see."""
+    """Motion by odometry that the scans do not see."""
 
     cause: str
     speed: float
@@ -66,7 +69,7 @@ class Unseen(NamedTuple):
 
 
 class MatchedMotion:
-    """Compares the way by odometry with the way in the map over the last ``WINDOW``.
+    """Compares the motion by odometry with that on the map over the last ``WINDOW``.
 
     A map that is corrected by a loop looks the same when it moves the vehicle back by ``LEAST_WAY`` in that time: the odometry is then
     believed less for a moment, which does no harm.
@@ -76,7 +79,7 @@ class MatchedMotion:
         self._track: deque[tuple[float, Pose2, Pose2]] = deque()
 
     def compare(self, t: float, odom_from_base: Pose2, map_from_odom: Pose2) -> Unseen | None:
-        """At each new correction, stamped ``t`` [s]."""
+        """Motion that the scans do not see, None if they agree; called at each new correction, stamped ``t`` [s]."""
         if self._track and t <= self._track[-1][0]:
             self._track.clear()
         self._track.append((t, odom_from_base, compose(map_from_odom, odom_from_base)))
@@ -95,10 +98,10 @@ class MatchedMotion:
 
 
 def wheel_cause(name: str, told: float, expected: float) -> str:
-    """told: m/s by the wheel; expected: m/s by the inertial unit."""
+    """Text of the disagreement: ``told`` [m/s] by the wheel, ``expected`` [m/s] by the inertial unit."""
     return f"the {name} wheel rolls {told:.2f} m/s, gyroscope and accelerometer say {expected:.2f} m/s"
 
 
 def sigma(variance: float) -> float:
-    """Root of a variance that rounding may have made negative."""
+    """Square root of a variance, e.g. [m] of [m^2], which rounding may have made negative."""
     return sqrt(max(variance, 0.0))

@@ -15,7 +15,7 @@ STATES_WITH_GNSS = 10
 
 
 class Step(NamedTuple):
-    """What the sensors told of the last ``dt`` [s]."""
+    """Wheel and inertial readings of the last ``dt`` [s]."""
 
     dt: float
     left: float  # m, way of each wheel by its nominal radius
@@ -27,7 +27,7 @@ class Step(NamedTuple):
 
 @dataclass(frozen=True)
 class Noise:
-    """1 sigma each."""
+    """Noise model of the filter, 1 sigma each."""
 
     distance: float = 0.005  # m per square root of m that a wheel rolls
     resolution: float = 1e-4  # m, way of a wheel from one tick to the next

@@ -31,7 +31,10 @@ GAIN = (0.7, 1.4)  # how much longer or shorter the odometry's turns may be than
 
 @dataclass(frozen=True)
 class Skew:
-    """seconds: the odometry at ``t + seconds`` belongs to the scan stamped ``t``: negative where scans come late; sigma: s."""
+    """Time skew [s] between odometry and scans, and its 1 sigma [s].
+
+    The odometry at ``t + seconds`` belongs to the scan stamped ``t``: negative where scans come late.
+    """
 
     seconds: float
     sigma: float
@@ -41,10 +44,11 @@ UNKNOWN = Skew(0.0, PRIOR_SIGMA)
 
 
 class TimeSkew:
-    """Fed with the odometry's headings and with matched turns as they come; a turn waits until the odometry is ``REACH`` ahead of it.
+    """Estimates the skew from headings of the odometry and matched turns, as they come.
 
-    The odometry's stamps must be its own: a pose that a logger has put beside a scan may be older than the scan's stamp.
-    Stamps must rise; what comes with one that does not is left out, a step of more than ``LONGEST`` begins a new track.
+    A turn waits until the odometry is ``REACH`` ahead of it. The odometry's stamps must be its own: a pose that a logger has put beside
+    a scan may be older than the scan's stamp. Stamps must rise; what comes with one that does not is left out, a step of more than
+    ``LONGEST`` begins a new track.
     """
 
     def __init__(self) -> None:
@@ -58,7 +62,7 @@ class TimeSkew:
         self._estimate = UNKNOWN
 
     def add_odometry(self, t: float, heading: float) -> None:
-        """heading: of the base in the odometry's frame at its stamp ``t`` [rad, s]."""
+        """Adds a heading [rad] of the base in the odometry's frame, stamped ``t`` [s]."""
         if not (np.isfinite(t) and np.isfinite(heading)):
             return
         if self._times and abs(t - self._times[-1]) > LONGEST:
@@ -72,12 +76,12 @@ class TimeSkew:
         self._look()
 
     def add_turn(self, start: float, end: float, turn: float) -> None:
-        """turn: how far the base has turned from the scan stamped ``start`` to the one stamped ``end`` by matching them [rad, s]."""
+        """Adds the turn [rad] of the base, by matching, from the scan stamped ``start`` [s] to the one stamped ``end`` [s]."""
         if 0.0 < end - start <= LONGEST and np.isfinite(turn):
             self._waiting.append((start, end, wrap(turn)))
 
     def estimate(self) -> Skew:
-        """By the turns so far; ``UNKNOWN`` while these tell nothing."""
+        """The skew by the turns so far; ``UNKNOWN`` while these tell nothing."""
         if len(self._turns) >= LEAST_PAIRS and self._new >= RENEWED_AFTER * len(self._turns):
             self._estimate = fit(self._offsets, np.array(self._turns), np.array(self._told))
             self._new = 0

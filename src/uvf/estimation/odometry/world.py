@@ -24,7 +24,7 @@ JUMP = 2.0  # m, from which on the pose shown jumps instead of creeping
 
 
 class MapPose:
-    """The odometry seen through the map's newest correction."""
+    """Pose of the odometry in map and world, by the map's newest correction."""
 
     def __init__(self, world_from_map: Pose2) -> None:
         self.world_from_map = world_from_map
@@ -32,7 +32,10 @@ class MapPose:
         self._variance_then = 0.0
 
     def correct(self, newest: Pose2, covariance: Floats) -> bool:
-        """Whether the correction comes from a new match. covariance: of the odometry's pose."""
+        """Takes a correction map_from_odom; whether it comes from a new match.
+
+        covariance: (n, n) of the odometry's state, the position [m^2] first.
+        """
         x, y, yaw = self.map_from_odom
         change = max(abs(newest.x - x), abs(newest.y - y), abs(wrap(newest.yaw - yaw)))
         self.map_from_odom = newest
@@ -41,22 +44,30 @@ class MapPose:
         return change > MATCHED
 
     def map_from(self, odom_from_base: Pose2) -> Pose2:
+        """Pose map_from_base of an ``odom_from_base``."""
         return compose(self.map_from_odom, odom_from_base)
 
     def world_from(self, odom_from_base: Pose2) -> Pose2:
+        """Pose world_from_base of an ``odom_from_base``."""
         return compose(self.world_from_map, self.map_from(odom_from_base))
 
     def is_known(self, covariance: Floats) -> bool:
-        """Whether scans have been matched before the odometry could drift far; the start counts as a match."""
+        """Whether scans have been matched before the odometry could drift far; the start counts as a match.
+
+        covariance: (n, n) of the odometry's state, the position [m^2] first.
+        """
         return _worse(covariance) - self._variance_then < UNKNOWN**2
 
     def sigma(self, covariance: Floats, of_map: float) -> float:
-        """m: of a pose just corrected, and what the odometry's covariance has grown by since."""
+        """1 sigma [m] of the position: ``of_map`` [m] of a pose just corrected, and what the odometry has drifted since.
+
+        covariance: (n, n) of the odometry's state, the position [m^2] first.
+        """
         return float(np.sqrt(of_map**2 + max(_worse(covariance) - self._variance_then, 0.0)))
 
 
 class SatellitePose:
-    """A filter of its own whose pose is in the world; what is shown of it creeps, as a controller wants it."""
+    """A filter of its own with its pose in the world; the pose that is shown follows it slowly, as controllers want it."""
 
     def __init__(self, drive: DriveFilter, gnss: GnssSensor, tangent: LocalTangent, start: tuple[Pose2, float, float]) -> None:
         """start: pose in the world, and 1 sigma of its position [m] and heading [rad]."""
@@ -67,17 +78,18 @@ class SatellitePose:
         self._mapped = -np.inf
 
     def note(self, t: float, odom_from_base: Pose2) -> None:
-        """Where the odometry came to in the filter's last step."""
+        """Stores the odometry's pose after the filter's last step, at ``t`` [s]."""
         self._satellites.note(t, odom_from_base)
 
     def take(self, fixes: list[SatelliteFix], odom_from_base: Pose2) -> None:
+        """Corrects by satellite fixes; after the first, if it is used, the pose shown jumps to the filter's."""
         for fix in fixes:
             first = not self._satellites.placed
             if self._satellites.take(fix, self.drive, odom_from_base) and first:
                 self._world_from_odom = None
 
     def mapped(self, t: float, world_from_base: Pose2, sigma: float) -> None:
-        """A pose by a map that may have drifted by ``sigma`` [m]."""
+        """Corrects by a pose on the map at ``t`` [s], a map that may have drifted by ``sigma`` [m]."""
         if not self._satellites.placed or t - self._mapped < MAP_PERIOD:
             return
         self._mapped = t
@@ -88,7 +100,10 @@ class SatellitePose:
         self.drive.correct(Measured(np.array((world_from_base.x, world_from_base.y, heading)), lambda p: p[POSE], h, noise), MAP_GATE)
 
     def shown(self, odom_then: Pose2, odom_from_base: Pose2, reach: float) -> Pose2:
-        """The pose of now, ``odom_then`` being where the filter is; it comes nearer to the filter's by at most ``reach`` [m]."""
+        """Pose world_from_base to publish for ``odom_from_base``; ``odom_then`` is the odometry's pose at the filter's last step.
+
+        It moves towards the filter's pose by at most ``reach`` [m], or jumps where they are ``JUMP`` apart.
+        """
         wanted = compose(compose(self.drive.pose, inverse(odom_then)), odom_from_base)
         if self._world_from_odom is not None:
             now = compose(self._world_from_odom, odom_from_base)
@@ -100,15 +115,16 @@ class SatellitePose:
 
     @property
     def sigma(self) -> float:
-        """m, of the worse axis."""
+        """1 sigma [m] of the position, of the worse axis."""
         return sigma(_worse(self.drive.covariance))
 
     @property
     def ratio(self) -> float:
-        """Of the newest fix to its gate."""
+        """Test ratio [-] of the newest fix: above 1 it was refused."""
         return self._satellites.ratio
 
     def is_known(self, t: float) -> bool:
+        """Whether at ``t`` [s] a fix has been used within the last ``LOST`` seconds."""
         return not self._satellites.is_lost(t)
 
 

@@ -187,7 +187,8 @@ class ParticleFilter:
         off = self.poses - self.poses[int(np.argmax(self.weights))]
         off[:, 2] = wrapped(off[:, 2])  # about one of them: a mean of yaws near +-pi would lie opposite of all
         off = off - self.weights @ off
-        return (self.weights[:, None] * off).T @ off
+        covariance: Floats = (self.weights[:, None] * off).T @ off
+        return covariance
 
     def _around(self, pose: Pose2, covariance: Floats, n: int) -> Floats:
         return drawn(np.array(pose), covariance, self._rng.standard_normal((n, 3)))
