@@ -20,6 +20,27 @@ from schemas.messages import (
     StopCommand,
     Vector3,
 )
+from services.gcs.actions import (
+    Action,
+    AimGimbal,
+    Arm,
+    Cancel,
+    ClickGround,
+    Join,
+    Layer,
+    Leave,
+    LeaveWheel,
+    Looking,
+    Rescale,
+    Select,
+    SetMode,
+    ShowCamera,
+    Shown,
+    Steer,
+    StopAll,
+    TakeWheel,
+    ground_point,
+)
 from services.gcs.by_hand import ManualDriving
 from services.gcs.state.layers import ROOTS
 from services.gcs.state.session import BrowserSession
@@ -39,129 +60,6 @@ REACH = 50.0  # m, how far outside the floor a goal may still lie
 OBEYING_PLANNER = (Mode.MODE_MISSION, Mode.MODE_RETURN)
 
 
-@dataclass(frozen=True)
-class Join:
-    """A browser has connected. page: here and below, which browser."""
-
-    page: int
-
-
-@dataclass(frozen=True)
-class Leave:
-    """A browser has disconnected."""
-
-    page: int
-
-
-@dataclass(frozen=True)
-class Select:
-    page: int
-    vehicle: str
-
-
-@dataclass(frozen=True)
-class ClickGround:
-    """A click that hit no vehicle: its ray (origin [m], direction), world frame. vehicle: here and below, the one the page shows."""
-
-    vehicle: str
-    origin: tuple[float, float, float]
-    direction: tuple[float, float, float]
-
-
-@dataclass(frozen=True)
-class Arm:
-    page: int
-    vehicle: str
-    arm: bool
-
-
-@dataclass(frozen=True)
-class SetMode:
-    vehicle: str
-    mode: str
-
-
-@dataclass(frozen=True)
-class StopAll:
-    engaged: bool
-
-
-@dataclass(frozen=True)
-class Layer:
-    """Show or hide a layer of the scene on a page."""
-
-    page: int
-    name: str
-    on: bool
-
-
-@dataclass(frozen=True)
-class Cancel:
-    """Cancel the goal that the vehicle drives to."""
-
-    vehicle: str
-
-
-@dataclass(frozen=True)
-class TakeWheel:
-    """Drive the vehicle by hand from this page."""
-
-    page: int
-    vehicle: str
-
-
-@dataclass(frozen=True)
-class LeaveWheel:
-    """End driving by hand from this page."""
-
-    page: int
-
-
-@dataclass(frozen=True)
-class Steer:
-    """Directions that a page holds: parts (-1..1) of the linear and the angular scale."""
-
-    page: int
-    forward: float
-    left: float
-
-
-@dataclass(frozen=True)
-class Rescale:
-    page: int
-    key: str
-
-
-@dataclass(frozen=True)
-class ShowCamera:
-    """Show a camera of the vehicle on the page: image, chase or gimbal."""
-
-    page: int
-    name: str
-
-
-@dataclass(frozen=True)
-class Looking:
-    """The page reports that the camera picture is visible."""
-
-    page: int
-
-
-@dataclass(frozen=True)
-class AimGimbal:
-    """Point the gimbal. vehicle: the one that the page was showing; pan and tilt [rad] and mode as in GimbalCommand."""
-
-    vehicle: str
-    pan: float
-    tilt: float
-    mode: GimbalCommand.Mode
-
-
-Shown = Join | Leave | Select | Layer | ShowCamera | Looking
-"""What changes only what is seen."""
-Action = Shown | ClickGround | Arm | SetMode | StopAll | Cancel | TakeWheel | LeaveWheel | Steer | Rescale | AimGimbal
-
-
 @dataclass
 class Outbox:
     """The messages that a step sends, by the service's declared names."""
@@ -173,17 +71,6 @@ class Outbox:
     cancel: dict[str, list[Message]] = field(default_factory=dict)
     drive: dict[str, Message] = field(default_factory=dict)
     gimbal: dict[str, Message] = field(default_factory=dict)
-
-
-def ground_point(origin: Sequence[float], direction: Sequence[float]) -> tuple[float, float] | None:
-    """Where a ray (origin (3,) [m], direction (3,), world) meets the ground z = 0: (x, y) [m, world]; None if it never does."""
-    o, d = np.asarray(origin, dtype=float), np.asarray(direction, dtype=float)
-    if o.shape != (3,) or d.shape != (3,) or not (np.isfinite(o).all() and np.isfinite(d).all()):
-        return None
-    if abs(d[2]) < 1e-9 or -o[2] / d[2] <= 0:
-        return None
-    hit = o - d * o[2] / d[2]
-    return float(hit[0]), float(hit[1])
 
 
 class Commander:
@@ -198,6 +85,7 @@ class Commander:
         self.by_hand = ManualDriving({n: TeleopCommand(b.max_linear, b.max_angular) for n, b in bodies.items() if b is not None})
 
     def waits_for_confirmation(self, session: BrowserSession, vehicle: str, arm: bool, t: float) -> bool:
+        """Whether a second click at ``t`` [s, wall] would arm (or disarm) the vehicle."""
         asked = session.to_confirm
         return asked is not None and asked[:2] == (vehicle, arm) and t - asked[2] <= CONFIRM_WITHIN
 

@@ -4,7 +4,8 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from schemas.messages import ModeRequest
-from services.gcs.commands import Arm, Cancel, Commander, SetMode, StopAll
+from services.gcs.actions import Arm, Cancel, SetMode, StopAll
+from services.gcs.commands import Commander
 from services.gcs.state.layers import hidden_roots
 from services.gcs.state.session import BrowserSession
 from services.gcs.state.state import Model, VehicleModel

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from services.gcs.commands import Action
+from services.gcs.actions import Action
 from services.gcs.view.drawing import Button
 
 PLACES = {"stop": 1.0, "release": 1.1, "cancel": 55.0}

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from services.gcs.commands import Action, AimGimbal
+from services.gcs.actions import Action, AimGimbal
 from services.gcs.view.camera_panel import MODES, GimbalPanel
 from services.gcs.view.drawing import PagePanel
 

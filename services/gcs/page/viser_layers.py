@@ -6,7 +6,7 @@ from typing import Any
 import viser
 from viser import _messages
 
-from services.gcs.commands import Action, Layer
+from services.gcs.actions import Action, Layer
 from services.gcs.state.layers import ROOTS, SHOWN_AT_FIRST
 
 

@@ -10,7 +10,7 @@ import numpy as np
 import viser
 from numpy.typing import NDArray
 
-from services.gcs.commands import Action, ClickGround, Join, Leave, Select
+from services.gcs.actions import Action, ClickGround, Join, Leave, Select
 from services.gcs.page.viser_buttons import ViserButtons
 from services.gcs.page.viser_panel import ViserPanel
 from services.gcs.page.viser_scene import ViserScene

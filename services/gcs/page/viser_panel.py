@@ -7,7 +7,7 @@ from typing import Any
 import viser
 from viser import _messages
 
-from services.gcs.commands import Action
+from services.gcs.actions import Action
 from services.gcs.page.viser_buttons import ViserButtons
 from services.gcs.page.viser_cameras import ViserCameras
 from services.gcs.page.viser_layers import ViserLayers

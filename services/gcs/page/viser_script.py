@@ -3,7 +3,7 @@
 import json
 from pathlib import Path
 
-from services.gcs.commands import Action, LeaveWheel, Looking, Rescale, Select, ShowCamera, Steer, TakeWheel
+from services.gcs.actions import Action, LeaveWheel, Looking, Rescale, Select, ShowCamera, Steer, TakeWheel
 from services.gcs.view.markup import Html, html
 
 STYLE = Path(__file__).with_name("page.css")

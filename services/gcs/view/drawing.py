@@ -7,7 +7,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from services.gcs.commands import Action
+from services.gcs.actions import Action
 from services.gcs.state.state import DisplayPose
 from services.gcs.view.camera_panel import GimbalPanel
 from services.gcs.view.markup import Html

@@ -83,9 +83,8 @@ def instrument(v: VehicleModel) -> Html:
     mode = html("{}", mode_name(v.status.mode).upper() if v.status is not None else "NO STATUS")
     armed = v.status is not None and v.status.armed
     place, ground = v.place, v.member.file.ground
-    roll, pitch, yaw = to_euler(place.wxyz) if place is not None else (0.0, 0.0, pi / 2)
-    heading = pi / 2 - yaw
     if ground is not None:
+        heading = pi / 2 - to_euler(place.wxyz)[2] if place is not None else 0.0
         left = v.nav_status.distance_left if v.nav_status is not None and v.nav_status.state == NavStatus.DRIVING else None
         return drive_panel(DriveInstruments(heading, v.speed, v.turn_rate, ground.max_linear, ground.max_angular, left, mode, armed))
     nav = v.nav

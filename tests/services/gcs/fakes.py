@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Any
 
-from services.gcs.commands import Join
+from services.gcs.actions import Join
 from services.gcs.service import GroundStation
 from tests.services.gcs.scripted import Script, demo_site
 from uvf.runtime.contract.instances import ServiceInstance

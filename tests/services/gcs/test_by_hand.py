@@ -3,8 +3,8 @@
 import pytest
 
 from schemas.messages import CancelRequest, Mode, ModeRequest, NavStatus
+from services.gcs.actions import Cancel, ClickGround, Join, Leave, LeaveWheel, Rescale, Select, SetMode, Steer, StopAll, TakeWheel
 from services.gcs.by_hand import PATIENCE, ManualDriving
-from services.gcs.commands import Cancel, ClickGround, Join, Leave, LeaveWheel, Rescale, Select, SetMode, Steer, StopAll, TakeWheel
 from services.gcs.page.viser_script import action_in
 from tests.services.gcs.fakes import ME, OTHER, Station
 from tests.services.gcs.scripted import UAV, UGV

@@ -5,7 +5,8 @@ import pytest
 
 from schemas import topics
 from schemas.messages import ArmRequest, GoalRequest, Mode, ModeRequest
-from services.gcs.commands import ANSWER_WITHIN, CONFIRM_WITHIN, Arm, ClickGround, Layer, Select, SetMode, StopAll, describe, ground_point
+from services.gcs.actions import Arm, ClickGround, Layer, Select, SetMode, StopAll, ground_point
+from services.gcs.commands import ANSWER_WITHIN, CONFIRM_WITHIN, describe
 from tests.services.gcs.fakes import ME, Station
 from tests.services.gcs.scripted import UAV, UGV
 from uvf.runtime.state.stop_all import StopVoice

@@ -4,7 +4,7 @@ import pytest
 
 from schemas import topics
 from schemas.messages import Mode
-from services.gcs.commands import Arm, Select, SetMode, StopAll
+from services.gcs.actions import Arm, Select, SetMode, StopAll
 from services.gcs.service import GroundStation
 from tests.services.gcs.fakes import ME, Station
 from tests.services.gcs.scripted import UAV, UGV, demo_site, with_leader

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 import websockets
 
-from services.gcs.commands import Join, Leave, Select, SetMode, StopAll, TakeWheel
+from services.gcs.actions import Join, Leave, Select, SetMode, StopAll, TakeWheel
 from services.gcs.page.viser_page import ViserPage
 from services.gcs.page.viser_script import action_in, shape_in
 from services.gcs.state.state import DisplayPose

@@ -6,7 +6,7 @@ import pytest
 
 from schemas import topics
 from schemas.messages import GimbalCommand, JointState, JointStates
-from services.gcs.commands import AimGimbal, Looking, Select, ShowCamera
+from services.gcs.actions import AimGimbal, Looking, Select, ShowCamera
 from services.gcs.page.viser_script import action_in
 from services.gcs.view.camera_panel import SEEN_FOR
 from tests.services.gcs.fakes import ME, Station

@@ -8,7 +8,7 @@ import pytest
 from schemas import topics
 from schemas.limits import LENGTHS
 from schemas.messages import Fence, FenceZone, Vector3
-from services.gcs.commands import Layer
+from services.gcs.actions import Layer
 from services.gcs.view import view
 from services.gcs.view.drawing import MeshNode, Polyline
 from services.gcs.view.fences import CORNERS, KEEP_OUT, fence_nodes

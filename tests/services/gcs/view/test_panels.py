@@ -5,7 +5,7 @@ import pytest
 
 from schemas import topics
 from schemas.messages import Clock, Event, NavState, Process, Processes, Vector3
-from services.gcs.commands import ClickGround, Select, StopAll
+from services.gcs.actions import ClickGround, Select, StopAll
 from services.gcs.view import panels, status
 from tests.services.gcs.fakes import ME, Station
 from tests.services.gcs.scripted import UAV, UGV

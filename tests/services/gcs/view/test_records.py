@@ -6,7 +6,7 @@ import pytest
 
 from schemas import topics
 from schemas.messages import Event, Health, Process, Processes, Refusal
-from services.gcs.commands import SetMode
+from services.gcs.actions import SetMode
 from tests.services.gcs.fakes import Station
 from tests.services.gcs.scripted import UAV, UGV
 

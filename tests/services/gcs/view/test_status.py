@@ -4,7 +4,7 @@ import pytest
 
 from schemas import topics
 from schemas.messages import Clock, Event, Guest, NavStatus, Process, Processes, StopCommand, Timestamp, VehicleStatus
-from services.gcs.commands import StopAll
+from services.gcs.actions import StopAll
 from services.gcs.view.status import ALERT_LENGTH, ALERTS_SHOWN, alerts
 from tests.services.gcs.fakes import Station
 from tests.services.gcs.scripted import UAV, UGV

@@ -9,7 +9,7 @@ import pytest
 from PIL import Image
 
 from schemas.messages import Clock, FrameTransform, Quaternion, Vector3
-from services.gcs.commands import ClickGround, Layer
+from services.gcs.actions import ClickGround, Layer
 from services.gcs.state.state import Model
 from services.gcs.view.drawing import FloorPicture, MeshNode, Points, Polyline, TextNode
 from services.gcs.view.view import SceneView, floor_picture
