@@ -34,6 +34,7 @@ CIRCLE: dict[str, Any] = {"kind": "orbit", "x": 300.0, "y": 100.0, "z": 150.0, "
 
 
 def lockstep_of(site: Scenario) -> Lockstep:
+    """The simulator of aircraft and the autopilot alone."""
     return Lockstep(catalogue.hosts(site, [catalogue.kind(name) for name in KINDS]))
 
 
@@ -46,12 +47,14 @@ class Stopwatch:
         shell.advance = self  # type: ignore[method-assign, assignment]
 
     def __call__(self) -> None:
+        """One step, with its CPU time [s] kept."""
         begun = time.thread_time()
         self._advance()
         self.taken.append(time.thread_time() - begun)
 
 
 def cost(estimator: str) -> dict[str, float]:
+    """Times [ms] of the autopilot's steps with one estimator: per simulated second, and of a step the mean and the 99th percentile."""
     with tempfile.TemporaryDirectory() as folder:
         site, _ = course_site("milvus", Case((0.0, -10.0), "moderate"), "good", Path(folder))
     member = site.members[PLANE]
@@ -110,10 +113,12 @@ def _side_slip(probe: Probe) -> float:
 
 
 def costs(data: Path | None) -> Figures:
+    """A row for each estimator, ``full`` and ``book``."""
     return {f"milvus, estimator {kind}": cost(kind) for kind in ("full", "book")}
 
 
 def slips(data: Path | None) -> Figures:
+    """Mean true side slip [deg] of each flight, with the loop and without it."""
     flown = {"level": (STRAIGHT, 0.0), "level, rigged": (STRAIGHT, RIGGED), "circle": (CIRCLE, 0.0), "circle, rigged": (CIRCLE, RIGGED)}
     return {f"slip, {name}": {"deg": slip(*of, True), "deg without its loop": slip(*of, False)} for name, of in flown.items()}
 

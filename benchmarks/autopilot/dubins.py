@@ -55,6 +55,7 @@ class Probe:
         self._curves: list[tuple[int, Curve, list[tuple[float, ...]]]] = []
 
     def __call__(self, t: float) -> bool:
+        """Whether the mission goes on; keeps where the aircraft is on its curve [m] at t [s]."""
         navigator = self._autopilot._mode_manager.navigator
         piece, (east, north, _) = navigator._piece, self._craft.motion.position.tolist()
         if isinstance(piece, Curve) and navigator.index is not None:
@@ -69,13 +70,16 @@ class Probe:
 
     @property
     def items(self) -> tuple[PlanItem, ...]:
+        """The plan, item by item."""
         return self._autopilot._mode_manager.navigator.items
 
     def flown(self) -> list[Flown]:
+        """Every curve flown so far."""
         return [Flown(item, curve.way, np.array(rows)) for item, curve, rows in self._curves]
 
 
 def fly() -> tuple[list[Flown], tuple[PlanItem, ...]]:
+    """The mission in lockstep: its curves as flown, and the items of its plan."""
     site = load_scenario(MISSION)
     lockstep = Lockstep(catalogue.hosts(site, [catalogue.kind("sim_air"), catalogue.kind("autopilot")]))
     with closing(lockstep):
@@ -117,6 +121,7 @@ def figures(flown: list[Flown]) -> Figures:
 
 
 def draw(flown: list[Flown], items: tuple[PlanItem, ...], path: Path) -> None:
+    """The map of the curves, and how far beside its path [m] the aircraft was over time [s]."""
     figure = Figure(figsize=(13.0, 7.5), layout="constrained")
     above, beside = figure.subplots(1, 2, width_ratios=(2, 1))
     _map(above, flown, items)
@@ -144,6 +149,7 @@ def _map(axes: Axes, flown: list[Flown], items: tuple[PlanItem, ...]) -> None:
 
 
 def switches_case(data: Path | None) -> Figures:
+    """A row for each path of the mission: its length, overshoots and RMS [m]."""
     return figures(fly()[0])
 
 

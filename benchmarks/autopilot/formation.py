@@ -38,11 +38,13 @@ SAMPLES = 0.2  # s
 
 
 def site_in(case: str) -> Scenario:
+    """The mission in one of WINDS."""
     site, wind = load_scenario(MISSION), WINDS[case]
     return site if wind is None else replace(site, mission=msgspec.structs.replace(site.mission, wind=wind))
 
 
 def fly(site: Scenario, seconds: float) -> Motions:
+    """The true motions of so many seconds [s] in lockstep."""
     lockstep, scorer = Lockstep(catalogue.hosts(site, [catalogue.kind("sim_air"), catalogue.kind("autopilot")])), Scorer(site)
     scorer.follow(lockstep.bus)
     with closing(lockstep):
@@ -51,6 +53,7 @@ def fly(site: Scenario, seconds: float) -> Motions:
 
 
 def follows(site: Scenario) -> dict[str, Follow]:
+    """By follower, whom it follows and where its station is."""
     return {name: m.entry.job.follow for name, m in site.members.items() if m.entry.job.follow is not None}
 
 
@@ -60,6 +63,7 @@ def errors(site: Scenario, flown: Motions) -> dict[str, Floats]:
 
 
 def figures(site: Scenario, flown: Motions, case: str) -> Figures:
+    """A row for each follower: distances from its station and the least one between aircraft [m]."""
     table: Figures = {}
     for name, rows in errors(site, flown).items():
         late, aside, above = np.sqrt(np.mean(rows[:, 1:] ** 2, axis=0))
@@ -106,6 +110,8 @@ def _finish(axes: Axes, title: str) -> None:
 
 
 def case(name: str) -> Callable[[Path | None], Figures]:
+    """What flies the mission in one of WINDS to its end."""
+
     def flown(data: Path | None) -> Figures:
         site = site_in(name)
         return figures(site, fly(site, site.mission.duration), name)

@@ -159,6 +159,7 @@ def fly(seed: int, wind: tuple[float, float] | None = None, model: str = "milvus
 
 
 def score(seed: int, wind: tuple[float, float], watch: Watch, crash: str) -> Landed:
+    """Touchdown and ground roll of one flight from the truth, or why it is not complete; wind: (east, north) m/s."""
     rows, lane = watch.rows, watch.lane
     arounds = sum("go-around" in e.cause for e in watch.events)
     if crash or lane is None:
@@ -204,11 +205,13 @@ def _flown(seed: int) -> Landed:
 
 
 def flown(seeds: Sequence[int]) -> list[Landed]:
+    """One flight a seed, on all processors."""
     with ProcessPoolExecutor() as pool:
         return list(pool.map(_flown, seeds))
 
 
 def summary(rows: Sequence[Landed]) -> dict[str, float]:
+    """Over all complete flights: where [m] and how fast [m/s] the wheels touched, angles [deg], runs [m]; and how many were complete."""
     whole = [r for r in rows if r.complete]
     column = {
         name: np.array([getattr(r, name) for r in whole]) for name in ("along", "aside", "sink", "airspeed", "roll", "crab", "rolled")
@@ -232,6 +235,7 @@ def summary(rows: Sequence[Landed]) -> dict[str, float]:
 
 
 def landings(data: Path | None) -> Figures:
+    """FLIGHTS flights in gusty wind, as one row."""
     return {f"milvus, {WIND:g} m/s, gusts, {CROSSWIND:g} m/s across at most": summary(flown(range(1, FLIGHTS + 1)))}
 
 

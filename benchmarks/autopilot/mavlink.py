@@ -86,6 +86,7 @@ class Station:
         self._mav = mav.MAVLink(None, 255, 190)
 
     def step(self, n: int, to: tuple[str, int]) -> None:
+        """Reads what has come; once in 50 ticks sends a heartbeat and a command."""
         while True:
             try:
                 self.heard += self.sock.recv(1024)[5] == 1
@@ -99,6 +100,7 @@ class Station:
 
 
 def load(data: Path | None) -> dict[str, dict[str, float]]:
+    """CPU time of the service in % of a core, and messages that one station hears of one aircraft in a second."""
     fleet, bus, stations = five(), LocalBus(), [Station() for _ in range(STATIONS)]
     link = UdpLink([station.sock.getsockname() for station in stations])
     nowhere = FileStore(Path(tempfile.gettempdir()) / "uvf-no-settings.json")  # nothing is set, so it is never written
@@ -123,6 +125,7 @@ def load(data: Path | None) -> dict[str, dict[str, float]]:
 
 
 def rubbish(data: Path | None) -> dict[str, dict[str, float]]:
+    """How many broken packets are refused in a second of CPU time."""
     rng, codec = random.Random(1), Codec()
     order = mav.MAVLink_command_long_message(1, 1, 400, 0, 1.0, 0, 0, 0, 0, 0, 0).pack(mav.MAVLink(None, 255, 190))
     packets = [_spoiled(rng, order) for _ in range(PACKETS)]

@@ -68,16 +68,20 @@ class Tap:
 
     @property
     def gnss_age(self) -> float:
+        """s, of the estimator behind."""
         return self._inner.gnss_age
 
     @property
     def started(self) -> bool:
+        """Of the estimator behind."""
         return self._inner.started
 
     def begin_at(self, roll: float, pitch: float, yaw: float) -> None:
+        """Handed on; angles [rad]."""
         self._inner.begin_at(roll, pitch, yaw)
 
     def step(self, sensed: Sensed, params: AirParams, dt: float) -> Estimate:
+        """Handed on; keeps in ``given`` what was sensed and the time since the step before [s]."""
         self.given = sensed, dt
         return self._inner.step(sensed, params, dt)
 
@@ -124,6 +128,7 @@ class Run(NamedTuple):
 
 
 def begun(kind: Kind, flight: Recorded) -> Estimator:
+    """An estimator of this kind with the instruments of the flight."""
     return estimator(kind, flight.instruments)
 
 
@@ -150,6 +155,7 @@ def _rms(x: Floats) -> float:
 
 
 def scores(run: Run) -> dict[str, float]:
+    """RMS errors [deg, m, m/s] after SETTLED, and NEES per state where the estimator tells its covariance."""
     k = run.t > SETTLED
     e = run.errors[k]
     roll, pitch, yaw = (np.degrees(_rms(e[:, i])) for i in (6, 7, 8))
@@ -189,6 +195,7 @@ def with_outage(kind: Kind, flight: Recorded) -> tuple[Run, Run]:
 
 
 def judged(kind: Kind, flight: Recorded) -> dict[str, float]:
+    """A row of one estimator: its scores, drift and sigma [m] of the outage, and the time [s] to find a bias."""
     run, without = with_outage(kind, flight)
     row = scores(run) | {"drift": float(np.hypot(*without.errors[-1, :2])), "sigma": float(without.sigmas[-1, 0])}
     if kind == "full":

@@ -45,6 +45,7 @@ class Watcher(Service):
         state: NavState | None = topic(topics.NAV_STATE)
 
     def step(self, t: float, now: Inputs) -> Outputs:
+        """An empty state each time."""
         return self.Outputs(state=NavState())
 
 
@@ -57,6 +58,7 @@ TOOLS = {
 
 
 def write_log(path: Path) -> None:
+    """BYTES of noise as pictures, and SMALL messages beside each."""
     noise = random.Random(1).randbytes(PICTURE + 9973)
     imu = Imu(specific_force=Vector3(z=9.81)).SerializeToString()
     with Recorder(path) as recorder:
@@ -73,6 +75,7 @@ def _sample(topic: topics.Topic[Any], payload: bytes, stamp_ns: int, seq: int) -
 
 
 def measure(tool: str, _: Path | None = None) -> Figures:
+    """Size of the log, memory [MB] and time [s] of one tool, in a process of its own."""
     with tempfile.TemporaryDirectory() as folder:
         log = Path(folder) / "log.mcap"
         write_log(log)

@@ -54,6 +54,7 @@ def building(wear: Wear, seed: int) -> tuple[Driven, Floats]:
 
 
 def measured(method: str, name: str) -> dict[str, float]:
+    """Errors [m, deg] and speed of a method in one building; bend and scale of its walls where the map lies on the plan."""
     wear, seed = BUILDINGS[name]
     driven, walls = building(wear, seed)
     params = method_params(method, {}, "defaults")

@@ -43,16 +43,20 @@ ANYWHERE = 100.0  # m
 
 @dataclass(frozen=True)
 class Merged:
+    """What has become of sessions that were put together, and the CPU and wall time [s] that it took."""
+
     team: Team
     cpu: float
     wall: float
 
     @property
     def figures(self) -> dict[str, float]:
+        """Whether there is one map now, and both times [s]."""
         return {"joined": float(len(self.team.groups) == 1), "CPU s": round(self.cpu, 2), "wall s": round(self.wall, 2)}
 
 
 def merged(sessions: dict[str, MappingSession]) -> Merged:
+    """Sessions handed to a team one after the other, after a warm-up."""
     warm_up()
     wall, cpu, team = time.perf_counter(), time.process_time(), Team()
     for name, session in sessions.items():
@@ -63,6 +67,7 @@ def merged(sessions: dict[str, MappingSession]) -> Merged:
 
 @cache
 def unbroken(path: Path) -> LogRun:
+    """The whole log as one robot drives it."""
     return run_over(open_log(path), make_method(DEFAULT_METHOD, method_params(DEFAULT_METHOD, {}, "defaults")))
 
 
@@ -74,11 +79,13 @@ def parts(path: Path, share: float, both: bool) -> list[LogRun]:
 
 
 def session_of(run: LogRun) -> MappingSession:
+    """The session of a run whose method keeps one."""
     assert run.session is not None
     return run.session
 
 
 def laid_anywhere(session: MappingSession, seed: int) -> MappingSession:
+    """The session in a frame of its own: within ANYWHERE [m] and turned by anything."""
     x, y, yaw = np.random.default_rng(seed).uniform(-1.0, 1.0, 3).tolist()
     return session.moved(Pose2(x * ANYWHERE, y * ANYWHERE, yaw * np.pi))
 
@@ -92,6 +99,7 @@ def team_from_readings(run: LogRun, placed: Floats) -> Floats:
 
 
 def errors(relations: Relations, stamps: Floats, poses: Floats) -> dict[str, float]:
+    """Of poses against relations: mean, median and worst [m], and the mean turn [deg]."""
     found = relation_errors(relations, stamps, poses)
     metres = found.freiburg_translation
     return {
@@ -105,6 +113,7 @@ def errors(relations: Relations, stamps: Floats, poses: Floats) -> dict[str, flo
 
 
 def cut(log: str, path: Path, per_cent: int, data: Path | None) -> Figures:
+    """One log as two robots' after ``per_cent`` of its readings: whether they join, the errors across the cut, and times [s]."""
     first, second = parts(path, per_cent / 100.0, True)
     found = merged({"first": session_of(first), "second": laid_anywhere(session_of(second), per_cent)})
     row = found.figures
@@ -123,6 +132,7 @@ def cut(log: str, path: Path, per_cent: int, data: Path | None) -> Figures:
 
 
 def strangers(name: str, path: Path, other: Path, data: Path | None) -> Figures:
+    """The beginnings of two buildings' logs, which must not join, and times [s]."""
     sessions = {of: session_of(parts(p, BEGINNING, False)[0]) for of, p in (("one", path), ("other", other))}
     return {name: merged(sessions).figures}
 

@@ -26,6 +26,7 @@ EVERY = 500.0  # m driven between two rows
 
 
 def country() -> Driven:
+    """2 km through open country, with a sweep each SPARSE places."""
     things = scattered(ROAD, EACH, np.random.default_rng(1))
     return drive(route(ROAD)[::SPARSE], things, LIDAR, Wear(), 1)
 
@@ -45,6 +46,7 @@ def grown(name: str) -> Figures:
 
 
 def measure(name: str, _: Path | None = None) -> Figures:
+    """Memory [MB] of one method, in a process of its own."""
     rows: Figures = in_own_process("benchmarks.slam.memory", name)
     return rows
 

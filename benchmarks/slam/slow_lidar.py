@@ -73,6 +73,7 @@ class Eights(Service):
         self._pace = pace
 
     def step(self, t: float, now: Reads) -> Outputs:
+        """Stands for a second, then drives turns to the left and to the right."""
         side = 1.0 if (t - 1.0) * self._pace.angular // (2 * np.pi) % 2 == 0 else -1.0
         left, right = self._drive.wheels(Twist(self._pace.linear, side * self._pace.angular) if t > 1.0 else Twist(0.0, 0.0))
         return self.Outputs(wheels=WheelCommand(timestamp=stamp(t), left=left, right=right))
@@ -94,6 +95,7 @@ def slow_site(folder: Path, clockwise: bool = False) -> Scenario:
 
 
 def driven(site: Scenario, pace: Twist, duration: float, log: Path) -> None:
+    """Drives for ``duration`` [s] in lockstep with mapping, and leaves the log."""
     ground = site.members[VEHICLE].file.ground
     assert ground is not None
     drive = DifferentialDrive(ground.wheel_radius, ground.track)
@@ -132,6 +134,7 @@ class Truth:
     walls: Floats
 
     def at(self, stamps: Floats) -> Floats:
+        """(k, 3) x, y [m], yaw [rad] at stamps [s]."""
         return interpolated(self.track, stamps)
 
     def off(self, readings: Sequence[Reading], world_from_base: Floats) -> tuple[float, float]:
@@ -156,16 +159,19 @@ def _to_segments(points: Floats, walls: Floats) -> Floats:
 
 
 def truth_of(log: Path, site: Scenario) -> Truth:
+    """The true way of a log, and the floor's true walls at the height of the lidar."""
     return Truth(true_poses(read_log(log), VEHICLE), floor_segments(site.world, lidar_of(site).mount.xyz[2]))
 
 
 def lidar_of(site: Scenario) -> Lidar:
+    """The rover's."""
     lidar = site.members[VEHICLE].file.sensors.lidar
     assert lidar is not None
     return lidar
 
 
 def row_of(log: LaserLog, truth: Truth) -> dict[str, float]:
+    """Distances of points and map from the true walls, and RMSE of the poses [m, deg], of a log mapped anew."""
     true = truth.at(log.stamps)
     run = run_over(log, make_method(DEFAULT_METHOD, method_params(DEFAULT_METHOD, {}, "defaults")))
     frames = np.array([k.map_from_base for k in run.keyframes])
@@ -189,6 +195,7 @@ def live_row(log: Path, truth: Truth) -> dict[str, float]:
 
 
 def errors(name: str, data: Path | None = None, duration: float = SECONDS) -> Figures:
+    """A row each for the log de-skewed, at the middle, at the stamp, and for the live fix, at one pace."""
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place)
         site, log = slow_site(folder), folder / "run.mcap"

@@ -48,6 +48,7 @@ class Flown:
 
 
 def mean(rows: list[Row], metrics: Sequence[str] = SHOWN) -> Row:
+    """Each metric's mean over the rows; nothing where there is no row."""
     return {m: float(np.mean([row[m] for row in rows])) for m in metrics} if rows else {}
 
 
@@ -84,6 +85,7 @@ def table(flown: Flown) -> Figures:
 
 
 def case(model: str, preset: str) -> Callable[[Path | None], Figures]:
+    """What measures one aircraft with sensors of a preset."""
     return lambda data: table(Flown(model, preset))
 
 

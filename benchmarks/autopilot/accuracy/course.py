@@ -42,6 +42,7 @@ class Course:
 
     @property
     def scale(self) -> float:
+        """Lengths of the course over those flown at DESIGN_SPEED."""
         return (self.speed / DESIGN_SPEED) ** 2
 
     @property

@@ -37,6 +37,7 @@ class Case:
     seed: int = 1
 
     def wind(self) -> dict[str, Any]:
+        """As a mission file states it: steady [m/s], east first, and turbulence."""
         wind: dict[str, Any] = {"steady": [self.steady[1], self.steady[0], 0.0]}
         return wind | ({"turbulence": {"severity": self.severity}} if self.severity else {})
 
@@ -93,6 +94,7 @@ class Probe:
         return not pilot.navigator.finished and self.craft.wreck is None
 
     def flight(self) -> Flight:
+        """What has been seen so far, column by column."""
         x = np.array(self.rows)
         return Flight(x[:, 0], x[:, 1:4], x[:, 4:7], x[:, 7:9], x[:, 9:13], x[:, 13:15], x[:, 15], x[:, 16])
 

@@ -18,6 +18,7 @@ FLOWN = {"calm": Case(), "10 m/s from the east, moderate turbulence": Case((0.0,
 
 
 def draw(flights: dict[str, tuple[Flight, Course]], path: Path) -> None:
+    """A column for each flight: its map, how far it is beside the planned path [m], and how far above the legs [m]."""
     figure = Figure(figsize=(13.0, 12.0), layout="constrained")
     rows = figure.subplots(3, len(flights), height_ratios=(3, 1, 1), squeeze=False)
     for k, (title, (flight, course)) in enumerate(flights.items()):

@@ -59,6 +59,7 @@ class Window:
 
     @property
     def climbs(self) -> bool:
+        """Whether the leg ends at another height, above or below."""
         return bool(self.begin[2] != self.end[2])
 
 
@@ -113,6 +114,7 @@ def circle_windows(flight: Flight, course: Course, after: int) -> list[Ring]:
 
 
 def rms(x: Floats) -> float:
+    """In the unit of x."""
     return float(np.sqrt(np.mean(np.square(x))))
 
 
@@ -126,6 +128,7 @@ def activity(flight: Flight, k: NDArray[np.intp]) -> Floats:
 
 
 def spread(x: Floats) -> float:
+    """Standard deviation, in the unit of x."""
     return float(np.std(x))
 
 

@@ -45,10 +45,14 @@ WORLDS = {
 
 
 class Odometer(Protocol):
-    def step(self, step: Step) -> None: ...
+    """What is compared: filters, and bare wheels."""
+
+    def step(self, step: Step) -> None:
+        """One reading of wheels and gyroscope."""
 
     @property
-    def pose(self) -> Pose2: ...
+    def pose(self) -> Pose2:
+        """Where odometry has the vehicle: m, m, rad."""
 
 
 class Wheels:
@@ -58,6 +62,7 @@ class Wheels:
         self.pose: Pose2 = IDENTITY
 
     def step(self, step: Step) -> None:
+        """Adds the arc that both wheels have rolled."""
         self.pose = move(self.pose, Twist((step.left + step.right) / 2, (step.right - step.left) / TRACK), 1.0)
 
 
@@ -86,6 +91,7 @@ def _copy(calibration: WheelCalibration) -> WheelCalibration:
 
 
 def begun(kind: Kind, scales: Scales) -> DriveFilter:
+    """A filter that starts with these scales of wheels and track."""
     noise = Noise() if scales == Scales() else Noise(scale_start=0.004)
     return DriveFilter(kind, noise, TRACK * scales.track)
 
@@ -110,6 +116,7 @@ class Ended(NamedTuple):
 
 
 def driven(odometer: Odometer, moments: Sequence[Moment], scales: Scales) -> Ended:
+    """What odometry has become at the end of a drive."""
     began = time.process_time()
     for moment in moments:
         odometer.step(_scaled(moment.step, scales))

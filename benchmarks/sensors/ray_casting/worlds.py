@@ -41,18 +41,22 @@ class Twin:
             self._add(pybullet.GEOM_PLANE, (0.0, 0.0, ground), IDENTITY)
 
     def box(self, size: Floats, position: Any, orientation: Floats = IDENTITY) -> None:
+        """size: whole edges [m]."""
         self.parts.append(solids.box(size, position, orientation))
         self._add(pybullet.GEOM_BOX, position, orientation, halfExtents=[float(s) / 2 for s in size])
 
     def cylinder(self, radius: float, height: float, position: Any, orientation: Floats = IDENTITY) -> None:
+        """Its axis along z [m]."""
         self.parts.append(solids.cylinder(radius, height, position, orientation))
         self._add(pybullet.GEOM_CYLINDER, position, orientation, radius=radius, height=height)
 
     def sphere(self, radius: float, position: Any) -> None:
+        """Radius and position in m."""
         self.parts.append(solids.sphere(radius, position))
         self._add(pybullet.GEOM_SPHERE, position, IDENTITY, radius=radius)
 
     def mesh(self, shape: trimesh.Trimesh, position: Any, orientation: Floats = IDENTITY) -> None:
+        """As triangles, of which PyBullet makes no convex hull."""
         vertices, faces = np.asarray(shape.vertices), np.asarray(shape.faces)
         self.parts.append(solids.mesh(vertices, faces, position, orientation))
         concave = {"vertices": vertices.tolist(), "indices": faces.ravel().tolist(), "flags": pybullet.GEOM_FORCE_CONCAVE_TRIMESH}
@@ -64,6 +68,7 @@ class Twin:
         pybullet.createMultiBody(0.0, shape, -1, [float(p) for p in position], (x, y, z, w), physicsClientId=self._client)
 
     def scene(self) -> Scene:
+        """The same solids for UVF's own rays."""
         return Scene(build(solids.joined(self.parts)), self._ground)
 
     def batch(self, origins: list[list[float]], ends: list[list[float]]) -> Any:
@@ -92,6 +97,7 @@ class Twin:
         return np.asarray((reach > 1.1).all(axis=1))
 
     def close(self) -> None:
+        """Ends the PyBullet world."""
         pybullet.disconnect(self._client)
 
 

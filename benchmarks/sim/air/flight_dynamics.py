@@ -126,6 +126,7 @@ def _book(models: LinearModels, name: str, moved: Floats, t: Floats) -> Floats:
 
 
 def steps(data: Path | None) -> Figures:
+    """A row for each manoeuvre: the largest deviation, and how far the models are off [%]."""
     figures: Figures = {}
     for vehicle in AIRCRAFT:
         models = linear_models(ROOT / "vehicles" / vehicle, SPEED, ALTITUDE)
@@ -139,6 +140,7 @@ def steps(data: Path | None) -> Figures:
 
 
 def energy(data: Path | None) -> Figures:
+    """A row for each performance figure, with its airspeed [m/s] and angle of attack [deg]."""
     return {f"{vehicle}: {name}": row for vehicle in AIRCRAFT for name, row in _energy(vehicle)}
 
 

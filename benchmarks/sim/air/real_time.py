@@ -46,6 +46,7 @@ class Steady(Service):
         surfaces: SurfaceCommand | None = topic(topics.SURFACE_COMMAND)
 
     def step(self, t: float, now) -> Outputs:
+        """The same deflections [rad] and throttle always."""
         return self.Outputs(surfaces=SurfaceCommand(timestamp=stamp(t), aileron=0.006, elevator=-0.135, rudder=-0.001, throttle=0.78))
 
 
@@ -98,6 +99,7 @@ def fastest(run: Callable[[], list[float]]) -> list[float]:
 
 
 def aircraft(data: Path | None) -> dict[str, dict[str, float]]:
+    """A row for each of FLEETS: real-time factors [s/s] and resident memory [MB]."""
     figures: dict[str, dict[str, float]] = {}
     for count in FLEETS:
         with tempfile.TemporaryDirectory() as folder:

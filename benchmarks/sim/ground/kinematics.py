@@ -47,6 +47,7 @@ class Driven(NamedTuple):
 
 
 def ground_vehicles() -> Iterator[tuple[str, GroundBody, Path]]:
+    """Name, body and URDF of every ground vehicle."""
     for path in sorted((ROOT / "vehicles").glob("*/vehicle.yaml")):
         ground = load_vehicle(ROOT / "vehicles", path.parent.name).ground
         if ground is not None:
@@ -66,6 +67,7 @@ def drives(body: GroundBody) -> Iterator[Drive]:
 
 
 def drive(body: GroundBody, urdf: Path, wanted: Drive) -> Driven:
+    """One drive in PyBullet alone: poses asked for, rolled by the wheels, and true."""
     world = BulletWorld([], {"one": BodyPlacement(body, engine_urdf(urdf), (0.0, 0.0, 0.0))})
     wheels, ramp = DifferentialDrive(body.wheel_radius, body.track), VelocityRamp(_limits(body, wanted.twist))
     first = _pose(world)
@@ -105,6 +107,7 @@ def apart(a: Pose2, b: Pose2) -> float:
 
 
 def figures(body: GroundBody, driven: Driven) -> dict[str, float]:
+    """Errors of position and heading, slip and creep [%], as the module states them."""
     wheels = DifferentialDrive(body.wheel_radius, body.track)
     wanted, rolled, true = driven
     turn = sum(wrap(q.yaw - p.yaw) for p, q in pairwise(wanted))
@@ -121,12 +124,14 @@ def figures(body: GroundBody, driven: Driven) -> dict[str, float]:
 
 
 def all_drives() -> Iterator[tuple[str, Drive, GroundBody, Driven]]:
+    """Every drive of every vehicle: its name, the drive, its body, and how it went."""
     for name, body, urdf in ground_vehicles():
         for wanted in drives(body):
             yield name, wanted, body, drive(body, urdf, wanted)
 
 
 def vehicles(data: Path | None) -> dict[str, dict[str, float]]:
+    """A row for each drive of each vehicle."""
     return {f"{name}: {wanted.name}": figures(body, driven) for name, wanted, body, driven in all_drives()}
 
 

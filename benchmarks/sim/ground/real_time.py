@@ -45,6 +45,7 @@ class Circling(Service):
         wheels: WheelCommand | None = topic(topics.WHEEL_COMMAND)
 
     def step(self, t: float, now) -> Outputs:
+        """The same wheel speeds [rad/s] always."""
         return self.Outputs(wheels=WheelCommand(timestamp=stamp(t), left=0.6, right=5.4))
 
 
@@ -92,6 +93,7 @@ def engine(site: Scenario) -> list[float]:
 
 
 def vehicles(data: Path | None) -> dict[str, dict[str, float]]:
+    """A row for each of FLEETS: real-time factors [s/s] and resident memory [MB]."""
     figures: dict[str, dict[str, float]] = {}
     for count in FLEETS:
         with tempfile.TemporaryDirectory() as folder:

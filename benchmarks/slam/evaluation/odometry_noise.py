@@ -36,6 +36,7 @@ class EstimatedNoise:
     heading_drift: float = 0.03
 
     def times(self, factor: float) -> "EstimatedNoise":
+        """The same, ``factor`` times as large."""
         return EstimatedNoise(factor * self.along, factor * self.turning, factor * self.heading_drift)
 
     @classmethod

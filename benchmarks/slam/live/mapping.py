@@ -62,6 +62,7 @@ PATIENCE = 4.0  # times as long as a run should take
 
 
 def live(world: str, data: Path | None) -> Figures:
+    """Drives one world live and judges the run; its picture is put into ``runs/slam_live``."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         site = load_scenario(mission(world, folder))
@@ -76,6 +77,7 @@ def live(world: str, data: Path | None) -> Figures:
 
 
 def mission(world: str, folder: Path) -> Path:
+    """Writes the mission of one rover into the folder."""
     x, y, yaw = STARTS[world]
     rover = {"model": "burger", "system_id": 1, "start": {"x": x, "y": y, "yaw": yaw}, "job": JOBS[world]}
     path = folder / f"{world}.yaml"
@@ -132,6 +134,7 @@ class Run:
         }
 
     def of_map(self, site: Scenario) -> Row:
+        """Walls and floor of the last map against the world: detections, distances [m], shares [%]."""
         start, member = site.members[VEHICLE].entry.start, site.members[VEHICLE]
         radius = member.file.ground.radius if member.file.ground else 0.0
         floor = reachable_floor(floor_plan(site.world, PLAN_CELL), start.x, start.y, radius)

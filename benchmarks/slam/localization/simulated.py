@@ -37,12 +37,14 @@ NEAR, NEAR_TURN = 0.3, np.radians(5.0)
 
 
 def mission(world: str, seed: int, job: dict[str, object], maps: dict[str, object] | None) -> dict[str, object]:
+    """Of one rover in a world, with a job and, on its second visit, with maps."""
     x, y, yaw = STARTS[world]
     entry = {"model": "burger", "system_id": 2, "start": {"x": x, "y": y, "yaw": yaw}, "job": job}
     return {"about": "A visit.", "world": world, "seed": seed, "vehicles": {VEHICLE: entry | ({"maps": maps} if maps else {})}}
 
 
 def drive(folder: Path, name: str, content: dict[str, object], duration: float) -> Path:
+    """Runs a mission for ``duration`` [s] in lockstep, and returns its log."""
     path = folder / f"{name}.yaml"
     path.write_text(yaml.safe_dump(content))
     log = folder / f"{name}.mcap"
@@ -63,6 +65,7 @@ def mapped(log: Path, folder: Path) -> tuple[float, float, float]:
 
 
 def visits(world: str, data: Path | None) -> Figures:
+    """A row for each way to begin the second visit: errors [m, deg] and NEES."""
     with tempfile.TemporaryDirectory() as name:
         folder, rows = Path(name), {}
         first = drive(folder, "first", mission(world, 1, {"explore": True}, None), MAPPING)

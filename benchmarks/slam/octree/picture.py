@@ -37,6 +37,7 @@ def occupied(message: bytes, depth: int) -> tuple[Floats, float]:
 
 
 def draw(said: dict[str, bytes], path: Path) -> None:
+    """Occupied cells of rover and aircraft, each in perspective and from above."""
     figure = Figure(figsize=(13.0, 10.5), layout="constrained")
     for k, (vehicle, depth, what) in enumerate((("burger", 15, "burger, depth camera"), ("milvus", 16, "aircraft, lidar from 20 m"))):
         middles, side = occupied(said[topics.OCTREE.at(vehicle)], depth)

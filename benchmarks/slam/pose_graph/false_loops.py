@@ -31,6 +31,7 @@ SHARES, SEEDS = (0.1, 0.5, 1.0), 2
 
 
 def between(poses: Floats, i: int, j: int) -> Pose2:
+    """The pose of j as i sees it."""
     return compose(inverse(Pose2(*poses[i])), Pose2(*poses[j]))
 
 

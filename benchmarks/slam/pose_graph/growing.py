@@ -35,6 +35,7 @@ def laps(poses: int) -> Floats:
 
 
 def measured(true: Floats, i: int, j: int, rng: np.random.Generator) -> Pose2:
+    """The pose of j as i sees it, with noise of SIGMA [m, m, rad]."""
     return compose(between(true, i, j), Pose2(*rng.normal(0.0, SIGMA)))
 
 

@@ -27,6 +27,7 @@ SOLVERS = {"gtsam": "MULTIFRONTAL_CHOLESKY", "gtsam QR": "MULTIFRONTAL_QR"}
 
 
 def factors(edges: Sequence[Edge], first: Floats) -> Any:
+    """The edges as gtsam's factors; the first pose is held."""
     graph = gtsam.NonlinearFactorGraph()
     graph.add(gtsam.PriorFactorPose2(0, gtsam.Pose2(*first), gtsam.noiseModel.Diagonal.Precisions(np.full(3, HELD))))
     for e in edges:

@@ -41,6 +41,7 @@ def files(data: Path | None) -> list[Path]:
 
 
 def graph_of(poses: Floats, edges: list[Edge]) -> PoseGraph:
+    """UVF's pose graph with these poses and edges."""
     graph = PoseGraph()
     for pose in poses:
         graph.add_pose(Pose2(*pose))

@@ -122,6 +122,7 @@ def stated_drag(alpha: Floats) -> Floats:
 
 
 def stated_pitch(alpha: Floats) -> Floats:
+    """C_m without rates and deflections, in stall that of a flat plate."""
     return 0.0135 - 2.74 * ((1 - stalled(alpha)) * alpha + stalled(alpha) * np.sin(alpha))
 
 
@@ -131,6 +132,7 @@ def stalled(alpha: Floats) -> Floats:
 
 
 def plot(path: Path) -> None:
+    """Lift, drag and pitching moment over all angles of attack [deg], stated and of the running model."""
     from matplotlib.figure import Figure
 
     held = HeldMilvus()
@@ -148,6 +150,7 @@ def plot(path: Path) -> None:
 
 
 def derivatives(_: Path | None) -> dict[str, dict[str, float]]:
+    """A row for each coefficient: stated, of the running model, and the difference [%]."""
     return {
         name: {"stated": STATED[name], "running": value, "off %": 100 * abs(value / STATED[name] - 1)} for name, value in measured().items()
     }

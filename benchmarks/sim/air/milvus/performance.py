@@ -32,6 +32,7 @@ KQ, OHM, IDLE, VOLTS, SIZE = 60 / (2 * math.pi * 145), 0.042, 1.5, 44.4, 0.508
 
 
 def density(altitude: float) -> float:
+    """kg/m^3, of the standard atmosphere at an altitude [m]."""
     return atmosphere.density(atmosphere.pressure(altitude), atmosphere.T0 - atmosphere.LAPSE * altitude)
 
 
@@ -49,15 +50,19 @@ class ByHand:
         return 0.5 * self.rho * self.airspeed**2 * AREA
 
     def elevator(self, alpha: float) -> float:
+        """rad, at which the pitching moment is zero."""
         return (0.0135 - 2.74 * alpha) / 0.99
 
     def lift(self, alpha: float) -> float:
+        """N."""
         return self.pressure_area * (0.23 + 5.61 * alpha + 0.13 * self.elevator(alpha))
 
     def drag(self, alpha: float) -> float:
+        """N."""
         return self.pressure_area * (0.043 + (0.23 + 5.61 * alpha) ** 2 * INDUCED + 0.0135 * abs(self.elevator(alpha)))
 
     def thrust_needed(self, alpha: float) -> float:
+        """N, that keeps the airspeed on this path."""
         return (self.drag(alpha) + MASS * G * math.sin(self.climb)) / math.cos(alpha)
 
     def alpha(self, thrust: float | None = None) -> float:
@@ -171,6 +176,7 @@ def trims(_: Path | None) -> Figures:
 
 
 def performance(_: Path | None) -> Figures:
+    """Slowest flight [m/s], glide ratios, climb [m/s] and endurance [h]: of the running model, by hand, and the difference [%]."""
     altitude, running = 100.0, Running()
     rho = density(altitude)
     pairs = {"slowest level flight, m/s": (running.slowest(altitude), slowest_by_hand(rho))}
@@ -194,6 +200,7 @@ def endurance(power: float) -> float:
 
 
 def plot(path: Path) -> None:
+    """Glide ratio, climb [m/s] and electric power [W] over airspeed, by hand and of the running model."""
     from matplotlib.figure import Figure
 
     running, altitude = Running(), 100.0

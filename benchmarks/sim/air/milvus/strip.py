@@ -45,6 +45,8 @@ class Sight:
 
 
 class Moment(NamedTuple):
+    """What the pilot saw, and where the controls were."""
+
     sight: Sight
     controls: Controls
 
@@ -64,6 +66,7 @@ class Strip:
         self._standing_height = 0.0
 
     def stand(self) -> None:
+        """Puts the aircraft on its wheels at the strip's begin, motor off."""
         self.airframe.stand(InitialState(np.zeros(3), 0.0, 0.0, CALM))
         self._standing_height = float(self.airframe.motion().position[2])
 
@@ -76,6 +79,7 @@ class Strip:
         self._actuators = Actuators(trim.controls, BODY)
 
     def fly(self, pilot: Pilot, seconds: float, until: Callable[[Sight], bool] = lambda _: False) -> Sight:
+        """So many seconds [s], or until something is seen; the last sight."""
         for n in range(round(seconds / self._dt)):
             sight = self._look(n * self._dt)
             if until(sight):
@@ -121,6 +125,7 @@ class Landing:
         self._flaring = self._down = False
 
     def __call__(self, sight: Sight) -> Controls:
+        """What the phase asks for; it only goes on, from approach to flare to ground roll."""
         speed, path, flap = APPROACH
         along, height = self._from
         self._flaring = self._flaring or sight.height < FLARE_HEIGHT
@@ -137,14 +142,17 @@ class Landing:
 
 
 def lifted(sight: Sight) -> bool:
+    """Whether no wheel touches, and the aircraft is more than 2 cm up."""
     return not sight.wheels and sight.height > 0.02
 
 
 def stopped(sight: Sight) -> bool:
+    """Whether it stands on its three wheels; in the first second it never does."""
     return len(sight.wheels) == 3 and sight.airspeed < 0.05 and sight.t > 1.0
 
 
 def flown_take_off() -> Strip:
+    """15 s from standing on the strip."""
     strip = Strip()
     strip.stand()
     strip.fly(take_off, 15.0)
@@ -152,6 +160,7 @@ def flown_take_off() -> Strip:
 
 
 def flown_landing() -> Strip:
+    """From 250 m before the strip and 20 m above it until it stands."""
     strip = Strip()
     strip.approach(-250.0, 20.0)
     strip.fly(Landing(-250.0, 20.0), 60.0, stopped)
@@ -159,6 +168,7 @@ def flown_landing() -> Strip:
 
 
 def ground_runs(_: Path | None) -> dict[str, dict[str, float]]:
+    """A row each for take-off and landing: times [s], ways [m] and speeds [m/s]."""
     off, on = flown_take_off(), flown_landing()
     lift = next(m.sight for m in off.log if lifted(m.sight))
     touch = next(m.sight for m in on.log if m.sight.wheels)
@@ -175,6 +185,7 @@ def ground_runs(_: Path | None) -> dict[str, dict[str, float]]:
 
 
 def plot(path: Path) -> None:
+    """Airspeed, height, attitude and controls of both over time [s]."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(10, 8), layout="constrained")
