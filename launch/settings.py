@@ -8,7 +8,7 @@ import difflib
 import os
 from pathlib import Path
 
-from uvf.models.yaml_data import BadInput, nearest
+from uvf.models.yaml_data import BadInput, load_yaml, nearest
 
 ROOT = Path(__file__).resolve().parents[1]
 GIGABYTE = 1_000_000_000
@@ -53,14 +53,15 @@ def _look_at(path: Path) -> None:
         path.stat()
 
 
-def benchmark_groups() -> list[str]:
-    """The names of all benchmark groups, sorted."""
-    return sorted(p.stem for p in (ROOT / "benchmarks").glob("*.py") if "CASES = " in p.read_text(encoding="utf-8"))
+def benchmark_modules() -> dict[str, str]:
+    """The module of each group of benchmarks; none where the folder is not there, as in an installed package. Raises BadInput."""
+    path = ROOT / "benchmarks" / "groups.yaml"
+    return load_yaml(path, dict[str, str]) if path.is_file() else {}
 
 
 def benchmark_group(name: str) -> str:
-    """The name, if it is that of a benchmark group. Raises BadInput."""
-    groups = benchmark_groups()
+    """The name of a group that is there. Raises BadInput."""
+    groups = benchmark_modules()
     if name not in groups:
         raise BadInput(f"no benchmark group '{name}'; {nearest(name, groups)}")
     return name

@@ -1,4 +1,4 @@
-"""``uvf bench``: runs the cases of ``benchmarks/<group>.py``, prints a table a group, checks goals, keeps the figures."""
+"""``uvf bench``: runs the cases of the groups in ``benchmarks/groups.yaml``, prints a table a group, checks goals, keeps the figures."""
 
 import importlib
 import json
@@ -13,7 +13,7 @@ from rich.console import Console
 from rich.table import Column, Table
 
 from launch.commands.bench_page import BenchmarkFacts, facts_now, notes_of, replace_section, verdicts
-from launch.settings import ROOT, benchmark_group, benchmark_groups
+from launch.settings import ROOT, benchmark_group, benchmark_modules
 from uvf.models.yaml_data import BadInput, nearest
 
 Figures = dict[str, dict[str, float]]
@@ -42,7 +42,7 @@ def run_groups(names: Sequence[str], data: Path | None, json_file: Path | None, 
 
 
 def _wanted(names: Sequence[str]) -> dict[str, list[str]]:
-    groups, wanted = benchmark_groups(), dict[str, list[str]]()
+    groups, wanted = benchmark_modules(), dict[str, list[str]]()
     for name in names:
         if name in groups or not wanted:
             wanted[benchmark_group(name)] = []
@@ -59,7 +59,7 @@ def _write(group: str, rows: Figures, facts: BenchmarkFacts) -> None:
 
 def _chosen(group: str, wanted: Sequence[str], data: Path | None) -> dict[str, Case]:
     """A name stands for the case of that name, or for all whose names begin with it and a colon. Raises BadInput."""
-    cases = cases_of(importlib.import_module(f"benchmarks.{group}"), data)
+    cases = cases_of(importlib.import_module(benchmark_modules()[group]), data)
     chosen: dict[str, Case] = {}
     for name in wanted:
         found = {case: cases[case] for case in cases if case == name or case.startswith(f"{name}:")}

@@ -1,6 +1,6 @@
 """Beam by beam against PyBullet's rays, an independent implementation, from 1000 random poses.
 
-Where both cannot agree, and by how much, is PyBullet's way with convex solids; ``benchmarks/raycast_worlds.py`` states it.
+Where both cannot agree, and by how much, is PyBullet's way with convex solids; ``benchmarks/sensors/ray_casting/worlds.py`` states it.
 """
 
 from functools import partial
@@ -8,7 +8,7 @@ from functools import partial
 import numpy as np
 import pytest
 
-from benchmarks.raycast_worlds import Twin, grazing, low_places, mixed, random_scans, world
+from benchmarks.sensors.ray_casting.worlds import Twin, grazing, low_places, mixed, random_scans, world
 from uvf.maths.bvh import build
 from uvf.maths.raycast import Rays, Scene, cast
 from uvf.maths.solids import BOX, TRIANGLE, joined

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 import yaml
 
-from benchmarks import autopilot as bench
-from benchmarks.accuracy_flight import PLANE, Probe
+from benchmarks.autopilot import cost_and_slip as bench
+from benchmarks.autopilot.accuracy.flight import PLANE, Probe
 from launch.vehicles.tuning import tune, write
 from uvf.models.scenario import ROOT, load_scenario
 

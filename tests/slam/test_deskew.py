@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from benchmarks.slam_evaluation.building import cast
+from benchmarks.slam.evaluation.building import cast
 from tests.slam.matching.walls import ROOM, seen
 from uvf.maths.se2 import IDENTITY, Pose2, compose
 from uvf.slam.deskew import SPACING, deskewed, straightened

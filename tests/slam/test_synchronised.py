@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from benchmarks.slam_evaluation.building import corridors
-from benchmarks.slam_evaluation.driven import Wear, drive, route
+from benchmarks.slam.evaluation.building import corridors
+from benchmarks.slam.evaluation.driven import Wear, drive, route
 from tests.slam.graph.buildings import HALF_ROUND
 from uvf.maths.se2 import Pose2
 from uvf.slam.graph.method import GraphSlam

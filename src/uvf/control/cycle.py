@@ -13,7 +13,7 @@ LEAST = 1e-6  # of what is divided by: parameters that make no wing must not end
 
 
 def clip(value: float, limit: float) -> float:
-    """``value`` within +-``limit``, in its unit."""
+    """``value`` within +-``limit``, both in the same unit, as [rad] or [-]."""
     return min(max(value, -limit), limit)
 
 

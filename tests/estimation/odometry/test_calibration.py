@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from benchmarks.odometry_drive import TRACK, World, drive
+from benchmarks.estimation.odometry.drive import TRACK, World, drive
 from uvf.estimation.odometry.calibration import PRIOR, Scales, SegmentMaker, WheelCalibration
 from uvf.maths.se2 import Pose2
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.stats import chi2
 
-from benchmarks.odometry_drive import DT, TRACK, World, drive
+from benchmarks.estimation.odometry.drive import DT, TRACK, World, drive
 from uvf.estimation.odometry.filter import DriveFilter
 from uvf.estimation.odometry.states import LEFT, RIGHT, Noise, Step
 from uvf.maths.kinematics import Twist, move

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from benchmarks.odometry_drive import TRACK, World, drive
+from benchmarks.estimation.odometry.drive import TRACK, World, drive
 from schemas.messages import Gnss, Vector3
 from services.slam.odometry.readings import satellite_fix
 from uvf.estimation.odometry.filter import DriveFilter

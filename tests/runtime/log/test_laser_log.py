@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from benchmarks.slow_lidar import slow_site
+from benchmarks.slam.slow_lidar import slow_site
 from launch.recorder import attachments
 from launch.slam.opening import open_log
 from schemas import topics

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from benchmarks.milvus_coefficients import (
+from benchmarks.sim.air.milvus.coefficients import (
     BODY,
     FOLDER,
     STATED,

@@ -7,8 +7,8 @@ import msgspec
 import numpy as np
 import pytest
 
-from benchmarks.milvus_coefficients import FOLDER, TANGENT
-from benchmarks.milvus_performance import ALTITUDES, SPEEDS, Running, density, level_by_hand, performance, trims
+from benchmarks.sim.air.milvus.coefficients import FOLDER, TANGENT
+from benchmarks.sim.air.milvus.performance import ALTITUDES, SPEEDS, Running, density, level_by_hand, performance, trims
 from services.sim_air.actuators import Actuators
 from services.sim_air.aircraft import Aircraft
 from services.sim_air.engine.airframe import Airframe

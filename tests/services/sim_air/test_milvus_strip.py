@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from benchmarks.milvus_coefficients import BODY
-from benchmarks.milvus_strip import (
+from benchmarks.sim.air.milvus.coefficients import BODY
+from benchmarks.sim.air.milvus.strip import (
     CALM,
     ROTATION_SPEED,
     Landing,

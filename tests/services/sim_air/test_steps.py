@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from benchmarks.flight import MANOEUVRES, fly
+from benchmarks.sim.air.flight_dynamics import MANOEUVRES, fly
 from launch.vehicles.linearize import linear_models
 from uvf.models.scenario import ROOT
 

@@ -4,7 +4,7 @@ import msgspec
 import numpy as np
 import pytest
 
-from benchmarks.kinematics import drive, drives, figures, ground_vehicles
+from benchmarks.sim.ground.kinematics import drive, drives, figures, ground_vehicles
 from services.sim_ground.world import BodyPlacement, BulletWorld
 from uvf.control.drive_limits import DriveLimits, VelocityRamp
 from uvf.maths.kinematics import DifferentialDrive, Twist

@@ -4,7 +4,7 @@ import msgspec
 import numpy as np
 import pytest
 
-from benchmarks.slow_lidar import errors
+from benchmarks.slam.slow_lidar import errors
 from schemas.messages import LaserScan
 from services.slam.mapping_service import MappingParams, MappingService
 from tests.planar_rays import cast

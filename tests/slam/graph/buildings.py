@@ -4,8 +4,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from benchmarks.slam_evaluation.building import corridors
-from benchmarks.slam_evaluation.driven import Driven, Wear, drive, route
+from benchmarks.slam.evaluation.building import corridors
+from benchmarks.slam.evaluation.driven import Driven, Wear, drive, route
 from uvf.maths.se2_arrays import composed, inverted
 from uvf.slam.evaluation.run import LogRun, run_over
 from uvf.slam.graph.method import GraphSlam

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from benchmarks.slam_evaluation.building import cast
+from benchmarks.slam.evaluation.building import cast
 from tests.slam.graph.buildings import HALF_ROUND, SHORT, bend, changed, mapped
 from tests.slam.matching.walls import ROOM
 from uvf.maths.se2 import Pose2, compose, inverse

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from benchmarks.slam_evaluation.building import corridors
-from benchmarks.slam_evaluation.driven import Wear, drive, route
+from benchmarks.slam.evaluation.building import corridors
+from benchmarks.slam.evaluation.driven import Wear, drive, route
 from tests.slam.graph.buildings import BAD, HALF_ROUND, SHORT, bend, false_loops, mapped, rectangle, round_trip
 from uvf.maths.se2_arrays import wrapped
 

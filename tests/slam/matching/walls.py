@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from benchmarks.slam_evaluation.building import cast
+from benchmarks.slam.evaluation.building import cast
 from uvf.maths.se2 import IDENTITY, Pose2, compose
 from uvf.slam.reading import Beams, Reading
 

@@ -5,8 +5,8 @@ from functools import cache
 
 import numpy as np
 
-from benchmarks.slam_evaluation.building import corridors
-from benchmarks.slam_evaluation.driven import Wear, drive, route
+from benchmarks.slam.evaluation.building import corridors
+from benchmarks.slam.evaluation.driven import Wear, drive, route
 from uvf.maths.se2 import Pose2, compose, inverse
 from uvf.slam.evaluation.run import run_over
 from uvf.slam.graph.method import GraphSlam

@@ -5,8 +5,8 @@ import tracemalloc
 import numpy as np
 import pytest
 
-from benchmarks.slam_evaluation.driven import Wear, drive, route
-from benchmarks.slam_evaluation.open_country import scattered
+from benchmarks.slam.evaluation.driven import Wear, drive, route
+from benchmarks.slam.evaluation.open_country import scattered
 from uvf.slam.methods import make_method, method_params
 from uvf.slam.reading import Beams
 

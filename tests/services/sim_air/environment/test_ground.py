@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from benchmarks.milvus_coefficients import BODY, FOLDER
+from benchmarks.sim.air.milvus.coefficients import BODY, FOLDER
 from schemas import topics
 from schemas.messages import Event, NavState
 from services.sim_air.build import build
