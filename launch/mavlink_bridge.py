@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from launch import settings
 from launch.processes import open_bus
 from launch.worker import worker
-from schemas.messages import Guest
+from schemas.messages import ExternalVehicle
 from services.mavlink_bridge.discovery import Discovery, Names, names_from
 from services.mavlink_bridge.frame import BridgeOrigin
 from services.mavlink_bridge.service import BridgedVehicle
@@ -111,10 +111,12 @@ class Bridge:
         if is_taken(self._bus, name):
             self._say(f"{what} is left alone: {name} is on the bus already; choose another --name")
             return
-        guest = Guest(model=self._wanted.model or default_model(heartbeat.type), about=f"MAVLink {what} at {self._wanted.address}")
+        external = ExternalVehicle(
+            model=self._wanted.model or default_model(heartbeat.type), about=f"MAVLink {what} at {self._wanted.address}"
+        )
 
         def make() -> Service:
-            return BridgedVehicle(name, system, self._station, self._origin, guest)
+            return BridgedVehicle(name, system, self._station, self._origin, external)
 
         self.live.join(ServiceInstance(BridgedVehicle, make, name))
         self._say(f"{what} is {name}")

@@ -70,7 +70,7 @@ MOST: dict[str, float] = {
     "uvf.v1.MissionItem.position": PLACE,
     "uvf.v1.GoalRequest.position": PLACE,
     "uvf.v1.OrbitRequest.centre": PLACE,
-    "uvf.v1.HomeOrder.position": PLACE,
+    "uvf.v1.HomeCommand.position": PLACE,
     "uvf.v1.LineSetpoint.origin": PLACE,
     "uvf.v1.CircleSetpoint.centre": PLACE,
     "uvf.v1.FenceZone.vertices": PLACE,
@@ -96,7 +96,7 @@ VEHICLE = r"[a-z][a-z0-9_]{0,39}"
 """Of a vehicle, and of what is put into a simulation; whole, in files as on the bus."""
 FOLDER = r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,79}"
 """Of a model or a world; whole, in files as on the bus."""
-PATTERNS: dict[str, str] = {"uvf.v1.Guest.model": f"({FOLDER})?", "uvf.v1.SimObject.model": f"({FOLDER})?"}
+PATTERNS: dict[str, str] = {"uvf.v1.ExternalVehicle.model": f"({FOLDER})?", "uvf.v1.SimObject.model": f"({FOLDER})?"}
 """Texts that become names of files, where they are not empty."""
 ITEM = 32
 BYTES: dict[str, int] = {"uvf.v1.MissionItem.origin": ITEM, "uvf.v1.Fence.origin": ITEM, "uvf.v1.RallyPoints.origin": ITEM}

@@ -49,26 +49,26 @@ from schemas.v1.mission_pb2 import (
     SetCurrentRequest,
 )
 from schemas.v1.octree_pb2 import OctreeMap, OctreeSaveRequest
-from schemas.v1.order_pb2 import (
-    AltitudeOrder,
-    HomeOrder,
-    OrderRequest,
-    PictureOrder,
-    RestartOrder,
-    SpeedOrder,
-    TakeoffOrder,
-)
 from schemas.v1.rally_pb2 import RallyPoints, RallyRequest
 from schemas.v1.sensor_pb2 import AirData, Battery, Contact, Gnss, Imu, Range, WheelTicks
 from schemas.v1.simulator_pb2 import RemoveRequest, SetPoseRequest, SimObject, SimObjects, SpawnRequest, StateRequest
 from schemas.v1.system_pb2 import Event, Health, Param, ParamReply, ParamRequest, ParamValues, Process, Processes, Refusal
 from schemas.v1.targets_pb2 import EstimateQuality, Targets
 from schemas.v1.time_pb2 import Clock, ClockRequest, Done
+from schemas.v1.vehicle_command_pb2 import (
+    AltitudeCommand,
+    HomeCommand,
+    PictureCommand,
+    RebootCommand,
+    SpeedCommand,
+    TakeoffCommand,
+    VehicleCommandRequest,
+)
 from schemas.v1.vehicle_pb2 import (
     ArmRequest,
     Breach,
     Circle,
-    Guest,
+    ExternalVehicle,
     Kind,
     Mode,
     ModeRequest,
@@ -79,7 +79,7 @@ from schemas.v1.vehicle_pb2 import (
 
 __all__ = [
     "AirData",
-    "AltitudeOrder",
+    "AltitudeCommand",
     "ArmRequest",
     "AttitudeSetpoint",
     "Battery",
@@ -108,10 +108,10 @@ __all__ = [
     "FlightSetpoint",
     "GoAroundRequest",
     "GoalRequest",
-    "HomeOrder",
+    "HomeCommand",
     "OrbitRequest",
     "Grid",
-    "Guest",
+    "ExternalVehicle",
     "Health",
     "Imu",
     "JointState",
@@ -136,13 +136,13 @@ __all__ = [
     "OctreeMap",
     "OctreeSaveRequest",
     "Odometry",
-    "OrderRequest",
+    "VehicleCommandRequest",
     "PackedElementField",
     "Param",
     "ParamReply",
     "ParamRequest",
     "ParamValues",
-    "PictureOrder",
+    "PictureCommand",
     "PlaceRequest",
     "Pose",
     "PoseInFrame",
@@ -157,20 +157,20 @@ __all__ = [
     "RelocalizeRequest",
     "RemoveRequest",
     "Reply",
-    "RestartOrder",
+    "RebootCommand",
     "SaveMapRequest",
     "SetCurrentRequest",
     "SetPoseRequest",
     "SimObject",
     "SimObjects",
     "SpawnRequest",
-    "SpeedOrder",
+    "SpeedCommand",
     "StateRequest",
     "StopCommand",
     "StopEngagement",
     "StopState",
     "SurfaceCommand",
-    "TakeoffOrder",
+    "TakeoffCommand",
     "Targets",
     "Timestamp",
     "Vector3",

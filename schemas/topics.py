@@ -176,7 +176,9 @@ SURFACE_COMMAND = Topic(f"{_V}/actuator/surfaces", m.SurfaceCommand, 50, _Q.CONT
 # state and mission
 STATUS = Topic(f"{_V}/state/vehicle", m.VehicleStatus, 10, _Q.STATE, "mode, arming, who commands and why", kept=True)
 TARGETS = Topic(f"{_V}/state/targets", m.Targets, 10, _Q.STATE, "what the autopilot is steering at")
-GUEST = Topic(f"{_V}/state/guest", m.Guest, 0, _Q.LATCHED, "a vehicle that no mission names: flown elsewhere", across_epochs=True)
+EXTERNAL_VEHICLE = Topic(
+    f"{_V}/state/external_vehicle", m.ExternalVehicle, 0, _Q.LATCHED, "a vehicle that no mission names: flown elsewhere", across_epochs=True
+)
 EVENTS = Topic(f"{_V}/state/events/<source>", m.Event, 0, _Q.EVENT, "what happened to the vehicle")
 MISSION = Topic(f"{_V}/mission/plan", m.Mission, 0, _Q.LATCHED, "mission in force", kept=True)
 FENCE = Topic(f"{_V}/mission/fence", m.Fence, 0, _Q.LATCHED, "where the vehicle may be", kept=True)
@@ -204,7 +206,7 @@ GOAL = Request(f"{_V}/srv/goal", m.GoalRequest, m.Reply, "go to a point")
 ORBIT = Request(f"{_V}/srv/orbit", m.OrbitRequest, m.Reply, "circle a place, in mode Orbit")
 GO_AROUND = Request(f"{_V}/srv/go_around", m.GoAroundRequest, m.Reply, "give up the approach and fly another one")
 VEHICLE_COMMAND = Request(
-    f"{_V}/srv/vehicle_command", m.OrderRequest, m.Reply, "take off to a height; speed, altitude, home, camera; begin anew"
+    f"{_V}/srv/vehicle_command", m.VehicleCommandRequest, m.Reply, "take off to a height; speed, altitude, home, camera; begin anew"
 )
 CANCEL = Request(f"{_V}/srv/cancel", m.CancelRequest, m.Reply, "give up the goal that is being driven to")
 SET_MISSION = Request(f"{_V}/srv/mission", m.MissionRequest, m.Reply, "replace the mission")

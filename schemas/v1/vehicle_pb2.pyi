@@ -129,7 +129,7 @@ class VehicleStatus(_message.Message):
     stops: _containers.RepeatedCompositeFieldContainer[_command_pb2.StopEngagement]
     def __init__(self, timestamp: _Optional[_Union[_timestamp_pb2.Timestamp, _Mapping]] = ..., kind: _Optional[_Union[Kind, str]] = ..., mode: _Optional[_Union[Mode, str]] = ..., armed: bool = ..., landed: bool = ..., stopped: bool = ..., command_source: _Optional[str] = ..., reason: _Optional[str] = ..., throttle: _Optional[float] = ..., battery_remaining: _Optional[float] = ..., battery_voltage: _Optional[float] = ..., waypoint: _Optional[int] = ..., cross_track: _Optional[float] = ..., altitude_error: _Optional[float] = ..., distance_to_waypoint: _Optional[float] = ..., home: _Optional[_Union[_Vector3_pb2.Vector3, _Mapping]] = ..., system_id: _Optional[int] = ..., prearm: _Optional[_Iterable[str]] = ..., failsafes: _Optional[_Iterable[str]] = ..., circle: _Optional[_Union[Circle, _Mapping]] = ..., breach: _Optional[_Union[Breach, str]] = ..., breaches: _Optional[int] = ..., stops: _Optional[_Iterable[_Union[_command_pb2.StopEngagement, _Mapping]]] = ...) -> None: ...
 
-class Guest(_message.Message):
+class ExternalVehicle(_message.Message):
     __slots__ = ("timestamp", "model", "about")
     TIMESTAMP_FIELD_NUMBER: _ClassVar[int]
     MODEL_FIELD_NUMBER: _ClassVar[int]

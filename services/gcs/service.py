@@ -13,12 +13,12 @@ from schemas.messages import (
     CompressedImage,
     DriveCommand,
     Event,
+    ExternalVehicle,
     Fence,
     FrameTransform,
     GimbalCommand,
     GoalRequest,
     Grid,
-    Guest,
     Health,
     JointStates,
     LaserScan,
@@ -86,7 +86,7 @@ class GroundStation(Service):
         aircraft: SimObjects | None = optional(topics.AIR_OBJECTS)
         health: list[Health] = optional(every(topics.HEALTH.by("*")))
         stop: StopStatus = stop_all()
-        guests: dict[str, Guest] = each_vehicle(topics.GUEST)
+        external: dict[str, ExternalVehicle] = each_vehicle(topics.EXTERNAL_VEHICLE)
         nav: dict[str, NavState] = each_vehicle(topics.NAV_STATE)
         pose: dict[str, PoseInFrame] = each_vehicle(topics.POSE)
         odometry: dict[str, Odometry] = each_vehicle(topics.ODOMETRY)
@@ -133,7 +133,7 @@ class GroundStation(Service):
         """One refresh of the page at ``t`` [s, wall]."""
         newest: Mapping[str, Mapping[str, Message]] = {name: getattr(now, name) for name in NEWEST}
         self._hear_system(t, now.clock, now.processes, now.health)
-        self._hear_others(t, now.guests, now.stop, (now.objects, now.aircraft), now.truth)
+        self._hear_others(t, now.external, now.stop, (now.objects, now.aircraft), now.truth)
         return self._act(t, newest, now.events, (*now.goal, *now.cancel, *now.arm, *now.mode))
 
     def _hear_system(self, t: float, clock: Clock | None, processes: Sequence[Processes], health: Sequence[Health]) -> None:
@@ -142,9 +142,14 @@ class GroundStation(Service):
         self._model.processes.hear_health(t, health)
 
     def _hear_others(
-        self, t: float, guests: Mapping[str, Guest], stop: StopStatus, things: Sequence[SimObjects | None], truth: Mapping[str, NavState]
+        self,
+        t: float,
+        external: Mapping[str, ExternalVehicle],
+        stop: StopStatus,
+        things: Sequence[SimObjects | None],
+        truth: Mapping[str, NavState],
     ) -> None:
-        self._model.hear_guests(t, guests)
+        self._model.hear_external_vehicles(t, external)
         self._model.hear_objects(things, truth)
         self._model.hear_stop(stop)
 

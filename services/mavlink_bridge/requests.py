@@ -17,12 +17,12 @@ from schemas.messages import (
     Mode,
     ModeRequest,
     OrbitRequest,
-    OrderRequest,
     ParamReply,
     ParamRequest,
     RallyRequest,
     Reply,
     SetCurrentRequest,
+    VehicleCommandRequest,
 )
 from services.mavlink_bridge.autopilot import Autopilot
 from services.mavlink_bridge.commands import ANSWER_WITHIN, NAN, PendingCommand, command
@@ -39,7 +39,7 @@ CHANGE_MODE = float(mav.MAV_DO_REPOSITION_FLAGS_CHANGE_MODE)
 AMSL = mav.MAV_FRAME_GLOBAL
 LAST_ITEM = 0xFFFE  # a plan's highest number on the wire; the next one is "unknown"
 FASTEST = 1000.0  # m/s
-MOVING = (ModeRequest, GoalRequest, OrbitRequest, OrderRequest, GoAroundRequest, SetCurrentRequest)
+MOVING = (ModeRequest, GoalRequest, OrbitRequest, VehicleCommandRequest, GoAroundRequest, SetCurrentRequest)
 """What STOP ALL forbids; arming is forbidden beside."""
 
 
@@ -193,7 +193,7 @@ def _go_around(autopilot: Autopilot, request: GoAroundRequest, done: Done) -> No
     autopilot.commands.ask(command(mav.MAV_CMD_DO_GO_AROUND, (0.0,) * 7, done))
 
 
-def _order(autopilot: Autopilot, request: OrderRequest, done: Done) -> None:
+def _order(autopilot: Autopilot, request: VehicleCommandRequest, done: Done) -> None:
     kind = request.WhichOneof("kind")
     if kind is None:
         done(False, "the order is empty")
@@ -243,7 +243,7 @@ def _picture(autopilot: Autopilot, order: Any, done: Done) -> None:
     autopilot.commands.ask(asked)
 
 
-def _restart(autopilot: Autopilot, order: Any, done: Done) -> None:
+def _reboot(autopilot: Autopilot, order: Any, done: Done) -> None:
     autopilot.commands.ask(command(mav.MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN, (1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), done))
 
 
@@ -253,7 +253,7 @@ ORDERS: dict[str, Callable[[Autopilot, Any, Done], None]] = {
     "altitude": _placed(_altitude),
     "home": _placed(_home),
     "picture": _picture,
-    "restart": _restart,
+    "reboot": _reboot,
 }
 HANDLERS: dict[type[Message], Callable[[Autopilot, Any, Done], None]] = {
     ArmRequest: _arm,
@@ -265,6 +265,6 @@ HANDLERS: dict[type[Message], Callable[[Autopilot, Any, Done], None]] = {
     GoalRequest: _placed(_goal),
     OrbitRequest: _placed(_orbit),
     GoAroundRequest: _go_around,
-    OrderRequest: _order,
+    VehicleCommandRequest: _order,
     CancelRequest: _cancel,
 }

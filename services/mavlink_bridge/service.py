@@ -12,20 +12,19 @@ from schemas.messages import (
     CancelRequest,
     Clock,
     Event,
+    ExternalVehicle,
     Fence,
     FenceRequest,
     FrameTransform,
     Gnss,
     GoalRequest,
     GoAroundRequest,
-    Guest,
     Mission,
     MissionProgress,
     MissionRequest,
     ModeRequest,
     NavState,
     OrbitRequest,
-    OrderRequest,
     ParamReply,
     ParamRequest,
     Pose,
@@ -35,6 +34,7 @@ from schemas.messages import (
     Reply,
     SetCurrentRequest,
     Vector3,
+    VehicleCommandRequest,
     VehicleStatus,
 )
 from services.mavlink_bridge.autopilot import Autopilot
@@ -77,7 +77,7 @@ class BridgedVehicle(Service):
         goal: list[GoalRequest] = request(topics.GOAL)
         orbit: list[OrbitRequest] = request(topics.ORBIT)
         go_around: list[GoAroundRequest] = request(topics.GO_AROUND)
-        order: list[OrderRequest] = request(topics.VEHICLE_COMMAND)
+        order: list[VehicleCommandRequest] = request(topics.VEHICLE_COMMAND)
         cancel: list[CancelRequest] = request(topics.CANCEL)
         param: list[ParamRequest] = request(topics.PARAM.by("autopilot"))
 
@@ -95,7 +95,7 @@ class BridgedVehicle(Service):
         rally: RallyPoints | None = topic(topics.RALLY)
         progress: MissionProgress | None = topic(topics.PROGRESS)
         events: list[Event] | None = topic(topics.EVENTS.by(SOURCE))
-        guest: Guest | None = topic(topics.GUEST)
+        external: ExternalVehicle | None = topic(topics.EXTERNAL_VEHICLE)
         arm: list[Reply] = replies(topics.ARM)
         set_mode: list[Reply] = replies(topics.SET_MODE)
         set_mission: list[Reply] = replies(topics.SET_MISSION)
@@ -109,14 +109,14 @@ class BridgedVehicle(Service):
         cancel: list[Reply] = replies(topics.CANCEL)
         param: list[ParamReply] = replies(topics.PARAM.by("autopilot"))
 
-    def __init__(self, vehicle: str, system: int, station: Station, origin: BridgeOrigin, guest: Guest) -> None:
-        """guest: how others may draw it."""
+    def __init__(self, vehicle: str, system: int, station: Station, origin: BridgeOrigin, external: ExternalVehicle) -> None:
+        """external: how others may draw it."""
         self._vehicle = vehicle
         self._system, self._origin = system, origin
         self._station = station
         self._meet()
         self._stop = StopStatus()
-        self._guest: Guest | None = guest
+        self._announced: ExternalVehicle | None = external
         self._epoch = 0
         self._status_due, self._progress_due = Due(topics.STATUS.hz), Due(topics.PROGRESS.hz)
 
@@ -172,8 +172,8 @@ class BridgedVehicle(Service):
             told["status"].stops.extend(self._stop.engagements)
         if self._progress_due.at(t) and (progress := self._autopilot.progress()) is not None:
             told["progress"] = progress
-        if self._guest is not None:
-            told["guest"], self._guest = self._guest, None
+        if self._announced is not None:
+            told["external"], self._announced = self._announced, None
         for message in told.values():
             message.timestamp.CopyFrom(stamp(now))
         if "nav_state" in told:

@@ -6,7 +6,7 @@ from struct import pack
 from hypothesis import strategies as st
 
 from schemas import topics
-from schemas.messages import Guest
+from schemas.messages import ExternalVehicle
 from services.mavlink_bridge.discovery import Discovery, Names
 from services.mavlink_bridge.frame import BridgeOrigin
 from services.mavlink_bridge.service import BridgedVehicle
@@ -168,7 +168,7 @@ class Besieged:
 
     def _found(self, name, system):
         def make():
-            self.vehicles.append(BridgedVehicle(name, system, self.station, self.origin, Guest(model="x")))
+            self.vehicles.append(BridgedVehicle(name, system, self.station, self.origin, ExternalVehicle(model="x")))
             return self.vehicles[-1]
 
         self.shells.append(ServiceRunner(ServiceInstance(BridgedVehicle, make, name), self.bus, self.said.append))

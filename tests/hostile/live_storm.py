@@ -37,7 +37,7 @@ PAGE_EVERY = 20  # bursts
 WAITING_MOST = 200
 """Requests without an answer, of which there may be so many before the next ones are sent."""
 AHEAD = 60_000_000_000  # ns
-BELIEVED = (topics.CLOCK, topics.DONE, topics.STOP, topics.STOP_STATE, topics.GUEST)
+BELIEVED = (topics.CLOCK, topics.DONE, topics.STOP, topics.STOP_STATE, topics.EXTERNAL_VEHICLE)
 """Of which a sound message is believed, whoever sends it: docs/explanation/security.md. What is broken is refused there too."""
 TYPE_MOST = 200  # characters; of longer ones Zenoh's own client panics before it sends them
 

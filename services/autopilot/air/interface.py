@@ -22,7 +22,6 @@ from schemas.messages import (
     ModeRequest,
     NavState,
     OrbitRequest,
-    OrderRequest,
     ParamValues,
     PoseInFrame,
     PosesInFrame,
@@ -33,6 +32,7 @@ from schemas.messages import (
     SetCurrentRequest,
     SurfaceCommand,
     Targets,
+    VehicleCommandRequest,
     VehicleStatus,
 )
 from uvf.runtime.contract.declaration import Reads, Writes, every, optional, replies, request, stop_all, topic
@@ -60,7 +60,7 @@ class Inputs(Reads):
     current: list[SetCurrentRequest] = request(topics.SET_CURRENT)
     orbit: list[OrbitRequest] = request(topics.ORBIT)
     go_around: list[GoAroundRequest] = request(topics.GO_AROUND)
-    order: list[OrderRequest] = request(topics.VEHICLE_COMMAND)
+    order: list[VehicleCommandRequest] = request(topics.VEHICLE_COMMAND)
     fence: list[FenceRequest] = request(topics.SET_FENCE)
     set_rally: list[RallyRequest] = request(topics.SET_RALLY)
 

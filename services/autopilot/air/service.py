@@ -8,8 +8,8 @@ from schemas.messages import (
     Mode,
     ModeRequest,
     OrbitRequest,
-    OrderRequest,
     Reply,
+    VehicleCommandRequest,
     VehicleStatus,
 )
 from services.autopilot.air import interface, manual_control
@@ -59,7 +59,7 @@ class AutopilotAir(Service):
     def __init__(self, config: AutopilotConfig, params: AirParams) -> None:
         self.params = params
         self._config = config
-        self._restarts = False
+        self._reboots = False
         self._told_params = ToldParams()
         self._armed = config.starts_in_air or config.starts_armed
         self._mode_manager = ModeManager(intake.items(config.items), config.ground, config.strips, config.servos)
@@ -83,8 +83,8 @@ class AutopilotAir(Service):
         self._stop = StopStatus()
 
     def step(self, t: float, now: interface.Inputs) -> interface.Outputs:
-        if self._restarts:
-            self._restart()
+        if self._reboots:
+            self._reboot()
         samples = [sample for m in now.imu if (sample := intake.inertial(m, t)) is not None]
         estimate = self._sensing.step(t, SensorInputs(samples, now.air_data, now.gnss, self._land.airborne), self.params, 1 / self.hz)
         self._now = estimate
@@ -274,15 +274,15 @@ class AutopilotAir(Service):
         fence = self._mode_manager.fence.fencing
         return "" if fence.is_open else place_fault(place, fence, self.params, abs(radius) or self.params.hold_radius)
 
-    def _carry_out(self, order: OrderRequest, now: Estimate) -> str:
-        if order.WhichOneof("kind") != "restart":
+    def _carry_out(self, order: VehicleCommandRequest, now: Estimate) -> str:
+        if order.WhichOneof("kind") != "reboot":
             return orders.carry_out(order, self._mode_manager, now, self.params)
         if self._armed or self._land.airborne or self._mode_manager.formation is not None:
             return "it is armed, flies, or follows a leader: land and disarm it first"
-        self._restarts = True
+        self._reboots = True
         return ""
 
-    def _restart(self) -> None:
+    def _reboot(self) -> None:
         """As after power has been off, with mission, fence and rally points of now."""
         plans = self._plans
         config = replace(self._config, starts_in_air=False, starts_armed=False, items=list(plans.mission.items), fence=self._safety.fence)

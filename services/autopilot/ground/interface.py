@@ -16,13 +16,13 @@ from schemas.messages import (
     MissionProgress,
     MissionRequest,
     ModeRequest,
-    OrderRequest,
     ParamValues,
     PoseInFrame,
     RallyPoints,
     RallyRequest,
     Reply,
     SetCurrentRequest,
+    VehicleCommandRequest,
     VehicleStatus,
     WheelCommand,
     WheelTicks,
@@ -53,7 +53,7 @@ class Inputs(Reads):
     set_mission: list[MissionRequest] = request(topics.SET_MISSION)
     set_current: list[SetCurrentRequest] = request(topics.SET_CURRENT)
     set_fence: list[FenceRequest] = request(topics.SET_FENCE)
-    order: list[OrderRequest] = request(topics.VEHICLE_COMMAND)
+    order: list[VehicleCommandRequest] = request(topics.VEHICLE_COMMAND)
     set_rally: list[RallyRequest] = request(topics.SET_RALLY)
 
 

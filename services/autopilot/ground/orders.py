@@ -2,13 +2,13 @@
 
 from math import isfinite
 
-from schemas.messages import HomeOrder, OrderRequest, SpeedOrder
+from schemas.messages import HomeCommand, SpeedCommand, VehicleCommandRequest
 from services.autopilot.ground.mission import MissionEngine, Point
 from uvf.models.vehicle.file import GroundBody
 
 
-def carry_out(order: OrderRequest, engine: MissionEngine, here: Point | None, body: GroundBody) -> str:
-    """Carries out an order, other than a restart; returns why it is refused, "" if it is done. here: x, y [m, world]."""
+def carry_out(order: VehicleCommandRequest, engine: MissionEngine, here: Point | None, body: GroundBody) -> str:
+    """Carries out an order, other than a reboot; returns why it is refused, "" if it is done. here: x, y [m, world]."""
     kind = order.WhichOneof("kind")
     if kind == "speed":
         return _speed(order.speed, engine, body)
@@ -17,14 +17,14 @@ def carry_out(order: OrderRequest, engine: MissionEngine, here: Point | None, bo
     return f"a ground vehicle has no {kind}" if kind is not None else "there is nothing in this order"
 
 
-def _speed(order: SpeedOrder, engine: MissionEngine, body: GroundBody) -> str:
+def _speed(order: SpeedCommand, engine: MissionEngine, body: GroundBody) -> str:
     if not 0 <= order.speed <= body.max_linear:
         return f"{order.speed:g} m/s cannot be driven: up to {body.max_linear:g} m/s can"
     engine.speed = order.speed
     return ""
 
 
-def _home(order: HomeOrder, engine: MissionEngine, here: Point | None) -> str:
+def _home(order: HomeCommand, engine: MissionEngine, here: Point | None) -> str:
     place = (order.position.x, order.position.y) if order.HasField("position") else here
     if place is None:
         return "its own position is unknown"

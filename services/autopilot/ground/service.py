@@ -15,10 +15,10 @@ from schemas.messages import (
     MissionRequest,
     Mode,
     ModeRequest,
-    OrderRequest,
     RallyPoints,
     Reply,
     SetCurrentRequest,
+    VehicleCommandRequest,
     VehicleStatus,
     WheelCommand,
 )
@@ -99,7 +99,7 @@ class GroundAutopilot(Service):
         self._safety = GroundFailsafeMonitor(body, fence or Fence(), imu_rpy, sweeping)
         self._fence_is_new = True
         self._told_params = ToldParams()
-        self._restarts = False
+        self._reboots = False
         self._rally = RallyPoints()
         self._rally_is_new = True
         self._here: fences.GroundPose | None = None
@@ -129,8 +129,8 @@ class GroundAutopilot(Service):
         self._choose(t, {k: replace(c, lasts=lasts) for k, c in self._heard.items()})
         out.wheels = self._wheels(t)
         self._report(t, position, out)
-        if self._restarts:
-            self._restart()
+        if self._reboots:
+            self._reboot()
         return out
 
     def recall(self, left: interface.Recalls) -> None:
@@ -226,18 +226,18 @@ class GroundAutopilot(Service):
             self._tell(t, f"mission item {request.index} is next", f"asked by {request.source or 'unknown'}")
         return Reply(accepted=not reason, reason=reason)
 
-    def _carry_out(self, t: float, order: OrderRequest) -> Reply:
+    def _carry_out(self, t: float, order: VehicleCommandRequest) -> Reply:
         kind, here = order.WhichOneof("kind"), self._here
-        if kind == "restart":
+        if kind == "reboot":
             reason = "it is armed: disarm it first" if self._armed else ""
-            self._restarts = not reason
+            self._reboots = not reason
         else:
             reason = orders.carry_out(order, self._engine, (here.x, here.y) if here is not None else None, self._body)
         if not reason:
             self._tell(t, f"order {kind}", f"asked by {order.source or 'unknown'}")
         return Reply(accepted=not reason, reason=reason)
 
-    def _restart(self) -> None:
+    def _reboot(self) -> None:
         """As after power has been off, with mission, fence and rally points of now."""
         rally = self._rally
         body, home, system_id, imu_rpy, sweeping = self._made_with

@@ -29,7 +29,6 @@ from schemas.messages import (
     NavState,
     NavStatus,
     OrbitRequest,
-    OrderRequest,
     ParamReply,
     ParamRequest,
     ParamValues,
@@ -39,6 +38,7 @@ from schemas.messages import (
     SetCurrentRequest,
     SurfaceCommand,
     Targets,
+    VehicleCommandRequest,
     VehicleStatus,
     WheelCommand,
 )
@@ -117,7 +117,7 @@ class MavlinkService(Service):
         goal: list[Answer[GoalRequest, Reply]] = answers(topics.GOAL)
         orbit: list[Answer[OrbitRequest, Reply]] = answers(topics.ORBIT)
         go_around: list[Answer[GoAroundRequest, Reply]] = answers(topics.GO_AROUND)
-        order: list[Answer[OrderRequest, Reply]] = answers(topics.VEHICLE_COMMAND)
+        order: list[Answer[VehicleCommandRequest, Reply]] = answers(topics.VEHICLE_COMMAND)
         air_param: list[Answer[ParamRequest, ParamReply]] = answers(topics.PARAM.by("autopilot_air"))
         ground_param: list[Answer[ParamRequest, ParamReply]] = answers(topics.PARAM.by("autopilot_ground"))
 
@@ -137,7 +137,7 @@ class MavlinkService(Service):
         goal: list[GoalRequest] = call(topics.GOAL)
         orbit: list[OrbitRequest] = call(topics.ORBIT)
         go_around: list[GoAroundRequest] = call(topics.GO_AROUND)
-        order: list[OrderRequest] = call(topics.VEHICLE_COMMAND)
+        order: list[VehicleCommandRequest] = call(topics.VEHICLE_COMMAND)
         air_param: list[ParamRequest] = call(topics.PARAM.by("autopilot_air"))
         ground_param: list[ParamRequest] = call(topics.PARAM.by("autopilot_ground"))
 

@@ -12,11 +12,11 @@ from schemas.messages import (
     Clock,
     CompressedImage,
     Event,
+    ExternalVehicle,
     Fence,
     FrameTransform,
     GimbalCommand,
     Grid,
-    Guest,
     JointStates,
     LaserScan,
     Mission,
@@ -33,7 +33,7 @@ from schemas.messages import (
 )
 from schemas.topics import SYSTEM
 from services.gcs.state.event_log import EventHistory, EventLine
-from services.gcs.state.guests import FORGOTTEN_AFTER, Guests
+from services.gcs.state.external_vehicles import FORGOTTEN_AFTER, ExternalVehicles
 from services.gcs.state.layers import SHOWN_AT_FIRST
 from services.gcs.state.process_book import ProcessBook
 from services.gcs.state.refusals import PageRefusals
@@ -54,7 +54,7 @@ Floats = NDArray[np.float64]
 STALE_AFTER = 1.5  # s, wall clock
 LOST_AFTER = 5.0  # s
 MOST_VEHICLES = 64
-LONGEST_TEXT = 500  # letters of an event or of what a guest says of itself
+LONGEST_TEXT = 500  # letters of an event or of what an external vehicle says of itself
 SIGNS_OF_LIFE = ("nav", "pose", "odometry", "status", "nav_status", "progress")
 SHOWN_BY_THE_CLOCK = ("conductor",)
 """Sources whose warnings tell of a state that the page reads from the clock: they stand in the log, not as notices."""
@@ -189,7 +189,7 @@ class Model:
         """True motion of the vehicles among it."""
         self.refused = PageRefusals(self._warn)
         self.processes = ProcessBook(self.refused)
-        self._guests = Guests()
+        self._external = ExternalVehicles()
 
     def _add(self, name: str, member: MissionVehicle) -> None:
         colour = COLOURS[len(self.vehicles) % len(COLOURS)]
@@ -238,7 +238,7 @@ class Model:
         for name, message in messages.items():
             vehicle = self.vehicles.get(name)
             if vehicle is None:
-                self._guests.hear(what, name, message)
+                self._external.hear(what, name, message)
                 continue
             if getattr(vehicle, what) is message:
                 continue
@@ -279,20 +279,20 @@ class Model:
         self.spawned = [thing for thing in told if self._is_sound(thing)][:SPAWNED_MOST]
         self.strangers = {name: state for name, state in truth.items() if name not in self.vehicles}
 
-    def is_guest(self, name: str) -> bool:
+    def is_external(self, name: str) -> bool:
         """Whether no mission names the vehicle."""
         return name not in self.site.members
 
-    def hear_guests(self, t: float, guests: Mapping[str, Guest]) -> None:
-        """Takes announcements of guests at ``t`` [s, wall]; a guest is shown once its model is known."""
-        strangers = [(name, guest) for name, guest in guests.items() if name not in self.vehicles]
+    def hear_external_vehicles(self, t: float, announced: Mapping[str, ExternalVehicle]) -> None:
+        """Takes announcements of external vehicles at ``t`` [s, wall]; an external vehicle is shown once its model is known."""
+        strangers = [(name, external) for name, external in announced.items() if name not in self.vehicles]
         lost = self._lost_guests(t) if strangers else []
-        for name, guest in strangers:
-            if not self._guests.is_away(name, guest) and self._is_name(name):
-                self._meet(t, name, guest, lost)
+        for name, external in strangers:
+            if not self._external.is_away(name, external) and self._is_name(name):
+                self._meet(t, name, external, lost)
 
-    def _meet(self, t: float, name: str, guest: Guest, lost: list[str]) -> None:
-        """Takes a guest in, in the place of one of the lost if there is no other, or turns it away.
+    def _meet(self, t: float, name: str, external: ExternalVehicle, lost: list[str]) -> None:
+        """Takes an external vehicle in, in the place of one of the lost if there is no other, or turns it away.
 
         Its model is one of those in ``vehicles/``, never a path.
         """
@@ -301,28 +301,28 @@ class Model:
             self.refused.add("vehicles", name, f"more than {MOST_VEHICLES} vehicles are on the bus: not all are shown")
             return
         try:
-            file = load_vehicle(self.site.vehicles_folder, model_name(guest.model))
+            file = load_vehicle(self.site.vehicles_folder, model_name(external.model))
         except BadInput as error:
-            if self._guests.turn_away(name, guest.model):
+            if self._external.turn_away(name, external.model):
                 self._warn(f"'{name}' cannot be shown: {error}")
             return
         if is_full:
             self._forget(lost.pop())
-        self._guests.take_in(t, name, guest)
-        entry = Vehicle(model=guest.model, start=StartPose(x=0.0, y=0.0), system_id=1)
-        self._add(name, MissionVehicle(name, entry, file, self.site.vehicles_folder / guest.model))
-        self.note(name, f"a guest: {guest.about[:LONGEST_TEXT]}", Event.NOTICE)
+        self._external.take_in(t, name, external)
+        entry = Vehicle(model=external.model, start=StartPose(x=0.0, y=0.0), system_id=1)
+        self._add(name, MissionVehicle(name, entry, file, self.site.vehicles_folder / external.model))
+        self.note(name, f"external vehicle: {external.about[:LONGEST_TEXT]}", Event.NOTICE)
 
     def _lost_guests(self, t: float) -> list[str]:
         """Those that may be forgotten, the longest lost last. None that a browser shows; by hand only the mission's own are driven."""
         chosen = {session.vehicle for session in self.sessions.values()}
-        heard = {name: self.vehicles[name].heard or met for name, (met, _) in self._guests.met.items() if name not in chosen}
+        heard = {name: self.vehicles[name].heard or met for name, (met, _) in self._external.met.items() if name not in chosen}
         return sorted((name for name, at in heard.items() if t - at > FORGOTTEN_AFTER), key=heard.__getitem__, reverse=True)
 
     def _forget(self, name: str) -> None:
         gone = self.vehicles.pop(name)
-        self._guests.forget(name, {what: getattr(gone, what) for what in SIGNS_OF_LIFE})
-        self.note(name, "nothing has been heard of it for long: shown no more, to make room for another guest")
+        self._external.forget(name, {what: getattr(gone, what) for what in SIGNS_OF_LIFE})
+        self.note(name, "nothing has been heard of it for long: shown no more, to make room for another external vehicle")
 
     def _is_sound(self, thing: SimObject) -> bool:
         if not self._is_name(thing.name):
@@ -362,7 +362,7 @@ class Model:
 
 
 def model_name(told: str) -> str:
-    """The name of a folder in ``vehicles/`` that a guest gives. Raises BadInput when it cannot be one."""
+    """The name of a folder in ``vehicles/`` that an external vehicle gives. Raises BadInput when it cannot be one."""
     if fault := name_fault(told):
         raise BadInput(f"its model: {fault}")
     return told

@@ -67,18 +67,18 @@ def status_bar(model: Model, chosen: VehicleModel | None, t: float) -> Html:
 def alerts(model: Model, t: float) -> list[Alert]:
     """The states that want attention at ``t`` [s, wall].
 
-    Only so many are shown: first what concerns the mission and its vehicles, then guests, then processes, of each the gravest
+    Only so many are shown: first what concerns the mission and its vehicles, then external ones, then processes, of each the gravest
     first. So neither strangers nor a launcher that tells of many failures hide what a vehicle of the mission needs.
     """
     own: list[Alert] = []
-    guests: list[Alert] = []
+    external: list[Alert] = []
     if model.clock is not None and model.clock.waiting_for:
         held = "⚠ simulation clock held" if model.clock.t_ns else "starting (the first start compiles, about a minute)"
         own.append(Alert("warn", f"{held}: waiting for {model.clock.waiting_for}"))
     for v in model.vehicles.values():
-        (guests if model.is_guest(v.name) else own).extend(_of_vehicle(model, v, t))
+        (external if model.is_external(v.name) else own).extend(_of_vehicle(model, v, t))
     stop = [Alert("bad", f"■ STOP ALL ENGAGED {_by_whom(model)}".rstrip())] if model.stopped else []
-    found = stop + [alert for group in (own, guests, _of_processes(model)) for alert in sorted(group, key=_gravity)]
+    found = stop + [alert for group in (own, external, _of_processes(model)) for alert in sorted(group, key=_gravity)]
     shown, rest = found[:ALERTS_SHOWN], sorted(found[ALERTS_SHOWN:], key=_gravity)
     more = [Alert(rest[0].style, f"and {len(rest)} more")] if rest else []
     return [Alert(style, text if len(text) <= ALERT_LENGTH else f"{text[: ALERT_LENGTH - 1]}…") for style, text in shown] + more

@@ -51,7 +51,7 @@ class SceneView:
         self._map_due: dict[str, float] = {}
 
     def _learn(self) -> None:
-        """What the vehicles look like; guests come later, and go."""
+        """What the vehicles look like; external vehicles come later, and go."""
         for name in self._bodies.keys() - self._model.vehicles.keys():
             for known in (self._bodies, self._ghosts, self._moving):
                 known.pop(name, None)

@@ -7,6 +7,7 @@ RENAMED = {
     "frontier_worth": "frontier_gain",
     "nav/fix": "nav/map_pose",
     "srv/order": "srv/vehicle_command",
+    "state/guest": "state/external_vehicle",
 }
 """Old -> new, of parameters, keys of files and topics (without their owner)."""
 

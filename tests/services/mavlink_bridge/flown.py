@@ -6,7 +6,7 @@ Between them real UDP sockets on the loopback; both ends step on simulated time,
 import contextlib
 
 from schemas import topics
-from schemas.messages import Guest
+from schemas.messages import ExternalVehicle
 from services.autopilot.mavlink.build import facts_of
 from services.autopilot.mavlink.service import MavlinkService
 from services.mavlink_bridge.discovery import Discovery, names_from
@@ -49,7 +49,7 @@ class Sides(contextlib.AbstractContextManager):
         self.t = 0.0
         truth = topics.TRUTH
         self.run_far.bus.subscribe(truth.at(self.far_name), truth.qos, self._see)
-        for topic in (topics.NAV_STATE, topics.STATUS, topics.MISSION, topics.PROGRESS, topics.GUEST):
+        for topic in (topics.NAV_STATE, topics.STATUS, topics.MISSION, topics.PROGRESS, topics.EXTERNAL_VEHICLE):
             self.bus.subscribe(topic.at(name), topic.qos, self._keep(topic))
         events = topics.EVENTS.by("mavlink_bridge")
         self.bus.subscribe(events.at(name), events.qos, lambda s: self.events.append(events.message.FromString(s.payload).text))
@@ -58,7 +58,7 @@ class Sides(contextlib.AbstractContextManager):
         self.truth = topics.TRUTH.message.FromString(sample.payload)
 
     def _found(self, name, system):
-        make = lambda: BridgedVehicle(name, system, self.station, self.origin, Guest(model="x"))  # noqa: E731
+        make = lambda: BridgedVehicle(name, system, self.station, self.origin, ExternalVehicle(model="x"))  # noqa: E731
         shell = ServiceRunner(ServiceInstance(BridgedVehicle, make, name), self.bus)
         shell.skip_to(round(self.t * NS), count=False)
         self._near.append(shell)

@@ -8,7 +8,7 @@ import pytest
 
 from schemas import topics
 from schemas.messages import (
-    AltitudeOrder,
+    AltitudeCommand,
     ArmRequest,
     CancelRequest,
     Fence,
@@ -21,13 +21,13 @@ from schemas.messages import (
     MissionRequest,
     Mode,
     ModeRequest,
-    OrderRequest,
     ParamRequest,
     RallyPoints,
     RallyRequest,
     SetCurrentRequest,
     StopCommand,
     Vector3,
+    VehicleCommandRequest,
 )
 from services.autopilot.air.build import hosts as air_hosts
 from services.autopilot.ground.build import hosts as ground_hosts
@@ -83,7 +83,7 @@ def test_it_is_known_as_any_vehicle(plane):
     assert (status.kind, status.mode, status.armed, status.landed, status.system_id) == (2, Mode.MODE_HOLD, True, False, 1)
     assert status.battery_remaining == pytest.approx(1.0, abs=0.02) and not status.failsafes
     assert plane.newest(topics.PROGRESS).state == MissionProgress.NO_MISSION
-    assert plane.newest(topics.GUEST).model == "x"
+    assert plane.newest(topics.EXTERNAL_VEHICLE).model == "x"
     assert any("simulated autopilot" in text for text in plane.events)
 
 
@@ -123,7 +123,7 @@ def test_a_goal_is_flown_to_and_circled(plane):
 
 
 def test_higher_is_higher(plane):
-    assert plane.ask(topics.VEHICLE_COMMAND, OrderRequest(altitude=AltitudeOrder(altitude=110.0))).accepted
+    assert plane.ask(topics.VEHICLE_COMMAND, VehicleCommandRequest(altitude=AltitudeCommand(altitude=110.0))).accepted
     assert plane.run(30.0, lambda: abs(plane.truth.position.z - 110.0) < 6.0)
 
 

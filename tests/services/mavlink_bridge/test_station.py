@@ -4,7 +4,7 @@ import random
 
 import pytest
 
-from schemas.messages import Guest, Link, Mode, ModeRequest, StopEngagement
+from schemas.messages import ExternalVehicle, Link, Mode, ModeRequest, StopEngagement
 from services.mavlink_bridge.discovery import Discovery, Names, names_from
 from services.mavlink_bridge.frame import BridgeOrigin
 from services.mavlink_bridge.service import BridgedVehicle
@@ -197,7 +197,7 @@ class Bridged:
         self.air, self.t, self.events = air, 0.0, []
         air.say(heartbeat(base=129))
         air.station.poll(0.0)
-        self.vehicle = BridgedVehicle("plane", 1, air.station, BridgeOrigin(ORIGIN), Guest())
+        self.vehicle = BridgedVehicle("plane", 1, air.station, BridgeOrigin(ORIGIN), ExternalVehicle())
 
     def run(self, seconds, beat=None, peer=HERE, stop=NOBODY, **asked):
         nothing = dict.fromkeys(BridgedVehicle.requests, ())

@@ -3,7 +3,7 @@
 import math
 from dataclasses import replace
 
-from schemas.messages import AltitudeOrder, HomeOrder, OrderRequest, PictureOrder, SpeedOrder, TakeoffOrder
+from schemas.messages import AltitudeCommand, HomeCommand, PictureCommand, SpeedCommand, TakeoffCommand, VehicleCommandRequest
 from services.autopilot.air.mode_manager import ModeManager
 from services.autopilot.air.mode_table import FlightMode
 from uvf.estimation.state import Estimate
@@ -17,7 +17,7 @@ PACED = (FlightMode.MISSION, FlightMode.HOLD, FlightMode.ORBIT, FlightMode.RETUR
 """Modes whose speed is free."""
 
 
-def carry_out(order: OrderRequest, mode_manager: ModeManager, now: Estimate, params: AirParams) -> str:
+def carry_out(order: VehicleCommandRequest, mode_manager: ModeManager, now: Estimate, params: AirParams) -> str:
     """Why it is refused; empty if it is done. Restarting is the service's own."""
     kind = order.WhichOneof("kind")
     if kind == "takeoff":
@@ -31,7 +31,7 @@ def carry_out(order: OrderRequest, mode_manager: ModeManager, now: Estimate, par
     return _picture(order.picture, mode_manager, now) if kind == "picture" else "there is nothing in this order"
 
 
-def _take_off(order: TakeoffOrder, source: str, mode_manager: ModeManager) -> str:
+def _take_off(order: TakeoffCommand, source: str, mode_manager: ModeManager) -> str:
     if mode_manager.home is None or not math.isfinite(order.altitude):
         return "the altitude is none" if mode_manager.home is not None else "home is unknown"
     if order.altitude < mode_manager.home.height + LOWEST_TAKEOFF:
@@ -39,7 +39,7 @@ def _take_off(order: TakeoffOrder, source: str, mode_manager: ModeManager) -> st
     return mode_manager.take_off(order.altitude, source)
 
 
-def _speed(order: SpeedOrder, mode_manager: ModeManager, now: Estimate, params: AirParams) -> str:
+def _speed(order: SpeedCommand, mode_manager: ModeManager, now: Estimate, params: AirParams) -> str:
     if mode_manager.blocked:
         return mode_manager.blocked
     if mode_manager.mode not in PACED or mode_manager.goes_down:
@@ -52,7 +52,7 @@ def _speed(order: SpeedOrder, mode_manager: ModeManager, now: Estimate, params: 
     return ""
 
 
-def _altitude(order: AltitudeOrder, mode_manager: ModeManager, params: AirParams) -> str:
+def _altitude(order: AltitudeCommand, mode_manager: ModeManager, params: AirParams) -> str:
     if mode_manager.blocked:
         return mode_manager.blocked
     circling = mode_manager.circling
@@ -68,7 +68,7 @@ def _altitude(order: AltitudeOrder, mode_manager: ModeManager, params: AirParams
     return ""
 
 
-def _home(order: HomeOrder, mode_manager: ModeManager, now: Estimate) -> str:
+def _home(order: HomeCommand, mode_manager: ModeManager, now: Estimate) -> str:
     if mode_manager.home is None:
         return "home is unknown"
     if not order.HasField("position") and mode_manager.is_blind:
@@ -81,7 +81,7 @@ def _home(order: HomeOrder, mode_manager: ModeManager, now: Estimate) -> str:
     return ""
 
 
-def _picture(order: PictureOrder, mode_manager: ModeManager, now: Estimate) -> str:
+def _picture(order: PictureCommand, mode_manager: ModeManager, now: Estimate) -> str:
     if not order.HasField("distance"):
         mode_manager.shutter.obey(PlanItem(ItemKind.TRIGGER, Place(now.north, now.east, now.height)))
         return ""

@@ -2,7 +2,7 @@
 
 import math
 
-from schemas.messages import AltitudeOrder, GoalRequest, Mode, OrbitRequest, OrderRequest, SpeedOrder, Vector3
+from schemas.messages import AltitudeCommand, GoalRequest, Mode, OrbitRequest, SpeedCommand, Vector3, VehicleCommandRequest
 from services.autopilot.mavlink.commands.actions import SOURCE, set_mode
 from services.autopilot.mavlink.commands.commands import Acknowledger, Handler, ReceivedCommand
 from services.autopilot.mavlink.commands.places import (
@@ -81,7 +81,7 @@ def _drive(line: VehicleConnection, place: Vector3, speed: float, ack: Acknowled
 
     def on_its_way(accepted: bool, reason: str) -> None:
         if accepted and speed > 0:
-            line.ask("order", OrderRequest(speed=SpeedOrder(speed=speed, over_ground=True), source=SOURCE), done)
+            line.ask("order", VehicleCommandRequest(speed=SpeedCommand(speed=speed, over_ground=True), source=SOURCE), done)
         else:
             done(accepted, reason)
 
@@ -94,7 +94,7 @@ def _only_higher(line: VehicleConnection, command: ReceivedCommand, ack: Acknowl
         set_mode(line, Mode.MODE_HOLD, ack.outcome("Hold refused"))
         return
     z, done = altitude_of(line, frame_of(command), command.p[6]), ack.outcome("Change of altitude refused")
-    request = OrderRequest(altitude=AltitudeOrder(altitude=z), source=SOURCE)
+    request = VehicleCommandRequest(altitude=AltitudeCommand(altitude=z), source=SOURCE)
 
     def circles(accepted: bool, reason: str) -> None:
         if accepted:
@@ -120,7 +120,7 @@ def _change_altitude(line: VehicleConnection, command: ReceivedCommand, ack: Ack
         ack(mav.MAV_RESULT_DENIED, "Change of altitude refused: an altitude is needed")
         return
     z = altitude_of(line, int(frame) if math.isfinite(frame) else mav.MAV_FRAME_GLOBAL, altitude)
-    line.ask("order", OrderRequest(altitude=AltitudeOrder(altitude=z), source=SOURCE), ack.outcome("Change of altitude refused"))
+    line.ask("order", VehicleCommandRequest(altitude=AltitudeCommand(altitude=z), source=SOURCE), ack.outcome("Change of altitude refused"))
 
 
 def _orbit(line: VehicleConnection, command: ReceivedCommand, ack: Acknowledger) -> None:

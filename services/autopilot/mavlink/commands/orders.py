@@ -5,14 +5,14 @@ from collections.abc import Sequence
 
 from schemas.messages import (
     GoAroundRequest,
-    HomeOrder,
+    HomeCommand,
     MissionItem,
     Mode,
-    OrderRequest,
-    PictureOrder,
-    RestartOrder,
-    SpeedOrder,
-    TakeoffOrder,
+    PictureCommand,
+    RebootCommand,
+    SpeedCommand,
+    TakeoffCommand,
+    VehicleCommandRequest,
 )
 from services.autopilot.mavlink.commands.actions import SOURCE, set_current, set_mode
 from services.autopilot.mavlink.commands.commands import Acknowledger, Handler, ReceivedCommand
@@ -44,7 +44,7 @@ def _takeoff(line: VehicleConnection, command: ReceivedCommand, ack: Acknowledge
             f"Takeoff refused: the altitude is above sea level (home is at {above_sea:.0f} m), {altitude:g} m is too low",
         )
     else:
-        line.ask("order", OrderRequest(takeoff=TakeoffOrder(altitude=z), source=SOURCE), ack.outcome("Takeoff refused"))
+        line.ask("order", VehicleCommandRequest(takeoff=TakeoffCommand(altitude=z), source=SOURCE), ack.outcome("Takeoff refused"))
 
 
 def _frame_of_takeoff(line: VehicleConnection, command: ReceivedCommand) -> int:
@@ -64,8 +64,8 @@ def _change_speed(line: VehicleConnection, command: ReceivedCommand, ack: Acknow
     elif speed <= 0 and speed != CRUISE:
         ack(mav.MAV_RESULT_DENIED, f"Change of speed refused: {speed:g} m/s is none")
     else:
-        order = SpeedOrder(speed=0.0 if speed == CRUISE else speed, over_ground=over_ground or line.facts.is_ground)
-        line.ask("order", OrderRequest(speed=order, source=SOURCE), ack.outcome("Change of speed refused"))
+        order = SpeedCommand(speed=0.0 if speed == CRUISE else speed, over_ground=over_ground or line.facts.is_ground)
+        line.ask("order", VehicleCommandRequest(speed=order, source=SOURCE), ack.outcome("Change of speed refused"))
 
 
 def _go_around(line: VehicleConnection, command: ReceivedCommand, ack: Acknowledger) -> None:
@@ -99,7 +99,7 @@ def _set_home(line: VehicleConnection, command: ReceivedCommand, ack: Acknowledg
     """Parameter 1 = 1: here. Without an altitude at the height of the home before."""
     done = ack.outcome("New home refused")
     if command.p[0] == 1.0:
-        line.ask("order", OrderRequest(home=HomeOrder(), source=SOURCE), done)
+        line.ask("order", VehicleCommandRequest(home=HomeCommand(), source=SOURCE), done)
         return
     if math.isnan(command.p[4]) or math.isnan(command.p[5]):
         ack(mav.MAV_RESULT_DENIED, "New home refused: latitude and longitude are needed")
@@ -107,7 +107,7 @@ def _set_home(line: VehicleConnection, command: ReceivedCommand, ack: Acknowledg
     place = place_in(line, command)
     if math.isnan(command.p[6]):
         place.z = float(line.latest.home[2]) if line.latest.home is not None else 0.0
-    line.ask("order", OrderRequest(home=HomeOrder(position=place), source=SOURCE), done)
+    line.ask("order", VehicleCommandRequest(home=HomeCommand(position=place), source=SOURCE), done)
 
 
 def on_set_home_position(line: VehicleConnection, m: mav.MAVLink_set_home_position_message) -> None:
@@ -118,7 +118,7 @@ def on_set_home_position(line: VehicleConnection, m: mav.MAVLink_set_home_positi
     except BadPlace as bad:
         done(False, bad.reason)
         return
-    line.ask("order", OrderRequest(home=HomeOrder(position=place), source=SOURCE), done)
+    line.ask("order", VehicleCommandRequest(home=HomeCommand(position=place), source=SOURCE), done)
 
 
 def on_set_origin(line: VehicleConnection, m: mav.MAVLink_set_gps_global_origin_message, sender: Sender) -> None:
@@ -136,7 +136,7 @@ def _picture(line: VehicleConnection, command: ReceivedCommand, ack: Acknowledge
     elif wanted != 1.0:
         ack(mav.MAV_RESULT_DENIED, "Picture refused: one at a time, or by distance")
     else:
-        line.ask("order", OrderRequest(picture=PictureOrder(), source=SOURCE), ack.outcome("Picture refused"))
+        line.ask("order", VehicleCommandRequest(picture=PictureCommand(), source=SOURCE), ack.outcome("Picture refused"))
 
 
 def _pictures(line: VehicleConnection, command: ReceivedCommand, ack: Acknowledger) -> None:
@@ -147,7 +147,7 @@ def _pictures(line: VehicleConnection, command: ReceivedCommand, ack: Acknowledg
     elif not distance >= 0:
         ack(mav.MAV_RESULT_DENIED, "Pictures refused: the distance between them is none")
     else:
-        line.ask("order", OrderRequest(picture=PictureOrder(distance=distance), source=SOURCE), ack.outcome("Pictures refused"))
+        line.ask("order", VehicleCommandRequest(picture=PictureCommand(distance=distance), source=SOURCE), ack.outcome("Pictures refused"))
 
 
 def _has_camera(line: VehicleConnection) -> bool:
@@ -160,7 +160,7 @@ def _reboot(line: VehicleConnection, command: ReceivedCommand, ack: Acknowledger
     if command.p[0] != RESTART:
         ack(mav.MAV_RESULT_UNSUPPORTED, "Reboot refused: parameter 1 = 1 starts the autopilot anew; nothing else can be switched off here")
         return
-    line.ask("order", OrderRequest(restart=RestartOrder(), source=SOURCE), ack.outcome("Reboot refused"))
+    line.ask("order", VehicleCommandRequest(reboot=RebootCommand(), source=SOURCE), ack.outcome("Reboot refused"))
 
 
 def _terminate(line: VehicleConnection, command: ReceivedCommand, ack: Acknowledger) -> None:

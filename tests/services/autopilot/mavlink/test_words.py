@@ -113,7 +113,7 @@ def test_a_command_that_cannot_be_is_refused_with_names_and_what_to_do(command, 
             "the radius cannot be that (1e+30 is more than 9)",
         ),
         (
-            "uvf/milvus/srv/vehicle_command: broken uvf.v1.OrderRequest: Error parsing message",
+            "uvf/milvus/srv/vehicle_command: broken uvf.v1.VehicleCommandRequest: Error parsing message",
             "it is too large, or has a number that cannot be",
         ),
         (

@@ -3,7 +3,7 @@
 import pytest
 
 from schemas import topics
-from schemas.messages import Clock, Event, Guest, NavStatus, Process, Processes, StopCommand, Timestamp, VehicleStatus
+from schemas.messages import Clock, Event, ExternalVehicle, NavStatus, Process, Processes, StopCommand, Timestamp, VehicleStatus
 from services.gcs.actions import StopAll
 from services.gcs.view.status import ALERT_LENGTH, ALERTS_SHOWN, alerts
 from tests.services.gcs.fakes import Station
@@ -87,7 +87,7 @@ def test_a_stop_of_somebody_else_is_theirs_and_stands_in_the_log(station):
 def test_many_failed_processes_and_lost_guests_hide_no_vehicle_of_the_mission(station):
     failed = [Process(name=f"a{i}", state=Process.FAILED, reason="you must land now " * 100) for i in range(200)]
     station.model.processes.hear(station.t, [Processes(processes=failed)])
-    station.model.hear_guests(station.t, {f"ghost{i}": Guest(model="burger") for i in range(50)})
+    station.model.hear_external_vehicles(station.t, {f"ghost{i}": ExternalVehicle(model="burger") for i in range(50)})
     station.model.hear(station.t - 100.0, "status", {f"ghost{i}": VehicleStatus() for i in range(2)})
     station.model.vehicles[UGV].nav_status = NavStatus(state=NavStatus.BLOCKED, reason="no way there " * 100)
     shown = told(station)

@@ -277,7 +277,7 @@ def test_pictures_once_and_by_distance():
 
 def test_a_reboot_begins_the_autopilot_anew():
     ((_, order),) = asked(rig_in(), long(246, 1.0))
-    assert order.WhichOneof("kind") == "restart"
+    assert order.WhichOneof("kind") == "reboot"
 
 
 @pytest.mark.parametrize(

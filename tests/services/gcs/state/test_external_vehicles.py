@@ -4,7 +4,7 @@ import pytest
 
 from schemas.messages import (
     Event,
-    Guest,
+    ExternalVehicle,
     Health,
     Kind,
     NavState,
@@ -16,7 +16,7 @@ from schemas.messages import (
     Vector3,
     VehicleStatus,
 )
-from services.gcs.state.guests import FORGOTTEN_AFTER
+from services.gcs.state.external_vehicles import FORGOTTEN_AFTER
 from services.gcs.state.process_book import MOST_PROCESSES
 from services.gcs.state.state import MOST_VEHICLES, Model
 from services.gcs.view.view import SceneView
@@ -35,7 +35,7 @@ def test_a_guest_is_drawn_where_it_says_and_can_be_chosen(model, body, kind):
     nav = NavState(position=Vector3(x=7.0, z=20.0), orientation=Quaternion(w=1))
     model.hear(0.0, "nav", {"plane2": nav})
     assert "plane2" not in model.vehicles, "nobody knows what it looks like"
-    model.hear_guests(0.0, {"plane2": Guest(model=body, about="MAVLink system 3")})
+    model.hear_external_vehicles(0.0, {"plane2": ExternalVehicle(model=body, about="MAVLink system 3")})
     model.hear_newest(0.1, {"nav": {"plane2": nav}, "status": {"plane2": VehicleStatus(kind=kind)}}, {})
     assert model.vehicles["plane2"].flies == (kind == Kind.KIND_FIXED_WING)
     assert any(name.startswith("/vehicles/plane2/") for name in view.nodes(0.2))
@@ -45,22 +45,22 @@ def test_a_guest_is_drawn_where_it_says_and_can_be_chosen(model, body, kind):
 
 def test_its_colour_is_its_own_and_a_mission_s_vehicle_is_no_guest(model):
     before = dict(model.vehicles)
-    model.hear_guests(0.0, {"plane2": Guest(model="milvus"), "milvus": Guest(model="burger")})
+    model.hear_external_vehicles(0.0, {"plane2": ExternalVehicle(model="milvus"), "milvus": ExternalVehicle(model="burger")})
     assert model.vehicles["milvus"] is before["milvus"]
     assert len({v.colour for v in model.vehicles.values()}) == 3
 
 
 def test_one_of_a_model_that_this_host_has_not_is_told_of_once(model):
     for _ in range(3):
-        model.hear_guests(0.0, {"plane2": Guest(model="saucer")})
+        model.hear_external_vehicles(0.0, {"plane2": ExternalVehicle(model="saucer")})
     assert "plane2" not in model.vehicles and len([line for line in model.log if "plane2" in line.text]) == 1
-    model.hear_guests(0.0, {"plane2": Guest(model="milvus")})
+    model.hear_external_vehicles(0.0, {"plane2": ExternalVehicle(model="milvus")})
     assert "plane2" in model.vehicles
 
 
 @pytest.mark.parametrize("body", ["../../etc", "/etc", "common/../milvus", "milvus/", "..", "", "Milvus", "<b>"])
 def test_a_model_is_the_name_of_a_folder_in_vehicles_and_never_a_path(model, body):
-    model.hear_guests(0.0, {"plane2": Guest(model=body)})
+    model.hear_external_vehicles(0.0, {"plane2": ExternalVehicle(model=body)})
     assert "plane2" not in model.vehicles
     model.hear_objects((SimObjects(objects=[SimObject(name="scout", model=body, shape="box", size=[1, 1, 1])]), None), {})
     drawn = SceneView(model).nodes(0.0)
@@ -73,7 +73,7 @@ EVIL = "<img src=x onerror=alert(1)>"
 @pytest.mark.parametrize("name", [EVIL, "x/../y", "sys", "Plane", "a" * 41, "", "a'b"])
 def test_who_has_no_name_is_refused_counted_and_told_of_once(model, name):
     for _ in range(3):
-        model.hear_guests(0.0, {name: Guest(model="milvus"), f"{name}.": Guest(model="milvus")})
+        model.hear_external_vehicles(0.0, {name: ExternalVehicle(model="milvus"), f"{name}.": ExternalVehicle(model="milvus")})
         model.hear_events(0.0, {f"{name}.": [Event(text="hello", severity=Event.WARNING)]})
         model.hear_objects((SimObjects(objects=[SimObject(name=name, shape="box", size=[1, 1, 1])]), None), {})
     assert set(model.vehicles) == {UGV, UAV} and not model.spawned
@@ -84,8 +84,8 @@ def test_who_has_no_name_is_refused_counted_and_told_of_once(model, name):
 
 def test_a_flood_of_guests_fills_neither_the_page_nor_its_log(model):
     for i in range(3 * MOST_VEHICLES):
-        model.hear_guests(0.0, {f"plane{i}": Guest(model="burger" if i % 2 else f"saucer{i}")})
-    assert len(model.vehicles) == MOST_VEHICLES and len(model._guests._undrawable) <= OWNERS_MOST
+        model.hear_external_vehicles(0.0, {f"plane{i}": ExternalVehicle(model="burger" if i % 2 else f"saucer{i}")})
+    assert len(model.vehicles) == MOST_VEHICLES and len(model._external._undrawable) <= OWNERS_MOST
     assert len([line for line in model.log if "more than 64 vehicles" in line.text]) == 1
     assert str(model.refused) == "68 vehicles"
 
@@ -99,16 +99,16 @@ def fly(model, t, *names):
 
 @pytest.fixture
 def haunted(model):
-    """As many guests as can be shown, silent since t = 0, whose words of themselves stay on the bus for ever."""
-    model.left = {name: Guest(model="burger") for name in GHOSTS}
-    model.hear_guests(0.0, model.left)
+    """As many external vehicles as can be shown, silent since t = 0, whose words of themselves stay on the bus for ever."""
+    model.left = {name: ExternalVehicle(model="burger") for name in GHOSTS}
+    model.hear_external_vehicles(0.0, model.left)
     fly(model, 0.0, *GHOSTS)
     return model
 
 
 def come(model, t, *names):
-    model.left |= {name: model.left.get(name) or Guest(model="milvus") for name in names}
-    model.hear_guests(t, model.left)
+    model.left |= {name: model.left.get(name) or ExternalVehicle(model="milvus") for name in names}
+    model.hear_external_vehicles(t, model.left)
 
 
 def test_a_guest_that_is_lost_for_long_makes_room_for_another(haunted):
@@ -125,8 +125,8 @@ def test_a_guest_that_is_lost_for_long_makes_room_for_another(haunted):
 
 
 def test_nobody_is_forgotten_while_there_is_room(model):
-    model.hear_guests(0.0, {"ghost": Guest(model="burger")})
-    model.hear_guests(1000.0, {"plane9": Guest(model="milvus")})
+    model.hear_external_vehicles(0.0, {"ghost": ExternalVehicle(model="burger")})
+    model.hear_external_vehicles(1000.0, {"plane9": ExternalVehicle(model="milvus")})
     assert {"ghost", "plane9"} <= model.vehicles.keys()
 
 
@@ -147,15 +147,15 @@ def test_who_was_forgotten_and_comes_back_is_shown_again(haunted, sign):
     if sign == "it moves":
         fly(haunted, 102.0, gone)
     else:
-        haunted.left[gone] = Guest(model="milvus")
+        haunted.left[gone] = ExternalVehicle(model="milvus")
     come(haunted, 102.1, "plane9")
     assert gone in haunted.vehicles and "plane9" in haunted.vehicles
 
 
 def test_names_turned_away_take_no_room_from_those_that_can_be_drawn(model):
     for i in range(MOST_VEHICLES):
-        model.hear_guests(0.0, {f"ghost{i}": Guest(model="saucer")})
-    model.hear_guests(0.1, {"plane9": Guest(model="milvus")})
+        model.hear_external_vehicles(0.0, {f"ghost{i}": ExternalVehicle(model="saucer")})
+    model.hear_external_vehicles(0.1, {"plane9": ExternalVehicle(model="milvus")})
     assert "plane9" in model.vehicles
 
 
