@@ -106,4 +106,5 @@ GRID_CELL = (1e-3, 10.0)  # m, as of maps in files
 
 
 def size_of(type_: type[Message]) -> int:
+    """The largest size [bytes] of a message of this type."""
     return SIZES.get(type_, SIZE)

@@ -17,10 +17,12 @@ def slab(centres: list[tuple[float, float]], radius: float, z: tuple[float, floa
 
 
 def corners(x: float, y: float) -> list[tuple[float, float]]:
+    """The corners [m] of a rectangle that reaches ``x`` ahead and ``y`` to the side."""
     return [(x, y), (-x, y), (-x, -y), (x, -y)]
 
 
 def main() -> None:
+    """Writes all meshes."""
     made = {
         "my2bot/meshes/deck.stl": slab(corners(0.095, 0.060), 0.025, (-0.0025, 0.0025)),
         "my3bot/meshes/storey.stl": slab([(0.045, 0.075), (0.045, -0.075), (-0.150, 0.0)], 0.050, (-0.003, 0.003)),

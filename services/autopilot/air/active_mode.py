@@ -89,7 +89,7 @@ class ActiveMode:
 
     @property
     def station(self) -> float | None:
-        """m, of the aircraft from its station behind a leader."""
+        """Distance [m] of the aircraft from its slot behind a leader; None in other modes."""
         return self._phase.distance if isinstance(self._phase, FollowMode) else None
 
     @property

@@ -57,7 +57,7 @@ class Outlook:
         return Breach.BREACH_FLOOR if self.low else Breach.BREACH_CEILING
 
     def spare(self, params: AirParams) -> float:
-        """m beyond the distances that are kept; negative: it has to turn away, or to end its climb or descent."""
+        """Distance [m] beyond what is kept; negative: it has to turn away, or to end its climb or descent."""
         return min(self.least - params.fence_margin, self.height_room - 0.5 * params.fence_height)
 
 
@@ -91,6 +91,7 @@ class FenceGuard:
 
     @property
     def evades(self) -> bool:
+        """Whether it is turning away from the fence now."""
         return self._side != 0.0
 
     def bank(self, wanted: float, now: Estimate, params: AirParams) -> float:
@@ -111,7 +112,7 @@ class FenceGuard:
         return self._side * (params.turn_bank if least > 0.5 * margin else params.bank_limit)
 
     def level(self, wanted: float | None, now: Estimate, params: AirParams) -> float | None:
-        """m: the height asked for, between floor and ceiling; where a climb rate is held, only near to one of them."""
+        """The height asked for [m, world], between floor and ceiling; where a climb rate is held, only near to one of them."""
         if not self.fencing.steers or (wanted is None and self.outlook.height_room > params.fence_height):
             return wanted
         height = now.height if wanted is None else wanted
@@ -162,7 +163,7 @@ def turn(now: Estimate, bank: float) -> Floats:
 
 
 def clamped(height: float, fencing: Fencing, params: AirParams) -> float:
-    """m, between floor and ceiling, the margins kept as far as there is room for both."""
+    """``height`` [m, world] between floor and ceiling, the margins kept as far as there is room for both."""
     low, high = fencing.floor + params.fence_height, fencing.ceiling - params.fence_height
     return 0.5 * (low + high) if low > high else min(max(height, low), high)
 

@@ -33,6 +33,7 @@ class FlightController:
         """m/s, that is held; None while an attitude or surfaces are asked for."""
 
     def step(self, now: Estimate, wish: Setpoint, params: AirParams, dt: float) -> Surfaces:
+        """Surfaces [rad; throttle and brake 0 to 1] that carry out ``wish`` in this cycle of ``dt`` [s]."""
         asked = wish.asked
         self.attitude = self.airspeed = None
         if isinstance(asked, Surfaces):

@@ -40,6 +40,8 @@ from uvf.runtime.state.stop_all import StopStatus
 
 
 class Inputs(Reads):
+    """Messages and requests that the air autopilot reads."""
+
     imu: list[Imu] = every(topics.IMU)
     air_data: AirData | None = optional(topics.AIR_DATA)
     gnss: Gnss | None = optional(topics.GNSS)
@@ -66,6 +68,8 @@ class Inputs(Reads):
 
 
 class Outputs(Writes):
+    """Messages and replies that the air autopilot publishes."""
+
     surfaces: SurfaceCommand | None = topic(topics.SURFACE_COMMAND)
     nav_state: NavState | None = topic(topics.NAV_STATE)
     pose: PoseInFrame | None = topic(topics.POSE)
@@ -93,6 +97,8 @@ class Outputs(Writes):
 
 
 class Recalls(Reads):
+    """Latched messages from which a restarted instance resumes."""
+
     status: VehicleStatus | None = topic(topics.STATUS)
     plan: Mission | None = topic(topics.MISSION)
     bounds: Fence | None = topic(topics.FENCE)

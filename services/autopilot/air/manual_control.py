@@ -86,10 +86,11 @@ class ManualControlState:
         self._left = PATIENCE
 
     def hold(self, hand: ManualCommand | None, dt: float) -> None:
-        """What is asked now."""
+        """Takes what is asked for by hand in this cycle of ``dt`` [s]; None = nothing."""
         self._held = hand is not None
         self._left = 0.0 if self._held else self._left - dt
 
     @property
     def abandoned(self) -> bool:
+        """Whether nobody flies by hand: the last command has gone stale, or none came within ``PATIENCE`` [s]."""
         return not self._held and self._left <= 0.0

@@ -55,6 +55,7 @@ class ModeManager(ActiveMode):
         self._fresh = True
 
     def step(self, now: Estimate, params: AirParams, dt: float) -> ControlOutput:
+        """One cycle of ``dt`` [s]: whether the mode goes on, what it asks for, and the surfaces that carry it out."""
         if self._fresh:
             self._begin(now)
         self._look(now, params)
@@ -67,7 +68,7 @@ class ModeManager(ActiveMode):
         return self._flown(phase.step(now, params, dt), now, params, dt)
 
     def hear(self, context: FlightContext, dt: float) -> None:
-        """Before each step."""
+        """Takes what is known beside the estimate, before each step of ``dt`` [s]."""
         self.context.update(context)
         self._stick.hold(context.hand, dt)
 
@@ -228,7 +229,7 @@ class ModeManager(ActiveMode):
         self._phase = DescendMode(circle, self.home.height if self.home is not None else self._ground, self.context)
 
     def orbit(self, circle: Circle, airspeed: float, source: str, params: AirParams) -> str:
-        """Mode Orbit; a radius or airspeed of 0 is the vehicle's own."""
+        """Mode Orbit; a radius [m] or ``airspeed`` [m/s] of 0 is the vehicle's own."""
         if why := self._refused(FlightMode.ORBIT):
             return why
         if not all(map(math.isfinite, astuple(circle.centre))):
@@ -243,6 +244,7 @@ class ModeManager(ActiveMode):
         return ""
 
     def go_around(self, source: str) -> str:
+        """Gives up the approach that is flown and begins it again."""
         if self.landing is None:
             return "there is no approach to be given up"
         if self.landing.rolls:
@@ -264,6 +266,7 @@ class ModeManager(ActiveMode):
         return ""
 
     def set_current(self, index: int) -> str:
+        """Goes on with the item ``index`` of the mission."""
         if index >= len(self.navigator.items):
             return f"there is no item {index}: the mission has {len(self.navigator.items)}"
         self.navigator.jump_to(index)

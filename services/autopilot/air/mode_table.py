@@ -6,6 +6,8 @@ from enum import Enum
 
 
 class FlightMode(Enum):
+    """The modes by the names that people see."""
+
     MANUAL = "Manual"
     STABILIZED = "Stabilized"
     ALTITUDE = "Altitude"
@@ -47,6 +49,7 @@ class Need(Enum):
     LEADER = "there is no leader to follow, or nothing is heard of it: see 'follow' of the mission's job"
 
     def is_met(self, now: Situation) -> bool:
+        """Whether the need is met now."""
         return {
             Need.RELEASED: not now.stopped,
             Need.POSITION: now.position_known,

@@ -83,6 +83,7 @@ class AutopilotAir(Service):
         self._stop = StopStatus()
 
     def step(self, t: float, now: interface.Inputs) -> interface.Outputs:
+        """One cycle at simulation time ``t`` [s]."""
         if self._reboots:
             self._reboot()
         samples = [sample for m in now.imu if (sample := intake.inertial(m, t)) is not None]
@@ -191,7 +192,7 @@ class AutopilotAir(Service):
             self._sensing.begin_from(left.nav_state)
 
     def stale(self, t: float, missing: tuple[str, ...]) -> interface.Outputs:
-        """Without the IMU nothing can be steered: surfaces at trim until it is back; before the first cycle the servos hold."""
+        """Without the IMU at ``t`` [s] nothing is steered: surfaces at trim until it is back; before the first cycle the servos hold."""
         if not self._cycles:
             out = self.Outputs()
             self._tell_news(t, out)

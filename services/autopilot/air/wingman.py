@@ -29,6 +29,7 @@ class AutopilotWingman(AutopilotAir):
         self._mode_manager.join(formation)
 
     def step(self, t: float, now: interface.Inputs) -> interface.Outputs:
+        """One cycle at simulation time ``t`` [s]: hears the others, then flies as every aircraft."""
         assert isinstance(now, self.Inputs)
         self._formation.hear(t, now.others)
         return super().step(t, now)

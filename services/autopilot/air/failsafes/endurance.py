@@ -43,7 +43,7 @@ class Endurance:
 
 
 def seconds_home(now: Estimate, home: Place, params: AirParams) -> float:
-    """s at trim airspeed against the wind of now; inf where that is too strong."""
+    """Time [s] home at trim airspeed against the wind of now; inf where that is too strong."""
     north, east = home.north - now.north, home.east - now.east
     distance = math.hypot(north, east)
     if distance < 1.0:

@@ -60,12 +60,12 @@ class FailsafeMonitor:
         """How often it has been outside of a fence."""
 
     def hear(self, t: float, link: Link | None, battery: Battery | None) -> None:
-        """What comes from outside, before each step."""
+        """Takes what comes from outside at ``t`` [s], before each step."""
         self.endurance.take(t, battery)
         self._link.step(t, link)
 
     def believed(self, read: tuple[object, Pressures] | None, flying: FlightState | None, params: AirParams, dt: float) -> Pressures | None:
-        """The pressures (with their stamp) as far as they can be believed."""
+        """The pressures (with their stamp) as far as they can be believed, in a cycle of ``dt`` [s]."""
         pressures = self._air_data.step(read, flying, params, dt)
         self.has_air_data = pressures is not None
         return pressures
@@ -90,7 +90,7 @@ class FailsafeMonitor:
         return eased(params) if "saturation" in self.watch.holding else params
 
     def step(self, t: float, seen: VehicleCondition, params: AirParams, dt: float) -> list[Event]:
-        """Before the pilot's step; ``seen.surfaces`` are those of the cycle before."""
+        """One cycle of ``dt`` [s] at ``t`` [s], before the mode manager's step; ``seen.surfaces`` are those of the cycle before."""
         self._saturation.step(seen.surfaces, dt)
         if not self._mode_manager.is_blind:
             self._lost_for = 0.0

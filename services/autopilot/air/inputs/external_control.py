@@ -37,7 +37,7 @@ class ExternalControl:
         return self._setpoints.holder if active.mode is FlightMode.OFFBOARD else ""
 
     def news(self, t: float, active: ActiveMode) -> list[tuple[str, str]]:
-        """Hand-overs, in the modes in which they matter: what and why."""
+        """Hand-overs at ``t`` [s], in the modes in which they matter: what and why."""
         if active.mode is FlightMode.OFFBOARD:
             return self._setpoints.news(t)
         return self._hands.news(t) if active.is_manual else []

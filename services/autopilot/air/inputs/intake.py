@@ -52,7 +52,7 @@ MODES = {
 
 
 def frd(v: Vector3) -> tuple[float, float, float]:
-    """FLU into FRD."""
+    """A vector (3,) of a message from FLU into FRD, in its own unit ([m/s^2], [rad/s], [T])."""
     return v.x, -v.y, -v.z
 
 
@@ -107,6 +107,7 @@ def left_fix(state: NavState, t: float) -> GnssFix | None:
 
 
 def place(v: Vector3) -> Place:
+    """A position (x, y, z) of a message [m, world, ENU] as a place: north, east and height [m]."""
     return Place(v.y, v.x, v.z)
 
 

@@ -54,7 +54,7 @@ class StateEstimation:
 
     @property
     def gnss_age(self) -> float:
-        """s since the last fix."""
+        """Time [s] since the last fix."""
         return self._estimator.gnss_age
 
     def begin_from(self, left: NavState) -> None:
@@ -63,7 +63,7 @@ class StateEstimation:
         self._estimator.begin_at(*intake.attitude(left))
 
     def step(self, t: float, said: SensorInputs, params: AirParams, dt: float) -> Estimate | None:
-        """dt: s, the cycle. None until the first fix."""
+        """The estimate of this cycle at ``t`` [s], ``dt`` [s] after the one before; None until the first fix."""
         fix = self._new_fix(t, said) if said.gnss is not None else None
         if fix is None and not self._estimator.started:
             fix = self._left_fix(t, dt)
@@ -120,6 +120,7 @@ class GroundProximity:
         """m/s^2, specific force upwards."""
 
     def hear(self, ranges: Sequence[Range], samples: Sequence[InertialSample], dt: float) -> None:
+        """Takes the range finders' readings and the IMU's samples of this cycle of ``dt`` [s]."""
         for reading in ranges:
             if reading.frame_id == self._frame:
                 self._reading = reading

@@ -25,6 +25,7 @@ class ActivePlans:
         """Outputs that are to be told."""
 
     def set_mission(self, mission: Mission, params: AirParams) -> str:
+        """Replaces the mission."""
         try:
             items = intake.items(mission.items)
         except ValueError as error:
@@ -37,12 +38,14 @@ class ActivePlans:
         return refusal
 
     def set_fence(self, fence: Fence, seen: VehicleCondition | None, params: AirParams) -> str:
+        """Replaces the fence. seen: None before the first estimate."""
         refusal = self._safety.set_fence(fence, seen, params)
         if not refusal:
             self._news.add("bounds")
         return refusal
 
     def set_rally(self, rally: RallyPoints, params: AirParams) -> str:
+        """Replaces the rally points."""
         places = [intake.place(point) for point in rally.points]
         refusal = return_mode.fault(places, self._mode_manager.home or Place(0.0, 0.0, 0.0), self._mode_manager.fence.fencing, params)
         if not refusal:
@@ -51,7 +54,7 @@ class ActivePlans:
         return refusal
 
     def tell(self, t: float, out: Outputs) -> None:
-        """What has changed since it was told last."""
+        """Puts what has changed since the last call into ``out``, stamped ``t`` [s]."""
         news, self._news = self._news, set()
         if "plan" in news:
             self.mission.timestamp.CopyFrom(stamp(t))

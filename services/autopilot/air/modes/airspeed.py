@@ -77,7 +77,7 @@ class LeaderSpeedFilter:
         self._known = 0.0  # s
 
     def step(self, wish: Setpoint, now: Estimate, params: AirParams, dt: float) -> Setpoint:
-        """The wish with the airspeed of now that the speed asked for means."""
+        """The setpoint with the airspeed [m/s] of now that the speed asked for means, in a cycle of ``dt`` [s]."""
         self._average(now, dt)
         asked = wish.asked
         if not isinstance(asked, PathSetpoint) or asked.throttle is not None:

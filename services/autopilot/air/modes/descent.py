@@ -26,6 +26,8 @@ STANDS, LONGEST = 1.5, 20.0  # s at rest, s of rolling
 
 
 class DescendStage(Enum):
+    """Stages of coming down without a position."""
+
     CIRCLE = auto()
     UPWIND = auto()
     ROLL = auto()
@@ -49,6 +51,7 @@ class DescendMode(FlightPhase):
         return self._stage is DescendStage.ROLL
 
     def step(self, now: Estimate, params: AirParams, dt: float) -> Setpoint:
+        """Setpoint of this cycle of ``dt`` [s]: down on a circle, the last part into the wind, then rolling out."""
         self._since += dt
         if self._stage is DescendStage.ROLL:
             return self._roll(now, dt)

@@ -23,7 +23,7 @@ class Airfield:
         self._strips = tuple(strips)
 
     def take_off(self, now: Estimate, height: float, context: FlightContext) -> TakeoffMode:
-        """height: m, world, at which it is done. On a strip there is the room that lies ahead on it."""
+        """A take-off that is done at ``height`` [m, world]. On a strip there is the room that lies ahead on it."""
         on = next((s for s in self._strips if _distance(s, now.north, now.east) < s.length / 2), None)
         if on is None:
             return TakeoffMode(now, height, context)

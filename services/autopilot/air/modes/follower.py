@@ -52,6 +52,7 @@ class FormationLink:
 
     @property
     def is_led(self) -> bool:
+        """Whether the leader was heard within the last ``LOST`` seconds."""
         newest = self.trail.newest
         return newest is not None and self.t - newest.t <= LOST
 
@@ -63,6 +64,7 @@ class FormationLink:
 
     @property
     def lost_reason(self) -> str:
+        """What the status tells while it holds for want of a leader."""
         return f"leader {self.leader} lost: holds until it is heard again"
 
     @property
@@ -91,6 +93,7 @@ class FollowMode(FlightPhase):
         """m, from the station."""
 
     def step(self, now: Estimate, params: AirParams, dt: float) -> Setpoint:
+        """Setpoint of this cycle of ``dt`` [s]: towards the slot behind the leader, clear of the others."""
         formation = self._formation
         if formation.trail.newest is None:
             self._height = now.height if self._height is None else self._height

@@ -48,6 +48,8 @@ STOPPED, STANDS = 0.7, 1.5  # m/s, s
 
 
 class LandingStage(Enum):
+    """Stages of a landing, in the order in which they are flown; AROUND leads back to the first."""
+
     CIRCLE = auto()
     FINAL = auto()
     ROLL = auto()
@@ -82,6 +84,7 @@ class LandingMode(FlightPhase):
 
     @property
     def circle(self) -> Circle | None:
+        """The circle that is flown before the approach; None on it."""
         return self._circle if self._stage is LandingStage.CIRCLE else None
 
     @property
@@ -95,11 +98,13 @@ class LandingMode(FlightPhase):
         return self._stage is LandingStage.ROLL or (self._stage is LandingStage.FINAL and self._low)
 
     def around(self, why: str) -> None:
+        """Goes around; ``why`` is told."""
         if not self.rolls:
             self.why_around = why
             self._to(LandingStage.AROUND)
 
     def step(self, now: Estimate, params: AirParams, dt: float) -> Setpoint:
+        """Setpoint of this cycle of ``dt`` [s], from the circle over the approach and the flare to the end of the roll."""
         self._since += dt
         if self._stage is LandingStage.CIRCLE:
             return self._descend(now, params)
@@ -239,7 +244,7 @@ def flare(distance: float, ground_speed: float, slope: float) -> tuple[float, fl
 
 
 def touch_throttle(now: Estimate, params: AirParams, climb: float, airspeed: float, height: float) -> float:
-    """From the airspeed of the approach to that of touching down, which is below the lowest one that the loops hold."""
+    """Throttle, 0 to 1, from ``airspeed`` [m/s] of the approach to that of touching down, below the lowest one that the loops hold."""
     touching = TOUCH_SPEED * airspeed
     airspeed = touching + (airspeed - touching) * min(max(height / SLOWS_BELOW, 0.0), 1.0)
     ahead = params.trim_throttle + params.throttle_speed * (airspeed - params.trim_airspeed)

@@ -22,7 +22,7 @@ class MissionMode(FlightPhase):
         self._index: int | None = None
 
     def step(self, now: Estimate, params: AirParams, dt: float) -> Setpoint:
-        """``look`` comes first."""
+        """Setpoint of the part that is flown in this cycle of ``dt`` [s]; ``look`` comes first."""
         assert self.part is not None
         return self.part.step(now, params, dt)
 

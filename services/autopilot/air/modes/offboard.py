@@ -61,6 +61,7 @@ class OffboardMode(FlightPhase):
         self._senses = context
 
     def step(self, now: Estimate, params: AirParams, dt: float) -> Setpoint:
+        """Setpoint of this cycle of ``dt`` [s]: what the holder asks for, within the aircraft's limits."""
         message = self._senses.setpoint
         assert message is not None, "the table ends this mode without a setpoint"
         if message.HasField("attitude"):

@@ -43,6 +43,7 @@ class OrbitMode(FlightPhase):
         self._sized = how.radius != 0.0
 
     def step(self, now: Estimate, params: AirParams, dt: float) -> Setpoint:
+        """Setpoint of this cycle of ``dt`` [s]: along the circle at its height."""
         if not self._sized and self.circle.radius != params.hold_radius:
             self.circle = replace(self.circle, radius=params.hold_radius)
         return Setpoint(PathSetpoint(self.circle.aim(now, params), self.circle.centre.height, 0.0, self.airspeed or params.trim_airspeed))
@@ -55,5 +56,6 @@ class PathMode(FlightPhase):
         self._navigator = navigator
 
     def step(self, now: Estimate, params: AirParams, dt: float) -> Setpoint:
+        """Setpoint of this cycle of ``dt`` [s]: along the leg of the mission."""
         aim, level = self._navigator.step(now, params, dt)
         return Setpoint(PathSetpoint(aim, level.height, level.climb, self._navigator.speed or params.trim_airspeed))

@@ -30,6 +30,7 @@ class ReturnMode(OrbitMode):
         self._waited = 0.0  # s
 
     def step(self, now: Estimate, params: AirParams, dt: float) -> Setpoint:
+        """Setpoint of this cycle of ``dt`` [s]: to the circle, down on it, and after ``land_delay`` the end."""
         if self.circle.centre.height == self._given:
             self._given = self._height(params)
             self.circle = replace(self.circle, centre=replace(self.circle.centre, height=self._given))
@@ -57,7 +58,7 @@ def return_point(now: Estimate, home: Place, rally: Sequence[Place], fencing: Fe
 
 
 def lowest_over(to: Place, rally: Sequence[Place]) -> float:
-    """m, world: a rally point is not flown over lower than it says."""
+    """Least height [m, world]: a rally point is not flown over lower than it says."""
     return next((place.height for place in rally if place.point == to.point), -math.inf)
 
 

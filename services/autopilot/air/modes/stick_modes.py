@@ -37,6 +37,7 @@ class ManualMode(StickMode):
     """The surfaces as the hand asks."""
 
     def step(self, now: Estimate, params: AirParams, dt: float) -> Setpoint:
+        """The sticks' surfaces [rad; throttle 0 to 1] as they are, in this cycle of ``dt`` [s]."""
         return Setpoint(self._surfaces)
 
 
@@ -44,6 +45,7 @@ class StabilizedMode(StickMode):
     """Stick to bank and pitch; throttle, rudder, flap and brake as the hand asks. The pedals centred, the side slip is taken out."""
 
     def step(self, now: Estimate, params: AirParams, dt: float) -> Setpoint:
+        """Roll and pitch [rad] by the sticks, in this cycle of ``dt`` [s]."""
         sticks, surfaces = self._sticks, self._surfaces
         level = Cycle(now, params, dt).alpha
         rudder = surfaces.rudder if abs(sticks.yaw) > CENTRED or not self._senses.airborne else None
@@ -59,6 +61,7 @@ class AltitudeMode(StickMode):
         self._height: float | None = None
 
     def step(self, now: Estimate, params: AirParams, dt: float) -> Setpoint:
+        """Roll [rad] and climb [m/s] by the sticks; without climb the height is held, in this cycle of ``dt`` [s]."""
         height, climb = self._vertical(now, params)
         return Setpoint(
             AltitudeAirspeedSetpoint(self._sticks.roll * params.turn_bank, height, climb, self._airspeed(params)), self._surfaces.flap
@@ -85,6 +88,7 @@ class PositionMode(AltitudeMode):
         self._line: tuple[Point, Point] | None = None
 
     def step(self, now: Estimate, params: AirParams, dt: float) -> Setpoint:
+        """As in Altitude; with the stick in the middle a straight line over ground is held, in this cycle of ``dt`` [s]."""
         if abs(self._sticks.roll) > CENTRED:
             self._line = None
         elif self._line is None and abs(now.roll) < WINGS_LEVEL:

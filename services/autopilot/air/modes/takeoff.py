@@ -26,6 +26,8 @@ READY = Surfaces(0.0, 0.0, 0.0, 0.0)
 
 
 class TakeoffStage(Enum):
+    """Stages of a take-off, in the order in which they are flown."""
+
     READY = auto()
     ROLL = auto()
     CLIMB = auto()
@@ -53,6 +55,7 @@ class TakeoffMode(FlightPhase):
         return self._stage is not TakeoffStage.CLIMB or self._rise(now) < STRAIGHT
 
     def step(self, now: Estimate, params: AirParams, dt: float) -> Setpoint:
+        """Setpoint of this cycle of ``dt`` [s]: roll or throw, rotation, climb straight ahead."""
         self._since += dt
         level = self._gyros.step(now, dt)
         if self._stage is TakeoffStage.READY:

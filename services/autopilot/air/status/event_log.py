@@ -23,6 +23,7 @@ class EventLog:
         self._lost = False
 
     def events(self, t: float, active: ActiveMode, armed: bool) -> list[Event]:
+        """What has happened since the cycle before, as events stamped ``t`` [s]."""
         navigator = active.navigator
         found: list[Event] = []
         if self._lost:
@@ -53,7 +54,7 @@ class EventLog:
         self._notes += notes
 
     def lost(self, t: float, missing: tuple[str, ...]) -> list[Event]:
-        """Without the IMU; once, until it is back."""
+        """At ``t`` [s] without the IMU: told once, until it is back."""
         if self._lost:
             return []
         self._lost = True

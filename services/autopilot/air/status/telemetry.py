@@ -37,6 +37,7 @@ CIRCLE_POINTS = 24
 
 def nav_state(t: float, now: Estimate) -> NavState:
     # ENU and FLU are each half a turn away from NED and FRD: yaw is mirrored, pitch changes sign with y and z.
+    """The estimate as a message in ENU and FLU, stamped ``t`` [s]."""
     attitude = from_euler(now.roll, -now.pitch, math.pi / 2 - now.yaw)
     course = now.course
     return NavState(
@@ -52,6 +53,7 @@ def nav_state(t: float, now: Estimate) -> NavState:
 
 
 def pose(state: NavState) -> PoseInFrame:
+    """The pose alone, in the world frame."""
     return PoseInFrame(timestamp=state.timestamp, frame_id="world", pose=Pose(position=state.position, orientation=state.orientation))
 
 
@@ -67,7 +69,7 @@ def body_frame(state: NavState, vehicle: str) -> FrameTransform:
 
 
 def surfaces(t: float, s: Surfaces, armed: bool) -> SurfaceCommand:
-    """Disarmed, the motor stays off."""
+    """The command to the servos [rad; throttle 0 to 1], stamped ``t`` [s]; disarmed, the motor stays off."""
     throttle = s.throttle if armed else 0.0
     return SurfaceCommand(
         timestamp=stamp(t), aileron=s.aileron, elevator=s.elevator, rudder=s.rudder, throttle=throttle, flap=s.flap, brake=s.brake
@@ -75,7 +77,7 @@ def surfaces(t: float, s: Surfaces, armed: bool) -> SurfaceCommand:
 
 
 def status(t: float, active: ActiveMode, now: Estimate, flown: ControlOutput) -> VehicleStatus:
-    """All but arming, landing, battery and the system id."""
+    """All of the status but arming, landing, battery and the system id, stamped ``t`` [s]."""
     message = VehicleStatus(
         timestamp=stamp(t),
         kind=Kind.KIND_FIXED_WING,
@@ -114,6 +116,7 @@ def _distance(active: ActiveMode, now: Estimate) -> float:
 
 
 def progress(t: float, active: ActiveMode, mission_id: int) -> MissionProgress:
+    """How far the mission has been flown, stamped ``t`` [s]."""
     navigator = active.navigator
     if not navigator.items:
         state = MissionProgress.NO_MISSION
@@ -142,7 +145,7 @@ def _current(navigator: PlanFollower) -> int:
 
 
 def path(t: float, active: ActiveMode) -> PosesInFrame:
-    """What is flown, for display: the items still to come up to a return to the first of them, or the circle."""
+    """The path at ``t`` [s], for display: the items still to come up to a return to the first of them, or the circle."""
     if active.mode is FlightMode.MISSION and active.navigator.index is not None:
         places = _ahead(active)
     elif active.mode is FlightMode.FOLLOW and active.formation is not None:
@@ -179,7 +182,7 @@ def _pose(place: Place) -> Pose:
 
 
 def targets(t: float, active: ActiveMode, flown: ControlOutput) -> Targets:
-    """Nothing that is not held now: by hand no place, with the surfaces in hand no attitude either."""
+    """What is held at ``t`` [s], and nothing else: by hand no place, with the surfaces in hand no attitude either."""
     message = Targets(timestamp=stamp(t), airspeed=flown.airspeed)
     if flown.airspeed is not None:
         message.altitude = flown.level.height
@@ -197,6 +200,7 @@ def targets(t: float, active: ActiveMode, flown: ControlOutput) -> Targets:
 
 
 def quality(t: float, now: Estimate) -> EstimateQuality:
+    """How well the estimate is known (sigmas [m, m/s, rad] and test ratios [-]), stamped ``t`` [s]."""
     fits = now.ratios
     return EstimateQuality(
         timestamp=stamp(t),

@@ -25,4 +25,5 @@ class ServiceInstance:
 class Build(Protocol):
     """``services/<name>/build.py`` holds one: which instances a process of this service hosts."""
 
-    def __call__(self, site: Scenario) -> list[ServiceInstance]: ...
+    def __call__(self, site: Scenario) -> list[ServiceInstance]:
+        """One entry for each instance, in the order of the mission's vehicles."""
