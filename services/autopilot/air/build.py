@@ -8,26 +8,30 @@ from schemas.messages import MissionItem
 from services.autopilot.air.config import AutopilotConfig
 from services.autopilot.air.inputs import intake
 from services.autopilot.air.modes.airspeed import reserved
-from services.autopilot.air.service import AutopilotAir
-from services.autopilot.air.wingman import wingman
+from services.autopilot.air.modes.follower import FormationLink
+from services.autopilot.air.service import AutopilotAir, AutopilotWingman
 from services.autopilot.plan import item_from_file
 from uvf.control.servos import ServoLimits, Servos
 from uvf.estimation.ekf import datasheet
 from uvf.estimation.estimators import Instruments
 from uvf.guidance import flyable
 from uvf.guidance.fence_plan import fence_fit, mission_fault
+from uvf.guidance.formation_slot import FormationSlot
 from uvf.guidance.route import Place
 from uvf.guidance.runways import LandingStrip
 from uvf.maths import rotations
 from uvf.maths.geodesy import LocalTangent
+from uvf.models.mission.formation import Follow, chain_of, offset_of
 from uvf.models.scenario import MissionVehicle, Scenario
 from uvf.models.vehicle.flight_params import AirParams
 from uvf.models.vehicle.sensors import Mount
 from uvf.models.world import file as world_file
 from uvf.models.world.terrain import relief
-from uvf.models.yaml_data import BadInput
+from uvf.models.yaml_data import BadInput, FileLocation
 from uvf.runtime.contract.instances import ServiceInstance
 from uvf.runtime.messages.fences import fence_message, fencing
+
+NEAREST = 1.0  # s behind a leader: what lies ahead of the follower has to be known
 
 
 def hosts(site: Scenario) -> list[ServiceInstance]:
@@ -64,7 +68,7 @@ def _host(site: Scenario, member: MissionVehicle) -> ServiceInstance:
     if why := _fence_fault(config, Place(start.y, start.x, start.z), params):
         raise BadInput(f"{site.mission_path}: {member.name}: fence: {why}")
     if member.entry.job.follow is not None:
-        return wingman(site, config, params)
+        return _wingman(site, config, params)
     return ServiceInstance(AutopilotAir, lambda: AutopilotAir(config, params), member.name)
 
 
@@ -108,3 +112,32 @@ def _fault(items: list[MissionItem], params: AirParams) -> str:
         return flyable.fault(intake.items(items), params)
     except ValueError as error:
         return str(error)
+
+
+def _wingman(site: Scenario, config: AutopilotConfig, params: AirParams) -> ServiceInstance:
+    """Of an aircraft that follows. Raises BadInput for a station that cannot be kept."""
+    follow = site.members[config.name].entry.job.follow
+    assert follow is not None
+    _check_follow(site, config.name, follow, params)
+    station = FormationSlot(follow.behind, follow.right, follow.above)
+    return ServiceInstance(
+        AutopilotWingman, lambda: AutopilotWingman(config, params, FormationLink(config.name, follow.leader, station)), config.name
+    )
+
+
+def _check_follow(site: Scenario, name: str, follow: Follow, params: AirParams) -> None:
+    """Raises BadInput for one that cannot be kept or is too near to another one."""
+    place = FileLocation(str(site.mission_path)).at("vehicles", name, "job", "follow")
+    if site.members[follow.leader].file.kind != "fixed_wing":
+        raise BadInput(f"{place.at('leader')}: {follow.leader} is no aircraft; only aircraft are followed")
+    if follow.behind < NEAREST * params.trim_airspeed:
+        least = NEAREST * params.trim_airspeed
+        raise BadInput(f"{place.at('behind')}: {follow.behind:g} m is too near behind {follow.leader}; give {least:g} m or more")
+    follows = {n: m.entry.job.follow for n, m in site.members.items() if m.entry.job.follow is not None}
+    own = offset_of(name, follows)
+    first = chain_of(name, follows)[-1]
+    for other in site.members:
+        if other != name and first in (other, *chain_of(other, follows)):
+            apart = math.dist(own, offset_of(other, follows))
+            if apart < params.follow_sep:
+                raise BadInput(f"{place}: {apart:.1f} m from {other}; stations of a formation are {params.follow_sep:g} m apart or more")

@@ -2,49 +2,18 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import astuple, dataclass, replace
+from dataclasses import astuple, replace
 
 from schemas.messages import SurfaceCommand
+from services.autopilot.air.setpoints import ManualCommand
 from services.autopilot.multiplexing import Multiplexer, in_turn
 from uvf.control.commands import Surfaces
-from uvf.control.servos import Servos
 from uvf.runtime.messages.convert import seconds
 
 SOURCES = ("teleop", "mavlink", "client")
 """The first one whose command is fresh wins."""
 CLOCK_TOLERANCE = 0.02  # s, one tick: a sender's clock may be that much ahead
 PATIENCE = 0.5  # s that the first command is waited for once the mode is Manual
-STICK_RELEASED = Surfaces(0.0, 0.0, 0.0, 0.0, brake=1.0)
-"""On the ground, when nobody holds the stick: motor off, brakes on."""
-
-
-@dataclass(frozen=True, slots=True)
-class StickDeflections:
-    """-1..1: right, nose up, right; throttle 0..1."""
-
-    roll: float
-    pitch: float
-    yaw: float
-    throttle: float
-
-
-@dataclass(frozen=True, slots=True)
-class ManualCommand:
-    """What a source asks for."""
-
-    source: str
-    surfaces: Surfaces
-
-    def sticks(self, servos: Servos) -> StickDeflections:
-        """Where the sticks are that ask for these surfaces."""
-        s = self.surfaces
-        roll, pitch = _part(s.aileron, servos.aileron.limit), _part(s.elevator, servos.elevator.limit)
-        yaw = _part(s.rudder, servos.rudder.limit)
-        return StickDeflections(roll, -pitch, -yaw, s.throttle)
-
-
-def _part(deflection: float, stop: float) -> float:
-    return min(max(deflection / stop, -1.0), 1.0)
 
 
 class ManualSources(Multiplexer):

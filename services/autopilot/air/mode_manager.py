@@ -7,7 +7,6 @@ from dataclasses import astuple, replace
 from services.autopilot.air.active_mode import ROLLS_OUT, ActiveMode
 from services.autopilot.air.fence_guard import FenceGuard
 from services.autopilot.air.flight_controller import FlightController
-from services.autopilot.air.manual_control import STICK_RELEASED
 from services.autopilot.air.mode_table import TABLE, FlightMode, Need
 from services.autopilot.air.modes.airspeed import LeaderSpeedFilter
 from services.autopilot.air.modes.beginnings import ModeContext, begin
@@ -19,7 +18,7 @@ from services.autopilot.air.modes.offboard import OLDEST
 from services.autopilot.air.modes.paths import OWN, LoiterOptions, OrbitMode, PathMode
 from services.autopilot.air.modes.return_mode import return_point
 from services.autopilot.air.modes.takeoff import TakeoffMode
-from services.autopilot.air.setpoints import ControlOutput, FlightContext, FlightPhase, PathSetpoint, Setpoint
+from services.autopilot.air.setpoints import STICK_RELEASED, ControlOutput, FlightContext, FlightPhase, PathSetpoint, Setpoint
 from uvf.control.commands import AltitudeAirspeedSetpoint
 from uvf.control.servos import SERVOS, Servos
 from uvf.estimation.state import Estimate

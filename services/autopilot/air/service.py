@@ -1,18 +1,20 @@
-"""The autopilot of one fixed-wing aircraft: sensors and requests in, surfaces, estimates and reports out."""
+"""The autopilot of one fixed-wing aircraft, alone or behind a leader: sensors and requests in, surfaces, estimates and reports out."""
 
 from dataclasses import replace
 
+from schemas import topics
 from schemas.messages import (
     ArmRequest,
     GoalRequest,
     Mode,
     ModeRequest,
+    NavState,
     OrbitRequest,
     Reply,
     VehicleCommandRequest,
     VehicleStatus,
 )
-from services.autopilot.air import interface, manual_control
+from services.autopilot.air import interface
 from services.autopilot.air.config import AutopilotConfig
 from services.autopilot.air.failsafes.monitor import FailsafeMonitor, VehicleCondition
 from services.autopilot.air.failsafes.prearm import PrearmInputs, faults
@@ -25,8 +27,9 @@ from services.autopilot.air.mission import orders
 from services.autopilot.air.mission.plans import ActivePlans
 from services.autopilot.air.mode_manager import ModeManager
 from services.autopilot.air.modes.airspeed import LeaderSpeedFilter
+from services.autopilot.air.modes.follower import FormationLink
 from services.autopilot.air.modes.paths import LoiterOptions
-from services.autopilot.air.setpoints import ControlOutput, FlightContext
+from services.autopilot.air.setpoints import STICK_RELEASED, ControlOutput, FlightContext
 from services.autopilot.air.status import telemetry
 from services.autopilot.air.status.event_log import EventLog
 from services.autopilot.parameter_state import ToldParams
@@ -38,6 +41,7 @@ from uvf.guidance.fence_plan import CachedFenceCheck, place_fault
 from uvf.guidance.flyable import advice
 from uvf.guidance.route import Place
 from uvf.models.vehicle.flight_params import FIXED, AirParams
+from uvf.runtime.contract.declaration import each_vehicle
 from uvf.runtime.contract.service import Service
 from uvf.runtime.messages.convert import stamp
 from uvf.runtime.state.stop_all import StopStatus
@@ -72,7 +76,7 @@ class AutopilotAir(Service):
         self._journal.note(advice(self._mode_manager.navigator.items, params))
         self._plans = ActivePlans(config.items, self._mode_manager, self._safety, self._journal)
         self._sensing = StateEstimation(config.instruments, config.tangent, params.estimator, self._safety.believed)
-        self._surfaces = manual_control.STICK_RELEASED
+        self._surfaces = STICK_RELEASED
         self._steering = ExternalControl()
         self._now: Estimate | None = None
         self._cycles = 0
@@ -300,6 +304,24 @@ class AutopilotAir(Service):
         status.timestamp.CopyFrom(stamp(t))
         status.armed, status.landed, status.system_id = self._armed, not self._land.airborne, self._config.system_id
         return status
+
+
+class AutopilotWingman(AutopilotAir):
+    """All that an aircraft's autopilot does, and mode Follow: it hears where the others think they are."""
+
+    class Inputs(interface.Inputs):
+        others: dict[str, NavState] = each_vehicle(topics.NAV_STATE)
+
+    def __init__(self, config: AutopilotConfig, params: AirParams, formation: FormationLink) -> None:
+        super().__init__(config, params)
+        self._formation = formation
+        self._mode_manager.join(formation)
+
+    def step(self, t: float, now: interface.Inputs) -> interface.Outputs:
+        """One cycle at simulation time ``t`` [s]: hears the others, then flies as every aircraft."""
+        assert isinstance(now, self.Inputs)
+        self._formation.hear(t, now.others)
+        return super().step(t, now)
 
 
 def _reply(refusal: str) -> Reply:

@@ -1,9 +1,8 @@
-"""What a mode wants in a cycle, at one of three levels of control, and what it knows beside the estimate."""
+"""What a mode asks for in a cycle, at one of three levels of control, and what it knows beside the estimate."""
 
 from dataclasses import dataclass
 
 from schemas.messages import FlightSetpoint
-from services.autopilot.air.manual_control import ManualCommand
 from uvf.control.commands import AltitudeAirspeedSetpoint, AttitudeSetpoint, Surfaces
 from uvf.control.servos import SERVOS, Servos
 from uvf.estimation.state import Estimate
@@ -11,6 +10,38 @@ from uvf.guidance.route import AltitudeProfile
 from uvf.guidance.vector_field import PathReference
 from uvf.maths.geodesy import GRAVITY
 from uvf.models.vehicle.flight_params import AirParams
+
+STICK_RELEASED = Surfaces(0.0, 0.0, 0.0, 0.0, brake=1.0)
+"""On the ground, when nobody holds the stick: motor off, brakes on."""
+
+
+@dataclass(frozen=True, slots=True)
+class StickDeflections:
+    """-1..1: right, nose up, right; throttle 0..1."""
+
+    roll: float
+    pitch: float
+    yaw: float
+    throttle: float
+
+
+@dataclass(frozen=True, slots=True)
+class ManualCommand:
+    """What a source asks for."""
+
+    source: str
+    surfaces: Surfaces
+
+    def sticks(self, servos: Servos) -> StickDeflections:
+        """Where the sticks are that ask for these surfaces."""
+        s = self.surfaces
+        roll, pitch = _part(s.aileron, servos.aileron.limit), _part(s.elevator, servos.elevator.limit)
+        yaw = _part(s.rudder, servos.rudder.limit)
+        return StickDeflections(roll, -pitch, -yaw, s.throttle)
+
+
+def _part(deflection: float, stop: float) -> float:
+    return min(max(deflection / stop, -1.0), 1.0)
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,7 +2,7 @@
 
 import math
 
-from services.autopilot.mavlink.commands.commands import Acknowledger, Handler, ReceivedCommand
+from services.autopilot.mavlink.connection.command_server import Acknowledger, Handler, ReceivedCommand
 from services.autopilot.mavlink.connection.line import VehicleConnection
 from services.autopilot.mavlink.parameters.component_metadata import component_metadata
 from services.autopilot.mavlink.telemetry.health import health

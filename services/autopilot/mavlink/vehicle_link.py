@@ -6,7 +6,6 @@ from typing import Any
 
 from schemas.messages import Event
 from services.autopilot.mavlink.commands.actions import ACTIONS, on_set_mode
-from services.autopilot.mavlink.commands.commands import CommandServer
 from services.autopilot.mavlink.commands.fence_switch import FENCE_SWITCH
 from services.autopilot.mavlink.commands.guided import GUIDED
 from services.autopilot.mavlink.commands.manual import ManualControl
@@ -14,6 +13,7 @@ from services.autopilot.mavlink.commands.not_offered import NOT_OFFERED
 from services.autopilot.mavlink.commands.not_offered import handlers as not_offered
 from services.autopilot.mavlink.commands.orders import ORDERS, on_set_home_position, on_set_origin
 from services.autopilot.mavlink.commands.setpoints import Setpoints
+from services.autopilot.mavlink.connection.command_server import CommandServer
 from services.autopilot.mavlink.connection.facts import VehicleInfo
 from services.autopilot.mavlink.connection.line import Sender, VehicleConnection
 from services.autopilot.mavlink.connection.statustext import SEVERITY, event_text

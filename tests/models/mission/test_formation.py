@@ -4,7 +4,7 @@ import pytest
 import yaml
 
 from services.autopilot.air import build as air
-from services.autopilot.air.wingman import AutopilotWingman
+from services.autopilot.air.service import AutopilotWingman
 from uvf.models.mission.file import load_mission
 from uvf.models.mission.formation import Follow, offset_of
 from uvf.models.scenario import ROOT, load_scenario

@@ -4,10 +4,10 @@ from collections.abc import Mapping
 
 from schemas.messages import FlightSetpoint, SurfaceCommand
 from services.autopilot.air.active_mode import ActiveMode
-from services.autopilot.air.manual_control import ManualCommand, ManualSources
+from services.autopilot.air.manual_control import ManualSources
 from services.autopilot.air.mode_table import FlightMode
 from services.autopilot.air.modes.offboard import SetpointSources
-from services.autopilot.air.setpoints import FlightContext
+from services.autopilot.air.setpoints import FlightContext, ManualCommand
 
 Surfaces = Mapping[str, SurfaceCommand | None]
 Wanted = Mapping[str, FlightSetpoint | None]

@@ -3,9 +3,8 @@
 import math
 from collections.abc import Mapping
 
-from services.autopilot.air.manual_control import STICK_RELEASED, StickDeflections
 from services.autopilot.air.mode_table import FlightMode
-from services.autopilot.air.setpoints import FlightContext, FlightPhase, PathSetpoint, Setpoint
+from services.autopilot.air.setpoints import STICK_RELEASED, FlightContext, FlightPhase, PathSetpoint, Setpoint, StickDeflections
 from uvf.control.commands import AltitudeAirspeedSetpoint, AttitudeSetpoint, Surfaces
 from uvf.control.cycle import Cycle
 from uvf.estimation.state import Estimate

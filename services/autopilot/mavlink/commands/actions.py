@@ -3,8 +3,8 @@
 import math
 
 from schemas.messages import ArmRequest, Mode, ModeRequest, SetCurrentRequest
-from services.autopilot.mavlink.commands.commands import Acknowledger, Handler, ReceivedCommand
 from services.autopilot.mavlink.connection.asking import Done
+from services.autopilot.mavlink.connection.command_server import Acknowledger, Handler, ReceivedCommand
 from services.autopilot.mavlink.connection.line import Sender, VehicleConnection
 from services.autopilot.mavlink.telemetry.telemetry import mission_current
 from uvf.mavlink import dialect as mav

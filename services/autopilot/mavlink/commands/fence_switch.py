@@ -2,7 +2,7 @@
 
 from schemas.messages import Fence, FenceRequest
 from services.autopilot.mavlink.commands.actions import SOURCE
-from services.autopilot.mavlink.commands.commands import Acknowledger, Handler, ReceivedCommand
+from services.autopilot.mavlink.connection.command_server import Acknowledger, Handler, ReceivedCommand
 from services.autopilot.mavlink.connection.line import VehicleConnection
 from uvf.mavlink import dialect as mav
 

@@ -4,7 +4,6 @@ import math
 
 from schemas.messages import AltitudeCommand, GoalRequest, Mode, OrbitRequest, SpeedCommand, Vector3, VehicleCommandRequest
 from services.autopilot.mavlink.commands.actions import SOURCE, set_mode
-from services.autopilot.mavlink.commands.commands import Acknowledger, Handler, ReceivedCommand
 from services.autopilot.mavlink.commands.places import (
     BadPlace,
     altitude_of,
@@ -16,6 +15,7 @@ from services.autopilot.mavlink.commands.places import (
     refusing,
 )
 from services.autopilot.mavlink.connection.asking import Done
+from services.autopilot.mavlink.connection.command_server import Acknowledger, Handler, ReceivedCommand
 from services.autopilot.mavlink.connection.line import VehicleConnection
 from uvf.mavlink import dialect as mav
 

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from typing import Any
 
-from services.autopilot.mavlink.commands.commands import Acknowledger, Handler, ReceivedCommand
+from services.autopilot.mavlink.connection.command_server import Acknowledger, Handler, ReceivedCommand
 from services.autopilot.mavlink.connection.line import Sender, VehicleConnection
 from uvf.mavlink import dialect as mav
 

@@ -15,8 +15,8 @@ from schemas.messages import (
     VehicleCommandRequest,
 )
 from services.autopilot.mavlink.commands.actions import SOURCE, set_current, set_mode
-from services.autopilot.mavlink.commands.commands import Acknowledger, Handler, ReceivedCommand
 from services.autopilot.mavlink.commands.places import BadPlace, altitude_of, frame_of, of_aircraft, place_in, place_of, refusing
+from services.autopilot.mavlink.connection.command_server import Acknowledger, Handler, ReceivedCommand
 from services.autopilot.mavlink.connection.line import Sender, VehicleConnection
 from services.autopilot.mavlink.telemetry.navigation import global_origin
 from uvf.mavlink import dialect as mav

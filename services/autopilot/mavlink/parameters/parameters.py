@@ -4,7 +4,7 @@ import math
 from collections.abc import Collection
 from itertools import islice
 
-from services.autopilot.mavlink.commands.commands import Acknowledger, Handler, ReceivedCommand
+from services.autopilot.mavlink.connection.command_server import Acknowledger, Handler, ReceivedCommand
 from services.autopilot.mavlink.connection.line import Sender, VehicleConnection
 from services.autopilot.mavlink.parameters.parameter_store import Store
 from services.autopilot.mavlink.parameters.parameter_table import Parameter, parameters_of

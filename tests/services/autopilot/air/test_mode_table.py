@@ -4,10 +4,9 @@ import itertools
 
 import pytest
 
-from services.autopilot.air.manual_control import ManualCommand
 from services.autopilot.air.mode_manager import ModeManager
 from services.autopilot.air.mode_table import TABLE, FlightMode, Need, Situation, lost, refusal
-from services.autopilot.air.setpoints import FlightContext
+from services.autopilot.air.setpoints import FlightContext, ManualCommand
 from tests.services.autopilot.air.states import PARAMS, cruising
 from uvf.control.commands import Surfaces
 from uvf.guidance.flight_plan import ItemKind, PlanItem

@@ -5,7 +5,7 @@ import struct
 import pytest
 
 from schemas.messages import Mode
-from services.autopilot.mavlink.commands.commands import MOST_SENDERS
+from services.autopilot.mavlink.connection.command_server import MOST_SENDERS
 from services.autopilot.mavlink.missions.missions import MOST_WAITING
 from tests.services.autopilot.mavlink.missions.test_missions import LAT, LON, count, item
 from tests.services.autopilot.mavlink.rig import GCS, OTHER, PLANE, ROVER, Rig, long, of, texts

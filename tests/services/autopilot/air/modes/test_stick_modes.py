@@ -2,9 +2,8 @@
 
 import pytest
 
-from services.autopilot.air.manual_control import ManualCommand
 from services.autopilot.air.modes.stick_modes import STEEPEST, AltitudeMode, ManualMode, PositionMode, StabilizedMode
-from services.autopilot.air.setpoints import FlightContext, PathSetpoint
+from services.autopilot.air.setpoints import FlightContext, ManualCommand, PathSetpoint
 from tests.services.autopilot.air.states import PARAMS, cruising
 from uvf.control.commands import AltitudeAirspeedSetpoint, AttitudeSetpoint, Surfaces
 from uvf.control.cycle import Cycle
