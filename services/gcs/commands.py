@@ -42,8 +42,7 @@ from services.gcs.actions import (
     ground_point,
 )
 from services.gcs.by_hand import ManualDriving
-from services.gcs.state.layers import ROOTS
-from services.gcs.state.session import BrowserSession
+from services.gcs.state.session import ROOTS, BrowserSession
 from services.gcs.state.state import LOST_AFTER, Model, Order, VehicleModel
 from services.gcs.state.wording import describe, modes_of
 from uvf.control.teleop_drive import SCALINGS, TeleopCommand

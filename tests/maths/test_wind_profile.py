@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import pytest
 
-from uvf.maths.wind_profile import CEILING, FT, logarithmic, one_minus_cosine, power
+from uvf.maths.atmosphere import CEILING, FT, logarithmic, one_minus_cosine, power
 
 Z0 = 2.0 * FT
 

@@ -5,8 +5,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from schemas.messages import Event
-from services.autopilot.mavlink.commands.actions import ACTIONS, on_set_mode
-from services.autopilot.mavlink.commands.fence_switch import FENCE_SWITCH
+from services.autopilot.mavlink.commands.actions import ACTIONS, FENCE_SWITCH, on_set_mode
 from services.autopilot.mavlink.commands.guided import GUIDED
 from services.autopilot.mavlink.commands.manual import ManualControl
 from services.autopilot.mavlink.commands.not_offered import NOT_OFFERED

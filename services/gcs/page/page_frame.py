@@ -6,8 +6,7 @@ from typing import Any
 from schemas.messages import ModeRequest
 from services.gcs.actions import Arm, Cancel, SetMode, StopAll
 from services.gcs.commands import Commander
-from services.gcs.state.layers import hidden_roots
-from services.gcs.state.session import BrowserSession
+from services.gcs.state.session import BrowserSession, hidden_roots
 from services.gcs.state.state import Model, VehicleModel
 from services.gcs.state.wording import describe, modes_of
 from services.gcs.view import camera_panel, panels, records, status, teleoperation

@@ -7,7 +7,7 @@ import viser
 from viser import _messages
 
 from services.gcs.actions import Action, Layer
-from services.gcs.state.layers import ROOTS, SHOWN_AT_FIRST
+from services.gcs.state.session import ROOTS, SHOWN_AT_FIRST
 
 
 class ViserLayers:

@@ -1,9 +1,27 @@
-"""What one browser has chosen; another one's clicks change nothing of it."""
+"""What one browser has chosen, of vehicle, camera and layers; another one's clicks change nothing of it."""
 
+from collections.abc import Set
 from dataclasses import dataclass, field
 from math import inf
 
-from services.gcs.state.layers import SHOWN_AT_FIRST
+ROOTS = {
+    "Map": ("/map",),
+    "Scan": ("/scan",),
+    "Paths": ("/path", "/goal", "/mission"),
+    "Fences": ("/fence",),
+    "Tracks": ("/track",),
+    "Labels": ("/label", "/height"),
+    "Walls": ("/world/walls",),
+    "Team maps": ("/team",),
+    "True pose": ("/true",),
+}
+"""Layer -> the nodes that bear it; each bears nothing else."""
+SHOWN_AT_FIRST = frozenset(ROOTS) - {"Team maps", "True pose"}
+
+
+def hidden_roots(layers: Set[str]) -> frozenset[str]:
+    """The scene nodes that a browser with these layers hides, with all below them."""
+    return frozenset(root for layer, roots in ROOTS.items() if layer not in layers for root in roots)
 
 
 @dataclass

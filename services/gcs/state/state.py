@@ -34,10 +34,9 @@ from schemas.messages import (
 from schemas.topics import SYSTEM
 from services.gcs.state.event_log import EventHistory, EventLine
 from services.gcs.state.external_vehicles import FORGOTTEN_AFTER, ExternalVehicles
-from services.gcs.state.layers import SHOWN_AT_FIRST
 from services.gcs.state.process_book import ProcessBook
 from services.gcs.state.refusals import PageRefusals
-from services.gcs.state.session import BrowserSession
+from services.gcs.state.session import SHOWN_AT_FIRST, BrowserSession
 from services.gcs.state.tracks import VehicleTrack
 from uvf.maths.rotations import from_euler, matrix
 from uvf.models.mission.file import StartPose, Vehicle

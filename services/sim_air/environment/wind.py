@@ -5,9 +5,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from uvf.maths.atmosphere import logarithmic, one_minus_cosine, power
 from uvf.maths.dryden import Turbulence, strength
 from uvf.maths.rotations import Floats
-from uvf.maths.wind_profile import logarithmic, one_minus_cosine, power
 from uvf.models.world.wind import Gust, Shear, Wind
 
 CALM = np.zeros(3)

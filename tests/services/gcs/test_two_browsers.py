@@ -5,7 +5,7 @@ import pytest
 from schemas.messages import ArmRequest, GoalRequest, Mode, ModeRequest
 from services.gcs.actions import Arm, ClickGround, Join, Layer, Leave, Looking, Select, SetMode, ShowCamera, Steer, TakeWheel
 from services.gcs.by_hand import PATIENCE
-from services.gcs.state.layers import ROOTS
+from services.gcs.state.session import ROOTS
 from tests.services.gcs.fakes import ME, OTHER, Station
 from tests.services.gcs.scripted import UAV, UGV, demo_site, with_eyes
 

@@ -2,7 +2,7 @@
 
 import math
 
-from schemas.messages import ArmRequest, Mode, ModeRequest, SetCurrentRequest
+from schemas.messages import ArmRequest, Fence, FenceRequest, Mode, ModeRequest, SetCurrentRequest
 from services.autopilot.mavlink.connection.asking import Done
 from services.autopilot.mavlink.connection.command_server import Acknowledger, Handler, ReceivedCommand
 from services.autopilot.mavlink.connection.line import Sender, VehicleConnection
@@ -117,3 +117,17 @@ ACTIONS: dict[int, Handler] = {
     mav.MAV_CMD_MISSION_START: _mission_start,
     mav.MAV_CMD_COMPONENT_ARM_DISARM: _arm,
 }
+
+
+def _enable(line: VehicleConnection, command: ReceivedCommand, ack: Acknowledger) -> None:
+    """The floor alone (2) is no switch of its own: it counts only above it, and not while it lands."""
+    if command.p[0] not in (0.0, 1.0):
+        ack(mav.MAV_RESULT_DENIED, "Fence: parameter 1 is 1 to enable or 0 to disable")
+        return
+    fence = Fence()
+    fence.CopyFrom(line.latest.fence or Fence())
+    fence.disabled = command.p[0] == 0.0
+    line.ask("set_fence", FenceRequest(fence=fence, source=SOURCE), ack.outcome("Fence refused"))
+
+
+FENCE_SWITCH: dict[int, Handler] = {mav.MAV_CMD_DO_FENCE_ENABLE: _enable}

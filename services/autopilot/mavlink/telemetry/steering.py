@@ -14,6 +14,7 @@ from uvf.mavlink.scaling import I16, I32, U16, compass, whole
 from uvf.runtime.messages.convert import array, yaw_of
 
 Message = mav.MAVLink_message | None
+UNUSED, UNKNOWN_STRENGTH = 0xFFFF, 255
 
 _ONLY_PLACE = 0xFFF & ~0x7 & ~mav.POSITION_TARGET_TYPEMASK_FORCE_SET
 _NO_RATES = (
@@ -74,3 +75,23 @@ def controller_output(facts: VehicleInfo, latest: VehicleState, t: float) -> Mes
     distance = whole(math.hypot(away[0], away[1]), U16)
     errors = -status.altitude_error, faster, status.cross_track
     return mav.MAVLink_nav_controller_output_message(roll, pitch, bearing, bearing, distance, *errors)
+
+
+def rc_channels(facts: VehicleInfo, latest: VehicleState, t: float) -> Message:
+    """RC_CHANNELS [us] at ``t`` [s]; released channels are marked unused. None while no channel is overridden."""
+    if not latest.rc_channels:
+        return None
+    raw = [us or UNUSED for us in latest.rc_channels]
+    count = max(i + 1 for i, us in enumerate(latest.rc_channels) if us) if any(latest.rc_channels) else 0
+    fields = [boot_ms(t), count, *raw, UNKNOWN_STRENGTH]
+    return mav.MAVLink_rc_channels_message(*fields)
+
+
+def orbit_status(facts: VehicleInfo, latest: VehicleState, t: float) -> Message:
+    """ORBIT_EXECUTION_STATUS at ``t`` [s]: radius [m] positive clockwise, centre [deg, m AMSL]; None in other modes than Orbit."""
+    status = latest.status
+    if status is None or status.mode != Mode.MODE_ORBIT or not status.HasField("circle"):
+        return None
+    latitude, longitude, altitude = facts.geodetic(array(status.circle.centre))
+    place = whole(latitude * 1e7, I32), whole(longitude * 1e7, I32), altitude
+    return mav.MAVLink_orbit_execution_status_message(whole(t * 1e6, (0, 2**63)), status.circle.radius, mav.MAV_FRAME_GLOBAL_INT, *place)

@@ -11,7 +11,7 @@ import numpy as np
 
 from schemas.messages import Breach, Gnss, MissionItem, Mode
 from services.autopilot.mavlink.connection.facts import VehicleInfo, VehicleState
-from services.autopilot.mavlink.telemetry import estimate_quality, identity, navigation, sensor_messages, steering, steering_telemetry
+from services.autopilot.mavlink.telemetry import estimate_quality, identity, navigation, sensor_messages, steering
 from services.autopilot.mavlink.telemetry.health import health
 from services.autopilot.mavlink.telemetry.traffic import traffic
 from uvf.mavlink import dialect as mav
@@ -209,8 +209,8 @@ STREAMS: dict[int, TelemetryStream] = {
     mav.MAVLINK_MSG_ID_HOME_POSITION: TelemetryStream(_home_position, 0.5),
     mav.MAVLINK_MSG_ID_EXTENDED_SYS_STATE: TelemetryStream(_extended_sys_state, 1),
     mav.MAVLINK_MSG_ID_CURRENT_MODE: TelemetryStream(lambda f, n, t: identity.current_mode(n), 0.5),
-    mav.MAVLINK_MSG_ID_ORBIT_EXECUTION_STATUS: TelemetryStream(steering_telemetry.orbit_status, 2),
-    mav.MAVLINK_MSG_ID_RC_CHANNELS: TelemetryStream(steering_telemetry.rc_channels, 2),
+    mav.MAVLINK_MSG_ID_ORBIT_EXECUTION_STATUS: TelemetryStream(steering.orbit_status, 2),
+    mav.MAVLINK_MSG_ID_RC_CHANNELS: TelemetryStream(steering.rc_channels, 2),
     mav.MAVLINK_MSG_ID_GPS_GLOBAL_ORIGIN: TelemetryStream(navigation.global_origin, 0),
     mav.MAVLINK_MSG_ID_AUTOPILOT_VERSION: TelemetryStream(lambda f, n, t: identity.autopilot_version(f), 0),
     mav.MAVLINK_MSG_ID_PROTOCOL_VERSION: TelemetryStream(lambda f, n, t: identity.protocol_version(), 0),
