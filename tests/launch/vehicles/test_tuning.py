@@ -1,27 +1,48 @@
-"""``uvf vehicle tune``: figures from the model, margins of the loops, and a vehicle.yaml that keeps what it says."""
+"""``uvf vehicle tune``: figures from the model, margins of the loops, a vehicle.yaml that keeps what it says, and flights with them."""
 
-import functools
+import shutil
+from contextlib import closing
+from unittest import mock
 
 import numpy as np
 import pytest
 import yaml
 from typer.testing import CliRunner
 
+from benchmarks.autopilot import cost_and_slip as bench
+from benchmarks.autopilot.accuracy.flight import PLANE, Probe
 from launch.commands.vehicle import vehicle_app
-from launch.vehicles.tuning import SECONDS, tune, with_params
-from uvf.models.scenario import ROOT
+from launch.vehicles.autopilot_guess import autopilot_figures
+from launch.vehicles.tuning import SECONDS, tune, with_params, write
+from uvf.models.scenario import ROOT, load_scenario
 from uvf.models.yaml_data import BadInput, FileLocation
 
 PLACE = FileLocation("vehicle.yaml")
 FIGURES = {"roll_p": 0.05123456, "roll_time": 0.3}
 
 
-tuned = functools.cache(tune)  # many steady flights: once for each aircraft
+MODELS = ["milvus", "stick25"]
+pytestmark = pytest.mark.timeout(300)  # tune flies many steady flights
 
 
-@pytest.fixture(params=["milvus", "stick25"])
-def tuning(request):
-    return tuned(ROOT / "vehicles" / request.param)
+@pytest.fixture(scope="module", autouse=True)
+def figures():
+    """Many steady flights, once for each model: what they come to depends on the model alone."""
+    found = {}
+
+    def once(airframe, body):
+        key = body.model
+        if key not in found:
+            found[key] = autopilot_figures(airframe, body)
+        return dict(found[key])
+
+    with mock.patch("launch.vehicles.tuning.autopilot_figures", once):
+        yield
+
+
+@pytest.fixture(params=MODELS)
+def tuning(request, figures):
+    return tune(ROOT / "vehicles" / request.param)
 
 
 def test_the_loops_are_stable_with_room(tuning):
@@ -52,8 +73,7 @@ def test_what_cannot_bank_is_refused():
         tune(ROOT / "vehicles" / "nas10")
 
 
-def test_it_is_printed_drawn_and_nothing_is_written_without_being_asked(tmp_path, monkeypatch):
-    monkeypatch.setattr("launch.vehicles.tuning.tune", tuned)
+def test_it_is_printed_drawn_and_nothing_is_written_without_being_asked(tmp_path):
     before = (ROOT / "vehicles" / "stick25" / "vehicle.yaml").read_text()
     done = CliRunner().invoke(vehicle_app, ["tune", "stick25", "--picture", str(tmp_path / "t.png")])
     assert done.exit_code == 0, done.output
@@ -94,3 +114,62 @@ def test_what_is_there_is_renewed_with_its_comment_and_its_place():
 def test_a_block_in_braces_is_not_torn_apart():
     with pytest.raises(BadInput, match="on a line of its own"):
         with_params("params: {autopilot_air: {roll_p: 1.0}}\n", FIGURES, PLACE)
+
+
+CORNERS = [(350.0, 0.0, 100.0), (350.0, 300.0, 115.0), (0.0, 300.0, 115.0)]
+MISSION = [{"x": x, "y": y, "z": z} for x, y, z in CORNERS]
+WIND = {"steady": [0.0, 4.0, 0.0]}
+
+
+def tuned_by_files_alone(model, root):
+    """A tree with the aircraft of the repository, of whose autopilot nothing is known but what tune finds out."""
+    shutil.copytree(ROOT / "worlds" / "empty", root / "worlds" / "empty")
+    folder = shutil.copytree(ROOT / "vehicles" / model, root / "vehicles" / model)
+    path = folder / "vehicle.yaml"
+    data = yaml.safe_load(path.read_text())
+    del data["params"]["autopilot_air"]
+    path.write_text(yaml.safe_dump(data))
+    write(tune(folder))
+    return folder
+
+
+def mission_of(model, speed, folder):
+    start = {"x": 0.0, "y": 0.0, "z": 100.0, "yaw": 0.0, "speed": speed}
+    vehicle = {"model": model, "system_id": 1, "start": start, "job": {"mission": MISSION}}
+    path = folder / "mission.yaml"
+    path.write_text(yaml.safe_dump({"about": "m", "world": "empty", "seed": 3, "wind": WIND, "vehicles": {PLANE: vehicle}}))
+    return path
+
+
+@pytest.fixture(scope="module", params=MODELS)
+def flown(request, figures, tmp_path_factory):
+    root = tmp_path_factory.mktemp(request.param)
+    speed = tune_speed(tuned_by_files_alone(request.param, root))
+    lockstep = bench.lockstep_of(load_scenario(mission_of(request.param, speed, root), root))
+    with closing(lockstep):
+        probe = Probe(lockstep)
+        lockstep.run(120.0, probe)
+        assert probe.autopilot._mode_manager.navigator.finished
+    return probe.flight(), speed
+
+
+def tune_speed(folder):
+    return yaml.safe_load((folder / "vehicle.yaml").read_text())["air"]["trim_speed"]
+
+
+def test_it_keeps_to_its_path(flown):
+    flight, _ = flown
+    settled = flight.t > 5.0
+    off = np.abs(flight.off_path[settled, 0])
+    assert np.sqrt(np.mean(off**2)) < 1.2 and off.max() < 4.0
+
+
+def test_it_keeps_its_airspeed_and_arrives_at_the_height(flown):
+    flight, speed = flown
+    assert abs(flight.airspeed[flight.t > 5.0, 0] - speed).max() < 0.12 * speed
+    assert flight.truth[-1, 2] == pytest.approx(CORNERS[-1][2], abs=2.5)
+
+
+def test_the_side_slip_of_crooked_rudders_goes_to_nothing():
+    assert abs(bench.slip(bench.STRAIGHT, bench.RIGGED, False)) > 3.0
+    assert abs(bench.slip(bench.STRAIGHT, bench.RIGGED, True)) < 0.5
