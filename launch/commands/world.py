@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from launch.refusal import bad_input_is_one_line
+from launch.refusal import bad_input_is_one_line, counted
 
 world_app = typer.Typer(no_args_is_help=True, help="Worlds: list, show, check, picture, new, import.")
 
@@ -77,7 +77,7 @@ def world_check(
         found += blocked_starts(load_scenario(settings.mission_path(mission))) if mission else []
     for line in found:
         typer.echo(line)
-    typer.echo(f"uvf: {len(found)} problems" if found else "uvf: nothing wrong")
+    typer.echo(f"uvf: {counted(len(found), 'problem')}" if found else "uvf: nothing wrong")
     raise typer.Exit(1 if found else 0)
 
 
