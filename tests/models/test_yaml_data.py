@@ -115,6 +115,15 @@ def test_the_nearest_name_is_offered_or_all_there_are():
     assert nearest("rays", ["beams", "bias", "range_max"]) == "there are: beams, bias, range_max"
 
 
+def test_each_value_of_a_row_has_limits_of_its_own(tmp_path):
+    low, high = (Annotated[float, msgspec.Meta(le=limit)] for limit in (1, 5))
+    assert convert([1, 5], tuple[low, high], "f.yaml") == (1.0, 5.0)
+    with pytest.raises(BadInput, match=r"f\.yaml: 1: 6 is above 5"):
+        convert([1, 6], tuple[low, high], "f.yaml")
+    with pytest.raises(BadInput, match=r"it has 3 entries; give 2 entries"):
+        convert([1, 1, 1], tuple[low, high], "f.yaml")
+
+
 def test_of_a_section_all_keys_are_listed():
     keys = msgspec.defstruct("Section", [(f"key_{letter}", int) for letter in "abcdefghijklmn"])
     with pytest.raises(BadInput) as caught:

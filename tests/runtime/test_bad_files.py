@@ -173,6 +173,7 @@ WORLDS = {
     "a floor inside out": ("floor", [9, 0, 0, 9], "floor: nothing lies in it"),
     "a floor without end": ("floor", [0, 0, 9e4, 9e4], "more than 1e+06 m^2"),
     "a box of no size": ("boxes.0.size", [0, 1, 1], "boxes[0]: size[0]"),
+    "a pitch in degrees": ("boxes.0.rpy", [0, -5, 0], "boxes[0]: rpy[1]: -5 is below -3.1416: it is in radians (-5 deg = -0.08727)"),
     "two of one name": ("boxes.1.name", "front_door", "boxes[1]: name: 'front_door' is given twice"),
     "a wall of one point": ("walls.0.points", [[0, 0], [0, 0]], "walls[0]: the same point twice"),
 }
@@ -196,6 +197,7 @@ VEHICLES = {
     "too many beams": ("sensors.lidar.beams", 100_000, "sensors: lidar: beams: 100000 is above 4096"),
     "beams twice round": ("sensors.lidar.angle_increment", 0.04, "360 beams make 14.4 rad, more than a full turn"),
     "ranges inside out": ("sensors.lidar.range_min", 5.0, "range_min: 5 m is not below range_max, 3.5 m"),
+    "a mount turned by degrees": ("sensors.lidar.mount.rpy", [0.0, 0.0, 90], "mount: rpy[2]: 90 is above 7: it is in radians"),
     "a rate of zero": ("sensors.imu.hz", 0.0, "sensors: imu: hz: 0 is below 0.01 Hz"),
     "one wheel": ("ground.right_joint", "wheel_left_joint", "right_joint: the left wheel's joint too"),
     "another kind": ("kind", "fixed_wing", "kind is 'fixed_wing' but there is no 'air:' section"),

@@ -184,7 +184,9 @@ def _parts(data: Any, hint: Any, place: FileLocation) -> Iterator[tuple[Any, Any
             yield key, key, names
             yield key, value, values
     elif isinstance(data, list) and origin in (list, tuple):
-        yield from ((i, value, get_args(hint)[0]) for i, value in enumerate(data))
+        types = get_args(hint)
+        whole = origin is tuple and len(types) == len(data) and types[-1] is not Ellipsis
+        yield from zip(itertools.count(), data, types if whole else itertools.repeat(types[0]), strict=False)
 
 
 def _line(file: str, keys: tuple[Key, ...]) -> int:
