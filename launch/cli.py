@@ -15,7 +15,7 @@ from launch.commands.sim import sim_app
 from launch.commands.slam import slam
 from launch.commands.vehicle import vehicle_app
 from launch.commands.world import world_app
-from launch.refusal import bad_input_is_one_line, usage_is_one_line, within
+from launch.refusal import bad_input_is_one_line, counted, usage_is_one_line, within
 
 app = typer.Typer(no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False, help=(__doc__ or "").splitlines()[0])
 topic_app = typer.Typer(no_args_is_help=True, help="Look at messages.")
@@ -241,14 +241,14 @@ def mavlink_bridge(
 
 @app.command()
 def check(mission: MissionArgument = DEMO) -> None:
-    """Check the wiring of a mission: writers, readers, types, rates, compose file."""
+    """Check a mission: wiring (writers, readers, types, rates), faults of its vehicles, compose file."""
     from launch.checks import check_mission
 
     with bad_input_is_one_line():
         problems = check_mission(mission)
         for line in problems:
             typer.echo(line)
-        say(f"{len(problems)} problems" if problems else "wiring is right")
+        say(counted(len(problems), "problem") if problems else "wiring and vehicles are right")
         raise typer.Exit(1 if problems else 0)
 
 

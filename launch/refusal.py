@@ -57,6 +57,11 @@ def within(low: float, high: float = math.inf) -> Callable[[float | None], float
     return checked
 
 
+def counted(count: int, what: str) -> str:
+    """A number of things in words: ``1 fault``, ``2 faults``."""
+    return f"{count} {what}" if count == 1 else f"{count} {what}s"
+
+
 def _refused(why: str) -> typer.Exit:
     """Says it in one line, whatever names of files and keys hold: nothing in it is obeyed by a terminal."""
     line = " ".join(_shortened(word) for word in why.split())

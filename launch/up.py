@@ -8,6 +8,7 @@ from threading import Event as Flag
 from launch import catalogue, settings
 from launch.launcher import LOOK, Launcher, Say, stop_flag
 from launch.output import RotatingLog
+from launch.vehicles.mission_faults import warnings_from_outside
 from launch.waits import Waits
 from schemas import topics
 from schemas.messages import Clock
@@ -33,6 +34,8 @@ def up(wanted: StartOptions, folder: Path, say: Say) -> int:
     """Runs until Ctrl-C, SIGTERM or the time is over; returns the exit code. Raises BadInput before anything starts."""
     site = load_scenario(settings.mission_path(wanted.mission))
     kinds = [k for k in catalogue.needed(site) if wanted.page or k.name != "gcs"]
+    for line in warnings_from_outside(site):
+        say(line)
     stop = stop_flag()
     run = RunningMission(wanted, folder, say)
     try:

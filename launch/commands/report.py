@@ -15,6 +15,7 @@ from rich.table import Table
 from launch import catalogue, settings
 from launch.run import Result, run_lockstep
 from launch.runs import new_run
+from launch.vehicles.mission_faults import warnings
 from uvf.models.scenario import Scenario, load_scenario
 from uvf.models.yaml_data import BadInput, nearest
 from uvf.runtime.bus.address import router_from
@@ -37,6 +38,8 @@ def run_and_report(mission: str, until: float | None, log: Path | None) -> int:
     until = until if until is not None else site.mission.duration
     if not 0 < until < math.inf:
         raise BadInput(f"--until {until}: how long to simulate, more than 0 s")
+    for line in warnings(site):
+        typer.echo(f"uvf: {line}", err=True)
     log = log or new_run() / "log-000.mcap"
     columns = (
         TextColumn("{task.description}"),

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from launch.refusal import bad_input_is_one_line
+from launch.refusal import bad_input_is_one_line, counted
 
 world_app = typer.Typer(no_args_is_help=True, help="Worlds: list, show, check, picture, new, import.")
 
@@ -69,15 +69,17 @@ def world_check(
     """Look for things in the air or in the ground, floor out of reach, scripts through walls, blocked starts."""
     from launch import settings
     from launch.worlds.check import blocked_starts, problems
+    from launch.worlds.leaning import notes
     from uvf.models.scenario import load_scenario
     from uvf.models.world.file import load_world
 
     with bad_input_is_one_line():
-        found = list(problems(load_world(_worlds(), name), radius))
+        world = load_world(_worlds(), name)
+        found = list(problems(world, radius))
         found += blocked_starts(load_scenario(settings.mission_path(mission))) if mission else []
-    for line in found:
+    for line in (*found, *(f"note: {each}" for each in notes(world))):
         typer.echo(line)
-    typer.echo(f"uvf: {len(found)} problems" if found else "uvf: nothing wrong")
+    typer.echo(f"uvf: {counted(len(found), 'problem')}" if found else "uvf: nothing wrong")
     raise typer.Exit(1 if found else 0)
 
 

@@ -16,7 +16,7 @@ from schemas.messages import Contact, Grid, Mission, MissionItem, MissionProgres
 from uvf.maths.rotations import wrap
 from uvf.models.mission.file import Criterion
 from uvf.models.scenario import Scenario
-from uvf.models.yaml_data import BadInput, nearest
+from uvf.models.yaml_data import BadInput, FileLocation, nearest
 from uvf.runtime.bus.interface import Bus, Sample
 from uvf.runtime.messages.convert import array
 from uvf.runtime.messages.mapped_floor import MappedFloor
@@ -81,9 +81,10 @@ class RecordedTrack:
 
 def check_criteria(site: Scenario) -> None:
     """Raises BadInput for a criterion with an unknown measure."""
-    for criterion in site.mission.criteria:
+    for i, criterion in enumerate(site.mission.criteria):
         if criterion.measure not in MEASURES:
-            raise BadInput(f"{site.mission_path}: criteria: no measure '{criterion.measure}'; {nearest(criterion.measure, MEASURES)}")
+            place = FileLocation(str(site.mission_path)).at("criteria", i, "measure")
+            raise BadInput(f"{place}: no measure '{criterion.measure}'; {nearest(criterion.measure, MEASURES, len(MEASURES))}")
 
 
 class Scorer:

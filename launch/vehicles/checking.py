@@ -5,6 +5,7 @@ from pathlib import Path
 import typer
 from rich.console import Console
 
+from launch.refusal import counted
 from launch.settings import runs_folder
 from launch.vehicles.inspection import Inspection, folder_of, inspect
 from launch.vehicles.listing import frame_tree
@@ -28,7 +29,7 @@ def _tell(found: Inspection, picture: Path) -> None:
         typer.echo(f"note: {found.folder.name}: {line}")
     if found.model is not None and found.file is not None and found.model.roots:
         Console().print(frame_tree(found.model, found.file))
-    count = f"{len(found.faults)} fault{'s' if len(found.faults) > 1 else ''}" if found.faults else "no faults"
+    count = counted(len(found.faults), "fault") if found.faults else "no faults"
     typer.echo(f"uvf: {found.folder.name}: {count}{_picture(found, picture)}")
 
 

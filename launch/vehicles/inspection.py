@@ -93,7 +93,7 @@ def _inspect_body(found: Inspection, urdf: Path) -> None:
     try:
         found.model = model = read_urdf(urdf)
     except BadInput as error:
-        found.faults.append(str(error))
+        found.faults += [line for line in [str(error)] if line not in found.faults]  # told already where a sensor sits on a link
         return
     ground = found.file.ground if found.file is not None else None
     wheels = (ground.left_joint, ground.right_joint) if ground is not None else ()

@@ -15,6 +15,7 @@ import yaml
 
 from launch import settings
 from launch.cli import main
+from launch.scoring.scores import MEASURES
 from uvf.models.scenario import ROOT
 
 
@@ -51,7 +52,7 @@ BAD = {
     "unknown mission": ({}, "dmo", "no mission 'dmo'; did you mean 'demo'?"),
     "unknown key": ({"vehicels": {}}, None, "unknown key 'vehicels'; did you mean 'vehicles'?"),
     "unknown world": ({"world": "hose"}, None, "no world 'hose'"),
-    "unknown model": ({"vehicles": vehicle(model="burgr"), "criteria": []}, None, "no vehicle 'burgr'"),
+    "unknown model": ({"vehicles": vehicle(model="burgr"), "criteria": []}, None, "vehicles: burger: model: no vehicle 'burgr'"),
     "unknown vehicle of a criterion": ({"criteria": [{"vehicle": "burgr", "measure": "contacts"}]}, None, "did you mean 'burger'?"),
     "wrong type": ({"seed": "x"}, None, "seed"),
     "reserved name": ({"vehicles": {"sys": vehicle()["burger"]}, "criteria": []}, None, "vehicles"),
@@ -78,7 +79,12 @@ def test_an_unknown_measure_is_named_before_the_run(tmp_path):
     path = mission(tmp_path, criteria=[{"vehicle": "burger", "measure": "distance_drivn", "at_least": 1.0}])
     done = uvf("run", path, "--until", "1", UVF_RUNS=str(tmp_path))
     assert done.returncode == 2
-    assert "did you mean 'distance_driven'?" in done.stderr
+    assert f"{path}:4: criteria[0]: measure: no measure 'distance_drivn'; did you mean 'distance_driven'?" in done.stderr
+
+
+def test_a_measure_that_is_like_none_is_answered_with_all_there_are(tmp_path):
+    done = uvf("check", mission(tmp_path, criteria=[{"vehicle": "burger", "measure": "xyz", "at_least": 1.0}]))
+    assert "no measure 'xyz'; there are: " in done.stderr and all(name in done.stderr for name in MEASURES)
 
 
 def test_broken_yaml_names_file_and_line(tmp_path):

@@ -8,7 +8,7 @@ import msgspec
 import pytest
 
 from schemas.limits import TEXT
-from uvf.models.yaml_data import BadInput, load_yaml, nearest
+from uvf.models.yaml_data import BadInput, convert, load_yaml, nearest
 
 Positive = Annotated[float, msgspec.Meta(gt=0)]
 
@@ -36,12 +36,12 @@ BAD = {
     "part:\n  wieght: 1": "f.yaml:2: part: wieght: unknown key 'wieght'; did you mean 'weight'?",
     "parts: [{}, {sise: 1}]": "f.yaml:1: parts[1]: sise: unknown key 'sise'; did you mean 'size'?",
     "named: {a: {x: 1}}": "named: a: x: unknown key 'x'; there are: size, weight",
-    "named:\n  a: {}\n  b:\n    weight: -1": "f.yaml:4: named: b: weight: Expected `float` > 0.0",
+    "named:\n  a: {}\n  b:\n    weight: -1": "f.yaml:4: named: b: weight: -1 is not above 0",
     "law: log": "f.yaml:1: law: no 'log' here; there are: logarithmic, power",
-    "law: 3": "f.yaml:1: law: Expected `str`, got `int`",
+    "law: 3": "f.yaml:1: law: 3 is not text; put it in quotes",
     "part: {weight: .nan}": "part: weight: nan is no number to work with",
     "part: {size: [1, .inf]}": "part: size[1]: inf is no number to work with",
-    "part: {size: [1]}": "part: size: Expected `array` of length 2, got 1",
+    "part: {size: [1]}": "part: size: it has 1 entry; give 2 entries",
     "name: a\nname: b": "f.yaml:2: not valid YAML: key 'name' is given twice",
     "parts: [{size: [1, 1],\n size: [1, 1]}]": "f.yaml:2: not valid YAML: key 'size' is given twice",
     "name: [": "f.yaml:1: not valid YAML",
@@ -50,13 +50,13 @@ BAD = {
     "name: a\n? [a]\n: b": "f.yaml:2: not valid YAML: a key is a list or a mapping; write a name or a number",
     "name: a\n? {a: 1}\n: b": "f.yaml:2: not valid YAML: a key is a list or a mapping",
     "": "f.yaml: the file is empty",
-    "- name": "f.yaml: Expected `object`, got `array`",
+    "- name": "f.yaml: a list is not a mapping; write 'key: value' lines",
     "name: 2020-13-45": "f.yaml: not valid YAML: month must be in 1..12",
     "name: !!int x": "f.yaml: not valid YAML",
     "name: !!python/name:os.system": "f.yaml:1: not valid YAML",
     "!!map [name]": "f.yaml:1: not valid YAML",
     "name: \x01": "f.yaml: not valid YAML",
-    "part: {weight: 1" + "0" * 400 + "}": "part: weight: Number out of range",
+    "part: {weight: 1" + "0" * 400 + "}": "part: weight: the number is too large",
 }
 
 
@@ -112,6 +112,23 @@ def test_numbers_with_exponents_are_numbers(tmp_path):
 def test_the_nearest_name_is_offered_or_all_there_are():
     assert nearest("burgr", ["burger", "milvus"]) == "did you mean 'burger'?"
     assert nearest("xyz", ["burger", "milvus"]) == "there are: burger, milvus"
+    assert nearest("rays", ["beams", "bias", "range_max"]) == "there are: beams, bias, range_max"
+
+
+def test_each_value_of_a_row_has_limits_of_its_own(tmp_path):
+    low, high = (Annotated[float, msgspec.Meta(le=limit)] for limit in (1, 5))
+    assert convert([1, 5], tuple[low, high], "f.yaml") == (1.0, 5.0)
+    with pytest.raises(BadInput, match=r"f\.yaml: 1: 6 is above 5"):
+        convert([1, 6], tuple[low, high], "f.yaml")
+    with pytest.raises(BadInput, match=r"it has 3 entries; give 2 entries"):
+        convert([1, 1, 1], tuple[low, high], "f.yaml")
+
+
+def test_of_a_section_all_keys_are_listed():
+    keys = msgspec.defstruct("Section", [(f"key_{letter}", int) for letter in "abcdefghijklmn"])
+    with pytest.raises(BadInput) as caught:
+        convert({"zzz": 1}, keys, "f.yaml")
+    assert str(caught.value) == f"f.yaml: zzz: unknown key 'zzz'; there are: {', '.join(f'key_{letter}' for letter in 'abcdefghijklmn')}"
 
 
 def test_of_many_names_or_long_ones_so_many_are_listed_that_a_message_can_hold_them():

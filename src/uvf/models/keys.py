@@ -7,7 +7,7 @@ from typing import Annotated, Any, get_args, get_origin
 
 from msgspec import UNSET, Meta
 
-UNIT = "unit"
+UNIT, ALLOWED = "unit", "allowed"
 
 
 def key(unit: str, meaning: str) -> Meta:
@@ -18,6 +18,16 @@ def key(unit: str, meaning: str) -> Meta:
 def plain(meaning: str) -> Meta:
     """Note of a key that is no number: a name, a choice, a list, a part of the file."""
     return Meta(description=meaning)
+
+
+def in_unit(unit: str) -> Meta:
+    """Unit of the numbers of a list, whose key has the note of the whole."""
+    return Meta(extra_json_schema={UNIT: unit})
+
+
+def name_like(pattern: str, longest: int, allowed: str) -> Meta:
+    """Limits of a name: its pattern, its most letters, and the pattern in words, for who is refused."""
+    return Meta(pattern=rf"^{pattern}\Z", max_length=longest, extra_json_schema={ALLOWED: allowed})
 
 
 def meta_of(hint: Any) -> Meta:
@@ -35,3 +45,8 @@ def meta_of(hint: Any) -> Meta:
 def unit_of(meta: Meta) -> str | None:
     """Unit that a note names; None where it names none, empty for a dimensionless number."""
     return (meta.extra_json_schema or {}).get(UNIT)
+
+
+def allowed_in(meta: Meta) -> str:
+    """The words that say what a name may consist of; empty where there are none."""
+    return str((meta.extra_json_schema or {}).get(ALLOWED, ""))

@@ -94,11 +94,10 @@ def _radius(member: MissionVehicle) -> float:
 
 def load_scenario(mission: Path, root: Path = ROOT) -> Scenario:
     """Loads a mission file and all that it names. Raises BadInput."""
-    data = load_mission(mission)
-    members = {
-        name: MissionVehicle(name, entry, load_vehicle(root / "vehicles", entry.model), root / "vehicles" / entry.model)
-        for name, entry in data.vehicles.items()
-    }
-    site = Scenario(mission, data, load_world(root / "worlds", data.world), root / "worlds" / data.world, members)
+    data, place = load_mission(mission), FileLocation(str(mission))
+    vehicles, worlds = root / "vehicles", root / "worlds"
+    files = {name: load_vehicle(vehicles, entry.model, place.at("vehicles", name, "model")) for name, entry in data.vehicles.items()}
+    members = {name: MissionVehicle(name, entry, files[name], vehicles / entry.model) for name, entry in data.vehicles.items()}
+    site = Scenario(mission, data, load_world(worlds, data.world, place.at("world")), worlds / data.world, members)
     check_starts(site)
     return site

@@ -12,6 +12,7 @@ from typing import Annotated, Any, Literal, NamedTuple, TypeVar, Union, get_args
 import msgspec
 import yaml
 
+from uvf.models.refused_value import in_words
 from uvf.models.renamed import new_name
 
 T = TypeVar("T")
@@ -19,7 +20,8 @@ Key = str | int
 VALUES = 100_000
 """Most of a YAML file; reading one of so many takes a minute."""
 
-LISTED, LONGEST_NAME = 10, 100  # names, letters
+LISTED, KEYS_LISTED, LONGEST_NAME = 10, 40, 100  # names, keys of a section, letters
+ALIKE = 0.6  # of the letters, for a name to be meant by another
 
 
 class BadInput(Exception):
@@ -127,20 +129,20 @@ def convert(data: Any, type_: type[T], file: str, keys: tuple[Key, ...] = ()) ->
     return msgspec.convert(data, type_)
 
 
-def nearest(name: str, known: Iterable[str]) -> str:
-    """Hint for an unknown name: ``did you mean 'x'?``, or the list of what there is."""
+def nearest(name: str, known: Iterable[str], most: int = LISTED) -> str:
+    """Hint for an unknown name: ``did you mean 'x'?``, or the list of what there is, ``most`` of it at most."""
     choices = sorted(known)
     if (now := new_name(name)) in choices:
         return f"it is called '{now}' now"
-    close = difflib.get_close_matches(name, choices, n=1, cutoff=0.5)
-    return f"did you mean '{_short(close[0])}'?" if close else f"there are: {listed(choices) or 'none'}"
+    close = difflib.get_close_matches(name, choices, n=1, cutoff=ALIKE)
+    return f"did you mean '{_short(close[0])}'?" if close else f"there are: {listed(choices, most) or 'none'}"
 
 
-def listed(names: Iterable[str]) -> str:
+def listed(names: Iterable[str], most: int = LISTED) -> str:
     """Names as ``a, b and 3 more``: never too long to be read or to be sent."""
     known = list(names)
-    more = f" and {len(known) - LISTED} more" if len(known) > LISTED else ""
-    return ", ".join(map(_short, known[:LISTED])) + more
+    more = f" and {len(known) - most} more" if len(known) > most else ""
+    return ", ".join(map(_short, known[:most])) + more
 
 
 def _short(name: str) -> str:
@@ -159,7 +161,7 @@ def _check(data: Any, hint: Any, place: FileLocation) -> None:
     try:
         msgspec.convert(data, hint)
     except msgspec.ValidationError as error:
-        raise BadInput(f"{place}: {str(error).partition(' - at `$')[0]}") from error
+        raise BadInput(f"{place}: {in_words(data, hint, str(error).partition(' - at `')[0])}") from error
 
 
 def _parts(data: Any, hint: Any, place: FileLocation) -> Iterator[tuple[Any, Any, Any]]:
@@ -174,12 +176,17 @@ def _parts(data: Any, hint: Any, place: FileLocation) -> Iterator[tuple[Any, Any
         hints = get_type_hints(hint, include_extras=True)
         for key, value in data.items():
             if key not in hints:
-                raise BadInput(f"{place.at(key)}: unknown key '{key}'; {nearest(str(key), hints)}")
+                raise BadInput(f"{place.at(key)}: unknown key '{key}'; {nearest(str(key), hints, KEYS_LISTED)}")
             yield key, value, hints[key]
     elif isinstance(data, dict) and origin is dict:
-        yield from ((key, value, get_args(hint)[1]) for key, value in data.items())
+        names, values = get_args(hint)
+        for key, value in data.items():
+            yield key, key, names
+            yield key, value, values
     elif isinstance(data, list) and origin in (list, tuple):
-        yield from ((i, value, get_args(hint)[0]) for i, value in enumerate(data))
+        types = get_args(hint)
+        whole = origin is tuple and len(types) == len(data) and types[-1] is not Ellipsis
+        yield from zip(itertools.count(), data, types if whole else itertools.repeat(types[0]), strict=False)
 
 
 def _line(file: str, keys: tuple[Key, ...]) -> int:

@@ -41,6 +41,14 @@ def test_the_check_says_nothing_wrong_or_ends_with_one(worlds):
     assert "lamp floats" in said("check", "bad", code=1)
 
 
+def test_a_steep_ramp_is_a_note_and_no_problem(worlds):
+    worlds.joinpath("steep").mkdir(parents=True)
+    ramp = "boxes: [{name: ramp, centre: [1.5, 1.5, 0.1], size: [1.0, 1.0, 0.1], rpy: [0, -0.35, 0]}]"
+    worlds.joinpath("steep", "world.yaml").write_text(f"about: b\norigin: {{latitude: 0, longitude: 0}}\nfloor: [0, 0, 3, 3]\n{ramp}\n")
+    lines = said("check", "steep").splitlines()
+    assert lines == ["note: ramp: 20.1 deg, steeper than the 15 deg that a rover drives", "uvf: nothing wrong"]
+
+
 def test_a_start_inside_of_something_is_told_by_the_check_with_a_mission():
     assert "nothing wrong" in said("check", "house", "-m", "demo")
 

@@ -85,6 +85,27 @@ BROKEN = {
     ),
     "an unknown joint": (YAML, "ground.left_joint", "wheel_left", ["no joint 'wheel_left' (named in vehicle.yaml)"]),
     "a missing URDF": (YAML, "ground.urdf", "burgr.urdf", ["burgr.urdf: no such file; did you mean 'burger.urdf'?"]),
+    "a lidar below the floor": (
+        YAML,
+        "sensors.lidar.mount.xyz",
+        [-0.032, 0.0, -0.1],
+        [
+            "sensors: lidar: mount: z -0.1 m is below the floor",
+            "link 'lidar' of the URDF is 0.275 m from the mount; to move the lidar, change",
+        ],
+    ),
+    "a tilted lidar": (
+        YAML,
+        "sensors.lidar.mount.rpy",
+        [0.0, 0.5, 0.0],
+        ["sensors: lidar: mount: the lidar is tilted by 0.5 rad; a planar scan has to be level: set roll and pitch to 0"],
+    ),
+    "ranges in millimetres": (
+        YAML,
+        "sensors.lidar.range_max",
+        3500.0,
+        ["range_max: 3500 m is farther than any planar scanner sees (300 m); give metres (if this is in millimetres: 3.5)"],
+    ),
     "a sensor on no link": (YAML, "sensors.lidar.mount.link", "lidr", ["sensors: lidar: mount: link: no link 'lidr'"]),
     "a sensor far from its link": (
         YAML,
@@ -139,6 +160,25 @@ def test_a_fault_is_named_and_no_other(folder, case):
         assert any(text in line for line in faults), faults
     assert len(faults) == len(expected), faults
     assert all(str(folder) in line and "\n" not in line for line in faults)
+
+
+def test_a_missing_urdf_is_told_once_by_a_vehicle_with_a_sensor_on_a_link(folder):
+    edit_yaml(folder, "sensors.lidar.mount", {"link": "lidar"})
+    edit_yaml(folder, "ground.urdf", "burgr.urdf")
+    (fault,) = inspect(folder).faults
+    assert "burgr.urdf: no such file" in fault
+
+
+def test_a_lidar_upside_down_is_level(folder):
+    edit_yaml(folder, "sensors.lidar.mount.rpy", [3.1416, 0.0, 0.0])
+    assert inspect(folder).faults == []
+
+
+def test_of_a_sensor_apart_from_its_link_both_ways_to_move_it_are_said(folder):
+    edit_yaml(folder, "sensors.lidar.mount.xyz", [-0.1, 0.0, 0.3])
+    (fault,) = inspect(folder).faults
+    wanted = "change its place in the URDF and write mount: {link: lidar}, or give it another frame"
+    assert fault.endswith(f"to move the lidar, {wanted}")
 
 
 def test_all_faults_come_in_one_run(folder):

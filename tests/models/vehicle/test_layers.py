@@ -42,7 +42,7 @@ def test_a_variants_own_file_comes_first(vehicles):
 
 @pytest.mark.parametrize(
     ("base", "why"),
-    [("burgr", "no vehicle 'burgr' beside it; did you mean 'burger'?"), ("other", "is a variant of this one"), (3, "Expected `str")],
+    [("burgr", "no vehicle 'burgr' beside it; did you mean 'burger'?"), ("other", "is a variant of this one"), (3, "3 is not text")],
 )
 def test_a_variant_of_nothing_or_of_itself_is_refused(vehicles, base, why):
     write(vehicles, "other", variant_of=base)

@@ -119,8 +119,8 @@ def test_every_kind_of_pgm_is_read(tmp_path, content):
 @pytest.mark.parametrize(
     ("yaml", "part"),
     [
-        (HEAD.replace("resolution: 0.05\n", ""), "missing required field `resolution`"),
-        (HEAD.replace("0.05", "-1"), r"m.yaml:2: resolution: Expected `float` > 0"),
+        (HEAD.replace("resolution: 0.05\n", ""), "key 'resolution' is missing"),
+        (HEAD.replace("0.05", "-1"), r"m.yaml:2: resolution: -1 is not above 0"),
         (HEAD.replace("[0, 0, 0]", "[0]"), "write x, y"),
         (HEAD.replace("[0, 0, 0]", "[0, .nan, 0]"), "no number to work with"),
         (HEAD.replace("0.65", "0.1"), "free_thresh: 0.196 is not below occupied_thresh"),

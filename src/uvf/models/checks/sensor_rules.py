@@ -1,4 +1,4 @@
-"""Where a vehicle's sensors sit: in its tree of frames, outside of its own body."""
+"""Where a vehicle's sensors sit: in its tree of frames, above the floor, outside of its own body; a planar lidar level."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any
@@ -13,15 +13,22 @@ from uvf.models.vehicle.sensors import Lidar, Mount, Sensors
 from uvf.models.yaml_data import FileLocation, Key
 
 APART = 0.03  # m, between a sensor's mount and the link of its name: the link may be the housing
+SUNK = 0.001  # m below the floor
+TILT = 0.035  # rad (2 deg), from which on the scan meets the floor or misses walls
+FARTHEST = 300.0  # m; scanners for surveys outdoors reach it
 LOOKS_AT = np.linspace(0.01, 1.0, 60)  # m along a beam
 NEEDED = {"lidar": "preset: lds01, mount: {xyz: [0, 0, 0.2]}", "encoders": "hz: 50, ticks_per_turn: 4096"}
+SPOKEN = {"sonars": "sonar", "rangefinders": "range finder"}
 HOUSINGS = ("lidar", "laser", "scan", "hokuyo", "lds", "rplidar", "sick", "velodyne")
 
 Poses = Mapping[str, Transform]
 
 
 def sensor_faults(model: UrdfModel, sensors: Sensors, poses: Poses, place: FileLocation) -> Iterator[str]:
-    """Faults of the sensors' mounts: frames named twice or apart from the links of their names, and scanners shut up in the body."""
+    """Faults of the sensors' mounts: frames named twice or apart from the links of their names, places below the floor.
+
+    And of a scanner: shut up in the body, tilted, or seeing farther than any.
+    """
     seen: dict[str, str] = {}
     for keys, sensor in mounted(sensors):
         where = place.at(*keys, "frame")
@@ -31,13 +38,31 @@ def sensor_faults(model: UrdfModel, sensors: Sensors, poses: Poses, place: FileL
         link = poses.get(sensor.frame)
         apart = np.linalg.norm(link.translation - np.array(sensor.mount.xyz)) if link is not None else 0.0
         if apart > APART:
-            yield f"{where}: link '{sensor.frame}' of the URDF is {apart:.3f} m from the mount; write mount: {{link: {sensor.frame}}}"
+            mend = f"change its place in the URDF and write mount: {{link: {sensor.frame}}}, or give it another frame"
+            what = f"link '{sensor.frame}' of the URDF is {apart:.3f} m from the mount"
+            yield f"{where}: {what}; to move the {SPOKEN.get(str(keys[0]), keys[0])}, {mend}"
+        if (z := sensor.mount.xyz[2]) < -SUNK:
+            yield f"{place.at(*keys, 'mount')}: z {z:.4g} m is below the floor, which is z = 0 of base_link; raise it"
     if sensors.lidar is not None:
+        yield from _lidar_faults(sensors.lidar, place.at("lidar"))
         for link_name in _around(model, sensors.lidar, poses):
             yield (
                 f"{place.at('lidar', 'mount')}: the lidar is inside the collision shape of link '{link_name}' and would see nothing else; "
                 "mount it outside"
             )
+
+
+def _lidar_faults(lidar: Lidar, place: FileLocation) -> Iterator[str]:
+    """A scan that is not level, or ranges in another unit. A scanner upside down is level."""
+    up = rotate(from_euler(*lidar.mount.rpy), np.array((0.0, 0.0, 1.0)))
+    tilt = float(np.arctan2(np.hypot(up[0], up[1]), abs(up[2])))
+    if tilt > TILT:
+        also = "" if lidar.mount.link is None else f", here and of link '{lidar.mount.link}' in the URDF"
+        remedy = f"set roll and pitch to 0{also}"
+        yield f"{place.at('mount')}: the lidar is tilted by {tilt:.2g} rad; a planar scan has to be level: {remedy}"
+    if lidar.range_max > FARTHEST:
+        remedy = f"give metres (if this is in millimetres: {lidar.range_max / 1000:g})"
+        yield f"{place.at('range_max')}: {lidar.range_max:g} m is farther than any planar scanner sees ({FARTHEST:g} m); {remedy}"
 
 
 def sensor_notes(model: UrdfModel, sensors: Sensors, poses: Poses, turning: set[str]) -> Iterator[str]:

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 import msgspec
 from msgspec import Meta
 
-from uvf.models.keys import key, plain
+from uvf.models.keys import key, name_like, plain
 from uvf.models.mission.faults import Fault, check_faults
 from uvf.models.mission.fence import FenceFile, zones_of
 from uvf.models.mission.formation import Follow, check_follow
@@ -16,8 +16,8 @@ from uvf.models.yaml_data import BadInput, FileLocation, load_yaml, nearest
 
 NotNegative = Annotated[float, Meta(ge=0, le=1e6)]
 Metres = Annotated[float, Meta(ge=-1e6, le=1e6)]  # local coordinates stay near the origin
-VehicleName = Annotated[str, Meta(pattern=rf"^{VEHICLE}\Z", max_length=40)]
-FolderName = Annotated[str, Meta(pattern=rf"^{FOLDER}\Z", max_length=80)]
+VehicleName = Annotated[str, name_like(VEHICLE, 40, "a name has lower-case letters, digits and _, and begins with a letter")]
+FolderName = Annotated[str, name_like(FOLDER, 80, "a folder has letters, digits and _, . or -, and no spaces")]
 
 
 class StartPose(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

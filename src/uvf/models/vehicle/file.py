@@ -68,12 +68,12 @@ class VehicleFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     variant_of: Annotated[Name | None, plain("Another vehicle whose file holds what this one leaves out.")] = None
 
 
-def load_vehicle(vehicles: Path, name: str) -> VehicleFile:
-    """Reads ``vehicles/<name>/vehicle.yaml``. Raises BadInput."""
+def load_vehicle(vehicles: Path, name: str, named_at: FileLocation | None = None) -> VehicleFile:
+    """Reads ``vehicles/<name>/vehicle.yaml``; ``named_at``: the spot of a file that names it. Raises BadInput."""
     folder = vehicles / name
     if not (folder / "vehicle.yaml").is_file():
         known = [p.parent.name for p in vehicles.glob("*/vehicle.yaml")]
-        raise BadInput(f"no vehicle '{name}' in {vehicles}; {nearest(name, known)}")
+        raise BadInput(f"{f'{named_at}: ' if named_at else ''}no vehicle '{name}' in {vehicles}; {nearest(name, known)}")
     vehicle = load_yaml(folder / "vehicle.yaml", VehicleFile, fill_vehicle)
     place = FileLocation(str(folder / "vehicle.yaml"))
     section = "ground" if vehicle.kind == "ground" else "air"

@@ -7,11 +7,11 @@ from typing import Annotated
 import msgspec
 from msgspec import Meta
 
-from uvf.models.keys import key, plain
-from uvf.models.quantities import Name, NotNegative, Positive
+from uvf.models.keys import in_unit, key, plain
+from uvf.models.quantities import Angles, Name, NotNegative, Positive
 from uvf.models.yaml_data import BadInput, FileLocation
 
-Offset = Annotated[float, Meta(ge=-100, le=100)]
+Offset = Annotated[float, Meta(ge=-100, le=100), in_unit("m")]
 Triple = tuple[Offset, Offset, Offset]
 SensorRate = Annotated[float, Meta(ge=0.01, le=1000)]
 Probability = Annotated[float, Meta(ge=0, le=1)]
@@ -22,7 +22,7 @@ class Mount(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Pose of a sensor in base_link (FLU). Where a file names a URDF's ``link`` instead, it is that link's."""
 
     xyz: Annotated[Triple, plain("Position x forward, y left, z up [m], in base_link or in `link`.")] = (0.0, 0.0, 0.0)
-    rpy: Annotated[Triple, plain("Roll, pitch, yaw [rad]; [0, 1.5708, 0] looks straight down.")] = (0.0, 0.0, 0.0)
+    rpy: Annotated[Angles, plain("Roll, pitch, yaw [rad]; [0, 1.5708, 0] looks straight down.")] = (0.0, 0.0, 0.0)
     link: Annotated[Name | None, plain("Link of the URDF that the mount counts from; left out: base_link.")] = None
 
 

@@ -9,7 +9,8 @@ from typing import Annotated
 import msgspec
 from msgspec import Meta
 
-from uvf.models.keys import key, plain
+from uvf.models.keys import key, name_like, plain
+from uvf.models.quantities import PATH, Angle, Angles
 from uvf.models.world.wind import Wind, check_wind
 from uvf.models.yaml_data import BadInput, FileLocation, load_yaml, nearest
 
@@ -18,9 +19,7 @@ Colour = tuple[Share, Share, Share]
 Metres = Annotated[float, Meta(ge=-1e5, le=1e5)]  # local coordinates stay near the origin
 Positive = Annotated[float, Meta(ge=1e-4, le=1e4)]
 Area = tuple[Metres, Metres, Metres, Metres]
-Angle = Annotated[float, Meta(ge=-7, le=7)]
-Angles = tuple[Angle, Angle, Angle]
-FileName = Annotated[str, Meta(pattern=r"^[A-Za-z0-9_][A-Za-z0-9_./-]*\Z", max_length=200)]
+FileName = Annotated[str, name_like(PATH, 200, "a file's name has letters, digits and _, ., / or -, and no spaces")]
 Seconds = Annotated[float, Meta(ge=0, le=1e5)]
 Script = list[tuple[Seconds, Metres, Metres, float]]
 """Keys of a motion: t [s], x, y [m], yaw [rad]; closed, for it begins anew at its end."""
@@ -160,12 +159,12 @@ class WorldFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     fields: Annotated[list[Field], plain("Coloured patches of ground, only to be seen. Where two overlap, the first counts.")] = []
 
 
-def load_world(worlds: Path, name: str) -> WorldFile:
-    """Reads ``worlds/<name>/world.yaml``. Raises BadInput."""
+def load_world(worlds: Path, name: str, named_at: FileLocation | None = None) -> WorldFile:
+    """Reads ``worlds/<name>/world.yaml``; ``named_at``: the spot of a file that names it. Raises BadInput."""
     path = worlds / name / "world.yaml"
     if not path.is_file():
         known = [p.parent.name for p in worlds.glob("*/world.yaml")]
-        raise BadInput(f"no world '{name}' in {worlds}; {nearest(name, known)}")
+        raise BadInput(f"{f'{named_at}: ' if named_at else ''}no world '{name}' in {worlds}; {nearest(name, known)}")
     world = load_yaml(path, WorldFile)
     place = FileLocation(str(path))
     check_wind(world.wind, place.at("wind"))
