@@ -10,6 +10,7 @@ from typing import Annotated
 import typer
 
 from launch import settings
+from launch.commands.log import LogArgument, log_app
 from launch.commands.map import map_app
 from launch.commands.sim import sim_app
 from launch.commands.slam import slam
@@ -20,7 +21,6 @@ from launch.refusal import bad_input_is_one_line, usage_is_one_line, within
 app = typer.Typer(no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False, help=(__doc__ or "").splitlines()[0])
 topic_app = typer.Typer(no_args_is_help=True, help="Look at messages.")
 node_app = typer.Typer(no_args_is_help=True, help="Look at running services.")
-log_app = typer.Typer(no_args_is_help=True, help="Look at recorded runs.")
 app.add_typer(topic_app, name="topic")
 app.add_typer(node_app, name="node")
 app.add_typer(log_app, name="log")
@@ -37,12 +37,6 @@ def known_mission(name: str | None) -> str | None:
         if name:
             settings.mission_path(name)
     return name
-
-
-def known_log(path: Path) -> Path:
-    """Resolves the path of a log or exits with one line."""
-    with bad_input_is_one_line():
-        return settings.log_path(path)
 
 
 def known_run(path: Path | None) -> Path | None:
@@ -66,7 +60,6 @@ RATE = "Simulation seconds per second, at most 1000; 0 = as fast as it goes."
 MISSION = "Name in missions/ or path of a mission file."
 MissionArgument = Annotated[str, typer.Argument(help=MISSION, callback=known_mission)]
 MissionOption = Annotated[str, typer.Option("--mission", "-m", help=MISSION, callback=known_mission)]
-LogArgument = Annotated[Path, typer.Argument(help="An MCAP log.", callback=known_log)]
 
 BRIDGE_ADDRESS = """udpin:HOST:PORT: listen for autopilots that send there, as simulators do to 14550.
 
@@ -354,24 +347,6 @@ def node_graph() -> None:
 
     with bad_input_is_one_line():
         graph()
-
-
-@log_app.command("info")
-def log_info(log: LogArgument) -> None:
-    """Topics, counts, length, gaps and hash of a log."""
-    from launch.commands.report import describe_log
-
-    with bad_input_is_one_line():
-        describe_log(log)
-
-
-@log_app.command("recover")
-def log_recover(log: LogArgument, out: Annotated[Path | None, typer.Option(help="By default <log>-recovered.mcap.")] = None) -> None:
-    """Save what can be saved of a log that was cut off."""
-    from launch.commands.report import recover_log
-
-    with bad_input_is_one_line():
-        recover_log(log, out)
 
 
 def main() -> None:
