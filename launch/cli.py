@@ -59,6 +59,8 @@ BENCHMARKS = "Groups (bus, sim, ...), each followed by the cases wanted of it."
 RATE = "Simulation seconds per second, at most 1000; 0 = as fast as it goes."
 MISSION = "Name in missions/ or path of a mission file."
 MissionArgument = Annotated[str, typer.Argument(help=MISSION, callback=known_mission)]
+RUNNING = "By default that of the running system."
+RunningMissionOption = Annotated[str | None, typer.Option("--mission", "-m", help=RUNNING, callback=known_mission)]
 MissionOption = Annotated[str, typer.Option("--mission", "-m", help=MISSION, callback=known_mission)]
 
 BRIDGE_ADDRESS = """udpin:HOST:PORT: listen for autopilots that send there, as simulators do to 14550.
@@ -195,7 +197,7 @@ def report(
 @app.command()
 def teleop(
     vehicles: Annotated[list[str] | None, typer.Argument(help="Ground vehicles, driven together, or one aircraft.")] = None,
-    mission: MissionOption = DEMO,
+    mission: RunningMissionOption = None,
 ) -> None:
     """Drive ground vehicles, or fly an aircraft by its surfaces, from this terminal's keyboard or with a gamepad."""
     from launch.teleop.command import teleop as run_teleop
@@ -209,7 +211,7 @@ def flightgear(
     vehicle: Annotated[str, typer.Argument(help="An aircraft of the mission.")],
     to: Annotated[str, typer.Option(help="HOST:PORT where FlightGear listens.")] = "127.0.0.1:5550",
     hz: Annotated[float, typer.Option(callback=within(1.0, 100.0), help="Packets a second, 1 to 100.")] = 30.0,
-    mission: MissionOption = DEMO,
+    mission: RunningMissionOption = None,
 ) -> None:
     """Show an aircraft in FlightGear (native FDM packets over UDP), until Ctrl-C."""
     from launch.flightgear.flightgear import flightgear as run_flightgear
