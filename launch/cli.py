@@ -3,6 +3,7 @@
 Heavy imports happen inside the commands, so that ``uvf --help`` is quick.
 """
 
+import os
 import sys
 from pathlib import Path
 from typing import Annotated
@@ -86,6 +87,7 @@ def up(
     from launch.runs import new_run
     from launch.up import StartOptions
     from launch.up import up as run_up
+    from services.autopilot.mavlink.connection.targets import where_mavlink_goes
     from uvf.runtime.bus.address import address_from, claim, claim_router, router_from
 
     with bad_input_is_one_line():
@@ -95,8 +97,8 @@ def up(
             claim(address_from())
         folder = new_run()
         say(f"mission {path.stem}; logs in {folder}")
-        if gcs:
-            say(f"page {address_from().url}   QGroundControl: just start it (MAVLink goes to UDP 14550)   Ctrl-C ends")
+        page = f"page {address_from().url}   " if gcs else ""
+        say(f"{page}{where_mavlink_goes(os.environ)}   Ctrl-C ends")
         raise typer.Exit(run_up(StartOptions(mission, rate, gcs, seconds), folder, say))
 
 

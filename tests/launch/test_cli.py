@@ -15,6 +15,7 @@ import yaml
 
 from launch import settings
 from launch.cli import main
+from tests.runtime.modes import free_port
 from uvf.models.scenario import ROOT
 
 
@@ -224,3 +225,11 @@ def test_the_fault_itself_is_named_before_a_router_is_looked_for(tmp_path):
         done = uvf(*arguments, UVF_ROUTER=NOWHERE)
         assert (done.returncode, len(done.stderr.splitlines())) == (2, 1)
         assert why in done.stderr
+
+
+def test_up_says_where_mavlink_goes(tmp_path, monkeypatch):
+    monkeypatch.setattr("launch.up.up", lambda *_: 0)
+    ports = {"UVF_RUNS": str(tmp_path), "UVF_GCS_PORT": str(free_port()), "UVF_ROUTER": f"tcp/127.0.0.1:{free_port()}"}
+    said = uvf("up", UVF_MAVLINK_TARGETS="", UVF_MAVLINK_LISTEN="", **ports).stdout
+    assert "MAVLink: off" in said and "14550" not in said
+    assert "MAVLink: to UDP 10.0.0.2:14550," in uvf("up", "--no-gcs", UVF_MAVLINK_TARGETS="10.0.0.2:14550", **ports).stdout
