@@ -11,12 +11,13 @@ from typing import Annotated
 import typer
 
 from launch import settings
-from launch.commands.log import LogArgument, log_app
+from launch.commands.log import KeyArgument, LogArgument, log_app
 from launch.commands.map import map_app
 from launch.commands.sim import sim_app
 from launch.commands.slam import slam
 from launch.commands.vehicle import vehicle_app
 from launch.commands.world import world_app
+from launch.help import without_types_of_flags
 from launch.refusal import bad_input_is_one_line, usage_is_one_line, within
 
 app = typer.Typer(no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False, help=(__doc__ or "").splitlines()[0])
@@ -56,7 +57,7 @@ def known_benchmarks(names: list[str]) -> list[str]:
 DEMO = "demo"
 AS_TODAY = "With these files instead of those attached to the log."
 RUN = "Folder of a run, or a log; by default the latest run."
-BENCHMARKS = "Groups (bus, sim, ...), each followed by the cases wanted of it."
+BENCHMARKS = f"Groups, each followed by the cases wanted of it: {', '.join(settings.benchmark_names())}."
 RATE = "Simulation seconds per second, at most 1000; 0 = as fast as it goes."
 MISSION = "Name in missions/ or path of a mission file."
 MissionArgument = Annotated[str, typer.Argument(help=MISSION, callback=known_mission)]
@@ -307,7 +308,7 @@ def topic_list(live: Annotated[bool, typer.Option(help="Only what is on the bus 
 
 @topic_app.command("echo")
 def topic_echo(
-    key: Annotated[str, typer.Argument(help="As burger/nav/pose; * stands for one part.")],
+    key: KeyArgument,
     count: Annotated[int, typer.Option("-n", min=0, help="Stop after so many.")] = 0,
 ) -> None:
     """Print messages as they come."""
@@ -318,7 +319,9 @@ def topic_echo(
 
 
 @topic_app.command("hz")
-def topic_hz(key: str, seconds: Annotated[float, typer.Option("--for", callback=within(0.01), help="How long to count.")] = 5.0) -> None:
+def topic_hz(
+    key: KeyArgument, seconds: Annotated[float, typer.Option("--for", callback=within(0.01), help="How long to count.")] = 5.0
+) -> None:
     """Measure rates, by wall and by simulation time."""
     from launch.commands.topic import rates
 
@@ -327,7 +330,7 @@ def topic_hz(key: str, seconds: Annotated[float, typer.Option("--for", callback=
 
 
 @topic_app.command("info")
-def topic_info(key: str) -> None:
+def topic_info(key: KeyArgument) -> None:
     """Type, rate, QoS, writers and readers of a topic."""
     from launch.commands.topic import info
 
@@ -356,7 +359,7 @@ def node_graph() -> None:
 def main() -> None:
     """Runs the command line and exits with its code."""
     with usage_is_one_line():
-        sys.exit(app(prog_name="uvf", standalone_mode=False))
+        sys.exit(without_types_of_flags(typer.main.get_command(app))(prog_name="uvf", standalone_mode=False))
 
 
 if __name__ == "__main__":

@@ -18,6 +18,7 @@ def known_log(path: Path) -> Path:
 
 
 LogArgument = Annotated[Path, typer.Argument(help="An MCAP log.", callback=known_log)]
+KeyArgument = Annotated[str, typer.Argument(help="As burger/nav/pose; * stands for one part.")]
 RunArgument = Annotated[Path, typer.Argument(metavar="LOG", help="An MCAP log, or a run's folder, as runs/latest.", callback=known_log)]
 
 
@@ -43,7 +44,7 @@ def log_events(log: RunArgument) -> None:
 @log_app.command("echo")
 def log_echo(
     log: RunArgument,
-    key: Annotated[str, typer.Argument(help="As burger/nav/pose; * stands for one part.")],
+    key: KeyArgument,
     count: Annotated[int, typer.Option("-n", min=0, help="Stop after so many; 0 = all.")] = 0,
 ) -> None:
     """Print the messages of a topic, as 'uvf topic echo' does."""

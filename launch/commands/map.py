@@ -63,7 +63,7 @@ def map_load(
 def map_merge(
     sessions: Annotated[list[str], typer.Argument(help="Files (.npz) of 'uvf slam', or names given to 'uvf map save --session'.")],
     out: Annotated[str, typer.Option(help="A saved map's name, or a file: map, session (.npz) and picture (.png) are written.")] = "merged",
-    resolution: Annotated[float, typer.Option(min=0.01, max=1.0, help="Side of the map's cells, m.")] = 0.05,
+    resolution: Annotated[float, typer.Option(min=0.01, max=1.0, metavar="m", help="Side of the map's cells.")] = 0.05,
 ) -> None:
     """Put the maps of several vehicles, or of several days, together, wherever each of them began; 1 when nothing fits."""
     from launch.maps.merging import merge_files
@@ -84,7 +84,7 @@ def map_compare(
     shift: Annotated[
         tuple[float, float, float],
         typer.Option(
-            help="Pose of the first map in the other's frame: x [m], y [m], yaw [degrees]; three numbers, as --shift 1.5 -0.2 90."
+            metavar="X Y YAW", help="Pose of the first map in the other's frame: x and y in m, yaw in degrees, as --shift 1.5 -0.2 90."
         ),
     ] = (
         0.0,

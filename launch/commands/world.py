@@ -11,7 +11,7 @@ from launch.settings import runs_folder
 world_app = typer.Typer(no_args_is_help=True, help="Worlds: list, show, check, picture, new, import.")
 
 NameArgument = Annotated[str, typer.Argument(help="A folder in worlds/.")]
-RadiusOption = Annotated[float, typer.Option(min=0.01, max=10.0, help="Of the vehicle that is to drive there [m].")]
+RadiusOption = Annotated[float, typer.Option(min=0.01, max=10.0, metavar="m", help="Of the vehicle that is to drive there.")]
 BURGER = 0.115  # m
 
 
@@ -106,7 +106,7 @@ def world_import(
     file: Annotated[Path, typer.Argument(help="A Gazebo .world or .sdf, or the yaml of a map.")],
     name: Annotated[str, typer.Option(help="Of the new folder in worlds/.")],
     models: Annotated[list[Path] | None, typer.Option(help="Folders with Gazebo models.")] = None,
-    height: Annotated[float, typer.Option(min=0.1, max=100.0, help="Of the walls of a map [m].")] = 2.0,
+    height: Annotated[float, typer.Option(min=0.1, max=100.0, metavar="m", help="Of the walls of a map.")] = 2.0,
     upright: Annotated[bool, typer.Option("--upright", help="Turn meshes that say that y is up, which Gazebo does not.")] = False,
     replace: Annotated[bool, typer.Option("--replace", help="Overwrite a world of that name.")] = False,
 ) -> None:

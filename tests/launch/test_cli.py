@@ -190,8 +190,13 @@ USAGE = {
     ("chek", "demo"): "no such command 'chek'; did you mean 'check'?; try 'uvf --help'",
     ("topic", "ehco", "x"): "no such command 'ehco'; did you mean 'echo'?; try 'uvf topic --help'",
     ("map", "load"): "missing argument 'name'; try 'uvf map load --help'",
-    ("up", "--ratee", "1"): "no such option: --ratee",
-    ("up", "--rate", "abc"): "invalid value for '--rate': ",
+    ("up", "--ratee", "1"): "no such option: --ratee; did you mean --rate?; try 'uvf up --help'",
+    ("run", "demo", "--untl", "3"): "no such option: --untl; did you mean --until?; try 'uvf run --help'",
+    ("up", "--rate", "abc"): "invalid value for '--rate': 'abc' is no number; try",
+    ("world", "check", "house", "--radius", "20"): "invalid value for '--radius': 20 m is above 10 m; try 'uvf world check --help'",
+    ("world", "check", "house", "--radius", "0"): "invalid value for '--radius': 0 m is below 0.01 m; try",
+    ("world", "new", "x", "--rooms", "100"): "invalid value for '--rooms': 100 is above 40; try 'uvf world new --help'",
+    ("world", "new", "x", "--rooms", "few"): "invalid value for '--rooms': 'few' is no whole number; try",
     ("up", "--rate", "nan"): "invalid value for '--rate': nan: give a number from 0 to 1000; try 'uvf up --help'",
     ("up", "--for", "-5"): "invalid value for '--for': -5: give a number at least 0.01; try 'uvf up --help'",
     ("up", "--for", "nan"): "invalid value for '--for': nan: give a number at least 0.01",
@@ -233,3 +238,19 @@ def test_up_says_where_mavlink_goes(tmp_path, monkeypatch):
     said = uvf("up", UVF_MAVLINK_TARGETS="", UVF_MAVLINK_LISTEN="", **ports).stdout
     assert "MAVLink: off" in said and "14550" not in said
     assert "MAVLink: to UDP 10.0.0.2:14550," in uvf("up", "--no-gcs", UVF_MAVLINK_TARGETS="10.0.0.2:14550", **ports).stdout
+
+
+def test_the_help_says_what_each_measure_is_and_no_type_of_a_flag():
+    said = " ".join(uvf("vehicle", "new", "--help", COLUMNS="160").stdout.split())
+    assert "From the floor to the top of the body." in said and "From the middle of one wheel" in said
+    assert "<bool>" not in said
+    assert all("<bool>" not in uvf(*words, "--help", COLUMNS="160").stdout for words in (("up",), ("bench",), ("world", "new"), ()))
+
+
+def test_the_help_of_shift_says_degrees_and_keeps_what_stands_in_it():
+    assert "x and y in m, yaw in degrees" in " ".join(uvf("map", "compare", "--help", COLUMNS="240").stdout.split())
+
+
+def test_the_help_of_bench_lists_the_groups():
+    said = uvf("bench", "--help", COLUMNS="160").stdout
+    assert all(name in said for name in settings.benchmark_names()) and "slow_lidar" in said
